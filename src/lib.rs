@@ -1,0 +1,29 @@
+//! Inclusion probing after Yan, Scott and Fearing (1999): the force on a rigid probe that presses
+//! into a gel, the decision whether a hard inclusion lies in it, and its playback to a hand.
+//!
+//! The modules follow the paper:
+//!
+//! | paper | module |
+//! |---|---|
+//! | §2 signal detection | [`detect`], on the normal law in [`stats`] |
+//! | §3 phantoms | [`phantom`] |
+//! | §3.1 finite elements | [`fem`] |
+//! | §3, §4 force tables | [`force_map`] |
+//! | figures, tables | [`report`] |
+//!
+//! Lengths are metres, forces newtons, moduli pascals throughout; `spec/README.md` has the signs.
+//!
+//! With `default-features = false` the crate is `no_std`, does not allocate, and depends on `libm`
+//! alone: that part holds [`stats`] and [`detect`].
+#![cfg_attr(not(feature = "std"), no_std)]
+
+pub mod detect;
+#[cfg(feature = "fem")]
+pub mod fem;
+#[cfg(feature = "std")]
+pub mod force_map;
+#[cfg(feature = "std")]
+pub mod phantom;
+#[cfg(feature = "report")]
+pub mod report;
+pub mod stats;
