@@ -50,9 +50,8 @@ impl Quantity {
     }
 
     /// An SI value in the phantom file's unit.
-    fn in_file_unit(self, value: f64) -> String {
-        let text = format_scaled(value, -self.power_to_si());
-        text.strip_suffix(".0").unwrap_or(&text).into()
+    pub(super) fn in_file_unit(self, value: f64) -> String {
+        format_scaled(value, -self.power_to_si())
     }
 }
 
@@ -147,6 +146,16 @@ pub enum InvalidPhantom {
         /// The name.
         name: String,
     },
+}
+
+impl InvalidPhantom {
+    /// The key that is refused, in the phantom file but without the unit.
+    pub fn key(&self) -> &'static str {
+        match self {
+            InvalidPhantom::OutOfRange(number) => number.key,
+            InvalidPhantom::Name { .. } => "name",
+        }
+    }
 }
 
 impl Phantom {

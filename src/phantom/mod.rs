@@ -10,6 +10,7 @@
 //! | `decimal.rs` | mm and kPa to SI and back |
 
 pub mod decimal;
+mod file;
 mod limits;
 mod pose;
 #[cfg(test)]
@@ -17,6 +18,7 @@ mod tests;
 
 use serde::{Deserialize, Serialize};
 
+pub use file::{PhantomFileError, PhantomFileProblem};
 pub use limits::{GEL_CLEARANCE, InvalidPhantom, OutOfRange, Quantity};
 pub use pose::PoseError;
 
