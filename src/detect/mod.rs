@@ -1,1 +1,54 @@
-//! detect
+//! Whether a recorded force holds an inclusion (paper §2).
+//!
+//! The observed force is F_0 (no inclusion, H = 0) or F_1 (inclusion, H = 1) plus Gaussian noise, sampled
+//! i = 1 … N along the trajectory in two channels: x lateral, y normal. The *template* is Δ = F_1 − F_0,
+//! the *residual* r = F_p − F_0, and Θ the log-likelihood ratio of the two hypotheses.
+//!
+//! | paper | here |
+//! |---|---|
+//! | (2)–(7): h, Y, b, γ, Θ | [`matched_filter`] |
+//! | (8), (9), figures 4 and 9: thresholds, error rates, pair-wise tests | [`decision`] |
+//!
+//! Nothing here allocates; what needs memory takes it from the caller. `spec/detector.md` is normative.
+
+pub mod decision;
+mod error;
+pub mod matched_filter;
+
+pub use decision::{
+    Costs, Decision, ErrorRates, auc, bayes_threshold, decide, error_rates, gamma_from_two_afc,
+    map_threshold, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, posterior,
+    required_gamma, roc_miss, two_afc,
+};
+pub use error::DetectError;
+pub use matched_filter::{MatchedFilter, RecordStatistic, Statistic, theta_of_record};
+
+/// One thing for each of the two channels of force.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Channels<T> {
+    /// Lateral, along the surface.
+    pub x: T,
+    /// Normal, out of the gel.
+    pub y: T,
+}
+
+impl<T> Channels<T> {
+    /// The same function of either channel.
+    pub fn map<U>(self, mut function: impl FnMut(T) -> U) -> Channels<U> {
+        Channels {
+            x: function(self.x),
+            y: function(self.y),
+        }
+    }
+
+    /// Pairs the channels of two things.
+    pub fn zip<U>(self, other: Channels<U>) -> Channels<(T, U)> {
+        Channels {
+            x: (self.x, other.x),
+            y: (self.y, other.y),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,1 +1,10 @@
-//! stats
+//! The normal law and the arithmetic under it, without `std` and without allocation.
+//!
+//! Everything here gives the same bits on every machine: the only transcendental functions are
+//! those of `libm`, sums run in an order that the source fixes, and no fused multiply-add is used.
+
+pub mod compensated;
+pub mod normal;
+
+#[cfg(test)]
+pub(crate) mod check;

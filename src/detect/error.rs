@@ -1,0 +1,182 @@
+//! Why the detector refused to answer.
+
+use core::fmt;
+
+/// Why the detector refused to answer. A refusal is never a decision: no error means "no inclusion".
+///
+/// Implements: DET-005, DET-006, DET-007.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum DetectError {
+    /// There is no sample at all.
+    Empty {
+        /// The name of the argument.
+        what: &'static str,
+    },
+    /// Two arguments that belong together differ in length.
+    LengthMismatch {
+        /// The name of the argument.
+        what: &'static str,
+        /// The length it should have.
+        expected: usize,
+        /// The length it has.
+        found: usize,
+    },
+    /// A sample is NaN or infinite.
+    NotFinite {
+        /// The name of the argument.
+        what: &'static str,
+        /// The first such sample.
+        index: usize,
+    },
+    /// A number is outside the range in which the question has a finite answer, or is NaN.
+    OutOfRange {
+        /// The name of the argument.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// The values that would be right.
+        range: &'static str,
+    },
+    /// γ = 0: the hypotheses predict the same force, so no threshold keeps this promise.
+    NoSignal,
+    /// The covariance is not symmetric.
+    NotSymmetric {
+        /// Row of the first entry that differs from its mirror image.
+        row: usize,
+        /// Column of that entry.
+        column: usize,
+    },
+    /// The covariance is not positive definite, or singular to working precision.
+    NotPositiveDefinite {
+        /// The order of the first leading block that fails, less one.
+        pivot: usize,
+    },
+    /// The result exceeds the range of the numbers.
+    Overflow {
+        /// The name of the result.
+        what: &'static str,
+    },
+}
+
+impl fmt::Display for DetectError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty { what } => write!(f, "{what} has no samples; at least one is needed"),
+            Self::LengthMismatch {
+                what,
+                expected,
+                found,
+            } => {
+                write!(
+                    f,
+                    "{what} has length {found}, but must have length {expected}"
+                )
+            }
+            Self::NotFinite { what, index } => {
+                write!(
+                    f,
+                    "{what}[{index}] is NaN or infinite; every sample must be finite"
+                )
+            }
+            Self::OutOfRange { what, value, range } => {
+                write!(f, "{what} is {value}, but must be {range}")
+            }
+            Self::NoSignal => {
+                f.write_str("gamma is 0: without a signal no threshold bounds the false alarms")
+            }
+            Self::NotSymmetric { row, column } => {
+                write!(
+                    f,
+                    "the covariance is not symmetric: entries ({row}, {column}) and ({column}, {row}) differ"
+                )
+            }
+            Self::NotPositiveDefinite { pivot } => {
+                write!(f, "the covariance is not positive definite (pivot {pivot})")
+            }
+            Self::Overflow { what } => write!(f, "{what} is too large to represent"),
+        }
+    }
+}
+
+impl core::error::Error for DetectError {}
+
+/// Checks that every sample is finite and that there are `length` of them.
+pub(crate) fn check_samples(
+    what: &'static str,
+    samples: &[f64],
+    length: usize,
+) -> Result<(), DetectError> {
+    if samples.is_empty() {
+        return Err(DetectError::Empty { what });
+    }
+    if samples.len() != length {
+        return Err(DetectError::LengthMismatch {
+            what,
+            expected: length,
+            found: samples.len(),
+        });
+    }
+    match samples.iter().position(|sample| !sample.is_finite()) {
+        Some(index) => Err(DetectError::NotFinite { what, index }),
+        None => Ok(()),
+    }
+}
+
+/// Passes a finite number > 0.
+pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<f64, DetectError> {
+    in_range(
+        value > 0.0 && value < f64::INFINITY,
+        what,
+        value,
+        "finite and greater than 0",
+    )
+}
+
+/// Passes a finite number ≥ 0.
+pub(crate) fn check_not_negative(what: &'static str, value: f64) -> Result<f64, DetectError> {
+    in_range(
+        (0.0..f64::INFINITY).contains(&value),
+        what,
+        value,
+        "finite and at least 0",
+    )
+}
+
+/// Passes a finite number.
+pub(crate) fn check_finite(what: &'static str, value: f64) -> Result<f64, DetectError> {
+    in_range(value.is_finite(), what, value, "finite")
+}
+
+/// Passes a probability strictly between 0 and 1.
+pub(crate) fn check_probability(what: &'static str, value: f64) -> Result<f64, DetectError> {
+    in_range(
+        value > 0.0 && value < 1.0,
+        what,
+        value,
+        "strictly between 0 and 1",
+    )
+}
+
+/// Passes `value` if `is_right`, a condition that must be false for NaN.
+pub(crate) fn in_range(
+    is_right: bool,
+    what: &'static str,
+    value: f64,
+    range: &'static str,
+) -> Result<f64, DetectError> {
+    if is_right {
+        Ok(value)
+    } else {
+        Err(DetectError::OutOfRange { what, value, range })
+    }
+}
+
+/// Passes a result that did not overflow.
+pub(crate) fn representable(what: &'static str, value: f64) -> Result<f64, DetectError> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(DetectError::Overflow { what })
+    }
+}

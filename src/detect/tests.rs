@@ -1,0 +1,468 @@
+//! Expected values: mpmath 1.4.1 at 50 digits, from the equations of the paper in the form of `spec/detector.md` (Y and b
+//! formed first, with the weight 1/N), for the exact binary64 arguments, rounded once.
+
+use super::*;
+use crate::stats::check::{assert_near, assert_ulps};
+use std::{vec, vec::Vec};
+extern crate std;
+
+const TEMPLATE: Channels<&[f64]> = Channels {
+    x: &[0.25, -0.5, 0.125, 0.3],
+    y: &[0.34, 0.31, 0.22, 0.05],
+};
+const RESIDUAL: Channels<&[f64]> = Channels {
+    x: &[0.3, -0.4, 0.2, 0.1],
+    y: &[0.4, 0.1, 0.3, -0.05],
+};
+const NOISE_SD: Channels<f64> = Channels { x: 0.1, y: 0.235 };
+
+fn filter() -> MatchedFilter<'static> {
+    MatchedFilter::new(TEMPLATE, NOISE_SD).unwrap()
+}
+
+// Verifies: DET-010, DET-011, DET-013.
+#[test]
+fn filter_has_the_expected_signal_and_noise() {
+    let filter = filter();
+    assert_ulps(filter.b().x, 0.3233129289094391, 4.0);
+    assert_ulps(filter.b().y, 0.2562225595063791, 4.0);
+    assert_ulps(filter.sigma().x, 0.05, 4.0);
+    assert_ulps(filter.sigma().y, 0.1175, 4.0);
+    assert_ulps(filter.gamma(), 6.824045193444496, 4.0);
+}
+
+// Verifies: DET-012, DET-015.
+#[test]
+fn statistic_of_a_residual() {
+    let statistic = filter().statistic(RESIDUAL).unwrap();
+    assert_ulps(statistic.y.x, 0.2551707420989295, 4.0);
+    assert_ulps(statistic.y.y, 0.2249021323923092, 4.0);
+    assert_ulps(statistic.theta, 13.890037913082843, 8.0);
+}
+
+// Verifies: DET-012, DET-013, DET-015.
+#[test]
+fn statistic_of_a_record() {
+    let found = theta_of_record(
+        Channels {
+            x: &[0.1, 0.05, 0.3, 0.0],
+            y: &[1.7, 1.9, 1.3, 1.6],
+        },
+        Channels {
+            x: &[0.0, 0.1, 0.2, 0.1],
+            y: &[1.6, 1.5, 1.4, 1.45],
+        },
+        Channels {
+            x: &[0.3, -0.2, 0.25, 0.15],
+            y: &[1.94, 1.8, 1.55, 1.5],
+        },
+        Channels { x: 0.07, y: 0.2 },
+    )
+    .unwrap();
+    // Unrounded differences: without them F_p − F_0 alone would cost dozens of ulps.
+    assert_ulps(found.y.x, 0.05231143743471868, 4.0);
+    assert_ulps(found.y.y, 0.1525379753095442, 4.0);
+    assert_ulps(found.gamma, 6.596976734900338, 4.0);
+    assert_ulps(found.theta, -8.913877551020407, 8.0);
+}
+
+// Verifies: DET-014.
+#[test]
+fn long_sums_that_cancel_stay_exact() {
+    // r·Δ runs through 1, 2^80, 1, −2^80: any ordinary or Kahan summation loses every 1. Exact: γ² = Σ(1 + 2^80 …).
+    const SAMPLES: usize = 1_000_000;
+    let big = 2_f64.powi(40);
+    let template: Vec<f64> = (0..SAMPLES)
+        .map(|i| if i % 2 == 0 { 1.0 } else { big })
+        .collect();
+    let residual: Vec<f64> = (0..SAMPLES)
+        .map(|i| match i % 4 {
+            1 => big + 0.5,
+            3 => -big + 0.5,
+            _ => 1.0 + 0.5,
+        })
+        .collect();
+    let zeros = vec![0.0; SAMPLES];
+    // Σ rΔ = Σ(even) 1.5 + Σ(odd) ½·2^40, of terms of 2^80.
+    let expected = (SAMPLES / 2) as f64 * 1.5 + (SAMPLES / 2) as f64 * 0.5 * big;
+    let sum = crate::stats::compensated::dot(&residual, &template, 1.0).value();
+    assert_ulps(sum, expected, 2.0);
+    let filter = MatchedFilter::new(
+        Channels {
+            x: &template,
+            y: &zeros,
+        },
+        Channels { x: 1.0, y: 1.0 },
+    )
+    .unwrap();
+    // Σ rΔ − ½ΣΔ² for r = Δ/2 + (a residue of 1e-3 at one sample only).
+    let mut halves: Vec<f64> = template.iter().map(|sample| sample / 2.0).collect();
+    halves[0] += 0.25;
+    let theta = filter
+        .statistic(Channels {
+            x: &halves,
+            y: &zeros,
+        })
+        .unwrap()
+        .theta;
+    assert_eq!(theta, 0.25);
+}
+
+// Verifies: DET-016.
+#[test]
+fn units_of_any_size_give_the_same_gamma_and_theta() {
+    // Powers of two: every result must be the same to the bit, unless the samples become subnormal.
+    for power in [-900, -300, 40, 900] {
+        let unit = 2_f64.powi(power);
+        let scale = |samples: &[f64]| {
+            samples
+                .iter()
+                .map(|sample| sample * unit)
+                .collect::<Vec<_>>()
+        };
+        let (tx, ty) = (scale(TEMPLATE.x), scale(TEMPLATE.y));
+        let (rx, ry) = (scale(RESIDUAL.x), scale(RESIDUAL.y));
+        let filter =
+            MatchedFilter::new(Channels { x: &tx, y: &ty }, NOISE_SD.map(|sd| sd * unit)).unwrap();
+        assert_eq!(filter.gamma(), super::tests::filter().gamma());
+        let found = filter.statistic(Channels { x: &rx, y: &ry }).unwrap();
+        let expected = super::tests::filter().statistic(RESIDUAL).unwrap();
+        assert_eq!(found.theta, expected.theta);
+        assert_ulps(found.y.x, expected.y.x * unit, 1.0);
+    }
+    // Subnormal template and noise.
+    let tiny = f64::from_bits(2);
+    let template: Channels<&[f64]> = Channels {
+        x: &[tiny, tiny],
+        y: &[tiny, -tiny],
+    };
+    let filter = MatchedFilter::new(template, Channels { x: tiny, y: tiny }).unwrap();
+    assert_eq!(filter.gamma(), 2.0);
+}
+
+// Verifies: DET-012.
+#[test]
+fn channel_without_signal_contributes_nothing() {
+    let filter = MatchedFilter::new(
+        Channels {
+            x: &[0.0, 0.0],
+            y: &[3.0, 4.0],
+        },
+        Channels { x: 1e-9, y: 1.0 },
+    );
+    let filter = filter.unwrap();
+    let found = filter
+        .statistic(Channels {
+            x: &[1e9, -1e9],
+            y: &[3.0, 4.0],
+        })
+        .unwrap();
+    assert_eq!(found.y.x, 0.0);
+    assert_eq!(found.theta, 12.5);
+    assert_eq!(filter.gamma(), 5.0);
+}
+
+// Verifies: DET-005, DET-006, DET-007.
+#[test]
+fn records_that_cannot_be_judged_are_refused() {
+    let samples = [1.0, 2.0];
+    let good: Channels<&[f64]> = Channels {
+        x: &samples,
+        y: &samples,
+    };
+    let sd = Channels { x: 1.0, y: 1.0 };
+    assert_eq!(
+        MatchedFilter::new(Channels { x: &[], y: &[] }, sd).unwrap_err(),
+        DetectError::Empty { what: "template_x" }
+    );
+    assert_eq!(
+        MatchedFilter::new(
+            Channels {
+                x: &samples,
+                y: &[1.0]
+            },
+            sd
+        )
+        .unwrap_err(),
+        DetectError::LengthMismatch {
+            what: "template_y",
+            expected: 2,
+            found: 1
+        }
+    );
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let bad = [0.0, bad];
+        let filter = MatchedFilter::new(good, sd).unwrap();
+        let expected = |what| DetectError::NotFinite { what, index: 1 };
+        let statistic = |x, y| filter.statistic(Channels { x, y }).unwrap_err();
+        assert_eq!(statistic(&bad, &samples), expected("residual_x"));
+        assert_eq!(statistic(&samples, &bad), expected("residual_y"));
+        let template = Channels {
+            x: &samples[..],
+            y: &bad,
+        };
+        assert_eq!(
+            MatchedFilter::new(template, sd).unwrap_err(),
+            expected("template_y")
+        );
+        for position in 0..6 {
+            let mut series = [&samples[..]; 6];
+            series[position] = &bad;
+            let [ox, oy, ax, ay, bx, by] = series;
+            let channels = |x, y| Channels { x, y };
+            let names = ["observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y"];
+            assert_eq!(
+                theta_of_record(channels(ox, oy), channels(ax, ay), channels(bx, by), sd)
+                    .unwrap_err(),
+                expected(names[position])
+            );
+        }
+    }
+    for bad in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let found = MatchedFilter::new(good, Channels { x: 1.0, y: bad }).unwrap_err();
+        assert!(matches!(
+            found,
+            DetectError::OutOfRange {
+                what: "noise_sd_y",
+                ..
+            }
+        ));
+    }
+    let found = MatchedFilter::new(
+        Channels {
+            x: &[1e300],
+            y: &[0.0],
+        },
+        Channels { x: 1e-300, y: 1.0 },
+    );
+    assert_eq!(found.unwrap_err(), DetectError::Overflow { what: "gamma" });
+}
+
+// Verifies: DET-022.
+#[test]
+fn threshold_of_largest_posterior() {
+    for (prior, expected) in [
+        (0.01, 4.59511985013459),
+        (0.3, 0.8472978603872037),
+        (0.5, 0.0),
+        (0.4999, 0.0004000000053332894),
+        (0.7, -0.8472978603872034),
+        (0.999, -6.906754778648553),
+    ] {
+        assert_ulps(map_threshold(prior).unwrap(), expected, 4.0);
+    }
+}
+
+// Verifies: DET-023.
+#[test]
+fn threshold_of_least_cost() {
+    let costs = Costs {
+        c00: 1.0,
+        c01: 500.0,
+        c10: 20.0,
+        c11: 5.0,
+    };
+    // The sum of two logarithms of about 3.9 and −3.3: four roundings of 4.
+    assert_near(
+        bayes_threshold(0.02, costs).unwrap(),
+        0.6317015147083768,
+        16.0 * f64::EPSILON,
+    );
+    let zero_one = Costs {
+        c00: 0.0,
+        c01: 1.0,
+        c10: 1.0,
+        c11: 0.0,
+    };
+    assert_eq!(bayes_threshold(0.02, zero_one), map_threshold(0.02));
+}
+
+// Verifies: DET-024, DET-025.
+#[test]
+fn thresholds_of_neyman_and_pearson() {
+    assert_ulps(
+        neyman_pearson_miss_threshold(2.5, 0.05).unwrap(),
+        -0.9871340673786817,
+        8.0,
+    );
+    assert_ulps(
+        neyman_pearson_false_alarm_threshold(2.5, 0.001).unwrap(),
+        4.600580765419534,
+        8.0,
+    );
+}
+
+// Verifies: DET-026.
+#[test]
+fn rates_of_error_at_a_threshold() {
+    for (gamma, eta, false_alarm, miss) in [
+        (2.5, 0.0, 0.10564977366685525, 0.10564977366685525),
+        (2.5, 1.0, 0.049471468033648096, 0.19766254312269238),
+        (3.3, -2.0, 0.1482567153083367, 0.012033417908898579),
+        (0.01, 0.3, 4.222492831199855e-198, 1.0),
+        (30.0, 0.0, 3.670966199312751e-51, 3.670966199312751e-51),
+    ] {
+        let rates = error_rates(gamma, eta).unwrap();
+        // Two roundings of z = η/γ ± γ/2 change Φ(−z) by at most 2u z² of itself.
+        let ulps = |z: f64| 4.0 + 4.0 * z * z;
+        assert_ulps(
+            rates.false_alarm,
+            false_alarm,
+            ulps(eta / gamma + gamma / 2.0),
+        );
+        assert_ulps(rates.miss, miss, ulps(eta / gamma - gamma / 2.0));
+    }
+    // Θ ≡ 0 decides by equation (9) alone.
+    assert_eq!(
+        error_rates(0.0, 0.0),
+        Ok(ErrorRates {
+            false_alarm: 1.0,
+            miss: 0.0
+        })
+    );
+    assert_eq!(
+        error_rates(0.0, 1e-300),
+        Ok(ErrorRates {
+            false_alarm: 0.0,
+            miss: 1.0
+        })
+    );
+    assert_eq!(
+        error_rates(1e-300, f64::MAX),
+        Ok(ErrorRates {
+            false_alarm: 0.0,
+            miss: 1.0
+        })
+    );
+    assert_eq!(
+        error_rates(f64::MAX, 1.0),
+        Ok(ErrorRates {
+            false_alarm: 0.0,
+            miss: 0.0
+        })
+    );
+}
+
+// Verifies: DET-027, DET-028.
+#[test]
+fn operating_characteristic() {
+    for (gamma, false_alarm, miss) in [
+        (1.0, 0.05, 0.7404889771585559),
+        (2.0, 0.05, 0.36123996868766495),
+        (3.3, 1e-06, 0.9269470094019665),
+        (0.5, 0.9, 0.03741119440006011),
+    ] {
+        assert_ulps(roc_miss(gamma, false_alarm).unwrap(), miss, 16.0);
+    }
+    assert_eq!((roc_miss(2.0, 0.0), roc_miss(2.0, 1.0)), (Ok(1.0), Ok(0.0)));
+    for (gamma, expected) in [
+        (0.0, 0.5),
+        (0.5, 0.6381631950841185),
+        (1.45, 0.847390311892704),
+        (3.0, 0.9830525732376554),
+        (8.0, 0.999999992291371),
+    ] {
+        assert_ulps(auc(gamma).unwrap(), expected, 2.0);
+        assert_ulps(two_afc(gamma).unwrap(), expected, 2.0);
+    }
+}
+
+// Verifies: DET-029, DET-030.
+#[test]
+fn signal_to_noise_ratio_for_given_rates() {
+    assert_ulps(required_gamma(0.05, 0.05).unwrap(), 3.2897072539029453, 4.0);
+    assert_ulps(
+        required_gamma(0.001, 0.05).unwrap(),
+        4.7350859331192865,
+        4.0,
+    );
+    assert_eq!(required_gamma(0.5, 0.5), Ok(0.0));
+    assert_eq!(required_gamma(0.9, 0.5), Ok(0.0));
+    for (p, expected) in [
+        (0.3, -0.7416143171871159),
+        (0.5, 0.0),
+        (0.84, 1.4063758256440722),
+        (253.0 / 300.0, 1.4258841436632816),
+        (0.99, 3.2899527142663736),
+    ] {
+        assert_ulps(gamma_from_two_afc(p).unwrap(), expected, 5.0);
+    }
+}
+
+// Verifies: DET-021.
+#[test]
+fn posterior_probability_by_bayes() {
+    assert_ulps(posterior(1.5, 0.01).unwrap(), 0.0433090057825766, 32.0);
+    assert_ulps(posterior(-30.0, 0.5).unwrap(), 9.357622968839299e-14, 8.0);
+    assert_ulps(posterior(0.0, 0.3).unwrap(), 0.3, 4.0);
+    assert_eq!(posterior(1e300, 0.2), Ok(1.0));
+    assert_eq!(posterior(-1e300, 0.2), Ok(0.0));
+}
+
+// Verifies: DET-020.
+#[test]
+fn the_threshold_itself_decides_for_an_inclusion() {
+    assert_eq!(decide(1.5, 1.5), Ok(Decision::Inclusion));
+    assert_eq!(decide(1.5_f64.next_down(), 1.5), Ok(Decision::NoInclusion));
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(decide(bad, 0.0).is_err() && decide(0.0, bad).is_err());
+    }
+}
+
+// Verifies: DET-005, DET-006, DET-008.
+#[test]
+fn questions_without_a_finite_answer_are_refused() {
+    for p in [0.0, 1.0, -0.1, 1.5, f64::NAN] {
+        let costs = Costs {
+            c00: 0.0,
+            c01: 1.0,
+            c10: 1.0,
+            c11: 0.0,
+        };
+        assert!(
+            map_threshold(p).is_err()
+                && bayes_threshold(p, costs).is_err()
+                && posterior(0.0, p).is_err()
+        );
+        assert!(neyman_pearson_miss_threshold(1.0, p).is_err());
+        assert!(neyman_pearson_false_alarm_threshold(1.0, p).is_err());
+        assert!(required_gamma(p, 0.1).is_err() && required_gamma(0.1, p).is_err());
+        assert!(gamma_from_two_afc(p).is_err());
+        if p != 0.0 && p != 1.0 {
+            assert!(roc_miss(1.0, p).is_err());
+        }
+    }
+    for gamma in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(error_rates(gamma, 0.0).is_err() && roc_miss(gamma, 0.5).is_err());
+        assert!(auc(gamma).is_err() && two_afc(gamma).is_err());
+        assert!(neyman_pearson_miss_threshold(gamma, 0.1).is_err());
+        assert!(neyman_pearson_false_alarm_threshold(gamma, 0.1).is_err());
+    }
+    assert!(error_rates(1.0, f64::NAN).is_err() && posterior(f64::NAN, 0.5).is_err());
+    assert_eq!(
+        neyman_pearson_false_alarm_threshold(0.0, 0.1),
+        Err(DetectError::NoSignal)
+    );
+    assert_eq!(neyman_pearson_miss_threshold(0.0, 0.1), Ok(0.0));
+    assert!(neyman_pearson_miss_threshold(1e200, 0.1).is_err());
+    for (c01, c10) in [
+        (0.0, 1.0),
+        (1.0, 0.0),
+        (-1.0, 1.0),
+        (f64::INFINITY, 1.0),
+        (1.0, f64::NAN),
+    ] {
+        assert!(
+            bayes_threshold(
+                0.5,
+                Costs {
+                    c00: 0.0,
+                    c01,
+                    c10,
+                    c11: 0.0
+                }
+            )
+            .is_err()
+        );
+    }
+}

@@ -1,0 +1,22 @@
+//! What the unit tests compare with.
+
+/// Asserts |found − expected| ≤ `ulps` units in the last place of `expected`.
+#[track_caller]
+pub(crate) fn assert_ulps(found: f64, expected: f64, ulps: f64) {
+    let unit = (expected.abs().next_up() - expected.abs()).max(f64::from_bits(1));
+    let distance = (found - expected).abs() / unit;
+    assert!(
+        distance <= ulps,
+        "found {found:e}, expected {expected:e}: {distance} ulps > {ulps}"
+    );
+}
+
+/// Asserts |found − expected| ≤ `tolerance`.
+#[track_caller]
+pub(crate) fn assert_near(found: f64, expected: f64, tolerance: f64) {
+    let distance = (found - expected).abs();
+    assert!(
+        distance <= tolerance,
+        "found {found:e}, expected {expected:e}: off by {distance:e} > {tolerance:e}"
+    );
+}

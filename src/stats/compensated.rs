@@ -1,0 +1,162 @@
+//! Sums and products in twice the working precision, from IEEE-754 additions and multiplications
+//! alone: T. Ogita, S. M. Rump, S. Oishi, *Accurate sum and dot product*, SIAM J. Sci. Comput. 26
+//! (2005). A fused multiply-add would be quicker where there is one, and would tie the bits to it.
+
+/// Independent partial sums of a dot product. The source fixes the number, so that the compiler may
+/// use vector registers of any width without changing a bit.
+const LANES: usize = 4;
+
+/// The unevaluated sum `high + low` of two numbers, where `low` is the rounding error of `high`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DoubleDouble {
+    /// The value rounded to working precision.
+    pub high: f64,
+    /// What that rounding left out.
+    pub low: f64,
+}
+
+impl DoubleDouble {
+    /// `high + low` for any two numbers, made canonical.
+    #[inline]
+    pub fn new(high: f64, low: f64) -> Self {
+        let (high, low) = two_sum(high, low);
+        Self { high, low }
+    }
+
+    /// The exact product of two numbers (see [`two_product`] for its range).
+    #[inline]
+    pub fn product(a: f64, b: f64) -> Self {
+        let (high, low) = two_product(a, b);
+        Self { high, low }
+    }
+
+    /// The exact difference of two numbers.
+    #[inline]
+    pub fn difference(a: f64, b: f64) -> Self {
+        let (high, low) = two_sum(a, -b);
+        Self { high, low }
+    }
+
+    /// `self + other`, with an error of at most 4u²(|self| + |other|).
+    #[inline]
+    pub fn plus(self, other: Self) -> Self {
+        let (high, low) = two_sum(self.high, other.high);
+        Self::new(high, low + (self.low + other.low))
+    }
+
+    /// `self · factor` for a power of two, exactly.
+    #[inline]
+    pub fn scaled(self, power_of_two: f64) -> Self {
+        Self {
+            high: self.high * power_of_two,
+            low: self.low * power_of_two,
+        }
+    }
+
+    /// The nearest number of working precision.
+    #[inline]
+    pub fn value(self) -> f64 {
+        self.high + self.low
+    }
+}
+
+/// `(s, e)` with s = fl(a + b) and s + e = a + b exactly (Knuth), unless s overflows.
+#[inline]
+pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let b_seen = sum - a;
+    let a_seen = sum - b_seen;
+    (sum, (a - a_seen) + (b - b_seen))
+}
+
+/// `(p, e)` with p = fl(a·b) and p + e = a·b exactly (Dekker, Veltkamp), if |a|, |b| < 2^996 and the
+/// product does not overflow and is not below 2^-969.
+#[inline]
+pub fn two_product(a: f64, b: f64) -> (f64, f64) {
+    let product = a * b;
+    let (a_high, a_low) = split(a);
+    let (b_high, b_low) = split(b);
+    let error = a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low);
+    (product, error)
+}
+
+/// The two halves of a number, of 26 bits each, whose products are exact.
+#[inline]
+fn split(a: f64) -> (f64, f64) {
+    /// 2^27 + 1.
+    const VELTKAMP: f64 = 134_217_729.0;
+    let carried = VELTKAMP * a;
+    let high = carried - (carried - a);
+    (high, a - high)
+}
+
+/// A running sum in twice the working precision, in [`LANES`] independent parts.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Accumulator {
+    high: [f64; LANES],
+    low: [f64; LANES],
+}
+
+impl Accumulator {
+    /// Adds `term` to the part with number `lane` < 4.
+    #[inline]
+    pub fn add(&mut self, lane: usize, term: DoubleDouble) {
+        let (high, low) = two_sum(self.high[lane], term.high);
+        self.high[lane] = high;
+        self.low[lane] += low + term.low;
+    }
+
+    /// The sum of all the parts.
+    pub fn total(self) -> DoubleDouble {
+        let mut total = DoubleDouble::default();
+        for (high, low) in self.high.into_iter().zip(self.low) {
+            total = total.plus(DoubleDouble::new(high, low));
+        }
+        total
+    }
+}
+
+/// Σ (k aᵢ)(k bᵢ) over two slices of the same length N (the longer one is cut), for a power of two k.
+///
+/// The error is at most (N+16)²u² Σ|k² aᵢ bᵢ| with u = 2^-53, as long as no product overflows, plus
+/// N·2^-1022 for products that underflow.
+///
+/// Implements: DET-014.
+pub fn dot(a: &[f64], b: &[f64], power_of_two: f64) -> DoubleDouble {
+    let length = a.len().min(b.len());
+    let (a_blocks, a_rest) = a[..length].as_chunks::<LANES>();
+    let (b_blocks, b_rest) = b[..length].as_chunks::<LANES>();
+    let mut sum = Accumulator::default();
+    let mut add = |lane: usize, a: f64, b: f64| {
+        sum.add(
+            lane,
+            DoubleDouble::product(a * power_of_two, b * power_of_two),
+        );
+    };
+    for (a, b) in a_blocks.iter().zip(b_blocks) {
+        for lane in 0..LANES {
+            add(lane, a[lane], b[lane]);
+        }
+    }
+    for (lane, (&a, &b)) in a_rest.iter().zip(b_rest).enumerate() {
+        add(lane, a, b);
+    }
+    sum.total()
+}
+
+/// Σᵢ term(i) for i = 0 … length−1, with the error bound of [`dot`] relative to Σ|term|.
+#[inline]
+pub fn sum(length: usize, mut term: impl FnMut(usize) -> DoubleDouble) -> DoubleDouble {
+    let mut sum = Accumulator::default();
+    for index in 0..length {
+        sum.add(index % LANES, term(index));
+    }
+    sum.total()
+}
+
+/// The power of two 2^-e with 2^e ≤ |value| < 2^(e+1), at most 2^1023: it brings a finite value that is
+/// not zero near 1 (into [2^-51, 2)), without rounding.
+pub fn reciprocal_power_of_two(value: f64) -> f64 {
+    let exponent = libm::ilogb(value).clamp(-1023, 1023);
+    libm::scalbn(1.0, -exponent)
+}

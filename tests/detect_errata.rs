@@ -1,0 +1,240 @@
+//! The errata of the paper (`spec/errata.md`): each test asserts what is printed and what is true.
+
+use palpate::detect::{
+    Channels, MatchedFilter, error_rates, gamma_from_two_afc, required_gamma, two_afc,
+};
+
+/// Asserts that `value` is `printed` when it is rounded to `unit`.
+#[track_caller]
+fn assert_prints_as(value: f64, printed: f64, unit: f64) {
+    assert!(
+        (value - printed).abs() <= 0.5 * unit,
+        "{value} does not round to {printed}"
+    );
+}
+
+// Verifies: ERR-001.
+#[test]
+fn err_001_second_row_of_equation_3() {
+    let f0 = [1.0, 2.0, 3.0];
+    let f1 = [1.5, 2.25, 3.5];
+    let template = [0.5, 0.25, 0.5];
+    let zeros = [0.0; 3];
+    let sd = Channels { x: 1.0, y: 1.0 };
+    let filter = MatchedFilter::new(
+        Channels {
+            x: &template,
+            y: &zeros,
+        },
+        sd,
+    )
+    .unwrap();
+    let y = |input: &[f64]| {
+        filter
+            .statistic(Channels {
+                x: input,
+                y: &zeros,
+            })
+            .unwrap()
+            .y
+            .x
+    };
+    // Equation (6) wants ‖F_1x − F_0x‖ = (0.5625/3)^½ in the absence of noise.
+    let mean_by_6 = 0.1875_f64.sqrt();
+    let without_f0: Vec<f64> = f1.iter().zip(f0).map(|(f1, f0)| f1 - f0).collect();
+    assert!(
+        (y(&without_f0) - mean_by_6).abs() < 1e-15,
+        "true: (F_1x − F_0x) ∗ h_x"
+    );
+    // Printed: ⟨F_1x, Δ⟩/‖Δ‖ = (3.0625/3)/0.4330.
+    assert!((y(&f1) - 3.0625 / 3.0 / mean_by_6).abs() < 1e-14);
+    assert!(y(&f1) > 5.0 * mean_by_6, "printed: F_1x ∗ h_x");
+}
+
+/// |Y_x(t)| of a noise-free record whose inclusion is at `position`, for a probe at 0.002 m/s sampled every
+/// 0.5 s from t = 0 to 10 s, and a template that is a bump of 3 samples.
+fn y_at(time: f64, position: f64) -> f64 {
+    const SPEED: f64 = 0.002;
+    const BUMP: [f64; 3] = [0.2, 0.5, 0.2];
+    let mut record = [0.0; 21];
+    let centre = (position / SPEED / 0.5).round() as usize;
+    record[centre - 1..=centre + 1].copy_from_slice(&BUMP);
+    let at = (time / 0.5).round() as usize;
+    let mut template = [0.0; 21];
+    template[at - 1..=at + 1].copy_from_slice(&BUMP);
+    let zeros = [0.0; 21];
+    let sd = Channels { x: 1.0, y: 1.0 };
+    let filter = MatchedFilter::new(
+        Channels {
+            x: &template,
+            y: &zeros,
+        },
+        sd,
+    )
+    .unwrap();
+    filter
+        .statistic(Channels {
+            x: &record,
+            y: &zeros,
+        })
+        .unwrap()
+        .y
+        .x
+}
+
+/// The root mean square of that bump in 21 samples: 0.33/21.
+const BUMP_NORM: f64 = 0.125_356_634_105_601_74;
+
+// Verifies: ERR-002.
+#[test]
+fn err_002_time_at_which_y_has_law_6() {
+    let (position, speed) = (0.012, 0.002);
+    assert!(
+        (y_at(position / speed, position) - BUMP_NORM).abs() < 1e-15,
+        "true: t = x/v = 6 s"
+    );
+    // v/x = 1/6 s⁻¹ is not a time; read as one it falls where the response is zero.
+    let printed = (speed / position / 0.5_f64).round().max(1.0) * 0.5;
+    assert_eq!(y_at(printed, position), 0.0);
+}
+
+// Verifies: ERR-003.
+#[test]
+fn err_003_time_at_which_y_is_largest() {
+    let (position, speed) = (0.016, 0.002);
+    let times: Vec<f64> = (1..20).map(|sample| f64::from(sample) * 0.5).collect();
+    let largest = times
+        .iter()
+        .copied()
+        .max_by(|a, b| y_at(*a, position).total_cmp(&y_at(*b, position)))
+        .unwrap();
+    assert_eq!(largest, 8.0, "true: t = x/v");
+    assert_eq!(position / speed, 8.0);
+    assert!((largest - speed / position).abs() > 7.0, "printed: t = v/x");
+}
+
+// Verifies: ERR-004.
+#[test]
+fn err_004_gamma_of_84_per_cent() {
+    assert_prints_as(gamma_from_two_afc(0.84).unwrap(), 1.406, 1e-3);
+    assert_prints_as(gamma_from_two_afc(253.0 / 300.0).unwrap(), 1.426, 1e-3);
+    let printed = 1.45;
+    assert!(
+        gamma_from_two_afc(0.845).unwrap() < printed,
+        "no share that rounds to 84 % gives 1.45"
+    );
+    assert_prints_as(two_afc(printed).unwrap(), 0.847, 1e-3);
+}
+
+// Verifies: ERR-005.
+#[test]
+fn err_005_noise_left_for_the_display() {
+    let gamma = required_gamma(0.05, 0.05).unwrap();
+    assert_prints_as(gamma, 3.3, 0.1);
+    let total = 0.5 / gamma;
+    let left = |total: f64| (total * total - 0.01_f64).sqrt();
+    assert_prints_as(left(0.15), 0.1118, 1e-4);
+    assert_prints_as(left(total), 0.1145, 1e-4);
+    // Both print as 0.11, and at 0.11 N the requirement is met with some to spare.
+    assert_prints_as(left(0.15), 0.11, 0.01);
+    assert_prints_as(left(total), 0.11, 0.01);
+    let gamma_at_printed = 0.5 / (0.11_f64 * 0.11 + 0.01).sqrt();
+    assert!(error_rates(gamma_at_printed, 0.0).unwrap().miss < 0.05);
+}
+
+/// Table 1: right answers of 10 subjects in 30 trials each, for depths of 2.6, 4.6, 6.6 and 8.6 mm.
+const TABLE_1: [(&str, [[u32; 4]; 10]); 3] = [
+    (
+        "direct contact",
+        [
+            [30, 28, 27, 27],
+            [30, 30, 28, 23],
+            [30, 29, 20, 21],
+            [28, 25, 18, 16],
+            [27, 26, 23, 19],
+            [30, 30, 27, 17],
+            [23, 19, 18, 13],
+            [30, 30, 30, 19],
+            [30, 30, 29, 23],
+            [30, 28, 27, 22],
+        ],
+    ),
+    (
+        "FEM data",
+        [
+            [30, 30, 30, 21],
+            [30, 30, 29, 25],
+            [30, 29, 28, 16],
+            [28, 29, 24, 20],
+            [29, 25, 20, 17],
+            [29, 29, 27, 15],
+            [27, 23, 18, 15],
+            [30, 30, 27, 20],
+            [29, 24, 21, 16],
+            [30, 28, 29, 24],
+        ],
+    ),
+    (
+        "measured data",
+        [
+            [30, 22, 24, 18],
+            [30, 28, 28, 21],
+            [28, 27, 19, 15],
+            [25, 19, 19, 21],
+            [29, 24, 23, 18],
+            [26, 21, 23, 17],
+            [17, 15, 19, 18],
+            [29, 26, 26, 13],
+            [26, 21, 22, 15],
+            [28, 25, 26, 18],
+        ],
+    ),
+];
+
+/// χ²/df of 10 counts of 30 about their common rate, df = 9: 1 on average if subjects differ by chance alone.
+fn dispersion(counts: impl Iterator<Item = u32> + Clone) -> f64 {
+    let rate = counts.clone().map(f64::from).sum::<f64>() / 300.0;
+    let expected = 30.0 * rate;
+    counts
+        .map(|count| (f64::from(count) - expected).powi(2))
+        .sum::<f64>()
+        / (expected * (1.0 - rate))
+        / 9.0
+}
+
+// Verifies: ERR-007.
+#[test]
+fn err_007_subjects_vary_more_than_a_binomial() {
+    let mut dispersions: Vec<f64> = TABLE_1
+        .iter()
+        .flat_map(|(_, table)| {
+            (0..4).map(|depth| dispersion(table.iter().map(move |row| row[depth])))
+        })
+        .collect();
+    // Printed: intervals that presume 1 throughout. The upper 1 % point of χ²₉/9 is 21.666/9 = 2.41 (Natrella, Table T-6).
+    let significant = dispersions.iter().filter(|&&value| value > 2.41).count();
+    assert!(
+        significant >= 6,
+        "true: {significant} of 12 columns are beyond the 1 % point: {dispersions:?}"
+    );
+    dispersions.sort_by(f64::total_cmp);
+    let median = f64::midpoint(dispersions[5], dispersions[6]);
+    // An interval is too narrow by the root of the dispersion.
+    assert!(
+        (1.4..2.3).contains(&median.sqrt()),
+        "median dispersion {median}"
+    );
+}
+
+// Verifies: ERR-008.
+#[test]
+fn err_008_noise_of_the_subjects() {
+    let noise_mn = |gamma: f64| 340.0 / gamma;
+    assert_prints_as(noise_mn(1.45), 235.0, 5.0);
+    assert_prints_as(noise_mn(gamma_from_two_afc(0.84).unwrap()), 242.0, 1.0);
+    assert_prints_as(
+        noise_mn(gamma_from_two_afc(253.0 / 300.0).unwrap()),
+        238.0,
+        1.0,
+    );
+}
