@@ -12,6 +12,12 @@ use super::InvalidForceMap;
 /// Implements: MAP-004.
 pub const SAME_POSITION: f64 = 1e-9;
 
+/// The largest lateral force at x = 0, N, that counts as the zero that symmetry demands: what
+/// rounding leaves of a force of some newtons.
+///
+/// Implements: MAP-010.
+pub const SYMMETRY_TOLERANCE: f64 = 1e-9;
+
 /// A dense matrix, row-major. Rows belong to depths, columns to lateral positions.
 ///
 /// Implements: MAP-001.
@@ -118,11 +124,15 @@ impl ForceTable {
     ///
     /// Implements: MAP-001, MAP-002, MAP-003, MAP-004, MAP-005.
     pub fn new(
-        depths: Vec<f64>,
-        laterals: Vec<f64>,
+        mut depths: Vec<f64>,
+        mut laterals: Vec<f64>,
         normal_force: Matrix,
         lateral_force: Matrix,
     ) -> Result<ForceTable, InvalidForceMap> {
+        // −0 and 0 are one position; adding 0 leaves one way to write it.
+        for position in depths.iter_mut().chain(&mut laterals) {
+            *position += 0.0;
+        }
         check_axis("depths_m", &depths)?;
         check_axis("laterals_m", &laterals)?;
         if depths[0] < 0.0 {
@@ -256,12 +266,6 @@ impl ForceTable {
     }
 }
 
-/// The largest lateral force at x = 0, N, that counts as the zero that symmetry demands: what
-/// rounding leaves of a force of some newtons.
-///
-/// Implements: MAP-010.
-pub const SYMMETRY_TOLERANCE: f64 = 1e-9;
-
 impl Matrix {
     /// Columns 0 … n over x ≥ 0 to columns −n … n: `at_negative` of the value at |x|, and `at_zero`
     /// of the first column.
@@ -307,11 +311,18 @@ fn check_axis(key: &'static str, axis: &[f64]) -> Result<(), InvalidForceMap> {
 }
 
 fn check_same_axis(key: &'static str, ours: &[f64], theirs: &[f64]) -> Result<(), InvalidForceMap> {
-    let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_POSITION;
-    if ours.len() == theirs.len() && ours.iter().zip(theirs).all(same) {
-        Ok(())
-    } else {
-        let (ours, theirs) = (ours.to_vec(), theirs.to_vec());
-        Err(InvalidForceMap::AxesDiffer { key, ours, theirs })
+    for index in 0..ours.len().max(theirs.len()) {
+        match (ours.get(index).copied(), theirs.get(index).copied()) {
+            (Some(a), Some(b)) if (a - b).abs() <= SAME_POSITION => {}
+            (ours, theirs) => {
+                return Err(InvalidForceMap::AxesDiffer {
+                    key,
+                    index,
+                    ours,
+                    theirs,
+                });
+            }
+        }
     }
+    Ok(())
 }
