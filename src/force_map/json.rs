@@ -118,11 +118,9 @@ fn json_problem(text: &str, error: serde_json::Error) -> (Option<usize>, ForceMa
     let (line, column) = (error.line(), error.column());
     let place = format!(" at line {line} column {column}");
     let message = error.to_string();
-    let message = message
-        .strip_suffix(&place)
-        .unwrap_or(&message)
-        .escape_debug()
-        .to_string();
+    let message = message.strip_suffix(&place).unwrap_or(&message);
+    // It may quote a key with a line break.
+    let message = message.replace(char::is_control, " ");
     let written = text.lines().nth(line.saturating_sub(1)).unwrap_or("");
     // Some 30 bytes to each side: a file without line breaks is one long line.
     let near: String = written
@@ -373,6 +371,7 @@ impl serde_json::ser::Formatter for RowPerLine {
         if self.arrays > 0 {
             self.new_line(writer)?;
         }
+        self.after_row = false;
         self.arrays += 1;
         self.indent += 1;
         writer.write_all(b"[")
