@@ -281,6 +281,13 @@ fn fill<'de, T: Deserialize<'de>, A: MapAccess<'de>>(
     Ok(())
 }
 
+impl Serialize for Matrix {
+    /// As an array of rows.
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.rows())
+    }
+}
+
 impl<'de> Deserialize<'de> for Matrix {
     /// From an array of rows of one length.
     ///

@@ -1,7 +1,5 @@
 //! Forces on a grid of poses: two axes and two matrices (paper §4).
 
-use serde::Serialize;
-
 use super::InvalidForceMap;
 
 /// Two positions closer than this, m, are the same position.
@@ -82,13 +80,6 @@ impl Matrix {
         let columns = self.columns.max(1);
         let place = move |(at, value): (usize, &f64)| (at / columns, at % columns, *value);
         self.values.iter().enumerate().map(place)
-    }
-}
-
-impl Serialize for Matrix {
-    /// As an array of rows.
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.rows())
     }
 }
 
