@@ -312,6 +312,11 @@ fn unknown_and_repeated_keys_are_refused() {
     let message = refusal("\"depths_m\": [", "\"depths_mm\": [");
     let expected = "map.json:31: column 13: unknown key \"depths_mm\", expected one of schema, ";
     assert!(message.starts_with(expected), "{message}");
+    let message = refusal("\"width_m\"", "\"a\\nb\"");
+    assert!(
+        message.contains("phantom: unknown field `a b`"),
+        "{message}"
+    );
     let twice = "\"depths_m\": [0.0],\n  \"depths_m\": [";
     let message = refusal("\"depths_m\": [", twice);
     assert!(
@@ -379,8 +384,15 @@ fn what_is_no_json_is_refused_with_its_line() {
             .starts_with("map.json:1: column 0: EOF while parsing")
     );
     assert!(read("[1]").is_err() && read("null").is_err());
-    let message = read(&example().replace('\n', "")).map(|_| ());
-    assert_eq!(message, Ok(()));
+    let one_line = example().replace('\n', "");
+    assert_eq!(read(&one_line).map(|_| ()), Ok(()));
+    // Of one long line the message shows the place alone.
+    let message = read(&one_line.replace("0.034", "null")).unwrap_err();
+    let (_, excerpt) = message.split_once(", in ").unwrap();
+    assert!(
+        excerpt.contains("\\\"width_m\\\": null") && excerpt.len() < 80,
+        "{message}"
+    );
     let folder = std::env::temp_dir();
     let message = ForceMap::read(&folder.join("palpate-no-such-map.json")).unwrap_err();
     assert!(

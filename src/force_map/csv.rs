@@ -104,7 +104,6 @@ impl ForceTable {
 /// Which field of a row is what.
 struct Header<'a> {
     text: &'a str,
-    fields: usize,
     /// Place, name and power of ten of each of [`COLUMNS`].
     columns: [(usize, &'static str, i32); 4],
 }
@@ -112,38 +111,30 @@ struct Header<'a> {
 impl<'a> Header<'a> {
     fn parse(text: &'a str) -> Result<Header<'a>, ForceMapFileProblem> {
         let fields: Vec<&str> = text.split(',').map(str::trim).collect();
-        let mut columns = [(0, "", 0); 4];
+        let refused = || ForceMapFileProblem::Header {
+            found: shortened(text),
+        };
+        // Four fields and each column among them: none is there twice.
+        if fields.len() != COLUMNS.len() {
+            return Err(refused());
+        }
+        let mut columns = [(0, "", 0); COLUMNS.len()];
         for (column, names) in columns.iter_mut().zip(COLUMNS) {
-            let found = fields.iter().enumerate().filter_map(|(place, field)| {
+            let mut found = fields.iter().enumerate().filter_map(|(place, field)| {
                 let &(name, power) = names.iter().find(|(name, _)| name == field)?;
                 Some((place, name, power))
             });
-            let found: Vec<_> = found.collect();
-            let [once] = found[..] else {
-                return Err(ForceMapFileProblem::Header {
-                    found: shortened(text),
-                });
-            };
-            *column = once;
+            *column = found.next().ok_or_else(refused)?;
         }
-        if fields.len() != COLUMNS.len() {
-            return Err(ForceMapFileProblem::Header {
-                found: shortened(text),
-            });
-        }
-        Ok(Header {
-            text,
-            fields: fields.len(),
-            columns,
-        })
+        Ok(Header { text, columns })
     }
 
     fn point(&self, line: usize, row: &str) -> Result<Point, ForceMapFileProblem> {
         let fields: Vec<&str> = row.split(',').map(str::trim).collect();
-        if fields.len() != self.fields {
+        if fields.len() != COLUMNS.len() {
             return Err(ForceMapFileProblem::Fields {
                 found: fields.len(),
-                expected: self.fields,
+                expected: COLUMNS.len(),
                 header: self.text.into(),
             });
         }

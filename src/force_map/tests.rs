@@ -276,6 +276,13 @@ fn only_a_map_from_zero_on_is_extended() {
     assert_eq!(alone.laterals(), [0.0]);
 }
 
+// Verifies: MAP-004, MAP-036.
+#[test]
+fn minus_zero_is_no_position_of_its_own() {
+    let table = axes(&[-0.0], &[-0.0, 0.001]).unwrap();
+    assert!(table.depths()[0].is_sign_positive() && table.laterals()[0].is_sign_positive());
+}
+
 // Verifies: MAP-011.
 #[test]
 fn a_signal_is_the_map_minus_its_reference() {
