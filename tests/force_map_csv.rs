@@ -39,7 +39,7 @@ fn refusal(old: &str, new: &str) -> String {
     message
 }
 
-// Verifies: MAP-030, MAP-031, MAP-036.
+// Verifies: MAP-030, MAP-031, MAP-036, MAP-038.
 #[test]
 fn a_table_is_read_and_written() {
     assert_eq!(read(EXAMPLE), Ok(table()));
@@ -250,7 +250,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    // Verifies: MAP-031, MAP-036.
+    // Verifies: MAP-031, MAP-036, MAP-038.
     #[test]
     fn any_table_survives_the_file_to_the_bit(table in any_table()) {
         let back = read(&table.to_csv()).unwrap();

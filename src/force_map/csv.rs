@@ -25,7 +25,7 @@ impl ForceMap {
     /// [`ForceMapFileError`] if the header does not name the four columns, a row is malformed, a
     /// pose is missing or there twice, or the forces make no map (see [`ForceMap::new`]).
     ///
-    /// Implements: MAP-026, MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-037.
+    /// Implements: MAP-026, MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-037, MAP-038.
     pub fn from_csv(
         text: &str,
         file: &str,
@@ -70,7 +70,7 @@ impl ForceTable {
     /// # Errors
     /// As [`ForceMap::from_csv`].
     ///
-    /// Implements: MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035.
+    /// Implements: MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-038.
     pub fn from_csv(text: &str, file: &str) -> Result<ForceTable, ForceMapFileError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = (1..)

@@ -165,7 +165,7 @@ impl ForceTable {
     /// # Errors
     /// [`InvalidForceMap::NoSuchDepth`] if no stored depth lies within [`SAME_POSITION`] of `depth`.
     ///
-    /// Implements: MAP-012.
+    /// Implements: MAP-012, MAP-015.
     pub fn row(&self, depth: f64) -> Result<ForceCurve<'_>, InvalidForceMap> {
         let stored = |&stored: &f64| (stored - depth).abs() <= SAME_POSITION;
         let Some(row) = self.depths.iter().position(stored) else {
@@ -186,7 +186,7 @@ impl ForceTable {
     /// [`InvalidForceMap::AxesDiffer`] if the two are not over the same poses;
     /// [`InvalidForceMap::Force`] if a difference is not finite.
     ///
-    /// Implements: MAP-011.
+    /// Implements: MAP-011, MAP-014.
     pub fn minus(&self, reference: &ForceTable) -> Result<ForceTable, InvalidForceMap> {
         check_same_axis("depths_m", &self.depths, &reference.depths)?;
         check_same_axis("laterals_m", &self.laterals, &reference.laterals)?;

@@ -283,7 +283,7 @@ fn minus_zero_is_no_position_of_its_own() {
     assert!(table.depths()[0].is_sign_positive() && table.laterals()[0].is_sign_positive());
 }
 
-// Verifies: MAP-011.
+// Verifies: MAP-011, MAP-014.
 #[test]
 fn a_signal_is_the_map_minus_its_reference() {
     let map = computed(|_| ()).unwrap();
@@ -303,7 +303,7 @@ fn a_signal_is_the_map_minus_its_reference() {
     assert_eq!(signal.lateral_force(), map.lateral_force());
 }
 
-// Verifies: MAP-005, MAP-011, MAP-013.
+// Verifies: MAP-005, MAP-013, MAP-014.
 #[test]
 fn a_signal_needs_equal_axes() {
     let shifted = axes(&[0.0, 0.001], &[0.0, 0.002, 0.005 + 1.1e-9]).unwrap();
@@ -327,7 +327,7 @@ fn a_signal_needs_equal_axes() {
     );
 }
 
-// Verifies: MAP-012.
+// Verifies: MAP-012, MAP-015.
 #[test]
 fn forces_at_a_stored_depth() {
     let table = table();

@@ -57,7 +57,7 @@ fn built_in_phantoms_are_the_papers() {
     assert!(paper().inclusion.is_some());
 }
 
-// Verifies: PHA-001.
+// Verifies: PHA-014.
 #[test]
 fn other_names_are_refused_with_the_list() {
     let message = Phantom::builtin("2.60").unwrap_err().to_string();
@@ -186,7 +186,7 @@ fn the_ends_of_the_ranges_are_where_the_spec_says() {
     assert!(length(1.0) && !length(1.000_001));
 }
 
-// Verifies: PHA-006.
+// Verifies: PHA-006, PHA-015.
 #[test]
 fn an_inclusion_keeps_its_clearance_from_skin_floor_and_walls() {
     let fits = |diameter, depth| with_disc(diameter, depth).validate().is_ok();
