@@ -7,15 +7,21 @@
 //! | `table.rs` | axes and matrices; symmetry, difference, one depth |
 //! | `certificate.rs` | the quality of a computed map |
 //! | `error.rs` | what can be wrong |
+//! | `file.rs`, `json.rs`, `csv.rs` | files |
 
 mod certificate;
+mod csv;
 mod error;
+mod file;
+mod json;
 mod table;
 #[cfg(test)]
 mod tests;
 
 pub use certificate::{Certificate, SmallestDet};
 pub use error::InvalidForceMap;
+pub use file::{ForceMapFileError, ForceMapFileProblem};
+pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
 
 use crate::phantom::Phantom;
