@@ -4,7 +4,7 @@
 //! gap_i ≥ 0, λ_i ≥ 0, λ_i gap_i = 0, and carries the force λ_i n_i. With the probe's true normal at the
 //! deformed node, n turns with u: Newton's method needs the curvature term λ (I − n nᵀ)/r.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, LU};
 
 use super::{FemError, Pose};
 use crate::phantom::Probe;
@@ -35,6 +35,8 @@ impl Contact {
 const GAP_TOLERANCE: f64 = 1e-12;
 /// Newton's method has converged when no displacement moves by more than this, m.
 const STEP_TOLERANCE: f64 = 1e-13;
+/// A tangent system is used again while each step is below this part of the one before.
+const REUSE_BELOW: f64 = 0.2;
 /// Iterations after which the active set changes by one node at a time, which cannot cycle.
 const SIMULTANEOUS_CHANGES: usize = 25;
 /// Iterations after which a pose has not converged.
@@ -91,6 +93,26 @@ impl ContactState {
             iterations: 0,
         }
     }
+
+    /// Where the state goes if it keeps changing as it did since `earlier`, `ahead` times as far.
+    pub fn extrapolated(&self, earlier: &ContactState, ahead: f64) -> ContactState {
+        let on = |now: f64, then: f64| now + ahead * (now - then);
+        let mut state = self.clone();
+        for (u, then) in state.displacements.iter_mut().zip(&earlier.displacements) {
+            *u = [on(u[0], then[0]), on(u[1], then[1])];
+        }
+        for &node in &state.active {
+            state.pressures[node] = on(state.pressures[node], earlier.pressures[node]).max(0.0);
+        }
+        state
+    }
+}
+
+/// Newton's matrix at some state, factorised.
+#[derive(Debug)]
+struct TangentSystem {
+    active: Vec<usize>,
+    factor: LU<f64, Dyn, Dyn>,
 }
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -169,39 +191,40 @@ impl Surface {
         let failed = |iterations| FemError::NoConvergence { pose, iterations };
         let mut state = start.clone();
         self.revise(&mut state, pose, usize::MAX);
+        let mut tangent_system: Option<TangentSystem> = None;
+        let mut last_step = f64::INFINITY;
         for iteration in 0..MOST_ITERATIONS {
-            let step = self.newton(&mut state, pose).ok_or(failed(iteration))?;
-            let at_most = if iteration < SIMULTANEOUS_CHANGES {
-                usize::MAX
-            } else {
-                1
+            // The old tangent serves as long as it lets the steps shrink well: factorising is the cost.
+            let system = match tangent_system.take() {
+                Some(system) if system.active == state.active && last_step.is_finite() => system,
+                _ => self.tangent_system(&state, pose).ok_or(failed(iteration))?,
             };
+            let step = self.newton(&mut state, pose, &system).ok_or(failed(iteration))?;
+            let at_most = if iteration < SIMULTANEOUS_CHANGES { usize::MAX } else { 1 };
             let changed = self.revise(&mut state, pose, at_most);
             if !changed && step <= STEP_TOLERANCE {
                 state.iterations = iteration + 1;
                 return Ok(state);
             }
+            let shrinks = step <= REUSE_BELOW * last_step;
+            last_step = if shrinks || last_step.is_infinite() { step } else { f64::INFINITY };
+            tangent_system = Some(system);
         }
         Err(failed(MOST_ITERATIONS))
     }
 
-    /// One Newton step on the active nodes; updates displacements and pressures, and returns the
-    /// largest displacement increment of an active node, m. `None` if the system is singular.
-    ///
-    /// Unknown are λ and the slip b of each node along its tangent t, with δu = −gap n + b t:
-    /// Σ_j C_ij (n_j λ_j + t_j λ_j⁰ κ_j b_j) − t_i b_i = u_i − gap_i n_i.
-    fn newton(&self, state: &mut ContactState, pose: Pose) -> Option<f64> {
+    /// Factorises the system for increments of λ and of each node's slip b along its tangent t, where
+    /// δu = −gap n + b t: Σ_j C_ij (n_j δλ_j + t_j λ_j κ_j b_j) − t_i b_i. `None` where a node lies in the
+    /// probe's axis.
+    fn tangent_system(&self, state: &ContactState, pose: Pose) -> Option<TangentSystem> {
         let active = &state.active;
         let m = active.len();
-        let constraints: Vec<Constraint> = active
-            .iter()
-            .map(|&i| self.constraint(i, state.displacements[i], pose))
-            .collect::<Option<_>>()?;
         let mut system = DMatrix::zeros(2 * m, 2 * m);
-        let mut rhs = DVector::zeros(2 * m);
-        for (b, (&j, constraint)) in active.iter().zip(&constraints).enumerate() {
+        for (b, &j) in active.iter().enumerate() {
+            let constraint = self.constraint(j, state.displacements[j], pose)?;
             let n = constraint.normal;
-            let turn = tangent(n).map(|t| t * state.pressures[j] * constraint.curvature);
+            let t = tangent(n);
+            let turn = t.map(|t| t * state.pressures[j] * constraint.curvature);
             for (a, &i) in active.iter().enumerate() {
                 let [push, slip] = [self.response(i, j, n), self.response(i, j, turn)];
                 for direction in 0..2 {
@@ -210,28 +233,47 @@ impl Surface {
                 }
             }
             for direction in 0..2 {
-                system[(2 * b + direction, m + b)] -= tangent(n)[direction];
-                rhs[2 * b + direction] =
-                    state.displacements[j][direction] - constraint.gap * n[direction];
+                system[(2 * b + direction, m + b)] -= t[direction];
             }
         }
-        if m > 0 && !system.lu().solve_mut(&mut rhs) {
+        Some(TangentSystem { active: active.clone(), factor: system.lu() })
+    }
+
+    /// One Newton step on the active nodes; updates displacements and pressures, and returns the
+    /// largest displacement increment of an active node, m. `None` if the system is singular.
+    fn newton(&self, state: &mut ContactState, pose: Pose, system: &TangentSystem) -> Option<f64> {
+        let m = state.active.len();
+        let constraints: Vec<Constraint> = state
+            .active
+            .iter()
+            .map(|&i| self.constraint(i, state.displacements[i], pose))
+            .collect::<Option<_>>()?;
+        let mut increment = DVector::zeros(2 * m);
+        for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
+            let mut mismatch = [0, 1].map(|d| state.displacements[i][d] - constraint.gap * constraint.normal[d]);
+            for (&j, constraint) in state.active.iter().zip(&constraints) {
+                let force = constraint.normal.map(|n| n * state.pressures[j]);
+                let elastic = self.response(i, j, force);
+                mismatch = [mismatch[0] - elastic[0], mismatch[1] - elastic[1]];
+            }
+            increment[2 * a] = mismatch[0];
+            increment[2 * a + 1] = mismatch[1];
+        }
+        if m > 0 && !system.factor.solve_mut(&mut increment) {
+            return None;
+        }
+        if !increment.iter().all(|x| x.is_finite()) {
             return None;
         }
         let mut largest = 0.0f64;
-        state.pressures.fill(0.0);
         let mut moved = Vec::with_capacity(m);
-        for (a, (&i, constraint)) in active.iter().zip(&constraints).enumerate() {
-            state.pressures[i] = rhs[a];
+        for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
+            state.pressures[i] += increment[a];
             let t = tangent(constraint.normal);
-            let increment =
-                [0, 1].map(|d| rhs[m + a] * t[d] - constraint.gap * constraint.normal[d]);
-            largest = largest.max(increment[0].abs()).max(increment[1].abs());
+            let step = [0, 1].map(|d| increment[m + a] * t[d] - constraint.gap * constraint.normal[d]);
+            largest = largest.max(step[0].abs()).max(step[1].abs());
             let u = state.displacements[i];
-            moved.push([u[0] + increment[0], u[1] + increment[1]]);
-        }
-        if !rhs.iter().all(|x| x.is_finite()) {
-            return None;
+            moved.push([u[0] + step[0], u[1] + step[1]]);
         }
         self.displace(state, &moved, pose)?;
         Some(largest)
@@ -287,6 +329,7 @@ impl Surface {
             match state.active.binary_search(&i) {
                 Ok(at) => {
                     state.active.remove(at);
+                    state.pressures[i] = 0.0;
                 }
                 Err(at) => state.active.insert(at, i),
             }
