@@ -108,11 +108,55 @@ impl ContactState {
     }
 }
 
-/// Newton's matrix at some state, factorised.
+/// Newton's matrix at some state, factorised: see [`Surface::tangent_system`].
 #[derive(Debug)]
 struct TangentSystem {
     active: Vec<usize>,
-    factor: LU<f64, Dyn, Dyn>,
+    normals: Vec<[f64; 2]>,
+    /// Of C_nn.
+    normal_factor: Cholesky<f64, Dyn>,
+    /// W.
+    coupling: DMatrix<f64>,
+    /// The diagonal of D.
+    turning: Vec<f64>,
+    /// Of I − Q D.
+    slip_factor: LU<f64, Dyn, Dyn>,
+}
+
+impl TangentSystem {
+    /// Increments of λ, and slips, that mend the mismatch u − C (n λ) of the active nodes, m. `None` if
+    /// the system is singular or an increment is not finite.
+    fn solve(&self, mismatch: &[[f64; 2]]) -> Option<(DVector<f64>, DVector<f64>)> {
+        if mismatch.is_empty() {
+            // The probe clears the surface; the dense solvers refuse empty systems.
+            return Some((DVector::zeros(0), DVector::zeros(0)));
+        }
+        let along = |direction: &dyn Fn([f64; 2]) -> [f64; 2]| {
+            let components = self
+                .normals
+                .iter()
+                .zip(mismatch)
+                .map(|(&n, &u)| dot(direction(n), u));
+            DVector::from_iterator(mismatch.len(), components)
+        };
+        let (mut pressures, mut slips) = (along(&|n| n), -along(&tangent));
+        let lower = self.normal_factor.l_dirty();
+        lower
+            .solve_lower_triangular_mut(&mut pressures)
+            .then_some(())?;
+        for (b, slip) in slips.iter_mut().enumerate() {
+            *slip += self.coupling.column(b).dot(&pressures);
+        }
+        self.slip_factor.solve_mut(&mut slips).then_some(())?;
+        for (b, slip) in slips.iter().enumerate() {
+            pressures.axpy(-slip * self.turning[b], &self.coupling.column(b), 1.0);
+        }
+        lower
+            .tr_solve_lower_triangular_mut(&mut pressures)
+            .then_some(())?;
+        let finite = pressures.iter().chain(&slips).all(|x| x.is_finite());
+        finite.then_some((pressures, slips))
+    }
 }
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -199,78 +243,112 @@ impl Surface {
                 Some(system) if system.active == state.active && last_step.is_finite() => system,
                 _ => self.tangent_system(&state, pose).ok_or(failed(iteration))?,
             };
-            let step = self.newton(&mut state, pose, &system).ok_or(failed(iteration))?;
-            let at_most = if iteration < SIMULTANEOUS_CHANGES { usize::MAX } else { 1 };
+            let step = self
+                .newton(&mut state, pose, &system)
+                .ok_or(failed(iteration))?;
+            let at_most = if iteration < SIMULTANEOUS_CHANGES {
+                usize::MAX
+            } else {
+                1
+            };
             let changed = self.revise(&mut state, pose, at_most);
             if !changed && step <= STEP_TOLERANCE {
                 state.iterations = iteration + 1;
                 return Ok(state);
             }
             let shrinks = step <= REUSE_BELOW * last_step;
-            last_step = if shrinks || last_step.is_infinite() { step } else { f64::INFINITY };
+            last_step = if shrinks || last_step.is_infinite() {
+                step
+            } else {
+                f64::INFINITY
+            };
             tangent_system = Some(system);
         }
         Err(failed(MOST_ITERATIONS))
     }
 
-    /// Factorises the system for increments of λ and of each node's slip b along its tangent t, where
-    /// δu = −gap n + b t: Σ_j C_ij (n_j δλ_j + t_j λ_j κ_j b_j) − t_i b_i. `None` where a node lies in the
-    /// probe's axis.
+    /// Factorises the system for increments of λ and of each node's slip b along its tangent t. With
+    /// δu = −gap n + b t, u = C (n λ) linearised and projected on n and t reads
+    ///
+    /// C_nn δλ + C_nt D b = r_n, C_tn δλ + (C_tt D − I) b = r_t, D = diag(λ κ).
+    ///
+    /// Eliminating δλ by Cholesky's factor L of C_nn leaves (I − Q D) b = C_tn C_nn⁻¹ r_n − r_t with
+    /// Q = C_tt − WᵀW, W = L⁻¹ C_nt. `None` if a node lies on the probe's axis.
     fn tangent_system(&self, state: &ContactState, pose: Pose) -> Option<TangentSystem> {
-        let active = &state.active;
-        let m = active.len();
-        let mut system = DMatrix::zeros(2 * m, 2 * m);
-        for (b, &j) in active.iter().enumerate() {
-            let constraint = self.constraint(j, state.displacements[j], pose)?;
-            let n = constraint.normal;
-            let t = tangent(n);
-            let turn = t.map(|t| t * state.pressures[j] * constraint.curvature);
-            for (a, &i) in active.iter().enumerate() {
-                let [push, slip] = [self.response(i, j, n), self.response(i, j, turn)];
-                for direction in 0..2 {
-                    system[(2 * a + direction, b)] = push[direction];
-                    system[(2 * a + direction, m + b)] = slip[direction];
-                }
-            }
-            for direction in 0..2 {
-                system[(2 * b + direction, m + b)] -= t[direction];
+        let m = state.active.len();
+        let constraints = self.constraints(state, pose)?;
+        let [mut nn, mut nt, mut tt] = [0; 3].map(|_| DMatrix::zeros(m, m));
+        for (b, (&j, constraint)) in state.active.iter().zip(&constraints).enumerate() {
+            let [push, slide] = [constraint.normal, tangent(constraint.normal)];
+            for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
+                let [n, t] = [constraint.normal, tangent(constraint.normal)];
+                let slid = self.response(i, j, slide);
+                nn[(a, b)] = dot(n, self.response(i, j, push));
+                nt[(a, b)] = dot(n, slid);
+                tt[(a, b)] = dot(t, slid);
             }
         }
-        Some(TangentSystem { active: active.clone(), factor: system.lu() })
+        let normal_factor = Cholesky::new(nn)?;
+        let coupling = normal_factor.l_dirty().solve_lower_triangular(&nt)?;
+        let turning: Vec<f64> = state
+            .active
+            .iter()
+            .zip(&constraints)
+            .map(|(&j, constraint)| state.pressures[j] * constraint.curvature)
+            .collect();
+        let mut slip = DMatrix::identity(m, m);
+        for a in 0..m {
+            for b in 0..=a {
+                let q = tt[(a, b)] - coupling.column(a).dot(&coupling.column(b));
+                slip[(a, b)] -= q * turning[b];
+                if a != b {
+                    slip[(b, a)] -= q * turning[a];
+                }
+            }
+        }
+        Some(TangentSystem {
+            active: state.active.clone(),
+            normals: constraints
+                .iter()
+                .map(|constraint| constraint.normal)
+                .collect(),
+            normal_factor,
+            coupling,
+            turning,
+            slip_factor: slip.lu(),
+        })
+    }
+
+    fn constraints(&self, state: &ContactState, pose: Pose) -> Option<Vec<Constraint>> {
+        state
+            .active
+            .iter()
+            .map(|&i| self.constraint(i, state.displacements[i], pose))
+            .collect()
     }
 
     /// One Newton step on the active nodes; updates displacements and pressures, and returns the
     /// largest displacement increment of an active node, m. `None` if the system is singular.
     fn newton(&self, state: &mut ContactState, pose: Pose, system: &TangentSystem) -> Option<f64> {
-        let m = state.active.len();
-        let constraints: Vec<Constraint> = state
-            .active
-            .iter()
-            .map(|&i| self.constraint(i, state.displacements[i], pose))
-            .collect::<Option<_>>()?;
-        let mut increment = DVector::zeros(2 * m);
-        for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
-            let mut mismatch = [0, 1].map(|d| state.displacements[i][d] - constraint.gap * constraint.normal[d]);
+        let constraints = self.constraints(state, pose)?;
+        let mut mismatch = Vec::with_capacity(constraints.len());
+        for (&i, constraint) in state.active.iter().zip(&constraints) {
+            let mut u =
+                [0, 1].map(|d| state.displacements[i][d] - constraint.gap * constraint.normal[d]);
             for (&j, constraint) in state.active.iter().zip(&constraints) {
-                let force = constraint.normal.map(|n| n * state.pressures[j]);
-                let elastic = self.response(i, j, force);
-                mismatch = [mismatch[0] - elastic[0], mismatch[1] - elastic[1]];
+                let elastic =
+                    self.response(i, j, constraint.normal.map(|n| n * state.pressures[j]));
+                u = [u[0] - elastic[0], u[1] - elastic[1]];
             }
-            increment[2 * a] = mismatch[0];
-            increment[2 * a + 1] = mismatch[1];
+            mismatch.push(u);
         }
-        if m > 0 && !system.factor.solve_mut(&mut increment) {
-            return None;
-        }
-        if !increment.iter().all(|x| x.is_finite()) {
-            return None;
-        }
+        let (pressures, slips) = system.solve(&mismatch)?;
         let mut largest = 0.0f64;
-        let mut moved = Vec::with_capacity(m);
+        let mut moved = Vec::with_capacity(constraints.len());
         for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
-            state.pressures[i] += increment[a];
+            state.pressures[i] += pressures[a];
             let t = tangent(constraint.normal);
-            let step = [0, 1].map(|d| increment[m + a] * t[d] - constraint.gap * constraint.normal[d]);
+            let step = [0, 1].map(|d| slips[a] * t[d] - constraint.gap * constraint.normal[d]);
             largest = largest.max(step[0].abs()).max(step[1].abs());
             let u = state.displacements[i];
             moved.push([u[0] + step[0], u[1] + step[1]]);

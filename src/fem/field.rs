@@ -27,6 +27,15 @@ pub struct FieldCheck {
     pub min_det: f64,
 }
 
+impl FieldCheck {
+    /// Of a phantom without load.
+    pub const UNTOUCHED: FieldCheck = FieldCheck {
+        residual: 0.0,
+        imbalance: 0.0,
+        min_det: 1.0,
+    };
+}
+
 /// Shape-function gradients at the sampling points of every element.
 #[derive(Debug, Clone)]
 pub struct Samples {

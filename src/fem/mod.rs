@@ -42,7 +42,7 @@ pub struct MeshOptions {
 impl Default for MeshOptions {
     fn default() -> Self {
         MeshOptions {
-            size: 0.7e-3,
+            size: 0.75e-3,
             refinement: 1,
             element: Element::T6,
         }

@@ -68,9 +68,9 @@ pub struct Cells {
 
 /// Heights of the coarse rows, and width of the disc's columns, over the target width: found by halving
 /// each in turn until all forces of the paper's phantoms came within 0.3 % of the converged ones.
-const HEIGHT_BELOW: f64 = 1.0;
-const HEIGHT_ABOVE: f64 = 0.6;
-const DISC: f64 = 0.75;
+const HEIGHT_BELOW: f64 = 0.93;
+const HEIGHT_ABOVE: f64 = 0.45;
+const DISC: f64 = 0.7;
 /// Thickness of the fine gel under the skin, and of the row below it, over the target width.
 const COVER: f64 = 0.4;
 const BETWEEN: f64 = 0.6;
