@@ -1,1 +1,150 @@
-//! report
+//! What a run found: numbers, figures and a page to read (`spec/report.md`).
+//!
+//! [`findings`] turns force maps into plain numbers, [`figures`] into pictures, and [`html`] and
+//! [`summary_json`] put them into files. Nothing here solves anything, and nothing depends on the date or the
+//! machine: the same [`Study`] gives the same bytes.
+//!
+//! | file | content |
+//! |---|---|
+//! | `paper.rs` | the numbers that the paper prints |
+//! | `findings.rs` | signals, signal-to-noise ratios, thresholds |
+//! | `comparison.rs` | "paper, here, why" |
+//! | `figures/` | the paper's Figures 3, 4, 5, 6, 9 and the signals, as SVG |
+//! | `html.rs`, `summary.rs` | the page, the JSON |
+//! | `text.rs` | untrusted names in markup and file names; numbers as text |
+
+mod comparison;
+mod figures;
+mod findings;
+mod html;
+pub mod paper;
+mod summary;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub use comparison::{Comparison, PairwiseFinding, Value};
+pub use figures::figures;
+pub use findings::{
+    Calibration, Findings, GammaByChannel, MapFindings, Peak, Quality, ReferenceFindings,
+    Threshold, findings,
+};
+pub use html::html;
+pub use summary::{SUMMARY_SCHEMA, SUMMARY_SCHEMA_VERSION, summary_json};
+
+use crate::detect::DetectError;
+use crate::fem::Pose;
+use crate::fem::mesh::Region;
+use crate::force_map::{ForceMap, InvalidForceMap};
+use crate::phantom::Phantom;
+
+/// Everything that a run computed.
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// Reference map F_0 of the phantom without inclusion.
+    pub reference: ForceMap,
+    /// Maps F_1 of the phantoms with inclusion, over the same poses as the reference. Any number, any names.
+    pub maps: Vec<ForceMap>,
+    /// The deformed mesh of one pose (Figure 6).
+    pub deformed: DeformedMesh,
+    /// What the detector assumes.
+    pub settings: Settings,
+}
+
+/// The mesh of one phantom under the probe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeformedMesh {
+    /// The phantom under the probe.
+    pub phantom: Phantom,
+    /// Where the probe stands.
+    pub pose: Pose,
+    /// Undeformed position of each node, m.
+    pub nodes: Vec<[f64; 2]>,
+    /// Displacement of each node, m.
+    pub displacements: Vec<[f64; 2]>,
+    /// The nodes at the corners of each element, counter-clockwise.
+    pub corners: Vec<Vec<u32>>,
+    /// Region of each element.
+    pub regions: Vec<Region>,
+    /// The smallest det(I + ∇u) at this pose.
+    pub min_det: f64,
+}
+
+/// What the detector assumes, with the paper's numbers as the default.
+///
+/// Implements: REP-001.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Settings {
+    /// The false-alarm rate α that is allowed.
+    pub max_false_alarm: f64,
+    /// The miss rate β that is allowed.
+    pub max_miss: f64,
+    /// The prior Pr(H = 1).
+    pub prior_h1: f64,
+    /// Standard deviation of the noise of one sample, the same in both channels, N.
+    #[serde(rename = "noise_sd_n")]
+    pub noise_sd: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            max_false_alarm: paper::MAX_FALSE_ALARM,
+            max_miss: paper::MAX_MISS,
+            prior_h1: 0.5,
+            noise_sd: paper::SUBJECTS_NOISE,
+        }
+    }
+}
+
+/// One picture with the words that go with it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// A name of ASCII letters, digits, `.`, `-` and `_`, unique in the study; ends in `.svg`.
+    pub file_name: String,
+    /// What it is. Plain text: it may hold a phantom's name, which markup must escape.
+    pub title: String,
+    /// What it shows, what the paper says, and what differs and why. Plain text.
+    pub caption: String,
+    /// The picture in words, for those who do not see it. Plain text.
+    pub alt: String,
+    /// A complete SVG document.
+    pub svg: String,
+}
+
+/// Why there is no report.
+///
+/// Implements: REP-004.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ReportError {
+    /// A map does not fit the reference.
+    #[error("map {name:?} cannot be compared with the reference: {source}")]
+    Map {
+        /// The name of the map's phantom.
+        name: String,
+        /// What is wrong with it.
+        source: InvalidForceMap,
+    },
+    /// A setting or a signal that the detector refuses.
+    #[error("{what}: {source}")]
+    Detect {
+        /// What was being computed.
+        what: String,
+        /// Why the detector refused.
+        source: DetectError,
+    },
+    /// The deformed mesh contradicts itself.
+    #[error("deformed mesh: {problem}")]
+    Mesh {
+        /// What is wrong.
+        problem: String,
+    },
+    /// A picture could not be drawn.
+    #[error("figure {figure:?}: {problem}")]
+    Drawing {
+        /// The title of the figure.
+        figure: String,
+        /// What the drawing library said.
+        problem: String,
+    },
+}

@@ -1,0 +1,409 @@
+//! Signals, signal-to-noise ratios, thresholds and error rates of a study.
+
+use serde::Serialize;
+
+use super::comparison::{self, Comparison, PairwiseFinding};
+use super::text::{millimetres, name_of_map};
+use super::{ReportError, Study, paper};
+use crate::detect::{
+    Channels, DetectError, MatchedFilter, auc, error_rates, gamma_from_two_afc, map_threshold,
+    neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
+};
+use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};
+
+/// Below this det(I + ∇u) a compressed neighbourhood has lost four fifths of its area, and small-strain
+/// elasticity is far outside its range.
+///
+/// Implements: REP-015.
+pub const SMALL_STRAIN_LIMIT: f64 = 0.2;
+
+/// What a study found, in plain numbers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Findings {
+    /// The depth of the probe, m, at which signals are taken.
+    #[serde(rename = "probe_depth_m")]
+    pub probe_depth: f64,
+    /// Why this is not the paper's 4 mm.
+    pub probe_depth_note: Option<String>,
+    /// The number of lateral positions, and so of samples in each channel.
+    pub samples: usize,
+    /// The least γ that keeps both error rates of the settings.
+    pub required_gamma: f64,
+    /// The phantom without inclusion.
+    pub reference: ReferenceFindings,
+    /// One for each map of the study, in its order.
+    pub maps: Vec<MapFindings>,
+    /// The noise that explains the paper's subjects; only with the paper's 6.6 mm phantom at 4 mm.
+    pub calibration: Option<Calibration>,
+    /// Table 1 against the model; empty without a calibration.
+    pub pairwise: Vec<PairwiseFinding>,
+    /// Each number that the paper prints beside ours.
+    pub comparison: Vec<Comparison>,
+}
+
+/// What the reference map says.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReferenceFindings {
+    /// The name of its phantom: untrusted text.
+    pub name: String,
+    /// The normal force at x = 0, N, if x = 0 is on the axis.
+    #[serde(rename = "normal_force_at_centre_n")]
+    pub normal_force_at_centre: Option<f64>,
+    /// How good the computation was; `None` for measured forces.
+    pub quality: Option<Quality>,
+}
+
+/// What the map of one phantom says.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MapFindings {
+    /// The name of its phantom: untrusted text.
+    pub name: String,
+    /// Which of the paper's phantoms it is, if any.
+    pub paper_phantom: Option<&'static str>,
+    /// The depth of the inclusion's top, m.
+    #[serde(rename = "inclusion_depth_m")]
+    pub inclusion_depth: Option<f64>,
+    /// Where F_1 − F_0 of the normal force is largest in magnitude.
+    pub peak_normal: Peak,
+    /// Where F_1 − F_0 of the lateral force is largest in magnitude.
+    pub peak_lateral: Peak,
+    /// γ of the matched filter over the whole lateral sweep.
+    pub gamma: GammaByChannel,
+    /// The maximum a-posteriori rule.
+    pub map_rule: Threshold,
+    /// Neyman–Pearson with the miss rate bounded; the fewest false alarms.
+    pub bounded_miss: Threshold,
+    /// Neyman–Pearson with the false-alarm rate bounded; the fewest misses. `None` if γ = 0.
+    pub bounded_false_alarm: Option<Threshold>,
+    /// The area under the curve of hits against false alarms.
+    pub auc: f64,
+    /// The share of right answers in pairs.
+    pub two_afc: f64,
+    /// How good the computation was; `None` for measured forces.
+    pub quality: Option<Quality>,
+    /// What a reader must know before using these numbers.
+    pub warnings: Vec<String>,
+}
+
+/// An extreme of a signal along the lateral sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Peak {
+    /// The signed force, N.
+    #[serde(rename = "force_n")]
+    pub force: f64,
+    /// The lateral position, m; of mirror images the one with x ≥ 0.
+    #[serde(rename = "lateral_m")]
+    pub lateral: f64,
+}
+
+/// γ with both channels and with each alone.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct GammaByChannel {
+    /// Both.
+    pub both: f64,
+    /// The normal force alone.
+    pub normal: f64,
+    /// The lateral force alone.
+    pub lateral: f64,
+}
+
+/// A threshold with its error rates.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Threshold {
+    /// η of equation (9).
+    pub eta: f64,
+    /// Pr(Ĥ = 1 | H = 0).
+    pub false_alarm: f64,
+    /// Pr(Ĥ = 0 | H = 1).
+    pub miss: f64,
+}
+
+/// The certificate of a computed map, in short.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Quality {
+    /// The largest relative residual of the linear solves.
+    pub worst_relative_residual: f64,
+    /// The largest difference between the force on the probe and the reaction of the well, N.
+    #[serde(rename = "worst_force_balance_n")]
+    pub worst_force_balance: f64,
+    /// The largest depth of a surface node inside the probe, m.
+    #[serde(rename = "largest_penetration_m")]
+    pub largest_penetration: f64,
+    /// The smallest det(I + ∇u) of all poses.
+    pub smallest_det: f64,
+    /// The depth of that pose, m.
+    #[serde(rename = "smallest_det_depth_m")]
+    pub smallest_det_depth: f64,
+    /// The lateral position of that pose, m.
+    #[serde(rename = "smallest_det_lateral_m")]
+    pub smallest_det_lateral: f64,
+    /// The size of the mesh, m.
+    #[serde(rename = "mesh_size_m")]
+    pub mesh_size: f64,
+    /// The number of nodes.
+    pub nodes: usize,
+    /// The element's name.
+    pub element: String,
+    /// The contact law's name.
+    pub contact: String,
+    /// The version of the program that computed the map.
+    pub program_version: String,
+}
+
+/// The one noise level that makes the model agree with the paper's subjects at 6.6 mm.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Calibration {
+    /// Our peak normal signal for 6.6 mm, N.
+    #[serde(rename = "peak_signal_n")]
+    pub peak_signal: f64,
+    /// The γ of the pooled 253 right answers in 300.
+    pub gamma: f64,
+    /// Their quotient, N.
+    #[serde(rename = "noise_n")]
+    pub noise: f64,
+}
+
+/// Everything that the report says in numbers.
+///
+/// # Errors
+/// [`ReportError::Map`] if a map is over other poses than the reference, [`ReportError::Detect`] if a setting is
+/// outside its range or a signal overflows.
+///
+/// Implements: REP-002, REP-003, REP-004.
+pub fn findings(study: &Study) -> Result<Findings, ReportError> {
+    let depths = study.reference.depths();
+    let probe_depth = probe_depth(depths);
+    let at_paper_depth = is_paper_depth(probe_depth);
+    let settings = &study.settings;
+    let required_gamma = required_gamma(settings.max_false_alarm, settings.max_miss)
+        .map_err(|source| detect_error("settings", source))?;
+    let maps = study
+        .maps
+        .iter()
+        .map(|map| of_map(study, map, probe_depth))
+        .collect::<Result<Vec<_>, _>>()?;
+    let reference = of_reference(&study.reference, probe_depth)?;
+    let is_paper_reference = study.reference.phantom().and_then(paper::name_of) == Some("none");
+    let comparable = at_paper_depth && is_paper_reference;
+    // Only maps of the paper's phantoms, against the paper's reference, at the paper's depth are compared with it.
+    let compared: &[MapFindings] = if comparable { &maps } else { &[] };
+    let calibration = calibration(compared)?;
+    let pairwise = comparison::pairwise(compared, calibration)?;
+    let level = reference.normal_force_at_centre.filter(|_| comparable);
+    Ok(Findings {
+        probe_depth,
+        probe_depth_note: (!at_paper_depth).then(|| {
+            format!(
+                "The maps hold no depth of 4 mm, at which the paper quotes its forces: signals are taken at their deepest depth, {} mm, and are not compared with the paper.",
+                millimetres(probe_depth)
+            )
+        }),
+        samples: study.reference.laterals().len(),
+        required_gamma,
+        comparison: comparison::table(level, compared, calibration, &pairwise)?,
+        reference,
+        maps,
+        calibration,
+        pairwise,
+    })
+}
+
+/// The signal F_1 − F_0 of `map` over all poses.
+pub(super) fn signal(study: &Study, map: &ForceMap) -> Result<ForceTable, ReportError> {
+    map.signal(&study.reference)
+        .map_err(|source| map_error(map, source))
+}
+
+/// The forces of `table` at `depth`, m, which must be one of its depths.
+pub(super) fn curve<'a>(
+    name: &str,
+    table: &'a ForceTable,
+    depth: f64,
+) -> Result<ForceCurve<'a>, ReportError> {
+    table.row(depth).map_err(|source| ReportError::Map {
+        name: name.into(),
+        source,
+    })
+}
+
+pub(super) fn detect_error(what: &str, source: DetectError) -> ReportError {
+    ReportError::Detect {
+        what: what.into(),
+        source,
+    }
+}
+
+fn map_error(map: &ForceMap, source: crate::force_map::InvalidForceMap) -> ReportError {
+    ReportError::Map {
+        name: name_of_map(map),
+        source,
+    }
+}
+
+fn is_paper_depth(depth: f64) -> bool {
+    (depth - paper::PROBE_DEPTH).abs() <= SAME_POSITION
+}
+
+/// The paper's depth if the maps hold it, or else the deepest.
+fn probe_depth(depths: &[f64]) -> f64 {
+    let deepest = depths.last().copied().unwrap_or(0.0);
+    depths
+        .iter()
+        .copied()
+        .find(|&depth| is_paper_depth(depth))
+        .unwrap_or(deepest)
+}
+
+fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindings, ReportError> {
+    let name = name_of_map(map);
+    let row = curve(&name, map.forces(), depth)?;
+    let centre = row.laterals.iter().position(|x| x.abs() <= SAME_POSITION);
+    Ok(ReferenceFindings {
+        name,
+        normal_force_at_centre: centre.map(|column| row.normal_force[column]),
+        quality: quality(map),
+    })
+}
+
+fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFindings, ReportError> {
+    let name = name_of_map(map);
+    let table = signal(study, map)?;
+    let signal = curve(&name, &table, depth)?;
+    let settings = &study.settings;
+    let detect = |source| detect_error(&format!("map {name:?}"), source);
+    let gamma = gamma_by_channel(signal, settings.noise_sd).map_err(detect)?;
+    let at = |eta: Result<f64, DetectError>| threshold(gamma.both, eta?);
+    let bounded_false_alarm = match at(neyman_pearson_false_alarm_threshold(
+        gamma.both,
+        settings.max_false_alarm,
+    )) {
+        // Two phantoms that feel the same: there is no threshold to state.
+        Err(DetectError::NoSignal) => None,
+        other => Some(other.map_err(detect)?),
+    };
+    let quality = quality(map);
+    let phantom = map.phantom();
+    Ok(MapFindings {
+        paper_phantom: phantom.and_then(paper::name_of),
+        inclusion_depth: phantom
+            .and_then(|p| p.inclusion)
+            .map(|inclusion| inclusion.depth),
+        peak_normal: peak(signal.laterals, signal.normal_force),
+        peak_lateral: peak(signal.laterals, signal.lateral_force),
+        map_rule: at(map_threshold(settings.prior_h1)).map_err(detect)?,
+        bounded_miss: at(neyman_pearson_miss_threshold(gamma.both, settings.max_miss))
+            .map_err(detect)?,
+        bounded_false_alarm,
+        auc: auc(gamma.both).map_err(detect)?,
+        two_afc: two_afc(gamma.both).map_err(detect)?,
+        warnings: warnings(quality.as_ref(), gamma.both),
+        gamma,
+        quality,
+        name,
+    })
+}
+
+/// The largest magnitude; of equals the one nearest to x = 0, then the one at x > 0.
+///
+/// Implements: REP-011.
+fn peak(laterals: &[f64], forces: &[f64]) -> Peak {
+    let poses = laterals.iter().zip(forces);
+    poses
+        .map(|(&lateral, &force)| Peak { force, lateral })
+        .max_by(|a, b| {
+            a.force
+                .abs()
+                .total_cmp(&b.force.abs())
+                .then(b.lateral.abs().total_cmp(&a.lateral.abs()))
+                .then(a.lateral.total_cmp(&b.lateral))
+        })
+        .unwrap_or(Peak {
+            force: 0.0,
+            lateral: 0.0,
+        })
+}
+
+/// Implements: REP-012.
+fn gamma_by_channel(signal: ForceCurve<'_>, noise_sd: f64) -> Result<GammaByChannel, DetectError> {
+    let zeros = vec![0.0; signal.laterals.len()];
+    let noise_sd = Channels {
+        x: noise_sd,
+        y: noise_sd,
+    };
+    let gamma = |x: &[f64], y: &[f64]| {
+        MatchedFilter::new(Channels { x, y }, noise_sd).map(|filter| filter.gamma())
+    };
+    Ok(GammaByChannel {
+        both: gamma(signal.lateral_force, signal.normal_force)?,
+        normal: gamma(&zeros, signal.normal_force)?,
+        lateral: gamma(signal.lateral_force, &zeros)?,
+    })
+}
+
+/// Implements: REP-013.
+fn threshold(gamma: f64, eta: f64) -> Result<Threshold, DetectError> {
+    let rates = error_rates(gamma, eta)?;
+    Ok(Threshold {
+        eta,
+        false_alarm: rates.false_alarm,
+        miss: rates.miss,
+    })
+}
+
+fn quality(map: &ForceMap) -> Option<Quality> {
+    let certificate = map.certificate()?;
+    let smallest = certificate.smallest_det;
+    Some(Quality {
+        worst_relative_residual: certificate.worst_relative_residual,
+        worst_force_balance: certificate.worst_force_balance,
+        largest_penetration: certificate.largest_penetration,
+        smallest_det: smallest.det,
+        smallest_det_depth: smallest.depth,
+        smallest_det_lateral: smallest.lateral,
+        mesh_size: certificate.mesh_size,
+        nodes: certificate.nodes,
+        element: certificate.element.clone(),
+        contact: certificate.contact.clone(),
+        program_version: map.program_version().into(),
+    })
+}
+
+/// Implements: REP-014, REP-015.
+fn warnings(quality: Option<&Quality>, gamma: f64) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some(quality) = quality.filter(|quality| quality.smallest_det < SMALL_STRAIN_LIMIT) {
+        warnings.push(format!(
+            "Small strain is at its limit: det(I + ∇u) falls to {:.3} at depth {} mm, x = {} mm (below {SMALL_STRAIN_LIMIT}); forces near that pose are the linear model's, not a real gel's.",
+            quality.smallest_det,
+            millimetres(quality.smallest_det_depth),
+            millimetres(quality.smallest_det_lateral),
+        ));
+    }
+    if gamma == 0.0 {
+        warnings.push(
+            "No signal: the forces equal the reference's, so nothing can be detected.".into(),
+        );
+    }
+    warnings
+}
+
+/// Implements: REP-021.
+fn calibration(maps: &[MapFindings]) -> Result<Option<Calibration>, ReportError> {
+    let column = 2;
+    let found = maps
+        .iter()
+        .find(|map| map.paper_phantom == Some(paper::INCLUSIONS[column]));
+    let Some(map) = found else {
+        return Ok(None);
+    };
+    let playback = &paper::EXPERIMENTS[paper::FEM_PLAYBACK];
+    let share = f64::from(playback.pooled(column)) / f64::from(playback.trials());
+    let gamma = gamma_from_two_afc(share).map_err(|source| detect_error("Table 1", source))?;
+    let peak_signal = map.peak_normal.force.abs();
+    // Without a signal no noise level explains the subjects.
+    Ok((peak_signal > 0.0).then_some(Calibration {
+        peak_signal,
+        gamma,
+        noise: peak_signal / gamma,
+    }))
+}

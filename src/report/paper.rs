@@ -1,0 +1,113 @@
+//! The numbers that the paper prints, each with its place.
+
+use crate::phantom::{BUILTIN_NAMES, Phantom};
+
+/// The depth of the probe at which the paper quotes its forces, m: "more than 4mm" is prevented (§4.1).
+pub const PROBE_DEPTH: f64 = 4e-3;
+/// "a nominal absolute force level of 1.6N" (§2), N.
+pub const FORCE_LEVEL: f64 = 1.6;
+/// "the force signal difference is roughly 0.5N" (§2), N.
+pub const SIGNAL: f64 = 0.5;
+/// "The peak signal strength for this inclusion is 340mN" (§5, 6.6 mm), N.
+pub const PEAK_SIGNAL_6_6: f64 = 0.340;
+/// "maximum 5% false alarm rate" (§2).
+pub const MAX_FALSE_ALARM: f64 = 0.05;
+/// "minimum 95% hit rate" (§2).
+pub const MAX_MISS: f64 = 0.05;
+/// "requires γ > 3.3" (§2).
+pub const REQUIRED_GAMMA: f64 = 3.3;
+/// "the overall noise level needs to be less than 0.5N/γ = 0.15N" (§2), N.
+pub const ALLOWED_NOISE: f64 = 0.15;
+/// "the human operating noise level is estimated at 0.1N" (§2), N.
+pub const HUMAN_NOISE: f64 = 0.1;
+/// "the haptic display must introduce less than … 0.11N" (§2), N.
+pub const DISPLAY_NOISE: f64 = 0.11;
+/// "playback of FEM data gave a 84% accuracy" (§5, 6.6 mm).
+pub const ACCURACY_6_6: f64 = 0.84;
+/// "the subjects are operating near γ = 1.45" (§5).
+pub const GAMMA_OF_ACCURACY: f64 = 1.45;
+/// "the noise estimate from the psychophysics experiments is 235mN" (§5), N.
+pub const SUBJECTS_NOISE: f64 = 0.235;
+/// "The noise estimate for the FEM playback … is 170mN" (§5), N.
+pub const PLAYBACK_NOISE: f64 = 0.170;
+/// "The noise estimate for the direct contact case … is 220mN" (§5), N.
+pub const DIRECT_CONTACT_NOISE: f64 = 0.220;
+
+/// Table 2, "Actuation quantization (Immersion)", N.
+pub const QUANTIZATION: f64 = 0.5e-3;
+/// Table 2, "Actuation backdrive friction (Immersion)", N.
+pub const BACKDRIVE_FRICTION: f64 = 0.140;
+/// Table 2, "Unmodelled direct contact", N.
+pub const UNMODELLED_CONTACT: f64 = 0.200;
+/// Table 2, "Human perception", N.
+pub const HUMAN_PERCEPTION: f64 = 0.093;
+
+/// Pairs that each subject judged at each depth in each experiment (§4).
+pub const TRIALS: u32 = 30;
+/// The four phantoms with inclusion, by the names of [`BUILTIN_NAMES`]: the columns of Table 1.
+pub const INCLUSIONS: [&str; 4] = ["2.6", "4.6", "6.6", "8.6"];
+
+/// One of the three experiments of §4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Experiment {
+    /// What Table 1 calls it.
+    pub name: &'static str,
+    /// Right answers in [`TRIALS`], one row a subject, one column an inclusion.
+    pub correct: [[u32; 4]; 10],
+}
+
+impl Experiment {
+    /// The right answers of all subjects to the inclusion in `column`.
+    pub fn pooled(&self, column: usize) -> u32 {
+        self.correct.iter().map(|subject| subject[column]).sum()
+    }
+
+    /// The pairs that all subjects judged at one depth.
+    pub fn trials(&self) -> u32 {
+        TRIALS * self.correct.len() as u32
+    }
+}
+
+/// Which of [`EXPERIMENTS`] plays back finite-element data.
+pub const FEM_PLAYBACK: usize = 1;
+
+/// Table 1.
+#[rustfmt::skip]
+pub const EXPERIMENTS: [Experiment; 3] = [
+    Experiment {
+        name: "direct contact",
+        correct: [
+            [30, 28, 27, 27], [30, 30, 28, 23], [30, 29, 20, 21], [28, 25, 18, 16], [27, 26, 23, 19],
+            [30, 30, 27, 17], [23, 19, 18, 13], [30, 30, 30, 19], [30, 30, 29, 23], [30, 28, 27, 22],
+        ],
+    },
+    Experiment {
+        name: "FEM data",
+        correct: [
+            [30, 30, 30, 21], [30, 30, 29, 25], [30, 29, 28, 16], [28, 29, 24, 20], [29, 25, 20, 17],
+            [29, 29, 27, 15], [27, 23, 18, 15], [30, 30, 27, 20], [29, 24, 21, 16], [30, 28, 29, 24],
+        ],
+    },
+    Experiment {
+        name: "measured data",
+        correct: [
+            [30, 22, 24, 18], [30, 28, 28, 21], [28, 27, 19, 15], [25, 19, 19, 21], [29, 24, 23, 18],
+            [26, 21, 23, 17], [17, 15, 19, 18], [29, 26, 26, 13], [26, 21, 22, 15], [28, 25, 26, 18],
+        ],
+    },
+];
+
+/// Which of the paper's phantoms this is, whatever it is called: geometry, materials and probe decide.
+///
+/// Implements: REP-010.
+pub fn name_of(phantom: &Phantom) -> Option<&'static str> {
+    BUILTIN_NAMES.into_iter().find(|name| {
+        Phantom::builtin(name).is_ok_and(|builtin| {
+            builtin
+                == Phantom {
+                    name: builtin.name.clone(),
+                    ..phantom.clone()
+                }
+        })
+    })
+}
