@@ -12,10 +12,12 @@ pub mod mesh;
 mod model;
 mod ordering;
 mod outline;
+mod vtu;
 
 use crate::force_map::InvalidForceMap;
 use crate::phantom::{InvalidPhantom, PoseError};
 pub use contact::{Contact, ContactState, Surface};
+pub use field::{Field, FieldCheck};
 pub use mesh::{Element, Mesh};
 pub use model::{Model, PoseSolution};
 

@@ -3,7 +3,7 @@
 use super::assembly::StiffnessMatrix;
 use super::cholesky::{Factor, check_residual};
 use super::contact::{Contact, ContactState, Surface};
-use super::field::{BATCH, Batch, FieldCheck, Samples};
+use super::field::{BATCH, Batch, Field, FieldCheck, Samples};
 use super::mesh::Mesh;
 use super::{FemError, MeshOptions, Pose};
 use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
@@ -189,11 +189,11 @@ impl Model {
         }
     }
 
-    /// Displacement of every node, m, at a solved pose, by a full solve under its contact forces.
+    /// The whole field at a solved pose, by a full solve under its contact forces.
     ///
     /// # Errors
     /// [`FemError::Residual`].
-    pub fn displacements(&self, solution: &PoseSolution) -> Result<Vec<[f64; 2]>, FemError> {
+    pub fn field(&self, solution: &PoseSolution) -> Result<Field, FemError> {
         let numbering = &self.matrix.numbering;
         let first = numbering.first_surface_unknown();
         let mut force = vec![0.0; numbering.unknowns()];
@@ -206,9 +206,13 @@ impl Model {
                 .unknown(node, direction)
                 .map_or(0.0, |unknown| u[unknown])
         };
-        Ok((0..self.mesh.nodes.len())
-            .map(|node| [component(node, 0), component(node, 1)])
-            .collect())
+        let nodes = 0..self.mesh.nodes.len();
+        Ok(Field {
+            displacements: nodes
+                .map(|node| [component(node, 0), component(node, 1)])
+                .collect(),
+            gradients: self.samples.gradients(&u),
+        })
     }
 
     /// The checks of the whole field at each solved pose.
