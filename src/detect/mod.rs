@@ -14,6 +14,7 @@
 pub mod decision;
 mod error;
 pub mod matched_filter;
+pub mod simulate;
 
 pub use decision::{
     Costs, Decision, ErrorRates, auc, bayes_threshold, decide, error_rates, gamma_from_two_afc,

@@ -5,6 +5,8 @@
 
 pub mod compensated;
 pub mod normal;
+pub mod random;
+mod ziggurat;
 
 #[cfg(test)]
 pub(crate) mod check;
