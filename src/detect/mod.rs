@@ -11,10 +11,12 @@
 //!
 //! Nothing here allocates; what needs memory takes it from the caller. `spec/detector.md` is normative.
 
+pub mod coloured;
 pub mod decision;
 mod error;
 pub mod matched_filter;
 pub mod simulate;
+pub mod stationary;
 
 pub use decision::{
     Costs, Decision, ErrorRates, auc, bayes_threshold, decide, error_rates, gamma_from_two_afc,
