@@ -15,6 +15,8 @@ pub mod coloured;
 pub mod decision;
 mod error;
 pub mod matched_filter;
+pub mod position;
+pub mod scan;
 pub mod simulate;
 pub mod stationary;
 
