@@ -15,10 +15,14 @@ pub mod coloured;
 pub mod decision;
 mod error;
 pub mod matched_filter;
+pub mod mixture;
+pub mod noise_budget;
 pub mod position;
+pub mod reach;
 pub mod scan;
 pub mod simulate;
 pub mod stationary;
+pub mod weber;
 
 pub use decision::{
     Costs, Decision, ErrorRates, auc, bayes_threshold, decide, error_rates, gamma_from_two_afc,
