@@ -1,7 +1,7 @@
 //! Θ in coloured noise of any covariance over both channels: K = LLᵀ, whitened by L⁻¹ (paper, end of §2).
 
 use super::DetectError;
-use super::error::{check_samples, representable};
+use super::error::{check_length, check_samples, representable};
 use crate::stats::compensated::{self, Accumulator, DoubleDouble};
 
 /// What a record in coloured noise says.
@@ -164,22 +164,6 @@ fn scale(covariance: &[f64], order: usize) -> Result<f64, DetectError> {
         largest = largest.max(variance);
     }
     Ok(compensated::reciprocal_power_of_two(libm::sqrt(largest)))
-}
-
-pub(super) fn check_length(
-    what: &'static str,
-    expected: usize,
-    found: usize,
-) -> Result<(), DetectError> {
-    if expected == found {
-        Ok(())
-    } else {
-        Err(DetectError::LengthMismatch {
-            what,
-            expected,
-            found,
-        })
-    }
 }
 
 /// Sums over whitened samples.

@@ -136,6 +136,23 @@ pub(crate) fn check_samples(
     }
 }
 
+/// Checks a length.
+pub(crate) fn check_length(
+    what: &'static str,
+    expected: usize,
+    found: usize,
+) -> Result<(), DetectError> {
+    if expected == found {
+        Ok(())
+    } else {
+        Err(DetectError::LengthMismatch {
+            what,
+            expected,
+            found,
+        })
+    }
+}
+
 /// Passes a finite number > 0.
 pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<f64, DetectError> {
     in_range(

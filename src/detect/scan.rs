@@ -76,6 +76,16 @@ impl<'a> Scan<'a> {
         })
     }
 
+    /// N, the number of samples of a record in each channel.
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// The standard deviation of a sample's noise, N.
+    pub fn noise_sd(&self) -> Channels<f64> {
+        self.noise_sd
+    }
+
     /// The shifts at which at least one sample overlaps, −(M−1) … N−1.
     ///
     /// Implements: DET-051.

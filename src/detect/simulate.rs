@@ -1,8 +1,10 @@
 //! Simulated records and statistics. Every trial is a function of the generator and its number alone.
 
-use super::error::{check_finite, check_not_negative, check_samples};
+use super::error::{check_finite, check_length, check_not_negative, check_samples};
+use super::scan::Scan;
 use super::{Channels, DetectError, MatchedFilter, Statistic};
 use crate::stats::random::Generator;
+use core::ops::{Range, RangeInclusive};
 
 /// Records F_p = F + noise, and what the matched filter for F_0 against F_1 says about them.
 #[derive(Debug, Clone, Copy)]
@@ -55,22 +57,9 @@ impl<'a> Simulation<'a> {
         residual: &mut [f64],
     ) -> Result<Statistic, DetectError> {
         let samples = self.filter.samples();
-        for (what, force) in [("force_x", force.x), ("force_y", force.y)] {
-            if force.len() != samples {
-                return Err(DetectError::LengthMismatch {
-                    what,
-                    expected: samples,
-                    found: force.len(),
-                });
-            }
-        }
-        if residual.len() != 2 * samples {
-            return Err(DetectError::LengthMismatch {
-                what: "residual",
-                expected: 2 * samples,
-                found: residual.len(),
-            });
-        }
+        check_length("force_x", samples, force.x.len())?;
+        check_length("force_y", samples, force.y.len())?;
+        check_length("residual", 2 * samples, residual.len())?;
         self.generator.normals(trial, 0, residual);
         let (x, y) = residual.split_at_mut(samples);
         observe(x, force.x, self.f0.x, self.noise_sd.x);
@@ -108,4 +97,35 @@ pub fn draw_theta(
         *theta = mean + gamma * *theta;
     }
     Ok(())
+}
+
+/// How many of the given trials of pure noise have Θ_max ≥ η over the candidate shifts: with
+/// [`crate::stats::binomial::clopper_pearson`] the Monte Carlo value of the false-alarm rate and its interval, beside the bound of
+/// [`super::position::MaximumLaw`]. `residual` is scratch of 2N numbers.
+///
+/// # Errors
+/// η not finite; no shifts; scratch of another length.
+///
+/// Implements: DET-115.
+pub fn count_false_alarms(
+    scan: &Scan<'_>,
+    shifts: RangeInclusive<isize>,
+    eta: f64,
+    generator: &Generator,
+    trials: Range<u64>,
+    residual: &mut [f64],
+) -> Result<u64, DetectError> {
+    check_finite("eta", eta)?;
+    check_length("residual", 2 * scan.samples(), residual.len())?;
+    let noise_sd = scan.noise_sd();
+    let mut alarms = 0;
+    for trial in trials {
+        generator.normals(trial, 0, residual);
+        let (x, y) = residual.split_at_mut(scan.samples());
+        x.iter_mut().for_each(|sample| *sample *= noise_sd.x);
+        y.iter_mut().for_each(|sample| *sample *= noise_sd.y);
+        let maximum = scan.maximum(Channels { x, y }, shifts.clone())?;
+        alarms += u64::from(maximum.theta >= eta);
+    }
+    Ok(alarms)
 }

@@ -3,8 +3,8 @@
 //!
 //! Both functions whiten as `L⁻¹` does in [`super::coloured`], and give the same θ.
 
-use super::coloured::{ColouredStatistic, Innovations, check_length, pivot};
-use super::error::{check_positive, check_samples};
+use super::coloured::{ColouredStatistic, Innovations, pivot};
+use super::error::{check_length, check_positive, check_samples};
 use super::{Channels, DetectError};
 use crate::stats::compensated;
 
