@@ -108,6 +108,97 @@ fn long_sums_that_cancel_stay_exact() {
     assert_eq!(theta, 0.25);
 }
 
+/// Whole numbers of up to `bits` bits and either sign.
+fn integers(stream: u64, count: usize, bits: u32) -> Vec<i128> {
+    let generator = crate::stats::random::Generator::new(14, stream);
+    (0..count as u64)
+        .map(|i| i128::from(generator.words([i, 0, 9, 9])[0] as i64 >> (63 - bits)))
+        .collect()
+}
+
+fn floats(integers: &[i128]) -> Vec<f64> {
+    // At most 53 bits: exact.
+    integers.iter().map(|&i| i as f64).collect()
+}
+
+// Verifies: DET-014.
+#[test]
+fn a_million_samples_are_within_the_stated_bound_of_exact_arithmetic() {
+    const SAMPLES: usize = 1_000_000;
+    let template = integers(0, SAMPLES, 50);
+    let zeros = vec![0.0; SAMPLES];
+    // Plain noise, and a residual Δ/2 + small, where Σ rΔ − ½ΣΔ² cancels to a part in 10⁷ or so.
+    let plain = integers(1, SAMPLES, 50);
+    let small = integers(2, SAMPLES, 30);
+    let half: Vec<i128> = template
+        .iter()
+        .zip(&small)
+        .map(|(t, s)| t / 2 + s)
+        .collect();
+    for residual in [plain, half] {
+        // Twice Θ and twice the size, exactly; 10⁶ · 2^101 is below 2^121.
+        let twice: i128 = residual
+            .iter()
+            .zip(&template)
+            .map(|(r, t)| 2 * r * t - t * t)
+            .sum();
+        let size: i128 = residual
+            .iter()
+            .zip(&template)
+            .map(|(r, t)| 2 * (r * t).abs() + t * t)
+            .sum();
+        let (template, residual) = (floats(&template), floats(&residual));
+        let unit = Channels { x: 1.0, y: 1.0 };
+        let filter = MatchedFilter::new(
+            Channels {
+                x: &template,
+                y: &zeros,
+            },
+            unit,
+        )
+        .unwrap();
+        let theta = filter
+            .statistic(Channels {
+                x: &residual,
+                y: &zeros,
+            })
+            .unwrap()
+            .theta;
+        // Twice θ is a whole number here too, and its distance from the exact one is taken in whole numbers.
+        let error = ((2.0 * theta) as i128 - twice).unsigned_abs() as f64;
+        let bound = 2.5 * f64::EPSILON * twice.unsigned_abs() as f64 + 1e-19 * size as f64;
+        assert!(
+            error <= bound + 1.0,
+            "error {error:e}, bound {bound:e}, of {twice:e}"
+        );
+    }
+}
+
+// Verifies: DET-014.
+#[test]
+fn differences_of_forces_are_not_rounded() {
+    // Forces of 53 bits and either sign: their differences have 54.
+    const SAMPLES: usize = 500;
+    let [observed, f0, f1] = [3, 4, 5].map(|stream| integers(stream, SAMPLES, 53));
+    let zeros = vec![0.0; SAMPLES];
+    let (mut twice, mut size) = (0_i128, 0_i128);
+    for i in 0..SAMPLES {
+        let (r, t) = (observed[i] - f0[i], f1[i] - f0[i]);
+        twice += 2 * r * t - t * t;
+        size += 2 * (r * t).abs() + t * t;
+    }
+    let [observed, f0, f1] = [observed, f0, f1].map(|forces| floats(&forces));
+    let channels = |x| Channels { x, y: &zeros[..] };
+    let unit = Channels { x: 1.0, y: 1.0 };
+    let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
+    let error = ((2.0 * found.theta) as i128 - twice).unsigned_abs() as f64;
+    let bound = 2.5 * f64::EPSILON * twice.unsigned_abs() as f64 + 1e-19 * size as f64;
+    assert!(
+        error <= bound,
+        "error {error:e}, bound {bound:e}, of {twice:e}"
+    );
+}
+
 // Verifies: DET-016.
 #[test]
 fn units_of_any_size_give_the_same_gamma_and_theta() {
