@@ -1,1 +1,179 @@
-//! force_map
+//! Force maps: the force on the probe over a grid of depths and lateral positions, where it comes
+//! from, and the files that keep it (paper §3, §4).
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | the map: forces and their source |
+//! | `table.rs` | axes and matrices; symmetry, difference, one depth |
+//! | `certificate.rs` | the quality of a computed map |
+//! | `error.rs` | what can be wrong |
+
+mod certificate;
+mod error;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use certificate::{Certificate, SmallestDet};
+pub use error::InvalidForceMap;
+pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
+
+use crate::phantom::Phantom;
+
+/// Where the forces of a map come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Source {
+    /// Computed by this program's finite elements.
+    FiniteElements {
+        /// How good the computation was.
+        certificate: Certificate,
+    },
+    /// Measured on a gel, as the paper's §3.2.
+    Measured {
+        /// The file that the measurement came in.
+        file: String,
+        /// Whatever else is known of it.
+        note: String,
+    },
+}
+
+/// The force on the probe at every pose of a grid, and where it comes from.
+///
+/// Implements: MAP-001, MAP-008.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceMap {
+    program_version: String,
+    source: Source,
+    phantom: Option<Phantom>,
+    forces: ForceTable,
+}
+
+impl ForceMap {
+    /// A map of `forces`, made by this version of the program.
+    ///
+    /// # Errors
+    /// [`InvalidForceMap`] if the phantom is missing for a computed map, is not valid, or does not
+    /// let the probe stand at one of the poses, or if the certificate does not fit the forces.
+    ///
+    /// Implements: MAP-006, MAP-007, MAP-008.
+    pub fn new(
+        source: Source,
+        phantom: Option<Phantom>,
+        forces: ForceTable,
+    ) -> Result<ForceMap, InvalidForceMap> {
+        let program_version = env!("CARGO_PKG_VERSION").into();
+        ForceMap::by_version(program_version, source, phantom, forces)
+    }
+
+    /// [`ForceMap::new`] for a map that another version made.
+    fn by_version(
+        program_version: String,
+        source: Source,
+        phantom: Option<Phantom>,
+        forces: ForceTable,
+    ) -> Result<ForceMap, InvalidForceMap> {
+        if let Source::FiniteElements { certificate } = &source {
+            certificate.check(forces.depths(), forces.laterals())?;
+            if phantom.is_none() {
+                return Err(InvalidForceMap::NoPhantom);
+            }
+        }
+        if let Some(phantom) = &phantom {
+            phantom.validate()?;
+            for &depth in forces.depths() {
+                for &lateral in forces.laterals() {
+                    phantom.check_pose(depth, lateral)?;
+                }
+            }
+        }
+        Ok(ForceMap {
+            program_version,
+            source,
+            phantom,
+            forces,
+        })
+    }
+
+    /// The version of the program that made the map.
+    pub fn program_version(&self) -> &str {
+        &self.program_version
+    }
+
+    /// Where the forces come from.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// The evidence for a computed map; `None` for a measured one.
+    pub fn certificate(&self) -> Option<&Certificate> {
+        match &self.source {
+            Source::FiniteElements { certificate } => Some(certificate),
+            Source::Measured { .. } => None,
+        }
+    }
+
+    /// The phantom under the probe; a measured map may not know it.
+    pub fn phantom(&self) -> Option<&Phantom> {
+        self.phantom.as_ref()
+    }
+
+    /// Axes and forces.
+    pub fn forces(&self) -> &ForceTable {
+        &self.forces
+    }
+
+    /// Depths of the rows, m, increasing.
+    pub fn depths(&self) -> &[f64] {
+        self.forces.depths()
+    }
+
+    /// Lateral positions of the columns, m, increasing.
+    pub fn laterals(&self) -> &[f64] {
+        self.forces.laterals()
+    }
+
+    /// Normal forces, N, positive where they push the probe up; depths × lateral positions.
+    pub fn normal_force(&self) -> &Matrix {
+        self.forces.normal_force()
+    }
+
+    /// Lateral forces on the probe along +x, N; depths × lateral positions.
+    pub fn lateral_force(&self) -> &Matrix {
+        self.forces.lateral_force()
+    }
+
+    /// The forces at a stored depth (m): see [`ForceTable::row`].
+    ///
+    /// # Errors
+    /// [`InvalidForceMap::NoSuchDepth`].
+    pub fn row(&self, depth: f64) -> Result<ForceCurve<'_>, InvalidForceMap> {
+        self.forces.row(depth)
+    }
+
+    /// The forces of this map minus those of `reference`: see [`ForceTable::minus`].
+    ///
+    /// # Errors
+    /// [`InvalidForceMap::AxesDiffer`], [`InvalidForceMap::Force`].
+    pub fn signal(&self, reference: &ForceMap) -> Result<ForceTable, InvalidForceMap> {
+        self.forces.minus(&reference.forces)
+    }
+
+    /// This map over x ≥ 0, extended to x < 0 by symmetry: see [`ForceTable::mirrored`].
+    ///
+    /// # Errors
+    /// [`InvalidForceMap::NotFromZero`], [`InvalidForceMap::NotSymmetric`].
+    pub fn mirrored(&self) -> Result<ForceMap, InvalidForceMap> {
+        let source = match &self.source {
+            Source::FiniteElements { certificate } => Source::FiniteElements {
+                certificate: certificate.mirrored(),
+            },
+            measured => measured.clone(),
+        };
+        ForceMap::by_version(
+            self.program_version.clone(),
+            source,
+            self.phantom.clone(),
+            self.forces.mirrored()?,
+        )
+    }
+}

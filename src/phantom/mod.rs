@@ -1,57 +1,109 @@
 //! The phantom: a well of gel under a rubber skin, a hard inclusion in it or none, and the probe
 //! that presses on it (paper §3). All lengths are metres, moduli pascals.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | the data, the paper's five phantoms, derived lengths |
+//! | `limits.rs` | which phantoms are physical |
+//! | `pose.rs` | where the probe may stand |
+//! | `file.rs` | phantom files in TOML |
+//! | `decimal.rs` | mm and kPa to SI and back |
+
+pub mod decimal;
+mod file;
+mod limits;
+mod pose;
+#[cfg(test)]
+mod tests;
+
+use serde::{Deserialize, Serialize};
+
+pub use file::{PhantomFileError, PhantomFileProblem};
+pub use limits::{GEL_CLEARANCE, InvalidPhantom, OutOfRange, Quantity};
+pub use pose::PoseError;
 
 /// A linear isotropic elastic material.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Material {
     /// Young's modulus E, Pa.
+    #[serde(rename = "youngs_modulus_pa")]
     pub youngs_modulus: f64,
     /// Poisson's ratio ν.
     pub poisson_ratio: f64,
 }
 
 /// The block of gel that fills the well, bonded to its floor and walls.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Gel {
     /// Width of the well, m.
+    #[serde(rename = "width_m")]
     pub width: f64,
     /// Height of the gel without the skin, m.
+    #[serde(rename = "height_m")]
     pub height: f64,
     /// What the gel is made of.
     pub material: Material,
 }
 
 /// The rubber layer on top of the gel, bonded to the gel and, at its edges, to the walls.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Skin {
     /// Thickness, m.
+    #[serde(rename = "thickness_m")]
     pub thickness: f64,
     /// What the skin is made of.
     pub material: Material,
 }
 
 /// A solid disc (a cylinder along the probe), centred at x = 0 and bonded to the gel.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Inclusion {
     /// Diameter, m.
+    #[serde(rename = "diameter_m")]
     pub diameter: f64,
     /// Depth of the disc's top below the outer surface of the skin, m.
+    #[serde(rename = "depth_m")]
     pub depth: f64,
     /// What the disc is made of.
     pub material: Material,
 }
 
+impl Inclusion {
+    /// Radius of the disc, m.
+    pub fn radius(&self) -> f64 {
+        self.diameter / 2.0
+    }
+
+    /// Height of the disc's centre above the undeformed outer surface, m: negative, since the disc
+    /// lies below it. Its lateral position is 0.
+    ///
+    /// Implements: PHA-008.
+    pub fn centre_y(&self) -> f64 {
+        -(self.depth + self.radius())
+    }
+}
+
 /// The rigid, frictionless, semicylindrical probe.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Probe {
     /// Radius, m.
+    #[serde(rename = "radius_m")]
     pub radius: f64,
     /// Length along the cylinder, m: forces are totals over it.
+    #[serde(rename = "length_m")]
     pub length: f64,
 }
 
 /// Everything that fixes the force on the probe, but for the probe's position.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// Reading one with serde checks the types alone: call [`Phantom::validate`] on the result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Phantom {
     /// A name for tables and figures.
     pub name: String,
@@ -63,4 +115,68 @@ pub struct Phantom {
     pub inclusion: Option<Inclusion>,
     /// The probe.
     pub probe: Probe,
+}
+
+/// The names of the paper's five phantoms: without an inclusion, then by its depth in mm.
+///
+/// Implements: PHA-001.
+pub const BUILTIN_NAMES: [&str; 5] = ["none", "2.6", "4.6", "6.6", "8.6"];
+
+/// A name that is none of [`BUILTIN_NAMES`].
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("no phantom named {name:?} is built in; built in are {}", BUILTIN_NAMES.join(", "))]
+pub struct UnknownPhantom {
+    /// The name that was asked for.
+    pub name: String,
+}
+
+impl Phantom {
+    /// One of the paper's five phantoms (§3, §3.1), by its name in [`BUILTIN_NAMES`].
+    ///
+    /// # Errors
+    /// [`UnknownPhantom`] for any other name.
+    ///
+    /// Implements: PHA-001, PHA-002.
+    pub fn builtin(name: &str) -> Result<Phantom, UnknownPhantom> {
+        let inclusion_depth = match name {
+            "none" => None,
+            "2.6" => Some(0.0026),
+            "4.6" => Some(0.0046),
+            "6.6" => Some(0.0066),
+            "8.6" => Some(0.0086),
+            _ => return Err(UnknownPhantom { name: name.into() }),
+        };
+        let material = |youngs_modulus| Material {
+            youngs_modulus,
+            poisson_ratio: 0.49,
+        };
+        Ok(Phantom {
+            name: name.into(),
+            gel: Gel {
+                width: 0.034,
+                height: 0.015,
+                material: material(5e3),
+            },
+            skin: Skin {
+                thickness: 0.0005,
+                material: material(1.8e5),
+            },
+            inclusion: inclusion_depth.map(|depth| Inclusion {
+                diameter: 0.0064,
+                depth,
+                material: material(1.2e6),
+            }),
+            probe: Probe {
+                radius: 0.0065,
+                length: 0.03,
+            },
+        })
+    }
+
+    /// Height of the outer surface above the floor, m: gel and skin.
+    ///
+    /// Implements: PHA-008.
+    pub fn total_height(&self) -> f64 {
+        self.gel.height + self.skin.thickness
+    }
 }

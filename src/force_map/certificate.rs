@@ -1,0 +1,145 @@
+//! What a computed force map says about its own quality.
+
+use serde::Serialize;
+
+use super::{InvalidForceMap, Matrix, SAME_POSITION};
+
+/// The evidence that comes with a map from finite elements. Plain data; [`super::ForceMap::new`]
+/// checks it.
+///
+/// Implements: MAP-006.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Certificate {
+    /// The largest relative residual ‖Ku − f‖/‖f‖ of the linear solves.
+    pub worst_relative_residual: f64,
+    /// The largest difference, N, between the force on the probe and the reaction of floor and walls.
+    #[serde(rename = "worst_force_balance_n")]
+    pub worst_force_balance: f64,
+    /// The largest depth, m, of a surface node inside the probe.
+    #[serde(rename = "largest_penetration_m")]
+    pub largest_penetration: f64,
+    /// The number of Newton iterations over all poses.
+    pub newton_iterations: usize,
+    /// The size H of the mesh, m, as asked for.
+    #[serde(rename = "mesh_size_m")]
+    pub mesh_size: f64,
+    /// The number of nodes.
+    pub nodes: usize,
+    /// The number of elements.
+    pub elements: usize,
+    /// The name of the element, as on the command line.
+    pub element: String,
+    /// The name of the contact law, as on the command line.
+    pub contact: String,
+    /// The smallest entry of `min_det` with its pose.
+    pub smallest_det: SmallestDet,
+    /// The smallest det(I + ∇u) in the mesh at every pose; depths × lateral positions. Near 0 the
+    /// small-strain model is at its limit, and below 0 the gel is inside out.
+    pub min_det: Matrix,
+}
+
+/// The smallest det(I + ∇u) of a map, and where.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SmallestDet {
+    /// det(I + ∇u).
+    pub det: f64,
+    /// Depth of the probe, m.
+    #[serde(rename = "depth_m")]
+    pub depth: f64,
+    /// Lateral position of the probe, m.
+    #[serde(rename = "lateral_m")]
+    pub lateral: f64,
+}
+
+impl SmallestDet {
+    /// The smallest entry of `min_det` (depths × lateral positions); of equals the one nearest to
+    /// x = 0, then the first. `None` if the matrix is empty or holds a NaN.
+    pub fn of(min_det: &Matrix, depths: &[f64], laterals: &[f64]) -> Option<SmallestDet> {
+        if min_det.values().iter().any(|det| det.is_nan()) {
+            return None;
+        }
+        let poses = min_det.entries().filter_map(|(row, column, det)| {
+            let (&depth, &lateral) = (depths.get(row)?, laterals.get(column)?);
+            Some(SmallestDet {
+                det,
+                depth,
+                lateral,
+            })
+        });
+        poses.min_by(|a, b| {
+            let order = a.det.total_cmp(&b.det);
+            order.then(a.lateral.abs().total_cmp(&b.lateral.abs()))
+        })
+    }
+}
+
+impl Certificate {
+    /// Whether every number is finite and possible, and `min_det` belongs to these axes (m).
+    ///
+    /// Implements: MAP-006, MAP-007.
+    pub(super) fn check(&self, depths: &[f64], laterals: &[f64]) -> Result<(), InvalidForceMap> {
+        not_negative("worst_relative_residual", self.worst_relative_residual)?;
+        not_negative("worst_force_balance_n", self.worst_force_balance)?;
+        not_negative("largest_penetration_m", self.largest_penetration)?;
+        not_negative("mesh_size_m", self.mesh_size)?;
+        let key = "certificate.min_det";
+        let expected = [depths.len(), laterals.len()];
+        let found = [self.min_det.row_count(), self.min_det.column_count()];
+        if found != expected {
+            return Err(InvalidForceMap::Shape {
+                key,
+                found,
+                expected,
+            });
+        }
+        if let Some((row, column, value)) =
+            self.min_det.entries().find(|(_, _, det)| !det.is_finite())
+        {
+            return Err(InvalidForceMap::Force {
+                key,
+                row,
+                column,
+                value,
+            });
+        }
+        self.check_smallest(depths, laterals)
+    }
+
+    fn check_smallest(&self, depths: &[f64], laterals: &[f64]) -> Result<(), InvalidForceMap> {
+        let stated = self.smallest_det;
+        let least = self
+            .min_det
+            .values()
+            .iter()
+            .copied()
+            .fold(f64::INFINITY, f64::min);
+        let index = |axis: &[f64], value: f64| {
+            axis.iter()
+                .position(|position| (position - value).abs() <= SAME_POSITION)
+        };
+        let there = index(depths, stated.depth)
+            .zip(index(laterals, stated.lateral))
+            .map(|(row, column)| self.min_det.row(row)[column]);
+        if stated.det == least && there == Some(least) {
+            Ok(())
+        } else {
+            Err(InvalidForceMap::SmallestDet { stated, least })
+        }
+    }
+
+    /// This certificate for the map that symmetry extends to x < 0.
+    pub(super) fn mirrored(&self) -> Certificate {
+        Certificate {
+            min_det: self.min_det.mirrored(|det| det, |det| det),
+            ..self.clone()
+        }
+    }
+}
+
+fn not_negative(key: &'static str, value: f64) -> Result<(), InvalidForceMap> {
+    if value.is_finite() && value >= 0.0 {
+        Ok(())
+    } else {
+        Err(InvalidForceMap::Certificate { key, value })
+    }
+}

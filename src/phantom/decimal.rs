@@ -1,0 +1,45 @@
+//! Decimal numbers between the units that people write (mm, kPa, mN) and SI, without rounding twice.
+//!
+//! `2.6` mm must become the very `f64` that `0.0026` names. A multiplication by 10⁻³ misses it by a
+//! bit now and then, and a division by 1000 cannot be undone: some metres have no `f64` of
+//! millimetres. So the power of ten goes into the written number's exponent.
+
+/// The number that `text` writes, times 10^`power`, rounded once to the nearest `f64`.
+///
+/// `text` is a plain decimal (`34`, `-0.5`, `+1.5e-3`). `None` if it is anything else, `nan`
+/// and `inf` included, or if the result is too large for an `f64`.
+///
+/// Implements: PHA-020.
+pub fn parse_scaled(text: &str, power: i32) -> Option<f64> {
+    let (mantissa, exponent) = match text.find(['e', 'E']) {
+        Some(at) => (&text[..at], text[at + 1..].parse::<i32>().ok()?),
+        None => (text, 0),
+    };
+    // `str::parse` would also take "nan", "inf" and "infinity".
+    let is_decimal = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-');
+    if !mantissa.chars().all(is_decimal) {
+        return None;
+    }
+    let exponent = exponent.checked_add(power)?;
+    let value: f64 = format!("{mantissa}e{exponent}").parse().ok()?;
+    value.is_finite().then_some(value)
+}
+
+/// `value` times 10^`power` in decimal, such that [`parse_scaled`] with `-power` gives `value` back
+/// to the bit. A NaN or an infinity is written as Rust writes it.
+///
+/// Implements: PHA-020.
+pub fn format_scaled(value: f64, power: i32) -> String {
+    let digits = format!("{value:e}"); // the shortest digits that name `value`, as d.ddde±x
+    let Some((mantissa, exponent)) = digits.split_once('e') else {
+        return digits;
+    };
+    let exponent = exponent.parse::<i32>().unwrap_or(0) + power;
+    let exact = format!("{mantissa}e{exponent}");
+    // Plain notation where it says the same; an f64 in the other unit cannot always.
+    let plain = format!("{:?}", exact.parse::<f64>().unwrap_or(f64::NAN));
+    match parse_scaled(&plain, -power) {
+        Some(back) if back.to_bits() == value.to_bits() => plain,
+        _ => exact,
+    }
+}
