@@ -203,6 +203,8 @@ pub(crate) fn in_range(
 }
 
 /// Passes a result that did not overflow.
+///
+/// Implements: DET-008.
 pub(crate) fn representable(what: &'static str, value: f64) -> Result<f64, DetectError> {
     if value.is_finite() {
         Ok(value)

@@ -39,6 +39,8 @@ pub struct RecordStatistic {
 
 /// The noise of one channel with a power of two that brings it near 1: squares of forces are taken in these
 /// units, where they neither overflow nor underflow unless Δ/s itself is absurd.
+///
+/// Implements: DET-016.
 #[derive(Debug, Clone, Copy)]
 struct Scale {
     /// A power of two, 1/N.

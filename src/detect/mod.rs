@@ -11,6 +11,7 @@
 //!
 //! Nothing here allocates; what needs memory takes it from the caller. `spec/detector.md` is normative.
 
+pub mod assessment;
 pub mod coloured;
 pub mod decision;
 mod error;

@@ -41,11 +41,7 @@ pub fn noise_budget(
 ) -> Result<NoiseBudget, DetectError> {
     check_positive("signal", signal)?;
     let gamma = required_gamma(max_false_alarm, max_miss)?;
-    if gamma == 0.0 {
-        return Err(DetectError::Overflow {
-            what: "total_allowed",
-        });
-    }
+    // γ = 0 would allow any noise: infinity, which is refused.
     let total_allowed = representable("total_allowed", signal / gamma)?;
     let used = root_sum_square(sources)?;
     let remaining = if used < total_allowed {

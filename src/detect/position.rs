@@ -4,11 +4,14 @@ use super::error::{check_finite, check_positive, check_probability, check_sample
 use super::scan::Scan;
 use super::{Channels, DetectError, MatchedFilter};
 use crate::stats::normal::lower_tail;
+use core::ops::RangeInclusive;
 
 /// What bounds the false alarms of Θ_max over K shifts in a row: γ at each, and the angle between the templates of
 /// neighbours. Computed once for a scan, in memory of the caller's.
 #[derive(Debug, Clone, Copy)]
 pub struct MaximumLaw<'a> {
+    /// The first shift.
+    first: isize,
     gamma: &'a [f64],
     /// arccos of the correlation of Θ at a shift with Θ at the shift before; unused for the first.
     angle: &'a [f64],
@@ -42,7 +45,16 @@ impl<'a> MaximumLaw<'a> {
             *angle = libm::acos(correlation.clamp(-1.0, 1.0));
             before = *gamma;
         }
-        Ok(Self { gamma, angle })
+        Ok(Self {
+            first,
+            gamma,
+            angle,
+        })
+    }
+
+    /// The shifts that the law is for.
+    pub fn shifts(&self) -> RangeInclusive<isize> {
+        self.first..=self.first + (self.gamma.len() as isize - 1)
     }
 
     /// An upper bound on Pr(Θ_max ≥ η | H = 0): at the first shift or by an upcrossing between two neighbours, whose probability is

@@ -176,6 +176,31 @@ fn a_million_samples_are_within_the_stated_bound_of_exact_arithmetic() {
 
 // Verifies: DET-014.
 #[test]
+fn rounding_errors_of_one_sign_do_not_add_up() {
+    // (2^27+1)² has 55 bits, and every second product of this sum loses a 1: all in the same direction.
+    let factor = 134_217_729.0;
+    let a: Vec<f64> = (0..100_000)
+        .map(|i| if i % 2 == 0 { factor } else { 1.0 - factor })
+        .collect();
+    let b = vec![factor; 100_000];
+    let exact = 50_000.0 * factor;
+    assert_eq!(crate::stats::compensated::dot(&a, &b, 1.0).value(), exact);
+}
+
+// Verifies: DET-014.
+#[test]
+fn a_difference_that_would_round_to_nothing_is_kept() {
+    // Δ = 2^54 − 1 needs 54 bits and r = 2^53: 2Θ = Δ(2r − Δ) = 2^54 − 1, or 0 if Δ is rounded.
+    const TOP: f64 = 9_007_199_254_740_992.0;
+    let channels = |x| Channels { x, y: &[0.0][..] };
+    let unit = Channels { x: 1.0, y: 1.0 };
+    let (observed, f0, f1) = ([1.0], [1.0 - TOP], [TOP]);
+    let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
+    assert_ulps(found.theta, TOP, 2.0);
+}
+
+// Verifies: DET-014.
+#[test]
 fn differences_of_forces_are_not_rounded() {
     // Forces of 53 bits and either sign: their differences have 54.
     const SAMPLES: usize = 500;

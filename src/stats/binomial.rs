@@ -7,6 +7,8 @@ use super::normal;
 use core::fmt;
 
 /// Why a question about a proportion was refused.
+///
+/// Implements: DET-123.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ProportionError {
     /// There were no trials, or more than 2^53.

@@ -11,7 +11,7 @@ const BATCH: usize = 64;
 
 /// Four 64-bit words for each value of a 256-bit counter.
 ///
-/// Implements: DET-110, DET-111.
+/// Implements: DET-110, DET-111, DET-112.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Generator {
     key: [u64; 2],
