@@ -54,9 +54,7 @@ pub fn theta_coloured(
 #[derive(Debug, Clone, Copy)]
 pub struct Cholesky<'a> {
     order: usize,
-    /// A power of two that brings the largest standard deviation near 1.
-    scale: f64,
-    /// L of the scaled covariance, row by row; what lies above the diagonal is not used.
+    /// L, row by row; what lies above the diagonal is not used.
     factor: &'a [f64],
 }
 
@@ -76,10 +74,7 @@ impl<'a> Cholesky<'a> {
         check_samples("covariance", covariance, entries)?;
         check_length("factor", entries, factor.len())?;
         check_symmetric(covariance, order)?;
-        let scale = scale(covariance, order)?;
-        for (scaled, entry) in factor.iter_mut().zip(covariance) {
-            *scaled = entry * scale * scale;
-        }
+        factor.copy_from_slice(covariance);
         for row in 0..order {
             let (above, current) = factor.split_at_mut(row * order);
             for column in 0..row {
@@ -90,11 +85,7 @@ impl<'a> Cholesky<'a> {
             let sum = compensated::dot(&current[..row], &current[..row], 1.0);
             current[row] = pivot(current[row], sum, order, row)?;
         }
-        Ok(Self {
-            order,
-            scale,
-            factor,
-        })
+        Ok(Self { order, factor })
     }
 
     /// L⁻¹v, whose noise is white with standard deviation 1.
@@ -109,7 +100,7 @@ impl<'a> Cholesky<'a> {
         for (row, sample) in vector.iter().enumerate() {
             let factor = &self.factor[row * self.order..][..=row];
             let known = compensated::dot(&factor[..row], &white[..row], 1.0).value();
-            white[row] = (sample * self.scale - known) / factor[row];
+            white[row] = (sample - known) / factor[row];
         }
         Ok(())
     }
@@ -151,19 +142,6 @@ fn check_symmetric(covariance: &[f64], order: usize) -> Result<(), DetectError> 
         }
     }
     Ok(())
-}
-
-/// The power of two that brings the largest standard deviation near 1.
-fn scale(covariance: &[f64], order: usize) -> Result<f64, DetectError> {
-    let mut largest = 0.0_f64;
-    for row in 0..order {
-        let variance = covariance[row * order + row];
-        if variance <= 0.0 {
-            return Err(DetectError::NotPositiveDefinite { pivot: row });
-        }
-        largest = largest.max(variance);
-    }
-    Ok(compensated::reciprocal_power_of_two(libm::sqrt(largest)))
 }
 
 /// Sums over whitened samples.

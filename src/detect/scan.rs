@@ -255,17 +255,11 @@ fn overlap(samples: usize, length: usize, shift: isize) -> ((usize, usize), (usi
     }
 }
 
-/// The abscissa, from −½ to ½, of the top of the parabola through (−1, before), (0, top) and (1, after), where
-/// `top` is the largest.
+/// The abscissa, from −½ to ½, of the top of the parabola through (−1, before), (0, top) and (1, after), where `top` is greater
+/// than `before`, because it is the first of the largest.
 fn vertex(before: f64, top: f64, after: f64) -> f64 {
     let (left, right) = (top - before, top - after);
-    let curvature = left + right;
-    // Three equal values have no top; a difference that overflows has no use.
-    if curvature > 0.0 && curvature.is_finite() {
-        0.5 * (left - right) / curvature
-    } else {
-        0.0
-    }
+    0.5 * (left - right) / (left + right)
 }
 
 #[cfg(test)]

@@ -108,8 +108,18 @@ fn arguments_that_do_not_fit_are_refused() {
     assert!(dense(&[], &[], &[]).is_err());
     assert!(dense(&RESIDUAL[..5], &TEMPLATE, covariance).is_err());
     assert!(dense(&RESIDUAL, &TEMPLATE, &covariance[..35]).is_err());
-    assert!(theta_coloured(&RESIDUAL, &TEMPLATE, covariance, &mut [0.0; 47]).is_err());
-    assert!(theta_coloured(&RESIDUAL, &TEMPLATE, covariance, &mut [0.0; 49]).is_err());
+    for found in [47, 49] {
+        let expected = DetectError::LengthMismatch {
+            what: "scratch",
+            expected: 48,
+            found,
+        };
+        let scratch = &mut vec![0.0; found];
+        assert_eq!(
+            theta_coloured(&RESIDUAL, &TEMPLATE, covariance, scratch),
+            Err(expected)
+        );
+    }
     let mut bad = RESIDUAL;
     bad[3] = f64::INFINITY;
     let expected = DetectError::NotFinite {
