@@ -23,7 +23,11 @@ fn simulation() -> Simulation<'static> {
 #[test]
 fn trials_are_the_same_in_any_order_and_on_any_thread() {
     let theta = |trial: u64| simulation().trial(trial, F0, &mut [0.0; 6]).unwrap().theta;
-    let forwards: Vec<f64> = (0..1000).map(theta).collect();
+    // One scratch for all: nothing of a trial may leak into the next.
+    let mut scratch = [f64::NAN; 6];
+    let forwards: Vec<f64> = (0..1000)
+        .map(|trial| simulation().trial(trial, F0, &mut scratch).unwrap().theta)
+        .collect();
     let mut backwards: Vec<f64> = (0..1000).rev().map(theta).collect();
     backwards.reverse();
     assert_eq!(forwards, backwards);
