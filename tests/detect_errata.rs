@@ -268,6 +268,15 @@ fn err_007_subjects_vary_more_than_a_binomial() {
             (0..4).map(|depth| dispersion(table.iter().map(move |row| row[depth])))
         })
         .collect();
+    // The table is the paper's: its means, in tenths.
+    let means: Vec<u32> = TABLE_1
+        .iter()
+        .flat_map(|(_, table)| (0..4).map(|depth| table.iter().map(move |row| row[depth]).sum()))
+        .collect();
+    assert_eq!(
+        means,
+        [288, 275, 247, 200, 292, 277, 253, 189, 268, 228, 229, 174]
+    );
     // Printed: intervals that presume 1 throughout. The upper 1 % point of χ²₉/9 is 21.666/9 = 2.41 (Natrella, Table T-6).
     let significant = dispersions.iter().filter(|&&value| value > 2.41).count();
     assert!(

@@ -21,7 +21,7 @@ impl<'a> MaximumLaw<'a> {
     /// The law for the shifts `first`, `first` + 1, …, as many as `gamma` and `angle` hold.
     ///
     /// # Errors
-    /// No shifts; buffers of different lengths; overflow.
+    /// No shifts; a shift without overlap; buffers of different lengths; overflow.
     ///
     /// Implements: DET-055.
     pub fn new(
@@ -32,6 +32,7 @@ impl<'a> MaximumLaw<'a> {
     ) -> Result<Self, DetectError> {
         check_samples("gamma", gamma, gamma.len())?;
         check_samples("angle", angle, gamma.len())?;
+        scan.check_shifts(first, gamma.len())?;
         let mut before = 0.0;
         for ((shift, gamma), angle) in (first..).zip(gamma.iter_mut()).zip(angle.iter_mut()) {
             *gamma = scan.gamma(shift)?;

@@ -140,7 +140,7 @@ impl<'a> Scan<'a> {
     /// Θ(k) for the shifts `first`, `first` + 1, …, as many as `theta` holds.
     ///
     /// # Errors
-    /// As [`Scan::at`].
+    /// As [`Scan::at`]; a shift without overlap.
     ///
     /// Implements: DET-050, DET-052.
     pub fn theta(
@@ -150,6 +150,7 @@ impl<'a> Scan<'a> {
         theta: &mut [f64],
     ) -> Result<(), DetectError> {
         self.check(residual)?;
+        self.check_shifts(first, theta.len())?;
         for (shift, theta) in (first..).zip(theta) {
             *theta = self.point(residual, shift)?.theta;
         }
@@ -159,7 +160,7 @@ impl<'a> Scan<'a> {
     /// Θ_max, its shift k̂ and the refined shift over a range of candidates. A position is x̂ = x₀ + k̂·v·dt.
     ///
     /// # Errors
-    /// As [`Scan::at`]; a range that is empty.
+    /// As [`Scan::at`]; a shift without overlap; a range that is empty.
     ///
     /// Implements: DET-053, DET-054.
     pub fn maximum(
@@ -169,6 +170,8 @@ impl<'a> Scan<'a> {
     ) -> Result<ScanMaximum, DetectError> {
         self.check(residual)?;
         let (first, last) = (*shifts.start(), *shifts.end());
+        self.check_shifts(first, 1)?;
+        self.check_shifts(last, 1)?;
         let mut best: Option<(isize, ScanPoint)> = None;
         for shift in shifts {
             let point = self.point(residual, shift)?;
@@ -190,6 +193,22 @@ impl<'a> Scan<'a> {
             gamma,
             shift,
             refined_shift,
+        })
+    }
+
+    /// Checks that `count` shifts from `first` on all overlap the record: others say nothing, and could be without end.
+    pub(super) fn check_shifts(&self, first: isize, count: usize) -> Result<(), DetectError> {
+        let shifts = self.shifts();
+        let last = first.saturating_add_unsigned(count.saturating_sub(1));
+        let wrong = if shifts.contains(&first) { last } else { first };
+        if shifts.contains(&wrong) {
+            return Ok(());
+        }
+        let range = "a shift at which the template overlaps the record";
+        Err(DetectError::OutOfRange {
+            what: "shift",
+            value: wrong as f64,
+            range,
         })
     }
 

@@ -116,7 +116,7 @@ pub fn count_false_alarms(
     residual: &mut [f64],
 ) -> Result<u64, DetectError> {
     check_finite("eta", eta)?;
-    check_length("residual", 2 * scan.samples(), residual.len())?;
+    check_length("residual", scan.samples().saturating_mul(2), residual.len())?;
     let noise_sd = scan.noise_sd();
     let mut alarms = 0;
     for trial in trials {

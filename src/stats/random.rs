@@ -56,17 +56,18 @@ impl Generator {
         )
     }
 
-    /// Fills `deviates` with the standard normal deviates `first`, `first` + 1, … of a trial.
+    /// Fills `deviates` with the standard normal deviates `first`, `first` + 1, … of a trial; 0 follows 2⁶⁴ − 1.
     pub fn normals(&self, trial: u64, first: u64, deviates: &mut [f64]) {
         let unaligned = (first.wrapping_neg() % 4).min(deviates.len() as u64) as usize;
         let (head, body) = deviates.split_at_mut(unaligned);
-        for (index, deviate) in (first..).zip(head) {
+        let mut index = first;
+        for deviate in head {
             *deviate = self.normal(trial, index);
+            index = index.wrapping_add(1);
         }
-        let mut index = first + unaligned as u64;
         for body in body.chunks_mut(BATCH) {
             self.batch(trial, index, body);
-            index += BATCH as u64;
+            index = index.wrapping_add(BATCH as u64);
         }
     }
 
@@ -74,8 +75,10 @@ impl Generator {
     /// all words, all candidates, and then the few candidates that lie at an edge.
     fn batch(&self, trial: u64, first: u64, deviates: &mut [f64]) {
         let mut words = [[0; 4]; BATCH / 4];
-        for (block, words) in (first / 4..).zip(&mut words[..deviates.len().div_ceil(4)]) {
-            *words = self.words([block, trial, 0, 0]);
+        let mut index = first;
+        for words in &mut words[..deviates.len().div_ceil(4)] {
+            *words = self.words([index / 4, trial, 0, 0]);
+            index = index.wrapping_add(4);
         }
         let words = words.as_flattened();
         let mut at_an_edge = 0_u64;
@@ -88,7 +91,8 @@ impl Generator {
             let number = at_an_edge.trailing_zeros() as usize;
             at_an_edge &= at_an_edge - 1;
             let (x, layer) = candidate(words[number]);
-            deviates[number] = self.deviate_at_an_edge(x, layer, trial, first + number as u64);
+            deviates[number] =
+                self.deviate_at_an_edge(x, layer, trial, first.wrapping_add(number as u64));
         }
     }
 

@@ -123,10 +123,11 @@ fn threshold_keeps_the_promise_and_is_the_least_that_does() {
         UNIT,
     )
     .unwrap();
-    let law = MaximumLaw::new(&nothing, 0, &mut gamma, &mut angle).unwrap();
+    assert!(MaximumLaw::new(&nothing, 0, &mut gamma, &mut angle).is_err());
+    let law = MaximumLaw::new(&nothing, 0, &mut gamma[..5], &mut angle[..5]).unwrap();
     assert_eq!(law.threshold(0.1), Err(DetectError::NoSignal));
     assert!(MaximumLaw::new(&nothing, 0, &mut [], &mut []).is_err());
-    assert!(MaximumLaw::new(&nothing, 0, &mut gamma, &mut angle[..3]).is_err());
+    assert!(MaximumLaw::new(&nothing, 0, &mut gamma[..5], &mut angle[..3]).is_err());
 }
 
 // Verifies: DET-060, DET-061.

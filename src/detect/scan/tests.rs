@@ -72,6 +72,15 @@ fn maximum_is_the_first_of_the_largest() {
     // Θ of 6, 8, −8 at shifts −1, 0, 1: vertex ½(2 − 16)/(2 + 16).
     let found = scan().maximum(RESIDUAL, -1..=2).unwrap();
     assert_eq!((found.shift, found.refined_shift), (0, -7.0 / 18.0));
+    for outside in [-3..=1, 0..=5, isize::MIN..=isize::MAX] {
+        assert!(matches!(
+            scan().maximum(RESIDUAL, outside),
+            Err(DetectError::OutOfRange { .. })
+        ));
+    }
+    assert!(scan().theta(RESIDUAL, -3, &mut [0.0; 2]).is_err());
+    assert!(scan().theta(RESIDUAL, 3, &mut [0.0; 3]).is_err());
+    assert!(scan().theta(RESIDUAL, isize::MAX, &mut [0.0; 3]).is_err());
     let empty = RangeInclusive::new(2, 1);
     assert_eq!(
         scan().maximum(RESIDUAL, empty),

@@ -81,24 +81,21 @@ fn moments_under_either_hypothesis() {
 // Verifies: DET-005, DET-006, DET-007, DET-008.
 #[test]
 fn what_cannot_be_judged_is_refused() {
-    let short = Channels {
-        x: &F0.x[..2],
-        y: F0.y,
+    let names = ["observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y"];
+    let all = [OBSERVED.x, OBSERVED.y, F0.x, F0.y, F1.x, F1.y];
+    let judge = |series: [&[f64]; 6]| {
+        let [ox, oy, ax, ay, bx, by] = series;
+        let channels = |x, y| Channels { x, y };
+        theta_weber(channels(ox, oy), channels(ax, ay), channels(bx, by), NOISE).unwrap_err()
     };
-    assert!(theta_weber(OBSERVED, short, F1, NOISE).is_err());
-    assert!(theta_weber(short, F0, F1, NOISE).is_err());
-    assert!(
-        theta_weber(
-            OBSERVED,
-            F0,
-            Channels {
-                x: F1.x,
-                y: &[1.0, f64::NAN, 1.0]
-            },
-            NOISE
-        )
-        .is_err()
-    );
+    for (position, what) in names.into_iter().enumerate() {
+        let bad = [1.0, f64::NAN, 1.0];
+        let mut series = all;
+        series[position] = &bad;
+        assert_eq!(judge(series), DetectError::NotFinite { what, index: 1 });
+        series[position] = &all[position][..2];
+        assert!(matches!(judge(series), DetectError::LengthMismatch { .. }));
+    }
     for noise in [
         (0.0, 0.1),
         (-1.0, 0.1),

@@ -64,6 +64,12 @@ fn a_deviate_is_a_function_of_its_address() {
             assert_eq!(prefix[..length], all[first..first + length]);
         }
     }
+    // Around the end of the addresses.
+    generator.normals(11, u64::MAX - 5, &mut prefix);
+    for (step, &deviate) in prefix.iter().enumerate() {
+        let index = (u64::MAX - 5).wrapping_add(step as u64);
+        assert_eq!(generator.normal(11, index), deviate);
+    }
     assert_ne!(generator.normal(12, 0), all[0]);
     assert_ne!(Generator::new(7, 4).normal(11, 0), all[0]);
     assert_ne!(Generator::new(8, 3).normal(11, 0), all[0]);
