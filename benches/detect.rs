@@ -1,5 +1,10 @@
-//! How many trials a second one core simulates. The NumPy twin is `detect_numpy.py`; both run the same job and print
-//! the same lines. Run both with `cargo bench --no-default-features --bench detect` (wall clock: quiet machine).
+//! How many trials a second one core simulates. The NumPy twin `detect_numpy.py` runs the same job and
+//! prints the same lines. On a quiet machine (wall clock), one after the other:
+//!
+//! ```sh
+//! cargo bench --no-default-features --bench detect
+//! python3 benches/detect_numpy.py
+//! ```
 
 use palpate::detect::simulate::{Simulation, draw_theta};
 use palpate::detect::{Channels, DetectError};

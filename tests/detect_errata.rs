@@ -148,7 +148,8 @@ fn err_005_noise_left_for_the_display() {
 // Verifies: ERR-006, DET-059.
 #[test]
 fn err_006_false_alarms_of_theta_max() {
-    // Twenty places a record that do not overlap, so that Θ_max is the largest of twenty independent Θ.
+    // Twenty places a record that do not overlap, so that Θ_max is the largest of twenty
+    // independent Θ.
     const PLACES: usize = 20;
     const TRIALS: u64 = 4000;
     let gamma = 3.0;
@@ -194,7 +195,8 @@ fn err_006_false_alarms_of_theta_max() {
     }
     // Printed: "more conservative" — misses do not increase.
     assert!(misses <= misses_without_scan);
-    // True as well: false alarms rise from 5 % to 1 − 0.95²⁰ = 64.2 %. Six standard deviations, √(0.23/4000) = 0.0076 each.
+    // True as well: false alarms rise from 5 % to 1 − 0.95²⁰ = 64.2 %. Six standard deviations,
+    // √(0.23/4000) = 0.0076 each.
     let rate = f64::from(false_alarms) / TRIALS as f64;
     assert!((rate - 0.6415).abs() < 0.046, "{rate}");
 }
@@ -248,7 +250,8 @@ const TABLE_1: [(&str, [[u32; 4]; 10]); 3] = [
     ),
 ];
 
-/// χ²/df of 10 counts of 30 about their common rate, df = 9: 1 on average if subjects differ by chance alone.
+/// χ²/df of 10 counts of 30 about their common rate, df = 9: 1 on average if subjects differ by
+/// chance alone.
 fn dispersion(counts: impl Iterator<Item = u32> + Clone) -> f64 {
     let rate = counts.clone().map(f64::from).sum::<f64>() / 300.0;
     let expected = 30.0 * rate;
@@ -277,7 +280,8 @@ fn err_007_subjects_vary_more_than_a_binomial() {
         means,
         [288, 275, 247, 200, 292, 277, 253, 189, 268, 228, 229, 174]
     );
-    // Printed: intervals that presume 1 throughout. The upper 1 % point of χ²₉/9 is 21.666/9 = 2.41 (Natrella, Table T-6).
+    // Printed: intervals that presume 1 throughout. The upper 1 % point of χ²₉/9 is 21.666/9 = 2.41
+    // (Natrella, Table T-6).
     let significant = dispersions.iter().filter(|&&value| value > 2.41).count();
     assert!(
         significant >= 6,

@@ -102,7 +102,8 @@ proptest! {
     // Verifies: DET-014, DET-015.
     #[test]
     fn theta_is_the_log_likelihood_ratio(s in series(6), sd in noise()) {
-        // ln p(F_p|1) − ln p(F_p|0) from the two sums of squares, which is how a statistician would write it.
+        // ln p(F_p|1) − ln p(F_p|0) from the two sums of squares, which is how a statistician would
+        // write it.
         let sum = |c: usize, h: usize, s_c: f64| {
             s[c].iter().zip(&s[c + 2 * h]).map(|(p, f)| (p - f).powi(2)).sum::<f64>() / (s_c * s_c)
         };
@@ -139,7 +140,8 @@ proptest! {
     fn thresholds_keep_the_rates_that_they_promise(gamma in 0.05..8.0, rate in 1e-6..0.999) {
         let eta = neyman_pearson_false_alarm_threshold(gamma, rate).unwrap();
         let rates = error_rates(gamma, eta).unwrap();
-        // η is rounded by up to 4u (γ² + γ|Φ⁻¹|), in units of γ; Φ changes by less than 5 (1 + |z|) of itself for each unit.
+        // η is rounded by up to 4u (γ² + γ|Φ⁻¹|), in units of γ; Φ changes by less than 5 (1 + |z|)
+        // of itself for each unit.
         let doubt = 1e-13 * (1.0 + gamma / 0.05);
         prop_assert!((rates.false_alarm - rate).abs() <= doubt * rate.max(1e-3));
         prop_assert!((rates.miss - roc_miss(gamma, rate).unwrap()).abs() <= doubt);
@@ -183,7 +185,8 @@ proptest! {
         // An ulp of p is u/φ of γ.
         let doubt = 8.0 * U * (1.0 + (0.25 * gamma * gamma).exp());
         prop_assert!((gamma_from_two_afc(p).unwrap() - gamma).abs() <= 4.0 * doubt);
-        // ∫ (1 − P_miss) dP_fa by the midpoint rule: the integrand's slope is unbounded at 0, so the error is about √h.
+        // ∫ (1 − P_miss) dP_fa by the midpoint rule: the integrand's slope is unbounded at 0, so
+        // the error is about √h.
         let area: f64 = (0..2000)
             .map(|i| 1.0 - roc_miss(gamma, (f64::from(i) + 0.5) / 2000.0).unwrap())
             .sum::<f64>() / 2000.0;

@@ -19,7 +19,8 @@ pub struct Assessment {
     pub rates: ErrorRates,
 }
 
-/// Judges a record F_p against F_0 and F_1 (N samples a channel each, N) in white noise, at threshold η and with the prior Pr(H = 1).
+/// Judges a record F_p against F_0 and F_1 (N samples a channel each, N) in white noise, at
+/// threshold η and with the prior Pr(H = 1).
 ///
 /// # Errors
 /// Whatever any step refuses: there is a decision only if every number that leads to it is sound.

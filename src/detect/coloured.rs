@@ -1,4 +1,5 @@
-//! Θ in coloured noise of any covariance over both channels: K = LLᵀ, whitened by L⁻¹ (paper, end of §2).
+//! Θ in coloured noise of any covariance over both channels: K = LLᵀ, whitened by L⁻¹ (paper, end
+//! of §2).
 
 use super::DetectError;
 use super::error::{check_length, check_samples, representable};
@@ -20,12 +21,12 @@ pub const fn coloured_scratch(order: usize) -> usize {
     order.saturating_mul(order).saturating_add(2 * order)
 }
 
-/// θ = ΔᵀK⁻¹(r − Δ/2) and γ for one residual and one template, each the N lateral samples and then the N normal ones (N),
-/// and a covariance K of 2N rows (N²), row by row.
+/// θ = ΔᵀK⁻¹(r − Δ/2) and γ for one residual and one template, each the N lateral samples and then
+/// the N normal ones (N), and a covariance K of 2N rows (N²), row by row.
 ///
 /// # Errors
-/// Lengths that do not fit; NaN or infinity; a covariance that is not symmetric, or not positive definite to
-/// working precision; overflow.
+/// Lengths that do not fit; NaN or infinity; a covariance that is not symmetric, or not positive
+/// definite to working precision; overflow.
 ///
 /// Implements: DET-005, DET-007, DET-040, DET-041, DET-042, DET-043, DET-046.
 pub fn theta_coloured(
@@ -108,8 +109,8 @@ impl<'a> Cholesky<'a> {
 
 /// The root of the pivot `diagonal` − `sum`.
 ///
-/// Rounding alone can turn a singular matrix into one with pivots of about order·u of the diagonal, so a pivot
-/// that small is no evidence of a positive one.
+/// Rounding alone can turn a singular matrix into one with pivots of about order·u of the diagonal,
+/// so a pivot that small is no evidence of a positive one.
 pub(super) fn pivot(
     diagonal: f64,
     sum: DoubleDouble,

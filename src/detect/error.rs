@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-/// Why the detector refused to answer. A refusal is never a decision: no error means "no inclusion".
+/// Why the detector refused to answer. A refusal is never a decision: no error means "no
+/// inclusion".
 ///
 /// Implements: DET-005, DET-006, DET-007.
 #[derive(Debug, Clone, Copy, PartialEq)]

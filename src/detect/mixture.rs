@@ -1,14 +1,17 @@
-//! Inclusions that may lie at several depths: one template a depth, each with its θ_m against "no inclusion" (paper §5).
+//! Inclusions that may lie at several depths: one template a depth, each with its θ_m against "no
+//! inclusion" (paper §5).
 
 use super::DetectError;
 use super::decision::error_rates;
 use super::error::{check_finite, check_not_negative, check_samples, representable};
 use crate::stats::compensated::{self, DoubleDouble};
 
-/// The likelihood ratio of "an inclusion at some depth", ln Σ π_m exp(θ_m), for a prior π_m over the depths given an inclusion.
+/// The likelihood ratio of "an inclusion at some depth", ln Σ π_m exp(θ_m), for a prior π_m over
+/// the depths given an inclusion.
 ///
 /// # Errors
-/// Empty or unequal lengths; θ not finite; priors that are negative or do not add up to 1 within 10⁻⁹.
+/// Empty or unequal lengths; θ not finite; priors that are negative or do not add up to 1 within
+/// 10⁻⁹.
 ///
 /// Implements: DET-070.
 pub fn mixture_theta(theta: &[f64], prior: &[f64]) -> Result<f64, DetectError> {
@@ -74,7 +77,8 @@ pub fn generalised_theta(theta: &[f64]) -> Result<(usize, f64), DetectError> {
     ))
 }
 
-/// An upper bound on the false alarms of the mixture at threshold η: min(1, e^−η), because the mean of a likelihood ratio is 1 under H = 0 (Markov).
+/// An upper bound on the false alarms of the mixture at threshold η: min(1, e^−η), because the mean
+/// of a likelihood ratio is 1 under H = 0 (Markov).
 ///
 /// # Errors
 /// η not finite.
@@ -85,7 +89,8 @@ pub fn mixture_false_alarm_bound(eta: f64) -> Result<f64, DetectError> {
     Ok(if eta > 0.0 { libm::exp(-eta) } else { 1.0 })
 }
 
-/// An upper bound on the false alarms of the generalised likelihood ratio at η, min(1, Σ Φ(−(η + γ_m²/2)/γ_m)).
+/// An upper bound on the false alarms of the generalised likelihood ratio at η, min(1, Σ Φ(−(η +
+/// γ_m²/2)/γ_m)).
 ///
 /// # Errors
 /// No depths; γ_m negative or not finite; η not finite.

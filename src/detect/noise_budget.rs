@@ -26,11 +26,12 @@ pub struct NoiseTotal {
     pub dominant_share: f64,
 }
 
-/// The budget for a signal of `signal` N at given error rates, when the independent `sources` (standard deviations, N) are there already.
+/// The budget for a signal of `signal` N at given error rates, when the independent `sources`
+/// (standard deviations, N) are there already.
 ///
 /// # Errors
-/// Rates not strictly between 0 and 1, or that add up to 1 or more, where any noise will do; a signal not positive and finite; a
-/// source negative or not finite; overflow.
+/// Rates not strictly between 0 and 1, or that add up to 1 or more, where any noise will do; a
+/// signal not positive and finite; a source negative or not finite; overflow.
 ///
 /// Implements: DET-100, DET-101.
 pub fn noise_budget(
@@ -45,7 +46,8 @@ pub fn noise_budget(
     let total_allowed = representable("total_allowed", signal / gamma)?;
     let used = root_sum_square(sources)?;
     let remaining = if used < total_allowed {
-        // (T − u)(T + u) instead of T² − u²: no cancellation beyond that of T − u, and no overflow of squares.
+        // (T − u)(T + u) instead of T² − u²: no cancellation beyond that of T − u, and no overflow
+        // of squares.
         libm::sqrt(total_allowed - used) * libm::sqrt(total_allowed + used)
     } else {
         0.0
@@ -82,7 +84,8 @@ pub fn noise_total(sources: &[f64]) -> Result<NoiseTotal, DetectError> {
     })
 }
 
-/// The share of right forced choices for a signal in a total noise (both N), Φ(signal/(noise √2)): the budget read forwards.
+/// The share of right forced choices for a signal in a total noise (both N), Φ(signal/(noise √2)):
+/// the budget read forwards.
 ///
 /// # Errors
 /// A signal negative or not finite; noise not positive and finite; overflow of their ratio.

@@ -1,4 +1,5 @@
-//! The law of Θ_max: bounds on its rates of error, its thresholds, and how well a position can be known.
+//! The law of Θ_max: bounds on its rates of error, its thresholds, and how well a position can be
+//! known.
 
 use super::error::{check_finite, check_positive, check_probability, check_samples};
 use super::scan::Scan;
@@ -6,8 +7,8 @@ use super::{Channels, DetectError, MatchedFilter};
 use crate::stats::normal::lower_tail;
 use core::ops::RangeInclusive;
 
-/// What bounds the false alarms of Θ_max over K shifts in a row: γ at each, and the angle between the templates of
-/// neighbours. Computed once for a scan, in memory of the caller's.
+/// What bounds the false alarms of Θ_max over K shifts in a row: γ at each, and the angle between
+/// the templates of neighbours. Computed once for a scan, in memory of the caller's.
 #[derive(Debug, Clone, Copy)]
 pub struct MaximumLaw<'a> {
     /// The first shift.
@@ -58,8 +59,9 @@ impl<'a> MaximumLaw<'a> {
         self.first..=self.first + (self.gamma.len() as isize - 1)
     }
 
-    /// An upper bound on Pr(Θ_max ≥ η | H = 0): at the first shift or by an upcrossing between two neighbours, whose probability is
-    /// bounded in the manner of Rice. `spec/detector.md` derives it.
+    /// An upper bound on Pr(Θ_max ≥ η | H = 0): at the first shift or by an upcrossing between two
+    /// neighbours, whose probability is bounded in the manner of Rice. `spec/detector.md` derives
+    /// it.
     ///
     /// # Errors
     /// η not finite.
@@ -71,7 +73,8 @@ impl<'a> MaximumLaw<'a> {
         let mut tail_before = 0.0;
         for (&gamma, &angle) in self.gamma.iter().zip(self.angle) {
             let (tail, peak) = exceedance(gamma, eta);
-            // The first shift: no shift before it has been above η, and angle · peak plus the whole tail exceeds the tail.
+            // The first shift: no shift before it has been above η, and angle · peak plus the whole
+            // tail exceeds the tail.
             let upcrossing = angle / core::f64::consts::TAU * peak + (tail - tail_before).max(0.0);
             bound += upcrossing.min(tail);
             tail_before = tail;
@@ -95,8 +98,8 @@ impl<'a> MaximumLaw<'a> {
         Ok((sum * (1.0 + 1e-9)).min(1.0))
     }
 
-    /// A threshold η for Θ_max at which the false-alarm rate is certainly at most `max_false_alarm`: where the bound is, to
-    /// about 10 digits of η.
+    /// A threshold η for Θ_max at which the false-alarm rate is certainly at most
+    /// `max_false_alarm`: where the bound is, to about 10 digits of η.
     ///
     /// # Errors
     /// A rate not strictly between 0 and 1; a scan without signal.
@@ -135,8 +138,8 @@ fn exceedance(gamma: f64, eta: f64) -> (f64, f64) {
     (lower_tail(-u), libm::exp(-0.5 * u * u))
 }
 
-/// The Cramér–Rao bound: no unbiased estimate of the position has a smaller standard deviation, in m, than
-/// (Σ_c Σ_i (∂Δ/∂x)²/s²)^-½. `slope` is ∂Δ/∂x at each sample, N/m.
+/// The Cramér–Rao bound: no unbiased estimate of the position has a smaller standard deviation, in
+/// m, than (Σ_c Σ_i (∂Δ/∂x)²/s²)^-½. `slope` is ∂Δ/∂x at each sample, N/m.
 ///
 /// # Errors
 /// As [`MatchedFilter::new`]; a template without slope, which says nothing of a position.
@@ -154,11 +157,12 @@ pub fn position_bound(
     }
 }
 
-/// ∂Δ/∂x of a template sampled every `spacing` metres, by central differences, and by one-sided ones at the ends: in error by
-/// spacing²/6 of the third derivative.
+/// ∂Δ/∂x of a template sampled every `spacing` metres, by central differences, and by one-sided
+/// ones at the ends: in error by spacing²/6 of the third derivative.
 ///
 /// # Errors
-/// Fewer than two samples, or lengths that differ; NaN or infinity; a spacing not positive and finite.
+/// Fewer than two samples, or lengths that differ; NaN or infinity; a spacing not positive and
+/// finite.
 ///
 /// Implements: DET-061.
 pub fn slope(template: &[f64], spacing: f64, slope: &mut [f64]) -> Result<(), DetectError> {

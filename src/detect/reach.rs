@@ -1,5 +1,5 @@
-//! How far detection reaches: the largest depth, the smallest inclusion and the least indentation for a wanted γ, from a table of γ that the
-//! caller has computed (paper §5).
+//! How far detection reaches: the largest depth, the smallest inclusion and the least indentation
+//! for a wanted γ, from a table of γ that the caller has computed (paper §5).
 
 use super::DetectError;
 use super::error::{check_not_negative, check_samples};
@@ -18,8 +18,8 @@ pub enum Reach {
 /// The largest depth at which γ is at least `required`; γ falls as depth grows.
 ///
 /// # Errors
-/// Fewer than two entries, or unequal lengths; NaN or infinity; depths that do not increase or γ that does not
-/// decrease; `required` negative or not finite.
+/// Fewer than two entries, or unequal lengths; NaN or infinity; depths that do not increase or γ
+/// that does not decrease; `required` negative or not finite.
 ///
 /// Implements: DET-090, DET-092.
 pub fn largest_detectable_depth(

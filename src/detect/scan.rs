@@ -7,8 +7,9 @@ use core::ops::RangeInclusive;
 
 /// A template of M samples a channel that may begin at any sample of a record of N.
 ///
-/// A *shift* k puts template sample 0 on record sample k. At −(M−1) ≤ k < 0 and N−M < k ≤ N−1 a part of the template falls off
-/// the record: what was not observed adds neither to Y nor to b, so Θ(k) is the log-likelihood ratio of what was.
+/// A *shift* k puts template sample 0 on record sample k. At −(M−1) ≤ k < 0 and N−M < k ≤ N−1 a
+/// part of the template falls off the record: what was not observed adds neither to Y nor to b, so
+/// Θ(k) is the log-likelihood ratio of what was.
 #[derive(Debug, Clone, Copy)]
 pub struct Scan<'a> {
     template: Channels<&'a [f64]>,
@@ -36,18 +37,18 @@ pub struct ScanMaximum {
     pub gamma: f64,
     /// The shift of the maximum, the first of several equal ones.
     pub shift: isize,
-    /// The vertex of the parabola through the maximum and its two neighbours, in samples: the shift without the grid. It is
-    /// the shift itself at the ends of the scan.
+    /// The vertex of the parabola through the maximum and its two neighbours, in samples: the shift
+    /// without the grid. It is the shift itself at the ends of the scan.
     pub refined_shift: f64,
 }
 
 impl<'a> Scan<'a> {
-    /// A scan of records of `samples` = N a channel for `template` (M ≤ N a channel, N), in noise of standard deviation
-    /// `noise_sd` a sample (N).
+    /// A scan of records of `samples` = N a channel for `template` (M ≤ N a channel, N), in noise
+    /// of standard deviation `noise_sd` a sample (N).
     ///
     /// # Errors
-    /// An empty or non-finite template, one that is longer than the record, or whose channels differ in length;
-    /// `noise_sd` not positive and finite.
+    /// An empty or non-finite template, one that is longer than the record, or whose channels
+    /// differ in length; `noise_sd` not positive and finite.
     ///
     /// Implements: DET-005, DET-006, DET-007, DET-050.
     pub fn new(
@@ -157,7 +158,8 @@ impl<'a> Scan<'a> {
         Ok(())
     }
 
-    /// Θ_max, its shift k̂ and the refined shift over a range of candidates. A position is x̂ = x₀ + k̂·v·dt.
+    /// Θ_max, its shift k̂ and the refined shift over a range of candidates. A position is x̂ = x₀
+    /// + k̂·v·dt.
     ///
     /// # Errors
     /// As [`Scan::at`]; a shift without overlap; a range that is empty.
@@ -196,7 +198,8 @@ impl<'a> Scan<'a> {
         })
     }
 
-    /// Checks that `count` shifts from `first` on all overlap the record: others say nothing, and could be without end.
+    /// Checks that `count` shifts from `first` on all overlap the record: others say nothing, and
+    /// could be without end.
     pub(super) fn check_shifts(&self, first: isize, count: usize) -> Result<(), DetectError> {
         let shifts = self.shifts();
         let last = first.saturating_add_unsigned(count.saturating_sub(1));
@@ -261,7 +264,8 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// The samples of the record, and of the template, that meet: half-open ranges of the same length, empty ones if none do.
+/// The samples of the record, and of the template, that meet: half-open ranges of the same length,
+/// empty ones if none do.
 fn overlap(samples: usize, length: usize, shift: isize) -> ((usize, usize), (usize, usize)) {
     if shift >= 0 {
         let start = shift.unsigned_abs().min(samples);
@@ -274,8 +278,8 @@ fn overlap(samples: usize, length: usize, shift: isize) -> ((usize, usize), (usi
     }
 }
 
-/// The abscissa, from −½ to ½, of the top of the parabola through (−1, before), (0, top) and (1, after), where `top` is greater
-/// than `before`, because it is the first of the largest.
+/// The abscissa, from −½ to ½, of the top of the parabola through (−1, before), (0, top) and (1,
+/// after), where `top` is greater than `before`, because it is the first of the largest.
 fn vertex(before: f64, top: f64, after: f64) -> f64 {
     let (left, right) = (top - before, top - after);
     0.5 * (left - right) / (left + right)

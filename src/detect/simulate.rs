@@ -1,4 +1,5 @@
-//! Simulated records and statistics. Every trial is a function of the generator and its number alone.
+//! Simulated records and statistics. Every trial is a function of the generator and its number
+//! alone.
 
 use super::error::{check_finite, check_length, check_not_negative, check_samples};
 use super::scan::Scan;
@@ -42,9 +43,9 @@ impl<'a> Simulation<'a> {
         &self.filter
     }
 
-    /// y and θ of the record with number `trial` when the true force is `force` (F_0 under H = 0, F_1 under H = 1).
-    /// Lateral samples take the trial's deviates 0 … N−1, normal ones N … 2N−1. `residual` (2N numbers, x then
-    /// y) is left holding F_p − F_0.
+    /// y and θ of the record with number `trial` when the true force is `force` (F_0 under H = 0,
+    /// F_1 under H = 1). Lateral samples take the trial's deviates 0 … N−1, normal ones N … 2N−1.
+    /// `residual` (2N numbers, x then y) is left holding F_p − F_0.
     ///
     /// # Errors
     /// Lengths that differ; a force that is not finite.
@@ -100,8 +101,9 @@ pub fn draw_theta(
 }
 
 /// How many of the given trials of pure noise have Θ_max ≥ η over the candidate shifts: with
-/// [`crate::stats::binomial::clopper_pearson`] the Monte Carlo value of the false-alarm rate and its interval, beside the bound of
-/// [`super::position::MaximumLaw`]. `residual` is scratch of 2N numbers.
+/// [`crate::stats::binomial::clopper_pearson`] the Monte Carlo value of the false-alarm rate and
+/// its interval, beside the bound of [`super::position::MaximumLaw`]. `residual` is scratch of 2N
+/// numbers.
 ///
 /// # Errors
 /// η not finite; no shifts; scratch of another length.

@@ -1,5 +1,5 @@
-//! Θ in stationary coloured noise, for records too long for a dense covariance: the noise of the two channels is
-//! independent, and within a channel Cov(nᵢ, nⱼ) = ρ(|i − j|).
+//! Θ in stationary coloured noise, for records too long for a dense covariance: the noise of the
+//! two channels is independent, and within a channel Cov(nᵢ, nⱼ) = ρ(|i − j|).
 //!
 //! Both functions whiten as `L⁻¹` does in [`super::coloured`], and give the same θ.
 
@@ -8,11 +8,12 @@ use super::error::{check_length, check_positive, check_samples};
 use super::{Channels, DetectError};
 use crate::stats::compensated;
 
-/// θ and γ by the recursion of Levinson and Durbin, for any autocovariance ρ(0) … ρ(N−1) (N², N lags a channel). Time N²; `scratch` holds
-/// 2N numbers.
+/// θ and γ by the recursion of Levinson and Durbin, for any autocovariance ρ(0) … ρ(N−1) (N², N
+/// lags a channel). Time N²; `scratch` holds 2N numbers.
 ///
 /// # Errors
-/// Lengths that do not fit; NaN or infinity; an autocovariance that is not positive definite; overflow.
+/// Lengths that do not fit; NaN or infinity; an autocovariance that is not positive definite;
+/// overflow.
 ///
 /// Implements: DET-005, DET-007, DET-043, DET-044, DET-046.
 pub fn theta_stationary(
@@ -49,8 +50,9 @@ pub const fn banded_scratch(lags: usize) -> usize {
     lags.saturating_mul(lags.saturating_add(3))
 }
 
-/// θ and γ by a banded Cholesky factor that forgets what it has used, for an autocovariance that is zero beyond its last
-/// lag: ρ(0) … ρ(m) (N², the same number of lags for both channels). Time N m², memory m².
+/// θ and γ by a banded Cholesky factor that forgets what it has used, for an autocovariance that is
+/// zero beyond its last lag: ρ(0) … ρ(m) (N², the same number of lags for both channels). Time N
+/// m², memory m².
 ///
 /// # Errors
 /// As [`theta_stationary`]; more lags than samples.
@@ -103,8 +105,8 @@ fn check_records(
     check_samples("residual_y", residual.y, samples)
 }
 
-/// One channel by Levinson and Durbin. The best prediction of sample i from those before it is Σ_j w_j x_j with error variance v; the
-/// error over √v is the innovation.
+/// One channel by Levinson and Durbin. The best prediction of sample i from those before it is Σ_j
+/// w_j x_j with error variance v; the error over √v is the innovation.
 fn levinson(
     residual: &[f64],
     template: &[f64],
@@ -140,8 +142,9 @@ fn levinson(
     Ok(())
 }
 
-/// One channel by a Cholesky factor of m + 1 diagonals. Row i of L holds the columns i−m … i; the last m + 1 rows are kept, and the
-/// last m whitened samples. Columns before 0 are zeros, which `scratch` must hold at the start.
+/// One channel by a Cholesky factor of m + 1 diagonals. Row i of L holds the columns i−m … i; the
+/// last m + 1 rows are kept, and the last m whitened samples. Columns before 0 are zeros, which
+/// `scratch` must hold at the start.
 fn banded(
     residual: &[f64],
     template: &[f64],

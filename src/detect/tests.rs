@@ -1,5 +1,6 @@
-//! Expected values: mpmath 1.4.1 at 50 digits, from the equations of the paper in the form of `spec/detector.md` (Y and b
-//! formed first, with the weight 1/N), for the exact binary64 arguments, rounded once.
+//! Expected values: mpmath 1.4.1 at 50 digits, from the equations of the paper in the form of
+//! `spec/detector.md` (Y and b formed first, with the weight 1/N), for the exact binary64
+//! arguments, rounded once.
 
 use super::*;
 use crate::stats::check::{assert_near, assert_ulps};
@@ -69,7 +70,8 @@ fn statistic_of_a_record() {
 // Verifies: DET-014.
 #[test]
 fn long_sums_that_cancel_stay_exact() {
-    // r·Δ runs through 1, 2^80, 1, −2^80: any ordinary or Kahan summation loses every 1. Exact: γ² = Σ(1 + 2^80 …).
+    // r·Δ runs through 1, 2^80, 1, −2^80: any ordinary or Kahan summation loses every 1. Exact: γ²
+    // = Σ(1 + 2^80 …).
     const SAMPLES: usize = 1_000_000;
     let big = 2_f64.powi(40);
     let template: Vec<f64> = (0..SAMPLES)
@@ -164,7 +166,8 @@ fn a_million_samples_are_within_the_stated_bound_of_exact_arithmetic() {
             })
             .unwrap()
             .theta;
-        // Twice θ is a whole number here too, and its distance from the exact one is taken in whole numbers.
+        // Twice θ is a whole number here too, and its distance from the exact one is taken in whole
+        // numbers.
         let error = ((2.0 * theta) as i128 - twice).unsigned_abs() as f64;
         let bound = 2.5 * f64::EPSILON * twice.unsigned_abs() as f64 + 1e-19 * size as f64;
         assert!(
@@ -177,7 +180,8 @@ fn a_million_samples_are_within_the_stated_bound_of_exact_arithmetic() {
 // Verifies: DET-014.
 #[test]
 fn rounding_errors_of_one_sign_do_not_add_up() {
-    // (2^27+1)² has 55 bits, and every second product of this sum loses a 1: all in the same direction.
+    // (2^27+1)² has 55 bits, and every second product of this sum loses a 1: all in the same
+    // direction.
     let factor = 134_217_729.0;
     let a: Vec<f64> = (0..100_000)
         .map(|i| if i % 2 == 0 { factor } else { 1.0 - factor })

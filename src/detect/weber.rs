@@ -1,11 +1,12 @@
-//! Noise that grows with the force, as Weber's law has it for touch (paper §5): the exact likelihood ratio of two heteroscedastic
-//! Gaussian hypotheses.
+//! Noise that grows with the force, as Weber's law has it for touch (paper §5): the exact
+//! likelihood ratio of two heteroscedastic Gaussian hypotheses.
 
 use super::error::{check_not_negative, check_positive, check_samples, representable};
 use super::{Channels, DetectError};
 use crate::stats::compensated::{self, DoubleDouble};
 
-/// The variance of one sample is floor² + (fraction · F)², where F is the force that the hypothesis expects.
+/// The variance of one sample is floor² + (fraction · F)², where F is the force that the hypothesis
+/// expects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeberNoise {
     /// The standard deviation at force 0, N.
@@ -29,7 +30,8 @@ impl WeberNoise {
     }
 }
 
-/// Mean and variance of Θ under either hypothesis. Θ is not normal; far tails need simulation, or e^−η bounds.
+/// Mean and variance of Θ under either hypothesis. Θ is not normal; far tails need simulation, or
+/// e^−η bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeberMoments {
     /// Mean under H = 0 and under H = 1.
@@ -38,7 +40,8 @@ pub struct WeberMoments {
     pub variance: [f64; 2],
 }
 
-/// Θ = Σ_c Σ_i ½[(F_p − F_0)²/v_0 − (F_p − F_1)²/v_1 + ln(v_0/v_1)] with v_h = floor² + (fraction F_h)².
+/// Θ = Σ_c Σ_i ½[(F_p − F_0)²/v_0 − (F_p − F_1)²/v_1 + ln(v_0/v_1)] with v_h = floor² + (fraction
+/// F_h)².
 ///
 /// # Errors
 /// Empty or unequal lengths; NaN or infinity; floor ≤ 0 or fraction < 0; overflow.
@@ -59,7 +62,8 @@ pub fn theta_weber(
         .map(|((observed, (f0, f1)), noise)| {
             compensated::sum(observed.len(), |i| {
                 let (sd0, sd1) = (noise.sd(f0[i]), noise.sd(f1[i]));
-                // Both quotients may be large and nearly equal: (z0 − z1)(z0 + z1) keeps the digits of z0 − z1.
+                // Both quotients may be large and nearly equal: (z0 − z1)(z0 + z1) keeps the digits
+                // of z0 − z1.
                 let z0 = (observed[i] - f0[i]) / sd0;
                 let z1 = (observed[i] - f1[i]) / sd1;
                 let half = DoubleDouble::product(0.5 * (z0 - z1), z0 + z1);
@@ -89,7 +93,8 @@ pub fn weber_moments(
             let ratio = (sd0 / sd1) * (sd0 / sd1);
             let (shift0, shift1) = ((f1 - f0) / sd0, (f1 - f0) / sd1);
             let logarithm = log_ratio(sd0, sd1);
-            // Under H = 0, n ~ N(0, v0): ½[n²/v0 − (n − Δ)²/v1] is quadratic in n, and n and n² are uncorrelated.
+            // Under H = 0, n ~ N(0, v0): ½[n²/v0 − (n − Δ)²/v1] is quadratic in n, and n and n² are
+            // uncorrelated.
             mean[0] += 0.5 * ((1.0 - ratio) - shift1 * shift1) + logarithm;
             mean[1] += 0.5 * ((1.0 / ratio - 1.0) + shift0 * shift0) + logarithm;
             variance[0] += 0.5 * (1.0 - ratio) * (1.0 - ratio) + ratio * shift1 * shift1;

@@ -1,7 +1,9 @@
-//! The binomial law, and intervals for a proportion: what counts of false alarms, misses and right answers say.
+//! The binomial law, and intervals for a proportion: what counts of false alarms, misses and right
+//! answers say.
 //!
-//! Point probabilities by C. Loader's saddle-point form (*Fast and accurate computation of binomial probabilities*, 2000), whose
-//! terms do not cancel; tails by summing ratios from the point outwards.
+//! Point probabilities by C. Loader's saddle-point form (*Fast and accurate computation of binomial
+//! probabilities*, 2000), whose terms do not cancel; tails by summing ratios from the point
+//! outwards.
 
 use super::normal;
 use core::fmt;
@@ -110,7 +112,8 @@ pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionErr
     })
 }
 
-/// The exact interval of Clopper and Pearson: it covers the true proportion with at least the stated confidence.
+/// The exact interval of Clopper and Pearson: it covers the true proportion with at least the
+/// stated confidence.
 ///
 /// # Errors
 /// No trials; more successes than trials; a confidence not strictly between 0 and 1.
@@ -152,7 +155,8 @@ pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Interval, 
     let square = z * z;
     let half_width = z * libm::sqrt(k / n * (n - k) + 0.25 * square);
     let sum = k + 0.5 * square;
-    // The ends are the roots of one quadratic; the smaller one comes from their product, k²/(n(n + z²)), for it would cancel.
+    // The ends are the roots of one quadratic; the smaller one comes from their product, k²/(n(n +
+    // z²)), for it would cancel.
     let upper = (sum + half_width) / (n + square);
     let lower = k * (k / n) / (sum + half_width);
     Ok(Interval {
@@ -179,8 +183,8 @@ fn check_probability(value: f64) -> Result<f64, ProportionError> {
     }
 }
 
-/// The p at which an increasing function of p reaches `value`, to the last bit: bisection over the bits of p, so that small p
-/// keep their digits.
+/// The p at which an increasing function of p reaches `value`, to the last bit: bisection over the
+/// bits of p, so that small p keep their digits.
 fn least_p(increasing: impl Fn(f64) -> Result<f64, ProportionError>, value: f64) -> f64 {
     let (mut low, mut high) = (0, 1.0_f64.to_bits());
     while high - low > 1 {
@@ -195,8 +199,9 @@ fn least_p(increasing: impl Fn(f64) -> Result<f64, ProportionError>, value: f64)
     f64::from_bits(low)
 }
 
-/// Pr(X ≥ k) for k above the mean: the terms fall off from k on, each the one before times (n−j)/(j+1) · p/q. Both p and q = 1 − p
-/// are given, because the difference would lose the digits of a small one.
+/// Pr(X ≥ k) for k above the mean: the terms fall off from k on, each the one before times
+/// (n−j)/(j+1) · p/q. Both p and q = 1 − p are given, because the difference would lose the digits
+/// of a small one.
 fn outwards(k: f64, n: f64, p: f64, q: f64) -> f64 {
     if k > n {
         return 0.0;
@@ -256,7 +261,8 @@ fn deviance(x: f64, m: f64) -> f64 {
     x * libm::log(x / m) - difference
 }
 
-/// ln n! less Stirling's formula: a table (mpmath, 50 digits) for n < 16 and the series beyond, whose next term is below 1e-16.
+/// ln n! less Stirling's formula: a table (mpmath, 50 digits) for n < 16 and the series beyond,
+/// whose next term is below 1e-16.
 fn stirling_error(n: f64) -> f64 {
     const TABLE: [f64; 15] = [
         0.08106146679532726,

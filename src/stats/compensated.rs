@@ -72,8 +72,8 @@ pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - a_seen) + (b - b_seen))
 }
 
-/// `(p, e)` with p = fl(a·b) and p + e = a·b exactly (Dekker, Veltkamp), if |a|, |b| < 2^996 and the
-/// product does not overflow and is not below 2^-969.
+/// `(p, e)` with p = fl(a·b) and p + e = a·b exactly (Dekker, Veltkamp), if |a|, |b| < 2^996 and
+/// the product does not overflow and is not below 2^-969.
 #[inline]
 pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
@@ -110,8 +110,8 @@ impl Accumulator {
         self.low[lane] += low + term.low;
     }
 
-    /// [`Accumulator::add`] of 64 products, in passes that compilers turn into vector code: the same operations in
-    /// the same order for each part, so the same bits.
+    /// [`Accumulator::add`] of 64 products, in passes that compilers turn into vector code: the
+    /// same operations in the same order for each part, so the same bits.
     #[inline]
     fn add_products(&mut self, a: &[f64; BATCH], b: &[f64; BATCH], power_of_two: f64) {
         let a = a.map(|a| a * power_of_two);
@@ -143,7 +143,8 @@ impl Accumulator {
     }
 }
 
-/// Σ (k aᵢ)(k bᵢ) over two slices of the same length N (the longer one is cut), for a power of two k.
+/// Σ (k aᵢ)(k bᵢ) over two slices of the same length N (the longer one is cut), for a power of two
+/// k.
 ///
 /// The error is at most (N+16)²u² Σ|k² aᵢ bᵢ| with u = 2^-53, as long as no product overflows, plus
 /// N·2^-1022 for products that underflow.
@@ -176,8 +177,8 @@ pub fn sum(length: usize, mut term: impl FnMut(usize) -> DoubleDouble) -> Double
     sum.total()
 }
 
-/// The power of two 2^-e with 2^e ≤ |value| < 2^(e+1), at most 2^1023: it brings a finite value that is
-/// not zero near 1 (into [2^-51, 2)), without rounding.
+/// The power of two 2^-e with 2^e ≤ |value| < 2^(e+1), at most 2^1023: it brings a finite value
+/// that is not zero near 1 (into [2^-51, 2)), without rounding.
 pub fn reciprocal_power_of_two(value: f64) -> f64 {
     let exponent = libm::ilogb(value).clamp(-1023, 1023);
     libm::scalbn(1.0, -exponent)

@@ -115,8 +115,8 @@ fn unchecked_density(x: f64) -> f64 {
 
 /// Φ(x) for every x that is no NaN: −∞ gives 0 and ∞ gives 1.
 ///
-/// Φ(x) = ½ erfc(−x/√2). The rounding error δ of −x/√2 changes the far tail by the factor exp(x δ√2), up to 1e-13,
-/// so it is put back to first order: erfc(a + δ) = erfc(a) − δ (2/√π) exp(−a²).
+/// Φ(x) = ½ erfc(−x/√2). The rounding error δ of −x/√2 changes the far tail by the factor exp(x
+/// δ√2), up to 1e-13, so it is put back to first order: erfc(a + δ) = erfc(a) − δ (2/√π) exp(−a²).
 pub(crate) fn lower_tail(x: f64) -> f64 {
     // Beyond ±40, Φ is 0 or 1 to the last bit, and the product below need not stand infinity.
     if x < -40.0 {

@@ -1,8 +1,9 @@
-//! Normal deviates that are functions of their address alone: seed, stream, trial and index. So a trial can be
-//! replayed alone, and results do not depend on threads or on how the work is split.
+//! Normal deviates that are functions of their address alone: seed, stream, trial and index. So a
+//! trial can be replayed alone, and results do not depend on threads or on how the work is split.
 //!
-//! The generator is Philox4x64-10 (J. K. Salmon et al., *Parallel random numbers: as easy as 1, 2, 3*, SC 2011), the transformation
-//! Marsaglia and Tsang's ziggurat with `libm` for the few deviates that need a transcendental function.
+//! The generator is Philox4x64-10 (J. K. Salmon et al., *Parallel random numbers: as easy as 1, 2,
+//! 3*, SC 2011), the transformation Marsaglia and Tsang's ziggurat with `libm` for the few deviates
+//! that need a transcendental function.
 
 use super::ziggurat::{EDGES, HEIGHTS, TAIL};
 
@@ -56,7 +57,8 @@ impl Generator {
         )
     }
 
-    /// Fills `deviates` with the standard normal deviates `first`, `first` + 1, … of a trial; 0 follows 2⁶⁴ − 1.
+    /// Fills `deviates` with the standard normal deviates `first`, `first` + 1, … of a trial; 0
+    /// follows 2⁶⁴ − 1.
     pub fn normals(&self, trial: u64, first: u64, deviates: &mut [f64]) {
         let unaligned = (first.wrapping_neg() % 4).min(deviates.len() as u64) as usize;
         let (head, body) = deviates.split_at_mut(unaligned);
@@ -71,8 +73,9 @@ impl Generator {
         }
     }
 
-    /// Up to [`BATCH`] deviates from an index that is a multiple of 4, in three passes that keep the processor busier than one:
-    /// all words, all candidates, and then the few candidates that lie at an edge.
+    /// Up to [`BATCH`] deviates from an index that is a multiple of 4, in three passes that keep
+    /// the processor busier than one: all words, all candidates, and then the few candidates that
+    /// lie at an edge.
     fn batch(&self, trial: u64, first: u64, deviates: &mut [f64]) {
         let mut words = [[0; 4]; BATCH / 4];
         let mut index = first;
@@ -106,7 +109,8 @@ impl Generator {
         }
     }
 
-    /// The other deviates: a wedge between rectangle and curve, or the tail. Each attempt draws from a counter of its own.
+    /// The other deviates: a wedge between rectangle and curve, or the tail. Each attempt draws
+    /// from a counter of its own.
     #[cold]
     fn deviate_at_an_edge(&self, mut x: f64, mut layer: usize, trial: u64, index: u64) -> f64 {
         let mut attempt = 0;

@@ -2,6 +2,7 @@
 
 use crate::checks::{Law, count_rejects, excess_rejects, variance_rejects};
 use crate::{ledger, seed};
+use palpate::detect::mixture::mixture_theta;
 use palpate::detect::position::{MaximumLaw, position_bound, slope};
 use palpate::detect::scan::Scan;
 use palpate::detect::simulate::count_false_alarms;
@@ -70,7 +71,8 @@ fn false_alarms_of_theta_max_keep_their_bound() {
     });
 }
 
-/// Errors of the refined shift, in samples, for an inclusion that is taken to be at shift 60 of a record of 160 samples.
+/// Errors of the refined shift, in samples, for an inclusion that is taken to be at shift 60 of a
+/// record of 160 samples.
 fn position_errors(
     template: &Channels<Vec<f64>>,
     place: usize,
@@ -130,7 +132,28 @@ fn position_errors_meet_the_bound_of_cramer_and_rao_until_the_signal_is_too_weak
     });
 }
 
-/// Forces and noise of one normal sample, where Θ is a quadratic in the noise and its law is known exactly.
+// Verifies: DET-070.
+#[test]
+fn a_mixture_of_depths_that_look_the_same_is_one_depth() {
+    // Both depths have the template 2 N in noise of 1 N, so Λ = θ and its law is (8) with γ = 2.
+    ledger::run(
+        "mixture_false_alarms_at_5_percent",
+        |defect, replicate, row| {
+            let generator = Generator::new(seed(), 620 + replicate);
+            let eta = neyman_pearson_false_alarm_threshold(2.0, 0.05).unwrap();
+            let alarms = (0..row.trials as u64).filter(|&trial| {
+                let theta = 2.0 * generator.normal(trial, 0) - 2.0;
+                let mixture = mixture_theta(&[theta, theta], &[0.3, 0.7]).unwrap();
+                let prior_left_out = if defect.is_empty() { 0.0 } else { 2.0_f64.ln() };
+                mixture + prior_left_out >= eta
+            });
+            count_rejects(alarms.count() as u64, row.trials as u64, 0.05, row.alpha)
+        },
+    );
+}
+
+/// Forces and noise of one normal sample, where Θ is a quadratic in the noise and its law is known
+/// exactly.
 const FORCE: [f64; 2] = [1.5, 1.9];
 const WEBER: WeberNoise = WeberNoise {
     floor: 0.05,

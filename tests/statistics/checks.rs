@@ -30,8 +30,9 @@ pub fn mean_rejects(sample: &[f64], law: Law, alpha: f64) -> bool {
     (mean / law.sd * n.sqrt()).abs() > -quantile(0.5 * alpha).unwrap()
 }
 
-/// Is the variance about the law's mean not that of the law? Σ((x−μ)/σ)² is χ² with n degrees of freedom; its tails are bounded after
-/// Laurent and Massart (Ann. Statist. 28, 2000): Pr(χ² ≥ n + 2√(nt) + 2t) ≤ e^−t and Pr(χ² ≤ n − 2√(nt)) ≤ e^−t.
+/// Is the variance about the law's mean not that of the law? Σ((x−μ)/σ)² is χ² with n degrees of
+/// freedom; its tails are bounded after Laurent and Massart (Ann. Statist. 28, 2000): Pr(χ² ≥ n +
+/// 2√(nt) + 2t) ≤ e^−t and Pr(χ² ≤ n − 2√(nt)) ≤ e^−t.
 pub fn variance_rejects(sample: &[f64], law: Law, alpha: f64) -> bool {
     let n = sample.len() as f64;
     let excess = sample
@@ -43,7 +44,8 @@ pub fn variance_rejects(sample: &[f64], law: Law, alpha: f64) -> bool {
     excess > 2.0 * (n * t).sqrt() + 2.0 * t || excess < -2.0 * (n * t).sqrt()
 }
 
-/// Is the sample not from the law? Kolmogorov's distance D with Massart's bound Pr(√n D > λ) ≤ 2 exp(−2λ²) (Ann. Probab. 18, 1990).
+/// Is the sample not from the law? Kolmogorov's distance D with Massart's bound Pr(√n D > λ) ≤ 2
+/// exp(−2λ²) (Ann. Probab. 18, 1990).
 pub fn kolmogorov_rejects(sample: &[f64], law: Law, alpha: f64) -> bool {
     let mut sorted = sample.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);

@@ -1,4 +1,5 @@
-//! Coloured noise, made as nature makes it (mixing, feedback, moving averages), never from the factor that is under test.
+//! Coloured noise, made as nature makes it (mixing, feedback, moving averages), never from the
+//! factor that is under test.
 
 use crate::checks::{Law, mean_rejects, variance_rejects};
 use crate::{ledger, seed};
@@ -25,7 +26,8 @@ fn channels(values: &[f64]) -> Channels<&[f64]> {
     }
 }
 
-/// What two channels share (a vibration of the probe) and what each has alone: n = 0.2 e + 0.3 g, g common to x and y.
+/// What two channels share (a vibration of the probe) and what each has alone: n = 0.2 e + 0.3 g, g
+/// common to x and y.
 fn shared(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
     std::array::from_fn(|i| 0.2 * deviates[i] + 0.3 * deviates[20 + i % SAMPLES])
 }
@@ -125,7 +127,8 @@ fn sample(
     (Law::of_theta(detector(&TEMPLATE).gamma, inclusion), theta)
 }
 
-/// Mean under H = 1 and variance under H = 0 of θ in one kind of noise, whose samples have standard deviation `sd`.
+/// Mean under H = 1 and variance under H = 0 of θ in one kind of noise, whose samples have standard
+/// deviation `sd`.
 fn check(names: [&str; 2], noise: Noise, sd: f64, detector: Detector, stream: u64) {
     ledger::run(names[0], |defect, replicate, row| {
         let (law, theta) = sample(

@@ -82,7 +82,8 @@ fn forces(setting: &Setting, inclusion: bool) -> Channels<Vec<f64>> {
     }
 }
 
-/// The law that θ should have, and a sample of θ from records judged by the library, or by a detector with a defect.
+/// The law that θ should have, and a sample of θ from records judged by the library, or by a
+/// detector with a defect.
 fn sample(
     setting: &Setting,
     inclusion: bool,

@@ -39,11 +39,13 @@ pub fn row(name: &str) -> Row {
         .unwrap_or_else(|| panic!("{name} is not in the ledger"))
 }
 
-/// Runs a check on a detector without defect, and `REPLICATES` times with every defect that the ledger names for it.
+/// Runs a check on a detector without defect, and `REPLICATES` times with every defect that the
+/// ledger names for it.
 ///
 /// `rejects(defect, replicate, row)` draws a sample with that defect ("" for none) and tests it.
 pub fn run(name: &str, rejects: impl Fn(&str, u64, &Row) -> bool) {
-    /// A power of 0.999 or more misses one of three with probability 0.003 at most; seeds are fixed.
+    /// A power of 0.999 or more misses one of three with probability 0.003 at most; seeds are
+    /// fixed.
     const REPLICATES: u64 = 3;
     let row = row(name);
     assert!(

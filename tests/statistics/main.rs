@@ -1,8 +1,10 @@
-//! Monte Carlo of the detector against its laws. Seeds are fixed, so nothing here is flaky; with `PALPATE_SEED=<number>` the
-//! same battery runs on fresh seeds, and fails by chance with at most the probability that `ledger.csv` adds up to.
+//! Monte Carlo of the detector against its laws. Seeds are fixed, so nothing here is flaky; with
+//! `PALPATE_SEED=<number>` the same battery runs on fresh seeds, and fails by chance with at most
+//! the probability that `ledger.csv` adds up to.
 //!
-//! Every check has a row in the ledger: its α, its number of trials, and its power against named defects. Each defect also
-//! runs as a negative control, which the check must reject as often as the ledger says.
+//! Every check has a row in the ledger: its α, its number of trials, and its power against named
+//! defects. Each defect also runs as a negative control, which the check must reject as often as
+//! the ledger says.
 
 mod bounds;
 mod checks;

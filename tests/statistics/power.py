@@ -139,6 +139,10 @@ line("theta_max_false_alarms", 20_000, [("threshold_of_one_position", binom.sf(b
 # spread over the record) the mean square is some 200 against a bound of 7.
 line("position_error", 3_000, [("template_shifted", 1), ("signal_below_the_threshold_effect", 1)])
 
+# theta + ln 2 instead of theta.
+rate = norm.sf(norm.isf(0.05) - math.log(2) / 2)
+line("mixture_false_alarms_at_5_percent", 100_000, [("prior_left_out", count_power(0.05, rate, 100_000))])
+
 force, eta, floor, fraction = (1.5, 1.9), 0.25, 0.05, 0.2
 v = [floor**2 + (fraction * f) ** 2 for f in force]
 observed = np.linspace(-3, 8, 2_200_001)

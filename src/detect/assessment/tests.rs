@@ -94,7 +94,7 @@ fn record_at_an_unknown_position() {
     assert_eq!(found.decision, Decision::Inclusion);
     // γ = 2, η = 2: a miss is Φ(0), and the bound is at most 3 Φ(−2).
     assert_eq!(found.miss_bound, 0.5);
-    assert!(found.false_alarm_bound <= 3.0 * 0.022750131948179207 * (1.0 + 2e-9));
+    assert!(found.false_alarm_bound <= 3.0 * 0.022_750_131_948_179_2 * (1.0 + 2e-9));
     assert_eq!(
         assess_scan(&scan, &law, residual, 4.1).unwrap().decision,
         Decision::NoInclusion

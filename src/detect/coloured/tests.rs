@@ -1,5 +1,5 @@
-//! Expected values: mpmath 1.4.1 at 50 digits, γ² = ΔᵀK⁻¹Δ and θ = ΔᵀK⁻¹(r − Δ/2) by LU, for the exact binary64 arguments; or closed
-//! forms, where named.
+//! Expected values: mpmath 1.4.1 at 50 digits, γ² = ΔᵀK⁻¹Δ and θ = ΔᵀK⁻¹(r − Δ/2) by LU, for the
+//! exact binary64 arguments; or closed forms, where named.
 
 use super::super::stationary::{banded_scratch, theta_banded, theta_stationary};
 use super::super::{Channels, MatchedFilter};
@@ -33,8 +33,8 @@ fn dense(
     )
 }
 
-/// The condition number of every covariance here is below 100, and each of the orders ≤ 200 of steps of the factor rounds a few
-/// times: 100 · 200 · 4u.
+/// The condition number of every covariance here is below 100, and each of the orders ≤ 200 of
+/// steps of the factor rounds a few times: 100 · 200 · 4u.
 const TOLERANCE: f64 = 1e-11;
 
 // Verifies: DET-040, DET-041.

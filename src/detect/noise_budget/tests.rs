@@ -28,7 +28,8 @@ fn sources_of_table_2() {
     assert_ulps(found.total, 0.16926089329789087, 4.0);
     assert_eq!(found.dominant, 2);
     assert_ulps(found.dominant_share, 0.6841365829821026, 16.0);
-    // The paper: FEM playback 170 mN, dominated by backdrive friction; direct contact 220 mN, by unmodelled forces.
+    // The paper: FEM playback 170 mN, dominated by backdrive friction; direct contact 220 mN, by
+    // unmodelled forces.
     let playback = noise_total(&[0.0005, 0.14, 0.093]).unwrap();
     assert_near(playback.total, 0.17, 0.005);
     assert_eq!(playback.dominant, 1);

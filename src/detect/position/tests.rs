@@ -29,7 +29,8 @@ fn bounds(template: &[f64], samples: usize, count: usize, eta: f64) -> (f64, f64
 // Verifies: DET-055, DET-056, DET-057.
 #[test]
 fn two_shifts_have_an_exact_probability_below_the_bound() {
-    // Template (4, 2): γ² = 20 and correlation 8/20. Columns: η, exact, Rice or the union if less, union.
+    // Template (4, 2): γ² = 20 and correlation 8/20. Columns: η, exact, Rice or the union if less,
+    // union.
     for (eta, exact, rice, union) in [
         (
             -5.0,

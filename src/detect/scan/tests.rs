@@ -92,7 +92,8 @@ fn maximum_is_the_first_of_the_largest() {
 #[test]
 fn covariance_of_two_shifts() {
     let scan = scan();
-    // Σ Δᵢ Δᵢ₋₁ = 2 + 2, all of it in the record; from shift 3 to 4 only 2·1; from −2 to −1 only 1·2.
+    // Σ Δᵢ Δᵢ₋₁ = 2 + 2, all of it in the record; from shift 3 to 4 only 2·1; from −2 to −1 only
+    // 1·2.
     for (one, other, product) in [
         (0, 1, 4.0),
         (1, 0, 4.0),

@@ -1,5 +1,6 @@
-//! Expected values: mpmath 1.4.1 at 40 digits. θ is the logarithm of the quotient of the densities; the moments are integrals of that
-//! logarithm over the densities by quadrature, sample by sample, not the formulas of the code.
+//! Expected values: mpmath 1.4.1 at 40 digits. θ is the logarithm of the quotient of the densities;
+//! the moments are integrals of that logarithm over the densities by quadrature, sample by sample,
+//! not the formulas of the code.
 
 use super::super::theta_of_record;
 use super::*;

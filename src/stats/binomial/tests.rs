@@ -1,4 +1,5 @@
-//! Expected values: mpmath 1.4.1 at 40 digits: the definition with log-gamma, sums of it, and bisection on those sums.
+//! Expected values: mpmath 1.4.1 at 40 digits: the definition with log-gamma, sums of it, and
+//! bisection on those sums.
 
 use super::*;
 use crate::stats::check::assert_near;
@@ -57,7 +58,8 @@ fn probabilities_and_tails() {
             0.8415865958480424,
         ),
     ] {
-        // The exponent of a point is below 10 in size, of a few roundings; a tail adds up to 10⁴ terms.
+        // The exponent of a point is below 10 in size, of a few roundings; a tail adds up to 10⁴
+        // terms.
         assert_near(probability(k, n, p).unwrap(), point, 1e-14 * point);
         assert_near(at_least(k, n, p).unwrap(), at_least_k, 1e-12 * at_least_k);
         assert_near(at_most(k, n, p).unwrap(), at_most_k, 1e-12 * at_most_k);
@@ -105,7 +107,8 @@ fn intervals_of_clopper_and_pearson_and_of_wilson() {
         ),
         (1, 1, 0.5, [0.25, 1.0], [0.6873152559174167, 1.0]),
     ] {
-        // A tail's relative error of 1e-13, and 1 − confidence, which is rounded: up to 1e-13 of itself at 0.999.
+        // A tail's relative error of 1e-13, and 1 − confidence, which is rounded: up to 1e-13 of
+        // itself at 0.999.
         let near = |found: f64, expected: f64| assert_near(found, expected, 4e-13 * expected);
         let found = clopper_pearson(k, n, confidence).unwrap();
         near(found.lower, exact[0]);

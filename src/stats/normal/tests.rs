@@ -1,5 +1,5 @@
-//! Expected values: mpmath 1.4.1 at 50 digits, ½ erfc(−x/√2), exp(−x²/2)/√(2π), and Halley's iteration on
-//! the former, for the exact binary64 argument, rounded once.
+//! Expected values: mpmath 1.4.1 at 50 digits, ½ erfc(−x/√2), exp(−x²/2)/√(2π), and Halley's
+//! iteration on the former, for the exact binary64 argument, rounded once.
 
 use super::*;
 use crate::stats::check::assert_ulps;
