@@ -1,6 +1,6 @@
 //! What a computed force map says about its own quality.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{InvalidForceMap, Matrix, SAME_POSITION};
 
@@ -8,7 +8,8 @@ use super::{InvalidForceMap, Matrix, SAME_POSITION};
 /// checks it.
 ///
 /// Implements: MAP-006.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Certificate {
     /// The largest relative residual ‖Ku − f‖/‖f‖ of the linear solves.
     pub worst_relative_residual: f64,
@@ -39,7 +40,8 @@ pub struct Certificate {
 }
 
 /// The smallest det(I + ∇u) of a map, and where.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SmallestDet {
     /// det(I + ∇u).
     pub det: f64,
@@ -125,6 +127,24 @@ impl Certificate {
         } else {
             Err(InvalidForceMap::SmallestDet { stated, least })
         }
+    }
+
+    /// This certificate for the map with some of its columns, at lateral positions `laterals` (m).
+    pub(super) fn at_columns(
+        &self,
+        columns: &[usize],
+        depths: &[f64],
+        laterals: &[f64],
+    ) -> Result<Certificate, InvalidForceMap> {
+        let min_det = self.min_det.at_columns(columns);
+        let Some(smallest_det) = SmallestDet::of(&min_det, depths, laterals) else {
+            return Err(InvalidForceMap::EmptyAxis { key: "laterals_m" });
+        };
+        Ok(Certificate {
+            min_det,
+            smallest_det,
+            ..self.clone()
+        })
     }
 
     /// This certificate for the map that symmetry extends to x < 0.

@@ -115,14 +115,19 @@ pub enum InvalidForceMap {
         force: f64,
     },
     /// Two maps are not over the same poses.
-    #[error("{key} of the two maps differ, {ours:?} and {theirs:?}, expected equal axes")]
+    #[error(
+        "{key}[{index}] is {} in one map and {} in the other, expected equal axes",
+        position(.ours), position(.theirs)
+    )]
     AxesDiffer {
         /// The axis.
         key: &'static str,
-        /// This map's axis, m.
-        ours: Vec<f64>,
-        /// The reference's axis, m.
-        theirs: Vec<f64>,
+        /// The first entry that differs.
+        index: usize,
+        /// It in this map, m; `None` beyond the end.
+        ours: Option<f64>,
+        /// It in the reference, m; `None` beyond the end.
+        theirs: Option<f64>,
     },
     /// No row of the map is at this depth.
     #[error("depth {depth} m is not in the map, expected one of {stored:?} m")]
@@ -132,4 +137,16 @@ pub enum InvalidForceMap {
         /// The depths of the map, m.
         stored: Vec<f64>,
     },
+    /// No column of the map is at this lateral position.
+    #[error("lateral position {lateral} m is not in the map, expected one of {stored:?} m")]
+    NoSuchLateral {
+        /// The lateral position that was asked for, m.
+        lateral: f64,
+        /// The lateral positions of the map, m.
+        stored: Vec<f64>,
+    },
+}
+
+fn position(position: &Option<f64>) -> String {
+    position.map_or("not there".into(), |metres| format!("{metres} m"))
 }

@@ -7,15 +7,21 @@
 //! | `table.rs` | axes and matrices; symmetry, difference, one depth |
 //! | `certificate.rs` | the quality of a computed map |
 //! | `error.rs` | what can be wrong |
+//! | `file.rs`, `json.rs`, `csv.rs` | files |
 
 mod certificate;
+mod csv;
 mod error;
+mod file;
+mod json;
 mod table;
 #[cfg(test)]
 mod tests;
 
 pub use certificate::{Certificate, SmallestDet};
 pub use error::InvalidForceMap;
+pub use file::{ForceMapFileError, ForceMapFileProblem};
+pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
 
 use crate::phantom::Phantom;
@@ -174,6 +180,31 @@ impl ForceMap {
             source,
             self.phantom.clone(),
             self.forces.mirrored()?,
+        )
+    }
+
+    /// The columns of this map at some of its lateral positions (m).
+    ///
+    /// # Errors
+    /// [`InvalidForceMap::NoSuchLateral`] for a position that the map does not hold.
+    ///
+    /// Implements: MAP-016.
+    pub fn at_laterals(&self, laterals: &[f64]) -> Result<ForceMap, InvalidForceMap> {
+        if laterals == self.laterals() {
+            return Ok(self.clone());
+        }
+        let columns = self.forces.columns_at(laterals)?;
+        let source = match &self.source {
+            Source::FiniteElements { certificate } => Source::FiniteElements {
+                certificate: certificate.at_columns(&columns, self.depths(), laterals)?,
+            },
+            measured => measured.clone(),
+        };
+        ForceMap::by_version(
+            self.program_version.clone(),
+            source,
+            self.phantom.clone(),
+            self.forces.at_columns(&columns)?,
         )
     }
 }

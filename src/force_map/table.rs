@@ -1,7 +1,5 @@
 //! Forces on a grid of poses: two axes and two matrices (paper §4).
 
-use serde::Serialize;
-
 use super::InvalidForceMap;
 
 /// Two positions closer than this, m, are the same position.
@@ -11,6 +9,12 @@ use super::InvalidForceMap;
 ///
 /// Implements: MAP-004.
 pub const SAME_POSITION: f64 = 1e-9;
+
+/// The largest lateral force at x = 0, N, that counts as the zero that symmetry demands: what
+/// rounding leaves of a force of some newtons.
+///
+/// Implements: MAP-010.
+pub const SYMMETRY_TOLERANCE: f64 = 1e-9;
 
 /// A dense matrix, row-major. Rows belong to depths, columns to lateral positions.
 ///
@@ -79,13 +83,6 @@ impl Matrix {
     }
 }
 
-impl Serialize for Matrix {
-    /// As an array of rows.
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.rows())
-    }
-}
-
 /// The normal and lateral force on the probe at every pose of a grid, N.
 ///
 /// Both axes increase, every number is finite, and both matrices have one row for each depth and one
@@ -118,11 +115,15 @@ impl ForceTable {
     ///
     /// Implements: MAP-001, MAP-002, MAP-003, MAP-004, MAP-005.
     pub fn new(
-        depths: Vec<f64>,
-        laterals: Vec<f64>,
+        mut depths: Vec<f64>,
+        mut laterals: Vec<f64>,
         normal_force: Matrix,
         lateral_force: Matrix,
     ) -> Result<ForceTable, InvalidForceMap> {
+        // −0 and 0 are one position; adding 0 leaves one way to write it.
+        for position in depths.iter_mut().chain(&mut laterals) {
+            *position += 0.0;
+        }
         check_axis("depths_m", &depths)?;
         check_axis("laterals_m", &laterals)?;
         if depths[0] < 0.0 {
@@ -164,7 +165,7 @@ impl ForceTable {
     /// # Errors
     /// [`InvalidForceMap::NoSuchDepth`] if no stored depth lies within [`SAME_POSITION`] of `depth`.
     ///
-    /// Implements: MAP-012.
+    /// Implements: MAP-012, MAP-015.
     pub fn row(&self, depth: f64) -> Result<ForceCurve<'_>, InvalidForceMap> {
         let stored = |&stored: &f64| (stored - depth).abs() <= SAME_POSITION;
         let Some(row) = self.depths.iter().position(stored) else {
@@ -185,7 +186,7 @@ impl ForceTable {
     /// [`InvalidForceMap::AxesDiffer`] if the two are not over the same poses;
     /// [`InvalidForceMap::Force`] if a difference is not finite.
     ///
-    /// Implements: MAP-011.
+    /// Implements: MAP-011, MAP-014.
     pub fn minus(&self, reference: &ForceTable) -> Result<ForceTable, InvalidForceMap> {
         check_same_axis("depths_m", &self.depths, &reference.depths)?;
         check_same_axis("laterals_m", &self.laterals, &reference.laterals)?;
@@ -234,6 +235,29 @@ impl ForceTable {
         )
     }
 
+    /// The column of each of `laterals` (m).
+    pub(super) fn columns_at(&self, laterals: &[f64]) -> Result<Vec<usize>, InvalidForceMap> {
+        let column = |&lateral: &f64| {
+            let stored = |&stored: &f64| (stored - lateral).abs() <= SAME_POSITION;
+            let column = self.laterals.iter().position(stored);
+            column.ok_or_else(|| InvalidForceMap::NoSuchLateral {
+                lateral,
+                stored: self.laterals.clone(),
+            })
+        };
+        laterals.iter().map(column).collect()
+    }
+
+    /// This table with some of its columns.
+    pub(super) fn at_columns(&self, columns: &[usize]) -> Result<ForceTable, InvalidForceMap> {
+        ForceTable::new(
+            self.depths.clone(),
+            columns.iter().map(|&column| self.laterals[column]).collect(),
+            self.normal_force.at_columns(columns),
+            self.lateral_force.at_columns(columns),
+        )
+    }
+
     fn check_matrix(&self, key: &'static str, matrix: &Matrix) -> Result<(), InvalidForceMap> {
         let expected = [self.depths.len(), self.laterals.len()];
         let found = [matrix.row_count(), matrix.column_count()];
@@ -256,13 +280,14 @@ impl ForceTable {
     }
 }
 
-/// The largest lateral force at x = 0, N, that counts as the zero that symmetry demands: what
-/// rounding leaves of a force of some newtons.
-///
-/// Implements: MAP-010.
-pub const SYMMETRY_TOLERANCE: f64 = 1e-9;
-
 impl Matrix {
+    /// This matrix with some of its columns.
+    pub(super) fn at_columns(&self, columns: &[usize]) -> Matrix {
+        Matrix::from_fn(self.row_count(), columns.len(), |row, column| {
+            self.row(row)[columns[column]]
+        })
+    }
+
     /// Columns 0 … n over x ≥ 0 to columns −n … n: `at_negative` of the value at |x|, and `at_zero`
     /// of the first column.
     pub(super) fn mirrored(
@@ -307,11 +332,18 @@ fn check_axis(key: &'static str, axis: &[f64]) -> Result<(), InvalidForceMap> {
 }
 
 fn check_same_axis(key: &'static str, ours: &[f64], theirs: &[f64]) -> Result<(), InvalidForceMap> {
-    let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_POSITION;
-    if ours.len() == theirs.len() && ours.iter().zip(theirs).all(same) {
-        Ok(())
-    } else {
-        let (ours, theirs) = (ours.to_vec(), theirs.to_vec());
-        Err(InvalidForceMap::AxesDiffer { key, ours, theirs })
+    for index in 0..ours.len().max(theirs.len()) {
+        match (ours.get(index).copied(), theirs.get(index).copied()) {
+            (Some(a), Some(b)) if (a - b).abs() <= SAME_POSITION => {}
+            (ours, theirs) => {
+                return Err(InvalidForceMap::AxesDiffer {
+                    key,
+                    index,
+                    ours,
+                    theirs,
+                });
+            }
+        }
     }
+    Ok(())
 }

@@ -1,1 +1,390 @@
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
+use super::*;
+
+fn matrix<const N: usize>(rows: &[[f64; N]]) -> Matrix {
+    Matrix::new(N, rows.concat()).unwrap()
+}
+
+/// Two depths and three lateral positions x ≥ 0, with forces that tell their place.
+fn table() -> ForceTable {
+    let normal = matrix(&[[0.0, 0.1, 0.2], [1.0, 1.1, 1.2]]);
+    let lateral = matrix(&[[0.0, 0.01, 0.02], [0.0, -0.11, -0.12]]);
+    ForceTable::new(vec![0.0, 0.001], vec![0.0, 0.002, 0.005], normal, lateral).unwrap()
+}
+
+fn certificate(min_det: Matrix, det: f64, depth: f64, lateral: f64) -> Certificate {
+    Certificate {
+        worst_relative_residual: 1e-13,
+        worst_force_balance: 2e-10,
+        largest_penetration: 3e-12,
+        newton_iterations: 40,
+        mesh_size: 0.0005,
+        nodes: 6000,
+        elements: 3000,
+        element: "t6".into(),
+        contact: "deformed-normal".into(),
+        smallest_det: SmallestDet {
+            det,
+            depth,
+            lateral,
+        },
+        min_det,
+    }
+}
+
+/// A computed map over [`table`], with `change` made to its certificate.
+fn computed(change: impl FnOnce(&mut Certificate)) -> Result<ForceMap, InvalidForceMap> {
+    let min_det = matrix(&[[1.0, 1.0, 1.0], [0.9, 0.8, 0.85]]);
+    let mut certificate = certificate(min_det, 0.8, 0.001, 0.002);
+    change(&mut certificate);
+    let phantom = Phantom::builtin("2.6").unwrap();
+    ForceMap::new(
+        Source::FiniteElements { certificate },
+        Some(phantom),
+        table(),
+    )
+}
+
+fn measured() -> Source {
+    Source::Measured {
+        file: "gel.csv".into(),
+        note: String::new(),
+    }
+}
+
+fn axes(depths: &[f64], laterals: &[f64]) -> Result<ForceTable, InvalidForceMap> {
+    let zeros = Matrix::from_fn(depths.len(), laterals.len(), |_, _| 0.0);
+    ForceTable::new(depths.to_vec(), laterals.to_vec(), zeros.clone(), zeros)
+}
+
+fn refusal<T>(result: Result<T, InvalidForceMap>) -> String {
+    result.err().expect("refused").to_string()
+}
+
+// Verifies: MAP-001.
+#[test]
+fn rows_are_depths_and_columns_lateral_positions() {
+    let normal = matrix(&[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    assert_eq!((normal.row_count(), normal.column_count()), (2, 3));
+    assert_eq!(normal.row(1), [4.0, 5.0, 6.0]);
+    assert_eq!(
+        normal.rows().collect::<Vec<_>>(),
+        [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]
+    );
+    assert!(normal.entries().any(|entry| entry == (1, 0, 4.0)));
+    let place = |row, column| (row * 3 + column + 1) as f64;
+    assert_eq!(Matrix::from_fn(2, 3, place), normal);
+    assert_eq!(Matrix::new(2, vec![0.0; 3]), None);
+    assert_eq!(Matrix::new(0, vec![0.0; 3]), None);
+}
+
+// Verifies: MAP-002, MAP-004, MAP-013.
+#[test]
+fn bad_axes_are_refused() {
+    assert_eq!(
+        refusal(axes(&[], &[0.0])),
+        "depths_m is empty, expected at least one position"
+    );
+    assert_eq!(
+        refusal(axes(&[0.0], &[])),
+        "laterals_m is empty, expected at least one position"
+    );
+    assert_eq!(
+        refusal(axes(&[0.0], &[0.0, f64::NAN])),
+        "laterals_m[1] = NaN, expected a finite number"
+    );
+    assert_eq!(
+        refusal(axes(&[f64::INFINITY], &[0.0])),
+        "depths_m[0] = inf, expected a finite number"
+    );
+    assert_eq!(
+        refusal(axes(&[-0.001, 0.0], &[0.0])),
+        "depths_m[0] = -0.001, expected at least 0, the undeformed surface"
+    );
+    assert_eq!(
+        refusal(axes(&[0.0], &[0.0, 0.002, 0.001])),
+        "laterals_m[2] = 0.001, expected more than 1e-9 m above the entry before it, 0.002"
+    );
+    assert!(axes(&[0.0, 0.0], &[0.0]).is_err());
+    assert!(axes(&[0.0], &[1.0, 1.0 + 0.9e-9]).is_err());
+    assert!(axes(&[0.0], &[1.0, 1.0 + 1.1e-9]).is_ok());
+    assert!(axes(&[0.0], &[-f64::MAX, f64::MAX]).is_ok());
+}
+
+// Verifies: MAP-003, MAP-005, MAP-013.
+#[test]
+fn bad_matrices_are_refused() {
+    let with = |normal: Matrix, lateral: Matrix| {
+        ForceTable::new(vec![0.0, 0.001], vec![0.0, 0.002, 0.005], normal, lateral)
+    };
+    let good = Matrix::from_fn(2, 3, |_, _| 0.0);
+    let transposed = Matrix::from_fn(3, 2, |_, _| 0.0);
+    assert_eq!(
+        refusal(with(good.clone(), transposed.clone())),
+        "lateral_force_n has 3 rows and 2 columns, \
+         expected 2 rows (one a depth) and 3 columns (one a lateral position)"
+    );
+    assert!(refusal(with(transposed, good.clone())).starts_with("normal_force_n has 3 rows"));
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let spoilt = matrix(&[[0.0; 3], [0.0, 0.0, bad]]);
+        assert_eq!(
+            refusal(with(spoilt.clone(), good.clone())),
+            format!("normal_force_n[1][2] = {bad}, expected a finite number")
+        );
+        assert!(refusal(with(good.clone(), spoilt)).starts_with("lateral_force_n[1][2] = "));
+    }
+}
+
+// Verifies: MAP-006, MAP-007, MAP-013.
+#[test]
+fn a_certificate_is_checked_number_by_number() {
+    assert_eq!(computed(|_| ()).map(|_| ()), Ok(()));
+    for bad in [f64::NAN, f64::INFINITY, -1e-30] {
+        let expect = |key: &str, map| {
+            let expected =
+                format!("certificate.{key} = {bad}, expected a finite number, at least 0");
+            assert_eq!(refusal(map), expected);
+        };
+        expect(
+            "worst_relative_residual",
+            computed(|c| c.worst_relative_residual = bad),
+        );
+        expect(
+            "worst_force_balance_n",
+            computed(|c| c.worst_force_balance = bad),
+        );
+        expect(
+            "largest_penetration_m",
+            computed(|c| c.largest_penetration = bad),
+        );
+        expect("mesh_size_m", computed(|c| c.mesh_size = bad));
+    }
+    assert_eq!(
+        refusal(computed(|c| c.min_det = matrix(&[[1.0, 1.0], [0.9, 0.8]]))),
+        "certificate.min_det has 2 rows and 2 columns, \
+         expected 2 rows (one a depth) and 3 columns (one a lateral position)"
+    );
+    let spoilt = matrix(&[[1.0, 1.0, 1.0], [f64::NAN, 0.8, 0.85]]);
+    assert_eq!(
+        refusal(computed(|c| c.min_det = spoilt)),
+        "certificate.min_det[1][0] = NaN, expected a finite number"
+    );
+}
+
+// Verifies: MAP-007.
+#[test]
+fn the_smallest_determinant_is_the_matrixs_own() {
+    assert_eq!(
+        refusal(computed(|c| c.smallest_det.det = 0.9)),
+        "certificate.smallest_det = 0.9 at depth 0.001 m, lateral 0.002 m, \
+         expected the smallest entry of min_det, 0.8, and its pose"
+    );
+    assert!(computed(|c| c.smallest_det.lateral = 0.005).is_err());
+    assert!(computed(|c| c.smallest_det.depth = 0.0).is_err());
+    assert!(computed(|c| c.smallest_det.depth = f64::NAN).is_err());
+    let of = |rows: &[[f64; 3]]| SmallestDet::of(&matrix(rows), &[0.0, 0.001], &[-0.1, 0.0, 0.1]);
+    let smallest = |det, depth, lateral| {
+        Some(SmallestDet {
+            det,
+            depth,
+            lateral,
+        })
+    };
+    assert_eq!(
+        of(&[[3.0, 2.0, 1.0], [2.0, -1.0, 3.0]]),
+        smallest(-1.0, 0.001, 0.0)
+    );
+    // Of equals, the one nearest to x = 0, then the first.
+    assert_eq!(of(&[[1.0; 3], [1.0; 3]]), smallest(1.0, 0.0, 0.0));
+    assert_eq!(of(&[[1.0, 2.0, 1.0], [2.0; 3]]), smallest(1.0, 0.0, -0.1));
+    assert_eq!(of(&[[1.0, f64::NAN, 1.0], [2.0; 3]]), None);
+}
+
+// Verifies: MAP-008.
+#[test]
+fn a_map_fits_its_phantom() {
+    let certificate = computed(|_| ()).unwrap().certificate().unwrap().clone();
+    let finite_elements = Source::FiniteElements { certificate };
+    assert_eq!(
+        refusal(ForceMap::new(finite_elements, None, table())),
+        "phantom is missing, expected the phantom that the finite elements computed"
+    );
+    assert!(ForceMap::new(measured(), None, table()).is_ok());
+    let mut phantom = Phantom::builtin("none").unwrap();
+    assert!(ForceMap::new(measured(), Some(phantom.clone()), table()).is_ok());
+    let too_wide = axes(&[0.0, 0.004], &[0.0, 0.0111]).unwrap();
+    let message = refusal(ForceMap::new(measured(), Some(phantom.clone()), too_wide));
+    assert!(message.starts_with("phantom: lateral_mm = 11.1, allowed at depth_mm = 4: "));
+    phantom.gel.width = -1.0;
+    let message = refusal(ForceMap::new(measured(), Some(phantom), table()));
+    assert!(message.starts_with("phantom: gel.width_mm = -1000.0, allowed: "));
+}
+
+// Verifies: MAP-009.
+#[test]
+fn symmetry_extends_a_map_to_negative_positions() {
+    let map = computed(|_| ()).unwrap().mirrored().unwrap();
+    assert_eq!(map.depths(), [0.0, 0.001]);
+    assert_eq!(map.laterals(), [-0.005, -0.002, 0.0, 0.002, 0.005]);
+    assert_eq!(map.normal_force().row(0), [0.2, 0.1, 0.0, 0.1, 0.2]);
+    assert_eq!(map.normal_force().row(1), [1.2, 1.1, 1.0, 1.1, 1.2]);
+    assert_eq!(map.lateral_force().row(0), [-0.02, -0.01, 0.0, 0.01, 0.02]);
+    assert_eq!(map.lateral_force().row(1), [0.12, 0.11, 0.0, -0.11, -0.12]);
+    let certificate = map.certificate().unwrap();
+    assert_eq!(certificate.min_det.row(1), [0.85, 0.8, 0.9, 0.8, 0.85]);
+    assert_eq!(certificate.smallest_det.lateral, 0.002);
+    assert_eq!(map.phantom().unwrap().name, "2.6");
+}
+
+// Verifies: MAP-009, MAP-010.
+#[test]
+fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
+    let with = |force: f64| {
+        let normal = matrix(&[[0.0, 0.0], [1.0, 1.0]]);
+        let lateral = matrix(&[[0.0, 0.0], [force, 0.2]]);
+        ForceTable::new(vec![0.0, 0.001], vec![0.0, 0.002], normal, lateral).unwrap()
+    };
+    for force in [1e-9, -1e-9, -0.0] {
+        let mirrored = with(force).mirrored().unwrap();
+        assert_eq!(mirrored.lateral_force().row(1), [-0.2, 0.0, 0.2]);
+        // A force of +0 stays +0 on both sides: −0 would show in a diff.
+        let zeros = mirrored
+            .lateral_force()
+            .values()
+            .iter()
+            .filter(|&&force| force == 0.0);
+        assert!(zeros.clone().count() == 4 && zeros.clone().all(|zero| zero.is_sign_positive()));
+    }
+    assert_eq!(
+        refusal(with(-1.1e-9).mirrored()),
+        "lateral force -0.0000000011 N at depth 0.001 m, x = 0, \
+         expected at most 1e-9 N in a symmetric map"
+    );
+}
+
+// Verifies: MAP-010.
+#[test]
+fn only_a_map_from_zero_on_is_extended() {
+    assert_eq!(
+        refusal(axes(&[0.0], &[0.001, 0.002]).unwrap().mirrored()),
+        "laterals_m[0] = 0.001, expected 0 in a map to be extended by symmetry"
+    );
+    assert!(table().mirrored().unwrap().mirrored().is_err());
+    let alone = axes(&[0.0], &[-0.0]).unwrap().mirrored().unwrap();
+    assert_eq!(alone.laterals(), [0.0]);
+}
+
+// Verifies: MAP-004, MAP-036.
+#[test]
+fn minus_zero_is_no_position_of_its_own() {
+    let table = axes(&[-0.0], &[-0.0, 0.001]).unwrap();
+    assert!(table.depths()[0].is_sign_positive() && table.laterals()[0].is_sign_positive());
+}
+
+// Verifies: MAP-011, MAP-014.
+#[test]
+fn a_signal_is_the_map_minus_its_reference() {
+    let map = computed(|_| ()).unwrap();
+    let reference = matrix(&[[0.0; 3], [0.75, 0.5, 0.25]]);
+    let still = Matrix::from_fn(2, 3, |_, _| 0.0);
+    // The same positions but for the last bits, as a sum of steps gives them.
+    let laterals = vec![0.0, 0.002 + 1e-17, 0.005 - 0.9e-9];
+    let table = ForceTable::new(vec![0.0, 0.001], laterals, reference, still).unwrap();
+    let reference = ForceMap::new(measured(), None, table).unwrap();
+    let signal = map.signal(&reference).unwrap();
+    assert_eq!(signal.laterals(), map.laterals());
+    assert_eq!(signal.normal_force().row(0), [0.0, 0.1, 0.2]);
+    assert_eq!(
+        signal.normal_force().row(1),
+        [1.0 - 0.75, 1.1 - 0.5, 1.2 - 0.25]
+    );
+    assert_eq!(signal.lateral_force(), map.lateral_force());
+}
+
+// Verifies: MAP-005, MAP-013, MAP-014.
+#[test]
+fn a_signal_needs_equal_axes() {
+    let shifted = axes(&[0.0, 0.001], &[0.0, 0.002, 0.005 + 1.1e-9]).unwrap();
+    assert_eq!(
+        refusal(table().minus(&shifted)),
+        "laterals_m[2] is 0.005 m in one map and 0.0050000011 m in the other, expected equal axes"
+    );
+    let shorter = axes(&[0.0], &[0.0, 0.002, 0.005]).unwrap();
+    assert_eq!(
+        refusal(table().minus(&shorter)),
+        "depths_m[1] is 0.001 m in one map and not there in the other, expected equal axes"
+    );
+    assert!(shorter.minus(&table()).is_err());
+    let huge = |sign: f64| {
+        let forces = Matrix::from_fn(1, 1, |_, _| sign * f64::MAX);
+        ForceTable::new(vec![0.0], vec![0.0], forces.clone(), forces).unwrap()
+    };
+    assert_eq!(
+        refusal(huge(1.0).minus(&huge(-1.0))),
+        "normal_force_n[0][0] = inf, expected a finite number"
+    );
+}
+
+// Verifies: MAP-012, MAP-015.
+#[test]
+fn forces_at_a_stored_depth() {
+    let table = table();
+    let row = table.row(0.001 + 0.9e-9).unwrap();
+    assert_eq!(row.laterals, [0.0, 0.002, 0.005]);
+    assert_eq!(row.normal_force, [1.0, 1.1, 1.2]);
+    assert_eq!(row.lateral_force, [0.0, -0.11, -0.12]);
+    assert_eq!(
+        refusal(table.row(0.0005)),
+        "depth 0.0005 m is not in the map, expected one of [0.0, 0.001] m"
+    );
+    assert!(table.row(0.001 + 1.1e-9).is_err() && table.row(f64::NAN).is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        rng_seed: RngSeed::Fixed(3),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    // Verifies: MAP-009.
+    #[test]
+    fn mirrored_maps_are_symmetric_to_the_bit(
+        steps in prop::collection::vec(1e-4..1e-3, 0..6),
+        forces in prop::collection::vec(prop::array::uniform2(-2.0..2.0), 14),
+    ) {
+        let positions = std::iter::once(0.0).chain(steps.iter().scan(0.0, |x, step| {
+            *x += step;
+            Some(*x)
+        }));
+        let laterals: Vec<f64> = positions.collect();
+        let last = laterals.len() - 1;
+        let force = |which: usize| {
+            let forces = &forces;
+            move |row: usize, column: usize| match (which, column) {
+                (1, 0) => 0.0,
+                _ => forces[row * 7 + column][which],
+            }
+        };
+        let normal = Matrix::from_fn(2, last + 1, force(0));
+        let lateral = Matrix::from_fn(2, last + 1, force(1));
+        let half = ForceTable::new(vec![0.0, 0.001], laterals, normal, lateral).unwrap();
+        let whole = half.mirrored().unwrap();
+        for row in 0..2 {
+            for column in 0..=last {
+                let (left, right) = (last - column, last + column);
+                let of = |matrix: &Matrix, column: usize| matrix.row(row)[column];
+                prop_assert_eq!(whole.laterals()[left], -half.laterals()[column]);
+                prop_assert_eq!(whole.laterals()[right], half.laterals()[column]);
+                let normal = of(half.normal_force(), column).to_bits();
+                prop_assert_eq!(of(whole.normal_force(), left).to_bits(), normal);
+                prop_assert_eq!(of(whole.normal_force(), right).to_bits(), normal);
+                let lateral = of(half.lateral_force(), column);
+                prop_assert_eq!(of(whole.lateral_force(), left), -lateral);
+                prop_assert_eq!(of(whole.lateral_force(), right).to_bits(), lateral.to_bits());
+            }
+        }
+    }
+}

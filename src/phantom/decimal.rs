@@ -15,12 +15,8 @@ pub fn parse_scaled(text: &str, power: i32) -> Option<f64> {
         Some(at) => (&text[..at], text[at + 1..].parse::<i32>().ok()?),
         None => (text, 0),
     };
-    // `str::parse` would also take "nan", "inf" and "infinity".
-    let is_decimal = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-');
-    if !mantissa.chars().all(is_decimal) {
-        return None;
-    }
     let exponent = exponent.checked_add(power)?;
+    // With an exponent behind it, no "nan" or "inf" is a number to `str::parse`.
     let value: f64 = format!("{mantissa}e{exponent}").parse().ok()?;
     value.is_finite().then_some(value)
 }

@@ -164,7 +164,7 @@ impl Phantom {
     /// # Errors
     /// [`InvalidPhantom`] with the first offending key, its value and what is allowed.
     ///
-    /// Implements: PHA-003, PHA-004, PHA-005, PHA-006, PHA-007, PHA-009, PHA-010.
+    /// Implements: PHA-003, PHA-004, PHA-005, PHA-006, PHA-007, PHA-009, PHA-010, PHA-015.
     pub fn validate(&self) -> Result<(), InvalidPhantom> {
         check_name(&self.name)?;
         check_length("gel.width", self.gel.width)?;
@@ -210,6 +210,8 @@ impl Phantom {
 
 /// `length` (m) on a grid of 1 pm. A bound that is a sum of decimals then equals the decimal that a
 /// person writes for it, and that exact value passes: 0.0005 + 0.0001 alone is not 0.0006 in binary.
+///
+/// Implements: PHA-015.
 fn to_picometre(length: f64) -> f64 {
     (length * 1e12).round() / 1e12
 }

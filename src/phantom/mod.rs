@@ -102,6 +102,8 @@ pub struct Probe {
 /// Everything that fixes the force on the probe, but for the probe's position.
 ///
 /// Reading one with serde checks the types alone: call [`Phantom::validate`] on the result.
+///
+/// Implements: PHA-029.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Phantom {
@@ -123,6 +125,8 @@ pub struct Phantom {
 pub const BUILTIN_NAMES: [&str; 5] = ["none", "2.6", "4.6", "6.6", "8.6"];
 
 /// A name that is none of [`BUILTIN_NAMES`].
+///
+/// Implements: PHA-014.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("no phantom named {name:?} is built in; built in are {}", BUILTIN_NAMES.join(", "))]
 pub struct UnknownPhantom {
@@ -136,7 +140,7 @@ impl Phantom {
     /// # Errors
     /// [`UnknownPhantom`] for any other name.
     ///
-    /// Implements: PHA-001, PHA-002.
+    /// Implements: PHA-001, PHA-002, PHA-014.
     pub fn builtin(name: &str) -> Result<Phantom, UnknownPhantom> {
         let inclusion_depth = match name {
             "none" => None,

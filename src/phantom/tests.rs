@@ -57,7 +57,7 @@ fn built_in_phantoms_are_the_papers() {
     assert!(paper().inclusion.is_some());
 }
 
-// Verifies: PHA-001.
+// Verifies: PHA-014.
 #[test]
 fn other_names_are_refused_with_the_list() {
     let message = Phantom::builtin("2.60").unwrap_err().to_string();
@@ -186,7 +186,7 @@ fn the_ends_of_the_ranges_are_where_the_spec_says() {
     assert!(length(1.0) && !length(1.000_001));
 }
 
-// Verifies: PHA-006.
+// Verifies: PHA-006, PHA-015.
 #[test]
 fn an_inclusion_keeps_its_clearance_from_skin_floor_and_walls() {
     let fits = |diameter, depth| with_disc(diameter, depth).validate().is_ok();
@@ -280,10 +280,15 @@ fn a_probe_that_reaches_a_wall_is_refused() {
     assert!(stands(0.0, 0.016_999) && !stands(0.0, 0.017));
     assert!(stands(0.0065, 0.010_499) && !stands(0.0065, 0.010_501));
     assert!(stands(0.012, 0.010_499) && !stands(0.012, 0.010_501));
-    // The depth is checked first.
-    assert!(!stands(-0.001, 0.0) && !stands(0.004, f64::NAN) && !stands(0.004, f64::INFINITY));
+    let message = |depth, lateral| phantom.check_pose(depth, lateral).unwrap_err().to_string();
+    assert!(message(0.0155, 0.0).starts_with("depth_mm = 15.5, allowed: "));
+    assert!(message(-0.001, 0.0).starts_with("depth_mm = -1, allowed: "));
+    for bad in [f64::NAN, f64::INFINITY] {
+        let expected = format!("lateral_mm = {bad}, allowed: a finite number");
+        assert_eq!(message(0.004, bad), expected);
+    }
     assert_eq!(
-        phantom.check_pose(0.004, -0.012).unwrap_err().to_string(),
+        message(0.004, -0.012),
         "lateral_mm = -12, allowed at depth_mm = 4: above -11 and below 11, \
          where the probe, there 6 mm to each side, clears the walls"
     );
@@ -386,7 +391,10 @@ proptest! {
 
     // Verifies: PHA-020.
     #[test]
-    fn no_text_makes_the_number_reader_panic(text: String, power in -3..=3) {
+    fn no_text_makes_the_number_reader_panic(
+        text in "(\\PC{0,8}|[-+]?[0-9.]{0,5}[eE][-+]?[0-9]{0,12})",
+        power in -3..=3,
+    ) {
         let _ = parse_scaled(&text, power);
     }
 }

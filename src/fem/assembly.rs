@@ -1,0 +1,215 @@
+//! The global stiffness matrix over the free displacements, in elimination order.
+
+
+use super::FemError;
+use super::element::{Stiffness, StiffnessRule};
+use super::mesh::{Mesh, Region};
+use super::ordering::nested_dissection;
+use crate::phantom::{Material, Phantom};
+
+/// Place of a node that is bonded to the floor or a wall.
+const FIXED: u32 = u32::MAX;
+
+/// Where each node's displacements stand among the unknowns: interior nodes first, in an order that
+/// keeps the factor sparse, the nodes of the outer surface last, from left to right.
+///
+/// Implements: FEM-006.
+#[derive(Debug, Clone)]
+pub struct Numbering {
+    /// Place of each node, or [`FIXED`].
+    place: Vec<u32>,
+    /// Number of free nodes below the surface.
+    interior: usize,
+    /// Number of free nodes on the surface.
+    surface: usize,
+}
+
+impl Numbering {
+    fn new(mesh: &Mesh) -> Numbering {
+        let (surface, free) = (mesh.surface(), mesh.free());
+        let interior = nested_dissection(mesh, |node| free[node] && !surface.contains(&node));
+        let mut place = vec![FIXED; mesh.nodes.len()];
+        for (k, &node) in interior.iter().enumerate() {
+            place[node] = k as u32;
+        }
+        for (k, node) in surface.clone().enumerate() {
+            place[node] = (interior.len() + k) as u32;
+        }
+        Numbering {
+            place,
+            interior: interior.len(),
+            surface: surface.len(),
+        }
+    }
+
+    /// The unknown of displacement component `direction` of `node`, or `None` if the node is fixed.
+    pub fn unknown(&self, node: usize, direction: usize) -> Option<usize> {
+        match self.place[node] {
+            FIXED => None,
+            place => Some(2 * place as usize + direction),
+        }
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        2 * (self.interior + self.surface)
+    }
+
+    /// The first unknown on the surface; the two of surface node k are `first + 2k` and `first + 2k + 1`.
+    pub fn first_surface_unknown(&self) -> usize {
+        2 * self.interior
+    }
+}
+
+/// Upper triangle of the stiffness matrix, compressed by columns, N/m for the whole probe length.
+#[derive(Debug, Clone)]
+pub struct StiffnessMatrix {
+    /// Where the displacements stand.
+    pub numbering: Numbering,
+    /// Start of each column in `row_indices` and `values`; one more than there are columns.
+    pub column_starts: Vec<u32>,
+    /// Row of each entry, ascending in a column, the diagonal last.
+    pub row_indices: Vec<u32>,
+    /// The entries.
+    pub values: Vec<f64>,
+    /// Reaction of floor and walls along x and y per displacement of each unknown: the sum of the
+    /// fixed nodes' rows, N/m.
+    pub reaction: [Vec<f64>; 2],
+}
+
+/// Nodes that share an element with each node, itself included, ascending.
+fn neighbours(mesh: &Mesh) -> Vec<Vec<u32>> {
+    let mut neighbours = vec![Vec::new(); mesh.nodes.len()];
+    for nodes in mesh.elements() {
+        for &a in nodes {
+            neighbours[a as usize].extend_from_slice(nodes);
+        }
+    }
+    for list in &mut neighbours {
+        list.sort_unstable();
+        list.dedup();
+    }
+    neighbours
+}
+
+/// Material of a region.
+pub fn material_of(phantom: &Phantom, region: Region) -> Material {
+    match (region, &phantom.inclusion) {
+        (Region::Skin, _) => phantom.skin.material,
+        (Region::Disc, Some(inclusion)) => inclusion.material,
+        (Region::Disc, None) | (Region::Gel, _) => phantom.gel.material,
+    }
+}
+
+impl StiffnessMatrix {
+    /// Assembles the stiffness of a meshed phantom.
+    ///
+    /// # Errors
+    /// [`FemError::Degenerate`] if an element is turned inside out.
+    pub fn assemble(mesh: &Mesh, phantom: &Phantom) -> Result<StiffnessMatrix, FemError> {
+        let neighbours = neighbours(mesh);
+        let numbering = Numbering::new(mesh);
+        let mut matrix = StiffnessMatrix::pattern(numbering, &neighbours);
+        let rule = StiffnessRule::new(mesh.element);
+        for (index, nodes) in mesh.elements().enumerate() {
+            let positions = mesh.positions(nodes);
+            let material = material_of(phantom, mesh.regions[index]);
+            let stiffness =
+                rule.integrate(&positions, &material)
+                    .map_err(|jacobian| FemError::Degenerate {
+                        element: index,
+                        at: positions[0],
+                        jacobian,
+                    })?;
+            matrix.add(nodes, &stiffness, phantom.probe.length);
+        }
+        Ok(matrix)
+    }
+
+    /// An empty matrix with an entry wherever two free nodes share an element.
+    fn pattern(numbering: Numbering, neighbours: &[Vec<u32>]) -> StiffnessMatrix {
+        let nodes = numbering.unknowns() / 2;
+        let mut node_at = vec![0usize; nodes];
+        for (node, &place) in numbering.place.iter().enumerate() {
+            if place != FIXED {
+                node_at[place as usize] = node;
+            }
+        }
+        let (mut column_starts, mut row_indices) = (vec![0u32], Vec::new());
+        let mut places = Vec::new();
+        for (k, &node) in node_at.iter().enumerate() {
+            places.clear();
+            places.extend(
+                neighbours[node]
+                    .iter()
+                    .map(|&n| numbering.place[n as usize])
+                    .filter(|&p| p < k as u32),
+            );
+            places.sort_unstable();
+            let diagonal = 2 * k as u32;
+            for last in [diagonal, diagonal + 1] {
+                row_indices.extend(places.iter().flat_map(|&p| [2 * p, 2 * p + 1]));
+                row_indices.extend(diagonal..=last);
+                column_starts.push(row_indices.len() as u32);
+            }
+        }
+        let values = vec![0.0; row_indices.len()];
+        let reaction = [vec![0.0; 2 * nodes], vec![0.0; 2 * nodes]];
+        StiffnessMatrix {
+            numbering,
+            column_starts,
+            row_indices,
+            values,
+            reaction,
+        }
+    }
+
+    /// Adds one element's stiffness, scaled from one metre to the probe's length.
+    fn add(&mut self, nodes: &[u32], stiffness: &Stiffness, length: f64) {
+        let unknown = |k: usize| self.numbering.unknown(nodes[k / 2] as usize, k % 2);
+        for column in 0..2 * nodes.len() {
+            let Some(j) = unknown(column) else { continue };
+            for (row, entries) in stiffness.iter().enumerate().take(2 * nodes.len()) {
+                let value = length * entries[column];
+                match unknown(row) {
+                    None => self.reaction[row % 2][j] += value,
+                    Some(i) if i <= j => {
+                        let (start, end) = (
+                            self.column_starts[j] as usize,
+                            self.column_starts[j + 1] as usize,
+                        );
+                        // The pattern was made from the same elements: the entry is there.
+                        if let Ok(at) = self.row_indices[start..end].binary_search(&(i as u32)) {
+                            self.values[start + at] += value;
+                        }
+                    }
+                    Some(_) => {}
+                }
+            }
+        }
+    }
+
+    /// Entries of column `j`: rows and values, the diagonal last.
+    pub fn column(&self, j: usize) -> (&[u32], &[f64]) {
+        let range = self.column_starts[j] as usize..self.column_starts[j + 1] as usize;
+        (&self.row_indices[range.clone()], &self.values[range])
+    }
+
+    /// `out −= K x` for `W` vectors at once, one row of `W` numbers per unknown.
+    pub fn subtract_product<const W: usize>(&self, x: &[[f64; W]], out: &mut [[f64; W]]) {
+        for j in 0..x.len() {
+            let (rows, values) = self.column(j);
+            let last = rows.len() - 1;
+            let mut sum = x[j].map(|x| values[last] * x);
+            for (&i, &value) in rows[..last].iter().zip(values) {
+                for w in 0..W {
+                    sum[w] += value * x[i as usize][w];
+                    out[i as usize][w] -= value * x[j][w];
+                }
+            }
+            for w in 0..W {
+                out[j][w] -= sum[w];
+            }
+        }
+    }
+}

@@ -1,0 +1,379 @@
+//! Frictionless unilateral contact of the rigid probe with the condensed surface.
+//!
+//! The surface's displacements are u = C f with C the surface compliance. Each surface node i obeys
+//! gap_i ≥ 0, λ_i ≥ 0, λ_i gap_i = 0, and carries the force λ_i n_i. With the probe's true normal at the
+//! deformed node, n turns with u: Newton's method needs the curvature term λ (I − n nᵀ)/r.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, LU};
+
+use super::{FemError, Pose};
+use crate::phantom::Probe;
+
+/// How the gap between a surface node and the probe is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Contact {
+    /// Distance of the deformed node from the circle, force along the circle's normal there: the default.
+    #[default]
+    DeformedNormal,
+    /// Height of the circle above the node at its undeformed x, vertical force on the gel: the linear
+    /// contact of small-displacement theory. The lateral force on the probe is that of the pressure
+    /// on its slope, −∂U/∂x.
+    VerticalGap,
+}
+
+impl Contact {
+    /// The name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Contact::DeformedNormal => "deformed-normal",
+            Contact::VerticalGap => "vertical-gap",
+        }
+    }
+}
+
+/// Largest penetration of a node that counts as none, m: a nanonewton at the surface's stiffness.
+const GAP_TOLERANCE: f64 = 1e-12;
+/// Newton's method has converged when no displacement moves by more than this, m.
+const STEP_TOLERANCE: f64 = 1e-13;
+/// A tangent system is used again while each step is below this part of the one before.
+const REUSE_BELOW: f64 = 0.2;
+/// Iterations after which the active set changes by one node at a time, which cannot cycle.
+const SIMULTANEOUS_CHANGES: usize = 25;
+/// Iterations after which a pose has not converged.
+const MOST_ITERATIONS: usize = 120;
+
+/// Gap, normal and curvature at one node.
+#[derive(Debug, Clone, Copy)]
+struct Constraint {
+    /// Distance to the probe, m; negative inside it.
+    gap: f64,
+    /// ∂gap/∂u, the direction of the force on the gel.
+    normal: [f64; 2],
+    /// |∂n/∂u| along the tangent, 1/m.
+    curvature: f64,
+}
+
+/// The surface of a phantom, ready for contact.
+///
+/// Implements: FEM-009.
+#[derive(Debug, Clone)]
+pub struct Surface {
+    /// Undeformed position of each free surface node, m.
+    pub positions: Vec<[f64; 2]>,
+    /// Displacements per force, m/N, both components of each node in turn; symmetric.
+    pub compliance: DMatrix<f64>,
+    /// The probe.
+    pub probe: Probe,
+    /// How the gap is measured.
+    pub contact: Contact,
+}
+
+/// Surface displacements and contact forces at one pose.
+///
+/// Implements: FEM-010.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactState {
+    /// Displacement of each surface node, m.
+    pub displacements: Vec<[f64; 2]>,
+    /// λ of each surface node, N; zero off the contact.
+    pub pressures: Vec<f64>,
+    /// Surface nodes in contact, ascending.
+    pub active: Vec<usize>,
+    /// Newton iterations spent on this pose.
+    pub iterations: usize,
+}
+
+impl ContactState {
+    /// The untouched surface.
+    pub fn untouched(nodes: usize) -> ContactState {
+        ContactState {
+            displacements: vec![[0.0; 2]; nodes],
+            pressures: vec![0.0; nodes],
+            active: Vec::new(),
+            iterations: 0,
+        }
+    }
+
+    /// Where the state goes if it keeps changing as it did since `earlier`, `ahead` times as far.
+    pub fn extrapolated(&self, earlier: &ContactState, ahead: f64) -> ContactState {
+        let on = |now: f64, then: f64| now + ahead * (now - then);
+        let mut state = self.clone();
+        for (u, then) in state.displacements.iter_mut().zip(&earlier.displacements) {
+            *u = [on(u[0], then[0]), on(u[1], then[1])];
+        }
+        for &node in &state.active {
+            state.pressures[node] = on(state.pressures[node], earlier.pressures[node]).max(0.0);
+        }
+        state
+    }
+}
+
+/// Newton's matrix at some state, factorised.
+#[derive(Debug)]
+struct TangentSystem {
+    active: Vec<usize>,
+    factor: LU<f64, Dyn, Dyn>,
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// The tangent to a normal: n turned by a quarter.
+fn tangent(n: [f64; 2]) -> [f64; 2] {
+    [-n[1], n[0]]
+}
+
+impl Surface {
+    /// Inverts the surface stiffness L Lᵀ given by its factor.
+    ///
+    /// Implements: FEM-007.
+    pub fn new(
+        factor: DMatrix<f64>,
+        positions: Vec<[f64; 2]>,
+        probe: Probe,
+        contact: Contact,
+    ) -> Surface {
+        let mut compliance = Cholesky::pack_dirty(factor).inverse();
+        compliance.fill_lower_triangle_with_upper_triangle();
+        Surface {
+            positions,
+            compliance,
+            probe,
+            contact,
+        }
+    }
+
+    fn constraint(&self, node: usize, u: [f64; 2], pose: Pose) -> Option<Constraint> {
+        let radius = self.probe.radius;
+        let [x, y] = self.positions[node];
+        let centre = [pose.lateral, radius - pose.depth];
+        match self.contact {
+            Contact::DeformedNormal => {
+                let arm = [x + u[0] - centre[0], y + u[1] - centre[1]];
+                let r = libm::sqrt(dot(arm, arm));
+                let normal = [arm[0] / r, arm[1] / r];
+                (r > 0.0).then_some(Constraint {
+                    gap: r - radius,
+                    normal,
+                    curvature: 1.0 / r,
+                })
+            }
+            Contact::VerticalGap => {
+                let square = radius * radius - (x - centre[0]) * (x - centre[0]);
+                let gap = centre[1] - libm::sqrt(square) - y - u[1];
+                (square > 0.0).then_some(Constraint {
+                    gap,
+                    normal: [0.0, -1.0],
+                    curvature: 0.0,
+                })
+            }
+        }
+    }
+
+    /// The 2 × 2 block of the compliance between nodes `i` and `j`, applied to `v`.
+    fn response(&self, i: usize, j: usize, v: [f64; 2]) -> [f64; 2] {
+        // The matrix is symmetric: column access is contiguous.
+        let at = |row: usize, column: usize| self.compliance[(row, column)];
+        [
+            at(2 * i, 2 * j) * v[0] + at(2 * i, 2 * j + 1) * v[1],
+            at(2 * i + 1, 2 * j) * v[0] + at(2 * i + 1, 2 * j + 1) * v[1],
+        ]
+    }
+
+    /// Contact at `pose`, starting from the state of a pose nearby.
+    ///
+    /// Implements: FEM-009, FEM-010, FEM-011.
+    ///
+    /// # Errors
+    /// [`FemError::NoConvergence`], which names the pose.
+    pub fn solve(&self, pose: Pose, start: &ContactState) -> Result<ContactState, FemError> {
+        let failed = |iterations| FemError::NoConvergence { pose, iterations };
+        let mut state = start.clone();
+        self.revise(&mut state, pose, usize::MAX);
+        let mut tangent_system: Option<TangentSystem> = None;
+        let mut last_step = f64::INFINITY;
+        for iteration in 0..MOST_ITERATIONS {
+            // The old tangent serves as long as it lets the steps shrink well: factorising is the cost.
+            let system = match tangent_system.take() {
+                Some(system) if system.active == state.active && last_step.is_finite() => system,
+                _ => self.tangent_system(&state, pose).ok_or(failed(iteration))?,
+            };
+            let step = self.newton(&mut state, pose, &system).ok_or(failed(iteration))?;
+            let at_most = if iteration < SIMULTANEOUS_CHANGES { usize::MAX } else { 1 };
+            let changed = self.revise(&mut state, pose, at_most);
+            if !changed && step <= STEP_TOLERANCE {
+                state.iterations = iteration + 1;
+                return Ok(state);
+            }
+            let shrinks = step <= REUSE_BELOW * last_step;
+            last_step = if shrinks || last_step.is_infinite() { step } else { f64::INFINITY };
+            tangent_system = Some(system);
+        }
+        Err(failed(MOST_ITERATIONS))
+    }
+
+    /// Factorises the system for increments of λ and of each node's slip b along its tangent t, where
+    /// δu = −gap n + b t: Σ_j C_ij (n_j δλ_j + t_j λ_j κ_j b_j) − t_i b_i. `None` where a node lies in the
+    /// probe's axis.
+    fn tangent_system(&self, state: &ContactState, pose: Pose) -> Option<TangentSystem> {
+        let active = &state.active;
+        let m = active.len();
+        let mut system = DMatrix::zeros(2 * m, 2 * m);
+        for (b, &j) in active.iter().enumerate() {
+            let constraint = self.constraint(j, state.displacements[j], pose)?;
+            let n = constraint.normal;
+            let t = tangent(n);
+            let turn = t.map(|t| t * state.pressures[j] * constraint.curvature);
+            for (a, &i) in active.iter().enumerate() {
+                let [push, slip] = [self.response(i, j, n), self.response(i, j, turn)];
+                for direction in 0..2 {
+                    system[(2 * a + direction, b)] = push[direction];
+                    system[(2 * a + direction, m + b)] = slip[direction];
+                }
+            }
+            for direction in 0..2 {
+                system[(2 * b + direction, m + b)] -= t[direction];
+            }
+        }
+        Some(TangentSystem { active: active.clone(), factor: system.lu() })
+    }
+
+    /// One Newton step on the active nodes; updates displacements and pressures, and returns the
+    /// largest displacement increment of an active node, m. `None` if the system is singular.
+    fn newton(&self, state: &mut ContactState, pose: Pose, system: &TangentSystem) -> Option<f64> {
+        let m = state.active.len();
+        let constraints: Vec<Constraint> = state
+            .active
+            .iter()
+            .map(|&i| self.constraint(i, state.displacements[i], pose))
+            .collect::<Option<_>>()?;
+        let mut increment = DVector::zeros(2 * m);
+        for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
+            let mut mismatch = [0, 1].map(|d| state.displacements[i][d] - constraint.gap * constraint.normal[d]);
+            for (&j, constraint) in state.active.iter().zip(&constraints) {
+                let force = constraint.normal.map(|n| n * state.pressures[j]);
+                let elastic = self.response(i, j, force);
+                mismatch = [mismatch[0] - elastic[0], mismatch[1] - elastic[1]];
+            }
+            increment[2 * a] = mismatch[0];
+            increment[2 * a + 1] = mismatch[1];
+        }
+        if m > 0 && !system.factor.solve_mut(&mut increment) {
+            return None;
+        }
+        if !increment.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let mut largest = 0.0f64;
+        let mut moved = Vec::with_capacity(m);
+        for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
+            state.pressures[i] += increment[a];
+            let t = tangent(constraint.normal);
+            let step = [0, 1].map(|d| increment[m + a] * t[d] - constraint.gap * constraint.normal[d]);
+            largest = largest.max(step[0].abs()).max(step[1].abs());
+            let u = state.displacements[i];
+            moved.push([u[0] + step[0], u[1] + step[1]]);
+        }
+        self.displace(state, &moved, pose)?;
+        Some(largest)
+    }
+
+    /// Displacements of the whole surface under the pressures, with normals at `moved`, where the
+    /// active nodes are put.
+    fn displace(&self, state: &mut ContactState, moved: &[[f64; 2]], pose: Pose) -> Option<()> {
+        let mut u = DVector::zeros(2 * self.positions.len());
+        for (&j, &at) in state.active.iter().zip(moved) {
+            let n = self.constraint(j, at, pose)?.normal;
+            for direction in 0..2 {
+                u.axpy(
+                    state.pressures[j] * n[direction],
+                    &self.compliance.column(2 * j + direction),
+                    1.0,
+                );
+            }
+        }
+        for (i, displacement) in state.displacements.iter_mut().enumerate() {
+            *displacement = [u[2 * i], u[2 * i + 1]];
+        }
+        for (&j, &at) in state.active.iter().zip(moved) {
+            state.displacements[j] = at;
+        }
+        Some(())
+    }
+
+    /// Drops active nodes that would be pulled and adds nodes inside the probe: all at once, or the
+    /// `at_most` worst. Returns whether the set changed.
+    fn revise(&self, state: &mut ContactState, pose: Pose, at_most: usize) -> bool {
+        let mut violations: Vec<(f64, usize)> = Vec::new();
+        for i in 0..self.positions.len() {
+            let active = state.active.binary_search(&i).is_ok();
+            // Pulls and penetrations are weighed against each other by the node's own compliance.
+            let violation = if active {
+                state.pressures[i] * self.compliance[(2 * i + 1, 2 * i + 1)]
+            } else {
+                match self.constraint(i, state.displacements[i], pose) {
+                    Some(constraint) => (constraint.gap + GAP_TOLERANCE).min(0.0),
+                    None => 0.0,
+                }
+            };
+            if violation < 0.0 {
+                violations.push((violation, i));
+            }
+        }
+        if violations.len() > at_most {
+            violations.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            violations.truncate(at_most);
+        }
+        for &(_, i) in &violations {
+            match state.active.binary_search(&i) {
+                Ok(at) => {
+                    state.active.remove(at);
+                    state.pressures[i] = 0.0;
+                }
+                Err(at) => state.active.insert(at, i),
+            }
+        }
+        !violations.is_empty()
+    }
+
+    /// Force on the gel at each active node, N.
+    pub fn nodal_forces(&self, state: &ContactState, pose: Pose) -> Vec<(usize, [f64; 2])> {
+        let force = |&i: &usize| {
+            let constraint = self.constraint(i, state.displacements[i], pose)?;
+            Some((i, constraint.normal.map(|n| n * state.pressures[i])))
+        };
+        state.active.iter().filter_map(force).collect()
+    }
+
+    /// Force on the probe (lateral, normal), N: that on the gel reversed, or, for the vertical gap, the
+    /// pressure on the circle's slope, so that F = −∂U/∂(x, y) of the probe in both cases.
+    ///
+    /// Implements: FEM-012.
+    pub fn probe_force(&self, state: &ContactState, pose: Pose) -> [f64; 2] {
+        let mut total = [0.0; 2];
+        for (i, [x, y]) in self.nodal_forces(state, pose) {
+            total[1] -= y;
+            total[0] -= match self.contact {
+                Contact::DeformedNormal => x,
+                Contact::VerticalGap => {
+                    let offset = self.positions[i][0] - pose.lateral;
+                    -y * offset
+                        / libm::sqrt(self.probe.radius * self.probe.radius - offset * offset)
+                }
+            };
+        }
+        total
+    }
+
+    /// Largest penetration of any surface node, m.
+    pub fn penetration(&self, state: &ContactState, pose: Pose) -> f64 {
+        let gap = |i: usize| {
+            self.constraint(i, state.displacements[i], pose)
+                .map_or(0.0, |c| c.gap)
+        };
+        (0..self.positions.len())
+            .map(|i| -gap(i))
+            .fold(0.0, f64::max)
+    }
+}

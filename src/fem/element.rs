@@ -1,0 +1,195 @@
+//! Shape functions, quadrature and element stiffness in plane strain.
+
+use super::mesh::Element;
+use crate::phantom::Material;
+
+/// Most nodes that an element has.
+pub const MOST_NODES: usize = 6;
+
+/// One point of a quadrature rule over the parent element.
+#[derive(Debug, Clone, Copy)]
+pub struct QuadraturePoint {
+    /// Parent coordinates.
+    pub at: [f64; 2],
+    /// Weight; the weights add up to the parent's area (½ or 4).
+    pub weight: f64,
+}
+
+/// Quadrature of the stiffness: exact to degree 4 on the triangle (Cowper's 6 points, so that curved
+/// elements are integrated well too), 2 × 2 Gauss points on the quadrilateral.
+pub fn stiffness_rule(element: Element) -> Vec<QuadraturePoint> {
+    match element {
+        Element::T6 => [
+            (0.445_948_490_915_964_9, 0.223_381_589_678_011_47),
+            (0.091_576_213_509_770_74, 0.109_951_743_655_321_87),
+        ]
+        .into_iter()
+        .flat_map(|(a, weight)| symmetric_points(a, weight / 2.0))
+        .collect(),
+        Element::Q4Full => gauss_square(),
+    }
+}
+
+/// The points at which strains and stresses are sampled: where they are most accurate, 3 on the
+/// triangle and 2 × 2 on the quadrilateral.
+pub fn sampling_rule(element: Element) -> Vec<QuadraturePoint> {
+    match element {
+        Element::T6 => symmetric_points(1.0 / 6.0, 1.0 / 6.0).to_vec(),
+        Element::Q4Full => gauss_square(),
+    }
+}
+
+/// The three images of barycentric coordinates (a, a, 1 − 2a).
+fn symmetric_points(a: f64, weight: f64) -> [QuadraturePoint; 3] {
+    let b = 1.0 - 2.0 * a;
+    [[a, a], [b, a], [a, b]].map(|at| QuadraturePoint { at, weight })
+}
+
+fn gauss_square() -> Vec<QuadraturePoint> {
+    let g = 1.0 / libm::sqrt(3.0);
+    [[-g, -g], [g, -g], [g, g], [-g, g]]
+        .map(|at| QuadraturePoint { at, weight: 1.0 })
+        .to_vec()
+}
+
+/// Derivatives of the shape functions with respect to the parent coordinates, node by node.
+pub fn parent_gradients(element: Element, [r, s]: [f64; 2]) -> Vec<[f64; 2]> {
+    match element {
+        Element::T6 => {
+            let q = 1.0 - r - s;
+            vec![
+                [1.0 - 4.0 * q, 1.0 - 4.0 * q],
+                [4.0 * r - 1.0, 0.0],
+                [0.0, 4.0 * s - 1.0],
+                [4.0 * (q - r), -4.0 * r],
+                [4.0 * s, 4.0 * r],
+                [-4.0 * s, 4.0 * (q - s)],
+            ]
+        }
+        Element::Q4Full => [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[a, b]: [f64; 2]| [0.25 * a * (1.0 + b * s), 0.25 * b * (1.0 + a * r)])
+            .to_vec(),
+    }
+}
+
+/// Gradients of the shape functions in space at one point of an element, and the Jacobian.
+#[derive(Debug, Clone, Copy)]
+pub struct Gradients {
+    /// ∂N_a/∂x, ∂N_a/∂y, 1/m; only the first entries are used by elements with fewer nodes.
+    pub of_node: [[f64; 2]; MOST_NODES],
+    /// det ∂(x, y)/∂(parent): positive in a valid element.
+    pub jacobian: f64,
+}
+
+/// Maps parent gradients to space for an element with corners and midsides at `positions`.
+pub fn gradients(parent: &[[f64; 2]], positions: &[[f64; 2]]) -> Gradients {
+    let mut j = [[0.0; 2]; 2];
+    for (gradient, position) in parent.iter().zip(positions) {
+        for (row, component) in j.iter_mut().zip(position) {
+            row[0] += component * gradient[0];
+            row[1] += component * gradient[1];
+        }
+    }
+    let jacobian = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+    let mut of_node = [[0.0; 2]; MOST_NODES];
+    for (out, g) in of_node.iter_mut().zip(parent) {
+        *out = [
+            (j[1][1] * g[0] - j[1][0] * g[1]) / jacobian,
+            (j[0][0] * g[1] - j[0][1] * g[0]) / jacobian,
+        ];
+    }
+    Gradients { of_node, jacobian }
+}
+
+/// Lamé's constants (λ, μ), Pa.
+pub fn lame(material: &Material) -> (f64, f64) {
+    let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
+    (
+        e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        e / (2.0 * (1.0 + nu)),
+    )
+}
+
+/// Cauchy stress (σ_xx, σ_yy, σ_zz, σ_xy), Pa, in plane strain from a displacement gradient
+/// `gradient[i][j] = ∂u_i/∂x_j`.
+pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
+    let (lambda, mu) = lame(material);
+    let pressure = lambda * (gradient[0][0] + gradient[1][1]);
+    [
+        pressure + 2.0 * mu * gradient[0][0],
+        pressure + 2.0 * mu * gradient[1][1],
+        pressure,
+        mu * (gradient[0][1] + gradient[1][0]),
+    ]
+}
+
+/// Stiffness of one element per metre of thickness, Pa: `[2a + i][2b + j]` couples direction i of node a with
+/// direction j of node b. Exactly symmetric.
+///
+/// Implements: FEM-005.
+pub type Stiffness = [[f64; 2 * MOST_NODES]; 2 * MOST_NODES];
+
+/// Adds one quadrature point's share to the lower triangle of `stiffness`; `volume` is weight × Jacobian.
+fn add_point(
+    stiffness: &mut Stiffness,
+    nodes: usize,
+    g: &Gradients,
+    volume: f64,
+    (lambda, mu): (f64, f64),
+) {
+    for a in 0..nodes {
+        let [ax, ay] = g.of_node[a].map(|d| d * volume);
+        for b in 0..=a {
+            let [bx, by] = g.of_node[b];
+            stiffness[2 * a][2 * b] += (lambda + 2.0 * mu) * ax * bx + mu * ay * by;
+            stiffness[2 * a][2 * b + 1] += lambda * ax * by + mu * ay * bx;
+            stiffness[2 * a + 1][2 * b] += lambda * ay * bx + mu * ax * by;
+            stiffness[2 * a + 1][2 * b + 1] += (lambda + 2.0 * mu) * ay * by + mu * ax * bx;
+        }
+    }
+}
+
+/// The quadrature rule of an element's stiffness with the parent gradients at its points.
+#[derive(Debug, Clone)]
+pub struct StiffnessRule {
+    points: Vec<(f64, Vec<[f64; 2]>)>,
+}
+
+impl StiffnessRule {
+    /// The rule for one shape of element.
+    pub fn new(element: Element) -> StiffnessRule {
+        let points = stiffness_rule(element);
+        StiffnessRule {
+            points: points
+                .iter()
+                .map(|p| (p.weight, parent_gradients(element, p.at)))
+                .collect(),
+        }
+    }
+
+    /// Stiffness of an element with nodes at `positions`, or the Jacobian that is not positive.
+    pub fn integrate(&self, positions: &[[f64; 2]], material: &Material) -> Result<Stiffness, f64> {
+        let constants = lame(material);
+        let mut stiffness = [[0.0; 2 * MOST_NODES]; 2 * MOST_NODES];
+        for (weight, parent) in &self.points {
+            let g = gradients(parent, positions);
+            // A NaN is refused as well.
+            if g.jacobian.is_nan() || g.jacobian <= 0.0 {
+                return Err(g.jacobian);
+            }
+            add_point(
+                &mut stiffness,
+                positions.len(),
+                &g,
+                weight * g.jacobian,
+                constants,
+            );
+        }
+        for row in 0..2 * MOST_NODES {
+            for column in row + 1..2 * MOST_NODES {
+                stiffness[row][column] = stiffness[column][row];
+            }
+        }
+        Ok(stiffness)
+    }
+}

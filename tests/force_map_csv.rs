@@ -1,0 +1,280 @@
+//! Measured force maps as CSV through the public interface.
+#![cfg(feature = "std")]
+
+use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
+use palpate::phantom::Phantom;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+const EXAMPLE: &str = "\
+depth_mm,lateral_mm,normal_force_n,lateral_force_n
+0.0,-2.6,0.0,0.0
+0.0,0.0,0.0,0.0
+0.0,2.6,0.0,0.0
+1.5,-2.6,0.21,-0.034
+1.5,0.0,0.25,0.0
+1.5,2.6,0.22,0.033
+";
+
+fn table() -> ForceTable {
+    let matrix = |rows: [[f64; 3]; 2]| Matrix::new(3, rows.concat()).unwrap();
+    ForceTable::new(
+        vec![0.0, 0.0015],
+        vec![-0.0026, 0.0, 0.0026],
+        matrix([[0.0; 3], [0.21, 0.25, 0.22]]),
+        matrix([[0.0; 3], [-0.034, 0.0, 0.033]]),
+    )
+    .unwrap()
+}
+
+fn read(text: &str) -> Result<ForceTable, String> {
+    ForceTable::from_csv(text, "gel.csv").map_err(|error| error.to_string())
+}
+
+/// The error for the example with `old` replaced by `new`.
+fn refusal(old: &str, new: &str) -> String {
+    assert_eq!(EXAMPLE.matches(old).count(), 1, "{old:?}");
+    let message = read(&EXAMPLE.replace(old, new)).unwrap_err();
+    assert_eq!(message.lines().count(), 1, "{message}");
+    message
+}
+
+// Verifies: MAP-030, MAP-031, MAP-036, MAP-038.
+#[test]
+fn a_table_is_read_and_written() {
+    assert_eq!(read(EXAMPLE), Ok(table()));
+    assert_eq!(table().to_csv(), EXAMPLE);
+}
+
+// Verifies: MAP-030, MAP-031.
+#[test]
+fn columns_are_found_by_name_and_units_by_header() {
+    let text = "\
+        lateral_force_mn,depth_m,normal_force_mn,lateral_mm\n\
+        0,0,0,-2.6\n0,0,0,0\n0,0,0,2.6\n\
+        -34,0.0015,210,-2.6\n0,0.0015,250,0\n33,1.5e-3,220,2.6\n";
+    assert_eq!(read(text), Ok(table()));
+}
+
+// Verifies: MAP-030.
+#[test]
+fn bad_headers_are_refused() {
+    for header in [
+        "depth_mm,lateral_mm,normal_force_n",
+        "depth_mm,lateral_mm,normal_force_n,lateral_force_n,time_s",
+        "depth_mm,lateral_mm,normal_force_n,lateral_force",
+        "depth_mm,lateral_mm,normal_force_n,normal_force_mn",
+        "depth_mm,depth_m,lateral_mm,normal_force_n,lateral_force_n",
+        "depth_mm;lateral_mm;normal_force_n;lateral_force_n",
+        "0.0,-2.6,0.0,0.0",
+    ] {
+        let text = EXAMPLE.replacen(
+            "depth_mm,lateral_mm,normal_force_n,lateral_force_n",
+            header,
+            1,
+        );
+        assert_eq!(
+            read(&text),
+            Err(format!(
+                "gel.csv:1: header {header:?}, \
+                 expected depth_mm,lateral_mm,normal_force_n,lateral_force_n, \
+                 in any order, lengths also as _m, forces also as _mn"
+            ))
+        );
+    }
+    for empty in ["", "\n\n", "# nothing\n"] {
+        assert!(
+            read(empty)
+                .unwrap_err()
+                .starts_with("gel.csv:1: header \"\", expected depth_mm")
+        );
+    }
+    let no_rows = EXAMPLE.lines().next().unwrap();
+    let expected = "gel.csv: depths_m is empty, expected at least one position";
+    assert_eq!(read(no_rows), Err(expected.into()));
+}
+
+// Verifies: MAP-032.
+#[test]
+fn order_comments_blanks_and_line_ends_do_not_matter() {
+    let mut lines: Vec<&str> = EXAMPLE.lines().collect();
+    lines[1..].reverse();
+    lines.swap(2, 4);
+    assert_eq!(read(&lines.join("\n")), Ok(table()));
+    assert_eq!(read(&lines.join("\r\n")), Ok(table()));
+    let noisy = format!(
+        "\u{feff}# a gel, 1\n\n  # b\r\n{}\n\t\n#",
+        lines.join(" \n ")
+    );
+    assert_eq!(read(&noisy.replace(',', " ,\t")), Ok(table()));
+    assert_eq!(read(&EXAMPLE.replace("1.5,0.0", "1.5,-0")), Ok(table()));
+}
+
+// Verifies: MAP-026, MAP-033.
+#[test]
+fn every_missing_pose_is_named() {
+    let count = EXAMPLE.lines().count();
+    for missing in 1..count {
+        let mut lines: Vec<&str> = EXAMPLE.lines().collect();
+        let taken: Vec<&str> = lines.remove(missing).split(',').collect();
+        let expected = format!(
+            "gel.csv: no row for depth {} mm, lateral {} mm, expected one for each of the 2 depths \
+             at each of the 3 lateral positions in the file",
+            taken[0], taken[1]
+        );
+        assert_eq!(read(&lines.join("\n")), Err(expected));
+    }
+}
+
+// Verifies: MAP-026, MAP-034.
+#[test]
+fn a_second_row_for_a_pose_is_refused_with_both_lines() {
+    assert_eq!(
+        refusal(
+            "1.5,0.0,0.25,0.0\n",
+            "1.5,0.0,0.25,0.0\n1.5e0,-0,0.25,0.0\n"
+        ),
+        "gel.csv:7: second row for depth 1.5 mm, lateral 0.0 mm, expected one; \
+         the first is line 6"
+    );
+}
+
+// Verifies: MAP-026, MAP-035.
+#[test]
+fn malformed_rows_are_refused_with_line_column_and_value() {
+    for (row, found) in [
+        ("1.5,0.0,0.25", 3),
+        ("1,5,0,0,0,25,0,0", 8),
+        ("1.5 0.0 0.25 0.0", 1),
+    ] {
+        assert_eq!(
+            refusal("1.5,0.0,0.25,0.0", row),
+            format!(
+                "gel.csv:6: {found} fields, expected 4, as in the header \
+                 \"depth_mm,lateral_mm,normal_force_n,lateral_force_n\""
+            )
+        );
+    }
+    for (column, row, found) in [
+        ("depth_mm", ",0.0,0.25,0.0", ""),
+        ("lateral_mm", "1.5,zero,0.25,0.0", "zero"),
+        ("normal_force_n", "1.5,0.0,NaN,0.0", "NaN"),
+        ("normal_force_n", "1.5,0.0,\"0.25\",0.0", "\"0.25\""),
+        ("lateral_force_n", "1.5,0.0,0.25,-inf", "-inf"),
+        ("lateral_force_n", "1.5,0.0,0.25,1e999", "1e999"),
+    ] {
+        assert_eq!(
+            refusal("1.5,0.0,0.25,0.0", row),
+            format!("gel.csv:6: {column} = {found:?}, expected a finite decimal number")
+        );
+    }
+}
+
+// Verifies: MAP-002, MAP-004, MAP-026.
+#[test]
+fn what_makes_no_table_is_refused_with_the_file() {
+    let negative = EXAMPLE.replace("\n1.5,", "\n-1.5,");
+    let expected = "gel.csv: depths_m[0] = -0.0015, expected at least 0, the undeformed surface";
+    assert_eq!(read(&negative), Err(expected.into()));
+    let close = EXAMPLE.replace(",2.6,", ",0.0000005,");
+    assert!(
+        read(&close)
+            .unwrap_err()
+            .starts_with("gel.csv: laterals_m[2] = 0.0000000005, ")
+    );
+}
+
+// Verifies: MAP-008, MAP-026.
+#[test]
+fn a_measured_map_keeps_the_files_name_without_its_folder() {
+    let phantom = Phantom::builtin("2.6").unwrap();
+    let map = ForceMap::from_csv(EXAMPLE, "lab/gel.csv", "ATI", Some(phantom.clone())).unwrap();
+    let source = Source::Measured {
+        file: "gel.csv".into(),
+        note: "ATI".into(),
+    };
+    assert_eq!((map.source(), map.phantom()), (&source, Some(&phantom)));
+    assert_eq!(map.forces(), &table());
+    let deep = EXAMPLE.replace("\n1.5,", "\n15.5,");
+    let error = ForceMap::from_csv(&deep, "lab/gel.csv", "", Some(phantom)).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("lab/gel.csv: phantom: depth_mm = 15.5, allowed: ")
+    );
+}
+
+// Verifies: MAP-037.
+#[test]
+fn a_diagonal_of_poses_is_refused_without_its_square() {
+    // 200,000 depths × 200,000 lateral positions would be 320 GB a matrix.
+    let rows = (0..200_000)
+        .map(|i| format!("{i},{i},0,0\n"))
+        .collect::<String>();
+    let text = format!("depth_mm,lateral_mm,normal_force_n,lateral_force_n\n{rows}");
+    assert!(
+        read(&text)
+            .unwrap_err()
+            .starts_with("gel.csv: no row for depth 0.0 mm, lateral 1.0 mm")
+    );
+}
+
+fn any_table() -> impl Strategy<Value = ForceTable> {
+    let finite = any::<u64>()
+        .prop_map(f64::from_bits)
+        .prop_filter("finite", |value| value.is_finite());
+    let steps = || prop::collection::vec(1e-8..1e-2, 1..5);
+    let axis = |steps: &[f64], from: f64| {
+        let mut position = from;
+        let next = |step: &f64| {
+            position += step;
+            position
+        };
+        steps.iter().map(next).collect::<Vec<f64>>()
+    };
+    (steps(), steps(), prop::collection::vec(finite, 32)).prop_map(move |(down, across, forces)| {
+        let matrix = |skip: usize| {
+            Matrix::from_fn(down.len(), across.len(), |row, column| {
+                forces[skip + 4 * row + column]
+            })
+        };
+        let (depths, laterals) = (axis(&down, 0.0), axis(&across, -0.01));
+        ForceTable::new(depths, laterals, matrix(0), matrix(16)).unwrap()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        rng_seed: RngSeed::Fixed(5),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    // Verifies: MAP-031, MAP-036, MAP-038.
+    #[test]
+    fn any_table_survives_the_file_to_the_bit(table in any_table()) {
+        let back = read(&table.to_csv()).unwrap();
+        let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        prop_assert_eq!(bits(back.depths()), bits(table.depths()));
+        prop_assert_eq!(bits(back.laterals()), bits(table.laterals()));
+        let forces = |t: &ForceTable| {
+            [bits(t.normal_force().values()), bits(t.lateral_force().values())]
+        };
+        prop_assert_eq!(forces(&back), forces(&table));
+    }
+
+    // Verifies: MAP-026, MAP-037.
+    #[test]
+    fn mutated_files_never_panic(
+        at in 0..EXAMPLE.len(),
+        removed in 0usize..20,
+        added in "([-+0-9eE.,\\n\\r#_ m]{0,8}|\\PC{0,4})",
+    ) {
+        let end = (at + removed).min(EXAMPLE.len());
+        let text = format!("{}{added}{}", &EXAMPLE[..at], &EXAMPLE[end..]);
+        if let Err(message) = read(&text) {
+            prop_assert!(message.starts_with("gel.csv:"));
+            prop_assert!(!message.contains('\n'), "{message:?}");
+        }
+    }
+}

@@ -1,0 +1,495 @@
+//! Force maps as JSON through the public interface.
+#![cfg(feature = "std")]
+
+use palpate::force_map::{
+    Certificate, ForceMap, ForceTable, Matrix, SCHEMA, SCHEMA_VERSION, SmallestDet, Source,
+};
+use palpate::phantom::Phantom;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+/// The file of [`computed`], written by hand from the spec.
+const EXAMPLE: &str = r#"{
+  "schema": "palpate-force-map",
+  "schema_version": 1,
+  "program_version": "VERSION",
+  "source": {
+    "kind": "finite_elements"
+  },
+  "phantom": {
+    "name": "none",
+    "gel": {
+      "width_m": 0.034,
+      "height_m": 0.015,
+      "material": {
+        "youngs_modulus_pa": 5000.0,
+        "poisson_ratio": 0.49
+      }
+    },
+    "skin": {
+      "thickness_m": 0.0005,
+      "material": {
+        "youngs_modulus_pa": 180000.0,
+        "poisson_ratio": 0.49
+      }
+    },
+    "inclusion": null,
+    "probe": {
+      "radius_m": 0.0065,
+      "length_m": 0.03
+    }
+  },
+  "depths_m": [0.001,0.002],
+  "laterals_m": [0.0,0.005,0.01],
+  "normal_force_n": [
+    [0.25,0.5,1.0],
+    [0.30000000000000004,5e-324,-0.0]
+  ],
+  "lateral_force_n": [
+    [0.0,-1e-9,1e+21],
+    [0.0,0.2,0.3]
+  ],
+  "certificate": {
+    "worst_relative_residual": 1e-13,
+    "worst_force_balance_n": 2e-10,
+    "largest_penetration_m": 0.0,
+    "newton_iterations": 40,
+    "mesh_size_m": 0.0005,
+    "nodes": 6000,
+    "elements": 3000,
+    "element": "t6",
+    "contact": "deformed-normal",
+    "smallest_det": {
+      "det": 0.5,
+      "depth_m": 0.002,
+      "lateral_m": 0.0
+    },
+    "min_det": [
+      [1.0,0.9,0.8],
+      [0.5,0.7,0.6]
+    ]
+  }
+}
+"#;
+
+fn example() -> String {
+    EXAMPLE.replace("VERSION", env!("CARGO_PKG_VERSION"))
+}
+
+fn matrix<const N: usize>(rows: &[[f64; N]]) -> Matrix {
+    Matrix::new(N, rows.concat()).unwrap()
+}
+
+fn computed() -> ForceMap {
+    let certificate = Certificate {
+        worst_relative_residual: 1e-13,
+        worst_force_balance: 2e-10,
+        largest_penetration: 0.0,
+        newton_iterations: 40,
+        mesh_size: 0.0005,
+        nodes: 6000,
+        elements: 3000,
+        element: "t6".into(),
+        contact: "deformed-normal".into(),
+        smallest_det: SmallestDet {
+            det: 0.5,
+            depth: 0.002,
+            lateral: 0.0,
+        },
+        min_det: matrix(&[[1.0, 0.9, 0.8], [0.5, 0.7, 0.6]]),
+    };
+    let forces = ForceTable::new(
+        vec![0.001, 0.002],
+        vec![0.0, 0.005, 0.01],
+        matrix(&[[0.25, 0.5, 1.0], [0.1 + 0.2, 5e-324, -0.0]]),
+        matrix(&[[0.0, -1e-9, 1e21], [0.0, 0.2, 0.3]]),
+    );
+    let phantom = Phantom::builtin("none").unwrap();
+    ForceMap::new(
+        Source::FiniteElements { certificate },
+        Some(phantom),
+        forces.unwrap(),
+    )
+    .unwrap()
+}
+
+fn read(text: &str) -> Result<ForceMap, String> {
+    ForceMap::from_json(text, "map.json").map_err(|error| error.to_string())
+}
+
+/// The error for the example with `old` replaced by `new`.
+fn refusal(old: &str, new: &str) -> String {
+    let example = example();
+    assert_eq!(example.matches(old).count(), 1, "{old:?}");
+    let message = read(&example.replace(old, new)).unwrap_err();
+    assert_eq!(message.lines().count(), 1, "{message}");
+    message
+}
+
+/// Maps are compared by their text too: `==` holds −0 and 0 for equal.
+fn assert_same(read: &ForceMap, written: &ForceMap) {
+    assert_eq!(read, written);
+    let bits = |matrix: &Matrix| {
+        matrix
+            .values()
+            .iter()
+            .map(|v| v.to_bits())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(bits(read.normal_force()), bits(written.normal_force()));
+    assert_eq!(bits(read.lateral_force()), bits(written.lateral_force()));
+}
+
+// Verifies: MAP-020, MAP-021, MAP-022, PHA-029.
+#[test]
+fn a_computed_map_is_written_as_the_spec_says_and_read_back() {
+    assert_eq!((SCHEMA, SCHEMA_VERSION), ("palpate-force-map", 1));
+    assert_eq!(computed().to_json(), example());
+    assert_same(&read(&example()).unwrap(), &computed());
+}
+
+// Verifies: MAP-020, MAP-022, MAP-025.
+#[test]
+fn a_measured_map_is_written_and_read_back() {
+    let source = Source::Measured {
+        file: "gel \"1\".csv".into(),
+        note: "ATI\nsensor".into(),
+    };
+    let map = ForceMap::new(source, None, computed().forces().clone()).unwrap();
+    let text = map.to_json();
+    assert!(text.contains("\"kind\": \"measured\""));
+    assert!(text.contains("\"phantom\": null") && text.contains("\"certificate\": null"));
+    assert_same(&read(&text).unwrap(), &map);
+    let short = text
+        .replace("  \"phantom\": null,\n", "")
+        .replace(",\n  \"certificate\": null", "");
+    assert_eq!(short.lines().count() + 2, text.lines().count());
+    assert_same(&read(&short).unwrap(), &map);
+}
+
+// Verifies: MAP-020.
+#[test]
+fn the_version_that_made_a_map_stays_with_it() {
+    let old = EXAMPLE.replace("VERSION", "0.0.7");
+    let map = read(&old).unwrap();
+    assert_eq!(map.program_version(), "0.0.7");
+    assert_eq!(map.to_json(), old);
+    assert_eq!(map.mirrored().unwrap().program_version(), "0.0.7");
+}
+
+// Verifies: MAP-023, MAP-026.
+#[test]
+fn other_schemas_and_newer_versions_are_refused_first() {
+    assert_eq!(
+        refusal("\"palpate-force-map\"", "\"palpate-summary\""),
+        "map.json: schema = \"palpate-summary\", expected \"palpate-force-map\""
+    );
+    for (version, found) in [("2", "2"), ("\"1\"", "\"1\""), ("0", "0"), ("1.5", "1.5")] {
+        // A newer file has keys that we do not know, and lacks some that we do.
+        let text =
+            format!("{{\"schema_version\": {version}, \"new\": [], \"schema\": {SCHEMA:?}}}");
+        let expected = format!(
+            "map.json: schema_version = {found}, expected 1, which is what this program reads"
+        );
+        assert_eq!(read(&text), Err(expected));
+    }
+    assert_eq!(
+        read("{}"),
+        Err("map.json: schema = null, expected \"palpate-force-map\"".into())
+    );
+}
+
+// Verifies: MAP-024, MAP-026.
+#[test]
+fn every_required_key_is_missed_by_name() {
+    let example = example();
+    let object: serde_json::Map<String, serde_json::Value> =
+        serde_json::from_str(&example).unwrap();
+    for key in ["program_version", "source", "depths_m", "laterals_m"] {
+        let mut without = object.clone();
+        without.remove(key).unwrap();
+        let message = read(&serde_json::to_string(&without).unwrap()).unwrap_err();
+        assert!(
+            message.starts_with(&format!("map.json: {key} is missing")),
+            "{message}"
+        );
+    }
+    for key in ["normal_force_n", "lateral_force_n"] {
+        let mut without = object.clone();
+        without.remove(key).unwrap();
+        let message = read(&serde_json::to_string(&without).unwrap()).unwrap_err();
+        assert!(
+            message.starts_with(&format!("map.json: {key} is missing")),
+            "{message}"
+        );
+    }
+}
+
+// Verifies: MAP-024, MAP-026.
+#[test]
+fn what_is_no_number_is_named_by_key_and_row() {
+    assert_eq!(
+        refusal("[0.30000000000000004,5e-324,-0.0]", "[0.3,null,0.0]"),
+        "map.json:35: column 13: normal_force_n: row 1: invalid type: null, expected f64, \
+         in \"[0.3,null,0.0]\""
+    );
+    for (old, new, named) in [
+        (
+            "[0.001,0.002]",
+            "[0.001,null]",
+            "map.json:31: column 25: depths_m: invalid type: null",
+        ),
+        ("[0.0,-1e-9,1e+21]", "[0.0,NaN,1.0]", "map.json:38: "),
+        (
+            "[0.0,-1e-9,1e+21]",
+            "[0.0,1e400,1.0]",
+            "lateral_force_n: row 0: number out of range",
+        ),
+        (
+            "[0.0,-1e-9,1e+21]",
+            "[0.0,\"1\",1.0]",
+            "lateral_force_n: row 0: invalid type: string",
+        ),
+        (
+            "[0.0,-1e-9,1e+21]",
+            "7",
+            "lateral_force_n: row 0: invalid type: integer `7`",
+        ),
+        (
+            "[0.0,-1e-9,1e+21]",
+            "[0.0,0.1]",
+            "row 1 has 3 numbers, expected 2 as in row 0",
+        ),
+        (
+            "\"width_m\": 0.034",
+            "\"width_m\": null",
+            "phantom: invalid type: null",
+        ),
+        (
+            "\"width_m\": 0.034",
+            "\"width_m\": null",
+            "in \"\\\"width_m\\\": null,\"",
+        ),
+        (
+            "\"width_m\": 0.034",
+            "\"width_mm\": 34",
+            "phantom: unknown field `width_mm`",
+        ),
+        (
+            "      \"width_m\": 0.034,\n",
+            "",
+            "phantom: missing field `width_m`",
+        ),
+        (
+            "\"nodes\": 6000",
+            "\"nodes\": -1",
+            "certificate: invalid value: integer `-1`",
+        ),
+        (
+            "[0.5,0.7,0.6]",
+            "[0.5,0.7,null]",
+            "certificate: row 1: invalid type: null",
+        ),
+        (
+            "\"t6\"",
+            "6",
+            "certificate: invalid type: integer `6`, expected a string",
+        ),
+        (
+            "\"finite_elements\"",
+            "\"guess\"",
+            "source: unknown variant `guess`",
+        ),
+    ] {
+        let message = refusal(old, new);
+        assert!(message.contains(named), "{message}");
+    }
+}
+
+// Verifies: MAP-024, MAP-026.
+#[test]
+fn unknown_and_repeated_keys_are_refused() {
+    let message = refusal("\"depths_m\": [", "\"depths_mm\": [");
+    let expected = "map.json:31: column 13: unknown key \"depths_mm\", expected one of schema, ";
+    assert!(message.starts_with(expected), "{message}");
+    let message = refusal("\"width_m\"", "\"a\\nb\"");
+    assert!(
+        message.contains("phantom: unknown field `a b`"),
+        "{message}"
+    );
+    let twice = "\"depths_m\": [0.0],\n  \"depths_m\": [";
+    let message = refusal("\"depths_m\": [", twice);
+    assert!(
+        message.contains("depths_m is there twice, expected once"),
+        "{message}"
+    );
+    let message = refusal(
+        "\"radius_m\": 0.0065,",
+        "\"radius_m\": 0.0065, \"radius_m\": 0.0066,",
+    );
+    assert!(
+        message.contains("phantom: duplicate field `radius_m`"),
+        "{message}"
+    );
+}
+
+// Verifies: MAP-025.
+#[test]
+fn a_certificate_comes_with_finite_elements_and_with_nothing_else() {
+    let kind = "\"kind\": \"finite_elements\"";
+    assert_eq!(
+        refusal(
+            kind,
+            "\"kind\": \"measured\", \"file\": \"a.csv\", \"note\": \"\""
+        ),
+        "map.json: certificate is there, expected none for a measured map"
+    );
+    let (before, _) = EXAMPLE.split_once(",\n  \"certificate\"").unwrap();
+    assert_eq!(
+        read(&format!("{before}}}")),
+        Err("map.json: certificate is missing, expected one for a map from finite elements".into())
+    );
+}
+
+// Verifies: MAP-003, MAP-004, MAP-008, MAP-026.
+#[test]
+fn what_makes_no_map_is_refused_with_the_file() {
+    assert_eq!(
+        refusal("[0.0,0.005,0.01]", "[0.0,0.005]"),
+        "map.json: normal_force_n has 2 rows and 3 columns, \
+         expected 2 rows (one a depth) and 2 columns (one a lateral position)"
+    );
+    assert!(refusal("[0.001,0.002]", "[0.002,0.001]").starts_with("map.json: depths_m[1] = 0.001"));
+    assert!(
+        refusal(
+            "\"poisson_ratio\": 0.49\n      }\n    },\n    \"skin\"",
+            "\"poisson_ratio\": 0.5\n      }\n    },\n    \"skin\""
+        )
+        .starts_with("map.json: phantom: gel.poisson_ratio = 0.5, allowed: ")
+    );
+    assert!(refusal("\"det\": 0.5", "\"det\": 0.4").contains("certificate.smallest_det = 0.4"));
+}
+
+// Verifies: MAP-026.
+#[test]
+fn what_is_no_json_is_refused_with_its_line() {
+    let message = refusal("\"depths_m\": [0.001,", "\"depths_m\": [0.001;");
+    assert!(
+        message.starts_with("map.json:31: column 21: expected `,` or `]`"),
+        "{message}"
+    );
+    assert!(
+        read("")
+            .unwrap_err()
+            .starts_with("map.json:1: column 0: EOF while parsing")
+    );
+    assert!(read("[1]").is_err() && read("null").is_err());
+    let one_line = example().replace('\n', "");
+    assert_eq!(read(&one_line).map(|_| ()), Ok(()));
+    // Of one long line the message shows the place alone.
+    let message = read(&one_line.replace("0.034", "null")).unwrap_err();
+    let (_, excerpt) = message.split_once(", in ").unwrap();
+    assert!(
+        excerpt.contains("\\\"width_m\\\": null") && excerpt.len() < 80,
+        "{message}"
+    );
+    let folder = std::env::temp_dir();
+    let message = ForceMap::read(&folder.join("palpate-no-such-map.json")).unwrap_err();
+    assert!(
+        message
+            .to_string()
+            .contains("palpate-no-such-map.json: cannot be read: ")
+    );
+}
+
+/// A finite number of any size.
+fn finite() -> impl Strategy<Value = f64> {
+    any::<u64>()
+        .prop_map(f64::from_bits)
+        .prop_filter("finite", |value| value.is_finite())
+}
+
+/// An axis of the given length, in m.
+fn axis(length: usize) -> impl Strategy<Value = Vec<f64>> {
+    let steps = prop::collection::vec(1e-4..2e-3, length);
+    steps.prop_map(|steps| {
+        let mut position = 0.0;
+        let next = |step: &f64| {
+            position += step;
+            position
+        };
+        steps.iter().map(next).collect()
+    })
+}
+
+fn any_map() -> impl Strategy<Value = ForceMap> {
+    (1usize..5, 1usize..5).prop_flat_map(|(rows, columns)| {
+        let matrix = || {
+            prop::collection::vec(finite(), rows * columns)
+                .prop_map(move |values| Matrix::new(columns, values).unwrap())
+        };
+        let numbers = (0.0..1.0, 0.0..1e-3, 0.0..1e-6, any::<u32>(), 1e-6..1e-3);
+        (
+            axis(rows),
+            axis(columns),
+            matrix(),
+            matrix(),
+            matrix(),
+            numbers,
+            ".*",
+        )
+            .prop_map(
+                |(depths, laterals, normal, lateral, min_det, numbers, element)| {
+                    let smallest_det = SmallestDet::of(&min_det, &depths, &laterals).unwrap();
+                    let certificate = Certificate {
+                        worst_relative_residual: numbers.0,
+                        worst_force_balance: numbers.1,
+                        largest_penetration: numbers.2,
+                        newton_iterations: numbers.3 as usize,
+                        mesh_size: numbers.4,
+                        nodes: 1,
+                        elements: 2,
+                        element,
+                        contact: String::new(),
+                        smallest_det,
+                        min_det,
+                    };
+                    let forces = ForceTable::new(depths, laterals, normal, lateral).unwrap();
+                    let phantom = Phantom::builtin("8.6").unwrap();
+                    ForceMap::new(
+                        Source::FiniteElements { certificate },
+                        Some(phantom),
+                        forces,
+                    )
+                    .unwrap()
+                },
+            )
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        rng_seed: RngSeed::Fixed(4),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    // Verifies: MAP-022.
+    #[test]
+    fn any_map_survives_the_file_to_the_bit(map in any_map()) {
+        let back = read(&map.to_json()).unwrap();
+        assert_same(&back, &map);
+        prop_assert_eq!(back.to_json(), map.to_json());
+    }
+
+    // Verifies: MAP-026, MAP-037.
+    #[test]
+    fn mutated_files_never_panic(at in 0..EXAMPLE.len(), removed in 0usize..20, added: String) {
+        let end = (at + removed).min(EXAMPLE.len());
+        let text = format!("{}{added}{}", &EXAMPLE[..at], &EXAMPLE[end..]);
+        if let Err(message) = read(&text) {
+            prop_assert!(message.starts_with("map.json:"));
+            prop_assert!(!message.contains('\n'), "{message:?}");
+        }
+    }
+}
