@@ -38,11 +38,12 @@ impl<'a> MaximumLaw<'a> {
         for ((shift, gamma), angle) in (first..).zip(gamma.iter_mut()).zip(angle.iter_mut()) {
             *gamma = scan.gamma(shift)?;
             let size = before * *gamma;
-            // Rounded down, so that the angle and with it the bound are rounded up.
+            // Rounded down, so that the angle and with it the bound are rounded up; where there is no
+            // correlation, or none that can be computed, the worst.
             let correlation = if size > 0.0 {
                 scan.covariance(shift - 1, shift)? / size - 32.0 * f64::EPSILON
             } else {
-                0.0
+                -1.0
             };
             *angle = libm::acos(correlation.clamp(-1.0, 1.0));
             before = *gamma;
@@ -73,8 +74,7 @@ impl<'a> MaximumLaw<'a> {
         let mut tail_before = 0.0;
         for (&gamma, &angle) in self.gamma.iter().zip(self.angle) {
             let (tail, peak) = exceedance(gamma, eta);
-            // The first shift: no shift before it has been above η, and angle · peak plus the whole
-            // tail exceeds the tail.
+            // At the first shift nothing has been above η before: the whole tail counts.
             let upcrossing = angle / core::f64::consts::TAU * peak + (tail - tail_before).max(0.0);
             bound += upcrossing.min(tail);
             tail_before = tail;

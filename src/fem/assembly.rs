@@ -1,6 +1,5 @@
 //! The global stiffness matrix over the free displacements, in elimination order.
 
-
 use super::FemError;
 use super::element::{Stiffness, StiffnessRule};
 use super::mesh::{Mesh, Region};

@@ -199,15 +199,25 @@ impl Surface {
                 Some(system) if system.active == state.active && last_step.is_finite() => system,
                 _ => self.tangent_system(&state, pose).ok_or(failed(iteration))?,
             };
-            let step = self.newton(&mut state, pose, &system).ok_or(failed(iteration))?;
-            let at_most = if iteration < SIMULTANEOUS_CHANGES { usize::MAX } else { 1 };
+            let step = self
+                .newton(&mut state, pose, &system)
+                .ok_or(failed(iteration))?;
+            let at_most = if iteration < SIMULTANEOUS_CHANGES {
+                usize::MAX
+            } else {
+                1
+            };
             let changed = self.revise(&mut state, pose, at_most);
             if !changed && step <= STEP_TOLERANCE {
                 state.iterations = iteration + 1;
                 return Ok(state);
             }
             let shrinks = step <= REUSE_BELOW * last_step;
-            last_step = if shrinks || last_step.is_infinite() { step } else { f64::INFINITY };
+            last_step = if shrinks || last_step.is_infinite() {
+                step
+            } else {
+                f64::INFINITY
+            };
             tangent_system = Some(system);
         }
         Err(failed(MOST_ITERATIONS))
@@ -236,7 +246,10 @@ impl Surface {
                 system[(2 * b + direction, m + b)] -= t[direction];
             }
         }
-        Some(TangentSystem { active: active.clone(), factor: system.lu() })
+        Some(TangentSystem {
+            active: active.clone(),
+            factor: system.lu(),
+        })
     }
 
     /// One Newton step on the active nodes; updates displacements and pressures, and returns the
@@ -250,7 +263,8 @@ impl Surface {
             .collect::<Option<_>>()?;
         let mut increment = DVector::zeros(2 * m);
         for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
-            let mut mismatch = [0, 1].map(|d| state.displacements[i][d] - constraint.gap * constraint.normal[d]);
+            let mut mismatch =
+                [0, 1].map(|d| state.displacements[i][d] - constraint.gap * constraint.normal[d]);
             for (&j, constraint) in state.active.iter().zip(&constraints) {
                 let force = constraint.normal.map(|n| n * state.pressures[j]);
                 let elastic = self.response(i, j, force);
@@ -270,7 +284,8 @@ impl Surface {
         for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
             state.pressures[i] += increment[a];
             let t = tangent(constraint.normal);
-            let step = [0, 1].map(|d| increment[m + a] * t[d] - constraint.gap * constraint.normal[d]);
+            let step =
+                [0, 1].map(|d| increment[m + a] * t[d] - constraint.gap * constraint.normal[d]);
             largest = largest.max(step[0].abs()).max(step[1].abs());
             let u = state.displacements[i];
             moved.push([u[0] + step[0], u[1] + step[1]]);

@@ -49,7 +49,11 @@ impl Model {
     /// # Errors
     /// [`FemError::Phantom`] for a phantom that is not valid, [`FemError::MeshSize`],
     /// [`FemError::Degenerate`], [`FemError::NotPositiveDefinite`].
-    pub fn new(phantom: &Phantom, options: &MeshOptions, contact: Contact) -> Result<Model, FemError> {
+    pub fn new(
+        phantom: &Phantom,
+        options: &MeshOptions,
+        contact: Contact,
+    ) -> Result<Model, FemError> {
         phantom.validate()?;
         let mesh = Mesh::new(phantom, options)?;
         let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
@@ -57,7 +61,15 @@ impl Model {
         let positions = mesh.nodes[mesh.surface()].to_vec();
         let surface = Surface::new(factor.surface_factor(), positions, phantom.probe, contact);
         let samples = Samples::new(&mesh, &matrix);
-        Ok(Model { phantom: phantom.clone(), options: *options, mesh, matrix, factor, surface, samples })
+        Ok(Model {
+            phantom: phantom.clone(),
+            options: *options,
+            mesh,
+            matrix,
+            factor,
+            surface,
+            samples,
+        })
     }
 
     /// The phantom.
@@ -92,23 +104,48 @@ impl Model {
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
         self.phantom.check_pose(pose.depth, pose.lateral)?;
         // The right half stands for both, so that mirrored poses have mirrored forces to the bit.
-        let right = Pose { lateral: pose.lateral.abs(), ..pose };
-        let surface = Pose { depth: 0.0, ..right };
+        let right = Pose {
+            lateral: pose.lateral.abs(),
+            ..pose
+        };
+        let surface = Pose {
+            depth: 0.0,
+            ..right
+        };
         let untouched = ContactState::untouched(self.surface.positions.len());
         let solution = self.solution(right, self.approach(right, surface, &untouched)?);
-        Ok(if pose.lateral < 0.0 { solution.mirrored() } else { solution })
+        Ok(if pose.lateral < 0.0 {
+            solution.mirrored()
+        } else {
+            solution
+        })
     }
 
     /// Leads the contact from a solved pose down to `pose`, in steps that halve where they fail.
-    fn approach(&self, pose: Pose, from: Pose, start: &ContactState) -> Result<ContactState, FemError> {
+    fn approach(
+        &self,
+        pose: Pose,
+        from: Pose,
+        start: &ContactState,
+    ) -> Result<ContactState, FemError> {
         let whole = pose.depth - from.depth;
         let longest = DEPTH_STEP * self.phantom.probe.radius;
         let shortest = longest.min(whole) / f64::from(1u32 << HALVINGS);
         let (mut state, mut depth, mut step) = (start.clone(), from.depth, longest);
         let mut iterations = 0;
         loop {
-            let next = if pose.depth - depth <= step { pose.depth } else { depth + step };
-            match self.surface.solve(Pose { depth: next, ..pose }, &state) {
+            let next = if pose.depth - depth <= step {
+                pose.depth
+            } else {
+                depth + step
+            };
+            match self.surface.solve(
+                Pose {
+                    depth: next,
+                    ..pose
+                },
+                &state,
+            ) {
                 Ok(solved) => {
                     iterations += solved.iterations;
                     (state, depth) = (solved, next);
@@ -134,9 +171,22 @@ impl Model {
             let u = state.displacements[*node];
             force[0] * u[0] + force[1] * u[1]
         };
-        let energy = 0.5 * self.surface.nodal_forces(&state, pose).iter().map(work).sum::<f64>();
+        let energy = 0.5
+            * self
+                .surface
+                .nodal_forces(&state, pose)
+                .iter()
+                .map(work)
+                .sum::<f64>();
         let penetration = self.surface.penetration(&state, pose);
-        PoseSolution { pose, normal_force, lateral_force, energy, penetration, state }
+        PoseSolution {
+            pose,
+            normal_force,
+            lateral_force,
+            energy,
+            penetration,
+            state,
+        }
     }
 
     /// Displacement of every node, m, at a solved pose, by a full solve under its contact forces.
@@ -151,8 +201,14 @@ impl Model {
             force[first + 2 * node..][..2].copy_from_slice(&component);
         }
         let (u, _) = self.factor.solve(&self.matrix, &force)?;
-        let component = |node, direction| numbering.unknown(node, direction).map_or(0.0, |unknown| u[unknown]);
-        Ok((0..self.mesh.nodes.len()).map(|node| [component(node, 0), component(node, 1)]).collect())
+        let component = |node, direction| {
+            numbering
+                .unknown(node, direction)
+                .map_or(0.0, |unknown| u[unknown])
+        };
+        Ok((0..self.mesh.nodes.len())
+            .map(|node| [component(node, 0), component(node, 1)])
+            .collect())
     }
 
     /// The checks of the whole field at each solved pose.
@@ -173,14 +229,19 @@ impl Model {
 
     /// Solves one lateral position at increasing depths, each pose starting the next.
     fn column(&self, depths: &[f64], lateral: f64) -> Result<Vec<PoseSolution>, FemError> {
-        let mut from = Pose { depth: 0.0, lateral };
+        let mut from = Pose {
+            depth: 0.0,
+            lateral,
+        };
         let mut state = ContactState::untouched(self.surface.positions.len());
         let mut solutions = Vec::with_capacity(depths.len());
         let mut earlier: Option<(f64, ContactState)> = None;
         for &depth in depths {
             let pose = Pose { depth, lateral };
             let start = match &earlier {
-                Some((before, earlier)) if from.depth>*before => state.extrapolated(earlier, (depth - from.depth) / (from.depth - before)),
+                Some((before, earlier)) if from.depth > *before => {
+                    state.extrapolated(earlier, (depth - from.depth) / (from.depth - before))
+                }
                 _ => state.clone(),
             };
             let solved = self.approach(pose, from, &start)?;
@@ -199,7 +260,12 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::solve`], and [`FemError::Residual`], [`FemError::Map`].
-    pub fn map(&self, depths: &[f64], laterals: &[f64], solved: &dyn Fn(usize)) -> Result<ForceMap, FemError> {
+    pub fn map(
+        &self,
+        depths: &[f64],
+        laterals: &[f64],
+        solved: &dyn Fn(usize),
+    ) -> Result<ForceMap, FemError> {
         // Axes first: a list that cannot be a map shall not cost the time to solve it.
         let zeros = || Matrix::from_fn(depths.len(), laterals.len(), |_, _| 0.0);
         ForceTable::new(depths.to_vec(), laterals.to_vec(), zeros(), zeros())?;
@@ -221,7 +287,9 @@ impl Model {
         }
         // Solutions and checks come column by column.
         let matrix = |entry: &dyn Fn(usize) -> f64| {
-            Matrix::from_fn(depths.len(), right.len(), |row, column| entry(column * depths.len() + row))
+            Matrix::from_fn(depths.len(), right.len(), |row, column| {
+                entry(column * depths.len() + row)
+            })
         };
         let table = ForceTable::new(
             depths.to_vec(),
@@ -229,9 +297,23 @@ impl Model {
             matrix(&|at| solutions[at].normal_force),
             matrix(&|at| solutions[at].lateral_force),
         )?;
-        let certificate = self.certificate(&solutions, &checks, matrix(&|at| checks[at].min_det), depths, &right)?;
-        let map = ForceMap::new(Source::FiniteElements { certificate }, Some(self.phantom.clone()), table)?;
-        let map = if right[0] == 0.0 { map.mirrored()? } else { map };
+        let certificate = self.certificate(
+            &solutions,
+            &checks,
+            matrix(&|at| checks[at].min_det),
+            depths,
+            &right,
+        )?;
+        let map = ForceMap::new(
+            Source::FiniteElements { certificate },
+            Some(self.phantom.clone()),
+            table,
+        )?;
+        let map = if right[0] == 0.0 {
+            map.mirrored()?
+        } else {
+            map
+        };
         Ok(map.at_laterals(laterals)?)
     }
 
@@ -243,9 +325,11 @@ impl Model {
         depths: &[f64],
         laterals: &[f64],
     ) -> Result<Certificate, FemError> {
-        let worst = |value: &dyn Fn(&FieldCheck) -> f64| checks.iter().map(value).fold(0.0, f64::max);
+        let worst =
+            |value: &dyn Fn(&FieldCheck) -> f64| checks.iter().map(value).fold(0.0, f64::max);
         // No det can be found only where a field is not finite, and then its residual is not either.
-        let smallest_det = SmallestDet::of(&min_det, depths, laterals).ok_or(FemError::Residual { residual: f64::NAN })?;
+        let smallest_det = SmallestDet::of(&min_det, depths, laterals)
+            .ok_or(FemError::Residual { residual: f64::NAN })?;
         Ok(Certificate {
             worst_relative_residual: worst(&|check| check.residual),
             worst_force_balance: worst(&|check| check.imbalance),
@@ -267,13 +351,33 @@ impl PoseSolution {
     fn mirrored(self) -> PoseSolution {
         let nodes = self.state.displacements.len();
         let state = ContactState {
-            displacements: self.state.displacements.iter().rev().map(|&[x, y]| [-x, y]).collect(),
+            displacements: self
+                .state
+                .displacements
+                .iter()
+                .rev()
+                .map(|&[x, y]| [-x, y])
+                .collect(),
             pressures: self.state.pressures.iter().rev().copied().collect(),
-            active: self.state.active.iter().rev().map(|&node| nodes - 1 - node).collect(),
+            active: self
+                .state
+                .active
+                .iter()
+                .rev()
+                .map(|&node| nodes - 1 - node)
+                .collect(),
             iterations: self.state.iterations,
         };
-        let pose = Pose { lateral: -self.pose.lateral, ..self.pose };
-        PoseSolution { pose, lateral_force: -self.lateral_force, state, ..self }
+        let pose = Pose {
+            lateral: -self.pose.lateral,
+            ..self.pose
+        };
+        PoseSolution {
+            pose,
+            lateral_force: -self.lateral_force,
+            state,
+            ..self
+        }
     }
 }
 

@@ -45,9 +45,17 @@ fn dissect(sites: Vec<Site>, order: &mut Vec<usize>) {
         return;
     };
     let part = |side: Ordering| -> Vec<Site> {
-        sites.iter().copied().filter(|site| line.side_of(site) == side).collect()
+        sites
+            .iter()
+            .copied()
+            .filter(|site| line.side_of(site) == side)
+            .collect()
     };
-    let (before, behind, on) = (part(Ordering::Less), part(Ordering::Greater), part(Ordering::Equal));
+    let (before, behind, on) = (
+        part(Ordering::Less),
+        part(Ordering::Greater),
+        part(Ordering::Equal),
+    );
     drop(sites);
     dissect(before, order);
     dissect(behind, order);
@@ -85,10 +93,16 @@ fn middle_line(sites: &[Site]) -> Option<Line> {
     };
     let column = across(columns).map(Line::Column);
     let row = across(rows).map(|line| Line::Row(line as usize));
-    if rows[1] - rows[0] > columns[1] - columns[0] { row.or(column) } else { column.or(row) }
+    if rows[1] - rows[0] > columns[1] - columns[0] {
+        row.or(column)
+    } else {
+        column.or(row)
+    }
 }
 
 /// The smallest and the largest value.
 fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    })
 }

@@ -252,7 +252,10 @@ impl ForceTable {
     pub(super) fn at_columns(&self, columns: &[usize]) -> Result<ForceTable, InvalidForceMap> {
         ForceTable::new(
             self.depths.clone(),
-            columns.iter().map(|&column| self.laterals[column]).collect(),
+            columns
+                .iter()
+                .map(|&column| self.laterals[column])
+                .collect(),
             self.normal_force.at_columns(columns),
             self.lateral_force.at_columns(columns),
         )
