@@ -70,8 +70,7 @@ fn statistic_of_a_record() {
 // Verifies: DET-014.
 #[test]
 fn long_sums_that_cancel_stay_exact() {
-    // r·Δ runs through 1, 2^80, 1, −2^80: any ordinary or Kahan summation loses every 1. Exact: γ²
-    // = Σ(1 + 2^80 …).
+    // r·Δ runs through 1.5, 2^80 + 2^39, 1.5, −2^80 + 2^39: plain summation loses every 1.5.
     const SAMPLES: usize = 1_000_000;
     let big = 2_f64.powi(40);
     let template: Vec<f64> = (0..SAMPLES)
@@ -97,7 +96,7 @@ fn long_sums_that_cancel_stay_exact() {
         Channels { x: 1.0, y: 1.0 },
     )
     .unwrap();
-    // Σ rΔ − ½ΣΔ² for r = Δ/2 + (a residue of 1e-3 at one sample only).
+    // r = Δ/2 but for one sample, which is ¼ larger where Δ = 1: Σ rΔ − ½ΣΔ² = ¼, of sums of 2^98.
     let mut halves: Vec<f64> = template.iter().map(|sample| sample / 2.0).collect();
     halves[0] += 0.25;
     let theta = filter
@@ -244,9 +243,9 @@ fn units_of_any_size_give_the_same_gamma_and_theta() {
         let (rx, ry) = (scale(RESIDUAL.x), scale(RESIDUAL.y));
         let filter =
             MatchedFilter::new(Channels { x: &tx, y: &ty }, NOISE_SD.map(|sd| sd * unit)).unwrap();
-        assert_eq!(filter.gamma(), super::tests::filter().gamma());
+        assert_eq!(filter.gamma(), self::filter().gamma());
         let found = filter.statistic(Channels { x: &rx, y: &ry }).unwrap();
-        let expected = super::tests::filter().statistic(RESIDUAL).unwrap();
+        let expected = self::filter().statistic(RESIDUAL).unwrap();
         assert_eq!(found.theta, expected.theta);
         assert_ulps(found.y.x, expected.y.x * unit, 1.0);
     }
