@@ -9,16 +9,19 @@
 //! | §3 phantoms | [`phantom`] |
 //! | §3.1 finite elements | [`fem`] |
 //! | §3, §4 force tables | [`force_map`] |
+//! | a recorded sweep against two of them | [`trace`] |
 //! | figures, tables | [`report`] |
 //!
 //! Lengths are metres, forces newtons, moduli pascals throughout; `spec/README.md` has the signs.
 //!
 //! With `default-features = false` the crate is `no_std`, does not allocate, and depends on `libm`
 //! alone: that part holds [`stats`] and [`detect`].
-#![cfg_attr(not(feature = "std"), no_std)]
+#![cfg_attr(not(any(feature = "std", feature = "verify")), no_std)]
 
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "std")]
+pub mod csv;
 pub mod detect;
 #[cfg(feature = "fem")]
 pub mod fem;
@@ -29,3 +32,7 @@ pub mod phantom;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod stats;
+#[cfg(feature = "std")]
+pub mod trace;
+#[cfg(feature = "verify")]
+pub mod verify;

@@ -4,6 +4,7 @@ use crate::fem::FemError;
 use crate::force_map::ForceMapFileError;
 use crate::phantom::PhantomFileError;
 use crate::report::ReportError;
+use crate::trace::TraceError;
 
 /// Why a command failed. Its message is one line.
 ///
@@ -19,6 +20,12 @@ pub enum CliError {
     /// A force map's file is not valid.
     #[error("{0}")]
     Map(#[from] ForceMapFileError),
+    /// A trace is not valid, or not for these maps.
+    #[error("{0}")]
+    Trace(#[from] TraceError),
+    /// A check of the statistics battery failed.
+    #[error("{0}")]
+    Check(String),
     /// The solver refused the phantom, the mesh or a pose, or failed.
     #[error("phantom {phantom}: {error}")]
     Fem {
@@ -68,7 +75,7 @@ impl CliError {
                 | FemError::OutOfMemory => 1,
                 _ => 2,
             },
-            CliError::Report(_) | CliError::Output(_) => 1,
+            CliError::Report(_) | CliError::Output(_) | CliError::Check(_) => 1,
             _ => 2,
         }
     }

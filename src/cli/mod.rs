@@ -1,6 +1,8 @@
 //! The command line (`spec/command-line.md`).
 
 mod config;
+mod detect;
+mod detection;
 mod error;
 mod import;
 mod lists;
@@ -8,6 +10,7 @@ mod output;
 mod progress;
 mod run;
 mod solve;
+mod verify;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -34,6 +37,10 @@ enum Command {
     Solve(solve::SolveArguments),
     /// A measured force map in CSV, checked and written as JSON.
     ImportMap(import::ImportArguments),
+    /// A recorded sweep against two force maps: is there an inclusion, and where.
+    Detect(detect::DetectArguments),
+    /// The statistics battery of the detector, once or with fresh seeds.
+    Verify(verify::VerifyArguments),
 }
 
 /// How the gap to the probe is measured.
@@ -90,6 +97,12 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(Arguments {
             command: Command::ImportMap(arguments),
         }) => import::import(&arguments),
+        Ok(Arguments {
+            command: Command::Detect(arguments),
+        }) => detect::detect(&arguments),
+        Ok(Arguments {
+            command: Command::Verify(arguments),
+        }) => verify::verify(&arguments),
         Err(error) if !error.use_stderr() => output::print(&error.to_string()),
         Err(error) => Err(CliError::usage(&error)),
     };

@@ -3,19 +3,21 @@
 use std::cmp::Ordering;
 use std::path::Path;
 
-use super::file::{ForceMapFileError, ForceMapFileProblem, shortened};
+use super::file::{ForceMapFileError, ForceMapFileProblem};
 use super::{ForceMap, ForceTable, Matrix, Source};
+use crate::csv::{Column, Header, header_and_rows};
 use crate::phantom::Phantom;
-use crate::phantom::decimal::{format_scaled, parse_scaled};
+use crate::phantom::decimal::format_scaled;
 
-/// What a column can be called, and the power of ten from its unit to SI; depth, lateral position,
-/// normal force, lateral force.
-const COLUMNS: [[(&str, i32); 2]; 4] = [
-    [("depth_mm", -3), ("depth_m", 0)],
-    [("lateral_mm", -3), ("lateral_m", 0)],
-    [("normal_force_n", 0), ("normal_force_mn", -3)],
-    [("lateral_force_n", 0), ("lateral_force_mn", -3)],
+/// Depth, lateral position, normal force, lateral force.
+const COLUMNS: [Column; 4] = [
+    &[("depth_mm", -3), ("depth_m", 0)],
+    &[("lateral_mm", -3), ("lateral_m", 0)],
+    &[("normal_force_n", 0), ("normal_force_mn", -3)],
+    &[("lateral_force_n", 0), ("lateral_force_mn", -3)],
 ];
+/// The headers that are right, for a person.
+const EXPECTED_HEADER: &str = "depth_mm,lateral_mm,normal_force_n,lateral_force_n, in any order, lengths also as _m, forces also as _mn";
 
 impl ForceMap {
     /// The measured map in `text`, the content of `file`. The map records the file's name without
@@ -72,19 +74,13 @@ impl ForceTable {
     ///
     /// Implements: MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-038.
     pub fn from_csv(text: &str, file: &str) -> Result<ForceTable, ForceMapFileError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let mut lines = (1..)
-            .zip(text.lines())
-            .map(|(line, content)| (line, content.trim()))
-            .filter(|(_, content)| !content.is_empty() && !content.starts_with('#'));
-        let (line, header) = lines.next().unwrap_or((1, ""));
-        let header = Header::parse(header).map_err(|problem| problem.at(file, line))?;
+        let refused = |line| move |problem| ForceMapFileProblem::from(problem).at(file, line);
+        let ((line, header), rows) = header_and_rows(text);
+        let header = Header::parse(header, COLUMNS, EXPECTED_HEADER).map_err(refused(line))?;
         let mut points = Vec::new();
-        for (line, row) in lines {
-            let point = header
-                .point(line, row)
-                .map_err(|problem| problem.at(file, line))?;
-            points.push(point);
+        for (line, row) in rows {
+            let numbers = header.numbers(row).map_err(refused(line))?;
+            points.push(Point::new(line, numbers));
         }
         check_grid(&mut points, file).and_then(|(depths, laterals)| {
             let columns = laterals.len();
@@ -101,63 +97,6 @@ impl ForceTable {
     }
 }
 
-/// Which field of a row is what.
-struct Header<'a> {
-    text: &'a str,
-    /// Place, name and power of ten of each of [`COLUMNS`].
-    columns: [(usize, &'static str, i32); 4],
-}
-
-impl<'a> Header<'a> {
-    fn parse(text: &'a str) -> Result<Header<'a>, ForceMapFileProblem> {
-        let fields: Vec<&str> = text.split(',').map(str::trim).collect();
-        let refused = || ForceMapFileProblem::Header {
-            found: shortened(text),
-        };
-        // Four fields and each column among them: none is there twice.
-        if fields.len() != COLUMNS.len() {
-            return Err(refused());
-        }
-        let mut columns = [(0, "", 0); COLUMNS.len()];
-        for (column, names) in columns.iter_mut().zip(COLUMNS) {
-            let mut found = fields.iter().enumerate().filter_map(|(place, field)| {
-                let &(name, power) = names.iter().find(|(name, _)| name == field)?;
-                Some((place, name, power))
-            });
-            *column = found.next().ok_or_else(refused)?;
-        }
-        Ok(Header { text, columns })
-    }
-
-    fn point(&self, line: usize, row: &str) -> Result<Point, ForceMapFileProblem> {
-        let fields: Vec<&str> = row.split(',').map(str::trim).collect();
-        if fields.len() != COLUMNS.len() {
-            return Err(ForceMapFileProblem::Fields {
-                found: fields.len(),
-                expected: COLUMNS.len(),
-                header: self.text.into(),
-            });
-        }
-        let mut values = [0.0; 4];
-        for (value, (place, name, power)) in values.iter_mut().zip(self.columns) {
-            *value = parse_scaled(fields[place], power).ok_or_else(|| {
-                let (column, found) = (name.into(), shortened(fields[place]));
-                ForceMapFileProblem::Number { column, found }
-            })?;
-        }
-        let [depth, lateral, normal_force, lateral_force] = values;
-        // Adding 0 makes −0 the same position as 0.
-        let (depth, lateral) = (depth + 0.0, lateral + 0.0);
-        Ok(Point {
-            line,
-            depth,
-            lateral,
-            normal_force,
-            lateral_force,
-        })
-    }
-}
-
 /// One row of the file, SI.
 struct Point {
     line: usize,
@@ -168,6 +107,18 @@ struct Point {
 }
 
 impl Point {
+    /// The row in `line` with the numbers of [`COLUMNS`].
+    fn new(line: usize, [depth, lateral, normal_force, lateral_force]: [f64; 4]) -> Point {
+        Point {
+            line,
+            // Adding 0 makes −0 the same position as 0.
+            depth: depth + 0.0,
+            lateral: lateral + 0.0,
+            normal_force,
+            lateral_force,
+        }
+    }
+
     fn order(&self, other: &Point) -> Ordering {
         let depths = self.depth.total_cmp(&other.depth);
         depths.then(self.lateral.total_cmp(&other.lateral))

@@ -137,6 +137,26 @@ pub enum InvalidForceMap {
         /// The depths of the map, m.
         stored: Vec<f64>,
     },
+    /// The depth lies between no rows of the map.
+    #[error("depth {depth} m is outside the map, expected {first} to {last} m")]
+    OutsideDepths {
+        /// The depth that was asked for, m.
+        depth: f64,
+        /// The first depth of the map, m.
+        first: f64,
+        /// The last depth of the map, m.
+        last: f64,
+    },
+    /// The position lies between no columns of the map.
+    #[error("lateral position {lateral} m is outside the map, expected {first} to {last} m")]
+    OutsideLaterals {
+        /// The lateral position that was asked for, m.
+        lateral: f64,
+        /// The first lateral position of the map, m.
+        first: f64,
+        /// The last lateral position of the map, m.
+        last: f64,
+    },
     /// No column of the map is at this lateral position.
     #[error("lateral position {lateral} m is not in the map, expected one of {stored:?} m")]
     NoSuchLateral {

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use super::{ForceMap, InvalidForceMap};
+use crate::csv::CsvProblem;
 
 /// Why a file of a force map is refused: one line that begins with the file.
 ///
@@ -65,32 +66,9 @@ pub enum ForceMapFileProblem {
         /// What would be right.
         expected: &'static str,
     },
-    /// A CSV header that does not name the four columns.
-    #[error(
-        "header {found:?}, expected depth_mm,lateral_mm,normal_force_n,lateral_force_n, in any order, lengths also as _m, forces also as _mn"
-    )]
-    Header {
-        /// The header.
-        found: String,
-    },
-    /// A CSV row with too few or too many fields.
-    #[error("{found} fields, expected {expected}, as in the header {header:?}")]
-    Fields {
-        /// Fields in the row.
-        found: usize,
-        /// Fields in the header.
-        expected: usize,
-        /// The header.
-        header: String,
-    },
-    /// A CSV field that is no number.
-    #[error("{column} = {found:?}, expected a finite decimal number")]
-    Number {
-        /// The column, as in the header.
-        column: String,
-        /// The field.
-        found: String,
-    },
+    /// A line of a CSV file is malformed.
+    #[error(transparent)]
+    Csv(#[from] CsvProblem),
     /// Two CSV rows for one pose.
     #[error(
         "second row for depth {depth_mm} mm, lateral {lateral_mm} mm, expected one; the first is line {first}"
@@ -132,11 +110,6 @@ impl ForceMapFileProblem {
             problem: self,
         }
     }
-}
-
-/// The beginning of `text`, enough to recognise it in a message.
-pub(super) fn shortened(text: &str) -> String {
-    text.chars().take(80).collect()
 }
 
 impl ForceMap {

@@ -7,8 +7,9 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize as DeriveDeserialize, Serialize};
 use serde_json::Value;
 
-use super::file::{ForceMapFileError, ForceMapFileProblem, shortened};
+use super::file::{ForceMapFileError, ForceMapFileProblem};
 use super::{Certificate, ForceMap, ForceTable, Matrix, Source};
+use crate::csv::shortened;
 use crate::phantom::Phantom;
 
 /// What the key `schema` of a force map says.

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `mod.rs` | the map: forces and their source |
 //! | `table.rs` | axes and matrices; symmetry, difference, one depth |
+//! | `sweep.rs` | the forces between the poses, along a sweep |
 //! | `certificate.rs` | the quality of a computed map |
 //! | `error.rs` | what can be wrong |
 //! | `file.rs`, `json.rs`, `csv.rs` | files |
@@ -14,6 +15,7 @@ mod csv;
 mod error;
 mod file;
 mod json;
+mod sweep;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -22,6 +24,7 @@ pub use certificate::{Certificate, SmallestDet};
 pub use error::InvalidForceMap;
 pub use file::{ForceMapFileError, ForceMapFileProblem};
 pub use json::{SCHEMA, SCHEMA_VERSION};
+pub use sweep::Sweep;
 pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
 
 use crate::phantom::Phantom;

@@ -1,0 +1,209 @@
+//! `palpate detect`: a recorded sweep against two force maps (`spec/detect-command.md`).
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::CliError;
+use super::detection::{Answer, AtKnownPosition, AtUnknownPosition, Question};
+use super::output::print;
+use crate::detect::Channels;
+use crate::force_map::ForceMap;
+use crate::phantom::decimal::parse_scaled;
+use crate::trace::{Criterion, Motion, Trace, judge, locate};
+
+/// Arguments of `palpate detect`.
+#[derive(Debug, Args)]
+pub struct DetectArguments {
+    /// The recorded sweep: a header with position_mm (or time_s), lateral_force_n, normal_force_n, and a row for each sample
+    #[arg(value_name = "TRACE.csv")]
+    trace: PathBuf,
+    /// The force map without inclusion: JSON as 'palpate solve --phantom none --format json' prints it, or measured CSV
+    #[arg(long, value_name = "MAP")]
+    reference: PathBuf,
+    /// The force map with the inclusion at x = 0
+    #[arg(long, value_name = "MAP")]
+    inclusion: PathBuf,
+    /// The constant depth of the sweep in mm
+    #[arg(long, value_name = "D", value_parser = millimetres, allow_hyphen_values = true)]
+    depth_mm: f64,
+    /// Standard deviation of the noise of one sample in N, both channels
+    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true,
+          conflicts_with_all = ["noise_sd_lateral_n", "noise_sd_normal_n"],
+          required_unless_present_all = ["noise_sd_lateral_n", "noise_sd_normal_n"])]
+    noise_sd_n: Option<f64>,
+    /// Standard deviation of the noise of one lateral sample in N
+    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true, requires = "noise_sd_normal_n")]
+    noise_sd_lateral_n: Option<f64>,
+    /// Standard deviation of the noise of one normal sample in N
+    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true, requires = "noise_sd_lateral_n")]
+    noise_sd_normal_n: Option<f64>,
+    /// Probability of an inclusion before the sweep
+    #[arg(long, value_name = "P", value_parser = probability, allow_hyphen_values = true, default_value = "0.5")]
+    prior_h1: f64,
+    /// What the threshold shall achieve
+    #[arg(long, value_enum, default_value_t = CriterionName::Map)]
+    criterion: CriterionName,
+    /// Largest rate of misses, for neyman-pearson-miss
+    #[arg(long, value_name = "B", value_parser = probability, allow_hyphen_values = true)]
+    max_miss: Option<f64>,
+    /// Largest rate of false alarms, for neyman-pearson-false-alarm
+    #[arg(long, value_name = "A", value_parser = probability, allow_hyphen_values = true)]
+    max_false_alarm: Option<f64>,
+    /// Searches for the lateral position of the inclusion; without it the inclusion would lie at x = 0
+    #[arg(long)]
+    scan: bool,
+    /// Velocity of the probe in mm/s, for a trace over time
+    #[arg(long, value_name = "V", value_parser = millimetres, allow_hyphen_values = true, requires = "start_mm")]
+    velocity_mm_s: Option<f64>,
+    /// Lateral position of the probe at time 0 in mm, for a trace over time
+    #[arg(long, value_name = "X0", value_parser = millimetres, allow_hyphen_values = true, requires = "velocity_mm_s")]
+    start_mm: Option<f64>,
+    /// How the answer is printed
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people, lengths in mm.
+    Table,
+    /// For programs, in SI.
+    Json,
+}
+
+/// The criteria by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum CriterionName {
+    /// The most probable hypothesis for the prior.
+    Map,
+    /// A bound on misses.
+    NeymanPearsonMiss,
+    /// A bound on false alarms.
+    NeymanPearsonFalseAlarm,
+}
+
+fn millimetres(text: &str) -> Result<f64, String> {
+    parse_scaled(text, -3).ok_or_else(|| "expected a finite number, such as 2.5".into())
+}
+
+fn newtons(text: &str) -> Result<f64, String> {
+    parse_scaled(text, 0)
+        .filter(|&noise| noise > 0.0)
+        .ok_or_else(|| "expected N above 0, such as 0.1".into())
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    parse_scaled(text, 0)
+        .filter(|&probability| probability > 0.0 && probability < 1.0)
+        .ok_or_else(|| "expected a probability strictly between 0 and 1".into())
+}
+
+impl DetectArguments {
+    /// Implements: CLI-042.
+    fn criterion(&self) -> Result<Criterion, CliError> {
+        match (self.criterion, self.max_miss, self.max_false_alarm) {
+            (CriterionName::Map, None, None) => Ok(Criterion::Map),
+            (CriterionName::NeymanPearsonMiss, Some(max_miss), None) => {
+                Ok(Criterion::NeymanPearsonMiss { max_miss })
+            }
+            (CriterionName::NeymanPearsonFalseAlarm, None, Some(max_false_alarm)) => {
+                Ok(Criterion::NeymanPearsonFalseAlarm { max_false_alarm })
+            }
+            (criterion, ..) => Err(CliError::Usage(format!(
+                "--criterion {}: expected {} --max-miss and {} --max-false-alarm",
+                criterion
+                    .to_possible_value()
+                    .map_or(String::new(), |name| name.get_name().into()),
+                with(criterion == CriterionName::NeymanPearsonMiss),
+                with(criterion == CriterionName::NeymanPearsonFalseAlarm),
+            ))),
+        }
+    }
+
+    /// Implements: CLI-041.
+    fn noise_sd(&self) -> Result<Channels<f64>, CliError> {
+        let both = (self.noise_sd_lateral_n, self.noise_sd_normal_n);
+        match (self.noise_sd_n, both) {
+            (Some(noise_sd), (None, None)) => Ok(Channels {
+                x: noise_sd,
+                y: noise_sd,
+            }),
+            (None, (Some(x), Some(y))) => Ok(Channels { x, y }),
+            // The parser has refused it already.
+            _ => Err(CliError::Usage(
+                "expected --noise-sd-n, or --noise-sd-lateral-n and --noise-sd-normal-n".into(),
+            )),
+        }
+    }
+}
+
+fn with(wanted: bool) -> &'static str {
+    if wanted { "a" } else { "no" }
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-040, CLI-043, CLI-044, CLI-046, CLI-048.
+pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
+    let (criterion, noise_sd) = (arguments.criterion()?, arguments.noise_sd()?);
+    let motion = arguments
+        .velocity_mm_s
+        .zip(arguments.start_mm)
+        .map(|(velocity, start)| Motion { velocity, start });
+    let record = Trace::read(&arguments.trace)?.record(motion)?;
+    let (reference, inclusion) = (map(&arguments.reference)?, map(&arguments.inclusion)?);
+    check_not_swapped(&reference, &inclusion, &arguments.reference)?;
+    let (depth, prior_h1) = (arguments.depth_mm, arguments.prior_h1);
+    let (f0, f1) = (reference.forces(), inclusion.forces());
+    let mut answer = Answer {
+        question: Question::new(
+            [&arguments.trace, &arguments.reference, &arguments.inclusion],
+            record.positions().len(),
+            depth,
+            noise_sd,
+            prior_h1,
+            criterion,
+        ),
+        known: None,
+        unknown: None,
+    };
+    if arguments.scan {
+        let found = locate(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
+        answer.unknown = Some(AtUnknownPosition::from(found));
+    } else {
+        let found = judge(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
+        answer.known = Some(AtKnownPosition::from(found));
+    }
+    print(&match arguments.format {
+        Format::Table => answer.table(),
+        Format::Json => answer.json(),
+    })
+}
+
+fn map(path: &Path) -> Result<ForceMap, CliError> {
+    if path.exists() {
+        return Ok(ForceMap::read(path)?);
+    }
+    // A built-in phantom has a name elsewhere, but its forces depend on depths and mesh.
+    Err(CliError::Usage(format!(
+        "{}: no such force map; 'palpate solve --phantom none --depths-mm ... --laterals-mm ... --format json' makes one",
+        path.display()
+    )))
+}
+
+/// Implements: CLI-047.
+fn check_not_swapped(
+    reference: &ForceMap,
+    inclusion: &ForceMap,
+    path: &Path,
+) -> Result<(), CliError> {
+    let has_inclusion = |map: &ForceMap| map.phantom().map(|phantom| phantom.inclusion.is_some());
+    match (has_inclusion(reference), has_inclusion(inclusion)) {
+        (Some(true), Some(false)) => Err(CliError::Usage(format!(
+            "{}: its phantom has an inclusion and that of --inclusion has none, expected --reference and --inclusion the other way round",
+            path.display()
+        ))),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,79 @@
+//! The record judged at the position that the maps are for.
+
+use super::{Record, TraceError, TraceProblem};
+use crate::detect::assessment::{Assessment, assess};
+use crate::detect::{
+    Channels, DetectError, map_threshold, neyman_pearson_false_alarm_threshold,
+    neyman_pearson_miss_threshold, theta_of_record,
+};
+use crate::force_map::ForceTable;
+
+/// What the threshold shall achieve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Criterion {
+    /// The fewest errors for the prior.
+    Map,
+    /// At most this rate of misses, with the fewest false alarms.
+    NeymanPearsonMiss {
+        /// The largest rate of misses.
+        max_miss: f64,
+    },
+    /// At most this rate of false alarms, with the fewest misses.
+    NeymanPearsonFalseAlarm {
+        /// The largest rate of false alarms.
+        max_false_alarm: f64,
+    },
+}
+
+impl Criterion {
+    /// η at a known position, where the signal-to-noise ratio is γ.
+    ///
+    /// # Errors
+    /// A prior or rate not strictly between 0 and 1; γ = 0 with a rate of false alarms; overflow.
+    pub fn threshold(self, gamma: f64, prior_h1: f64) -> Result<f64, DetectError> {
+        match self {
+            Criterion::Map => map_threshold(prior_h1),
+            Criterion::NeymanPearsonMiss { max_miss } => {
+                neyman_pearson_miss_threshold(gamma, max_miss)
+            }
+            Criterion::NeymanPearsonFalseAlarm { max_false_alarm } => {
+                neyman_pearson_false_alarm_threshold(gamma, max_false_alarm)
+            }
+        }
+    }
+}
+
+/// η and the assessment of `record` for an inclusion at x = 0 of the maps, swept at `depth` (m), in
+/// white noise of standard deviation `noise_sd` a sample (N).
+///
+/// # Errors
+/// Maps on different axes; positions or a depth outside them; maps that do not differ at the
+/// samples; whatever the detector refuses.
+///
+/// Implements: TRC-020, CLI-043, CLI-049.
+pub fn judge(
+    record: &Record,
+    reference: &ForceTable,
+    inclusion: &ForceTable,
+    depth: f64,
+    noise_sd: Channels<f64>,
+    criterion: Criterion,
+    prior_h1: f64,
+) -> Result<(f64, Assessment), TraceError> {
+    let refused = |error: DetectError| TraceProblem::from(error).at(record.file(), None);
+    // Only for its refusal of axes that differ.
+    let same_axes = inclusion.minus(reference);
+    same_axes.map_err(|error| TraceProblem::from(error).at(record.file(), None))?;
+    let f0 = record.expected(reference, depth)?;
+    let f1 = record.expected(inclusion, depth)?;
+    let (f0, f1) = (super::view(&f0), super::view(&f1));
+    let gamma = theta_of_record(record.forces(), f0, f1, noise_sd)
+        .map_err(refused)?
+        .gamma;
+    if gamma == 0.0 {
+        return Err(TraceProblem::NoSignal.at(record.file(), None));
+    }
+    let eta = criterion.threshold(gamma, prior_h1).map_err(refused)?;
+    let assessment = assess(record.forces(), f0, f1, noise_sd, prior_h1, eta).map_err(refused)?;
+    Ok((eta, assessment))
+}

@@ -1,0 +1,259 @@
+//! The record judged at an unknown position of the inclusion, equation (10).
+
+use super::{Criterion, Record, TraceError, TraceProblem, channels, view};
+use crate::detect::assessment::{ScanAssessment, assess_scan};
+use crate::detect::mixture::mixture_theta;
+use crate::detect::position::{MaximumLaw, position_bound, slope};
+use crate::detect::scan::Scan;
+use crate::detect::{
+    Channels, Decision, DetectError, decide, error_rates, map_threshold,
+    neyman_pearson_miss_threshold, posterior,
+};
+use crate::force_map::{ForceTable, SAME_POSITION};
+use crate::phantom::decimal::format_scaled;
+
+/// Steps of a record that differ by less than this share of a step are equal.
+///
+/// Implements: TRC-030.
+pub const UNIFORM: f64 = 1e-6;
+
+/// Most samples of a record to scan: the work grows with their square.
+///
+/// Implements: TRC-041.
+pub const MOST_SAMPLES: usize = 20_000;
+
+/// What a scan says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Location {
+    /// Θ_max.
+    pub theta_max: f64,
+    /// ln of the likelihood ratio of an inclusion at any candidate, all equally probable.
+    pub theta_mixture: f64,
+    /// γ at the shift of the maximum.
+    pub gamma: f64,
+    /// The threshold.
+    pub eta: f64,
+    /// Whether the mixture is compared with η, and not Θ_max.
+    pub by_mixture: bool,
+    /// Ĥ.
+    pub decision: Decision,
+    /// Pr(H = 1), by the mixture.
+    pub posterior: f64,
+    /// The false-alarm rate is at most this.
+    pub false_alarm_bound: f64,
+    /// The miss rate for an inclusion at the position found is at most this.
+    pub miss_bound: f64,
+    /// x̂, m.
+    pub position: f64,
+    /// No unbiased estimate of the position has a smaller standard deviation, m.
+    pub position_sd_bound: f64,
+    /// Positions that were tried.
+    pub candidates: usize,
+}
+
+/// The signal on the grid of the record, and what is left of the record without inclusion.
+struct Grid {
+    /// Distance of the samples, m.
+    spacing: f64,
+    /// Position of the first sample, m.
+    start: f64,
+    /// The shift at which the inclusion lies at the first sample, ≤ 0.
+    first_shift: isize,
+    template: Channels<Vec<f64>>,
+    residual: Channels<Vec<f64>>,
+}
+
+/// Searches `record`, swept at `depth` (m), for the inclusion of the map `inclusion`, in white noise
+/// of standard deviation `noise_sd` a sample (N). The candidates are the positions of the samples.
+///
+/// # Errors
+/// As [`super::judge`]; a record whose steps are not equal, that is too long, or shorter than the
+/// maps; maps without x = 0.
+///
+/// Implements: TRC-034, TRC-035, TRC-036, TRC-037, TRC-038, TRC-039, TRC-040.
+pub fn locate(
+    record: &Record,
+    reference: &ForceTable,
+    inclusion: &ForceTable,
+    depth: f64,
+    noise_sd: Channels<f64>,
+    criterion: Criterion,
+    prior_h1: f64,
+) -> Result<Location, TraceError> {
+    let f0 = record.expected(reference, depth)?;
+    let grid = Grid::new(record, &f0, [reference, inclusion], depth)
+        .map_err(|(problem, line)| problem.at(record.file(), line))?;
+    let found = grid.locate(noise_sd, criterion, prior_h1);
+    found.map_err(|error| {
+        let problem = match error {
+            DetectError::NoSignal => TraceProblem::NoSignal,
+            error => TraceProblem::Detect(error),
+        };
+        problem.at(record.file(), None)
+    })
+}
+
+fn residual(record: &Record, f0: &Channels<Vec<f64>>) -> Channels<Vec<f64>> {
+    let difference = |(observed, f0): (&[f64], &Vec<f64>)| {
+        std::iter::zip(observed, f0)
+            .map(|(observed, f0)| observed - f0)
+            .collect()
+    };
+    let Channels { x, y } = f0;
+    record.forces().zip(Channels { x, y }).map(difference)
+}
+
+/// A problem, with the line where there is one.
+type Refusal = (TraceProblem, Option<usize>);
+
+impl Grid {
+    /// The template of `maps`, reference and inclusion, and the residual against `f0`.
+    ///
+    /// Implements: TRC-020, TRC-030, TRC-031, TRC-032, TRC-033, TRC-041.
+    fn new(
+        record: &Record,
+        f0: &Channels<Vec<f64>>,
+        [reference, inclusion]: [&ForceTable; 2],
+        depth: f64,
+    ) -> Result<Grid, Refusal> {
+        let spacing = equal_steps(record)?;
+        let refused = |problem| (problem, None);
+        let map = |error| refused(TraceProblem::Map(error));
+        let signal = inclusion.minus(reference).map_err(map)?;
+        let laterals = signal.laterals();
+        let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
+        if first > SAME_POSITION || last < -SAME_POSITION {
+            let [first, last] = [first, last].map(|position| format_scaled(position, 3));
+            return Err(refused(TraceProblem::NoOrigin { first, last }));
+        }
+        let first_sample = libm::ceil((first - SAME_POSITION) / spacing);
+        let last_sample = libm::floor((last + SAME_POSITION) / spacing);
+        let (template, samples) = (last_sample - first_sample + 1.0, record.positions().len());
+        if template > samples as f64 {
+            let record = samples;
+            return Err(refused(TraceProblem::Short { record, template }));
+        }
+        // Both lie between −20 000 and 20 000 now: the template holds j = 0.
+        let (first_shift, last_sample) = (first_sample as isize, last_sample as isize);
+        let positions: Vec<f64> = (first_shift..=last_sample)
+            .map(|j| j as f64 * spacing)
+            .collect();
+        Ok(Grid {
+            spacing,
+            start: record.positions()[0],
+            first_shift,
+            template: channels(signal.sweep(depth, &positions).map_err(map)?),
+            residual: residual(record, f0),
+        })
+    }
+
+    fn locate(
+        &self,
+        noise_sd: Channels<f64>,
+        criterion: Criterion,
+        prior_h1: f64,
+    ) -> Result<Location, DetectError> {
+        let candidates = self.residual.x.len();
+        let scan = Scan::new(candidates, view(&self.template), noise_sd)?;
+        let (mut gamma, mut angle) = (vec![0.0; candidates], vec![0.0; candidates]);
+        let law = MaximumLaw::new(&scan, self.first_shift, &mut gamma, &mut angle)?;
+        let eta = threshold(&scan, &law, criterion, prior_h1)?;
+        let found: ScanAssessment = assess_scan(&scan, &law, view(&self.residual), eta)?;
+        let shift = found.maximum.shift;
+        let mixture = self.mixture(&scan)?;
+        let mut location = Location {
+            theta_max: found.maximum.theta,
+            theta_mixture: mixture,
+            gamma: found.maximum.gamma,
+            eta,
+            by_mixture: criterion == Criterion::Map,
+            decision: found.decision,
+            posterior: posterior(mixture, prior_h1)?,
+            false_alarm_bound: found.false_alarm_bound,
+            miss_bound: found.miss_bound,
+            position: self.start
+                + (found.maximum.refined_shift - self.first_shift as f64) * self.spacing,
+            position_sd_bound: self.position_sd_bound(shift, noise_sd)?,
+            candidates,
+        };
+        if location.by_mixture {
+            location.decision = decide(mixture, eta)?;
+            let markov = libm::exp(-eta);
+            location.false_alarm_bound = location.false_alarm_bound.min(markov);
+            let lower = eta + libm::log(candidates as f64);
+            location.miss_bound = error_rates(location.gamma, lower)?.miss;
+        }
+        Ok(location)
+    }
+
+    /// Implements: TRC-035.
+    fn mixture(&self, scan: &Scan<'_>) -> Result<f64, DetectError> {
+        let candidates = self.residual.x.len();
+        let mut theta = vec![0.0; candidates];
+        scan.theta(view(&self.residual), self.first_shift, &mut theta)?;
+        mixture_theta(&theta, &vec![1.0 / candidates as f64; candidates])
+    }
+
+    /// The Cramér–Rao bound of what the record holds of the template at a shift.
+    ///
+    /// Implements: TRC-034.
+    fn position_sd_bound(&self, shift: isize, noise_sd: Channels<f64>) -> Result<f64, DetectError> {
+        let length = self.template.x.len();
+        let mut slopes = Channels {
+            x: vec![0.0; length],
+            y: vec![0.0; length],
+        };
+        slope(&self.template.x, self.spacing, &mut slopes.x)?;
+        slope(&self.template.y, self.spacing, &mut slopes.y)?;
+        let seen = |sample: usize| {
+            (0..self.residual.x.len() as isize).contains(&(sample as isize + shift))
+        };
+        let seen = slopes.map(|slope| {
+            let parts = slope.iter().enumerate().filter(|(sample, _)| seen(*sample));
+            parts.map(|(_, slope)| *slope).collect::<Vec<f64>>()
+        });
+        position_bound(view(&seen), noise_sd)
+    }
+}
+
+/// The mean spacing of a record's samples, m, if all are equal.
+///
+/// Implements: TRC-030, TRC-041.
+fn equal_steps(record: &Record) -> Result<f64, Refusal> {
+    let positions = record.positions();
+    let samples = positions.len();
+    if !(2..=MOST_SAMPLES).contains(&samples) {
+        return Err((TraceProblem::Samples { samples }, None));
+    }
+    let start = positions[0];
+    let spacing = (positions[samples - 1] - start) / (samples - 1) as f64;
+    for (i, (&found, sample)) in positions.iter().zip(&record.samples).enumerate() {
+        let expected = start + i as f64 * spacing;
+        if (found - expected).abs() > UNIFORM * spacing {
+            let [found, expected] = [found, expected].map(|position| format_scaled(position, 3));
+            let problem = TraceProblem::NotUniform { found, expected };
+            return Err((problem, Some(sample.line)));
+        }
+    }
+    Ok(spacing)
+}
+
+/// Implements: TRC-036, TRC-037, TRC-038.
+fn threshold(
+    scan: &Scan<'_>,
+    law: &MaximumLaw<'_>,
+    criterion: Criterion,
+    prior_h1: f64,
+) -> Result<f64, DetectError> {
+    match criterion {
+        Criterion::Map => map_threshold(prior_h1),
+        Criterion::NeymanPearsonFalseAlarm { max_false_alarm } => law.threshold(max_false_alarm),
+        Criterion::NeymanPearsonMiss { max_miss } => {
+            // The promise is for an inclusion anywhere: the lowest threshold keeps it.
+            law.shifts().try_fold(f64::INFINITY, |lowest, shift| {
+                let eta = neyman_pearson_miss_threshold(scan.gamma(shift)?, max_miss)?;
+                Ok(lowest.min(eta))
+            })
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! A recorded sweep of the probe, judged against two force maps (`spec/trace.md`).
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | the trace, its positions, and the forces that a map expects there |
+//! | `csv.rs` | the file |
+//! | `error.rs` | what can be wrong |
+//! | `judge.rs` | criterion, and the record at a known position |
+//! | `locate.rs` | the scan for the position, equation (10) |
+
+mod csv;
+mod error;
+mod judge;
+mod locate;
+#[cfg(test)]
+mod tests;
+
+pub use error::{TraceError, TraceProblem};
+pub use judge::{Criterion, judge};
+pub use locate::{Location, MOST_SAMPLES, UNIFORM, locate};
+
+use crate::detect::Channels;
+use crate::force_map::{ForceTable, SAME_POSITION, Sweep};
+use crate::phantom::decimal::format_scaled;
+
+/// What the first column of a trace counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Abscissa {
+    /// Seconds since some start.
+    Time,
+    /// Lateral position of the probe, m.
+    Position,
+}
+
+/// Forces on the probe as they were recorded, at least one sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trace {
+    file: String,
+    abscissa: Abscissa,
+    samples: Vec<Sample>,
+}
+
+/// One row of the file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Sample {
+    line: usize,
+    /// s or m.
+    abscissa: f64,
+    /// Force on the probe, N.
+    force: Channels<f64>,
+}
+
+/// The motion of the probe while times were recorded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion {
+    /// Velocity along +x, m/s; negative if the probe moved towards −x.
+    pub velocity: f64,
+    /// Lateral position at time 0, m.
+    pub start: f64,
+}
+
+/// A trace over positions, which increase by more than [`SAME_POSITION`] from sample to sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    file: String,
+    samples: Vec<Sample>,
+    positions: Vec<f64>,
+    forces: Channels<Vec<f64>>,
+}
+
+impl Trace {
+    /// What the trace is over.
+    pub fn abscissa(&self) -> Abscissa {
+        self.abscissa
+    }
+
+    /// The record over positions; a trace over times needs the motion, and only it.
+    ///
+    /// # Errors
+    /// [`TraceProblem::Motion`] if the motion is missing, or there for a trace over positions;
+    /// [`TraceProblem::Velocity`] if the probe does not move; [`TraceProblem::Position`] and
+    /// [`TraceProblem::Order`] if times make no positions.
+    ///
+    /// Implements: TRC-010, TRC-011, TRC-012, TRC-013.
+    pub fn record(self, motion: Option<Motion>) -> Result<Record, TraceError> {
+        let mut samples = self.samples;
+        match (self.abscissa, motion) {
+            (Abscissa::Position, None) => {}
+            (Abscissa::Time, Some(motion)) => {
+                let velocity = motion.velocity;
+                if !velocity.is_finite() || velocity == 0.0 {
+                    return Err(TraceProblem::Velocity { velocity }.at(&self.file, None));
+                }
+                for sample in &mut samples {
+                    sample.abscissa = motion.start + velocity * sample.abscissa;
+                }
+                if velocity < 0.0 {
+                    samples.reverse();
+                }
+            }
+            (abscissa, _) => return Err(TraceProblem::Motion { abscissa }.at(&self.file, None)),
+        }
+        check_positions(&samples).map_err(|(problem, line)| problem.at(&self.file, line))?;
+        Ok(Record {
+            positions: samples.iter().map(|sample| sample.abscissa).collect(),
+            forces: Channels {
+                x: samples.iter().map(|sample| sample.force.x).collect(),
+                y: samples.iter().map(|sample| sample.force.y).collect(),
+            },
+            file: self.file,
+            samples,
+        })
+    }
+}
+
+/// Checks that positions are finite and increase.
+fn check_positions(samples: &[Sample]) -> Result<(), (TraceProblem, usize)> {
+    let mut before = f64::NEG_INFINITY;
+    for sample in samples {
+        let position = sample.abscissa;
+        if !position.is_finite() {
+            return Err((TraceProblem::Position { position }, sample.line));
+        }
+        if position <= before + SAME_POSITION {
+            let (found, before) = (format_scaled(position, 3), format_scaled(before, 3));
+            let problem = TraceProblem::Order {
+                what: "position",
+                found,
+                before,
+                unit: "mm",
+            };
+            return Err((problem, sample.line));
+        }
+        before = position;
+    }
+    Ok(())
+}
+
+impl Record {
+    /// The file that the record comes from, as its reader named it.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Lateral positions of the samples, m, increasing.
+    pub fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+
+    /// The recorded force on the probe, N, one sample for each position.
+    pub fn forces(&self) -> Channels<&[f64]> {
+        view(&self.forces)
+    }
+
+    /// The forces that `map` expects at `depth` (m) at the samples, N.
+    ///
+    /// # Errors
+    /// [`TraceProblem::Outside`] with the line of the first sample outside the map's lateral
+    /// positions; [`TraceProblem::Map`] for a depth outside its depths.
+    ///
+    /// Implements: TRC-024.
+    pub fn expected(&self, map: &ForceTable, depth: f64) -> Result<Channels<Vec<f64>>, TraceError> {
+        let laterals = map.laterals();
+        let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
+        let inside = first - SAME_POSITION..=last + SAME_POSITION;
+        let outside = |sample: &&Sample| !inside.contains(&sample.abscissa);
+        if let Some(sample) = self.samples.iter().find(outside) {
+            let mm = |position| format_scaled(position, 3);
+            let problem = TraceProblem::Outside {
+                position: mm(sample.abscissa),
+                first: mm(first),
+                last: mm(last),
+            };
+            return Err(problem.at(&self.file, sample.line));
+        }
+        let sweep = map.sweep(depth, &self.positions);
+        Ok(channels(sweep.map_err(|error| {
+            TraceProblem::from(error).at(&self.file, None)
+        })?))
+    }
+}
+
+/// Lateral forces are channel x, normal ones channel y.
+fn channels(sweep: Sweep) -> Channels<Vec<f64>> {
+    Channels {
+        x: sweep.lateral_force,
+        y: sweep.normal_force,
+    }
+}
+
+fn view(channels: &Channels<Vec<f64>>) -> Channels<&[f64]> {
+    Channels {
+        x: &channels.x,
+        y: &channels.y,
+    }
+}

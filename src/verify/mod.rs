@@ -1,0 +1,3 @@
+//! Evidence that a stranger can produce again: what `palpate verify` runs.
+
+pub mod statistics;

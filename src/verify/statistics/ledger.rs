@@ -1,0 +1,52 @@
+//! The ledger of the battery's errors: α and power of every check.
+
+use std::format;
+use std::vec::Vec;
+
+use super::Outcome;
+
+/// One row of `ledger.csv`.
+#[derive(Debug)]
+pub(super) struct Row {
+    /// The check.
+    pub name: &'static str,
+    /// The largest probability that it fails for a detector without defect.
+    pub alpha: f64,
+    /// Its number of trials.
+    pub trials: usize,
+    /// The probability that it fails for each defect it is meant for.
+    pub powers: Vec<(&'static str, f64)>,
+}
+
+impl Row {
+    fn parse(line: &'static str) -> Outcome<Row> {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [name, alpha, trials, powers] = fields[..] else {
+            return Err(format!("ledger: {line:?}, expected four fields").into());
+        };
+        let power = |text: &'static str| -> Outcome<_> {
+            let (defect, power) = text
+                .split_once('=')
+                .ok_or_else(|| format!("ledger: {text:?}, expected defect=power"))?;
+            Ok((defect, power.parse()?))
+        };
+        Ok(Row {
+            name,
+            alpha: alpha.parse()?,
+            trials: trials.parse()?,
+            powers: powers.split(';').map(power).collect::<Outcome<_>>()?,
+        })
+    }
+}
+
+/// All rows.
+pub(super) fn rows() -> Outcome<Vec<Row>> {
+    let lines = include_str!("ledger.csv").lines().skip(1);
+    lines.map(Row::parse).collect()
+}
+
+/// The row of a check.
+pub(super) fn row(name: &str) -> Outcome<Row> {
+    let row = rows()?.into_iter().find(|row| row.name == name);
+    row.ok_or_else(|| format!("{name} is not in the ledger").into())
+}

@@ -1,0 +1,82 @@
+use super::*;
+
+#[test]
+fn all_alphas_add_up_to_one_in_a_million_at_most() {
+    let total = total_alpha().unwrap();
+    assert!(total > 0.0 && total <= 1e-6, "the battery's α is {total:e}");
+}
+
+#[test]
+fn every_row_is_a_check_and_every_check_has_one_row() {
+    let mut rows: Vec<_> = ledger::rows().unwrap().iter().map(|row| row.name).collect();
+    let mut checks: Vec<_> = battery().map(Check::name).collect();
+    rows.sort_unstable();
+    checks.sort_unstable();
+    assert_eq!(rows, checks);
+    assert!(rows.windows(2).all(|pair| pair[0] != pair[1]));
+}
+
+#[test]
+fn every_check_sees_a_defect_and_every_named_defect_is_seen() {
+    let rows = ledger::rows().unwrap();
+    let shows = |power: f64| power >= SHOWN_POWER;
+    for row in &rows {
+        let seen = row.powers.iter().any(|&(_, power)| shows(power));
+        assert!(seen, "{} sees nothing", row.name);
+    }
+    // DESIGN §8.
+    for defect in [
+        "variance_off_1_percent",
+        "half_left_out",
+        "template_shifted",
+        "channels_swapped",
+        "sd_for_variance",
+    ] {
+        let sees = |row: &Row| {
+            let mut powers = row.powers.iter();
+            powers.any(|&(name, power)| name == defect && shows(power))
+        };
+        assert!(rows.iter().any(sees), "no check sees {defect}");
+    }
+}
+
+// Verifies: CLI-053.
+#[test]
+fn a_check_that_rejects_fails_and_so_does_one_that_sees_nothing_or_cannot_run() {
+    let name = "single_mean_h1";
+    let failed = |rejects| Check::new(name, rejects).run(7).unwrap_err().to_string();
+    assert_eq!(
+        failed(|_| Ok(true)),
+        "check single_mean_h1 rejects the detector at alpha = 2.5e-8, seed 7"
+    );
+    assert_eq!(
+        failed(|_| Err("no".into())),
+        "check single_mean_h1 cannot run, seed 7: no"
+    );
+    let blind = Check::new(name, |_| Ok(false));
+    assert_eq!(blind.run(7), Ok(Vec::new()));
+    let failure = blind.run_negative_controls(7).unwrap_err();
+    let reason = Reason::Blind {
+        defect: "half_left_out",
+    };
+    assert_eq!(failure.reason, reason);
+    let unknown = Check::new("nothing", |_| Ok(false)).run(7).unwrap_err();
+    assert!(matches!(unknown.reason, Reason::Refused(_)));
+}
+
+#[test]
+fn draws_depend_on_the_seed() {
+    let check = |seed| {
+        let row = ledger::row("single_mean_h1").unwrap();
+        let draw = Draw {
+            seed,
+            defect: "",
+            replicate: 0,
+            row: &row,
+            notes: RefCell::default(),
+        };
+        draw.generator(3).normal(0, 0)
+    };
+    assert_eq!(check(1), check(1));
+    assert_ne!(check(1), check(2));
+}
