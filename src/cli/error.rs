@@ -57,13 +57,17 @@ impl CliError {
     pub(super) fn usage(error: &clap::Error) -> CliError {
         let text = error.to_string();
         // The parser spreads its message over several lines; usage and hints follow an empty one.
-        let message = text.split("\n\n").next().unwrap_or_default();
-        let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
+        let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let mut parts = text.split("\n\n").map(line);
+        let message = parts.next().unwrap_or_default();
+        // What was probably meant, in the words of the parser.
+        let tip = parts.find(|part| part.starts_with("tip: a similar"));
+        let tip = tip.map_or(String::new(), |tip| format!(" ({tip})"));
         let message = message.strip_prefix("error: ").unwrap_or(&message);
         if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
             return CliError::Usage("no command; try 'palpate run' or 'palpate --help'".into());
         }
-        CliError::Usage(format!("{message}; see --help"))
+        CliError::Usage(format!("{message}{tip}; see --help"))
     }
 
     /// 1 where a computation failed, 2 where the input is to blame.
