@@ -17,6 +17,8 @@
 //! alone: that part holds [`stats`] and [`detect`].
 #![cfg_attr(not(feature = "std"), no_std)]
 
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod detect;
 #[cfg(feature = "fem")]
 pub mod fem;

@@ -1,8 +1,11 @@
 //! The errata of the paper (`spec/errata.md`): each test asserts what is printed and what is true.
 
+use palpate::detect::scan::Scan;
 use palpate::detect::{
-    Channels, MatchedFilter, error_rates, gamma_from_two_afc, required_gamma, two_afc,
+    Channels, MatchedFilter, error_rates, gamma_from_two_afc, neyman_pearson_false_alarm_threshold,
+    required_gamma, two_afc,
 };
+use palpate::stats::random::Generator;
 
 /// Asserts that `value` is `printed` when it is rounded to `unit`.
 #[track_caller]
@@ -142,6 +145,62 @@ fn err_005_noise_left_for_the_display() {
     assert!(error_rates(gamma_at_printed, 0.0).unwrap().miss < 0.05);
 }
 
+// Verifies: ERR-006, DET-059.
+#[test]
+fn err_006_false_alarms_of_theta_max() {
+    // Twenty places a record that do not overlap, so that Θ_max is the largest of twenty
+    // independent Θ.
+    const PLACES: usize = 20;
+    const TRIALS: u64 = 4000;
+    let gamma = 3.0;
+    let template = [gamma];
+    let sd = Channels { x: 1.0, y: 1.0 };
+    let scan = Scan::new(
+        PLACES,
+        Channels {
+            x: &template,
+            y: &[0.0],
+        },
+        sd,
+    )
+    .unwrap();
+    let eta = neyman_pearson_false_alarm_threshold(gamma, 0.05).unwrap();
+    let (mut false_alarms, mut misses, mut misses_without_scan) = (0, 0, 0);
+    let (mut noise, zeros) = ([0.0; PLACES], [0.0; PLACES]);
+    for trial in 0..TRIALS {
+        Generator::new(6, 0).normals(trial, 0, &mut noise);
+        let maximum = |residual: &[f64]| {
+            let residual = Channels {
+                x: residual,
+                y: &zeros,
+            };
+            scan.maximum(residual, scan.full_shifts()).unwrap().theta
+        };
+        false_alarms += u32::from(maximum(&noise) >= eta);
+        let mut with_inclusion = noise;
+        with_inclusion[7] += gamma;
+        let there = scan
+            .at(
+                Channels {
+                    x: &with_inclusion,
+                    y: &zeros,
+                },
+                7,
+            )
+            .unwrap()
+            .theta;
+        assert!(maximum(&with_inclusion) >= there);
+        misses += u32::from(maximum(&with_inclusion) < eta);
+        misses_without_scan += u32::from(there < eta);
+    }
+    // Printed: "more conservative" — misses do not increase.
+    assert!(misses <= misses_without_scan);
+    // True as well: false alarms rise from 5 % to 1 − 0.95²⁰ = 64.2 %. Six standard deviations,
+    // √(0.23/4000) = 0.0076 each.
+    let rate = f64::from(false_alarms) / TRIALS as f64;
+    assert!((rate - 0.6415).abs() < 0.046, "{rate}");
+}
+
 /// Table 1: right answers of 10 subjects in 30 trials each, for depths of 2.6, 4.6, 6.6 and 8.6 mm.
 const TABLE_1: [(&str, [[u32; 4]; 10]); 3] = [
     (
@@ -191,7 +250,8 @@ const TABLE_1: [(&str, [[u32; 4]; 10]); 3] = [
     ),
 ];
 
-/// χ²/df of 10 counts of 30 about their common rate, df = 9: 1 on average if subjects differ by chance alone.
+/// χ²/df of 10 counts of 30 about their common rate, df = 9: 1 on average if subjects differ by
+/// chance alone.
 fn dispersion(counts: impl Iterator<Item = u32> + Clone) -> f64 {
     let rate = counts.clone().map(f64::from).sum::<f64>() / 300.0;
     let expected = 30.0 * rate;
@@ -211,7 +271,17 @@ fn err_007_subjects_vary_more_than_a_binomial() {
             (0..4).map(|depth| dispersion(table.iter().map(move |row| row[depth])))
         })
         .collect();
-    // Printed: intervals that presume 1 throughout. The upper 1 % point of χ²₉/9 is 21.666/9 = 2.41 (Natrella, Table T-6).
+    // The table is the paper's: its means, in tenths.
+    let means: Vec<u32> = TABLE_1
+        .iter()
+        .flat_map(|(_, table)| (0..4).map(|depth| table.iter().map(move |row| row[depth]).sum()))
+        .collect();
+    assert_eq!(
+        means,
+        [288, 275, 247, 200, 292, 277, 253, 189, 268, 228, 229, 174]
+    );
+    // Printed: intervals that presume 1 throughout. The upper 1 % point of χ²₉/9 is 21.666/9 = 2.41
+    // (Natrella, Table T-6).
     let significant = dispersions.iter().filter(|&&value| value > 2.41).count();
     assert!(
         significant >= 6,

@@ -1,4 +1,5 @@
-//! Thresholds, the decision, and the rates of error that follow from Θ ~ N(∓γ²/2, γ²), paper equations (8) and (9).
+//! Thresholds, the decision, and the rates of error that follow from Θ ~ N(∓γ²/2, γ²), paper
+//! equations (8) and (9).
 
 use super::DetectError;
 use super::error::{
@@ -79,7 +80,8 @@ pub fn posterior(theta: f64, prior_h1: f64) -> Result<f64, DetectError> {
 /// Implements: DET-022.
 pub fn map_threshold(prior_h1: f64) -> Result<f64, DetectError> {
     let p = check_probability("prior_h1", prior_h1)?;
-    // Near p = ½ the quotient is near 1, where ln keeps no relative accuracy; 1 − 2p is exact there.
+    // Near p = ½ the quotient is near 1, where ln keeps no relative accuracy; 1 − 2p is exact
+    // there.
     Ok(if p > 0.25 && p < 0.75 {
         libm::log1p((1.0 - 2.0 * p) / p)
     } else {
@@ -90,7 +92,8 @@ pub fn map_threshold(prior_h1: f64) -> Result<f64, DetectError> {
 /// The threshold of least expected cost, η = ln[P0(C10 − C00)/(P1(C01 − C11))].
 ///
 /// # Errors
-/// The prior not strictly between 0 and 1; a cost not finite; an error that costs no more than the right decision.
+/// The prior not strictly between 0 and 1; a cost not finite; an error that costs no more than the
+/// right decision.
 ///
 /// Implements: DET-023.
 pub fn bayes_threshold(prior_h1: f64, costs: Costs) -> Result<f64, DetectError> {
@@ -130,7 +133,8 @@ pub fn neyman_pearson_miss_threshold(gamma: f64, max_miss: f64) -> Result<f64, D
 /// η = −γ²/2 + γΦ⁻¹(1−α).
 ///
 /// # Errors
-/// γ not finite or < 0; γ = 0, where Θ ≡ 0 and η = 0 would always alarm; α not strictly between 0 and 1; overflow.
+/// γ not finite or < 0; γ = 0, where Θ ≡ 0 and η = 0 would always alarm; α not strictly between 0
+/// and 1; overflow.
 ///
 /// Implements: DET-025.
 pub fn neyman_pearson_false_alarm_threshold(
@@ -145,7 +149,8 @@ pub fn neyman_pearson_false_alarm_threshold(
     representable("eta", gamma * (quantile - 0.5 * gamma))
 }
 
-/// P_fa = Φ(−(η + γ²/2)/γ) and P_miss = Φ((η − γ²/2)/γ). With γ = 0, Θ is always 0 and equation (9) decides.
+/// P_fa = Φ(−(η + γ²/2)/γ) and P_miss = Φ((η − γ²/2)/γ). With γ = 0, Θ is always 0 and equation (9)
+/// decides.
 ///
 /// # Errors
 /// γ not finite or < 0; η not finite.
@@ -175,7 +180,8 @@ pub fn error_rates(gamma: f64, eta: f64) -> Result<ErrorRates, DetectError> {
     })
 }
 
-/// The receiver operating characteristic (figure 4): P_miss = Φ(Φ⁻¹(1−P_fa) − γ), with its end points (0, 1) and (1, 0).
+/// The receiver operating characteristic (figure 4): P_miss = Φ(Φ⁻¹(1−P_fa) − γ), with its end
+/// points (0, 1) and (1, 0).
 ///
 /// # Errors
 /// γ not finite or < 0; the false-alarm rate not in [0, 1].
@@ -205,7 +211,8 @@ pub fn auc(gamma: f64) -> Result<f64, DetectError> {
     two_afc(gamma)
 }
 
-/// The least γ with a false-alarm rate ≤ α and a miss rate ≤ β, Φ⁻¹(1−α) + Φ⁻¹(1−β), or 0 if blind guessing does.
+/// The least γ with a false-alarm rate ≤ α and a miss rate ≤ β, Φ⁻¹(1−α) + Φ⁻¹(1−β), or 0 if blind
+/// guessing does.
 ///
 /// # Errors
 /// α or β not strictly between 0 and 1.
@@ -228,7 +235,8 @@ pub fn two_afc(gamma: f64) -> Result<f64, DetectError> {
     Ok(0.5 * libm::erfc(-0.5 * gamma))
 }
 
-/// The γ with which a share `p_correct` of forced choices is right, √2 Φ⁻¹(p); negative below one half.
+/// The γ with which a share `p_correct` of forced choices is right, √2 Φ⁻¹(p); negative below one
+/// half.
 ///
 /// # Errors
 /// The share not strictly between 0 and 1.

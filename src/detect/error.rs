@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-/// Why the detector refused to answer. A refusal is never a decision: no error means "no inclusion".
+/// Why the detector refused to answer. A refusal is never a decision: no error means "no
+/// inclusion".
 ///
 /// Implements: DET-005, DET-006, DET-007.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +38,13 @@ pub enum DetectError {
         value: f64,
         /// The values that would be right.
         range: &'static str,
+    },
+    /// A table is not strictly monotone in the required direction.
+    NotMonotone {
+        /// The name of the argument.
+        what: &'static str,
+        /// The first entry out of order.
+        index: usize,
     },
     /// γ = 0: the hypotheses predict the same force, so no threshold keeps this promise.
     NoSignal,
@@ -82,6 +90,12 @@ impl fmt::Display for DetectError {
             Self::OutOfRange { what, value, range } => {
                 write!(f, "{what} is {value}, but must be {range}")
             }
+            Self::NotMonotone { what, index } => {
+                write!(
+                    f,
+                    "{what}[{index}] breaks the order; {what} must be strictly monotone"
+                )
+            }
             Self::NoSignal => {
                 f.write_str("gamma is 0: without a signal no threshold bounds the false alarms")
             }
@@ -120,6 +134,23 @@ pub(crate) fn check_samples(
     match samples.iter().position(|sample| !sample.is_finite()) {
         Some(index) => Err(DetectError::NotFinite { what, index }),
         None => Ok(()),
+    }
+}
+
+/// Checks a length.
+pub(crate) fn check_length(
+    what: &'static str,
+    expected: usize,
+    found: usize,
+) -> Result<(), DetectError> {
+    if expected == found {
+        Ok(())
+    } else {
+        Err(DetectError::LengthMismatch {
+            what,
+            expected,
+            found,
+        })
     }
 }
 
@@ -173,6 +204,8 @@ pub(crate) fn in_range(
 }
 
 /// Passes a result that did not overflow.
+///
+/// Implements: DET-008.
 pub(crate) fn representable(what: &'static str, value: f64) -> Result<f64, DetectError> {
     if value.is_finite() {
         Ok(value)

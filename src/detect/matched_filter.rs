@@ -4,8 +4,8 @@ use super::error::{check_positive, check_samples, representable};
 use super::{Channels, DetectError};
 use crate::stats::compensated::{self, DoubleDouble};
 
-/// The filter h of equations (2) and (4), for a template Δ = F_1 − F_0 and independent noise of constant
-/// standard deviation s in each channel.
+/// The filter h of equations (2) and (4), for a template Δ = F_1 − F_0 and independent noise of
+/// constant standard deviation s in each channel.
 ///
 /// It borrows the template and keeps its energy ΣΔ², so that each further record costs one pass.
 #[derive(Debug, Clone, Copy)]
@@ -37,8 +37,10 @@ pub struct RecordStatistic {
     pub gamma: f64,
 }
 
-/// The noise of one channel with a power of two that brings it near 1: squares of forces are taken in these
-/// units, where they neither overflow nor underflow unless Δ/s itself is absurd.
+/// The noise of one channel with a power of two that brings it near 1: squares of forces are taken
+/// in these units, where they neither overflow nor underflow unless Δ/s itself is absurd.
+///
+/// Implements: DET-016.
 #[derive(Debug, Clone, Copy)]
 struct Scale {
     /// A power of two, 1/N.
@@ -63,10 +65,12 @@ impl Scale {
 }
 
 impl<'a> MatchedFilter<'a> {
-    /// The filter for `template` (N samples a channel, N) in noise of standard deviation `noise_sd` a sample (N).
+    /// The filter for `template` (N samples a channel, N) in noise of standard deviation `noise_sd`
+    /// a sample (N).
     ///
     /// # Errors
-    /// Empty, unequal or non-finite templates; `noise_sd` not positive and finite; γ² beyond the largest number.
+    /// Empty, unequal or non-finite templates; `noise_sd` not positive and finite; γ² beyond the
+    /// largest number.
     ///
     /// Implements: DET-005, DET-006, DET-007, DET-010, DET-013.
     pub fn new(
@@ -138,8 +142,9 @@ impl<'a> MatchedFilter<'a> {
     }
 }
 
-/// y(0), θ and γ of a record F_p against the forces F_0 and F_1 that the hypotheses expect (N samples a channel each,
-/// N), in noise of standard deviation `noise_sd` a sample. The differences are not rounded.
+/// y(0), θ and γ of a record F_p against the forces F_0 and F_1 that the hypotheses expect (N
+/// samples a channel each, N), in noise of standard deviation `noise_sd` a sample. The differences
+/// are not rounded.
 ///
 /// # Errors
 /// Empty or unequal lengths; NaN or infinity; `noise_sd` not positive and finite; overflow.
@@ -207,8 +212,8 @@ fn gamma(energy: Channels<DoubleDouble>, scale: Channels<Scale>) -> Result<f64, 
     representable("gamma", libm::sqrt(square.x + square.y))
 }
 
-/// Equations (5) and (7) from Σ rΔ and ΣΔ². With b/σ² (Y − b/2) = (Σ rΔ − ½ΣΔ²)/s², the weight 1/N drops out,
-/// and the one subtraction that may cancel is done in twice the working precision.
+/// Equations (5) and (7) from Σ rΔ and ΣΔ². With b/σ² (Y − b/2) = (Σ rΔ − ½ΣΔ²)/s², the weight 1/N
+/// drops out, and the one subtraction that may cancel is done in twice the working precision.
 fn statistic(
     cross: Channels<DoubleDouble>,
     energy: Channels<DoubleDouble>,
@@ -221,7 +226,8 @@ fn statistic(
         .zip(scale)
         .map(|((cross, energy), scale)| {
             let energy = energy.value();
-            // The matched filter of a template of zeros is not defined, and its weight in θ is zero.
+            // The matched filter of a template of zeros is not defined, and its weight in θ is
+            // zero.
             if energy == 0.0 {
                 0.0
             } else {

@@ -1,19 +1,30 @@
 //! Whether a recorded force holds an inclusion (paper §2).
 //!
-//! The observed force is F_0 (no inclusion, H = 0) or F_1 (inclusion, H = 1) plus Gaussian noise, sampled
-//! i = 1 … N along the trajectory in two channels: x lateral, y normal. The *template* is Δ = F_1 − F_0,
-//! the *residual* r = F_p − F_0, and Θ the log-likelihood ratio of the two hypotheses.
+//! The observed force is F_0 (no inclusion, H = 0) or F_1 (inclusion, H = 1) plus Gaussian noise,
+//! sampled i = 1 … N along the trajectory in two channels: x lateral, y normal. The *template* is Δ
+//! = F_1 − F_0, the *residual* r = F_p − F_0, and Θ the log-likelihood ratio of the two hypotheses.
 //!
 //! | paper | here |
 //! |---|---|
 //! | (2)–(7): h, Y, b, γ, Θ | [`matched_filter`] |
 //! | (8), (9), figures 4 and 9: thresholds, error rates, pair-wise tests | [`decision`] |
 //!
-//! Nothing here allocates; what needs memory takes it from the caller. `spec/detector.md` is normative.
+//! Nothing here allocates; what needs memory takes it from the caller. `spec/detector.md` is
+//! normative.
 
+pub mod assessment;
+pub mod coloured;
 pub mod decision;
 mod error;
 pub mod matched_filter;
+pub mod mixture;
+pub mod noise_budget;
+pub mod position;
+pub mod reach;
+pub mod scan;
+pub mod simulate;
+pub mod stationary;
+pub mod weber;
 
 pub use decision::{
     Costs, Decision, ErrorRates, auc, bayes_threshold, decide, error_rates, gamma_from_two_afc,

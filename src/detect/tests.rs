@@ -1,5 +1,6 @@
-//! Expected values: mpmath 1.4.1 at 50 digits, from the equations of the paper in the form of `spec/detector.md` (Y and b
-//! formed first, with the weight 1/N), for the exact binary64 arguments, rounded once.
+//! Expected values: mpmath 1.4.1 at 50 digits, from the equations of the paper in the form of
+//! `spec/detector.md` (Y and b formed first, with the weight 1/N), for the exact binary64
+//! arguments, rounded once.
 
 use super::*;
 use crate::stats::check::{assert_near, assert_ulps};
@@ -69,7 +70,7 @@ fn statistic_of_a_record() {
 // Verifies: DET-014.
 #[test]
 fn long_sums_that_cancel_stay_exact() {
-    // r·Δ runs through 1, 2^80, 1, −2^80: any ordinary or Kahan summation loses every 1. Exact: γ² = Σ(1 + 2^80 …).
+    // r·Δ runs through 1.5, 2^80 + 2^39, 1.5, −2^80 + 2^39: plain summation loses every 1.5.
     const SAMPLES: usize = 1_000_000;
     let big = 2_f64.powi(40);
     let template: Vec<f64> = (0..SAMPLES)
@@ -95,7 +96,7 @@ fn long_sums_that_cancel_stay_exact() {
         Channels { x: 1.0, y: 1.0 },
     )
     .unwrap();
-    // Σ rΔ − ½ΣΔ² for r = Δ/2 + (a residue of 1e-3 at one sample only).
+    // r = Δ/2 but for one sample, which is ¼ larger where Δ = 1: Σ rΔ − ½ΣΔ² = ¼, of sums of 2^98.
     let mut halves: Vec<f64> = template.iter().map(|sample| sample / 2.0).collect();
     halves[0] += 0.25;
     let theta = filter
@@ -106,6 +107,124 @@ fn long_sums_that_cancel_stay_exact() {
         .unwrap()
         .theta;
     assert_eq!(theta, 0.25);
+}
+
+/// Whole numbers of up to `bits` bits and either sign.
+fn integers(stream: u64, count: usize, bits: u32) -> Vec<i128> {
+    let generator = crate::stats::random::Generator::new(14, stream);
+    (0..count as u64)
+        .map(|i| i128::from(generator.words([i, 0, 9, 9])[0] as i64 >> (63 - bits)))
+        .collect()
+}
+
+fn floats(integers: &[i128]) -> Vec<f64> {
+    // At most 53 bits: exact.
+    integers.iter().map(|&i| i as f64).collect()
+}
+
+// Verifies: DET-014.
+#[test]
+fn a_million_samples_are_within_the_stated_bound_of_exact_arithmetic() {
+    const SAMPLES: usize = 1_000_000;
+    let template = integers(0, SAMPLES, 50);
+    let zeros = vec![0.0; SAMPLES];
+    // Plain noise, and a residual Δ/2 + small, where Σ rΔ − ½ΣΔ² cancels to a part in 10⁷ or so.
+    let plain = integers(1, SAMPLES, 50);
+    let small = integers(2, SAMPLES, 30);
+    let half: Vec<i128> = template
+        .iter()
+        .zip(&small)
+        .map(|(t, s)| t / 2 + s)
+        .collect();
+    for residual in [plain, half] {
+        // Twice Θ and twice the size, exactly; 10⁶ · 2^101 is below 2^121.
+        let twice: i128 = residual
+            .iter()
+            .zip(&template)
+            .map(|(r, t)| 2 * r * t - t * t)
+            .sum();
+        let size: i128 = residual
+            .iter()
+            .zip(&template)
+            .map(|(r, t)| 2 * (r * t).abs() + t * t)
+            .sum();
+        let (template, residual) = (floats(&template), floats(&residual));
+        let unit = Channels { x: 1.0, y: 1.0 };
+        let filter = MatchedFilter::new(
+            Channels {
+                x: &template,
+                y: &zeros,
+            },
+            unit,
+        )
+        .unwrap();
+        let theta = filter
+            .statistic(Channels {
+                x: &residual,
+                y: &zeros,
+            })
+            .unwrap()
+            .theta;
+        // Twice θ is a whole number here too, and its distance from the exact one is taken in whole
+        // numbers.
+        let error = ((2.0 * theta) as i128 - twice).unsigned_abs() as f64;
+        let bound = 2.5 * f64::EPSILON * twice.unsigned_abs() as f64 + 1e-19 * size as f64;
+        assert!(
+            error <= bound + 1.0,
+            "error {error:e}, bound {bound:e}, of {twice:e}"
+        );
+    }
+}
+
+// Verifies: DET-014.
+#[test]
+fn rounding_errors_of_one_sign_do_not_add_up() {
+    // (2^27+1)² has 55 bits, and every second product of this sum loses a 1: all in the same
+    // direction.
+    let factor = 134_217_729.0;
+    let a: Vec<f64> = (0..100_000)
+        .map(|i| if i % 2 == 0 { factor } else { 1.0 - factor })
+        .collect();
+    let b = vec![factor; 100_000];
+    let exact = 50_000.0 * factor;
+    assert_eq!(crate::stats::compensated::dot(&a, &b, 1.0).value(), exact);
+}
+
+// Verifies: DET-014.
+#[test]
+fn a_difference_that_would_round_to_nothing_is_kept() {
+    // Δ = 2^54 − 1 needs 54 bits and r = 2^53: 2Θ = Δ(2r − Δ) = 2^54 − 1, or 0 if Δ is rounded.
+    const TOP: f64 = 9_007_199_254_740_992.0;
+    let channels = |x| Channels { x, y: &[0.0][..] };
+    let unit = Channels { x: 1.0, y: 1.0 };
+    let (observed, f0, f1) = ([1.0], [1.0 - TOP], [TOP]);
+    let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
+    assert_ulps(found.theta, TOP, 2.0);
+}
+
+// Verifies: DET-014.
+#[test]
+fn differences_of_forces_are_not_rounded() {
+    // Forces of 53 bits and either sign: their differences have 54.
+    const SAMPLES: usize = 500;
+    let [observed, f0, f1] = [3, 4, 5].map(|stream| integers(stream, SAMPLES, 53));
+    let zeros = vec![0.0; SAMPLES];
+    let (mut twice, mut size) = (0_i128, 0_i128);
+    for i in 0..SAMPLES {
+        let (r, t) = (observed[i] - f0[i], f1[i] - f0[i]);
+        twice += 2 * r * t - t * t;
+        size += 2 * (r * t).abs() + t * t;
+    }
+    let [observed, f0, f1] = [observed, f0, f1].map(|forces| floats(&forces));
+    let channels = |x| Channels { x, y: &zeros[..] };
+    let unit = Channels { x: 1.0, y: 1.0 };
+    let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
+    let error = ((2.0 * found.theta) as i128 - twice).unsigned_abs() as f64;
+    let bound = 2.5 * f64::EPSILON * twice.unsigned_abs() as f64 + 1e-19 * size as f64;
+    assert!(
+        error <= bound,
+        "error {error:e}, bound {bound:e}, of {twice:e}"
+    );
 }
 
 // Verifies: DET-016.
@@ -124,9 +243,9 @@ fn units_of_any_size_give_the_same_gamma_and_theta() {
         let (rx, ry) = (scale(RESIDUAL.x), scale(RESIDUAL.y));
         let filter =
             MatchedFilter::new(Channels { x: &tx, y: &ty }, NOISE_SD.map(|sd| sd * unit)).unwrap();
-        assert_eq!(filter.gamma(), super::tests::filter().gamma());
+        assert_eq!(filter.gamma(), self::filter().gamma());
         let found = filter.statistic(Channels { x: &rx, y: &ry }).unwrap();
-        let expected = super::tests::filter().statistic(RESIDUAL).unwrap();
+        let expected = self::filter().statistic(RESIDUAL).unwrap();
         assert_eq!(found.theta, expected.theta);
         assert_ulps(found.y.x, expected.y.x * unit, 1.0);
     }

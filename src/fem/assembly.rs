@@ -1,12 +1,9 @@
 //! The global stiffness matrix over the free displacements, in elimination order.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::amd;
-
 use super::FemError;
 use super::element::{Stiffness, StiffnessRule};
 use super::mesh::{Mesh, Region};
+use super::ordering::nested_dissection;
 use crate::phantom::{Material, Phantom};
 
 /// Place of a node that is bonded to the floor or a wall.
@@ -27,35 +24,21 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// Orders the interior by approximate minimum degree.
-    fn new(mesh: &Mesh, neighbours: &[Vec<u32>]) -> Result<Numbering, FemError> {
+    fn new(mesh: &Mesh) -> Numbering {
         let (surface, free) = (mesh.surface(), mesh.free());
-        let interior: Vec<usize> = (0..mesh.nodes.len())
-            .filter(|n| free[*n] && !surface.contains(n))
-            .collect();
+        let interior = nested_dissection(mesh, |node| free[node] && !surface.contains(&node));
         let mut place = vec![FIXED; mesh.nodes.len()];
         for (k, &node) in interior.iter().enumerate() {
             place[node] = k as u32;
         }
-        let mut column_starts = vec![0u32];
-        let mut row_indices = Vec::new();
-        for (k, &node) in interior.iter().enumerate() {
-            let places = neighbours[node].iter().map(|&n| place[n as usize]);
-            row_indices.extend(places.filter(|&p| p != FIXED && p <= k as u32));
-            column_starts.push(row_indices.len() as u32);
-        }
-        let order = minimum_degree(interior.len(), &column_starts, &row_indices)?;
-        for (k, &old) in order.iter().enumerate() {
-            place[interior[old as usize]] = k as u32;
-        }
         for (k, node) in surface.clone().enumerate() {
             place[node] = (interior.len() + k) as u32;
         }
-        Ok(Numbering {
+        Numbering {
             place,
             interior: interior.len(),
             surface: surface.len(),
-        })
+        }
     }
 
     /// The unknown of displacement component `direction` of `node`, or `None` if the node is fixed.
@@ -75,28 +58,6 @@ impl Numbering {
     pub fn first_surface_unknown(&self) -> usize {
         2 * self.interior
     }
-}
-
-/// Approximate-minimum-degree order of a symmetric pattern given by its upper triangle.
-fn minimum_degree(
-    n: usize,
-    column_starts: &[u32],
-    row_indices: &[u32],
-) -> Result<Vec<u32>, FemError> {
-    let pattern =
-        SymbolicSparseColMatRef::new_unsorted_checked(n, n, column_starts, None, row_indices);
-    let (mut order, mut inverse) = (vec![0u32; n], vec![0u32; n]);
-    let scratch = amd::order_maybe_unsorted_scratch::<u32>(n, row_indices.len());
-    let mut memory = MemBuffer::try_new(scratch).map_err(|_| FemError::OutOfMemory)?;
-    amd::order_maybe_unsorted(
-        &mut order,
-        &mut inverse,
-        pattern,
-        amd::Control::default(),
-        MemStack::new(&mut memory),
-    )
-    .map_err(|_| FemError::OutOfMemory)?;
-    Ok(order)
 }
 
 /// Upper triangle of the stiffness matrix, compressed by columns, N/m for the whole probe length.
@@ -146,7 +107,7 @@ impl StiffnessMatrix {
     /// [`FemError::Degenerate`] if an element is turned inside out.
     pub fn assemble(mesh: &Mesh, phantom: &Phantom) -> Result<StiffnessMatrix, FemError> {
         let neighbours = neighbours(mesh);
-        let numbering = Numbering::new(mesh, &neighbours)?;
+        let numbering = Numbering::new(mesh);
         let mut matrix = StiffnessMatrix::pattern(numbering, &neighbours);
         let rule = StiffnessRule::new(mesh.element);
         for (index, nodes) in mesh.elements().enumerate() {

@@ -4,7 +4,7 @@
 //! gap_i ≥ 0, λ_i ≥ 0, λ_i gap_i = 0, and carries the force λ_i n_i. With the probe's true normal at the
 //! deformed node, n turns with u: Newton's method needs the curvature term λ (I − n nᵀ)/r.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, LU};
 
 use super::{FemError, Pose};
 use crate::phantom::Probe;
@@ -35,6 +35,8 @@ impl Contact {
 const GAP_TOLERANCE: f64 = 1e-12;
 /// Newton's method has converged when no displacement moves by more than this, m.
 const STEP_TOLERANCE: f64 = 1e-13;
+/// A tangent system is used again while each step is below this part of the one before.
+const REUSE_BELOW: f64 = 0.2;
 /// Iterations after which the active set changes by one node at a time, which cannot cycle.
 const SIMULTANEOUS_CHANGES: usize = 25;
 /// Iterations after which a pose has not converged.
@@ -90,6 +92,70 @@ impl ContactState {
             active: Vec::new(),
             iterations: 0,
         }
+    }
+
+    /// Where the state goes if it keeps changing as it did since `earlier`, `ahead` times as far.
+    pub fn extrapolated(&self, earlier: &ContactState, ahead: f64) -> ContactState {
+        let on = |now: f64, then: f64| now + ahead * (now - then);
+        let mut state = self.clone();
+        for (u, then) in state.displacements.iter_mut().zip(&earlier.displacements) {
+            *u = [on(u[0], then[0]), on(u[1], then[1])];
+        }
+        for &node in &state.active {
+            state.pressures[node] = on(state.pressures[node], earlier.pressures[node]).max(0.0);
+        }
+        state
+    }
+}
+
+/// Newton's matrix at some state, factorised: see [`Surface::tangent_system`].
+#[derive(Debug)]
+struct TangentSystem {
+    active: Vec<usize>,
+    normals: Vec<[f64; 2]>,
+    /// Of C_nn.
+    normal_factor: Cholesky<f64, Dyn>,
+    /// W.
+    coupling: DMatrix<f64>,
+    /// The diagonal of D.
+    turning: Vec<f64>,
+    /// Of I − Q D.
+    slip_factor: LU<f64, Dyn, Dyn>,
+}
+
+impl TangentSystem {
+    /// Increments of λ, and slips, that mend the mismatch u − C (n λ) of the active nodes, m. `None` if
+    /// the system is singular or an increment is not finite.
+    fn solve(&self, mismatch: &[[f64; 2]]) -> Option<(DVector<f64>, DVector<f64>)> {
+        if mismatch.is_empty() {
+            // The probe clears the surface; the dense solvers refuse empty systems.
+            return Some((DVector::zeros(0), DVector::zeros(0)));
+        }
+        let along = |direction: &dyn Fn([f64; 2]) -> [f64; 2]| {
+            let components = self
+                .normals
+                .iter()
+                .zip(mismatch)
+                .map(|(&n, &u)| dot(direction(n), u));
+            DVector::from_iterator(mismatch.len(), components)
+        };
+        let (mut pressures, mut slips) = (along(&|n| n), -along(&tangent));
+        let lower = self.normal_factor.l_dirty();
+        lower
+            .solve_lower_triangular_mut(&mut pressures)
+            .then_some(())?;
+        for (b, slip) in slips.iter_mut().enumerate() {
+            *slip += self.coupling.column(b).dot(&pressures);
+        }
+        self.slip_factor.solve_mut(&mut slips).then_some(())?;
+        for (b, slip) in slips.iter().enumerate() {
+            pressures.axpy(-slip * self.turning[b], &self.coupling.column(b), 1.0);
+        }
+        lower
+            .tr_solve_lower_triangular_mut(&mut pressures)
+            .then_some(())?;
+        let finite = pressures.iter().chain(&slips).all(|x| x.is_finite());
+        finite.then_some((pressures, slips))
     }
 }
 
@@ -169,8 +235,17 @@ impl Surface {
         let failed = |iterations| FemError::NoConvergence { pose, iterations };
         let mut state = start.clone();
         self.revise(&mut state, pose, usize::MAX);
+        let mut tangent_system: Option<TangentSystem> = None;
+        let mut last_step = f64::INFINITY;
         for iteration in 0..MOST_ITERATIONS {
-            let step = self.newton(&mut state, pose).ok_or(failed(iteration))?;
+            // The old tangent serves as long as it lets the steps shrink well: factorising is the cost.
+            let system = match tangent_system.take() {
+                Some(system) if system.active == state.active && last_step.is_finite() => system,
+                _ => self.tangent_system(&state, pose).ok_or(failed(iteration))?,
+            };
+            let step = self
+                .newton(&mut state, pose, &system)
+                .ok_or(failed(iteration))?;
             let at_most = if iteration < SIMULTANEOUS_CHANGES {
                 usize::MAX
             } else {
@@ -181,57 +256,102 @@ impl Surface {
                 state.iterations = iteration + 1;
                 return Ok(state);
             }
+            let shrinks = step <= REUSE_BELOW * last_step;
+            last_step = if shrinks || last_step.is_infinite() {
+                step
+            } else {
+                f64::INFINITY
+            };
+            tangent_system = Some(system);
         }
         Err(failed(MOST_ITERATIONS))
     }
 
-    /// One Newton step on the active nodes; updates displacements and pressures, and returns the
-    /// largest displacement increment of an active node, m. `None` if the system is singular.
+    /// Factorises the system for increments of λ and of each node's slip b along its tangent t. With
+    /// δu = −gap n + b t, u = C (n λ) linearised and projected on n and t reads
     ///
-    /// Unknown are λ and the slip b of each node along its tangent t, with δu = −gap n + b t:
-    /// Σ_j C_ij (n_j λ_j + t_j λ_j⁰ κ_j b_j) − t_i b_i = u_i − gap_i n_i.
-    fn newton(&self, state: &mut ContactState, pose: Pose) -> Option<f64> {
-        let active = &state.active;
-        let m = active.len();
-        let constraints: Vec<Constraint> = active
+    /// C_nn δλ + C_nt D b = r_n, C_tn δλ + (C_tt D − I) b = r_t, D = diag(λ κ).
+    ///
+    /// Eliminating δλ by Cholesky's factor L of C_nn leaves (I − Q D) b = C_tn C_nn⁻¹ r_n − r_t with
+    /// Q = C_tt − WᵀW, W = L⁻¹ C_nt. `None` if a node lies on the probe's axis.
+    fn tangent_system(&self, state: &ContactState, pose: Pose) -> Option<TangentSystem> {
+        let m = state.active.len();
+        let constraints = self.constraints(state, pose)?;
+        let [mut nn, mut nt, mut tt] = [0; 3].map(|_| DMatrix::zeros(m, m));
+        for (b, (&j, constraint)) in state.active.iter().zip(&constraints).enumerate() {
+            let [push, slide] = [constraint.normal, tangent(constraint.normal)];
+            for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
+                let [n, t] = [constraint.normal, tangent(constraint.normal)];
+                let slid = self.response(i, j, slide);
+                nn[(a, b)] = dot(n, self.response(i, j, push));
+                nt[(a, b)] = dot(n, slid);
+                tt[(a, b)] = dot(t, slid);
+            }
+        }
+        let normal_factor = Cholesky::new(nn)?;
+        let coupling = normal_factor.l_dirty().solve_lower_triangular(&nt)?;
+        let turning: Vec<f64> = state
+            .active
             .iter()
-            .map(|&i| self.constraint(i, state.displacements[i], pose))
-            .collect::<Option<_>>()?;
-        let mut system = DMatrix::zeros(2 * m, 2 * m);
-        let mut rhs = DVector::zeros(2 * m);
-        for (b, (&j, constraint)) in active.iter().zip(&constraints).enumerate() {
-            let n = constraint.normal;
-            let turn = tangent(n).map(|t| t * state.pressures[j] * constraint.curvature);
-            for (a, &i) in active.iter().enumerate() {
-                let [push, slip] = [self.response(i, j, n), self.response(i, j, turn)];
-                for direction in 0..2 {
-                    system[(2 * a + direction, b)] = push[direction];
-                    system[(2 * a + direction, m + b)] = slip[direction];
+            .zip(&constraints)
+            .map(|(&j, constraint)| state.pressures[j] * constraint.curvature)
+            .collect();
+        let mut slip = DMatrix::identity(m, m);
+        for a in 0..m {
+            for b in 0..=a {
+                let q = tt[(a, b)] - coupling.column(a).dot(&coupling.column(b));
+                slip[(a, b)] -= q * turning[b];
+                if a != b {
+                    slip[(b, a)] -= q * turning[a];
                 }
             }
-            for direction in 0..2 {
-                system[(2 * b + direction, m + b)] -= tangent(n)[direction];
-                rhs[2 * b + direction] =
-                    state.displacements[j][direction] - constraint.gap * n[direction];
+        }
+        Some(TangentSystem {
+            active: state.active.clone(),
+            normals: constraints
+                .iter()
+                .map(|constraint| constraint.normal)
+                .collect(),
+            normal_factor,
+            coupling,
+            turning,
+            slip_factor: slip.lu(),
+        })
+    }
+
+    fn constraints(&self, state: &ContactState, pose: Pose) -> Option<Vec<Constraint>> {
+        state
+            .active
+            .iter()
+            .map(|&i| self.constraint(i, state.displacements[i], pose))
+            .collect()
+    }
+
+    /// One Newton step on the active nodes; updates displacements and pressures, and returns the
+    /// largest displacement increment of an active node, m. `None` if the system is singular.
+    fn newton(&self, state: &mut ContactState, pose: Pose, system: &TangentSystem) -> Option<f64> {
+        let constraints = self.constraints(state, pose)?;
+        let mut mismatch = Vec::with_capacity(constraints.len());
+        for (&i, constraint) in state.active.iter().zip(&constraints) {
+            let mut u =
+                [0, 1].map(|d| state.displacements[i][d] - constraint.gap * constraint.normal[d]);
+            for (&j, constraint) in state.active.iter().zip(&constraints) {
+                let elastic =
+                    self.response(i, j, constraint.normal.map(|n| n * state.pressures[j]));
+                u = [u[0] - elastic[0], u[1] - elastic[1]];
             }
+            mismatch.push(u);
         }
-        if m > 0 && !system.lu().solve_mut(&mut rhs) {
-            return None;
-        }
+        let (pressures, slips) = system.solve(&mismatch)?;
         let mut largest = 0.0f64;
-        state.pressures.fill(0.0);
-        let mut moved = Vec::with_capacity(m);
-        for (a, (&i, constraint)) in active.iter().zip(&constraints).enumerate() {
-            state.pressures[i] = rhs[a];
+        let mut moved = Vec::with_capacity(constraints.len());
+        for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
+            state.pressures[i] += pressures[a];
             let t = tangent(constraint.normal);
-            let increment =
-                [0, 1].map(|d| rhs[m + a] * t[d] - constraint.gap * constraint.normal[d]);
-            largest = largest.max(increment[0].abs()).max(increment[1].abs());
+            let step = [0, 1].map(|d| slips[a] * t[d] - constraint.gap * constraint.normal[d]);
+            largest = largest.max(step[0].abs()).max(step[1].abs());
             let u = state.displacements[i];
-            moved.push([u[0] + increment[0], u[1] + increment[1]]);
-        }
-        if !rhs.iter().all(|x| x.is_finite()) {
-            return None;
+            moved.push([u[0] + step[0], u[1] + step[1]]);
         }
         self.displace(state, &moved, pose)?;
         Some(largest)
@@ -287,6 +407,7 @@ impl Surface {
             match state.active.binary_search(&i) {
                 Ok(at) => {
                     state.active.remove(at);
+                    state.pressures[i] = 0.0;
                 }
                 Err(at) => state.active.insert(at, i),
             }

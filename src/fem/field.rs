@@ -27,6 +27,24 @@ pub struct FieldCheck {
     pub min_det: f64,
 }
 
+impl FieldCheck {
+    /// Of a phantom without load.
+    pub const UNTOUCHED: FieldCheck = FieldCheck {
+        residual: 0.0,
+        imbalance: 0.0,
+        min_det: 1.0,
+    };
+}
+
+/// Displacements and their gradients in the whole phantom.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    /// Displacement of each node, m.
+    pub displacements: Vec<[f64; 2]>,
+    /// `[i][j]` = ∂u_i/∂x_j at each sampling point of each element.
+    pub gradients: Vec<Vec<[[f64; 2]; 2]>>,
+}
+
 /// Shape-function gradients at the sampling points of every element.
 #[derive(Debug, Clone)]
 pub struct Samples {
@@ -101,16 +119,15 @@ impl Samples {
         }
     }
 
-    /// Gradients of one field at all sampling points, [`Samples::points_per_element`] for each element.
-    pub fn gradients(&self, u: &[[f64; 1]]) -> Vec<[[f64; 2]; 2]> {
-        let mut all = Vec::with_capacity(self.points.len());
-        self.visit(u, |_, g| all.push(g.map(|row| row.map(|[x]| x))));
-        all
-    }
-
-    /// Number of sampling points in each element.
-    pub fn points_per_element(&self) -> usize {
-        self.points_per_element
+    /// Gradients of one field, given by its unknowns, m, at the sampling points of each element.
+    pub fn gradients(&self, unknowns: &[f64]) -> Vec<Vec<[[f64; 2]; 2]>> {
+        // The row of zeros behind the unknowns stands for the fixed nodes.
+        let u: Vec<[f64; 1]> = unknowns.iter().map(|&u| [u]).chain([[0.0]]).collect();
+        let mut elements = vec![Vec::new(); self.points.len() / self.points_per_element];
+        self.visit(&u, |point, g| {
+            elements[point / self.points_per_element].push(g.map(|row| row.map(|[x]| x)));
+        });
+        elements
     }
 }
 

@@ -9,14 +9,17 @@ pub mod contact;
 pub mod element;
 pub mod field;
 pub mod mesh;
+mod model;
+mod ordering;
 mod outline;
+mod vtu;
 
-use crate::phantom::Phantom;
-use assembly::StiffnessMatrix;
-use cholesky::{Factor, check_residual};
+use crate::force_map::InvalidForceMap;
+use crate::phantom::{InvalidPhantom, PoseError};
 pub use contact::{Contact, ContactState, Surface};
-use field::{BATCH, Batch, FieldCheck, Samples};
+pub use field::{Field, FieldCheck};
 pub use mesh::{Element, Mesh};
+pub use model::{Model, PoseSolution};
 
 /// Where the probe stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +44,7 @@ pub struct MeshOptions {
 impl Default for MeshOptions {
     fn default() -> Self {
         MeshOptions {
-            size: 0.7e-3,
+            size: 0.75e-3,
             refinement: 1,
             element: Element::T6,
         }
@@ -51,6 +54,15 @@ impl Default for MeshOptions {
 /// What can go wrong between a phantom and a force.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FemError {
+    /// The phantom is not valid.
+    #[error(transparent)]
+    Phantom(#[from] InvalidPhantom),
+    /// The probe cannot stand there.
+    #[error(transparent)]
+    Pose(#[from] PoseError),
+    /// The forces do not make a map: its axes are not valid, or the forces are not symmetric.
+    #[error(transparent)]
+    Map(#[from] InvalidForceMap),
     /// The mesh would be empty or too large.
     #[error("mesh size {} mm with refinement {refinement}: expected a size that gives 2 to 2000 cells across the well", size * 1e3)]
     MeshSize {
@@ -94,60 +106,4 @@ pub enum FemError {
     /// Memory ran out.
     #[error("out of memory")]
     OutOfMemory,
-}
-
-/// The result at one pose.
-#[derive(Debug, Clone)]
-pub struct PoseSolution {
-    /// The pose.
-    pub pose: Pose,
-    /// Force on the probe along +x, N.
-    pub lateral_force: f64,
-    /// Force on the probe out of the gel, N.
-    pub normal_force: f64,
-    /// Strain energy, J.
-    pub energy: f64,
-    /// Surface displacements and contact forces.
-    pub contact: ContactState,
-    /// Largest penetration of a surface node, m.
-    pub penetration: f64,
-    /// Checks of the whole field.
-    pub check: FieldCheck,
-}
-
-/// A phantom, meshed and factorised.
-#[derive(Debug, Clone)]
-pub struct Model {
-    /// The mesh.
-    pub mesh: Mesh,
-    /// The stiffness matrix.
-    pub matrix: StiffnessMatrix,
-    /// Its factor.
-    pub factor: Factor,
-    /// The surface, ready for contact.
-    pub surface: Surface,
-    samples: Samples,
-}
-
-impl Model {
-    /// Meshes and factorises a phantom.
-    pub fn new(
-        phantom: &Phantom,
-        options: &MeshOptions,
-        contact: Contact,
-    ) -> Result<Model, FemError> {
-        let mesh = Mesh::new(phantom, options)?;
-        let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
-        let factor = Factor::new(&matrix)?;
-        let positions = mesh.nodes[mesh.surface()].to_vec();
-        let surface = Surface::new(factor.surface_factor(), positions, phantom.probe, contact);
-        let samples = Samples::new(&mesh, &matrix);
-        Ok(Model {
-            mesh,
-            matrix,
-            factor,
-            surface,
-            samples,
-        })
-    }
 }

@@ -68,9 +68,9 @@ pub struct Cells {
 
 /// Heights of the coarse rows, and width of the disc's columns, over the target width: found by halving
 /// each in turn until all forces of the paper's phantoms came within 0.3 % of the converged ones.
-const HEIGHT_BELOW: f64 = 1.0;
-const HEIGHT_ABOVE: f64 = 0.6;
-const DISC: f64 = 0.75;
+const HEIGHT_BELOW: f64 = 0.93;
+const HEIGHT_ABOVE: f64 = 0.36;
+const DISC: f64 = 0.7;
 /// Thickness of the fine gel under the skin, and of the row below it, over the target width.
 const COVER: f64 = 0.4;
 const BETWEEN: f64 = 0.6;
@@ -93,6 +93,9 @@ impl Cells {
             Element::T6 => 2,
             Element::Q4Full => 1,
         };
+        // The thicker the gel over the disc, the smoother the field in it.
+        let gel_above = cover.bottom - shape.centre - shape.corner;
+        let height_above = HEIGHT_ABOVE * size * (1.0 + 1.6 * gel_above / shape.height);
         Cells {
             disc: count(shape.corner, DISC * size, 2.0),
             middle: count(cover.wall_strip - shape.corner, size, 2.0),
@@ -102,11 +105,7 @@ impl Cells {
                 HEIGHT_BELOW * size,
                 3.0,
             ),
-            above: count(
-                cover.bottom - shape.centre - shape.corner,
-                HEIGHT_ABOVE * size,
-                2.0,
-            ),
+            above: count(gel_above, height_above, 2.0),
             cover: options.refinement,
             skin: count(shape.skin, size, 3.0),
             split,

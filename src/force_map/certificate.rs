@@ -129,6 +129,24 @@ impl Certificate {
         }
     }
 
+    /// This certificate for the map with some of its columns, at lateral positions `laterals` (m).
+    pub(super) fn at_columns(
+        &self,
+        columns: &[usize],
+        depths: &[f64],
+        laterals: &[f64],
+    ) -> Result<Certificate, InvalidForceMap> {
+        let min_det = self.min_det.at_columns(columns);
+        let Some(smallest_det) = SmallestDet::of(&min_det, depths, laterals) else {
+            return Err(InvalidForceMap::EmptyAxis { key: "laterals_m" });
+        };
+        Ok(Certificate {
+            min_det,
+            smallest_det,
+            ..self.clone()
+        })
+    }
+
     /// This certificate for the map that symmetry extends to x < 0.
     pub(super) fn mirrored(&self) -> Certificate {
         Certificate {

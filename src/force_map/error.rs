@@ -137,6 +137,14 @@ pub enum InvalidForceMap {
         /// The depths of the map, m.
         stored: Vec<f64>,
     },
+    /// No column of the map is at this lateral position.
+    #[error("lateral position {lateral} m is not in the map, expected one of {stored:?} m")]
+    NoSuchLateral {
+        /// The lateral position that was asked for, m.
+        lateral: f64,
+        /// The lateral positions of the map, m.
+        stored: Vec<f64>,
+    },
 }
 
 fn position(position: &Option<f64>) -> String {

@@ -182,4 +182,29 @@ impl ForceMap {
             self.forces.mirrored()?,
         )
     }
+
+    /// The columns of this map at some of its lateral positions (m).
+    ///
+    /// # Errors
+    /// [`InvalidForceMap::NoSuchLateral`] for a position that the map does not hold.
+    ///
+    /// Implements: MAP-016.
+    pub fn at_laterals(&self, laterals: &[f64]) -> Result<ForceMap, InvalidForceMap> {
+        if laterals == self.laterals() {
+            return Ok(self.clone());
+        }
+        let columns = self.forces.columns_at(laterals)?;
+        let source = match &self.source {
+            Source::FiniteElements { certificate } => Source::FiniteElements {
+                certificate: certificate.at_columns(&columns, self.depths(), laterals)?,
+            },
+            measured => measured.clone(),
+        };
+        ForceMap::by_version(
+            self.program_version.clone(),
+            source,
+            self.phantom.clone(),
+            self.forces.at_columns(&columns)?,
+        )
+    }
 }

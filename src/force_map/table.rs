@@ -235,6 +235,32 @@ impl ForceTable {
         )
     }
 
+    /// The column of each of `laterals` (m).
+    pub(super) fn columns_at(&self, laterals: &[f64]) -> Result<Vec<usize>, InvalidForceMap> {
+        let column = |&lateral: &f64| {
+            let stored = |&stored: &f64| (stored - lateral).abs() <= SAME_POSITION;
+            let column = self.laterals.iter().position(stored);
+            column.ok_or_else(|| InvalidForceMap::NoSuchLateral {
+                lateral,
+                stored: self.laterals.clone(),
+            })
+        };
+        laterals.iter().map(column).collect()
+    }
+
+    /// This table with some of its columns.
+    pub(super) fn at_columns(&self, columns: &[usize]) -> Result<ForceTable, InvalidForceMap> {
+        ForceTable::new(
+            self.depths.clone(),
+            columns
+                .iter()
+                .map(|&column| self.laterals[column])
+                .collect(),
+            self.normal_force.at_columns(columns),
+            self.lateral_force.at_columns(columns),
+        )
+    }
+
     fn check_matrix(&self, key: &'static str, matrix: &Matrix) -> Result<(), InvalidForceMap> {
         let expected = [self.depths.len(), self.laterals.len()];
         let found = [matrix.row_count(), matrix.column_count()];
@@ -258,6 +284,13 @@ impl ForceTable {
 }
 
 impl Matrix {
+    /// This matrix with some of its columns.
+    pub(super) fn at_columns(&self, columns: &[usize]) -> Matrix {
+        Matrix::from_fn(self.row_count(), columns.len(), |row, column| {
+            self.row(row)[columns[column]]
+        })
+    }
+
     /// Columns 0 … n over x ≥ 0 to columns −n … n: `at_negative` of the value at |x|, and `at_zero`
     /// of the first column.
     pub(super) fn mirrored(

@@ -31,6 +31,7 @@ pub use findings::{
 };
 pub use html::html;
 pub use summary::{SUMMARY_SCHEMA, SUMMARY_SCHEMA_VERSION, summary_json};
+pub use text::FileNames;
 
 use crate::detect::DetectError;
 use crate::fem::Pose;

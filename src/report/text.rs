@@ -57,10 +57,10 @@ pub struct FileNames {
 }
 
 impl FileNames {
-    /// `prefix`, then what is safe of `name`, then a number if that is taken, then `.svg`.
+    /// `prefix`, then what is safe of `name`, then a number if that is taken, then `.extension`.
     ///
     /// Implements: REP-031.
-    pub fn svg(&mut self, prefix: &str, name: &str) -> String {
+    pub fn unique(&mut self, prefix: &str, name: &str, extension: &str) -> String {
         let safe: String = name
             .chars()
             .map(|c| {
@@ -77,10 +77,10 @@ impl FileNames {
         } else {
             format!("{prefix}-{safe}")
         };
-        let mut candidate = format!("{stem}.svg");
+        let mut candidate = format!("{stem}.{extension}");
         let mut number = 2;
         while !self.used.insert(candidate.to_ascii_lowercase()) {
-            candidate = format!("{stem}-{number}.svg");
+            candidate = format!("{stem}-{number}.{extension}");
             number += 1;
         }
         candidate

@@ -6,6 +6,9 @@
 /// use vector registers of any width without changing a bit.
 const LANES: usize = 4;
 
+/// Products formed in one pass, a multiple of [`LANES`].
+const BATCH: usize = 64;
+
 /// The unevaluated sum `high + low` of two numbers, where `low` is the rounding error of `high`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DoubleDouble {
@@ -69,8 +72,8 @@ pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - a_seen) + (b - b_seen))
 }
 
-/// `(p, e)` with p = fl(a·b) and p + e = a·b exactly (Dekker, Veltkamp), if |a|, |b| < 2^996 and the
-/// product does not overflow and is not below 2^-969.
+/// `(p, e)` with p = fl(a·b) and p + e = a·b exactly (Dekker, Veltkamp), if |a|, |b| < 2^996 and
+/// the product does not overflow and is not below 2^-969.
 #[inline]
 pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
@@ -98,12 +101,36 @@ pub struct Accumulator {
 }
 
 impl Accumulator {
-    /// Adds `term` to the part with number `lane` < 4.
+    /// Adds the term with number `index` to part `index` mod 4.
     #[inline]
-    pub fn add(&mut self, lane: usize, term: DoubleDouble) {
+    pub fn add(&mut self, index: usize, term: DoubleDouble) {
+        let lane = index % LANES;
         let (high, low) = two_sum(self.high[lane], term.high);
         self.high[lane] = high;
         self.low[lane] += low + term.low;
+    }
+
+    /// [`Accumulator::add`] of 64 products, in passes that compilers turn into vector code: the
+    /// same operations in the same order for each part, so the same bits.
+    #[inline]
+    fn add_products(&mut self, a: &[f64; BATCH], b: &[f64; BATCH], power_of_two: f64) {
+        let a = a.map(|a| a * power_of_two);
+        let b = b.map(|b| b * power_of_two);
+        let (mut high, mut low) = ([0.0; BATCH], [0.0; BATCH]);
+        for index in 0..BATCH {
+            (high[index], low[index]) = two_product(a[index], b[index]);
+        }
+        for part in 0..LANES {
+            for index in (part..BATCH).step_by(LANES) {
+                self.add(
+                    part,
+                    DoubleDouble {
+                        high: high[index],
+                        low: low[index],
+                    },
+                );
+            }
+        }
     }
 
     /// The sum of all the parts.
@@ -116,7 +143,8 @@ impl Accumulator {
     }
 }
 
-/// Σ (k aᵢ)(k bᵢ) over two slices of the same length N (the longer one is cut), for a power of two k.
+/// Σ (k aᵢ)(k bᵢ) over two slices of the same length N (the longer one is cut), for a power of two
+/// k.
 ///
 /// The error is at most (N+16)²u² Σ|k² aᵢ bᵢ| with u = 2^-53, as long as no product overflows, plus
 /// N·2^-1022 for products that underflow.
@@ -124,22 +152,17 @@ impl Accumulator {
 /// Implements: DET-014.
 pub fn dot(a: &[f64], b: &[f64], power_of_two: f64) -> DoubleDouble {
     let length = a.len().min(b.len());
-    let (a_blocks, a_rest) = a[..length].as_chunks::<LANES>();
-    let (b_blocks, b_rest) = b[..length].as_chunks::<LANES>();
+    let (a_batches, a_rest) = a[..length].as_chunks::<BATCH>();
+    let (b_batches, b_rest) = b[..length].as_chunks::<BATCH>();
     let mut sum = Accumulator::default();
-    let mut add = |lane: usize, a: f64, b: f64| {
+    for (a, b) in a_batches.iter().zip(b_batches) {
+        sum.add_products(a, b, power_of_two);
+    }
+    for (index, (&a, &b)) in a_rest.iter().zip(b_rest).enumerate() {
         sum.add(
-            lane,
+            index,
             DoubleDouble::product(a * power_of_two, b * power_of_two),
         );
-    };
-    for (a, b) in a_blocks.iter().zip(b_blocks) {
-        for lane in 0..LANES {
-            add(lane, a[lane], b[lane]);
-        }
-    }
-    for (lane, (&a, &b)) in a_rest.iter().zip(b_rest).enumerate() {
-        add(lane, a, b);
     }
     sum.total()
 }
@@ -149,13 +172,13 @@ pub fn dot(a: &[f64], b: &[f64], power_of_two: f64) -> DoubleDouble {
 pub fn sum(length: usize, mut term: impl FnMut(usize) -> DoubleDouble) -> DoubleDouble {
     let mut sum = Accumulator::default();
     for index in 0..length {
-        sum.add(index % LANES, term(index));
+        sum.add(index, term(index));
     }
     sum.total()
 }
 
-/// The power of two 2^-e with 2^e ≤ |value| < 2^(e+1), at most 2^1023: it brings a finite value that is
-/// not zero near 1 (into [2^-51, 2)), without rounding.
+/// The power of two 2^-e with 2^e ≤ |value| < 2^(e+1), at most 2^1023: it brings a finite value
+/// that is not zero near 1 (into [2^-51, 2)), without rounding.
 pub fn reciprocal_power_of_two(value: f64) -> f64 {
     let exponent = libm::ilogb(value).clamp(-1023, 1023);
     libm::scalbn(1.0, -exponent)

@@ -3,8 +3,11 @@
 //! Everything here gives the same bits on every machine: the only transcendental functions are
 //! those of `libm`, sums run in an order that the source fixes, and no fused multiply-add is used.
 
+pub mod binomial;
 pub mod compensated;
 pub mod normal;
+pub mod random;
+mod ziggurat;
 
 #[cfg(test)]
 pub(crate) mod check;

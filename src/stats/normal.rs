@@ -12,8 +12,6 @@ const FRAC_1_SQRT_2: DoubleDouble = DoubleDouble {
 const FRAC_2_SQRT_PI: f64 = core::f64::consts::FRAC_2_SQRT_PI;
 /// 1/√(2π).
 const DENSITY_AT_ZERO: f64 = 0.398_942_280_401_432_7;
-/// ln √(2π).
-const LN_SQRT_2_PI: f64 = 0.918_938_533_204_672_8;
 
 /// Why a value of the normal law was refused.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,8 +115,8 @@ fn unchecked_density(x: f64) -> f64 {
 
 /// Φ(x) for every x that is no NaN: −∞ gives 0 and ∞ gives 1.
 ///
-/// Φ(x) = ½ erfc(−x/√2). The rounding error δ of −x/√2 changes the far tail by the factor exp(x δ√2), up to 1e-13,
-/// so it is put back to first order: erfc(a + δ) = erfc(a) − δ (2/√π) exp(−a²).
+/// Φ(x) = ½ erfc(−x/√2). The rounding error δ of −x/√2 changes the far tail by the factor exp(x
+/// δ√2), up to 1e-13, so it is put back to first order: erfc(a + δ) = erfc(a) − δ (2/√π) exp(−a²).
 pub(crate) fn lower_tail(x: f64) -> f64 {
     // Beyond ±40, Φ is 0 or 1 to the last bit, and the product below need not stand infinity.
     if x < -40.0 {
@@ -135,11 +133,11 @@ pub(crate) fn lower_tail(x: f64) -> f64 {
 
 /// Φ⁻¹(p) for 0 < p ≤ ½.
 fn lower_quantile(p: f64) -> f64 {
-    /// Below it erfc nears the subnormal numbers and loses digits.
-    const FAR_TAIL: f64 = 1e-290;
+    /// Below it Φ and φ near the subnormal numbers and lose the digits that the step needs.
+    const FAR_TAIL: f64 = 1e-306;
     let start = wichura(p);
     if p < FAR_TAIL {
-        return far_tail_step(start, p);
+        return start;
     }
     let excess = if p > 0.075 {
         // Near ½ the difference Φ(x) − p would cancel: take both from ½.
@@ -148,20 +146,6 @@ fn lower_quantile(p: f64) -> f64 {
         lower_tail(start) - p
     };
     start - excess / unchecked_density(start)
-}
-
-/// One Newton step for ln Φ(x) = ln p, with Mills' ratio from its asymptotic series; for x < −36.
-///
-/// With t = −x, Φ(x) = φ(t) m/t and m = 1 − 1/t² + 3/t⁴ − …; the first term left out is below 3e-15.
-fn far_tail_step(x: f64, p: f64) -> f64 {
-    let inverse_square = 1.0 / (x * x);
-    let mut series = 1.0;
-    for odd in [9.0, 7.0, 5.0, 3.0, 1.0] {
-        series = 1.0 - odd * inverse_square * series;
-    }
-    let ratio = series / -x;
-    let log_tail = -0.5 * x * x - LN_SQRT_2_PI + libm::log(ratio);
-    x - ratio * (log_tail - libm::log(p))
 }
 
 /// Algorithm AS 241 (PPND16) for 0 < p ≤ ½: a relative error of about 1e-16 before rounding.

@@ -1,0 +1,84 @@
+//! How many trials a second one core simulates. The NumPy twin `detect_numpy.py` runs the same job and
+//! prints the same lines. On a quiet machine (wall clock), one after the other:
+//!
+//! ```sh
+//! cargo bench --no-default-features --bench detect
+//! python3 benches/detect_numpy.py
+//! ```
+
+use palpate::detect::simulate::{Simulation, draw_theta};
+use palpate::detect::{Channels, DetectError};
+use palpate::stats::random::Generator;
+use std::time::Instant;
+
+/// Samples a channel.
+const SAMPLES: usize = 401;
+/// Full records in one run.
+const RECORDS: u64 = 100_000;
+/// Statistics in one direct run.
+const STATISTICS: usize = 20_000_000;
+
+/// A force that rises over the inclusion, N: a bump of `height` and its slope sideways.
+fn force(height: f64) -> [Vec<f64>; 2] {
+    let position = |i: usize| (i as f64 - 200.0) / 60.0;
+    let bump = |i: usize| height * (-0.5 * position(i) * position(i)).exp();
+    [
+        (0..SAMPLES).map(|i| position(i) * bump(i)).collect(),
+        (0..SAMPLES).map(|i| 1.5 + bump(i)).collect(),
+    ]
+}
+
+/// The best of five runs, in items a second.
+fn rate(items: f64, mut run: impl FnMut() -> Result<f64, DetectError>) -> Result<f64, DetectError> {
+    let mut best = 0.0_f64;
+    for _ in 0..5 {
+        let start = Instant::now();
+        std::hint::black_box(run()?);
+        best = best.max(items / start.elapsed().as_secs_f64());
+    }
+    Ok(best)
+}
+
+fn main() -> Result<(), DetectError> {
+    let (f0, f1) = (force(0.0), force(0.34));
+    let template: [Vec<f64>; 2] =
+        [0, 1].map(|c| f1[c].iter().zip(&f0[c]).map(|(f1, f0)| f1 - f0).collect());
+    let channels = |f: &'static [Vec<f64>; 2]| Channels {
+        x: &f[0][..],
+        y: &f[1][..],
+    };
+    let (f0, f1, template) = (
+        Box::leak(Box::new(f0)),
+        Box::leak(Box::new(f1)),
+        Box::leak(Box::new(template)),
+    );
+    let noise_sd = Channels { x: 3.0, y: 3.0 };
+    let generator = Generator::new(2026, 0);
+    let simulation = Simulation::new(channels(f0), channels(template), noise_sd, generator)?;
+    let mut scratch = vec![0.0; 2 * SAMPLES];
+    let records = rate(RECORDS as f64, || {
+        let mut sum = 0.0;
+        for trial in 0..RECORDS {
+            sum += simulation.trial(trial, channels(f1), &mut scratch)?.theta;
+        }
+        Ok(sum)
+    })?;
+    println!("full records (2 x {SAMPLES} samples): {records:.4e} trials/s");
+    let mut theta = vec![0.0; 10_000];
+    let direct = rate(STATISTICS as f64, || {
+        let mut sum = 0.0;
+        for block in 0..STATISTICS / theta.len() {
+            draw_theta(
+                &generator,
+                2.0,
+                true,
+                (block * theta.len()) as u64,
+                &mut theta,
+            )?;
+            sum += theta[0];
+        }
+        Ok(sum)
+    })?;
+    println!("theta drawn directly: {direct:.4e} /s");
+    Ok(())
+}

@@ -1,0 +1,75 @@
+//! What the program says when it cannot do what it was asked to, and with which exit code.
+
+use crate::fem::FemError;
+use crate::force_map::ForceMapFileError;
+use crate::phantom::PhantomFileError;
+use crate::report::ReportError;
+
+/// Why a command failed. Its message is one line.
+///
+/// Implements: CLI-002, CLI-003.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// The command line cannot be understood.
+    #[error("{0}")]
+    Usage(String),
+    /// A phantom's file is not valid.
+    #[error("{0}")]
+    Phantom(#[from] PhantomFileError),
+    /// A force map's file is not valid.
+    #[error("{0}")]
+    Map(#[from] ForceMapFileError),
+    /// The solver refused the phantom, the mesh or a pose, or failed.
+    #[error("phantom {phantom}: {error}")]
+    Fem {
+        /// Which phantom.
+        phantom: String,
+        /// What was wrong.
+        error: FemError,
+    },
+    /// The report refused the study.
+    #[error("report: {0}")]
+    Report(#[from] ReportError),
+    /// A file could not be written or read.
+    #[error("{action} {path}: {error}")]
+    File {
+        /// `read` or `write`.
+        action: &'static str,
+        /// Which file.
+        path: String,
+        /// What the system said.
+        error: std::io::Error,
+    },
+    /// Standard output could not be written.
+    #[error("standard output: {0}")]
+    Output(std::io::Error),
+}
+
+impl CliError {
+    /// The first line of what the argument parser has to say.
+    pub(super) fn usage(error: &clap::Error) -> CliError {
+        let text = error.to_string();
+        // The parser spreads its message over several lines; usage and hints follow an empty one.
+        let message = text.split("\n\n").next().unwrap_or_default();
+        let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
+        let message = message.strip_prefix("error: ").unwrap_or(&message);
+        if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+            return CliError::Usage("no command; try 'palpate run' or 'palpate --help'".into());
+        }
+        CliError::Usage(format!("{message}; see --help"))
+    }
+
+    /// 1 where a computation failed, 2 where the input is to blame.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            CliError::Fem { error, .. } => match error {
+                FemError::NoConvergence { .. }
+                | FemError::Residual { .. }
+                | FemError::OutOfMemory => 1,
+                _ => 2,
+            },
+            CliError::Report(_) | CliError::Output(_) => 1,
+            _ => 2,
+        }
+    }
+}

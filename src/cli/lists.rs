@@ -1,0 +1,122 @@
+//! Lists of positions on the command line: `a,b,c` or `from:to:step`, in mm.
+
+use crate::phantom::decimal::{format_scaled, parse_scaled};
+
+/// Positions, m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Positions(pub Vec<f64>);
+
+/// Most positions that a list may have.
+const MOST: usize = 10_000;
+/// Steps are counted in units of 10⁻⁹ mm, so that they add up without rounding.
+const UNITS_PER_MM: i32 = 9;
+
+/// Reads a list in mm.
+///
+/// Implements: CLI-010, CLI-011.
+///
+/// # Errors
+/// A message that names the entry and what would be right.
+pub fn positions(text: &str) -> Result<Positions, String> {
+    let values = match text.split(':').collect::<Vec<_>>()[..] {
+        [_] => text
+            .split(',')
+            .map(|entry| metres(entry.trim()))
+            .collect::<Result<Vec<_>, _>>()?,
+        [from, to, step] => steps(from.trim(), to.trim(), step.trim())?,
+        _ => {
+            return Err(format!(
+                "{text:?}: expected a,b,c or from:to:step in mm, such as 0:4:0.5"
+            ));
+        }
+    };
+    if values.len() > MOST {
+        return Err(format!(
+            "{} positions, expected at most {MOST}",
+            values.len()
+        ));
+    }
+    match values.windows(2).find(|pair| pair[0] >= pair[1]) {
+        Some(pair) => Err(format!(
+            "{} mm after {} mm: expected increasing positions",
+            format_scaled(pair[1], 3),
+            format_scaled(pair[0], 3)
+        )),
+        None => Ok(Positions(values)),
+    }
+}
+
+fn metres(text: &str) -> Result<f64, String> {
+    parse_scaled(text, -3).ok_or_else(|| format!("{text:?} is no number: expected mm, such as 2.5"))
+}
+
+fn steps(from: &str, to: &str, step: &str) -> Result<Vec<f64>, String> {
+    let units = |text: &str| -> Result<i64, String> {
+        metres(text)?;
+        let value = parse_scaled(text, UNITS_PER_MM).unwrap_or(f64::NAN);
+        if value.abs() < 1e15 && libm::round(value) == value {
+            Ok(value as i64) // whole and below 10¹⁵: exact
+        } else {
+            Err(format!(
+                "{text:?} mm: expected below 1e6 with at most 9 decimal places"
+            ))
+        }
+    };
+    let (first, last, step_units) = (units(from)?, units(to)?, units(step)?);
+    if step_units <= 0 || last < first {
+        return Err(format!(
+            "{from}:{to}:{step}: expected from ≤ to and a step above 0"
+        ));
+    }
+    let count = (last - first) / step_units + 1;
+    if count > MOST as i64 {
+        return Err(format!(
+            "{from}:{to}:{step} has {count} positions, expected at most {MOST}"
+        ));
+    }
+    let position = |k: i64| metres(&format!("{}e-{UNITS_PER_MM}", first + k * step_units));
+    (0..count).map(position).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Verifies: CLI-010.
+    #[test]
+    fn lists_are_in_mm_and_exact() {
+        assert_eq!(
+            positions("1, 2.6,4"),
+            Ok(Positions(vec![0.001, 0.0026, 0.004]))
+        );
+        assert_eq!(positions("-0.5"), Ok(Positions(vec![-0.0005])));
+        // Sums of the step in binary would miss 0.0003 and 0.0006 by a bit.
+        let tenths = vec![0.0, 0.0001, 0.0002, 0.0003, 0.0004, 0.0005, 0.0006];
+        assert_eq!(positions("0:0.6:0.1"), Ok(Positions(tenths)));
+        assert_eq!(positions("-1:1:1"), Ok(Positions(vec![-0.001, 0.0, 0.001])));
+        assert_eq!(positions("0:1:0.6"), Ok(Positions(vec![0.0, 0.0006])));
+    }
+
+    // Verifies: CLI-011.
+    #[test]
+    fn lists_that_make_no_sense_are_refused_with_the_entry() {
+        for (text, word) in [
+            ("", "\"\""),
+            ("1,,2", "\"\""),
+            ("1,x", "\"x\""),
+            ("nan", "\"nan\""),
+            ("2,1", "1.0 mm after 2.0 mm"),
+            ("1,1", "increasing"),
+            ("0:1", "from:to:step"),
+            ("0:1:0", "step above 0"),
+            ("1:0:0.5", "from ≤ to"),
+            ("0:1:-0.5", "step above 0"),
+            ("0:1:0.00001", "at most 10000"),
+            ("0:1e9:1", "below 1e6"),
+            ("0:1:0.12345678901", "9 decimal places"),
+        ] {
+            let error = positions(text).unwrap_err();
+            assert!(error.contains(word), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The command line (`spec/command-line.md`).
+
+mod config;
+mod error;
+mod import;
+mod lists;
+mod output;
+mod progress;
+mod run;
+mod solve;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand, ValueEnum};
+
+pub use error::CliError;
+
+use crate::fem::{Contact, Element};
+
+/// Inclusion probing after Yan, Scott and Fearing (1999): forces on a probe, detection of an inclusion.
+#[derive(Debug, Parser)]
+#[command(version, about, disable_help_subcommand = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// The whole paper: force maps of the phantoms, signals, detection, report.
+    Run(run::RunArguments),
+    /// Forces on the probe over depths and lateral positions of one phantom.
+    Solve(solve::SolveArguments),
+    /// A measured force map in CSV, checked and written as JSON.
+    ImportMap(import::ImportArguments),
+}
+
+/// How the gap to the probe is measured.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum ContactName {
+    /// Distance of the deformed surface from the circle; force along its normal.
+    #[default]
+    DeformedNormal,
+    /// Height of the circle over the undeformed point; vertical force on the gel.
+    VerticalGap,
+}
+
+impl From<ContactName> for Contact {
+    fn from(name: ContactName) -> Contact {
+        match name {
+            ContactName::DeformedNormal => Contact::DeformedNormal,
+            ContactName::VerticalGap => Contact::VerticalGap,
+        }
+    }
+}
+
+/// The shape of the elements.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum ElementName {
+    /// Triangles with 6 nodes.
+    #[default]
+    T6,
+    /// Fully integrated quadrilaterals with 4 nodes, which lock: forces come out some per cent high.
+    Q4Full,
+}
+
+impl From<ElementName> for Element {
+    fn from(name: ElementName) -> Element {
+        match name {
+            ElementName::T6 => Element::T6,
+            ElementName::Q4Full => Element::Q4Full,
+        }
+    }
+}
+
+/// Runs the program with the given arguments, the first of which is its name.
+///
+/// Implements: CLI-001, CLI-002, CLI-003.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let result = match Arguments::try_parse_from(arguments) {
+        Ok(Arguments {
+            command: Command::Run(arguments),
+        }) => run::run(&arguments),
+        Ok(Arguments {
+            command: Command::Solve(arguments),
+        }) => solve::solve(&arguments),
+        Ok(Arguments {
+            command: Command::ImportMap(arguments),
+        }) => import::import(&arguments),
+        Err(error) if !error.use_stderr() => output::print(&error.to_string()),
+        Err(error) => Err(CliError::usage(&error)),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("palpate: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! `palpate run`: from the phantoms to the report.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+
+use super::CliError;
+use super::config::Config;
+use super::output::{make_folder, print, write};
+use super::progress::bar;
+use super::solve::{phantom, warn_of_large_strain};
+use crate::fem::{FemError, Model, Pose};
+use crate::force_map::ForceMap;
+use crate::phantom::Phantom;
+use crate::report::{DeformedMesh, FileNames, Study, figures, findings, html, summary_json};
+
+/// Arguments of `palpate run`.
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    /// What to run instead of the paper's phantoms: a TOML file
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// The folder for report.html, summary.json, maps/ and figures/
+    #[arg(long, value_name = "DIR", default_value = "palpate-out")]
+    out: PathBuf,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-030, CLI-031, CLI-032.
+pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
+    let config = match &arguments.config {
+        Some(path) => Config::read(path)?,
+        None => Config::default(),
+    };
+    let names = std::iter::once(&config.reference).chain(&config.phantoms);
+    let phantoms = names
+        .map(|name| phantom(name))
+        .collect::<Result<Vec<_>, _>>()?;
+    // The folder first: a run shall not fail at its end for want of a place.
+    make_folder(&arguments.out)?;
+    let study = study(&config, &phantoms)?;
+    for map in std::iter::once(&study.reference).chain(&study.maps) {
+        warn_of_large_strain(map);
+    }
+    write_study(&study, &arguments.out)
+}
+
+/// Solves all maps, the phantoms in parallel, and the field of one pose.
+fn study(config: &Config, phantoms: &[Phantom]) -> Result<Study, CliError> {
+    let bar = bar(
+        phantoms.len() * config.depths_mm.0.len() * config.laterals_mm.0.len(),
+        "force maps",
+    );
+    // The figure shows the first inclusion, or the reference where there is none.
+    let shown = usize::from(phantoms.len() > 1);
+    let solve = |(index, phantom): (usize, &Phantom)| {
+        solve_phantom(config, phantom, index == shown, &bar).map_err(|error| CliError::Fem {
+            phantom: phantom.name.clone(),
+            error,
+        })
+    };
+    let solved: Vec<_> = phantoms
+        .par_iter()
+        .enumerate()
+        .map(solve)
+        .collect::<Result<_, _>>()?;
+    bar.finish_and_clear();
+    let (mut maps, deformed): (Vec<_>, Vec<_>) = solved.into_iter().unzip();
+    let Some(deformed) = deformed.into_iter().flatten().next() else {
+        return Err(CliError::Usage("no phantom to run".into()));
+    };
+    let reference = maps.remove(0);
+    Ok(Study {
+        reference,
+        maps,
+        deformed,
+        settings: config.settings(),
+    })
+}
+
+fn solve_phantom(
+    config: &Config,
+    phantom: &Phantom,
+    shown: bool,
+    bar: &ProgressBar,
+) -> Result<(ForceMap, Option<DeformedMesh>), FemError> {
+    let model = Model::new(phantom, &config.mesh_options(), config.mesh.contact.into())?;
+    let map = model.map(&config.depths_mm.0, &config.laterals_mm.0, &|poses| {
+        bar.inc(poses as u64)
+    })?;
+    let deformed = if shown {
+        Some(deformed_mesh(&model, &map)?)
+    } else {
+        None
+    };
+    Ok((map, deformed))
+}
+
+/// The mesh at the deepest pose closest to the inclusion.
+fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
+    let deepest = map.depths().iter().fold(0.0, |a: f64, &b| a.max(b));
+    let nearest = map
+        .laterals()
+        .iter()
+        .copied()
+        .min_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let pose = Pose {
+        depth: deepest,
+        lateral: nearest.unwrap_or(0.0),
+    };
+    let solution = model.solve(pose)?;
+    let mesh = model.mesh();
+    let corners = if mesh.element.nodes() == 6 { 3 } else { 4 };
+    let check = model.checks(std::slice::from_ref(&solution));
+    Ok(DeformedMesh {
+        phantom: model.phantom().clone(),
+        pose,
+        nodes: mesh.nodes.clone(),
+        displacements: model.field(&solution)?.displacements,
+        corners: mesh
+            .elements()
+            .map(|nodes| nodes[..corners].to_vec())
+            .collect(),
+        regions: mesh.regions.clone(),
+        min_det: check[0].min_det,
+    })
+}
+
+/// Writes everything and says where.
+fn write_study(study: &Study, out: &Path) -> Result<(), CliError> {
+    let findings = findings(study)?;
+    let figures = figures(study, &findings)?;
+    make_folder(&out.join("maps"))?;
+    make_folder(&out.join("figures"))?;
+    let mut names = FileNames::default();
+    for map in std::iter::once(&study.reference).chain(&study.maps) {
+        let name = map.phantom().map_or("", |phantom| &phantom.name);
+        write(
+            &out.join("maps").join(names.unique("map", name, "json")),
+            &map.to_json(),
+        )?;
+    }
+    for figure in &figures {
+        write(&out.join("figures").join(&figure.file_name), &figure.svg)?;
+    }
+    write(&out.join("summary.json"), &summary_json(&findings, study))?;
+    let report = out.join("report.html");
+    write(&report, &html(study, &findings, &figures))?;
+    print(&format!(
+        "{} force maps, {} figures, summary.json and the report in {}\n",
+        1 + study.maps.len(),
+        figures.len(),
+        report.display()
+    ))
+}

@@ -1,0 +1,187 @@
+//! `palpate solve`: the forces over depths and lateral positions of one phantom.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::lists::{Positions, positions};
+use super::output::{print, write};
+use super::progress::bar;
+use super::{CliError, ContactName, ElementName};
+use crate::fem::{FemError, MeshOptions, Model, Pose};
+use crate::force_map::ForceMap;
+use crate::phantom::decimal::{format_scaled, parse_scaled};
+use crate::phantom::{BUILTIN_NAMES, Phantom};
+
+/// Below this smallest det(I + ∇u) a warning says that the small-strain model is at its limit.
+pub const DET_WARNING: f64 = 0.2;
+
+/// Arguments of `palpate solve`.
+#[derive(Debug, Args)]
+pub struct SolveArguments {
+    /// A built-in phantom (none, 2.6, 4.6, 6.6, 8.6: the inclusion's depth in mm) or a phantom file
+    #[arg(long, value_name = "NAME|FILE")]
+    phantom: String,
+    /// Depths of the probe in mm: a,b,c or from:to:step
+    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    depths_mm: Positions,
+    /// Lateral positions of the probe in mm: a,b,c or from:to:step
+    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    laterals_mm: Positions,
+    /// How the gap to the probe is measured
+    #[arg(long, value_enum, default_value_t = ContactName::DeformedNormal)]
+    contact: ContactName,
+    /// The shape of the elements
+    #[arg(long, value_enum, default_value_t = ElementName::T6)]
+    element: ElementName,
+    /// Distance of the elements' corners in mm [default: 0.75]
+    #[arg(long, value_parser = millimetres, value_name = "H")]
+    mesh_mm: Option<f64>,
+    /// Writes the deformed mesh with stresses, of the only pose asked for, for ParaView
+    #[arg(long, value_name = "FILE")]
+    vtu: Option<PathBuf>,
+    /// How the forces are printed
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people.
+    Table,
+    /// The force map with its certificate.
+    Json,
+    /// One row a pose.
+    Csv,
+}
+
+fn millimetres(text: &str) -> Result<f64, String> {
+    parse_scaled(text, -3)
+        .filter(|&size| size > 0.0)
+        .ok_or_else(|| format!("{text:?}: expected mm above 0, such as 0.75"))
+}
+
+/// The built-in phantom of that name, or the one in the file.
+///
+/// Implements: CLI-012.
+pub fn phantom(name: &str) -> Result<Phantom, CliError> {
+    if let Ok(phantom) = Phantom::builtin(name) {
+        return Ok(phantom);
+    }
+    let path = Path::new(name);
+    if !path.exists() {
+        let known = BUILTIN_NAMES.join(", ");
+        return Err(CliError::Usage(format!(
+            "phantom {name:?} is neither built in ({known}) nor a file"
+        )));
+    }
+    Ok(Phantom::read(path)?)
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-012, CLI-013, CLI-014.
+pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
+    let SolveArguments {
+        depths_mm: Positions(depths),
+        laterals_mm: Positions(laterals),
+        ..
+    } = arguments;
+    let pose = match (&arguments.vtu, &depths[..], &laterals[..]) {
+        (None, ..) => None,
+        (Some(path), &[depth], &[lateral]) => Some((path, Pose { depth, lateral })),
+        (Some(_), ..) => {
+            return Err(CliError::Usage(
+                "--vtu shows one pose: expected one depth and one lateral position".into(),
+            ));
+        }
+    };
+    let phantom = phantom(&arguments.phantom)?;
+    let failed = |error: FemError| CliError::Fem {
+        phantom: phantom.name.clone(),
+        error,
+    };
+    let size = arguments.mesh_mm.unwrap_or(MeshOptions::default().size);
+    let options = MeshOptions {
+        size,
+        element: arguments.element.into(),
+        ..MeshOptions::default()
+    };
+    let bar = bar(depths.len() * laterals.len(), &phantom.name);
+    let model = Model::new(&phantom, &options, arguments.contact.into()).map_err(failed)?;
+    let map = model
+        .map(depths, laterals, &|poses| bar.inc(poses as u64))
+        .map_err(failed)?;
+    bar.finish_and_clear();
+    if let Some((path, pose)) = pose {
+        let solution = model.solve(pose).map_err(failed)?;
+        write(path, &model.vtu(&solution).map_err(failed)?)?;
+    }
+    warn_of_large_strain(&map);
+    print(&match arguments.format {
+        Format::Table => table(&map),
+        Format::Json => map.to_json(),
+        Format::Csv => map.forces().to_csv(),
+    })
+}
+
+/// Says on standard error where the gel is squeezed to little.
+///
+/// Implements: CLI-015.
+pub fn warn_of_large_strain(map: &ForceMap) {
+    let Some(smallest) = map
+        .certificate()
+        .map(|certificate| certificate.smallest_det)
+    else {
+        return;
+    };
+    if smallest.det < DET_WARNING {
+        let name = map.phantom().map_or("", |phantom| &phantom.name);
+        eprintln!(
+            "palpate: warning: phantom {name}: det(I + grad u) falls to {:.3} at depth {} mm, lateral {} mm: the small-strain model is at its limit there",
+            smallest.det,
+            format_scaled(smallest.depth, 3),
+            format_scaled(smallest.lateral, 3)
+        );
+    }
+}
+
+fn table(map: &ForceMap) -> String {
+    let mut text = String::new();
+    for (title, matrix) in [
+        ("normal force, N (up out of the gel)", map.normal_force()),
+        (
+            "lateral force, N (on the probe along +x)",
+            map.lateral_force(),
+        ),
+    ] {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{title}");
+        let head: String = map
+            .laterals()
+            .iter()
+            .map(|&x| format!("{:>10}", format_scaled(x, 3)))
+            .collect();
+        let _ = writeln!(text, "{:>9} {head}", "d\\x, mm");
+        for (depth, row) in map.depths().iter().zip(matrix.rows()) {
+            let forces: String = row.iter().map(|force| format!("{force:>10.5}")).collect();
+            let _ = writeln!(text, "{:>9} {forces}", format_scaled(*depth, 3));
+        }
+        text.push('\n');
+    }
+    if let Some(c) = map.certificate() {
+        let _ = writeln!(
+            text,
+            "{} nodes, {} elements ({}), contact {}; residual {:.1e}, force balance {:.1e} N, smallest det(I + grad u) {:.3}",
+            c.nodes,
+            c.elements,
+            c.element,
+            c.contact,
+            c.worst_relative_residual,
+            c.worst_force_balance,
+            c.smallest_det.det
+        );
+    }
+    text
+}

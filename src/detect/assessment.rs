@@ -1,0 +1,81 @@
+//! All that a record says, in one call: what `palpate detect` prints.
+
+use super::decision::{Decision, ErrorRates, decide, error_rates, posterior};
+use super::matched_filter::{RecordStatistic, theta_of_record};
+use super::position::MaximumLaw;
+use super::scan::{Scan, ScanMaximum};
+use super::{Channels, DetectError};
+
+/// A record judged at a known position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Assessment {
+    /// y(0), θ and γ.
+    pub statistic: RecordStatistic,
+    /// Ĥ at the threshold.
+    pub decision: Decision,
+    /// Pr(H = 1 | θ).
+    pub posterior: f64,
+    /// The rates of error of the test at this threshold.
+    pub rates: ErrorRates,
+}
+
+/// Judges a record F_p against F_0 and F_1 (N samples a channel each, N) in white noise, at
+/// threshold η and with the prior Pr(H = 1).
+///
+/// # Errors
+/// Whatever any step refuses: there is a decision only if every number that leads to it is sound.
+///
+/// Implements: DET-009, DET-031.
+pub fn assess(
+    observed: Channels<&[f64]>,
+    f0: Channels<&[f64]>,
+    f1: Channels<&[f64]>,
+    noise_sd: Channels<f64>,
+    prior_h1: f64,
+    eta: f64,
+) -> Result<Assessment, DetectError> {
+    let statistic = theta_of_record(observed, f0, f1, noise_sd)?;
+    Ok(Assessment {
+        statistic,
+        decision: decide(statistic.theta, eta)?,
+        posterior: posterior(statistic.theta, prior_h1)?,
+        rates: error_rates(statistic.gamma, eta)?,
+    })
+}
+
+/// A record judged at an unknown position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScanAssessment {
+    /// Θ_max and its shift.
+    pub maximum: ScanMaximum,
+    /// Ĥ at the threshold.
+    pub decision: Decision,
+    /// An upper bound on the false-alarm rate of the scan at this threshold.
+    pub false_alarm_bound: f64,
+    /// An upper bound on the miss rate for an inclusion at the shift that was found.
+    pub miss_bound: f64,
+}
+
+/// Judges a residual F_p − F_0 by Θ_max over the shifts of a law, at threshold η.
+///
+/// # Errors
+/// As [`assess`].
+///
+/// Implements: DET-009, DET-053, DET-057, DET-059.
+pub fn assess_scan(
+    scan: &Scan<'_>,
+    law: &MaximumLaw<'_>,
+    residual: Channels<&[f64]>,
+    eta: f64,
+) -> Result<ScanAssessment, DetectError> {
+    let maximum = scan.maximum(residual, law.shifts())?;
+    Ok(ScanAssessment {
+        maximum,
+        decision: decide(maximum.theta, eta)?,
+        false_alarm_bound: law.false_alarm_bound(eta)?,
+        miss_bound: error_rates(maximum.gamma, eta)?.miss,
+    })
+}
+
+#[cfg(test)]
+mod tests;

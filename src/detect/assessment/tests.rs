@@ -1,0 +1,108 @@
+//! Expected values: whole numbers by hand, and Φ by mpmath 1.4.1.
+
+use super::*;
+use crate::stats::check::assert_ulps;
+
+const UNIT: Channels<f64> = Channels { x: 1.0, y: 1.0 };
+const F0: Channels<&[f64]> = Channels {
+    x: &[0.0, 1.0],
+    y: &[1.0, 1.0],
+};
+const F1: Channels<&[f64]> = Channels {
+    x: &[1.0, 1.0],
+    y: &[2.0, 3.0],
+};
+const OBSERVED: Channels<&[f64]> = Channels {
+    x: &[1.0, 5.0],
+    y: &[1.0, 2.0],
+};
+
+// Verifies: DET-031.
+#[test]
+fn record_at_a_known_position() {
+    // Δ = (1, 0; 1, 2), r = (1, 4; 0, 1): Σ rΔ = 3, γ² = 6, θ = 0.
+    let found = assess(OBSERVED, F0, F1, UNIT, 0.25, -0.5).unwrap();
+    assert_eq!(
+        (found.statistic.theta, found.decision),
+        (0.0, Decision::Inclusion)
+    );
+    assert_ulps(found.posterior, 0.25, 4.0);
+    assert_eq!(found.rates, error_rates(libm::sqrt(6.0), -0.5).unwrap());
+    let found = assess(OBSERVED, F0, F1, UNIT, 0.25, 0.5).unwrap();
+    assert_eq!(found.decision, Decision::NoInclusion);
+}
+
+// Verifies: DET-009.
+#[test]
+fn what_is_refused_is_never_a_decision() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let bad = [0.0, bad];
+        for position in 0..6 {
+            let mut series = [OBSERVED.x, OBSERVED.y, F0.x, F0.y, F1.x, F1.y];
+            series[position] = &bad;
+            let [ox, oy, ax, ay, bx, by] = series;
+            let channels = |x, y| Channels { x, y };
+            let found = assess(
+                channels(ox, oy),
+                channels(ax, ay),
+                channels(bx, by),
+                UNIT,
+                0.5,
+                0.0,
+            );
+            assert!(matches!(
+                found,
+                Err(DetectError::NotFinite { index: 1, .. })
+            ));
+        }
+        assert!(assess(OBSERVED, F0, F1, Channels { x: bad[1], y: 1.0 }, 0.5, 0.0).is_err());
+        assert!(assess(OBSERVED, F0, F1, UNIT, bad[1], 0.0).is_err());
+        assert!(assess(OBSERVED, F0, F1, UNIT, 0.5, bad[1]).is_err());
+    }
+    assert!(
+        assess(
+            Channels {
+                x: &[1.0],
+                y: &[1.0, 2.0]
+            },
+            F0,
+            F1,
+            UNIT,
+            0.5,
+            0.0
+        )
+        .is_err()
+    );
+}
+
+// Verifies: DET-053, DET-057, DET-059.
+#[test]
+fn record_at_an_unknown_position() {
+    let template: Channels<&[f64]> = Channels {
+        x: &[0.0],
+        y: &[2.0],
+    };
+    let scan = Scan::new(3, template, UNIT).unwrap();
+    let (mut gamma, mut angle) = ([0.0; 3], [0.0; 3]);
+    let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle).unwrap();
+    let residual: Channels<&[f64]> = Channels {
+        x: &[9.0, 9.0, 9.0],
+        y: &[0.0, 3.0, 1.0],
+    };
+    let found = assess_scan(&scan, &law, residual, 2.0).unwrap();
+    assert_eq!((found.maximum.shift, found.maximum.theta), (1, 4.0));
+    assert_eq!(found.decision, Decision::Inclusion);
+    // γ = 2, η = 2: a miss is Φ(0), and the bound is at most 3 Φ(−2).
+    assert_eq!(found.miss_bound, 0.5);
+    assert!(found.false_alarm_bound <= 3.0 * 0.022_750_131_948_179_2 * (1.0 + 2e-9));
+    assert_eq!(
+        assess_scan(&scan, &law, residual, 4.1).unwrap().decision,
+        Decision::NoInclusion
+    );
+    let bad: Channels<&[f64]> = Channels {
+        x: &[9.0, f64::NAN, 9.0],
+        y: residual.y,
+    };
+    assert!(assess_scan(&scan, &law, bad, 2.0).is_err());
+    assert!(assess_scan(&scan, &law, residual, f64::NAN).is_err());
+}

@@ -1,0 +1,176 @@
+//! Θ in coloured noise of any covariance over both channels: K = LLᵀ, whitened by L⁻¹ (paper, end
+//! of §2).
+
+use super::DetectError;
+use super::error::{check_length, check_samples, representable};
+use crate::stats::compensated::{self, Accumulator, DoubleDouble};
+
+/// What a record in coloured noise says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ColouredStatistic {
+    /// θ, the log-likelihood ratio.
+    pub theta: f64,
+    /// γ = (ΔᵀK⁻¹Δ)^½.
+    pub gamma: f64,
+}
+
+/// Length of the scratch that [`theta_coloured`] needs for a covariance of `order` rows.
+///
+/// Implements: DET-046.
+pub const fn coloured_scratch(order: usize) -> usize {
+    order.saturating_mul(order).saturating_add(2 * order)
+}
+
+/// θ = ΔᵀK⁻¹(r − Δ/2) and γ for one residual and one template, each the N lateral samples and then
+/// the N normal ones (N), and a covariance K of 2N rows (N²), row by row.
+///
+/// # Errors
+/// Lengths that do not fit; NaN or infinity; a covariance that is not symmetric, or not positive
+/// definite to working precision; overflow.
+///
+/// Implements: DET-005, DET-007, DET-040, DET-041, DET-042, DET-043, DET-046.
+pub fn theta_coloured(
+    residual: &[f64],
+    template: &[f64],
+    covariance: &[f64],
+    scratch: &mut [f64],
+) -> Result<ColouredStatistic, DetectError> {
+    let order = template.len();
+    check_samples("template", template, order)?;
+    check_samples("residual", residual, order)?;
+    check_length("scratch", coloured_scratch(order), scratch.len())?;
+    let (factor, vectors) = scratch.split_at_mut(order * order);
+    let cholesky = Cholesky::new(covariance, order, factor)?;
+    let (white_template, white_residual) = vectors.split_at_mut(order);
+    cholesky.whiten(template, white_template)?;
+    cholesky.whiten(residual, white_residual)?;
+    let mut innovations = Innovations::default();
+    for (&template, &residual) in white_template.iter().zip(white_residual.iter()) {
+        innovations.add(template, residual);
+    }
+    innovations.statistic()
+}
+
+/// The Cholesky factor L of a covariance, K = LLᵀ, for records to be whitened one after the other.
+#[derive(Debug, Clone, Copy)]
+pub struct Cholesky<'a> {
+    order: usize,
+    /// L, row by row; what lies above the diagonal is not used.
+    factor: &'a [f64],
+}
+
+impl<'a> Cholesky<'a> {
+    /// Factors a covariance of `order` rows into `factor`; both hold order² numbers.
+    ///
+    /// # Errors
+    /// As [`theta_coloured`].
+    ///
+    /// Implements: DET-041, DET-042, DET-043.
+    pub fn new(
+        covariance: &[f64],
+        order: usize,
+        factor: &'a mut [f64],
+    ) -> Result<Self, DetectError> {
+        let entries = order.saturating_mul(order);
+        check_samples("covariance", covariance, entries)?;
+        check_length("factor", entries, factor.len())?;
+        check_symmetric(covariance, order)?;
+        factor.copy_from_slice(covariance);
+        for row in 0..order {
+            let (above, current) = factor.split_at_mut(row * order);
+            for column in 0..row {
+                let pivot_row = &above[column * order..][..order];
+                let sum = compensated::dot(&current[..column], &pivot_row[..column], 1.0).value();
+                current[column] = (current[column] - sum) / pivot_row[column];
+            }
+            let sum = compensated::dot(&current[..row], &current[..row], 1.0);
+            current[row] = pivot(current[row], sum, order, row)?;
+        }
+        Ok(Self { order, factor })
+    }
+
+    /// L⁻¹v, whose noise is white with standard deviation 1.
+    ///
+    /// # Errors
+    /// Lengths other than the order; NaN or infinity.
+    ///
+    /// Implements: DET-040.
+    pub fn whiten(&self, vector: &[f64], white: &mut [f64]) -> Result<(), DetectError> {
+        check_samples("vector", vector, self.order)?;
+        check_length("white", self.order, white.len())?;
+        for (row, sample) in vector.iter().enumerate() {
+            let factor = &self.factor[row * self.order..][..=row];
+            let known = compensated::dot(&factor[..row], &white[..row], 1.0).value();
+            white[row] = (sample - known) / factor[row];
+        }
+        Ok(())
+    }
+}
+
+/// The root of the pivot `diagonal` − `sum`.
+///
+/// Rounding alone can turn a singular matrix into one with pivots of about order·u of the diagonal,
+/// so a pivot that small is no evidence of a positive one.
+pub(super) fn pivot(
+    diagonal: f64,
+    sum: DoubleDouble,
+    order: usize,
+    row: usize,
+) -> Result<f64, DetectError> {
+    let pivot = DoubleDouble::new(diagonal, 0.0)
+        .plus(sum.scaled(-1.0))
+        .value();
+    let doubt = 4.0 * (order as f64 + 2.0) * f64::EPSILON * diagonal;
+    if pivot > doubt && pivot.is_finite() {
+        Ok(libm::sqrt(pivot))
+    } else {
+        Err(DetectError::NotPositiveDefinite { pivot: row })
+    }
+}
+
+fn check_symmetric(covariance: &[f64], order: usize) -> Result<(), DetectError> {
+    /// Asymmetry that rounding explains, relative to the two standard deviations.
+    const TOLERANCE: f64 = 1e-12;
+    for row in 0..order {
+        for column in 0..row {
+            let difference = covariance[row * order + column] - covariance[column * order + row];
+            // The root of each, because the product may underflow.
+            let size = libm::sqrt(covariance[row * order + row].abs())
+                * libm::sqrt(covariance[column * order + column].abs());
+            if difference.abs() > TOLERANCE * size {
+                return Err(DetectError::NotSymmetric { row, column });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Sums over whitened samples.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Innovations {
+    energy: Accumulator,
+    cross: Accumulator,
+    samples: usize,
+}
+
+impl Innovations {
+    pub(super) fn add(&mut self, template: f64, residual: f64) {
+        self.energy
+            .add(self.samples, DoubleDouble::product(template, template));
+        self.cross
+            .add(self.samples, DoubleDouble::product(template, residual));
+        self.samples += 1;
+    }
+
+    pub(super) fn statistic(self) -> Result<ColouredStatistic, DetectError> {
+        let energy = self.energy.total();
+        let theta = self.cross.total().plus(energy.scaled(-0.5)).value();
+        Ok(ColouredStatistic {
+            theta: representable("theta", theta)?,
+            gamma: representable("gamma", libm::sqrt(energy.value()))?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

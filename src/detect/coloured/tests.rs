@@ -1,0 +1,311 @@
+//! Expected values: mpmath 1.4.1 at 50 digits, γ² = ΔᵀK⁻¹Δ and θ = ΔᵀK⁻¹(r − Δ/2) by LU, for the
+//! exact binary64 arguments; or closed forms, where named.
+
+use super::super::stationary::{banded_scratch, theta_banded, theta_stationary};
+use super::super::{Channels, MatchedFilter};
+use super::*;
+use crate::stats::check::assert_near;
+use crate::stats::random::Generator;
+extern crate std;
+use std::{vec, vec::Vec};
+
+const COVARIANCE: [[f64; 6]; 6] = [
+    [0.04, 0.01, 0.002, 0.005, 0.0, 0.001],
+    [0.01, 0.05, 0.01, 0.004, 0.003, 0.0],
+    [0.002, 0.01, 0.04, 0.002, 0.001, 0.006],
+    [0.005, 0.004, 0.002, 0.09, 0.03, 0.01],
+    [0.0, 0.003, 0.001, 0.03, 0.08, 0.02],
+    [0.001, 0.0, 0.006, 0.01, 0.02, 0.07],
+];
+const TEMPLATE: [f64; 6] = [0.25, -0.5, 0.125, 0.34, 0.31, 0.22];
+const RESIDUAL: [f64; 6] = [0.3, -0.4, 0.2, 0.4, 0.1, 0.3];
+
+fn dense(
+    residual: &[f64],
+    template: &[f64],
+    covariance: &[f64],
+) -> Result<ColouredStatistic, DetectError> {
+    theta_coloured(
+        residual,
+        template,
+        covariance,
+        &mut vec![0.0; coloured_scratch(template.len())],
+    )
+}
+
+/// The condition number of every covariance here is below 100, and each of the orders ≤ 200 of
+/// steps of the factor rounds a few times: 100 · 200 · 4u.
+const TOLERANCE: f64 = 1e-11;
+
+// Verifies: DET-040, DET-041.
+#[test]
+fn dense_covariance_with_both_channels_correlated() {
+    let found = dense(&RESIDUAL, &TEMPLATE, COVARIANCE.as_flattened()).unwrap();
+    assert_near(found.gamma, 3.4182453330542018, 1e-14);
+    assert_near(found.theta, 5.00985322113691, 2e-14);
+}
+
+// Verifies: DET-041.
+#[test]
+fn forces_in_other_units_give_the_same_statistic() {
+    let expected = dense(&RESIDUAL, &TEMPLATE, COVARIANCE.as_flattened()).unwrap();
+    for unit in [2_f64.powi(-500), 2_f64.powi(500)] {
+        let scaled =
+            |values: &[f64], unit: f64| values.iter().map(|v| v * unit).collect::<Vec<_>>();
+        let covariance = scaled(COVARIANCE.as_flattened(), unit * unit);
+        assert_eq!(
+            dense(
+                &scaled(&RESIDUAL, unit),
+                &scaled(&TEMPLATE, unit),
+                &covariance
+            ),
+            Ok(expected)
+        );
+    }
+}
+
+// Verifies: DET-042, DET-043.
+#[test]
+fn covariances_that_are_none_are_refused() {
+    let change = |changes: &[(usize, usize, f64)]| {
+        let mut covariance = COVARIANCE;
+        for &(row, column, value) in changes {
+            covariance[row][column] = value;
+        }
+        dense(&RESIDUAL, &TEMPLATE, covariance.as_flattened()).unwrap_err()
+    };
+    assert_eq!(
+        change(&[(0, 3, 0.0051)]),
+        DetectError::NotSymmetric { row: 3, column: 0 }
+    );
+    // Correlation above 1, a variance of 0 and below 0, and two samples that are one.
+    let strong = change(&[(0, 1, 0.05), (1, 0, 0.05)]);
+    assert_eq!(strong, DetectError::NotPositiveDefinite { pivot: 1 });
+    assert_eq!(
+        change(&[(4, 4, 0.0)]),
+        DetectError::NotPositiveDefinite { pivot: 4 }
+    );
+    assert_eq!(
+        change(&[(4, 4, -1.0)]),
+        DetectError::NotPositiveDefinite { pivot: 4 }
+    );
+    let singular = [0.1, 0.3, 0.3, 0.9].map(|v: f64| v / 3.0);
+    let found = dense(&[0.0, 1.0], &[1.0, 0.0], &singular).unwrap_err();
+    assert_eq!(found, DetectError::NotPositiveDefinite { pivot: 1 });
+    assert_eq!(
+        change(&[(2, 2, f64::NAN)]),
+        DetectError::NotFinite {
+            what: "covariance",
+            index: 14
+        }
+    );
+}
+
+// Verifies: DET-005, DET-007, DET-046.
+#[test]
+fn arguments_that_do_not_fit_are_refused() {
+    let covariance = COVARIANCE.as_flattened();
+    assert!(dense(&[], &[], &[]).is_err());
+    assert!(dense(&RESIDUAL[..5], &TEMPLATE, covariance).is_err());
+    assert!(dense(&RESIDUAL, &TEMPLATE, &covariance[..35]).is_err());
+    for found in [47, 49] {
+        let expected = DetectError::LengthMismatch {
+            what: "scratch",
+            expected: 48,
+            found,
+        };
+        let scratch = &mut vec![0.0; found];
+        assert_eq!(
+            theta_coloured(&RESIDUAL, &TEMPLATE, covariance, scratch),
+            Err(expected)
+        );
+    }
+    let mut bad = RESIDUAL;
+    bad[3] = f64::INFINITY;
+    let expected = DetectError::NotFinite {
+        what: "residual",
+        index: 3,
+    };
+    assert_eq!(dense(&bad, &TEMPLATE, covariance), Err(expected));
+    fn both(v: &[f64]) -> Channels<&[f64]> {
+        Channels { x: v, y: v }
+    }
+    let (two, one) = ([1.0, 0.5], [1.0]);
+    let two = both(&two[..]);
+    assert!(theta_stationary(two, two, both(&one), &mut [0.0; 4]).is_err());
+    assert!(theta_stationary(two, two, two, &mut [0.0; 3]).is_err());
+    assert!(theta_banded(two, two, both(&[]), &mut []).is_err());
+    assert!(theta_banded(two, two, both(&[1.0, 0.1, 0.0]), &mut [0.0; 18]).is_err());
+    for bad in [[-1.0, 0.0], [1.0, 1.0], [1.0, f64::NAN]] {
+        assert!(theta_stationary(two, two, both(&bad), &mut [0.0; 4]).is_err());
+        assert!(theta_banded(two, two, both(&bad), &mut [0.0; 10]).is_err());
+    }
+}
+
+const LONG_TEMPLATE: Channels<&[f64]> = Channels {
+    x: &[0.1, 0.3, -0.2, 0.5, 0.4, -0.1, 0.05],
+    y: &[0.0, 0.2, 0.34, 0.31, 0.2, 0.1, 0.0],
+};
+const LONG_RESIDUAL: Channels<&[f64]> = Channels {
+    x: &[0.2, 0.1, -0.3, 0.6, 0.2, 0.0, -0.1],
+    y: &[0.1, 0.1, 0.4, 0.2, 0.3, -0.1, 0.05],
+};
+
+// Verifies: DET-044, DET-045.
+#[test]
+fn stationary_noise_by_either_method() {
+    let lags: Channels<&[f64]> = Channels {
+        x: &[0.05, 0.02, -0.005],
+        y: &[0.08, -0.03, 0.01],
+    };
+    let banded = theta_banded(
+        LONG_RESIDUAL,
+        LONG_TEMPLATE,
+        lags,
+        &mut vec![0.0; banded_scratch(3)],
+    )
+    .unwrap();
+    let padded = lags.map(|lags| {
+        let mut padded = [0.0; 7];
+        padded[..3].copy_from_slice(lags);
+        padded
+    });
+    let padded = Channels {
+        x: &padded.x[..],
+        y: &padded.y[..],
+    };
+    let levinson = theta_stationary(LONG_RESIDUAL, LONG_TEMPLATE, padded, &mut [0.0; 14]).unwrap();
+    for found in [banded, levinson] {
+        assert_near(found.gamma, 5.233014428250506, 2e-14);
+        assert_near(found.theta, 13.81510961793283, 5e-14);
+    }
+}
+
+/// Deviates for a record: any numbers will do.
+fn numbers(stream: u64, count: usize) -> Vec<f64> {
+    let mut numbers = vec![0.0; count];
+    Generator::new(99, stream).normals(0, 0, &mut numbers);
+    numbers
+}
+
+// Verifies: DET-044.
+#[test]
+fn exponential_autocovariance_has_a_closed_form() {
+    // ρ(k) = v aᵏ is a first-order autoregression: white are n₀/√v and (nᵢ − a nᵢ₋₁)/√(v(1−a²)).
+    const SAMPLES: usize = 200;
+    let (template, residual) = (numbers(0, 2 * SAMPLES), numbers(1, 2 * SAMPLES));
+    let (variance, memory) = (Channels { x: 0.3, y: 2.0 }, Channels { x: 0.8, y: -0.5 });
+    let lags = variance.zip(memory).map(|(variance, memory): (f64, f64)| {
+        (0..SAMPLES as i32)
+            .map(|lag| variance * memory.powi(lag))
+            .collect::<Vec<_>>()
+    });
+    let split = |v: &'static [f64]| Channels {
+        x: &v[..SAMPLES],
+        y: &v[SAMPLES..],
+    };
+    let (template, residual) = (split(Vec::leak(template)), split(Vec::leak(residual)));
+    let mut expected = (0.0, 0.0);
+    for (((t, r), v), a) in [
+        (((template.x, residual.x), variance.x), memory.x),
+        (((template.y, residual.y), variance.y), memory.y),
+    ] {
+        for i in 0..SAMPLES {
+            let white = |n: &[f64]| match i {
+                0 => n[0] / v.sqrt(),
+                _ => (n[i] - a * n[i - 1]) / (v * (1.0 - a * a)).sqrt(),
+            };
+            expected.0 += white(t) * white(t);
+            expected.1 += white(t) * (white(r) - 0.5 * white(t));
+        }
+    }
+    let lags = Channels {
+        x: &lags.x[..],
+        y: &lags.y[..],
+    };
+    let found = theta_stationary(residual, template, lags, &mut [0.0; 2 * SAMPLES]).unwrap();
+    assert_near(
+        found.gamma,
+        expected.0.sqrt(),
+        TOLERANCE * expected.0.sqrt(),
+    );
+    assert_near(found.theta, expected.1, TOLERANCE * expected.0);
+}
+
+// Verifies: DET-041, DET-044, DET-045.
+#[test]
+fn white_noise_is_a_special_case_of_every_colour() {
+    let sd = Channels { x: 0.3, y: 0.2 };
+    let filter = MatchedFilter::new(LONG_TEMPLATE, sd).unwrap();
+    let expected = (
+        filter.gamma(),
+        filter.statistic(LONG_RESIDUAL).unwrap().theta,
+    );
+    let mut covariance = [[0.0; 14]; 14];
+    for (i, row) in covariance.iter_mut().enumerate() {
+        row[i] = if i < 7 { sd.x * sd.x } else { sd.y * sd.y };
+    }
+    let join = |c: Channels<&[f64]>| [c.x, c.y].concat();
+    let mut found = vec![
+        dense(
+            &join(LONG_RESIDUAL),
+            &join(LONG_TEMPLATE),
+            covariance.as_flattened(),
+        )
+        .unwrap(),
+    ];
+    let variance = sd.map(|sd| [sd * sd]);
+    let lags = Channels {
+        x: &variance.x[..],
+        y: &variance.y[..],
+    };
+    found.push(theta_banded(LONG_RESIDUAL, LONG_TEMPLATE, lags, &mut [0.0; 4]).unwrap());
+    let padded = variance.map(|v| [v[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let lags = Channels {
+        x: &padded.x[..],
+        y: &padded.y[..],
+    };
+    found.push(theta_stationary(LONG_RESIDUAL, LONG_TEMPLATE, lags, &mut [0.0; 14]).unwrap());
+    for found in found {
+        // s² and a division round where white noise does not.
+        assert_near(found.gamma, expected.0, 8.0 * f64::EPSILON * expected.0);
+        assert_near(
+            found.theta,
+            expected.1,
+            8.0 * f64::EPSILON * expected.0 * expected.0,
+        );
+    }
+}
+
+// Verifies: DET-045.
+#[test]
+fn a_long_record_in_banded_noise_agrees_with_its_dense_covariance() {
+    const SAMPLES: usize = 100;
+    let (template, residual) = (numbers(2, 2 * SAMPLES), numbers(3, 2 * SAMPLES));
+    let lags = [1.0, 0.5, 0.2, -0.1];
+    let mut covariance = vec![0.0; 4 * SAMPLES * SAMPLES];
+    for i in 0..2 * SAMPLES {
+        for j in 0..2 * SAMPLES {
+            if (i < SAMPLES) == (j < SAMPLES) && i.abs_diff(j) < 4 {
+                covariance[i * 2 * SAMPLES + j] = lags[i.abs_diff(j)];
+            }
+        }
+    }
+    let expected = dense(&residual, &template, &covariance).unwrap();
+    let channels = |v: &'static [f64]| Channels {
+        x: &v[..SAMPLES],
+        y: &v[SAMPLES..],
+    };
+    let (residual, template) = (channels(Vec::leak(residual)), channels(Vec::leak(template)));
+    let lags = Channels {
+        x: &lags[..],
+        y: &lags[..],
+    };
+    let found = theta_banded(residual, template, lags, &mut vec![0.0; banded_scratch(4)]).unwrap();
+    assert_near(found.gamma, expected.gamma, TOLERANCE * expected.gamma);
+    assert_near(
+        found.theta,
+        expected.theta,
+        TOLERANCE * expected.gamma * expected.gamma,
+    );
+}

@@ -1,0 +1,130 @@
+//! How much noise a display may add: the paper's example after figure 4, and Table 2.
+
+use super::DetectError;
+use super::decision::{required_gamma, two_afc};
+use super::error::{check_not_negative, check_positive, check_samples, representable};
+
+/// A noise budget. All standard deviations in N.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoiseBudget {
+    /// The signal-to-noise ratio that the error rates need.
+    pub gamma: f64,
+    /// What all the noise together may be, signal/γ.
+    pub total_allowed: f64,
+    /// What further sources may add, 0 if the given ones exhaust the budget.
+    pub remaining: f64,
+}
+
+/// What given sources of noise amount to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoiseTotal {
+    /// (Σ s²)^½ of independent sources, N.
+    pub total: f64,
+    /// The first of the largest sources.
+    pub dominant: usize,
+    /// The share of the dominant source in the variance.
+    pub dominant_share: f64,
+}
+
+/// The budget for a signal of `signal` N at given error rates, when the independent `sources`
+/// (standard deviations, N) are there already.
+///
+/// # Errors
+/// Rates not strictly between 0 and 1, or that add up to 1 or more, where any noise will do; a
+/// signal not positive and finite; a source negative or not finite; overflow.
+///
+/// Implements: DET-100, DET-101.
+pub fn noise_budget(
+    signal: f64,
+    max_false_alarm: f64,
+    max_miss: f64,
+    sources: &[f64],
+) -> Result<NoiseBudget, DetectError> {
+    check_positive("signal", signal)?;
+    let gamma = required_gamma(max_false_alarm, max_miss)?;
+    // γ = 0 would allow any noise: infinity, which is refused.
+    let total_allowed = representable("total_allowed", signal / gamma)?;
+    let used = root_sum_square(sources)?;
+    let remaining = if used < total_allowed {
+        // (T − u)(T + u) instead of T² − u²: no cancellation beyond that of T − u, and no overflow
+        // of squares.
+        libm::sqrt(total_allowed - used) * libm::sqrt(total_allowed + used)
+    } else {
+        0.0
+    };
+    Ok(NoiseBudget {
+        gamma,
+        total_allowed,
+        remaining,
+    })
+}
+
+/// The sum of independent sources (standard deviations, N) and the one that dominates.
+///
+/// # Errors
+/// No source; a source negative or not finite; all of them 0; overflow.
+///
+/// Implements: DET-102.
+pub fn noise_total(sources: &[f64]) -> Result<NoiseTotal, DetectError> {
+    check_samples("sources", sources, sources.len())?;
+    let total = check_positive("total", root_sum_square(sources)?)?;
+    let (dominant, largest) = sources
+        .iter()
+        .copied()
+        .enumerate()
+        .fold(
+            (0, 0.0),
+            |best, next| if next.1 > best.1 { next } else { best },
+        );
+    let ratio = largest / total;
+    Ok(NoiseTotal {
+        total,
+        dominant,
+        dominant_share: ratio * ratio,
+    })
+}
+
+/// The share of right forced choices for a signal in a total noise (both N), Φ(signal/(noise √2)):
+/// the budget read forwards.
+///
+/// # Errors
+/// A signal negative or not finite; noise not positive and finite; overflow of their ratio.
+///
+/// Implements: DET-103.
+pub fn two_afc_in_noise(signal: f64, noise_sd: f64) -> Result<f64, DetectError> {
+    check_not_negative("signal", signal)?;
+    check_positive("noise_sd", noise_sd)?;
+    two_afc(representable("gamma", signal / noise_sd)?)
+}
+
+/// The standard deviation Δ/√12 of the error of a quantiser with steps of `step`, N.
+///
+/// # Errors
+/// A step negative or not finite.
+///
+/// Implements: DET-104.
+pub fn quantisation_sd(step: f64) -> Result<f64, DetectError> {
+    Ok(check_not_negative("step", step)? / libm::sqrt(12.0))
+}
+
+/// The largest quantisation step whose error has at most the standard deviation `sd`, √12 · sd, N.
+///
+/// # Errors
+/// A standard deviation negative or not finite; overflow.
+///
+/// Implements: DET-104.
+pub fn quantisation_step(sd: f64) -> Result<f64, DetectError> {
+    representable("step", check_not_negative("sd", sd)? * libm::sqrt(12.0))
+}
+
+/// (Σ s²)^½ without overflow or underflow of squares.
+fn root_sum_square(sources: &[f64]) -> Result<f64, DetectError> {
+    let mut total = 0.0;
+    for &source in sources {
+        total = libm::hypot(total, check_not_negative("source", source)?);
+    }
+    representable("total", total)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,76 @@
+//! Expected values: mpmath 1.4.1 at 40 digits from the definitions, and the paper's print.
+
+use super::*;
+use crate::stats::check::{assert_near, assert_ulps};
+
+// Verifies: DET-100, DET-101.
+#[test]
+fn budget_of_the_papers_example() {
+    let budget = noise_budget(0.5, 0.05, 0.05, &[0.1]).unwrap();
+    assert_ulps(budget.gamma, 3.2897072539029453, 4.0);
+    assert_ulps(budget.total_allowed, 0.15198920797794224, 6.0);
+    assert_ulps(budget.remaining, 0.1144583738385365, 12.0);
+    // Nothing left, and nothing used.
+    assert_eq!(
+        noise_budget(0.5, 0.05, 0.05, &[0.1, 0.12])
+            .unwrap()
+            .remaining,
+        0.0
+    );
+    let untouched = noise_budget(0.5, 0.05, 0.05, &[]).unwrap();
+    assert_ulps(untouched.remaining, untouched.total_allowed, 2.0);
+}
+
+// Verifies: DET-102.
+#[test]
+fn sources_of_table_2() {
+    let found = noise_total(&[0.02, 0.0005, 0.14, 0.093]).unwrap();
+    assert_ulps(found.total, 0.16926089329789087, 4.0);
+    assert_eq!(found.dominant, 2);
+    assert_ulps(found.dominant_share, 0.6841365829821026, 16.0);
+    // The paper: FEM playback 170 mN, dominated by backdrive friction; direct contact 220 mN, by
+    // unmodelled forces.
+    let playback = noise_total(&[0.0005, 0.14, 0.093]).unwrap();
+    assert_near(playback.total, 0.17, 0.005);
+    assert_eq!(playback.dominant, 1);
+    let direct = noise_total(&[0.2, 0.093]).unwrap();
+    assert_near(direct.total, 0.22, 0.005);
+    assert_eq!(direct.dominant, 0);
+    // Squares that would underflow.
+    assert_ulps(noise_total(&[3e-200, 4e-200]).unwrap().total, 5e-200, 2.0);
+}
+
+// Verifies: DET-103, DET-104.
+#[test]
+fn forced_choices_and_quantisation() {
+    assert_ulps(
+        two_afc_in_noise(0.34, 0.17).unwrap(),
+        0.9213503964748574,
+        4.0,
+    );
+    // A step of √12 mN is an error of 1 mN.
+    assert_ulps(quantisation_sd(3.4641016151377546e-3).unwrap(), 1e-3, 2.0);
+    assert_ulps(quantisation_step(1e-3).unwrap(), 3.4641016151377546e-3, 2.0);
+}
+
+// Verifies: DET-005, DET-006, DET-008.
+#[test]
+fn budgets_without_an_answer_are_refused() {
+    for p in [0.0, 1.0, f64::NAN, -0.1] {
+        assert!(
+            noise_budget(0.5, p, 0.05, &[]).is_err() && noise_budget(0.5, 0.05, p, &[]).is_err()
+        );
+    }
+    assert!(noise_budget(0.5, 0.5, 0.5, &[]).is_err() && noise_budget(0.5, 0.9, 0.5, &[]).is_err());
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(noise_budget(bad, 0.05, 0.05, &[]).is_err());
+        assert!(two_afc_in_noise(1.0, bad).is_err());
+    }
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(noise_budget(0.5, 0.05, 0.05, &[0.1, bad]).is_err());
+        assert!(noise_total(&[bad]).is_err() && two_afc_in_noise(bad, 1.0).is_err());
+        assert!(quantisation_sd(bad).is_err() && quantisation_step(bad).is_err());
+    }
+    assert!(noise_total(&[]).is_err() && noise_total(&[0.0]).is_err());
+    assert!(quantisation_step(1e308).is_err() && noise_total(&[1.7e308, 1.7e308]).is_err());
+}

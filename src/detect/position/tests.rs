@@ -1,0 +1,170 @@
+//! Expected values: closed forms, and mpmath 1.4.1 at 40 digits for Owen's T by quadrature.
+
+use super::*;
+use crate::stats::check::{assert_near, assert_ulps};
+extern crate std;
+use std::vec::Vec;
+
+const UNIT: Channels<f64> = Channels { x: 1.0, y: 1.0 };
+
+fn bounds(template: &[f64], samples: usize, count: usize, eta: f64) -> (f64, f64) {
+    let zeros: Vec<f64> = template.iter().map(|_| 0.0).collect();
+    let scan = Scan::new(
+        samples,
+        Channels {
+            x: template,
+            y: &zeros,
+        },
+        UNIT,
+    )
+    .unwrap();
+    let (mut gamma, mut angle) = ([0.0; 32], [0.0; 32]);
+    let law = MaximumLaw::new(&scan, 0, &mut gamma[..count], &mut angle[..count]).unwrap();
+    (
+        law.false_alarm_bound(eta).unwrap(),
+        law.union_bound(eta).unwrap(),
+    )
+}
+
+// Verifies: DET-055, DET-056, DET-057.
+#[test]
+fn two_shifts_have_an_exact_probability_below_the_bound() {
+    // Template (4, 2): γ² = 20 and correlation 8/20. Columns: η, exact, Rice or the union if less,
+    // union.
+    for (eta, exact, rice, union) in [
+        (
+            -5.0,
+            0.2231260551744205,
+            0.23053468050979498,
+            0.2635524772829727,
+        ),
+        (
+            0.0,
+            0.024118759567461175,
+            0.025347318677468263,
+            0.025347318677468263,
+        ),
+        (
+            5.0,
+            0.0007885616214067944,
+            0.0007962301575908116,
+            0.0007962301575908116,
+        ),
+    ] {
+        let (bound, union_bound) = bounds(&[4.0, 2.0], 3, 2, eta);
+        // The bound is rounded up by a part in 10⁹.
+        assert_near(bound, rice, 2e-9 * rice);
+        assert_near(union_bound, union, 2e-9 * union);
+        assert!(bound > exact);
+    }
+}
+
+// Verifies: DET-057.
+#[test]
+fn bound_is_all_but_exact_for_a_smooth_template() {
+    let template: Vec<f64> = (0..21)
+        .map(|i| libm::exp(-f64::from((i - 10) * (i - 10)) / 50.0))
+        .collect();
+    for (eta, exact, rice) in [
+        (0.0, 0.07661734145065467, 0.07663454113807089),
+        (2.0, 0.017767753579670687, 0.017778378599135128),
+    ] {
+        let (bound, _) = bounds(&template, 22, 2, eta);
+        assert_near(bound, rice, 2e-9 * rice);
+        assert!(bound > exact && bound < 1.001 * exact);
+    }
+}
+
+// Verifies: DET-056.
+#[test]
+fn independent_shifts_have_an_exact_probability_below_the_bound() {
+    // A template of one sample: K independent Θ. Exact: 1 − Φ(u)^K with u = η/γ + γ/2.
+    for eta in [-1.0, 0.5, 2.0, 6.0] {
+        let (bound, union) = bounds(&[2.0], 20, 20, eta);
+        let tail = lower_tail(-(eta / 2.0 + 1.0));
+        let exact = 1.0 - libm::pow(1.0 - tail, 20.0);
+        assert!(
+            bound >= exact && union >= bound,
+            "{eta}: {exact} {bound} {union}"
+        );
+        assert!(bound <= (20.0 * tail).min(1.0) * (1.0 + 2e-9));
+    }
+}
+
+// Verifies: DET-058.
+#[test]
+fn threshold_keeps_the_promise_and_is_the_least_that_does() {
+    let template = [0.5, 1.0, 2.0, 1.0, 0.5];
+    let scan = Scan::new(
+        20,
+        Channels {
+            x: &template,
+            y: &template,
+        },
+        UNIT,
+    )
+    .unwrap();
+    let (mut gamma, mut angle) = ([0.0; 24], [0.0; 24]);
+    let law = MaximumLaw::new(&scan, -4, &mut gamma, &mut angle).unwrap();
+    for rate in [0.3, 0.05, 1e-3, 1e-9] {
+        let eta = law.threshold(rate).unwrap();
+        assert!(law.false_alarm_bound(eta).unwrap() <= rate);
+        assert!(law.false_alarm_bound(eta - 1e-8).unwrap() > rate);
+    }
+    for rate in [0.0, 1.0, f64::NAN] {
+        assert!(law.threshold(rate).is_err());
+    }
+    assert!(law.false_alarm_bound(f64::INFINITY).is_err() && law.union_bound(f64::NAN).is_err());
+    let nothing = Scan::new(
+        5,
+        Channels {
+            x: &[0.0],
+            y: &[0.0],
+        },
+        UNIT,
+    )
+    .unwrap();
+    assert!(MaximumLaw::new(&nothing, 0, &mut gamma, &mut angle).is_err());
+    let law = MaximumLaw::new(&nothing, 0, &mut gamma[..5], &mut angle[..5]).unwrap();
+    assert_eq!(law.threshold(0.1), Err(DetectError::NoSignal));
+    assert!(MaximumLaw::new(&nothing, 0, &mut [], &mut []).is_err());
+    assert!(MaximumLaw::new(&nothing, 0, &mut gamma[..5], &mut angle[..3]).is_err());
+}
+
+// Verifies: DET-060, DET-061.
+#[test]
+fn position_bound_of_a_straight_slope() {
+    // 100 samples of slope 3 N/m in noise of 0.6 N: information 100 · 25, so 1/50 m.
+    let flat = [0.0; 100];
+    let mut slopes = [0.0; 100];
+    let line: Vec<f64> = (0..100).map(|i| 1.0 + 3.0 * 0.25 * f64::from(i)).collect();
+    slope(&line, 0.25, &mut slopes).unwrap();
+    assert_eq!(slopes, [3.0; 100]);
+    let sd = Channels { x: 0.1, y: 0.6 };
+    assert_ulps(
+        position_bound(
+            Channels {
+                x: &flat,
+                y: &slopes,
+            },
+            sd,
+        )
+        .unwrap(),
+        0.02,
+        4.0,
+    );
+    let none = Channels {
+        x: &flat[..],
+        y: &flat[..],
+    };
+    assert_eq!(position_bound(none, sd), Err(DetectError::NoSignal));
+    // A parabola: the middle is exact, an end is half a step off.
+    slope(&[0.0, 1.0, 4.0, 9.0], 1.0, &mut slopes[..4]).unwrap();
+    assert_eq!(slopes[..4], [1.0, 2.0, 4.0, 5.0]);
+    assert!(slope(&[1.0], 1.0, &mut [0.0]).is_err() && slope(&[], 1.0, &mut []).is_err());
+    assert!(
+        slope(&line, 0.0, &mut slopes).is_err() && slope(&line, 1.0, &mut slopes[..9]).is_err()
+    );
+    assert!(slope(&[0.0, f64::NAN], 1.0, &mut slopes[..2]).is_err());
+    assert!(slope(&[-f64::MAX, f64::MAX], 1.0, &mut slopes[..2]).is_err());
+}

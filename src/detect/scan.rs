@@ -1,0 +1,289 @@
+//! Where the inclusion is: Θ for every position of a template within a record, paper equation (10).
+
+use super::error::{check_positive, check_samples, representable};
+use super::{Channels, DetectError};
+use crate::stats::compensated;
+use core::ops::RangeInclusive;
+
+/// A template of M samples a channel that may begin at any sample of a record of N.
+///
+/// A *shift* k puts template sample 0 on record sample k. At −(M−1) ≤ k < 0 and N−M < k ≤ N−1 a
+/// part of the template falls off the record: what was not observed adds neither to Y nor to b, so
+/// Θ(k) is the log-likelihood ratio of what was.
+#[derive(Debug, Clone, Copy)]
+pub struct Scan<'a> {
+    template: Channels<&'a [f64]>,
+    noise_sd: Channels<f64>,
+    /// A power of two near 1/s for each channel.
+    scale: Channels<f64>,
+    samples: usize,
+}
+
+/// Θ at one shift.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScanPoint {
+    /// θ(k).
+    pub theta: f64,
+    /// γ(k) of the part of the template that overlaps the record.
+    pub gamma: f64,
+}
+
+/// The largest Θ of a scan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScanMaximum {
+    /// Θ_max.
+    pub theta: f64,
+    /// γ at the shift of the maximum.
+    pub gamma: f64,
+    /// The shift of the maximum, the first of several equal ones.
+    pub shift: isize,
+    /// The vertex of the parabola through the maximum and its two neighbours, in samples: the shift
+    /// without the grid. It is the shift itself at the ends of the scan.
+    pub refined_shift: f64,
+}
+
+impl<'a> Scan<'a> {
+    /// A scan of records of `samples` = N a channel for `template` (M ≤ N a channel, N), in noise
+    /// of standard deviation `noise_sd` a sample (N).
+    ///
+    /// # Errors
+    /// An empty or non-finite template, one that is longer than the record, or whose channels
+    /// differ in length; `noise_sd` not positive and finite.
+    ///
+    /// Implements: DET-005, DET-006, DET-007, DET-050.
+    pub fn new(
+        samples: usize,
+        template: Channels<&'a [f64]>,
+        noise_sd: Channels<f64>,
+    ) -> Result<Self, DetectError> {
+        check_samples("template_x", template.x, template.x.len())?;
+        check_samples("template_y", template.y, template.x.len())?;
+        if template.x.len() > samples {
+            let found = template.x.len();
+            return Err(DetectError::LengthMismatch {
+                what: "template_x",
+                expected: samples,
+                found,
+            });
+        }
+        check_positive("noise_sd_x", noise_sd.x)?;
+        check_positive("noise_sd_y", noise_sd.y)?;
+        let scale = noise_sd.map(compensated::reciprocal_power_of_two);
+        Ok(Self {
+            template,
+            noise_sd,
+            scale,
+            samples,
+        })
+    }
+
+    /// N, the number of samples of a record in each channel.
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// The standard deviation of a sample's noise, N.
+    pub fn noise_sd(&self) -> Channels<f64> {
+        self.noise_sd
+    }
+
+    /// The shifts at which at least one sample overlaps, −(M−1) … N−1.
+    ///
+    /// Implements: DET-051.
+    pub fn shifts(&self) -> RangeInclusive<isize> {
+        1 - self.template.x.len() as isize..=self.samples as isize - 1
+    }
+
+    /// The shifts at which the whole template lies in the record, 0 … N−M.
+    ///
+    /// Implements: DET-051.
+    pub fn full_shifts(&self) -> RangeInclusive<isize> {
+        0..=(self.samples - self.template.x.len()) as isize
+    }
+
+    /// γ of the whole template.
+    ///
+    /// # Errors
+    /// Overflow.
+    pub fn full_gamma(&self) -> Result<f64, DetectError> {
+        self.gamma(0)
+    }
+
+    /// γ(k), with the energy of the overlap alone; 0 where nothing overlaps.
+    ///
+    /// # Errors
+    /// Overflow.
+    ///
+    /// Implements: DET-052.
+    pub fn gamma(&self, shift: isize) -> Result<f64, DetectError> {
+        let square = self.template_product(shift, shift);
+        representable("gamma", libm::sqrt(square))
+    }
+
+    /// The covariance of Θ at two shifts, Σ_c Σ_i Δ_{i−k} Δ_{i−l}/s² over the record.
+    ///
+    /// Implements: DET-055.
+    pub fn covariance(&self, shift: isize, other: isize) -> Result<f64, DetectError> {
+        representable("covariance", self.template_product(shift, other))
+    }
+
+    /// Θ(k) and γ(k) of a residual (N samples a channel, N).
+    ///
+    /// # Errors
+    /// Lengths other than N; NaN or infinity; overflow.
+    ///
+    /// Implements: DET-005, DET-050, DET-052.
+    pub fn at(&self, residual: Channels<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
+        self.check(residual)?;
+        self.point(residual, shift)
+    }
+
+    /// Θ(k) for the shifts `first`, `first` + 1, …, as many as `theta` holds.
+    ///
+    /// # Errors
+    /// As [`Scan::at`]; a shift without overlap.
+    ///
+    /// Implements: DET-050, DET-052.
+    pub fn theta(
+        &self,
+        residual: Channels<&[f64]>,
+        first: isize,
+        theta: &mut [f64],
+    ) -> Result<(), DetectError> {
+        self.check(residual)?;
+        self.check_shifts(first, theta.len())?;
+        for (shift, theta) in (first..).zip(theta) {
+            *theta = self.point(residual, shift)?.theta;
+        }
+        Ok(())
+    }
+
+    /// Θ_max, its shift k̂ and the refined shift over a range of candidates. A position is x̂ = x₀
+    /// + k̂·v·dt.
+    ///
+    /// # Errors
+    /// As [`Scan::at`]; a shift without overlap; a range that is empty.
+    ///
+    /// Implements: DET-053, DET-054.
+    pub fn maximum(
+        &self,
+        residual: Channels<&[f64]>,
+        shifts: RangeInclusive<isize>,
+    ) -> Result<ScanMaximum, DetectError> {
+        self.check(residual)?;
+        let (first, last) = (*shifts.start(), *shifts.end());
+        self.check_shifts(first, 1)?;
+        self.check_shifts(last, 1)?;
+        let mut best: Option<(isize, ScanPoint)> = None;
+        for shift in shifts {
+            let point = self.point(residual, shift)?;
+            if best.is_none_or(|(_, best)| point.theta > best.theta) {
+                best = Some((shift, point));
+            }
+        }
+        let (shift, ScanPoint { theta, gamma }) =
+            best.ok_or(DetectError::Empty { what: "shifts" })?;
+        let refined_shift = if shift == first || shift == last {
+            shift as f64
+        } else {
+            let before = self.point(residual, shift - 1)?.theta;
+            let after = self.point(residual, shift + 1)?.theta;
+            shift as f64 + vertex(before, theta, after)
+        };
+        Ok(ScanMaximum {
+            theta,
+            gamma,
+            shift,
+            refined_shift,
+        })
+    }
+
+    /// Checks that `count` shifts from `first` on all overlap the record: others say nothing, and
+    /// could be without end.
+    pub(super) fn check_shifts(&self, first: isize, count: usize) -> Result<(), DetectError> {
+        let shifts = self.shifts();
+        let last = first.saturating_add_unsigned(count.saturating_sub(1));
+        let wrong = if shifts.contains(&first) { last } else { first };
+        if shifts.contains(&wrong) {
+            return Ok(());
+        }
+        let range = "a shift at which the template overlaps the record";
+        Err(DetectError::OutOfRange {
+            what: "shift",
+            value: wrong as f64,
+            range,
+        })
+    }
+
+    fn check(&self, residual: Channels<&[f64]>) -> Result<(), DetectError> {
+        check_samples("residual_x", residual.x, self.samples)?;
+        check_samples("residual_y", residual.y, self.samples)
+    }
+
+    fn point(&self, residual: Channels<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
+        let (record, template) = overlap(self.samples, self.template.x.len(), shift);
+        let parts = self
+            .template
+            .zip(residual)
+            .zip(self.scale.zip(self.noise_sd))
+            .map(|((all, residual), (scale, noise_sd))| {
+                let part = &all[template.0..template.1];
+                let energy = compensated::dot(part, part, scale);
+                let cross = compensated::dot(&residual[record.0..record.1], part, scale);
+                let variance = (noise_sd * scale) * (noise_sd * scale);
+                (
+                    cross.plus(energy.scaled(-0.5)).value() / variance,
+                    energy.value() / variance,
+                )
+            });
+        let theta = representable("theta", parts.x.0 + parts.y.0)?;
+        let gamma = representable("gamma", libm::sqrt(parts.x.1 + parts.y.1))?;
+        Ok(ScanPoint { theta, gamma })
+    }
+
+    /// Σ_c Σ_i Δ_{i−k} Δ_{i−l}/s² over 0 ≤ i < N.
+    fn template_product(&self, shift: isize, other: isize) -> f64 {
+        let length = self.template.x.len();
+        let (record, template) = overlap(self.samples, length, shift);
+        let (other_record, other_template) = overlap(self.samples, length, other);
+        let start = record.0.max(other_record.0);
+        let end = record.1.min(other_record.1);
+        if start >= end {
+            return 0.0;
+        }
+        let parts =
+            self.template
+                .zip(self.scale.zip(self.noise_sd))
+                .map(|(all, (scale, noise_sd))| {
+                    let one = &all[template.0 + start - record.0..][..end - start];
+                    let two = &all[other_template.0 + start - other_record.0..][..end - start];
+                    let variance = (noise_sd * scale) * (noise_sd * scale);
+                    compensated::dot(one, two, scale).value() / variance
+                });
+        parts.x + parts.y
+    }
+}
+
+/// The samples of the record, and of the template, that meet: half-open ranges of the same length,
+/// empty ones if none do.
+fn overlap(samples: usize, length: usize, shift: isize) -> ((usize, usize), (usize, usize)) {
+    if shift >= 0 {
+        let start = shift.unsigned_abs().min(samples);
+        let count = length.min(samples - start);
+        ((start, start + count), (0, count))
+    } else {
+        let skipped = shift.unsigned_abs().min(length);
+        let count = (length - skipped).min(samples);
+        ((0, count), (skipped, skipped + count))
+    }
+}
+
+/// The abscissa, from −½ to ½, of the top of the parabola through (−1, before), (0, top) and (1,
+/// after), where `top` is greater than `before`, because it is the first of the largest.
+fn vertex(before: f64, top: f64, after: f64) -> f64 {
+    let (left, right) = (top - before, top - after);
+    0.5 * (left - right) / (left + right)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,159 @@
+//! Expected values: by hand, in whole and half numbers.
+
+use super::*;
+
+const RECORD: [f64; 5] = [1.0, 2.0, 0.0, -1.0, 3.0];
+const TEMPLATE: [f64; 3] = [1.0, 2.0, 1.0];
+const NOTHING: [f64; 5] = [0.0; 5];
+
+fn scan() -> Scan<'static> {
+    let template = Channels {
+        x: &NOTHING[..3],
+        y: &TEMPLATE,
+    };
+    Scan::new(5, template, Channels { x: 1.0, y: 0.5 }).unwrap()
+}
+
+const RESIDUAL: Channels<&[f64]> = Channels {
+    x: &RECORD,
+    y: &RECORD,
+};
+
+/// Σ rΔ − ½ΣΔ² over the overlap; over s² = ¼ it is four times that.
+const BY_HAND: [(isize, f64, f64); 7] = [
+    (-2, 0.5, 1.0),
+    (-1, 1.5, 5.0),
+    (0, 2.0, 6.0),
+    (1, -2.0, 6.0),
+    (2, -2.0, 6.0),
+    (3, 2.5, 5.0),
+    (4, 2.5, 1.0),
+];
+
+// Verifies: DET-050, DET-051, DET-052.
+#[test]
+fn every_shift_counts_what_overlaps_and_nothing_else() {
+    let scan = scan();
+    assert_eq!((scan.shifts(), scan.full_shifts()), (-2..=4, 0..=2));
+    for (shift, quarter, energy) in BY_HAND {
+        let found = scan.at(RESIDUAL, shift).unwrap();
+        assert_eq!(
+            (found.theta, found.gamma),
+            (4.0 * quarter, libm::sqrt(4.0 * energy))
+        );
+        assert_eq!(scan.gamma(shift), Ok(found.gamma));
+    }
+    for outside in [isize::MIN, -3, 5, isize::MAX] {
+        assert_eq!(
+            scan.at(RESIDUAL, outside),
+            Ok(ScanPoint {
+                theta: 0.0,
+                gamma: 0.0
+            })
+        );
+    }
+    let mut theta = [0.0; 7];
+    scan.theta(RESIDUAL, -2, &mut theta).unwrap();
+    assert_eq!(theta, BY_HAND.map(|(_, quarter, _)| 4.0 * quarter));
+}
+
+// Verifies: DET-053, DET-054.
+#[test]
+fn maximum_is_the_first_of_the_largest() {
+    let found = scan().maximum(RESIDUAL, -2..=4).unwrap();
+    assert_eq!((found.shift, found.theta), (3, 10.0));
+    // The parabola through −8, 10, 10 has its top half way between the equal ones.
+    assert_eq!(found.refined_shift, 3.5);
+    let found = scan().maximum(RESIDUAL, 0..=2).unwrap();
+    assert_eq!(
+        (found.shift, found.theta, found.refined_shift),
+        (0, 8.0, 0.0)
+    );
+    // Θ of 6, 8, −8 at shifts −1, 0, 1: vertex ½(2 − 16)/(2 + 16).
+    let found = scan().maximum(RESIDUAL, -1..=2).unwrap();
+    assert_eq!((found.shift, found.refined_shift), (0, -7.0 / 18.0));
+    for outside in [-3..=1, 0..=5, isize::MIN..=isize::MAX] {
+        assert!(matches!(
+            scan().maximum(RESIDUAL, outside),
+            Err(DetectError::OutOfRange { .. })
+        ));
+    }
+    assert!(scan().theta(RESIDUAL, -3, &mut [0.0; 2]).is_err());
+    assert!(scan().theta(RESIDUAL, 3, &mut [0.0; 3]).is_err());
+    assert!(scan().theta(RESIDUAL, isize::MAX, &mut [0.0; 3]).is_err());
+    let empty = RangeInclusive::new(2, 1);
+    assert_eq!(
+        scan().maximum(RESIDUAL, empty),
+        Err(DetectError::Empty { what: "shifts" })
+    );
+}
+
+// Verifies: DET-055.
+#[test]
+fn covariance_of_two_shifts() {
+    let scan = scan();
+    // Σ Δᵢ Δᵢ₋₁ = 2 + 2, all of it in the record; from shift 3 to 4 only 2·1; from −2 to −1 only
+    // 1·2.
+    for (one, other, product) in [
+        (0, 1, 4.0),
+        (1, 0, 4.0),
+        (3, 4, 2.0),
+        (-2, -1, 2.0),
+        (0, 2, 1.0),
+        (0, 3, 0.0),
+        (-3, 0, 0.0),
+    ] {
+        assert_eq!(
+            scan.covariance(one, other),
+            Ok(4.0 * product),
+            "shifts {one} and {other}"
+        );
+    }
+}
+
+// Verifies: DET-005, DET-006, DET-007.
+#[test]
+fn scans_that_cannot_be_are_refused() {
+    let template: Channels<&[f64]> = Channels {
+        x: &TEMPLATE,
+        y: &TEMPLATE,
+    };
+    let sd = Channels { x: 1.0, y: 1.0 };
+    assert!(Scan::new(2, template, sd).is_err());
+    assert!(
+        Scan::new(
+            5,
+            Channels {
+                x: &TEMPLATE,
+                y: &TEMPLATE[..2]
+            },
+            sd
+        )
+        .is_err()
+    );
+    assert!(Scan::new(5, Channels { x: &[], y: &[] }, sd).is_err());
+    assert!(Scan::new(5, template, Channels { x: 1.0, y: 0.0 }).is_err());
+    let scan = Scan::new(5, template, sd).unwrap();
+    let mut bad = RECORD;
+    bad[4] = f64::NAN;
+    let expected = Err(DetectError::NotFinite {
+        what: "residual_y",
+        index: 4,
+    });
+    // The NaN lies where this template is not: the record is refused all the same.
+    assert_eq!(
+        scan.at(
+            Channels {
+                x: &RECORD,
+                y: &bad
+            },
+            0
+        ),
+        expected
+    );
+    let short = Channels {
+        x: &RECORD[..4],
+        y: &RECORD,
+    };
+    assert!(scan.maximum(short, 0..=1).is_err());
+}

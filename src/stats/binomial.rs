@@ -1,0 +1,298 @@
+//! The binomial law, and intervals for a proportion: what counts of false alarms, misses and right
+//! answers say.
+//!
+//! Point probabilities by C. Loader's saddle-point form (*Fast and accurate computation of binomial
+//! probabilities*, 2000), whose terms do not cancel; tails by summing ratios from the point
+//! outwards.
+
+use super::normal;
+use core::fmt;
+
+/// Why a question about a proportion was refused.
+///
+/// Implements: DET-123.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ProportionError {
+    /// There were no trials, or more than 2^53.
+    Trials {
+        /// The number of trials.
+        trials: u64,
+    },
+    /// More successes than trials.
+    Successes {
+        /// The number of successes.
+        successes: u64,
+        /// The number of trials.
+        trials: u64,
+    },
+    /// A probability or confidence that is not strictly between 0 and 1.
+    Probability {
+        /// Its value.
+        value: f64,
+    },
+}
+
+impl fmt::Display for ProportionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Trials { trials } => {
+                write!(
+                    f,
+                    "{trials} trials; there must be at least one, and at most 2^53"
+                )
+            }
+            Self::Successes { successes, trials } => {
+                write!(f, "{successes} successes are more than the {trials} trials")
+            }
+            Self::Probability { value } => {
+                write!(
+                    f,
+                    "the probability must lie strictly between 0 and 1, not {value}"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for ProportionError {}
+
+/// An interval for a proportion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Lower end, ≥ 0.
+    pub lower: f64,
+    /// Upper end, ≤ 1.
+    pub upper: f64,
+}
+
+/// Pr(X = successes) for X ~ Binomial(trials, p).
+///
+/// # Errors
+/// No trials; more successes than trials; p not strictly between 0 and 1.
+///
+/// Implements: DET-120.
+pub fn probability(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionError> {
+    check(successes, trials)?;
+    check_probability(p)?;
+    Ok(point(successes as f64, trials as f64, p, 1.0 - p))
+}
+
+/// Pr(X ≥ successes) for X ~ Binomial(trials, p). Takes about √trials steps.
+///
+/// # Errors
+/// As [`probability`].
+///
+/// Implements: DET-120.
+pub fn at_least(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionError> {
+    check(successes, trials)?;
+    check_probability(p)?;
+    let (k, n) = (successes as f64, trials as f64);
+    // The smaller tail by summation, the larger as its complement.
+    Ok(if k > n * p {
+        outwards(k, n, p, 1.0 - p)
+    } else {
+        1.0 - outwards(n - k + 1.0, n, 1.0 - p, p)
+    })
+}
+
+/// Pr(X ≤ successes) for X ~ Binomial(trials, p).
+///
+/// # Errors
+/// As [`probability`].
+///
+/// Implements: DET-120.
+pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionError> {
+    check(successes, trials)?;
+    check_probability(p)?;
+    let (k, n) = (successes as f64, trials as f64);
+    Ok(if k < n * p {
+        outwards(n - k, n, 1.0 - p, p)
+    } else {
+        1.0 - outwards(k + 1.0, n, p, 1.0 - p)
+    })
+}
+
+/// The exact interval of Clopper and Pearson: it covers the true proportion with at least the
+/// stated confidence.
+///
+/// # Errors
+/// No trials; more successes than trials; a confidence not strictly between 0 and 1.
+///
+/// Implements: DET-121.
+pub fn clopper_pearson(
+    successes: u64,
+    trials: u64,
+    confidence: f64,
+) -> Result<Interval, ProportionError> {
+    check(successes, trials)?;
+    check_probability(confidence)?;
+    let tail = 0.5 * (1.0 - confidence);
+    let lower = if successes == 0 {
+        0.0
+    } else {
+        least_p(|p| at_least(successes, trials, p), tail)
+    };
+    let upper = if successes == trials {
+        1.0
+    } else {
+        least_p(|p| at_most(successes, trials, p).map(|tail| -tail), -tail)
+    };
+    Ok(Interval { lower, upper })
+}
+
+/// The score interval of Wilson.
+///
+/// # Errors
+/// As [`clopper_pearson`].
+///
+/// Implements: DET-122.
+pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Interval, ProportionError> {
+    check(successes, trials)?;
+    let tail = 0.5 * (1.0 - check_probability(confidence)?);
+    let z =
+        -normal::quantile(tail).map_err(|_| ProportionError::Probability { value: confidence })?;
+    let (k, n) = (successes as f64, trials as f64);
+    let square = z * z;
+    let half_width = z * libm::sqrt(k / n * (n - k) + 0.25 * square);
+    let sum = k + 0.5 * square;
+    // The ends are the roots of one quadratic; the smaller one comes from their product, k²/(n(n +
+    // z²)), for it would cancel.
+    let upper = (sum + half_width) / (n + square);
+    let lower = k * (k / n) / (sum + half_width);
+    Ok(Interval {
+        lower,
+        upper: if successes == trials { 1.0 } else { upper },
+    })
+}
+
+fn check(successes: u64, trials: u64) -> Result<(), ProportionError> {
+    if trials == 0 || trials > 1 << 53 {
+        return Err(ProportionError::Trials { trials });
+    }
+    if successes > trials {
+        return Err(ProportionError::Successes { successes, trials });
+    }
+    Ok(())
+}
+
+fn check_probability(value: f64) -> Result<f64, ProportionError> {
+    if value > 0.0 && value < 1.0 {
+        Ok(value)
+    } else {
+        Err(ProportionError::Probability { value })
+    }
+}
+
+/// The p at which an increasing function of p reaches `value`, to the last bit: bisection over the
+/// bits of p, so that small p keep their digits.
+fn least_p(increasing: impl Fn(f64) -> Result<f64, ProportionError>, value: f64) -> f64 {
+    let (mut low, mut high) = (0, 1.0_f64.to_bits());
+    while high - low > 1 {
+        let middle = low + (high - low) / 2;
+        // An error cannot occur for 0 < p < 1; it would count as "too small".
+        if increasing(f64::from_bits(middle)).is_ok_and(|found| found > value) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    f64::from_bits(low)
+}
+
+/// Pr(X ≥ k) for k above the mean: the terms fall off from k on, each the one before times
+/// (n−j)/(j+1) · p/q. Both p and q = 1 − p are given, because the difference would lose the digits
+/// of a small one.
+fn outwards(k: f64, n: f64, p: f64, q: f64) -> f64 {
+    if k > n {
+        return 0.0;
+    }
+    let odds = p / q;
+    let (mut term, mut sum, mut j) = (1.0, 1.0, k);
+    while j < n && term > 1e-17 * sum {
+        term *= (n - j) / (j + 1.0) * odds;
+        sum += term;
+        j += 1.0;
+    }
+    (point(k, n, p, q) * sum).min(1.0)
+}
+
+/// Loader's form of the point probability.
+fn point(k: f64, n: f64, p: f64, q: f64) -> f64 {
+    // The logarithm of what is near 1 from what is not.
+    let log = |near: f64, far: f64| {
+        if near > 0.5 {
+            libm::log1p(-far)
+        } else {
+            libm::log(near)
+        }
+    };
+    if k == 0.0 {
+        return libm::exp(n * log(q, p));
+    }
+    if k == n {
+        return libm::exp(n * log(p, q));
+    }
+    let exponent = stirling_error(n)
+        - stirling_error(k)
+        - stirling_error(n - k)
+        - deviance(k, n * p)
+        - deviance(n - k, n * q);
+    libm::exp(exponent) * libm::sqrt(n / (core::f64::consts::TAU * k * (n - k)))
+}
+
+/// x ln(x/m) + m − x without cancellation.
+fn deviance(x: f64, m: f64) -> f64 {
+    let difference = x - m;
+    if difference.abs() < 0.1 * (x + m) {
+        // With v = (x−m)/(x+m): (x−m)v + 2x Σ v^(2j+1)/(2j+1), j ≥ 1.
+        let v = difference / (x + m);
+        let mut sum = difference * v;
+        let mut power = 2.0 * x * v;
+        for odd in (3..1000).step_by(2) {
+            power *= v * v;
+            let next = sum + power / f64::from(odd);
+            if next == sum {
+                break;
+            }
+            sum = next;
+        }
+        return sum;
+    }
+    x * libm::log(x / m) - difference
+}
+
+/// ln n! less Stirling's formula: a table (mpmath, 50 digits) for n < 16 and the series beyond,
+/// whose next term is below 1e-16.
+fn stirling_error(n: f64) -> f64 {
+    const TABLE: [f64; 15] = [
+        0.08106146679532726,
+        0.0413406959554093,
+        0.02767792568499834,
+        0.020790672103765093,
+        0.016644691189821193,
+        0.013876128823070748,
+        0.01189670994589177,
+        0.010411265261972096,
+        0.009255462182712733,
+        0.00833056343336287,
+        0.007573675487951841,
+        0.00694284010720953,
+        0.006408994188004207,
+        0.0059513701127588475,
+        0.005554733551962801,
+    ];
+    for (index, &error) in TABLE.iter().enumerate() {
+        if n == index as f64 + 1.0 {
+            return error;
+        }
+    }
+    let square = n * n;
+    let mut series = 1.0 / 1188.0;
+    for coefficient in [1.0 / 1680.0, 1.0 / 1260.0, 1.0 / 360.0, 1.0 / 12.0] {
+        series = coefficient - series / square;
+    }
+    series / n
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,148 @@
+//! Simulations give the same for any split of the work.
+
+use palpate::detect::scan::Scan;
+use palpate::detect::simulate::{Simulation, count_false_alarms, draw_theta};
+use palpate::detect::{Channels, DetectError};
+use palpate::stats::random::Generator;
+
+const TEMPLATE: Channels<&[f64]> = Channels {
+    x: &[0.3, -0.2, 0.1],
+    y: &[0.2, 0.4, 0.2],
+};
+const F0: Channels<&[f64]> = Channels {
+    x: &[0.0, 0.1, 0.0],
+    y: &[1.5, 1.4, 1.5],
+};
+const NOISE_SD: Channels<f64> = Channels { x: 0.2, y: 0.3 };
+
+fn simulation() -> Simulation<'static> {
+    Simulation::new(F0, TEMPLATE, NOISE_SD, Generator::new(4, 5)).unwrap()
+}
+
+// Verifies: DET-111, DET-113.
+#[test]
+fn trials_are_the_same_in_any_order_and_on_any_thread() {
+    let theta = |trial: u64| simulation().trial(trial, F0, &mut [0.0; 6]).unwrap().theta;
+    // One scratch for all: nothing of a trial may leak into the next.
+    let mut scratch = [f64::NAN; 6];
+    let forwards: Vec<f64> = (0..1000)
+        .map(|trial| simulation().trial(trial, F0, &mut scratch).unwrap().theta)
+        .collect();
+    let mut backwards: Vec<f64> = (0..1000).rev().map(theta).collect();
+    backwards.reverse();
+    assert_eq!(forwards, backwards);
+    for threads in [2, 3, 7] {
+        let threaded: Vec<f64> = std::thread::scope(|scope| {
+            let parts: Vec<_> = (0..threads)
+                .map(|part| {
+                    let range = 1000 * part / threads..1000 * (part + 1) / threads;
+                    scope.spawn(move || range.map(theta).collect::<Vec<_>>())
+                })
+                .collect();
+            parts
+                .into_iter()
+                .flat_map(|part| part.join().unwrap())
+                .collect()
+        });
+        assert_eq!(threaded, forwards);
+    }
+}
+
+// Verifies: DET-113.
+#[test]
+fn a_record_is_the_force_and_the_deviates_of_its_trial() {
+    let mut residual = [0.0; 6];
+    let found = simulation().trial(77, F0, &mut residual).unwrap();
+    let generator = Generator::new(4, 5);
+    for i in 0..3 {
+        // F_0 + s n − F_0, with two roundings at 1.5 N.
+        let lateral = 0.2 * generator.normal(77, i as u64);
+        let normal = 0.3 * generator.normal(77, 3 + i as u64);
+        assert!((residual[i] - lateral).abs() < 4.0 * f64::EPSILON);
+        assert!((residual[3 + i] - normal).abs() < 4.0 * f64::EPSILON);
+    }
+    let (x, y) = residual.split_at(3);
+    assert_eq!(
+        simulation().filter().statistic(Channels { x, y }),
+        Ok(found)
+    );
+}
+
+// Verifies: DET-111, DET-115.
+#[test]
+fn false_alarms_add_up_over_any_split() {
+    let scan = Scan::new(12, TEMPLATE, NOISE_SD).unwrap();
+    let generator = Generator::new(8, 9);
+    let count = |trials| {
+        count_false_alarms(
+            &scan,
+            scan.shifts(),
+            1.0,
+            &generator,
+            trials,
+            &mut [0.0; 24],
+        )
+        .unwrap()
+    };
+    let all = count(0..3000);
+    assert!(all > 100 && all < 2900, "{all}");
+    assert_eq!(count(0..1) + count(1..1234) + count(1234..3000), all);
+    assert_eq!(count(5..5), 0);
+    // Each by hand.
+    let by_hand = (0..200).filter(|&trial| {
+        let x: Vec<f64> = (0..12).map(|i| 0.2 * generator.normal(trial, i)).collect();
+        let y: Vec<f64> = (12..24).map(|i| 0.3 * generator.normal(trial, i)).collect();
+        scan.maximum(Channels { x: &x, y: &y }, scan.shifts())
+            .unwrap()
+            .theta
+            >= 1.0
+    });
+    assert_eq!(count(0..200), by_hand.count() as u64);
+}
+
+// Verifies: DET-114.
+#[test]
+fn theta_is_drawn_by_the_number_of_its_trial() {
+    let generator = Generator::new(1, 2);
+    let mut theta = [0.0; 50];
+    draw_theta(&generator, 2.0, true, 100, &mut theta).unwrap();
+    for (trial, theta) in (100..).zip(theta) {
+        assert_eq!(theta, 2.0 + 2.0 * generator.normal(0, trial));
+    }
+    draw_theta(&generator, 2.0, false, 149, &mut theta[..1]).unwrap();
+    assert_eq!(theta[0], theta[49] - 4.0);
+}
+
+// Verifies: DET-005, DET-006, DET-007.
+#[test]
+fn simulations_that_cannot_be_are_refused() {
+    let generator = Generator::new(1, 2);
+    let short = Channels {
+        x: &F0.x[..2],
+        y: F0.y,
+    };
+    assert!(Simulation::new(short, TEMPLATE, NOISE_SD, generator).is_err());
+    let bad = Channels {
+        x: &[0.0, f64::NAN, 0.0][..],
+        y: F0.y,
+    };
+    let found = Simulation::new(bad, TEMPLATE, NOISE_SD, generator).unwrap_err();
+    assert_eq!(
+        found,
+        DetectError::NotFinite {
+            what: "f0_x",
+            index: 1
+        }
+    );
+    assert!(simulation().trial(0, short, &mut [0.0; 6]).is_err());
+    assert!(simulation().trial(0, bad, &mut [0.0; 6]).is_err());
+    assert!(simulation().trial(0, F0, &mut [0.0; 5]).is_err());
+    for gamma in [-1.0, f64::NAN, 1e200] {
+        assert!(draw_theta(&generator, gamma, true, 0, &mut [0.0]).is_err());
+    }
+    let scan = Scan::new(12, TEMPLATE, NOISE_SD).unwrap();
+    for eta in [f64::NAN, f64::INFINITY] {
+        assert!(count_false_alarms(&scan, 0..=1, eta, &generator, 0..1, &mut [0.0; 24]).is_err());
+    }
+    assert!(count_false_alarms(&scan, 0..=1, 0.0, &generator, 0..1, &mut [0.0; 23]).is_err());
+}

@@ -1,0 +1,158 @@
+"""Prints ledger.csv: python3 power.py > ledger.csv (needs numpy and scipy).
+
+The power of every check against its defects, from the normal (or binomial) law that theta has under the defect; nothing is
+simulated, and nothing comes from the Rust code. Powers are rounded down to 4 digits."""
+import math
+
+import numpy as np
+from scipy.stats import binom, norm
+
+ALPHA = 2.5e-8
+DEFECTS = ["variance_off_1_percent", "half_left_out", "template_shifted", "channels_swapped", "sd_for_variance"]
+
+
+def coarse():
+    x = np.array([0.02, 0.09, 0.16, 0.12, -0.12, -0.16, -0.09, -0.02])
+    y = np.array([0.03, 0.10, 0.22, 0.33, 0.33, 0.22, 0.10, 0.03])
+    return (x, y), (0.25, 0.4)
+
+
+def single():
+    return (np.array([-0.05]), np.array([0.0])), (0.1, 0.1)
+
+
+def traverse():
+    position = (np.arange(401) - 200) / 50
+    bump = 0.34 * np.exp(-0.5 * position**2)
+    return (0.4 * position * bump, bump), (0.5, 0.6615)
+
+
+def laws(setting, inclusion, defect):
+    """(mean, sd) of theta as it should be and with the defect."""
+    truth, sds = setting
+    used = truth[::-1] if defect == "channels_swapped" else truth
+    if defect == "template_shifted":
+        used = [np.concatenate([[0], t[:-1]]) for t in used]
+    mean = variance = square = 0
+    for t, true, s in zip(used, truth, sds):
+        weight = t / (s if defect == "sd_for_variance" else s * s)
+        half = 1 if defect == "half_left_out" else 0.5
+        mean += np.sum(weight * ((true if inclusion else 0) - half * t))
+        variance += np.sum(weight**2) * s * s * (1.01 if defect == "variance_off_1_percent" else 1)
+        square += np.sum(true**2) / s**2
+    return (square / 2 * (1 if inclusion else -1), math.sqrt(square)), (mean, math.sqrt(variance))
+
+
+def mean_power(good, bad, n):
+    z, shift, ratio = norm.isf(ALPHA / 2), (bad[0] - good[0]) * math.sqrt(n) / good[1], bad[1] / good[1]
+    if ratio == 0:
+        return float(abs(shift) > z)
+    return norm.sf((z - shift) / ratio) + norm.cdf((-z - shift) / ratio)
+
+
+def variance_power(good, bad, n):
+    t = math.log(2 / ALPHA)
+    shift2, v = ((bad[0] - good[0]) / good[1]) ** 2, (bad[1] / good[1]) ** 2
+    excess, sd = n * (v + shift2 - 1), math.sqrt(n * (2 * v * v + 4 * v * shift2))
+    upper, lower = 2 * math.sqrt(n * t) + 2 * t, -2 * math.sqrt(n * t)
+    if sd == 0:
+        return float(excess > upper or excess < lower)
+    return norm.sf((upper - excess) / sd) + norm.cdf((lower - excess) / sd)
+
+
+def kolmogorov_power(good, bad, n):
+    x = np.linspace(good[0] - 8 * good[1], good[0] + 8 * good[1], 20001)
+    distance = np.max(np.abs(norm.cdf(x, *good) - norm.cdf(x, *bad)))
+    return norm.cdf((distance * math.sqrt(n) - math.sqrt(math.log(2 / ALPHA) / 2)) / 0.5)
+
+
+def count_power(p, bad, n):
+    high, low = binom.isf(ALPHA / 2, n, p) + 1, binom.ppf(ALPHA / 2, n, p) - 1
+    return binom.sf(high, n, bad) + binom.cdf(low - 1, n, bad)
+
+
+def line(name, n, powers):
+    down = lambda p: math.floor(min(p, 1) * 1e4) / 1e4
+    print(f"{name},{ALPHA},{n}," + ";".join(f"{defect}={down(power)}" for defect, power in powers))
+
+
+def gaussian(name, setting, inclusion, n, power, defects=DEFECTS):
+    line(name, n, [(d, power(*laws(setting(), inclusion, d), n)) for d in defects])
+
+
+def false_alarm_power(alpha):
+    def power(good, bad, n):
+        eta = good[0] + good[1] * norm.isf(alpha)
+        return count_power(alpha, norm.sf(eta, *bad), n)
+    return power
+
+
+def miss_power(beta):
+    def power(good, bad, n):
+        eta = good[0] + good[1] * norm.ppf(beta)
+        return count_power(beta, norm.cdf(eta, *bad), n)
+    return power
+
+
+print("check,alpha,trials,powers")
+gaussian("coarse_mean_h0", coarse, False, 200_000, mean_power)
+gaussian("coarse_mean_h1", coarse, True, 200_000, mean_power)
+gaussian("coarse_variance_h0", coarse, False, 2_000_000, variance_power)
+gaussian("coarse_variance_h1", coarse, True, 200_000, variance_power)
+gaussian("coarse_kolmogorov_h0", coarse, False, 200_000, kolmogorov_power)
+gaussian("coarse_kolmogorov_h1", coarse, True, 200_000, kolmogorov_power)
+gaussian("coarse_false_alarms_at_1_percent", coarse, False, 200_000, false_alarm_power(0.01))
+gaussian("coarse_misses_at_5_percent", coarse, True, 200_000, miss_power(0.05))
+one_channel = ["variance_off_1_percent", "half_left_out", "sd_for_variance"]
+gaussian("single_mean_h1", single, True, 200_000, mean_power, one_channel)
+gaussian("single_variance_h0", single, False, 200_000, variance_power, one_channel)
+gaussian("traverse_mean_h1", traverse, True, 20_000, mean_power)
+gaussian("traverse_variance_h0", traverse, False, 20_000, variance_power)
+gaussian("traverse_false_alarms_at_5_percent", traverse, False, 20_000, false_alarm_power(0.05))
+line("direct_kolmogorov", 200_000, [("other_hypothesis", kolmogorov_power((4.5, 3), (-4.5, 3), 200_000))])
+
+# Coloured noise of covariance K, judged as white noise of the same variance.
+template = np.array([0.1, 0.3, 0.2, -0.2, -0.3, -0.1, 0.05, 0.15, 0.3, 0.34, 0.2, 0.1])
+identity, swap = np.eye(12), np.kron(np.array([[0, 1], [1, 0]]), np.eye(6))
+lag = np.abs(np.subtract.outer(np.arange(6), np.arange(6)))
+both = lambda toeplitz: np.kron(np.eye(2), toeplitz)
+for name, K in [
+    ("shared_noise", 0.13 * identity + 0.09 * swap),
+    ("feedback_noise", both(0.04 / 0.36 * 0.8**lag)),
+    ("moving_average", both(np.where(lag == 0, 0.0656, np.where(lag == 1, 0.032, 0)))),
+]:
+    gamma2, white = template @ np.linalg.solve(K, template), template / K[0, 0]
+    sd = math.sqrt(white @ K @ white)
+    for suffix, inclusion, power in [("mean_h1", True, mean_power), ("variance_h0", False, variance_power)]:
+        sign = 1 if inclusion else -1
+        good, bad = (sign * gamma2 / 2, math.sqrt(gamma2)), (sign * white @ template / 2, sd)
+        line(f"{name}_{suffix}", 200_000, [("whitening_left_out", power(good, bad, 200_000))])
+
+line("generator_kolmogorov", 2_000_000, [("shifted_by_1_percent", kolmogorov_power((0, 1), (0.01, 1), 2_000_000))])
+line("generator_tails_beyond_4", 2_000_000, [("tail_left_out", count_power(2 * norm.sf(4), 0, 2_000_000))])
+for name in ("generator_signs_of_neighbours", "generator_signs_of_trials"):
+    line(name, 200_000, [("same_address", count_power(0.5, 1, 200_000))])
+
+# At least as many alarms as four places that do not overlap: 1 - 0.95^3 at the very least.
+line("theta_max_false_alarms", 20_000, [("threshold_of_one_position", binom.sf(binom.isf(ALPHA, 20_000, 0.05), 20_000, 1 - 0.95**3))])
+# A shift by one sample adds 1 to a mean square of 0.07. Below the threshold effect (gamma = 2.5, 100 candidate shifts, one in three errors
+# spread over the record) the mean square is some 200 against a bound of 7.
+line("position_error", 3_000, [("template_shifted", 1), ("signal_below_the_threshold_effect", 1)])
+
+# theta + ln 2 instead of theta.
+rate = norm.sf(norm.isf(0.05) - math.log(2) / 2)
+line("mixture_false_alarms_at_5_percent", 100_000, [("prior_left_out", count_power(0.05, rate, 100_000))])
+
+force, eta, floor, fraction = (1.5, 1.9), 0.25, 0.05, 0.2
+v = [floor**2 + (fraction * f) ** 2 for f in force]
+observed = np.linspace(-3, 8, 2_200_001)
+log_ratio = norm.logpdf(observed, force[1], v[1] ** 0.5) - norm.logpdf(observed, force[0], v[0] ** 0.5)
+constant = (force[1] - force[0]) / v[0] * (observed - (force[0] + force[1]) / 2)
+for h in (0, 1):
+    density = norm.pdf(observed, force[h], v[h] ** 0.5) * (observed[1] - observed[0])
+    rate = lambda statistic: float(np.sum(density[statistic >= eta]))
+    powers = [
+        ("constant_noise_presumed", count_power(rate(log_ratio), rate(constant), 200_000)),
+        ("logarithm_left_out", count_power(rate(log_ratio), rate(log_ratio - 0.5 * math.log(v[0] / v[1])), 200_000)),
+    ]
+    line(f"weber_tail_h{h}", 200_000, powers)
