@@ -88,8 +88,8 @@ fn introduction(study: &Study, findings: &Findings) -> String {
         laterals = range(study.reference.laterals()),
         samples = findings.samples,
         noise = trimmed(settings.noise_sd, 6),
-        fa = percent(settings.max_false_alarm),
-        miss = percent(settings.max_miss),
+        fa = limit(settings.max_false_alarm),
+        miss = limit(settings.max_miss),
         prior = trimmed(settings.prior_h1, 6),
         note = note.unwrap_or_default(),
     )
@@ -104,7 +104,7 @@ fn results(study: &Study, findings: &Findings) -> String {
     for map in &findings.maps {
         for warning in &map.warnings {
             markup += &format!(
-                "<p class=\"warning\"><strong>{}.</strong> {}</p>\n",
+                "<p class=\"warning\"><strong>Phantom {}.</strong> {}</p>\n",
                 escape(&map.name),
                 escape(warning)
             );
@@ -183,28 +183,33 @@ fn threshold_table(study: &Study, findings: &Findings) -> String {
     };
     let rows: Vec<_> = findings.maps.iter().map(row).collect();
     let caption = format!(
-        "Thresholds η on Θ, with the false-alarm rate P_fa and the miss rate P_miss that follow: maximum a posteriori \
+        "Thresholds η on Θ, with the false-alarm rate P<sub>fa</sub> and the miss rate P<sub>miss</sub> that follow: maximum a posteriori \
          (MAP), and Neyman–Pearson (NP) with at most {} misses or at most {} false alarms. AUC is the area under the \
          curve of hits against false alarms, and equals the rate of right answers in pairs (2AFC).",
-        percent(study.settings.max_miss),
-        percent(study.settings.max_false_alarm)
+        limit(study.settings.max_miss),
+        limit(study.settings.max_false_alarm)
     );
     let number = |name| (name, "number");
     let head = [
         ("Phantom", ""),
         number("MAP: η"),
-        number("P_fa"),
-        number("P_miss"),
+        number("P<sub>fa</sub>"),
+        number("P<sub>miss</sub>"),
         number("NP, misses bounded: η"),
-        number("P_fa"),
-        number("P_miss"),
+        number("P<sub>fa</sub>"),
+        number("P<sub>miss</sub>"),
         number("NP, false alarms bounded: η"),
-        number("P_fa"),
-        number("P_miss"),
+        number("P<sub>fa</sub>"),
+        number("P<sub>miss</sub>"),
         number("AUC"),
         number("2AFC"),
     ];
     table(&caption, &head, &rows)
+}
+
+/// A rate that was asked for, in per cent.
+fn limit(rate: f64) -> String {
+    format!("{} %", trimmed(100.0 * rate, 6))
 }
 
 /// An error rate: small ones by their power of ten.

@@ -101,7 +101,7 @@ pub fn chart(panels: &[Panel], x_name: &str) -> DrawingResult<(String, [i32; 2])
     let widest = panels
         .iter()
         .flat_map(names)
-        .map(|line| NAME_INDENT + text_width(&line.name))
+        .map(|line| NAME_INDENT + text_width(&line.name) + 8)
         .max();
     let right = widest.unwrap_or(0).clamp(24, WIDTH / 3);
     let svg = draw(height, |area| {

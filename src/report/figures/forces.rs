@@ -88,7 +88,7 @@ pub fn signals(study: &Study, found: &Findings) -> Result<Vec<Panel>, ReportErro
     }
     let laterals = study.reference.laterals();
     Ok(vec![
-        panel(format!("Signal F₁ − F₀: {NORMAL}"), laterals, normal, 230),
-        panel(format!("Signal F₁ − F₀: {LATERAL}"), laterals, lateral, 200),
+        panel("Normal signal F₁ − F₀ (N)".into(), laterals, normal, 230),
+        panel("Lateral signal F₁ − F₀ (N)".into(), laterals, lateral, 200),
     ])
 }

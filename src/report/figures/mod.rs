@@ -42,20 +42,24 @@ pub fn figures(study: &Study, findings: &Findings) -> Result<Vec<Figure>, Report
         let words = signal_words(findings);
         let panels = forces::signals(study, findings)?;
         all.push(figure(
-            names.svg("signals", ""),
+            names.unique("signals", "", "svg"),
             words,
             chart(&panels, LATERAL_POSITION),
         )?);
     }
     for map in [&study.reference].into_iter().chain(&study.maps) {
         let words = force_words(map);
-        let file_name = names.svg("figure-5", &name_of_map(map));
+        let file_name = names.unique("figure-5", &name_of_map(map), "svg");
         let panels = forces::force_curves(map.forces());
         all.push(figure(file_name, words, chart(&panels, LATERAL_POSITION))?);
     }
     mesh::check(&study.deformed)?;
     let drawn = mesh::deformed_mesh(&study.deformed);
-    all.push(figure(names.svg("figure-6", ""), mesh_words(study), drawn)?);
+    all.push(figure(
+        names.unique("figure-6", "", "svg"),
+        mesh_words(study),
+        drawn,
+    )?);
     let [densities, roc, pairs] = theory_words();
     let detect = |source| detect_error("figures", source);
     for (prefix, words, panels, x_name) in [
@@ -75,7 +79,7 @@ pub fn figures(study: &Study, findings: &Findings) -> Result<Vec<Figure>, Report
     ] {
         let panels: Vec<Panel> = panels;
         all.push(figure(
-            names.svg(prefix, ""),
+            names.unique(prefix, "", "svg"),
             words,
             chart(&panels, x_name),
         )?);
