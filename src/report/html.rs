@@ -29,14 +29,24 @@ pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
     )
 }
 
-/// A table that scrolls inside its own box; `head` and the cells are markup, the first cell of a row heads it.
-fn table(caption: &str, head: &[(&str, &str)], rows: &[Vec<String>]) -> String {
+/// A table that scrolls inside its own box, named by the caption above it, which does not scroll. `kind` is `""`, or
+/// `stack` for a table whose rows become blocks on a narrow page. Caption, heads and cells are markup; a head has a
+/// class; the first cell of a row heads it.
+fn table(
+    kind: &str,
+    id: &str,
+    caption: &str,
+    head: &[(&str, &str)],
+    rows: &[Vec<String>],
+) -> String {
     let class = |class: &str| match class {
         "" => String::new(),
         class => format!(" class=\"{class}\""),
     };
     let mut markup = format!(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table\">\n<table>\n<caption>{caption}</caption>\n<thead><tr>"
+        "<p class=\"caption\" id=\"{id}\">{caption}</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" \
+         aria-labelledby=\"{id}\">\n<table{}>\n<thead><tr>",
+        class(kind)
     );
     for (name, kind) in head {
         markup += &format!("<th scope=\"col\"{}>{name}</th>", class(kind));
@@ -44,10 +54,14 @@ fn table(caption: &str, head: &[(&str, &str)], rows: &[Vec<String>]) -> String {
     markup += "</tr></thead>\n<tbody>\n";
     for row in rows {
         markup += "<tr>";
-        for (k, (cell, (_, kind))) in row.iter().zip(head).enumerate() {
+        for (k, (cell, (name, kind))) in row.iter().zip(head).enumerate() {
             let kind = class(kind);
             markup += &match k {
                 0 => format!("<th scope=\"row\"{kind}>{cell}</th>"),
+                // Only tables that stack show the name, and their heads are plain words.
+                _ if !name.contains('<') => {
+                    format!("<td{kind} data-name=\"{name}\">{cell}</td>")
+                }
                 _ => format!("<td{kind}>{cell}</td>"),
             };
         }
@@ -165,7 +179,7 @@ fn signal_table(findings: &Findings) -> String {
         ("γ, lateral alone", "number"),
         ("Enough", "number"),
     ];
-    table(&caption, &head, &rows)
+    table("", "table-signals", &caption, &head, &rows)
 }
 
 fn threshold_table(study: &Study, findings: &Findings) -> String {
@@ -204,7 +218,7 @@ fn threshold_table(study: &Study, findings: &Findings) -> String {
         number("AUC"),
         number("2AFC"),
     ];
-    table(&caption, &head, &rows)
+    table("", "table-thresholds", &caption, &head, &rows)
 }
 
 /// A rate that was asked for, in per cent.
@@ -250,7 +264,7 @@ fn comparison(findings: &Findings) -> String {
                    the run are left out.";
     format!(
         "<section>\n<h2>Paper and here</h2>\n{}{}</section>\n",
-        table(caption, &head, &rows),
+        table("stack", "table-paper", caption, &head, &rows),
         pairs(findings)
     )
 }
@@ -298,7 +312,10 @@ fn pairs(findings: &Findings) -> String {
          differ more than chance allows, so pooled shares are less certain than 300 trials suggest.",
         fixed(calibration.noise, 3)
     );
-    format!("<h3>Pairs</h3>\n{}", table(&caption, &head, &rows))
+    format!(
+        "<h3>Pairs</h3>\n{}",
+        table("", "table-pairs", &caption, &head, &rows)
+    )
 }
 
 fn pictures(figures: &[Figure]) -> String {
@@ -351,7 +368,7 @@ fn certificates(findings: &Findings) -> String {
                    the reaction of floor and walls. Penetration: the largest depth of a surface node inside the probe.";
     format!(
         "<section>\n<h2>Certificates</h2>\n{}</section>\n",
-        table(caption, &head, &rows)
+        table("", "table-certificates", caption, &head, &rows)
     )
 }
 
