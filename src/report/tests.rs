@@ -222,7 +222,7 @@ fn without_4_mm_the_deepest_depth_counts_and_is_named() {
             .any(|row| row.quantity.contains("Force level"))
     );
     let figures = figures(&study, &found).unwrap();
-    assert!(html(&study, &found, &figures).contains(&note));
+    assert!(html(&study, &found, &figures).contains(&text::prose(&note)));
     assert!(figures[0].title.contains("3 mm"));
 }
 
