@@ -305,7 +305,8 @@ pub fn round_range(values: impl Iterator<Item = f64>) -> [f64; 2] {
         (least.min(value), greatest.max(value))
     });
     let span = greatest - least;
-    if !(span > 0.0) {
+    // Less than a piconewton is rounding, and an overflow has no scale.
+    if span < 1e-12 || !span.is_finite() {
         return [-1.0, 1.0];
     }
     // The step is 1, 2 or 5 times a power of ten, a tenth of the span or a little more.
