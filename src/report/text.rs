@@ -59,9 +59,8 @@ pub fn prose(text: &str) -> String {
 
 /// The first `most` characters of a name, so that a long one does not run out of its figure.
 pub fn shortened(name: &str, most: usize) -> String {
-    let name = printable(name);
     if name.chars().count() <= most {
-        return name;
+        return name.into();
     }
     let mut short: String = name.chars().take(most.saturating_sub(1)).collect();
     short.push('…');
