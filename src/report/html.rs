@@ -2,7 +2,7 @@
 
 use super::comparison::{Comparison, PairwiseFinding};
 use super::findings::{Findings, MapFindings, Peak, Quality, Threshold};
-use super::text::{escape, fixed, millimetres, percent, scientific, trimmed};
+use super::text::{escape, fixed, millimetres, percent, prose, scientific, trimmed};
 use super::{Figure, Study};
 
 /// What the name of the SVG namespace is called inside HTML: nothing, since HTML knows `<svg>` by itself.
@@ -78,7 +78,7 @@ fn introduction(study: &Study, findings: &Findings) -> String {
         [] => String::new(),
     };
     let note = findings.probe_depth_note.as_ref();
-    let note = note.map(|note| format!("<p class=\"note\">{}</p>\n", escape(note)));
+    let note = note.map(|note| format!("<p class=\"note\">{}</p>\n", prose(note)));
     format!(
         "<header>\n<h1>Inclusion probing: what a rigid probe feels, and what can be detected from it</h1>\n\
          <p class=\"lead\">A rerun of J. Yan, P. K. Scott and R. S. Fearing, <cite>Inclusion probing: signal \
@@ -120,7 +120,7 @@ fn results(study: &Study, findings: &Findings) -> String {
             markup += &format!(
                 "<p class=\"warning\"><strong>Phantom {}.</strong> {}</p>\n",
                 escape(&map.name),
-                escape(warning)
+                prose(warning)
             );
         }
     }
@@ -177,7 +177,7 @@ fn signal_table(findings: &Findings) -> String {
         ("γ", "number"),
         ("γ, normal alone", "number"),
         ("γ, lateral alone", "number"),
-        ("Enough", "number"),
+        ("Rates met", "number"),
     ];
     table("", "table-signals", &caption, &head, &rows)
 }
@@ -245,12 +245,12 @@ fn comparison(findings: &Findings) -> String {
         vec![
             format!(
                 "{} <span class=\"soft\">({})</span>",
-                escape(&row.quantity),
+                prose(&row.quantity),
                 escape(row.place)
             ),
-            escape(&row.paper_text),
-            format!("{}{tag}", escape(&row.here.text())),
-            escape(&row.why),
+            prose(&row.paper_text),
+            format!("{}{tag}", prose(&row.here.text())),
+            prose(&row.why),
         ]
     };
     let rows: Vec<_> = findings.comparison.iter().map(row).collect();
@@ -324,8 +324,8 @@ fn pictures(figures: &[Figure]) -> String {
         markup += &format!(
             "<figure>\n<div class=\"picture\">{}</div>\n<figcaption><strong>{}</strong>{} <span class=\"soft\">({})</span></figcaption>\n</figure>\n",
             figure.svg.replacen(NAMESPACE, "", 1),
-            escape(&figure.title),
-            escape(&figure.caption),
+            prose(&figure.title),
+            prose(&figure.caption),
             escape(&figure.file_name)
         );
     }

@@ -253,10 +253,11 @@ fn draw_names(
     let edge = (WIDTH - right) * UNIT;
     for ((line, end), height) in ends.into_iter().zip(spread) {
         let elbow = (edge + (NAME_INDENT - 4) * UNIT, height);
-        let leader = PathElement::new(vec![end, elbow], stroke(line.colour, 0.8));
+        let leader = PathElement::new(vec![end, elbow], stroke(line.colour, 1.4));
         area.draw(&leader).map_err(say)?;
         let at = [(WIDTH - right) + NAME_INDENT, height / UNIT];
-        write(area, &line.name, at, line.colour, HPos::Left)?;
+        // The leader carries the colour: pale words would be hard to read.
+        write(area, &line.name, at, INK, HPos::Left)?;
     }
     Ok(())
 }
@@ -304,7 +305,8 @@ pub fn round_range(values: impl Iterator<Item = f64>) -> [f64; 2] {
         (least.min(value), greatest.max(value))
     });
     let span = greatest - least;
-    if !(span > 0.0) {
+    // Less than a piconewton is rounding, and an overflow has no scale.
+    if span < 1e-12 || !span.is_finite() {
         return [-1.0, 1.0];
     }
     // The step is 1, 2 or 5 times a power of ten, a tenth of the span or a little more.

@@ -14,7 +14,7 @@ mod style;
 mod theory;
 
 use super::findings::detect_error;
-use super::text::{FileNames, escape, fixed, millimetres, name_of_map, printable};
+use super::text::{FileNames, escape, fixed, millimetres, name_of_map};
 use super::{Figure, Findings, ReportError, Study};
 use crate::force_map::ForceMap;
 use chart::{DrawingResult, Panel, chart};
@@ -164,7 +164,7 @@ fn signal_words(findings: &Findings) -> Words {
 }
 
 fn force_words(map: &ForceMap) -> Words {
-    let name = printable(&name_of_map(map));
+    let name = name_of_map(map);
     let what = match map.phantom().map(|phantom| phantom.inclusion) {
         Some(Some(inclusion)) => format!("inclusion {} mm deep", millimetres(inclusion.depth)),
         Some(None) => "no inclusion".into(),
@@ -203,7 +203,7 @@ fn force_words(map: &ForceMap) -> Words {
 
 fn mesh_words(study: &Study) -> Words {
     let mesh = &study.deformed;
-    let name = printable(&mesh.phantom.name);
+    let name = &mesh.phantom.name;
     let (depth, lateral) = (millimetres(mesh.pose.depth), millimetres(mesh.pose.lateral));
     let disc = match mesh.phantom.inclusion {
         Some(_) => {

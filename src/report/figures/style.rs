@@ -35,11 +35,7 @@ pub const VERMILION: RGBColor = OKABE_ITO[1];
 
 /// Step `index` of `count` from sky blue over blue to navy: darker is more.
 pub fn ramp(index: usize, count: usize) -> RGBColor {
-    let stops = [
-        [110.0, 190.0, 236.0],
-        [0.0, 114.0, 178.0],
-        [8.0, 29.0, 68.0],
-    ];
+    let stops = [[86.0, 180.0, 233.0], [0.0, 114.0, 178.0], [8.0, 29.0, 68.0]];
     let place = 2.0 * index as f64 / (count.max(2) - 1) as f64;
     let (from, to, part) = if place <= 1.0 {
         (stops[0], stops[1], place)

@@ -117,7 +117,7 @@ pub fn roc() -> Result<Vec<Panel>, DetectError> {
         };
         let height = 0.94 - 0.07 * k as f64;
         lines.push(line("", colour, vec![(0.60, height), (0.68, height)]));
-        marks.push(words((0.70, height), name, HPos::Left, (0, 0), colour));
+        marks.push(words((0.70, height), name, HPos::Left, (0, 0), INK));
     }
     marks.push(Mark {
         at: (paper::MAX_FALSE_ALARM, paper::MAX_MISS),

@@ -181,11 +181,11 @@ fn the_page_holds_everything() {
             1,
             "{id}"
         );
-        assert!(page.contains(&text::escape(&figure.caption)), "{id}");
+        assert!(page.contains(&text::prose(&figure.caption)), "{id}");
     }
     for row in &found.comparison {
         for words in [&row.quantity, &row.why, &row.paper_text, &row.here.text()] {
-            assert!(page.contains(&text::escape(words)), "{words}");
+            assert!(page.contains(&text::prose(words)), "{words}");
         }
     }
     for words in [
@@ -201,6 +201,13 @@ fn the_page_holds_everything() {
     }
     assert_eq!(page.matches(">calibration<").count(), 2);
     assert!(page.contains(&format!("palpate {}", env!("CARGO_PKG_VERSION"))));
+}
+
+#[test]
+fn numbers_stay_with_their_units() {
+    let prose = text::prose("At 4 mm, x = 3 mm (5 % of 2 N/γ); 3 Newtons & 2 a");
+    let expected = "At 4_mm, x_=_3_mm (5_% of 2 N/γ); 3 Newtons &amp; 2 a";
+    assert_eq!(prose, expected.replace('_', "\u{a0}"));
 }
 
 // Verifies: REP-050, REP-051.
