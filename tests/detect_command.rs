@@ -158,6 +158,13 @@ fn plain(trace: &str, shift: isize) -> (f64, f64) {
     (theta, energy)
 }
 
+fn view(channels: &Channels<Vec<f64>>) -> Channels<&[f64]> {
+    Channels {
+        x: &channels.x,
+        y: &channels.y,
+    }
+}
+
 #[track_caller]
 fn assert_near(found: f64, expected: f64) {
     let error = (found - expected).abs() / expected.abs().max(1.0);
@@ -188,11 +195,7 @@ fn theta_is_that_of_the_library_and_of_a_plain_sum() {
             Channels { x, y }
         };
         let (f0, f1) = (forces(&none), forces(&inclusion));
-        let view = |channels: &'static Channels<Vec<f64>>| Channels {
-            x: &channels.x[..],
-            y: &channels.y[..],
-        };
-        let [observed, f0, f1] = [observed, f0, f1].map(|c| view(Box::leak(Box::new(c))));
+        let (observed, f0, f1) = (view(&observed), view(&f0), view(&f1));
         let library = assess(observed, f0, f1, NOISE, 0.2, 4.0_f64.ln()).unwrap();
         assert_near(number(&found, "theta"), library.statistic.theta);
         assert_near(number(&found, "false_alarm"), library.rates.false_alarm);
@@ -276,7 +279,7 @@ fn a_trace_over_time_is_the_same_trace() {
 
 // Verifies: CLI-046.
 #[test]
-fn people_get_a_table_and_a_closed_pipe_is_no_error() {
+fn people_get_a_table_and_no_decision_is_a_failure() {
     let output = detect("with.csv", &[&USUAL[..], &["--scan"]].concat());
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(

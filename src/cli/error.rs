@@ -73,12 +73,11 @@ impl CliError {
     /// 1 where a computation failed, 2 where the input is to blame.
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::Fem { error, .. } => match error {
-                FemError::NoConvergence { .. }
-                | FemError::Residual { .. }
-                | FemError::OutOfMemory => 1,
-                _ => 2,
-            },
+            CliError::Fem {
+                error:
+                    FemError::NoConvergence { .. } | FemError::Residual { .. } | FemError::OutOfMemory,
+                ..
+            } => 1,
             CliError::Report(_) | CliError::Output(_) | CliError::Check(_) => 1,
             _ => 2,
         }

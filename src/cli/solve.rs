@@ -138,8 +138,13 @@ pub fn warn_of_large_strain(map: &ForceMap) {
     };
     if smallest.det < DET_WARNING {
         let name = map.phantom().map_or("", |phantom| &phantom.name);
+        let meaning = if smallest.det > 0.0 {
+            "the small-strain model is at its limit there"
+        } else {
+            "the gel is turned inside out there, and the forces mean nothing"
+        };
         eprintln!(
-            "palpate: warning: phantom {name}: det(I + grad u) falls to {:.3} at depth {} mm, lateral {} mm: the small-strain model is at its limit there",
+            "palpate: warning: phantom {name}: det(I + grad u) falls to {:.3} at depth {} mm, lateral {} mm: {meaning}",
             smallest.det,
             format_scaled(smallest.depth, 3),
             format_scaled(smallest.lateral, 3)

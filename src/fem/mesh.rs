@@ -65,26 +65,35 @@ pub struct Mesh {
     pub regions: Vec<Region>,
 }
 
-/// Most cells across the well that a mesh may have.
-const MOST_CELLS: f64 = 2000.0;
+/// Most nodes that a mesh may have: its factor fills some 3 GB.
+const MOST_NODES: f64 = 500_000.0;
 
 impl Mesh {
     /// Meshes a valid phantom.
     ///
     /// # Errors
-    /// [`FemError::MeshSize`] if the size is not positive or so small that more than 2000 cells would stand
-    /// side by side.
+    /// [`FemError::MeshSize`] if the size is not positive and finite, or the mesh would have more than 500 000
+    /// nodes.
     pub fn new(phantom: &Phantom, options: &MeshOptions) -> Result<Mesh, FemError> {
-        let longest = phantom.gel.width.max(phantom.total_height());
-        let cells = longest / options.size * options.refinement as f64;
-        // Written so that a NaN is refused.
-        if !(options.size > 0.0 && options.refinement > 0 && cells <= MOST_CELLS) {
-            return Err(FemError::MeshSize {
-                size: options.size,
-                refinement: options.refinement,
-            });
+        let refused = FemError::MeshSize {
+            size: options.size,
+            refinement: options.refinement,
+        };
+        let finest = options.size / options.refinement as f64;
+        // Nodes stand at half the cells' distance. Written so that a NaN is refused; counts are made only
+        // behind this, since they could overflow.
+        let least_nodes = 4.0 * phantom.gel.width / finest * phantom.total_height() / finest;
+        if !(options.refinement > 0
+            && options.size > 0.0
+            && options.size.is_finite()
+            && least_nodes <= 4.0 * MOST_NODES)
+        {
+            return Err(refused);
         }
         let outline = Outline::new(phantom, options);
+        if outline.cells.nodes() as f64 > MOST_NODES {
+            return Err(refused);
+        }
         let mut mesh = Mesh {
             nodes: Vec::new(),
             rows: Vec::new(),

@@ -12,6 +12,8 @@ pub mod mesh;
 mod model;
 mod ordering;
 mod outline;
+#[cfg(test)]
+mod tests;
 mod vtu;
 
 use crate::force_map::InvalidForceMap;
@@ -64,7 +66,7 @@ pub enum FemError {
     #[error(transparent)]
     Map(#[from] InvalidForceMap),
     /// The mesh would be empty or too large.
-    #[error("mesh size {} mm with refinement {refinement}: expected a size that gives 2 to 2000 cells across the well", size * 1e3)]
+    #[error("mesh size {} mm with refinement {refinement}: expected a size above 0 and at most 500000 nodes", size * 1e3)]
     MeshSize {
         /// Wanted size, m.
         size: f64,

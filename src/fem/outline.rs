@@ -79,6 +79,8 @@ const BETWEEN: f64 = 0.6;
 const WALL_STRIP: f64 = 2.0;
 const WALL_CELLS: usize = 4;
 const WALL_GRADING: f64 = 0.15;
+/// How far an arc may rise over its chord, over the mean height of the cells on it.
+const MOST_RISE: f64 = 0.15;
 /// How much the rows above the disc shrink towards the skin.
 const SKIN_GRADING: f64 = 0.5;
 
@@ -96,20 +98,30 @@ impl Cells {
         // The thicker the gel over the disc, the smoother the field in it.
         let gel_above = cover.bottom - shape.centre - shape.corner;
         let height_above = HEIGHT_ABOVE * size * (1.0 + 1.6 * gel_above / shape.height);
-        Cells {
-            disc: count(shape.corner, DISC * size, 2.0),
+        let gel_below = shape.centre - shape.corner + shape.height;
+        let mut cells = Cells {
+            disc: 0,
             middle: count(cover.wall_strip - shape.corner, size, 2.0),
             wall: WALL_CELLS * options.refinement,
-            below: count(
-                shape.centre - shape.corner + shape.height,
-                HEIGHT_BELOW * size,
-                3.0,
-            ),
+            below: count(gel_below, HEIGHT_BELOW * size, 3.0),
             above: count(gel_above, height_above, 2.0),
             cover: options.refinement,
             skin: count(shape.skin, size, 3.0),
             split,
-        }
+        };
+        let along_edge = shape.corner / cells.longest_edge_cell(shape, cover);
+        let by_edge = libm::ceil(along_edge / options.refinement as f64);
+        cells.disc = count(shape.corner, DISC * size, by_edge.max(2.0));
+        cells
+    }
+
+    /// How long a cell along the disc's edge may be, m: its arc rises c²/8r over its chord, and where the
+    /// gel around the disc is thin that must stay a small part of the first cell's height.
+    fn longest_edge_cell(&self, shape: &Shape, cover: &Cover) -> f64 {
+        let above = (cover.bottom - shape.centre - shape.radius) / self.above as f64;
+        let below = (shape.centre - shape.radius + shape.height) / self.below as f64;
+        let beside = (shape.half_width - shape.radius) / (self.middle + self.wall) as f64;
+        libm::sqrt(8.0 * shape.radius * MOST_RISE * above.min(below).min(beside))
     }
 
     /// Coarse columns from the axis to the wall.
@@ -125,6 +137,14 @@ impl Cells {
     /// Fine rows.
     pub fn fine_rows(&self) -> usize {
         self.cover + self.skin
+    }
+
+    /// Nodes of the whole mesh.
+    pub fn nodes(&self) -> usize {
+        let columns = 2 * self.half_columns();
+        let coarse = (2 * columns + 1) * (2 * self.coarse_rows() + 1);
+        let between = (self.split + 1) * columns + 1;
+        coarse + between + (2 * self.split * columns + 1) * (2 * self.fine_rows() + 1)
     }
 
     /// Coarse rows of the disc.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::comparison::{self, Comparison, PairwiseFinding};
 use super::text::{millimetres, name_of_map};
-use super::{ReportError, Study, paper};
+use super::{ReportError, Settings, Study, paper};
 use crate::detect::{
     Channels, DetectError, MatchedFilter, auc, error_rates, gamma_from_two_afc, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
@@ -175,8 +175,7 @@ pub fn findings(study: &Study) -> Result<Findings, ReportError> {
     let probe_depth = probe_depth(depths);
     let at_paper_depth = is_paper_depth(probe_depth);
     let settings = &study.settings;
-    let required_gamma = required_gamma(settings.max_false_alarm, settings.max_miss)
-        .map_err(|source| detect_error("settings", source))?;
+    let required_gamma = check(settings).map_err(|source| detect_error("settings", source))?;
     let maps = study
         .maps
         .iter()
@@ -206,6 +205,25 @@ pub fn findings(study: &Study) -> Result<Findings, ReportError> {
         calibration,
         pairwise,
     })
+}
+
+/// Refuses settings outside their range even where there is no map to use them on, and gives the γ they need.
+///
+/// Implements: REP-004.
+fn check(settings: &Settings) -> Result<f64, DetectError> {
+    let noise_sd = Channels {
+        x: settings.noise_sd,
+        y: settings.noise_sd,
+    };
+    MatchedFilter::new(
+        Channels {
+            x: &[0.0],
+            y: &[0.0],
+        },
+        noise_sd,
+    )?;
+    map_threshold(settings.prior_h1)?;
+    required_gamma(settings.max_false_alarm, settings.max_miss)
 }
 
 /// The signal F_1 − F_0 of `map` over all poses.

@@ -1,1 +1,357 @@
+//! A small study whose numbers follow in closed form, and hostile ones.
 
+// Expected values keep the digits that their source printed.
+#![allow(clippy::excessive_precision)]
+
+mod outputs;
+mod study;
+mod xml;
+
+use super::*;
+use study::*;
+
+/// Expected values are from mpmath with 30 digits; the detector's own accuracy is tested elsewhere.
+fn assert_close(found: f64, expected: f64) {
+    assert!(
+        (found - expected).abs() <= 1e-13 * expected.abs(),
+        "found {found}, expected {expected}"
+    );
+}
+
+// Verifies: REP-001.
+#[test]
+fn settings_default_to_the_paper() {
+    let Settings {
+        max_false_alarm,
+        max_miss,
+        prior_h1,
+        noise_sd,
+    } = Settings::default();
+    assert_eq!(
+        [max_false_alarm, max_miss, prior_h1, noise_sd],
+        [0.05, 0.05, 0.5, 0.235]
+    );
+}
+
+// Verifies: REP-011, REP-012, REP-013.
+#[test]
+fn numbers_of_a_triangular_signal() {
+    let found = findings(&paper_study()).unwrap();
+    let map = &found.maps[2];
+    assert_eq!(map.name, "6.6");
+    assert_close(map.peak_normal.force, 0.3);
+    assert_eq!(map.peak_normal.lateral, 0.0);
+    assert_close(map.peak_lateral.force, 0.1);
+    assert_eq!(map.peak_lateral.lateral, 5e-3);
+    // ΣΔ² is 1.5 · 0.3² normal and 2 · 0.1² lateral, in noise of 0.1 N.
+    assert_close(map.gamma.normal, libm::sqrt(13.5));
+    assert_close(map.gamma.lateral, libm::sqrt(2.0));
+    assert_close(map.gamma.both, libm::sqrt(15.5));
+    assert_eq!(map.map_rule.eta, 0.0);
+    assert_close(map.map_rule.false_alarm, 0.0245051549198494117);
+    assert_close(map.map_rule.miss, 0.0245051549198494117);
+    assert_close(map.bounded_miss.eta, 1.27420479489360891);
+    assert_close(map.bounded_miss.miss, 0.05);
+    assert_close(map.bounded_miss.false_alarm, 0.0109484855667236183);
+    let mirrored = map.bounded_false_alarm.unwrap();
+    assert_close(mirrored.eta, -1.27420479489360891);
+    assert_close(mirrored.false_alarm, 0.05);
+    assert_close(mirrored.miss, 0.0109484855667236183);
+    assert_close(map.auc, 0.997314372939209941);
+    assert_close(map.two_afc, 0.997314372939209941);
+}
+
+// Verifies: REP-011.
+#[test]
+fn of_equal_peaks_the_one_nearest_to_the_middle_counts() {
+    let mut study = paper_study();
+    // −0.2 N at both ends, 0.2 N at ±5 mm.
+    let normal = |x: f64| {
+        if x.abs() > 7e-3 {
+            -0.2
+        } else {
+            0.2 * x.abs() / 5e-3
+        }
+    };
+    study.maps = vec![map_with("ties", normal, |_| 0.0)];
+    let found = findings(&study).unwrap();
+    assert_eq!(found.maps[0].peak_normal.lateral, 5e-3);
+    assert!(found.maps[0].peak_normal.force > 0.0);
+    study.maps = vec![map_with(
+        "pit",
+        |x| if x == 0.0 { -0.3 } else { 0.2 },
+        |_| 0.0,
+    )];
+    assert_close(findings(&study).unwrap().maps[0].peak_normal.force, -0.3);
+}
+
+fn row<'a>(found: &'a Findings, quantity: &str) -> &'a Comparison {
+    let mut rows = found
+        .comparison
+        .iter()
+        .filter(|row| row.quantity.contains(quantity));
+    let row = rows.next().unwrap_or_else(|| panic!("no row {quantity:?}"));
+    assert!(rows.next().is_none(), "two rows {quantity:?}");
+    row
+}
+
+fn number(value: Value) -> f64 {
+    let (Value::ForceN(number) | Value::Gamma(number) | Value::Probability(number)) = value;
+    number
+}
+
+// Verifies: REP-020, REP-021, REP-022.
+#[test]
+fn every_number_of_the_paper_has_its_row() {
+    let found = findings(&paper_study()).unwrap();
+    for (quantity, paper, here) in [
+        ("Force level", 1.6, 1.48),
+        ("Signal F₁", 0.5, 0.45),
+        ("Peak signal", 0.34, 0.3),
+        ("at most 5 %", 3.3, 3.28970725390294543),
+        ("allowed in all", 0.15, 0.151989207977942236),
+        ("allowed to the display", 0.11, 0.114458373838536514),
+        ("playback of FEM data, from", 0.17, 0.168075132009467718),
+        ("direct contact, from", 0.22, 0.220565183109211505),
+        ("84 %", 1.45, 1.40637582564407233),
+        ("of the subjects", 0.235, 0.210395775374330952688),
+        ("FEM playback, 2.6", 292.0 / 300.0, 0.978126386079601690),
+        ("FEM playback, 4.6", 277.0 / 300.0, 0.934781202027572679),
+        ("FEM playback, 6.6", 253.0 / 300.0, 253.0 / 300.0),
+        ("FEM playback, 8.6", 189.0 / 300.0, 0.692913642334731553),
+    ] {
+        let row = row(&found, quantity);
+        assert_eq!(number(row.paper), paper, "{quantity}");
+        assert_close(number(row.here), here);
+        assert_eq!(row.is_calibration, quantity.ends_with("6.6"), "{quantity}");
+        assert!(row.why.len() > 10, "{quantity}");
+    }
+    assert_eq!(found.comparison.len(), 14);
+    let six = &found.pairwise[2];
+    assert!(six.is_calibration);
+    assert_eq!(
+        six.observed.map(|observed| observed.correct),
+        [247, 253, 229]
+    );
+    assert_eq!(six.observed.map(|observed| observed.trials), [300; 3]);
+}
+
+/// The expected values are the means that the paper prints below each block of Table 1.
+// Verifies: REP-022.
+#[test]
+fn table_1_gives_the_means_that_the_paper_prints() {
+    let means = [
+        [28.8, 27.5, 24.7, 20.0],
+        [29.2, 27.7, 25.3, 18.9],
+        [26.8, 22.8, 22.9, 17.4],
+    ];
+    for (experiment, means) in paper::EXPERIMENTS.iter().zip(means) {
+        for (column, mean) in means.into_iter().enumerate() {
+            assert_eq!(
+                f64::from(experiment.pooled(column)),
+                (10.0_f64 * mean).round()
+            );
+        }
+    }
+}
+
+// Verifies: REP-020, REP-021.
+#[test]
+fn rows_without_their_phantom_are_left_out() {
+    let mut study = paper_study();
+    study.maps.remove(2);
+    let found = findings(&study).unwrap();
+    assert_eq!(found.calibration, None);
+    assert!(found.pairwise.is_empty());
+    assert!(
+        !found
+            .comparison
+            .iter()
+            .any(|row| row.quantity.contains("6.6"))
+    );
+    row(&found, "Force level");
+    study.maps.clear();
+    let found = findings(&study).unwrap();
+    assert!(
+        !found
+            .comparison
+            .iter()
+            .any(|row| row.quantity.contains("Signal F₁"))
+    );
+    // Another reference: no number of the paper is about it.
+    let mut softer = Phantom::builtin("none").unwrap();
+    softer.gel.material.youngs_modulus = 4e3;
+    let mut study = paper_study();
+    study.reference = map(Some(softer), &DEPTHS, |_| 0.0, |_| 0.0);
+    let found = findings(&study).unwrap();
+    assert!(
+        !found
+            .comparison
+            .iter()
+            .any(|row| row.quantity.contains("Force level"))
+    );
+    assert!(found.pairwise.is_empty());
+}
+
+// Verifies: REP-010.
+#[test]
+fn a_phantom_is_the_papers_by_its_data_and_not_by_its_name() {
+    let mut phantom = Phantom::builtin("6.6").unwrap();
+    phantom.name = "mine".into();
+    assert_eq!(paper::name_of(&phantom), Some("6.6"));
+    phantom.name = "6.6".into();
+    phantom.probe.radius = 6e-3;
+    assert_eq!(paper::name_of(&phantom), None);
+}
+
+// Verifies: REP-002.
+#[test]
+fn without_4_mm_the_deepest_depth_counts_and_is_named() {
+    let mut study = paper_study();
+    let depths = [0.0, 1e-3, 3e-3];
+    study.reference = map(Phantom::builtin("none").ok(), &depths, |_| 0.0, |_| 0.0);
+    study.maps = vec![map(Phantom::builtin("6.6").ok(), &depths, |_| 0.4, |_| 0.0)];
+    let found = findings(&study).unwrap();
+    assert_eq!(found.probe_depth, 3e-3);
+    // The synthetic forces are proportional to the depth, and 0.4 N at 4 mm.
+    assert_close(found.maps[0].peak_normal.force, 0.3);
+    let note = found.probe_depth_note.clone().unwrap();
+    assert!(note.contains("3 mm"), "{note}");
+    assert_eq!(found.calibration, None);
+    assert!(
+        !found
+            .comparison
+            .iter()
+            .any(|row| row.quantity.contains("Force level"))
+    );
+    let figures = figures(&study, &found).unwrap();
+    assert!(html(&study, &found, &figures).contains(&text::prose(&note)));
+    assert!(figures[0].title.contains("3 mm"));
+}
+
+// Verifies: REP-002.
+#[test]
+fn at_4_mm_there_is_no_note_though_the_maps_go_deeper() {
+    let mut study = paper_study();
+    let depths = [0.0, 4e-3 + 1e-10, 5e-3];
+    study.reference = map(Phantom::builtin("none").ok(), &depths, |_| 0.0, |_| 0.0);
+    study.maps.clear();
+    let found = findings(&study).unwrap();
+    assert_eq!(found.probe_depth, depths[1]);
+    assert_eq!(found.probe_depth_note, None);
+}
+
+// Verifies: REP-013, REP-014.
+#[test]
+fn a_map_like_the_reference_cannot_be_detected() {
+    let mut study = paper_study();
+    study.maps = vec![study.reference.clone()];
+    let found = findings(&study).unwrap();
+    let map = &found.maps[0];
+    assert_eq!(map.gamma.both, 0.0);
+    assert_eq!(map.bounded_false_alarm, None);
+    assert_eq!(map.auc, 0.5);
+    assert!(
+        map.warnings
+            .iter()
+            .any(|warning| warning.contains("nothing can be detected"))
+    );
+}
+
+// Verifies: REP-015.
+#[test]
+fn a_squeezed_gel_is_warned_of() {
+    let mut study = paper_study();
+    for (smallest, warned) in [(0.2, 0), (0.19, 1)] {
+        study.maps = vec![computed_map("6.6", smallest)];
+        let found = findings(&study).unwrap();
+        let warnings = &found.maps[0].warnings;
+        assert_eq!(warnings.len(), warned, "{warnings:?}");
+        if let Some(warning) = warnings.first() {
+            assert!(
+                warning.contains("0.190 at depth 4 mm, x = −5 mm"),
+                "{warning}"
+            );
+        }
+    }
+}
+
+// Verifies: REP-004.
+#[test]
+fn what_does_not_fit_is_refused() {
+    let mut study = paper_study();
+    study.maps[1] = map(Phantom::builtin("4.6").ok(), &[0.0, 4e-3], |_| 0.0, |_| 0.0);
+    let error = findings(&study).unwrap_err().to_string();
+    assert!(
+        error.contains("\"4.6\"") && error.contains("depths_m"),
+        "{error}"
+    );
+    for (settings, word) in [
+        (
+            Settings {
+                noise_sd: 0.0,
+                ..SETTINGS
+            },
+            "noise_sd",
+        ),
+        (
+            Settings {
+                noise_sd: f64::NAN,
+                ..SETTINGS
+            },
+            "noise_sd",
+        ),
+        (
+            Settings {
+                max_miss: 1.0,
+                ..SETTINGS
+            },
+            "max_miss",
+        ),
+        (
+            Settings {
+                max_false_alarm: f64::NAN,
+                ..SETTINGS
+            },
+            "max_false_alarm",
+        ),
+        (
+            Settings {
+                prior_h1: -0.1,
+                ..SETTINGS
+            },
+            "prior_h1",
+        ),
+    ] {
+        for maps in [paper_study().maps, Vec::new()] {
+            let study = Study {
+                settings,
+                maps,
+                ..paper_study()
+            };
+            let error = findings(&study).unwrap_err().to_string();
+            assert!(error.contains(word), "{error}");
+        }
+    }
+}
+
+// Verifies: REP-004.
+#[test]
+fn a_mesh_that_contradicts_itself_is_refused() {
+    type Damage = fn(&mut DeformedMesh);
+    let damages: [(Damage, &str); 6] = [
+        (|mesh| mesh.nodes.truncate(3), "displacements"),
+        (|mesh| mesh.regions.truncate(1), "regions"),
+        (|mesh| mesh.corners[1][0] = 99, "element 1"),
+        (|mesh| mesh.corners[0].truncate(2), "element 0"),
+        (|mesh| mesh.displacements[2][1] = f64::NAN, "node 2"),
+        (|mesh| mesh.min_det = f64::INFINITY, "determinant"),
+    ];
+    for (damage, word) in damages {
+        let mut study = paper_study();
+        damage(&mut study.deformed);
+        let found = findings(&study).unwrap();
+        let error = figures(&study, &found).unwrap_err().to_string();
+        assert!(error.contains(word), "{error}");
+    }
+}

@@ -39,11 +39,28 @@ pub fn escape(text: &str) -> String {
     escaped
 }
 
+/// [`escape`]d text in which no line breaks between a number and its unit, nor around `=`.
+pub fn prose(text: &str) -> String {
+    let mut joined = String::with_capacity(text.len());
+    let mut before = "";
+    for (k, word) in text.split(' ').enumerate() {
+        let after_number = before.ends_with(|c: char| c.is_ascii_digit());
+        let is_unit = ["N", "mN", "mm", "%"]
+            .contains(&word.trim_matches(|c: char| !c.is_alphabetic() && c != '%'));
+        let stays = (after_number && is_unit) || word == "=" || before == "=";
+        if k > 0 {
+            joined.push(if stays { '\u{a0}' } else { ' ' });
+        }
+        joined.push_str(word);
+        before = word;
+    }
+    escape(&joined)
+}
+
 /// The first `most` characters of a name, so that a long one does not run out of its figure.
 pub fn shortened(name: &str, most: usize) -> String {
-    let name = printable(name);
     if name.chars().count() <= most {
-        return name;
+        return name.into();
     }
     let mut short: String = name.chars().take(most.saturating_sub(1)).collect();
     short.push('…');

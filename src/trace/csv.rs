@@ -5,7 +5,6 @@ use std::path::Path;
 use super::{Abscissa, Sample, Trace, TraceError, TraceProblem, check_positions};
 use crate::csv::{Column, Header, header_and_rows};
 use crate::detect::Channels;
-use crate::phantom::decimal::format_scaled;
 
 /// Position or time, lateral force, normal force.
 const COLUMNS: [Column; 3] = [
@@ -79,12 +78,10 @@ fn check_times(samples: &[Sample]) -> Result<(), (TraceProblem, usize)> {
     let falls = |pair: &&[Sample]| pair[1].abscissa <= pair[0].abscissa;
     match samples.windows(2).find(falls) {
         Some(pair) => {
-            let [before, found] = [0, 1].map(|at| format_scaled(pair[at].abscissa, 0));
             let problem = TraceProblem::Order {
-                what: "time",
-                found,
-                before,
-                unit: "s",
+                abscissa: Abscissa::Time,
+                found: pair[1].abscissa,
+                before: pair[0].abscissa,
             };
             Err((problem, pair[1].line))
         }

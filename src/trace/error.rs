@@ -6,6 +6,7 @@ use super::{Abscissa, MOST_SAMPLES, UNIFORM};
 use crate::csv::CsvProblem;
 use crate::detect::DetectError;
 use crate::force_map::InvalidForceMap;
+use crate::phantom::decimal::format_scaled;
 
 /// Why a trace is refused: one line that begins with the file.
 ///
@@ -44,16 +45,14 @@ pub enum TraceProblem {
     #[error("no samples under the header, expected at least one row")]
     Empty,
     /// Positions or times that do not increase.
-    #[error("{what} {found} {unit} after {before} {unit}, expected it to increase")]
+    #[error("{} after {}, expected it to increase", value(*.abscissa, *.found), amount(*.abscissa, *.before))]
     Order {
-        /// `position` or `time`.
-        what: &'static str,
-        /// The value, in the unit.
-        found: String,
-        /// The value before it, in the unit.
-        before: String,
-        /// The unit of both.
-        unit: &'static str,
+        /// What the samples are over.
+        abscissa: Abscissa,
+        /// The value, m or s.
+        found: f64,
+        /// The value before it, m or s.
+        before: f64,
     },
     /// The motion is missing, or superfluous.
     #[error("{}", motion(.abscissa))]
@@ -74,27 +73,28 @@ pub enum TraceProblem {
         position: f64,
     },
     /// The maps do not reach as far as the trace.
-    #[error("position {position} mm is outside the maps, expected {first} to {last} mm")]
+    #[error("position {} mm is outside the maps, expected {} to {} mm", mm(*.position), mm(*.first), mm(*.last))]
     Outside {
-        /// The position, mm.
-        position: String,
-        /// The first position of the maps, mm.
-        first: String,
-        /// The last position of the maps, mm.
-        last: String,
+        /// The position, m.
+        position: f64,
+        /// The first position of the maps, m.
+        first: f64,
+        /// The last position of the maps, m.
+        last: f64,
     },
     /// A map gives no forces for the trace.
     #[error(transparent)]
     Map(#[from] InvalidForceMap),
     /// The scan wants equal steps.
     #[error(
-        "position {found} mm, expected {expected} mm: a scan shifts the template by whole samples, so the steps must be equal within {UNIFORM:e} of a step"
+        "position {} mm, expected {} mm: a scan shifts the template by whole samples, so the steps must be equal within {UNIFORM:e} of a step",
+        mm(*.found), mm(*.expected)
     )]
     NotUniform {
-        /// The position, mm.
-        found: String,
-        /// Where equal steps would put it, mm.
-        expected: String,
+        /// The position, m.
+        found: f64,
+        /// Where equal steps would put it, m.
+        expected: f64,
     },
     /// The scan wants a record of a certain size.
     #[error("{samples} samples, expected 2 to {MOST_SAMPLES} for a scan")]
@@ -103,14 +103,12 @@ pub enum TraceProblem {
         samples: usize,
     },
     /// The maps do not hold the inclusion's own position.
-    #[error(
-        "the maps cover {first} to {last} mm, expected the inclusion's position, 0 mm, among them"
-    )]
+    #[error("the maps cover {} to {} mm, expected the inclusion's position, 0 mm, among them", mm(*.first), mm(*.last))]
     NoOrigin {
-        /// The first position of the maps, mm.
-        first: String,
-        /// The last position of the maps, mm.
-        last: String,
+        /// The first position of the maps, m.
+        first: f64,
+        /// The last position of the maps, m.
+        last: f64,
     },
     /// The record is shorter than the signal that it is searched for.
     #[error(
@@ -128,6 +126,28 @@ pub enum TraceProblem {
     /// The detector refuses.
     #[error(transparent)]
     Detect(#[from] DetectError),
+}
+
+/// A position in mm, exactly.
+fn mm(position: f64) -> String {
+    format_scaled(position, 3)
+}
+
+/// A position or time with its unit.
+fn amount(abscissa: Abscissa, amount: f64) -> String {
+    match abscissa {
+        Abscissa::Time => format!("{} s", format_scaled(amount, 0)),
+        Abscissa::Position => format!("{} mm", mm(amount)),
+    }
+}
+
+/// A position or time with its name and unit.
+fn value(abscissa: Abscissa, found: f64) -> String {
+    let name = match abscissa {
+        Abscissa::Time => "time",
+        Abscissa::Position => "position",
+    };
+    format!("{name} {}", amount(abscissa, found))
 }
 
 fn motion(abscissa: &Abscissa) -> &'static str {

@@ -10,7 +10,6 @@ use crate::detect::{
     neyman_pearson_miss_threshold, posterior,
 };
 use crate::force_map::{ForceTable, SAME_POSITION};
-use crate::phantom::decimal::format_scaled;
 
 /// Steps of a record that differ by less than this share of a step are equal.
 ///
@@ -123,7 +122,6 @@ impl Grid {
         let laterals = signal.laterals();
         let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
         if first > SAME_POSITION || last < -SAME_POSITION {
-            let [first, last] = [first, last].map(|position| format_scaled(position, 3));
             return Err(refused(TraceProblem::NoOrigin { first, last }));
         }
         let first_sample = libm::ceil((first - SAME_POSITION) / spacing);
@@ -230,7 +228,6 @@ fn equal_steps(record: &Record) -> Result<f64, Refusal> {
     for (i, (&found, sample)) in positions.iter().zip(&record.samples).enumerate() {
         let expected = start + i as f64 * spacing;
         if (found - expected).abs() > UNIFORM * spacing {
-            let [found, expected] = [found, expected].map(|position| format_scaled(position, 3));
             let problem = TraceProblem::NotUniform { found, expected };
             return Err((problem, Some(sample.line)));
         }

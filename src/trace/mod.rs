@@ -21,7 +21,6 @@ pub use locate::{Location, MOST_SAMPLES, UNIFORM, locate};
 
 use crate::detect::Channels;
 use crate::force_map::{ForceTable, SAME_POSITION, Sweep};
-use crate::phantom::decimal::format_scaled;
 
 /// What the first column of a trace counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,12 +121,10 @@ fn check_positions(samples: &[Sample]) -> Result<(), (TraceProblem, usize)> {
             return Err((TraceProblem::Position { position }, sample.line));
         }
         if position <= before + SAME_POSITION {
-            let (found, before) = (format_scaled(position, 3), format_scaled(before, 3));
             let problem = TraceProblem::Order {
-                what: "position",
-                found,
+                abscissa: Abscissa::Position,
+                found: position,
                 before,
-                unit: "mm",
             };
             return Err((problem, sample.line));
         }
@@ -165,11 +162,11 @@ impl Record {
         let inside = first - SAME_POSITION..=last + SAME_POSITION;
         let outside = |sample: &&Sample| !inside.contains(&sample.abscissa);
         if let Some(sample) = self.samples.iter().find(outside) {
-            let mm = |position| format_scaled(position, 3);
+            let position = sample.abscissa;
             let problem = TraceProblem::Outside {
-                position: mm(sample.abscissa),
-                first: mm(first),
-                last: mm(last),
+                position,
+                first,
+                last,
             };
             return Err(problem.at(&self.file, sample.line));
         }

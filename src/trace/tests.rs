@@ -28,7 +28,7 @@ fn table(signal: f64) -> ForceTable {
 fn shifted(signal: f64, shift: usize) -> Record {
     let (reference, inclusion) = (table(0.0), table(signal));
     let force = |force: fn(&ForceTable) -> &Matrix, i: usize| {
-        let moved = if i < shift { 0 } else { i - shift };
+        let moved = i.saturating_sub(shift);
         force(&reference).row(1)[i] + force(&inclusion).row(1)[moved]
             - force(&reference).row(1)[moved]
     };

@@ -1,0 +1,70 @@
+//! How every figure looks: one size, one type size, one palette.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Drawing units in one pixel: the library rounds to whole units, and a tenth of a pixel is not seen.
+pub const UNIT: i32 = 10;
+/// Width of a figure, pixels: narrow, so that its text stays legible on a phone.
+pub const WIDTH: i32 = 520;
+/// Size of the text, pixels.
+const TEXT: f64 = 15.0;
+/// What the SVG backend divides the size of a font by.
+const BACKEND_DIVISOR: f64 = 1.24;
+
+/// Text and axes.
+pub const INK: RGBColor = RGBColor(45, 49, 56);
+/// Grid lines.
+pub const GRID: RGBColor = RGBColor(226, 229, 233);
+
+/// The colours of Okabe and Ito for lines on white, which all kinds of colour vision tell apart; their yellow is
+/// too pale for a line.
+pub const OKABE_ITO: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(0, 0, 0),
+];
+/// Blue of [`OKABE_ITO`].
+pub const BLUE: RGBColor = OKABE_ITO[0];
+/// Vermilion of [`OKABE_ITO`].
+pub const VERMILION: RGBColor = OKABE_ITO[1];
+
+/// Step `index` of `count` from sky blue over blue to navy: darker is more.
+pub fn ramp(index: usize, count: usize) -> RGBColor {
+    let stops = [[86.0, 180.0, 233.0], [0.0, 114.0, 178.0], [8.0, 29.0, 68.0]];
+    let place = 2.0 * index as f64 / (count.max(2) - 1) as f64;
+    let (from, to, part) = if place <= 1.0 {
+        (stops[0], stops[1], place)
+    } else {
+        (stops[1], stops[2], place - 1.0)
+    };
+    let mix = |k: usize| (from[k] + part * (to[k] - from[k])).round() as u8;
+    RGBColor(mix(0), mix(1), mix(2))
+}
+
+/// A line of `width` pixels.
+pub fn stroke(colour: RGBColor, width: f64) -> ShapeStyle {
+    ShapeStyle {
+        color: colour.into(),
+        filled: false,
+        stroke_width: (width * f64::from(UNIT)) as u32,
+    }
+}
+
+/// Text in `colour`, held at its `horizontal` side and in the middle of its height.
+pub fn text(colour: RGBColor, horizontal: HPos) -> TextStyle<'static> {
+    let size = TEXT * BACKEND_DIVISOR * f64::from(UNIT);
+    ("sans-serif", size)
+        .into_font()
+        .color(&colour)
+        .pos(Pos::new(horizontal, VPos::Center))
+}
+
+/// A generous estimate of how wide `text` is, pixels: no font is read, since every machine has others.
+pub fn text_width(text: &str) -> i32 {
+    (0.58 * TEXT * text.chars().count() as f64).ceil() as i32
+}

@@ -1,0 +1,150 @@
+//! Synthetic studies: forces proportional to the depth, and signals that are given at 4 mm.
+
+use crate::fem::Pose;
+use crate::fem::mesh::Region;
+use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
+use crate::phantom::Phantom;
+use crate::report::{DeformedMesh, Settings, Study};
+
+pub const DEPTHS: [f64; 3] = [0.0, 2e-3, 4e-3];
+pub const LATERALS: [f64; 5] = [-10e-3, -5e-3, 0.0, 5e-3, 10e-3];
+pub const SETTINGS: Settings = Settings {
+    max_false_alarm: 0.05,
+    max_miss: 0.05,
+    prior_h1: 0.5,
+    noise_sd: 0.1,
+};
+
+fn forces(depths: &[f64], normal: impl Fn(f64) -> f64, lateral: impl Fn(f64) -> f64) -> ForceTable {
+    let matrix = |at_4_mm: &dyn Fn(f64) -> f64| {
+        Matrix::from_fn(depths.len(), LATERALS.len(), |row, column| {
+            at_4_mm(LATERALS[column]) * depths[row] / 4e-3
+        })
+    };
+    let normal = matrix(&|x| 1.48 + normal(x));
+    ForceTable::new(depths.into(), LATERALS.into(), normal, matrix(&lateral)).unwrap()
+}
+
+/// A measured map of 1.48 N and the signal given, both at 4 mm.
+pub fn map(
+    phantom: Option<Phantom>,
+    depths: &[f64],
+    normal: impl Fn(f64) -> f64,
+    lateral: impl Fn(f64) -> f64,
+) -> ForceMap {
+    let source = Source::Measured {
+        file: "a<b>&\"'\u{0}\u{1b}[31m.csv".into(),
+        note: String::new(),
+    };
+    ForceMap::new(source, phantom, forces(depths, normal, lateral)).unwrap()
+}
+
+/// A phantom with an inclusion under another name.
+pub fn map_with(name: &str, normal: impl Fn(f64) -> f64, lateral: impl Fn(f64) -> f64) -> ForceMap {
+    let mut phantom = Phantom::builtin("2.6").unwrap();
+    phantom.name = name.into();
+    map(Some(phantom), &DEPTHS, normal, lateral)
+}
+
+/// A triangle of the height `peak` over ±10 mm, and a lateral third of it at ±5 mm.
+fn triangle(name: &str, peak: f64) -> ForceMap {
+    let lateral = move |x: f64| {
+        if x.abs() == 5e-3 {
+            peak / 3.0 * x.signum()
+        } else {
+            0.0
+        }
+    };
+    let normal = move |x: f64| peak * (1.0 - x.abs() / 10e-3);
+    map(Phantom::builtin(name).ok(), &DEPTHS, normal, lateral)
+}
+
+/// A computed map whose smallest det(I + ∇u) stands at x = −5 mm.
+pub fn computed_map(name: &str, smallest: f64) -> ForceMap {
+    let min_det = Matrix::from_fn(3, 5, |row, column| {
+        if (row, column) == (2, 1) {
+            smallest
+        } else {
+            0.9
+        }
+    });
+    let certificate = Certificate {
+        worst_relative_residual: 1.5e-13,
+        worst_force_balance: 2.5e-12,
+        largest_penetration: 3.5e-14,
+        newton_iterations: 7,
+        mesh_size: 0.7e-3,
+        nodes: 1234,
+        elements: 567,
+        element: "t6".into(),
+        contact: "deformed-normal".into(),
+        smallest_det: SmallestDet::of(&min_det, &DEPTHS, &LATERALS).unwrap(),
+        min_det,
+    };
+    let forces = forces(&DEPTHS, |_| 0.2, |_| 0.0);
+    let source = Source::FiniteElements { certificate };
+    ForceMap::new(source, Phantom::builtin(name).ok(), forces).unwrap()
+}
+
+/// One square of gel under one of skin, pressed down.
+pub fn deformed() -> DeformedMesh {
+    DeformedMesh {
+        phantom: Phantom::builtin("2.6").unwrap(),
+        pose: Pose {
+            depth: 4e-3,
+            lateral: 0.0,
+        },
+        nodes: (0..6)
+            .map(|k| {
+                [
+                    f64::from(k % 2) * 34e-3 - 17e-3,
+                    f64::from(k / 2) * 7e-3 - 14e-3,
+                ]
+            })
+            .collect(),
+        displacements: vec![[0.0, -1e-3]; 6],
+        corners: vec![vec![0, 1, 3, 2], vec![2, 3, 5, 4]],
+        regions: vec![Region::Gel, Region::Skin],
+        min_det: 0.5,
+    }
+}
+
+/// The paper's phantoms with peaks of 0.6, 0.45, 0.3 and 0.15 N.
+pub fn paper_study() -> Study {
+    let peaks = [("2.6", 0.6), ("4.6", 0.45), ("6.6", 0.3), ("8.6", 0.15)];
+    Study {
+        reference: map(Phantom::builtin("none").ok(), &DEPTHS, |_| 0.0, |_| 0.0),
+        maps: peaks.map(|(name, peak)| triangle(name, peak)).into(),
+        deformed: deformed(),
+        settings: SETTINGS,
+    }
+}
+
+/// Names that a phantom may have and that break markup or file systems; two differ in case alone, two not at all.
+pub const HOSTILE: [&str; 10] = [
+    "</svg><script>alert(1)</script>",
+    "a\"b' onload='x",
+    "&amp;&#0;",
+    "]]><!--",
+    "../../etc/passwd",
+    "nul \u{ffff}\u{202e}txt.exe",
+    "CON",
+    "con",
+    "con",
+    " ",
+];
+
+/// A study of hostile names, with a phantom without inclusion, and a map without any phantom.
+pub fn hostile_study() -> Study {
+    let mut study = paper_study();
+    study.maps = HOSTILE.map(|name| map_with(name, |_| 0.1, |_| 0.0)).into();
+    study.maps.push(map(
+        Phantom::builtin("none").ok(),
+        &DEPTHS,
+        |_| 0.1,
+        |_| 0.0,
+    ));
+    study.maps.push(map(None, &DEPTHS, |_| 0.1, |_| 0.0));
+    study.deformed.phantom.name = "<b>\u{0}\u{8}".into();
+    study
+}

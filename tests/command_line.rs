@@ -1,0 +1,528 @@
+//! The program as its users meet it: `spec/command-line.md`.
+#![cfg(feature = "cli")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use palpate::fem::{Contact, MeshOptions, Model};
+use palpate::force_map::ForceMap;
+use palpate::phantom::Phantom;
+
+/// A folder of its own for each test, emptied at the start.
+fn folder(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).expect("a folder for the test");
+    path
+}
+
+fn palpate(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+    command.current_dir(folder);
+    command
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    palpate(folder)
+        .args(arguments)
+        .output()
+        .expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).expect("UTF-8")
+}
+
+fn succeed(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert!(
+        output.status.success(),
+        "{arguments:?}: {}",
+        text(&output.stderr)
+    );
+    text(&output.stdout).to_string()
+}
+
+// Verifies: CLI-001.
+#[test]
+fn help_describes_every_argument() {
+    let here = folder("help");
+    assert_eq!(
+        succeed(&here, &["--version"]),
+        format!("palpate {}\n", env!("CARGO_PKG_VERSION"))
+    );
+    let all = succeed(&here, &["--help"]);
+    for (command, arguments) in [
+        ("run", &["--config", "--out"][..]),
+        (
+            "solve",
+            &[
+                "--phantom",
+                "--depths-mm",
+                "--laterals-mm",
+                "--contact",
+                "--element",
+                "--mesh-mm",
+                "--vtu",
+                "--format",
+            ],
+        ),
+        ("import-map", &["--note", "--phantom", "--out"]),
+    ] {
+        assert!(all.contains(command), "{all}");
+        let help = succeed(&here, &[command, "--help"]);
+        for argument in arguments {
+            let line = help
+                .lines()
+                .position(|line| line.trim_start().starts_with(argument));
+            let line = line.unwrap_or_else(|| panic!("{command} --help lacks {argument}: {help}"));
+            let described = help.lines().skip(line).take(2).collect::<String>();
+            assert!(
+                described.split_whitespace().count() > 4,
+                "{argument} is not described: {described}"
+            );
+        }
+    }
+}
+
+// Verifies: CLI-002, CLI-003, CLI-011, CLI-012, CLI-014, CLI-031, PHA-013, FEM-018.
+#[test]
+fn bad_input_gets_one_line_that_says_what_would_be_right() {
+    let here = folder("bad-input");
+    fs::write(
+        here.join("stiff.toml"),
+        "name = \"stiff\"\n[gel]\nwidth_mm = 34\nheight_mm = 15\nyoungs_modulus_kpa = -5\n",
+    )
+    .unwrap();
+    fs::write(
+        here.join("unknown.toml"),
+        "depths_mm = \"0:4:1\"\nlaterals = \"0\"\n",
+    )
+    .unwrap();
+    fs::write(here.join("list.toml"), "depths_mm = \"4,1\"\n").unwrap();
+    fs::write(
+        here.join("short.csv"),
+        "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n1,0,0.2\n",
+    )
+    .unwrap();
+    let solve = |rest: &[&'static str]| [&["solve", "--phantom", "none"], rest].concat();
+    for (arguments, words) in [
+        (vec![], &["palpate run"][..]),
+        (vec!["solv"], &["solv", "--help"]),
+        (vec!["solve"], &["--phantom", "--depths-mm"]),
+        (
+            solve(&["--depths-mm", "2,1", "--laterals-mm", "0"]),
+            &["--depths-mm", "2,1", "increasing"],
+        ),
+        (
+            solve(&["--depths-mm", "1", "--laterals-mm", "x"]),
+            &["--laterals-mm", "\"x\"", "mm"],
+        ),
+        (
+            solve(&["--depths-mm", "16", "--laterals-mm", "0"]),
+            &["depth_mm = 16", "below 15.5"],
+        ),
+        (
+            solve(&["--depths-mm", "4", "--laterals-mm", "11.5"]),
+            &["lateral_mm = 11.5", "walls"],
+        ),
+        (
+            solve(&["--depths-mm", "-1", "--laterals-mm", "0"]),
+            &["-0.001", "depths_m"],
+        ),
+        (
+            solve(&["--depths-mm", "1", "--laterals-mm", "0", "--mesh-mm", "0"]),
+            &["--mesh-mm", "above 0"],
+        ),
+        (
+            solve(&[
+                "--depths-mm",
+                "1",
+                "--laterals-mm",
+                "0",
+                "--mesh-mm",
+                "0.001",
+            ]),
+            &["mesh size", "500000"],
+        ),
+        (
+            solve(&["--depths-mm", "1", "--laterals-mm", "0", "--element", "t3"]),
+            &["t3", "q4-full"],
+        ),
+        (
+            solve(&["--depths-mm", "1,2", "--laterals-mm", "0", "--vtu", "x.vtu"]),
+            &["--vtu", "one depth"],
+        ),
+        (
+            solve(&[
+                "--depths-mm",
+                "1",
+                "--laterals-mm",
+                "0",
+                "--mesh-mm",
+                "3",
+                "--vtu",
+                "no/such/x.vtu",
+            ]),
+            &["no/such/x.vtu"],
+        ),
+        (
+            vec![
+                "solve",
+                "--phantom",
+                "7.7",
+                "--depths-mm",
+                "1",
+                "--laterals-mm",
+                "0",
+            ],
+            &["7.7", "8.6", "file"],
+        ),
+        (
+            vec![
+                "solve",
+                "--phantom",
+                "stiff.toml",
+                "--depths-mm",
+                "1",
+                "--laterals-mm",
+                "0",
+            ],
+            &["stiff.toml"],
+        ),
+        (vec!["run", "--config", "absent.toml"], &["absent.toml"]),
+        (
+            vec!["run", "--config", "unknown.toml"],
+            &["unknown.toml", "line 2", "laterals", "laterals_mm"],
+        ),
+        (
+            vec!["run", "--config", "list.toml"],
+            &["list.toml", "line 1", "increasing"],
+        ),
+        (vec!["run", "--out", "short.csv"], &["short.csv"]),
+        (vec!["import-map", "short.csv"], &["short.csv", "line 2"]),
+    ] {
+        let output = run(&here, &arguments);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(
+            output.stdout.is_empty(),
+            "{arguments:?} printed {}",
+            text(&output.stdout)
+        );
+        assert!(
+            message.starts_with("palpate: ") && message.lines().count() == 1,
+            "{arguments:?}: {message}"
+        );
+        for word in words {
+            assert!(
+                message.contains(word),
+                "{arguments:?}: {word:?} is not in {message}"
+            );
+        }
+    }
+}
+
+// Verifies: CLI-007, CLI-010, CLI-013.
+#[test]
+fn solve_prints_the_librarys_map() {
+    let here = folder("solve");
+    let arguments = [
+        "solve",
+        "--phantom",
+        "4.6",
+        "--depths-mm",
+        "1:3:1",
+        "--laterals-mm=-2.6:2.6:2.6",
+        "--mesh-mm",
+        "2",
+    ];
+    let json = succeed(&here, &[&arguments[..], &["--format", "json"]].concat());
+    let options = MeshOptions {
+        size: 2e-3,
+        ..MeshOptions::default()
+    };
+    let model = Model::new(
+        &Phantom::builtin("4.6").unwrap(),
+        &options,
+        Contact::DeformedNormal,
+    )
+    .unwrap();
+    let map = model
+        .map(&[1e-3, 2e-3, 3e-3], &[-2.6e-3, 0.0, 2.6e-3], &|_| ())
+        .unwrap();
+    assert_eq!(ForceMap::from_json(&json, "standard output").unwrap(), map);
+    let csv = succeed(&here, &[&arguments[..], &["--format", "csv"]].concat());
+    assert_eq!(csv, map.forces().to_csv());
+    let table = succeed(&here, &arguments);
+    assert!(
+        table.contains(&format!("{:.5}", map.normal_force().row(2)[1])),
+        "{table}"
+    );
+    assert!(
+        table.contains("normal force, N") && table.contains("lateral force, N"),
+        "{table}"
+    );
+    let row = table
+        .lines()
+        .find(|line| line.trim_start().starts_with("3.0"))
+        .expect("a row for 3 mm");
+    assert_eq!(row.split_whitespace().count(), 4, "{row}");
+}
+
+// Verifies: CLI-013.
+#[test]
+fn options_of_contact_and_element_reach_the_solver() {
+    let here = folder("options");
+    let arguments = [
+        "solve",
+        "--phantom",
+        "none",
+        "--depths-mm",
+        "3",
+        "--laterals-mm",
+        "0",
+        "--mesh-mm",
+        "2",
+        "--format",
+        "json",
+    ];
+    let force = |rest: &[&str]| {
+        let json = succeed(&here, &[&arguments[..], rest].concat());
+        let map = ForceMap::from_json(&json, "").unwrap();
+        let certificate = map.certificate().unwrap();
+        (
+            map.normal_force().row(0)[0],
+            certificate.element.clone(),
+            certificate.contact.clone(),
+        )
+    };
+    let (plain, element, contact) = force(&[]);
+    assert_eq!(
+        (element.as_str(), contact.as_str()),
+        ("t6", "deformed-normal")
+    );
+    let (vertical, _, contact) = force(&["--contact", "vertical-gap"]);
+    assert_eq!(contact, "vertical-gap");
+    let (quadrilateral, element, _) = force(&["--element", "q4-full"]);
+    assert_eq!(element, "q4-full");
+    assert!(
+        (vertical / plain - 1.0).abs() > 0.005 && quadrilateral > 1.01 * plain,
+        "{plain} {vertical} {quadrilateral}"
+    );
+}
+
+// Verifies: CLI-015.
+#[test]
+fn large_strain_is_warned_of() {
+    let here = folder("warning");
+    let solve = |depth: &str| {
+        let arguments = [
+            "solve",
+            "--phantom",
+            "2.6",
+            "--depths-mm",
+            depth,
+            "--laterals-mm",
+            "0",
+            "--mesh-mm",
+            "2",
+        ];
+        text(&run(&here, &arguments).stderr).to_string()
+    };
+    assert_eq!(solve("1"), "");
+    let warning = solve("4.5");
+    assert!(
+        warning.contains("warning: phantom 2.6") && warning.contains("depth 4.5 mm"),
+        "{warning}"
+    );
+    assert!(!warning.contains("inside out"), "{warning}");
+    let warning = solve("9");
+    assert!(warning.contains("inside out"), "{warning}");
+}
+
+// Verifies: CLI-004.
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let here = folder("pipe");
+    // Far more than a pipe holds, so that the program meets the closed end.
+    let arguments = [
+        "solve",
+        "--phantom",
+        "none",
+        "--depths-mm",
+        "1:4:0.005",
+        "--laterals-mm",
+        "-9:9:1",
+        "--mesh-mm",
+        "4",
+        "--format",
+        "csv",
+    ];
+    let mut child = palpate(&here)
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{:?}", output.status);
+    assert_eq!(text(&output.stderr), "");
+}
+
+// Verifies: CLI-005, CLI-006.
+#[test]
+fn files_are_whole_and_progress_stays_off_a_pipe() {
+    let here = folder("files");
+    let arguments = [
+        "solve",
+        "--phantom",
+        "6.6",
+        "--depths-mm",
+        "2",
+        "--laterals-mm",
+        "0",
+        "--mesh-mm",
+        "2",
+        "--vtu",
+        "pose.vtu",
+    ];
+    let output = run(&here, &arguments);
+    assert!(
+        output.status.success() && output.stderr.is_empty(),
+        "{}",
+        text(&output.stderr)
+    );
+    let names: Vec<_> = fs::read_dir(&here)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    assert_eq!(names, ["pose.vtu"]);
+    assert!(
+        fs::read_to_string(here.join("pose.vtu"))
+            .unwrap()
+            .ends_with("</VTKFile>\n")
+    );
+}
+
+// Verifies: CLI-020.
+#[test]
+fn a_measured_map_becomes_a_json_map() {
+    let here = folder("import");
+    let csv = "lateral_mm,depth_mm,normal_force_mn,lateral_force_n\n0,1,200,0\n2,1,190,0.01\n2,2,500,0.03\n0,2,520,0\n";
+    fs::write(here.join("gel.csv"), csv).unwrap();
+    let arguments = [
+        "import-map",
+        "gel.csv",
+        "--note",
+        "silicone",
+        "--phantom",
+        "2.6",
+    ];
+    let printed = succeed(&here, &arguments);
+    assert_eq!(
+        succeed(&here, &[&arguments[..], &["--out", "gel.json"]].concat()),
+        ""
+    );
+    assert_eq!(fs::read_to_string(here.join("gel.json")).unwrap(), printed);
+    let map = ForceMap::from_json(&printed, "gel.json").unwrap();
+    assert_eq!(map.laterals(), [0.0, 2e-3]);
+    assert_eq!(map.normal_force().row(1), [0.52, 0.5]);
+    assert_eq!(map.lateral_force().row(0), [0.0, 0.01]);
+    assert_eq!(map.phantom().unwrap().name, "2.6");
+    assert!(printed.contains("silicone"));
+}
+
+/// Everything below a folder, by its relative path.
+fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut files = Vec::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                files.push((
+                    path.strip_prefix(folder).unwrap().to_path_buf(),
+                    fs::read(&path).unwrap(),
+                ));
+            }
+        }
+    }
+    files.sort();
+    files
+}
+
+// Verifies: CLI-007, CLI-031, CLI-032, CON-006.
+#[test]
+fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
+    let here = folder("threads");
+    let own = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/phantom.toml"))
+        .unwrap();
+    fs::write(here.join("mine.toml"), own).unwrap();
+    let config = "phantoms = [\"2.6\", \"mine.toml\"]\ndepths_mm = \"0:3:1\"\nlaterals_mm = \"-4:4:1\"\n[mesh]\nsize_mm = 2.0\n[detection]\nnoise_sd_n = 0.1\n";
+    fs::write(here.join("run.toml"), config).unwrap();
+    for threads in ["1", "2", "5"] {
+        let out = format!("out-{threads}");
+        let output = palpate(&here)
+            .args(["run", "--config", "run.toml", "--out", &out])
+            .env("RAYON_NUM_THREADS", threads)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(text(&output.stdout).contains(&format!("{out}/report.html")));
+    }
+    let one = contents(&here.join("out-1"));
+    assert!(one.iter().any(|(path, _)| path.ends_with("report.html")));
+    assert_eq!(
+        one.iter()
+            .filter(|(path, _)| path.starts_with("maps"))
+            .count(),
+        3
+    );
+    for threads in ["2", "5"] {
+        let other = contents(&here.join(format!("out-{threads}")));
+        assert_eq!(one.len(), other.len());
+        for ((path, bytes), (other_path, other_bytes)) in one.iter().zip(&other) {
+            assert_eq!(path, other_path);
+            assert!(
+                bytes == other_bytes,
+                "{path:?} differs between 1 and {threads} threads"
+            );
+        }
+    }
+}
+
+// Verifies: CLI-030, CLI-032.
+#[test]
+fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
+    let here = folder("paper");
+    let said = succeed(&here, &["run"]);
+    assert!(said.contains("palpate-out/report.html"), "{said}");
+    let out = here.join("palpate-out");
+    for name in ["none", "2.6", "4.6", "6.6", "8.6"] {
+        let map = ForceMap::read(&out.join(format!("maps/map-{name}.json"))).unwrap();
+        assert_eq!(map.phantom(), Some(&Phantom::builtin(name).unwrap()));
+        assert_eq!((map.depths().len(), map.laterals().len()), (9, 41));
+        assert_eq!(
+            (map.depths()[8], map.laterals()[0], map.laterals()[40]),
+            (4e-3, -10e-3, 10e-3)
+        );
+        assert!(out.join(format!("figures/figure-5-{name}.svg")).exists());
+    }
+    for name in ["figure-3", "figure-4", "figure-6", "figure-9"] {
+        assert!(out.join(format!("figures/{name}.svg")).exists(), "{name}");
+    }
+    let summary: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    assert!(summary.is_object());
+    let figure = fs::read(out.join("figures/figure-5-2.6.svg")).unwrap();
+    let readme = fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figure-5.svg")).unwrap();
+    assert!(
+        figure == readme,
+        "docs/figure-5.svg is not what the program draws: copy it from palpate-out/figures/figure-5-2.6.svg"
+    );
+}
