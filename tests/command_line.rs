@@ -194,14 +194,14 @@ fn bad_input_gets_one_line_that_says_what_would_be_right() {
         (vec!["run", "--config", "absent.toml"], &["absent.toml"]),
         (
             vec!["run", "--config", "unknown.toml"],
-            &["unknown.toml", "line 2", "laterals", "laterals_mm"],
+            &["unknown.toml:2:", "laterals", "laterals_mm"],
         ),
         (
             vec!["run", "--config", "list.toml"],
-            &["list.toml", "line 1", "increasing"],
+            &["list.toml:1:", "increasing"],
         ),
         (vec!["run", "--out", "short.csv"], &["short.csv"]),
-        (vec!["import-map", "short.csv"], &["short.csv", "line 2"]),
+        (vec!["import-map", "short.csv"], &["short.csv:2:", "4"]),
     ] {
         let output = run(&here, &arguments);
         let message = text(&output.stderr);

@@ -104,13 +104,13 @@ impl Config {
             let line = error
                 .span()
                 .map(|span| 1 + text[..span.start].matches('\n').count());
-            let place = line.map_or(String::new(), |line| format!("line {line}: "));
+            let place = line.map_or(String::new(), |line| format!(":{line}"));
             let message = error
                 .message()
                 .split_whitespace()
                 .collect::<Vec<_>>()
                 .join(" ");
-            CliError::Usage(format!("{}: {place}{message}", path.display()))
+            CliError::Usage(format!("{}{place}: {message}", path.display()))
         })
     }
 
