@@ -231,6 +231,38 @@ fn criteria_set_the_threshold_and_keep_their_rate() {
     assert!(found.get("max_miss").is_none());
 }
 
+// Verifies: CLI-055, TRC-050, TRC-051.
+#[test]
+fn a_record_that_fits_neither_map_is_reported() {
+    let [none, inclusion] = maps(folder());
+    for (trace, map) in [("with.csv", &inclusion), ("without.csv", &none)] {
+        let found = answer(trace, &[]);
+        let observed = observed(&folder().join(trace));
+        let chi_square: f64 = sweep(map.forces())
+            .iter()
+            .enumerate()
+            .map(|(i, [_, lateral, normal])| {
+                ((observed.x[i] - lateral) / NOISE.x).powi(2)
+                    + ((observed.y[i] - normal) / NOISE.y).powi(2)
+            })
+            .sum();
+        assert_near(number(&found, "chi_square"), chi_square);
+        // n = 66 and t = 13.8155: 66 + 2·30.1964 + 27.6310.
+        assert!((number(&found, "chi_square_limit") - 154.024).abs() < 1e-3);
+    }
+    // The sweep was at 3 mm.
+    for scan in [&[][..], &["--scan"]] {
+        let elsewhere = ["--depth-mm", "2", "--noise-sd-n", "0.1"];
+        let output = detect("with.csv", &[&elsewhere[..], scan].concat());
+        let warning = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0));
+        assert!(
+            warning.contains("fits neither map") && warning.lines().count() == 1,
+            "{warning}"
+        );
+    }
+}
+
 // Verifies: CLI-044, TRC-032, TRC-034.
 #[test]
 fn the_scan_finds_an_inclusion_that_was_moved() {

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::CliError;
-use super::detection::{Answer, AtKnownPosition, AtUnknownPosition, Question};
+use super::detection::{Answer, Question};
 use super::output::print;
 use crate::detect::Channels;
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::parse_scaled;
-use crate::trace::{Criterion, Motion, Trace, judge, locate};
+use crate::trace::{Criterion, Misfit, Motion, Trace, judge, locate};
 
 /// Arguments of `palpate detect`.
 #[derive(Debug, Args)]
@@ -144,7 +144,7 @@ fn with(wanted: bool) -> &'static str {
 
 /// Runs the command.
 ///
-/// Implements: CLI-040, CLI-043, CLI-044, CLI-046, CLI-048.
+/// Implements: CLI-040, CLI-043, CLI-044, CLI-046, CLI-048, CLI-055.
 pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     let (criterion, noise_sd) = (arguments.criterion()?, arguments.noise_sd()?);
     let motion = arguments
@@ -156,24 +156,32 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     check_not_swapped(&reference, &inclusion, &arguments.reference)?;
     let (depth, prior_h1) = (arguments.depth_mm, arguments.prior_h1);
     let (f0, f1) = (reference.forces(), inclusion.forces());
-    let mut answer = Answer {
-        question: Question::new(
-            [&arguments.trace, &arguments.reference, &arguments.inclusion],
-            record.positions().len(),
-            depth,
-            noise_sd,
-            prior_h1,
-            criterion,
-        ),
-        known: None,
-        unknown: None,
-    };
-    if arguments.scan {
+    let files = [&arguments.trace, &arguments.reference, &arguments.inclusion];
+    let samples = record.positions().len();
+    let question = Question::new(files, samples, depth, noise_sd, prior_h1, criterion);
+    let misfit = |theta| Misfit::of(&record, f0, depth, noise_sd, theta);
+    let (answer, misfit) = if arguments.scan {
         let found = locate(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
-        answer.unknown = Some(AtUnknownPosition::from(found));
+        let misfit = misfit(found.theta_max)?;
+        (
+            Answer::new(question, None, Some(found.into()), misfit),
+            misfit,
+        )
     } else {
         let found = judge(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
-        answer.known = Some(AtKnownPosition::from(found));
+        let misfit = misfit(found.1.statistic.theta)?;
+        (
+            Answer::new(question, Some(found.into()), None, misfit),
+            misfit,
+        )
+    };
+    if misfit.is_too_large() {
+        eprintln!(
+            "palpate: warning: {}: the record fits neither map: chi-square {:.1}, expected at most {:.1}: depth, noise or maps are probably not those of the sweep, and the decision means little",
+            record.file(),
+            misfit.chi_square,
+            misfit.limit
+        );
     }
     print(&match arguments.format {
         Format::Table => answer.table(),

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::detect::assessment::Assessment;
 use crate::detect::{Channels, Decision};
-use crate::trace::{Criterion, Location};
+use crate::trace::{Criterion, Location, Misfit};
 
 /// What was asked and what the record says.
 ///
@@ -20,6 +20,8 @@ pub struct Answer {
     pub known: Option<AtKnownPosition>,
     #[serde(flatten)]
     pub unknown: Option<AtUnknownPosition>,
+    chi_square: f64,
+    chi_square_limit: f64,
 }
 
 /// What was asked.
@@ -160,6 +162,22 @@ fn name(decision: Decision) -> &'static str {
 }
 
 impl Answer {
+    /// The answer to a question, by one of the two tests.
+    pub fn new(
+        question: Question,
+        known: Option<AtKnownPosition>,
+        unknown: Option<AtUnknownPosition>,
+        misfit: Misfit,
+    ) -> Answer {
+        Answer {
+            question,
+            known,
+            unknown,
+            chi_square: misfit.chi_square,
+            chi_square_limit: misfit.limit,
+        }
+    }
+
     /// The answer as JSON, in SI.
     pub fn json(&self) -> String {
         // Keys are strings and every number is finite: nothing here can fail.
@@ -201,6 +219,11 @@ impl Answer {
                 millimetres(found.position_sd_bound_m),
             );
         }
+        let limit = number(self.chi_square_limit);
+        line(
+            "chi-square of the nearer map",
+            format!("{}, at most {limit} if it fits", number(self.chi_square)),
+        );
         text
     }
 }

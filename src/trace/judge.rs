@@ -77,3 +77,57 @@ pub fn judge(
     let assessment = assess(record.forces(), f0, f1, noise_sd, prior_h1, eta).map_err(refused)?;
     Ok((eta, assessment))
 }
+
+/// How far a record is from the nearer of the two hypotheses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Misfit {
+    /// The smaller Σ (F_p − F_h)²/s² over both channels: χ² with two degrees of freedom a sample.
+    pub chi_square: f64,
+    /// What a record that fits exceeds with probability 10⁻⁶ at most.
+    pub limit: f64,
+}
+
+impl Misfit {
+    /// The misfit of `record`, swept at `depth` (m), whose θ against the map `reference` is `theta`.
+    ///
+    /// # Errors
+    /// As [`Record::expected`]; a sum that overflows.
+    ///
+    /// Implements: TRC-050, TRC-051.
+    pub fn of(
+        record: &Record,
+        reference: &ForceTable,
+        depth: f64,
+        noise_sd: Channels<f64>,
+        theta: f64,
+    ) -> Result<Misfit, TraceError> {
+        let f0 = record.expected(reference, depth)?;
+        let sums = record.forces().zip(super::view(&f0)).zip(noise_sd);
+        let sums = sums.map(|((observed, f0), noise_sd)| {
+            let terms = std::iter::zip(observed, f0).map(|(observed, f0)| {
+                let standardised = (observed - f0) / noise_sd;
+                standardised * standardised
+            });
+            terms.sum::<f64>()
+        });
+        // Σ (r − Δ)²/s² = Σ r²/s² − 2θ.
+        let chi_square = sums.x + sums.y - 2.0 * theta.max(0.0);
+        if !chi_square.is_finite() {
+            let what = "chi_square";
+            let error = TraceProblem::Detect(DetectError::Overflow { what });
+            return Err(error.at(record.file(), None));
+        }
+        let n = 2.0 * record.positions().len() as f64;
+        let t = libm::log(1e6);
+        Ok(Misfit {
+            // Rounding may leave a little below 0 of a record without noise.
+            chi_square: chi_square.max(0.0),
+            limit: n + 2.0 * libm::sqrt(n * t) + 2.0 * t,
+        })
+    }
+
+    /// Does the record fit neither hypothesis?
+    pub fn is_too_large(&self) -> bool {
+        self.chi_square > self.limit
+    }
+}

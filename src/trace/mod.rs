@@ -16,7 +16,7 @@ mod locate;
 mod tests;
 
 pub use error::{TraceError, TraceProblem};
-pub use judge::{Criterion, judge};
+pub use judge::{Criterion, Misfit, judge};
 pub use locate::{Location, MOST_SAMPLES, UNIFORM, locate};
 
 use crate::detect::Channels;
