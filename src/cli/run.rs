@@ -11,7 +11,7 @@ use super::config::Config;
 use super::output::{make_folder, print, write};
 use super::progress::bar;
 use super::solve::{phantom, warn_of_large_strain};
-use crate::fem::{FemError, Model, Pose};
+use crate::fem::{FemError, Model, Pose, solved_laterals};
 use crate::force_map::ForceMap;
 use crate::phantom::Phantom;
 use crate::report::{DeformedMesh, FileNames, Study, figures, findings, html, summary_json};
@@ -50,10 +50,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
 
 /// Solves all maps, the phantoms in parallel, and the field of one pose.
 fn study(config: &Config, phantoms: &[Phantom]) -> Result<Study, CliError> {
-    let bar = bar(
-        phantoms.len() * config.depths_mm.0.len() * config.laterals_mm.0.len(),
-        "force maps",
-    );
+    let poses = config.depths_mm.0.len() * solved_laterals(&config.laterals_mm.0).len();
+    let bar = bar(phantoms.len() * poses, "force maps");
     // The figure shows the first inclusion, or the reference where there is none.
     let shown = usize::from(phantoms.len() > 1);
     let solve = |(index, phantom): (usize, &Phantom)| {

@@ -9,7 +9,7 @@ use super::lists::{Positions, positions};
 use super::output::{print, write};
 use super::progress::bar;
 use super::{CliError, ContactName, ElementName};
-use crate::fem::{FemError, MeshOptions, Model, Pose};
+use crate::fem::{FemError, MeshOptions, Model, Pose, solved_laterals};
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::{format_scaled, parse_scaled};
 use crate::phantom::{BUILTIN_NAMES, Phantom};
@@ -108,7 +108,10 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         element: arguments.element.into(),
         ..MeshOptions::default()
     };
-    let bar = bar(depths.len() * laterals.len(), &phantom.name);
+    let bar = bar(
+        depths.len() * solved_laterals(laterals).len(),
+        &phantom.name,
+    );
     let model = Model::new(&phantom, &options, arguments.contact.into()).map_err(failed)?;
     let map = model
         .map(depths, laterals, &|poses| bar.inc(poses as u64))

@@ -21,7 +21,7 @@ use crate::phantom::{InvalidPhantom, PoseError};
 pub use contact::{Contact, ContactState, Surface};
 pub use field::{Field, FieldCheck};
 pub use mesh::{Element, Mesh};
-pub use model::{Model, PoseSolution};
+pub use model::{Model, PoseSolution, solved_laterals};
 
 /// Where the probe stands.
 #[derive(Debug, Clone, Copy, PartialEq)]

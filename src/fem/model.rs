@@ -284,7 +284,7 @@ impl Model {
                 self.phantom.check_pose(depth, lateral)?;
             }
         }
-        let right = right_half(laterals);
+        let right = solved_laterals(laterals);
         let mut solutions = Vec::with_capacity(right.len() * depths.len());
         for &lateral in &right {
             let column = self.column(depths, lateral)?;
@@ -391,8 +391,9 @@ impl PoseSolution {
     }
 }
 
-/// The distinct |x|, increasing, with 0 among them wherever there is a mirror image to make.
-fn right_half(laterals: &[f64]) -> Vec<f64> {
+/// The lateral positions that [`Model::map`] solves for a map at `laterals`, m: the distinct |x|, increasing,
+/// with 0 among them wherever there is a mirror image to make.
+pub fn solved_laterals(laterals: &[f64]) -> Vec<f64> {
     let mut right: Vec<f64> = laterals.iter().map(|x| x.abs()).collect();
     if laterals.iter().any(|&x| x < 0.0) {
         right.push(0.0);

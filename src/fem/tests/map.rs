@@ -71,6 +71,10 @@ fn a_map_holds_the_forces_of_its_poses() {
     }
     // The axis is solved as well, for the mirror images.
     assert_eq!(counted.get(), 12);
+    assert_eq!(
+        crate::fem::solved_laterals(&laterals),
+        [0.0, 1e-3, 3e-3, 7e-3]
+    );
 }
 
 // Verifies: FEM-015, MAP-006, MAP-007.
