@@ -65,7 +65,7 @@ fn soak(batteries: u32, seed: u64) -> Result<(), CliError> {
     let checks: Vec<&Check> = battery().collect();
     // Before the work: whoever stops it can still repeat it.
     print(&format!(
-        "{batteries} batteries of {} checks, seed {seed}\n",
+        "{batteries} times {} checks, seed {seed}\n",
         checks.len()
     ))?;
     let jobs = u64::from(batteries) * checks.len() as u64;

@@ -133,7 +133,7 @@ impl Model {
 }
 
 /// Von Mises' equivalent of the stress (σ_xx, σ_yy, σ_zz, σ_xy), Pa.
-fn von_mises([xx, yy, zz, xy]: [f64; 4]) -> f64 {
+pub(super) fn von_mises([xx, yy, zz, xy]: [f64; 4]) -> f64 {
     let squares = (xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx);
     libm::sqrt(0.5 * squares + 3.0 * xy * xy)
 }

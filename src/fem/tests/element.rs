@@ -1,5 +1,8 @@
 use crate::fem::assembly::StiffnessMatrix;
+use crate::fem::cholesky::check_residual;
 use crate::fem::element::{Stiffness, StiffnessRule, stress};
+use crate::fem::field::determinant;
+use crate::fem::vtu::von_mises;
 use crate::fem::{Element, FemError, Mesh, MeshOptions};
 use crate::phantom::Material;
 
@@ -202,4 +205,60 @@ fn an_element_turned_inside_out_is_an_error_that_says_where() {
         "{error}"
     );
     assert!(error.to_string().contains("near x = "), "{error}");
+}
+
+// Verifies: FEM-013.
+#[test]
+fn determinant_is_that_of_the_deformation() {
+    // I + ∇u = [[3, 1], [5, 4]].
+    assert_eq!(determinant([[2.0, 1.0], [5.0, 3.0]]), 7.0);
+    assert_eq!(determinant([[0.0; 2]; 2]), 1.0);
+}
+
+// Verifies: FEM-016.
+#[test]
+fn von_mises_is_the_stress_of_the_pulled_bar() {
+    assert_eq!(von_mises([7.0, 0.0, 0.0, 0.0]), 7.0);
+    assert_eq!(von_mises([5.0, 5.0, 5.0, 0.0]), 0.0);
+    // Pure shear τ yields at τ √3.
+    assert!((von_mises([0.0, 0.0, 0.0, 2.0]) - 2.0 * 3f64.sqrt()).abs() < 1e-15);
+}
+
+// Verifies: FEM-008.
+#[test]
+fn a_residual_above_the_limit_is_an_error() {
+    assert_eq!(check_residual(1e-8), Ok(()));
+    for residual in [1.1e-8, f64::INFINITY, f64::NAN] {
+        assert!(
+            matches!(check_residual(residual), Err(FemError::Residual { .. })),
+            "{residual}"
+        );
+    }
+}
+
+// Verifies: FEM-008.
+#[test]
+fn the_residual_told_is_the_one_left() {
+    let phantom = builtin("2.6");
+    let mesh = Mesh::new(&phantom, &MeshOptions::default()).unwrap();
+    let matrix = StiffnessMatrix::assemble(&mesh, &phantom).unwrap();
+    let factor = crate::fem::cholesky::Factor::new(&matrix).unwrap();
+    let mut force = vec![0.0; matrix.numbering.unknowns()];
+    for (k, force) in force
+        .iter_mut()
+        .enumerate()
+        .skip(matrix.numbering.first_surface_unknown())
+    {
+        *force = (k % 7) as f64 - 3.0;
+    }
+    let (u, refined) = factor.solve(&matrix, &force).unwrap();
+    let mut rest: Vec<[f64; 1]> = force.iter().map(|&f| [f]).collect();
+    let single: Vec<[f64; 1]> = u.iter().map(|&u| [u]).collect();
+    matrix.subtract_product(&single, &mut rest);
+    let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
+    let left = norm(&mut rest.iter().map(|r| r[0])) / norm(&mut force.iter().copied());
+    assert!(
+        (left / refined - 1.0).abs() < 0.5,
+        "the residual told, {refined:e}, is not the one left, {left:e}"
+    );
 }
