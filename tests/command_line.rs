@@ -271,6 +271,33 @@ fn solve_prints_the_librarys_map() {
     assert_eq!(row.split_whitespace().count(), 4, "{row}");
 }
 
+// Verifies: DET-113.
+#[test]
+fn the_statistics_battery_traverses_these_force_maps() {
+    let here = folder("traverse");
+    for name in ["none", "4.6"] {
+        let arguments = [
+            "solve",
+            "--phantom",
+            name,
+            "--depths-mm",
+            "4",
+            "--laterals-mm",
+            "-10:10:0.5",
+            "--format",
+            "csv",
+        ];
+        let kept = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join(format!("src/verify/statistics/traverse_{name}.csv"));
+        let said = succeed(&here, &arguments);
+        assert!(
+            said == fs::read_to_string(&kept).unwrap(),
+            "{} is not what the solver prints",
+            kept.display()
+        );
+    }
+}
+
 // Verifies: CLI-013.
 #[test]
 fn options_of_contact_and_element_reach_the_solver() {

@@ -37,7 +37,7 @@ pub(super) const CHECKS: &[Check] = &[
 ];
 
 /// A setting, and the distance of the streams of two replicates.
-type Series = (fn() -> Setting, u64);
+type Series = (fn() -> Outcome<Setting>, u64);
 const COARSE: Series = (coarse, 10);
 const SINGLE: Series = (single, 1);
 const TRAVERSE: Series = (traverse, 1);
@@ -50,8 +50,8 @@ struct Setting {
 }
 
 /// Eight coarse samples, both channels: γ = 1.91.
-fn coarse() -> Setting {
-    Setting {
+fn coarse() -> Outcome<Setting> {
+    Ok(Setting {
         f0: Channels {
             x: vec![0.0; 8],
             y: vec![1.48; 8],
@@ -61,12 +61,12 @@ fn coarse() -> Setting {
             y: vec![0.03, 0.10, 0.22, 0.33, 0.33, 0.22, 0.10, 0.03],
         },
         noise_sd: Channels { x: 0.25, y: 0.4 },
-    }
+    })
 }
 
 /// One lateral sample: γ = ½.
-fn single() -> Setting {
-    Setting {
+fn single() -> Outcome<Setting> {
+    Ok(Setting {
         f0: Channels {
             x: vec![0.1],
             y: vec![1.5],
@@ -76,24 +76,60 @@ fn single() -> Setting {
             y: vec![0.0],
         },
         noise_sd: Channels { x: 0.1, y: 0.1 },
-    }
+    })
 }
 
-/// 401 samples of a traverse over an inclusion, as the paper's probe makes it: γ = 5.17.
-fn traverse() -> Setting {
-    let position = |i: usize| (i as f64 - 200.0) / 50.0;
-    let bump = |i: usize| 0.34 * libm::exp(-0.5 * position(i) * position(i));
-    Setting {
-        f0: Channels {
-            x: vec![0.0; 401],
-            y: vec![1.48; 401],
-        },
-        template: Channels {
-            x: (0..401).map(|i| 0.4 * position(i) * bump(i)).collect(),
-            y: (0..401).map(bump).collect(),
-        },
+/// The forces of a traverse at 4 mm depth from the finite elements, as `palpate solve --phantom NAME --depths-mm 4
+/// --laterals-mm -10:10:0.5 --format csv` prints them.
+const TRAVERSE_WITHOUT: &str = include_str!("traverse_none.csv");
+const TRAVERSE_WITH: &str = include_str!("traverse_4.6.csv");
+
+/// Samples of a traverse between two positions of its file.
+const SAMPLES_PER_POSITION: usize = 10;
+
+/// 401 samples of a traverse over the inclusion 4.6 mm deep, as the paper's probe makes it: γ = 9.30.
+fn traverse() -> Outcome<Setting> {
+    let (f0, f1) = (sampled(TRAVERSE_WITHOUT)?, sampled(TRAVERSE_WITH)?);
+    let difference =
+        |(f0, f1): (&Vec<f64>, &Vec<f64>)| f0.iter().zip(f1).map(|(f0, f1)| f1 - f0).collect();
+    let template = Channels {
+        x: difference((&f0.x, &f1.x)),
+        y: difference((&f0.y, &f1.y)),
+    };
+    Ok(Setting {
+        f0,
+        template,
         noise_sd: Channels { x: 0.5, y: 0.6615 },
+    })
+}
+
+/// The forces of a file, interpolated linearly between its positions.
+fn sampled(file: &str) -> Outcome<Channels<Vec<f64>>> {
+    let mut rows: Vec<[f64; 2]> = Vec::new();
+    for line in file.lines().skip(1) {
+        // depth_mm, lateral_mm, normal_force_n, lateral_force_n
+        let fields = line
+            .split(',')
+            .map(str::parse)
+            .collect::<Result<Vec<f64>, _>>()?;
+        let [_, _, normal, lateral] = fields[..] else {
+            return Err(std::format!("{line:?} has not four fields").into());
+        };
+        rows.push([lateral, normal]);
     }
+    let samples = SAMPLES_PER_POSITION * rows.len().saturating_sub(1);
+    let channel = |c: usize| {
+        let sample = |i: usize| {
+            let (row, part) = (i / SAMPLES_PER_POSITION, i % SAMPLES_PER_POSITION);
+            let (here, next) = (rows[row][c], rows[(row + 1).min(rows.len() - 1)][c]);
+            here + part as f64 / SAMPLES_PER_POSITION as f64 * (next - here)
+        };
+        (0..=samples).map(sample).collect()
+    };
+    Ok(Channels {
+        x: channel(0),
+        y: channel(1),
+    })
 }
 
 fn forces(setting: &Setting, inclusion: bool) -> Channels<Vec<f64>> {
@@ -117,7 +153,7 @@ fn sample(
     inclusion: bool,
     stream: u64,
 ) -> Outcome<(Law, Vec<f64>)> {
-    let setting = setting();
+    let setting = setting()?;
     let simulation = Simulation::new(
         view(&setting.f0),
         view(&setting.template),
