@@ -18,7 +18,7 @@ fn a_soak_says_its_seed_and_the_probability_of_a_false_failure() {
     assert_eq!(
         said,
         format!(
-            "2 batteries of 29 checks, seed {seed}\n\
+            "2 times 29 checks, seed {seed}\n\
              all passed; a detector without defect fails such a run with probability 1.45e-6 at most\n"
         )
     );
