@@ -111,7 +111,7 @@ fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError
     };
     let solution = model.solve(pose)?;
     let mesh = model.mesh();
-    let corners = if mesh.element.nodes() == 6 { 3 } else { 4 };
+    let corners = mesh.element.corners();
     let check = model.checks(std::slice::from_ref(&solution));
     Ok(DeformedMesh {
         phantom: model.phantom().clone(),

@@ -13,9 +13,7 @@ use crate::fem::{FemError, MeshOptions, Model, Pose, solved_laterals};
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::{format_scaled, parse_scaled};
 use crate::phantom::{BUILTIN_NAMES, Phantom};
-
-/// Below this smallest det(I + ∇u) a warning says that the small-strain model is at its limit.
-pub const DET_WARNING: f64 = 0.2;
+use crate::report::SMALL_STRAIN_LIMIT;
 
 /// Arguments of `palpate solve`.
 #[derive(Debug, Args)]
@@ -139,7 +137,7 @@ pub fn warn_of_large_strain(map: &ForceMap) {
     else {
         return;
     };
-    if smallest.det < DET_WARNING {
+    if smallest.det < SMALL_STRAIN_LIMIT {
         let name = map.phantom().map_or("", |phantom| &phantom.name);
         let meaning = if smallest.det > 0.0 {
             "the small-strain model is at its limit there"

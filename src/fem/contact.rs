@@ -240,7 +240,7 @@ impl Surface {
         for iteration in 0..MOST_ITERATIONS {
             // The old tangent serves as long as it lets the steps shrink well: factorising is the cost.
             let system = match tangent_system.take() {
-                Some(system) if system.active == state.active && last_step.is_finite() => system,
+                Some(system) if system.active == state.active => system,
                 _ => self.tangent_system(&state, pose).ok_or(failed(iteration))?,
             };
             let step = self
@@ -256,13 +256,11 @@ impl Surface {
                 state.iterations = iteration + 1;
                 return Ok(state);
             }
-            let shrinks = step <= REUSE_BELOW * last_step;
-            last_step = if shrinks || last_step.is_infinite() {
-                step
+            (tangent_system, last_step) = if step <= REUSE_BELOW * last_step {
+                (Some(system), step)
             } else {
-                f64::INFINITY
+                (None, f64::INFINITY)
             };
-            tangent_system = Some(system);
         }
         Err(failed(MOST_ITERATIONS))
     }

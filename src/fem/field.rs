@@ -146,7 +146,8 @@ impl Batch {
         }
     }
 
-    /// Puts the surface displacements and loads of a pose into `column`.
+    /// Puts the surface displacements and loads of a pose into `column`; `first` is the first unknown on the
+    /// surface, and below it no pose has a load.
     pub fn set(
         &mut self,
         column: usize,
@@ -154,7 +155,7 @@ impl Batch {
         displacements: &[[f64; 2]],
         forces: &[(usize, [f64; 2])],
     ) {
-        for row in &mut self.forces {
+        for row in &mut self.forces[first..] {
             row[column] = 0.0;
         }
         for (node, u) in displacements.iter().enumerate() {

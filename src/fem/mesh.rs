@@ -38,6 +38,14 @@ impl Element {
         }
     }
 
+    /// Corners of one element: its first nodes.
+    pub fn corners(self) -> usize {
+        match self {
+            Element::T6 => 3,
+            Element::Q4Full => 4,
+        }
+    }
+
     /// Nodes of one element.
     pub fn nodes(self) -> usize {
         match self {

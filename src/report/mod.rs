@@ -27,7 +27,7 @@ pub use comparison::{Comparison, PairwiseFinding, Value};
 pub use figures::figures;
 pub use findings::{
     Calibration, Findings, GammaByChannel, MapFindings, Peak, Quality, ReferenceFindings,
-    Threshold, findings,
+    SMALL_STRAIN_LIMIT, Threshold, findings,
 };
 pub use html::html;
 pub use summary::{SUMMARY_SCHEMA, SUMMARY_SCHEMA_VERSION, summary_json};

@@ -171,7 +171,7 @@ fn edges_are_shared_by_two_elements_with_the_same_middle() {
         .unwrap();
         let mut edges: HashMap<[u32; 2], Vec<Option<u32>>> = HashMap::new();
         for nodes in mesh.elements() {
-            let corners = if nodes.len() == 6 { 3 } else { 4 };
+            let corners = element.corners();
             for k in 0..corners {
                 let (a, b) = (nodes[k], nodes[(k + 1) % corners]);
                 edges
