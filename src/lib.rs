@@ -10,12 +10,14 @@
 //! | §3.1 finite elements | [`fem`] |
 //! | §3, §4 force tables | [`force_map`] |
 //! | a recorded sweep against two of them | [`trace`] |
+//! | §4 playback: from a table to a force | [`servo`] |
+//! | §4 playback: reports of the device | [`hid`] |
 //! | figures, tables | [`report`] |
 //!
 //! Lengths are metres, forces newtons, moduli pascals throughout; `spec/README.md` has the signs.
 //!
 //! With `default-features = false` the crate is `no_std`, does not allocate, and depends on `libm`
-//! alone: that part holds [`stats`] and [`detect`].
+//! alone: that part holds [`stats`], [`detect`], [`servo`] and the reports of [`hid`].
 #![cfg_attr(not(any(feature = "std", feature = "verify")), no_std)]
 
 #[cfg(feature = "cli")]
@@ -27,10 +29,12 @@ pub mod detect;
 pub mod fem;
 #[cfg(feature = "std")]
 pub mod force_map;
+pub mod hid;
 #[cfg(feature = "std")]
 pub mod phantom;
 #[cfg(feature = "report")]
 pub mod report;
+pub mod servo;
 pub mod stats;
 #[cfg(feature = "std")]
 pub mod trace;

@@ -1,0 +1,292 @@
+//! The vendor profile: four reports of fixed length, numbers little-endian.
+
+/// The report descriptor of the vendor profile (usage page FF00).
+///
+/// Implements: HID-001.
+pub const DESCRIPTOR: [u8; 136] = [
+    0x06, 0x00, 0xFF, 0x09, 0x01, 0xA1, 0x01, // vendor page, application
+    0x85, 0x01, 0x09, 0x10, 0x09, 0x11, 0x16, 0x01, 0x80, 0x26, 0xFF, 0x7F, 0x75, 0x10, 0x95, 0x02,
+    0x81, 0x02, // input 1: two positions
+    0x09, 0x12, 0x09, 0x13, 0x15, 0x00, 0x26, 0xFF, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81,
+    0x02, // buttons, status
+    0x09, 0x14, 0x09, 0x15, 0x15, 0x00, 0x27, 0xFF, 0xFF, 0x00, 0x00, 0x75, 0x10, 0x95, 0x02, 0x81,
+    0x02, // sequence, last force's sequence
+    0x85, 0x02, 0x09, 0x20, 0x09, 0x21, 0x16, 0x01, 0x80, 0x26, 0xFF, 0x7F, 0x75, 0x10, 0x95, 0x02,
+    0x91, 0x02, // output 2: two forces
+    0x09, 0x22, 0x15, 0x00, 0x27, 0xFF, 0xFF, 0x00, 0x00, 0x75, 0x10, 0x95, 0x01, 0x91,
+    0x02, // sequence
+    0x09, 0x23, 0x15, 0x00, 0x26, 0xFF, 0x00, 0x75, 0x08, 0x95, 0x01, 0x91, 0x02, // flags
+    0x85, 0x03, 0x09, 0x30, 0x15, 0x00, 0x27, 0xFF, 0xFF, 0x00, 0x00, 0x75, 0x10, 0x95, 0x08, 0xB1,
+    0x03, // feature 3: capabilities
+    0x85, 0x04, 0x09, 0x40, 0x15, 0x00, 0x26, 0xFF, 0x00, 0x75, 0x08, 0x95, 0x01, 0xB1,
+    0x02, // feature 4: control
+    0xC0,
+];
+
+/// Bits of [`PositionReport::buttons`].
+pub mod button {
+    /// The deadman switch is held.
+    pub const DEADMAN: u8 = 1;
+}
+
+/// Bits of [`PositionReport::status`].
+pub mod status {
+    /// The device has found a fault in itself and plays no force.
+    pub const FAULT: u8 = 1;
+    /// The device's own watchdog has dropped the force.
+    pub const WATCHDOG: u8 = 2;
+}
+
+/// Input report 1: where the handle is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct PositionReport {
+    /// Lateral position, counts.
+    pub lateral: i16,
+    /// Position along the normal, counts, positive out of the gel.
+    pub normal: i16,
+    /// Switches: see [`button`].
+    pub buttons: u8,
+    /// State of the device: see [`status`].
+    pub status: u8,
+    /// Number of this report, modulo 65536.
+    pub sequence: u16,
+    /// Number of the last force report that the device played.
+    pub force_sequence: u16,
+}
+
+/// Output report 2: what to play.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ForceReport {
+    /// Lateral force, counts.
+    pub lateral: i16,
+    /// Normal force, counts, positive out of the gel.
+    pub normal: i16,
+    /// Number of this report, modulo 65536.
+    pub sequence: u16,
+    /// Bit 0: play the force; otherwise the device plays none.
+    pub flags: u8,
+}
+
+/// Feature report 3: what the device is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Capabilities {
+    /// Version of the profile: 1.
+    pub version: u16,
+    /// Length of a count of a position, nm.
+    pub position_unit_nm: u16,
+    /// Force of a count, µN.
+    pub force_unit_un: u16,
+    /// Largest force of each axis, mN.
+    pub largest_force_mn: u16,
+    /// Time between two position reports, µs.
+    pub period_us: u16,
+    /// Time without a force report after which the device drops the force, ms.
+    pub watchdog_ms: u16,
+    /// Viscous damping of each axis, mN·s/m.
+    pub damping_mn_s_per_m: u16,
+    /// Coulomb friction of each axis, mN.
+    pub friction_mn: u16,
+}
+
+/// Feature report 4: what the device is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Control {
+    /// Play no force until enabled.
+    Stop,
+    /// Play the force reports.
+    Enable,
+    /// Clear the device's own fault.
+    ClearFault,
+}
+
+/// Why bytes are no report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum InvalidReport {
+    /// Another number of bytes, the report's number included.
+    Length {
+        /// How many there are.
+        found: usize,
+        /// How many there must be.
+        expected: usize,
+    },
+    /// Another report's number in the first byte.
+    Number {
+        /// The number found.
+        found: u8,
+        /// The number that must be there.
+        expected: u8,
+    },
+    /// A value that has no meaning.
+    Value {
+        /// What was found.
+        found: u8,
+    },
+}
+
+/// The bytes after the report's number.
+fn payload<const LENGTH: usize>(
+    bytes: &[u8],
+    expected: u8,
+) -> Result<&[u8; LENGTH], InvalidReport> {
+    let wrong_length = InvalidReport::Length {
+        found: bytes.len(),
+        expected: LENGTH + 1,
+    };
+    let (&found, rest) = bytes.split_first().ok_or(wrong_length)?;
+    let rest = rest.try_into().map_err(|_| wrong_length)?;
+    if found != expected {
+        return Err(InvalidReport::Number { found, expected });
+    }
+    Ok(rest)
+}
+
+impl PositionReport {
+    /// The number of the report.
+    pub const NUMBER: u8 = 1;
+    /// Its length with the number, bytes.
+    pub const LENGTH: usize = 11;
+
+    /// The report in `bytes`, which begin with the report's number.
+    ///
+    /// # Errors
+    /// [`InvalidReport`] for another length or number.
+    ///
+    /// Implements: HID-002, HID-006.
+    pub fn decode(bytes: &[u8]) -> Result<PositionReport, InvalidReport> {
+        let &[a, b, c, d, buttons, status, e, f, g, h] = payload(bytes, PositionReport::NUMBER)?;
+        Ok(PositionReport {
+            lateral: i16::from_le_bytes([a, b]),
+            normal: i16::from_le_bytes([c, d]),
+            buttons,
+            status,
+            sequence: u16::from_le_bytes([e, f]),
+            force_sequence: u16::from_le_bytes([g, h]),
+        })
+    }
+
+    /// The bytes of the report.
+    ///
+    /// Implements: HID-002, HID-007.
+    pub fn encode(&self) -> [u8; PositionReport::LENGTH] {
+        let [a, b] = self.lateral.to_le_bytes();
+        let [c, d] = self.normal.to_le_bytes();
+        let [e, f] = self.sequence.to_le_bytes();
+        let [g, h] = self.force_sequence.to_le_bytes();
+        let number = PositionReport::NUMBER;
+        [number, a, b, c, d, self.buttons, self.status, e, f, g, h]
+    }
+}
+
+impl ForceReport {
+    /// The number of the report.
+    pub const NUMBER: u8 = 2;
+    /// Its length with the number, bytes.
+    pub const LENGTH: usize = 8;
+    /// The bit of [`ForceReport::flags`] that lets the device play the force.
+    pub const PLAY: u8 = 1;
+
+    /// The report in `bytes`, which begin with the report's number.
+    ///
+    /// # Errors
+    /// [`InvalidReport`] for another length or number.
+    ///
+    /// Implements: HID-003, HID-006.
+    pub fn decode(bytes: &[u8]) -> Result<ForceReport, InvalidReport> {
+        let &[a, b, c, d, e, f, flags] = payload(bytes, ForceReport::NUMBER)?;
+        Ok(ForceReport {
+            lateral: i16::from_le_bytes([a, b]),
+            normal: i16::from_le_bytes([c, d]),
+            sequence: u16::from_le_bytes([e, f]),
+            flags,
+        })
+    }
+
+    /// The bytes of the report.
+    ///
+    /// Implements: HID-003, HID-007.
+    pub fn encode(&self) -> [u8; ForceReport::LENGTH] {
+        let [a, b] = self.lateral.to_le_bytes();
+        let [c, d] = self.normal.to_le_bytes();
+        let [e, f] = self.sequence.to_le_bytes();
+        [ForceReport::NUMBER, a, b, c, d, e, f, self.flags]
+    }
+}
+
+impl Capabilities {
+    /// The number of the report.
+    pub const NUMBER: u8 = 3;
+    /// Its length with the number, bytes.
+    pub const LENGTH: usize = 17;
+
+    /// The report in `bytes`, which begin with the report's number.
+    ///
+    /// # Errors
+    /// [`InvalidReport`] for another length or number.
+    ///
+    /// Implements: HID-004, HID-006.
+    pub fn decode(bytes: &[u8]) -> Result<Capabilities, InvalidReport> {
+        let &[a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] =
+            payload(bytes, Capabilities::NUMBER)?;
+        Ok(Capabilities {
+            version: u16::from_le_bytes([a, b]),
+            position_unit_nm: u16::from_le_bytes([c, d]),
+            force_unit_un: u16::from_le_bytes([e, f]),
+            largest_force_mn: u16::from_le_bytes([g, h]),
+            period_us: u16::from_le_bytes([i, j]),
+            watchdog_ms: u16::from_le_bytes([k, l]),
+            damping_mn_s_per_m: u16::from_le_bytes([m, n]),
+            friction_mn: u16::from_le_bytes([o, p]),
+        })
+    }
+
+    /// The bytes of the report.
+    ///
+    /// Implements: HID-004, HID-007.
+    pub fn encode(&self) -> [u8; Capabilities::LENGTH] {
+        let [a, b] = self.version.to_le_bytes();
+        let [c, d] = self.position_unit_nm.to_le_bytes();
+        let [e, f] = self.force_unit_un.to_le_bytes();
+        let [g, h] = self.largest_force_mn.to_le_bytes();
+        let [i, j] = self.period_us.to_le_bytes();
+        let [k, l] = self.watchdog_ms.to_le_bytes();
+        let [m, n] = self.damping_mn_s_per_m.to_le_bytes();
+        let [o, p] = self.friction_mn.to_le_bytes();
+        let number = Capabilities::NUMBER;
+        [number, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p]
+    }
+}
+
+impl Control {
+    /// The number of the report.
+    pub const NUMBER: u8 = 4;
+    /// Its length with the number, bytes.
+    pub const LENGTH: usize = 2;
+
+    /// The report in `bytes`, which begin with the report's number.
+    ///
+    /// # Errors
+    /// [`InvalidReport`] for another length, number or value.
+    ///
+    /// Implements: HID-005, HID-006.
+    pub fn decode(bytes: &[u8]) -> Result<Control, InvalidReport> {
+        let &[value] = payload(bytes, Control::NUMBER)?;
+        match value {
+            0 => Ok(Control::Stop),
+            1 => Ok(Control::Enable),
+            2 => Ok(Control::ClearFault),
+            found => Err(InvalidReport::Value { found }),
+        }
+    }
+
+    /// The bytes of the report.
+    ///
+    /// Implements: HID-005, HID-007.
+    pub fn encode(&self) -> [u8; Control::LENGTH] {
+        let value = match self {
+            Control::Stop => 0,
+            Control::Enable => 1,
+            Control::ClearFault => 2,
+        };
+        [Control::NUMBER, value]
+    }
+}

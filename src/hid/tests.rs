@@ -1,0 +1,214 @@
+//! The reports byte by byte. That no bytes are mistaken for another report is checked in `proofs/`.
+
+extern crate std;
+
+use super::*;
+use crate::servo::{Command, Force};
+
+/// The descriptor in hexadecimal, as a device's firmware has it.
+const DESCRIPTOR_TEXT: &str = "06 00 FF 09 01 A1 01 85 01 09 10 09 11 16 01 80 26 FF 7F 75 10 95 02 81 02 \
+    09 12 09 13 15 00 26 FF 00 75 08 95 02 81 02 09 14 09 15 15 00 27 FF FF 00 00 75 10 95 02 81 02 85 02 \
+    09 20 09 21 16 01 80 26 FF 7F 75 10 95 02 91 02 09 22 15 00 27 FF FF 00 00 75 10 95 01 91 02 09 23 15 \
+    00 26 FF 00 75 08 95 01 91 02 85 03 09 30 15 00 27 FF FF 00 00 75 10 95 08 B1 03 85 04 09 40 15 00 26 \
+    FF 00 75 08 95 01 B1 02 C0";
+
+// Verifies: HID-001.
+#[test]
+fn the_descriptor_is_that_of_the_vendor_profile() {
+    let bytes = DESCRIPTOR_TEXT
+        .split_whitespace()
+        .map(|text| u8::from_str_radix(text, 16).unwrap());
+    assert!(bytes.eq(DESCRIPTOR));
+}
+
+// Verifies: HID-002, HID-007.
+#[test]
+fn a_position_report_has_its_bytes_in_order() {
+    let report = PositionReport {
+        lateral: 0x0102,
+        normal: -2,
+        buttons: 0x05,
+        status: 0x06,
+        sequence: 0x0708,
+        force_sequence: 0x090A,
+    };
+    let bytes = [
+        1, 0x02, 0x01, 0xFE, 0xFF, 0x05, 0x06, 0x08, 0x07, 0x0A, 0x09,
+    ];
+    assert_eq!(report.encode(), bytes);
+    assert_eq!(PositionReport::decode(&bytes), Ok(report));
+}
+
+// Verifies: HID-003, HID-007.
+#[test]
+fn a_force_report_has_its_bytes_in_order() {
+    let report = ForceReport {
+        lateral: -32767,
+        normal: 0x0304,
+        sequence: 0x0506,
+        flags: 7,
+    };
+    let bytes = [2, 0x01, 0x80, 0x04, 0x03, 0x06, 0x05, 7];
+    assert_eq!(report.encode(), bytes);
+    assert_eq!(ForceReport::decode(&bytes), Ok(report));
+}
+
+fn capabilities() -> Capabilities {
+    Capabilities {
+        version: 1,
+        position_unit_nm: 1000,
+        force_unit_un: 500,
+        largest_force_mn: 8000,
+        period_us: 1000,
+        watchdog_ms: 15,
+        damping_mn_s_per_m: 600,
+        friction_mn: 140,
+    }
+}
+
+// Verifies: HID-004, HID-007.
+#[test]
+fn the_capabilities_have_their_bytes_in_order() {
+    let bytes = [
+        3, 1, 0, 0xE8, 0x03, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0,
+    ];
+    assert_eq!(capabilities().encode(), bytes);
+    assert_eq!(Capabilities::decode(&bytes), Ok(capabilities()));
+}
+
+// Verifies: HID-005, HID-006.
+#[test]
+fn control_has_three_values() {
+    for (value, control) in [
+        (0, Control::Stop),
+        (1, Control::Enable),
+        (2, Control::ClearFault),
+    ] {
+        assert_eq!(control.encode(), [4, value]);
+        assert_eq!(Control::decode(&[4, value]), Ok(control));
+    }
+    assert_eq!(
+        Control::decode(&[4, 3]),
+        Err(InvalidReport::Value { found: 3 })
+    );
+}
+
+// Verifies: HID-006.
+#[test]
+fn another_length_or_number_is_refused() {
+    let good = capabilities().encode();
+    let length = |found| {
+        Err(InvalidReport::Length {
+            found,
+            expected: 17,
+        })
+    };
+    assert_eq!(Capabilities::decode(&[]), length(0));
+    assert_eq!(Capabilities::decode(&good[..16]), length(16));
+    assert_eq!(
+        Capabilities::decode(&[[3; 17], [3; 17]].concat()),
+        length(34)
+    );
+    let mut other = good;
+    other[0] = 2;
+    let expected = 3;
+    assert_eq!(
+        Capabilities::decode(&other),
+        Err(InvalidReport::Number { found: 2, expected })
+    );
+}
+
+// Verifies: HID-008.
+#[test]
+fn a_device_without_units_is_refused() {
+    let refused = |change: fn(&mut Capabilities)| {
+        let mut capabilities = capabilities();
+        change(&mut capabilities);
+        Units::new(&capabilities).unwrap_err()
+    };
+    assert_eq!(
+        refused(|c| c.version = 2),
+        InvalidCapabilities::Version { found: 2 }
+    );
+    assert_eq!(
+        refused(|c| c.position_unit_nm = 0),
+        InvalidCapabilities::PositionUnit
+    );
+    assert_eq!(
+        refused(|c| c.force_unit_un = 0),
+        InvalidCapabilities::ForceUnit
+    );
+}
+
+// Verifies: HID-009, HID-010.
+#[test]
+fn counts_are_micrometres_and_half_millinewtons_here() {
+    let units = Units::new(&capabilities()).unwrap();
+    let report = PositionReport {
+        lateral: -12_000,
+        normal: -4_000,
+        buttons: button::DEADMAN,
+        status: 0,
+        sequence: 9,
+        force_sequence: 0,
+    };
+    let sample = units.sample(&report);
+    // The constant 1e-9 and two products are rounded: at most 3 · 2⁻²⁴ of the value.
+    assert!(
+        (sample.depth - 0.004).abs() < 0.004 * 1.8e-7,
+        "{}",
+        sample.depth
+    );
+    assert!(
+        (sample.lateral + 0.012).abs() < 0.012 * 1.8e-7,
+        "{}",
+        sample.lateral
+    );
+    assert_eq!(
+        (sample.sequence, sample.deadman, sample.device_fault),
+        (9, true, false)
+    );
+    for bit in [status::FAULT, status::WATCHDOG] {
+        assert!(
+            units
+                .sample(&PositionReport {
+                    status: bit,
+                    ..report
+                })
+                .device_fault
+        );
+    }
+    let force = Force {
+        lateral: -0.1,
+        normal: 1.5,
+    };
+    let report = units.report(
+        &Command {
+            force,
+            playing: true,
+        },
+        77,
+    );
+    assert_eq!((report.lateral, report.normal), (-200, 3000));
+    assert_eq!((report.sequence, report.flags), (77, ForceReport::PLAY));
+}
+
+// Verifies: HID-010, HID-011.
+#[test]
+fn a_count_is_the_nearest_whole_number_within_its_range() {
+    let cases = [
+        (0.5, 0),
+        (1.5, 2),
+        (-0.5, 0),
+        (-1.5, -2),
+        (2.4999998, 2),
+        (-32766.7, -32767),
+        (32767.4, 32767),
+        (1e9, 32767),
+        (f32::NEG_INFINITY, -32767),
+        (f32::NAN, 0),
+    ];
+    for (value, expected) in cases {
+        assert_eq!(count(value), expected, "{value}");
+    }
+}

@@ -1,0 +1,91 @@
+//! Between the counts of a device and metres, newtons.
+
+use super::{Capabilities, ForceReport, PositionReport, button, status};
+use crate::servo::{Command, Sample};
+
+/// What a count is worth on one device, in the direction in which each number is needed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    metres_per_count: f32,
+    counts_per_newton: f32,
+}
+
+/// A capability without which no number has a meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InvalidCapabilities {
+    /// Another version of the profile than 1.
+    Version {
+        /// The device's.
+        found: u16,
+    },
+    /// A count of a position is 0 nm.
+    PositionUnit,
+    /// A count of a force is 0 µN.
+    ForceUnit,
+}
+
+impl Units {
+    /// The units of a device.
+    ///
+    /// # Errors
+    /// [`InvalidCapabilities`].
+    ///
+    /// Implements: HID-008.
+    pub fn new(capabilities: &Capabilities) -> Result<Units, InvalidCapabilities> {
+        if capabilities.version != 1 {
+            return Err(InvalidCapabilities::Version {
+                found: capabilities.version,
+            });
+        }
+        if capabilities.position_unit_nm == 0 {
+            return Err(InvalidCapabilities::PositionUnit);
+        }
+        if capabilities.force_unit_un == 0 {
+            return Err(InvalidCapabilities::ForceUnit);
+        }
+        Ok(Units {
+            metres_per_count: f32::from(capabilities.position_unit_nm) * 1e-9,
+            counts_per_newton: 1e6 / f32::from(capabilities.force_unit_un),
+        })
+    }
+
+    /// What a position report says, in metres: the depth is the normal position turned over.
+    ///
+    /// Implements: HID-009.
+    pub fn sample(&self, report: &PositionReport) -> Sample {
+        Sample {
+            sequence: report.sequence,
+            deadman: report.buttons & button::DEADMAN != 0,
+            device_fault: report.status & (status::FAULT | status::WATCHDOG) != 0,
+            depth: -f32::from(report.normal) * self.metres_per_count,
+            lateral: f32::from(report.lateral) * self.metres_per_count,
+        }
+    }
+
+    /// The report that plays a command.
+    ///
+    /// Implements: HID-010.
+    pub fn report(&self, command: &Command, sequence: u16) -> ForceReport {
+        ForceReport {
+            lateral: count(command.force.lateral * self.counts_per_newton),
+            normal: count(command.force.normal * self.counts_per_newton),
+            sequence,
+            flags: ForceReport::PLAY,
+        }
+    }
+}
+
+/// The whole number nearest to `value`, halves to the even one, within ±32767; a NaN gives 0.
+///
+/// The sum with 1.5 · 2²³ has its last bit at 1, so that adding rounds, and the low bits of the sum
+/// are the whole number in two's complement: no conversion from floating point is needed, whose
+/// edge cases checkers model differently.
+///
+/// Implements: HID-011, SRV-061.
+#[inline]
+pub fn count(value: f32) -> i16 {
+    const ROUND: f32 = 12_582_912.0;
+    let limited = crate::servo::limit(value, 32767.0);
+    let [low, high, ..] = (limited + ROUND).to_bits().to_le_bytes();
+    i16::from_le_bytes([low, high])
+}

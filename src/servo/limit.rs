@@ -1,0 +1,122 @@
+//! The largest force, and how fast it may change.
+
+/// No limit may allow a larger force, N (SRV-022).
+pub const FORCE_CEILING: f32 = 20.0;
+
+/// Smallest change of the force that a limit may allow in one cycle, N (SRV-022).
+pub const MIN_SLEW: f32 = 1e-4;
+
+/// A force at its limit is released in this many cycles, and one more for rounding (SRV-031).
+pub const RELEASE_CYCLES: u16 = 16;
+
+/// What the commands must keep to, component by component.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    force: f32,
+    slew: f32,
+    release: f32,
+    watchdog: u16,
+}
+
+/// Which limit is out of its range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InvalidLimits {
+    /// The force is not above 0 and at most [`FORCE_CEILING`].
+    Force,
+    /// The slew is not at least [`MIN_SLEW`] and at most the force.
+    Slew,
+    /// The release is below the slew, or takes longer than [`RELEASE_CYCLES`], or is not finite.
+    Release,
+    /// The watchdog is not 1 to 100 cycles.
+    Watchdog,
+}
+
+impl Limits {
+    /// Limits of `force` (N), of its change in one cycle while it is played (`slew`, N) and while it
+    /// is released (`release`, N), and of the run of cycles without a fresh sample (`watchdog`).
+    ///
+    /// # Errors
+    /// [`InvalidLimits`].
+    ///
+    /// Implements: SRV-022.
+    pub fn new(
+        force: f32,
+        slew: f32,
+        release: f32,
+        watchdog: u16,
+    ) -> Result<Limits, InvalidLimits> {
+        // Written so that NaN is refused.
+        if !(force > 0.0 && force <= FORCE_CEILING) {
+            return Err(InvalidLimits::Force);
+        }
+        if !(slew >= MIN_SLEW && slew <= force) {
+            return Err(InvalidLimits::Slew);
+        }
+        let quickest = f32::from(RELEASE_CYCLES) * release;
+        if !(release >= slew && quickest >= force && release.is_finite()) {
+            return Err(InvalidLimits::Release);
+        }
+        if !(1..=100).contains(&watchdog) {
+            return Err(InvalidLimits::Watchdog);
+        }
+        Ok(Limits {
+            force,
+            slew,
+            release,
+            watchdog,
+        })
+    }
+
+    /// Largest magnitude of a component of the force, N.
+    pub fn force(&self) -> f32 {
+        self.force
+    }
+
+    /// Largest change of a component in one cycle while the force is played, N.
+    pub fn slew(&self) -> f32 {
+        self.slew
+    }
+
+    /// Largest change of a component in one cycle while the force is released, N.
+    pub fn release(&self) -> f32 {
+        self.release
+    }
+
+    /// Longest run of cycles without a fresh sample that is no fault.
+    pub fn watchdog(&self) -> u16 {
+        self.watchdog
+    }
+}
+
+/// `value` within ±`largest`; a NaN gives 0.
+///
+/// Implements: SRV-020.
+#[inline]
+pub fn limit(value: f32, largest: f32) -> f32 {
+    let value = if value.is_nan() { 0.0 } else { value };
+    between(value, -largest, largest)
+}
+
+/// From `last` towards `target` by at most `change`: within [last − change, last + change] as f32
+/// computes them, and never beyond the target. All three finite, `change` ≥ 0.
+///
+/// Implements: SRV-021.
+#[inline]
+pub fn approach(last: f32, target: f32, change: f32) -> f32 {
+    between(target, last - change, last + change)
+}
+
+/// The number nearest to `value` from `low` to `high`, none of them NaN.
+///
+/// Comparisons instead of `f32::max` and `f32::min`, which leave the sign of a zero to the platform,
+/// and instead of `f32::clamp`, which may panic.
+#[inline]
+pub(super) fn between(value: f32, low: f32, high: f32) -> f32 {
+    if value < low {
+        low
+    } else if value > high {
+        high
+    } else {
+        value
+    }
+}

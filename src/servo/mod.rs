@@ -1,0 +1,31 @@
+//! The servo kernel: from a force table to a force command, once a millisecond (paper §4;
+//! `spec/servo.md`).
+//!
+//! | file | content |
+//! |---|---|
+//! | `axis.rs` | knots; the cell of a position and the fraction in it |
+//! | `table.rs` | forces at the nodes; the paper's linear rule, in bounds and out |
+//! | `limit.rs` | the largest force, and how fast it may change |
+//! | `state.rs` | what a cycle is given, remembers and commands |
+//! | `step.rs` | one cycle |
+//!
+//! All of it is f32 without division, without allocation, without a conversion from floating point
+//! to integer and without a path to a panic; `proofs/` holds the evidence.
+//!
+//! Implements: SRV-001, SRV-061.
+
+mod axis;
+mod limit;
+mod state;
+mod step;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use axis::{
+    Axis, Cell, EXTRAPOLATION_CELLS, InvalidAxis, MAX_KNOTS, MIN_WIDTH, POSITION_LIMIT,
+};
+pub use limit::{FORCE_CEILING, InvalidLimits, Limits, MIN_SLEW, RELEASE_CYCLES, approach, limit};
+pub use state::{Command, Fault, Force, Input, Mode, Request, Sample, State};
+pub use step::step;
+pub use table::{InvalidTable, TABLE_FORCE_LIMIT, Table, blend};

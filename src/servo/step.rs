@@ -1,0 +1,118 @@
+//! One cycle of the servo loop.
+
+use super::{Command, Fault, Force, Input, Limits, Mode, Request, Sample, State, Table};
+use super::{approach, limit};
+
+/// A sample is fresh if it is at most this far ahead of the last one: half of all numbers, so that
+/// forward and back can be told apart.
+const MOST_AHEAD: u16 = 32767;
+
+/// What stands in for a sample that did not come, so that the time is the same with and without.
+const NO_SAMPLE: Sample = Sample {
+    sequence: 0,
+    deadman: false,
+    device_fault: false,
+    depth: 0.0,
+    lateral: 0.0,
+};
+
+/// One cycle: from what was (`state`) and what came (`input`) to the next state and the command, with
+/// the force of `table` within `limits`.
+///
+/// Total and bounded for every bit pattern of `state` and `input`.
+///
+/// Implements: SRV-001, SRV-020, SRV-021, SRV-030, SRV-031, SRV-034, SRV-060.
+#[inline]
+pub fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (State, Command) {
+    let sample = input.sample.unwrap_or(NO_SAMPLE);
+    let came = input.sample.is_some();
+    let fresh = came && is_fresh(state.sequence, sample.sequence);
+    let missed = if fresh {
+        0
+    } else {
+        state.missed.saturating_add(1)
+    };
+    let sound = is_sound(&state, limits);
+    let last = if sound { state.force } else { Force::ZERO };
+
+    let cause = fault(&sample, sound, state.mode, missed > limits.watchdog());
+    let may_arm = fresh && !sample.deadman && last == Force::ZERO && !state.arming;
+    let mode = next_mode(state.mode, cause, input.request, may_arm);
+
+    let playing = mode == Mode::Armed && fresh && sample.deadman;
+    let let_go = came && !sample.deadman;
+    let change = if mode == Mode::Armed && !let_go {
+        limits.slew()
+    } else {
+        limits.release()
+    };
+    let force = table.force(sample.depth, sample.lateral);
+    let target = if playing { force } else { Force::ZERO };
+    let component = |last, target| {
+        let target = limit(target, limits.force());
+        limit(approach(last, target, change), limits.force())
+    };
+    let force = Force {
+        lateral: component(last.lateral, target.lateral),
+        normal: component(last.normal, target.normal),
+    };
+    let taken_over = came && (fresh || mode != Mode::Armed);
+    let next = State {
+        mode,
+        force,
+        sequence: if taken_over {
+            Some(sample.sequence)
+        } else {
+            state.sequence
+        },
+        missed,
+        arming: input.request == Request::Arm,
+    };
+    (next, Command { force, playing })
+}
+
+/// Whether the sample is ahead of the last one.
+///
+/// Implements: SRV-040.
+#[inline]
+fn is_fresh(last: Option<u16>, sequence: u16) -> bool {
+    last.is_some_and(|last| (1..=MOST_AHEAD).contains(&sequence.wrapping_sub(last)))
+}
+
+/// Whether a step can have left this state: its force is within the limits.
+#[inline]
+fn is_sound(state: &State, limits: &Limits) -> bool {
+    let allowed = -limits.force()..=limits.force();
+    allowed.contains(&state.force.lateral) && allowed.contains(&state.force.normal)
+}
+
+/// What is wrong in this cycle, the gravest first.
+///
+/// Implements: SRV-035, SRV-042.
+#[inline]
+fn fault(sample: &Sample, sound: bool, mode: Mode, late: bool) -> Option<Fault> {
+    if !sound {
+        Some(Fault::State)
+    } else if !(sample.depth.is_finite() && sample.lateral.is_finite()) {
+        Some(Fault::NotFinite)
+    } else if sample.device_fault {
+        Some(Fault::Device)
+    } else if late && mode == Mode::Armed {
+        Some(Fault::Watchdog)
+    } else {
+        None
+    }
+}
+
+/// The mode after this cycle: a fault before a request, and the first fault until it is armed again.
+///
+/// Implements: SRV-032, SRV-033.
+#[inline]
+fn next_mode(mode: Mode, cause: Option<Fault>, request: Request, may_arm: bool) -> Mode {
+    match (mode, cause, request) {
+        (Mode::Disarmed | Mode::Armed, Some(cause), _) => Mode::Faulted(cause),
+        (Mode::Armed, None, Request::Disarm) => Mode::Disarmed,
+        (Mode::Disarmed | Mode::Faulted(_), None, Request::Arm) if may_arm => Mode::Armed,
+        (mode, _, _) => mode,
+    }
+}

@@ -1,0 +1,391 @@
+//! The kernel on tables small enough to compute by hand. Its properties over all inputs are checked
+//! in `proofs/`.
+
+extern crate std;
+
+use std::vec;
+use std::vec::Vec;
+
+use super::*;
+
+/// Two cells of different widths, and their reciprocals.
+const DEPTHS: ([f32; 3], [f32; 2]) = ([0.0, 0.25, 0.75], [4.0, 2.0]);
+const LATERALS: ([f32; 3], [f32; 2]) = ([-0.5, 0.0, 0.25], [2.0, 4.0]);
+
+fn force(lateral: f32, normal: f32) -> Force {
+    Force { lateral, normal }
+}
+
+/// Forces that are bilinear over the whole table, all exact in f32.
+fn bilinear(depth: f32, lateral: f32) -> Force {
+    force(8.0 * lateral * depth, 4.0 * depth + 2.0 * lateral * depth)
+}
+
+fn with_table<R>(then: impl FnOnce(&Table) -> R) -> R {
+    let forces: Vec<Force> = DEPTHS
+        .0
+        .iter()
+        .flat_map(|&d| LATERALS.0.map(|x| bilinear(d, x)))
+        .collect();
+    let depths = Axis::new(&DEPTHS.0, &DEPTHS.1).unwrap();
+    let laterals = Axis::new(&LATERALS.0, &LATERALS.1).unwrap();
+    then(&Table::new(depths, laterals, &forces).unwrap())
+}
+
+// Verifies: SRV-005, SRV-006.
+#[test]
+fn a_position_lies_in_the_cell_that_encloses_it() {
+    let axis = Axis::new(&LATERALS.0, &LATERALS.1).unwrap();
+    let cell = |index, fraction| Cell { index, fraction };
+    assert_eq!(axis.locate(-0.5), cell(0, 0.0));
+    assert_eq!(axis.locate(-0.125), cell(0, 0.75));
+    assert_eq!(axis.locate(0.0), cell(1, 0.0));
+    assert_eq!(axis.locate(0.25), cell(1, 1.0));
+}
+
+// Verifies: SRV-004, SRV-012.
+#[test]
+fn the_fraction_saturates_one_cell_beyond_the_border() {
+    let axis = Axis::new(&LATERALS.0, &LATERALS.1).unwrap();
+    assert_eq!(axis.locate(-0.75).fraction, -0.5);
+    assert_eq!(axis.locate(-1.0).fraction, -1.0);
+    assert_eq!(axis.locate(-1.5).fraction, -1.0);
+    assert_eq!(axis.locate(0.375).fraction, 1.5);
+    assert_eq!(axis.locate(f32::INFINITY).fraction, 2.0);
+    assert_eq!(axis.locate(f32::NEG_INFINITY).fraction, -1.0);
+}
+
+// Verifies: SRV-010, SRV-011, SRV-012.
+#[test]
+fn a_bilinear_force_is_reproduced_in_the_table_and_one_cell_beyond() {
+    with_table(|table| {
+        for depth in [0.0, 0.125, 0.25, 0.5, 0.75, 1.0, 1.25] {
+            for lateral in [-1.0, -0.75, -0.5, -0.25, 0.0, 0.125, 0.25, 0.5] {
+                assert_eq!(
+                    table.force(depth, lateral),
+                    bilinear(depth, lateral),
+                    "{depth} {lateral}"
+                );
+            }
+        }
+        assert_eq!(table.force(9.0, 9.0), bilinear(1.25, 0.5));
+    });
+}
+
+// Verifies: SRV-014.
+#[test]
+fn there_is_no_force_above_the_surface() {
+    with_table(|table| {
+        assert_eq!(table.force(-1e-6, 0.0), Force::ZERO);
+        assert_eq!(table.force(-0.1, 0.25), Force::ZERO);
+    });
+}
+
+// Verifies: SRV-010.
+#[test]
+fn a_blend_of_equals_is_the_same_to_the_bit() {
+    // (1 − t) a + t a is 0.100000001490116… or its neighbour, by rounding.
+    for t in [0.1, 0.2, 0.3, 0.7, 0.9] {
+        assert_eq!(blend(0.1, 0.1, t).to_bits(), 0.1f32.to_bits());
+    }
+    assert_eq!(blend(1.0, 3.0, 2.0), 5.0);
+}
+
+// Verifies: SRV-002.
+#[test]
+fn an_axis_is_refused_with_its_place() {
+    let new = |knots: &[f32], reciprocals: &[f32]| Axis::new(knots, reciprocals).unwrap_err();
+    assert_eq!(new(&[0.0], &[]), InvalidAxis::Knots { found: 1 });
+    let many = vec![0.0; MAX_KNOTS + 1];
+    assert_eq!(new(&many, &many[1..]), InvalidAxis::Knots { found: 1025 });
+    assert_eq!(
+        new(&[0.0, 1.0], &[]),
+        InvalidAxis::Reciprocals {
+            found: 0,
+            expected: 1
+        }
+    );
+    assert_eq!(
+        new(&[0.0, 1.5], &[1.0]),
+        InvalidAxis::Position {
+            index: 1,
+            value: 1.5
+        }
+    );
+    assert!(matches!(
+        new(&[f32::NAN, 1.0], &[1.0]),
+        InvalidAxis::Position { index: 0, .. }
+    ));
+    assert!(matches!(
+        new(&[0.0, 0.5, 0.5], &[2.0, 1.0]),
+        InvalidAxis::Width { index: 2, .. }
+    ));
+    assert_eq!(
+        new(&[0.0, 0.5], &[2.5]),
+        InvalidAxis::Reciprocal {
+            index: 0,
+            value: 2.5
+        }
+    );
+    assert!(matches!(
+        new(&[0.0, 0.5], &[f32::NAN]),
+        InvalidAxis::Reciprocal { .. }
+    ));
+}
+
+// Verifies: SRV-003.
+#[test]
+fn a_table_is_refused_with_its_place() {
+    let axis = Axis::new(&[0.0, 0.5], &[2.0]).unwrap();
+    let new = |forces: &[Force]| Table::new(axis, axis, forces).unwrap_err();
+    assert_eq!(
+        new(&[Force::ZERO; 3]),
+        InvalidTable::Shape {
+            found: 3,
+            expected: 4
+        }
+    );
+    for wrong in [force(100.1, 0.0), force(0.0, -f32::INFINITY)] {
+        let mut forces = [Force::ZERO; 4];
+        forces[2] = wrong;
+        assert_eq!(
+            new(&forces),
+            InvalidTable::Force {
+                index: 2,
+                value: wrong
+            }
+        );
+    }
+    assert!(matches!(
+        new(&[force(0.0, f32::NAN); 4]),
+        InvalidTable::Force { index: 0, .. }
+    ));
+}
+
+// Verifies: SRV-022.
+#[test]
+fn limits_are_refused_by_name() {
+    let ok = Limits::new(2.0, 0.01, 0.125, 5);
+    assert!(ok.is_ok());
+    for force in [0.0, -1.0, 20.5, f32::NAN] {
+        assert_eq!(Limits::new(force, 0.01, 0.2, 5), Err(InvalidLimits::Force));
+    }
+    for slew in [0.0, 9e-5, 2.5, f32::NAN] {
+        assert_eq!(Limits::new(2.0, slew, 2.5, 5), Err(InvalidLimits::Slew));
+    }
+    for release in [0.005, 0.12, f32::INFINITY, f32::NAN] {
+        assert_eq!(
+            Limits::new(2.0, 0.01, release, 5),
+            Err(InvalidLimits::Release)
+        );
+    }
+    for watchdog in [0, 101] {
+        assert_eq!(
+            Limits::new(2.0, 0.01, 0.2, watchdog),
+            Err(InvalidLimits::Watchdog)
+        );
+    }
+}
+
+/// A person at the device: feeds the kernel sample after sample.
+struct Session {
+    state: State,
+    sequence: u16,
+    limits: Limits,
+}
+
+impl Session {
+    fn new() -> Session {
+        let limits = Limits::new(2.0, 0.25, 0.5, 3).unwrap();
+        Session {
+            state: State::default(),
+            sequence: 100,
+            limits,
+        }
+    }
+
+    /// A fresh sample at the depth 0.5 m, where the force is (0, 2) N.
+    fn sample(&mut self, deadman: bool) -> Sample {
+        self.sequence = self.sequence.wrapping_add(1);
+        let sequence = self.sequence;
+        Sample {
+            sequence,
+            deadman,
+            device_fault: false,
+            depth: 0.5,
+            lateral: 0.0,
+        }
+    }
+
+    fn cycle(&mut self, sample: Option<Sample>, request: Request) -> Command {
+        let input = Input { sample, request };
+        let (state, command) = with_table(|table| step(table, &self.limits, self.state, input));
+        assert_eq!(state.force, command.force);
+        self.state = state;
+        command
+    }
+
+    fn hold(&mut self, deadman: bool) -> Command {
+        let sample = self.sample(deadman);
+        self.cycle(Some(sample), Request::None)
+    }
+
+    fn arm(&mut self) {
+        self.hold(false);
+        let sample = self.sample(false);
+        self.cycle(Some(sample), Request::Arm);
+        assert_eq!(self.state.mode, Mode::Armed);
+    }
+
+    /// Armed, deadman held, at the table's force.
+    fn playing() -> Session {
+        let mut session = Session::new();
+        session.arm();
+        for _ in 0..8 {
+            session.hold(true);
+        }
+        assert_eq!(session.state.force, force(0.0, 2.0));
+        session
+    }
+}
+
+// Verifies: SRV-021, SRV-030, SRV-034.
+#[test]
+fn the_force_rises_by_the_slew_limit_and_falls_by_the_release_limit() {
+    let mut session = Session::new();
+    session.arm();
+    let rise: Vec<f32> = (0..9).map(|_| session.hold(true).force.normal).collect();
+    assert_eq!(rise, [0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.0]);
+    let fall: Vec<f32> = (0..5).map(|_| session.hold(false).force.normal).collect();
+    assert_eq!(fall, [1.5, 1.0, 0.5, 0.0, 0.0]);
+    assert_eq!(session.state.mode, Mode::Armed);
+}
+
+// Verifies: SRV-030, SRV-033.
+#[test]
+fn arming_needs_a_fresh_sample_without_deadman_and_a_new_request() {
+    let mut session = Session::new();
+    // The first sample has nothing to be ahead of.
+    let sample = session.sample(false);
+    session.cycle(Some(sample), Request::Arm);
+    assert_eq!(session.state.mode, Mode::Disarmed);
+    // The request sticks.
+    let sample = session.sample(false);
+    session.cycle(Some(sample), Request::Arm);
+    assert_eq!(session.state.mode, Mode::Disarmed);
+    // Deadman held.
+    session.hold(false);
+    let sample = session.sample(true);
+    session.cycle(Some(sample), Request::Arm);
+    assert_eq!(session.state.mode, Mode::Disarmed);
+    assert!(!session.hold(true).playing);
+    // No sample.
+    session.cycle(None, Request::Arm);
+    assert_eq!(session.state.mode, Mode::Disarmed);
+    session.arm();
+}
+
+// Verifies: SRV-033.
+#[test]
+fn arming_waits_until_the_force_has_come_to_zero() {
+    let mut session = Session::playing();
+    let sample = session.sample(false);
+    session.cycle(Some(sample), Request::Disarm);
+    assert_eq!(session.state.mode, Mode::Disarmed);
+    let sample = session.sample(false);
+    session.cycle(Some(sample), Request::Arm);
+    assert_eq!(session.state.mode, Mode::Disarmed);
+    session.hold(false);
+    session.hold(false);
+    assert_eq!(session.state.force, Force::ZERO);
+    session.arm();
+}
+
+// Verifies: SRV-031, SRV-032, SRV-035.
+#[test]
+fn a_fault_latches_with_its_first_cause_and_releases_the_force() {
+    let wrong: [(fn(&mut Sample), Fault); 4] = [
+        (|s| s.depth = f32::NAN, Fault::NotFinite),
+        (|s| s.lateral = f32::NEG_INFINITY, Fault::NotFinite),
+        (|s| s.device_fault = true, Fault::Device),
+        (
+            |s| (s.device_fault, s.depth) = (true, f32::INFINITY),
+            Fault::NotFinite,
+        ),
+    ];
+    for (spoil, cause) in wrong {
+        let mut session = Session::playing();
+        let mut sample = session.sample(true);
+        spoil(&mut sample);
+        let command = session.cycle(Some(sample), Request::None);
+        assert_eq!((command.playing, command.force), (false, force(0.0, 1.5)));
+        for _ in 0..3 {
+            let mut sample = session.sample(true);
+            sample.device_fault = cause != Fault::Device;
+            session.cycle(Some(sample), Request::None);
+        }
+        assert_eq!(session.state.force, Force::ZERO);
+        assert_eq!(session.state.mode, Mode::Faulted(cause));
+        session.arm();
+    }
+}
+
+// Verifies: SRV-035.
+#[test]
+fn a_state_that_no_step_left_is_a_fault_without_force() {
+    for wrong in [f32::NAN, f32::INFINITY, 2.5] {
+        let mut session = Session::playing();
+        session.state.force.lateral = wrong;
+        let command = session.hold(true);
+        assert_eq!(command.force, Force::ZERO);
+        assert_eq!(session.state.mode, Mode::Faulted(Fault::State));
+    }
+}
+
+// Verifies: SRV-031, SRV-042.
+#[test]
+fn cycles_without_a_sample_lower_the_force_and_trip_the_watchdog() {
+    let mut session = Session::playing();
+    let normal: Vec<f32> = (0..6)
+        .map(|_| session.cycle(None, Request::None).force.normal)
+        .collect();
+    assert_eq!(normal, [1.75, 1.5, 1.25, 0.75, 0.25, 0.0]);
+    assert_eq!(session.state.mode, Mode::Faulted(Fault::Watchdog));
+    session.arm();
+}
+
+// Verifies: SRV-040, SRV-041.
+#[test]
+fn samples_that_repeat_or_go_back_are_stale_until_the_watchdog_trips() {
+    for back in [0, 1, 5000, 32768] {
+        let mut session = Session::playing();
+        for missed in 1..=4 {
+            let mut sample = session.sample(true);
+            // In order among themselves, but none ahead of the last fresh one.
+            sample.sequence = sample.sequence.wrapping_sub(missed).wrapping_sub(back);
+            assert!(
+                !session.cycle(Some(sample), Request::None).playing,
+                "{back}"
+            );
+        }
+        assert_eq!(session.state.mode, Mode::Faulted(Fault::Watchdog));
+    }
+    let mut session = Session::playing();
+    session.sequence = session.sequence.wrapping_add(32766);
+    assert!(session.hold(true).playing);
+}
+
+// Verifies: SRV-041.
+#[test]
+fn a_device_that_restarts_its_count_can_be_armed_again() {
+    let mut session = Session::playing();
+    session.sequence = 0;
+    for _ in 0..4 {
+        session.hold(true);
+    }
+    assert_eq!(session.state.mode, Mode::Faulted(Fault::Watchdog));
+    for _ in 0..4 {
+        session.hold(false);
+    }
+    session.arm();
+}
