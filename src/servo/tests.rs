@@ -304,7 +304,8 @@ fn arming_waits_until_the_force_has_come_to_zero() {
 // Verifies: SRV-031, SRV-032, SRV-035.
 #[test]
 fn a_fault_latches_with_its_first_cause_and_releases_the_force() {
-    let wrong: [(fn(&mut Sample), Fault); 4] = [
+    type Defect = fn(&mut Sample);
+    let wrong: [(Defect, Fault); 4] = [
         (|s| s.depth = f32::NAN, Fault::NotFinite),
         (|s| s.lateral = f32::NEG_INFINITY, Fault::NotFinite),
         (|s| s.device_fault = true, Fault::Device),
