@@ -45,6 +45,30 @@ pub enum InvalidForceMap {
         /// The depth, m.
         value: f64,
     },
+    /// A pose asked for is no place.
+    #[error("{key} = {value}, expected a finite number of metres")]
+    PoseNotFinite {
+        /// Which coordinate.
+        key: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// An axis with one entry has no cell to interpolate in.
+    #[error("{key} has a single entry, expected at least two to interpolate between")]
+    SinglePosition {
+        /// The axis.
+        key: &'static str,
+    },
+    /// A force far outside the table that no f64 can hold.
+    #[error(
+        "the force at the depth {depth} m, {lateral} m lateral, is beyond the range of numbers"
+    )]
+    ForceTooLarge {
+        /// The depth, m.
+        depth: f64,
+        /// The lateral position, m.
+        lateral: f64,
+    },
     /// A matrix does not fit the axes.
     #[error(
         "{key} has {} rows and {} columns, expected {} rows (one a depth) and {} columns (one a lateral position)",

@@ -6,6 +6,7 @@
 //! | `mod.rs` | the map: forces and their source |
 //! | `table.rs` | axes and matrices; symmetry, difference, one depth |
 //! | `sweep.rs` | the forces between the poses, along a sweep |
+//! | `interpolation.rs` | the paper's rule between and beyond the poses |
 //! | `certificate.rs` | the quality of a computed map |
 //! | `error.rs` | what can be wrong |
 //! | `file.rs`, `json.rs`, `csv.rs` | files |
@@ -14,6 +15,7 @@ mod certificate;
 mod csv;
 mod error;
 mod file;
+mod interpolation;
 mod json;
 mod sweep;
 mod table;
@@ -23,6 +25,7 @@ mod tests;
 pub use certificate::{Certificate, SmallestDet};
 pub use error::InvalidForceMap;
 pub use file::{ForceMapFileError, ForceMapFileProblem};
+pub use interpolation::ProbeForce;
 pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use sweep::Sweep;
 pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};

@@ -8,14 +8,19 @@
 //! | `limit.rs` | the largest force, and how fast it may change |
 //! | `state.rs` | what a cycle is given, remembers and commands |
 //! | `step.rs` | one cycle |
+//! | `passivity.rs` | the steepest slope of a table, and what a device can play |
+//! | `load.rs` | from a force map to a table |
 //!
-//! All of it is f32 without division, without allocation, without a conversion from floating point
+//! What runs in a cycle is f32 without division, without allocation, without a conversion from floating point
 //! to integer and without a path to a panic; `proofs/` holds the evidence.
 //!
 //! Implements: SRV-001, SRV-061.
 
 mod axis;
 mod limit;
+#[cfg(feature = "std")]
+mod load;
+mod passivity;
 mod state;
 mod step;
 mod table;
@@ -26,6 +31,9 @@ pub use axis::{
     Axis, Cell, EXTRAPOLATION_CELLS, InvalidAxis, MAX_KNOTS, MIN_WIDTH, POSITION_LIMIT,
 };
 pub use limit::{FORCE_CEILING, InvalidLimits, Limits, MIN_SLEW, RELEASE_CYCLES, approach, limit};
+#[cfg(feature = "std")]
+pub use load::{LoadError, LoadedTable, RoundingError, SURFACE_FORCE};
+pub use passivity::{Damping, stiffness};
 pub use state::{Command, Fault, Force, Input, Mode, Request, Sample, State};
 pub use step::step;
 pub use table::{InvalidTable, TABLE_FORCE_LIMIT, Table, blend};

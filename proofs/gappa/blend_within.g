@@ -1,0 +1,24 @@
+# (1 - t) a + t b (src/servo/table.rs) within a cell, each operation rounded to f32, against the real
+# value at the real fraction, for forces up to 1.
+# SRV-015; spec/interpolation.md, bound 2.
+
+@rounded = float<ieee_32, ne>;
+
+a = rounded(a_);
+b = rounded(b_);
+t = rounded(t_);
+
+rest rounded= 1 - t;
+first rounded= rest * a;
+second rounded= t * b;
+value rounded= first + second;
+
+exact = (1 - fraction) * a + fraction * b;
+same_fraction = (1 - t) * a + t * b;
+
+{
+  |a| <= 1 /\ |b| <= 1 /\ t in [0, 1] /\ |t - fraction| <= 0x4.1p-24
+  -> |value - exact| <= 0xA.Ap-24
+}
+
+value - exact -> (value - same_fraction) + (t - fraction) * (b - a);

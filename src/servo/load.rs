@@ -1,0 +1,316 @@
+//! From a force map in f64 to a table of the kernel in f32.
+
+use super::passivity::{Damping, stiffness};
+use super::{Axis, Force, InvalidAxis, InvalidTable, MAX_KNOTS, MIN_WIDTH, POSITION_LIMIT};
+use super::{TABLE_FORCE_LIMIT, Table};
+use crate::force_map::{ForceTable, Matrix};
+
+/// Largest force at the surface, N, that counts as none: the noise of the paper's sensor (Table 2).
+pub const SURFACE_FORCE: f64 = 0.02;
+
+/// The largest differences between a map and its table.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RoundingError {
+    /// Of a position, m.
+    pub position_m: f64,
+    /// Of a force, N.
+    pub force_n: f64,
+}
+
+/// A table of the kernel with its storage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadedTable {
+    depths: Vec<f32>,
+    laterals: Vec<f32>,
+    reciprocal_heights: Vec<f32>,
+    reciprocal_widths: Vec<f32>,
+    forces: Vec<Force>,
+    rounding: RoundingError,
+}
+
+/// Why a map can not be played. Rows and columns are the map's, from 0.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LoadError {
+    /// An axis has too few or too many entries.
+    #[error("{key} has {found} entries for the servo, expected 2 to {MAX_KNOTS}")]
+    Knots {
+        /// The axis.
+        key: &'static str,
+        /// How many there are, with the surface in front.
+        found: usize,
+    },
+    /// A position is too far out.
+    #[error("{key}[{index}] = {value}, expected at most ±{POSITION_LIMIT} m for the servo")]
+    Position {
+        /// The axis.
+        key: &'static str,
+        /// Which entry.
+        index: usize,
+        /// Its value, m.
+        value: f64,
+    },
+    /// Two positions are too close.
+    #[error(
+        "{key}[{index}] = {value}, expected at least {MIN_WIDTH:e} m above the one before, {previous}, for the servo"
+    )]
+    Width {
+        /// The axis.
+        key: &'static str,
+        /// Which entry.
+        index: usize,
+        /// The entry before it (the surface, 0, before the first depth), m.
+        previous: f64,
+        /// Its value, m.
+        value: f64,
+    },
+    /// A force is too large.
+    #[error(
+        "{key}[{row}][{column}] = {value}, expected at most ±{TABLE_FORCE_LIMIT} N for the servo"
+    )]
+    Force {
+        /// The matrix.
+        key: &'static str,
+        /// The row.
+        row: usize,
+        /// The column.
+        column: usize,
+        /// Its value, N.
+        value: f64,
+    },
+    /// There is a force where the probe touches nothing.
+    #[error(
+        "{key}[0][{column}] = {value} at depth 0, expected at most ±{SURFACE_FORCE} N, since nothing is touched there"
+    )]
+    SurfaceForce {
+        /// The matrix.
+        key: &'static str,
+        /// The column.
+        column: usize,
+        /// Its value, N.
+        value: f64,
+    },
+    /// The numbers that describe the device are none.
+    #[error(
+        "{0:?}: expected period and resolution above 0, damping and friction at least 0, all finite"
+    )]
+    Damping(Damping),
+    /// The device would not play the table passively.
+    #[error(
+        "the table is up to {stiffness:.1} N/m stiff, and the device is passive up to {stiffest:.1} N/m: scale the forces by {scale:.4}"
+    )]
+    TooStiff {
+        /// The table's stiffness, N/m.
+        stiffness: f64,
+        /// What the device allows, N/m.
+        stiffest: f64,
+        /// The factor on the forces that would fit.
+        scale: f64,
+    },
+    /// The kernel refuses what was loaded: a defect of this program.
+    #[error("the servo refuses the table as loaded ({0}): this is a defect of the program")]
+    Refused(String),
+}
+
+impl From<InvalidAxis> for LoadError {
+    fn from(refusal: InvalidAxis) -> LoadError {
+        LoadError::Refused(format!("{refusal:?}"))
+    }
+}
+
+impl From<InvalidTable> for LoadError {
+    fn from(refusal: InvalidTable) -> LoadError {
+        LoadError::Refused(format!("{refusal:?}"))
+    }
+}
+
+impl LoadedTable {
+    /// The table of a map's forces, each rounded to f32, with the surface in front if the map does
+    /// not begin there.
+    ///
+    /// # Errors
+    /// [`LoadError`].
+    ///
+    /// Implements: SRV-044, SRV-045, SRV-046, SRV-047.
+    pub fn new(map: &ForceTable) -> Result<LoadedTable, LoadError> {
+        check_forces("lateral_force_n", map.lateral_force(), map.depths())?;
+        check_forces("normal_force_n", map.normal_force(), map.depths())?;
+        let mut rounding = RoundingError::default();
+        let surface = map.depths().first().is_some_and(|&first| first > 0.0);
+        let depths = knots("depths_m", surface, map.depths(), &mut rounding)?;
+        let laterals = knots("laterals_m", false, map.laterals(), &mut rounding)?;
+
+        let rows_in_front = if surface { laterals.len() } else { 0 };
+        let mut forces = vec![Force::ZERO; rows_in_front];
+        let normal = map.normal_force().values();
+        for (&lateral, &normal) in map.lateral_force().values().iter().zip(normal) {
+            forces.push(Force {
+                lateral: rounded(lateral, &mut rounding.force_n),
+                normal: rounded(normal, &mut rounding.force_n),
+            });
+        }
+        let loaded = LoadedTable {
+            reciprocal_heights: reciprocals(&depths),
+            reciprocal_widths: reciprocals(&laterals),
+            depths,
+            laterals,
+            forces,
+            rounding,
+        };
+        loaded.table()?;
+        Ok(loaded)
+    }
+
+    /// The table of a map for a device that must play it passively.
+    ///
+    /// # Errors
+    /// [`LoadError`], among them [`LoadError::TooStiff`].
+    ///
+    /// Implements: SRV-051.
+    pub fn passive(map: &ForceTable, damping: &Damping) -> Result<LoadedTable, LoadError> {
+        let loaded = LoadedTable::new(map)?;
+        loaded.check_passive(damping)?;
+        Ok(loaded)
+    }
+
+    /// Like [`LoadedTable::passive`], but a table that is too stiff is scaled down. Also returns the
+    /// factor on its forces, 1 if none was needed.
+    ///
+    /// # Errors
+    /// [`LoadError`]; [`LoadError::TooStiff`] only for a device that no spring suits.
+    ///
+    /// Implements: SRV-051.
+    pub fn scaled_to_be_passive(
+        map: &ForceTable,
+        damping: &Damping,
+    ) -> Result<(LoadedTable, f64), LoadError> {
+        let loaded = LoadedTable::new(map)?;
+        let fit = match loaded.check_passive(damping) {
+            Ok(()) => return Ok((loaded, 1.0)),
+            Err(LoadError::TooStiff { scale, .. }) if scale > 0.0 => scale,
+            Err(other) => return Err(other),
+        };
+        // Rounding the scaled forces may leave a slope a little too steep.
+        let mut margin = 1e-7;
+        loop {
+            let factor = fit * (1.0 - margin);
+            let scaled = loaded.scaled(factor);
+            match scaled.check_passive(damping) {
+                Ok(()) => return Ok((scaled, factor)),
+                Err(too_stiff) if margin > 0.5 => return Err(too_stiff),
+                Err(_) => margin *= 2.0,
+            }
+        }
+    }
+
+    /// The table as the kernel takes it.
+    ///
+    /// # Errors
+    /// [`LoadError::Refused`], which would be a defect of this program.
+    pub fn table(&self) -> Result<Table<'_>, LoadError> {
+        let depths = Axis::new(&self.depths, &self.reciprocal_heights)?;
+        let laterals = Axis::new(&self.laterals, &self.reciprocal_widths)?;
+        Ok(Table::new(depths, laterals, &self.forces)?)
+    }
+
+    /// The largest rounding errors of loading. Scaling is not counted.
+    pub fn rounding(&self) -> RoundingError {
+        self.rounding
+    }
+
+    /// This table with its forces multiplied by `factor`.
+    fn scaled(&self, factor: f64) -> LoadedTable {
+        let product = |force: f32| (f64::from(force) * factor) as f32;
+        let mut scaled = self.clone();
+        for force in &mut scaled.forces {
+            force.lateral = product(force.lateral);
+            force.normal = product(force.normal);
+        }
+        scaled
+    }
+
+    /// Refuses a table that is too stiff for the device.
+    fn check_passive(&self, damping: &Damping) -> Result<(), LoadError> {
+        let stiffest = damping.stiffest().ok_or(LoadError::Damping(*damping))?;
+        let stiffness = stiffness(&self.table()?);
+        if stiffness <= stiffest {
+            return Ok(());
+        }
+        Err(LoadError::TooStiff {
+            stiffness,
+            stiffest,
+            scale: stiffest / stiffness,
+        })
+    }
+}
+
+/// Refuses forces that are too large, or that are there without a touch.
+fn check_forces(key: &'static str, matrix: &Matrix, depths: &[f64]) -> Result<(), LoadError> {
+    let surface = depths.first() == Some(&0.0);
+    for (row, column, value) in matrix.entries() {
+        if value.abs() > f64::from(TABLE_FORCE_LIMIT) {
+            return Err(LoadError::Force {
+                key,
+                row,
+                column,
+                value,
+            });
+        }
+        if surface && row == 0 && value.abs() > SURFACE_FORCE {
+            return Err(LoadError::SurfaceForce { key, column, value });
+        }
+    }
+    Ok(())
+}
+
+/// The knots of an axis in f32, with the surface (0) in front if it is missing.
+fn knots(
+    key: &'static str,
+    surface: bool,
+    axis: &[f64],
+    rounding: &mut RoundingError,
+) -> Result<Vec<f32>, LoadError> {
+    let mut knots = Vec::with_capacity(axis.len() + 1);
+    if surface {
+        knots.push(0.0);
+    }
+    for (index, &value) in axis.iter().enumerate() {
+        if value.abs() > f64::from(POSITION_LIMIT) {
+            return Err(LoadError::Position { key, index, value });
+        }
+        let knot = rounded(value, &mut rounding.position_m);
+        if let Some(&previous) = knots
+            .last()
+            .filter(|&&previous| knot - previous < MIN_WIDTH)
+        {
+            return Err(LoadError::Width {
+                key,
+                index,
+                previous: f64::from(previous),
+                value,
+            });
+        }
+        knots.push(knot);
+    }
+    if !(2..=MAX_KNOTS).contains(&knots.len()) {
+        let found = knots.len();
+        return Err(LoadError::Knots { key, found });
+    }
+    Ok(knots)
+}
+
+/// The reciprocal width of each cell, 1/m.
+fn reciprocals(knots: &[f32]) -> Vec<f32> {
+    let ends = knots.iter().zip(knots.iter().skip(1));
+    ends.map(|(&start, &end)| Axis::reciprocal_width(start, end))
+        .collect()
+}
+
+/// `value` in f32; its error counts towards the largest.
+fn rounded(value: f64, largest: &mut f64) -> f32 {
+    let rounded = value as f32;
+    *largest = largest.max((f64::from(rounded) - value).abs());
+    rounded
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,302 @@
+//! Loading on maps whose rounding and slopes are known.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::servo::EXTRAPOLATION_CELLS;
+
+fn map(depths: &[f64], laterals: &[f64], force: impl Fn(f64, f64) -> [f64; 2]) -> ForceTable {
+    let matrix = |component: usize| {
+        Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
+            force(depths[row], laterals[column])[component]
+        })
+    };
+    ForceTable::new(depths.to_vec(), laterals.to_vec(), matrix(1), matrix(0)).unwrap()
+}
+
+/// A device that plays everything.
+const FREE: Damping = Damping {
+    period_s: 1e-3,
+    damping_n_s_per_m: 1e3,
+    friction_n: 1e3,
+    resolution_m: 1e-6,
+};
+
+// Verifies: SRV-044, SRV-046.
+#[test]
+fn the_surface_is_put_in_front_and_rounding_is_reported() {
+    let loaded = LoadedTable::new(&map(&[0.1, 0.5], &[-0.25, 0.5], |d, x| [x, 10.0 * d])).unwrap();
+    let table = loaded.table().unwrap();
+    assert_eq!(table.depths().knots(), [0.0, 0.1f32, 0.5]);
+    assert_eq!(table.laterals().knots(), [-0.25, 0.5]);
+    let force = |lateral, normal| Force { lateral, normal };
+    let expected = [
+        force(0.0, 0.0),
+        force(0.0, 0.0),
+        force(-0.25, 1.0),
+        force(0.5, 1.0),
+        force(-0.25, 5.0),
+        force(0.5, 5.0),
+    ];
+    assert_eq!(table.forces(), expected);
+    // 0.1 is not a number of f32; the exact difference by hand: 0x3DCCCCCD − 0.1.
+    assert_eq!(loaded.rounding().position_m, 1.490_116_113_833_650_5e-9);
+    assert_eq!(loaded.rounding().force_n, 0.0);
+}
+
+// Verifies: SRV-044, SRV-046.
+#[test]
+fn a_map_from_the_surface_on_is_taken_as_it_is() {
+    let loaded =
+        LoadedTable::new(&map(&[0.0, 0.5], &[-0.25, 0.5], |d, _| [0.1 * d, 0.02])).unwrap();
+    assert_eq!(loaded.table().unwrap().depths().knots(), [0.0, 0.5]);
+    // 0.02f32 − 0.02 exceeds 0.05f32 − 0.05 … in f64: 4.47e-10 against 7.45e-10.
+    assert_eq!(loaded.rounding().force_n, (f64::from(0.05f32) - 0.05).abs());
+}
+
+// Verifies: SRV-045, SRV-047.
+#[test]
+fn a_map_is_refused_with_its_place() {
+    let refused = |depths: &[f64], laterals: &[f64], force: fn(f64, f64) -> [f64; 2]| {
+        LoadedTable::new(&map(depths, laterals, force))
+            .unwrap_err()
+            .to_string()
+    };
+    let calm = |_, _| [0.0, 0.0];
+    for (text, beginning) in [
+        (refused(&[0.0], &[0.0, 0.1], calm), "depths_m has 1 entries"),
+        (refused(&[0.1], &[0.0], calm), "laterals_m has 1 entries"),
+        (
+            refused(&[0.1, 1.25], &[0.0, 0.1], calm),
+            "depths_m[1] = 1.25, expected at most ±1 m",
+        ),
+        (
+            refused(&[1e-7], &[0.0, 0.1], calm),
+            "depths_m[0] = 0.0000001, expected at least 1e-6 m",
+        ),
+        (
+            refused(&[0.1], &[0.0, 5e-7], calm),
+            "laterals_m[1] = 0.0000005, expected at least 1e-6 m above the one before, 0,",
+        ),
+        (
+            refused(&[0.1], &[0.0, 0.1], |_, x| [0.0, 2000.0 * x]),
+            "normal_force_n[0][1] = 200, expected at most ±100 N",
+        ),
+        (
+            refused(&[0.0, 0.1], &[0.0, 0.1], |_, x| [x, 0.0]),
+            "lateral_force_n[0][1] = 0.1 at depth 0, expected at most ±0.02 N",
+        ),
+    ] {
+        assert!(text.starts_with(beginning), "{text}");
+    }
+}
+
+// Verifies: SRV-050.
+#[test]
+fn the_stiffness_is_the_largest_singular_value_of_a_linear_force() {
+    // F = A (x, d): the singular values of [[3, 0], [4, 5]] are √45 and √5.
+    let loaded = LoadedTable::new(&map(&[0.0, 0.5], &[0.0, 0.001], |d, x| {
+        [3.0 * x, 4.0 * x + 5.0 * d]
+    }));
+    let stiffness = stiffness(&loaded.unwrap().table().unwrap());
+    // Forces of some 1e-3 N are rounded to 2⁻²⁴ of that, over 1 mm: 2e-7 N/m, on two entries.
+    assert!((stiffness - 45f64.sqrt()).abs() < 5e-7, "{stiffness}");
+}
+
+// Verifies: SRV-050.
+#[test]
+fn the_stiffness_counts_the_cells_continued_at_the_border() {
+    // F_n = 16 x d: ∂F_n/∂x = 16 d and ∂F_n/∂d = 16 x; continued to d = 1 and x = 1 and −0.5.
+    let loaded = LoadedTable::new(&map(&[0.0, 0.5], &[0.0, 0.5], |d, x| [0.0, 16.0 * x * d]));
+    let stiffness = stiffness(&loaded.unwrap().table().unwrap());
+    assert!(
+        (stiffness - 16.0 * 2f64.sqrt()).abs() < 1e-13,
+        "{stiffness}"
+    );
+}
+
+// Verifies: SRV-052.
+#[test]
+fn the_stiffest_spring_is_the_lesser_of_the_two_bounds() {
+    let device = Damping {
+        period_s: 1e-3,
+        damping_n_s_per_m: 0.5,
+        friction_n: 0.14,
+        resolution_m: 1e-4,
+    };
+    // 2b/T = 1000, 2f_c/Δ = 2800.
+    assert!((device.stiffest().unwrap() - 1000.0).abs() < 1e-10);
+    let coarse = Damping {
+        resolution_m: 1e-3,
+        ..device
+    };
+    assert!((coarse.stiffest().unwrap() - 280.0).abs() < 1e-10);
+    for wrong in [
+        Damping {
+            period_s: 0.0,
+            ..device
+        },
+        Damping {
+            damping_n_s_per_m: -1.0,
+            ..device
+        },
+        Damping {
+            friction_n: f64::NAN,
+            ..device
+        },
+        Damping {
+            resolution_m: f64::INFINITY,
+            ..device
+        },
+    ] {
+        assert_eq!(wrong.stiffest(), None, "{wrong:?}");
+    }
+}
+
+// Verifies: SRV-051.
+#[test]
+fn a_table_too_stiff_is_refused_or_scaled_on_request() {
+    let map = map(&[0.0, 0.004], &[-0.01, 0.01], |d, _| [0.0, 400.0 * d]);
+    let device = Damping {
+        period_s: 1e-3,
+        damping_n_s_per_m: 0.1,
+        ..FREE
+    };
+    let text = LoadedTable::passive(&map, &device).unwrap_err().to_string();
+    assert!(
+        text.contains("400.0 N/m") && text.contains("200.0 N/m") && text.contains("0.5000"),
+        "{text}"
+    );
+
+    let (loaded, scale) = LoadedTable::scaled_to_be_passive(&map, &device).unwrap();
+    let table = loaded.table().unwrap();
+    assert!(stiffness(&table) <= 200.0);
+    assert!((scale - 0.5).abs() < 1e-5, "{scale}");
+    let expected = (1.6 * scale) as f32;
+    assert_eq!(
+        table.forces()[2],
+        Force {
+            lateral: 0.0,
+            normal: expected
+        }
+    );
+
+    let (unscaled, scale) = LoadedTable::scaled_to_be_passive(&map, &FREE).unwrap();
+    assert_eq!(
+        (unscaled, scale),
+        (LoadedTable::passive(&map, &FREE).unwrap(), 1.0)
+    );
+    let undamped = Damping {
+        friction_n: 0.0,
+        ..FREE
+    };
+    assert!(LoadedTable::scaled_to_be_passive(&map, &undamped).is_err());
+}
+
+/// A force table of random size, forces up to `largest` (N), axes of uneven steps of millimetres.
+fn any_map() -> impl Strategy<Value = (ForceTable, f64)> {
+    let steps = |count| prop::collection::vec(1e-6..8e-3f64, count);
+    let axes = (2usize..6, 2usize..8).prop_flat_map(move |(m, n)| (steps(m), steps(n)));
+    let scale = prop::sample::select(vec![1e-3, 0.3, 2.0, 100.0]);
+    (axes, -0.02..0.0f64, scale).prop_flat_map(|((heights, widths), first, scale)| {
+        let knots = |start: f64, steps: &[f64]| -> Vec<f64> {
+            let mut at = start;
+            let ends = steps.iter().map(|step| {
+                at += 2e-6 + step;
+                f64::from(at as f32)
+            });
+            ends.collect()
+        };
+        let (depths, laterals) = (knots(0.0, &heights), knots(first, &widths));
+        let nodes = depths.len() * laterals.len();
+        prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64), nodes).prop_map(move |values| {
+            let matrix = |component: fn(&(f64, f64)) -> f64| {
+                let round = |value: &(f64, f64)| f64::from((scale * component(value)) as f32);
+                Matrix::new(laterals.len(), values.iter().map(round).collect()).unwrap()
+            };
+            let (normal, lateral) = (matrix(|v| v.0), matrix(|v| v.1));
+            let map = ForceTable::new(depths.clone(), laterals.clone(), normal, lateral).unwrap();
+            (map, scale)
+        })
+    })
+}
+
+/// A position in f32 from `reach` cells before the first knot to `reach` beyond the last, at the
+/// fraction `at` of that range.
+fn position(knots: &[f32], reach: f32, at: f32) -> f32 {
+    let last = knots.len() - 1;
+    let start = knots[0] - reach * (knots[1] - knots[0]);
+    let end = knots[last] + reach * (knots[last] - knots[last - 1]);
+    (start + at * (end - start)).clamp(start, end)
+}
+
+/// The largest distance of the kernel's two components from the reference, N; the reference has the
+/// row at the surface too.
+fn distance(map: &ForceTable, depth_at: f32, lateral_at: f32, reach: f32) -> f64 {
+    let loaded = LoadedTable::new(map).unwrap();
+    assert_eq!(loaded.rounding(), RoundingError::default());
+    let table = loaded.table().unwrap();
+    let depth = position(table.depths().knots(), reach, depth_at).max(0.0);
+    let lateral = position(table.laterals().knots(), reach, lateral_at);
+    let reference = {
+        let depths = table
+            .depths()
+            .knots()
+            .iter()
+            .map(|&knot| f64::from(knot))
+            .collect();
+        let columns = map.laterals().len();
+        let matrix = |component: fn(&Force) -> f32| {
+            let values = table
+                .forces()
+                .iter()
+                .map(|force| f64::from(component(force)));
+            Matrix::new(columns, values.collect()).unwrap()
+        };
+        let (normal, lateral) = (matrix(|f| f.normal), matrix(|f| f.lateral));
+        ForceTable::new(depths, map.laterals().to_vec(), normal, lateral).unwrap()
+    };
+    let expected = reference
+        .force(f64::from(depth), f64::from(lateral))
+        .unwrap();
+    let found = table.force(depth, lateral);
+    let of = |found: f32, expected: f64| (f64::from(found) - expected).abs();
+    of(found.lateral, expected.lateral).max(of(found.normal, expected.normal))
+}
+
+/// The unit of the bounds: 2⁻²⁴ of the smallest power of two that no entry exceeds.
+fn unit(largest: f64) -> f64 {
+    largest.log2().ceil().exp2() * 2f64.powi(-24)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 4000, ..ProptestConfig::default() })]
+
+    // The bounds are Gappa's (proofs/gappa), put together in spec/interpolation.md.
+    // Verifies: SRV-015.
+    #[test]
+    fn the_kernel_is_near_the_papers_rule(
+        (map, largest) in any_map(),
+        depth in 0.0..=1.0f32,
+        lateral in 0.0..=1.0f32,
+    ) {
+        let within = distance(&map, depth, lateral, 0.0);
+        prop_assert!(within <= 21.25 * unit(largest), "{within:e} N within");
+        // A hundredth short of where the continuation ends, which f32 may miss by some 6e-4 of a cell.
+        let beyond = distance(&map, depth, lateral, EXTRAPOLATION_CELLS - 0.01);
+        prop_assert!(beyond <= 148.75 * unit(largest), "{beyond:e} N beyond");
+    }
+}
+
+// Verifies: SRV-044.
+#[test]
+fn a_loaded_table_is_played() {
+    let loaded = LoadedTable::new(&map(&[0.002, 0.004], &[-0.01, 0.01], |d, _| {
+        [0.0, 400.0 * d]
+    }))
+    .unwrap();
+    let table = loaded.table().unwrap();
+    assert_eq!(table.force(0.0, 0.0), Force::ZERO);
+    // Within 21.25 · 2⁻²⁴ · 2 N (SRV-015) and the rounding of the depth, 2⁻²⁵ · 0.4 N.
+    assert!((table.force(0.001, 0.0).normal - 0.4).abs() < 2.6e-6);
+}
