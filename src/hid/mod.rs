@@ -4,13 +4,27 @@
 //! |---|---|
 //! | `report.rs` | the vendor profile's reports, byte by byte |
 //! | `units.rs` | between counts and metres, newtons |
+//! | `device.rs` | what the loop needs of a device |
+//! | `playback.rs` | one cycle of the loop: read, drain, step, write |
+//! | `session.rs` | a session: it ends with a stopped device |
+//! | `simulated/` | a device and a hand on a virtual clock, with faults by script |
 
+mod device;
+mod playback;
 mod report;
+#[cfg(feature = "std")]
+mod session;
+#[cfg(feature = "std")]
+pub mod simulated;
 #[cfg(test)]
 mod tests;
 mod units;
 
+pub use device::{DeviceError, HapticDevice, Received};
+pub use playback::{Counters, Cycle, Playback, QUEUE};
 pub use report::{
     Capabilities, Control, DESCRIPTOR, ForceReport, InvalidReport, PositionReport, button, status,
 };
+#[cfg(feature = "std")]
+pub use session::{End, Session, SessionError};
 pub use units::{InvalidCapabilities, Units, count};

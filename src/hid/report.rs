@@ -1,5 +1,7 @@
 //! The vendor profile: four reports of fixed length, numbers little-endian.
 
+use core::fmt;
+
 /// The report descriptor of the vendor profile (usage page FF00).
 ///
 /// Implements: HID-001.
@@ -122,6 +124,22 @@ pub enum InvalidReport {
         found: u8,
     },
 }
+
+impl fmt::Display for InvalidReport {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            InvalidReport::Length { found, expected } => {
+                write!(f, "a report of {found} bytes, expected {expected}")
+            }
+            InvalidReport::Number { found, expected } => {
+                write!(f, "report number {found}, expected {expected}")
+            }
+            InvalidReport::Value { found } => write!(f, "the value {found} has no meaning"),
+        }
+    }
+}
+
+impl core::error::Error for InvalidReport {}
 
 /// The bytes after the report's number.
 fn payload<const LENGTH: usize>(

@@ -1,5 +1,7 @@
 //! Between the counts of a device and metres, newtons.
 
+use core::fmt;
+
 use super::{Capabilities, ForceReport, PositionReport, button, status};
 use crate::servo::{Command, Sample};
 
@@ -23,6 +25,27 @@ pub enum InvalidCapabilities {
     /// A count of a force is 0 µN.
     ForceUnit,
 }
+
+impl fmt::Display for InvalidCapabilities {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            InvalidCapabilities::Version { found } => {
+                write!(
+                    f,
+                    "the device speaks version {found} of the profile, expected 1"
+                )
+            }
+            InvalidCapabilities::PositionUnit => {
+                write!(f, "the device's position unit is 0 nm, expected at least 1")
+            }
+            InvalidCapabilities::ForceUnit => {
+                write!(f, "the device's force unit is 0 µN, expected at least 1")
+            }
+        }
+    }
+}
+
+impl core::error::Error for InvalidCapabilities {}
 
 impl Units {
     /// The units of a device.

@@ -35,5 +35,5 @@ pub use limit::{FORCE_CEILING, InvalidLimits, Limits, MIN_SLEW, RELEASE_CYCLES, 
 pub use load::{LoadError, LoadedTable, RoundingError, SURFACE_FORCE};
 pub use passivity::{Damping, stiffness};
 pub use state::{Command, Fault, Force, Input, Mode, Request, Sample, State};
-pub use step::step;
+pub use step::{MOST_AHEAD, step};
 pub use table::{InvalidTable, TABLE_FORCE_LIMIT, Table, blend};

@@ -1,5 +1,7 @@
 //! What a cycle is given, remembers and commands.
 
+use core::fmt;
+
 /// A force on the probe, N: lateral along +x, normal positive out of the gel.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Force {
@@ -64,6 +66,17 @@ pub enum Fault {
     Watchdog,
     /// A state that no step can have left: memory was overwritten.
     State,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Fault::NotFinite => "a position is not a finite number",
+            Fault::Device => "the device reports a fault",
+            Fault::Watchdog => "no fresh report for too long",
+            Fault::State => "the servo's memory was overwritten",
+        })
+    }
 }
 
 /// Whether there may be a force.

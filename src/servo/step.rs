@@ -5,7 +5,9 @@ use super::{approach, limit};
 
 /// A sample is fresh if it is at most this far ahead of the last one: half of all numbers, so that
 /// forward and back can be told apart.
-const MOST_AHEAD: u16 = 32767;
+///
+/// Implements: SRV-040.
+pub const MOST_AHEAD: u16 = 32767;
 
 /// What stands in for a sample that did not come, so that the time is the same with and without.
 const NO_SAMPLE: Sample = Sample {

@@ -1,0 +1,187 @@
+//! A playback session: begins with what the device says of itself, and ends with a stopped device,
+//! whatever happens in between.
+
+use std::fmt;
+use std::time::Duration;
+
+use super::{
+    Capabilities, Control, Counters, Cycle, DeviceError, HapticDevice, InvalidCapabilities,
+    Playback, Units,
+};
+use crate::servo::{Fault, Force, Limits, Mode, Request, Table};
+
+/// A device that plays a table, until it is dropped: also by a panic.
+///
+/// Implements: HID-016, HID-017.
+pub struct Session<'a, D: HapticDevice> {
+    device: D,
+    capabilities: Capabilities,
+    playback: Playback<'a>,
+    armed_once: bool,
+    stopped: bool,
+}
+
+/// Why a session does not begin.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SessionError {
+    /// The device fails.
+    #[error("{0}")]
+    Device(#[from] DeviceError),
+    /// The device's numbers have no meaning.
+    #[error("{0}")]
+    Capabilities(#[from] InvalidCapabilities),
+    /// The device says that it reports without end.
+    #[error("the device reports every 0 µs, expected at least 1")]
+    Period,
+    /// The device has no watchdog of its own.
+    #[error("the device has no watchdog (0 ms): a blocked write would leave the force on the hand")]
+    NoWatchdog,
+    /// The force limit exceeds what the device makes.
+    #[error("a force limit of {limit} N, expected at most {largest} N, the device's largest force")]
+    Force {
+        /// The limit, N.
+        limit: f32,
+        /// The device's largest force, N.
+        largest: f32,
+    },
+}
+
+/// Why a session ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum End {
+    /// It was asked to.
+    Asked,
+    /// The servo kernel found a fault; the force has been released.
+    Fault(Fault),
+    /// The device failed.
+    Device(DeviceError),
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            End::Asked => write!(f, "ended as asked"),
+            End::Fault(fault) => write!(f, "stopped by a fault: {fault}"),
+            End::Device(error) => write!(f, "stopped: {error}"),
+        }
+    }
+}
+
+impl<'a, D: HapticDevice> Session<'a, D> {
+    /// Asks the device what it is, and enables it.
+    ///
+    /// # Errors
+    /// [`SessionError`].
+    ///
+    /// Implements: HID-017, HID-018.
+    pub fn begin(
+        mut device: D,
+        table: Table<'a>,
+        limits: Limits,
+    ) -> Result<Session<'a, D>, SessionError> {
+        let capabilities = device.capabilities()?;
+        let units = Units::new(&capabilities)?;
+        if capabilities.period_us == 0 {
+            return Err(SessionError::Period);
+        }
+        if capabilities.watchdog_ms == 0 {
+            return Err(SessionError::NoWatchdog);
+        }
+        let largest = f32::from(capabilities.largest_force_mn) / 1e3;
+        let limit = limits.force();
+        if limit > largest {
+            return Err(SessionError::Force { limit, largest });
+        }
+        device.control(Control::ClearFault)?;
+        device.control(Control::Enable)?;
+        let period = Duration::from_micros(u64::from(capabilities.period_us));
+        Ok(Session {
+            device,
+            capabilities,
+            playback: Playback::new(table, limits, units, period),
+            armed_once: false,
+            stopped: false,
+        })
+    }
+
+    /// The device.
+    pub fn device(&self) -> &D {
+        &self.device
+    }
+
+    /// What the device said of itself.
+    pub fn capabilities(&self) -> &Capabilities {
+        &self.capabilities
+    }
+
+    /// What happened so far.
+    pub fn counters(&self) -> Counters {
+        self.playback.counters()
+    }
+
+    /// Whether there may be a force.
+    pub fn mode(&self) -> Mode {
+        self.playback.state().mode
+    }
+
+    /// One cycle: see [`Playback::cycle`].
+    ///
+    /// # Errors
+    /// [`DeviceError`], after the device was told to stop.
+    pub fn cycle(&mut self, request: Request) -> Result<Cycle, DeviceError> {
+        let cycle = self.playback.cycle(&mut self.device, request);
+        if cycle.is_err() {
+            // The error that counts is the first.
+            let _ = self.stop();
+        }
+        cycle
+    }
+
+    /// Cycles until `each` says that it is enough (`false`), a fault has released the force, or the
+    /// device fails; then stops the device. Arms once, as soon as the kernel allows.
+    ///
+    /// Implements: HID-016, HID-019.
+    pub fn run(&mut self, mut each: impl FnMut(&Cycle, &Counters) -> bool) -> End {
+        let mut ask = false;
+        let end = loop {
+            ask = !ask && !self.armed_once;
+            let request = if ask { Request::Arm } else { Request::None };
+            let cycle = match self.cycle(request) {
+                Ok(cycle) => cycle,
+                Err(error) => break End::Device(error),
+            };
+            let state = self.playback.state();
+            self.armed_once |= state.mode == Mode::Armed;
+            if !each(&cycle, &self.counters()) {
+                break End::Asked;
+            }
+            if let Mode::Faulted(fault) = state.mode
+                && state.force == Force::ZERO
+            {
+                break End::Fault(fault);
+            }
+        };
+        match (self.stop(), end) {
+            (Err(error), End::Asked) => End::Device(error),
+            (_, end) => end,
+        }
+    }
+
+    /// Stops the device; more than once does nothing.
+    ///
+    /// # Errors
+    /// [`DeviceError`].
+    pub fn stop(&mut self) -> Result<(), DeviceError> {
+        if std::mem::replace(&mut self.stopped, true) {
+            return Ok(());
+        }
+        self.playback.stop(&mut self.device)
+    }
+}
+
+impl<D: HapticDevice> Drop for Session<'_, D> {
+    fn drop(&mut self) {
+        // Nobody is left to be told.
+        let _ = self.stop();
+    }
+}

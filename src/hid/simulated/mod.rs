@@ -1,0 +1,314 @@
+//! A haptic device and the hand that holds it, on a virtual clock: the same session every time, on
+//! any machine, however loaded.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | the device: its clock, queue, watchdog and faults |
+//! | `handle.rs` | one axis: mass, damping, friction, backlash, the hand's spring |
+//! | `trajectory.rs` | where the hand wants to be |
+//! | `fault.rs` | what goes wrong, and when |
+
+mod fault;
+mod handle;
+#[cfg(test)]
+mod tests;
+mod trajectory;
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+pub use fault::{Defect, Fault};
+pub use handle::{Handle, Mechanics};
+pub use trajectory::{Trajectory, Waypoint};
+
+use super::{
+    Capabilities, Control, DeviceError, ForceReport, HapticDevice, InvalidReport, PositionReport,
+    Received, button, status,
+};
+
+/// Reports that the system's queue holds; when it is full, the oldest stay.
+const QUEUE: usize = 63;
+
+/// After this long without taking a report, a write is given up.
+const GIVE_UP: Duration = Duration::from_millis(5_190);
+
+/// What the paper's display would answer: counts of 1 µm and, as the paper says of its quantization,
+/// 0.5 mN; friction as in its Table 2.
+pub const PAPER: Capabilities = Capabilities {
+    version: 1,
+    position_unit_nm: 1000,
+    force_unit_un: 500,
+    largest_force_mn: 8000,
+    period_us: 1000,
+    watchdog_ms: 15,
+    damping_mn_s_per_m: 600,
+    friction_mn: 140,
+};
+
+/// A simulated device in a simulated hand.
+///
+/// Implements: HID-020, HID-021, HID-022, HID-023.
+#[derive(Debug, Clone)]
+pub struct SimulatedDevice {
+    capabilities: Capabilities,
+    trajectory: Trajectory,
+    /// What goes wrong, by time.
+    faults: VecDeque<Fault>,
+    lateral: Handle,
+    normal: Handle,
+    clock: Duration,
+    /// Periods simulated so far.
+    periods: u64,
+    latency: Duration,
+    /// What was sent and not read yet, with the time at which it can be.
+    queue: VecDeque<(Duration, Received)>,
+    sequence: u16,
+    motor: Motor,
+    ongoing: Ongoing,
+}
+
+/// The device's force output.
+#[derive(Debug, Clone, Copy, Default)]
+struct Motor {
+    enabled: bool,
+    /// The device's watchdog dropped the force.
+    dropped: bool,
+    /// Counts: lateral, normal.
+    force: [i16; 2],
+    sequence: u16,
+    written: Duration,
+}
+
+/// Faults that last.
+#[derive(Debug, Clone, Copy, Default)]
+struct Ongoing {
+    unplugged: bool,
+    silent_until: Duration,
+    stalled_until: Duration,
+    faulty_until: Duration,
+    released_until: Duration,
+    interrupted: bool,
+    repeat: u16,
+    garbage: Option<InvalidReport>,
+    glitch: i16,
+}
+
+impl SimulatedDevice {
+    /// A device of these capabilities, whose reports arrive `latency` after they were made, in a hand
+    /// that follows `trajectory`, with `faults` in the order of their times.
+    pub fn new(
+        capabilities: Capabilities,
+        mechanics: Mechanics,
+        trajectory: Trajectory,
+        latency: Duration,
+        mut faults: Vec<Fault>,
+    ) -> SimulatedDevice {
+        faults.sort_by_key(|fault| fault.at);
+        let [lateral, normal] = trajectory.at(Duration::ZERO);
+        SimulatedDevice {
+            capabilities,
+            trajectory,
+            faults: faults.into(),
+            lateral: Handle::at(mechanics, lateral),
+            normal: Handle::at(mechanics, normal),
+            clock: Duration::ZERO,
+            periods: 0,
+            latency,
+            queue: VecDeque::with_capacity(QUEUE),
+            sequence: 0,
+            motor: Motor::default(),
+            ongoing: Ongoing::default(),
+        }
+    }
+
+    /// The force that the motors make now, N: lateral, normal.
+    pub fn motor_force(&self) -> [f64; 2] {
+        if !self.motor.enabled || self.motor.dropped {
+            return [0.0, 0.0];
+        }
+        let unit = f64::from(self.capabilities.force_unit_un) * 1e-6;
+        let largest = f64::from(self.capabilities.largest_force_mn) * 1e-3;
+        self.motor
+            .force
+            .map(|count| (f64::from(count) * unit).clamp(-largest, largest))
+    }
+
+    /// Where the handle is, m: lateral, and along the normal, positive out of the gel.
+    pub fn position(&self) -> [f64; 2] {
+        [self.lateral.position(), self.normal.position()]
+    }
+
+    /// Whether the trajectory has come to its end.
+    pub fn finished(&self) -> bool {
+        self.clock >= self.trajectory.duration()
+    }
+
+    fn period(&self) -> Duration {
+        Duration::from_micros(u64::from(self.capabilities.period_us.max(1)))
+    }
+
+    /// Lets the time pass up to `until`, period by period.
+    fn pass(&mut self, until: Duration) {
+        while self.period() * (self.periods as u32 + 1) <= until {
+            self.periods += 1;
+            self.clock = self.period() * self.periods as u32;
+            self.simulate_period();
+        }
+        self.clock = until;
+    }
+
+    /// One period of the device: faults, motion, watchdog, report.
+    fn simulate_period(&mut self) {
+        while let Some(fault) = self.faults.front().copied()
+            && fault.at <= self.clock
+        {
+            self.faults.pop_front();
+            self.begin(fault.defect);
+        }
+        let watchdog = Duration::from_millis(u64::from(self.capabilities.watchdog_ms));
+        if self.motor.enabled && self.clock.saturating_sub(self.motor.written) > watchdog {
+            self.motor.dropped = true;
+        }
+        let period = self.period().as_secs_f64();
+        let target = self.trajectory.at(self.clock);
+        let force = self.motor_force();
+        self.lateral.advance(period, target[0], force[0]);
+        self.normal.advance(period, target[1], force[1]);
+        self.send();
+    }
+
+    /// Puts this period's report into the queue.
+    fn send(&mut self) {
+        let repeats = self.ongoing.repeat > 0;
+        self.ongoing.repeat = self.ongoing.repeat.saturating_sub(1);
+        self.sequence = self.sequence.wrapping_add(u16::from(!repeats));
+        if self.ongoing.unplugged || self.clock < self.ongoing.silent_until {
+            return;
+        }
+        let received = match self.ongoing.garbage.take() {
+            Some(problem) => Received::Garbage(problem),
+            None => Received::Report(self.report()),
+        };
+        if self.queue.len() < QUEUE {
+            self.queue.push_back((self.clock + self.latency, received));
+        }
+    }
+
+    fn report(&mut self) -> PositionReport {
+        let count = |position: f64| {
+            let unit = f64::from(self.capabilities.position_unit_nm) * 1e-9;
+            super::count((position / unit) as f32)
+        };
+        let glitch = std::mem::take(&mut self.ongoing.glitch);
+        let deadman = self.clock >= self.ongoing.released_until && self.trajectory.held(self.clock);
+        let faulty = self.clock < self.ongoing.faulty_until;
+        PositionReport {
+            lateral: count(self.lateral.encoder()).wrapping_add(glitch),
+            normal: count(self.normal.encoder()).wrapping_sub(glitch),
+            buttons: if deadman { button::DEADMAN } else { 0 },
+            status: if faulty { status::FAULT } else { 0 }
+                | if self.motor.dropped {
+                    status::WATCHDOG
+                } else {
+                    0
+                },
+            sequence: self.sequence,
+            force_sequence: self.motor.sequence,
+        }
+    }
+
+    fn begin(&mut self, defect: Defect) {
+        let ongoing = &mut self.ongoing;
+        match defect {
+            Defect::Unplug => ongoing.unplugged = true,
+            Defect::Silence(time) => ongoing.silent_until = self.clock + time,
+            Defect::Stall(time) => ongoing.stalled_until = self.clock + time,
+            Defect::DeviceFault(time) => ongoing.faulty_until = self.clock + time,
+            Defect::DeadmanReleased(time) => ongoing.released_until = self.clock + time,
+            Defect::Interrupt => ongoing.interrupted = true,
+            Defect::Repeat(reports) => ongoing.repeat = reports,
+            Defect::SequenceBack(by) => self.sequence = self.sequence.wrapping_sub(by),
+            Defect::Garbage(problem) => ongoing.garbage = Some(problem),
+            Defect::Glitch(counts) => ongoing.glitch = counts,
+            // What is in the queue keeps its place; the hand moves on.
+            Defect::ClockJump(time) => {
+                let missing = time.as_micros() / self.period().as_micros();
+                self.sequence = self.sequence.wrapping_add(missing as u16);
+            }
+        }
+    }
+
+    fn check_plugged(&self) -> Result<(), DeviceError> {
+        if self.ongoing.unplugged {
+            Err(DeviceError::Gone)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+impl HapticDevice for SimulatedDevice {
+    fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
+        self.check_plugged()?;
+        Ok(self.capabilities)
+    }
+
+    fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
+        let deadline = self.clock + timeout;
+        loop {
+            self.check_plugged()?;
+            if std::mem::take(&mut self.ongoing.interrupted) {
+                return Err(DeviceError::System("interrupted system call".into()));
+            }
+            match self.queue.front() {
+                Some(&(at, received)) if at <= self.clock => {
+                    self.queue.pop_front();
+                    return Ok(received);
+                }
+                _ if self.clock >= deadline => return Ok(Received::Nothing),
+                next => {
+                    let tick = self.period() * (self.periods as u32 + 1);
+                    let next = next.map_or(tick, |&(at, _)| at.min(tick));
+                    self.pass(next.min(deadline));
+                }
+            }
+        }
+    }
+
+    fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
+        self.check_plugged()?;
+        if self.clock < self.ongoing.stalled_until {
+            let give_up = self.clock + GIVE_UP;
+            let stalled_until = self.ongoing.stalled_until;
+            self.pass(stalled_until.min(give_up));
+            if stalled_until >= give_up {
+                return Err(DeviceError::Stalled);
+            }
+            self.check_plugged()?;
+        }
+        let play = report.flags & ForceReport::PLAY != 0;
+        self.motor.force = if play {
+            [report.lateral, report.normal]
+        } else {
+            [0, 0]
+        };
+        self.motor.sequence = report.sequence;
+        self.motor.written = self.clock;
+        Ok(())
+    }
+
+    fn control(&mut self, control: Control) -> Result<(), DeviceError> {
+        self.check_plugged()?;
+        match control {
+            Control::Stop => self.motor.enabled = false,
+            Control::Enable => self.motor.enabled = true,
+            Control::ClearFault => self.motor.dropped = false,
+        }
+        self.motor.written = self.clock;
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        self.clock
+    }
+}
