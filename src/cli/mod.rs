@@ -7,6 +7,7 @@ mod error;
 mod import;
 mod lists;
 mod output;
+mod play;
 mod playback;
 mod progress;
 mod run;
@@ -43,6 +44,8 @@ enum Command {
     Detect(detect::DetectArguments),
     /// The statistics battery of the detector, once or with fresh seeds.
     Verify(verify::VerifyArguments),
+    /// A force map to a hand, through a haptic device or a simulated one.
+    Play(play::PlayArguments),
     /// The time budget of the servo loop, on the simulated device.
     Timing(timing::TimingArguments),
 }
@@ -98,6 +101,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::ImportMap(arguments) => import::import(&arguments),
             Command::Detect(arguments) => detect::detect(&arguments),
             Command::Verify(arguments) => verify::verify(&arguments),
+            Command::Play(arguments) => play::play(&arguments),
             Command::Timing(arguments) => timing::timing(&arguments),
         },
         Err(error) if !error.use_stderr() => output::print(&error.to_string()),

@@ -6,17 +6,23 @@
 //! | `units.rs` | between counts and metres, newtons |
 //! | `device.rs` | what the loop needs of a device |
 //! | `playback.rs` | one cycle of the loop: read, drain, step, write |
+//! | `recording.rs` | a session in a file that plays again to the bit |
+//! | `supervise.rs` | the servo thread and its supervisor |
 //! | `session.rs` | a session: it ends with a stopped device |
 //! | `timing.rs` | how long the cycles take on this machine |
 //! | `simulated/` | a device and a hand on a virtual clock, with faults by script |
 
 mod device;
 mod playback;
+#[cfg(feature = "std")]
+mod recording;
 mod report;
 #[cfg(feature = "std")]
 mod session;
 #[cfg(feature = "std")]
 pub mod simulated;
+#[cfg(feature = "hid")]
+pub mod supervise;
 #[cfg(test)]
 mod tests;
 #[cfg(feature = "hid")]
@@ -25,6 +31,8 @@ mod units;
 
 pub use device::{DeviceError, HapticDevice, Received};
 pub use playback::{Counters, Cycle, Playback, QUEUE};
+#[cfg(feature = "std")]
+pub use recording::{RecordedCycle, Recording, RecordingError};
 pub use report::{
     Capabilities, Control, DESCRIPTOR, ForceReport, InvalidReport, PositionReport, button, status,
 };
