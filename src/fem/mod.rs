@@ -8,6 +8,7 @@ pub mod cholesky;
 pub mod contact;
 pub mod element;
 pub mod field;
+mod front;
 pub mod mesh;
 mod model;
 mod ordering;

@@ -59,7 +59,12 @@ impl Model {
         let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
         let factor = Factor::new(&matrix)?;
         let positions = mesh.nodes[mesh.surface()].to_vec();
-        let surface = Surface::new(factor.surface_factor(), positions, phantom.probe, contact);
+        let surface = Surface::new(
+            factor.surface_compliance(),
+            positions,
+            phantom.probe,
+            contact,
+        );
         let samples = Samples::new(&mesh, &matrix);
         Ok(Model {
             phantom: phantom.clone(),

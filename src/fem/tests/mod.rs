@@ -1,5 +1,6 @@
 //! Tests of the solver, one file a topic.
 
+mod cholesky;
 mod contact;
 mod element;
 mod map;
