@@ -8,7 +8,7 @@ use core::ops::Range;
 
 use nalgebra::DMatrix;
 
-use super::front::{Front, substitute_back, substitute_forward};
+use super::front::{Front, TILE, substitute_back_one, substitute_forward};
 use super::{FemError, Pose};
 use crate::phantom::Probe;
 
@@ -127,10 +127,17 @@ impl ContactState {
 struct TangentSystem {
     active: Vec<usize>,
     normals: Vec<[f64; 2]>,
-    /// L and Wᵀ in its panels, Q in its update.
+    /// L in its panels, below it Wᵀ or, without turning, C_tn; Q in its update.
     front: Front,
+    /// `None` for normals that are taken not to turn.
+    turning: Option<Turning>,
+}
+
+/// The part of Newton's matrix that turns the normals.
+#[derive(Debug)]
+struct Turning {
     /// The diagonal of D.
-    turning: Vec<f64>,
+    rates: Vec<f64>,
     /// Factor of I − D^½ Q D^½.
     slip: Front,
 }
@@ -140,32 +147,70 @@ impl TangentSystem {
     /// increment is not finite.
     fn solve(&self, mismatch: &[[f64; 2]]) -> Option<(Vec<f64>, Vec<f64>)> {
         let (m, own) = (mismatch.len(), self.front.own);
-        let mut x = vec![[0.0]; 2 * own];
+        let mut x = vec![[0.0]; own + self.front.border];
+        let mut slips = vec![0.0; m];
         for (k, (&n, &u)) in self.normals.iter().zip(mismatch).enumerate() {
             x[k] = [dot(n, u)];
-            x[own + k] = [dot(tangent(n), u)];
+            slips[k] = -dot(tangent(n), u);
         }
-        // Leaves L⁻¹ r_n in the own rows, r_t − C_tn C_nn⁻¹ r_n in the others.
-        substitute_forward(&self.front.panels, own, &mut x);
-        let root = |k: usize| libm::sqrt(self.turning[k]);
-        let mut scaled: Vec<[f64; 1]> = vec![[0.0]; own];
-        for k in 0..m {
-            scaled[k] = [-root(k) * x[own + k][0]];
+        match &self.turning {
+            None => {
+                substitute_forward(&self.front.panels, own, &mut x[..own]);
+                let lower = &self.front.panels[..own * own / TILE];
+                substitute_back_one(lower, own, &mut x[..own]);
+                self.front.add_border_product(&x[..own], &mut slips);
+            }
+            Some(turning) => {
+                // Leaves L⁻¹ r_n in the own rows, −C_tn C_nn⁻¹ r_n in the others.
+                substitute_forward(&self.front.panels, own, &mut x);
+                for (slip, [x]) in slips.iter_mut().zip(&x[own..]) {
+                    *slip -= x;
+                }
+                turning.solve(&self.front, &mut slips);
+                for (k, slip) in slips.iter().enumerate() {
+                    x[own + k] = [turning.rates[k] * slip];
+                }
+                substitute_back_one(&self.front.panels, own, &mut x);
+            }
         }
-        substitute_forward(&self.slip.panels, own, &mut scaled);
-        substitute_back(&self.slip.panels, own, &mut scaled);
-        let mut slips: Vec<f64> = x[own..own + m].iter().map(|[r]| -r).collect();
-        for (k, scaled) in scaled[..m].iter_mut().enumerate() {
-            scaled[0] *= root(k);
-        }
-        self.front.add_update_product(&scaled, &mut slips);
-        for (k, slip) in slips.iter().enumerate() {
-            x[own + k] = [self.turning[k] * slip];
-        }
-        substitute_back(&self.front.panels, own, &mut x);
         let pressures: Vec<f64> = x[..m].iter().map(|[p]| *p).collect();
         let finite = pressures.iter().chain(&slips).all(|x| x.is_finite());
         finite.then_some((pressures, slips))
+    }
+}
+
+impl Turning {
+    /// From Q, in the front's update, and D.
+    fn new(front: &Front, rates: Vec<f64>) -> Option<Turning> {
+        let m = rates.len();
+        let roots: Vec<f64> = rates.iter().map(|&rate| libm::sqrt(rate)).collect();
+        let mut slip = Front::new(m, 0);
+        for a in 0..m {
+            for b in 0..=a {
+                let unit = if a == b { 1.0 } else { 0.0 };
+                let q = front.update[a / TILE * front.border + b][a % TILE];
+                *slip.entry(a, b) = unit - roots[a] * q * roots[b];
+            }
+        }
+        slip.pad_diagonal(m);
+        slip.factorise().ok()?;
+        Some(Turning { rates, slip })
+    }
+
+    /// Solves (I − Q D) b = r in place: b = r + Q D^½ (I − D^½ Q D^½)⁻¹ D^½ r.
+    fn solve(&self, front: &Front, slips: &mut [f64]) {
+        let own = self.slip.own;
+        let root = |k: usize| libm::sqrt(self.rates[k]);
+        let mut scaled = vec![[0.0]; own];
+        for (k, slip) in slips.iter().enumerate() {
+            scaled[k] = [root(k) * slip];
+        }
+        substitute_forward(&self.slip.panels, own, &mut scaled);
+        substitute_back_one(&self.slip.panels, own, &mut scaled);
+        for k in 0..slips.len() {
+            scaled[k][0] *= root(k);
+        }
+        front.add_update_product(&scaled, slips);
     }
 }
 
@@ -248,11 +293,15 @@ impl Surface {
             .ok_or(failed(0))?;
         let mut tangent_system: Option<TangentSystem> = None;
         let mut last_step = f64::INFINITY;
+        // While nodes come and go, normals that do not turn will do: the full system is the cost.
+        let mut settled = state.active == start.active;
         for iteration in 0..MOST_ITERATIONS {
-            // The old tangent serves as long as it lets the steps shrink well: factorising is the cost.
+            // The old tangent serves as long as it lets the steps shrink well.
             let system = match tangent_system.take() {
                 Some(system) if system.active == state.active => system,
-                _ => self.tangent_system(&state, pose).ok_or(failed(iteration))?,
+                _ => self
+                    .tangent_system(&state, pose, settled)
+                    .ok_or(failed(iteration))?,
             };
             let step = self
                 .newton(&mut state, pose, &system, &elastic, window.start)
@@ -284,7 +333,9 @@ impl Surface {
                     .response(&state, pose, window.clone())
                     .ok_or(failed(iteration))?;
             }
-            (tangent_system, last_step) = if step <= REUSE_BELOW * last_step {
+            settled = !changed;
+            let full = system.turning.is_some();
+            (tangent_system, last_step) = if full && step <= REUSE_BELOW * last_step {
                 (Some(system), step)
             } else {
                 (None, f64::INFINITY)
@@ -317,8 +368,14 @@ impl Surface {
     ///
     /// Eliminating δλ by Cholesky's factor L of C_nn leaves (I − Q D) b = C_tn C_nn⁻¹ r_n − r_t with
     /// Q = C_tt − WᵀW, W = L⁻¹ C_nt. With D^½ on both sides it is symmetric, and positive definite where the
-    /// contact is stable. `None` where it is not, or if a node lies on the probe's axis.
-    fn tangent_system(&self, state: &ContactState, pose: Pose) -> Option<TangentSystem> {
+    /// contact is stable. Unless the normals are to be `turning`, D is taken as 0, which costs an eighth. `None`
+    /// where the system is singular or unstable, or if a node lies on the probe's axis.
+    fn tangent_system(
+        &self,
+        state: &ContactState,
+        pose: Pose,
+        turning: bool,
+    ) -> Option<TangentSystem> {
         let m = state.active.len();
         let constraints = self.constraints(state, pose)?;
         let mut front = Front::new(m, m);
@@ -332,38 +389,32 @@ impl Surface {
                 *front.entry(own + a, b) = dot(t, pushed);
                 if a >= b {
                     *front.entry(a, b) = dot(n, pushed);
-                    *front.entry(own + a, own + b) = dot(t, slid);
+                    if turning {
+                        *front.entry(own + a, own + b) = dot(t, slid);
+                    }
                 }
             }
         }
         front.pad_diagonal(m);
-        front.eliminate(|_| 0).ok()?;
-        let turning: Vec<f64> = state
+        let rates = state
             .active
             .iter()
             .zip(&constraints)
             .map(|(&j, constraint)| state.pressures[j] * constraint.curvature)
             .collect();
-        let roots: Vec<f64> = turning.iter().map(|&d| libm::sqrt(d)).collect();
-        let mut slip = Front::new(m, 0);
-        for a in 0..m {
-            for b in 0..=a {
-                let unit = if a == b { 1.0 } else { 0.0 };
-                let q = *front.entry(own + a, own + b);
-                *slip.entry(a, b) = unit - roots[a] * q * roots[b];
-            }
-        }
-        slip.pad_diagonal(m);
-        slip.eliminate(|_| 0).ok()?;
+        let turning = if turning {
+            front.eliminate(|_| 0).ok()?;
+            Some(Turning::new(&front, rates)?)
+        } else {
+            front.factorise().ok()?;
+            None
+        };
+        let normals = constraints.iter().map(|constraint| constraint.normal);
         Some(TangentSystem {
             active: state.active.clone(),
-            normals: constraints
-                .iter()
-                .map(|constraint| constraint.normal)
-                .collect(),
+            normals: normals.collect(),
             front,
             turning,
-            slip,
         })
     }
 

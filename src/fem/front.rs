@@ -77,12 +77,11 @@ impl Front {
         }
     }
 
-    /// Eliminates the own unknowns. `leading_zeros(panel)` own columns of a border panel hold zeros, a multiple
-    /// of [`TILE`], and are skipped.
+    /// Factorises the own rows, L₁₁; those of the border stay as they are.
     ///
     /// # Errors
     /// [`FemError::NotPositiveDefinite`].
-    pub fn eliminate(&mut self, leading_zeros: impl Fn(usize) -> usize) -> Result<(), FemError> {
+    pub fn factorise(&mut self) -> Result<(), FemError> {
         let own = self.own;
         for panel in 0..own / TILE {
             let (above, row) = self.panels.split_at_mut(panel * own);
@@ -91,9 +90,20 @@ impl Front {
             let (left, diagonal) = row.split_at_mut(panel * TILE);
             let mut tile = tile_at(diagonal);
             subtract_product(&mut tile, left, left);
-            factorise(&mut tile)?;
+            factorise_tile(&mut tile)?;
             diagonal[..TILE].copy_from_slice(&tile);
         }
+        Ok(())
+    }
+
+    /// Eliminates the own unknowns. `leading_zeros(panel)` own columns of a border panel hold zeros, a multiple
+    /// of [`TILE`], and are skipped.
+    ///
+    /// # Errors
+    /// [`FemError::NotPositiveDefinite`].
+    pub fn eliminate(&mut self, leading_zeros: impl Fn(usize) -> usize) -> Result<(), FemError> {
+        self.factorise()?;
+        let own = self.own;
         let (above, rows) = self.panels.split_at_mut(own / TILE * own);
         for panel in 0..self.border / TILE {
             let zeros = leading_zeros(panel);
@@ -114,6 +124,22 @@ impl Front {
             }
         }
         Ok(())
+    }
+
+    /// `out += F₂₁ x`, before the border is reduced.
+    pub fn add_border_product(&self, x: &[[f64; 1]], out: &mut [f64]) {
+        let rows = self.panels[self.own / TILE * self.own..].chunks_exact(self.own);
+        for (row, out) in rows.zip(out.chunks_mut(TILE)) {
+            let mut sum = [0.0; TILE];
+            for (strip, [x]) in row.iter().zip(x) {
+                for i in 0..TILE {
+                    sum[i] += strip[i] * x;
+                }
+            }
+            for (out, sum) in out.iter_mut().zip(sum) {
+                *out += sum;
+            }
+        }
     }
 }
 
@@ -163,7 +189,7 @@ fn reduce(row: &mut [Strip], above: &[Strip], own: usize, from: usize, to: usize
 }
 
 /// Cholesky factor of a diagonal tile, lower triangle, with reciprocals on the diagonal.
-fn factorise(tile: &mut [Strip; TILE]) -> Result<(), FemError> {
+fn factorise_tile(tile: &mut [Strip; TILE]) -> Result<(), FemError> {
     for j in 0..TILE {
         for k in 0..j {
             for i in j..TILE {
@@ -210,6 +236,27 @@ pub fn substitute_back<const W: usize>(panels: &[Strip], own: usize, x: &mut [[f
         }
         let reciprocal = panels[first * own + column][within];
         before[column] = sum.map(|sum| sum * reciprocal);
+    }
+}
+
+/// [`substitute_back`] for one column, whose sums run in four parts that do not wait for each other.
+pub fn substitute_back_one(panels: &[Strip], own: usize, x: &mut [[f64; 1]]) {
+    for column in (0..own).rev() {
+        let (first, within) = (column / TILE, column % TILE);
+        let (before, after) = x.split_at_mut((first + 1) * TILE);
+        let mut sum = [0.0; TILE];
+        let tiles = panels[(first + 1) * own..].iter().skip(column).step_by(own);
+        for (strip, x) in tiles.zip(after.as_chunks::<TILE>().0) {
+            for i in 0..TILE {
+                sum[i] += strip[i] * x[i][0];
+            }
+        }
+        let diagonal = &panels[first * own + column];
+        for i in within + 1..TILE {
+            sum[i] += diagonal[i] * before[first * TILE + i][0];
+        }
+        let [a, b, c, d] = sum;
+        before[column][0] = (before[column][0] - ((a + b) + (c + d))) * diagonal[within];
     }
 }
 

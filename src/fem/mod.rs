@@ -4,6 +4,7 @@
 //! last, and keeps the surface's compliance. A [`Pose`] of the probe is then a small contact problem.
 
 pub mod assembly;
+pub mod certify;
 pub mod cholesky;
 pub mod contact;
 pub mod element;
@@ -47,7 +48,7 @@ pub struct MeshOptions {
 impl Default for MeshOptions {
     fn default() -> Self {
         MeshOptions {
-            size: 0.75e-3,
+            size: 0.5e-3,
             refinement: 1,
             element: Element::T6,
         }
