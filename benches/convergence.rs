@@ -1,7 +1,7 @@
 //! Richardson study of the paper's forces (requirements FEM-021, FEM-025, FEM-028):
 //! `cargo bench --bench convergence`.
 //!
-//! A mesh of 1.5 mm is refined uniformly three times (2, 4, 8; the last has some 140 000 nodes). Where the
+//! A mesh of 1.5 mm is refined uniformly three times (2, 4, 8; the last has some 250 000 nodes). Where the
 //! differences of the three shrink as they should, their observed order, kept between 1 and 4, gives the
 //! limit; else the order is taken as 1, the worst that a corner leaves. The default mesh is compared with it, and
 //! its bands are counted that hold the limit. Takes some minutes and 1 GB on one core.
