@@ -178,22 +178,18 @@ impl Factor {
         let mut halves = self.halves(&single, 0);
         let on_axis =
             2 * self.numbering.right..2 * (self.numbering.right + self.numbering.axis + 1);
-        for (half, root) in halves.iter_mut().zip(&self.roots) {
+        for (parity, (half, root)) in halves.iter_mut().zip(&self.roots).enumerate() {
             // Either half carries its own share of a load on the axis.
             for [load] in &mut half[on_axis.clone()] {
                 *load *= 0.5;
             }
             self.forward(half);
-            root.solve(&mut half[on_axis.start..], self.parity(root));
+            root.solve(&mut half[on_axis.start..], parity);
             self.back(half);
         }
         let mut u = vec![[0.0]; force.len()];
         self.join(&halves, &mut u, 0);
         u.into_iter().map(|[u]| u).collect()
-    }
-
-    fn parity(&self, root: &Root) -> usize {
-        usize::from(core::ptr::eq(root, &self.roots[1]))
     }
 
     /// Given the surface displacements in the last rows of `u`, fills in the interior's, which carry no
