@@ -8,6 +8,7 @@ pub mod certify;
 pub mod cholesky;
 pub mod contact;
 pub mod element;
+mod elimination;
 pub mod field;
 mod front;
 pub mod mesh;
