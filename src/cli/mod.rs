@@ -4,6 +4,7 @@ mod config;
 mod detect;
 mod detection;
 mod error;
+mod experiment;
 mod import;
 mod lists;
 mod output;
@@ -46,6 +47,8 @@ enum Command {
     Verify(verify::VerifyArguments),
     /// A force map to a hand, through a haptic device or a simulated one.
     Play(play::PlayArguments),
+    /// The paper's experiment: pairs of samples, of which a subject says where the inclusion is.
+    Experiment(experiment::ExperimentArguments),
     /// The time budget of the servo loop, on the simulated device.
     Timing(timing::TimingArguments),
 }
@@ -102,6 +105,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Detect(arguments) => detect::detect(&arguments),
             Command::Verify(arguments) => verify::verify(&arguments),
             Command::Play(arguments) => play::play(&arguments),
+            Command::Experiment(arguments) => experiment::experiment(&arguments),
             Command::Timing(arguments) => timing::timing(&arguments),
         },
         Err(error) if !error.use_stderr() => output::print(&error.to_string()),
