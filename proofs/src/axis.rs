@@ -54,6 +54,32 @@ fn locate_is_total_and_in_range() {
     });
 }
 
+// No Kani proof: it relates a product to a quotient.
+// Verifies: SRV-005, SRV-012.
+#[cfg(not(kani))]
+#[test]
+fn a_fraction_is_near_the_exact_one() {
+    harness!(OnAxis, |case| {
+        let knots = case.axis.knots.map(f64::from);
+        let position = f64::from(case.position);
+        let found = case.axis.axis().locate(case.position);
+        let (start, end) = (knots[found.index], knots[found.index + 1]);
+        // The width, its reciprocal, the distance and the product are each rounded to 24 bits.
+        let exact = ((position - start) / (end - start)).clamp(-1.0, 2.0);
+        let off = (f64::from(found.fraction) - exact).abs();
+        assert!(case.position.is_nan() || off <= 4.01 / 16_777_216.0 * exact.abs());
+        reached!(
+            "within a cell",
+            found.fraction > 0.0 && found.fraction < 1.0
+        );
+        reached!(
+            "in a cell but the first",
+            found.index != 0 && found.fraction < 1.0
+        );
+        reached!("continued", found.fraction > -1.0 && found.fraction < 0.0);
+    });
+}
+
 /// An axis of two cells and one of its knots, but not the last.
 #[derive(Debug, Clone, bolero_generator::TypeGenerator)]
 struct AtKnot {
