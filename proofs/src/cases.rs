@@ -367,8 +367,9 @@ pub fn sound_force<D: Driver>(driver: &mut D, limits: &Limits) -> Option<Force> 
 
 fn cycle<D: Driver>(driver: &mut D, limits: Limits, force: Force) -> Option<Cycle> {
     let last: u16 = driver.produce()?;
-    let missed = match driver.gen_variant(4, 0)? {
+    let missed = match driver.gen_variant(6, 0)? {
         0 => driver.produce()?,
+        1 => u16::MAX,
         _ => driver.gen_u16(Included(&0), Included(&3))?,
     };
     let state = State {

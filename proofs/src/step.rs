@@ -76,7 +76,7 @@ impl TypeGenerator for OnGrid {
     }
 }
 
-// Verifies: SRV-001, SRV-013, SRV-020.
+// Verifies: SRV-001, SRV-013, SRV-020, SRV-070.
 #[test]
 #[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(cadical))]
 fn force_is_bounded() {
@@ -92,6 +92,9 @@ fn force_is_bounded() {
             assert!(value.abs() <= limits.force() && limits.force() <= 20.0);
         }
         assert!(next.force == command.force);
+        if !is_sound(&state, &limits) {
+            assert!(command.force == Force::ZERO);
+        }
         reached!(
             "a force at its limit",
             command.force.normal == limits.force()
