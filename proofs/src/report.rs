@@ -229,7 +229,7 @@ fn a_device_gives_finite_samples_and_takes_any_force() {
             assert!((sample.depth < 0.0) == (report.normal > 0));
             assert!((sample.lateral < 0.0) == (report.lateral < 0));
             assert!(sample.deadman == (report.buttons % 2 == 1));
-            assert!(sample.device_fault == (report.status % 4 != 0));
+            assert!(sample.device_fault == (report.status & 3 != 0));
             assert!(sample.sequence == report.sequence);
 
             let command = Command {

@@ -15,7 +15,7 @@ fn is_fresh(state: &State, sample: Option<Sample>) -> bool {
     };
     let ahead = i32::from(sample.sequence) - i32::from(last);
     let ahead = if ahead < 0 { ahead + 65536 } else { ahead };
-    1 <= ahead && ahead <= 32767
+    (1..=32767).contains(&ahead)
 }
 
 fn is_sound(state: &State, limits: &Limits) -> bool {
@@ -317,8 +317,8 @@ fn stale_samples_are_not_taken_over_while_armed() {
             _ => state.sequence,
         };
         assert!(next.sequence == expected);
-        let missed = state.missed.checked_add(1).unwrap_or(u16::MAX);
-        assert!(next.missed == if fresh { 0 } else { missed });
+        let missed = (u32::from(state.missed) + 1).min(65535);
+        assert!(u32::from(next.missed) == if fresh { 0 } else { missed });
         reached!("fresh", fresh);
         reached!(
             "stale while armed",

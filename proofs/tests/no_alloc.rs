@@ -47,11 +47,11 @@ fn play(cycles: u32) -> u32 {
         let [e, f] = sequence.to_le_bytes();
         // Force comes only while the deadman is held, arming only while it is not.
         let deadman = u8::from(cycle % 64 > 32);
-        let fault = u8::from(random % 509 == 0);
+        let fault = u8::from(random % 509 == 3);
         let bytes = [1, a, b, c, d | 0x80, deadman, fault, e, f, 0, 0];
         let report = PositionReport::decode(&bytes).unwrap();
         let input = Input {
-            sample: (random % 61 != 0).then(|| units.sample(&report)),
+            sample: (random % 61 != 3).then(|| units.sample(&report)),
             request: match random % 7 {
                 0 if state.mode != Mode::Armed => Request::Arm,
                 1 if cycle % 4096 == 1 => Request::Disarm,
