@@ -397,16 +397,18 @@ fn cycle<D: Driver>(driver: &mut D, limits: Limits, force: Force) -> Option<Cycl
     })
 }
 
-/// The same cycle with everything there that playing needs.
+/// The same cycle with everything there that playing needs, one time in four above the surface.
 fn playing<D: Driver>(driver: &mut D, mut cycle: Cycle, last: u16) -> Option<Cycle> {
     cycle.state.mode = Mode::Armed;
     cycle.state.sequence = Some(last);
     cycle.input.request = Request::None;
+    let depth = driver.gen_f32(Included(&0.0002), Included(&0.5))?;
+    let above = driver.gen_variant(4, 0)? == 1;
     cycle.input.sample = Some(Sample {
         sequence: last.wrapping_add(1),
         deadman: true,
         device_fault: false,
-        depth: driver.gen_f32(Included(&0.0002), Included(&0.5))?,
+        depth: if above { -depth } else { depth },
         lateral: signed(driver, 0.001, 0.5)?,
     });
     Some(cycle)

@@ -169,7 +169,7 @@ fn slew_is_limited() {
     });
 }
 
-// Verifies: SRV-030.
+// Verifies: SRV-014, SRV-030.
 #[test]
 #[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(cadical))]
 fn no_force_unless_permitted() {
@@ -186,18 +186,21 @@ fn no_force_unless_permitted() {
             && expected_fault(cycle).is_none()
             && input.sample.is_some_and(|sample| sample.deadman);
         assert!(command.playing == permitted);
+        let sample_says = |what: fn(Sample) -> bool| input.sample.is_some_and(what);
+        // Nothing is touched there (SRV-014).
+        let above = sample_says(|s| s.depth < 0.0);
         for (value, last) in components(command.force)
             .into_iter()
             .zip(components(state.force))
         {
             // Towards zero by a slew limit at least, and never through it.
             let nearer = value.abs() < last.abs() && (value < 0.0) == (last < 0.0);
-            assert!(permitted || value == 0.0 || nearer);
+            assert!(value == 0.0 || nearer || permitted && !above);
         }
-        let sample_says = |what: fn(Sample) -> bool| input.sample.is_some_and(what);
         let moving = state.force != Force::ZERO;
         let armed = state.mode == Mode::Armed;
         reached!("permitted", permitted);
+        reached!("above the surface", permitted && above && moving);
         reached!(
             "a deadman let go",
             armed && moving && sample_says(|s| !s.deadman)

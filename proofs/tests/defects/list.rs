@@ -24,7 +24,7 @@ pub const DEFECTS: &[Defect] = &[
     Defect {
         name: "the cell is one too far",
         file: AXIS,
-        edits: &[(".saturating_sub(1).min(last)", ".min(last)")],
+        edits: &[("index = ahead;", "index = ahead.wrapping_add(1);")],
         found_by: "locate_is_total_and_in_range",
     },
     Defect {
@@ -66,7 +66,7 @@ pub const DEFECTS: &[Defect] = &[
     Defect {
         name: "the upper row twice",
         file: TABLE,
-        edits: &[("self.forces.get(second),", "self.forces.get(first),")],
+        edits: &[("self.forces.get(second..)", "self.forces.get(first..)")],
         found_by: "adjoining_cells_agree_on_their_border",
     },
     Defect {
@@ -74,6 +74,12 @@ pub const DEFECTS: &[Defect] = &[
         file: TABLE,
         edits: &[("if depth < 0.0 { Force::ZERO } else { force }", "force")],
         found_by: "force_of_a_table_is_bounded",
+    },
+    Defect {
+        name: "a force above the surface that the step plays",
+        file: STEP,
+        edits: &[("playing && sample.depth >= 0.0", "playing")],
+        found_by: "no_force_unless_permitted",
     },
     Defect {
         name: "a weight squared",
@@ -84,13 +90,10 @@ pub const DEFECTS: &[Defect] = &[
     Defect {
         name: "the limit of the force left out",
         file: STEP,
-        edits: &[
-            ("let target = limit(target, limits.force());", ""),
-            (
-                "limit(approach(last, target, change), limits.force())",
-                "limit(approach(last, target, change), 900.0)",
-            ),
-        ],
+        edits: &[(
+            "approach(last, limit(target, limits.force()), change)",
+            "approach(last, target, change)",
+        )],
         found_by: "force_is_bounded",
     },
     Defect {
@@ -118,8 +121,8 @@ pub const DEFECTS: &[Defect] = &[
         name: "the latch forgotten",
         file: STEP,
         edits: &[(
-            "(mode, _, _) => mode,",
-            "(Mode::Faulted(_), None, _) => Mode::Disarmed, (mode, _, _) => mode,",
+            "if arm { Mode::Armed } else { mode }",
+            "if arm { Mode::Armed } else if cause.is_none() { Mode::Disarmed } else { mode }",
         )],
         found_by: "fault_latches",
     },
@@ -127,8 +130,8 @@ pub const DEFECTS: &[Defect] = &[
         name: "a later fault takes the place of the first",
         file: STEP,
         edits: &[(
-            "(Mode::Disarmed | Mode::Armed, Some(cause), _)",
-            "(_, Some(cause), _)",
+            "if arm { Mode::Armed } else { mode }",
+            "if arm { Mode::Armed } else { cause.map_or(mode, Mode::Faulted) }",
         )],
         found_by: "fault_latches",
     },
