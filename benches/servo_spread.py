@@ -1,0 +1,18 @@
+"""The spread of the instruction counts that `cargo bench --bench servo_instructions` has left behind: one step of the
+servo kernel must take the same on every path, within 10 % of the middle (SRV-060). Ends with 1 otherwise."""
+
+import pathlib
+import re
+import sys
+
+folder = pathlib.Path("target/gungraun/palpate/servo_instructions")
+counts = {}
+for file in folder.glob("kernel/*/callgrind.*.out"):
+    counts[file.parent.name] = int(re.search(r"^summary: (\d+)", file.read_text(), re.MULTILINE).group(1))
+if len(counts) < 15:
+    sys.exit(f"{len(counts)} paths in {folder}, expected at least 15: run the bench first")
+least, most = min(counts, key=counts.get), max(counts, key=counts.get)
+low, high = counts[least], counts[most]
+spread = (high - low) / (high + low)
+print(f"{low} instructions ({least}) to {high} ({most}): within {100 * spread:.1f} % of the middle")
+sys.exit(spread > 0.10)
