@@ -7,10 +7,13 @@
 //! | `device.rs` | what the loop needs of a device |
 //! | `playback.rs` | one cycle of the loop: read, drain, step, write |
 //! | `session.rs` | a session: it ends with a stopped device |
+//! | `real/` | a device on the system's HID stack |
 //! | `simulated/` | a device and a hand on a virtual clock, with faults by script |
 
 mod device;
 mod playback;
+#[cfg(feature = "hid")]
+pub mod real;
 mod report;
 #[cfg(feature = "std")]
 mod session;
