@@ -6,18 +6,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use palpate::hid::{
-    Capabilities, Control, DESCRIPTOR, ForceReport, PositionReport, button, simulated, status,
-};
+use palpate::hid::{Capabilities, Control, ForceReport, PositionReport, button, simulated, status};
 
+use crate::link::{self, Answer, Completion, Kind, Link};
 use crate::schedule::{self, Fifo};
-use crate::uhid::{Event, Uhid};
-
-/// Vendor and product, of the numbers that pid.codes keeps for tests.
-pub const NUMBERS: [u16; 2] = [0x1209, 0x0001];
-
-/// What the board calls itself.
-pub const NAME: &str = "palpate test display";
 
 /// What the board says that it is.
 pub const CAPABILITIES: Capabilities = simulated::PAPER;
@@ -25,8 +17,8 @@ pub const CAPABILITIES: Capabilities = simulated::PAPER;
 /// Between two reports.
 pub const PERIOD: Duration = Duration::from_millis(1);
 
-/// The hand holds the deadman from this tick on.
-pub const HELD_FROM: u32 = 50;
+/// The hand holds the deadman from this tick on, counted like those of a script.
+const HELD_FROM: u32 = 50;
 
 /// What the board does in a tick instead of a report with the next sequence number.
 #[derive(Debug, Clone, Copy)]
@@ -41,9 +33,11 @@ pub enum Act {
     Silence,
     /// The cable is pulled.
     Unplug,
+    /// From now on takes no force report, but goes on reporting: the bus says NAK.
+    Refuse,
 }
 
-/// How the board answers questions.
+/// How the board answers the question for its capabilities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answers {
     /// As the profile says.
@@ -56,7 +50,20 @@ pub enum Answers {
     None,
 }
 
-/// What happens, tick by tick.
+/// Which board.
+#[derive(Debug, Clone, Copy)]
+pub struct Make {
+    /// Its cable.
+    pub kind: Kind,
+    /// What it does.
+    pub script: Script,
+    /// What it says of itself.
+    pub answers: Answers,
+    /// When a force report is taken.
+    pub takes: Completion,
+}
+
+/// What happens, tick by tick since the board was first enabled; until then it reports.
 pub type Script = fn(tick: u32) -> Act;
 
 /// What the board saw and did.
@@ -88,6 +95,8 @@ pub struct Record {
     pub motors: [i16; 2],
     /// How long after the last force report the board's own watchdog dropped the force.
     pub dropped_after: Option<Duration>,
+    /// How long after the last force report the control `stop` came.
+    pub stopped_after: Option<Duration>,
     /// When the cable was pulled.
     pub unplugged: Option<Instant>,
     /// From each position report to the force report that followed it.
@@ -95,67 +104,60 @@ pub struct Record {
 }
 
 struct State {
+    make: Make,
     record: Record,
+    /// Tick of the script.
+    tick: Option<u32>,
     enabled: bool,
     dropped: bool,
     force: [i16; 2],
     written: Instant,
     sent: Instant,
     answered: bool,
+    refuses: bool,
     sequence: u16,
 }
 
+/// What the system talks to.
+struct Shared(Mutex<State>);
+
 /// A board that is plugged in.
 pub struct Board {
-    uhid: Arc<Uhid>,
-    state: Arc<Mutex<State>>,
-    ticker: Option<JoinHandle<io::Result<()>>>,
-    answerer: Option<JoinHandle<io::Result<()>>>,
-}
-
-fn lock(state: &Mutex<State>) -> MutexGuard<'_, State> {
-    state.lock().unwrap_or_else(PoisonError::into_inner)
+    link: Arc<dyn Link>,
+    shared: Arc<Shared>,
+    clock: Option<JoinHandle<io::Result<()>>>,
+    server: Option<JoinHandle<io::Result<()>>>,
 }
 
 impl Board {
-    /// Plugs in a board that follows `script`.
-    pub fn plug(serial: &str, script: Script, answers: Answers) -> io::Result<Board> {
-        let uhid = Arc::new(Uhid::create(NAME, serial, NUMBERS, &DESCRIPTOR)?);
-        let now = Instant::now();
-        let state = Arc::new(Mutex::new(State {
-            record: Record {
-                round_trips: Vec::with_capacity(10_000),
-                ..Record::default()
-            },
-            enabled: false,
-            dropped: false,
-            force: [0, 0],
-            written: now,
-            sent: now,
-            answered: true,
-            sequence: 0,
-        }));
-        let (device, shared) = (uhid.clone(), state.clone());
-        let answerer = thread::spawn(move || answer(&device, &shared, answers));
-        let (device, shared) = (uhid.clone(), state.clone());
-        let ticker = thread::spawn(move || tick(&device, &shared, script));
+    /// Plugs a board in.
+    pub fn plug(serial: &str, make: Make) -> io::Result<Board> {
+        let link = link::plug(make.kind, serial)?;
+        let shared = Arc::new(Shared(Mutex::new(State::new(make))));
+        let (cable, board) = (link.clone(), shared.clone());
+        let server = thread::spawn(move || {
+            schedule::fifo(Fifo::Board)?;
+            cable.serve(&*board)
+        });
+        let (cable, board) = (link.clone(), shared.clone());
+        let clock = thread::spawn(move || tick(&*cable, &board));
         Ok(Board {
-            uhid,
-            state,
-            ticker: Some(ticker),
-            answerer: Some(answerer),
+            link,
+            shared,
+            clock: Some(clock),
+            server: Some(server),
         })
     }
 
     /// What it saw so far.
     pub fn record(&self) -> Record {
-        lock(&self.state).record.clone()
+        self.shared.lock().record.clone()
     }
 
     /// Pulls the cable, if the script has not done so, and returns what the board saw.
     pub fn unplug(mut self) -> io::Result<Record> {
-        pull(&self.uhid, &self.state)?;
-        for thread in [self.ticker.take(), self.answerer.take()] {
+        self.shared.pull(&*self.link)?;
+        for thread in [self.clock.take(), self.server.take()] {
             let ended = thread.map_or(Ok(Ok(())), JoinHandle::join);
             ended.map_err(|_| io::Error::other("a thread of the board panicked"))??;
         }
@@ -163,73 +165,100 @@ impl Board {
     }
 }
 
-fn pull(uhid: &Uhid, state: &Mutex<State>) -> io::Result<()> {
-    {
-        let unplugged = &mut lock(state).record.unplugged;
-        if unplugged.is_some() {
-            return Ok(());
-        }
-        *unplugged = Some(Instant::now());
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
-    uhid.destroy()
+
+    /// Pulls the cable, once.
+    fn pull(&self, link: &dyn Link) -> io::Result<()> {
+        let before = {
+            let unplugged = &mut self.lock().record.unplugged;
+            let before = *unplugged;
+            *unplugged = before.or(Some(Instant::now()));
+            before
+        };
+        before.map_or_else(|| link.unplug(), |_| Ok(()))
+    }
 }
 
-/// The board's clock: a report each period, until it is unplugged.
-fn tick(uhid: &Uhid, shared: &Mutex<State>, script: Script) -> io::Result<()> {
+/// The board's clock: a frame of the bus and a report each period, until it is unplugged.
+fn tick(link: &dyn Link, shared: &Shared) -> io::Result<()> {
     schedule::fifo(Fifo::BoardClock)?;
     let began = Instant::now();
     for tick in 0.. {
-        let due = PERIOD * tick;
-        thread::sleep(due.saturating_sub(began.elapsed()));
-        if lock(shared).record.unplugged.is_some() {
+        thread::sleep((PERIOD * tick).saturating_sub(began.elapsed()));
+        let mut state = shared.lock();
+        if state.record.unplugged.is_some() {
             break;
         }
-        match script(tick) {
-            Act::Unplug => {
-                pull(uhid, shared)?;
-                break;
-            }
-            act => {
-                if let Some(bytes) = lock(shared).tick(tick, act) {
-                    uhid.input(&bytes)?;
-                }
-            }
+        let act = state.tick.map_or(Act::Report, state.make.script);
+        let report = state.advance(act);
+        drop(state);
+        if let Act::Unplug = act {
+            return shared.pull(link);
+        }
+        let sent = link
+            .frame()
+            .and_then(|()| report.map_or(Ok(()), |report| link.input(&report)));
+        // The cable may have been pulled in between.
+        if sent.is_err() && shared.lock().record.unplugged.is_none() {
+            return sent;
         }
     }
     Ok(())
 }
 
-/// Answers what the system asks, until the driver is gone.
-fn answer(uhid: &Uhid, shared: &Mutex<State>, answers: Answers) -> io::Result<()> {
-    schedule::fifo(Fifo::Board)?;
-    loop {
-        match uhid.event()? {
-            Event::Stop => return Ok(()),
-            Event::Start | Event::Open | Event::Close => {}
-            Event::Output(report) => lock(shared).output(&report),
-            Event::GetReport { id, number } => {
-                let known = number == Capabilities::NUMBER;
-                lock(shared).record.questions += u32::from(known);
-                let report = CAPABILITIES.encode();
-                match answers {
-                    Answers::Good if known => uhid.answer_get(id, Some(&report))?,
-                    Answers::Short => uhid.answer_get(id, Some(&report[..9]))?,
-                    Answers::Good | Answers::Error => uhid.answer_get(id, None)?,
-                    Answers::None => {}
-                }
-            }
-            Event::SetReport { id, report } => {
-                let done = lock(shared).control(&report);
-                uhid.answer_set(id, done)?;
-            }
+impl link::Board for Shared {
+    fn output(&self, report: &[u8]) -> Completion {
+        self.lock().output(report)
+    }
+
+    fn get(&self, number: u8) -> Answer {
+        let mut state = self.lock();
+        if number != Capabilities::NUMBER {
+            return Answer::Error;
         }
+        state.record.questions += 1;
+        let report = CAPABILITIES.encode();
+        match state.make.answers {
+            Answers::Good => Answer::Report(report.to_vec()),
+            Answers::Short => Answer::Report(report[..9].to_vec()),
+            Answers::Error => Answer::Error,
+            Answers::None => Answer::Nothing,
+        }
+    }
+
+    fn set(&self, report: &[u8]) -> bool {
+        self.lock().control(report)
     }
 }
 
 impl State {
+    fn new(make: Make) -> State {
+        let now = Instant::now();
+        State {
+            make,
+            record: Record {
+                round_trips: Vec::with_capacity(10_000),
+                ..Record::default()
+            },
+            tick: None,
+            enabled: false,
+            dropped: false,
+            force: [0, 0],
+            written: now,
+            sent: now,
+            answered: true,
+            refuses: false,
+            sequence: 0,
+        }
+    }
+
     /// One period: the watchdog, and the bytes to send.
-    fn tick(&mut self, tick: u32, act: Act) -> Option<Vec<u8>> {
+    fn advance(&mut self, act: Act) -> Option<Vec<u8>> {
         self.record.ticks += 1;
+        self.tick = self.tick.map(|tick| tick + 1);
         self.record.unanswered += u32::from(self.enabled && !self.answered);
         let silent = self.written.elapsed();
         let watchdog = Duration::from_millis(u64::from(CAPABILITIES.watchdog_ms));
@@ -247,17 +276,22 @@ impl State {
         match act {
             Act::Silence | Act::Unplug => None,
             Act::Bytes(bytes) => Some(bytes.to_vec()),
-            Act::Report | Act::Repeat => {
+            Act::Report | Act::Repeat | Act::Refuse => {
+                self.refuses |= matches!(act, Act::Refuse);
                 self.answered = self.record.forces == 0;
-                Some(self.report(tick).encode().to_vec())
+                Some(self.report().encode().to_vec())
             }
         }
     }
 
+    fn held(&self) -> bool {
+        self.tick.is_some_and(|tick| tick > HELD_FROM)
+    }
+
     /// A hand that presses 2 mm into the gel, going to and fro over 8 mm.
-    fn report(&self, tick: u32) -> PositionReport {
-        let held = tick >= HELD_FROM;
-        let phase = (tick % 1600) as i16;
+    fn report(&self) -> PositionReport {
+        let held = self.held();
+        let phase = (self.record.ticks % 1600) as i16;
         let last = self.record.last;
         PositionReport {
             lateral: 10 * (400 - (phase - 800).abs()),
@@ -279,10 +313,13 @@ impl State {
         }
     }
 
-    fn output(&mut self, bytes: &[u8]) {
+    fn output(&mut self, bytes: &[u8]) -> Completion {
+        if self.refuses {
+            return Completion::Never;
+        }
         let Ok(report) = ForceReport::decode(bytes) else {
             self.record.invalid += 1;
-            return;
+            return Completion::Now;
         };
         if !self.answered {
             self.record.round_trips.push(self.sent.elapsed());
@@ -299,9 +336,10 @@ impl State {
         } else {
             [0, 0]
         };
-        let early = self.record.ticks <= HELD_FROM && self.force != [0, 0];
+        let early = !self.held() && self.force != [0, 0];
         self.record.too_early += u32::from(early);
         self.move_motors();
+        self.make.takes
     }
 
     fn control(&mut self, bytes: &[u8]) -> bool {
@@ -310,8 +348,14 @@ impl State {
             return false;
         };
         match control {
-            Control::Stop => self.enabled = false,
-            Control::Enable => self.enabled = true,
+            Control::Stop => {
+                self.enabled = false;
+                self.record.stopped_after = Some(self.written.elapsed());
+            }
+            Control::Enable => {
+                self.enabled = true;
+                self.tick = self.tick.or(Some(0));
+            }
             Control::ClearFault => self.dropped = false,
         }
         self.written = Instant::now();

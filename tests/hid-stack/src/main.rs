@@ -3,10 +3,14 @@
 //! instructions, so that a busy host changes nothing, and is no latency of any hardware.
 
 mod board;
+mod checks;
+mod link;
 mod scenarios;
 mod schedule;
 mod servo;
 mod uhid;
+mod usb;
+mod usb_scenarios;
 
 use std::process::ExitCode;
 
@@ -14,11 +18,18 @@ use std::process::ExitCode;
 static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;
 
 fn main() -> ExitCode {
-    if let Some(part) = std::env::args().nth(1) {
-        return servo::play_until_killed(&part);
-    }
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let scenarios = match &arguments[..] {
+        [tier] if tier == "uhid" => scenarios::ALL,
+        [tier] if tier == "usb" => usb_scenarios::ALL,
+        [play, serial] if play == "play" => return servo::play_until_killed(serial),
+        _ => {
+            eprintln!("hid-stack: expected uhid, usb or play SERIAL");
+            return ExitCode::from(2);
+        }
+    };
     let mut passed = 0;
-    for &(name, scenario) in scenarios::ALL {
+    for &(name, scenario) in scenarios {
         match scenario() {
             Ok(measured) => {
                 passed += 1;
@@ -27,7 +38,7 @@ fn main() -> ExitCode {
             Err(problem) => println!("hid-stack: FAILED  {name}: {problem}"),
         }
     }
-    let all = scenarios::ALL.len();
+    let all = scenarios.len();
     println!("hid-stack: verdict {passed} of {all} scenarios passed");
     ExitCode::from(u8::from(passed != all))
 }

@@ -10,7 +10,7 @@ use palpate::hid::{
 };
 use palpate::servo::{Axis, Force, Limits, Table};
 
-use crate::board::NUMBERS;
+use crate::link::NUMBERS;
 use crate::schedule::{self, Fifo};
 
 /// How long a device may take to be there after it was plugged in.

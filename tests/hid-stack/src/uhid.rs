@@ -97,7 +97,7 @@ impl Uhid {
     }
 
     /// Sends an input report, whatever its bytes.
-    pub fn input(&self, report: &[u8]) -> io::Result<()> {
+    pub fn send_input(&self, report: &[u8]) -> io::Result<()> {
         let mut message = INPUT2.to_ne_bytes().to_vec();
         message.extend((report.len() as u16).to_ne_bytes());
         message.extend(report);
