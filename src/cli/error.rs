@@ -23,6 +23,9 @@ pub enum CliError {
     /// A trace is not valid, or not for these maps.
     #[error("{0}")]
     Trace(#[from] TraceError),
+    /// A map can not be played, or a device not be used.
+    #[error("{0}")]
+    Playback(String),
     /// A check of the statistics battery failed.
     #[error("{0}")]
     Check(String),

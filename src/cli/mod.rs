@@ -7,9 +7,11 @@ mod error;
 mod import;
 mod lists;
 mod output;
+mod playback;
 mod progress;
 mod run;
 mod solve;
+mod timing;
 mod verify;
 
 use std::ffi::OsString;
@@ -41,6 +43,8 @@ enum Command {
     Detect(detect::DetectArguments),
     /// The statistics battery of the detector, once or with fresh seeds.
     Verify(verify::VerifyArguments),
+    /// The time budget of the servo loop, on the simulated device.
+    Timing(timing::TimingArguments),
 }
 
 /// How the gap to the probe is measured.
@@ -88,21 +92,14 @@ impl From<ElementName> for Element {
 /// Implements: CLI-001, CLI-002, CLI-003.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = match Arguments::try_parse_from(arguments) {
-        Ok(Arguments {
-            command: Command::Run(arguments),
-        }) => run::run(&arguments),
-        Ok(Arguments {
-            command: Command::Solve(arguments),
-        }) => solve::solve(&arguments),
-        Ok(Arguments {
-            command: Command::ImportMap(arguments),
-        }) => import::import(&arguments),
-        Ok(Arguments {
-            command: Command::Detect(arguments),
-        }) => detect::detect(&arguments),
-        Ok(Arguments {
-            command: Command::Verify(arguments),
-        }) => verify::verify(&arguments),
+        Ok(Arguments { command }) => match command {
+            Command::Run(arguments) => run::run(&arguments),
+            Command::Solve(arguments) => solve::solve(&arguments),
+            Command::ImportMap(arguments) => import::import(&arguments),
+            Command::Detect(arguments) => detect::detect(&arguments),
+            Command::Verify(arguments) => verify::verify(&arguments),
+            Command::Timing(arguments) => timing::timing(&arguments),
+        },
         Err(error) if !error.use_stderr() => output::print(&error.to_string()),
         Err(error) => Err(CliError::usage(&error)),
     };

@@ -9,6 +9,7 @@
 //! | `playback.rs` | one cycle of the loop: read, drain, step, write |
 //! | `session.rs` | a session: it ends with a stopped device |
 //! | `real/` | a device on the system's HID stack |
+//! | `timing.rs` | how long the cycles take on this machine |
 //! | `simulated/` | a device and a hand on a virtual clock, with faults by script |
 
 mod device;
@@ -23,6 +24,8 @@ mod session;
 pub mod simulated;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "hid")]
+pub mod timing;
 mod units;
 
 pub use device::{DeviceError, HapticDevice, Received};

@@ -46,7 +46,9 @@ pub struct Cycle {
     pub force: ForceReport,
     /// The force follows the table.
     pub playing: bool,
-    /// When the loop had the report, on the device's clock.
+    /// When the wait for a report ended, on the device's clock.
+    pub woke: Duration,
+    /// When the queue was drained.
     pub received: Duration,
     /// When the force was computed.
     pub computed: Duration,
@@ -91,7 +93,7 @@ impl<'a> Playback<'a> {
         device: &mut D,
         request: Request,
     ) -> Result<Cycle, DeviceError> {
-        let (position, passed_over) = self.newest(device)?;
+        let (position, woke, passed_over) = self.newest(device)?;
         let received = device.now();
         self.count(position, passed_over);
         let input = Input {
@@ -110,23 +112,26 @@ impl<'a> Playback<'a> {
             position,
             force,
             playing: command.playing,
+            woke,
             received,
             computed,
             written: device.now(),
         })
     }
 
-    /// Waits for a report and takes what the queue holds besides: the newest, and how many older ones
-    /// it passed over. Garbage ends the wait, since a cycle must not last.
+    /// Waits for a report and takes what the queue holds besides: the newest, the time when the wait
+    /// was over, and how many older ones it passed over. Garbage ends the wait, since a cycle must not
+    /// last.
     fn newest<D: HapticDevice>(
         &mut self,
         device: &mut D,
-    ) -> Result<(Option<PositionReport>, u64), DeviceError> {
+    ) -> Result<(Option<PositionReport>, Duration, u64), DeviceError> {
         let mut newest = None;
         let mut passed_over = 0;
-        let mut timeout = self.timeout;
+        let mut received = device.read(self.timeout)?;
+        let woke = device.now();
         for _ in 0..QUEUE {
-            match device.read(timeout)? {
+            match received {
                 Received::Report(report) => {
                     passed_over += u64::from(newest.is_some());
                     newest = Some(report);
@@ -134,9 +139,9 @@ impl<'a> Playback<'a> {
                 Received::Garbage(_) => self.counters.garbage += 1,
                 Received::Nothing => break,
             }
-            timeout = Duration::ZERO;
+            received = device.read(Duration::ZERO)?;
         }
-        Ok((newest, passed_over))
+        Ok((newest, woke, passed_over))
     }
 
     /// Counts a cycle, the reports that it passed over, and those missing before `position`.

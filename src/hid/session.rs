@@ -142,6 +142,11 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     ///
     /// Implements: HID-016, HID-019.
     pub fn run(&mut self, mut each: impl FnMut(&Cycle, &Counters) -> bool) -> End {
+        self.run_watched(|_, cycle, counters| each(cycle, counters))
+    }
+
+    /// [`Session::run`] with a look at the device after each cycle.
+    pub fn run_watched(&mut self, mut each: impl FnMut(&D, &Cycle, &Counters) -> bool) -> End {
         let mut ask = false;
         let end = loop {
             ask = !ask && !self.armed_once;
@@ -152,7 +157,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
             };
             let state = self.playback.state();
             self.armed_once |= state.mode == Mode::Armed;
-            if !each(&cycle, &self.counters()) {
+            if !each(&self.device, &cycle, &self.counters()) {
                 break End::Asked;
             }
             if let Mode::Faulted(fault) = state.mode

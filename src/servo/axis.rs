@@ -1,6 +1,6 @@
 //! An axis of a force table.
 
-use super::limit::{between, limit};
+use super::limit::between;
 
 /// Most knots of an axis: each one costs a comparison in each cycle (SRV-002).
 pub const MAX_KNOTS: usize = 1024;
@@ -25,6 +25,10 @@ const FAR: f32 = 4.0;
 pub struct Axis<'a> {
     knots: &'a [f32],
     reciprocal_widths: &'a [f32],
+    /// Where the cells start: all knots but the last.
+    starts: &'a [f32],
+    /// The highest bit that the index of a cell can have; 0 if there is one cell.
+    stride: usize,
 }
 
 /// Where a position lies: a cell of an axis, and the fraction of its width.
@@ -111,9 +115,19 @@ impl<'a> Axis<'a> {
                 return Err(InvalidAxis::Reciprocal { index, value });
             }
         }
+        let starts = match knots {
+            [starts @ .., _] => starts,
+            [] => knots, // there are at least two
+        };
+        let stride = match starts.len() - 1 {
+            0 => 0,
+            last => 1 << last.ilog2(),
+        };
         Ok(Axis {
             knots,
             reciprocal_widths,
+            starts,
+            stride,
         })
     }
 
@@ -127,22 +141,29 @@ impl<'a> Axis<'a> {
         self.knots
     }
 
-    /// Where `position` (m) lies. A NaN counts as 0 m: it is the caller who must not ask.
+    /// Where `position` (m) lies. A NaN counts as far before the axis: it is the caller who must not
+    /// ask.
     ///
-    /// Every knot is compared, so that the time does not depend on the position.
+    /// The index is found bit by bit, the highest first: as many comparisons for every position.
     ///
     /// Implements: SRV-004, SRV-005, SRV-006.
     #[inline]
     pub fn locate(&self, position: f32) -> Cell {
-        let position = limit(position, FAR);
-        let mut passed: u32 = 0;
-        for &knot in self.knots {
-            passed = passed.wrapping_add(u32::from(knot <= position));
+        let position = between(position, -FAR, FAR);
+        let mut index = 0;
+        let mut stride = self.stride;
+        while stride > 0 {
+            let ahead = stride.wrapping_add(index);
+            if self
+                .starts
+                .get(ahead)
+                .is_some_and(|&start| start <= position)
+            {
+                index = ahead;
+            }
+            stride /= 2;
         }
-        let last = self.reciprocal_widths.len().saturating_sub(1);
-        let index = (passed as usize).saturating_sub(1).min(last);
-        let ends = (self.knots.get(index), self.knots.get(index.wrapping_add(1)));
-        let (Some(&start), Some(&end)) = ends else {
+        let Some(&[start, end, ..]) = self.knots.get(index..) else {
             return Cell::FIRST; // `new` gave every cell two ends
         };
         let Some(&reciprocal) = self.reciprocal_widths.get(index) else {

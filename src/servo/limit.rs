@@ -1,5 +1,7 @@
 //! The largest force, and how fast it may change.
 
+use core::fmt;
+
 /// No limit may allow a larger force, N (SRV-022).
 pub const FORCE_CEILING: f32 = 20.0;
 
@@ -30,6 +32,32 @@ pub enum InvalidLimits {
     /// The watchdog is not 1 to 100 cycles.
     Watchdog,
 }
+
+impl fmt::Display for InvalidLimits {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            InvalidLimits::Force => {
+                write!(
+                    f,
+                    "force limit: expected above 0 and at most {FORCE_CEILING} N"
+                )
+            }
+            InvalidLimits::Slew => {
+                write!(
+                    f,
+                    "slew limit: expected {MIN_SLEW} N a cycle to the force limit"
+                )
+            }
+            InvalidLimits::Release => write!(
+                f,
+                "release limit: expected at least the slew limit and 1/{RELEASE_CYCLES} of the force limit"
+            ),
+            InvalidLimits::Watchdog => write!(f, "watchdog: expected 1 to 100 cycles"),
+        }
+    }
+}
+
+impl core::error::Error for InvalidLimits {}
 
 impl Limits {
     /// Limits of `force` (N), of its change in one cycle while it is played (`slew`, N) and while it
@@ -106,17 +134,12 @@ pub fn approach(last: f32, target: f32, change: f32) -> f32 {
     between(target, last - change, last + change)
 }
 
-/// The number nearest to `value` from `low` to `high`, none of them NaN.
+/// The number nearest to `value` from `low` to `high`, for `low` ≤ `high`; a NaN gives `low`.
 ///
 /// Comparisons instead of `f32::max` and `f32::min`, which leave the sign of a zero to the platform,
-/// and instead of `f32::clamp`, which may panic.
+/// and instead of `f32::clamp`, which may panic. In this form each is one instruction.
 #[inline]
 pub(super) fn between(value: f32, low: f32, high: f32) -> f32 {
-    if value < low {
-        low
-    } else if value > high {
-        high
-    } else {
-        value
-    }
+    let value = if value > low { value } else { low };
+    if value < high { value } else { high }
 }

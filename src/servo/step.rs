@@ -48,12 +48,16 @@ pub fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (Stat
     } else {
         limits.release()
     };
-    let force = table.force(sample.depth, sample.lateral);
-    let target = if playing { force } else { Force::ZERO };
-    let component = |last, target| {
-        let target = limit(target, limits.force());
-        limit(approach(last, target, change), limits.force())
+    // Computed in any case, so that the time is the same; `Table::force` in effect, since nothing is
+    // played above the surface.
+    let force = table.continued(sample.depth, sample.lateral);
+    let target = if playing && sample.depth >= 0.0 {
+        force
+    } else {
+        Force::ZERO
     };
+    // Between the last force and the target, both within the limit.
+    let component = |last, target| approach(last, limit(target, limits.force()), change);
     let force = Force {
         lateral: component(last.lateral, target.lateral),
         normal: component(last.normal, target.normal),
@@ -84,8 +88,8 @@ fn is_fresh(last: Option<u16>, sequence: u16) -> bool {
 /// Whether a step can have left this state: its force is within the limits.
 #[inline]
 fn is_sound(state: &State, limits: &Limits) -> bool {
-    let allowed = -limits.force()..=limits.force();
-    allowed.contains(&state.force.lateral) && allowed.contains(&state.force.normal)
+    let Force { lateral, normal } = state.force;
+    lateral.abs() <= limits.force() && normal.abs() <= limits.force()
 }
 
 /// What is wrong in this cycle, the gravest first.
@@ -111,10 +115,14 @@ fn fault(sample: &Sample, sound: bool, mode: Mode, late: bool) -> Option<Fault> 
 /// Implements: SRV-032, SRV-033.
 #[inline]
 fn next_mode(mode: Mode, cause: Option<Fault>, request: Request, may_arm: bool) -> Mode {
-    match (mode, cause, request) {
-        (Mode::Disarmed | Mode::Armed, Some(cause), _) => Mode::Faulted(cause),
-        (Mode::Armed, None, Request::Disarm) => Mode::Disarmed,
-        (Mode::Disarmed | Mode::Faulted(_), None, Request::Arm) if may_arm => Mode::Armed,
-        (mode, _, _) => mode,
+    if let Mode::Faulted(_) = mode {
+        let arm = may_arm && cause.is_none() && request == Request::Arm;
+        return if arm { Mode::Armed } else { mode };
+    }
+    match (cause, request) {
+        (Some(cause), _) => Mode::Faulted(cause),
+        (None, Request::Disarm) => Mode::Disarmed,
+        (None, Request::Arm) if may_arm => Mode::Armed,
+        (None, _) => mode,
     }
 }

@@ -86,9 +86,14 @@ impl<'a> Table<'a> {
     /// Implements: SRV-010, SRV-011, SRV-012, SRV-013, SRV-014.
     #[inline]
     pub fn force(&self, depth: f32, lateral: f32) -> Force {
-        let force = self.force_in(self.depths.locate(depth), self.laterals.locate(lateral));
-        // Both are computed, so that the time does not depend on the depth.
+        let force = self.continued(depth, lateral);
         if depth < 0.0 { Force::ZERO } else { force }
+    }
+
+    /// [`Table::force`] without regard to the surface, for who looks after it himself.
+    #[inline]
+    pub(super) fn continued(&self, depth: f32, lateral: f32) -> Force {
+        self.force_in(self.depths.locate(depth), self.laterals.locate(lateral))
     }
 
     /// The bilinear form of the cell in row `depth.index` and column `lateral.index`, at the fractions
@@ -101,15 +106,8 @@ impl<'a> Table<'a> {
             .wrapping_mul(columns)
             .wrapping_add(lateral.index);
         let second = first.wrapping_add(columns);
-        let upper = (
-            self.forces.get(first),
-            self.forces.get(first.wrapping_add(1)),
-        );
-        let lower = (
-            self.forces.get(second),
-            self.forces.get(second.wrapping_add(1)),
-        );
-        let ((Some(&a), Some(&b)), (Some(&c), Some(&d))) = (upper, lower) else {
+        let rows = (self.forces.get(first..), self.forces.get(second..));
+        let (Some(&[a, b, ..]), Some(&[c, d, ..])) = rows else {
             return Force::ZERO; // `locate` gives cells of the axis alone
         };
         let component = |a, b, c, d| {

@@ -1,0 +1,121 @@
+//! `palpate timing`: the budget of the servo loop on this machine (`spec/playback-command.md`).
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+
+use super::CliError;
+use super::output::print;
+use super::playback::{loaded_map, paper_table};
+use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+use crate::hid::timing::{Distribution, Timing, TimingError, measure};
+use crate::servo::Limits;
+
+/// Arguments of `palpate timing`.
+#[derive(Debug, Args)]
+pub struct TimingArguments {
+    /// The time that a cycle may take, in µs
+    #[arg(long, value_name = "T", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
+    budget_us: u64,
+    /// How many cycles are measured
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u64).range(1000..=100_000_000))]
+    cycles: u64,
+    /// Lets the cycles come at 1 kHz, so that the wake-up by the system counts too
+    #[arg(long)]
+    paced: bool,
+    /// A force map to play [default: a table of 9 × 41 poses]
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+    /// How the figures are printed
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people.
+    Table,
+    /// For programs.
+    Json,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-060, CLI-061.
+pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
+    let loaded = match &arguments.map {
+        Some(path) => loaded_map(path)?,
+        None => paper_table()?,
+    };
+    let defect = |error: &dyn std::fmt::Display| CliError::Check(format!("timing: {error}"));
+    let table = loaded.table().map_err(|error| defect(&error))?;
+    let limits = Limits::new(4.0, 0.05, 0.5, 20).map_err(|error| defect(&error))?;
+    let budget = Duration::from_micros(arguments.budget_us);
+    let period = Duration::from_micros(u64::from(PAPER.period_us));
+    let device = probing_without_end(arguments.cycles);
+    let paced = arguments.paced.then_some(period);
+    let timing = measure(device, table, limits, arguments.cycles, budget, paced)
+        .map_err(|error: TimingError| defect(&error))?;
+    print(&match arguments.format {
+        Format::Table => describe(&timing),
+        Format::Json => format!(
+            "{}\n",
+            serde_json::to_string_pretty(&timing).unwrap_or_default()
+        ),
+    })?;
+    if timing.passed {
+        return Ok(());
+    }
+    Err(CliError::Check(format!(
+        "timing: {} of {} cycles took longer than {} µs, expected at most 1 in 1000",
+        timing.misses, timing.cycles, arguments.budget_us
+    )))
+}
+
+/// The paper's display in a hand that sweeps through the gel and back until `cycles` are over.
+fn probing_without_end(cycles: u64) -> SimulatedDevice {
+    let sweep = Duration::from_millis(1000 + cycles);
+    let trajectory = Trajectory::probing(3e-3, 9e-3, sweep);
+    SimulatedDevice::new(
+        PAPER,
+        Mechanics::PAPER,
+        trajectory,
+        Duration::ZERO,
+        Vec::new(),
+    )
+}
+
+/// The figures for people.
+fn describe(timing: &Timing) -> String {
+    let row = |name: &str, times: &Distribution| {
+        let Distribution {
+            p50,
+            p99,
+            p99_9,
+            max,
+        } = times;
+        format!("{name:<10}{p50:>10.2}{p99:>10.2}{p99_9:>10.2}{max:>10.2}\n")
+    };
+    let pace = if timing.paced {
+        "at 1 kHz, with the system's wake-up"
+    } else {
+        "as fast as they go"
+    };
+    let verdict = if timing.passed { "kept" } else { "broken" };
+    format!(
+        "{} cycles on the simulated device, {pace}; times in µs\n{:<10}{:>10}{:>10}{:>10}{:>10}\n{}{}\
+         compute is {:.1} % of the response\nbudget {} µs {verdict}: {} missed\n",
+        timing.cycles,
+        "",
+        "p50",
+        "p99",
+        "p99.9",
+        "max",
+        row("response", &timing.response_us),
+        row("compute", &timing.compute_us),
+        100.0 * timing.compute_share,
+        timing.budget_us,
+        timing.misses
+    )
+}

@@ -1,0 +1,222 @@
+//! How long the cycles of the loop take on this machine, against a budget.
+
+use std::time::{Duration, Instant};
+
+use hdrhistogram::Histogram;
+
+use super::{
+    Capabilities, Control, Cycle, DeviceError, End, ForceReport, HapticDevice, Received, Session,
+    SessionError,
+};
+use crate::servo::{Limits, Table};
+
+/// A device on the clock of the host instead of its own, and at the host's pace if it is asked to.
+#[derive(Debug, Clone)]
+pub struct HostClock<D> {
+    device: D,
+    began: Instant,
+    /// Time between two cycles; `None` goes on as fast as it can.
+    period: Option<Duration>,
+    due: Duration,
+    late: Duration,
+}
+
+impl<D> HostClock<D> {
+    /// `device` at a `period`, or as fast as it goes.
+    pub fn new(device: D, period: Option<Duration>) -> HostClock<D> {
+        HostClock {
+            device,
+            began: Instant::now(),
+            period,
+            due: Duration::ZERO,
+            late: Duration::ZERO,
+        }
+    }
+
+    /// How much too late the last wait for a cycle ended.
+    pub fn late(&self) -> Duration {
+        self.late
+    }
+
+    /// Sleeps until the next cycle is due.
+    fn wait(&mut self) {
+        let Some(period) = self.period else { return };
+        self.due += period;
+        let now = self.began.elapsed();
+        if let Some(left) = self.due.checked_sub(now) {
+            std::thread::sleep(left);
+        }
+        let now = self.began.elapsed();
+        self.late = now.saturating_sub(self.due);
+        // A cycle that was lost is not made up for.
+        while self.due + period <= now {
+            self.due += period;
+        }
+    }
+}
+
+impl<D: HapticDevice> HapticDevice for HostClock<D> {
+    fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
+        self.device.capabilities()
+    }
+
+    fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
+        if !timeout.is_zero() {
+            self.wait();
+        }
+        self.device.read(timeout)
+    }
+
+    fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
+        self.device.write(report)
+    }
+
+    fn control(&mut self, control: Control) -> Result<(), DeviceError> {
+        self.device.control(control)
+    }
+
+    fn now(&self) -> Duration {
+        self.began.elapsed()
+    }
+}
+
+/// Distribution of a time, µs.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Distribution {
+    /// Half of all cycles are no longer.
+    pub p50: f64,
+    /// 99 % of all.
+    pub p99: f64,
+    /// 99.9 % of all.
+    pub p99_9: f64,
+    /// All.
+    pub max: f64,
+}
+
+impl Distribution {
+    fn of(times: &Histogram<u64>) -> Distribution {
+        let quantile = |share| times.value_at_quantile(share) as f64 / 1e3;
+        Distribution {
+            p50: quantile(0.5),
+            p99: quantile(0.99),
+            p99_9: quantile(0.999),
+            max: times.max() as f64 / 1e3,
+        }
+    }
+}
+
+/// What was measured.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Timing {
+    /// Cycles measured.
+    pub cycles: u64,
+    /// The budget of a cycle, µs.
+    pub budget_us: f64,
+    /// Cycles that took longer than the budget.
+    pub misses: u64,
+    /// From the report at hand to the force written, and if the cycles were paced, from the time at
+    /// which the report was due, µs.
+    pub response_us: Distribution,
+    /// The servo kernel's share of it: from the drained queue to the force computed, µs.
+    pub compute_us: Distribution,
+    /// Time in the kernel over time in the response, all cycles together.
+    pub compute_share: f64,
+    /// The cycles came at the pace of the device, not as fast as they went.
+    pub paced: bool,
+    /// At least 99.9 % of the cycles kept the budget.
+    pub passed: bool,
+}
+
+/// Times by quantity, recorded without allocation.
+struct Times {
+    response: Histogram<u64>,
+    compute: Histogram<u64>,
+    total: [Duration; 2],
+    misses: u64,
+}
+
+impl Times {
+    fn new() -> Option<Times> {
+        // 1 ns to 100 s within 0.1 %: everything that a cycle can take.
+        let histogram = || Histogram::new_with_bounds(1, 100_000_000_000, 3).ok();
+        Some(Times {
+            response: histogram()?,
+            compute: histogram()?,
+            total: [Duration::ZERO; 2],
+            misses: 0,
+        })
+    }
+
+    fn record(&mut self, cycle: &Cycle, late: Duration, budget: Duration) {
+        let response = late + cycle.written.saturating_sub(cycle.woke);
+        let compute = cycle.computed.saturating_sub(cycle.received);
+        let nanoseconds = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
+        self.response.saturating_record(nanoseconds(response));
+        self.compute.saturating_record(nanoseconds(compute));
+        self.total[0] += response;
+        self.total[1] += compute;
+        self.misses += u64::from(response > budget);
+    }
+}
+
+/// Why a timing could not be taken.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TimingError {
+    /// The session did not begin.
+    #[error("{0}")]
+    Session(#[from] SessionError),
+    /// The session ended before the cycles were through.
+    #[error("after {cycles} cycles: {end}")]
+    Ended {
+        /// Cycles until then.
+        cycles: u64,
+        /// Why.
+        end: End,
+    },
+    /// Fewer cycles than a p99.9 needs.
+    #[error("{0} cycles, expected at least 1000 for a p99.9")]
+    TooFew(u64),
+}
+
+/// Measures `cycles` cycles of the shipped loop on `device`, against `budget`; at the pace of `period`
+/// or as fast as they go.
+///
+/// # Errors
+/// [`TimingError`].
+///
+/// Implements: HID-060, HID-061, HID-062.
+pub fn measure<D: HapticDevice>(
+    device: D,
+    table: Table,
+    limits: Limits,
+    cycles: u64,
+    budget: Duration,
+    period: Option<Duration>,
+) -> Result<Timing, TimingError> {
+    let too_few = TimingError::TooFew(cycles);
+    let mut times = Times::new().filter(|_| cycles >= 1000).ok_or(too_few)?;
+    let mut session = Session::begin(HostClock::new(device, period), table, limits)?;
+    let mut measured = 0;
+    let end = session.run_watched(|device: &HostClock<D>, cycle, _| {
+        times.record(cycle, device.late(), budget);
+        measured += 1;
+        measured < cycles
+    });
+    if measured < cycles {
+        return Err(TimingError::Ended {
+            cycles: measured,
+            end,
+        });
+    }
+    let response_us = Distribution::of(&times.response);
+    Ok(Timing {
+        cycles,
+        budget_us: budget.as_secs_f64() * 1e6,
+        misses: times.misses,
+        response_us,
+        compute_us: Distribution::of(&times.compute),
+        compute_share: times.total[1].as_secs_f64() / times.total[0].as_secs_f64(),
+        paced: period.is_some(),
+        passed: times.misses <= cycles / 1000,
+    })
+}
