@@ -6,6 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use palpate::hid::real::{Access, OpenError, Profile, RealDevice, Wanted, list, udev_rule};
+use palpate::hid::timing::measure;
 use palpate::hid::{
     Control, End, ForceReport, HapticDevice, InvalidReport, PositionReport, Received,
 };
@@ -16,7 +17,8 @@ use crate::checks::{
     Run, Scenario, WATCHDOG, ensure, largest, make, plug, reports, run, safe, stopped, text,
 };
 use crate::link::{Kind, NAME, NUMBERS};
-use crate::servo::{COUNTS_AT_2_MM, open, wanted, with_session};
+use crate::schedule::{self, Fifo};
+use crate::servo::{COUNTS_AT_2_MM, Watched, open, wanted, with_session, with_table};
 
 /// All of them.
 pub const ALL: &[(&str, Scenario)] = &[
@@ -132,7 +134,7 @@ pub fn cycles(kind: Kind) -> Result<String, String> {
         counters,
         responses,
         ..
-    } = run("cycles", 2100, Duration::ZERO)?;
+    } = run("cycles", 2100)?;
     let record = board.unplug().map_err(text)?;
     ensure!(
         assert_no_alloc::violation_count() == allocations,
@@ -162,43 +164,33 @@ pub fn cycles(kind: Kind) -> Result<String, String> {
     ))
 }
 
-/// Verifies: HID-084.
+/// Verifies: HID-084, HID-062.
 fn burn() -> Result<String, String> {
     let mut measured = Vec::new();
+    schedule::fifo(Fifo::Loop).map_err(text)?;
     for (burn, caught) in [(700, false), (1200, true)] {
         let board = plug(Kind::Uhid, "burn", reports)?;
-        let Run {
-            end,
-            settled,
-            counters,
-            responses,
-            ..
-        } = run("burn", 1100, Duration::from_micros(burn))?;
+        let device = Watched {
+            device: open("burn").map_err(text)?,
+            burn: Duration::from_micros(burn),
+        };
+        let timing =
+            with_table(|table, limits| measure(device, table, limits, 1000, PERIOD, None))?
+                .map_err(text)?;
         let record = board.unplug().map_err(text)?;
-        ensure!(end == End::Asked, "{end}");
-        let misses = responses
-            .iter()
-            .skip(100)
-            .filter(|&&time| time > PERIOD)
-            .count();
-        let drained = counters.drained - settled.drained;
-        if caught {
-            ensure!(misses == 1000, "{misses}");
-            // 1000 cycles of 1.2 ms and more are 1200 reports and more: each cycle takes one, the
-            // rest is drained, and the board finds as many ticks without an answer.
-            ensure!((195..400).contains(&drained), "{drained}");
-            ensure!(
-                (195..400).contains(&record.unanswered),
-                "{}",
-                record.unanswered
-            );
-        } else {
-            ensure!((misses, drained) == (0, 0), "{misses} {drained}");
-            ensure!(record.unanswered == 0, "{}", record.unanswered);
-        }
+        ensure!(timing.passed != caught, "{timing:?}");
+        ensure!(timing.misses == if caught { 1000 } else { 0 }, "{timing:?}");
+        // 1000 cycles of 1.2 ms and more last 1200 ticks and more, so that 200 and more have no answer.
+        let unanswered = if caught { 195..400 } else { 0..1 };
+        ensure!(
+            unanswered.contains(&record.unanswered),
+            "{}",
+            record.unanswered
+        );
         stopped(&record)?;
         measured.push(format!(
-            "{burn} µs: {misses} of 1000 cycles missed, {drained} reports drained"
+            "{burn} µs: {} of 1000 cycles missed, {} ticks unanswered",
+            timing.misses, record.unanswered
         ));
     }
     Ok(measured.join("; "))
@@ -213,7 +205,7 @@ pub fn unplug(kind: Kind) -> Result<String, String> {
     let device = open("unplug").map_err(text)?;
     let first = device.identity().clone();
     drop(device);
-    let Run { end, counters, .. } = run("unplug", 10_000, Duration::ZERO)?;
+    let Run { end, counters, .. } = run("unplug", 10_000)?;
     let seen = Instant::now();
     let End::Device(error) = end else {
         return Err(format!("the loop went on: {end}"));
@@ -243,7 +235,7 @@ pub fn unplug(kind: Kind) -> Result<String, String> {
     let second = device.identity().clone();
     ensure!(second.node != first.node, "{second}");
     drop(device);
-    let Run { end, counters, .. } = run("unplug", 300, Duration::ZERO)?;
+    let Run { end, counters, .. } = run("unplug", 300)?;
     ensure!(
         end == End::Asked && counters.played > 200,
         "{end}: {counters:?}"
@@ -312,7 +304,7 @@ fn garbage() -> Result<String, String> {
         settled,
         counters,
         ..
-    } = run("garbage", 10_000, Duration::ZERO)?;
+    } = run("garbage", 10_000)?;
     let record = board.unplug().map_err(text)?;
     ensure!(end == End::Fault(Fault::Watchdog), "{end}");
     // Without a fresh sample are the five cycles that repeat one, and each in which garbage came: one or
@@ -357,7 +349,7 @@ fn silence() -> Result<String, String> {
         300.. => Act::Silence,
         _ => Act::Report,
     })?;
-    let Run { end, counters, .. } = run("silence", 10_000, Duration::ZERO)?;
+    let Run { end, counters, .. } = run("silence", 10_000)?;
     let record = board.unplug().map_err(text)?;
     ensure!(end == End::Fault(Fault::Watchdog), "{end}");
     ensure!(counters.played > 200, "{counters:?}");

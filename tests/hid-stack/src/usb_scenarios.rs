@@ -1,7 +1,5 @@
 //! What only a bus can do wrong: transfers that take their time, or are never taken.
 
-use std::time::Duration;
-
 use palpate::hid::{Control, End};
 
 use crate::board::{Act, Board, Make, PERIOD};
@@ -32,7 +30,7 @@ fn blocking_write() -> Result<String, String> {
         counters,
         responses,
         mut writes,
-    } = run("blocking", 1100, Duration::ZERO)?;
+    } = run("blocking", 1100)?;
     let record = board.unplug().map_err(text)?;
     ensure!(end == End::Asked, "{end}");
     safe(&record)?;
@@ -60,7 +58,7 @@ fn refusal() -> Result<String, String> {
         }),
     )
     .map_err(text)?;
-    let Run { end, .. } = run("refusal", 10_000, Duration::ZERO)?;
+    let Run { end, .. } = run("refusal", 10_000)?;
     let record = board.unplug().map_err(text)?;
     let End::Device(error) = end else {
         return Err(format!("the loop went on: {end}"));
