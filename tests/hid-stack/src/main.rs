@@ -5,6 +5,7 @@
 mod board;
 mod checks;
 mod link;
+mod program_scenarios;
 mod scenarios;
 mod schedule;
 mod servo;
@@ -20,8 +21,8 @@ static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisable
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let scenarios = match &arguments[..] {
-        [tier] if tier == "uhid" => scenarios::ALL,
-        [tier] if tier == "usb" => usb_scenarios::ALL,
+        [tier] if tier == "uhid" => [scenarios::ALL, program_scenarios::ALL].concat(),
+        [tier] if tier == "usb" => usb_scenarios::ALL.to_vec(),
         [play, serial] if play == "play" => return servo::play_until_killed(serial),
         _ => {
             eprintln!("hid-stack: expected uhid, usb or play SERIAL");
@@ -29,7 +30,7 @@ fn main() -> ExitCode {
         }
     };
     let mut passed = 0;
-    for &(name, scenario) in scenarios {
+    for &(name, scenario) in &scenarios {
         match scenario() {
             Ok(measured) => {
                 passed += 1;

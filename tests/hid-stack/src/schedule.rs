@@ -13,9 +13,9 @@ pub enum Fifo {
     /// The loop under test.
     Loop = 40,
     /// The board's answers: another piece of hardware, which the loop can not hold up.
-    Board = 60,
+    Board = 90,
     /// The board's clock.
-    BoardClock = 80,
+    BoardClock = 99,
 }
 
 /// Gives this thread its share, and checks that it has it: in virtual time no figure would tell.
