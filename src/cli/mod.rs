@@ -3,10 +3,12 @@
 mod config;
 mod detect;
 mod detection;
+mod devices;
 mod error;
 mod import;
 mod lists;
 mod output;
+mod play;
 mod playback;
 mod progress;
 mod run;
@@ -43,6 +45,10 @@ enum Command {
     Detect(detect::DetectArguments),
     /// The statistics battery of the detector, once or with fresh seeds.
     Verify(verify::VerifyArguments),
+    /// A force map to a hand, through a haptic device or a simulated one.
+    Play(play::PlayArguments),
+    /// The HID devices of this machine, and which of them can play a force map.
+    Devices(devices::DevicesArguments),
     /// The time budget of the servo loop, on the simulated device.
     Timing(timing::TimingArguments),
 }
@@ -98,6 +104,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::ImportMap(arguments) => import::import(&arguments),
             Command::Detect(arguments) => detect::detect(&arguments),
             Command::Verify(arguments) => verify::verify(&arguments),
+            Command::Play(arguments) => play::play(&arguments),
+            Command::Devices(arguments) => devices::devices(&arguments),
             Command::Timing(arguments) => timing::timing(&arguments),
         },
         Err(error) if !error.use_stderr() => output::print(&error.to_string()),

@@ -4,7 +4,34 @@ use std::path::Path;
 
 use super::CliError;
 use crate::force_map::{ForceMap, ForceTable, Matrix};
-use crate::servo::LoadedTable;
+use crate::hid::Capabilities;
+use crate::servo::{Damping, Limits, LoadedTable};
+
+/// Largest change of the force in one cycle of 1 ms while it is played, N: 50 N/s.
+const SLEW: f32 = 0.05;
+
+/// Cycles without a fresh sample that are no fault.
+const WATCHDOG: u16 = 20;
+
+/// Limits for a force of at most `force` (N).
+///
+/// Implements: CLI-064.
+pub fn limits(force: f32) -> Result<Limits, CliError> {
+    let release = force / 8.0;
+    let slew = if SLEW < release { SLEW } else { release };
+    Limits::new(force, slew, release, WATCHDOG)
+        .map_err(|error| CliError::Usage(format!("--max-force {force}: {error}")))
+}
+
+/// What a device says of its damping.
+pub fn damping(capabilities: &Capabilities) -> Damping {
+    Damping {
+        period_s: f64::from(capabilities.period_us) * 1e-6,
+        damping_n_s_per_m: f64::from(capabilities.damping_mn_s_per_m) * 1e-3,
+        friction_n: f64::from(capabilities.friction_mn) * 1e-3,
+        resolution_m: f64::from(capabilities.position_unit_nm) * 1e-9,
+    }
+}
 
 /// The table of a map's file.
 ///

@@ -7,10 +7,9 @@ use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::output::print;
-use super::playback::{loaded_map, paper_table};
+use super::playback::{limits, loaded_map, paper_table};
 use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
 use crate::hid::timing::{Distribution, Timing, TimingError, measure};
-use crate::servo::Limits;
 
 /// Arguments of `palpate timing`.
 #[derive(Debug, Args)]
@@ -50,7 +49,7 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
     };
     let defect = |error: &dyn std::fmt::Display| CliError::Check(format!("timing: {error}"));
     let table = loaded.table().map_err(|error| defect(&error))?;
-    let limits = Limits::new(4.0, 0.05, 0.5, 20).map_err(|error| defect(&error))?;
+    let limits = limits(4.0)?;
     let budget = Duration::from_micros(arguments.budget_us);
     let period = Duration::from_micros(u64::from(PAPER.period_us));
     let device = probing_without_end(arguments.cycles);

@@ -56,6 +56,8 @@ pub enum DeviceError {
     Gone,
     /// It did not take a report in time.
     Stalled,
+    /// A signal interrupted the wait.
+    Interrupted,
     /// It has no such report, or answers with something else.
     Profile(InvalidReport),
     /// The system refused.
@@ -68,6 +70,7 @@ impl fmt::Display for DeviceError {
         match self {
             DeviceError::Gone => write!(f, "the device is gone"),
             DeviceError::Stalled => write!(f, "the device takes no more reports"),
+            DeviceError::Interrupted => write!(f, "a signal interrupted the device"),
             DeviceError::Profile(problem) => {
                 write!(f, "the device does not speak the vendor profile: {problem}")
             }

@@ -7,6 +7,8 @@
 //! | `units.rs` | between counts and metres, newtons |
 //! | `device.rs` | what the loop needs of a device |
 //! | `playback.rs` | one cycle of the loop: read, drain, step, write |
+//! | `recording.rs` | a session in a file that plays again to the bit |
+//! | `supervise.rs` | the servo thread and its supervisor |
 //! | `session.rs` | a session: it ends with a stopped device |
 //! | `real/` | a device on the system's HID stack |
 //! | `timing.rs` | how long the cycles take on this machine |
@@ -17,11 +19,15 @@ pub mod pid;
 mod playback;
 #[cfg(feature = "hid")]
 pub mod real;
+#[cfg(feature = "std")]
+mod recording;
 mod report;
 #[cfg(feature = "std")]
 mod session;
 #[cfg(feature = "std")]
 pub mod simulated;
+#[cfg(feature = "hid")]
+pub mod supervise;
 #[cfg(test)]
 mod tests;
 #[cfg(feature = "hid")]
@@ -30,6 +36,8 @@ mod units;
 
 pub use device::{DeviceError, HapticDevice, Received};
 pub use playback::{Counters, Cycle, Playback, QUEUE};
+#[cfg(feature = "std")]
+pub use recording::{RecordedCycle, Recording, RecordingError};
 pub use report::{
     Capabilities, Control, DESCRIPTOR, ForceReport, InvalidReport, PositionReport, button, status,
 };

@@ -128,7 +128,7 @@ pub struct Timing {
 }
 
 /// Times by quantity, recorded without allocation.
-struct Times {
+pub(super) struct Times {
     response: Histogram<u64>,
     compute: Histogram<u64>,
     total: [Duration; 2],
@@ -136,7 +136,7 @@ struct Times {
 }
 
 impl Times {
-    fn new() -> Option<Times> {
+    pub(super) fn new() -> Option<Times> {
         // 1 ns to 100 s within 0.1 %: everything that a cycle can take.
         let histogram = || Histogram::new_with_bounds(1, 100_000_000_000, 3).ok();
         Some(Times {
@@ -147,7 +147,7 @@ impl Times {
         })
     }
 
-    fn record(&mut self, cycle: &Cycle, late: Duration, budget: Duration) {
+    pub(super) fn record(&mut self, cycle: &Cycle, late: Duration, budget: Duration) {
         let response = late + cycle.written.saturating_sub(cycle.woke);
         let compute = cycle.computed.saturating_sub(cycle.received);
         let nanoseconds = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
@@ -156,6 +156,25 @@ impl Times {
         self.total[0] += response;
         self.total[1] += compute;
         self.misses += u64::from(response > budget);
+    }
+
+    /// The figures of `cycles` cycles; `None` for fewer than one.
+    pub(super) fn timing(&self, cycles: u64, budget: Duration, paced: bool) -> Option<Timing> {
+        let [response, compute] = self.total.map(|total| total.as_secs_f64());
+        (cycles > 0).then(|| Timing {
+            cycles,
+            budget_us: budget.as_secs_f64() * 1e6,
+            misses: self.misses,
+            response_us: Distribution::of(&self.response),
+            compute_us: Distribution::of(&self.compute),
+            compute_share: if response > 0.0 {
+                compute / response
+            } else {
+                0.0
+            },
+            paced,
+            passed: self.misses <= cycles / 1000,
+        })
     }
 }
 
@@ -208,15 +227,7 @@ pub fn measure<D: HapticDevice>(
             end,
         });
     }
-    let response_us = Distribution::of(&times.response);
-    Ok(Timing {
-        cycles,
-        budget_us: budget.as_secs_f64() * 1e6,
-        misses: times.misses,
-        response_us,
-        compute_us: Distribution::of(&times.compute),
-        compute_share: times.total[1].as_secs_f64() / times.total[0].as_secs_f64(),
-        paced: period.is_some(),
-        passed: times.misses <= cycles / 1000,
-    })
+    times
+        .timing(cycles, budget, period.is_some())
+        .ok_or(TimingError::TooFew(cycles))
 }

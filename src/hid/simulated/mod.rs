@@ -258,7 +258,7 @@ impl HapticDevice for SimulatedDevice {
         loop {
             self.check_plugged()?;
             if std::mem::take(&mut self.ongoing.interrupted) {
-                return Err(DeviceError::System("interrupted system call".into()));
+                return Err(DeviceError::Interrupted);
             }
             match self.queue.front() {
                 Some(&(at, received)) if at <= self.clock => {

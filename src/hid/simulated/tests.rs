@@ -183,7 +183,10 @@ fn every_fault_that_ends_a_session_is_named_and_leaves_the_motors_without_force(
             Defect::Stall(second * 6),
             "stopped: the device takes no more reports",
         ),
-        (Defect::Interrupt, "stopped: interrupted system call"),
+        (
+            Defect::Interrupt,
+            "stopped: a signal interrupted the device",
+        ),
         (
             Defect::Silence(second),
             "stopped by a fault: no fresh report for too long",

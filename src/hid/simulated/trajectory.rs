@@ -54,6 +54,22 @@ impl Trajectory {
         Trajectory::new(waypoints)
     }
 
+    /// This way again and again, until it lasts `duration`.
+    pub fn repeated(&self, duration: Duration) -> Trajectory {
+        let mut waypoints = self.waypoints.clone();
+        let once = self.duration();
+        let mut begun = once;
+        while begun < duration && !once.is_zero() {
+            let again = self.waypoints.iter().map(|waypoint| Waypoint {
+                at: waypoint.at + begun,
+                ..*waypoint
+            });
+            waypoints.extend(again);
+            begun += once;
+        }
+        Trajectory { waypoints }
+    }
+
     /// When it ends.
     pub fn duration(&self) -> Duration {
         self.waypoints.last().map_or(Duration::ZERO, |last| last.at)

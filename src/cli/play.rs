@@ -1,0 +1,328 @@
+//! `palpate play`: a force map to a hand (`spec/playback-command.md`).
+
+use std::fmt::Write;
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use serde_json::json;
+
+use super::CliError;
+use super::devices::DeviceNumbers;
+use super::output::{print, read, write};
+use super::playback::{damping, limits, loaded_map};
+use crate::force_map::ForceMap;
+use crate::hid::real::RealDevice;
+use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+use crate::hid::supervise::{Board, HELD_UP, PlayOptions, Played, play as supervised};
+use crate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session};
+use crate::servo::{Limits, LoadedTable};
+
+/// Most seconds that can be recorded: an hour at 1 kHz.
+const MOST_RECORDED: u64 = 3600;
+
+/// How long a device that was just plugged in may take until it can be opened.
+const PLUG_IN: Duration = Duration::from_millis(500);
+
+/// Arguments of `palpate play`.
+#[derive(Debug, Args)]
+pub struct PlayArguments {
+    /// The force map
+    #[arg(long, value_name = "FILE")]
+    map: PathBuf,
+    /// What plays it
+    #[arg(long, value_enum, default_value_t = DeviceName::Sim)]
+    device: DeviceName,
+    #[command(flatten)]
+    numbers: DeviceNumbers,
+    /// Ends after S seconds of the device's time [default: one probing on the simulated device]
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    seconds: Option<u64>,
+    /// Largest force of each component, in N
+    #[arg(long, value_name = "N", default_value_t = 4.0)]
+    max_force: f32,
+    /// Scales a map down that is too stiff for the device, instead of refusing it
+    #[arg(long)]
+    scale: bool,
+    /// Records the session
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Plays a recorded session again and compares every force
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["device", "seconds", "record", "max_force"])]
+    replay: Option<PathBuf>,
+    /// How the summary is printed
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum DeviceName {
+    /// The paper's display in a hand that probes the gel, on a virtual clock.
+    Sim,
+    /// A device of this machine, by its numbers if there are several.
+    Hid,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people.
+    Table,
+    /// For programs.
+    Json,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, CLI-079.
+pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
+    if let Some(file) = &arguments.replay {
+        return replay(arguments, file);
+    }
+    let limits = limits(arguments.max_force)?;
+    if arguments.device == DeviceName::Sim && arguments.numbers.are_given() {
+        let message = "--vid, --pid and --serial need --device hid";
+        return Err(CliError::Usage(message.into()));
+    }
+    match arguments.device {
+        DeviceName::Hid => {
+            let device = RealDevice::open_within(&arguments.numbers.wanted(), PLUG_IN)
+                .map_err(|error| CliError::Playback(error.to_string()))?;
+            let duration = arguments.seconds.map(Duration::from_secs);
+            session(arguments, device, limits, duration)
+        }
+        DeviceName::Sim => {
+            let trajectory = Trajectory::probing(4e-3, 9e-3, Duration::from_millis(1500));
+            let seconds = arguments.seconds.map(Duration::from_secs);
+            let duration = seconds.unwrap_or(trajectory.duration());
+            let device = SimulatedDevice::new(
+                PAPER,
+                Mechanics::PAPER,
+                trajectory.repeated(duration),
+                Duration::ZERO,
+                Vec::new(),
+            );
+            session(arguments, device, limits, Some(duration))
+        }
+    }
+}
+
+/// The table for this device, and the factor on its forces.
+fn table(
+    arguments: &PlayArguments,
+    capabilities: &Capabilities,
+) -> Result<(LoadedTable, f64), CliError> {
+    let path = &arguments.map;
+    let map = ForceMap::read(path)?;
+    let damping = damping(capabilities);
+    let loaded = if arguments.scale {
+        LoadedTable::scaled_to_be_passive(map.forces(), &damping)
+    } else {
+        LoadedTable::passive(map.forces(), &damping).map(|loaded| (loaded, 1.0))
+    };
+    loaded.map_err(|error| {
+        let hint = if arguments.scale {
+            ""
+        } else {
+            " (or use --scale)"
+        };
+        CliError::Playback(format!("{}: {error}{hint}", path.display()))
+    })
+}
+
+/// Plays on `device` and tells what happened.
+fn session<D: HapticDevice + Send>(
+    arguments: &PlayArguments,
+    mut device: D,
+    limits: Limits,
+    duration: Option<Duration>,
+) -> Result<(), CliError> {
+    let failed = |error: &dyn std::fmt::Display| CliError::Playback(error.to_string());
+    let capabilities = device.capabilities().map_err(|error| failed(&error))?;
+    let (loaded, scale) = table(arguments, &capabilities)?;
+    let table = loaded.table().map_err(|error| failed(&error))?;
+    let record = match (&arguments.record, duration) {
+        (None, _) => 0,
+        (Some(_), Some(time)) if time.as_secs() <= MOST_RECORDED => {
+            time.as_micros() as usize / usize::from(capabilities.period_us.max(1)) + 64
+        }
+        (Some(_), _) => {
+            return Err(CliError::Usage(format!(
+                "--record needs --seconds of at most {MOST_RECORDED}"
+            )));
+        }
+    };
+    let options = PlayOptions {
+        duration,
+        record,
+        budget: Duration::from_micros(u64::from(capabilities.period_us)),
+    };
+    let stop = stop_on_signals()?;
+    let session = Session::begin(device, table, limits).map_err(|error| failed(&error))?;
+    let played = supervised(
+        session,
+        &options,
+        &Board::default(),
+        raise_priority,
+        || stop.load(Ordering::Relaxed),
+        live(),
+    );
+    let Some(mut played) = played else {
+        return Err(CliError::Check(
+            "the servo thread panicked; the device was told to stop".into(),
+        ));
+    };
+    if arguments.device == DeviceName::Sim {
+        // The virtual clock does not see what the loop takes.
+        played.timing = None;
+    }
+    if let Some(path) = &arguments.record {
+        let recording = Recording {
+            capabilities,
+            limits,
+            cycles: played.cycles.clone(),
+        };
+        write(path, &recording.to_text())?;
+    }
+    print(&match arguments.format {
+        Format::Table => describe(&played, &loaded, scale),
+        Format::Json => as_json(&played, &loaded, scale),
+    })?;
+    match &played.end {
+        End::Asked => Ok(()),
+        end => Err(CliError::Check(end.to_string())),
+    }
+}
+
+/// Set by ctrl-C, by SIGTERM and by SIGHUP; a second one ends the program at once, and leaves the
+/// force to the device's watchdog.
+fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
+        let hook = signal_hook::flag::register_conditional_shutdown(signal, 130, stop.clone())
+            .and_then(|_| signal_hook::flag::register(signal, stop.clone()));
+        hook.map_err(|error| CliError::Playback(format!("signal {signal}: {error}")))?;
+    }
+    Ok(stop)
+}
+
+/// Asks for the real-time priority and for memory that is not paged out; says so where it may not.
+///
+/// Implements: HID-055.
+fn raise_priority() {
+    use rustix::mm::{MlockAllFlags, mlockall};
+    use thread_priority::{
+        RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
+        set_thread_priority_and_policy, thread_native_id,
+    };
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    let priority = 80u8.try_into().map(ThreadPriority::Crossplatform);
+    let raised = priority.is_ok_and(|priority| {
+        set_thread_priority_and_policy(thread_native_id(), priority, policy).is_ok()
+    });
+    let locked = mlockall(MlockAllFlags::CURRENT | MlockAllFlags::FUTURE).is_ok();
+    if !raised {
+        eprintln!("note: no real-time priority (SCHED_FIFO): the system may wake the loop late");
+    }
+    if !locked {
+        eprintln!("note: memory not locked: a page fault may delay a cycle");
+    }
+}
+
+/// What the supervisor shows while it plays: the counters on one line of a terminal, and a loop that
+/// is held up.
+fn live() -> impl FnMut(&Counters, Duration) {
+    let terminal = std::io::stderr().is_terminal();
+    let mut told = false;
+    move |counters, silent| {
+        if silent > HELD_UP && !told {
+            told = true;
+            eprintln!(
+                "the servo thread is held up for {} ms: the device's own watchdog must drop the force",
+                silent.as_millis()
+            );
+        }
+        told &= silent > HELD_UP;
+        if terminal {
+            eprint!("\r{}\x1b[K", counted(counters));
+        }
+    }
+}
+
+fn counted(counters: &Counters) -> String {
+    format!(
+        "{} cycles, {} played, {} missed, {} skipped, {} passed over, {} garbage",
+        counters.cycles,
+        counters.played,
+        counters.missed,
+        counters.skipped,
+        counters.drained,
+        counters.garbage
+    )
+}
+
+/// The summary for people.
+fn describe(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
+    let rounding = loaded.rounding();
+    let mut text = format!("{}\n{}\n", played.end, counted(&played.counters));
+    let mut line = |line: String| {
+        let _ = writeln!(text, "{line}"); // a String takes everything
+    };
+    line(format!(
+        "table rounded by at most {:.1e} m and {:.1e} N, forces × {scale}",
+        rounding.position_m, rounding.force_n
+    ));
+    if let Some(timing) = &played.timing {
+        line(format!(
+            "response on the device's clock: p50 {:.1} µs, p99.9 {:.1} µs, largest {:.1} µs",
+            timing.response_us.p50, timing.response_us.p99_9, timing.response_us.max
+        ));
+    }
+    if let Some(time) = played.held_up {
+        line(format!("held up once for {} ms", time.as_millis()));
+    }
+    text
+}
+
+/// The summary for programs.
+fn as_json(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
+    let counters = &played.counters;
+    let summary = json!({
+        "end": played.end.to_string(),
+        "cycles": counters.cycles,
+        "played": counters.played,
+        "missed": counters.missed,
+        "skipped": counters.skipped,
+        "passed_over": counters.drained,
+        "garbage": counters.garbage,
+        "held_up_ms": played.held_up.map(|time| time.as_millis() as u64),
+        "rounding_position_m": loaded.rounding().position_m,
+        "rounding_force_n": loaded.rounding().force_n,
+        "scale": scale,
+        "timing": played.timing,
+    });
+    format!("{summary:#}\n")
+}
+
+/// Plays a recording again.
+fn replay(arguments: &PlayArguments, file: &std::path::Path) -> Result<(), CliError> {
+    let text = read(file)?;
+    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", file.display());
+    let recording = Recording::parse(&text).map_err(|error| CliError::Playback(named(&error)))?;
+    let loaded = match arguments.scale {
+        true => table(arguments, &recording.capabilities)?.0,
+        false => loaded_map(&arguments.map)?,
+    };
+    let table = loaded
+        .table()
+        .map_err(|error| CliError::Playback(named(&error)))?;
+    match recording.replay(table) {
+        Ok(cycles) => print(&format!(
+            "{cycles} cycles, all forces the same to the bit\n"
+        )),
+        Err(error) => Err(CliError::Check(named(&error))),
+    }
+}

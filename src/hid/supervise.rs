@@ -1,0 +1,180 @@
+//! One servo thread that plays, and a supervisor that watches it: the heartbeat, the wish to stop, and
+//! what is shown to a person.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use super::timing::{Times, Timing};
+use super::{Counters, DeviceError, End, HapticDevice, RecordedCycle, Session};
+
+/// How often the supervisor looks.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// After this long without a heartbeat, the servo thread is held up: longer than any watchdog that a
+/// device should have, so that its force is gone by then.
+pub const HELD_UP: Duration = Duration::from_millis(100);
+
+/// What the servo thread shows while it runs, without locks.
+#[derive(Debug, Default)]
+pub struct Board {
+    /// Set to end the session.
+    stop: AtomicBool,
+    cycles: AtomicU64,
+    played: AtomicU64,
+    missed: AtomicU64,
+    skipped: AtomicU64,
+    drained: AtomicU64,
+    garbage: AtomicU64,
+    done: AtomicBool,
+}
+
+impl Board {
+    /// Asks the session to end.
+    pub fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    fn show(&self, counters: &Counters) {
+        let set = |cell: &AtomicU64, value| cell.store(value, Ordering::Relaxed);
+        set(&self.played, counters.played);
+        set(&self.missed, counters.missed);
+        set(&self.skipped, counters.skipped);
+        set(&self.drained, counters.drained);
+        set(&self.garbage, counters.garbage);
+        set(&self.cycles, counters.cycles);
+    }
+
+    /// The counters as last shown.
+    pub fn counters(&self) -> Counters {
+        let get = |cell: &AtomicU64| cell.load(Ordering::Relaxed);
+        Counters {
+            cycles: get(&self.cycles),
+            played: get(&self.played),
+            missed: get(&self.missed),
+            skipped: get(&self.skipped),
+            drained: get(&self.drained),
+            garbage: get(&self.garbage),
+        }
+    }
+}
+
+/// What a session was.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Played {
+    /// Why it ended.
+    pub end: End,
+    /// What happened.
+    pub counters: Counters,
+    /// How long the cycles took, on the clock of the device; `None` for fewer than one.
+    pub timing: Option<Timing>,
+    /// Longest time without a heartbeat that the supervisor saw, if longer than [`HELD_UP`].
+    pub held_up: Option<Duration>,
+    /// The cycles, if they were to be recorded: at most as many as asked for.
+    pub cycles: Vec<RecordedCycle>,
+}
+
+/// How a session is played.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlayOptions {
+    /// Ends after this much of the device's time.
+    pub duration: Option<Duration>,
+    /// Cycles to record at most; room for them is made before the first.
+    pub record: usize,
+    /// The budget of a cycle that misses are counted against.
+    pub budget: Duration,
+}
+
+/// Plays `session` in a thread of its own until it ends by itself, `stop` says so, or its time is
+/// over. `look` is called by the supervisor some 50 times a second, with the counters and the time
+/// since the last heartbeat.
+///
+/// `prepare` is called once on the servo thread, before the first cycle: for its priority.
+///
+/// The servo thread neither allocates nor locks. Returns `None` if it panicked, after the device was
+/// stopped.
+///
+/// Implements: HID-053, HID-054, HID-055.
+pub fn play<D: HapticDevice + Send>(
+    session: Session<D>,
+    options: &PlayOptions,
+    board: &Board,
+    prepare: impl FnOnce() + Send,
+    stop: impl Fn() -> bool,
+    mut look: impl FnMut(&Counters, Duration),
+) -> Option<Played> {
+    std::thread::scope(|scope| {
+        let servo = scope.spawn(move || {
+            let done = Done(board);
+            prepare();
+            let played = servo_loop(session, options, board);
+            drop(done);
+            played
+        });
+        let mut heartbeat = (0, Instant::now());
+        let mut held_up = None;
+        while !board.done.load(Ordering::Acquire) {
+            if stop() {
+                board.stop();
+            }
+            let counters = board.counters();
+            if counters.cycles != heartbeat.0 {
+                heartbeat = (counters.cycles, Instant::now());
+            }
+            let silent = heartbeat.1.elapsed();
+            if silent > HELD_UP {
+                held_up = held_up.max(Some(silent));
+            }
+            look(&counters, silent);
+            std::thread::park_timeout(LOOK);
+        }
+        let mut played = servo.join().ok()?;
+        played.held_up = held_up;
+        Some(played)
+    })
+}
+
+/// Tells the supervisor that the servo thread is over, also by a panic.
+struct Done<'a>(&'a Board);
+
+impl Drop for Done<'_> {
+    fn drop(&mut self) {
+        self.0.done.store(true, Ordering::Release);
+    }
+}
+
+/// The servo thread.
+fn servo_loop<D: HapticDevice>(
+    mut session: Session<D>,
+    options: &PlayOptions,
+    board: &Board,
+) -> Played {
+    let mut cycles = Vec::with_capacity(options.record);
+    let mut times = Times::new();
+    let end = session.run(|cycle, counters| {
+        board.show(counters);
+        if let Some(times) = &mut times {
+            times.record(cycle, Duration::ZERO, options.budget);
+        }
+        if cycles.len() < cycles.capacity() {
+            cycles.push(RecordedCycle::from(cycle));
+        }
+        let over = options
+            .duration
+            .is_some_and(|duration| cycle.written >= duration);
+        !over && !board.stop.load(Ordering::Relaxed)
+    });
+    // A signal that interrupts a read is the wish to stop, where there is one.
+    let interrupted = end == End::Device(DeviceError::Interrupted);
+    let asked = interrupted && board.stop.load(Ordering::Relaxed);
+    let counters = session.counters();
+    Played {
+        end: if asked { End::Asked } else { end },
+        counters,
+        timing: times.and_then(|times| times.timing(counters.cycles, options.budget, true)),
+        held_up: None,
+        cycles,
+    }
+}
+
+#[cfg(test)]
+mod tests;
