@@ -12,6 +12,7 @@
 //! | a recorded sweep against two of them | [`trace`] |
 //! | §4 playback: from a table to a force | [`servo`] |
 //! | §4 playback: reports of the device | [`hid`] |
+//! | §4 pairs of samples, felt and judged | [`psychophysics`] |
 //! | figures, tables | [`report`] |
 //!
 //! Lengths are metres, forces newtons, moduli pascals throughout; `spec/README.md` has the signs.
@@ -32,6 +33,8 @@ pub mod force_map;
 pub mod hid;
 #[cfg(feature = "std")]
 pub mod phantom;
+#[cfg(feature = "std")]
+pub mod psychophysics;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod servo;

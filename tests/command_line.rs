@@ -271,6 +271,38 @@ fn solve_prints_the_librarys_map() {
     assert_eq!(row.split_whitespace().count(), 4, "{row}");
 }
 
+// Verifies: CLI-016.
+#[test]
+fn certify_adds_bands_and_changes_no_force() {
+    let here = folder("certify");
+    let arguments = [
+        "solve",
+        "--phantom",
+        "2.6",
+        "--depths-mm",
+        "1,3",
+        "--laterals-mm",
+        "0,4",
+        "--mesh-mm",
+        "2",
+    ];
+    let solve = |rest: &[&str]| succeed(&here, &[&arguments[..], rest].concat());
+    let map = |rest: &[&str]| ForceMap::from_json(&solve(rest), "standard output").unwrap();
+    let (plain, certified) = (
+        map(&["--format", "json"]),
+        map(&["--format", "json", "--certify"]),
+    );
+    assert_eq!(certified.forces(), plain.forces());
+    assert_eq!(plain.certificate().unwrap().discretization, None);
+    let bands = certified.certificate().unwrap().discretization.clone();
+    let [normal, lateral] = bands.expect("bands").largest();
+    assert!(normal > 0.0 && lateral > 0.0);
+    let said =
+        format!("normal forces within {normal:.1e} N, lateral forces within {lateral:.1e} N");
+    assert!(solve(&["--certify"]).contains(&said), "{said}");
+    assert!(!solve(&[]).contains("discretization"));
+}
+
 // Verifies: DET-113.
 #[test]
 fn the_statistics_battery_traverses_these_force_maps() {

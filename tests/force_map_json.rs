@@ -97,6 +97,7 @@ fn computed() -> ForceMap {
             lateral: 0.0,
         },
         min_det: matrix(&[[1.0, 0.9, 0.8], [0.5, 0.7, 0.6]]),
+        discretization: None,
     };
     let forces = ForceTable::new(
         vec![0.001, 0.002],
@@ -453,6 +454,7 @@ fn any_map() -> impl Strategy<Value = ForceMap> {
                         contact: String::new(),
                         smallest_det,
                         min_det,
+                        discretization: None,
                     };
                     let forces = ForceTable::new(depths, laterals, normal, lateral).unwrap();
                     let phantom = Phantom::builtin("8.6").unwrap();

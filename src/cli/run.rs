@@ -11,6 +11,7 @@ use super::config::Config;
 use super::output::{make_folder, print, write};
 use super::progress::bar;
 use super::solve::{phantom, warn_of_large_strain};
+use crate::fem::certify::certified_map;
 use crate::fem::{FemError, Model, Pose, solved_laterals};
 use crate::force_map::ForceMap;
 use crate::phantom::Phantom;
@@ -50,7 +51,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
 
 /// Solves all maps, the phantoms in parallel, and the field of one pose.
 fn study(config: &Config, phantoms: &[Phantom]) -> Result<Study, CliError> {
-    let poses = config.depths_mm.0.len() * solved_laterals(&config.laterals_mm.0).len();
+    // Each map on three meshes.
+    let poses = 3 * config.depths_mm.0.len() * solved_laterals(&config.laterals_mm.0).len();
     let bar = bar(phantoms.len() * poses, "force maps");
     // The figure shows the first inclusion, or the reference where there is none.
     let shown = usize::from(phantoms.len() > 1);
@@ -86,9 +88,8 @@ fn solve_phantom(
     bar: &ProgressBar,
 ) -> Result<(ForceMap, Option<DeformedMesh>), FemError> {
     let model = Model::new(phantom, &config.mesh_options(), config.mesh.contact.into())?;
-    let map = model.map(&config.depths_mm.0, &config.laterals_mm.0, &|poses| {
-        bar.inc(poses as u64)
-    })?;
+    let (depths, laterals) = (&config.depths_mm.0, &config.laterals_mm.0);
+    let map = certified_map(&model, depths, laterals, &|poses| bar.inc(poses as u64))?;
     let deformed = if shown {
         Some(deformed_mesh(&model, &map)?)
     } else {

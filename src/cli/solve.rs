@@ -9,6 +9,7 @@ use super::lists::{Positions, positions};
 use super::output::{print, write};
 use super::progress::bar;
 use super::{CliError, ContactName, ElementName};
+use crate::fem::certify::certified_map;
 use crate::fem::{FemError, MeshOptions, Model, Pose, solved_laterals};
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::{format_scaled, parse_scaled};
@@ -33,9 +34,12 @@ pub struct SolveArguments {
     /// The shape of the elements
     #[arg(long, value_enum, default_value_t = ElementName::T6)]
     element: ElementName,
-    /// Distance of the elements' corners in mm [default: 0.75]
+    /// Distance of the elements' corners in mm [default: 0.5]
     #[arg(long, value_parser = millimetres, value_name = "H")]
     mesh_mm: Option<f64>,
+    /// Solves two coarser meshes as well, and tells how far each force may be from that of an infinitely fine one
+    #[arg(long)]
+    certify: bool,
     /// Writes the deformed mesh with stresses, of the only pose asked for, for ParaView
     #[arg(long, value_name = "FILE")]
     vtu: Option<PathBuf>,
@@ -79,7 +83,7 @@ pub fn phantom(name: &str) -> Result<Phantom, CliError> {
 
 /// Runs the command.
 ///
-/// Implements: CLI-012, CLI-013, CLI-014.
+/// Implements: CLI-012, CLI-013, CLI-014, CLI-016.
 pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     let SolveArguments {
         depths_mm: Positions(depths),
@@ -106,14 +110,19 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         element: arguments.element.into(),
         ..MeshOptions::default()
     };
+    let meshes = if arguments.certify { 3 } else { 1 };
     let bar = bar(
-        depths.len() * solved_laterals(laterals).len(),
+        meshes * depths.len() * solved_laterals(laterals).len(),
         &phantom.name,
     );
     let model = Model::new(&phantom, &options, arguments.contact.into()).map_err(failed)?;
-    let map = model
-        .map(depths, laterals, &|poses| bar.inc(poses as u64))
-        .map_err(failed)?;
+    let solved = |poses| bar.inc(poses as u64);
+    let map = if arguments.certify {
+        certified_map(&model, depths, laterals, &solved)
+    } else {
+        model.map(depths, laterals, &solved)
+    };
+    let map = map.map_err(failed)?;
     bar.finish_and_clear();
     if let Some((path, pose)) = pose {
         let solution = model.solve(pose).map_err(failed)?;
@@ -188,6 +197,14 @@ fn table(map: &ForceMap) -> String {
             c.worst_force_balance,
             c.smallest_det.det
         );
+        if let Some(discretization) = &c.discretization {
+            let [normal, lateral] = discretization.largest();
+            let [fine, middle, coarse] = discretization.nodes;
+            let _ = writeln!(
+                text,
+                "discretization, from meshes of {fine}, {middle} and {coarse} nodes: normal forces within {normal:.1e} N, lateral forces within {lateral:.1e} N"
+            );
+        }
     }
     text
 }

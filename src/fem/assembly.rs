@@ -3,41 +3,58 @@
 use super::FemError;
 use super::element::{Stiffness, StiffnessRule};
 use super::mesh::{Mesh, Region};
-use super::ordering::nested_dissection;
+use super::ordering::{Dissection, Piece};
 use crate::phantom::{Material, Phantom};
 
 /// Place of a node that is bonded to the floor or a wall.
 const FIXED: u32 = u32::MAX;
 
-/// Where each node's displacements stand among the unknowns: interior nodes first, in an order that
-/// keeps the factor sparse, the nodes of the outer surface last, from left to right.
+/// Where each node's displacements stand among the unknowns: the interior right of the axis, in the order
+/// of its nested dissection; its mirror image in the same order; the axis, from the floor up; and the
+/// nodes of the outer surface last, from left to right.
 ///
 /// Implements: FEM-006.
 #[derive(Debug, Clone)]
 pub struct Numbering {
     /// Place of each node, or [`FIXED`].
     place: Vec<u32>,
-    /// Number of free nodes below the surface.
-    interior: usize,
-    /// Number of free nodes on the surface.
+    /// Pieces of the right interior that are eliminated together; places as in the right half.
+    pub(super) pieces: Vec<Piece>,
+    /// Number of free interior nodes right of the axis.
+    pub(super) right: usize,
+    /// Number of free interior nodes on the axis.
+    pub(super) axis: usize,
+    /// Number of free nodes on the surface, of which the middle one lies on the axis.
     surface: usize,
 }
 
 impl Numbering {
     fn new(mesh: &Mesh) -> Numbering {
-        let (surface, free) = (mesh.surface(), mesh.free());
-        let interior = nested_dissection(mesh, |node| free[node] && !surface.contains(&node));
+        let Dissection { order, pieces } = Dissection::new(mesh);
+        let right = order.len();
         let mut place = vec![FIXED; mesh.nodes.len()];
-        for (k, &node) in interior.iter().enumerate() {
+        for (k, &node) in order.iter().enumerate() {
             place[node] = k as u32;
         }
-        for (k, node) in surface.clone().enumerate() {
-            place[node] = (interior.len() + k) as u32;
+        let interior = &mesh.rows[1..mesh.rows.len() - 1];
+        for (k, row) in interior.iter().enumerate() {
+            let nodes = row.start + 1..row.end - 1;
+            let mirrored = nodes.clone().rev();
+            for (node, image) in nodes.zip(mirrored).take((row.len() - 3) / 2) {
+                place[node] = place[image] + right as u32;
+            }
+            place[row.start + (row.len() - 1) / 2] = (2 * right + k) as u32;
+        }
+        let axis = interior.len();
+        for (k, node) in mesh.surface().enumerate() {
+            place[node] = (2 * right + axis + k) as u32;
         }
         Numbering {
             place,
-            interior: interior.len(),
-            surface: surface.len(),
+            pieces,
+            right,
+            axis,
+            surface: mesh.surface().len(),
         }
     }
 
@@ -51,12 +68,45 @@ impl Numbering {
 
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
-        2 * (self.interior + self.surface)
+        2 * (2 * self.right + self.axis + self.surface)
     }
 
     /// The first unknown on the surface; the two of surface node k are `first + 2k` and `first + 2k + 1`.
     pub fn first_surface_unknown(&self) -> usize {
-        2 * self.interior
+        2 * (2 * self.right + self.axis)
+    }
+
+    /// Free nodes of the right half, axis included: those right of the axis in their order, the axis, the
+    /// surface from the axis to the wall.
+    pub(super) fn half_nodes(&self) -> usize {
+        self.right + self.axis + self.surface.div_ceil(2)
+    }
+
+    /// Places of node `half` of the right half and of its mirror image; the same on the axis.
+    pub(super) fn pair(&self, half: usize) -> [usize; 2] {
+        let below = self.right + self.axis;
+        if half < self.right {
+            [half, self.right + half]
+        } else if half < below {
+            [self.right + half; 2]
+        } else {
+            let middle = self.right + below + self.surface / 2;
+            [middle + (half - below), middle - (half - below)]
+        }
+    }
+
+    /// The node of the right half at a place, or `None` left of the axis.
+    pub(super) fn half_at(&self, place: usize) -> Option<usize> {
+        let (below, first) = (self.right + self.axis, 2 * self.right + self.axis);
+        if place < self.right {
+            Some(place)
+        } else if place < first {
+            (place >= 2 * self.right).then(|| place - self.right)
+        } else {
+            (place - first)
+                .checked_sub(self.surface / 2)
+                .map(|k| below + k)
+        }
     }
 }
 

@@ -1,99 +1,131 @@
-//! Sparse Cholesky factor of the stiffness matrix by faer, its condensation to the surface, and solves
+//! Multifrontal Cholesky factor of the stiffness matrix, its condensation to the surface, and solves
 //! whose residual is checked.
 //!
-//! The simplicial algorithm is used throughout: its bits do not depend on threads or on the width of
-//! the processor's vector registers (requirement CON-006).
+//! The mesh is mirror-symmetric, so that every field is the sum of a symmetric and an antisymmetric one, each
+//! given by its right half: with u_x = 0 on the axis for the one, u_y = 0 for the other. Right of the axis
+//! both have the same matrix, which is factorised once; axis and surface are left to two dense
+//! [`Root`]s of half the size.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::linalg::cholesky::simplicial::{
-    SimplicialLltRef, SymbolicSimplicialCholesky, factorize_simplicial_numeric_llt,
-    factorize_simplicial_numeric_llt_scratch, factorize_simplicial_symbolic_cholesky,
-    factorize_simplicial_symbolic_cholesky_scratch, prefactorize_symbolic_cholesky,
-    prefactorize_symbolic_cholesky_scratch,
-};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par};
 use nalgebra::DMatrix;
 
 use super::FemError;
-use super::assembly::StiffnessMatrix;
+use super::assembly::{Numbering, StiffnessMatrix};
+use super::elimination::{Eliminated, eliminate_right_half};
+use super::front::{Front, Strip, inverse, padded, substitute_back, substitute_forward};
 
 /// The largest relative residual ‖f − K u‖ / ‖f‖ that a solve may leave.
 pub const RESIDUAL_LIMIT: f64 = 1e-8;
 
-/// K = L Lᵀ.
+/// Symmetric fields move up and down on the axis, antisymmetric ones from side to side.
+const AXIS_DIRECTION: [usize; 2] = [1, 0];
+
+/// The sign of a displacement component in the mirror image.
+const MIRROR: [f64; 2] = [-1.0, 1.0];
+
+/// K = L Lᵀ, in the symmetric and the antisymmetric half.
 #[derive(Debug, Clone)]
 pub struct Factor {
-    symbolic: SymbolicSimplicialCholesky<u32>,
-    values: Vec<f64>,
-    first_surface_unknown: usize,
+    numbering: Numbering,
+    pieces: Vec<Eliminated>,
+    values: Vec<Strip>,
+    roots: [Root; 2],
 }
 
-fn scratch(request: faer::dyn_stack::StackReq) -> Result<MemBuffer, FemError> {
-    MemBuffer::try_new(request).map_err(|_| FemError::OutOfMemory)
+/// Axis and surface of one kind of field.
+#[derive(Debug, Clone)]
+struct Root {
+    /// The axis' unknowns, one each.
+    axis: usize,
+    /// The surface's unknowns: one on the axis, two at each node right of it.
+    surface: usize,
+    panels: Vec<Strip>,
+    stiffness: Vec<Strip>,
+    compliance: Vec<Strip>,
 }
 
 impl Factor {
-    /// Factorises the stiffness matrix.
+    /// Factorises the stiffness matrix of a mirror-symmetric mesh.
     ///
-    /// Implements: FEM-006.
+    /// Implements: FEM-006, FEM-023.
     ///
     /// # Errors
-    /// [`FemError::NotPositiveDefinite`] with the unknown at which the factorisation stopped.
+    /// [`FemError::NotPositiveDefinite`].
     pub fn new(matrix: &StiffnessMatrix) -> Result<Factor, FemError> {
-        let n = matrix.numbering.unknowns();
-        let pattern = SymbolicSparseColMatRef::new_checked(
-            n,
-            n,
-            &matrix.column_starts,
-            None,
-            &matrix.row_indices,
-        );
-        let symbolic = analyse(pattern)?;
-        let mut values = vec![0.0; symbolic.len_val()];
-        let mut memory = scratch(factorize_simplicial_numeric_llt_scratch::<u32, f64>(n))?;
-        factorize_simplicial_numeric_llt(
-            &mut values,
-            SparseColMatRef::new(pattern, &matrix.values),
-            Default::default(),
-            &symbolic,
-            MemStack::new(&mut memory),
-        )
-        .map_err(|_| FemError::NotPositiveDefinite)?;
+        let numbering = matrix.numbering.clone();
+        let (pieces, values, whole) = eliminate_right_half(matrix)?;
+        let roots = [0, 1].map(|parity| Root::new(&whole, &numbering, AXIS_DIRECTION[parity]));
+        let [symmetric, antisymmetric] = roots;
         Ok(Factor {
-            symbolic,
+            numbering,
+            pieces,
             values,
-            first_surface_unknown: matrix.numbering.first_surface_unknown(),
+            roots: [symmetric?, antisymmetric?],
         })
     }
 
-    /// Number of entries in L.
+    /// Number of entries kept of L.
     pub fn entries(&self) -> usize {
-        self.values.len()
+        let roots = self.roots.iter().map(|root| root.panels.len());
+        (self.values.len() + roots.sum::<usize>()) * 4
     }
 
-    /// Rows and values of column `j` of L, the diagonal first.
-    fn column(&self, j: usize) -> (&[u32], &[f64]) {
-        let starts = self.symbolic.col_ptr();
-        let range = starts[j] as usize..starts[j + 1] as usize;
-        (&self.symbolic.row_idx()[range.clone()], &self.values[range])
-    }
-
-    /// The factor of the surface stiffness S = L_ss L_ssᵀ, with the interior condensed out: since the
-    /// surface unknowns come last, it is the lower right corner of L. Square, over the surface unknowns.
+    /// The surface stiffness S: the stiffness matrix with the interior condensed out. Square, over the
+    /// surface unknowns.
     ///
     /// Implements: FEM-007.
-    pub fn surface_factor(&self) -> DMatrix<f64> {
-        let first = self.first_surface_unknown;
-        let n = self.symbolic.ncols() - first;
-        let mut corner = DMatrix::zeros(n, n);
-        for j in 0..n {
-            let (rows, values) = self.column(first + j);
-            for (&i, &value) in rows.iter().zip(values) {
-                corner[(i as usize - first, j)] = value;
-            }
-        }
-        corner
+    pub fn surface_stiffness(&self) -> DMatrix<f64> {
+        // A symmetric field bends both halves: on the axis it meets the stiffness of both.
+        self.both_halves(|root| &root.stiffness, 2.0)
+    }
+
+    /// S⁻¹, m/N; symmetric, and mirror-symmetric to the bit.
+    ///
+    /// Implements: FEM-007.
+    pub fn surface_compliance(&self) -> DMatrix<f64> {
+        self.both_halves(|root| &root.compliance, 1.0)
+    }
+
+    /// The matrix over the whole surface from those of symmetric and antisymmetric fields, A and B: (A + B)/2 on
+    /// one side, (A − B)/2 across, turned for the left, and where the axis stands times `on_axis`.
+    fn both_halves(&self, of: impl Fn(&Root) -> &Vec<Strip>, on_axis: f64) -> DMatrix<f64> {
+        let size = self.roots[0].surface;
+        let parts = self.roots.each_ref().map(|root| (of(root), padded(size)));
+        let entry = |parity: usize, a: usize, b: usize| {
+            let (row, column) = (a.max(b), a.min(b));
+            let (strips, width) = parts[parity];
+            strips[row / 4 * width + column][row % 4]
+        };
+        // The unknown of a node `away` nodes from the axis, or `None` where the field leaves it at rest.
+        let unknown = |parity: usize, away: usize, direction: usize| match away {
+            0 => (direction == AXIS_DIRECTION[parity]).then_some(0),
+            _ => Some(2 * away - 1 + direction),
+        };
+        let weight = |away: usize| if away == 0 { on_axis } else { 1.0 };
+        let middle = size / 2;
+        let block = |k: usize, i: usize, l: usize, j: usize| {
+            let (a, b) = (k.abs_diff(middle), l.abs_diff(middle));
+            let part = |parity| match (unknown(parity, a, i), unknown(parity, b, j)) {
+                (Some(row), Some(column)) => entry(parity, row, column),
+                _ => 0.0,
+            };
+            let sign = if (k < middle) == (l < middle) {
+                1.0
+            } else {
+                -1.0
+            };
+            let turned = |node: usize, direction: usize| {
+                if node < middle {
+                    MIRROR[direction]
+                } else {
+                    1.0
+                }
+            };
+            let sum = part(0) + sign * part(1);
+            0.5 * weight(a) * weight(b) * turned(k, i) * turned(l, j) * sum
+        };
+        DMatrix::from_fn(2 * size, 2 * size, |row, column| {
+            block(row / 2, row % 2, column / 2, column % 2)
+        })
     }
 
     /// Solves K u = f with one step of iterative refinement; returns u and the relative residual.
@@ -107,10 +139,8 @@ impl Factor {
         matrix: &StiffnessMatrix,
         force: &[f64],
     ) -> Result<(Vec<f64>, f64), FemError> {
-        let mut u = force.to_vec();
-        self.solve_in_place(&mut u);
-        let mut correction = residual(matrix, &u, force);
-        self.solve_in_place(&mut correction);
+        let mut u = self.solve_once(force);
+        let correction = self.solve_once(&residual(matrix, &u, force));
         for (u, correction) in u.iter_mut().zip(&correction) {
             *u += correction;
         }
@@ -119,14 +149,23 @@ impl Factor {
         Ok((u, left))
     }
 
-    fn solve_in_place(&self, rhs: &mut [f64]) {
-        let n = rhs.len();
-        SimplicialLltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(rhs, n, 1),
-            Par::Seq,
-            MemStack::new(&mut []),
-        );
+    fn solve_once(&self, force: &[f64]) -> Vec<f64> {
+        let single: Vec<[f64; 1]> = force.iter().map(|&f| [f]).collect();
+        let mut halves = self.halves(&single, 0);
+        let on_axis =
+            2 * self.numbering.right..2 * (self.numbering.right + self.numbering.axis + 1);
+        for (parity, (half, root)) in halves.iter_mut().zip(&self.roots).enumerate() {
+            // Either half carries its own share of a load on the axis.
+            for [load] in &mut half[on_axis.clone()] {
+                *load *= 0.5;
+            }
+            self.forward(half);
+            root.solve(&mut half[on_axis.start..], parity);
+            self.back(half);
+        }
+        let mut u = vec![[0.0]; force.len()];
+        self.join(&halves, &mut u, 0);
+        u.into_iter().map(|[u]| u).collect()
     }
 
     /// Given the surface displacements in the last rows of `u`, fills in the interior's, which carry no
@@ -134,34 +173,163 @@ impl Factor {
     ///
     /// Implements: FEM-007.
     pub fn extend_to_interior<const W: usize>(&self, u: &mut [[f64; W]]) {
-        for j in (0..self.first_surface_unknown).rev() {
-            let (rows, values) = self.column(j);
-            let mut sum = [0.0; W];
-            for (&i, &value) in rows[1..].iter().zip(&values[1..]) {
-                let u = &u[i as usize];
+        let below = self.numbering.right + self.numbering.axis;
+        let mut halves = self.halves(u, below);
+        for parity in 0..2 {
+            let half = &mut halves[parity];
+            self.roots[parity].extend(&mut half[2 * self.numbering.right..], parity);
+            self.back(half);
+        }
+        self.join(&halves, u, self.numbering.half_nodes() - below);
+    }
+
+    /// The symmetric and the antisymmetric part of `u` on the right half, from node `from` of the half on.
+    fn halves<const W: usize>(&self, u: &[[f64; W]], from: usize) -> [Vec<[f64; W]>; 2] {
+        let nodes = self.numbering.half_nodes();
+        let mut halves = [(); 2].map(|()| vec![[0.0; W]; 2 * nodes]);
+        for half in from..nodes {
+            let [right, left] = self.numbering.pair(half);
+            for direction in 0..2 {
+                let (right, left) = (&u[2 * right + direction], &u[2 * left + direction]);
                 for w in 0..W {
-                    sum[w] += value * u[w];
+                    let image = MIRROR[direction] * left[w];
+                    halves[0][2 * half + direction][w] = 0.5 * (right[w] + image);
+                    halves[1][2 * half + direction][w] = 0.5 * (right[w] - image);
                 }
             }
-            u[j] = sum.map(|sum| -sum / values[0]);
+        }
+        halves
+    }
+
+    /// Puts the parts together again, but for the last `but` nodes of the half.
+    fn join<const W: usize>(&self, halves: &[Vec<[f64; W]>; 2], u: &mut [[f64; W]], but: usize) {
+        for half in 0..self.numbering.half_nodes() - but {
+            let [right, left] = self.numbering.pair(half);
+            for direction in 0..2 {
+                let [symmetric, antisymmetric] =
+                    [0, 1].map(|parity| halves[parity][2 * half + direction]);
+                for w in 0..W {
+                    u[2 * left + direction][w] =
+                        MIRROR[direction] * (symmetric[w] - antisymmetric[w]);
+                    u[2 * right + direction][w] = symmetric[w] + antisymmetric[w];
+                }
+            }
+        }
+    }
+
+    /// Takes what the pieces' loads leave from those of axis and surface.
+    fn forward<const W: usize>(&self, half: &mut [[f64; W]]) {
+        let mut local = Vec::new();
+        for piece in &self.pieces {
+            piece.gather(half, &mut local);
+            substitute_forward(&self.values[piece.start..], piece.own(), &mut local);
+            half[2 * piece.first..][..2 * piece.nodes].copy_from_slice(&local[..2 * piece.nodes]);
+            for (&node, rows) in piece
+                .border
+                .iter()
+                .zip(local[piece.own()..].chunks_exact(2))
+            {
+                half[2 * node as usize..][..2].copy_from_slice(rows);
+            }
+        }
+    }
+
+    /// From the surface and the axis down through the pieces.
+    fn back<const W: usize>(&self, half: &mut [[f64; W]]) {
+        let mut local = Vec::new();
+        for piece in self.pieces.iter().rev() {
+            piece.gather(half, &mut local);
+            substitute_back(
+                &self.values[piece.start..piece.end()],
+                piece.own(),
+                &mut local,
+            );
+            half[2 * piece.first..][..2 * piece.nodes].copy_from_slice(&local[..2 * piece.nodes]);
         }
     }
 }
 
-fn analyse(
-    pattern: SymbolicSparseColMatRef<'_, u32>,
-) -> Result<SymbolicSimplicialCholesky<u32>, FemError> {
-    let n = pattern.ncols();
-    let (mut tree, mut counts) = (vec![0i32; n], vec![0u32; n]);
-    let mut memory = scratch(prefactorize_symbolic_cholesky_scratch::<u32>(
-        n,
-        pattern.compute_nnz(),
-    ))?;
-    let tree =
-        prefactorize_symbolic_cholesky(&mut tree, &mut counts, pattern, MemStack::new(&mut memory));
-    let mut memory = scratch(factorize_simplicial_symbolic_cholesky_scratch::<u32>(n))?;
-    factorize_simplicial_symbolic_cholesky(pattern, tree, &counts, MemStack::new(&mut memory))
-        .map_err(|_| FemError::OutOfMemory)
+impl Root {
+    /// From axis and surface with both components, of which only `direction` moves on the axis.
+    fn new(whole: &Front, numbering: &Numbering, direction: usize) -> Result<Root, FemError> {
+        let axis = numbering.axis;
+        let surface_nodes = numbering.half_nodes() - numbering.right - axis;
+        let surface = 2 * surface_nodes - 1;
+        let moving: Vec<usize> = (0..=axis)
+            .map(|node| 2 * node + direction)
+            .chain(2 * (axis + 1)..2 * (axis + surface_nodes))
+            .collect();
+        let mut front = Front::new(axis, surface);
+        let place = |k: usize| if k < axis { k } else { front.own + (k - axis) };
+        let places: Vec<usize> = (0..moving.len()).map(place).collect();
+        for (k, &row) in moving.iter().enumerate() {
+            for (l, &column) in moving[..=k].iter().enumerate() {
+                *front.entry(places[k], places[l]) =
+                    whole.update[row / 4 * whole.border + column][row % 4];
+            }
+        }
+        front.pad_diagonal(axis);
+        front.eliminate(|_| 0)?;
+        let width = front.border;
+        let compliance = inverse(surface, |row, column| {
+            front.update[row / 4 * width + column][row % 4]
+        })?;
+        Ok(Root {
+            axis,
+            surface,
+            panels: front.panels,
+            stiffness: front.update,
+            compliance,
+        })
+    }
+
+    /// The moving unknowns of a field on axis and surface (both components), axis first.
+    fn gather<const W: usize>(&self, field: &[[f64; W]], parity: usize) -> Vec<[f64; W]> {
+        let mut local = Vec::with_capacity(padded(self.axis) + padded(self.surface));
+        let axis = field[..2 * self.axis].iter().skip(AXIS_DIRECTION[parity]);
+        local.extend(axis.step_by(2));
+        local.resize(padded(self.axis), [0.0; W]);
+        local.push(field[2 * self.axis + AXIS_DIRECTION[parity]]);
+        local.extend_from_slice(&field[2 * self.axis + 2..]);
+        local.resize(padded(self.axis) + padded(self.surface), [0.0; W]);
+        local
+    }
+
+    /// Fills in the axis' displacements, which carry no load, from the surface's.
+    fn extend<const W: usize>(&self, field: &mut [[f64; W]], parity: usize) {
+        let mut local = self.gather(field, parity);
+        substitute_back(&self.panels, padded(self.axis), &mut local);
+        for (k, row) in local[..self.axis].iter().enumerate() {
+            field[2 * k + AXIS_DIRECTION[parity]] = *row;
+        }
+    }
+
+    /// Solves for axis and surface.
+    fn solve<const W: usize>(&self, field: &mut [[f64; W]], parity: usize) {
+        let mut local = self.gather(field, parity);
+        let own = padded(self.axis);
+        substitute_forward(&self.panels, own, &mut local);
+        let loads = local[own..].to_vec();
+        let width = padded(self.surface);
+        for row in 0..self.surface {
+            let mut sum = [0.0; W];
+            for (column, load) in loads[..self.surface].iter().enumerate() {
+                let (low, high) = (row.min(column), row.max(column));
+                let entry = self.compliance[high / 4 * width + low][high % 4];
+                for w in 0..W {
+                    sum[w] += entry * load[w];
+                }
+            }
+            local[own + row] = sum;
+        }
+        substitute_back(&self.panels, own, &mut local);
+        field.fill([0.0; W]);
+        for (k, row) in local[..self.axis].iter().enumerate() {
+            field[2 * k + AXIS_DIRECTION[parity]] = *row;
+        }
+        field[2 * self.axis + AXIS_DIRECTION[parity]] = local[own];
+        field[2 * self.axis + 2..].copy_from_slice(&local[own + 1..own + self.surface]);
+    }
 }
 
 /// f − K u.

@@ -4,8 +4,11 @@
 //! gap_i ≥ 0, λ_i ≥ 0, λ_i gap_i = 0, and carries the force λ_i n_i. With the probe's true normal at the
 //! deformed node, n turns with u: Newton's method needs the curvature term λ (I − n nᵀ)/r.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, LU};
+use core::ops::Range;
 
+use nalgebra::DMatrix;
+
+use super::front::{Front, TILE, substitute_back_one, substitute_forward};
 use super::{FemError, Pose};
 use crate::phantom::Probe;
 
@@ -94,6 +97,17 @@ impl ContactState {
         }
     }
 
+    /// Moves the nodes of a range that are not in contact to where the forces move them.
+    fn follow(&mut self, elastic: &[[f64; 2]], nodes: Range<usize>) {
+        let mut active = self.active.iter().copied().peekable();
+        for (i, elastic) in nodes.zip(elastic) {
+            while active.next_if(|&node| node < i).is_some() {}
+            if active.peek() != Some(&i) {
+                self.displacements[i] = *elastic;
+            }
+        }
+    }
+
     /// Where the state goes if it keeps changing as it did since `earlier`, `ahead` times as far.
     pub fn extrapolated(&self, earlier: &ContactState, ahead: f64) -> ContactState {
         let on = |now: f64, then: f64| now + ahead * (now - then);
@@ -113,49 +127,90 @@ impl ContactState {
 struct TangentSystem {
     active: Vec<usize>,
     normals: Vec<[f64; 2]>,
-    /// Of C_nn.
-    normal_factor: Cholesky<f64, Dyn>,
-    /// W.
-    coupling: DMatrix<f64>,
+    /// L in its panels, below it Wᵀ or, without turning, C_tn; Q in its update.
+    front: Front,
+    /// `None` for normals that are taken not to turn.
+    turning: Option<Turning>,
+}
+
+/// The part of Newton's matrix that turns the normals.
+#[derive(Debug)]
+struct Turning {
     /// The diagonal of D.
-    turning: Vec<f64>,
-    /// Of I − Q D.
-    slip_factor: LU<f64, Dyn, Dyn>,
+    rates: Vec<f64>,
+    /// Factor of I − D^½ Q D^½.
+    slip: Front,
 }
 
 impl TangentSystem {
-    /// Increments of λ, and slips, that mend the mismatch u − C (n λ) of the active nodes, m. `None` if
-    /// the system is singular or an increment is not finite.
-    fn solve(&self, mismatch: &[[f64; 2]]) -> Option<(DVector<f64>, DVector<f64>)> {
-        if mismatch.is_empty() {
-            // The probe clears the surface; the dense solvers refuse empty systems.
-            return Some((DVector::zeros(0), DVector::zeros(0)));
+    /// Increments of λ, and slips, that mend the mismatch u − C (n λ) of the active nodes, m. `None` if an
+    /// increment is not finite.
+    fn solve(&self, mismatch: &[[f64; 2]]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (m, own) = (mismatch.len(), self.front.own);
+        let mut x = vec![[0.0]; own + self.front.border];
+        let mut slips = vec![0.0; m];
+        for (k, (&n, &u)) in self.normals.iter().zip(mismatch).enumerate() {
+            x[k] = [dot(n, u)];
+            slips[k] = -dot(tangent(n), u);
         }
-        let along = |direction: &dyn Fn([f64; 2]) -> [f64; 2]| {
-            let components = self
-                .normals
-                .iter()
-                .zip(mismatch)
-                .map(|(&n, &u)| dot(direction(n), u));
-            DVector::from_iterator(mismatch.len(), components)
-        };
-        let (mut pressures, mut slips) = (along(&|n| n), -along(&tangent));
-        let lower = self.normal_factor.l_dirty();
-        lower
-            .solve_lower_triangular_mut(&mut pressures)
-            .then_some(())?;
-        for (b, slip) in slips.iter_mut().enumerate() {
-            *slip += self.coupling.column(b).dot(&pressures);
+        match &self.turning {
+            None => {
+                substitute_forward(&self.front.panels, own, &mut x[..own]);
+                let lower = &self.front.panels[..own * own / TILE];
+                substitute_back_one(lower, own, &mut x[..own]);
+                self.front.add_border_product(&x[..own], &mut slips);
+            }
+            Some(turning) => {
+                // Leaves L⁻¹ r_n in the own rows, −C_tn C_nn⁻¹ r_n in the others.
+                substitute_forward(&self.front.panels, own, &mut x);
+                for (slip, [x]) in slips.iter_mut().zip(&x[own..]) {
+                    *slip -= x;
+                }
+                turning.solve(&self.front, &mut slips);
+                for (k, slip) in slips.iter().enumerate() {
+                    x[own + k] = [turning.rates[k] * slip];
+                }
+                substitute_back_one(&self.front.panels, own, &mut x);
+            }
         }
-        self.slip_factor.solve_mut(&mut slips).then_some(())?;
-        for (b, slip) in slips.iter().enumerate() {
-            pressures.axpy(-slip * self.turning[b], &self.coupling.column(b), 1.0);
-        }
-        lower
-            .tr_solve_lower_triangular_mut(&mut pressures)
-            .then_some(())?;
+        let pressures: Vec<f64> = x[..m].iter().map(|[p]| *p).collect();
         let finite = pressures.iter().chain(&slips).all(|x| x.is_finite());
         finite.then_some((pressures, slips))
+    }
+}
+
+impl Turning {
+    /// From Q, in the front's update, and D.
+    fn new(front: &Front, rates: Vec<f64>) -> Option<Turning> {
+        let m = rates.len();
+        let roots: Vec<f64> = rates.iter().map(|&rate| libm::sqrt(rate)).collect();
+        let mut slip = Front::new(m, 0);
+        for a in 0..m {
+            for b in 0..=a {
+                let unit = if a == b { 1.0 } else { 0.0 };
+                let q = front.update[a / TILE * front.border + b][a % TILE];
+                *slip.entry(a, b) = unit - roots[a] * q * roots[b];
+            }
+        }
+        slip.pad_diagonal(m);
+        slip.factorise().ok()?;
+        Some(Turning { rates, slip })
+    }
+
+    /// Solves (I − Q D) b = r in place: b = r + Q D^½ (I − D^½ Q D^½)⁻¹ D^½ r.
+    fn solve(&self, front: &Front, slips: &mut [f64]) {
+        let own = self.slip.own;
+        let root = |k: usize| libm::sqrt(self.rates[k]);
+        let mut scaled = vec![[0.0]; own];
+        for (k, slip) in slips.iter().enumerate() {
+            scaled[k] = [root(k) * slip];
+        }
+        substitute_forward(&self.slip.panels, own, &mut scaled);
+        substitute_back_one(&self.slip.panels, own, &mut scaled);
+        for k in 0..slips.len() {
+            scaled[k][0] *= root(k);
+        }
+        front.add_update_product(&scaled, slips);
     }
 }
 
@@ -169,17 +224,13 @@ fn tangent(n: [f64; 2]) -> [f64; 2] {
 }
 
 impl Surface {
-    /// Inverts the surface stiffness L Lᵀ given by its factor.
-    ///
-    /// Implements: FEM-007.
+    /// A surface with that compliance.
     pub fn new(
-        factor: DMatrix<f64>,
+        compliance: DMatrix<f64>,
         positions: Vec<[f64; 2]>,
         probe: Probe,
         contact: Contact,
     ) -> Surface {
-        let mut compliance = Cholesky::pack_dirty(factor).inverse();
-        compliance.fill_lower_triangle_with_upper_triangle();
         Surface {
             positions,
             compliance,
@@ -215,13 +266,12 @@ impl Surface {
         }
     }
 
-    /// The 2 × 2 block of the compliance between nodes `i` and `j`, applied to `v`.
-    fn response(&self, i: usize, j: usize, v: [f64; 2]) -> [f64; 2] {
-        // The matrix is symmetric: column access is contiguous.
+    /// The 2 × 2 block of the compliance between nodes `i` and `j`: `[r][c]` moves i along r per force along c.
+    fn block(&self, i: usize, j: usize) -> [[f64; 2]; 2] {
         let at = |row: usize, column: usize| self.compliance[(row, column)];
         [
-            at(2 * i, 2 * j) * v[0] + at(2 * i, 2 * j + 1) * v[1],
-            at(2 * i + 1, 2 * j) * v[0] + at(2 * i + 1, 2 * j + 1) * v[1],
+            [at(2 * i, 2 * j), at(2 * i, 2 * j + 1)],
+            [at(2 * i + 1, 2 * j), at(2 * i + 1, 2 * j + 1)],
         ]
     }
 
@@ -233,30 +283,59 @@ impl Surface {
     /// [`FemError::NoConvergence`], which names the pose.
     pub fn solve(&self, pose: Pose, start: &ContactState) -> Result<ContactState, FemError> {
         let failed = |iterations| FemError::NoConvergence { pose, iterations };
+        let everywhere = 0..self.positions.len();
         let mut state = start.clone();
-        self.revise(&mut state, pose, usize::MAX);
+        self.revise(&mut state, pose, everywhere.clone(), usize::MAX);
+        // Nodes far from the probe are moved at the end alone, and examined then.
+        let mut window = self.window(&state, pose);
+        let mut elastic = self
+            .response(&state, pose, window.clone())
+            .ok_or(failed(0))?;
         let mut tangent_system: Option<TangentSystem> = None;
         let mut last_step = f64::INFINITY;
+        // While nodes come and go, normals that do not turn will do: the full system is the cost.
+        let mut settled = state.active == start.active;
         for iteration in 0..MOST_ITERATIONS {
-            // The old tangent serves as long as it lets the steps shrink well: factorising is the cost.
+            // The old tangent serves as long as it lets the steps shrink well.
             let system = match tangent_system.take() {
                 Some(system) if system.active == state.active => system,
-                _ => self.tangent_system(&state, pose).ok_or(failed(iteration))?,
+                _ => self
+                    .tangent_system(&state, pose, settled)
+                    .ok_or(failed(iteration))?,
             };
             let step = self
-                .newton(&mut state, pose, &system)
+                .newton(&mut state, pose, &system, &elastic, window.start)
                 .ok_or(failed(iteration))?;
+            elastic = self
+                .response(&state, pose, window.clone())
+                .ok_or(failed(iteration))?;
+            state.follow(&elastic, window.clone());
             let at_most = if iteration < SIMULTANEOUS_CHANGES {
                 usize::MAX
             } else {
                 1
             };
-            let changed = self.revise(&mut state, pose, at_most);
+            let mut changed = self.revise(&mut state, pose, window.clone(), at_most);
             if !changed && step <= STEP_TOLERANCE {
-                state.iterations = iteration + 1;
-                return Ok(state);
+                let whole = self
+                    .response(&state, pose, everywhere.clone())
+                    .ok_or(failed(iteration))?;
+                state.follow(&whole, everywhere.clone());
+                changed = self.revise(&mut state, pose, everywhere.clone(), at_most);
+                if !changed {
+                    state.iterations = iteration + 1;
+                    return Ok(state);
+                }
+                window = everywhere.clone();
             }
-            (tangent_system, last_step) = if step <= REUSE_BELOW * last_step {
+            if changed {
+                elastic = self
+                    .response(&state, pose, window.clone())
+                    .ok_or(failed(iteration))?;
+            }
+            settled = !changed;
+            let full = system.turning.is_some();
+            (tangent_system, last_step) = if full && step <= REUSE_BELOW * last_step {
                 (Some(system), step)
             } else {
                 (None, f64::INFINITY)
@@ -265,55 +344,77 @@ impl Surface {
         Err(failed(MOST_ITERATIONS))
     }
 
+    /// The nodes under the probe's part below the undeformed surface and as much again on either side, and all
+    /// active ones.
+    fn window(&self, state: &ContactState, pose: Pose) -> Range<usize> {
+        let reach = 2.0 * libm::sqrt(2.0 * self.probe.radius * pose.depth);
+        let first = self
+            .positions
+            .partition_point(|[x, _]| *x < pose.lateral - reach);
+        let last = self
+            .positions
+            .partition_point(|[x, _]| *x <= pose.lateral + reach);
+        let active = (state.active.first(), state.active.last());
+        match active {
+            (Some(&low), Some(&high)) => first.min(low)..last.max(high + 1),
+            _ => first..last,
+        }
+    }
+
     /// Factorises the system for increments of λ and of each node's slip b along its tangent t. With
     /// δu = −gap n + b t, u = C (n λ) linearised and projected on n and t reads
     ///
     /// C_nn δλ + C_nt D b = r_n, C_tn δλ + (C_tt D − I) b = r_t, D = diag(λ κ).
     ///
     /// Eliminating δλ by Cholesky's factor L of C_nn leaves (I − Q D) b = C_tn C_nn⁻¹ r_n − r_t with
-    /// Q = C_tt − WᵀW, W = L⁻¹ C_nt. `None` if a node lies on the probe's axis.
-    fn tangent_system(&self, state: &ContactState, pose: Pose) -> Option<TangentSystem> {
+    /// Q = C_tt − WᵀW, W = L⁻¹ C_nt. With D^½ on both sides it is symmetric, and positive definite where the
+    /// contact is stable. Unless the normals are to be `turning`, D is taken as 0, which costs an eighth. `None`
+    /// where the system is singular or unstable, or if a node lies on the probe's axis.
+    fn tangent_system(
+        &self,
+        state: &ContactState,
+        pose: Pose,
+        turning: bool,
+    ) -> Option<TangentSystem> {
         let m = state.active.len();
         let constraints = self.constraints(state, pose)?;
-        let [mut nn, mut nt, mut tt] = [0; 3].map(|_| DMatrix::zeros(m, m));
+        let mut front = Front::new(m, m);
+        let own = front.own;
         for (b, (&j, constraint)) in state.active.iter().zip(&constraints).enumerate() {
-            let [push, slide] = [constraint.normal, tangent(constraint.normal)];
+            let directions = [constraint.normal, tangent(constraint.normal)];
             for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
                 let [n, t] = [constraint.normal, tangent(constraint.normal)];
-                let slid = self.response(i, j, slide);
-                nn[(a, b)] = dot(n, self.response(i, j, push));
-                nt[(a, b)] = dot(n, slid);
-                tt[(a, b)] = dot(t, slid);
+                let block = self.block(i, j);
+                let [pushed, slid] = directions.map(|v| block.map(|row| dot(row, v)));
+                *front.entry(own + a, b) = dot(t, pushed);
+                if a >= b {
+                    *front.entry(a, b) = dot(n, pushed);
+                    if turning {
+                        *front.entry(own + a, own + b) = dot(t, slid);
+                    }
+                }
             }
         }
-        let normal_factor = Cholesky::new(nn)?;
-        let coupling = normal_factor.l_dirty().solve_lower_triangular(&nt)?;
-        let turning: Vec<f64> = state
+        front.pad_diagonal(m);
+        let rates = state
             .active
             .iter()
             .zip(&constraints)
             .map(|(&j, constraint)| state.pressures[j] * constraint.curvature)
             .collect();
-        let mut slip = DMatrix::identity(m, m);
-        for a in 0..m {
-            for b in 0..=a {
-                let q = tt[(a, b)] - coupling.column(a).dot(&coupling.column(b));
-                slip[(a, b)] -= q * turning[b];
-                if a != b {
-                    slip[(b, a)] -= q * turning[a];
-                }
-            }
-        }
+        let turning = if turning {
+            front.eliminate(|_| 0).ok()?;
+            Some(Turning::new(&front, rates)?)
+        } else {
+            front.factorise().ok()?;
+            None
+        };
+        let normals = constraints.iter().map(|constraint| constraint.normal);
         Some(TangentSystem {
             active: state.active.clone(),
-            normals: constraints
-                .iter()
-                .map(|constraint| constraint.normal)
-                .collect(),
-            normal_factor,
-            coupling,
+            normals: normals.collect(),
+            front,
             turning,
-            slip_factor: slip.lu(),
         })
     }
 
@@ -325,67 +426,87 @@ impl Surface {
             .collect()
     }
 
-    /// One Newton step on the active nodes; updates displacements and pressures, and returns the
-    /// largest displacement increment of an active node, m. `None` if the system is singular.
-    fn newton(&self, state: &mut ContactState, pose: Pose, system: &TangentSystem) -> Option<f64> {
+    /// One Newton step on the active nodes, given the displacements `elastic` of the nodes from `first` on under
+    /// the present forces; updates displacements and pressures, and returns the largest displacement
+    /// increment, m. `None` if it is not finite.
+    fn newton(
+        &self,
+        state: &mut ContactState,
+        pose: Pose,
+        system: &TangentSystem,
+        elastic: &[[f64; 2]],
+        first: usize,
+    ) -> Option<f64> {
         let constraints = self.constraints(state, pose)?;
-        let mut mismatch = Vec::with_capacity(constraints.len());
-        for (&i, constraint) in state.active.iter().zip(&constraints) {
-            let mut u =
-                [0, 1].map(|d| state.displacements[i][d] - constraint.gap * constraint.normal[d]);
-            for (&j, constraint) in state.active.iter().zip(&constraints) {
-                let elastic =
-                    self.response(i, j, constraint.normal.map(|n| n * state.pressures[j]));
-                u = [u[0] - elastic[0], u[1] - elastic[1]];
-            }
-            mismatch.push(u);
-        }
+        let mismatch = |(&i, constraint): (&usize, &Constraint)| {
+            [0, 1].map(|d| {
+                state.displacements[i][d]
+                    - constraint.gap * constraint.normal[d]
+                    - elastic[i - first][d]
+            })
+        };
+        let mismatch: Vec<[f64; 2]> = state
+            .active
+            .iter()
+            .zip(&constraints)
+            .map(mismatch)
+            .collect();
         let (pressures, slips) = system.solve(&mismatch)?;
         let mut largest = 0.0f64;
-        let mut moved = Vec::with_capacity(constraints.len());
         for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
             state.pressures[i] += pressures[a];
             let t = tangent(constraint.normal);
-            let step = [0, 1].map(|d| slips[a] * t[d] - constraint.gap * constraint.normal[d]);
-            largest = largest.max(step[0].abs()).max(step[1].abs());
-            let u = state.displacements[i];
-            moved.push([u[0] + step[0], u[1] + step[1]]);
+            for d in 0..2 {
+                let step = slips[a] * t[d] - constraint.gap * constraint.normal[d];
+                largest = largest.max(step.abs());
+                state.displacements[i][d] += step;
+            }
         }
-        self.displace(state, &moved, pose)?;
         Some(largest)
     }
 
-    /// Displacements of the whole surface under the pressures, with normals at `moved`, where the
-    /// active nodes are put.
-    fn displace(&self, state: &mut ContactState, moved: &[[f64; 2]], pose: Pose) -> Option<()> {
-        let mut u = DVector::zeros(2 * self.positions.len());
-        for (&j, &at) in state.active.iter().zip(moved) {
-            let n = self.constraint(j, at, pose)?.normal;
-            for direction in 0..2 {
-                u.axpy(
-                    state.pressures[j] * n[direction],
-                    &self.compliance.column(2 * j + direction),
-                    1.0,
-                );
+    /// Displacements of some nodes under the present forces.
+    fn response(
+        &self,
+        state: &ContactState,
+        pose: Pose,
+        nodes: Range<usize>,
+    ) -> Option<Vec<[f64; 2]>> {
+        let mut u = vec![[0.0; 2]; nodes.len()];
+        let unknowns = self.compliance.nrows();
+        let columns = self.compliance.as_slice();
+        for &j in &state.active {
+            let n = self.constraint(j, state.displacements[j], pose)?.normal;
+            let [x, y] = n.map(|n| n * state.pressures[j]);
+            let column = |direction: usize| {
+                let start = (2 * j + direction) * unknowns;
+                let rows = &columns[start + 2 * nodes.start..start + 2 * nodes.end];
+                rows.as_chunks::<2>().0
+            };
+            for ((u, by_x), by_y) in u.iter_mut().zip(column(0)).zip(column(1)) {
+                for d in 0..2 {
+                    u[d] += x * by_x[d] + y * by_y[d];
+                }
             }
         }
-        for (i, displacement) in state.displacements.iter_mut().enumerate() {
-            *displacement = [u[2 * i], u[2 * i + 1]];
-        }
-        for (&j, &at) in state.active.iter().zip(moved) {
-            state.displacements[j] = at;
-        }
-        Some(())
+        Some(u)
     }
 
-    /// Drops active nodes that would be pulled and adds nodes inside the probe: all at once, or the
-    /// `at_most` worst. Returns whether the set changed.
-    fn revise(&self, state: &mut ContactState, pose: Pose, at_most: usize) -> bool {
+    /// Drops active nodes that would be pulled and adds nodes inside the probe, of those in `nodes`: all at
+    /// once, or the `at_most` worst. Returns whether the set changed.
+    fn revise(
+        &self,
+        state: &mut ContactState,
+        pose: Pose,
+        nodes: Range<usize>,
+        at_most: usize,
+    ) -> bool {
         let mut violations: Vec<(f64, usize)> = Vec::new();
-        for i in 0..self.positions.len() {
-            let active = state.active.binary_search(&i).is_ok();
+        let mut active = state.active.iter().copied().peekable();
+        for i in nodes {
+            while active.next_if(|&node| node < i).is_some() {}
             // Pulls and penetrations are weighed against each other by the node's own compliance.
-            let violation = if active {
+            let violation = if active.peek() == Some(&i) {
                 state.pressures[i] * self.compliance[(2 * i + 1, 2 * i + 1)]
             } else {
                 match self.constraint(i, state.displacements[i], pose) {

@@ -3,7 +3,7 @@
 
 use core::ops::Range;
 
-use super::outline::{Cells, Outline, half_way};
+use super::outline::{Cells, Outline, QUARTERS, half_way};
 use super::{FemError, MeshOptions};
 use crate::phantom::Phantom;
 
@@ -83,6 +83,17 @@ impl Mesh {
     /// [`FemError::MeshSize`] if the size is not positive and finite, or the mesh would have more than 500 000
     /// nodes.
     pub fn new(phantom: &Phantom, options: &MeshOptions) -> Result<Mesh, FemError> {
+        Mesh::with_quarters(phantom, options, QUARTERS)
+    }
+
+    /// As [`Mesh::new`], with `quarters`/4 of the cells along each line of the lattice.
+    ///
+    /// Implements: FEM-024.
+    pub(super) fn with_quarters(
+        phantom: &Phantom,
+        options: &MeshOptions,
+        quarters: usize,
+    ) -> Result<Mesh, FemError> {
         let refused = FemError::MeshSize {
             size: options.size,
             refinement: options.refinement,
@@ -98,7 +109,7 @@ impl Mesh {
         {
             return Err(refused);
         }
-        let outline = Outline::new(phantom, options);
+        let outline = Outline::new(phantom, options, quarters);
         if outline.cells.nodes() as f64 > MOST_NODES {
             return Err(refused);
         }
@@ -123,7 +134,7 @@ impl Mesh {
         }
         let meeting = |k: usize| meeting_point(outline, k, half, top);
         self.push_row((0..=(split + 1) * half).map(meeting));
-        for row in 0..=2 * outline.cells.fine_rows() {
+        for row in 0..=2 * outline.cells.skin {
             self.push_row((0..=2 * split * half).map(|column| fine_point(outline, column, row)));
         }
     }
@@ -159,14 +170,10 @@ impl Mesh {
                 _ => self.push_cell(2 * i, meeting, i >= half, Region::Gel),
             }
         }
-        for j in 0..cells.fine_rows() {
-            let region = if j < cells.cover {
-                Region::Gel
-            } else {
-                Region::Skin
-            };
+        for j in 0..cells.skin {
             for i in 0..2 * half * cells.split {
-                self.push_cell(2 * i, meeting + 2 + 2 * j, i >= half * cells.split, region);
+                let rising = i >= half * cells.split;
+                self.push_cell(2 * i, meeting + 2 + 2 * j, rising, Region::Skin);
             }
         }
     }

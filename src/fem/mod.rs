@@ -4,10 +4,13 @@
 //! last, and keeps the surface's compliance. A [`Pose`] of the probe is then a small contact problem.
 
 pub mod assembly;
+pub mod certify;
 pub mod cholesky;
 pub mod contact;
 pub mod element;
+mod elimination;
 pub mod field;
+mod front;
 pub mod mesh;
 mod model;
 mod ordering;
@@ -46,7 +49,7 @@ pub struct MeshOptions {
 impl Default for MeshOptions {
     fn default() -> Self {
         MeshOptions {
-            size: 0.75e-3,
+            size: 0.5e-3,
             refinement: 1,
             element: Element::T6,
         }

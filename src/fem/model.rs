@@ -5,6 +5,7 @@ use super::cholesky::{Factor, check_residual};
 use super::contact::{Contact, ContactState, Surface};
 use super::field::{BATCH, Batch, Field, FieldCheck, Samples};
 use super::mesh::Mesh;
+use super::outline::QUARTERS;
 use super::{FemError, MeshOptions, Pose};
 use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
 use crate::phantom::Phantom;
@@ -54,12 +55,27 @@ impl Model {
         options: &MeshOptions,
         contact: Contact,
     ) -> Result<Model, FemError> {
+        Model::with_quarters(phantom, options, contact, QUARTERS)
+    }
+
+    /// As [`Model::new`], with `quarters`/4 of the cells along each line of the mesh.
+    pub(super) fn with_quarters(
+        phantom: &Phantom,
+        options: &MeshOptions,
+        contact: Contact,
+        quarters: usize,
+    ) -> Result<Model, FemError> {
         phantom.validate()?;
-        let mesh = Mesh::new(phantom, options)?;
+        let mesh = Mesh::with_quarters(phantom, options, quarters)?;
         let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
         let factor = Factor::new(&matrix)?;
         let positions = mesh.nodes[mesh.surface()].to_vec();
-        let surface = Surface::new(factor.surface_factor(), positions, phantom.probe, contact);
+        let surface = Surface::new(
+            factor.surface_compliance(),
+            positions,
+            phantom.probe,
+            contact,
+        );
         let samples = Samples::new(&mesh, &matrix);
         Ok(Model {
             phantom: phantom.clone(),
@@ -75,6 +91,11 @@ impl Model {
     /// The phantom.
     pub fn phantom(&self) -> &Phantom {
         &self.phantom
+    }
+
+    /// How fine the mesh was asked for.
+    pub fn options(&self) -> &MeshOptions {
+        &self.options
     }
 
     /// The mesh.
@@ -352,6 +373,7 @@ impl Model {
             contact: self.surface.contact.name().into(),
             smallest_det,
             min_det,
+            discretization: None,
         })
     }
 }

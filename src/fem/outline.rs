@@ -1,7 +1,7 @@
 //! Where the mesh's corners lie: the phantom's outline, how many cells go where, and the map from
 //! lattice coordinates to the cross-section.
 //!
-//! The lattice has a coarse part from the floor to just under the skin and a fine part above it, with
+//! The lattice has a coarse part from the floor to just under the skin and a fine part, the skin, with
 //! one row between them in which each coarse cell meets two fine ones. Only the right half, x ≥ 0, is
 //! made; the left half is its mirror image.
 
@@ -58,38 +58,43 @@ pub struct Cells {
     pub below: usize,
     /// Rows from the disc to the fine part, the row between the parts left out.
     pub above: usize,
-    /// Fine rows of gel under the skin.
-    pub cover: usize,
-    /// Fine rows through the skin.
+    /// Fine rows: those through the skin.
     pub skin: usize,
     /// Fine columns for each coarse one.
     pub split: usize,
 }
 
-/// Heights of the coarse rows, and width of the disc's columns, over the target width: found by halving
-/// each in turn until all forces of the paper's phantoms came within 0.3 % of the converged ones.
-const HEIGHT_BELOW: f64 = 0.93;
-const HEIGHT_ABOVE: f64 = 0.36;
-const DISC: f64 = 0.7;
-/// Thickness of the fine gel under the skin, and of the row below it, over the target width.
-const COVER: f64 = 0.4;
+/// Heights of the coarse rows, and width of the disc's columns, over the target width: found by varying each in
+/// turn. Columns count most, since the contact's edge lies between two nodes, rows least.
+const HEIGHT_BELOW: f64 = 1.4;
+const HEIGHT_ABOVE: f64 = 0.35;
+const DISC: f64 = 1.05;
+/// Thickness of the row of gel under the skin over the target width.
 const BETWEEN: f64 = 0.6;
 /// Width of the strip along the wall over the target width, its cells, and how much they shrink: the
 /// skin is torn off the wall there, so that stress grows without bound towards the corner.
 const WALL_STRIP: f64 = 2.0;
-const WALL_CELLS: usize = 4;
+const WALL_CELLS: usize = 8;
 const WALL_GRADING: f64 = 0.15;
 /// How far an arc may rise over its chord, over the mean height of the cells on it.
 const MOST_RISE: f64 = 0.15;
 /// How much the rows above the disc shrink towards the skin.
 const SKIN_GRADING: f64 = 0.5;
 
+/// Cells of a mesh come in multiples of this, so that meshes with 3 and 2 quarters of them along every line
+/// show how far its forces are from converged.
+///
+/// Implements: FEM-024.
+pub const QUARTERS: usize = 4;
+
 impl Cells {
-    fn new(shape: &Shape, cover: &Cover, options: &MeshOptions) -> Cells {
+    /// The cells of the unrefined mesh, all counts multiples of [`QUARTERS`].
+    fn unrefined(shape: &Shape, options: &MeshOptions) -> Cells {
+        let cover = Cover::new(shape, options, QUARTERS);
         let size = options.size;
         // Below 2000 by the caller's check, so that the cast is exact.
-        let count = |length: f64, size: f64, least: f64| {
-            libm::round(length / size).max(least) as usize * options.refinement
+        let count = |length: f64, size: f64| {
+            QUARTERS * libm::round(length / (QUARTERS as f64 * size)).max(1.0) as usize
         };
         let split = match options.element {
             Element::T6 => 2,
@@ -101,18 +106,31 @@ impl Cells {
         let gel_below = shape.centre - shape.corner + shape.height;
         let mut cells = Cells {
             disc: 0,
-            middle: count(cover.wall_strip - shape.corner, size, 2.0),
-            wall: WALL_CELLS * options.refinement,
-            below: count(gel_below, HEIGHT_BELOW * size, 3.0),
-            above: count(gel_above, height_above, 2.0),
-            cover: options.refinement,
-            skin: count(shape.skin, size, 3.0),
+            middle: count(cover.wall_strip - shape.corner, size),
+            wall: WALL_CELLS,
+            below: count(gel_below, HEIGHT_BELOW * size),
+            above: count(gel_above, height_above),
+            skin: count(shape.skin, size),
             split,
         };
-        let along_edge = shape.corner / cells.longest_edge_cell(shape, cover);
-        let by_edge = libm::ceil(along_edge / options.refinement as f64);
-        cells.disc = count(shape.corner, DISC * size, by_edge.max(2.0));
+        let longest = cells.longest_edge_cell(shape, &cover);
+        let by_edge = QUARTERS * libm::ceil(shape.corner / (QUARTERS as f64 * longest)) as usize;
+        cells.disc = count(shape.corner, DISC * size).max(by_edge);
         cells
+    }
+
+    /// `times` as many cells along every line, in quarters.
+    fn refined(self, times: usize) -> Cells {
+        let refined = |count: usize| count / QUARTERS * times;
+        Cells {
+            disc: refined(self.disc),
+            middle: refined(self.middle),
+            wall: refined(self.wall),
+            below: refined(self.below),
+            above: refined(self.above),
+            skin: refined(self.skin),
+            split: self.split,
+        }
     }
 
     /// How long a cell along the disc's edge may be, m: its arc rises c²/8r over its chord, and where the
@@ -134,17 +152,12 @@ impl Cells {
         self.below + 2 * self.disc + self.above
     }
 
-    /// Fine rows.
-    pub fn fine_rows(&self) -> usize {
-        self.cover + self.skin
-    }
-
     /// Nodes of the whole mesh.
     pub fn nodes(&self) -> usize {
         let columns = 2 * self.half_columns();
         let coarse = (2 * columns + 1) * (2 * self.coarse_rows() + 1);
         let between = (self.split + 1) * columns + 1;
-        coarse + between + (2 * self.split * columns + 1) * (2 * self.fine_rows() + 1)
+        coarse + between + (2 * self.split * columns + 1) * (2 * self.skin + 1)
     }
 
     /// Coarse rows of the disc.
@@ -158,22 +171,20 @@ impl Cells {
 struct Cover {
     /// y of the top of the coarse part.
     bottom: f64,
-    /// y of the bottom of the fine part.
-    fine: f64,
     /// x at which the strip along the wall begins.
     wall_strip: f64,
 }
 
 impl Cover {
-    fn new(shape: &Shape, options: &MeshOptions) -> Cover {
-        // Close above a disc the cover is thinner, so that the coarse rows keep half the gel there.
+    /// For `times`/4 as many cells along each line as in the unrefined mesh.
+    fn new(shape: &Shape, options: &MeshOptions, times: usize) -> Cover {
+        // Close above a disc the row is thinner, so that the coarse rows keep half the gel there even with two
+        // quarters of the cells.
         let gel_above = -shape.skin - (shape.centre + shape.radius);
-        let size = options.size.min(0.5 * gel_above / (COVER + BETWEEN));
-        let fine = -shape.skin - COVER * size;
+        let size = options.size.min(0.25 * gel_above / BETWEEN);
         let strip = WALL_STRIP * options.size.min(0.1 * shape.half_width);
         Cover {
-            bottom: fine - BETWEEN * size / options.refinement as f64,
-            fine,
+            bottom: -shape.skin - BETWEEN * size * QUARTERS as f64 / times as f64,
             wall_strip: shape.half_width - strip.min(0.5 * (shape.half_width - shape.corner)),
         }
     }
@@ -200,14 +211,14 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Lays the lattice over a phantom.
-    pub fn new(phantom: &Phantom, options: &MeshOptions) -> Outline {
+    /// Lays the lattice over a phantom, with `quarters`/4 of the cells that the options ask for along each line.
+    pub fn new(phantom: &Phantom, options: &MeshOptions, quarters: usize) -> Outline {
         let shape = Shape::new(phantom);
-        let cover = Cover::new(&shape, options);
+        let times = quarters * options.refinement;
         Outline {
-            cells: Cells::new(&shape, &cover, options),
+            cells: Cells::unrefined(&shape, options).refined(times),
+            cover: Cover::new(&shape, options, times),
             shape,
-            cover,
         }
     }
 
@@ -250,14 +261,8 @@ impl Outline {
     /// Position of the fine corner in fine column line `i` and fine row line `j` (0 at the bottom of
     /// the fine part).
     pub fn fine(&self, i: usize, j: usize) -> [f64; 2] {
-        let Cells {
-            cover, skin, split, ..
-        } = self.cells;
-        let y = if j > cover {
-            mix(-self.shape.skin, 0.0, (j - cover) as f64 / skin as f64)
-        } else {
-            mix(self.cover.fine, -self.shape.skin, j as f64 / cover as f64)
-        };
+        let Cells { skin, split, .. } = self.cells;
+        let y = mix(-self.shape.skin, 0.0, j as f64 / skin as f64);
         [self.line_x(i as f64 / split as f64), y]
     }
 

@@ -37,6 +37,84 @@ pub struct Certificate {
     /// The smallest det(I + ∇u) in the mesh at every pose; depths × lateral positions. Near 0 the
     /// small-strain model is at its limit, and below 0 the gel is inside out.
     pub min_det: Matrix,
+    /// How far each force may be from that of an infinitely fine mesh; `None` where it was not estimated.
+    ///
+    /// Implements: MAP-050.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub discretization: Option<Discretization>,
+}
+
+/// Bands of the discretisation around the forces of a map, from three meshes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Discretization {
+    /// Nodes of the meshes, the published one's first.
+    pub nodes: [usize; 3],
+    /// Half the band around each normal force, N; depths × lateral positions.
+    #[serde(rename = "normal_force_band_n")]
+    pub normal_force_band: Matrix,
+    /// Half the band around each lateral force, N.
+    #[serde(rename = "lateral_force_band_n")]
+    pub lateral_force_band: Matrix,
+}
+
+impl Discretization {
+    /// The largest half band of a normal and of a lateral force, N.
+    pub fn largest(&self) -> [f64; 2] {
+        [&self.normal_force_band, &self.lateral_force_band]
+            .map(|bands| bands.values().iter().copied().fold(0.0, f64::max))
+    }
+
+    /// Implements: MAP-051.
+    fn check(&self, expected: [usize; 2]) -> Result<(), InvalidForceMap> {
+        for (key, bands) in [
+            (
+                "certificate.discretization.normal_force_band_n",
+                &self.normal_force_band,
+            ),
+            (
+                "certificate.discretization.lateral_force_band_n",
+                &self.lateral_force_band,
+            ),
+        ] {
+            check_shape(key, bands, expected)?;
+            let wrong = |(_, _, band): &(usize, usize, f64)| !(band.is_finite() && *band >= 0.0);
+            if let Some((row, column, value)) = bands.entries().find(wrong) {
+                return Err(InvalidForceMap::Band {
+                    key,
+                    row,
+                    column,
+                    value,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn map(&self, change: impl Fn(&Matrix) -> Matrix) -> Discretization {
+        Discretization {
+            nodes: self.nodes,
+            normal_force_band: change(&self.normal_force_band),
+            lateral_force_band: change(&self.lateral_force_band),
+        }
+    }
+}
+
+fn check_shape(
+    key: &'static str,
+    matrix: &Matrix,
+    expected: [usize; 2],
+) -> Result<(), InvalidForceMap> {
+    let found = [matrix.row_count(), matrix.column_count()];
+    if found == expected {
+        Ok(())
+    } else {
+        Err(InvalidForceMap::Shape {
+            key,
+            found,
+            expected,
+        })
+    }
 }
 
 /// The smallest det(I + ∇u) of a map, and where.
@@ -86,13 +164,9 @@ impl Certificate {
         not_negative("mesh_size_m", self.mesh_size)?;
         let key = "certificate.min_det";
         let expected = [depths.len(), laterals.len()];
-        let found = [self.min_det.row_count(), self.min_det.column_count()];
-        if found != expected {
-            return Err(InvalidForceMap::Shape {
-                key,
-                found,
-                expected,
-            });
+        check_shape(key, &self.min_det, expected)?;
+        if let Some(discretization) = &self.discretization {
+            discretization.check(expected)?;
         }
         if let Some((row, column, value)) =
             self.min_det.entries().find(|(_, _, det)| !det.is_finite())
@@ -143,6 +217,8 @@ impl Certificate {
         Ok(Certificate {
             min_det,
             smallest_det,
+            discretization: (self.discretization.as_ref())
+                .map(|bands| bands.map(|matrix| matrix.at_columns(columns))),
             ..self.clone()
         })
     }
@@ -151,6 +227,8 @@ impl Certificate {
     pub(super) fn mirrored(&self) -> Certificate {
         Certificate {
             min_det: self.min_det.mirrored(|det| det, |det| det),
+            discretization: (self.discretization.as_ref())
+                .map(|bands| bands.map(|matrix| matrix.mirrored(|band| band, |band| band))),
             ..self.clone()
         }
     }

@@ -94,6 +94,18 @@ pub enum InvalidForceMap {
         /// The entry.
         value: f64,
     },
+    /// A band is impossible.
+    #[error("{key}[{row}][{column}] = {value}, expected a finite number, at least 0")]
+    Band {
+        /// The matrix.
+        key: &'static str,
+        /// Row, from 0.
+        row: usize,
+        /// Column, from 0.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
     /// A number of the certificate is impossible.
     #[error("certificate.{key} = {value}, expected a finite number, at least 0")]
     Certificate {

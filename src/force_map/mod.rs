@@ -22,7 +22,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use certificate::{Certificate, SmallestDet};
+pub use certificate::{Certificate, Discretization, SmallestDet};
 pub use error::InvalidForceMap;
 pub use file::{ForceMapFileError, ForceMapFileProblem};
 pub use interpolation::ProbeForce;
@@ -104,6 +104,23 @@ impl ForceMap {
             phantom,
             forces,
         })
+    }
+
+    /// This computed map with bands of the discretisation in its certificate; a measured map as it is.
+    ///
+    /// # Errors
+    /// [`InvalidForceMap::Shape`], [`InvalidForceMap::Band`].
+    ///
+    /// Implements: MAP-050, MAP-051.
+    pub fn with_discretization(
+        mut self,
+        discretization: Discretization,
+    ) -> Result<ForceMap, InvalidForceMap> {
+        if let Source::FiniteElements { certificate } = &mut self.source {
+            certificate.discretization = Some(discretization);
+            certificate.check(self.forces.depths(), self.forces.laterals())?;
+        }
+        Ok(self)
     }
 
     /// The version of the program that made the map.

@@ -31,6 +31,7 @@ fn certificate(min_det: Matrix, det: f64, depth: f64, lateral: f64) -> Certifica
             lateral,
         },
         min_det,
+        discretization: None,
     }
 }
 
@@ -387,4 +388,71 @@ proptest! {
             }
         }
     }
+}
+
+/// A band for each force of [`table`].
+fn discretization() -> Discretization {
+    Discretization {
+        nodes: [6000, 3400, 1600],
+        normal_force_band: matrix(&[[0.0, 1e-4, 2e-4], [3e-4, 4e-4, 5e-4]]),
+        lateral_force_band: matrix(&[[0.0, 1e-5, 2e-5], [0.0, 4e-5, 7e-5]]),
+    }
+}
+
+// Verifies: MAP-050, MAP-051.
+#[test]
+fn bands_belong_to_the_poses_and_are_finite() {
+    let map = computed(|_| ()).unwrap();
+    let with = |change: &dyn Fn(&mut Discretization)| {
+        let mut bands = discretization();
+        change(&mut bands);
+        map.clone().with_discretization(bands)
+    };
+    let good = with(&|_| ()).unwrap();
+    let bands = good.certificate().unwrap().discretization.as_ref().unwrap();
+    assert_eq!(bands.largest(), [5e-4, 7e-5]);
+    for wrong in [-1e-9, f64::NAN, f64::INFINITY] {
+        let error = with(&|bands| {
+            bands.lateral_force_band = matrix(&[[0.0, 1e-5, 2e-5], [0.0, wrong, 7e-5]]);
+        });
+        let error = error.unwrap_err().to_string();
+        let place = "certificate.discretization.lateral_force_band_n[1][1] = ";
+        assert!(error.starts_with(place), "{error}");
+    }
+    let error = with(&|bands| bands.normal_force_band = matrix(&[[0.0, 1e-4, 2e-4]])).unwrap_err();
+    assert!(matches!(error, InvalidForceMap::Shape { .. }), "{error}");
+}
+
+// Verifies: MAP-052.
+#[test]
+fn bands_follow_their_forces_and_survive_the_file() {
+    let map = computed(|_| ()).unwrap();
+    let map = map.with_discretization(discretization()).unwrap();
+    let text = map.to_json();
+    assert!(text.contains("\"normal_force_band_n\""), "{text}");
+    assert_eq!(ForceMap::from_json(&text, "map.json").unwrap(), map);
+    let unknown = text.replacen("\"normal_force_band_n\"", "\"band\"", 1);
+    let error = ForceMap::from_json(&unknown, "map.json").unwrap_err();
+    assert!(error.to_string().contains("band"), "{error}");
+    let cut = map.at_laterals(&[0.0, 0.005]).unwrap();
+    let bands = cut.certificate().unwrap().discretization.clone().unwrap();
+    assert_eq!(bands.normal_force_band.row(1), [3e-4, 5e-4]);
+    let mirrored = map.mirrored().unwrap();
+    let bands = mirrored
+        .certificate()
+        .unwrap()
+        .discretization
+        .clone()
+        .unwrap();
+    assert_eq!(
+        bands.lateral_force_band.row(1),
+        [7e-5, 4e-5, 0.0, 4e-5, 7e-5]
+    );
+    // A map without bands says nothing of them.
+    assert!(
+        !computed(|_| ())
+            .unwrap()
+            .to_json()
+            .contains("discretization")
+    );
 }

@@ -9,7 +9,7 @@ use crate::detect::{
     Channels, DetectError, MatchedFilter, auc, error_rates, gamma_from_two_afc, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
 };
-use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};
+use crate::force_map::{Discretization, ForceCurve, ForceMap, ForceTable, SAME_POSITION};
 
 /// Below this det(I + ∇u) a compressed neighbourhood has lost four fifths of its area, and small-strain
 /// elasticity is far outside its range.
@@ -126,6 +126,12 @@ pub struct Quality {
     /// The largest difference between the force on the probe and the reaction of the well, N.
     #[serde(rename = "worst_force_balance_n")]
     pub worst_force_balance: f64,
+    /// The largest half band of the discretisation around a normal force, N, where it was estimated.
+    #[serde(rename = "largest_normal_band_n")]
+    pub largest_normal_band: Option<f64>,
+    /// The same of the lateral forces, N.
+    #[serde(rename = "largest_lateral_band_n")]
+    pub largest_lateral_band: Option<f64>,
     /// The largest depth of a surface node inside the probe, m.
     #[serde(rename = "largest_penetration_m")]
     pub largest_penetration: f64,
@@ -371,9 +377,15 @@ fn threshold(gamma: f64, eta: f64) -> Result<Threshold, DetectError> {
 fn quality(map: &ForceMap) -> Option<Quality> {
     let certificate = map.certificate()?;
     let smallest = certificate.smallest_det;
+    let bands = certificate
+        .discretization
+        .as_ref()
+        .map(Discretization::largest);
     Some(Quality {
         worst_relative_residual: certificate.worst_relative_residual,
         worst_force_balance: certificate.worst_force_balance,
+        largest_normal_band: bands.map(|[normal, _]| normal),
+        largest_lateral_band: bands.map(|[_, lateral]| lateral),
         largest_penetration: certificate.largest_penetration,
         smallest_det: smallest.det,
         smallest_det_depth: smallest.depth,

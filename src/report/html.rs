@@ -359,20 +359,23 @@ fn certificates(findings: &Findings) -> String {
         ("Contact", ""),
         number("Worst residual"),
         number("Worst imbalance (N)"),
+        number("Bands of normal, lateral force (N)"),
         number("Penetration (m)"),
         number("Smallest det(I + ∇u)"),
         number("at depth, x (mm)"),
         ("Version", ""),
     ];
     let caption = "Residual: the largest ‖Ku − f‖/‖f‖ of the linear solves. Imbalance: force on the probe against \
-                   the reaction of floor and walls. Penetration: the largest depth of a surface node inside the probe.";
+                   the reaction of floor and walls. Bands: how far the mesh may leave a force from that of an infinitely fine \
+                   one, at the most. Penetration: the largest depth of a surface node inside the probe.";
     format!(
         "<section>\n<h2>Certificates</h2>\n{}</section>\n",
         table("", "table-certificates", caption, &head, &rows)
     )
 }
 
-fn quality_cells(quality: &Quality) -> [String; 10] {
+/// Implements: REP-044.
+fn quality_cells(quality: &Quality) -> [String; 11] {
     [
         millimetres(quality.mesh_size),
         quality.nodes.to_string(),
@@ -380,6 +383,12 @@ fn quality_cells(quality: &Quality) -> [String; 10] {
         escape(&quality.contact),
         scientific(quality.worst_relative_residual),
         scientific(quality.worst_force_balance),
+        match (quality.largest_normal_band, quality.largest_lateral_band) {
+            (Some(normal), Some(lateral)) => {
+                format!("{}, {}", scientific(normal), scientific(lateral))
+            }
+            _ => "not estimated".into(),
+        },
         scientific(quality.largest_penetration),
         fixed(quality.smallest_det, 3),
         format!(

@@ -173,7 +173,7 @@ fn the_paper_s_poses_have_the_forces_of_an_independent_program() {
 fn full_quadrilaterals_lock() {
     let force = |element| {
         let options = MeshOptions {
-            size: 1.5e-3,
+            size: 2e-3,
             refinement: 1,
             element,
         };

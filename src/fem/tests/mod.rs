@@ -1,5 +1,7 @@
 //! Tests of the solver, one file a topic.
 
+mod certify;
+mod cholesky;
 mod contact;
 mod element;
 mod map;

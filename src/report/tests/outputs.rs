@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::study::*;
 use super::xml;
+use crate::force_map::{Discretization, Matrix};
 use crate::phantom::Phantom;
 use crate::report::*;
 
@@ -13,6 +14,38 @@ fn all_of(study: &Study) -> (Findings, Vec<Figure>, String, String) {
     let page = html(study, &found, &drawn);
     let summary = summary_json(&found, study);
     (found, drawn, page, summary)
+}
+
+// Verifies: REP-044.
+#[test]
+fn page_and_summary_tell_the_bands() {
+    let mut study = paper_study();
+    let map = computed_map("8.6", 0.3);
+    study.maps.push(map.clone());
+    let (_, _, page, summary) = all_of(&study);
+    assert!(page.contains("not estimated") && summary.contains("\"largest_normal_band_n\": null"));
+    let bands = |largest: f64| {
+        Matrix::from_fn(3, 5, |row, column| {
+            if (row, column) == (1, 2) {
+                largest
+            } else {
+                0.0
+            }
+        })
+    };
+    let discretization = Discretization {
+        nodes: [1234, 700, 300],
+        normal_force_band: bands(6.5e-3),
+        lateral_force_band: bands(4.5e-4),
+    };
+    study.maps.pop();
+    study
+        .maps
+        .push(map.with_discretization(discretization).unwrap());
+    let (_, _, page, summary) = all_of(&study);
+    assert!(page.contains("6.5e−3, 4.5e−4") && !page.contains("not estimated"));
+    assert!(summary.contains("\"largest_normal_band_n\": 0.0065"));
+    assert!(summary.contains("\"largest_lateral_band_n\": 0.00045"));
 }
 
 // Verifies: REP-030.

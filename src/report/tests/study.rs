@@ -80,6 +80,7 @@ pub fn computed_map(name: &str, smallest: f64) -> ForceMap {
         contact: "deformed-normal".into(),
         smallest_det: SmallestDet::of(&min_det, &DEPTHS, &LATERALS).unwrap(),
         min_det,
+        discretization: None,
     };
     let forces = forces(&DEPTHS, |_| 0.2, |_| 0.0);
     let source = Source::FiniteElements { certificate };

@@ -371,15 +371,22 @@ fn killed() -> Result<String, String> {
     player.kill().map_err(text)?;
     player.wait().map_err(text)?;
     thread::sleep(3 * WATCHDOG);
-    let record = board.unplug().map_err(text)?;
-    safe(&record)?;
+    let dead = board.record();
+    ensure!(dead.motors == [0, 0], "{:?}", dead.motors);
     ensure!(
-        !record.controls.contains(&Control::Stop),
+        !dead.controls.contains(&Control::Stop),
         "{:?}",
-        record.controls
+        dead.controls
     );
-    ensure!(record.motors == [0, 0], "{:?}", record.motors);
-    let dropped = record
+    // The next session clears the board's fault and plays again.
+    let Run { end, counters, .. } = run("killed", 300)?;
+    ensure!(
+        end == End::Asked && counters.played > 200,
+        "{end}: {counters:?}"
+    );
+    let record = board.unplug().map_err(text)?;
+    safe(&dead)?;
+    let dropped = dead
         .dropped_after
         .ok_or("the board did not drop the force")?;
     ensure!(dropped <= WATCHDOG + 2 * PERIOD, "{dropped:?}");

@@ -1,0 +1,103 @@
+//! How far the forces of a map are from those of an infinitely fine mesh: Roache's grid convergence index on
+//! three meshes (ASME V&V 20).
+
+use super::outline::QUARTERS;
+use super::{FemError, Model};
+use crate::force_map::{Discretization, ForceMap, Matrix};
+
+/// Cells along each line of the three meshes, finest first, in quarters of the published one's.
+///
+/// Implements: FEM-026.
+const LEVELS: [usize; 3] = [QUARTERS, 3, 2];
+/// Ratios of the cells' sizes, middle over fine and coarse over middle.
+const RATIOS: [f64; 2] = [4.0 / 3.0, 1.5];
+/// An observed order is trusted between these.
+const TRUSTED_ORDERS: core::ops::RangeInclusive<f64> = 1.0..=4.0;
+/// The order counted on, at most: that of a contact's edge between two nodes.
+const HIGHEST_ORDER: f64 = 2.0;
+/// Safety factors where the order is trusted, and where it is not.
+const SAFETY: f64 = 1.25;
+const SAFETY_UNTRUSTED: f64 = 3.0;
+
+/// The force map of [`Model::map`] with the discretisation's band around each force. `solved` is told of each pose
+/// of all three meshes.
+///
+/// Implements: FEM-026, FEM-028.
+///
+/// # Errors
+/// As [`Model::new`] and [`Model::map`].
+pub fn certified_map(
+    model: &Model,
+    depths: &[f64],
+    laterals: &[f64],
+    solved: &dyn Fn(usize),
+) -> Result<ForceMap, FemError> {
+    let finest = model.map(depths, laterals, solved)?;
+    let coarser = |quarters: usize| -> Result<(usize, ForceMap), FemError> {
+        let (phantom, options) = (model.phantom(), model.options());
+        let coarser = Model::with_quarters(phantom, options, model.surface().contact, quarters)?;
+        let map = coarser.map(depths, laterals, solved)?;
+        Ok((coarser.mesh().nodes.len(), map))
+    };
+    let [(middle_nodes, middle), (coarse_nodes, coarse)] =
+        [coarser(LEVELS[1])?, coarser(LEVELS[2])?];
+    let bands = |force: fn(&ForceMap) -> &Matrix| {
+        let [fine, middle, coarse] = [&finest, &middle, &coarse].map(force);
+        Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
+            band([fine, middle, coarse].map(|force| force.row(row)[column]))
+        })
+    };
+    let discretization = Discretization {
+        nodes: [model.mesh().nodes.len(), middle_nodes, coarse_nodes],
+        normal_force_band: bands(ForceMap::normal_force),
+        lateral_force_band: bands(ForceMap::lateral_force),
+    };
+    Ok(finest.with_discretization(discretization)?)
+}
+
+/// The observed order p of f(h) = f₀ + c hᵖ through three values that change in one direction, finest first; `None`
+/// for values that swing or do not change, or without such an order above 0.
+///
+/// ε₃₂/ε₂₁ = r₂₁ᵖ (r₃₂ᵖ − 1)/(r₂₁ᵖ − 1), which grows with p, by bisection.
+///
+/// Implements: FEM-027.
+pub fn observed_order([fine, middle, coarse]: [f64; 3]) -> Option<f64> {
+    let ratio = (coarse - middle) / (middle - fine);
+    let of_order = |p: f64| {
+        let [r21, r32] = RATIOS.map(|ratio| libm::pow(ratio, p));
+        r21 * (r32 - 1.0) / (r21 - 1.0)
+    };
+    let (mut low, mut high) = (1e-3, 64.0);
+    // Written so that a NaN is no order.
+    if !(ratio >= of_order(low) && ratio.is_finite()) {
+        return None;
+    }
+    for _ in 0..60 {
+        let p = 0.5 * (low + high);
+        if of_order(p) < ratio {
+            low = p;
+        } else {
+            high = p;
+        }
+    }
+    Some(low)
+}
+
+/// The band around the finest of three forces, finest first, N.
+///
+/// Implements: FEM-027.
+pub fn band(forces: [f64; 3]) -> f64 {
+    let [fine, middle, coarse] = forces;
+    let error = |change: f64, order: f64| change / (libm::pow(RATIOS[0], order) - 1.0);
+    let change = (middle - fine).abs();
+    match observed_order(forces) {
+        Some(order) if TRUSTED_ORDERS.contains(&order) => {
+            SAFETY * error(change, order.min(HIGHEST_ORDER))
+        }
+        // Swings, or a change so small by chance that the order comes out too high: the largest change counts.
+        _ => {
+            let largest = change.max((coarse - fine).abs());
+            SAFETY_UNTRUSTED * largest
+        }
+    }
+}

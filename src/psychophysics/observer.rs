@@ -1,0 +1,108 @@
+//! The ideal observer of the paper's theory: knows both force maps and his own noise, and takes the
+//! sample of the pair with the larger Θ.
+
+use super::{Felt, Interval};
+use crate::detect::{Channels, DetectError, theta_of_record};
+use crate::force_map::{ForceTable, InvalidForceMap};
+use crate::stats::random::Generator;
+
+/// The stream of the generator that the observer's noise is drawn from.
+const STREAM: u64 = 0x0B5E;
+
+/// Knows what to expect.
+#[derive(Debug, Clone, Copy)]
+pub struct IdealObserver<'a> {
+    /// Forces without inclusion, F_0.
+    pub reference: &'a ForceTable,
+    /// Forces with the inclusion, F_1.
+    pub inclusion: &'a ForceTable,
+    /// Standard deviation of the noise on each sample of each channel, N.
+    pub noise_sd: f64,
+    /// Seed of the noise.
+    pub seed: u64,
+}
+
+/// Why the observer can not decide.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ObserverError {
+    /// The maps give no force where the hand was.
+    #[error("{0}")]
+    Map(#[from] InvalidForceMap),
+    /// The detector refuses the record.
+    #[error("{0}")]
+    Detect(#[from] DetectError),
+}
+
+impl IdealObserver<'_> {
+    /// θ of one sample felt with noise, and γ of the way that the hand took; `draw` tells the noises
+    /// apart.
+    ///
+    /// # Errors
+    /// [`ObserverError`].
+    ///
+    /// Implements: PSY-011.
+    pub fn theta(&self, felt: &Felt, draw: u64) -> Result<(f64, f64), ObserverError> {
+        let expected = |table: &ForceTable| {
+            let mut forces = Channels {
+                x: Vec::with_capacity(felt.depths.len()),
+                y: Vec::with_capacity(felt.depths.len()),
+            };
+            for (&depth, &lateral) in felt.depths.iter().zip(&felt.laterals) {
+                // Nothing is played above the surface.
+                let force = table.force(depth.max(0.0), lateral)?;
+                forces.x.push(force.lateral);
+                forces.y.push(force.normal);
+            }
+            Ok::<_, InvalidForceMap>(forces)
+        };
+        let (f0, f1) = (expected(self.reference)?, expected(self.inclusion)?);
+        let noisy = |forces: &[f64], channel| {
+            let generator = Generator::new(self.seed, STREAM + channel);
+            let mut noise = vec![0.0; forces.len()];
+            generator.normals(draw, 0, &mut noise);
+            for (noise, force) in noise.iter_mut().zip(forces) {
+                *noise = force + self.noise_sd * *noise;
+            }
+            noise
+        };
+        let observed = Channels {
+            x: noisy(&felt.forces.x, 0),
+            y: noisy(&felt.forces.y, 1),
+        };
+        let noise_sd = Channels {
+            x: self.noise_sd,
+            y: self.noise_sd,
+        };
+        let statistic = theta_of_record(
+            Channels {
+                x: &observed.x,
+                y: &observed.y,
+            },
+            Channels { x: &f0.x, y: &f0.y },
+            Channels { x: &f1.x, y: &f1.y },
+            noise_sd,
+        )?;
+        Ok((statistic.theta, statistic.gamma))
+    }
+
+    /// Which of two samples has the inclusion, by the larger θ.
+    ///
+    /// # Errors
+    /// [`ObserverError`].
+    ///
+    /// Implements: PSY-012.
+    pub fn choose(
+        &self,
+        first: &Felt,
+        second: &Felt,
+        pair: u64,
+    ) -> Result<Interval, ObserverError> {
+        let (of_first, _) = self.theta(first, 2 * pair)?;
+        let (of_second, _) = self.theta(second, 2 * pair + 1)?;
+        Ok(if of_first >= of_second {
+            Interval::First
+        } else {
+            Interval::Second
+        })
+    }
+}
