@@ -17,7 +17,6 @@ pub struct Session<'a, D: HapticDevice> {
     device: D,
     capabilities: Capabilities,
     playback: Playback<'a>,
-    period: Duration,
     enabled: bool,
     armed_once: bool,
     stopped: bool,
@@ -99,7 +98,6 @@ impl<'a, D: HapticDevice> Session<'a, D> {
             device,
             capabilities,
             playback: Playback::new(table, limits, units, period),
-            period,
             enabled: false,
             armed_once: false,
             stopped: false,
@@ -107,21 +105,13 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     }
 
     /// Clears the device's faults and enables it, which starts its watchdog: so this is left to the
-    /// first cycle, however long its thread took to prepare. Then passes over the reports of two
-    /// periods, since those made before may still tell of the fault.
+    /// first cycle, however long its thread took to prepare.
     ///
     /// Implements: HID-018.
     fn enable(&mut self) -> Result<(), DeviceError> {
         self.enabled = true;
         self.device.control(Control::ClearFault)?;
-        self.device.control(Control::Enable)?;
-        let end = self.device.now() + 2 * self.period;
-        while let Some(left) = end.checked_sub(self.device.now())
-            && !left.is_zero()
-        {
-            self.device.read(left)?;
-        }
-        Ok(())
+        self.device.control(Control::Enable)
     }
 
     /// The device.

@@ -41,6 +41,8 @@ pub struct RealDevice {
     device: hidapi::HidDevice,
     identity: Identity,
     opened: Instant,
+    /// Between two reports, as the device says.
+    period: Duration,
 }
 
 impl RealDevice {
@@ -71,6 +73,7 @@ impl RealDevice {
             device: opened,
             identity: device,
             opened: Instant::now(),
+            period: Duration::from_millis(1),
         })
     }
 
@@ -95,6 +98,18 @@ impl RealDevice {
     /// Which device it is.
     pub fn identity(&self) -> &Identity {
         &self.identity
+    }
+
+    /// Throws away the reports of some time: those that were made before the device was enabled may
+    /// tell of a fault that is cleared.
+    ///
+    /// Implements: HID-042.
+    fn pass_over(&mut self, time: Duration) -> Result<(), DeviceError> {
+        let began = Instant::now();
+        while let Some(left) = time.checked_sub(began.elapsed()) {
+            self.read(left)?;
+        }
+        Ok(())
     }
 
     /// What failed, with the device's name.
@@ -129,8 +144,10 @@ impl HapticDevice for RealDevice {
             .device
             .get_feature_report(&mut bytes)
             .map_err(|error| self.failed("ask for feature report 3", &message(&error)))?;
-        Capabilities::decode(&bytes[..length.min(LONGEST)])
-            .map_err(|problem| self.failed("feature report 3", &problem))
+        let capabilities = Capabilities::decode(&bytes[..length.min(LONGEST)])
+            .map_err(|problem| self.failed("feature report 3", &problem))?;
+        self.period = Duration::from_micros(u64::from(capabilities.period_us));
+        Ok(capabilities)
     }
 
     fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
@@ -166,7 +183,11 @@ impl HapticDevice for RealDevice {
     fn control(&mut self, control: Control) -> Result<(), DeviceError> {
         self.device
             .send_feature_report(&control.encode())
-            .map_err(|error| self.failed("send feature report 4", &message(&error)))
+            .map_err(|error| self.failed("send feature report 4", &message(&error)))?;
+        match control {
+            Control::Enable => self.pass_over(2 * self.period),
+            Control::Stop | Control::ClearFault => Ok(()),
+        }
     }
 
     fn now(&self) -> Duration {

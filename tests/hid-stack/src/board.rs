@@ -356,7 +356,11 @@ impl State {
                 self.enabled = true;
                 self.tick = self.tick.or(Some(0));
             }
-            Control::ClearFault => self.dropped = false,
+            Control::ClearFault => {
+                // The hand lets go.
+                self.tick = self.tick.filter(|_| !self.dropped);
+                self.dropped = false;
+            }
         }
         self.written = Instant::now();
         self.record.controls.push(control);

@@ -357,7 +357,7 @@ fn silence() -> Result<String, String> {
     Ok(format!("{end}"))
 }
 
-/// Verifies: HID-089.
+/// Verifies: HID-089, HID-042.
 fn killed() -> Result<String, String> {
     let board = plug(Kind::Uhid, "killed", reports)?;
     let mut player = Command::new("/proc/self/exe")
@@ -385,6 +385,8 @@ fn killed() -> Result<String, String> {
         "{end}: {counters:?}"
     );
     let record = board.unplug().map_err(text)?;
+    ensure!(record.motors == [0, 0], "{:?}", record.motors);
+    ensure!(record.controls.last() == Some(&Control::Stop), "no stop");
     safe(&dead)?;
     let dropped = dead
         .dropped_after
