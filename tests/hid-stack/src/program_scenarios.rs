@@ -149,6 +149,30 @@ fn signalled(signal: &str) -> Result<String, String> {
     ))
 }
 
+/// Verifies: HID-095, HID-054.
+pub fn held_up() -> Result<String, String> {
+    let board = plug(Kind::Usb, "heldup", |tick| match tick {
+        300 => Act::Refuse,
+        _ => Act::Report,
+    })?;
+    // A USB device is there only a while after it was plugged in.
+    crate::servo::open("heldup").map_err(text)?;
+    let output = play("heldup")?.wait_with_output().map_err(text)?;
+    let record = board.unplug().map_err(text)?;
+    let said = message(&output);
+    ensure!(output.status.code() == Some(1), "{}: {said}", output.status);
+    ensure!(record.motors == [0, 0], "{:?}", record.motors);
+    let told = said
+        .split("held up for ")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next());
+    let told: u32 = told
+        .and_then(|told| told.parse().ok())
+        .ok_or(said.clone())?;
+    ensure!(told <= 130, "{said}");
+    Ok(said.replace('\n', "; "))
+}
+
 /// Verifies: HID-094, HID-030.
 fn no_device() -> Result<String, String> {
     let output = play("nobody")?.wait_with_output().map_err(text)?;

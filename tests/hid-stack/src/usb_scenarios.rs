@@ -14,6 +14,10 @@ pub const ALL: &[(&str, Scenario)] = &[
     ("usb blocking write", blocking_write),
     ("usb unplug", || unplug(Kind::Usb)),
     ("usb refusal", refusal),
+    (
+        "palpate play, usb refusal",
+        crate::program_scenarios::held_up,
+    ),
 ];
 
 /// Verifies: HID-091.
