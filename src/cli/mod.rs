@@ -5,6 +5,7 @@ mod detect;
 mod detection;
 mod devices;
 mod error;
+mod experiment;
 mod import;
 mod lists;
 mod output;
@@ -49,6 +50,8 @@ enum Command {
     Play(play::PlayArguments),
     /// The HID devices of this machine, and which of them can play a force map.
     Devices(devices::DevicesArguments),
+    /// The paper's experiment: pairs of samples, of which a subject says where the inclusion is.
+    Experiment(experiment::ExperimentArguments),
     /// The time budget of the servo loop, on the simulated device.
     Timing(timing::TimingArguments),
 }
@@ -106,6 +109,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Verify(arguments) => verify::verify(&arguments),
             Command::Play(arguments) => play::play(&arguments),
             Command::Devices(arguments) => devices::devices(&arguments),
+            Command::Experiment(arguments) => experiment::experiment(&arguments),
             Command::Timing(arguments) => timing::timing(&arguments),
         },
         Err(error) if !error.use_stderr() => output::print(&error.to_string()),

@@ -396,6 +396,24 @@ fn threshold_of_least_cost() {
     assert_eq!(bayes_threshold(0.02, zero_one), map_threshold(0.02));
 }
 
+// Verifies: DET-023.
+#[test]
+fn a_bayes_threshold_is_accurate_for_costs_almost_equal_and_far_apart() {
+    let threshold = |false_alarm, miss| {
+        let (c00, c11) = (0.0, 0.0);
+        let (c10, c01) = (false_alarm, miss);
+        let costs = Costs { c00, c01, c10, c11 };
+        bayes_threshold(0.5, costs).unwrap()
+    };
+    // ln(1 + 2⁻⁴⁰) = 2⁻⁴⁰ − 2⁻⁸¹ + …; the difference of two logarithms would be off by 10⁻¹⁵.
+    let almost = 1024.0 * (1.0 + f64::powi(2.0, -40));
+    assert_near(threshold(almost, 1024.0), 9.094947017725146e-13, 1e-27);
+    assert_near(threshold(1024.0, almost), -9.094947017725146e-13, 1e-27);
+    // ± 310 ln 10, where the quotient overflows; 10⁻³¹⁰ is subnormal, within 3 · 10⁻¹⁵ of itself.
+    assert_near(threshold(1.0, 1e-310), 713.8013788281543, 1e-12);
+    assert_near(threshold(1e-310, 1.0), -713.8013788281543, 1e-12);
+}
+
 // Verifies: DET-024, DET-025.
 #[test]
 fn thresholds_of_neyman_and_pearson() {
@@ -584,4 +602,12 @@ fn questions_without_a_finite_answer_are_refused() {
             .is_err()
         );
     }
+}
+
+// Verifies: DET-005.
+#[test]
+fn an_error_says_what_where_and_what_would_be_right() {
+    use std::string::ToString;
+    let message = decide(f64::NAN, 0.0).unwrap_err().to_string();
+    assert!(message.contains("theta") && message.contains("NaN") && message.contains("finite"));
 }

@@ -38,6 +38,29 @@ pub trait HapticDevice {
     fn now(&self) -> Duration;
 }
 
+#[cfg(feature = "std")]
+impl<D: HapticDevice + ?Sized> HapticDevice for Box<D> {
+    fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
+        (**self).capabilities()
+    }
+
+    fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
+        (**self).read(timeout)
+    }
+
+    fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
+        (**self).write(report)
+    }
+
+    fn control(&mut self, control: Control) -> Result<(), DeviceError> {
+        (**self).control(control)
+    }
+
+    fn now(&self) -> Duration {
+        (**self).now()
+    }
+}
+
 /// What a read brought.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Received {

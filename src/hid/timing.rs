@@ -231,3 +231,6 @@ pub fn measure<D: HapticDevice>(
         .timing(cycles, budget, period.is_some())
         .ok_or(TimingError::TooFew(cycles))
 }
+
+#[cfg(test)]
+mod tests;

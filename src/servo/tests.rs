@@ -331,7 +331,7 @@ fn a_fault_latches_with_its_first_cause_and_releases_the_force() {
     }
 }
 
-// Verifies: SRV-035.
+// Verifies: SRV-035, SRV-070.
 #[test]
 fn a_state_that_no_step_left_is_a_fault_without_force() {
     for wrong in [f32::NAN, f32::INFINITY, 2.5] {

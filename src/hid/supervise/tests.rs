@@ -91,10 +91,8 @@ fn the_wish_to_stop_reaches_the_loop() {
     };
     let mut sender = Some(sender);
     let look = |counters: &Counters, _| {
-        if counters.cycles > 900 {
-            if asked.swap(true, Ordering::Relaxed) {
-                sender.take();
-            }
+        if counters.cycles > 900 && asked.swap(true, Ordering::Relaxed) {
+            sender.take();
         }
     };
     let played = played(wait, || asked.load(Ordering::Relaxed), look).unwrap();

@@ -1,0 +1,188 @@
+//! The cell of a position, the fraction in it, and what is between two numbers.
+
+use bolero::generator::bolero_generator;
+use bolero::{Driver, TypeGenerator};
+use palpate::servo::{blend, limit};
+
+use crate::cases::{AnyAxis, Entry, Fraction, Newtons, Position};
+
+/// An axis of three cells and any position.
+#[derive(Debug, Clone)]
+struct OnAxis {
+    axis: AnyAxis<4, 3>,
+    position: f32,
+}
+
+impl TypeGenerator for OnAxis {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let axis: AnyAxis<4, 3> = driver.produce()?;
+        // Now and then a knot, which bits alone would not hit.
+        let position = match driver.gen_variant(4, 0)? {
+            1 => axis.knots[driver.gen_variant(4, 0)?],
+            _ => driver.produce::<Position>()?.0,
+        };
+        Some(OnAxis { axis, position })
+    }
+}
+
+// Verifies: SRV-004, SRV-005, SRV-012.
+#[test]
+#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
+fn locate_is_total_and_in_range() {
+    harness!(OnAxis, |case| {
+        let (knots, position) = (&case.axis.knots, case.position);
+        let found = case.axis.axis().locate(position);
+        assert!(found.index < 3);
+        assert!((-1.0..=2.0).contains(&found.fraction));
+        let inside = knots[0] <= position && position < knots[3];
+        if inside {
+            assert!(knots[found.index] <= position && position <= knots[found.index + 1]);
+            assert!((0.0..=1.0).contains(&found.fraction));
+        }
+        // At the last knot the fraction is 1: `exhaustive.rs` has that for each width.
+        if position < knots[0] {
+            assert!(found.index == 0 && found.fraction <= 0.0);
+        }
+        if position >= knots[3] {
+            assert!(found.index == 2 && found.fraction >= 1.0);
+        }
+        reached!("in the first cell", inside && position < knots[1]);
+        reached!("in the last cell", inside && position >= knots[2]);
+        reached!("below the axis", position < knots[0]);
+        reached!("above the axis", position > knots[3]);
+        reached!("not finite", !position.is_finite());
+    });
+}
+
+// No Kani proof: it relates a product to a quotient.
+// Verifies: SRV-005, SRV-012.
+#[cfg(not(kani))]
+#[test]
+fn a_fraction_is_near_the_exact_one() {
+    harness!(OnAxis, |case| {
+        let knots = case.axis.knots.map(f64::from);
+        let position = f64::from(case.position);
+        let found = case.axis.axis().locate(case.position);
+        let (start, end) = (knots[found.index], knots[found.index + 1]);
+        // The width, its reciprocal, the distance and the product are each rounded to 24 bits.
+        let exact = ((position - start) / (end - start)).clamp(-1.0, 2.0);
+        let off = (f64::from(found.fraction) - exact).abs();
+        assert!(case.position.is_nan() || off <= 4.01 / 16_777_216.0 * exact.abs());
+        reached!(
+            "within a cell",
+            found.fraction > 0.0 && found.fraction < 1.0
+        );
+        reached!(
+            "in a cell but the first",
+            found.index != 0 && found.fraction < 1.0
+        );
+        reached!("continued", found.fraction > -1.0 && found.fraction < 0.0);
+    });
+}
+
+/// An axis of two cells and one of its knots, but not the last.
+#[derive(Debug, Clone, bolero_generator::TypeGenerator)]
+struct AtKnot {
+    axis: AnyAxis<3, 2>,
+    #[generator(0..2)]
+    knot: usize,
+}
+
+// Verifies: SRV-006.
+#[test]
+#[cfg_attr(kani, kani::proof, kani::unwind(5), kani::solver(cadical))]
+fn knots_have_whole_fractions() {
+    harness!(AtKnot, |case| {
+        let found = case.axis.axis().locate(case.axis.knots[case.knot]);
+        assert!(found.index == case.knot && found.fraction == 0.0);
+        reached!("the first knot", case.knot == 0);
+        reached!("a knot between two cells", case.knot == 1);
+    });
+}
+
+/// Two forces and a fraction.
+#[derive(Debug, Clone)]
+struct Blend {
+    a: f32,
+    b: f32,
+    t: f32,
+}
+
+impl TypeGenerator for Blend {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let a = driver.produce::<Entry>()?.0;
+        let b = match driver.gen_variant(4, 0)? {
+            1 => a,
+            _ => driver.produce::<Entry>()?.0,
+        };
+        let t = match driver.gen_variant(8, 0)? {
+            1 => 0.0,
+            2 => 1.0,
+            _ => driver.produce::<Fraction>()?.0,
+        };
+        Some(Blend { a, b, t })
+    }
+}
+
+// Verifies: SRV-010, SRV-011.
+#[test]
+#[cfg_attr(kani, kani::proof, kani::solver(cadical))]
+fn a_blend_is_between_its_ends() {
+    harness!(Blend, |case| {
+        let &Blend { a, b, t } = case;
+        let value = blend(a, b, t);
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        let inside = (0.0..=1.0).contains(&t);
+        if inside {
+            assert!(low <= value && value <= high);
+        }
+        if t == 0.0 {
+            assert!(value == a);
+        }
+        if t == 1.0 {
+            assert!(value == b);
+        }
+        assert!(value.abs() <= 301.0);
+        reached!("between", inside && t != 0.0 && t != 1.0);
+        reached!("at an end", t == 0.0 || t == 1.0);
+        reached!("outside", !inside);
+        reached!("ends that are equal", a == b && a != 0.0);
+    });
+}
+
+/// Any number and the largest magnitude that it is limited to.
+#[derive(Debug, Clone)]
+struct Limited {
+    value: f32,
+    largest: f32,
+}
+
+impl TypeGenerator for Limited {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        Some(Limited {
+            value: driver.produce::<Newtons>()?.0,
+            largest: driver.produce::<Entry>()?.0.abs(),
+        })
+    }
+}
+
+// Verifies: SRV-020.
+#[test]
+#[cfg_attr(kani, kani::proof, kani::solver(cadical))]
+fn a_limited_number_is_within_its_limit() {
+    harness!(Limited, |case| {
+        let &Limited { value, largest } = case;
+        let limited = limit(value, largest);
+        if value.is_nan() {
+            assert!(limited == 0.0);
+        } else if value.abs() <= largest {
+            assert!(limited.to_bits() == value.to_bits());
+        } else {
+            assert!(limited == largest.copysign(value));
+        }
+        reached!("a NaN", value.is_nan());
+        reached!("within", value.abs() <= largest);
+        reached!("above", value > largest);
+        reached!("below", value < -largest);
+    });
+}

@@ -1,0 +1,448 @@
+//! Generators of valid values. Validity is by construction, never by rejection, so that each case
+//! counts; under Kani a generator makes every value that its docstring promises. None loops but over
+//! arrays of fixed size, and none computes in floating point where a choice does.
+
+use core::ops::Bound::Included;
+
+use bolero::{Driver, TypeGenerator};
+use palpate::servo::{
+    Axis, FORCE_CEILING, Fault, Force, Input, Limits, MIN_SLEW, Mode, Request, Sample, State,
+    TABLE_FORCE_LIMIT, Table,
+};
+
+/// Any f32, one of the given size more often than its bits alone would make it.
+fn number<D: Driver>(driver: &mut D, low: f32, high: f32) -> Option<f32> {
+    const ODD: [f32; 8] = [
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::MAX,
+        f32::MIN,
+        f32::MIN_POSITIVE,
+        0.0,
+        -0.0,
+    ];
+    match driver.gen_variant(4, 0)? {
+        0 => driver.produce(),
+        1 => Some(ODD[driver.gen_variant(ODD.len(), 0)?]),
+        _ => signed(driver, low, high),
+    }
+}
+
+/// A number with a magnitude from `low` to `high`, 0 ≤ `low` ≤ `high`.
+fn signed<D: Driver>(driver: &mut D, low: f32, high: f32) -> Option<f32> {
+    let magnitude = driver.gen_f32(Included(&low), Included(&high))?;
+    let negative = driver.produce()?;
+    Some(if negative { -magnitude } else { magnitude })
+}
+
+/// `value` if its magnitude is at most `most`, else ±`most`: all of [−most, most], each from itself.
+fn folded(value: f32, most: f32) -> f32 {
+    if value.abs() <= most {
+        value
+    } else {
+        most.copysign(value)
+    }
+}
+
+/// Any f32; half of them near the positions of the axes below.
+#[derive(Debug, Clone, Copy)]
+pub struct Position(pub f32);
+
+impl TypeGenerator for Position {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        number(driver, 0.0002, 0.5).map(Position)
+    }
+}
+
+/// Any f32; half of them within the counts of a report, or just beyond.
+#[derive(Debug, Clone, Copy)]
+pub struct Count(pub f32);
+
+impl TypeGenerator for Count {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let whole = match driver.gen_variant(2, 0)? {
+            0 => return number(driver, 0.25, 40_000.0).map(Count),
+            _ => driver.gen_u16(Included(&0), Included(&33_000))?,
+        };
+        // Halves, where the rule of the even one decides.
+        let half = f32::from(whole) + 0.5;
+        Some(Count(if driver.produce()? { -half } else { half }))
+    }
+}
+
+/// Any f32; half of them moderate forces.
+#[derive(Debug, Clone, Copy)]
+pub struct Newtons(pub f32);
+
+impl TypeGenerator for Newtons {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        number(driver, 0.01, 40.0).map(Newtons)
+    }
+}
+
+/// A force that a table may hold, N.
+#[derive(Debug, Clone, Copy)]
+pub struct Entry(pub f32);
+
+impl TypeGenerator for Entry {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let low = [0.0, 0.0625][driver.gen_variant(2, 0)?];
+        signed(driver, low, TABLE_FORCE_LIMIT).map(Entry)
+    }
+}
+
+/// A fraction that `locate` may give: all of [−1, 2].
+#[derive(Debug, Clone, Copy)]
+pub struct Fraction(pub f32);
+
+impl TypeGenerator for Fraction {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let low = [0.0, 0.0625][driver.gen_variant(2, 0)?];
+        let fraction = signed(driver, low, 2.0)?;
+        Some(Fraction(if fraction < -1.0 { -1.0 } else { fraction }))
+    }
+}
+
+/// An axis of N knots with a first knot of magnitude ≤ 1/4 m and widths from 2⁻¹⁹ to 1/4 m: valid for
+/// N ≤ 4, since the sum stays within 1 m, and rounding it takes 2⁻²⁵ m at most off a width.
+#[derive(Debug, Clone, Copy)]
+pub struct AnyAxis<const N: usize, const CELLS: usize> {
+    pub knots: [f32; N],
+    pub reciprocals: [f32; CELLS],
+}
+
+impl<const N: usize, const CELLS: usize> TypeGenerator for AnyAxis<N, CELLS> {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let low = [0.0, 0.001][driver.gen_variant(2, 0)?];
+        let mut knots = [signed(driver, low, 0.25)?; N];
+        let mut reciprocals = [0.0; CELLS];
+        for cell in 0..CELLS {
+            let narrowest = [1.907_348_6e-6, 0.01][driver.gen_variant(2, 0)?]; // 2⁻¹⁹
+            let width = driver.gen_f32(Included(&narrowest), Included(&0.25))?;
+            knots[cell + 1] = knots[cell] + width;
+            reciprocals[cell] = Axis::reciprocal_width(knots[cell], knots[cell + 1]);
+        }
+        Some(AnyAxis { knots, reciprocals })
+    }
+}
+
+impl<const N: usize, const CELLS: usize> AnyAxis<N, CELLS> {
+    pub fn axis(&self) -> Axis<'_> {
+        match Axis::new(&self.knots, &self.reciprocals) {
+            Ok(axis) => axis,
+            Err(_) => panic!("the axis is valid by construction"),
+        }
+    }
+}
+
+/// Depths: of a force map (m), of unlike widths, and such as f32 holds exactly.
+const DEPTHS: [[f32; 3]; 3] = [[0.0, 0.001, 0.004], [0.0, 0.3, 0.300_002], [0.0, 0.25, 1.0]];
+
+/// Lateral positions, likewise.
+const LATERALS: [[f32; 4]; 3] = [
+    [-0.01, -0.005, 0.0, 0.01],
+    [-1.0, -0.999_99, 0.7, 1.0],
+    [-0.5, 0.0, 0.125, 0.25],
+];
+
+const fn reciprocals<const N: usize, const CELLS: usize>(knots: [f32; N]) -> [f32; CELLS] {
+    let mut reciprocals = [0.0; CELLS];
+    let mut cell = 0;
+    while cell < CELLS {
+        reciprocals[cell] = 1.0 / (knots[cell + 1] - knots[cell]);
+        cell += 1;
+    }
+    reciprocals
+}
+
+const DEPTH_RECIPROCALS: [[f32; 2]; 3] = [
+    reciprocals(DEPTHS[0]),
+    reciprocals(DEPTHS[1]),
+    reciprocals(DEPTHS[2]),
+];
+const LATERAL_RECIPROCALS: [[f32; 3]; 3] = [
+    reciprocals(LATERALS[0]),
+    reciprocals(LATERALS[1]),
+    reciprocals(LATERALS[2]),
+];
+
+/// A table of 3 depths and 4 lateral positions, each axis one of three, with any forces.
+#[derive(Debug, Clone)]
+pub struct Grid {
+    pub depths: [f32; 3],
+    pub laterals: [f32; 4],
+    depth_reciprocals: [f32; 2],
+    lateral_reciprocals: [f32; 3],
+    pub forces: [Force; 12],
+}
+
+impl TypeGenerator for Grid {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let depth = driver.gen_variant(DEPTHS.len(), 0)?;
+        let lateral = driver.gen_variant(LATERALS.len(), 0)?;
+        let mut forces = [Force::ZERO; 12];
+        for force in &mut forces {
+            *force = Force {
+                lateral: driver.produce::<Entry>()?.0,
+                normal: driver.produce::<Entry>()?.0,
+            };
+        }
+        Some(Grid {
+            depths: DEPTHS[depth],
+            laterals: LATERALS[lateral],
+            depth_reciprocals: DEPTH_RECIPROCALS[depth],
+            lateral_reciprocals: LATERAL_RECIPROCALS[lateral],
+            forces,
+        })
+    }
+}
+
+impl Grid {
+    pub fn table(&self) -> Table<'_> {
+        let depths = Axis::new(&self.depths, &self.depth_reciprocals);
+        let laterals = Axis::new(&self.laterals, &self.lateral_reciprocals);
+        let (Ok(depths), Ok(laterals)) = (depths, laterals) else {
+            panic!("the axes are valid");
+        };
+        match Table::new(depths, laterals, &self.forces) {
+            Ok(table) => table,
+            Err(_) => panic!("the table is valid by construction"),
+        }
+    }
+}
+
+/// A table of one cell with fixed forces, for what does not depend on them.
+pub fn plain_table() -> Table<'static> {
+    const KNOTS: [f32; 2] = [0.0, 0.5];
+    const RECIPROCAL: [f32; 1] = [2.0];
+    const fn force(lateral: f32, normal: f32) -> Force {
+        Force { lateral, normal }
+    }
+    const FORCES: [Force; 4] = [
+        Force::ZERO,
+        Force::ZERO,
+        force(-4.0, 32.0),
+        force(8.0, 16.0),
+    ];
+    let Ok(axis) = Axis::new(&KNOTS, &RECIPROCAL) else {
+        panic!("the axis is valid");
+    };
+    match Table::new(axis, axis, &FORCES) {
+        Ok(table) => table,
+        Err(_) => panic!("the table is valid"),
+    }
+}
+
+/// Any limits that are allowed, the release up to 10³⁰ N: what is larger still only tests the
+/// arithmetic of `Limits::new`.
+#[derive(Debug, Clone, Copy)]
+pub struct ValidLimits(pub Limits);
+
+impl TypeGenerator for ValidLimits {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let watchdog = match driver.gen_variant(2, 0)? {
+            0 => driver.gen_u16(Included(&1), Included(&100))?,
+            _ => driver.gen_u16(Included(&1), Included(&3))?,
+        };
+        let release = driver.gen_f32(Included(&MIN_SLEW), Included(&1e30))?;
+        limits(driver, 0.0625, release, watchdog)
+    }
+}
+
+/// Limits with a watchdog of 1 or 2 cycles and a release of at least half the force, so that few
+/// cycles bring it to zero.
+#[derive(Debug, Clone, Copy)]
+pub struct QuickLimits(pub Limits);
+
+impl TypeGenerator for QuickLimits {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let watchdog = driver.gen_u16(Included(&1), Included(&2))?;
+        let release = driver.gen_f32(Included(&MIN_SLEW), Included(&FORCE_CEILING))?;
+        let ValidLimits(limits) = limits(driver, 0.5, release, watchdog)?;
+        Some(QuickLimits(limits))
+    }
+}
+
+/// Limits with a release of at least `least_release` and `share` of the force, a power of 2.
+fn limits<D: Driver>(
+    driver: &mut D,
+    share: f32,
+    least_release: f32,
+    watchdog: u16,
+) -> Option<ValidLimits> {
+    let larger = |a: f32, b: f32| if a > b { a } else { b };
+    let low = [MIN_SLEW, 0.5][driver.gen_variant(2, 0)?];
+    let force = driver.gen_f32(Included(&low), Included(&FORCE_CEILING))?;
+    let slew = driver.gen_f32(Included(&MIN_SLEW), Included(&FORCE_CEILING))?;
+    let slew = if slew > force { force } else { slew };
+    let least = larger(slew, share * force);
+    // As small as it may be, or anything above.
+    let release = if driver.produce()? {
+        least
+    } else {
+        larger(least, least_release)
+    };
+    match Limits::new(force, slew, release, watchdog) {
+        Ok(limits) => Some(ValidLimits(limits)),
+        Err(_) => panic!("the limits are valid by construction"),
+    }
+}
+
+/// Any mode.
+#[derive(Debug, Clone, Copy)]
+pub struct AnyMode(pub Mode);
+
+impl TypeGenerator for AnyMode {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        const MODES: [Mode; 7] = [
+            Mode::Armed,
+            Mode::Armed, // twice: the one that plays
+            Mode::Disarmed,
+            Mode::Faulted(Fault::NotFinite),
+            Mode::Faulted(Fault::Device),
+            Mode::Faulted(Fault::Watchdog),
+            Mode::Faulted(Fault::State),
+        ];
+        Some(AnyMode(MODES[driver.gen_variant(MODES.len(), 0)?]))
+    }
+}
+
+/// Any request.
+#[derive(Debug, Clone, Copy)]
+pub struct AnyRequest(pub Request);
+
+impl TypeGenerator for AnyRequest {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        const REQUESTS: [Request; 3] = [Request::None, Request::Arm, Request::Disarm];
+        Some(AnyRequest(REQUESTS[driver.gen_variant(3, 0)?]))
+    }
+}
+
+/// What one cycle is called with: any bits in state and input, valid limits.
+#[derive(Debug, Clone)]
+pub struct Cycle {
+    pub limits: Limits,
+    pub state: State,
+    pub input: Input,
+}
+
+impl TypeGenerator for Cycle {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let ValidLimits(limits) = driver.produce()?;
+        let any = Force {
+            lateral: driver.produce::<Newtons>()?.0,
+            normal: driver.produce::<Newtons>()?.0,
+        };
+        let sound = sound_force(driver, &limits)?;
+        let force = if driver.produce()? { any } else { sound };
+        cycle(driver, limits, force)
+    }
+}
+
+/// The same with a state that a step may have left: its force is within the limits.
+#[derive(Debug, Clone)]
+pub struct SoundCycle(pub Cycle);
+
+impl TypeGenerator for SoundCycle {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let ValidLimits(limits) = driver.produce()?;
+        let force = sound_force(driver, &limits)?;
+        cycle(driver, limits, force).map(SoundCycle)
+    }
+}
+
+/// A force within the limits, one time in two zero.
+pub fn sound_force<D: Driver>(driver: &mut D, limits: &Limits) -> Option<Force> {
+    let force = Force {
+        lateral: folded(driver.produce::<Newtons>()?.0, limits.force()),
+        normal: folded(driver.produce::<Newtons>()?.0, limits.force()),
+    };
+    Some(if driver.produce()? {
+        force
+    } else {
+        Force::ZERO
+    })
+}
+
+fn cycle<D: Driver>(driver: &mut D, limits: Limits, force: Force) -> Option<Cycle> {
+    let last: u16 = driver.produce()?;
+    let missed = match driver.gen_variant(6, 0)? {
+        0 => driver.produce()?,
+        1 => u16::MAX,
+        _ => driver.gen_u16(Included(&0), Included(&3))?,
+    };
+    let state = State {
+        mode: driver.produce::<AnyMode>()?.0,
+        force,
+        sequence: usually(driver, last)?,
+        missed,
+        arming: driver.gen_variant(3, 0)? == 1,
+    };
+    let sample = sample(driver, last)?;
+    let input = Input {
+        sample: usually(driver, sample)?,
+        request: driver.produce::<AnyRequest>()?.0,
+    };
+    let any = Cycle {
+        limits,
+        state,
+        input,
+    };
+    let playing = playing(driver, any.clone(), last)?;
+    Some(if driver.gen_variant(3, 0)? == 1 {
+        playing
+    } else {
+        any
+    })
+}
+
+/// The same cycle with everything there that playing needs, one time in four above the surface.
+fn playing<D: Driver>(driver: &mut D, mut cycle: Cycle, last: u16) -> Option<Cycle> {
+    cycle.state.mode = Mode::Armed;
+    cycle.state.sequence = Some(last);
+    cycle.input.request = Request::None;
+    let depth = driver.gen_f32(Included(&0.0002), Included(&0.5))?;
+    let above = driver.gen_variant(4, 0)? == 1;
+    cycle.input.sample = Some(Sample {
+        sequence: last.wrapping_add(1),
+        deadman: true,
+        device_fault: false,
+        depth: if above { -depth } else { depth },
+        lateral: signed(driver, 0.001, 0.5)?,
+    });
+    Some(cycle)
+}
+
+/// `Some` three times in four.
+fn usually<D: Driver, T>(driver: &mut D, value: T) -> Option<Option<T>> {
+    let there = driver.gen_variant(4, 0)? != 1;
+    Some(if there { Some(value) } else { None })
+}
+
+/// Any sample, its number often near the border between fresh and stale as seen from `last`.
+fn sample<D: Driver>(driver: &mut D, last: u16) -> Option<Sample> {
+    let ahead: u16 = match driver.gen_variant(6, 0)? {
+        0 => driver.produce()?,
+        1 => driver.gen_u16(Included(&32_766), Included(&32_769))?,
+        2 => driver.gen_u16(Included(&65_534), Included(&65_535))?,
+        _ => driver.gen_u16(Included(&0), Included(&3))?,
+    };
+    Some(Sample {
+        sequence: last.wrapping_add(ahead),
+        deadman: driver.produce()?,
+        device_fault: driver.gen_variant(5, 0)? == 1,
+        depth: driver.produce::<Position>()?.0,
+        lateral: driver.produce::<Position>()?.0,
+    })
+}
+
+/// A sample that is not fresh as seen from `last`: 0 to 32768 behind; or none.
+pub fn stale<D: Driver>(driver: &mut D, last: u16) -> Option<Option<Sample>> {
+    let behind = driver.gen_u16(Included(&0), Included(&32_768))?;
+    let sample = Sample {
+        sequence: last.wrapping_sub(behind),
+        ..sample(driver, last)?
+    };
+    usually(driver, sample)
+}

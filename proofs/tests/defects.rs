@@ -1,0 +1,120 @@
+//! Bugs planted in a copy of the sources, one at a time: for each, the harness that it names must
+//! fail. `cargo test --release -p palpate-proofs --test defects -- --ignored`.
+#![cfg(not(any(kani, fuzzing)))]
+
+#[path = "defects/list.rs"]
+mod list;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use list::{DEFECTS, Defect};
+
+/// A copy of the package and its proofs, with a target folder of its own.
+struct Copy {
+    root: PathBuf,
+}
+
+impl Copy {
+    fn new() -> Copy {
+        let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("defects");
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+        for folder in ["src", "proofs/src"] {
+            let _ = fs::remove_dir_all(root.join(folder));
+            copy_folder(&from.join(folder), &root.join(folder));
+        }
+        fs::copy(from.join("Cargo.lock"), root.join("Cargo.lock")).unwrap();
+        let manifest = fs::read_to_string(from.join("Cargo.toml")).unwrap();
+        fs::write(root.join("Cargo.toml"), without_targets(&manifest)).unwrap();
+        let manifest = fs::read_to_string(from.join("proofs/Cargo.toml")).unwrap();
+        fs::write(root.join("proofs/Cargo.toml"), without_targets(&manifest)).unwrap();
+        Copy { root }
+    }
+
+    /// The harnesses that fail among those with `name` in their name.
+    fn failing(&self, name: &str) -> Vec<String> {
+        let run = Command::new(env!("CARGO"))
+            .current_dir(&self.root)
+            .env("CARGO_TARGET_DIR", self.root.join("target"))
+            // Most of the time goes into building.
+            .env("CARGO_PROFILE_DEV_OPT_LEVEL", "1")
+            .env("CARGO_PROFILE_DEV_DEBUG", "false")
+            .env("RUST_BACKTRACE", "0")
+            .args(["test", "--offline", "-p", "palpate-proofs", "--lib", name])
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&run.stdout);
+        assert!(
+            said.contains("test result:"),
+            "it does not build: {}",
+            String::from_utf8_lossy(&run.stderr)
+        );
+        said.lines()
+            .filter_map(|line| line.strip_prefix("test ")?.strip_suffix(" ... FAILED"))
+            .map(str::to_owned)
+            .collect()
+    }
+
+    /// Those that fail with a defect among the ones that it names.
+    fn failing_with(&self, defect: &Defect) -> Vec<String> {
+        let path = self.root.join(defect.file);
+        let sound = fs::read_to_string(&path).unwrap();
+        let mut spoilt = sound.clone();
+        for (from, to) in defect.edits {
+            let found = spoilt.matches(from).count();
+            let Defect { name, file, .. } = defect;
+            assert_eq!(found, 1, "{name}: {file} must have once: {from}");
+            spoilt = spoilt.replace(from, to);
+        }
+        fs::write(&path, spoilt).unwrap();
+        let failing = self.failing(defect.found_by);
+        fs::write(&path, sound).unwrap();
+        failing
+    }
+}
+
+fn copy_folder(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let to = to.join(entry.file_name());
+        if entry.file_type().unwrap().is_dir() {
+            copy_folder(&entry.path(), &to);
+        } else {
+            fs::copy(entry.path(), to).unwrap();
+        }
+    }
+}
+
+/// The manifest without its tests, benches, examples and programs, which are not copied.
+fn without_targets(manifest: &str) -> String {
+    let mut kept = String::new();
+    let mut keep = true;
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            keep = !line.starts_with("[[");
+        }
+        if keep && !line.starts_with("default-run") {
+            kept.push_str(line);
+            kept.push('\n');
+        }
+    }
+    kept
+}
+
+#[test]
+#[ignore = "builds the proofs once for each defect"]
+fn each_planted_defect_is_found_by_its_harness() {
+    let copy = Copy::new();
+    assert_eq!(copy.failing(""), [""; 0], "without a defect nothing fails");
+    let mut missed = Vec::new();
+    for defect in DEFECTS {
+        let failing = copy.failing_with(defect);
+        println!("{}: {}", defect.name, failing.join(", "));
+        if failing.is_empty() {
+            missed.push(defect.name);
+        }
+    }
+    assert_eq!(missed, [""; 0], "not found by the harness that they name");
+}

@@ -1,0 +1,84 @@
+//! What a timing counts. No assertion is about the speed of this machine.
+
+use super::*;
+use crate::hid::simulated::{Defect, Fault, Mechanics, PAPER, SimulatedDevice, Trajectory};
+use crate::servo::{Axis, Force};
+
+fn timing(cycles: u64, budget: Duration, faults: Vec<Fault>) -> Result<Timing, TimingError> {
+    let (knots, reciprocals, forces) = ([0.0, 0.5], [2.0], [Force::ZERO; 4]);
+    let axis = Axis::new(&knots, &reciprocals).unwrap();
+    let table = Table::new(axis, axis, &forces).unwrap();
+    let limits = Limits::new(2.0, 0.05, 0.2, 10).unwrap();
+    let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_secs(10));
+    let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, faults);
+    measure(device, table, limits, cycles, budget, None)
+}
+
+// Verifies: HID-060, HID-062.
+#[test]
+fn a_budget_that_nothing_keeps_is_broken_and_one_that_all_keep_is_not() {
+    let broken = timing(1000, Duration::ZERO, vec![]).unwrap();
+    assert_eq!((broken.misses, broken.passed), (1000, false));
+    let kept = timing(1000, Duration::from_secs(3600), vec![]).unwrap();
+    assert_eq!((kept.cycles, kept.misses, kept.passed), (1000, 0, true));
+    assert!(kept.compute_share > 0.0 && kept.compute_share < 1.0);
+    assert!(kept.response_us.p50 >= kept.compute_us.p50);
+}
+
+// Verifies: HID-062.
+#[test]
+fn one_cycle_in_a_thousand_may_miss() {
+    let times = Times::new().unwrap();
+    let of = |misses| {
+        let times = Times {
+            misses,
+            ..Times::new().unwrap()
+        };
+        times
+            .timing(2000, Duration::from_millis(1), false)
+            .unwrap()
+            .passed
+    };
+    assert!(of(2) && !of(3));
+    assert_eq!(times.timing(0, Duration::ZERO, false), None);
+}
+
+// Verifies: HID-061.
+#[test]
+fn a_paced_device_counts_how_late_it_was() {
+    let (trajectory, short) = (
+        Trajectory::probing(0.0, 0.0, Duration::ZERO),
+        Duration::from_millis(1),
+    );
+    let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
+    let mut clock = HostClock::new(device, Some(short));
+    std::thread::sleep(Duration::from_millis(20));
+    clock.read(short).unwrap();
+    assert!(clock.late() >= Duration::from_millis(19));
+    // What is lost is not made up for: the next is due in the future.
+    let before = clock.now();
+    clock.read(short).unwrap();
+    assert!(clock.now() >= before && clock.due >= before);
+}
+
+// Verifies: HID-060.
+#[test]
+fn a_timing_that_ends_early_is_an_error() {
+    assert_eq!(
+        timing(999, Duration::ZERO, vec![]),
+        Err(TimingError::TooFew(999))
+    );
+    let at = Duration::from_millis(300);
+    let ended = timing(
+        1000,
+        Duration::ZERO,
+        vec![Fault {
+            at,
+            defect: Defect::Unplug,
+        }],
+    );
+    assert!(
+        matches!(ended, Err(TimingError::Ended { cycles: 299, .. })),
+        "{ended:?}"
+    );
+}
