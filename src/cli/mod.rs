@@ -3,6 +3,7 @@
 mod config;
 mod detect;
 mod detection;
+mod devices;
 mod error;
 mod experiment;
 mod import;
@@ -47,6 +48,8 @@ enum Command {
     Verify(verify::VerifyArguments),
     /// A force map to a hand, through a haptic device or a simulated one.
     Play(play::PlayArguments),
+    /// The HID devices of this machine, and which of them can play a force map.
+    Devices(devices::DevicesArguments),
     /// The paper's experiment: pairs of samples, of which a subject says where the inclusion is.
     Experiment(experiment::ExperimentArguments),
     /// The time budget of the servo loop, on the simulated device.
@@ -105,6 +108,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Detect(arguments) => detect::detect(&arguments),
             Command::Verify(arguments) => verify::verify(&arguments),
             Command::Play(arguments) => play::play(&arguments),
+            Command::Devices(arguments) => devices::devices(&arguments),
             Command::Experiment(arguments) => experiment::experiment(&arguments),
             Command::Timing(arguments) => timing::timing(&arguments),
         },

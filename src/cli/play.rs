@@ -11,9 +11,11 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::CliError;
+use super::devices::DeviceNumbers;
 use super::output::{print, read, write};
 use super::playback::{damping, limits, loaded_map};
 use crate::force_map::ForceMap;
+use crate::hid::real::RealDevice;
 use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
 use crate::hid::supervise::{Board, HELD_UP, PlayOptions, Played, play as supervised};
 use crate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session};
@@ -21,6 +23,9 @@ use crate::servo::{Limits, LoadedTable};
 
 /// Most seconds that can be recorded: an hour at 1 kHz.
 const MOST_RECORDED: u64 = 3600;
+
+/// How long a device that was just plugged in may take until it can be opened.
+const PLUG_IN: Duration = Duration::from_millis(500);
 
 /// Arguments of `palpate play`.
 #[derive(Debug, Args)]
@@ -31,6 +36,8 @@ pub struct PlayArguments {
     /// What plays it
     #[arg(long, value_enum, default_value_t = DeviceName::Sim)]
     device: DeviceName,
+    #[command(flatten)]
+    numbers: DeviceNumbers,
     /// Ends after S seconds of the device's time [default: one probing on the simulated device]
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=86_400))]
     seconds: Option<u64>,
@@ -55,6 +62,8 @@ pub struct PlayArguments {
 enum DeviceName {
     /// The paper's display in a hand that probes the gel, on a virtual clock.
     Sim,
+    /// A device of this machine, by its numbers if there are several.
+    Hid,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -67,13 +76,23 @@ enum Format {
 
 /// Runs the command.
 ///
-/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067.
+/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, CLI-079.
 pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
     if let Some(file) = &arguments.replay {
         return replay(arguments, file);
     }
     let limits = limits(arguments.max_force)?;
+    if arguments.device == DeviceName::Sim && arguments.numbers.are_given() {
+        let message = "--vid, --pid and --serial need --device hid";
+        return Err(CliError::Usage(message.into()));
+    }
     match arguments.device {
+        DeviceName::Hid => {
+            let device = RealDevice::open_within(&arguments.numbers.wanted(), PLUG_IN)
+                .map_err(|error| CliError::Playback(error.to_string()))?;
+            let duration = arguments.seconds.map(Duration::from_secs);
+            session(arguments, device, limits, duration)
+        }
         DeviceName::Sim => {
             let trajectory = Trajectory::probing(4e-3, 9e-3, Duration::from_millis(1500));
             let seconds = arguments.seconds.map(Duration::from_secs);

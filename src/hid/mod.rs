@@ -3,17 +3,22 @@
 //! | file | content |
 //! |---|---|
 //! | `report.rs` | the vendor profile's reports, byte by byte |
+//! | `pid.rs` | the fallback profile's reports |
 //! | `units.rs` | between counts and metres, newtons |
 //! | `device.rs` | what the loop needs of a device |
 //! | `playback.rs` | one cycle of the loop: read, drain, step, write |
 //! | `recording.rs` | a session in a file that plays again to the bit |
 //! | `supervise.rs` | the servo thread and its supervisor |
 //! | `session.rs` | a session: it ends with a stopped device |
+//! | `real/` | a device on the system's HID stack |
 //! | `timing.rs` | how long the cycles take on this machine |
 //! | `simulated/` | a device and a hand on a virtual clock, with faults by script |
 
 mod device;
+pub mod pid;
 mod playback;
+#[cfg(feature = "hid")]
+pub mod real;
 #[cfg(feature = "std")]
 mod recording;
 mod report;

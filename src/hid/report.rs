@@ -142,7 +142,7 @@ impl fmt::Display for InvalidReport {
 impl core::error::Error for InvalidReport {}
 
 /// The bytes after the report's number.
-fn payload<const LENGTH: usize>(
+pub(super) fn payload<const LENGTH: usize>(
     bytes: &[u8],
     expected: u8,
 ) -> Result<&[u8; LENGTH], InvalidReport> {

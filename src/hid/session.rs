@@ -17,6 +17,7 @@ pub struct Session<'a, D: HapticDevice> {
     device: D,
     capabilities: Capabilities,
     playback: Playback<'a>,
+    enabled: bool,
     armed_once: bool,
     stopped: bool,
 }
@@ -68,12 +69,12 @@ impl fmt::Display for End {
 }
 
 impl<'a, D: HapticDevice> Session<'a, D> {
-    /// Asks the device what it is, and enables it.
+    /// Asks the device what it is; the first cycle enables it.
     ///
     /// # Errors
     /// [`SessionError`].
     ///
-    /// Implements: HID-017, HID-018.
+    /// Implements: HID-017.
     pub fn begin(
         mut device: D,
         table: Table<'a>,
@@ -92,16 +93,25 @@ impl<'a, D: HapticDevice> Session<'a, D> {
         if limit > largest {
             return Err(SessionError::Force { limit, largest });
         }
-        device.control(Control::ClearFault)?;
-        device.control(Control::Enable)?;
         let period = Duration::from_micros(u64::from(capabilities.period_us));
         Ok(Session {
             device,
             capabilities,
             playback: Playback::new(table, limits, units, period),
+            enabled: false,
             armed_once: false,
             stopped: false,
         })
+    }
+
+    /// Clears the device's faults and enables it, which starts its watchdog: so this is left to the
+    /// first cycle, however long its thread took to prepare.
+    ///
+    /// Implements: HID-018.
+    fn enable(&mut self) -> Result<(), DeviceError> {
+        self.enabled = true;
+        self.device.control(Control::ClearFault)?;
+        self.device.control(Control::Enable)
     }
 
     /// The device.
@@ -129,7 +139,8 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     /// # Errors
     /// [`DeviceError`], after the device was told to stop.
     pub fn cycle(&mut self, request: Request) -> Result<Cycle, DeviceError> {
-        let cycle = self.playback.cycle(&mut self.device, request);
+        let enabled = if self.enabled { Ok(()) } else { self.enable() };
+        let cycle = enabled.and_then(|()| self.playback.cycle(&mut self.device, request));
         if cycle.is_err() {
             // The error that counts is the first.
             let _ = self.stop();

@@ -1,0 +1,217 @@
+//! Which HID devices there are, which profile each fits, and why one can not be opened.
+
+use std::fmt;
+use std::fs::OpenOptions;
+use std::io::ErrorKind;
+use std::path::Path;
+
+use hidapi::{DeviceInfo, HidApi, HidError};
+
+use crate::hid::DESCRIPTOR;
+
+/// What a device is called, and where it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Identity {
+    /// Vendor number.
+    pub vendor: u16,
+    /// Product number.
+    pub product: u16,
+    /// Serial number; empty if it has none.
+    pub serial: String,
+    /// What the device calls itself.
+    pub name: String,
+    /// The system's file for it. Another one after a replug.
+    pub node: String,
+}
+
+impl fmt::Display for Identity {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} ({:04x}:{:04x}", self.name, self.vendor, self.product)?;
+        if !self.serial.is_empty() {
+            write!(f, ", serial {}", self.serial)?;
+        }
+        write!(f, ") at {}", self.node)
+    }
+}
+
+/// What a device's report descriptor says that it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Profile {
+    /// The vendor profile.
+    Vendor,
+    /// A force-feedback device of the USB class for physical interfaces, which the loop does not drive.
+    Pid,
+    /// Something else.
+    Other {
+        /// Length of its report descriptor, bytes.
+        length: usize,
+        /// The first byte in which it differs from the vendor profile's.
+        differs_at: usize,
+    },
+    /// The descriptor could not be read.
+    Unknown(String),
+}
+
+impl Profile {
+    /// What a report descriptor fits.
+    ///
+    /// Implements: HID-031.
+    pub fn of(descriptor: &[u8]) -> Profile {
+        if descriptor == DESCRIPTOR {
+            return Profile::Vendor;
+        }
+        if uses_page(descriptor, 0x0F) {
+            return Profile::Pid;
+        }
+        let same = descriptor.iter().zip(&DESCRIPTOR);
+        Profile::Other {
+            length: descriptor.len(),
+            differs_at: same
+                .take_while(|(found, expected)| found == expected)
+                .count(),
+        }
+    }
+}
+
+impl fmt::Display for Profile {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Profile::Vendor => write!(f, "vendor profile"),
+            Profile::Pid => write!(f, "force-feedback (PID) class, which is not driven"),
+            Profile::Other { length, differs_at } => write!(
+                f,
+                "not the vendor profile: a report descriptor of {length} bytes, different from byte {differs_at} on"
+            ),
+            Profile::Unknown(error) => write!(f, "unknown: report descriptor: {error}"),
+        }
+    }
+}
+
+/// Whether a report descriptor has an item that selects the usage page `page`.
+fn uses_page(descriptor: &[u8], page: u32) -> bool {
+    const LONG_ITEM: u8 = 0xFE;
+    const USAGE_PAGE: u8 = 0x04;
+    let mut rest = descriptor;
+    while let Some((&prefix, after)) = rest.split_first() {
+        let size = match (prefix, after.first()) {
+            (LONG_ITEM, Some(&length)) => usize::from(length) + 2,
+            _ => [0, 1, 2, 4][usize::from(prefix & 3)],
+        };
+        // An item that is cut off ends the descriptor.
+        let Some(data) = after.get(..size) else {
+            return false;
+        };
+        let value = data
+            .iter()
+            .rev()
+            .fold(0, |sum, &byte| sum << 8 | u32::from(byte));
+        if prefix & !3 == USAGE_PAGE && value == page {
+            return true;
+        }
+        rest = &after[size..];
+    }
+    false
+}
+
+/// Whether a device can be opened.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Access {
+    /// For reading and writing.
+    Granted,
+    /// Its file has no permission for this user: a udev rule is missing.
+    Denied,
+    /// Not, for another reason.
+    Failed(String),
+}
+
+/// A device and what it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Listed {
+    /// Which device.
+    pub identity: Identity,
+    /// The profile that it fits.
+    pub profile: Profile,
+}
+
+impl Listed {
+    /// Whether the device can be opened, found out by opening it for a moment.
+    ///
+    /// Implements: HID-032.
+    pub fn access(&self) -> Access {
+        let node = &self.identity.node;
+        match OpenOptions::new().read(true).write(true).open(node) {
+            Ok(_) => Access::Granted,
+            Err(error) if error.kind() == ErrorKind::PermissionDenied => Access::Denied,
+            Err(error) => Access::Failed(error.to_string()),
+        }
+    }
+}
+
+/// Why the devices can not be listed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("HID devices: {0}")]
+pub struct ListError(String);
+
+impl From<HidError> for ListError {
+    fn from(error: HidError) -> ListError {
+        ListError(super::message(&error))
+    }
+}
+
+/// All HID devices, in the order of their nodes, each once.
+///
+/// Takes milliseconds and allocates: not for the thread that runs the loop.
+///
+/// # Errors
+/// [`ListError`].
+///
+/// Implements: HID-031, HID-032.
+pub fn list() -> Result<Vec<Listed>, ListError> {
+    Ok(look(&HidApi::new()?))
+}
+
+/// The devices that `api` has found. A device with many usages is found once for each.
+pub(super) fn look(api: &HidApi) -> Vec<Listed> {
+    let mut found: Vec<&DeviceInfo> = api.device_list().collect();
+    found.sort_by_key(|info| info.path());
+    found.dedup_by_key(|info| info.path());
+    found.into_iter().map(listed).collect()
+}
+
+fn listed(info: &DeviceInfo) -> Listed {
+    let node = info.path().to_string_lossy().into_owned();
+    let name = info.product_string().unwrap_or("unnamed device");
+    Listed {
+        profile: match descriptor(&node) {
+            Ok(bytes) => Profile::of(&bytes),
+            Err(error) => Profile::Unknown(error.to_string()),
+        },
+        identity: Identity {
+            vendor: info.vendor_id(),
+            product: info.product_id(),
+            serial: info.serial_number().unwrap_or_default().to_owned(),
+            name: name.to_owned(),
+            node,
+        },
+    }
+}
+
+/// The report descriptor, which the system shows also to those who may not open the device.
+fn descriptor(node: &str) -> std::io::Result<Vec<u8>> {
+    let name = Path::new(node).file_name().unwrap_or_default();
+    let device = Path::new("/sys/class/hidraw").join(name);
+    std::fs::read(device.join("device/report_descriptor"))
+}
+
+/// The udev rule that lets the person at the machine open a device.
+///
+/// It matches the `hidraw` node by the name of the HID device above it, which holds bus, vendor and
+/// product on every bus; a rule for `SUBSYSTEM=="usb"` does not cover the node.
+///
+/// Implements: HID-032.
+pub fn udev_rule(identity: &Identity) -> String {
+    format!(
+        r#"KERNEL=="hidraw*", KERNELS=="*:{:04X}:{:04X}.*", TAG+="uaccess""#,
+        identity.vendor, identity.product
+    )
+}

@@ -1,0 +1,196 @@
+//! A haptic device on the system's HID stack.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | the device as the loop sees it |
+//! | `list.rs` | which devices there are, which profile each fits, and why one can not be opened |
+//! | `choose.rs` | the device that is asked for |
+
+mod choose;
+mod list;
+#[cfg(test)]
+mod tests;
+
+use std::ffi::CString;
+use std::fmt::Display;
+use std::time::{Duration, Instant};
+
+use hidapi::{HidApi, HidError};
+
+pub use choose::{OpenError, Wanted};
+pub use list::{Access, Identity, ListError, Listed, Profile, list, udev_rule};
+
+use super::{
+    Capabilities, Control, DeviceError, ForceReport, HapticDevice, PositionReport, Received,
+};
+
+/// More than any report of the profile, so that one which is too long is seen as such.
+const LONGEST: usize = 64;
+
+/// Between two looks for a device that is not there yet.
+const LOOK_AGAIN: Duration = Duration::from_millis(20);
+
+/// A device of the vendor profile, opened.
+///
+/// Reading and writing neither allocate nor enumerate; opening does both and takes milliseconds, so it
+/// has no place in the loop.
+///
+/// Implements: HID-033, HID-034, HID-035.
+#[derive(Debug)]
+pub struct RealDevice {
+    device: hidapi::HidDevice,
+    identity: Identity,
+    opened: Instant,
+    /// Between two reports, as the device says.
+    period: Duration,
+}
+
+impl RealDevice {
+    /// Opens the only device that is wanted and fits the vendor profile.
+    ///
+    /// # Errors
+    /// [`OpenError`].
+    ///
+    /// Implements: HID-030.
+    pub fn open(wanted: &Wanted) -> Result<RealDevice, OpenError> {
+        let api = HidApi::new().map_err(ListError::from)?;
+        let listed = list::look(&api);
+        let chosen = choose::choose(&listed, wanted)?;
+        let device = chosen.identity.clone();
+        let path = CString::new(device.node.as_str()).unwrap_or_default();
+        let opened = api.open_path(&path);
+        let opened = opened.map_err(|error| match chosen.access() {
+            Access::Denied => OpenError::Denied {
+                rule: udev_rule(&device),
+                device: device.clone(),
+            },
+            _ => OpenError::Refused {
+                error: message(&error),
+                device: device.clone(),
+            },
+        })?;
+        Ok(RealDevice {
+            device: opened,
+            identity: device,
+            opened: Instant::now(),
+            period: Duration::from_millis(1),
+        })
+    }
+
+    /// [`RealDevice::open`], again and again for as long as `patience`: a device that was just plugged
+    /// in is listed before it may be opened, and one that was replugged may have another node.
+    ///
+    /// # Errors
+    /// The last [`OpenError`].
+    ///
+    /// Implements: HID-036.
+    pub fn open_within(wanted: &Wanted, patience: Duration) -> Result<RealDevice, OpenError> {
+        let began = Instant::now();
+        loop {
+            match RealDevice::open(wanted) {
+                Err(error) if began.elapsed() >= patience => return Err(error),
+                Err(_) => std::thread::sleep(LOOK_AGAIN),
+                opened => return opened,
+            }
+        }
+    }
+
+    /// Which device it is.
+    pub fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    /// Throws away the reports of some time: those that were made before the device was enabled may
+    /// tell of a fault that is cleared.
+    ///
+    /// Implements: HID-042.
+    fn pass_over(&mut self, time: Duration) -> Result<(), DeviceError> {
+        let began = Instant::now();
+        while let Some(left) = time.checked_sub(began.elapsed()) {
+            self.read(left)?;
+        }
+        Ok(())
+    }
+
+    /// What failed, with the device's name.
+    fn failed(&self, action: &str, problem: &dyn Display) -> DeviceError {
+        DeviceError::System(format!("{}: {action}: {problem}", self.identity))
+    }
+}
+
+/// What the system says, without the library's name for itself.
+fn message(error: &HidError) -> String {
+    match error {
+        HidError::HidApiError { message } => message.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// Whole milliseconds, rounded up: a timeout may be longer than asked for, but not shorter.
+fn milliseconds(timeout: Duration) -> i32 {
+    i32::try_from(timeout.as_nanos().div_ceil(1_000_000)).unwrap_or(i32::MAX)
+}
+
+/// Whether a signal came in between; the device is as it was.
+fn is_interrupted(error: &HidError) -> bool {
+    matches!(error, HidError::IoError { error } if error.kind() == std::io::ErrorKind::Interrupted)
+}
+
+impl HapticDevice for RealDevice {
+    fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
+        let mut bytes = [0; LONGEST];
+        bytes[0] = Capabilities::NUMBER;
+        let length = self
+            .device
+            .get_feature_report(&mut bytes)
+            .map_err(|error| self.failed("ask for feature report 3", &message(&error)))?;
+        let capabilities = Capabilities::decode(&bytes[..length.min(LONGEST)])
+            .map_err(|problem| self.failed("feature report 3", &problem))?;
+        self.period = Duration::from_micros(u64::from(capabilities.period_us));
+        Ok(capabilities)
+    }
+
+    fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
+        let began = Instant::now();
+        let mut bytes = [0; LONGEST];
+        loop {
+            let left = milliseconds(timeout.saturating_sub(began.elapsed()));
+            match self.device.read_timeout(&mut bytes, left) {
+                Ok(0) => return Ok(Received::Nothing),
+                Ok(length) => {
+                    let report = PositionReport::decode(&bytes[..length.min(LONGEST)]);
+                    return Ok(report.map_or_else(Received::Garbage, Received::Report));
+                }
+                Err(error) if is_interrupted(&error) => {}
+                Err(error) => return Err(self.failed("read", &message(&error))),
+            }
+        }
+    }
+
+    fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
+        let bytes = report.encode();
+        match self.device.write(&bytes) {
+            Ok(ForceReport::LENGTH) => Ok(()),
+            Ok(sent) => {
+                let all = bytes.len();
+                let error = HidError::IncompleteSendError { sent, all };
+                Err(self.failed("write", &message(&error)))
+            }
+            Err(error) => Err(self.failed("write", &message(&error))),
+        }
+    }
+
+    fn control(&mut self, control: Control) -> Result<(), DeviceError> {
+        self.device
+            .send_feature_report(&control.encode())
+            .map_err(|error| self.failed("send feature report 4", &message(&error)))?;
+        match control {
+            Control::Enable => self.pass_over(2 * self.period),
+            Control::Stop | Control::ClearFault => Ok(()),
+        }
+    }
+
+    fn now(&self) -> Duration {
+        self.opened.elapsed()
+    }
+}

@@ -1,0 +1,130 @@
+//! What can be tested without a device; `tests/hid-stack` has the rest.
+
+use std::time::Duration;
+
+use super::choose::choose;
+use super::*;
+use crate::hid::DESCRIPTOR;
+
+fn listed(serial: &str, profile: Profile) -> Listed {
+    Listed {
+        identity: Identity {
+            vendor: 0x1209,
+            product: 1,
+            serial: serial.into(),
+            name: "Display".into(),
+            node: format!("/dev/{serial}"),
+        },
+        profile,
+    }
+}
+
+fn wanted(serial: &str) -> Wanted {
+    Wanted {
+        vendor: Some(0x1209),
+        product: Some(1),
+        serial: Some(serial.into()),
+    }
+}
+
+// Verifies: HID-030.
+#[test]
+fn the_only_device_of_the_profile_needs_no_name() {
+    let devices = [listed("mouse", Profile::Pid), listed("a", Profile::Vendor)];
+    let chosen = choose(&devices, &Wanted::default()).unwrap();
+    assert_eq!(chosen.identity.serial, "a");
+}
+
+// Verifies: HID-030.
+#[test]
+fn one_of_several_must_be_named() {
+    let devices = [listed("a", Profile::Vendor), listed("b", Profile::Vendor)];
+    let several = choose(&devices, &Wanted::default()).unwrap_err();
+    assert_eq!(
+        several.to_string(),
+        "2 devices: Display (1209:0001, serial a) at /dev/a, Display (1209:0001, serial b) at /dev/b; \
+         choose one by its numbers"
+    );
+    assert_eq!(choose(&devices, &wanted("b")).unwrap().identity.serial, "b");
+}
+
+// Verifies: HID-030.
+#[test]
+fn each_number_that_is_given_must_be_the_devices() {
+    let devices = [listed("a", Profile::Vendor)];
+    let missing = |wanted: Wanted| {
+        let error = choose(&devices, &wanted).unwrap_err();
+        assert!(matches!(error, OpenError::NotFound { .. }), "{error}");
+    };
+    missing(wanted("b"));
+    missing(Wanted {
+        vendor: Some(0x1208),
+        ..wanted("a")
+    });
+    missing(Wanted {
+        product: Some(2),
+        ..wanted("a")
+    });
+}
+
+// Verifies: HID-030, HID-031.
+#[test]
+fn a_named_device_that_is_something_else_is_explained() {
+    let devices = [listed("a", Profile::of(&DESCRIPTOR[..135]))];
+    let error = choose(&devices, &wanted("a")).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "Display (1209:0001, serial a) at /dev/a: not the vendor profile: \
+         a report descriptor of 135 bytes, different from byte 135 on"
+    );
+}
+
+// Verifies: HID-031.
+#[test]
+fn a_profile_is_told_by_every_byte_of_the_descriptor() {
+    assert_eq!(Profile::of(&DESCRIPTOR), Profile::Vendor);
+    for index in 0..DESCRIPTOR.len() {
+        let mut other = DESCRIPTOR;
+        other[index] ^= 0x80;
+        assert_ne!(Profile::of(&other), Profile::Vendor, "byte {index}");
+    }
+}
+
+// Verifies: HID-031.
+#[test]
+fn a_force_feedback_device_is_told_by_its_usage_page() {
+    // A joystick's application collection, with a collection of the PID page in it.
+    let pid = [
+        0x05, 0x01, 0x09, 0x04, 0xA1, 0x01, 0x05, 0x0F, 0x09, 0x21, 0xA1, 0x02, 0xC0, 0xC0,
+    ];
+    assert_eq!(Profile::of(&pid), Profile::Pid);
+    // The same bytes as the data of an item, and cut off in the middle of one.
+    let data = [0x27, 0x05, 0x0F, 0x05, 0x0F];
+    let cut = [0x05, 0x01, 0x06, 0x0F];
+    for other in [&data[..], &cut, &[], &[0xFE], &[0xFE, 9, 0]] {
+        assert!(
+            matches!(Profile::of(other), Profile::Other { .. }),
+            "{other:?}"
+        );
+    }
+}
+
+// Verifies: HID-032.
+#[test]
+fn the_rule_matches_the_node_by_the_device_above_it() {
+    let rule = udev_rule(&listed("a", Profile::Vendor).identity);
+    assert_eq!(
+        rule,
+        r#"KERNEL=="hidraw*", KERNELS=="*:1209:0001.*", TAG+="uaccess""#
+    );
+}
+
+// Verifies: HID-033.
+#[test]
+fn a_timeout_is_never_shorter_than_asked_for() {
+    assert_eq!(milliseconds(Duration::ZERO), 0);
+    assert_eq!(milliseconds(Duration::from_nanos(1)), 1);
+    assert_eq!(milliseconds(Duration::from_millis(2)), 2);
+    assert_eq!(milliseconds(Duration::from_micros(2001)), 3);
+    assert_eq!(milliseconds(Duration::MAX), i32::MAX);
+}

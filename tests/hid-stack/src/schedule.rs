@@ -1,0 +1,32 @@
+//! Who comes first on the guest's only processor.
+
+use std::io;
+
+use thread_priority::{
+    RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
+    set_thread_priority_and_policy, thread_native_id, thread_schedule_policy,
+};
+
+/// A share of the real-time policy `SCHED_FIFO`.
+#[derive(Debug, Clone, Copy)]
+pub enum Fifo {
+    /// The loop under test.
+    Loop = 40,
+    /// The board's answers: another piece of hardware, which the loop can not hold up.
+    Board = 90,
+    /// The board's clock.
+    BoardClock = 99,
+}
+
+/// Gives this thread its share, and checks that it has it: in virtual time no figure would tell.
+pub fn fifo(share: Fifo) -> io::Result<()> {
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    let priority = (share as u8).try_into().map_err(io::Error::other)?;
+    let priority = ThreadPriority::Crossplatform(priority);
+    let failed = |error| io::Error::other(format!("SCHED_FIFO: {error:?}"));
+    set_thread_priority_and_policy(thread_native_id(), priority, policy).map_err(failed)?;
+    if thread_schedule_policy().map_err(failed)? != policy {
+        return Err(io::Error::other("SCHED_FIFO was set, but is not in force"));
+    }
+    Ok(())
+}
