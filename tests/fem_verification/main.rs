@@ -1,0 +1,1 @@
+//! Code verification of the finite elements (`spec/verification.md`).
