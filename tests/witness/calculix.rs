@@ -99,19 +99,19 @@ fn compare(name: &str, lateral: f64) {
     }
 }
 
-// Verifies: FEM-080.
+// Verifies: FEM-080, FEM-082.
 #[test]
 fn calculix_finds_our_forces_without_inclusion() {
     compare("none", 8e-3);
 }
 
-// Verifies: FEM-080.
+// Verifies: FEM-080, FEM-082.
 #[test]
 fn calculix_finds_our_forces_beside_a_shallow_inclusion() {
     compare("2.6", 3e-3);
 }
 
-// Verifies: FEM-080.
+// Verifies: FEM-080, FEM-082.
 #[test]
 fn calculix_finds_our_forces_over_a_deep_inclusion() {
     compare("6.6", 0.0);

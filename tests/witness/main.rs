@@ -16,6 +16,7 @@ fn present(missing: Option<&str>) -> bool {
         !required,
         "{program} is not installed, but PALPATE_REQUIRE_WITNESSES=1 asks for it"
     );
+    #[allow(clippy::explicit_write)]
     // Not by eprintln!, which the test runner keeps to itself when a test passes.
     writeln!(std::io::stderr(), "SKIPPED: {program} is not installed").unwrap();
     false

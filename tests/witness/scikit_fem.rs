@@ -88,7 +88,7 @@ fn witness(problem: &str) -> HashMap<(usize, usize), f64> {
 ///
 /// The mesh has curved edges, on which the integrand is rational and each rule gives another matrix; so
 /// scikit-fem is given ours.
-// Verifies: FEM-081.
+// Verifies: FEM-081, FEM-082.
 #[test]
 fn scikit_fem_assembles_our_stiffness() {
     if !present(missing()) {
