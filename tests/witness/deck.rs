@@ -6,9 +6,11 @@
 
 use std::fmt::Write;
 
+use palpate::fem::Mesh;
 use palpate::fem::mesh::Region;
-use palpate::fem::{Mesh, assembly::material_of};
 use palpate::phantom::Phantom;
+
+use super::material;
 
 /// Stiffness of the penalty that keeps gel and probe apart, Pa/m: pressures of some 5 kPa then leave an
 /// overlap of 1 µm; a stiffer one makes the iterations fail at times.
@@ -41,7 +43,7 @@ pub fn deck(phantom: &Phantom, mesh: &Mesh, lateral: f64, depths: &[f64]) -> Str
                 writeln!(deck, "{}, {}", element + 1, nodes.join(", ")).unwrap();
             }
         }
-        let material = material_of(phantom, region);
+        let material = material(phantom, region);
         write!(
             deck,
             "*MATERIAL, NAME={name}\n*ELASTIC\n{:e}, {:e}\n\

@@ -8,6 +8,9 @@ mod scikit_fem;
 
 use std::io::Write;
 
+use palpate::fem::mesh::Region;
+use palpate::phantom::{Material, Phantom};
+
 /// Whether a test goes on. `missing` says which program is not there, if one is not.
 fn present(missing: Option<&str>) -> bool {
     let Some(program) = missing else { return true };
@@ -20,4 +23,13 @@ fn present(missing: Option<&str>) -> bool {
     // Not by eprintln!, which the test runner keeps to itself when a test passes.
     writeln!(std::io::stderr(), "SKIPPED: {program} is not installed").unwrap();
     false
+}
+
+/// What a region is made of, by the phantom alone: the library's own choice is among the things that are checked.
+fn material(phantom: &Phantom, region: Region) -> Material {
+    match (region, &phantom.inclusion) {
+        (Region::Skin, _) => phantom.skin.material,
+        (Region::Disc, Some(inclusion)) => inclusion.material,
+        (Region::Disc, None) | (Region::Gel, _) => phantom.gel.material,
+    }
 }

@@ -1,16 +1,15 @@
 """Stiffness of a mesh of 6-node triangles by scikit-fem, for tests/witness/scikit_fem.rs.
 
-Reads from stdin: a line `nodes elements points`; the nodes' x y; each element's six nodes (corners, then the
-middles of edges 01, 12, 20), then its Lame constants lambda and mu; the quadrature's points r s w on the
-triangle (0,0), (1,0), (0,1). Writes the upper triangle's entries `row column value`, in which displacement i of
-node a is number 2a + i, per metre of thickness.
+Reads from stdin: a line `nodes elements`; the nodes' x y; each element's six nodes (corners, then the middles of edges
+01, 12, 20), then its Young's modulus and Poisson's ratio. Writes the upper triangle's entries `row column value`, in
+which displacement i of node a is number 2a + i, per metre of thickness.
 """
 
 import sys
 
 import numpy as np
 from skfem import Basis, BilinearForm, ElementTriP0, ElementTriP2, ElementVector, MeshTri1, MeshTri2
-from skfem.helpers import ddot, dot, eye, sym_grad, trace
+from skfem.helpers import ddot, eye, sym_grad, trace
 
 
 @BilinearForm
@@ -27,12 +26,10 @@ def rows(table):
 
 def main():
     numbers = np.array(sys.stdin.read().split(), dtype=float)
-    nodes, elements, points = numbers[:3].astype(int)
-    rest = numbers[3:]
+    nodes, elements = numbers[:2].astype(int)
+    rest = numbers[2:]
     position = rest[: 2 * nodes].reshape(nodes, 2)
-    rest = rest[2 * nodes:]
-    table = rest[: 8 * elements].reshape(elements, 8)
-    rule = rest[8 * elements:].reshape(points, 3)
+    table = rest[2 * nodes:].reshape(elements, 8)
     nodes_of = table[:, :6].astype(int)
 
     # scikit-fem numbers the corners first, then the middles of its own list of edges.
@@ -48,11 +45,15 @@ def main():
     ours = np.concatenate([corners, middles])
     mesh = MeshTri2(rows(position[ours]), straight.t, sort_t=False)
 
-    quadrature = (rows(rule[:, :2]), rule[:, 2].copy())
-    basis = Basis(mesh, ElementVector(ElementTriP2()), quadrature=quadrature)
-    constant = Basis(mesh, ElementTriP0(), quadrature=quadrature)
+    modulus, ratio = table[:, 6], table[:, 7]
+    lam = modulus * ratio / ((1 + ratio) * (1 - 2 * ratio))
+    mu = modulus / (2 * (1 + ratio))
+    # The rule of degree 4: six points.
+    basis = Basis(mesh, ElementVector(ElementTriP2()), intorder=4)
+    assert basis.X.shape == (2, 6), basis.X
+    constant = Basis(mesh, ElementTriP0(), intorder=4)
     matrix = elasticity.assemble(
-        basis, lam=constant.interpolate(table[:, 6]), mu=constant.interpolate(table[:, 7])
+        basis, lam=constant.interpolate(lam), mu=constant.interpolate(mu)
     ).tocoo()
 
     # Our number of each of scikit-fem's unknowns.
