@@ -1,0 +1,118 @@
+//! Forces on the probe by CalculiX (`ccx`).
+
+use std::path::Path;
+use std::process::Command;
+
+use palpate::fem::{Contact, Element, Mesh, MeshOptions, Model, Pose};
+use palpate::phantom::Phantom;
+
+use super::deck::deck;
+use super::present;
+
+/// Where the probe stops on its way down, m.
+const DEPTHS: [f64; 3] = [1e-3, 2.5e-3, 4e-3];
+
+/// Runs CalculiX on a deck; returns (F_x, F_n) on the probe, N, at the end of each step.
+fn run(directory: &Path, deck: &str) -> Vec<[f64; 2]> {
+    std::fs::create_dir_all(directory).unwrap();
+    // Nothing of an earlier run may be read as the result of this one.
+    let results = directory.join("probe.dat");
+    if results.exists() {
+        std::fs::remove_file(&results).unwrap();
+    }
+    std::fs::write(directory.join("probe.inp"), deck).unwrap();
+    let output = Command::new("ccx")
+        .arg("probe")
+        .current_dir(directory)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success() && said.contains("Job finished"),
+        "ccx failed in {}: {said}",
+        directory.display()
+    );
+    steps(&std::fs::read_to_string(results).unwrap())
+}
+
+/// Forces on the probe at the end of each step, which is at a whole time, from CalculiX's tables
+/// `total force (fx,fy,fz) for set PROBE and time …`, of the force that moves the nodes.
+fn steps(tables: &str) -> Vec<[f64; 2]> {
+    let mut lines = tables.lines().filter(|line| !line.trim().is_empty());
+    let mut forces = Vec::new();
+    while let Some(title) = lines.next() {
+        let number = |word: Option<&str>| word.unwrap().parse::<f64>().unwrap();
+        assert!(title.contains("set PROBE"), "{title}");
+        let time = number(title.split_whitespace().last());
+        let mut row = lines.next().unwrap().split_whitespace();
+        let force = [-number(row.next()), -number(row.next())];
+        if time == (forces.len() + 1) as f64 {
+            forces.push(force);
+        }
+    }
+    forces
+}
+
+/// Compares our forces with CalculiX's on the same mesh.
+///
+/// An overlap p/K under the penalty K = 5·10⁹ Pa/m costs F_n' p/K. Pressures p of the nodes go up to 20 kPa and
+/// slopes F_n' to 1 N/mm, so that is 4 mN at most where the force is 2 N, and a like part of smaller ones. At the flanks
+/// the overlap shifts F_x by no more than F_n; 2 mN is half of that.
+fn compare(name: &str, lateral: f64) {
+    let missing = match Command::new("ccx").arg("-v").output() {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Some("CalculiX (ccx)"),
+        _ => None,
+    };
+    if !present(missing) {
+        return;
+    }
+    let options = MeshOptions {
+        size: 2.5e-3,
+        refinement: 1,
+        element: Element::T6,
+    };
+    let phantom = Phantom::builtin(name).unwrap();
+    let mesh = Mesh::new(&phantom, &options).unwrap();
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("ccx-{name}"));
+    let forces = run(&directory, &deck(&phantom, &mesh, lateral, &DEPTHS));
+    assert_eq!(
+        forces.len(),
+        DEPTHS.len(),
+        "CalculiX did not come to the end"
+    );
+    let model = Model::new(&phantom, &options, Contact::DeformedNormal).unwrap();
+    for (&depth, [along, normal]) in DEPTHS.iter().zip(forces) {
+        let ours = model.solve(Pose { depth, lateral }).unwrap();
+        let [off, aside] = [ours.normal_force / normal - 1.0, ours.lateral_force - along];
+        println!(
+            "{name}, d = {depth}, x = {lateral}: F_n {:.6} N, CalculiX {normal:.6} N ({:+.3} %); \
+             F_x {:.6} N, CalculiX {along:.6} N",
+            ours.normal_force,
+            100.0 * off,
+            ours.lateral_force
+        );
+        assert!(off.abs() < 0.005, "{name} at {depth}, {lateral}: {off:e}");
+        assert!(
+            aside.abs() < 2e-3,
+            "{name} at {depth}, {lateral}: {aside:e} N"
+        );
+    }
+}
+
+// Verifies: FEM-080, FEM-082.
+#[test]
+fn calculix_finds_our_forces_without_inclusion() {
+    compare("none", 8e-3);
+}
+
+// Verifies: FEM-080, FEM-082.
+#[test]
+fn calculix_finds_our_forces_beside_a_shallow_inclusion() {
+    compare("2.6", 3e-3);
+}
+
+// Verifies: FEM-080, FEM-082.
+#[test]
+fn calculix_finds_our_forces_over_a_deep_inclusion() {
+    compare("6.6", 0.0);
+}
