@@ -2,6 +2,8 @@
 //! path, with a hard ceiling: `cargo bench --bench servo_instructions` (needs valgrind and the runner
 //! `gungraun-runner`). Ends with an error above it (SRV-060).
 
+#![allow(missing_docs)] // of what its macros make
+
 use std::hint::black_box;
 
 use gungraun::prelude::*;

@@ -9,12 +9,15 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 
 use super::CliError;
+use super::devices::DeviceNumbers;
 use super::output::{print, read};
+use super::play::{DeviceName, PLUG_IN};
 use super::playback::{damping, limits};
 use super::progress::bar;
 use crate::force_map::ForceMap;
-use crate::hid::HapticDevice;
+use crate::hid::real::RealDevice;
 use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+use crate::hid::{Capabilities, HapticDevice};
 use crate::psychophysics::{Felt, IdealObserver, Interval, Journal, Setup, Trial, present};
 use crate::servo::{Limits, LoadedTable};
 
@@ -48,6 +51,11 @@ pub struct ExperimentArguments {
     /// How long each sample is felt, in s
     #[arg(long, value_name = "S", default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=60))]
     seconds: u64,
+    /// What plays the samples
+    #[arg(long, value_enum, default_value_t = DeviceName::Sim)]
+    device: DeviceName,
+    #[command(flatten)]
+    numbers: DeviceNumbers,
     /// Who answers: a person at the keyboard, or the ideal observer on the simulated device
     #[arg(long, value_enum, default_value_t = Observer::Person)]
     observer: Observer,
@@ -96,9 +104,10 @@ struct Sample {
 }
 
 impl Sample {
-    fn read(path: &Path) -> Result<Sample, CliError> {
+    /// The map in a file, for a device of these capabilities.
+    fn read(path: &Path, capabilities: &Capabilities) -> Result<Sample, CliError> {
         let map = ForceMap::read(path)?;
-        let table = LoadedTable::passive(map.forces(), &damping(&PAPER))
+        let table = LoadedTable::passive(map.forces(), &damping(capabilities))
             .map_err(|error| failed(path.display(), error))?;
         Ok(Sample { map, table })
     }
@@ -112,11 +121,19 @@ fn failed(what: impl Display, error: impl Display) -> CliError {
 ///
 /// Implements: CLI-070, CLI-071, CLI-072, CLI-073.
 pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
-    let reference = Sample::read(&arguments.reference)?;
+    arguments.device.check(&arguments.numbers)?;
+    if arguments.observer == Observer::Ideal && arguments.device == DeviceName::Hid {
+        let message = "--observer ideal has no hand: expected --device sim";
+        return Err(CliError::Usage(message.into()));
+    }
+    let capabilities = open(arguments)?
+        .capabilities()
+        .map_err(|error| failed("device", error))?;
+    let reference = Sample::read(&arguments.reference, &capabilities)?;
     let inclusions = arguments
         .inclusion
         .iter()
-        .map(|(_, path)| Sample::read(path))
+        .map(|(_, path)| Sample::read(path, &capabilities))
         .collect::<Result<Vec<_>, _>>()?;
     let (mut journal, mut file) = open_journal(arguments)?;
     let pairs = Pairs {
@@ -239,22 +256,9 @@ impl Pairs<'_> {
             .table()
             .map_err(|error| failed("servo", error))?;
         let duration = Duration::from_secs(self.arguments.seconds);
-        let device = self.open(duration)?;
+        let device = open(self.arguments)?;
         present(device, table, self.limits, duration, PATIENCE)
             .map_err(|error| CliError::Check(error.to_string()))
-    }
-
-    /// The device: the simulated one, in a hand that presses for as long as the sample lasts.
-    fn open(&self, duration: Duration) -> Result<Box<dyn HapticDevice>, CliError> {
-        let sweep = duration / 2;
-        let trajectory = Trajectory::probing(4e-3, 9e-3, sweep);
-        Ok(Box::new(SimulatedDevice::new(
-            PAPER,
-            Mechanics::PAPER,
-            trajectory,
-            Duration::ZERO,
-            Vec::new(),
-        )))
     }
 
     /// Lets a person feel both samples, and answer.
@@ -285,6 +289,19 @@ impl Pairs<'_> {
             }
         }
     }
+}
+
+/// The device; the simulated one is in a hand that presses for as long as a sample lasts.
+fn open(arguments: &ExperimentArguments) -> Result<Box<dyn HapticDevice>, CliError> {
+    if arguments.device == DeviceName::Hid {
+        let device = RealDevice::open_within(&arguments.numbers.wanted(), PLUG_IN);
+        return Ok(Box::new(device.map_err(|error| failed("device", error))?));
+    }
+    let sweep = Duration::from_secs(arguments.seconds) / 2;
+    let trajectory = Trajectory::probing(4e-3, 9e-3, sweep);
+    let (mechanics, latency) = (Mechanics::PAPER, Duration::ZERO);
+    let device = SimulatedDevice::new(PAPER, mechanics, trajectory, latency, Vec::new());
+    Ok(Box::new(device))
 }
 
 /// A line from the keyboard; `None` at its end.

@@ -25,7 +25,7 @@ use crate::servo::{Limits, LoadedTable};
 const MOST_RECORDED: u64 = 3600;
 
 /// How long a device that was just plugged in may take until it can be opened.
-const PLUG_IN: Duration = Duration::from_millis(500);
+pub(super) const PLUG_IN: Duration = Duration::from_millis(500);
 
 /// Arguments of `palpate play`.
 #[derive(Debug, Args)]
@@ -59,11 +59,22 @@ pub struct PlayArguments {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum DeviceName {
+pub(super) enum DeviceName {
     /// The paper's display in a hand that probes the gel, on a virtual clock.
     Sim,
     /// A device of this machine, by its numbers if there are several.
     Hid,
+}
+
+impl DeviceName {
+    /// Refuses numbers of a device without a device that has them.
+    pub(super) fn check(self, numbers: &DeviceNumbers) -> Result<(), CliError> {
+        if self == DeviceName::Sim && numbers.are_given() {
+            let message = "--vid, --pid and --serial need --device hid";
+            return Err(CliError::Usage(message.into()));
+        }
+        Ok(())
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -82,10 +93,7 @@ pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
         return replay(arguments, file);
     }
     let limits = limits(arguments.max_force)?;
-    if arguments.device == DeviceName::Sim && arguments.numbers.are_given() {
-        let message = "--vid, --pid and --serial need --device hid";
-        return Err(CliError::Usage(message.into()));
-    }
+    arguments.device.check(&arguments.numbers)?;
     match arguments.device {
         DeviceName::Hid => {
             let device = RealDevice::open_within(&arguments.numbers.wanted(), PLUG_IN)

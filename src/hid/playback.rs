@@ -174,8 +174,9 @@ impl<'a> Playback<'a> {
             sequence: self.sequence,
             flags: 0,
         };
-        let written = device.write(&zero);
+        // First what a device takes that no longer takes forces: a blocked write would hold it up.
         let stopped = device.control(super::Control::Stop);
-        written.and(stopped)
+        let written = device.write(&zero);
+        stopped.and(written)
     }
 }
