@@ -154,8 +154,16 @@ impl StiffnessMatrix {
     /// Assembles the stiffness of a meshed phantom.
     ///
     /// # Errors
-    /// [`FemError::Degenerate`] if an element is turned inside out.
+    /// [`FemError::Asymmetric`] if the mesh is not its own mirror image, which the numbering and the factor rely
+    /// on; [`FemError::Degenerate`] if an element is turned inside out.
     pub fn assemble(mesh: &Mesh, phantom: &Phantom) -> Result<StiffnessMatrix, FemError> {
+        if let Some(element) = mesh.without_mirror_image() {
+            let first = mesh.connectivity[element * mesh.element.nodes()];
+            return Err(FemError::Asymmetric {
+                element,
+                at: mesh.nodes[first as usize],
+            });
+        }
         let neighbours = neighbours(mesh);
         let numbering = Numbering::new(mesh);
         let mut matrix = StiffnessMatrix::pattern(numbering, &neighbours);

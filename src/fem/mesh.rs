@@ -262,6 +262,40 @@ impl Mesh {
         free
     }
 
+    /// An element that has no mirror image, or has a node without one; `None` if there is none. Nodes of a row
+    /// are mirror images from its ends inwards, to the bit, and an element's is one of the same region.
+    ///
+    /// Implements: FEM-029.
+    pub fn without_mirror_image(&self) -> Option<usize> {
+        let mut images = vec![None; self.nodes.len()];
+        for row in &self.rows {
+            for (node, image) in row.clone().zip(row.clone().rev()) {
+                let ([x, y], [image_x, image_y]) = (self.nodes[node], self.nodes[image]);
+                if x == -image_x && y == image_y {
+                    images[node] = Some(image as u32);
+                }
+            }
+        }
+        // Nodes in ascending order, so that the same element looks the same wherever it begins.
+        let sorted = |nodes: &mut dyn Iterator<Item = Option<u32>>, region| {
+            let mut key = [Some(0); 6];
+            for (place, node) in key.iter_mut().zip(nodes) {
+                *place = node;
+            }
+            key.sort_unstable();
+            (key, region as u8)
+        };
+        let elements = || self.elements().zip(&self.regions);
+        let mut all: Vec<_> = elements()
+            .map(|(nodes, &region)| sorted(&mut nodes.iter().map(|&node| Some(node)), region))
+            .collect();
+        all.sort_unstable();
+        elements().position(|(nodes, &region)| {
+            let image = sorted(&mut nodes.iter().map(|&node| images[node as usize]), region);
+            all.binary_search(&image).is_err()
+        })
+    }
+
     /// The free nodes of the outer surface, from left to right.
     pub fn surface(&self) -> Range<usize> {
         let last = &self.rows[self.rows.len() - 1];

@@ -86,6 +86,14 @@ pub enum FemError {
         /// The Jacobian that is not positive.
         jacobian: f64,
     },
+    /// The mesh is not its own mirror image.
+    #[error("element {element} near x = {:.3} mm, y = {:.3} mm has no mirror image: the solver needs a mesh that is mirror-symmetric in x", at[0] * 1e3, at[1] * 1e3)]
+    Asymmetric {
+        /// Number of the element.
+        element: usize,
+        /// Position of its first node, m.
+        at: [f64; 2],
+    },
     /// The stiffness matrix cannot be factorised.
     #[error(
         "the stiffness matrix is not positive definite in double precision: moduli or sizes differ by too many orders of magnitude"

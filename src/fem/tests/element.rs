@@ -2,6 +2,7 @@ use crate::fem::assembly::StiffnessMatrix;
 use crate::fem::cholesky::check_residual;
 use crate::fem::element::{Stiffness, StiffnessRule, stress};
 use crate::fem::field::determinant;
+use crate::fem::mesh::Region;
 use crate::fem::vtu::von_mises;
 use crate::fem::{Element, FemError, Mesh, MeshOptions};
 use crate::phantom::Material;
@@ -198,13 +199,49 @@ fn an_element_turned_inside_out_is_an_error_that_says_where() {
     )
     .unwrap();
     let node = mesh.connectivity[6 * 100] as usize;
-    mesh.nodes[node][1] += 0.01;
+    let row = mesh.rows.iter().find(|row| row.contains(&node)).unwrap();
+    let image = row.start + row.end - 1 - node;
+    assert_ne!(node, image);
+    for node in [node, image] {
+        mesh.nodes[node][1] += 0.01;
+    }
     let error = StiffnessMatrix::assemble(&mesh, &phantom).unwrap_err();
     assert!(
         matches!(error, FemError::Degenerate { jacobian, .. } if jacobian <= 0.0),
         "{error}"
     );
     assert!(error.to_string().contains("near x = "), "{error}");
+}
+
+// Verifies: FEM-029.
+#[test]
+fn a_mesh_that_is_not_its_own_mirror_image_is_refused() {
+    let phantom = builtin("4.6");
+    let options = MeshOptions {
+        size: 2e-3,
+        ..MeshOptions::default()
+    };
+    let mesh = Mesh::new(&phantom, &options).unwrap();
+    assert!(StiffnessMatrix::assemble(&mesh, &phantom).is_ok());
+    // A surface node a nanometre off; a triangle of another region; one that runs through other nodes.
+    let mut moved = mesh.clone();
+    let node = moved.surface().start + 3;
+    moved.nodes[node][0] += 1e-9;
+    let mut harder = mesh.clone();
+    harder.regions[100] = Region::Skin;
+    let mut twisted = mesh.clone();
+    twisted.connectivity[600..606].rotate_left(1);
+    twisted.connectivity.swap(601, 1207);
+    for (what, mesh) in [("moved", moved), ("harder", harder), ("twisted", twisted)] {
+        let error = StiffnessMatrix::assemble(&mesh, &phantom)
+            .map(drop)
+            .unwrap_err();
+        assert!(
+            matches!(error, FemError::Asymmetric { .. }),
+            "{what}: {error}"
+        );
+        assert!(error.to_string().contains("near x = "), "{error}");
+    }
 }
 
 // Verifies: FEM-013.

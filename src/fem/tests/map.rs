@@ -229,6 +229,34 @@ fn forces_converge_under_refinement() {
     );
 }
 
+// Verifies: FEM-025.
+#[test]
+fn lateral_forces_of_the_default_mesh_are_converged() {
+    // Against the default mesh with its cells halved, where the study in benches/convergence.rs found its largest
+    // errors with this phantom: over the inclusion's side, and where the contact's edge comes near the wall. Errors
+    // that fall with the square of the cells' size, as in the test above, leave (F₂ − F₁)/3 behind the halved mesh.
+    let phantom = builtin("2.6");
+    let models = [1, 2].map(|refinement| {
+        let options = MeshOptions {
+            refinement,
+            ..MeshOptions::default()
+        };
+        Model::new(&phantom, &options, Contact::DeformedNormal).unwrap()
+    });
+    for (depth, lateral) in [(4e-3, 4.5e-3), (4e-3, 10e-3), (2e-3, 5e-3)] {
+        let force = |model: &Model| {
+            let pose = Pose { depth, lateral };
+            model.solve(pose).unwrap().lateral_force
+        };
+        let [one, two] = models.each_ref().map(force);
+        let limit = two + (two - one) / 3.0;
+        assert!(
+            (one - limit).abs() <= 1.5e-3,
+            "at {depth}, {lateral}: {one} against {limit}"
+        );
+    }
+}
+
 // Verifies: FEM-016.
 #[test]
 fn the_vtu_file_holds_the_mesh_and_the_stresses() {
