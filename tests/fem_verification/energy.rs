@@ -67,8 +67,10 @@ fn check(name: &str, contact: Contact) {
         }
     }
     println!("{name}, {contact:?}: {worst:?} N, N, N/m; {changed} of 88 poses at a kink");
-    // A window of 8 µm among nodes 0.37 mm apart: some per cent of the poses.
-    assert!(changed <= 9, "{changed} poses at a kink");
+    // The probe moves by 8 µm along each axis, and the contact's two edges with it: as far in x, and in d at most √(R/2d),
+    // 2.5 times as far (the circle's own half-width, at 0.5 mm). Among nodes 0.37 mm apart, they pass one in
+    // 2 · 8 · 3.5 µm / 0.37 mm = 15 % of the poses, 13 of 88; three standard deviations more are 24.
+    assert!(changed <= 24, "{changed} poses at a kink");
 }
 
 // Verifies: FEM-059.
