@@ -2,12 +2,11 @@
 
 use std::f64::consts::PI;
 
-use palpate::fem::element::lame;
 use palpate::fem::{Contact, Element, MeshOptions, Model, Pose};
 use palpate::phantom::{Gel, Material, Phantom, Probe, Skin};
 
 use super::layer::BondedLayer;
-use super::problem::Exact;
+use super::problem::{Exact, lame};
 
 const MATERIAL: Material = Material {
     youngs_modulus: 5e3,

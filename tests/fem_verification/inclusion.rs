@@ -4,10 +4,9 @@ use std::f64::consts::FRAC_PI_4;
 
 use nalgebra::Complex;
 use palpate::fem::Element;
-use palpate::fem::element::lame;
 use palpate::phantom::Material;
 
-use super::problem::{Exact, Problem, assert_convergence};
+use super::problem::{Exact, Problem, assert_convergence, lame};
 
 /// A disc of radius 1 under the far stresses σ_xx = P + Q and σ_yy = P − Q.
 ///

@@ -3,10 +3,9 @@
 use std::f64::consts::PI;
 
 use palpate::fem::Element;
-use palpate::fem::element::lame;
 use palpate::phantom::Material;
 
-use super::problem::{Exact, Problem, assert_convergence};
+use super::problem::{Exact, Problem, assert_convergence, lame};
 
 /// A layer 0 ≤ y ≤ h, u = 0 at y = 0, under the traction σ_yy = −cos kx, σ_xy = 0 at y = h.
 ///

@@ -1,10 +1,9 @@
 //! Manufactured solutions: orders of convergence, and locking as ν goes to ½.
 
 use palpate::fem::Element;
-use palpate::fem::element::lame;
 use palpate::phantom::Material;
 
-use super::problem::{Errors, Exact, Problem, assert_convergence};
+use super::problem::{Errors, Exact, Problem, assert_convergence, lame};
 
 /// u = (A sin px sin qy, B cos px cos qy), with div u = (A p − B q) cos px sin qy, which vanishes for A = q, B = p.
 struct Wave {

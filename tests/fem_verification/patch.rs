@@ -5,7 +5,7 @@ use palpate::fem::Element;
 use palpate::fem::element::StiffnessRule;
 use palpate::phantom::Material;
 
-use super::problem::{Exact, Problem};
+use super::problem::{Exact, Problem, lame};
 
 const ELEMENTS: [Element; 2] = [Element::T6, Element::Q4Full];
 const NEARLY_INCOMPRESSIBLE: Material = Material {
@@ -93,7 +93,7 @@ fn worst_error(problem: &Problem, exact: &Polynomial) -> f64 {
         |_| NEARLY_INCOMPRESSIBLE,
     );
     let border = |node: usize| lattice.nodes[node].iter().any(|&c| c == 0.0 || c == 1.0);
-    let (lambda, mu) = palpate::fem::element::lame(&NEARLY_INCOMPRESSIBLE);
+    let (lambda, mu) = lame(&NEARLY_INCOMPRESSIBLE);
     let [[xx, xy, yy], [vxx, vxy, vyy]] = exact.quadratic;
     // f = −(λ + μ) ∇ div u − μ Δu.
     let force = [
