@@ -177,6 +177,9 @@ fn session<D: HapticDevice + Send>(
         || stop.load(Ordering::Relaxed),
         live(),
     );
+    if std::io::stderr().is_terminal() {
+        eprint!("\r\x1b[K"); // the summary begins on an empty line
+    }
     let Some(mut played) = played else {
         return Err(CliError::Check(
             "the servo thread panicked; the device was told to stop".into(),
