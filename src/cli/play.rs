@@ -18,6 +18,7 @@ use crate::force_map::ForceMap;
 use crate::hid::real::RealDevice;
 use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
 use crate::hid::supervise::{Board, HELD_UP, PlayOptions, Played, play as supervised};
+use crate::hid::timing::Distribution;
 use crate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session};
 use crate::servo::{Limits, LoadedTable};
 
@@ -287,10 +288,17 @@ fn describe(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
         rounding.position_m, rounding.force_n
     ));
     if let Some(timing) = &played.timing {
-        line(format!(
-            "response on the device's clock: p50 {:.1} µs, p99.9 {:.1} µs, largest {:.1} µs",
-            timing.response_us.p50, timing.response_us.p99_9, timing.response_us.max
-        ));
+        let mut times = |name: &str, times: &Distribution| {
+            line(format!(
+                "{name}: p50 {:.1} µs, p99.9 {:.1} µs, largest {:.1} µs",
+                times.p50, times.p99_9, times.max
+            ));
+        };
+        times("age of the input when answered", &timing.response_us);
+        times("writes", &timing.write_us);
+        if let Some(round_trip) = &timing.round_trip_us {
+            times("round trip", round_trip);
+        }
     }
     if let Some(time) = played.held_up {
         line(format!("held up once for {} ms", time.as_millis()));

@@ -103,7 +103,7 @@ fn describe(timing: &Timing) -> String {
     };
     let verdict = if timing.passed { "kept" } else { "broken" };
     format!(
-        "{} cycles on the simulated device, {pace}; times in µs\n{:<10}{:>10}{:>10}{:>10}{:>10}\n{}{}\
+        "{} cycles on the simulated device, {pace}; times in µs\n{:<10}{:>10}{:>10}{:>10}{:>10}\n{}{}{}\
          compute is {:.1} % of the response\nbudget {} µs {verdict}: {} missed\n",
         timing.cycles,
         "",
@@ -113,6 +113,7 @@ fn describe(timing: &Timing) -> String {
         "max",
         row("response", &timing.response_us),
         row("compute", &timing.compute_us),
+        row("write", &timing.write_us),
         100.0 * timing.compute_share,
         timing.budget_us,
         timing.misses

@@ -114,11 +114,16 @@ pub struct Timing {
     pub budget_us: f64,
     /// Cycles that took longer than the budget.
     pub misses: u64,
-    /// From the report at hand to the force written, and if the cycles were paced, from the time at
+    /// The input's age when it is answered: from the report at hand to the force written, and if the cycles were paced, from the time at
     /// which the report was due, µs.
     pub response_us: Distribution,
     /// The servo kernel's share of it: from the drained queue to the force computed, µs.
     pub compute_us: Distribution,
+    /// A force report's write: from the force computed to the write done, µs.
+    pub write_us: Distribution,
+    /// From a force written to the report at hand that says the device has played it, µs; `None` if
+    /// none did.
+    pub round_trip_us: Option<Distribution>,
     /// Time in the kernel over time in the response, all cycles together.
     pub compute_share: f64,
     /// The cycles came at the pace of the device, not as fast as they went.
@@ -131,9 +136,16 @@ pub struct Timing {
 pub(super) struct Times {
     response: Histogram<u64>,
     compute: Histogram<u64>,
+    write: Histogram<u64>,
+    round_trip: Histogram<u64>,
+    /// When the last force reports were written, by their number.
+    sent: [Option<(u16, Duration)>; SENT],
     total: [Duration; 2],
     misses: u64,
 }
+
+/// Force reports whose round trip may be under way at a time: more is no playback.
+const SENT: usize = 64;
 
 impl Times {
     pub(super) fn new() -> Option<Times> {
@@ -142,6 +154,9 @@ impl Times {
         Some(Times {
             response: histogram()?,
             compute: histogram()?,
+            write: histogram()?,
+            round_trip: histogram()?,
+            sent: [None; SENT],
             total: [Duration::ZERO; 2],
             misses: 0,
         })
@@ -153,9 +168,27 @@ impl Times {
         let nanoseconds = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
         self.response.saturating_record(nanoseconds(response));
         self.compute.saturating_record(nanoseconds(compute));
+        let write = cycle.written.saturating_sub(cycle.computed);
+        self.write.saturating_record(nanoseconds(write));
+        if let Some(sent) = cycle
+            .position
+            .and_then(|report| self.take(report.force_sequence))
+        {
+            let round_trip = cycle.woke.saturating_sub(sent);
+            self.round_trip.saturating_record(nanoseconds(round_trip));
+        }
+        let sequence = cycle.force.sequence;
+        self.sent[usize::from(sequence) % SENT] = Some((sequence, cycle.written));
         self.total[0] += response;
         self.total[1] += compute;
         self.misses += u64::from(response > budget);
+    }
+
+    /// When the force report of this number was written; once for each.
+    fn take(&mut self, sequence: u16) -> Option<Duration> {
+        let slot = &mut self.sent[usize::from(sequence) % SENT];
+        let (_, written) = slot.take_if(|(sent, _)| *sent == sequence)?;
+        Some(written)
     }
 
     /// The figures of `cycles` cycles; `None` for fewer than one.
@@ -167,6 +200,9 @@ impl Times {
             misses: self.misses,
             response_us: Distribution::of(&self.response),
             compute_us: Distribution::of(&self.compute),
+            write_us: Distribution::of(&self.write),
+            round_trip_us: (!self.round_trip.is_empty())
+                .then(|| Distribution::of(&self.round_trip)),
             compute_share: if response > 0.0 {
                 compute / response
             } else {
@@ -203,7 +239,7 @@ pub enum TimingError {
 /// # Errors
 /// [`TimingError`].
 ///
-/// Implements: HID-060, HID-061, HID-062.
+/// Implements: HID-060, HID-061, HID-062, HID-063.
 pub fn measure<D: HapticDevice>(
     device: D,
     table: Table,

@@ -82,3 +82,59 @@ fn a_timing_that_ends_early_is_an_error() {
         "{ended:?}"
     );
 }
+
+// Verifies: HID-063.
+#[test]
+fn the_round_trip_ends_with_the_report_that_says_played() {
+    let report = |force_sequence| crate::hid::PositionReport {
+        lateral: 0,
+        normal: 0,
+        buttons: 0,
+        status: 0,
+        sequence: 0,
+        force_sequence,
+    };
+    let cycle = |at: u64, sequence, played| {
+        let time = |more| Duration::from_micros(at + more);
+        Cycle {
+            position: Some(report(played)),
+            force: ForceReport {
+                lateral: 0,
+                normal: 0,
+                sequence,
+                flags: 1,
+            },
+            playing: true,
+            woke: time(0),
+            received: time(3),
+            computed: time(4),
+            written: time(9),
+        }
+    };
+    let mut times = Times::new().unwrap();
+    // Reports 1 and 2 are answered after 991 and 1991 µs, 2 is said twice, and 200 was never sent.
+    for (at, sequence, played) in [
+        (0, 1, 200),
+        (1000, 2, 1),
+        (3000, 3, 2),
+        (4000, 4, 2),
+        (5000, 5, 136),
+    ] {
+        times.record(
+            &cycle(at, sequence, played),
+            Duration::ZERO,
+            Duration::from_micros(9),
+        );
+    }
+    let timing = times.timing(5, Duration::from_micros(9), true).unwrap();
+    assert_eq!((timing.misses, times.round_trip.len()), (0, 2));
+    // Histograms keep three digits.
+    let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-3;
+    let round_trip = timing.round_trip_us.unwrap();
+    assert!(
+        near(round_trip.p50, 991.0) && near(round_trip.max, 1991.0),
+        "{round_trip:?}"
+    );
+    assert!(near(timing.write_us.max, 5.0) && near(timing.compute_us.max, 1.0));
+    assert!(near(timing.response_us.p99, 9.0));
+}
