@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::CliError;
 use super::detection::{Answer, Question};
 use super::output::print;
+use super::{CliError, Format};
 use crate::detect::Channels;
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::parse_scaled;
@@ -62,14 +62,6 @@ pub struct DetectArguments {
     /// How the answer is printed
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people, lengths in mm.
-    Table,
-    /// For programs, in SI.
-    Json,
 }
 
 /// The criteria by name.

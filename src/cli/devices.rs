@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::{Value, json};
 
-use super::CliError;
 use super::output::print;
+use super::{CliError, Format};
 use crate::hid::real::{Access, Listed, Profile, Wanted, list, udev_rule};
 
 /// Arguments of `palpate devices`.
@@ -15,14 +15,6 @@ pub struct DevicesArguments {
     /// How the devices are printed
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people.
-    Table,
-    /// For programs.
-    Json,
 }
 
 /// Which device is meant.

@@ -56,6 +56,15 @@ enum Command {
     Timing(timing::TimingArguments),
 }
 
+/// How an answer is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people.
+    Table,
+    /// For programs, in SI.
+    Json,
+}
+
 /// How the gap to the probe is measured.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]

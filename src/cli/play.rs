@@ -10,10 +10,10 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::CliError;
 use super::devices::DeviceNumbers;
 use super::output::{print, read, write};
 use super::playback::{damping, limits, loaded_map};
+use super::{CliError, Format};
 use crate::force_map::ForceMap;
 use crate::hid::real::RealDevice;
 use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
@@ -76,14 +76,6 @@ impl DeviceName {
         }
         Ok(())
     }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people.
-    Table,
-    /// For programs.
-    Json,
 }
 
 /// Runs the command.

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
-use super::CliError;
 use super::output::print;
 use super::playback::{limits, loaded_map, paper_table};
+use super::{CliError, Format};
 use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
 use crate::hid::timing::{Distribution, Timing, TimingError, measure};
 
@@ -29,14 +29,6 @@ pub struct TimingArguments {
     /// How the figures are printed
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people.
-    Table,
-    /// For programs.
-    Json,
 }
 
 /// Runs the command.
