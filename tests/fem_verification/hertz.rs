@@ -81,7 +81,7 @@ fn ratio(model: &Model, depth: f64, curvature: f64) -> (f64, f64) {
 #[test]
 fn load_and_half_width_obey_hertz() {
     let curvature = curvature_of_the_base();
-    // The same integral by SciPy's quad over the published kernel (K. L. Johnson, Contact Mechanics, 1985, §5.8).
+    // SciPy's quad of the kernel L(m) = (2κ sinh 2m − 4m)/(2κ cosh 2m + 1 + κ² + 4m²), κ = 3 − 4ν.
     assert!((curvature - 0.998_093_74).abs() < 1e-6, "{curvature}");
     let skin = 0.001;
     let phantom = Phantom {

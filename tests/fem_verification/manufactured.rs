@@ -152,8 +152,8 @@ fn near_incompressibility_costs_triangles_one_order_and_quadrilaterals_all() {
             println!("{} at ν = {nu}: {coarse:.4e}, {fine:.4e}", element.name());
             (fine, (coarse / fine).log2())
         });
-        // Triangles keep at least order 1 uniformly in ν (M. Vogelius, Numerische Mathematik 41, 1983); quadrilaterals
-        // keep none.
+        // Quadratic triangles lose one order of their two at most, however near ν comes to ½ (I. Babuška and M. Suri,
+        // Numerische Mathematik 62, 1992, on straight ones); linear quadrilaterals lose the only one they have.
         assert!(triangles.1 > 1.0, "ν = {nu}: {triangles:?}");
         assert!(triangles.0 < 0.03, "ν = {nu}: {triangles:?}");
         if nu == 0.4999 {
