@@ -87,11 +87,16 @@ fn copy_folder(from: &Path, to: &Path) {
     }
 }
 
-/// The manifest without its tests, benches, examples and programs, which are not copied.
+/// The manifest without its tests, benches, examples, programs and further members, which are not
+/// copied.
 fn without_targets(manifest: &str) -> String {
     let mut kept = String::new();
     let mut keep = true;
     for line in manifest.lines() {
+        let line = match line.starts_with("members = ") {
+            true => r#"members = [".", "proofs"]"#,
+            false => line,
+        };
         if line.starts_with('[') {
             keep = !line.starts_with("[[");
         }
