@@ -76,7 +76,7 @@ impl Journal {
     /// Notes the answer to the next pair; the line that the file grows by.
     pub fn answer(&mut self, right: bool) -> &'static str {
         self.right.push(right);
-        if right { "right\n" } else { "wrong\n" }
+        line(right)
     }
 
     /// Right answers to each inclusion, and answers in all.
@@ -124,11 +124,7 @@ impl Journal {
             condition,
             inclusions,
         } = &self.setup;
-        let answers: String = self
-            .right
-            .iter()
-            .map(|&right| if right { "right\n" } else { "wrong\n" })
-            .collect();
+        let answers: String = self.right.iter().map(|&right| line(right)).collect();
         format!(
             "{HEADER}\nseed {seed}\ntrials {trials}\nsubject {subject}\ncondition {condition}\ninclusions {}\n{answers}",
             inclusions.join(",")
@@ -194,6 +190,11 @@ impl Journal {
         }
         Ok(journal)
     }
+}
+
+/// The line of an answer.
+fn line(right: bool) -> &'static str {
+    if right { "right\n" } else { "wrong\n" }
 }
 
 fn wrong_answer(at: usize, line: &str, expected: &str) -> JournalError {
