@@ -14,6 +14,7 @@
 //! | §4 playback: reports of the device | [`hid`] |
 //! | §4 pairs of samples, felt and judged | [`psychophysics`] |
 //! | figures, tables | [`report`] |
+//! | other implementations: questions and answers | `oracle` |
 //!
 //! Lengths are metres, forces newtons, moduli pascals throughout; `spec/README.md` has the signs.
 //!
@@ -31,6 +32,8 @@ pub mod fem;
 #[cfg(feature = "std")]
 pub mod force_map;
 pub mod hid;
+#[cfg(feature = "fem")]
+pub mod oracle;
 #[cfg(feature = "std")]
 pub mod phantom;
 #[cfg(feature = "std")]

@@ -8,6 +8,7 @@ mod error;
 mod experiment;
 mod import;
 mod lists;
+mod oracle;
 mod output;
 mod play;
 mod playback;
@@ -54,6 +55,8 @@ enum Command {
     Experiment(experiment::ExperimentArguments),
     /// The time budget of the servo loop, on the simulated device.
     Timing(timing::TimingArguments),
+    /// Answers questions in lines of JSON, for other implementations to compare with.
+    Oracle(oracle::OracleArguments),
 }
 
 /// How an answer is printed.
@@ -120,6 +123,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Devices(arguments) => devices::devices(&arguments),
             Command::Experiment(arguments) => experiment::experiment(&arguments),
             Command::Timing(arguments) => timing::timing(&arguments),
+            Command::Oracle(arguments) => oracle::oracle(&arguments),
         },
         Err(error) if !error.use_stderr() => output::print(&error.to_string()),
         Err(error) => Err(CliError::usage(&error)),
