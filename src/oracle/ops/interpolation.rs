@@ -1,7 +1,7 @@
 //! The paper's rule between and beyond the poses of a table.
 
 use super::super::{Answer, Arguments, Code, Refusal};
-use crate::force_map::{ForceTable, InvalidForceMap, Matrix};
+use crate::force_map::{self, Matrix};
 
 /// The force at a pose.
 pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refusal> {
@@ -10,10 +10,39 @@ pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refusal> {
     let rows = arguments.rows("table_n")?;
     let depth = arguments.number("depth_m")?;
     let lateral = arguments.number("lateral_m")?;
+    check_axis("depths_m", &depths)?;
+    check_axis("laterals_m", &laterals)?;
     let forces = matrix("table_n", &rows, depths.len(), laterals.len())?;
-    let table = ForceTable::new(depths, laterals, forces.clone(), forces).map_err(refusal)?;
-    let force = table.force(depth, lateral).map_err(refusal)?;
-    Ok(Answer::default().with("force_n", force.normal))
+    let force = force_map::interpolate(&depths, &laterals, &forces, depth, lateral);
+    match force {
+        Some(force) => Ok(Answer::default().with("force_n", force)),
+        None => Err(Refusal::new(
+            Code::Overflow,
+            "force_n would be beyond the largest number",
+        )),
+    }
+}
+
+/// Whether an axis has a cell and increases; how closely, does not matter to the rule.
+fn check_axis(name: &str, axis: &[f64]) -> Result<(), Refusal> {
+    if axis.len() < 2 {
+        return Err(Refusal::argument(
+            name,
+            format_args!("has {} entries, expected at least 2", axis.len()),
+        ));
+    }
+    match axis.windows(2).position(|pair| pair[0] >= pair[1]) {
+        Some(index) => Err(Refusal::new(
+            Code::OutOfRange,
+            format!(
+                "{name}[{}] is {}, expected more than the entry before it, {}",
+                index + 1,
+                axis[index + 1],
+                axis[index]
+            ),
+        )),
+        None => Ok(()),
+    }
 }
 
 fn matrix(
@@ -45,15 +74,4 @@ fn matrix(
     Ok(Matrix::from_fn(depths, laterals, |row, column| {
         rows[row][column]
     }))
-}
-
-fn refusal(error: InvalidForceMap) -> Refusal {
-    let code = match error {
-        InvalidForceMap::EmptyAxis { .. } | InvalidForceMap::SinglePosition { .. } => {
-            Code::BadArgument
-        }
-        InvalidForceMap::ForceTooLarge { .. } => Code::Overflow,
-        _ => Code::OutOfRange,
-    };
-    Refusal::new(code, error.to_string())
 }
