@@ -17,6 +17,13 @@ pub enum Question {
     Line(String),
 }
 
+impl Question {
+    /// Whether arguments are given, and not a line.
+    pub fn is_arguments(&self) -> bool {
+        matches!(self, Question::Arguments(_))
+    }
+}
+
 /// What the answer must be.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expected {
@@ -24,6 +31,13 @@ pub enum Expected {
     Values(Vec<(String, Value, Tolerance)>),
     /// A refusal, with the code that this project's oracle would give.
     Refusal(String),
+}
+
+impl Expected {
+    /// Whether there is an answer, and no refusal.
+    pub fn is_values(&self) -> bool {
+        matches!(self, Expected::Values(_))
+    }
 }
 
 /// The answer that a known bug would give.

@@ -76,7 +76,7 @@ pub fn run(
     check_groups(suite, &settings.only)?;
     let suite = &suite.only(&settings.only);
     let (partner, capabilities) = start_and_ask(settings)?;
-    let claimed = |op: &str| capabilities.ops.iter().any(|known| known == op);
+    let claimed = |op: &str| op.is_empty() || capabilities.ops.iter().any(|known| known == op);
     let mut asked: Vec<(usize, usize)> = Vec::new();
     let mut outcomes: Vec<Vec<Outcome>> = Vec::new();
     for (index, group) in suite.groups.iter().enumerate() {

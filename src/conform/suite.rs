@@ -26,7 +26,7 @@ pub struct Bug {
 pub struct Group {
     /// Its name.
     pub name: String,
-    /// The op that is asked.
+    /// The op that is asked; empty for whole lines that every program must refuse.
     pub op: String,
     /// The bugs that its cases can show, by their flags.
     pub flags: BTreeMap<String, Bug>,
@@ -248,7 +248,6 @@ fn group(file: &str, text: &str) -> Result<Group, SuiteError> {
     }
     for (key, value) in [
         ("group", &read.group),
-        ("op", &read.op),
         ("source", &read.source),
         ("generator_version", &read.generator_version),
     ] {
@@ -269,6 +268,11 @@ fn group(file: &str, text: &str) -> Result<Group, SuiteError> {
             serde_json::from_str(text.get()).map_err(|cause| named(cause.to_string()))?;
         let case = check::case(case, &read.tolerance, |flag| read.flags.contains_key(flag))
             .map_err(named)?;
+        if read.op.is_empty() && (case.expected.is_values() || case.question.is_arguments()) {
+            return Err(named(
+                "expected a line that must be refused, since the group has no op".into(),
+            ));
+        }
         used.extend(case.flags.iter().cloned());
         cases.push(case);
     }

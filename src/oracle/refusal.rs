@@ -53,9 +53,14 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// A refusal of a kind.
+    /// A refusal of a kind. A message that quotes a whole line is cut.
     pub fn new(code: Code, message: impl Into<String>) -> Refusal {
-        let message = message.into();
+        const MOST_CHARACTERS: usize = 1000;
+        let mut message = message.into();
+        if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {
+            message.truncate(end);
+            message.push('…');
+        }
         Refusal { code, message }
     }
 
