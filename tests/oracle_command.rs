@@ -771,7 +771,7 @@ fn each_op_answers() {
         ),
         (
             "report_encode",
-            json!({"report": 4, "control": "clear_fault"}),
+            json!({"report": 4, "control": 2}),
             json!({"bytes": "0402"}),
         ),
         // p = ½: χ² = (1² + 1²)/(4·½·½).

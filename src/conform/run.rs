@@ -240,7 +240,15 @@ impl<'a, P: FnMut()> Run<'a, P> {
                 }
                 None => {
                     self.starts += 1;
-                    start(self.settings)?
+                    // Asked again, so that the time it takes to start is not the next case's.
+                    match start_and_ask(self.settings) {
+                        Ok((partner, _)) => partner,
+                        Err(error @ ConformError::Capabilities { .. }) => {
+                            self.notes.push(format!("started again, {error}"));
+                            return Ok(());
+                        }
+                        Err(error) => return Err(error),
+                    }
                 }
             };
             match self.converse(&partner) {

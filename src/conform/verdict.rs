@@ -155,7 +155,7 @@ impl Verdict {
             }
         }
         verdict.likely_bugs = likely_bugs(suite, &verdict.failures);
-        verdict.passed = verdict.failures.is_empty() && verdict.checked() > 0;
+        verdict.passed = verdict.failures.is_empty() && verdict.has_evidence();
         verdict
     }
 
@@ -167,12 +167,20 @@ impl Verdict {
             .sum()
     }
 
+    /// Whether an op of the program was asked, if there was one to ask: that it refuses lines which
+    /// everybody must refuse says nothing of it.
+    fn has_evidence(&self) -> bool {
+        let ops = || self.groups.iter().filter(|group| !group.op.is_empty());
+        self.checked() > 0 && (ops().count() == 0 || ops().any(|group| group.skipped == 0))
+    }
+
     /// What is wrong with the whole, if something is.
     ///
     /// Implements: ORA-049.
     pub fn failure(&self) -> Option<String> {
-        if self.checked() == 0 {
-            let ops: Vec<&str> = self.groups.iter().map(|group| &group.op[..]).collect();
+        if !self.has_evidence() {
+            let ops = self.groups.iter().map(|group| &group.op[..]);
+            let ops: Vec<&str> = ops.filter(|op| !op.is_empty()).collect();
             return Some(format!(
                 "nothing checked: the program claims none of the ops of these vectors ({})",
                 ops.join(", ")

@@ -49,7 +49,7 @@ pub fn decode(arguments: &mut Arguments) -> Result<Answer, Refusal> {
         }
         Control::NUMBER => {
             let control = Control::decode(&bytes).map_err(refused)?;
-            answer.with("control", name(control))
+            answer.with("control", control.encode()[1])
         }
         _ => return Err(unknown(number.into())),
     })
@@ -118,23 +118,9 @@ impl Fields<'_, '_> {
     }
 
     fn control(&mut self) -> Result<Control, Refusal> {
-        let text = self.0.text("control")?;
-        let known = [Control::Stop, Control::Enable, Control::ClearFault];
-        let found = known.into_iter().find(|&control| name(control) == text);
-        found.ok_or_else(|| {
-            Refusal::range(
-                "control",
-                format_args!("is {text:?}, expected stop, enable or clear_fault"),
-            )
-        })
-    }
-}
-
-fn name(control: Control) -> &'static str {
-    match control {
-        Control::Stop => "stop",
-        Control::Enable => "enable",
-        Control::ClearFault => "clear_fault",
+        let value = self.u8("control")?;
+        Control::decode(&[Control::NUMBER, value])
+            .map_err(|_| Refusal::range("control", format_args!("is {value}, expected 0 to 2")))
     }
 }
 
