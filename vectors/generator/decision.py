@@ -2,9 +2,9 @@
 
 from fractions import Fraction
 
-from mpmath import log, log10, mp, mpf, sqrt
+from mpmath import log, log10, mpf, sqrt
 
-from .normal import SOURCE, TAIL, cdf, quantile, quantile_tolerance, tail_ulps
+from .normal import SOURCE, TAIL, cdf, quantile, tail_ulps
 from .numbers import UNIT, Draws, exact, nearest, real
 from .suite import Group, absolute, in_ulp, refuse_common
 
@@ -29,7 +29,7 @@ def rates_tolerance(gamma, eta):
     for key, a in (("false_alarm", -(e / g + g / 2)), ("miss", e / g - g / 2)):
         if abs(a) > 50:
             continue
-        count = tail_ulps(a, exact(3 * abs(e / g) + 3 * g / 2 + abs(a)) )
+        count = tail_ulps(a, exact(3 * abs(e / g) + 3 * g / 2 + abs(a)))
         if count > 8:
             limits[key] = in_ulp(int(count), TAIL)
     return limits or None
@@ -187,7 +187,9 @@ def needed(alpha, beta):
     """γ of DET-029 and its bound: two quantiles and a sum."""
     a, b = -quantile(alpha), -quantile(beta)
     gamma = max(a + b, mpf(0))
-    return gamma, UNIT * (QUANTILE_ROUNDINGS * (abs(exact(a)) + abs(exact(b))) + exact(gamma))
+    bound = QUANTILE_ROUNDINGS * (abs(exact(a)) + abs(exact(b))) + exact(gamma)
+    # The exact 0 of a rate of ½ may come out as a rounding of the half.
+    return gamma, UNIT * (bound + 2 * [alpha, beta].count(0.5))
 
 
 def required_gamma():

@@ -4,6 +4,7 @@ from fractions import Fraction
 
 from .numbers import exact
 
+
 def bump(position):
     """1/(1 + z²)², smooth and even."""
     return 1 / (1 + position * position) ** 2
