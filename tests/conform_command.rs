@@ -640,3 +640,56 @@ fn another_implementation_passes() {
     let output = conform(&[], &["python3", &format!("{TOYS}/right.py")]);
     assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
 }
+
+/// The groups with a case that can show a bug.
+fn groups_with(flag: &str) -> Vec<String> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/vectors");
+    let mut groups = Vec::new();
+    for entry in fs::read_dir(folder).expect("the vectors") {
+        let path = entry.expect("a file").path();
+        if path.extension().is_none_or(|extension| extension != "json") {
+            continue;
+        }
+        let file: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).expect("JSON");
+        if !file["flags"][flag].is_null() {
+            groups.push(file["group"].as_str().unwrap().to_string());
+        }
+    }
+    groups
+}
+
+// Verifies: ORA-047, ORA-049.
+#[test]
+fn the_bug_of_another_implementation_is_named() {
+    if !python() {
+        return;
+    }
+    let wrong = format!("{TOYS}/wrong.py");
+    let list = Command::new("python3")
+        .arg(&wrong)
+        .output()
+        .expect("Python starts");
+    let said = String::from_utf8_lossy(&[list.stdout, list.stderr].concat()).into_owned();
+    let bugs: Vec<&str> = said
+        .split(": ")
+        .nth(1)
+        .expect("a list of bugs")
+        .split_whitespace()
+        .collect();
+    assert!(bugs.len() >= 20, "{said}");
+    for bug in bugs {
+        let groups = groups_with(bug);
+        assert!(!groups.is_empty(), "no case shows {bug}");
+        let mut options = vec!["--format", "json"];
+        options.extend(groups.iter().flat_map(|group| ["--only", group]));
+        let output = conform(&options, &["python3", &wrong, bug]);
+        assert_eq!(output.status.code(), Some(1), "{bug} passes");
+        let verdict: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let named = verdict["likely_bugs"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|likely| likely["flag"] == bug);
+        assert!(named, "{bug} is not named: {}", verdict["likely_bugs"]);
+    }
+}

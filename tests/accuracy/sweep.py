@@ -183,10 +183,10 @@ def decisions(oracle, draw):
     for gamma, ok in zip(gammas, oracle.ask("two_afc", [{"gamma": g} for g in gammas])):
         exact = erfc(-mpf(gamma) / 2) / 2
         choice.point(ok["p_correct"], exact, 2 * ulp(exact), gamma)
-    shares = [draw.random() for _ in range(10_000)] + [10 ** draw.uniform(-300, -1) for _ in range(2_000)]
+    shares = [draw.random() for _ in range(9_000)] + [10 ** draw.uniform(-323, -1) for _ in range(3_000)]
     for p, ok in zip(shares, oracle.ask("gamma_from_two_afc", [{"p_correct": p} for p in shares])):
         exact = sqrt(mpf(2)) * quantile_of(mpf(p), ok["gamma"] / math.sqrt(2))
-        inverse.point(ok["gamma"], exact, 7 * ulp(exact), p)
+        inverse.point(ok["gamma"], exact, (7 if p >= 1e-306 else 10) * ulp(exact), p)
     return [rates, curve, needed, choice, inverse]
 
 
