@@ -95,8 +95,18 @@ def requests():
     for depth in (200, 1000, 20000):
         group.raw(f"{depth} lists in each other", "[" * depth + "]" * depth, "bad_json", ["deep_nesting"])
         group.raw(f"{depth} lists left open", "[" * depth, "bad_json", ["deep_nesting"])
-    group.raw("300 objects in each other", '{"id":"ID","op":"two_afc","args":' + '{"a":' * 300 + "1" + "}" * 300 + "}", "bad_json", ["deep_nesting"])
-    group.raw("300 lists as an argument", '{"id":"ID","op":"two_afc","args":{"gamma":' + "[" * 300 + "]" * 300 + "}}", "bad_json", ["deep_nesting"])
+    group.raw(
+        "300 objects in each other",
+        '{"id":"ID","op":"two_afc","args":' + '{"a":' * 300 + "1" + "}" * 300 + "}",
+        "bad_json",
+        ["deep_nesting"],
+    )
+    group.raw(
+        "300 lists as an argument",
+        '{"id":"ID","op":"two_afc","args":{"gamma":' + "[" * 300 + "]" * 300 + "}}",
+        "bad_json",
+        ["deep_nesting"],
+    )
     return group
 
 

@@ -162,12 +162,18 @@ def refuse_common(group, args, numbers, lists=()):
                 break
         group.refuse(f"{key} is null", {**args, key: None}, "bad_argument", ["wrong_type"])
         group.refuse(f"{key} is text", {**args, key: "1"}, "bad_argument", ["wrong_type"])
-        group.refuse(f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"])
+        group.refuse(
+            f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"]
+        )
     for key in lists:
         if not isinstance(args[key][0], list):
             text = dumps({**args, key: ["@", *args[key][1:]]}).replace('"@"', "NaN")
             group.refuse_line(f"the first of {key} is NaN", text, "bad_json", ["not_finite"])
-        group.refuse(f"the last of {key} is null", {**args, key: [*args[key][:-1], None]}, "bad_argument", ["wrong_type"])
+        group.refuse(
+            f"the last of {key} is null", {**args, key: [*args[key][:-1], None]}, "bad_argument", ["wrong_type"]
+        )
         group.refuse(f"{key} is a number", {**args, key: 1}, "bad_argument", ["wrong_type"])
-        group.refuse(f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"])
+        group.refuse(
+            f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"]
+        )
     group.refuse("an argument that the op does not have", {**args, "gama": 1}, "bad_argument", ["unknown_argument"])
