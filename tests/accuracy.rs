@@ -25,7 +25,7 @@ fn every_function_is_as_accurate_as_stated() {
         return;
     }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/accuracy/sweep.py");
-    let output = Command::new("python3")
+    let output = Command::new(&python)
         .args([script, env!("CARGO_BIN_EXE_palpate"), "oracle"])
         .output()
         .expect("Python starts");
