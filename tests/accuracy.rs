@@ -9,9 +9,8 @@ use std::process::Command;
 // ACC-013, ACC-020.
 #[test]
 fn every_function_is_as_accurate_as_stated() {
-    let probe = Command::new("python3")
-        .args(["-c", "import mpmath"])
-        .output();
+    let python = std::env::var("PALPATE_PYTHON").unwrap_or_else(|_| "python3".into());
+    let probe = Command::new(&python).args(["-c", "import mpmath"]).output();
     if !probe.is_ok_and(|output| output.status.success()) {
         let required =
             std::env::var_os("PALPATE_REQUIRE_WITNESSES").is_some_and(|value| value == "1");

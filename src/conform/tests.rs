@@ -1,7 +1,7 @@
 use serde_json::json;
 
 use super::junit::escaped;
-use super::tolerance::{Tolerance, compare};
+use super::tolerance::{Tolerance, compare, cut};
 
 // Verifies: VEC-004, ORA-046.
 #[test]
@@ -90,4 +90,12 @@ fn no_text_breaks_the_xml() {
         escaped("a<b>&\"'\t\u{0}\u{b}\u{ffff}γ"),
         "a&lt;b&gt;&amp;&quot;' \u{fffd}\u{fffd}\u{fffd}γ"
     );
+}
+
+// Verifies: ORA-043.
+#[test]
+fn what_a_program_says_is_quoted_short_and_plain() {
+    assert_eq!(cut("a\u{1b}[2J\r\nγ"), "a\u{fffd}[2J\u{fffd}\u{fffd}γ");
+    assert_eq!(cut(&"é".repeat(200)), "é".repeat(200));
+    assert_eq!(cut(&"é".repeat(201)), "é".repeat(200) + "…");
 }
