@@ -195,7 +195,8 @@ def proportion_interval():
             key: absolute(
                 bound,
                 "1",
-                "24 · 2⁻⁵³ of the sum of the terms' magnitudes: z within 4 ULP enters squared, some 8 operations; for a confidence below ½ also the rounding of 1 − confidence",
+                "24 · 2⁻⁵³ of the sum of the terms' magnitudes: z within 4 ULP enters squared, some 8 operations; "
+                "for a confidence below ½ also the rounding of 1 − confidence",
             )
             for key in ("lower", "upper")
         }
