@@ -187,29 +187,23 @@ def check_probe(data):
 
 
 def check_refusals(data):
-    """A line that is said to be no JSON is none, by another reader; one that is, has what its code says."""
+    """A line that is said to be no JSON is none, by Python's reader, and the other way round."""
     for case in data["cases"]:
         if "line" not in case:
             continue
         try:
-            value = json.loads(case["line"], parse_constant=refuse_constant, parse_float=finite, parse_int=finite)
-            depth = case["line"].count("[") + case["line"].count("{")
-            text = json.dumps(value, ensure_ascii=False).encode("utf-8", "strict") and depth <= 128
-        except (ValueError, RecursionError):
-            text = None
-        if bool(text) == (case["error"] == "bad_json"):
+            json.loads(case["line"], parse_constant=refuse_constant)
+            is_json = True
+        except RecursionError:
+            is_json = case["line"].count("[") == case["line"].count("]")
+        except ValueError:
+            is_json = False
+        if is_json == (case["error"] == "bad_json"):
             complain(case["id"], "bad_json, or not")
 
 
 def refuse_constant(name):
     raise ValueError(name)
-
-
-def finite(text):
-    value = float(text)
-    if value in (float("inf"), float("-inf")):
-        raise ValueError(text)
-    return value
 
 
 def check_manifest(names):

@@ -473,16 +473,23 @@ def refuse_constant(name):
     raise ValueError(f"{name} is no number of JSON")
 
 
+def without_twins(pairs):
+    """An object, in which no key may stand twice."""
+    if len(dict(pairs)) != len(pairs):
+        raise Refused("bad_request", "a key stands twice")
+    return dict(pairs)
+
+
 def reply(line):
     """The answer to a line: an object, always."""
     name = None
     try:
         try:
-            request = json.loads(line.decode("utf-8"), parse_constant=refuse_constant)
+            request = json.loads(line.decode("utf-8"), parse_constant=refuse_constant, object_pairs_hook=without_twins)
         except (ValueError, RecursionError) as error:
             raise Refused("bad_json", str(error))
-        if not isinstance(request, dict) or "op" not in request:
-            raise Refused("bad_request", "a request is an object with id and op")
+        if not isinstance(request, dict) or "op" not in request or not set(request) <= {"id", "op", "args"}:
+            raise Refused("bad_request", "a request is an object with id, op and args")
         if isinstance(request.get("id"), bool) or not isinstance(request.get("id"), (str, int, float)):
             raise Refused("bad_request", "id is a text or a number")
         if isinstance(request["id"], float) and not math.isfinite(request["id"]):

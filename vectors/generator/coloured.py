@@ -225,7 +225,6 @@ def refuse_covariances(group):
         group.refuse_line(
             f"a covariance of {token}",
             '{"residual":[0.1,0.2],"template":[0.3,0.1],"covariance":[[1,%s],[0.25,1]]}' % token,
-            "bad_json",
             ["not_finite"],
         )
 

@@ -335,9 +335,9 @@ def noise_budget():
         for rate in (0, 1):
             group.refuse(f"{key} = {rate}", {**args, key: rate}, "out_of_range", ["infinite_answer"])
     group.refuse(
-        "γ = 0: any noise would do", {**args, "max_false_alarm": 0.5, "max_miss": 0.5}, "out_of_range", ["zero_gamma"]
+        "γ = 0: any noise would do", {**args, "max_false_alarm": 0.5, "max_miss": 0.5}, "overflow", ["zero_gamma"]
     )
-    group.refuse("γ floored at 0", {**args, "max_false_alarm": 0.8, "max_miss": 0.7}, "out_of_range", ["zero_gamma"])
+    group.refuse("γ floored at 0", {**args, "max_false_alarm": 0.8, "max_miss": 0.7}, "overflow", ["zero_gamma"])
     group.refuse("a source below 0", {**args, "sources_n": [0.1, -0.02]}, "out_of_range", ["out_of_range"])
     return group
 

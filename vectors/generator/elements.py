@@ -220,7 +220,8 @@ def element_case(group, kind, nodes, modulus, ratio):
     limit = absolute(
         bound,
         "N/m²",
-        "2⁻⁵³ max|K| (64 for the sums and the rule's points, 64 (largest coordinate)/(height) for the Jacobian, whose differences cancel)",
+        "2⁻⁵³ max|K| (64 for the sums and the rule's points, 64 (largest coordinate)/(height) for the Jacobian, "
+        "whose differences cancel)",
     )
     args = {"nodes_m": nodes, "youngs_modulus_pa": modulus, "poissons_ratio": ratio}
     group.accept(

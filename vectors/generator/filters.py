@@ -120,7 +120,6 @@ def matched_filter():
     group.refuse_line(
         "a sample is 1e999",
         '{"template_x":[1e999,0.2],"template_y":[0.3,0.4],"noise_sd_x":0.1,"noise_sd_y":0.2}',
-        "bad_json",
         ["not_finite"],
     )
     return group
@@ -214,7 +213,6 @@ def theta():
     group.refuse_line(
         "a sample is -1e999",
         '{"observed_x":[-1e999],"observed_y":[1],"f0_x":[0],"f0_y":[1],"f1_x":[0.2],"f1_y":[1.2],"noise_sd_x":0.1,"noise_sd_y":0.2}',
-        "bad_json",
         ["not_finite"],
     )
     return group

@@ -49,7 +49,7 @@ def probe_force():
     args = {"phantom": "2.6", "depth_m": 0.002, "lateral_m": 0.001}
     refuse_common(group, args, ["depth_m", "lateral_m"])
     for phantom in ("5.0", "", "None", "2,6"):
-        group.refuse(f"phantom {phantom!r}", {**args, "phantom": phantom}, "bad_argument", ["out_of_range"])
+        group.refuse(f"phantom {phantom!r}", {**args, "phantom": phantom}, "out_of_range", ["out_of_range"])
     group.refuse("a phantom by number", {**args, "phantom": 2.6}, "bad_argument", ["wrong_type"])
     group.refuse("no phantom", {k: v for k, v in args.items() if k != "phantom"}, "bad_argument", ["missing_argument"])
     for depth, lateral, kind in (

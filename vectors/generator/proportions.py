@@ -195,7 +195,8 @@ def proportion_interval():
             key: absolute(
                 bound,
                 "1",
-                "24 · 2⁻⁵³ of the sum of the terms' magnitudes: z within 4 ULP enters squared, some 8 operations; for a confidence below ½ also the rounding of 1 − confidence",
+                "24 · 2⁻⁵³ of the sum of the terms' magnitudes: z within 4 ULP enters squared, some 8 operations; "
+                "for a confidence below ½ also the rounding of 1 − confidence",
             )
             for key in ("lower", "upper")
         }
@@ -215,9 +216,9 @@ def proportion_interval():
                 "out_of_range",
                 ["infinite_answer" if confidence in (0, 1) else "out_of_range"],
             )
-        group.refuse(f"{method}: successes below 0", {**args, "successes": -1}, "bad_argument", ["out_of_range"])
+        group.refuse(f"{method}: successes below 0", {**args, "successes": -1}, "out_of_range", ["out_of_range"])
         group.refuse(f"{method}: half a success", {**args, "successes": 12.5}, "bad_argument", ["wrong_type"])
-    group.refuse("a method that does not exist", {**args, "method": "jeffreys"}, "bad_argument", ["wrong_type"])
+    group.refuse("a method that does not exist", {**args, "method": "jeffreys"}, "out_of_range", ["out_of_range"])
     group.refuse("no method", {k: v for k, v in args.items() if k != "method"}, "bad_argument", ["missing_argument"])
     return group
 
@@ -292,7 +293,7 @@ def count_analysis():
     group.refuse(
         "more right answers than trials", {**args, "correct": [[31, 15], [22, 17]]}, "out_of_range", ["out_of_range"]
     )
-    group.refuse("right answers below 0", {**args, "correct": [[-1, 15], [22, 17]]}, "bad_argument", ["out_of_range"])
+    group.refuse("right answers below 0", {**args, "correct": [[-1, 15], [22, 17]]}, "out_of_range", ["out_of_range"])
     group.refuse("half an answer", {**args, "correct": [[20.5, 15], [22, 17]]}, "bad_argument", ["wrong_type"])
     group.refuse("no trials", {**args, "correct": [[0, 0], [0, 0]], "trials": 0}, "out_of_range", ["out_of_range"])
     group.refuse("a row is shorter", {**args, "correct": [[20, 15], [22]]}, "bad_argument", ["lengths_differ"])

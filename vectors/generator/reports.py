@@ -111,10 +111,10 @@ def report_decode():
         group.refuse(f"report {report}, its number alone", {"bytes": text[:2]}, "bad_argument", ["length_not_checked"])
     for number in ("00", "05", "ff", "10"):
         group.refuse(
-            f"report number {number}", {"bytes": number + sample[1][2:]}, "bad_argument", ["value_not_checked"]
+            f"report number {number}", {"bytes": number + sample[1][2:]}, "out_of_range", ["value_not_checked"]
         )
     for control in ("03", "80", "ff"):
-        group.refuse(f"control {control}", {"bytes": "04" + control}, "bad_argument", ["value_not_checked"])
+        group.refuse(f"control {control}", {"bytes": "04" + control}, "out_of_range", ["value_not_checked"])
     group.refuse("no bytes", {"bytes": ""}, "bad_argument", ["empty"])
     group.refuse("half a byte", {"bytes": "040"}, "bad_argument", ["length_not_checked"])
     group.refuse("no hexadecimal digits", {"bytes": "04zz"}, "bad_argument", ["wrong_type"])

@@ -141,7 +141,6 @@ def interpolate():
             f"a force is {token}",
             '{"depths_m":[0.001,0.002],"laterals_m":[0,0.001],"table_n":[[1,2],[3,%s]],"depth_m":0.0015,"lateral_m":0.0005}'
             % token,
-            "bad_json",
             ["not_finite"],
         )
     group.refuse(

@@ -179,7 +179,7 @@ def threshold():
         group.refuse(f"Bayes, {comment}", {**bayes, **costs}, "out_of_range", ["infinite_answer"])
     group.refuse("no criterion", {"prior_h1": 0.5}, "bad_argument", ["missing_argument"])
     group.refuse(
-        "a criterion that does not exist", {"criterion": "minimax", "prior_h1": 0.5}, "bad_argument", ["wrong_type"]
+        "a criterion that does not exist", {"criterion": "minimax", "prior_h1": 0.5}, "out_of_range", ["out_of_range"]
     )
     group.refuse("a criterion that is a number", {"criterion": 1, "prior_h1": 0.5}, "bad_argument", ["wrong_type"])
     return group
