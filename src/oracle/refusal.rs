@@ -4,6 +4,7 @@ use std::fmt::Display;
 
 use crate::detect::DetectError;
 use crate::fem::FemError;
+use crate::psychophysics::PsychophysicsError;
 use crate::stats::binomial::ProportionError;
 use crate::stats::normal::NormalError;
 
@@ -111,6 +112,12 @@ impl From<ProportionError> for Refusal {
 
 impl From<NormalError> for Refusal {
     fn from(error: NormalError) -> Refusal {
+        Refusal::new(Code::OutOfRange, error.to_string())
+    }
+}
+
+impl From<PsychophysicsError> for Refusal {
+    fn from(error: PsychophysicsError) -> Refusal {
         Refusal::new(Code::OutOfRange, error.to_string())
     }
 }

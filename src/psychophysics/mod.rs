@@ -40,7 +40,7 @@ mod tests;
 pub use analysis::{Analysis, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis, analyse};
 pub use beta_binomial::BetaBinomial;
 pub use conditions::{ConditionComparison, Difference, InclusionDifference};
-pub use dispersion::Dispersion;
+pub use dispersion::{Dispersion, dispersion};
 pub use error::PsychophysicsError;
 pub use journal::{Journal, JournalError, Setup};
 pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};

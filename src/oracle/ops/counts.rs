@@ -3,6 +3,7 @@
 use super::super::{Answer, Arguments, Code, Refusal};
 use super::proportion::MOST_TRIALS;
 use crate::detect::gamma_from_two_afc;
+use crate::psychophysics::dispersion;
 
 /// The pooled rates of right answers, γ from them, and how far the subjects differ from one
 /// binomial.
@@ -23,16 +24,16 @@ pub fn analysis(arguments: &mut Arguments) -> Result<Answer, Refusal> {
     let (mut pooled, mut rates) = (Vec::new(), Vec::new());
     let (mut gammas, mut chi2s) = (Vec::new(), Vec::new());
     for condition in 0..counts[0].len() {
-        let column = || counts.iter().map(|row| row[condition]);
-        let right: f64 = column().sum(); // whole numbers, at most 10¹⁵: exact
-        let rate = right / (subjects * trials);
-        // Σ(k − T p)² = Σ(n k − Σk)²/n², in which whole numbers do not round.
-        let squares: f64 = column().map(|k| subjects * k - right).map(|d| d * d).sum();
-        let wrong = subjects * trials - right;
-        pooled.push(right as u64); // whole, at most 10¹⁵
+        // Whole numbers, at most 10⁹ each: exact in either type.
+        let of_subject = |row: &Vec<f64>| (row[condition] as u32, trials as u32);
+        let column: Vec<(u32, u32)> = counts.iter().map(of_subject).collect();
+        let right: u64 = column.iter().map(|&(right, _)| u64::from(right)).sum();
+        let rate = right as f64 / (subjects * trials);
+        pooled.push(right);
         rates.push(rate);
         gammas.push(gamma_from_two_afc(rate)?);
-        chi2s.push(squares * trials / (right * wrong));
+        // A single subject has the pooled rate.
+        chi2s.push(dispersion(&column)?.map_or(0.0, |found| found.chi_square));
     }
     Ok(Answer::default()
         .with("pooled", pooled)
