@@ -76,6 +76,7 @@ fn study(config: &Config, phantoms: &[Phantom]) -> Result<Study, CliError> {
     Ok(Study {
         reference,
         maps,
+        measured: Vec::new(),
         deformed,
         settings: config.settings(),
     })

@@ -9,7 +9,7 @@
 //! | `paper.rs` | the numbers that the paper prints |
 //! | `findings.rs` | signals, signal-to-noise ratios, thresholds |
 //! | `comparison.rs` | "paper, here, why" |
-//! | `figures/` | the paper's Figures 3, 4, 5, 6, 9 and the signals, as SVG |
+//! | `figures/` | the paper's figures, the signals, as SVG |
 //! | `html.rs`, `summary.rs` | the page, the JSON |
 //! | `text.rs` | untrusted names in markup and file names; numbers as text |
 
@@ -46,6 +46,8 @@ pub struct Study {
     pub reference: ForceMap,
     /// Maps F_1 of the phantoms with inclusion, over the same poses as the reference. Any number, any names.
     pub maps: Vec<ForceMap>,
+    /// Measured maps, shown as Figure 7. Any number, any poses; nothing is computed from them.
+    pub measured: Vec<ForceMap>,
     /// The deformed mesh of one pose (Figure 6).
     pub deformed: DeformedMesh,
     /// What the detector assumes.
@@ -98,12 +100,27 @@ impl Default for Settings {
     }
 }
 
+/// Where on the page a figure stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Topic {
+    /// Phantom, probe, problem.
+    Setup,
+    /// Forces and signals.
+    Forces,
+    /// The detector.
+    Detection,
+    /// The subjects of the paper.
+    People,
+}
+
 /// One picture with the words that go with it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// A name of ASCII letters, digits, `.`, `-` and `_`, unique in the study; ends in `.svg`.
     pub file_name: String,
-    /// What it is. Plain text: it may hold a phantom's name, which markup must escape.
+    /// Where on the page it stands.
+    pub topic: Topic,
+    /// What it is; begins with the number of the paper's figure that it makes again. Plain text: it may hold a phantom's name, which markup must escape.
     pub title: String,
     /// What it shows, what the paper says, and what differs and why. Plain text.
     pub caption: String,

@@ -33,6 +33,8 @@ pub const PLAYBACK_NOISE: f64 = 0.170;
 /// "The noise estimate for the direct contact case … is 220mN" (§5), N.
 pub const DIRECT_CONTACT_NOISE: f64 = 0.220;
 
+/// Table 2, "Sensor (ATI)", N.
+pub const SENSOR: f64 = 0.020;
 /// Table 2, "Actuation quantization (Immersion)", N.
 pub const QUANTIZATION: f64 = 0.5e-3;
 /// Table 2, "Actuation backdrive friction (Immersion)", N.
@@ -42,16 +44,42 @@ pub const UNMODELLED_CONTACT: f64 = 0.200;
 /// Table 2, "Human perception", N.
 pub const HUMAN_PERCEPTION: f64 = 0.093;
 
+/// "the standard deviation in the error of the force is roughly 0.024N" (§4), N; not in Table 2.
+pub const DISPLAY_ERROR: f64 = 0.024;
+
+/// The rows of Table 2, N.
+pub const NOISE_SOURCES: [(&str, f64); 5] = [
+    ("Sensor (ATI)", SENSOR),
+    ("Actuation quantization (Immersion)", QUANTIZATION),
+    (
+        "Actuation backdrive friction (Immersion)",
+        BACKDRIVE_FRICTION,
+    ),
+    (
+        "Unmodelled direct contact (friction, hysteresis, nonlinearity, etc)",
+        UNMODELLED_CONTACT,
+    ),
+    ("Human perception (Jones (1998))", HUMAN_PERCEPTION),
+];
+
 /// Pairs that each subject judged at each depth in each experiment (§4).
 pub const TRIALS: u32 = 30;
 /// The four phantoms with inclusion, by the names of [`BUILTIN_NAMES`]: the columns of Table 1.
 pub const INCLUSIONS: [&str; 4] = ["2.6", "4.6", "6.6", "8.6"];
+/// Their depths, m.
+pub const INCLUSION_DEPTHS: [f64; 4] = [2.6e-3, 4.6e-3, 6.6e-3, 8.6e-3];
 
 /// One of the three experiments of §4.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Experiment {
     /// What Table 1 calls it.
     pub name: &'static str,
+    /// The figure that shows it.
+    pub figure: &'static str,
+    /// The name of that figure's file, without its ending.
+    pub figure_file: &'static str,
+    /// The means that Table 1 prints, right answers in [`TRIALS`].
+    pub printed_means: [f64; 4],
     /// Right answers in [`TRIALS`], one row a subject, one column an inclusion.
     pub correct: [[u32; 4]; 10],
 }
@@ -60,6 +88,11 @@ impl Experiment {
     /// The right answers of all subjects to the inclusion in `column`.
     pub fn pooled(&self, column: usize) -> u32 {
         self.correct.iter().map(|subject| subject[column]).sum()
+    }
+
+    /// The mean of the subjects' right answers to the inclusion in `column`, in [`TRIALS`] pairs.
+    pub fn mean(&self, column: usize) -> f64 {
+        f64::from(self.pooled(column)) / self.correct.len() as f64
     }
 
     /// The pairs that all subjects judged at one depth.
@@ -76,6 +109,9 @@ pub const FEM_PLAYBACK: usize = 1;
 pub const EXPERIMENTS: [Experiment; 3] = [
     Experiment {
         name: "direct contact",
+        figure: "Figure 10",
+        figure_file: "figure-10",
+        printed_means: [28.8, 27.5, 24.7, 20.0],
         correct: [
             [30, 28, 27, 27], [30, 30, 28, 23], [30, 29, 20, 21], [28, 25, 18, 16], [27, 26, 23, 19],
             [30, 30, 27, 17], [23, 19, 18, 13], [30, 30, 30, 19], [30, 30, 29, 23], [30, 28, 27, 22],
@@ -83,6 +119,9 @@ pub const EXPERIMENTS: [Experiment; 3] = [
     },
     Experiment {
         name: "FEM data",
+        figure: "Figure 11",
+        figure_file: "figure-11",
+        printed_means: [29.2, 27.7, 25.3, 18.9],
         correct: [
             [30, 30, 30, 21], [30, 30, 29, 25], [30, 29, 28, 16], [28, 29, 24, 20], [29, 25, 20, 17],
             [29, 29, 27, 15], [27, 23, 18, 15], [30, 30, 27, 20], [29, 24, 21, 16], [30, 28, 29, 24],
@@ -90,6 +129,9 @@ pub const EXPERIMENTS: [Experiment; 3] = [
     },
     Experiment {
         name: "measured data",
+        figure: "Figure 12",
+        figure_file: "figure-12",
+        printed_means: [26.8, 22.8, 22.9, 17.4],
         correct: [
             [30, 22, 24, 18], [30, 28, 28, 21], [28, 27, 19, 15], [25, 19, 19, 21], [29, 24, 23, 18],
             [26, 21, 23, 17], [17, 15, 19, 18], [29, 26, 26, 13], [26, 21, 22, 15], [28, 25, 26, 18],
