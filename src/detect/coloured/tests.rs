@@ -136,6 +136,25 @@ fn arguments_that_do_not_fit_are_refused() {
     assert!(theta_stationary(two, two, two, &mut [0.0; 3]).is_err());
     assert!(theta_banded(two, two, both(&[]), &mut []).is_err());
     assert!(theta_banded(two, two, both(&[1.0, 0.1, 0.0]), &mut [0.0; 18]).is_err());
+    let uneven = Channels {
+        x: &one[..],
+        y: &[1.0, 0.5],
+    };
+    for (residual, template) in [(both(&one), two), (uneven, two), (two, uneven)] {
+        let mismatch = |found| matches!(found, Err(DetectError::LengthMismatch { .. }));
+        assert!(mismatch(theta_stationary(
+            residual,
+            template,
+            two,
+            &mut [0.0; 4]
+        )));
+        assert!(mismatch(theta_banded(
+            residual,
+            template,
+            two,
+            &mut [0.0; 10]
+        )));
+    }
     for bad in [[-1.0, 0.0], [1.0, 1.0], [1.0, f64::NAN]] {
         assert!(theta_stationary(two, two, both(&bad), &mut [0.0; 4]).is_err());
         assert!(theta_banded(two, two, both(&bad), &mut [0.0; 10]).is_err());
@@ -308,4 +327,94 @@ fn a_long_record_in_banded_noise_agrees_with_its_dense_covariance() {
         expected.theta,
         TOLERANCE * expected.gamma * expected.gamma,
     );
+}
+
+/// The covariance of two samples a channel: unit variance times `power`, correlated by
+/// `correlation` in the first channel.
+fn pair(correlation: f64, power: f64) -> [f64; 16] {
+    let (p, c) = (power, power * correlation);
+    #[rustfmt::skip]
+    let covariance = [
+        p,   c,   0.0, 0.0,
+        c,   p,   0.0, 0.0,
+        0.0, 0.0, p,   0.0,
+        0.0, 0.0, 0.0, p,
+    ];
+    covariance
+}
+
+// Verifies: DET-043.
+#[test]
+fn a_pivot_counts_as_positive_beyond_what_rounding_explains() {
+    // With correlation 1 − δ the second pivot is 2δ − δ². In doubt are those to 4 (order + 2) ε.
+    const E: f64 = f64::EPSILON;
+    for power in [1.0, 1e-6, 1e6] {
+        let dense = |delta: f64| dense(&[0.0; 4], &[1.0; 4], &pair(1.0 - delta, power));
+        assert!(dense(14.0 * E).is_ok(), "28 ε, beyond 4 (4 + 2) ε");
+        assert_eq!(
+            dense(11.0 * E),
+            Err(DetectError::NotPositiveDefinite { pivot: 1 })
+        );
+        // Three samples, so 4 (3 + 2) ε; an autoregression, whose third pivot equals the second.
+        let stationary = |delta: f64| {
+            let lags = [power, power * (1.0 - delta), power * (1.0 - delta).powi(2)];
+            let channels = Channels {
+                x: &lags[..],
+                y: &[power, 0.0, 0.0],
+            };
+            let nothing = Channels {
+                x: &[0.0; 3][..],
+                y: &[0.0; 3],
+            };
+            theta_stationary(nothing, nothing, channels, &mut [0.0; 6])
+        };
+        assert!(stationary(11.0 * E).is_ok(), "22 ε, beyond 20 ε");
+        assert_eq!(
+            stationary(9.0 * E),
+            Err(DetectError::NotPositiveDefinite { pivot: 1 })
+        );
+    }
+}
+
+// Verifies: DET-042.
+#[test]
+fn asymmetry_counts_beyond_what_rounding_explains() {
+    // Three unlike variances, so that each has its own tolerance 1e-12 of the two deviations.
+    let variance = [1.0, 1e4, 1e-8, 1e-2];
+    for row in 0..4 {
+        for column in 0..row {
+            let size = (variance[row] * variance[column] as f64).sqrt();
+            for (share, symmetric) in [(0.5, true), (2.0, false), (-2.0, false)] {
+                let mut covariance = [0.0; 16];
+                for i in 0..4 {
+                    covariance[5 * i] = variance[i];
+                }
+                covariance[4 * row + column] = 0.25 * size + share * 1e-12 * size;
+                covariance[4 * column + row] = 0.25 * size;
+                let found = dense(&[0.0; 4], &[1.0; 4], &covariance);
+                let expected = Err(DetectError::NotSymmetric { row, column });
+                assert_eq!(
+                    found == expected,
+                    !symmetric,
+                    "{row} {column} {share}: {found:?}"
+                );
+            }
+        }
+    }
+}
+
+// Verifies: DET-045.
+#[test]
+fn as_many_lags_as_samples_are_a_band() {
+    let lags = Channels {
+        x: &[1.0, 0.5][..],
+        y: &[1.0, 0.5],
+    };
+    let ones = Channels {
+        x: &[1.0, 1.0][..],
+        y: &[1.0, 1.0],
+    };
+    let found = theta_banded(ones, ones, lags, &mut [0.0; banded_scratch(2)]).unwrap();
+    // Each channel: 1ᵀK⁻¹1 = 2/1.5; γ² twice that, and θ half of it.
+    assert_near(found.theta, 4.0 / 3.0, 16.0 * f64::EPSILON);
 }

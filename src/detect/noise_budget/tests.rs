@@ -74,3 +74,9 @@ fn budgets_without_an_answer_are_refused() {
     assert!(noise_total(&[]).is_err() && noise_total(&[0.0]).is_err());
     assert!(quantisation_step(1e308).is_err() && noise_total(&[1.7e308, 1.7e308]).is_err());
 }
+
+// Verifies: DET-102.
+#[test]
+fn of_equal_sources_the_first_dominates() {
+    assert_eq!(noise_total(&[0.1, 0.3, 0.3]).unwrap().dominant, 1);
+}

@@ -168,3 +168,61 @@ fn position_bound_of_a_straight_slope() {
     assert!(slope(&[0.0, f64::NAN], 1.0, &mut slopes[..2]).is_err());
     assert!(slope(&[-f64::MAX, f64::MAX], 1.0, &mut slopes[..2]).is_err());
 }
+
+// Verifies: DET-056, DET-057.
+#[test]
+fn a_shift_without_signal_exceeds_what_is_not_above_zero() {
+    // Template (0, 1) one sample before the record's end: nothing overlaps, so Θ = 0 for certain.
+    let template = [0.0, 1.0];
+    let channels = Channels {
+        x: &template[..],
+        y: &[0.0, 0.0],
+    };
+    let scan = Scan::new(3, channels, UNIT).unwrap();
+    let (mut gamma, mut angle) = ([0.0; 1], [0.0; 1]);
+    let law = MaximumLaw::new(&scan, 2, &mut gamma, &mut angle).unwrap();
+    for (eta, expected) in [(-1.0, 1.0), (0.0, 1.0), (1e-300, 0.0), (1.0, 0.0)] {
+        assert_eq!(law.union_bound(eta), Ok(expected), "{eta}");
+        assert_eq!(law.false_alarm_bound(eta), Ok(expected), "{eta}");
+    }
+}
+
+// Verifies: DET-057.
+#[test]
+fn bounds_are_rounded_up_by_a_part_in_ten_to_the_nine() {
+    // One shift: the bound is the tail Φ(−½) at η = 0 for γ = 1; mpmath, 20 digits.
+    let tail = 0.308_537_538_725_986_9;
+    let (bound, union) = bounds(&[1.0], 1, 1, 0.0);
+    for bound in [bound, union] {
+        let excess = bound / tail - 1.0;
+        assert!((0.5e-9..1.5e-9).contains(&excess), "{excess}");
+    }
+}
+
+// Verifies: DET-058.
+#[test]
+fn the_threshold_is_found_wherever_it_lies() {
+    // One shift has the exact law N(−γ²/2, γ²): η = −γ²/2 + γΦ⁻¹(1 − α).
+    for gamma in [1e-3, 1.0, 30.0] {
+        for (rate, quantile) in [
+            (1e-12, 7.034_483_825_301_131),
+            (0.5, 0.0),
+            (0.999_999_999, -5.997_807_015_007_686_7),
+        ] {
+            let template = [gamma];
+            let channels = Channels {
+                x: &template[..],
+                y: &[0.0],
+            };
+            let scan = Scan::new(1, channels, UNIT).unwrap();
+            let (mut gammas, mut angle) = ([0.0; 1], [0.0; 1]);
+            let law = MaximumLaw::new(&scan, 0, &mut gammas, &mut angle).unwrap();
+            let found = law.threshold(rate).unwrap();
+            let expected = -0.5 * gamma * gamma + gamma * quantile;
+            // The bound is rounded up by 1e-9, at the rate 1 − 1e-9 as much as its distance from 1:
+            // there η moves by up to the quantile's slope over that, here less than 0.2 γ.
+            let slack = if rate > 0.9 { 0.2 } else { 1e-8 };
+            assert_near(found, expected, slack * gamma);
+        }
+    }
+}

@@ -64,3 +64,18 @@ fn tables_that_are_not_monotone_are_refused() {
     assert!(indentation_needed(&SIZE, &RISING, -1.0).is_err());
     assert!(indentation_needed(&SIZE, &RISING, f64::NAN).is_err());
 }
+
+// Verifies: DET-092.
+#[test]
+fn two_entries_are_enough_and_equal_ones_are_no_order() {
+    let two = indentation_needed(&[1.0, 3.0], &[2.0, 4.0], 3.0);
+    assert_eq!(two, Ok(Reach::Limit(2.0)));
+    let found = indentation_needed(&SIZE, &[0.5, 1.5, 1.5], 1.0);
+    assert_eq!(
+        found,
+        Err(DetectError::NotMonotone {
+            what: "gamma",
+            index: 2
+        })
+    );
+}

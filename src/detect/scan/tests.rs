@@ -1,6 +1,7 @@
 //! Expected values: by hand, in whole and half numbers.
 
 use super::*;
+use crate::stats::check::assert_near;
 
 const RECORD: [f64; 5] = [1.0, 2.0, 0.0, -1.0, 3.0];
 const TEMPLATE: [f64; 3] = [1.0, 2.0, 1.0];
@@ -156,4 +157,30 @@ fn scans_that_cannot_be_are_refused() {
         y: &RECORD,
     };
     assert!(scan.maximum(short, 0..=1).is_err());
+}
+
+// Verifies: DET-050, DET-052, DET-055.
+#[test]
+fn noise_that_is_no_power_of_two_counts_by_its_square() {
+    let template = Channels {
+        x: &TEMPLATE[..],
+        y: &TEMPLATE,
+    };
+    let scan = Scan::new(5, template, Channels { x: 0.3, y: 0.7 }).unwrap();
+    assert_eq!((scan.samples(), scan.full_gamma()), (5, scan.gamma(0)));
+    let inverse = 1.0 / 0.09 + 1.0 / 0.49;
+    for (shift, quarter, energy) in BY_HAND {
+        let found = scan.at(RESIDUAL, shift).unwrap();
+        // Two divisions, a sum and a root: each rounds by half a unit; the expected value by as many.
+        let theta = quarter * inverse;
+        assert_near(found.theta, theta, 4.0 * f64::EPSILON * theta.abs());
+        let gamma = libm::sqrt(energy * inverse);
+        assert_near(found.gamma, gamma, 4.0 * f64::EPSILON * gamma);
+        let covariance = scan.covariance(shift, shift).unwrap();
+        assert_near(
+            covariance,
+            energy * inverse,
+            4.0 * f64::EPSILON * covariance,
+        );
+    }
 }
