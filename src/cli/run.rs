@@ -30,7 +30,7 @@ pub struct RunArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-030, CLI-031, CLI-032.
+/// Implements: CLI-030, CLI-031, CLI-032, CLI-033.
 pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let config = match &arguments.config {
         Some(path) => Config::read(path)?,
@@ -40,9 +40,14 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let phantoms = names
         .map(|name| phantom(name))
         .collect::<Result<Vec<_>, _>>()?;
+    let measured = config
+        .measured
+        .iter()
+        .map(|path| ForceMap::read(path))
+        .collect::<Result<Vec<_>, _>>()?;
     // The folder first: a run shall not fail at its end for want of a place.
     make_folder(&arguments.out)?;
-    let study = study(&config, &phantoms)?;
+    let study = study(&config, &phantoms, measured)?;
     for map in std::iter::once(&study.reference).chain(&study.maps) {
         warn_of_large_strain(map);
     }
@@ -50,7 +55,11 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
 }
 
 /// Solves all maps, the phantoms in parallel, and the field of one pose.
-fn study(config: &Config, phantoms: &[Phantom]) -> Result<Study, CliError> {
+fn study(
+    config: &Config,
+    phantoms: &[Phantom],
+    measured: Vec<ForceMap>,
+) -> Result<Study, CliError> {
     // Each map on three meshes.
     let poses = 3 * config.depths_mm.0.len() * solved_laterals(&config.laterals_mm.0).len();
     let bar = bar(phantoms.len() * poses, "force maps");
@@ -76,7 +85,7 @@ fn study(config: &Config, phantoms: &[Phantom]) -> Result<Study, CliError> {
     Ok(Study {
         reference,
         maps,
-        measured: Vec::new(),
+        measured,
         deformed,
         settings: config.settings(),
     })

@@ -8,9 +8,11 @@
 //! |---|---|
 //! | `paper.rs` | the numbers that the paper prints |
 //! | `findings.rs` | signals, signal-to-noise ratios, thresholds |
+//! | `people.rs` | the subjects of Table 1, and the bridge from forces to their answers |
+//! | `quality.rs` | certificates in short, warnings |
 //! | `comparison.rs` | "paper, here, why" |
 //! | `figures/` | the paper's figures, the signals, as SVG |
-//! | `html.rs`, `summary.rs` | the page, the JSON |
+//! | `html/`, `summary.rs` | the page, the JSON |
 //! | `text.rs` | untrusted names in markup and file names; numbers as text |
 
 mod comparison;
@@ -18,18 +20,21 @@ mod figures;
 mod findings;
 mod html;
 pub mod paper;
+mod people;
+mod quality;
 mod summary;
 #[cfg(test)]
 mod tests;
 mod text;
 
-pub use comparison::{Comparison, PairwiseFinding, Value};
+pub use comparison::{Comparison, Value};
 pub use figures::figures;
 pub use findings::{
-    Calibration, Findings, GammaByChannel, MapFindings, Peak, Quality, ReferenceFindings,
-    SMALL_STRAIN_LIMIT, Threshold, findings,
+    Findings, GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold, findings,
 };
 pub use html::html;
+pub use people::{convention_name, normal_approximation};
+pub use quality::{Quality, SMALL_STRAIN_LIMIT};
 pub use summary::{SUMMARY_SCHEMA, SUMMARY_SCHEMA_VERSION, summary_json};
 pub use text::FileNames;
 
@@ -38,6 +43,7 @@ use crate::fem::Pose;
 use crate::fem::mesh::Region;
 use crate::force_map::{ForceMap, InvalidForceMap};
 use crate::phantom::Phantom;
+use crate::psychophysics::{PsychophysicsError, TableError};
 
 /// Everything that a run computed.
 #[derive(Debug, Clone)]
@@ -143,6 +149,12 @@ pub enum ReportError {
         /// What is wrong with it.
         source: InvalidForceMap,
     },
+    /// A computed map among the measured ones.
+    #[error("map {name:?} is among the measured maps, but was computed")]
+    NotMeasured {
+        /// The name of the map's phantom.
+        name: String,
+    },
     /// A setting or a signal that the detector refuses.
     #[error("{what}: {source}")]
     Detect {
@@ -150,6 +162,18 @@ pub enum ReportError {
         what: String,
         /// Why the detector refused.
         source: DetectError,
+    },
+    /// Table 1 cannot be set against the maps.
+    #[error("Table 1: {source}")]
+    People {
+        /// Why.
+        source: PsychophysicsError,
+    },
+    /// Table 1 itself cannot be read.
+    #[error("{error}")]
+    Table {
+        /// Why.
+        error: TableError,
     },
     /// The deformed mesh contradicts itself.
     #[error("deformed mesh: {problem}")]

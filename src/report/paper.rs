@@ -66,77 +66,14 @@ pub const NOISE_SOURCES: [(&str, f64); 5] = [
 pub const TRIALS: u32 = 30;
 /// The four phantoms with inclusion, by the names of [`BUILTIN_NAMES`]: the columns of Table 1.
 pub const INCLUSIONS: [&str; 4] = ["2.6", "4.6", "6.6", "8.6"];
-/// Their depths, m.
-pub const INCLUSION_DEPTHS: [f64; 4] = [2.6e-3, 4.6e-3, 6.6e-3, 8.6e-3];
 
-/// One of the three experiments of §4.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Experiment {
-    /// What Table 1 calls it.
-    pub name: &'static str,
-    /// The figure that shows it.
-    pub figure: &'static str,
-    /// The name of that figure's file, without its ending.
-    pub figure_file: &'static str,
-    /// The means that Table 1 prints, right answers in [`TRIALS`].
-    pub printed_means: [f64; 4],
-    /// Right answers in [`TRIALS`], one row a subject, one column an inclusion.
-    pub correct: [[u32; 4]; 10],
-}
-
-impl Experiment {
-    /// The right answers of all subjects to the inclusion in `column`.
-    pub fn pooled(&self, column: usize) -> u32 {
-        self.correct.iter().map(|subject| subject[column]).sum()
-    }
-
-    /// The mean of the subjects' right answers to the inclusion in `column`, in [`TRIALS`] pairs.
-    pub fn mean(&self, column: usize) -> f64 {
-        f64::from(self.pooled(column)) / self.correct.len() as f64
-    }
-
-    /// The pairs that all subjects judged at one depth.
-    pub fn trials(&self) -> u32 {
-        TRIALS * self.correct.len() as u32
-    }
-}
-
-/// Which of [`EXPERIMENTS`] plays back finite-element data.
+/// Which condition of Table 1 is the playback of FEM data.
 pub const FEM_PLAYBACK: usize = 1;
-
-/// Table 1.
-#[rustfmt::skip]
-pub const EXPERIMENTS: [Experiment; 3] = [
-    Experiment {
-        name: "direct contact",
-        figure: "Figure 10",
-        figure_file: "figure-10",
-        printed_means: [28.8, 27.5, 24.7, 20.0],
-        correct: [
-            [30, 28, 27, 27], [30, 30, 28, 23], [30, 29, 20, 21], [28, 25, 18, 16], [27, 26, 23, 19],
-            [30, 30, 27, 17], [23, 19, 18, 13], [30, 30, 30, 19], [30, 30, 29, 23], [30, 28, 27, 22],
-        ],
-    },
-    Experiment {
-        name: "FEM data",
-        figure: "Figure 11",
-        figure_file: "figure-11",
-        printed_means: [29.2, 27.7, 25.3, 18.9],
-        correct: [
-            [30, 30, 30, 21], [30, 30, 29, 25], [30, 29, 28, 16], [28, 29, 24, 20], [29, 25, 20, 17],
-            [29, 29, 27, 15], [27, 23, 18, 15], [30, 30, 27, 20], [29, 24, 21, 16], [30, 28, 29, 24],
-        ],
-    },
-    Experiment {
-        name: "measured data",
-        figure: "Figure 12",
-        figure_file: "figure-12",
-        printed_means: [26.8, 22.8, 22.9, 17.4],
-        correct: [
-            [30, 22, 24, 18], [30, 28, 28, 21], [28, 27, 19, 15], [25, 19, 19, 21], [29, 24, 23, 18],
-            [26, 21, 23, 17], [17, 15, 19, 18], [29, 26, 26, 13], [26, 21, 22, 15], [28, 25, 26, 18],
-        ],
-    },
+/// The means that Table 1 prints below each condition, right answers in [`TRIALS`].
+pub const PRINTED_MEANS: [[f64; 4]; 3] = [
+    [28.8, 27.5, 24.7, 20.0],
+    [29.2, 27.7, 25.3, 18.9],
+    [26.8, 22.8, 22.9, 17.4],
 ];
 
 /// Which of the paper's phantoms this is, whatever it is called: geometry, materials and probe decide.

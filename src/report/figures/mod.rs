@@ -7,9 +7,10 @@
 //! | `theory.rs` | Figures 3, 4, 9: the detector alone |
 //! | `forces.rs` | Figures 5 and 7, and the signals |
 //! | `mesh.rs` | Figure 6 |
-//! | `people.rs` | Figures 10 to 13: Table 1 |
+//! | `people.rs`, `bridge.rs` | Figures 10 to 13: Table 1; the forces against it |
 //! | `chart.rs`, `names.rs`, `diagram.rs`, `style.rs` | how charts and diagrams are drawn and look |
 
+mod bridge;
 mod chart;
 mod diagram;
 mod forces;
@@ -55,15 +56,13 @@ struct Draft {
 pub fn figures(study: &Study, findings: &Findings) -> Result<Vec<Figure>, ReportError> {
     let detect = |source| detect_error("figures", source);
     mesh::check(&study.deformed)?;
-    let mut drafts = vec![
-        setup::draft(study),
-        overview::detection(),
-        mesh::draft(&study.deformed),
-    ];
+    let mut drafts = vec![setup::draft(study), mesh::draft(&study.deformed)];
     drafts.extend(forces::drafts(study, findings)?);
+    drafts.push(overview::detection());
     drafts.extend(theory::drafts().map_err(detect)?);
     drafts.push(overview::experiments());
-    drafts.extend(people::drafts(findings)?);
+    drafts.extend(people::drafts(findings));
+    drafts.extend(bridge::draft(findings));
     let mut names = FileNames::default();
     let figure = |draft: Draft| {
         let file_name = names.unique(draft.prefix, &draft.name, "svg");

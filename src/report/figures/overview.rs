@@ -15,7 +15,7 @@ pub fn detection() -> Draft {
     Draft {
         prefix: "figure-2",
         name: String::new(),
-        topic: Topic::Setup,
+        topic: Topic::Detection,
         words: Words {
             title: "Figure 2. The signal detection problem".into(),
             caption: "From the probe's path to a decision; the numbers are those of the paper's equations. The paper's \

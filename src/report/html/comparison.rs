@@ -1,7 +1,7 @@
 //! The section "paper | here | why".
 
 use super::Page;
-use super::table::{Group, Table};
+use super::table::{Group, Layout, Table};
 use crate::report::Comparison;
 use crate::report::text::{escape, prose};
 
@@ -10,11 +10,6 @@ use crate::report::text::{escape, prose};
 /// Implements: REP-041.
 pub fn comparison(page: &Page<'_>) -> String {
     let row = |row: &Comparison| {
-        let tag = if row.is_calibration {
-            " <span class=\"tag\">calibration</span>"
-        } else {
-            ""
-        };
         vec![
             format!(
                 "{} <span class=\"soft\">({})</span>",
@@ -22,7 +17,7 @@ pub fn comparison(page: &Page<'_>) -> String {
                 escape(row.place)
             ),
             prose(&row.paper_text),
-            format!("{}{tag}", prose(&row.here.text())),
+            prose(&row.here.text()),
             prose(&row.why),
         ]
     };
@@ -38,7 +33,7 @@ pub fn comparison(page: &Page<'_>) -> String {
     let table = Table {
         id: "table-paper",
         caption,
-        stacks: true,
+        layout: Layout::Stack,
         head: &head,
         groups: Group::plain(rows),
     };

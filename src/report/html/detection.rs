@@ -1,7 +1,7 @@
 //! The section on the detector.
 
 use super::Page;
-use super::table::{Group, Table};
+use super::table::{Group, Layout, Table};
 use crate::report::text::{escape, percent, scientific, trimmed};
 use crate::report::{Findings, MapFindings, Study, Threshold, Topic};
 
@@ -56,7 +56,7 @@ fn threshold_table(study: &Study, findings: &Findings) -> String {
     Table {
         id: "table-thresholds",
         caption: &caption,
-        stacks: false,
+        layout: Layout::Rows,
         head: &head,
         groups: Group::plain(rows),
     }

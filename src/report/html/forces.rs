@@ -1,7 +1,7 @@
 //! The section on forces and signals.
 
 use super::Page;
-use super::table::{Group, Table};
+use super::table::{Group, Layout, Table};
 use crate::report::text::{escape, fixed, millimetres, prose, trimmed};
 use crate::report::{Findings, MapFindings, Peak, Topic};
 
@@ -91,7 +91,7 @@ fn signal_table(findings: &Findings) -> String {
     Table {
         id: "table-signals",
         caption: &caption,
-        stacks: false,
+        layout: Layout::Rows,
         head: &head,
         groups: Group::plain(rows),
     }

@@ -3,11 +3,12 @@
 //! | file | section |
 //! |---|---|
 //! | `opening.rs` | what was found, contents, set-up |
-//! | `forces.rs`, `detection.rs`, `people.rs`, `noise.rs` | the paper, part by part |
+//! | `forces.rs`, `detection.rs`, `people.rs`, `bridge.rs`, `noise.rs` | the paper, part by part |
 //! | `comparison.rs` | paper, here, why |
 //! | `quality.rs`, `closing.rs` | certificates; how to rerun, limits |
 //! | `table.rs`, `style.css` | how tables are written, how everything looks |
 
+mod bridge;
 mod closing;
 mod comparison;
 mod detection;
@@ -99,7 +100,7 @@ impl Page<'_> {
 
 fn picture(figure: &Figure) -> String {
     format!(
-        "<figure>\n<div class=\"picture\">{}</div>\n<figcaption><strong>{}</strong>{} <span class=\"soft\">({})</span></figcaption>\n</figure>\n",
+        "<figure>\n<div class=\"picture\">{}</div>\n<figcaption><strong>{}</strong>{} <span class=\"file\">({})</span></figcaption>\n</figure>\n",
         figure.svg.replacen(NAMESPACE, "", 1),
         prose(&figure.title),
         prose(&figure.caption),

@@ -1,9 +1,10 @@
 //! The section on sources of noise: Table 2.
 
 use super::Page;
-use super::table::{Group, Table};
+use super::table::{Group, Layout, Table};
+use crate::psychophysics::{NoiseLevel, OpenBounds};
 use crate::report::paper;
-use crate::report::text::{escape, percent, trimmed};
+use crate::report::text::{escape, percent, prose, trimmed};
 
 /// Which rows of [`paper::NOISE_SOURCES`] add up in playback of FEM data, in playback of measured data, and in direct
 /// contact.
@@ -13,13 +14,17 @@ const CHAINS: [(&str, &[usize]); 3] = [
     ("Direct contact", &[3, 4]),
 ];
 
+/// A force, N, in mN.
+fn millinewtons(force: f64) -> String {
+    trimmed(1e3 * force, 1)
+}
+
 /// Table 2 with the share of each source in the noise of each experiment.
 ///
 /// Implements: REP-063.
-pub fn noise(_page: &Page<'_>) -> String {
+pub fn noise(page: &Page<'_>) -> String {
     let variance = |source: usize| paper::NOISE_SOURCES[source].1 * paper::NOISE_SOURCES[source].1;
     let totals = CHAINS.map(|(_, sources)| sources.iter().map(|&k| variance(k)).sum::<f64>());
-    let millinewtons = |force: f64| trimmed(1e3 * force, 1);
     let row = |(k, (name, level)): (usize, &(&str, f64))| {
         let mut row = vec![escape(name), millinewtons(*level)];
         row.extend(CHAINS.iter().zip(totals).map(
@@ -66,15 +71,54 @@ pub fn noise(_page: &Page<'_>) -> String {
     let table = Table {
         id: "table-2",
         caption,
-        stacks: false,
+        layout: Layout::Rows,
         head: &head,
         groups,
     };
     format!(
         "<p>All levels are the paper's; none was measured again. The paper also measured {} mN as the standard deviation \
-         of the display's force (§4), which its Table 2 leaves out; with it instead of the friction the playback would be \
-         the least noisy of all.</p>\n{}",
+         of the display's force (§4), which Table 2 leaves out.</p>\n{}{}",
         millinewtons(paper::DISPLAY_ERROR),
-        table.markup()
+        table.markup(),
+        levels(&page.findings.noise_levels)
     )
+}
+
+/// The noise levels of §5 with intervals.
+fn levels(levels: &[NoiseLevel]) -> String {
+    if levels.is_empty() {
+        return String::new();
+    }
+    let end = |end: Option<f64>| end.map_or("no bound".into(), millinewtons);
+    let bounds = |bounds: Option<OpenBounds>| {
+        bounds.map_or("–".into(), |OpenBounds { lower, upper }| {
+            format!("{} to {}", end(lower), end(upper))
+        })
+    };
+    let row = |level: &NoiseLevel| {
+        vec![
+            prose(level.name),
+            level.printed.map_or("not printed".into(), millinewtons),
+            millinewtons(level.noise),
+            bounds(level.pooled_bounds),
+            bounds(level.clustered_bounds),
+            prose(&format!("{} {}", level.formula, level.assumption)),
+        ]
+    };
+    let head = [
+        ("Noise level", "quantity"),
+        ("Paper (mN)", "number"),
+        ("Here (mN)", "number"),
+        ("95 %, all answers alike (mN)", "number"),
+        ("95 %, by subject (mN)", "number"),
+        ("How", "why"),
+    ];
+    let table = Table {
+        id: "table-noise",
+        caption: "The noise levels of the paper's §5 from its own numbers, with intervals where they rest on counted answers.",
+        layout: Layout::Stack,
+        head: &head,
+        groups: Group::plain(levels.iter().map(row).collect()),
+    };
+    table.markup()
 }

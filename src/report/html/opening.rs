@@ -3,7 +3,7 @@
 use super::detection::limit;
 use super::{CONTENTS, Page};
 use crate::report::text::{escape, fixed, millimetres, percent, prose, trimmed};
-use crate::report::{Topic, paper};
+use crate::report::{Topic, Value, paper};
 
 /// Title and subject.
 pub fn header() -> &'static str {
@@ -78,7 +78,8 @@ fn highlights(page: &Page<'_>) -> Vec<Highlight> {
     let level = findings.reference.normal_force_at_centre;
     if let Some(level) = level {
         let paper = findings
-            .calibration
+            .bridge
+            .as_ref()
             .map_or("", |_| "; the paper has 1.6 N as nominal");
         all.push(Highlight {
             number: format!("{} N", fixed(level, 2)),
@@ -106,17 +107,47 @@ fn highlights(page: &Page<'_>) -> Vec<Highlight> {
             limit(page.study.settings.max_miss)
         ),
     });
-    if let Some(calibration) = findings.calibration {
-        all.push(Highlight {
-            number: format!("{} N", fixed(calibration.noise, 3)),
-            words: format!(
-                "noise that explains the subjects' {} at 6.6 mm by our peak signal; the paper has {} N",
-                percent(paper::ACCURACY_6_6),
-                trimmed(paper::SUBJECTS_NOISE, 3)
-            ),
-        });
-    }
+    all.extend(subjects_noise(page));
+    all.extend(width_of_intervals(page));
     all
+}
+
+/// The noise that explains the answers to FEM playback at 6.6 mm by the peak signal: ours beside the paper's.
+fn subjects_noise(page: &Page<'_>) -> Option<Highlight> {
+    let paper = Value::ForceN(paper::SUBJECTS_NOISE);
+    let row = page
+        .findings
+        .comparison
+        .iter()
+        .find(|row| row.paper == paper)?;
+    Some(Highlight {
+        number: row.here.text(),
+        words: format!(
+            "noise that explains the subjects' {} at 6.6 mm by the peak signal; the paper has {}",
+            percent(paper::ACCURACY_6_6),
+            row.paper_text
+        ),
+    })
+}
+
+/// How much too narrow intervals are that take all answers as alike.
+fn width_of_intervals(page: &Page<'_>) -> Option<Highlight> {
+    let inclusions = page
+        .findings
+        .people
+        .conditions
+        .iter()
+        .flat_map(|of| &of.inclusions);
+    let ratios: Vec<_> = inclusions
+        .filter_map(|inclusion| Some(inclusion.clustered.as_ref()?.width_ratio))
+        .collect();
+    let largest = ratios.iter().copied().reduce(f64::max)?;
+    Some(Highlight {
+        number: format!("{} ×", fixed(largest, 1)),
+        words: "how much wider, at the most, a 95 % interval for the subjects' rate of right answers is than one of \
+                the paper's kind, once the subjects may differ, as they do"
+            .into(),
+    })
 }
 
 /// What the signals were taken at, if that is not what the paper did.
@@ -137,10 +168,10 @@ pub fn setup(page: &Page<'_>) -> String {
         [] => String::new(),
     };
     let settings = &page.study.settings;
-    format!(
-        "<p>A probe sweeps over a gel at a fixed depth. Maps: one of a gel without inclusion, and {count} other{s}. \
-         Depths of the probe: {depths}. Lateral positions: {laterals}, {samples} of them. Assumed by the detector: \
-         noise of {noise} N in every sample of both channels, prior Pr(H = 1) = {prior}.</p>\n{figures}",
+    let words = format!(
+        "A probe sweeps over a gel at a fixed depth. Maps: one of a gel without inclusion, and {count} other{s}. Depths \
+         of the probe: {depths}. Lateral positions: {laterals}, {samples} of them. Assumed by the detector: noise of \
+         {noise} N in every sample of both channels, and the prior Pr(H = 1) = {prior}.",
         count = page.study.maps.len(),
         s = if page.study.maps.len() == 1 { "" } else { "s" },
         depths = range(page.study.reference.depths()),
@@ -148,6 +179,6 @@ pub fn setup(page: &Page<'_>) -> String {
         samples = page.findings.samples,
         noise = trimmed(settings.noise_sd, 6),
         prior = trimmed(settings.prior_h1, 6),
-        figures = page.figures(Topic::Setup)
-    )
+    );
+    format!("<p>{}</p>\n{}", prose(&words), page.figures(Topic::Setup))
 }

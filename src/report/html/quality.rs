@@ -1,7 +1,7 @@
 //! The section on the quality of the maps.
 
 use super::Page;
-use super::table::{Group, Table};
+use super::table::{Group, Layout, Table};
 use crate::report::Quality;
 use crate::report::text::{escape, fixed, millimetres, scientific, trimmed};
 
@@ -49,7 +49,7 @@ pub fn quality(page: &Page<'_>) -> String {
     let table = Table {
         id: "table-certificates",
         caption,
-        stacks: false,
+        layout: Layout::Rows,
         head: &head,
         groups: Group::plain(rows),
     };

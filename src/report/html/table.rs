@@ -8,12 +8,23 @@ pub struct Table<'a> {
     pub id: &'a str,
     /// What it shows, above it; stays in sight where the table scrolls.
     pub caption: &'a str,
-    /// Whether its rows become blocks on a narrow page.
-    pub stacks: bool,
+    /// How it is set.
+    pub layout: Layout,
     /// The head of each column with its class, `""` for none.
     pub head: &'a [(&'a str, &'a str)],
     /// Groups of rows; the first cell of a row heads it.
     pub groups: Vec<Group>,
+}
+
+/// How a table is set.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    /// Rows of cells.
+    Rows,
+    /// Rows of cells close together, for many.
+    Dense,
+    /// Rows that become blocks on a narrow page, for long text.
+    Stack,
 }
 
 /// Rows that belong together.
@@ -46,7 +57,11 @@ impl Table<'_> {
     ///
     /// Implements: REP-061.
     pub fn markup(&self) -> String {
-        let kind = if self.stacks { " class=\"stack\"" } else { "" };
+        let kind = class(match self.layout {
+            Layout::Rows => "",
+            Layout::Dense => "dense",
+            Layout::Stack => "stack",
+        });
         let mut markup = format!(
             "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"{id}\">\n<table{kind}>\n\
              <caption><div id=\"{id}\">{caption}</div></caption>\n<thead><tr>",
@@ -83,7 +98,9 @@ impl Table<'_> {
             markup += &match k {
                 0 => format!("<th scope=\"row\"{kind}>{cell}</th>"),
                 // Only tables that stack show the name, and their heads are plain words.
-                _ if self.stacks => format!("<td{kind} data-name=\"{name}\">{cell}</td>"),
+                _ if self.layout == Layout::Stack => {
+                    format!("<td{kind} data-name=\"{name}\">{cell}</td>")
+                }
                 _ => format!("<td{kind}>{cell}</td>"),
             };
         }
