@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::beta_binomial::BetaBinomial;
-use super::conditions::ConditionComparison;
-use super::dispersion::Dispersion;
-use super::psychometric::Psychometric;
-use super::rates::{Clustered, Rate};
-use super::{PsychophysicsError, Table};
+use super::beta_binomial::{BetaBinomial, beta_binomial};
+use super::conditions::{ConditionComparison, comparisons};
+use super::dispersion::{Dispersion, Overdispersion, dispersion, overall_dispersion};
+use super::psychometric::{Psychometric, psychometric};
+use super::rates::{CONFIDENCE, Clustered, Rate, clustered};
+use super::{Condition, Inclusion, PsychophysicsError, Subject, Table};
 
 /// The analysis of a table of counts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -70,6 +70,61 @@ pub struct SubjectAnalysis {
 /// # Errors
 /// Never for counts that fit their trials, as a [`Table`] holds them.
 pub fn analyse(table: &Table) -> Result<Analysis, PsychophysicsError> {
-    let _ = table;
-    todo!("the methods come with the next commits")
+    let conditions = table.conditions().iter();
+    Ok(Analysis {
+        confidence: CONFIDENCE,
+        conditions: conditions
+            .map(|condition| analyse_condition(table, condition))
+            .collect::<Result<_, _>>()?,
+        comparisons: comparisons(table)?,
+    })
+}
+
+fn analyse_condition(
+    table: &Table,
+    condition: &Condition,
+) -> Result<ConditionAnalysis, PsychophysicsError> {
+    let columns = table.inclusions().iter().enumerate();
+    let inclusions = columns
+        .map(|(column, inclusion)| analyse_inclusion(inclusion, condition, column))
+        .collect::<Result<Vec<_>, _>>()?;
+    let subject = |subject: &Subject| {
+        let rate = |&correct| Rate::new(u64::from(correct), u64::from(subject.trials));
+        Ok(SubjectAnalysis {
+            name: subject.name.clone(),
+            rates: subject.correct.iter().map(rate).collect::<Result<_, _>>()?,
+        })
+    };
+    let subjects = condition.subjects.iter().map(subject);
+    let dispersion = overall_dispersion(condition, table.inclusions().len())?;
+    Ok(ConditionAnalysis {
+        name: condition.name.clone(),
+        inclusions,
+        subjects: subjects.collect::<Result<_, PsychophysicsError>>()?,
+        dispersion: dispersion.map(|(ratio, _)| ratio),
+        dispersion_degrees: dispersion.map_or(0, |(_, degrees)| degrees),
+        psychometric: psychometric(
+            table.inclusions(),
+            condition,
+            dispersion.map(Overdispersion::from),
+        )?,
+    })
+}
+
+fn analyse_inclusion(
+    inclusion: &Inclusion,
+    condition: &Condition,
+    column: usize,
+) -> Result<InclusionAnalysis, PsychophysicsError> {
+    let counts = condition.counts(column);
+    let (correct, trials) = condition.pooled(column);
+    let pooled = Rate::new(correct, trials)?;
+    Ok(InclusionAnalysis {
+        name: inclusion.name.clone(),
+        depth: inclusion.depth,
+        clustered: clustered(&counts, &pooled)?,
+        dispersion: dispersion(&counts)?,
+        beta_binomial: beta_binomial(&counts)?,
+        pooled,
+    })
 }

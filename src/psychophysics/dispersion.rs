@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::PsychophysicsError;
-use crate::stats::tails::chi_square_tail;
+use super::{Condition, PsychophysicsError};
+use crate::stats::tails::{chi_square_tail, f_tail};
 
 /// Expected counts below this make the chi-square law rough (Cochran's rule).
 const ROUGH_BELOW: f64 = 5.0;
@@ -55,4 +55,58 @@ pub fn dispersion(counts: &[(u32, u32)]) -> Result<Option<Dispersion>, Psychophy
         smallest_expected,
         is_rough: smallest_expected < ROUGH_BELOW,
     }))
+}
+
+/// χ² per degree of freedom over the first `inclusions` columns, and its degrees of freedom; `None` where
+/// no inclusion has a χ².
+///
+/// # Errors
+/// As [`dispersion`].
+///
+/// Implements: PSY-034.
+pub fn overall_dispersion(
+    condition: &Condition,
+    inclusions: usize,
+) -> Result<Option<(f64, u32)>, PsychophysicsError> {
+    let (mut chi_square, mut degrees) = (0.0, 0);
+    for column in 0..inclusions {
+        if let Some(found) = dispersion(&condition.counts(column))? {
+            chi_square += found.chi_square;
+            degrees += found.degrees;
+        }
+    }
+    Ok((degrees > 0).then(|| (chi_square / f64::from(degrees), degrees)))
+}
+
+/// How much the subjects of a condition differ: φ and its degrees of freedom.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overdispersion {
+    /// χ² per degree of freedom, at least 1.
+    pub factor: f64,
+    /// Its degrees of freedom.
+    pub degrees: f64,
+}
+
+impl Overdispersion {
+    /// The p-value of a deviance by the F law; `None` without degrees of freedom.
+    ///
+    /// Implements: PSY-043.
+    pub fn p_value(self, deviance: f64, degrees: u32) -> Result<Option<f64>, PsychophysicsError> {
+        if degrees == 0 {
+            return Ok(None);
+        }
+        let degrees = f64::from(degrees);
+        let ratio = deviance / degrees / self.factor;
+        Ok(Some(f_tail(ratio, degrees, self.degrees)?))
+    }
+}
+
+impl From<(f64, u32)> for Overdispersion {
+    fn from((ratio, degrees): (f64, u32)) -> Overdispersion {
+        Overdispersion {
+            // Answers that vary less than chance allows are no reason for narrower intervals.
+            factor: ratio.max(1.0),
+            degrees: f64::from(degrees),
+        }
+    }
 }

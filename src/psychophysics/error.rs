@@ -2,7 +2,9 @@
 
 use crate::detect::DetectError;
 use crate::force_map::InvalidForceMap;
+use crate::psychophysics::TableError;
 use crate::stats::binomial::ProportionError;
+use crate::stats::normal::NormalError;
 use crate::stats::tails::TailError;
 
 /// Why an analysis was refused.
@@ -11,6 +13,12 @@ pub enum PsychophysicsError {
     /// Counts that fit no trials.
     #[error("{0}")]
     Proportion(#[from] ProportionError),
+    /// Table 1 itself.
+    #[error("{0}")]
+    Table(#[from] TableError),
+    /// A probability outside (0, 1).
+    #[error("{0}")]
+    Normal(#[from] NormalError),
     /// A number outside the range of a law.
     #[error("{0}")]
     Tail(#[from] TailError),

@@ -11,6 +11,7 @@
 //! | `rates.rs` | shares, intervals, γ |
 //! | `dispersion.rs`, `beta_binomial.rs` | subjects who differ |
 //! | `psychometric.rs` | the share over depth |
+//! | `choice.rs`, `search.rs` | the likelihood of answers in pairs, and how its top is found |
 //! | `conditions.rs` | conditions against one another, subjects as blocks |
 //! | `noise.rs` | the noise levels of the paper's §5 |
 //! | `bridge/` | force maps against the counts |
@@ -18,6 +19,7 @@
 mod analysis;
 mod beta_binomial;
 pub mod bridge;
+mod choice;
 mod conditions;
 mod dispersion;
 mod error;
@@ -30,6 +32,7 @@ mod plan;
 mod presentation;
 mod psychometric;
 mod rates;
+mod search;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -40,7 +43,7 @@ pub use conditions::{ConditionComparison, Difference};
 pub use dispersion::Dispersion;
 pub use error::PsychophysicsError;
 pub use journal::{Journal, JournalError, Setup};
-pub use noise::{NoiseLevel, paper_noise_levels};
+pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};
 #[cfg(feature = "hid")]
 pub use observer::{IdealObserver, ObserverError};
 pub use plan::{Interval, Plan, Trial};

@@ -17,8 +17,8 @@ const KEYS: [&str; 3] = ["subject", "condition", "trials"];
 /// The headers that are right, for a person.
 const EXPECTED_HEADER: &str =
     "subject,condition,trials and a column for each inclusion, such as 2.6,4.6,6.6,8.6";
-/// Most trials of a row, which keeps the work of an analysis small.
-pub const MOST_TRIALS: u32 = 10_000;
+/// Most trials of a row, as many as an experiment may have; it keeps the work of an analysis small.
+pub const MOST_TRIALS: u32 = 1_000;
 
 /// An inclusion: a column of the table.
 #[derive(Debug, Clone, PartialEq)]

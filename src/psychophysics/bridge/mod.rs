@@ -5,11 +5,42 @@
 //! can use. Each gives a signal in newtons for each inclusion; with noise σ, γ = signal/σ and a share
 //! Φ(γ/√2) of right answers.
 
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | the answer, and how it is put together |
+//! | `signals.rs` | a convention's signal from two maps |
+//! | `common.rs` | one noise level for all subjects |
+//! | `subjects.rs` | a noise level for each |
+//! | `verdict.rs` | what the numbers say |
+
+mod common;
+mod signals;
+mod subjects;
+#[cfg(test)]
+mod tests;
+mod verdict;
+
 use serde::Serialize;
 
-use crate::force_map::ForceMap;
-use crate::psychophysics::rates::{Bounds, OpenBounds};
-use crate::psychophysics::{PsychophysicsError, Table};
+use super::choice::Count;
+use super::conditions::sign_flip;
+use super::dispersion::{Overdispersion, overall_dispersion};
+use super::noise::noise_bounds;
+use super::rates::{Bounds, OpenBounds, Rate, clustered};
+use super::{Condition, PsychophysicsError, Table};
+use crate::force_map::{ForceMap, SAME_POSITION};
+use common::{Signals, common, common_with_lapse};
+use signals::{Signal, mean, whole_sweep};
+use subjects::{Fitted, by_subject, by_subject_with_lapse};
+use verdict::verdict;
+
+/// The depth of the probe in the paper's experiments, m.
+const PROBE_DEPTH: f64 = 4e-3;
+/// The level at which a convention is rejected.
+///
+/// Implements: PSY-080.
+const LEVEL: f64 = 0.05;
 
 /// What of the sweep counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -41,6 +72,61 @@ pub enum Offset {
     Kept,
     /// Less its mean over the sweep.
     Removed,
+}
+
+/// What of the force a subject uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Convention {
+    /// What of the sweep counts.
+    pub statistic: Statistic,
+    /// Which force counts.
+    pub channel: Channel,
+    /// Whether its mean counts.
+    pub offset: Offset,
+}
+
+impl Convention {
+    /// All twelve.
+    pub fn all() -> impl Iterator<Item = Convention> {
+        let of_statistic = |statistic| {
+            [Channel::Normal, Channel::Lateral, Channel::Both]
+                .into_iter()
+                .flat_map(move |channel| {
+                    [Offset::Kept, Offset::Removed].map(|offset| Convention {
+                        statistic,
+                        channel,
+                        offset,
+                    })
+                })
+        };
+        [Statistic::Peak, Statistic::MatchedFilter]
+            .into_iter()
+            .flat_map(of_statistic)
+    }
+
+    /// Whether the uniform part of the normal force counts.
+    pub fn uses_uniform_part(self) -> bool {
+        self.channel != Channel::Lateral && self.offset == Offset::Kept
+    }
+
+    /// In words: "peak, normal force", "matched filter, both forces less their means".
+    pub fn text(self) -> String {
+        let statistic = match self.statistic {
+            Statistic::Peak => "peak",
+            Statistic::MatchedFilter => "matched filter",
+        };
+        let channel = match self.channel {
+            Channel::Normal => "normal force",
+            Channel::Lateral => "lateral force",
+            Channel::Both => "both forces",
+        };
+        let offset = match (self.offset, self.channel) {
+            (Offset::Kept, _) => "",
+            (Offset::Removed, Channel::Both) => " less their means",
+            (Offset::Removed, _) => " less its mean",
+        };
+        format!("{statistic}, {channel}{offset}")
+    }
 }
 
 /// Force maps against counts.
@@ -124,8 +210,7 @@ pub struct InclusionNoise {
     /// The noise, N; `None` if the answers set none: half or fewer right, or all right.
     #[serde(rename = "noise_n")]
     pub noise: Option<f64>,
-    /// From Clopper and Pearson's interval, N; a lower end that is missing is 0, an upper one that is
-    /// missing no bound.
+    /// From Clopper and Pearson's interval, N; an upper end that is missing is no bound.
     #[serde(rename = "pooled_bounds_n")]
     pub pooled_bounds: OpenBounds,
     /// With the subjects as the sample, N.
@@ -136,12 +221,11 @@ pub struct InclusionNoise {
 /// One convention against the counts of one condition.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConventionFit {
-    /// What of the sweep counts.
-    pub statistic: Statistic,
-    /// Which force counts.
-    pub channel: Channel,
-    /// Whether its mean counts.
-    pub offset: Offset,
+    /// What of the force is taken to count.
+    #[serde(flatten)]
+    pub convention: Convention,
+    /// The same in words.
+    pub name: String,
     /// The signal of each inclusion, N.
     #[serde(rename = "signals_n")]
     pub signals: Vec<f64>,
@@ -153,10 +237,13 @@ pub struct ConventionFit {
     pub by_subject: SubjectFit,
     /// A noise level for each subject, and one share of lapses.
     pub by_subject_with_lapse: SubjectFit,
-    /// Whether the subjects fit this convention worse than the best one of the condition: the share of all
-    /// exchanges of signs of the subjects' differences of deviance with a sum as large.
+    /// Whether the subjects fit this convention worse than the best one of the condition, each with its own
+    /// noise and one share of lapses: the share of all exchanges of signs of the subjects' differences of deviance
+    /// with a sum as far from 0. `None` beyond 20 subjects.
     pub worse_than_best_p: Option<f64>,
-    /// Whether it is rejected: the larger p-value of the two fits by subject is below the level.
+    /// The larger p-value of the two fits by subject.
+    pub p_value: f64,
+    /// Whether that is below the level.
     pub is_rejected: bool,
 }
 
@@ -257,16 +344,261 @@ pub enum Support {
     None,
 }
 
+/// The counts of one condition at the inclusions that have a map.
+#[derive(Debug, Clone, PartialEq)]
+struct Observations {
+    /// All subjects together.
+    pooled: Vec<Count>,
+    /// Each subject.
+    subjects: Vec<Vec<Count>>,
+    /// How much the subjects differ.
+    dispersion: Option<Overdispersion>,
+}
+
+impl Observations {
+    fn new(condition: &Condition, columns: &[usize]) -> Result<Observations, PsychophysicsError> {
+        let pooled = |&column: &usize| {
+            let (correct, trials) = condition.pooled(column);
+            Count::new(correct as f64, trials as f64)
+        };
+        let inclusions = condition.subjects.first().map_or(0, |s| s.correct.len());
+        Ok(Observations {
+            pooled: columns.iter().map(pooled).collect(),
+            subjects: condition
+                .subjects
+                .iter()
+                .map(|subject| {
+                    let count = |&column: &usize| {
+                        Count::new(
+                            f64::from(subject.correct[column]),
+                            f64::from(subject.trials),
+                        )
+                    };
+                    columns.iter().map(count).collect()
+                })
+                .collect(),
+            dispersion: overall_dispersion(condition, inclusions)?.map(Overdispersion::from),
+        })
+    }
+
+    /// Twice the log-likelihood that a share of its own for each inclusion gains.
+    fn deviance(&self, log_likelihood: f64) -> f64 {
+        let saturated: f64 = self.pooled.iter().map(|count| count.saturated()).sum();
+        2.0 * (saturated - log_likelihood).max(0.0)
+    }
+
+    /// Twice the log-likelihood that a share of its own for each subject and inclusion gains.
+    fn deviance_of_subjects(&self, log_likelihood: f64) -> f64 {
+        let counts = self.subjects.iter().flatten();
+        let saturated: f64 = counts.map(|count| count.saturated()).sum();
+        2.0 * (saturated - log_likelihood).max(0.0)
+    }
+}
+
 /// Maps of some inclusions of `table`, each with the name of its column, against its counts.
 ///
 /// # Errors
 /// [`PsychophysicsError`] for a name that is no column or comes twice, fewer than two maps, and a map over
 /// other poses than the reference.
+///
+/// Implements: PSY-070, PSY-071, PSY-072, PSY-079.
 pub fn bridge(
     table: &Table,
     reference: &ForceMap,
     inclusions: &[(&str, &ForceMap)],
 ) -> Result<Bridge, PsychophysicsError> {
-    let _ = (table, reference, inclusions);
-    todo!("comes with the next commits")
+    let columns = columns(table, inclusions)?;
+    let map_error = |name: &str| {
+        let name = name.to_string();
+        move |source| PsychophysicsError::Map { name, source }
+    };
+    let whole_reference = whole_sweep(reference).map_err(map_error("reference"))?;
+    let (probe_depth, probe_depth_note) = probe_depth(reference.depths());
+    let mut signals = Vec::new();
+    for &(column, map) in &columns {
+        let name = &table.inclusions()[column].name;
+        let signal = whole_sweep(map)
+            .and_then(|map| Signal::new(&whole_reference, &map, probe_depth))
+            .map_err(map_error(name))?;
+        signals.push((name.as_str(), signal));
+    }
+    let columns: Vec<usize> = columns.iter().map(|&(column, _)| column).collect();
+    let conditions = table.conditions().iter();
+    let laterals = whole_reference.laterals();
+    Ok(Bridge {
+        probe_depth,
+        probe_depth_note,
+        positions: laterals.len(),
+        from: laterals[0],
+        to: laterals[laterals.len() - 1],
+        level: LEVEL,
+        inclusions: signals
+            .iter()
+            .map(|(name, s)| of_inclusion(name, s))
+            .collect(),
+        conditions: conditions
+            .map(|condition| of_condition(condition, &columns, &signals))
+            .collect::<Result<_, _>>()?,
+    })
+}
+
+/// Each map with the column that it belongs to, in the order of the table.
+fn columns<'a>(
+    table: &Table,
+    inclusions: &[(&str, &'a ForceMap)],
+) -> Result<Vec<(usize, &'a ForceMap)>, PsychophysicsError> {
+    let known = table.inclusions();
+    let mut columns: Vec<(usize, &ForceMap)> = Vec::new();
+    for &(name, map) in inclusions {
+        let column = known.iter().position(|inclusion| inclusion.name == name);
+        let column = column.ok_or_else(|| PsychophysicsError::NoSuchInclusion {
+            name: name.into(),
+            expected: known
+                .iter()
+                .map(|i| i.name.as_str())
+                .collect::<Vec<_>>()
+                .join(", "),
+        })?;
+        if columns.iter().any(|&(other, _)| other == column) {
+            return Err(PsychophysicsError::Repeated { name: name.into() });
+        }
+        columns.push((column, map));
+    }
+    if columns.len() < 2 {
+        return Err(PsychophysicsError::TooFewMaps {
+            found: columns.len(),
+        });
+    }
+    columns.sort_by_key(|&(column, _)| column);
+    Ok(columns)
+}
+
+/// The paper's depth if the maps hold it, or else the deepest with a note.
+fn probe_depth(depths: &[f64]) -> (f64, Option<String>) {
+    let paper = |depth: &f64| (depth - PROBE_DEPTH).abs() <= SAME_POSITION;
+    if let Some(&depth) = depths.iter().find(|depth| paper(depth)) {
+        return (depth, None);
+    }
+    let deepest = depths.iter().copied().fold(0.0, f64::max);
+    let note = format!(
+        "the maps hold no depth of 4 mm, which the subjects could reach: forces are taken at their deepest, {} mm",
+        deepest * 1e3
+    );
+    (deepest, Some(note))
+}
+
+fn of_inclusion(name: &str, signal: &Signal) -> BridgeInclusion {
+    let normal = signal.peak(&signal.normal);
+    let lateral = signal.peak(&signal.lateral);
+    BridgeInclusion {
+        name: name.into(),
+        peak_normal: normal.force,
+        peak_normal_at: normal.at,
+        mean_normal: mean(&signal.normal),
+        peak_lateral: lateral.force,
+        peak_lateral_at: lateral.at,
+    }
+}
+
+fn of_condition(
+    condition: &Condition,
+    columns: &[usize],
+    signals: &[(&str, Signal)],
+) -> Result<ConditionBridge, PsychophysicsError> {
+    let observations = Observations::new(condition, columns)?;
+    let (mut observed, mut noise_by_inclusion) = (Vec::new(), Vec::new());
+    for (&column, (_, signal)) in columns.iter().zip(signals) {
+        let (correct, trials) = condition.pooled(column);
+        let pooled = Rate::new(correct, trials)?;
+        let clustered = clustered(&condition.counts(column), &pooled)?;
+        let peak = signal.peak(&signal.normal).force.abs();
+        let (noise, pooled_bounds) = noise_bounds(peak, pooled.gamma);
+        noise_by_inclusion.push(InclusionNoise {
+            signal: peak,
+            noise,
+            pooled_bounds,
+            clustered_bounds: clustered.map(|found| noise_bounds(peak, found.gamma).1),
+        });
+        observed.push(ObservedRate {
+            rate: pooled.rate,
+            pooled_bounds: pooled.clopper_pearson,
+            clustered_bounds: clustered.map(|found| found.bounds),
+        });
+    }
+    let conventions = fits(signals, &observations)?;
+    Ok(ConditionBridge {
+        name: condition.name.clone(),
+        observed,
+        noise_by_inclusion,
+        verdict: verdict(&conventions),
+        conventions,
+    })
+}
+
+/// Every convention with a signal, against the counts.
+fn fits(
+    signals: &[(&str, Signal)],
+    observed: &Observations,
+) -> Result<Vec<ConventionFit>, PsychophysicsError> {
+    let mut fits: Vec<(ConventionFit, Vec<f64>)> = Vec::new();
+    for convention in Convention::all() {
+        let strengths = signals
+            .iter()
+            .map(|(_, signal)| signal.strength(convention));
+        let strengths: Vec<f64> = strengths.collect();
+        if strengths.iter().all(|&strength| strength == 0.0) {
+            continue;
+        }
+        let same = fits.iter().find(|(fit, _)| fit.signals == strengths);
+        let fit = match same {
+            // As with the mean of a lateral force, which is 0: nothing to compute again.
+            Some((fit, deviances)) => {
+                let (convention, name) = (convention, convention.text());
+                let fit = ConventionFit {
+                    convention,
+                    name,
+                    ..fit.clone()
+                };
+                (fit, deviances.clone())
+            }
+            None => fit(convention, strengths, observed)?,
+        };
+        fits.push(fit);
+    }
+    let total = |deviances: &Vec<f64>| deviances.iter().sum::<f64>();
+    let best = fits
+        .iter()
+        .map(|(_, deviances)| deviances.clone())
+        .min_by(|a, b| total(a).total_cmp(&total(b)))
+        .unwrap_or_default();
+    let compared = |(mut fit, deviances): (ConventionFit, Vec<f64>)| {
+        let differences = deviances.iter().zip(&best).map(|(one, other)| one - other);
+        fit.worse_than_best_p = sign_flip(&differences.collect::<Vec<_>>());
+        fit
+    };
+    Ok(fits.into_iter().map(compared).collect())
+}
+
+fn fit(
+    convention: Convention,
+    strengths: Vec<f64>,
+    observed: &Observations,
+) -> Result<(ConventionFit, Vec<f64>), PsychophysicsError> {
+    let signals = Signals(strengths);
+    let Fitted { fit: alone, .. } = by_subject(&signals, observed)?;
+    let Fitted { fit, deviances } = by_subject_with_lapse(&signals, observed)?;
+    let p_value = alone.p_value.max(fit.p_value);
+    let fit = ConventionFit {
+        convention,
+        name: convention.text(),
+        common: common(&signals, observed)?,
+        common_with_lapse: common_with_lapse(&signals, observed)?,
+        signals: signals.0,
+        by_subject: alone,
+        by_subject_with_lapse: fit,
+        worse_than_best_p: None,
+        p_value,
+        is_rejected: p_value < LEVEL,
+    };
+    Ok((fit, deviances))
 }
