@@ -3,13 +3,16 @@
 use serde::Serialize;
 
 use super::findings::{MapFindings, detect_error};
-use super::text::{fixed, millimetres, percent};
+use super::text::{fixed, millimetres, p_value, percent};
 use super::{ReportError, paper};
 use crate::detect::{gamma_from_two_afc, required_gamma};
 use crate::psychophysics::bridge::{
-    Bridge, BridgeInclusion, Channel, ConventionFit, ObservedRate, Offset, Statistic,
+    Bridge, BridgeInclusion, Channel, ConditionBridge, Convention, ConventionFit, ObservedRate,
+    Offset, Statistic,
 };
-use crate::psychophysics::{Analysis, Bounds, ConditionAnalysis, OpenBounds};
+use crate::psychophysics::{
+    Analysis, Bounds, ConditionAnalysis, NoiseDecomposition, NoiseLevel, OpenBounds,
+};
 
 /// A number with its unit: in JSON `{"force_n": 1.6}`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -64,7 +67,7 @@ fn paper_maps(maps: &[MapFindings]) -> impl Iterator<Item = (&'static str, &MapF
 /// The inclusion for which the paper prints signal, rate and noise.
 const PRINTED: &str = "6.6";
 
-/// All rows whose phantom the study holds. `people` are the answers of Table 1, `bridge` sets them against the signals. `level` is the normal force at x = 0 without inclusion, and `maps`
+/// All rows whose phantom the study holds. `people` are the answers of Table 1, `noise` the levels of §5, `bridge` sets them against the signals. `level` is the normal force at x = 0 without inclusion, and `maps`
 /// is empty, unless they belong to the paper's phantoms at the paper's depth.
 ///
 /// # Errors
@@ -75,6 +78,7 @@ pub fn table(
     level: Option<f64>,
     maps: &[MapFindings],
     people: &Analysis,
+    noise: &NoiseDecomposition,
     bridge: Option<&Bridge>,
 ) -> Result<Vec<Comparison>, ReportError> {
     let mut rows = Vec::new();
@@ -82,7 +86,7 @@ pub fn table(
     rows.extend(typical_signal(maps));
     rows.extend(peak_signal(maps));
     rows.extend(display_requirement()?);
-    rows.extend(noise_sources());
+    rows.extend(noise_sources(&noise.levels));
     let playback = people.conditions.get(paper::FEM_PLAYBACK);
     rows.extend(gamma_of_accuracy(playback)?);
     if let Some(bridge) = bridge {
@@ -201,29 +205,26 @@ fn display_requirement() -> Result<[Comparison; 3], ReportError> {
     ])
 }
 
-/// The two sums of Table 2's sources in §5.
-fn noise_sources() -> [Comparison; 2] {
-    let total = |sources: &[f64]| libm::sqrt(sources.iter().map(|s| s * s).sum());
-    [
-        row(
+/// The two sums of Table 2's sources that §5 prints.
+fn noise_sources(levels: &[NoiseLevel]) -> impl Iterator<Item = Comparison> {
+    let printed = [
+        (
             "Noise of the playback of FEM data, from Table 2",
-            "§5",
             ("170 mN", Value::ForceN(paper::PLAYBACK_NOISE)),
-            Value::ForceN(total(&[
-                paper::QUANTIZATION,
-                paper::BACKDRIVE_FRICTION,
-                paper::HUMAN_PERCEPTION,
-            ])),
             "Quantization, backdrive friction and human perception, added as variances; the paper rounds.",
         ),
-        row(
+        (
             "Noise of direct contact, from Table 2",
-            "§5",
             ("220 mN", Value::ForceN(paper::DIRECT_CONTACT_NOISE)),
-            Value::ForceN(total(&[paper::UNMODELLED_CONTACT, paper::HUMAN_PERCEPTION])),
             "Unmodelled contact forces and human perception, added as variances; the paper rounds.",
         ),
-    ]
+    ];
+    printed.into_iter().filter_map(|(quantity, paper, why)| {
+        let level = levels
+            .iter()
+            .find(|level| level.printed.map(Value::ForceN) == Some(paper.1))?;
+        Some(row(quantity, "§5", paper, Value::ForceN(level.noise), why))
+    })
 }
 
 fn gamma_of_accuracy(
@@ -256,11 +257,36 @@ fn gamma_of_accuracy(
     )))
 }
 
+/// FEM playback with the paper's own convention: the peak of the normal force.
+fn of_paper(bridge: &Bridge) -> Option<(&ConditionBridge, &ConventionFit)> {
+    let condition = bridge.conditions.get(paper::FEM_PLAYBACK)?;
+    let convention = Convention {
+        statistic: Statistic::Peak,
+        channel: Channel::Normal,
+        offset: Offset::Kept,
+    };
+    let mut fits = condition.conventions.iter();
+    Some((condition, fits.find(|fit| fit.convention == convention)?))
+}
+
+/// What the counts of all depths say of the paper's convention.
+fn judged(fit: &ConventionFit) -> String {
+    let verdict = if fit.is_rejected {
+        "reject"
+    } else {
+        "do not reject"
+    };
+    format!(
+        " The answers to all depths {verdict} the peak of the normal force as what the subjects felt (p = {}).",
+        p_value(fit.p_value)
+    )
+}
+
 /// The noise that explains the answers to FEM playback at 6.6 mm.
 ///
 /// Implements: REP-072.
 fn subjects_noise(bridge: &Bridge) -> Option<Comparison> {
-    let condition = bridge.conditions.get(paper::FEM_PLAYBACK)?;
+    let (condition, fit) = of_paper(bridge)?;
     let index = bridge.inclusions.iter().position(|of| of.name == PRINTED)?;
     let of_inclusion = condition.noise_by_inclusion.get(index)?;
     let noise = of_inclusion.noise?;
@@ -282,9 +308,10 @@ fn subjects_noise(bridge: &Bridge) -> Option<Comparison> {
         Value::ForceN(noise),
         format!(
             "Ours is {} N over {}, with our own peak and the γ of the answers counted in Table 1. The paper's peak over the true γ \
-             of 84 % would be 242 mN.{range}",
+             of 84 % would be 242 mN.{range}{}",
             fixed(of_inclusion.signal, 3),
-            fixed(of_inclusion.signal / noise, 3)
+            fixed(of_inclusion.signal / noise, 3),
+            judged(fit)
         ),
     ))
 }
@@ -293,18 +320,10 @@ fn subjects_noise(bridge: &Bridge) -> Option<Comparison> {
 ///
 /// Implements: REP-073.
 fn playback_rates(bridge: &Bridge) -> Vec<Comparison> {
-    let Some(condition) = bridge.conditions.get(paper::FEM_PLAYBACK) else {
+    let Some((condition, fit)) = of_paper(bridge) else {
         return Vec::new();
     };
-    let of_paper = |fit: &&ConventionFit| {
-        (fit.statistic, fit.channel, fit.offset) == (Statistic::Peak, Channel::Normal, Offset::Kept)
-    };
-    let common = condition
-        .conventions
-        .iter()
-        .find(of_paper)
-        .and_then(|fit| fit.common.as_ref());
-    let Some(common) = common else {
+    let Some(common) = &fit.common else {
         return Vec::new();
     };
     let each = bridge

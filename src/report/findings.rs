@@ -13,7 +13,7 @@ use crate::detect::{
 };
 use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};
 use crate::psychophysics::bridge::Bridge;
-use crate::psychophysics::{Analysis, NoiseLevel};
+use crate::psychophysics::{Analysis, NoiseDecomposition};
 
 /// What a study found, in plain numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -34,7 +34,7 @@ pub struct Findings {
     /// What Table 1 says by itself.
     pub people: Analysis,
     /// The paper's noise levels beside ours.
-    pub noise_levels: Vec<NoiseLevel>,
+    pub noise: NoiseDecomposition,
     /// Table 1 against the signals of the paper's phantoms; only with two of them or more at 4 mm.
     pub bridge: Option<Bridge>,
     /// Each number that the paper prints beside ours.
@@ -149,7 +149,7 @@ pub fn findings(study: &Study) -> Result<Findings, ReportError> {
     let compared: &[MapFindings] = if comparable { &maps } else { &[] };
     let Subjects {
         people,
-        noise_levels,
+        noise,
         bridge,
     } = subjects(study, compared)?;
     let level = reference.normal_force_at_centre.filter(|_| comparable);
@@ -163,11 +163,11 @@ pub fn findings(study: &Study) -> Result<Findings, ReportError> {
         }),
         samples: study.reference.laterals().len(),
         required_gamma,
-        comparison: comparison::table(level, compared, &people, bridge.as_ref())?,
+        comparison: comparison::table(level, compared, &people, &noise, bridge.as_ref())?,
         reference,
         maps,
         people,
-        noise_levels,
+        noise,
         bridge,
     })
 }

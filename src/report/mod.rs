@@ -33,7 +33,7 @@ pub use findings::{
     Findings, GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold, findings,
 };
 pub use html::html;
-pub use people::{convention_name, normal_approximation};
+pub use people::normal_approximation;
 pub use quality::{Quality, SMALL_STRAIN_LIMIT};
 pub use summary::{SUMMARY_SCHEMA, SUMMARY_SCHEMA_VERSION, summary_json};
 pub use text::FileNames;
@@ -138,7 +138,7 @@ pub struct Figure {
 
 /// Why there is no report.
 ///
-/// Implements: REP-004.
+/// Implements: REP-004, REP-006.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReportError {
     /// A map does not fit the reference.

@@ -2,9 +2,9 @@
 
 use super::findings::MapFindings;
 use super::{ReportError, Study, paper};
-use crate::psychophysics::bridge::{Bridge, Channel, ConventionFit, Offset, Statistic, bridge};
+use crate::psychophysics::bridge::{Bridge, bridge};
 use crate::psychophysics::{
-    Analysis, Bounds, NoiseLevel, PsychophysicsError, Table, analyse, paper_noise_levels,
+    Analysis, Bounds, NoiseDecomposition, PsychophysicsError, Table, analyse, paper_noise_levels,
 };
 use crate::stats::normal;
 
@@ -13,7 +13,7 @@ pub struct Subjects {
     /// What Table 1 says by itself.
     pub people: Analysis,
     /// The paper's noise levels beside ours.
-    pub noise_levels: Vec<NoiseLevel>,
+    pub noise: NoiseDecomposition,
     /// Table 1 against the signals.
     pub bridge: Option<Bridge>,
 }
@@ -41,7 +41,7 @@ pub fn subjects(study: &Study, compared: &[MapFindings]) -> Result<Subjects, Rep
     };
     Ok(Subjects {
         people: analyse(&table).map_err(refused)?,
-        noise_levels: paper_noise_levels().map_err(refused)?,
+        noise: paper_noise_levels().map_err(refused)?,
         bridge,
     })
 }
@@ -58,22 +58,4 @@ pub fn normal_approximation(share: f64, trials: u64) -> Bounds {
         lower: (share - reach).max(0.0),
         upper: (share + reach).min(1.0),
     }
-}
-
-/// A convention in words, such as "peak normal, with its mean".
-pub fn convention_name(fit: &ConventionFit) -> String {
-    let statistic = match fit.statistic {
-        Statistic::Peak => "peak",
-        Statistic::MatchedFilter => "sweep",
-    };
-    let channel = match fit.channel {
-        Channel::Normal => "normal",
-        Channel::Lateral => "lateral",
-        Channel::Both => "both",
-    };
-    let offset = match fit.offset {
-        Offset::Kept => "with its mean",
-        Offset::Removed => "without its mean",
-    };
-    format!("{statistic} {channel}, {offset}")
 }

@@ -4,9 +4,11 @@ use super::chart::{Line, chart};
 use super::people::{DEPTH, SHARE, bar, points, share_panel};
 use super::style::{INK, PALETTE};
 use super::{Draft, Words};
-use crate::psychophysics::bridge::{Bridge, ConditionBridge, ConventionFit, Offset};
+use crate::psychophysics::bridge::{
+    Bridge, Channel, ConditionBridge, ConventionFit, Offset, Statistic,
+};
 use crate::report::text::millimetres;
-use crate::report::{Findings, Topic, convention_name, paper};
+use crate::report::{Findings, Topic, paper};
 
 /// The figure, if the study holds the maps for it.
 ///
@@ -70,7 +72,7 @@ fn lines(condition: &ConditionBridge, depths: &[f64], offset: Offset) -> Vec<Lin
     let fits = condition
         .conventions
         .iter()
-        .filter(|fit| fit.offset == offset);
+        .filter(|fit| fit.convention.offset == offset);
     let mut lines: Vec<_> = fits
         .zip(PALETTE)
         .map(|(fit, colour)| Line {
@@ -89,11 +91,18 @@ fn lines(condition: &ConditionBridge, depths: &[f64], offset: Offset) -> Vec<Lin
     lines
 }
 
-/// The name without what the heading of the panel says.
+/// What the heading of the panel does not say: "peak, normal".
 fn short_name(fit: &ConventionFit) -> String {
-    let name = convention_name(fit);
-    name.split_once(", ")
-        .map_or(name.clone(), |(first, _)| first.into())
+    let statistic = match fit.convention.statistic {
+        Statistic::Peak => "peak",
+        Statistic::MatchedFilter => "filter",
+    };
+    let channel = match fit.convention.channel {
+        Channel::Normal => "normal",
+        Channel::Lateral => "lateral",
+        Channel::Both => "both",
+    };
+    format!("{statistic}, {channel}")
 }
 
 fn words(bridge: &Bridge, condition: &ConditionBridge) -> Words {
@@ -103,7 +112,7 @@ fn words(bridge: &Bridge, condition: &ConditionBridge) -> Words {
             "The paper has no such figure: it computed forces and counted answers, but could not predict the one from the \
              other. Each line takes one part of the force at probe depth {} mm as what the subjects used, with a noise level \
              for each of them (and one share of lapses, where that fits better); the dots are the answers of Table 1. \
-             Rejected lines are dashed. The table below has the numbers, for the other experiments too.",
+             Rejected lines are dashed; where lines lie on one another, the answers cannot tell them apart. The table below has the numbers, for the other experiments too.",
             millimetres(bridge.probe_depth)
         ),
         alt: format!(

@@ -1,15 +1,13 @@
 //! The forces against the answers: which part of the force explains what the subjects felt.
 
 use super::Page;
-use super::people::p_value;
 use super::table::{Group, Layout, Table};
 use crate::psychophysics::bridge::{Bridge, ConditionBridge, ConventionFit};
-use crate::report::convention_name;
-use crate::report::text::{escape, fixed, prose, trimmed};
+use crate::report::text::{escape, fixed, p_value, prose, trimmed};
 
 /// The verdict for each experiment, and every convention with its fit.
 ///
-/// Implements: REP-062, REP-074.
+/// Implements: REP-062.
 pub fn bridge(page: &Page<'_>) -> String {
     let Some(bridge) = &page.findings.bridge else {
         return "<p class=\"note\">The forces are not set against the answers: that takes two or more of the paper's \
@@ -18,7 +16,7 @@ pub fn bridge(page: &Page<'_>) -> String {
     };
     let verdict = |condition: &ConditionBridge| {
         format!(
-            "<p><strong>{}.</strong> {}</p>\n",
+            "<p><strong class=\"name\">{}.</strong> {}</p>\n",
             escape(&condition.name),
             prose(&condition.verdict.text)
         )
@@ -34,11 +32,20 @@ pub fn bridge(page: &Page<'_>) -> String {
     )
 }
 
-/// The better of the fits by subject, on which the verdict rests.
-fn fit_p(fit: &ConventionFit) -> f64 {
-    fit.by_subject
-        .p_value
-        .max(fit.by_subject_with_lapse.p_value)
+/// Noise and p-value of one convention in one experiment.
+fn fit_cell(fit: &ConventionFit) -> String {
+    let noise = fit
+        .common
+        .as_ref()
+        .map_or("no noise level".into(), |common| {
+            format!("{}\u{a0}N", fixed(common.noise, 3))
+        });
+    let tag = if fit.is_rejected {
+        "<span class=\"tag\">rejected</span> "
+    } else {
+        ""
+    };
+    format!("{noise}<br>{tag}p\u{a0}=\u{a0}{}", p_value(fit.p_value))
 }
 
 fn conventions(bridge: &Bridge) -> String {
@@ -50,40 +57,13 @@ fn conventions(bridge: &Bridge) -> String {
         .iter()
         .map(|of| escape(&of.name))
         .collect();
-    let mut head = vec![
-        ("Convention".to_string(), ""),
-        ("Signals (N)".into(), "number"),
-    ];
-    for name in &names {
-        head.push((format!("{name}: noise (N)"), "number"));
-        head.push((format!("{name}: p"), "number"));
-    }
-    let head: Vec<_> = head
-        .iter()
-        .map(|(name, kind)| (name.as_str(), *kind))
-        .collect();
+    let mut head = vec![("Convention", "quantity"), ("Signals (N)", "number")];
+    head.extend(names.iter().map(|name| (name.as_str(), "number group")));
     let row = |(k, fit): (usize, &ConventionFit)| {
-        let signals: Vec<_> = fit
-            .signals
-            .iter()
-            .map(|signal| trimmed(*signal, 3))
-            .collect();
-        let mut row = vec![convention_name(fit), signals.join(", ")];
-        for condition in &bridge.conditions {
-            let Some(fit) = condition.conventions.get(k) else {
-                continue;
-            };
-            row.push(
-                fit.common
-                    .as_ref()
-                    .map_or("–".into(), |common| fixed(common.noise, 3)),
-            );
-            let p = p_value(fit_p(fit));
-            row.push(match fit.is_rejected {
-                true => format!("{p} <span class=\"tag\">rejected</span>"),
-                false => p,
-            });
-        }
+        let signals = fit.signals.iter().map(|signal| fixed(*signal, 3));
+        let mut row = vec![escape(&fit.name), signals.collect::<Vec<_>>().join(", ")];
+        let of_condition = |condition: &ConditionBridge| condition.conventions.get(k).map(fit_cell);
+        row.extend(bridge.conditions.iter().filter_map(of_condition));
         row
     };
     let inclusions: Vec<_> = bridge
@@ -92,8 +72,8 @@ fn conventions(bridge: &Bridge) -> String {
         .map(|of| escape(&of.name))
         .collect();
     let caption = format!(
-        "What of the force is felt, against Table 1. Signals at {} mm. Noise: one level for all subjects that makes \
-         the counts most likely. p: how likely answers at least as far from the fit are, if the fit is true and each \
+        "What of the force is felt, against Table 1. Signals of the inclusions at {} mm. In each experiment: the one \
+         noise level for all subjects that makes the counts most likely, and p, how likely answers at least as far from the fit are, if the fit is true and each \
          subject has a noise level (and all one share of lapses, if that fits better); below {} the convention is rejected.",
         inclusions.join(", "),
         trimmed(bridge.level, 4)

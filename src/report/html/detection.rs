@@ -27,7 +27,7 @@ fn threshold_table(study: &Study, findings: &Findings) -> String {
         row.extend(cells(Some(map.map_rule)));
         row.extend(cells(Some(map.bounded_miss)));
         row.extend(cells(map.bounded_false_alarm));
-        row.extend([percent(map.auc), percent(map.two_afc)]);
+        row.extend([map.auc, map.two_afc].map(|share| escape(&percent(share))));
         row
     };
     let rows: Vec<_> = findings.maps.iter().map(row).collect();
@@ -73,6 +73,6 @@ fn rate(probability: f64) -> String {
     if probability > 0.0 && probability < 1e-3 {
         scientific(probability)
     } else {
-        percent(probability)
+        escape(&percent(probability))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Page;
 use super::table::{Group, Layout, Table};
-use crate::psychophysics::{NoiseLevel, OpenBounds};
+use crate::psychophysics::{NoiseDecomposition, NoiseLevel, OpenBounds};
 use crate::report::paper;
 use crate::report::text::{escape, percent, prose, trimmed};
 
@@ -29,7 +29,7 @@ pub fn noise(page: &Page<'_>) -> String {
         let mut row = vec![escape(name), millinewtons(*level)];
         row.extend(CHAINS.iter().zip(totals).map(
             |((_, sources), total)| match sources.contains(&k) {
-                true => percent(variance(k) / total),
+                true => escape(&percent(variance(k) / total)),
                 false => "–".into(),
             },
         ));
@@ -59,7 +59,7 @@ pub fn noise(page: &Page<'_>) -> String {
         ],
     });
     let head = [
-        ("Source", ""),
+        ("Source", "quantity"),
         ("Noise level (mN)", "number"),
         (CHAINS[0].0, "number"),
         (CHAINS[1].0, "number"),
@@ -80,15 +80,12 @@ pub fn noise(page: &Page<'_>) -> String {
          of the display's force (§4), which Table 2 leaves out.</p>\n{}{}",
         millinewtons(paper::DISPLAY_ERROR),
         table.markup(),
-        levels(&page.findings.noise_levels)
+        levels(&page.findings.noise)
     )
 }
 
 /// The noise levels of §5 with intervals.
-fn levels(levels: &[NoiseLevel]) -> String {
-    if levels.is_empty() {
-        return String::new();
-    }
+fn levels(noise: &NoiseDecomposition) -> String {
     let end = |end: Option<f64>| end.map_or("no bound".into(), millinewtons);
     let bounds = |bounds: Option<OpenBounds>| {
         bounds.map_or("–".into(), |OpenBounds { lower, upper }| {
@@ -102,7 +99,7 @@ fn levels(levels: &[NoiseLevel]) -> String {
             millinewtons(level.noise),
             bounds(level.pooled_bounds),
             bounds(level.clustered_bounds),
-            prose(&format!("{} {}", level.formula, level.assumption)),
+            prose(&format!("{}; {}.", level.formula, level.assumption)),
         ]
     };
     let head = [
@@ -118,7 +115,7 @@ fn levels(levels: &[NoiseLevel]) -> String {
         caption: "The noise levels of the paper's §5 from its own numbers, with intervals where they rest on counted answers.",
         layout: Layout::Stack,
         head: &head,
-        groups: Group::plain(levels.iter().map(row).collect()),
+        groups: Group::plain(noise.levels.iter().map(row).collect()),
     };
-    table.markup()
+    format!("{}<p>{}</p>\n", table.markup(), prose(&noise.agreement))
 }

@@ -2,6 +2,7 @@
 
 use super::detection::limit;
 use super::{CONTENTS, Page};
+use crate::psychophysics::bridge::{Bridge, Support};
 use crate::report::text::{escape, fixed, millimetres, percent, prose, trimmed};
 use crate::report::{Topic, Value, paper};
 
@@ -66,8 +67,33 @@ fn found(page: &Page<'_>) -> String {
     };
     format!(
         "<p>What the paper did is done again: the force on a probe that sweeps over a gel is computed by 2D finite \
-         elements, and what a hard inclusion adds to it is given to the paper's detector. {}</p>\n",
-        prose(&ideal)
+         elements, and what a hard inclusion adds to it is given to the paper's detector. {}{}</p>\n",
+        prose(&ideal),
+        findings.bridge.as_ref().map_or(String::new(), felt)
+    )
+}
+
+/// What the subjects' answers to FEM playback say of the force that they used.
+fn felt(bridge: &Bridge) -> String {
+    let Some(condition) = bridge.conditions.get(paper::FEM_PLAYBACK) else {
+        return String::new();
+    };
+    let verdict = match condition.verdict.support {
+        Support::ChangeAlongSweep => {
+            "fit subjects who feel how the force changes along the sweep, and reject those who would feel the level of the \
+             normal force, whose peak the paper's noise estimate rests on"
+        }
+        Support::UniformPart => {
+            "fit subjects who feel the level of the normal force, and no others"
+        }
+        Support::Undecided => {
+            "do not tell whether subjects feel the level of the normal force or its change along the sweep"
+        }
+        Support::None => "fit none of the parts of the force that were tried",
+    };
+    format!(
+        " Set against these forces, the answers of the paper's ten subjects to FEM playback {verdict} \
+         (<a href=\"#people\">People</a>)."
     )
 }
 

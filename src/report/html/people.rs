@@ -3,7 +3,7 @@
 use super::table::{Group, Layout, Table};
 use super::{Page, bridge};
 use crate::psychophysics::{Bounds, ConditionAnalysis, ConditionComparison, InclusionAnalysis};
-use crate::report::text::{escape, fixed, millimetres, percent, scientific};
+use crate::report::text::{escape, fixed, millimetres, p_value, percent};
 use crate::report::{Topic, paper};
 
 /// Table 1, the figures made from it, and the forces against it.
@@ -29,14 +29,6 @@ pub fn interval(Bounds { lower, upper }: Bounds) -> String {
         fixed(100.0 * lower, 1),
         fixed(100.0 * upper, 1)
     )
-}
-
-/// A p-value: small ones by their power of ten.
-pub fn p_value(p: f64) -> String {
-    match p {
-        p if p > 0.0 && p < 1e-3 => scientific(p),
-        p => fixed(p, 3),
-    }
 }
 
 fn table_1(conditions: &[ConditionAnalysis]) -> String {
@@ -79,7 +71,7 @@ fn group(condition: &ConditionAnalysis, printed: [f64; 4]) -> Group {
         row
     };
     let subject = |subject: &crate::psychophysics::SubjectAnalysis| {
-        let mut row = vec![format!("subject {}", escape(&subject.name))];
+        let mut row = vec![escape(&subject.name)];
         row.extend(subject.rates.iter().map(|rate| rate.correct.to_string()));
         row
     };
@@ -88,10 +80,10 @@ fn group(condition: &ConditionAnalysis, printed: [f64; 4]) -> Group {
     rows.push(row("mean", &|of| {
         fixed(of.pooled.correct as f64 / subjects, 1)
     }));
-    let mut of_paper = vec!["mean that the paper prints".to_string()];
+    let mut of_paper = vec!["mean, as printed".to_string()];
     of_paper.extend(printed.map(|mean| fixed(mean, 1)));
     rows.push(of_paper);
-    rows.push(row("share", &|of| percent(of.pooled.rate)));
+    rows.push(row("share", &|of| escape(&percent(of.pooled.rate))));
     rows.push(row("95 %, exact", &|of| {
         interval(of.pooled.clopper_pearson)
     }));
