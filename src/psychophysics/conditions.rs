@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::rates::{Bounds, CONFIDENCE};
-use super::{Condition, PsychophysicsError, Table};
+use super::{Condition, Inclusion, PsychophysicsError, Table};
 use crate::stats::tails::student_quantile;
 
 /// Most subjects whose exchanges of signs are all tried: a million.
@@ -25,7 +25,17 @@ pub struct ConditionComparison {
     /// The p-value of `overall` after Holm's correction for the number of comparisons.
     pub p_value_holm: Option<f64>,
     /// Each inclusion alone, without correction.
-    pub by_inclusion: Vec<Difference>,
+    pub by_inclusion: Vec<InclusionDifference>,
+}
+
+/// The difference at one inclusion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InclusionDifference {
+    /// The inclusion: untrusted text.
+    pub inclusion: String,
+    /// The difference.
+    #[serde(flatten)]
+    pub difference: Difference,
 }
 
 /// The rate of the first condition less that of the second, mean over subjects.
@@ -51,7 +61,7 @@ pub fn comparisons(table: &Table) -> Result<Vec<ConditionComparison>, Psychophys
     let mut found = Vec::new();
     for (at, first) in conditions.iter().enumerate() {
         for second in &conditions[at + 1..] {
-            found.extend(compare(first, second)?);
+            found.extend(compare(table.inclusions(), first, second)?);
         }
     }
     let p_values: Vec<Option<f64>> = found.iter().map(|found| found.overall.p_value).collect();
@@ -63,6 +73,7 @@ pub fn comparisons(table: &Table) -> Result<Vec<ConditionComparison>, Psychophys
 
 /// `None` without a subject in both.
 fn compare(
+    inclusions: &[Inclusion],
     first: &Condition,
     second: &Condition,
 ) -> Result<Option<ConditionComparison>, PsychophysicsError> {
@@ -77,23 +88,27 @@ fn compare(
             differences.push(pairs.map(difference).collect());
         }
     }
-    let Some(inclusions) = differences.first().map(Vec::len) else {
+    if differences.is_empty() {
         return Ok(None);
-    };
+    }
     let overall = differences
         .iter()
-        .map(|row| row.iter().sum::<f64>() / inclusions as f64);
-    let column = |column: usize| {
+        .map(|row| row.iter().sum::<f64>() / inclusions.len() as f64);
+    let column = |(column, inclusion): (usize, &Inclusion)| {
         let differences: Vec<f64> = differences.iter().map(|row| row[column]).collect();
-        difference(&differences)
+        Ok(InclusionDifference {
+            inclusion: inclusion.name.clone(),
+            difference: difference(&differences)?,
+        })
     };
+    let by_inclusion = inclusions.iter().enumerate().map(column);
     Ok(Some(ConditionComparison {
         first: first.name.clone(),
         second: second.name.clone(),
         subjects: differences.len(),
         overall: difference(&overall.collect::<Vec<_>>())?,
         p_value_holm: None,
-        by_inclusion: (0..inclusions).map(column).collect::<Result<_, _>>()?,
+        by_inclusion: by_inclusion.collect::<Result<_, PsychophysicsError>>()?,
     }))
 }
 

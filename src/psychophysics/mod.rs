@@ -39,7 +39,7 @@ mod tests;
 
 pub use analysis::{Analysis, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis, analyse};
 pub use beta_binomial::BetaBinomial;
-pub use conditions::{ConditionComparison, Difference};
+pub use conditions::{ConditionComparison, Difference, InclusionDifference};
 pub use dispersion::Dispersion;
 pub use error::PsychophysicsError;
 pub use journal::{Journal, JournalError, Setup};

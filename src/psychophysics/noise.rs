@@ -7,19 +7,19 @@ use super::{PsychophysicsError, Table};
 use crate::detect::noise_budget::noise_total;
 
 /// "The peak signal strength for this inclusion is 340mN" (§5, 6.6 mm), N.
-pub(super) const PEAK_SIGNAL: f64 = 0.340;
+pub const PEAK_SIGNAL: f64 = 0.340;
 /// "the subjects are operating near γ = 1.45" (§5).
-pub(super) const PRINTED_GAMMA: f64 = 1.45;
+pub const PRINTED_GAMMA: f64 = 1.45;
 /// Table 2, sensor, N.
-pub(super) const SENSOR: f64 = 0.020;
+pub const SENSOR: f64 = 0.020;
 /// Table 2, actuation quantization, N.
-pub(super) const QUANTIZATION: f64 = 0.5e-3;
+pub const QUANTIZATION: f64 = 0.5e-3;
 /// Table 2, actuation backdrive friction, N.
-pub(super) const BACKDRIVE_FRICTION: f64 = 0.140;
+pub const BACKDRIVE_FRICTION: f64 = 0.140;
 /// Table 2, unmodelled direct contact, N.
-pub(super) const UNMODELLED_CONTACT: f64 = 0.200;
+pub const UNMODELLED_CONTACT: f64 = 0.200;
 /// Table 2, human perception, N.
-pub(super) const HUMAN_PERCEPTION: f64 = 0.093;
+pub const HUMAN_PERCEPTION: f64 = 0.093;
 /// The paper's condition and inclusion: FEM data, 6.6 mm.
 const PLAYBACK: (usize, usize) = (1, 2);
 
@@ -96,19 +96,19 @@ pub fn paper_noise_levels() -> Result<NoiseDecomposition, PsychophysicsError> {
         pooled_bounds: None,
         clustered_bounds: None,
         formula: format!("{} mN / {PRINTED_GAMMA}", millinewtons(PEAK_SIGNAL)),
-        assumption: "γ = 1.45 as the paper read it off its Figure 9, where 84 % is 1.406",
+        assumption: "γ is 1.45, as the paper read it off its Figure 9, where 84 % is 1.406",
     };
     let direct = sum(
         "direct contact, from Table 2",
         Some(0.220),
         &[UNMODELLED_CONTACT, HUMAN_PERCEPTION],
-        "independent sources; the 200 mN of friction, hysteresis and nonlinearity are the paper's estimate, without a derivation",
+        "the sources are independent, and the 200 mN of friction, hysteresis and nonlinearity, which the paper does not derive, are right",
     )?;
     let measured = sum(
         "playback of measured data, from Table 2",
         None,
         &[SENSOR, QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION],
-        "independent sources; the paper prints no such sum: it leaves the poorer answers to measured data unexplained",
+        "the sources are independent; the paper prints no such sum, and it would be as small as that of FEM data, although the answers are poorer",
     )?;
     Ok(NoiseDecomposition {
         levels: vec![printed, answers, playback, direct, measured],

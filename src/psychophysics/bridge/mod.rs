@@ -31,8 +31,9 @@ use super::rates::{Bounds, OpenBounds, Rate, clustered};
 use super::{Condition, PsychophysicsError, Table};
 use crate::force_map::{ForceMap, SAME_POSITION};
 use common::{Signals, common, common_with_lapse};
-use signals::{Signal, mean, whole_sweep};
-use subjects::{Fitted, by_subject, by_subject_with_lapse};
+pub use signals::whole_sweep;
+use signals::{Signal, mean};
+use subjects::{by_subject, by_subject_with_lapse};
 use verdict::verdict;
 
 /// The depth of the probe in the paper's experiments, m.
@@ -304,6 +305,8 @@ pub struct SubjectFit {
     pub predicted: Vec<f64>,
     /// Twice the log-likelihood that a share of its own for each subject and inclusion gains.
     pub deviance: f64,
+    /// The part of each subject in it.
+    pub deviance_by_subject: Vec<f64>,
     /// The mean of that deviance if the fit is the truth: below the degrees of freedom where nearly all
     /// answers are right.
     pub expected_deviance: f64,
@@ -540,7 +543,7 @@ fn fits(
     signals: &[(&str, Signal)],
     observed: &Observations,
 ) -> Result<Vec<ConventionFit>, PsychophysicsError> {
-    let mut fits: Vec<(ConventionFit, Vec<f64>)> = Vec::new();
+    let mut fits: Vec<ConventionFit> = Vec::new();
     for convention in Convention::all() {
         let strengths = signals
             .iter()
@@ -549,56 +552,57 @@ fn fits(
         if strengths.iter().all(|&strength| strength == 0.0) {
             continue;
         }
-        let same = fits.iter().find(|(fit, _)| fit.signals == strengths);
-        let fit = match same {
+        let fit = match fits.iter().find(|fit| fit.signals == strengths) {
             // As with the mean of a lateral force, which is 0: nothing to compute again.
-            Some((fit, deviances)) => {
-                let (convention, name) = (convention, convention.text());
-                let fit = ConventionFit {
-                    convention,
-                    name,
-                    ..fit.clone()
-                };
-                (fit, deviances.clone())
-            }
+            Some(same) => ConventionFit {
+                convention,
+                name: convention.text(),
+                ..same.clone()
+            },
             None => fit(convention, strengths, observed)?,
         };
         fits.push(fit);
     }
-    let total = |deviances: &Vec<f64>| deviances.iter().sum::<f64>();
+    let deviance = |fit: &ConventionFit| fit.by_subject_with_lapse.deviance;
     let best = fits
         .iter()
-        .map(|(_, deviances)| deviances.clone())
-        .min_by(|a, b| total(a).total_cmp(&total(b)))
-        .unwrap_or_default();
-    let compared = |(mut fit, deviances): (ConventionFit, Vec<f64>)| {
-        let differences = deviances.iter().zip(&best).map(|(one, other)| one - other);
-        fit.worse_than_best_p = sign_flip(&differences.collect::<Vec<_>>());
-        fit
-    };
-    Ok(fits.into_iter().map(compared).collect())
+        .min_by(|a, b| deviance(a).total_cmp(&deviance(b)));
+    if let Some(best) = best.cloned() {
+        for fit in &mut fits {
+            fit.worse_than_best_p = told_apart(fit, &best);
+        }
+    }
+    Ok(fits)
+}
+
+/// The p-value of two conventions' deviances being as different as they are, subjects as blocks.
+///
+/// Implements: PSY-079.
+fn told_apart(one: &ConventionFit, other: &ConventionFit) -> Option<f64> {
+    let deviances = |fit: &ConventionFit| fit.by_subject_with_lapse.deviance_by_subject.clone();
+    let pairs = deviances(one).into_iter().zip(deviances(other));
+    sign_flip(&pairs.map(|(one, other)| one - other).collect::<Vec<_>>())
 }
 
 fn fit(
     convention: Convention,
     strengths: Vec<f64>,
     observed: &Observations,
-) -> Result<(ConventionFit, Vec<f64>), PsychophysicsError> {
+) -> Result<ConventionFit, PsychophysicsError> {
     let signals = Signals(strengths);
-    let Fitted { fit: alone, .. } = by_subject(&signals, observed)?;
-    let Fitted { fit, deviances } = by_subject_with_lapse(&signals, observed)?;
-    let p_value = alone.p_value.max(fit.p_value);
-    let fit = ConventionFit {
+    let alone = by_subject(&signals, observed)?;
+    let with_lapse = by_subject_with_lapse(&signals, observed)?;
+    let p_value = alone.p_value.max(with_lapse.p_value);
+    Ok(ConventionFit {
         convention,
         name: convention.text(),
         common: common(&signals, observed)?,
         common_with_lapse: common_with_lapse(&signals, observed)?,
         signals: signals.0,
         by_subject: alone,
-        by_subject_with_lapse: fit,
+        by_subject_with_lapse: with_lapse,
         worse_than_best_p: None,
         p_value,
         is_rejected: p_value < LEVEL,
-    };
-    Ok((fit, deviances))
+    })
 }

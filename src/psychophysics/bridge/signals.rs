@@ -25,6 +25,9 @@ pub struct Peak {
 
 /// A map over the whole sweep: one that begins at x = 0 is completed by symmetry, as the paper does.
 ///
+/// # Errors
+/// As [`ForceMap::mirrored`].
+///
 /// Implements: PSY-072.
 pub fn whole_sweep(map: &ForceMap) -> Result<ForceMap, InvalidForceMap> {
     let from_centre = map.laterals().len() > 1 && map.laterals()[0].abs() <= SAME_POSITION;

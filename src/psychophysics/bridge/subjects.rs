@@ -18,22 +18,13 @@ const CELLS: u32 = 5;
 /// How far ln(1/σ) of a subject may lie from that without lapses.
 const LAPSE_RANGE: [f64; 2] = [-0.1, 2.0];
 
-/// The fit for all subjects, and the deviance of each.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fitted {
-    /// For people.
-    pub fit: SubjectFit,
-    /// The deviance of each subject.
-    pub deviances: Vec<f64>,
-}
-
 /// The noise of each subject that fits best without lapses.
 ///
 /// Implements: PSY-077, PSY-078.
 pub fn by_subject(
     signals: &Signals,
     observed: &Observations,
-) -> Result<Fitted, PsychophysicsError> {
+) -> Result<SubjectFit, PsychophysicsError> {
     assemble(signals, observed, 0.0, 0)
 }
 
@@ -43,7 +34,7 @@ pub fn by_subject(
 pub fn by_subject_with_lapse(
     signals: &Signals,
     observed: &Observations,
-) -> Result<Fitted, PsychophysicsError> {
+) -> Result<SubjectFit, PsychophysicsError> {
     let without: Vec<f64> = observed
         .subjects
         .iter()
@@ -62,11 +53,11 @@ pub fn by_subject_with_lapse(
     let with = assemble(signals, observed, lapse, 1)?;
     let without = assemble(signals, observed, 0.0, 0)?;
     // The search for the lapse is coarser than the fit without: it must not lose to it.
-    Ok(if with.fit.deviance < without.fit.deviance {
+    Ok(if with.deviance < without.deviance {
         with
     } else {
         let mut none = without;
-        none.fit.aic += 2.0;
+        none.aic += 2.0;
         none
     })
 }
@@ -76,7 +67,7 @@ fn assemble(
     observed: &Observations,
     lapse: f64,
     fitted_lapses: u32,
-) -> Result<Fitted, PsychophysicsError> {
+) -> Result<SubjectFit, PsychophysicsError> {
     let range = signals.range();
     let (mut noise, mut deviances) = (Vec::new(), Vec::new());
     let mut predicted = vec![
@@ -121,7 +112,7 @@ fn assemble(
     let moments = moments.less_fitted(fitted_lapses);
     let share = |sum: &Count| sum.right / (sum.right + sum.wrong);
     let parameters = observed.subjects.len() as f64 + f64::from(fitted_lapses);
-    let fit = SubjectFit {
+    Ok(SubjectFit {
         noise,
         lapse,
         predicted: predicted.iter().map(share).collect(),
@@ -130,8 +121,8 @@ fn assemble(
         deviance_sd: libm::sqrt(moments.variance),
         p_value: moments.tail(deviance)?,
         aic: deviance + 2.0 * parameters,
-    };
-    Ok(Fitted { fit, deviances })
+        deviance_by_subject: deviances,
+    })
 }
 
 /// The mean and variance of a deviance.

@@ -1,6 +1,7 @@
 //! What the fits say of the question which part of the force the subjects used.
 
-use super::{Channel, ConventionFit, LEVEL, Support, Verdict};
+use super::{Channel, ConventionFit, LEVEL, Statistic, Support, Verdict, told_apart};
+use crate::psychophysics::noise::{BACKDRIVE_FRICTION, HUMAN_PERCEPTION, QUANTIZATION};
 
 /// The verdict on all conventions of one condition.
 ///
@@ -30,23 +31,25 @@ pub fn verdict(fits: &[ConventionFit]) -> Verdict {
 
 /// The verdict in sentences.
 fn text(fits: &[ConventionFit], support: Support) -> String {
-    let uniform = largest_p(fits, |fit| fit.convention.uses_uniform_part());
-    let normal = largest_p(fits, |fit| {
+    let uniform = best(fits, |fit| fit.convention.uses_uniform_part());
+    let normal = best(fits, |fit| {
         !fit.convention.uses_uniform_part() && fit.convention.channel == Channel::Normal
     });
-    let lateral = largest_p(fits, |fit| fit.convention.channel == Channel::Lateral);
+    let lateral = best(fits, |fit| fit.convention.channel == Channel::Lateral);
     let mut sentences = vec![conclusion(support)];
     for (what, fit) in [
-        ("with the uniform part of the normal force", uniform),
-        ("the normal force less its mean", normal),
-        ("the lateral force alone", lateral),
+        (
+            "Of the conventions with the level of the normal force",
+            uniform,
+        ),
+        ("Of those with the normal force less its mean", normal),
+        ("Of those with the lateral force alone", lateral),
     ] {
-        if let Some(fit) = fit {
-            sentences.push(evidence(what, fit));
-        }
+        sentences.extend(fit.map(|fit| evidence(what, fit)));
     }
     sentences.extend(both_of(normal, lateral));
     sentences.push(heterogeneity(fits));
+    sentences.extend(against_table_2(fits));
     sentences.join(" ")
 }
 
@@ -75,12 +78,12 @@ fn evidence(what: &str, fit: &ConventionFit) -> String {
         &fit.by_subject
     };
     let lapse = if best.lapse > 0.0 {
-        format!(", {:.1} % lapses", 100.0 * best.lapse)
+        format!(" and {:.1} % lapses", 100.0 * best.lapse)
     } else {
         String::new()
     };
     format!(
-        "Best {what}: {} (a noise level for each subject{lapse}: deviance {:.1} where {:.1} ± {:.1} is expected, p = {}).",
+        "{what} {} fits best: with a noise level for each subject{lapse} the deviance is {:.1} where {:.1} ± {:.1} is expected, p = {}.",
         fit.name,
         best.deviance,
         best.expected_deviance,
@@ -90,25 +93,39 @@ fn evidence(what: &str, fit: &ConventionFit) -> String {
 }
 
 /// Whether the normal force less its mean and the lateral force can be told apart.
+///
+/// Implements: PSY-081.
 fn both_of(normal: Option<&ConventionFit>, lateral: Option<&ConventionFit>) -> Option<String> {
     let (normal, lateral) = (normal?, lateral?);
-    if normal.is_rejected || lateral.is_rejected {
-        return None;
-    }
-    Some(
-        "The normal force less its mean and the lateral force both fit, and cannot be told apart by these counts."
-            .into(),
-    )
+    let p = told_apart(normal, lateral)?;
+    let [normal_deviance, lateral_deviance] =
+        [normal, lateral].map(|fit| fit.by_subject_with_lapse.deviance);
+    Some(if p >= LEVEL {
+        format!(
+            "The normal force less its mean and the lateral force cannot be told apart (subjects as blocks, p = {}).",
+            p_value(p)
+        )
+    } else {
+        format!(
+            "Of these two the {} force fits better (subjects as blocks, p = {}).",
+            if normal_deviance < lateral_deviance {
+                "normal"
+            } else {
+                "lateral"
+            },
+            p_value(p)
+        )
+    })
 }
 
 /// Whether one noise level for all would do, by Akaike's criterion of the best convention.
 ///
 /// Implements: PSY-082.
 fn heterogeneity(fits: &[ConventionFit]) -> String {
-    let best = fits
+    let smallest = fits
         .iter()
         .min_by(|a, b| a.by_subject.aic.total_cmp(&b.by_subject.aic));
-    let Some((best, common)) = best.and_then(|best| Some((best, best.common.as_ref()?))) else {
+    let Some((best, common)) = smallest.and_then(|best| Some((best, best.common.as_ref()?))) else {
         return "No noise level for all subjects together can be fitted.".into();
     };
     let gain = common.aic - best.by_subject.aic;
@@ -125,12 +142,45 @@ fn heterogeneity(fits: &[ConventionFit]) -> String {
     }
 }
 
-fn largest_p(
+/// The noise of the best peak convention that is not rejected beside that of Table 2, which is for one moment.
+///
+/// Implements: PSY-083.
+fn against_table_2(fits: &[ConventionFit]) -> Option<String> {
+    let compatible_peak =
+        |fit: &ConventionFit| fit.convention.statistic == Statistic::Peak && !fit.is_rejected;
+    let fit = best(fits, compatible_peak)?;
+    let noise = fit.common.as_ref()?.noise;
+    let table = libm::sqrt(
+        [QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION]
+            .iter()
+            .map(|source| source * source)
+            .sum(),
+    );
+    let remark = if noise < table {
+        "smaller, so that subjects with the noise of Table 2 would have to combine several moments of the sweep"
+    } else {
+        "at least as large, so that Table 2 leaves room for it"
+    };
+    Some(format!(
+        "The one noise level for {}, {noise:.3} N, is {:.2} of the {table:.3} N that Table 2 of the paper adds up to for playback: {remark}.",
+        fit.name,
+        noise / table
+    ))
+}
+
+/// The first convention of a kind with the largest p-value.
+fn best(
     fits: &[ConventionFit],
     is_kind: impl Fn(&ConventionFit) -> bool,
 ) -> Option<&ConventionFit> {
     let of_kind = fits.iter().filter(|fit| is_kind(fit));
-    of_kind.max_by(|a, b| a.p_value.total_cmp(&b.p_value))
+    of_kind.reduce(|best, fit| {
+        if fit.p_value > best.p_value {
+            fit
+        } else {
+            best
+        }
+    })
 }
 
 fn p_value(p: f64) -> String {
