@@ -3,6 +3,7 @@
 
 extern crate std;
 
+use std::string::ToString;
 use std::vec;
 use std::vec::Vec;
 
@@ -185,6 +186,14 @@ fn limits_are_refused_by_name() {
             Err(InvalidLimits::Watchdog)
         );
     }
+    for (limit, name) in [
+        (InvalidLimits::Force, "force limit: "),
+        (InvalidLimits::Slew, "slew limit: "),
+        (InvalidLimits::Release, "release limit: "),
+        (InvalidLimits::Watchdog, "watchdog: "),
+    ] {
+        assert!(limit.to_string().starts_with(name), "{limit}");
+    }
 }
 
 /// A person at the device: feeds the kernel sample after sample.
@@ -327,7 +336,35 @@ fn a_fault_latches_with_its_first_cause_and_releases_the_force() {
         }
         assert_eq!(session.state.force, Force::ZERO);
         assert_eq!(session.state.mode, Mode::Faulted(cause));
+        assert!(!cause.to_string().is_empty());
         session.arm();
+    }
+}
+
+// Verifies: SRV-032, SRV-033.
+#[test]
+fn a_fault_ends_with_nothing_but_a_request_to_arm_when_all_is_well() {
+    let mut session = Session::playing();
+    let mut sample = session.sample(true);
+    sample.device_fault = true;
+    session.cycle(Some(sample), Request::None);
+    for _ in 0..4 {
+        session.hold(false);
+    }
+    // Each but the last lacks one of: the request, the hand off the deadman, a device without fault.
+    for (request, deadman, device_fault, armed) in [
+        (Request::None, false, false, false),
+        (Request::Disarm, false, false, false),
+        (Request::Arm, true, false, false),
+        (Request::None, false, false, false),
+        (Request::Arm, false, true, false),
+        (Request::None, false, false, false),
+        (Request::Arm, false, false, true),
+    ] {
+        let mut sample = session.sample(deadman);
+        sample.device_fault = device_fault;
+        session.cycle(Some(sample), request);
+        assert_eq!(session.state.mode == Mode::Armed, armed, "{request:?}");
     }
 }
 

@@ -86,9 +86,20 @@ fn a_map_is_refused_with_its_place() {
             refused(&[0.0, 0.1], &[0.0, 0.1], |_, x| [x, 0.0]),
             "lateral_force_n[0][1] = 0.1 at depth 0, expected at most ±0.02 N",
         ),
+        (
+            refused(&[0.1], &[0.0, 1.5], calm),
+            "laterals_m[1] = 1.5, expected at most ±1 m",
+        ),
     ] {
         assert!(text.starts_with(beginning), "{text}");
     }
+}
+
+// Verifies: SRV-045, SRV-047.
+#[test]
+fn a_map_at_the_limits_is_taken() {
+    let at_limits = map(&[1e-6, 1.0], &[-1.0, 1.0], |d, x| [100.0 * d * x, 100.0]);
+    assert!(LoadedTable::new(&at_limits).is_ok());
 }
 
 // Verifies: SRV-050.
@@ -113,6 +124,87 @@ fn the_stiffness_counts_the_cells_continued_at_the_border() {
         (stiffness - 16.0 * 2f64.sqrt()).abs() < 1e-13,
         "{stiffness}"
     );
+}
+
+/// The largest singular value of [[a, b], [c, d]] from the eigenvalues of its square.
+fn singular_value([[a, b], [c, d]]: [[f64; 2]; 2]) -> f64 {
+    let (sum, product) = (a * a + b * b + c * c + d * d, a * d - b * c);
+    ((sum + (sum * sum - 4.0 * product * product).max(0.0).sqrt()) / 2.0).sqrt()
+}
+
+/// The steepest slope of a table that is played, by differences of forces at the ends of each cell, which the
+/// kernel gives exactly there: a cell further on every side but above the surface.
+fn steepest(table: &Table) -> f64 {
+    let continued = |knots: &[f32], first: bool| {
+        let (n, mut all) = (knots.len(), knots.to_vec());
+        if first {
+            all.insert(0, 2.0 * knots[0] - knots[1]);
+        }
+        all.push(2.0 * knots[n - 1] - knots[n - 2]);
+        all
+    };
+    let depths = table.depths().knots();
+    let depths = continued(depths, depths[0] > 0.0);
+    let laterals = continued(table.laterals().knots(), true);
+    let mut steepest = 0.0f64;
+    for d in depths.windows(2) {
+        for x in laterals.windows(2) {
+            let difference = |from: (f32, f32), to: (f32, f32), by: f32| {
+                let (from, to) = (table.force(from.0, from.1), table.force(to.0, to.1));
+                [to.lateral - from.lateral, to.normal - from.normal]
+                    .map(|change| f64::from(change) / f64::from(by))
+            };
+            for depth in [d[0], d[1]] {
+                for lateral in [x[0], x[1]] {
+                    let by_x = difference((depth, x[0]), (depth, x[1]), x[1] - x[0]);
+                    let by_d = difference((d[0], lateral), (d[1], lateral), d[1] - d[0]);
+                    let slopes = [[by_x[0], by_d[0]], [by_x[1], by_d[1]]];
+                    steepest = steepest.max(singular_value(slopes));
+                }
+            }
+        }
+    }
+    steepest
+}
+
+// Numbers of few bits, so that nothing is rounded in f32: the steepest cell once in each place, in either component.
+// Verifies: SRV-050.
+#[test]
+fn the_stiffness_is_the_steepest_slope_by_differences() {
+    let knots = [[0.0f32, 0.25, 0.5, 1.0], [0.25, 0.5, 0.625, 0.75]];
+    let laterals = [-0.5f32, -0.25, 0.25, 0.5];
+    let reciprocals = |knots: &[f32; 4]| [0, 1, 2].map(|i| 1.0 / (knots[i + 1] - knots[i]));
+    for depths in knots {
+        for place in 0..16 {
+            for steep in [
+                Force {
+                    lateral: 8.0,
+                    normal: 0.5,
+                },
+                Force {
+                    lateral: -1.0,
+                    normal: 4.0,
+                },
+            ] {
+                let mut forces: Vec<Force> = (0..16u8)
+                    .map(|k| Force {
+                        lateral: f32::from(k * 7 % 5) / 8.0,
+                        normal: f32::from(k * 3 % 7) / 8.0,
+                    })
+                    .collect();
+                forces[place] = steep;
+                let (heights, widths) = (reciprocals(&depths), reciprocals(&laterals));
+                let depths = Axis::new(&depths, &heights).unwrap();
+                let table = Table::new(depths, Axis::new(&laterals, &widths).unwrap(), &forces);
+                let table = table.unwrap();
+                let (found, expected) = (stiffness(&table), steepest(&table));
+                assert!(
+                    (found - expected).abs() < 1e-12 * expected,
+                    "{found} {expected} {place}"
+                );
+            }
+        }
+    }
 }
 
 // Verifies: SRV-052.
@@ -186,6 +278,20 @@ fn a_table_too_stiff_is_refused_or_scaled_on_request() {
         (unscaled, scale),
         (LoadedTable::passive(&map, &FREE).unwrap(), 1.0)
     );
+    // 2^-10 N/m above what the device plays, to be met within the rounding of the forces.
+    for stiffest in [100.0, 399.999, 333.333] {
+        let device = Damping {
+            damping_n_s_per_m: stiffest / 2000.0,
+            ..FREE
+        };
+        let (loaded, scale) = LoadedTable::scaled_to_be_passive(&map, &device).unwrap();
+        let found = stiffness(&loaded.table().unwrap());
+        assert!(
+            found <= stiffest && found > stiffest * (1.0 - 1e-6),
+            "{found}"
+        );
+        assert!((scale - stiffest / 400.0).abs() < 1e-6, "{scale}");
+    }
     let undamped = Damping {
         friction_n: 0.0,
         ..FREE
