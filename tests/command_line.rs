@@ -555,6 +555,40 @@ fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
     }
 }
 
+// Verifies: CLI-033.
+#[test]
+fn a_measured_map_is_shown_and_a_computed_one_refused() {
+    let here = folder("measured");
+    let csv = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n0,0,0,0\n0,3,0,0\n2,0,0.6,0\n2,3,0.5,-0.1\n";
+    fs::write(here.join("gel.csv"), csv).unwrap();
+    succeed(&here, &["import-map", "gel.csv", "--out", "gel.json"]);
+    let config = |measured: &str| {
+        format!(
+            "phantoms = []\nmeasured = [\"{measured}\"]\ndepths_mm = \"1\"\nlaterals_mm = \"0\"\n[mesh]\nsize_mm = 3.0\n"
+        )
+    };
+    fs::write(here.join("run.toml"), config("gel.json")).unwrap();
+    succeed(&here, &["run", "--config", "run.toml"]);
+    assert!(
+        here.join("palpate-out/figures/figure-7-gel.csv.svg")
+            .exists()
+    );
+    let page = fs::read_to_string(here.join("palpate-out/report.html")).unwrap();
+    assert!(page.contains("Figure 7. Measured forces, “gel.csv”"));
+    fs::write(
+        here.join("run.toml"),
+        config("palpate-out/maps/map-none.json"),
+    )
+    .unwrap();
+    let output = run(&here, &["run", "--config", "run.toml"]);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(
+        message.contains("map-none.json: a computed map"),
+        "{message}"
+    );
+}
+
 // Verifies: CLI-030, CLI-032.
 #[test]
 fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {

@@ -30,7 +30,7 @@ pub struct RunArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-030, CLI-031, CLI-032, CLI-033.
+/// Implements: CLI-030, CLI-031, CLI-032.
 pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let config = match &arguments.config {
         Some(path) => Config::read(path)?,
@@ -43,7 +43,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let measured = config
         .measured
         .iter()
-        .map(|path| ForceMap::read(path))
+        .map(|path| measured_map(path))
         .collect::<Result<Vec<_>, _>>()?;
     // The folder first: a run shall not fail at its end for want of a place.
     make_folder(&arguments.out)?;
@@ -52,6 +52,20 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
         warn_of_large_strain(map);
     }
     write_study(&study, &arguments.out)
+}
+
+/// Reads a map that must have been measured.
+///
+/// Implements: CLI-033.
+fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
+    let map = ForceMap::read(path)?;
+    if map.certificate().is_some() {
+        let path = path.display();
+        return Err(CliError::Usage(format!(
+            "{path}: a computed map; 'measured' takes maps that palpate import-map wrote"
+        )));
+    }
+    Ok(map)
 }
 
 /// Solves all maps, the phantoms in parallel, and the field of one pose.

@@ -80,5 +80,5 @@ fn quality_cells(quality: &Quality) -> [String; 12] {
 
 /// A band of the discretisation, N, in mN.
 fn band(half_width: Option<f64>) -> String {
-    half_width.map_or("not estimated".into(), |band| trimmed(1e3 * band, 3))
+    half_width.map_or("not estimated".into(), |band| trimmed(1e3 * band, 2))
 }
