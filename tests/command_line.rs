@@ -589,7 +589,7 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
     );
 }
 
-// Verifies: CLI-030, CLI-032.
+// Verifies: CLI-030, CLI-032, REP-030, REP-043.
 #[test]
 fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
     let here = folder("paper");
@@ -606,12 +606,15 @@ fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
         );
         assert!(out.join(format!("figures/figure-5-{name}.svg")).exists());
     }
-    for name in ["figure-3", "figure-4", "figure-6", "figure-9"] {
-        assert!(out.join(format!("figures/{name}.svg")).exists(), "{name}");
+    for number in [1, 2, 3, 4, 6, 8, 9, 10, 11, 12, 13] {
+        let name = format!("figures/figure-{number}.svg");
+        assert!(out.join(&name).exists(), "{name}");
     }
     let summary: serde_json::Value =
         serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
     assert!(summary.is_object());
+    let page = fs::read(out.join("report.html")).unwrap();
+    assert!(page.len() < 3_000_000, "{} bytes", page.len());
     let figure = fs::read(out.join("figures/figure-5-2.6.svg")).unwrap();
     let readme = fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figure-5.svg")).unwrap();
     assert!(

@@ -10,7 +10,8 @@ use std::process::Command;
 
 use browser::{Browser, Scheme};
 
-const WIDTHS: [u32; 2] = [400, 1400];
+/// A phone, a tablet, a screen.
+const WIDTHS: [u32; 3] = [400, 800, 1400];
 
 /// A fresh folder for one test.
 fn folder(name: &str) -> PathBuf {

@@ -179,7 +179,7 @@ fn comparison(conditions: &[ConditionAnalysis]) -> Draft {
             title: "Figure 13. The three experiments with 95 % intervals".into(),
             caption: format!(
                 "Share of right answers, all subjects together, each with three 95 % intervals side by side: the normal \
-                 approximation p̂ ± 1.96 √(p̂(1 − p̂)/n) over all n answers (thin), the exact interval of Clopper and Pearson \
+                 approximation p̂\u{a0}±\u{a0}1.96\u{a0}√(p̂(1\u{a0}−\u{a0}p̂)/n) over all n answers (thin), the exact interval of Clopper and Pearson \
                  over the same answers (dot), and Student's interval with the subjects as the sample (thick). The paper's \
                  Figure 13 has one interval, from a table of Natrella (1963) whose formula it does not print; it counts all \
                  answers as independent, as the first two do. But subjects differ more than chance allows, and the next \

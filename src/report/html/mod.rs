@@ -23,6 +23,8 @@ use super::text::{escape, prose};
 use super::{Figure, Findings, Study, Topic};
 
 /// How the page looks.
+///
+/// Implements: REP-034, REP-064, REP-067, REP-068.
 pub(super) const STYLE: &str = include_str!("style.css");
 /// What the name of the SVG namespace is called inside HTML: nothing, since HTML knows `<svg>` by itself.
 const NAMESPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
@@ -48,7 +50,7 @@ const CONTENTS: [(&str, &str); 8] = [
 
 /// One self-contained page: what was found, the figures and tables, the comparison, the certificates.
 ///
-/// Implements: REP-040, REP-041, REP-042, REP-043, REP-060.
+/// Implements: REP-040, REP-041, REP-042, REP-043, REP-060, REP-065, REP-066.
 pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
     let page = Page {
         study,

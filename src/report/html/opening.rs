@@ -58,8 +58,10 @@ fn found(page: &Page<'_>) -> String {
     let ideal = match findings.maps.len() {
         0 => "There is no map beside the reference, so nothing can be detected.".into(),
         all => format!(
-            "An ideal detector that reads the whole sweep in noise of {} N a sample finds the inclusion of {met} of {all} \
+            "An ideal detector that reads both forces at all {} positions of the sweep, each in independent noise of {} N, \
+             finds the inclusion of {met} of {all} \
              phantoms with at most {} false alarms and {} misses.",
+            findings.samples,
             trimmed(settings.noise_sd, 6),
             limit(settings.max_false_alarm),
             limit(settings.max_miss)
