@@ -109,7 +109,7 @@ fn words(bridge: &Bridge, condition: &ConditionBridge) -> Words {
     Words {
         title: "Rates predicted from the forces, and the answers to FEM playback".into(),
         caption: format!(
-            "The paper has no such figure: it computed forces and counted answers, but could not predict the one from the \
+            "The paper has no such figure: it computed forces and counted answers, but did not predict the one from the \
              other. Each line takes one part of the force at probe depth {} mm as what the subjects used, with a noise level \
              for each of them (and one share of lapses, where that fits better); the dots are the answers of Table 1. \
              Rejected lines are dashed; where lines lie on one another, the answers cannot tell them apart. The table below has the numbers, for the other experiments too.",

@@ -3,7 +3,7 @@
 use super::Page;
 use super::table::{Group, Layout, Table};
 use crate::psychophysics::bridge::{Bridge, ConditionBridge, ConventionFit};
-use crate::report::text::{escape, fixed, p_value, prose, trimmed};
+use crate::report::text::{escape, fixed, millimetres, p_value, prose, trimmed};
 
 /// The verdict for each experiment, and every convention with its fit.
 ///
@@ -24,10 +24,12 @@ pub fn bridge(page: &Page<'_>) -> String {
     let verdicts: String = bridge.conditions.iter().map(verdict).collect();
     format!(
         "<h3>From forces to answers</h3>\n\
-         <p>The paper could not predict its rates from its forces. Here each convention says what of the force a subject \
+         <p>The paper did not predict its rates from its forces. Here each convention says what of the force a subject \
          uses: the largest difference at one position or the whole sweep, the normal force, the lateral or both, with its \
          mean over the sweep or without. That gives a signal for each inclusion, and a noise level gives the rate \
-         Φ(γ/√2).</p>\n{verdicts}{}",
+         Φ(γ/√2). The forces are the computed ones at probe depth {} mm. Only the subjects of FEM playback felt such forces; \
+         in direct contact and in the playback of measured data they stand in for forces that are not available.</p>\n{verdicts}{}",
+        millimetres(bridge.probe_depth),
         conventions(bridge)
     )
 }

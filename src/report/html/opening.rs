@@ -3,7 +3,7 @@
 use super::detection::limit;
 use super::{CONTENTS, Page};
 use crate::psychophysics::bridge::{Bridge, Support};
-use crate::report::text::{escape, fixed, millimetres, percent, prose, trimmed};
+use crate::report::text::{escape, fixed, millimetres, prose, trimmed};
 use crate::report::{Topic, Value, paper};
 
 /// Title and subject.
@@ -152,8 +152,8 @@ fn subjects_noise(page: &Page<'_>) -> Option<Highlight> {
         number: row.here.text(),
         words: format!(
             "noise that explains the subjects' {} at 6.6 mm by the peak signal; the paper has {}",
-            percent(paper::ACCURACY_6_6),
-            row.paper_text
+            limit(paper::ACCURACY_6_6),
+            row.paper.text()
         ),
     })
 }

@@ -233,7 +233,7 @@ fn a_measured_map_is_figure_7_and_a_computed_one_is_refused() {
         figure.caption
     );
     study.measured = vec![computed_map("8.6", 0.5)];
-    let error = findings(&study).unwrap_err().to_string();
+    let error = findings(&study).err().unwrap().to_string();
     assert!(
         error.contains("\"8.6\"") && error.contains("computed"),
         "{error}"
