@@ -33,6 +33,8 @@ pub const PLAYBACK_NOISE: f64 = 0.170;
 /// "The noise estimate for the direct contact case … is 220mN" (§5), N.
 pub const DIRECT_CONTACT_NOISE: f64 = 0.220;
 
+/// Table 2, "Sensor (ATI)", N.
+pub const SENSOR: f64 = 0.020;
 /// Table 2, "Actuation quantization (Immersion)", N.
 pub const QUANTIZATION: f64 = 0.5e-3;
 /// Table 2, "Actuation backdrive friction (Immersion)", N.
@@ -42,13 +44,40 @@ pub const UNMODELLED_CONTACT: f64 = 0.200;
 /// Table 2, "Human perception", N.
 pub const HUMAN_PERCEPTION: f64 = 0.093;
 
+/// "the standard deviation in the error of the force is roughly 0.024N" (§4), N; not in Table 2.
+pub const DISPLAY_ERROR: f64 = 0.024;
+
+/// The rows of Table 2, N.
+pub const NOISE_SOURCES: [(&str, f64); 5] = [
+    ("Sensor (ATI)", SENSOR),
+    ("Actuation quantization (Immersion)", QUANTIZATION),
+    (
+        "Actuation backdrive friction (Immersion)",
+        BACKDRIVE_FRICTION,
+    ),
+    (
+        "Unmodelled direct contact (friction, hysteresis, nonlinearity, etc)",
+        UNMODELLED_CONTACT,
+    ),
+    ("Human perception (Jones (1998))", HUMAN_PERCEPTION),
+];
+
 /// Pairs that each subject judged at each depth in each experiment (§4).
 pub const TRIALS: u32 = 30;
 /// The four phantoms with inclusion, by the names of [`BUILTIN_NAMES`]: the columns of Table 1.
 pub const INCLUSIONS: [&str; 4] = ["2.6", "4.6", "6.6", "8.6"];
 
-/// One of the three experiments of §4.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Which condition of Table 1 is the playback of FEM data.
+pub const FEM_PLAYBACK: usize = 1;
+/// The means that Table 1 prints below each condition, right answers in [`TRIALS`].
+pub const PRINTED_MEANS: [[f64; 4]; 3] = [
+    [28.8, 27.5, 24.7, 20.0],
+    [29.2, 27.7, 25.3, 18.9],
+    [26.8, 22.8, 22.9, 17.4],
+];
+
+/// One experiment in the second transcription of Table 1.
+#[cfg(test)]
 pub struct Experiment {
     /// What Table 1 calls it.
     pub name: &'static str,
@@ -56,22 +85,8 @@ pub struct Experiment {
     pub correct: [[u32; 4]; 10],
 }
 
-impl Experiment {
-    /// The right answers of all subjects to the inclusion in `column`.
-    pub fn pooled(&self, column: usize) -> u32 {
-        self.correct.iter().map(|subject| subject[column]).sum()
-    }
-
-    /// The pairs that all subjects judged at one depth.
-    pub fn trials(&self) -> u32 {
-        TRIALS * self.correct.len() as u32
-    }
-}
-
-/// Which of [`EXPERIMENTS`] plays back finite-element data.
-pub const FEM_PLAYBACK: usize = 1;
-
-/// Table 1.
+/// Table 1, typed a second time. Nothing is computed from it: it shows a slip of the pen in the table that is used.
+#[cfg(test)]
 #[rustfmt::skip]
 pub const EXPERIMENTS: [Experiment; 3] = [
     Experiment {
