@@ -2,14 +2,18 @@
 
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 
+// Table 2, and what §5 infers from it.
+pub use crate::psychophysics::noise::{
+    BACKDRIVE_FRICTION, HUMAN_PERCEPTION, PEAK_SIGNAL as PEAK_SIGNAL_6_6,
+    PRINTED_GAMMA as GAMMA_OF_ACCURACY, QUANTIZATION, SENSOR, UNMODELLED_CONTACT,
+};
+
 /// The depth of the probe at which the paper quotes its forces, m: "more than 4mm" is prevented (§4.1).
 pub const PROBE_DEPTH: f64 = 4e-3;
 /// "a nominal absolute force level of 1.6N" (§2), N.
 pub const FORCE_LEVEL: f64 = 1.6;
 /// "the force signal difference is roughly 0.5N" (§2), N.
 pub const SIGNAL: f64 = 0.5;
-/// "The peak signal strength for this inclusion is 340mN" (§5, 6.6 mm), N.
-pub const PEAK_SIGNAL_6_6: f64 = 0.340;
 /// "maximum 5% false alarm rate" (§2).
 pub const MAX_FALSE_ALARM: f64 = 0.05;
 /// "minimum 95% hit rate" (§2).
@@ -24,25 +28,12 @@ pub const HUMAN_NOISE: f64 = 0.1;
 pub const DISPLAY_NOISE: f64 = 0.11;
 /// "playback of FEM data gave a 84% accuracy" (§5, 6.6 mm).
 pub const ACCURACY_6_6: f64 = 0.84;
-/// "the subjects are operating near γ = 1.45" (§5).
-pub const GAMMA_OF_ACCURACY: f64 = 1.45;
 /// "the noise estimate from the psychophysics experiments is 235mN" (§5), N.
 pub const SUBJECTS_NOISE: f64 = 0.235;
 /// "The noise estimate for the FEM playback … is 170mN" (§5), N.
 pub const PLAYBACK_NOISE: f64 = 0.170;
 /// "The noise estimate for the direct contact case … is 220mN" (§5), N.
 pub const DIRECT_CONTACT_NOISE: f64 = 0.220;
-
-/// Table 2, "Sensor (ATI)", N.
-pub const SENSOR: f64 = 0.020;
-/// Table 2, "Actuation quantization (Immersion)", N.
-pub const QUANTIZATION: f64 = 0.5e-3;
-/// Table 2, "Actuation backdrive friction (Immersion)", N.
-pub const BACKDRIVE_FRICTION: f64 = 0.140;
-/// Table 2, "Unmodelled direct contact", N.
-pub const UNMODELLED_CONTACT: f64 = 0.200;
-/// Table 2, "Human perception", N.
-pub const HUMAN_PERCEPTION: f64 = 0.093;
 
 /// "the standard deviation in the error of the force is roughly 0.024N" (§4), N; not in Table 2.
 pub const DISPLAY_ERROR: f64 = 0.024;
