@@ -555,7 +555,41 @@ fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
     }
 }
 
-// Verifies: CLI-030, CLI-032.
+// Verifies: CLI-033.
+#[test]
+fn a_measured_map_is_shown_and_a_computed_one_refused() {
+    let here = folder("measured");
+    let csv = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n0,0,0,0\n0,3,0,0\n2,0,0.6,0\n2,3,0.5,-0.1\n";
+    fs::write(here.join("gel.csv"), csv).unwrap();
+    succeed(&here, &["import-map", "gel.csv", "--out", "gel.json"]);
+    let config = |measured: &str| {
+        format!(
+            "phantoms = []\nmeasured = [\"{measured}\"]\ndepths_mm = \"1\"\nlaterals_mm = \"0\"\n[mesh]\nsize_mm = 3.0\n"
+        )
+    };
+    fs::write(here.join("run.toml"), config("gel.json")).unwrap();
+    succeed(&here, &["run", "--config", "run.toml"]);
+    assert!(
+        here.join("palpate-out/figures/figure-7-gel.csv.svg")
+            .exists()
+    );
+    let page = fs::read_to_string(here.join("palpate-out/report.html")).unwrap();
+    assert!(page.contains("Figure 7. Measured forces, “gel.csv”"));
+    fs::write(
+        here.join("run.toml"),
+        config("palpate-out/maps/map-none.json"),
+    )
+    .unwrap();
+    let output = run(&here, &["run", "--config", "run.toml"]);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(
+        message.contains("map-none.json: a computed map"),
+        "{message}"
+    );
+}
+
+// Verifies: CLI-030, CLI-032, REP-030, REP-043.
 #[test]
 fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
     let here = folder("paper");
@@ -572,12 +606,15 @@ fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
         );
         assert!(out.join(format!("figures/figure-5-{name}.svg")).exists());
     }
-    for name in ["figure-3", "figure-4", "figure-6", "figure-9"] {
-        assert!(out.join(format!("figures/{name}.svg")).exists(), "{name}");
+    for number in [1, 2, 3, 4, 6, 8, 9, 10, 11, 12, 13] {
+        let name = format!("figures/figure-{number}.svg");
+        assert!(out.join(&name).exists(), "{name}");
     }
     let summary: serde_json::Value =
         serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
     assert!(summary.is_object());
+    let page = fs::read(out.join("report.html")).unwrap();
+    assert!(page.len() < 3_000_000, "{} bytes", page.len());
     let figure = fs::read(out.join("figures/figure-5-2.6.svg")).unwrap();
     let readme = fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figure-5.svg")).unwrap();
     assert!(

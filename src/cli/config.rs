@@ -1,6 +1,6 @@
 //! The configuration of `palpate run`: which phantoms, where the probe goes, what the detector assumes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
@@ -21,6 +21,8 @@ pub struct Config {
     pub reference: String,
     /// The phantoms that are compared with it.
     pub phantoms: Vec<String>,
+    /// Files of measured force maps, shown beside the computed ones.
+    pub measured: Vec<PathBuf>,
     #[serde(deserialize_with = "list")]
     pub depths_mm: Positions,
     #[serde(deserialize_with = "list")]
@@ -61,6 +63,7 @@ impl Default for Config {
         Config {
             reference: BUILTIN_NAMES[0].into(),
             phantoms: BUILTIN_NAMES[1..].iter().map(|&name| name.into()).collect(),
+            measured: Vec::new(),
             depths_mm: half_millimetres(0, 8),
             laterals_mm: half_millimetres(-20, 20),
             mesh: Mesh::default(),

@@ -40,17 +40,40 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let phantoms = names
         .map(|name| phantom(name))
         .collect::<Result<Vec<_>, _>>()?;
+    let measured = config
+        .measured
+        .iter()
+        .map(|path| measured_map(path))
+        .collect::<Result<Vec<_>, _>>()?;
     // The folder first: a run shall not fail at its end for want of a place.
     make_folder(&arguments.out)?;
-    let study = study(&config, &phantoms)?;
+    let study = study(&config, &phantoms, measured)?;
     for map in std::iter::once(&study.reference).chain(&study.maps) {
         warn_of_large_strain(map);
     }
     write_study(&study, &arguments.out)
 }
 
+/// Reads a map that must have been measured.
+///
+/// Implements: CLI-033.
+fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
+    let map = ForceMap::read(path)?;
+    if map.certificate().is_some() {
+        let path = path.display();
+        return Err(CliError::Usage(format!(
+            "{path}: a computed map; 'measured' takes maps that palpate import-map wrote"
+        )));
+    }
+    Ok(map)
+}
+
 /// Solves all maps, the phantoms in parallel, and the field of one pose.
-fn study(config: &Config, phantoms: &[Phantom]) -> Result<Study, CliError> {
+fn study(
+    config: &Config,
+    phantoms: &[Phantom],
+    measured: Vec<ForceMap>,
+) -> Result<Study, CliError> {
     // Each map on three meshes.
     let poses = 3 * config.depths_mm.0.len() * solved_laterals(&config.laterals_mm.0).len();
     let bar = bar(phantoms.len() * poses, "force maps");
@@ -76,6 +99,7 @@ fn study(config: &Config, phantoms: &[Phantom]) -> Result<Study, CliError> {
     Ok(Study {
         reference,
         maps,
+        measured,
         deformed,
         settings: config.settings(),
     })

@@ -24,7 +24,7 @@ mod conditions;
 mod dispersion;
 mod error;
 mod journal;
-mod noise;
+pub mod noise;
 #[cfg(feature = "hid")]
 mod observer;
 mod plan;

@@ -2,10 +2,17 @@
 
 use serde::Serialize;
 
-use super::findings::{Calibration, MapFindings, detect_error};
-use super::text::{fixed, millimetres, percent};
+use super::findings::{MapFindings, detect_error};
+use super::text::{fixed, millimetres, p_value, percent};
 use super::{ReportError, paper};
-use crate::detect::{gamma_from_two_afc, required_gamma, two_afc};
+use crate::detect::{gamma_from_two_afc, required_gamma};
+use crate::psychophysics::bridge::{
+    Bridge, BridgeInclusion, Channel, ConditionBridge, Convention, ConventionFit, ObservedRate,
+    Offset, Statistic,
+};
+use crate::psychophysics::{
+    Analysis, Bounds, ConditionAnalysis, NoiseDecomposition, NoiseLevel, OpenBounds,
+};
 
 /// A number with its unit: in JSON `{"force_n": 1.6}`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -47,95 +54,20 @@ pub struct Comparison {
     pub here: Value,
     /// Why they differ, or what was assumed.
     pub why: String,
-    /// Whether ours was fitted to the paper's, so that their agreement says nothing.
-    pub is_calibration: bool,
-}
-
-/// The share of right answers in pairs at one inclusion: predicted from the peak signal and one noise level,
-/// and what Table 1 counts.
-///
-/// Implements: REP-022.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PairwiseFinding {
-    /// Which of the paper's phantoms.
-    pub phantom: &'static str,
-    /// Our peak normal signal, N.
-    #[serde(rename = "peak_signal_n")]
-    pub peak_signal: f64,
-    /// Where that peak lies, m.
-    #[serde(rename = "peak_lateral_m")]
-    pub peak_lateral: f64,
-    /// Peak signal over calibrated noise.
-    pub gamma: f64,
-    /// Φ(γ/√2).
-    pub predicted: f64,
-    /// What the subjects did, in the order of Table 1.
-    pub observed: [Observed; 3],
-    /// Whether the noise was fitted to this row.
-    pub is_calibration: bool,
-}
-
-/// The pooled right answers of one experiment at one inclusion.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Observed {
-    /// What Table 1 calls the experiment.
-    pub experiment: &'static str,
-    /// Right answers of all subjects.
-    pub correct: u32,
-    /// Pairs judged by all subjects.
-    pub trials: u32,
-}
-
-impl Observed {
-    /// Right answers over pairs.
-    pub fn share(self) -> f64 {
-        f64::from(self.correct) / f64::from(self.trials)
-    }
 }
 
 /// The paper's phantoms of `maps` in the order of Table 1, with their first map.
-fn paper_maps(maps: &[MapFindings]) -> impl Iterator<Item = (usize, &'static str, &MapFindings)> {
-    let columns = paper::INCLUSIONS.into_iter().enumerate();
-    columns.filter_map(|(column, name)| {
+fn paper_maps(maps: &[MapFindings]) -> impl Iterator<Item = (&'static str, &MapFindings)> {
+    paper::INCLUSIONS.into_iter().filter_map(|name| {
         let map = maps.iter().find(|map| map.paper_phantom == Some(name))?;
-        Some((column, name, map))
+        Some((name, map))
     })
 }
 
-/// Table 1 against Φ(γ/√2), for the paper's phantoms that the study holds.
-///
-/// # Errors
-/// [`ReportError::Detect`] if a signal over the noise overflows.
-///
-/// Implements: REP-021, REP-022.
-pub fn pairwise(
-    maps: &[MapFindings],
-    calibration: Option<Calibration>,
-) -> Result<Vec<PairwiseFinding>, ReportError> {
-    let Some(Calibration { noise, .. }) = calibration else {
-        return Ok(Vec::new());
-    };
-    let row = |(column, phantom, map): (usize, &'static str, &MapFindings)| {
-        let peak_signal = map.peak_normal.force.abs();
-        let gamma = peak_signal / noise;
-        Ok(PairwiseFinding {
-            phantom,
-            peak_signal,
-            peak_lateral: map.peak_normal.lateral,
-            gamma,
-            predicted: two_afc(gamma).map_err(|source| detect_error("pairs", source))?,
-            observed: paper::EXPERIMENTS.map(|experiment| Observed {
-                experiment: experiment.name,
-                correct: experiment.pooled(column),
-                trials: experiment.trials(),
-            }),
-            is_calibration: phantom == "6.6",
-        })
-    };
-    paper_maps(maps).map(row).collect()
-}
+/// The inclusion for which the paper prints signal, rate and noise.
+const PRINTED: &str = "6.6";
 
-/// All rows whose phantom the study holds. `level` is the normal force at x = 0 without inclusion, and `maps`
+/// All rows whose phantom the study holds. `people` are the answers of Table 1, `noise` the levels of §5, `bridge` sets them against the signals. `level` is the normal force at x = 0 without inclusion, and `maps`
 /// is empty, unless they belong to the paper's phantoms at the paper's depth.
 ///
 /// # Errors
@@ -145,18 +77,22 @@ pub fn pairwise(
 pub fn table(
     level: Option<f64>,
     maps: &[MapFindings],
-    calibration: Option<Calibration>,
-    pairwise: &[PairwiseFinding],
+    people: &Analysis,
+    noise: &NoiseDecomposition,
+    bridge: Option<&Bridge>,
 ) -> Result<Vec<Comparison>, ReportError> {
     let mut rows = Vec::new();
     rows.extend(level.map(force_level));
     rows.extend(typical_signal(maps));
-    rows.extend(calibration.map(peak_signal));
+    rows.extend(peak_signal(maps));
     rows.extend(display_requirement()?);
-    rows.extend(noise_sources());
-    rows.push(gamma_of_accuracy()?);
-    rows.extend(calibration.map(subjects_noise));
-    rows.extend(pairwise.iter().map(playback_rate));
+    rows.extend(noise_sources(&noise.levels));
+    let playback = people.conditions.get(paper::FEM_PLAYBACK);
+    rows.extend(gamma_of_accuracy(playback)?);
+    if let Some(bridge) = bridge {
+        rows.extend(subjects_noise(bridge));
+        rows.extend(playback_rates(bridge));
+    }
     Ok(rows)
 }
 
@@ -174,7 +110,6 @@ fn row(
         paper: paper.1,
         here,
         why: why.into(),
-        is_calibration: false,
     }
 }
 
@@ -194,7 +129,7 @@ fn force_level(level: f64) -> Comparison {
 /// The peak signal that comes nearest to the paper's "roughly 0.5N", for which it names no inclusion.
 fn typical_signal(maps: &[MapFindings]) -> Option<Comparison> {
     let peaks: Vec<_> = paper_maps(maps)
-        .map(|(_, name, map)| (name, map.peak_normal.force.abs()))
+        .map(|(name, map)| (name, map.peak_normal.force.abs()))
         .collect();
     let distance = |peak: f64| (peak - paper::SIGNAL).abs();
     let nearest = peaks
@@ -219,15 +154,16 @@ fn typical_signal(maps: &[MapFindings]) -> Option<Comparison> {
     ))
 }
 
-fn peak_signal(calibration: Calibration) -> Comparison {
-    row(
+fn peak_signal(maps: &[MapFindings]) -> Option<Comparison> {
+    let (.., map) = paper_maps(maps).find(|(name, _)| *name == PRINTED)?;
+    Some(row(
         "Peak signal of the 6.6 mm inclusion",
         "§5",
         ("340 mN", Value::ForceN(paper::PEAK_SIGNAL_6_6)),
-        Value::ForceN(calibration.peak_signal),
+        Value::ForceN(map.peak_normal.force.abs()),
         "The peak of the normal signal at 4 mm. Four-node quads that lock give more, the coarser the mesh: about \
          0.32 N at 0.7 mm, 0.34 N at 1.2 mm, 0.36 N at 2 mm.",
-    )
+    ))
 }
 
 /// The chain γ > 3.3, 0.15 N, 0.11 N of §2.
@@ -269,95 +205,157 @@ fn display_requirement() -> Result<[Comparison; 3], ReportError> {
     ])
 }
 
-/// The two sums of Table 2's sources in §5.
-fn noise_sources() -> [Comparison; 2] {
-    let total = |sources: &[f64]| libm::sqrt(sources.iter().map(|s| s * s).sum());
-    [
-        row(
+/// The two sums of Table 2's sources that §5 prints.
+fn noise_sources(levels: &[NoiseLevel]) -> impl Iterator<Item = Comparison> {
+    let printed = [
+        (
             "Noise of the playback of FEM data, from Table 2",
-            "§5",
             ("170 mN", Value::ForceN(paper::PLAYBACK_NOISE)),
-            Value::ForceN(total(&[
-                paper::QUANTIZATION,
-                paper::BACKDRIVE_FRICTION,
-                paper::HUMAN_PERCEPTION,
-            ])),
             "Quantization, backdrive friction and human perception, added as variances; the paper rounds.",
         ),
-        row(
+        (
             "Noise of direct contact, from Table 2",
-            "§5",
             ("220 mN", Value::ForceN(paper::DIRECT_CONTACT_NOISE)),
-            Value::ForceN(total(&[paper::UNMODELLED_CONTACT, paper::HUMAN_PERCEPTION])),
             "Unmodelled contact forces and human perception, added as variances; the paper rounds.",
         ),
-    ]
+    ];
+    printed.into_iter().filter_map(|(quantity, paper, why)| {
+        let level = levels
+            .iter()
+            .find(|level| level.printed.map(Value::ForceN) == Some(paper.1))?;
+        Some(row(quantity, "§5", paper, Value::ForceN(level.noise), why))
+    })
 }
 
-fn gamma_of_accuracy() -> Result<Comparison, ReportError> {
-    let from_share = |share| {
-        gamma_from_two_afc(share).map_err(|source| detect_error("the paper's accuracy", source))
+fn gamma_of_accuracy(
+    playback: Option<&ConditionAnalysis>,
+) -> Result<Option<Comparison>, ReportError> {
+    let inclusions = playback.iter().flat_map(|condition| &condition.inclusions);
+    let Some(pooled) = inclusions
+        .filter(|inclusion| inclusion.name == PRINTED)
+        .map(|inclusion| inclusion.pooled)
+        .next()
+    else {
+        return Ok(None);
     };
-    let playback = &paper::EXPERIMENTS[paper::FEM_PLAYBACK];
-    let counted = f64::from(playback.pooled(2)) / f64::from(playback.trials());
-    Ok(row(
+    let counted = pooled
+        .gamma
+        .gamma
+        .map_or("no number".into(), |gamma| fixed(gamma, 3));
+    let here = gamma_from_two_afc(paper::ACCURACY_6_6)
+        .map_err(|source| detect_error("the paper's accuracy", source))?;
+    Ok(Some(row(
         "γ at which 84 % of pairs are judged right",
         "§5, Figure 9",
         ("γ = 1.45", Value::Gamma(paper::GAMMA_OF_ACCURACY)),
-        Value::Gamma(from_share(paper::ACCURACY_6_6)?),
+        Value::Gamma(here),
         format!(
             "√2 Φ⁻¹(0.84); the paper read 1.45 off its Figure 9, where the curve is at 84.7 %. For the {} of {} of \
-             Table 1 it is {}.",
-            playback.pooled(2),
-            playback.trials(),
-            fixed(from_share(counted)?, 3)
+             Table 1 it is {counted}.",
+            pooled.correct, pooled.trials
+        ),
+    )))
+}
+
+/// FEM playback with the paper's own convention: the peak of the normal force.
+fn of_paper(bridge: &Bridge) -> Option<(&ConditionBridge, &ConventionFit)> {
+    let condition = bridge.conditions.get(paper::FEM_PLAYBACK)?;
+    let convention = Convention {
+        statistic: Statistic::Peak,
+        channel: Channel::Normal,
+        offset: Offset::Kept,
+    };
+    let mut fits = condition.conventions.iter();
+    Some((condition, fits.find(|fit| fit.convention == convention)?))
+}
+
+/// What the counts of all depths say of the paper's convention.
+fn judged(fit: &ConventionFit) -> String {
+    let verdict = if fit.is_rejected {
+        "reject"
+    } else {
+        "do not reject"
+    };
+    format!(
+        " The answers to all depths {verdict} the peak of the normal force as what the subjects felt (p = {}).",
+        p_value(fit.p_value)
+    )
+}
+
+/// The noise that explains the answers to FEM playback at 6.6 mm.
+///
+/// Implements: REP-072.
+fn subjects_noise(bridge: &Bridge) -> Option<Comparison> {
+    let (condition, fit) = of_paper(bridge)?;
+    let index = bridge.inclusions.iter().position(|of| of.name == PRINTED)?;
+    let of_inclusion = condition.noise_by_inclusion.get(index)?;
+    let noise = of_inclusion.noise?;
+    let range = match of_inclusion.clustered_bounds {
+        Some(OpenBounds {
+            lower: Some(lower),
+            upper: Some(upper),
+        }) => format!(
+            " With the subjects as the sample its 95 % interval is {} to {} N.",
+            fixed(lower, 3),
+            fixed(upper, 3)
+        ),
+        _ => String::new(),
+    };
+    Some(row(
+        "Noise of the subjects, peak signal at 6.6 mm over γ",
+        "§5",
+        ("235 mN", Value::ForceN(paper::SUBJECTS_NOISE)),
+        Value::ForceN(noise),
+        format!(
+            "Ours is {} N over {}, with our own peak and the γ of the answers counted in Table 1. The paper's peak over the true γ \
+             of 84 % would be 242 mN.{range}{}",
+            fixed(of_inclusion.signal, 3),
+            fixed(of_inclusion.signal / noise, 3),
+            judged(fit)
         ),
     ))
 }
 
-fn subjects_noise(calibration: Calibration) -> Comparison {
-    row(
-        "Noise of the subjects, peak signal at 6.6 mm over γ",
-        "§5",
-        ("235 mN", Value::ForceN(paper::SUBJECTS_NOISE)),
-        Value::ForceN(calibration.noise),
-        format!(
-            "Ours is {} N/{}, with our own peak and the γ of 253 in 300. The paper's peak over the true γ of 84 % \
-             would be 242 mN.",
-            fixed(calibration.peak_signal, 3),
-            fixed(calibration.gamma, 3)
-        ),
-    )
-}
-
-fn playback_rate(pairwise: &PairwiseFinding) -> Comparison {
-    let observed = pairwise.observed[paper::FEM_PLAYBACK];
-    let printed = format!(
-        "{} ({} of {})",
-        percent(observed.share()),
-        observed.correct,
-        observed.trials
-    );
-    let mut why = String::from(if pairwise.is_calibration {
-        "Calibration: the one noise level is fitted to this very row, so their agreement says nothing."
-    } else {
-        "Φ(γ/√2) with γ = peak signal/noise, the noise fitted at 6.6 mm alone. The subjects differ more than chance \
-         allows (χ²/df mostly 2 to 5), and they swept freely over the gel instead of reading one peak."
-    });
-    if pairwise.peak_lateral != 0.0 {
-        why += &format!(
-            " Here the peak lies off the inclusion, at x = {} mm.",
-            millimetres(pairwise.peak_lateral)
+/// Rates of FEM playback by the paper's own convention, the peak of the normal force, with one noise level for all.
+///
+/// Implements: REP-073.
+fn playback_rates(bridge: &Bridge) -> Vec<Comparison> {
+    let Some((condition, fit)) = of_paper(bridge) else {
+        return Vec::new();
+    };
+    let Some(common) = &fit.common else {
+        return Vec::new();
+    };
+    let each = bridge
+        .inclusions
+        .iter()
+        .zip(&condition.observed)
+        .zip(&common.predicted);
+    let rate = |((inclusion, observed), predicted): ((&BridgeInclusion, &ObservedRate), &f64)| {
+        let mut why = format!(
+            "Φ(γ/√2) with γ = peak normal signal/noise, one noise level of {} N fitted to all depths together.",
+            fixed(common.noise, 3)
         );
-    }
-    Comparison {
-        is_calibration: pairwise.is_calibration,
-        ..row(
-            &format!("Pairs judged right, FEM playback, {} mm", pairwise.phantom),
+        if let Some(Bounds { lower, upper }) = observed.clustered_bounds {
+            why += &format!(
+                " With the subjects as the sample the observed share is {} to {}.",
+                percent(lower),
+                percent(upper)
+            );
+        }
+        if inclusion.peak_normal_at != 0.0 {
+            why += &format!(
+                " Here the peak lies off the inclusion, at x = {} mm.",
+                millimetres(inclusion.peak_normal_at)
+            );
+        }
+        row(
+            &format!("Pairs judged right, FEM playback, {} mm", inclusion.name),
             "Table 1",
-            (&printed, Value::Probability(observed.share())),
-            Value::Probability(pairwise.predicted),
+            (&percent(observed.rate), Value::Probability(observed.rate)),
+            Value::Probability(*predicted),
             why,
         )
-    }
+    };
+    each.map(rate).collect()
 }

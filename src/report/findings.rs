@@ -2,20 +2,18 @@
 
 use serde::Serialize;
 
-use super::comparison::{self, Comparison, PairwiseFinding};
+use super::comparison::{self, Comparison};
+use super::people::{Subjects, subjects};
+use super::quality::{Quality, quality, warnings};
 use super::text::{millimetres, name_of_map};
 use super::{ReportError, Settings, Study, paper};
 use crate::detect::{
-    Channels, DetectError, MatchedFilter, auc, error_rates, gamma_from_two_afc, map_threshold,
+    Channels, DetectError, MatchedFilter, auc, error_rates, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
 };
-use crate::force_map::{Discretization, ForceCurve, ForceMap, ForceTable, SAME_POSITION};
-
-/// Below this det(I + ∇u) a compressed neighbourhood has lost four fifths of its area, and small-strain
-/// elasticity is far outside its range.
-///
-/// Implements: REP-015.
-pub const SMALL_STRAIN_LIMIT: f64 = 0.2;
+use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};
+use crate::psychophysics::bridge::Bridge;
+use crate::psychophysics::{Analysis, NoiseDecomposition};
 
 /// What a study found, in plain numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -33,10 +31,12 @@ pub struct Findings {
     pub reference: ReferenceFindings,
     /// One for each map of the study, in its order.
     pub maps: Vec<MapFindings>,
-    /// The noise that explains the paper's subjects; only with the paper's 6.6 mm phantom at 4 mm.
-    pub calibration: Option<Calibration>,
-    /// Table 1 against the model; empty without a calibration.
-    pub pairwise: Vec<PairwiseFinding>,
+    /// What Table 1 says by itself.
+    pub people: Analysis,
+    /// The paper's noise levels beside ours.
+    pub noise: NoiseDecomposition,
+    /// Table 1 against the signals of the paper's phantoms; only with two of them or more at 4 mm.
+    pub bridge: Option<Bridge>,
     /// Each number that the paper prints beside ours.
     pub comparison: Vec<Comparison>,
 }
@@ -118,62 +118,11 @@ pub struct Threshold {
     pub miss: f64,
 }
 
-/// The certificate of a computed map, in short.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Quality {
-    /// The largest relative residual of the linear solves.
-    pub worst_relative_residual: f64,
-    /// The largest difference between the force on the probe and the reaction of the well, N.
-    #[serde(rename = "worst_force_balance_n")]
-    pub worst_force_balance: f64,
-    /// The largest half band of the discretisation around a normal force, N, where it was estimated.
-    #[serde(rename = "largest_normal_band_n")]
-    pub largest_normal_band: Option<f64>,
-    /// The same of the lateral forces, N.
-    #[serde(rename = "largest_lateral_band_n")]
-    pub largest_lateral_band: Option<f64>,
-    /// The largest depth of a surface node inside the probe, m.
-    #[serde(rename = "largest_penetration_m")]
-    pub largest_penetration: f64,
-    /// The smallest det(I + ∇u) of all poses.
-    pub smallest_det: f64,
-    /// The depth of that pose, m.
-    #[serde(rename = "smallest_det_depth_m")]
-    pub smallest_det_depth: f64,
-    /// The lateral position of that pose, m.
-    #[serde(rename = "smallest_det_lateral_m")]
-    pub smallest_det_lateral: f64,
-    /// The size of the mesh, m.
-    #[serde(rename = "mesh_size_m")]
-    pub mesh_size: f64,
-    /// The number of nodes.
-    pub nodes: usize,
-    /// The element's name.
-    pub element: String,
-    /// The contact law's name.
-    pub contact: String,
-    /// The version of the program that computed the map.
-    pub program_version: String,
-}
-
-/// The one noise level that makes the model agree with the paper's subjects at 6.6 mm.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Calibration {
-    /// Our peak normal signal for 6.6 mm, N.
-    #[serde(rename = "peak_signal_n")]
-    pub peak_signal: f64,
-    /// The γ of the pooled 253 right answers in 300.
-    pub gamma: f64,
-    /// Their quotient, N.
-    #[serde(rename = "noise_n")]
-    pub noise: f64,
-}
-
 /// Everything that the report says in numbers.
 ///
 /// # Errors
 /// [`ReportError::Map`] if a map is over other poses than the reference, [`ReportError::Detect`] if a setting is
-/// outside its range or a signal overflows.
+/// outside its range or a signal overflows, [`ReportError::NotMeasured`] if a measured map was computed.
 ///
 /// Implements: REP-002, REP-003, REP-004.
 pub fn findings(study: &Study) -> Result<Findings, ReportError> {
@@ -182,6 +131,12 @@ pub fn findings(study: &Study) -> Result<Findings, ReportError> {
     let at_paper_depth = is_paper_depth(probe_depth);
     let settings = &study.settings;
     let required_gamma = check(settings).map_err(|source| detect_error("settings", source))?;
+    let is_computed = |map: &&ForceMap| map.certificate().is_some();
+    if let Some(map) = study.measured.iter().find(is_computed) {
+        return Err(ReportError::NotMeasured {
+            name: name_of_map(map),
+        });
+    }
     let maps = study
         .maps
         .iter()
@@ -192,8 +147,11 @@ pub fn findings(study: &Study) -> Result<Findings, ReportError> {
     let comparable = at_paper_depth && is_paper_reference;
     // Only maps of the paper's phantoms, against the paper's reference, at the paper's depth are compared with it.
     let compared: &[MapFindings] = if comparable { &maps } else { &[] };
-    let calibration = calibration(compared)?;
-    let pairwise = comparison::pairwise(compared, calibration)?;
+    let Subjects {
+        people,
+        noise,
+        bridge,
+    } = subjects(study, compared)?;
     let level = reference.normal_force_at_centre.filter(|_| comparable);
     Ok(Findings {
         probe_depth,
@@ -205,11 +163,12 @@ pub fn findings(study: &Study) -> Result<Findings, ReportError> {
         }),
         samples: study.reference.laterals().len(),
         required_gamma,
-        comparison: comparison::table(level, compared, calibration, &pairwise)?,
+        comparison: comparison::table(level, compared, &people, &noise, bridge.as_ref())?,
         reference,
         maps,
-        calibration,
-        pairwise,
+        people,
+        noise,
+        bridge,
     })
 }
 
@@ -372,68 +331,4 @@ fn threshold(gamma: f64, eta: f64) -> Result<Threshold, DetectError> {
         false_alarm: rates.false_alarm,
         miss: rates.miss,
     })
-}
-
-fn quality(map: &ForceMap) -> Option<Quality> {
-    let certificate = map.certificate()?;
-    let smallest = certificate.smallest_det;
-    let bands = certificate
-        .discretization
-        .as_ref()
-        .map(Discretization::largest);
-    Some(Quality {
-        worst_relative_residual: certificate.worst_relative_residual,
-        worst_force_balance: certificate.worst_force_balance,
-        largest_normal_band: bands.map(|[normal, _]| normal),
-        largest_lateral_band: bands.map(|[_, lateral]| lateral),
-        largest_penetration: certificate.largest_penetration,
-        smallest_det: smallest.det,
-        smallest_det_depth: smallest.depth,
-        smallest_det_lateral: smallest.lateral,
-        mesh_size: certificate.mesh_size,
-        nodes: certificate.nodes,
-        element: certificate.element.clone(),
-        contact: certificate.contact.clone(),
-        program_version: map.program_version().into(),
-    })
-}
-
-/// Implements: REP-014, REP-015.
-fn warnings(quality: Option<&Quality>, gamma: f64) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if let Some(quality) = quality.filter(|quality| quality.smallest_det < SMALL_STRAIN_LIMIT) {
-        warnings.push(format!(
-            "Small strain is at its limit: det(I + ∇u) falls to {:.3} at depth {} mm, x = {} mm (below {SMALL_STRAIN_LIMIT}); forces near that pose are the linear model's, not a real gel's.",
-            quality.smallest_det,
-            millimetres(quality.smallest_det_depth),
-            millimetres(quality.smallest_det_lateral),
-        ));
-    }
-    if gamma == 0.0 {
-        warnings.push(
-            "No signal: the forces equal the reference's, so nothing can be detected.".into(),
-        );
-    }
-    warnings
-}
-
-/// Implements: REP-021.
-fn calibration(maps: &[MapFindings]) -> Result<Option<Calibration>, ReportError> {
-    let column = 2;
-    let found = maps
-        .iter()
-        .find(|map| map.paper_phantom == Some(paper::INCLUSIONS[column]));
-    let Some(map) = found else {
-        return Ok(None);
-    };
-    let playback = &paper::EXPERIMENTS[paper::FEM_PLAYBACK];
-    let share = f64::from(playback.pooled(column)) / f64::from(playback.trials());
-    let gamma = gamma_from_two_afc(share).map_err(|source| detect_error("Table 1", source))?;
-    let peak_signal = map.peak_normal.force.abs();
-    // Without a signal no noise level explains the subjects.
-    Ok((peak_signal > 0.0).then_some(Calibration {
-        peak_signal,
-        gamma,
-        noise: peak_signal / gamma,
-    }))
 }

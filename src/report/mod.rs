@@ -8,9 +8,11 @@
 //! |---|---|
 //! | `paper.rs` | the numbers that the paper prints |
 //! | `findings.rs` | signals, signal-to-noise ratios, thresholds |
+//! | `people.rs` | the subjects of Table 1, and the bridge from forces to their answers |
+//! | `quality.rs` | certificates in short, warnings |
 //! | `comparison.rs` | "paper, here, why" |
-//! | `figures/` | the paper's Figures 3, 4, 5, 6, 9 and the signals, as SVG |
-//! | `html.rs`, `summary.rs` | the page, the JSON |
+//! | `figures/` | the paper's figures, the signals, as SVG |
+//! | `html/`, `summary.rs` | the page, the JSON |
 //! | `text.rs` | untrusted names in markup and file names; numbers as text |
 
 mod comparison;
@@ -18,18 +20,21 @@ mod figures;
 mod findings;
 mod html;
 pub mod paper;
+mod people;
+mod quality;
 mod summary;
 #[cfg(test)]
 mod tests;
 mod text;
 
-pub use comparison::{Comparison, PairwiseFinding, Value};
+pub use comparison::{Comparison, Value};
 pub use figures::figures;
 pub use findings::{
-    Calibration, Findings, GammaByChannel, MapFindings, Peak, Quality, ReferenceFindings,
-    SMALL_STRAIN_LIMIT, Threshold, findings,
+    Findings, GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold, findings,
 };
 pub use html::html;
+pub use people::normal_approximation;
+pub use quality::{Quality, SMALL_STRAIN_LIMIT};
 pub use summary::{SUMMARY_SCHEMA, SUMMARY_SCHEMA_VERSION, summary_json};
 pub use text::FileNames;
 
@@ -38,6 +43,7 @@ use crate::fem::Pose;
 use crate::fem::mesh::Region;
 use crate::force_map::{ForceMap, InvalidForceMap};
 use crate::phantom::Phantom;
+use crate::psychophysics::{PsychophysicsError, TableError};
 
 /// Everything that a run computed.
 #[derive(Debug, Clone)]
@@ -46,6 +52,8 @@ pub struct Study {
     pub reference: ForceMap,
     /// Maps F_1 of the phantoms with inclusion, over the same poses as the reference. Any number, any names.
     pub maps: Vec<ForceMap>,
+    /// Measured maps, shown as Figure 7. Any number, any poses; nothing is computed from them.
+    pub measured: Vec<ForceMap>,
     /// The deformed mesh of one pose (Figure 6).
     pub deformed: DeformedMesh,
     /// What the detector assumes.
@@ -98,12 +106,27 @@ impl Default for Settings {
     }
 }
 
+/// Where on the page a figure stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Topic {
+    /// Phantom, probe, problem.
+    Setup,
+    /// Forces and signals.
+    Forces,
+    /// The detector.
+    Detection,
+    /// The subjects of the paper.
+    People,
+}
+
 /// One picture with the words that go with it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// A name of ASCII letters, digits, `.`, `-` and `_`, unique in the study; ends in `.svg`.
     pub file_name: String,
-    /// What it is. Plain text: it may hold a phantom's name, which markup must escape.
+    /// Where on the page it stands.
+    pub topic: Topic,
+    /// What it is; begins with the number of the paper's figure that it makes again. Plain text: it may hold a phantom's name, which markup must escape.
     pub title: String,
     /// What it shows, what the paper says, and what differs and why. Plain text.
     pub caption: String,
@@ -115,7 +138,7 @@ pub struct Figure {
 
 /// Why there is no report.
 ///
-/// Implements: REP-004.
+/// Implements: REP-004, REP-006.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReportError {
     /// A map does not fit the reference.
@@ -126,6 +149,12 @@ pub enum ReportError {
         /// What is wrong with it.
         source: InvalidForceMap,
     },
+    /// A computed map among the measured ones.
+    #[error("map {name:?} is among the measured maps, but was computed")]
+    NotMeasured {
+        /// The name of the map's phantom.
+        name: String,
+    },
     /// A setting or a signal that the detector refuses.
     #[error("{what}: {source}")]
     Detect {
@@ -133,6 +162,18 @@ pub enum ReportError {
         what: String,
         /// Why the detector refused.
         source: DetectError,
+    },
+    /// Table 1 cannot be set against the maps.
+    #[error("Table 1: {source}")]
+    People {
+        /// Why.
+        source: PsychophysicsError,
+    },
+    /// Table 1 itself cannot be read.
+    #[error("{error}")]
+    Table {
+        /// Why.
+        error: TableError,
     },
     /// The deformed mesh contradicts itself.
     #[error("deformed mesh: {problem}")]

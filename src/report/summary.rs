@@ -7,7 +7,7 @@ use super::{Findings, Settings, Study};
 /// The value of the key `schema`.
 pub const SUMMARY_SCHEMA: &str = "palpate-summary";
 /// The value of the key `schema_version`.
-pub const SUMMARY_SCHEMA_VERSION: u32 = 1;
+pub const SUMMARY_SCHEMA_VERSION: u32 = 2;
 
 /// Implements: REP-050.
 #[derive(Serialize)]

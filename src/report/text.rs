@@ -141,6 +141,14 @@ pub fn percent(probability: f64) -> String {
     }
 }
 
+/// A p-value: small ones by their power of ten.
+pub fn p_value(p: f64) -> String {
+    match p {
+        p if p > 0.0 && p < 1e-3 => scientific(p),
+        p => fixed(p, 3),
+    }
+}
+
 fn with_minus(text: &str) -> String {
     text.replace('-', "−")
 }

@@ -108,16 +108,3 @@ fn table_2_is_within_the_honest_interval_only() {
         "{other}"
     );
 }
-
-// Verifies: PSY-061.
-#[cfg(feature = "report")]
-#[test]
-fn the_report_has_the_same_numbers() {
-    use crate::report::paper;
-    assert_eq!(PEAK_SIGNAL, paper::PEAK_SIGNAL_6_6);
-    assert_eq!(PRINTED_GAMMA, paper::GAMMA_OF_ACCURACY);
-    assert_eq!(QUANTIZATION, paper::QUANTIZATION);
-    assert_eq!(BACKDRIVE_FRICTION, paper::BACKDRIVE_FRICTION);
-    assert_eq!(UNMODELLED_CONTACT, paper::UNMODELLED_CONTACT);
-    assert_eq!(HUMAN_PERCEPTION, paper::HUMAN_PERCEPTION);
-}

@@ -6,6 +6,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
+use super::names::{NAME_INDENT, draw_key, draw_names, key_height, names, plot_height};
 use super::style::{GRID, INK, UNIT, WIDTH, stroke, text, text_width};
 use crate::report::text::{printable, trimmed};
 
@@ -18,33 +19,75 @@ pub type Context<'a> =
     ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Pixels left of a plot for the numbers of its y axis.
-const LEFT: i32 = 58;
+pub const LEFT: i32 = 58;
 /// Pixels above a plot for its heading.
 const HEADING: i32 = 40;
 /// Pixels below a plot for the numbers of its x axis.
 const NUMBERS: i32 = 28;
 /// Pixels at the bottom of the figure for the name of the x axis.
 const FOOTING: i32 = 34;
-/// Least distance between two names at the right, pixels.
-const NAME_DISTANCE: i32 = 18;
-/// Distance from a plot to the names at its right, pixels.
-const NAME_INDENT: i32 = 20;
-/// Most names beside one plot.
-const MOST_NAMES: usize = 40;
 
 /// One curve.
+#[derive(Debug, Clone)]
 pub struct Line {
     /// Its name at the right end of the curve; empty for none.
     pub name: String,
-    /// Its colour and that of its name.
+    /// Its colour.
     pub colour: RGBColor,
     /// Whether it is drawn in dashes.
     pub is_dashed: bool,
+    /// Its width, pixels; 0 for dots alone.
+    pub width: f64,
+    /// Radius of the dot on each point, pixels; 0 for none.
+    pub dot: i32,
     /// Its points in data coordinates.
     pub points: Vec<(f64, f64)>,
 }
 
-/// Words or a dot at a place in the plot.
+impl Line {
+    /// A solid curve two pixels wide, without a name and without dots.
+    pub fn new(colour: RGBColor, points: Vec<(f64, f64)>) -> Line {
+        Line {
+            name: String::new(),
+            colour,
+            is_dashed: false,
+            width: 2.0,
+            dot: 0,
+            points,
+        }
+    }
+
+    /// This curve with a name at its right end.
+    pub fn named(self, name: impl Into<String>) -> Line {
+        Line {
+            name: name.into(),
+            ..self
+        }
+    }
+
+    /// This curve in dashes.
+    pub fn dashed(self) -> Line {
+        Line {
+            is_dashed: true,
+            ..self
+        }
+    }
+
+    /// This curve `width` pixels wide.
+    pub fn wide(self, width: f64) -> Line {
+        Line { width, ..self }
+    }
+
+    /// This curve with a dot of `radius` pixels on each point.
+    pub fn dotted(self, radius: i32) -> Line {
+        Line {
+            dot: radius,
+            ..self
+        }
+    }
+}
+
+/// Words or a dot at a place in the plot. The words are in ink: a pale colour would be hard to read.
 pub struct Mark {
     /// The place in data coordinates.
     pub at: (f64, f64),
@@ -56,7 +99,7 @@ pub struct Mark {
     pub side: HPos,
     /// Shift of the words from the place, pixels, right and down.
     pub shift: (i32, i32),
-    /// Colour.
+    /// Colour of the dot.
     pub colour: RGBColor,
 }
 
@@ -68,35 +111,21 @@ pub struct Panel {
     pub x: [f64; 2],
     /// Least and greatest y.
     pub y: [f64; 2],
+    /// Where the x axis has numbers; empty for round numbers.
+    pub ticks: Vec<f64>,
     /// Height of the plot, pixels.
     pub height: i32,
+    /// What the kinds of lines mean: each is shown by a sample above the plot with its name.
+    pub key: Vec<Line>,
     /// Curves, the later over the earlier.
     pub lines: Vec<Line>,
     /// Words and dots.
     pub marks: Vec<Mark>,
 }
 
-/// The names of a panel's lines that stand at the right, not more than fit.
-fn names(panel: &Panel) -> Vec<&Line> {
-    let named: Vec<_> = panel
-        .lines
-        .iter()
-        .filter(|line| !line.name.is_empty())
-        .collect();
-    let every = named.len().div_ceil(MOST_NAMES).max(1);
-    named.into_iter().step_by(every).collect()
-}
-
-/// Height of a plot that has room for all its names, pixels.
-fn plot_height(panel: &Panel) -> i32 {
-    panel
-        .height
-        .max(NAME_DISTANCE * (names(panel).len() as i32 + 1))
-}
-
 /// Draws panels below one another over one x axis, and gives the body of an SVG document that has the size returned.
 pub fn chart(panels: &[Panel], x_name: &str) -> DrawingResult<(String, [i32; 2])> {
-    let each = |panel: &Panel| HEADING + plot_height(panel) + NUMBERS;
+    let each = |panel: &Panel| HEADING + key_height(panel) + plot_height(panel) + NUMBERS;
     let height = panels.iter().map(each).sum::<i32>() + FOOTING;
     let widest = panels
         .iter()
@@ -158,25 +187,35 @@ pub fn write(
 
 fn draw_panel(area: &Area<'_>, panel: &Panel, top: i32, right: i32) -> DrawingResult<()> {
     write(area, &panel.heading, [8, top + 22], INK, HPos::Left)?;
+    draw_key(area, panel, top + HEADING - 4)?;
+    let top = top + HEADING + key_height(panel);
     let size = [WIDTH - LEFT - right, plot_height(panel)];
-    let mut chart = axes(area, [LEFT, top + HEADING], size, panel.x, panel.y, true)?;
+    let mut chart = axes(
+        area,
+        [LEFT, top],
+        size,
+        panel.x,
+        panel.y,
+        Some(&panel.ticks),
+    )?;
     for line in &panel.lines {
         draw_line(&mut chart, line)?;
     }
     for mark in &panel.marks {
         draw_mark(area, &chart, mark)?;
     }
-    draw_names(area, &chart, panel, top + HEADING, right)
+    draw_names(area, &chart, panel, top, right)
 }
 
-/// Axes with numbers around a plot at `corner` of `size` (pixels).
+/// Axes with numbers around a plot at `corner` of `size` (pixels), with a grid if there are `ticks`: places of the
+/// numbers of the x axis, or none for round numbers.
 pub fn axes<'a>(
     area: &Area<'a>,
     corner: [i32; 2],
     size: [i32; 2],
     x: [f64; 2],
     y: [f64; 2],
-    has_grid: bool,
+    ticks: Option<&[f64]>,
 ) -> DrawingResult<Context<'a>> {
     let place = |pixels: i32| pixels * UNIT;
     let sub = area.clone().shrink(
@@ -188,7 +227,8 @@ pub fn axes<'a>(
         .set_label_area_size(LabelAreaPosition::Bottom, place(NUMBERS))
         .build_cartesian_2d(x[0]..x[1], y[0]..y[1])
         .map_err(say)?;
-    let grid = if has_grid {
+    let own_ticks = ticks.filter(|ticks| !ticks.is_empty());
+    let grid = if ticks.is_some() {
         stroke(GRID, 1.0)
     } else {
         TRANSPARENT.stroke_width(0)
@@ -196,7 +236,7 @@ pub fn axes<'a>(
     let number = |value: &f64| trimmed(*value, 6);
     chart
         .configure_mesh()
-        .x_labels(6)
+        .x_labels(if own_ticks.is_some() { 0 } else { 6 })
         .y_labels((size[1] / 40).max(2) as usize)
         .x_label_formatter(&number)
         .y_label_formatter(&number)
@@ -207,12 +247,35 @@ pub fn axes<'a>(
         .set_all_tick_mark_size(place(5))
         .draw()
         .map_err(say)?;
+    for &tick in own_ticks.unwrap_or_default() {
+        let (foot, top) = (
+            chart.backend_coord(&(tick, y[0])),
+            chart.backend_coord(&(tick, y[1])),
+        );
+        let line = PathElement::new(vec![top, foot], grid);
+        area.draw(&line).map_err(say)?;
+        let end = (foot.0, foot.1 + place(5));
+        let mark = PathElement::new(vec![foot, end], stroke(INK, 1.0));
+        area.draw(&mark).map_err(say)?;
+        let at = [foot.0 / UNIT, foot.1 / UNIT + 15];
+        write(area, &number(&tick), at, INK, HPos::Center)?;
+    }
     Ok(chart)
 }
 
 fn draw_line(chart: &mut Context<'_>, line: &Line) -> DrawingResult<()> {
-    let style = stroke(line.colour, 2.0);
+    let style = stroke(line.colour, line.width);
     let points = line.points.iter().copied();
+    if line.dot > 0 {
+        let filled = ShapeStyle::from(&line.colour).filled();
+        let dots = points
+            .clone()
+            .map(|at| Circle::new(at, line.dot * UNIT, filled));
+        chart.draw_series(dots).map_err(say)?;
+    }
+    if line.width <= 0.0 {
+        return Ok(());
+    }
     if line.is_dashed {
         let series = DashedLineSeries::new(points, 6 * UNIT, 4 * UNIT, style);
         chart.draw_series(series).map_err(say)?;
@@ -231,72 +294,7 @@ fn draw_mark(area: &Area<'_>, chart: &Context<'_>, mark: &Mark) -> DrawingResult
         area.draw(&dot).map_err(say)?;
     }
     let at = [x / UNIT + mark.shift.0, y / UNIT + mark.shift.1];
-    write(area, &mark.words, at, mark.colour, mark.side)
-}
-
-/// Writes each line's name right of the plot at the height of its last point, pushed apart where they would
-/// overlap, with a thin leader from the one to the other.
-fn draw_names(
-    area: &Area<'_>,
-    chart: &Context<'_>,
-    panel: &Panel,
-    top: i32,
-    right: i32,
-) -> DrawingResult<()> {
-    let ends: Vec<_> = names(panel)
-        .into_iter()
-        .filter_map(|line| Some((line, chart.backend_coord(line.points.last()?))))
-        .collect();
-    let heights: Vec<_> = ends.iter().map(|(_, end)| end.1).collect();
-    let range = [top * UNIT, (top + plot_height(panel)) * UNIT];
-    let spread = spread(&heights, NAME_DISTANCE * UNIT, range);
-    let edge = (WIDTH - right) * UNIT;
-    for ((line, end), height) in ends.into_iter().zip(spread) {
-        let elbow = (edge + (NAME_INDENT - 4) * UNIT, height);
-        let leader = PathElement::new(vec![end, elbow], stroke(line.colour, 1.4));
-        area.draw(&leader).map_err(say)?;
-        let at = [(WIDTH - right) + NAME_INDENT, height / UNIT];
-        // The leader carries the colour: pale words would be hard to read.
-        write(area, &line.name, at, INK, HPos::Left)?;
-    }
-    Ok(())
-}
-
-/// Moves `heights` apart to at least `distance`, keeping their order and, where there is room, their mean, within
-/// `range`.
-fn spread(heights: &[i32], distance: i32, range: [i32; 2]) -> Vec<i32> {
-    let mut order: Vec<_> = (0..heights.len()).collect();
-    order.sort_by_key(|&k| heights[k]);
-    // Groups of names that touch, each with its members' wanted places less their place in the group.
-    let mut groups: Vec<(i64, usize)> = Vec::new();
-    let top_of = |&(sum, count): &(i64, usize)| {
-        let span = distance * (count as i32 - 1);
-        let free = (sum / count as i64) as i32;
-        free.min(range[1] - span).max(range[0])
-    };
-    for &k in &order {
-        groups.push((i64::from(heights[k]), 1));
-        while let [.., above, below] = groups[..] {
-            let shift = i64::from(distance) * above.1 as i64;
-            if i64::from(top_of(&above)) + shift <= i64::from(top_of(&below)) {
-                break;
-            }
-            groups.truncate(groups.len() - 2);
-            groups.push((
-                above.0 + below.0 - shift * below.1 as i64,
-                above.1 + below.1,
-            ));
-        }
-    }
-    let places = groups.iter().flat_map(|group| {
-        let top = top_of(group);
-        (0..group.1 as i32).map(move |k| top + k * distance)
-    });
-    let mut spread = vec![0; heights.len()];
-    for (&k, place) in order.iter().zip(places) {
-        spread[k] = place;
-    }
-    spread
+    write(area, &mark.words, at, INK, mark.side)
 }
 
 /// The least range of round numbers that holds all `values`, and 0, and is not empty.

@@ -6,9 +6,12 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use super::chart::{Context, DrawingResult, axes, draw, say, write};
+use super::diagram::{GEL, INCLUSION, PROBE, SKIN};
 use super::style::{INK, UNIT, WIDTH, stroke};
+use super::{Draft, Words};
 use crate::fem::mesh::Region;
-use crate::report::{DeformedMesh, ReportError};
+use crate::report::text::{fixed, millimetres};
+use crate::report::{DeformedMesh, ReportError, Topic};
 
 /// Pixels left of the plot.
 const LEFT: i32 = 58;
@@ -19,14 +22,12 @@ const TOP: i32 = 44;
 /// Pixels below the plot, for numbers and the axis' name.
 const BOTTOM: i32 = 62;
 
-const PROBE: RGBColor = RGBColor(208, 212, 218);
-
-/// What a region is called and filled with: tints of Okabe and Ito's colours.
+/// What a region is called and filled with.
 fn look(region: Region, has_disc: bool) -> (&'static str, RGBColor) {
     match region {
-        Region::Skin => ("skin", RGBColor(86, 180, 233)),
-        Region::Disc if has_disc => ("inclusion", RGBColor(230, 159, 0)),
-        Region::Gel | Region::Disc => ("gel", RGBColor(250, 243, 224)),
+        Region::Skin => ("skin", SKIN),
+        Region::Disc if has_disc => ("inclusion", INCLUSION),
+        Region::Gel | Region::Disc => ("gel", GEL),
     }
 }
 
@@ -128,8 +129,45 @@ fn region_path(mesh: &DeformedMesh, places: &[(i32, i32)], name: &str) -> String
     )
 }
 
+/// Figure 6.
+pub fn draft(mesh: &DeformedMesh) -> Draft {
+    Draft {
+        prefix: "figure-6",
+        name: String::new(),
+        topic: Topic::Setup,
+        words: words(mesh),
+        drawn: deformed_mesh(mesh),
+    }
+}
+
+fn words(mesh: &DeformedMesh) -> Words {
+    let name = &mesh.phantom.name;
+    let (depth, lateral) = (millimetres(mesh.pose.depth), millimetres(mesh.pose.lateral));
+    let disc = match mesh.phantom.inclusion {
+        Some(_) => {
+            " The inclusion keeps its shape, since it is far stiffer than the gel, as the paper says of its Figure 6."
+        }
+        None => "",
+    };
+    Words {
+        title: format!(
+            "Figure 6. Deformed mesh, phantom “{name}”, probe at depth {depth} mm, x = {lateral} mm"
+        ),
+        caption: format!(
+            "The mesh as the probe deforms it (paper's Figure 6, whose pose is not stated), to scale and not \
+             exaggerated; elements are drawn with straight sides between their corners.{disc} The smallest \
+             det(I + ∇u) is {}: 1 is undeformed, and below 0.2 small strain is at its limit.",
+            fixed(mesh.min_det, 3)
+        ),
+        alt: format!(
+            "A mesh of {} elements: gel under a thin skin, dented by a round probe from above.",
+            mesh.corners.len()
+        ),
+    }
+}
+
 /// Draws the deformed mesh to scale, and gives an SVG document with its size in pixels.
-pub fn deformed_mesh(mesh: &DeformedMesh) -> DrawingResult<(String, [i32; 2])> {
+fn deformed_mesh(mesh: &DeformedMesh) -> DrawingResult<(String, [i32; 2])> {
     let nodes = deformed(mesh);
     let outline = probe_outline(mesh);
     let range = |of: fn(&(f64, f64)) -> f64| {
@@ -146,7 +184,7 @@ pub fn deformed_mesh(mesh: &DeformedMesh) -> DrawingResult<(String, [i32; 2])> {
     let whole = TOP + height + BOTTOM;
     let mut paths = String::new();
     let svg = draw(whole, |area| {
-        let chart = axes(area, [LEFT, TOP], [width, height], x, y, false)?;
+        let chart = axes(area, [LEFT, TOP], [width, height], x, y, None)?;
         let places: Vec<_> = nodes.iter().map(|node| chart.backend_coord(node)).collect();
         for name in ["gel", "inclusion", "skin"] {
             paths.push_str(&region_path(mesh, &places, name));

@@ -1,26 +1,32 @@
-//! The pictures: the paper's Figures 3, 4, 5, 6 and 9, and the signals.
+//! The pictures: every figure of the paper that is no photograph, the signals, and the bridge to Table 1.
 //!
 //! | file | content |
 //! |---|---|
+//! | `setup.rs` | Figure 1: phantom and probe to scale |
+//! | `overview.rs` | Figures 2, 8: the detection problem, the experiments |
 //! | `theory.rs` | Figures 3, 4, 9: the detector alone |
-//! | `forces.rs` | Figure 5, and the signals |
+//! | `forces.rs` | Figures 5 and 7, and the signals |
 //! | `mesh.rs` | Figure 6 |
-//! | `chart.rs`, `style.rs` | how a chart is drawn and looks |
+//! | `people.rs`, `bridge.rs` | Figures 10 to 13: Table 1; the forces against it |
+//! | `chart.rs`, `names.rs`, `diagram.rs`, `style.rs` | how charts and diagrams are drawn and look |
 
+mod bridge;
 mod chart;
+mod diagram;
 mod forces;
 mod mesh;
+mod names;
+mod overview;
+mod people;
+mod setup;
 mod style;
 mod theory;
 
 use super::findings::detect_error;
-use super::text::{FileNames, escape, fixed, millimetres, name_of_map};
-use super::{Figure, Findings, ReportError, Study};
-use crate::force_map::ForceMap;
-use chart::{DrawingResult, Panel, chart};
+use super::text::{FileNames, escape};
+use super::{Figure, Findings, ReportError, Study, Topic};
+use chart::DrawingResult;
 use style::UNIT;
-
-const LATERAL_POSITION: &str = "Lateral position of the probe x (mm)";
 
 /// The words around a picture.
 struct Words {
@@ -29,83 +35,58 @@ struct Words {
     alt: String,
 }
 
-/// All figures of a study, in the order of the page: signals, forces, mesh, then the detector's curves.
+/// A picture that has no file name yet.
+struct Draft {
+    /// What its file name begins with.
+    prefix: &'static str,
+    /// What its file name goes on with: untrusted, may be empty.
+    name: String,
+    topic: Topic,
+    words: Words,
+    /// The document that the drawing library wrote, and its size in pixels.
+    drawn: DrawingResult<(String, [i32; 2])>,
+}
+
+/// All figures of a study, in the order of the page.
 ///
 /// # Errors
 /// [`ReportError`] if a map does not fit the reference, if the mesh contradicts itself, or if drawing fails.
 ///
 /// Implements: REP-030, REP-031.
 pub fn figures(study: &Study, findings: &Findings) -> Result<Vec<Figure>, ReportError> {
-    let mut names = FileNames::default();
-    let mut all = Vec::new();
-    if !study.maps.is_empty() {
-        let words = signal_words(findings);
-        let panels = forces::signals(study, findings)?;
-        all.push(figure(
-            names.unique("signals", "", "svg"),
-            words,
-            chart(&panels, LATERAL_POSITION),
-        )?);
-    }
-    for map in [&study.reference].into_iter().chain(&study.maps) {
-        let words = force_words(map);
-        let file_name = names.unique("figure-5", &name_of_map(map), "svg");
-        let panels = forces::force_curves(map.forces());
-        all.push(figure(file_name, words, chart(&panels, LATERAL_POSITION))?);
-    }
-    mesh::check(&study.deformed)?;
-    let drawn = mesh::deformed_mesh(&study.deformed);
-    all.push(figure(
-        names.unique("figure-6", "", "svg"),
-        mesh_words(study),
-        drawn,
-    )?);
-    let [densities, roc, pairs] = theory_words();
     let detect = |source| detect_error("figures", source);
-    for (prefix, words, panels, x_name) in [
-        ("figure-3", densities, theory::densities(), "Statistic θ"),
-        (
-            "figure-4",
-            roc,
-            theory::roc().map_err(detect)?,
-            "False alarms Pr(e | H = 0)",
-        ),
-        (
-            "figure-9",
-            pairs,
-            theory::pairs().map_err(detect)?,
-            "Signal-to-noise ratio γ",
-        ),
-    ] {
-        let panels: Vec<Panel> = panels;
-        all.push(figure(
-            names.unique(prefix, "", "svg"),
-            words,
-            chart(&panels, x_name),
-        )?);
-    }
-    Ok(all)
+    mesh::check(&study.deformed)?;
+    let mut drafts = vec![setup::draft(study), mesh::draft(&study.deformed)];
+    drafts.extend(forces::drafts(study, findings)?);
+    drafts.push(overview::detection());
+    drafts.extend(theory::drafts().map_err(detect)?);
+    drafts.push(overview::experiments());
+    drafts.extend(people::drafts(findings));
+    drafts.extend(bridge::draft(findings));
+    let mut names = FileNames::default();
+    let figure = |draft: Draft| {
+        let file_name = names.unique(draft.prefix, &draft.name, "svg");
+        figure(file_name, draft)
+    };
+    drafts.into_iter().map(figure).collect()
 }
 
-fn figure(
-    file_name: String,
-    words: Words,
-    drawn: DrawingResult<(String, [i32; 2])>,
-) -> Result<Figure, ReportError> {
+fn figure(file_name: String, draft: Draft) -> Result<Figure, ReportError> {
     let Words {
         title,
         caption,
         alt,
-    } = words;
+    } = draft.words;
     let drawing = |problem| ReportError::Drawing {
         figure: title.clone(),
         problem,
     };
-    let (drawing_of_library, size) = drawn.map_err(drawing)?;
+    let (drawing_of_library, size) = draft.drawn.map_err(drawing)?;
     let svg = with_head(&drawing_of_library, size, &file_name, &title, &alt)
         .ok_or_else(|| drawing("the library wrote no SVG".into()))?;
     Ok(Figure {
         file_name,
+        topic: draft.topic,
         title,
         caption,
         alt,
@@ -135,127 +116,23 @@ fn with_head(
     ))
 }
 
-fn signal_words(findings: &Findings) -> Words {
-    let depth = millimetres(findings.probe_depth);
-    let each: Vec<_> = findings
-        .maps
-        .iter()
-        .map(|map| {
-            format!(
-                "{}: {} N normal, {} N lateral",
-                forces::label(map),
-                fixed(map.peak_normal.force, 3),
-                fixed(map.peak_lateral.force, 3)
-            )
-        })
+/// The ground of every chart, sRGB.
+#[cfg(test)]
+pub(super) fn chart_ground() -> [f64; 3] {
+    [255.0; 3]
+}
+
+/// Every colour of lines and words, sRGB, with the contrast that it needs.
+#[cfg(test)]
+pub(super) fn chart_inks() -> Vec<(String, [f64; 3], f64)> {
+    use plotters::style::RGBColor;
+    let values = |RGBColor(r, g, b): RGBColor| [r, g, b].map(f64::from);
+    let lines = style::PALETTE.into_iter().chain([style::GREY]);
+    let ramp = (0..9).map(|k| style::ramp(k, 9));
+    let mut inks: Vec<_> = lines
+        .chain(ramp)
+        .map(|colour| (format!("{colour:?}"), values(colour), 3.0))
         .collect();
-    Words {
-        title: format!("Signals F₁ − F₀ at depth {depth} mm"),
-        caption: format!(
-            "What the inclusion adds to the force on the probe as it sweeps over the gel at depth {depth} mm: the \
-             template of the matched filter (2), (4). The paper shows no such figure, but its “roughly 0.5 N” and \
-             its 340 mN for 6.6 mm are peaks of such curves. The lateral force changes sign over the inclusion."
-        ),
-        alt: format!(
-            "Two line charts of force against lateral position, one curve for each phantom. Peaks: {}.",
-            each.join("; ")
-        ),
-    }
-}
-
-fn force_words(map: &ForceMap) -> Words {
-    let name = name_of_map(map);
-    let what = match map.phantom().map(|phantom| phantom.inclusion) {
-        Some(Some(inclusion)) => format!("inclusion {} mm deep", millimetres(inclusion.depth)),
-        Some(None) => "no inclusion".into(),
-        None => "inclusion not known".into(),
-    };
-    let said = match map.phantom().and_then(super::paper::name_of) {
-        Some("2.6") => {
-            "This is the paper's Figure 5. Its curves come from an element and mesh that it does not name, and its \
-             numbers are not printed, so only the shapes can be compared."
-        }
-        _ => "As the paper's Figure 5, which shows the 2.6 mm phantom alone.",
-    };
-    let source = match map.certificate() {
-        Some(certificate) => format!(
-            "Computed by finite elements ({}, contact {}).",
-            certificate.element, certificate.contact
-        ),
-        None => "Measured.".into(),
-    };
-    let forces = map.normal_force().values();
-    let largest = forces.iter().copied().fold(0.0, f64::max);
-    Words {
-        title: format!("Forces, phantom “{name}” ({what})"),
-        caption: format!(
-            "Force on the whole probe against its lateral position, one curve for each depth of the probe, named at \
-             the right. {source} Normal is positive out of the gel, lateral along +x. {said}"
-        ),
-        alt: format!(
-            "Two line charts of normal and lateral force against lateral position, {} curves each. The largest \
-             normal force is {} N.",
-            map.depths().len(),
-            fixed(largest, 3)
-        ),
-    }
-}
-
-fn mesh_words(study: &Study) -> Words {
-    let mesh = &study.deformed;
-    let name = &mesh.phantom.name;
-    let (depth, lateral) = (millimetres(mesh.pose.depth), millimetres(mesh.pose.lateral));
-    let disc = match mesh.phantom.inclusion {
-        Some(_) => {
-            " The inclusion keeps its shape, since it is far stiffer than the gel, as the paper says of its Figure 6."
-        }
-        None => "",
-    };
-    Words {
-        title: format!(
-            "Deformed mesh, phantom “{name}”, probe at depth {depth} mm, x = {lateral} mm"
-        ),
-        caption: format!(
-            "The mesh as the probe deforms it (paper's Figure 6, whose pose is not stated), to scale and not \
-             exaggerated; elements are drawn with straight sides between their corners.{disc} The smallest \
-             det(I + ∇u) is {}: 1 is undeformed, and below 0.2 small strain is at its limit.",
-            fixed(mesh.min_det, 3)
-        ),
-        alt: format!(
-            "A mesh of {} elements: gel under a thin skin, dented by a round probe from above.",
-            mesh.corners.len()
-        ),
-    }
-}
-
-fn theory_words() -> [Words; 3] {
-    [
-        Words {
-            title: "Probability distributions of the statistic Θ".into(),
-            caption: "Equation (8) for γ = 1, 2 and 3: Θ is normal with mean −γ²/2 without inclusion (dashed) and \
-                      +γ²/2 with one (solid), and standard deviation γ. The paper's Figure 3, which names no values \
-                      of γ in print."
-                .into(),
-            alt: "Line chart of three pairs of bell curves, mirror images about θ = 0; the larger γ, the wider \
-                  and the further apart."
-                .into(),
-        },
-        Words {
-            title: "Receiver operating characteristic".into(),
-            caption: "Misses against false alarms as the threshold moves, in closed form: Φ(Φ⁻¹(1 − P_fa) − γ). The \
-                      paper's Figure 4. Its 5 %/5 % point (dot) lies on the curve of γ = 3.29; the paper rounds to \
-                      3.3."
-                .into(),
-            alt: "Line chart of misses against false alarms, four falling curves for γ from 1 to 3.29; the last runs \
-                  through the point with 5 % of each."
-                .into(),
-        },
-        Words {
-            title: "Probability of choosing correctly in pairs".into(),
-            caption: "Φ(γ/√2), the paper's Figure 9. The paper reads γ = 1.45 for its 84 %; the curve has 84 % at \
-                      γ = 1.406 and 84.7 % at 1.45."
-                .into(),
-            alt: "Line chart rising from one half at γ = 0 towards 1, with 84 % marked at γ = 1.406.".into(),
-        },
-    ]
+    inks.push(("words".into(), values(style::INK), 4.5));
+    inks
 }

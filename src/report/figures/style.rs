@@ -17,25 +17,31 @@ pub const INK: RGBColor = RGBColor(45, 49, 56);
 /// Grid lines.
 pub const GRID: RGBColor = RGBColor(226, 229, 233);
 
-/// The colours of Okabe and Ito for lines on white, which all kinds of colour vision tell apart; their yellow is
-/// too pale for a line.
-pub const OKABE_ITO: [RGBColor; 7] = [
+/// The colours of Okabe and Ito, which all kinds of colour vision tell apart. Orange, purple and sky blue are
+/// darkened until they stand out three to one from white, as WCAG 1.4.11 asks for; their yellow cannot be.
+///
+/// Implements: REP-034.
+pub const PALETTE: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
+    RGBColor(184, 92, 143),
+    RGBColor(178, 116, 0),
+    RGBColor(46, 143, 200),
     RGBColor(0, 0, 0),
 ];
-/// Blue of [`OKABE_ITO`].
-pub const BLUE: RGBColor = OKABE_ITO[0];
-/// Vermilion of [`OKABE_ITO`].
-pub const VERMILION: RGBColor = OKABE_ITO[1];
+/// Blue of [`PALETTE`].
+pub const BLUE: RGBColor = PALETTE[0];
+/// Vermilion of [`PALETTE`].
+pub const VERMILION: RGBColor = PALETTE[1];
+/// Bluish green of [`PALETTE`].
+pub const GREEN: RGBColor = PALETTE[2];
+/// Lines that others are compared with, such as a limit or pure chance.
+pub const GREY: RGBColor = RGBColor(118, 126, 136);
 
 /// Step `index` of `count` from sky blue over blue to navy: darker is more.
 pub fn ramp(index: usize, count: usize) -> RGBColor {
-    let stops = [[86.0, 180.0, 233.0], [0.0, 114.0, 178.0], [8.0, 29.0, 68.0]];
+    let stops = [[46.0, 143.0, 200.0], [0.0, 114.0, 178.0], [8.0, 29.0, 68.0]];
     let place = 2.0 * index as f64 / (count.max(2) - 1) as f64;
     let (from, to, part) = if place <= 1.0 {
         (stops[0], stops[1], place)

@@ -1,13 +1,13 @@
 //! Figures 3, 4 and 9: what follows from Θ ~ N(∓γ²/2, γ²) alone.
 
-use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
 
-use super::chart::{Line, Mark, Panel};
-use super::style::{BLUE, INK, OKABE_ITO, VERMILION};
+use super::chart::{Line, Mark, Panel, chart};
+use super::style::{BLUE, GREY, INK, PALETTE, VERMILION};
+use super::{Draft, Words};
 use crate::detect::{DetectError, gamma_from_two_afc, required_gamma, roc_miss, two_afc};
-use crate::report::paper;
 use crate::report::text::{fixed, percent};
+use crate::report::{Topic, paper};
 use crate::stats::normal;
 
 /// `count` + 1 evenly spaced numbers.
@@ -15,37 +15,50 @@ fn steps(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
     (0..=count).map(move |k| from + (to - from) * k as f64 / count as f64)
 }
 
-fn line(name: &str, colour: RGBColor, points: Vec<(f64, f64)>) -> Line {
-    Line {
-        name: name.into(),
-        colour,
-        is_dashed: false,
-        points,
-    }
-}
-
-fn dashed(colour: RGBColor, points: Vec<(f64, f64)>) -> Line {
-    Line {
-        is_dashed: true,
-        ..line("", colour, points)
-    }
-}
-
-fn words(at: (f64, f64), words: String, side: HPos, shift: (i32, i32), colour: RGBColor) -> Mark {
+fn words(at: (f64, f64), words: String, side: HPos, shift: (i32, i32)) -> Mark {
     Mark {
         at,
         has_dot: false,
         words,
         side,
         shift,
-        colour,
+        colour: INK,
     }
 }
 
+/// Figures 3, 4 and 9.
+///
+/// # Errors
+/// Never for the γ that are drawn; the detector's refusal is passed on all the same.
+pub fn drafts() -> Result<[Draft; 3], DetectError> {
+    let draft = |prefix, words, panels: Vec<Panel>, x_name| Draft {
+        prefix,
+        name: String::new(),
+        topic: Topic::Detection,
+        words,
+        drawn: chart(&panels, x_name),
+    };
+    Ok([
+        draft("figure-3", densities_words(), densities(), "Statistic θ"),
+        draft(
+            "figure-4",
+            roc_words(),
+            roc()?,
+            "False alarms Pr(e | H = 0)",
+        ),
+        draft(
+            "figure-9",
+            pairs_words(),
+            pairs()?,
+            "Signal-to-noise ratio γ",
+        ),
+    ])
+}
+
 /// Figure 3: the densities of Θ under both hypotheses.
-pub fn densities() -> Vec<Panel> {
+fn densities() -> Vec<Panel> {
     let (mut lines, mut marks) = (Vec::new(), Vec::new());
-    for (gamma, colour) in [1.0, 2.0, 3.0].into_iter().zip(OKABE_ITO) {
+    for (gamma, colour) in [1.0, 2.0, 3.0].into_iter().zip(PALETTE) {
         for sign in [-1.0, 1.0] {
             let mean = 0.5 * sign * gamma * gamma;
             let density = |theta: f64| {
@@ -54,10 +67,9 @@ pub fn densities() -> Vec<Panel> {
             };
             lines.push(Line {
                 is_dashed: sign < 0.0,
-                ..line(
-                    "",
+                ..Line::new(
                     colour,
-                    steps(-14.0, 14.0, 280).map(|x| (x, density(x))).collect(),
+                    steps(-14.0, 14.0, 140).map(|x| (x, density(x))).collect(),
                 )
             });
             let side = if sign < 0.0 { HPos::Right } else { HPos::Left };
@@ -67,7 +79,6 @@ pub fn densities() -> Vec<Panel> {
                 name,
                 side,
                 (sign as i32 * 7, -9),
-                colour,
             ));
         }
     }
@@ -76,13 +87,15 @@ pub fn densities() -> Vec<Panel> {
         (14.0, "H = 1 (solid)", HPos::Right, -10),
     ];
     for (x, name, side, shift) in hypotheses {
-        marks.push(words((x, 0.45), name.into(), side, (shift, 16), INK));
+        marks.push(words((x, 0.45), name.into(), side, (shift, 16)));
     }
     vec![Panel {
         heading: "Probability density of the statistic Θ".into(),
         x: [-14.0, 14.0],
         y: [0.0, 0.45],
+        ticks: Vec::new(),
         height: 270,
+        key: Vec::new(),
         lines,
         marks,
     }]
@@ -92,32 +105,28 @@ pub fn densities() -> Vec<Panel> {
 ///
 /// # Errors
 /// Never for these γ; the detector's refusal is passed on all the same.
-pub fn roc() -> Result<Vec<Panel>, DetectError> {
+fn roc() -> Result<Vec<Panel>, DetectError> {
     let needed = required_gamma(paper::MAX_FALSE_ALARM, paper::MAX_MISS)?;
     let (mut lines, mut marks) = (Vec::new(), Vec::new());
     for limit in [
         vec![(0.0, paper::MAX_MISS), (1.0, paper::MAX_MISS)],
         vec![(paper::MAX_FALSE_ALARM, 0.0), (paper::MAX_FALSE_ALARM, 1.0)],
     ] {
-        lines.push(line("", RGBColor(170, 176, 184), limit));
+        lines.push(Line::new(GREY, limit).wide(1.0));
     }
-    for (k, (gamma, colour)) in [1.0, 2.0, 3.0, needed]
-        .into_iter()
-        .zip(OKABE_ITO)
-        .enumerate()
-    {
+    for (k, (gamma, colour)) in [1.0, 2.0, 3.0, needed].into_iter().zip(PALETTE).enumerate() {
         // Squares of even steps: the curve is steep at both ends.
         let rates = steps(0.0, 1.0, 100).map(|t| t * t * (3.0 - 2.0 * t));
         let points = rates.map(|rate| Ok((rate, roc_miss(gamma, rate)?)));
-        lines.push(line("", colour, points.collect::<Result<_, _>>()?));
+        lines.push(Line::new(colour, points.collect::<Result<_, _>>()?));
         let name = if gamma == needed {
             format!("γ = {}", fixed(gamma, 2))
         } else {
             format!("γ = {gamma}")
         };
         let height = 0.94 - 0.07 * k as f64;
-        lines.push(line("", colour, vec![(0.60, height), (0.68, height)]));
-        marks.push(words((0.70, height), name, HPos::Left, (0, 0), INK));
+        lines.push(Line::new(colour, vec![(0.60, height), (0.68, height)]));
+        marks.push(words((0.70, height), name, HPos::Left, (0, 0)));
     }
     marks.push(Mark {
         at: (paper::MAX_FALSE_ALARM, paper::MAX_MISS),
@@ -139,7 +148,9 @@ pub fn roc() -> Result<Vec<Panel>, DetectError> {
         heading: "Misses Pr(e | H = 1)".into(),
         x: [0.0, 1.0],
         y: [0.0, 1.0],
+        ticks: Vec::new(),
         height: 400,
+        key: Vec::new(),
         lines,
         marks,
     }])
@@ -149,22 +160,23 @@ pub fn roc() -> Result<Vec<Panel>, DetectError> {
 ///
 /// # Errors
 /// Never for these γ; the detector's refusal is passed on all the same.
-pub fn pairs() -> Result<Vec<Panel>, DetectError> {
+fn pairs() -> Result<Vec<Panel>, DetectError> {
     let curve = steps(0.0, 5.0, 200).map(|gamma| Ok((gamma, two_afc(gamma)?)));
     let gamma = gamma_from_two_afc(paper::ACCURACY_6_6)?;
     let printed = paper::GAMMA_OF_ACCURACY;
     let at_printed = two_afc(printed)?;
     let lines = vec![
-        line("", INK, curve.collect::<Result<_, _>>()?),
-        dashed(
+        Line::new(INK, curve.collect::<Result<_, _>>()?),
+        Line::new(
             BLUE,
             vec![
                 (0.0, paper::ACCURACY_6_6),
                 (gamma, paper::ACCURACY_6_6),
                 (gamma, 0.5),
             ],
-        ),
-        dashed(VERMILION, vec![(printed, at_printed), (printed, 0.5)]),
+        )
+        .dashed(),
+        Line::new(VERMILION, vec![(printed, at_printed), (printed, 0.5)]).dashed(),
     ];
     let true_words = format!("true: γ = {}", fixed(gamma, 3));
     let printed_words = format!("paper: γ = {printed}, there {}", percent(at_printed));
@@ -174,23 +186,54 @@ pub fn pairs() -> Result<Vec<Panel>, DetectError> {
             "84 %".into(),
             HPos::Left,
             (8, -12),
-            BLUE,
         ),
-        words((gamma, 0.53), true_words, HPos::Right, (-7, 0), BLUE),
-        words(
-            (printed, 0.53),
-            printed_words,
-            HPos::Left,
-            (7, 0),
-            VERMILION,
-        ),
+        words((gamma, 0.53), true_words, HPos::Right, (-7, 0)),
+        words((printed, 0.53), printed_words, HPos::Left, (7, 0)),
     ];
     Ok(vec![Panel {
         heading: "Probability of choosing the right one of a pair".into(),
         x: [0.0, 5.0],
         y: [0.5, 1.0],
+        ticks: Vec::new(),
         height: 300,
+        key: Vec::new(),
         lines,
         marks,
     }])
+}
+
+fn densities_words() -> Words {
+    Words {
+        title: "Figure 3. Probability distributions of the statistic Θ".into(),
+        caption: "Equation (8) for γ = 1, 2 and 3: Θ is normal with mean −γ²/2 without inclusion (dashed) and +γ²/2 \
+                  with one (solid), and standard deviation γ. The text of the paper names no γ for its Figure 3, so these \
+                  may be others; the law is the same."
+            .into(),
+        alt: "Line chart of three pairs of bell curves, mirror images about θ = 0; the larger γ, the wider and the \
+              further apart."
+            .into(),
+    }
+}
+
+fn roc_words() -> Words {
+    Words {
+        title: "Figure 4. Receiver operating characteristic".into(),
+        caption: "Misses against false alarms as the threshold moves, in closed form: Φ(Φ⁻¹(1 − P_fa) − γ). As in the \
+                  paper's Figure 4, the point of 5 % misses and 5 % false alarms is marked (dot). The paper reads γ > 3.3 \
+                  off its graph; the point lies on the curve of γ = 2Φ⁻¹(0.95) = 3.29."
+            .into(),
+        alt: "Line chart of misses against false alarms, four falling curves for γ from 1 to 3.29; the last runs \
+              through the point with 5 % of each."
+            .into(),
+    }
+}
+
+fn pairs_words() -> Words {
+    Words {
+        title: "Figure 9. Probability of choosing correctly in pairs".into(),
+        caption: "Φ(γ/√2). The paper reads γ = 1.45 off its Figure 9 for its 84 %; the curve has 84 % at γ = 1.406, \
+                  and 84.7 % at 1.45."
+            .into(),
+        alt: "Line chart rising from one half at γ = 0 towards 1, with 84 % marked at γ = 1.406.".into(),
+    }
 }
