@@ -24,7 +24,7 @@
 
 #[cfg(feature = "cli")]
 pub mod cli;
-#[cfg(feature = "fem")]
+#[cfg(feature = "oracle")]
 pub mod conform;
 #[cfg(feature = "std")]
 pub mod csv;
@@ -34,7 +34,7 @@ pub mod fem;
 #[cfg(feature = "std")]
 pub mod force_map;
 pub mod hid;
-#[cfg(feature = "fem")]
+#[cfg(feature = "oracle")]
 pub mod oracle;
 #[cfg(feature = "std")]
 pub mod phantom;

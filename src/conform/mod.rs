@@ -12,7 +12,6 @@
 //! | `judge.rs` | one answer against what was expected |
 //! | `verdict.rs` | what came out, as counts, likely bugs and failures |
 //! | `junit.rs`, `table.rs` | the verdict for CI and for people |
-//! | `sha256.rs` | the hash that names a suite |
 
 mod case;
 mod check;
@@ -21,7 +20,6 @@ mod judge;
 mod junit;
 mod partner;
 mod run;
-pub mod sha256;
 mod suite;
 mod table;
 #[cfg(test)]

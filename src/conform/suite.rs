@@ -6,9 +6,9 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::Value;
 use serde_json::value::RawValue;
+use sha2::Digest;
 
 use super::case::{Case, CaseText, ToleranceText};
-use super::sha256::{Sha256, hexadecimal};
 use super::{check, embedded};
 
 /// What a bug is.
@@ -146,13 +146,13 @@ impl Suite {
         let mut lines = String::new();
         let mut sums = BTreeMap::new();
         for (name, text) in &files {
-            let sum = hexadecimal(&Sha256::of(text.as_bytes()));
+            let sum = sha256(text);
             lines.push_str(&format!("{sum}  {name}\n"));
             sums.insert(&name[..], sum);
         }
-        let sha256 = hexadecimal(&Sha256::of(lines.as_bytes()));
+        let sha256_of_all = sha256(&lines);
         if let Some(text) = manifest {
-            check_manifest(&text, &sums, &sha256)?;
+            check_manifest(&text, &sums, &sha256_of_all)?;
         }
         let mut groups: Vec<Group> = Vec::new();
         let mut ids = HashSet::new();
@@ -171,7 +171,10 @@ impl Suite {
             }
             groups.push(group);
         }
-        Ok(Suite { groups, sha256 })
+        Ok(Suite {
+            groups,
+            sha256: sha256_of_all,
+        })
     }
 
     /// The groups of these names, or all if there are no names. The hash stays that of the whole.
@@ -187,6 +190,12 @@ impl Suite {
     pub fn cases(&self) -> usize {
         self.groups.iter().map(|group| group.cases.len()).sum()
     }
+}
+
+/// The SHA-256 of a text, in hexadecimal.
+fn sha256(text: &str) -> String {
+    let digest = sha2::Sha256::digest(text);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Implements: VEC-007.
