@@ -83,7 +83,7 @@ fn evidence(what: &str, fit: &ConventionFit) -> String {
         String::new()
     };
     format!(
-        "{what} {} fits best: with a noise level for each subject{lapse} the deviance is {:.1} where {:.1} ± {:.1} is expected, p = {}.",
+        "{what}, “{}” fits best: with a noise level for each subject{lapse} the deviance is {:.1} where {:.1} ± {:.1} is expected, p = {}.",
         fit.name,
         best.deviance,
         best.expected_deviance,
@@ -131,12 +131,12 @@ fn heterogeneity(fits: &[ConventionFit]) -> String {
     let gain = common.aic - best.by_subject.aic;
     if gain > 0.0 {
         format!(
-            "Subjects differ: for {} one noise level for all, {:.3} N, has an AIC larger by {gain:.0} than one for each.",
+            "Subjects differ: for “{}”, one noise level for all, {:.3} N, has an AIC larger by {gain:.0} than one for each.",
             best.name, common.noise
         )
     } else {
         format!(
-            "One noise level for all, {:.3} N for {}, is enough: its AIC is smaller by {:.0} than with one for each.",
+            "One noise level for all, {:.3} N for “{}”, is enough: its AIC is smaller by {:.0} than with one for each.",
             common.noise, best.name, -gain
         )
     }
@@ -162,7 +162,7 @@ fn against_table_2(fits: &[ConventionFit]) -> Option<String> {
         "at least as large, so that Table 2 leaves room for it"
     };
     Some(format!(
-        "The one noise level for {}, {noise:.3} N, is {:.2} of the {table:.3} N that Table 2 of the paper adds up to for playback: {remark}.",
+        "The one noise level for “{}”, {noise:.3} N, is {:.2} of the {table:.3} N that Table 2 of the paper adds up to for playback: {remark}.",
         fit.name,
         noise / table
     ))
@@ -185,7 +185,7 @@ fn best(
 
 fn p_value(p: f64) -> String {
     if p < 0.001 {
-        format!("{p:.0e}")
+        format!("{p:.0e}").replace('-', "−")
     } else {
         format!("{p:.3}")
     }
