@@ -106,10 +106,14 @@ pub fn compare(
             if tolerance.accepts(e, a, times) && a.is_finite() {
                 return Ok(());
             }
-            let ulps = (a - e).abs() / ulp(e);
+            let distance = (a - e).abs();
+            let ulps = match distance / ulp(e) {
+                ulps if ulps < 1e6 => format!(", {ulps:.1} ulp"),
+                ulps if ulps.is_finite() => format!(", {ulps:.1e} ulp"),
+                _ => String::new(),
+            };
             differs(format!(
-                "is {found}, expected {expected} within {tolerance}: off by {:e}, {ulps:.1} ulp",
-                (a - e).abs()
+                "is {found}, expected {expected} within {tolerance}: off by {distance:.2e}{ulps}"
             ))
         }
         _ if expected == found => Ok(()),
