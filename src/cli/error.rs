@@ -3,6 +3,7 @@
 use crate::fem::FemError;
 use crate::force_map::ForceMapFileError;
 use crate::phantom::PhantomFileError;
+use crate::psychophysics::{PsychophysicsError, TableError};
 use crate::report::ReportError;
 use crate::trace::TraceError;
 
@@ -23,6 +24,12 @@ pub enum CliError {
     /// A trace is not valid, or not for these maps.
     #[error("{0}")]
     Trace(#[from] TraceError),
+    /// Counts of right answers are not valid.
+    #[error("{0}")]
+    Counts(#[from] TableError),
+    /// Counts and maps do not fit.
+    #[error("{0}")]
+    Psychophysics(#[from] PsychophysicsError),
     /// A map can not be played, or a device not be used.
     #[error("{0}")]
     Playback(String),

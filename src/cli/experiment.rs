@@ -72,7 +72,7 @@ enum Observer {
     Ideal,
 }
 
-fn named_file(text: &str) -> Result<(String, PathBuf), String> {
+pub(super) fn named_file(text: &str) -> Result<(String, PathBuf), String> {
     let (name, file) = text
         .split_once('=')
         .ok_or_else(|| format!("{text:?}: expected NAME=FILE, such as 6.6=map.json"))?;

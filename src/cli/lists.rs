@@ -46,6 +46,19 @@ pub fn positions(text: &str) -> Result<Positions, String> {
     }
 }
 
+/// Reads one length above 0 in mm, m.
+///
+/// # Errors
+/// A message that names the entry and what would be right.
+pub fn length(text: &str) -> Result<f64, String> {
+    let found = metres(text.trim())?;
+    if found > 0.0 {
+        Ok(found)
+    } else {
+        Err(format!("{text:?}: expected mm above 0, such as 2.5"))
+    }
+}
+
 fn metres(text: &str) -> Result<f64, String> {
     parse_scaled(text, -3).ok_or_else(|| format!("{text:?} is no number: expected mm, such as 2.5"))
 }

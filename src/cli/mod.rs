@@ -12,6 +12,8 @@ mod output;
 mod play;
 mod playback;
 mod progress;
+mod psychophysics;
+mod psychophysics_text;
 mod run;
 mod solve;
 mod timing;
@@ -52,6 +54,8 @@ enum Command {
     Devices(devices::DevicesArguments),
     /// The paper's experiment: pairs of samples, of which a subject says where the inclusion is.
     Experiment(experiment::ExperimentArguments),
+    /// Right answers of subjects: shares, differences, noise, and what of the force they used.
+    Psychophysics(psychophysics::PsychophysicsArguments),
     /// The time budget of the servo loop, on the simulated device.
     Timing(timing::TimingArguments),
 }
@@ -119,6 +123,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Play(arguments) => play::play(&arguments),
             Command::Devices(arguments) => devices::devices(&arguments),
             Command::Experiment(arguments) => experiment::experiment(&arguments),
+            Command::Psychophysics(arguments) => psychophysics::psychophysics(&arguments),
             Command::Timing(arguments) => timing::timing(&arguments),
         },
         Err(error) if !error.use_stderr() => output::print(&error.to_string()),

@@ -6,19 +6,49 @@
 //! | `journal.rs` | the answers so far, in a file that survives an abort |
 //! | `presentation.rs` | one sample played through device and servo, as it was felt |
 //! | `observer.rs` | the ideal observer, who decides by Θ |
+//! | `table.rs`, `table1.csv` | counts of right answers: Table 1 and files of its form |
+//! | `analysis.rs` | everything that the counts say by themselves, from the files below |
+//! | `rates.rs` | shares, intervals, γ |
+//! | `dispersion.rs`, `beta_binomial.rs` | subjects who differ |
+//! | `psychometric.rs` | the share over depth |
+//! | `choice.rs`, `search.rs` | the likelihood of answers in pairs, and how its top is found |
+//! | `conditions.rs` | conditions against one another, subjects as blocks |
+//! | `noise.rs` | the noise levels of the paper's §5 |
+//! | `bridge/` | force maps against the counts |
 
+mod analysis;
+mod beta_binomial;
+pub mod bridge;
+mod choice;
+mod conditions;
+mod dispersion;
+mod error;
 mod journal;
+mod noise;
 #[cfg(feature = "hid")]
 mod observer;
 mod plan;
 #[cfg(feature = "hid")]
 mod presentation;
+mod psychometric;
+mod rates;
+mod search;
+mod table;
 #[cfg(test)]
 mod tests;
 
+pub use analysis::{Analysis, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis, analyse};
+pub use beta_binomial::BetaBinomial;
+pub use conditions::{ConditionComparison, Difference, InclusionDifference};
+pub use dispersion::Dispersion;
+pub use error::PsychophysicsError;
 pub use journal::{Journal, JournalError, Setup};
+pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};
 #[cfg(feature = "hid")]
 pub use observer::{IdealObserver, ObserverError};
 pub use plan::{Interval, Plan, Trial};
 #[cfg(feature = "hid")]
 pub use presentation::{Felt, PresentationError, present};
+pub use psychometric::{Parameter, Psychometric};
+pub use rates::{Bounds, CONFIDENCE, Clustered, GammaEstimate, OpenBounds, Rate};
+pub use table::{Condition, Inclusion, MOST_TRIALS, Subject, Table, TableError, TableProblem};

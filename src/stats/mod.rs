@@ -7,6 +7,7 @@ pub mod binomial;
 pub mod compensated;
 pub mod normal;
 pub mod random;
+pub mod tails;
 mod ziggurat;
 
 #[cfg(test)]

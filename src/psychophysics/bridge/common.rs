@@ -1,0 +1,238 @@
+//! One noise level for all subjects.
+
+use super::{CommonFit, LapseFit, Observations};
+use crate::psychophysics::PsychophysicsError;
+use crate::psychophysics::choice::{Count, Perceived, best_lapse, log_likelihood};
+use crate::psychophysics::rates::{Bounds, CONFIDENCE};
+use crate::psychophysics::search::maximum;
+use crate::stats::tails::{f_tail, student_quantile};
+
+/// Cells of the search for ln(1/σ).
+const CELLS: u32 = 24;
+/// γ of the strongest signal below which answers are guesses (a share of 0.503), and of the weakest above
+/// which they are all right (wrong in 10⁻⁹ of the pairs).
+const GAMMAS: [f64; 2] = [0.01, 8.5];
+/// A pivot this small, relative to its diagonal, makes a covariance singular.
+const SINGULAR: f64 = 1e-12;
+
+/// Signals in N, at least one above 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signals(pub Vec<f64>);
+
+impl Signals {
+    /// What is perceived with noise 1/`sensitivity`, N.
+    pub fn perceived(&self, sensitivity: f64) -> Vec<Perceived> {
+        let at = |signal: &f64| Perceived::at_gamma(signal * sensitivity);
+        self.0.iter().map(at).collect()
+    }
+
+    /// The range of ln(1/σ) in which answers say anything.
+    pub fn range(&self) -> [f64; 2] {
+        let positive = || self.0.iter().copied().filter(|&signal| signal > 0.0);
+        let strongest = positive().fold(0.0, f64::max);
+        let weakest = positive().fold(strongest, f64::min);
+        [
+            libm::log(GAMMAS[0] / strongest),
+            libm::log(GAMMAS[1] / weakest),
+        ]
+    }
+
+    /// The most likely ln(1/σ) of `counts`, and its log-likelihood.
+    pub fn best(&self, counts: &[Count], lapse: Option<f64>) -> (f64, f64) {
+        let value = |log: f64| {
+            let perceived = self.perceived(libm::exp(log));
+            let lapse = lapse.unwrap_or_else(|| best_lapse(counts, &perceived));
+            log_likelihood(counts, &perceived, lapse)
+        };
+        let [low, high] = self.range();
+        maximum(value, low, high, CELLS)
+    }
+
+    /// dp/d ln(1/σ) of the probability ½ + ½F of a right answer at each inclusion.
+    pub fn slopes(&self, sensitivity: f64) -> Vec<f64> {
+        let slope = |signal: &f64| {
+            let half = 0.5 * signal * sensitivity;
+            // F = erf(γ/2), dF/d ln γ = 2 (γ/2) exp(−γ²/4)/√π.
+            half * libm::exp(-half * half) / libm::sqrt(core::f64::consts::PI)
+        };
+        self.0.iter().map(slope).collect()
+    }
+}
+
+/// Whether ln(1/σ) is inside its range, not at an end, where no noise level is likelier than all others.
+pub fn is_inside([low, high]: [f64; 2], log: f64) -> bool {
+    // A cell of the search is far wider than this.
+    let margin = 1e-3 * (high - low);
+    log > low + margin && log < high - margin
+}
+
+/// The noise level that fits the pooled counts best; `None` if there is none.
+///
+/// Implements: PSY-073, PSY-075, PSY-076.
+pub fn common(
+    signals: &Signals,
+    observed: &Observations,
+) -> Result<Option<CommonFit>, PsychophysicsError> {
+    let (log, value) = signals.best(&observed.pooled, Some(0.0));
+    if !is_inside(signals.range(), log) {
+        return Ok(None);
+    }
+    let perceived = signals.perceived(libm::exp(log));
+    let deviance = observed.deviance(value);
+    let degrees = signals.0.len() as u32 - 1;
+    let dispersed = observed.dispersion;
+    Ok(Some(CommonFit {
+        noise: libm::exp(-log),
+        noise_bounds: noise_bounds(signals, observed, log)?,
+        predicted: perceived.iter().map(|at| at.right(0.0)).collect(),
+        deviance,
+        degrees,
+        p_value_dispersed: match dispersed {
+            Some(dispersion) => dispersion.p_value(deviance, degrees)?,
+            None => None,
+        },
+        p_value_clustered: hotelling(signals, observed)?,
+        aic: observed.deviance_of_subjects(value) + 2.0,
+    }))
+}
+
+/// The noise level and share of lapses that fit the pooled counts best; `None` as for [`common`].
+///
+/// Implements: PSY-074.
+pub fn common_with_lapse(
+    signals: &Signals,
+    observed: &Observations,
+) -> Result<Option<LapseFit>, PsychophysicsError> {
+    let (log, value) = signals.best(&observed.pooled, None);
+    if !is_inside(signals.range(), log) {
+        return Ok(None);
+    }
+    let perceived = signals.perceived(libm::exp(log));
+    let lapse = best_lapse(&observed.pooled, &perceived);
+    let deviance = observed.deviance(value);
+    let degrees = (signals.0.len() as u32).saturating_sub(2);
+    Ok(Some(LapseFit {
+        noise: libm::exp(-log),
+        lapse,
+        predicted: perceived.iter().map(|at| at.right(lapse)).collect(),
+        deviance,
+        degrees,
+        p_value_dispersed: match observed.dispersion {
+            Some(dispersion) => dispersion.p_value(deviance, degrees)?,
+            None => None,
+        },
+        aic: observed.deviance_of_subjects(value) + 4.0,
+    }))
+}
+
+/// Student's interval of ln σ by the subjects' scores, σ: with U_i the derivative of the log-likelihood of
+/// subject i and I the information, the variance is m/(m−1) Σ U_i²/I².
+///
+/// Implements: PSY-075.
+fn noise_bounds(
+    signals: &Signals,
+    observed: &Observations,
+    log: f64,
+) -> Result<Option<Bounds>, PsychophysicsError> {
+    let subjects = observed.subjects.len() as f64;
+    if observed.subjects.len() < 2 {
+        return Ok(None);
+    }
+    let sensitivity = libm::exp(log);
+    let (perceived, slopes) = (signals.perceived(sensitivity), signals.slopes(sensitivity));
+    let (mut squares, mut information) = (0.0, 0.0);
+    for counts in &observed.subjects {
+        let mut score = 0.0;
+        for ((count, at), slope) in counts.iter().zip(&perceived).zip(&slopes) {
+            let (right, wrong) = (at.right(0.0), at.wrong(0.0));
+            if *slope > 0.0 && wrong > 0.0 {
+                score += slope * (count.right / right - count.wrong / wrong);
+                information += slope * slope * (count.right + count.wrong) / (right * wrong);
+            }
+        }
+        squares += score * score;
+    }
+    let error = libm::sqrt(subjects / (subjects - 1.0) * squares) / information;
+    let reach = libm::exp(student_quantile(CONFIDENCE, subjects - 1.0)? * error);
+    let noise = libm::exp(-log);
+    let (lower, upper) = (noise / reach, noise * reach);
+    Ok((upper.is_finite() && lower > 0.0).then_some(Bounds { lower, upper }))
+}
+
+/// The p-value of the smallest T² = m (p̄ − p(σ))ᵀS⁻¹(p̄ − p(σ)) over σ, p̄ and S the mean and covariance of the
+/// shares of the m subjects: with q = inclusions − 1 restrictions, (m−q)/(q(m−1)) T² has the F law with q and
+/// m − q degrees of freedom. `None` with too few subjects, or if S is singular.
+///
+/// Implements: PSY-076.
+fn hotelling(
+    signals: &Signals,
+    observed: &Observations,
+) -> Result<Option<f64>, PsychophysicsError> {
+    let inclusions = signals.0.len();
+    let (m, q) = (observed.subjects.len() as f64, inclusions as f64 - 1.0);
+    if observed.subjects.len() <= inclusions {
+        return Ok(None);
+    }
+    let share = |count: &Count| count.right / (count.right + count.wrong);
+    let shares: Vec<Vec<f64>> = observed
+        .subjects
+        .iter()
+        .map(|counts| counts.iter().map(share).collect())
+        .collect();
+    let means: Vec<f64> = (0..inclusions)
+        .map(|j| shares.iter().map(|row| row[j]).sum::<f64>() / m)
+        .collect();
+    let covariance = |i: usize, j: usize| {
+        let product = |row: &Vec<f64>| (row[i] - means[i]) * (row[j] - means[j]);
+        shares.iter().map(product).sum::<f64>() / (m - 1.0)
+    };
+    let Some(factor) = cholesky(inclusions, covariance) else {
+        return Ok(None);
+    };
+    let less_t_squared = |log: f64| {
+        let perceived = signals.perceived(libm::exp(log));
+        let rest = means
+            .iter()
+            .zip(&perceived)
+            .map(|(mean, at)| mean - at.right(0.0));
+        -m * solved_square(&factor, rest)
+    };
+    let [low, high] = signals.range();
+    let t_squared = -maximum(less_t_squared, low, high, CELLS).1;
+    Ok(Some(f_tail(
+        (m - q) / (q * (m - 1.0)) * t_squared,
+        q,
+        m - q,
+    )?))
+}
+
+/// The rows of L in S = LLᵀ; `None` if S is singular.
+fn cholesky(order: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Vec<Vec<f64>>> {
+    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(order);
+    for i in 0..order {
+        let mut row = Vec::with_capacity(i + 1);
+        for j in 0..i {
+            let above: &Vec<f64> = &rows[j];
+            let dot: f64 = (0..j).map(|k| row[k] * above[k]).sum();
+            row.push((entry(i, j) - dot) / above[j]);
+        }
+        let diagonal = entry(i, i);
+        let pivot = diagonal - row.iter().map(|l| l * l).sum::<f64>();
+        if pivot.is_nan() || pivot <= SINGULAR * diagonal {
+            return None;
+        }
+        row.push(libm::sqrt(pivot));
+        rows.push(row);
+    }
+    Some(rows)
+}
+
+/// |L⁻¹v|².
+fn solved_square(factor: &[Vec<f64>], vector: impl Iterator<Item = f64>) -> f64 {
+    let mut solved: Vec<f64> = Vec::with_capacity(factor.len());
+    for (row, entry) in factor.iter().zip(vector) {
+        let dot: f64 = solved.iter().zip(row).map(|(x, l)| x * l).sum();
+        solved.push((entry - dot) / row[solved.len()]);
+    }
+    solved.iter().map(|x| x * x).sum()
+}

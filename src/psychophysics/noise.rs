@@ -1,0 +1,194 @@
+//! The noise levels of the paper's §5, recomputed.
+
+use serde::Serialize;
+
+use super::rates::{GammaEstimate, OpenBounds, Rate, clustered};
+use super::{PsychophysicsError, Table};
+use crate::detect::noise_budget::noise_total;
+
+/// "The peak signal strength for this inclusion is 340mN" (§5, 6.6 mm), N.
+pub const PEAK_SIGNAL: f64 = 0.340;
+/// "the subjects are operating near γ = 1.45" (§5).
+pub const PRINTED_GAMMA: f64 = 1.45;
+/// Table 2, sensor, N.
+pub const SENSOR: f64 = 0.020;
+/// Table 2, actuation quantization, N.
+pub const QUANTIZATION: f64 = 0.5e-3;
+/// Table 2, actuation backdrive friction, N.
+pub const BACKDRIVE_FRICTION: f64 = 0.140;
+/// Table 2, unmodelled direct contact, N.
+pub const UNMODELLED_CONTACT: f64 = 0.200;
+/// Table 2, human perception, N.
+pub const HUMAN_PERCEPTION: f64 = 0.093;
+/// The paper's condition and inclusion: FEM data, 6.6 mm.
+const PLAYBACK: (usize, usize) = (1, 2);
+
+/// The noise levels of §5.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NoiseDecomposition {
+    /// Each level.
+    pub levels: Vec<NoiseLevel>,
+    /// Whether the noise that Table 2 explains is within the intervals of the noise that the answers
+    /// show, in words: the paper calls it "reasonable given the confidence intervals".
+    pub agreement: String,
+}
+
+/// One of the paper's noise levels beside ours.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NoiseLevel {
+    /// Where it comes from.
+    pub name: &'static str,
+    /// The paper's number, N, if it prints one.
+    #[serde(rename = "printed_n")]
+    pub printed: Option<f64>,
+    /// Ours, N.
+    #[serde(rename = "noise_n")]
+    pub noise: f64,
+    /// The interval that follows from all answers together, N; `None` for sums of Table 2.
+    #[serde(rename = "pooled_bounds_n")]
+    pub pooled_bounds: Option<OpenBounds>,
+    /// The interval with the subjects as the sample, N.
+    #[serde(rename = "clustered_bounds_n")]
+    pub clustered_bounds: Option<OpenBounds>,
+    /// How it is computed, in words.
+    pub formula: String,
+    /// What that takes for granted.
+    pub assumption: &'static str,
+}
+
+/// Noise of a signal (N) with a γ: signal/γ, and the interval the other way round; a lower end is 0 where
+/// γ has no bound, an upper end missing where γ may be 0.
+///
+/// Implements: PSY-060.
+pub fn noise_bounds(signal: f64, gamma: GammaEstimate) -> (Option<f64>, OpenBounds) {
+    let quotient = |gamma: Option<f64>| match gamma {
+        None => Some(0.0),
+        Some(0.0) => None,
+        Some(gamma) => Some(signal / gamma),
+    };
+    let noise = quotient(gamma.gamma).filter(|&noise| noise > 0.0);
+    let bounds = OpenBounds {
+        lower: quotient(gamma.upper),
+        upper: quotient(gamma.lower),
+    };
+    (noise, bounds)
+}
+
+/// The noise levels of §5 from Table 2 and from the answers to FEM playback at 6.6 mm.
+///
+/// # Errors
+/// Never for the paper's own numbers.
+///
+/// Implements: PSY-061, PSY-062.
+pub fn paper_noise_levels() -> Result<NoiseDecomposition, PsychophysicsError> {
+    let answers = from_answers()?;
+    let playback = sum(
+        "playback of FEM data, from Table 2",
+        Some(0.170),
+        &[QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION],
+        "the sources are independent, so that their variances add; the human perception of Jones (1998) holds for this hand and handle",
+    )?;
+    let agreement = agreement(&answers, playback.noise);
+    let printed = NoiseLevel {
+        name: "answers to FEM playback at 6.6 mm, as printed",
+        printed: Some(0.235),
+        noise: PEAK_SIGNAL / PRINTED_GAMMA,
+        pooled_bounds: None,
+        clustered_bounds: None,
+        formula: format!("{} mN / {PRINTED_GAMMA}", millinewtons(PEAK_SIGNAL)),
+        assumption: "γ is 1.45, as the paper read it off its Figure 9, where 84 % is 1.406",
+    };
+    let direct = sum(
+        "direct contact, from Table 2",
+        Some(0.220),
+        &[UNMODELLED_CONTACT, HUMAN_PERCEPTION],
+        "the sources are independent, and the 200 mN of friction, hysteresis and nonlinearity, which the paper does not derive, are right",
+    )?;
+    let measured = sum(
+        "playback of measured data, from Table 2",
+        None,
+        &[SENSOR, QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION],
+        "the sources are independent; the paper prints no such sum, and it would be as small as that of FEM data, although the answers are poorer",
+    )?;
+    Ok(NoiseDecomposition {
+        levels: vec![printed, answers, playback, direct, measured],
+        agreement,
+    })
+}
+
+/// The peak signal of §5 over the γ of the 253 of 300.
+fn from_answers() -> Result<NoiseLevel, PsychophysicsError> {
+    let table = Table::paper()?;
+    let condition = &table.conditions()[PLAYBACK.0];
+    let (correct, trials) = condition.pooled(PLAYBACK.1);
+    let pooled = Rate::new(correct, trials)?;
+    let clustered = clustered(&condition.counts(PLAYBACK.1), &pooled)?;
+    let (noise, pooled_bounds) = noise_bounds(PEAK_SIGNAL, pooled.gamma);
+    Ok(NoiseLevel {
+        name: "answers to FEM playback at 6.6 mm",
+        printed: None,
+        noise: noise.unwrap_or_default(),
+        pooled_bounds: Some(pooled_bounds),
+        clustered_bounds: clustered.map(|found| noise_bounds(PEAK_SIGNAL, found.gamma).1),
+        formula: format!(
+            "{} mN / (√2 Φ⁻¹({correct}/{trials}))",
+            millinewtons(PEAK_SIGNAL)
+        ),
+        assumption: "all subjects have one noise, and decide by the force at the one position of the peak",
+    })
+}
+
+fn sum(
+    name: &'static str,
+    printed: Option<f64>,
+    sources: &[f64],
+    assumption: &'static str,
+) -> Result<NoiseLevel, PsychophysicsError> {
+    let squares: Vec<String> = sources
+        .iter()
+        .map(|&source| format!("{}²", millinewtons(source)))
+        .collect();
+    Ok(NoiseLevel {
+        name,
+        printed,
+        noise: noise_total(sources)?.total,
+        pooled_bounds: None,
+        clustered_bounds: None,
+        formula: format!("√({}) mN", squares.join(" + ")),
+        assumption,
+    })
+}
+
+/// A source of Table 2 in mN: they have at most one decimal.
+fn millinewtons(force: f64) -> f64 {
+    libm::round(force * 1e4) / 10.0
+}
+
+/// Implements: PSY-062.
+fn agreement(answers: &NoiseLevel, explained: f64) -> String {
+    let said = |name: &str, bounds: Option<OpenBounds>| {
+        let Some(OpenBounds { lower, upper }) = bounds else {
+            return format!("{name}: no interval");
+        };
+        let lower = lower.unwrap_or(0.0);
+        let within = explained >= lower && upper.is_none_or(|upper| explained <= upper);
+        let upper = upper.map_or("no upper bound".into(), |upper| {
+            format!("{:.0} mN", upper * 1e3)
+        });
+        format!(
+            "{} the 95 % interval of {name} ({:.0} mN to {upper})",
+            if within { "inside" } else { "outside" },
+            lower * 1e3
+        )
+    };
+    format!(
+        "The paper calls the {:.0} mN that Table 2 explains \"reasonable given the confidence intervals\" of the noise in the answers, {:.0} mN. It lies {}, and {}.",
+        explained * 1e3,
+        answers.noise * 1e3,
+        said(
+            "all answers pooled, as the paper draws them",
+            answers.pooled_bounds
+        ),
+        said("the subjects as the sample", answers.clustered_bounds),
+    )
+}
