@@ -1,6 +1,7 @@
 //! The command line (`spec/command-line.md`).
 
 mod config;
+mod conform;
 mod detect;
 mod detection;
 mod devices;
@@ -8,6 +9,7 @@ mod error;
 mod experiment;
 mod import;
 mod lists;
+mod oracle;
 mod output;
 mod play;
 mod playback;
@@ -58,6 +60,10 @@ enum Command {
     Psychophysics(psychophysics::PsychophysicsArguments),
     /// The time budget of the servo loop, on the simulated device.
     Timing(timing::TimingArguments),
+    /// Answers questions in lines of JSON, for other implementations to compare with.
+    Oracle(oracle::OracleArguments),
+    /// Asks another program the questions of the vectors, and says what it gets wrong.
+    Conform(conform::ConformArguments),
 }
 
 /// How an answer is printed.
@@ -125,6 +131,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Experiment(arguments) => experiment::experiment(&arguments),
             Command::Psychophysics(arguments) => psychophysics::psychophysics(&arguments),
             Command::Timing(arguments) => timing::timing(&arguments),
+            Command::Oracle(arguments) => oracle::oracle(&arguments),
+            Command::Conform(arguments) => conform::conform(&arguments),
         },
         Err(error) if !error.use_stderr() => output::print(&error.to_string()),
         Err(error) => Err(CliError::usage(&error)),

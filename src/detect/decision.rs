@@ -84,6 +84,9 @@ pub fn map_threshold(prior_h1: f64) -> Result<f64, DetectError> {
     // there.
     Ok(if p > 0.25 && p < 0.75 {
         libm::log1p((1.0 - 2.0 * p) / p)
+    } else if p < 1e-300 {
+        // The quotient may overflow; 1 − p is 1.
+        -libm::log(p)
     } else {
         libm::log((1.0 - p) / p)
     })

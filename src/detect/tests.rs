@@ -367,6 +367,9 @@ fn threshold_of_largest_posterior() {
         (0.4999, 0.0004000000053332894),
         (0.7, -0.8472978603872034),
         (0.999, -6.906754778648553),
+        (1e-300, 690.7755278982137),
+        // 1/p is beyond the largest number.
+        (5e-324, 744.4400719213812),
     ] {
         assert_ulps(map_threshold(prior).unwrap(), expected, 4.0);
     }

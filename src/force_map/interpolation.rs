@@ -20,13 +20,15 @@ struct Cell {
 }
 
 impl Cell {
-    /// The cell of `position` (m) on an axis of at least two entries.
-    fn find(axis: &[f64], position: f64) -> Cell {
+    /// The cell of `position` (m) on an axis of at least two entries; `None` if it is wider than the
+    /// largest number, so that no fraction has a meaning.
+    fn find(axis: &[f64], position: f64) -> Option<Cell> {
         let passed = axis.partition_point(|&entry| entry <= position);
         let index = passed.saturating_sub(1).min(axis.len() - 2);
         let (start, end) = (axis[index], axis[index + 1]);
-        let fraction = (position - start) / (end - start);
-        Cell { index, fraction }
+        let width = end - start;
+        let fraction = (position - start) / width;
+        width.is_finite().then_some(Cell { index, fraction })
     }
 
     /// (1 − t) a + t b, which is a at t = 0 and b at t = 1 to the bit.
@@ -55,26 +57,37 @@ impl ForceTable {
                 return Err(InvalidForceMap::SinglePosition { key });
             }
         }
-        let row = Cell::find(self.depths(), depth);
-        let column = Cell::find(self.laterals(), lateral);
-        let along =
-            |entries: &[f64]| column.blend(entries[column.index], entries[column.index + 1]);
         let value = |matrix: &Matrix| {
-            row.blend(
-                along(matrix.row(row.index)),
-                along(matrix.row(row.index + 1)),
-            )
+            interpolate(self.depths(), self.laterals(), matrix, depth, lateral)
+                .ok_or(InvalidForceMap::ForceTooLarge { depth, lateral })
         };
-        let force = ProbeForce {
-            lateral: value(self.lateral_force()),
-            normal: value(self.normal_force()),
-        };
-        if force.lateral.is_finite() && force.normal.is_finite() {
-            Ok(force)
-        } else {
-            Err(InvalidForceMap::ForceTooLarge { depth, lateral })
-        }
+        Ok(ProbeForce {
+            lateral: value(self.lateral_force())?,
+            normal: value(self.normal_force())?,
+        })
     }
+}
+
+/// The entry of `matrix` at a pose (m), by the bilinear form of its cell; outside the axes (m, at
+/// least two entries each, increasing; as many as the matrix has rows and columns), by that of the
+/// nearest border cell, continued. `None` if it is beyond the range of f64.
+///
+/// Implements: MAP-060, MAP-062.
+pub fn interpolate(
+    depths: &[f64],
+    laterals: &[f64],
+    matrix: &Matrix,
+    depth: f64,
+    lateral: f64,
+) -> Option<f64> {
+    let row = Cell::find(depths, depth)?;
+    let column = Cell::find(laterals, lateral)?;
+    let along = |entries: &[f64]| column.blend(entries[column.index], entries[column.index + 1]);
+    let value = row.blend(
+        along(matrix.row(row.index)),
+        along(matrix.row(row.index + 1)),
+    );
+    value.is_finite().then_some(value)
 }
 
 #[cfg(test)]
@@ -135,6 +148,11 @@ mod tests {
         assert!(refused(f64::NAN, 0.0).starts_with("depth = NaN"));
         assert!(refused(0.0, f64::INFINITY).starts_with("lateral position = inf"));
         assert!(refused(1e200, 1e200).contains("beyond"));
+        // A cell whose width is infinite would make every fraction 0.
+        let matrix = || Matrix::new(2, vec![1.0, 2.0, 3.0, 4.0]).unwrap();
+        let wide = vec![-1e308, 1e308];
+        let wide = ForceTable::new(vec![0.0, 1.0], wide, matrix(), matrix()).unwrap();
+        assert!(wide.force(0.0, 1e307).is_err());
         let one = || Matrix::new(2, vec![1.0, 2.0]).unwrap();
         let single = ForceTable::new(vec![0.0], vec![0.0, 1.0], one(), one()).unwrap();
         let error = single.force(0.0, 0.0).unwrap_err().to_string();

@@ -25,7 +25,7 @@ mod tests;
 pub use certificate::{Certificate, Discretization, SmallestDet};
 pub use error::InvalidForceMap;
 pub use file::{ForceMapFileError, ForceMapFileProblem};
-pub use interpolation::ProbeForce;
+pub use interpolation::{ProbeForce, interpolate};
 pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use sweep::Sweep;
 pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};

@@ -1,0 +1,58 @@
+//! The stiffness of one triangle with six nodes.
+
+use super::super::{Answer, Arguments, Code, Refusal};
+use crate::fem::Element;
+use crate::fem::element::StiffnessRule;
+use crate::phantom::Material;
+
+/// The stiffness matrix, Pa, of an element in plane strain, 1 m thick.
+pub fn stiffness(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+    let rows = arguments.rows("nodes_m")?;
+    let youngs_modulus = arguments.number("youngs_modulus_pa")?;
+    let poisson_ratio = arguments.number("poissons_ratio")?;
+    let node = |row: &Vec<f64>| <[f64; 2]>::try_from(&row[..]).ok();
+    let nodes: Option<Vec<[f64; 2]>> = rows.iter().map(node).collect();
+    let Some(nodes) = nodes.filter(|nodes| nodes.len() == Element::T6.nodes()) else {
+        return Err(Refusal::argument(
+            "nodes_m",
+            "is expected to be six pairs [x, y]",
+        ));
+    };
+    if youngs_modulus <= 0.0 {
+        return Err(Refusal::range(
+            "youngs_modulus_pa",
+            format_args!("is {youngs_modulus}, expected above 0"),
+        ));
+    }
+    if !(poisson_ratio > -1.0 && poisson_ratio < 0.5) {
+        return Err(Refusal::range(
+            "poissons_ratio",
+            format_args!("is {poisson_ratio}, expected above -1 and below 0.5"),
+        ));
+    }
+    let material = Material {
+        youngs_modulus,
+        poisson_ratio,
+    };
+    let stiffness = StiffnessRule::new(Element::T6)
+        .integrate(&nodes, &material)
+        .map_err(not_positive)?;
+    let rows: Vec<Vec<f64>> = stiffness.iter().map(|row| row.to_vec()).collect();
+    Ok(Answer::default().with("stiffness", rows))
+}
+
+fn not_positive(jacobian: f64) -> Refusal {
+    if jacobian.is_finite() {
+        Refusal::range(
+            "nodes_m",
+            format_args!(
+                "makes an element with the Jacobian {jacobian:e}, expected corners counter-clockwise and Jacobians above 0"
+            ),
+        )
+    } else {
+        Refusal::new(
+            Code::Overflow,
+            "nodes_m makes a Jacobian that is no finite number",
+        )
+    }
+}

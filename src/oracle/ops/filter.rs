@@ -1,0 +1,132 @@
+//! The matched filter, Θ in white and coloured noise, and the scan.
+
+use super::super::{Answer, Arguments, Code, Refusal};
+use crate::detect::coloured::{coloured_scratch, theta_coloured};
+use crate::detect::scan::Scan;
+use crate::detect::{Channels, MatchedFilter, theta_of_record};
+
+/// Most rows of a covariance: its factorisation takes n³/6 products.
+const MOST_ROWS: usize = 1000;
+/// Most products of a scan in each channel.
+const MOST_PRODUCTS: usize = 10_000_000;
+
+fn noise_sd(arguments: &mut Arguments) -> Result<Channels<f64>, Refusal> {
+    Ok(Channels {
+        x: arguments.number("noise_sd_x")?,
+        y: arguments.number("noise_sd_y")?,
+    })
+}
+
+fn series(
+    arguments: &mut Arguments,
+    x: &'static str,
+    y: &'static str,
+) -> Result<Channels<Vec<f64>>, Refusal> {
+    Ok(Channels {
+        x: arguments.numbers(x)?,
+        y: arguments.numbers(y)?,
+    })
+}
+
+fn slices(series: &Channels<Vec<f64>>) -> Channels<&[f64]> {
+    Channels {
+        x: &series.x,
+        y: &series.y,
+    }
+}
+
+/// b, σ and γ of a template.
+pub fn matched_filter(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+    let template = series(arguments, "template_x", "template_y")?;
+    let noise_sd = noise_sd(arguments)?;
+    let filter = MatchedFilter::new(slices(&template), noise_sd)?;
+    let (b, sigma) = (filter.b(), filter.sigma());
+    Ok(Answer::default()
+        .with("b_x", b.x)
+        .with("b_y", b.y)
+        .with("sigma_x", sigma.x)
+        .with("sigma_y", sigma.y)
+        .with("gamma", filter.gamma()))
+}
+
+/// θ, y(0) and γ of a record.
+pub fn theta(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+    let observed = series(arguments, "observed_x", "observed_y")?;
+    let f0 = series(arguments, "f0_x", "f0_y")?;
+    let f1 = series(arguments, "f1_x", "f1_y")?;
+    let noise_sd = noise_sd(arguments)?;
+    let found = theta_of_record(slices(&observed), slices(&f0), slices(&f1), noise_sd)?;
+    Ok(Answer::default()
+        .with("theta", found.theta)
+        .with("y_x", found.y.x)
+        .with("y_y", found.y.y)
+        .with("gamma", found.gamma))
+}
+
+/// θ and γ in coloured noise.
+pub fn theta_colored(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+    let residual = arguments.numbers("residual")?;
+    let template = arguments.numbers("template")?;
+    let covariance = arguments.rows("covariance")?;
+    let order = template.len();
+    if order > MOST_ROWS {
+        return Err(Refusal::range(
+            "template",
+            format_args!("has {order} samples, expected at most {MOST_ROWS}"),
+        ));
+    }
+    if order % 2 == 1 {
+        return Err(Refusal::argument(
+            "template",
+            format_args!("has {order} samples, expected as many lateral as normal ones"),
+        ));
+    }
+    if covariance.len() != order {
+        return Err(Refusal::argument(
+            "covariance",
+            format_args!("has {} rows, expected {order}", covariance.len()),
+        ));
+    }
+    for (row, entries) in covariance.iter().enumerate() {
+        if entries.len() != order {
+            return Err(Refusal::new(
+                Code::BadArgument,
+                format!(
+                    "covariance[{row}] has {} entries, expected {order}",
+                    entries.len()
+                ),
+            ));
+        }
+    }
+    let mut scratch = vec![0.0; coloured_scratch(order)];
+    let found = theta_coloured(&residual, &template, &covariance.concat(), &mut scratch)?;
+    Ok(Answer::default()
+        .with("theta", found.theta)
+        .with("gamma", found.gamma))
+}
+
+/// Θ at every shift with the whole template in the record.
+///
+/// Implements: ORA-011.
+pub fn scan(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+    let residual = series(arguments, "residual_x", "residual_y")?;
+    let template = series(arguments, "template_x", "template_y")?;
+    let noise_sd = noise_sd(arguments)?;
+    let (samples, length) = (residual.x.len(), template.x.len());
+    if length.saturating_mul((samples + 1).saturating_sub(length)) > MOST_PRODUCTS {
+        return Err(Refusal::range(
+            "template_x",
+            format_args!(
+                "of {length} samples on {samples} takes more than {MOST_PRODUCTS} products"
+            ),
+        ));
+    }
+    let scan = Scan::new(samples, slices(&template), noise_sd)?;
+    let mut theta = vec![0.0; samples - length + 1];
+    scan.theta(slices(&residual), 0, &mut theta)?;
+    let maximum = scan.maximum(slices(&residual), scan.full_shifts())?;
+    Ok(Answer::default()
+        .with("theta", theta)
+        .with("max_theta", maximum.theta)
+        .with("argmax", maximum.shift.unsigned_abs()))
+}

@@ -1,0 +1,36 @@
+//! The force on the probe.
+
+use super::super::{Answer, Arguments, Refusal};
+use crate::fem::{Contact, MeshOptions, Model, Pose};
+use crate::phantom::Phantom;
+
+/// Models that were made, each with the name of its phantom: at most one for each that is built in.
+pub type Models = Vec<(String, Model)>;
+
+/// The forces at one pose, on the mesh and with the contact that `palpate solve` takes by default.
+///
+/// Implements: ORA-012.
+pub fn force(models: &mut Models, arguments: &mut Arguments) -> Result<Answer, Refusal> {
+    let name = arguments.text("phantom")?;
+    let pose = Pose {
+        depth: arguments.number("depth_m")?,
+        lateral: arguments.number("lateral_m")?,
+    };
+    let phantom = Phantom::builtin(&name).map_err(|error| Refusal::range("phantom", error))?;
+    // Before the model is made: a pose that cannot be is cheap to refuse.
+    phantom
+        .check_pose(pose.depth, pose.lateral)
+        .map_err(|error| Refusal::range("pose:", error))?;
+    let solution = match models.iter().find(|(known, _)| *known == name) {
+        Some((_, model)) => model.solve(pose)?,
+        None => {
+            let model = Model::new(&phantom, &MeshOptions::default(), Contact::DeformedNormal)?;
+            let solution = model.solve(pose)?;
+            models.push((name, model));
+            solution
+        }
+    };
+    Ok(Answer::default()
+        .with("normal_force_n", solution.normal_force)
+        .with("lateral_force_n", solution.lateral_force))
+}

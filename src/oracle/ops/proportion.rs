@@ -1,0 +1,30 @@
+//! Intervals for a proportion.
+
+use super::super::{Answer, Arguments, Refusal};
+use crate::stats::binomial::{clopper_pearson, wilson};
+
+/// Most trials: the exact interval takes about √trials steps for each of some 120 tails.
+pub const MOST_TRIALS: i64 = 1_000_000_000;
+
+/// The interval of Clopper and Pearson or of Wilson.
+///
+/// Implements: ORA-011.
+pub fn interval(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+    let successes = arguments.whole("successes", 0, MOST_TRIALS)?.unsigned_abs();
+    let trials = arguments.whole("trials", 1, MOST_TRIALS)?.unsigned_abs();
+    let confidence = arguments.number("confidence")?;
+    let method = arguments.text("method")?;
+    let interval = match &method[..] {
+        "clopper_pearson" => clopper_pearson(successes, trials, confidence)?,
+        "wilson" => wilson(successes, trials, confidence)?,
+        _ => {
+            return Err(Refusal::range(
+                "method",
+                format_args!("is {method:?}, expected clopper_pearson or wilson"),
+            ));
+        }
+    };
+    Ok(Answer::default()
+        .with("lower", interval.lower)
+        .with("upper", interval.upper))
+}

@@ -1,0 +1,98 @@
+//! The servo kernel, to the bit.
+
+use std::fmt::Debug;
+
+use super::super::arguments::{not_bits, parse_bits};
+use super::super::{Answer, Arguments, Code, Refusal};
+use crate::servo::{Axis, Force, Table};
+
+/// Knots as the kernel stores them, with the reciprocals of the widths.
+///
+/// Implements: ORA-024.
+fn knots(arguments: &mut Arguments, name: &'static str) -> Result<(Vec<f32>, Vec<f32>), Refusal> {
+    let knots: Vec<f32> = arguments
+        .numbers(name)?
+        .into_iter()
+        .map(|knot| knot as f32)
+        .collect();
+    let reciprocals = knots
+        .windows(2)
+        .map(|pair| Axis::reciprocal_width(pair[0], pair[1]))
+        .collect();
+    Ok((knots, reciprocals))
+}
+
+fn axis_of<'a>(
+    name: &str,
+    (knots, reciprocals): &'a (Vec<f32>, Vec<f32>),
+) -> Result<Axis<'a>, Refusal> {
+    Axis::new(knots, reciprocals).map_err(|error| {
+        refused(
+            name,
+            error,
+            "2 to 1024 knots within 1 m, each at least 1e-6 m above the one before",
+        )
+    })
+}
+
+fn refused(name: &str, error: impl Debug, right: &str) -> Refusal {
+    Refusal::range(
+        name,
+        format_args!("is refused by the kernel, {error:?}: expected {right}"),
+    )
+}
+
+fn bits(value: f32) -> String {
+    format!("{:#010x}", value.to_bits())
+}
+
+/// Cell and fraction of a coordinate.
+pub fn axis(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+    let knots = knots(arguments, "knots")?;
+    let coordinate = arguments.bits("coordinate_bits")?;
+    let cell = axis_of("knots", &knots)?.locate(coordinate);
+    Ok(Answer::default()
+        .with("cell", cell.index)
+        .with("fraction_bits", bits(cell.fraction)))
+}
+
+/// The force of a table at a pose.
+pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+    let depth_knots = knots(arguments, "depth_knots")?;
+    let lateral_knots = knots(arguments, "lateral_knots")?;
+    let rows = arguments.rows_of_texts("table_bits")?;
+    let depth = arguments.bits("depth_bits")?;
+    let lateral = arguments.bits("lateral_bits")?;
+    let depths = axis_of("depth_knots", &depth_knots)?;
+    let laterals = axis_of("lateral_knots", &lateral_knots)?;
+    let forces = forces(&rows, depths.knots().len(), laterals.knots().len())?;
+    let table = Table::new(depths, laterals, &forces)
+        .map_err(|error| refused("table_bits", error, "numbers within 100 N"))?;
+    Ok(Answer::default().with("force_bits", bits(table.force(depth, lateral).normal)))
+}
+
+/// The entries of a table, both components alike.
+fn forces(rows: &[Vec<String>], depths: usize, laterals: usize) -> Result<Vec<Force>, Refusal> {
+    if rows.len() != depths || rows.iter().any(|row| row.len() != laterals) {
+        return Err(Refusal::argument(
+            "table_bits",
+            format_args!("is expected to have {depths} rows of {laterals} entries"),
+        ));
+    }
+    let mut forces = Vec::with_capacity(depths * laterals);
+    for (i, row) in rows.iter().enumerate() {
+        for (j, text) in row.iter().enumerate() {
+            let force = parse_bits(text).ok_or_else(|| {
+                Refusal::new(
+                    Code::BadArgument,
+                    format!("table_bits[{i}][{j}] {}", not_bits(text)),
+                )
+            })?;
+            forces.push(Force {
+                lateral: force,
+                normal: force,
+            });
+        }
+    }
+    Ok(forces)
+}

@@ -1,0 +1,827 @@
+//! `palpate oracle` as another program meets it: `spec/oracle.md`.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, Command, Stdio};
+use std::thread;
+
+use serde_json::{Value, json};
+
+fn start(command: &mut Command) -> Child {
+    command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts")
+}
+
+fn oracle() -> Child {
+    start(Command::new(env!("CARGO_BIN_EXE_palpate")).arg("oracle"))
+}
+
+/// The lines of answer to an input, written by a thread of its own so that no pipe fills up.
+fn lines_of(mut child: Child, input: Vec<u8>) -> Vec<String> {
+    let mut pipe = child.stdin.take().expect("its input");
+    let writer = thread::spawn(move || pipe.write_all(&input));
+    let output = child.wait_with_output().expect("it ends");
+    writer
+        .join()
+        .expect("the writer ends")
+        .expect("it reads all");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success() && stderr.is_empty(),
+        "{:?} {stderr}",
+        output.status
+    );
+    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    assert!(text.is_empty() || text.ends_with('\n'));
+    text.lines().map(str::to_string).collect()
+}
+
+fn answers(input: impl Into<Vec<u8>>) -> Vec<String> {
+    lines_of(oracle(), input.into())
+}
+
+/// The answer to one op.
+fn ask(op: &str, args: Value) -> Value {
+    let line = json!({"id": 7, "op": op, "args": args}).to_string();
+    let lines = answers(line);
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    let answer: Value = serde_json::from_str(&lines[0]).expect("JSON");
+    assert_eq!(answer["id"], 7);
+    answer
+}
+
+fn ok(op: &str, args: Value) -> Value {
+    let answer = ask(op, args);
+    assert!(answer["error"].is_null(), "{op}: {answer}");
+    answer["ok"].clone()
+}
+
+/// The code and message of a refusal.
+fn refused(op: &str, args: Value) -> (String, String) {
+    let answer = ask(op, args);
+    let text = |key| {
+        answer["error"][key]
+            .as_str()
+            .unwrap_or_else(|| panic!("{op}: {answer}"))
+            .to_string()
+    };
+    (text("code"), text("message"))
+}
+
+fn code_of(line: &str) -> String {
+    let answer: Value = serde_json::from_str(line).expect("JSON");
+    answer["error"]["code"].as_str().unwrap_or("ok").to_string()
+}
+
+const GOOD: &str = r#"{"id":"good","op":"normal_cdf","args":{"x":0}}"#;
+const GOOD_ANSWER: &str = r#"{"id":"good","ok":{"p":0.5}}"#;
+
+// Verifies: ORA-001, ORA-002, ORA-006.
+#[test]
+fn every_line_has_its_answer_whatever_it_is() {
+    let deep = "[".repeat(1_000_000);
+    let nested = format!(
+        r#"{{"id":2,"op":"normal_cdf","args":{{"x":{deep}{}}}}}"#,
+        "]".repeat(1_000_000)
+    );
+    let objects = r#"{"a":"#.repeat(500_000);
+    let garbage: &[(&[u8], &str)] = &[
+        (b"", "bad_json"),
+        (b"   ", "bad_json"),
+        (b"\r", "bad_json"),
+        (b"hello", "bad_json"),
+        (b"\xff\xfe\x00", "bad_json"),
+        (b"{\"id\":1,\"op\":\"\xc3\"}", "bad_json"),
+        (b"{\"id\":1", "bad_json"),
+        (b"{\"id\":1,\"op\":\"capabilities\"} {}", "bad_json"),
+        (
+            b"{\"id\":1,\"op\":\"normal_cdf\",\"args\":{\"x\":NaN}}",
+            "bad_json",
+        ),
+        (
+            b"{\"id\":1,\"op\":\"normal_cdf\",\"args\":{\"x\":Infinity}}",
+            "bad_json",
+        ),
+        (
+            b"{\"id\":1,\"op\":\"normal_cdf\",\"args\":{\"x\":01}}",
+            "bad_json",
+        ),
+        (b"{'id':1}", "bad_json"),
+        (b"\0", "bad_json"),
+        (b"null", "bad_request"),
+        (b"[]", "bad_request"),
+        (b"1e999", "bad_request"),
+        (b"{}", "bad_request"),
+        (b"{\"id\":null,\"op\":\"capabilities\"}", "bad_request"),
+        (b"{\"id\":[1],\"op\":\"capabilities\"}", "bad_request"),
+        (b"{\"id\":1}", "bad_request"),
+        (b"{\"id\":1,\"op\":5}", "bad_request"),
+        (b"{\"id\":1,\"op\":\"\\ud800\"}", "bad_request"),
+        (
+            b"{\"id\":1,\"id\":2,\"op\":\"capabilities\"}",
+            "bad_request",
+        ),
+        (
+            b"{\"id\":1,\"op\":\"capabilities\",\"more\":1}",
+            "bad_request",
+        ),
+        (b"{\"id\":1,\"op\":\"\"}", "unknown_op"),
+        (
+            b"{\"id\":1,\"op\":\"capabilities\",\"args\":[]}",
+            "bad_argument",
+        ),
+        (
+            b"{\"id\":1,\"op\":\"capabilities\",\"args\":{\"x\":1}}",
+            "bad_argument",
+        ),
+        (
+            b"{\"id\":1,\"op\":\"normal_cdf\",\"args\":{\"x\":1,\"x\":2}}",
+            "bad_argument",
+        ),
+        (
+            b"{\"id\":1,\"op\":\"normal_cdf\",\"args\":{\"x\":1e999}}",
+            "bad_argument",
+        ),
+        (
+            b"{\"id\":1,\"op\":\"normal_cdf\",\"args\":{\"x\":-1e999}}",
+            "bad_argument",
+        ),
+        (
+            b"{\"id\":1,\"op\":\"normal_cdf\",\"args\":{\"x\":true}}",
+            "bad_argument",
+        ),
+        (
+            b"{\"id\":1,\"op\":\"normal_cdf\",\"args\":null}",
+            "bad_argument",
+        ),
+        (deep.as_bytes(), "bad_json"),
+        (nested.as_bytes(), "bad_argument"),
+        (objects.as_bytes(), "bad_json"),
+    ];
+    let mut input = Vec::new();
+    for (line, _) in garbage {
+        input.extend_from_slice(line);
+        input.push(b'\n');
+        input.extend_from_slice(GOOD.as_bytes());
+        input.push(b'\n');
+    }
+    input.pop(); // the last line has no end
+    let lines = answers(input);
+    assert_eq!(lines.len(), 2 * garbage.len());
+    for (pair, (line, code)) in lines.chunks(2).zip(garbage) {
+        let line = String::from_utf8_lossy(&line[..line.len().min(100)]);
+        assert_eq!(code_of(&pair[0]), *code, "{line}: {}", pair[0]);
+        assert_eq!(pair[1], GOOD_ANSWER, "after {line}");
+        assert!(pair[0].len() < 3000, "{line}: the answer quotes it all");
+    }
+}
+
+// Verifies: ORA-002.
+#[test]
+fn no_input_is_no_answer() {
+    assert!(answers("").is_empty());
+    let code = |bytes: &str| {
+        answers(bytes)
+            .iter()
+            .map(|line| code_of(line))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(code("\n"), ["bad_json"]);
+    assert_eq!(code(" "), ["bad_json"]);
+}
+
+// Verifies: ORA-004.
+#[test]
+fn the_id_comes_back_as_it_was_written() {
+    for id in [
+        "0",
+        "-0",
+        "1.0",
+        "1e2",
+        "1E+2",
+        "12345678901234567890123456789012345678901234567890",
+        "1e999",
+        "0.1000000000000000055511151231257827",
+        "\"\"",
+        "\"1\"",
+        r#""a\u00e9\n\"\\\/é""#,
+        r#""\ud800""#,
+    ] {
+        let line = format!(" {{ \"op\" : \"normal_cdf\",\"args\":{{\"x\":0}} , \"id\" : {id} }}\t");
+        assert_eq!(
+            answers(line),
+            [format!("{{\"id\":{id},\"ok\":{{\"p\":0.5}}}}")]
+        );
+        let line = format!("{{\"id\":{id},\"op\":\"none\"}}");
+        assert!(answers(line)[0].starts_with(&format!("{{\"id\":{id},\"error\":")));
+    }
+}
+
+// Verifies: ORA-003.
+#[test]
+fn an_answer_comes_before_the_next_question() {
+    let mut child = oracle();
+    let mut input = child.stdin.take().unwrap();
+    let mut output = BufReader::new(child.stdout.take().unwrap());
+    let mut answer = String::new();
+    let mut expect = |answer_is: &dyn Fn(&str) -> bool| {
+        answer.clear();
+        output.read_line(&mut answer).unwrap();
+        assert!(answer_is(&answer), "{answer}");
+    };
+    for _ in 0..3 {
+        // A piece of the next line is there already, and must not hold up the answer.
+        input
+            .write_all(format!("{GOOD}\n{{\"id\":").as_bytes())
+            .unwrap();
+        expect(&|answer| answer.trim_end() == GOOD_ANSWER);
+        input.write_all(b"1}\n").unwrap();
+        expect(&|answer| code_of(answer) == "bad_request");
+    }
+    drop(input);
+    assert!(child.wait().unwrap().success());
+}
+
+// Verifies: ORA-002.
+#[test]
+fn a_reader_who_has_gone_ends_it_quietly() {
+    let mut child = oracle();
+    drop(child.stdout.take());
+    let mut input = child.stdin.take().unwrap();
+    let line = format!("{GOOD}\n");
+    // Until the oracle is gone, and so the pipe is closed.
+    while input.write_all(line.as_bytes()).is_ok() {}
+    let mut stderr = String::new();
+    child
+        .stderr
+        .take()
+        .unwrap()
+        .read_to_string(&mut stderr)
+        .unwrap();
+    assert!(
+        child.wait().unwrap().success() && stderr.is_empty(),
+        "{stderr}"
+    );
+}
+
+// Verifies: ORA-001, ORA-006.
+#[test]
+fn a_million_lines_in_a_row() {
+    const LINES: usize = 1_000_000;
+    let mut input = Vec::with_capacity(LINES * 60);
+    for index in 0..LINES {
+        writeln!(
+            input,
+            r#"{{"id":{index},"op":"normal_cdf","args":{{"x":0}}}}"#
+        )
+        .unwrap();
+    }
+    let lines = answers(input);
+    assert_eq!(lines.len(), LINES);
+    for (index, line) in lines.iter().enumerate() {
+        assert_eq!(*line, format!("{{\"id\":{index},\"ok\":{{\"p\":0.5}}}}"));
+    }
+}
+
+// Verifies: ORA-007, ORA-011.
+#[cfg(unix)]
+#[test]
+fn memory_is_bounded_for_lines_of_any_length() {
+    const LONGEST: usize = 16 << 20;
+    let padded = |length: usize| {
+        let mut line = GOOD.as_bytes().to_vec();
+        line.resize(length, b' ');
+        line
+    };
+    let filled = |open: &str, entry: &str, close: &str| {
+        let count = (LONGEST - open.len() - close.len()) / entry.len();
+        format!("{open}{}{close}", entry.repeat(count)).into_bytes()
+    };
+    let cases: [(Vec<u8>, &str); 8] = [
+        (padded(LONGEST), "ok"),
+        (padded(LONGEST + 1), "bad_json"),
+        (vec![b'['; 300 << 20], "bad_json"),
+        (filled("", "[", ""), "bad_json"),
+        (
+            filled(
+                r#"{"id":1,"op":"roc","args":{"gamma":1,"false_alarm":[0"#,
+                ",1",
+                "]}}",
+            ),
+            "out_of_range",
+        ),
+        (
+            filled(
+                r#"{"id":1,"op":"interpolate","args":{"depths_m":[],"laterals_m":[],"table_n":[[]"#,
+                ",[]",
+                "]}}",
+            ),
+            "out_of_range",
+        ),
+        (filled(r#"{"id":1,"op":""#, "\u{80}", "\"}"), "unknown_op"),
+        (
+            filled(
+                r#"{"id":1,"op":"capabilities","args":{"a":0"#,
+                ",\"b\":0",
+                "}}",
+            ),
+            "bad_argument",
+        ),
+    ];
+    let mut input = Vec::new();
+    for (line, _) in &cases {
+        input.extend_from_slice(line);
+        input.push(b'\n');
+        input.extend_from_slice(GOOD.as_bytes());
+        input.push(b'\n');
+    }
+    let limited = format!(
+        "ulimit -v 400000 && exec {} oracle",
+        env!("CARGO_BIN_EXE_palpate")
+    );
+    let lines = lines_of(start(Command::new("sh").args(["-c", &limited])), input);
+    assert_eq!(lines.len(), 2 * cases.len());
+    for (pair, (line, code)) in lines.chunks(2).zip(&cases) {
+        let line = String::from_utf8_lossy(&line[..60]);
+        assert_eq!(code_of(&pair[0]), *code, "{line}: {}", pair[0]);
+        assert_eq!(pair[1], GOOD_ANSWER, "after {line}");
+    }
+}
+
+// Verifies: ORA-011.
+#[test]
+fn work_beyond_the_limits_is_refused_before_it_begins() {
+    let ones = |count: usize| vec![1; count];
+    let (code, message) = refused(
+        "scan",
+        json!({"residual_x": ones(20_000), "residual_y": ones(20_000), "template_x": ones(10_000),
+               "template_y": ones(10_000), "noise_sd_x": 1, "noise_sd_y": 1}),
+    );
+    assert_eq!(code, "out_of_range");
+    assert!(message.contains("10000000"), "{message}");
+    let (code, message) = refused(
+        "theta_colored",
+        json!({"residual": ones(1002), "template": ones(1002), "covariance": []}),
+    );
+    assert_eq!(code, "out_of_range");
+    assert!(message.contains("at most 1000"), "{message}");
+    for method in ["wilson", "clopper_pearson"] {
+        let ask = |trials: u64| json!({"successes": 5, "trials": trials, "confidence": 0.9, "method": method});
+        assert_eq!(
+            refused("proportion_interval", ask(1_000_000_001)).0,
+            "out_of_range"
+        );
+        ok("proportion_interval", ask(1_000_000_000));
+    }
+}
+
+// Verifies: ORA-008, ORA-022.
+#[test]
+fn a_refusal_names_the_argument_and_what_would_be_right() {
+    let threshold =
+        |criterion: &str, key: &str, value: f64| json!({"criterion": criterion, key: value});
+    for (op, args, code, words) in [
+        (
+            "error_rates",
+            json!({"gamma": 1}),
+            "bad_argument",
+            &["eta", "missing"][..],
+        ),
+        (
+            "error_rates",
+            json!({"gamma": "1", "eta": 0}),
+            "bad_argument",
+            &["gamma", "a text", "a number"],
+        ),
+        (
+            "error_rates",
+            json!({"gamma": 1, "eta": 0, "gama": 1}),
+            "bad_argument",
+            &["\"gama\"", "gamma, eta"],
+        ),
+        (
+            "error_rates",
+            json!({"gamma": -1, "eta": 0}),
+            "out_of_range",
+            &["gamma", "-1", "at least 0"],
+        ),
+        (
+            "roc",
+            json!({"gamma": 1, "false_alarm": []}),
+            "bad_argument",
+            &["false_alarm", "empty"],
+        ),
+        (
+            "roc",
+            json!({"gamma": 1, "false_alarm": [0.5, null]}),
+            "bad_argument",
+            &["false_alarm[1]", "null", "finite number"],
+        ),
+        (
+            "roc",
+            json!({"gamma": 1, "false_alarm": 0.5}),
+            "bad_argument",
+            &["false_alarm", "a list"],
+        ),
+        (
+            "normal_quantile",
+            json!({"p": 1}),
+            "out_of_range",
+            &["strictly between 0 and 1"],
+        ),
+        (
+            "gamma_from_two_afc",
+            json!({"p_correct": 0}),
+            "out_of_range",
+            &["p_correct", "strictly between 0 and 1"],
+        ),
+        (
+            "threshold",
+            threshold("map", "prior_h1", 0.0),
+            "out_of_range",
+            &["prior_h1"],
+        ),
+        (
+            "threshold",
+            threshold("map", "prior_h1", 1.0),
+            "out_of_range",
+            &["prior_h1"],
+        ),
+        (
+            "threshold",
+            threshold("minimax", "prior_h1", 0.5),
+            "out_of_range",
+            &["minimax", "neyman_pearson_miss"],
+        ),
+        (
+            "threshold",
+            json!({"criterion": "map", "prior_h1": 0.5, "gamma": 1}),
+            "bad_argument",
+            &["\"gamma\"", "criterion, prior_h1"],
+        ),
+        (
+            "threshold",
+            json!({"criterion": "neyman_pearson_false_alarm", "gamma": 0, "max_false_alarm": 0.1}),
+            "out_of_range",
+            &["gamma is 0"],
+        ),
+        (
+            "threshold",
+            json!({"criterion": "neyman_pearson_miss", "gamma": 1e200, "max_miss": 0.1}),
+            "overflow",
+            &["eta"],
+        ),
+        (
+            "noise_budget",
+            json!({"signal_n": 1, "max_false_alarm": 0.5, "max_miss": 0.5, "sources_n": []}),
+            "overflow",
+            &["total_allowed"],
+        ),
+        (
+            "matched_filter",
+            json!({"template_x": [1], "template_y": [1, 2], "noise_sd_x": 1, "noise_sd_y": 1}),
+            "bad_argument",
+            &["template_y", "length 2", "length 1"],
+        ),
+        (
+            "matched_filter",
+            json!({"template_x": [1], "template_y": [1], "noise_sd_x": 0, "noise_sd_y": 1}),
+            "out_of_range",
+            &["noise_sd_x", "greater than 0"],
+        ),
+        (
+            "theta_colored",
+            json!({"residual": [1, 1], "template": [1, 1], "covariance": [[1, 0.5], [0.4, 1]]}),
+            "out_of_range",
+            &["not symmetric", "(1, 0)"],
+        ),
+        (
+            "theta_colored",
+            json!({"residual": [1, 1], "template": [1, 1], "covariance": [[1, 2], [2, 1]]}),
+            "out_of_range",
+            &["not positive definite"],
+        ),
+        (
+            "theta_colored",
+            json!({"residual": [1, 1], "template": [1, 1], "covariance": [[1, 0], [0]]}),
+            "bad_argument",
+            &["covariance[1]", "1 entries", "2"],
+        ),
+        (
+            "theta_colored",
+            json!({"residual": [1, 1, 1], "template": [1, 1, 1], "covariance": []}),
+            "bad_argument",
+            &["template", "as many lateral as normal"],
+        ),
+        (
+            "proportion_interval",
+            json!({"successes": 2.5, "trials": 3, "confidence": 0.9, "method": "wilson"}),
+            "bad_argument",
+            &["successes", "whole"],
+        ),
+        (
+            "proportion_interval",
+            json!({"successes": 4, "trials": 3, "confidence": 0.9, "method": "wilson"}),
+            "out_of_range",
+            &["4 successes", "3 trials"],
+        ),
+        (
+            "interpolate",
+            json!({"depths_m": [0, 0], "laterals_m": [0, 1], "table_n": [[1, 2], [3, 4]], "depth_m": 0, "lateral_m": 0}),
+            "out_of_range",
+            &["depths_m[1]"],
+        ),
+        (
+            "interpolate",
+            json!({"depths_m": [0], "laterals_m": [0, 1], "table_n": [[1, 2]], "depth_m": 0, "lateral_m": 0}),
+            "bad_argument",
+            &["depths_m", "at least 2"],
+        ),
+        (
+            "scan",
+            json!({"residual_x": [1], "residual_y": [1], "template_x": [1, 1], "template_y": [1, 1], "noise_sd_x": 1, "noise_sd_y": 1}),
+            "bad_argument",
+            &["template_x"],
+        ),
+        (
+            "element_stiffness",
+            json!({"nodes_m": [[0, 0], [0, 1], [1, 0], [0, 0.5], [0.5, 0.5], [0.5, 0]], "youngs_modulus_pa": 1, "poissons_ratio": 0.3}),
+            "out_of_range",
+            &["nodes_m", "counter-clockwise"],
+        ),
+        (
+            "element_stiffness",
+            json!({"nodes_m": [[0, 0]], "youngs_modulus_pa": 1, "poissons_ratio": 0.3}),
+            "bad_argument",
+            &["six pairs"],
+        ),
+        (
+            "probe_force",
+            json!({"phantom": "5.0", "depth_m": 0, "lateral_m": 0}),
+            "out_of_range",
+            &["5.0", "6.6"],
+        ),
+        (
+            "probe_force",
+            json!({"phantom": "none", "depth_m": -1e-3, "lateral_m": 0}),
+            "out_of_range",
+            &["depth"],
+        ),
+        (
+            "servo_axis",
+            json!({"knots": [0, 1], "coordinate_bits": "3f800000"}),
+            "bad_argument",
+            &["coordinate_bits", "0x3f800000"],
+        ),
+        (
+            "servo_axis",
+            json!({"knots": [0, 2], "coordinate_bits": "0x3f800000"}),
+            "out_of_range",
+            &["knots", "within 1 m"],
+        ),
+        (
+            "report_decode",
+            json!({"bytes": "0"}),
+            "bad_argument",
+            &["bytes", "pairs"],
+        ),
+        (
+            "report_decode",
+            json!({"bytes": "0400 "}),
+            "bad_argument",
+            &["bytes", "pairs"],
+        ),
+        (
+            "report_decode",
+            json!({"bytes": "0403"}),
+            "out_of_range",
+            &["3"],
+        ),
+        (
+            "report_decode",
+            json!({"bytes": "05"}),
+            "out_of_range",
+            &["5", "1 to 4"],
+        ),
+        (
+            "report_encode",
+            json!({"report": 2, "lateral": 32768, "normal": 0, "sequence": 0, "flags": 0}),
+            "out_of_range",
+            &["lateral", "-32768 to 32767"],
+        ),
+        (
+            "count_analysis",
+            json!({"correct": [[4]], "trials": 4, "confidence": 0.95}),
+            "out_of_range",
+            &["p_correct"],
+        ),
+        (
+            "count_analysis",
+            json!({"correct": [[5], [1]], "trials": 4, "confidence": 0.95}),
+            "out_of_range",
+            &["correct[0][0]", "0 to 4"],
+        ),
+    ] {
+        let (found, message) = refused(op, args.clone());
+        assert_eq!(found, code, "{op} {args}: {message}");
+        for word in words {
+            assert!(
+                message.contains(word),
+                "{op} {args}: {message} lacks {word}"
+            );
+        }
+    }
+}
+
+// Verifies: ORA-020, ORA-021, ORA-023, ORA-024, ORA-025, ORA-026. Cases that are exact in binary, by hand.
+#[test]
+fn each_op_answers() {
+    let ops = ok("capabilities", json!({}))["ops"].clone();
+    let mut asked = vec!["capabilities"];
+    let spec = include_str!("../spec/oracle.md");
+    let series = json!({"residual_x": [0, 1, 2], "residual_y": [0, 0, 0], "template_x": [1, 2], "template_y": [0, 0],
+                        "noise_sd_x": 1, "noise_sd_y": 1});
+    let triangle = json!([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]]);
+    let stiffness = ok(
+        "element_stiffness",
+        json!({"nodes_m": triangle, "youngs_modulus_pa": 1, "poissons_ratio": 0}),
+    )["stiffness"]
+        .clone();
+    // ∫ (∂N₁/∂x)² + ½ (∂N₁/∂y)² = 3/2 · ½: both derivatives are 1 − 4q, and ∫ (1 − 4q)² = ½.
+    assert!(
+        (stiffness[0][0].as_f64().unwrap() - 0.75).abs() < 1e-15,
+        "{stiffness}"
+    );
+    asked.push("element_stiffness");
+    let force = ok(
+        "probe_force",
+        json!({"phantom": "none", "depth_m": 0, "lateral_m": 0}),
+    );
+    assert_eq!(
+        force,
+        json!({"normal_force_n": 0.0, "lateral_force_n": 0.0})
+    );
+    asked.push("probe_force");
+    let position = json!({"report": 1, "lateral": -2, "normal": 258, "buttons": 1, "status": 2, "sequence": 65535, "force_sequence": 3});
+    let capabilities = json!({"report": 3, "version": 1, "position_unit_nm": 2, "force_unit_un": 3, "largest_force_mn": 4,
+                              "period_us": 5, "watchdog_ms": 6, "damping_mn_s_per_m": 7, "friction_mn": 256});
+    for (op, args, expected) in [
+        ("normal_cdf", json!({"x": -50}), json!({"p": 0.0})),
+        ("normal_quantile", json!({"p": 0.5}), json!({"x": 0.0})),
+        (
+            "matched_filter",
+            json!({"template_x": [3, 4, 0, 0], "template_y": [0, 0, 0, 0], "noise_sd_x": 2, "noise_sd_y": 4}),
+            json!({"b_x": 2.5, "b_y": 0.0, "sigma_x": 1.0, "sigma_y": 2.0, "gamma": 2.5}),
+        ),
+        (
+            "theta",
+            json!({"observed_x": [4], "observed_y": [0], "f0_x": [1], "f0_y": [0], "f1_x": [3], "f1_y": [0], "noise_sd_x": 1, "noise_sd_y": 1}),
+            json!({"theta": 4.0, "y_x": 3.0, "y_y": 0.0, "gamma": 2.0}),
+        ),
+        // K = diag(4, 1): 6·(1 − 3)/4 + 4·(3 − 2)/1, and 36/4 + 16/1 is 5².
+        (
+            "theta_colored",
+            json!({"residual": [1, 3], "template": [6, 4], "covariance": [[4, 0], [0, 1]]}),
+            json!({"theta": 1.0, "gamma": 5.0}),
+        ),
+        (
+            "threshold",
+            json!({"criterion": "map", "prior_h1": 0.5}),
+            json!({"eta": 0.0}),
+        ),
+        (
+            "error_rates",
+            json!({"gamma": 0, "eta": 1}),
+            json!({"false_alarm": 0.0, "miss": 1.0}),
+        ),
+        (
+            "roc",
+            json!({"gamma": 0, "false_alarm": [0, 0.5, 1]}),
+            json!({"miss": [1.0, 0.5, 0.0], "auc": 0.5}),
+        ),
+        (
+            "required_gamma",
+            json!({"max_false_alarm": 0.5, "max_miss": 0.5}),
+            json!({"gamma": 0.0}),
+        ),
+        ("two_afc", json!({"gamma": 0}), json!({"p_correct": 0.5})),
+        (
+            "gamma_from_two_afc",
+            json!({"p_correct": 0.5}),
+            json!({"gamma": 0.0}),
+        ),
+        (
+            "proportion_interval",
+            json!({"successes": 0, "trials": 1, "confidence": 0.5, "method": "clopper_pearson"}),
+            json!({"lower": 0.0, "upper": 0.75}),
+        ),
+        (
+            "noise_budget",
+            json!({"signal_n": 0, "max_false_alarm": 0.4, "max_miss": 0.4, "sources_n": []}),
+            Value::Null,
+        ),
+        (
+            "interpolate",
+            json!({"depths_m": [0, 1], "laterals_m": [0, 1], "table_n": [[1, 2], [3, 4]], "depth_m": 0.5, "lateral_m": 2}),
+            json!({"force_n": 4.0}),
+        ),
+        (
+            "scan",
+            series,
+            json!({"theta": [-0.5, 2.5], "max_theta": 2.5, "argmax": 1}),
+        ),
+        (
+            "servo_axis",
+            json!({"knots": [0, 0.5, 1], "coordinate_bits": "0x3F400000"}),
+            json!({"cell": 1, "fraction_bits": "0x3f000000"}),
+        ),
+        (
+            "servo_interpolate",
+            json!({"depth_knots": [0, 1], "lateral_knots": [0, 1], "table_bits": [["0x00000000", "0x3f800000"], ["0x00000000", "0x3f800000"]],
+         "depth_bits": "0x00000000", "lateral_bits": "0x3f000000"}),
+            json!({"force_bits": "0x3f000000"}),
+        ),
+        (
+            "report_encode",
+            position.clone(),
+            json!({"bytes": "01feff02010102ffff0300"}),
+        ),
+        (
+            "report_decode",
+            json!({"bytes": "01FEFF02010102ffff0300"}),
+            position,
+        ),
+        (
+            "report_encode",
+            capabilities.clone(),
+            json!({"bytes": "0301000200030004000500060007000001"}),
+        ),
+        (
+            "report_decode",
+            json!({"bytes": "0301000200030004000500060007000001"}),
+            capabilities,
+        ),
+        (
+            "report_decode",
+            json!({"bytes": "02ff7f008001ff01"}),
+            json!({"report": 2, "lateral": 32767, "normal": -32768, "sequence": 65281, "flags": 1}),
+        ),
+        (
+            "report_encode",
+            json!({"report": 4, "control": 2}),
+            json!({"bytes": "0402"}),
+        ),
+        // p = ½: χ² = (1² + 1²)/(4·½·½).
+        (
+            "count_analysis",
+            json!({"correct": [[3], [1]], "trials": 4.0, "confidence": 0.95}),
+            json!({"pooled": [4], "rate": [0.5], "gamma": [0.0], "chi2": [2.0], "df": 1}),
+        ),
+    ] {
+        asked.push(op);
+        if !expected.is_null() {
+            assert_eq!(ok(op, args.clone()), expected, "{op} {args}");
+        }
+    }
+    for op in ops.as_array().unwrap() {
+        let op = op.as_str().unwrap();
+        assert!(asked.contains(&op), "{op} was not asked");
+        assert!(
+            spec.contains(&format!("| `{op}` |")),
+            "{op} is not in the specification's table"
+        );
+    }
+}
+
+// Verifies: ORA-012.
+#[test]
+fn answers_do_not_depend_on_what_was_asked_before() {
+    let pose = |id: u32, phantom: &str, depth: f64| {
+        json!({"id": id, "op": "probe_force", "args": {"phantom": phantom, "depth_m": depth, "lateral_m": 1e-3}}).to_string()
+    };
+    let requests = [
+        pose(1, "none", 4e-3),
+        pose(2, "6.6", 4e-3),
+        pose(3, "none", 1e-3),
+        pose(4, "6.6", 2e-3),
+        GOOD.into(),
+    ];
+    let forward = answers(requests.join("\n"));
+    let mut backward = answers(
+        requests
+            .iter()
+            .rev()
+            .cloned()
+            .collect::<Vec<_>>()
+            .join("\n"),
+    );
+    backward.reverse();
+    assert_eq!(forward, backward);
+    assert!(
+        forward.iter().all(|line| line.contains("\"ok\"")),
+        "{forward:?}"
+    );
+}

@@ -1,0 +1,268 @@
+"""Checks the suite itself (VEC-014), with nothing of the generator: form, ids, flags, bits, wrong answers, manifest, counts,
+and each seventh expected answer by a second route.
+
+    python3 vectors/check.py [--all]
+
+With --all, every expected answer is computed again. Needs mpmath; jsonschema is used where it is installed.
+"""
+
+import hashlib
+import json
+import re
+import struct
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import second_route
+from mpmath import mpf
+
+HERE = Path(__file__).parent
+ERRORS = {"bad_json", "bad_request", "unknown_op", "bad_argument", "out_of_range", "overflow"}
+HEAD = {"schema", "schema_version", "group", "op", "source", "generator_version", "tolerance", "flags", "cases"}
+CASE = {"id", "comment", "args", "line", "ok", "bits", "error", "tolerance", "flags", "wrong"}
+NOT_CASES = {"schema.json", "manifest.json", "probe_force.data.json"}
+LEAST_CASES, LEAST_REFUSED, EACH = 1500, 250, 7
+
+problems = []
+
+
+def complain(where, what):
+    problems.append(f"{where}: {what}")
+
+
+def leaves(value):
+    """The numbers and texts of a value, lists taken apart."""
+    if isinstance(value, list):
+        for item in value:
+            yield from leaves(item)
+    else:
+        yield value
+
+
+def rational(value):
+    """A float, a whole number or an mpf, exactly."""
+    if isinstance(value, mpf):
+        sign, mantissa, exponent, _ = value._mpf_
+        if exponent < -5000:
+            return Fraction(0)
+        return (-1) ** sign * Fraction(mantissa) * Fraction(2) ** exponent
+    return Fraction(value)
+
+
+def ulp(value):
+    pattern = struct.unpack(">Q", struct.pack(">d", abs(value)))[0]
+    return rational(struct.unpack(">d", struct.pack(">Q", pattern + 1))[0]) - rational(abs(value))
+
+
+def bound(tolerance, expected):
+    if "ulp" in tolerance:
+        return tolerance["ulp"] * ulp(expected)
+    return rational(tolerance.get("absolute", 0)) + rational(tolerance.get("relative", 0)) * abs(rational(expected))
+
+
+def check_form(name, data):
+    """The keys and types that schema.json asks for."""
+    if set(data) != HEAD or data["schema"] != "palpate-vectors" or data["schema_version"] != 1:
+        complain(name, "keys of the file")
+    if f"{data['group']}.json" != name:
+        complain(name, "is not named as its group")
+    for case in data["cases"]:
+        where = case.get("id", name)
+        if not set(case) <= CASE or not {"id", "comment", "flags"} <= set(case):
+            complain(where, "keys of the case")
+        if ("args" in case) == ("line" in case) or ("ok" in case) == ("error" in case):
+            complain(where, "either args or line, and either ok or error")
+        if not re.fullmatch(data["group"] + r"-\d{3,}", where):
+            complain(where, "id")
+        if "error" in case and (case["error"] not in ERRORS or {"bits", "wrong"} & set(case)):
+            complain(where, "error")
+        if "\n" in case.get("line", ""):
+            complain(where, "a line holds one line")
+
+
+def check_flags(name, data):
+    used = {flag for case in data["cases"] for flag in case["flags"]}
+    if used != set(data["flags"]):
+        complain(name, f"flags used and explained differ: {sorted(used ^ set(data['flags']))}")
+    for case in data["cases"]:
+        shown = {item["flag"] for item in case.get("wrong", [])}
+        if not shown <= set(case["flags"]):
+            complain(case["id"], "a flag of `wrong` is not among the case's")
+        if "error" in case and not case["flags"]:
+            complain(case["id"], "a refusal names no bug")
+
+
+def check_numbers(data):
+    """Bits agree with decimals, and wrong answers are far enough away."""
+    for case in data["cases"]:
+        if "ok" not in case:
+            continue
+        limits = {**data["tolerance"], **case.get("tolerance", {})}
+        for key, value in case["ok"].items():
+            if key not in limits:
+                complain(case["id"], f"no tolerance for {key}")
+            decimals = [v for v in leaves(value)]
+            if any(isinstance(v, float) for v in decimals):
+                patterns = list(leaves(case.get("bits", {}).get(key, [])))
+                if patterns != ["0x" + struct.pack(">d", v).hex() for v in decimals]:
+                    complain(case["id"], f"bits of {key}")
+        for item in case.get("wrong", []):
+            if set(item["ok"]) != set(case["ok"]):
+                complain(case["id"], f"keys of the wrong answer {item['flag']}")
+            elif not far(item["ok"], case["ok"], limits):
+                complain(case["id"], f"the wrong answer {item['flag']} is within ten tolerances")
+
+
+def far(wrong, right, limits):
+    for key, expected in right.items():
+        pairs = list(zip(leaves(wrong[key]), leaves(expected)))
+        if len(list(leaves(wrong[key]))) != len(pairs) or len(list(leaves(expected))) != len(pairs):
+            return True
+        for w, e in pairs:
+            if isinstance(e, float):
+                if abs(rational(w) - rational(e)) > 10 * bound(limits[key], e):
+                    return True
+            elif w != e:
+                return True
+    return False
+
+
+def check_answer(case, answer, limits, printed):
+    """The second route's answer is the expected one: to half a unit in the last place, or a hundredth of the tolerance.
+    `printed` is the relative accuracy of a rule that is known to 15 digits only."""
+    if set(answer) != set(case["ok"]):
+        complain(case["id"], "keys of the second route")
+        return
+    for key, expected in case["ok"].items():
+        got, wanted = list(leaves(answer[key])), list(leaves(expected))
+        largest = max([abs(rational(v)) for v in wanted if isinstance(v, float)], default=0)
+        for g, w in zip(got, wanted):
+            if isinstance(w, float):
+                off = abs(rational(g) - rational(w))
+                slack = ulp(w) / 2 + bound(limits[key], w) / 100 + rational(printed) * largest
+                if off > slack:
+                    complain(case["id"], f"{key} by the second route is {g}, not {w!r}")
+            elif g != w:
+                complain(case["id"], f"{key} by the second route is {g}, not {w!r}")
+        if len(got) != len(wanted):
+            complain(case["id"], f"length of {key}")
+
+
+def check_second_route(data, every, count):
+    route = getattr(second_route, data["op"], None)
+    if route is None:
+        return count
+    for case in data["cases"]:
+        if "ok" not in case:
+            continue
+        count += 1
+        if count % every == 0:
+            limits = {**data["tolerance"], **case.get("tolerance", {})}
+            printed = 2e-14 if data["op"] == "element_stiffness" else 0
+            check_answer(case, route(case["args"]), limits, printed)
+    return count
+
+
+def check_probe(data):
+    """Forces: those of the data file, odd and even in x, and with each inclusion above those without."""
+    poses = {(p["phantom"], p["depth_mm"], p["lateral_mm"]): p for p in json.loads((HERE / "probe_force.data.json").read_text())["poses"]}
+    for case in data["cases"]:
+        if "ok" not in case:
+            continue
+        a = case["args"]
+        pose = poses[a["phantom"], round(a["depth_m"] * 1e3, 6), round(abs(a["lateral_m"]) * 1e3, 6)]
+        sign = -1 if a["lateral_m"] < 0 else 1
+        for key, value in (("normal_force_n", pose["normal_force_mn"]), ("lateral_force_n", sign * pose["lateral_force_mn"])):
+            if abs(case["ok"][key] - value / 1e3) > 1e-12:
+                complain(case["id"], f"{key} is not that of the data")
+
+
+def check_refusals(data):
+    """A line that is said to be no JSON is none, by another reader; one that is, has what its code says."""
+    for case in data["cases"]:
+        if "line" not in case:
+            continue
+        try:
+            value = json.loads(case["line"], parse_constant=refuse_constant, parse_float=finite, parse_int=finite)
+            depth = case["line"].count("[") + case["line"].count("{")
+            text = json.dumps(value, ensure_ascii=False).encode("utf-8", "strict") and depth <= 128
+        except (ValueError, RecursionError):
+            text = None
+        if bool(text) == (case["error"] == "bad_json"):
+            complain(case["id"], "bad_json, or not")
+
+
+def refuse_constant(name):
+    raise ValueError(name)
+
+
+def finite(text):
+    value = float(text)
+    if value in (float("inf"), float("-inf")):
+        raise ValueError(text)
+    return value
+
+
+def check_manifest(names):
+    manifest = json.loads((HERE / "manifest.json").read_text())
+    listed = {item["name"]: item["sha256"] for item in manifest["files"]}
+    if set(listed) != set(names) | {"schema.json"}:
+        complain("manifest.json", f"files: {sorted(set(listed) ^ set(names))}")
+    lines = ""
+    for name in sorted(listed):
+        digest = hashlib.sha256((HERE / name).read_bytes()).hexdigest()
+        lines += f"{digest}  {name}\n"
+        if digest != listed[name]:
+            complain("manifest.json", f"hash of {name}")
+    if hashlib.sha256(lines.encode()).hexdigest() != manifest["suite_sha256"]:
+        complain("manifest.json", "hash of the suite")
+    return manifest
+
+
+def main():
+    every = 1 if "--all" in sys.argv[1:] else EACH
+    names = sorted(path.name for path in HERE.glob("*.json") if path.name not in NOT_CASES)
+    files = {name: json.loads((HERE / name).read_text()) for name in names}
+    try:
+        import jsonschema
+    except ImportError:
+        print("jsonschema is not installed: schema.json itself is not applied")
+    else:
+        validator = jsonschema.Draft202012Validator(json.loads((HERE / "schema.json").read_text()))
+        for name, data in files.items():
+            for error in validator.iter_errors(data):
+                complain(name, f"{error.json_path}: {error.message[:200]}")
+    manifest = check_manifest(names)
+    seen, cases, refused, again = set(), 0, 0, 0
+    for name, data in files.items():
+        check_form(name, data)
+        check_flags(name, data)
+        check_numbers(data)
+        check_refusals(data)
+        if data["op"] == "probe_force":
+            check_probe(data)
+        again = check_second_route(data, every, again)
+        for case in data["cases"]:
+            if case["id"] in seen:
+                complain(case["id"], "id is not unique")
+            seen.add(case["id"])
+        errors = sum("error" in case for case in data["cases"])
+        cases, refused = cases + len(data["cases"]), refused + errors
+        shown = sum("wrong" in case for case in data["cases"])
+        print(f"{name:28} {len(data['cases']):5} cases {errors:4} refused {shown:5} with wrong answers")
+        if data["op"] and 3 * shown < len(data["cases"]) - errors:
+            complain(name, "fewer than a third of the answers have a wrong one")
+    if (cases, refused) != (manifest["cases"], manifest["refused"]):
+        complain("manifest.json", "counts")
+    if cases < LEAST_CASES or refused < LEAST_REFUSED:
+        complain("suite", f"{cases} cases, {refused} refused: VEC-008")
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    print(f"{cases} cases, {refused} refused, {again // every} answers by a second route, {len(problems)} problems")
+    sys.exit(1 if problems else 0)
+
+
+main()

@@ -1,0 +1,173 @@
+"""A group of cases and how it is written."""
+
+import json
+from fractions import Fraction
+
+from mpmath import mpf
+
+from .flags import BUGS
+from .numbers import bits, exact, nearest, round_up, ulp
+
+VERSION = "1.0.0"
+
+
+def in_ulp(count, reason):
+    return {"ulp": count, "reason": reason}
+
+
+def absolute(bound, unit, reason):
+    return {"absolute": round_up(bound), "unit": unit, "reason": reason}
+
+
+def is_exact(reason):
+    return {"exact": True, "reason": reason}
+
+
+def settle(value):
+    """An expected value as it is written: text, truth and whole numbers stay, real numbers become the nearest f64."""
+    if isinstance(value, dict):
+        return {key: settle(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [settle(item) for item in value]
+    if isinstance(value, (mpf, Fraction)):
+        # A zero has no sign in an exact number.
+        return nearest(value)
+    return value
+
+
+def bits_of(value):
+    """The bits of each real number in a value, in the same shape; None if it has none."""
+    if isinstance(value, list):
+        return [bits_of(item) for item in value]
+    return bits(value) if isinstance(value, float) else None
+
+
+def leaves(value):
+    if isinstance(value, list):
+        for item in value:
+            yield from leaves(item)
+    else:
+        yield value
+
+
+def allowed(tolerance, expected):
+    """The largest |answer − expected| that passes, as a fraction."""
+    if "ulp" in tolerance:
+        return Fraction(tolerance["ulp"]) * ulp(expected)
+    if "absolute" in tolerance:
+        return exact(tolerance["absolute"])
+    if "relative" in tolerance:
+        return exact(tolerance["relative"]) * abs(exact(expected))
+    return Fraction(0)
+
+
+def differs(answer, expected, tolerance):
+    """Whether some number of an answer is farther from the expected one than ten times its tolerance."""
+    for key, right in expected.items():
+        got, wanted = list(leaves(answer[key])), list(leaves(right))
+        if len(got) != len(wanted):
+            return True
+        for g, w in zip(got, wanted):
+            if isinstance(w, float):
+                if abs(exact(g) - exact(w)) > 10 * allowed(tolerance[key], w):
+                    return True
+            elif g != w:
+                return True
+    return False
+
+
+class Group:
+    """The cases of one op. `tolerance` maps each key of the answer to how far it may be off, and why."""
+
+    def __init__(self, name, op, source, tolerance):
+        self.name, self.op, self.source, self.tolerance = name, op, source, tolerance
+        self.cases = []
+
+    def _add(self, case):
+        self.cases.append({"id": f"{self.name}-{len(self.cases) + 1:03}", **case})
+
+    def accept(self, comment, args, ok, wrong=(), flags=(), tolerance=None):
+        """A case with an answer. `wrong` are pairs of a flag and the answer of that bug; those that the bug leaves right,
+        or not finite, are left out: on this case the bug does not show."""
+        ok = settle(ok)
+        case = {"comment": comment, "args": args, "ok": ok}
+        reals = {key: bits_of(value) for key, value in ok.items()}
+        reals = {key: b for key, b in reals.items() if any(leaf is not None for leaf in leaves(b))}
+        if reals:
+            case["bits"] = reals
+        if tolerance:
+            case["tolerance"] = tolerance
+        limits = {**self.tolerance, **(tolerance or {})}
+        shown = []
+        for flag, answer in wrong:
+            try:
+                answer = settle(answer)
+            except OverflowError:
+                continue
+            if differs({**ok, **answer}, ok, limits):
+                shown.append({"flag": flag, "ok": {**ok, **answer}})
+        case["flags"] = list(dict.fromkeys([*flags, *(item["flag"] for item in shown)]))
+        if shown:
+            case["wrong"] = shown
+        self._add(case)
+
+    def refuse(self, comment, args, error, flags):
+        """A case that must be refused."""
+        self._add({"comment": comment, "args": args, "error": error, "flags": list(flags)})
+
+    def refuse_line(self, comment, args_text, error, flags):
+        """A case that must be refused, whose arguments no JSON value stands for: NaN, 1e999."""
+        name = f"{self.name}-{len(self.cases) + 1:03}"
+        line = f'{{"id":"{name}","op":"{self.op}","args":{args_text}}}'
+        self._add({"comment": comment, "line": line, "error": error, "flags": list(flags)})
+
+    def raw(self, comment, line, error, flags):
+        """A whole line that must be refused; `ID` in it stands for the case's id."""
+        name = f"{self.name}-{len(self.cases) + 1:03}"
+        self._add({"comment": comment, "line": line.replace("ID", name), "error": error, "flags": list(flags)})
+
+    def text(self):
+        """The file: a case a line, so that a change of one case is a change of one line."""
+        used = sorted({flag for case in self.cases for flag in case["flags"]})
+        head = {
+            "schema": "palpate-vectors",
+            "schema_version": 1,
+            "group": self.name,
+            "op": self.op,
+            "source": self.source,
+            "generator_version": VERSION,
+            "tolerance": self.tolerance,
+            "flags": {flag: {"bug": BUGS[flag][0], "notes": BUGS[flag][1]} for flag in used},
+        }
+        lines = json.dumps(head, indent=1, ensure_ascii=False)[:-2]
+        cases = ",\n".join("  " + dumps(case) for case in self.cases)
+        return f'{lines},\n "cases": [\n{cases}\n ]\n}}\n'
+
+
+def dumps(value):
+    return json.dumps(value, ensure_ascii=True, allow_nan=False, separators=(", ", ": "))
+
+
+COMMON = ("not_finite", "wrong_type", "missing_argument", "unknown_argument")
+
+
+def refuse_common(group, args, numbers, lists=()):
+    """What every op must refuse, tried on each argument: `args` is a request that would pass, `numbers` and `lists` its
+    arguments that are numbers or lists of numbers."""
+    for key in numbers:
+        for token in ("NaN", "Infinity", "-1e999"):
+            text = dumps({**args, key: "@"}).replace('"@"', token)
+            group.refuse_line(f"{key} is {token}", text, "bad_json", ["not_finite"])
+            if len(numbers) > 3:
+                break
+        group.refuse(f"{key} is null", {**args, key: None}, "bad_argument", ["wrong_type"])
+        group.refuse(f"{key} is text", {**args, key: "1"}, "bad_argument", ["wrong_type"])
+        group.refuse(f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"])
+    for key in lists:
+        if not isinstance(args[key][0], list):
+            text = dumps({**args, key: ["@", *args[key][1:]]}).replace('"@"', "NaN")
+            group.refuse_line(f"the first of {key} is NaN", text, "bad_json", ["not_finite"])
+        group.refuse(f"the last of {key} is null", {**args, key: [*args[key][:-1], None]}, "bad_argument", ["wrong_type"])
+        group.refuse(f"{key} is a number", {**args, key: 1}, "bad_argument", ["wrong_type"])
+        group.refuse(f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"])
+    group.refuse("an argument that the op does not have", {**args, "gama": 1}, "bad_argument", ["unknown_argument"])
