@@ -12,7 +12,7 @@
 //! | a recorded sweep against two of them | [`trace`] |
 //! | §4 playback: from a table to a force | [`servo`] |
 //! | §4 playback: reports of the device | [`hid`] |
-//! | §4 pairs of samples, felt and judged | [`psychophysics`] |
+//! | §4 pairs of samples, felt and judged; §5 what the answers say | [`psychophysics`] |
 //! | figures, tables | [`report`] |
 //! | other implementations: questions and answers | `oracle`, `conform` |
 //!

@@ -5,6 +5,7 @@ use palpate::detect::{
     Channels, MatchedFilter, error_rates, gamma_from_two_afc, neyman_pearson_false_alarm_threshold,
     required_gamma, two_afc,
 };
+use palpate::stats::binomial::clopper_pearson;
 use palpate::stats::random::Generator;
 
 /// Asserts that `value` is `printed` when it is rounded to `unit`.
@@ -307,4 +308,25 @@ fn err_008_noise_of_the_subjects() {
         238.0,
         1.0,
     );
+}
+
+// Verifies: ERR-009.
+#[test]
+fn err_009_noise_of_table_2() {
+    // Table 2's sources for playback, in mN; printed as 170.
+    let explained = (140.0f64 * 140.0 + 93.0 * 93.0 + 0.5 * 0.5).sqrt();
+    assert_prints_as(explained, 170.0, 10.0);
+    let noise_mn = |share: f64| 340.0 / gamma_from_two_afc(share).unwrap();
+    // Pooled: 253 of 300, the largest share that is not rejected gives the least noise.
+    let least = noise_mn(clopper_pearson(253, 300, 0.95).unwrap().upper);
+    assert!(
+        (200.0..205.0).contains(&least) && explained < least,
+        "{least}"
+    );
+    // Student's interval of the ten subjects' shares at 6.6 mm, t₉(0.975) = 2.262 (Natrella, Table T-4).
+    let shares = TABLE_1[1].1.map(|row| f64::from(row[2]) / 30.0);
+    let mean = shares.iter().sum::<f64>() / 10.0;
+    let spread: f64 = shares.iter().map(|share| (share - mean).powi(2)).sum();
+    let reach = 2.262 * (spread / 9.0 / 10.0).sqrt();
+    assert!(noise_mn(mean + reach) < explained && explained < noise_mn(mean - reach));
 }

@@ -1,7 +1,7 @@
 """The expected answers once more, by other ways than the generator's: for check.py.
 
-Φ by its series and Mills' continued fraction, inverses by bisection, Θ as a difference of squared residuals, binomial tails
-by the continued fraction of the incomplete beta function, f32 by rounding f64, reports by `struct`.
+Φ by its series and Mills' continued fraction, inverses by bisection, Θ as a difference of squared residuals, binomial
+tails by the continued fraction of the incomplete beta function, f32 by rounding f64, reports by `struct`.
 """
 
 import struct
@@ -52,7 +52,11 @@ def inverse(p):
     p = real(p)
     if p > mpf(1) / 2:
         return -inverse(1 - p)
-    return bisect(lambda x: lower(x) - p, mpf(-40), mpf(0)) if p < 0.49 else bisect(lambda x: lower(x) - p, mpf(-1) / 10, mpf(0))
+    return (
+        bisect(lambda x: lower(x) - p, mpf(-40), mpf(0))
+        if p < 0.49
+        else bisect(lambda x: lower(x) - p, mpf(-1) / 10, mpf(0))
+    )
 
 
 def normal_cdf(a):
@@ -118,7 +122,13 @@ def matched_filter(a):
     count = len(a["template_x"])
     b = {c: norm(a[f"template_{c}"]) / sqrt(mpf(count)) for c in "xy"}
     s = {c: real(a[f"noise_sd_{c}"]) / sqrt(mpf(count)) for c in "xy"}
-    return {"b_x": b["x"], "b_y": b["y"], "sigma_x": s["x"], "sigma_y": s["y"], "gamma": norm([b["x"] / s["x"], b["y"] / s["y"]])}
+    return {
+        "b_x": b["x"],
+        "b_y": b["y"],
+        "sigma_x": s["x"],
+        "sigma_y": s["y"],
+        "gamma": norm([b["x"] / s["x"], b["y"] / s["y"]]),
+    }
 
 
 def likelihood_ratio(residual, template, deviation):
@@ -150,7 +160,11 @@ def theta_colored(a):
 def scan(a):
     values = []
     for shift in range(len(a["residual_x"]) - len(a["template_x"]) + 1):
-        part = lambda c: ([real(v) for v in a[f"residual_{c}"][shift:]], [real(v) for v in a[f"template_{c}"]], a[f"noise_sd_{c}"])
+        part = lambda c: (
+            [real(v) for v in a[f"residual_{c}"][shift:]],
+            [real(v) for v in a[f"template_{c}"]],
+            a[f"noise_sd_{c}"],
+        )
         values.append(likelihood_ratio(*part("x")) + likelihood_ratio(*part("y")))
     best = max(range(len(values)), key=lambda i: (round(values[i] * mpf(10) ** 25), -i))
     return {"theta": values, "max_theta": values[best], "argmax": best}
@@ -170,7 +184,10 @@ def beta_fraction(a, b, x):
     value = d
     for m in range(1, 100000):
         m = mpf(m)
-        for step in (m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)), -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))):
+        for step in (
+            m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)),
+            -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1)),
+        ):
             d, c = 1 / (1 + step * d), 1 + step / c
             value *= c * d
         if abs(c * d - 1) < mpf(10) ** -30:
@@ -216,7 +233,13 @@ def count_analysis(a):
         right = mpf(total) / n
         chi2.append(sum((k - right) ** 2 / right + (t - k - (t - right)) ** 2 / (t - right) for k in c))
     rate = [mpf(total) / (n * t) for total in pooled]
-    return {"pooled": pooled, "rate": rate, "gamma": [sqrt(mpf(2)) * inverse(p) for p in rate], "chi2": chi2, "df": n - 1}
+    return {
+        "pooled": pooled,
+        "rate": rate,
+        "gamma": [sqrt(mpf(2)) * inverse(p) for p in rate],
+        "chi2": chi2,
+        "df": n - 1,
+    }
 
 
 def interpolate(a):
@@ -224,7 +247,9 @@ def interpolate(a):
     d, x = Fraction(a["depth_m"]), Fraction(a["lateral_m"])
     place = lambda axis, at: max(0, min(sum(k <= at for k in axis) - 1, len(axis) - 2))
     i, j = place(a["depths_m"], d), place(a["laterals_m"], x)
-    (d0, d1), (x0, x1) = (tuple(Fraction(v) for v in axis[k : k + 2]) for axis, k in ((a["depths_m"], i), (a["laterals_m"], j)))
+    (d0, d1), (x0, x1) = (
+        tuple(Fraction(v) for v in axis[k : k + 2]) for axis, k in ((a["depths_m"], i), (a["laterals_m"], j))
+    )
     (f00, f01), (f10, f11) = ([Fraction(v) for v in row[j : j + 2]] for row in a["table_n"][i : i + 2])
     by_x, by_d = (f01 - f00) / (x1 - x0), (f10 - f00) / (d1 - d0)
     twist = ((f11 - f10) / (x1 - x0) - by_x) / (d1 - d0)
@@ -278,7 +303,17 @@ FORMATS = {1: "<BhhBBHH", 2: "<BhhHB", 3: "<B8H", 4: "<BB"}
 FIELDS = {
     1: ["report", "lateral", "normal", "buttons", "status", "sequence", "force_sequence"],
     2: ["report", "lateral", "normal", "sequence", "flags"],
-    3: ["report", "version", "position_unit_nm", "force_unit_un", "largest_force_mn", "period_us", "watchdog_ms", "damping_mn_s_per_m", "friction_mn"],
+    3: [
+        "report",
+        "version",
+        "position_unit_nm",
+        "force_unit_un",
+        "largest_force_mn",
+        "period_us",
+        "watchdog_ms",
+        "damping_mn_s_per_m",
+        "friction_mn",
+    ],
     4: ["report", "control"],
 }
 
@@ -308,7 +343,10 @@ def element_stiffness(a):
             l[turn] = 1 - 2 * real(at)
             # ∂N/∂L, as if the three were independent.
             by = [[4 * l[m] - 1 if m == c else mpf(0) for m in range(3)] for c in range(3)]
-            by += [[4 * l[q] if m == p else 4 * l[p] if m == q else mpf(0) for m in range(3)] for p, q in ((0, 1), (1, 2), (2, 0))]
+            by += [
+                [4 * l[q] if m == p else 4 * l[p] if m == q else mpf(0) for m in range(3)]
+                for p, q in ((0, 1), (1, 2), (2, 0))
+            ]
             j = matrix(2, 2)
             for n, g in zip(nodes, by):
                 for c in (0, 1):

@@ -141,3 +141,6 @@ impl Likelihood {
         change(rises, 0.0, 1.0)
     }
 }
+
+#[cfg(test)]
+mod tests;

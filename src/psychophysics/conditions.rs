@@ -176,3 +176,6 @@ fn holm(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
     }
     corrected
 }
+
+#[cfg(test)]
+mod tests;

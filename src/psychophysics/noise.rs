@@ -192,3 +192,6 @@ fn agreement(answers: &NoiseLevel, explained: f64) -> String {
         said("the subjects as the sample", answers.clustered_bounds),
     )
 }
+
+#[cfg(test)]
+mod tests;

@@ -202,3 +202,6 @@ impl Parameter {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -159,3 +159,6 @@ pub fn clustered(
         gamma: GammaEstimate::of(pooled.rate, bounds)?,
     }))
 }
+
+#[cfg(test)]
+mod tests;

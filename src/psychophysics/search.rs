@@ -95,3 +95,6 @@ pub fn crossing(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     }
     yes
 }
+
+#[cfg(test)]
+mod tests;

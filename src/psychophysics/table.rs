@@ -302,3 +302,6 @@ fn subject(
 fn is_plain(name: &str) -> bool {
     !name.chars().any(char::is_control)
 }
+
+#[cfg(test)]
+mod tests;

@@ -80,6 +80,12 @@ fn there_is_no_force_above_the_surface() {
         assert_eq!(table.force(-1e-6, 0.0), Force::ZERO);
         assert_eq!(table.force(-0.1, 0.25), Force::ZERO);
     });
+    // On the surface the table counts, should it hold a force there.
+    let axis = Axis::new(&[0.0, 0.5], &[2.0]).unwrap();
+    let touching = [force(0.0, 0.015); 4];
+    let table = Table::new(axis, axis, &touching).unwrap();
+    assert_eq!(table.force(0.0, 0.0), touching[0]);
+    assert_eq!(table.force(-0.0, 0.0), touching[0]);
 }
 
 // Verifies: SRV-010.

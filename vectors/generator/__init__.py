@@ -1,11 +1,14 @@
 """Makes the cases of vectors/*.json: one module a topic, expected values in 50 digits or exact fractions."""
 
-from . import coloured, decision, elements, filters, normal, probe, proportions, reports, requests, servo, tables
+from . import coloured, decision, elements, filters, normal, probe, proportions, reports, requests
+from . import scan, servo, tables, threshold
 from .suite import VERSION
 
 __all__ = ["VERSION", "all_groups"]
 
-TOPICS = (normal, decision, filters, coloured, proportions, tables, servo, reports, elements, probe, requests)
+TOPICS = (
+    normal, decision, threshold, filters, coloured, scan, proportions, tables, servo, reports, elements, probe, requests
+)
 
 
 def all_groups():

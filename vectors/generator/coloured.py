@@ -73,9 +73,22 @@ def covariance(draws, count, kind):
 
 
 def theta_colored():
-    group = Group("theta_colored", "theta_colored", "exact fractions; roots by mpmath 1.3.0 at 50 digits", {key: absolute(UNIT, "1", "cases state their own") for key in ("theta", "gamma")})
+    group = Group(
+        "theta_colored",
+        "theta_colored",
+        "exact fractions; roots by mpmath 1.3.0 at 50 digits",
+        {key: absolute(UNIT, "1", "cases state their own") for key in ("theta", "gamma")},
+    )
     draws = Draws(40)
-    kinds = ["white", "independent channels", "channels alike", "slow", "correlated channels", "correlated channels", "correlated channels"]
+    kinds = [
+        "white",
+        "independent channels",
+        "channels alike",
+        "slow",
+        "correlated channels",
+        "correlated channels",
+        "correlated channels",
+    ]
     for number in range(64):
         count = 1 if number < 3 else 10 if number in (3, 4) else draws.integer(2, 4)
         kind = kinds[number % len(kinds)]
@@ -121,7 +134,15 @@ def coloured_case(group, kind, residual, template, matrix):
     diagonal = [[k[i][j] if i == j else Fraction(0) for j in range(n)] for i in range(n)]
     blocks = [[k[i][j] if (i < count) == (j < count) else Fraction(0) for j in range(n)] for i in range(n)]
     product = [dot(row, d) for row in k]
-    wrong = [("half_left_out", {"theta": dot(x, [a - b for a, b in zip(r, d)])}), ("half_left_out", {"theta": dot(x, r)}), ("correlation_ignored", by(diagonal)), ("cross_channel_ignored", by(blocks)), ("covariance_not_inverted", {"theta": dot(product, centred), "gamma": root(dot(product, d))}), ("gamma_squared", {"gamma": real(gamma2)}), ("sign_exchanged", {"theta": -theta})]
+    wrong = [
+        ("half_left_out", {"theta": dot(x, [a - b for a, b in zip(r, d)])}),
+        ("half_left_out", {"theta": dot(x, r)}),
+        ("correlation_ignored", by(diagonal)),
+        ("cross_channel_ignored", by(blocks)),
+        ("covariance_not_inverted", {"theta": dot(product, centred), "gamma": root(dot(product, d))}),
+        ("gamma_squared", {"gamma": real(gamma2)}),
+        ("sign_exchanged", {"theta": -theta}),
+    ]
     lower = cholesky(k)
     backward = [[lower[j][i] if j >= i else mpf(0) for j in range(n)] for i in range(n)]
 
@@ -133,11 +154,15 @@ def coloured_case(group, kind, residual, template, matrix):
         return y
 
     wd, wc = whitened(d), whitened(centred)
-    wrong.append(("cholesky_transposed", {"theta": sum(a * b for a, b in zip(wd, wc)), "gamma": sqrt(sum(a * a for a in wd))}))
+    wrong.append(
+        ("cholesky_transposed", {"theta": sum(a * b for a, b in zip(wd, wc)), "gamma": sqrt(sum(a * a for a in wd))})
+    )
     swapped = [[k[(i + count) % n][(j + count) % n] for j in range(n)] for i in range(n)]
     wrong.append(("channels_exchanged", by(swapped)))
     steps = (4 * n + 12) * UNIT
-    reason = "(4·2N + 12) 2⁻⁵³ |K⁻¹a|ᵀ|L||Lᵀ||K⁻¹b|: backward errors of Cholesky's factor, of two solves and of the product"
+    reason = (
+        "(4·2N + 12) 2⁻⁵³ |K⁻¹a|ᵀ|L||Lᵀ||K⁻¹b|: backward errors of Cholesky's factor, of two solves and of the product"
+    )
     bound = steps * sensitivity(k, d, centred)
     gamma_bound = steps * sensitivity(k, d, d) / (2 * exact(root(gamma2))) if gamma2 else Fraction(0)
     limits = {"theta": absolute(bound, "1", reason), "gamma": absolute(gamma_bound, "1", reason + ", over 2γ")}
@@ -167,15 +192,41 @@ def refuse_covariances(group):
         group.refuse(kind, {**args, "covariance": matrix}, "out_of_range", ["not_positive_definite"])
     four = {"residual": [0.1] * 4, "template": [0.2] * 4}
     singular = [[1.0, 0.5, 0.0, 0.5], [0.5, 1.0, 0.5, 0.0], [0.0, 0.5, 1.0, 0.5], [0.5, 0.0, 0.5, 1.0]]
-    group.refuse("singular of order 4: rows 1 + 3 = rows 2 + 4", {**four, "covariance": singular}, "out_of_range", ["not_positive_definite"])
-    group.refuse("two equal samples of order 4", {**four, "covariance": [[1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]}, "out_of_range", ["not_positive_definite"])
+    group.refuse(
+        "singular of order 4: rows 1 + 3 = rows 2 + 4",
+        {**four, "covariance": singular},
+        "out_of_range",
+        ["not_positive_definite"],
+    )
+    group.refuse(
+        "two equal samples of order 4",
+        {
+            **four,
+            "covariance": [[1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
+        },
+        "out_of_range",
+        ["not_positive_definite"],
+    )
     group.refuse("a row is shorter", {**args, "covariance": [[1.0, 0.25], [0.25]]}, "bad_argument", ["lengths_differ"])
-    group.refuse("the covariance is of another order", {**args, "covariance": [[1.0]]}, "bad_argument", ["lengths_differ"])
-    group.refuse("the template is longer", {**args, "template": [0.3, 0.1, 0.2, 0.4]}, "bad_argument", ["lengths_differ"])
-    group.refuse("an odd number: no two channels", {"residual": [0.1], "template": [0.1], "covariance": [[1.0]]}, "bad_argument", ["lengths_differ"])
+    group.refuse(
+        "the covariance is of another order", {**args, "covariance": [[1.0]]}, "bad_argument", ["lengths_differ"]
+    )
+    group.refuse(
+        "the template is longer", {**args, "template": [0.3, 0.1, 0.2, 0.4]}, "bad_argument", ["lengths_differ"]
+    )
+    group.refuse(
+        "an odd number: no two channels",
+        {"residual": [0.1], "template": [0.1], "covariance": [[1.0]]},
+        "bad_argument",
+        ["lengths_differ"],
+    )
     group.refuse("empty", {"residual": [], "template": [], "covariance": []}, "bad_argument", ["empty"])
     for token in ("NaN", "1e999"):
-        group.refuse_line(f"a covariance of {token}", '{"residual":[0.1,0.2],"template":[0.3,0.1],"covariance":[[1,%s],[0.25,1]]}' % token, "bad_json", ["not_finite"])
+        group.refuse_line(
+            f"a covariance of {token}",
+            '{"residual":[0.1,0.2],"template":[0.3,0.1],"covariance":[[1,%s],[0.25,1]]}' % token,
+            ["not_finite"],
+        )
 
 
 GROUPS = [theta_colored]

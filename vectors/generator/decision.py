@@ -1,8 +1,8 @@
-"""Thresholds, rates of error and the noise budget (DET-020 … 031, 100 … 101)."""
+"""Rates of error, the SNR they need and the noise budget (DET-026 … 029, 100 … 101)."""
 
 from fractions import Fraction
 
-from mpmath import log, log10, mpf, sqrt
+from mpmath import mpf, sqrt
 
 from .normal import SOURCE, TAIL, cdf, quantile, tail_ulps
 from .numbers import UNIT, Draws, exact, nearest, real
@@ -39,23 +39,69 @@ def error_rates():
     reason = "Φ's 4 ULP and 3 roundings of its argument where |argument| < 1; cases farther out state their own"
     group = Group("error_rates", "error_rates", SOURCE, {key: in_ulp(8, reason) for key in ("false_alarm", "miss")})
     draws = Draws(10)
-    poses = [(2, 0.5, "table"), (1.0, 0.0, "table"), (3.3, 0.0, "the paper's γ for 5 % and 5 %"), (3.29, -0.2, "table"), (0, 0, "γ = 0: Θ ≡ 0 ≥ η"), (0, 1.0, "γ = 0: Θ ≡ 0 < η"), (0, -2.5, "γ = 0: Θ ≡ 0 ≥ η"), (0, 5e-324, "γ = 0, the least η above 0")]
-    poses += [(1e-300, 0.0, "tiny γ"), (1e-300, 1.0, "tiny γ, η far out"), (1e-8, 1e-8, "tiny γ"), (1e-8, -3e-8, "tiny γ"), (5e-324, 0.0, "subnormal γ")]
-    poses += [(100.0, 0.0, "huge γ: both underflow"), (1e100, 0.0, "huge γ"), (60.0, 1800.0, "η = γ²/2: a miss in two"), (60.0, -1800.0, "η = −γ²/2: a false alarm in two"), (60.0, 1790.0, "η near γ²/2: the argument cancels"), (1000.0, -499000.0, "huge γ, η near −γ²/2")]
-    poses += [(10.0, 300.0, "tail of 35 σ"), (10.0, -300.0, "tail of 35 σ"), (1.0, 36.5, "tail of 37 σ"), (1.0, -37.0, "tail of 37.5 σ"), (70.0, 0.0, "tails of 35 σ"), (75.0, 0.0, "tails of 37.5 σ"), (3.0, 1e10, "η far out"), (3.0, -1e10, "η far out")]
+    poses = [
+        (2, 0.5, "table"),
+        (1.0, 0.0, "table"),
+        (3.3, 0.0, "the paper's γ for 5 % and 5 %"),
+        (3.29, -0.2, "table"),
+        (0, 0, "γ = 0: Θ ≡ 0 ≥ η"),
+        (0, 1.0, "γ = 0: Θ ≡ 0 < η"),
+        (0, -2.5, "γ = 0: Θ ≡ 0 ≥ η"),
+        (0, 5e-324, "γ = 0, the least η above 0"),
+    ]
+    poses += [
+        (1e-300, 0.0, "tiny γ"),
+        (1e-300, 1.0, "tiny γ, η far out"),
+        (1e-8, 1e-8, "tiny γ"),
+        (1e-8, -3e-8, "tiny γ"),
+        (5e-324, 0.0, "subnormal γ"),
+    ]
+    poses += [
+        (100.0, 0.0, "huge γ: both underflow"),
+        (1e100, 0.0, "huge γ"),
+        (60.0, 1800.0, "η = γ²/2: a miss in two"),
+        (60.0, -1800.0, "η = −γ²/2: a false alarm in two"),
+        (60.0, 1790.0, "η near γ²/2: the argument cancels"),
+        (1000.0, -499000.0, "huge γ, η near −γ²/2"),
+    ]
+    poses += [
+        (10.0, 300.0, "tail of 35 σ"),
+        (10.0, -300.0, "tail of 35 σ"),
+        (1.0, 36.5, "tail of 37 σ"),
+        (1.0, -37.0, "tail of 37.5 σ"),
+        (70.0, 0.0, "tails of 35 σ"),
+        (75.0, 0.0, "tails of 37.5 σ"),
+        (3.0, 1e10, "η far out"),
+        (3.0, -1e10, "η far out"),
+    ]
     poses += [(draws.decimal(0.2, 6), draws.decimal(-4, 4), "drawn") for _ in range(45)]
     poses += [(draws.between(0.01, 12), draws.between(-60, 60), "drawn, tails") for _ in range(30)]
     for gamma, eta, kind in poses:
         false_alarm, miss = rates(gamma, eta)
-        wrong = [("rates_swapped", {"false_alarm": miss, "miss": false_alarm}), ("hits_for_misses", {"miss": 1 - miss}), ("tail_cancelled", {"false_alarm": 1.0 - nearest(1 - false_alarm), "miss": 1.0 - nearest(1 - miss)})]
+        wrong = [
+            ("rates_swapped", {"false_alarm": miss, "miss": false_alarm}),
+            ("hits_for_misses", {"miss": 1 - miss}),
+            ("tail_cancelled", {"false_alarm": 1.0 - nearest(1 - false_alarm), "miss": 1.0 - nearest(1 - miss)}),
+        ]
         if gamma:
             g, e = real(gamma), real(eta)
             wrong.append(("half_left_out", {"false_alarm": cdf(-(e + g * g) / g), "miss": cdf((e - g * g) / g)}))
-            wrong.append(("variance_for_sd", {"false_alarm": cdf(-(e + g * g / 2) / (g * g)), "miss": cdf((e - g * g / 2) / (g * g))}))
+            wrong.append(
+                (
+                    "variance_for_sd",
+                    {"false_alarm": cdf(-(e + g * g / 2) / (g * g)), "miss": cdf((e - g * g / 2) / (g * g))},
+                )
+            )
             wrong.append(("gamma_squared", dict(zip(("false_alarm", "miss"), rates(nearest(sqrt(g)), eta)))))
         else:
             wrong.append(("zero_gamma", {"false_alarm": mpf(1) / 2, "miss": mpf(1) / 2}))
-        group.accept(f"{kind}: γ = {gamma!r}, η = {eta!r}", {"gamma": gamma, "eta": eta}, {"false_alarm": false_alarm, "miss": miss}, wrong, tolerance=rates_tolerance(gamma, eta))
+        group.accept(
+            f"{kind}: γ = {gamma!r}, η = {eta!r}",
+            {"gamma": gamma, "eta": eta},
+            {"false_alarm": false_alarm, "miss": miss},
+            wrong,
+            tolerance=rates_tolerance(gamma, eta),
+        )
     refuse_common(group, {"gamma": 2, "eta": 0.5}, ["gamma", "eta"])
     for gamma in (-1, -1e-300):
         group.refuse(f"γ = {gamma!r}", {"gamma": gamma, "eta": 0}, "out_of_range", ["out_of_range"])
@@ -63,12 +109,42 @@ def error_rates():
 
 
 def roc():
-    group = Group("roc", "roc", SOURCE, {"miss": in_ulp(8, "Φ's 4 and 3 roundings of an argument below 1; cases farther out state their own"), "auc": in_ulp(8, "as of two_afc")})
+    group = Group(
+        "roc",
+        "roc",
+        SOURCE,
+        {
+            "miss": in_ulp(8, "Φ's 4 and 3 roundings of an argument below 1; cases farther out state their own"),
+            "auc": in_ulp(8, "as of two_afc"),
+        },
+    )
     draws = Draws(11)
-    curves = [(gamma, [0, 0.001, 0.01, 0.05, 0.1, 0.5, 0.9, 1], "a curve with both ends") for gamma in (0.0, 0.5, 1.0, 2.0, 3.3, 5.0)]
-    curves += [(1.0, [1e-300, 1e-100, 1e-20, 1e-10], "small false alarms"), (3.0, [1 - 2.0**-53, 1 - 1e-10, 0.999], "false alarms near 1"), (38.0, [1e-10, 0.5], "far apart: misses in the tail"), (30.0, [1e-300, 0.5], "far apart"), (1e-12, [0.05, 0.5], "tiny γ"), (200.0, [0.05], "huge γ: misses underflow"), (1e300, [0.05], "huge γ"), (5e-324, [0.25], "subnormal γ")]
-    curves += [(draws.decimal(0, 7), [draws.decimal(0.001, 0.999) for _ in range(draws.integer(1, 5))], "drawn") for _ in range(34)]
-    curves += [(draws.between(0, 12), [nearest(mpf(10) ** -draws.integer(2, 250) * real(draws.between(1, 9))) for _ in range(3)], "drawn, small false alarms") for _ in range(10)]
+    curves = [
+        (gamma, [0, 0.001, 0.01, 0.05, 0.1, 0.5, 0.9, 1], "a curve with both ends")
+        for gamma in (0.0, 0.5, 1.0, 2.0, 3.3, 5.0)
+    ]
+    curves += [
+        (1.0, [1e-300, 1e-100, 1e-20, 1e-10], "small false alarms"),
+        (3.0, [1 - 2.0**-53, 1 - 1e-10, 0.999], "false alarms near 1"),
+        (38.0, [1e-10, 0.5], "far apart: misses in the tail"),
+        (30.0, [1e-300, 0.5], "far apart"),
+        (1e-12, [0.05, 0.5], "tiny γ"),
+        (200.0, [0.05], "huge γ: misses underflow"),
+        (1e300, [0.05], "huge γ"),
+        (5e-324, [0.25], "subnormal γ"),
+    ]
+    curves += [
+        (draws.decimal(0, 7), [draws.decimal(0.001, 0.999) for _ in range(draws.integer(1, 5))], "drawn")
+        for _ in range(34)
+    ]
+    curves += [
+        (
+            draws.between(0, 12),
+            [nearest(mpf(10) ** -draws.integer(2, 250) * real(draws.between(1, 9))) for _ in range(3)],
+            "drawn, small false alarms",
+        )
+        for _ in range(10)
+    ]
     for gamma, alarms, kind in curves:
         g = real(gamma)
         miss, count = [], Fraction(0)
@@ -81,105 +157,35 @@ def roc():
             miss.append(cdf(a))
             if abs(a) < 50:
                 count = max(count, tail_ulps(a, exact(QUANTILE_ROUNDINGS * abs(q) + abs(a) + abs(g) / 2)))
-        inner = [(p, m) for p, m in zip(alarms, miss) if p not in (0, 1)]
-        wrong = [("hits_for_misses", {"miss": [1 - m for m in miss]}), ("rates_swapped", {"miss": [mpf(1) - p if p in (0, 1) else cdf(-quantile(p) + g) for p in alarms]})]
+        wrong = [
+            ("hits_for_misses", {"miss": [1 - m for m in miss]}),
+            ("rates_swapped", {"miss": [mpf(1) - p if p in (0, 1) else cdf(-quantile(p) + g) for p in alarms]}),
+        ]
         wrong.append(("quantile_sign", {"miss": [mpf(1) - p if p in (0, 1) else cdf(quantile(p) - g) for p in alarms]}))
         wrong.append(("root_two_missing", {"auc": cdf(g)}))
         if all(1e-17 < p for p in alarms if p):
-            wrong.append(("complement_rounded", {"miss": [mpf(1 - p) if p in (0, 1) or 1.0 - p == 1.0 else cdf(quantile(1.0 - p) - g) for p in alarms]}))
+            wrong.append(
+                (
+                    "complement_rounded",
+                    {
+                        "miss": [
+                            mpf(1 - p) if p in (0, 1) or 1.0 - p == 1.0 else cdf(quantile(1.0 - p) - g) for p in alarms
+                        ]
+                    },
+                )
+            )
         tolerance = {"miss": in_ulp(int(count), TAIL)} if count > 8 else None
-        group.accept(f"{kind}: γ = {gamma!r}", {"gamma": gamma, "false_alarm": alarms}, {"miss": miss, "auc": cdf(g / sqrt(mpf(2)))}, wrong, tolerance=tolerance)
+        group.accept(
+            f"{kind}: γ = {gamma!r}",
+            {"gamma": gamma, "false_alarm": alarms},
+            {"miss": miss, "auc": cdf(g / sqrt(mpf(2)))},
+            wrong,
+            tolerance=tolerance,
+        )
     refuse_common(group, {"gamma": 2, "false_alarm": [0.1, 0.5]}, ["gamma"], ["false_alarm"])
     group.refuse("γ < 0", {"gamma": -1, "false_alarm": [0.1]}, "out_of_range", ["out_of_range"])
     for p in (-0.1, 1.1, 2):
         group.refuse(f"a false alarm of {p!r}", {"gamma": 1, "false_alarm": [0.5, p]}, "out_of_range", ["out_of_range"])
-    return group
-
-
-def threshold():
-    group = Group("threshold", "threshold", SOURCE, {"eta": absolute(16 * UNIT, "1", "cases state their own")})
-    draws = Draws(12)
-
-    def map_case(prior, kind):
-        p = real(prior)
-        eta = log((1 - p) / p)
-        wrong = [("prior_inverted", {"eta": -eta}), ("log10", {"eta": log10((1 - p) / p)}), ("ratio_for_logarithm", {"eta": (1 - p) / p})]
-        bound = UNIT * (3 + 3 * abs(exact(eta)))
-        group.accept(f"MAP, {kind}: P1 = {prior!r}", {"criterion": "map", "prior_h1": prior}, {"eta": eta}, wrong, tolerance={"eta": absolute(bound, "1", "(3 + 3|η|) 2⁻⁵³: 1 − p, the ratio and the logarithm")})
-
-    for prior in (0.5, 0.25, 0.75, 0.1, 0.9, 0.01, 0.99, 1e-6, 1e-100, 1e-300, 5e-324, 2.2250738585072014e-308, 1 - 2.0**-53, 1 - 1e-12, 0.5 + 2.0**-52, 0.5 - 2.0**-54, 1 / 3):
-        map_case(prior, "table")
-    for _ in range(18):
-        map_case(draws.decimal(0.001, 0.999), "drawn")
-
-    def bayes_case(prior, c00, c01, c10, c11, kind):
-        p = real(prior)
-        gain0, gain1 = real(c10) - real(c00), real(c01) - real(c11)
-        eta = log((1 - p) * gain0 / (p * gain1))
-        wrong = [("costs_exchanged", {"eta": log((1 - p) * (real(c01) - real(c00)) / (p * (real(c10) - real(c11))))} if c01 > c00 and c10 > c11 else {}), ("prior_inverted", {"eta": log(p * gain0 / ((1 - p) * gain1))}), ("log10", {"eta": log10((1 - p) * gain0 / (p * gain1))})]
-        wrong.append(("sign_exchanged", {"eta": -eta}))
-        if c10 > 0 and c01 > 0:
-            wrong.append(("right_costs_ignored", {"eta": log((1 - p) * real(c10) / (p * real(c01)))}))
-        bound = UNIT * (8 + 3 * abs(exact(eta)))
-        args = {"criterion": "bayes", "prior_h1": prior, "c00": c00, "c01": c01, "c10": c10, "c11": c11}
-        group.accept(f"Bayes, {kind}", args, {"eta": eta}, wrong, tolerance={"eta": absolute(bound, "1", "(8 + 3|η|) 2⁻⁵³: 3 differences, 2 products, the ratio and the logarithm")})
-
-    bayes_case(0.5, 0, 1, 1, 0, "equal costs: η = 0")
-    bayes_case(0.1, 0, 1, 1, 0, "equal costs: the MAP rule")
-    bayes_case(0.01, 0, 100, 1, 0, "a miss costs 100 false alarms")
-    bayes_case(0.3, 0, 1, 100, 0, "a false alarm costs 100 misses")
-    bayes_case(0.5, 1, 2, 1 + 2.0**-52, 0, "costs nearly equal: c10 − c00 = 2⁻⁵²")
-    bayes_case(0.5, 0.1, 1.0, 0.10000000000000002, 0.9999999999999999, "both differences nearly cancel")
-    bayes_case(0.25, 3, 5, 4, 5 - 2.0**-40, "c01 − c11 = 2⁻⁴⁰")
-    bayes_case(0.2, -1, 0, 2, -3, "negative costs: gains")
-    bayes_case(1e-200, 0, 1, 1, 0, "prior near 0")
-    bayes_case(1 - 2.0**-53, 0, 1, 1, 0, "prior near 1")
-    bayes_case(0.5, 0, 1e-300, 1e-300, 0, "tiny costs")
-    bayes_case(0.5, 0, 1e300, 1e-5, 0, "costs of very different size")
-    bayes_case(0.5, 1e6, 1e6 + 1, 1e6 + 1, 1e6, "a large common part")
-    for _ in range(26):
-        c00, c11 = draws.decimal(0, 2, 2), draws.decimal(0, 2, 2)
-        bayes_case(draws.decimal(0.01, 0.99), c00, c11 + draws.decimal(0.1, 9, 2), c00 + draws.decimal(0.1, 9, 2), c11, "drawn")
-
-    def neyman_pearson(which, gamma, rate, kind):
-        g, q = real(gamma), quantile(rate)
-        if which == "miss":
-            eta, key = g * g / 2 + g * q, "max_miss"
-            wrong = [("rates_swapped", {"eta": -g * g / 2 - g * q}), ("half_left_out", {"eta": g * g + g * q}), ("quantile_sign", {"eta": g * g / 2 - g * q}), ("gamma_squared", {"eta": g / 2 + sqrt(g) * q}), ("variance_for_sd", {"eta": g * g / 2 + g * g * q})]
-        else:
-            eta, key = -g * g / 2 - g * q, "max_false_alarm"
-            wrong = [("rates_swapped", {"eta": g * g / 2 + g * q}), ("half_left_out", {"eta": -g * g - g * q}), ("quantile_sign", {"eta": -g * g / 2 + g * q}), ("gamma_squared", {"eta": -g / 2 - sqrt(g) * q}), ("variance_for_sd", {"eta": -g * g / 2 - g * g * q})]
-            if 1e-17 < rate and 1.0 - rate < 1.0:
-                wrong.append(("complement_rounded", {"eta": -g * g / 2 + g * quantile(1.0 - rate)}))
-        bound = UNIT * (exact(g * g / 2) + (QUANTILE_ROUNDINGS + 2) * abs(exact(g * q)) + abs(exact(eta)))
-        tolerance = {"eta": absolute(bound, "1", "2⁻⁵³ (γ²/2 + 10 |γ Φ⁻¹| + |η|): square, quantile within 4 ULP, product, sum")}
-        group.accept(f"Neyman–Pearson, {kind}: γ = {gamma!r}, rate {rate!r}", {"criterion": f"neyman_pearson_{which}", "gamma": gamma, key: rate}, {"eta": eta}, wrong, tolerance=tolerance)
-
-    for which in ("miss", "false_alarm"):
-        for gamma, rate, kind in ((3.3, 0.05, "the paper's example"), (2.0, 0.01, "table"), (1e-10, 0.05, "tiny γ"), (1000.0, 0.05, "huge γ"), (2.0, 1e-300, "tiny rate"), (2.0, 1 - 2.0**-53, "rate next to 1"), (5.0, 0.5, "a rate of ½"), (3.2897072539029435, 0.05, "η cancels: γ = 2·1.645"), (1e-200, 0.05, "γ² underflows"), (1e100, 0.05, "huge γ")):
-            neyman_pearson(which, gamma, rate, kind)
-        for _ in range(14):
-            neyman_pearson(which, draws.decimal(0.1, 8), draws.decimal(0.001, 0.6), "drawn")
-    group.accept("Neyman–Pearson, miss: γ = 0", {"criterion": "neyman_pearson_miss", "gamma": 0, "max_miss": 0.05}, {"eta": mpf(0)}, flags=["zero_gamma"], tolerance={"eta": absolute(0, "1", "both terms are 0")})
-
-    bayes = {"criterion": "bayes", "prior_h1": 0.5, "c00": 0, "c01": 1, "c10": 1, "c11": 0}
-    refuse_common(group, {"criterion": "map", "prior_h1": 0.5}, ["prior_h1"])
-    refuse_common(group, bayes, ["prior_h1", "c00", "c01", "c10", "c11"])
-    for criterion, key in (("neyman_pearson_miss", "max_miss"), ("neyman_pearson_false_alarm", "max_false_alarm")):
-        refuse_common(group, {"criterion": criterion, "gamma": 2.0, key: 0.05}, ["gamma", key])
-        group.refuse("γ < 0", {"criterion": criterion, "gamma": -1, key: 0.05}, "out_of_range", ["out_of_range"])
-        for rate in (0, 1, -0.5, 1.5):
-            group.refuse(f"a rate of {rate!r}", {"criterion": criterion, "gamma": 2.0, key: rate}, "out_of_range", ["infinite_answer" if rate in (0, 1) else "out_of_range"])
-    group.refuse("Neyman–Pearson, false alarm: γ = 0", {"criterion": "neyman_pearson_false_alarm", "gamma": 0, "max_false_alarm": 0.05}, "out_of_range", ["zero_gamma"])
-    for prior in (0, 1, -0.1, 1.1):
-        flag = ["infinite_answer" if prior in (0, 1) else "out_of_range"]
-        group.refuse(f"MAP, prior {prior!r}", {"criterion": "map", "prior_h1": prior}, "out_of_range", flag)
-        group.refuse(f"Bayes, prior {prior!r}", {**bayes, "prior_h1": prior}, "out_of_range", flag)
-    for comment, costs in (("c10 = c00", {"c10": 0}), ("c10 < c00", {"c00": 2}), ("c01 = c11", {"c11": 1}), ("c01 < c11", {"c01": -1})):
-        group.refuse(f"Bayes, {comment}", {**bayes, **costs}, "out_of_range", ["infinite_answer"])
-    group.refuse("no criterion", {"prior_h1": 0.5}, "bad_argument", ["missing_argument"])
-    group.refuse("a criterion that does not exist", {"criterion": "minimax", "prior_h1": 0.5}, "bad_argument", ["wrong_type"])
-    group.refuse("a criterion that is a number", {"criterion": 1, "prior_h1": 0.5}, "bad_argument", ["wrong_type"])
     return group
 
 
@@ -193,34 +199,100 @@ def needed(alpha, beta):
 
 
 def required_gamma():
-    group = Group("required_gamma", "required_gamma", SOURCE, {"gamma": absolute(64 * UNIT, "1", "cases state their own")})
+    group = Group(
+        "required_gamma", "required_gamma", SOURCE, {"gamma": absolute(64 * UNIT, "1", "cases state their own")}
+    )
     draws = Draws(13)
-    pairs = [(0.05, 0.05, "the paper's example: 3.29"), (0.01, 0.01, "table"), (0.05, 0.01, "table"), (0.5, 0.5, "0"), (0.25, 0.75, "0"), (0.6, 0.7, "would be negative"), (0.9, 0.05, "one rate above ½"), (0.499999, 0.5, "nearly 0"), (0.3, 0.6999999, "cancels"), (0.3, 0.7, "cancels up to the rounding of 0.3 + 0.7"), (1e-300, 1e-300, "tiny rates"), (5e-324, 0.5, "the least rate"), (1e-310, 1e-5, "a subnormal rate"), (1 - 2.0**-53, 1e-10, "a rate next to 1"), (1e-16, 1e-16, "1 − α rounds")]
+    pairs = [
+        (0.05, 0.05, "the paper's example: 3.29"),
+        (0.01, 0.01, "table"),
+        (0.05, 0.01, "table"),
+        (0.5, 0.5, "0"),
+        (0.25, 0.75, "0"),
+        (0.6, 0.7, "would be negative"),
+        (0.9, 0.05, "one rate above ½"),
+        (0.499999, 0.5, "nearly 0"),
+        (0.3, 0.6999999, "cancels"),
+        (0.3, 0.7, "cancels up to the rounding of 0.3 + 0.7"),
+        (1e-300, 1e-300, "tiny rates"),
+        (5e-324, 0.5, "the least rate"),
+        (1e-310, 1e-5, "a subnormal rate"),
+        (1 - 2.0**-53, 1e-10, "a rate next to 1"),
+        (1e-16, 1e-16, "1 − α rounds"),
+    ]
     pairs += [(draws.decimal(0.001, 0.5), draws.decimal(0.001, 0.5), "drawn") for _ in range(30)]
-    pairs += [(nearest(mpf(10) ** -draws.integer(3, 200)), draws.decimal(0.001, 0.9), "drawn, small α") for _ in range(15)]
+    pairs += [
+        (nearest(mpf(10) ** -draws.integer(3, 200)), draws.decimal(0.001, 0.9), "drawn, small α") for _ in range(15)
+    ]
     for alpha, beta, kind in pairs:
         gamma, bound = needed(alpha, beta)
         a, b = -quantile(alpha), -quantile(beta)
-        wrong = [("quantile_sign", {"gamma": -a - b}), ("rates_swapped", {"gamma": a - b}), ("root_two_missing", {"gamma": (a + b) * sqrt(mpf(2))}), ("gamma_squared", {"gamma": (a + b) ** 2}), ("one_sided_interval", {"gamma": -quantile(alpha / 2) + b if alpha / 2 else gamma})]
+        wrong = [
+            ("quantile_sign", {"gamma": -a - b}),
+            ("rates_swapped", {"gamma": a - b}),
+            ("root_two_missing", {"gamma": (a + b) * sqrt(mpf(2))}),
+            ("gamma_squared", {"gamma": (a + b) ** 2}),
+            ("one_sided_interval", {"gamma": -quantile(alpha / 2) + b if alpha / 2 else gamma}),
+        ]
         if alpha > 1e-17 and 1.0 - alpha < 1.0:
             wrong.append(("complement_rounded", {"gamma": max(mpf(0), quantile(1.0 - alpha) + b)}))
         if a + b < 0:
             wrong.append(("out_of_range", {"gamma": a + b}))
-        group.accept(f"{kind}: α = {alpha!r}, β = {beta!r}", {"max_false_alarm": alpha, "max_miss": beta}, {"gamma": gamma}, wrong, tolerance={"gamma": absolute(bound, "1", "2⁻⁵³ (8 |Φ⁻¹(1−α)| + 8 |Φ⁻¹(1−β)| + γ): two quantiles within 4 ULP and a sum")})
+        group.accept(
+            f"{kind}: α = {alpha!r}, β = {beta!r}",
+            {"max_false_alarm": alpha, "max_miss": beta},
+            {"gamma": gamma},
+            wrong,
+            tolerance={
+                "gamma": absolute(
+                    bound, "1", "2⁻⁵³ (8 |Φ⁻¹(1−α)| + 8 |Φ⁻¹(1−β)| + γ): two quantiles within 4 ULP and a sum"
+                )
+            },
+        )
     args = {"max_false_alarm": 0.05, "max_miss": 0.05}
     refuse_common(group, args, list(args))
     for key in args:
         for rate in (0, 1, -0.05, 1.05):
-            group.refuse(f"{key} = {rate!r}", {**args, key: rate}, "out_of_range", ["infinite_answer" if rate in (0, 1) else "out_of_range"])
+            group.refuse(
+                f"{key} = {rate!r}",
+                {**args, key: rate},
+                "out_of_range",
+                ["infinite_answer" if rate in (0, 1) else "out_of_range"],
+            )
     return group
 
 
 def noise_budget():
-    reasons = {key: absolute(64 * UNIT, unit, "cases state their own") for key, unit in (("gamma", "1"), ("total_allowed_n", "N"), ("remaining_n", "N"))}
+    reasons = {
+        key: absolute(64 * UNIT, unit, "cases state their own")
+        for key, unit in (("gamma", "1"), ("total_allowed_n", "N"), ("remaining_n", "N"))
+    }
     group = Group("noise_budget", "noise_budget", SOURCE, reasons)
     draws = Draws(14)
-    budgets = [(0.5, 0.05, 0.05, [0.1], "the paper's example: 0.1145, not 0.11"), (0.34, 0.05, 0.05, [0.02, 0.0005, 0.14, 0.093], "Table 2, playback: exhausted"), (0.34, 0.2, 0.2, [0.02, 0.0005, 0.14, 0.093], "Table 2, playback"), (0.34, 0.2, 0.2, [0.2, 0.093], "Table 2, direct contact"), (0.5, 0.05, 0.05, [0.151], "nearly exhausted"), (0.5, 0.05, 0.05, [1.0], "exhausted"), (1e-6, 0.01, 0.01, [1e-7], "micronewtons"), (1e6, 0.01, 0.01, [1e5, 1e4], "meganewtons"), (0.5, 1e-100, 1e-100, [0.01], "tiny rates"), (0.5, 0.49, 0.5, [0.1, 0.2], "γ nearly 0"), (0.5, 0.05, 0.05, [1e-20], "a source lost in rounding"), (0.5, 0.05, 0.05, [0.02] * 20, "20 equal sources")]
-    budgets += [(draws.decimal(0.1, 1), draws.decimal(0.01, 0.3), draws.decimal(0.01, 0.3), [draws.decimal(0.001, 0.2) for _ in range(draws.integer(1, 4))], "drawn") for _ in range(46)]
+    budgets = [
+        (0.5, 0.05, 0.05, [0.1], "the paper's example: 0.1145, not 0.11"),
+        (0.34, 0.05, 0.05, [0.02, 0.0005, 0.14, 0.093], "Table 2, playback: exhausted"),
+        (0.34, 0.2, 0.2, [0.02, 0.0005, 0.14, 0.093], "Table 2, playback"),
+        (0.34, 0.2, 0.2, [0.2, 0.093], "Table 2, direct contact"),
+        (0.5, 0.05, 0.05, [0.151], "nearly exhausted"),
+        (0.5, 0.05, 0.05, [1.0], "exhausted"),
+        (1e-6, 0.01, 0.01, [1e-7], "micronewtons"),
+        (1e6, 0.01, 0.01, [1e5, 1e4], "meganewtons"),
+        (0.5, 1e-100, 1e-100, [0.01], "tiny rates"),
+        (0.5, 0.49, 0.5, [0.1, 0.2], "γ nearly 0"),
+        (0.5, 0.05, 0.05, [1e-20], "a source lost in rounding"),
+        (0.5, 0.05, 0.05, [0.02] * 20, "20 equal sources"),
+    ]
+    budgets += [
+        (
+            draws.decimal(0.1, 1),
+            draws.decimal(0.01, 0.3),
+            draws.decimal(0.01, 0.3),
+            [draws.decimal(0.001, 0.2) for _ in range(draws.integer(1, 4))],
+            "drawn",
+        )
+        for _ in range(46)
+    ]
     for signal, alpha, beta, sources, kind in budgets:
         gamma, gamma_bound = needed(alpha, beta)
         s = [real(x) for x in sources]
@@ -235,21 +307,39 @@ def noise_budget():
         else:
             remaining_bound = 0
         linear = total - sum(s)
-        wrong = [("noise_added_linearly", {"remaining_n": max(linear, mpf(0))}), ("total_for_remaining", {"remaining_n": total}), ("gamma_squared", {"total_allowed_n": real(signal) / gamma**2}), ("variance_for_sd", {"remaining_n": max(left, mpf(0))}), ("root_two_missing", {"total_allowed_n": real(signal) / gamma / sqrt(mpf(2))})]
+        wrong = [
+            ("noise_added_linearly", {"remaining_n": max(linear, mpf(0))}),
+            ("total_for_remaining", {"remaining_n": total}),
+            ("gamma_squared", {"total_allowed_n": real(signal) / gamma**2}),
+            ("variance_for_sd", {"remaining_n": max(left, mpf(0))}),
+            ("root_two_missing", {"total_allowed_n": real(signal) / gamma / sqrt(mpf(2))}),
+        ]
         if left < 0:
             wrong.append(("out_of_range", {"remaining_n": -sqrt(-left)}))
-        tolerance = {"gamma": absolute(gamma_bound, "1", "as of required_gamma"), "total_allowed_n": absolute(total_bound, "N", "the relative one of γ and a quotient"), "remaining_n": absolute(remaining_bound, "N", "(δ(total²) + (n + 2) 2⁻⁵³ Σs²)/(2 remaining) + 2 roundings; 0 where the sources exhaust it")}
+        tolerance = {
+            "gamma": absolute(gamma_bound, "1", "as of required_gamma"),
+            "total_allowed_n": absolute(total_bound, "N", "the relative one of γ and a quotient"),
+            "remaining_n": absolute(
+                remaining_bound,
+                "N",
+                "(δ(total²) + (n + 2) 2⁻⁵³ Σs²)/(2 remaining) + 2 roundings; 0 where the sources exhaust it",
+            ),
+        }
         args = {"signal_n": signal, "max_false_alarm": alpha, "max_miss": beta, "sources_n": sources}
-        group.accept(kind, args, {"gamma": gamma, "total_allowed_n": total, "remaining_n": remaining}, wrong, tolerance=tolerance)
+        group.accept(
+            kind, args, {"gamma": gamma, "total_allowed_n": total, "remaining_n": remaining}, wrong, tolerance=tolerance
+        )
     args = {"signal_n": 0.5, "max_false_alarm": 0.05, "max_miss": 0.05, "sources_n": [0.1, 0.02]}
     refuse_common(group, args, ["signal_n", "max_false_alarm", "max_miss"], ["sources_n"])
     for key in ("max_false_alarm", "max_miss"):
         for rate in (0, 1):
             group.refuse(f"{key} = {rate}", {**args, key: rate}, "out_of_range", ["infinite_answer"])
-    group.refuse("γ = 0: any noise would do", {**args, "max_false_alarm": 0.5, "max_miss": 0.5}, "out_of_range", ["zero_gamma"])
-    group.refuse("γ floored at 0", {**args, "max_false_alarm": 0.8, "max_miss": 0.7}, "out_of_range", ["zero_gamma"])
+    group.refuse(
+        "γ = 0: any noise would do", {**args, "max_false_alarm": 0.5, "max_miss": 0.5}, "overflow", ["zero_gamma"]
+    )
+    group.refuse("γ floored at 0", {**args, "max_false_alarm": 0.8, "max_miss": 0.7}, "overflow", ["zero_gamma"])
     group.refuse("a source below 0", {**args, "sources_n": [0.1, -0.02]}, "out_of_range", ["out_of_range"])
     return group
 
 
-GROUPS = [threshold, error_rates, roc, required_gamma, noise_budget]
+GROUPS = [error_rates, roc, required_gamma, noise_budget]

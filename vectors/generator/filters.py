@@ -1,4 +1,4 @@
-"""Matched filter, Θ in white and coloured noise, and the scan (DET-010 … 016, 040 … 043, 050 … 053).
+"""Matched filter and Θ in white noise (DET-010 … 016).
 
 Sums of products are exact fractions; only square roots are taken in 50 digits.
 """
@@ -9,7 +9,7 @@ from mpmath import mpf, sqrt
 
 from .numbers import UNIT, Draws, exact, real
 from .series import dot, exacts, magnitude, noise, signal
-from .suite import Group, absolute, in_ulp, is_exact, refuse_common
+from .suite import Group, absolute, in_ulp, refuse_common
 
 SOURCE = "exact fractions; square roots by mpmath 1.3.0 at 50 digits"
 
@@ -34,18 +34,46 @@ SUM = "(N + 2)·2⁻⁵³ for a plain sum of squares, halved by the root, and 8 
 
 
 def matched_filter():
-    group = Group("matched_filter", "matched_filter", SOURCE, {"b_x": in_ulp(16, SUM), "b_y": in_ulp(16, SUM), "sigma_x": in_ulp(4, "√N and a quotient, or the root of the weight"), "sigma_y": in_ulp(4, "as sigma_x"), "gamma": in_ulp(16, SUM)})
+    group = Group(
+        "matched_filter",
+        "matched_filter",
+        SOURCE,
+        {
+            "b_x": in_ulp(16, SUM),
+            "b_y": in_ulp(16, SUM),
+            "sigma_x": in_ulp(4, "√N and a quotient, or the root of the weight"),
+            "sigma_y": in_ulp(4, "as sigma_x"),
+            "gamma": in_ulp(16, SUM),
+        },
+    )
     draws = Draws(20)
     cases = []
     for count in (1, 2, 3, 5, 9, 21, 41):
         x, y = signal(count, draws)
         cases.append((x, y, 0.1, 0.15, f"{count} samples"))
     x, y = signal(9, draws)
-    cases += [([0.0] * 9, y, 0.1, 0.15, "lateral channel zero"), (x, [0] * 9, 0.1, 0.15, "normal channel zero"), ([0.0] * 4, [0.0] * 4, 0.1, 0.1, "no signal: γ = 0")]
-    for power, kind in ((-700, "squares underflow"), (700, "squares overflow"), (-1000, "near the least normal number"), (1000, "near the largest number")):
+    cases += [
+        ([0.0] * 9, y, 0.1, 0.15, "lateral channel zero"),
+        (x, [0] * 9, 0.1, 0.15, "normal channel zero"),
+        ([0.0] * 4, [0.0] * 4, 0.1, 0.1, "no signal: γ = 0"),
+    ]
+    for power, kind in (
+        (-700, "squares underflow"),
+        (700, "squares overflow"),
+        (-1000, "near the least normal number"),
+        (1000, "near the largest number"),
+    ):
         scale = 2.0**power
-        cases.append(([v * scale for v in x], [v * scale for v in y], 0.1 * scale, 0.15 * scale, f"unit of 2^{-power} N: {kind}"))
-    cases += [(x, y, 1e-100, 2e-100, "tiny noise: γ of 10⁹⁹"), (x, y, 1e100, 1e100, "huge noise: tiny γ"), (x, y, 0.1, 1e6, "only the lateral channel says anything"), ([1e-3, 3e-160], [2.0, 0.1], 0.5, 0.25, "a sample lost in rounding"), ([3, 4], [0, 0], 1, 1, "3, 4, 5")]
+        cases.append(
+            ([v * scale for v in x], [v * scale for v in y], 0.1 * scale, 0.15 * scale, f"unit of 2^{-power} N: {kind}")
+        )
+    cases += [
+        (x, y, 1e-100, 2e-100, "tiny noise: γ of 10⁹⁹"),
+        (x, y, 1e100, 1e100, "huge noise: tiny γ"),
+        (x, y, 0.1, 1e6, "only the lateral channel says anything"),
+        ([1e-3, 3e-160], [2.0, 0.1], 0.5, 0.25, "a sample lost in rounding"),
+        ([3, 4], [0, 0], 1, 1, "3, 4, 5"),
+    ]
     x, y = signal(200, draws)
     cases.append((x, y, 0.235, 0.2, "a long record: 200 samples"))
     for _ in range(42):
@@ -57,20 +85,43 @@ def matched_filter():
         count = len(x)
         ok = {"b_x": bx, "b_y": by, "sigma_x": nx, "sigma_y": ny, "gamma": root(gx + gy)}
         n = mpf(count)
-        wrong = [("weight_missing", {"b_x": bx * sqrt(n), "b_y": by * sqrt(n), "sigma_x": mpf(sx), "sigma_y": mpf(sy)}), ("weight_missing", {"gamma": root((gx + gy) / count)}), ("weight_missing", {"sigma_x": mpf(sx), "sigma_y": mpf(sy), "gamma": root((gx + gy) / count)}), ("gamma_squared", {"gamma": real(gx + gy)}), ("variance_for_sd", {"sigma_x": nx * nx, "sigma_y": ny * ny}), ("variance_for_sd", {"gamma": root(gx * exact(sx) + gy * exact(sy))}), ("channels_exchanged", {"gamma": root(gx * exact(sx) ** 2 / exact(sy) ** 2 + gy * exact(sy) ** 2 / exact(sx) ** 2)}), ("channel_missing", {"gamma": root(gy)})]
+        wrong = [
+            ("weight_missing", {"b_x": bx * sqrt(n), "b_y": by * sqrt(n), "sigma_x": mpf(sx), "sigma_y": mpf(sy)}),
+            ("weight_missing", {"gamma": root((gx + gy) / count)}),
+            ("weight_missing", {"sigma_x": mpf(sx), "sigma_y": mpf(sy), "gamma": root((gx + gy) / count)}),
+            ("gamma_squared", {"gamma": real(gx + gy)}),
+            ("variance_for_sd", {"sigma_x": nx * nx, "sigma_y": ny * ny}),
+            ("variance_for_sd", {"gamma": root(gx * exact(sx) + gy * exact(sy))}),
+            (
+                "channels_exchanged",
+                {"gamma": root(gx * exact(sx) ** 2 / exact(sy) ** 2 + gy * exact(sy) ** 2 / exact(sx) ** 2)},
+            ),
+            ("channel_missing", {"gamma": root(gy)}),
+        ]
         if abs(x[0]) > 1e150 or 0 < abs(x[0]) < 1e-150:
             wrong.append(("squares_underflow", {"b_x": mpf(0), "b_y": mpf(0), "gamma": mpf(0)}))
         limits = None
         if sum_ulps(count) > 16:
             limits = {key: in_ulp(sum_ulps(count), SUM) for key in ("b_x", "b_y", "gamma")}
-        group.accept(kind, {"template_x": x, "template_y": y, "noise_sd_x": sx, "noise_sd_y": sy}, ok, wrong, tolerance=limits)
+        group.accept(
+            kind, {"template_x": x, "template_y": y, "noise_sd_x": sx, "noise_sd_y": sy}, ok, wrong, tolerance=limits
+        )
     args = {"template_x": [0.1, 0.2], "template_y": [0.3, 0.4], "noise_sd_x": 0.1, "noise_sd_y": 0.2}
     refuse_common(group, args, ["noise_sd_x", "noise_sd_y"], ["template_x", "template_y"])
     refuse_deviations(group, args)
     group.refuse("lengths differ", {**args, "template_x": [0.1]}, "bad_argument", ["lengths_differ"])
     group.refuse("empty", {**args, "template_x": [], "template_y": []}, "bad_argument", ["empty"])
-    group.refuse("γ would be infinite", {**args, "template_x": [1e300, 1e300], "noise_sd_x": 1e-300}, "overflow", ["infinite_answer"])
-    group.refuse_line("a sample is 1e999", '{"template_x":[1e999,0.2],"template_y":[0.3,0.4],"noise_sd_x":0.1,"noise_sd_y":0.2}', "bad_json", ["not_finite"])
+    group.refuse(
+        "γ would be infinite",
+        {**args, "template_x": [1e300, 1e300], "noise_sd_x": 1e-300},
+        "overflow",
+        ["infinite_answer"],
+    )
+    group.refuse_line(
+        "a sample is 1e999",
+        '{"template_x":[1e999,0.2],"template_y":[0.3,0.4],"noise_sd_x":0.1,"noise_sd_y":0.2}',
+        ["not_finite"],
+    )
     return group
 
 
@@ -83,16 +134,32 @@ def refuse_deviations(group, args):
 def correlate(residual, template, deviation):
     """Σ rΔ/s², ½ ΣΔ²/s² and the sum of their terms' magnitudes, of one channel."""
     s2 = exact(deviation) ** 2
-    return dot(residual, template) / s2, dot(template, template) / (2 * s2), (magnitude(residual, template) + dot(template, template) / 2) / s2
+    return (
+        dot(residual, template) / s2,
+        dot(template, template) / (2 * s2),
+        (magnitude(residual, template) + dot(template, template) / 2) / s2,
+    )
 
 
 def theta():
-    group = Group("theta", "theta", SOURCE, {"theta": absolute(UNIT, "1", "cases state their own"), "y_x": absolute(UNIT, "N", "cases state their own"), "y_y": absolute(UNIT, "N", "cases state their own"), "gamma": in_ulp(16, SUM)})
+    group = Group(
+        "theta",
+        "theta",
+        SOURCE,
+        {
+            "theta": absolute(UNIT, "1", "cases state their own"),
+            "y_x": absolute(UNIT, "N", "cases state their own"),
+            "y_y": absolute(UNIT, "N", "cases state their own"),
+            "gamma": in_ulp(16, SUM),
+        },
+    )
     draws = Draws(21)
     for number in range(84):
         count = [1, 2, 3, 5, 9, 15, 21][number] if number < 7 else 120 if number in (7, 8) else draws.integer(2, 8)
         dx, dy = signal(count, draws, draws.decimal(0.05, 0.6))
-        f0x, f0y = [draws.decimal(-0.3, 0.3, 4) for _ in range(count)], [draws.decimal(0.8, 1.6, 4) for _ in range(count)]
+        f0x, f0y = [draws.decimal(-0.3, 0.3, 4) for _ in range(count)], [
+            draws.decimal(0.8, 1.6, 4) for _ in range(count)
+        ]
         sx, sy = draws.decimal(0.02, 0.4), draws.decimal(0.02, 0.4)
         kind, present, scale = ("inclusion", 1, 1.0) if number % 2 else ("no inclusion", 0, 1.0)
         if number in (10, 11):
@@ -110,7 +177,11 @@ def theta():
         if number in (18, 19):
             px, py, kind = [a for a in f1x], [a for a in f1y], "the record is F_1: Θ = γ²/2"
         if number in (20, 21, 22):
-            px, py, kind = [(a + b) / 2 for a, b in zip(f0x, f1x)], [(a + b) / 2 for a, b in zip(f0y, f1y)], "half way: Θ cancels to rounding errors of the record"
+            px, py, kind = (
+                [(a + b) / 2 for a, b in zip(f0x, f1x)],
+                [(a + b) / 2 for a, b in zip(f0y, f1y)],
+                "half way: Θ cancels to rounding errors of the record",
+            )
         if number in (23, 24, 25, 26):
             scale = 2.0 ** (-660, 660, -900, 900)[number - 23]
             kind += f", forces in units of 2^{(660, -660, 900, -900)[number - 23]} N"
@@ -123,14 +194,27 @@ def theta():
             kind += ", on top of 1 MN: the differences cancel"
         series = [[v * scale for v in f] for f in (px, py, f0x, f0y, f1x, f1y)]
         theta_case(group, kind, series, sx * scale, sy * scale)
-    args = {"observed_x": [0.1, 0.2], "observed_y": [1.0, 1.1], "f0_x": [0.0, 0.1], "f0_y": [1.0, 1.0], "f1_x": [0.2, 0.3], "f1_y": [1.2, 1.3], "noise_sd_x": 0.1, "noise_sd_y": 0.2}
+    args = {
+        "observed_x": [0.1, 0.2],
+        "observed_y": [1.0, 1.1],
+        "f0_x": [0.0, 0.1],
+        "f0_y": [1.0, 1.0],
+        "f1_x": [0.2, 0.3],
+        "f1_y": [1.2, 1.3],
+        "noise_sd_x": 0.1,
+        "noise_sd_y": 0.2,
+    }
     lists = [key for key in args if not key.startswith("noise")]
     refuse_common(group, args, ["noise_sd_x", "noise_sd_y"], lists)
     refuse_deviations(group, args)
     for key in lists:
         group.refuse(f"{key} is shorter", {**args, key: args[key][:1]}, "bad_argument", ["lengths_differ"])
     group.refuse("empty", {**args, **{key: [] for key in lists}}, "bad_argument", ["empty"])
-    group.refuse_line("a sample is -1e999", '{"observed_x":[-1e999],"observed_y":[1],"f0_x":[0],"f0_y":[1],"f1_x":[0.2],"f1_y":[1.2],"noise_sd_x":0.1,"noise_sd_y":0.2}', "bad_json", ["not_finite"])
+    group.refuse_line(
+        "a sample is -1e999",
+        '{"observed_x":[-1e999],"observed_y":[1],"f0_x":[0],"f0_y":[1],"f1_x":[0.2],"f1_y":[1.2],"noise_sd_x":0.1,"noise_sd_y":0.2}',
+        ["not_finite"],
+    )
     return group
 
 
@@ -147,7 +231,9 @@ def theta_case(group, kind, series, sx, sy):
         energy = dot(d, d)
         b = root(energy / count)
         y.append(real(dot(r, d) / count) / b if energy else mpf(0))
-        y_bounds.append((count * 3 // 2 + 10) * UNIT * exact(real(magnitude(r, d) / count) / b) if energy else Fraction(0))
+        y_bounds.append(
+            (count * 3 // 2 + 10) * UNIT * exact(real(magnitude(r, d) / count) / b) if energy else Fraction(0)
+        )
     value = sum(rd - half for rd, half, _ in sums)
     gamma2 = 2 * sum(half for _, half, _ in sums)
     bound = (count + 8) * UNIT * sum(size for _, _, size in sums)
@@ -157,16 +243,62 @@ def theta_case(group, kind, series, sx, sy):
         """Θ by a changed rule for each channel."""
         return sum((rd - half for rd, half, _ in (change(*channel) for channel in channels)), Fraction(0))
 
-    wrong = [("half_left_out", {"theta": sum(rd - 2 * half for rd, half, _ in sums)}), ("half_left_out", {"theta": sum(rd for rd, _, _ in sums)}), ("sign_exchanged", {"theta": -value}), ("gamma_squared", {"gamma": real(gamma2)})]
-    wrong.append(("time_not_reversed", {"theta": other(lambda r, d, s: correlate(r, d[::-1], s)), "y_x": turned(channels[0]), "y_y": turned(channels[1])}))
+    wrong = [
+        ("half_left_out", {"theta": sum(rd - 2 * half for rd, half, _ in sums)}),
+        ("half_left_out", {"theta": sum(rd for rd, _, _ in sums)}),
+        ("sign_exchanged", {"theta": -value}),
+        ("gamma_squared", {"gamma": real(gamma2)}),
+    ]
+    wrong.append(
+        (
+            "time_not_reversed",
+            {
+                "theta": other(lambda r, d, s: correlate(r, d[::-1], s)),
+                "y_x": turned(channels[0]),
+                "y_y": turned(channels[1]),
+            },
+        )
+    )
     wrong.append(("time_not_reversed", {"theta": other(lambda r, d, s: correlate(r, d[::-1], s))}))
-    wrong.append(("variance_for_sd", {"theta": sum((rd - half) * exact(s) for (rd, half, _), (_, _, s) in zip(sums, channels)), "gamma": root(2 * sum(half * exact(s) for (_, half, _), (_, _, s) in zip(sums, channels)))}))
+    wrong.append(
+        (
+            "variance_for_sd",
+            {
+                "theta": sum((rd - half) * exact(s) for (rd, half, _), (_, _, s) in zip(sums, channels)),
+                "gamma": root(2 * sum(half * exact(s) for (_, half, _), (_, _, s) in zip(sums, channels))),
+            },
+        )
+    )
+    wrong.append(
+        ("variance_for_sd", {"theta": sum((rd - half) * exact(s) for (rd, half, _), (_, _, s) in zip(sums, channels))})
+    )
     wrong.append(("weight_missing", {"theta": value / count, "gamma": root(gamma2 / count)}))
     wrong.append(("weight_missing", {"y_x": y[0] * count, "y_y": y[1] * count}))
-    wrong.append(("f0_not_subtracted", {"theta": other_observed(channels, (f0x, f0y)), "y_x": unsubtracted(channels[0], f0x), "y_y": unsubtracted(channels[1], f0y)}))
+    wrong.append(
+        (
+            "f0_not_subtracted",
+            {
+                "theta": other_observed(channels, (f0x, f0y)),
+                "y_x": unsubtracted(channels[0], f0x),
+                "y_y": unsubtracted(channels[1], f0y),
+            },
+        )
+    )
     ratio = exact(sx) ** 2 / exact(sy) ** 2
-    wrong.append(("channels_exchanged", {"theta": (sums[0][0] - sums[0][1]) * ratio + (sums[1][0] - sums[1][1]) / ratio, "gamma": root(2 * (sums[0][1] * ratio + sums[1][1] / ratio))}))
-    limits = {"theta": absolute(bound, "1", "(N + 8) 2⁻⁵³ Σ (|rΔ| + Δ²/2)/s²: plain sums of rounded differences"), "y_x": absolute(y_bounds[0], "N", "(3N/2 + 10) 2⁻⁵³ w Σ|rΔ|/b"), "y_y": absolute(y_bounds[1], "N", "as y_x")}
+    wrong.append(
+        (
+            "channels_exchanged",
+            {
+                "theta": (sums[0][0] - sums[0][1]) * ratio + (sums[1][0] - sums[1][1]) / ratio,
+                "gamma": root(2 * (sums[0][1] * ratio + sums[1][1] / ratio)),
+            },
+        )
+    )
+    limits = {
+        "theta": absolute(bound, "1", "(N + 8) 2⁻⁵³ Σ (|rΔ| + Δ²/2)/s²: plain sums of rounded differences"),
+        "y_x": absolute(y_bounds[0], "N", "(3N/2 + 10) 2⁻⁵³ w Σ|rΔ|/b"),
+        "y_y": absolute(y_bounds[1], "N", "as y_x"),
+    }
     if sum_ulps(count) > 16:
         limits["gamma"] = in_ulp(sum_ulps(count), SUM)
     names = ("observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y")
@@ -193,93 +325,4 @@ def other_observed(channels, references):
     return total
 
 
-def scan_sums(residual, template, deviation, shift):
-    part = residual[shift : shift + len(template)]
-    return correlate(part, template, deviation)
-
-
-def scan():
-    group = Group("scan", "scan", SOURCE, {"theta": absolute(UNIT, "1", "cases state their own"), "max_theta": absolute(UNIT, "1", "cases state their own"), "argmax": is_exact("the runner-up is farther off than both errors, or equal to the bit with short binary fractions")})
-    draws = Draws(22)
-    for number in range(66):
-        count = draws.integer(4, 14)
-        length = draws.integer(2, count)
-        kind = "drawn"
-        if number < 4:
-            length, kind = count, "M = N: one shift"
-        elif number < 8:
-            length, kind = 1, "M = 1"
-        elif number == 8:
-            count, length, kind = 1, 1, "one sample"
-        elif number in (9, 10):
-            count, length, kind = 60, 9, "a longer record"
-        tx, ty = signal(length, draws, draws.decimal(0.1, 0.6))
-        sx, sy = draws.decimal(0.02, 0.2), draws.decimal(0.02, 0.2)
-        place = draws.integer(0, count - length)
-        if number in (11, 12):
-            place, kind = 0, "inclusion at the first shift"
-        if number in (13, 14):
-            place, kind = count - length, "inclusion at the last shift"
-        if number in (15, 16):
-            tx, kind = [0.0] * length, "lateral channel without signal"
-        rx, ry = noise(count, draws, sx), noise(count, draws, sy)
-        if number % 5:
-            for i in range(length):
-                rx[place + i] = round(rx[place + i] + tx[i], 5)
-                ry[place + i] = round(ry[place + i] + ty[i], 5)
-        elif kind == "drawn":
-            kind = "drawn, no inclusion"
-        scan_case(group, kind, rx, ry, tx, ty, sx, sy)
-    ramp, flat = [0.5, 1.0, -0.25], [0.25, 0.5, 0.75]
-    for period, kind in ((3, "period of the template: equal maxima, the first counts"), (4, "two equal maxima, the first counts")):
-        pause = [0.0] * (period - 3)
-        scan_case(group, kind, (ramp + pause) * 3, (flat + pause) * 3, ramp, flat, 0.5, 0.25, tie=True)
-    scan_case(group, "record of zeros: all equal, the first counts", [0.0] * 6, [0.0] * 6, ramp, flat, 0.5, 0.25, tie=True)
-    args = {"residual_x": [0.1, 0.2, 0.3], "residual_y": [0.3, 0.2, 0.1], "template_x": [0.1, 0.2], "template_y": [0.2, 0.1], "noise_sd_x": 0.1, "noise_sd_y": 0.2}
-    lists = [key for key in args if not key.startswith("noise")]
-    refuse_common(group, args, ["noise_sd_x", "noise_sd_y"], lists)
-    refuse_deviations(group, args)
-    for key in lists:
-        group.refuse(f"{key} is shorter", {**args, key: args[key][:-1]}, "bad_argument", ["lengths_differ"])
-    group.refuse("template longer than the record", {**args, "template_x": [0.1] * 4, "template_y": [0.1] * 4}, "bad_argument", ["lengths_differ"])
-    group.refuse("no template", {**args, "template_x": [], "template_y": []}, "bad_argument", ["empty"])
-    group.refuse("nothing", {**args, **{key: [] for key in lists}}, "bad_argument", ["empty"])
-    return group
-
-
-def scan_case(group, kind, rx, ry, tx, ty, sx, sy, tie=False):
-    def run(rx, ry, tx, ty, sx, sy, half=Fraction(1)):
-        rx, ry, tx, ty = (exacts(f) for f in (rx, ry, tx, ty))
-        values, bound = [], Fraction(0)
-        for shift in range(len(rx) - len(tx) + 1):
-            (a, b, m), (c, d, n) = scan_sums(rx, tx, sx, shift), scan_sums(ry, ty, sy, shift)
-            values.append(a + c - half * (b + d))
-            bound = max(bound, (len(tx) + 8) * UNIT * (m + n))
-        return values, bound
-
-    def answer(values):
-        return {"theta": values, "max_theta": max(values), "argmax": values.index(max(values))}
-
-    values, bound = run(rx, ry, tx, ty, sx, sy)
-    best = max(values)
-    if not tie:
-        runner_up = max([v for i, v in enumerate(values) if i != values.index(best)], default=None)
-        assert runner_up is None or best - runner_up > 4 * bound, kind
-    ok = answer(values)
-    last = len(values) - 1 - values[::-1].index(best)
-    wrong = [("half_left_out", answer(run(rx, ry, tx, ty, sx, sy, Fraction(2))[0])), ("energy_of_whole_record", answer(run(rx, ry, tx, ty, sx, sy, Fraction(0))[0])), ("time_not_reversed", answer(run(rx, ry, tx[::-1], ty[::-1], sx, sy)[0])), ("variance_for_sd", answer(weighted(run, rx, ry, tx, ty, sx, sy))), ("channels_exchanged", answer(run(rx, ry, tx, ty, sy, sx)[0])), ("channel_missing", answer(run(rx, ry, [0.0] * len(tx), ty, sx, sy)[0])), ("argmax_off_by_one", {"argmax": ok["argmax"] + 1}), ("shift_reversed", answer(values[::-1])), ("weight_missing", answer([v / len(tx) for v in values]))]
-    if tie:
-        wrong.append(("last_of_equals", {"argmax": last}))
-    limit = absolute(bound, "1", "(M + 8) 2⁻⁵³ Σ (|rΔ| + Δ²/2)/s², the largest of the shifts")
-    args = {"residual_x": rx, "residual_y": ry, "template_x": tx, "template_y": ty, "noise_sd_x": sx, "noise_sd_y": sy}
-    group.accept(kind, args, ok, wrong, tolerance={"theta": limit, "max_theta": limit})
-
-
-def weighted(run, rx, ry, tx, ty, sx, sy):
-    """1/s for 1/s²."""
-    lateral = run(rx, [0.0] * len(ry), tx, [0.0] * len(ty), sx, sy)[0]
-    normal = run([0.0] * len(rx), ry, [0.0] * len(tx), ty, sx, sy)[0]
-    return [a * exact(sx) + b * exact(sy) for a, b in zip(lateral, normal)]
-
-
-GROUPS = [matched_filter, theta, scan]
+GROUPS = [matched_filter, theta]

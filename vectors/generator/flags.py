@@ -2,24 +2,45 @@
 
 BUGS = {
     # Requests
-    "not_finite": ("a NaN or an infinity is taken for a number", "JSON has no such numbers; a parser that reads NaN, Infinity or 1e999 must not pass them on"),
-    "wrong_type": ("a value of another type is taken for the argument", "null is no 0, text is no number, true is no 1"),
+    "not_finite": (
+        "a NaN or an infinity is taken for a number",
+        "JSON has no such numbers; a parser that reads NaN, Infinity or 1e999 must not pass them on",
+    ),
+    "wrong_type": (
+        "a value of another type is taken for the argument",
+        "null is no 0, text is no number, true is no 1",
+    ),
     "missing_argument": ("an argument that is missing has a value made up for it", ""),
-    "unknown_argument": ("an argument of another name is passed over", "a misspelt argument would silently have no effect"),
+    "unknown_argument": (
+        "an argument of another name is passed over",
+        "a misspelt argument would silently have no effect",
+    ),
     "lengths_differ": ("series of unequal lengths are cut, padded or repeated", ""),
     "empty": ("an empty series has an answer", ""),
-    "no_request": ("a line that is no request is answered, or ends the program", "every line has one answer; one that is no JSON has the id null"),
+    "no_request": (
+        "a line that is no request is answered, or ends the program",
+        "every line has one answer; one that is no JSON has the id null",
+    ),
     "unknown_op": ("an op that does not exist is answered, or ends the program", ""),
-    "deep_nesting": ("a deeply nested line overflows the stack", "the nesting must be bounded before or while the line is read"),
+    "deep_nesting": (
+        "a deeply nested line overflows the stack",
+        "the nesting must be bounded before or while the line is read",
+    ),
     "infinite_answer": ("an infinite or undefined answer is given as a number", "such an answer is an error"),
     "out_of_range": ("an argument outside of its range is accepted", ""),
     # Normal law
     "erf_for_phi": ("erf(x) for Φ(x)", "Φ(x) = erfc(−x/√2)/2"),
     "upper_tail": ("the other tail: 1 − Φ(x) for Φ(x), or Φ⁻¹(1 − p)", ""),
     "density_for_cdf": ("the density φ(x) for Φ(x)", ""),
-    "root_two_missing": ("√2 is left out", "erfc takes x/√2; a forced choice compares two records, whose difference has twice the variance"),
+    "root_two_missing": (
+        "√2 is left out",
+        "erfc takes x/√2; a forced choice compares two records, whose difference has twice the variance",
+    ),
     "root_two_twice": ("√2 on the wrong side, or twice", ""),
-    "argument_rounded": ("−x/√2 is rounded before erfc", "costs x²·2⁻⁵³ relatively in the tail: carry the rounding error along"),
+    "argument_rounded": (
+        "−x/√2 is rounded before erfc",
+        "costs x²·2⁻⁵³ relatively in the tail: carry the rounding error along",
+    ),
     "tail_cancelled": ("a small tail as 1 minus a large one", "1 − Φ(x) has no digits left beyond x = 8"),
     "complement_rounded": ("1 − p is rounded before the quantile", "Φ⁻¹(1 − p) = −Φ⁻¹(p)"),
     "quantile_sign": ("the sign of a quantile is exchanged", ""),
@@ -27,18 +48,30 @@ BUGS = {
     # Detector
     "variance_for_sd": ("a variance where a standard deviation is meant, or the other way round", ""),
     "weight_missing": ("the weight 1/N of a sample is left out", "‖f‖ is the root mean square, σ = s/√N"),
-    "time_not_reversed": ("one of the series is turned round: a convolution of record and template", "h(t) = Δ(−t)/‖Δ‖ makes the convolution a correlation"),
+    "time_not_reversed": (
+        "one of the series is turned round: a convolution of record and template",
+        "h(t) = Δ(−t)/‖Δ‖ makes the convolution a correlation",
+    ),
     "channels_exchanged": ("the lateral and the normal channel are exchanged, or their noise", ""),
     "channel_missing": ("only one channel counts", ""),
     "half_left_out": ("the ½ of b/2 or γ²/2 is left out", ""),
     "f0_not_subtracted": ("F_0 is not subtracted from the record", "the print of equation (3), second row: ERR-001"),
     "sign_exchanged": ("H = 0 and H = 1 are exchanged", "large Θ speaks for an inclusion"),
-    "squares_underflow": ("squares of small forces underflow, or of large ones overflow", "scale by a power of two before squaring"),
+    "squares_underflow": (
+        "squares of small forces underflow, or of large ones overflow",
+        "scale by a power of two before squaring",
+    ),
     "correlation_ignored": ("entries of the covariance beyond its diagonal are ignored", ""),
     "cross_channel_ignored": ("the correlation between the channels is ignored", ""),
-    "cholesky_transposed": ("Lᵀ for L: upper and lower factor are exchanged", "a factor of K from K = UᵀU needs U⁻ᵀ to whiten"),
+    "cholesky_transposed": (
+        "Lᵀ for L: upper and lower factor are exchanged",
+        "a factor of K from K = UᵀU needs U⁻ᵀ to whiten",
+    ),
     "covariance_not_inverted": ("K for K⁻¹", ""),
-    "not_symmetric": ("a covariance that is not symmetric is accepted", "a factorisation that reads one triangle only does not see it"),
+    "not_symmetric": (
+        "a covariance that is not symmetric is accepted",
+        "a factorisation that reads one triangle only does not see it",
+    ),
     "not_positive_definite": ("a covariance that is not positive definite is accepted", ""),
     "zero_gamma": ("γ = 0 is accepted where nothing can be promised", ""),
     "rates_swapped": ("false alarm and miss are exchanged", ""),
@@ -58,10 +91,16 @@ BUGS = {
     "wald_interval": ("Wald's interval p̂ ± z √(p̂(1−p̂)/n)", ""),
     "continuity_corrected": ("Wilson's interval with a continuity correction", ""),
     "wilson_for_clopper_pearson": ("one method for the other", ""),
-    "clopper_pearson_off_by_one": ("the parameters of the beta quantile are off by one", "lower: B(k, n−k+1), upper: B(k+1, n−k)"),
+    "clopper_pearson_off_by_one": (
+        "the parameters of the beta quantile are off by one",
+        "lower: B(k, n−k+1), upper: B(k+1, n−k)",
+    ),
     "noise_added_linearly": ("standard deviations are added, not their squares", "independent variances add"),
     "total_for_remaining": ("sources are not subtracted", ""),
-    "df_not_reduced": ("n degrees of freedom for n − 1, or the reverse", "the pooled rate is estimated from the same counts"),
+    "df_not_reduced": (
+        "n degrees of freedom for n − 1, or the reverse",
+        "the pooled rate is estimated from the same counts",
+    ),
     "subjects_for_conditions": ("rows are taken for columns", "rows are subjects, columns conditions"),
     "chi2_one_cell": ("χ² without the wrong answers' cells", "(k − tp)²/(tp) must have (k − tp)²/(t(1−p)) with it"),
     # Tables
@@ -70,9 +109,15 @@ BUGS = {
     "nearest_node": ("the nearest node's force", ""),
     "weights_exchanged": ("t for 1 − t", ""),
     "axes_not_increasing": ("an axis that does not increase is accepted", ""),
-    "overshoot": ("a force outside of the table's last cell grows without end, or not as stated", "SRV-012: continued by one cell, constant from there on"),
+    "overshoot": (
+        "a force outside of the table's last cell grows without end, or not as stated",
+        "SRV-012: continued by one cell, constant from there on",
+    ),
     "plane_above_surface": ("a force above the surface", "SRV-014"),
-    "f64_arithmetic": ("computed in f64 and rounded once", "the bits of the kernel are those of f32, operation by operation"),
+    "f64_arithmetic": (
+        "computed in f64 and rounded once",
+        "the bits of the kernel are those of f32, operation by operation",
+    ),
     "fused": ("a product and a sum are fused", "no fused multiply-add: the bits must be the same everywhere"),
     "division": ("divided by the width, not multiplied by its reciprocal", ""),
     "lerp_by_difference": ("a + t (b − a)", "not exact at t = 1; the kernel's form is (1 − t) a + t b"),

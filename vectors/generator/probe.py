@@ -1,4 +1,4 @@
-"""Forces on the probe (VEC-013): from probe_force.data.json, which probe_force.py computes with scikit-fem."""
+"""Forces on the probe (VEC-013): from probe_force/forces.json, which probe_force.py there computes with scikit-fem."""
 
 import json
 from fractions import Fraction
@@ -6,9 +6,23 @@ from pathlib import Path
 
 from .suite import Group, absolute, refuse_common
 
-DATA = Path(__file__).parent.parent / "probe_force.data.json"
+DATA = Path(__file__).parent.parent / "probe_force" / "forces.json"
 LENGTH = Fraction(30, 1000)
-CHOSEN = [(0.5, 0.0), (0.5, 4.0), (1.0, 2.5), (1.0, 6.0), (2.0, 0.0), (2.0, 1.0), (2.0, 4.0), (3.0, 2.5), (3.0, 10.0), (4.0, 0.0), (4.0, 2.5), (4.0, 6.0), (4.0, 10.0)]
+CHOSEN = [
+    (0.5, 0.0),
+    (0.5, 4.0),
+    (1.0, 2.5),
+    (1.0, 6.0),
+    (2.0, 0.0),
+    (2.0, 1.0),
+    (2.0, 4.0),
+    (3.0, 2.5),
+    (3.0, 10.0),
+    (4.0, 0.0),
+    (4.0, 2.5),
+    (4.0, 6.0),
+    (4.0, 10.0),
+]
 MIRRORED = [(2.0, 4.0), (4.0, 2.5), (3.0, 10.0)]
 
 
@@ -20,7 +34,12 @@ def milli(value):
 def probe_force():
     data = json.loads(DATA.read_text())
     keys = ("normal_force_n", "lateral_force_n")
-    group = Group("probe_force", "probe_force", data["program"] + ", three meshes of its own", {key: absolute(Fraction(1, 1000), "N", "cases state their own") for key in keys})
+    group = Group(
+        "probe_force",
+        "probe_force",
+        data["program"] + ", three meshes of its own",
+        {key: absolute(Fraction(1, 1000), "N", "cases state their own") for key in keys},
+    )
     poses = {(p["phantom"], p["depth_mm"], p["lateral_mm"]): p for p in data["poses"]}
     for name in ("none", "2.6", "4.6", "6.6", "8.6"):
         for depth, lateral in CHOSEN:
@@ -30,10 +49,17 @@ def probe_force():
     args = {"phantom": "2.6", "depth_m": 0.002, "lateral_m": 0.001}
     refuse_common(group, args, ["depth_m", "lateral_m"])
     for phantom in ("5.0", "", "None", "2,6"):
-        group.refuse(f"phantom {phantom!r}", {**args, "phantom": phantom}, "bad_argument", ["out_of_range"])
+        group.refuse(f"phantom {phantom!r}", {**args, "phantom": phantom}, "out_of_range", ["out_of_range"])
     group.refuse("a phantom by number", {**args, "phantom": 2.6}, "bad_argument", ["wrong_type"])
     group.refuse("no phantom", {k: v for k, v in args.items() if k != "phantom"}, "bad_argument", ["missing_argument"])
-    for depth, lateral, kind in ((-0.001, 0.0, "above the surface"), (0.0155, 0.0, "on the floor"), (2.0, 0.0, "in mm"), (0.004, 0.012, "through the right wall"), (0.001, -0.0169, "through the left wall"), (0.004, 2.5, "lateral in mm")):
+    for depth, lateral, kind in (
+        (-0.001, 0.0, "above the surface"),
+        (0.0155, 0.0, "on the floor"),
+        (2.0, 0.0, "in mm"),
+        (0.004, 0.012, "through the right wall"),
+        (0.001, -0.0169, "through the left wall"),
+        (0.004, 2.5, "lateral in mm"),
+    ):
         group.refuse(kind, {**args, "depth_m": depth, "lateral_m": lateral}, "out_of_range", ["out_of_range"])
     return group
 
@@ -42,11 +68,30 @@ def pose_case(group, poses, name, depth, lateral, sign):
     pose, reference = poses[name, depth, lateral], poses["none", depth, lateral]
     normal, side = milli(pose["normal_force_mn"]), sign * milli(pose["lateral_force_mn"])
     ok = {"normal_force_n": normal, "lateral_force_n": side}
-    wrong = [("per_length", {"normal_force_n": normal / LENGTH, "lateral_force_n": side / LENGTH}), ("half_force", {"normal_force_n": normal / 2, "lateral_force_n": side / 2}), ("forces_exchanged", {"normal_force_n": side, "lateral_force_n": normal}), ("inclusion_ignored", {"normal_force_n": milli(reference["normal_force_mn"]), "lateral_force_n": sign * milli(reference["lateral_force_mn"])})]
+    wrong = [
+        ("per_length", {"normal_force_n": normal / LENGTH, "lateral_force_n": side / LENGTH}),
+        ("half_force", {"normal_force_n": normal / 2, "lateral_force_n": side / 2}),
+        ("forces_exchanged", {"normal_force_n": side, "lateral_force_n": normal}),
+        (
+            "inclusion_ignored",
+            {
+                "normal_force_n": milli(reference["normal_force_mn"]),
+                "lateral_force_n": sign * milli(reference["lateral_force_mn"]),
+            },
+        ),
+    ]
     wrong.append(("mirror_ignored" if sign < 0 else "lateral_sign", {"lateral_force_n": -side}))
     limits = {
-        "normal_force_n": absolute(milli(pose["normal_band_mn"]) + normal * Fraction(3, 1000), "N", "band of the expected value, and 0.3 % of the default mesh (FEM-021)"),
-        "lateral_force_n": absolute(milli(pose["lateral_band_mn"]) + Fraction(15, 10000), "N", "band of the expected value, and 1.5 mN of the default mesh (FEM-025)"),
+        "normal_force_n": absolute(
+            milli(pose["normal_band_mn"]) + normal * Fraction(3, 1000),
+            "N",
+            "band of the expected value, and 0.3 % of the default mesh (FEM-021)",
+        ),
+        "lateral_force_n": absolute(
+            milli(pose["lateral_band_mn"]) + Fraction(15, 10000),
+            "N",
+            "band of the expected value, and 1.5 mN of the default mesh (FEM-025)",
+        ),
     }
     args = {"phantom": name, "depth_m": depth / 1000, "lateral_m": sign * lateral / 1000}
     group.accept(f"phantom {name}, depth {depth} mm, lateral {sign * lateral} mm", args, ok, wrong, tolerance=limits)

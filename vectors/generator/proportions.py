@@ -80,8 +80,16 @@ def wald(k, n, z):
 def corrected(k, n, z):
     """Newcombe's continuity correction of Wilson's interval."""
     p, z2 = mpf(k) / n, z * z
-    low = (2 * n * p + z2 - 1 - z * sqrt(z2 - 2 - mpf(1) / n + 4 * p * (n * (1 - p) + 1))) / (2 * (n + z2)) if k else mpf(0)
-    high = (2 * n * p + z2 + 1 + z * sqrt(z2 + 2 - mpf(1) / n + 4 * p * (n * (1 - p) - 1))) / (2 * (n + z2)) if k < n else mpf(1)
+    low = (
+        (2 * n * p + z2 - 1 - z * sqrt(z2 - 2 - mpf(1) / n + 4 * p * (n * (1 - p) + 1))) / (2 * (n + z2))
+        if k
+        else mpf(0)
+    )
+    high = (
+        (2 * n * p + z2 + 1 + z * sqrt(z2 + 2 - mpf(1) / n + 4 * p * (n * (1 - p) - 1))) / (2 * (n + z2))
+        if k < n
+        else mpf(1)
+    )
     return low, high
 
 
@@ -108,10 +116,36 @@ def clopper_pearson_bounds(k, n, tail, pair):
 
 
 def proportion_interval():
-    group = Group("proportion_interval", "proportion_interval", SOURCE + "; tails summed term by term", {key: absolute(UNIT, "1", "cases state their own") for key in ("lower", "upper")})
+    group = Group(
+        "proportion_interval",
+        "proportion_interval",
+        SOURCE + "; tails summed term by term",
+        {key: absolute(UNIT, "1", "cases state their own") for key in ("lower", "upper")},
+    )
     draws = Draws(50)
-    counts = [(253, 300), (288, 300), (0, 30), (30, 30), (1, 30), (29, 30), (15, 30), (0, 1), (1, 1), (1, 2), (0, 1000000), (1000000, 1000000), (1, 1000000), (500000, 1000000), (999999, 1000000), (50, 100000)]
-    cases = [(k, n, 0.95) for k, n in counts] + [(25, 30, c) for c in (0.5, 0.9, 0.99, 0.999999, 1e-6)] + [(0, 30, 1e-6), (30, 30, 0.999999), (3, 10, 0.9999999999)]
+    counts = [
+        (253, 300),
+        (288, 300),
+        (0, 30),
+        (30, 30),
+        (1, 30),
+        (29, 30),
+        (15, 30),
+        (0, 1),
+        (1, 1),
+        (1, 2),
+        (0, 1000000),
+        (1000000, 1000000),
+        (1, 1000000),
+        (500000, 1000000),
+        (999999, 1000000),
+        (50, 100000),
+    ]
+    cases = (
+        [(k, n, 0.95) for k, n in counts]
+        + [(25, 30, c) for c in (0.5, 0.9, 0.99, 0.999999, 1e-6)]
+        + [(0, 30, 1e-6), (30, 30, 0.999999), (3, 10, 0.9999999999)]
+    )
     while len(cases) < 60:
         n = draws.integer(2, 400)
         cases.append((draws.integer(0, n), n, draws.choice([0.8, 0.9, 0.95, 0.99])))
@@ -124,46 +158,124 @@ def proportion_interval():
         shared = [("wald_interval", ends(wald(k, n, z)))]
 
         bounds = clopper_pearson_bounds(k, n, tail, exact_pair)
-        wrong = shared + [("one_sided_interval", ends(clopper_pearson(k, n, 2 * tail))), ("wilson_for_clopper_pearson", ends(score))]
+        wrong = shared + [
+            ("one_sided_interval", ends(clopper_pearson(k, n, 2 * tail))),
+            ("wilson_for_clopper_pearson", ends(score)),
+        ]
         if 0 < k < n:
             wrong.append(("clopper_pearson_off_by_one", ends((exact_pair[0], 1 - limit(n - k + 1, n, tail)))))
-        limits = {key: absolute(bound, "1", "10⁻¹² of the tail (DET-120) over its slope in p, and 8 roundings; 0 and 1 are exact") for key, bound in zip(("lower", "upper"), bounds)}
-        group.accept("Clopper–Pearson: " + comment, {**args, "method": "clopper_pearson"}, ends(exact_pair), wrong, tolerance=limits)
+        limits = {
+            key: absolute(
+                bound, "1", "10⁻¹² of the tail (DET-120) over its slope in p, and 8 roundings; 0 and 1 are exact"
+            )
+            for key, bound in zip(("lower", "upper"), bounds)
+        }
+        group.accept(
+            "Clopper–Pearson: " + comment,
+            {**args, "method": "clopper_pearson"},
+            ends(exact_pair),
+            wrong,
+            tolerance=limits,
+        )
 
-        wrong = shared + [("one_sided_interval", ends(wilson(k, n, -quantile(2 * tail)))), ("wilson_for_clopper_pearson", ends(exact_pair))]
+        wrong = shared + [
+            ("one_sided_interval", ends(wilson(k, n, -quantile(2 * tail)))),
+            ("wilson_for_clopper_pearson", ends(exact_pair)),
+        ]
         if n <= 1000 and z * z > 3:
             wrong.append(("continuity_corrected", ends(corrected(k, n, z))))
         n_, z2 = mpf(n), z * z
-        size = (mpf(k) / n + z2 / (2 * n_) + z * sqrt(mpf(k) / n * (1 - mpf(k) / n) / n_ + z2 / (4 * n_ * n_))) / (1 + z2 / n_)
+        size = (mpf(k) / n + z2 / (2 * n_) + z * sqrt(mpf(k) / n * (1 - mpf(k) / n) / n_ + z2 / (4 * n_ * n_))) / (
+            1 + z2 / n_
+        )
         # Below ½, 1 − confidence is rounded, and z moves by that over its density.
         rounded = exact(tail / density(z)) * UNIT if confidence < 0.5 else 0
         bound = 24 * UNIT * exact(size) + 2 * rounded * exact(sqrt(mpf(k) * (n - k) / n_**3) + z / n_)
-        wilson_limits = {key: absolute(bound, "1", "24 · 2⁻⁵³ of the sum of the terms' magnitudes: z within 4 ULP enters squared, some 8 operations; for a confidence below ½ also the rounding of 1 − confidence") for key in ("lower", "upper")}
+        wilson_limits = {
+            key: absolute(
+                bound,
+                "1",
+                "24 · 2⁻⁵³ of the sum of the terms' magnitudes: z within 4 ULP enters squared, some 8 operations; "
+                "for a confidence below ½ also the rounding of 1 − confidence",
+            )
+            for key in ("lower", "upper")
+        }
         group.accept("Wilson: " + comment, {**args, "method": "wilson"}, ends(score), wrong, tolerance=wilson_limits)
     args = {"successes": 25, "trials": 30, "confidence": 0.95, "method": "wilson"}
     refuse_common(group, args, ["successes", "trials", "confidence"])
     for method in ("wilson", "clopper_pearson"):
         args = {**args, "method": method}
-        group.refuse(f"{method}: more successes than trials", {**args, "successes": 31}, "out_of_range", ["out_of_range"])
+        group.refuse(
+            f"{method}: more successes than trials", {**args, "successes": 31}, "out_of_range", ["out_of_range"]
+        )
         group.refuse(f"{method}: no trials", {**args, "successes": 0, "trials": 0}, "out_of_range", ["out_of_range"])
         for confidence in (0, 1, -0.95, 95):
-            group.refuse(f"{method}: confidence {confidence}", {**args, "confidence": confidence}, "out_of_range", ["infinite_answer" if confidence in (0, 1) else "out_of_range"])
-        group.refuse(f"{method}: successes below 0", {**args, "successes": -1}, "bad_argument", ["out_of_range"])
+            group.refuse(
+                f"{method}: confidence {confidence}",
+                {**args, "confidence": confidence},
+                "out_of_range",
+                ["infinite_answer" if confidence in (0, 1) else "out_of_range"],
+            )
+        group.refuse(f"{method}: successes below 0", {**args, "successes": -1}, "out_of_range", ["out_of_range"])
         group.refuse(f"{method}: half a success", {**args, "successes": 12.5}, "bad_argument", ["wrong_type"])
-    group.refuse("a method that does not exist", {**args, "method": "jeffreys"}, "bad_argument", ["wrong_type"])
+    group.refuse("a method that does not exist", {**args, "method": "jeffreys"}, "out_of_range", ["out_of_range"])
     group.refuse("no method", {k: v for k, v in args.items() if k != "method"}, "bad_argument", ["missing_argument"])
     return group
 
 
 TABLE_1 = {
-    "direct contact": [[30, 28, 27, 27], [30, 30, 28, 23], [30, 29, 20, 21], [28, 25, 18, 16], [27, 26, 23, 19], [30, 30, 27, 17], [23, 19, 18, 13], [30, 30, 30, 19], [30, 30, 29, 23], [30, 28, 27, 22]],
-    "FEM data": [[30, 30, 30, 21], [30, 30, 29, 25], [30, 29, 28, 16], [28, 29, 24, 20], [29, 25, 20, 17], [29, 29, 27, 15], [27, 23, 18, 15], [30, 30, 27, 20], [29, 24, 21, 16], [30, 28, 29, 24]],
-    "measured data": [[30, 22, 24, 18], [30, 28, 28, 21], [28, 27, 19, 15], [25, 19, 19, 21], [29, 24, 23, 18], [26, 21, 23, 17], [17, 15, 19, 18], [29, 26, 26, 13], [26, 21, 22, 15], [28, 25, 26, 18]],
+    "direct contact": [
+        [30, 28, 27, 27],
+        [30, 30, 28, 23],
+        [30, 29, 20, 21],
+        [28, 25, 18, 16],
+        [27, 26, 23, 19],
+        [30, 30, 27, 17],
+        [23, 19, 18, 13],
+        [30, 30, 30, 19],
+        [30, 30, 29, 23],
+        [30, 28, 27, 22],
+    ],
+    "FEM data": [
+        [30, 30, 30, 21],
+        [30, 30, 29, 25],
+        [30, 29, 28, 16],
+        [28, 29, 24, 20],
+        [29, 25, 20, 17],
+        [29, 29, 27, 15],
+        [27, 23, 18, 15],
+        [30, 30, 27, 20],
+        [29, 24, 21, 16],
+        [30, 28, 29, 24],
+    ],
+    "measured data": [
+        [30, 22, 24, 18],
+        [30, 28, 28, 21],
+        [28, 27, 19, 15],
+        [25, 19, 19, 21],
+        [29, 24, 23, 18],
+        [26, 21, 23, 17],
+        [17, 15, 19, 18],
+        [29, 26, 26, 13],
+        [26, 21, 22, 15],
+        [28, 25, 26, 18],
+    ],
 }
 
 
 def count_analysis():
-    group = Group("count_analysis", "count_analysis", "exact fractions; Φ⁻¹ by mpmath 1.3.0 at 50 digits", {"pooled": is_exact("a sum of whole numbers"), "rate": in_ulp(1, "one quotient"), "gamma": absolute(UNIT, "1", "cases state their own"), "chi2": absolute(UNIT, "1", "cases state their own"), "df": is_exact("a whole number")})
+    group = Group(
+        "count_analysis",
+        "count_analysis",
+        "exact fractions; Φ⁻¹ by mpmath 1.3.0 at 50 digits",
+        {
+            "pooled": is_exact("a sum of whole numbers"),
+            "rate": in_ulp(1, "one quotient"),
+            "gamma": absolute(UNIT, "1", "cases state their own"),
+            "chi2": absolute(UNIT, "1", "cases state their own"),
+            "df": is_exact("a whole number"),
+        },
+    )
     draws = Draws(51)
     for name, counts in TABLE_1.items():
         analysis_case(group, f"Table 1, {name}", counts, 30)
@@ -178,17 +290,25 @@ def count_analysis():
         analysis_case(group, "drawn", counts, trials)
     args = {"correct": [[20, 15], [22, 17]], "trials": 30, "confidence": 0.95}
     refuse_common(group, args, ["trials", "confidence"], ["correct"])
-    group.refuse("more right answers than trials", {**args, "correct": [[31, 15], [22, 17]]}, "out_of_range", ["out_of_range"])
-    group.refuse("right answers below 0", {**args, "correct": [[-1, 15], [22, 17]]}, "bad_argument", ["out_of_range"])
+    group.refuse(
+        "more right answers than trials", {**args, "correct": [[31, 15], [22, 17]]}, "out_of_range", ["out_of_range"]
+    )
+    group.refuse("right answers below 0", {**args, "correct": [[-1, 15], [22, 17]]}, "out_of_range", ["out_of_range"])
     group.refuse("half an answer", {**args, "correct": [[20.5, 15], [22, 17]]}, "bad_argument", ["wrong_type"])
     group.refuse("no trials", {**args, "correct": [[0, 0], [0, 0]], "trials": 0}, "out_of_range", ["out_of_range"])
     group.refuse("a row is shorter", {**args, "correct": [[20, 15], [22]]}, "bad_argument", ["lengths_differ"])
     group.refuse("no subjects", {**args, "correct": []}, "bad_argument", ["empty"])
     group.refuse("no conditions", {**args, "correct": [[], []]}, "bad_argument", ["empty"])
-    group.refuse("all right: γ would be infinite", {**args, "correct": [[30, 15], [30, 17]]}, "overflow", ["infinite_answer"])
-    group.refuse("all wrong: γ would be infinite", {**args, "correct": [[0, 15], [0, 17]]}, "overflow", ["infinite_answer"])
+    group.refuse(
+        "all right: γ would be infinite", {**args, "correct": [[30, 15], [30, 17]]}, "overflow", ["infinite_answer"]
+    )
+    group.refuse(
+        "all wrong: γ would be infinite", {**args, "correct": [[0, 15], [0, 17]]}, "overflow", ["infinite_answer"]
+    )
     for confidence in (0, 1):
-        group.refuse(f"confidence {confidence}", {**args, "confidence": confidence}, "out_of_range", ["infinite_answer"])
+        group.refuse(
+            f"confidence {confidence}", {**args, "confidence": confidence}, "out_of_range", ["infinite_answer"]
+        )
     return group
 
 
@@ -206,18 +326,40 @@ def analysis_case(group, kind, counts, trials):
     subjects, columns = len(counts), list(zip(*counts))
     ok = analysis(counts, trials)
     rates, gamma, chi2 = ok["rate"], ok["gamma"], ok["chi2"]
-    gamma_bound = max(exact(mpf(2) ** 0.5) * UNIT * (12 * abs(exact(quantile(real(p)))) + exact(2 * real(p) * slope(p))) for p in rates)
-    chi2_bound = max(UNIT * (sum(8 * abs(k - trials * p) * trials * p for k in c) / (trials * p * (1 - p)) + (subjects + 12) * x) for c, p, x in zip(columns, rates, chi2))
+    gamma_bound = max(
+        exact(mpf(2) ** 0.5) * UNIT * (12 * abs(exact(quantile(real(p)))) + exact(2 * real(p) * slope(p)))
+        for p in rates
+    )
+    chi2_bound = max(
+        UNIT * (sum(8 * abs(k - trials * p) * trials * p for k in c) / (trials * p * (1 - p)) + (subjects + 12) * x)
+        for c, p, x in zip(columns, rates, chi2)
+    )
     # Where all are alike, k − tp is a rounding error and its square no more than that.
     chi2_bound += subjects * (4 * UNIT * trials) ** 2
     complement = [x * (1 - p) for x, p in zip(chi2, rates)]
-    wrong = [("df_not_reduced", {"df": subjects}), ("root_two_missing", {"gamma": [g / sqrt(mpf(2)) for g in gamma]}), ("gamma_squared", {"gamma": [g * g for g in gamma]}), ("chi2_one_cell", {"chi2": complement}), ("weight_missing", {"chi2": [x / trials for x in chi2]}), ("rates_swapped", {"gamma": [-g for g in gamma]})]
+    wrong = [
+        ("df_not_reduced", {"df": subjects}),
+        ("root_two_missing", {"gamma": [g / sqrt(mpf(2)) for g in gamma]}),
+        ("gamma_squared", {"gamma": [g * g for g in gamma]}),
+        ("chi2_one_cell", {"chi2": complement}),
+        ("weight_missing", {"chi2": [x / trials for x in chi2]}),
+        ("rates_swapped", {"gamma": [-g for g in gamma]}),
+    ]
     try:
         wrong.append(("subjects_for_conditions", analysis(columns, trials)))
     except (ZeroDivisionError, ValueError):
         pass
-    limits = {"gamma": absolute(gamma_bound, "1", "√2 (2⁻⁵³ p/φ for the rate's rounding, 12 · 2⁻⁵³ |Φ⁻¹| for the rest)"), "chi2": absolute(chi2_bound, "1", "2⁻⁵³ (8 Σ |k − tp| tp/(tp(1−p)) + (n + 12) χ²): the difference cancels")}
-    group.accept(kind, {"correct": [list(row) for row in counts], "trials": trials, "confidence": 0.95}, ok, wrong, tolerance=limits)
+    limits = {
+        "gamma": absolute(gamma_bound, "1", "√2 (2⁻⁵³ p/φ for the rate's rounding, 12 · 2⁻⁵³ |Φ⁻¹| for the rest)"),
+        "chi2": absolute(chi2_bound, "1", "2⁻⁵³ (8 Σ |k − tp| tp/(tp(1−p)) + (n + 12) χ²): the difference cancels"),
+    }
+    group.accept(
+        kind,
+        {"correct": [list(row) for row in counts], "trials": trials, "confidence": 0.95},
+        ok,
+        wrong,
+        tolerance=limits,
+    )
 
 
 def slope(p):

@@ -6,9 +6,28 @@ from .suite import Group, is_exact
 SOURCE = "the byte layout of spec/hid.md, packed by hand"
 
 LAYOUT = {
-    1: [("lateral", "i16"), ("normal", "i16"), ("buttons", "u8"), ("status", "u8"), ("sequence", "u16"), ("force_sequence", "u16")],
+    1: [
+        ("lateral", "i16"),
+        ("normal", "i16"),
+        ("buttons", "u8"),
+        ("status", "u8"),
+        ("sequence", "u16"),
+        ("force_sequence", "u16"),
+    ],
     2: [("lateral", "i16"), ("normal", "i16"), ("sequence", "u16"), ("flags", "u8")],
-    3: [(name, "u16") for name in ("version", "position_unit_nm", "force_unit_un", "largest_force_mn", "period_us", "watchdog_ms", "damping_mn_s_per_m", "friction_mn")],
+    3: [
+        (name, "u16")
+        for name in (
+            "version",
+            "position_unit_nm",
+            "force_unit_un",
+            "largest_force_mn",
+            "period_us",
+            "watchdog_ms",
+            "damping_mn_s_per_m",
+            "friction_mn",
+        )
+    ],
     4: [("control", "u8")],
 }
 RANGES = {"i16": (-32768, 32767), "u16": (0, 65535), "u8": (0, 255)}
@@ -61,24 +80,41 @@ def usable(report, fields):
     bytes decides."""
     if report != 3:
         return fields
-    return {**fields, "version": 1, "position_unit_nm": fields["position_unit_nm"] or 1000, "force_unit_un": fields["force_unit_un"] or 500}
+    return {
+        **fields,
+        "version": 1,
+        "position_unit_nm": fields["position_unit_nm"] or 1000,
+        "force_unit_un": fields["force_unit_un"] or 500,
+    }
 
 
 def report_decode():
-    group = Group("report_decode", "report_decode", SOURCE, {name: is_exact("a whole number") for name in sorted({"report", *(n for layout in LAYOUT.values() for n, _ in layout)})})
+    group = Group(
+        "report_decode",
+        "report_decode",
+        SOURCE,
+        {
+            name: is_exact("a whole number")
+            for name in sorted({"report", *(n for layout in LAYOUT.values() for n, _ in layout)})
+        },
+    )
     for report, fields, kind in samples(Draws(70)):
         fields = usable(report, fields)
         wrong = [(how, misread(report, fields, how)) for how in ("big_endian", "sign_ignored", "fields_exchanged")]
         group.accept(f"report {report}, {kind}", {"bytes": encode(report, fields)}, {"report": report, **fields}, wrong)
-    sample = {report: encode(report, usable(report, {name: 1 for name, _ in layout})) for report, layout in LAYOUT.items()}
+    sample = {
+        report: encode(report, usable(report, {name: 1 for name, _ in layout})) for report, layout in LAYOUT.items()
+    }
     for report, text in sample.items():
         group.refuse(f"report {report}, a byte short", {"bytes": text[:-2]}, "bad_argument", ["length_not_checked"])
         group.refuse(f"report {report}, a byte more", {"bytes": text + "00"}, "bad_argument", ["length_not_checked"])
         group.refuse(f"report {report}, its number alone", {"bytes": text[:2]}, "bad_argument", ["length_not_checked"])
     for number in ("00", "05", "ff", "10"):
-        group.refuse(f"report number {number}", {"bytes": number + sample[1][2:]}, "bad_argument", ["value_not_checked"])
+        group.refuse(
+            f"report number {number}", {"bytes": number + sample[1][2:]}, "out_of_range", ["value_not_checked"]
+        )
     for control in ("03", "80", "ff"):
-        group.refuse(f"control {control}", {"bytes": "04" + control}, "bad_argument", ["value_not_checked"])
+        group.refuse(f"control {control}", {"bytes": "04" + control}, "out_of_range", ["value_not_checked"])
     group.refuse("no bytes", {"bytes": ""}, "bad_argument", ["empty"])
     group.refuse("half a byte", {"bytes": "040"}, "bad_argument", ["length_not_checked"])
     group.refuse("no hexadecimal digits", {"bytes": "04zz"}, "bad_argument", ["wrong_type"])
@@ -87,7 +123,9 @@ def report_decode():
     group.refuse("a list of numbers", {"bytes": [4, 1]}, "bad_argument", ["wrong_type"])
     group.refuse("null", {"bytes": None}, "bad_argument", ["wrong_type"])
     group.refuse("missing", {}, "bad_argument", ["missing_argument"])
-    group.refuse("an argument that the op does not have", {"bytes": "0401", "length": 2}, "bad_argument", ["unknown_argument"])
+    group.refuse(
+        "an argument that the op does not have", {"bytes": "0401", "length": 2}, "bad_argument", ["unknown_argument"]
+    )
     group.refuse("a thousand bytes", {"bytes": "01" + "00" * 999}, "bad_argument", ["length_not_checked"])
     return group
 
@@ -97,19 +135,30 @@ def report_encode():
     for report, fields, kind in samples(Draws(71)):
         fields = usable(report, fields)
         text = encode(report, fields)
-        wrong = [("big_endian", {"bytes": encode(report, fields, big=True)}), ("fields_exchanged", {"bytes": encode(report, misread(report, fields, "fields_exchanged"))}), ("number_left_out", {"bytes": text[2:]})]
+        wrong = [
+            ("big_endian", {"bytes": encode(report, fields, big=True)}),
+            ("fields_exchanged", {"bytes": encode(report, misread(report, fields, "fields_exchanged"))}),
+            ("number_left_out", {"bytes": text[2:]}),
+        ]
         group.accept(f"report {report}, {kind}", {"report": report, **fields}, {"bytes": text}, wrong)
     for report, layout in LAYOUT.items():
         args = {"report": report, **usable(report, {name: 1 for name, _ in layout})}
         name, kind = layout[0]
         low, high = RANGES[kind] if report != 4 else (0, 2)
-        group.refuse(f"report {report}: {name} is missing", {k: v for k, v in args.items() if k != name}, "bad_argument", ["missing_argument"])
+        group.refuse(
+            f"report {report}: {name} is missing",
+            {k: v for k, v in args.items() if k != name},
+            "bad_argument",
+            ["missing_argument"],
+        )
         group.refuse(f"report {report}: {name} above its range", {**args, name: high + 1}, "out_of_range", ["wrapped"])
         group.refuse(f"report {report}: {name} below its range", {**args, name: low - 1}, "out_of_range", ["wrapped"])
         group.refuse(f"report {report}: {name} is null", {**args, name: None}, "bad_argument", ["wrong_type"])
         group.refuse(f"report {report}: {name} is 0.5", {**args, name: 0.5}, "bad_argument", ["wrong_type"])
         group.refuse(f"report {report}: {name} is 2⁶⁴", {**args, name: 2**64}, "out_of_range", ["wrapped"])
-        group.refuse(f"report {report}: a field of no report", {**args, "force": 1}, "bad_argument", ["unknown_argument"])
+        group.refuse(
+            f"report {report}: a field of no report", {**args, "force": 1}, "bad_argument", ["unknown_argument"]
+        )
     fields = {"lateral": 1, "normal": 1, "sequence": 1, "flags": 1}
     for report in (0, 5, 256 + 2, -1):
         group.refuse(f"report {report}", {"report": report, **fields}, "out_of_range", ["value_not_checked"])

@@ -24,8 +24,6 @@ def requests():
         "a number that ends with its point": '{"id":"ID","op":"two_afc","args":{"gamma":1.}}',
         "a number that begins with its point": '{"id":"ID","op":"two_afc","args":{"gamma":.5}}',
         "an unknown escape": '{"id":"ID","op":"two\\x5fafc","args":{"gamma":1}}',
-        "half a surrogate in the op": '{"id":"ID","op":"two_afc\\ud800","args":{"gamma":1}}',
-        "surrogates in the wrong order": '{"id":"ID","op":"\\udc00\\ud800","args":{}}',
         "a half escape": '{"id":"ID","op":"\\u12","args":{}}',
         "a control character in a text": '{"id":"ID","op":"two\tafc","args":{}}',
         "True": '{"id":"ID","op":"two_afc","args":{"gamma":True}}',
@@ -41,9 +39,6 @@ def requests():
         "−NaN": '{"id":"ID","op":"two_afc","args":{"gamma":-NaN}}',
         "Infinity": '{"id":"ID","op":"two_afc","args":{"gamma":Infinity}}',
         "inf": '{"id":"ID","op":"two_afc","args":{"gamma":inf}}',
-        "1e400": '{"id":"ID","op":"two_afc","args":{"gamma":1e400}}',
-        "a number of 400 digits": '{"id":"ID","op":"two_afc","args":{"gamma":' + "9" * 400 + "}}",
-        "an exponent of 20 digits": '{"id":"ID","op":"two_afc","args":{"gamma":1e99999999999999999999}}',
         "NaN as id": '{"id":NaN,' + good + "}",
     }
     for comment, line in not_finite.items():
@@ -64,6 +59,12 @@ def requests():
         "no op": '{"id":"ID","args":{"gamma":1}}',
         "op null": '{"id":"ID","op":null,"args":{"gamma":1}}',
         "op a number": '{"id":"ID","op":1,"args":{"gamma":1}}',
+        "half a surrogate in the op": '{"id":"ID","op":"two_afc\\ud800","args":{"gamma":1}}',
+        "surrogates in the wrong order": '{"id":"ID","op":"\\udc00\\ud800","args":{}}',
+        "another key": '{"id":"ID",' + good + ',"version":2}',
+        "the op twice": '{"id":"ID","op":"normal_cdf",' + good + "}",
+        "args twice": '{"id":"ID","args":{"gamma":2},' + good + "}",
+        "the id twice": '{"id":"ID","id":2,' + good + "}",
         "op a list": '{"id":"ID","op":["two_afc"],"args":{"gamma":1}}',
     }
     for comment, line in no_request.items():
@@ -88,15 +89,34 @@ def requests():
         "no args": '{"id":"ID","op":"two_afc"}',
         "empty args": '{"id":"ID","op":"two_afc","args":{}}',
         "an argument that is an object": '{"id":"ID","op":"two_afc","args":{"gamma":{"value":1}}}',
+        "an argument twice": '{"id":"ID","op":"two_afc","args":{"gamma":1,"gamma":2}}',
         "an argument of another case": '{"id":"ID","op":"two_afc","args":{"Gamma":1}}',
     }
     for comment, line in arguments.items():
         group.raw(comment, line, "bad_argument", ["wrong_type"])
+    too_large = {
+        "1e400": "1e400",
+        "a number of 400 digits": "9" * 400,
+        "an exponent of 20 digits": "1e99999999999999999999",
+    }
+    for comment, number in too_large.items():
+        line = '{"id":"ID","op":"two_afc","args":{"gamma":' + number + "}}"
+        group.raw(comment, line, "bad_argument", ["not_finite"])
     for depth in (200, 1000, 20000):
-        group.raw(f"{depth} lists in each other", "[" * depth + "]" * depth, "bad_json", ["deep_nesting"])
+        group.raw(f"{depth} lists in each other", "[" * depth + "]" * depth, "bad_request", ["deep_nesting"])
         group.raw(f"{depth} lists left open", "[" * depth, "bad_json", ["deep_nesting"])
-    group.raw("300 objects in each other", '{"id":"ID","op":"two_afc","args":' + '{"a":' * 300 + "1" + "}" * 300 + "}", "bad_json", ["deep_nesting"])
-    group.raw("300 lists as an argument", '{"id":"ID","op":"two_afc","args":{"gamma":' + "[" * 300 + "]" * 300 + "}}", "bad_json", ["deep_nesting"])
+    group.raw(
+        "300 objects in each other",
+        '{"id":"ID","op":"two_afc","args":' + '{"a":' * 300 + "1" + "}" * 300 + "}",
+        "bad_argument",
+        ["deep_nesting"],
+    )
+    group.raw(
+        "300 lists as an argument",
+        '{"id":"ID","op":"two_afc","args":{"gamma":' + "[" * 300 + "]" * 300 + "}}",
+        "bad_argument",
+        ["deep_nesting"],
+    )
     return group
 
 

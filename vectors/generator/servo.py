@@ -86,12 +86,31 @@ def servo_axis():
     for number, count in enumerate((2, 3, 4, 5, 9, 17, 41)):
         knots = axis(draws, count, number % 2 == 0)
         width = knots[-1] - knots[0]
-        coordinates = [(knots[0], "first knot"), (knots[-1], "last knot"), (knots[count // 2], "a knot"), (single(knots[0] - 0.4 * (knots[1] - knots[0])), "before the axis"), (single(knots[-1] + 0.6 * (knots[-1] - knots[-2])), "after the axis"), (single(knots[0] - 3 * width), "far before: one cell at most"), (single(knots[-1] + 3 * width), "far after: one cell at most")]
+        coordinates = [
+            (knots[0], "first knot"),
+            (knots[-1], "last knot"),
+            (knots[count // 2], "a knot"),
+            (single(knots[0] - 0.4 * (knots[1] - knots[0])), "before the axis"),
+            (single(knots[-1] + 0.6 * (knots[-1] - knots[-2])), "after the axis"),
+            (single(knots[0] - 3 * width), "far before: one cell at most"),
+            (single(knots[-1] + 3 * width), "far after: one cell at most"),
+        ]
         coordinates += [(single(draws.between(knots[0], knots[-1])), "inside") for _ in range(5)]
         for x, kind in coordinates:
             axis_case(group, f"{count} knots, {kind}", knots, x)
     knots = [single(v) for v in (0.0005, 0.0013, 0.0029)]
-    for x, kind in ((INFINITY, "+∞"), (-INFINITY, "−∞"), (3.4028234663852886e38, "the largest f32"), (-3.4028234663852886e38, "the largest f32, negative"), (of_bits(1), "the least subnormal"), (neighbour(knots[1], -1), "the last before a knot"), (neighbour(knots[1], 1), "the first after a knot"), (neighbour(knots[2], -1), "the last before the end"), (neighbour(knots[2], 1), "the first after the end"), (neighbour(knots[0], -1), "the last before the axis")):
+    for x, kind in (
+        (INFINITY, "+∞"),
+        (-INFINITY, "−∞"),
+        (3.4028234663852886e38, "the largest f32"),
+        (-3.4028234663852886e38, "the largest f32, negative"),
+        (of_bits(1), "the least subnormal"),
+        (neighbour(knots[1], -1), "the last before a knot"),
+        (neighbour(knots[1], 1), "the first after a knot"),
+        (neighbour(knots[2], -1), "the last before the end"),
+        (neighbour(knots[2], 1), "the first after the end"),
+        (neighbour(knots[0], -1), "the last before the axis"),
+    ):
         axis_case(group, kind, knots, x)
     knots = [0.0, 2.0**-19, 1.0]
     for x in (2.0**-20, 2.0**-19, 0.5, of_bits(1), -of_bits(1), -(2.0**-20), 1.75):
@@ -105,7 +124,12 @@ def axis_case(group, kind, knots, x):
         x = 0.0
     j, t = fraction(knots, x)
     wrong = []
-    for flag, rule in (("clamped_outside", "clamped"), ("overshoot", "unbounded"), ("division", "division"), ("f64_arithmetic", "f64")):
+    for flag, rule in (
+        ("clamped_outside", "clamped"),
+        ("overshoot", "unbounded"),
+        ("division", "division"),
+        ("f64_arithmetic", "f64"),
+    ):
         try:
             wrong.append((flag, {"fraction_bits": bits(fraction(knots, x, rule)[1])}))
         except OverflowError:
@@ -120,11 +144,28 @@ def axis_case(group, kind, knots, x):
 def refuse_axes(group):
     args = {"knots": [0.0, 0.5], "coordinate_bits": bits(0.25)}
     refuse_common(group, args, [], ["knots"])
-    bad = (([0.5], "a single knot"), ([], "no knots"), ([0.0, 0.5, 0.25], "knots out of order"), ([0.25, 0.25], "two equal knots"), ([0.5, 0.25], "a decreasing axis"), ([0.0, 2.0**-21], "less than 1 µm apart"), ([0.0, 1.5], "beyond 1 m"), ([-1.25, 0.0], "before −1 m"), ([k / 2048 for k in range(1025)], "1025 knots"))
+    bad = (
+        ([0.5], "a single knot"),
+        ([], "no knots"),
+        ([0.0, 0.5, 0.25], "knots out of order"),
+        ([0.25, 0.25], "two equal knots"),
+        ([0.5, 0.25], "a decreasing axis"),
+        ([0.0, 2.0**-21], "less than 1 µm apart"),
+        ([0.0, 1.5], "beyond 1 m"),
+        ([-1.25, 0.0], "before −1 m"),
+        ([k / 2048 for k in range(1025)], "1025 knots"),
+    )
     for knots, kind in bad:
         flag = "axes_not_increasing" if len(knots) < 9 and len(knots) > 1 else "out_of_range"
         group.refuse(kind, {**args, "knots": knots}, "out_of_range", [flag])
-    for text, kind in (("0x3e8", "three digits"), ("0x3e8000000", "nine digits"), ("0x3e80000g", "no hexadecimal digit"), (0.25, "a number"), ("", "no text"), (None, "null")):
+    for text, kind in (
+        ("0x3e8", "three digits"),
+        ("0x3e8000000", "nine digits"),
+        ("0x3e80000g", "no hexadecimal digit"),
+        (0.25, "a number"),
+        ("", "no text"),
+        (None, "null"),
+    ):
         group.refuse(f"coordinate_bits: {kind}", {**args, "coordinate_bits": text}, "bad_argument", ["wrong_type"])
     group.refuse("coordinate_bits is missing", {"knots": [0.0, 0.5]}, "bad_argument", ["missing_argument"])
 
@@ -135,20 +176,51 @@ def servo_interpolate():
     for rows, columns in ((2, 2), (3, 4), (4, 3), (5, 5), (2, 7), (9, 5)):
         depths = [0.0] + [v for v in (single(0.0005 * (k + 1) + draws.decimal(0, 0.0002, 5)) for k in range(rows - 1))]
         laterals = axis(draws, columns, False)
-        table = [[single(draws.decimal(-2, 2, 3) if i else draws.decimal(-0.01, 0.01, 4)) for _ in range(columns)] for i in range(rows)]
+        table = [
+            [single(draws.decimal(-2, 2, 3) if i else draws.decimal(-0.01, 0.01, 4)) for _ in range(columns)]
+            for i in range(rows)
+        ]
         deep, left, right = depths[-1], laterals[0], laterals[-1]
         inside = lambda: (single(draws.between(0, deep)), single(draws.between(left, right)))
         places = [(*inside(), "inside") for _ in range(5)]
-        places += [(depths[1], laterals[0], "node"), (deep, right, "last node"), (depths[0], laterals[-1], "corner node"), (depths[1], inside()[1], "on a line of depth"), (inside()[0], laterals[1], "on a line of position")]
-        places += [(inside()[0], single(left - 0.0001), "before the least position"), (inside()[0], single(right + 0.0001), "after the largest position"), (single(deep + 0.0002), inside()[1], "below the largest depth"), (single(deep + 0.0002), single(right + 0.0001), "corner outside"), (single(deep * 40), single(left - 2.0), "far outside: one cell at most"), (-0.0001, inside()[1], "above the surface: no force")]
+        places += [
+            (depths[1], laterals[0], "node"),
+            (deep, right, "last node"),
+            (depths[0], laterals[-1], "corner node"),
+            (depths[1], inside()[1], "on a line of depth"),
+            (inside()[0], laterals[1], "on a line of position"),
+        ]
+        places += [
+            (inside()[0], single(left - 0.0001), "before the least position"),
+            (inside()[0], single(right + 0.0001), "after the largest position"),
+            (single(deep + 0.0002), inside()[1], "below the largest depth"),
+            (single(deep + 0.0002), single(right + 0.0001), "corner outside"),
+            (single(deep * 40), single(left - 2.0), "far outside: one cell at most"),
+            (-0.0001, inside()[1], "above the surface: no force"),
+        ]
         for d, x, kind in places:
             force_case(group, f"{rows} × {columns}, {kind}", depths, laterals, table, single(d), x)
     depths, laterals = [0.0, single(0.001), single(0.003)], [single(-0.002), 0.0, single(0.005)]
     table = [[0.0, 0.0, 0.0], [single(0.3), single(0.1), single(-0.7)], [100.0, -100.0, single(99.9)]]
-    for d, x, kind in ((0.003, -0.002, "the largest force at its node"), (0.0029, 0.0049, "forces that cancel"), (0.009, 0.02, "the largest continuation"), (0.003, 1e30, "far beyond the range of positions"), (1e30, -1e30, "beyond all ranges"), (2.0**-140, 0.001, "subnormal depth")):
+    for d, x, kind in (
+        (0.003, -0.002, "the largest force at its node"),
+        (0.0029, 0.0049, "forces that cancel"),
+        (0.009, 0.02, "the largest continuation"),
+        (0.003, 1e30, "far beyond the range of positions"),
+        (1e30, -1e30, "beyond all ranges"),
+        (2.0**-140, 0.001, "subnormal depth"),
+    ):
         force_case(group, kind, depths, laterals, table, single(d), single(x))
     for bit in range(14):
-        force_case(group, "drawn, three cells", depths, laterals, table, single(draws.between(0.0005, 0.004)), single(draws.between(-0.004, 0.008)))
+        force_case(
+            group,
+            "drawn, three cells",
+            depths,
+            laterals,
+            table,
+            single(draws.between(0.0005, 0.004)),
+            single(draws.between(-0.004, 0.008)),
+        )
     refuse_tables(group)
     return group
 
@@ -162,7 +234,15 @@ def force_case(group, kind, depths, laterals, table, d, x):
         return
     wrong = [("plane_above_surface", {"force_bits": bits(force(depths, laterals, table, d, x))})] if above else []
     if not above:
-        for flag, rule, of_fraction in (("clamped_outside", "kernel", "clamped"), ("overshoot", "kernel", "unbounded"), ("lerp_by_difference", "difference", "kernel"), ("fused", "fused", "kernel"), ("f64_arithmetic", "f64", "f64"), ("division", "kernel", "division"), ("hull_left_out", "unbound", "kernel")):
+        for flag, rule, of_fraction in (
+            ("clamped_outside", "kernel", "clamped"),
+            ("overshoot", "kernel", "unbounded"),
+            ("lerp_by_difference", "difference", "kernel"),
+            ("fused", "fused", "kernel"),
+            ("f64_arithmetic", "f64", "f64"),
+            ("division", "kernel", "division"),
+            ("hull_left_out", "unbound", "kernel"),
+        ):
             try:
                 wrong.append((flag, {"force_bits": bits(force(depths, laterals, table, d, x, rule, of_fraction))}))
             except OverflowError:
@@ -171,25 +251,48 @@ def force_case(group, kind, depths, laterals, table, d, x):
         flat = [f for row in table for f in row]
         turned = [[flat[b * rows + a] for b in range(columns)] for a in range(rows)]
         wrong.append(("transposed", {"force_bits": bits(force(depths, laterals, turned, d, x))}))
-    args = {"depth_knots": depths, "lateral_knots": laterals, "table_bits": [[bits(f) for f in row] for row in table], "depth_bits": bits(d), "lateral_bits": bits(x)}
+    args = {
+        "depth_knots": depths,
+        "lateral_knots": laterals,
+        "table_bits": [[bits(f) for f in row] for row in table],
+        "depth_bits": bits(d),
+        "lateral_bits": bits(x),
+    }
     group.accept(kind, args, {"force_bits": bits(value)}, wrong)
 
 
 def refuse_tables(group):
     one = bits(1.0)
-    args = {"depth_knots": [0.0, 0.5], "lateral_knots": [-0.5, 0.5], "table_bits": [[one, one], [one, one]], "depth_bits": bits(0.25), "lateral_bits": bits(0.0)}
+    args = {
+        "depth_knots": [0.0, 0.5],
+        "lateral_knots": [-0.5, 0.5],
+        "table_bits": [[one, one], [one, one]],
+        "depth_bits": bits(0.25),
+        "lateral_bits": bits(0.0),
+    }
     refuse_common(group, args, [], ["depth_knots", "lateral_knots"])
     for key in ("depth_knots", "lateral_knots"):
         group.refuse(f"{key} decreases", {**args, key: [0.5, 0.0]}, "out_of_range", ["axes_not_increasing"])
         group.refuse(f"{key} has one knot", {**args, key: [0.5]}, "out_of_range", ["out_of_range"])
-        group.refuse(f"{key} has more knots than the table", {**args, key: [0.0, 0.25, 0.5]}, "bad_argument", ["lengths_differ"])
-    for pattern, kind, flag in (("0x7fc00000", "NaN", "not_finite"), ("0x7f800000", "+∞", "not_finite"), (bits(100.00001), "beyond 100 N", "out_of_range"), (bits(-1e30), "beyond −100 N", "out_of_range")):
+        group.refuse(
+            f"{key} has more knots than the table", {**args, key: [0.0, 0.25, 0.5]}, "bad_argument", ["lengths_differ"]
+        )
+    for pattern, kind, flag in (
+        ("0x7fc00000", "NaN", "not_finite"),
+        ("0x7f800000", "+∞", "not_finite"),
+        (bits(100.00001), "beyond 100 N", "out_of_range"),
+        (bits(-1e30), "beyond −100 N", "out_of_range"),
+    ):
         group.refuse(f"a force is {kind}", {**args, "table_bits": [[one, one], [pattern, one]]}, "out_of_range", [flag])
-    group.refuse("a force is a number", {**args, "table_bits": [[one, one], [1.0, one]]}, "bad_argument", ["wrong_type"])
+    group.refuse(
+        "a force is a number", {**args, "table_bits": [[one, one], [1.0, one]]}, "bad_argument", ["wrong_type"]
+    )
     group.refuse("a row is shorter", {**args, "table_bits": [[one, one], [one]]}, "bad_argument", ["lengths_differ"])
     group.refuse("a row too few", {**args, "table_bits": [[one, one]]}, "bad_argument", ["lengths_differ"])
     for key in ("table_bits", "depth_bits", "lateral_bits"):
-        group.refuse(f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"])
+        group.refuse(
+            f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"]
+        )
 
 
 GROUPS = [servo_axis, servo_interpolate]

@@ -115,8 +115,10 @@ class Group:
         """A case that must be refused."""
         self._add({"comment": comment, "args": args, "error": error, "flags": list(flags)})
 
-    def refuse_line(self, comment, args_text, error, flags):
-        """A case that must be refused, whose arguments no JSON value stands for: NaN, 1e999."""
+    def refuse_line(self, comment, args_text, flags):
+        """A case that must be refused, whose arguments Python's JSON cannot write: NaN, which is no JSON, or 1e999, which is
+        a number of JSON but none of f64."""
+        error = "bad_json" if "NaN" in args_text or "Infinity" in args_text else "bad_argument"
         name = f"{self.name}-{len(self.cases) + 1:03}"
         line = f'{{"id":"{name}","op":"{self.op}","args":{args_text}}}'
         self._add({"comment": comment, "line": line, "error": error, "flags": list(flags)})
@@ -157,17 +159,23 @@ def refuse_common(group, args, numbers, lists=()):
     for key in numbers:
         for token in ("NaN", "Infinity", "-1e999"):
             text = dumps({**args, key: "@"}).replace('"@"', token)
-            group.refuse_line(f"{key} is {token}", text, "bad_json", ["not_finite"])
+            group.refuse_line(f"{key} is {token}", text, ["not_finite"])
             if len(numbers) > 3:
                 break
         group.refuse(f"{key} is null", {**args, key: None}, "bad_argument", ["wrong_type"])
         group.refuse(f"{key} is text", {**args, key: "1"}, "bad_argument", ["wrong_type"])
-        group.refuse(f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"])
+        group.refuse(
+            f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"]
+        )
     for key in lists:
         if not isinstance(args[key][0], list):
             text = dumps({**args, key: ["@", *args[key][1:]]}).replace('"@"', "NaN")
-            group.refuse_line(f"the first of {key} is NaN", text, "bad_json", ["not_finite"])
-        group.refuse(f"the last of {key} is null", {**args, key: [*args[key][:-1], None]}, "bad_argument", ["wrong_type"])
+            group.refuse_line(f"the first of {key} is NaN", text, ["not_finite"])
+        group.refuse(
+            f"the last of {key} is null", {**args, key: [*args[key][:-1], None]}, "bad_argument", ["wrong_type"]
+        )
         group.refuse(f"{key} is a number", {**args, key: 1}, "bad_argument", ["wrong_type"])
-        group.refuse(f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"])
+        group.refuse(
+            f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"]
+        )
     group.refuse("an argument that the op does not have", {**args, "gama": 1}, "bad_argument", ["unknown_argument"])

@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from .numbers import UNIT, Draws, exact, nearest
+from .numbers import UNIT, Draws, exact
 from .suite import Group, absolute, is_exact, refuse_common
 
 
@@ -29,7 +29,13 @@ def bilinear(depths, laterals, table, depth, lateral, clamp=False, exchange=Fals
 
 
 def table_of(draws, rows, columns):
-    return [[round(0.4 * (i + draws.decimal(0.2, 0.9)) * (1 + draws.decimal(-0.3, 0.3)) - 0.1 * j, 4) for j in range(columns)] for i in range(rows)]
+    return [
+        [
+            round(0.4 * (i + draws.decimal(0.2, 0.9)) * (1 + draws.decimal(-0.3, 0.3)) - 0.1 * j, 4)
+            for j in range(columns)
+        ]
+        for i in range(rows)
+    ]
 
 
 def poses(depths, laterals, draws):
@@ -56,9 +62,20 @@ def poses(depths, laterals, draws):
 
 
 def interpolate():
-    group = Group("interpolate", "interpolate", "exact fractions", {"force_n": absolute(UNIT, "N", "cases state their own")})
+    group = Group(
+        "interpolate", "interpolate", "exact fractions", {"force_n": absolute(UNIT, "N", "cases state their own")}
+    )
     draws = Draws(30)
-    for rows, columns, kind in ((2, 2, "2 × 2"), (3, 4, "3 × 4"), (4, 3, "4 × 3"), (3, 3, "3 × 3"), (5, 2, "5 × 2"), (2, 6, "2 × 6"), (4, 4, "4 × 4, axes not uniform"), (8, 9, "8 × 9")):
+    for rows, columns, kind in (
+        (2, 2, "2 × 2"),
+        (3, 4, "3 × 4"),
+        (4, 3, "4 × 3"),
+        (3, 3, "3 × 3"),
+        (5, 2, "5 × 2"),
+        (2, 6, "2 × 6"),
+        (4, 4, "4 × 4, axes not uniform"),
+        (8, 9, "8 × 9"),
+    ):
         depths = [round(0.0005 * (i + 1), 4) for i in range(rows)]
         laterals = [round(0.001 * (j - columns // 2), 4) for j in range(columns)]
         if "uniform" in kind:
@@ -70,25 +87,68 @@ def interpolate():
     pose_case(group, "tiny forces", depths, laterals, table, 0.0015, 0.0003, subnormal=True)
     pose_case(group, "huge forces", depths, laterals, [[1e300, -1e300], [2e300, 1e290]], 0.0015, 0.0003)
     pose_case(group, "forces that cancel", depths, laterals, [[1.0, -1.0], [-1.0, 1.0]], 0.0015, 1e-19)
-    pose_case(group, "a cell of one step of the last place", [0.001, 0.001 + 2.0**-62], laterals, [[1.0, 2.0], [3.0, 4.0]], 0.001, 0.0005)
-    pose_case(group, "just below a knot", [0.001, 0.002, 0.003], laterals, [[1.0, 2.0], [3.0, 5.0], [-4.0, 7.0]], 0.002 - 2.0**-61, 0.0005)
-    args = {"depths_m": [0.001, 0.002], "laterals_m": [0.0, 0.001], "table_n": [[1.0, 2.0], [3.0, 5.0]], "depth_m": 0.0015, "lateral_m": 0.0005}
+    pose_case(
+        group,
+        "a cell of one step of the last place",
+        [0.001, 0.001 + 2.0**-62],
+        laterals,
+        [[1.0, 2.0], [3.0, 4.0]],
+        0.001,
+        0.0005,
+    )
+    pose_case(
+        group,
+        "just below a knot",
+        [0.001, 0.002, 0.003],
+        laterals,
+        [[1.0, 2.0], [3.0, 5.0], [-4.0, 7.0]],
+        0.002 - 2.0**-61,
+        0.0005,
+    )
+    args = {
+        "depths_m": [0.001, 0.002],
+        "laterals_m": [0.0, 0.001],
+        "table_n": [[1.0, 2.0], [3.0, 5.0]],
+        "depth_m": 0.0015,
+        "lateral_m": 0.0005,
+    }
     refuse_common(group, args, ["depth_m", "lateral_m"], ["depths_m", "laterals_m", "table_n"])
     for key in ("depths_m", "laterals_m"):
         group.refuse(f"{key} decreases", {**args, key: [0.002, 0.001]}, "out_of_range", ["axes_not_increasing"])
         group.refuse(f"{key} with two equal", {**args, key: [0.001, 0.001]}, "out_of_range", ["axes_not_increasing"])
-        group.refuse(f"{key} is longer than the table", {**args, key: [0.001, 0.002, 0.003]}, "bad_argument", ["lengths_differ"])
+        group.refuse(
+            f"{key} is longer than the table", {**args, key: [0.001, 0.002, 0.003]}, "bad_argument", ["lengths_differ"]
+        )
         group.refuse(f"{key} is empty", {**args, key: []}, "bad_argument", ["empty"])
-    group.refuse("the last knots are out of order", {**args, "depths_m": [0.001, 0.003, 0.002], "table_n": [[1, 2], [3, 5], [4, 4]]}, "out_of_range", ["axes_not_increasing"])
-    group.refuse("a single depth", {**args, "depths_m": [0.001], "table_n": [[1.0, 2.0]]}, "bad_argument", ["out_of_range"])
-    group.refuse("a single position", {**args, "laterals_m": [0.0], "table_n": [[1.0], [2.0]]}, "bad_argument", ["out_of_range"])
+    group.refuse(
+        "the last knots are out of order",
+        {**args, "depths_m": [0.001, 0.003, 0.002], "table_n": [[1, 2], [3, 5], [4, 4]]},
+        "out_of_range",
+        ["axes_not_increasing"],
+    )
+    group.refuse(
+        "a single depth", {**args, "depths_m": [0.001], "table_n": [[1.0, 2.0]]}, "bad_argument", ["out_of_range"]
+    )
+    group.refuse(
+        "a single position", {**args, "laterals_m": [0.0], "table_n": [[1.0], [2.0]]}, "bad_argument", ["out_of_range"]
+    )
     group.refuse("a row is shorter", {**args, "table_n": [[1.0, 2.0], [3.0]]}, "bad_argument", ["lengths_differ"])
     group.refuse("a row is missing", {**args, "table_n": [[1.0, 2.0]]}, "bad_argument", ["lengths_differ"])
     group.refuse("the table is flat", {**args, "table_n": [1.0, 2.0, 3.0, 4.0]}, "bad_argument", ["wrong_type"])
     group.refuse("a force is null", {**args, "table_n": [[1.0, None], [3.0, 5.0]]}, "bad_argument", ["wrong_type"])
     for token in ("NaN", "1e999"):
-        group.refuse_line(f"a force is {token}", '{"depths_m":[0.001,0.002],"laterals_m":[0,0.001],"table_n":[[1,2],[3,%s]],"depth_m":0.0015,"lateral_m":0.0005}' % token, "bad_json", ["not_finite"])
-    group.refuse("so far outside that the force is no f64", {**args, "table_n": [[1e10, 2e10], [3e10, 5e10]], "depth_m": 1e200, "lateral_m": 1e200}, "overflow", ["infinite_answer"])
+        group.refuse_line(
+            f"a force is {token}",
+            '{"depths_m":[0.001,0.002],"laterals_m":[0,0.001],"table_n":[[1,2],[3,%s]],"depth_m":0.0015,"lateral_m":0.0005}'
+            % token,
+            ["not_finite"],
+        )
+    group.refuse(
+        "so far outside that the force is no f64",
+        {**args, "table_n": [[1e10, 2e10], [3e10, 5e10]], "depth_m": 1e200, "lateral_m": 1e200},
+        "overflow",
+        ["infinite_answer"],
+    )
     return group
 
 
@@ -96,7 +156,11 @@ def pose_case(group, kind, depths, laterals, table, depth, lateral, subnormal=Fa
     value, size, (s, t, i, j) = bilinear(depths, laterals, table, depth, lateral)
     near_d = min(range(len(depths)), key=lambda k: abs(exact(depths[k]) - exact(depth)))
     near_x = min(range(len(laterals)), key=lambda k: abs(exact(laterals[k]) - exact(lateral)))
-    wrong = [("clamped_outside", {"force_n": bilinear(depths, laterals, table, depth, lateral, clamp=True)[0]}), ("nearest_node", {"force_n": Fraction(table[near_d][near_x])}), ("weights_exchanged", {"force_n": bilinear(depths, laterals, table, depth, lateral, exchange=True)[0]})]
+    wrong = [
+        ("clamped_outside", {"force_n": bilinear(depths, laterals, table, depth, lateral, clamp=True)[0]}),
+        ("nearest_node", {"force_n": Fraction(table[near_d][near_x])}),
+        ("weights_exchanged", {"force_n": bilinear(depths, laterals, table, depth, lateral, exchange=True)[0]}),
+    ]
     flat = [force for row in table for force in row]
     rows, columns = len(depths), len(laterals)
     # The same numbers, read column by column.
@@ -106,7 +170,11 @@ def pose_case(group, kind, depths, laterals, table, depth, lateral, subnormal=Fa
         limit = is_exact("MAP-060: a node's force to the bit")
     else:
         floor = Fraction(12, 2**1074) if subnormal else 0
-        limit = absolute(12 * UNIT * size + floor, "N", "12 · 2⁻⁵³ (|s|+|1−s|)(|t|+|1−t|) max|F|: 4 roundings of each weight, 2 products, 2 sums")
+        limit = absolute(
+            12 * UNIT * size + floor,
+            "N",
+            "12 · 2⁻⁵³ (|s|+|1−s|)(|t|+|1−t|) max|F|: 4 roundings of each weight, 2 products, 2 sums",
+        )
     args = {"depths_m": depths, "laterals_m": laterals, "table_n": table, "depth_m": depth, "lateral_m": lateral}
     group.accept(kind, args, {"force_n": value}, wrong, tolerance={"force_n": limit})
 

@@ -383,7 +383,7 @@ fn asymmetry_counts_beyond_what_rounding_explains() {
     let variance = [1.0, 1e4, 1e-8, 1e-2];
     for row in 0..4 {
         for column in 0..row {
-            let size = (variance[row] * variance[column] as f64).sqrt();
+            let size = libm::sqrt(variance[row] * variance[column]);
             for (share, symmetric) in [(0.5, true), (2.0, false), (-2.0, false)] {
                 let mut covariance = [0.0; 16];
                 for i in 0..4 {

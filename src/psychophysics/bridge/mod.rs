@@ -4,16 +4,17 @@
 //! and with or without the mean over the sweep, which only an observer with an absolute memory of force
 //! can use. Each gives a signal in newtons for each inclusion; with noise σ, γ = signal/σ and a share
 //! Φ(γ/√2) of right answers.
-
 //!
 //! | file | content |
 //! |---|---|
-//! | `mod.rs` | the answer, and how it is put together |
+//! | `mod.rs` | how the answer is put together |
+//! | `answer.rs` | conventions, and all that is said of them |
 //! | `signals.rs` | a convention's signal from two maps |
 //! | `common.rs` | one noise level for all subjects |
 //! | `subjects.rs` | a noise level for each |
 //! | `verdict.rs` | what the numbers say |
 
+mod answer;
 mod common;
 mod signals;
 mod subjects;
@@ -21,17 +22,20 @@ mod subjects;
 mod tests;
 mod verdict;
 
-use serde::Serialize;
+pub use answer::{
+    Bridge, BridgeInclusion, Channel, CommonFit, ConditionBridge, Convention, ConventionFit,
+    InclusionNoise, LapseFit, ObservedRate, Offset, Statistic, SubjectFit, Support, Verdict,
+};
+pub use signals::whole_sweep;
 
 use super::choice::Count;
 use super::conditions::sign_flip;
 use super::dispersion::{Overdispersion, overall_dispersion};
 use super::noise::noise_bounds;
-use super::rates::{Bounds, OpenBounds, Rate, clustered};
+use super::rates::{Rate, clustered};
 use super::{Condition, PsychophysicsError, Table};
 use crate::force_map::{ForceMap, SAME_POSITION};
 use common::{Signals, common, common_with_lapse};
-pub use signals::whole_sweep;
 use signals::{Signal, mean};
 use subjects::{by_subject, by_subject_with_lapse};
 use verdict::verdict;
@@ -42,310 +46,6 @@ const PROBE_DEPTH: f64 = 4e-3;
 ///
 /// Implements: PSY-080.
 const LEVEL: f64 = 0.05;
-
-/// What of the sweep counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Statistic {
-    /// The largest difference of force at one position, as in the paper's §5.
-    Peak,
-    /// The root mean square over the sweep, ‖F₁ − F₀‖ of equation (2).
-    MatchedFilter,
-}
-
-/// Which force counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Channel {
-    /// The normal force alone.
-    Normal,
-    /// The lateral force alone.
-    Lateral,
-    /// Both, with the same noise.
-    Both,
-}
-
-/// Whether the uniform part of the force counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Offset {
-    /// The force as it is.
-    Kept,
-    /// Less its mean over the sweep.
-    Removed,
-}
-
-/// What of the force a subject uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Convention {
-    /// What of the sweep counts.
-    pub statistic: Statistic,
-    /// Which force counts.
-    pub channel: Channel,
-    /// Whether its mean counts.
-    pub offset: Offset,
-}
-
-impl Convention {
-    /// All twelve.
-    pub fn all() -> impl Iterator<Item = Convention> {
-        let of_statistic = |statistic| {
-            [Channel::Normal, Channel::Lateral, Channel::Both]
-                .into_iter()
-                .flat_map(move |channel| {
-                    [Offset::Kept, Offset::Removed].map(|offset| Convention {
-                        statistic,
-                        channel,
-                        offset,
-                    })
-                })
-        };
-        [Statistic::Peak, Statistic::MatchedFilter]
-            .into_iter()
-            .flat_map(of_statistic)
-    }
-
-    /// Whether the uniform part of the normal force counts.
-    pub fn uses_uniform_part(self) -> bool {
-        self.channel != Channel::Lateral && self.offset == Offset::Kept
-    }
-
-    /// In words: "peak, normal force", "matched filter, both forces less their means".
-    pub fn text(self) -> String {
-        let statistic = match self.statistic {
-            Statistic::Peak => "peak",
-            Statistic::MatchedFilter => "matched filter",
-        };
-        let channel = match self.channel {
-            Channel::Normal => "normal force",
-            Channel::Lateral => "lateral force",
-            Channel::Both => "both forces",
-        };
-        let offset = match (self.offset, self.channel) {
-            (Offset::Kept, _) => "",
-            (Offset::Removed, Channel::Both) => " less their means",
-            (Offset::Removed, _) => " less its mean",
-        };
-        format!("{statistic}, {channel}{offset}")
-    }
-}
-
-/// Force maps against counts.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Bridge {
-    /// The depth of the probe, m, at which forces are taken.
-    #[serde(rename = "probe_depth_m")]
-    pub probe_depth: f64,
-    /// Why that is not the paper's 4 mm.
-    pub probe_depth_note: Option<String>,
-    /// Lateral positions of the sweep.
-    pub positions: usize,
-    /// The first of them, m.
-    #[serde(rename = "from_m")]
-    pub from: f64,
-    /// The last, m.
-    #[serde(rename = "to_m")]
-    pub to: f64,
-    /// The level at which a convention is rejected.
-    pub level: f64,
-    /// The inclusions that have a map, in the order of the table.
-    pub inclusions: Vec<BridgeInclusion>,
-    /// Each condition of the table against each convention.
-    pub conditions: Vec<ConditionBridge>,
-}
-
-/// An inclusion with a map.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BridgeInclusion {
-    /// Its name: untrusted text.
-    pub name: String,
-    /// The largest difference of the normal force, N, with its sign.
-    #[serde(rename = "peak_normal_n")]
-    pub peak_normal: f64,
-    /// Where, m.
-    #[serde(rename = "peak_normal_at_m")]
-    pub peak_normal_at: f64,
-    /// The mean difference of the normal force over the sweep, N.
-    #[serde(rename = "mean_normal_n")]
-    pub mean_normal: f64,
-    /// The largest difference of the lateral force, N.
-    #[serde(rename = "peak_lateral_n")]
-    pub peak_lateral: f64,
-    /// Where, m.
-    #[serde(rename = "peak_lateral_at_m")]
-    pub peak_lateral_at: f64,
-}
-
-/// One condition against all conventions.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ConditionBridge {
-    /// Its name: untrusted text.
-    pub name: String,
-    /// The counts of all subjects at each inclusion, as observed.
-    pub observed: Vec<ObservedRate>,
-    /// Noise as the paper infers it, from the peak normal force at each inclusion alone.
-    pub noise_by_inclusion: Vec<InclusionNoise>,
-    /// The twelve conventions.
-    pub conventions: Vec<ConventionFit>,
-    /// What the numbers say.
-    pub verdict: Verdict,
-}
-
-/// An observed share with honest intervals.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ObservedRate {
-    /// Right answers over pairs.
-    pub rate: f64,
-    /// Clopper and Pearson's interval.
-    pub pooled_bounds: Bounds,
-    /// With the subjects as the sample; `None` for one subject or if none differs.
-    pub clustered_bounds: Option<Bounds>,
-}
-
-/// Peak normal force over the γ of one inclusion.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct InclusionNoise {
-    /// The signal, N.
-    #[serde(rename = "signal_n")]
-    pub signal: f64,
-    /// The noise, N; `None` if the answers set none: half or fewer right, or all right.
-    #[serde(rename = "noise_n")]
-    pub noise: Option<f64>,
-    /// From Clopper and Pearson's interval, N; an upper end that is missing is no bound.
-    #[serde(rename = "pooled_bounds_n")]
-    pub pooled_bounds: OpenBounds,
-    /// With the subjects as the sample, N.
-    #[serde(rename = "clustered_bounds_n")]
-    pub clustered_bounds: Option<OpenBounds>,
-}
-
-/// One convention against the counts of one condition.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ConventionFit {
-    /// What of the force is taken to count.
-    #[serde(flatten)]
-    pub convention: Convention,
-    /// The same in words.
-    pub name: String,
-    /// The signal of each inclusion, N.
-    #[serde(rename = "signals_n")]
-    pub signals: Vec<f64>,
-    /// One noise level for all subjects; `None` if no noise level is likelier than all others.
-    pub common: Option<CommonFit>,
-    /// One noise level for all subjects, and answers that miss what was felt.
-    pub common_with_lapse: Option<LapseFit>,
-    /// A noise level for each subject.
-    pub by_subject: SubjectFit,
-    /// A noise level for each subject, and one share of lapses.
-    pub by_subject_with_lapse: SubjectFit,
-    /// Whether the subjects fit this convention worse than the best one of the condition, each with its own
-    /// noise and one share of lapses: the share of all exchanges of signs of the subjects' differences of deviance
-    /// with a sum as far from 0. `None` beyond 20 subjects.
-    pub worse_than_best_p: Option<f64>,
-    /// The larger p-value of the two fits by subject.
-    pub p_value: f64,
-    /// Whether that is below the level.
-    pub is_rejected: bool,
-}
-
-/// One noise level for all subjects.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CommonFit {
-    /// The noise, N: of one position for a peak, of the filter's output otherwise.
-    #[serde(rename = "noise_n")]
-    pub noise: f64,
-    /// With the subjects as the sample, N; `None` for one subject.
-    #[serde(rename = "noise_bounds_n")]
-    pub noise_bounds: Option<Bounds>,
-    /// The share of right answers at each inclusion.
-    pub predicted: Vec<f64>,
-    /// Twice the log-likelihood that a share of its own for each inclusion gains.
-    pub deviance: f64,
-    /// Its degrees of freedom.
-    pub degrees: u32,
-    /// Its p-value with the dispersion of the condition, by the F law.
-    pub p_value_dispersed: Option<f64>,
-    /// The p-value of Hotelling's T² of the subjects' shares against the predicted ones, which lets the
-    /// shares of a subject be correlated; `None` with too few subjects.
-    pub p_value_clustered: Option<f64>,
-    /// Akaike's criterion against a share of its own for each subject and inclusion.
-    pub aic: f64,
-}
-
-/// One noise level for all subjects, and a share of lapses.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LapseFit {
-    /// The noise, N.
-    #[serde(rename = "noise_n")]
-    pub noise: f64,
-    /// λ: right answers are ½ + (½ − λ)(2Φ(γ/√2) − 1).
-    pub lapse: f64,
-    /// The share of right answers at each inclusion.
-    pub predicted: Vec<f64>,
-    /// As in [`CommonFit`].
-    pub deviance: f64,
-    /// Its degrees of freedom.
-    pub degrees: u32,
-    /// Its p-value with the dispersion of the condition; `None` without degrees of freedom.
-    pub p_value_dispersed: Option<f64>,
-    /// Akaike's criterion.
-    pub aic: f64,
-}
-
-/// A noise level for each subject.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SubjectFit {
-    /// The noise of each subject, N: 0 for one who was never wrong; `None` for one who did not do better
-    /// than guessing.
-    #[serde(rename = "noise_n")]
-    pub noise: Vec<Option<f64>>,
-    /// λ, the same for all subjects; 0 if it was not fitted.
-    pub lapse: f64,
-    /// The mean share of right answers at each inclusion, over the pairs of all subjects.
-    pub predicted: Vec<f64>,
-    /// Twice the log-likelihood that a share of its own for each subject and inclusion gains.
-    pub deviance: f64,
-    /// The part of each subject in it.
-    pub deviance_by_subject: Vec<f64>,
-    /// The mean of that deviance if the fit is the truth: below the degrees of freedom where nearly all
-    /// answers are right.
-    pub expected_deviance: f64,
-    /// Its standard deviation.
-    pub deviance_sd: f64,
-    /// Pr(X ≥ deviance) by the gamma law with this mean and standard deviation; 1 if no deviance is
-    /// possible.
-    pub p_value: f64,
-    /// Akaike's criterion.
-    pub aic: f64,
-}
-
-/// What the numbers say of the conventions, for one condition.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Verdict {
-    /// The answer to the question which part of the force the subjects used.
-    pub support: Support,
-    /// The conventions that are not rejected.
-    pub compatible: Vec<String>,
-    /// Those that are.
-    pub rejected: Vec<String>,
-    /// The same in sentences, with the numbers that they rest on.
-    pub text: String,
-}
-
-/// Which explanation the counts support.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Support {
-    /// Only conventions with the mean of the normal force fit.
-    UniformPart,
-    /// Only conventions without it fit: the change of the normal force along the sweep, or the lateral
-    /// force.
-    ChangeAlongSweep,
-    /// Some of both fit.
-    Undecided,
-    /// None fits.
-    None,
-}
 
 /// The counts of one condition at the inclusions that have a map.
 #[derive(Debug, Clone, PartialEq)]

@@ -18,6 +18,9 @@ const CELLS: u32 = 5;
 /// How far ln(1/σ) of a subject may lie from that without lapses.
 const LAPSE_RANGE: [f64; 2] = [-0.1, 2.0];
 
+/// This many times the largest 1/σ of the search, every difference above 0 is perceived, to the last bit.
+const SURE: f64 = 1e6;
+
 /// The noise of each subject that fits best without lapses.
 ///
 /// Implements: PSY-077, PSY-078.
@@ -79,33 +82,30 @@ fn assemble(
     ];
     let mut moments = Moments::default();
     for counts in &observed.subjects {
-        let (log, value) = signals.best(counts, Some(lapse));
+        let (log, _) = signals.best(counts, Some(lapse));
         let is_fitted = is_inside(range, log);
         let sensitivity = if is_fitted {
-            Some(libm::exp(log))
+            libm::exp(log)
         } else if log > 0.5 * (range[0] + range[1]) {
-            // Never wrong: the noise is 0.
-            None
+            libm::exp(range[1]) * SURE
         } else {
-            Some(0.0)
+            0.0
         };
-        noise.push(match sensitivity {
-            None => Some(0.0),
-            Some(0.0) => None,
-            Some(sensitivity) => Some(1.0 / sensitivity),
+        noise.push(if is_fitted {
+            Some(1.0 / sensitivity)
+        } else {
+            (sensitivity > 0.0).then_some(0.0)
         });
-        let perceived = match sensitivity {
-            Some(sensitivity) => signals.perceived(sensitivity),
-            None => signals.perceived(libm::exp(range[1])),
-        };
+        let perceived = signals.perceived(sensitivity);
         for ((sum, count), at) in predicted.iter_mut().zip(counts).zip(&perceived) {
             let trials = count.right + count.wrong;
             sum.right += trials * at.right(lapse);
             sum.wrong += trials * at.wrong(lapse);
         }
         let saturated: f64 = counts.iter().map(|count| count.saturated()).sum();
+        let value = log_likelihood(counts, &perceived, lapse);
         deviances.push(2.0 * (saturated - value).max(0.0));
-        let slopes = signals.slopes(sensitivity.unwrap_or_default());
+        let slopes = signals.slopes(sensitivity);
         moments.add(counts, &perceived, &slopes, lapse, is_fitted)?;
     }
     let deviance: f64 = deviances.iter().sum();

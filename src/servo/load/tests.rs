@@ -299,6 +299,30 @@ fn a_table_too_stiff_is_refused_or_scaled_on_request() {
     assert!(LoadedTable::scaled_to_be_passive(&map, &undamped).is_err());
 }
 
+// A slope between large forces is rounded by far more than a force: the scale must go down until it fits.
+// Verifies: SRV-051.
+#[test]
+fn scaling_goes_on_until_the_rounded_slopes_fit() {
+    let map = map(&[1.0], &[0.0, 2e-6], |_, x| [0.0, 50.0 + 6850.0 * x]);
+    let steepest = stiffness(&LoadedTable::new(&map).unwrap().table().unwrap());
+    // Two forces of at most 50 N, each rounded by 2⁻¹⁹ N at the most, 2 µm apart, of a slope of 6850 N/m; the
+    // scale goes down by twice what is needed at the most.
+    let slack = 2.0 * 2.0 * 2f64.powi(-19) / 2e-6 / 6850.0;
+    let mut lowered = 0;
+    for stiffest in (1..40u8).map(|k| 100.0 * f64::from(k)) {
+        let device = Damping {
+            damping_n_s_per_m: stiffest / 2000.0,
+            ..FREE
+        };
+        let (loaded, scale) = LoadedTable::scaled_to_be_passive(&map, &device).unwrap();
+        assert!(stiffness(&loaded.table().unwrap()) <= stiffest);
+        let fit = stiffest / steepest;
+        assert!(scale < fit && scale > fit * (1.0 - slack), "{scale}");
+        lowered += u32::from(scale < fit * (1.0 - 1.5e-7));
+    }
+    assert!(lowered > 0, "no table was lowered twice");
+}
+
 /// A force table of random size, forces up to `largest` (N), axes of uneven steps of millimetres.
 fn any_map() -> impl Strategy<Value = (ForceTable, f64)> {
     let steps = |count| prop::collection::vec(1e-6..8e-3f64, count);

@@ -1,11 +1,11 @@
-"""Forces on the probe by a second program: writes vectors/probe_force.data.json.
+"""Forces on the probe by a second program: writes forces.json beside it.
 
-    pip install scikit-fem==12.0.2 numpy==2.4.6 scipy==1.17.1
-    python vectors/probe_force.py
+    pip install -r vectors/probe_force/requirements.txt
+    python vectors/probe_force/probe_force.py
 
 The model is that of spec/phantom.md and spec/fem.md: plane strain, small strain, ν = 0.49, a rigid frictionless circle
 whose normal is taken at the deformed node. Assembly is scikit-fem's, the factorisation SuperLU's; mesh and contact are this
-file's and probe_mesh.py's. Each force is computed on three meshes and extrapolated; the band says how far that may be off.
+file's and mesh.py's. Each force is computed on three meshes and extrapolated; the band says how far that may be off.
 """
 
 import json
@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from probe_mesh import DISC_REGION, GEL, GEL_REGION, SKIN, SKIN_REGION, WIDTH, build
+from mesh import DISC_REGION, GEL, GEL_REGION, SKIN, SKIN_REGION, WIDTH, build
 from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementTriP0, ElementTriP2, ElementVector
 from skfem.helpers import ddot, eye, sym_grad, trace
@@ -148,7 +148,9 @@ def main():
                 for depth, pair in surface.press([d * 1e-3 for d in DEPTHS_MM], lateral * 1e-3).items():
                     forces.setdefault((name, round(depth * 1e3, 6), lateral), []).append(pair)
             at = forces[(name, 4.0, 0.0)][-1], forces[(name, 4.0, 4.0)][-1]
-            print(f"{name} {size:.4f} mm: {surface.unknowns} unknowns, {time.time() - start:.0f} s, {at}", file=sys.stderr)
+            print(
+                f"{name} {size:.4f} mm: {surface.unknowns} unknowns, {time.time() - start:.0f} s, {at}", file=sys.stderr
+            )
     if len(sizes) != 3:
         return
     poses = []
@@ -160,10 +162,10 @@ def main():
             entry[f"{key}_force_mn"] = round(value * 1e3, 1) + 0.0
             entry[f"{key}_band_mn"] = round(band * 1e3 + 0.1, 1)
         poses.append(entry)
-    data = {"program": "vectors/probe_force.py, scikit-fem 12.0.2, SciPy 1.17.1", "cells_per_mm": [3, 4, 6]}
+    data = {"program": "vectors/probe_force/probe_force.py, scikit-fem 12.0.2, SciPy 1.17.1", "cells_per_mm": [3, 4, 6]}
     lines = ",\n".join("  " + json.dumps(pose) for pose in poses)
     text = json.dumps(data, indent=1)[:-2] + f',\n "poses": [\n{lines}\n ]\n}}\n'
-    (Path(__file__).parent / "probe_force.data.json").write_text(text)
+    (Path(__file__).parent / "forces.json").write_text(text)
 
 
 main()

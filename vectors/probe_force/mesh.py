@@ -1,6 +1,6 @@
-"""A mesh of 6-node triangles of a probed phantom, for probe_force.py: its own, of blocks of a butterfly around the disc.
+"""A mesh of 6-node triangles of a probed phantom, for probe_force.py: blocks of a butterfly around the disc.
 
-Lengths in m; x lateral, y up, the undeformed surface at y = 0. The middle block is the disc (a rectangle bent into it and
+Lengths in m; x lateral, y up, the undeformed surface at y = 0. The middle is the disc (a rectangle bent into it and
 four sectors); around it, four sectors run to the sides of a box as high as the gel; left and right of the box are plain
 rectangles, on top of all lies the skin.
 """

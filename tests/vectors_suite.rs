@@ -1,0 +1,66 @@
+//! The vectors are as their generator writes them, and the suite is sound, by the Python programs that come with it.
+//! Where Python or mpmath is missing, a notice is given, unless `PALPATE_REQUIRE_WITNESSES=1` asks for them.
+
+use std::io::{ErrorKind, Write};
+use std::process::Command;
+
+/// Python with mpmath: the one of the environment, or the system's.
+fn python() -> Command {
+    Command::new(std::env::var_os("PALPATE_PYTHON").unwrap_or_else(|| "python3".into()))
+}
+
+/// What is missing, if anything is.
+fn missing() -> Option<&'static str> {
+    match python().args(["-c", "import mpmath"]).output() {
+        Err(error) if error.kind() == ErrorKind::NotFound => Some("Python"),
+        Ok(output) if String::from_utf8_lossy(&output.stderr).contains("ModuleNotFoundError") => {
+            Some("mpmath")
+        }
+        _ => None,
+    }
+}
+
+/// Runs a script of `vectors/`, which must succeed, and gives what it printed.
+fn run(script: &str, arguments: &[&str]) -> Option<String> {
+    if let Some(program) = missing() {
+        let required =
+            std::env::var_os("PALPATE_REQUIRE_WITNESSES").is_some_and(|value| value == "1");
+        assert!(
+            !required,
+            "{program} is not installed, but PALPATE_REQUIRE_WITNESSES=1 asks for it"
+        );
+        #[allow(clippy::explicit_write)]
+        // Not by eprintln!, which the test runner keeps to itself when a test passes.
+        writeln!(std::io::stderr(), "SKIPPED: {program} is not installed").unwrap();
+        return None;
+    }
+    let path = format!("{}/vectors/{script}", env!("CARGO_MANIFEST_DIR"));
+    let output = python()
+        .args(["-B", &path])
+        .args(arguments)
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        output.status.success(),
+        "{script}: {text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    Some(text)
+}
+
+// Verifies: VEC-007.
+#[test]
+fn the_files_are_as_the_generator_writes_them() {
+    if let Some(text) = run("generate.py", &["--check"]) {
+        assert!(text.contains("files are as generated"), "{text}");
+    }
+}
+
+// Verifies: VEC-001, VEC-002, VEC-003, VEC-004, VEC-005, VEC-008, VEC-014.
+#[test]
+fn the_suite_is_sound() {
+    if let Some(text) = run("check.py", &[]) {
+        assert!(text.contains(" 0 problems"), "{text}");
+    }
+}
