@@ -1,6 +1,7 @@
 //! `palpate conform` against programs that answer rightly, wrongly, late, or not at all: `spec/oracle.md`.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -615,18 +616,21 @@ fn the_verdict_for_ci_holds_every_case_and_is_the_same_each_time() {
     assert_eq!(stdout(&run()), text);
 }
 
-/// Whether Python is there. It must be, if `PALPATE_REQUIRE_WITNESSES=1`.
-fn python() -> bool {
-    if Command::new("python3").arg("--version").output().is_ok() {
-        return true;
+/// Python: the one of the environment, or the system's. It must be there, if `PALPATE_REQUIRE_WITNESSES=1`.
+fn python() -> Option<String> {
+    let python = std::env::var("PALPATE_PYTHON").unwrap_or_else(|_| "python3".into());
+    if Command::new(&python).arg("--version").output().is_ok() {
+        return Some(python);
     }
     let required = std::env::var_os("PALPATE_REQUIRE_WITNESSES").is_some_and(|value| value == "1");
     assert!(
         !required,
-        "python3 is not installed, but PALPATE_REQUIRE_WITNESSES=1 asks for it"
+        "{python} is not installed, but PALPATE_REQUIRE_WITNESSES=1 asks for it"
     );
-    eprintln!("SKIPPED: python3 is not installed");
-    false
+    #[allow(clippy::explicit_write)]
+    // Not by eprintln!, which the test runner keeps to itself when a test passes.
+    writeln!(std::io::stderr(), "SKIPPED: {python} is not installed").unwrap();
+    None
 }
 
 const TOYS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/toys");
@@ -634,9 +638,58 @@ const TOYS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/toys");
 // Verifies: ORA-042, ORA-048.
 #[test]
 fn another_implementation_passes() {
-    if !python() {
-        return;
-    }
-    let output = conform(&[], &["python3", &format!("{TOYS}/right.py")]);
+    let Some(python) = python() else { return };
+    let output = conform(&[], &[&python, "-B", &format!("{TOYS}/right.py")]);
     assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
+}
+
+/// The groups with a case that can show a bug.
+fn groups_with(flag: &str) -> Vec<String> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/vectors");
+    let mut groups = Vec::new();
+    for entry in fs::read_dir(folder).expect("the vectors") {
+        let path = entry.expect("a file").path();
+        if path.extension().is_none_or(|extension| extension != "json") {
+            continue;
+        }
+        let file: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).expect("JSON");
+        if !file["flags"][flag].is_null() {
+            groups.push(file["group"].as_str().unwrap().to_string());
+        }
+    }
+    groups
+}
+
+// Verifies: ORA-047, ORA-049.
+#[test]
+fn the_bug_of_another_implementation_is_named() {
+    let Some(python) = python() else { return };
+    let wrong = format!("{TOYS}/wrong.py");
+    let list = Command::new(&python)
+        .args(["-B", &wrong])
+        .output()
+        .expect("Python starts");
+    let said = String::from_utf8_lossy(&[list.stdout, list.stderr].concat()).into_owned();
+    let bugs: Vec<&str> = said
+        .split(": ")
+        .nth(1)
+        .expect("a list of bugs")
+        .split_whitespace()
+        .collect();
+    assert!(bugs.len() >= 20, "{said}");
+    for bug in bugs {
+        let groups = groups_with(bug);
+        assert!(!groups.is_empty(), "no case shows {bug}");
+        let mut options = vec!["--format", "json"];
+        options.extend(groups.iter().flat_map(|group| ["--only", group]));
+        let output = conform(&options, &[&python, "-B", &wrong, bug]);
+        assert_eq!(output.status.code(), Some(1), "{bug} passes");
+        let verdict: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let named = verdict["likely_bugs"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|likely| likely["flag"] == bug);
+        assert!(named, "{bug} is not named: {}", verdict["likely_bugs"]);
+    }
 }

@@ -1,1 +1,101 @@
+use serde_json::json;
 
+use super::junit::escaped;
+use super::tolerance::{Tolerance, compare, cut};
+
+// Verifies: VEC-004, ORA-046.
+#[test]
+fn a_tolerance_ends_where_it_says() {
+    let one_up = 1.0_f64.next_up();
+    let below = 1.0_f64.next_down();
+    let least = f64::from_bits(1);
+    for (tolerance, expected, found, accepted) in [
+        (Tolerance::Ulp(1.0), 1.0, one_up, true),
+        (Tolerance::Ulp(1.0), 1.0, one_up.next_up(), false),
+        // An ulp of 1 is that above it, twice the one below.
+        (Tolerance::Ulp(1.0), 1.0, below.next_down(), true),
+        (
+            Tolerance::Ulp(1.0),
+            1.0,
+            below.next_down().next_down(),
+            false,
+        ),
+        (Tolerance::Ulp(1.0), -1.0, -one_up, true),
+        (Tolerance::Ulp(2.0), 0.0, 2.0 * least, true),
+        (Tolerance::Ulp(2.0), 0.0, 3.0 * least, false),
+        (Tolerance::Ulp(0.0), 0.0, -0.0, true),
+        (Tolerance::Ulp(8.0), 1.0, f64::INFINITY, false),
+        (Tolerance::Ulp(8.0), 1.0, f64::NAN, false),
+        (Tolerance::Absolute(0.5), 1e300, 1e300, true),
+        (Tolerance::Absolute(0.5), 1.0, 1.5, true),
+        (Tolerance::Absolute(0.5), 1.0, 0.49, false),
+        (Tolerance::Relative(0.5), -4.0, -6.0, true),
+        (Tolerance::Relative(0.5), -4.0, -6.0_f64.next_up(), false),
+        (Tolerance::Relative(0.5), -4.0, -6.1, false),
+        (Tolerance::Relative(0.5), 0.0, least, false),
+        (Tolerance::Exact, 0.0, -0.0, true),
+        (Tolerance::Exact, 1.0, one_up, false),
+    ] {
+        assert_eq!(
+            tolerance.accepts(expected, found, 1.0),
+            accepted,
+            "{tolerance:?} {expected} {found}"
+        );
+    }
+    assert!(Tolerance::Ulp(1.0).accepts(1.0, one_up.next_up(), 10.0));
+}
+
+// Verifies: ORA-046.
+#[test]
+fn a_difference_names_its_place() {
+    let tolerance = Tolerance::Exact;
+    let compare = |expected, found| compare("k", &expected, &found, tolerance, 1.0);
+    assert_eq!(
+        compare(json!([[1, 2.0], [3]]), json!([[1.0, 2], [3]])),
+        Ok(())
+    );
+    for (expected, found, place, words) in [
+        (
+            json!([[1, 2], [3]]),
+            json!([[1, 2], [4]]),
+            "k[1][0]",
+            "is 4, expected 3",
+        ),
+        (json!([1, 2]), json!([1]), "k", "has 1 entries, expected 2"),
+        (
+            json!([1, 2]),
+            json!([1, "2"]),
+            "k[1]",
+            "is \"2\", expected 2",
+        ),
+        (
+            json!("0xff"),
+            json!("0xFF"),
+            "k",
+            "is \"0xFF\", expected \"0xff\"",
+        ),
+        (json!(true), json!(1), "k", "is 1, expected true"),
+        (json!(1), json!(null), "k", "is null, expected 1"),
+    ] {
+        let difference = compare(expected, found).unwrap_err();
+        assert_eq!(difference.place, place);
+        assert!(difference.text.starts_with(words), "{difference}");
+    }
+}
+
+// Verifies: ORA-050.
+#[test]
+fn no_text_breaks_the_xml() {
+    assert_eq!(
+        escaped("a<b>&\"'\t\u{0}\u{b}\u{ffff}γ"),
+        "a&lt;b&gt;&amp;&quot;' \u{fffd}\u{fffd}\u{fffd}γ"
+    );
+}
+
+// Verifies: ORA-043.
+#[test]
+fn what_a_program_says_is_quoted_short_and_plain() {
+    assert_eq!(cut("a\u{1b}[2J\r\nγ"), "a\u{fffd}[2J\u{fffd}\u{fffd}γ");
+    assert_eq!(cut(&"é".repeat(200)), "é".repeat(200));
+    assert_eq!(cut(&"é".repeat(201)), "é".repeat(200) + "…");
+}

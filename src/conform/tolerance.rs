@@ -122,11 +122,13 @@ pub fn shortened(value: &Value) -> String {
     cut(&value.to_string())
 }
 
-/// A text of at most some 200 characters.
+/// A text of at most some 200 characters, without those that control a terminal.
 pub fn cut(text: &str) -> String {
     const MOST: usize = 200;
-    match text.char_indices().nth(MOST) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.into(),
+    let plain = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+    let mut cut: String = text.chars().take(MOST).map(plain).collect();
+    if text.chars().nth(MOST).is_some() {
+        cut.push('…');
     }
+    cut
 }

@@ -1,1 +1,126 @@
+use std::cell::RefCell;
+use std::io::{self, Read, Write};
 
+use super::{Arguments, Oracle, ops, serve};
+
+/// Gives its bytes out in pieces of a size, and checks before each that all whole lines so far were
+/// answered.
+struct Pieces<'a> {
+    input: &'a [u8],
+    size: usize,
+    given: usize,
+    output: &'a RefCell<Vec<u8>>,
+}
+
+fn lines(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|&&byte| byte == b'\n').count()
+}
+
+impl Read for Pieces<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let asked = lines(&self.input[..self.given]);
+        assert_eq!(
+            lines(&self.output.borrow()),
+            asked,
+            "after {} bytes",
+            self.given
+        );
+        let rest = &self.input[self.given..];
+        let count = self.size.min(rest.len()).min(buffer.len());
+        buffer[..count].copy_from_slice(&rest[..count]);
+        self.given += count;
+        Ok(count)
+    }
+}
+
+struct Shared<'a>(&'a RefCell<Vec<u8>>);
+
+impl Write for Shared<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.borrow_mut().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+// Verifies: ORA-001, ORA-003.
+#[test]
+fn lines_are_found_however_the_input_is_cut() {
+    let mut input = String::new();
+    let mut expected = String::new();
+    for index in 0..300 {
+        input += &format!("{{\"id\":{index},\"op\":\"normal_cdf\",\"args\":{{\"x\":0}}}}\n");
+        expected += &format!("{{\"id\":{index},\"ok\":{{\"p\":0.5}}}}\n");
+    }
+    let whole = input.trim_end(); // a last line without an end
+    for size in [1, 2, 7, 63, 64, 65, 4096, 65535, 65536, 65537, 1 << 20] {
+        let output = RefCell::new(Vec::new());
+        let pieces = Pieces {
+            input: whole.as_bytes(),
+            size,
+            given: 0,
+            output: &output,
+        };
+        serve(pieces, Shared(&output)).unwrap();
+        assert!(
+            output.borrow().as_slice() == expected.as_bytes(),
+            "pieces of {size}"
+        );
+    }
+}
+
+// Verifies: ORA-005.
+#[test]
+fn the_registry_names_the_arguments_that_the_ops_ask_for() {
+    for op in ops::all() {
+        // Whatever is missing, an op asks for arguments that its entry has.
+        let mut models = ops::Models::default();
+        let mut arguments = Arguments::parse(None).unwrap();
+        match (op.function)(&mut models, &mut arguments) {
+            Ok(_) => assert_eq!(op.name, "capabilities"),
+            Err(refusal) => {
+                let name = refusal
+                    .message
+                    .strip_suffix(" is missing")
+                    .unwrap_or_else(|| panic!("{refusal:?}"));
+                assert!(
+                    op.arguments.split(' ').any(|known| known == name),
+                    "{}: {name}",
+                    op.name
+                );
+            }
+        }
+    }
+}
+
+// Verifies: ORA-006. A walk through what a line may be: cut, doubled, with bytes changed.
+#[test]
+fn damaged_lines_have_one_answer_each() {
+    let line = br#"{"id":"a\u00e9","op":"theta_colored","args":{"residual":[1,-2e-3],"template":[1,1],"covariance":[[1,0.5],[0.5,2]]}}"#;
+    let mut oracle = Oracle::default();
+    let mut check = |line: &[u8]| {
+        let mut out = Vec::new();
+        oracle.answer(line, &mut out);
+        assert_eq!(lines(&out), 1);
+        assert_eq!(out.last(), Some(&b'\n'));
+        let answer: serde_json::Value = serde_json::from_slice(&out).unwrap();
+        assert!(answer.get("ok").is_some() != answer.get("error").is_some());
+    };
+    for place in 0..line.len() {
+        check(&line[..place]);
+        check(&line[place..]);
+        for byte in 0..=255_u8 {
+            if byte == b'\n' {
+                continue;
+            }
+            let mut changed = line.to_vec();
+            changed[place] = byte;
+            check(&changed);
+        }
+        let mut inserted = line.to_vec();
+        inserted.splice(place..place, line[place / 2..].iter().copied());
+        check(&inserted);
+    }
+}
