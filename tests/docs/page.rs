@@ -125,10 +125,10 @@ impl Page {
         let found = parts
             .map(str::trim)
             .filter(|part| part.starts_with("palpate "));
-        found
-            .map(String::from)
-            .chain(self.plain_commands())
-            .collect()
+        // Elsewhere such a line is an output that begins with the program's name.
+        let plain = (self.name == "README.md").then(|| self.plain_commands());
+        let found = found.map(String::from);
+        found.chain(plain.unwrap_or_default()).collect()
     }
 
     /// Relative links: the file, from the page's folder, and the heading in it, empty if there is none.
