@@ -241,10 +241,11 @@ fn an_experiment_goes_on_after_an_abort() {
         &["--observer", "ideal", "--noise", "2", "--trials", "21"],
     );
     assert_eq!(other.status.code(), Some(2));
+    let refusal = text(&other.stderr);
+    assert!(refusal.contains("another experiment (seed"), "{refusal}");
     assert!(
-        text(&other.stderr).contains("another experiment"),
-        "{}",
-        text(&other.stderr)
+        refusal.contains("20 trials") && refusal.contains("21 trials"),
+        "{refusal}"
     );
     // A person who goes away keeps what was answered.
     std::fs::write(&journal, kept).unwrap();

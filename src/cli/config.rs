@@ -35,6 +35,7 @@ pub struct Config {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Mesh {
+    #[serde(deserialize_with = "positive")]
     pub size_mm: f64,
     pub element: ElementName,
     pub contact: ContactName,
@@ -44,9 +45,13 @@ pub struct Mesh {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Detection {
+    #[serde(deserialize_with = "positive")]
     pub noise_sd_n: f64,
+    #[serde(deserialize_with = "probability")]
     pub max_false_alarm: f64,
+    #[serde(deserialize_with = "probability")]
     pub max_miss: f64,
+    #[serde(deserialize_with = "probability")]
     pub prior_h1: f64,
 }
 
@@ -146,4 +151,76 @@ impl Config {
 fn list<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Positions, D::Error> {
     let text = String::deserialize(deserializer)?;
     positions(&text).map_err(serde::de::Error::custom)
+}
+
+/// Refused here, with its line, rather than after all maps are solved.
+fn positive<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let is_positive = |number: f64| number.is_finite() && number > 0.0;
+    number(deserializer, is_positive, "a number above 0")
+}
+
+fn probability<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let is_probability = |number: f64| number > 0.0 && number < 1.0;
+    number(
+        deserializer,
+        is_probability,
+        "a probability strictly between 0 and 1",
+    )
+}
+
+fn number<'de, D: serde::Deserializer<'de>>(
+    deserializer: D,
+    allowed: impl Fn(f64) -> bool,
+    expected: &str,
+) -> Result<f64, D::Error> {
+    let number = f64::deserialize(deserializer)?;
+    if allowed(number) {
+        Ok(number)
+    } else {
+        Err(serde::de::Error::custom(format!(
+            "{number}, expected {expected}"
+        )))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Verifies: CLI-031.
+    #[test]
+    fn a_number_out_of_its_range_is_refused_with_its_line() {
+        let file = std::env::temp_dir().join(format!("palpate-config-{}.toml", std::process::id()));
+        for (key, value, expected) in [
+            ("[mesh]\nsize_mm", "-1.0", "-1, expected a number above 0"),
+            ("[mesh]\nsize_mm", "inf", "inf, expected"),
+            (
+                "[detection]\nnoise_sd_n",
+                "0.0",
+                "0, expected a number above 0",
+            ),
+            ("[detection]\nnoise_sd_n", "nan", "NaN, expected"),
+            (
+                "[detection]\nmax_false_alarm",
+                "1.0",
+                "1, expected a probability",
+            ),
+            ("[detection]\nmax_miss", "0.0", "0, expected a probability"),
+            (
+                "[detection]\nprior_h1",
+                "1.5",
+                "1.5, expected a probability",
+            ),
+        ] {
+            std::fs::write(&file, format!("{key} = {value}\n")).unwrap();
+            let error = Config::read(&file).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{error}");
+            let error = error.to_string();
+            assert!(
+                error.contains(".toml:2: ") && error.contains(expected),
+                "{error}"
+            );
+        }
+        std::fs::remove_file(&file).unwrap();
+    }
 }

@@ -196,7 +196,7 @@ fn open_journal(arguments: &ExperimentArguments) -> Result<(Journal, File), CliE
             let found = journal.setup();
             return Err(failed(
                 path.display(),
-                format!("another experiment ({found:?}) than asked for ({setup:?})"),
+                format!("another experiment ({found}) than asked for ({setup})"),
             ));
         }
         journal

@@ -31,6 +31,23 @@ pub struct Setup {
     pub inclusions: Vec<String>,
 }
 
+impl std::fmt::Display for Setup {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Setup {
+            seed,
+            trials,
+            subject,
+            condition,
+            inclusions,
+        } = self;
+        write!(
+            f,
+            "seed {seed}, {trials} trials, subject {subject}, condition {condition}, inclusions {}",
+            inclusions.join(",")
+        )
+    }
+}
+
 /// An experiment and its answers so far.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Journal {

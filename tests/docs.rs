@@ -1,0 +1,287 @@
+//! The documentation's commands, run as a reader would run them (`spec/documentation.md`).
+//!
+//! A runner of our own, since trycmd splits a command into words and starts it without a shell, so that it has no pipe,
+//! no redirection and no `$?`, which the pages need; it would also bring twelve crates.
+#![cfg(all(feature = "cli", unix))]
+
+#[path = "docs/page.rs"]
+mod page;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use page::{Page, matches};
+
+/// The root of the package, from which pages are named.
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// How many commands of `docs/` the test does not run, each with its reason on the page.
+const NOT_RUN: usize = 6;
+
+/// Parts of the commands in `README.md` that are not run, and why.
+const README_NOT_RUN: [(&str, &str); 3] = [
+    ("palpate run ", "docs/tutorial.md runs it"),
+    (
+        "palpate verify",
+        "takes minutes without optimisation; tests/verify_command.rs and tests/statistics run the battery",
+    ),
+    (
+        "--device hid",
+        "needs a device; tests/hid-stack/run has one",
+    ),
+];
+
+/// All Markdown files of `docs/`, by name.
+fn pages() -> Vec<Page> {
+    let folders = ["docs", "docs/how-to"].map(|folder| Path::new(ROOT).join(folder));
+    let mut paths: Vec<PathBuf> = folders
+        .iter()
+        .flat_map(|folder| fs::read_dir(folder).unwrap())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
+        .collect();
+    paths.sort();
+    paths.iter().map(|path| Page::read(path)).collect()
+}
+
+/// An empty folder for a page's commands.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("docs")
+        .join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Output, both streams as they come, and exit code of a command after one that left the code `before`; the program
+/// under test comes first on the path.
+fn shell(folder: &Path, command: &str, before: i32) -> (String, i32) {
+    let program = Path::new(env!("CARGO_BIN_EXE_palpate")).parent().unwrap();
+    let path = std::env::var("PATH").unwrap();
+    let output = Command::new("sh")
+        .args(["-c", &format!("exec 2>&1\n(exit {before})\n{command}")])
+        .env("PATH", format!("{}:{path}", program.display()))
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    (
+        String::from_utf8(output.stdout).unwrap(),
+        output.status.code().unwrap_or(-1),
+    )
+}
+
+fn palpate(arguments: &str) -> String {
+    let (help, code) = shell(Path::new(ROOT), &format!("palpate {arguments}"), 0);
+    assert_eq!(code, 0, "palpate {arguments}: {help}");
+    help
+}
+
+/// Runs a page; what differs from it, one text each.
+fn differences(page: &Page) -> Vec<String> {
+    let folder = folder(&page.name.replace('/', "-"));
+    let (mut differences, mut code) = (Vec::new(), 0);
+    for (index, step) in page.steps.iter().enumerate() {
+        if let Some(file) = &step.file {
+            fs::write(folder.join(file), &step.text).unwrap();
+            continue;
+        }
+        let (output, found) = shell(&folder, &step.text, code);
+        code = found;
+        let asked = page
+            .steps
+            .get(index + 1)
+            .is_some_and(|next| next.text == "echo $?");
+        if !matches(&step.output, &output) || (code != 0 && !asked) {
+            differences.push(format!(
+                "{}:{}: $ {}\n--- the page\n{}--- the program, exit code {code}\n{output}",
+                page.name, step.line, step.text, step.output
+            ));
+        }
+    }
+    differences
+}
+
+// Verifies: DOC-001, DOC-002.
+#[test]
+fn commands_do_what_the_pages_show() {
+    let pages = pages();
+    let found: Vec<_> = std::thread::scope(|scope| {
+        let running: Vec<_> = pages
+            .iter()
+            .map(|page| scope.spawn(|| differences(page)))
+            .collect();
+        running
+            .into_iter()
+            .flat_map(|thread| thread.join().unwrap())
+            .collect()
+    });
+    assert!(found.is_empty(), "{}", found.join("\n"));
+    let commands = pages
+        .iter()
+        .flat_map(|page| &page.steps)
+        .filter(|step| step.file.is_none());
+    println!("{} commands of {} pages run", commands.count(), pages.len());
+    let not_run: Vec<_> = pages
+        .iter()
+        .flat_map(|page| page.not_run.iter().map(move |step| (page, step)))
+        .collect();
+    for (page, (command, reason)) in &not_run {
+        println!("not run: {}: {command}: {reason}", page.name);
+    }
+    assert_eq!(not_run.len(), NOT_RUN, "commands that are not run");
+}
+
+// Verifies: DOC-003, DOC-004.
+#[test]
+fn commands_and_options_exist() {
+    let help = palpate("--help");
+    let list = help
+        .split("Commands:\n")
+        .nth(1)
+        .unwrap()
+        .split("\n\n")
+        .next()
+        .unwrap();
+    let names: BTreeSet<&str> = list
+        .lines()
+        .map(|line| line.split_whitespace().next().unwrap())
+        .collect();
+    assert!(names.len() >= 12, "{help}");
+    let index = fs::read_to_string(Path::new(ROOT).join("docs/README.md")).unwrap();
+    for name in &names {
+        assert!(
+            Path::new(ROOT)
+                .join(format!("docs/how-to/{name}.md"))
+                .exists(),
+            "no how-to for {name}"
+        );
+        assert!(
+            index.contains(&format!("(how-to/{name}.md)")),
+            "docs/README.md does not link to {name}"
+        );
+    }
+    let mut seen = 0;
+    for page in pages()
+        .iter()
+        .chain([&Page::read(&Path::new(ROOT).join("README.md"))])
+    {
+        for command in page.mentions() {
+            let name = command.split_whitespace().nth(1).unwrap_or_default();
+            if name.starts_with('-') {
+                continue;
+            }
+            assert!(names.contains(name), "{}: {command}", page.name);
+            let help = palpate(&format!("{name} --help"));
+            let known: Vec<&str> = help
+                .split(|c: char| !(c.is_alphanumeric() || c == '-'))
+                .collect();
+            for option in page::options(&command) {
+                seen += 1;
+                assert!(
+                    known.contains(&option),
+                    "{}: palpate {name} has no {option}",
+                    page.name
+                );
+            }
+        }
+    }
+    assert!(seen > 100, "{seen} options seen: are the pages read?");
+}
+
+// Verifies: DOC-005, DOC-007.
+#[test]
+fn links_and_requirements_lead_somewhere() {
+    let spec = fs::read_dir(Path::new(ROOT).join("spec")).unwrap();
+    let spec: String = spec
+        .map(|entry| fs::read_to_string(entry.unwrap().path()).unwrap())
+        .collect();
+    let (mut links, mut ids) = (0, 0);
+    for page in pages()
+        .iter()
+        .chain([&Page::read(&Path::new(ROOT).join("README.md"))])
+    {
+        let folder = Path::new(ROOT).join(&page.name);
+        for (file, heading) in page.links() {
+            links += 1;
+            let target = match file.as_str() {
+                "" => folder.clone(),
+                file => folder.parent().unwrap().join(file),
+            };
+            assert!(target.exists(), "{}: no {file}", page.name);
+            let found = heading.is_empty()
+                || page::headings(&fs::read_to_string(&target).unwrap()).contains(&heading);
+            assert!(found, "{}: no heading {heading} in {file}", page.name);
+        }
+        for id in page::requirements(&page.text) {
+            ids += 1;
+            assert!(
+                spec.contains(&format!("**{id}**")),
+                "{}: no {id} in spec/",
+                page.name
+            );
+        }
+    }
+    assert!(
+        links > 20 && ids > 50,
+        "{links} links, {ids} requirements: are the pages read?"
+    );
+    let theory = fs::read_to_string(Path::new(ROOT).join("docs/theory.md")).unwrap();
+    for section in theory
+        .split("\n## ")
+        .skip(1)
+        .filter(|section| section.contains("$$"))
+    {
+        let title = section.lines().next().unwrap_or_default();
+        assert!(
+            !page::requirements(section).is_empty(),
+            "docs/theory.md, {title}: which requirement?"
+        );
+    }
+}
+
+// Verifies: DOC-006.
+#[test]
+fn the_commands_of_the_readme_succeed() {
+    let folder = folder("README");
+    fs::create_dir(folder.join("docs")).unwrap();
+    fs::copy(
+        Path::new(ROOT).join("docs/phantom.toml"),
+        folder.join("docs/phantom.toml"),
+    )
+    .unwrap();
+    // Coarse maps where 'palpate run' leaves fine ones; a sweep over them; a measured map of two depths.
+    let sweep: String = (-10..=10).map(|x| format!("{x},0,1.5\n")).collect();
+    let files = [
+        ("coarse.toml", "laterals_mm = \"-10:10:1\"\n[mesh]\nsize_mm = 1.5\n".into()),
+        ("trace.csv", format!("position_mm,lateral_force_n,normal_force_n\n{sweep}")),
+        (
+            "gel.csv",
+            "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n0,-1,0,0\n0,1,0,0\n1,-1,0.3,0\n1,1,0.3,0\n".into(),
+        ),
+    ];
+    for (name, text) in files {
+        let text: String = text;
+        fs::write(folder.join(name), text).unwrap();
+    }
+    let (output, code) = shell(&folder, "palpate run --config coarse.toml", 0);
+    assert_eq!(code, 0, "{output}");
+    let commands = Page::read(&Path::new(ROOT).join("README.md")).plain_commands();
+    let mut run = 0;
+    for command in &commands {
+        match README_NOT_RUN
+            .iter()
+            .find(|(part, _)| format!("{command} ").contains(part))
+        {
+            Some((_, reason)) => println!("not run: {command}: {reason}"),
+            None => {
+                let (output, code) = shell(&folder, command, 0);
+                assert_eq!(code, 0, "{command}: {output}");
+                run += 1;
+            }
+        }
+    }
+    assert!(run >= 8, "{run} commands run: is README.md read?");
+}
