@@ -124,10 +124,12 @@ const USUAL: [&str; 6] = [
 fn answer(trace: &str, more: &[&str]) -> Value {
     let arguments = [&USUAL[..], &["--format", "json"], more].concat();
     let output = detect(trace, &arguments);
-    assert!(
-        output.status.success() && output.stderr.is_empty(),
-        "{output:?}"
-    );
+    // These maps end where the signal is not yet gone, of which a scan warns.
+    let warnings = String::from_utf8_lossy(&output.stderr);
+    let only_of_the_ends = warnings
+        .lines()
+        .all(|line| line.contains("at an end of the maps"));
+    assert!(output.status.success() && only_of_the_ends, "{output:?}");
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
@@ -256,10 +258,15 @@ fn a_record_that_fits_neither_map_is_reported() {
         let output = detect("with.csv", &[&elsewhere[..], scan].concat());
         let warning = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(0));
-        assert!(
-            warning.contains("fits neither map") && warning.lines().count() == 1,
-            "{warning}"
-        );
+        let of_the_fit = warning
+            .lines()
+            .filter(|line| line.contains("fits neither map"));
+        assert_eq!(of_the_fit.count(), 1, "{warning}");
+        // The maps end at ±8 mm, where the signal is not yet gone: only a scan minds.
+        let of_the_ends = warning
+            .lines()
+            .filter(|line| line.contains("at an end of the maps"));
+        assert_eq!(of_the_ends.count(), scan.len(), "{warning}");
     }
 }
 

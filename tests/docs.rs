@@ -21,7 +21,11 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 const NOT_RUN: usize = 6;
 
 /// Parts of the commands in `README.md` that are not run, and why.
-const README_NOT_RUN: [(&str, &str); 3] = [
+const README_NOT_RUN: [(&str, &str); 4] = [
+    (
+        "tests/toys/right.py",
+        "needs Python: tests/conform_command.rs runs it",
+    ),
     ("palpate run ", "docs/tutorial.md runs it"),
     (
         "palpate verify",

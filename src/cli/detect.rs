@@ -10,7 +10,7 @@ use super::{CliError, Format};
 use crate::detect::Channels;
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::parse_scaled;
-use crate::trace::{Criterion, Misfit, Motion, Trace, judge, locate};
+use crate::trace::{Criterion, DIED_AWAY, Location, Misfit, Motion, Record, Trace, judge, locate};
 
 /// Arguments of `palpate detect`.
 #[derive(Debug, Args)]
@@ -155,6 +155,7 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     let (answer, misfit) = if arguments.scan {
         let found = locate(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
         let misfit = misfit(found.theta_max)?;
+        warn_of_broad_signal(&found, &record);
         (
             Answer::new(question, None, Some(found.into()), misfit),
             misfit,
@@ -179,6 +180,17 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
         Format::Table => answer.table(),
         Format::Json => answer.json(),
     })
+}
+
+/// Implements: TRC-042.
+fn warn_of_broad_signal(found: &Location, record: &Record) {
+    if found.template_edge > DIED_AWAY {
+        eprintln!(
+            "palpate: warning: {}: the signal at an end of the maps is still {:.0} % of its largest: the position is drawn towards the maps' x = 0, which its sd does not count",
+            record.file(),
+            100.0 * found.template_edge
+        );
+    }
 }
 
 fn map(path: &Path) -> Result<ForceMap, CliError> {

@@ -128,6 +128,7 @@ pub struct AtUnknownPosition {
     miss_bound: f64,
     position_m: f64,
     position_sd_bound_m: f64,
+    template_edge: f64,
     candidates: usize,
 }
 
@@ -149,6 +150,7 @@ impl From<Location> for AtUnknownPosition {
             miss_bound: found.miss_bound,
             position_m: found.position,
             position_sd_bound_m: found.position_sd_bound,
+            template_edge: found.template_edge,
             candidates: found.candidates,
         }
     }

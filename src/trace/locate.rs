@@ -21,6 +21,11 @@ pub const UNIFORM: f64 = 1e-6;
 /// Implements: TRC-041.
 pub const MOST_SAMPLES: usize = 20_000;
 
+/// A signal that is at most this share of its largest at the ends of the maps has died away there.
+///
+/// Implements: TRC-042.
+pub const DIED_AWAY: f64 = 0.1;
+
 /// What a scan says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Location {
@@ -46,6 +51,9 @@ pub struct Location {
     pub position: f64,
     /// No unbiased estimate of the position has a smaller standard deviation, m.
     pub position_sd_bound: f64,
+    /// The signal at an end of the maps over its largest, both over the noise of their channel: above
+    /// [`DIED_AWAY`] the position is drawn to the maps' x = 0, which the bound does not count.
+    pub template_edge: f64,
     /// Positions that were tried.
     pub candidates: usize,
 }
@@ -172,6 +180,7 @@ impl Grid {
             position: self.start
                 + (found.maximum.refined_shift - self.first_shift as f64) * self.spacing,
             position_sd_bound: self.position_sd_bound(shift, noise_sd)?,
+            template_edge: self.template_edge(noise_sd),
             candidates,
         };
         if location.by_mixture {
@@ -190,6 +199,18 @@ impl Grid {
         let mut theta = vec![0.0; candidates];
         scan.theta(view(&self.residual), self.first_shift, &mut theta)?;
         mixture_theta(&theta, &vec![1.0 / candidates as f64; candidates])
+    }
+
+    /// Implements: TRC-042.
+    fn template_edge(&self, noise_sd: Channels<f64>) -> f64 {
+        let parts = view(&self.template).zip(noise_sd).map(|(signal, sd)| {
+            let largest =
+                |samples: &[f64]| samples.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+            let ends = [signal[0], signal[signal.len() - 1]];
+            (largest(&ends) / sd, largest(signal) / sd)
+        });
+        let (ends, all) = (parts.x.0.max(parts.y.0), parts.x.1.max(parts.y.1));
+        if all > 0.0 { ends / all } else { 0.0 }
     }
 
     /// The Cramér–Rao bound of what the record holds of the template at a shift.

@@ -17,7 +17,7 @@ mod tests;
 
 pub use error::{TraceError, TraceProblem};
 pub use judge::{Criterion, Misfit, judge};
-pub use locate::{Location, MOST_SAMPLES, UNIFORM, locate};
+pub use locate::{DIED_AWAY, Location, MOST_SAMPLES, UNIFORM, locate};
 
 use crate::detect::Channels;
 use crate::force_map::{ForceTable, SAME_POSITION, Sweep};

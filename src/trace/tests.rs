@@ -341,6 +341,36 @@ fn the_bound_of_the_position_counts_what_the_record_holds() {
     );
 }
 
+// Verifies: TRC-042.
+#[test]
+fn a_scan_tells_how_much_of_the_signal_the_maps_cut_off() {
+    let whole = find(&shifted(1.0, 1), 1.0, Criterion::Map).unwrap();
+    assert_eq!(whole.template_edge, 0.0);
+    // Over −1 … 2 mm alone the signal at 3 mm depth is (lateral) 1, 0, −1, −½ and (normal) 1, 2, 1, ¼ N: over
+    // the noise of each channel it is at most 2 and 4 at the ends, of at most 8.
+    let cut = |signal: f64| {
+        let whole = table(signal);
+        let part =
+            |matrix: &Matrix| Matrix::from_fn(2, 4, |row, column| matrix.row(row)[column + 2]);
+        let laterals = whole.laterals()[2..6].to_vec();
+        let (normal, lateral) = (part(whole.normal_force()), part(whole.lateral_force()));
+        ForceTable::new(whole.depths().to_vec(), laterals, normal, lateral).unwrap()
+    };
+    let record = read(
+        "position_mm,lateral_force_n,normal_force_n\n-1,1.1,2\n0,0.1,3\n1,-0.9,2\n2,-0.4,1.25\n",
+    );
+    let found = locate(
+        &record.unwrap(),
+        &cut(0.0),
+        &cut(1.0),
+        0.003,
+        NOISE,
+        Criterion::Map,
+        0.25,
+    );
+    assert!((found.unwrap().template_edge - 0.5).abs() < 1e-12);
+}
+
 // Verifies: TRC-030, TRC-031, TRC-033, TRC-041.
 #[test]
 fn records_that_cannot_be_scanned_are_refused() {
