@@ -181,7 +181,7 @@ fn largest(grid: &Grid) -> f32 {
     magnitudes.fold(0.0, f32::max)
 }
 
-// No Kani proof: what relates products of the entries ends in no solver (DESIGN, Gappa has it).
+// No Kani proof: what relates products of the entries ends in no solver; Gappa has it.
 // Verifies: SRV-012, SRV-013.
 #[cfg(not(kani))]
 #[test]

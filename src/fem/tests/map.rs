@@ -142,7 +142,7 @@ fn axes_that_make_no_map_are_refused_before_anything_is_solved() {
 // Verifies: FEM-020.
 #[test]
 fn the_paper_s_poses_have_the_forces_of_an_independent_program() {
-    // DESIGN's prototype, with CalculiX as its witness: 1.48 N without inclusion at 4 mm, a signal of about
+    // A prototype in Python, with CalculiX as its witness: 1.48 N without inclusion at 4 mm, a signal of about
     // 0.31 N over the 6.6 mm inclusion; both given to two digits.
     let force = |name: &str| {
         let model = Model::new(

@@ -24,7 +24,6 @@ fn every_check_sees_a_defect_and_every_named_defect_is_seen() {
         let seen = row.powers.iter().any(|&(_, power)| shows(power));
         assert!(seen, "{} sees nothing", row.name);
     }
-    // DESIGN §8.
     for defect in [
         "variance_off_1_percent",
         "half_left_out",
