@@ -2,8 +2,12 @@
 //! with a notice where Python or mpmath is missing, unless `PALPATE_REQUIRE_WITNESSES=1` asks for it.
 #![cfg(feature = "cli")]
 
-use std::io::Write;
+#[path = "witness/present.rs"]
+mod present;
+
 use std::process::Command;
+
+use present::present;
 
 // Verifies: ACC-001, ACC-002, ACC-003, ACC-004, ACC-005, ACC-006, ACC-007, ACC-008, ACC-009, ACC-010, ACC-011, ACC-012,
 // ACC-013, ACC-020.
@@ -11,16 +15,8 @@ use std::process::Command;
 fn every_function_is_as_accurate_as_stated() {
     let python = std::env::var("PALPATE_PYTHON").unwrap_or_else(|_| "python3".into());
     let probe = Command::new(&python).args(["-c", "import mpmath"]).output();
-    if !probe.is_ok_and(|output| output.status.success()) {
-        let required =
-            std::env::var_os("PALPATE_REQUIRE_WITNESSES").is_some_and(|value| value == "1");
-        assert!(
-            !required,
-            "mpmath is not installed, but PALPATE_REQUIRE_WITNESSES=1 asks for it"
-        );
-        #[allow(clippy::explicit_write)]
-        // Not by eprintln!, which the test runner keeps to itself when a test passes.
-        writeln!(std::io::stderr(), "SKIPPED: mpmath is not installed").unwrap();
+    let missing = !probe.is_ok_and(|output| output.status.success());
+    if !present(missing.then_some("mpmath")) {
         return;
     }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/accuracy/sweep.py");

@@ -1,10 +1,13 @@
 //! `palpate conform` against programs that answer rightly, wrongly, late, or not at all: `spec/oracle.md`.
 
+#[path = "witness/present.rs"]
+mod present;
+
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use present::present;
 use serde_json::{Value, json};
 
 const PALPATE: &str = env!("CARGO_BIN_EXE_palpate");
@@ -619,18 +622,8 @@ fn the_verdict_for_ci_holds_every_case_and_is_the_same_each_time() {
 /// Python: the one of the environment, or the system's. It must be there, if `PALPATE_REQUIRE_WITNESSES=1`.
 fn python() -> Option<String> {
     let python = std::env::var("PALPATE_PYTHON").unwrap_or_else(|_| "python3".into());
-    if Command::new(&python).arg("--version").output().is_ok() {
-        return Some(python);
-    }
-    let required = std::env::var_os("PALPATE_REQUIRE_WITNESSES").is_some_and(|value| value == "1");
-    assert!(
-        !required,
-        "{python} is not installed, but PALPATE_REQUIRE_WITNESSES=1 asks for it"
-    );
-    #[allow(clippy::explicit_write)]
-    // Not by eprintln!, which the test runner keeps to itself when a test passes.
-    writeln!(std::io::stderr(), "SKIPPED: {python} is not installed").unwrap();
-    None
+    let missing = Command::new(&python).arg("--version").output().is_err();
+    present(missing.then_some(&python)).then_some(python)
 }
 
 const TOYS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/toys");

@@ -1,8 +1,13 @@
 //! The vectors are as their generator writes them, and the suite is sound, by the Python programs that come with it.
 //! Where Python or mpmath is missing, a notice is given, unless `PALPATE_REQUIRE_WITNESSES=1` asks for them.
 
-use std::io::{ErrorKind, Write};
+#[path = "witness/present.rs"]
+mod present;
+
+use std::io::ErrorKind;
 use std::process::Command;
+
+use present::present;
 
 /// Python with mpmath: the one of the environment, or the system's.
 fn python() -> Command {
@@ -22,16 +27,7 @@ fn missing() -> Option<&'static str> {
 
 /// Runs a script of `vectors/`, which must succeed, and gives what it printed.
 fn run(script: &str, arguments: &[&str]) -> Option<String> {
-    if let Some(program) = missing() {
-        let required =
-            std::env::var_os("PALPATE_REQUIRE_WITNESSES").is_some_and(|value| value == "1");
-        assert!(
-            !required,
-            "{program} is not installed, but PALPATE_REQUIRE_WITNESSES=1 asks for it"
-        );
-        #[allow(clippy::explicit_write)]
-        // Not by eprintln!, which the test runner keeps to itself when a test passes.
-        writeln!(std::io::stderr(), "SKIPPED: {program} is not installed").unwrap();
+    if !present(missing()) {
         return None;
     }
     let path = format!("{}/vectors/{script}", env!("CARGO_MANIFEST_DIR"));

@@ -7,7 +7,7 @@ use palpate::fem::{Contact, Element, Mesh, MeshOptions, Model, Pose};
 use palpate::phantom::Phantom;
 
 use super::deck::deck;
-use super::present;
+use super::present::present;
 
 /// Where the probe stops on its way down, m.
 const DEPTHS: [f64; 3] = [1e-3, 2.5e-3, 4e-3];

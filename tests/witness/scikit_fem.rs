@@ -9,7 +9,8 @@ use palpate::fem::assembly::StiffnessMatrix;
 use palpate::fem::{Element, Mesh, MeshOptions};
 use palpate::phantom::Phantom;
 
-use super::{material, present};
+use super::material;
+use super::present::present;
 
 /// The Python to run: that of the environment with scikit-fem, or the system's.
 fn python() -> Command {
