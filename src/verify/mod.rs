@@ -1,3 +1,7 @@
-//! Evidence that a stranger can produce again: what `palpate verify` runs.
+//! The evidence that the program can give of itself (`palpate verify`).
+
+mod check;
 
 pub mod statistics;
+
+pub use check::{Check, Figure};
