@@ -12,6 +12,8 @@ pub struct Check {
     pub claim: &'static str,
     /// The requirements whose evidence it is.
     pub requirements: &'static [&'static str],
+    /// Whether the figures are the same on every run: not so for times.
+    pub repeatable: bool,
     /// Measures. An error is a check that could not be carried out, or whose claim does not hold for a reason
     /// that is no number.
     pub run: fn() -> Result<Vec<Figure>, String>,
