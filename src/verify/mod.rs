@@ -1,21 +1,19 @@
 //! The evidence that the program can give of itself (`palpate verify`).
 
 mod battery;
+pub mod build;
 mod check;
 #[cfg(feature = "fem")]
 mod diagnosis;
-mod outcome;
-
-#[cfg(feature = "cli")]
-pub mod build;
 #[cfg(feature = "cli")]
 pub mod dossier;
 #[cfg(feature = "cli")]
 pub mod evidence;
+mod outcome;
 pub mod statistics;
-#[cfg(feature = "cli")]
+#[cfg(feature = "std")]
 pub mod supply;
-#[cfg(feature = "cli")]
+#[cfg(feature = "std")]
 pub mod traceability;
 
 pub use battery::{outcome as battery_outcome, soaked};
