@@ -10,8 +10,12 @@
 //! | `timing.rs` | the time that a step, a cycle and a force map take here |
 
 mod check;
+#[cfg(feature = "fem")]
+pub mod fem;
 pub mod kernel;
 pub mod statistics;
+#[cfg(all(feature = "hid", feature = "fem"))]
+pub mod timing;
 #[cfg(feature = "oracle")]
 pub mod vectors;
 
@@ -23,8 +27,12 @@ pub use check::{Check, Figure};
 pub fn checks() -> impl Iterator<Item = &'static Check> {
     let parts: &[&'static [Check]] = &[
         kernel::CHECKS,
+        #[cfg(feature = "fem")]
+        fem::CHECKS,
         #[cfg(feature = "oracle")]
         vectors::CHECKS,
+        #[cfg(all(feature = "hid", feature = "fem"))]
+        timing::CHECKS,
     ];
     let parts = parts.to_vec();
     parts.into_iter().flatten()
