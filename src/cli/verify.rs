@@ -10,11 +10,10 @@ use rayon::prelude::*;
 use super::CliError;
 use super::output::{make_folder, print, write};
 use super::progress::bar;
+use crate::verify::build::{self, Build};
 use crate::verify::evidence::{Evidence, PARTS, Soak, Verdict};
 use crate::verify::statistics::{battery, total_alpha};
-use crate::verify::{
-    Outcome, battery_outcome, build, checks, dossier, soaked, supply, traceability,
-};
+use crate::verify::{Outcome, battery_outcome, checks, dossier, soaked, supply, traceability};
 
 /// Arguments of `palpate verify`.
 #[derive(Debug, Args)]
@@ -70,7 +69,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), CliError> {
     // What can fail at once comes first: minutes of work shall not end for want of a place.
     make_folder(&arguments.out)?;
     let requirements = traceability::requirements().map_err(CliError::Check)?;
-    let components = supply::components().map_err(CliError::Check)?;
+    let components = supply::components().map_err(|error| CliError::Check(error.to_string()))?;
     let soak = soak.map(|batteries| (batteries, arguments.seed.unwrap_or_else(fresh_seed)));
     if let Some((batteries, seed)) = soak {
         // Before the work: whoever stops it can still repeat it.
@@ -80,8 +79,8 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), CliError> {
         ))?;
     }
     let evidence = Evidence {
-        build: build::build(),
-        processor: build::processor(),
+        build: Build::THIS,
+        processor: build::processor().unwrap_or_else(|| "not known".into()),
         left_out: PARTS.into_iter().filter(|part| !asked(part)).collect(),
         outcomes: carry_out(&asked),
         soak: soak
@@ -156,9 +155,13 @@ fn soak_battery(batteries: u32, seed: u64) -> Result<Soak, CliError> {
 fn write_evidence(evidence: &Evidence, arguments: &VerifyArguments) -> Result<(), CliError> {
     let page = arguments.out.join("dossier.html");
     write(&arguments.out.join("evidence.json"), &evidence.to_json())?;
+    let bill = supply::sbom().map_err(|error| CliError::Check(error.to_string()))?;
     write(
         &arguments.out.join("sbom.cdx.json"),
-        &supply::sbom().map_err(CliError::Check)?,
+        &format!(
+            "{bill:#}
+"
+        ),
     )?;
     write(&page, &dossier::dossier(evidence))?;
     print(&summary(evidence))?;

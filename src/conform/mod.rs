@@ -28,6 +28,7 @@ mod tolerance;
 mod verdict;
 
 pub use case::{Case, Expected, Question, Wrong};
+pub use judge::judge;
 pub use junit::junit;
 pub use run::{ConformError, Settings, run};
 pub use suite::{Group, Suite, SuiteError};

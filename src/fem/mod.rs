@@ -7,7 +7,7 @@ pub mod assembly;
 pub mod certify;
 pub mod cholesky;
 pub mod contact;
-mod dense;
+pub(crate) mod dense;
 pub mod element;
 mod elimination;
 pub mod field;

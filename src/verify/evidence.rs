@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::build::Build;
+use super::build::{Build, lock_sha256};
 use super::supply::Component;
 use super::traceability::{Requirement, Summary, summary};
 use super::{Figure, Outcome};
@@ -100,7 +100,24 @@ impl Evidence {
     ///
     /// Implements: EVD-009.
     pub fn anomalies(&self) -> Vec<String> {
-        self.build.anomalies()
+        let build = &self.build;
+        let mut anomalies = Vec::new();
+        if build.known_commit().is_none() {
+            anomalies.push(format!(
+                "its sources are not known to be those of a commit ({})",
+                build.commit
+            ));
+        }
+        if build.profile != "release" {
+            anomalies.push(format!(
+                "it was built with the profile {}, not for release",
+                build.profile
+            ));
+        }
+        if build.debug_assertions {
+            anomalies.push("debug assertions are on".into());
+        }
+        anomalies
     }
 
     /// The file for programs; ends in a line feed. Times, and what else belongs to this one run, are in `measured_here`.
@@ -117,6 +134,7 @@ impl Evidence {
             "verdict": self.verdict(),
             "parts_left_out": self.left_out,
             "build": self.build,
+            "lock_sha256": lock_sha256(),
             "anomalies": self.anomalies(),
             "checks": all(checks),
             "soak": self.soak,

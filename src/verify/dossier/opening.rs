@@ -2,6 +2,7 @@
 
 use crate::report::html::table::{Group, Layout, Table};
 use crate::report::text::escape;
+use crate::verify::build::lock_sha256;
 use crate::verify::evidence::{Evidence, Verdict};
 
 use super::results::figures;
@@ -99,13 +100,35 @@ fn highlights(evidence: &Evidence) -> String {
 ///
 /// Implements: EVD-008.
 pub fn build(evidence: &Evidence) -> String {
-    let mut rows: Vec<Vec<String>> = evidence
-        .build
-        .rows()
-        .into_iter()
-        .map(|(name, value)| vec![escape(name), format!("<code>{}</code>", escape(&value))])
-        .collect();
-    rows.push(vec!["Processor".into(), escape(&evidence.processor)]);
+    let build = &evidence.build;
+    let lock = lock_sha256();
+    let rows = [
+        ("Version", build.version),
+        ("Commit", build.commit),
+        ("Compiler", build.compiler),
+        ("Target", build.target),
+        ("Profile", build.profile),
+        ("Optimisation", build.optimisation),
+        (
+            "Debug assertions",
+            if build.debug_assertions { "on" } else { "off" },
+        ),
+        (
+            "Flags beside the profile's",
+            if build.flags.is_empty() {
+                "none"
+            } else {
+                build.flags
+            },
+        ),
+        ("Features of the package", build.features),
+        ("Instructions taken for granted", build.processor_features),
+        ("SHA-256 of Cargo.lock", &lock),
+        ("Processor", &evidence.processor),
+    ];
+    let row =
+        |(name, value): (&str, &str)| vec![name.into(), format!("<code>{}</code>", escape(value))];
+    let rows = rows.into_iter().map(row).collect();
     let table = Table {
         id: "build-table",
         caption: "What was built, from what and how; the processor is that of the machine that ran it",

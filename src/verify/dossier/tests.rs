@@ -1,6 +1,7 @@
 use super::*;
+use crate::verify::build::Build;
 use crate::verify::evidence::{Soak, Verdict};
-use crate::verify::{Figure, Outcome, build, checks, supply, traceability};
+use crate::verify::{Figure, Outcome, checks, supply, traceability};
 
 fn outcome(name: &str, value: f64) -> Outcome {
     Outcome {
@@ -16,7 +17,7 @@ fn outcome(name: &str, value: f64) -> Outcome {
 
 fn evidence(outcomes: Vec<Outcome>, left_out: Vec<&'static str>) -> Evidence {
     Evidence {
-        build: build::build(),
+        build: Build::THIS,
         processor: "a <processor>".into(),
         left_out,
         outcomes,
