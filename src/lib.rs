@@ -24,8 +24,8 @@
 
 #[cfg(feature = "cli")]
 pub mod cli;
-#[cfg(feature = "oracle")]
-pub mod conform;
+#[cfg(feature = "cli")]
+mod conform;
 #[cfg(feature = "std")]
 pub mod csv;
 pub mod detect;

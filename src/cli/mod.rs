@@ -26,7 +26,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
-pub use error::CliError;
+use error::CliError;
 
 use crate::fem::{Contact, Element};
 

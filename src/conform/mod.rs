@@ -27,10 +27,7 @@ mod tests;
 mod tolerance;
 mod verdict;
 
-pub use case::{Case, Expected, Question, Wrong};
 pub use junit::junit;
 pub use run::{ConformError, Settings, run};
-pub use suite::{Group, Suite, SuiteError};
+pub use suite::Suite;
 pub use table::table;
-pub use tolerance::{Difference, Tolerance, compare};
-pub use verdict::{Count, Failure, LikelyBug, Outcome, Verdict};

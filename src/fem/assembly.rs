@@ -72,7 +72,7 @@ impl Numbering {
     }
 
     /// The first unknown on the surface; the two of surface node k are `first + 2k` and `first + 2k + 1`.
-    pub fn first_surface_unknown(&self) -> usize {
+    pub(super) fn first_surface_unknown(&self) -> usize {
         2 * (2 * self.right + self.axis)
     }
 
@@ -253,7 +253,7 @@ impl StiffnessMatrix {
     }
 
     /// `out −= K x` for `W` vectors at once, one row of `W` numbers per unknown.
-    pub fn subtract_product<const W: usize>(&self, x: &[[f64; W]], out: &mut [[f64; W]]) {
+    pub(super) fn subtract_product<const W: usize>(&self, x: &[[f64; W]], out: &mut [[f64; W]]) {
         for j in 0..x.len() {
             let (rows, values) = self.column(j);
             let last = rows.len() - 1;

@@ -61,7 +61,7 @@ pub fn certified_map(
 /// ε₃₂/ε₂₁ = r₂₁ᵖ (r₃₂ᵖ − 1)/(r₂₁ᵖ − 1), which grows with p, by bisection.
 ///
 /// Implements: FEM-027.
-pub fn observed_order([fine, middle, coarse]: [f64; 3]) -> Option<f64> {
+pub(super) fn observed_order([fine, middle, coarse]: [f64; 3]) -> Option<f64> {
     let ratio = (coarse - middle) / (middle - fine);
     let of_order = |p: f64| {
         let [r21, r32] = RATIOS.map(|ratio| libm::pow(ratio, p));
@@ -86,7 +86,7 @@ pub fn observed_order([fine, middle, coarse]: [f64; 3]) -> Option<f64> {
 /// The band around the finest of three forces, finest first, N.
 ///
 /// Implements: FEM-027.
-pub fn band(forces: [f64; 3]) -> f64 {
+pub(super) fn band(forces: [f64; 3]) -> f64 {
     let [fine, middle, coarse] = forces;
     let error = |change: f64, order: f64| change / (libm::pow(RATIOS[0], order) - 1.0);
     let change = (middle - fine).abs();

@@ -4,7 +4,7 @@
 //! The mesh is mirror-symmetric, so that every field is the sum of a symmetric and an antisymmetric one, each
 //! given by its right half: with u_x = 0 on the axis for the one, u_y = 0 for the other. Right of the axis
 //! both have the same matrix, which is factorised once; axis and surface are left to two dense
-//! [`Root`]s of half the size.
+//! roots of half the size.
 
 use nalgebra::DMatrix;
 
@@ -61,12 +61,6 @@ impl Factor {
             values,
             roots: [symmetric?, antisymmetric?],
         })
-    }
-
-    /// Number of entries kept of L.
-    pub fn entries(&self) -> usize {
-        let roots = self.roots.iter().map(|root| root.panels.len());
-        (self.values.len() + roots.sum::<usize>()) * 4
     }
 
     /// The surface stiffness S: the stiffness matrix with the interior condensed out. Square, over the
@@ -134,7 +128,7 @@ impl Factor {
     ///
     /// # Errors
     /// [`FemError::Residual`] above [`RESIDUAL_LIMIT`].
-    pub fn solve(
+    pub(super) fn solve(
         &self,
         matrix: &StiffnessMatrix,
         force: &[f64],
@@ -172,7 +166,7 @@ impl Factor {
     /// load: L_iiᵀ u_i = −L_siᵀ u_s. `W` displacement fields at once, one row of `W` numbers per unknown.
     ///
     /// Implements: FEM-007.
-    pub fn extend_to_interior<const W: usize>(&self, u: &mut [[f64; W]]) {
+    pub(super) fn extend_to_interior<const W: usize>(&self, u: &mut [[f64; W]]) {
         let below = self.numbering.right + self.numbering.axis;
         let mut halves = self.halves(u, below);
         for parity in 0..2 {
@@ -351,7 +345,7 @@ fn relative(residual: &[f64], force: &[f64]) -> f64 {
 }
 
 /// Refuses a residual above the limit, or one that is not a number.
-pub fn check_residual(residual: f64) -> Result<(), FemError> {
+pub(super) fn check_residual(residual: f64) -> Result<(), FemError> {
     if residual <= RESIDUAL_LIMIT {
         Ok(())
     } else {

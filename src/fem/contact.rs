@@ -225,7 +225,7 @@ fn tangent(n: [f64; 2]) -> [f64; 2] {
 
 impl Surface {
     /// A surface with that compliance.
-    pub fn new(
+    pub(super) fn new(
         compliance: DMatrix<f64>,
         positions: Vec<[f64; 2]>,
         probe: Probe,
@@ -547,7 +547,7 @@ impl Surface {
     /// pressure on the circle's slope, so that F = −∂U/∂(x, y) of the probe in both cases.
     ///
     /// Implements: FEM-012.
-    pub fn probe_force(&self, state: &ContactState, pose: Pose) -> [f64; 2] {
+    pub(super) fn probe_force(&self, state: &ContactState, pose: Pose) -> [f64; 2] {
         let mut total = [0.0; 2];
         for (i, [x, y]) in self.nodal_forces(state, pose) {
             total[1] -= y;
@@ -564,7 +564,7 @@ impl Surface {
     }
 
     /// Largest penetration of any surface node, m.
-    pub fn penetration(&self, state: &ContactState, pose: Pose) -> f64 {
+    pub(super) fn penetration(&self, state: &ContactState, pose: Pose) -> f64 {
         let gap = |i: usize| {
             self.constraint(i, state.displacements[i], pose)
                 .map_or(0.0, |c| c.gap)

@@ -8,7 +8,7 @@ pub const MOST_NODES: usize = 6;
 
 /// One point of a quadrature rule over the parent element.
 #[derive(Debug, Clone, Copy)]
-pub struct QuadraturePoint {
+pub(super) struct QuadraturePoint {
     /// Parent coordinates.
     pub at: [f64; 2],
     /// Weight; the weights add up to the parent's area (½ or 4).
@@ -17,7 +17,7 @@ pub struct QuadraturePoint {
 
 /// Quadrature of the stiffness: exact to degree 4 on the triangle (Cowper's 6 points, so that curved
 /// elements are integrated well too), 2 × 2 Gauss points on the quadrilateral.
-pub fn stiffness_rule(element: Element) -> Vec<QuadraturePoint> {
+pub(super) fn stiffness_rule(element: Element) -> Vec<QuadraturePoint> {
     match element {
         Element::T6 => [
             (0.445_948_490_915_964_9, 0.223_381_589_678_011_47),
@@ -32,7 +32,7 @@ pub fn stiffness_rule(element: Element) -> Vec<QuadraturePoint> {
 
 /// The points at which strains and stresses are sampled: where they are most accurate, 3 on the
 /// triangle and 2 × 2 on the quadrilateral.
-pub fn sampling_rule(element: Element) -> Vec<QuadraturePoint> {
+pub(super) fn sampling_rule(element: Element) -> Vec<QuadraturePoint> {
     match element {
         Element::T6 => symmetric_points(1.0 / 6.0, 1.0 / 6.0).to_vec(),
         Element::Q4Full => gauss_square(),
@@ -102,7 +102,7 @@ pub fn gradients(parent: &[[f64; 2]], positions: &[[f64; 2]]) -> Gradients {
 }
 
 /// Lamé's constants (λ, μ), Pa.
-pub fn lame(material: &Material) -> (f64, f64) {
+pub(super) fn lame(material: &Material) -> (f64, f64) {
     let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
     (
         e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),

@@ -6,11 +6,11 @@ use super::element::{MOST_NODES, gradients, parent_gradients, sampling_rule};
 use super::mesh::Mesh;
 
 /// How many poses are checked at once: the factor is read from memory once for all of them.
-pub const BATCH: usize = 8;
+pub(super) const BATCH: usize = 8;
 
 /// Loads on the surface and displacements of it for up to [`BATCH`] poses, one column each.
 #[derive(Debug, Clone)]
-pub struct Batch {
+pub(super) struct Batch {
     displacements: Vec<[f64; BATCH]>,
     forces: Vec<[f64; BATCH]>,
 }
@@ -47,7 +47,7 @@ pub struct Field {
 
 /// Shape-function gradients at the sampling points of every element.
 #[derive(Debug, Clone)]
-pub struct Samples {
+pub(super) struct Samples {
     points: Vec<[[f64; 2]; MOST_NODES]>,
     points_per_element: usize,
     /// Rows of the two displacement components of each node of each element; fixed nodes point to the
@@ -58,7 +58,7 @@ pub struct Samples {
 
 impl Samples {
     /// Precomputes the gradients.
-    pub fn new(mesh: &Mesh, matrix: &StiffnessMatrix) -> Samples {
+    pub(super) fn new(mesh: &Mesh, matrix: &StiffnessMatrix) -> Samples {
         let rule = sampling_rule(mesh.element);
         let parents: Vec<_> = rule
             .iter()
@@ -120,7 +120,7 @@ impl Samples {
     }
 
     /// Gradients of one field, given by its unknowns, m, at the sampling points of each element.
-    pub fn gradients(&self, unknowns: &[f64]) -> Vec<Vec<[[f64; 2]; 2]>> {
+    pub(super) fn gradients(&self, unknowns: &[f64]) -> Vec<Vec<[[f64; 2]; 2]>> {
         // The row of zeros behind the unknowns stands for the fixed nodes.
         let u: Vec<[f64; 1]> = unknowns.iter().map(|&u| [u]).chain([[0.0]]).collect();
         let mut elements = vec![Vec::new(); self.points.len() / self.points_per_element];
@@ -132,13 +132,13 @@ impl Samples {
 }
 
 /// det(I + ∇u).
-pub fn determinant(gradient: [[f64; 2]; 2]) -> f64 {
+pub(super) fn determinant(gradient: [[f64; 2]; 2]) -> f64 {
     (1.0 + gradient[0][0]) * (1.0 + gradient[1][1]) - gradient[0][1] * gradient[1][0]
 }
 
 impl Batch {
     /// An empty batch for a matrix of `unknowns` rows.
-    pub fn new(unknowns: usize) -> Batch {
+    pub(super) fn new(unknowns: usize) -> Batch {
         // One more row than unknowns: the zeros of the fixed nodes.
         Batch {
             displacements: vec![[0.0; BATCH]; unknowns + 1],
@@ -148,7 +148,7 @@ impl Batch {
 
     /// Puts the surface displacements and loads of a pose into `column`; `first` is the first unknown on the
     /// surface, and below it no pose has a load.
-    pub fn set(
+    pub(super) fn set(
         &mut self,
         column: usize,
         first: usize,
@@ -173,7 +173,7 @@ impl Batch {
     /// Fills in the fields and checks each column.
     ///
     /// Implements: FEM-008, FEM-013.
-    pub fn check(
+    pub(super) fn check(
         &mut self,
         matrix: &StiffnessMatrix,
         factor: &Factor,

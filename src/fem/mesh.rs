@@ -266,7 +266,7 @@ impl Mesh {
     /// are mirror images from its ends inwards, to the bit, and an element's is one of the same region.
     ///
     /// Implements: FEM-029.
-    pub fn without_mirror_image(&self) -> Option<usize> {
+    pub(super) fn without_mirror_image(&self) -> Option<usize> {
         let mut images = vec![None; self.nodes.len()];
         for row in &self.rows {
             for (node, image) in row.clone().zip(row.clone().rev()) {

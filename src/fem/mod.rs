@@ -6,10 +6,10 @@
 pub mod assembly;
 pub mod certify;
 pub mod cholesky;
-pub mod contact;
+mod contact;
 pub mod element;
 mod elimination;
-pub mod field;
+mod field;
 mod front;
 pub mod mesh;
 mod model;

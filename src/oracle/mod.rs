@@ -12,16 +12,16 @@
 
 mod answer;
 mod arguments;
-pub mod ops;
-mod refusal;
+mod ops;
+pub(crate) mod refusal;
 mod request;
 mod serve;
 #[cfg(test)]
 mod tests;
 
-pub use answer::{Answer, Value};
-pub use arguments::{Arguments, MOST_ENTRIES};
-pub use refusal::{Code, Refusal};
+use answer::Answer;
+use arguments::Arguments;
+use refusal::{Code, Refusal};
 pub use serve::{LONGEST_LINE, serve};
 
 use request::Request;

@@ -33,7 +33,7 @@ pub use findings::{
     Findings, GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold, findings,
 };
 pub use html::html;
-pub use people::normal_approximation;
+use people::normal_approximation;
 pub use quality::{Quality, SMALL_STRAIN_LIMIT};
 pub use summary::{SUMMARY_SCHEMA, SUMMARY_SCHEMA_VERSION, summary_json};
 pub use text::FileNames;

@@ -106,7 +106,7 @@ pub const EXPERIMENTS: [Experiment; 3] = [
 /// Which of the paper's phantoms this is, whatever it is called: geometry, materials and probe decide.
 ///
 /// Implements: REP-010.
-pub fn name_of(phantom: &Phantom) -> Option<&'static str> {
+pub(super) fn name_of(phantom: &Phantom) -> Option<&'static str> {
     BUILTIN_NAMES.into_iter().find(|name| {
         Phantom::builtin(name).is_ok_and(|builtin| {
             builtin
