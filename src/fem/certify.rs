@@ -22,6 +22,19 @@ const SAFETY_UNTRUSTED: f64 = 3.0;
 /// The force map of [`Model::map`] with the discretisation's band around each force. `solved` is told of each pose
 /// of all three meshes.
 ///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// use palpate::fem::certify::certified_map;
+///
+/// let map = certified_map(&model, &[2e-3, 4e-3], &[0.0], &|_| ())?;
+/// let certificate = map.certificate().expect("a computed map");
+/// let bands = certificate.discretization.as_ref().expect("a band around each force");
+/// assert!(bands.nodes[0] > bands.nodes[1] && bands.nodes[1] > bands.nodes[2]);
+/// // Even this coarse mesh is some per cent from an infinitely fine one.
+/// assert!(bands.normal_force_band.row(1)[0] < 0.1 * map.normal_force().row(1)[0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Implements: FEM-026, FEM-028.
 ///
 /// # Errors

@@ -23,6 +23,17 @@ const AXIS_DIRECTION: [usize; 2] = [1, 0];
 const MIRROR: [f64; 2] = [-1.0, 1.0];
 
 /// K = L Lᵀ, in the symmetric and the antisymmetric half.
+///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// use palpate::fem::cholesky::Factor;
+///
+/// let factor = Factor::new(model.matrix())?;
+/// // Stiffness times compliance is the unit matrix.
+/// let product = factor.surface_stiffness() * factor.surface_compliance();
+/// assert!((product[(7, 7)] - 1.0).abs() < 1e-9 && product[(7, 8)].abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Factor {
     numbering: Numbering,
@@ -46,6 +57,16 @@ struct Root {
 impl Factor {
     /// Factorises the stiffness matrix of a mirror-symmetric mesh.
     ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// use palpate::fem::{FemError, cholesky::Factor};
+    ///
+    /// let mut matrix = model.matrix().clone();
+    /// matrix.values.iter_mut().for_each(|value| *value = -*value);
+    /// assert!(matches!(Factor::new(&matrix), Err(FemError::NotPositiveDefinite)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// Implements: FEM-006, FEM-023.
     ///
     /// # Errors
@@ -66,6 +87,15 @@ impl Factor {
     /// The surface stiffness S: the stiffness matrix with the interior condensed out. Square, over the
     /// surface unknowns.
     ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let stiffness = model.factor().surface_stiffness();
+    /// // Each node of the surface resists in both directions.
+    /// assert_eq!(stiffness.nrows(), 2 * model.mesh().surface().len());
+    /// assert!(stiffness.diagonal().iter().all(|&entry| entry > 0.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// Implements: FEM-007.
     pub fn surface_stiffness(&self) -> DMatrix<f64> {
         // A symmetric field bends both halves: on the axis it meets the stiffness of both.
@@ -73,6 +103,13 @@ impl Factor {
     }
 
     /// S⁻¹, m/N; symmetric, and mirror-symmetric to the bit.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let compliance = model.factor().surface_compliance();
+    /// assert_eq!(compliance, compliance.transpose());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// Implements: FEM-007.
     pub fn surface_compliance(&self) -> DMatrix<f64> {

@@ -16,6 +16,18 @@ pub(super) struct Batch {
 }
 
 /// Checks on the displacement field of one pose.
+///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// use palpate::fem::FieldCheck;
+///
+/// let beside = model.solve(Pose { depth: 0.0, lateral: 0.0 })?;
+/// let [touching, untouched] = model.checks(&[model.solve(pose)?, beside])[..] else { unreachable!() };
+/// assert!(touching.residual < 1e-8 && touching.imbalance < 1e-8);
+/// assert!(touching.min_det > 0.0 && touching.min_det < 1.0);
+/// assert_eq!(untouched, FieldCheck::UNTOUCHED);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FieldCheck {
     /// ‖f − K u‖ / ‖f‖ over all unknowns; absolute, N, where there is no load.
@@ -37,6 +49,17 @@ impl FieldCheck {
 }
 
 /// Displacements and their gradients in the whole phantom.
+///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// use palpate::fem::Field;
+///
+/// let Field { displacements, gradients } = model.field(&model.solve(pose)?)?;
+/// assert_eq!((displacements.len(), gradients.len()), (model.mesh().nodes.len(), model.mesh().regions.len()));
+/// // Three points of each triangle; nothing moves on the floor.
+/// assert!(gradients[0].len() == 3 && displacements[0] == [0.0, 0.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
     /// Displacement of each node, m.
