@@ -1,4 +1,12 @@
 //! The numbers that the paper prints, each with its place.
+//!
+//! ```
+//! use palpate::report::paper;
+//!
+//! // Table 2 adds up to more than the paper allows the display.
+//! let total = paper::NOISE_SOURCES.iter().map(|(_, sd)| sd * sd).sum::<f64>().sqrt();
+//! assert!(total > paper::DISPLAY_NOISE);
+//! ```
 
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 
