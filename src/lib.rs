@@ -71,6 +71,9 @@ pub mod detect;
 pub mod fem;
 #[cfg(feature = "std")]
 pub mod force_map;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod fuzzing;
 pub mod hid;
 #[cfg(feature = "oracle")]
 pub mod oracle;

@@ -8,6 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::decimal::parse_scaled;
 use super::{Gel, Inclusion, InvalidPhantom, Material, Phantom, Probe, Quantity, Skin};
+use crate::csv::one_line;
 
 /// A number in a phantom file: where it stands, without the unit, and what it measures.
 type Field = (&'static str, Quantity);
@@ -385,12 +386,7 @@ impl Reader<'_> {
         let at = error.span().map_or(self.text.len(), |span| span.start);
         let before = self.text.get(..at).unwrap_or(self.text);
         let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-        // One line, whatever the parser says.
-        let message = error
-            .message()
-            .split_whitespace()
-            .collect::<Vec<_>>()
-            .join(" ");
+        let message = one_line(error.message());
         self.error(
             Some(self.line(at)),
             PhantomFileProblem::Syntax { column, message },
