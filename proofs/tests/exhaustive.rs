@@ -87,7 +87,7 @@ fn locate_is_right_everywhere(knots: &[f32]) {
 }
 
 // With the widest of cells and the narrowest.
-// Verifies: SRV-002, SRV-004, SRV-005, SRV-006.
+// Proves: SRV-002, SRV-004, SRV-005, SRV-006.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn locate_on_an_axis_that_is_not_uniform() {
@@ -96,7 +96,7 @@ fn locate_on_an_axis_that_is_not_uniform() {
     ]);
 }
 
-// Verifies: SRV-004, SRV-005, SRV-006.
+// Proves: SRV-004, SRV-005, SRV-006.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn locate_on_a_uniform_axis() {
@@ -106,7 +106,7 @@ fn locate_on_a_uniform_axis() {
 
 // The last knot's fraction is the width times its reciprocal, which may not be rounded beyond 1. The
 // fraction depends on the width alone, so that axes from 0 stand for all.
-// Verifies: SRV-005, SRV-006.
+// Proves: SRV-005, SRV-006.
 #[test]
 #[ignore = "all widths"]
 fn no_width_carries_its_last_knot_beyond_one() {
@@ -123,7 +123,7 @@ fn no_width_carries_its_last_knot_beyond_one() {
     });
 }
 
-// Verifies: SRV-020.
+// Proves: SRV-020.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn limit_is_right_everywhere() {
@@ -142,7 +142,7 @@ fn limit_is_right_everywhere() {
     }
 }
 
-// Verifies: HID-010, HID-011.
+// Proves: HID-010, HID-011.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn count_is_right_everywhere() {
@@ -153,7 +153,7 @@ fn count_is_right_everywhere() {
     });
 }
 
-// Verifies: SRV-010, SRV-011, SRV-013.
+// Proves: SRV-010, SRV-011, SRV-013.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn blend_is_in_the_hull_everywhere() {
@@ -177,7 +177,7 @@ fn blend_is_in_the_hull_everywhere() {
 
 // The slowest release from the largest force. A smaller force and a quicker release are never later:
 // rounding keeps the order of differences.
-// Verifies: SRV-031.
+// Proves: SRV-031.
 #[test]
 #[ignore = "all force limits"]
 fn every_force_is_released_in_time() {

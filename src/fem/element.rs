@@ -112,6 +112,8 @@ pub fn lame(material: &Material) -> (f64, f64) {
 
 /// Cauchy stress (σ_xx, σ_yy, σ_zz, σ_xy), Pa, in plane strain from a displacement gradient
 /// `gradient[i][j] = ∂u_i/∂x_j`.
+///
+/// Implements: FEM-050, FEM-054, FEM-055, FEM-056.
 pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
     let (lambda, mu) = lame(material);
     let pressure = lambda * (gradient[0][0] + gradient[1][1]);
@@ -126,7 +128,7 @@ pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
 /// Stiffness of one element per metre of thickness, Pa: `[2a + i][2b + j]` couples direction i of node a with
 /// direction j of node b. Exactly symmetric.
 ///
-/// Implements: FEM-005.
+/// Implements: FEM-005, FEM-050, FEM-051, FEM-052, FEM-053, FEM-058.
 pub type Stiffness = [[f64; 2 * MOST_NODES]; 2 * MOST_NODES];
 
 /// Adds one quadrature point's share to the lower triangle of `stiffness`; `volume` is weight × Jacobian.
@@ -168,6 +170,8 @@ impl StiffnessRule {
     }
 
     /// Stiffness of an element with nodes at `positions`, or the Jacobian that is not positive.
+    ///
+    /// Implements: FEM-017.
     pub fn integrate(&self, positions: &[[f64; 2]], material: &Material) -> Result<Stiffness, f64> {
         let constants = lame(material);
         let mut stiffness = [[0.0; 2 * MOST_NODES]; 2 * MOST_NODES];

@@ -27,6 +27,8 @@ pub use mesh::{Element, Mesh};
 pub use model::{Model, PoseSolution, solved_laterals};
 
 /// Where the probe stands.
+///
+/// Implements: CON-003.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Depth of the probe's lowest point below the undeformed surface, m.

@@ -122,6 +122,8 @@ impl Model {
     ///
     /// # Errors
     /// [`FemError::Pose`] where the probe cannot stand, [`FemError::NoConvergence`].
+    ///
+    /// Implements: FEM-019, FEM-020, FEM-021, FEM-025, FEM-080.
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
         self.phantom.check_pose(pose.depth, pose.lateral)?;
         // The right half stands for both, so that mirrored poses have mirrored forces to the bit.
@@ -287,7 +289,7 @@ impl Model {
     /// positions are the mirror images of positive ones. `solved` is told after each lateral position how
     /// many poses that were.
     ///
-    /// Implements: FEM-014, FEM-015.
+    /// Implements: FEM-014, FEM-015, FEM-061.
     ///
     /// # Errors
     /// As [`Model::solve`], and [`FemError::Residual`], [`FemError::Map`].

@@ -12,7 +12,7 @@ use crate::servo::{Fault, Force, Limits, Mode, Request, Table};
 
 /// A device that plays a table, until it is dropped: also by a panic.
 ///
-/// Implements: HID-016, HID-017.
+/// Implements: HID-016, HID-017, HID-083.
 pub struct Session<'a, D: HapticDevice> {
     device: D,
     capabilities: Capabilities,
@@ -151,7 +151,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     /// Cycles until `each` says that it is enough (`false`), a fault has released the force, or the
     /// device fails; then stops the device. Arms once, as soon as the kernel allows.
     ///
-    /// Implements: HID-016, HID-019.
+    /// Implements: HID-016, HID-019, HID-024, HID-085, HID-087, HID-088, HID-092.
     pub fn run(&mut self, mut each: impl FnMut(&Cycle, &Counters) -> bool) -> End {
         self.run_watched(|_, cycle, counters| each(cycle, counters))
     }
@@ -196,6 +196,9 @@ impl<'a, D: HapticDevice> Session<'a, D> {
 }
 
 impl<D: HapticDevice> Drop for Session<'_, D> {
+    /// Stops the device, also when a panic unwinds the loop.
+    ///
+    /// Implements: HID-090.
     fn drop(&mut self) {
         // Nobody is left to be told.
         let _ = self.stop();

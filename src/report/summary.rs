@@ -23,7 +23,7 @@ struct Summary<'a> {
 
 /// The findings as JSON, with every unit in its key; ends in a line feed.
 ///
-/// Implements: REP-050, REP-051.
+/// Implements: REP-050, REP-051, REP-005.
 pub fn summary_json(findings: &Findings, study: &Study) -> String {
     let summary = Summary {
         schema: SUMMARY_SCHEMA,

@@ -371,6 +371,8 @@ const SHARE: f64 = 1e-3;
 
 /// Compares `errors`, on meshes each twice as fine as the one before, with stored ones, and demands that the last observed
 /// order log₂(e_{k−1}/e_k) be no more than 0.1 below `order`. A run better than stored fails as a worse one does.
+///
+/// Implements: FEM-062.
 pub fn assert_convergence(what: &str, errors: &[f64], stored: &[f64], order: f64) {
     let list: Vec<String> = errors.iter().map(|e| format!("{e:.6e}")).collect();
     let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect();
