@@ -3,5 +3,6 @@
 mod check;
 
 pub mod statistics;
+pub mod traceability;
 
 pub use check::{Check, Figure};
