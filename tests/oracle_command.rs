@@ -83,18 +83,18 @@ const GOOD_ANSWER: &str = r#"{"id":"good","ok":{"p":0.5}}"#;
 #[test]
 fn a_number_is_read_as_the_nearest_f64() {
     // 1 + 2⁻⁵³ lies half-way between two f64 and goes to the even one; with one digit more, far behind, it goes up.
-    // The energy of a template of one sample is that sample, to the bit.
+    // For one sample, b is the template in a list of one, and σ the noise by itself, to the bit.
     let half_way = "1.00000000000000011102230246251565404236316680908203125";
     let above = format!("{half_way}00000000000000000000000001");
     for (number, expected) in [(half_way, 1.0), (&above, 1.0 + f64::EPSILON)] {
         let line = format!(
-            r#"{{"id":1,"op":"matched_filter","args":{{"template_x":[{number}],"template_y":[0],"noise_sd_x":1,"noise_sd_y":1}}}}"#
+            r#"{{"id":1,"op":"matched_filter","args":{{"template_x":[{number}],"template_y":[0],"noise_sd_x":{number},"noise_sd_y":1}}}}"#
         );
         let answer: Value = serde_json::from_str(&answers(line)[0]).unwrap();
-        assert_eq!(
-            answer["ok"]["b_x"].as_f64().map(f64::to_bits),
-            Some(f64::to_bits(expected))
-        );
+        for key in ["b_x", "sigma_x"] {
+            let found = answer["ok"][key].as_f64().map(f64::to_bits);
+            assert_eq!(found, Some(f64::to_bits(expected)), "{key}: {number}");
+        }
     }
     for number in ["1e309", "-1e309", "123456789e400"] {
         let line = format!(r#"{{"id":1,"op":"normal_cdf","args":{{"x":{number}}}}}"#);
