@@ -10,6 +10,16 @@ const TABLE: &str = include_str!("../../spec/traceability.csv");
 const HEADER: &str = "requirement,chapter,text,code,tests,proofs,vectors,inspection";
 
 /// A requirement and what the annotations name for it.
+///
+/// ```
+/// use palpate::verify::traceability::{Requirement, requirements};
+///
+/// let traced: Vec<Requirement> = requirements()?;
+/// let decision = traced.iter().find(|requirement| requirement.id == "DET-020").expect("it is there");
+/// assert_eq!(decision.chapter, "detector.md");
+/// assert!(decision.code.contains(&"src/detect/decision.rs decide".to_string()));
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Requirement {
     /// As `FEM-012`.
@@ -31,6 +41,13 @@ pub struct Requirement {
 }
 
 /// How many requirements have what.
+///
+/// ```
+/// use palpate::verify::traceability::{Summary, summary};
+///
+/// let nothing: Summary = summary(&[]);
+/// assert_eq!(nothing, Summary::default());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Summary {
     /// All of them.
@@ -49,7 +66,15 @@ pub struct Summary {
 
 /// All requirements with their evidence, in the order of their ids.
 ///
-/// Errors: the line of the table, from 1, that is not as it should be.
+/// # Errors
+/// The line of the table, from 1, that is not as it should be.
+///
+/// ```
+/// // Ids are in order, so that each is there once.
+/// let requirements = palpate::verify::traceability::requirements()?;
+/// assert!(requirements.is_sorted_by(|one, next| one.id < next.id));
+/// # Ok::<(), String>(())
+/// ```
 ///
 /// Implements: EVD-032.
 pub fn requirements() -> Result<Vec<Requirement>, String> {
@@ -57,6 +82,14 @@ pub fn requirements() -> Result<Vec<Requirement>, String> {
 }
 
 /// Counts them.
+///
+/// ```
+/// use palpate::verify::traceability::{requirements, summary};
+///
+/// let counts = summary(&requirements()?);
+/// assert_eq!(counts.code, counts.requirements); // no requirement is without code
+/// # Ok::<(), String>(())
+/// ```
 ///
 /// Implements: EVD-033.
 pub fn summary(requirements: &[Requirement]) -> Summary {

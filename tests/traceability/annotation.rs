@@ -76,7 +76,9 @@ fn annotation_at(
     extension: &str,
 ) -> Result<Option<Annotation>, String> {
     let Some(said) = comment(lines[line], extension) else {
-        return stray(lines[line]).map_or(Ok(None), Err);
+        // A page may talk of annotations.
+        let found = stray(lines[line]).filter(|_| extension != "md");
+        return found.map_or(Ok(None), Err);
     };
     let Some(word) = Word::ALL
         .into_iter()

@@ -88,6 +88,10 @@ impl Log {
                 let absent = lines.iter().find(|line| !self.scenarios.contains(line))?;
                 Some(format!("did not run: no line \"hid-stack: ok {absent}\""))
             }
+            Evidence::Step { command } => {
+                let ran = self.commands.contains(command);
+                (!ran).then(|| format!("did not run: no line \"== ok: {command}\""))
+            }
             Evidence::Program { path } => {
                 let mut commands = self.commands.iter();
                 let ran = commands.any(|command| names_program(command, path));

@@ -279,6 +279,26 @@ fn what_nothing_runs_is_no_evidence() {
     );
 }
 
+// Verifies: EVD-024, EVD-031.
+#[test]
+fn a_step_of_the_script_that_runs_everything_can_be_a_test() {
+    let (before, step) = (
+        "step cargo bench",
+        "# {V}: AAA-001.\nstep cargo doc\nstep cargo bench",
+    );
+    let trace = changed(".ci/run", before, step);
+    assert_eq!(listed(&trace.problems), "");
+    assert!(trace.rows["AAA-001"].tests.contains(".ci/run cargo doc"));
+    let mut log = Log::default();
+    log.read(PASSED);
+    let how = ".ci/run cargo doc did not run: no line \"== ok: cargo doc\" (AAA-001)";
+    assert_eq!(log.missing(&trace), [how]);
+    log.read("== ok: cargo doc\n");
+    assert_eq!(log.missing(&trace), [""; 0]);
+    let loose = problems(".ci/run", before, "# {V}: AAA-001.\n\nstep cargo bench");
+    assert_eq!(loose, "\n.ci/run:1: it does not stand above a step");
+}
+
 // Verifies: EVD-029.
 #[test]
 fn an_inspection_has_a_reason_and_no_test() {

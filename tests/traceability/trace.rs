@@ -13,6 +13,9 @@ use crate::spec::{Requirement, requirements};
 /// How many requirements a person may inspect instead of a test (EVD-029).
 pub const MOST_INSPECTED: usize = 10;
 
+/// The script that runs everything.
+const CI: &str = ".ci/run";
+
 /// What shows that a test or proof has run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Evidence {
@@ -22,6 +25,8 @@ pub enum Evidence {
     Scenario { lines: Vec<String> },
     /// A script, a bench or a Gappa file that `.ci/run` runs.
     Program { path: String },
+    /// A step of `.ci/run`: the command.
+    Step { command: String },
 }
 
 /// What the annotations say of one requirement.
@@ -183,6 +188,7 @@ impl Place {
             _ if rust && !path.starts_with("benches/") => {
                 test(crates, scenarios, source, annotation)
             }
+            _ if path == CI => step(source, annotation),
             _ => program(repository, path),
         }
     }
@@ -280,11 +286,22 @@ fn vectors(
     }
 }
 
+/// The step of `.ci/run` below the annotation.
+fn step(source: &Source, annotation: &Annotation) -> Result<Place, String> {
+    let below = source.text.lines().nth(annotation.end).unwrap_or_default();
+    let command = below
+        .strip_prefix("step ")
+        .ok_or("it does not stand above a step")?;
+    let command = command.to_string();
+    let name = format!("{CI} {command}");
+    Ok(Place::Evidence(vec![(name, Evidence::Step { command })]))
+}
+
 /// A script, a bench or a Gappa file as a whole.
 ///
 /// Implements: EVD-027.
 fn program(repository: &Repository, path: &str) -> Result<Place, String> {
-    let run = repository.source(".ci/run").map_or("", |run| &run.text);
+    let run = repository.source(CI).map_or("", |run| &run.text);
     let commands = run.lines().filter(|line| !line.trim().starts_with('#'));
     if commands.into_iter().any(|line| names_program(line, path)) {
         let path = path.to_string();
