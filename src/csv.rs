@@ -4,6 +4,8 @@
 use crate::phantom::decimal::parse_scaled;
 
 /// What a column can be called, and for each name the power of ten from its unit to SI.
+///
+/// Implements: CON-002.
 pub(crate) type Column = &'static [(&'static str, i32)];
 
 /// What is wrong with a line of a CSV file.

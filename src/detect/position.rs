@@ -83,7 +83,7 @@ impl<'a> MaximumLaw<'a> {
     /// # Errors
     /// η not finite.
     ///
-    /// Implements: DET-056, DET-057.
+    /// Implements: DET-056, DET-057, ERR-006.
     pub fn false_alarm_bound(&self, eta: f64) -> Result<f64, DetectError> {
         check_finite("eta", eta)?;
         let mut bound = 0.0;

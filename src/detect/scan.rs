@@ -192,7 +192,7 @@ impl<'a> Scan<'a> {
     /// # Errors
     /// Lengths other than N; NaN or infinity; overflow.
     ///
-    /// Implements: DET-005, DET-050, DET-052.
+    /// Implements: DET-005, DET-050, DET-052, ERR-002, ERR-003.
     pub fn at(&self, residual: Channels<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
         self.check(residual)?;
         self.point(residual, shift)

@@ -168,6 +168,8 @@ impl Model {
     ///
     /// # Errors
     /// [`FemError::Pose`] where the probe cannot stand, [`FemError::NoConvergence`].
+    ///
+    /// Implements: FEM-019, FEM-020, FEM-021, FEM-025, FEM-080.
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
         self.phantom.check_pose(pose.depth, pose.lateral)?;
         // The right half stands for both, so that mirrored poses have mirrored forces to the bit.
@@ -364,7 +366,7 @@ impl Model {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// Implements: FEM-014, FEM-015.
+    /// Implements: FEM-014, FEM-015, FEM-061.
     ///
     /// # Errors
     /// As [`Model::solve`], and [`FemError::Residual`], [`FemError::Map`].

@@ -42,6 +42,8 @@ pub enum Quantity {
 
 impl Quantity {
     /// The unit at the end of a key of the phantom file.
+    ///
+    /// Implements: CON-002.
     pub(super) fn suffix(self) -> &'static str {
         match self {
             Quantity::Length => "_mm",
@@ -196,7 +198,7 @@ impl Phantom {
     /// # Errors
     /// [`InvalidPhantom`] with the first offending key, its value and what is allowed.
     ///
-    /// Implements: PHA-003, PHA-004, PHA-005, PHA-006, PHA-007, PHA-009, PHA-010, PHA-015.
+    /// Implements: PHA-003, PHA-004, PHA-005, PHA-006, PHA-007, PHA-009, PHA-010, PHA-015, CON-007.
     pub fn validate(&self) -> Result<(), InvalidPhantom> {
         check_name(&self.name)?;
         check_length("gel.width", self.gel.width)?;

@@ -108,7 +108,7 @@ pub fn noise_bounds(signal: f64, gamma: GammaEstimate) -> (Option<f64>, OpenBoun
 /// # Errors
 /// Never for the paper's own numbers.
 ///
-/// Implements: PSY-061, PSY-062.
+/// Implements: PSY-061, PSY-062, ERR-008, ERR-009.
 pub fn paper_noise_levels() -> Result<NoiseDecomposition, PsychophysicsError> {
     let answers = from_answers()?;
     let playback = sum(

@@ -100,6 +100,8 @@ impl Crate {
     }
 
     /// What `pub use target as name` in `module` makes public.
+    ///
+    /// Implements: DOC-012.
     fn re_export(
         &self,
         module: &[String],

@@ -49,7 +49,7 @@ const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Implements: HID-033, HID-034, HID-035.
+/// Implements: HID-033, HID-034, HID-035, HID-080, HID-081.
 #[derive(Debug)]
 pub struct RealDevice {
     device: hidapi::HidDevice,
@@ -117,7 +117,7 @@ impl RealDevice {
     /// # Errors
     /// The last [`OpenError`].
     ///
-    /// Implements: HID-036.
+    /// Implements: HID-036, HID-086.
     pub fn open_within(wanted: &Wanted, patience: Duration) -> Result<RealDevice, OpenError> {
         let began = Instant::now();
         loop {
@@ -166,11 +166,24 @@ fn milliseconds(timeout: Duration) -> i32 {
 }
 
 /// Whether a signal came in between; the device is as it was.
+/// Refuses a write of which the system took fewer bytes than a force report has.
+///
+/// Implements: HID-037.
+fn all_sent(sent: usize) -> Result<(), HidError> {
+    let all = ForceReport::LENGTH;
+    if sent == all {
+        Ok(())
+    } else {
+        Err(HidError::IncompleteSendError { sent, all })
+    }
+}
+
 fn is_interrupted(error: &HidError) -> bool {
     matches!(error, HidError::IoError { error } if error.kind() == std::io::ErrorKind::Interrupted)
 }
 
 impl HapticDevice for RealDevice {
+    /// Implements: HID-080, HID-082.
     fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
         let mut bytes = [0; LONGEST];
         bytes[0] = Capabilities::NUMBER;
@@ -201,17 +214,11 @@ impl HapticDevice for RealDevice {
         }
     }
 
+    /// Implements: HID-081, HID-091, HID-037.
     fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
-        let bytes = report.encode();
-        match self.device.write(&bytes) {
-            Ok(ForceReport::LENGTH) => Ok(()),
-            Ok(sent) => {
-                let all = bytes.len();
-                let error = HidError::IncompleteSendError { sent, all };
-                Err(self.failed("write", &message(&error)))
-            }
-            Err(error) => Err(self.failed("write", &message(&error))),
-        }
+        let sent = self.device.write(&report.encode());
+        sent.and_then(all_sent)
+            .map_err(|error| self.failed("write", &message(&error)))
     }
 
     fn control(&mut self, control: Control) -> Result<(), DeviceError> {

@@ -9,6 +9,8 @@ const SHARE: f64 = 1e-3;
 
 /// Compares `errors`, on meshes each twice as fine as the one before, with stored ones, and demands that the last observed
 /// order log₂(e_{k−1}/e_k) be no more than 0.1 below `order`. A run better than stored fails as a worse one does.
+///
+/// Implements: FEM-062.
 pub fn convergence<const MESHES: usize>(
     what: &str,
     errors: [f64; MESHES],
