@@ -110,6 +110,7 @@ impl fmt::Display for Figure {
         } = self;
         write!(f, "{what}: {value:?}")?;
         match (at_least.is_finite(), at_most.is_finite()) {
+            (true, true) if at_least == at_most => write!(f, ", expected {at_least:?}"),
             (true, true) => write!(f, ", expected {at_least:?} to {at_most:?}"),
             (true, false) => write!(f, ", expected at least {at_least:?}"),
             (false, true) => write!(f, ", expected at most {at_most:?}"),
@@ -184,7 +185,7 @@ mod tests {
         assert_eq!(
             broken.judge().unwrap_err(),
             "check part.what: error, m: 2e-9, expected at most 1e-9; order: NaN, expected at least 2.9; \
-             cases: 3.0, expected 4.0 to 4.0"
+             cases: 3.0, expected 4.0"
         );
         let failed = check(|| Err("no".into())).judge();
         assert_eq!(failed.unwrap_err(), "check part.what: no");
