@@ -54,7 +54,7 @@ impl Build {
 /// The SHA-256 of the lock file of this build, in hexadecimal.
 ///
 /// Implements: EVD-069.
-#[cfg(feature = "oracle")]
+#[cfg(feature = "cli")]
 pub fn lock_sha256() -> String {
     use sha2::Digest;
     let digest = sha2::Sha256::digest(super::supply::LOCK);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     // Verifies: EVD-069.
-    #[cfg(feature = "oracle")]
+    #[cfg(feature = "cli")]
     #[test]
     fn the_hash_is_that_of_the_file_which_holds_the_checksums() {
         let output = std::process::Command::new("sha256sum")

@@ -32,7 +32,7 @@ pub mod supply;
 pub mod timing;
 #[cfg(feature = "std")]
 pub mod traceability;
-#[cfg(feature = "oracle")]
+#[cfg(feature = "cli")]
 pub mod vectors;
 
 pub use battery::{outcome as battery_outcome, soaked};
@@ -46,7 +46,7 @@ pub fn checks() -> impl Iterator<Item = &'static Check> {
     let parts: &[&'static [Check]] = &[
         #[cfg(feature = "fem")]
         diagnosis::CHECKS,
-        #[cfg(feature = "oracle")]
+        #[cfg(feature = "cli")]
         vectors::CHECKS,
         #[cfg(feature = "cli")]
         fem::CHECKS,

@@ -50,6 +50,17 @@ const CONTENTS: [(&str, &str); 8] = [
 
 /// One self-contained page: what was found, the figures and tables, the comparison, the certificates.
 ///
+/// ```
+#[doc = include_str!("../study.example")]
+/// use palpate::report::{figures, findings, html};
+///
+/// let findings = findings(&study)?;
+/// let page = html(&study, &findings, &figures(&study, &findings)?);
+/// // One file, which loads nothing.
+/// assert!(page.starts_with("<!DOCTYPE html>") && !page.contains(" src="));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Implements: REP-040, REP-041, REP-042, REP-043, REP-060, REP-065, REP-066.
 pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
     let page = Page {
