@@ -7,6 +7,17 @@ use crate::phantom::decimal::parse_scaled;
 pub(crate) type Column = &'static [(&'static str, i32)];
 
 /// What is wrong with a line of a CSV file.
+///
+/// ```
+/// use palpate::csv::CsvProblem;
+/// use palpate::force_map::{ForceMapFileProblem, ForceTable};
+///
+/// let error = ForceTable::from_csv("depth,force\n1,2\n", "gel.csv").unwrap_err();
+/// let ForceMapFileProblem::Csv(CsvProblem::Header { found, .. }) = error.problem else {
+///     panic!("{error}");
+/// };
+/// assert_eq!(found, "depth,force");
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CsvProblem {
     /// A header that does not name the columns.

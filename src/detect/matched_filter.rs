@@ -8,6 +8,21 @@ use crate::stats::compensated::{self, DoubleDouble};
 /// constant standard deviation s in each channel.
 ///
 /// It borrows the template and keeps its energy ΣΔ², so that each further record costs one pass.
+///
+/// ```
+/// use palpate::detect::{Channels, MatchedFilter};
+///
+/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
+/// let filter = MatchedFilter::new(template, Channels { x: 0.5, y: 0.125 })?;
+/// assert_eq!(filter.samples(), 3);
+/// // γ² = Σ (Δ/s)² = 1 + 4 + 4 = b²/σ².
+/// assert_eq!(filter.gamma(), 3.0);
+/// assert!((filter.b().y / filter.sigma().y - 3.0).abs() < 1e-15);
+/// // The middle between the hypotheses.
+/// let halfway = Channels { x: &[0.0; 3][..], y: &[0.0625, 0.125, 0.125] };
+/// assert_eq!(filter.statistic(halfway)?.theta, 0.0);
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct MatchedFilter<'a> {
     template: Channels<&'a [f64]>,
@@ -18,6 +33,17 @@ pub struct MatchedFilter<'a> {
 }
 
 /// What the filter says about one record.
+///
+/// ```
+/// use palpate::detect::{Channels, MatchedFilter, Statistic};
+///
+/// let template = Channels { x: &[0.0, 0.0][..], y: &[0.5, 0.5] };
+/// let filter = MatchedFilter::new(template, Channels { x: 1.0, y: 0.5 })?;
+/// // Y(0) of the template itself is its root mean square b; there is no filter for zeros.
+/// let Statistic { y, theta } = filter.statistic(template)?;
+/// assert_eq!((y.x, y.y, theta), (0.0, 0.5, 1.0));
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistic {
     /// Y(0) of equation (5), N. A channel whose template is zero has 0.
@@ -27,6 +53,16 @@ pub struct Statistic {
 }
 
 /// What a record says, with the signal-to-noise ratio of the hypotheses.
+///
+/// ```
+/// use palpate::detect::{Channels, RecordStatistic, theta_of_record};
+///
+/// let (f0, f1) = (Channels { x: &[0.0][..], y: &[1.0] }, Channels { x: &[0.0][..], y: &[1.5] });
+/// let RecordStatistic { theta, gamma, .. } =
+///     theta_of_record(f0, f0, f1, Channels { x: 0.25, y: 0.25 })?;
+/// assert_eq!((theta, gamma), (-2.0, 2.0));
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordStatistic {
     /// Y(0) of equation (5), N.
@@ -145,6 +181,18 @@ impl<'a> MatchedFilter<'a> {
 /// y(0), θ and γ of a record F_p against the forces F_0 and F_1 that the hypotheses expect (N
 /// samples a channel each, N), in noise of standard deviation `noise_sd` a sample. The differences
 /// are not rounded.
+///
+/// ```
+/// use palpate::detect::{Channels, theta_of_record};
+///
+/// let f0 = Channels { x: &[0.25, 0.0, -0.25][..], y: &[1.0, 1.0, 1.0] };
+/// let f1 = Channels { x: &[0.25, 0.0, -0.25][..], y: &[1.125, 1.25, 1.25] };
+/// let noise_sd = Channels { x: 0.125, y: 0.125 };
+/// // What either hypothesis expects: ∓γ²/2.
+/// assert_eq!(theta_of_record(f0, f0, f1, noise_sd)?.theta, -4.5);
+/// assert_eq!(theta_of_record(f1, f0, f1, noise_sd)?.theta, 4.5);
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 ///
 /// # Errors
 /// Empty or unequal lengths; NaN or infinity; `noise_sd` not positive and finite; overflow.

@@ -11,6 +11,25 @@
 //!
 //! Nothing here allocates; what needs memory takes it from the caller. `spec/detector.md` is
 //! normative.
+//!
+//! ```
+//! use palpate::detect::{Channels, Decision, MatchedFilter, decide, error_rates, required_gamma};
+//!
+//! // At most 5 % false alarms and 5 % misses need γ = 3.29.
+//! assert!((required_gamma(0.05, 0.05)? - 3.29).abs() < 1e-3);
+//!
+//! // A signal of three samples in the normal force, in noise of 0.125 N: γ = 3.
+//! let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
+//! let filter = MatchedFilter::new(template, Channels { x: 0.125, y: 0.125 })?;
+//! assert_eq!(filter.gamma(), 3.0);
+//!
+//! // The record without noise: θ = γ²/2, and at η = 0 it is an inclusion.
+//! let theta = filter.statistic(template)?.theta;
+//! assert_eq!(theta, 4.5);
+//! assert_eq!(decide(theta, 0.0)?, Decision::Inclusion);
+//! assert!((error_rates(3.0, 0.0)?.miss - 0.0668).abs() < 1e-4);
+//! # Ok::<(), palpate::detect::DetectError>(())
+//! ```
 
 pub mod assessment;
 pub mod coloured;
@@ -35,6 +54,14 @@ pub use error::DetectError;
 pub use matched_filter::{MatchedFilter, RecordStatistic, Statistic, theta_of_record};
 
 /// One thing for each of the two channels of force.
+///
+/// ```
+/// use palpate::detect::Channels;
+///
+/// let force = Channels { x: -0.1, y: 1.6 };
+/// assert_eq!(force.map(|newtons| newtons > 0.0), Channels { x: false, y: true });
+/// assert_eq!(force.zip(Channels { x: 1, y: 2 }).y, (1.6, 2));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Channels<T> {
     /// Lateral, along the surface.

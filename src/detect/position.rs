@@ -9,6 +9,22 @@ use core::ops::RangeInclusive;
 
 /// What bounds the false alarms of Θ_max over K shifts in a row: γ at each, and the angle between
 /// the templates of neighbours. Computed once for a scan, in memory of the caller's.
+///
+/// ```
+/// use palpate::detect::Channels;
+/// use palpate::detect::position::MaximumLaw;
+/// use palpate::detect::scan::Scan;
+///
+/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
+/// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
+/// let (mut gamma, mut angle) = ([0.0; 4], [0.0; 4]);
+/// let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle)?;
+/// assert_eq!(law.shifts(), 0..=3);
+/// let eta = law.threshold(0.05)?;
+/// assert!(law.false_alarm_bound(eta)? <= 0.05);
+/// assert!(law.union_bound(eta)? > law.false_alarm_bound(eta)?);
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct MaximumLaw<'a> {
     /// The first shift.
@@ -141,6 +157,17 @@ fn exceedance(gamma: f64, eta: f64) -> (f64, f64) {
 /// The Cramér–Rao bound: no unbiased estimate of the position has a smaller standard deviation, in
 /// m, than (Σ_c Σ_i (∂Δ/∂x)²/s²)^-½. `slope` is ∂Δ/∂x at each sample, N/m.
 ///
+/// ```
+/// use palpate::detect::Channels;
+/// use palpate::detect::position::position_bound;
+///
+/// // A slope of 100 N/m in noise of 0.1 N tells a position to 1 mm; four such samples to 0.5 mm.
+/// let bound = |y| position_bound(Channels { x: &[0.0; 4][..], y }, Channels { x: 0.1, y: 0.1 });
+/// assert!((bound(&[100.0, 0.0, 0.0, 0.0])? - 0.001).abs() < 1e-15);
+/// assert!((bound(&[100.0, -100.0, 100.0, 100.0])? - 0.0005).abs() < 1e-15);
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
+///
 /// # Errors
 /// As [`MatchedFilter::new`]; a template without slope, which says nothing of a position.
 ///
@@ -159,6 +186,16 @@ pub fn position_bound(
 
 /// ∂Δ/∂x of a template sampled every `spacing` metres, by central differences, and by one-sided
 /// ones at the ends: in error by spacing²/6 of the third derivative.
+///
+/// ```
+/// use palpate::detect::position::slope;
+///
+/// // x² at 0, 1, 2, 3: exact but at the ends.
+/// let mut found = [0.0; 4];
+/// slope(&[0.0, 1.0, 4.0, 9.0], 1.0, &mut found)?;
+/// assert_eq!(found, [1.0, 2.0, 4.0, 5.0]);
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 ///
 /// # Errors
 /// Fewer than two samples, or lengths that differ; NaN or infinity; a spacing not positive and

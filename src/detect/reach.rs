@@ -5,6 +5,16 @@ use super::DetectError;
 use super::error::{check_not_negative, check_samples};
 
 /// Where a monotone γ reaches the wanted value.
+///
+/// ```
+/// use palpate::detect::reach::{Reach, largest_detectable_depth};
+///
+/// let (depth, gamma) = ([0.0026, 0.0046], [8.0, 6.0]);
+/// assert_eq!(largest_detectable_depth(&depth, &gamma, 9.0)?, Reach::Nowhere);
+/// assert_eq!(largest_detectable_depth(&depth, &gamma, 5.0)?, Reach::Everywhere);
+/// assert_eq!(largest_detectable_depth(&depth, &gamma, 8.0)?, Reach::Limit(0.0026));
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
     /// At no value of the table.
@@ -16,6 +26,16 @@ pub enum Reach {
 }
 
 /// The largest depth at which γ is at least `required`; γ falls as depth grows.
+///
+/// ```
+/// use palpate::detect::reach::{Reach, largest_detectable_depth};
+///
+/// // Half-way between the last two depths γ is 3.
+/// let (depth, gamma) = ([0.0026, 0.0046, 0.0066, 0.0086], [9.0, 7.0, 4.0, 2.0]);
+/// let reach = largest_detectable_depth(&depth, &gamma, 3.0)?;
+/// assert!(matches!(reach, Reach::Limit(depth) if (depth - 0.0076).abs() < 1e-15));
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 ///
 /// # Errors
 /// Fewer than two entries, or unequal lengths; NaN or infinity; depths that do not increase or γ
@@ -40,6 +60,14 @@ pub fn largest_detectable_depth(
 
 /// The smallest size at which γ is at least `required`; γ grows with the size of the inclusion.
 ///
+/// ```
+/// use palpate::detect::reach::{Reach, smallest_detectable_inclusion};
+///
+/// let (diameter, gamma) = ([0.002, 0.004, 0.006], [1.0, 3.0, 5.0]);
+/// assert_eq!(smallest_detectable_inclusion(&diameter, &gamma, 3.0)?, Reach::Limit(0.004));
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
+///
 /// # Errors
 /// As [`largest_detectable_depth`], with γ that does not increase.
 ///
@@ -53,6 +81,15 @@ pub fn smallest_detectable_inclusion(
 }
 
 /// The least indentation at which γ is at least `required`; γ grows with the indentation.
+///
+/// ```
+/// use palpate::detect::reach::{Reach, indentation_needed};
+///
+/// let (indentation, gamma) = ([0.001, 0.002, 0.004], [0.5, 1.0, 4.0]);
+/// assert_eq!(indentation_needed(&indentation, &gamma, 1.0)?, Reach::Limit(0.002));
+/// assert_eq!(indentation_needed(&indentation, &gamma, 4.5)?, Reach::Nowhere);
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 ///
 /// # Errors
 /// As [`smallest_detectable_inclusion`].

@@ -8,6 +8,27 @@ use crate::stats::random::Generator;
 use core::ops::{Range, RangeInclusive};
 
 /// Records F_p = F + noise, and what the matched filter for F_0 against F_1 says about them.
+///
+/// ```
+/// use palpate::detect::Channels;
+/// use palpate::detect::simulate::Simulation;
+/// use palpate::stats::random::Generator;
+///
+/// let f0 = Channels { x: &[0.0; 3][..], y: &[1.0; 3] };
+/// let f1 = Channels { x: &[0.0; 3][..], y: &[1.125, 1.25, 1.25] };
+/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
+/// let noise_sd = Channels { x: 0.125, y: 0.125 };
+/// let simulation = Simulation::new(f0, template, noise_sd, Generator::new(1999, 0))?;
+/// assert_eq!(simulation.filter().gamma(), 3.0);
+/// let mut residual = [0.0; 6];
+/// let mut sum = 0.0;
+/// for trial in 0..1000 {
+///     sum += simulation.trial(trial, f1, &mut residual)?.theta;
+/// }
+/// // Θ ~ N(γ²/2, γ²) with an inclusion: four standard errors of the mean.
+/// assert!((sum / 1e3 - 4.5).abs() < 4.0 * 3.0 / 1000.0_f64.sqrt());
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Simulation<'a> {
     filter: MatchedFilter<'a>,
@@ -79,6 +100,19 @@ fn observe(deviates: &mut [f64], force: &[f64], f0: &[f64], noise_sd: f64) {
 
 /// θ drawn from its own law (8), N(±γ²/2, γ²), for the trials `first`, `first` + 1, …
 ///
+/// ```
+/// use palpate::detect::simulate::draw_theta;
+/// use palpate::stats::random::Generator;
+///
+/// let generator = Generator::new(1999, 0);
+/// let (mut without, mut with) = ([0.0; 5], [0.0; 5]);
+/// draw_theta(&generator, 2.0, false, 0, &mut without)?;
+/// draw_theta(&generator, 2.0, true, 0, &mut with)?;
+/// // The same deviates about −γ²/2 and γ²/2.
+/// assert!(std::iter::zip(without, with).all(|(a, b)| (b - a - 4.0).abs() < 1e-14));
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
+///
 /// # Errors
 /// γ not finite or < 0, or γ² not representable.
 ///
@@ -104,6 +138,24 @@ pub fn draw_theta(
 /// [`crate::stats::binomial::clopper_pearson`] the Monte Carlo value of the false-alarm rate and
 /// its interval, beside the bound of [`super::position::MaximumLaw`]. `residual` is scratch of 2N
 /// numbers.
+///
+/// ```
+/// use palpate::detect::position::MaximumLaw;
+/// use palpate::detect::scan::Scan;
+/// use palpate::detect::{Channels, simulate::count_false_alarms};
+/// use palpate::stats::random::Generator;
+///
+/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
+/// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
+/// let (mut gamma, mut angle) = ([0.0; 4], [0.0; 4]);
+/// let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle)?;
+/// let (eta, generator) = (law.threshold(0.1)?, Generator::new(1999, 0));
+/// let alarms =
+///     count_false_alarms(&scan, law.shifts(), eta, &generator, 0..2000, &mut [0.0; 12])?;
+/// // Near the bound of 10 %, of which the standard error is 0.7 %.
+/// assert!(alarms > 100 && alarms < 2000 / 10 + 4 * 14);
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 ///
 /// # Errors
 /// η not finite; no shifts; scratch of another length.

@@ -7,6 +7,14 @@ use crate::stats::compensated::{self, DoubleDouble};
 
 /// The variance of one sample is floor² + (fraction · F)², where F is the force that the hypothesis
 /// expects.
+///
+/// ```
+/// use palpate::detect::weber::WeberNoise;
+///
+/// let noise = WeberNoise { floor: 0.03, fraction: 0.1 };
+/// assert_eq!(noise.sd(0.0), 0.03);
+/// assert!((noise.sd(0.4) - 0.05).abs() < 1e-15);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeberNoise {
     /// The standard deviation at force 0, N.
@@ -32,6 +40,19 @@ impl WeberNoise {
 
 /// Mean and variance of Θ under either hypothesis. Θ is not normal; far tails need simulation, or
 /// e^−η bounds.
+///
+/// ```
+/// use palpate::detect::Channels;
+/// use palpate::detect::weber::{WeberNoise, weber_moments};
+///
+/// let (f0, f1) = (Channels { x: &[0.0][..], y: &[1.0] }, Channels { x: &[0.0][..], y: &[1.5] });
+/// let noise = WeberNoise { floor: 0.25, fraction: 0.2 };
+/// let moments = weber_moments(f0, f1, Channels { x: noise, y: noise })?;
+/// // The means are those of a likelihood ratio: below 0 without an inclusion, above 0 with one.
+/// assert!(moments.mean[0] < 0.0 && 0.0 < moments.mean[1]);
+/// assert!(moments.variance[0] != moments.variance[1]);
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeberMoments {
     /// Mean under H = 0 and under H = 1.
@@ -42,6 +63,19 @@ pub struct WeberMoments {
 
 /// Θ = Σ_c Σ_i ½[(F_p − F_0)²/v_0 − (F_p − F_1)²/v_1 + ln(v_0/v_1)] with v_h = floor² + (fraction
 /// F_h)².
+///
+/// ```
+/// use palpate::detect::Channels;
+/// use palpate::detect::weber::{WeberNoise, theta_weber};
+///
+/// // One sample, at F_0: θ = ½[0 − (Δ/s_1)²] + ln(s_0/s_1), s = 1 at no force and 5 at 2 N.
+/// let channels = |y| Channels { x: &[0.0][..], y };
+/// let noise = WeberNoise { floor: 1.0, fraction: 6.0_f64.sqrt() };
+/// let noise = Channels { x: noise, y: noise };
+/// let theta = theta_weber(channels(&[0.0]), channels(&[0.0]), channels(&[2.0]), noise)?;
+/// assert!((theta - (-0.5 * 0.16 - 5.0_f64.ln())).abs() < 1e-14);
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 ///
 /// # Errors
 /// Empty or unequal lengths; NaN or infinity; floor ≤ 0 or fraction < 0; overflow.
@@ -74,6 +108,18 @@ pub fn theta_weber(
 }
 
 /// The exact mean and variance of Θ under both hypotheses.
+///
+/// ```
+/// use palpate::detect::Channels;
+/// use palpate::detect::weber::{WeberNoise, weber_moments};
+///
+/// // Without a Weber fraction, Θ ~ N(∓γ²/2, γ²) with γ = 2.
+/// let (f0, f1) = (Channels { x: &[0.0][..], y: &[1.0] }, Channels { x: &[0.0][..], y: &[1.5] });
+/// let noise = WeberNoise { floor: 0.25, fraction: 0.0 };
+/// let moments = weber_moments(f0, f1, Channels { x: noise, y: noise })?;
+/// assert_eq!((moments.mean, moments.variance), ([-2.0, 2.0], [4.0, 4.0]));
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 ///
 /// # Errors
 /// As [`theta_weber`].

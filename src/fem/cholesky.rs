@@ -6,10 +6,9 @@
 //! both have the same matrix, which is factorised once; axis and surface are left to two dense
 //! roots of half the size.
 
-use nalgebra::DMatrix;
-
 use super::FemError;
 use super::assembly::{Numbering, StiffnessMatrix};
+use super::dense::SquareMatrix;
 use super::elimination::{Eliminated, eliminate_right_half};
 use super::front::{Front, Strip, inverse, padded, substitute_back, substitute_forward};
 
@@ -97,7 +96,7 @@ impl Factor {
     /// ```
     ///
     /// Implements: FEM-007.
-    pub fn surface_stiffness(&self) -> DMatrix<f64> {
+    pub fn surface_stiffness(&self) -> SquareMatrix {
         // A symmetric field bends both halves: on the axis it meets the stiffness of both.
         self.both_halves(|root| &root.stiffness, 2.0)
     }
@@ -112,13 +111,13 @@ impl Factor {
     /// ```
     ///
     /// Implements: FEM-007.
-    pub fn surface_compliance(&self) -> DMatrix<f64> {
+    pub fn surface_compliance(&self) -> SquareMatrix {
         self.both_halves(|root| &root.compliance, 1.0)
     }
 
     /// The matrix over the whole surface from those of symmetric and antisymmetric fields, A and B: (A + B)/2 on
     /// one side, (A − B)/2 across, turned for the left, and where the axis stands times `on_axis`.
-    fn both_halves(&self, of: impl Fn(&Root) -> &Vec<Strip>, on_axis: f64) -> DMatrix<f64> {
+    fn both_halves(&self, of: impl Fn(&Root) -> &Vec<Strip>, on_axis: f64) -> SquareMatrix {
         let size = self.roots[0].surface;
         let parts = self.roots.each_ref().map(|root| (of(root), padded(size)));
         let entry = |parity: usize, a: usize, b: usize| {
@@ -154,7 +153,7 @@ impl Factor {
             let sum = part(0) + sign * part(1);
             0.5 * weight(a) * weight(b) * turned(k, i) * turned(l, j) * sum
         };
-        DMatrix::from_fn(2 * size, 2 * size, |row, column| {
+        SquareMatrix::from_fn(2 * size, |row, column| {
             block(row / 2, row % 2, column / 2, column % 2)
         })
     }

@@ -6,8 +6,7 @@
 
 use core::ops::Range;
 
-use nalgebra::DMatrix;
-
+use super::dense::SquareMatrix;
 use super::front::{Front, TILE, substitute_back_one, substitute_forward};
 use super::{FemError, Pose};
 use crate::phantom::Probe;
@@ -88,7 +87,7 @@ pub struct Surface {
     /// Undeformed position of each free surface node, m.
     pub positions: Vec<[f64; 2]>,
     /// Displacements per force, m/N, both components of each node in turn; symmetric.
-    pub compliance: DMatrix<f64>,
+    pub compliance: SquareMatrix,
     /// The probe.
     pub probe: Probe,
     /// How the gap is measured.
@@ -275,7 +274,7 @@ fn tangent(n: [f64; 2]) -> [f64; 2] {
 impl Surface {
     /// A surface with that compliance.
     pub(super) fn new(
-        compliance: DMatrix<f64>,
+        compliance: SquareMatrix,
         positions: Vec<[f64; 2]>,
         probe: Probe,
         contact: Contact,
@@ -534,7 +533,7 @@ impl Surface {
         nodes: Range<usize>,
     ) -> Option<Vec<[f64; 2]>> {
         let mut u = vec![[0.0; 2]; nodes.len()];
-        let unknowns = self.compliance.nrows();
+        let unknowns = self.compliance.order();
         let columns = self.compliance.as_slice();
         for &j in &state.active {
             let n = self.constraint(j, state.displacements[j], pose)?.normal;

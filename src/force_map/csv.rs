@@ -23,6 +23,16 @@ impl ForceMap {
     /// The measured map in `text`, the content of `file`. The map records the file's name without
     /// its folder, `note`, and the `phantom` that was measured, if it is known.
     ///
+    /// ```
+    /// use palpate::force_map::ForceMap;
+    ///
+    /// let text = "lateral_mm,depth_mm,normal_force_mn,lateral_force_mn\n0,4,1500,0\n2,4,1250,-125\n";
+    /// let map = ForceMap::from_csv(text, "gel.csv", "third gel", None)?;
+    /// assert_eq!((map.depths(), map.laterals()), (&[0.004][..], &[0.0, 0.002][..]));
+    /// assert_eq!(map.lateral_force().values(), [0.0, -0.125]);
+    /// # Ok::<(), palpate::force_map::ForceMapFileError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`ForceMapFileError`] if the header does not name the four columns, a row is malformed, a
     /// pose is missing or there twice, or the forces make no map (see [`ForceMap::new`]).

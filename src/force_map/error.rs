@@ -6,6 +6,15 @@ use crate::phantom::{InvalidPhantom, PoseError};
 /// Why a force map, or an operation on one, is refused. Keys are those of the JSON file; rows and
 /// columns count from 0.
 ///
+/// ```
+/// use palpate::force_map::{ForceTable, InvalidForceMap, Matrix};
+///
+/// let matrix = |value| Matrix::from_fn(1, 1, |_, _| value);
+/// let error = ForceTable::new(vec![0.004], vec![0.0], matrix(f64::NAN), matrix(0.0)).unwrap_err();
+/// assert!(matches!(error, InvalidForceMap::Force { key: "normal_force_n", row: 0, .. }));
+/// assert_eq!(error.to_string(), "normal_force_n[0][0] = NaN, expected a finite number");
+/// ```
+///
 /// Implements: MAP-013.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum InvalidForceMap {

@@ -8,6 +8,15 @@ use crate::csv::CsvProblem;
 
 /// Why a file of a force map is refused: one line that begins with the file.
 ///
+/// ```
+/// use palpate::force_map::ForceMap;
+///
+/// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5\n";
+/// let error = ForceMap::from_csv(text, "gel.csv", "", None).unwrap_err();
+/// assert_eq!((error.file.as_str(), error.line), ("gel.csv", Some(2)));
+/// assert!(error.to_string().starts_with("gel.csv:2: 3 fields, expected 4"));
+/// ```
+///
 /// Implements: MAP-026.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceMapFileError {
@@ -31,6 +40,13 @@ impl fmt::Display for ForceMapFileError {
 impl std::error::Error for ForceMapFileError {}
 
 /// What is wrong with a file of a force map.
+///
+/// ```
+/// use palpate::force_map::{ForceMap, ForceMapFileProblem};
+///
+/// let error = ForceMap::from_json(r#"{"schema": "another"}"#, "map.json").unwrap_err();
+/// assert!(matches!(error.problem, ForceMapFileProblem::Schema { key: "schema", .. }));
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ForceMapFileProblem {
     /// The file cannot be read.
@@ -114,6 +130,17 @@ impl ForceMapFileProblem {
 
 impl ForceMap {
     /// Reads the map at `path`: measured forces if its name ends in `.csv`, else JSON.
+    ///
+    /// ```
+    /// use palpate::force_map::ForceMap;
+    ///
+    /// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n";
+    /// let path = std::env::temp_dir().join(format!("map-{}.csv", std::process::id()));
+    /// std::fs::write(&path, text)?;
+    /// assert_eq!(ForceMap::read(&path)?.normal_force().values(), [1.5]);
+    /// # std::fs::remove_file(&path)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// As [`ForceMap::from_csv`] and [`ForceMap::from_json`]; [`ForceMapFileProblem::Read`] if the

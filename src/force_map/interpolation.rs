@@ -5,6 +5,15 @@
 use super::{ForceTable, InvalidForceMap, Matrix};
 
 /// A force on the probe, N.
+///
+/// ```
+/// use palpate::force_map::{ForceTable, Matrix, ProbeForce};
+///
+/// let matrix = |force: f64| Matrix::from_fn(2, 2, |row, _| force * row as f64);
+/// let table = ForceTable::new(vec![0.0, 0.004], vec![0.0, 0.01], matrix(1.5), matrix(-0.25))?;
+/// assert_eq!(table.force(0.004, 0.01)?, ProbeForce { lateral: -0.25, normal: 1.5 });
+/// # Ok::<(), palpate::force_map::InvalidForceMap>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProbeForce {
     /// Along +x.
@@ -41,6 +50,17 @@ impl ForceTable {
     /// The force at a pose (m) by the bilinear form of its cell; outside the table, by that of the
     /// nearest border cell, continued.
     ///
+    /// ```
+    /// use palpate::force_map::{ForceTable, Matrix};
+    ///
+    /// // Bilinear forces, d·x in units of the cell, inside and beyond it.
+    /// let matrix = || Matrix::from_fn(2, 2, |row, column| (row * column) as f64);
+    /// let table = ForceTable::new(vec![0.0, 0.5], vec![0.0, 0.5], matrix(), matrix())?;
+    /// assert_eq!(table.force(0.25, 0.25)?.normal, 0.25);
+    /// assert_eq!(table.force(1.0, 1.0)?.normal, 4.0);
+    /// # Ok::<(), palpate::force_map::InvalidForceMap>(())
+    /// ```
+    ///
     /// # Errors
     /// [`InvalidForceMap::PoseNotFinite`], [`InvalidForceMap::SinglePosition`],
     /// [`InvalidForceMap::ForceTooLarge`].
@@ -73,7 +93,7 @@ impl ForceTable {
 /// nearest border cell, continued. `None` if it is beyond the range of f64.
 ///
 /// Implements: MAP-060, MAP-062.
-pub fn interpolate(
+pub(crate) fn interpolate(
     depths: &[f64],
     laterals: &[f64],
     matrix: &Matrix,

@@ -61,6 +61,15 @@ struct Written<'a> {
 impl ForceMap {
     /// This map as JSON, each row of a matrix on one line.
     ///
+    /// ```
+    /// use palpate::force_map::ForceMap;
+    ///
+    /// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n";
+    /// let json = ForceMap::from_csv(text, "gel.csv", "", None)?.to_json();
+    /// assert!(json.starts_with("{\n  \"schema\": \"palpate-force-map\",\n  \"schema_version\": 1,\n"));
+    /// # Ok::<(), palpate::force_map::ForceMapFileError>(())
+    /// ```
+    ///
     /// Implements: MAP-020, MAP-021, MAP-022.
     pub fn to_json(&self) -> String {
         let source = match self.source() {
@@ -93,6 +102,16 @@ impl ForceMap {
     }
 
     /// The map in `text`, the content of `file`, which is named in errors alone.
+    ///
+    /// ```
+    /// use palpate::force_map::ForceMap;
+    ///
+    /// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,0.1,0\n";
+    /// let map = ForceMap::from_csv(text, "gel.csv", "", None)?;
+    /// // Every number comes back to the bit.
+    /// assert_eq!(ForceMap::from_json(&map.to_json(), "map.json")?, map);
+    /// # Ok::<(), palpate::force_map::ForceMapFileError>(())
+    /// ```
     ///
     /// # Errors
     /// [`ForceMapFileError`] if the text is not JSON, has another schema or a newer version, a

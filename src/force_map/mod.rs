@@ -10,6 +10,22 @@
 //! | `certificate.rs` | the quality of a computed map |
 //! | `error.rs` | what can be wrong |
 //! | `file.rs`, `json.rs`, `csv.rs` | files |
+//!
+//! ```
+//! use palpate::force_map::ForceMap;
+//!
+//! // Two measured maps over one depth and x = 0, 2, 4 mm, and the signal of the paper's §2.
+//! let map = |normal: [f64; 3]| {
+//!     let mut text = String::from("depth_mm,lateral_mm,normal_force_n,lateral_force_n\n");
+//!     for (column, normal) in normal.iter().enumerate() {
+//!         text += &format!("4,{},{normal},0\n", 2 * column);
+//!     }
+//!     ForceMap::from_csv(&text, "sweep.csv", "", None)
+//! };
+//! let signal = map([1.75, 1.5, 1.5])?.signal(&map([1.5, 1.5, 1.5])?)?;
+//! assert_eq!(signal.row(0.004)?.normal_force, [0.25, 0.0, 0.0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod certificate;
 mod csv;
@@ -25,7 +41,9 @@ mod tests;
 pub use certificate::{Certificate, Discretization, SmallestDet};
 pub use error::InvalidForceMap;
 pub use file::{ForceMapFileError, ForceMapFileProblem};
-pub use interpolation::{ProbeForce, interpolate};
+pub use interpolation::ProbeForce;
+#[cfg(feature = "oracle")]
+pub(crate) use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use sweep::Sweep;
 pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
@@ -33,6 +51,16 @@ pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANC
 use crate::phantom::Phantom;
 
 /// Where the forces of a map come from.
+///
+/// ```
+/// use palpate::force_map::{ForceMap, Source};
+///
+/// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n";
+/// let map = ForceMap::from_csv(text, "folder/gel.csv", "third gel", None)?;
+/// let (file, note) = ("gel.csv".into(), "third gel".into());
+/// assert_eq!(map.source(), &Source::Measured { file, note });
+/// # Ok::<(), palpate::force_map::ForceMapFileError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
     /// Computed by this program's finite elements.
@@ -50,6 +78,31 @@ pub enum Source {
 }
 
 /// The force on the probe at every pose of a grid, and where it comes from.
+///
+/// ```
+/// use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
+/// use palpate::phantom::Phantom;
+///
+/// let matrix = |values: [f64; 4]| Matrix::from_fn(2, 2, |row, column| values[2 * row + column]);
+/// let (normal, lateral) = (matrix([0.25, 0.25, 1.5, 1.25]), matrix([0.0, 0.0, 0.0, -0.125]));
+/// let forces = ForceTable::new(vec![0.001, 0.004], vec![0.0, 0.005], normal, lateral)?;
+/// let source = Source::Measured { file: "gel.csv".into(), note: "".into() };
+/// let map = ForceMap::new(source, Some(Phantom::builtin("6.6")?), forces)?;
+///
+/// assert_eq!((map.depths(), map.laterals()), (&[0.001, 0.004][..], &[0.0, 0.005][..]));
+/// assert_eq!(map.normal_force().row(1), [1.5, 1.25]);
+/// assert_eq!(map.lateral_force().values(), [0.0, 0.0, 0.0, -0.125]);
+/// assert_eq!(map.forces().row(0.004)?, map.row(0.004)?);
+/// // Measured, by this version, on a phantom that is known.
+/// assert!(map.certificate().is_none() && matches!(map.source(), Source::Measured { .. }));
+/// assert_eq!(map.program_version(), env!("CARGO_PKG_VERSION"));
+/// assert!(map.phantom().is_some_and(|phantom| phantom.name == "6.6"));
+/// // The normal force is even in x, the lateral force odd.
+/// let whole = map.mirrored()?;
+/// assert_eq!(whole.row(0.004)?.lateral_force, [0.125, 0.0, -0.125]);
+/// assert_eq!(whole.at_laterals(&[0.0, 0.005])?, map);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// Implements: MAP-001, MAP-008.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,6 +160,22 @@ impl ForceMap {
     }
 
     /// This computed map with bands of the discretisation in its certificate; a measured map as it is.
+    ///
+    /// ```
+    /// use palpate::force_map::{Discretization, ForceMap, Matrix};
+    ///
+    /// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n";
+    /// let map = ForceMap::from_csv(text, "gel.csv", "", None)?;
+    /// // Bands of a mesh say nothing of what was measured.
+    /// let band = |value| Matrix::from_fn(1, 1, |_, _| value);
+    /// let bands = Discretization {
+    ///     nodes: [4000, 1000, 250],
+    ///     normal_force_band: band(0.002),
+    ///     lateral_force_band: band(0.0),
+    /// };
+    /// assert_eq!(map.clone().with_discretization(bands)?, map);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`InvalidForceMap::Shape`], [`InvalidForceMap::Band`].
@@ -180,6 +249,17 @@ impl ForceMap {
     }
 
     /// The forces of this map minus those of `reference`: see [`ForceTable::minus`].
+    ///
+    /// ```
+    /// use palpate::force_map::ForceMap;
+    ///
+    /// let map = |force: f64| {
+    ///     let text = format!("depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,{force},0\n");
+    ///     ForceMap::from_csv(&text, "gel.csv", "", None)
+    /// };
+    /// assert_eq!(map(1.75)?.signal(&map(1.5)?)?.normal_force().values(), [0.25]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`InvalidForceMap::AxesDiffer`], [`InvalidForceMap::Force`].

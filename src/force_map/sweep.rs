@@ -4,6 +4,16 @@
 use super::{ForceTable, InvalidForceMap, Matrix, SAME_POSITION};
 
 /// The forces along a sweep, one of each for every position asked for.
+///
+/// ```
+/// use palpate::force_map::{ForceTable, Sweep};
+///
+/// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n4,2,1,-0.25\n";
+/// let table = ForceTable::from_csv(text, "gel.csv")?;
+/// let Sweep { lateral_force, normal_force } = table.sweep(0.004, &[0.002, 0.001])?;
+/// assert_eq!((normal_force, lateral_force), (vec![1.0, 1.25], vec![-0.25, -0.125]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
     /// Lateral forces on the probe along +x, N.
@@ -54,6 +64,17 @@ impl ForceTable {
     /// The forces at `depth` (m) and each of `positions` (m, in any order): linear in the depth
     /// between two rows, then linear in the position between two columns. A row within
     /// [`SAME_POSITION`] of the depth, and a column within it of a position, count to the bit.
+    ///
+    /// ```
+    /// use palpate::force_map::{ForceTable, Matrix};
+    ///
+    /// // Half-way in depth and half-way in position: the mean of the four.
+    /// let matrix = || Matrix::new(2, vec![0.0, 1.0, 2.0, 5.0]).ok_or("two rows of two");
+    /// let table = ForceTable::new(vec![0.0, 0.002], vec![0.0, 0.004], matrix()?, matrix()?)?;
+    /// assert_eq!(table.sweep(0.001, &[0.002])?.normal_force, [2.0]);
+    /// assert!(table.sweep(0.003, &[0.002]).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`InvalidForceMap::OutsideDepths`], [`InvalidForceMap::OutsideLaterals`]: nothing is

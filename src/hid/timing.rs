@@ -1,5 +1,7 @@
 //! How long the cycles of the loop take on this machine, against a budget.
 
+pub mod paper;
+
 use std::time::{Duration, Instant};
 
 use hdrhistogram::Histogram;

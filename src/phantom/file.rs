@@ -37,6 +37,16 @@ const TOP_LEVEL: [&str; 5] = ["name", "gel", "skin", "inclusion", "probe"];
 
 /// Why a phantom file is refused: one line that begins with the file.
 ///
+/// ```
+/// use palpate::phantom::Phantom;
+///
+/// let text = Phantom::builtin("none")?.to_toml()?.replace("radius_mm = 6.5", "radius_mm = 17.0");
+/// let error = Phantom::from_toml(&text, "wide.toml").unwrap_err();
+/// assert_eq!(error.line, Some(15));
+/// assert!(error.to_string().starts_with("wide.toml:15: probe.radius_mm = 17.0, allowed: "));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Implements: PHA-022, PHA-023, PHA-024, PHA-025, PHA-026.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhantomFileError {
@@ -60,6 +70,13 @@ impl fmt::Display for PhantomFileError {
 impl std::error::Error for PhantomFileError {}
 
 /// What is wrong with a phantom file.
+///
+/// ```
+/// use palpate::phantom::{Phantom, PhantomFileProblem};
+///
+/// let error = Phantom::from_toml("name = 3", "mine.toml").unwrap_err();
+/// assert!(matches!(error.problem, PhantomFileProblem::WrongType { key, .. } if key == "name"));
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PhantomFileProblem {
     /// The file cannot be read.
@@ -106,6 +123,16 @@ pub enum PhantomFileProblem {
 
 impl Phantom {
     /// Reads the phantom file at `path`.
+    ///
+    /// ```
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let path = std::env::temp_dir().join(format!("phantom-{}.toml", std::process::id()));
+    /// std::fs::write(&path, Phantom::builtin("4.6")?.to_toml()?)?;
+    /// assert_eq!(Phantom::read(&path)?, Phantom::builtin("4.6")?);
+    /// # std::fs::remove_file(&path)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Phantom::from_toml`]; [`PhantomFileProblem::Read`] if the file cannot be read as UTF-8.

@@ -20,6 +20,16 @@ const LENGTHS: [f64; 2] = [1e-6, 1.0];
 const LARGEST_POISSON_RATIO: f64 = 0.4995;
 
 /// What a number of a phantom measures; it fixes the unit in the number's key.
+///
+/// ```
+/// use palpate::phantom::{InvalidPhantom, Phantom, Quantity};
+///
+/// let mut phantom = Phantom::builtin("none")?;
+/// phantom.gel.material.poisson_ratio = 0.5;
+/// let error = phantom.validate().unwrap_err();
+/// assert!(matches!(error, InvalidPhantom::OutOfRange(n) if n.quantity == Quantity::Ratio));
+/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// A length: m inside, mm in a phantom file.
@@ -32,7 +42,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// The unit at the end of a key of the phantom file.
-    pub fn suffix(self) -> &'static str {
+    pub(super) fn suffix(self) -> &'static str {
         match self {
             Quantity::Length => "_mm",
             Quantity::Modulus => "_kpa",
@@ -41,7 +51,7 @@ impl Quantity {
     }
 
     /// The power of ten from the phantom file's unit to SI.
-    pub fn power_to_si(self) -> i32 {
+    pub(super) fn power_to_si(self) -> i32 {
         match self {
             Quantity::Length => -3,
             Quantity::Modulus => 3,
@@ -58,6 +68,19 @@ impl Quantity {
 /// A number of a phantom that is not finite or outside its allowed range.
 ///
 /// Its message speaks in the keys and units of the phantom file.
+///
+/// ```
+/// use palpate::phantom::{InvalidPhantom, Phantom};
+///
+/// let mut phantom = Phantom::builtin("none")?;
+/// phantom.gel.width = f64::NAN;
+/// let InvalidPhantom::OutOfRange(number) = phantom.validate().unwrap_err() else {
+///     panic!("the width is a number");
+/// };
+/// assert_eq!(number.key, "gel.width");
+/// assert_eq!(number.to_string(), "gel.width_mm = NaN, allowed: at least 0.001 and at most 1000.0");
+/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+/// ```
 ///
 /// Implements: PHA-009.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,6 +158,15 @@ impl OutOfRange {
 }
 
 /// Why a phantom is refused.
+///
+/// ```
+/// use palpate::phantom::{InvalidPhantom, Phantom};
+///
+/// let mut phantom = Phantom::builtin("none")?;
+/// phantom.name.clear();
+/// assert_eq!(phantom.validate(), Err(InvalidPhantom::Name { name: "".into() }));
+/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum InvalidPhantom {
     /// A number is not finite or outside its range.
@@ -150,7 +182,7 @@ pub enum InvalidPhantom {
 
 impl InvalidPhantom {
     /// The key that is refused, in the phantom file but without the unit.
-    pub fn key(&self) -> &'static str {
+    pub(super) fn key(&self) -> &'static str {
         match self {
             InvalidPhantom::OutOfRange(number) => number.key,
             InvalidPhantom::Name { .. } => "name",

@@ -8,8 +8,21 @@
 //! | `pose.rs` | where the probe may stand |
 //! | `file.rs` | phantom files in TOML |
 //! | `decimal.rs` | mm and kPa to SI and back |
+//!
+//! ```
+//! use palpate::phantom::Phantom;
+//!
+//! // The paper's phantom with the disc 6.6 mm deep, and a harder disc in it.
+//! let mut phantom = Phantom::builtin("6.6")?;
+//! if let Some(disc) = &mut phantom.inclusion {
+//!     disc.material.youngs_modulus = 2.4e6;
+//! }
+//! phantom.validate()?;
+//! assert!(phantom.to_toml()?.contains("youngs_modulus_kpa = 2400.0"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
-pub mod decimal;
+pub(crate) mod decimal;
 mod file;
 mod limits;
 mod pose;
@@ -23,6 +36,14 @@ pub use limits::{GEL_CLEARANCE, InvalidPhantom, OutOfRange, Quantity};
 pub use pose::PoseError;
 
 /// A linear isotropic elastic material.
+///
+/// ```
+/// use palpate::phantom::{Material, Phantom};
+///
+/// let gel = Phantom::builtin("none")?.gel.material;
+/// assert_eq!(gel, Material { youngs_modulus: 5e3, poisson_ratio: 0.49 });
+/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
@@ -34,6 +55,14 @@ pub struct Material {
 }
 
 /// The block of gel that fills the well, bonded to its floor and walls.
+///
+/// ```
+/// use palpate::phantom::Phantom;
+///
+/// let gel = Phantom::builtin("none")?.gel;
+/// assert_eq!((gel.width, gel.height), (0.034, 0.015));
+/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gel {
@@ -48,6 +77,14 @@ pub struct Gel {
 }
 
 /// The rubber layer on top of the gel, bonded to the gel and, at its edges, to the walls.
+///
+/// ```
+/// use palpate::phantom::Phantom;
+///
+/// let skin = Phantom::builtin("none")?.skin;
+/// assert_eq!((skin.thickness, skin.material.youngs_modulus), (0.0005, 1.8e5));
+/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Skin {
@@ -59,6 +96,17 @@ pub struct Skin {
 }
 
 /// A solid disc (a cylinder along the probe), centred at x = 0 and bonded to the gel.
+///
+/// ```
+/// use palpate::phantom::{Inclusion, Phantom};
+///
+/// let Phantom { inclusion, .. } = Phantom::builtin("2.6")?;
+/// // 6.4 mm across and 2.6 mm deep: its centre is 5.8 mm below the surface.
+/// assert_eq!(inclusion.as_ref().map(Inclusion::radius), Some(0.0032));
+/// assert!(inclusion.is_some_and(|disc| (disc.centre_y() + 0.0058).abs() < 1e-15));
+/// assert!(Phantom::builtin("none")?.inclusion.is_none());
+/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Inclusion {
@@ -88,6 +136,16 @@ impl Inclusion {
 }
 
 /// The rigid, frictionless, semicylindrical probe.
+///
+/// ```
+/// use palpate::phantom::Probe;
+///
+/// let probe = Probe { radius: 0.0065, length: 0.03 };
+/// // At a depth of the radius, and below, half of the width is the radius.
+/// assert!((probe.half_width_at(0.0065) - 0.0065).abs() < 1e-15);
+/// // The half chord at 4 mm: √(6.5² − 2.5²) = 6 mm.
+/// assert!((probe.half_width_at(0.004) - 0.006).abs() < 1e-15);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
@@ -102,6 +160,18 @@ pub struct Probe {
 /// Everything that fixes the force on the probe, but for the probe's position.
 ///
 /// Reading one with serde checks the types alone: call [`Phantom::validate`] on the result.
+///
+/// ```
+/// use palpate::phantom::Phantom;
+///
+/// let phantom = Phantom::builtin("8.6")?;
+/// assert!((phantom.total_height() - 0.0155).abs() < 1e-15);
+/// assert!(phantom.validate().is_ok());
+/// // What is written can be read.
+/// let text = phantom.to_toml()?;
+/// assert_eq!(Phantom::from_toml(&text, "mine.toml")?, phantom);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// Implements: PHA-029.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -126,6 +196,13 @@ pub const BUILTIN_NAMES: [&str; 5] = ["none", "2.6", "4.6", "6.6", "8.6"];
 
 /// A name that is none of [`BUILTIN_NAMES`].
 ///
+/// ```
+/// use palpate::phantom::Phantom;
+///
+/// let error = Phantom::builtin("5.6").unwrap_err();
+/// assert!(error.to_string().ends_with("built in are none, 2.6, 4.6, 6.6, 8.6"));
+/// ```
+///
 /// Implements: PHA-014.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("no phantom named {name:?} is built in; built in are {}", BUILTIN_NAMES.join(", "))]
@@ -136,6 +213,15 @@ pub struct UnknownPhantom {
 
 impl Phantom {
     /// One of the paper's five phantoms (§3, §3.1), by its name in [`BUILTIN_NAMES`].
+    ///
+    /// ```
+    /// use palpate::phantom::{BUILTIN_NAMES, Phantom};
+    ///
+    /// for name in BUILTIN_NAMES {
+    ///     assert_eq!(Phantom::builtin(name)?.inclusion.is_none(), name == "none");
+    /// }
+    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+    /// ```
     ///
     /// # Errors
     /// [`UnknownPhantom`] for any other name.

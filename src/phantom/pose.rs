@@ -5,6 +5,16 @@ use super::{Phantom, Probe};
 
 /// Why the probe cannot stand at a pose. Values are SI, messages speak in mm.
 ///
+/// ```
+/// use palpate::phantom::{Phantom, PoseError};
+///
+/// let phantom = Phantom::builtin("none")?;
+/// // 17 mm of half a well less the 6 mm of half a probe.
+/// let error = phantom.check_pose(0.004, 0.0115).unwrap_err();
+/// assert!(matches!(error, PoseError::Wall { limit, .. } if (limit - 0.011).abs() < 1e-15));
+/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+/// ```
+///
 /// Implements: PHA-013.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PoseError {
@@ -71,6 +81,15 @@ impl Probe {
 impl Phantom {
     /// Whether the probe may press to `depth` (m) anywhere.
     ///
+    /// ```
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let phantom = Phantom::builtin("none")?;
+    /// assert!(phantom.check_depth(0.004).is_ok());
+    /// assert!(phantom.check_depth(0.0155).is_err());
+    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+    /// ```
+    ///
     /// # Errors
     /// [`PoseError`] if `depth` is not finite, negative, or not above the floor.
     ///
@@ -91,6 +110,15 @@ impl Phantom {
     }
 
     /// Whether the probe may stand at `depth` and `lateral` (m): above the floor, clear of the walls.
+    ///
+    /// ```
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let phantom = Phantom::builtin("none")?;
+    /// assert!(phantom.check_pose(0.004, -0.010).is_ok());
+    /// assert!(phantom.check_pose(0.004, -0.012).is_err());
+    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+    /// ```
     ///
     /// # Errors
     /// [`PoseError`] with the coordinate, its value and what is allowed.

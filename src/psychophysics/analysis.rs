@@ -10,6 +10,15 @@ use super::rates::{CONFIDENCE, Clustered, Rate, clustered};
 use super::{Condition, Inclusion, PsychophysicsError, Subject, Table};
 
 /// The analysis of a table of counts.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let analysis = analyse(&Table::paper()?)?;
+/// // Three conditions make three pairs.
+/// assert_eq!((analysis.conditions.len(), analysis.comparisons.len()), (3, 3));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Analysis {
     /// The confidence of every interval.
@@ -21,6 +30,17 @@ pub struct Analysis {
 }
 
 /// One condition.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let condition = &analyse(&Table::paper()?)?.conditions[0];
+/// assert_eq!(condition.name, "direct contact");
+/// assert_eq!((condition.inclusions.len(), condition.subjects.len()), (4, 10));
+/// // Subjects differ more than chance allows.
+/// assert!(condition.dispersion > Some(2.0));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConditionAnalysis {
     /// Its name: untrusted text.
@@ -38,6 +58,15 @@ pub struct ConditionAnalysis {
 }
 
 /// All subjects at one inclusion.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let inclusion = &analyse(&Table::paper()?)?.conditions[1].inclusions[2];
+/// assert_eq!((inclusion.name.as_str(), inclusion.depth), ("6.6", 0.0066));
+/// assert!((inclusion.pooled.rate - 0.843).abs() < 1e-3);
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InclusionAnalysis {
     /// Its name: untrusted text.
@@ -57,6 +86,14 @@ pub struct InclusionAnalysis {
 }
 
 /// One subject.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let subject = &analyse(&Table::paper()?)?.conditions[0].subjects[6];
+/// assert_eq!((subject.name.as_str(), subject.rates[3].rate), ("7", 13.0 / 30.0));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SubjectAnalysis {
     /// The name: untrusted text.
@@ -66,6 +103,15 @@ pub struct SubjectAnalysis {
 }
 
 /// The analysis of a table.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let text = "subject,condition,trials,2.6\nA,gel,20,20\nB,gel,20,10\n";
+/// let analysis = analyse(&Table::from_csv(text, "mine.csv")?)?;
+/// assert_eq!(analysis.conditions[0].inclusions[0].pooled.rate, 0.75);
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 ///
 /// # Errors
 /// Never for counts that fit their trials, as a [`Table`] holds them.

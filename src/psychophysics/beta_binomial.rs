@@ -21,6 +21,19 @@ const LARGEST_CORRELATION: f64 = 0.9999;
 const CELLS: u32 = 12;
 
 /// The beta-binomial law that fits the subjects best.
+///
+/// ```
+/// use palpate::psychophysics::{BetaBinomial, Table, analyse};
+///
+/// let analysis = analyse(&Table::paper()?)?;
+/// let at_8_6 = |condition: usize| analysis.conditions[condition].inclusions[3].beta_binomial;
+/// // Direct contact: subjects differ. Measured data: no more than chance, and near guessing.
+/// assert!(at_8_6(0).is_some_and(|law| law.correlation > 0.0 && law.p_value < 0.05));
+/// assert!(at_8_6(2).is_some_and(|BetaBinomial { correlation, is_binomial, rate, .. }| {
+///     correlation == 0.0 && is_binomial && (rate - 174.0 / 300.0).abs() < 1e-6
+/// }));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BetaBinomial {
     /// The mean probability of a right answer.

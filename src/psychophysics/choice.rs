@@ -43,6 +43,7 @@ pub struct Perceived {
 
 impl Perceived {
     /// F = 2Φ(γ/√2) − 1, so that ½ + ½F is the paper's Figure 9.
+    #[cfg(feature = "report")]
     pub fn at_gamma(gamma: f64) -> Perceived {
         Perceived {
             share: libm::erf(0.5 * gamma),

@@ -12,6 +12,18 @@ const MOST_SUBJECTS: usize = 20;
 const SAME_SUM: f64 = 1e-12;
 
 /// Two conditions, by the subjects who took part in both.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let comparisons = analyse(&Table::paper()?)?.comparisons;
+/// let [contact_fem, _, fem_measured] = &comparisons[..] else { unreachable!("three pairs") };
+/// assert_eq!((contact_fem.first.as_str(), contact_fem.second.as_str()), ("direct contact", "FEM data"));
+/// // FEM data are felt as direct contact is, within chance; measured data are not.
+/// assert!(contact_fem.p_value_holm > Some(0.05));
+/// assert!(fem_measured.p_value_holm < Some(0.05));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConditionComparison {
     /// The first condition.
@@ -29,6 +41,16 @@ pub struct ConditionComparison {
 }
 
 /// The difference at one inclusion.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let by_inclusion = &analyse(&Table::paper()?)?.comparisons[2].by_inclusion;
+/// // FEM data less measured data at 6.6 mm: 253 and 229 of 300.
+/// assert_eq!(by_inclusion[2].inclusion, "6.6");
+/// assert!((by_inclusion[2].difference.mean - 24.0 / 300.0).abs() < 1e-12);
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InclusionDifference {
     /// The inclusion: untrusted text.
@@ -39,6 +61,17 @@ pub struct InclusionDifference {
 }
 
 /// The rate of the first condition less that of the second, mean over subjects.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let text = "subject,condition,trials,2.6\nA,gel,10,9\nB,gel,10,8\nA,air,10,5\nB,air,10,6\n";
+/// let difference = analyse(&Table::from_csv(text, "mine.csv")?)?.comparisons[0].overall;
+/// // +0.4 and +0.2: two of the four exchanges of signs lie as far from 0.
+/// assert!((difference.mean - 0.3).abs() < 1e-15);
+/// assert_eq!(difference.p_value, Some(0.5));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Difference {
     /// The mean difference.

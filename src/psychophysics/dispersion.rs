@@ -9,6 +9,15 @@ use crate::stats::tails::{chi_square_tail, f_tail};
 const ROUGH_BELOW: f64 = 5.0;
 
 /// χ² of the subjects against one share of right answers for all.
+///
+/// ```
+/// use palpate::psychophysics::dispersion;
+///
+/// // With 4 pairs a subject the chi-square law is rough.
+/// let found = dispersion(&[(1, 4), (3, 4)])?;
+/// assert!(found.is_some_and(|found| found.smallest_expected == 2.0 && found.is_rough));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Dispersion {
     /// Σ (kᵢ − nᵢp̂)²/(nᵢ p̂ (1−p̂)).
@@ -27,6 +36,16 @@ pub struct Dispersion {
 
 /// χ² of the counts (right answers, pairs); `None` for one subject, or if all answers are right or
 /// all wrong.
+///
+/// ```
+/// use palpate::psychophysics::dispersion;
+///
+/// // Each 5 from the 15 of 30 expected: χ² = 2 · 25/7.5.
+/// let found = dispersion(&[(10, 30), (20, 30)])?;
+/// assert!(found.is_some_and(|found| (found.chi_square - 20.0 / 3.0).abs() < 1e-12));
+/// assert_eq!(dispersion(&[(30, 30), (30, 30)])?, None);
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 ///
 /// # Errors
 /// Never for counts that fit their trials.

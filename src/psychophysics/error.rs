@@ -8,6 +8,12 @@ use crate::stats::normal::NormalError;
 use crate::stats::tails::TailError;
 
 /// Why an analysis was refused.
+///
+/// ```
+/// use palpate::psychophysics::{PsychophysicsError, Rate};
+///
+/// assert!(matches!(Rate::new(31, 30), Err(PsychophysicsError::Proportion(_))));
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PsychophysicsError {
     /// Counts that fit no trials.

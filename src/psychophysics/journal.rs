@@ -221,3 +221,6 @@ fn wrong_answer(at: usize, line: &str, expected: &str) -> JournalError {
         expected: expected.to_string(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -15,16 +15,30 @@
 //! | `conditions.rs` | conditions against one another, subjects as blocks |
 //! | `noise.rs` | the noise levels of the paper's §5 |
 //! | `bridge/` | force maps against the counts |
+//!
+//! ```
+//! use palpate::detect::gamma_from_two_afc;
+//! use palpate::psychophysics::{Table, analyse};
+//!
+//! // Playback of FEM data, inclusion 6.6 mm deep: 84 % of all answers are right, γ = 1.42.
+//! let analysis = analyse(&Table::paper()?)?;
+//! let pooled = analysis.conditions[1].inclusions[2].pooled;
+//! assert_eq!((pooled.correct, pooled.trials), (253, 300));
+//! assert_eq!(pooled.gamma.gamma, Some(gamma_from_two_afc(253.0 / 300.0)?));
+//! # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+//! ```
 
 mod analysis;
 mod beta_binomial;
-pub mod bridge;
+#[cfg(feature = "report")]
+pub(crate) mod bridge;
 mod choice;
 mod conditions;
 mod dispersion;
 mod error;
+#[cfg(feature = "cli")]
 mod journal;
-pub mod noise;
+pub(crate) mod noise;
 #[cfg(feature = "hid")]
 mod observer;
 mod plan;
@@ -42,7 +56,8 @@ pub use beta_binomial::BetaBinomial;
 pub use conditions::{ConditionComparison, Difference, InclusionDifference};
 pub use dispersion::{Dispersion, dispersion};
 pub use error::PsychophysicsError;
-pub use journal::{Journal, JournalError, Setup};
+#[cfg(feature = "cli")]
+pub(crate) use journal::{Journal, Setup};
 pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};
 #[cfg(feature = "hid")]
 pub use observer::{IdealObserver, ObserverError};

@@ -24,6 +24,15 @@ pub const HUMAN_PERCEPTION: f64 = 0.093;
 const PLAYBACK: (usize, usize) = (1, 2);
 
 /// The noise levels of §5.
+///
+/// ```
+/// use palpate::psychophysics::paper_noise_levels;
+///
+/// let decomposition = paper_noise_levels()?;
+/// assert!(decomposition.levels.iter().all(|level| level.noise > 0.0));
+/// assert!(!decomposition.agreement.is_empty());
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseDecomposition {
     /// Each level.
@@ -34,6 +43,16 @@ pub struct NoiseDecomposition {
 }
 
 /// One of the paper's noise levels beside ours.
+///
+/// ```
+/// use palpate::psychophysics::paper_noise_levels;
+///
+/// // The paper's 170 mN are 168 mN.
+/// let levels = paper_noise_levels()?.levels;
+/// let table_2 = levels.iter().find(|level| level.printed == Some(0.170));
+/// assert!(table_2.is_some_and(|level| (level.noise - 0.168).abs() < 1e-3));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseLevel {
     /// Where it comes from.
@@ -75,6 +94,16 @@ pub fn noise_bounds(signal: f64, gamma: GammaEstimate) -> (Option<f64>, OpenBoun
 }
 
 /// The noise levels of §5 from Table 2 and from the answers to FEM playback at 6.6 mm.
+///
+/// ```
+/// use palpate::psychophysics::paper_noise_levels;
+///
+/// // 340 mN over the γ of 253 right answers of 300, and over the γ as printed.
+/// let levels = paper_noise_levels()?.levels;
+/// assert!(levels.iter().any(|level| (level.noise - 0.340 / 1.45).abs() < 1e-12));
+/// assert!(levels.iter().any(|level| (level.noise - 0.340 / 1.4257).abs() < 1e-3));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 ///
 /// # Errors
 /// Never for the paper's own numbers.

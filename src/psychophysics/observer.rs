@@ -10,6 +10,31 @@ use crate::stats::random::Generator;
 const STREAM: u64 = 0x0B5E;
 
 /// Knows what to expect.
+///
+/// ```
+/// use palpate::detect::Channels;
+/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::psychophysics::{Felt, IdealObserver, Interval};
+///
+/// let map = |force: f64| {
+///     let matrix = |force| Matrix::from_fn(2, 2, |_, _| force);
+///     ForceTable::new(vec![0.0, 0.004], vec![0.0, 0.01], matrix(force), matrix(0.0))
+/// };
+/// let felt = |force: f64| Felt {
+///     depths: vec![0.004; 2],
+///     laterals: vec![0.0, 0.005],
+///     forces: Channels { x: vec![0.0; 2], y: vec![force; 2] },
+///     ..Felt::default()
+/// };
+/// let (reference, inclusion) = (map(1.5)?, map(1.75)?);
+/// let observer =
+///     IdealObserver { reference: &reference, inclusion: &inclusion, noise_sd: 0.025, seed: 1 };
+/// // Two samples with Δ/s = 10: γ² = 200, and hardly ever a wrong answer.
+/// let (_, gamma) = observer.theta(&felt(1.5), 0)?;
+/// assert!((gamma - 200.0_f64.sqrt()).abs() < 1e-9);
+/// assert_eq!(observer.choose(&felt(1.5), &felt(1.75), 0)?, Interval::Second);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct IdealObserver<'a> {
     /// Forces without inclusion, F_0.
@@ -23,6 +48,18 @@ pub struct IdealObserver<'a> {
 }
 
 /// Why the observer can not decide.
+///
+/// ```
+/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::psychophysics::{Felt, IdealObserver, ObserverError};
+///
+/// let matrix = || Matrix::from_fn(2, 2, |_, _| 1.5);
+/// let map = ForceTable::new(vec![0.0, 0.004], vec![0.0, 0.01], matrix(), matrix())?;
+/// let observer = IdealObserver { reference: &map, inclusion: &map, noise_sd: 0.1, seed: 1 };
+/// // Nothing was felt.
+/// assert!(matches!(observer.theta(&Felt::default(), 0), Err(ObserverError::Detect(_))));
+/// # Ok::<(), palpate::force_map::InvalidForceMap>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ObserverError {
     /// The maps give no force where the hand was.

@@ -6,6 +6,15 @@ use crate::stats::random::Generator;
 const STREAM: u64 = 0x2AFC;
 
 /// The two samples of a pair, in the order in which they are felt.
+///
+/// ```
+/// use palpate::psychophysics::{Interval, Plan};
+///
+/// // As a fair coin has it: 500 of 1000, give or take four standard deviations of 16.
+/// let plan = Plan::new(42, 1, 1000);
+/// let first = plan.trials().iter().filter(|trial| trial.with_inclusion == Interval::First);
+/// assert!(first.count().abs_diff(500) < 64);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Interval {
     /// The first.
@@ -15,6 +24,14 @@ pub enum Interval {
 }
 
 /// One pair.
+///
+/// ```
+/// use palpate::psychophysics::{Interval, Plan, Trial};
+///
+/// let Trial { inclusion, with_inclusion } = Plan::new(42, 4, 30).trials()[0];
+/// assert!(inclusion < 4);
+/// assert!([Interval::First, Interval::Second].contains(&with_inclusion));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Trial {
     /// Which inclusion, by its place in the list.
@@ -24,6 +41,16 @@ pub struct Trial {
 }
 
 /// All pairs of a subject, in random order.
+///
+/// ```
+/// use palpate::psychophysics::Plan;
+///
+/// // The paper's: 30 pairs for each of four inclusions. The same seed gives the same plan.
+/// let plan = Plan::new(42, 4, 30);
+/// assert_eq!(plan.trials().iter().filter(|trial| trial.inclusion == 3).count(), 30);
+/// assert_eq!(plan.trials().len(), 120);
+/// assert_eq!(plan, Plan::new(42, 4, 30));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Plan {
     trials: Vec<Trial>,

@@ -7,6 +7,14 @@ use crate::hid::{Counters, End, HapticDevice, Session, SessionError};
 use crate::servo::{Limits, Table};
 
 /// Where the handle was, and what was played, while the force followed the table.
+///
+/// ```
+/// use palpate::psychophysics::Felt;
+///
+/// // Before anything is played.
+/// let felt = Felt::default();
+/// assert!(felt.depths.is_empty() && felt.forces.x.is_empty());
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Felt {
     /// Depths, m.
@@ -20,6 +28,13 @@ pub struct Felt {
 }
 
 /// Why a presentation was not whole.
+///
+/// ```
+/// use palpate::hid::End;
+/// use palpate::psychophysics::PresentationError;
+///
+/// assert_eq!(PresentationError::Ended(End::Asked).to_string(), End::Asked.to_string());
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PresentationError {
     /// The device was refused.
@@ -32,6 +47,29 @@ pub enum PresentationError {
 
 /// Plays `table` on `device` for `duration` of the device's time from the first force on, at most
 /// `patience` from the beginning.
+///
+/// ```
+/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+/// use palpate::psychophysics::present;
+/// use palpate::servo::{Limits, LoadedTable};
+/// use std::time::Duration;
+///
+/// # let (depths, laterals) = (vec![0.0, 0.004], vec![-0.01, 0.01]);
+/// # let matrix = |force: f64| Matrix::from_fn(2, 2, |row, _| force * row as f64);
+/// // A map whose force grows from 0 to 1 N at 4 mm, and a hand that presses and sweeps.
+/// let map = ForceTable::new(depths, laterals, matrix(1.0), matrix(0.0))?;
+/// let loaded = LoadedTable::new(&map)?;
+/// let hand = Trajectory::probing(0.003, 0.008, Duration::from_secs(1));
+/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Duration::ZERO, vec![]);
+/// let limits = Limits::new(4.0, 0.05, 0.5, 20)?;
+/// let (half, second) = (Duration::from_millis(500), Duration::from_secs(1));
+/// let felt = present(device, loaded.table()?, limits, half, second)?;
+/// // 1 kHz for half a second, and pushed out of the gel.
+/// assert!(felt.forces.y.len() > 480);
+/// assert!(felt.forces.y.iter().all(|&force| (0.0..1.0).contains(&force)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`PresentationError`].

@@ -18,6 +18,16 @@ const SPREADS: [f64; 2] = [0.01, 10.0];
 const CELLS: u32 = 8;
 
 /// The psychometric function ½ + (½ − λ) Φ((m − d)/s) of the depth d that fits a condition best.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let analysis = analyse(&Table::paper()?)?;
+/// let fit = analysis.conditions[1].psychometric.as_ref();
+/// // The deeper, the fewer are right.
+/// assert!(fit.is_some_and(|fit| fit.predicted.is_sorted_by(|a, b| a > b)));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Psychometric {
     /// m, the depth at which the share is half-way from ½ to 1 − λ, m.
@@ -42,6 +52,17 @@ pub struct Psychometric {
 }
 
 /// A parameter with the ends of its profile likelihood.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let analysis = analyse(&Table::paper()?)?;
+/// let fit = analysis.conditions[1].psychometric.as_ref();
+/// // Half of the way from 100 % to guesses is lost near 8 mm.
+/// let midpoint = fit.map(|fit| fit.midpoint.value).unwrap_or_default();
+/// assert!((midpoint - 0.008).abs() < 0.001);
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Parameter {
     /// The most likely value.

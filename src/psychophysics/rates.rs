@@ -13,6 +13,15 @@ use crate::stats::tails::student_quantile;
 pub const CONFIDENCE: f64 = 0.95;
 
 /// Two ends of an interval.
+///
+/// ```
+/// use palpate::psychophysics::{Bounds, Rate};
+/// use palpate::stats::binomial::clopper_pearson;
+///
+/// let bounds = Bounds::from(clopper_pearson(253, 300, 0.95)?);
+/// assert_eq!(Rate::new(253, 300)?.clopper_pearson, bounds);
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Bounds {
     /// Lower end.
@@ -28,6 +37,18 @@ impl From<Interval> for Bounds {
 }
 
 /// Two ends of an interval, either of which may be missing: the data set no bound there.
+///
+/// ```
+/// use palpate::psychophysics::{OpenBounds, paper_noise_levels};
+///
+/// // The noise behind 253 of 300 right answers, N.
+/// let levels = paper_noise_levels()?.levels;
+/// let bounds = levels.iter().find_map(|level| level.pooled_bounds);
+/// assert!(bounds.is_some_and(|OpenBounds { lower, upper }| {
+///     lower < Some(0.235) && upper > Some(0.242)
+/// }));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct OpenBounds {
     /// Lower end.
@@ -37,6 +58,17 @@ pub struct OpenBounds {
 }
 
 /// A share of right answers.
+///
+/// ```
+/// use palpate::psychophysics::Rate;
+///
+/// let rate = Rate::new(252, 300)?;
+/// assert_eq!(rate.rate, 0.84);
+/// assert!(rate.gamma.gamma.is_some_and(|gamma| (gamma - 1.406).abs() < 1e-3));
+/// // No γ is large enough for an answer that is always right.
+/// assert_eq!(Rate::new(30, 30)?.gamma.gamma, None);
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Rate {
     /// Right answers.
@@ -54,6 +86,15 @@ pub struct Rate {
 }
 
 /// γ of a share of right answers, √2 Φ⁻¹(share), and of the ends of an interval for it.
+///
+/// ```
+/// use palpate::psychophysics::{Bounds, GammaEstimate};
+///
+/// let gamma = GammaEstimate::of(0.84, Bounds { lower: 0.4, upper: 1.0 })?;
+/// assert!(gamma.gamma.is_some_and(|gamma| (gamma - 1.406).abs() < 1e-3));
+/// assert_eq!((gamma.lower, gamma.upper), (Some(0.0), None));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct GammaEstimate {
     /// 0 for half of the answers or fewer; `None` if all are right: no γ is large enough.
@@ -112,6 +153,15 @@ impl Rate {
 }
 
 /// An interval that lets subjects differ: their shares are the sample, not their answers.
+///
+/// ```
+/// use palpate::psychophysics::{Table, analyse};
+///
+/// let inclusion = &analyse(&Table::paper()?)?.conditions[1].inclusions[2];
+/// // Ten subjects say less than 300 answers that are all independent.
+/// assert!(inclusion.clustered.is_some_and(|clustered| clustered.width_ratio > 1.5));
+/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Clustered {
     /// The standard error of the pooled share.

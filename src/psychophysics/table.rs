@@ -21,6 +21,14 @@ const EXPECTED_HEADER: &str =
 pub const MOST_TRIALS: u32 = 1_000;
 
 /// An inclusion: a column of the table.
+///
+/// ```
+/// use palpate::psychophysics::{Inclusion, Table};
+///
+/// let inclusion = Inclusion { name: "6.6".into(), depth: 0.0066 };
+/// assert_eq!(Table::paper()?.inclusions()[2], inclusion);
+/// # Ok::<(), palpate::psychophysics::TableError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inclusion {
     /// As in the header: untrusted text.
@@ -30,6 +38,16 @@ pub struct Inclusion {
 }
 
 /// The answers of one subject in one condition.
+///
+/// ```
+/// use palpate::psychophysics::Table;
+///
+/// let table = Table::paper()?;
+/// let subject = &table.conditions()[0].subjects[6];
+/// assert_eq!((subject.name.as_str(), subject.trials), ("7", 30));
+/// assert_eq!(subject.correct, [23, 19, 18, 13]);
+/// # Ok::<(), palpate::psychophysics::TableError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Subject {
     /// Who answered: untrusted text.
@@ -41,6 +59,18 @@ pub struct Subject {
 }
 
 /// One of the experiments.
+///
+/// ```
+/// use palpate::psychophysics::Table;
+///
+/// let table = Table::paper()?;
+/// let [contact, playback, _] = table.conditions() else { unreachable!("Table 1 has three") };
+/// assert_eq!((contact.name.as_str(), playback.name.as_str()), ("direct contact", "FEM data"));
+/// // The inclusion at 6.6 mm.
+/// assert_eq!(playback.counts(2)[0], (30, 30));
+/// assert_eq!(playback.pooled(2), (253, 300));
+/// # Ok::<(), palpate::psychophysics::TableError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Condition {
     /// What was felt: untrusted text.
@@ -52,6 +82,18 @@ pub struct Condition {
 /// Right answers of subjects to inclusions under conditions. Every count fits its trials, and there
 /// is at least one of each.
 ///
+/// ```
+/// use palpate::psychophysics::Table;
+///
+/// let table = Table::from_csv("subject,condition,trials,2.6,8.6\nA,gel,20,19,12\n", "mine.csv")?;
+/// assert_eq!(table.inclusions()[1].depth, 0.0086);
+/// assert_eq!(table.conditions()[0].pooled(1), (12, 20));
+/// // Three conditions, ten subjects each.
+/// let paper = Table::paper()?;
+/// assert!(paper.conditions().iter().all(|condition| condition.subjects.len() == 10));
+/// # Ok::<(), palpate::psychophysics::TableError>(())
+/// ```
+///
 /// Implements: PSY-020, PSY-021.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
@@ -60,6 +102,13 @@ pub struct Table {
 }
 
 /// Why a table of counts is refused: one line that begins with the file.
+///
+/// ```
+/// use palpate::psychophysics::Table;
+///
+/// let error = Table::from_csv("subject,condition,trials,2.6\nA,gel,20,21\n", "mine.csv");
+/// assert!(error.unwrap_err().to_string().starts_with("mine.csv:2: 2.6 = \"21\""));
+/// ```
 ///
 /// Implements: PSY-022.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -74,6 +123,13 @@ pub struct TableError {
 }
 
 /// What is wrong with a table of counts.
+///
+/// ```
+/// use palpate::psychophysics::{Table, TableProblem};
+///
+/// let error = Table::from_csv("subject,condition,trials,2.6\n", "mine.csv").unwrap_err();
+/// assert_eq!(error.problem, TableProblem::Empty);
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TableProblem {
     /// The file cannot be read.
@@ -121,6 +177,16 @@ impl Table {
     }
 
     /// Reads the table at `path`.
+    ///
+    /// ```
+    /// use palpate::psychophysics::Table;
+    ///
+    /// let path = std::env::temp_dir().join(format!("counts-{}.csv", std::process::id()));
+    /// std::fs::write(&path, "subject,condition,trials,2.6\nA,gel,20,19\n")?;
+    /// assert_eq!(Table::read(&path)?.conditions()[0].pooled(0), (19, 20));
+    /// # std::fs::remove_file(&path)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Table::from_csv`]; [`TableProblem::Read`] if the file cannot be read as UTF-8.

@@ -44,14 +44,14 @@
 mod comparison;
 mod figures;
 mod findings;
-mod html;
+pub(crate) mod html;
 pub mod paper;
 mod people;
 mod quality;
 mod summary;
 #[cfg(test)]
 mod tests;
-mod text;
+pub(crate) mod text;
 
 pub use comparison::{Comparison, Value};
 pub use figures::figures;

@@ -10,6 +10,14 @@ use core::fmt;
 
 /// Why a question about a proportion was refused.
 ///
+/// ```
+/// use palpate::stats::binomial::{ProportionError, clopper_pearson};
+///
+/// let error = ProportionError::Successes { successes: 31, trials: 30 };
+/// assert_eq!(clopper_pearson(31, 30, 0.95), Err(error));
+/// assert_eq!(error.to_string(), "31 successes are more than the 30 trials");
+/// ```
+///
 /// Implements: DET-123.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ProportionError {
@@ -57,6 +65,14 @@ impl fmt::Display for ProportionError {
 impl core::error::Error for ProportionError {}
 
 /// An interval for a proportion.
+///
+/// ```
+/// use palpate::stats::binomial::{Interval, clopper_pearson};
+///
+/// let Interval { lower, upper } = clopper_pearson(27, 30, 0.95)?;
+/// assert!(lower < 0.9 && 0.9 < upper);
+/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// Lower end, ≥ 0.
@@ -66,6 +82,13 @@ pub struct Interval {
 }
 
 /// Pr(X = successes) for X ~ Binomial(trials, p).
+///
+/// ```
+/// use palpate::stats::binomial::probability;
+///
+/// assert!((probability(2, 4, 0.5)? - 6.0 / 16.0).abs() < 1e-15);
+/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
+/// ```
 ///
 /// # Errors
 /// No trials; more successes than trials; p not strictly between 0 and 1.
@@ -78,6 +101,14 @@ pub fn probability(successes: u64, trials: u64, p: f64) -> Result<f64, Proportio
 }
 
 /// Pr(X ≥ successes) for X ~ Binomial(trials, p). Takes about √trials steps.
+///
+/// ```
+/// use palpate::stats::binomial::at_least;
+///
+/// // Guessing gets 20 or more of 30 pairs right once in twenty times.
+/// assert!((at_least(20, 30, 0.5)? - 0.0494).abs() < 1e-4);
+/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
+/// ```
 ///
 /// # Errors
 /// As [`probability`].
@@ -97,6 +128,14 @@ pub fn at_least(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionEr
 
 /// Pr(X ≤ successes) for X ~ Binomial(trials, p).
 ///
+/// ```
+/// use palpate::stats::binomial::{at_least, at_most};
+///
+/// assert!((at_most(1, 4, 0.5)? - 5.0 / 16.0).abs() < 1e-15);
+/// assert!((at_most(9, 30, 0.2)? + at_least(10, 30, 0.2)? - 1.0).abs() < 1e-15);
+/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
+/// ```
+///
 /// # Errors
 /// As [`probability`].
 ///
@@ -114,6 +153,16 @@ pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionErr
 
 /// The exact interval of Clopper and Pearson: it covers the true proportion with at least the
 /// stated confidence.
+///
+/// ```
+/// use palpate::stats::binomial::clopper_pearson;
+///
+/// // No miss in 10 trials: (1 − upper)^10 = 0.025.
+/// let interval = clopper_pearson(0, 10, 0.95)?;
+/// assert_eq!(interval.lower, 0.0);
+/// assert!((interval.upper - (1.0 - 0.025_f64.powf(0.1))).abs() < 1e-14);
+/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
+/// ```
 ///
 /// # Errors
 /// No trials; more successes than trials; a confidence not strictly between 0 and 1.
@@ -141,6 +190,15 @@ pub fn clopper_pearson(
 }
 
 /// The score interval of Wilson.
+///
+/// ```
+/// use palpate::stats::binomial::wilson;
+///
+/// // No miss in 10 trials: upper = z²/(10 + z²).
+/// let square = 1.959963984540054_f64.powi(2);
+/// assert!((wilson(0, 10, 0.95)?.upper - square / (10.0 + square)).abs() < 1e-14);
+/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
+/// ```
 ///
 /// # Errors
 /// As [`clopper_pearson`].

@@ -93,7 +93,7 @@ fn split(a: f64) -> (f64, f64) {
     (high, a - high)
 }
 
-/// A running sum in twice the working precision, in [`LANES`] independent parts.
+/// A running sum in twice the working precision, in four independent parts.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Accumulator {
     high: [f64; LANES],

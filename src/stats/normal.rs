@@ -14,6 +14,12 @@ const FRAC_2_SQRT_PI: f64 = core::f64::consts::FRAC_2_SQRT_PI;
 const DENSITY_AT_ZERO: f64 = 0.398_942_280_401_432_7;
 
 /// Why a value of the normal law was refused.
+///
+/// ```
+/// use palpate::stats::normal::{NormalError, quantile};
+///
+/// assert_eq!(quantile(1.0), Err(NormalError::ProbabilityOutOfRange { value: 1.0 }));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NormalError {
     /// The argument is NaN or infinite.
@@ -46,6 +52,15 @@ impl core::error::Error for NormalError {}
 
 /// φ(x) = exp(−x²/2)/√(2π).
 ///
+/// ```
+/// use palpate::stats::normal::density;
+///
+/// let top = 1.0 / core::f64::consts::TAU.sqrt();
+/// assert!((density(0.0)? - top).abs() < 1e-16);
+/// assert_eq!(density(1.5)?, density(-1.5)?);
+/// # Ok::<(), palpate::stats::normal::NormalError>(())
+/// ```
+///
 /// # Errors
 /// [`NormalError::NotFinite`].
 ///
@@ -56,6 +71,14 @@ pub fn density(x: f64) -> Result<f64, NormalError> {
 
 /// Φ(x), the probability of a value of at most x.
 ///
+/// ```
+/// use palpate::stats::normal::cdf;
+///
+/// assert_eq!(cdf(0.0)?, 0.5);
+/// assert!((cdf(1.0)? - cdf(-1.0)? - 0.6827).abs() < 1e-4);
+/// # Ok::<(), palpate::stats::normal::NormalError>(())
+/// ```
+///
 /// # Errors
 /// [`NormalError::NotFinite`].
 ///
@@ -65,6 +88,14 @@ pub fn cdf(x: f64) -> Result<f64, NormalError> {
 }
 
 /// 1 − Φ(x), without cancellation.
+///
+/// ```
+/// use palpate::stats::normal::{cdf, upper_tail};
+///
+/// assert_eq!(1.0 - cdf(10.0)?, 0.0);
+/// assert!((upper_tail(10.0)? / 7.619853024160527e-24 - 1.0).abs() < 1e-13);
+/// # Ok::<(), palpate::stats::normal::NormalError>(())
+/// ```
 ///
 /// # Errors
 /// [`NormalError::NotFinite`].
@@ -78,6 +109,14 @@ pub fn upper_tail(x: f64) -> Result<f64, NormalError> {
 ///
 /// M. J. Wichura's algorithm AS 241 (Applied Statistics 37, 1988) and one Newton step on Φ. For an
 /// upper tail q ask for −Φ⁻¹(q): 1 − q would be rounded.
+///
+/// ```
+/// use palpate::stats::normal::quantile;
+///
+/// assert!((quantile(0.95)? - 1.6448536269514722).abs() < 1e-15);
+/// assert_eq!(quantile(0.5)?, 0.0);
+/// # Ok::<(), palpate::stats::normal::NormalError>(())
+/// ```
 ///
 /// # Errors
 /// [`NormalError::ProbabilityOutOfRange`] unless 0 < p < 1.

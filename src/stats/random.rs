@@ -12,6 +12,17 @@ const BATCH: usize = 64;
 
 /// Four 64-bit words for each value of a 256-bit counter.
 ///
+/// ```
+/// use palpate::stats::random::Generator;
+///
+/// let generator = Generator::new(1999, 0);
+/// let mut deviates = [0.0; 100];
+/// generator.normals(7, 0, &mut deviates);
+/// // Any of them alone, without those before it.
+/// assert_eq!(deviates[42], generator.normal(7, 42));
+/// assert!(deviates.iter().all(|deviate| deviate.abs() < 5.0));
+/// ```
+///
 /// Implements: DET-110, DET-111, DET-112.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Generator {
@@ -27,6 +38,15 @@ impl Generator {
     }
 
     /// Philox4x64-10 of one counter.
+    ///
+    /// ```
+    /// use palpate::stats::random::Generator;
+    ///
+    /// // A known answer of the authors' Random123.
+    /// let words = Generator::new(0, 0).words([0; 4]);
+    /// assert_eq!(words[0], 0x1655_4d9e_ca36_314c);
+    /// assert_eq!(words[3], 0x7e68_b68a_ec7b_a23b);
+    /// ```
     #[inline]
     pub fn words(&self, counter: [u64; 4]) -> [u64; 4] {
         const MULTIPLIERS: [u64; 2] = [0xD2E7_470E_E14C_6C93, 0xCA5A_8263_9512_1157];

@@ -23,6 +23,16 @@ const EXPECTED_HEADER: &str = "position_mm,lateral_force_n,normal_force_n, in an
 impl Trace {
     /// Reads the trace at `path`.
     ///
+    /// ```
+    /// use palpate::trace::Trace;
+    ///
+    /// let path = std::env::temp_dir().join(format!("sweep-{}.csv", std::process::id()));
+    /// std::fs::write(&path, "position_mm,lateral_force_n,normal_force_n\n0,0,1.5\n")?;
+    /// assert_eq!(Trace::read(&path)?.record(None)?.forces().y, [1.5]);
+    /// # std::fs::remove_file(&path)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Trace::from_csv`]; [`TraceProblem::Read`] if the file cannot be read as UTF-8.
     pub fn read(path: &Path) -> Result<Trace, TraceError> {

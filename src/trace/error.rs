@@ -10,6 +10,14 @@ use crate::phantom::decimal::format_scaled;
 
 /// Why a trace is refused: one line that begins with the file.
 ///
+/// ```
+/// use palpate::trace::Trace;
+///
+/// let text = "position_mm,lateral_force_n,normal_force_n\n0,0,1.5\n0,0,1.5\n";
+/// let error = Trace::from_csv(text, "sweep.csv").unwrap_err();
+/// assert_eq!((error.file.as_str(), error.line), ("sweep.csv", Some(3)));
+/// ```
+///
 /// Implements: TRC-008.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceError {
@@ -33,6 +41,16 @@ impl fmt::Display for TraceError {
 impl std::error::Error for TraceError {}
 
 /// What is wrong with a trace.
+///
+/// ```
+/// use palpate::trace::{Abscissa, Trace, TraceProblem};
+///
+/// // Times are no positions before the motion is known.
+/// let text = "time_s,lateral_force_n,normal_force_n\n0,0,1.5\n";
+/// let error = Trace::from_csv(text, "sweep.csv")?.record(None).unwrap_err();
+/// assert_eq!(error.problem, TraceProblem::Motion { abscissa: Abscissa::Time });
+/// # Ok::<(), palpate::trace::TraceError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TraceProblem {
     /// The file cannot be read.

@@ -27,6 +27,29 @@ pub const MOST_SAMPLES: usize = 20_000;
 pub const DIED_AWAY: f64 = 0.1;
 
 /// What a scan says.
+///
+/// ```
+/// use palpate::detect::Channels;
+/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::trace::{Criterion, Trace, locate};
+///
+/// let map = |bump: [f64; 5]| {
+///     let laterals = vec![-0.002, -0.001, 0.0, 0.001, 0.002];
+///     let matrix = |force: [f64; 5]| Matrix::from_fn(1, 5, |_, column| force[column]);
+///     ForceTable::new(vec![0.004], laterals, matrix(bump), matrix([0.0; 5]))
+/// };
+/// let (nothing, bump) = (map([0.0; 5])?, map([0.0, 0.25, 0.5, 0.25, 0.0])?);
+/// let header = "position_mm,lateral_force_n,normal_force_n\n";
+/// let text = format!("{header}-2,0,0\n-1,0,0.25\n0,0,0.5\n1,0,0.25\n2,0,0\n");
+/// let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
+/// let noise_sd = Channels { x: 0.25, y: 0.25 };
+/// let found = locate(&record, &nothing, &bump, 0.004, noise_sd, Criterion::Map, 0.5)?;
+/// assert_eq!((found.theta_max, found.position, found.candidates), (3.0, 0.0, 5));
+/// // All candidates together are less likely than the best; the signal has died away at the ends.
+/// assert!(found.theta_mixture < found.theta_max);
+/// assert_eq!(found.template_edge, 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Location {
     /// Θ_max.
@@ -72,6 +95,28 @@ struct Grid {
 
 /// Searches `record`, swept at `depth` (m), for the inclusion of the map `inclusion`, in white noise
 /// of standard deviation `noise_sd` a sample (N). The candidates are the positions of the samples.
+///
+/// ```
+/// use palpate::detect::{Channels, Decision};
+/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::trace::{Criterion, Trace, locate};
+///
+/// let map = |bump: [f64; 5]| {
+///     let laterals = vec![-0.002, -0.001, 0.0, 0.001, 0.002];
+///     let matrix = |force: [f64; 5]| Matrix::from_fn(1, 5, |_, column| force[column]);
+///     ForceTable::new(vec![0.004], laterals, matrix(bump), matrix([0.0; 5]))
+/// };
+/// let (nothing, bump) = (map([0.0; 5])?, map([0.0, 1.0, 2.0, 1.0, 0.0])?);
+/// // The bump lies 1 mm to the left of x = 0.
+/// let header = "position_mm,lateral_force_n,normal_force_n\n";
+/// let text = format!("{header}-2,0,1\n-1,0,2\n0,0,1\n1,0,0\n2,0,0\n");
+/// let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
+/// let noise_sd = Channels { x: 0.25, y: 0.25 };
+/// let found = locate(&record, &nothing, &bump, 0.004, noise_sd, Criterion::Map, 0.5)?;
+/// assert_eq!(found.decision, Decision::Inclusion);
+/// assert!((found.position + 0.001).abs() < 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// As [`super::judge`]; a record whose steps are not equal, that is too long, or shorter than the

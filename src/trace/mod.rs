@@ -7,6 +7,38 @@
 //! | `error.rs` | what can be wrong |
 //! | `judge.rs` | criterion, and the record at a known position |
 //! | `locate.rs` | the scan for the position, equation (10) |
+//!
+//! ```
+//! use palpate::detect::{Channels, Decision};
+//! use palpate::force_map::{ForceTable, Matrix};
+//! use palpate::trace::{Criterion, Trace, judge, locate};
+//!
+//! // Maps at 4 mm over −3 … 3 mm: 1.5 N, and with the inclusion a bump.
+//! let map = |bump: [f64; 7]| {
+//!     let laterals = (-3..=3).map(|x| f64::from(x) * 1e-3).collect();
+//!     let matrix = |force: [f64; 7]| Matrix::from_fn(1, 7, |_, column| force[column]);
+//!     ForceTable::new(vec![0.004], laterals, matrix(bump.map(|b| 1.5 + b)), matrix([0.0; 7]))
+//! };
+//! let reference = map([0.0; 7])?;
+//! let inclusion = map([0.0, 0.0, 0.25, 0.5, 0.25, 0.0, 0.0])?;
+//!
+//! // A sweep over an inclusion 1 mm to the right of where the maps have theirs.
+//! let mut text = String::from("position_mm,lateral_force_n,normal_force_n\n");
+//! for (i, force) in [1.5, 1.5, 1.5, 1.75, 2.0, 1.75, 1.5].iter().enumerate() {
+//!     text += &format!("{},0,{force}\n", i as i32 - 3);
+//! }
+//! let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
+//! let noise_sd = Channels { x: 0.125, y: 0.125 };
+//!
+//! // Where the maps have it, half of the signal is found: θ = Σ rΔ/s² − γ²/2 = 16 − 12.
+//! let (eta, found) =
+//!     judge(&record, &reference, &inclusion, 0.004, noise_sd, Criterion::Map, 0.5)?;
+//! assert_eq!((eta, found.statistic.theta), (0.0, 4.0));
+//! let found = locate(&record, &reference, &inclusion, 0.004, noise_sd, Criterion::Map, 0.5)?;
+//! assert_eq!((found.decision, found.theta_max), (Decision::Inclusion, 12.0));
+//! assert!((found.position - 0.001).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod csv;
 mod error;
@@ -23,6 +55,14 @@ use crate::detect::Channels;
 use crate::force_map::{ForceTable, SAME_POSITION, Sweep};
 
 /// What the first column of a trace counts.
+///
+/// ```
+/// use palpate::trace::{Abscissa, Trace};
+///
+/// let text = "time_s,lateral_force_n,normal_force_n\n0,0,1.5\n0.1,0,1.75\n";
+/// assert_eq!(Trace::from_csv(text, "sweep.csv")?.abscissa(), Abscissa::Time);
+/// # Ok::<(), palpate::trace::TraceError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Abscissa {
     /// Seconds since some start.
@@ -32,6 +72,18 @@ pub enum Abscissa {
 }
 
 /// Forces on the probe as they were recorded, at least one sample.
+///
+/// ```
+/// use palpate::trace::{Abscissa, Trace};
+///
+/// let text = "position_mm,lateral_force_mn,normal_force_n\n-1,-250,1.5\n1,250,1.75\n";
+/// let trace = Trace::from_csv(text, "sweep.csv")?;
+/// assert_eq!(trace.abscissa(), Abscissa::Position);
+/// let record = trace.record(None)?;
+/// assert_eq!(record.positions(), [-0.001, 0.001]);
+/// assert_eq!(record.forces().x, [-0.25, 0.25]);
+/// # Ok::<(), palpate::trace::TraceError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     file: String,
@@ -50,6 +102,18 @@ struct Sample {
 }
 
 /// The motion of the probe while times were recorded.
+///
+/// ```
+/// use palpate::trace::{Motion, Trace};
+///
+/// // To the left from 3 mm, at 20 mm/s: the samples are turned round, so that positions increase.
+/// let text = "time_s,lateral_force_n,normal_force_n\n0,0,1.5\n0.1,0,1.75\n";
+/// let motion = Motion { velocity: -0.02, start: 0.003 };
+/// let record = Trace::from_csv(text, "sweep.csv")?.record(Some(motion))?;
+/// assert_eq!(record.positions(), [0.001, 0.003]);
+/// assert_eq!(record.forces().y, [1.75, 1.5]);
+/// # Ok::<(), palpate::trace::TraceError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
     /// Velocity along +x, m/s; negative if the probe moved towards −x.
@@ -59,6 +123,21 @@ pub struct Motion {
 }
 
 /// A trace over positions, which increase by more than [`SAME_POSITION`] from sample to sample.
+///
+/// ```
+/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::trace::Trace;
+///
+/// let text = "position_mm,lateral_force_n,normal_force_n\n1,0,1.5\n3,0,1.75\n";
+/// let record = Trace::from_csv(text, "sweep.csv")?.record(None)?;
+/// assert_eq!(record.file(), "sweep.csv");
+/// assert_eq!((record.positions(), record.forces().y), (&[0.001, 0.003][..], &[1.5, 1.75][..]));
+/// // What a map of 0, 1, 2 N at 0, 2, 4 mm expects there.
+/// let matrix = || Matrix::from_fn(1, 3, |_, column| column as f64);
+/// let map = ForceTable::new(vec![0.004], vec![0.0, 0.002, 0.004], matrix(), matrix())?;
+/// assert_eq!(record.expected(&map, 0.004)?.y, [0.5, 1.5]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     file: String,

@@ -33,7 +33,7 @@ use std::vec::Vec;
 
 use crate::detect::Channels;
 use crate::stats::random::Generator;
-use ledger::Row;
+pub use ledger::Row;
 
 /// The seed of the battery in the tests, whose result is therefore always the same.
 pub const FIXED_SEED: u64 = 20_261_121;
@@ -249,7 +249,7 @@ impl Check {
     /// Implements: CLI-050.
     pub fn run_negative_controls(&self, seed: u64) -> Result<(), Failure> {
         let row = self.row(seed)?;
-        for &(defect, _) in row.powers.iter().filter(|(_, power)| *power >= SHOWN_POWER) {
+        for defect in row.shown_defects() {
             for replicate in 1..=REPLICATES {
                 if !self.draw(seed, defect, replicate, &row)?.0 {
                     return Err(self.failure(seed, Reason::Blind { defect }));
@@ -278,7 +278,11 @@ impl Check {
         Ok((rejected, draw.notes.into_inner()))
     }
 
-    fn row(&self, seed: u64) -> Result<Row, Failure> {
+    /// Its row in the ledger.
+    ///
+    /// # Errors
+    /// [`Failure`] with this seed if the ledger is broken.
+    pub fn row(&self, seed: u64) -> Result<Row, Failure> {
         ledger::row(self.name)
             .map_err(|error| self.failure(seed, Reason::Refused(error.to_string())))
     }
