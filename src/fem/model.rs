@@ -21,6 +21,7 @@ use crate::phantom::Phantom;
 /// let model = Model::new(&phantom, &options, Contact::default())?;
 /// assert_eq!((model.phantom(), model.options()), (&phantom, &options));
 /// assert_eq!(model.surface().positions.len(), model.mesh().surface().len());
+/// assert_eq!(model.matrix().column_starts.len(), model.matrix().numbering.unknowns() + 1);
 /// assert_eq!(model.factor().surface_compliance(), model.surface().compliance);
 ///
 /// let [left, right] = [-1e-3, 1e-3].map(|lateral| model.solve(Pose { depth: 2e-3, lateral }));

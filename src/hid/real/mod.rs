@@ -49,6 +49,18 @@ const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
+/// Which one it is, or why there is none:
+///
+/// ```
+/// use palpate::hid::real::{RealDevice, Wanted};
+///
+/// let wanted = Wanted { serial: Some("lost".into()), ..Wanted::default() };
+/// match RealDevice::open(&wanted) {
+///     Ok(device) => assert_eq!(device.identity().serial, "lost"),
+///     Err(error) => assert!(!error.to_string().is_empty()),
+/// }
+/// ```
+///
 /// Implements: HID-033, HID-034, HID-035, HID-080, HID-081.
 #[derive(Debug)]
 pub struct RealDevice {
@@ -62,13 +74,14 @@ pub struct RealDevice {
 impl RealDevice {
     /// Opens the only device that is wanted and fits the vendor profile.
     ///
-    /// ```no_run
+    /// ```
     /// use palpate::hid::real::{RealDevice, Wanted};
     ///
-    /// let wanted = Wanted { vendor: Some(0x1209), product: Some(1), serial: None };
-    /// let device = RealDevice::open(&wanted)?;
-    /// assert_eq!(device.identity().vendor, 0x1209);
-    /// # Ok::<(), palpate::hid::real::OpenError>(())
+    /// let wanted = Wanted { vendor: Some(0xFFFF), product: Some(0xFFFF), serial: Some("lost".into()) };
+    /// match RealDevice::open(&wanted) {
+    ///     Ok(device) => assert_eq!(device.identity().serial, "lost"),
+    ///     Err(error) => assert!(!error.to_string().is_empty()), // there is none, and it says so
+    /// }
     /// ```
     ///
     /// # Errors
@@ -112,6 +125,18 @@ impl RealDevice {
     /// drop(device); // and somebody pulls the cable and puts it back
     /// let device = RealDevice::open_within(&same, Duration::from_secs(5))?;
     /// # Ok::<(), palpate::hid::real::OpenError>(())
+    /// ```
+    ///
+    /// Without the device, it gives up after that time:
+    ///
+    /// ```
+    /// use palpate::hid::real::{RealDevice, Wanted};
+    /// use std::time::{Duration, Instant};
+    ///
+    /// let lost = Wanted { vendor: Some(0xFFFF), product: Some(0xFFFF), serial: Some("lost".into()) };
+    /// let (began, patience) = (Instant::now(), Duration::from_millis(50));
+    /// let opened = RealDevice::open_within(&lost, patience);
+    /// assert!(opened.is_ok() || began.elapsed() >= patience);
     /// ```
     ///
     /// # Errors
