@@ -42,7 +42,7 @@ fn main() {
     let Some((mesh, compliance)) = last else {
         return;
     };
-    let unknowns = compliance.nrows();
+    let unknowns = compliance.order();
     // A bump around x = 3 mm that pushes down and to the right, N.
     let surface = mesh.surface();
     let load: Vec<f64> = (surface.clone())

@@ -14,9 +14,47 @@
 //! | §4 playback: reports of the device | [`hid`] |
 //! | §4 pairs of samples, felt and judged; §5 what the answers say | [`psychophysics`] |
 //! | figures, tables | [`report`] |
-//! | other implementations: questions and answers | `oracle`, `conform` |
+//! | other implementations: questions and answers | [`oracle`] |
 //!
 //! Lengths are metres, forces newtons, moduli pascals throughout; `spec/README.md` has the signs.
+//!
+//! From a phantom to forces, from forces to a decision and to what a hand would feel:
+//!
+//! ```
+//! # #[cfg(feature = "fem")]
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use palpate::detect::{Channels, Decision, assessment::assess};
+//! use palpate::fem::{Contact, MeshOptions, Model};
+//! use palpate::phantom::Phantom;
+//! use palpate::servo::LoadedTable;
+//!
+//! // Force maps of the gel alone, and with an inclusion under 6.6 mm of it.
+//! let coarse = MeshOptions { size: 2e-3, ..MeshOptions::default() };
+//! let laterals: Vec<f64> = (-5..=5).map(|k| 2e-3 * f64::from(k)).collect();
+//! let map = |name| -> Result<_, Box<dyn std::error::Error>> {
+//!     let model = Model::new(&Phantom::builtin(name)?, &coarse, Contact::default())?;
+//!     Ok(model.map(&[2e-3, 4e-3], &laterals, &|_| ())?)
+//! };
+//! let (without, with) = (map("none")?, map("6.6")?);
+//!
+//! // A sweep at 4 mm, as it would come without noise over the inclusion. Samples in noise of 0.1 N.
+//! let (f0, f1) = (without.row(4e-3)?, with.row(4e-3)?);
+//! let f0 = Channels { x: f0.lateral_force, y: f0.normal_force };
+//! let f1 = Channels { x: f1.lateral_force, y: f1.normal_force };
+//! let found = assess(f1, f0, f1, Channels { x: 0.1, y: 0.1 }, 0.5, 0.0)?;
+//! assert_eq!(found.decision, Decision::Inclusion);
+//! assert!((found.statistic.theta - found.statistic.gamma.powi(2) / 2.0).abs() < 1e-9);
+//!
+//! // The force on a hand that probes there, 3 mm deep: between the forces at 2 and at 4 mm.
+//! let loaded = LoadedTable::new(with.forces())?;
+//! let force = loaded.table()?.force(3e-3, 0.0);
+//! let [shallow, deep] = [0, 1].map(|row| with.normal_force().row(row)[5] as f32);
+//! assert!(shallow < force.normal && force.normal < deep);
+//! # Ok(())
+//! # }
+//! # #[cfg(not(feature = "fem"))]
+//! # fn main() {}
+//! ```
 //!
 //! With `default-features = false` the crate is `no_std`, does not allocate, and depends on `libm`
 //! alone: that part holds [`stats`], [`detect`], [`servo`] and the reports of [`hid`].
@@ -24,8 +62,8 @@
 
 #[cfg(feature = "cli")]
 pub mod cli;
-#[cfg(feature = "oracle")]
-pub mod conform;
+#[cfg(feature = "cli")]
+mod conform;
 #[cfg(feature = "std")]
 pub mod csv;
 pub mod detect;

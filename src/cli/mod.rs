@@ -26,7 +26,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
-pub use error::CliError;
+use error::CliError;
 
 use crate::fem::{Contact, Element};
 
@@ -116,6 +116,18 @@ impl From<ElementName> for Element {
 }
 
 /// Runs the program with the given arguments, the first of which is its name.
+///
+/// ```
+/// use std::ffi::OsString;
+/// use std::process::ExitCode;
+///
+/// // Prints the version.
+/// let code = palpate::cli::main(["palpate", "--version"].map(OsString::from));
+/// assert_eq!(code, ExitCode::SUCCESS);
+/// // Says on the standard error what would be right.
+/// let code = palpate::cli::main(["palpate", "--deth"].map(OsString::from));
+/// assert_ne!(code, ExitCode::SUCCESS);
+/// ```
 ///
 /// Implements: CLI-001, CLI-002, CLI-003.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {

@@ -134,22 +134,7 @@ fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError
         depth: deepest,
         lateral: nearest.unwrap_or(0.0),
     };
-    let solution = model.solve(pose)?;
-    let mesh = model.mesh();
-    let corners = mesh.element.corners();
-    let check = model.checks(std::slice::from_ref(&solution));
-    Ok(DeformedMesh {
-        phantom: model.phantom().clone(),
-        pose,
-        nodes: mesh.nodes.clone(),
-        displacements: model.field(&solution)?.displacements,
-        corners: mesh
-            .elements()
-            .map(|nodes| nodes[..corners].to_vec())
-            .collect(),
-        regions: mesh.regions.clone(),
-        min_det: check[0].min_det,
-    })
+    DeformedMesh::solve(model, pose)
 }
 
 /// Writes everything and says where.

@@ -6,10 +6,10 @@ use std::time::Duration;
 use clap::Args;
 
 use super::output::print;
-use super::playback::{limits, loaded_map, paper_table};
+use super::playback::{limits, loaded_map};
 use super::{CliError, Format};
-use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
-use crate::hid::timing::{Distribution, Timing, TimingError, measure};
+use crate::hid::simulated::PAPER;
+use crate::hid::timing::{Distribution, Timing, TimingError, measure, paper};
 
 /// Arguments of `palpate timing`.
 #[derive(Debug, Args)]
@@ -37,14 +37,14 @@ pub struct TimingArguments {
 pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
     let loaded = match &arguments.map {
         Some(path) => loaded_map(path)?,
-        None => paper_table()?,
+        None => paper::table().map_err(CliError::Playback)?,
     };
     let defect = |error: &dyn std::fmt::Display| CliError::Check(format!("timing: {error}"));
     let table = loaded.table().map_err(|error| defect(&error))?;
     let limits = limits(4.0)?;
     let budget = Duration::from_micros(arguments.budget_us);
     let period = Duration::from_micros(u64::from(PAPER.period_us));
-    let device = probing_without_end(arguments.cycles);
+    let device = paper::device(arguments.cycles);
     let paced = arguments.paced.then_some(period);
     let timing = measure(device, table, limits, arguments.cycles, budget, paced)
         .map_err(|error: TimingError| defect(&error))?;
@@ -62,19 +62,6 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
         "timing: {} of {} cycles took longer than {} µs, expected at most 1 in 1000",
         timing.misses, timing.cycles, arguments.budget_us
     )))
-}
-
-/// The paper's display in a hand that sweeps through the gel and back until `cycles` are over.
-fn probing_without_end(cycles: u64) -> SimulatedDevice {
-    let sweep = Duration::from_millis(1000 + cycles);
-    let trajectory = Trajectory::probing(3e-3, 9e-3, sweep);
-    SimulatedDevice::new(
-        PAPER,
-        Mechanics::PAPER,
-        trajectory,
-        Duration::ZERO,
-        Vec::new(),
-    )
 }
 
 /// The figures for people.

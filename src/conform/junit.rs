@@ -3,14 +3,14 @@
 use std::fmt::Write;
 
 use super::suite::Suite;
-use super::verdict::{Outcome, Verdict};
+use super::verdict::{Count, Outcome, Verdict};
 
 /// The verdict as XML; `suite` holds the groups of the verdict, and may hold others.
 ///
 /// Implements: ORA-050.
 pub fn junit(verdict: &Verdict, suite: &Suite) -> String {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let total = |count: fn(&super::Count) -> usize| verdict.groups.iter().map(count).sum::<usize>();
+    let total = |count: fn(&Count) -> usize| verdict.groups.iter().map(count).sum::<usize>();
     // Writing to a String cannot fail.
     let _ = writeln!(
         text,

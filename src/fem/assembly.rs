@@ -13,6 +13,15 @@ const FIXED: u32 = u32::MAX;
 /// of its nested dissection; its mirror image in the same order; the axis, from the floor up; and the
 /// nodes of the outer surface last, from left to right.
 ///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// let numbering = &model.matrix().numbering;
+/// let free = model.mesh().free().iter().filter(|free| **free).count();
+/// assert_eq!(numbering.unknowns(), 2 * free);
+/// assert_eq!(numbering.unknown(0, 1), None); // a corner of the floor
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Implements: FEM-006.
 #[derive(Debug, Clone)]
 pub struct Numbering {
@@ -59,6 +68,16 @@ impl Numbering {
     }
 
     /// The unknown of displacement component `direction` of `node`, or `None` if the node is fixed.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let numbering = &model.matrix().numbering;
+    /// let last = model.mesh().surface().end - 1;
+    /// // The surface comes last, from left to right, x before y.
+    /// assert_eq!(numbering.unknown(last, 0), Some(numbering.unknowns() - 2));
+    /// assert_eq!(numbering.unknown(last, 1), Some(numbering.unknowns() - 1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn unknown(&self, node: usize, direction: usize) -> Option<usize> {
         match self.place[node] {
             FIXED => None,
@@ -67,12 +86,19 @@ impl Numbering {
     }
 
     /// Number of unknowns.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let matrix = model.matrix();
+    /// assert_eq!(matrix.numbering.unknowns() + 1, matrix.column_starts.len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn unknowns(&self) -> usize {
         2 * (2 * self.right + self.axis + self.surface)
     }
 
     /// The first unknown on the surface; the two of surface node k are `first + 2k` and `first + 2k + 1`.
-    pub fn first_surface_unknown(&self) -> usize {
+    pub(super) fn first_surface_unknown(&self) -> usize {
         2 * (2 * self.right + self.axis)
     }
 
@@ -111,6 +137,22 @@ impl Numbering {
 }
 
 /// Upper triangle of the stiffness matrix, compressed by columns, N/m for the whole probe length.
+///
+/// ```
+/// use palpate::fem::assembly::StiffnessMatrix;
+/// use palpate::fem::{Mesh, MeshOptions};
+/// use palpate::phantom::Phantom;
+///
+/// let phantom = Phantom::builtin("6.6")?;
+/// let mesh = Mesh::new(&phantom, &MeshOptions { size: 2e-3, ..MeshOptions::default() })?;
+/// let matrix = StiffnessMatrix::assemble(&mesh, &phantom)?;
+/// for unknown in 0..matrix.numbering.unknowns() {
+///     let (rows, values) = matrix.column(unknown);
+///     assert_eq!(rows.last(), Some(&(unknown as u32)));
+///     assert!(values[values.len() - 1] > 0.0);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct StiffnessMatrix {
     /// Where the displacements stand.
@@ -142,6 +184,17 @@ fn neighbours(mesh: &Mesh) -> Vec<Vec<u32>> {
 }
 
 /// Material of a region.
+///
+/// ```
+/// use palpate::fem::assembly::material_of;
+/// use palpate::fem::mesh::Region;
+/// use palpate::phantom::Phantom;
+///
+/// let [with, without] = [Phantom::builtin("6.6")?, Phantom::builtin("none")?];
+/// assert_eq!(material_of(&with, Region::Disc).youngs_modulus, 1.2e6);
+/// assert_eq!(material_of(&without, Region::Disc), without.gel.material);
+/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+/// ```
 pub fn material_of(phantom: &Phantom, region: Region) -> Material {
     match (region, &phantom.inclusion) {
         (Region::Skin, _) => phantom.skin.material,
@@ -152,6 +205,20 @@ pub fn material_of(phantom: &Phantom, region: Region) -> Material {
 
 impl StiffnessMatrix {
     /// Assembles the stiffness of a meshed phantom.
+    ///
+    /// ```
+    /// use palpate::fem::assembly::StiffnessMatrix;
+    /// use palpate::fem::{FemError, Mesh, MeshOptions};
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let phantom = Phantom::builtin("6.6")?;
+    /// let mut mesh = Mesh::new(&phantom, &MeshOptions { size: 2e-3, ..MeshOptions::default() })?;
+    /// assert!(StiffnessMatrix::assemble(&mesh, &phantom).is_ok());
+    /// mesh.nodes[0][0] -= 1e-6;
+    /// let refused = StiffnessMatrix::assemble(&mesh, &phantom);
+    /// assert!(matches!(refused, Err(FemError::Asymmetric { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`FemError::Asymmetric`] if the mesh is not its own mirror image, which the numbering and the factor rely
@@ -247,13 +314,20 @@ impl StiffnessMatrix {
     }
 
     /// Entries of column `j`: rows and values, the diagonal last.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let (rows, values) = model.matrix().column(40);
+    /// assert!(rows.is_sorted() && rows.last() == Some(&40) && rows.len() == values.len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn column(&self, j: usize) -> (&[u32], &[f64]) {
         let range = self.column_starts[j] as usize..self.column_starts[j + 1] as usize;
         (&self.row_indices[range.clone()], &self.values[range])
     }
 
     /// `out −= K x` for `W` vectors at once, one row of `W` numbers per unknown.
-    pub fn subtract_product<const W: usize>(&self, x: &[[f64; W]], out: &mut [[f64; W]]) {
+    pub(super) fn subtract_product<const W: usize>(&self, x: &[[f64; W]], out: &mut [[f64; W]]) {
         for j in 0..x.len() {
             let (rows, values) = self.column(j);
             let last = rows.len() - 1;

@@ -4,12 +4,11 @@
 //! The mesh is mirror-symmetric, so that every field is the sum of a symmetric and an antisymmetric one, each
 //! given by its right half: with u_x = 0 on the axis for the one, u_y = 0 for the other. Right of the axis
 //! both have the same matrix, which is factorised once; axis and surface are left to two dense
-//! [`Root`]s of half the size.
-
-use nalgebra::DMatrix;
+//! roots of half the size.
 
 use super::FemError;
 use super::assembly::{Numbering, StiffnessMatrix};
+use super::dense::SquareMatrix;
 use super::elimination::{Eliminated, eliminate_right_half};
 use super::front::{Front, Strip, inverse, padded, substitute_back, substitute_forward};
 
@@ -23,6 +22,17 @@ const AXIS_DIRECTION: [usize; 2] = [1, 0];
 const MIRROR: [f64; 2] = [-1.0, 1.0];
 
 /// K = L Lᵀ, in the symmetric and the antisymmetric half.
+///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// use palpate::fem::cholesky::Factor;
+///
+/// let factor = Factor::new(model.matrix())?;
+/// // Stiffness times compliance is the unit matrix.
+/// let product = factor.surface_stiffness() * factor.surface_compliance();
+/// assert!((product[(7, 7)] - 1.0).abs() < 1e-9 && product[(7, 8)].abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Factor {
     numbering: Numbering,
@@ -46,6 +56,16 @@ struct Root {
 impl Factor {
     /// Factorises the stiffness matrix of a mirror-symmetric mesh.
     ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// use palpate::fem::{FemError, cholesky::Factor};
+    ///
+    /// let mut matrix = model.matrix().clone();
+    /// matrix.values.iter_mut().for_each(|value| *value = -*value);
+    /// assert!(matches!(Factor::new(&matrix), Err(FemError::NotPositiveDefinite)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// Implements: FEM-006, FEM-023.
     ///
     /// # Errors
@@ -63,31 +83,41 @@ impl Factor {
         })
     }
 
-    /// Number of entries kept of L.
-    pub fn entries(&self) -> usize {
-        let roots = self.roots.iter().map(|root| root.panels.len());
-        (self.values.len() + roots.sum::<usize>()) * 4
-    }
-
     /// The surface stiffness S: the stiffness matrix with the interior condensed out. Square, over the
     /// surface unknowns.
     ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let stiffness = model.factor().surface_stiffness();
+    /// // Each node of the surface resists in both directions.
+    /// assert_eq!(stiffness.nrows(), 2 * model.mesh().surface().len());
+    /// assert!(stiffness.diagonal().iter().all(|&entry| entry > 0.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// Implements: FEM-007.
-    pub fn surface_stiffness(&self) -> DMatrix<f64> {
+    pub fn surface_stiffness(&self) -> SquareMatrix {
         // A symmetric field bends both halves: on the axis it meets the stiffness of both.
         self.both_halves(|root| &root.stiffness, 2.0)
     }
 
     /// S⁻¹, m/N; symmetric, and mirror-symmetric to the bit.
     ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let compliance = model.factor().surface_compliance();
+    /// assert_eq!(compliance, compliance.transpose());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// Implements: FEM-007.
-    pub fn surface_compliance(&self) -> DMatrix<f64> {
+    pub fn surface_compliance(&self) -> SquareMatrix {
         self.both_halves(|root| &root.compliance, 1.0)
     }
 
     /// The matrix over the whole surface from those of symmetric and antisymmetric fields, A and B: (A + B)/2 on
     /// one side, (A − B)/2 across, turned for the left, and where the axis stands times `on_axis`.
-    fn both_halves(&self, of: impl Fn(&Root) -> &Vec<Strip>, on_axis: f64) -> DMatrix<f64> {
+    fn both_halves(&self, of: impl Fn(&Root) -> &Vec<Strip>, on_axis: f64) -> SquareMatrix {
         let size = self.roots[0].surface;
         let parts = self.roots.each_ref().map(|root| (of(root), padded(size)));
         let entry = |parity: usize, a: usize, b: usize| {
@@ -123,7 +153,7 @@ impl Factor {
             let sum = part(0) + sign * part(1);
             0.5 * weight(a) * weight(b) * turned(k, i) * turned(l, j) * sum
         };
-        DMatrix::from_fn(2 * size, 2 * size, |row, column| {
+        SquareMatrix::from_fn(2 * size, |row, column| {
             block(row / 2, row % 2, column / 2, column % 2)
         })
     }
@@ -134,7 +164,7 @@ impl Factor {
     ///
     /// # Errors
     /// [`FemError::Residual`] above [`RESIDUAL_LIMIT`].
-    pub fn solve(
+    pub(super) fn solve(
         &self,
         matrix: &StiffnessMatrix,
         force: &[f64],
@@ -172,7 +202,7 @@ impl Factor {
     /// load: L_iiᵀ u_i = −L_siᵀ u_s. `W` displacement fields at once, one row of `W` numbers per unknown.
     ///
     /// Implements: FEM-007.
-    pub fn extend_to_interior<const W: usize>(&self, u: &mut [[f64; W]]) {
+    pub(super) fn extend_to_interior<const W: usize>(&self, u: &mut [[f64; W]]) {
         let below = self.numbering.right + self.numbering.axis;
         let mut halves = self.halves(u, below);
         for parity in 0..2 {
@@ -351,7 +381,7 @@ fn relative(residual: &[f64], force: &[f64]) -> f64 {
 }
 
 /// Refuses a residual above the limit, or one that is not a number.
-pub fn check_residual(residual: f64) -> Result<(), FemError> {
+pub(super) fn check_residual(residual: f64) -> Result<(), FemError> {
     if residual <= RESIDUAL_LIMIT {
         Ok(())
     } else {

@@ -6,13 +6,19 @@
 
 use core::ops::Range;
 
-use nalgebra::DMatrix;
-
+use super::dense::SquareMatrix;
 use super::front::{Front, TILE, substitute_back_one, substitute_forward};
 use super::{FemError, Pose};
 use crate::phantom::Probe;
 
 /// How the gap between a surface node and the probe is measured.
+///
+/// ```
+/// use palpate::fem::Contact;
+///
+/// assert_eq!(Contact::default(), Contact::DeformedNormal);
+/// assert_eq!(Contact::VerticalGap.name(), "vertical-gap");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Contact {
     /// Distance of the deformed node from the circle, force along the circle's normal there: the default.
@@ -26,6 +32,10 @@ pub enum Contact {
 
 impl Contact {
     /// The name on the command line and in files.
+    ///
+    /// ```
+    /// assert_eq!(palpate::fem::Contact::default().name(), "deformed-normal");
+    /// ```
     pub fn name(self) -> &'static str {
         match self {
             Contact::DeformedNormal => "deformed-normal",
@@ -58,13 +68,26 @@ struct Constraint {
 
 /// The surface of a phantom, ready for contact.
 ///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// use palpate::fem::ContactState;
+///
+/// let surface = model.surface();
+/// let untouched = ContactState::untouched(surface.positions.len());
+/// let state = surface.solve(pose, &untouched)?;
+/// // What pushes on the gel pushes back on the probe.
+/// let down: f64 = surface.nodal_forces(&state, pose).iter().map(|(_, [_, y])| y).sum();
+/// assert!((down + model.solve(pose)?.normal_force).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Implements: FEM-009.
 #[derive(Debug, Clone)]
 pub struct Surface {
     /// Undeformed position of each free surface node, m.
     pub positions: Vec<[f64; 2]>,
     /// Displacements per force, m/N, both components of each node in turn; symmetric.
-    pub compliance: DMatrix<f64>,
+    pub compliance: SquareMatrix,
     /// The probe.
     pub probe: Probe,
     /// How the gap is measured.
@@ -72,6 +95,16 @@ pub struct Surface {
 }
 
 /// Surface displacements and contact forces at one pose.
+///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// let state = model.solve(pose)?.state;
+/// // Pressed where there is contact, and nowhere else.
+/// for (node, &pressure) in state.pressures.iter().enumerate() {
+///     assert_eq!(pressure > 0.0, state.active.contains(&node));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// Implements: FEM-010.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,6 +121,13 @@ pub struct ContactState {
 
 impl ContactState {
     /// The untouched surface.
+    ///
+    /// ```
+    /// use palpate::fem::ContactState;
+    ///
+    /// let state = ContactState::untouched(3);
+    /// assert_eq!((state.pressures, state.active), (vec![0.0; 3], vec![]));
+    /// ```
     pub fn untouched(nodes: usize) -> ContactState {
         ContactState {
             displacements: vec![[0.0; 2]; nodes],
@@ -109,6 +149,14 @@ impl ContactState {
     }
 
     /// Where the state goes if it keeps changing as it did since `earlier`, `ahead` times as far.
+    ///
+    /// ```
+    /// use palpate::fem::ContactState;
+    ///
+    /// let earlier = ContactState::untouched(1);
+    /// let later = ContactState { displacements: vec![[0.0, -1e-3]], ..earlier.clone() };
+    /// assert_eq!(later.extrapolated(&earlier, 1.0).displacements, [[0.0, -2e-3]]);
+    /// ```
     pub fn extrapolated(&self, earlier: &ContactState, ahead: f64) -> ContactState {
         let on = |now: f64, then: f64| now + ahead * (now - then);
         let mut state = self.clone();
@@ -225,8 +273,8 @@ fn tangent(n: [f64; 2]) -> [f64; 2] {
 
 impl Surface {
     /// A surface with that compliance.
-    pub fn new(
-        compliance: DMatrix<f64>,
+    pub(super) fn new(
+        compliance: SquareMatrix,
         positions: Vec<[f64; 2]>,
         probe: Probe,
         contact: Contact,
@@ -276,6 +324,18 @@ impl Surface {
     }
 
     /// Contact at `pose`, starting from the state of a pose nearby.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// use palpate::fem::ContactState;
+    ///
+    /// let untouched = ContactState::untouched(model.surface().positions.len());
+    /// let above = model.surface().solve(pose, &untouched)?;
+    /// // From there, half a millimetre deeper takes more nodes into contact.
+    /// let deeper = model.surface().solve(Pose { depth: 2.5e-3, ..pose }, &above)?;
+    /// assert!(deeper.active.len() > above.active.len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// Implements: FEM-009, FEM-010, FEM-011.
     ///
@@ -473,7 +533,7 @@ impl Surface {
         nodes: Range<usize>,
     ) -> Option<Vec<[f64; 2]>> {
         let mut u = vec![[0.0; 2]; nodes.len()];
-        let unknowns = self.compliance.nrows();
+        let unknowns = self.compliance.order();
         let columns = self.compliance.as_slice();
         for &j in &state.active {
             let n = self.constraint(j, state.displacements[j], pose)?.normal;
@@ -535,6 +595,15 @@ impl Surface {
     }
 
     /// Force on the gel at each active node, N.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let solution = model.solve(pose)?;
+    /// for (node, [_, y]) in model.surface().nodal_forces(&solution.state, pose) {
+    ///     assert!(solution.state.active.contains(&node) && y < 0.0); // into the gel
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn nodal_forces(&self, state: &ContactState, pose: Pose) -> Vec<(usize, [f64; 2])> {
         let force = |&i: &usize| {
             let constraint = self.constraint(i, state.displacements[i], pose)?;
@@ -547,7 +616,7 @@ impl Surface {
     /// pressure on the circle's slope, so that F = −∂U/∂(x, y) of the probe in both cases.
     ///
     /// Implements: FEM-012.
-    pub fn probe_force(&self, state: &ContactState, pose: Pose) -> [f64; 2] {
+    pub(super) fn probe_force(&self, state: &ContactState, pose: Pose) -> [f64; 2] {
         let mut total = [0.0; 2];
         for (i, [x, y]) in self.nodal_forces(state, pose) {
             total[1] -= y;
@@ -564,7 +633,7 @@ impl Surface {
     }
 
     /// Largest penetration of any surface node, m.
-    pub fn penetration(&self, state: &ContactState, pose: Pose) -> f64 {
+    pub(super) fn penetration(&self, state: &ContactState, pose: Pose) -> f64 {
         let gap = |i: usize| {
             self.constraint(i, state.displacements[i], pose)
                 .map_or(0.0, |c| c.gap)

@@ -8,7 +8,7 @@ pub const MOST_NODES: usize = 6;
 
 /// One point of a quadrature rule over the parent element.
 #[derive(Debug, Clone, Copy)]
-pub struct QuadraturePoint {
+pub(super) struct QuadraturePoint {
     /// Parent coordinates.
     pub at: [f64; 2],
     /// Weight; the weights add up to the parent's area (½ or 4).
@@ -17,7 +17,7 @@ pub struct QuadraturePoint {
 
 /// Quadrature of the stiffness: exact to degree 4 on the triangle (Cowper's 6 points, so that curved
 /// elements are integrated well too), 2 × 2 Gauss points on the quadrilateral.
-pub fn stiffness_rule(element: Element) -> Vec<QuadraturePoint> {
+pub(super) fn stiffness_rule(element: Element) -> Vec<QuadraturePoint> {
     match element {
         Element::T6 => [
             (0.445_948_490_915_964_9, 0.223_381_589_678_011_47),
@@ -32,7 +32,7 @@ pub fn stiffness_rule(element: Element) -> Vec<QuadraturePoint> {
 
 /// The points at which strains and stresses are sampled: where they are most accurate, 3 on the
 /// triangle and 2 × 2 on the quadrilateral.
-pub fn sampling_rule(element: Element) -> Vec<QuadraturePoint> {
+pub(super) fn sampling_rule(element: Element) -> Vec<QuadraturePoint> {
     match element {
         Element::T6 => symmetric_points(1.0 / 6.0, 1.0 / 6.0).to_vec(),
         Element::Q4Full => gauss_square(),
@@ -53,6 +53,16 @@ fn gauss_square() -> Vec<QuadraturePoint> {
 }
 
 /// Derivatives of the shape functions with respect to the parent coordinates, node by node.
+///
+/// ```
+/// use palpate::fem::{Element, element::parent_gradients};
+///
+/// // The shape functions add up to 1 everywhere, and their gradients to 0.
+/// let [r, s] = parent_gradients(Element::T6, [0.25, 0.5])
+///     .iter()
+///     .fold([0.0, 0.0], |[r, s], g| [r + g[0], s + g[1]]);
+/// assert_eq!([r, s], [0.0, 0.0]);
+/// ```
 pub fn parent_gradients(element: Element, [r, s]: [f64; 2]) -> Vec<[f64; 2]> {
     match element {
         Element::T6 => {
@@ -73,6 +83,15 @@ pub fn parent_gradients(element: Element, [r, s]: [f64; 2]) -> Vec<[f64; 2]> {
 }
 
 /// Gradients of the shape functions in space at one point of an element, and the Jacobian.
+///
+/// ```
+/// use palpate::fem::element::{Gradients, gradients, parent_gradients};
+/// use palpate::fem::Element;
+///
+/// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]];
+/// let Gradients { of_node, jacobian } = gradients(&parent_gradients(Element::Q4Full, [0.0, 0.0]), &square);
+/// assert_eq!((of_node[0], jacobian), ([-0.125, -0.25], 2.0));
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Gradients {
     /// ∂N_a/∂x, ∂N_a/∂y, 1/m; only the first entries are used by elements with fewer nodes.
@@ -82,6 +101,14 @@ pub struct Gradients {
 }
 
 /// Maps parent gradients to space for an element with corners and midsides at `positions`.
+///
+/// ```
+/// use palpate::fem::{Element, element::{gradients, parent_gradients}};
+///
+/// let clockwise = [[0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]];
+/// let turned = gradients(&parent_gradients(Element::Q4Full, [0.0, 0.0]), &clockwise);
+/// assert_eq!(turned.jacobian, -1.0);
+/// ```
 pub fn gradients(parent: &[[f64; 2]], positions: &[[f64; 2]]) -> Gradients {
     let mut j = [[0.0; 2]; 2];
     for (gradient, position) in parent.iter().zip(positions) {
@@ -102,7 +129,7 @@ pub fn gradients(parent: &[[f64; 2]], positions: &[[f64; 2]]) -> Gradients {
 }
 
 /// Lamé's constants (λ, μ), Pa.
-pub fn lame(material: &Material) -> (f64, f64) {
+pub(super) fn lame(material: &Material) -> (f64, f64) {
     let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
     (
         e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
@@ -112,6 +139,15 @@ pub fn lame(material: &Material) -> (f64, f64) {
 
 /// Cauchy stress (σ_xx, σ_yy, σ_zz, σ_xy), Pa, in plane strain from a displacement gradient
 /// `gradient[i][j] = ∂u_i/∂x_j`.
+///
+/// ```
+/// use palpate::fem::element::stress;
+/// use palpate::phantom::Material;
+///
+/// // Without Poisson's effect, a stretch of 0.1 % along x is a stress along x alone.
+/// let cork = Material { youngs_modulus: 1000.0, poisson_ratio: 0.0 };
+/// assert_eq!(stress(&cork, [[0.001, 0.0], [0.0, 0.0]]), [1.0, 0.0, 0.0, 0.0]);
+/// ```
 pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
     let (lambda, mu) = lame(material);
     let pressure = lambda * (gradient[0][0] + gradient[1][1]);
@@ -150,6 +186,19 @@ fn add_point(
 }
 
 /// The quadrature rule of an element's stiffness with the parent gradients at its points.
+///
+/// ```
+/// use palpate::fem::{Element, element::StiffnessRule};
+/// use palpate::phantom::Material;
+///
+/// let rule = StiffnessRule::new(Element::Q4Full);
+/// let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+/// let stiffness = rule.integrate(&square, &Material { youngs_modulus: 5e3, poisson_ratio: 0.25 })?;
+/// // A shift along x costs nothing.
+/// let force: f64 = (0..4).map(|node| stiffness[0][2 * node]).sum();
+/// assert!(force.abs() < 1e-12 * stiffness[0][0]);
+/// # Ok::<(), f64>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct StiffnessRule {
     points: Vec<(f64, Vec<[f64; 2]>)>,
@@ -157,6 +206,12 @@ pub struct StiffnessRule {
 
 impl StiffnessRule {
     /// The rule for one shape of element.
+    ///
+    /// ```
+    /// use palpate::fem::{Element, element::StiffnessRule};
+    ///
+    /// let [curved, square] = [Element::T6, Element::Q4Full].map(StiffnessRule::new);
+    /// ```
     pub fn new(element: Element) -> StiffnessRule {
         let points = stiffness_rule(element);
         StiffnessRule {
@@ -168,6 +223,16 @@ impl StiffnessRule {
     }
 
     /// Stiffness of an element with nodes at `positions`, or the Jacobian that is not positive.
+    ///
+    /// ```
+    /// use palpate::fem::{Element, element::StiffnessRule};
+    /// use palpate::phantom::Material;
+    ///
+    /// let material = Material { youngs_modulus: 5e3, poisson_ratio: 0.49 };
+    /// let clockwise = [[0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]];
+    /// let refused = StiffnessRule::new(Element::Q4Full).integrate(&clockwise, &material);
+    /// assert!(refused.is_err_and(|jacobian| jacobian < 0.0));
+    /// ```
     pub fn integrate(&self, positions: &[[f64; 2]], material: &Material) -> Result<Stiffness, f64> {
         let constants = lame(material);
         let mut stiffness = [[0.0; 2 * MOST_NODES]; 2 * MOST_NODES];

@@ -6,16 +6,28 @@ use super::element::{MOST_NODES, gradients, parent_gradients, sampling_rule};
 use super::mesh::Mesh;
 
 /// How many poses are checked at once: the factor is read from memory once for all of them.
-pub const BATCH: usize = 8;
+pub(super) const BATCH: usize = 8;
 
 /// Loads on the surface and displacements of it for up to [`BATCH`] poses, one column each.
 #[derive(Debug, Clone)]
-pub struct Batch {
+pub(super) struct Batch {
     displacements: Vec<[f64; BATCH]>,
     forces: Vec<[f64; BATCH]>,
 }
 
 /// Checks on the displacement field of one pose.
+///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// use palpate::fem::FieldCheck;
+///
+/// let beside = model.solve(Pose { depth: 0.0, lateral: 0.0 })?;
+/// let [touching, untouched] = model.checks(&[model.solve(pose)?, beside])[..] else { unreachable!() };
+/// assert!(touching.residual < 1e-8 && touching.imbalance < 1e-8);
+/// assert!(touching.min_det > 0.0 && touching.min_det < 1.0);
+/// assert_eq!(untouched, FieldCheck::UNTOUCHED);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FieldCheck {
     /// ‖f − K u‖ / ‖f‖ over all unknowns; absolute, N, where there is no load.
@@ -37,6 +49,17 @@ impl FieldCheck {
 }
 
 /// Displacements and their gradients in the whole phantom.
+///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// use palpate::fem::Field;
+///
+/// let Field { displacements, gradients } = model.field(&model.solve(pose)?)?;
+/// assert_eq!((displacements.len(), gradients.len()), (model.mesh().nodes.len(), model.mesh().regions.len()));
+/// // Three points of each triangle; nothing moves on the floor.
+/// assert!(gradients[0].len() == 3 && displacements[0] == [0.0, 0.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
     /// Displacement of each node, m.
@@ -47,7 +70,7 @@ pub struct Field {
 
 /// Shape-function gradients at the sampling points of every element.
 #[derive(Debug, Clone)]
-pub struct Samples {
+pub(super) struct Samples {
     points: Vec<[[f64; 2]; MOST_NODES]>,
     points_per_element: usize,
     /// Rows of the two displacement components of each node of each element; fixed nodes point to the
@@ -58,7 +81,7 @@ pub struct Samples {
 
 impl Samples {
     /// Precomputes the gradients.
-    pub fn new(mesh: &Mesh, matrix: &StiffnessMatrix) -> Samples {
+    pub(super) fn new(mesh: &Mesh, matrix: &StiffnessMatrix) -> Samples {
         let rule = sampling_rule(mesh.element);
         let parents: Vec<_> = rule
             .iter()
@@ -120,7 +143,7 @@ impl Samples {
     }
 
     /// Gradients of one field, given by its unknowns, m, at the sampling points of each element.
-    pub fn gradients(&self, unknowns: &[f64]) -> Vec<Vec<[[f64; 2]; 2]>> {
+    pub(super) fn gradients(&self, unknowns: &[f64]) -> Vec<Vec<[[f64; 2]; 2]>> {
         // The row of zeros behind the unknowns stands for the fixed nodes.
         let u: Vec<[f64; 1]> = unknowns.iter().map(|&u| [u]).chain([[0.0]]).collect();
         let mut elements = vec![Vec::new(); self.points.len() / self.points_per_element];
@@ -132,13 +155,13 @@ impl Samples {
 }
 
 /// det(I + ∇u).
-pub fn determinant(gradient: [[f64; 2]; 2]) -> f64 {
+pub(super) fn determinant(gradient: [[f64; 2]; 2]) -> f64 {
     (1.0 + gradient[0][0]) * (1.0 + gradient[1][1]) - gradient[0][1] * gradient[1][0]
 }
 
 impl Batch {
     /// An empty batch for a matrix of `unknowns` rows.
-    pub fn new(unknowns: usize) -> Batch {
+    pub(super) fn new(unknowns: usize) -> Batch {
         // One more row than unknowns: the zeros of the fixed nodes.
         Batch {
             displacements: vec![[0.0; BATCH]; unknowns + 1],
@@ -148,7 +171,7 @@ impl Batch {
 
     /// Puts the surface displacements and loads of a pose into `column`; `first` is the first unknown on the
     /// surface, and below it no pose has a load.
-    pub fn set(
+    pub(super) fn set(
         &mut self,
         column: usize,
         first: usize,
@@ -173,7 +196,7 @@ impl Batch {
     /// Fills in the fields and checks each column.
     ///
     /// Implements: FEM-008, FEM-013.
-    pub fn check(
+    pub(super) fn check(
         &mut self,
         matrix: &StiffnessMatrix,
         factor: &Factor,

@@ -8,6 +8,18 @@ use super::{FemError, MeshOptions};
 use crate::phantom::Phantom;
 
 /// Which material an element is made of.
+///
+/// ```
+/// use palpate::fem::mesh::Region;
+/// use palpate::fem::{Mesh, MeshOptions};
+/// use palpate::phantom::Phantom;
+///
+/// // The disc has its place in every mesh, also where it is filled with gel.
+/// let options = MeshOptions { size: 2e-3, ..MeshOptions::default() };
+/// let mesh = Mesh::new(&Phantom::builtin("none")?, &options)?;
+/// assert!(mesh.regions.contains(&Region::Disc) && mesh.regions.contains(&Region::Skin));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Region {
     /// The gel.
@@ -19,6 +31,14 @@ pub enum Region {
 }
 
 /// A shape of element.
+///
+/// ```
+/// use palpate::fem::Element;
+///
+/// let locking = Element::Q4Full;
+/// assert_eq!((locking.name(), locking.corners(), locking.nodes()), ("q4-full", 4, 4));
+/// assert_eq!((Element::T6.corners(), Element::T6.nodes()), (3, 6));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Element {
     /// Isoparametric triangle with 6 nodes: the default.
@@ -31,6 +51,10 @@ pub enum Element {
 
 impl Element {
     /// The name on the command line and in files.
+    ///
+    /// ```
+    /// assert_eq!(palpate::fem::Element::default().name(), "t6");
+    /// ```
     pub fn name(self) -> &'static str {
         match self {
             Element::T6 => "t6",
@@ -39,6 +63,10 @@ impl Element {
     }
 
     /// Corners of one element: its first nodes.
+    ///
+    /// ```
+    /// assert_eq!(palpate::fem::Element::T6.corners(), 3);
+    /// ```
     pub fn corners(self) -> usize {
         match self {
             Element::T6 => 3,
@@ -47,6 +75,10 @@ impl Element {
     }
 
     /// Nodes of one element.
+    ///
+    /// ```
+    /// assert_eq!(palpate::fem::Element::T6.nodes(), 6);
+    /// ```
     pub fn nodes(self) -> usize {
         match self {
             Element::T6 => 6,
@@ -56,6 +88,20 @@ impl Element {
 }
 
 /// Nodes, elements and regions of one phantom.
+///
+/// ```
+/// use palpate::fem::{Mesh, MeshOptions};
+/// use palpate::phantom::Phantom;
+///
+/// let options = MeshOptions { size: 2e-3, ..MeshOptions::default() };
+/// let mesh = Mesh::new(&Phantom::builtin("6.6")?, &options)?;
+/// assert_eq!(mesh.elements().count(), mesh.regions.len());
+/// // The surface is free from wall to wall, at y = 0; the first node lies on the floor.
+/// let free = mesh.free();
+/// assert!(mesh.surface().all(|node| free[node] && mesh.nodes[node][1] == 0.0));
+/// assert!(!free[0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// Implements: FEM-001, FEM-002, FEM-003.
 #[derive(Debug, Clone)]
@@ -78,6 +124,18 @@ const MOST_NODES: f64 = 500_000.0;
 
 impl Mesh {
     /// Meshes a valid phantom.
+    ///
+    /// ```
+    /// use palpate::fem::{FemError, Mesh, MeshOptions};
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let phantom = Phantom::builtin("none")?;
+    /// let micrometre = MeshOptions { size: 1e-6, ..MeshOptions::default() };
+    /// assert!(matches!(Mesh::new(&phantom, &micrometre), Err(FemError::MeshSize { .. })));
+    /// let mesh = Mesh::new(&phantom, &MeshOptions { size: 2e-3, ..micrometre })?;
+    /// assert_eq!(mesh.connectivity.len(), 6 * mesh.regions.len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`FemError::MeshSize`] if the size is not positive and finite, or the mesh would have more than 500 000
@@ -237,11 +295,27 @@ impl Mesh {
     }
 
     /// The nodes of each element.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// assert!(model.mesh().elements().all(|nodes| nodes.len() == 6));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn elements(&self) -> impl Iterator<Item = &[u32]> {
         self.connectivity.chunks_exact(self.element.nodes())
     }
 
     /// Positions of an element's nodes, m.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let mesh = model.mesh();
+    /// let [first, last] = [0, mesh.nodes.len() - 1];
+    /// // From the lower left corner to the upper right one.
+    /// let corners = mesh.positions(&[first as u32, last as u32]);
+    /// assert_eq!(corners, [[-17e-3, -phantom.total_height()], [17e-3, 0.0]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn positions(&self, nodes: &[u32]) -> Vec<[f64; 2]> {
         nodes
             .iter()
@@ -250,6 +324,14 @@ impl Mesh {
     }
 
     /// Whether each node is free: not on the floor nor on a wall.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let (mesh, free) = (model.mesh(), model.mesh().free());
+    /// let on_floor = mesh.rows[0].clone();
+    /// assert!(on_floor.clone().all(|node| !free[node]) && free[on_floor.end + 1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// Implements: FEM-004.
     pub fn free(&self) -> Vec<bool> {
@@ -266,7 +348,7 @@ impl Mesh {
     /// are mirror images from its ends inwards, to the bit, and an element's is one of the same region.
     ///
     /// Implements: FEM-029.
-    pub fn without_mirror_image(&self) -> Option<usize> {
+    pub(super) fn without_mirror_image(&self) -> Option<usize> {
         let mut images = vec![None; self.nodes.len()];
         for row in &self.rows {
             for (node, image) in row.clone().zip(row.clone().rev()) {
@@ -297,6 +379,14 @@ impl Mesh {
     }
 
     /// The free nodes of the outer surface, from left to right.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let mesh = model.mesh();
+    /// let top: Vec<f64> = mesh.surface().map(|node| mesh.nodes[node][0]).collect();
+    /// assert!(top.is_sorted() && top[0] == -top[top.len() - 1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn surface(&self) -> Range<usize> {
         let last = &self.rows[self.rows.len() - 1];
         last.start + 1..last.end - 1

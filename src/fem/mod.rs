@@ -2,14 +2,30 @@
 //!
 //! [`Model`] meshes a phantom, assembles its stiffness, factorises it once with the surface unknowns
 //! last, and keeps the surface's compliance. A [`Pose`] of the probe is then a small contact problem.
+//!
+//! ```
+//! use palpate::fem::{Contact, MeshOptions, Model, Pose};
+//! use palpate::phantom::Phantom;
+//!
+//! let coarse = MeshOptions { size: 2e-3, ..MeshOptions::default() };
+//! let force = |name| -> Result<f64, Box<dyn std::error::Error>> {
+//!     let model = Model::new(&Phantom::builtin(name)?, &coarse, Contact::default())?;
+//!     Ok(model.solve(Pose { depth: 4e-3, lateral: 0.0 })?.normal_force)
+//! };
+//! // The inclusion under 6.6 mm of gel pushes back with some 0.3 N more.
+//! let signal = force("6.6")? - force("none")?;
+//! assert!(signal > 0.25 && signal < 0.4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod assembly;
 pub mod certify;
 pub mod cholesky;
-pub mod contact;
+mod contact;
+pub(crate) mod dense;
 pub mod element;
 mod elimination;
-pub mod field;
+mod field;
 mod front;
 pub mod mesh;
 mod model;
@@ -22,11 +38,22 @@ mod vtu;
 use crate::force_map::InvalidForceMap;
 use crate::phantom::{InvalidPhantom, PoseError};
 pub use contact::{Contact, ContactState, Surface};
+pub use dense::SquareMatrix;
 pub use field::{Field, FieldCheck};
 pub use mesh::{Element, Mesh};
 pub use model::{Model, PoseSolution, solved_laterals};
 
 /// Where the probe stands.
+///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// use palpate::fem::FemError;
+///
+/// // Below the floor, or in the wall, no probe can stand.
+/// assert!(matches!(model.solve(Pose { depth: 16e-3, ..pose }), Err(FemError::Pose(_))));
+/// assert!(matches!(model.solve(Pose { lateral: 16e-3, ..pose }), Err(FemError::Pose(_))));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Depth of the probe's lowest point below the undeformed surface, m.
@@ -36,6 +63,19 @@ pub struct Pose {
 }
 
 /// How fine the mesh is.
+///
+/// ```
+/// use palpate::fem::{Element, Mesh, MeshOptions};
+/// use palpate::phantom::Phantom;
+///
+/// let coarse = MeshOptions { size: 2e-3, ..MeshOptions::default() };
+/// let halved = MeshOptions { refinement: 2, ..coarse };
+/// let phantom = Phantom::builtin("6.6")?;
+/// let elements = |options| Mesh::new(&phantom, options).map(|mesh| mesh.regions.len());
+/// // Four times as many, but for the one row between the coarse and the fine part.
+/// assert!(elements(&halved)? > 3 * elements(&coarse)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshOptions {
     /// Target distance between the corners of the triangles along the surface, m.
@@ -57,6 +97,17 @@ impl Default for MeshOptions {
 }
 
 /// What can go wrong between a phantom and a force.
+///
+/// ```
+/// use palpate::fem::{FemError, Mesh, MeshOptions};
+/// use palpate::phantom::Phantom;
+///
+/// let options = MeshOptions { size: -1e-3, ..MeshOptions::default() };
+/// let error = Mesh::new(&Phantom::builtin("none")?, &options).unwrap_err();
+/// assert_eq!(error, FemError::MeshSize { size: -1e-3, refinement: 1 });
+/// assert!(error.to_string().starts_with("mesh size -1 mm with refinement 1: expected a size above 0"));
+/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FemError {
     /// The phantom is not valid.

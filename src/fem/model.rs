@@ -11,6 +11,22 @@ use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, S
 use crate::phantom::Phantom;
 
 /// A phantom, meshed and factorised.
+///
+/// ```
+/// use palpate::fem::{Contact, MeshOptions, Model, Pose};
+/// use palpate::phantom::Phantom;
+///
+/// let phantom = Phantom::builtin("6.6")?;
+/// let options = MeshOptions { size: 2e-3, ..MeshOptions::default() };
+/// let model = Model::new(&phantom, &options, Contact::default())?;
+/// assert_eq!((model.phantom(), model.options()), (&phantom, &options));
+/// assert_eq!(model.surface().positions.len(), model.mesh().surface().len());
+/// assert_eq!(model.factor().surface_compliance(), model.surface().compliance);
+///
+/// let [left, right] = [-1e-3, 1e-3].map(|lateral| model.solve(Pose { depth: 2e-3, lateral }));
+/// assert_eq!(left?.lateral_force, -right?.lateral_force);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Model {
     phantom: Phantom,
@@ -23,6 +39,15 @@ pub struct Model {
 }
 
 /// The probe at rest at one pose.
+///
+/// ```
+#[doc = include_str!("coarse.example")]
+/// let solution = model.solve(pose)?;
+/// // Right of the inclusion, which pushes the probe up and away.
+/// assert!(solution.normal_force > 0.0 && solution.lateral_force > 0.0);
+/// assert!(solution.energy > 0.0 && solution.penetration < 1e-11);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseSolution {
     /// The pose.
@@ -46,6 +71,17 @@ const HALVINGS: u32 = 6;
 
 impl Model {
     /// Meshes and factorises a phantom.
+    ///
+    /// ```
+    /// use palpate::fem::{Contact, FemError, MeshOptions, Model};
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let mut phantom = Phantom::builtin("6.6")?;
+    /// phantom.gel.material.poisson_ratio = 0.5; // would be incompressible
+    /// let refused = Model::new(&phantom, &MeshOptions::default(), Contact::default());
+    /// assert!(matches!(refused, Err(FemError::Phantom(_))));
+    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+    /// ```
     ///
     /// # Errors
     /// [`FemError::Phantom`] for a phantom that is not valid, [`FemError::MeshSize`],
@@ -119,6 +155,16 @@ impl Model {
     }
 
     /// The force at one pose.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let [shallow, deep] = [1e-3, 2e-3].map(|depth| model.solve(Pose { depth, lateral: 0.0 }));
+    /// let (shallow, deep) = (shallow?, deep?);
+    /// // Twice the depth is more than twice the force: the contact grows.
+    /// assert!(deep.normal_force > 2.0 * shallow.normal_force);
+    /// assert!(deep.lateral_force.abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`FemError::Pose`] where the probe cannot stand, [`FemError::NoConvergence`].
@@ -212,6 +258,17 @@ impl Model {
 
     /// The whole field at a solved pose, by a full solve under its contact forces.
     ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let solution = model.solve(pose)?;
+    /// let field = model.field(&solution)?;
+    /// let surface = &field.displacements[model.mesh().surface()];
+    /// for (found, kept) in surface.iter().zip(&solution.state.displacements) {
+    ///     assert!((found[1] - kept[1]).abs() < 1e-9);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`FemError::Residual`].
     pub fn field(&self, solution: &PoseSolution) -> Result<Field, FemError> {
@@ -237,6 +294,13 @@ impl Model {
     }
 
     /// The checks of the whole field at each solved pose.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let checks = model.checks(&[model.solve(pose)?]);
+    /// assert!(checks[0].residual < 1e-8);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn checks(&self, solutions: &[PoseSolution]) -> Vec<FieldCheck> {
         let first = self.matrix.numbering.first_surface_unknown();
         let mut batch = Batch::new(self.matrix.numbering.unknowns());
@@ -286,6 +350,19 @@ impl Model {
     /// The force map over `depths` × `laterals` (m, both increasing) with its certificate. Negative lateral
     /// positions are the mirror images of positive ones. `solved` is told after each lateral position how
     /// many poses that were.
+    ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// use std::cell::Cell;
+    ///
+    /// let poses = Cell::new(0);
+    /// let map = model.map(&[1e-3, 2e-3], &[-2e-3, 0.0, 2e-3], &|solved| poses.set(poses.get() + solved))?;
+    /// assert_eq!(poses.get(), 4); // those at −2 mm are mirror images
+    /// assert_eq!(map.normal_force().row(1)[0], map.normal_force().row(1)[2]);
+    /// let certificate = map.certificate().expect("a computed map");
+    /// assert!(certificate.worst_relative_residual < 1e-8);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// Implements: FEM-014, FEM-015.
     ///
@@ -415,6 +492,12 @@ impl PoseSolution {
 
 /// The lateral positions that [`Model::map`] solves for a map at `laterals`, m: the distinct |x|, increasing,
 /// with 0 among them wherever there is a mirror image to make.
+///
+/// ```
+/// use palpate::fem::solved_laterals;
+///
+/// assert_eq!(solved_laterals(&[-2e-3, 1e-3, 2e-3]), [0.0, 1e-3, 2e-3]);
+/// ```
 pub fn solved_laterals(laterals: &[f64]) -> Vec<f64> {
     let mut right: Vec<f64> = laterals.iter().map(|x| x.abs()).collect();
     if laterals.iter().any(|&x| x < 0.0) {

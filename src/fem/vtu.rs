@@ -18,6 +18,13 @@ impl Model {
     /// sampling points of stress and pressure, Pa, the von Mises stress of that mean, Pa, and the
     /// smallest det(I + ∇u).
     ///
+    /// ```
+    #[doc = include_str!("coarse.example")]
+    /// let file = model.vtu(&model.solve(pose)?)?;
+    /// assert!(file.starts_with("<?xml") && file.contains("Name=\"von_mises_pa\""));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// Implements: FEM-016.
     ///
     /// # Errors

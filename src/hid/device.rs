@@ -7,6 +7,42 @@ use super::{Capabilities, Control, ForceReport, InvalidReport, PositionReport};
 
 /// A two-axis haptic device.
 ///
+/// A handle that stands still is a device:
+/// ```
+/// use core::time::Duration;
+/// use palpate::hid::{Capabilities, Control, DeviceError, ForceReport, HapticDevice, PositionReport, Received};
+///
+/// struct Still(PositionReport);
+///
+/// impl HapticDevice for Still {
+///     fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
+///         let bytes = [3, 1, 0, 0xE8, 0x03, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0];
+///         Capabilities::decode(&bytes).map_err(DeviceError::Profile)
+///     }
+///     fn read(&mut self, _: Duration) -> Result<Received, DeviceError> {
+///         self.0.sequence = self.0.sequence.wrapping_add(1);
+///         Ok(Received::Report(self.0))
+///     }
+///     fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
+///         self.0.force_sequence = report.sequence;
+///         Ok(())
+///     }
+///     fn control(&mut self, _: Control) -> Result<(), DeviceError> {
+///         Ok(())
+///     }
+///     fn now(&self) -> Duration {
+///         Duration::from_millis(self.0.sequence.into())
+///     }
+/// }
+///
+/// let zeros = PositionReport::decode(&[1; 11]).map_err(DeviceError::Profile)?;
+/// let mut device = Still(PositionReport { sequence: 0, ..zeros });
+/// device.write(&ForceReport { lateral: 0, normal: 0, sequence: 42, flags: 0 })?;
+/// let Received::Report(report) = device.read(Duration::from_millis(2))? else { unreachable!() };
+/// assert_eq!((report.sequence, report.force_sequence), (1, 42));
+/// # Ok::<(), DeviceError>(())
+/// ```
+///
 /// Implements: HID-012.
 pub trait HapticDevice {
     /// What the device is: units, limits, its own watchdog.
@@ -62,6 +98,14 @@ impl<D: HapticDevice + ?Sized> HapticDevice for Box<D> {
 }
 
 /// What a read brought.
+///
+/// ```
+#[doc = include_str!("still.example")]
+/// let mut device = Still { left: 1, enabled: false };
+/// assert!(matches!(device.read(Duration::from_millis(2))?, Received::Report(_)));
+/// assert_eq!(device.read(Duration::ZERO)?, Received::Nothing);
+/// # Ok::<(), DeviceError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Received {
     /// A report.
@@ -73,6 +117,13 @@ pub enum Received {
 }
 
 /// Why a device can no longer be used.
+///
+/// ```
+#[doc = include_str!("still.example")]
+/// let mut unplugged = Still { left: 0, enabled: false };
+/// let error = unplugged.read(Duration::from_millis(2)).unwrap_err();
+/// assert_eq!((error.to_string(), error), ("the device is gone".into(), DeviceError::Gone));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum DeviceError {
     /// It is gone: unplugged, or its node removed.

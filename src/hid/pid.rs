@@ -2,11 +2,33 @@
 //! OpenFFBoard's firmware for two axes. The class leaves report numbers and fields to each device.
 //!
 //! Only the host's direction is here: what it reads is decoded, what it sends is encoded.
+//!
+//! ```
+//! use palpate::hid::pid::{Axis, CREATE, DeviceControl, loaded_block, set_effect, set_force, start};
+//!
+//! // What the host sends to play a force along the second axis, in its order.
+//! assert_eq!(CREATE, [17, 1, 0, 0]);
+//! let block = loaded_block(&[18, 3, 1, 0, 0])?; // the device's answer: at place 3
+//! let reports = (set_effect(block, Axis::Y, 20), set_force(block, -1000), start(block));
+//! assert_eq!(reports.1, [5, 3, 0x18, 0xFC]);
+//! assert_eq!(DeviceControl::StopAll.encode(), [12, 4]);
+//! # Ok::<(), palpate::hid::InvalidReport>(())
+//! ```
 
 use super::InvalidReport;
 use super::report::payload;
 
 /// Two axes of many, as a joystick reports them: input report 1.
+///
+/// ```
+/// use palpate::hid::pid::JoystickReport;
+///
+/// let mut bytes = [0; JoystickReport::LENGTH];
+/// bytes[..13].copy_from_slice(&[1, 0b10, 0, 0, 0, 0, 0, 0, 0, 0x34, 0x12, 0xFF, 0xFF]);
+/// let report = JoystickReport::decode(&bytes)?;
+/// assert_eq!((report.buttons, report.x, report.y), (0b10, 0x1234, -1));
+/// # Ok::<(), palpate::hid::InvalidReport>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct JoystickReport {
     /// Switches, the first in bit 0.
@@ -25,6 +47,16 @@ impl JoystickReport {
 
     /// The report in `bytes`, which begin with the report's number; six axes are passed over.
     ///
+    /// ```
+    /// use palpate::hid::pid::JoystickReport;
+    ///
+    /// let mut bytes = [0; JoystickReport::LENGTH];
+    /// assert!(JoystickReport::decode(&bytes).is_err()); // report 0
+    /// bytes[0] = JoystickReport::NUMBER;
+    /// assert_eq!(JoystickReport::decode(&bytes)?.x, 0);
+    /// # Ok::<(), palpate::hid::InvalidReport>(())
+    /// ```
+    ///
     /// # Errors
     /// [`InvalidReport`] for another length or number.
     ///
@@ -41,6 +73,14 @@ impl JoystickReport {
 }
 
 /// Which place in its memory the device gave to an effect: feature report 18.
+///
+/// ```
+/// use palpate::hid::{InvalidReport, pid::loaded_block};
+///
+/// assert_eq!(loaded_block(&[18, 3, 1, 0, 0]), Ok(3));
+/// const FULL: u8 = 2;
+/// assert_eq!(loaded_block(&[18, 0, FULL, 0, 0]), Err(InvalidReport::Value { found: FULL }));
+/// ```
 ///
 /// # Errors
 /// [`InvalidReport`] for another length or number, and for a status that is not success.
@@ -66,6 +106,13 @@ const CONSTANT_FORCE: u8 = 1;
 pub const CREATE: [u8; 4] = [17, CONSTANT_FORCE, 0, 0];
 
 /// An axis of the device.
+///
+/// ```
+/// use palpate::hid::pid::{Axis, set_effect};
+///
+/// // One bit for each axis.
+/// assert_eq!([set_effect(3, Axis::X, 20)[13], set_effect(3, Axis::Y, 20)[13]], [1, 2]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     /// The first.
@@ -76,6 +123,13 @@ pub enum Axis {
 
 /// Lays the constant force at `block` along `axis`, for `duration_ms` after each start, at full gain:
 /// output report 1.
+///
+/// ```
+/// use palpate::hid::pid::{Axis, set_effect};
+///
+/// // The constant force at place 3, for 300 ms.
+/// assert_eq!(set_effect(3, Axis::X, 300)[..5], [1, 3, 1, 0x2C, 0x01]);
+/// ```
 ///
 /// Implements: HID-038.
 pub fn set_effect(block: u8, axis: Axis, duration_ms: u16) -> [u8; 22] {
@@ -96,6 +150,10 @@ pub fn set_effect(block: u8, axis: Axis, duration_ms: u16) -> [u8; 22] {
 
 /// Sets the force at `block`, in counts of 1/32767 of the axis' largest: output report 5.
 ///
+/// ```
+/// assert_eq!(palpate::hid::pid::set_force(3, -2), [5, 3, 0xFE, 0xFF]);
+/// ```
+///
 /// Implements: HID-038, HID-040.
 pub fn set_force(block: u8, force: i16) -> [u8; 4] {
     let [low, high] = force.to_le_bytes();
@@ -104,12 +162,23 @@ pub fn set_force(block: u8, force: i16) -> [u8; 4] {
 
 /// Starts the effect at `block` once: output report 10.
 ///
+/// ```
+/// assert_eq!(palpate::hid::pid::start(3), [10, 3, 1, 1]);
+/// ```
+///
 /// Implements: HID-038.
 pub fn start(block: u8) -> [u8; 4] {
     [10, block, 1, 1]
 }
 
 /// What the device is told: output report 12, one bit for each.
+///
+/// ```
+/// use palpate::hid::pid::DeviceControl;
+///
+/// assert_eq!(DeviceControl::EnableActuators.encode(), [12, 1]);
+/// assert_eq!(DeviceControl::Reset.encode(), [12, 8]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum DeviceControl {
@@ -125,6 +194,10 @@ pub enum DeviceControl {
 
 impl DeviceControl {
     /// The bytes of the report.
+    ///
+    /// ```
+    /// assert_eq!(palpate::hid::pid::DeviceControl::DisableActuators.encode(), [12, 2]);
+    /// ```
     ///
     /// Implements: HID-038.
     pub fn encode(self) -> [u8; 2] {

@@ -21,6 +21,24 @@ use std::time::Duration;
 const HEADER: &str = "palpate-session 1";
 
 /// A recorded session.
+///
+/// ```
+#[doc = include_str!("simulated/probing.example")]
+/// use palpate::hid::{RecordedCycle, Recording, Session};
+///
+/// let mut cycles = Vec::new();
+/// Session::begin(device, table, limits)?.run(|cycle, _| {
+///     cycles.push(RecordedCycle::from(cycle));
+///     cycles.len() < 600
+/// });
+/// let recording = Recording { capabilities: PAPER, limits, cycles };
+/// assert!(recording.cycles[599].playing);
+///
+/// let read = Recording::parse(&recording.to_text())?;
+/// assert_eq!(read, recording);
+/// assert_eq!(read.replay(table), Ok(600)); // every force the same to the bit
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// What the device said of itself.
@@ -32,6 +50,17 @@ pub struct Recording {
 }
 
 /// What a cycle took and gave.
+///
+/// ```
+#[doc = include_str!("simulated/probing.example")]
+/// use palpate::hid::{RecordedCycle, Session};
+/// use palpate::servo::Request;
+///
+/// let mut session = Session::begin(device, table, limits)?;
+/// let recorded = RecordedCycle::from(&session.cycle(Request::None)?);
+/// assert_eq!((recorded.written_us, recorded.playing), (1000, false)); // the device reports every millisecond
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RecordedCycle {
     /// When the queue was drained, on the device's clock, µs.
@@ -59,6 +88,14 @@ impl From<&Cycle> for RecordedCycle {
 }
 
 /// Why a text is no recording, or does not play again.
+///
+/// ```
+/// use palpate::hid::{Recording, RecordingError};
+///
+/// let error = Recording::parse("palpate-session 2").unwrap_err();
+/// assert!(matches!(error, RecordingError::Line { line: 1, .. }));
+/// assert_eq!(error.to_string(), r#"line 1: "palpate-session 2", expected palpate-session 1"#);
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RecordingError {
     /// A line can not be read.
@@ -90,6 +127,16 @@ pub enum RecordingError {
 
 impl Recording {
     /// The text of the file.
+    ///
+    /// ```
+    /// use palpate::hid::{Recording, simulated::PAPER};
+    /// use palpate::servo::Limits;
+    ///
+    /// let limits = Limits::new(2.0, 0.05, 0.25, 10)?;
+    /// let text = Recording { capabilities: PAPER, limits, cycles: vec![] }.to_text();
+    /// assert_eq!(text.lines().last(), Some("limits 40000000 3d4ccccd 3e800000 10"));
+    /// # Ok::<(), palpate::servo::InvalidLimits>(())
+    /// ```
     ///
     /// Implements: HID-050.
     pub fn to_text(&self) -> String {
@@ -126,6 +173,19 @@ impl Recording {
     }
 
     /// Reads the text of a file.
+    ///
+    /// ```
+    /// use palpate::hid::Recording;
+    ///
+    /// let text = "palpate-session 1\n\
+    ///     capabilities 030100e803f401401fe8030f0058028c00\n\
+    ///     limits 40000000 3d4ccccd 3e800000 10\n\
+    ///     1000 1000 - 0200000000010001 0\n";
+    /// let recording = Recording::parse(text)?;
+    /// assert_eq!((recording.limits.force(), recording.cycles.len()), (2.0, 1));
+    /// assert_eq!(recording.cycles[0].position, None);
+    /// # Ok::<(), palpate::hid::RecordingError>(())
+    /// ```
     ///
     /// # Errors
     /// [`RecordingError::Line`].
@@ -170,6 +230,20 @@ impl Recording {
 
     /// Plays the recorded positions again, on `table`; the number of cycles, whose forces were all
     /// the same to the bit.
+    ///
+    /// ```
+    #[doc = include_str!("simulated/probing.example")]
+    /// use palpate::hid::{Recording, RecordingError};
+    ///
+    /// let text = "palpate-session 1\n\
+    ///     capabilities 030100e803f401401fe8030f0058028c00\n\
+    ///     limits 40000000 3d4ccccd 3e800000 10\n\
+    ///     1000 1000 - 0200000500010001 0\n";
+    /// // A force of 5 counts, where no report of the device had come yet.
+    /// let replayed = Recording::parse(text)?.replay(table);
+    /// assert!(matches!(replayed, Err(RecordingError::Differs { cycle: 0, .. })));
+    /// # Ok::<(), RecordingError>(())
+    /// ```
     ///
     /// # Errors
     /// [`RecordingError::Differs`], [`RecordingError::Session`].

@@ -12,6 +12,20 @@ use crate::servo::{Fault, Force, Limits, Mode, Request, Table};
 
 /// A device that plays a table, until it is dropped: also by a panic.
 ///
+/// ```
+#[doc = include_str!("simulated/probing.example")]
+/// use palpate::hid::{End, Session};
+/// use palpate::servo::Mode;
+///
+/// let mut session = Session::begin(device, table, limits)?;
+/// assert_eq!(session.capabilities().watchdog_ms, 15);
+/// let end = session.run(|_, counters| counters.cycles < 800);
+/// assert_eq!((end, session.mode()), (End::Asked, Mode::Disarmed));
+/// assert!(session.counters().played > 500);
+/// assert_eq!(session.device().motor_force(), [0.0, 0.0]); // the device is stopped
+/// # Ok::<(), palpate::hid::SessionError>(())
+/// ```
+///
 /// Implements: HID-016, HID-017.
 pub struct Session<'a, D: HapticDevice> {
     device: D,
@@ -23,6 +37,15 @@ pub struct Session<'a, D: HapticDevice> {
 }
 
 /// Why a session does not begin.
+///
+/// ```
+#[doc = include_str!("simulated/probing.example")]
+/// use palpate::hid::{Session, SessionError};
+///
+/// let strong = Limits::new(10.0, 0.05, 1.0, 10).expect("limits");
+/// let refused = Session::begin(device, table, strong).err();
+/// assert_eq!(refused, Some(SessionError::Force { limit: 10.0, largest: 8.0 }));
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SessionError {
     /// The device fails.
@@ -48,6 +71,14 @@ pub enum SessionError {
 }
 
 /// Why a session ended.
+///
+/// ```
+/// use palpate::hid::End;
+/// use palpate::servo::Fault;
+///
+/// let end = End::Fault(Fault::Watchdog);
+/// assert_eq!(end.to_string(), "stopped by a fault: no fresh report for too long");
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum End {
     /// It was asked to.
@@ -70,6 +101,16 @@ impl fmt::Display for End {
 
 impl<'a, D: HapticDevice> Session<'a, D> {
     /// Asks the device what it is; the first cycle enables it.
+    ///
+    /// ```
+    #[doc = include_str!("simulated/probing.example")]
+    /// use palpate::hid::{Capabilities, Session, SessionError};
+    ///
+    /// let alone = Capabilities { watchdog_ms: 0, ..PAPER };
+    /// let trajectory = Trajectory::new(vec![]);
+    /// let device = SimulatedDevice::new(alone, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
+    /// assert_eq!(Session::begin(device, table, limits).err(), Some(SessionError::NoWatchdog));
+    /// ```
     ///
     /// # Errors
     /// [`SessionError`].
@@ -136,6 +177,18 @@ impl<'a, D: HapticDevice> Session<'a, D> {
 
     /// One cycle: see [`Playback::cycle`].
     ///
+    /// ```
+    #[doc = include_str!("simulated/probing.example")]
+    /// use palpate::hid::Session;
+    /// use palpate::servo::Request;
+    ///
+    /// let mut session = Session::begin(device, table, limits)?;
+    /// let cycle = session.cycle(Request::None)?;
+    /// // A millimetre above the surface, in counts of 1 µm.
+    /// assert_eq!(cycle.position.map(|report| report.normal), Some(1000));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`DeviceError`], after the device was told to stop.
     pub fn cycle(&mut self, request: Request) -> Result<Cycle, DeviceError> {
@@ -151,12 +204,38 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     /// Cycles until `each` says that it is enough (`false`), a fault has released the force, or the
     /// device fails; then stops the device. Arms once, as soon as the kernel allows.
     ///
+    /// ```
+    #[doc = include_str!("simulated/probing.example")]
+    /// use palpate::hid::{End, Session};
+    ///
+    /// let mut session = Session::begin(device, table, limits)?;
+    /// let mut largest = 0;
+    /// let end = session.run(|cycle, counters| {
+    ///     largest = largest.max(cycle.force.normal);
+    ///     counters.cycles < 800
+    /// });
+    /// // A hand of 500 N/m wants 4 mm against 400 N/m: 0.89 N, or 1778 counts of 0.5 mN. Friction and
+    /// // backlash hold it back by 134 counts at most.
+    /// assert!(end == End::Asked && (1644..=1778).contains(&largest));
+    /// # Ok::<(), palpate::hid::SessionError>(())
+    /// ```
+    ///
     /// Implements: HID-016, HID-019.
     pub fn run(&mut self, mut each: impl FnMut(&Cycle, &Counters) -> bool) -> End {
         self.run_watched(|_, cycle, counters| each(cycle, counters))
     }
 
     /// [`Session::run`] with a look at the device after each cycle.
+    ///
+    /// ```
+    #[doc = include_str!("simulated/probing.example")]
+    /// use palpate::hid::Session;
+    ///
+    /// let mut session = Session::begin(device, table, limits)?;
+    /// session.run_watched(|device, _, _| !device.finished());
+    /// assert!(session.counters().cycles > 1900);
+    /// # Ok::<(), palpate::hid::SessionError>(())
+    /// ```
     pub fn run_watched(&mut self, mut each: impl FnMut(&D, &Cycle, &Counters) -> bool) -> End {
         let mut ask = false;
         let end = loop {
@@ -184,6 +263,16 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     }
 
     /// Stops the device; more than once does nothing.
+    ///
+    /// ```
+    #[doc = include_str!("simulated/probing.example")]
+    /// # use palpate::hid::Session;
+    /// # use palpate::servo::Request;
+    /// let mut session = Session::begin(device, table, limits)?;
+    /// session.cycle(Request::None)?;
+    /// assert_eq!((session.stop(), session.stop()), (Ok(()), Ok(())));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`DeviceError`].

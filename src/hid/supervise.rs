@@ -15,6 +15,15 @@ const LOOK: Duration = Duration::from_millis(20);
 pub const HELD_UP: Duration = Duration::from_millis(100);
 
 /// What the servo thread shows while it runs, without locks.
+///
+/// ```
+/// use palpate::hid::{Counters, supervise::Board};
+///
+/// // Nothing was played yet; `stop` ends the session that shows itself here.
+/// let board = Board::default();
+/// assert_eq!(board.counters(), Counters::default());
+/// board.stop();
+/// ```
 #[derive(Debug, Default)]
 pub struct Board {
     /// Set to end the session.
@@ -59,6 +68,21 @@ impl Board {
 }
 
 /// What a session was.
+///
+/// ```
+#[doc = include_str!("simulated/probing.example")]
+/// use palpate::hid::supervise::{Board, PlayOptions, play};
+/// use palpate::hid::{End, Session};
+///
+/// let options = PlayOptions { duration: None, record: 0, budget: Duration::from_millis(1) };
+/// let session = Session::begin(device, table, limits)?;
+/// // Asked to stop before it began.
+/// let board = Board::default();
+/// board.stop();
+/// let played = play(session, &options, &board, || (), || false, |_, _| ()).expect("no panic");
+/// assert_eq!((played.end, played.counters.cycles, played.cycles), (End::Asked, 1, vec![]));
+/// # Ok::<(), palpate::hid::SessionError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Played {
     /// Why it ended.
@@ -74,6 +98,19 @@ pub struct Played {
 }
 
 /// How a session is played.
+///
+/// ```
+/// use palpate::hid::supervise::PlayOptions;
+/// use std::time::Duration;
+///
+/// // Ten seconds at 1 kHz, all recorded.
+/// let options = PlayOptions {
+///     duration: Some(Duration::from_secs(10)),
+///     record: 10_000,
+///     budget: Duration::from_millis(1),
+/// };
+/// assert_eq!(options.duration, Some(options.budget * options.record as u32));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlayOptions {
     /// Ends after this much of the device's time.
@@ -92,6 +129,23 @@ pub struct PlayOptions {
 ///
 /// The servo thread neither allocates nor locks. Returns `None` if it panicked, after the device was
 /// stopped.
+///
+/// ```
+#[doc = include_str!("simulated/probing.example")]
+/// use palpate::hid::supervise::{Board, PlayOptions, play};
+/// use palpate::hid::{End, Session};
+///
+/// let options = PlayOptions {
+///     duration: Some(Duration::from_millis(800)),
+///     record: 500,
+///     budget: Duration::from_millis(1),
+/// };
+/// let session = Session::begin(device, table, limits)?;
+/// let played = play(session, &options, &Board::default(), || (), || false, |_, _| ());
+/// let played = played.expect("the servo thread does not panic");
+/// assert_eq!((played.end, played.counters.cycles, played.cycles.len()), (End::Asked, 800, 500));
+/// # Ok::<(), palpate::hid::SessionError>(())
+/// ```
 ///
 /// Implements: HID-053, HID-054, HID-055.
 pub fn play<D: HapticDevice + Send>(

@@ -1,5 +1,7 @@
 //! How long the cycles of the loop take on this machine, against a budget.
 
+pub mod paper;
+
 use std::time::{Duration, Instant};
 
 use hdrhistogram::Histogram;
@@ -11,6 +13,20 @@ use super::{
 use crate::servo::{Limits, Table};
 
 /// A device on the clock of the host instead of its own, and at the host's pace if it is asked to.
+///
+/// ```
+/// use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+/// use palpate::hid::timing::HostClock;
+/// use palpate::hid::{HapticDevice, Received};
+/// use std::time::{Duration, Instant};
+///
+/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, Trajectory::new(vec![]), Duration::ZERO, vec![]);
+/// let (began, period) = (Instant::now(), Duration::from_millis(1));
+/// let mut paced = HostClock::new(device, Some(period));
+/// assert!(matches!(paced.read(period)?, Received::Report(_)));
+/// assert!(began.elapsed() >= period && paced.now() >= period + paced.late());
+/// # Ok::<(), palpate::hid::DeviceError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct HostClock<D> {
     device: D,
@@ -81,6 +97,18 @@ impl<D: HapticDevice> HapticDevice for HostClock<D> {
 }
 
 /// Distribution of a time, µs.
+///
+/// ```
+#[doc = include_str!("simulated/probing.example")]
+/// # let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_secs(1));
+/// # let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
+/// use palpate::hid::timing::{Distribution, measure};
+///
+/// let timing = measure(device, table, limits, 1000, Duration::from_millis(1), None)?;
+/// let Distribution { p50, p99, p99_9, max } = timing.compute_us;
+/// assert!(p50 <= p99 && p99 <= p99_9 && p99_9 <= max);
+/// # Ok::<(), palpate::hid::timing::TimingError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Distribution {
     /// Half of all cycles are no longer.
@@ -106,6 +134,17 @@ impl Distribution {
 }
 
 /// What was measured.
+///
+/// ```
+#[doc = include_str!("simulated/probing.example")]
+/// use palpate::hid::timing::measure;
+///
+/// let timing = measure(device, table, limits, 1000, Duration::from_secs(3600), None)?;
+/// // A budget of an hour is kept by all, and the kernel takes a part of the response.
+/// assert!(timing.passed && timing.misses == 0 && !timing.paced);
+/// assert!(timing.compute_share > 0.0 && timing.compute_share < 1.0);
+/// # Ok::<(), palpate::hid::timing::TimingError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Timing {
     /// Cycles measured.
@@ -215,6 +254,14 @@ impl Times {
 }
 
 /// Why a timing could not be taken.
+///
+/// ```
+#[doc = include_str!("simulated/probing.example")]
+/// use palpate::hid::timing::{TimingError, measure};
+///
+/// let timing = measure(device, table, limits, 999, Duration::from_millis(1), None);
+/// assert_eq!(timing, Err(TimingError::TooFew(999)));
+/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TimingError {
     /// The session did not begin.
@@ -235,6 +282,16 @@ pub enum TimingError {
 
 /// Measures `cycles` cycles of the shipped loop on `device`, against `budget`; at the pace of `period`
 /// or as fast as they go.
+///
+/// ```
+#[doc = include_str!("simulated/probing.example")]
+/// use palpate::hid::timing::measure;
+///
+/// // Nothing keeps a budget of 0.
+/// let timing = measure(device, table, limits, 1000, Duration::ZERO, None)?;
+/// assert_eq!((timing.cycles, timing.misses, timing.passed), (1000, 1000, false));
+/// # Ok::<(), palpate::hid::timing::TimingError>(())
+/// ```
 ///
 /// # Errors
 /// [`TimingError`].

@@ -6,6 +6,26 @@ use super::{Capabilities, ForceReport, PositionReport, button, status};
 use crate::servo::{Command, Sample};
 
 /// What a count is worth on one device, in the direction in which each number is needed.
+///
+/// ```
+/// use palpate::hid::{Capabilities, ForceReport, PositionReport, Units, button};
+/// use palpate::servo::{Command, Force};
+///
+/// # let bytes = [3, 1, 0, 0xE8, 0x03, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0];
+/// # let capabilities = Capabilities::decode(&bytes).expect("a report");
+/// // Counts of 1 µm and of 0.5 mN.
+/// let units = Units::new(&capabilities)?;
+/// let report = PositionReport {
+///     lateral: 500, normal: -2000, buttons: button::DEADMAN, status: 0, sequence: 7, force_sequence: 0,
+/// };
+/// let sample = units.sample(&report);
+/// assert!(sample.deadman && (sample.depth - 2e-3).abs() < 1e-9 && (sample.lateral - 0.5e-3).abs() < 1e-9);
+///
+/// let command = Command { force: Force { lateral: 0.0, normal: 1.5 }, playing: true };
+/// let sent = ForceReport { lateral: 0, normal: 3000, sequence: 8, flags: ForceReport::PLAY };
+/// assert_eq!(units.report(&command, 8), sent);
+/// # Ok::<(), palpate::hid::InvalidCapabilities>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Units {
     metres_per_count: f32,
@@ -13,6 +33,16 @@ pub struct Units {
 }
 
 /// A capability without which no number has a meaning.
+///
+/// ```
+/// use palpate::hid::{Capabilities, InvalidCapabilities, Units};
+///
+/// // A device whose positions are counts of 0 nm.
+/// let bytes = [3, 1, 0, 0, 0, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0];
+/// let device = Capabilities::decode(&bytes)?;
+/// assert_eq!(Units::new(&device), Err(InvalidCapabilities::PositionUnit));
+/// # Ok::<(), palpate::hid::InvalidReport>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InvalidCapabilities {
     /// Another version of the profile than 1.
@@ -49,6 +79,17 @@ impl core::error::Error for InvalidCapabilities {}
 
 impl Units {
     /// The units of a device.
+    ///
+    /// ```
+    /// use palpate::hid::{Capabilities, InvalidCapabilities, Units};
+    ///
+    /// let bytes = [3, 2, 0, 0xE8, 0x03, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0];
+    /// let mut device = Capabilities::decode(&bytes)?;
+    /// assert_eq!(Units::new(&device), Err(InvalidCapabilities::Version { found: 2 }));
+    /// device.version = 1;
+    /// assert!(Units::new(&device).is_ok());
+    /// # Ok::<(), palpate::hid::InvalidReport>(())
+    /// ```
     ///
     /// # Errors
     /// [`InvalidCapabilities`].
@@ -103,6 +144,13 @@ impl Units {
 /// The sum with 1.5 · 2²³ has its last bit at 1, so that adding rounds, and the low bits of the sum
 /// are the whole number in two's complement: no conversion from floating point is needed, whose
 /// edge cases checkers model differently.
+///
+/// ```
+/// use palpate::hid::count;
+///
+/// assert_eq!([count(2.5), count(3.5), count(-0.6)], [2, 4, -1]);
+/// assert_eq!([count(1e9), count(f32::NAN)], [32767, 0]);
+/// ```
 ///
 /// Implements: HID-011, SRV-061.
 #[inline]

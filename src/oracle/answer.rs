@@ -71,11 +71,6 @@ impl Answer {
         self
     }
 
-    /// The values by name.
-    pub fn values(&self) -> &[(&'static str, Value)] {
-        &self.0
-    }
-
     /// This answer, if all its numbers are finite.
     ///
     /// Implements: ORA-010, ORA-022.

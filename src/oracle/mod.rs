@@ -12,21 +12,35 @@
 
 mod answer;
 mod arguments;
-pub mod ops;
-mod refusal;
+mod ops;
+pub(crate) mod refusal;
 mod request;
 mod serve;
 #[cfg(test)]
 mod tests;
 
-pub use answer::{Answer, Value};
-pub use arguments::{Arguments, MOST_ENTRIES};
-pub use refusal::{Code, Refusal};
+use answer::Answer;
+use arguments::Arguments;
+use refusal::{Code, Refusal};
 pub use serve::{LONGEST_LINE, serve};
 
 use request::Request;
 
 /// What answers: the ops, and the models that were solved before.
+///
+/// ```
+/// use palpate::oracle::Oracle;
+///
+/// let mut oracle = Oracle::default();
+/// let mut answers = Vec::new();
+/// oracle.answer(br#"{"id":1,"op":"two_afc","args":{"gamma":0}}"#, &mut answers);
+/// oracle.answer(br#"{"id":2,"op":"two_afc","args":{"gama":0}}"#, &mut answers);
+/// let answers = String::from_utf8(answers)?;
+/// let lines: Vec<&str> = answers.lines().collect();
+/// assert_eq!(lines[0], r#"{"id":1,"ok":{"p_correct":0.5}}"#);
+/// assert!(lines[1].starts_with(r#"{"id":2,"error":{"code":"bad_argument""#));
+/// # Ok::<(), std::string::FromUtf8Error>(())
+/// ```
 #[derive(Debug, Default)]
 pub struct Oracle {
     /// Models of the built-in phantoms that were asked for, which take long to make.
@@ -35,6 +49,13 @@ pub struct Oracle {
 
 impl Oracle {
     /// Answers one line, without its end, and appends the answer's line to `out`.
+    ///
+    /// ```
+    /// let mut answer = Vec::new();
+    /// palpate::oracle::Oracle::default().answer(b"no JSON", &mut answer);
+    /// assert!(answer.starts_with(br#"{"id":null,"error":{"code":"bad_json""#));
+    /// assert_eq!(answer.last(), Some(&b'\n'));
+    /// ```
     ///
     /// Implements: ORA-001, ORA-004, ORA-006, ORA-012.
     pub fn answer(&mut self, line: &[u8], out: &mut Vec<u8>) {

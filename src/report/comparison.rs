@@ -15,6 +15,12 @@ use crate::psychophysics::{
 };
 
 /// A number with its unit: in JSON `{"force_n": 1.6}`.
+///
+/// ```
+/// use palpate::report::Value;
+///
+/// assert_eq!([Value::ForceN(1.6).text(), Value::Gamma(3.29).text()], ["1.600 N", "γ = 3.290"]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Value {
@@ -28,6 +34,10 @@ pub enum Value {
 
 impl Value {
     /// The number with its unit, as a person reads it.
+    ///
+    /// ```
+    /// assert_eq!(palpate::report::Value::ForceN(0.235).text(), "0.235 N");
+    /// ```
     pub fn text(self) -> String {
         match self {
             Value::ForceN(force) => format!("{} N", fixed(force, 3)),
@@ -38,6 +48,17 @@ impl Value {
 }
 
 /// One number of the paper beside ours.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// use palpate::report::{Value, findings};
+///
+/// // The paper's 1.6 N without inclusion beside ours.
+/// let level = &findings(&study)?.comparison[0];
+/// assert_eq!(level.paper, Value::ForceN(1.6));
+/// assert!(matches!(level.here, Value::ForceN(force) if (1.4..1.6).contains(&force)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// Implements: REP-020.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -16,6 +16,15 @@ use crate::psychophysics::bridge::Bridge;
 use crate::psychophysics::{Analysis, NoiseDecomposition};
 
 /// What a study found, in plain numbers.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// let findings = palpate::report::findings(&study)?;
+/// // Below 4 mm of the probe, at three lateral positions: at most 5 % of either error.
+/// assert_eq!((findings.probe_depth, findings.samples), (4e-3, 3));
+/// assert!((findings.required_gamma - 2.0 * 1.644854).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Findings {
     /// The depth of the probe, m, at which signals are taken.
@@ -42,6 +51,13 @@ pub struct Findings {
 }
 
 /// What the reference map says.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// let reference = palpate::report::findings(&study)?.reference;
+/// assert_eq!(reference.normal_force_at_centre, Some(study.reference.normal_force().row(1)[1]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReferenceFindings {
     /// The name of its phantom: untrusted text.
@@ -54,6 +70,15 @@ pub struct ReferenceFindings {
 }
 
 /// What the map of one phantom says.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// let found = &palpate::report::findings(&study)?.maps[0];
+/// assert_eq!((found.paper_phantom, found.inclusion_depth), (Some("6.6"), Some(6.6e-3)));
+/// // In pairs of samples, chance is a half.
+/// assert!(found.two_afc > 0.5 && found.two_afc < 1.0 && found.two_afc == found.auc);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MapFindings {
     /// The name of its phantom: untrusted text.
@@ -86,6 +111,14 @@ pub struct MapFindings {
 }
 
 /// An extreme of a signal along the lateral sweep.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// let peak = palpate::report::findings(&study)?.maps[0].peak_normal;
+/// // Right above the inclusion.
+/// assert!(peak.lateral == 0.0 && (0.25..0.4).contains(&peak.force));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Peak {
     /// The signed force, N.
@@ -97,6 +130,13 @@ pub struct Peak {
 }
 
 /// γ with both channels and with each alone.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// let gamma = palpate::report::findings(&study)?.maps[0].gamma;
+/// assert!((gamma.both - gamma.normal.hypot(gamma.lateral)).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct GammaByChannel {
     /// Both.
@@ -108,6 +148,16 @@ pub struct GammaByChannel {
 }
 
 /// A threshold with its error rates.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// let found = &palpate::report::findings(&study)?.maps[0];
+/// // As likely as not: η = 0, and as many errors of either kind.
+/// assert_eq!(found.map_rule.eta, 0.0);
+/// assert!((found.map_rule.miss - found.map_rule.false_alarm).abs() < 1e-15);
+/// assert!((found.bounded_miss.miss - study.settings.max_miss).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Threshold {
     /// η of equation (9).
@@ -119,6 +169,15 @@ pub struct Threshold {
 }
 
 /// Everything that the report says in numbers.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// use palpate::report::findings;
+///
+/// let findings = findings(&study)?;
+/// assert_eq!(findings.maps.len(), study.maps.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`ReportError::Map`] if a map is over other poses than the reference, [`ReportError::Detect`] if a setting is

@@ -14,18 +14,44 @@
 //! | `figures/` | the paper's figures, the signals, as SVG |
 //! | `html/`, `summary.rs` | the page, the JSON |
 //! | `text.rs` | untrusted names in markup and file names; numbers as text |
+//!
+//! ```
+//! use palpate::fem::{Contact, MeshOptions, Model, Pose};
+//! use palpate::phantom::Phantom;
+//! use palpate::report::{DeformedMesh, Settings, Study, figures, findings, html, summary_json};
+//!
+//! let coarse = MeshOptions { size: 2e-3, ..MeshOptions::default() };
+//! let model = |name| -> Result<Model, Box<dyn std::error::Error>> {
+//!     Ok(Model::new(&Phantom::builtin(name)?, &coarse, Contact::default())?)
+//! };
+//! let (gel, inclusion) = (model("none")?, model("6.6")?);
+//! let (depths, laterals) = ([2e-3, 4e-3], [-5e-3, 0.0, 5e-3]);
+//! let study = Study {
+//!     reference: gel.map(&depths, &laterals, &|_| ())?,
+//!     maps: vec![inclusion.map(&depths, &laterals, &|_| ())?],
+//!     measured: vec![],
+//!     deformed: DeformedMesh::solve(&inclusion, Pose { depth: 4e-3, lateral: 0.0 })?,
+//!     settings: Settings::default(),
+//! };
+//! let findings = findings(&study)?;
+//! assert!(findings.maps[0].gamma.both > 1.0);
+//! let figures = figures(&study, &findings)?;
+//! let page = html(&study, &findings, &figures);
+//! assert!(page.contains("<svg") && summary_json(&findings, &study).contains("\"gamma\""));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod comparison;
 mod figures;
 mod findings;
-mod html;
+pub(crate) mod html;
 pub mod paper;
 mod people;
 mod quality;
 mod summary;
 #[cfg(test)]
 mod tests;
-mod text;
+pub(crate) mod text;
 
 pub use comparison::{Comparison, Value};
 pub use figures::figures;
@@ -33,19 +59,30 @@ pub use findings::{
     Findings, GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold, findings,
 };
 pub use html::html;
-pub use people::normal_approximation;
+use people::normal_approximation;
 pub use quality::{Quality, SMALL_STRAIN_LIMIT};
 pub use summary::{SUMMARY_SCHEMA, SUMMARY_SCHEMA_VERSION, summary_json};
 pub use text::FileNames;
 
 use crate::detect::DetectError;
-use crate::fem::Pose;
 use crate::fem::mesh::Region;
+use crate::fem::{FemError, Model, Pose};
 use crate::force_map::{ForceMap, InvalidForceMap};
 use crate::phantom::Phantom;
 use crate::psychophysics::{PsychophysicsError, TableError};
 
 /// Everything that a run computed.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// use palpate::report::{ReportError, findings};
+///
+/// // A map over other poses than the reference cannot be compared with it.
+/// let other = inclusion.map(&depths, &[0.0], &|_| ())?;
+/// let study = Study { maps: vec![other], ..study };
+/// assert!(matches!(findings(&study), Err(ReportError::Map { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Study {
     /// Reference map F_0 of the phantom without inclusion.
@@ -61,6 +98,15 @@ pub struct Study {
 }
 
 /// The mesh of one phantom under the probe.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// let DeformedMesh { nodes, displacements, corners, regions, min_det, .. } = study.deformed;
+/// assert_eq!((nodes.len(), corners.len()), (displacements.len(), regions.len()));
+/// // Pressed together in places, and nowhere to nothing.
+/// assert!(0.2 < min_det && min_det < 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeformedMesh {
     /// The phantom under the probe.
@@ -79,7 +125,53 @@ pub struct DeformedMesh {
     pub min_det: f64,
 }
 
+impl DeformedMesh {
+    /// The mesh of `model` with the probe at `pose`.
+    ///
+    /// ```
+    /// use palpate::fem::{Contact, MeshOptions, Model, Pose};
+    /// use palpate::phantom::Phantom;
+    /// use palpate::report::DeformedMesh;
+    ///
+    /// let coarse = MeshOptions { size: 2e-3, ..MeshOptions::default() };
+    /// let model = Model::new(&Phantom::builtin("none")?, &coarse, Contact::default())?;
+    /// let deformed = DeformedMesh::solve(&model, Pose { depth: 2e-3, lateral: 0.0 })?;
+    /// let deepest = deformed.displacements.iter().map(|[_, y]| -y).fold(0.0, f64::max);
+    /// // The node under the probe goes as deep as the probe, and none much deeper.
+    /// assert!((2e-3..2.1e-3).contains(&deepest));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Model::solve`] and [`Model::field`].
+    pub fn solve(model: &Model, pose: Pose) -> Result<DeformedMesh, FemError> {
+        let solution = model.solve(pose)?;
+        let mesh = model.mesh();
+        let corners = mesh.element.corners();
+        let check = model.checks(std::slice::from_ref(&solution));
+        Ok(DeformedMesh {
+            phantom: model.phantom().clone(),
+            pose,
+            nodes: mesh.nodes.clone(),
+            displacements: model.field(&solution)?.displacements,
+            corners: mesh
+                .elements()
+                .map(|nodes| nodes[..corners].to_vec())
+                .collect(),
+            regions: mesh.regions.clone(),
+            min_det: check[0].min_det,
+        })
+    }
+}
+
 /// What the detector assumes, with the paper's numbers as the default.
+///
+/// ```
+/// use palpate::report::Settings;
+///
+/// let careful = Settings { max_miss: 0.001, ..Settings::default() };
+/// assert_eq!((careful.max_false_alarm, careful.prior_h1), (0.05, 0.5));
+/// ```
 ///
 /// Implements: REP-001.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -107,6 +199,16 @@ impl Default for Settings {
 }
 
 /// Where on the page a figure stands.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// use palpate::report::{Topic, figures, findings};
+///
+/// let figures = figures(&study, &findings(&study)?)?;
+/// // The page begins with the set-up.
+/// assert_eq!(figures[0].topic, Topic::Setup);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Topic {
     /// Phantom, probe, problem.
@@ -120,6 +222,17 @@ pub enum Topic {
 }
 
 /// One picture with the words that go with it.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// use palpate::report::{figures, findings};
+///
+/// for figure in figures(&study, &findings(&study)?)? {
+///     assert!(figure.file_name.ends_with(".svg") && figure.svg.starts_with("<svg"));
+///     assert!(!figure.alt.is_empty());
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// A name of ASCII letters, digits, `.`, `-` and `_`, unique in the study; ends in `.svg`.
@@ -137,6 +250,15 @@ pub struct Figure {
 }
 
 /// Why there is no report.
+///
+/// ```
+#[doc = include_str!("study.example")]
+/// use palpate::report::{ReportError, findings};
+///
+/// let study = Study { settings: Settings { noise_sd: 0.0, ..study.settings }, ..study };
+/// assert!(matches!(findings(&study), Err(ReportError::Detect { .. })));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// Implements: REP-004, REP-006.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

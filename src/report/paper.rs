@@ -1,4 +1,12 @@
 //! The numbers that the paper prints, each with its place.
+//!
+//! ```
+//! use palpate::report::paper;
+//!
+//! // Table 2 adds up to more than the paper allows the display.
+//! let total = paper::NOISE_SOURCES.iter().map(|(_, sd)| sd * sd).sum::<f64>().sqrt();
+//! assert!(total > paper::DISPLAY_NOISE);
+//! ```
 
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 
@@ -106,7 +114,7 @@ pub const EXPERIMENTS: [Experiment; 3] = [
 /// Which of the paper's phantoms this is, whatever it is called: geometry, materials and probe decide.
 ///
 /// Implements: REP-010.
-pub fn name_of(phantom: &Phantom) -> Option<&'static str> {
+pub(super) fn name_of(phantom: &Phantom) -> Option<&'static str> {
     BUILTIN_NAMES.into_iter().find(|name| {
         Phantom::builtin(name).is_ok_and(|builtin| {
             builtin

@@ -50,7 +50,7 @@ pub fn subjects(study: &Study, compared: &[MapFindings]) -> Result<Subjects, Rep
 /// error bars come nearest to.
 ///
 /// Implements: REP-038.
-pub fn normal_approximation(share: f64, trials: u64) -> Bounds {
+pub(super) fn normal_approximation(share: f64, trials: u64) -> Bounds {
     // The quantile is defined at this probability.
     let quantile = normal::quantile(0.975).unwrap_or(f64::NAN);
     let reach = quantile * libm::sqrt(share * (1.0 - share) / trials as f64);

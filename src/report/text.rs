@@ -68,6 +68,14 @@ pub fn shortened(name: &str, most: usize) -> String {
 }
 
 /// Gives out file names that are safe on any system and never the same twice, not even where case is ignored.
+///
+/// ```
+/// use palpate::report::FileNames;
+///
+/// let mut names = FileNames::default();
+/// assert_eq!(names.unique("map", "../6.6 mm", "json"), "map-.._6.6_mm.json");
+/// assert_eq!(names.unique("map", "../6.6_MM", "json"), "map-.._6.6_MM-2.json");
+/// ```
 #[derive(Debug, Default)]
 pub struct FileNames {
     used: HashSet<String>,
@@ -75,6 +83,14 @@ pub struct FileNames {
 
 impl FileNames {
     /// `prefix`, then what is safe of `name`, then a number if that is taken, then `.extension`.
+    ///
+    /// ```
+    /// use palpate::report::FileNames;
+    ///
+    /// let mut names = FileNames::default();
+    /// assert_eq!(names.unique("map", "", "json"), "map.json");
+    /// assert_eq!(names.unique("map", "", "json"), "map-2.json");
+    /// ```
     ///
     /// Implements: REP-031.
     pub fn unique(&mut self, prefix: &str, name: &str, extension: &str) -> String {

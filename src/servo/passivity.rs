@@ -4,6 +4,14 @@
 use super::{EXTRAPOLATION_CELLS, Force, Table};
 
 /// What damps a device, and what its samples miss.
+///
+/// ```
+/// use palpate::servo::Damping;
+///
+/// let display = Damping { period_s: 1e-3, damping_n_s_per_m: 0.5, friction_n: 0.14, resolution_m: 1e-6 };
+/// assert_eq!(display.stiffest(), Some(1000.0));
+/// assert_eq!(Damping { period_s: 0.0, ..display }.stiffest(), None);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {
     /// Time between two samples, T, s.
@@ -40,6 +48,18 @@ impl Damping {
 /// and on the continued cells.
 ///
 /// ∂F/∂x is linear in d, and ∂F/∂d in x, so that the largest is at a corner of a cell.
+///
+/// ```
+/// use palpate::servo::{Axis, Force, Table, stiffness};
+///
+/// // 4 N at half a metre, wherever the probe stands.
+/// let force = |normal| Force { lateral: 0.0, normal };
+/// let forces = [force(0.0), force(0.0), force(4.0), force(4.0)];
+/// let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
+/// let table = Table::new(axis, axis, &forces)?;
+/// assert_eq!(stiffness(&table), 8.0);
+/// # Ok::<(), palpate::servo::InvalidTable>(())
+/// ```
 ///
 /// Implements: SRV-050.
 pub fn stiffness(table: &Table) -> f64 {

@@ -23,6 +23,26 @@ const NO_SAMPLE: Sample = Sample {
 ///
 /// Total and bounded for every bit pattern of `state` and `input`.
 ///
+/// ```
+/// use palpate::servo::{Axis, Force, Input, Limits, Mode, Request, Sample, State, Table, step};
+///
+/// # let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
+/// # let forces = [0.0, 0.0, 4.0, 4.0].map(|normal| Force { lateral: 0.0, normal });
+/// # let table = Table::new(axis, axis, &forces).expect("a table");
+/// let limits = Limits::new(2.0, 0.05, 0.25, 10)?;
+/// let input = |sequence, deadman, request| Input {
+///     sample: Some(Sample { sequence, deadman, device_fault: false, depth: 0.1, lateral: 0.0 }),
+///     request,
+/// };
+/// let (state, _) = step(&table, &limits, State::default(), input(1, false, Request::None));
+/// let (state, _) = step(&table, &limits, state, input(2, false, Request::Arm));
+/// assert_eq!(state.mode, Mode::Armed);
+/// // The hand holds on. The table says 0.8 N, and the slew allows 0.05 N of it in this cycle.
+/// let (_, command) = step(&table, &limits, state, input(3, true, Request::None));
+/// assert!(command.playing && command.force.normal == 0.05);
+/// # Ok::<(), palpate::servo::InvalidLimits>(())
+/// ```
+///
 /// Implements: SRV-001, SRV-020, SRV-021, SRV-030, SRV-031, SRV-034, SRV-060, SRV-070.
 #[inline]
 pub fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (State, Command) {

@@ -5,6 +5,13 @@ use std::fmt;
 use super::{Identity, ListError, Listed, Profile};
 
 /// What is known of the device that is wanted; what is `None` does not matter.
+///
+/// ```
+/// use palpate::hid::real::Wanted;
+///
+/// let wanted = Wanted { vendor: Some(0x1209), serial: Some("7".into()), ..Wanted::default() };
+/// assert_eq!(wanted.to_string(), "1209:any, serial 7");
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// Vendor number.
@@ -17,6 +24,15 @@ pub struct Wanted {
 
 impl Wanted {
     /// The same device, at whatever node.
+    ///
+    /// ```
+    /// use palpate::hid::real::{Identity, Wanted};
+    ///
+    /// let found = Identity {
+    ///     vendor: 0x1209, product: 1, serial: "7".into(), name: "probe".into(), node: "/dev/hidraw3".into(),
+    /// };
+    /// assert_eq!(Wanted::again(&found).to_string(), "1209:0001, serial 7");
+    /// ```
     pub fn again(identity: &Identity) -> Wanted {
         Wanted {
             vendor: Some(identity.vendor),
@@ -49,6 +65,13 @@ impl fmt::Display for Wanted {
 }
 
 /// Why no device was opened.
+///
+/// ```
+/// use palpate::hid::real::OpenError;
+///
+/// let error = OpenError::NotFound { wanted: "1209:any".into() };
+/// assert_eq!(error.to_string(), "no HID device 1209:any; `palpate devices` lists those there are");
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
     /// The devices could not be listed.

@@ -10,6 +10,15 @@ use hidapi::{DeviceInfo, HidApi, HidError};
 use crate::hid::DESCRIPTOR;
 
 /// What a device is called, and where it is.
+///
+/// ```
+/// use palpate::hid::real::Identity;
+///
+/// let device = Identity {
+///     vendor: 0x1209, product: 1, serial: "7".into(), name: "probe".into(), node: "/dev/hidraw3".into(),
+/// };
+/// assert_eq!(device.to_string(), "probe (1209:0001, serial 7) at /dev/hidraw3");
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
     /// Vendor number.
@@ -35,6 +44,17 @@ impl fmt::Display for Identity {
 }
 
 /// What a device's report descriptor says that it is.
+///
+/// ```
+/// use palpate::hid::{DESCRIPTOR, real::Profile};
+///
+/// assert_eq!(Profile::of(&DESCRIPTOR), Profile::Vendor);
+/// let joystick_with_forces = [0x05, 0x0F, 0x09, 0x92];
+/// assert_eq!(Profile::of(&joystick_with_forces), Profile::Pid);
+/// let mut newer = DESCRIPTOR;
+/// newer[3] = 0x0A;
+/// assert_eq!(Profile::of(&newer), Profile::Other { length: 136, differs_at: 3 });
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Profile {
     /// The vendor profile.
@@ -114,6 +134,16 @@ fn uses_page(descriptor: &[u8], page: u32) -> bool {
 }
 
 /// Whether a device can be opened.
+///
+/// ```
+/// use palpate::hid::real::{Access, Identity, Listed, Profile};
+///
+/// let identity = Identity {
+///     vendor: 0x1209, product: 1, serial: "7".into(), name: "probe".into(), node: "/no/such/node".into(),
+/// };
+/// let gone = Listed { identity, profile: Profile::Vendor };
+/// assert!(matches!(gone.access(), Access::Failed(_)));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Access {
     /// For reading and writing.
@@ -125,6 +155,17 @@ pub enum Access {
 }
 
 /// A device and what it is.
+///
+/// ```no_run
+/// use palpate::hid::real::{Access, Profile, list, udev_rule};
+///
+/// for one in list()? {
+///     if one.profile == Profile::Vendor && one.access() == Access::Denied {
+///         println!("{} needs the udev rule {}", one.identity, udev_rule(&one.identity));
+///     }
+/// }
+/// # Ok::<(), palpate::hid::real::ListError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listed {
     /// Which device.
@@ -148,6 +189,14 @@ impl Listed {
 }
 
 /// Why the devices can not be listed.
+///
+/// ```no_run
+/// use palpate::hid::real::list;
+///
+/// if let Err(error) = list() {
+///     assert!(error.to_string().starts_with("HID devices: "));
+/// }
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("HID devices: {0}")]
 pub struct ListError(String);
@@ -161,6 +210,13 @@ impl From<HidError> for ListError {
 /// All HID devices, in the order of their nodes, each once.
 ///
 /// Takes milliseconds and allocates: not for the thread that runs the loop.
+///
+/// ```no_run
+/// for device in palpate::hid::real::list()? {
+///     println!("{}: {}", device.identity, device.profile);
+/// }
+/// # Ok::<(), palpate::hid::real::ListError>(())
+/// ```
 ///
 /// # Errors
 /// [`ListError`].
@@ -207,6 +263,15 @@ fn descriptor(node: &str) -> std::io::Result<Vec<u8>> {
 ///
 /// It matches the `hidraw` node by the name of the HID device above it, which holds bus, vendor and
 /// product on every bus; a rule for `SUBSYSTEM=="usb"` does not cover the node.
+///
+/// ```
+/// use palpate::hid::real::{Identity, udev_rule};
+///
+/// let device = Identity {
+///     vendor: 0x1209, product: 0xAB, serial: "7".into(), name: "probe".into(), node: "/dev/hidraw3".into(),
+/// };
+/// assert_eq!(udev_rule(&device), r#"KERNEL=="hidraw*", KERNELS=="*:1209:00AB.*", TAG+="uaccess""#);
+/// ```
 ///
 /// Implements: HID-032.
 pub fn udev_rule(identity: &Identity) -> String {

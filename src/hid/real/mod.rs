@@ -35,6 +35,20 @@ const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// Reading and writing neither allocate nor enumerate; opening does both and takes milliseconds, so it
 /// has no place in the loop.
 ///
+/// ```no_run
+/// use palpate::hid::real::{RealDevice, Wanted};
+/// use palpate::hid::{HapticDevice, Received};
+/// use std::time::Duration;
+///
+/// let mut device = RealDevice::open(&Wanted::default())?;
+/// let largest = device.capabilities()?.largest_force_mn;
+/// println!("{} plays up to {largest} mN", device.identity());
+/// if let Received::Report(report) = device.read(Duration::from_millis(2))? {
+///     println!("{report:?}");
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Implements: HID-033, HID-034, HID-035.
 #[derive(Debug)]
 pub struct RealDevice {
@@ -47,6 +61,15 @@ pub struct RealDevice {
 
 impl RealDevice {
     /// Opens the only device that is wanted and fits the vendor profile.
+    ///
+    /// ```no_run
+    /// use palpate::hid::real::{RealDevice, Wanted};
+    ///
+    /// let wanted = Wanted { vendor: Some(0x1209), product: Some(1), serial: None };
+    /// let device = RealDevice::open(&wanted)?;
+    /// assert_eq!(device.identity().vendor, 0x1209);
+    /// # Ok::<(), palpate::hid::real::OpenError>(())
+    /// ```
     ///
     /// # Errors
     /// [`OpenError`].
@@ -79,6 +102,17 @@ impl RealDevice {
 
     /// [`RealDevice::open`], again and again for as long as `patience`: a device that was just plugged
     /// in is listed before it may be opened, and one that was replugged may have another node.
+    ///
+    /// ```no_run
+    /// use palpate::hid::real::{RealDevice, Wanted};
+    /// use std::time::Duration;
+    ///
+    /// let device = RealDevice::open(&Wanted::default())?;
+    /// let same = Wanted::again(device.identity());
+    /// drop(device); // and somebody pulls the cable and puts it back
+    /// let device = RealDevice::open_within(&same, Duration::from_secs(5))?;
+    /// # Ok::<(), palpate::hid::real::OpenError>(())
+    /// ```
     ///
     /// # Errors
     /// The last [`OpenError`].

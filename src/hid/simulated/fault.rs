@@ -5,6 +5,19 @@ use std::time::Duration;
 use crate::hid::InvalidReport;
 
 /// A defect and its time.
+///
+/// ```
+#[doc = include_str!("probing.example")]
+/// use palpate::hid::simulated::{Defect, Fault};
+/// use palpate::hid::{DeviceError, End, Session};
+///
+/// let unplug = Fault { at: Duration::from_millis(600), defect: Defect::Unplug };
+/// # let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_millis(500));
+/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![unplug]);
+/// let end = Session::begin(device, table, limits)?.run(|_, _| true);
+/// assert_eq!(end, End::Device(DeviceError::Gone));
+/// # Ok::<(), palpate::hid::SessionError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fault {
     /// When it begins, on the device's clock.
@@ -14,6 +27,20 @@ pub struct Fault {
 }
 
 /// What can go wrong between a device and the loop.
+///
+/// ```
+#[doc = include_str!("probing.example")]
+/// use palpate::hid::simulated::{Defect, Fault};
+/// use palpate::hid::{End, Session};
+/// use palpate::servo;
+///
+/// let silence = Fault { at: Duration::from_millis(600), defect: Defect::Silence(Duration::from_millis(100)) };
+/// # let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_millis(500));
+/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![silence]);
+/// let end = Session::begin(device, table, limits)?.run(|_, _| true);
+/// assert_eq!(end, End::Fault(servo::Fault::Watchdog));
+/// # Ok::<(), palpate::hid::SessionError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Defect {
     /// The cable is pulled.

@@ -5,6 +5,15 @@
 const STEPS: u32 = 10;
 
 /// What moves on an axis, and what holds it.
+///
+/// ```
+/// use palpate::hid::simulated::Mechanics;
+///
+/// // The paper's display with the friction halved.
+/// let better = Mechanics { friction_n: 0.07, ..Mechanics::PAPER };
+/// assert_eq!(better.hand_n_per_m, 500.0);
+/// assert_eq!(Mechanics::IDEAL.friction_n, 0.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mechanics {
     /// Mass of handle and hand, kg.

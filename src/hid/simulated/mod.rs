@@ -18,7 +18,8 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 pub use fault::{Defect, Fault};
-pub use handle::{Handle, Mechanics};
+use handle::Handle;
+pub use handle::Mechanics;
 pub use trajectory::{Trajectory, Waypoint};
 
 use super::{
@@ -46,6 +47,23 @@ pub const PAPER: Capabilities = Capabilities {
 };
 
 /// A simulated device in a simulated hand.
+///
+/// ```
+/// use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+/// use palpate::hid::{Control, ForceReport, HapticDevice};
+/// use std::time::Duration;
+///
+/// let trajectory = Trajectory::probing(4e-3, 10e-3, Duration::from_secs(1));
+/// let mut device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
+/// device.control(Control::Enable)?;
+/// device.write(&ForceReport { lateral: -200, normal: 3000, sequence: 1, flags: ForceReport::PLAY })?;
+/// assert_eq!(device.motor_force(), [-0.1, 1.5]);
+/// assert_eq!(device.position(), [-10e-3, 1e-3]);
+/// device.read(Duration::from_millis(2))?;
+/// assert_eq!(device.now(), Duration::from_millis(1)); // when the report came
+/// assert!(device.position()[1] > 1e-3 && !device.finished());
+/// # Ok::<(), palpate::hid::DeviceError>(())
+/// ```
 ///
 /// Implements: HID-020, HID-021, HID-022, HID-023.
 #[derive(Debug, Clone)]
@@ -96,6 +114,18 @@ struct Ongoing {
 impl SimulatedDevice {
     /// A device of these capabilities, whose reports arrive `latency` after they were made, in a hand
     /// that follows `trajectory`, with `faults` in the order of their times.
+    ///
+    /// ```
+    /// # use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+    /// # use palpate::hid::{HapticDevice, Received};
+    /// # use std::time::Duration;
+    /// # let trajectory = Trajectory::probing(4e-3, 10e-3, Duration::from_secs(1));
+    /// let late = Duration::from_millis(5);
+    /// let mut device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, late, vec![]);
+    /// assert_eq!(device.read(Duration::from_millis(2))?, Received::Nothing);
+    /// assert!(matches!(device.read(late)?, Received::Report(_)));
+    /// # Ok::<(), palpate::hid::DeviceError>(())
+    /// ```
     pub fn new(
         capabilities: Capabilities,
         mechanics: Mechanics,

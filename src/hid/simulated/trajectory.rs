@@ -3,6 +3,18 @@
 use std::time::Duration;
 
 /// A place and time on the way of the hand.
+///
+/// ```
+/// use palpate::hid::simulated::{Trajectory, Waypoint};
+/// use std::time::Duration;
+///
+/// let above = Waypoint { at: Duration::ZERO, lateral: 0.0, depth: -1e-3, held: false };
+/// let below = Waypoint { at: Duration::from_secs(1), depth: 3e-3, held: true, ..above };
+/// let way = Trajectory::new(vec![above, below]);
+/// // Half-way, and along the normal: positive is out of the gel.
+/// assert!((way.at(Duration::from_millis(500))[1] + 1e-3).abs() < 1e-12);
+/// assert!(!way.held(Duration::from_millis(500)) && way.held(Duration::from_secs(1)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Waypoint {
     /// When.
@@ -16,6 +28,16 @@ pub struct Waypoint {
 }
 
 /// A way through waypoints, from each to the next with the least jerk, and at rest in each.
+///
+/// ```
+/// use palpate::hid::simulated::Trajectory;
+/// use std::time::Duration;
+///
+/// let way = Trajectory::probing(4e-3, 10e-3, Duration::from_secs(1));
+/// assert_eq!(way.duration(), Duration::from_secs(3));
+/// assert_eq!(way.at(Duration::from_millis(1500)), [10e-3, -4e-3]);
+/// assert!(!way.held(Duration::ZERO) && way.held(Duration::from_secs(1)));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     waypoints: Vec<Waypoint>,
@@ -23,6 +45,18 @@ pub struct Trajectory {
 
 impl Trajectory {
     /// The way through `waypoints`, put in the order of their times.
+    ///
+    /// ```
+    /// use palpate::hid::simulated::{Trajectory, Waypoint};
+    /// use std::time::Duration;
+    ///
+    /// let point = |milliseconds, depth| Waypoint {
+    ///     at: Duration::from_millis(milliseconds), lateral: 0.0, depth, held: true,
+    /// };
+    /// let way = Trajectory::new(vec![point(200, 4e-3), point(100, 1e-3)]);
+    /// assert_eq!(way.at(Duration::ZERO), [0.0, -1e-3]); // at the first, until it begins
+    /// assert_eq!(way.duration(), Duration::from_millis(200));
+    /// ```
     pub fn new(mut waypoints: Vec<Waypoint>) -> Trajectory {
         waypoints.sort_by_key(|waypoint| waypoint.at);
         Trajectory { waypoints }
@@ -30,6 +64,15 @@ impl Trajectory {
 
     /// A probing of the gel: rest above the surface, press to `depth` (m) at −`reach` (m), sweep to
     /// +`reach` and back, leave. The deadman is held from 0.1 s on; `sweep` is the time of one sweep.
+    ///
+    /// ```
+    /// use palpate::hid::simulated::Trajectory;
+    /// use std::time::Duration;
+    ///
+    /// let way = Trajectory::probing(4e-3, 10e-3, Duration::from_secs(1));
+    /// assert_eq!(way.at(Duration::ZERO), [-10e-3, 1e-3]);
+    /// assert_eq!(way.at(Duration::from_millis(500)), [-10e-3, -4e-3]);
+    /// ```
     pub fn probing(depth: f64, reach: f64, sweep: Duration) -> Trajectory {
         let rest = -1e-3;
         let mut at = Duration::ZERO;
@@ -55,6 +98,17 @@ impl Trajectory {
     }
 
     /// This way again and again, until it lasts `duration`.
+    ///
+    /// ```
+    /// use palpate::hid::simulated::Trajectory;
+    /// use std::time::Duration;
+    ///
+    /// let once = Trajectory::probing(4e-3, 10e-3, Duration::from_secs(1));
+    /// let way = once.repeated(Duration::from_secs(5));
+    /// assert_eq!(way.duration(), Duration::from_secs(6));
+    /// let second = Duration::from_millis(500);
+    /// assert_eq!(way.at(once.duration() + second), once.at(second));
+    /// ```
     pub fn repeated(&self, duration: Duration) -> Trajectory {
         let mut waypoints = self.waypoints.clone();
         let once = self.duration();

@@ -49,6 +49,15 @@ struct Draft {
 
 /// All figures of a study, in the order of the page.
 ///
+/// ```
+#[doc = include_str!("../study.example")]
+/// use palpate::report::{figures, findings};
+///
+/// let figures = figures(&study, &findings(&study)?)?;
+/// assert!(figures.iter().all(|figure| figure.file_name.ends_with(".svg")));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`ReportError`] if a map does not fit the reference, if the mesh contradicts itself, or if drawing fails.
 ///

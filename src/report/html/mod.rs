@@ -17,7 +17,7 @@ mod noise;
 mod opening;
 mod people;
 mod quality;
-mod table;
+pub(crate) mod table;
 
 use super::text::{escape, prose};
 use super::{Figure, Findings, Study, Topic};
@@ -25,7 +25,7 @@ use super::{Figure, Findings, Study, Topic};
 /// How the page looks.
 ///
 /// Implements: REP-034, REP-064, REP-067, REP-068.
-pub(super) const STYLE: &str = include_str!("style.css");
+pub(crate) const STYLE: &str = include_str!("style.css");
 /// What the name of the SVG namespace is called inside HTML: nothing, since HTML knows `<svg>` by itself.
 const NAMESPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
 
@@ -49,6 +49,17 @@ const CONTENTS: [(&str, &str); 8] = [
 ];
 
 /// One self-contained page: what was found, the figures and tables, the comparison, the certificates.
+///
+/// ```
+#[doc = include_str!("../study.example")]
+/// use palpate::report::{figures, findings, html};
+///
+/// let findings = findings(&study)?;
+/// let page = html(&study, &findings, &figures(&study, &findings)?);
+/// // One file, which loads nothing.
+/// assert!(page.starts_with("<!DOCTYPE html>") && !page.contains(" src="));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// Implements: REP-040, REP-041, REP-042, REP-043, REP-060, REP-065, REP-066.
 pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
@@ -84,7 +95,7 @@ pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
 }
 
 /// A section with its heading, which names it for a screen reader.
-fn section(id: &str, heading: &str, markup: &str) -> String {
+pub(crate) fn section(id: &str, heading: &str, markup: &str) -> String {
     format!(
         "<section id=\"{id}\" aria-labelledby=\"{id}-heading\">\n<h2 id=\"{id}-heading\">{}</h2>\n{markup}</section>\n",
         escape(heading)

@@ -3,11 +3,11 @@
 use std::format;
 use std::vec::Vec;
 
-use super::Outcome;
+use super::{Outcome, SHOWN_POWER};
 
 /// One row of `ledger.csv`.
-#[derive(Debug)]
-pub(super) struct Row {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
     /// The check.
     pub name: &'static str,
     /// The largest probability that it fails for a detector without defect.
@@ -19,6 +19,15 @@ pub(super) struct Row {
 }
 
 impl Row {
+    /// The defects that its negative controls plant: those of which it is all but sure to tell.
+    pub fn shown_defects(&self) -> impl Iterator<Item = &'static str> {
+        let shown = self
+            .powers
+            .iter()
+            .filter(|(_, power)| *power >= SHOWN_POWER);
+        shown.map(|&(defect, _)| defect)
+    }
+
     fn parse(line: &'static str) -> Outcome<Row> {
         let fields: Vec<&str> = line.split(',').collect();
         let [name, alpha, trials, powers] = fields[..] else {

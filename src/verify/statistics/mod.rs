@@ -5,6 +5,18 @@
 //! Every check has a row in `ledger.csv`: its α, its number of trials, and its power against named
 //! defects. Each defect also runs as a negative control, which the check must reject as often as
 //! the ledger says. `power.py` computes the powers.
+//!
+//! ```
+//! use palpate::verify::statistics::{FIXED_SEED, battery, total_alpha};
+//!
+//! let checks: Vec<&str> = battery().map(|check| check.name()).collect();
+//! assert!(checks.contains(&"coarse_mean_h0"));
+//! // What all of them together may find by chance, with a seed that is not the fixed one.
+//! assert!(total_alpha()? < 1e-6);
+//! let first = battery().next().ok_or("an empty battery")?;
+//! assert!(first.run(FIXED_SEED).is_ok());
+//! # Ok::<(), String>(())
+//! ```
 
 mod bounds;
 mod checks;
@@ -21,7 +33,7 @@ use std::vec::Vec;
 
 use crate::detect::Channels;
 use crate::stats::random::Generator;
-use ledger::Row;
+pub use ledger::Row;
 
 /// The seed of the battery in the tests, whose result is therefore always the same.
 pub const FIXED_SEED: u64 = 20_261_121;
@@ -38,6 +50,14 @@ const SHOWN_POWER: f64 = 0.999;
 type Outcome<T> = Result<T, std::boxed::Box<dyn Error + Send + Sync>>;
 
 /// One test of significance with the records that it is for.
+///
+/// ```
+/// use palpate::verify::statistics::{Check, FIXED_SEED, battery};
+///
+/// let check: &Check = battery().find(|check| check.name() == "coarse_mean_h0").ok_or("no such check")?;
+/// assert_eq!(check.run(FIXED_SEED).map_err(|failure| failure.to_string())?, Vec::<String>::new());
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Check {
     name: &'static str,
@@ -68,6 +88,14 @@ impl Draw<'_> {
 }
 
 /// Why a check failed.
+///
+/// ```
+/// use palpate::verify::statistics::{Failure, Reason};
+///
+/// let failure = Failure { check: "coarse_mean_h0", seed: 7, reason: Reason::Rejected { alpha: 1e-9 } };
+/// let said = "check coarse_mean_h0 rejects the detector at alpha = 1e-9, seed 7";
+/// assert_eq!(failure.to_string(), said);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Failure {
     /// The check.
@@ -79,6 +107,14 @@ pub struct Failure {
 }
 
 /// What happened in a check that failed.
+///
+/// ```
+/// use palpate::verify::statistics::{Failure, Reason};
+///
+/// let reason = Reason::Blind { defect: "half_left_out" };
+/// let failure = Failure { check: "coarse_mean_h0", seed: 7, reason };
+/// assert!(failure.to_string().contains("does not see the defect half_left_out"));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reason {
     /// The check rejects the detector.
@@ -119,6 +155,14 @@ impl fmt::Display for Failure {
 impl Error for Failure {}
 
 /// The whole battery, in a fixed order.
+///
+/// ```
+/// use palpate::verify::statistics::battery;
+/// use std::collections::HashSet;
+///
+/// let names: HashSet<&str> = battery().map(|check| check.name()).collect();
+/// assert_eq!(names.len(), battery().count());
+/// ```
 pub fn battery() -> impl Iterator<Item = &'static Check> {
     [
         gaussian::CHECKS,
@@ -131,6 +175,12 @@ pub fn battery() -> impl Iterator<Item = &'static Check> {
 }
 
 /// Σα: the largest probability that a detector without defect fails one battery.
+///
+/// ```
+/// let total = palpate::verify::statistics::total_alpha()?;
+/// assert!(total > 0.0 && total <= 1e-6);
+/// # Ok::<(), String>(())
+/// ```
 ///
 /// # Errors
 /// What is wrong with the ledger.
@@ -145,11 +195,26 @@ impl Check {
     }
 
     /// Its name in the ledger.
+    ///
+    /// ```
+    /// use palpate::verify::statistics::battery;
+    ///
+    /// assert!(battery().any(|check| check.name() == "coarse_mean_h1"));
+    /// ```
     pub fn name(&self) -> &'static str {
         self.name
     }
 
     /// Runs the check on the detector, and gives what it has to remark.
+    ///
+    /// ```
+    /// use palpate::verify::statistics::{FIXED_SEED, battery};
+    ///
+    /// for check in battery().filter(|check| check.name() == "direct_kolmogorov") {
+    ///     check.run(FIXED_SEED)?;
+    /// }
+    /// # Ok::<(), palpate::verify::statistics::Failure>(())
+    /// ```
     ///
     /// # Errors
     /// [`Failure`], for a detector without defect with probability α at most.
@@ -167,6 +232,15 @@ impl Check {
 
     /// Runs the check on a detector with each of the defects that the ledger says it sees.
     ///
+    /// ```
+    /// use palpate::verify::statistics::{FIXED_SEED, battery};
+    ///
+    /// for check in battery().filter(|check| check.name() == "direct_kolmogorov") {
+    ///     check.run_negative_controls(FIXED_SEED)?;
+    /// }
+    /// # Ok::<(), palpate::verify::statistics::Failure>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Failure`] if it does not see one: with probability 0.003 a defect at most, for seeds
     /// other than [`FIXED_SEED`].
@@ -174,7 +248,7 @@ impl Check {
     /// Implements: CLI-050.
     pub fn run_negative_controls(&self, seed: u64) -> Result<(), Failure> {
         let row = self.row(seed)?;
-        for &(defect, _) in row.powers.iter().filter(|(_, power)| *power >= SHOWN_POWER) {
+        for defect in row.shown_defects() {
             for replicate in 1..=REPLICATES {
                 if !self.draw(seed, defect, replicate, &row)?.0 {
                     return Err(self.failure(seed, Reason::Blind { defect }));
@@ -203,7 +277,11 @@ impl Check {
         Ok((rejected, draw.notes.into_inner()))
     }
 
-    fn row(&self, seed: u64) -> Result<Row, Failure> {
+    /// Its row in the ledger.
+    ///
+    /// # Errors
+    /// [`Failure`] with this seed if the ledger is broken.
+    pub fn row(&self, seed: u64) -> Result<Row, Failure> {
         ledger::row(self.name)
             .map_err(|error| self.failure(seed, Reason::Refused(error.to_string())))
     }

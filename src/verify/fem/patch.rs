@@ -1,11 +1,13 @@
 //! Patch test and zero-energy modes.
 
-use nalgebra::DMatrix;
-use palpate::fem::Element;
-use palpate::fem::element::StiffnessRule;
-use palpate::phantom::Material;
+use crate::fem::Element;
+use crate::fem::dense::SquareMatrix;
+use crate::fem::element::StiffnessRule;
+use crate::phantom::Material;
 
-use super::problem::{Exact, Problem, lame};
+use super::eigenvalues::eigenvalues;
+use super::problem::{Exact, Problem, inside_out, lame};
+use super::{Check, Figure, Figures, largest, least};
 
 const ELEMENTS: [Element; 2] = [Element::T6, Element::Q4Full];
 const NEARLY_INCOMPRESSIBLE: Material = Material {
@@ -57,11 +59,11 @@ struct Polynomial {
     quadratic: [[f64; 3]; 2],
 }
 
-const LINEAR: Polynomial = Polynomial {
+const LINEAR_FIELD: Polynomial = Polynomial {
     linear: [[0.7, -1.1], [0.4, 0.9]],
     quadratic: [[0.0; 3]; 2],
 };
-const QUADRATIC: Polynomial = Polynomial {
+const QUADRATIC_FIELD: Polynomial = Polynomial {
     linear: [[0.7, -1.1], [0.4, 0.9]],
     quadratic: [[0.3, -0.2, 0.1], [-0.1, 0.2, 0.4]],
 };
@@ -84,7 +86,7 @@ impl Exact for Polynomial {
 
 /// The largest relative error, of displacement, gradient or stress, with the exact displacement along the border and
 /// the exact body force, which is constant.
-fn worst_error(problem: &Problem, exact: &Polynomial) -> f64 {
+fn worst_error(problem: &Problem, exact: &Polynomial) -> Result<f64, String> {
     let lattice = Problem::lattice(
         problem.element,
         [4, 4],
@@ -102,91 +104,137 @@ fn worst_error(problem: &Problem, exact: &Polynomial) -> f64 {
     ];
     let (u, _) = problem.solve(problem.body_loads(|_| force), |node, direction| {
         border(node).then(|| exact.displacement(problem.nodes[node])[direction])
-    });
+    })?;
     let errors = problem.errors(&u, exact);
-    println!("{:?}: {errors:?}", problem.element);
-    errors.displacement.max(errors.gradient).max(errors.stress)
+    Ok(largest([
+        errors.displacement,
+        errors.gradient,
+        errors.stress,
+    ]))
 }
 
 /// Rounding of the solve: the matrix's condition, some 16 cells² times the ratio of the moduli (λ + 2μ)/μ = 51 at
 /// ν = 0.49, so 10³, times 1.1e-16; stresses multiply the strains' errors by λ/μ = 49 once more.
 const ROUNDING: f64 = 1e-11;
 
-// Verifies: FEM-050.
-#[test]
-fn linear_fields_are_exact_on_any_mesh() {
+/// The linear patch test.
+pub const LINEAR: Check = Check {
+    name: "fem.linear_patch",
+    claim: "A linear displacement prescribed along the border is found inside to rounding, with its gradient and \
+            stress, by both elements, straight or curved, on a distorted mesh.",
+    requirements: &["FEM-050"],
+    repeatable: true,
+    run: linear,
+};
+
+fn linear() -> Figures {
     // On curved edges too: J⁻¹ det J ∇N is a polynomial of degree 2 (of degree 1 in each coordinate on the quadrilateral),
     // which both rules integrate exactly, so that the internal forces of a constant stress are in balance.
+    let mut figures = Vec::new();
     for element in ELEMENTS {
         for curve in [0.0, 0.08] {
-            let worst = worst_error(&distorted(element, curve), &LINEAR);
-            assert!(worst < ROUNDING, "{element:?}, bent by {curve}: {worst:e}");
+            let worst = worst_error(&distorted(element, curve), &LINEAR_FIELD)?;
+            let what = format!(
+                "{}, bent by {curve}: largest relative error",
+                element.name()
+            );
+            figures.push(Figure::at_most(what, worst, ROUNDING));
         }
     }
+    Ok(figures)
 }
 
-// Verifies: FEM-051.
-#[test]
-fn quadratic_fields_are_exact_on_straight_triangles() {
-    let worst = worst_error(&distorted(Element::T6, 0.0), &QUADRATIC);
-    assert!(worst < ROUNDING, "{worst:e}");
-    // Neither a curved triangle nor a quadrilateral holds them: the test can see the difference.
-    for problem in [
-        distorted(Element::T6, 0.08),
-        distorted(Element::Q4Full, 0.0),
+/// The quadratic patch test.
+pub const QUADRATIC: Check = Check {
+    name: "fem.quadratic_patch",
+    claim: "A quadratic displacement is found to rounding by straight triangles; curved ones and quadrilaterals, \
+            which cannot hold it, are seen to miss it.",
+    requirements: &["FEM-051"],
+    repeatable: true,
+    run: quadratic,
+};
+
+fn quadratic() -> Figures {
+    let worst = worst_error(&distorted(Element::T6, 0.0), &QUADRATIC_FIELD)?;
+    let mut figures = vec![Figure::at_most(
+        "straight t6: largest relative error",
+        worst,
+        ROUNDING,
+    )];
+    // Neither a curved triangle nor a quadrilateral holds them: the check can see the difference.
+    for (what, problem) in [
+        ("curved t6", distorted(Element::T6, 0.08)),
+        ("q4-full", distorted(Element::Q4Full, 0.0)),
     ] {
-        let worst = worst_error(&problem, &QUADRATIC);
-        assert!(worst > 1e-3, "{:?}: {worst:e}", problem.element);
+        let worst = worst_error(&problem, &QUADRATIC_FIELD)?;
+        let what = format!("{what}: largest relative error, which must show");
+        figures.push(Figure::at_least(what, worst, 1e-3));
     }
+    Ok(figures)
 }
 
-/// Eigenvalues of a stiffness, ascending.
-fn eigenvalues(matrix: DMatrix<f64>) -> Vec<f64> {
-    let mut values = matrix.symmetric_eigenvalues().as_slice().to_vec();
-    values.sort_by(f64::total_cmp);
-    values
-}
-
-/// Asserts that three eigenvalues are zero and no other one is.
+/// The share of the largest eigenvalue of a stiffness that the largest of the three least has by magnitude, and
+/// that the fourth has.
 ///
 /// Zeros come out within 10² roundings of the largest, which goes as λ + 2μ. The smallest deformation's goes as μ
 /// times (size of an element/size of the mesh)², so at least 1e-2/51 of the largest for one element and 1e-5 for a mesh.
-fn assert_three_zeros(what: &str, values: &[f64], least: f64) {
-    let largest = values.last().unwrap();
-    println!("{what}: {:?} of {largest:.3}", &values[..5]);
-    for (k, value) in values.iter().enumerate() {
-        if k < 3 {
-            assert!(
-                value.abs() < 1e-14 * largest,
-                "{what}: eigenvalue {k} is {value:e}"
-            );
-        } else {
-            assert!(
-                *value > least * largest,
-                "{what}: eigenvalue {k} is {value:e}"
-            );
-        }
-    }
+fn shares(matrix: SquareMatrix) -> Result<[f64; 2], String> {
+    let values = eigenvalues(matrix)?;
+    let greatest = values[values.len() - 1];
+    Ok([
+        largest(values[..3].iter().map(|value| value.abs())) / greatest,
+        least(values[3..].iter().copied()) / greatest,
+    ])
 }
 
-// Verifies: FEM-052.
-#[test]
-fn only_rigid_motions_cost_no_energy() {
+/// The figures of stiffnesses whose eigenvalues have these shares: three zeros, and no other one.
+fn three_zeros(what: &str, shares: &[[f64; 2]], allowed: f64) -> [Figure; 2] {
+    [
+        Figure::at_most(
+            format!("{what}: largest of the three least eigenvalues, over the largest"),
+            largest(shares.iter().map(|share| share[0])),
+            1e-14,
+        ),
+        Figure::at_least(
+            format!("{what}: least of the other eigenvalues, over the largest"),
+            least(shares.iter().map(|share| share[1])),
+            allowed,
+        ),
+    ]
+}
+
+/// Zero-energy modes.
+pub const RIGID: Check = Check {
+    name: "fem.rigid_modes",
+    claim: "An element and a mesh without supports have three motions without energy, the rigid ones, and no other.",
+    requirements: &["FEM-052"],
+    repeatable: true,
+    run: rigid,
+};
+
+fn rigid() -> Figures {
+    let mut figures = Vec::new();
     for element in ELEMENTS {
         for curve in [0.0, 0.08] {
             let problem = distorted(element, curve);
             let rule = StiffnessRule::new(element);
+            let mut elements = Vec::new();
             for nodes in &problem.elements {
                 let positions: Vec<_> = nodes.iter().map(|&k| problem.nodes[k]).collect();
-                let stiffness = rule.integrate(&positions, &NEARLY_INCOMPRESSIBLE).unwrap();
+                let stiffness = rule
+                    .integrate(&positions, &NEARLY_INCOMPRESSIBLE)
+                    .map_err(inside_out)?;
                 let n = 2 * nodes.len();
-                let matrix = DMatrix::from_fn(n, n, |i, j| stiffness[i][j]);
-                assert_three_zeros("element", &eigenvalues(matrix), 1e-4);
+                let matrix = SquareMatrix::from_fn(n, |i, j| stiffness[i][j]);
+                elements.push(shares(matrix)?);
             }
             let n = 2 * problem.nodes.len();
-            let mut matrix = DMatrix::zeros(n, n);
-            problem.visit(|row, column, value| matrix[(row, column)] += value);
-            assert_three_zeros("mesh", &eigenvalues(matrix), 1e-5);
+            let mut matrix = SquareMatrix::from_fn(n, |_, _| 0.0);
+            problem.visit(|row, column, value| matrix[(row, column)] += value)?;
+            let what = |part: &str| format!("{part} of {}, bent by {curve}", element.name());
+            figures.extend(three_zeros(&what("elements"), &elements, 1e-4));
+            figures.extend(three_zeros(&what("mesh"), &[shares(matrix)?], 1e-5));
         }
     }
+    Ok(figures)
 }

@@ -2,10 +2,12 @@
 
 use std::f64::consts::PI;
 
-use palpate::fem::Element;
-use palpate::phantom::Material;
+use crate::fem::Element;
+use crate::phantom::Material;
 
-use super::problem::{Exact, Problem, assert_convergence, lame};
+use super::convergence::convergence;
+use super::problem::{Errors, Exact, Problem, lame};
+use super::{Check, Figure, Figures, largest};
 
 /// A layer 0 ≤ y ≤ h, u = 0 at y = 0, under the traction σ_yy = −cos kx, σ_xy = 0 at y = h.
 ///
@@ -27,7 +29,7 @@ impl BondedLayer {
     fn coefficients(&self) -> [f64; 2] {
         let kappa = 3.0 - 4.0 * self.material.poisson_ratio;
         let m = self.number * self.thickness;
-        let (s, c) = (m.sinh(), m.cosh());
+        let (s, c) = (libm::sinh(m), libm::cosh(m));
         let t = -1.0
             / (self.number
                 * (2.0 * m * m + 0.5 * (1.0 + kappa) * (1.0 + kappa) + 2.0 * kappa * s * s));
@@ -45,10 +47,10 @@ impl Exact for BondedLayer {
             lame(&self.material).1,
             3.0 - 4.0 * self.material.poisson_ratio,
         );
-        let (s, c) = ((k * y).sinh(), (k * y).cosh());
+        let (s, c) = (libm::sinh(k * y), libm::cosh(k * y));
         [
-            (kappa * a * s + k * y * (a * c + b * s)) * (k * x).sin() / (2.0 * mu),
-            (kappa * b * s - k * y * (a * s + b * c)) * (k * x).cos() / (2.0 * mu),
+            (kappa * a * s + k * y * (a * c + b * s)) * libm::sin(k * x) / (2.0 * mu),
+            (kappa * b * s - k * y * (a * s + b * c)) * libm::cos(k * x) / (2.0 * mu),
         ]
     }
 
@@ -58,14 +60,14 @@ impl Exact for BondedLayer {
             lame(&self.material).1,
             3.0 - 4.0 * self.material.poisson_ratio,
         );
-        let (s, c) = ((k * y).sinh(), (k * y).cosh());
+        let (s, c) = (libm::sinh(k * y), libm::cosh(k * y));
         let (even, odd) = (a * c + b * s, a * s + b * c);
         let (along, up) = (kappa * a * s + k * y * even, kappa * b * s - k * y * odd);
         let along_slope = kappa * a * c + even + k * y * odd;
         let up_slope = kappa * b * c - odd - k * y * even;
         let (sin, cos) = (
-            k * (k * x).sin() / (2.0 * mu),
-            k * (k * x).cos() / (2.0 * mu),
+            k * libm::sin(k * x) / (2.0 * mu),
+            k * libm::cos(k * x) / (2.0 * mu),
         );
         [
             [along * cos, along_slope * sin],
@@ -75,15 +77,15 @@ impl Exact for BondedLayer {
 }
 
 /// Errors of half a wave of the layer on 4 meshes of bent triangles.
-fn errors(layer: &BondedLayer, columns: usize) -> [super::problem::Errors; 4] {
+fn errors(layer: &BondedLayer, columns: usize) -> Result<[Errors; 4], String> {
     let (length, h) = (PI / layer.number, layer.thickness);
-    [4, 8, 16, 32].map(|n| {
+    let solve = |n: usize| -> Result<Errors, String> {
         let problem = Problem::lattice(
             Element::T6,
             [columns * n, n],
             |[s, t]| {
                 // Inner edges are curved, the border straight.
-                let rise = 0.1 * (PI * s).sin() * (PI * t).sin();
+                let rise = 0.1 * libm::sin(PI * s) * libm::sin(PI * t);
                 [length * s, h * (t + rise)]
             },
             |[x, _]| x > 0.5,
@@ -93,20 +95,30 @@ fn errors(layer: &BondedLayer, columns: usize) -> [super::problem::Errors; 4] {
         problem.add_traction(
             &mut loads,
             |at| at[1] == h,
-            |[x, _], n| [0.0, -(layer.number * x).cos() * n[1]],
+            |[x, _], n| [0.0, -libm::cos(layer.number * x) * n[1]],
         );
         let (u, _) = problem.solve(loads, |node, direction| {
             let [x, y] = problem.nodes[node];
             let held = y == 0.0 || (direction == 0 && (x == 0.0 || x == length));
             held.then_some(0.0)
-        });
-        problem.errors(&u, layer)
-    })
+        })?;
+        Ok(problem.errors(&u, layer))
+    };
+    Ok([solve(4)?, solve(8)?, solve(16)?, solve(32)?])
 }
 
-// Verifies: FEM-056, FEM-062.
-#[test]
-fn a_bonded_layer_bends_as_the_closed_form() {
+/// The bonded layer.
+pub const BONDED: Check = Check {
+    name: "fem.bonded_layer",
+    claim: "A layer bonded to a rigid base under a wave of pressure, short or long against its thickness, converges to \
+            the closed form.",
+    requirements: &["FEM-056", "FEM-062"],
+    repeatable: true,
+    run: bonded,
+};
+
+fn bonded() -> Figures {
+    let mut figures = Vec::new();
     // Orders 3 and 2 at the end; the nearer to incompressible, the longer they stay near 2 and 1, which hold for all ν.
     for (number, columns, nu, stored, orders) in [
         (
@@ -152,28 +164,37 @@ fn a_bonded_layer_bends_as_the_closed_form() {
         let (lambda, mu) = lame(&layer.material);
         let g = layer.gradient([0.7, 1.0]);
         let pressure = -(lambda * (g[0][0] + g[1][1]) + 2.0 * mu * g[1][1]);
-        assert!((pressure - (0.7 * number).cos()).abs() < 1e-9, "{pressure}");
-        assert!((g[0][1] + g[1][0]).abs() < 1e-12);
-        let errors = errors(&layer, columns);
-        let what = format!("layer, kh = {number}, ν = {nu}");
-        assert_convergence(
-            &format!("{what}, u"),
-            &errors.map(|e| e.displacement),
-            &stored[0],
+        let what = format!("kh = {number}, ν = {nu}");
+        figures.push(Figure::at_most(
+            format!("{what}: error of the closed form's pressure"),
+            (pressure - libm::cos(0.7 * number)).abs(),
+            1e-9,
+        ));
+        figures.push(Figure::at_most(
+            format!("{what}: shear strain of the closed form at the free surface"),
+            (g[0][1] + g[1][0]).abs(),
+            1e-12,
+        ));
+        let errors = errors(&layer, columns)?;
+        figures.extend(convergence(
+            &format!("{what}, displacement"),
+            errors.map(|e| e.displacement),
+            stored[0],
             orders[0],
-        );
-        assert_convergence(
-            &format!("{what}, σ"),
-            &errors.map(|e| e.stress),
-            &stored[1],
+        ));
+        figures.extend(convergence(
+            &format!("{what}, stress"),
+            errors.map(|e| e.stress),
+            stored[1],
             orders[1],
-        );
+        ));
     }
+    Ok(figures)
 }
 
 /// Force over that of a wide strip, F t/(2b M δ), on a strip of half-width b and thickness t between rigid bonded plates
-/// that come closer by δ, M = λ + 2μ, with the modulus chosen so that β b = 2 (see the test).
-fn strip(slenderness: usize) -> f64 {
+/// that come closer by δ, M = λ + 2μ, with the modulus chosen so that β b = 2 (see the check).
+fn strip(slenderness: usize) -> Result<f64, String> {
     let b = slenderness as f64;
     // β² = 12 μ/(M t²), t = 1, and M/μ = 2 (1 − ν)/(1 − 2ν).
     let ratio = 12.0 * b * b / 4.0;
@@ -201,35 +222,50 @@ fn strip(slenderness: usize) -> f64 {
         } else {
             (problem.nodes[node][direction] == 0.0).then_some(0.0)
         }
-    });
+    })?;
     let down: f64 = (0..problem.nodes.len())
         .filter(|&node| plate(node))
         .map(|node| -force[2 * node + 1])
         .sum();
     let (lambda, mu) = lame(&material);
-    2.0 * down / (2.0 * b * (lambda + 2.0 * mu))
+    Ok(2.0 * down / (2.0 * b * (lambda + 2.0 * mu)))
 }
 
-// Verifies: FEM-057.
-#[test]
-fn a_thin_bonded_strip_tends_to_the_lubrication_limit() {
+/// The thin strip.
+pub const STRIP: Check = Check {
+    name: "fem.thin_strip",
+    claim: "The force on a thin strip between rigid bonded plates tends to the lubrication limit, 1 − tanh(2)/2 of a wide \
+            strip's.",
+    requirements: &["FEM-057"],
+    repeatable: true,
+    run: thin,
+};
+
+fn thin() -> Figures {
     // In a thin strip the pressure p(x) does not vary through the thickness. Between bonded plates it drives the flux
     // q = −t³ p'/(12 μ), and what the plates displace either flows or is compressed, δ/t = p/M + q'/t, where M stands for
     // the bulk modulus to the order of μ/M. So p'' = β² (p − M δ/t), p(±b) = 0, β² = 12 μ/(M t²), and
     // F t/(2b M δ) = 1 − tanh(βb)/(βb), up to the edge, a piece of some t out of b: an error c₁/s + c₂/s² + c₃/s³ + … at
     // the slenderness s = b/t. Three strips remove the first two terms; the third leaves c₃/(10 · 20 · 40), 1.3e-4 c₃.
-    let limit = 1.0 - 2f64.tanh() / 2.0;
-    let [short, medium, long] = [10, 20, 40].map(strip);
+    let limit = 1.0 - libm::tanh(2.0) / 2.0;
+    let [short, medium, long] = [strip(10)?, strip(20)?, strip(40)?];
     let extrapolated = (8.0 * long - 6.0 * medium + short) / 3.0;
-    println!("strip: {short:.6}, {medium:.6}, {long:.6}, to {extrapolated:.6}, limit {limit:.6}");
-    assert!(
-        (extrapolated - limit).abs() < 5e-4,
-        "{extrapolated} against {limit}"
-    );
-    for (found, slenderness) in [(short, 10.0), (medium, 20.0), (long, 40.0)] {
-        assert!(
-            (found - limit).abs() < 0.1 / slenderness,
-            "{found} at {slenderness}"
-        );
-    }
+    let off = [(short, 10.0), (medium, 20.0), (long, 40.0)]
+        .map(|(found, slenderness)| (found - limit).abs() * slenderness);
+    Ok(vec![
+        Figure::told(
+            "force extrapolated to infinite slenderness, over a wide strip's",
+            extrapolated,
+        ),
+        Figure::at_most(
+            "difference of the extrapolated force from the limit",
+            (extrapolated - limit).abs(),
+            5e-4,
+        ),
+        Figure::at_most(
+            "largest difference of a strip's force from the limit, times its slenderness",
+            largest(off),
+            0.1,
+        ),
+    ])
 }

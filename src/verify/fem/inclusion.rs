@@ -2,11 +2,13 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use nalgebra::Complex;
-use palpate::fem::Element;
-use palpate::phantom::Material;
+use crate::fem::Element;
+use crate::phantom::Material;
+use num_complex::Complex;
 
-use super::problem::{Exact, Problem, assert_convergence, lame};
+use super::convergence::convergence;
+use super::problem::{Errors, Exact, Problem, lame};
+use super::{Check, Figures};
 
 /// A disc of radius 1 under the far stresses σ_xx = P + Q and σ_yy = P − Q.
 ///
@@ -44,7 +46,7 @@ impl Disc {
     fn potentials(&self, z: Complex<f64>) -> ([f64; 2], [Complex<f64>; 5]) {
         let ([a, b, d, e], [p, q]) = (self.coefficients(), self.far);
         let zero = Complex::from(0.0);
-        if z.norm() < 1.0 {
+        if libm::hypot(z.re, z.im) < 1.0 {
             let potentials = [z * d, zero + d, zero, z * e, zero + e];
             return (constants(&self.inside), potentials);
         }
@@ -90,9 +92,9 @@ fn bend([s, t]: [f64; 2]) -> [f64; 2] {
     let (sin, cos) = if s == 0.0 {
         (1.0, 0.0)
     } else if t <= s {
-        (FRAC_PI_4 * t / s).sin_cos()
+        libm::sincos(FRAC_PI_4 * t / s)
     } else {
-        let (cos, sin) = (FRAC_PI_4 * s / t).sin_cos();
+        let (cos, sin) = libm::sincos(FRAC_PI_4 * s / t);
         (sin, cos)
     };
     // The square's point in the same direction of the lattice, and the circle's.
@@ -106,9 +108,17 @@ fn bend([s, t]: [f64; 2]) -> [f64; 2] {
     })
 }
 
-// Verifies: FEM-055, FEM-062.
-#[test]
-fn the_strain_in_a_disc_is_uniform_and_eshelby_s() {
+/// The disc in a far field.
+pub const DISC: Check = Check {
+    name: "fem.disc",
+    claim: "A stiff disc in a far field, with the moduli of gel and inclusion, converges to the exact field, and the \
+            stress in it to Eshelby's uniform one.",
+    requirements: &["FEM-055", "FEM-062"],
+    repeatable: true,
+    run: disc,
+};
+
+fn disc() -> Figures {
     // The moduli of gel and inclusion; pull along x and half as much push along y.
     let material = |youngs_modulus| Material {
         youngs_modulus,
@@ -119,7 +129,7 @@ fn the_strain_in_a_disc_is_uniform_and_eshelby_s() {
         inside: material(1.2e6),
         far: [250.0, 750.0],
     };
-    let solve = |n: usize| {
+    let solve = |n: usize| -> Result<[Errors; 2], String> {
         let cells = [2 * n, 2 * n];
         let inside = |[s, t]: [f64; 2]| s.max(t) < 0.5;
         let problem = Problem::lattice(
@@ -144,30 +154,30 @@ fn the_strain_in_a_disc_is_uniform_and_eshelby_s() {
             } else {
                 (at[direction] == 0.0).then_some(0.0)
             }
-        });
+        })?;
         let inside = problem.errors_in(&u, &disc, |material| *material == disc.inside);
-        (problem.errors(&u, &disc), inside)
+        Ok([problem.errors(&u, &disc), inside])
     };
-    let solved = [4, 8, 16, 32].map(solve);
-    let errors = solved.map(|(all, _)| all);
-    assert_convergence(
-        "disc, u",
-        &errors.map(|e| e.displacement),
-        &[1.684859e-2, 3.272239e-3, 4.082207e-4, 3.923043e-5],
+    let solved = [solve(4)?, solve(8)?, solve(16)?, solve(32)?];
+    let mut figures = convergence(
+        "displacement",
+        solved.map(|[all, _]| all.displacement),
+        [1.684859e-2, 3.272239e-3, 4.082207e-4, 3.923043e-5],
         3.0,
     );
     // The pressure λ div u is on its way to order 2.
-    assert_convergence(
-        "disc, σ",
-        &errors.map(|e| e.stress),
-        &[5.648983e-1, 2.535486e-1, 9.362615e-2, 2.826855e-2],
+    figures.extend(convergence(
+        "stress",
+        solved.map(|[all, _]| all.stress),
+        [5.648983e-1, 2.535486e-1, 9.362615e-2, 2.826855e-2],
         1.8,
-    );
+    ));
     // The uniform strain and stress inside, point by point in the mean square.
-    assert_convergence(
-        "disc, σ inside",
-        &solved.map(|(_, inside)| inside.stress),
-        &[5.113417e-1, 1.898850e-1, 5.975485e-2, 1.515631e-2],
+    figures.extend(convergence(
+        "stress in the disc",
+        solved.map(|[_, inside]| inside.stress),
+        [5.113417e-1, 1.898850e-1, 5.975485e-2, 1.515631e-2],
         1.8,
-    );
+    ));
+    Ok(figures)
 }

@@ -24,7 +24,10 @@ impl Skyline {
     }
 
     /// Replaces the matrix A by its factors, A = L D Lᵀ with ones on the diagonal of L, and D in their place.
-    pub fn factorise(mut self) -> Factor {
+    ///
+    /// # Errors
+    /// The row in which the matrix is singular.
+    pub fn factorise(mut self) -> Result<Factor, String> {
         for i in 0..self.rows.len() {
             let (done, rest) = self.rows.split_at_mut(i);
             let (row, start) = (&mut rest[0], self.first[i]);
@@ -34,15 +37,17 @@ impl Skyline {
                 let other = &done[j][from - self.first[j]..j - self.first[j]];
                 row[j - start] -= dot(&row[from - start..j - start], other);
             }
-            let (diagonal, before) = row.split_last_mut().unwrap();
+            let (before, diagonal) = row.split_at_mut(i - start);
             for (entry, other) in before.iter_mut().zip(&done[start..]) {
                 let scaled = *entry;
-                *entry /= other.last().unwrap();
-                *diagonal -= scaled * *entry;
+                *entry /= other[other.len() - 1];
+                diagonal[0] -= scaled * *entry;
             }
-            assert!(diagonal.is_normal(), "singular in row {i}");
+            if !diagonal[0].is_normal() {
+                return Err(format!("the matrix is singular in row {i}"));
+            }
         }
-        Factor(self)
+        Ok(Factor(self))
     }
 }
 
@@ -58,7 +63,7 @@ impl Factor {
             x[i] -= dot(before, &x[first[i]..i]);
         }
         for (x, row) in x.iter_mut().zip(rows) {
-            *x /= row.last().unwrap();
+            *x /= row[row.len() - 1];
         }
         for i in (0..x.len()).rev() {
             let value = x[i];

@@ -1,0 +1,311 @@
+//! The components of the program: what of others' is in it, or builds it, and why (`spec/supply-chain.md`).
+//!
+//! Version, checksum and dependencies are read from the lock file, licence and reason from `supply/components.csv`;
+//! both are part of the library. They are those of the program as it is shipped, with its default features on
+//! `x86_64-unknown-linux-gnu`, and not of another program that uses this library.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde_json::{Value, json};
+
+use super::build::Build;
+
+/// The lock file.
+pub const LOCK: &str = include_str!("../../Cargo.lock");
+
+/// Licence, layer, role and reason of each component.
+const TABLE: &str = include_str!("../../supply/components.csv");
+
+/// What a component does when the program is made or run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Role {
+    /// Its code is in the program.
+    Program,
+    /// It writes code of the program while that is compiled: a macro, or what a macro is made of.
+    Macro,
+    /// It runs before a component is compiled.
+    Build,
+}
+
+/// A crate of somebody else's.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Component {
+    /// Its name in the registry.
+    pub name: &'static str,
+    /// Its version, from the lock file.
+    pub version: String,
+    /// SHA-256 of its package, from the lock file, in hexadecimal.
+    pub sha256: String,
+    /// Its licence, an SPDX expression.
+    pub licence: &'static str,
+    /// The first layer that has it, of core, std, fem, report, hid, verify, oracle, cli.
+    pub layer: &'static str,
+    /// What it does.
+    pub role: Role,
+    /// What it is there for.
+    pub why: &'static str,
+    /// The components that it depends on, by name.
+    pub depends_on: Vec<String>,
+}
+
+/// Why the lock file and the table do not make a list of components.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SupplyError {
+    /// The lock file is not one.
+    #[error("Cargo.lock: {0}")]
+    Lock(String),
+    /// A row of the table that is none.
+    #[error("supply/components.csv:{line}: expected name,licence,layer,role,why")]
+    Row {
+        /// Its line, from 1.
+        line: usize,
+    },
+    /// A component that the lock file does not lead to from the program, or without a checksum.
+    #[error(
+        "{0} is in supply/components.csv, but Cargo.lock has no package of the registry for it"
+    )]
+    Missing(String),
+    /// A component in two versions.
+    #[error("{name} is in the program twice: {first} and {second}")]
+    Twice {
+        /// Which.
+        name: String,
+        /// One version.
+        first: String,
+        /// The other.
+        second: String,
+    },
+}
+
+#[derive(serde::Deserialize)]
+struct Lock {
+    package: Vec<Package>,
+}
+
+#[derive(serde::Deserialize)]
+struct Package {
+    name: String,
+    version: String,
+    checksum: Option<String>,
+    #[serde(default)]
+    dependencies: Vec<String>,
+}
+
+/// A row of the table.
+struct Row {
+    name: &'static str,
+    licence: &'static str,
+    layer: &'static str,
+    role: Role,
+    why: &'static str,
+}
+
+/// All components of the program, by name.
+///
+/// # Errors
+/// [`SupplyError`] if lock file and table do not fit.
+///
+/// Implements: EVD-060, EVD-061.
+pub fn components() -> Result<Vec<Component>, SupplyError> {
+    Ok(listed(LOCK, TABLE)?.0)
+}
+
+/// The components, and the names of those that the program itself asks for.
+fn listed(lock: &str, table: &'static str) -> Result<(Vec<Component>, Vec<String>), SupplyError> {
+    let rows = rows(table)?;
+    let lock: Lock = toml::from_str(lock).map_err(|error| SupplyError::Lock(error.to_string()))?;
+    let names: BTreeSet<&str> = rows.iter().map(|row| row.name).collect();
+    let packages = reached(&lock, &names)?;
+    let within = |package: &Package| -> Vec<String> {
+        let asked = package.dependencies.iter().map(|name| first_word(name));
+        let asked = asked.filter(|name| names.contains(name));
+        asked.map(String::from).collect()
+    };
+    let mut components = Vec::new();
+    for row in rows {
+        let package = packages.get(row.name);
+        let missing = || SupplyError::Missing(row.name.into());
+        let package = package.ok_or_else(missing)?;
+        components.push(Component {
+            name: row.name,
+            version: package.version.clone(),
+            sha256: package.checksum.clone().ok_or_else(missing)?,
+            licence: row.licence,
+            layer: row.layer,
+            role: row.role,
+            why: row.why,
+            depends_on: within(package),
+        });
+    }
+    components.sort_by_key(|component| component.name);
+    let program = packages.get(env!("CARGO_PKG_NAME"));
+    let direct = program.map(|program| within(program)).unwrap_or_default();
+    Ok((components, direct))
+}
+
+/// The packages that lead from the program over components alone, by name.
+fn reached<'a>(
+    lock: &'a Lock,
+    names: &BTreeSet<&str>,
+) -> Result<BTreeMap<&'a str, &'a Package>, SupplyError> {
+    let mut found: BTreeMap<&str, &Package> = BTreeMap::new();
+    let mut open = vec![env!("CARGO_PKG_NAME")];
+    while let Some(wanted) = open.pop() {
+        // `name`, or `name version` where the lock file holds several.
+        let mut words = wanted.split(' ');
+        let (name, version) = (words.next().unwrap_or_default(), words.next());
+        let fits = |package: &&Package| {
+            package.name == name && version.is_none_or(|version| package.version == version)
+        };
+        let Some(package) = lock.package.iter().find(fits) else {
+            return Err(SupplyError::Missing(wanted.into()));
+        };
+        match found.insert(name, package) {
+            None => open.extend(
+                package
+                    .dependencies
+                    .iter()
+                    .map(String::as_str)
+                    .filter(|name| names.contains(first_word(name))),
+            ),
+            Some(before) if before.version != package.version => {
+                return Err(SupplyError::Twice {
+                    name: name.into(),
+                    first: before.version.clone(),
+                    second: package.version.clone(),
+                });
+            }
+            Some(_) => {}
+        }
+    }
+    Ok(found)
+}
+
+fn first_word(text: &str) -> &str {
+    text.split(' ').next().unwrap_or_default()
+}
+
+fn rows(table: &'static str) -> Result<Vec<Row>, SupplyError> {
+    let lines = (1..).zip(table.lines()).skip(1);
+    lines
+        .map(|(line, text)| {
+            let fields: Vec<&str> = text.split(',').collect();
+            let role = |role: &str| match role {
+                "program" => Some(Role::Program),
+                "macro" => Some(Role::Macro),
+                "build" => Some(Role::Build),
+                _ => None,
+            };
+            match fields[..] {
+                [name, licence, layer, named, why] => role(named).map(|role| Row {
+                    name,
+                    licence,
+                    layer,
+                    role,
+                    why,
+                }),
+                _ => None,
+            }
+            .ok_or(SupplyError::Row { line })
+        })
+        .collect()
+}
+
+/// The bill of materials: CycloneDX 1.6 in JSON, the same bytes for the same build.
+///
+/// # Errors
+/// As [`components`].
+///
+/// Implements: EVD-065, EVD-066.
+pub fn sbom() -> Result<Value, SupplyError> {
+    let (components, direct) = listed(LOCK, TABLE)?;
+    let build = Build::THIS;
+    let program = purl(env!("CARGO_PKG_NAME"), build.version);
+    let references: BTreeMap<&str, String> = components
+        .iter()
+        .map(|component| (component.name, purl(component.name, &component.version)))
+        .collect();
+    let known = |names: &[String]| -> Vec<&str> {
+        let found = names.iter().map(|name| references.get(name.as_str()));
+        found.flatten().map(String::as_str).collect()
+    };
+    let mut asked = known(&direct);
+    asked.push(STANDARD_LIBRARY);
+    let mut dependencies = vec![json!({ "ref": program, "dependsOn": asked })];
+    dependencies.extend(components.iter().map(|component| {
+        let asked = known(&component.depends_on);
+        json!({ "ref": references[component.name], "dependsOn": asked })
+    }));
+    let mut parts: Vec<Value> = components.iter().map(part).collect();
+    parts.push(standard_library(build.compiler));
+    Ok(json!({
+        "$schema": "http://cyclonedx.org/schema/bom-1.6.schema.json",
+        "bomFormat": "CycloneDX",
+        "specVersion": "1.6",
+        "version": 1,
+        "metadata": {
+            "lifecycles": [{ "phase": "build" }],
+            "component": {
+                "type": "application",
+                "bom-ref": program,
+                "name": env!("CARGO_PKG_NAME"),
+                "version": build.version,
+                "description": env!("CARGO_PKG_DESCRIPTION"),
+                "licenses": [{ "expression": env!("CARGO_PKG_LICENSE") }],
+                "purl": program,
+                "properties": [
+                    { "name": "palpate:commit", "value": build.commit },
+                    { "name": "palpate:target", "value": build.target },
+                ],
+            },
+        },
+        "components": parts,
+        "dependencies": dependencies,
+    }))
+}
+
+/// How the bill of materials refers to Rust's standard library.
+const STANDARD_LIBRARY: &str = "rust-standard-library";
+
+/// Rust's standard library, which comes with the compiler and not through the lock file.
+fn standard_library(compiler: &str) -> Value {
+    json!({
+        "type": "library",
+        "bom-ref": STANDARD_LIBRARY,
+        "name": STANDARD_LIBRARY,
+        "version": compiler,
+        "scope": "required",
+        "licenses": [{ "expression": "MIT OR Apache-2.0" }],
+        "properties": [{ "name": "palpate:why", "value": "The language's own library; linked into the program." }],
+    })
+}
+
+/// A component as the bill of materials has it. What is not in the program itself has the scope `excluded`.
+fn part(component: &Component) -> Value {
+    let reference = purl(component.name, &component.version);
+    let scope = match component.role {
+        Role::Program => "required",
+        Role::Macro | Role::Build => "excluded",
+    };
+    json!({
+        "type": "library",
+        "bom-ref": reference,
+        "name": component.name,
+        "version": component.version,
+        "scope": scope,
+        "hashes": [{ "alg": "SHA-256", "content": component.sha256 }],
+        "licenses": [{ "expression": component.licence }],
+        "purl": reference,
+        "properties": [
+            { "name": "palpate:layer", "value": component.layer },
+            { "name": "palpate:role", "value": component.role },
+            { "name": "palpate:why", "value": component.why },
+        ],
+    })
+}
+
+/// The package URL of a crate; the `+` of a version must be written in hexadecimal there.
+fn purl(name: &str, version: &str) -> String {
+    format!("pkg:cargo/{name}@{}", version.replace('+', "%2B"))
+}

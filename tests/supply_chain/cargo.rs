@@ -1,0 +1,125 @@
+//! What cargo says of the crates that are built.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::process::Command;
+use std::sync::Mutex;
+
+use super::ROOT;
+
+/// For which the program is shipped.
+const TARGET: &str = "x86_64-unknown-linux-gnu";
+
+/// What cargo answers, without the network.
+pub fn cargo(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO"))
+        .args(arguments)
+        .arg("--offline")
+        .current_dir(ROOT)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "cargo {arguments:?}: {said}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A crate in the tree of dependencies.
+#[derive(Debug, Clone)]
+pub struct Built {
+    pub version: String,
+    pub licence: String,
+    pub depends_on: BTreeSet<String>,
+}
+
+/// Which edges of the tree to follow.
+pub const ALL: &str = "normal,build";
+pub const WITHOUT_BUILD_SCRIPTS: &str = "normal";
+pub const IN_THE_PROGRAM: &str = "normal,no-proc-macro";
+
+/// Crates by name.
+pub type Crates = BTreeMap<String, Built>;
+
+/// The crates that the package is built from with these features, by name; itself too.
+pub fn tree(features: &'static str, edges: &'static str) -> Crates {
+    // Several tests ask the same.
+    static KNOWN: Mutex<BTreeMap<(&str, &str), Crates>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().unwrap_or_else(|broken| broken.into_inner());
+    let crates = known
+        .entry((features, edges))
+        .or_insert_with(|| asked(features, edges));
+    crates.clone()
+}
+
+fn asked(features: &str, edges: &str) -> Crates {
+    let text = cargo(&[
+        "tree",
+        "--locked",
+        "--package=palpate",
+        "--target",
+        TARGET,
+        "--no-default-features",
+        "--features",
+        features,
+        "--edges",
+        edges,
+        "--no-dedupe",
+        "--prefix=depth",
+        "--format=|{p}|{l}",
+    ]);
+    let mut found = Crates::new();
+    let mut above: Vec<String> = Vec::new();
+    for line in text.lines() {
+        let [depth, package, licence] = line.split('|').collect::<Vec<_>>()[..] else {
+            panic!("{line}");
+        };
+        let mut words = package.split(' ');
+        let (name, version) = (words.next().unwrap(), words.next().unwrap());
+        let built = Built {
+            version: version.trim_start_matches('v').into(),
+            licence: licence.replace(" / ", "/").replace('/', " OR "),
+            depends_on: BTreeSet::new(),
+        };
+        let known = found.entry(name.into()).or_insert_with(|| built.clone());
+        assert_eq!(known.version, built.version, "{name} in two versions");
+        above.truncate(depth.parse().unwrap());
+        if let Some(parent) = above.last() {
+            let parent = found.get_mut(parent).unwrap();
+            parent.depends_on.insert(name.into());
+        }
+        above.push(name.into());
+    }
+    assert!(found.contains_key("palpate"), "{text}");
+    found
+}
+
+/// Every package of the workspace on this platform, as cargo describes it.
+pub fn packages() -> Vec<serde_json::Value> {
+    let text = cargo(&[
+        "metadata",
+        "--locked",
+        "--format-version=1",
+        "--filter-platform",
+        TARGET,
+    ]);
+    let metadata: serde_json::Value = serde_json::from_str(&text).unwrap();
+    metadata["packages"].as_array().unwrap().clone()
+}
+
+/// A package of the lock file.
+#[derive(serde::Deserialize)]
+pub struct Locked {
+    pub name: String,
+    pub version: String,
+    pub source: Option<String>,
+    pub checksum: Option<String>,
+}
+
+/// All packages of the lock file.
+pub fn locked() -> Vec<Locked> {
+    #[derive(serde::Deserialize)]
+    struct Lock {
+        package: Vec<Locked>,
+    }
+    let text = std::fs::read_to_string(format!("{ROOT}/Cargo.lock")).unwrap();
+    let lock: Lock = toml::from_str(&text).unwrap();
+    lock.package
+}
