@@ -95,6 +95,56 @@ fn every_public_item_has_an_example() {
     );
 }
 
+// Verifies: DOC-012.
+#[test]
+fn what_a_user_can_name_is_found() {
+    let sources = Crate::of_text(
+        "
+        pub mod open {
+            mod closed {
+                pub struct Shown;
+                impl Shown { pub fn new() -> Shown {} fn inner(&self) {} }
+                pub struct Hidden;
+                impl Hidden { pub fn new() -> Hidden {} }
+                pub fn renamed() {}
+            }
+            pub use closed::{Shown, renamed as named};
+            pub use self::other::*;
+            mod other { pub trait Device { fn write(&self); } pub(crate) struct Inner; }
+            pub use super::far::Far;
+            impl Default for Shown { fn default() -> Shown {} }
+            pub use std::vec::Vec;
+        }
+        mod far {
+            pub use self::farther::Far;
+            mod farther { pub enum Far { Here } }
+            impl crate::open::Shown { pub fn elsewhere(&self) {} }
+        }
+        pub fn free() {}
+        fn private() {}
+        #[cfg(test)]
+        pub mod tests { pub fn helper() {} }
+        ",
+    );
+    let mut found: Vec<String> = sources
+        .public_items()
+        .into_iter()
+        .map(|item| item.path)
+        .collect();
+    found.sort();
+    let expected = [
+        "free",
+        "open::Device",
+        "open::Device::write",
+        "open::Far",
+        "open::Shown",
+        "open::Shown::elsewhere",
+        "open::Shown::new",
+        "open::named",
+    ];
+    assert_eq!(found, expected);
+}
+
 // Verifies: DOC-010, DOC-011.
 #[test]
 fn what_counts_as_an_example() {

@@ -151,6 +151,20 @@ impl Phantom {
 
     /// The phantom in `text`, the content of `file`, which is named in errors alone.
     ///
+    /// ```
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let text = r#"
+    /// name = "soft, without inclusion"
+    /// gel = { width_mm = 34, height_mm = 15, youngs_modulus_kpa = 2.5, poisson_ratio = 0.49 }
+    /// skin = { thickness_mm = 0.5, youngs_modulus_kpa = 180, poisson_ratio = 0.49 }
+    /// probe = { radius_mm = 6.5, length_mm = 30 }
+    /// "#;
+    /// let phantom = Phantom::from_toml(text, "soft.toml")?;
+    /// assert_eq!((phantom.gel.width, phantom.gel.material.youngs_modulus), (0.034, 2500.0));
+    /// # Ok::<(), palpate::phantom::PhantomFileError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`PhantomFileError`] if the text is not TOML, has an unknown key, lacks one, has a value of
     /// another type, or makes a phantom that [`Phantom::validate`] refuses.
