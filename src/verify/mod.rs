@@ -32,8 +32,8 @@ pub mod statistics;
 pub mod supply;
 #[cfg(all(feature = "hid", feature = "fem"))]
 pub mod timing;
-#[cfg(feature = "cli")]
-pub(crate) mod traceability;
+#[cfg(feature = "std")]
+pub mod traceability;
 #[cfg(feature = "cli")]
 pub mod vectors;
 
