@@ -152,7 +152,7 @@ fn the_page_holds_every_section_and_needs_nothing_else() {
         "Verification, calculation: discretisation error",
         "5.3 architectural design",
         "force comes back by itself",
-        "coarse mean h0".replace(' ', "_").as_str(),
+        "coarse_<wbr>mean_<wbr>h0",
         "FEM-001",
         "libm",
         "a &lt;processor&gt;",
