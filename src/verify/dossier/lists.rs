@@ -12,11 +12,11 @@ use crate::verify::traceability::{Requirement, Summary, summary};
 pub fn components(evidence: &Evidence) -> String {
     let row = |component: &Component| {
         vec![
-            escape(&component.name),
+            escape(component.name),
             escape(&component.version),
-            escape(&component.licence),
-            escape(&component.layer),
-            escape(&component.why),
+            escape(component.licence),
+            escape(component.layer),
+            escape(component.why),
         ]
     };
     let table = Table {
