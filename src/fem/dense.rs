@@ -3,6 +3,17 @@
 use core::ops::{Index, IndexMut};
 
 /// A square matrix of f64, column after column.
+///
+/// ```
+/// use palpate::fem::SquareMatrix;
+///
+/// let mut matrix = SquareMatrix::from_fn(2, |row, column| (10 * row + column) as f64);
+/// matrix[(0, 1)] = 5.0;
+/// assert_eq!((matrix.order(), matrix[(1, 0)]), (2, 10.0));
+/// assert_eq!(matrix.as_slice(), [0.0, 10.0, 5.0, 11.0]);
+/// matrix.as_mut_slice().fill(0.0);
+/// assert_eq!(matrix[(0, 1)], 0.0);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SquareMatrix {
     order: usize,
@@ -11,6 +22,13 @@ pub struct SquareMatrix {
 
 impl SquareMatrix {
     /// The matrix of `order` rows whose entries are `entry(row, column)`.
+    ///
+    /// ```
+    /// use palpate::fem::SquareMatrix;
+    ///
+    /// let unit = SquareMatrix::from_fn(3, |row, column| f64::from(u8::from(row == column)));
+    /// assert_eq!([unit[(2, 2)], unit[(2, 0)]], [1.0, 0.0]);
+    /// ```
     pub fn from_fn(order: usize, mut entry: impl FnMut(usize, usize) -> f64) -> SquareMatrix {
         let mut entries = Vec::with_capacity(order * order);
         for column in 0..order {

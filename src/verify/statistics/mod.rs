@@ -280,6 +280,15 @@ impl Check {
 
     /// Its row in the ledger.
     ///
+    /// ```
+    /// use palpate::verify::statistics::battery;
+    ///
+    /// for check in battery() {
+    ///     assert_eq!(check.row(7)?.name, check.name());
+    /// }
+    /// # Ok::<(), palpate::verify::statistics::Failure>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Failure`] with this seed if the ledger is broken.
     pub fn row(&self, seed: u64) -> Result<Row, Failure> {
