@@ -9,6 +9,7 @@ use std::time::Instant;
 
 const REQUESTS: usize = 500_000;
 const QUESTIONS: usize = 20_000;
+// Verifies: ORA-013.
 /// What ORA-013 promises, 1/s.
 const PROMISED: f64 = 50_000.0;
 

@@ -16,8 +16,11 @@ mod servo_cases;
 use servo_cases::{armed, paper_table, sample};
 
 /// The time of a cycle at 1 kHz, ns.
+///
+/// Implements: SRV-062.
 const BUDGET: f64 = 1e6;
 
+// Verifies: SRV-062.
 fn main() -> ExitCode {
     let mut criterion = Criterion::default().configure_from_args();
     let loaded = paper_table();

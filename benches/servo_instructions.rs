@@ -61,6 +61,7 @@ fn measured(
     step(table, limits, state, input)
 }
 
+// Verifies: SRV-060. The ceiling of 400.
 library_benchmark_group!(name = kernel; benchmarks = servo_step);
 
 main!(

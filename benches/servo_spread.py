@@ -1,5 +1,8 @@
 """The spread of the instruction counts that `cargo bench --bench servo_instructions` has left behind: one step of the
-servo kernel must take the same on every path, within 10 % of the middle (SRV-060). Ends with 1 otherwise."""
+servo kernel must take the same on every path, within 10 % of the middle. Ends with 1 otherwise.
+
+Verifies: SRV-060.
+"""
 
 import pathlib
 import re

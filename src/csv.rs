@@ -4,6 +4,8 @@
 use crate::phantom::decimal::parse_scaled;
 
 /// What a column can be called, and for each name the power of ten from its unit to SI.
+///
+/// Implements: CON-002.
 pub(crate) type Column = &'static [(&'static str, i32)];
 
 /// What is wrong with a line of a CSV file.
@@ -12,11 +14,11 @@ pub(crate) type Column = &'static [(&'static str, i32)];
 /// use palpate::csv::CsvProblem;
 /// use palpate::force_map::{ForceMapFileProblem, ForceTable};
 ///
-/// let error = ForceTable::from_csv("depth,force\n1,2\n", "gel.csv").unwrap_err();
-/// let ForceMapFileProblem::Csv(CsvProblem::Header { found, .. }) = error.problem else {
-///     panic!("{error}");
-/// };
-/// assert_eq!(found, "depth,force");
+/// let problem = ForceTable::from_csv("depth,force\n1,2\n", "gel.csv").unwrap_err().problem;
+/// assert!(matches!(
+///     problem,
+///     ForceMapFileProblem::Csv(CsvProblem::Header { found, .. }) if found == "depth,force"
+/// ));
 /// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CsvProblem {
@@ -132,4 +134,12 @@ impl<'a, const N: usize> Header<'a, N> {
 /// The beginning of `text`, enough to recognise it in a message.
 pub(crate) fn shortened(text: &str) -> String {
     text.chars().take(80).collect()
+}
+
+/// `text` with a space for each control character: a message that quotes a file stays one line, and
+/// no terminal obeys it.
+///
+/// Implements: EVD-082.
+pub(crate) fn one_line(text: &str) -> String {
+    text.replace(char::is_control, " ")
 }

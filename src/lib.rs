@@ -58,6 +58,8 @@
 //!
 //! With `default-features = false` the crate is `no_std`, does not allocate, and depends on `libm`
 //! alone: that part holds [`stats`], [`detect`], [`servo`] and the reports of [`hid`].
+//!
+//! Implements: DOC-010, DOC-011, DOC-013, DOC-014.
 #![cfg_attr(not(any(feature = "std", feature = "verify")), no_std)]
 
 #[cfg(feature = "cli")]
@@ -71,6 +73,9 @@ pub mod detect;
 pub mod fem;
 #[cfg(feature = "std")]
 pub mod force_map;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod fuzzing;
 pub mod hid;
 #[cfg(feature = "oracle")]
 pub mod oracle;

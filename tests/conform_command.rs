@@ -127,7 +127,7 @@ impl Found {
     }
 }
 
-// Verifies: ORA-040, ORA-048, ORA-049.
+// Verifies: ORA-040, ORA-048, ORA-049, VEC-011.
 #[test]
 fn our_oracle_passes_all_the_vectors_that_the_program_carries() {
     let output = conform(&[], &[PALPATE, "oracle"]);

@@ -113,7 +113,7 @@ proptest! {
         prop_assert!((found.theta - 0.5 * (h0 - h1)).abs() <= 100.0 * U * (h0 + h1));
     }
 
-    // Verifies: DET-005.
+    // Verifies: DET-005, CON-007.
     #[test]
     fn no_bad_sample_goes_unseen(s in series(4), sd in noise(), which in 0_usize..4, at in 0_usize..40, bad in 0_usize..3) {
         let mut s = s;

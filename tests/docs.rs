@@ -18,9 +18,13 @@ use page::{Page, matches};
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// How many commands of `docs/` the test does not run, each with its reason on the page.
+///
+/// Implements: DOC-002.
 const NOT_RUN: usize = 13;
 
 /// Parts of the commands in `README.md` that are not run, and why.
+///
+/// Implements: DOC-006.
 const README_NOT_RUN: [(&str, &str); 4] = [
     (
         "tests/toys/right.py",
@@ -84,6 +88,8 @@ fn palpate(arguments: &str) -> String {
 }
 
 /// Runs a page; what differs from it, one text each.
+///
+/// Implements: DOC-001.
 fn differences(page: &Page) -> Vec<String> {
     let folder = folder(&page.name.replace('/', "-"));
     let (mut differences, mut code) = (Vec::new(), 0);

@@ -79,6 +79,64 @@ fn code_of(line: &str) -> String {
 const GOOD: &str = r#"{"id":"good","op":"normal_cdf","args":{"x":0}}"#;
 const GOOD_ANSWER: &str = r#"{"id":"good","ok":{"p":0.5}}"#;
 
+// Verifies: ORA-009.
+#[test]
+fn a_number_is_read_as_the_nearest_f64() {
+    // 1 + 2⁻⁵³ lies half-way between two f64 and goes to the even one; with one digit more, far behind, it goes up.
+    // For one sample, b is the template in a list of one, and σ the noise by itself, to the bit.
+    let half_way = "1.00000000000000011102230246251565404236316680908203125";
+    let above = format!("{half_way}00000000000000000000000001");
+    for (number, expected) in [(half_way, 1.0), (&above, 1.0 + f64::EPSILON)] {
+        let line = format!(
+            r#"{{"id":1,"op":"matched_filter","args":{{"template_x":[{number}],"template_y":[0],"noise_sd_x":{number},"noise_sd_y":1}}}}"#
+        );
+        let answer: Value = serde_json::from_str(&answers(line)[0]).unwrap();
+        for key in ["b_x", "sigma_x"] {
+            let found = answer["ok"][key].as_f64().map(f64::to_bits);
+            assert_eq!(found, Some(f64::to_bits(expected)), "{key}: {number}");
+        }
+    }
+    for number in ["1e309", "-1e309", "123456789e400"] {
+        let line = format!(r#"{{"id":1,"op":"normal_cdf","args":{{"x":{number}}}}}"#);
+        assert_ne!(code_of(&answers(line)[0]), "ok", "{number}");
+    }
+}
+
+// Verifies: ORA-010.
+#[test]
+fn a_number_of_an_answer_is_the_shortest_that_reads_back() {
+    let mut digits = 0;
+    for k in 1..200 {
+        let line = format!(
+            r#"{{"id":1,"op":"normal_cdf","args":{{"x":{}}}}}"#,
+            -0.03 * f64::from(k)
+        );
+        let answer = &answers(line)[0];
+        let number = answer
+            .split(r#""p":"#)
+            .nth(1)
+            .unwrap()
+            .trim_end_matches('}');
+        let value: f64 = number.parse().unwrap();
+        // Significant digits, with and without a point or an exponent.
+        let significant = |text: &str| {
+            let mantissa = text.split('e').next().unwrap();
+            let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+            digits.trim_start_matches('0').trim_end_matches('0').len()
+        };
+        let written = significant(number);
+        // One digit fewer does not read back.
+        let shorter: f64 = format!("{value:.*e}", written - 2).parse().unwrap();
+        assert_ne!(shorter.to_bits(), value.to_bits(), "{number}");
+        digits += usize::from(written > 14);
+    }
+    assert!(digits > 100, "{digits}");
+    // γ = 10³⁰⁸ · 10 is no f64.
+    let args =
+        json!({"template_x": [1e308], "template_y": [0], "noise_sd_x": 0.1, "noise_sd_y": 1});
+    assert_eq!(refused("matched_filter", args).0, "overflow");
+}
+
 // Verifies: ORA-001, ORA-002, ORA-006.
 #[test]
 fn every_line_has_its_answer_whatever_it_is() {

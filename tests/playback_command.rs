@@ -88,6 +88,19 @@ fn timing_prints_its_figures_as_json() {
     );
 }
 
+// Verifies: CLI-061.
+#[test]
+fn a_budget_that_is_broken_is_a_failed_check() {
+    // No machine is too quick for this: cycles that come at a pace begin with a sleep, and no wake-up by the system
+    // is within 1 µs of its time 999 times in 1000.
+    let output = palpate(&["timing", "--cycles", "1000", "--budget-us", "1", "--paced"]);
+    let error = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{error}");
+    assert_eq!(error.lines().count(), 1, "{error}");
+    assert!(error.starts_with("palpate: timing: "), "{error}");
+    assert!(error.contains("expected at most 1 in 1000"), "{error}");
+}
+
 // Verifies: CLI-062.
 #[test]
 fn a_map_that_the_servo_refuses_is_refused_with_its_file() {

@@ -15,7 +15,7 @@ fn figures(name: &str) -> Vec<Figure> {
     figures
 }
 
-// Verifies: EVD-040.
+// Verifies: EVD-040, EVD-042.
 #[test]
 fn every_check_is_of_a_part_and_has_a_name_of_its_own_a_claim_and_requirements() {
     let mut names = BTreeSet::new();
@@ -33,6 +33,19 @@ fn every_check_is_of_a_part_and_has_a_name_of_its_own_a_claim_and_requirements()
     }
     parts.dedup();
     assert_eq!(parts, ["kernel", "fem", "vectors", "timing"]);
+}
+
+// Verifies: EVD-045.
+#[test]
+fn the_code_verification_of_the_solver_is_among_the_checks() {
+    let checks = verify::checks().filter(|check| check.name.starts_with("fem."));
+    let served: BTreeSet<&str> = checks
+        .flat_map(|check| check.requirements.iter().copied())
+        .collect();
+    for number in 50..=62 {
+        let id = format!("FEM-0{number}");
+        assert!(served.contains(id.as_str()), "{id}: {served:?}");
+    }
 }
 
 // Verifies: EVD-043.

@@ -4,10 +4,12 @@
 #[path = "witness/present.rs"]
 mod present;
 
+use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::process::Command;
 
 use present::present;
+use serde_json::{Value, json as value};
 
 /// Python with mpmath: the one of the environment, or the system's.
 fn python() -> Command {
@@ -53,10 +55,174 @@ fn the_files_are_as_the_generator_writes_them() {
     }
 }
 
-// Verifies: VEC-001, VEC-002, VEC-003, VEC-004, VEC-005, VEC-008, VEC-014.
+// Verifies: VEC-001, VEC-002, VEC-003, VEC-004, VEC-005, VEC-008, VEC-011, VEC-012, VEC-014. The second route has the order
+// of operations of VEC-011, and Cowper's points as tables print them.
 #[test]
 fn the_suite_is_sound() {
     if let Some(text) = run("check.py", &[]) {
         assert!(text.contains(" 0 problems"), "{text}");
     }
+}
+
+fn json(path: &str) -> Value {
+    let path = format!("{}/{path}", env!("CARGO_MANIFEST_DIR"));
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn cases(group: &str) -> Vec<Value> {
+    let file = json(&format!("vectors/{group}.json"));
+    file["cases"].as_array().unwrap().clone()
+}
+
+fn is_lower_hex(text: &str) -> bool {
+    let digit = |c: char| c.is_ascii_digit() || ('a'..='f').contains(&c);
+    text.chars().all(digit)
+}
+
+/// Checks each text under a key that ends in `_bits`, and counts them.
+fn check_bits(value: &Value, key: &str) -> usize {
+    match value {
+        Value::Array(items) => items.iter().map(|item| check_bits(item, key)).sum(),
+        Value::Object(members) => members
+            .iter()
+            .map(|(key, item)| check_bits(item, key))
+            .sum(),
+        Value::String(text) if key.ends_with("_bits") => {
+            let digits = text.strip_prefix("0x").unwrap_or_default();
+            assert!(digits.len() == 8 && is_lower_hex(digits), "{key}: {text}");
+            1
+        }
+        _ => 0,
+    }
+}
+
+// Verifies: VEC-009. The cases that must be refused have other bits and bytes on purpose.
+#[test]
+fn bits_and_bytes_are_written_in_lower_case_hexadecimal() {
+    for group in ["servo_axis", "servo_interpolate"] {
+        let answered = cases(group)
+            .into_iter()
+            .filter(|case| !case["ok"].is_null());
+        let parts = answered.map(|case| value!([case["args"], case["ok"], case["wrong"]]));
+        let checked: usize = parts.map(|parts| check_bits(&parts, "")).sum();
+        assert!(checked > 200, "{group}: {checked}");
+    }
+    for (group, part) in [("report_decode", "args"), ("report_encode", "ok")] {
+        let answered = cases(group)
+            .into_iter()
+            .filter(|case| !case["ok"].is_null());
+        let bytes: Vec<String> = answered
+            .map(|case| case[part]["bytes"].as_str().unwrap().into())
+            .collect();
+        assert!(bytes.len() > 30, "{group}: {}", bytes.len());
+        let sound = |text: &String| text.len().is_multiple_of(2) && is_lower_hex(text);
+        assert!(bytes.iter().all(sound), "{group}");
+    }
+}
+
+/// The names of a report's fields in the table of VEC-010.
+fn fields_in_the_specification(report: u64) -> BTreeSet<String> {
+    let spec = include_str!("../spec/vectors.md");
+    let row = spec
+        .lines()
+        .find_map(|line| line.strip_prefix(&format!("| {report} | ")))
+        .unwrap();
+    let names = row.split('`').skip(1).step_by(2);
+    names.map(String::from).collect()
+}
+
+// Verifies: VEC-010.
+#[test]
+fn reports_have_their_number_and_the_fields_of_the_table() {
+    for (group, part) in [("report_decode", "ok"), ("report_encode", "args")] {
+        let mut seen = BTreeSet::new();
+        for case in cases(group) {
+            if case["ok"].is_null() {
+                continue;
+            }
+            let mut fields = case[part].as_object().unwrap().clone();
+            let report = fields.remove("report").unwrap().as_u64().unwrap();
+            let names: BTreeSet<String> = fields.keys().cloned().collect();
+            assert_eq!(names, fields_in_the_specification(report), "{}", case["id"]);
+            let whole = |value: &Value| value.is_i64() || value.is_u64();
+            assert!(fields.values().all(whole), "{}", case["id"]);
+            seen.insert(report);
+        }
+        assert!(seen.iter().eq(&[1, 2, 3, 4]), "{group}: {seen:?}");
+    }
+}
+
+// Verifies: VEC-013.
+#[test]
+fn forces_come_from_another_program_with_its_band_and_ours() {
+    for source in ["probe_force.py", "mesh.py"] {
+        let path = format!(
+            "{}/vectors/probe_force/{source}",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let text = std::fs::read_to_string(path).unwrap();
+        // It computes in its own process: it starts no other program, and reads nothing of ours.
+        for ours in [
+            "subprocess",
+            "os.system",
+            "ctypes",
+            "import palpate",
+            "target/",
+        ] {
+            assert!(!text.contains(ours), "{source}: {ours}");
+        }
+    }
+    let data = json("vectors/probe_force/forces.json");
+    let poses = data["poses"].as_array().unwrap();
+    let mut compared = 0;
+    for case in cases("probe_force") {
+        if case["ok"].is_null() {
+            continue;
+        }
+        let mm = |key: &str| case["args"][key].as_f64().unwrap().abs() * 1e3;
+        let near =
+            |pose: &Value, key: &str, mm: f64| (pose[key].as_f64().unwrap() - mm).abs() < 1e-9;
+        let pose = poses.iter().find(|pose| {
+            pose["phantom"] == case["args"]["phantom"]
+                && near(pose, "depth_mm", mm("depth_m"))
+                && near(pose, "lateral_mm", mm("lateral_m"))
+        });
+        let newtons = |key: &str| pose.unwrap()[key].as_f64().unwrap() * 1e-3;
+        // The data are for x ≥ 0.
+        let side = case["args"]["lateral_m"].as_f64().unwrap().signum();
+        let normal = newtons("normal_force_mn");
+        let lateral = side * newtons("lateral_force_mn");
+        let expected = [
+            // FEM-021 and FEM-025: 0.3 % of the normal force, 1.5 mN of the lateral.
+            (
+                "normal_force_n",
+                normal,
+                newtons("normal_band_mn") + 3e-3 * normal,
+            ),
+            (
+                "lateral_force_n",
+                lateral,
+                newtons("lateral_band_mn") + 1.5e-3,
+            ),
+        ];
+        for (key, force, tolerance) in expected {
+            let found = case["ok"][key].as_f64().unwrap();
+            // The decimals of the data are exact in mN; a product by 10⁻³ is off in the last place.
+            assert!(
+                (found - force).abs() < 1e-12,
+                "{}: {found} {force}",
+                case["id"]
+            );
+            let allowed = case["tolerance"][key]["absolute"].as_f64().unwrap();
+            // Bounds are rounded up to two digits.
+            let ratio = allowed / tolerance;
+            assert!(
+                (1.0 - 1e-12..1.1).contains(&ratio),
+                "{}: {allowed} {tolerance}",
+                case["id"]
+            );
+        }
+        compared += 1;
+    }
+    assert!(compared >= 80, "{compared}");
 }

@@ -4,6 +4,8 @@ counts, and each seventh expected answer by a second route.
     python3 vectors/check.py [--all]
 
 With --all, every expected answer is computed again. Needs mpmath; jsonschema is used where it is installed.
+
+Implements: VEC-014.
 """
 
 import hashlib

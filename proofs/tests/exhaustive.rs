@@ -23,49 +23,49 @@ fn every_check_runs_here() {
     }
 }
 
-// Verifies: SRV-002, SRV-004, SRV-005, SRV-006.
+// Proves: SRV-002, SRV-004, SRV-005, SRV-006.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn locate_on_an_axis_that_is_not_uniform() {
     check("kernel.locate_uneven");
 }
 
-// Verifies: SRV-004, SRV-005, SRV-006.
+// Proves: SRV-004, SRV-005, SRV-006.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn locate_on_a_uniform_axis() {
     check("kernel.locate_even");
 }
 
-// Verifies: SRV-005, SRV-006.
+// Proves: SRV-005, SRV-006.
 #[test]
 #[ignore = "all widths"]
 fn no_width_carries_its_last_knot_beyond_one() {
     check("kernel.last_knot");
 }
 
-// Verifies: SRV-020.
+// Proves: SRV-020.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn limit_is_right_everywhere() {
     check("kernel.limit");
 }
 
-// Verifies: HID-010, HID-011.
+// Proves: HID-010, HID-011.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn count_is_right_everywhere() {
     check("kernel.count");
 }
 
-// Verifies: SRV-010, SRV-011, SRV-013.
+// Proves: SRV-010, SRV-011, SRV-013.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn blend_is_in_the_hull_everywhere() {
     check("kernel.blend");
 }
 
-// Verifies: SRV-031.
+// Proves: SRV-031.
 #[test]
 #[ignore = "all force limits"]
 fn every_force_is_released_in_time() {

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use super::lists::{Positions, positions};
 use super::output::read;
 use super::{CliError, ContactName, ElementName};
+use crate::csv::one_line;
 use crate::fem::MeshOptions;
 use crate::phantom::BUILTIN_NAMES;
 use crate::report::Settings;
@@ -23,11 +24,15 @@ pub struct Config {
     pub phantoms: Vec<String>,
     /// Files of measured force maps, shown beside the computed ones.
     pub measured: Vec<PathBuf>,
+    /// Depths of the probe.
     #[serde(deserialize_with = "list")]
     pub depths_mm: Positions,
+    /// Lateral positions of the probe.
     #[serde(deserialize_with = "list")]
     pub laterals_mm: Positions,
+    /// How the forces are computed.
     pub mesh: Mesh,
+    /// What the detector assumes.
     pub detection: Detection,
 }
 
@@ -35,9 +40,12 @@ pub struct Config {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Mesh {
+    /// Distance of the elements' corners, mm.
     #[serde(deserialize_with = "positive")]
     pub size_mm: f64,
+    /// The shape of the elements.
     pub element: ElementName,
+    /// How the gap to the probe is measured.
     pub contact: ContactName,
 }
 
@@ -45,12 +53,16 @@ pub struct Mesh {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Detection {
+    /// Standard deviation of the noise on a sample, N.
     #[serde(deserialize_with = "positive")]
     pub noise_sd_n: f64,
+    /// Largest false-alarm rate.
     #[serde(deserialize_with = "probability")]
     pub max_false_alarm: f64,
+    /// Largest miss rate.
     #[serde(deserialize_with = "probability")]
     pub max_miss: f64,
+    /// Prior probability of an inclusion.
     #[serde(deserialize_with = "probability")]
     pub prior_h1: f64,
 }
@@ -107,18 +119,22 @@ impl Default for Detection {
 impl Config {
     /// Reads a file; keys that it leaves out are the paper's.
     pub fn read(path: &Path) -> Result<Config, CliError> {
-        let text = read(path)?;
-        toml::from_str(&text).map_err(|error| {
-            let line = error
-                .span()
-                .map(|span| 1 + text[..span.start].matches('\n').count());
-            let place = line.map_or(String::new(), |line| format!(":{line}"));
-            let message = error
-                .message()
-                .split_whitespace()
-                .collect::<Vec<_>>()
-                .join(" ");
-            CliError::Usage(format!("{}{place}: {message}", path.display()))
+        Config::from_toml(&read(path)?, &path.display().to_string())
+    }
+
+    /// The configuration in `text`, the content of `file`.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] with file and line.
+    ///
+    /// Implements: CLI-031.
+    pub fn from_toml(text: &str, file: &str) -> Result<Config, CliError> {
+        toml::from_str(text).map_err(|error| {
+            // What the parser has no place for, such as too deep a nesting, it found up to the end.
+            let at = error.span().map_or(text.len(), |span| span.start);
+            let before = text.get(..at).unwrap_or(text);
+            let line = 1 + before.matches('\n').count();
+            CliError::Usage(format!("{file}:{line}: {}", one_line(error.message())))
         })
     }
 

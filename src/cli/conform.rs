@@ -51,7 +51,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
 
 /// Runs the command.
 ///
-/// Implements: ORA-040, ORA-048, ORA-049, ORA-050.
+/// Implements: ORA-040, ORA-048, ORA-049, ORA-050, ORA-051.
 pub fn conform(arguments: &ConformArguments) -> Result<(), CliError> {
     let suite = match &arguments.vectors {
         Some(folder) => Suite::read(folder),

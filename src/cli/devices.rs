@@ -54,7 +54,7 @@ fn number(text: &str) -> Result<u16, String> {
 
 /// Runs the command.
 ///
-/// Implements: CLI-078.
+/// Implements: CLI-078, HID-093.
 pub fn devices(arguments: &DevicesArguments) -> Result<(), CliError> {
     let listed = list().map_err(|error| CliError::Playback(error.to_string()))?;
     print(&match arguments.format {

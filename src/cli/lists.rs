@@ -50,6 +50,8 @@ pub fn positions(text: &str) -> Result<Positions, String> {
 ///
 /// # Errors
 /// A message that names the entry and what would be right.
+///
+/// Implements: CON-001.
 pub fn length(text: &str) -> Result<f64, String> {
     let found = metres(text.trim())?;
     if found > 0.0 {
@@ -59,6 +61,9 @@ pub fn length(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A length written in mm, in m.
+///
+/// Implements: CON-001.
 fn metres(text: &str) -> Result<f64, String> {
     parse_scaled(text, -3).ok_or_else(|| format!("{text:?} is no number: expected mm, such as 2.5"))
 }

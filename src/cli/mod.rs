@@ -1,6 +1,6 @@
 //! The command line (`spec/command-line.md`).
 
-mod config;
+pub(crate) mod config;
 mod conform;
 mod detect;
 mod detection;
@@ -8,7 +8,7 @@ mod devices;
 mod error;
 mod experiment;
 mod import;
-mod lists;
+pub(crate) mod lists;
 mod oracle;
 mod output;
 mod play;
@@ -33,7 +33,7 @@ use crate::fem::{Contact, Element};
 /// Inclusion probing after Yan, Scott and Fearing (1999): forces on a probe, detection of an inclusion.
 #[derive(Debug, Parser)]
 #[command(version, about, disable_help_subcommand = true)]
-struct Arguments {
+pub struct Arguments {
     #[command(subcommand)]
     command: Command,
 }
@@ -78,7 +78,7 @@ enum Format {
 /// How the gap to the probe is measured.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum ContactName {
+pub enum ContactName {
     /// Distance of the deformed surface from the circle; force along its normal.
     #[default]
     DeformedNormal,
@@ -98,7 +98,7 @@ impl From<ContactName> for Contact {
 /// The shape of the elements.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum ElementName {
+pub enum ElementName {
     /// Triangles with 6 nodes.
     #[default]
     T6,
@@ -111,6 +111,31 @@ impl From<ElementName> for Element {
         match name {
             ElementName::T6 => Element::T6,
             ElementName::Q4Full => Element::Q4Full,
+        }
+    }
+}
+
+/// What a command line asks for.
+#[derive(Debug)]
+pub enum Asked {
+    /// To run a command.
+    Command(Box<Arguments>),
+    /// To print a text: help, or the version.
+    Text(String),
+}
+
+impl Asked {
+    /// Reads a command line, the first entry of which is the program's name; runs nothing.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`].
+    ///
+    /// Implements: CLI-001, CLI-002.
+    pub fn read(arguments: impl IntoIterator<Item = OsString>) -> Result<Asked, CliError> {
+        match Arguments::try_parse_from(arguments) {
+            Ok(arguments) => Ok(Asked::Command(Box::new(arguments))),
+            Err(error) if !error.use_stderr() => Ok(Asked::Text(error.to_string())),
+            Err(error) => Err(CliError::usage(&error)),
         }
     }
 }
@@ -131,8 +156,8 @@ impl From<ElementName> for Element {
 ///
 /// Implements: CLI-001, CLI-002, CLI-003.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let result = match Arguments::try_parse_from(arguments) {
-        Ok(Arguments { command }) => match command {
+    let result = match Asked::read(arguments) {
+        Ok(Asked::Command(arguments)) => match arguments.command {
             Command::Run(arguments) => run::run(&arguments),
             Command::Solve(arguments) => solve::solve(&arguments),
             Command::ImportMap(arguments) => import::import(&arguments),
@@ -146,8 +171,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Oracle(arguments) => oracle::oracle(&arguments),
             Command::Conform(arguments) => conform::conform(&arguments),
         },
-        Err(error) if !error.use_stderr() => output::print(&error.to_string()),
-        Err(error) => Err(CliError::usage(&error)),
+        Ok(Asked::Text(text)) => output::print(&text),
+        Err(error) => Err(error),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

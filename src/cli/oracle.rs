@@ -17,7 +17,7 @@ pub struct OracleArguments {}
 
 /// Runs the command.
 ///
-/// Implements: ORA-002.
+/// Implements: ORA-002, ORA-013.
 pub fn oracle(OracleArguments {}: &OracleArguments) -> Result<(), CliError> {
     match serve(stdin().lock(), stdout().lock()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(error)),

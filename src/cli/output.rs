@@ -7,7 +7,7 @@ use super::CliError;
 
 /// Prints text; a reader who has gone away (`| head`) is no error.
 ///
-/// Implements: CLI-004.
+/// Implements: CLI-004, CLI-007.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -18,7 +18,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
 
 /// Writes a file so that it is there whole or, if the program is stopped, as it was.
 ///
-/// Implements: CLI-005.
+/// Implements: CLI-005, CLI-007.
 pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
     let failed = |error| CliError::File {
         action: "write",

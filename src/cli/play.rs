@@ -80,7 +80,7 @@ impl DeviceName {
 
 /// Runs the command.
 ///
-/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, CLI-079.
+/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, CLI-079, HID-094, HID-095.
 pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
     if let Some(file) = &arguments.replay {
         return replay(arguments, file);

@@ -69,6 +69,8 @@ fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
 }
 
 /// Solves all maps, the phantoms in parallel, and the field of one pose.
+///
+/// Implements: CLI-007, CON-006.
 fn study(
     config: &Config,
     phantoms: &[Phantom],

@@ -27,10 +27,11 @@ mod tests;
 mod tolerance;
 mod verdict;
 
-pub use case::{Case, Question};
+pub use case::{Case, Expected, Question};
 pub use judge::judge;
 pub use junit::junit;
 pub use run::{ConformError, Settings, run};
 pub use suite::Suite;
 pub use table::table;
+pub use tolerance::Tolerance;
 pub use verdict::{Count, Outcome, Verdict};

@@ -10,6 +10,7 @@ use sha2::Digest;
 
 use super::case::{Case, CaseText, ToleranceText};
 use super::{check, embedded};
+use crate::csv::one_line;
 
 /// What a bug is.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
@@ -83,9 +84,12 @@ struct ManifestFile {
 const MANIFEST: &str = "manifest.json";
 const SCHEMA: &str = "schema.json";
 
-fn error(file: &str, message: impl Into<String>) -> SuiteError {
-    let (file, message) = (file.into(), message.into());
-    SuiteError { file, message }
+/// Names and texts of the files may stand in either, with any characters.
+fn error(file: &str, message: impl AsRef<str>) -> SuiteError {
+    SuiteError {
+        file: one_line(file),
+        message: one_line(message.as_ref()),
+    }
 }
 
 impl Suite {

@@ -126,7 +126,7 @@ pub fn posterior(theta: f64, prior_h1: f64) -> Result<f64, DetectError> {
 /// # Errors
 /// The prior not strictly between 0 and 1.
 ///
-/// Implements: DET-022.
+/// Implements: DET-022, ACC-010.
 pub fn map_threshold(prior_h1: f64) -> Result<f64, DetectError> {
     let p = check_probability("prior_h1", prior_h1)?;
     // Near p = ½ the quotient is near 1, where ln keeps no relative accuracy; 1 − 2p is exact
@@ -156,7 +156,7 @@ pub fn map_threshold(prior_h1: f64) -> Result<f64, DetectError> {
 /// The prior not strictly between 0 and 1; a cost not finite; an error that costs no more than the
 /// right decision.
 ///
-/// Implements: DET-023.
+/// Implements: DET-023, ACC-011.
 pub fn bayes_threshold(prior_h1: f64, costs: Costs) -> Result<f64, DetectError> {
     for (what, cost) in [
         ("c00", costs.c00),
@@ -191,7 +191,7 @@ pub fn bayes_threshold(prior_h1: f64, costs: Costs) -> Result<f64, DetectError> 
 /// # Errors
 /// γ not finite or < 0; β not strictly between 0 and 1; overflow.
 ///
-/// Implements: DET-024.
+/// Implements: DET-024, ACC-012.
 pub fn neyman_pearson_miss_threshold(gamma: f64, max_miss: f64) -> Result<f64, DetectError> {
     check_not_negative("gamma", gamma)?;
     let quantile = quantile("max_miss", max_miss)?;
@@ -213,7 +213,7 @@ pub fn neyman_pearson_miss_threshold(gamma: f64, max_miss: f64) -> Result<f64, D
 /// γ not finite or < 0; γ = 0, where Θ ≡ 0 and η = 0 would always alarm; α not strictly between 0
 /// and 1; overflow.
 ///
-/// Implements: DET-025.
+/// Implements: DET-025, ACC-012.
 pub fn neyman_pearson_false_alarm_threshold(
     gamma: f64,
     max_false_alarm: f64,
@@ -242,7 +242,7 @@ pub fn neyman_pearson_false_alarm_threshold(
 /// # Errors
 /// γ not finite or < 0; η not finite.
 ///
-/// Implements: DET-026.
+/// Implements: DET-026, ACC-005.
 pub fn error_rates(gamma: f64, eta: f64) -> Result<ErrorRates, DetectError> {
     check_not_negative("gamma", gamma)?;
     check_finite("eta", eta)?;
@@ -282,7 +282,7 @@ pub fn error_rates(gamma: f64, eta: f64) -> Result<ErrorRates, DetectError> {
 /// # Errors
 /// γ not finite or < 0; the false-alarm rate not in [0, 1].
 ///
-/// Implements: DET-027.
+/// Implements: DET-027, ACC-006.
 pub fn roc_miss(gamma: f64, false_alarm: f64) -> Result<f64, DetectError> {
     check_not_negative("gamma", gamma)?;
     in_range(
@@ -311,7 +311,7 @@ pub fn roc_miss(gamma: f64, false_alarm: f64) -> Result<f64, DetectError> {
 /// # Errors
 /// γ not finite or < 0.
 ///
-/// Implements: DET-028.
+/// Implements: DET-028, ACC-008.
 pub fn auc(gamma: f64) -> Result<f64, DetectError> {
     two_afc(gamma)
 }
@@ -330,7 +330,7 @@ pub fn auc(gamma: f64) -> Result<f64, DetectError> {
 /// # Errors
 /// α or β not strictly between 0 and 1.
 ///
-/// Implements: DET-029.
+/// Implements: DET-029, ACC-007.
 pub fn required_gamma(max_false_alarm: f64, max_miss: f64) -> Result<f64, DetectError> {
     let sum = quantile("max_false_alarm", max_false_alarm)? + quantile("max_miss", max_miss)?;
     Ok(if sum < 0.0 { -sum } else { 0.0 })
@@ -349,7 +349,7 @@ pub fn required_gamma(max_false_alarm: f64, max_miss: f64) -> Result<f64, Detect
 /// # Errors
 /// γ not finite or < 0.
 ///
-/// Implements: DET-028.
+/// Implements: DET-028, ACC-008.
 pub fn two_afc(gamma: f64) -> Result<f64, DetectError> {
     check_not_negative("gamma", gamma)?;
     // Φ(γ/√2) = ½ erfc(−γ/2), whose argument is exact.
@@ -370,7 +370,7 @@ pub fn two_afc(gamma: f64) -> Result<f64, DetectError> {
 /// # Errors
 /// The share not strictly between 0 and 1.
 ///
-/// Implements: DET-030.
+/// Implements: DET-030, ACC-009, ERR-004.
 pub fn gamma_from_two_afc(p_correct: f64) -> Result<f64, DetectError> {
     Ok(core::f64::consts::SQRT_2 * quantile("p_correct", p_correct)?)
 }

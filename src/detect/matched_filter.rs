@@ -153,7 +153,7 @@ impl<'a> MatchedFilter<'a> {
 
     /// γ = (Σ_c Σ_i Δ²/s²)^½, the signal-to-noise ratio.
     ///
-    /// Implements: DET-013.
+    /// Implements: DET-013, ACC-003.
     pub fn gamma(&self) -> f64 {
         self.gamma
     }
@@ -163,7 +163,7 @@ impl<'a> MatchedFilter<'a> {
     /// # Errors
     /// Lengths other than the template's; NaN or infinity in the residual; overflow.
     ///
-    /// Implements: DET-005, DET-012, DET-014, DET-015.
+    /// Implements: DET-005, DET-012, DET-014, DET-015, ACC-003, ACC-004, CON-007.
     pub fn statistic(&self, residual: Channels<&[f64]>) -> Result<Statistic, DetectError> {
         check_samples("residual_x", residual.x, self.samples())?;
         check_samples("residual_y", residual.y, self.samples())?;
@@ -197,7 +197,7 @@ impl<'a> MatchedFilter<'a> {
 /// # Errors
 /// Empty or unequal lengths; NaN or infinity; `noise_sd` not positive and finite; overflow.
 ///
-/// Implements: DET-005, DET-006, DET-007, DET-012, DET-014, DET-015.
+/// Implements: DET-005, DET-006, DET-007, DET-012, DET-014, DET-015, ERR-001.
 pub fn theta_of_record(
     observed: Channels<&[f64]>,
     f0: Channels<&[f64]>,

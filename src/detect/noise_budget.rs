@@ -63,7 +63,7 @@ pub struct NoiseTotal {
 /// Rates not strictly between 0 and 1, or that add up to 1 or more, where any noise will do; a
 /// signal not positive and finite; a source negative or not finite; overflow.
 ///
-/// Implements: DET-100, DET-101.
+/// Implements: DET-100, DET-101, ERR-005.
 pub fn noise_budget(
     signal: f64,
     max_false_alarm: f64,

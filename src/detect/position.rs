@@ -83,7 +83,7 @@ impl<'a> MaximumLaw<'a> {
     /// # Errors
     /// η not finite.
     ///
-    /// Implements: DET-056, DET-057.
+    /// Implements: DET-056, DET-057, ERR-006.
     pub fn false_alarm_bound(&self, eta: f64) -> Result<f64, DetectError> {
         check_finite("eta", eta)?;
         let mut bound = 0.0;
@@ -116,6 +116,23 @@ impl<'a> MaximumLaw<'a> {
 
     /// A threshold η for Θ_max at which the false-alarm rate is certainly at most
     /// `max_false_alarm`: where the bound is, to about 10 digits of η.
+    ///
+    /// ```
+    /// use palpate::detect::position::MaximumLaw;
+    /// use palpate::detect::scan::Scan;
+    /// use palpate::detect::{Channels, neyman_pearson_false_alarm_threshold};
+    ///
+    /// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
+    /// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
+    /// let threshold = |gamma: &mut [f64], angle: &mut [f64]| {
+    ///     MaximumLaw::new(&scan, 0, gamma, angle)?.threshold(0.05)
+    /// };
+    /// // For one place as at a known position, γ = 3; the more places, the higher.
+    /// let one = threshold(&mut [0.0], &mut [0.0])?;
+    /// assert!((one - neyman_pearson_false_alarm_threshold(3.0, 0.05)?).abs() < 1e-6);
+    /// assert!(threshold(&mut [0.0; 4], &mut [0.0; 4])? > one);
+    /// # Ok::<(), palpate::detect::DetectError>(())
+    /// ```
     ///
     /// # Errors
     /// A rate not strictly between 0 and 1; a scan without signal.

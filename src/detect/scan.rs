@@ -192,7 +192,7 @@ impl<'a> Scan<'a> {
     /// # Errors
     /// Lengths other than N; NaN or infinity; overflow.
     ///
-    /// Implements: DET-005, DET-050, DET-052.
+    /// Implements: DET-005, DET-050, DET-052, ERR-002, ERR-003.
     pub fn at(&self, residual: Channels<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
         self.check(residual)?;
         self.point(residual, shift)
@@ -220,6 +220,21 @@ impl<'a> Scan<'a> {
 
     /// Θ_max, its shift k̂ and the refined shift over a range of candidates. A position is x̂ = x₀
     /// + k̂·v·dt.
+    ///
+    /// ```
+    /// use palpate::detect::Channels;
+    /// use palpate::detect::scan::Scan;
+    ///
+    /// // Samples every 0.1 mm from x₀ = −0.3 mm on; the template's sample 1 is the inclusion's place.
+    /// let template = Channels { x: &[0.0; 3][..], y: &[0.25, 0.5, 0.25] };
+    /// let scan = Scan::new(7, template, Channels { x: 0.25, y: 0.25 })?;
+    /// let residual = Channels { x: &[0.0; 7][..], y: &[0.0, 0.0, 0.25, 0.5, 0.25, 0.0, 0.0] };
+    /// let found = scan.maximum(residual, scan.full_shifts())?;
+    /// let position = -0.3 + 0.1 * (found.refined_shift + 1.0);
+    /// assert_eq!((found.theta, found.gamma, found.shift), (3.0, 6.0_f64.sqrt(), 2));
+    /// assert!(position.abs() < 1e-15);
+    /// # Ok::<(), palpate::detect::DetectError>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Scan::at`]; a shift without overlap; a range that is empty.

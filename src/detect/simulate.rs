@@ -68,6 +68,24 @@ impl<'a> Simulation<'a> {
     /// F_1 under H = 1). Lateral samples take the trial's deviates 0 … N−1, normal ones N … 2N−1.
     /// `residual` (2N numbers, x then y) is left holding F_p − F_0.
     ///
+    /// ```
+    /// use palpate::detect::Channels;
+    /// use palpate::detect::simulate::Simulation;
+    /// use palpate::stats::random::Generator;
+    ///
+    /// let f0 = Channels { x: &[0.0; 3][..], y: &[1.0; 3] };
+    /// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
+    /// let noise_sd = Channels { x: 0.125, y: 0.125 };
+    /// let simulation = Simulation::new(f0, template, noise_sd, Generator::new(1999, 0))?;
+    /// // Any trial again, alone; the record is there for other tests of it.
+    /// let mut residual = [0.0; 6];
+    /// let statistic = simulation.trial(42, f0, &mut residual)?;
+    /// let (x, y) = residual.split_at(3);
+    /// assert_eq!(simulation.filter().statistic(Channels { x, y })?, statistic);
+    /// assert_eq!(simulation.trial(42, f0, &mut [0.0; 6])?, statistic);
+    /// # Ok::<(), palpate::detect::DetectError>(())
+    /// ```
+    ///
     /// # Errors
     /// Lengths that differ; a force that is not finite.
     ///

@@ -223,6 +223,8 @@ impl StiffnessMatrix {
     /// # Errors
     /// [`FemError::Asymmetric`] if the mesh is not its own mirror image, which the numbering and the factor rely
     /// on; [`FemError::Degenerate`] if an element is turned inside out.
+    ///
+    /// Implements: FEM-081, CON-005.
     pub fn assemble(mesh: &Mesh, phantom: &Phantom) -> Result<StiffnessMatrix, FemError> {
         if let Some(element) = mesh.without_mirror_image() {
             let first = mesh.connectivity[element * mesh.element.nodes()];

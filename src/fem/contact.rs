@@ -287,6 +287,9 @@ impl Surface {
         }
     }
 
+    /// The gap of a node displaced by `u`, its slope and how that turns; `None` where the circle has none.
+    ///
+    /// Implements: FEM-022.
     fn constraint(&self, node: usize, u: [f64; 2], pose: Pose) -> Option<Constraint> {
         let radius = self.probe.radius;
         let [x, y] = self.positions[node];
@@ -337,7 +340,7 @@ impl Surface {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// Implements: FEM-009, FEM-010, FEM-011.
+    /// Implements: FEM-009, FEM-010, FEM-011, FEM-060.
     ///
     /// # Errors
     /// [`FemError::NoConvergence`], which names the pose.
@@ -430,6 +433,8 @@ impl Surface {
     /// Q = C_tt − WᵀW, W = L⁻¹ C_nt. With D^½ on both sides it is symmetric, and positive definite where the
     /// contact is stable. Unless the normals are to be `turning`, D is taken as 0, which costs an eighth. `None`
     /// where the system is singular or unstable, or if a node lies on the probe's axis.
+    ///
+    /// Implements: FEM-022.
     fn tangent_system(
         &self,
         state: &ContactState,
@@ -615,7 +620,7 @@ impl Surface {
     /// Force on the probe (lateral, normal), N: that on the gel reversed, or, for the vertical gap, the
     /// pressure on the circle's slope, so that F = −∂U/∂(x, y) of the probe in both cases.
     ///
-    /// Implements: FEM-012.
+    /// Implements: FEM-012, FEM-057, FEM-059, CON-004.
     pub(super) fn probe_force(&self, state: &ContactState, pose: Pose) -> [f64; 2] {
         let mut total = [0.0; 2];
         for (i, [x, y]) in self.nodal_forces(state, pose) {

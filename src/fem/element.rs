@@ -148,6 +148,8 @@ pub(super) fn lame(material: &Material) -> (f64, f64) {
 /// let cork = Material { youngs_modulus: 1000.0, poisson_ratio: 0.0 };
 /// assert_eq!(stress(&cork, [[0.001, 0.0], [0.0, 0.0]]), [1.0, 0.0, 0.0, 0.0]);
 /// ```
+///
+/// Implements: FEM-050, FEM-054, FEM-055, FEM-056.
 pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
     let (lambda, mu) = lame(material);
     let pressure = lambda * (gradient[0][0] + gradient[1][1]);
@@ -162,7 +164,7 @@ pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
 /// Stiffness of one element per metre of thickness, Pa: `[2a + i][2b + j]` couples direction i of node a with
 /// direction j of node b. Exactly symmetric.
 ///
-/// Implements: FEM-005.
+/// Implements: FEM-005, FEM-050, FEM-051, FEM-052, FEM-053, FEM-058.
 pub type Stiffness = [[f64; 2 * MOST_NODES]; 2 * MOST_NODES];
 
 /// Adds one quadrature point's share to the lower triangle of `stiffness`; `volume` is weight × Jacobian.
@@ -233,6 +235,8 @@ impl StiffnessRule {
     /// let refused = StiffnessRule::new(Element::Q4Full).integrate(&clockwise, &material);
     /// assert!(refused.is_err_and(|jacobian| jacobian < 0.0));
     /// ```
+    ///
+    /// Implements: FEM-017.
     pub fn integrate(&self, positions: &[[f64; 2]], material: &Material) -> Result<Stiffness, f64> {
         let constants = lame(material);
         let mut stiffness = [[0.0; 2 * MOST_NODES]; 2 * MOST_NODES];

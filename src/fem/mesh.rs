@@ -103,7 +103,7 @@ impl Element {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Implements: FEM-001, FEM-002, FEM-003.
+/// Implements: FEM-001, FEM-002, FEM-003, CON-003.
 #[derive(Debug, Clone)]
 pub struct Mesh {
     /// Undeformed position of each node, m, in rows from the floor to the surface, each from left to right.
@@ -146,7 +146,7 @@ impl Mesh {
 
     /// As [`Mesh::new`], with `quarters`/4 of the cells along each line of the lattice.
     ///
-    /// Implements: FEM-024.
+    /// Implements: FEM-024, FEM-018.
     pub(super) fn with_quarters(
         phantom: &Phantom,
         options: &MeshOptions,

@@ -54,6 +54,8 @@ pub use model::{Model, PoseSolution, solved_laterals};
 /// assert!(matches!(model.solve(Pose { lateral: 16e-3, ..pose }), Err(FemError::Pose(_))));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// Implements: CON-003.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Depth of the probe's lowest point below the undeformed surface, m.

@@ -21,6 +21,7 @@ use crate::phantom::Phantom;
 /// let model = Model::new(&phantom, &options, Contact::default())?;
 /// assert_eq!((model.phantom(), model.options()), (&phantom, &options));
 /// assert_eq!(model.surface().positions.len(), model.mesh().surface().len());
+/// assert_eq!(model.matrix().column_starts.len(), model.matrix().numbering.unknowns() + 1);
 /// assert_eq!(model.factor().surface_compliance(), model.surface().compliance);
 ///
 /// let [left, right] = [-1e-3, 1e-3].map(|lateral| model.solve(Pose { depth: 2e-3, lateral }));
@@ -168,6 +169,8 @@ impl Model {
     ///
     /// # Errors
     /// [`FemError::Pose`] where the probe cannot stand, [`FemError::NoConvergence`].
+    ///
+    /// Implements: FEM-019, FEM-020, FEM-021, FEM-025, FEM-080.
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
         self.phantom.check_pose(pose.depth, pose.lateral)?;
         // The right half stands for both, so that mirrored poses have mirrored forces to the bit.
@@ -364,7 +367,7 @@ impl Model {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// Implements: FEM-014, FEM-015.
+    /// Implements: FEM-014, FEM-015, FEM-061.
     ///
     /// # Errors
     /// As [`Model::solve`], and [`FemError::Residual`], [`FemError::Map`].

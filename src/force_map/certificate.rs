@@ -254,6 +254,8 @@ impl Certificate {
     }
 
     /// This certificate for the map with some of its columns, at lateral positions `laterals` (m).
+    ///
+    /// Implements: MAP-052.
     pub(super) fn at_columns(
         &self,
         columns: &[usize],
@@ -274,6 +276,8 @@ impl Certificate {
     }
 
     /// This certificate for the map that symmetry extends to x < 0.
+    ///
+    /// Implements: MAP-052.
     pub(super) fn mirrored(&self) -> Certificate {
         Certificate {
             min_det: self.min_det.mirrored(|det| det, |det| det),

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::file::{ForceMapFileError, ForceMapFileProblem};
 use super::{Certificate, ForceMap, ForceTable, Matrix, Source};
-use crate::csv::shortened;
+use crate::csv::{one_line, shortened};
 use crate::phantom::Phantom;
 
 /// What the key `schema` of a force map says.
@@ -140,7 +140,7 @@ fn json_problem(text: &str, error: serde_json::Error) -> (Option<usize>, ForceMa
     let message = error.to_string();
     let message = message.strip_suffix(&place).unwrap_or(&message);
     // It may quote a key with a line break.
-    let message = message.replace(char::is_control, " ");
+    let message = one_line(message);
     let written = text.lines().nth(line.saturating_sub(1)).unwrap_or("");
     // Some 30 bytes to each side: a file without line breaks is one long line.
     let near: String = written
@@ -171,14 +171,14 @@ impl Header {
         if self.schema != SCHEMA {
             return Err(ForceMapFileProblem::Schema {
                 key: "schema",
-                found: shortened(&self.schema.to_string()),
+                found: one_line(&shortened(&self.schema.to_string())),
                 expected: format!("{SCHEMA:?}"),
             });
         }
         if self.schema_version != SCHEMA_VERSION {
             return Err(ForceMapFileProblem::Schema {
                 key: "schema_version",
-                found: shortened(&self.schema_version.to_string()),
+                found: one_line(&shortened(&self.schema_version.to_string())),
                 expected: format!("{SCHEMA_VERSION}, which is what this program reads"),
             });
         }

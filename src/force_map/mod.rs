@@ -269,6 +269,17 @@ impl ForceMap {
 
     /// This map over x ≥ 0, extended to x < 0 by symmetry: see [`ForceTable::mirrored`].
     ///
+    /// ```
+    /// use palpate::force_map::ForceMap;
+    ///
+    /// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n4,2,1.25,-0.125\n";
+    /// let whole = ForceMap::from_csv(text, "gel.csv", "", None)?.mirrored()?;
+    /// assert_eq!(whole.laterals(), [-0.002, 0.0, 0.002]);
+    /// assert_eq!(whole.row(0.004)?.normal_force, [1.25, 1.5, 1.25]);
+    /// assert_eq!(whole.row(0.004)?.lateral_force, [0.125, 0.0, -0.125]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`InvalidForceMap::NotFromZero`], [`InvalidForceMap::NotSymmetric`].
     pub fn mirrored(&self) -> Result<ForceMap, InvalidForceMap> {

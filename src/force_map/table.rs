@@ -157,7 +157,7 @@ impl ForceTable {
     /// [`InvalidForceMap`] if an axis is empty, not finite or does not increase, a depth is negative,
     /// a matrix has another shape than the axes, or a force is not finite.
     ///
-    /// Implements: MAP-001, MAP-002, MAP-003, MAP-004, MAP-005.
+    /// Implements: MAP-001, MAP-002, MAP-003, MAP-004, MAP-005, CON-007.
     pub fn new(
         mut depths: Vec<f64>,
         mut laterals: Vec<f64>,

@@ -114,7 +114,7 @@ fn bad_axes_are_refused() {
     assert!(axes(&[0.0], &[-f64::MAX, f64::MAX]).is_ok());
 }
 
-// Verifies: MAP-003, MAP-005, MAP-013.
+// Verifies: MAP-003, MAP-005, MAP-013, CON-007.
 #[test]
 fn bad_matrices_are_refused() {
     let with = |normal: Matrix, lateral: Matrix| {
@@ -421,6 +421,33 @@ fn bands_belong_to_the_poses_and_are_finite() {
     }
     let error = with(&|bands| bands.normal_force_band = matrix(&[[0.0, 1e-4, 2e-4]])).unwrap_err();
     assert!(matches!(error, InvalidForceMap::Shape { .. }), "{error}");
+}
+
+// Verifies: MAP-016.
+#[test]
+fn a_map_cut_to_some_positions_keeps_their_columns() {
+    let map = computed(|_| ()).unwrap();
+    let cut = map.at_laterals(&[0.0, 0.005]).unwrap();
+    assert_eq!(cut.laterals(), [0.0, 0.005]);
+    assert_eq!(cut.depths(), map.depths());
+    for row in 0..2 {
+        for (kept, column) in [(0, 0), (1, 2)] {
+            let bits = |matrix: &Matrix, column: usize| matrix.row(row)[column].to_bits();
+            let pairs = [
+                (cut.normal_force(), map.normal_force()),
+                (cut.lateral_force(), map.lateral_force()),
+            ];
+            for (ours, whole) in pairs {
+                assert_eq!(bits(ours, kept), bits(whole, column));
+            }
+        }
+    }
+    let certificate = cut.certificate().unwrap();
+    assert_eq!(certificate.min_det.row(1), [0.9, 0.85]);
+    // The column of the smallest is gone: it is that of the rest.
+    assert_eq!(certificate.smallest_det.det, 0.85);
+    let error = refusal(map.at_laterals(&[0.0, 0.003]));
+    assert!(error.contains("0.003"), "{error}");
 }
 
 // Verifies: MAP-052.

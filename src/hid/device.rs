@@ -40,6 +40,9 @@ use super::{Capabilities, Control, ForceReport, InvalidReport, PositionReport};
 /// device.write(&ForceReport { lateral: 0, normal: 0, sequence: 42, flags: 0 })?;
 /// let Received::Report(report) = device.read(Duration::from_millis(2))? else { unreachable!() };
 /// assert_eq!((report.sequence, report.force_sequence), (1, 42));
+/// assert_eq!(device.now(), Duration::from_millis(1));
+/// assert_eq!(device.capabilities()?.watchdog_ms, 15);
+/// device.control(Control::Stop)?;
 /// # Ok::<(), DeviceError>(())
 /// ```
 ///

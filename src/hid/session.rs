@@ -26,7 +26,7 @@ use crate::servo::{Fault, Force, Limits, Mode, Request, Table};
 /// # Ok::<(), palpate::hid::SessionError>(())
 /// ```
 ///
-/// Implements: HID-016, HID-017.
+/// Implements: HID-016, HID-017, HID-083.
 pub struct Session<'a, D: HapticDevice> {
     device: D,
     capabilities: Capabilities,
@@ -220,7 +220,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     /// # Ok::<(), palpate::hid::SessionError>(())
     /// ```
     ///
-    /// Implements: HID-016, HID-019.
+    /// Implements: HID-016, HID-019, HID-024, HID-085, HID-087, HID-088, HID-092.
     pub fn run(&mut self, mut each: impl FnMut(&Cycle, &Counters) -> bool) -> End {
         self.run_watched(|_, cycle, counters| each(cycle, counters))
     }
@@ -276,6 +276,8 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     ///
     /// # Errors
     /// [`DeviceError`].
+    ///
+    /// Implements: HID-090.
     pub fn stop(&mut self) -> Result<(), DeviceError> {
         if std::mem::replace(&mut self.stopped, true) {
             return Ok(());
@@ -285,6 +287,9 @@ impl<'a, D: HapticDevice> Session<'a, D> {
 }
 
 impl<D: HapticDevice> Drop for Session<'_, D> {
+    /// Stops the device, also when a panic unwinds the loop.
+    ///
+    /// Implements: HID-090.
     fn drop(&mut self) {
         // Nobody is left to be told.
         let _ = self.stop();

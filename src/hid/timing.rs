@@ -296,7 +296,7 @@ pub enum TimingError {
 /// # Errors
 /// [`TimingError`].
 ///
-/// Implements: HID-060, HID-061, HID-062, HID-063.
+/// Implements: HID-060, HID-061, HID-062, HID-063, HID-084.
 pub fn measure<D: HapticDevice>(
     device: D,
     table: Table,

@@ -57,7 +57,7 @@ impl Oracle {
     /// assert_eq!(answer.last(), Some(&b'\n'));
     /// ```
     ///
-    /// Implements: ORA-001, ORA-004, ORA-006, ORA-012.
+    /// Implements: ORA-001, ORA-004, ORA-006, ORA-012, ACC-030.
     pub fn answer(&mut self, line: &[u8], out: &mut Vec<u8>) {
         match Request::parse(line) {
             Ok(request) => match self.perform(&request) {

@@ -9,7 +9,7 @@
 /// `text` is a plain decimal (`34`, `-0.5`, `+1.5e-3`). `None` if it is anything else, `nan`
 /// and `inf` included, or if the result is too large for an `f64`.
 ///
-/// Implements: PHA-020.
+/// Implements: PHA-020, CON-001.
 pub fn parse_scaled(text: &str, power: i32) -> Option<f64> {
     let (mantissa, exponent) = match text.find(['e', 'E']) {
         Some(at) => (&text[..at], text[at + 1..].parse::<i32>().ok()?),

@@ -8,6 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::decimal::parse_scaled;
 use super::{Gel, Inclusion, InvalidPhantom, Material, Phantom, Probe, Quantity, Skin};
+use crate::csv::one_line;
 
 /// A number in a phantom file: where it stands, without the unit, and what it measures.
 type Field = (&'static str, Quantity);
@@ -149,6 +150,20 @@ impl Phantom {
     }
 
     /// The phantom in `text`, the content of `file`, which is named in errors alone.
+    ///
+    /// ```
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let text = r#"
+    /// name = "soft, without inclusion"
+    /// gel = { width_mm = 34, height_mm = 15, youngs_modulus_kpa = 2.5, poisson_ratio = 0.49 }
+    /// skin = { thickness_mm = 0.5, youngs_modulus_kpa = 180, poisson_ratio = 0.49 }
+    /// probe = { radius_mm = 6.5, length_mm = 30 }
+    /// "#;
+    /// let phantom = Phantom::from_toml(text, "soft.toml")?;
+    /// assert_eq!((phantom.gel.width, phantom.gel.material.youngs_modulus), (0.034, 2500.0));
+    /// # Ok::<(), palpate::phantom::PhantomFileError>(())
+    /// ```
     ///
     /// # Errors
     /// [`PhantomFileError`] if the text is not TOML, has an unknown key, lacks one, has a value of
@@ -385,12 +400,7 @@ impl Reader<'_> {
         let at = error.span().map_or(self.text.len(), |span| span.start);
         let before = self.text.get(..at).unwrap_or(self.text);
         let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-        // One line, whatever the parser says.
-        let message = error
-            .message()
-            .split_whitespace()
-            .collect::<Vec<_>>()
-            .join(" ");
+        let message = one_line(error.message());
         self.error(
             Some(self.line(at)),
             PhantomFileProblem::Syntax { column, message },

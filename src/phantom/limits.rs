@@ -42,6 +42,8 @@ pub enum Quantity {
 
 impl Quantity {
     /// The unit at the end of a key of the phantom file.
+    ///
+    /// Implements: CON-002.
     pub(super) fn suffix(self) -> &'static str {
         match self {
             Quantity::Length => "_mm",
@@ -74,11 +76,9 @@ impl Quantity {
 ///
 /// let mut phantom = Phantom::builtin("none")?;
 /// phantom.gel.width = f64::NAN;
-/// let InvalidPhantom::OutOfRange(number) = phantom.validate().unwrap_err() else {
-///     panic!("the width is a number");
-/// };
-/// assert_eq!(number.key, "gel.width");
-/// assert_eq!(number.to_string(), "gel.width_mm = NaN, allowed: at least 0.001 and at most 1000.0");
+/// let error = phantom.validate().unwrap_err();
+/// assert_eq!(error.to_string(), "gel.width_mm = NaN, allowed: at least 0.001 and at most 1000.0");
+/// assert!(matches!(error, InvalidPhantom::OutOfRange(number) if number.key == "gel.width"));
 /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
 /// ```
 ///
@@ -193,10 +193,23 @@ impl InvalidPhantom {
 impl Phantom {
     /// Whether this phantom can exist and be meshed.
     ///
+    /// ```
+    /// use palpate::phantom::Phantom;
+    ///
+    /// // 15.5 mm in all, less the disc's 6.4 mm and 0.1 mm of gel under it.
+    /// let mut phantom = Phantom::builtin("8.6")?;
+    /// assert!(phantom.validate().is_ok());
+    /// if let Some(disc) = &mut phantom.inclusion {
+    ///     disc.depth = 0.0091;
+    /// }
+    /// assert!(phantom.validate().unwrap_err().to_string().contains("at most 9.0 "));
+    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+    /// ```
+    ///
     /// # Errors
     /// [`InvalidPhantom`] with the first offending key, its value and what is allowed.
     ///
-    /// Implements: PHA-003, PHA-004, PHA-005, PHA-006, PHA-007, PHA-009, PHA-010, PHA-015.
+    /// Implements: PHA-003, PHA-004, PHA-005, PHA-006, PHA-007, PHA-009, PHA-010, PHA-015, CON-007.
     pub fn validate(&self) -> Result<(), InvalidPhantom> {
         check_name(&self.name)?;
         check_length("gel.width", self.gel.width)?;

@@ -129,7 +129,7 @@ impl Inclusion {
     /// Height of the disc's centre above the undeformed outer surface, m: negative, since the disc
     /// lies below it. Its lateral position is 0.
     ///
-    /// Implements: PHA-008.
+    /// Implements: PHA-008, CON-003.
     pub fn centre_y(&self) -> f64 {
         -(self.depth + self.radius())
     }

@@ -123,7 +123,7 @@ impl Phantom {
     /// # Errors
     /// [`PoseError`] with the coordinate, its value and what is allowed.
     ///
-    /// Implements: PHA-011, PHA-012, PHA-013.
+    /// Implements: PHA-011, PHA-012, PHA-013, FEM-019.
     pub fn check_pose(&self, depth: f64, lateral: f64) -> Result<(), PoseError> {
         self.check_depth(depth)?;
         let half_width = self.probe.half_width_at(depth);

@@ -28,7 +28,7 @@ fn refusal(phantom: &Phantom) -> String {
     phantom.validate().unwrap_err().to_string()
 }
 
-// Verifies: PHA-001, PHA-002.
+// Verifies: PHA-001, PHA-002, CON-001.
 #[test]
 fn built_in_phantoms_are_the_papers() {
     assert_eq!(BUILTIN_NAMES, ["none", "2.6", "4.6", "6.6", "8.6"]);
@@ -110,7 +110,7 @@ fn refusal_with(index: usize, value: f64) -> (String, &'static str) {
     (refusal(&phantom), key)
 }
 
-// Verifies: PHA-003, PHA-009.
+// Verifies: PHA-003, PHA-009, CON-007.
 #[test]
 fn numbers_that_are_not_finite_are_refused_by_key() {
     let count = numbers(&mut paper()).len();

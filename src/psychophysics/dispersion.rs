@@ -50,7 +50,7 @@ pub struct Dispersion {
 /// # Errors
 /// Never for counts that fit their trials.
 ///
-/// Implements: PSY-031.
+/// Implements: PSY-031, ERR-007.
 pub fn dispersion(counts: &[(u32, u32)]) -> Result<Option<Dispersion>, PsychophysicsError> {
     let sum = |part: fn(&(u32, u32)) -> u32| counts.iter().map(part).map(f64::from).sum::<f64>();
     let (correct, trials) = (sum(|count| count.0), sum(|count| count.1));

@@ -180,9 +180,17 @@ impl Journal {
         if !(1..=1000).contains(&trials) {
             return Err(error);
         }
-        let (subject, _) = key("subject ", "and a name")?;
-        let (condition, _) = key("condition ", "and its name")?;
-        let (inclusions, error) = key("inclusions ", "and 1 to 100 names with commas between")?;
+        let mut name = |which: &str, expected: &str| {
+            let (name, error) = key(which, expected)?;
+            // A carriage return would not be read back, and no name of the program holds one.
+            if name.chars().any(char::is_control) {
+                return Err(error);
+            }
+            Ok((name, error))
+        };
+        let (subject, _) = name("subject ", "and a name")?;
+        let (condition, _) = name("condition ", "and its name")?;
+        let (inclusions, error) = name("inclusions ", "and 1 to 100 names with commas between")?;
         let inclusions: Vec<String> = inclusions.split(',').map(str::to_string).collect();
         if inclusions.len() > 100 || inclusions.iter().any(String::is_empty) {
             return Err(error);

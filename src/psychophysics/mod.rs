@@ -37,7 +37,7 @@ mod conditions;
 mod dispersion;
 mod error;
 #[cfg(feature = "cli")]
-mod journal;
+pub(crate) mod journal;
 pub(crate) mod noise;
 #[cfg(feature = "hid")]
 mod observer;

@@ -29,8 +29,9 @@ const PLAYBACK: (usize, usize) = (1, 2);
 /// use palpate::psychophysics::paper_noise_levels;
 ///
 /// let decomposition = paper_noise_levels()?;
-/// assert!(decomposition.levels.iter().all(|level| level.noise > 0.0));
-/// assert!(!decomposition.agreement.is_empty());
+/// // As printed in the paper, 235 mN = 340 mN / 1.45, and from its Table 2, each with how.
+/// let printed = decomposition.levels.iter().filter_map(|level| level.printed);
+/// assert!(printed.eq([0.235, 0.170, 0.220]));
 /// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -108,7 +109,7 @@ pub fn noise_bounds(signal: f64, gamma: GammaEstimate) -> (Option<f64>, OpenBoun
 /// # Errors
 /// Never for the paper's own numbers.
 ///
-/// Implements: PSY-061, PSY-062.
+/// Implements: PSY-061, PSY-062, ERR-008, ERR-009.
 pub fn paper_noise_levels() -> Result<NoiseDecomposition, PsychophysicsError> {
     let answers = from_answers()?;
     let playback = sum(

@@ -127,7 +127,7 @@ impl IdealObserver<'_> {
     /// # Errors
     /// [`ObserverError`].
     ///
-    /// Implements: PSY-012.
+    /// Implements: PSY-012, PSY-013.
     pub fn choose(
         &self,
         first: &Felt,

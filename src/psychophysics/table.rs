@@ -64,7 +64,7 @@ pub struct Subject {
 /// use palpate::psychophysics::Table;
 ///
 /// let table = Table::paper()?;
-/// let [contact, playback, _] = table.conditions() else { unreachable!("Table 1 has three") };
+/// let (contact, playback) = (&table.conditions()[0], &table.conditions()[1]);
 /// assert_eq!((contact.name.as_str(), playback.name.as_str()), ("direct contact", "FEM data"));
 /// // The inclusion at 6.6 mm.
 /// assert_eq!(playback.counts(2)[0], (30, 30));

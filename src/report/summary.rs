@@ -34,7 +34,7 @@ struct Summary<'a> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Implements: REP-050, REP-051.
+/// Implements: REP-050, REP-051, REP-005.
 pub fn summary_json(findings: &Findings, study: &Study) -> String {
     let summary = Summary {
         schema: SUMMARY_SCHEMA,

@@ -200,7 +200,7 @@ impl<'a> Axis<'a> {
     /// # Ok::<(), palpate::servo::InvalidAxis>(())
     /// ```
     ///
-    /// Implements: SRV-004, SRV-005, SRV-006.
+    /// Implements: SRV-004, SRV-005, SRV-006, SRV-015.
     #[inline]
     pub fn locate(&self, position: f32) -> Cell {
         let position = between(position, -FAR, FAR);

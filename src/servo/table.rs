@@ -74,7 +74,7 @@ impl<'a> Table<'a> {
     /// # Errors
     /// [`InvalidTable`].
     ///
-    /// Implements: SRV-003.
+    /// Implements: SRV-003, CON-007.
     pub fn new(
         depths: Axis<'a>,
         laterals: Axis<'a>,
@@ -128,7 +128,7 @@ impl<'a> Table<'a> {
     /// # Ok::<(), palpate::servo::InvalidTable>(())
     /// ```
     ///
-    /// Implements: SRV-010, SRV-011, SRV-012, SRV-013, SRV-014.
+    /// Implements: SRV-010, SRV-011, SRV-012, SRV-013, SRV-014, SRV-015.
     #[inline]
     pub fn force(&self, depth: f32, lateral: f32) -> Force {
         let force = self.continued(depth, lateral);

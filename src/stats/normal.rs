@@ -82,7 +82,7 @@ pub fn density(x: f64) -> Result<f64, NormalError> {
 /// # Errors
 /// [`NormalError::NotFinite`].
 ///
-/// Implements: DET-001, DET-002.
+/// Implements: DET-001, DET-002, ACC-001.
 pub fn cdf(x: f64) -> Result<f64, NormalError> {
     finite(x).map(lower_tail)
 }
@@ -100,7 +100,7 @@ pub fn cdf(x: f64) -> Result<f64, NormalError> {
 /// # Errors
 /// [`NormalError::NotFinite`].
 ///
-/// Implements: DET-001, DET-002.
+/// Implements: DET-001, DET-002, ACC-001.
 pub fn upper_tail(x: f64) -> Result<f64, NormalError> {
     finite(x).map(|x| lower_tail(-x))
 }
@@ -121,7 +121,7 @@ pub fn upper_tail(x: f64) -> Result<f64, NormalError> {
 /// # Errors
 /// [`NormalError::ProbabilityOutOfRange`] unless 0 < p < 1.
 ///
-/// Implements: DET-003, DET-004.
+/// Implements: DET-003, DET-004, ACC-002.
 pub fn quantile(p: f64) -> Result<f64, NormalError> {
     if !(p > 0.0 && p < 1.0) {
         return Err(NormalError::ProbabilityOutOfRange { value: p });

@@ -230,6 +230,21 @@ impl Record {
 
     /// The forces that `map` expects at `depth` (m) at the samples, N.
     ///
+    /// ```
+    /// use palpate::force_map::{ForceTable, Matrix};
+    /// use palpate::trace::{Trace, TraceProblem};
+    ///
+    /// let matrix = || Matrix::from_fn(1, 2, |_, column| column as f64);
+    /// let map = ForceTable::new(vec![0.004], vec![0.0, 0.004], matrix(), matrix())?;
+    /// // 5 mm is outside the map: no force is made up.
+    /// let text = "position_mm,lateral_force_n,normal_force_n\n1,0,1.5\n5,0,1.75\n";
+    /// let record = Trace::from_csv(text, "sweep.csv")?.record(None)?;
+    /// let error = record.expected(&map, 0.004).unwrap_err();
+    /// assert_eq!(error.line, Some(3));
+    /// assert!(matches!(error.problem, TraceProblem::Outside { position: 0.005, .. }));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`TraceProblem::Outside`] with the line of the first sample outside the map's lateral
     /// positions; [`TraceProblem::Map`] for a depth outside its depths.

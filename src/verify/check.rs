@@ -28,6 +28,8 @@ impl Check {
     ///
     /// # Errors
     /// Its name, with why it could not be carried out or with the figures that break their bounds.
+    ///
+    /// Implements: EVD-043.
     pub fn judge(&self) -> Result<Vec<Figure>, String> {
         let name = self.name;
         let figures = (self.run)().map_err(|error| format!("check {name}: {error}"))?;
@@ -91,6 +93,8 @@ impl Figure {
     }
 
     /// Whether the value is finite and keeps its bounds.
+    ///
+    /// Implements: EVD-041.
     pub fn passes(&self) -> bool {
         self.value.is_finite() && self.at_least <= self.value && self.value <= self.at_most
     }
@@ -106,6 +110,7 @@ impl fmt::Display for Figure {
         } = self;
         write!(f, "{what}: {value:?}")?;
         match (at_least.is_finite(), at_most.is_finite()) {
+            (true, true) if at_least == at_most => write!(f, ", expected {at_least:?}"),
             (true, true) => write!(f, ", expected {at_least:?} to {at_most:?}"),
             (true, false) => write!(f, ", expected at least {at_least:?}"),
             (false, true) => write!(f, ", expected at most {at_most:?}"),
@@ -180,7 +185,7 @@ mod tests {
         assert_eq!(
             broken.judge().unwrap_err(),
             "check part.what: error, m: 2e-9, expected at most 1e-9; order: NaN, expected at least 2.9; \
-             cases: 3.0, expected 4.0 to 4.0"
+             cases: 3.0, expected 4.0"
         );
         let failed = check(|| Err("no".into())).judge();
         assert_eq!(failed.unwrap_err(), "check part.what: no");

@@ -196,6 +196,8 @@ fn for_bits(
 }
 
 /// Whether `holds` is true of every f32 with bits in a range.
+///
+/// Implements: EVD-044.
 fn holds_for(
     what: &str,
     bits: RangeInclusive<u32>,

@@ -12,18 +12,20 @@
 //! | `build.rs`, `supply.rs`, `traceability.rs` | what was built, from which components, for which requirements |
 //! | `evidence.rs`, `dossier/` | all of it for programs, and as a page |
 
+#[cfg(feature = "cli")]
 mod battery;
 pub mod build;
 mod check;
 #[cfg(feature = "fem")]
 mod diagnosis;
 #[cfg(feature = "cli")]
-pub mod dossier;
+pub(crate) mod dossier;
 #[cfg(feature = "cli")]
-pub mod evidence;
+pub(crate) mod evidence;
 #[cfg(feature = "cli")]
 pub mod fem;
 pub mod kernel;
+#[cfg(feature = "cli")]
 mod outcome;
 pub mod statistics;
 #[cfg(feature = "std")]
@@ -35,9 +37,11 @@ pub mod traceability;
 #[cfg(feature = "cli")]
 pub mod vectors;
 
-pub use battery::{outcome as battery_outcome, soaked};
+#[cfg(feature = "cli")]
+pub(crate) use battery::{outcome as battery_outcome, soaked};
 pub use check::{Check, Figure};
-pub use outcome::Outcome;
+#[cfg(feature = "cli")]
+pub(crate) use outcome::Outcome;
 
 /// All checks of this build but the statistics battery, in a fixed order.
 ///

@@ -3,6 +3,8 @@
 Each function of spec/accuracy.md is asked at 10⁴ arguments or more; printed is the worst error in units of the stated bound
 and in ULP of the exact result. The exit code is 1 if a bound is broken. Needs mpmath. Nothing here is taken from the Rust code:
 Φ⁻¹ is judged by the residual Φ(x̂) − p, the exact interval by a continued fraction of the incomplete beta function.
+
+Implements: ACC-020.
 """
 
 import json

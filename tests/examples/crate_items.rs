@@ -45,6 +45,16 @@ impl Crate {
         sources
     }
 
+    /// The crate whose root is `text`, with all its modules in it.
+    pub fn of_text(text: &str) -> Crate {
+        let mut sources = Crate {
+            modules: BTreeMap::new(),
+        };
+        let root = syn::parse_file(text).unwrap_or_else(|error| panic!("{error}"));
+        sources.add_module(root.items, Path::new(""), Vec::new());
+        sources
+    }
+
     /// Reads the module at `path` in `file`; `folder` holds the files of the modules in it.
     fn read_module(&mut self, file: &Path, folder: &Path, path: Vec<String>) {
         let text = fs::read_to_string(file).unwrap_or_else(|error| panic!("{file:?}: {error}"));
@@ -100,6 +110,8 @@ impl Crate {
     }
 
     /// What `pub use target as name` in `module` makes public.
+    ///
+    /// Implements: DOC-012.
     fn re_export(
         &self,
         module: &[String],

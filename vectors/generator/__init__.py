@@ -1,4 +1,7 @@
-"""Makes the cases of vectors/*.json: one module a topic, expected values in 50 digits or exact fractions."""
+"""Makes the cases of vectors/*.json: one module a topic, expected values in 50 digits or exact fractions.
+
+Implements: VEC-008.
+"""
 
 from . import coloured, decision, elements, filters, normal, probe, proportions, reports, requests
 from . import scan, servo, tables, threshold

@@ -35,6 +35,7 @@ def rates_tolerance(gamma, eta):
     return limits or None
 
 
+# Verifies: DET-026.
 def error_rates():
     reason = "Φ's 4 ULP and 3 roundings of its argument where |argument| < 1; cases farther out state their own"
     group = Group("error_rates", "error_rates", SOURCE, {key: in_ulp(8, reason) for key in ("false_alarm", "miss")})
@@ -108,6 +109,7 @@ def error_rates():
     return group
 
 
+# Verifies: DET-027, DET-028.
 def roc():
     group = Group(
         "roc",
@@ -198,6 +200,7 @@ def needed(alpha, beta):
     return gamma, UNIT * (bound + 2 * [alpha, beta].count(0.5))
 
 
+# Verifies: DET-029.
 def required_gamma():
     group = Group(
         "required_gamma", "required_gamma", SOURCE, {"gamma": absolute(64 * UNIT, "1", "cases state their own")}
@@ -262,6 +265,7 @@ def required_gamma():
     return group
 
 
+# Verifies: DET-100, DET-101.
 def noise_budget():
     reasons = {
         key: absolute(64 * UNIT, unit, "cases state their own")

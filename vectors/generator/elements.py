@@ -2,6 +2,8 @@
 
 Straight sides: the integrand is quadratic, the rule of the sides' middles is exact, and all is in exact fractions.
 Curved sides: the integrand is rational, and the answer is that of Cowper's six points, in 50 digits.
+
+Implements: VEC-012.
 """
 
 from fractions import Fraction
@@ -86,6 +88,7 @@ def spread(nodes):
     return max(abs(v) for node in p for v in node) * exact(sqrt(real(longest))) / area
 
 
+# Verifies: FEM-005.
 def element_stiffness():
     group = Group(
         "element_stiffness",

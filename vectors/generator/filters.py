@@ -33,6 +33,7 @@ def sum_ulps(count):
 SUM = "(N + 2)·2⁻⁵³ for a plain sum of squares, halved by the root, and 8 for differences, scaling, quotient and root"
 
 
+# Verifies: DET-010, DET-011, DET-013.
 def matched_filter():
     group = Group(
         "matched_filter",
@@ -141,6 +142,7 @@ def correlate(residual, template, deviation):
     )
 
 
+# Verifies: DET-012, DET-013, DET-014, DET-015.
 def theta():
     group = Group(
         "theta",

@@ -54,6 +54,7 @@ CENTRE = [0.0, 0.1, 0.25, 0.5, 1.0, 1.5, 1.959963984540054, 2.0, 2.5, 3.0, 4.0, 
 TAILS = [12.0, 15.0, 18.5, 20.0, 25.0, 30.0, 33.3, 35.0, 36.9, 37.0, 37.5, 37.6, 38.0, 38.4]
 
 
+# Verifies: DET-001, DET-002, DET-004.
 def normal_cdf():
     group = Group(
         "normal_cdf",
@@ -139,6 +140,7 @@ def quantile_arguments(draws, count):
     return values
 
 
+# Verifies: DET-003, DET-004.
 def normal_quantile():
     group = Group(
         "normal_quantile",
@@ -167,6 +169,7 @@ def normal_quantile():
     return group
 
 
+# Verifies: DET-028.
 def two_afc():
     group = Group(
         "two_afc",
@@ -215,6 +218,7 @@ def two_afc():
     return group
 
 
+# Verifies: DET-030.
 def gamma_from_two_afc():
     group = Group(
         "gamma_from_two_afc",

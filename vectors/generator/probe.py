@@ -1,4 +1,7 @@
-"""Forces on the probe (VEC-013): from probe_force/forces.json, which probe_force.py there computes with scikit-fem."""
+"""Forces on the probe (VEC-013): from probe_force/forces.json, which probe_force.py there computes with scikit-fem.
+
+Implements: VEC-013.
+"""
 
 import json
 from fractions import Fraction
@@ -31,6 +34,7 @@ def milli(value):
     return Fraction(str(value)) / 1000
 
 
+# Verifies: FEM-012, FEM-019, FEM-021, FEM-025.
 def probe_force():
     data = json.loads(DATA.read_text())
     keys = ("normal_force_n", "lateral_force_n")

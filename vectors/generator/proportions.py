@@ -115,6 +115,7 @@ def clopper_pearson_bounds(k, n, tail, pair):
     return bounds
 
 
+# Verifies: DET-121, DET-122, DET-123.
 def proportion_interval():
     group = Group(
         "proportion_interval",
@@ -263,6 +264,7 @@ TABLE_1 = {
 }
 
 
+# Verifies: ORA-026, PSY-031.
 def count_analysis():
     group = Group(
         "count_analysis",

@@ -3,6 +3,7 @@
 from .suite import Group
 
 
+# Verifies: ORA-005, ORA-006, ORA-009.
 def requests():
     group = Group("requests", "", "spec/oracle.md", {})
     good = '"op":"two_afc","args":{"gamma":1}'

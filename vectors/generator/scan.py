@@ -13,6 +13,7 @@ def scan_sums(residual, template, deviation, shift):
     return correlate(part, template, deviation)
 
 
+# Verifies: DET-050, DET-053.
 def scan():
     group = Group(
         "scan",

@@ -1,4 +1,7 @@
-"""The servo kernel's cell, fraction and force, to the bit (SRV-002 … 014, VEC-011)."""
+"""The servo kernel's cell, fraction and force, to the bit (SRV-002 … 014, VEC-011).
+
+Implements: VEC-011.
+"""
 
 from fractions import Fraction
 
@@ -80,6 +83,7 @@ def neighbour(x, steps):
     return of_bits(pattern + steps)
 
 
+# Verifies: SRV-002, SRV-004, SRV-005, SRV-006.
 def servo_axis():
     group = Group("servo_axis", "servo_axis", SOURCE, {"cell": is_exact("an index"), "fraction_bits": BITS})
     draws = Draws(60)
@@ -170,6 +174,7 @@ def refuse_axes(group):
     group.refuse("coordinate_bits is missing", {"knots": [0.0, 0.5]}, "bad_argument", ["missing_argument"])
 
 
+# Verifies: SRV-010, SRV-011, SRV-012, SRV-014.
 def servo_interpolate():
     group = Group("servo_interpolate", "servo_interpolate", SOURCE, {"force_bits": BITS})
     draws = Draws(61)

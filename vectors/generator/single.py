@@ -1,4 +1,7 @@
-"""f32 in exact fractions: one operation is exact, then rounded to the nearest, ties to even."""
+"""f32 in exact fractions: one operation is exact, then rounded to the nearest, ties to even.
+
+Implements: VEC-009.
+"""
 
 import struct
 from fractions import Fraction

@@ -61,6 +61,7 @@ def poses(depths, laterals, draws):
     yield "far outside", d1 + 50 * high, x0 - 80 * wide
 
 
+# Verifies: MAP-060, MAP-061.
 def interpolate():
     group = Group(
         "interpolate", "interpolate", "exact fractions", {"force_n": absolute(UNIT, "N", "cases state their own")}

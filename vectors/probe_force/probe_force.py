@@ -6,6 +6,8 @@
 The model is that of spec/phantom.md and spec/fem.md: plane strain, small strain, ν = 0.49, a rigid frictionless circle
 whose normal is taken at the deformed node. Assembly is scikit-fem's, the factorisation SuperLU's; mesh and contact are this
 file's and mesh.py's. Each force is computed on three meshes and extrapolated; the band says how far that may be off.
+
+Implements: VEC-013.
 """
 
 import json

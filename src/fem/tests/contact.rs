@@ -70,7 +70,7 @@ fn condensed_contact_is_the_full_solve() {
     }
 }
 
-// Verifies: FEM-013.
+// Verifies: FEM-013, CON-004.
 #[test]
 fn reaction_of_floor_and_walls_is_the_force_on_the_probe() {
     let model = coarse("6.6", Contact::DeformedNormal);

@@ -139,7 +139,7 @@ fn axes_that_make_no_map_are_refused_before_anything_is_solved() {
     assert!(matches!(error, FemError::Pose(_)), "{error}");
 }
 
-// Verifies: FEM-020.
+// Verifies: FEM-020, CON-001.
 #[test]
 fn the_paper_s_poses_have_the_forces_of_an_independent_program() {
     // A prototype in Python, with CalculiX as its witness: 1.48 N without inclusion at 4 mm, a signal of about

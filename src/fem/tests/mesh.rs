@@ -230,6 +230,31 @@ fn skin_has_two_rows_and_refinement_halves_every_cell() {
     assert_eq!(two.rows[0].len() - 1, 2 * (one.rows[0].len() - 1));
 }
 
+// Verifies: FEM-004.
+#[test]
+fn floor_and_walls_are_held_with_the_edges_of_the_skin_and_nothing_else() {
+    for name in BUILTIN_NAMES {
+        let phantom = builtin(name);
+        let (wall, floor) = (phantom.gel.width / 2.0, -phantom.total_height());
+        for element in ELEMENTS {
+            let options = MeshOptions {
+                size: 2e-3,
+                refinement: 1,
+                element,
+            };
+            let mesh = Mesh::new(&phantom, &options).unwrap();
+            let mut held_in_skin = 0;
+            for (&[x, y], free) in mesh.nodes.iter().zip(mesh.free()) {
+                let on_border = (x.abs() - wall).abs() < 1e-12 || (y - floor).abs() < 1e-12;
+                assert_eq!(free, !on_border, "{name}, {element:?}: {x}, {y}");
+                held_in_skin += usize::from(!free && y > -phantom.skin.thickness);
+            }
+            // At each wall the surface itself and the row in the middle of the skin, at least.
+            assert!(held_in_skin >= 4, "{held_in_skin}");
+        }
+    }
+}
+
 // Verifies: FEM-018.
 #[test]
 fn sizes_without_a_mesh_are_refused() {

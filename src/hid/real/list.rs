@@ -156,15 +156,15 @@ pub enum Access {
 
 /// A device and what it is.
 ///
-/// ```no_run
-/// use palpate::hid::real::{Access, Profile, list, udev_rule};
+/// ```
+/// use palpate::hid::real::{Access, Identity, Listed, Profile};
+/// # let identity = Identity {
+/// #     vendor: 0x1209, product: 1, serial: "7".into(), name: "probe".into(), node: "/no/such/node".into(),
+/// # };
 ///
-/// for one in list()? {
-///     if one.profile == Profile::Vendor && one.access() == Access::Denied {
-///         println!("{} needs the udev rule {}", one.identity, udev_rule(&one.identity));
-///     }
-/// }
-/// # Ok::<(), palpate::hid::real::ListError>(())
+/// let pulled_out = Listed { identity, profile: Profile::Vendor };
+/// assert_eq!(pulled_out.profile.to_string(), "vendor profile");
+/// assert!(!matches!(pulled_out.access(), Access::Granted | Access::Denied));
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listed {
@@ -190,12 +190,11 @@ impl Listed {
 
 /// Why the devices can not be listed.
 ///
-/// ```no_run
-/// use palpate::hid::real::list;
+/// ```
+/// use palpate::hid::real::{ListError, OpenError};
 ///
-/// if let Err(error) = list() {
-///     assert!(error.to_string().starts_with("HID devices: "));
-/// }
+/// let error = ListError::from(hidapi::HidError::InitializationError);
+/// assert!(OpenError::from(error).to_string().starts_with("HID devices: "));
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("HID devices: {0}")]
@@ -211,11 +210,13 @@ impl From<HidError> for ListError {
 ///
 /// Takes milliseconds and allocates: not for the thread that runs the loop.
 ///
-/// ```no_run
-/// for device in palpate::hid::real::list()? {
-///     println!("{}: {}", device.identity, device.profile);
+/// ```
+/// if let Ok(devices) = palpate::hid::real::list() {
+///     for device in &devices {
+///         println!("{}: {}", device.identity, device.profile);
+///     }
+///     assert!(devices.windows(2).all(|two| two[0].identity.node < two[1].identity.node));
 /// }
-/// # Ok::<(), palpate::hid::real::ListError>(())
 /// ```
 ///
 /// # Errors

@@ -49,7 +49,19 @@ const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Implements: HID-033, HID-034, HID-035.
+/// Which one it is, or why there is none:
+///
+/// ```
+/// use palpate::hid::real::{RealDevice, Wanted};
+///
+/// let wanted = Wanted { serial: Some("lost".into()), ..Wanted::default() };
+/// match RealDevice::open(&wanted) {
+///     Ok(device) => assert_eq!(device.identity().serial, "lost"),
+///     Err(error) => assert!(!error.to_string().is_empty()),
+/// }
+/// ```
+///
+/// Implements: HID-033, HID-034, HID-035, HID-080, HID-081.
 #[derive(Debug)]
 pub struct RealDevice {
     device: hidapi::HidDevice,
@@ -62,13 +74,14 @@ pub struct RealDevice {
 impl RealDevice {
     /// Opens the only device that is wanted and fits the vendor profile.
     ///
-    /// ```no_run
+    /// ```
     /// use palpate::hid::real::{RealDevice, Wanted};
     ///
-    /// let wanted = Wanted { vendor: Some(0x1209), product: Some(1), serial: None };
-    /// let device = RealDevice::open(&wanted)?;
-    /// assert_eq!(device.identity().vendor, 0x1209);
-    /// # Ok::<(), palpate::hid::real::OpenError>(())
+    /// let wanted = Wanted { vendor: Some(0xFFFF), product: Some(0xFFFF), serial: Some("lost".into()) };
+    /// match RealDevice::open(&wanted) {
+    ///     Ok(device) => assert_eq!(device.identity().serial, "lost"),
+    ///     Err(error) => assert!(!error.to_string().is_empty()), // there is none, and it says so
+    /// }
     /// ```
     ///
     /// # Errors
@@ -114,10 +127,22 @@ impl RealDevice {
     /// # Ok::<(), palpate::hid::real::OpenError>(())
     /// ```
     ///
+    /// Without the device, it gives up after that time:
+    ///
+    /// ```
+    /// use palpate::hid::real::{RealDevice, Wanted};
+    /// use std::time::{Duration, Instant};
+    ///
+    /// let lost = Wanted { vendor: Some(0xFFFF), product: Some(0xFFFF), serial: Some("lost".into()) };
+    /// let (began, patience) = (Instant::now(), Duration::from_millis(50));
+    /// let opened = RealDevice::open_within(&lost, patience);
+    /// assert!(opened.is_ok() || began.elapsed() >= patience);
+    /// ```
+    ///
     /// # Errors
     /// The last [`OpenError`].
     ///
-    /// Implements: HID-036.
+    /// Implements: HID-036, HID-086.
     pub fn open_within(wanted: &Wanted, patience: Duration) -> Result<RealDevice, OpenError> {
         let began = Instant::now();
         loop {
@@ -166,11 +191,24 @@ fn milliseconds(timeout: Duration) -> i32 {
 }
 
 /// Whether a signal came in between; the device is as it was.
+/// Refuses a write of which the system took fewer bytes than a force report has.
+///
+/// Implements: HID-037.
+fn all_sent(sent: usize) -> Result<(), HidError> {
+    let all = ForceReport::LENGTH;
+    if sent == all {
+        Ok(())
+    } else {
+        Err(HidError::IncompleteSendError { sent, all })
+    }
+}
+
 fn is_interrupted(error: &HidError) -> bool {
     matches!(error, HidError::IoError { error } if error.kind() == std::io::ErrorKind::Interrupted)
 }
 
 impl HapticDevice for RealDevice {
+    /// Implements: HID-080, HID-082.
     fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
         let mut bytes = [0; LONGEST];
         bytes[0] = Capabilities::NUMBER;
@@ -201,17 +239,11 @@ impl HapticDevice for RealDevice {
         }
     }
 
+    /// Implements: HID-081, HID-091, HID-037.
     fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
-        let bytes = report.encode();
-        match self.device.write(&bytes) {
-            Ok(ForceReport::LENGTH) => Ok(()),
-            Ok(sent) => {
-                let all = bytes.len();
-                let error = HidError::IncompleteSendError { sent, all };
-                Err(self.failed("write", &message(&error)))
-            }
-            Err(error) => Err(self.failed("write", &message(&error))),
-        }
+        let sent = self.device.write(&report.encode());
+        sent.and_then(all_sent)
+            .map_err(|error| self.failed("write", &message(&error)))
     }
 
     fn control(&mut self, control: Control) -> Result<(), DeviceError> {

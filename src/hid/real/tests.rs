@@ -128,3 +128,14 @@ fn a_timeout_is_never_shorter_than_asked_for() {
     assert_eq!(milliseconds(Duration::from_micros(2001)), 3);
     assert_eq!(milliseconds(Duration::MAX), i32::MAX);
 }
+
+// Verifies: HID-037.
+#[test]
+fn a_write_in_part_is_a_failure() {
+    let all = ForceReport::LENGTH;
+    assert!(all_sent(all).is_ok());
+    for sent in 0..all {
+        let error = all_sent(sent).unwrap_err().to_string();
+        assert!(error.contains(&sent.to_string()), "{error}");
+    }
+}

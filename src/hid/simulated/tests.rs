@@ -129,6 +129,34 @@ fn the_force_of_the_table_reaches_the_motors() {
     });
 }
 
+// Verifies: HID-015.
+#[test]
+fn each_force_report_is_one_ahead_of_the_last() {
+    with_table(|table| {
+        // Repeated numbers, silence and a long session change nothing: 70 000 cycles go round the 65 536 numbers.
+        let faults = vec![
+            Fault {
+                at: MS * 100,
+                defect: Defect::Repeat(4),
+            },
+            Fault {
+                at: MS * 200,
+                defect: Defect::Silence(MS * 3),
+            },
+        ];
+        let mut session =
+            Session::begin(device(Mechanics::IDEAL, faults), table, limits()).unwrap();
+        let mut numbers = Vec::new();
+        session.run(|cycle, _| {
+            numbers.push(cycle.force.sequence);
+            numbers.len() < 70_000
+        });
+        assert_eq!(numbers.len(), 70_000);
+        let ahead = |pair: &[u16]| pair[1] == pair[0].wrapping_add(1);
+        assert!(numbers.windows(2).all(ahead));
+    });
+}
+
 // Verifies: HID-020.
 #[test]
 fn a_session_is_the_same_to_the_bit_every_time() {
@@ -296,10 +324,11 @@ fn a_session_begins_only_with_a_device_that_can_be_trusted() {
     assert_eq!(refused(|c| c.largest_force_mn = 1900), weak);
 }
 
-// Verifies: HID-016.
+// Verifies: HID-012, HID-016.
 #[test]
 fn a_panic_stops_the_device() {
-    /// A device that is watched from outside.
+    /// A device that is watched from outside. It has the operations of HID-012 and no other: a further one that the
+    /// loop needs would not compile here.
     struct Watched<'a>(SimulatedDevice, &'a std::cell::Cell<(i16, bool)>);
     impl HapticDevice for Watched<'_> {
         fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {

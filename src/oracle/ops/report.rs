@@ -5,7 +5,7 @@ use crate::hid::{Capabilities, Control, ForceReport, InvalidReport, PositionRepo
 
 /// The fields of a report.
 ///
-/// Implements: ORA-023, ORA-025.
+/// Implements: ORA-023, ORA-025, VEC-010.
 pub fn decode(arguments: &mut Arguments) -> Result<Answer, Refusal> {
     let text = arguments.text("bytes")?;
     let bytes = bytes(&text).ok_or_else(|| {
@@ -57,7 +57,7 @@ pub fn decode(arguments: &mut Arguments) -> Result<Answer, Refusal> {
 
 /// The bytes of a report.
 ///
-/// Implements: ORA-023, ORA-025.
+/// Implements: ORA-023, ORA-025, VEC-010.
 pub fn encode(arguments: &mut Arguments) -> Result<Answer, Refusal> {
     let number = arguments.whole("report", 0, 255)?;
     let mut fields = Fields(arguments);

@@ -57,6 +57,58 @@ fn a_dossier_of_some_parts_is_no_verdict() {
     ));
 }
 
+// Verifies: EVD-009.
+#[test]
+fn what_is_unusual_about_a_build_is_an_anomaly() {
+    let sound = Build {
+        commit: "0123456789abcdef0123456789abcdef01234567",
+        profile: "release",
+        debug_assertions: false,
+        ..Build::THIS
+    };
+    let of = |build: Build| {
+        let evidence = Evidence {
+            build,
+            ..evidence(vec![outcome("fem.good", 0.0)], Vec::new())
+        };
+        (evidence.anomalies().len(), dossier(&evidence))
+    };
+    let (none, page) = of(sound);
+    assert_eq!(none, 0);
+    assert!(
+        page.contains("This build has no anomalies") && !page.contains("Anomaly of this build")
+    );
+    for (build, named) in [
+        (
+            Build {
+                commit: "0123456789abcdef0123456789abcdef01234567 with changes",
+                ..sound
+            },
+            "0123456789abcdef0123456789abcdef01234567 with changes",
+        ),
+        (
+            Build {
+                commit: "unknown",
+                ..sound
+            },
+            "(unknown)",
+        ),
+        (
+            Build {
+                profile: "debug",
+                ..sound
+            },
+            "the profile debug",
+        ),
+    ] {
+        let (one, page) = of(build);
+        assert_eq!(one, 1, "{named}");
+        let (_, anomaly) = page.split_once("Anomaly of this build: ").unwrap();
+        let (anomaly, _) = anomaly.split_once("</p>").unwrap();
+        assert!(anomaly.contains(named), "{anomaly}");
+    }
+}
+
 // Verifies: EVD-003, EVD-013.
 #[test]
 fn a_soak_that_fails_is_a_failure_and_tells_how_to_repeat_it() {
@@ -100,7 +152,7 @@ fn the_page_holds_every_section_and_needs_nothing_else() {
         "Verification, calculation: discretisation error",
         "5.3 architectural design",
         "force comes back by itself",
-        "coarse mean h0".replace(' ', "_").as_str(),
+        "coarse_<wbr>mean_<wbr>h0",
         "FEM-001",
         "libm",
         "a &lt;processor&gt;",

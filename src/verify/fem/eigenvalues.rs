@@ -10,6 +10,8 @@ const SWEEPS: usize = 60;
 ///
 /// # Errors
 /// Entries that are not finite, and rotations that do not come to an end.
+///
+/// Implements: EVD-047.
 pub fn eigenvalues(mut matrix: SquareMatrix) -> Result<Vec<f64>, String> {
     let n = matrix.order();
     let size: f64 = matrix.as_slice().iter().map(|entry| entry * entry).sum();

@@ -122,6 +122,8 @@ struct State {
 struct Shared(Mutex<State>);
 
 /// A board that is plugged in.
+///
+/// Implements: HID-089.
 pub struct Board {
     link: Arc<dyn Link>,
     shared: Arc<Shared>,

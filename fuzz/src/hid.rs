@@ -1,0 +1,179 @@
+//! Reports of a device, and recordings of a session.
+
+use palpate::force_map::{ForceTable, Matrix};
+use palpate::hid::pid::{BLOCK_LOAD, JoystickReport, loaded_block};
+use palpate::hid::{
+    Capabilities, Control, ForceReport, InvalidReport, PositionReport, Recording, RecordingError,
+    Units, count,
+};
+use palpate::servo::LoadedTable;
+
+use crate::message::{check_line, check_message, check_quoted};
+use crate::{Outcome, text};
+
+/// Bytes are a report if, and only if, length and number are its own; what is decoded encodes to
+/// the same bytes, and a refusal tells what was found.
+///
+/// Implements: EVD-081, EVD-082.
+pub fn hid_report(bytes: &[u8]) -> Outcome {
+    let position = PositionReport::decode(bytes);
+    let capabilities = Capabilities::decode(bytes);
+    let encoded: [(u8, usize, Result<Vec<u8>, InvalidReport>); 3] = [
+        (
+            PositionReport::NUMBER,
+            PositionReport::LENGTH,
+            position.map(|report| report.encode().to_vec()),
+        ),
+        (
+            ForceReport::NUMBER,
+            ForceReport::LENGTH,
+            ForceReport::decode(bytes).map(|report| report.encode().to_vec()),
+        ),
+        (
+            Capabilities::NUMBER,
+            Capabilities::LENGTH,
+            capabilities.map(|report| report.encode().to_vec()),
+        ),
+    ];
+    let mut outcome = Outcome::Refused;
+    for (number, length, encoded) in encoded {
+        match encoded {
+            Ok(encoded) => {
+                assert_eq!(encoded, bytes);
+                outcome = Outcome::Accepted;
+            }
+            Err(error) => check_invalid(error, number, length, bytes),
+        }
+    }
+    match Control::decode(bytes) {
+        Ok(control) => {
+            assert_eq!(control.encode(), bytes);
+            outcome = Outcome::Accepted;
+        }
+        Err(InvalidReport::Value { found }) => {
+            assert!(bytes == [Control::NUMBER, found] && found > 2)
+        }
+        Err(error) => check_invalid(error, Control::NUMBER, Control::LENGTH, bytes),
+    }
+    if check_fallback(bytes) == Outcome::Accepted {
+        outcome = Outcome::Accepted;
+    }
+    if let Ok(capabilities) = capabilities {
+        check_units(&capabilities, bytes);
+    }
+    outcome
+}
+
+/// Checks that another length or number was the reason, and is told.
+fn check_invalid(error: InvalidReport, number: u8, length: usize, bytes: &[u8]) {
+    check_message(&error.to_string());
+    let right = if bytes.len() == length {
+        InvalidReport::Number {
+            found: bytes[0],
+            expected: number,
+        }
+    } else {
+        InvalidReport::Length {
+            found: bytes.len(),
+            expected: length,
+        }
+    };
+    assert_eq!(error, right);
+    assert!(bytes.len() != length || bytes[0] != number);
+}
+
+/// The reports of the fallback profile that the host reads.
+fn check_fallback(bytes: &[u8]) -> Outcome {
+    let joystick = JoystickReport::decode(bytes);
+    match joystick {
+        Ok(report) => {
+            let mut encoded = vec![JoystickReport::NUMBER];
+            encoded.extend(report.buttons.to_le_bytes());
+            encoded.extend(report.x.to_le_bytes());
+            encoded.extend(report.y.to_le_bytes());
+            assert_eq!(encoded, bytes[..13]);
+        }
+        Err(error) => check_invalid(error, JoystickReport::NUMBER, JoystickReport::LENGTH, bytes),
+    }
+    match loaded_block(bytes) {
+        Ok(block) => assert!(bytes.len() == 5 && bytes[..3] == [BLOCK_LOAD, block, 1]),
+        Err(InvalidReport::Value { found }) => {
+            assert!(bytes.len() == 5 && bytes[2] == found && found != 1);
+        }
+        Err(error) => check_invalid(error, BLOCK_LOAD, 5, bytes),
+    }
+    if joystick.is_ok() || loaded_block(bytes).is_ok() {
+        Outcome::Accepted
+    } else {
+        Outcome::Refused
+    }
+}
+
+/// Units are refused or make finite numbers of every report.
+fn check_units(capabilities: &Capabilities, bytes: &[u8]) {
+    let has_meaning = capabilities.version == 1
+        && capabilities.position_unit_nm != 0
+        && capabilities.force_unit_un != 0;
+    let units = match Units::new(capabilities) {
+        Ok(units) => units,
+        Err(error) => {
+            assert!(!has_meaning);
+            return check_message(&error.to_string());
+        }
+    };
+    assert!(has_meaning);
+    let word = |at: usize| i16::from_le_bytes([bytes[at], bytes[at + 1]]);
+    let sample = units.sample(&PositionReport {
+        lateral: word(13),
+        normal: word(15),
+        buttons: bytes[9],
+        status: bytes[10],
+        sequence: 0,
+        force_sequence: 0,
+    });
+    assert!(sample.depth.is_finite() && sample.lateral.is_finite());
+    let value = f32::from_le_bytes([bytes[11], bytes[12], bytes[13], bytes[14]]);
+    assert!(count(value).unsigned_abs() <= 32767);
+}
+
+/// An accepted recording is the same when it is written and read again, and plays again or tells
+/// which cycle differs; a refusal names the line and quotes it.
+///
+/// Implements: EVD-081, EVD-082.
+pub fn recording(bytes: &[u8]) -> Outcome {
+    let Some(text) = text(bytes) else {
+        return Outcome::Refused;
+    };
+    match Recording::parse(text) {
+        Ok(recording) => {
+            let written = recording.to_text();
+            let again = Recording::parse(&written).expect("what was written can be read");
+            assert_eq!((&again, again.to_text()), (&recording, written));
+            check_replay(&recording);
+            Outcome::Accepted
+        }
+        Err(RecordingError::Line { line, found, .. }) => {
+            check_line(line, text);
+            check_quoted(&found, line, text);
+            Outcome::Refused
+        }
+        Err(error) => panic!("another error than of a line: {error}"),
+    }
+}
+
+fn check_replay(recording: &Recording) {
+    let matrix = |forces: [f64; 4]| Matrix::new(2, forces.to_vec()).expect("two columns");
+    let map = ForceTable::new(
+        vec![0.0, 0.004],
+        vec![-0.01, 0.01],
+        matrix([0.0, 0.0, 1.5, 1.5]),
+        matrix([0.0, 0.0, 0.1, -0.1]),
+    );
+    let loaded = LoadedTable::new(&map.expect("a map")).expect("a table");
+    match recording.replay(loaded.table().expect("loaded")) {
+        Ok(cycles) => assert!(cycles <= recording.cycles.len()),
+        Err(RecordingError::Differs { cycle, .. }) => assert!(cycle < recording.cycles.len()),
+        Err(RecordingError::Session(error)) => check_message(&error.to_string()),
+        Err(error) => panic!("{error}"),
+    }
+}

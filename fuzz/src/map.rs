@@ -1,0 +1,150 @@
+//! Force maps.
+
+use palpate::csv::CsvProblem;
+use palpate::force_map::{
+    ForceMap, ForceMapFileError, ForceMapFileProblem, ForceTable, InvalidForceMap, SAME_POSITION,
+};
+use palpate::servo::LoadedTable;
+
+use crate::message::{check_file_message, check_quoted};
+use crate::{FILE, Outcome, text};
+
+/// An accepted map has increasing axes and finite forces, and is the same to the bit when it is
+/// written and read again; a refusal names file and line, or the key.
+///
+/// Implements: EVD-081, EVD-082.
+pub fn map_json(bytes: &[u8]) -> Outcome {
+    let Some(text) = text(bytes) else {
+        return Outcome::Refused;
+    };
+    match ForceMap::from_json(text, FILE) {
+        Ok(map) => {
+            check_map(&map);
+            Outcome::Accepted
+        }
+        Err(error) => {
+            check_refusal(&error, text);
+            let named = match &error.problem {
+                ForceMapFileProblem::Json { .. } => error.line.is_some(),
+                ForceMapFileProblem::Schema { key, .. } | ForceMapFileProblem::Key { key, .. } => {
+                    error.to_string().contains(key)
+                }
+                ForceMapFileProblem::Invalid(_) => true,
+                _ => false, // problems of CSV
+            };
+            assert!(named, "{error:?}");
+            Outcome::Refused
+        }
+    }
+}
+
+/// As [`map_json`] for CSV; what a refusal quotes stands in the line that it names.
+///
+/// Implements: EVD-081, EVD-082.
+pub fn map_csv(bytes: &[u8]) -> Outcome {
+    let Some(text) = text(bytes) else {
+        return Outcome::Refused;
+    };
+    match ForceMap::from_csv(text, FILE, "a note", None) {
+        Ok(map) => {
+            check_map(&map);
+            Outcome::Accepted
+        }
+        Err(error) => {
+            check_refusal(&error, text);
+            match &error.problem {
+                ForceMapFileProblem::Csv(problem) => {
+                    check_csv(problem, error.line.expect("a line"), text);
+                }
+                ForceMapFileProblem::Repeated { first, .. } => {
+                    assert!(Some(*first) < error.line, "{error}");
+                }
+                ForceMapFileProblem::Missing { .. } | ForceMapFileProblem::Invalid(_) => {}
+                other => panic!("a problem of JSON: {other:?}"),
+            }
+            Outcome::Refused
+        }
+    }
+}
+
+fn check_refusal(error: &ForceMapFileError, text: &str) {
+    check_file_message(&error.to_string(), error.line, text);
+}
+
+/// Checks that the quoted text of a problem in `line` stands there.
+pub fn check_csv(problem: &CsvProblem, line: usize, text: &str) {
+    match problem {
+        CsvProblem::Header { found, .. } | CsvProblem::Number { found, .. } => {
+            check_quoted(found, line, text);
+        }
+        CsvProblem::Fields {
+            found, expected, ..
+        } => assert_ne!(found, expected),
+    }
+}
+
+fn check_map(map: &ForceMap) {
+    check_table(map.forces());
+    if let Some(phantom) = map.phantom() {
+        phantom.validate().expect("valid");
+    }
+    assert!(map.certificate().is_none() || map.phantom().is_some());
+    let written = map.to_json();
+    let again = ForceMap::from_json(&written, FILE).expect("what was written can be read");
+    // Texts as well, since −0 = 0.
+    assert_eq!((&again, again.to_json()), (map, written));
+    match map.mirrored() {
+        Ok(whole) => {
+            assert_eq!(whole.laterals().len(), 2 * map.laterals().len() - 1);
+            check_table(whole.forces());
+        }
+        Err(InvalidForceMap::NotFromZero { first }) => assert!(first != 0.0),
+        Err(InvalidForceMap::NotSymmetric { force, .. }) => assert!(force != 0.0),
+        // The probe may stand at x and not at −x only by rounding; the phantom's own limits say so.
+        Err(error) => panic!("{error}"),
+    }
+}
+
+fn check_table(table: &ForceTable) {
+    for axis in [table.depths(), table.laterals()] {
+        assert!(!axis.is_empty());
+        assert!(axis.iter().all(|x| x.is_finite() && x.to_bits() != 1 << 63));
+        assert!(
+            axis.windows(2)
+                .all(|pair| pair[1] - pair[0] > SAME_POSITION)
+        );
+    }
+    assert!(table.depths()[0] >= 0.0);
+    let shape = (table.depths().len(), table.laterals().len());
+    for forces in [table.normal_force(), table.lateral_force()] {
+        assert_eq!((forces.row_count(), forces.column_count()), shape);
+        assert!(forces.values().iter().all(|force| force.is_finite()));
+    }
+    let written = table.to_csv();
+    let again = ForceTable::from_csv(&written, FILE).expect("what was written can be read");
+    assert_eq!((&again, again.to_csv()), (table, written));
+    check_between(table);
+    if let Ok(loaded) = LoadedTable::new(table) {
+        let kernel = loaded.table().expect("loaded");
+        let force = kernel.force(1e-3, 0.0);
+        assert!(force.normal.is_finite() && force.lateral.is_finite());
+    }
+}
+
+/// Forces are those of the map at its poses, and finite between them.
+fn check_between(table: &ForceTable) {
+    let (depth, lateral) = (table.depths()[0], table.laterals()[0]);
+    match table.force(depth, lateral) {
+        Ok(force) => {
+            assert_eq!(force.normal, table.normal_force().row(0)[0]);
+            assert_eq!(force.lateral, table.lateral_force().row(0)[0]);
+        }
+        Err(InvalidForceMap::SinglePosition { .. } | InvalidForceMap::ForceTooLarge { .. }) => {}
+        Err(error) => panic!("{error}"),
+    }
+    if let Ok(force) = table.force(2e-3, 1e-3) {
+        assert!(force.normal.is_finite() && force.lateral.is_finite());
+    }
+    let row = table.row(depth).expect("a stored depth");
+    assert_eq!(row.normal_force, table.normal_force().row(0));
+}

@@ -1,0 +1,51 @@
+//! Phantom files.
+
+use palpate::phantom::{InvalidPhantom, Phantom, PhantomFileProblem};
+
+use crate::message::check_file_message;
+use crate::{FILE, Outcome, text};
+
+/// An accepted phantom is valid, and the same when it is written and read again, as TOML and as
+/// JSON; a refusal names file, line and key.
+///
+/// Implements: EVD-081, EVD-082.
+pub fn phantom_toml(bytes: &[u8]) -> Outcome {
+    let Some(text) = text(bytes) else {
+        return Outcome::Refused;
+    };
+    match Phantom::from_toml(text, FILE) {
+        Ok(phantom) => {
+            check_phantom(&phantom);
+            Outcome::Accepted
+        }
+        Err(error) => {
+            check_file_message(&error.to_string(), error.line, text);
+            let is_top_level = |key: &str| !key.contains('.');
+            match &error.problem {
+                PhantomFileProblem::Read(_) => panic!("no file was read"),
+                // A table that is not there has no line.
+                PhantomFileProblem::MissingKey { key, .. } => {
+                    assert!(error.line.is_some() || is_top_level(key), "{error}");
+                }
+                PhantomFileProblem::Invalid(InvalidPhantom::OutOfRange(range)) => {
+                    assert!(error.to_string().contains(range.key), "{error}");
+                    assert!(error.line.is_some(), "{error}");
+                }
+                _ => assert!(error.line.is_some(), "{error}"),
+            }
+            Outcome::Refused
+        }
+    }
+}
+
+fn check_phantom(phantom: &Phantom) {
+    phantom.validate().expect("valid");
+    let written = phantom.to_toml().expect("valid");
+    let again = Phantom::from_toml(&written, FILE).expect("what was written can be read");
+    // Texts as well, since −0 = 0.
+    assert_eq!((&again, again.to_toml()), (phantom, Ok(written)));
+    let written = serde_json::to_string(phantom).expect("numbers and a text");
+    let again: Phantom = serde_json::from_str(&written).expect("what was written can be read");
+    assert_eq!(again, *phantom);
+    assert_eq!(serde_json::to_string(&again).ok(), Some(written));
+}

@@ -1,0 +1,128 @@
+//! Cases without a fuzzer: seeds with a few changes, the same in every run.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What readers stumble over.
+const TOKENS: &[&[u8]] = &[
+    b"\0",
+    b"\r",
+    b"\n",
+    b"\r\n",
+    b"\xEF\xBB\xBF",
+    b"\xFF",
+    b"\x1B[2J",
+    b",",
+    b":",
+    b"\"",
+    b"[",
+    b"]",
+    b"{",
+    b"}",
+    b"=",
+    b"#",
+    b" ",
+    b"-",
+    b"-0",
+    b"0",
+    b"1",
+    b"9",
+    b".5",
+    b"1e999999999",
+    b"1e-999999999",
+    b"1e308",
+    b"5e-324",
+    b"nan",
+    b"inf",
+    b"null",
+    b"18446744073709551616",
+    b"\xC2\x85",
+    b"\xE2\x80\xA8",
+    b"0:1e5:1e-9",
+    b"999999999999",
+];
+
+/// The folder of a target, with its `corpus` and its `crashes`.
+pub fn folder(target: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/__fuzz__")
+        .join(target)
+}
+
+/// The kept inputs of a target, in the order of their names: its corpus, and what once broke it.
+///
+/// # Panics
+/// If the corpus cannot be read or is empty.
+pub fn kept(target: &str) -> Vec<Vec<u8>> {
+    let mut files: Vec<PathBuf> = Vec::new();
+    for kind in ["corpus", "crashes"] {
+        let entries = fs::read_dir(folder(target).join(kind));
+        files.extend(
+            entries
+                .into_iter()
+                .flatten()
+                .map(|entry| entry.expect("a file").path()),
+        );
+    }
+    files.sort();
+    assert!(!files.is_empty(), "no corpus of {target}");
+    let read = |path: PathBuf| fs::read(path).expect("a file");
+    files.into_iter().map(read).collect()
+}
+
+/// A counter-based sequence of numbers: SplitMix64 (Steele, Lea, Flood 2014).
+#[derive(Debug)]
+pub struct Random(u64);
+
+impl Random {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Random {
+        Random(seed)
+    }
+
+    /// A number below `bound`, which is above 0; uniform but for 2⁻⁵⁰ for the small bounds here.
+    pub fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let word = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let word = (word ^ (word >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((word ^ (word >> 31)) % bound as u64) as usize
+    }
+}
+
+/// One of `seeds` with one to three changes, mostly one.
+pub fn changed(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
+    let mut bytes = seeds[random.below(seeds.len())].clone();
+    for _ in 0..=random.below(2) * random.below(3) {
+        let (from, to) = range(&bytes, random);
+        match random.below(6) {
+            0 => {
+                if let Some(byte) = bytes.get_mut(from) {
+                    *byte ^= 1 << random.below(8);
+                }
+            }
+            1 => bytes.truncate(from.max(1)),
+            2 => drop(bytes.drain(from..to)),
+            3 => {
+                let again = bytes[from..to].to_vec();
+                bytes.splice(to..to, again);
+            }
+            4 => {
+                let token = TOKENS[random.below(TOKENS.len())];
+                bytes.splice(from..from, token.iter().copied());
+            }
+            _ => {
+                let other = &seeds[random.below(seeds.len())];
+                let (first, last) = range(other, random);
+                bytes.splice(from..to, other[first..last].iter().copied());
+            }
+        }
+    }
+    bytes
+}
+
+/// A range of at most 16 bytes.
+fn range(bytes: &[u8], random: &mut Random) -> (usize, usize) {
+    let from = random.below(bytes.len() + 1);
+    let to = (from + random.below(17)).min(bytes.len());
+    (from, to)
+}

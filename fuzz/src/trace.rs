@@ -1,0 +1,79 @@
+//! Recorded sweeps.
+
+use palpate::force_map::SAME_POSITION;
+use palpate::trace::{Abscissa, Motion, Record, Trace, TraceProblem};
+
+use crate::map::check_csv;
+use crate::message::check_file_message;
+use crate::{FILE, Outcome, text};
+
+/// An accepted trace has finite forces at increasing positions, and is the same when these are
+/// written and read again; a refusal names file and line, and quotes what stands there.
+///
+/// Implements: EVD-081, EVD-082.
+pub fn trace_csv(bytes: &[u8]) -> Outcome {
+    let Some(text) = text(bytes) else {
+        return Outcome::Refused;
+    };
+    match Trace::from_csv(text, FILE) {
+        Ok(trace) => {
+            check_trace(trace, text);
+            Outcome::Accepted
+        }
+        Err(error) => {
+            check_file_message(&error.to_string(), error.line, text);
+            let line = error.line.expect("a line");
+            if let TraceProblem::Csv(problem) = &error.problem {
+                check_csv(problem, line, text);
+            }
+            Outcome::Refused
+        }
+    }
+}
+
+fn check_trace(trace: Trace, text: &str) {
+    let motion = match trace.abscissa() {
+        Abscissa::Position => None,
+        Abscissa::Time => Some(Motion {
+            velocity: -0.01,
+            start: 0.02,
+        }),
+    };
+    let record = match trace.record(motion) {
+        Ok(record) => record,
+        // Times that increase can still make positions that do not.
+        Err(error) => {
+            assert!(motion.is_some(), "{error}");
+            return check_file_message(&error.to_string(), error.line, text);
+        }
+    };
+    let positions = record.positions();
+    assert!(!positions.is_empty() && positions.iter().all(|x| x.is_finite()));
+    assert!(
+        positions
+            .windows(2)
+            .all(|pair| pair[1] > pair[0] + SAME_POSITION)
+    );
+    let forces = record.forces();
+    assert_eq!([forces.x.len(), forces.y.len()], [positions.len(); 2]);
+    assert!(
+        forces
+            .x
+            .iter()
+            .chain(forces.y)
+            .all(|force| force.is_finite())
+    );
+    let again = Trace::from_csv(&written(&record), FILE).expect("what was written can be read");
+    let again = again.record(None).expect("positions");
+    assert_eq!(written(&again), written(&record));
+}
+
+/// The record as a file; the digits name each number to the bit.
+fn written(record: &Record) -> String {
+    let mut text = String::from("lateral_force_n,position_m,normal_force_n\n");
+    let forces = record.forces();
+    for (at, position) in record.positions().iter().enumerate() {
+        text += &format!("{:?},{position:?},{:?}\n", forces.x[at], forces.y[at]);
+    }
+    text
+}

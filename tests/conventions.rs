@@ -1,0 +1,184 @@
+//! The conventions of `spec/README.md`: units, axes and signs.
+#![cfg(feature = "cli")]
+
+use std::collections::BTreeSet;
+use std::process::Command;
+
+use palpate::fem::mesh::Region;
+use palpate::fem::{Contact, MeshOptions, Model, Pose, PoseSolution};
+use palpate::phantom::Phantom;
+
+/// Corners of the triangles along the surface are 1 mm apart.
+const SIZE: f64 = 1e-3;
+
+fn model(phantom: &Phantom) -> Model {
+    let options = MeshOptions {
+        size: SIZE,
+        ..MeshOptions::default()
+    };
+    Model::new(phantom, &options, Contact::default()).unwrap()
+}
+
+fn solve(model: &Model, depth: f64, lateral: f64) -> PoseSolution {
+    model.solve(Pose { depth, lateral }).unwrap()
+}
+
+fn builtin(name: &str) -> Phantom {
+    Phantom::builtin(name).unwrap()
+}
+
+fn help(arguments: &[&str]) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+    let output = command.args(arguments).arg("--help").output().unwrap();
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Units in which the names of options and keys may end.
+const UNITS: [&str; 6] = ["mm", "mm-s", "kpa", "us", "n", "s"];
+
+/// Options whose value is no quantity, has no unit, or is in SI.
+const NO_OTHER_UNIT: [&str; 35] = [
+    "condition",
+    "config",
+    "contact",
+    "criterion",
+    "cycles",
+    "device",
+    "element",
+    "format",
+    "inclusion",
+    "journal",
+    "junit",
+    "map",
+    "max-false-alarm",
+    "max-force",
+    "max-miss",
+    "noise",
+    "note",
+    "observer",
+    "only",
+    "out",
+    "phantom",
+    "pid",
+    "prior-h1",
+    "record",
+    "reference",
+    "replay",
+    "seconds",
+    "seed",
+    "serial",
+    "soak",
+    "subject",
+    "trials",
+    "vectors",
+    "vid",
+    "vtu",
+];
+
+// Verifies: CON-002.
+#[test]
+fn options_and_keys_that_are_not_in_si_say_their_unit() {
+    let list = help(&[]);
+    let commands = list
+        .split("Commands:")
+        .nth(1)
+        .unwrap()
+        .lines()
+        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
+        .filter(|name| !name.is_empty() && *name != "help");
+    let mut options = BTreeSet::new();
+    for command in commands {
+        for line in help(&[command]).lines() {
+            let named = line.trim().strip_prefix("--");
+            let named = named.and_then(|option| option.split_once(" <"));
+            options.extend(named.map(|(name, _)| name.trim_end_matches("...").to_string()));
+        }
+    }
+    assert!(options.len() > 40, "{options:?}");
+    let unit = |name: &str| UNITS.iter().any(|unit| name.ends_with(&format!("-{unit}")));
+    let bare = options.iter().filter(|name| !unit(name));
+    let unexpected: Vec<_> = bare
+        .filter(|name| !NO_OTHER_UNIT.contains(&name.as_str()))
+        .collect();
+    assert_eq!(unexpected, [""; 0], "in which unit are these?");
+
+    // Of the numbers of a phantom file, Poisson's ratio alone has no unit.
+    let file = builtin("2.6").to_toml().unwrap();
+    let keys = file.lines().filter_map(|line| line.split_once(" = "));
+    let numbers = keys.filter(|(_, value)| value.parse::<f64>().is_ok());
+    let keys: BTreeSet<&str> = numbers.map(|(key, _)| key).collect();
+    let with_unit = keys
+        .iter()
+        .filter(|key| key.ends_with("_mm") || key.ends_with("_kpa"));
+    assert_eq!(with_unit.count(), keys.len() - 1, "{keys:?}");
+    assert!(keys.contains("poisson_ratio") && keys.len() > 6, "{keys:?}");
+}
+
+// Verifies: CON-003.
+#[test]
+fn the_axes_are_those_of_the_specification() {
+    let phantom = builtin("4.6");
+    let model = model(&phantom);
+    let mesh = model.mesh();
+    // The outer surface is y = 0, and everything else below it.
+    let surface = mesh.rows.last().unwrap().clone();
+    assert!(surface.clone().all(|node| mesh.nodes[node][1] == 0.0));
+    assert!((0..surface.start).all(|node| mesh.nodes[node][1] < 0.0));
+    // The disc lies around x = 0.
+    let disc = mesh.elements().zip(&mesh.regions);
+    let disc = disc.filter(|(_, region)| **region == Region::Disc);
+    let x: Vec<f64> = disc
+        .flat_map(|(nodes, _)| mesh.positions(nodes))
+        .map(|position| position[0])
+        .collect();
+    let (least, most) = (
+        x.iter().copied().fold(0.0, f64::min),
+        x.iter().copied().fold(0.0, f64::max),
+    );
+    let radius = phantom.inclusion.unwrap().diameter / 2.0;
+    assert!((least + radius).abs() < 1e-12 && (most - radius).abs() < 1e-12);
+    // At lateral position x the lowest point of the gel lies there, at depth d: the circle rises by h²/2R at a node
+    // that is h away from its lowest point.
+    let (depth, lateral) = (2e-3, 4e-3);
+    let solution = solve(&model, depth, lateral);
+    // The outermost nodes of the surface are held, and have no displacement of their own.
+    let moved = &model.surface().positions;
+    let deformed = moved.iter().zip(&solution.state.displacements);
+    let deformed = deformed.map(|(at, u)| [at[0] + u[0], at[1] + u[1]]);
+    let lowest = deformed.min_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
+    assert!((lowest[0] - lateral).abs() < SIZE, "{lowest:?}");
+    let rise = SIZE * SIZE / (2.0 * phantom.probe.radius);
+    assert!((lowest[1] + depth).abs() < rise, "{lowest:?}");
+    assert_eq!(solve(&model, 0.0, lateral).normal_force, 0.0);
+}
+
+// Verifies: CON-004.
+#[test]
+fn forces_on_the_probe_point_out_of_the_gel_and_away_from_the_inclusion() {
+    let [none, inclusion] = ["none", "2.6"].map(|name| model(&builtin(name)));
+    for (lateral, side) in [(3e-3, 1.0), (-3e-3, -1.0)] {
+        let [none, inclusion] = [&none, &inclusion].map(|model| solve(model, 2e-3, lateral));
+        assert!(none.normal_force > 0.1, "{none:?}");
+        assert!(inclusion.normal_force > none.normal_force);
+        // Beside the hard disc the probe is pushed away from it.
+        let pushed = side * (inclusion.lateral_force - none.lateral_force);
+        assert!(pushed > 1e-3, "{pushed}");
+    }
+}
+
+// Verifies: CON-005.
+#[test]
+fn a_probe_twice_as_long_has_twice_the_force() {
+    let force = |length: f64| {
+        let mut phantom = builtin("4.6");
+        phantom.probe.length = length;
+        let solution = solve(&model(&phantom), 2e-3, 3e-3);
+        [solution.normal_force, solution.lateral_force]
+    };
+    let (once, twice) = (force(0.015), force(0.030));
+    for (once, twice) in once.into_iter().zip(twice) {
+        // Newton's method ends within 1e-9 N.
+        assert!((twice - 2.0 * once).abs() < 2e-9, "{once} {twice}");
+        assert!(once.abs() > 1e-3, "{once}");
+    }
+}
