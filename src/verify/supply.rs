@@ -13,6 +13,9 @@ use super::build::Build;
 /// The lock file.
 pub const LOCK: &str = include_str!("../../Cargo.lock");
 
+/// What the program itself asks for: the lock file has that of its tests beside it.
+const MANIFEST: &str = include_str!("../../Cargo.toml");
+
 /// Licence, layer, role and reason of each component.
 const TABLE: &str = include_str!("../../supply/components.csv");
 
@@ -52,9 +55,9 @@ pub struct Component {
 /// Why the lock file and the table do not make a list of components.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SupplyError {
-    /// The lock file is not one.
-    #[error("Cargo.lock: {0}")]
-    Lock(String),
+    /// The lock file or the manifest is not one.
+    #[error("Cargo.lock or Cargo.toml: {0}")]
+    File(String),
     /// A row of the table that is none.
     #[error("supply/components.csv:{line}: expected name,licence,layer,role,why")]
     Row {
@@ -92,6 +95,11 @@ struct Package {
     dependencies: Vec<String>,
 }
 
+#[derive(serde::Deserialize)]
+struct Manifest {
+    dependencies: BTreeMap<String, serde::de::IgnoredAny>,
+}
+
 /// A row of the table.
 struct Row {
     name: &'static str,
@@ -108,25 +116,31 @@ struct Row {
 ///
 /// Implements: EVD-060, EVD-061.
 pub fn components() -> Result<Vec<Component>, SupplyError> {
-    Ok(listed(LOCK, TABLE)?.0)
+    Ok(listed()?.0)
 }
 
 /// The components, and the names of those that the program itself asks for.
-fn listed(lock: &str, table: &'static str) -> Result<(Vec<Component>, Vec<String>), SupplyError> {
-    let rows = rows(table)?;
-    let lock: Lock = toml::from_str(lock).map_err(|error| SupplyError::Lock(error.to_string()))?;
+fn listed() -> Result<(Vec<Component>, Vec<String>), SupplyError> {
+    let rows = rows(TABLE)?;
+    let broken = |error: toml::de::Error| SupplyError::File(error.to_string());
+    let mut lock: Lock = toml::from_str(LOCK).map_err(broken)?;
+    let manifest: Manifest = toml::from_str(MANIFEST).map_err(broken)?;
+    let direct: Vec<String> = manifest.dependencies.into_keys().collect();
     let names: BTreeSet<&str> = rows.iter().map(|row| row.name).collect();
-    let packages = reached(&lock, &names)?;
-    let within = |package: &Package| -> Vec<String> {
-        let asked = package.dependencies.iter().map(|name| first_word(name));
-        let asked = asked.filter(|name| names.contains(name));
-        asked.map(String::from).collect()
-    };
+    for package in &mut lock.package {
+        let program = package.name == env!("CARGO_PKG_NAME");
+        package.dependencies.retain(|asked| {
+            let asked = first_word(asked);
+            names.contains(asked) && (!program || direct.iter().any(|name| name == asked))
+        });
+    }
+    let packages = reached(&lock)?;
     let mut components = Vec::new();
     for row in rows {
         let package = packages.get(row.name);
         let missing = || SupplyError::Missing(row.name.into());
         let package = package.ok_or_else(missing)?;
+        let depends_on = package.dependencies.iter().map(|asked| first_word(asked));
         components.push(Component {
             name: row.name,
             version: package.version.clone(),
@@ -135,20 +149,15 @@ fn listed(lock: &str, table: &'static str) -> Result<(Vec<Component>, Vec<String
             layer: row.layer,
             role: row.role,
             why: row.why,
-            depends_on: within(package),
+            depends_on: depends_on.map(String::from).collect(),
         });
     }
     components.sort_by_key(|component| component.name);
-    let program = packages.get(env!("CARGO_PKG_NAME"));
-    let direct = program.map(|program| within(program)).unwrap_or_default();
     Ok((components, direct))
 }
 
-/// The packages that lead from the program over components alone, by name.
-fn reached<'a>(
-    lock: &'a Lock,
-    names: &BTreeSet<&str>,
-) -> Result<BTreeMap<&'a str, &'a Package>, SupplyError> {
+/// The packages that lead from the program over what they ask for, by name.
+fn reached(lock: &Lock) -> Result<BTreeMap<&str, &Package>, SupplyError> {
     let mut found: BTreeMap<&str, &Package> = BTreeMap::new();
     let mut open = vec![env!("CARGO_PKG_NAME")];
     while let Some(wanted) = open.pop() {
@@ -162,13 +171,7 @@ fn reached<'a>(
             return Err(SupplyError::Missing(wanted.into()));
         };
         match found.insert(name, package) {
-            None => open.extend(
-                package
-                    .dependencies
-                    .iter()
-                    .map(String::as_str)
-                    .filter(|name| names.contains(first_word(name))),
-            ),
+            None => open.extend(package.dependencies.iter().map(String::as_str)),
             Some(before) if before.version != package.version => {
                 return Err(SupplyError::Twice {
                     name: name.into(),
@@ -219,7 +222,7 @@ fn rows(table: &'static str) -> Result<Vec<Row>, SupplyError> {
 ///
 /// Implements: EVD-065, EVD-066.
 pub fn sbom() -> Result<Value, SupplyError> {
-    let (components, direct) = listed(LOCK, TABLE)?;
+    let (components, direct) = listed()?;
     let build = Build::THIS;
     let program = purl(env!("CARGO_PKG_NAME"), build.version);
     let references: BTreeMap<&str, String> = components

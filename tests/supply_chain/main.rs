@@ -6,6 +6,7 @@ mod bom;
 mod build_script;
 mod cargo;
 mod components;
+mod linked;
 mod package;
 #[path = "../witness/present.rs"]
 mod present;
