@@ -15,7 +15,7 @@ fn figures(name: &str) -> Vec<Figure> {
     figures
 }
 
-// Verifies: EVD-040.
+// Verifies: EVD-040, EVD-042.
 #[test]
 fn every_check_is_of_a_part_and_has_a_name_of_its_own_a_claim_and_requirements() {
     let mut names = BTreeSet::new();

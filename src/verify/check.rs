@@ -28,6 +28,8 @@ impl Check {
     ///
     /// # Errors
     /// Its name, with why it could not be carried out or with the figures that break their bounds.
+    ///
+    /// Implements: EVD-043.
     pub fn judge(&self) -> Result<Vec<Figure>, String> {
         let name = self.name;
         let figures = (self.run)().map_err(|error| format!("check {name}: {error}"))?;
@@ -91,6 +93,8 @@ impl Figure {
     }
 
     /// Whether the value is finite and keeps its bounds.
+    ///
+    /// Implements: EVD-041.
     pub fn passes(&self) -> bool {
         self.value.is_finite() && self.at_least <= self.value && self.value <= self.at_most
     }

@@ -33,7 +33,9 @@ use super::{Check, Figure};
 /// What a check gives: its figures, or why it cannot be carried out.
 type Figures = Result<Vec<Figure>, String>;
 
-/// The checks of this part.
+/// The checks of this part. Sines and the like are `libm`'s in all of them.
+///
+/// Implements: EVD-045, EVD-047.
 pub const CHECKS: &[Check] = &[
     patch::LINEAR,
     patch::QUADRATIC,
@@ -61,12 +63,16 @@ fn said(error: impl std::fmt::Display) -> String {
 }
 
 /// The largest of `values`, at least 0; NaN if there is one among them, which `f64::max` would lose.
+///
+/// Implements: EVD-046.
 fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     let larger = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
     values.into_iter().fold(0.0, larger)
 }
 
 /// The least of `values`; NaN if there is one among them, infinite if there is none.
+///
+/// Implements: EVD-046.
 fn least(values: impl IntoIterator<Item = f64>) -> f64 {
     let smaller = |a: f64, b: f64| if a.is_nan() || a < b { a } else { b };
     values.into_iter().fold(f64::INFINITY, smaller)
