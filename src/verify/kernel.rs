@@ -126,6 +126,8 @@ impl Tally {
 
     /// Inputs tried, of which there must be `expected`, and broken, of which there must be none; `named` is the
     /// name of an input.
+    ///
+    /// Implements: EVD-044.
     fn figures(&self, what: &str, expected: u64, named: impl Fn(u32) -> String) -> Vec<Figure> {
         let broken = match self.first {
             None => format!("{what}: inputs that break it"),

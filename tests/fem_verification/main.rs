@@ -12,7 +12,7 @@ fn check(name: &str) {
         .for_each(|figure| println!("{name}: {figure}"));
 }
 
-// Verifies: EVD-043.
+// Verifies: EVD-043, EVD-045.
 #[test]
 fn every_check_runs_here() {
     let here = include_str!("main.rs");

@@ -34,9 +34,9 @@ use super::{Check, Figure};
 /// What a check gives: its figures, or why it cannot be carried out.
 type Figures = Result<Vec<Figure>, String>;
 
-/// The checks of this part.
+/// The checks of this part. Sines and the like are `libm`'s in all of them.
 ///
-/// Implements: EVD-045.
+/// Implements: EVD-045, EVD-047.
 pub const CHECKS: &[Check] = &[
     patch::LINEAR,
     patch::QUADRATIC,
