@@ -45,6 +45,16 @@ targets!(
     command_line: 2_000,
 );
 
+// Verifies: EVD-087.
+#[test]
+fn the_corpora_stay_small() {
+    let kept = TARGETS
+        .iter()
+        .flat_map(|target| palpate_fuzz::random::kept(target.name));
+    let bytes: usize = kept.map(|input| input.len()).sum();
+    assert!(bytes <= 200_000, "{bytes} bytes");
+}
+
 fn target(name: &str) -> &'static Target {
     let known = TARGETS.iter().find(|target| target.name == name);
     known.expect("a target of that name")
