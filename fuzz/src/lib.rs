@@ -16,6 +16,10 @@
 //! A target takes bytes, panics where a property does not hold, and else tells whether the bytes
 //! were accepted, so that a test can see that both answers occur.
 
+// Under a fuzzer every test of the package is built, this one too, and does not link without it.
+#[cfg(test)]
+use bolero as _;
+
 pub mod command_line;
 pub mod config;
 pub mod counts;

@@ -1,6 +1,8 @@
 //! A small input does not make a reader use much memory. One test, since the count is of the whole
 //! process.
 
+// As in src/lib.rs.
+use bolero as _;
 use palpate_fuzz::TARGETS;
 use palpate_fuzz::random::{Random, changed, kept};
 use peak_alloc::PeakAlloc;

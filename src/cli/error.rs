@@ -1,5 +1,6 @@
 //! What the program says when it cannot do what it was asked to, and with which exit code.
 
+use crate::csv::one_line;
 use crate::fem::FemError;
 use crate::force_map::ForceMapFileError;
 use crate::phantom::PhantomFileError;
@@ -77,7 +78,8 @@ impl CliError {
         if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
             return CliError::Usage("no command; try 'palpate run' or 'palpate --help'".into());
         }
-        CliError::Usage(format!("{message}{tip}; see --help"))
+        // The parser quotes the arguments, without their escape sequences but not without the rest.
+        CliError::Usage(one_line(&format!("{message}{tip}; see --help")))
     }
 
     /// 1 where a computation failed, 2 where the input is to blame.
