@@ -1,6 +1,15 @@
 //! What this build is: from which sources, by which compiler and how it was made (`spec/supply-chain.md`).
 
 /// The identity of a build.
+///
+/// ```
+/// use palpate::verify::build::Build;
+///
+/// let build = Build::THIS;
+/// assert_eq!(build.version, env!("CARGO_PKG_VERSION"));
+/// let changed = Build { commit: "0123abcd with changes", ..build };
+/// assert_eq!(changed.known_commit(), None);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "std", derive(serde::Serialize))]
 pub struct Build {
@@ -53,6 +62,11 @@ impl Build {
 
 /// The SHA-256 of the lock file of this build, in hexadecimal.
 ///
+/// ```
+/// let sum = palpate::verify::build::lock_sha256();
+/// assert!(sum.len() == 64 && sum.chars().all(|digit| digit.is_ascii_hexdigit()));
+/// ```
+///
 /// Implements: EVD-069.
 #[cfg(feature = "cli")]
 pub fn lock_sha256() -> String {
@@ -62,6 +76,11 @@ pub fn lock_sha256() -> String {
 }
 
 /// The model of the processor that this runs on, as Linux names it; `None` where it does not.
+///
+/// ```
+/// let model = palpate::verify::build::processor();
+/// assert!(model.is_none_or(|model| !model.is_empty()));
+/// ```
 ///
 /// Implements: EVD-069.
 #[cfg(feature = "std")]

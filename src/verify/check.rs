@@ -6,6 +6,21 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 /// A check: what it claims, which requirements it serves, and how it finds out.
+///
+/// ```
+/// use palpate::verify::{Check, Figure};
+///
+/// let check = Check {
+///     name: "arithmetic.third",
+///     claim: "Three thirds are one.",
+///     requirements: &["CON-006"],
+///     repeatable: true,
+///     run: || Ok(vec![Figure::at_most("error", (1.0f64 / 3.0 * 3.0 - 1.0).abs(), 1e-15)]),
+/// };
+/// assert_eq!(check.judge().unwrap().len(), 1);
+/// let blind = Check { run: || Ok(Vec::new()), ..check };
+/// assert_eq!(blind.judge().unwrap_err(), "check arithmetic.third measured nothing");
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Check {
     /// Its name, `part.what`, as in `fem.patch`.
@@ -49,6 +64,18 @@ impl Check {
 }
 
 /// A number that a check measured, and the bounds it must keep.
+///
+/// ```
+/// use palpate::verify::Figure;
+///
+/// assert!(Figure::at_most("error, N", 1e-9, 1e-9).passes());
+/// assert!(!Figure::at_least("observed order", 1.8, 1.9).passes());
+/// assert!(!Figure::within("share", f64::NAN, 0.0, 1.0).passes());
+/// assert!(Figure::count("cases that failed", 0, 0).passes());
+/// // Without bounds, only a number that is not finite fails.
+/// assert!(Figure::told("time, s", 1e300).passes());
+/// assert!(!Figure::told("time, s", f64::INFINITY).passes());
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// What was measured, with its unit at the end where it has one: `largest error of the displacement, m`.

@@ -45,6 +45,11 @@ pub(crate) use outcome::Outcome;
 
 /// All checks of this build but the statistics battery, in a fixed order.
 ///
+/// ```
+/// let mut kernel = palpate::verify::checks().filter(|check| check.name.starts_with("kernel."));
+/// assert!(kernel.any(|check| check.requirements.contains(&"SRV-020")));
+/// ```
+///
 /// Implements: EVD-040.
 pub fn checks() -> impl Iterator<Item = &'static Check> {
     let parts: &[&'static [Check]] = &[
@@ -63,6 +68,12 @@ pub fn checks() -> impl Iterator<Item = &'static Check> {
 }
 
 /// The check of a name, if there is one in this build.
+///
+/// ```
+/// let check = palpate::verify::find("kernel.limit").unwrap();
+/// assert_eq!(check.requirements, ["SRV-020"]);
+/// assert!(palpate::verify::find("kernel.unknown").is_none());
+/// ```
 pub fn find(name: &str) -> Option<&'static Check> {
     checks().find(|check| check.name == name)
 }

@@ -20,6 +20,14 @@ const MANIFEST: &str = include_str!("../../Cargo.toml");
 const TABLE: &str = include_str!("../../supply/components.csv");
 
 /// What a component does when the program is made or run.
+///
+/// ```
+/// use palpate::verify::supply::{Role, components};
+///
+/// let macros = components()?.into_iter().filter(|component| component.role == Role::Macro);
+/// assert!(macros.map(|component| component.name).any(|name| name == "serde_derive"));
+/// # Ok::<(), palpate::verify::supply::SupplyError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Role {
@@ -32,6 +40,14 @@ pub enum Role {
 }
 
 /// A crate of somebody else's.
+///
+/// ```
+/// let components = palpate::verify::supply::components()?;
+/// let libm = components.iter().find(|component| component.name == "libm").unwrap();
+/// assert_eq!((libm.licence, libm.layer), ("MIT", "core"));
+/// assert!(libm.depends_on.is_empty() && libm.sha256.len() == 64);
+/// # Ok::<(), palpate::verify::supply::SupplyError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Component {
     /// Its name in the registry.
@@ -53,6 +69,13 @@ pub struct Component {
 }
 
 /// Why the lock file and the table do not make a list of components.
+///
+/// ```
+/// use palpate::verify::supply::SupplyError;
+///
+/// let error = SupplyError::Row { line: 7 };
+/// assert!(error.to_string().starts_with("supply/components.csv:7: expected name,licence"));
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SupplyError {
     /// The lock file or the manifest is not one.
@@ -110,6 +133,12 @@ struct Row {
 }
 
 /// All components of the program, by name.
+///
+/// ```
+/// let components = palpate::verify::supply::components()?;
+/// assert!(components.is_sorted_by_key(|component| component.name));
+/// # Ok::<(), palpate::verify::supply::SupplyError>(())
+/// ```
 ///
 /// # Errors
 /// [`SupplyError`] if lock file and table do not fit.
@@ -216,6 +245,13 @@ fn rows(table: &'static str) -> Result<Vec<Row>, SupplyError> {
 }
 
 /// The bill of materials: CycloneDX 1.6 in JSON, the same bytes for the same build.
+///
+/// ```
+/// let bill = palpate::verify::supply::sbom()?;
+/// assert_eq!(bill["bomFormat"], "CycloneDX");
+/// assert_eq!(bill, palpate::verify::supply::sbom()?);
+/// # Ok::<(), palpate::verify::supply::SupplyError>(())
+/// ```
 ///
 /// # Errors
 /// As [`components`].

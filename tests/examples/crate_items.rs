@@ -95,7 +95,11 @@ impl Crate {
     fn walk(&self, module: &[String], public: &[String], found: &mut Vec<PublicItem>) {
         for item in &self.modules[module] {
             match item {
-                Item::Mod(inner) if is_public(&inner.vis) && !is_test(&inner.attrs) => {
+                Item::Mod(inner)
+                    if is_public(&inner.vis)
+                        && !is_test(&inner.attrs)
+                        && !is_hidden(&inner.attrs) =>
+                {
                     let name = inner.ident.to_string();
                     self.walk(&joined(module, &name), &joined(public, &name), found);
                 }
@@ -321,6 +325,14 @@ fn is_public(visibility: &Visibility) -> bool {
 fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| match &attribute.meta {
         Meta::List(list) => list.path.is_ident("cfg") && list.tokens.to_string() == "test",
+        _ => false,
+    })
+}
+
+/// Whether a module is kept out of the documentation, as what is no part of the interface.
+fn is_hidden(attributes: &[Attribute]) -> bool {
+    attributes.iter().any(|attribute| match &attribute.meta {
+        Meta::List(list) => list.path.is_ident("doc") && list.tokens.to_string() == "hidden",
         _ => false,
     })
 }
