@@ -55,6 +55,54 @@ fn the_corpora_stay_small() {
     assert!(bytes <= 200_000, "{bytes} bytes");
 }
 
+/// The rows of the tables of the README that begin with a target's name, as cells.
+fn rows(name: &str) -> impl Iterator<Item = Vec<&'static str>> {
+    let start = format!("| `{name}` |");
+    let lines = include_str!("../README.md")
+        .lines()
+        .filter(move |line| line.starts_with(&start));
+    lines.map(|line| line.split('|').map(str::trim).collect())
+}
+
+// Verifies: EVD-084.
+#[test]
+fn each_run_of_a_fuzzer_is_on_record() {
+    for target in TARGETS {
+        // Duration, processor time, executions, their rate, and three counts of edges.
+        let run = rows(target.name).find(|cells| cells.len() == 10);
+        let cells = run.unwrap_or_else(|| panic!("{} has no run in the README", target.name));
+        for cell in &cells[2..9] {
+            assert!(
+                cell.starts_with(|digit: char| digit.is_ascii_digit()),
+                "{cells:?}"
+            );
+        }
+    }
+}
+
+// Verifies: EVD-086.
+#[test]
+fn each_input_that_broke_a_property_is_kept() {
+    let mut named = 0;
+    for target in TARGETS {
+        let finds = rows(target.name).filter(|cells| cells.len() == 6);
+        for quoted in finds.flat_map(|cells| cells[2].split('`').skip(1).step_by(2)) {
+            let file = quoted.trim_start_matches("crashes/");
+            let folder = format!(
+                "{}/tests/__fuzz__/{}/crashes",
+                env!("CARGO_MANIFEST_DIR"),
+                target.name
+            );
+            assert!(
+                std::path::Path::new(&folder).join(file).is_file(),
+                "{folder}/{file}"
+            );
+            named += 1;
+        }
+    }
+    assert!(named >= 8, "{named}");
+}
+
 fn target(name: &str) -> &'static Target {
     let known = TARGETS.iter().find(|target| target.name == name);
     known.expect("a target of that name")

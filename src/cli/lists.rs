@@ -13,7 +13,7 @@ const UNITS_PER_MM: i32 = 9;
 
 /// Reads a list in mm.
 ///
-/// Implements: CLI-010, CLI-011.
+/// Implements: CLI-010, CLI-011, EVD-083.
 ///
 /// # Errors
 /// A message that names the entry and what would be right.
