@@ -52,7 +52,7 @@ pub(super) enum Command {
 pub enum Format {
     /// For people.
     Table,
-    /// For programs, in SI.
+    /// For programs; each key ends with its unit.
     Json,
 }
 

@@ -65,12 +65,13 @@ pub fn verify(arguments: &VerifyArguments) -> Result<(), CliError> {
         let message = "--only soak: expected --soak N, the number of batteries";
         return Err(CliError::Usage(message.into()));
     }
-    let soak = arguments.soak.filter(|_| asked("soak"));
     // What can fail at once comes first: minutes of work shall not end for want of a place.
     make_folder(&arguments.out)?;
     let requirements = traceability::requirements().map_err(CliError::Check)?;
     let components = supply::components().map_err(|error| CliError::Check(error.to_string()))?;
-    let soak = soak.map(|batteries| (batteries, arguments.seed.unwrap_or_else(fresh_seed)));
+    let soak = arguments
+        .soak
+        .map(|batteries| (batteries, arguments.seed.unwrap_or_else(fresh_seed)));
     if let Some((batteries, seed)) = soak {
         // Before the work: whoever stops it can still repeat it.
         let checks = battery().count();

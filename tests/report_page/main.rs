@@ -1,4 +1,4 @@
-//! The report as a browser lays it out: nothing overflows, nothing overlaps, nothing is said on the console.
+//! The report and the dossier as a browser lays them out: nothing overflows, nothing overlaps, nothing is said on the console.
 //!
 //! Needs Chromium. Without one it passes with a notice, unless `PALPATE_REQUIRE_CHROMIUM` is set.
 
@@ -79,6 +79,29 @@ fn the_page_fits_phones_and_screens() {
             assert_eq!(seen.is_dark, scheme == Scheme::Dark);
             assert_eq!(seen.figures, figures);
             assert!(seen.texts > 10 * figures, "{}", seen.texts);
+            assert!(seen.faults.is_empty(), "{width} px: {:#?}", seen.faults);
+            assert!(seen.console.is_empty(), "{:?}", seen.console);
+        }
+    }
+}
+
+// Verifies: EVD-006.
+#[test]
+fn the_dossier_fits_phones_and_screens() {
+    let Some(browser) = Browser::find() else {
+        return;
+    };
+    let here = folder("dossier");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+    command
+        .args(["verify", "--only", "vectors,timing", "--out"])
+        .arg(&here);
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    for scheme in [Scheme::Light, Scheme::Dark] {
+        for width in WIDTHS {
+            let seen = browser.look(&here.join("dossier.html"), width, scheme);
+            assert_eq!(seen.width, width);
             assert!(seen.faults.is_empty(), "{width} px: {:#?}", seen.faults);
             assert!(seen.console.is_empty(), "{:?}", seen.console);
         }

@@ -1,5 +1,6 @@
 //! The long lists: components of other makers, and the trace of every requirement.
 
+use super::results::breakable;
 use crate::report::html::table::{Group, Layout, Table};
 use crate::report::text::escape;
 use crate::verify::evidence::Evidence;
@@ -85,7 +86,7 @@ pub fn trace(evidence: &Evidence) -> String {
 
 fn row(requirement: &Requirement) -> Vec<String> {
     let places = |places: &[String]| {
-        let places: Vec<String> = places.iter().map(|place| escape(place)).collect();
+        let places: Vec<String> = places.iter().map(|place| breakable(place)).collect();
         places.join("<br>")
     };
     let inspection = requirement

@@ -61,8 +61,11 @@ fn row(outcome: &Outcome) -> Vec<String> {
 }
 
 /// A name of several words, which may be broken between them.
-fn breakable(name: &str) -> String {
-    escape(name).replace('.', ".<wbr>").replace('_', "_<wbr>")
+pub fn breakable(name: &str) -> String {
+    escape(name)
+        .replace('.', ".<wbr>")
+        .replace('_', "_<wbr>")
+        .replace("::", "::<wbr>")
 }
 
 /// The figures of a check, those outside their bounds in red.
