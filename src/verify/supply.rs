@@ -64,7 +64,7 @@ pub struct Component {
     pub role: Role,
     /// What it is there for.
     pub why: &'static str,
-    /// The components that it depends on, by name.
+    /// The components that it depends on, by name; with the version too where the lock file has several.
     pub depends_on: Vec<String>,
 }
 
@@ -87,21 +87,11 @@ pub enum SupplyError {
         /// Its line, from 1.
         line: usize,
     },
-    /// A component that the lock file does not lead to from the program, or without a checksum.
+    /// A component that the lock file leads to no package for, or to several, or to one without a checksum.
     #[error(
-        "{0} is in supply/components.csv, but Cargo.lock has no package of the registry for it"
+        "{0} is in supply/components.csv, but Cargo.lock has not one package of the registry for it"
     )]
-    Missing(String),
-    /// A component in two versions.
-    #[error("{name} is in the program twice: {first} and {second}")]
-    Twice {
-        /// Which.
-        name: String,
-        /// One version.
-        first: String,
-        /// The other.
-        second: String,
-    },
+    Package(String),
 }
 
 #[derive(serde::Deserialize)]
@@ -125,6 +115,7 @@ struct Manifest {
 
 /// A row of the table.
 struct Row {
+    /// `name`, or `name 1` or `name 0.2` for one of several versions.
     name: &'static str,
     licence: &'static str,
     layer: &'static str,
@@ -148,67 +139,61 @@ pub fn components() -> Result<Vec<Component>, SupplyError> {
     Ok(listed()?.0)
 }
 
-/// The components, and the names of those that the program itself asks for.
+/// The components, and those that the program itself asks for, as the lock file names them.
 fn listed() -> Result<(Vec<Component>, Vec<String>), SupplyError> {
     let rows = rows(TABLE)?;
     let broken = |error: toml::de::Error| SupplyError::File(error.to_string());
     let mut lock: Lock = toml::from_str(LOCK).map_err(broken)?;
     let manifest: Manifest = toml::from_str(MANIFEST).map_err(broken)?;
-    let direct: Vec<String> = manifest.dependencies.into_keys().collect();
-    let names: BTreeSet<&str> = rows.iter().map(|row| row.name).collect();
+    let names: BTreeSet<&str> = rows.iter().map(|row| first_word(row.name)).collect();
     for package in &mut lock.package {
         let program = package.name == env!("CARGO_PKG_NAME");
         package.dependencies.retain(|asked| {
             let asked = first_word(asked);
-            names.contains(asked) && (!program || direct.iter().any(|name| name == asked))
+            names.contains(asked) && (!program || manifest.dependencies.contains_key(asked))
         });
     }
     let packages = reached(&lock)?;
     let mut components = Vec::new();
     for row in rows {
-        let package = packages.get(row.name);
-        let missing = || SupplyError::Missing(row.name.into());
-        let package = package.ok_or_else(missing)?;
-        let depends_on = package.dependencies.iter().map(|asked| first_word(asked));
+        let mut fitting = packages.values().filter(|package| {
+            let package = format!("{} {}", package.name, package.version);
+            let rest = package.strip_prefix(row.name);
+            rest.is_some_and(|rest| rest.starts_with([' ', '.']))
+        });
+        let wrong = || SupplyError::Package(row.name.into());
+        let (Some(package), None) = (fitting.next(), fitting.next()) else {
+            return Err(wrong());
+        };
         components.push(Component {
-            name: row.name,
+            name: first_word(row.name),
             version: package.version.clone(),
-            sha256: package.checksum.clone().ok_or_else(missing)?,
+            sha256: package.checksum.clone().ok_or_else(wrong)?,
             licence: row.licence,
             layer: row.layer,
             role: row.role,
             why: row.why,
-            depends_on: depends_on.map(String::from).collect(),
+            depends_on: package.dependencies.clone(),
         });
     }
-    components.sort_by_key(|component| component.name);
-    Ok((components, direct))
+    components.sort_by(|a, b| (a.name, &a.version).cmp(&(b.name, &b.version)));
+    let program = packages[env!("CARGO_PKG_NAME")];
+    Ok((components, program.dependencies.clone()))
 }
 
-/// The packages that lead from the program over what they ask for, by name.
+/// The packages that lead from the program over what they ask for, by what the lock file calls them there: `name`, or
+/// `name version` where it holds several.
 fn reached(lock: &Lock) -> Result<BTreeMap<&str, &Package>, SupplyError> {
-    let mut found: BTreeMap<&str, &Package> = BTreeMap::new();
+    let mut found = BTreeMap::new();
     let mut open = vec![env!("CARGO_PKG_NAME")];
     while let Some(wanted) = open.pop() {
-        // `name`, or `name version` where the lock file holds several.
-        let mut words = wanted.split(' ');
-        let (name, version) = (words.next().unwrap_or_default(), words.next());
         let fits = |package: &&Package| {
-            package.name == name && version.is_none_or(|version| package.version == version)
+            package.name == wanted || format!("{} {}", package.name, package.version) == wanted
         };
-        let Some(package) = lock.package.iter().find(fits) else {
-            return Err(SupplyError::Missing(wanted.into()));
-        };
-        match found.insert(name, package) {
-            None => open.extend(package.dependencies.iter().map(String::as_str)),
-            Some(before) if before.version != package.version => {
-                return Err(SupplyError::Twice {
-                    name: name.into(),
-                    first: before.version.clone(),
-                    second: package.version.clone(),
-                });
-            }
-            Some(_) => {}
+        let package = lock.package.iter().find(fits);
+        let package = package.ok_or_else(|| SupplyError::Package(wanted.into()))?;
+        if found.insert(wanted, package).is_none() {
+            open.extend(package.dependencies.iter().map(String::as_str));
         }
     }
     Ok(found)
@@ -261,12 +246,15 @@ pub fn sbom() -> Result<Value, SupplyError> {
     let (components, direct) = listed()?;
     let build = Build::THIS;
     let program = purl(env!("CARGO_PKG_NAME"), build.version);
-    let references: BTreeMap<&str, String> = components
-        .iter()
-        .map(|component| (component.name, purl(component.name, &component.version)))
+    // What the lock file may call it.
+    let references: BTreeMap<String, String> = (components.iter())
+        .flat_map(|Component { name, version, .. }| {
+            let names = [name.to_string(), format!("{name} {version}")];
+            names.map(|known| (known, purl(name, version)))
+        })
         .collect();
     let known = |names: &[String]| -> Vec<&str> {
-        let found = names.iter().map(|name| references.get(name.as_str()));
+        let found = names.iter().map(|name| references.get(name));
         found.flatten().map(String::as_str).collect()
     };
     let mut asked = known(&direct);
@@ -274,7 +262,7 @@ pub fn sbom() -> Result<Value, SupplyError> {
     let mut dependencies = vec![json!({ "ref": program, "dependsOn": asked })];
     dependencies.extend(components.iter().map(|component| {
         let asked = known(&component.depends_on);
-        json!({ "ref": references[component.name], "dependsOn": asked })
+        json!({ "ref": purl(component.name, &component.version), "dependsOn": asked })
     }));
     let mut parts: Vec<Value> = components.iter().map(part).collect();
     parts.push(standard_library(build.compiler));
