@@ -11,11 +11,8 @@
 ///
 /// Implements: PHA-020, CON-001.
 pub fn parse_scaled(text: &str, power: i32) -> Option<f64> {
-    let (mantissa, exponent) = match text.find(['e', 'E']) {
-        Some(at) => (&text[..at], text[at + 1..].parse::<i32>().ok()?),
-        None => (text, 0),
-    };
-    let exponent = exponent.checked_add(power)?;
+    let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let exponent = exponent.parse::<i32>().ok()?.checked_add(power)?;
     // With an exponent behind it, no "nan" or "inf" is a number to `str::parse`.
     let value: f64 = format!("{mantissa}e{exponent}").parse().ok()?;
     value.is_finite().then_some(value)

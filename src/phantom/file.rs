@@ -1,40 +1,23 @@
-//! Phantom files: TOML, in mm and kPa (`spec/phantom.md`).
+//! Phantom files: TOML, in mm and kPa (`spec/phantom.md`). A file's tables become the JSON of a phantom, which serde reads;
+//! what serde refuses there is told in the keys of the file.
 
-use std::fmt;
+use std::collections::BTreeMap;
 use std::path::Path;
 
+use serde_json::{Map, Value, json};
+use serde_path_to_error::Segment;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::decimal::parse_scaled;
-use super::{Gel, Inclusion, InvalidPhantom, Material, Phantom, Probe, Quantity, Skin};
-use crate::csv::one_line;
+use super::limits::{UNITS, in_unit_of, power_to_si};
+use super::{InvalidPhantom, Phantom};
+use crate::csv::{one_line, shortened};
 
-/// A number in a phantom file: where it stands, without the unit, and what it measures.
-type Field = (&'static str, Quantity);
-
-const GEL: [Field; 4] = [
-    ("gel.width", Quantity::Length),
-    ("gel.height", Quantity::Length),
-    ("gel.youngs_modulus", Quantity::Modulus),
-    ("gel.poisson_ratio", Quantity::Ratio),
-];
-const SKIN: [Field; 3] = [
-    ("skin.thickness", Quantity::Length),
-    ("skin.youngs_modulus", Quantity::Modulus),
-    ("skin.poisson_ratio", Quantity::Ratio),
-];
-const INCLUSION: [Field; 4] = [
-    ("inclusion.diameter", Quantity::Length),
-    ("inclusion.depth", Quantity::Length),
-    ("inclusion.youngs_modulus", Quantity::Modulus),
-    ("inclusion.poisson_ratio", Quantity::Ratio),
-];
-const PROBE: [Field; 2] = [
-    ("probe.radius", Quantity::Length),
-    ("probe.length", Quantity::Length),
-];
-const TOP_LEVEL: [&str; 5] = ["name", "gel", "skin", "inclusion", "probe"];
+/// Keys that a file has among those of a layer or an inclusion, and JSON in an object of their own.
+const MATERIAL: &str = "youngs_modulus_kpa poisson_ratio";
+const SHAPE: &str = "diameter_mm width_mm height_mm angle_deg points_mm";
+const NESTED: [(&str, &str); 2] = [("material", MATERIAL), ("shape", SHAPE)];
 
 /// Why a phantom file is refused: one line that begins with the file.
 ///
@@ -43,84 +26,25 @@ const TOP_LEVEL: [&str; 5] = ["name", "gel", "skin", "inclusion", "probe"];
 ///
 /// let text = Phantom::builtin("none")?.to_toml()?.replace("radius_mm = 6.5", "radius_mm = 17.0");
 /// let error = Phantom::from_toml(&text, "wide.toml").unwrap_err();
-/// assert_eq!(error.line, Some(15));
-/// assert!(error.to_string().starts_with("wide.toml:15: probe.radius_mm = 17.0, allowed: "));
+/// assert_eq!(error.line, Some(21));
+/// assert!(error.to_string().starts_with("wide.toml:21: probe.radius_mm = 17.0, expected "));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// Implements: PHA-022, PHA-023, PHA-024, PHA-025, PHA-026.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{file}{}: {message}", line.map_or(String::new(), |line| format!(":{line}")))]
 pub struct PhantomFileError {
     /// The file, as its reader named it.
     pub file: String,
     /// The line, from 1, where there is one.
     pub line: Option<usize>,
-    /// What is wrong there.
-    pub problem: PhantomFileProblem,
+    /// What is wrong there, with its key.
+    pub message: String,
 }
 
-impl fmt::Display for PhantomFileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.line {
-            Some(line) => write!(f, "{}:{line}: {}", self.file, self.problem),
-            None => write!(f, "{}: {}", self.file, self.problem),
-        }
-    }
-}
-
-impl std::error::Error for PhantomFileError {}
-
-/// What is wrong with a phantom file.
-///
-/// ```
-/// use palpate::phantom::{Phantom, PhantomFileProblem};
-///
-/// let error = Phantom::from_toml("name = 3", "mine.toml").unwrap_err();
-/// assert!(matches!(error.problem, PhantomFileProblem::WrongType { key, .. } if key == "name"));
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PhantomFileProblem {
-    /// The file cannot be read.
-    #[error("cannot be read: {0}")]
-    Read(String),
-    /// The text is not TOML.
-    #[error("column {column}: not TOML: {message}")]
-    Syntax {
-        /// Column, from 1, in characters.
-        column: usize,
-        /// What the parser says.
-        message: String,
-    },
-    /// A key that a phantom does not have.
-    #[error("unknown key {key:?}, allowed: {allowed}")]
-    UnknownKey {
-        /// The key with its table.
-        key: String,
-        /// The keys of that table.
-        allowed: String,
-    },
-    /// A key is not there.
-    #[error("{key} is missing, expected {expected}")]
-    MissingKey {
-        /// The key with its table.
-        key: String,
-        /// What its value would be.
-        expected: &'static str,
-    },
-    /// A value of another type.
-    #[error("{key} = {found}, expected {expected}")]
-    WrongType {
-        /// The key with its table.
-        key: String,
-        /// The value.
-        found: String,
-        /// What it would be.
-        expected: &'static str,
-    },
-    /// The values make no phantom.
-    #[error(transparent)]
-    Invalid(#[from] InvalidPhantom),
-}
+/// Where a file is refused, if anywhere, as a byte from its start, and why.
+type Refusal = (Option<usize>, String);
 
 impl Phantom {
     /// Reads the phantom file at `path`.
@@ -136,7 +60,7 @@ impl Phantom {
     /// ```
     ///
     /// # Errors
-    /// As [`Phantom::from_toml`]; [`PhantomFileProblem::Read`] if the file cannot be read as UTF-8.
+    /// As [`Phantom::from_toml`]; also if the file cannot be read as UTF-8.
     pub fn read(path: &Path) -> Result<Phantom, PhantomFileError> {
         let file = path.display().to_string();
         match std::fs::read_to_string(path) {
@@ -144,7 +68,7 @@ impl Phantom {
             Err(error) => Err(PhantomFileError {
                 file,
                 line: None,
-                problem: PhantomFileProblem::Read(error.to_string()),
+                message: format!("cannot be read: {error}"),
             }),
         }
     }
@@ -156,38 +80,43 @@ impl Phantom {
     ///
     /// let text = r#"
     /// name = "soft, without inclusion"
-    /// gel = { width_mm = 34, height_mm = 15, youngs_modulus_kpa = 2.5, poisson_ratio = 0.49 }
-    /// skin = { thickness_mm = 0.5, youngs_modulus_kpa = 180, poisson_ratio = 0.49 }
+    /// well = { width_mm = 34, walls = "sliding" }
+    /// layer = [{ thickness_mm = 15, youngs_modulus_kpa = 2.5, poisson_ratio = 0.49 }]
     /// probe = { radius_mm = 6.5, length_mm = 30 }
     /// "#;
     /// let phantom = Phantom::from_toml(text, "soft.toml")?;
-    /// assert_eq!((phantom.gel.width, phantom.gel.material.youngs_modulus), (0.034, 2500.0));
+    /// assert_eq!((phantom.well.width, phantom.layers[0].material.youngs_modulus), (0.034, 2500.0));
     /// # Ok::<(), palpate::phantom::PhantomFileError>(())
     /// ```
     ///
     /// # Errors
-    /// [`PhantomFileError`] if the text is not TOML, has an unknown key, lacks one, has a value of
-    /// another type, or makes a phantom that [`Phantom::validate`] refuses.
+    /// [`PhantomFileError`] if the text is not TOML, has an unknown key, lacks one, has a value of another type, or makes a
+    /// phantom that [`Phantom::validate`] refuses.
     ///
-    /// Implements: PHA-020, PHA-021, PHA-022, PHA-023, PHA-024, PHA-025, PHA-026, PHA-028.
+    /// Implements: PHA-020, PHA-021, PHA-022, PHA-023, PHA-024, PHA-025, PHA-026, PHA-028, PHA-037, PHA-038, PHA-039.
     pub fn from_toml(text: &str, file: &str) -> Result<Phantom, PhantomFileError> {
-        let mut reader = Reader {
-            text,
-            file,
-            lines: Vec::new(),
+        let refused = |(at, message): Refusal| PhantomFileError {
+            file: file.into(),
+            line: at.map(|at| 1 + text.bytes().take(at).filter(|&byte| byte == b'\n').count()),
+            message: one_line(&message),
         };
-        let document = match DeTable::parse(text) {
-            Ok(document) => document.into_inner(),
-            Err(error) => return Err(reader.syntax_error(&error)),
-        };
-        let phantom = reader.phantom(&document)?;
-        match phantom.validate() {
-            Ok(()) => Ok(phantom),
-            Err(invalid) => {
-                let line = reader.line_of(invalid.key());
-                Err(reader.error(line, invalid.into()))
-            }
-        }
+        let document = DeTable::parse(text).map_err(|error| {
+            let at = error.span().map_or(text.len(), |span| span.start);
+            let before = text.get(..at).unwrap_or(text);
+            let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+            let message = format!("column {column}: not TOML: {}", error.message());
+            refused((Some(at), message))
+        })?;
+        let (spans, names) = Default::default();
+        let mut file = File { text, spans, names };
+        let mut json = file.object("", document.get_ref());
+        file.restructure(&mut json);
+        let phantom = serde_path_to_error::deserialize(Value::Object(json));
+        let phantom: Phantom = phantom.map_err(|error| refused(file.not_a_phantom(&error)))?;
+        let invalid = |error: InvalidPhantom| file.refuse(&error.key, &error.to_string());
+        let valid = phantom.validate();
+        valid.map_err(|error| refused(invalid(error)))?;
+        Ok(phantom)
     }
 
     /// This phantom as the text of a phantom file.
@@ -198,240 +127,187 @@ impl Phantom {
     /// Implements: PHA-021, PHA-027.
     pub fn to_toml(&self) -> Result<String, InvalidPhantom> {
         self.validate()?;
-        let Phantom {
-            name,
-            gel,
-            skin,
-            inclusion,
-            probe,
-        } = self;
-        let name = toml::Value::String(name.clone());
-        let mut text = format!("name = {name}\n");
-        let elastic = |material: &Material| (material.youngs_modulus, material.poisson_ratio);
-        let (modulus, ratio) = elastic(&gel.material);
-        write_table(
-            &mut text,
-            "gel",
-            &GEL,
-            &[gel.width, gel.height, modulus, ratio],
-        );
-        let (modulus, ratio) = elastic(&skin.material);
-        write_table(&mut text, "skin", &SKIN, &[skin.thickness, modulus, ratio]);
-        if let Some(disc) = inclusion {
-            let (modulus, ratio) = elastic(&disc.material);
-            let values = [disc.diameter, disc.depth, modulus, ratio];
-            write_table(&mut text, "inclusion", &INCLUSION, &values);
+        let si = toml::to_string(self).expect("tables of texts and finite numbers are TOML");
+        let mut text = String::new();
+        for line in si.lines() {
+            text += &match line.split_once(" = ") {
+                Some((key, value)) => line_in_file(&other_name(key), value),
+                // The tables of JSON that a file does not have.
+                None if line.is_empty() || line.contains('.') => continue,
+                None => format!("\n{line}\n"),
+            }
         }
-        write_table(&mut text, "probe", &PROBE, &[probe.radius, probe.length]);
         Ok(text)
     }
 }
 
-fn write_table(text: &mut String, table: &str, fields: &[Field], values: &[f64]) {
-    text.push_str(&format!("\n[{table}]\n"));
-    for (&field, &value) in fields.iter().zip(values) {
-        let value = field.1.in_file_unit(value);
-        text.push_str(&format!("{} = {value}\n", key_in_table(field)));
-    }
+/// A line with the SI numbers in `value`, or its text.
+fn line_in_file(key: &str, value: &str) -> String {
+    let item = |item: &str| {
+        let digits = item.trim_matches(['[', ']']);
+        let number = digits.parse().ok().filter(|_| power_to_si(key) != 0);
+        let replaced = |number| item.replace(digits, &in_unit_of(key, number));
+        number.map_or(item.into(), replaced)
+    };
+    let items: Vec<_> = value.split(", ").map(item).collect();
+    format!("{key} = {}\n", items.join(", "))
 }
 
-/// The key of a field within its table, with the unit: `width_mm` of `gel.width`.
-fn key_in_table((path, quantity): Field) -> String {
-    let key = path.split_once('.').map_or(path, |(_, key)| key);
-    format!("{key}{}", quantity.suffix())
+/// A key of a file in JSON, and the other way round: in a file, a key of JSON thus becomes none of JSON.
+fn other_name(key: &str) -> String {
+    let both_ways = |(file, si, _)| [(file, si), (si, file)];
+    let mut ends = UNITS.into_iter().flat_map(both_ways);
+    let other = ends.find_map(|(end, other)| Some(key.strip_suffix(end)?.to_string() + other));
+    other.unwrap_or(key.into())
 }
 
-/// Reads one file's tables, and remembers the line of every value for errors found later.
-struct Reader<'a> {
+/// A file that is being read.
+struct File<'a> {
     text: &'a str,
-    file: &'a str,
-    lines: Vec<(&'static str, usize)>,
+    /// Where each value stands.
+    spans: BTreeMap<String, std::ops::Range<usize>>,
+    /// What this edition's keys are called in this file, where it is otherwise.
+    names: Vec<(String, &'static str)>,
 }
 
-impl Reader<'_> {
-    fn phantom(&mut self, document: &DeTable<'_>) -> Result<Phantom, PhantomFileError> {
-        self.refuse_unknown(document, "", &TOP_LEVEL.map(String::from))?;
-        let name = self.name(document)?;
-        let [width, height, modulus, ratio] = self.table(document, "gel", GEL)?;
-        let gel = Gel {
-            width,
-            height,
-            material: material(modulus, ratio),
-        };
-        let [thickness, modulus, ratio] = self.table(document, "skin", SKIN)?;
-        let skin = Skin {
-            thickness,
-            material: material(modulus, ratio),
-        };
-        let inclusion = if document.contains_key("inclusion") {
-            let [diameter, depth, modulus, ratio] = self.table(document, "inclusion", INCLUSION)?;
-            Some(Inclusion {
-                diameter,
-                depth,
-                material: material(modulus, ratio),
-            })
-        } else {
-            None
-        };
-        let [radius, length] = self.table(document, "probe", PROBE)?;
-        let probe = Probe { radius, length };
-        Ok(Phantom {
-            name,
-            gel,
-            skin,
-            inclusion,
-            probe,
-        })
-    }
-
-    fn name(&mut self, document: &DeTable<'_>) -> Result<String, PhantomFileError> {
-        let expected = "a string";
-        let Some(value) = document.get("name") else {
-            let key = "name".into();
-            return Err(self.error(None, PhantomFileProblem::MissingKey { key, expected }));
-        };
-        let line = self.line(value.span().start);
-        self.lines.push(("name", line));
+impl File<'_> {
+    /// The value at `path` as JSON.
+    fn value(&mut self, path: &str, value: &Spanned<DeValue>) -> Value {
+        self.spans.insert(path.into(), value.span());
         match value.get_ref() {
-            DeValue::String(name) => Ok(name.to_string()),
-            other => Err(self.wrong_type("name".into(), line, other, expected)),
+            DeValue::String(text) => text.as_ref().into(),
+            DeValue::Table(table) => self.object(path, table).into(),
+            DeValue::Array(values) => {
+                let item = |(at, item)| self.value(&format!("{path}[{at}]"), item);
+                values.iter().enumerate().map(item).collect()
+            }
+            _ => {
+                let text = self.text.get(value.span()).unwrap_or("").replace('_', "");
+                let number = parse_scaled(&text, power_to_si(path));
+                // All else becomes a boolean, which no key takes.
+                number.map_or(Value::Bool(false), Value::from)
+            }
         }
     }
 
-    /// The numbers of table `name`, SI, in the order of `fields`.
-    fn table<const N: usize>(
-        &mut self,
-        document: &DeTable<'_>,
-        name: &str,
-        fields: [Field; N],
-    ) -> Result<[f64; N], PhantomFileError> {
-        let Some(value) = document.get(name) else {
-            let (key, expected) = (name.into(), "a table");
-            return Err(self.error(None, PhantomFileProblem::MissingKey { key, expected }));
+    fn object(&mut self, path: &str, table: &DeTable) -> Map<String, Value> {
+        let mut object = Map::new();
+        for (key, value) in table {
+            let path = format!("{path}.{}", key.get_ref());
+            let value = self.value(path.trim_start_matches('.'), value);
+            object.insert(other_name(key.get_ref()), value);
+        }
+        let nested = match path.split('[').next() {
+            Some("layer" | "skin") => &NESTED[..1],
+            Some("inclusion") => &NESTED,
+            _ => return object,
         };
-        let line = self.line(value.span().start);
-        let DeValue::Table(table) = value.get_ref() else {
-            return Err(self.wrong_type(name.into(), line, value.get_ref(), "a table"));
-        };
-        let keys = fields.map(key_in_table);
-        self.refuse_unknown(table, name, &keys)?;
-        let mut values = [0.0; N];
-        for ((field, key), number) in fields.into_iter().zip(&keys).zip(&mut values) {
-            let path = format!("{name}.{key}");
-            let Some(value) = table.get(key.as_str()) else {
-                let problem = PhantomFileProblem::MissingKey {
-                    key: path,
-                    expected: "a number",
+        for (outer, keys) in nested {
+            // The outer key too: in a file there is none of that name.
+            let keys = keys.split(' ').chain([*outer]);
+            let entry = |key| object.remove_entry(&other_name(key));
+            let mut inner: Map<_, _> = keys.filter_map(entry).collect();
+            if *outer == "shape" {
+                let keys: Vec<_> = inner.keys().map(|key| &**key).collect();
+                let shape = match keys[..] {
+                    ["diameter_m"] => "disc",
+                    ["height_m", "width_m"] | ["angle_deg", "height_m", "width_m"] => "ellipse",
+                    ["points_m"] => "polygon",
+                    [] => "no key",
+                    // As for none, serde will say that there is no such shape.
+                    _ => &keys.join("`, `"),
                 };
-                return Err(self.error(Some(line), problem));
-            };
-            *number = self.number(field, path, value)?;
+                inner = Map::from_iter([(shape.into(), inner.clone().into())]);
+            }
+            object.insert(outer.to_string(), inner.into());
         }
-        Ok(values)
+        if nested.len() == 1 {
+            object.entry("name").or_insert(path.into());
+        }
+        object
     }
 
-    fn number(
-        &mut self,
-        (path, quantity): Field,
-        key: String,
-        value: &Spanned<DeValue<'_>>,
-    ) -> Result<f64, PhantomFileError> {
-        let line = self.line(value.span().start);
-        self.lines.push((path, line));
-        let decimal = match value.get_ref() {
-            DeValue::Float(float) => Some(float.as_str()),
-            DeValue::Integer(integer) if integer.radix() == 10 => Some(integer.as_str()),
-            _ => None,
-        };
-        decimal
-            .and_then(|decimal| parse_scaled(decimal, quantity.power_to_si()))
-            .ok_or_else(|| self.wrong_type(key, line, value.get_ref(), "a finite decimal number"))
+    /// Gives what a person or the first edition may write otherwise the form that JSON has.
+    fn restructure(&mut self, file: &mut Map<String, Value>) {
+        if let Some(table) = file.get_mut("inclusion").filter(|value| value.is_object()) {
+            *table = json!([table.take()]);
+            self.names.push(("inclusion[0]".into(), "inclusion"));
+        }
+        let mut well = file.remove("well").unwrap_or_else(|| json!({}));
+        // Beside keys of this edition, `gel` stays, as an unknown key.
+        if well.is_object()
+            && well["width_m"].is_null()
+            && !file.contains_key("layer")
+            && let Some(gel) = file.get_mut("gel").and_then(Value::as_object_mut)
+        {
+            // What is null here is missing.
+            well["width_m"] = json!(gel.remove("width_m"));
+            let gel =
+                json!({"name": "gel", "thickness_m": gel.remove("height_m"), "material": gel});
+            file.remove("gel");
+            let skin = file.remove("skin");
+            let layer = format!("layer[{}]", usize::from(skin.is_some()));
+            self.names.extend([
+                ("well.width_mm".into(), "gel.width_mm"),
+                (format!("{layer}.thickness_mm"), "gel.height_mm"),
+                (layer, "gel"),
+                ("layer[0]".into(), "skin"),
+            ]);
+            file.insert("layer".into(), skin.into_iter().chain([gel]).collect());
+        }
+        file.insert("well".into(), well);
     }
 
-    fn refuse_unknown(
-        &self,
-        table: &DeTable<'_>,
-        name: &str,
-        allowed: &[String],
-    ) -> Result<(), PhantomFileError> {
-        // The first in the file, not in the alphabet.
-        let unknown = table
-            .keys()
-            .filter(|key| !allowed.iter().any(|a| a == key.get_ref()));
-        let Some(first) = unknown.min_by_key(|key| key.span().start) else {
-            return Ok(());
-        };
-        let key = match name {
-            "" => first.get_ref().to_string(),
-            _ => format!("{name}.{}", first.get_ref()),
-        };
-        let allowed = allowed.join(", ");
-        let line = self.line(first.span().start);
-        Err(self.error(Some(line), PhantomFileProblem::UnknownKey { key, allowed }))
-    }
-
-    fn wrong_type(
-        &self,
-        key: String,
-        line: usize,
-        found: &DeValue<'_>,
-        expected: &'static str,
-    ) -> PhantomFileError {
-        let found = match found {
-            DeValue::String(text) => format!("{:?}", text.chars().take(40).collect::<String>()),
-            DeValue::Integer(integer) => integer.to_string(),
-            DeValue::Float(float) => float.to_string(),
-            DeValue::Boolean(value) => value.to_string(),
-            DeValue::Datetime(_) => "a date".into(),
-            DeValue::Array(_) => "an array".into(),
-            DeValue::Table(_) => "a table".into(),
-        };
-        self.error(
-            Some(line),
-            PhantomFileProblem::WrongType {
-                key,
-                found,
-                expected,
-            },
-        )
-    }
-
-    fn syntax_error(&self, error: &toml::de::Error) -> PhantomFileError {
-        let at = error.span().map_or(self.text.len(), |span| span.start);
-        let before = self.text.get(..at).unwrap_or(self.text);
-        let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-        let message = one_line(error.message());
-        self.error(
-            Some(self.line(at)),
-            PhantomFileProblem::Syntax { column, message },
-        )
-    }
-
-    fn error(&self, line: Option<usize>, problem: PhantomFileProblem) -> PhantomFileError {
-        PhantomFileError {
-            file: self.file.into(),
-            line,
-            problem,
+    /// The refusal of what serde refused in JSON.
+    fn not_a_phantom(&self, error: &serde_path_to_error::Error<serde_json::Error>) -> Refusal {
+        let mut key = String::new();
+        for segment in error.path() {
+            match segment {
+                Segment::Seq { index } => key += &format!("[{index}]"),
+                Segment::Map { key: name } => key += &format!(".{}", other_name(name)),
+                Segment::Enum { .. } | Segment::Unknown => {}
+            }
+        }
+        let message = error.inner().to_string();
+        let words: Vec<_> = message.split('`').map(other_name).collect();
+        let message = words.join("`");
+        let (found, expected) = message.split_once(", expected ").unwrap_or((&message, ""));
+        let mut expected = expected.replace("f64", "a finite decimal number");
+        for (outer, keys) in NESTED {
+            let keys = format!("`{}`", keys.replace(' ', "`, `"));
+            expected = expected.replace(&format!("`{outer}`"), &keys);
+        }
+        if words[0] == "missing field " {
+            key = key + "." + &words[1];
+        }
+        let key = self.in_file(&key);
+        let key = key.replace(".material.", ".").replace(".shape.", ".");
+        let key = key.trim_start_matches('.');
+        if words[0] == "missing field " || found == "invalid type: null" {
+            self.refuse(key, &format!("{key} is missing"))
+        } else if words[0] == "unknown field " {
+            self.refuse(key, &format!("{key} is unknown, expected {expected}"))
+        } else {
+            let span = self.spans.get(key).cloned();
+            let written = span.and_then(|span| self.text.get(span));
+            // Without a value it is a shape of unknown keys.
+            let found = written.unwrap_or(found.trim_start_matches("unknown variant "));
+            let found = shortened(found);
+            self.refuse(key, &format!("{key} = {found}, expected {expected}"))
         }
     }
 
-    /// The line, from 1, of the byte at `at`.
-    fn line(&self, at: usize) -> usize {
-        let before = self.text.as_bytes().iter().take(at);
-        before.filter(|&&byte| byte == b'\n').count() + 1
+    /// The refusal of the value at `key`, or the innermost one around it that is there, with a message about such keys.
+    fn refuse(&self, key: &str, message: &str) -> Refusal {
+        let key = self.in_file(key);
+        let mut outer = std::iter::successors(Some(&*key), |key| key.get(..key.rfind(['.', '['])?));
+        let at = outer.find_map(|key| self.spans.get(key).map(|span| span.start));
+        (at, self.in_file(message))
     }
 
-    fn line_of(&self, path: &str) -> Option<usize> {
-        self.lines
-            .iter()
-            .find(|(known, _)| *known == path)
-            .map(|&(_, line)| line)
-    }
-}
-
-fn material(youngs_modulus: f64, poisson_ratio: f64) -> Material {
-    Material {
-        youngs_modulus,
-        poisson_ratio,
+    /// A text that names keys of this edition, in those of this file.
+    fn in_file(&self, text: &str) -> String {
+        let names = self.names.iter();
+        names.fold(text.into(), |text, (key, name)| text.replace(key, name))
     }
 }

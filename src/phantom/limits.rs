@@ -1,194 +1,60 @@
 //! Which phantoms are physical, and can be meshed.
 
-use std::fmt;
-use std::ops::Bound::{self, Excluded, Included, Unbounded};
+use std::ops::Bound::{Excluded, Included, Unbounded};
+use std::ops::{RangeBounds, RangeInclusive};
 
 use super::decimal::format_scaled;
-use super::{Gel, Inclusion, Material, Phantom, Probe};
+use super::shape::{Point, cross, dot, edges, extent, minus, point_to_segment};
+use super::{Inclusion, Material, Outline, Phantom, Shape, Support};
 
-/// The least gel, m, between the disc and the skin, the floor and each wall: a thinner layer cannot
-/// be meshed with elements of a sound shape.
+/// The least distance, m, between the outline of an inclusion and its layer's top and bottom, the walls, other outlines, and
+/// parts of the same outline: no mesh of sound elements fits in less.
 ///
-/// Implements: PHA-006.
-pub const GEL_CLEARANCE: f64 = 1e-4;
+/// Implements: PHA-006, PHA-031, PHA-034, PHA-035.
+pub const CLEARANCE: f64 = 1e-4;
 
-/// Allowed lengths, m. The upper end catches a length in the wrong unit, the lower one a layer that
-/// no mesh resolves.
-const LENGTHS: [f64; 2] = [1e-6, 1.0];
+/// Allowed lengths, m. The upper end catches a length in the wrong unit, the lower one a layer that no mesh resolves.
+const LENGTHS: RangeInclusive<f64> = 1e-6..=1.0;
 
 /// Above this Poisson's ratio displacement elements lock, and the stiffness matrix is nearly singular.
 const LARGEST_POISSON_RATIO: f64 = 0.4995;
 
-/// What a number of a phantom measures; it fixes the unit in the number's key.
-///
-/// ```
-/// use palpate::phantom::{InvalidPhantom, Phantom, Quantity};
-///
-/// let mut phantom = Phantom::builtin("none")?;
-/// phantom.gel.material.poisson_ratio = 0.5;
-/// let error = phantom.validate().unwrap_err();
-/// assert!(matches!(error, InvalidPhantom::OutOfRange(n) if n.quantity == Quantity::Ratio));
-/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    /// A length: m inside, mm in a phantom file.
-    Length,
-    /// A modulus: Pa inside, kPa in a phantom file.
-    Modulus,
-    /// A pure number.
-    Ratio,
-}
+/// The larger diameter of an ellipse over the smaller, at most.
+const LARGEST_ASPECT_RATIO: f64 = 20.0;
 
-impl Quantity {
-    /// The unit at the end of a key of the phantom file.
-    ///
-    /// Implements: CON-002.
-    pub(super) fn suffix(self) -> &'static str {
-        match self {
-            Quantity::Length => "_mm",
-            Quantity::Modulus => "_kpa",
-            Quantity::Ratio => "",
-        }
-    }
+/// The least angle between two edges of a polygon, degrees.
+const SHARPEST_CORNER: f64 = 30.0;
 
-    /// The power of ten from the phantom file's unit to SI.
-    pub(super) fn power_to_si(self) -> i32 {
-        match self {
-            Quantity::Length => -3,
-            Quantity::Modulus => 3,
-            Quantity::Ratio => 0,
-        }
-    }
-
-    /// An SI value in the phantom file's unit.
-    pub(super) fn in_file_unit(self, value: f64) -> String {
-        format_scaled(value, -self.power_to_si())
-    }
-}
-
-/// A number of a phantom that is not finite or outside its allowed range.
-///
-/// Its message speaks in the keys and units of the phantom file.
-///
-/// ```
-/// use palpate::phantom::{InvalidPhantom, Phantom};
-///
-/// let mut phantom = Phantom::builtin("none")?;
-/// phantom.gel.width = f64::NAN;
-/// let error = phantom.validate().unwrap_err();
-/// assert_eq!(error.to_string(), "gel.width_mm = NaN, allowed: at least 0.001 and at most 1000.0");
-/// assert!(matches!(error, InvalidPhantom::OutOfRange(number) if number.key == "gel.width"));
-/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
-/// ```
-///
-/// Implements: PHA-009.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OutOfRange {
-    /// Where it stands in the phantom file, without the unit: `gel.width`.
-    pub key: &'static str,
-    /// What it measures.
-    pub quantity: Quantity,
-    /// Its value, SI.
-    pub value: f64,
-    /// The lower end of the allowed range, SI.
-    pub lower: Bound<f64>,
-    /// The upper end of the allowed range, SI.
-    pub upper: Bound<f64>,
-    /// What the range is for, or nothing where it speaks for itself.
-    pub reason: &'static str,
-}
-
-impl fmt::Display for OutOfRange {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let show = |value: f64| self.quantity.in_file_unit(value);
-        let suffix = self.quantity.suffix();
-        write!(f, "{}{suffix} = {}, allowed: ", self.key, show(self.value))?;
-        if self.is_empty() {
-            write!(f, "nothing")?;
-        } else {
-            match self.lower {
-                Included(lower) => write!(f, "at least {}", show(lower))?,
-                Excluded(lower) => write!(f, "above {}", show(lower))?,
-                Unbounded => write!(f, "any finite number")?,
-            }
-            match self.upper {
-                Included(upper) => write!(f, " and at most {}", show(upper))?,
-                Excluded(upper) => write!(f, " and below {}", show(upper))?,
-                Unbounded => {}
-            }
-        }
-        if !self.reason.is_empty() {
-            write!(f, " ({})", self.reason)?;
-        }
-        Ok(())
-    }
-}
-
-impl OutOfRange {
-    /// Whether no number at all is allowed, because the rest of the phantom leaves no room.
-    fn is_empty(&self) -> bool {
-        match (self.lower, self.upper) {
-            (Included(lower), Included(upper)) => lower > upper,
-            (Excluded(lower) | Included(lower), Excluded(upper) | Included(upper)) => {
-                lower >= upper
-            }
-            _ => false,
-        }
-    }
-
-    /// `Err(self)` if the value is not finite or outside the range.
-    fn check(self) -> Result<(), InvalidPhantom> {
-        let above = match self.lower {
-            Included(lower) => self.value >= lower,
-            Excluded(lower) => self.value > lower,
-            Unbounded => true,
-        };
-        let below = match self.upper {
-            Included(upper) => self.value <= upper,
-            Excluded(upper) => self.value < upper,
-            Unbounded => true,
-        };
-        if self.value.is_finite() && above && below {
-            Ok(())
-        } else {
-            Err(InvalidPhantom::OutOfRange(self))
-        }
-    }
-}
+/// Chords that stand for an ellipse in distances. They lie within it by at most 1 − cos(π/256) < 0.00008 of its half larger
+/// diameter, so that a distance comes out too long by at most 0.4 µm for 10 mm.
+const CHORDS: usize = 256;
 
 /// Why a phantom is refused.
 ///
 /// ```
-/// use palpate::phantom::{InvalidPhantom, Phantom};
+/// use palpate::phantom::Phantom;
 ///
 /// let mut phantom = Phantom::builtin("none")?;
-/// phantom.name.clear();
-/// assert_eq!(phantom.validate(), Err(InvalidPhantom::Name { name: "".into() }));
+/// phantom.layers[1].thickness = f64::NAN;
+/// let error = phantom.validate().unwrap_err();
+/// assert_eq!(error.key, "layer[1].thickness_mm");
+/// assert_eq!(error.to_string(), "layer[1].thickness_mm = NaN, expected at least 0.001 and at most 1000.0");
 /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum InvalidPhantom {
-    /// A number is not finite or outside its range.
-    #[error("{0}")]
-    OutOfRange(OutOfRange),
-    /// The name is empty, too long, or would break a table or a figure.
-    #[error("name = {name:?}, allowed: 1 to 80 characters, none of them a control character")]
-    Name {
-        /// The name.
-        name: String,
-    },
+///
+/// Implements: PHA-009.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{key} = {found}, expected {expected}")]
+pub struct InvalidPhantom {
+    /// What is refused: a key of the phantom file, with indices from 0.
+    pub key: String,
+    /// What it is, in the unit of the phantom file.
+    pub found: String,
+    /// What is allowed, in the same unit.
+    pub expected: String,
 }
 
-impl InvalidPhantom {
-    /// The key that is refused, in the phantom file but without the unit.
-    pub(super) fn key(&self) -> &'static str {
-        match self {
-            InvalidPhantom::OutOfRange(number) => number.key,
-            InvalidPhantom::Name { .. } => "name",
-        }
-    }
-}
+type Check = Result<(), InvalidPhantom>;
 
 impl Phantom {
     /// Whether this phantom can exist and be meshed.
@@ -199,9 +65,7 @@ impl Phantom {
     /// // 15.5 mm in all, less the disc's 6.4 mm and 0.1 mm of gel under it.
     /// let mut phantom = Phantom::builtin("8.6")?;
     /// assert!(phantom.validate().is_ok());
-    /// if let Some(disc) = &mut phantom.inclusion {
-    ///     disc.depth = 0.0091;
-    /// }
+    /// phantom.inclusions[0].depth = 0.0091;
     /// assert!(phantom.validate().unwrap_err().to_string().contains("at most 9.0 "));
     /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
     /// ```
@@ -209,109 +73,275 @@ impl Phantom {
     /// # Errors
     /// [`InvalidPhantom`] with the first offending key, its value and what is allowed.
     ///
-    /// Implements: PHA-003, PHA-004, PHA-005, PHA-006, PHA-007, PHA-009, PHA-010, PHA-015, CON-007.
+    /// Implements: PHA-003, PHA-004, PHA-005, PHA-006, PHA-007, PHA-009, PHA-010, PHA-015, PHA-018, PHA-030, PHA-031, PHA-032,
+    /// PHA-033, PHA-034, PHA-035, PHA-036, CON-007.
     pub fn validate(&self) -> Result<(), InvalidPhantom> {
-        check_name(&self.name)?;
-        check_length("gel.width", self.gel.width)?;
-        check_length("gel.height", self.gel.height)?;
-        check_material(
-            ["gel.youngs_modulus", "gel.poisson_ratio"],
-            &self.gel.material,
-        )?;
-        check_length("skin.thickness", self.skin.thickness)?;
-        check_material(
-            ["skin.youngs_modulus", "skin.poisson_ratio"],
-            &self.skin.material,
-        )?;
-        check_probe(&self.probe, &self.gel)?;
-        match &self.inclusion {
-            Some(inclusion) => self.check_inclusion(inclusion),
-            None => Ok(()),
+        check_name("name", &self.name)?;
+        within("well.width_mm", self.well.width, LENGTHS, "")?;
+        self.check_supports()?;
+        check_count("layer", self.layers.len(), 1..=100)?;
+        for (at, layer) in self.layers.iter().enumerate() {
+            let key = format!("layer[{at}]");
+            check_name(&format!("{key}.name"), &layer.name)?;
+            within(&format!("{key}.thickness_mm"), layer.thickness, LENGTHS, "")?;
+            check_material(&key, &layer.material)?;
         }
+        within("probe.length_mm", self.probe.length, LENGTHS, "")?;
+        let radii = *LENGTHS.start()..to_picometre(self.well.width / 2.0);
+        let why = " (the probe must be narrower than the well)";
+        within("probe.radius_mm", self.probe.radius, radii, why)?;
+        check_count("inclusion", self.inclusions.len(), 0..=100)?;
+        for (at, inclusion) in self.inclusions.iter().enumerate() {
+            let key = format!("inclusion[{at}]");
+            check_shape(&key, inclusion)?;
+            self.check_place(&key, inclusion)?;
+        }
+        check_distances(&self.inclusions)
     }
 
-    fn check_inclusion(&self, inclusion: &Inclusion) -> Result<(), InvalidPhantom> {
-        check_length("inclusion.diameter", inclusion.diameter)?;
-        check_length("inclusion.depth", inclusion.depth)?;
-        check_material(
-            ["inclusion.youngs_modulus", "inclusion.poisson_ratio"],
-            &inclusion.material,
-        )?;
-        let inside_gel = |key, value, lower, upper| OutOfRange {
-            key,
-            quantity: Quantity::Length,
-            value,
-            lower: Included(to_picometre(lower)),
-            upper: Included(to_picometre(upper)),
-            reason: "at least 0.1 mm of gel must lie between the inclusion and the skin, the floor and each wall",
+    fn check_supports(&self) -> Check {
+        let (walls, floor) = (self.well.walls, self.well.floor);
+        let (enough, how) = match (walls, floor) {
+            (Support::Sliding, Support::Free) => ("\"fixed\" or \"sliding\"", "up"),
+            (Support::Free, Support::Free) => ("\"fixed\"", "up"),
+            (Support::Free, Support::Sliding) => ("\"fixed\"", "from sliding sideways"),
+            _ => return Ok(()),
         };
-        let room = self.gel.width.min(self.gel.height) - 2.0 * GEL_CLEARANCE;
-        inside_gel("inclusion.diameter", inclusion.diameter, LENGTHS[0], room).check()?;
-        let shallowest = self.skin.thickness + GEL_CLEARANCE;
-        let deepest = self.total_height() - inclusion.diameter - GEL_CLEARANCE;
-        inside_gel("inclusion.depth", inclusion.depth, shallowest, deepest).check()
+        let [walls, floor] =
+            [walls, floor].map(|support| format!("\"{support:?}\"").to_lowercase());
+        let expected = format!("{enough} where walls = {walls}: nothing holds the layers {how}");
+        refuse("well.floor", floor, expected)
+    }
+
+    /// Within one layer and the walls.
+    fn check_place(&self, key: &str, inclusion: &Inclusion) -> Check {
+        let [left, right, bottom, top] = inclusion.extent();
+        let (levels, middle) = (self.levels(), 0.5 * (bottom + top));
+        let under = levels[1..].iter().position(|&level| middle > level);
+        let layer = under.unwrap_or(self.layers.len() - 1);
+        let lowest = bottom - top - CLEARANCE - levels[layer + 1];
+        let depths = to_picometre(CLEARANCE - levels[layer])..=to_picometre(lowest);
+        let inclusion_high = format!("the inclusion, {} high", in_mm(top - bottom));
+        let why = format!(" (0.1 mm of layer[{layer}] must lie above and below {inclusion_high})");
+        within(&format!("{key}.depth_mm"), inclusion.depth, depths, &why)?;
+        let (x, most) = (inclusion.centre_x, self.well.width / 2.0 - CLEARANCE);
+        let places = to_picometre(x - left - most)..=to_picometre(most - (right - x));
+        let wide = in_mm(right - left);
+        let why = format!(" (0.1 mm must lie between the inclusion, {wide} wide, and each wall)");
+        within(&format!("{key}.centre_x_mm"), x, places, &why)
     }
 }
 
-/// `length` (m) on a grid of 1 pm. A bound that is a sum of decimals then equals the decimal that a
-/// person writes for it, and that exact value passes: 0.0005 + 0.0001 alone is not 0.0006 in binary.
+/// `length` (m) on a grid of 1 pm. A bound that is a sum of decimals then equals the decimal that a person writes for it, and
+/// that exact value passes: 0.0005 + 0.0001 alone is not 0.0006 in binary.
 ///
 /// Implements: PHA-015.
 fn to_picometre(length: f64) -> f64 {
-    (length * 1e12).round() / 1e12
+    (length * 1e12).round() / 1e12 + 0.0 // −0 becomes 0
 }
 
-fn check_name(name: &str) -> Result<(), InvalidPhantom> {
-    let length = name.chars().count();
-    if (1..=80).contains(&length) && !name.chars().any(char::is_control) {
-        Ok(())
-    } else {
-        Err(InvalidPhantom::Name { name: name.into() })
+/// A computed length (m) for a message.
+pub(super) fn in_mm(length: f64) -> String {
+    format!("{} mm", in_unit_of("_mm", to_picometre(length)))
+}
+
+/// Units in the ends of keys of files, those of SI in JSON, and the power of ten between them.
+///
+/// Implements: CON-002.
+pub(super) const UNITS: [(&str, &str, i32); 2] = [("_mm", "_m", -3), ("_kpa", "_pa", 3)];
+
+/// The power of ten from the unit in `key`, which may be that of an array's item, to SI.
+pub(super) fn power_to_si(key: &str) -> i32 {
+    let key = key.trim_end_matches(|c: char| c.is_ascii_digit() || "[]".contains(c));
+    let unit = UNITS.iter().find(|(end, ..)| key.ends_with(end));
+    unit.map_or(0, |&(_, _, power)| power)
+}
+
+/// An SI value in the unit in `key`.
+pub(super) fn in_unit_of(key: &str, value: f64) -> String {
+    format_scaled(value, -power_to_si(key))
+}
+
+fn refuse(key: &str, found: String, expected: impl Into<String>) -> Check {
+    Err(InvalidPhantom {
+        key: key.into(),
+        found,
+        expected: expected.into(),
+    })
+}
+
+/// Refuses a number of `key`, SI, that is not finite or not in `range`, which is there because of `why`.
+pub(super) fn within(key: &str, value: f64, range: impl RangeBounds<f64>, why: &str) -> Check {
+    if value.is_finite() && range.contains(&value) {
+        return Ok(());
+    }
+    let end = |bound, closed: &str, open: &str| match bound {
+        Included(&end) => format!("{closed} {}", in_unit_of(key, to_picometre(end))),
+        Excluded(&end) => format!("{open} {}", in_unit_of(key, to_picometre(end))),
+        Unbounded => String::new(),
+    };
+    let (low, high) = (range.start_bound(), range.end_bound());
+    let expected = match (low, high) {
+        (Included(low), Included(high) | Excluded(high)) if low > high => "no number".into(),
+        _ => end(low, "at least", "above") + &end(high, " and at most", " and below"),
+    };
+    refuse(key, in_unit_of(key, value), expected + why)
+}
+
+fn check_count(key: &str, count: usize, allowed: RangeInclusive<usize>) -> Check {
+    if allowed.contains(&count) {
+        return Ok(());
+    }
+    let expected = format!("{} to {}", allowed.start(), allowed.end());
+    refuse(key, format!("{count} of them"), expected)
+}
+
+fn check_name(key: &str, name: &str) -> Check {
+    if (1..=80).contains(&name.chars().count()) && !name.chars().any(char::is_control) {
+        return Ok(());
+    }
+    let expected = "1 to 80 characters, none of them a control character";
+    refuse(key, format!("{name:?}"), expected)
+}
+
+fn check_material(table: &str, material: &Material) -> Check {
+    let (modulus, ratio) = (material.youngs_modulus, material.poisson_ratio);
+    let moduli = (Excluded(0.0), Unbounded);
+    within(&format!("{table}.youngs_modulus_kpa"), modulus, moduli, "")?;
+    let ratios = (Excluded(-1.0), Included(LARGEST_POISSON_RATIO));
+    within(&format!("{table}.poisson_ratio"), ratio, ratios, "")
+}
+
+/// All that needs no other part of the phantom.
+fn check_shape(table: &str, inclusion: &Inclusion) -> Check {
+    let key = |end: &str| format!("{table}.{end}");
+    within(&key("centre_x_mm"), inclusion.centre_x, -1.0..=1.0, "")?;
+    within(&key("depth_mm"), inclusion.depth, LENGTHS, "")?;
+    match &inclusion.shape {
+        Shape::Disc { diameter } => within(&key("diameter_mm"), *diameter, LENGTHS, "")?,
+        Shape::Ellipse {
+            width,
+            height,
+            angle_deg,
+        } => {
+            within(&key("width_mm"), *width, CLEARANCE..=1.0, "")?;
+            let shortest = to_picometre(width / LARGEST_ASPECT_RATIO).max(CLEARANCE);
+            let longest = to_picometre(width * LARGEST_ASPECT_RATIO).min(1.0);
+            let why = " (an ellipse is at most 20 times as long as wide)";
+            within(&key("height_mm"), *height, shortest..=longest, why)?;
+            within(&key("angle_deg"), *angle_deg, -360.0..=360.0, "")?;
+        }
+        Shape::Polygon { points } => check_polygon(&key("points_mm"), points)?,
+    }
+    check_material(table, &inclusion.material)
+}
+
+fn check_polygon(key: &str, points: &[Point]) -> Check {
+    check_count(key, points.len(), 3..=1000)?;
+    for (at, &coordinate) in points.as_flattened().iter().enumerate() {
+        let key = format!("{key}[{}][{}]", at / 2, at % 2);
+        within(&key, coordinate, -1.0..=1.0, "")?;
+    }
+    let edges = edges(points);
+    let count = edges.len();
+    for (at, &[corner, next]) in edges.iter().enumerate() {
+        let (key, [before, _]) = (format!("{key}[{at}]"), edges[(at + count - 1) % count]);
+        let [a, b] = [minus(next, corner), minus(before, corner)];
+        let length = to_picometre(libm::hypot(a[0], a[1]));
+        let apart = in_mm(length);
+        let angle = libm::atan2(cross(a, b).abs(), dot(a, b)).to_degrees();
+        // Some corners of exactly 30° come out a bit below.
+        let (found, expected) = match (length < CLEARANCE, angle < SHARPEST_CORNER - 1e-9) {
+            (true, _) => (format!("a corner {apart} from the next"), "at least 0.1 mm"),
+            (_, true) => (format!("a corner of {angle:.3}°"), "at least 30°"),
+            _ => continue,
+        };
+        return refuse(&key, found, expected);
+    }
+    for i in 0..count {
+        // Not the next one, nor the last where it adjoins the first.
+        for j in i + 2..count - usize::from(i == 0) {
+            let gap = to_picometre(segment_distance(edges[i], edges[j], CLEARANCE));
+            if gap < CLEARANCE {
+                let (k, l, gap) = (i + 1, (j + 1) % count, in_mm(gap));
+                let found = format!("edges from corner {i} to {k} and from {j} to {l} {gap} apart");
+                let expected = "at least 0.1 mm between edges that do not adjoin";
+                return refuse(key, found, expected);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Two outlines that touch, overlap or leave too little between them, and one within another.
+fn check_distances(inclusions: &[Inclusion]) -> Check {
+    for (at, inclusion) in inclusions.iter().enumerate() {
+        for (earlier, other) in inclusions[..at].iter().enumerate() {
+            if apart(inclusion.extent(), other.extent()) > 2.0 * CLEARANCE {
+                continue;
+            }
+            let gap = to_picometre(distance(&inclusion.outline(), &other.outline()));
+            if gap < CLEARANCE {
+                let (key, gap) = (format!("inclusion[{at}]"), in_mm(gap.max(0.0)));
+                let found = format!("an outline {gap} from that of inclusion[{earlier}]");
+                return refuse(&key, found, "at least 0.1 mm between them");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The least distance between what has these extents, m; negative where they overlap.
+fn apart(a: [f64; 4], b: [f64; 4]) -> f64 {
+    let [x, y] = [0, 2].map(|low| (a[low] - b[low + 1]).max(b[low] - a[low + 1]));
+    x.max(y)
+}
+
+/// A polygon whose outline, moved outwards by a distance, is this one: a circle is one of a single corner, and exact.
+fn rounded(outline: &Outline) -> (Vec<[Point; 2]>, f64) {
+    match outline {
+        Outline::Ellipse { centre, radii, .. } if radii[0] == radii[1] => {
+            (edges(&[*centre]), radii[0])
+        }
+        _ => (edges(&outline.chords(CHORDS)), 0.0),
     }
 }
 
-fn check_length(key: &'static str, value: f64) -> Result<(), InvalidPhantom> {
-    OutOfRange {
-        key,
-        quantity: Quantity::Length,
-        value,
-        lower: Included(LENGTHS[0]),
-        upper: Included(LENGTHS[1]),
-        reason: "",
+/// The distance between two outlines, m: 0 or less where they overlap, infinite where it is surely above the clearance.
+fn distance(one: &Outline, other: &Outline) -> f64 {
+    let [(edges, radius), (others, other_radius)] = [one, other].map(rounded);
+    if contains(&edges, others[0][0]) || contains(&others, edges[0][0]) {
+        return 0.0;
     }
-    .check()
+    let radii = radius + other_radius;
+    let mut least = f64::INFINITY;
+    for &edge in &edges {
+        let gap = |&other| segment_distance(edge, other, radii + 2.0 * CLEARANCE);
+        least = others.iter().map(gap).fold(least, f64::min);
+    }
+    least - radii
 }
 
-fn check_material(keys: [&'static str; 2], material: &Material) -> Result<(), InvalidPhantom> {
-    OutOfRange {
-        key: keys[0],
-        quantity: Quantity::Modulus,
-        value: material.youngs_modulus,
-        lower: Excluded(0.0),
-        upper: Unbounded,
-        reason: "",
-    }
-    .check()?;
-    OutOfRange {
-        key: keys[1],
-        quantity: Quantity::Ratio,
-        value: material.poisson_ratio,
-        lower: Excluded(-1.0),
-        upper: Included(LARGEST_POISSON_RATIO),
-        reason: "",
-    }
-    .check()
+/// Whether `p` lies within a polygon: a ray from it to +x crosses an odd number of edges.
+fn contains(edges: &[[Point; 2]], p: Point) -> bool {
+    let crossed = |[a, b]: &[Point; 2]| {
+        (a[1] > p[1]) != (b[1] > p[1])
+            && (cross(minus(*b, *a), minus(p, *a)) > 0.0) == (b[1] > a[1])
+    };
+    edges.iter().filter(|edge| crossed(edge)).count() % 2 == 1
 }
 
-fn check_probe(probe: &Probe, gel: &Gel) -> Result<(), InvalidPhantom> {
-    check_length("probe.length", probe.length)?;
-    OutOfRange {
-        key: "probe.radius",
-        quantity: Quantity::Length,
-        value: probe.radius,
-        lower: Included(LENGTHS[0]),
-        upper: Excluded(to_picometre(gel.width / 2.0)),
-        reason: "the probe must be narrower than the well",
+/// The distance between two segments; infinite if their bounding boxes are more than `enough` apart.
+fn segment_distance([a, b]: [Point; 2], [c, d]: [Point; 2], enough: f64) -> f64 {
+    if apart(extent(&[a, b]), extent(&[c, d])) > enough {
+        return f64::INFINITY;
     }
-    .check()
+    // Negative if c and d lie on both sides of the line through a and b.
+    let sides = |a, b, c, d| cross(minus(b, a), minus(c, a)) * cross(minus(b, a), minus(d, a));
+    if sides(a, b, c, d) < 0.0 && sides(c, d, a, b) < 0.0 {
+        return 0.0;
+    }
+    let ends = [(a, c, d), (b, c, d), (c, a, b), (d, a, b)];
+    let distances = ends.map(|(p, a, b)| point_to_segment(p, a, b));
+    distances.into_iter().fold(f64::INFINITY, f64::min)
 }

@@ -1,10 +1,12 @@
-//! The phantom: a well of gel under a rubber skin, a hard inclusion in it or none, and the probe
-//! that presses on it (paper §3). All lengths are metres, moduli pascals.
+//! The phantom: layers of gel and rubber in a well, hard inclusions in them or none, and the probe that presses on
+//! them (paper §3). All lengths are metres, moduli pascals, angles degrees.
 //!
 //! | file | content |
 //! |---|---|
 //! | `mod.rs` | the data, the paper's five phantoms, derived lengths |
-//! | `limits.rs` | which phantoms are physical |
+//! | `paper.toml` | one of the five as a phantom file |
+//! | `shape.rs` | outlines of inclusions |
+//! | `limits.rs` | which phantoms are physical and can be meshed |
 //! | `pose.rs` | where the probe may stand |
 //! | `file.rs` | phantom files in TOML |
 //! | `decimal.rs` | mm and kPa to SI and back |
@@ -12,12 +14,12 @@
 //! ```
 //! use palpate::phantom::Phantom;
 //!
-//! // The paper's phantom with the disc 6.6 mm deep, and a harder disc in it.
+//! // The paper's phantom with the disc 6.6 mm deep, and a harder disc, 3 mm off the middle.
 //! let mut phantom = Phantom::builtin("6.6")?;
-//! if let Some(disc) = &mut phantom.inclusion {
-//!     disc.material.youngs_modulus = 2.4e6;
-//! }
+//! phantom.inclusions[0].material.youngs_modulus = 2.4e6;
+//! phantom.inclusions[0].centre_x = 3e-3;
 //! phantom.validate()?;
+//! assert!(!phantom.is_symmetric());
 //! assert!(phantom.to_toml()?.contains("youngs_modulus_kpa = 2400.0"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -26,26 +28,21 @@ pub(crate) mod decimal;
 mod file;
 mod limits;
 mod pose;
+mod shape;
 #[cfg(test)]
 mod tests;
 
+use decimal::parse_scaled;
 use serde::{Deserialize, Serialize};
 
-pub use file::{PhantomFileError, PhantomFileProblem};
-pub use limits::{GEL_CLEARANCE, InvalidPhantom, OutOfRange, Quantity};
+pub use file::PhantomFileError;
+pub use limits::{CLEARANCE, InvalidPhantom};
 pub use pose::PoseError;
+pub use shape::{Outline, Shape};
 
 /// A linear isotropic elastic material.
-///
-/// ```
-/// use palpate::phantom::{Material, Phantom};
-///
-/// let gel = Phantom::builtin("none")?.gel.material;
-/// assert_eq!(gel, Material { youngs_modulus: 5e3, poisson_ratio: 0.49 });
-/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct Material {
     /// Young's modulus E, Pa.
     #[serde(rename = "youngs_modulus_pa")]
@@ -54,100 +51,78 @@ pub struct Material {
     pub poisson_ratio: f64,
 }
 
-/// The block of gel that fills the well, bonded to its floor and walls.
+/// How a wall or the floor of the well holds the layers.
 ///
-/// ```
-/// use palpate::phantom::Phantom;
-///
-/// let gel = Phantom::builtin("none")?.gel;
-/// assert_eq!((gel.width, gel.height), (0.034, 0.015));
-/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Gel {
-    /// Width of the well, m.
-    #[serde(rename = "width_m")]
-    pub width: f64,
-    /// Height of the gel without the skin, m.
-    #[serde(rename = "height_m")]
-    pub height: f64,
-    /// What the gel is made of.
-    pub material: Material,
+/// Implements: PHA-016.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Support {
+    /// Bonded: no displacement.
+    #[default]
+    Fixed,
+    /// Lubricated: no displacement across the wall or floor, no friction along it.
+    Sliding,
+    /// Not there: no force.
+    Free,
 }
 
-/// The rubber layer on top of the gel, bonded to the gel and, at its edges, to the walls.
-///
-/// ```
-/// use palpate::phantom::Phantom;
-///
-/// let skin = Phantom::builtin("none")?.skin;
-/// assert_eq!((skin.thickness, skin.material.youngs_modulus), (0.0005, 1.8e5));
-/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
-/// ```
+/// The well that holds the layers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Skin {
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct Well {
+    /// Width between the walls, m.
+    #[serde(rename = "width_m")]
+    pub width: f64,
+    /// Both walls.
+    #[serde(default)]
+    pub walls: Support,
+    /// The floor.
+    #[serde(default)]
+    pub floor: Support,
+}
+
+/// A layer from wall to wall, bonded to its neighbours.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct Layer {
+    /// A name for tables and figures.
+    pub name: String,
     /// Thickness, m.
     #[serde(rename = "thickness_m")]
     pub thickness: f64,
-    /// What the skin is made of.
+    /// What the layer is made of.
     pub material: Material,
 }
 
-/// A solid disc (a cylinder along the probe), centred at x = 0 and bonded to the gel.
+/// A solid cylinder along the probe, bonded to the layer in which it lies.
 ///
 /// ```
-/// use palpate::phantom::{Inclusion, Phantom};
+/// use palpate::phantom::Phantom;
 ///
-/// let Phantom { inclusion, .. } = Phantom::builtin("2.6")?;
-/// // 6.4 mm across and 2.6 mm deep: its centre is 5.8 mm below the surface.
-/// assert_eq!(inclusion.as_ref().map(Inclusion::radius), Some(0.0032));
-/// assert!(inclusion.is_some_and(|disc| (disc.centre_y() + 0.0058).abs() < 1e-15));
-/// assert!(Phantom::builtin("none")?.inclusion.is_none());
+/// // 6.4 mm across and 2.6 mm deep.
+/// let disc = &Phantom::builtin("2.6")?.inclusions[0];
+/// let [left, right, bottom, top] = disc.extent();
+/// assert!((right - left - 6.4e-3).abs() < 1e-15 && (top + 2.6e-3).abs() < 1e-15 && (bottom + 9e-3).abs() < 1e-15);
 /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct Inclusion {
-    /// Diameter, m.
-    #[serde(rename = "diameter_m")]
-    pub diameter: f64,
-    /// Depth of the disc's top below the outer surface of the skin, m.
+    /// x of the shape's centre, m; of a polygon, where its points have x = 0.
+    #[serde(rename = "centre_x_m", default)]
+    pub centre_x: f64,
+    /// Depth of the shape's highest point below the outer surface, m.
     #[serde(rename = "depth_m")]
     pub depth: f64,
-    /// What the disc is made of.
+    /// The outline.
+    pub shape: Shape,
+    /// What the inclusion is made of.
     pub material: Material,
-}
-
-impl Inclusion {
-    /// Radius of the disc, m.
-    pub fn radius(&self) -> f64 {
-        self.diameter / 2.0
-    }
-
-    /// Height of the disc's centre above the undeformed outer surface, m: negative, since the disc
-    /// lies below it. Its lateral position is 0.
-    ///
-    /// Implements: PHA-008, CON-003.
-    pub fn centre_y(&self) -> f64 {
-        -(self.depth + self.radius())
-    }
 }
 
 /// The rigid, frictionless, semicylindrical probe.
-///
-/// ```
-/// use palpate::phantom::Probe;
-///
-/// let probe = Probe { radius: 0.0065, length: 0.03 };
-/// // At a depth of the radius, and below, half of the width is the radius.
-/// assert!((probe.half_width_at(0.0065) - 0.0065).abs() < 1e-15);
-/// // The half chord at 4 mm: √(6.5² − 2.5²) = 6 mm.
-/// assert!((probe.half_width_at(0.004) - 0.006).abs() < 1e-15);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table")]
 pub struct Probe {
     /// Radius, m.
     #[serde(rename = "radius_m")]
@@ -165,7 +140,7 @@ pub struct Probe {
 /// use palpate::phantom::Phantom;
 ///
 /// let phantom = Phantom::builtin("8.6")?;
-/// assert!((phantom.total_height() - 0.0155).abs() < 1e-15);
+/// assert!((phantom.height() - 0.0155).abs() < 1e-15);
 /// assert!(phantom.validate().is_ok());
 /// // What is written can be read.
 /// let text = phantom.to_toml()?;
@@ -175,16 +150,18 @@ pub struct Probe {
 ///
 /// Implements: PHA-029.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a phantom")]
 pub struct Phantom {
     /// A name for tables and figures.
     pub name: String,
-    /// The gel and its well.
-    pub gel: Gel,
-    /// The skin.
-    pub skin: Skin,
-    /// The inclusion, if there is one.
-    pub inclusion: Option<Inclusion>,
+    /// The well.
+    pub well: Well,
+    /// The layers, top to bottom; the first one's top is the outer surface.
+    #[serde(rename = "layer")]
+    pub layers: Vec<Layer>,
+    /// The inclusions; none for a plain gel.
+    #[serde(rename = "inclusion", default, skip_serializing_if = "Vec::is_empty")]
+    pub inclusions: Vec<Inclusion>,
     /// The probe.
     pub probe: Probe,
 }
@@ -195,13 +172,6 @@ pub struct Phantom {
 pub const BUILTIN_NAMES: [&str; 5] = ["none", "2.6", "4.6", "6.6", "8.6"];
 
 /// A name that is none of [`BUILTIN_NAMES`].
-///
-/// ```
-/// use palpate::phantom::Phantom;
-///
-/// let error = Phantom::builtin("5.6").unwrap_err();
-/// assert!(error.to_string().ends_with("built in are none, 2.6, 4.6, 6.6, 8.6"));
-/// ```
 ///
 /// Implements: PHA-014.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -218,7 +188,7 @@ impl Phantom {
     /// use palpate::phantom::{BUILTIN_NAMES, Phantom};
     ///
     /// for name in BUILTIN_NAMES {
-    ///     assert_eq!(Phantom::builtin(name)?.inclusion.is_none(), name == "none");
+    ///     assert_eq!(Phantom::builtin(name)?.inclusions.is_empty(), name == "none");
     /// }
     /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
     /// ```
@@ -228,45 +198,58 @@ impl Phantom {
     ///
     /// Implements: PHA-001, PHA-002, PHA-014.
     pub fn builtin(name: &str) -> Result<Phantom, UnknownPhantom> {
-        let inclusion_depth = match name {
-            "none" => None,
-            "2.6" => Some(0.0026),
-            "4.6" => Some(0.0046),
-            "6.6" => Some(0.0066),
-            "8.6" => Some(0.0086),
-            _ => return Err(UnknownPhantom { name: name.into() }),
-        };
-        let material = |youngs_modulus| Material {
-            youngs_modulus,
-            poisson_ratio: 0.49,
-        };
-        Ok(Phantom {
-            name: name.into(),
-            gel: Gel {
-                width: 0.034,
-                height: 0.015,
-                material: material(5e3),
-            },
-            skin: Skin {
-                thickness: 0.0005,
-                material: material(1.8e5),
-            },
-            inclusion: inclusion_depth.map(|depth| Inclusion {
-                diameter: 0.0064,
-                depth,
-                material: material(1.2e6),
-            }),
-            probe: Probe {
-                radius: 0.0065,
-                length: 0.03,
-            },
-        })
+        if !BUILTIN_NAMES.contains(&name) {
+            return Err(UnknownPhantom { name: name.into() });
+        }
+        let paper = Phantom::from_toml(include_str!("paper.toml"), "paper.toml");
+        let mut phantom = paper.expect("a test reads this very text");
+        phantom.name = name.into();
+        match parse_scaled(name, -3) {
+            Some(depth) => phantom.inclusions[0].depth = depth,
+            None => phantom.inclusions.clear(),
+        }
+        Ok(phantom)
     }
 
-    /// Height of the outer surface above the floor, m: gel and skin.
+    /// Height of the outer surface above the floor, m.
     ///
     /// Implements: PHA-008.
-    pub fn total_height(&self) -> f64 {
-        self.gel.height + self.skin.thickness
+    pub fn height(&self) -> f64 {
+        self.layers.iter().map(|layer| layer.thickness).sum()
+    }
+
+    /// y of the top of each layer and of the floor, m: 0 first, then negative.
+    ///
+    /// ```
+    /// use palpate::phantom::Phantom;
+    ///
+    /// assert_eq!(Phantom::builtin("none")?.levels(), [0.0, -0.0005, -0.0155]);
+    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+    /// ```
+    pub fn levels(&self) -> Vec<f64> {
+        let mut levels = vec![0.0];
+        for layer in &self.layers {
+            levels.push(levels[levels.len() - 1] - layer.thickness);
+        }
+        levels
+    }
+
+    /// Whether the phantom is its own mirror image in x, to the bit: each inclusion is on the axis and symmetric, or has a
+    /// mirror image of the same material.
+    ///
+    /// Implements: PHA-019.
+    pub fn is_symmetric(&self) -> bool {
+        self.mirror_images().len() == self.inclusions.len()
+    }
+
+    /// The number of each inclusion's mirror image; fewer numbers than inclusions where one has none.
+    pub(crate) fn mirror_images(&self) -> Vec<usize> {
+        let image = |inclusion: &Inclusion| {
+            let mirrored = inclusion.outline().mirrored();
+            self.inclusions.iter().position(|other| {
+                other.material == inclusion.material && mirrored.is_same(&other.outline())
+            })
+        };
+        self.inclusions.iter().filter_map(image).collect()
     }
 }

@@ -1,67 +1,26 @@
 //! Where the probe may stand.
 
-use super::decimal::format_scaled;
-use super::{Phantom, Probe};
+use std::ops::Bound::Excluded;
 
-/// Why the probe cannot stand at a pose. Values are SI, messages speak in mm.
+use super::limits::{in_mm, within};
+use super::{InvalidPhantom, Phantom, Probe};
+
+/// Why the probe cannot stand at a pose, in mm.
 ///
 /// ```
-/// use palpate::phantom::{Phantom, PoseError};
+/// use palpate::phantom::Phantom;
 ///
 /// let phantom = Phantom::builtin("none")?;
 /// // 17 mm of half a well less the 6 mm of half a probe.
 /// let error = phantom.check_pose(0.004, 0.0115).unwrap_err();
-/// assert!(matches!(error, PoseError::Wall { limit, .. } if (limit - 0.011).abs() < 1e-15));
+/// assert!(error.to_string().starts_with("lateral_mm = 11.5, allowed: above -11.0 and below 11.0 ("));
 /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
 /// ```
 ///
 /// Implements: PHA-013.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum PoseError {
-    /// A coordinate is NaN or infinite.
-    #[error("{coordinate}_mm = {value}, allowed: a finite number")]
-    NotFinite {
-        /// `depth` or `lateral`.
-        coordinate: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// The depth is negative or reaches the floor.
-    #[error(
-        "depth_mm = {}, allowed: at least 0 and below {}, the height of gel and skin",
-        mm(*.depth), mm(*.total_height)
-    )]
-    Depth {
-        /// The depth, m.
-        depth: f64,
-        /// Height of gel and skin, m.
-        total_height: f64,
-    },
-    /// The probe would touch or enter a wall.
-    #[error(
-        "lateral_mm = {}, allowed at depth_mm = {}: above {} and below {}, where the probe, there {} mm to each side, clears the walls",
-        mm(*.lateral), mm(*.depth), mm(-*.limit), mm(*.limit), mm(*.half_width)
-    )]
-    Wall {
-        /// The depth, m.
-        depth: f64,
-        /// The lateral position, m.
-        lateral: f64,
-        /// Half the probe's width in the plane of the undeformed surface, m.
-        half_width: f64,
-        /// |lateral| must be below this, m.
-        limit: f64,
-    },
-}
-
-/// `length` (m) in mm, rounded to a nanometre: it may come from a square root.
-fn mm(length: f64) -> String {
-    if length.abs() < 1e3 {
-        format!("{}", (length * 1e9).round() / 1e6)
-    } else {
-        format_scaled(length, 3)
-    }
-}
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{} = {}, allowed: {}", .0.key, .0.found, .0.expected)]
+pub struct PoseError(pub InvalidPhantom);
 
 impl Probe {
     /// Half the width, m, of the probe in the plane of the undeformed surface when its lowest point
@@ -69,12 +28,9 @@ impl Probe {
     ///
     /// Implements: PHA-012.
     pub fn half_width_at(&self, depth: f64) -> f64 {
-        if depth < self.radius {
-            // √(R² − (R−d)²) without its cancellation.
-            (depth * (2.0 * self.radius - depth)).sqrt()
-        } else {
-            self.radius
-        }
+        let depth = depth.min(self.radius);
+        // √(R² − (R−d)²) without its cancellation.
+        (depth * (2.0 * self.radius - depth)).sqrt()
     }
 }
 
@@ -95,18 +51,8 @@ impl Phantom {
     ///
     /// Implements: PHA-011, PHA-013.
     pub fn check_depth(&self, depth: f64) -> Result<(), PoseError> {
-        let total_height = self.total_height();
-        if !depth.is_finite() {
-            let (coordinate, value) = ("depth", depth);
-            Err(PoseError::NotFinite { coordinate, value })
-        } else if (0.0..total_height).contains(&depth) {
-            Ok(())
-        } else {
-            Err(PoseError::Depth {
-                depth,
-                total_height,
-            })
-        }
+        let why = " (the height of the layers)";
+        within("depth_mm", depth, 0.0..self.height(), why).map_err(PoseError)
     }
 
     /// Whether the probe may stand at `depth` and `lateral` (m): above the floor, clear of the walls.
@@ -127,19 +73,10 @@ impl Phantom {
     pub fn check_pose(&self, depth: f64, lateral: f64) -> Result<(), PoseError> {
         self.check_depth(depth)?;
         let half_width = self.probe.half_width_at(depth);
-        let limit = self.gel.width / 2.0 - half_width;
-        if !lateral.is_finite() {
-            let (coordinate, value) = ("lateral", lateral);
-            Err(PoseError::NotFinite { coordinate, value })
-        } else if lateral.abs() < limit {
-            Ok(())
-        } else {
-            Err(PoseError::Wall {
-                depth,
-                lateral,
-                half_width,
-                limit,
-            })
-        }
+        let limit = self.well.width / 2.0 - half_width;
+        let (wide, low) = (in_mm(half_width), in_mm(depth));
+        let why = format!(" (the probe, {wide} to each side when {low} deep, clears the walls)");
+        let range = (Excluded(-limit), Excluded(limit));
+        within("lateral_mm", lateral, range, &why).map_err(PoseError)
     }
 }

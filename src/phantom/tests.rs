@@ -18,10 +18,61 @@ fn changed(change: impl FnOnce(&mut Phantom)) -> Phantom {
 
 fn with_disc(diameter: f64, depth: f64) -> Phantom {
     changed(|p| {
-        let disc = p.inclusion.as_mut().unwrap();
-        disc.diameter = diameter;
-        disc.depth = depth;
+        p.inclusions[0].shape = Shape::Disc { diameter };
+        p.inclusions[0].depth = depth;
     })
+}
+
+/// A gel of 20 mm and 5 kPa in a well of 60 mm, with inclusions of these shapes: centre, depth and shape in mm.
+fn with_shapes(shapes: &[(f64, f64, Shape)]) -> Phantom {
+    let mut phantom = Phantom::builtin("none").unwrap();
+    let material = phantom.layers[1].material;
+    phantom.well.width = 0.06;
+    phantom.layers[1].thickness = 0.02;
+    let inclusion = |(x, depth, shape): &(f64, f64, Shape)| Inclusion {
+        centre_x: mm(*x),
+        depth: mm(*depth),
+        shape: shape.clone(),
+        material,
+    };
+    phantom.inclusions = shapes.iter().map(inclusion).collect();
+    phantom
+}
+
+/// The length that the decimal of `length` (mm) names.
+fn mm(length: f64) -> f64 {
+    parse_scaled(&length.to_string(), -3).unwrap_or(length)
+}
+
+fn disc(diameter_mm: f64) -> Shape {
+    let diameter = mm(diameter_mm);
+    Shape::Disc { diameter }
+}
+
+fn ellipse(width_mm: f64, height_mm: f64, angle_deg: f64) -> Shape {
+    Shape::Ellipse {
+        width: mm(width_mm),
+        height: mm(height_mm),
+        angle_deg,
+    }
+}
+
+fn polygon(points_mm: &[[f64; 2]]) -> Shape {
+    let points = points_mm.iter().map(|p| p.map(mm)).collect();
+    Shape::Polygon { points }
+}
+
+fn rectangle(width_mm: f64, height_mm: f64) -> Shape {
+    let x = width_mm / 2.0;
+    polygon(&[[-x, 0.0], [x, 0.0], [x, height_mm], [-x, height_mm]])
+}
+
+fn is_valid(shapes: &[(f64, f64, Shape)]) -> bool {
+    with_shapes(shapes).validate().is_ok()
+}
+
+fn shape_refusal(shapes: &[(f64, f64, Shape)]) -> String {
+    refusal(&with_shapes(shapes))
 }
 
 fn refusal(phantom: &Phantom) -> String {
@@ -34,27 +85,35 @@ fn built_in_phantoms_are_the_papers() {
     assert_eq!(BUILTIN_NAMES, ["none", "2.6", "4.6", "6.6", "8.6"]);
     // Paper §3 and §3.1, in its own units.
     let near = |si: f64, written: f64| (si / written - 1.0).abs() < 1e-15;
+    let elastic = |m: Material| (m.youngs_modulus, m.poisson_ratio);
     for name in BUILTIN_NAMES {
         let phantom = Phantom::builtin(name).unwrap();
         assert_eq!(phantom.validate(), Ok(()), "{name}");
         assert_eq!(phantom.name, name);
-        assert!(near(phantom.gel.width * 1e3, 34.0));
-        assert!(near(phantom.gel.height * 1e3, 15.0));
-        assert!(near(phantom.skin.thickness * 1e3, 0.5));
+        assert!(near(phantom.well.width * 1e3, 34.0));
+        assert_eq!(
+            (phantom.well.walls, phantom.well.floor),
+            (Support::Fixed, Support::Fixed)
+        );
+        let [skin, gel] = &phantom.layers[..] else {
+            panic!("{name}")
+        };
+        assert_eq!((&*skin.name, &*gel.name), ("skin", "gel"));
+        assert!(near(gel.thickness * 1e3, 15.0) && near(skin.thickness * 1e3, 0.5));
         assert!(near(phantom.probe.radius * 1e3, 13.0 / 2.0));
         assert!(near(phantom.probe.length * 1e3, 30.0));
-        let elastic = |m: Material| (m.youngs_modulus, m.poisson_ratio);
-        assert_eq!(elastic(phantom.gel.material), (5000.0, 0.49));
-        assert_eq!(elastic(phantom.skin.material), (180_000.0, 0.49));
-        let Some(disc) = phantom.inclusion else {
-            assert_eq!(name, "none");
-            continue;
-        };
-        assert!(near(disc.diameter * 1e3, 6.4));
-        assert!(near(disc.depth * 1e3, name.parse().unwrap()));
-        assert_eq!(elastic(disc.material), (1_200_000.0, 0.49));
+        assert_eq!(elastic(gel.material), (5000.0, 0.49));
+        assert_eq!(elastic(skin.material), (180_000.0, 0.49));
+        assert_eq!(phantom.inclusions.len(), usize::from(name != "none"));
+        for inclusion in &phantom.inclusions {
+            assert_eq!(inclusion.centre_x, 0.0);
+            assert!(
+                matches!(inclusion.shape, Shape::Disc { diameter } if near(diameter * 1e3, 6.4))
+            );
+            assert!(near(inclusion.depth * 1e3, name.parse().unwrap()));
+            assert_eq!(elastic(inclusion.material), (1_200_000.0, 0.49));
+        }
     }
-    assert!(paper().inclusion.is_some());
 }
 
 // Verifies: PHA-014.
@@ -67,33 +126,40 @@ fn other_names_are_refused_with_the_list() {
     );
 }
 
-/// Every number of a phantom, with its key in the file.
+/// Every number of the paper's phantom, with its key in the file.
 fn numbers(phantom: &mut Phantom) -> Vec<(&'static str, &mut f64)> {
-    let disc = phantom.inclusion.as_mut().unwrap();
+    let [skin, gel] = &mut phantom.layers[..] else {
+        panic!()
+    };
+    let inclusion = &mut phantom.inclusions[0];
+    let Shape::Disc { diameter } = &mut inclusion.shape else {
+        panic!()
+    };
     vec![
-        ("gel.width_mm", &mut phantom.gel.width),
-        ("gel.height_mm", &mut phantom.gel.height),
+        ("well.width_mm", &mut phantom.well.width),
+        ("layer[0].thickness_mm", &mut skin.thickness),
         (
-            "gel.youngs_modulus_kpa",
-            &mut phantom.gel.material.youngs_modulus,
+            "layer[0].youngs_modulus_kpa",
+            &mut skin.material.youngs_modulus,
         ),
-        ("gel.poisson_ratio", &mut phantom.gel.material.poisson_ratio),
-        ("skin.thickness_mm", &mut phantom.skin.thickness),
+        ("layer[0].poisson_ratio", &mut skin.material.poisson_ratio),
+        ("layer[1].thickness_mm", &mut gel.thickness),
         (
-            "skin.youngs_modulus_kpa",
-            &mut phantom.skin.material.youngs_modulus,
+            "layer[1].youngs_modulus_kpa",
+            &mut gel.material.youngs_modulus,
+        ),
+        ("layer[1].poisson_ratio", &mut gel.material.poisson_ratio),
+        ("inclusion[0].centre_x_mm", &mut inclusion.centre_x),
+        ("inclusion[0].diameter_mm", diameter),
+        ("inclusion[0].depth_mm", &mut inclusion.depth),
+        (
+            "inclusion[0].youngs_modulus_kpa",
+            &mut inclusion.material.youngs_modulus,
         ),
         (
-            "skin.poisson_ratio",
-            &mut phantom.skin.material.poisson_ratio,
+            "inclusion[0].poisson_ratio",
+            &mut inclusion.material.poisson_ratio,
         ),
-        ("inclusion.diameter_mm", &mut disc.diameter),
-        ("inclusion.depth_mm", &mut disc.depth),
-        (
-            "inclusion.youngs_modulus_kpa",
-            &mut disc.material.youngs_modulus,
-        ),
-        ("inclusion.poisson_ratio", &mut disc.material.poisson_ratio),
         ("probe.radius_mm", &mut phantom.probe.radius),
         ("probe.length_mm", &mut phantom.probe.length),
     ]
@@ -121,7 +187,7 @@ fn numbers_that_are_not_finite_are_refused_by_key() {
             (-f64::INFINITY, "-inf"),
         ] {
             let (message, key) = refusal_with(index, value);
-            let expected = format!("{key} = {text}, allowed: ");
+            let expected = format!("{key} = {text}, expected ");
             assert!(message.starts_with(&expected), "{message}");
         }
     }
@@ -134,7 +200,8 @@ fn lengths_and_moduli_of_zero_or_below_are_refused() {
     for index in 0..count {
         for value in [0.0, -0.0, -1.5] {
             let mut phantom = paper();
-            if numbers(&mut phantom)[index].0.ends_with("ratio") {
+            let key = numbers(&mut phantom)[index].0;
+            if key.ends_with("ratio") || key.ends_with("centre_x_mm") {
                 continue;
             }
             let (message, key) = refusal_with(index, value);
@@ -147,20 +214,20 @@ fn lengths_and_moduli_of_zero_or_below_are_refused() {
 #[test]
 fn messages_give_value_and_range_in_the_files_unit() {
     assert_eq!(
-        refusal(&changed(|p| p.gel.width = 34.0)),
-        "gel.width_mm = 34000.0, allowed: at least 0.001 and at most 1000.0"
+        refusal(&changed(|p| p.well.width = 34.0)),
+        "well.width_mm = 34000.0, expected at least 0.001 and at most 1000.0"
     );
     assert_eq!(
-        refusal(&changed(|p| p.skin.material.youngs_modulus = -180e3)),
-        "skin.youngs_modulus_kpa = -180.0, allowed: above 0.0"
+        refusal(&changed(|p| p.layers[0].material.youngs_modulus = -180e3)),
+        "layer[0].youngs_modulus_kpa = -180.0, expected above 0.0"
     );
     assert_eq!(
-        refusal(&changed(|p| p.gel.material.poisson_ratio = 0.5)),
-        "gel.poisson_ratio = 0.5, allowed: above -1.0 and at most 0.4995"
+        refusal(&changed(|p| p.layers[1].material.poisson_ratio = 0.5)),
+        "layer[1].poisson_ratio = 0.5, expected above -1.0 and at most 0.4995"
     );
     assert_eq!(
         refusal(&changed(|p| p.probe.radius = 0.017)),
-        "probe.radius_mm = 17.0, allowed: at least 0.001 and below 17.0 \
+        "probe.radius_mm = 17.0, expected at least 0.001 and below 17.0 \
          (the probe must be narrower than the well)"
     );
 }
@@ -168,27 +235,82 @@ fn messages_give_value_and_range_in_the_files_unit() {
 // Verifies: PHA-004, PHA-005, PHA-007.
 #[test]
 fn the_ends_of_the_ranges_are_where_the_spec_says() {
-    let poisson = |ratio| {
-        changed(|p| p.gel.material.poisson_ratio = ratio)
-            .validate()
-            .is_ok()
-    };
+    let valid = |change: &dyn Fn(&mut Phantom)| changed(change).validate().is_ok();
+    let poisson = |ratio| valid(&|p| p.layers[1].material.poisson_ratio = ratio);
     assert!(poisson(0.4995) && poisson(-0.9999) && poisson(0.0));
     assert!(!poisson(0.49951) && !poisson(-1.0) && !poisson(-1.5));
-    let radius = |radius| changed(|p| p.probe.radius = radius).validate().is_ok();
+    let radius = |radius| valid(&|p| p.probe.radius = radius);
     assert!(radius(0.016_999) && !radius(0.017) && !radius(0.018));
-    let skin = |thickness| {
-        let thin = |p: &mut Phantom| p.skin.thickness = thickness;
-        changed(thin).validate().is_ok()
-    };
+    let skin = |thickness| valid(&|p| p.layers[0].thickness = thickness);
     assert!(skin(1e-6) && !skin(0.99e-6));
-    let length = |length| changed(|p| p.probe.length = length).validate().is_ok();
+    let length = |length| valid(&|p| p.probe.length = length);
     assert!(length(1.0) && !length(1.000_001));
+}
+
+// Verifies: PHA-018, PHA-009.
+#[test]
+fn there_are_some_layers_and_not_too_many() {
+    let layers = |count| {
+        changed(|p| {
+            p.inclusions.clear();
+            let layer = p.layers[0].clone();
+            p.layers = vec![layer; count];
+        })
+    };
+    assert_eq!(layers(1).validate(), Ok(()));
+    assert_eq!(layers(100).validate(), Ok(()));
+    assert_eq!(refusal(&layers(0)), "layer = 0 of them, expected 1 to 100");
+    assert_eq!(
+        refusal(&layers(101)),
+        "layer = 101 of them, expected 1 to 100"
+    );
+    // Discs of 0.2 mm, 0.4 mm apart.
+    let discs = |count: usize| -> Vec<_> {
+        (0..count)
+            .map(|at| (0.4 * at as f64 - 20.0, 3.0, disc(0.2)))
+            .collect()
+    };
+    assert!(is_valid(&discs(100)));
+    assert_eq!(
+        shape_refusal(&discs(101)),
+        "inclusion = 101 of them, expected 0 to 100"
+    );
+}
+
+// Verifies: PHA-016, PHA-030.
+#[test]
+fn supports_that_hold_nothing_are_refused() {
+    use Support::{Fixed, Free, Sliding};
+    let held = |walls, floor| changed(|p| (p.well.walls, p.well.floor) = (walls, floor));
+    for (walls, floor) in [
+        (Fixed, Fixed),
+        (Fixed, Sliding),
+        (Fixed, Free),
+        (Sliding, Fixed),
+        (Free, Fixed),
+        (Sliding, Sliding),
+    ] {
+        assert_eq!(held(walls, floor).validate(), Ok(()));
+    }
+    assert_eq!(
+        refusal(&held(Sliding, Free)),
+        "well.floor = \"free\", expected \"fixed\" or \"sliding\" where walls = \"sliding\": \
+         nothing holds the layers up"
+    );
+    assert_eq!(
+        refusal(&held(Free, Free)),
+        "well.floor = \"free\", expected \"fixed\" where walls = \"free\": nothing holds the layers up"
+    );
+    assert_eq!(
+        refusal(&held(Free, Sliding)),
+        "well.floor = \"sliding\", expected \"fixed\" where walls = \"free\": \
+         nothing holds the layers from sliding sideways"
+    );
 }
 
 // Verifies: PHA-006, PHA-015.
 #[test]
-fn an_inclusion_keeps_its_clearance_from_skin_floor_and_walls() {
+fn an_inclusion_keeps_its_clearance_from_layers_and_walls() {
     let fits = |diameter, depth| with_disc(diameter, depth).validate().is_ok();
     // Skin: 0.5 mm of skin and 0.1 mm of gel above the disc.
     assert!(fits(0.0064, 0.0006) && !fits(0.0064, 0.000_599));
@@ -196,35 +318,329 @@ fn an_inclusion_keeps_its_clearance_from_skin_floor_and_walls() {
     assert!(fits(0.0064, 0.009) && !fits(0.0064, 0.009_001));
     // Skin and floor at once: 15.0 − 0.2 = 14.8 mm.
     assert!(fits(0.0148, 0.0006) && !fits(0.014_801, 0.0006));
-    // Walls: a well of 10 mm holds a disc of 9.8 mm.
-    let in_narrow_well = |diameter| {
+    // In the skin itself: a disc of 0.3 mm fits 0.1 mm below the surface, nowhere else.
+    assert!(fits(0.0003, 0.0001) && !fits(0.0003, 0.000_101) && !fits(0.0003, 0.000_099));
+    // Walls: a well of 10 mm holds a disc of 9.8 mm, and one of 6.4 mm up to 1.7 mm off its middle.
+    let in_narrow_well = |diameter, centre_x| {
         let mut phantom = with_disc(diameter, 0.002);
-        phantom.gel.width = 0.01;
+        phantom.well.width = 0.01;
         phantom.probe.radius = 0.002;
+        phantom.inclusions[0].centre_x = centre_x;
         phantom.validate().is_ok()
     };
-    assert!(in_narrow_well(0.0098) && !in_narrow_well(0.009_801));
+    assert!(in_narrow_well(0.0098, 0.0) && !in_narrow_well(0.009_801, 0.0));
+    assert!(in_narrow_well(0.0064, 0.0017) && !in_narrow_well(0.0064, 0.001_701));
+    assert!(in_narrow_well(0.0064, -0.0017) && !in_narrow_well(0.0064, -0.001_701));
+    // An ellipse of 10 mm by 6 mm at 30° is 2·√(5²·¾ + 3²·¼) = 2·√21 mm wide and 2·√(5²·¼ + 3²·¾) = 2·√13 mm high.
+    let [wide, high] = [2.0 * 21f64.sqrt(), 2.0 * 13f64.sqrt()];
+    let turned = |x, depth| is_valid(&[(x, depth, ellipse(10.0, 6.0, 30.0))]);
+    let (x, depth) = (30.0 - 0.1 - wide / 2.0, 20.5 - 0.1 - high);
+    assert!(turned(x - 1e-6, depth - 1e-6) && !turned(x + 1e-6, 5.0) && !turned(0.0, depth + 1e-6));
 }
 
 // Verifies: PHA-006, PHA-009.
 #[test]
 fn the_clearance_is_in_the_message() {
-    let why = "(at least 0.1 mm of gel must lie between the inclusion and the skin, \
-               the floor and each wall)";
+    let why = |height| {
+        format!("(0.1 mm of layer[1] must lie above and below the inclusion, {height} mm high)")
+    };
     assert_eq!(
         refusal(&with_disc(0.0064, 0.012)),
-        format!("inclusion.depth_mm = 12.0, allowed: at least 0.6 and at most 9.0 {why}")
+        format!(
+            "inclusion[0].depth_mm = 12.0, expected at least 0.6 and at most 9.0 {}",
+            why("6.4")
+        )
+    );
+    // Half of it beyond the floor.
+    assert_eq!(
+        refusal(&with_disc(0.0064, 0.013)),
+        format!(
+            "inclusion[0].depth_mm = 13.0, expected at least 0.6 and at most 9.0 {}",
+            why("6.4")
+        )
     );
     assert_eq!(
         refusal(&with_disc(0.015, 0.0026)),
-        format!("inclusion.diameter_mm = 15.0, allowed: at least 0.001 and at most 14.8 {why}")
+        format!(
+            "inclusion[0].depth_mm = 2.6, expected no number {}",
+            why("15.0")
+        )
     );
-    let mut shallow = paper();
-    shallow.gel.height = 0.0001;
     assert_eq!(
-        refusal(&shallow),
-        format!("inclusion.diameter_mm = 6.4, allowed: nothing {why}")
+        shape_refusal(&[(27.0, 5.0, disc(6.0))]),
+        "inclusion[0].centre_x_mm = 27.0, expected at least -26.9 and at most 26.9 \
+         (0.1 mm must lie between the inclusion, 6.0 mm wide, and each wall)"
     );
+}
+
+// Verifies: PHA-015, PHA-031.
+#[test]
+fn discs_that_overlap_or_touch_are_refused() {
+    // 3-4-5: centres 5 mm apart, and 4.9 mm are 2.4 + 2.5.
+    let two = |diameter| {
+        [
+            (0.0, 4.0, disc(4.8)),
+            (3.0, 8.0 - (diameter - 4.8) / 2.0, disc(diameter)),
+        ]
+    };
+    assert!(is_valid(&two(5.0)));
+    assert_eq!(
+        shape_refusal(&two(5.2)),
+        "inclusion[1] = an outline 0.0 mm from that of inclusion[0], \
+         expected at least 0.1 mm between them"
+    );
+    assert_eq!(
+        shape_refusal(&two(5.1)),
+        "inclusion[1] = an outline 0.05 mm from that of inclusion[0], \
+         expected at least 0.1 mm between them"
+    );
+    assert!(is_valid(&[(-2.5, 4.0, disc(5.0)), (2.6, 4.0, disc(5.0))]));
+    assert!(!is_valid(&[
+        (-2.5, 4.0, disc(5.0)),
+        (2.599, 4.0, disc(5.0))
+    ]));
+}
+
+// Verifies: PHA-031.
+#[test]
+fn shapes_that_overlap_or_enclose_one_another_are_refused() {
+    let overlap = "inclusion[1] = an outline 0.0 mm from that of inclusion[0], \
+                   expected at least 0.1 mm between them";
+    let shapes = [disc(8.0), ellipse(8.0, 7.9, 10.0), rectangle(8.0, 8.0)];
+    let small = [disc(1.0), ellipse(1.0, 0.9, 10.0), rectangle(1.0, 1.0)];
+    for (large, size) in shapes.iter().zip(0..) {
+        for inner in &small {
+            // Within, in either order, and half within.
+            assert_eq!(
+                shape_refusal(&[(0.0, 4.0, large.clone()), (0.0, 7.0, inner.clone())]),
+                overlap
+            );
+            assert_eq!(
+                shape_refusal(&[(0.0, 7.0, inner.clone()), (0.0, 4.0, large.clone())]),
+                overlap
+            );
+            assert_eq!(
+                shape_refusal(&[(0.0, 4.0, large.clone()), (4.0, 7.5, inner.clone())]),
+                overlap
+            );
+            // 0.101 mm beside it, 0.098 mm beside it: 0.001 mm are for chords.
+            let half_width = [
+                4.0,
+                with_shapes(&[(0.0, 4.0, large.clone())]).inclusions[0].extent()[1] * 1e3,
+                4.0,
+            ][size];
+            let inner_half =
+                with_shapes(&[(0.0, 4.0, inner.clone())]).inclusions[0].extent()[1] * 1e3;
+            let beside = |gap: f64| {
+                let depth = 8.0 - inner_half; // about the middle of the large one
+                is_valid(&[
+                    (0.0, 4.0, large.clone()),
+                    (half_width + inner_half + gap, depth, inner.clone()),
+                ])
+            };
+            assert!(beside(0.3) && !beside(-0.1));
+        }
+    }
+    // A triangle in the notch of another: bounding boxes overlap, outlines are 0.5·√2/2 mm apart.
+    let triangle = polygon(&[[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]]);
+    let notch = |x: f64, depth| (x, depth, polygon(&[[4.0, 4.0], [0.0, 4.0], [4.0, 0.0]]));
+    assert!(is_valid(&[(0.0, 4.0, triangle.clone()), notch(0.5, 4.0)]));
+    assert_eq!(
+        shape_refusal(&[(0.0, 4.0, triangle.clone()), notch(0.0, 4.0)]),
+        overlap
+    );
+    // 0.1·√2/2 = 0.0707… mm.
+    let message = shape_refusal(&[(0.0, 4.0, triangle), notch(0.1, 4.0)]);
+    assert!(
+        message.starts_with("inclusion[1] = an outline 0.0707106"),
+        "{message}"
+    );
+}
+
+// Verifies: PHA-032, PHA-009.
+#[test]
+fn ellipses_are_neither_slivers_nor_turned_too_far() {
+    let valid = |width, height, angle| is_valid(&[(0.0, 4.0, ellipse(width, height, angle))]);
+    assert!(
+        valid(0.1, 2.0, 0.0)
+            && valid(2.0, 0.1, 0.0)
+            && valid(2.0, 1.0, 360.0)
+            && valid(2.0, 1.0, -360.0)
+    );
+    let message =
+        |width, height, angle| shape_refusal(&[(0.0, 4.0, ellipse(width, height, angle))]);
+    let why = "(an ellipse is at most 20 times as long as wide)";
+    assert_eq!(
+        message(0.1, 2.001, 0.0),
+        format!("inclusion[0].height_mm = 2.001, expected at least 0.1 and at most 2.0 {why}")
+    );
+    assert_eq!(
+        message(4.0, 0.199, 0.0),
+        format!("inclusion[0].height_mm = 0.199, expected at least 0.2 and at most 80.0 {why}")
+    );
+    assert_eq!(
+        message(0.099, 1.0, 0.0),
+        "inclusion[0].width_mm = 0.099, expected at least 0.1 and at most 1000.0"
+    );
+    assert_eq!(
+        message(2.0, 1.0, 361.0),
+        "inclusion[0].angle_deg = 361.0, expected at least -360.0 and at most 360.0"
+    );
+    assert!(message(2.0, 1.0, f64::NAN).starts_with("inclusion[0].angle_deg = NaN, expected "));
+}
+
+fn polygon_refusal(points_mm: &[[f64; 2]]) -> String {
+    shape_refusal(&[(0.0, 4.0, polygon(points_mm))])
+}
+
+// Verifies: PHA-003, PHA-033.
+#[test]
+fn polygons_have_three_to_a_thousand_finite_corners() {
+    assert_eq!(
+        polygon_refusal(&[[0.0, 0.0], [1.0, 1.0]]),
+        "inclusion[0].points_mm = 2 of them, expected 3 to 1000"
+    );
+    let round = |count: usize| {
+        let angle = |k| 2.0 * std::f64::consts::PI * k as f64 / count as f64;
+        let points: Vec<_> = (0..count)
+            .map(|k| [9.0 * angle(k).cos(), 9.0 * angle(k).sin()])
+            .collect();
+        (0.0, 1.0, polygon(&points))
+    };
+    // Edges of 18·sin(π/500) = 0.113 mm.
+    assert!(is_valid(&[round(500)]));
+    assert!(shape_refusal(&[round(1001)]).starts_with("inclusion[0].points_mm = 1001 of them, "));
+    assert_eq!(
+        polygon_refusal(&[[0.0, 0.0], [1.0, 0.0], [0.0, f64::INFINITY]]),
+        "inclusion[0].points_mm[2][1] = inf, expected at least -1000.0 and at most 1000.0"
+    );
+}
+
+// Verifies: PHA-015, PHA-034, PHA-036.
+#[test]
+fn polygons_with_short_edges_or_sharp_corners_are_refused() {
+    let house = |edge: f64| [[0.0, 0.0], [edge, 0.0], [2.0, 2.0], [-2.0, 2.0]];
+    assert!(is_valid(&[(0.0, 4.0, polygon(&house(0.1)))]));
+    assert_eq!(
+        polygon_refusal(&house(0.099)),
+        "inclusion[0].points_mm[0] = a corner 0.099 mm from the next, expected at least 0.1 mm"
+    );
+    // The last edge, back to the first corner.
+    assert_eq!(
+        polygon_refusal(&[[0.0, 0.0], [2.0, 2.0], [-2.0, 2.0], [0.0, 0.05]]),
+        "inclusion[0].points_mm[3] = a corner 0.05 mm from the next, expected at least 0.1 mm"
+    );
+    // tan 30° = 0.577350…; an angle of 29.0° has tangent 0.554309.
+    let wedge = |height| [[0.0, 0.0], [3.0, 0.0], [3.0, height]];
+    assert!(is_valid(&[(0.0, 4.0, polygon(&wedge(3f64.sqrt())))]));
+    assert_eq!(
+        polygon_refusal(&wedge(3.0 * 0.554_309_051_452_769)),
+        "inclusion[0].points_mm[0] = a corner of 29.000°, expected at least 30°"
+    );
+    // A notch as sharp, from outside: its interior angle is 360° − 2·atan(1/3.8) = 330.5°.
+    let notch = [
+        [-2.0, 0.0],
+        [2.0, 0.0],
+        [2.0, 4.0],
+        [1.0, 4.0],
+        [0.0, 0.2],
+        [-1.0, 4.0],
+        [-2.0, 4.0],
+    ];
+    let message = polygon_refusal(&notch);
+    assert!(
+        message.starts_with("inclusion[0].points_mm[4] = a corner of 29.4"),
+        "{message}"
+    );
+    // No area: all on one line.
+    assert!(polygon_refusal(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).contains("a corner of 0.000°"));
+    // A corner of 180° is none.
+    assert!(is_valid(&[(
+        0.0,
+        4.0,
+        polygon(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 2.0]])
+    )]));
+}
+
+// Verifies: PHA-015, PHA-035.
+#[test]
+fn polygons_that_cross_themselves_or_have_a_neck_are_refused() {
+    let expected = "expected at least 0.1 mm between edges that do not adjoin";
+    // A bow tie.
+    assert_eq!(
+        polygon_refusal(&[[-2.0, 0.0], [2.0, 2.0], [2.0, 0.0], [-2.0, 2.0]]),
+        format!(
+            "inclusion[0].points_mm = edges from corner 0 to 1 and from 2 to 3 0.0 mm apart, {expected}"
+        )
+    );
+    // An hourglass, upright, with a waist between corners 2 and 5.
+    let hourglass = |waist: f64| {
+        let x = waist / 2.0;
+        [
+            [-2.0, 0.0],
+            [2.0, 0.0],
+            [x, 2.0],
+            [2.0, 4.0],
+            [-2.0, 4.0],
+            [-x, 2.0],
+        ]
+    };
+    assert!(is_valid(&[(0.0, 4.0, polygon(&hourglass(0.2)))]));
+    let message = polygon_refusal(&hourglass(0.09));
+    assert!(
+        message
+            .starts_with("inclusion[0].points_mm = edges from corner 1 to 2 and from 4 to 5 0.0"),
+        "{message}"
+    );
+    // A slot of 0.05 mm, open to the left: edges from 3 to 4 and 5 to 6 are its sides.
+    let slot = |width: f64| {
+        [
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 4.0],
+            [0.0, 4.0],
+            [0.0, 2.0 + width],
+            [3.0, 2.0 + width],
+            [3.0, 2.0],
+            [0.0, 2.0],
+        ]
+    };
+    assert!(is_valid(&[(0.0, 4.0, polygon(&slot(0.1)))]));
+    assert_eq!(
+        polygon_refusal(&slot(0.05)),
+        "inclusion[0].points_mm[5] = a corner 0.05 mm from the next, expected at least 0.1 mm"
+    );
+    // A T with its stem pressed to the middle of the edge across: the pit leaves 0.05 mm above the bottom.
+    assert_eq!(
+        polygon_refusal(&[
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 4.0],
+            [3.5, 4.0],
+            [2.0, 0.05],
+            [0.5, 4.0],
+            [0.0, 4.0]
+        ]),
+        format!(
+            "inclusion[0].points_mm = edges from corner 0 to 1 and from 3 to 4 0.05 mm apart, {expected}"
+        )
+    );
+    // And through the bottom.
+    let message = polygon_refusal(&[
+        [0.0, 0.0],
+        [4.0, 0.0],
+        [4.0, 4.0],
+        [3.5, 4.0],
+        [2.0, -1.0],
+        [0.5, 4.0],
+        [0.0, 4.0],
+    ]);
+    assert!(
+        message.contains("edges from corner 0 to 1 and from 3 to 4 0.0 mm apart"),
+        "{message}"
+    );
+    // The last edge and the first adjoin, though they are the farthest in the list.
+    assert!(is_valid(&[(0.0, 4.0, rectangle(0.1, 0.1))]));
 }
 
 // Verifies: PHA-010.
@@ -235,15 +651,76 @@ fn names_that_break_a_table_are_refused() {
     assert!(!named("") && !named("a\nb") && !named("\u{7}") && !named(&"a".repeat(81)));
 }
 
-// Verifies: PHA-008.
+// Verifies: PHA-008, PHA-017.
 #[test]
-fn the_disc_lies_below_the_surface_by_depth_and_radius() {
+fn outlines_lie_below_the_surface_by_their_depth() {
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-15;
+    let same = |a: [f64; 2], b: [f64; 2]| close(a[0], b[0] / 1e3) && close(a[1], b[1] / 1e3);
     let phantom = paper();
-    let disc = phantom.inclusion.unwrap();
-    let close = |a: f64, b: f64| (a - b).abs() < 1e-17;
-    assert!(close(phantom.total_height(), 0.0155));
-    assert!(close(disc.radius(), 0.0032));
-    assert!(close(disc.centre_y(), -0.0058)); // −(2.6 + 3.2) mm
+    assert!(close(phantom.height(), 0.0155));
+    // −(2.6 + 3.2) mm.
+    let Outline::Ellipse { centre, radii, .. } = phantom.inclusions[0].outline() else {
+        panic!()
+    };
+    assert!(same(centre, [0.0, -5.8]) && radii == [0.0032; 2]);
+    // 5² ¾ + 3² ¼ = 21 and 5² ¼ + 3² ¾ = 13; 30° counts from +x towards +y.
+    let shapes = [
+        (5.0, 4.0, ellipse(10.0, 6.0, 30.0)),
+        (-9.0, 4.0, polygon(&[[0.0, 7.0], [1.0, 9.0], [1.0, 7.0]])),
+    ];
+    let phantom = with_shapes(&shapes);
+    let (half_width, half_height) = (21f64.sqrt(), 13f64.sqrt());
+    let [left, right, bottom, top] = phantom.inclusions[0].extent();
+    assert!(same([left, right], [5.0 - half_width, 5.0 + half_width]));
+    assert!(same([bottom, top], [-4.0 - 2.0 * half_height, -4.0]));
+    let end = phantom.inclusions[0].outline().chords(4)[0];
+    let (cos, sin) = (3f64.sqrt() / 2.0, 0.5);
+    assert!(same(end, [5.0 + 5.0 * cos, -4.0 - half_height + 5.0 * sin]));
+    // Clockwise as written, the other way round in the outline.
+    let points = phantom.inclusions[1].outline().chords(0);
+    assert!(
+        same(points[0], [-8.0, -6.0])
+            && same(points[1], [-8.0, -4.0])
+            && same(points[2], [-9.0, -6.0])
+    );
+    let extent = phantom.inclusions[1].extent();
+    assert!(
+        same([extent[0], extent[1]], [-9.0, -8.0]) && same([extent[2], extent[3]], [-6.0, -4.0])
+    );
+}
+
+// Verifies: PHA-019.
+#[test]
+fn mirror_images_are_found_and_their_absence_too() {
+    let symmetric = |shapes: &[(f64, f64, Shape)]| with_shapes(shapes).is_symmetric();
+    assert!(symmetric(&[]) && paper().is_symmetric());
+    assert!(!symmetric(&[(1.0, 4.0, disc(5.0))]));
+    let pair =
+        |a: Shape, b: Shape| symmetric(&[(-9.3, 4.1, a), (0.0, 4.0, disc(2.0)), (9.3, 4.1, b)]);
+    assert!(pair(disc(5.0), disc(5.0)) && !pair(disc(5.0), disc(5.001)));
+    assert!(pair(ellipse(5.0, 2.0, 30.0), ellipse(5.0, 2.0, -30.0)));
+    assert!(pair(ellipse(5.0, 2.0, 30.0), ellipse(5.0, 2.0, 150.0)));
+    assert!(!pair(ellipse(5.0, 2.0, 30.0), ellipse(5.0, 2.0, 30.0)));
+    let triangle = |sign: f64| polygon(&[[0.0, 0.0], [sign * 3.1, 0.0], [sign * 1.3, 2.7]]);
+    assert!(pair(triangle(1.0), triangle(-1.0)) && !pair(triangle(1.0), triangle(1.0)));
+    // On the axis: by itself.
+    let alone = |shape| symmetric(&[(0.0, 4.0, shape)]);
+    assert!(
+        alone(ellipse(5.0, 2.0, 0.0))
+            && alone(ellipse(5.0, 2.0, 90.0))
+            && alone(ellipse(5.0, 2.0, -90.0))
+    );
+    assert!(alone(ellipse(5.0, 2.0, 180.0)) && !alone(ellipse(5.0, 2.0, 89.0)));
+    assert!(alone(rectangle(3.0, 2.0)) && alone(polygon(&[[0.0, 3.0], [-1.0, 0.0], [1.0, 0.0]])));
+    assert!(!alone(triangle(1.0)));
+    // Of one material.
+    let mut phantom = with_shapes(&[(-5.0, 4.0, disc(5.0)), (5.0, 4.0, disc(5.0))]);
+    assert!(phantom.is_symmetric());
+    phantom.inclusions[0].material.poisson_ratio = 0.3;
+    assert!(!phantom.is_symmetric());
+    // No phantom, but no panic either.
+    phantom.inclusions[0].shape = polygon(&[]);
+    assert!(!phantom.is_symmetric());
 }
 
 // Verifies: PHA-011, PHA-013.
@@ -254,18 +731,16 @@ fn depths_outside_the_gel_are_refused() {
         assert_eq!(phantom.check_depth(depth), Ok(()));
     }
     let message = |depth| phantom.check_depth(depth).unwrap_err().to_string();
-    let allowed = "allowed: at least 0 and below 15.5, the height of gel and skin";
-    assert_eq!(message(-0.001), format!("depth_mm = -1, {allowed}"));
-    assert_eq!(message(0.0155), format!("depth_mm = 15.5, {allowed}"));
-    assert_eq!(
-        message(f64::NAN),
-        "depth_mm = NaN, allowed: a finite number"
-    );
-    assert_eq!(
-        message(f64::INFINITY),
-        "depth_mm = inf, allowed: a finite number"
-    );
-    assert!(message(1e300).starts_with("depth_mm = 1e303, "));
+    let allowed = "allowed: at least 0.0 and below 15.5 (the height of the layers)";
+    for (depth, shown) in [
+        (-0.001, "-1.0"),
+        (0.0155, "15.5"),
+        (f64::NAN, "NaN"),
+        (f64::INFINITY, "inf"),
+        (1e300, "1e303"),
+    ] {
+        assert_eq!(message(depth), format!("depth_mm = {shown}, {allowed}"));
+    }
 }
 
 // Verifies: PHA-012, PHA-013.
@@ -282,34 +757,76 @@ fn a_probe_that_reaches_a_wall_is_refused() {
     assert!(stands(0.012, 0.010_499) && !stands(0.012, 0.010_501));
     let message = |depth, lateral| phantom.check_pose(depth, lateral).unwrap_err().to_string();
     assert!(message(0.0155, 0.0).starts_with("depth_mm = 15.5, allowed: "));
-    assert!(message(-0.001, 0.0).starts_with("depth_mm = -1, allowed: "));
-    for bad in [f64::NAN, f64::INFINITY] {
-        let expected = format!("lateral_mm = {bad}, allowed: a finite number");
-        assert_eq!(message(0.004, bad), expected);
+    assert!(message(-0.001, 0.0).starts_with("depth_mm = -1.0, allowed: "));
+    for (lateral, shown) in [(-0.012, "-12.0"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
+        assert_eq!(
+            message(0.004, lateral),
+            format!(
+                "lateral_mm = {shown}, allowed: above -11.0 and below 11.0 \
+                 (the probe, 6.0 mm to each side when 4.0 mm deep, clears the walls)"
+            )
+        );
     }
-    assert_eq!(
-        message(0.004, -0.012),
-        "lateral_mm = -12, allowed at depth_mm = 4: above -11 and below 11, \
-         where the probe, there 6 mm to each side, clears the walls"
-    );
 }
 
 // Verifies: PHA-029.
 #[test]
 fn in_json_a_phantom_has_si_units_in_its_keys() {
-    let expected = serde_json::json!({
-        "name": "2.6",
-        "gel": {"width_m": 0.034, "height_m": 0.015,
-            "material": {"youngs_modulus_pa": 5000.0, "poisson_ratio": 0.49}},
-        "skin": {"thickness_m": 0.0005,
-            "material": {"youngs_modulus_pa": 180000.0, "poisson_ratio": 0.49}},
-        "inclusion": {"diameter_m": 0.0064, "depth_m": 0.0026,
-            "material": {"youngs_modulus_pa": 1200000.0, "poisson_ratio": 0.49}},
-        "probe": {"radius_m": 0.0065, "length_m": 0.03}
-    });
-    assert_eq!(serde_json::to_value(paper()).unwrap(), expected);
-    let empty = serde_json::to_value(Phantom::builtin("none").unwrap()).unwrap();
-    assert_eq!(empty["inclusion"], serde_json::Value::Null);
+    let elastic =
+        |modulus: f64| serde_json::json!({"youngs_modulus_pa": modulus, "poisson_ratio": 0.49});
+    let inclusion = |shape| {
+        serde_json::json!({
+            "centre_x_m": 0.0, "depth_m": 0.0026, "shape": shape, "material": elastic(1.2e6),
+        })
+    };
+    let json = || {
+        serde_json::json!({
+            "name": "2.6",
+            "well": {"width_m": 0.034, "walls": "fixed", "floor": "fixed"},
+            "layer": [
+                {"name": "skin", "thickness_m": 0.0005, "material": elastic(1.8e5)},
+                {"name": "gel", "thickness_m": 0.015, "material": elastic(5e3)},
+            ],
+            "probe": {"radius_m": 0.0065, "length_m": 0.03},
+        })
+    };
+    let shapes = [
+        (
+            Shape::Disc { diameter: 0.0064 },
+            serde_json::json!({"disc": {"diameter_m": 0.0064}}),
+        ),
+        (
+            Shape::Ellipse {
+                width: 0.006,
+                height: 0.003,
+                angle_deg: 30.0,
+            },
+            serde_json::json!({"ellipse": {"width_m": 0.006, "height_m": 0.003, "angle_deg": 30.0}}),
+        ),
+        (
+            Shape::Polygon {
+                points: vec![[0.0, 0.0], [0.001, 0.0], [0.0, 0.001]],
+            },
+            serde_json::json!({"polygon": {"points_m": [[0.0, 0.0], [0.001, 0.0], [0.0, 0.001]]}}),
+        ),
+    ];
+    for (shape, expected) in shapes {
+        let phantom = changed(|p| p.inclusions[0].shape = shape);
+        let written = serde_json::to_value(&phantom).unwrap();
+        let mut with_inclusion = json();
+        with_inclusion["inclusion"] = vec![inclusion(expected)].into();
+        assert_eq!(written, with_inclusion);
+        assert_eq!(serde_json::from_value::<Phantom>(written).unwrap(), phantom);
+    }
+    let empty = changed(|p| p.inclusions.clear());
+    assert_eq!(serde_json::to_value(&empty).unwrap(), json());
+    assert_eq!(serde_json::from_value::<Phantom>(json()).unwrap(), empty);
+    // Neither a key that is none, nor those of a file.
+    for key in ["colour", "gel", "inclusions"] {
+        let mut unknown = json();
+        unknown[key] = serde_json::json!({});
+        assert!(serde_json::from_value::<Phantom>(unknown).is_err());
+    }
 }
 
 // Verifies: PHA-020.
