@@ -1,15 +1,12 @@
 //! How far the forces of a map are from those of an infinitely fine mesh: Roache's grid convergence index on
 //! three meshes (ASME V&V 20).
 
-use super::outline::QUARTERS;
-use super::{FemError, Model};
+use super::{FemError, MeshOptions, Model};
 use crate::force_map::{Discretization, ForceMap, Matrix};
 
-/// Cells along each line of the three meshes, finest first, in quarters of the published one's.
+/// Ratios of the sizes of the three meshes, middle over fine and coarse over middle.
 ///
 /// Implements: FEM-026.
-const LEVELS: [usize; 3] = [QUARTERS, 3, 2];
-/// Ratios of the cells' sizes, middle over fine and coarse over middle.
 const RATIOS: [f64; 2] = [4.0 / 3.0, 1.5];
 /// An observed order is trusted between these.
 const TRUSTED_ORDERS: core::ops::RangeInclusive<f64> = 1.0..=4.0;
@@ -22,19 +19,6 @@ const SAFETY_UNTRUSTED: f64 = 3.0;
 /// The force map of [`Model::map`] with the discretisation's band around each force. `solved` is told of each pose
 /// of all three meshes.
 ///
-/// ```
-#[doc = include_str!("coarse.example")]
-/// use palpate::fem::certify::certified_map;
-///
-/// let map = certified_map(&model, &[2e-3, 4e-3], &[0.0], &|_| ())?;
-/// let certificate = map.certificate().expect("a computed map");
-/// let bands = certificate.discretization.as_ref().expect("a band around each force");
-/// assert!(bands.nodes[0] > bands.nodes[1] && bands.nodes[1] > bands.nodes[2]);
-/// // Even this coarse mesh is some per cent from an infinitely fine one.
-/// assert!(bands.normal_force_band.row(1)[0] < 0.1 * map.normal_force().row(1)[0]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// Implements: FEM-026, FEM-028.
 ///
 /// # Errors
@@ -46,14 +30,18 @@ pub fn certified_map(
     solved: &dyn Fn(usize),
 ) -> Result<ForceMap, FemError> {
     let finest = model.map(depths, laterals, solved)?;
-    let coarser = |quarters: usize| -> Result<(usize, ForceMap), FemError> {
+    let coarser = |ratio: f64| -> Result<(usize, ForceMap), FemError> {
         let (phantom, options) = (model.phantom(), model.options());
-        let coarser = Model::with_quarters(phantom, options, model.surface().contact, quarters)?;
+        let options = MeshOptions {
+            size: ratio * options.size,
+            ..*options
+        };
+        let coarser = Model::new(phantom, &options, model.surface().contact)?;
         let map = coarser.map(depths, laterals, solved)?;
         Ok((coarser.mesh().nodes.len(), map))
     };
-    let [(middle_nodes, middle), (coarse_nodes, coarse)] =
-        [coarser(LEVELS[1])?, coarser(LEVELS[2])?];
+    let (middle_nodes, middle) = coarser(RATIOS[0])?;
+    let (coarse_nodes, coarse) = coarser(RATIOS[0] * RATIOS[1])?;
     let bands = |force: fn(&ForceMap) -> &Matrix| {
         let [fine, middle, coarse] = [&finest, &middle, &coarse].map(force);
         Matrix::from_fn(depths.len(), laterals.len(), |row, column| {

@@ -1,10 +1,21 @@
 //! Shape functions, quadrature and element stiffness in plane strain.
 
+use nalgebra::{Matrix2, SMatrix, Vector2};
+
 use super::mesh::Element;
 use crate::phantom::Material;
 
 /// Most nodes that an element has.
 pub const MOST_NODES: usize = 6;
+
+/// One column for each node; those that an element does not have are 0.
+pub type PerNode = SMatrix<f64, 2, MOST_NODES>;
+
+/// Stiffness of one element per metre of thickness, Pa: `[(2a + i, 2b + j)]` couples direction i of node a with
+/// direction j of node b. Exactly symmetric.
+///
+/// Implements: FEM-005, FEM-050, FEM-051, FEM-052, FEM-053, FEM-058.
+pub type Stiffness = SMatrix<f64, { 2 * MOST_NODES }, { 2 * MOST_NODES }>;
 
 /// One point of a quadrature rule over the parent element.
 #[derive(Debug, Clone, Copy)]
@@ -52,50 +63,37 @@ fn gauss_square() -> Vec<QuadraturePoint> {
         .to_vec()
 }
 
-/// Derivatives of the shape functions with respect to the parent coordinates, node by node.
-///
-/// ```
-/// use palpate::fem::{Element, element::parent_gradients};
-///
-/// // The shape functions add up to 1 everywhere, and their gradients to 0.
-/// let [r, s] = parent_gradients(Element::T6, [0.25, 0.5])
-///     .iter()
-///     .fold([0.0, 0.0], |[r, s], g| [r + g[0], s + g[1]]);
-/// assert_eq!([r, s], [0.0, 0.0]);
-/// ```
-pub fn parent_gradients(element: Element, [r, s]: [f64; 2]) -> Vec<[f64; 2]> {
+/// Derivatives of the shape functions with respect to the parent coordinates, a column for each node.
+pub fn parent_gradients(element: Element, [r, s]: [f64; 2]) -> PerNode {
+    let mut of_node = PerNode::zeros();
+    let mut set = |columns: &[[f64; 2]]| {
+        for (mut to, &from) in of_node.column_iter_mut().zip(columns) {
+            to.copy_from(&Vector2::from(from));
+        }
+    };
     match element {
         Element::T6 => {
             let q = 1.0 - r - s;
-            vec![
+            set(&[
                 [1.0 - 4.0 * q, 1.0 - 4.0 * q],
                 [4.0 * r - 1.0, 0.0],
                 [0.0, 4.0 * s - 1.0],
                 [4.0 * (q - r), -4.0 * r],
                 [4.0 * s, 4.0 * r],
                 [-4.0 * s, 4.0 * (q - s)],
-            ]
+            ]);
         }
-        Element::Q4Full => [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
-            .map(|[a, b]: [f64; 2]| [0.25 * a * (1.0 + b * s), 0.25 * b * (1.0 + a * r)])
-            .to_vec(),
+        Element::Q4Full => set(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[a, b]: [f64; 2]| [0.25 * a * (1.0 + b * s), 0.25 * b * (1.0 + a * r)])),
     }
+    of_node
 }
 
 /// Gradients of the shape functions in space at one point of an element, and the Jacobian.
-///
-/// ```
-/// use palpate::fem::element::{Gradients, gradients, parent_gradients};
-/// use palpate::fem::Element;
-///
-/// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]];
-/// let Gradients { of_node, jacobian } = gradients(&parent_gradients(Element::Q4Full, [0.0, 0.0]), &square);
-/// assert_eq!((of_node[0], jacobian), ([-0.125, -0.25], 2.0));
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Gradients {
-    /// ∂N_a/∂x, ∂N_a/∂y, 1/m; only the first entries are used by elements with fewer nodes.
-    pub of_node: [[f64; 2]; MOST_NODES],
+    /// ∂N_a/∂x, ∂N_a/∂y, 1/m, a column for each node.
+    pub of_node: PerNode,
     /// det ∂(x, y)/∂(parent): positive in a valid element.
     pub jacobian: f64,
 }
@@ -105,27 +103,25 @@ pub struct Gradients {
 /// ```
 /// use palpate::fem::{Element, element::{gradients, parent_gradients}};
 ///
+/// let parent = parent_gradients(Element::Q4Full, [0.0, 0.0]);
+/// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]];
+/// let found = gradients(&parent, &square);
+/// assert_eq!((found.of_node.column(0).into(), found.jacobian), ([-0.125, -0.25], 2.0));
 /// let clockwise = [[0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]];
-/// let turned = gradients(&parent_gradients(Element::Q4Full, [0.0, 0.0]), &clockwise);
-/// assert_eq!(turned.jacobian, -1.0);
+/// assert_eq!(gradients(&parent, &clockwise).jacobian, -1.0);
 /// ```
-pub fn gradients(parent: &[[f64; 2]], positions: &[[f64; 2]]) -> Gradients {
-    let mut j = [[0.0; 2]; 2];
-    for (gradient, position) in parent.iter().zip(positions) {
-        for (row, component) in j.iter_mut().zip(position) {
-            row[0] += component * gradient[0];
-            row[1] += component * gradient[1];
-        }
+pub fn gradients(parent: &PerNode, positions: &[[f64; 2]]) -> Gradients {
+    let map: Matrix2<f64> = positions
+        .iter()
+        .zip(parent.column_iter())
+        .map(|(&at, gradient)| Vector2::from(at) * gradient.transpose())
+        .sum();
+    let jacobian = map[(0, 0)] * map[(1, 1)] - map[(0, 1)] * map[(1, 0)];
+    let cofactors = Matrix2::new(map[(1, 1)], -map[(1, 0)], -map[(0, 1)], map[(0, 0)]);
+    Gradients {
+        of_node: cofactors * parent / jacobian,
+        jacobian,
     }
-    let jacobian = j[0][0] * j[1][1] - j[0][1] * j[1][0];
-    let mut of_node = [[0.0; 2]; MOST_NODES];
-    for (out, g) in of_node.iter_mut().zip(parent) {
-        *out = [
-            (j[1][1] * g[0] - j[1][0] * g[1]) / jacobian,
-            (j[0][0] * g[1] - j[0][1] * g[0]) / jacobian,
-        ];
-    }
-    Gradients { of_node, jacobian }
 }
 
 /// Lamé's constants (λ, μ), Pa.
@@ -161,59 +157,14 @@ pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
     ]
 }
 
-/// Stiffness of one element per metre of thickness, Pa: `[2a + i][2b + j]` couples direction i of node a with
-/// direction j of node b. Exactly symmetric.
-///
-/// Implements: FEM-005, FEM-050, FEM-051, FEM-052, FEM-053, FEM-058.
-pub type Stiffness = [[f64; 2 * MOST_NODES]; 2 * MOST_NODES];
-
-/// Adds one quadrature point's share to the lower triangle of `stiffness`; `volume` is weight × Jacobian.
-fn add_point(
-    stiffness: &mut Stiffness,
-    nodes: usize,
-    g: &Gradients,
-    volume: f64,
-    (lambda, mu): (f64, f64),
-) {
-    for a in 0..nodes {
-        let [ax, ay] = g.of_node[a].map(|d| d * volume);
-        for b in 0..=a {
-            let [bx, by] = g.of_node[b];
-            stiffness[2 * a][2 * b] += (lambda + 2.0 * mu) * ax * bx + mu * ay * by;
-            stiffness[2 * a][2 * b + 1] += lambda * ax * by + mu * ay * bx;
-            stiffness[2 * a + 1][2 * b] += lambda * ay * bx + mu * ax * by;
-            stiffness[2 * a + 1][2 * b + 1] += (lambda + 2.0 * mu) * ay * by + mu * ax * bx;
-        }
-    }
-}
-
 /// The quadrature rule of an element's stiffness with the parent gradients at its points.
-///
-/// ```
-/// use palpate::fem::{Element, element::StiffnessRule};
-/// use palpate::phantom::Material;
-///
-/// let rule = StiffnessRule::new(Element::Q4Full);
-/// let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
-/// let stiffness = rule.integrate(&square, &Material { youngs_modulus: 5e3, poisson_ratio: 0.25 })?;
-/// // A shift along x costs nothing.
-/// let force: f64 = (0..4).map(|node| stiffness[0][2 * node]).sum();
-/// assert!(force.abs() < 1e-12 * stiffness[0][0]);
-/// # Ok::<(), f64>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct StiffnessRule {
-    points: Vec<(f64, Vec<[f64; 2]>)>,
+    points: Vec<(f64, PerNode)>,
 }
 
 impl StiffnessRule {
     /// The rule for one shape of element.
-    ///
-    /// ```
-    /// use palpate::fem::{Element, element::StiffnessRule};
-    ///
-    /// let [curved, square] = [Element::T6, Element::Q4Full].map(StiffnessRule::new);
-    /// ```
     pub fn new(element: Element) -> StiffnessRule {
         let points = stiffness_rule(element);
         StiffnessRule {
@@ -226,39 +177,44 @@ impl StiffnessRule {
 
     /// Stiffness of an element with nodes at `positions`, or the Jacobian that is not positive.
     ///
+    /// The block of nodes a, b is ∫ λ ∇N_a ∇N_bᵀ + μ ∇N_b ∇N_aᵀ + μ (∇N_a·∇N_b) I.
+    ///
     /// ```
     /// use palpate::fem::{Element, element::StiffnessRule};
     /// use palpate::phantom::Material;
     ///
-    /// let material = Material { youngs_modulus: 5e3, poisson_ratio: 0.49 };
-    /// let clockwise = [[0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]];
-    /// let refused = StiffnessRule::new(Element::Q4Full).integrate(&clockwise, &material);
-    /// assert!(refused.is_err_and(|jacobian| jacobian < 0.0));
+    /// let rule = StiffnessRule::new(Element::Q4Full);
+    /// let gel = Material { youngs_modulus: 5e3, poisson_ratio: 0.25 };
+    /// let stiffness = rule.integrate(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]], &gel)?;
+    /// // A shift along x costs nothing.
+    /// let force: f64 = (0..4).map(|node| stiffness[(0, 2 * node)]).sum();
+    /// assert!(force.abs() < 1e-12 * stiffness[(0, 0)]);
+    /// # Ok::<(), f64>(())
     /// ```
     ///
     /// Implements: FEM-017.
     pub fn integrate(&self, positions: &[[f64; 2]], material: &Material) -> Result<Stiffness, f64> {
-        let constants = lame(material);
-        let mut stiffness = [[0.0; 2 * MOST_NODES]; 2 * MOST_NODES];
+        let (lambda, mu) = lame(material);
+        let mut stiffness = Stiffness::zeros();
         for (weight, parent) in &self.points {
             let g = gradients(parent, positions);
             // A NaN is refused as well.
             if g.jacobian.is_nan() || g.jacobian <= 0.0 {
                 return Err(g.jacobian);
             }
-            add_point(
-                &mut stiffness,
-                positions.len(),
-                &g,
-                weight * g.jacobian,
-                constants,
-            );
-        }
-        for row in 0..2 * MOST_NODES {
-            for column in row + 1..2 * MOST_NODES {
-                stiffness[row][column] = stiffness[column][row];
+            let volume = weight * g.jacobian;
+            for a in 0..positions.len() {
+                let ga = g.of_node.column(a) * volume;
+                for b in 0..=a {
+                    let gb = g.of_node.column(b);
+                    let mut block = stiffness.fixed_view_mut::<2, 2>(2 * a, 2 * b);
+                    block += lambda * ga * gb.transpose()
+                        + mu * gb * ga.transpose()
+                        + Matrix2::from_diagonal_element(mu * ga.dot(&gb));
+                }
             }
         }
+        stiffness.fill_upper_triangle_with_lower_triangle();
         Ok(stiffness)
     }
 }

@@ -3,10 +3,10 @@
 use super::assembly::StiffnessMatrix;
 use super::cholesky::{Factor, check_residual};
 use super::contact::{Contact, ContactState, Surface};
-use super::field::{BATCH, Batch, Field, FieldCheck, Samples};
+use super::field::{BATCH, Batch, Field, FieldCheck, Sample, samples};
 use super::mesh::Mesh;
-use super::outline::QUARTERS;
-use super::{FemError, MeshOptions, Pose};
+use super::size::SizeField;
+use super::{FemError, MeshOptions, Pose, arithmetic};
 use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
 use crate::phantom::Phantom;
 
@@ -20,9 +20,8 @@ use crate::phantom::Phantom;
 /// let options = MeshOptions { size: 2e-3, ..MeshOptions::default() };
 /// let model = Model::new(&phantom, &options, Contact::default())?;
 /// assert_eq!((model.phantom(), model.options()), (&phantom, &options));
-/// assert_eq!(model.surface().positions.len(), model.mesh().surface().len());
-/// assert_eq!(model.matrix().column_starts.len(), model.matrix().numbering.unknowns() + 1);
-/// assert_eq!(model.factor().surface_compliance(), model.surface().compliance);
+/// // Two contact points on each of the edges, which have three nodes each.
+/// assert_eq!(model.surface().positions.len(), model.mesh().surface.len() - 1);
 ///
 /// let [left, right] = [-1e-3, 1e-3].map(|lateral| model.solve(Pose { depth: 2e-3, lateral }));
 /// assert_eq!(left?.lateral_force, -right?.lateral_force);
@@ -36,19 +35,10 @@ pub struct Model {
     matrix: StiffnessMatrix,
     factor: Factor,
     surface: Surface,
-    samples: Samples,
+    samples: Vec<Sample>,
 }
 
 /// The probe at rest at one pose.
-///
-/// ```
-#[doc = include_str!("coarse.example")]
-/// let solution = model.solve(pose)?;
-/// // Right of the inclusion, which pushes the probe up and away.
-/// assert!(solution.normal_force > 0.0 && solution.lateral_force > 0.0);
-/// assert!(solution.energy > 0.0 && solution.penetration < 1e-11);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseSolution {
     /// The pose.
@@ -59,7 +49,7 @@ pub struct PoseSolution {
     pub lateral_force: f64,
     /// Strain energy of phantom and skin, J.
     pub energy: f64,
-    /// Largest penetration of a surface node, m.
+    /// Largest penetration of a contact point, m.
     pub penetration: f64,
     /// Displacements and contact forces of the surface.
     pub state: ContactState,
@@ -78,42 +68,27 @@ impl Model {
     /// use palpate::phantom::Phantom;
     ///
     /// let mut phantom = Phantom::builtin("6.6")?;
-    /// phantom.gel.material.poisson_ratio = 0.5; // would be incompressible
+    /// phantom.layers[1].material.poisson_ratio = 0.5; // would be incompressible
     /// let refused = Model::new(&phantom, &MeshOptions::default(), Contact::default());
     /// assert!(matches!(refused, Err(FemError::Phantom(_))));
     /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
     /// ```
     ///
     /// # Errors
-    /// [`FemError::Phantom`] for a phantom that is not valid, [`FemError::MeshSize`],
-    /// [`FemError::Degenerate`], [`FemError::NotPositiveDefinite`].
+    /// [`FemError::Phantom`] for a phantom that is not valid, and as [`Mesh::new`], [`StiffnessMatrix::assemble`] and
+    /// [`Factor::new`].
     pub fn new(
         phantom: &Phantom,
         options: &MeshOptions,
         contact: Contact,
     ) -> Result<Model, FemError> {
-        Model::with_quarters(phantom, options, contact, QUARTERS)
-    }
-
-    /// As [`Model::new`], with `quarters`/4 of the cells along each line of the mesh.
-    pub(super) fn with_quarters(
-        phantom: &Phantom,
-        options: &MeshOptions,
-        contact: Contact,
-        quarters: usize,
-    ) -> Result<Model, FemError> {
         phantom.validate()?;
-        let mesh = Mesh::with_quarters(phantom, options, quarters)?;
+        let mesh = Mesh::new(phantom, options)?;
         let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
         let factor = Factor::new(&matrix)?;
-        let positions = mesh.nodes[mesh.surface()].to_vec();
-        let surface = Surface::new(
-            factor.surface_compliance(),
-            positions,
-            phantom.probe,
-            contact,
-        );
-        let samples = Samples::new(&mesh, &matrix);
+        let compliance = factor.surface_compliance(&matrix)?;
+        let surface = Surface::new(&mesh, &compliance, phantom.probe, contact);
+        let samples = samples(&mesh, &matrix, &SizeField::new(phantom, options.size));
         Ok(Model {
             phantom: phantom.clone(),
             options: *options,
@@ -157,34 +132,17 @@ impl Model {
 
     /// The force at one pose.
     ///
-    /// ```
-    #[doc = include_str!("coarse.example")]
-    /// let [shallow, deep] = [1e-3, 2e-3].map(|depth| model.solve(Pose { depth, lateral: 0.0 }));
-    /// let (shallow, deep) = (shallow?, deep?);
-    /// // Twice the depth is more than twice the force: the contact grows.
-    /// assert!(deep.normal_force > 2.0 * shallow.normal_force);
-    /// assert!(deep.lateral_force.abs() < 1e-12);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
     /// [`FemError::Pose`] where the probe cannot stand, [`FemError::NoConvergence`].
     ///
-    /// Implements: FEM-019, FEM-020, FEM-021, FEM-025, FEM-080.
+    /// Implements: FEM-019, FEM-020, FEM-021, FEM-025, FEM-039, FEM-080.
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
         self.phantom.check_pose(pose.depth, pose.lateral)?;
-        // The right half stands for both, so that mirrored poses have mirrored forces to the bit.
-        let right = Pose {
-            lateral: pose.lateral.abs(),
-            ..pose
-        };
-        let surface = Pose {
-            depth: 0.0,
-            ..right
-        };
-        let untouched = ContactState::untouched(self.surface.positions.len());
-        let solution = self.solution(right, self.approach(right, surface, &untouched)?);
-        Ok(if pose.lateral < 0.0 {
+        // Where the phantom is symmetric the right half stands for both, so that mirrored poses have mirrored forces to the bit.
+        let mirror = self.mesh.symmetric && pose.lateral < 0.0;
+        let lateral = if mirror { -pose.lateral } else { pose.lateral };
+        let solution = self.column(&[pose.depth], lateral)?.swap_remove(0);
+        Ok(if mirror {
             solution.mirrored()
         } else {
             solution
@@ -204,109 +162,85 @@ impl Model {
         let (mut state, mut depth, mut step) = (start.clone(), from.depth, longest);
         let mut iterations = 0;
         loop {
-            let next = if pose.depth - depth <= step {
-                pose.depth
-            } else {
-                depth + step
+            let last = pose.depth - depth <= step;
+            let next = if last { pose.depth } else { depth + step };
+            let at = Pose {
+                depth: next,
+                ..pose
             };
-            match self.surface.solve(
-                Pose {
-                    depth: next,
-                    ..pose
-                },
-                &state,
-            ) {
+            match self.surface.solve(at, &state) {
                 Ok(solved) => {
                     iterations += solved.iterations;
                     (state, depth) = (solved, next);
-                    if depth == pose.depth {
+                    if last {
                         state.iterations = iterations;
                         return Ok(state);
                     }
                 }
-                Err(FemError::NoConvergence { .. }) if step > shortest => {
-                    step = 0.5 * step.min(pose.depth - depth);
-                }
-                Err(FemError::NoConvergence { iterations, .. }) => {
+                Err(FemError::NoConvergence { iterations, .. }) if step <= shortest => {
                     return Err(FemError::NoConvergence { pose, iterations });
                 }
-                Err(error) => return Err(error),
+                Err(_) => step = 0.5 * step.min(pose.depth - depth),
             }
         }
     }
 
     fn solution(&self, pose: Pose, state: ContactState) -> PoseSolution {
         let [lateral_force, normal_force] = self.surface.probe_force(&state, pose);
-        let work = |(node, force): &(usize, [f64; 2])| {
-            let u = state.displacements[*node];
-            force[0] * u[0] + force[1] * u[1]
+        let work = |(point, force): (usize, [f64; 2])| {
+            let u = state.displacements[point];
+            0.5 * (force[0] * u[0] + force[1] * u[1])
         };
-        let energy = 0.5
-            * self
-                .surface
-                .nodal_forces(&state, pose)
-                .iter()
-                .map(work)
-                .sum::<f64>();
-        let penetration = self.surface.penetration(&state, pose);
+        let forces = self.surface.forces(&state, pose);
         PoseSolution {
             pose,
             normal_force,
             lateral_force,
-            energy,
-            penetration,
+            energy: forces.into_iter().map(work).sum(),
+            penetration: self.surface.penetration(&state, pose),
             state,
         }
     }
 
     /// The whole field at a solved pose, by a full solve under its contact forces.
     ///
-    /// ```
-    #[doc = include_str!("coarse.example")]
-    /// let solution = model.solve(pose)?;
-    /// let field = model.field(&solution)?;
-    /// let surface = &field.displacements[model.mesh().surface()];
-    /// for (found, kept) in surface.iter().zip(&solution.state.displacements) {
-    ///     assert!((found[1] - kept[1]).abs() < 1e-9);
-    /// }
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
     /// [`FemError::Residual`].
     pub fn field(&self, solution: &PoseSolution) -> Result<Field, FemError> {
-        let numbering = &self.matrix.numbering;
-        let first = numbering.first_surface_unknown();
-        let mut force = vec![0.0; numbering.unknowns()];
-        for (node, component) in self.surface.nodal_forces(&solution.state, solution.pose) {
-            force[first + 2 * node..][..2].copy_from_slice(&component);
+        let mut force = vec![0.0; self.matrix.unknowns()];
+        let (_, forces) = self.surface.at_nodes(&solution.state, solution.pose);
+        for (place, load) in self.matrix.surface.iter().zip(forces.as_flattened()) {
+            if let Some(unknown) = *place {
+                force[unknown] = *load;
+            }
         }
         let (u, _) = self.factor.solve(&self.matrix, &force)?;
         let component = |node, direction| {
-            numbering
+            self.matrix
                 .unknown(node, direction)
                 .map_or(0.0, |unknown| u[unknown])
         };
         let nodes = 0..self.mesh.nodes.len();
+        let displacements = nodes.map(|node| [component(node, 0), component(node, 1)]);
+        // The row of zeros behind the unknowns stands for what is held.
+        let rows: Vec<[f64; 1]> = u.iter().map(|&u| [u]).chain([[0.0]]).collect();
+        let gradient = |sample: &Sample| sample.gradient(&rows).map(|row| row.map(|[g]| g));
+        let per_element = self.samples.len() / self.mesh.regions.len();
+        let elements = self.samples.chunks(per_element);
         Ok(Field {
-            displacements: nodes
-                .map(|node| [component(node, 0), component(node, 1)])
+            displacements: displacements.collect(),
+            gradients: elements
+                .map(|samples| samples.iter().map(gradient).collect())
                 .collect(),
-            gradients: self.samples.gradients(&u),
         })
     }
 
     /// The checks of the whole field at each solved pose.
     ///
-    /// ```
-    #[doc = include_str!("coarse.example")]
-    /// let checks = model.checks(&[model.solve(pose)?]);
-    /// assert!(checks[0].residual < 1e-8);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn checks(&self, solutions: &[PoseSolution]) -> Vec<FieldCheck> {
-        let first = self.matrix.numbering.first_surface_unknown();
-        let mut batch = Batch::new(self.matrix.numbering.unknowns());
+    /// # Errors
+    /// [`FemError::OutOfMemory`].
+    pub fn checks(&self, solutions: &[PoseSolution]) -> Result<Vec<FieldCheck>, FemError> {
+        let mut batch = Batch::new(self.matrix.unknowns());
         let mut checks = vec![FieldCheck::UNTOUCHED; solutions.len()];
         let touching: Vec<usize> = (0..solutions.len())
             .filter(|&at| !solutions[at].state.active.is_empty())
@@ -314,15 +248,15 @@ impl Model {
         for chunk in touching.chunks(BATCH) {
             for (column, &at) in chunk.iter().enumerate() {
                 let PoseSolution { state, pose, .. } = &solutions[at];
-                let forces = self.surface.nodal_forces(state, *pose);
-                batch.set(column, first, &state.displacements, &forces);
+                let (displacements, forces) = self.surface.at_nodes(state, *pose);
+                batch.set(column, &self.matrix, &displacements, &forces);
             }
-            let columns = batch.check(&self.matrix, &self.factor, &self.samples);
+            let columns = batch.check(&self.matrix, &self.factor, &self.samples)?;
             for (&at, check) in chunk.iter().zip(columns) {
                 checks[at] = check;
             }
         }
-        checks
+        Ok(checks)
     }
 
     /// Solves one lateral position at increasing depths, each pose starting the next.
@@ -354,20 +288,7 @@ impl Model {
     /// positions are the mirror images of positive ones. `solved` is told after each lateral position how
     /// many poses that were.
     ///
-    /// ```
-    #[doc = include_str!("coarse.example")]
-    /// use std::cell::Cell;
-    ///
-    /// let poses = Cell::new(0);
-    /// let map = model.map(&[1e-3, 2e-3], &[-2e-3, 0.0, 2e-3], &|solved| poses.set(poses.get() + solved))?;
-    /// assert_eq!(poses.get(), 4); // those at −2 mm are mirror images
-    /// assert_eq!(map.normal_force().row(1)[0], map.normal_force().row(1)[2]);
-    /// let certificate = map.certificate().expect("a computed map");
-    /// assert!(certificate.worst_relative_residual < 1e-8);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// Implements: FEM-014, FEM-015, FEM-061.
+    /// Implements: FEM-014, FEM-015, FEM-038, FEM-061.
     ///
     /// # Errors
     /// As [`Model::solve`], and [`FemError::Residual`], [`FemError::Map`].
@@ -385,14 +306,14 @@ impl Model {
                 self.phantom.check_pose(depth, lateral)?;
             }
         }
-        let right = solved_laterals(laterals);
+        let right = self.solved_laterals(laterals);
         let mut solutions = Vec::with_capacity(right.len() * depths.len());
         for &lateral in &right {
             let column = self.column(depths, lateral)?;
             solutions.extend(column);
             solved(depths.len());
         }
-        let checks = self.checks(&solutions);
+        let checks = self.checks(&solutions)?;
         for check in &checks {
             check_residual(check.residual)?;
         }
@@ -420,12 +341,25 @@ impl Model {
             Some(self.phantom.clone()),
             table,
         )?;
-        let map = if right[0] == 0.0 {
+        let map = if self.mesh.symmetric && right[0] == 0.0 {
             map.mirrored()?
         } else {
             map
         };
         Ok(map.at_laterals(laterals)?)
+    }
+
+    /// The lateral positions that [`Model::map`] solves for a map at `laterals`, m, increasing: of a symmetric phantom the
+    /// distinct |x|, with 0 among them wherever there is a mirror image to make.
+    pub fn solved_laterals(&self, laterals: &[f64]) -> Vec<f64> {
+        let mut solved = laterals.to_vec();
+        if self.mesh.symmetric && laterals.iter().any(|&x| x < 0.0) {
+            solved.push(0.0);
+            solved.iter_mut().for_each(|x| *x = x.abs());
+        }
+        solved.sort_by(f64::total_cmp);
+        solved.dedup();
+        solved
     }
 
     fn certificate(
@@ -451,6 +385,7 @@ impl Model {
             elements: self.mesh.regions.len(),
             element: self.mesh.element.name().into(),
             contact: self.surface.contact.name().into(),
+            arithmetic: arithmetic().into(),
             smallest_det,
             min_det,
             discretization: None,
@@ -461,52 +396,14 @@ impl Model {
 impl PoseSolution {
     /// The same probe at −x.
     fn mirrored(self) -> PoseSolution {
-        let nodes = self.state.displacements.len();
-        let state = ContactState {
-            displacements: self
-                .state
-                .displacements
-                .iter()
-                .rev()
-                .map(|&[x, y]| [-x, y])
-                .collect(),
-            pressures: self.state.pressures.iter().rev().copied().collect(),
-            active: self
-                .state
-                .active
-                .iter()
-                .rev()
-                .map(|&node| nodes - 1 - node)
-                .collect(),
-            iterations: self.state.iterations,
-        };
-        let pose = Pose {
-            lateral: -self.pose.lateral,
-            ..self.pose
-        };
         PoseSolution {
-            pose,
+            pose: Pose {
+                lateral: -self.pose.lateral,
+                ..self.pose
+            },
             lateral_force: -self.lateral_force,
-            state,
+            state: self.state.mirrored(),
             ..self
         }
     }
-}
-
-/// The lateral positions that [`Model::map`] solves for a map at `laterals`, m: the distinct |x|, increasing,
-/// with 0 among them wherever there is a mirror image to make.
-///
-/// ```
-/// use palpate::fem::solved_laterals;
-///
-/// assert_eq!(solved_laterals(&[-2e-3, 1e-3, 2e-3]), [0.0, 1e-3, 2e-3]);
-/// ```
-pub fn solved_laterals(laterals: &[f64]) -> Vec<f64> {
-    let mut right: Vec<f64> = laterals.iter().map(|x| x.abs()).collect();
-    if laterals.iter().any(|&x| x < 0.0) {
-        right.push(0.0);
-    }
-    right.sort_by(f64::total_cmp);
-    right.dedup();
-    right
 }

@@ -1,137 +1,116 @@
-//! The order in which the interior's unknowns are eliminated: nested dissection of the lattice.
+//! The order in which the interior's unknowns are eliminated: nested dissection by coordinates.
 //!
-//! A line of nodes that cuts the lattice in two is eliminated after both halves, so that they do not
-//! fill each other's columns of the factor; each half is cut again (George 1973). On a lattice the
-//! lines are at hand, and the factor has fewer entries than with an approximate-minimum-degree order.
-//! The first line is the axis: the halves beside it are mirror images, and only the right one is cut.
-
-use core::cmp::Ordering;
-use core::ops::Range;
+//! A line of nodes that cuts the mesh in two is eliminated after both parts, so that they do not fill each other's
+//! columns of the factor; each part is cut again (George 1973).
 
 use super::mesh::Mesh;
 
-/// A node at its place in the lattice, in half cells of the coarse part.
-#[derive(Debug, Clone, Copy)]
-struct Site {
-    node: usize,
-    /// From the axis; a fraction where the fine part has nodes between.
-    column: f64,
-    row: usize,
-}
+/// Parts of at most so many elements are not cut: their fill is small in any order.
+const SMALLEST_PART: usize = 8;
 
-/// Pieces of at most so many nodes are not cut: their fill is small in any order.
-const SMALLEST_PIECE: usize = 8;
+/// Where a node stands in the search.
+const INTERIOR: u32 = 0;
+const ORDERED: u32 = u32::MAX;
 
-/// Nodes that are eliminated together: a line, or a piece that is not cut.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Piece {
-    /// Where they stand in the order.
-    pub places: Range<usize>,
-    /// How many pieces this line separates. They come before it, each behind its own.
-    pub children: usize,
-}
-
-/// The nodes right of the axis, without walls, floor and outer surface, in the order of elimination.
+/// The nodes below the surface in the order of elimination.
 ///
-/// Implements: FEM-006.
-#[derive(Debug, Clone, Default)]
-pub struct Dissection {
-    /// The nodes.
-    pub order: Vec<usize>,
-    /// What is eliminated together, children first.
-    pub pieces: Vec<Piece>,
+/// Implements: FEM-006, FEM-034.
+pub fn dissection(mesh: &Mesh) -> Vec<usize> {
+    let centre = |nodes: &[u32]| {
+        let corners = mesh.positions(&nodes[..mesh.element.corners()]);
+        [0, 1].map(|k| corners.iter().map(|p| p[k]).sum::<f64>())
+    };
+    let mut search = Search {
+        mesh,
+        centres: mesh.elements().map(centre).collect(),
+        marks: vec![INTERIOR; mesh.nodes.len()],
+        stamp: INTERIOR,
+        order: Vec::new(),
+    };
+    for &node in &mesh.surface {
+        search.marks[node] = ORDERED;
+    }
+    let mut elements: Vec<u32> = (0..mesh.regions.len() as u32).collect();
+    search.dissect(&mut elements);
+    search.order
 }
 
-impl Dissection {
-    /// Dissects the right half of a mesh.
-    pub fn new(mesh: &Mesh) -> Dissection {
-        let columns = ((mesh.rows[0].len() - 1) / 2) as f64;
-        let mut sites = Vec::with_capacity(mesh.nodes.len() / 2);
-        let rows = mesh.rows.iter().enumerate();
-        for (row, nodes) in rows.take(mesh.rows.len() - 1).skip(1) {
-            let half = (nodes.len() - 1) / 2;
-            let axis = nodes.start + half;
-            for node in axis + 1..nodes.end - 1 {
-                // On a coarse line the product is a multiple of the divisor: exact.
-                let column = (node - axis) as f64 * columns / half as f64;
-                sites.push(Site { node, column, row });
-            }
-        }
-        let mut dissection = Dissection::default();
-        dissection.dissect(sites);
-        dissection
-    }
+struct Search<'a> {
+    mesh: &'a Mesh,
+    centres: Vec<[f64; 2]>,
+    marks: Vec<u32>,
+    stamp: u32,
+    order: Vec<usize>,
+}
 
-    fn dissect(&mut self, sites: Vec<Site>) {
-        let Some(line) = middle_line(&sites) else {
-            return self.push(&sites, 0);
+impl Search<'_> {
+    fn dissect(&mut self, elements: &mut [u32]) {
+        if elements.len() <= SMALLEST_PART {
+            let nodes = self.unordered(elements);
+            self.order.extend(nodes);
+            return;
+        }
+        let middle = elements.len() / 2;
+        let [across_x, across_y] = [0, 1].map(|axis| {
+            self.halve(elements, axis);
+            self.separator(elements, middle)
+        });
+        let separator = if across_x.len() <= across_y.len() {
+            self.halve(elements, 0);
+            across_x
+        } else {
+            across_y
         };
-        let part = |side: Ordering| -> Vec<Site> {
-            sites
-                .iter()
-                .copied()
-                .filter(|site| line.side_of(site) == side)
-                .collect()
-        };
-        let (before, behind, on) = (
-            part(Ordering::Less),
-            part(Ordering::Greater),
-            part(Ordering::Equal),
-        );
-        drop(sites);
+        for &node in &separator {
+            self.marks[node] = ORDERED;
+        }
+        let (before, behind) = elements.split_at_mut(middle);
         self.dissect(before);
         self.dissect(behind);
-        self.push(&on, 2);
+        self.order.extend(separator);
     }
 
-    fn push(&mut self, sites: &[Site], children: usize) {
-        let start = self.order.len();
-        self.order.extend(sites.iter().map(|site| site.node));
-        let places = start..self.order.len();
-        self.pieces.push(Piece { places, children });
+    /// Puts the half of the elements with the smaller coordinate first.
+    fn halve(&self, elements: &mut [u32], axis: usize) {
+        let middle = elements.len() / 2;
+        let at = |element: &u32| self.centres[*element as usize][axis];
+        elements.select_nth_unstable_by(middle, |a, b| at(a).total_cmp(&at(b)).then(a.cmp(b)));
     }
-}
 
-/// A line of corners and midside nodes across the lattice.
-#[derive(Debug, Clone, Copy)]
-enum Line {
-    Column(f64),
-    Row(usize),
-}
-
-impl Line {
-    fn side_of(self, site: &Site) -> Ordering {
-        match self {
-            Line::Column(column) => site.column.total_cmp(&column),
-            Line::Row(row) => site.row.cmp(&row),
+    /// The nodes that elements before `middle` share with those behind, of those not yet ordered, ascending.
+    fn separator(&mut self, elements: &[u32], middle: usize) -> Vec<usize> {
+        self.stamp += 1;
+        let nodes = |element: &u32| {
+            let count = self.mesh.element.nodes();
+            &self.mesh.connectivity[*element as usize * count..][..count]
+        };
+        for &node in elements[..middle].iter().flat_map(nodes) {
+            let mark = &mut self.marks[node as usize];
+            if *mark != ORDERED {
+                *mark = self.stamp;
+            }
         }
+        let behind = elements[middle..]
+            .iter()
+            .flat_map(nodes)
+            .map(|&node| node as usize);
+        let mut shared: Vec<usize> = behind
+            .filter(|&node| self.marks[node] == self.stamp)
+            .collect();
+        shared.sort_unstable();
+        shared.dedup();
+        shared
     }
-}
 
-/// The line with as many nodes on one side as on the other, the shorter of column and row; `None` if the piece is
-/// small or no line has nodes on both its sides.
-fn middle_line(sites: &[Site]) -> Option<Line> {
-    if sites.len() <= SMALLEST_PIECE {
-        return None;
+    /// The nodes of some elements that are not yet ordered, each once; they are then.
+    fn unordered(&mut self, elements: &[u32]) -> Vec<usize> {
+        let count = self.mesh.element.nodes();
+        let nodes = elements
+            .iter()
+            .flat_map(|&e| &self.mesh.connectivity[e as usize * count..][..count]);
+        nodes
+            .map(|&node| node as usize)
+            .filter(|&node| std::mem::replace(&mut self.marks[node], ORDERED) != ORDERED)
+            .collect()
     }
-    let column = middle(sites.iter().map(|site| site.column)).map(Line::Column);
-    let row = middle(sites.iter().map(|site| site.row as f64)).map(|row| Line::Row(row as usize));
-    let nodes = |line: &Line| {
-        let on = |site: &&Site| line.side_of(site) == Ordering::Equal;
-        sites.iter().filter(on).count()
-    };
-    [column, row].into_iter().flatten().min_by_key(nodes)
-}
-
-/// The line between cells, an even number, nearest to the median of `coordinates` that has some of them on both
-/// its sides.
-fn middle(coordinates: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut sorted: Vec<f64> = coordinates.collect();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let (first, last) = (*sorted.first()?, *sorted.last()?);
-    let median = sorted[sorted.len() / 2];
-    let line = 2.0 * libm::round(median / 2.0);
-    [line, line - 2.0, line + 2.0]
-        .into_iter()
-        .find(|&line| first < line && line < last)
 }

@@ -22,6 +22,7 @@ use super::{InvalidForceMap, Matrix, SAME_POSITION};
 ///     elements: 2000,
 ///     element: "t6".into(),
 ///     contact: "deformed".into(),
+///     arithmetic: "other".into(),
 ///     smallest_det: SmallestDet { det: 0.7, depth: 0.004, lateral: 0.0 },
 ///     min_det: matrix(0.6),
 ///     discretization: None,
@@ -62,6 +63,10 @@ pub struct Certificate {
     pub element: String,
     /// The name of the contact law, as on the command line.
     pub contact: String,
+    /// The class of processors that has the same bits of every force.
+    ///
+    /// Implements: CON-010.
+    pub arithmetic: String,
     /// The smallest entry of `min_det` with its pose.
     pub smallest_det: SmallestDet,
     /// The smallest det(I + ∇u) in the mesh at every pose; depths × lateral positions. Near 0 the

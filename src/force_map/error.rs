@@ -149,6 +149,14 @@ pub enum InvalidForceMap {
         /// The first lateral position, m.
         first: f64,
     },
+    /// Only the map of a symmetric phantom can be mirrored.
+    #[error(
+        "phantom {name:?} is not its own mirror image, expected a map over negative lateral positions too: it cannot be extended by symmetry"
+    )]
+    AsymmetricPhantom {
+        /// The phantom's name.
+        name: String,
+    },
     /// A lateral force at x = 0 is not the zero that symmetry demands.
     #[error(
         "lateral force {force} N at depth {depth} m, x = 0, expected at most {SYMMETRY_TOLERANCE:e} N in a symmetric map"

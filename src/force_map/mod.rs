@@ -62,6 +62,7 @@ use crate::phantom::Phantom;
 /// # Ok::<(), palpate::force_map::ForceMapFileError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "a map has one")]
 pub enum Source {
     /// Computed by this program's finite elements.
     FiniteElements {
@@ -281,8 +282,12 @@ impl ForceMap {
     /// ```
     ///
     /// # Errors
-    /// [`InvalidForceMap::NotFromZero`], [`InvalidForceMap::NotSymmetric`].
+    /// [`InvalidForceMap::AsymmetricPhantom`], [`InvalidForceMap::NotFromZero`], [`InvalidForceMap::NotSymmetric`].
     pub fn mirrored(&self) -> Result<ForceMap, InvalidForceMap> {
+        if let Some(phantom) = self.phantom.as_ref().filter(|p| !p.is_symmetric()) {
+            let name = phantom.name.clone();
+            return Err(InvalidForceMap::AsymmetricPhantom { name });
+        }
         let source = match &self.source {
             Source::FiniteElements { certificate } => Source::FiniteElements {
                 certificate: certificate.mirrored(),

@@ -25,6 +25,7 @@ fn certificate(min_det: Matrix, det: f64, depth: f64, lateral: f64) -> Certifica
         elements: 3000,
         element: "t6".into(),
         contact: "deformed-normal".into(),
+        arithmetic: "other".into(),
         smallest_det: SmallestDet {
             det,
             depth,
@@ -217,10 +218,10 @@ fn a_map_fits_its_phantom() {
     assert!(ForceMap::new(measured(), Some(phantom.clone()), table()).is_ok());
     let too_wide = axes(&[0.0, 0.004], &[0.0, 0.0111]).unwrap();
     let message = refusal(ForceMap::new(measured(), Some(phantom.clone()), too_wide));
-    assert!(message.starts_with("phantom: lateral_mm = 11.1, allowed at depth_mm = 4: "));
-    phantom.gel.width = -1.0;
+    assert!(message.starts_with("phantom: lateral_mm = 11.1, allowed: "));
+    phantom.well.width = -1.0;
     let message = refusal(ForceMap::new(measured(), Some(phantom), table()));
-    assert!(message.starts_with("phantom: gel.width_mm = -1000.0, allowed: "));
+    assert!(message.starts_with("phantom: well.width_mm = -1000.0, expected "));
 }
 
 // Verifies: MAP-009.

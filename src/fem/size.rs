@@ -1,0 +1,213 @@
+//! How large an element may be at each point of a phantom: small where the error of a force comes from (`spec/fem.md`).
+
+use core::f64::consts::FRAC_PI_2;
+
+use super::triangulate::Point;
+use crate::phantom::{Outline, Phantom, Support};
+
+/// The mesh size, m, at which the sizes below hold as they stand; any other scales them all.
+pub const NOMINAL: f64 = 0.5e-3;
+/// Size at the surface, m, and its growth with depth.
+const SURFACE: [f64; 2] = [0.20e-3, 0.16];
+/// The largest size, m.
+const LARGEST: f64 = 1.5e-3;
+/// Size at an inclusion's edge, m, and its growth with distance.
+const INCLUSION: [f64; 2] = [0.20e-3, 0.40];
+/// Size where a layer's top meets a bonded wall, m, and its growth with distance.
+const WALL_CORNER: [f64; 2] = [0.015e-3, 0.22];
+/// Size at the corner of a polygon, m, and its growth with distance.
+const POLYGON_CORNER: [f64; 2] = [0.05e-3, 0.30];
+/// Size at the surface near a wall, m, and its growth with distance.
+const STRIP: [f64; 2] = [0.10e-3, 0.16];
+/// How far from a wall that is, m.
+const STRIP_WIDTH: f64 = 4e-3;
+/// Rows of elements in a layer at the nominal size, at least, and the growth of their size with distance from it.
+const ROWS: [f64; 2] = [2.0, 0.16];
+/// Growth rates follow the mesh size up to this multiple of the nominal one.
+const STEEPEST: f64 = 2.0;
+/// Strain is not judged nearer to a sharp corner than this, m.
+const SINGULAR: f64 = 1e-3;
+/// Size over the width of the gap between two edges.
+const GAP: f64 = 0.5;
+/// Nodes of real meshes over those of equilateral triangles of the wanted size, as found on the paper's phantoms.
+const CROWDED: f64 = 1.15;
+/// Size over the radius of curvature of an ellipse.
+const BEND: f64 = 0.5;
+
+/// The size function of a phantom.
+///
+/// Implements: FEM-031.
+#[derive(Debug, Clone)]
+pub struct SizeField {
+    scale: f64,
+    half_width: f64,
+    levels: Vec<f64>,
+    /// Points with the size at them and its growth.
+    corners: Vec<(Point, [f64; 2])>,
+    outlines: Vec<Outline>,
+}
+
+impl SizeField {
+    /// The size function for a mesh of `size` (m).
+    pub fn new(phantom: &Phantom, size: f64) -> SizeField {
+        let levels = phantom.levels();
+        let half_width = 0.5 * phantom.well.width;
+        let outlines: Vec<Outline> = phantom.inclusions.iter().map(|i| i.outline()).collect();
+        // A coarse mesh must follow a bend too.
+        let bend = BEND * (NOMINAL / size).min(1.0);
+        let mut corners = Vec::new();
+        if phantom.well.walls == Support::Fixed {
+            for &y in &levels[..levels.len() - 1] {
+                corners.extend([-half_width, half_width].map(|x| (Point::new(x, y), WALL_CORNER)));
+            }
+        }
+        for outline in &outlines {
+            match outline {
+                Outline::Polygon(points) => {
+                    corners.extend(points.iter().map(|&p| (p.into(), POLYGON_CORNER)));
+                }
+                Outline::Ellipse {
+                    centre,
+                    radii,
+                    turn,
+                } => corners.extend((0..4).map(|k| {
+                    let (along, across) = (radii[k % 2], radii[(k + 1) % 2]);
+                    let end = Outline::on_ellipse(*centre, *radii, *turn, k as f64 * FRAC_PI_2);
+                    (end.into(), [bend * across * across / along, INCLUSION[1]])
+                })),
+            }
+        }
+        SizeField {
+            scale: size / NOMINAL,
+            half_width,
+            levels,
+            corners,
+            outlines,
+        }
+    }
+
+    /// Distance between the corners of an element at `point`, m.
+    pub fn at(&self, point: Point) -> f64 {
+        // Neighbouring elements of a coarse mesh must not differ too much.
+        let steepness = self.scale.min(STEEPEST);
+        let grown =
+            |[at, growth]: [f64; 2], distance: f64| self.scale * at + steepness * growth * distance;
+        let (x, y) = (point.x.abs(), point.y);
+        let from_strip = Point::new((self.half_width - STRIP_WIDTH - x).max(0.0), y).norm();
+        let mut size = (self.scale * LARGEST)
+            .min(grown(SURFACE, y.abs()))
+            .min(grown(STRIP, from_strip));
+        for (corner, law) in &self.corners {
+            size = size.min(grown(*law, (point - corner).norm()));
+        }
+        // Thin layers and narrow gaps, which a coarse mesh must resolve too.
+        let row = (1.0 / ROWS[0]).min(1.0 / self.scale);
+        for pair in self.levels.windows(2) {
+            let outside = (y - pair[0]).max(pair[1] - y).max(0.0);
+            size = size.min(grown([row * (pair[0] - pair[1]), ROWS[1]], outside));
+        }
+        let gap = GAP * self.scale.min(1.0);
+        let from_edges = || self.outlines.iter().map(|outline| distance(outline, point));
+        for (k, from_edge) in from_edges().enumerate() {
+            let from_lines = self.levels.iter().map(|level| (y - level).abs());
+            let others = from_lines
+                .chain([self.half_width - x])
+                .chain(from_edges().take(k));
+            let nearest = others.fold(f64::INFINITY, f64::min);
+            size = size
+                .min(grown(INCLUSION, from_edge))
+                .min(gap * (from_edge + nearest));
+        }
+        size
+    }
+
+    /// Whether a point is so near to the corner of a wall or a polygon that the strain there is that of a singularity, which
+    /// grows without end on finer meshes.
+    ///
+    /// Implements: FEM-013.
+    pub(super) fn singular(&self, point: Point) -> bool {
+        let sharp = |law: &[f64; 2]| *law == WALL_CORNER || *law == POLYGON_CORNER;
+        let corners = self.corners.iter().filter(|(_, law)| sharp(law));
+        corners
+            .map(|(corner, _)| (point - corner).norm())
+            .any(|distance| distance < SINGULAR)
+    }
+
+    /// About how many nodes a mesh of triangles with six nodes will have.
+    ///
+    /// An equilateral triangle of side h covers √3/4 h², and there are two nodes a triangle.
+    ///
+    /// Implements: FEM-036.
+    pub fn expected_nodes(&self) -> f64 {
+        let floor = self.levels[self.levels.len() - 1];
+        let [low, high] = [[-self.half_width, floor], [self.half_width, 0.0]].map(Point::from);
+        CROWDED * self.integral(low, high, 14) * 8.0 / libm::sqrt(3.0)
+    }
+
+    /// ∫ h⁻² over a rectangle, which is cut in four, twice at least and at most `cuts` times, until h hardly varies in it.
+    fn integral(&self, low: Point, high: Point, cuts: usize) -> f64 {
+        let middle = (low + high) / 2.0;
+        let corners = [
+            low,
+            high,
+            Point::new(low.x, high.y),
+            Point::new(high.x, low.y),
+        ];
+        let sizes = corners.map(|corner| self.at((corner + middle) / 2.0));
+        let [least, most] = [
+            sizes.iter().copied().fold(sizes[0], f64::min),
+            sizes.iter().copied().fold(sizes[0], f64::max),
+        ];
+        if cuts == 0 || cuts < 11 && most <= 1.5 * least {
+            let area = (high.x - low.x) * (high.y - low.y);
+            return area * sizes.iter().map(|h| 0.25 / (h * h)).sum::<f64>();
+        }
+        let part =
+            |corner: Point| self.integral(corner.inf(&middle), corner.sup(&middle), cuts - 1);
+        corners.map(part).iter().sum()
+    }
+}
+
+/// Where a point stands if the ellipse becomes the unit circle.
+pub(super) fn on_unit_circle(
+    centre: &[f64; 2],
+    radii: &[f64; 2],
+    turn: &[f64; 2],
+    point: Point,
+) -> Point {
+    let (arm, turn) = (point - Point::from(*centre), Point::from(*turn));
+    Point::new(arm.dot(&turn) / radii[0], turn.perp(&arm) / radii[1])
+}
+
+/// Distance of a point from an outline, m: of an ellipse to first order, which is exact for a circle and near the edge.
+fn distance(outline: &Outline, point: Point) -> f64 {
+    match outline {
+        Outline::Ellipse {
+            centre,
+            radii,
+            turn,
+        } => {
+            let p = on_unit_circle(centre, radii, turn, point);
+            let slope = Point::new(p.x / radii[0], p.y / radii[1]).norm();
+            if slope == 0.0 {
+                radii[0].min(radii[1])
+            } else {
+                ((p.norm() - 1.0) * p.norm() / slope).abs()
+            }
+        }
+        Outline::Polygon(points) => {
+            let next = points.iter().cycle().skip(1);
+            let edges = points.iter().zip(next);
+            edges
+                .map(|(a, b)| to_segment(point, (*a).into(), (*b).into()))
+                .fold(f64::INFINITY, f64::min)
+        }
+    }
+}
+
+/// Distance of a point from the segment between `a` and `b`, m.
+fn to_segment(point: Point, a: Point, b: Point) -> f64 {
+    let along = b - a;
+    let t = ((point - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+    (point - a - t * along).norm()
+}
