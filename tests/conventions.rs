@@ -8,7 +8,7 @@ use palpate::fem::mesh::Region;
 use palpate::fem::{Contact, MeshOptions, Model, Pose, PoseSolution};
 use palpate::phantom::Phantom;
 
-/// Corners of the triangles along the surface are 1 mm apart.
+/// The mesh size, m. Points of the surface are at most as far apart.
 const SIZE: f64 = 1e-3;
 
 fn model(phantom: &Phantom) -> Model {
@@ -121,12 +121,13 @@ fn the_axes_are_those_of_the_specification() {
     let model = model(&phantom);
     let mesh = model.mesh();
     // The outer surface is y = 0, and everything else below it.
-    let surface = mesh.rows.last().unwrap().clone();
-    assert!(surface.clone().all(|node| mesh.nodes[node][1] == 0.0));
-    assert!((0..surface.start).all(|node| mesh.nodes[node][1] < 0.0));
+    let at_surface = mesh.nodes.iter().filter(|at| at[1] == 0.0).count();
+    assert_eq!(at_surface, mesh.surface.len());
+    assert!(mesh.surface.iter().all(|&node| mesh.nodes[node][1] == 0.0));
+    assert!(mesh.nodes.iter().all(|at| at[1] <= 0.0));
     // The disc lies around x = 0.
     let disc = mesh.elements().zip(&mesh.regions);
-    let disc = disc.filter(|(_, region)| **region == Region::Disc);
+    let disc = disc.filter(|(_, region)| **region == Region::Inclusion(0));
     let x: Vec<f64> = disc
         .flat_map(|(nodes, _)| mesh.positions(nodes))
         .map(|position| position[0])
@@ -135,13 +136,15 @@ fn the_axes_are_those_of_the_specification() {
         x.iter().copied().fold(0.0, f64::min),
         x.iter().copied().fold(0.0, f64::max),
     );
-    let radius = phantom.inclusion.unwrap().diameter / 2.0;
-    assert!((least + radius).abs() < 1e-12 && (most - radius).abs() < 1e-12);
-    // At lateral position x the lowest point of the gel lies there, at depth d: the circle rises by h²/2R at a node
-    // that is h away from its lowest point.
+    let [left, right, ..] = phantom.inclusions[0].extent();
+    // Two nodes on the circle are less than 0.5 mm apart; the outermost lies within half of that of the disc's end, and
+    // within its radius less (0.25²/2 · 3.2) mm.
+    assert!(least >= left - 1e-15 && least < left + 0.01e-3, "{least}");
+    assert!(most <= right + 1e-15 && most > right - 0.01e-3, "{most}");
+    // At lateral position x the lowest point of the gel lies there, at depth d: the circle rises by h²/2R at a point
+    // that is h away from its lowest one.
     let (depth, lateral) = (2e-3, 4e-3);
     let solution = solve(&model, depth, lateral);
-    // The outermost nodes of the surface are held, and have no displacement of their own.
     let moved = &model.surface().positions;
     let deformed = moved.iter().zip(&solution.state.displacements);
     let deformed = deformed.map(|(at, u)| [at[0] + u[0], at[1] + u[1]]);

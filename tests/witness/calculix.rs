@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use palpate::fem::{Contact, Element, Mesh, MeshOptions, Model, Pose};
+use palpate::fem::{Contact, Mesh, MeshOptions, Model, Pose};
 use palpate::phantom::Phantom;
 
 use super::deck::deck;
@@ -53,12 +53,14 @@ fn steps(tables: &str) -> Vec<[f64; 2]> {
     forces
 }
 
-/// Compares our forces with CalculiX's on the same mesh.
+/// Compares our forces with CalculiX's on the same mesh, with the disc, if there is one, at `centre_x` (m).
 ///
 /// An overlap p/K under the penalty K = 5·10⁹ Pa/m costs F_n' p/K. Pressures p of the nodes go up to 20 kPa and
-/// slopes F_n' to 1 N/mm, so that is 4 mN at most where the force is 2 N, and a like part of smaller ones. At the flanks
-/// the overlap shifts F_x by no more than F_n; 2 mN is half of that.
-fn compare(name: &str, lateral: f64) {
+/// slopes F_n' to 1 N/mm, so that is 4 mN at most where the force is 2 N, 0.2 %, and a like part of smaller ones. CalculiX's
+/// contact is at nodes, ours at Gauss points. Both swing with the pose: by 0.05 % and 0.4 mN on the default mesh
+/// (`spec/fem.md`), so here by (0.8/0.5)² = 2.6 times that, 0.13 % and 1 mN. The sum for F_n is 0.46 %. At the flanks
+/// the overlap shifts F_x by no more than half of F_n's shift, 0.1 % of F_n, and two swings of 1 mN are as much again.
+fn compare(name: &str, centre_x: f64, lateral: f64) {
     let missing = match Command::new("ccx").arg("-v").output() {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Some("CalculiX (ccx)"),
         _ => None,
@@ -67,13 +69,15 @@ fn compare(name: &str, lateral: f64) {
         return;
     }
     let options = MeshOptions {
-        size: 2.5e-3,
-        refinement: 1,
-        element: Element::T6,
+        size: 0.8e-3,
+        ..MeshOptions::default()
     };
-    let phantom = Phantom::builtin(name).unwrap();
+    let mut phantom = Phantom::builtin(name).unwrap();
+    for inclusion in &mut phantom.inclusions {
+        inclusion.centre_x = centre_x;
+    }
     let mesh = Mesh::new(&phantom, &options).unwrap();
-    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("ccx-{name}"));
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("ccx-{name}-{centre_x}"));
     let forces = run(&directory, &deck(&phantom, &mesh, lateral, &DEPTHS));
     assert_eq!(
         forces.len(),
@@ -83,18 +87,17 @@ fn compare(name: &str, lateral: f64) {
     let model = Model::new(&phantom, &options, Contact::DeformedNormal).unwrap();
     for (&depth, [along, normal]) in DEPTHS.iter().zip(forces) {
         let ours = model.solve(Pose { depth, lateral }).unwrap();
-        let [off, aside] = [ours.normal_force / normal - 1.0, ours.lateral_force - along];
+        let [off, aside] = [ours.normal_force - normal, ours.lateral_force - along]
+            .map(|difference| 100.0 * difference / normal);
         println!(
-            "{name}, d = {depth}, x = {lateral}: F_n {:.6} N, CalculiX {normal:.6} N ({:+.3} %); \
-             F_x {:.6} N, CalculiX {along:.6} N",
-            ours.normal_force,
-            100.0 * off,
-            ours.lateral_force
+            "{name} at {centre_x}, d = {depth}, x = {lateral}: F_n {:.6} N, CalculiX {normal:.6} N; \
+             F_x {:.6} N, CalculiX {along:.6} N; {off:+.3} % and {aside:+.3} % of F_n",
+            ours.normal_force, ours.lateral_force
         );
-        assert!(off.abs() < 0.005, "{name} at {depth}, {lateral}: {off:e}");
+        assert!(off.abs() < 0.5, "{name} at {depth}, {lateral}: {off} %");
         assert!(
-            aside.abs() < 2e-3,
-            "{name} at {depth}, {lateral}: {aside:e} N"
+            aside.abs() < 0.2,
+            "{name} at {depth}, {lateral}: {aside} % of F_n"
         );
     }
 }
@@ -102,17 +105,23 @@ fn compare(name: &str, lateral: f64) {
 // Verifies: FEM-080, FEM-082.
 #[test]
 fn calculix_finds_our_forces_without_inclusion() {
-    compare("none", 8e-3);
+    compare("none", 0.0, 8e-3);
 }
 
 // Verifies: FEM-080, FEM-082.
 #[test]
 fn calculix_finds_our_forces_beside_a_shallow_inclusion() {
-    compare("2.6", 3e-3);
+    compare("2.6", 0.0, 3e-3);
 }
 
 // Verifies: FEM-080, FEM-082.
 #[test]
 fn calculix_finds_our_forces_over_a_deep_inclusion() {
-    compare("6.6", 0.0);
+    compare("6.6", 0.0, 0.0);
+}
+
+// Verifies: FEM-080, FEM-082.
+#[test]
+fn calculix_finds_our_forces_beside_an_inclusion_off_the_middle() {
+    compare("2.6", 5e-3, 1e-3);
 }

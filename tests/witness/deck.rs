@@ -30,12 +30,10 @@ pub fn deck(phantom: &Phantom, mesh: &Mesh, lateral: f64, depths: &[f64]) -> Str
     for (node, [x, y]) in mesh.nodes.iter().enumerate() {
         writeln!(deck, "{}, {x:.12e}, {y:.12e}", node + 1).unwrap();
     }
-    let regions = [
-        (Region::Gel, "GEL"),
-        (Region::Skin, "SKIN"),
-        (Region::Disc, "DISC"),
-    ];
-    for (region, name) in regions {
+    let layers = (0..phantom.layers.len()).map(|k| (Region::Layer(k), format!("LAYER{k}")));
+    let inclusions = 0..phantom.inclusions.len();
+    let inclusions = inclusions.map(|k| (Region::Inclusion(k), format!("INCLUSION{k}")));
+    for (region, name) in layers.chain(inclusions) {
         writeln!(deck, "*ELEMENT, TYPE=CPE6, ELSET={name}").unwrap();
         for (element, nodes) in mesh.elements().enumerate() {
             if mesh.regions[element] == region {
@@ -53,7 +51,8 @@ pub fn deck(phantom: &Phantom, mesh: &Mesh, lateral: f64, depths: &[f64]) -> Str
         .unwrap();
     }
     deck += "*NSET, NSET=FIXED\n";
-    for (node, _) in mesh.free().iter().enumerate().filter(|(_, free)| !**free) {
+    let held = mesh.held.iter().enumerate();
+    for (node, _) in held.filter(|(_, held)| **held == [true; 2]) {
         writeln!(deck, "{},", node + 1).unwrap();
     }
     deck += "*SURFACE, NAME=OUTER\n";

@@ -12,9 +12,8 @@ use palpate::phantom::{Material, Phantom};
 
 /// What a region is made of, by the phantom alone: the library's own choice is among the things that are checked.
 fn material(phantom: &Phantom, region: Region) -> Material {
-    match (region, &phantom.inclusion) {
-        (Region::Skin, _) => phantom.skin.material,
-        (Region::Disc, Some(inclusion)) => inclusion.material,
-        (Region::Disc, None) | (Region::Gel, _) => phantom.gel.material,
+    match region {
+        Region::Layer(k) => phantom.layers[k].material,
+        Region::Inclusion(k) => phantom.inclusions[k].material,
     }
 }

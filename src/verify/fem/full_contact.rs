@@ -1,6 +1,5 @@
 //! Contact solved over all unknowns at once, to compare with the condensed contact.
 
-use crate::fem::assembly::material_of;
 use crate::fem::element::StiffnessRule;
 use crate::fem::{Contact, Mesh, MeshOptions, Model, Pose};
 use crate::force_map::ForceMap;
@@ -10,8 +9,10 @@ use super::problem::inside_out;
 use super::skyline::Skyline;
 use super::{Check, Figure, Figures, largest, said};
 
-/// A phantom with all its unknowns, the free displacements in the mesh's own order of nodes, from the element
-/// stiffnesses alone.
+/// A contact point: its position, and weight and unknowns of each node of its edge.
+type Point = ([f64; 2], Vec<(f64, [Option<usize>; 2])>);
+
+/// A phantom with all its unknowns, the free displacements from left to right, from the element stiffnesses alone.
 struct Full {
     phantom: Phantom,
     contact: Contact,
@@ -20,8 +21,8 @@ struct Full {
     entries: Vec<(usize, usize, f64)>,
     /// The first column of each row.
     first: Vec<usize>,
-    /// Of each node of the surface its position and its first unknown.
-    surface: Vec<([f64; 2], usize)>,
+    /// The contact points from left to right.
+    surface: Vec<Point>,
 }
 
 /// Forces on the probe (F_x, F_n) with the displacements of the surface.
@@ -33,21 +34,24 @@ struct Solved {
 impl Full {
     fn new(phantom: &Phantom, options: &MeshOptions, contact: Contact) -> Result<Full, String> {
         let mesh = Mesh::new(phantom, options).map_err(said)?;
-        let mut place = vec![None; mesh.nodes.len()];
-        let free = mesh.free();
-        for (count, node) in (0..mesh.nodes.len()).filter(|&node| free[node]).enumerate() {
-            place[node] = Some(2 * count);
+        let mut order: Vec<usize> = (0..mesh.nodes.len()).collect();
+        order.sort_by(|&a, &b| mesh.nodes[a][0].total_cmp(&mesh.nodes[b][0]));
+        let (mut place, mut unknowns) = (vec![[None; 2]; mesh.nodes.len()], 0);
+        for (node, i) in order.into_iter().flat_map(|node| [(node, 0), (node, 1)]) {
+            if !mesh.held[node][i] {
+                place[node][i] = Some(unknowns);
+                unknowns += 1;
+            }
         }
-        let unknowns = 2 * free.iter().filter(|free| **free).count();
         let (mut entries, mut first) = (Vec::new(), (0..unknowns).collect::<Vec<_>>());
         let rule = StiffnessRule::new(mesh.element);
         for (nodes, &region) in mesh.elements().zip(&mesh.regions) {
             let element = rule
-                .integrate(&mesh.positions(nodes), &material_of(phantom, region))
+                .integrate(&mesh.positions(nodes), region.material(phantom))
                 .map_err(inside_out)?;
             let places: Vec<Option<usize>> = nodes
                 .iter()
-                .flat_map(|&node| [0, 1].map(|i| place[node as usize].map(|p| p + i)))
+                .flat_map(|&node| place[node as usize])
                 .collect();
             for (a, row) in places.iter().enumerate() {
                 for (b, column) in places.iter().enumerate() {
@@ -55,15 +59,24 @@ impl Full {
                         && column <= row
                     {
                         first[row] = first[row].min(column);
-                        entries.push((row, column, phantom.probe.length * element[a][b]));
+                        entries.push((row, column, phantom.probe.length * element[(a, b)]));
                     }
                 }
             }
         }
-        let surface = (0..mesh.nodes.len())
+        // Two Gauss points on each edge of three nodes, with the parabolas of its nodes.
+        let g = 1.0 / 3f64.sqrt();
+        let mut nodes: Vec<usize> = (0..mesh.nodes.len())
             .filter(|&node| mesh.nodes[node][1] == 0.0)
-            .filter_map(|node| Some((mesh.nodes[node], place[node]?)))
             .collect();
+        nodes.sort_by(|&a, &b| mesh.nodes[a][0].total_cmp(&mesh.nodes[b][0]));
+        let mut surface = Vec::new();
+        for (edge, t) in (nodes.windows(3).step_by(2)).flat_map(|edge| [(edge, -g), (edge, g)]) {
+            let weights = [0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)];
+            let x = edge.iter().zip(weights).map(|(&n, w)| w * mesh.nodes[n][0]);
+            let of_node = edge.iter().zip(weights).map(|(&n, w)| (w, place[n]));
+            surface.push(([x.sum(), 0.0], of_node.collect()));
+        }
         Ok(Full {
             phantom: phantom.clone(),
             contact,
@@ -74,7 +87,7 @@ impl Full {
         })
     }
 
-    /// Gap of a node moved by `u`, ∂gap/∂u and ∂²gap/∂u².
+    /// Gap of a point moved by `u`, ∂gap/∂u and ∂²gap/∂u².
     fn gap(&self, [x, y]: [f64; 2], u: [f64; 2], pose: Pose) -> (f64, [f64; 2], [[f64; 2]; 2]) {
         let radius = self.phantom.probe.radius;
         let height = radius - pose.depth;
@@ -94,8 +107,16 @@ impl Full {
         }
     }
 
-    /// Newton's method on K u = Σ λ n, gap = 0 over the active nodes, and a change of the active set after each
-    /// convergence, until no node is pulled or inside the probe. The depth goes down in steps of at most 1 mm.
+    /// Displacement of a point, from the unknowns.
+    fn moved((_, nodes): &Point, u: &[f64]) -> [f64; 2] {
+        [0, 1].map(|i| {
+            let terms = nodes.iter().filter_map(|(w, place)| Some(w * u[place[i]?]));
+            terms.sum()
+        })
+    }
+
+    /// Newton's method on K u = Σ λ n, gap = 0 over the active points, and a change of the active set after each
+    /// convergence, until no point is pulled or inside the probe. The depth goes down in steps of at most 1 mm.
     fn solve(&self, pose: Pose) -> Result<Solved, String> {
         let mut u = vec![0.0; self.unknowns];
         let mut pressure = vec![0.0; self.surface.len()];
@@ -108,13 +129,14 @@ impl Full {
             };
             for round in 0.. {
                 if round == 60 {
-                    return Err("the set of nodes in contact does not settle".into());
+                    return Err("the set of points in contact does not settle".into());
                 }
                 self.newton(&mut u, &mut pressure, &active, pose)?;
                 let revised: Vec<usize> = (0..self.surface.len())
                     .filter(|&k| {
-                        let (at, place) = self.surface[k];
-                        let (gap, ..) = self.gap(at, [u[place], u[place + 1]], pose);
+                        let point = &self.surface[k];
+                        let (at, moved) = (point.0, Full::moved(point, &u));
+                        let (gap, ..) = self.gap(at, moved, pose);
                         if active.contains(&k) {
                             pressure[k] >= 0.0
                         } else {
@@ -131,7 +153,7 @@ impl Full {
         Ok(self.solved(&u, &pressure, &active, pose))
     }
 
-    /// Newton's method for u and the pressures λ of the active nodes,
+    /// Newton's method for u and the pressures λ of the active points,
     ///
     /// (K − Σ λ ∂n/∂u) δu − n δλ = Σ λ n − K u, −nᵀ δu = gap.
     fn newton(
@@ -142,11 +164,14 @@ impl Full {
         pose: Pose,
     ) -> Result<(), String> {
         let n = self.unknowns;
-        for node in (0..pressure.len()).filter(|node| !active.contains(node)) {
-            pressure[node] = 0.0;
+        for point in (0..pressure.len()).filter(|point| !active.contains(point)) {
+            pressure[point] = 0.0;
         }
         let mut first = self.first.clone();
-        first.extend(active.iter().map(|&node| self.surface[node].1));
+        first.extend(active.iter().map(|&point| {
+            let places = self.surface[point].1.iter().flat_map(|(_, place)| place);
+            places.flatten().copied().min().unwrap_or(n)
+        }));
         for _ in 0..30 {
             let mut matrix = Skyline::new(first.clone());
             let mut rest = vec![0.0; n + active.len()];
@@ -157,15 +182,23 @@ impl Full {
                     rest[column] -= value * u[row];
                 }
             }
-            for (k, &node) in active.iter().enumerate() {
-                let (at, place) = self.surface[node];
-                let (gap, normal, turn) = self.gap(at, [u[place], u[place + 1]], pose);
+            for (k, &active) in active.iter().enumerate() {
+                let point = &self.surface[active];
+                let (gap, normal, turn) = self.gap(point.0, Full::moved(point, u), pose);
                 rest[n + k] = gap;
-                for i in 0..2 {
-                    rest[place + i] += pressure[node] * normal[i];
-                    matrix.add(n + k, place + i, -normal[i]);
-                    for j in 0..=i {
-                        matrix.add(place + i, place + j, -pressure[node] * turn[i][j]);
+                // Each unknown with its weight and direction.
+                let unknowns: Vec<(usize, f64, usize)> = (point.1.iter())
+                    .flat_map(|&(w, place)| {
+                        [0, 1]
+                            .into_iter()
+                            .filter_map(move |i| Some((place[i]?, w, i)))
+                    })
+                    .collect();
+                for &(a, w, i) in &unknowns {
+                    rest[a] += pressure[active] * w * normal[i];
+                    matrix.add(n + k, a, -w * normal[i]);
+                    for &(b, v, j) in unknowns.iter().filter(|(b, ..)| *b <= a) {
+                        matrix.add(a, b, -pressure[active] * w * v * turn[i][j]);
                     }
                 }
             }
@@ -175,8 +208,8 @@ impl Full {
                 *u += step;
                 largest = largest.max(step.abs());
             }
-            for (k, &node) in active.iter().enumerate() {
-                pressure[node] += rest[n + k];
+            for (k, &point) in active.iter().enumerate() {
+                pressure[point] += rest[n + k];
             }
             if largest < 1e-13 {
                 return Ok(());
@@ -188,23 +221,20 @@ impl Full {
     fn solved(&self, u: &[f64], pressure: &[f64], active: &[usize], pose: Pose) -> Solved {
         let radius = self.phantom.probe.radius;
         let mut force = [0.0; 2];
-        for &node in active {
-            let (at, place) = self.surface[node];
-            let (_, normal, _) = self.gap(at, [u[place], u[place + 1]], pose);
-            force[1] -= pressure[node] * normal[1];
+        for &active in active {
+            let (point, pressure) = (&self.surface[active], pressure[active]);
+            let (at, (_, normal, _)) = (point.0, self.gap(point.0, Full::moved(point, u), pose));
+            force[1] -= pressure * normal[1];
             // The vertical gap's pressure acts on the circle's slope.
             let offset = at[0] - pose.lateral;
             force[0] -= match self.contact {
-                Contact::DeformedNormal => pressure[node] * normal[0],
+                Contact::DeformedNormal => pressure * normal[0],
                 Contact::VerticalGap => {
-                    pressure[node] * offset / (radius * radius - offset * offset).sqrt()
+                    pressure * offset / (radius * radius - offset * offset).sqrt()
                 }
             };
         }
-        let surface = self
-            .surface
-            .iter()
-            .map(|&(_, place)| [u[place], u[place + 1]]);
+        let surface = self.surface.iter().map(|point| Full::moved(point, u));
         Solved {
             force,
             surface: surface.collect(),

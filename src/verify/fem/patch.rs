@@ -1,7 +1,8 @@
 //! Patch test and zero-energy modes.
 
+use faer::Mat;
+
 use crate::fem::Element;
-use crate::fem::dense::SquareMatrix;
 use crate::fem::element::StiffnessRule;
 use crate::phantom::Material;
 
@@ -178,7 +179,7 @@ fn quadratic() -> Figures {
 ///
 /// Zeros come out within 10² roundings of the largest, which goes as λ + 2μ. The smallest deformation's goes as μ
 /// times (size of an element/size of the mesh)², so at least 1e-2/51 of the largest for one element and 1e-5 for a mesh.
-fn shares(matrix: SquareMatrix) -> Result<[f64; 2], String> {
+fn shares(matrix: Mat<f64>) -> Result<[f64; 2], String> {
     let values = eigenvalues(matrix)?;
     let greatest = values[values.len() - 1];
     Ok([
@@ -225,11 +226,11 @@ fn rigid() -> Figures {
                     .integrate(&positions, &NEARLY_INCOMPRESSIBLE)
                     .map_err(inside_out)?;
                 let n = 2 * nodes.len();
-                let matrix = SquareMatrix::from_fn(n, |i, j| stiffness[i][j]);
+                let matrix = Mat::from_fn(n, n, |i, j| stiffness[(i, j)]);
                 elements.push(shares(matrix)?);
             }
             let n = 2 * problem.nodes.len();
-            let mut matrix = SquareMatrix::from_fn(n, |_, _| 0.0);
+            let mut matrix = Mat::zeros(n, n);
             problem.visit(|row, column, value| matrix[(row, column)] += value)?;
             let what = |part: &str| format!("{part} of {}, bent by {curve}", element.name());
             figures.extend(three_zeros(&what("elements"), &elements, 1e-4));

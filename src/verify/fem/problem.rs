@@ -2,7 +2,7 @@
 //! gradients and stress are the library's; loads, solver and error norms are the checks' own.
 
 use crate::fem::Element;
-use crate::fem::element::{StiffnessRule, gradients, parent_gradients, stress};
+use crate::fem::element::{PerNode, StiffnessRule, gradients, parent_gradients, stress};
 use crate::phantom::Material;
 
 use super::skyline::Skyline;
@@ -202,7 +202,7 @@ impl Problem {
             for (a, na) in nodes.iter().enumerate() {
                 for (b, nb) in nodes.iter().enumerate() {
                     for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                        visit(2 * na + i, 2 * nb + j, stiffness[2 * a + i][2 * b + j]);
+                        visit(2 * na + i, 2 * nb + j, stiffness[(2 * a + i, 2 * b + j)]);
                     }
                 }
             }
@@ -218,7 +218,7 @@ impl Problem {
     }
 
     /// Calls `visit(element, position, weight × Jacobian, shape functions, their gradients)` at the points of the fine rule.
-    fn integrate(&self, mut visit: impl FnMut(usize, [f64; 2], f64, &[f64], &[[f64; 2]])) {
+    fn integrate(&self, mut visit: impl FnMut(usize, [f64; 2], f64, &[f64], &PerNode)) {
         let rule: Vec<_> = fine_rule(self.element)
             .into_iter()
             .map(|(at, weight)| {
@@ -237,13 +237,7 @@ impl Problem {
                 for (n, position) in shape.iter().zip(&positions) {
                     at = [at[0] + n * position[0], at[1] + n * position[1]];
                 }
-                visit(
-                    element,
-                    at,
-                    weight * g.jacobian,
-                    shape,
-                    &g.of_node[..nodes.len()],
-                );
+                visit(element, at, weight * g.jacobian, shape, &g.of_node);
             }
         }
     }
@@ -332,7 +326,8 @@ impl Problem {
                 return;
             }
             let (mut value, mut gradient) = ([0.0; 2], [[0.0; 2]; 2]);
-            for ((&node, n), g) in self.elements[element].iter().zip(shape).zip(of_node) {
+            let columns = of_node.column_iter();
+            for ((&node, n), g) in self.elements[element].iter().zip(shape).zip(columns) {
                 for i in 0..2 {
                     value[i] += n * u[2 * node + i];
                     for j in 0..2 {
