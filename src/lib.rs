@@ -59,7 +59,7 @@
 //! With `default-features = false` the crate is `no_std`, does not allocate, and depends on `libm`
 //! alone: that part holds [`stats`], [`detect`], [`servo`] and the reports of [`hid`].
 //!
-//! Implements: DOC-010, DOC-011, DOC-013, DOC-014.
+//! Implements: DOC-013, DOC-014.
 #![cfg_attr(not(any(feature = "std", feature = "verify")), no_std)]
 
 #[cfg(feature = "cli")]

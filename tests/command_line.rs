@@ -102,6 +102,19 @@ fn bad_input_gets_one_line_that_says_what_would_be_right() {
     .unwrap();
     fs::write(here.join("list.toml"), "depths_mm = \"4,1\"\n").unwrap();
     fs::write(
+        here.join("absent-phantom.toml"),
+        "phantoms = [\n  \"2.6\",\n  \"mine\",\n]\n",
+    )
+    .unwrap();
+    let narrow = Phantom::builtin("none").unwrap().to_toml().unwrap();
+    let narrow = narrow.replace("width_mm = 34.0", "width_mm = 16.0");
+    fs::write(here.join("narrow.toml"), narrow).unwrap();
+    fs::write(
+        here.join("wall.toml"),
+        "laterals_mm = \"0,8\"\nreference = \"narrow.toml\"\n",
+    )
+    .unwrap();
+    fs::write(
         here.join("short.csv"),
         "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n1,0,0.2\n",
     )
@@ -194,11 +207,22 @@ fn bad_input_gets_one_line_that_says_what_would_be_right() {
         (vec!["run", "--config", "absent.toml"], &["absent.toml"]),
         (
             vec!["run", "--config", "unknown.toml"],
-            &["unknown.toml:2:", "laterals", "laterals_mm"],
+            &["unknown.toml:2: laterals: ", "laterals_mm"],
         ),
         (
             vec!["run", "--config", "list.toml"],
-            &["list.toml:1:", "increasing"],
+            &["list.toml:1: depths_mm: ", "increasing"],
+        ),
+        (
+            vec!["run", "--config", "absent-phantom.toml"],
+            &["absent-phantom.toml:3: phantoms[1]: ", "\"mine\"", "8.6"],
+        ),
+        (
+            vec!["run", "--config", "wall.toml"],
+            &[
+                "wall.toml:2: reference: phantom \"narrow.toml\": lateral_mm = 8",
+                "walls",
+            ],
         ),
         (vec!["run", "--out", "short.csv"], &["short.csv"]),
         (vec!["import-map", "short.csv"], &["short.csv:2:", "4"]),
@@ -391,9 +415,9 @@ fn large_strain_is_warned_of() {
         text(&run(&here, &arguments).stderr).to_string()
     };
     assert_eq!(solve("1"), "");
-    let warning = solve("4.5");
+    let warning = solve("4.25");
     assert!(
-        warning.contains("warning: phantom 2.6") && warning.contains("depth 4.5 mm"),
+        warning.contains("warning: phantom 2.6") && warning.contains("depth 4.25 mm"),
         "{warning}"
     );
     assert!(!warning.contains("inside out"), "{warning}");
@@ -553,6 +577,168 @@ fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
             );
         }
     }
+}
+
+/// An ellipse at the left and a polygon at the right, under three layers, with sliding walls.
+const ASYMMETRIC: &str = r#"
+name = "asymmetric"
+well = { width_mm = 34, walls = "sliding" }
+layer = [
+  { name = "skin", thickness_mm = 0.5, youngs_modulus_kpa = 180, poisson_ratio = 0.49 },
+  { name = "fat", thickness_mm = 3, youngs_modulus_kpa = 3, poisson_ratio = 0.49 },
+  { name = "gel", thickness_mm = 12, youngs_modulus_kpa = 5, poisson_ratio = 0.49 },
+]
+probe = { radius_mm = 6.5, length_mm = 30 }
+[[inclusion]]
+centre_x_mm = -5
+depth_mm = 4
+width_mm = 6
+height_mm = 4
+angle_deg = 30
+youngs_modulus_kpa = 1200
+poisson_ratio = 0.49
+[[inclusion]]
+centre_x_mm = 8
+depth_mm = 7
+points_mm = [[-2, 0], [2, 0], [2, 3], [-2, 3]]
+youngs_modulus_kpa = 50
+poisson_ratio = 0.45
+"#;
+
+// Verifies: CLI-012, CLI-013, FEM-014.
+#[test]
+fn negative_laterals_of_an_asymmetric_phantom_are_solved_and_not_mirrored() {
+    let here = folder("asymmetric");
+    fs::write(here.join("own.toml"), ASYMMETRIC).unwrap();
+    let mirrored = ASYMMETRIC
+        .replace("centre_x_mm = -5", "centre_x_mm = 5")
+        .replace("centre_x_mm = 8", "centre_x_mm = -8")
+        .replace("angle_deg = 30", "angle_deg = -30");
+    fs::write(here.join("mirrored.toml"), mirrored).unwrap();
+    let map = |phantom: &str, rest: &[&str]| {
+        let arguments = [
+            "solve",
+            "--depths-mm",
+            "1,3",
+            "--mesh-mm",
+            "1",
+            "--format",
+            "json",
+        ];
+        let arguments = [&arguments[..], &["--phantom", phantom], rest].concat();
+        ForceMap::from_json(&succeed(&here, &arguments), "").unwrap()
+    };
+    for element in ["t6", "q4-full"] {
+        let solve = |phantom| map(phantom, &["--laterals-mm=-4,0,4", "--element", element]);
+        let (own, mirror) = (solve("own.toml"), solve("mirrored.toml"));
+        let [left, middle, right] = own.normal_force().row(1) else {
+            panic!("three laterals");
+        };
+        // The stiff inclusion lies at the left.
+        assert!(*left > right + 0.05, "{left} {right}");
+        assert!(own.lateral_force().row(1)[1].abs() > 0.01);
+        let [other_left, other_middle, other_right] = mirror.normal_force().row(1) else {
+            panic!("three laterals");
+        };
+        // The meshes are no mirror images, so that this holds to their errors.
+        for (one, other) in [
+            (left, other_right),
+            (middle, other_middle),
+            (right, other_left),
+        ] {
+            assert!((one / other - 1.0).abs() < 0.01, "{one} {other}");
+        }
+    }
+    // A list without negative positions stays without them.
+    let right = map("own.toml", &["--laterals-mm", "0,4"]);
+    assert_eq!(right.laterals(), [0.0, 4e-3]);
+}
+
+// Verifies: CLI-014, CLI-016, FEM-016.
+#[test]
+fn an_asymmetric_phantom_has_bands_and_a_file_for_paraview() {
+    let here = folder("asymmetric-vtu");
+    fs::write(here.join("own.toml"), ASYMMETRIC).unwrap();
+    let arguments = [
+        "solve",
+        "--phantom",
+        "own.toml",
+        "--depths-mm",
+        "2",
+        "--laterals-mm=-4",
+        "--mesh-mm",
+        "1.5",
+        "--certify",
+        "--vtu",
+        "own.vtu",
+    ];
+    let table = succeed(&here, &arguments);
+    assert!(table.contains("discretization, from meshes of"), "{table}");
+    let vtu = fs::read_to_string(here.join("own.vtu")).unwrap();
+    let (_, regions) = vtu.split_once("Name=\"region\"").unwrap();
+    let (regions, _) = regions.split_once("</DataArray>").unwrap();
+    let numbers: std::collections::BTreeSet<_> = regions.lines().skip(1).collect();
+    assert_eq!(
+        numbers.into_iter().collect::<Vec<_>>(),
+        ["0", "1", "2", "3", "4"]
+    );
+}
+
+// Verifies: CLI-031, CLI-032, REP-003.
+#[test]
+fn a_run_of_own_asymmetric_phantoms_shows_them() {
+    let here = folder("own-run");
+    fs::write(here.join("own.toml"), ASYMMETRIC).unwrap();
+    let (plain, _) = ASYMMETRIC.split_once("[[inclusion]]").unwrap();
+    fs::write(
+        here.join("plain.toml"),
+        plain.replace("asymmetric", "plain"),
+    )
+    .unwrap();
+    let config = "reference = \"plain.toml\"\nphantoms = [\"own.toml\"]\ndepths_mm = \"1,2\"\nlaterals_mm = \"-4:4:2\"\n[mesh]\nsize_mm = 1.5\n";
+    fs::write(here.join("run.toml"), config).unwrap();
+    succeed(&here, &["run", "--config", "run.toml"]);
+    let out = here.join("palpate-out");
+    let map = ForceMap::read(&out.join("maps/map-asymmetric.json")).unwrap();
+    let forces = map.normal_force().row(1);
+    assert!(forces[0] > forces[4] + 0.02, "{forces:?}");
+    // The mesh under the probe where it is nearest to the first inclusion.
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("probe at depth 2 mm, x = −4 mm"));
+    assert!(page.contains("Figure 5. Forces, phantom “asymmetric”: 2 inclusions"));
+    assert!(page.contains("walls sliding, floor fixed"));
+}
+
+// Verifies: PSY-072, CLI-083.
+#[test]
+fn half_a_map_of_an_asymmetric_phantom_is_not_completed() {
+    let here = folder("half");
+    fs::write(here.join("own.toml"), ASYMMETRIC).unwrap();
+    for (phantom, file) in [("own.toml", "own.json"), ("none", "none.json")] {
+        let arguments = ["--depths-mm", "4", "--laterals-mm", "0,2", "--mesh-mm", "3"];
+        let arguments = [
+            &["solve", "--phantom", phantom, "--format", "json"],
+            &arguments[..],
+        ]
+        .concat();
+        fs::write(here.join(file), succeed(&here, &arguments)).unwrap();
+    }
+    let arguments = [
+        "psychophysics",
+        "--reference",
+        "none.json",
+        "--sweep-mm",
+        "2",
+    ];
+    let maps = ["--inclusion", "2.6=own.json", "--inclusion", "4.6=own.json"];
+    let output = run(&here, &[&arguments[..], &maps].concat());
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(
+        message
+            .starts_with("palpate: own.json: phantom \"asymmetric\" is not its own mirror image"),
+        "{message}"
+    );
 }
 
 // Verifies: CLI-033.

@@ -296,6 +296,34 @@ fn the_scan_finds_an_inclusion_that_was_moved() {
     assert_eq!(nothing["decision"], "no_inclusion");
 }
 
+// Verifies: CLI-044.
+#[test]
+fn a_scan_with_an_inclusion_off_the_axis_says_what_its_position_means() {
+    let mut map: Value =
+        serde_json::from_str(&fs::read_to_string(folder().join("inclusion.json")).unwrap())
+            .unwrap();
+    map["phantom"]["inclusion"][0]["centre_x_m"] = 3e-3.into();
+    fs::write(folder().join("off.json"), map.to_string()).unwrap();
+    let path = |file: &str| folder().join(file).display().to_string();
+    let (trace, none, off) = (path("with.csv"), path("none.json"), path("off.json"));
+    let files = [
+        "detect",
+        &trace,
+        "--reference",
+        &none,
+        "--inclusion",
+        &off,
+        "--scan",
+    ];
+    let output = palpate(&[&files[..], &USUAL].concat());
+    let warnings = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        warnings.contains("off.json: the position is where x = 0 of this map lies")
+            && warnings.contains("x = 3 mm"),
+        "{warnings}"
+    );
+}
+
 // Verifies: TRC-010, TRC-012.
 #[test]
 fn a_trace_over_time_is_the_same_trace() {

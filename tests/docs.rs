@@ -95,7 +95,9 @@ fn differences(page: &Page) -> Vec<String> {
     let (mut differences, mut code) = (Vec::new(), 0);
     for (index, step) in page.steps.iter().enumerate() {
         if let Some(file) = &step.file {
-            fs::write(folder.join(file), &step.text).unwrap();
+            let path = folder.join(file);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, &step.text).unwrap();
             continue;
         }
         let (output, found) = shell(&folder, &step.text, code);
@@ -142,6 +144,25 @@ fn commands_do_what_the_pages_show() {
         println!("not run: {}: {command}: {reason}", page.name);
     }
     assert_eq!(not_run.len(), NOT_RUN, "commands that are not run");
+}
+
+// Verifies: DOC-008.
+#[test]
+fn files_on_the_pages_are_those_of_the_sources() {
+    let pages = pages();
+    let mut same = 0;
+    for (page, step) in pages
+        .iter()
+        .flat_map(|page| page.steps.iter().map(move |step| (page, step)))
+    {
+        let Some(file) = step.file.as_ref().filter(|file| file.starts_with("docs/")) else {
+            continue;
+        };
+        let found = fs::read_to_string(Path::new(ROOT).join(file)).unwrap();
+        assert_eq!(step.text, found, "{}: {file}", page.name);
+        same += 1;
+    }
+    assert!(same >= 3, "{same} files: are the pages read?");
 }
 
 // Verifies: DOC-003, DOC-004.

@@ -193,7 +193,7 @@ fn forces_come_from_another_program_with_its_band_and_ours() {
         let normal = newtons("normal_force_mn");
         let lateral = side * newtons("lateral_force_mn");
         let expected = [
-            // FEM-021 and FEM-025: 0.3 % of the normal force, 1.5 mN of the lateral.
+            // VEC-013: 0.3 % of the normal force, 1.5 mN of the lateral.
             (
                 "normal_force_n",
                 normal,

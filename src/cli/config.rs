@@ -3,13 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use toml::Spanned;
 
 use super::lists::{Positions, positions};
 use super::output::read;
+use super::solve::phantom;
 use super::{CliError, ContactName, ElementName};
 use crate::csv::one_line;
 use crate::fem::MeshOptions;
-use crate::phantom::BUILTIN_NAMES;
+use crate::phantom::{BUILTIN_NAMES, Phantom};
 use crate::report::Settings;
 
 /// The paper's run, or what a file says instead.
@@ -40,7 +42,7 @@ pub struct Config {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Mesh {
-    /// Distance of the elements' corners, mm.
+    /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them.
     #[serde(deserialize_with = "positive")]
     pub size_mm: f64,
     /// The shape of the elements.
@@ -125,17 +127,56 @@ impl Config {
     /// The configuration in `text`, the content of `file`.
     ///
     /// # Errors
-    /// [`CliError::Usage`] with file and line.
+    /// [`CliError::Usage`] with file, line and key.
     ///
     /// Implements: CLI-031.
     pub fn from_toml(text: &str, file: &str) -> Result<Config, CliError> {
-        toml::from_str(text).map_err(|error| {
+        let refused = |at: Option<usize>, message: &str| {
             // What the parser has no place for, such as too deep a nesting, it found up to the end.
-            let at = error.span().map_or(text.len(), |span| span.start);
-            let before = text.get(..at).unwrap_or(text);
-            let line = 1 + before.matches('\n').count();
-            CliError::Usage(format!("{file}:{line}: {}", one_line(error.message())))
+            let line = line_of(text, at.unwrap_or(text.len()));
+            CliError::Usage(format!("{file}:{line}: {}", one_line(message)))
+        };
+        let start = |error: &toml::de::Error| error.span().map(|span| span.start);
+        let document = toml::Deserializer::parse(text)
+            .map_err(|error| refused(start(&error), error.message()))?;
+        serde_path_to_error::deserialize(document).map_err(|error| {
+            let (path, error) = (error.path().to_string(), error.into_inner());
+            let key = if path == "." {
+                String::new()
+            } else {
+                path + ": "
+            };
+            refused(start(&error), &(key + error.message()))
         })
+    }
+
+    /// The reference, then the phantoms that are compared with it. `file` is that of the configuration.
+    ///
+    /// # Errors
+    /// As [`phantom`], and if the probe cannot stand at one of the poses; with file, line and key.
+    pub fn read_phantoms(&self, file: Option<&Path>) -> Result<Vec<Phantom>, CliError> {
+        let names = std::iter::once(&self.reference).chain(&self.phantoms);
+        let read = |(index, name): (usize, &String)| {
+            self.read_phantom(name).map_err(|error| match error {
+                CliError::Usage(message) => {
+                    let place = file.and_then(|file| place_of_phantom(file, index));
+                    CliError::Usage(place.unwrap_or_default() + &message)
+                }
+                other => other,
+            })
+        };
+        names.enumerate().map(read).collect()
+    }
+
+    fn read_phantom(&self, name: &str) -> Result<Phantom, CliError> {
+        let phantom = phantom(name)?;
+        for &depth in &self.depths_mm.0 {
+            for &lateral in &self.laterals_mm.0 {
+                let pose = phantom.check_pose(depth, lateral);
+                pose.map_err(|error| CliError::Usage(format!("phantom {name:?}: {error}")))?;
+            }
+        }
+        Ok(phantom)
     }
 
     /// Options of the mesh.
@@ -143,7 +184,6 @@ impl Config {
         MeshOptions {
             size: self.mesh.size_mm / 1e3,
             element: self.mesh.element.into(),
-            ..MeshOptions::default()
         }
     }
 
@@ -162,6 +202,29 @@ impl Config {
             noise_sd: noise_sd_n,
         }
     }
+}
+
+/// File, line and key of a phantom in a configuration, 0 for the reference.
+fn place_of_phantom(file: &Path, index: usize) -> Option<String> {
+    #[derive(Default, Deserialize)]
+    #[serde(default)]
+    struct Places {
+        reference: Option<Spanned<String>>,
+        phantoms: Vec<Spanned<String>>,
+    }
+    let text = std::fs::read_to_string(file).ok()?;
+    let places: Places = toml::from_str(&text).ok()?;
+    let (key, name) = match index.checked_sub(1) {
+        None => ("reference".into(), places.reference.as_ref()?),
+        Some(k) => (format!("phantoms[{k}]"), places.phantoms.get(k)?),
+    };
+    let line = line_of(&text, name.span().start);
+    Some(format!("{}:{line}: {key}: ", file.display()))
+}
+
+/// The line of byte `at` of `text`, from 1.
+fn line_of(text: &str, at: usize) -> usize {
+    1 + text.get(..at).unwrap_or(text).matches('\n').count()
 }
 
 fn list<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Positions, D::Error> {
@@ -236,6 +299,8 @@ mod tests {
                 error.contains(".toml:2: ") && error.contains(expected),
                 "{error}"
             );
+            let key = key.trim_start_matches('[').replace("]\n", ".");
+            assert!(error.contains(&format!(":2: {key}: ")), "{error}");
         }
         std::fs::remove_file(&file).unwrap();
     }

@@ -10,6 +10,7 @@ use super::{CliError, Format};
 use crate::detect::Channels;
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::parse_scaled;
+use crate::report::text;
 use crate::trace::{Criterion, DIED_AWAY, Location, Misfit, Motion, Record, Trace, judge, locate};
 
 /// Arguments of `palpate detect`.
@@ -21,7 +22,7 @@ pub struct DetectArguments {
     /// The force map without inclusion: JSON as 'palpate solve --phantom none --format json' prints it, or measured CSV
     #[arg(long, value_name = "MAP")]
     reference: PathBuf,
-    /// The force map with the inclusion at x = 0
+    /// The force map with the inclusion; --scan says where its x = 0 lies
     #[arg(long, value_name = "MAP")]
     inclusion: PathBuf,
     /// The constant depth of the sweep in mm
@@ -156,6 +157,7 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
         let found = locate(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
         let misfit = misfit(found.theta_max)?;
         warn_of_broad_signal(&found, &record);
+        warn_of_other_place(&inclusion, &arguments.inclusion);
         (
             Answer::new(question, None, Some(found.into()), misfit),
             misfit,
@@ -193,6 +195,25 @@ fn warn_of_broad_signal(found: &Location, record: &Record) {
     }
 }
 
+/// Implements: CLI-043.
+fn warn_of_other_place(inclusion: &ForceMap, path: &Path) {
+    let Some(phantom) = inclusion.phantom() else {
+        return;
+    };
+    let middles = phantom.inclusions.iter().map(|inclusion| {
+        let [left, right, ..] = inclusion.extent();
+        0.5 * (left + right)
+    });
+    let middles: Vec<String> = middles.map(text::millimetres).collect();
+    if middles.iter().any(|x| x != "0") {
+        eprintln!(
+            "palpate: warning: {}: the position is where x = 0 of this map lies; its phantom has inclusions at x = {} mm",
+            path.display(),
+            middles.join(", ")
+        );
+    }
+}
+
 fn map(path: &Path) -> Result<ForceMap, CliError> {
     if path.exists() {
         return Ok(ForceMap::read(path)?);
@@ -210,7 +231,8 @@ fn check_not_swapped(
     inclusion: &ForceMap,
     path: &Path,
 ) -> Result<(), CliError> {
-    let has_inclusion = |map: &ForceMap| map.phantom().map(|phantom| phantom.inclusion.is_some());
+    let has_inclusion =
+        |map: &ForceMap| map.phantom().map(|phantom| !phantom.inclusions.is_empty());
     match (has_inclusion(reference), has_inclusion(inclusion)) {
         (Some(true), Some(false)) => Err(CliError::Usage(format!(
             "{}: its phantom has an inclusion and that of --inclusion has none, expected --reference and --inclusion the other way round",

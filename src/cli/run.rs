@@ -10,9 +10,9 @@ use super::CliError;
 use super::config::Config;
 use super::output::{make_folder, print, write};
 use super::progress::bar;
-use super::solve::{phantom, warn_of_large_strain};
+use super::solve::warn_of_large_strain;
 use crate::fem::certify::certified_map;
-use crate::fem::{FemError, Model, Pose, solved_laterals};
+use crate::fem::{FemError, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::phantom::Phantom;
 use crate::report::{DeformedMesh, FileNames, Study, figures, findings, html, summary_json};
@@ -36,10 +36,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
         Some(path) => Config::read(path)?,
         None => Config::default(),
     };
-    let names = std::iter::once(&config.reference).chain(&config.phantoms);
-    let phantoms = names
-        .map(|name| phantom(name))
-        .collect::<Result<Vec<_>, _>>()?;
+    let phantoms = config.read_phantoms(arguments.config.as_deref())?;
     let measured = config
         .measured
         .iter()
@@ -76,9 +73,7 @@ fn study(
     phantoms: &[Phantom],
     measured: Vec<ForceMap>,
 ) -> Result<Study, CliError> {
-    // Each map on three meshes.
-    let poses = 3 * config.depths_mm.0.len() * solved_laterals(&config.laterals_mm.0).len();
-    let bar = bar(phantoms.len() * poses, "force maps");
+    let bar = bar(0, "force maps");
     // The figure shows the first inclusion, or the reference where there is none.
     let shown = usize::from(phantoms.len() > 1);
     let solve = |(index, phantom): (usize, &Phantom)| {
@@ -115,6 +110,8 @@ fn solve_phantom(
 ) -> Result<(ForceMap, Option<DeformedMesh>), FemError> {
     let model = Model::new(phantom, &config.mesh_options(), config.mesh.contact.into())?;
     let (depths, laterals) = (&config.depths_mm.0, &config.laterals_mm.0);
+    // Each map on three meshes.
+    bar.inc_length((3 * depths.len() * model.solved_laterals(laterals).len()) as u64);
     let map = certified_map(&model, depths, laterals, &|poses| bar.inc(poses as u64))?;
     let deformed = if shown {
         Some(deformed_mesh(&model, &map)?)
@@ -124,14 +121,20 @@ fn solve_phantom(
     Ok((map, deformed))
 }
 
-/// The mesh at the deepest pose closest to the inclusion.
+/// The mesh at the deepest pose, as near as possible to above the middle of the first inclusion, or else to x = 0.
 fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
     let deepest = map.depths().iter().fold(0.0, |a: f64, &b| a.max(b));
+    let first = model.phantom().inclusions.first();
+    let middle = first.map_or(0.0, |inclusion| {
+        let [left, right, ..] = inclusion.extent();
+        0.5 * (left + right)
+    });
+    let distance = |x: f64| (x - middle).abs();
     let nearest = map
         .laterals()
         .iter()
         .copied()
-        .min_by(|a, b| a.abs().total_cmp(&b.abs()));
+        .min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
     let pose = Pose {
         depth: deepest,
         lateral: nearest.unwrap_or(0.0),

@@ -10,7 +10,7 @@ use super::output::{print, write};
 use super::progress::bar;
 use super::{CliError, ContactName, ElementName};
 use crate::fem::certify::certified_map;
-use crate::fem::{FemError, MeshOptions, Model, Pose, solved_laterals};
+use crate::fem::{FemError, MeshOptions, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::{format_scaled, parse_scaled};
 use crate::phantom::{BUILTIN_NAMES, Phantom};
@@ -34,7 +34,7 @@ pub struct SolveArguments {
     /// The shape of the elements
     #[arg(long, value_enum, default_value_t = ElementName::T6)]
     element: ElementName,
-    /// Distance of the elements' corners in mm [default: 0.5]
+    /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them [default: 0.5]
     #[arg(long, value_parser = millimetres, value_name = "H")]
     mesh_mm: Option<f64>,
     /// Solves two coarser meshes as well, and tells how far each force may be from that of an infinitely fine one
@@ -104,18 +104,14 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         phantom: phantom.name.clone(),
         error,
     };
-    let size = arguments.mesh_mm.unwrap_or(MeshOptions::default().size);
     let options = MeshOptions {
-        size,
+        size: arguments.mesh_mm.unwrap_or(MeshOptions::default().size),
         element: arguments.element.into(),
-        ..MeshOptions::default()
     };
-    let meshes = if arguments.certify { 3 } else { 1 };
-    let bar = bar(
-        meshes * depths.len() * solved_laterals(laterals).len(),
-        &phantom.name,
-    );
     let model = Model::new(&phantom, &options, arguments.contact.into()).map_err(failed)?;
+    let meshes = if arguments.certify { 3 } else { 1 };
+    let columns = model.solved_laterals(laterals).len();
+    let bar = bar(meshes * depths.len() * columns, &phantom.name);
     let solved = |poses| bar.inc(poses as u64);
     let map = if arguments.certify {
         certified_map(&model, depths, laterals, &solved)

@@ -85,7 +85,7 @@ pub struct MapFindings {
     pub name: String,
     /// Which of the paper's phantoms it is, if any.
     pub paper_phantom: Option<&'static str>,
-    /// The depth of the inclusion's top, m.
+    /// The depth of the highest point of all inclusions, m; `None` without any.
     #[serde(rename = "inclusion_depth_m")]
     pub inclusion_depth: Option<f64>,
     /// Where F_1 − F_0 of the normal force is largest in magnitude.
@@ -328,8 +328,7 @@ fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFindings, Repo
     Ok(MapFindings {
         paper_phantom: phantom.and_then(paper::name_of),
         inclusion_depth: phantom
-            .and_then(|p| p.inclusion)
-            .map(|inclusion| inclusion.depth),
+            .and_then(|p| p.inclusions.iter().map(|i| i.depth).reduce(f64::min)),
         peak_normal: peak(signal.laterals, signal.normal_force),
         peak_lateral: peak(signal.laterals, signal.lateral_force),
         map_rule: at(map_threshold(settings.prior_h1)).map_err(detect)?,

@@ -148,7 +148,7 @@ impl DeformedMesh {
         let solution = model.solve(pose)?;
         let mesh = model.mesh();
         let corners = mesh.element.corners();
-        let check = model.checks(std::slice::from_ref(&solution));
+        let check = model.checks(std::slice::from_ref(&solution))?;
         Ok(DeformedMesh {
             phantom: model.phantom().clone(),
             pose,

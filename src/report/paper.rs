@@ -111,17 +111,20 @@ pub const EXPERIMENTS: [Experiment; 3] = [
     },
 ];
 
-/// Which of the paper's phantoms this is, whatever it is called: geometry, materials and probe decide.
+/// Which of the paper's phantoms this is, whatever it and its layers are called: geometry, materials, supports and probe
+/// decide.
 ///
 /// Implements: REP-010.
 pub(super) fn name_of(phantom: &Phantom) -> Option<&'static str> {
-    BUILTIN_NAMES.into_iter().find(|name| {
-        Phantom::builtin(name).is_ok_and(|builtin| {
-            builtin
-                == Phantom {
-                    name: builtin.name.clone(),
-                    ..phantom.clone()
-                }
-        })
-    })
+    let unnamed = |phantom: &Phantom| {
+        let mut phantom = phantom.clone();
+        phantom.name.clear();
+        phantom
+            .layers
+            .iter_mut()
+            .for_each(|layer| layer.name.clear());
+        phantom
+    };
+    let is_it = |name: &&str| Phantom::builtin(name).is_ok_and(|p| unnamed(&p) == unnamed(phantom));
+    BUILTIN_NAMES.into_iter().find(is_it)
 }

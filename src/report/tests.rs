@@ -10,6 +10,8 @@ mod study;
 mod xml;
 
 use super::*;
+use crate::fem::mesh::Region;
+use crate::phantom::Support;
 use study::*;
 
 /// Expected values are from mpmath with 30 digits; the detector's own accuracy is tested elsewhere.
@@ -202,7 +204,7 @@ fn rows_without_their_phantom_are_left_out() {
     );
     // Another reference: no number of the paper is about it.
     let mut softer = Phantom::builtin("none").unwrap();
-    softer.gel.material.youngs_modulus = 4e3;
+    softer.layers[1].material.youngs_modulus = 4e3;
     let mut study = paper_study();
     study.reference = map(Some(softer), &DEPTHS, |_| 0.0, |_| 0.0);
     let found = findings(&study).unwrap();
@@ -221,10 +223,30 @@ fn rows_without_their_phantom_are_left_out() {
 fn a_phantom_is_the_papers_by_its_data_and_not_by_its_name() {
     let mut phantom = Phantom::builtin("6.6").unwrap();
     phantom.name = "mine".into();
+    phantom.layers[1].name = "agar".into();
     assert_eq!(paper::name_of(&phantom), Some("6.6"));
+    phantom.well.walls = Support::Sliding;
+    assert_eq!(paper::name_of(&phantom), None);
+    phantom.well.walls = Support::Fixed;
     phantom.name = "6.6".into();
     phantom.probe.radius = 6e-3;
     assert_eq!(paper::name_of(&phantom), None);
+}
+
+// Verifies: REP-003.
+#[test]
+fn of_several_inclusions_the_highest_is_named() {
+    let mut phantom = Phantom::builtin("6.6").unwrap();
+    let mut higher = phantom.inclusions[0].clone();
+    (higher.centre_x, higher.depth) = (-9e-3, 2e-3);
+    phantom.inclusions.push(higher);
+    let mut study = paper_study();
+    study.maps = vec![map(Some(phantom), &DEPTHS, |_| 0.1, |_| 0.0)];
+    let found = findings(&study).unwrap();
+    assert_eq!(found.maps[0].inclusion_depth, Some(2e-3));
+    let figures = figures(&study, &found).unwrap();
+    let title = |figure: &&Figure| figure.title == "Figure 5. Forces, phantom “6.6”: 2 inclusions";
+    assert_eq!(figures.iter().filter(title).count(), 1);
 }
 
 // Verifies: REP-002.
@@ -365,7 +387,15 @@ fn what_does_not_fit_is_refused() {
 #[test]
 fn a_mesh_that_contradicts_itself_is_refused() {
     type Damage = fn(&mut DeformedMesh);
-    let damages: [(Damage, &str); 6] = [
+    let damages: [(Damage, &str); 8] = [
+        (
+            |mesh| mesh.regions[1] = Region::Layer(2),
+            "element 1 lies in Layer(2)",
+        ),
+        (
+            |mesh| mesh.regions[0] = Region::Inclusion(1),
+            "2 layers and 1 inclusions",
+        ),
         (|mesh| mesh.nodes.truncate(3), "displacements"),
         (|mesh| mesh.regions.truncate(1), "regions"),
         (|mesh| mesh.corners[1][0] = 99, "element 1"),

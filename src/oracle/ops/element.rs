@@ -37,7 +37,8 @@ pub fn stiffness(arguments: &mut Arguments) -> Result<Answer, Refusal> {
     let stiffness = StiffnessRule::new(Element::T6)
         .integrate(&nodes, &material)
         .map_err(not_positive)?;
-    let rows: Vec<Vec<f64>> = stiffness.iter().map(|row| row.to_vec()).collect();
+    let row = stiffness.row_iter();
+    let rows: Vec<Vec<f64>> = row.map(|row| row.iter().copied().collect()).collect();
     Ok(Answer::default().with("stiffness", rows))
 }
 

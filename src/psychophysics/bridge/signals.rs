@@ -23,7 +23,8 @@ pub struct Peak {
     pub at: f64,
 }
 
-/// A map over the whole sweep: one that begins at x = 0 is completed by symmetry, as the paper does.
+/// A map over the whole sweep: one that begins at x = 0 is completed by symmetry, as the paper does, and refused if its phantom
+/// has none.
 ///
 /// # Errors
 /// As [`ForceMap::mirrored`].

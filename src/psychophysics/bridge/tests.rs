@@ -4,6 +4,7 @@ use super::subjects::by_subject;
 use super::*;
 use crate::detect::two_afc;
 use crate::force_map::{ForceTable, Matrix, Source};
+use crate::phantom::Phantom;
 use crate::stats::check::assert_near;
 
 /// Signals that fall with depth like a change along the sweep, and signals that level off.
@@ -97,6 +98,24 @@ fn half_a_sweep_is_completed_by_symmetry() {
     assert_eq!(whole.lateral_force().row(0), [-1.0, -3.0, 0.0, 3.0, 1.0]);
     // A whole one stays, and so does one that begins elsewhere.
     assert_eq!(whole_sweep(&whole).unwrap(), whole);
+}
+
+// Verifies: PSY-072.
+#[test]
+fn half_a_sweep_over_an_asymmetric_phantom_is_refused() {
+    let half = map_over(&[4e-3], &[0.0, 2e-3], |_| [1.0, 0.0]);
+    let mut phantom = Phantom::builtin("6.6").unwrap();
+    let of = |phantom: &Phantom| {
+        let (source, forces) = (half.source().clone(), half.forces().clone());
+        ForceMap::new(source, Some(phantom.clone()), forces).unwrap()
+    };
+    assert_eq!(whole_sweep(&of(&phantom)).unwrap().laterals().len(), 3);
+    phantom.inclusions[0].centre_x = 1e-3;
+    let error = whole_sweep(&of(&phantom)).unwrap_err().to_string();
+    assert!(
+        error.starts_with("phantom \"6.6\" is not its own mirror image"),
+        "{error}"
+    );
 }
 
 /// The search leaves ln σ within 2 · 0.37 · 4·10⁻⁶.

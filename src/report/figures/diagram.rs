@@ -1,5 +1,6 @@
 //! Parts of drawings that are no charts: boxes, arrows, dimensions. All places are in pixels.
 
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
@@ -12,7 +13,13 @@ pub type Place = [f64; 2];
 /// Tints for what is in a drawing, the same in all of them.
 pub const GEL: RGBColor = RGBColor(250, 243, 224);
 /// The rubber on the gel.
-pub const SKIN: RGBColor = RGBColor(86, 180, 233);
+const SKIN: RGBColor = RGBColor(86, 180, 233);
+/// Layers between the uppermost and the lowest.
+const BETWEEN: [RGBColor; 3] = [
+    RGBColor(211, 234, 212),
+    RGBColor(240, 213, 221),
+    RGBColor(221, 214, 238),
+];
 /// The hard inclusion.
 pub const INCLUSION: RGBColor = RGBColor(230, 159, 0);
 /// The rigid probe.
@@ -21,6 +28,15 @@ pub const PROBE: RGBColor = RGBColor(208, 212, 218);
 pub const WAX: RGBColor = RGBColor(226, 221, 212);
 /// A step of a computation.
 pub const STEP: RGBColor = RGBColor(226, 239, 248);
+
+/// The tint of layer `k` from the top of `count`: the lowest is the gel, the uppermost on it the skin.
+pub fn layer_tint(k: usize, count: usize) -> RGBColor {
+    match k {
+        _ if k + 1 == count => GEL,
+        0 => SKIN,
+        _ => BETWEEN[(k - 1) % BETWEEN.len()],
+    }
+}
 
 /// Distance of two lines of text, pixels.
 pub const LINE: f64 = 20.0;
@@ -53,17 +69,17 @@ pub fn path(area: &Area<'_>, places: &[Place], colour: RGBColor, width: f64) -> 
         .map_err(say)
 }
 
-/// A dashed line from one place to another.
-pub fn dashes(area: &Area<'_>, [from, to]: [Place; 2], colour: RGBColor) -> DrawingResult<()> {
-    let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
-    let at = |t: f64| [0, 1].map(|k| from[k] + (to[k] - from[k]) * (t / length).min(1.0));
-    let mut start = 0.0;
-    // A drawing is some hundred pixels wide; a length that is not finite draws nothing.
-    while start < length && length < 1e4 {
-        path(area, &[at(start), at(start + 5.0)], colour, 1.2)?;
-        start += 9.0;
-    }
-    Ok(())
+/// A dashed line through `places`.
+pub fn dashes(area: &Area<'_>, places: &[Place], colour: RGBColor) -> DrawingResult<()> {
+    let places: Vec<_> = places.iter().copied().map(units).collect();
+    let (dash, gap) = (5 * UNIT, 4 * UNIT);
+    area.draw(&DashedPathElement::new(
+        places,
+        dash,
+        gap,
+        stroke(colour, 1.2),
+    ))
+    .map_err(say)
 }
 
 /// A rectangle with its words in lines in the middle. `frame` is left, top, width, height.

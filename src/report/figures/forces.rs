@@ -145,9 +145,9 @@ fn signal_words(findings: &Findings) -> Words {
     Words {
         title: format!("Signals F₁ − F₀ at depth {depth} mm"),
         caption: format!(
-            "What the inclusion adds to the force on the probe as it sweeps over the gel at depth {depth} mm: the \
+            "What inclusions add to the force on the probe as it sweeps over the gel at depth {depth} mm: the \
              template of the matched filter (2), (4). The paper shows no such figure, but its “roughly 0.5 N” and \
-             its 340 mN for 6.6 mm are peaks of such curves. The lateral force changes sign over the inclusion."
+             its 340 mN for 6.6 mm are peaks of such curves. The lateral force changes sign over an inclusion."
         ),
         alt: format!(
             "Two line charts of force against lateral position, one curve for each phantom. Peaks: {}.",
@@ -158,9 +158,10 @@ fn signal_words(findings: &Findings) -> Words {
 
 fn force_words(map: &ForceMap) -> Words {
     let name = name_of_map(map);
-    let what = match map.phantom().map(|phantom| phantom.inclusion) {
-        Some(Some(inclusion)) => format!("inclusion {} mm deep", millimetres(inclusion.depth)),
-        Some(None) => "no inclusion".into(),
+    let what = match map.phantom().map(|phantom| &phantom.inclusions[..]) {
+        Some([]) => "no inclusion".into(),
+        Some([one]) => format!("inclusion {} mm deep", millimetres(one.depth)),
+        Some(several) => format!("{} inclusions", several.len()),
         None => "inclusion not known".into(),
     };
     let said = match map.phantom().and_then(paper::name_of) {

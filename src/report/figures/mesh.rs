@@ -1,34 +1,72 @@
 //! Figure 6: the deformed mesh under the probe.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use super::chart::{Context, DrawingResult, axes, draw, say, write};
-use super::diagram::{GEL, INCLUSION, PROBE, SKIN};
-use super::style::{INK, UNIT, WIDTH, stroke};
+use super::diagram::{INCLUSION, PROBE, layer_tint};
+use super::style::{INK, UNIT, WIDTH, stroke, text_width};
 use super::{Draft, Words};
 use crate::fem::mesh::Region;
-use crate::report::text::{fixed, millimetres};
-use crate::report::{DeformedMesh, ReportError, Topic};
+use crate::phantom::Phantom;
+use crate::report::text::{fixed, millimetres, shortened};
+use crate::report::{DeformedMesh, ReportError, Topic, paper};
 
 /// Pixels left of the plot.
 const LEFT: i32 = 58;
 /// Pixels right of the plot.
 const RIGHT: i32 = 24;
-/// Pixels above the plot, for the key.
-const TOP: i32 = 44;
+/// Height of a row of the key, pixels.
+const KEY_ROW: i32 = 22;
+/// Least distance of two entries of the key, pixels.
+const KEY_STEP: i32 = 100;
+/// Most layers in the key.
+const MOST_LAYERS: usize = 20;
 /// Pixels below the plot, for numbers and the axis' name.
 const BOTTOM: i32 = 62;
 
-/// What a region is called and filled with.
-fn look(region: Region, has_disc: bool) -> (&'static str, RGBColor) {
+/// What a region is filled with.
+fn fill(region: Region, phantom: &Phantom) -> RGBColor {
     match region {
-        Region::Skin => ("skin", SKIN),
-        Region::Disc if has_disc => ("inclusion", INCLUSION),
-        Region::Gel | Region::Disc => ("gel", GEL),
+        Region::Layer(k) => layer_tint(k, phantom.layers.len()),
+        Region::Inclusion(_) => INCLUSION,
     }
+}
+
+/// Names and colours of the key, with their places: pixels from the left, and the row.
+fn key(phantom: &Phantom) -> Vec<(String, RGBColor, [i32; 2])> {
+    let layers = phantom.layers.iter().enumerate().take(MOST_LAYERS);
+    let layers =
+        layers.map(|(k, layer)| (shortened(&layer.name, 24), fill(Region::Layer(k), phantom)));
+    let inclusions = match phantom.inclusions.len() {
+        0 => None,
+        1 => Some(("inclusion".into(), INCLUSION)),
+        _ => Some(("inclusions".into(), INCLUSION)),
+    };
+    let (mut left, mut row) = (LEFT, 0);
+    let place = |(name, colour): (String, RGBColor)| {
+        let width = 25 + text_width(&name);
+        if left > LEFT && left + width > WIDTH {
+            (left, row) = (LEFT, row + 1);
+        }
+        let at = [left, row];
+        left += (width + 12).max(KEY_STEP);
+        (name, colour, at)
+    };
+    let probe = ("probe".into(), PROBE);
+    core::iter::once(probe)
+        .chain(layers)
+        .chain(inclusions)
+        .map(place)
+        .collect()
+}
+
+/// Pixels above the plot, for the key.
+fn top(phantom: &Phantom) -> i32 {
+    KEY_ROW * (2 + key(phantom).last().map_or(0, |(.., [_, row])| *row))
 }
 
 /// Refuses a mesh that contradicts itself or is not finite.
@@ -51,6 +89,17 @@ pub fn check(mesh: &DeformedMesh) -> Result<(), ReportError> {
             "{} elements, but {} regions",
             mesh.corners.len(),
             mesh.regions.len()
+        ));
+    }
+    let (layers, inclusions) = (mesh.phantom.layers.len(), mesh.phantom.inclusions.len());
+    let unknown = |region: &Region| match *region {
+        Region::Layer(k) => k >= layers,
+        Region::Inclusion(k) => k >= inclusions,
+    };
+    if let Some(element) = mesh.regions.iter().position(unknown) {
+        let region = mesh.regions[element];
+        return wrong(format!(
+            "element {element} lies in {region:?}, expected one of {layers} layers and {inclusions} inclusions"
         ));
     }
     let last = mesh.nodes.len() as u64;
@@ -102,17 +151,11 @@ fn probe_outline(mesh: &DeformedMesh) -> Vec<(f64, f64)> {
     points.map(|[x, y]| (1e3 * x, 1e3 * y)).collect()
 }
 
-/// All elements of one look as one path, which keeps the file small: the library would write one tag for each.
-fn region_path(mesh: &DeformedMesh, places: &[(i32, i32)], name: &str) -> String {
-    let has_disc = mesh.phantom.inclusion.is_some();
-    let mut path = String::new();
-    let mut colour = WHITE;
+/// All elements of one region as one path, which keeps the file small: the library would write one tag for each.
+fn region_paths(mesh: &DeformedMesh, places: &[(i32, i32)]) -> String {
+    let mut paths: BTreeMap<Region, String> = BTreeMap::new();
     for (corners, &region) in mesh.corners.iter().zip(&mesh.regions) {
-        let (of_region, fill) = look(region, has_disc);
-        if of_region != name {
-            continue;
-        }
-        colour = fill;
+        let path = paths.entry(region).or_default();
         for (k, &corner) in corners.iter().enumerate() {
             let (x, y) = places[corner as usize];
             // Writing to a String does not fail.
@@ -120,13 +163,14 @@ fn region_path(mesh: &DeformedMesh, places: &[(i32, i32)], name: &str) -> String
         }
         path.push('Z');
     }
-    if path.is_empty() {
-        return path;
-    }
-    let RGBColor(r, g, b) = colour;
-    format!(
-        "<path d=\"{path}\" fill=\"#{r:02X}{g:02X}{b:02X}\" stroke=\"#5B6470\" stroke-width=\"4\" stroke-linejoin=\"round\"/>\n"
-    )
+    let element = |(&region, path): (&Region, &String)| {
+        let RGBColor(r, g, b) = fill(region, &mesh.phantom);
+        format!(
+            "<path d=\"{path}\" fill=\"#{r:02X}{g:02X}{b:02X}\" stroke=\"#5B6470\" stroke-width=\"4\" stroke-linejoin=\"round\"/>\n"
+        )
+    };
+    // The uppermost layer last, so that a thin one is not covered by the lines of its neighbour.
+    paths.iter().rev().map(element).collect()
 }
 
 /// Figure 6.
@@ -143,11 +187,20 @@ pub fn draft(mesh: &DeformedMesh) -> Draft {
 fn words(mesh: &DeformedMesh) -> Words {
     let name = &mesh.phantom.name;
     let (depth, lateral) = (millimetres(mesh.pose.depth), millimetres(mesh.pose.lateral));
-    let disc = match mesh.phantom.inclusion {
+    let disc = match paper::name_of(&mesh.phantom) {
+        None | Some("none") => "",
         Some(_) => {
             " The inclusion keeps its shape, since it is far stiffer than the gel, as the paper says of its Figure 6."
         }
-        None => "",
+    };
+    let layers = match mesh.phantom.layers.len() {
+        1 => "one layer".into(),
+        count => format!("{count} layers"),
+    };
+    let holds = match mesh.phantom.inclusions.len() {
+        0 => String::new(),
+        1 => " with an inclusion".into(),
+        count => format!(" with {count} inclusions"),
     };
     Words {
         title: format!(
@@ -160,7 +213,7 @@ fn words(mesh: &DeformedMesh) -> Words {
             fixed(mesh.min_det, 3)
         ),
         alt: format!(
-            "A mesh of {} elements: gel under a thin skin, dented by a round probe from above.",
+            "A mesh of {} elements: {layers}{holds}, dented by a round probe from above.",
             mesh.corners.len()
         ),
     }
@@ -181,16 +234,15 @@ fn deformed_mesh(mesh: &DeformedMesh) -> DrawingResult<(String, [i32; 2])> {
     let width = WIDTH - LEFT - RIGHT;
     // Equal scales; the bound keeps an absurd phantom from making an absurd page.
     let height = (f64::from(width) * (y[1] - y[0]) / (x[1] - x[0])).clamp(60.0, 1500.0) as i32;
-    let whole = TOP + height + BOTTOM;
+    let top = top(&mesh.phantom);
+    let whole = top + height + BOTTOM;
     let mut paths = String::new();
     let svg = draw(whole, |area| {
-        let chart = axes(area, [LEFT, TOP], [width, height], x, y, None)?;
+        let chart = axes(area, [LEFT, top], [width, height], x, y, None)?;
         let places: Vec<_> = nodes.iter().map(|node| chart.backend_coord(node)).collect();
-        for name in ["gel", "inclusion", "skin"] {
-            paths.push_str(&region_path(mesh, &places, name));
-        }
+        paths = region_paths(mesh, &places);
         draw_probe(area, &chart, &outline)?;
-        draw_key(area, mesh.phantom.inclusion.is_some())?;
+        draw_key(area, &mesh.phantom)?;
         let middle = LEFT + width / 2;
         write(
             area,
@@ -226,25 +278,16 @@ fn draw_probe(
         .map_err(say)
 }
 
-fn draw_key(area: &super::chart::Area<'_>, has_disc: bool) -> DrawingResult<()> {
-    let looks = [
-        ("probe", PROBE),
-        look(Region::Skin, has_disc),
-        look(Region::Gel, has_disc),
-        look(Region::Disc, has_disc),
-    ];
-    for (k, (name, colour)) in looks
-        .into_iter()
-        .take(if has_disc { 4 } else { 3 })
-        .enumerate()
-    {
-        let left = LEFT + 100 * k as i32;
-        let corners = [(left * UNIT, 14 * UNIT), ((left + 18) * UNIT, 30 * UNIT)];
+fn draw_key(area: &super::chart::Area<'_>, phantom: &Phantom) -> DrawingResult<()> {
+    for (name, colour, [left, row]) in key(phantom) {
+        let middle = KEY_ROW * (row + 1);
+        let (upper, lower) = ((middle - 8) * UNIT, (middle + 8) * UNIT);
+        let corners = [(left * UNIT, upper), ((left + 18) * UNIT, lower)];
         area.draw(&Rectangle::new(corners, colour.filled()))
             .map_err(say)?;
         area.draw(&Rectangle::new(corners, stroke(INK, 1.0)))
             .map_err(say)?;
-        write(area, name, [left + 25, 22], INK, HPos::Left)?;
+        write(area, &name, [left + 25, middle], INK, HPos::Left)?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `setup.rs` | Figure 1: phantom and probe to scale |
+//! | `setup.rs`, `setup_words.rs` | Figure 1: phantom and probe to scale |
 //! | `overview.rs` | Figures 2, 8: the detection problem, the experiments |
 //! | `theory.rs` | Figures 3, 4, 9: the detector alone |
 //! | `forces.rs` | Figures 5 and 7, and the signals |
@@ -19,6 +19,7 @@ mod names;
 mod overview;
 mod people;
 mod setup;
+mod setup_words;
 mod style;
 mod theory;
 
@@ -65,7 +66,8 @@ struct Draft {
 pub fn figures(study: &Study, findings: &Findings) -> Result<Vec<Figure>, ReportError> {
     let detect = |source| detect_error("figures", source);
     mesh::check(&study.deformed)?;
-    let mut drafts = vec![setup::draft(study), mesh::draft(&study.deformed)];
+    let mut drafts = setup::drafts(study);
+    drafts.push(mesh::draft(&study.deformed));
     drafts.extend(forces::drafts(study, findings)?);
     drafts.push(overview::detection());
     drafts.extend(theory::drafts().map_err(detect)?);

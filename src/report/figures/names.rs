@@ -117,7 +117,7 @@ pub fn draw_names(
 
 /// Moves `heights` apart to at least `distance`, keeping their order and, where there is room, their mean, within
 /// `range`.
-fn spread(heights: &[i32], distance: i32, range: [i32; 2]) -> Vec<i32> {
+pub fn spread(heights: &[i32], distance: i32, range: [i32; 2]) -> Vec<i32> {
     let mut order: Vec<_> = (0..heights.len()).collect();
     order.sort_by_key(|&k| heights[k]);
     // Groups of names that touch, each with its members' wanted places less their place in the group.

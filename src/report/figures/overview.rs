@@ -163,7 +163,7 @@ fn draw_experiments(area: &Area<'_>) -> DrawingResult<()> {
         }
         arrow(area, &[[middle, 306.0], [middle, 340.0]])?;
     }
-    dashes(area, [[14.0, 258.0], [506.0, 258.0]], GREY)?;
+    dashes(area, &[[14.0, 258.0], [506.0, 258.0]], GREY)?;
     let subject = [
         "Subject (93 mN): which of the two samples",
         "holds the inclusion? 3 s for each,",

@@ -2,6 +2,7 @@
 
 use super::study::*;
 use super::{figures, findings};
+use crate::fem::mesh::Region;
 use crate::phantom::Phantom;
 use crate::psychophysics::Bounds;
 use crate::report::{Figure, Findings, Study, normal_approximation};
@@ -62,9 +63,10 @@ fn figure_1_is_to_scale() {
     let mut study = paper_study();
     study.maps.push(map_with("shallow", |_| 0.1, |_| 0.0));
     let mut wide = Phantom::builtin("8.6").unwrap();
-    wide.gel.width = 0.04;
+    wide.well.width = 0.04;
     study.maps.push(map(Some(wide), &DEPTHS, |_| 0.1, |_| 0.0));
     let (_, figures) = drawn(&study);
+    assert!(svg(&figures, "figure-1-8.6.svg").contains("\n40 mm\n"));
     let picture = svg(&figures, "figure-1.svg");
     let filled = |fill: &str| {
         let shapes = shapes(picture, "polygon");
@@ -80,7 +82,7 @@ fn figure_1_is_to_scale() {
     let (skin, place) = filled("#56B4E9");
     let (disc, centre) = filled("#E69F00");
     for (found, millimetres) in [
-        (gel[1], 15.5),
+        (gel[1], 15.0),
         (probe[0], 13.0),
         (probe[1], 6.5),
         (skin[1], 0.5),
@@ -111,6 +113,271 @@ fn figure_1_is_to_scale() {
             "{words}"
         );
     }
+}
+
+const LAYER: &str = "youngs_modulus_kpa = 5\npoisson_ratio = 0.49\n";
+
+/// A phantom 34 mm wide from the rest of its file.
+fn own(name: &str, well: &str, layers: &[(&str, f64)], inclusions: &[&str]) -> Phantom {
+    let mut text = format!(
+        "name = {name:?}\nprobe = {{ radius_mm = 6.5, length_mm = 30 }}\n[well]\nwidth_mm = 34\n{well}"
+    );
+    for (name, thickness) in layers {
+        text += &format!("[[layer]]\nname = {name:?}\nthickness_mm = {thickness}\n{LAYER}");
+    }
+    for inclusion in inclusions {
+        text += &format!("[[inclusion]]\n{inclusion}\n{LAYER}");
+    }
+    Phantom::from_toml(&text, name).unwrap()
+}
+
+/// A study of the first phantom as Figure 6, and of maps of all if there are several.
+fn study_of(phantoms: &[Phantom]) -> Study {
+    let map = |phantom: &Phantom| map(Some(phantom.clone()), &DEPTHS, |_| 0.1, |_| 0.0);
+    let mut study = paper_study();
+    study.maps = phantoms[1..].iter().map(map).collect();
+    if !study.maps.is_empty() {
+        study.reference = map(&phantoms[0]);
+    }
+    study.deformed.phantom = phantoms[0].clone();
+    study.deformed.regions = vec![Region::Layer(0); 2];
+    study
+}
+
+fn filled(svg: &str, fill: &str) -> Vec<Vec<[f64; 2]>> {
+    let shapes = shapes(svg, "polygon").into_iter();
+    shapes
+        .filter(|(element, _)| element.contains(fill))
+        .map(|(_, corners)| corners)
+        .collect()
+}
+
+/// Left, right, top and bottom of all words, pixels, by the report's own estimate of their width.
+fn words(svg: &str) -> Vec<(String, [f64; 4])> {
+    let number = |element: &str, key: &str| -> f64 {
+        let (_, rest) = element.split_once(&format!(" {key}=\"")).unwrap();
+        rest.split_once('"').unwrap().0.parse().unwrap()
+    };
+    let boxes = svg.split("<text").skip(1).map(|rest| {
+        let (element, rest) = rest.split_once('>').unwrap();
+        let text = rest.split_once("</text>").unwrap().0.trim().to_string();
+        let (x, y) = (number(element, "x") / 10.0, number(element, "y") / 10.0);
+        let wide = 8.7 * text.chars().count() as f64;
+        let left = match element {
+            _ if element.contains("\"end\"") => x - wide,
+            _ if element.contains("\"middle\"") => x - 0.5 * wide,
+            _ => x,
+        };
+        (text, [left, left + wide, y - 16.0, y])
+    });
+    boxes.collect()
+}
+
+const TWO: [(&str, f64); 2] = [("skin", 0.5), ("gel", 15.0)];
+const ELLIPSE: &str = "centre_x_mm = -6\ndepth_mm = 4\nwidth_mm = 5\nheight_mm = 2\nangle_deg = 90";
+const TRIANGLE: &str = "centre_x_mm = 5\ndepth_mm = 6\npoints_mm = [[-3, 0], [3, 0], [0, 5]]";
+const DISC: &str = "depth_mm = 4\ndiameter_mm = 5";
+
+// Verifies: REP-035.
+#[test]
+fn figure_1_shows_inclusions_of_any_shape_and_place() {
+    let phantom = own("two", "", &TWO, &[ELLIPSE, TRIANGLE]);
+    let (_, figures) = drawn(&study_of(&[phantom, own("one", "", &TWO, &[DISC])]));
+    let picture = svg(&figures, "figure-1.svg");
+    let (gel, axis) = extent(&filled(picture, "#FAF3E0")[0]);
+    let scale = gel[0] / 34.0;
+    let surface = axis[1] - scale * (0.5 + 7.5);
+    let inclusions = filled(picture, "#E69F00");
+    assert_eq!(inclusions.len(), 2);
+    for (corners, size, centre) in [
+        (&inclusions[0], [2.0, 5.0], [-6.0, 6.5]),
+        (&inclusions[1], [6.0, 5.0], [5.0, 8.5]),
+    ] {
+        let (found, place) = extent(corners);
+        for k in 0..2 {
+            let origin = [axis[0], surface][k];
+            let errors = [
+                found[k] - scale * size[k],
+                place[k] - origin - scale * centre[k],
+            ];
+            assert!(errors.iter().all(|e| e.abs() <= 3.0), "{errors:?} {size:?}");
+        }
+    }
+    // Both numbers, and each depth once: the disc of the other phantom is as deep as the ellipse.
+    for words in ["1", "2", "4 mm", "6 mm"] {
+        let count = picture.matches(&format!("\n{words}\n")).count();
+        assert_eq!(count, 1, "{words}");
+    }
+    let figure = figures
+        .iter()
+        .find(|f| f.file_name == "figure-1.svg")
+        .unwrap();
+    for words in [
+        "1: an ellipse of 5 × 2 mm, turned by 90°, its middle at x = −6 mm, its top 4 mm below the surface",
+        "2: a polygon of 3 corners, 6 × 5 mm, its middle at x = 5 mm, its top 6 mm below the surface",
+        "In dashes are",
+    ] {
+        assert!(figure.caption.contains(words), "{}", figure.caption);
+    }
+    // The other phantom differs in nothing else, so that it needs no drawing of its own.
+    assert!(
+        figures
+            .iter()
+            .all(|f| !f.file_name.starts_with("figure-1-"))
+    );
+}
+
+// Verifies: REP-035.
+#[test]
+fn figure_1_is_drawn_for_each_phantom_that_differs_in_more_than_inclusions() {
+    let mut softer = own("softer", "", &TWO, &[DISC]);
+    softer.layers[1].material.youngs_modulus = 4e3;
+    let mut renamed = own("renamed", "", &TWO, &[DISC]);
+    renamed.layers[1].name = "agar".into();
+    let (_, figures) = drawn(&study_of(&[own("plain", "", &TWO, &[]), softer, renamed]));
+    let names = figures.iter().map(|figure| figure.file_name.as_str());
+    let names: Vec<_> = names
+        .filter(|n| n.starts_with("figure-1") && !n.starts_with("figure-1."))
+        .collect();
+    let own: Vec<_> = names
+        .iter()
+        .filter(|name| name.starts_with("figure-1-"))
+        .collect();
+    assert_eq!(own, [&"figure-1-softer.svg"]);
+    assert!(
+        svg(&figures, "figure-1-softer.svg")
+            .contains("\nE: gel 4 kPa, skin 5 kPa, inclusion 5 kPa\n")
+    );
+}
+
+// Verifies: REP-035.
+#[test]
+fn figure_1_shows_how_walls_and_floor_hold() {
+    let picture = |well: &str| {
+        let (_, figures) = drawn(&study_of(&[own("held", well, &TWO, &[])]));
+        svg(&figures, "figure-1.svg").to_string()
+    };
+    let block = |svg: &str| {
+        filled(svg, "#E2DDD4")
+            .first()
+            .map(|corners| extent(corners).0)
+    };
+    let rollers = |svg: &str| {
+        filled(svg, "#FFFFFF")
+            .iter()
+            .filter(|c| c.len() > 10)
+            .count()
+    };
+    let fixed = picture("");
+    let sliding = picture("walls = \"sliding\"\n");
+    let free = picture("walls = \"free\"\n");
+    let floor = picture("floor = \"free\"\n");
+    let [wide, high] = block(&fixed).unwrap();
+    assert_eq!(block(&sliding), Some([wide, high]));
+    // Without walls 26 pixels less at either side; without a floor 26 less below.
+    assert_eq!(block(&free), Some([wide - 520.0, high]));
+    assert_eq!(block(&floor), Some([wide, high - 260.0]));
+    assert_eq!([&fixed, &free, &floor].map(|svg| rollers(svg)), [0; 3]);
+    assert!(rollers(&sliding) >= 10);
+    for (svg, words) in [
+        (fixed, "walls and floor fixed"),
+        (sliding, "walls sliding, floor fixed"),
+        (free, "walls free, floor fixed"),
+        (floor, "walls fixed, floor free"),
+    ] {
+        assert!(svg.contains(&format!("\n{words}\n")), "{words}");
+    }
+}
+
+// Verifies: REP-003, REP-035, REP-064.
+#[test]
+fn no_words_of_the_phantoms_figures_lie_on_others() {
+    let many: Vec<(String, f64)> = (0..9)
+        .map(|k| (format!("layer {k}"), [0.5, 3.0][k % 2]))
+        .collect();
+    let many: Vec<_> = many
+        .iter()
+        .map(|(name, thickness)| (name.as_str(), *thickness))
+        .collect();
+    let places = (0..30).map(|k| {
+        let (x, depth) = (
+            -14 + 3 * (k % 10),
+            1.0 + 4.5 * f64::from(k / 10) + 0.1 * f64::from(k % 10),
+        );
+        format!(
+            "centre_x_mm = {x}\ndepth_mm = {depth:.1}\ndiameter_mm = {}",
+            1.0 + 0.1 * f64::from(k % 9)
+        )
+    });
+    let places: Vec<String> = places.collect();
+    let crowd: Vec<&str> = places.iter().map(String::as_str).collect();
+    let mut tall = own("tall", "floor = \"sliding\"\n", &many, &[]);
+    (tall.well.width, tall.probe.radius) = (0.008, 0.0005);
+    let mut flat = own("flat", "", &[("a layer with a long name", 1.0)], &[]);
+    (flat.well.width, flat.probe.radius) = (0.5, 0.2);
+    let phantoms = [
+        Phantom::builtin("2.6").unwrap(),
+        own("two", "", &TWO, &[ELLIPSE, TRIANGLE]),
+        own("off", "walls = \"sliding\"\n", &TWO, &[ELLIPSE]),
+        own("many", "", &many, &["depth_mm = 4.2\ndiameter_mm = 2.5"]),
+        own("crowd", "", &[("gel", 16.0)], &crowd),
+        tall,
+        flat,
+    ];
+    for phantom in phantoms {
+        let name = phantom.name.clone();
+        let (_, figures) = drawn(&study_of(&[phantom]));
+        for figure in ["figure-1.svg".into(), "figure-6.svg".into()] {
+            let figure: String = figure;
+            let picture = svg(&figures, &figure);
+            let (_, height) = picture.split_once(" height=\"").unwrap();
+            let height: f64 = height.split_once('"').unwrap().0.parse().unwrap();
+            let words = words(picture);
+            assert!(words.len() > 4);
+            for (k, (one, a)) in words.iter().enumerate() {
+                assert!(
+                    a[0] >= 0.0 && a[1] <= 520.0,
+                    "{name} {figure}: {one:?} {a:?}"
+                );
+                assert!(
+                    a[2] >= -3.0 && a[3] <= height,
+                    "{name} {figure}: {one:?} {a:?}"
+                );
+                for (other, b) in &words[..k] {
+                    let apart = a[0] >= b[1] || b[0] >= a[1] || a[2] >= b[3] || b[2] >= a[3];
+                    assert!(apart, "{name} {figure}: {one:?} {a:?} on {other:?} {b:?}");
+                }
+            }
+        }
+    }
+}
+
+// Verifies: REP-003.
+#[test]
+fn figure_6_tells_layers_and_inclusions_apart() {
+    let layers = [("skin", 0.5), ("fat", 3.0), ("gel", 12.0)];
+    let mut study = study_of(&[own("mine", "", &layers, &[ELLIPSE, TRIANGLE])]);
+    study.deformed.corners = vec![vec![0, 1, 3, 2]; 4];
+    study.deformed.regions = [1, 2].map(Region::Layer).into();
+    study.deformed.regions.extend([0, 1].map(Region::Inclusion));
+    let (_, figures) = drawn(&study);
+    let picture = svg(&figures, "figure-6.svg");
+    for name in ["skin", "fat", "gel", "inclusions"] {
+        assert_eq!(picture.matches(&format!("\n{name}\n")).count(), 1, "{name}");
+    }
+    let paths = |fill: &str| {
+        let paths = picture.split("<path ").skip(1);
+        paths
+            .filter(|path| {
+                path.split_once("/>")
+                    .is_some_and(|(tag, _)| tag.contains(fill))
+            })
+            .count()
+    };
+    assert_eq!(
+        ["#56B4E9", "#D3EAD4", "#FAF3E0", "#E69F00"].map(paths),
+        [0, 1, 1, 2]
+    );
 }
 
 // Verifies: REP-037.

@@ -78,6 +78,7 @@ pub fn computed_map(name: &str, smallest: f64) -> ForceMap {
         elements: 567,
         element: "t6".into(),
         contact: "deformed-normal".into(),
+        arithmetic: "other".into(),
         smallest_det: SmallestDet::of(&min_det, &DEPTHS, &LATERALS).unwrap(),
         min_det,
         discretization: None,
@@ -105,7 +106,7 @@ pub fn deformed() -> DeformedMesh {
             .collect(),
         displacements: vec![[0.0, -1e-3]; 6],
         corners: vec![vec![0, 1, 3, 2], vec![2, 3, 5, 4]],
-        regions: vec![Region::Gel, Region::Skin],
+        regions: vec![Region::Layer(1), Region::Layer(0)],
         min_det: 0.5,
     }
 }
