@@ -1,9 +1,9 @@
 //! How far the default mesh's forces are from those of a mesh without end (requirements FEM-021, FEM-025, FEM-028,
-//! FEM-039): `cargo bench --bench convergence`. Takes some minutes and 1 GB on one core.
+//! FEM-039): `cargo bench --bench convergence`. Takes a quarter of an hour and 1 GB on one core.
 //!
 //! The reference is a mesh of 0.125 mm, a quarter of the default, corners at the walls included. No force is extrapolated:
 //! what is left of the error swings with the pose, as the contact's edge moves from node to node, and an
-//! extrapolation would enlarge that. How good the reference is tells its largest change from a mesh of 0.2 mm: at second
+//! extrapolation would enlarge that. Its largest change from a mesh of 0.2 mm tells how good it is: at second
 //! order its own error is 0.64 of that, at first order 1.7 times.
 
 use palpate::fem::certify::certified_map;
@@ -115,7 +115,7 @@ fn study(name: &str, phantom: &Phantom, laterals: &[f64]) -> Shares {
         let unit = if relative { "%" } else { "mN" };
         let poses = depths.len() * laterals.len();
         let text = format!(
-            "{error:.3} {unit} at ({depth}, {lateral}) ({change:.3} {unit}), {within} of {poses}"
+            "{error:.3} {unit} at ({depth:.1}, {lateral:.1}) ({change:.3} {unit}), {within} of {poses}"
         );
         (text, within)
     };
