@@ -112,7 +112,7 @@ fn highlights(page: &Page<'_>) -> Vec<Highlight> {
         all.push(Highlight {
             number: format!("{} N", fixed(level, 2)),
             words: format!(
-                "normal force on the probe over plain gel at depth {} mm{paper}",
+                "normal force on the probe without an inclusion at depth {} mm{paper}",
                 millimetres(findings.probe_depth)
             ),
         });
