@@ -245,6 +245,12 @@ impl Mesh {
         self.surface.sort_by(|&a, &b| x(a).total_cmp(&x(b)));
     }
 
+    /// The nodes of one element.
+    pub(super) fn nodes_of(&self, element: u32) -> &[u32] {
+        let count = self.element.nodes();
+        &self.connectivity[element as usize * count..][..count]
+    }
+
     /// The nodes of each element in turn.
     pub fn elements(&self) -> impl Iterator<Item = &[u32]> {
         self.connectivity.chunks_exact(self.element.nodes())

@@ -80,10 +80,7 @@ impl Search<'_> {
     /// The nodes that elements before `middle` share with those behind, of those not yet ordered, ascending.
     fn separator(&mut self, elements: &[u32], middle: usize) -> Vec<usize> {
         self.stamp += 1;
-        let nodes = |element: &u32| {
-            let count = self.mesh.element.nodes();
-            &self.mesh.connectivity[*element as usize * count..][..count]
-        };
+        let nodes = |&element: &u32| self.mesh.nodes_of(element);
         for &node in elements[..middle].iter().flat_map(nodes) {
             let mark = &mut self.marks[node as usize];
             if *mark != ORDERED {
@@ -104,10 +101,7 @@ impl Search<'_> {
 
     /// The nodes of some elements that are not yet ordered, each once; they are then.
     fn unordered(&mut self, elements: &[u32]) -> Vec<usize> {
-        let count = self.mesh.element.nodes();
-        let nodes = elements
-            .iter()
-            .flat_map(|&e| &self.mesh.connectivity[e as usize * count..][..count]);
+        let nodes = elements.iter().flat_map(|&e| self.mesh.nodes_of(e));
         nodes
             .map(|&node| node as usize)
             .filter(|&node| std::mem::replace(&mut self.marks[node], ORDERED) != ORDERED)

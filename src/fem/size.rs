@@ -3,7 +3,7 @@
 use core::f64::consts::FRAC_PI_2;
 
 use super::triangulate::Point;
-use crate::phantom::{Outline, Phantom, Support};
+use crate::phantom::{Outline, Phantom, Support, point_to_segment};
 
 /// The mesh size, m, at which the sizes below hold as they stand; any other scales them all.
 pub const NOMINAL: f64 = 0.5e-3;
@@ -199,15 +199,8 @@ fn distance(outline: &Outline, point: Point) -> f64 {
             let next = points.iter().cycle().skip(1);
             let edges = points.iter().zip(next);
             edges
-                .map(|(a, b)| to_segment(point, (*a).into(), (*b).into()))
+                .map(|(a, b)| point_to_segment(point.into(), *a, *b))
                 .fold(f64::INFINITY, f64::min)
         }
     }
-}
-
-/// Distance of a point from the segment between `a` and `b`, m.
-fn to_segment(point: Point, a: Point, b: Point) -> f64 {
-    let along = b - a;
-    let t = ((point - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-    (point - a - t * along).norm()
 }

@@ -38,6 +38,7 @@ use serde::{Deserialize, Serialize};
 pub use file::PhantomFileError;
 pub use limits::{CLEARANCE, InvalidPhantom};
 pub use pose::PoseError;
+pub(crate) use shape::point_to_segment;
 pub use shape::{Outline, Shape};
 
 /// A linear isotropic elastic material.
