@@ -7,7 +7,7 @@
 //! order its own error is 0.64 of that, at first order 1.7 times.
 
 use palpate::fem::certify::certified_map;
-use palpate::fem::{Contact, MeshOptions, Model};
+use palpate::fem::{Contact, MESH_SIZE, Model};
 use palpate::force_map::{ForceMap, Matrix};
 use palpate::phantom::{BUILTIN_NAMES, Phantom};
 
@@ -24,11 +24,7 @@ const OFF_CENTRE: [(&str, f64); 6] = [
 ];
 
 fn model(phantom: &Phantom, size: f64) -> Model {
-    let options = MeshOptions {
-        size,
-        ..MeshOptions::default()
-    };
-    Model::new(phantom, &options, Contact::default()).expect("a model")
+    Model::new(phantom, size, Contact::default()).expect("a model")
 }
 
 /// Half millimetres, m.
@@ -87,7 +83,7 @@ impl Shares {
 /// Prints one line of the table.
 fn study(name: &str, phantom: &Phantom, laterals: &[f64]) -> Shares {
     let depths = axis(1..=8);
-    let default = model(phantom, MeshOptions::default().size);
+    let default = model(phantom, MESH_SIZE);
     let map = certified_map(&default, &depths, laterals, &|_| ()).expect("a map");
     let references = REFERENCES.map(|size| {
         let model = model(phantom, size);

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use palpate::fem::assembly::StiffnessMatrix;
 use palpate::fem::cholesky::Factor;
-use palpate::fem::{Mesh, MeshOptions};
+use palpate::fem::{MESH_SIZE, Mesh};
 use palpate::phantom::Phantom;
 
 const RUNS: usize = 5;
@@ -34,11 +34,7 @@ fn processor_seconds() -> Option<f64> {
 }
 
 fn mesh(phantom: &Phantom, size: f64) -> Mesh {
-    let options = MeshOptions {
-        size,
-        ..MeshOptions::default()
-    };
-    Mesh::new(phantom, &options).expect("a mesh")
+    Mesh::new(phantom, size).expect("a mesh")
 }
 
 /// The compliance of a mesh's surface: stiffness matrix, factor, inverse of its corner.
@@ -74,9 +70,8 @@ fn main() {
     }
     // Without a mirror image: the whole width is meshed.
     phantom.inclusions[0].centre_x = 2e-3;
-    let size = MeshOptions::default().size;
-    let nodes = mesh(&phantom, size).nodes.len();
-    let time = median(|| condense(&phantom, &mesh(&phantom, size)));
+    let nodes = mesh(&phantom, MESH_SIZE).nodes.len();
+    let time = median(|| condense(&phantom, &mesh(&phantom, MESH_SIZE)));
     line(
         "from an asymmetric phantom to its condensed stiffness",
         nodes,

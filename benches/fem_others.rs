@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use palpate::fem::assembly::StiffnessMatrix;
 use palpate::fem::cholesky::Factor;
-use palpate::fem::{Mesh, MeshOptions};
+use palpate::fem::{MESH_SIZE, Mesh};
 use palpate::phantom::{Material, Phantom};
 use serde_json::json;
 
@@ -23,7 +23,7 @@ fn main() {
         return;
     };
     let phantom = Phantom::builtin("2.6").expect("a built-in name");
-    let mesh = Mesh::new(&phantom, &MeshOptions::default()).expect("a mesh");
+    let mesh = Mesh::new(&phantom, MESH_SIZE).expect("a mesh");
     let run = || {
         let start = Instant::now();
         let matrix = StiffnessMatrix::assemble(&mesh, &phantom).expect("a matrix");

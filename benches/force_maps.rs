@@ -3,7 +3,7 @@
 //! `cargo bench --bench force_maps`. Processor time and peak memory are Linux's own accounting of this process.
 //! The bar: 1.6 s of processor time, 150 MB. It is reported, not enforced: on a shared machine time is no gate.
 
-use palpate::fem::{Contact, MeshOptions, Model};
+use palpate::fem::{Contact, MESH_SIZE, Model};
 use palpate::phantom::{BUILTIN_NAMES, Phantom};
 
 const RUNS: usize = 5;
@@ -17,8 +17,7 @@ fn main() {
         let mut line = String::new();
         for name in BUILTIN_NAMES {
             let phantom = Phantom::builtin(name).expect("a built-in name");
-            let model =
-                Model::new(&phantom, &MeshOptions::default(), Contact::default()).expect("a model");
+            let model = Model::new(&phantom, MESH_SIZE, Contact::default()).expect("a model");
             let map = model.map(&depths, &laterals, &|_| ()).expect("a map");
             line += &format!(
                 "  {name}: {} nodes, {:.5} N",

@@ -24,15 +24,14 @@
 //! # #[cfg(feature = "fem")]
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use palpate::detect::{Channels, Decision, assessment::assess};
-//! use palpate::fem::{Contact, MeshOptions, Model};
+//! use palpate::fem::{Contact, Model};
 //! use palpate::phantom::Phantom;
 //! use palpate::servo::LoadedTable;
 //!
 //! // Force maps of the gel alone, and with an inclusion under 6.6 mm of it.
-//! let coarse = MeshOptions { size: 2e-3, ..MeshOptions::default() };
 //! let laterals: Vec<f64> = (-5..=5).map(|k| 2e-3 * f64::from(k)).collect();
 //! let map = |name| -> Result<_, Box<dyn std::error::Error>> {
-//!     let model = Model::new(&Phantom::builtin(name)?, &coarse, Contact::default())?;
+//!     let model = Model::new(&Phantom::builtin(name)?, 2e-3, Contact::default())?;
 //!     Ok(model.map(&[2e-3, 4e-3], &laterals, &|_| ())?)
 //! };
 //! let (without, with) = (map("none")?, map("6.6")?);

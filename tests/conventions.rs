@@ -5,18 +5,14 @@ use std::collections::BTreeSet;
 use std::process::Command;
 
 use palpate::fem::mesh::Region;
-use palpate::fem::{Contact, MeshOptions, Model, Pose, PoseSolution};
+use palpate::fem::{Contact, Model, Pose, PoseSolution};
 use palpate::phantom::Phantom;
 
 /// The mesh size, m. Points of the surface are at most as far apart.
 const SIZE: f64 = 1e-3;
 
 fn model(phantom: &Phantom) -> Model {
-    let options = MeshOptions {
-        size: SIZE,
-        ..MeshOptions::default()
-    };
-    Model::new(phantom, &options, Contact::default()).unwrap()
+    Model::new(phantom, SIZE, Contact::default()).unwrap()
 }
 
 fn solve(model: &Model, depth: f64, lateral: f64) -> PoseSolution {
@@ -37,14 +33,13 @@ fn help(arguments: &[&str]) -> String {
 const UNITS: [&str; 6] = ["mm", "mm-s", "kpa", "us", "n", "s"];
 
 /// Options whose value is no quantity, has no unit, or is in SI.
-const NO_OTHER_UNIT: [&str; 35] = [
+const NO_OTHER_UNIT: [&str; 34] = [
     "condition",
     "config",
     "contact",
     "criterion",
     "cycles",
     "device",
-    "element",
     "format",
     "inclusion",
     "journal",

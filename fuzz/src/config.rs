@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use palpate::fuzzing::{Config, ContactName, ElementName, format_scaled};
+use palpate::fuzzing::{Config, ContactName, format_scaled};
 
 use crate::command_line::check_positions;
 use crate::message::{check_line, check_message};
@@ -65,10 +65,6 @@ fn written(config: &Config) -> String {
         .measured
         .iter()
         .map(|path| path.display().to_string());
-    let element = match config.mesh.element {
-        ElementName::T6 => "t6",
-        ElementName::Q4Full => "q4-full",
-    };
     let contact = match config.mesh.contact {
         ContactName::DeformedNormal => "deformed-normal",
         ContactName::VerticalGap => "vertical-gap",
@@ -89,7 +85,7 @@ fn written(config: &Config) -> String {
     let _ = writeln!(text, "depths_mm = {}", list(&config.depths_mm.0));
     let _ = writeln!(text, "laterals_mm = {}", list(&config.laterals_mm.0));
     let _ = writeln!(text, "[mesh]\nsize_mm = {:?}", config.mesh.size_mm);
-    let _ = writeln!(text, "element = {element:?}\ncontact = {contact:?}");
+    let _ = writeln!(text, "contact = {contact:?}");
     let detection = &config.detection;
     let _ = writeln!(text, "[detection]\nnoise_sd_n = {:?}", detection.noise_sd_n);
     let _ = writeln!(text, "max_false_alarm = {:?}", detection.max_false_alarm);

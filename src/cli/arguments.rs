@@ -9,7 +9,7 @@ use super::{
     conform, detect, devices, experiment, import, oracle, play, psychophysics, run, solve, timing,
     verify,
 };
-use crate::fem::{Contact, Element};
+use crate::fem::Contact;
 
 /// Inclusion probing after Yan, Scott and Fearing (1999): forces on a probe, detection of an inclusion.
 #[derive(Debug, Parser)]
@@ -72,26 +72,6 @@ impl From<ContactName> for Contact {
         match name {
             ContactName::DeformedNormal => Contact::DeformedNormal,
             ContactName::VerticalGap => Contact::VerticalGap,
-        }
-    }
-}
-
-/// The shape of the elements.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ElementName {
-    /// Triangles with 6 nodes.
-    #[default]
-    T6,
-    /// Fully integrated quadrilaterals with 4 nodes, which lock: forces come out some per cent high.
-    Q4Full,
-}
-
-impl From<ElementName> for Element {
-    fn from(name: ElementName) -> Element {
-        match name {
-            ElementName::T6 => Element::T6,
-            ElementName::Q4Full => Element::Q4Full,
         }
     }
 }

@@ -8,9 +8,9 @@ use toml::Spanned;
 use super::lists::{Positions, positions};
 use super::output::read;
 use super::solve::phantom;
-use super::{CliError, ContactName, ElementName};
+use super::{CliError, ContactName};
 use crate::csv::one_line;
-use crate::fem::MeshOptions;
+use crate::fem::MESH_SIZE;
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 use crate::report::Settings;
 
@@ -45,8 +45,6 @@ pub struct Mesh {
     /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them.
     #[serde(deserialize_with = "positive")]
     pub size_mm: f64,
-    /// The shape of the elements.
-    pub element: ElementName,
     /// How the gap to the probe is measured.
     pub contact: ContactName,
 }
@@ -94,8 +92,7 @@ impl Default for Config {
 impl Default for Mesh {
     fn default() -> Self {
         Mesh {
-            size_mm: MeshOptions::default().size * 1e3,
-            element: ElementName::T6,
+            size_mm: MESH_SIZE * 1e3,
             contact: ContactName::DeformedNormal,
         }
     }
@@ -177,14 +174,6 @@ impl Config {
             }
         }
         Ok(phantom)
-    }
-
-    /// Options of the mesh.
-    pub fn mesh_options(&self) -> MeshOptions {
-        MeshOptions {
-            size: self.mesh.size_mm / 1e3,
-            element: self.mesh.element.into(),
-        }
     }
 
     /// Settings of the detector.

@@ -25,7 +25,7 @@ mod verify;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use arguments::{Asked, Command, ContactName, ElementName, Format};
+use arguments::{Asked, Command, ContactName, Format};
 use error::CliError;
 
 /// Runs the program with the given arguments, the first of which is its name.

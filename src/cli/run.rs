@@ -108,7 +108,8 @@ fn solve_phantom(
     shown: bool,
     bar: &ProgressBar,
 ) -> Result<(ForceMap, Option<DeformedMesh>), FemError> {
-    let model = Model::new(phantom, &config.mesh_options(), config.mesh.contact.into())?;
+    let mesh = &config.mesh;
+    let model = Model::new(phantom, mesh.size_mm / 1e3, mesh.contact.into())?;
     let (depths, laterals) = (&config.depths_mm.0, &config.laterals_mm.0);
     // Each map on three meshes.
     bar.inc_length((3 * depths.len() * model.solved_laterals(laterals).len()) as u64);

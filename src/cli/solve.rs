@@ -8,9 +8,9 @@ use clap::{Args, ValueEnum};
 use super::lists::{Positions, positions};
 use super::output::{print, write};
 use super::progress::bar;
-use super::{CliError, ContactName, ElementName};
+use super::{CliError, ContactName};
 use crate::fem::certify::certified_map;
-use crate::fem::{FemError, MeshOptions, Model, Pose};
+use crate::fem::{FemError, MESH_SIZE, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::{format_scaled, parse_scaled};
 use crate::phantom::{BUILTIN_NAMES, Phantom};
@@ -31,9 +31,6 @@ pub struct SolveArguments {
     /// How the gap to the probe is measured
     #[arg(long, value_enum, default_value_t = ContactName::DeformedNormal)]
     contact: ContactName,
-    /// The shape of the elements
-    #[arg(long, value_enum, default_value_t = ElementName::T6)]
-    element: ElementName,
     /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them [default: 0.5]
     #[arg(long, value_parser = millimetres, value_name = "H")]
     mesh_mm: Option<f64>,
@@ -104,11 +101,8 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         phantom: phantom.name.clone(),
         error,
     };
-    let options = MeshOptions {
-        size: arguments.mesh_mm.unwrap_or(MeshOptions::default().size),
-        element: arguments.element.into(),
-    };
-    let model = Model::new(&phantom, &options, arguments.contact.into()).map_err(failed)?;
+    let size = arguments.mesh_mm.unwrap_or(MESH_SIZE);
+    let model = Model::new(&phantom, size, arguments.contact.into()).map_err(failed)?;
     let meshes = if arguments.certify { 3 } else { 1 };
     let columns = model.solved_laterals(laterals).len();
     let bar = bar(meshes * depths.len() * columns, &phantom.name);

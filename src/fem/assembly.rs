@@ -16,11 +16,11 @@ const HELD: u32 = u32::MAX;
 ///
 /// ```
 /// use palpate::fem::assembly::StiffnessMatrix;
-/// use palpate::fem::{Mesh, MeshOptions};
+/// use palpate::fem::Mesh;
 /// use palpate::phantom::Phantom;
 ///
 /// let phantom = Phantom::builtin("6.6")?;
-/// let mesh = Mesh::new(&phantom, &MeshOptions { size: 2e-3, ..MeshOptions::default() })?;
+/// let mesh = Mesh::new(&phantom, 2e-3)?;
 /// let matrix = StiffnessMatrix::assemble(&mesh, &phantom)?;
 /// assert_eq!(matrix.unknown(mesh.surface[0], 1), None); // held by the wall
 /// assert_eq!(matrix.unknown(mesh.surface[1], 0), Some(matrix.first_surface_unknown));
@@ -65,7 +65,7 @@ impl StiffnessMatrix {
         let interior = dissection(mesh).into_iter().map(&mut number).last();
         let all = mesh.surface.iter().copied().map(number).last();
         let unknowns = all.unwrap_or(0);
-        let rule = StiffnessRule::new(mesh.element);
+        let rule = StiffnessRule::default();
         let mut triplets = Vec::with_capacity(mesh.regions.len() * 78);
         let mut reaction = [vec![0.0; unknowns], vec![0.0; unknowns]];
         for (index, nodes) in mesh.elements().enumerate() {

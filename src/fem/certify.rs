@@ -1,7 +1,7 @@
 //! How far the forces of a map are from those of an infinitely fine mesh: Roache's grid convergence index on
 //! three meshes (ASME V&V 20).
 
-use super::{FemError, MeshOptions, Model};
+use super::{FemError, Model};
 use crate::force_map::{Discretization, ForceMap, Matrix};
 
 /// Ratios of the sizes of the three meshes, middle over fine and coarse over middle.
@@ -31,12 +31,8 @@ pub fn certified_map(
 ) -> Result<ForceMap, FemError> {
     let finest = model.map(depths, laterals, solved)?;
     let coarser = |ratio: f64| -> Result<(usize, ForceMap), FemError> {
-        let (phantom, options) = (model.phantom(), model.options());
-        let options = MeshOptions {
-            size: ratio * options.size,
-            ..*options
-        };
-        let coarser = Model::new(phantom, &options, model.surface().contact)?;
+        let size = ratio * model.mesh_size();
+        let coarser = Model::new(model.phantom(), size, model.surface().contact)?;
         let map = coarser.map(depths, laterals, solved)?;
         Ok((coarser.mesh().nodes.len(), map))
     };

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::inverse::{inverse, inverse_scratch};
-use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
@@ -13,7 +12,7 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::{Accum, Conj, Mat, MatMut, Par, Side};
+use faer::{Conj, Mat, MatMut, Par, Side};
 
 use super::FemError;
 use super::assembly::StiffnessMatrix;
@@ -29,7 +28,7 @@ pub struct Factor {
     symbolic: Arc<SymbolicCholesky<u32>>,
     values: Vec<f64>,
     /// The corner of L over the surface unknowns.
-    surface: Mat<f64>,
+    pub(super) surface: Mat<f64>,
 }
 
 fn scratch(request: faer::dyn_stack::StackReq) -> Result<MemBuffer, FemError> {
@@ -105,15 +104,7 @@ impl Factor {
         corner
     }
 
-    /// The surface stiffness S = L_ss L_ssᵀ, N/m: the stiffness matrix with the interior condensed out, over the
-    /// unknowns at the surface.
-    ///
-    /// Implements: FEM-007.
-    pub fn surface_stiffness(&self) -> Mat<f64> {
-        &self.surface * self.surface.transpose()
-    }
-
-    /// The surface compliance S⁻¹, m/N, over both displacement components of each node at the surface from left to
+    /// The surface compliance S⁻¹, m/N, with S = L_ss L_ssᵀ the stiffness with the interior condensed out, over both displacement components of each node at the surface from left to
     /// right: 0 for those that a wall holds. Symmetric to the bit.
     ///
     /// # Errors
@@ -189,18 +180,7 @@ impl Factor {
         let mut u = MatMut::from_row_major_slice_mut(u.as_flattened_mut(), n, W);
         let (mut interior, mut surface) = u.rb_mut().split_at_row_mut(n - self.surface.nrows());
         interior.fill(0.0);
-        let known = surface.to_owned();
-        matmul(
-            surface.rb_mut(),
-            BlockStructure::Rectangular,
-            Accum::Replace,
-            self.surface.transpose(),
-            BlockStructure::TriangularUpper,
-            known.rb(),
-            BlockStructure::Rectangular,
-            1.0,
-            Par::Seq,
-        );
+        surface.copy_from(self.surface.transpose() * surface.rb());
         let factor = self.factor();
         let mut memory = scratch(factor.symbolic().solve_in_place_scratch::<f64>(W, Par::Seq))?;
         factor.l_transpose_solve_with_conj(Conj::No, u, Par::Seq, MemStack::new(&mut memory));

@@ -1,16 +1,17 @@
-//! Frictionless unilateral contact of the rigid probe with the condensed surface, at two Gauss points on each edge of a
-//! triangle at the surface, at one on that of a quadrilateral.
+//! Frictionless unilateral contact of the rigid probe with the condensed surface, at two Gauss points on each edge there.
 //!
 //! The points' displacements are u = N C Nᵀ f with C the compliance of the surface's nodes and N their shape functions at the
 //! points. Each point i obeys gap_i ≥ 0, λ_i ≥ 0, λ_i gap_i = 0, and carries the force λ_i n_i. With the probe's true normal at the
 //! deformed point, n turns with u: Newton's method needs the curvature term λ (I − n nᵀ)/r.
 
+use std::ops::Range;
+
 use faer::linalg::solvers::{Llt, Solve};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Col, Mat, Par, Side};
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 
-use super::mesh::{Element, Mesh};
+use super::mesh::Mesh;
 use super::{FemError, Pose};
 use crate::phantom::Probe;
 
@@ -50,8 +51,11 @@ const GAP_TOLERANCE: f64 = 1e-12;
 const STEP_TOLERANCE: f64 = 1e-13;
 /// A tangent system is used again while each step is below this part of the one before.
 const REUSE_BELOW: f64 = 0.2;
-/// Iterations after which the active set changes by one point at a time, which cannot cycle.
+/// Iterations after which the active set changes by its worst point alone, so that it does not cycle.
 const SIMULTANEOUS_CHANGES: usize = 25;
+/// The first iteration takes in the points that are at least this part of the deepest one's way inside the probe. A surface
+/// that does not yet know the probe has too many inside, and points that should not be in contact leave it two by two.
+const FIRST_TAKEN: f64 = 0.8;
 /// Iterations after which a pose has not converged.
 const MOST_ITERATIONS: usize = 120;
 
@@ -78,10 +82,8 @@ pub struct Surface {
     /// Displacements of the contact points per force on them, m/N, both components of each point in turn; symmetric, on a
     /// symmetric mesh also in x, to the bit.
     pub compliance: Mat<f64>,
-    /// Displacements of the nodes at the surface per force on the contact points, m/N.
+    /// Displacements of the contact points per force on the nodes at the surface, m/N.
     nodal: Mat<f64>,
-    /// The nodes of each contact point's edge, by their numbers at the surface, and their shape functions at the point.
-    shapes: Vec<Vec<(usize, f64)>>,
     /// The probe.
     pub probe: Probe,
     /// How the gap is measured.
@@ -99,7 +101,7 @@ pub struct ContactState {
     pub pressures: Vec<f64>,
     /// Points in contact, ascending.
     pub active: Vec<usize>,
-    /// Newton iterations spent on this pose.
+    /// Iterations spent on this pose.
     pub iterations: usize,
 }
 
@@ -112,15 +114,6 @@ impl ContactState {
             active: Vec::new(),
             iterations: 0,
         }
-    }
-
-    /// Moves the points that are not in contact to where the forces move them.
-    fn follow(&mut self, elastic: &[[f64; 2]]) {
-        let mut moved = elastic.to_vec();
-        for &point in &self.active {
-            moved[point] = self.displacements[point];
-        }
-        self.displacements = moved;
     }
 
     /// Where the state goes if it keeps changing as it did since `earlier`, `ahead` times as far.
@@ -165,8 +158,8 @@ struct Tangent {
     pushed: Llt<f64>,
     /// C_tn.
     across: Mat<f64>,
-    /// The diagonal of D.
-    rates: Vec<f64>,
+    /// The diagonal of D^½.
+    roots: Vec<f64>,
     /// Q.
     slid: Mat<f64>,
     /// Factor of I − D^½ Q D^½.
@@ -181,19 +174,29 @@ impl Tangent {
             let project = |k: usize| direction(self.normals[k]).dot(&mismatch[k]);
             Col::from_fn(mismatch.len(), project)
         };
-        let scaled = |x: &Col<f64>, power: fn(f64) -> f64| {
-            Col::from_fn(x.nrows(), |k| power(self.rates[k]) * x[k])
-        };
+        let scaled = |x: &Col<f64>| Col::from_fn(x.nrows(), |k| self.roots[k] * x[k]);
         let (normal, tangential) = (along(|n| n), along(tangent));
         let r = &self.across * self.pushed.solve(&normal) - tangential;
         // b = r + Q D^½ (I − D^½ Q D^½)⁻¹ D^½ r.
-        let inner = self.slip.solve(scaled(&r, libm::sqrt));
-        let slips = r + &self.slid * scaled(&inner, libm::sqrt);
-        let turned = scaled(&slips, |rate| rate);
+        let slips = &r + &self.slid * scaled(&self.slip.solve(scaled(&r)));
+        let turned = scaled(&scaled(&slips));
         let pressures = self.pushed.solve(normal - self.across.transpose() * turned);
         let finite = pressures.iter().chain(slips.iter()).all(|x| x.is_finite());
         finite.then_some((pressures, slips))
     }
+}
+
+/// Where an edge's contact points lie, from −1 at its left end to 1 at its right.
+const GAUSS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
+
+/// The nodes of a contact point's edge, by their numbers at the surface, and their shape functions at the point.
+fn nodes_of(point: usize) -> [(usize, f64); 3] {
+    let (first, x) = (point / 2 * 2, GAUSS[point % 2]);
+    [
+        (first, 0.5 * x * (x - 1.0)),
+        (first + 1, 1.0 - x * x),
+        (first + 2, 0.5 * x * (x + 1.0)),
+    ]
 }
 
 /// The tangent to a normal: n turned by a quarter.
@@ -209,37 +212,24 @@ impl Surface {
         probe: Probe,
         contact: Contact,
     ) -> Surface {
-        // As many points as an edge brings nodes: with more, the points' compliance would be singular.
-        let gauss = 1.0 / libm::sqrt(3.0);
-        let (edge, points): (usize, &[f64]) = match mesh.element {
-            Element::T6 => (3, &[-gauss, gauss]),
-            Element::Q4Full => (2, &[0.0]),
-        };
-        let (mut positions, mut lengths, mut shapes) = (Vec::new(), Vec::new(), Vec::new());
-        for first in (0..mesh.surface.len() - 1).step_by(edge - 1) {
-            let [left, right] =
-                [first, first + edge - 1].map(|node| mesh.nodes[mesh.surface[node]][0]);
-            for &x in points {
+        let (mut positions, mut lengths) = (Vec::new(), Vec::new());
+        for edge in mesh.surface.windows(3).step_by(2) {
+            let [left, right] = [edge[0], edge[2]].map(|node| mesh.nodes[node][0]);
+            for x in GAUSS {
                 positions.push([0.5 * (left + right) + x * (0.5 * (right - left)), 0.0]);
-                lengths.push((right - left) / points.len() as f64);
-                let shape = match mesh.element {
-                    Element::T6 => vec![0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)],
-                    Element::Q4Full => vec![0.5 * (1.0 - x), 0.5 * (1.0 + x)],
-                };
-                shapes.push((first..).zip(shape).collect::<Vec<_>>());
+                lengths.push(0.5 * (right - left));
             }
         }
         let size = 2 * positions.len();
-        // Row or column `place` of the nodes' matrix, interpolated.
-        let at = |place: usize, entry: &dyn Fn(usize) -> f64| -> f64 {
-            let terms = shapes[place / 2].iter();
-            terms.map(|(node, w)| w * entry(2 * node + place % 2)).sum()
-        };
-        let nodal = Mat::from_fn(compliance.nrows(), size, |row, column| {
-            at(column, &|place| compliance[(row, place)])
+        let nodal = Mat::from_fn(size, compliance.ncols(), |place, column| -> f64 {
+            let column = compliance.col_as_slice(column);
+            let [a, b, c] = nodes_of(place / 2).map(|(node, n)| n * column[2 * node + place % 2]);
+            a + b + c
         });
-        let points = Mat::from_fn(size, size, |row, column| {
-            at(row, &|place| nodal[(place, column)])
+        let points = Mat::from_fn(size, size, |row, place| -> f64 {
+            let nodes = nodes_of(place / 2);
+            let [a, b, c] = nodes.map(|(node, n)| n * nodal[(row, 2 * node + place % 2)]);
+            a + b + c
         });
         let image = |place: usize| size - 2 - 2 * (place / 2) + place % 2;
         let both = |row: usize, column: usize| points[(row, column)] + points[(column, row)];
@@ -256,7 +246,6 @@ impl Surface {
             lengths,
             compliance,
             nodal,
-            shapes,
             probe,
             contact,
         }
@@ -268,20 +257,23 @@ impl Surface {
         state: &ContactState,
         pose: Pose,
     ) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
-        let mut displacements = vec![[0.0; 2]; self.nodal.nrows() / 2];
-        let mut forces = displacements.clone();
-        for (point, force) in self.forces(state, pose) {
-            for direction in 0..2 {
-                let column = self.nodal.col_as_slice(2 * point + direction);
-                for (u, by) in displacements.as_flattened_mut().iter_mut().zip(column) {
-                    *u += by * force[direction];
-                }
-                for (node, weight) in &self.shapes[point] {
-                    forces[*node][direction] += weight * force[direction];
+        let loads = self.forces(state, pose);
+        let displacement = |column: usize| -> f64 {
+            let column = self.nodal.col_as_slice(column);
+            let term = |(i, f): &(usize, [f64; 2])| column[2 * i] * f[0] + column[2 * i + 1] * f[1];
+            loads.iter().map(term).sum()
+        };
+        let nodes = self.nodal.ncols() / 2;
+        let mut forces = vec![[0.0; 2]; nodes];
+        for &(point, force) in &loads {
+            for (node, n) in nodes_of(point) {
+                for direction in 0..2 {
+                    forces[node][direction] += n * force[direction];
                 }
             }
         }
-        (displacements, forces)
+        let displacements = (0..nodes).map(|node| [0, 1].map(|k| displacement(2 * node + k)));
+        (displacements.collect(), forces)
     }
 
     /// The gap of a point displaced by `u`, its slope and how that turns; `None` where the circle has none.
@@ -319,78 +311,123 @@ impl Surface {
     pub fn solve(&self, pose: Pose, start: &ContactState) -> Result<ContactState, FemError> {
         let failed = |iterations| FemError::NoConvergence { pose, iterations };
         let mut state = start.clone();
-        let (mut kept, mut elastic, mut step) = (None, None, f64::INFINITY);
+        let mut reach = self.reach(&state, pose);
+        let (mut kept, mut step) = (None, f64::INFINITY);
+        let mut elastic = self.response(&state, pose, reach.clone());
         for iteration in 0..MOST_ITERATIONS {
-            let one_by_one = iteration >= SIMULTANEOUS_CHANGES;
-            let most = if one_by_one { 1 } else { usize::MAX };
-            let changed = self.revise(&mut state, pose, most);
-            if changed {
-                (kept, elastic, step) = (None, None, f64::INFINITY);
-            } else if step <= STEP_TOLERANCE {
-                state.iterations = iteration;
-                return Ok(state);
-            }
-            // The old tangent serves as long as it lets the steps shrink well.
-            let tangent = match kept.take() {
-                Some(tangent) => tangent,
-                None => self
-                    .tangent(&state, pose, changed)
-                    .ok_or(failed(iteration))?,
+            let least = match iteration {
+                0 => FIRST_TAKEN,
+                1..SIMULTANEOUS_CHANGES => 0.0,
+                _ => 1.0,
             };
-            let before = step;
-            let under_forces = elastic.unwrap_or_else(|| self.response(&state, pose));
-            let moved = self.newton(&mut state, pose, &tangent, &under_forces);
-            step = moved.ok_or(failed(iteration))?;
-            let under_forces = self.response(&state, pose);
-            state.follow(&under_forces);
-            elastic = Some(under_forces);
-            kept = (!changed && step <= REUSE_BELOW * before).then_some(tangent);
+            if self.revise(&mut state, pose, reach.clone(), least) {
+                self.settle(&mut state, pose, reach.clone())
+                    .ok_or(failed(iteration))?;
+                elastic = self.response(&state, pose, reach.clone());
+                (kept, step) = (None, f64::INFINITY);
+                continue;
+            }
+            if step <= STEP_TOLERANCE {
+                if reach.len() == self.positions.len() {
+                    state.iterations = iteration;
+                    return Ok(state);
+                }
+                reach = 0..self.positions.len();
+            } else {
+                // The old tangent serves as long as it lets the steps shrink well.
+                let tangent = match kept.take() {
+                    Some(tangent) => tangent,
+                    None => self.tangent(&state, pose).ok_or(failed(iteration))?,
+                };
+                let before = step;
+                let moved = self.newton(&mut state, pose, &tangent, &elastic);
+                step = moved.ok_or(failed(iteration))?;
+                kept = (step <= REUSE_BELOW * before).then_some(tangent);
+            }
+            elastic = self.response(&state, pose, reach.clone());
+            // The points that are not in contact go where the forces move them.
+            let before = std::mem::replace(&mut state.displacements, elastic.clone());
+            for &point in &state.active {
+                state.displacements[point] = before[point];
+            }
         }
         Err(failed(MOST_ITERATIONS))
     }
 
-    /// Newton's matrix at a state. While points come and go, normals that do not turn will do, D = 0: the full matrix is the
-    /// cost. `None` where it is singular or the contact unstable, or if a point lies on the probe's axis.
+    /// The points that the probe may well touch: those below its chord at the undeformed surface, and those in contact.
+    fn reach(&self, state: &ContactState, pose: Pose) -> Range<usize> {
+        let half = self.probe.half_width_at(pose.depth);
+        let from = |x: f64| self.positions.partition_point(|position| position[0] < x);
+        let (first, last) = (from(pose.lateral - half), from(pose.lateral + half));
+        let [start, end] = [state.active.first(), state.active.last()];
+        start.map_or(first, |&i| first.min(i))..end.map_or(last, |&i| last.max(i + 1))
+    }
+
+    /// While points come and go: forces along the present normals that bring the points in contact onto the probe, C_nn λ = n·u −
+    /// gap, and the displacements under them. `None` if C_nn is singular or a point lies on the probe's axis.
+    fn settle(&self, state: &mut ContactState, pose: Pose, reach: Range<usize>) -> Option<()> {
+        let constraints = self.constraints(state, pose)?;
+        let normals: Vec<Vector2<f64>> = constraints.iter().map(|c| c.normal).collect();
+        let pushed = self.between(&state.active, &normals, &normals);
+        let onto = |k: usize| {
+            let u = Vector2::from(state.displacements[state.active[k]]);
+            normals[k].dot(&u) - constraints[k].gap
+        };
+        let pressures = pushed
+            .llt(Side::Lower)
+            .ok()?
+            .solve(Col::from_fn(normals.len(), onto));
+        for (&i, pressure) in state.active.iter().zip(pressures.iter()) {
+            state.pressures[i] = *pressure;
+        }
+        state.displacements = self.response(state, pose, reach);
+        Some(())
+    }
+
+    /// Displacements of the points in contact along one direction each, per force along another, m/N.
+    fn between(&self, active: &[usize], of: &[Vector2<f64>], by: &[Vector2<f64>]) -> Mat<f64> {
+        let mut compliance = Mat::zeros(active.len(), active.len());
+        for (b, &j) in active.iter().enumerate() {
+            let [by_x, by_y] = [0, 1].map(|k| self.compliance.col_as_slice(2 * j + k));
+            let u = |row| by_x[row] * by[b].x + by_y[row] * by[b].y;
+            let column = compliance.col_as_slice_mut(b).iter_mut();
+            for ((to, of), &i) in column.zip(of).zip(active) {
+                *to = of.x * u(2 * i) + of.y * u(2 * i + 1);
+            }
+        }
+        compliance
+    }
+
+    /// Newton's matrix at a state. `None` where it is singular or the contact unstable, or if a point lies on the probe's
+    /// axis.
     ///
     /// Implements: FEM-022.
-    fn tangent(&self, state: &ContactState, pose: Pose, unsettled: bool) -> Option<Tangent> {
+    fn tangent(&self, state: &ContactState, pose: Pose) -> Option<Tangent> {
         let m = state.active.len();
         let constraints = self.constraints(state, pose)?;
-        let [mut pushed, mut across, mut slid] = [(); 3].map(|()| Mat::zeros(m, m));
-        for (b, (&j, constraint)) in state.active.iter().zip(&constraints).enumerate() {
-            let directions = [constraint.normal, tangent(constraint.normal)];
-            for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
-                let [n, t] = [constraint.normal, tangent(constraint.normal)];
-                let block =
-                    Matrix2::from_fn(|row, column| self.compliance[(2 * i + row, 2 * j + column)]);
-                let [by_n, by_t] = directions.map(|v| block * v);
-                pushed[(a, b)] = n.dot(&by_n);
-                across[(a, b)] = t.dot(&by_n);
-                slid[(a, b)] = t.dot(&by_t);
-            }
-        }
-        let pushed = pushed.llt(Side::Lower).ok()?;
-        let mut rates = vec![0.0; m];
-        if !unsettled {
-            let mut w = across.transpose().to_owned();
-            solve_lower_triangular_in_place(pushed.L(), w.as_mut(), Par::Seq);
-            slid -= w.transpose() * &w;
-            for (a, (&i, constraint)) in state.active.iter().zip(&constraints).enumerate() {
-                rates[a] = state.pressures[i] * constraint.curvature;
-            }
-        }
+        let normals: Vec<Vector2<f64>> = constraints.iter().map(|c| c.normal).collect();
+        let tangents: Vec<Vector2<f64>> = normals.iter().map(|&n| tangent(n)).collect();
+        let pushed = self
+            .between(&state.active, &normals, &normals)
+            .llt(Side::Lower)
+            .ok()?;
+        let across = self.between(&state.active, &tangents, &normals);
+        let mut slid = self.between(&state.active, &tangents, &tangents);
+        let mut w = across.transpose().to_owned();
+        solve_lower_triangular_in_place(pushed.L(), w.as_mut(), Par::Seq);
+        slid -= w.transpose() * &w;
+        let active = state.active.iter().zip(&constraints);
+        let root = |(&i, c): (&usize, &Constraint)| libm::sqrt(state.pressures[i] * c.curvature);
+        let roots: Vec<f64> = active.map(root).collect();
         let slip = Mat::from_fn(m, m, |a, b| {
             let unit = if a == b { 1.0 } else { 0.0 };
-            unit - libm::sqrt(rates[a]) * slid[(a, b)] * libm::sqrt(rates[b])
+            unit - roots[a] * slid[(a, b)] * roots[b]
         });
         Some(Tangent {
-            normals: constraints
-                .iter()
-                .map(|constraint| constraint.normal)
-                .collect(),
+            normals,
             pushed,
             across,
-            rates,
+            roots,
             slid,
             slip: slip.llt(Side::Lower).ok()?,
         })
@@ -430,35 +467,43 @@ impl Surface {
         Some(largest)
     }
 
-    /// Displacement of each point under the present forces, m.
-    fn response(&self, state: &ContactState, pose: Pose) -> Vec<[f64; 2]> {
-        let mut u = vec![[0.0; 2]; self.positions.len()];
+    /// Displacement of each point within reach under the present forces, of the others as they are, m.
+    fn response(&self, state: &ContactState, pose: Pose, reach: Range<usize>) -> Vec<[f64; 2]> {
+        let mut u = state.displacements.clone();
+        let within = u[reach.clone()].as_flattened_mut();
+        within.fill(0.0);
         for (point, force) in self.forces(state, pose) {
-            let [by_x, by_y] = [0, 1].map(|k| self.compliance.col_as_slice(2 * point + k));
-            for ((u, x), y) in u.as_flattened_mut().iter_mut().zip(by_x).zip(by_y) {
+            let column = |k| &self.compliance.col_as_slice(2 * point + k)[2 * reach.start..];
+            for ((u, x), y) in within.iter_mut().zip(column(0)).zip(column(1)) {
                 *u += force[0] * x + force[1] * y;
             }
         }
         u
     }
 
-    /// Drops points in contact that would be pulled and adds points inside the probe: all at once, or the `at_most` worst.
-    /// Returns whether the set changed.
-    fn revise(&self, state: &mut ContactState, pose: Pose, at_most: usize) -> bool {
-        let violation = |i: usize| match state.active.binary_search(&i) {
+    /// Drops points in contact that would be pulled and adds points inside the probe, of those within reach, if they are at
+    /// least this part as bad as the worst. Returns whether the set changed.
+    fn revise(
+        &self,
+        state: &mut ContactState,
+        pose: Pose,
+        reach: Range<usize>,
+        least: f64,
+    ) -> bool {
+        let mut active = state.active.iter().peekable();
+        let violation = |i: usize| match active.next_if_eq(&&i) {
             // Pulls and penetrations are weighed against each other by the point's own compliance.
-            Ok(_) => state.pressures[i] * self.compliance[(2 * i + 1, 2 * i + 1)],
-            Err(_) => self
+            Some(_) => state.pressures[i] * self.compliance[(2 * i + 1, 2 * i + 1)],
+            None => self
                 .constraint(i, state.displacements[i], pose)
                 .map_or(0.0, |constraint| constraint.gap + GAP_TOLERANCE),
         };
-        let all = (0..self.positions.len()).map(|i| (violation(i), i));
-        let mut violations: Vec<(f64, usize)> = all.filter(|(v, _)| *v < 0.0).collect();
-        if violations.len() > at_most {
-            violations.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            violations.truncate(at_most);
-        }
-        for &(_, i) in &violations {
+        let violations: Vec<f64> = reach.clone().map(violation).collect();
+        let worst = violations.iter().copied().fold(0.0, f64::min);
+        for (i, _) in reach
+            .zip(violations)
+            .filter(|&(_, v)| v < 0.0 && v <= least * worst)
+        {
             match state.active.binary_search(&i) {
                 Ok(at) => {
                     state.active.remove(at);
@@ -467,7 +512,7 @@ impl Surface {
                 Err(at) => state.active.insert(at, i),
             }
         }
-        !violations.is_empty()
+        worst < 0.0
     }
 
     /// Force on the gel at each point in contact, N.

@@ -2,91 +2,47 @@
 
 use nalgebra::{Matrix2, SMatrix, Vector2};
 
-use super::mesh::Element;
 use crate::phantom::Material;
 
-/// Most nodes that an element has.
-pub const MOST_NODES: usize = 6;
+/// Corners of an element: its first nodes.
+pub const CORNERS: usize = 3;
+/// Nodes of an element: corners counter-clockwise, then those in the middle of the edges 01, 12, 20.
+pub const NODES: usize = 6;
 
-/// One column for each node; those that an element does not have are 0.
-pub type PerNode = SMatrix<f64, 2, MOST_NODES>;
+/// One column for each node.
+pub type PerNode = SMatrix<f64, 2, NODES>;
 
 /// Stiffness of one element per metre of thickness, Pa: `[(2a + i, 2b + j)]` couples direction i of node a with
 /// direction j of node b. Exactly symmetric.
 ///
 /// Implements: FEM-005, FEM-050, FEM-051, FEM-052, FEM-053, FEM-058.
-pub type Stiffness = SMatrix<f64, { 2 * MOST_NODES }, { 2 * MOST_NODES }>;
+pub type Stiffness = SMatrix<f64, { 2 * NODES }, { 2 * NODES }>;
 
-/// One point of a quadrature rule over the parent element.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct QuadraturePoint {
-    /// Parent coordinates.
-    pub at: [f64; 2],
-    /// Weight; the weights add up to the parent's area (½ or 4).
-    pub weight: f64,
-}
+/// Parent coordinates of the points of a quadrature rule, and their weights, which add up to the parent's area, ½.
+type Points<const N: usize> = [([f64; 2], f64); N];
 
-/// Quadrature of the stiffness: exact to degree 4 on the triangle (Cowper's 6 points, so that curved
-/// elements are integrated well too), 2 × 2 Gauss points on the quadrilateral.
-pub(super) fn stiffness_rule(element: Element) -> Vec<QuadraturePoint> {
-    match element {
-        Element::T6 => [
-            (0.445_948_490_915_964_9, 0.223_381_589_678_011_47),
-            (0.091_576_213_509_770_74, 0.109_951_743_655_321_87),
-        ]
-        .into_iter()
-        .flat_map(|(a, weight)| symmetric_points(a, weight / 2.0))
-        .collect(),
-        Element::Q4Full => gauss_square(),
-    }
-}
-
-/// The points at which strains and stresses are sampled: where they are most accurate, 3 on the
-/// triangle and 2 × 2 on the quadrilateral.
-pub(super) fn sampling_rule(element: Element) -> Vec<QuadraturePoint> {
-    match element {
-        Element::T6 => symmetric_points(1.0 / 6.0, 1.0 / 6.0).to_vec(),
-        Element::Q4Full => gauss_square(),
-    }
+/// The points at which strains and stresses are sampled: where they are most accurate.
+pub(super) fn sampling_rule() -> Points<3> {
+    symmetric_points(1.0 / 6.0, 1.0 / 6.0)
 }
 
 /// The three images of barycentric coordinates (a, a, 1 − 2a).
-fn symmetric_points(a: f64, weight: f64) -> [QuadraturePoint; 3] {
+fn symmetric_points(a: f64, weight: f64) -> Points<3> {
     let b = 1.0 - 2.0 * a;
-    [[a, a], [b, a], [a, b]].map(|at| QuadraturePoint { at, weight })
-}
-
-fn gauss_square() -> Vec<QuadraturePoint> {
-    let g = 1.0 / libm::sqrt(3.0);
-    [[-g, -g], [g, -g], [g, g], [-g, g]]
-        .map(|at| QuadraturePoint { at, weight: 1.0 })
-        .to_vec()
+    [[a, a], [b, a], [a, b]].map(|at| (at, weight))
 }
 
 /// Derivatives of the shape functions with respect to the parent coordinates, a column for each node.
-pub fn parent_gradients(element: Element, [r, s]: [f64; 2]) -> PerNode {
-    let mut of_node = PerNode::zeros();
-    let mut set = |columns: &[[f64; 2]]| {
-        for (mut to, &from) in of_node.column_iter_mut().zip(columns) {
-            to.copy_from(&Vector2::from(from));
-        }
-    };
-    match element {
-        Element::T6 => {
-            let q = 1.0 - r - s;
-            set(&[
-                [1.0 - 4.0 * q, 1.0 - 4.0 * q],
-                [4.0 * r - 1.0, 0.0],
-                [0.0, 4.0 * s - 1.0],
-                [4.0 * (q - r), -4.0 * r],
-                [4.0 * s, 4.0 * r],
-                [-4.0 * s, 4.0 * (q - s)],
-            ]);
-        }
-        Element::Q4Full => set(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
-            .map(|[a, b]: [f64; 2]| [0.25 * a * (1.0 + b * s), 0.25 * b * (1.0 + a * r)])),
-    }
-    of_node
+pub fn parent_gradients([r, s]: [f64; 2]) -> PerNode {
+    let q = 1.0 - r - s;
+    PerNode::from([
+        [1.0 - 4.0 * q, 1.0 - 4.0 * q],
+        [4.0 * r - 1.0, 0.0],
+        [0.0, 4.0 * s - 1.0],
+        [4.0 * (q - r), -4.0 * r],
+        [4.0 * s, 4.0 * r],
+        [-4.0 * s, 4.0 * (q - s)],
+    ])
 }
 
 /// Gradients of the shape functions in space at one point of an element, and the Jacobian.
@@ -101,14 +57,14 @@ pub struct Gradients {
 /// Maps parent gradients to space for an element with corners and midsides at `positions`.
 ///
 /// ```
-/// use palpate::fem::{Element, element::{gradients, parent_gradients}};
+/// use palpate::fem::element::{gradients, parent_gradients};
 ///
-/// let parent = parent_gradients(Element::Q4Full, [0.0, 0.0]);
-/// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]];
-/// let found = gradients(&parent, &square);
-/// assert_eq!((found.of_node.column(0).into(), found.jacobian), ([-0.125, -0.25], 2.0));
-/// let clockwise = [[0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]];
-/// assert_eq!(gradients(&parent, &clockwise).jacobian, -1.0);
+/// let parent = parent_gradients([0.0, 0.0]);
+/// let right = [[0.0, 0.0], [4.0, 0.0], [0.0, 2.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
+/// let found = gradients(&parent, &right);
+/// assert_eq!((found.of_node.column(0).into(), found.jacobian), ([-0.75, -1.5], 8.0));
+/// let clockwise = [0, 2, 1, 5, 4, 3].map(|node: usize| right[node]);
+/// assert_eq!(gradients(&parent, &clockwise).jacobian, -8.0);
 /// ```
 pub fn gradients(parent: &PerNode, positions: &[[f64; 2]]) -> Gradients {
     let map: Matrix2<f64> = positions
@@ -157,37 +113,36 @@ pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
     ]
 }
 
-/// The quadrature rule of an element's stiffness with the parent gradients at its points.
+/// The quadrature of an element's stiffness, exact to degree 4, so that bent elements are integrated well too: Cowper's 6
+/// points. Parent gradients there, and weights.
 #[derive(Debug, Clone)]
-pub struct StiffnessRule {
-    points: Vec<(f64, PerNode)>,
+pub struct StiffnessRule([(PerNode, f64); 6]);
+
+impl Default for StiffnessRule {
+    fn default() -> StiffnessRule {
+        let outer = symmetric_points(0.445_948_490_915_964_9, 0.223_381_589_678_011_47 / 2.0);
+        let inner = symmetric_points(0.091_576_213_509_770_74, 0.109_951_743_655_321_87 / 2.0);
+        let [a, b, c, d, e, f] = [outer, inner].concat()[..] else {
+            unreachable!("twice three points")
+        };
+        StiffnessRule([a, b, c, d, e, f].map(|(at, weight)| (parent_gradients(at), weight)))
+    }
 }
 
 impl StiffnessRule {
-    /// The rule for one shape of element.
-    pub fn new(element: Element) -> StiffnessRule {
-        let points = stiffness_rule(element);
-        StiffnessRule {
-            points: points
-                .iter()
-                .map(|p| (p.weight, parent_gradients(element, p.at)))
-                .collect(),
-        }
-    }
-
     /// Stiffness of an element with nodes at `positions`, or the Jacobian that is not positive.
     ///
     /// The block of nodes a, b is ∫ λ ∇N_a ∇N_bᵀ + μ ∇N_b ∇N_aᵀ + μ (∇N_a·∇N_b) I.
     ///
     /// ```
-    /// use palpate::fem::{Element, element::StiffnessRule};
+    /// use palpate::fem::element::StiffnessRule;
     /// use palpate::phantom::Material;
     ///
-    /// let rule = StiffnessRule::new(Element::Q4Full);
     /// let gel = Material { youngs_modulus: 5e3, poisson_ratio: 0.25 };
-    /// let stiffness = rule.integrate(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]], &gel)?;
+    /// let right = [[0.0, 0.0], [4.0, 0.0], [0.0, 2.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
+    /// let stiffness = StiffnessRule::default().integrate(&right, &gel)?;
     /// // A shift along x costs nothing.
-    /// let force: f64 = (0..4).map(|node| stiffness[(0, 2 * node)]).sum();
+    /// let force: f64 = (0..6).map(|node| stiffness[(0, 2 * node)]).sum();
     /// assert!(force.abs() < 1e-12 * stiffness[(0, 0)]);
     /// # Ok::<(), f64>(())
     /// ```
@@ -196,7 +151,7 @@ impl StiffnessRule {
     pub fn integrate(&self, positions: &[[f64; 2]], material: &Material) -> Result<Stiffness, f64> {
         let (lambda, mu) = lame(material);
         let mut stiffness = Stiffness::zeros();
-        for (weight, parent) in &self.points {
+        for (parent, weight) in &self.0 {
             let g = gradients(parent, positions);
             // A NaN is refused as well.
             if g.jacobian.is_nan() || g.jacobian <= 0.0 {

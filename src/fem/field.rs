@@ -3,7 +3,7 @@
 use super::FemError;
 use super::assembly::StiffnessMatrix;
 use super::cholesky::Factor;
-use super::element::{MOST_NODES, PerNode, gradients, parent_gradients, sampling_rule};
+use super::element::{NODES, PerNode, gradients, parent_gradients, sampling_rule};
 use super::mesh::Mesh;
 use super::size::SizeField;
 
@@ -29,15 +29,6 @@ pub struct FieldCheck {
     pub min_det: f64,
 }
 
-impl FieldCheck {
-    /// Of a phantom without load.
-    pub const UNTOUCHED: FieldCheck = FieldCheck {
-        residual: 0.0,
-        imbalance: 0.0,
-        min_det: 1.0,
-    };
-}
-
 /// Displacements and their gradients in the whole phantom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
@@ -48,29 +39,29 @@ pub struct Field {
 }
 
 /// The shape functions' gradients at one sampling point of an element, with the unknowns of its nodes' two displacement
-/// components: for one that is held, or that an element does not have, the row of zeros behind the last unknown.
+/// components: for one that is held, the row of zeros behind the last unknown.
 #[derive(Debug, Clone)]
 pub(super) struct Sample {
     shape: PerNode,
-    rows: [[u32; 2]; MOST_NODES],
+    rows: [[u32; 2]; NODES],
     /// Whether it is too near to a sharp corner for its strain to mean anything.
     singular: bool,
 }
 
 /// The sampling points of all elements in turn.
 pub(super) fn samples(mesh: &Mesh, matrix: &StiffnessMatrix, size: &SizeField) -> Vec<Sample> {
-    let rule = sampling_rule(mesh.element);
+    let rule = sampling_rule();
     let zeros = matrix.unknowns();
     let mut samples = Vec::with_capacity(mesh.regions.len() * rule.len());
     for nodes in mesh.elements() {
         let positions = mesh.positions(nodes);
-        let mut rows = [[zeros as u32; 2]; MOST_NODES];
+        let mut rows = [[zeros as u32; 2]; NODES];
         for (row, &node) in rows.iter_mut().zip(nodes) {
             let unknown = |direction| matrix.unknown(node as usize, direction).unwrap_or(zeros);
             *row = [unknown(0) as u32, unknown(1) as u32];
         }
-        samples.extend(rule.iter().map(|point| Sample {
-            shape: gradients(&parent_gradients(mesh.element, point.at), &positions).of_node,
+        samples.extend(rule.map(|(at, _)| Sample {
+            shape: gradients(&parent_gradients(at), &positions).of_node,
             rows,
             singular: size.singular(positions[0].into()),
         }));
@@ -172,7 +163,8 @@ impl Batch {
         for sample in samples.iter().filter(|sample| !sample.singular) {
             let g = sample.gradient(&self.displacements);
             for w in 0..BATCH {
-                let det = determinant(g.map(|row| row.map(|component| component[w])));
+                let [[xx, xy], [yx, yy]] = &g;
+                let det = determinant([[xx[w], xy[w]], [yx[w], yy[w]]]);
                 min_det[w] = if det < min_det[w] { det } else { min_det[w] };
             }
         }

@@ -1,10 +1,11 @@
-//! The mesh of a phantom: triangles with six nodes, bent along the inclusions' edges, or quadrilaterals cut from them.
+//! The mesh of a phantom: triangles with six nodes, bent along the inclusions' edges.
 
 use std::collections::HashMap;
 
-use super::size::{SizeField, on_unit_circle};
+use super::FemError;
+use super::element::NODES;
+use super::size::SizeField;
 use super::triangulate::{Point, Triangulation};
-use super::{FemError, MeshOptions};
 use crate::phantom::{Material, Outline, Phantom, Support};
 
 /// What an element is made of: an entry of the phantom's list.
@@ -26,51 +27,13 @@ impl Region {
     }
 }
 
-/// A shape of element.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Element {
-    /// Isoparametric triangle with 6 nodes: the default.
-    #[default]
-    T6,
-    /// Fully integrated 4-node quadrilateral. It locks at ν = 0.49, so that forces come out some per cent
-    /// high, and is kept because the paper's authors plausibly ran it.
-    Q4Full,
-}
-
-impl Element {
-    /// The name on the command line and in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Element::T6 => "t6",
-            Element::Q4Full => "q4-full",
-        }
-    }
-
-    /// Corners of one element: its first nodes.
-    pub fn corners(self) -> usize {
-        match self {
-            Element::T6 => 3,
-            Element::Q4Full => 4,
-        }
-    }
-
-    /// Nodes of one element.
-    pub fn nodes(self) -> usize {
-        match self {
-            Element::T6 => 6,
-            Element::Q4Full => 4,
-        }
-    }
-}
-
 /// Nodes, elements and regions of one phantom.
 ///
 /// ```
-/// use palpate::fem::{Mesh, MeshOptions};
+/// use palpate::fem::Mesh;
 /// use palpate::phantom::Phantom;
 ///
-/// let options = MeshOptions { size: 2e-3, ..MeshOptions::default() };
-/// let mesh = Mesh::new(&Phantom::builtin("6.6")?, &options)?;
+/// let mesh = Mesh::new(&Phantom::builtin("6.6")?, 2e-3)?;
 /// assert_eq!(mesh.elements().count(), mesh.regions.len());
 /// // The surface runs from wall to wall at y = 0, where the walls hold its ends.
 /// let [first, .., last] = mesh.surface[..] else { unreachable!() };
@@ -80,14 +43,11 @@ impl Element {
 /// ```
 ///
 /// Implements: FEM-001, FEM-002, FEM-003, FEM-004, CON-003.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Mesh {
     /// Undeformed position of each node, m.
     pub nodes: Vec<[f64; 2]>,
-    /// The shape of every element.
-    pub element: Element,
-    /// Nodes of all elements, [`Element::nodes`] each: corners counter-clockwise, then (T6) the nodes in
-    /// the middle of edges 01, 12, 20.
+    /// Nodes of all elements, [`NODES`] each: corners counter-clockwise, then those in the middle of the edges 01, 12, 20.
     pub connectivity: Vec<u32>,
     /// Region of each element.
     pub regions: Vec<Region>,
@@ -103,15 +63,15 @@ pub struct Mesh {
 const MOST_NODES: f64 = 500_000.0;
 
 impl Mesh {
-    /// Meshes a valid phantom.
+    /// Meshes a valid phantom with the mesh size `size`, m: at [`MESH_SIZE`](super::MESH_SIZE) elements have the sizes of
+    /// `spec/fem.md`, any other scales them all.
     ///
     /// # Errors
     /// [`FemError::MeshSize`] if the size is not positive and finite, or the mesh would have more than 500 000
     /// nodes; [`FemError::Shape`] if a triangle comes out too flat.
     ///
     /// Implements: FEM-018.
-    pub fn new(phantom: &Phantom, options: &MeshOptions) -> Result<Mesh, FemError> {
-        let size = options.size;
+    pub fn new(phantom: &Phantom, size: f64) -> Result<Mesh, FemError> {
         if !(size > 0.0 && size.is_finite()) {
             return Err(FemError::MeshSize { size });
         }
@@ -120,23 +80,20 @@ impl Mesh {
         if nodes > MOST_NODES {
             return Err(FemError::TooManyNodes { size, nodes });
         }
-        let symmetric = phantom.is_symmetric();
-        let triangles = Triangulation::new(phantom, &field, symmetric)?;
+        let mut symmetric = phantom.is_symmetric();
+        let mut triangles = Triangulation::new(phantom, &field, symmetric);
+        if symmetric && triangles.is_err() {
+            // The axis may halve the corner of a polygon, which is then too sharp.
+            symmetric = false;
+            triangles = Triangulation::new(phantom, &field, symmetric);
+        }
         let mut mesh = Mesh {
-            nodes: Vec::new(),
-            element: Element::T6,
-            connectivity: Vec::new(),
-            regions: Vec::new(),
-            surface: Vec::new(),
-            held: Vec::new(),
             symmetric,
+            ..Mesh::default()
         };
-        mesh.place(phantom, &triangles);
+        mesh.place(phantom, &triangles?);
         if symmetric {
             mesh.mirror(phantom);
-        }
-        if options.element == Element::Q4Full {
-            mesh.cut_into_quadrilaterals();
         }
         mesh.find_borders(phantom);
         Ok(mesh)
@@ -168,7 +125,7 @@ impl Mesh {
             let centre = corners.map(|k| triangles.corners[k]).iter().sum::<Point>() / 3.0;
             let inclusion = outlines
                 .iter()
-                .position(|outline| encloses(outline, centre));
+                .position(|outline| outline.encloses(centre.into()));
             let layer = || levels[1..].partition_point(|&level| level > centre.y);
             self.regions
                 .push(inclusion.map_or_else(|| Region::Layer(layer()), Region::Inclusion));
@@ -189,7 +146,7 @@ impl Mesh {
         let image_of = phantom.mirror_images();
         for element in 0..self.regions.len() {
             for k in [0, 2, 1, 5, 4, 3] {
-                let node = self.connectivity[6 * element + k] as usize;
+                let node = self.connectivity[NODES * element + k] as usize;
                 self.connectivity.push(images[node]);
             }
             self.regions.push(match self.regions[element] {
@@ -197,28 +154,6 @@ impl Mesh {
                 layer => layer,
             });
         }
-    }
-
-    /// Cuts each triangle in three, from its edges' middles to its own.
-    fn cut_into_quadrilaterals(&mut self) {
-        let mut connectivity = Vec::new();
-        for nodes in self.connectivity.chunks_exact(6) {
-            let centre = self.nodes.len() as u32;
-            // In an order that gives the mirror image, whose corners are 0, 2, 1, the same sum.
-            let corners = [1, 2, 0].map(|k| Point::from(self.nodes[nodes[k] as usize]));
-            self.nodes
-                .push((corners.iter().sum::<Point>() / 3.0).into());
-            for k in 0..3 {
-                connectivity.extend([nodes[k], nodes[3 + k], centre, nodes[3 + (k + 2) % 3]]);
-            }
-        }
-        self.connectivity = connectivity;
-        self.regions = self
-            .regions
-            .iter()
-            .flat_map(|&region| [region; 3])
-            .collect();
-        self.element = Element::Q4Full;
     }
 
     /// Implements: FEM-035.
@@ -247,13 +182,12 @@ impl Mesh {
 
     /// The nodes of one element.
     pub(super) fn nodes_of(&self, element: u32) -> &[u32] {
-        let count = self.element.nodes();
-        &self.connectivity[element as usize * count..][..count]
+        &self.connectivity[element as usize * NODES..][..NODES]
     }
 
     /// The nodes of each element in turn.
     pub fn elements(&self) -> impl Iterator<Item = &[u32]> {
-        self.connectivity.chunks_exact(self.element.nodes())
+        self.connectivity.chunks_exact(NODES)
     }
 
     /// Undeformed positions of some nodes, m.
@@ -262,24 +196,5 @@ impl Mesh {
             .iter()
             .map(|&node| self.nodes[node as usize])
             .collect()
-    }
-}
-
-/// Whether an outline encloses a point that is not on it.
-fn encloses(outline: &Outline, at: Point) -> bool {
-    match outline {
-        Outline::Ellipse {
-            centre,
-            radii,
-            turn,
-        } => on_unit_circle(centre, radii, turn, at).norm() < 1.0,
-        Outline::Polygon(points) => {
-            let next = points.iter().cycle().skip(1);
-            let edges = points.iter().zip(next);
-            let edges = edges.map(|(a, b)| (Point::from(*a), Point::from(*b)));
-            let level = edges.filter(|(a, b)| (a.y > at.y) != (b.y > at.y));
-            let right = level.filter(|(a, b)| ((b - a).perp(&(at - a)) > 0.0) == (b.y > a.y));
-            right.count() % 2 == 1
-        }
     }
 }

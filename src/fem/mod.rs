@@ -4,12 +4,11 @@
 //! last, and keeps the surface's compliance. A [`Pose`] of the probe is then a small contact problem.
 //!
 //! ```
-//! use palpate::fem::{Contact, MeshOptions, Model, Pose};
+//! use palpate::fem::{Contact, Model, Pose};
 //! use palpate::phantom::Phantom;
 //!
-//! let coarse = MeshOptions { size: 2e-3, ..MeshOptions::default() };
 //! let force = |name| -> Result<f64, Box<dyn std::error::Error>> {
-//!     let model = Model::new(&Phantom::builtin(name)?, &coarse, Contact::default())?;
+//!     let model = Model::new(&Phantom::builtin(name)?, 2e-3, Contact::default())?;
 //!     Ok(model.solve(Pose { depth: 4e-3, lateral: 0.0 })?.normal_force)
 //! };
 //! // The inclusion under 6.6 mm of gel pushes back with some 0.3 N more.
@@ -37,8 +36,9 @@ use crate::force_map::InvalidForceMap;
 use crate::phantom::{InvalidPhantom, PoseError};
 pub use contact::{Contact, ContactState, Surface};
 pub use field::{Field, FieldCheck};
-pub use mesh::{Element, Mesh, Region};
+pub use mesh::{Mesh, Region};
 pub use model::{Model, PoseSolution};
+pub use size::MESH_SIZE;
 
 /// Which class of processors has the same bits of every force as this one.
 ///
@@ -60,24 +60,6 @@ pub struct Pose {
     pub depth: f64,
     /// Lateral position of the probe's axis, m.
     pub lateral: f64,
-}
-
-/// How fine the mesh is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeshOptions {
-    /// The mesh size, m. At the default, 0.5 mm, elements have the sizes of `spec/fem.md`; any other scales them all.
-    pub size: f64,
-    /// The shape of every element.
-    pub element: Element,
-}
-
-impl Default for MeshOptions {
-    fn default() -> Self {
-        MeshOptions {
-            size: size::NOMINAL,
-            element: Element::T6,
-        }
-    }
 }
 
 /// What can go wrong between a phantom and a force.

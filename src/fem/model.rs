@@ -3,23 +3,23 @@
 use super::assembly::StiffnessMatrix;
 use super::cholesky::{Factor, check_residual};
 use super::contact::{Contact, ContactState, Surface};
+use super::element::sampling_rule;
 use super::field::{BATCH, Batch, Field, FieldCheck, Sample, samples};
 use super::mesh::Mesh;
 use super::size::SizeField;
-use super::{FemError, MeshOptions, Pose, arithmetic};
+use super::{FemError, Pose, arithmetic};
 use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
 use crate::phantom::Phantom;
 
 /// A phantom, meshed and factorised.
 ///
 /// ```
-/// use palpate::fem::{Contact, MeshOptions, Model, Pose};
+/// use palpate::fem::{Contact, Model, Pose};
 /// use palpate::phantom::Phantom;
 ///
 /// let phantom = Phantom::builtin("6.6")?;
-/// let options = MeshOptions { size: 2e-3, ..MeshOptions::default() };
-/// let model = Model::new(&phantom, &options, Contact::default())?;
-/// assert_eq!((model.phantom(), model.options()), (&phantom, &options));
+/// let model = Model::new(&phantom, 2e-3, Contact::default())?;
+/// assert_eq!((model.phantom(), model.mesh_size()), (&phantom, 2e-3));
 /// // Two contact points on each of the edges, which have three nodes each.
 /// assert_eq!(model.surface().positions.len(), model.mesh().surface.len() - 1);
 ///
@@ -30,10 +30,10 @@ use crate::phantom::Phantom;
 #[derive(Debug, Clone)]
 pub struct Model {
     phantom: Phantom,
-    options: MeshOptions,
+    mesh_size: f64,
     mesh: Mesh,
-    matrix: StiffnessMatrix,
-    factor: Factor,
+    pub(super) matrix: StiffnessMatrix,
+    pub(super) factor: Factor,
     surface: Surface,
     samples: Vec<Sample>,
 }
@@ -61,15 +61,15 @@ const DEPTH_STEP: f64 = 0.1;
 const HALVINGS: u32 = 6;
 
 impl Model {
-    /// Meshes and factorises a phantom.
+    /// Meshes and factorises a phantom; the mesh size, m, is that of [`Mesh::new`].
     ///
     /// ```
-    /// use palpate::fem::{Contact, FemError, MeshOptions, Model};
+    /// use palpate::fem::{Contact, FemError, MESH_SIZE, Model};
     /// use palpate::phantom::Phantom;
     ///
     /// let mut phantom = Phantom::builtin("6.6")?;
     /// phantom.layers[1].material.poisson_ratio = 0.5; // would be incompressible
-    /// let refused = Model::new(&phantom, &MeshOptions::default(), Contact::default());
+    /// let refused = Model::new(&phantom, MESH_SIZE, Contact::default());
     /// assert!(matches!(refused, Err(FemError::Phantom(_))));
     /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
     /// ```
@@ -77,21 +77,17 @@ impl Model {
     /// # Errors
     /// [`FemError::Phantom`] for a phantom that is not valid, and as [`Mesh::new`], [`StiffnessMatrix::assemble`] and
     /// [`Factor::new`].
-    pub fn new(
-        phantom: &Phantom,
-        options: &MeshOptions,
-        contact: Contact,
-    ) -> Result<Model, FemError> {
+    pub fn new(phantom: &Phantom, mesh_size: f64, contact: Contact) -> Result<Model, FemError> {
         phantom.validate()?;
-        let mesh = Mesh::new(phantom, options)?;
+        let mesh = Mesh::new(phantom, mesh_size)?;
         let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
         let factor = Factor::new(&matrix)?;
         let compliance = factor.surface_compliance(&matrix)?;
         let surface = Surface::new(&mesh, &compliance, phantom.probe, contact);
-        let samples = samples(&mesh, &matrix, &SizeField::new(phantom, options.size));
+        let samples = samples(&mesh, &matrix, &SizeField::new(phantom, mesh_size));
         Ok(Model {
             phantom: phantom.clone(),
-            options: *options,
+            mesh_size,
             mesh,
             matrix,
             factor,
@@ -105,24 +101,14 @@ impl Model {
         &self.phantom
     }
 
-    /// How fine the mesh was asked for.
-    pub fn options(&self) -> &MeshOptions {
-        &self.options
+    /// The mesh size that was asked for, m.
+    pub fn mesh_size(&self) -> f64 {
+        self.mesh_size
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
-    }
-
-    /// The stiffness matrix.
-    pub fn matrix(&self) -> &StiffnessMatrix {
-        &self.matrix
-    }
-
-    /// The factor of the stiffness matrix.
-    pub fn factor(&self) -> &Factor {
-        &self.factor
     }
 
     /// The surface with its compliance.
@@ -215,23 +201,17 @@ impl Model {
             }
         }
         let (u, _) = self.factor.solve(&self.matrix, &force)?;
-        let component = |node, direction| {
-            self.matrix
-                .unknown(node, direction)
-                .map_or(0.0, |unknown| u[unknown])
-        };
-        let nodes = 0..self.mesh.nodes.len();
-        let displacements = nodes.map(|node| [component(node, 0), component(node, 1)]);
         // The row of zeros behind the unknowns stands for what is held.
         let rows: Vec<[f64; 1]> = u.iter().map(|&u| [u]).chain([[0.0]]).collect();
+        let row = |node, k| self.matrix.unknown(node, k).unwrap_or(u.len());
+        let displacements =
+            (0..self.mesh.nodes.len()).map(|node| [0, 1].map(|k| rows[row(node, k)][0]));
         let gradient = |sample: &Sample| sample.gradient(&rows).map(|row| row.map(|[g]| g));
-        let per_element = self.samples.len() / self.mesh.regions.len();
-        let elements = self.samples.chunks(per_element);
+        let elements = self.samples.chunks(sampling_rule().len());
+        let gradients = elements.map(|samples| samples.iter().map(gradient).collect());
         Ok(Field {
             displacements: displacements.collect(),
-            gradients: elements
-                .map(|samples| samples.iter().map(gradient).collect())
-                .collect(),
+            gradients: gradients.collect(),
         })
     }
 
@@ -241,20 +221,14 @@ impl Model {
     /// [`FemError::OutOfMemory`].
     pub fn checks(&self, solutions: &[PoseSolution]) -> Result<Vec<FieldCheck>, FemError> {
         let mut batch = Batch::new(self.matrix.unknowns());
-        let mut checks = vec![FieldCheck::UNTOUCHED; solutions.len()];
-        let touching: Vec<usize> = (0..solutions.len())
-            .filter(|&at| !solutions[at].state.active.is_empty())
-            .collect();
-        for chunk in touching.chunks(BATCH) {
-            for (column, &at) in chunk.iter().enumerate() {
-                let PoseSolution { state, pose, .. } = &solutions[at];
+        let mut checks = Vec::with_capacity(solutions.len());
+        for chunk in solutions.chunks(BATCH) {
+            for (column, PoseSolution { state, pose, .. }) in chunk.iter().enumerate() {
                 let (displacements, forces) = self.surface.at_nodes(state, *pose);
                 batch.set(column, &self.matrix, &displacements, &forces);
             }
             let columns = batch.check(&self.matrix, &self.factor, &self.samples)?;
-            for (&at, check) in chunk.iter().zip(columns) {
-                checks[at] = check;
-            }
+            checks.extend(columns.into_iter().take(chunk.len()));
         }
         Ok(checks)
     }
@@ -380,10 +354,10 @@ impl Model {
             worst_force_balance: worst(&|check| check.imbalance),
             largest_penetration: solutions.iter().map(|s| s.penetration).fold(0.0, f64::max),
             newton_iterations: solutions.iter().map(|s| s.state.iterations).sum(),
-            mesh_size: self.options.size,
+            mesh_size: self.mesh_size,
             nodes: self.mesh.nodes.len(),
             elements: self.mesh.regions.len(),
-            element: self.mesh.element.name().into(),
+            element: "t6".into(),
             contact: self.surface.contact.name().into(),
             arithmetic: arithmetic().into(),
             smallest_det,

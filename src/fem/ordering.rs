@@ -3,6 +3,7 @@
 //! A line of nodes that cuts the mesh in two is eliminated after both parts, so that they do not fill each other's
 //! columns of the factor; each part is cut again (George 1973).
 
+use super::element::CORNERS;
 use super::mesh::Mesh;
 
 /// Parts of at most so many elements are not cut: their fill is small in any order.
@@ -17,7 +18,7 @@ const ORDERED: u32 = u32::MAX;
 /// Implements: FEM-006, FEM-034.
 pub fn dissection(mesh: &Mesh) -> Vec<usize> {
     let centre = |nodes: &[u32]| {
-        let corners = mesh.positions(&nodes[..mesh.element.corners()]);
+        let corners = mesh.positions(&nodes[..CORNERS]);
         [0, 1].map(|k| corners.iter().map(|p| p[k]).sum::<f64>())
     };
     let mut search = Search {

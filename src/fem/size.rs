@@ -3,10 +3,10 @@
 use core::f64::consts::FRAC_PI_2;
 
 use super::triangulate::Point;
-use crate::phantom::{Outline, Phantom, Support, point_to_segment};
+use crate::phantom::{Outline, Phantom, Support, edges, point_to_segment};
 
 /// The mesh size, m, at which the sizes below hold as they stand; any other scales them all.
-pub const NOMINAL: f64 = 0.5e-3;
+pub const MESH_SIZE: f64 = 0.5e-3;
 /// Size at the surface, m, and its growth with depth.
 const SURFACE: [f64; 2] = [0.20e-3, 0.16];
 /// The largest size, m.
@@ -54,7 +54,7 @@ impl SizeField {
         let half_width = 0.5 * phantom.well.width;
         let outlines: Vec<Outline> = phantom.inclusions.iter().map(|i| i.outline()).collect();
         // A coarse mesh must follow a bend too.
-        let bend = BEND * (NOMINAL / size).min(1.0);
+        let bend = BEND * (MESH_SIZE / size).min(1.0);
         let mut corners = Vec::new();
         if phantom.well.walls == Support::Fixed {
             for &y in &levels[..levels.len() - 1] {
@@ -66,19 +66,15 @@ impl SizeField {
                 Outline::Polygon(points) => {
                     corners.extend(points.iter().map(|&p| (p.into(), POLYGON_CORNER)));
                 }
-                Outline::Ellipse {
-                    centre,
-                    radii,
-                    turn,
-                } => corners.extend((0..4).map(|k| {
-                    let (along, across) = (radii[k % 2], radii[(k + 1) % 2]);
-                    let end = Outline::on_ellipse(*centre, *radii, *turn, k as f64 * FRAC_PI_2);
+                Outline::Ellipse(ellipse) => corners.extend((0..4).map(|k| {
+                    let [along, across] = [k, k + 1].map(|k| ellipse.radii[k % 2]);
+                    let end = ellipse.at(k as f64 * FRAC_PI_2);
                     (end.into(), [bend * across * across / along, INCLUSION[1]])
                 })),
             }
         }
         SizeField {
-            scale: size / NOMINAL,
+            scale: size / MESH_SIZE,
             half_width,
             levels,
             corners,
@@ -153,12 +149,9 @@ impl SizeField {
             Point::new(low.x, high.y),
             Point::new(high.x, low.y),
         ];
-        let sizes = corners.map(|corner| self.at((corner + middle) / 2.0));
-        let [least, most] = [
-            sizes.iter().copied().fold(sizes[0], f64::min),
-            sizes.iter().copied().fold(sizes[0], f64::max),
-        ];
-        if cuts == 0 || cuts < 11 && most <= 1.5 * least {
+        let mut sizes = corners.map(|corner| self.at((corner + middle) / 2.0));
+        sizes.sort_by(f64::total_cmp);
+        if cuts == 0 || cuts < 11 && sizes[3] <= 1.5 * sizes[0] {
             let area = (high.x - low.x) * (high.y - low.y);
             return area * sizes.iter().map(|h| 0.25 / (h * h)).sum::<f64>();
         }
@@ -168,26 +161,14 @@ impl SizeField {
     }
 }
 
-/// Where a point stands if the ellipse becomes the unit circle.
-pub(super) fn on_unit_circle(
-    centre: &[f64; 2],
-    radii: &[f64; 2],
-    turn: &[f64; 2],
-    point: Point,
-) -> Point {
-    let (arm, turn) = (point - Point::from(*centre), Point::from(*turn));
-    Point::new(arm.dot(&turn) / radii[0], turn.perp(&arm) / radii[1])
-}
-
 /// Distance of a point from an outline, m: of an ellipse to first order, which is exact for a circle and near the edge.
 fn distance(outline: &Outline, point: Point) -> f64 {
     match outline {
-        Outline::Ellipse {
-            centre,
-            radii,
-            turn,
-        } => {
-            let p = on_unit_circle(centre, radii, turn, point);
+        Outline::Ellipse(ellipse) => {
+            let (p, radii) = (
+                Point::from(ellipse.on_unit_circle(point.into())),
+                ellipse.radii,
+            );
             let slope = Point::new(p.x / radii[0], p.y / radii[1]).norm();
             if slope == 0.0 {
                 radii[0].min(radii[1])
@@ -196,10 +177,10 @@ fn distance(outline: &Outline, point: Point) -> f64 {
             }
         }
         Outline::Polygon(points) => {
-            let next = points.iter().cycle().skip(1);
-            let edges = points.iter().zip(next);
-            edges
-                .map(|(a, b)| point_to_segment(point.into(), *a, *b))
+            let to_edge = |[a, b]: [[f64; 2]; 2]| point_to_segment(point.into(), a, b);
+            edges(points)
+                .into_iter()
+                .map(to_edge)
                 .fold(f64::INFINITY, f64::min)
         }
     }

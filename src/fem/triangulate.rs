@@ -12,7 +12,7 @@ use spade::{
 
 use super::FemError;
 use super::size::SizeField;
-use crate::phantom::{Outline, Phantom};
+use crate::phantom::{Ellipse, Outline, Phantom};
 
 pub(super) type Point = Vector2<f64>;
 type Delaunay =
@@ -127,12 +127,11 @@ impl Triangulation<'_> {
 
     /// The smallest angle of all, degrees, and its place.
     fn flattest(&self) -> (f64, [f64; 2]) {
-        let smaller = |a: (f64, [f64; 2]), b: (f64, [f64; 2])| if b.0 < a.0 { b } else { a };
         let angle = |t: &[usize; 3]| (smallest_angle(self.at(t)), self.corners[t[0]].into());
-        self.triangles
-            .iter()
-            .map(angle)
-            .fold((180.0, [0.0; 2]), smaller)
+        let angles = self.triangles.iter().map(angle);
+        angles
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .unwrap_or((180.0, [0.0; 2]))
     }
 
     fn draw_lines(&mut self, phantom: &Phantom) {
@@ -147,12 +146,7 @@ impl Triangulation<'_> {
             }
             match inclusion.outline() {
                 Outline::Polygon(points) => self.polygon(&points),
-                Outline::Ellipse {
-                    centre,
-                    radii,
-                    turn,
-                } => self
-                    .ellipse(move |angle| Outline::on_ellipse(centre, radii, turn, angle).into()),
+                Outline::Ellipse(ellipse) => self.ellipse(ellipse),
             }
         }
         let mut left_line = levels.clone();
@@ -176,9 +170,10 @@ impl Triangulation<'_> {
         }));
     }
 
-    /// The outline of an ellipse, given by its point at an angle; in a half, the right part of one on the axis.
-    fn ellipse(&mut self, at: impl Fn(f64) -> Point + 'static) {
-        if self.half && at(0.0).x + at(PI).x == 0.0 {
+    /// The outline of an ellipse; in a half, the right part of one on the axis.
+    fn ellipse(&mut self, ellipse: Ellipse) {
+        let at = move |angle| Point::from(ellipse.at(angle));
+        if self.half && ellipse.centre[0] == 0.0 {
             // The cosine of π/2 is not 0 in binary.
             let on_axis = |t: f64| t == 0.0 || t == 1.0;
             self.line(Box::new(move |t| {
@@ -340,11 +335,8 @@ impl Triangulation<'_> {
                 self.push(point, false);
             }
             for k in hit {
-                let Segment {
-                    ends: [a, b],
-                    line,
-                    at: [from, to],
-                } = self.segments[k];
+                let cut = &self.segments[k];
+                let ([a, b], line, [from, to]) = (cut.ends, cut.line, cut.at);
                 let middle = 0.5 * (from + to);
                 let new = self.push(self.lines[line](middle), true);
                 let piece = |ends, at| Segment { ends, line, at };

@@ -1,13 +1,12 @@
 //! One pose as a VTK unstructured grid in ASCII (`.vtu`), for ParaView.
 
-use super::element::stress;
+use super::element::{NODES, stress};
 use super::field::determinant;
 use super::mesh::Region;
-use super::{Element, FemError, Model, PoseSolution};
+use super::{FemError, Model, PoseSolution};
 
-/// Cell types of VTK: quadratic triangle and quadrilateral.
-const VTK_QUADRATIC_TRIANGLE: u8 = 22;
-const VTK_QUAD: u8 = 9;
+/// VTK's type of cell.
+const QUADRATIC_TRIANGLE: u8 = 22;
 
 impl Model {
     /// The deformed mesh of a solved pose: points at their deformed positions, m; the displacement at
@@ -23,10 +22,6 @@ impl Model {
         let field = self.field(solution)?;
         let mesh = self.mesh();
         let (nodes, elements) = (mesh.nodes.len(), mesh.regions.len());
-        let (per_element, kind) = match mesh.element {
-            Element::T6 => (6, VTK_QUADRATIC_TRIANGLE),
-            Element::Q4Full => (4, VTK_QUAD),
-        };
         let displacements = &field.displacements;
         let deformed = mesh.nodes.iter().zip(displacements);
         let deformed = deformed.map(|(x, u)| [x[0] + u[0], x[1] + u[1], 0.0]);
@@ -64,8 +59,8 @@ impl Model {
             array("Float64", "min_det", dets),
             "</CellData>\n<Cells>\n".into(),
             array("UInt32", "connectivity", mesh.connectivity.iter().map(|&node| [node])),
-            array("UInt64", "offsets", (1..=elements).map(|k| [k * per_element])),
-            array("UInt8", "types", (0..elements).map(|_| [kind])),
+            array("UInt64", "offsets", (1..=elements).map(|k| [k * NODES])),
+            array("UInt8", "types", (0..elements).map(|_| [QUADRATIC_TRIANGLE])),
             "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n".into(),
         ]
         .concat())

@@ -4,7 +4,7 @@ use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::ops::{RangeBounds, RangeInclusive};
 
 use super::decimal::format_scaled;
-use super::shape::{Point, cross, dot, edges, extent, minus, point_to_segment};
+use super::shape::{Point, contains, cross, dot, edges, extent, minus, point_to_segment};
 use super::{Inclusion, Material, Outline, Phantom, Shape, Support};
 
 /// The least distance, m, between the outline of an inclusion and its layer's top and bottom, the walls, other outlines, and
@@ -300,9 +300,7 @@ fn apart(a: [f64; 4], b: [f64; 4]) -> f64 {
 /// A polygon whose outline, moved outwards by a distance, is this one: a circle is one of a single corner, and exact.
 fn rounded(outline: &Outline) -> (Vec<[Point; 2]>, f64) {
     match outline {
-        Outline::Ellipse { centre, radii, .. } if radii[0] == radii[1] => {
-            (edges(&[*centre]), radii[0])
-        }
+        Outline::Ellipse(e) if e.radii[0] == e.radii[1] => (edges(&[e.centre]), e.radii[0]),
         _ => (edges(&outline.chords(CHORDS)), 0.0),
     }
 }
@@ -320,15 +318,6 @@ fn distance(one: &Outline, other: &Outline) -> f64 {
         least = others.iter().map(gap).fold(least, f64::min);
     }
     least - radii
-}
-
-/// Whether `p` lies within a polygon: a ray from it to +x crosses an odd number of edges.
-fn contains(edges: &[[Point; 2]], p: Point) -> bool {
-    let crossed = |[a, b]: &[Point; 2]| {
-        (a[1] > p[1]) != (b[1] > p[1])
-            && (cross(minus(*b, *a), minus(p, *a)) > 0.0) == (b[1] > a[1])
-    };
-    edges.iter().filter(|edge| crossed(edge)).count() % 2 == 1
 }
 
 /// The distance between two segments; infinite if their bounding boxes are more than `enough` apart.

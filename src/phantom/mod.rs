@@ -38,8 +38,8 @@ use serde::{Deserialize, Serialize};
 pub use file::PhantomFileError;
 pub use limits::{CLEARANCE, InvalidPhantom};
 pub use pose::PoseError;
-pub(crate) use shape::point_to_segment;
-pub use shape::{Outline, Shape};
+pub use shape::{Ellipse, Outline, Shape};
+pub(crate) use shape::{edges, point_to_segment};
 
 /// A linear isotropic elastic material.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -35,26 +35,6 @@ impl Probe {
 }
 
 impl Phantom {
-    /// Whether the probe may press to `depth` (m) anywhere.
-    ///
-    /// ```
-    /// use palpate::phantom::Phantom;
-    ///
-    /// let phantom = Phantom::builtin("none")?;
-    /// assert!(phantom.check_depth(0.004).is_ok());
-    /// assert!(phantom.check_depth(0.0155).is_err());
-    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`PoseError`] if `depth` is not finite, negative, or not above the floor.
-    ///
-    /// Implements: PHA-011, PHA-013.
-    pub fn check_depth(&self, depth: f64) -> Result<(), PoseError> {
-        let why = " (the height of the layers)";
-        within("depth_mm", depth, 0.0..self.height(), why).map_err(PoseError)
-    }
-
     /// Whether the probe may stand at `depth` and `lateral` (m): above the floor, clear of the walls.
     ///
     /// ```
@@ -71,7 +51,8 @@ impl Phantom {
     ///
     /// Implements: PHA-011, PHA-012, PHA-013, FEM-019.
     pub fn check_pose(&self, depth: f64, lateral: f64) -> Result<(), PoseError> {
-        self.check_depth(depth)?;
+        let why = " (the height of the layers)";
+        within("depth_mm", depth, 0.0..self.height(), why).map_err(PoseError)?;
         let half_width = self.probe.half_width_at(depth);
         let limit = self.well.width / 2.0 - half_width;
         let (wide, low) = (in_mm(half_width), in_mm(depth));

@@ -44,16 +44,44 @@ pub enum Shape {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outline {
     /// An ellipse or a circle.
-    Ellipse {
-        /// The centre.
-        centre: [f64; 2],
-        /// Its half diameters.
-        radii: [f64; 2],
-        /// Cosine and sine of the angle from +x to the first of them.
-        turn: [f64; 2],
-    },
+    Ellipse(Ellipse),
     /// Corners, counter-clockwise.
     Polygon(Vec<[f64; 2]>),
+}
+
+/// An ellipse in the phantom, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ellipse {
+    /// The centre.
+    pub centre: [f64; 2],
+    /// Half diameters.
+    pub radii: [f64; 2],
+    /// Cosine and sine of the angle from +x to the first of them.
+    pub turn: [f64; 2],
+}
+
+impl Ellipse {
+    /// The point at the angle `t` from the first diameter.
+    pub fn at(&self, t: f64) -> [f64; 2] {
+        let ([x, y], [cos, sin]) = (self.centre, self.turn);
+        let (a, b) = (self.radii[0] * libm::cos(t), self.radii[1] * libm::sin(t));
+        [x + a * cos - b * sin, y + a * sin + b * cos]
+    }
+
+    /// Where a point stands if the ellipse becomes the unit circle.
+    pub(crate) fn on_unit_circle(&self, point: Point) -> Point {
+        let arm = minus(point, self.centre);
+        [
+            dot(arm, self.turn) / self.radii[0],
+            cross(self.turn, arm) / self.radii[1],
+        ]
+    }
+
+    /// Half the width and half the height.
+    fn half_extent(&self) -> [f64; 2] {
+        let ([a, b], [cos, sin]) = (self.radii, self.turn);
+        [libm::hypot(a * cos, b * sin), libm::hypot(a * sin, b * cos)]
+    }
 }
 
 impl Inclusion {
@@ -77,23 +105,20 @@ impl Inclusion {
                 return Outline::Polygon(placed);
             }
         };
-        let [_, half_height] = half_extent(radii, turn);
-        Outline::Ellipse {
-            centre: [self.centre_x, -(self.depth + half_height)],
+        let mut ellipse = Ellipse {
+            centre: [self.centre_x, 0.0],
             radii,
             turn,
-        }
+        };
+        ellipse.centre[1] = -(self.depth + ellipse.half_extent()[1]);
+        Outline::Ellipse(ellipse)
     }
 
     /// Left, right, lower and upper end of the outline, m.
     pub fn extent(&self) -> [f64; 4] {
         match self.outline() {
-            Outline::Ellipse {
-                centre: [x, y],
-                radii,
-                turn,
-            } => {
-                let [width, height] = half_extent(radii, turn);
+            Outline::Ellipse(ellipse) => {
+                let ([x, y], [width, height]) = (ellipse.centre, ellipse.half_extent());
                 [x - width, x + width, y - height, y + height]
             }
             Outline::Polygon(points) => extent(&points),
@@ -105,7 +130,7 @@ impl Outline {
     /// The mirror image in x.
     pub(super) fn mirrored(mut self) -> Outline {
         match &mut self {
-            Outline::Ellipse { centre, turn, .. } => {
+            Outline::Ellipse(Ellipse { centre, turn, .. }) => {
                 centre[0] = -centre[0];
                 // An ellipse along x is its own image, though the other way round.
                 turn[0] *= if turn[1] == 0.0 { 1.0 } else { -1.0 };
@@ -127,24 +152,24 @@ impl Outline {
         a.len() == b.len() && twice.windows(a.len().max(1)).any(|points| points == a)
     }
 
-    /// The point of an ellipse at the angle `t` from its first diameter.
-    pub(crate) fn on_ellipse([x, y]: Point, radii: Point, [cos, sin]: Point, t: f64) -> Point {
-        let (a, b) = (radii[0] * libm::cos(t), radii[1] * libm::sin(t));
-        [x + a * cos - b * sin, y + a * sin + b * cos]
+    /// Whether a point lies within.
+    pub(crate) fn encloses(&self, p: Point) -> bool {
+        match self {
+            Outline::Ellipse(ellipse) => {
+                let [x, y] = ellipse.on_unit_circle(p);
+                x * x + y * y < 1.0
+            }
+            Outline::Polygon(points) => contains(&edges(points), p),
+        }
     }
 
     /// Corners of a polygon along the outline, counter-clockwise: the outline itself, or `pieces` chords of an ellipse.
     pub fn chords(&self, pieces: usize) -> Vec<[f64; 2]> {
         match self {
             Outline::Polygon(points) => points.clone(),
-            Outline::Ellipse {
-                centre,
-                radii,
-                turn,
-            } => {
+            Outline::Ellipse(ellipse) => {
                 let angle = |piece| std::f64::consts::TAU * piece as f64 / pieces as f64;
-                let point = |piece| Outline::on_ellipse(*centre, *radii, *turn, angle(piece));
-                (0..pieces).map(point).collect()
+                (0..pieces).map(|piece| ellipse.at(angle(piece))).collect()
             }
         }
     }
@@ -162,11 +187,6 @@ fn direction(angle_deg: f64) -> [f64; 2] {
     [if is_left { -cos } else { cos }, sin]
 }
 
-/// Half the width and half the height of an ellipse.
-fn half_extent(radii: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 2] {
-    [(cos, sin), (sin, cos)].map(|(a, b)| libm::hypot(radii[0] * a, radii[1] * b))
-}
-
 /// A point, m, or the way from one to another.
 pub(super) type Point = [f64; 2];
 
@@ -180,9 +200,18 @@ pub(super) fn extent(points: &[Point]) -> [f64; 4] {
 }
 
 /// The edges of a closed polygon: from each corner to the next.
-pub(super) fn edges(points: &[Point]) -> Vec<[Point; 2]> {
+pub(crate) fn edges(points: &[Point]) -> Vec<[Point; 2]> {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).map(|(&a, &b)| [a, b]).collect()
+}
+
+/// Whether `p` lies within a polygon: a ray from it to +x crosses an odd number of edges.
+pub(super) fn contains(edges: &[[Point; 2]], p: Point) -> bool {
+    let crossed = |[a, b]: &[Point; 2]| {
+        (a[1] > p[1]) != (b[1] > p[1])
+            && (cross(minus(*b, *a), minus(p, *a)) > 0.0) == (b[1] > a[1])
+    };
+    edges.iter().filter(|edge| crossed(edge)).count() % 2 == 1
 }
 
 /// The distance of `p` from the segment between `a` and `b`, m.

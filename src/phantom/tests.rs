@@ -659,7 +659,7 @@ fn outlines_lie_below_the_surface_by_their_depth() {
     let phantom = paper();
     assert!(close(phantom.height(), 0.0155));
     // −(2.6 + 3.2) mm.
-    let Outline::Ellipse { centre, radii, .. } = phantom.inclusions[0].outline() else {
+    let Outline::Ellipse(Ellipse { centre, radii, .. }) = phantom.inclusions[0].outline() else {
         panic!()
     };
     assert!(same(centre, [0.0, -5.8]) && radii == [0.0032; 2]);
@@ -728,9 +728,9 @@ fn mirror_images_are_found_and_their_absence_too() {
 fn depths_outside_the_gel_are_refused() {
     let phantom = paper();
     for depth in [0.0, 0.004, 0.015_499] {
-        assert_eq!(phantom.check_depth(depth), Ok(()));
+        assert_eq!(phantom.check_pose(depth, 0.0), Ok(()));
     }
-    let message = |depth| phantom.check_depth(depth).unwrap_err().to_string();
+    let message = |depth| phantom.check_pose(depth, 0.0).unwrap_err().to_string();
     let allowed = "allowed: at least 0.0 and below 15.5 (the height of the layers)";
     for (depth, shown) in [
         (-0.001, "-1.0"),

@@ -16,13 +16,12 @@
 //! | `text.rs` | untrusted names in markup and file names; numbers as text |
 //!
 //! ```
-//! use palpate::fem::{Contact, MeshOptions, Model, Pose};
+//! use palpate::fem::{Contact, Model, Pose};
 //! use palpate::phantom::Phantom;
 //! use palpate::report::{DeformedMesh, Settings, Study, figures, findings, html, summary_json};
 //!
-//! let coarse = MeshOptions { size: 2e-3, ..MeshOptions::default() };
 //! let model = |name| -> Result<Model, Box<dyn std::error::Error>> {
-//!     Ok(Model::new(&Phantom::builtin(name)?, &coarse, Contact::default())?)
+//!     Ok(Model::new(&Phantom::builtin(name)?, 2e-3, Contact::default())?)
 //! };
 //! let (gel, inclusion) = (model("none")?, model("6.6")?);
 //! let (depths, laterals) = ([2e-3, 4e-3], [-5e-3, 0.0, 5e-3]);
@@ -65,6 +64,7 @@ pub use summary::{SUMMARY_SCHEMA, SUMMARY_SCHEMA_VERSION, summary_json};
 pub use text::FileNames;
 
 use crate::detect::DetectError;
+use crate::fem::element::CORNERS;
 use crate::fem::mesh::Region;
 use crate::fem::{FemError, Model, Pose};
 use crate::force_map::{ForceMap, InvalidForceMap};
@@ -129,12 +129,11 @@ impl DeformedMesh {
     /// The mesh of `model` with the probe at `pose`.
     ///
     /// ```
-    /// use palpate::fem::{Contact, MeshOptions, Model, Pose};
+    /// use palpate::fem::{Contact, Model, Pose};
     /// use palpate::phantom::Phantom;
     /// use palpate::report::DeformedMesh;
     ///
-    /// let coarse = MeshOptions { size: 2e-3, ..MeshOptions::default() };
-    /// let model = Model::new(&Phantom::builtin("none")?, &coarse, Contact::default())?;
+    /// let model = Model::new(&Phantom::builtin("none")?, 2e-3, Contact::default())?;
     /// let deformed = DeformedMesh::solve(&model, Pose { depth: 2e-3, lateral: 0.0 })?;
     /// let deepest = deformed.displacements.iter().map(|[_, y]| -y).fold(0.0, f64::max);
     /// // The node under the probe goes as deep as the probe, and none much deeper.
@@ -147,7 +146,6 @@ impl DeformedMesh {
     pub fn solve(model: &Model, pose: Pose) -> Result<DeformedMesh, FemError> {
         let solution = model.solve(pose)?;
         let mesh = model.mesh();
-        let corners = mesh.element.corners();
         let check = model.checks(std::slice::from_ref(&solution))?;
         Ok(DeformedMesh {
             phantom: model.phantom().clone(),
@@ -156,7 +154,7 @@ impl DeformedMesh {
             displacements: model.field(&solution)?.displacements,
             corners: mesh
                 .elements()
-                .map(|nodes| nodes[..corners].to_vec())
+                .map(|nodes| nodes[..CORNERS].to_vec())
                 .collect(),
             regions: mesh.regions.clone(),
             min_det: check[0].min_det,

@@ -8,7 +8,7 @@ use std::vec::Vec;
 use super::{Check, Figure};
 use crate::detect::simulate::Simulation;
 use crate::detect::{Channels, auc, error_rates, neyman_pearson_false_alarm_threshold};
-use crate::fem::{Contact, MeshOptions, Model};
+use crate::fem::{Contact, MESH_SIZE, Model};
 use crate::phantom::Phantom;
 use crate::stats::binomial::clopper_pearson;
 use crate::stats::random::Generator;
@@ -151,7 +151,7 @@ fn forces(name: &str) -> Result<Channels<Vec<f64>>, String> {
     let failed = |error: &dyn std::fmt::Display| format!("phantom {name}: {error}");
     let phantom = Phantom::builtin(name).map_err(|error| failed(&error))?;
     let laterals: Vec<f64> = (-20..=20).map(|k| f64::from(k) * 0.5e-3).collect();
-    let map = Model::new(&phantom, &MeshOptions::default(), Contact::default())
+    let map = Model::new(&phantom, MESH_SIZE, Contact::default())
         .and_then(|model| model.map(&[DEPTH], &laterals, &|_| ()))
         .map_err(|error| failed(&error))?;
     Ok(Channels {

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use rustix::time::{ClockId, clock_gettime};
 
 use super::{Check, Figure};
-use crate::fem::{Contact, MeshOptions, Model};
+use crate::fem::{Contact, MESH_SIZE, Model};
 use crate::hid::timing::{measure, paper};
 use crate::phantom::Phantom;
 use crate::servo::{Input, Limits, Mode, Request, Sample, State, Table, step};
@@ -146,8 +146,8 @@ fn force_map() -> Result<Vec<Figure>, String> {
     let depths: Vec<f64> = (0..=8).map(|k| f64::from(k) * 0.5e-3).collect();
     let laterals: Vec<f64> = (0..=20).map(|k| f64::from(k) * 0.5e-3).collect();
     let before = processor_time();
-    let model = Model::new(&phantom, &MeshOptions::default(), Contact::default())
-        .map_err(|error| error.to_string())?;
+    let model =
+        Model::new(&phantom, MESH_SIZE, Contact::default()).map_err(|error| error.to_string())?;
     let map = model
         .map(&depths, &laterals, &|_| ())
         .map_err(|error| error.to_string())?;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use palpate::fem::{Contact, Mesh, MeshOptions, Model, Pose};
+use palpate::fem::{Contact, Mesh, Model, Pose};
 use palpate::phantom::Phantom;
 
 use super::deck::deck;
@@ -68,15 +68,12 @@ fn compare(name: &str, centre_x: f64, lateral: f64) {
     if !present(missing) {
         return;
     }
-    let options = MeshOptions {
-        size: 0.8e-3,
-        ..MeshOptions::default()
-    };
+    let size = 0.8e-3;
     let mut phantom = Phantom::builtin(name).unwrap();
     for inclusion in &mut phantom.inclusions {
         inclusion.centre_x = centre_x;
     }
-    let mesh = Mesh::new(&phantom, &options).unwrap();
+    let mesh = Mesh::new(&phantom, size).unwrap();
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("ccx-{name}-{centre_x}"));
     let forces = run(&directory, &deck(&phantom, &mesh, lateral, &DEPTHS));
     assert_eq!(
@@ -84,7 +81,7 @@ fn compare(name: &str, centre_x: f64, lateral: f64) {
         DEPTHS.len(),
         "CalculiX did not come to the end"
     );
-    let model = Model::new(&phantom, &options, Contact::DeformedNormal).unwrap();
+    let model = Model::new(&phantom, size, Contact::DeformedNormal).unwrap();
     for (&depth, [along, normal]) in DEPTHS.iter().zip(forces) {
         let ours = model.solve(Pose { depth, lateral }).unwrap();
         let [off, aside] = [ours.normal_force - normal, ours.lateral_force - along]

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
+use palpate::fem::Mesh;
 use palpate::fem::assembly::StiffnessMatrix;
-use palpate::fem::{Mesh, MeshOptions};
 use palpate::phantom::Phantom;
 
 use super::material;
@@ -86,11 +86,7 @@ fn scikit_fem_assembles_our_stiffness() {
         for inclusion in &mut phantom.inclusions {
             inclusion.centre_x = centre_x;
         }
-        let options = MeshOptions {
-            size: 1.5e-3,
-            ..MeshOptions::default()
-        };
-        let mesh = Mesh::new(&phantom, &options).unwrap();
+        let mesh = Mesh::new(&phantom, 1.5e-3).unwrap();
         let matrix = StiffnessMatrix::assemble(&mesh, &phantom).unwrap();
         let witness = witness(&problem(&mesh, &phantom));
         // Place of each free displacement among our unknowns, to displacement i of node a, 2a + i.

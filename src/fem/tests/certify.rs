@@ -1,8 +1,8 @@
 use crate::fem::certify::{band, certified_map, observed_order};
-use crate::fem::{Contact, MeshOptions, Model};
+use crate::fem::{Contact, MESH_SIZE, Model};
 use crate::force_map::ForceMap;
 
-use super::{builtin, finest, off_centre, sized};
+use super::{builtin, finest, off_centre};
 
 /// f(h) = f₀ + c hᵖ on meshes of size 1, 4/3 and 2.
 fn forces(limit: f64, factor: f64, order: f64) -> [f64; 3] {
@@ -46,7 +46,7 @@ fn bands_are_the_error_times_the_safety_factor() {
 // Verifies: FEM-026, FEM-028, MAP-050.
 #[test]
 fn a_certified_map_has_the_published_forces_and_bands_that_hold_the_error() {
-    let model = Model::new(&builtin("2.6"), &MeshOptions::default(), Contact::default()).unwrap();
+    let model = Model::new(&builtin("2.6"), MESH_SIZE, Contact::default()).unwrap();
     let (depths, laterals) = ([1e-3, 2.5e-3, 4e-3], [-4e-3, -1e-3, 0.0, 2e-3, 6e-3]);
     let plain = model.map(&depths, &laterals, &|_| ()).unwrap();
     let counted = std::cell::Cell::new(0);
@@ -102,7 +102,7 @@ fn banded(map: &ForceMap) -> [Vec<(f64, f64)>; 2] {
 fn other_meshes_of_the_same_phantom_agree_within_their_bands() {
     let (depths, laterals) = ([1e-3, 2.5e-3, 4e-3], [-6e-3, -2e-3, 2e-3, 6e-3]);
     let certified = |phantom| {
-        let model = Model::new(&phantom, &sized(1e-3), Contact::default()).unwrap();
+        let model = Model::new(&phantom, 1e-3, Contact::default()).unwrap();
         let map = certified_map(&model, &depths, &laterals, &|_| ()).unwrap();
         (model.mesh().symmetric, banded(&map))
     };

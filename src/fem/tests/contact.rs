@@ -1,8 +1,6 @@
-use crate::fem::{
-    Contact, ContactState, Element, FemError, MeshOptions, Model, Pose, PoseSolution,
-};
+use crate::fem::{Contact, ContactState, FemError, MESH_SIZE, Model, Pose, PoseSolution};
 
-use super::{builtin, off_centre, sized};
+use super::{builtin, off_centre};
 
 fn coarse(name: &str, contact: Contact) -> Model {
     super::coarse(&builtin(name), contact)
@@ -19,55 +17,41 @@ fn solve(model: &Model, depth_mm: f64, lateral_mm: f64) -> PoseSolution {
         .unwrap()
 }
 
-/// Values at the contact points from those at the surface's nodes: of the parabola through a triangle's three at two Gauss
-/// points, of the line through a quadrilateral's two half-way.
-fn at_contact_points(element: Element, values: &[f64]) -> Vec<f64> {
+/// Values at the contact points from those at the surface's nodes: of the parabola through an edge's three at two Gauss points.
+fn at_contact_points(values: &[f64]) -> Vec<f64> {
     let g = 1.0 / 3f64.sqrt();
     let parabola = |v: &[f64], t: f64| {
         v[1] + 0.5 * t * (v[2] - v[0]) + 0.5 * t * t * (v[0] - 2.0 * v[1] + v[2])
     };
-    match element {
-        Element::T6 => {
-            let edges = values.windows(3).step_by(2);
-            edges
-                .flat_map(|v| [-g, g].map(|t| parabola(v, t)))
-                .collect()
-        }
-        Element::Q4Full => values.windows(2).map(|v| 0.5 * (v[0] + v[1])).collect(),
-    }
+    let edges = values.windows(3).step_by(2);
+    edges
+        .flat_map(|v| [-g, g].map(|t| parabola(v, t)))
+        .collect()
 }
 
 // Verifies: FEM-032.
 #[test]
 fn contact_points_are_the_gauss_points_of_the_edges() {
-    for element in [Element::T6, Element::Q4Full] {
-        let options = MeshOptions {
-            element,
-            ..sized(2e-3)
-        };
-        let model = Model::new(&builtin("2.6"), &options, Contact::default()).unwrap();
-        let (mesh, surface) = (model.mesh(), model.surface());
-        let x: Vec<f64> = mesh
-            .surface
-            .iter()
-            .map(|&node| mesh.nodes[node][0])
-            .collect();
-        let expected = at_contact_points(element, &x);
-        assert_eq!(surface.positions.len(), expected.len());
-        for (&[x, y], expected) in surface.positions.iter().zip(&expected) {
-            assert!((x - expected).abs() < 1e-17 && y == 0.0, "{x} {expected}");
-        }
-        // Two points integrate a parabola exactly: ∫ x² dx over the width w is w³/12.
-        let integral = |power: i32| -> f64 {
-            let points = surface.positions.iter().zip(&surface.lengths);
-            points.map(|([x, _], length)| length * x.powi(power)).sum()
-        };
-        let width = model.phantom().well.width;
-        assert!((integral(0) / width - 1.0).abs() < 1e-14);
-        if element == Element::T6 {
-            assert!((integral(2) / (width.powi(3) / 12.0) - 1.0).abs() < 1e-14);
-        }
+    let model = super::coarse(&builtin("2.6"), Contact::default());
+    let (mesh, surface) = (model.mesh(), model.surface());
+    let x: Vec<f64> = mesh
+        .surface
+        .iter()
+        .map(|&node| mesh.nodes[node][0])
+        .collect();
+    let expected = at_contact_points(&x);
+    assert_eq!(surface.positions.len(), expected.len());
+    for (&[x, y], expected) in surface.positions.iter().zip(&expected) {
+        assert!((x - expected).abs() < 1e-17 && y == 0.0, "{x} {expected}");
     }
+    // Two points integrate a parabola exactly: ∫ x² dx over the width w is w³/12.
+    let integral = |power: i32| -> f64 {
+        let points = surface.positions.iter().zip(&surface.lengths);
+        points.map(|([x, _], length)| length * x.powi(power)).sum()
+    };
+    let width = model.phantom().well.width;
+    assert!((integral(0) / width - 1.0).abs() < 1e-14);
+    assert!((integral(2) / (width.powi(3) / 12.0) - 1.0).abs() < 1e-14);
 }
 
 // Verifies: FEM-009, FEM-010, FEM-032.
@@ -152,23 +136,18 @@ fn the_vertical_gap_is_the_height_of_the_circle_above_the_undeformed_place() {
 // Verifies: FEM-007, FEM-008, FEM-013, FEM-032.
 #[test]
 fn condensed_contact_is_the_full_solve() {
-    for (phantom, element, contact) in [
-        (builtin("4.6"), Element::T6, CONTACTS[0]),
-        (builtin("4.6"), Element::T6, CONTACTS[1]),
-        (off_centre(4.6, 2.0), Element::T6, CONTACTS[0]),
-        (off_centre(4.6, 2.0), Element::Q4Full, CONTACTS[0]),
+    for (phantom, contact) in [
+        (builtin("4.6"), CONTACTS[0]),
+        (builtin("4.6"), CONTACTS[1]),
+        (off_centre(4.6, 2.0), CONTACTS[0]),
     ] {
-        let options = MeshOptions {
-            element,
-            ..sized(2e-3)
-        };
-        let model = Model::new(&phantom, &options, contact).unwrap();
+        let model = super::coarse(&phantom, contact);
         let solution = solve(&model, 3.5, 4.0);
         let field = model.field(&solution).unwrap();
         for k in 0..2 {
             let nodes = &model.mesh().surface;
             let nodes: Vec<f64> = nodes.iter().map(|&n| field.displacements[n][k]).collect();
-            let full = at_contact_points(element, &nodes);
+            let full = at_contact_points(&nodes);
             for (u, full) in solution.state.displacements.iter().zip(full) {
                 // The bound of the requirement, 1e-9 N, at the surface's stiffness of some 10³ N/m.
                 assert!((u[k] - full).abs() < 1e-12, "{u:?} {full}");
@@ -188,7 +167,7 @@ fn reaction_of_floor_and_walls_is_the_force_on_the_probe() {
     let field = model.field(&solution).unwrap();
     // Traction of the field at the held nodes, from the elements themselves.
     let mesh = model.mesh();
-    let rule = crate::fem::element::StiffnessRule::new(mesh.element);
+    let rule = crate::fem::element::StiffnessRule::default();
     let mut reaction = [0.0; 2];
     for (nodes, region) in mesh.elements().zip(&mesh.regions) {
         let material = region.material(model.phantom());
@@ -334,32 +313,24 @@ fn the_curvature_term_makes_newton_fast() {
         "the test wants a step without change of contact"
     );
     // Steps of 5e-7 m over a radius of 6.5e-3 m: quadratic convergence goes 1e-4, 1e-8, 1e-16 of it; with a
-    // normal that does not turn, each step leaves about a tenth of the one before.
-    assert!(next.iterations <= 4, "{} iterations", next.iterations);
+    // normal that does not turn, each step leaves about a tenth of the one before. The last iteration only looks for points far
+    // from the probe.
+    assert!(next.iterations <= 5, "{} iterations", next.iterations);
 }
 
 // Verifies: FEM-011.
 #[test]
-fn poses_converge_with_every_element_and_contact() {
+fn poses_converge_with_every_contact() {
     let mut failed = Vec::new();
     for phantom in [builtin("none"), builtin("2.6"), off_centre(6.6, 5.0)] {
-        for (element, contact) in [
-            (Element::T6, CONTACTS[0]),
-            (Element::Q4Full, CONTACTS[0]),
-            (Element::T6, CONTACTS[1]),
-            (Element::Q4Full, CONTACTS[1]),
-        ] {
-            let options = MeshOptions {
-                element,
-                ..MeshOptions::default()
-            };
-            let model = Model::new(&phantom, &options, contact).unwrap();
+        for contact in CONTACTS {
+            let model = Model::new(&phantom, MESH_SIZE, contact).unwrap();
             for (depth, lateral) in [1e-3, 2.5e-3, 4e-3, 6e-3]
                 .into_iter()
                 .flat_map(|depth| [-9e-3, 0.0, 3.3e-3].map(|lateral| (depth, lateral)))
             {
                 if let Err(error) = model.solve(Pose { depth, lateral }) {
-                    failed.push(format!("{}, {element:?}, {error}", phantom.name));
+                    failed.push(format!("{}, {contact:?}, {error}", phantom.name));
                 }
             }
         }

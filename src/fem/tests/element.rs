@@ -1,7 +1,7 @@
+use crate::fem::Mesh;
 use crate::fem::element::{Stiffness, StiffnessRule, gradients, parent_gradients, stress};
 use crate::fem::field::determinant;
 use crate::fem::vtu::von_mises;
-use crate::fem::{Element, Mesh, MeshOptions};
 use crate::phantom::Material;
 
 use super::builtin;
@@ -56,50 +56,13 @@ fn triangle_matches_exact_rationals() {
         middle(1, 2),
         middle(2, 0),
     ];
-    let stiffness = StiffnessRule::new(Element::T6)
+    let stiffness = StiffnessRule::default()
         .integrate(&positions, &QUARTER)
         .unwrap();
     assert_close(
         &stiffness,
         |row, column| f64::from(TRIANGLE_75[row][column]) / 75.0,
         12,
-    );
-}
-
-// Verifies: FEM-005.
-#[test]
-fn square_matches_the_published_closed_form() {
-    // The unit square in plane stress (O. Sigmund, A 99 line topology optimization code, 2001), whose
-    // constants in plane strain are E/(1 − ν²) and ν/(1 − ν).
-    let (e, nu) = (1.0 / (1.0 - 0.0625), 0.25 / 0.75);
-    let k: [f64; 8] = [
-        0.5 - nu / 6.0,
-        0.125 + nu / 8.0,
-        -0.25 - nu / 12.0,
-        -0.125 + 3.0 * nu / 8.0,
-        -0.25 + nu / 12.0,
-        -0.125 - nu / 8.0,
-        nu / 6.0,
-        0.125 - 3.0 * nu / 8.0,
-    ];
-    let pattern = [
-        [0, 1, 2, 3, 4, 5, 6, 7],
-        [1, 0, 7, 6, 5, 4, 3, 2],
-        [2, 7, 0, 5, 6, 3, 4, 1],
-        [3, 6, 5, 0, 7, 2, 1, 4],
-        [4, 5, 6, 7, 0, 1, 2, 3],
-        [5, 4, 3, 2, 1, 0, 7, 6],
-        [6, 3, 4, 1, 2, 7, 0, 5],
-        [7, 2, 1, 4, 3, 6, 5, 0],
-    ];
-    let positions = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    let stiffness = StiffnessRule::new(Element::Q4Full)
-        .integrate(&positions, &QUARTER)
-        .unwrap();
-    assert_close(
-        &stiffness,
-        |row, column| e / (1.0 - nu * nu) * k[pattern[row][column]],
-        8,
     );
 }
 
@@ -119,7 +82,7 @@ fn internal_force(mesh: &Mesh, u: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<[f64; 2]
         youngs_modulus: 1.0,
         poisson_ratio: 0.49,
     };
-    let rule = StiffnessRule::new(mesh.element);
+    let rule = StiffnessRule::default();
     let mut force = vec![[0.0; 2]; mesh.nodes.len()];
     for nodes in mesh.elements() {
         let stiffness = rule.integrate(&mesh.positions(nodes), &material).unwrap();
@@ -141,38 +104,29 @@ fn internal_force(mesh: &Mesh, u: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<[f64; 2]
 // Verifies: FEM-005.
 #[test]
 fn linear_fields_and_rigid_motions_leave_the_inside_in_balance() {
-    for element in [Element::T6, Element::Q4Full] {
-        let options = MeshOptions {
-            size: 2e-3,
-            element,
-        };
-        let phantom = builtin("2.6");
-        let mesh = Mesh::new(&phantom, &options).unwrap();
-        let border = |node: usize| {
-            let [x, y] = mesh.nodes[node];
-            x.abs() == 0.5 * phantom.well.width || y == 0.0 || y == phantom.levels()[2]
-        };
-        // Entries of the stiffness go up to 20 (λ/E = 16.4 at ν = 0.49), displacements to 0.05: sums of about
-        // 40 products of size 1 are off by 40 ε ≈ 1e-14 at most.
-        let stretch = internal_force(&mesh, |[x, y]| [0.7 * x - 1.1 * y, 0.4 * x + 0.9 * y]);
-        let inside = (0..mesh.nodes.len()).filter(|&node| !border(node));
-        let worst = inside
-            .flat_map(|node| stretch[node])
-            .fold(0.0, |a: f64, b| a.max(b.abs()));
-        assert!(worst < 1e-14, "{element:?}: linear field leaves {worst:e}");
-        let border_force = stretch
-            .iter()
-            .flatten()
-            .fold(0.0, |a: f64, b| a.max(b.abs()));
-        assert!(
-            border_force > 1e-4,
-            "{element:?}: the field is not seen at all"
-        );
-        // A rigid motion loads nothing, border included.
-        let turn = internal_force(&mesh, |[x, y]| [0.01 - y, 0.02 + x]);
-        let worst = turn.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
-        assert!(worst < 1e-14, "{element:?}: rigid motion leaves {worst:e}");
-    }
+    let phantom = builtin("2.6");
+    let mesh = Mesh::new(&phantom, 2e-3).unwrap();
+    let border = |node: usize| {
+        let [x, y] = mesh.nodes[node];
+        x.abs() == 0.5 * phantom.well.width || y == 0.0 || y == phantom.levels()[2]
+    };
+    // Entries of the stiffness go up to 20 (λ/E = 16.4 at ν = 0.49), displacements to 0.05: sums of about
+    // 40 products of size 1 are off by 40 ε ≈ 1e-14 at most.
+    let stretch = internal_force(&mesh, |[x, y]| [0.7 * x - 1.1 * y, 0.4 * x + 0.9 * y]);
+    let inside = (0..mesh.nodes.len()).filter(|&node| !border(node));
+    let worst = inside
+        .flat_map(|node| stretch[node])
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
+    assert!(worst < 1e-14, "linear field leaves {worst:e}");
+    let border_force = stretch
+        .iter()
+        .flatten()
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
+    assert!(border_force > 1e-4, "the field is not seen at all");
+    // A rigid motion loads nothing, border included.
+    let turn = internal_force(&mesh, |[x, y]| [0.01 - y, 0.02 + x]);
+    let worst = turn.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
+    assert!(worst < 1e-14, "rigid motion leaves {worst:e}");
 }
 
 // Verifies: FEM-013.
@@ -197,7 +151,7 @@ fn von_mises_is_the_stress_of_the_pulled_bar() {
 fn parent_gradients_are_those_of_shape_functions() {
     // Shape functions are 1 at their own node and 0 at the others: a field that is x or y at every node has their
     // gradients, and constants none. On the parent element itself space is the parent's.
-    let triangle = [
+    let nodes = [
         [0.0, 0.0],
         [1.0, 0.0],
         [0.0, 1.0],
@@ -205,31 +159,26 @@ fn parent_gradients_are_those_of_shape_functions() {
         [0.5, 0.5],
         [0.0, 0.5],
     ];
-    let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    for (element, nodes) in [(Element::T6, &triangle[..]), (Element::Q4Full, &square[..])] {
-        for at in [[0.2, 0.3], [0.6, 0.1]] {
-            let parent = parent_gradients(element, at);
-            let found = gradients(&parent, nodes);
-            assert!((found.jacobian - 1.0).abs() < 1e-15);
-            let sum = |of: &dyn Fn([f64; 2]) -> f64, k: usize| -> f64 {
-                (0..nodes.len())
-                    .map(|a| of(nodes[a]) * found.of_node[(k, a)])
-                    .sum()
-            };
-            for k in 0..2 {
-                assert!(sum(&|_| 1.0, k).abs() < 1e-15);
-                for i in 0..2 {
-                    let expected = if i == k { 1.0 } else { 0.0 };
-                    assert!((sum(&|node| node[i], k) - expected).abs() < 1e-15);
-                }
-                // A quadratic field, which quadrilaterals hold in its mixed term alone.
-                let expected = at[1 - k];
-                assert!((sum(&|[x, y]| x * y, k) - expected).abs() < 1e-15);
-                if element == Element::T6 {
-                    let expected = if k == 0 { 2.0 * at[0] } else { 0.0 };
-                    assert!((sum(&|[x, _]| x * x, k) - expected).abs() < 1e-15);
-                }
+    for at in [[0.2, 0.3], [0.6, 0.1]] {
+        let parent = parent_gradients(at);
+        let found = gradients(&parent, &nodes);
+        assert!((found.jacobian - 1.0).abs() < 1e-15);
+        let sum = |of: &dyn Fn([f64; 2]) -> f64, k: usize| -> f64 {
+            (0..nodes.len())
+                .map(|a| of(nodes[a]) * found.of_node[(k, a)])
+                .sum()
+        };
+        for k in 0..2 {
+            assert!(sum(&|_| 1.0, k).abs() < 1e-15);
+            for i in 0..2 {
+                let expected = if i == k { 1.0 } else { 0.0 };
+                assert!((sum(&|node| node[i], k) - expected).abs() < 1e-15);
             }
+            // Quadratic fields.
+            let expected = at[1 - k];
+            assert!((sum(&|[x, y]| x * y, k) - expected).abs() < 1e-15);
+            let expected = if k == 0 { 2.0 * at[0] } else { 0.0 };
+            assert!((sum(&|[x, _]| x * x, k) - expected).abs() < 1e-15);
         }
     }
 }

@@ -1,6 +1,6 @@
-use crate::fem::{Contact, Element, FemError, MeshOptions, Model, Pose};
+use crate::fem::{Contact, FemError, MESH_SIZE, Model, Pose};
 
-use super::{builtin, finest, off_centre, sized};
+use super::{builtin, finest, off_centre};
 
 fn coarse(name: &str, contact: Contact) -> Model {
     super::coarse(&builtin(name), contact)
@@ -179,12 +179,7 @@ fn the_paper_s_poses_have_the_forces_of_an_independent_program() {
     // A prototype in Python, with CalculiX as its witness: 1.48 N without inclusion at 4 mm, a signal of about
     // 0.31 N over the 6.6 mm inclusion; both given to two digits.
     let force = |name: &str| {
-        let model = Model::new(
-            &builtin(name),
-            &MeshOptions::default(),
-            Contact::DeformedNormal,
-        )
-        .unwrap();
+        let model = Model::new(&builtin(name), MESH_SIZE, Contact::DeformedNormal).unwrap();
         model
             .solve(Pose {
                 depth: 4e-3,
@@ -202,22 +197,6 @@ fn the_paper_s_poses_have_the_forces_of_an_independent_program() {
     );
 }
 
-// Verifies: FEM-020.
-#[test]
-fn full_quadrilaterals_lock() {
-    let force = |element| {
-        let options = MeshOptions {
-            size: 2e-3,
-            element,
-        };
-        let model = Model::new(&builtin("none"), &options, Contact::DeformedNormal).unwrap();
-        let (depth, lateral) = (4e-3, 0.0);
-        model.solve(Pose { depth, lateral }).unwrap().normal_force
-    };
-    let excess = force(Element::Q4Full) / force(Element::T6) - 1.0;
-    assert!(excess > 0.03 && excess < 0.20, "{excess}");
-}
-
 // Verifies: FEM-021, FEM-025, FEM-039.
 #[test]
 fn forces_of_the_default_mesh_are_converged() {
@@ -225,10 +204,9 @@ fn forces_of_the_default_mesh_are_converged() {
     // benches/convergence.rs found the largest: shallow poses, over the inclusion and its side, and where the contact's edge
     // comes near the wall.
     let off = off_centre(2.6, 5.0);
-    let fine = Model::new(&off, &sized(0.125e-3), Contact::default()).unwrap();
+    let fine = Model::new(&off, 0.125e-3, Contact::default()).unwrap();
     for (fine, limits) in [(finest(), [0.001, 1e-3]), (&fine, [0.003, 3e-3])] {
-        let options = MeshOptions::default();
-        let default = Model::new(fine.phantom(), &options, Contact::default()).unwrap();
+        let default = Model::new(fine.phantom(), MESH_SIZE, Contact::default()).unwrap();
         for (depth, lateral) in [
             (0.5e-3, 1e-3),
             (1e-3, 0.0),

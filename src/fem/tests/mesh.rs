@@ -1,26 +1,20 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
+use crate::fem::element::CORNERS;
 use crate::fem::mesh::{Mesh, Region};
 use crate::fem::size::SizeField;
-use crate::fem::{Element, FemError, MeshOptions};
-use crate::phantom::{Outline, Phantom, Support};
+use crate::fem::triangulate::Triangulation;
+use crate::fem::{FemError, MESH_SIZE};
+use crate::phantom::{Ellipse, Outline, Phantom, Support};
 
-use super::{builtin, disc, ellipse, hard, off_centre, polygon, sized, with, zoo};
+use super::{builtin, disc, ellipse, hard, off_centre, polygon, with, zoo};
 
-const ELEMENTS: [Element; 2] = [Element::T6, Element::Q4Full];
 /// Mesh sizes, m: those of a default map and its certificate, and the coarsest and finest in common use.
 const SIZES: [f64; 5] = [0.25e-3, 0.5e-3, 2e-3 / 3.0, 1e-3, 2e-3];
 
-fn of(element: Element, size: f64) -> MeshOptions {
-    MeshOptions { size, element }
-}
-
 /// The polygon along an element's edge, midside nodes included.
 fn outline(mesh: &Mesh, nodes: &[u32]) -> Vec<[f64; 2]> {
-    let order: &[usize] = match mesh.element {
-        Element::T6 => &[0, 3, 1, 4, 2, 5],
-        Element::Q4Full => &[0, 1, 2, 3],
-    };
+    let order: &[usize] = &[0, 3, 1, 4, 2, 5];
     let node = |&k: &usize| mesh.nodes[nodes[k] as usize];
     order.iter().map(node).collect()
 }
@@ -49,11 +43,11 @@ fn smallest_angle(corners: &[[f64; 2]]) -> f64 {
 /// By how much of its radii a point is off an ellipse, or by how many metres off a polygon; negative inside.
 fn outside(outline: &Outline, at: [f64; 2]) -> f64 {
     match outline {
-        Outline::Ellipse {
+        Outline::Ellipse(Ellipse {
             centre,
             radii,
             turn,
-        } => {
+        }) => {
             let [x, y] = [at[0] - centre[0], at[1] - centre[1]];
             let along = (x * turn[0] + y * turn[1]) / radii[0];
             let across = (y * turn[0] - x * turn[1]) / radii[1];
@@ -84,7 +78,7 @@ fn outside(outline: &Outline, at: [f64; 2]) -> f64 {
 /// The edges of all elements with the middles that each element sees.
 fn edges(mesh: &Mesh) -> HashMap<[u32; 2], Vec<Option<u32>>> {
     let mut edges: HashMap<[u32; 2], Vec<Option<u32>>> = HashMap::new();
-    let corners = mesh.element.corners();
+    let corners = CORNERS;
     for nodes in mesh.elements() {
         for k in 0..corners {
             let (a, b) = (nodes[k], nodes[(k + 1) % corners]);
@@ -120,7 +114,7 @@ fn check_edges(phantom: &Phantom, mesh: &Mesh) {
 fn check_outlines(phantom: &Phantom, mesh: &Mesh) {
     let outlines: Vec<Outline> = phantom.inclusions.iter().map(|i| i.outline()).collect();
     let mut regions: HashMap<[u32; 2], BTreeSet<Region>> = HashMap::new();
-    let corners = mesh.element.corners();
+    let corners = CORNERS;
     for (nodes, &region) in mesh.elements().zip(&mesh.regions) {
         for k in 0..corners {
             let (a, b) = (nodes[k], nodes[(k + 1) % corners]);
@@ -258,17 +252,15 @@ fn check_surface(phantom: &Phantom, mesh: &Mesh) {
     let below = mesh.nodes.iter().filter(|at| at[1] < 0.0).count();
     assert_eq!(below + mesh.surface.len(), mesh.nodes.len());
     assert!(mesh.surface.iter().all(|&node| mesh.nodes[node][1] == 0.0));
-    if mesh.element == Element::T6 {
-        // Corners and middles in turn, as contact takes them.
-        let middles: HashSet<u32> = mesh
-            .elements()
-            .flat_map(|nodes| &nodes[3..])
-            .copied()
-            .collect();
-        let is_middle = |&node: &usize| middles.contains(&(node as u32));
-        let kinds = mesh.surface.iter().map(is_middle);
-        assert!(kinds.eq((0..=last).map(|k| k % 2 == 1)));
-    }
+    // Corners and middles in turn, as contact takes them.
+    let middles: HashSet<u32> = mesh
+        .elements()
+        .flat_map(|nodes| &nodes[3..])
+        .copied()
+        .collect();
+    let is_middle = |&node: &usize| middles.contains(&(node as u32));
+    let kinds = mesh.surface.iter().map(is_middle);
+    assert!(kinds.eq((0..=last).map(|k| k % 2 == 1)));
 }
 
 /// The smallest angle of any triangle, degrees.
@@ -302,7 +294,7 @@ fn phantoms_of_all_kinds_have_sound_meshes() {
         for &size in &SIZES[usize::from(number % 5 > 0)..] {
             let what = format!("{what}, {} mm", size * 1e3);
             println!("{what}");
-            let mesh = match Mesh::new(&phantom, &sized(size)) {
+            let mesh = match Mesh::new(&phantom, size) {
                 Ok(mesh) => mesh,
                 Err(error) => {
                     wrong.push(format!("{what}: {error}"));
@@ -339,29 +331,11 @@ fn phantoms_of_all_kinds_have_sound_meshes() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-// Verifies: FEM-030.
-#[test]
-fn triangles_cut_in_three_are_a_mesh_of_quadrilaterals() {
-    for (what, phantom) in zoo().into_iter().step_by(4) {
-        let [triangles, mesh] = ELEMENTS.map(|element| Mesh::new(&phantom, &of(element, 0.5e-3)));
-        let (triangles, mesh) = (triangles.expect(&what), mesh.expect(&what));
-        println!("{what}");
-        assert_eq!(mesh.regions.len(), 3 * triangles.regions.len());
-        check_edges(&phantom, &mesh);
-        check_outlines(&phantom, &mesh);
-        check_regions(&phantom, &mesh);
-        check_surface(&phantom, &mesh);
-        if mesh.symmetric {
-            check_mirror(&phantom, &mesh);
-        }
-    }
-}
-
 // Verifies: FEM-001, FEM-030.
 #[test]
 fn two_calls_make_the_same_mesh() {
     for phantom in [builtin("2.6"), off_centre(2.6, 3.0)] {
-        let [a, b] = [(); 2].map(|()| Mesh::new(&phantom, &MeshOptions::default()).unwrap());
+        let [a, b] = [(); 2].map(|()| Mesh::new(&phantom, MESH_SIZE).unwrap());
         let bits = |mesh: &Mesh| -> Vec<u64> {
             mesh.nodes.iter().flatten().map(|x| x.to_bits()).collect()
         };
@@ -436,7 +410,7 @@ fn a_thin_layer_has_two_rows() {
     let mut thin = builtin("6.6");
     thin.layers[0].thickness = 1.5e-4;
     for phantom in [builtin("2.6"), thin] {
-        let mesh = Mesh::new(&phantom, &MeshOptions::default()).unwrap();
+        let mesh = Mesh::new(&phantom, MESH_SIZE).unwrap();
         let bottom = phantom.levels()[1];
         let across = edges(&mesh).into_keys().filter(|ends| {
             let [a, b] = ends.map(|node| mesh.nodes[node as usize][1]);
@@ -458,21 +432,19 @@ fn walls_and_floor_hold_their_nodes_and_nothing_else() {
             continue;
         }
         let (wall, bottom) = (phantom.well.width / 2.0, -phantom.height());
-        for element in ELEMENTS {
-            let mesh = Mesh::new(&phantom, &of(element, 1e-3)).unwrap();
-            let mut held = [0; 2];
-            for (&[x, y], &found) in mesh.nodes.iter().zip(&mesh.held) {
-                let by = |support, across: usize, there: bool| {
-                    [0, 1].map(|k| there && (support == Fixed || support == Sliding && k == across))
-                };
-                let by_wall = by(walls, 0, (x.abs() - wall).abs() < 1e-12);
-                let by_floor = by(floor, 1, (y - bottom).abs() < 1e-12);
-                let expected = [0, 1].map(|k| by_wall[k] || by_floor[k]);
-                assert_eq!(found, expected, "{walls:?}, {floor:?}: {x}, {y}");
-                held = [0, 1].map(|k| held[k] + usize::from(found[k]));
-            }
-            assert!(held.iter().sum::<usize>() > 30, "{held:?}");
+        let mesh = Mesh::new(&phantom, 1e-3).unwrap();
+        let mut held = [0; 2];
+        for (&[x, y], &found) in mesh.nodes.iter().zip(&mesh.held) {
+            let by = |support, across: usize, there: bool| {
+                [0, 1].map(|k| there && (support == Fixed || support == Sliding && k == across))
+            };
+            let by_wall = by(walls, 0, (x.abs() - wall).abs() < 1e-12);
+            let by_floor = by(floor, 1, (y - bottom).abs() < 1e-12);
+            let expected = [0, 1].map(|k| by_wall[k] || by_floor[k]);
+            assert_eq!(found, expected, "{walls:?}, {floor:?}: {x}, {y}");
+            held = [0, 1].map(|k| held[k] + usize::from(found[k]));
         }
+        assert!(held.iter().sum::<usize>() > 30, "{held:?}");
     }
 }
 
@@ -481,7 +453,7 @@ fn walls_and_floor_hold_their_nodes_and_nothing_else() {
 fn sizes_without_a_mesh_are_refused() {
     let phantom = builtin("none");
     for size in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
-        let error = Mesh::new(&phantom, &sized(size)).unwrap_err();
+        let error = Mesh::new(&phantom, size).unwrap_err();
         assert!(
             matches!(error, FemError::MeshSize { .. }),
             "{size}: {error}"
@@ -490,7 +462,7 @@ fn sizes_without_a_mesh_are_refused() {
     }
     // Only what counts nodes before it makes them comes back from the smaller ones.
     for (size, least) in [(0.06e-3, 5e5), (1e-6, 1e9), (1e-12, 1e20)] {
-        let error = Mesh::new(&phantom, &sized(size)).unwrap_err();
+        let error = Mesh::new(&phantom, size).unwrap_err();
         let FemError::TooManyNodes { nodes, .. } = error else {
             panic!("{size}: {error}");
         };
@@ -507,7 +479,8 @@ fn a_phantom_that_no_sound_triangle_follows_is_refused_with_the_place() {
     let spike = polygon(&[[0.0, 0.0], [1.5, -4.1], [-1.5, -4.1]]);
     let phantom = with(vec![hard(0.0, 3.0, spike)]);
     phantom.validate().unwrap();
-    let error = Mesh::new(&phantom, &MeshOptions::default()).unwrap_err();
+    let size = SizeField::new(&phantom, MESH_SIZE);
+    let error = Triangulation::new(&phantom, &size, true).err().unwrap();
     let FemError::Shape { at, angle } = error else {
         panic!("{error}");
     };
@@ -520,4 +493,8 @@ fn a_phantom_that_no_sound_triangle_follows_is_refused_with_the_place() {
         said.contains("near x = ") && said.contains("y = -3.0") && said.contains("25°"),
         "{said}"
     );
+    // Meshed as a whole, it has none so sharp.
+    let mesh = Mesh::new(&phantom, MESH_SIZE).unwrap();
+    assert!(phantom.is_symmetric() && !mesh.symmetric);
+    assert!(check_angles(&mesh) >= 25.0);
 }

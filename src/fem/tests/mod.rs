@@ -9,7 +9,7 @@ mod map;
 mod mesh;
 mod supports;
 
-use super::{Contact, MeshOptions, Model};
+use super::{Contact, MESH_SIZE, Model};
 use crate::phantom::{Inclusion, Layer, Material, Phantom, Shape};
 
 /// A built-in phantom.
@@ -17,24 +17,15 @@ fn builtin(name: &str) -> Phantom {
     Phantom::builtin(name).expect("a built-in name")
 }
 
-/// The default but for its size, m.
-fn sized(size: f64) -> MeshOptions {
-    MeshOptions {
-        size,
-        ..MeshOptions::default()
-    }
-}
-
 /// A coarse model, for laws that hold on any mesh.
 fn coarse(phantom: &Phantom, contact: Contact) -> Model {
-    Model::new(phantom, &sized(2e-3), contact).expect("a model")
+    Model::new(phantom, 2e-3, contact).expect("a model")
 }
 
 /// The 2.6 mm phantom on a mesh of a quarter of the default's size, made once for all tests: some 150 000 nodes.
 fn finest() -> &'static Model {
     static FINEST: std::sync::LazyLock<Model> = std::sync::LazyLock::new(|| {
-        let options = sized(0.25 * MeshOptions::default().size);
-        Model::new(&builtin("2.6"), &options, Contact::default()).expect("a model")
+        Model::new(&builtin("2.6"), 0.25 * MESH_SIZE, Contact::default()).expect("a model")
     });
     &FINEST
 }

@@ -1,8 +1,7 @@
 //! The stiffness of one triangle with six nodes.
 
 use super::super::{Answer, Arguments, Code, Refusal};
-use crate::fem::Element;
-use crate::fem::element::StiffnessRule;
+use crate::fem::element::{NODES, StiffnessRule};
 use crate::phantom::Material;
 
 /// The stiffness matrix, Pa, of an element in plane strain, 1 m thick.
@@ -12,7 +11,7 @@ pub fn stiffness(arguments: &mut Arguments) -> Result<Answer, Refusal> {
     let poisson_ratio = arguments.number("poissons_ratio")?;
     let node = |row: &Vec<f64>| <[f64; 2]>::try_from(&row[..]).ok();
     let nodes: Option<Vec<[f64; 2]>> = rows.iter().map(node).collect();
-    let Some(nodes) = nodes.filter(|nodes| nodes.len() == Element::T6.nodes()) else {
+    let Some(nodes) = nodes.filter(|nodes| nodes.len() == NODES) else {
         return Err(Refusal::argument(
             "nodes_m",
             "is expected to be six pairs [x, y]",
@@ -34,7 +33,7 @@ pub fn stiffness(arguments: &mut Arguments) -> Result<Answer, Refusal> {
         youngs_modulus,
         poisson_ratio,
     };
-    let stiffness = StiffnessRule::new(Element::T6)
+    let stiffness = StiffnessRule::default()
         .integrate(&nodes, &material)
         .map_err(not_positive)?;
     let row = stiffness.row_iter();

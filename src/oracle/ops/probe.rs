@@ -1,7 +1,7 @@
 //! The force on the probe.
 
 use super::super::{Answer, Arguments, Refusal};
-use crate::fem::{Contact, MeshOptions, Model, Pose};
+use crate::fem::{Contact, MESH_SIZE, Model, Pose};
 use crate::phantom::Phantom;
 
 /// Models that were made, each with the name of its phantom: at most one for each that is built in.
@@ -24,7 +24,7 @@ pub fn force(models: &mut Models, arguments: &mut Arguments) -> Result<Answer, R
     let solution = match models.iter().find(|(known, _)| *known == name) {
         Some((_, model)) => model.solve(pose)?,
         None => {
-            let model = Model::new(&phantom, &MeshOptions::default(), Contact::DeformedNormal)?;
+            let model = Model::new(&phantom, MESH_SIZE, Contact::DeformedNormal)?;
             let solution = model.solve(pose)?;
             models.push((name, model));
             solution

@@ -1,6 +1,6 @@
 //! The forces of whole maps as slopes of the strain energy.
 
-use crate::fem::{Contact, MeshOptions, Model, Pose, PoseSolution};
+use crate::fem::{Contact, Model, Pose, PoseSolution};
 use crate::phantom::Phantom;
 
 use super::{Check, Figure, Figures, largest, said};
@@ -50,12 +50,8 @@ fn at_pose(model: &Model, depth: f64, lateral: f64) -> Result<Option<[f64; 3]>, 
 
 /// The laws at every pose of a map of 8 depths and 11 lateral positions.
 fn map(name: &str, contact: Contact) -> Figures {
-    let options = MeshOptions {
-        size: 1.5e-3,
-        ..MeshOptions::default()
-    };
     let phantom = Phantom::builtin(name).map_err(said)?;
-    let model = Model::new(&phantom, &options, contact).map_err(said)?;
+    let model = Model::new(&phantom, 1.5e-3, contact).map_err(said)?;
     let (mut kinks, mut shares) = (0, Vec::new());
     for pose in 0..88 {
         let (depth, lateral) = (

@@ -1,7 +1,7 @@
 //! Contact solved over all unknowns at once, to compare with the condensed contact.
 
 use crate::fem::element::StiffnessRule;
-use crate::fem::{Contact, Mesh, MeshOptions, Model, Pose};
+use crate::fem::{Contact, Mesh, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::phantom::Phantom;
 
@@ -32,8 +32,8 @@ struct Solved {
 }
 
 impl Full {
-    fn new(phantom: &Phantom, options: &MeshOptions, contact: Contact) -> Result<Full, String> {
-        let mesh = Mesh::new(phantom, options).map_err(said)?;
+    fn new(phantom: &Phantom, size: f64, contact: Contact) -> Result<Full, String> {
+        let mesh = Mesh::new(phantom, size).map_err(said)?;
         let mut order: Vec<usize> = (0..mesh.nodes.len()).collect();
         order.sort_by(|&a, &b| mesh.nodes[a][0].total_cmp(&mesh.nodes[b][0]));
         let (mut place, mut unknowns) = (vec![[None; 2]; mesh.nodes.len()], 0);
@@ -44,7 +44,7 @@ impl Full {
             }
         }
         let (mut entries, mut first) = (Vec::new(), (0..unknowns).collect::<Vec<_>>());
-        let rule = StiffnessRule::new(mesh.element);
+        let rule = StiffnessRule::default();
         for (nodes, &region) in mesh.elements().zip(&mesh.regions) {
             let element = rule
                 .integrate(&mesh.positions(nodes), region.material(phantom))
@@ -254,13 +254,10 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 /// Both sides stop Newton's method at steps of 1e-13 m, which are worth 1e-10 N at the surface's stiffness of some
 /// 10³ N/m, and round the stiffness's sums in different orders. 1e-9 N is what FEM-060 allows.
 fn compare(name: &str, contact: Contact) -> Figures {
-    let options = MeshOptions {
-        size: 6e-3,
-        ..MeshOptions::default()
-    };
+    let size = 6e-3;
     let phantom = Phantom::builtin(name).map_err(said)?;
-    let model = Model::new(&phantom, &options, contact).map_err(said)?;
-    let full = Full::new(&phantom, &options, contact)?;
+    let model = Model::new(&phantom, size, contact).map_err(said)?;
+    let full = Full::new(&phantom, size, contact)?;
     let mut figures = Vec::new();
     for (depth, lateral) in [(1.3e-3, 2.1e-3), (4e-3, 3.7e-3)] {
         let condensed = model.solve(Pose { depth, lateral }).map_err(said)?;
@@ -376,12 +373,8 @@ pub const MIRROR: Check = Check {
 };
 
 fn mirror() -> Figures {
-    let options = MeshOptions {
-        size: 2e-3,
-        ..MeshOptions::default()
-    };
     let phantom = Phantom::builtin("2.6").map_err(said)?;
-    let model = Model::new(&phantom, &options, Contact::DeformedNormal).map_err(said)?;
+    let model = Model::new(&phantom, 2e-3, Contact::DeformedNormal).map_err(said)?;
     let depths: Vec<f64> = (1..=8).map(|k| 0.5e-3 * f64::from(k)).collect();
     let laterals: Vec<f64> = (-10..=10).map(|k| 1e-3 * f64::from(k)).collect();
     let map = model.map(&depths, &laterals, &|_| ()).map_err(said)?;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::fem::{Contact, MeshOptions, Model, Pose};
+use crate::fem::{Contact, Model, Pose};
 use crate::phantom::{Layer, Material, Phantom, Probe, Well};
 
 use super::layer::BondedLayer;
@@ -122,12 +122,8 @@ fn line_contact() -> Figures {
     // SciPy's quad of the kernel L(m) = (2κ sinh 2m − 4m)/(2κ cosh 2m + 1 + κ² + 4m²), κ = 3 − 4ν.
     let off = (curvature - 0.998_093_74).abs();
     let mut figures = vec![Figure::at_most("error of the base's curvature", off, 1e-6)];
-    let options = MeshOptions {
-        size: SIZE,
-        ..MeshOptions::default()
-    };
     for contact in [Contact::VerticalGap, Contact::DeformedNormal] {
-        let model = Model::new(&block(), &options, contact).map_err(said)?;
+        let model = Model::new(&block(), SIZE, contact).map_err(said)?;
         let places = &model.surface().positions;
         let near = places.windows(2).filter(|pair| pair[0][0].abs() < 1e-2);
         let spacing = largest(near.map(|pair| pair[1][0] - pair[0][0]));

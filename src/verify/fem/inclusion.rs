@@ -2,7 +2,6 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use crate::fem::Element;
 use crate::phantom::Material;
 use num_complex::Complex;
 
@@ -133,7 +132,6 @@ fn disc() -> Figures {
         let cells = [2 * n, 2 * n];
         let inside = |[s, t]: [f64; 2]| s.max(t) < 0.5;
         let problem = Problem::lattice(
-            Element::T6,
             cells,
             bend,
             // Diagonals point to the disc's centre, so that no corner of its bent square is flat.

@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use crate::fem::Element;
 use crate::phantom::Material;
 
 use super::convergence::convergence;
@@ -81,7 +80,6 @@ fn errors(layer: &BondedLayer, columns: usize) -> Result<[Errors; 4], String> {
     let (length, h) = (PI / layer.number, layer.thickness);
     let solve = |n: usize| -> Result<Errors, String> {
         let problem = Problem::lattice(
-            Element::T6,
             [columns * n, n],
             |[s, t]| {
                 // Inner edges are curved, the border straight.
@@ -204,7 +202,6 @@ fn strip(slenderness: usize) -> Result<f64, String> {
     };
     // A quarter, 0 ≤ x ≤ b and 0 ≤ y ≤ t/2; cells shrink towards the free side, where the corner is singular.
     let problem = Problem::lattice(
-        Element::T6,
         [5 * slenderness, 8],
         |[s, t]| {
             [

@@ -42,7 +42,6 @@ pub const CHECKS: &[Check] = &[
     patch::QUADRATIC,
     patch::RIGID,
     manufactured::TRIANGLES,
-    manufactured::QUADRILATERALS,
     manufactured::LOCKING,
     cylinder::LAME,
     cylinder::LOCKING,

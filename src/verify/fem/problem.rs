@@ -1,8 +1,7 @@
 //! Boundary-value problems of plane strain with known solutions, on meshes made for them. Element stiffness,
 //! gradients and stress are the library's; loads, solver and error norms are the checks' own.
 
-use crate::fem::Element;
-use crate::fem::element::{PerNode, StiffnessRule, gradients, parent_gradients, stress};
+use crate::fem::element::{NODES, PerNode, StiffnessRule, gradients, parent_gradients, stress};
 use crate::phantom::Material;
 
 use super::skyline::Skyline;
@@ -13,11 +12,10 @@ pub trait Exact {
     fn gradient(&self, at: [f64; 2]) -> [[f64; 2]; 2];
 }
 
-/// A mesh with a material for each element.
+/// A mesh of triangles with a material for each element.
 pub struct Problem {
-    pub element: Element,
     pub nodes: Vec<[f64; 2]>,
-    pub elements: Vec<Vec<usize>>,
+    pub elements: Vec<[usize; NODES]>,
     pub materials: Vec<Material>,
 }
 
@@ -38,37 +36,24 @@ pub const GAUSS: [(f64, f64); 5] = [
     (0.953_089_922_969_332, 0.118_463_442_528_094_54),
 ];
 
-/// A rule of 25 points, far finer than that of the stiffness, on the parent element.
-fn fine_rule(element: Element) -> Vec<([f64; 2], f64)> {
+/// A rule of 25 points, far finer than that of the stiffness, on the parent element: the square folded onto the triangle.
+fn fine_rule() -> impl Iterator<Item = ([f64; 2], f64)> {
     let pairs = GAUSS.iter().flat_map(|a| GAUSS.iter().map(move |b| (a, b)));
-    pairs
-        .map(|(&(a, wa), &(b, wb))| match element {
-            // The square folded onto the triangle.
-            Element::T6 => ([a, b * (1.0 - a)], wa * wb * (1.0 - a)),
-            Element::Q4Full => ([2.0 * a - 1.0, 2.0 * b - 1.0], 4.0 * wa * wb),
-        })
-        .collect()
+    pairs.map(|(&(a, wa), &(b, wb))| ([a, b * (1.0 - a)], wa * wb * (1.0 - a)))
 }
 
 /// Shape functions at a point of the parent element.
-fn shape(element: Element, [r, s]: [f64; 2]) -> Vec<f64> {
-    match element {
-        Element::T6 => {
-            let q = 1.0 - r - s;
-            let corner = |a: f64| a * (2.0 * a - 1.0);
-            vec![
-                corner(q),
-                corner(r),
-                corner(s),
-                4.0 * q * r,
-                4.0 * r * s,
-                4.0 * s * q,
-            ]
-        }
-        Element::Q4Full => [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
-            .map(|[a, b]: [f64; 2]| 0.25 * (1.0 + a * r) * (1.0 + b * s))
-            .to_vec(),
-    }
+fn shape([r, s]: [f64; 2]) -> [f64; NODES] {
+    let q = 1.0 - r - s;
+    let corner = |a: f64| a * (2.0 * a - 1.0);
+    [
+        corner(q),
+        corner(r),
+        corner(s),
+        4.0 * q * r,
+        4.0 * r * s,
+        4.0 * s * q,
+    ]
 }
 
 /// Lamé's constants (λ, μ), Pa: the checks' own, as Hooke's law below is.
@@ -91,17 +76,15 @@ fn hooke(material: &Material, g: [[f64; 2]; 2]) -> [f64; 4] {
 }
 
 impl Problem {
-    /// A lattice of `cells` (columns, rows) over the unit square, every node of which `map` puts in its place. Triangles
-    /// are cut along the rising diagonal where `rising` says so for the cell's centre.
+    /// A lattice of `cells` (columns, rows) over the unit square, every node of which `map` puts in its place. Cells
+    /// are cut along the rising diagonal where `rising` says so for their centre.
     pub fn lattice(
-        element: Element,
         cells: [usize; 2],
         map: impl Fn([f64; 2]) -> [f64; 2],
         rising: impl Fn([f64; 2]) -> bool,
         material: impl Fn([f64; 2]) -> Material,
     ) -> Problem {
-        let steps = if element == Element::T6 { 2 } else { 1 };
-        let points = cells.map(|n| steps * n + 1);
+        let points = cells.map(|n| 2 * n + 1);
         let at =
             |i: usize, j: usize| [(i, 0), (j, 1)].map(|(k, d)| k as f64 / (points[d] - 1) as f64);
         // Numbered along the shorter side, which keeps the profile small.
@@ -124,34 +107,27 @@ impl Problem {
             for j in 0..cells[1] {
                 let centre = [(i, 0), (j, 1)]
                     .map(|(k, d): (usize, usize)| (k as f64 + 0.5) / cells[d] as f64);
-                let node = |[a, b]: [usize; 2]| number(steps * i + a, steps * j + b);
-                let parts: Vec<Vec<[usize; 2]>> = match (element, rising(centre)) {
-                    (Element::Q4Full, _) => vec![vec![[0, 0], [1, 0], [1, 1], [0, 1]]],
-                    (_, true) => vec![
-                        triangle([0, 0], [2, 0], [2, 2]),
-                        triangle([0, 0], [2, 2], [0, 2]),
-                    ],
-                    (_, false) => vec![
-                        triangle([0, 0], [2, 0], [0, 2]),
-                        triangle([2, 0], [2, 2], [0, 2]),
-                    ],
+                let node = |[a, b]: [usize; 2]| number(2 * i + a, 2 * j + b);
+                let corners = if rising(centre) {
+                    [[[0, 0], [2, 0], [2, 2]], [[0, 0], [2, 2], [0, 2]]]
+                } else {
+                    [[[0, 0], [2, 0], [0, 2]], [[2, 0], [2, 2], [0, 2]]]
                 };
-                for part in parts {
-                    elements.push(part.into_iter().map(node).collect());
+                for corners in corners {
+                    elements.push(triangle(corners).map(node));
                     materials.push(material(centre));
                 }
             }
         }
         Problem {
-            element,
             nodes,
             elements,
             materials,
         }
     }
 
-    fn positions(&self, nodes: &[usize]) -> Vec<[f64; 2]> {
-        nodes.iter().map(|&node| self.nodes[node]).collect()
+    pub fn positions(&self, nodes: &[usize; NODES]) -> [[f64; 2]; NODES] {
+        nodes.map(|node| self.nodes[node])
     }
 
     /// Displacements under `loads`, two numbers a node, where `held(node, direction)` gives the displacements that are
@@ -194,7 +170,7 @@ impl Problem {
     /// # Errors
     /// An element turned inside out.
     pub fn visit(&self, mut visit: impl FnMut(usize, usize, f64)) -> Result<(), String> {
-        let rule = StiffnessRule::new(self.element);
+        let rule = StiffnessRule::default();
         for (nodes, material) in self.elements.iter().zip(&self.materials) {
             let stiffness = rule
                 .integrate(&self.positions(nodes), material)
@@ -219,15 +195,8 @@ impl Problem {
 
     /// Calls `visit(element, position, weight × Jacobian, shape functions, their gradients)` at the points of the fine rule.
     fn integrate(&self, mut visit: impl FnMut(usize, [f64; 2], f64, &[f64], &PerNode)) {
-        let rule: Vec<_> = fine_rule(self.element)
-            .into_iter()
-            .map(|(at, weight)| {
-                (
-                    weight,
-                    shape(self.element, at),
-                    parent_gradients(self.element, at),
-                )
-            })
+        let rule: Vec<_> = fine_rule()
+            .map(|(at, weight)| (weight, shape(at), parent_gradients(at)))
             .collect();
         for (element, nodes) in self.elements.iter().enumerate() {
             let positions = self.positions(nodes);
@@ -264,32 +233,21 @@ impl Problem {
         on: impl Fn([f64; 2]) -> bool,
         traction: impl Fn([f64; 2], [f64; 2]) -> [f64; 2],
     ) {
-        let edges: &[&[usize]] = match self.element {
-            Element::T6 => &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
-            Element::Q4Full => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+        let edges = |nodes: &[usize; NODES]| {
+            [[0, 1, 3], [1, 2, 4], [2, 0, 5]].map(|edge| edge.map(|k: usize| nodes[k]))
         };
-        for (nodes, edge) in self
-            .elements
-            .iter()
-            .flat_map(|nodes| edges.iter().map(move |edge| (nodes, edge)))
-        {
-            let edge: Vec<usize> = edge.iter().map(|&k| nodes[k]).collect();
+        for edge in self.elements.iter().flat_map(edges) {
             if !edge.iter().all(|&node| on(self.nodes[node])) {
                 continue;
             }
             for (s, weight) in GAUSS {
-                let (shape, slope) = match edge.len() {
-                    2 => (vec![1.0 - s, s], vec![-1.0, 1.0]),
-                    _ => (
-                        vec![
-                            (1.0 - s) * (1.0 - 2.0 * s),
-                            s * (2.0 * s - 1.0),
-                            4.0 * s * (1.0 - s),
-                        ],
-                        vec![4.0 * s - 3.0, 4.0 * s - 1.0, 4.0 - 8.0 * s],
-                    ),
-                };
-                let sum = |of: &[f64]| {
+                let shape = [
+                    (1.0 - s) * (1.0 - 2.0 * s),
+                    s * (2.0 * s - 1.0),
+                    4.0 * s * (1.0 - s),
+                ];
+                let slope = [4.0 * s - 3.0, 4.0 * s - 1.0, 4.0 - 8.0 * s];
+                let sum = |of: [f64; 3]| {
                     let part = |i: usize| {
                         of.iter()
                             .zip(&edge)
@@ -297,7 +255,7 @@ impl Problem {
                     };
                     [part(0).sum::<f64>(), part(1).sum::<f64>()]
                 };
-                let (at, [dx, dy]) = (sum(&shape), sum(&slope));
+                let (at, [dx, dy]) = (sum(shape), sum(slope));
                 let t = traction(at, [dy * weight, -dx * weight]);
                 for (n, node) in shape.iter().zip(&edge) {
                     for i in 0..2 {
@@ -368,7 +326,7 @@ pub fn inside_out(jacobian: f64) -> String {
 }
 
 /// The triangle with these corners of a cell and the points half-way between them.
-fn triangle(a: [usize; 2], b: [usize; 2], c: [usize; 2]) -> Vec<[usize; 2]> {
+fn triangle([a, b, c]: [[usize; 2]; 3]) -> [[usize; 2]; NODES] {
     let middle = |p: [usize; 2], q: [usize; 2]| [(p[0] + q[0]) / 2, (p[1] + q[1]) / 2];
-    vec![a, b, c, middle(a, b), middle(b, c), middle(c, a)]
+    [a, b, c, middle(a, b), middle(b, c), middle(c, a)]
 }
