@@ -136,10 +136,7 @@ impl ContactState {
         self.displacements.reverse();
         self.displacements.iter_mut().for_each(|u| u[0] = -u[0]);
         self.pressures.reverse();
-        self.active.reverse();
-        self.active
-            .iter_mut()
-            .for_each(|point| *point = last - *point);
+        self.active = self.active.iter().rev().map(|i| last - i).collect();
         self
     }
 }

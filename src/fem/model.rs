@@ -369,15 +369,10 @@ impl Model {
 
 impl PoseSolution {
     /// The same probe at −x.
-    fn mirrored(self) -> PoseSolution {
-        PoseSolution {
-            pose: Pose {
-                lateral: -self.pose.lateral,
-                ..self.pose
-            },
-            lateral_force: -self.lateral_force,
-            state: self.state.mirrored(),
-            ..self
-        }
+    fn mirrored(mut self) -> PoseSolution {
+        self.pose.lateral = -self.pose.lateral;
+        self.lateral_force = -self.lateral_force;
+        self.state = self.state.mirrored();
+        self
     }
 }
