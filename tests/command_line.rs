@@ -789,3 +789,87 @@ fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
         "docs/figure-5.svg is not what the program draws: copy it from palpate-out/figures/figure-5-2.6.svg"
     );
 }
+
+/// A quick solve, but for the name of its VTU output.
+const QUICK_VTU: &str = "solve --phantom none --depths-mm 1 --laterals-mm 0 --mesh-mm 3 --vtu";
+
+fn quick_vtu(name: &str) -> Vec<&str> {
+    QUICK_VTU.split(' ').chain([name]).collect()
+}
+
+// Verifies: CLI-005, CLI-086, CLI-087, CLI-088.
+#[cfg(unix)]
+#[test]
+fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    let here = folder("links");
+    let at = |name: &str| here.join(name);
+    fs::create_dir(at("far")).unwrap();
+    fs::write(at("far/real.vtu"), "old").unwrap();
+    fs::set_permissions(at("far/real.vtu"), fs::Permissions::from_mode(0o600)).unwrap();
+    symlink("far/real.vtu", at("link.vtu")).unwrap();
+    // What another program may have left, or laid as a trap.
+    fs::write(at("far/victim"), "untouched").unwrap();
+    symlink("victim", at("far/real.vtu.partial")).unwrap();
+    symlink("far/victim", at("link.vtu.partial")).unwrap();
+    succeed(&here, &quick_vtu("link.vtu"));
+    assert_eq!(
+        fs::read_link(at("link.vtu")).unwrap(),
+        Path::new("far/real.vtu")
+    );
+    assert!(
+        fs::read_to_string(at("far/real.vtu"))
+            .unwrap()
+            .starts_with("<?xml")
+    );
+    let mode = |name: &str| fs::metadata(at(name)).unwrap().permissions().mode() & 0o777;
+    assert_eq!(mode("far/real.vtu"), 0o600);
+    assert_eq!(fs::read_to_string(at("far/victim")).unwrap(), "untouched");
+
+    // A link to what is not there yet, and one that leads nowhere at all.
+    symlink("far/new.vtu", at("ahead.vtu")).unwrap();
+    succeed(&here, &quick_vtu("ahead.vtu"));
+    assert!(fs::read_link(at("ahead.vtu")).is_ok() && at("far/new.vtu").is_file());
+    fs::write(at("plain"), "").unwrap();
+    assert_eq!(
+        mode("far/new.vtu"),
+        mode("plain"),
+        "the mode of any new file"
+    );
+    symlink("loop.vtu", at("loop.vtu")).unwrap();
+    let output = run(&here, &quick_vtu("loop.vtu"));
+    assert!(text(&output.stderr).starts_with("palpate: write loop.vtu: "));
+    assert_eq!(output.status.code(), Some(2));
+
+    let mut left: Vec<_> = fs::read_dir(at("far"))
+        .unwrap()
+        .map(|e| e.unwrap().file_name())
+        .collect();
+    left.sort();
+    assert_eq!(left, ["new.vtu", "real.vtu", "real.vtu.partial", "victim"]);
+}
+
+// Verifies: CLI-089.
+#[cfg(unix)]
+#[test]
+fn a_pipe_as_output_is_written_into_and_stays() {
+    use std::os::unix::fs::FileTypeExt;
+
+    let here = folder("pipes");
+    let pipe = here.join("pipe");
+    assert!(
+        Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .unwrap()
+            .success()
+    );
+    let reader = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || fs::read_to_string(pipe).unwrap()
+    });
+    succeed(&here, &quick_vtu("pipe"));
+    assert!(reader.join().unwrap().starts_with("<?xml"));
+    assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+}

@@ -1,7 +1,8 @@
 //! Standard output and files.
 
+use std::fs::File;
 use std::io::{ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::CliError;
 
@@ -20,15 +21,44 @@ pub fn print(text: &str) -> Result<(), CliError> {
 ///
 /// Implements: CLI-005, CLI-007.
 pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
-    let failed = |error| CliError::File {
+    replace(path, text.as_bytes()).map_err(|error| CliError::File {
         action: "write",
         path: path.display().to_string(),
         error,
+    })
+}
+
+/// Implements: CLI-086, CLI-087, CLI-088, CLI-089.
+fn replace(path: &Path, text: &[u8]) -> std::io::Result<()> {
+    let there = match std::fs::metadata(path) {
+        Ok(there) => Some(there),
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
+        Err(error) => return Err(error),
     };
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    std::fs::write(&partial, text).map_err(failed)?;
-    std::fs::rename(&partial, path).map_err(failed)
+    let target = match &there {
+        Some(there) if there.is_file() => path.canonicalize()?,
+        Some(_) => return File::options().write(true).open(path)?.write_all(text),
+        None => end_of_links(path),
+    };
+    let folder = target.parent().filter(|folder| *folder != "");
+    let mut partial = tempfile::Builder::new();
+    // Less what the user's mask takes away, as for any new file.
+    #[cfg(unix)]
+    partial.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut partial = partial.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+    partial.write_all(text)?;
+    if let Some(there) = there {
+        partial.as_file().set_permissions(there.permissions())?;
+    }
+    partial.persist(target)?;
+    Ok(())
+}
+
+/// Where a chain of symbolic links to a file that is not there yet ends.
+fn end_of_links(path: &Path) -> PathBuf {
+    let next = std::fs::read_link(path).ok();
+    let next = next.map(|next| path.parent().unwrap_or(path).join(next));
+    next.map_or(path.into(), |next| end_of_links(&next))
 }
 
 /// Reads a text file.
