@@ -39,6 +39,7 @@ pub use file::PhantomFileError;
 pub use limits::{CLEARANCE, InvalidPhantom};
 pub use pose::PoseError;
 pub use shape::{Ellipse, Outline, Shape};
+#[cfg(feature = "fem")]
 pub(crate) use shape::{edges, point_to_segment};
 
 /// A linear isotropic elastic material.

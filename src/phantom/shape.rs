@@ -69,6 +69,7 @@ impl Ellipse {
     }
 
     /// Where a point stands if the ellipse becomes the unit circle.
+    #[cfg(feature = "fem")]
     pub(crate) fn on_unit_circle(&self, point: Point) -> Point {
         let arm = minus(point, self.centre);
         [
@@ -153,6 +154,7 @@ impl Outline {
     }
 
     /// Whether a point lies within.
+    #[cfg(feature = "fem")]
     pub(crate) fn encloses(&self, p: Point) -> bool {
         match self {
             Outline::Ellipse(ellipse) => {
