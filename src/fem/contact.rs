@@ -53,8 +53,8 @@ const STEP_TOLERANCE: f64 = 1e-13;
 const REUSE_BELOW: f64 = 0.2;
 /// Iterations after which the active set changes by its worst point alone, so that it does not cycle.
 const SIMULTANEOUS_CHANGES: usize = 25;
-/// The first iteration takes in the points that are at least this part of the deepest one's way inside the probe. A surface
-/// that does not yet know the probe has too many inside, and points that should not be in contact leave it two by two.
+/// The first iteration takes in the points that are at least this part as deep inside the probe as the deepest. Displacements
+/// foretold from earlier poses put too many points inside, and those that should not be in contact leave it two by two.
 const FIRST_TAKEN: f64 = 0.8;
 /// Iterations after which a pose has not converged.
 const MOST_ITERATIONS: usize = 120;
@@ -309,8 +309,7 @@ impl Surface {
         let failed = |iterations| FemError::NoConvergence { pose, iterations };
         let mut state = start.clone();
         let mut reach = self.reach(&state, pose);
-        let (mut kept, mut step) = (None, f64::INFINITY);
-        let mut elastic = self.response(&state, pose, reach.clone());
+        let (mut kept, mut elastic, mut step) = (None, None, f64::INFINITY);
         for iteration in 0..MOST_ITERATIONS {
             let least = match iteration {
                 0 => FIRST_TAKEN,
@@ -320,8 +319,7 @@ impl Surface {
             if self.revise(&mut state, pose, reach.clone(), least) {
                 self.settle(&mut state, pose, reach.clone())
                     .ok_or(failed(iteration))?;
-                elastic = self.response(&state, pose, reach.clone());
-                (kept, step) = (None, f64::INFINITY);
+                (kept, elastic, step) = (None, None, f64::INFINITY);
                 continue;
             }
             if step <= STEP_TOLERANCE {
@@ -337,16 +335,19 @@ impl Surface {
                     None => self.tangent(&state, pose).ok_or(failed(iteration))?,
                 };
                 let before = step;
-                let moved = self.newton(&mut state, pose, &tangent, &elastic);
+                let now = || self.response(&state, pose, reach.clone());
+                let under_forces = elastic.take().unwrap_or_else(now);
+                let moved = self.newton(&mut state, pose, &tangent, &under_forces);
                 step = moved.ok_or(failed(iteration))?;
                 kept = (step <= REUSE_BELOW * before).then_some(tangent);
             }
-            elastic = self.response(&state, pose, reach.clone());
+            let under_forces = self.response(&state, pose, reach.clone());
             // The points that are not in contact go where the forces move them.
-            let before = std::mem::replace(&mut state.displacements, elastic.clone());
+            let before = std::mem::replace(&mut state.displacements, under_forces.clone());
             for &point in &state.active {
                 state.displacements[point] = before[point];
             }
+            elastic = Some(under_forces);
         }
         Err(failed(MOST_ITERATIONS))
     }
