@@ -234,7 +234,7 @@ impl<'a> Playback<'a> {
     /// # Errors
     /// [`DeviceError`].
     ///
-    /// Implements: HID-016.
+    /// Implements: HID-016, HID-025.
     pub fn stop<D: HapticDevice>(&mut self, device: &mut D) -> Result<(), DeviceError> {
         self.state.mode = Mode::Disarmed;
         self.state.force = Force::ZERO;
@@ -246,8 +246,28 @@ impl<'a> Playback<'a> {
             flags: 0,
         };
         // First what a device takes that no longer takes forces: a blocked write would hold it up.
-        let stopped = device.control(super::Control::Stop);
-        let written = device.write(&zero);
+        let stopped = tried(STOP_TRIES, || device.control(super::Control::Stop));
+        // Once the device is stopped, a force report is a courtesy.
+        let tries = if stopped.is_ok() { 1 } else { STOP_TRIES };
+        let written = tried(tries, || device.write(&zero));
         stopped.and(written)
     }
+}
+
+/// How often a stop is sent to a device that does not take it.
+const STOP_TRIES: usize = 5;
+
+/// Sends until the device takes it, is gone or takes nothing in time, or was asked so many times; the last answer.
+fn tried(
+    tries: usize,
+    mut send: impl FnMut() -> Result<(), DeviceError>,
+) -> Result<(), DeviceError> {
+    let mut last = send();
+    for _ in 1..tries {
+        if matches!(last, Ok(()) | Err(DeviceError::Gone | DeviceError::Stalled)) {
+            break;
+        }
+        last = send();
+    }
+    last
 }

@@ -33,6 +33,9 @@ pub struct Session<'a, D: HapticDevice> {
     playback: Playback<'a>,
     enabled: bool,
     armed_once: bool,
+    /// A stop was asked for.
+    ended: bool,
+    /// The device has taken it.
     stopped: bool,
 }
 
@@ -87,6 +90,8 @@ pub enum End {
     Fault(Fault),
     /// The device failed.
     Device(DeviceError),
+    /// The end, and why the device did not take the stop.
+    Unstopped(Box<End>, DeviceError),
 }
 
 impl fmt::Display for End {
@@ -95,6 +100,10 @@ impl fmt::Display for End {
             End::Asked => write!(f, "ended as asked"),
             End::Fault(fault) => write!(f, "stopped by a fault: {fault}"),
             End::Device(error) => write!(f, "stopped: {error}"),
+            End::Unstopped(end, error) => write!(
+                f,
+                "{end}; the device did not take the stop ({error}): its own watchdog must drop the force"
+            ),
         }
     }
 }
@@ -141,6 +150,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
             playback: Playback::new(table, limits, units, period),
             enabled: false,
             armed_once: false,
+            ended: false,
             stopped: false,
         })
     }
@@ -191,8 +201,12 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     ///
     /// # Errors
     /// [`DeviceError`], after the device was told to stop.
+    ///
+    /// Implements: HID-027.
     pub fn cycle(&mut self, request: Request) -> Result<Cycle, DeviceError> {
-        let enabled = if self.enabled { Ok(()) } else { self.enable() };
+        let request = if self.ended { Request::None } else { request };
+        let ready = self.enabled || self.ended;
+        let enabled = if ready { Ok(()) } else { self.enable() };
         let cycle = enabled.and_then(|()| self.playback.cycle(&mut self.device, request));
         if cycle.is_err() {
             // The error that counts is the first.
@@ -220,7 +234,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     /// # Ok::<(), palpate::hid::SessionError>(())
     /// ```
     ///
-    /// Implements: HID-016, HID-019, HID-024, HID-085, HID-087, HID-088, HID-092.
+    /// Implements: HID-016, HID-019, HID-024, HID-026, HID-085, HID-087, HID-088, HID-092.
     pub fn run(&mut self, mut each: impl FnMut(&Cycle, &Counters) -> bool) -> End {
         self.run_watched(|_, cycle, counters| each(cycle, counters))
     }
@@ -257,12 +271,13 @@ impl<'a, D: HapticDevice> Session<'a, D> {
             }
         };
         match (self.stop(), end) {
-            (Err(error), End::Asked) => End::Device(error),
-            (_, end) => end,
+            (Err(DeviceError::Gone), End::Asked) => End::Device(DeviceError::Gone),
+            (Ok(()) | Err(DeviceError::Gone), end) => end,
+            (Err(error), end) => End::Unstopped(Box::new(end), error),
         }
     }
 
-    /// Stops the device; more than once does nothing.
+    /// Stops the device; once it has taken that, does nothing. No cycle arms any more, even if it has not.
     ///
     /// ```
     #[doc = include_str!("simulated/probing.example")]
@@ -279,10 +294,12 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     ///
     /// Implements: HID-090.
     pub fn stop(&mut self) -> Result<(), DeviceError> {
-        if std::mem::replace(&mut self.stopped, true) {
-            return Ok(());
+        self.ended = true;
+        if !self.stopped {
+            self.playback.stop(&mut self.device)?;
+            self.stopped = true;
         }
-        self.playback.stop(&mut self.device)
+        Ok(())
     }
 }
 

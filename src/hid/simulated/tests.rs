@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::hid::{End, Session, SessionError};
-use crate::servo::{Axis, Fault as ServoFault, Force, Limits, Mode, Table};
+use crate::servo::{Axis, Fault as ServoFault, Force, Limits, Mode, Request, Table};
 
 const MS: Duration = Duration::from_millis(1);
 
@@ -364,6 +364,94 @@ fn a_panic_stops_the_device() {
     assert_eq!(seen.get(), (0, true));
 }
 
+/// A device that refuses so many stops and force reports.
+struct Refusing<'a>(SimulatedDevice, &'a std::cell::Cell<u32>);
+
+impl Refusing<'_> {
+    fn refuses(&self) -> Result<(), DeviceError> {
+        let left = self.1.get().checked_sub(1);
+        self.1.set(left.unwrap_or(0));
+        left.map_or(Ok(()), |_| Err(DeviceError::System("refused".into())))
+    }
+}
+
+impl HapticDevice for Refusing<'_> {
+    fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
+        self.0.capabilities()
+    }
+    fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
+        self.0.read(timeout)
+    }
+    fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
+        self.refuses().and_then(|()| self.0.write(report))
+    }
+    fn control(&mut self, control: Control) -> Result<(), DeviceError> {
+        self.refuses().and_then(|()| self.0.control(control))
+    }
+    fn now(&self) -> Duration {
+        self.0.now()
+    }
+}
+
+// Verifies: HID-025, HID-027.
+#[test]
+fn a_stop_is_sent_again_until_the_device_takes_it_and_nothing_arms_after_it() {
+    for refusals in 0..30 {
+        let left = std::cell::Cell::new(0);
+        with_table(|table| {
+            let device = Refusing(device(Mechanics::PAPER, vec![]), &left);
+            let mut session = Session::begin(device, table, limits()).unwrap();
+            let mut request = Request::None;
+            while session.device().0.motor_force()[1] <= 0.0 {
+                session.cycle(request).unwrap();
+                let armed = session.mode() == Mode::Armed;
+                request = if armed || request == Request::Arm {
+                    Request::None
+                } else {
+                    Request::Arm
+                };
+            }
+            left.set(refusals);
+            // Five stops, then five zeros: the last of them fails where ten are refused.
+            let first = session.stop();
+            assert_eq!(first.is_ok(), refusals < 5, "{refusals}");
+            let moved = session.device().0.motor_force() != [0.0, 0.0];
+            assert_eq!(moved, refusals >= 10, "{refusals}");
+            for _ in 0..20 {
+                let cycle = session.cycle(Request::Arm);
+                assert!(cycle.is_err() || session.mode() == Mode::Disarmed);
+            }
+            assert_eq!(session.stop(), Ok(()), "{refusals}");
+            assert_eq!(session.device().0.motor_force(), [0.0, 0.0]);
+        });
+    }
+}
+
+// Verifies: HID-026.
+#[test]
+fn a_stop_that_the_device_does_not_take_is_told_beside_the_end() {
+    let end = |left: u32, refused: u32| {
+        let refusals = std::cell::Cell::new(0);
+        with_table(|table| {
+            let device = Refusing(device(Mechanics::PAPER, vec![]), &refusals);
+            let mut session = Session::begin(device, table, limits()).unwrap();
+            session.run(|_, counters| {
+                let on = counters.cycles < u64::from(left);
+                refusals.set(if on { 0 } else { refused });
+                on
+            })
+        })
+    };
+    assert_eq!(end(50, 4), End::Asked);
+    let unstopped = end(50, 10);
+    let refused = DeviceError::System("refused".into());
+    assert_eq!(unstopped, End::Unstopped(Box::new(End::Asked), refused));
+    let said = unstopped.to_string();
+    assert!(
+        said.contains("ended as asked") && said.contains("refused") && said.contains("watchdog")
+    );
+}
+
 /// A defect from three random words.
 fn defect(words: [u64; 4]) -> Defect {
     let time = MS * (words[1] % 60) as u32;
@@ -427,7 +515,7 @@ fn a_million_cycles_with_faults_stay_within_the_limits() {
             ends[match end {
                 End::Asked => 0,
                 End::Fault(_) => 1,
-                End::Device(_) => 2,
+                End::Device(_) | End::Unstopped(..) => 2,
             }] += 1;
             if end != End::Device(DeviceError::Gone) {
                 assert_eq!(session.device().motor_force(), [0.0, 0.0]);
