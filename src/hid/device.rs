@@ -139,7 +139,24 @@ pub enum DeviceError {
     Profile(InvalidReport),
     /// The system refused.
     #[cfg(feature = "std")]
-    System(String),
+    System {
+        /// Which device, what was asked of it, and what the system said.
+        message: String,
+        /// The device is gone, as in [`DeviceError::Gone`].
+        gone: bool,
+    },
+}
+
+impl DeviceError {
+    /// Whether the device is gone, so that nothing more can be sent to it.
+    pub fn is_gone(&self) -> bool {
+        match self {
+            DeviceError::Gone => true,
+            #[cfg(feature = "std")]
+            DeviceError::System { gone, .. } => *gone,
+            _ => false,
+        }
+    }
 }
 
 impl fmt::Display for DeviceError {
@@ -152,7 +169,7 @@ impl fmt::Display for DeviceError {
                 write!(f, "the device does not speak the vendor profile: {problem}")
             }
             #[cfg(feature = "std")]
-            DeviceError::System(message) => write!(f, "{message}"),
+            DeviceError::System { message, .. } => write!(f, "{message}"),
         }
     }
 }

@@ -264,10 +264,10 @@ fn tried(
 ) -> Result<(), DeviceError> {
     let mut last = send();
     for _ in 1..tries {
-        if matches!(last, Ok(()) | Err(DeviceError::Gone | DeviceError::Stalled)) {
-            break;
+        match &last {
+            Err(error) if !error.is_gone() && *error != DeviceError::Stalled => last = send(),
+            _ => break,
         }
-        last = send();
     }
     last
 }

@@ -90,7 +90,7 @@ pub enum End {
     Fault(Fault),
     /// The device failed.
     Device(DeviceError),
-    /// The end, and why the device did not take the stop.
+    /// The end, and why stopping the device failed.
     Unstopped(Box<End>, DeviceError),
 }
 
@@ -102,7 +102,7 @@ impl fmt::Display for End {
             End::Device(error) => write!(f, "stopped: {error}"),
             End::Unstopped(end, error) => write!(
                 f,
-                "{end}; the device did not take the stop ({error}): its own watchdog must drop the force"
+                "{end}; stopping the device failed ({error}): its own watchdog must drop the force"
             ),
         }
     }
@@ -271,9 +271,9 @@ impl<'a, D: HapticDevice> Session<'a, D> {
             }
         };
         match (self.stop(), end) {
-            (Err(DeviceError::Gone), End::Asked) => End::Device(DeviceError::Gone),
-            (Ok(()) | Err(DeviceError::Gone), end) => end,
-            (Err(error), end) => End::Unstopped(Box::new(end), error),
+            (Err(error), End::Asked) if error.is_gone() => End::Device(error),
+            (Err(error), end) if !error.is_gone() => End::Unstopped(Box::new(end), error),
+            (_, end) => end,
         }
     }
 

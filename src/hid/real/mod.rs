@@ -173,8 +173,18 @@ impl RealDevice {
 
     /// What failed, with the device's name.
     fn failed(&self, action: &str, problem: &dyn Display) -> DeviceError {
-        DeviceError::System(format!("{}: {action}: {problem}", self.identity))
+        let problem = problem.to_string();
+        DeviceError::System {
+            message: format!("{}: {action}: {problem}", self.identity),
+            gone: says_gone(&problem),
+        }
     }
+}
+
+/// Whether the library says that the device was pulled out. It has no code for that, only the words of its `poll` and of
+/// `ENODEV`.
+fn says_gone(problem: &str) -> bool {
+    problem.contains("device disconnected") || problem.contains("No such device")
 }
 
 /// What the system says, without the library's name for itself.
@@ -190,7 +200,6 @@ fn milliseconds(timeout: Duration) -> i32 {
     i32::try_from(timeout.as_nanos().div_ceil(1_000_000)).unwrap_or(i32::MAX)
 }
 
-/// Whether a signal came in between; the device is as it was.
 /// Refuses a write of which the system took fewer bytes than a force report has.
 ///
 /// Implements: HID-037.
@@ -203,6 +212,7 @@ fn all_sent(sent: usize) -> Result<(), HidError> {
     }
 }
 
+/// Whether a signal came in between; the device is as it was.
 fn is_interrupted(error: &HidError) -> bool {
     matches!(error, HidError::IoError { error } if error.kind() == std::io::ErrorKind::Interrupted)
 }

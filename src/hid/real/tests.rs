@@ -139,3 +139,16 @@ fn a_write_in_part_is_a_failure() {
         assert!(error.contains(&sent.to_string()), "{error}");
     }
 }
+
+// Verifies: HID-025.
+#[test]
+fn an_unplug_is_told_from_a_refusal_by_what_the_library_says() {
+    let code = |code| HidError::from(std::io::Error::from_raw_os_error(code)).to_string();
+    let [no_device, input_output, pipe] = [19, 5, 32];
+    assert!(says_gone(&code(no_device)));
+    assert!(says_gone("unexpected poll error (device disconnected)"));
+    assert!(says_gone("ioctl (GFEATURE): ENODEV: No such device"));
+    // A board that answers with an error is still there.
+    assert!(!says_gone(&code(input_output)) && !says_gone(&code(pipe)));
+    assert!(!says_gone("ioctl (GFEATURE): EPIPE: Broken pipe"));
+}

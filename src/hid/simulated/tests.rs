@@ -364,6 +364,13 @@ fn a_panic_stops_the_device() {
     assert_eq!(seen.get(), (0, true));
 }
 
+fn refused() -> DeviceError {
+    DeviceError::System {
+        message: "refused".into(),
+        gone: false,
+    }
+}
+
 /// A device that refuses so many stops and force reports.
 struct Refusing<'a>(SimulatedDevice, &'a std::cell::Cell<u32>);
 
@@ -371,7 +378,7 @@ impl Refusing<'_> {
     fn refuses(&self) -> Result<(), DeviceError> {
         let left = self.1.get().checked_sub(1);
         self.1.set(left.unwrap_or(0));
-        left.map_or(Ok(()), |_| Err(DeviceError::System("refused".into())))
+        left.map_or(Ok(()), |_| Err(refused()))
     }
 }
 
@@ -444,8 +451,7 @@ fn a_stop_that_the_device_does_not_take_is_told_beside_the_end() {
     };
     assert_eq!(end(50, 4), End::Asked);
     let unstopped = end(50, 10);
-    let refused = DeviceError::System("refused".into());
-    assert_eq!(unstopped, End::Unstopped(Box::new(End::Asked), refused));
+    assert_eq!(unstopped, End::Unstopped(Box::new(End::Asked), refused()));
     let said = unstopped.to_string();
     assert!(
         said.contains("ended as asked") && said.contains("refused") && said.contains("watchdog")
