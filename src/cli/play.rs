@@ -257,8 +257,12 @@ fn live() -> impl FnMut(&Counters, Duration) {
 }
 
 fn counted(counters: &Counters) -> String {
+    let refused = match counters.refused {
+        0 => String::new(),
+        refused => format!(", {refused} stops refused"),
+    };
     format!(
-        "{} cycles, {} played, {} missed, {} skipped, {} passed over, {} garbage",
+        "{} cycles, {} played, {} missed, {} skipped, {} passed over, {} garbage{refused}",
         counters.cycles,
         counters.played,
         counters.missed,
@@ -309,6 +313,7 @@ fn as_json(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
         "skipped": counters.skipped,
         "passed_over": counters.drained,
         "garbage": counters.garbage,
+        "stops_refused": counters.refused,
         "held_up_ms": played.held_up.map(|time| time.as_millis() as u64),
         "rounding_position_m": loaded.rounding().position_m,
         "rounding_force_n": loaded.rounding().force_n,

@@ -67,6 +67,8 @@ pub struct Counters {
     pub drained: u64,
     /// Reports that did not decode.
     pub garbage: u64,
+    /// Stops, and reports of zero that go with them, that the device refused.
+    pub refused: u64,
 }
 
 /// What one cycle did.
@@ -246,28 +248,32 @@ impl<'a> Playback<'a> {
             flags: 0,
         };
         // First what a device takes that no longer takes forces: a blocked write would hold it up.
-        let stopped = tried(STOP_TRIES, || device.control(super::Control::Stop));
+        let stopped = self.tried(STOP_TRIES, || device.control(super::Control::Stop));
         // Once the device is stopped, a force report is a courtesy.
         let tries = if stopped.is_ok() { 1 } else { STOP_TRIES };
-        let written = tried(tries, || device.write(&zero));
+        let written = self.tried(tries, || device.write(&zero));
         stopped.and(written)
+    }
+
+    /// Sends until the device takes it, is gone or takes nothing in time, or was asked so many times; the last answer. Counts
+    /// what was refused.
+    fn tried(
+        &mut self,
+        tries: usize,
+        mut send: impl FnMut() -> Result<(), DeviceError>,
+    ) -> Result<(), DeviceError> {
+        let mut last = Ok(());
+        for _ in 0..tries {
+            last = send();
+            let Err(error) = &last else { break };
+            self.counters.refused += 1;
+            if error.is_gone() || *error == DeviceError::Stalled {
+                break;
+            }
+        }
+        last
     }
 }
 
 /// How often a stop is sent to a device that does not take it.
 const STOP_TRIES: usize = 5;
-
-/// Sends until the device takes it, is gone or takes nothing in time, or was asked so many times; the last answer.
-fn tried(
-    tries: usize,
-    mut send: impl FnMut() -> Result<(), DeviceError>,
-) -> Result<(), DeviceError> {
-    let mut last = send();
-    for _ in 1..tries {
-        match &last {
-            Err(error) if !error.is_gone() && *error != DeviceError::Stalled => last = send(),
-            _ => break,
-        }
-    }
-    last
-}

@@ -11,8 +11,8 @@
 use std::fmt::Write;
 
 use super::{
-    Capabilities, Control, Cycle, DeviceError, ForceReport, HapticDevice, PositionReport, Received,
-    Session, SessionError,
+    Capabilities, Control, Cycle, DeviceError, End, ForceReport, HapticDevice, PositionReport,
+    Received, Session, SessionError,
 };
 use crate::servo::{Limits, Table};
 use std::time::Duration;
@@ -111,18 +111,40 @@ pub enum RecordingError {
     /// The device of the recording is refused.
     #[error("{0}")]
     Session(#[from] SessionError),
-    /// The same positions gave another force.
+    /// The same positions gave another force report.
     #[error(
-        "cycle {cycle}: the recording has the force {recorded:?}, and this table and program give {found:?}"
+        "cycle {cycle}: the recording has the force {}, and this table and program give {}",
+        shown(*recorded), shown(*found)
     )]
     Differs {
         /// Which cycle, from 0.
         cycle: usize,
-        /// As recorded: lateral and normal force, counts, and whether it followed the table.
-        recorded: (i16, i16, bool),
+        /// As recorded: the report, and whether it followed the table.
+        recorded: (ForceReport, bool),
         /// As played again.
-        found: (i16, i16, bool),
+        found: (ForceReport, bool),
     },
+    /// The recording goes on after what ends a session.
+    #[error("{recorded} cycles, but these positions end the session after {cycles}: {end}")]
+    Ends {
+        /// Cycles of the recording.
+        recorded: usize,
+        /// Cycles of the session.
+        cycles: usize,
+        /// Why it ends.
+        end: End,
+    },
+}
+
+fn shown((force, playing): (ForceReport, bool)) -> String {
+    format!(
+        "({}, {}) with number {}, flags {}, {}",
+        force.lateral,
+        force.normal,
+        force.sequence,
+        force.flags,
+        if playing { "playing" } else { "not playing" }
+    )
 }
 
 impl Recording {
@@ -261,11 +283,10 @@ impl Recording {
         if self.cycles.is_empty() {
             return Ok(0);
         }
-        session.run(|cycle, _| {
+        let end = session.run(|cycle, _| {
             let recorded = &self.cycles[at];
-            let gist = |force: &ForceReport, playing| (force.lateral, force.normal, playing);
-            let found = gist(&cycle.force, cycle.playing);
-            let recorded = gist(&recorded.force, recorded.playing);
+            let found = (cycle.force, cycle.playing);
+            let recorded = (recorded.force, recorded.playing);
             if found != recorded {
                 difference = Some(RecordingError::Differs {
                     cycle: at,
@@ -278,6 +299,11 @@ impl Recording {
         });
         match difference {
             Some(difference) => Err(difference),
+            None if at < self.cycles.len() => Err(RecordingError::Ends {
+                recorded: self.cycles.len(),
+                cycles: at,
+                end,
+            }),
             None => Ok(at),
         }
     }

@@ -10,6 +10,9 @@ use super::{
 };
 use crate::servo::{Fault, Force, Limits, Mode, Request, Table};
 
+/// The longest that a device may go on playing a force without a report.
+const LONGEST_WATCHDOG_MS: u16 = 100;
+
 /// A device that plays a table, until it is dropped: also by a panic.
 ///
 /// ```
@@ -32,7 +35,6 @@ pub struct Session<'a, D: HapticDevice> {
     capabilities: Capabilities,
     playback: Playback<'a>,
     enabled: bool,
-    armed_once: bool,
     /// A stop was asked for.
     ended: bool,
     /// The device has taken it.
@@ -60,9 +62,25 @@ pub enum SessionError {
     /// The device says that it reports without end.
     #[error("the device reports every 0 µs, expected at least 1")]
     Period,
-    /// The device has no watchdog of its own.
-    #[error("the device has no watchdog (0 ms): a blocked write would leave the force on the hand")]
-    NoWatchdog,
+    /// The device has no watchdog of its own, one that does not wait for the next force, or one that waits too long.
+    #[error(
+        "the device drops its force after {watchdog_ms} ms without a report, expected more than its period of {period_us} µs \
+         and at most {LONGEST_WATCHDOG_MS} ms: a blocked write would leave the force on the hand"
+    )]
+    Watchdog {
+        /// The device's watchdog, ms; 0 for none.
+        watchdog_ms: u16,
+        /// Its period, µs.
+        period_us: u16,
+    },
+    /// A count of the device's force is more than the force may change in a cycle.
+    #[error("the device's force unit is {unit} N, expected at most the slew limit of {slew} N")]
+    Coarse {
+        /// The device's force unit, N.
+        unit: f32,
+        /// The slew limit, N a cycle.
+        slew: f32,
+    },
     /// The force limit exceeds what the device makes.
     #[error("a force limit of {limit} N, expected at most {largest} N, the device's largest force")]
     Force {
@@ -118,7 +136,8 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     /// let alone = Capabilities { watchdog_ms: 0, ..PAPER };
     /// let trajectory = Trajectory::new(vec![]);
     /// let device = SimulatedDevice::new(alone, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
-    /// assert_eq!(Session::begin(device, table, limits).err(), Some(SessionError::NoWatchdog));
+    /// let refused = SessionError::Watchdog { watchdog_ms: 0, period_us: 1000 };
+    /// assert_eq!(Session::begin(device, table, limits).err(), Some(refused));
     /// ```
     ///
     /// # Errors
@@ -135,8 +154,17 @@ impl<'a, D: HapticDevice> Session<'a, D> {
         if capabilities.period_us == 0 {
             return Err(SessionError::Period);
         }
-        if capabilities.watchdog_ms == 0 {
-            return Err(SessionError::NoWatchdog);
+        let (watchdog_ms, period_us) = (capabilities.watchdog_ms, capabilities.period_us);
+        let waits_us = u32::from(watchdog_ms) * 1000;
+        if waits_us <= u32::from(period_us) || watchdog_ms > LONGEST_WATCHDOG_MS {
+            return Err(SessionError::Watchdog {
+                watchdog_ms,
+                period_us,
+            });
+        }
+        let (unit, slew) = (f32::from(capabilities.force_unit_un) / 1e6, limits.slew());
+        if unit > slew {
+            return Err(SessionError::Coarse { unit, slew });
         }
         let largest = f32::from(capabilities.largest_force_mn) / 1e3;
         let limit = limits.force();
@@ -149,7 +177,6 @@ impl<'a, D: HapticDevice> Session<'a, D> {
             capabilities,
             playback: Playback::new(table, limits, units, period),
             enabled: false,
-            armed_once: false,
             ended: false,
             stopped: false,
         })
@@ -253,14 +280,13 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     pub fn run_watched(&mut self, mut each: impl FnMut(&D, &Cycle, &Counters) -> bool) -> End {
         let mut ask = false;
         let end = loop {
-            ask = !ask && !self.armed_once;
+            ask = !ask && self.mode() == Mode::Disarmed;
             let request = if ask { Request::Arm } else { Request::None };
             let cycle = match self.cycle(request) {
                 Ok(cycle) => cycle,
                 Err(error) => break End::Device(error),
             };
             let state = self.playback.state();
-            self.armed_once |= state.mode == Mode::Armed;
             if !each(&self.device, &cycle, &self.counters()) {
                 break End::Asked;
             }

@@ -34,6 +34,7 @@ pub struct Board {
     skipped: AtomicU64,
     drained: AtomicU64,
     garbage: AtomicU64,
+    refused: AtomicU64,
     done: AtomicBool,
 }
 
@@ -50,6 +51,7 @@ impl Board {
         set(&self.skipped, counters.skipped);
         set(&self.drained, counters.drained);
         set(&self.garbage, counters.garbage);
+        set(&self.refused, counters.refused);
         set(&self.cycles, counters.cycles);
     }
 
@@ -63,6 +65,7 @@ impl Board {
             skipped: get(&self.skipped),
             drained: get(&self.drained),
             garbage: get(&self.garbage),
+            refused: get(&self.refused),
         }
     }
 }

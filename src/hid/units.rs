@@ -32,7 +32,7 @@ pub struct Units {
     counts_per_newton: f32,
 }
 
-/// A capability without which no number has a meaning.
+/// Why the numbers of a device's reports cannot be turned into metres and newtons.
 ///
 /// ```
 /// use palpate::hid::{Capabilities, InvalidCapabilities, Units};
@@ -54,6 +54,13 @@ pub enum InvalidCapabilities {
     PositionUnit,
     /// A count of a force is 0 µN.
     ForceUnit,
+    /// 32767 counts, the most that a report holds, are less than the device's largest force.
+    ForceRange {
+        /// The device's force unit, µN.
+        unit_un: u16,
+        /// Its largest force, mN.
+        largest_mn: u16,
+    },
 }
 
 impl fmt::Display for InvalidCapabilities {
@@ -71,6 +78,15 @@ impl fmt::Display for InvalidCapabilities {
             InvalidCapabilities::ForceUnit => {
                 write!(f, "the device's force unit is 0 µN, expected at least 1")
             }
+            InvalidCapabilities::ForceRange {
+                unit_un,
+                largest_mn,
+            } => write!(
+                f,
+                "the device's force unit is {unit_un} µN, so that no report holds its largest force of {largest_mn} mN, \
+                 expected a unit of at least {} µN",
+                (u32::from(*largest_mn) * 1000).div_ceil(32767)
+            ),
         }
     }
 }
@@ -106,6 +122,13 @@ impl Units {
         }
         if capabilities.force_unit_un == 0 {
             return Err(InvalidCapabilities::ForceUnit);
+        }
+        let (unit_un, largest_mn) = (capabilities.force_unit_un, capabilities.largest_force_mn);
+        if u32::from(unit_un) * 32767 < u32::from(largest_mn) * 1000 {
+            return Err(InvalidCapabilities::ForceRange {
+                unit_un,
+                largest_mn,
+            });
         }
         Ok(Units {
             metres_per_count: f32::from(capabilities.position_unit_nm) * 1e-9,

@@ -181,10 +181,12 @@ impl RealDevice {
     }
 }
 
-/// Whether the library says that the device was pulled out. It has no code for that, only the words of its `poll` and of
-/// `ENODEV`.
+/// Whether the library says that the device was pulled out. It has no code for that, only words: of its `poll`, of `ENODEV`
+/// and of `ESHUTDOWN`.
 fn says_gone(problem: &str) -> bool {
-    problem.contains("device disconnected") || problem.contains("No such device")
+    ["device disconnected", "No such device", "endpoint shutdown"]
+        .iter()
+        .any(|said| problem.contains(said))
 }
 
 /// What the system says, without the library's name for itself.

@@ -54,6 +54,42 @@ fn a_recording_is_read_back_as_it_was() {
     assert_eq!(Recording::parse(&gap.to_text()), Ok(gap));
 }
 
+// Verifies: HID-050.
+#[test]
+fn a_recorded_cycle_has_the_times_of_its_receipt_and_its_write() {
+    let zero = ForceReport {
+        lateral: 0,
+        normal: 0,
+        sequence: 1,
+        flags: 1,
+    };
+    let recorded = RecordedCycle::from(&Cycle {
+        position: None,
+        force: zero,
+        playing: false,
+        woke: Duration::from_micros(1),
+        received: Duration::from_micros(2),
+        computed: Duration::from_micros(3),
+        written: Duration::from_micros(4),
+    });
+    assert_eq!((recorded.received_us, recorded.written_us), (2, 4));
+}
+
+// Verifies: HID-052.
+#[test]
+fn a_recorded_report_is_read_once_in_its_cycle() {
+    let recording = recorded();
+    let mut device = Recorded {
+        recording: &recording,
+        cycle: 5,
+        given: false,
+    };
+    let report = recording.cycles[5].position.unwrap();
+    let mut read = || device.read(Duration::ZERO).unwrap();
+    assert_eq!(read(), Received::Report(report));
+    assert_eq!(read(), Received::Nothing);
+}
+
 // Verifies: HID-052.
 #[test]
 fn a_recording_plays_again_to_the_bit_and_tells_where_it_differs() {
@@ -68,10 +104,63 @@ fn a_recording_plays_again_to_the_bit_and_tells_where_it_differs() {
     spoiled.cycles[650].force.lateral += 1;
     let differs = with_table(3.2, |table| spoiled.replay(table)).unwrap_err();
     assert!(differs.to_string().starts_with("cycle 650: "), "{differs}");
-    let mut muted = recording;
-    muted.cycles[699].playing = false;
-    let differs = with_table(3.2, |table| muted.replay(table)).unwrap_err();
-    assert!(differs.to_string().starts_with("cycle 699: "), "{differs}");
+    let spoils: [fn(&mut RecordedCycle); 3] = [
+        |cycle| cycle.playing = false,
+        |cycle| cycle.force.sequence += 1,
+        |cycle| cycle.force.flags = 0,
+    ];
+    for spoil in spoils {
+        let mut spoiled = recording.clone();
+        spoil(&mut spoiled.cycles[699]);
+        let differs = with_table(3.2, |table| spoiled.replay(table)).unwrap_err();
+        assert!(differs.to_string().starts_with("cycle 699: "), "{differs}");
+    }
+}
+
+// Verifies: HID-052.
+#[test]
+fn cycles_that_a_session_would_not_have_played_are_not_the_same() {
+    let mut forged = recorded();
+    for cycle in &mut forged.cycles[600..] {
+        cycle.position.as_mut().unwrap().status = crate::hid::status::FAULT;
+        cycle.force.normal = 30_000;
+    }
+    let replayed = with_table(3.2, |table| forged.replay(table));
+    assert!(
+        matches!(replayed, Err(RecordingError::Differs { cycle: 600, .. })),
+        "{replayed:?}"
+    );
+    // The forces of a fault at 600 as this program releases them, and then 15 N for ever.
+    let mut after = forged.clone();
+    let limits = after.limits;
+    let released = with_table(3.2, |table| {
+        let device = Recorded {
+            recording: &forged,
+            cycle: 0,
+            given: false,
+        };
+        let mut released = Vec::new();
+        Session::begin(device, table, limits)
+            .unwrap()
+            .run(|cycle, _| {
+                released.push(RecordedCycle::from(cycle));
+                true
+            });
+        released
+    });
+    let ends = released.len();
+    assert!(ends > 600 && ends < 620);
+    after.cycles[..ends].copy_from_slice(&released);
+    let replayed = with_table(3.2, |table| after.replay(table)).unwrap_err();
+    assert_eq!(
+        replayed.to_string(),
+        format!(
+            "700 cycles, but these positions end the session after {ends}: stopped by a fault: {}",
+            crate::servo::Fault::Device
+        )
+    );
+    after.cycles.truncate(ends);
+    assert_eq!(with_table(3.2, |table| after.replay(table)), Ok(ends));
 }
 
 // Verifies: HID-051.

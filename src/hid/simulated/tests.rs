@@ -1,7 +1,9 @@
 //! The simulated device, and the loop on it.
 
+use std::cell::Cell;
+
 use super::*;
-use crate::hid::{End, Session, SessionError};
+use crate::hid::{End, InvalidCapabilities, Session, SessionError};
 use crate::servo::{Axis, Fault as ServoFault, Force, Limits, Mode, Request, Table};
 
 const MS: Duration = Duration::from_millis(1);
@@ -316,43 +318,96 @@ fn a_session_begins_only_with_a_device_that_can_be_trusted() {
         SessionError::Capabilities(_)
     ));
     assert_eq!(refused(|c| c.period_us = 0), SessionError::Period);
-    assert_eq!(refused(|c| c.watchdog_ms = 0), SessionError::NoWatchdog);
+    let none = SessionError::Watchdog {
+        watchdog_ms: 0,
+        period_us: 1000,
+    };
+    assert_eq!(refused(|c| c.watchdog_ms = 0), none);
     let weak = SessionError::Force {
         limit: 2.0,
         largest: 1.9,
     };
     assert_eq!(refused(|c| c.largest_force_mn = 1900), weak);
+    // 2 N and not a step of an f32 more.
+    with_table(|table| {
+        let mut device = device(Mechanics::IDEAL, vec![]);
+        device.capabilities.largest_force_mn = 2000;
+        let begins = |force| {
+            let limits = Limits::new(force, 0.05, 0.2, 10).unwrap();
+            Session::begin(device.clone(), table, limits).is_ok()
+        };
+        assert!(begins(2.0) && !begins(2f32.next_up()));
+    });
+    // A device whose numbers do not reach its force, or cannot tell one step of it from two.
+    let short = InvalidCapabilities::ForceRange {
+        unit_un: 10,
+        largest_mn: 8000,
+    };
+    assert_eq!(
+        refused(|c| c.force_unit_un = 10),
+        SessionError::Capabilities(short)
+    );
+    let coarse = SessionError::Coarse {
+        unit: 0.051,
+        slew: 0.05,
+    };
+    assert_eq!(refused(|c| c.force_unit_un = 51_000), coarse);
+    // 10 ms of watchdog on a device that reports every 10 ms.
+    let impatient = |c: &mut Capabilities| (c.watchdog_ms, c.period_us) = (10, 10_000);
+    let told = SessionError::Watchdog {
+        watchdog_ms: 10,
+        period_us: 10_000,
+    };
+    assert_eq!(refused(impatient), told);
+    let idle = SessionError::Watchdog {
+        watchdog_ms: 101,
+        period_us: 1000,
+    };
+    assert_eq!(refused(|c| c.watchdog_ms = 101), idle);
+}
+
+/// What the loop sends to a device.
+enum Sent {
+    Force(ForceReport),
+    Control(Control),
+}
+
+/// A device with a say in what is sent to it. It has the operations of HID-012 and no other: a further one that the loop
+/// needs would not compile here.
+struct Watched<F>(SimulatedDevice, F);
+
+impl<F: FnMut(Sent) -> Result<(), DeviceError>> HapticDevice for Watched<F> {
+    fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
+        self.0.capabilities()
+    }
+    fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
+        self.0.read(timeout)
+    }
+    fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
+        (self.1)(Sent::Force(*report)).and_then(|()| self.0.write(report))
+    }
+    fn control(&mut self, control: Control) -> Result<(), DeviceError> {
+        (self.1)(Sent::Control(control)).and_then(|()| self.0.control(control))
+    }
+    fn now(&self) -> Duration {
+        self.0.now()
+    }
 }
 
 // Verifies: HID-012, HID-016.
 #[test]
 fn a_panic_stops_the_device() {
-    /// A device that is watched from outside. It has the operations of HID-012 and no other: a further one that the
-    /// loop needs would not compile here.
-    struct Watched<'a>(SimulatedDevice, &'a std::cell::Cell<(i16, bool)>);
-    impl HapticDevice for Watched<'_> {
-        fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
-            self.0.capabilities()
-        }
-        fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
-            self.0.read(timeout)
-        }
-        fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
-            self.1.set((report.normal, self.1.get().1));
-            self.0.write(report)
-        }
-        fn control(&mut self, control: Control) -> Result<(), DeviceError> {
-            self.1.set((self.1.get().0, control == Control::Stop));
-            self.0.control(control)
-        }
-        fn now(&self) -> Duration {
-            self.0.now()
-        }
-    }
-    let seen = std::cell::Cell::new((0, false));
+    let (force, stopped) = (Cell::new(0), Cell::new(false));
     let run = std::panic::AssertUnwindSafe(|| {
         with_table(|table| {
-            let device = Watched(device(Mechanics::PAPER, vec![]), &seen);
+            let watch = |sent| {
+                match sent {
+                    Sent::Force(report) => force.set(report.normal),
+                    Sent::Control(control) => stopped.set(control == Control::Stop),
+                }
+                Ok(())
+            };
+            let device = Watched(device(Mechanics::PAPER, vec![]), watch);
             let mut session = Session::begin(device, table, limits()).unwrap();
             session.run(|cycle, _| {
                 assert!(cycle.force.normal < 1000, "planted");
@@ -361,7 +416,7 @@ fn a_panic_stops_the_device() {
         })
     });
     assert!(std::panic::catch_unwind(run).is_err());
-    assert_eq!(seen.get(), (0, true));
+    assert_eq!((force.get(), stopped.get()), (0, true));
 }
 
 fn refused() -> DeviceError {
@@ -371,32 +426,12 @@ fn refused() -> DeviceError {
     }
 }
 
-/// A device that refuses so many stops and force reports.
-struct Refusing<'a>(SimulatedDevice, &'a std::cell::Cell<u32>);
-
-impl Refusing<'_> {
-    fn refuses(&self) -> Result<(), DeviceError> {
-        let left = self.1.get().checked_sub(1);
-        self.1.set(left.unwrap_or(0));
-        left.map_or(Ok(()), |_| Err(refused()))
-    }
-}
-
-impl HapticDevice for Refusing<'_> {
-    fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
-        self.0.capabilities()
-    }
-    fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
-        self.0.read(timeout)
-    }
-    fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
-        self.refuses().and_then(|()| self.0.write(report))
-    }
-    fn control(&mut self, control: Control) -> Result<(), DeviceError> {
-        self.refuses().and_then(|()| self.0.control(control))
-    }
-    fn now(&self) -> Duration {
-        self.0.now()
+/// Refuses as many times as `left` says.
+fn refuse(left: &Cell<u32>) -> impl FnMut(Sent) -> Result<(), DeviceError> {
+    move |_| {
+        let after = left.get().checked_sub(1);
+        left.set(after.unwrap_or(0));
+        after.map_or(Ok(()), |_| Err(refused()))
     }
 }
 
@@ -404,24 +439,22 @@ impl HapticDevice for Refusing<'_> {
 #[test]
 fn a_stop_is_sent_again_until_the_device_takes_it_and_nothing_arms_after_it() {
     for refusals in 0..30 {
-        let left = std::cell::Cell::new(0);
+        let left = Cell::new(0);
         with_table(|table| {
-            let device = Refusing(device(Mechanics::PAPER, vec![]), &left);
+            let device = Watched(device(Mechanics::PAPER, vec![]), refuse(&left));
             let mut session = Session::begin(device, table, limits()).unwrap();
-            let mut request = Request::None;
+            let mut arm = true;
             while session.device().0.motor_force()[1] <= 0.0 {
+                arm = !arm && session.mode() == Mode::Disarmed;
+                let request = if arm { Request::Arm } else { Request::None };
                 session.cycle(request).unwrap();
-                let armed = session.mode() == Mode::Armed;
-                request = if armed || request == Request::Arm {
-                    Request::None
-                } else {
-                    Request::Arm
-                };
             }
             left.set(refusals);
             // Five stops, then five zeros: the last of them fails where ten are refused.
             let first = session.stop();
             assert_eq!(first.is_ok(), refusals < 5, "{refusals}");
+            let refused = u64::from(refusals.min(10));
+            assert_eq!(session.counters().refused, refused);
             let moved = session.device().0.motor_force() != [0.0, 0.0];
             assert_eq!(moved, refusals >= 10, "{refusals}");
             for _ in 0..20 {
@@ -434,28 +467,39 @@ fn a_stop_is_sent_again_until_the_device_takes_it_and_nothing_arms_after_it() {
     }
 }
 
+/// Fifty cycles and the stop, at which `watch` refuses what it likes: the end, and what was refused.
+fn stopped(refuses: impl Fn(&Sent) -> bool) -> (End, u64) {
+    let ending = Cell::new(false);
+    let watch = |sent| match ending.get() && refuses(&sent) {
+        true => Err(refused()),
+        false => Ok(()),
+    };
+    with_table(|table| {
+        let device = Watched(device(Mechanics::PAPER, vec![]), watch);
+        let mut session = Session::begin(device, table, limits()).unwrap();
+        let end = session.run(|_, counters| {
+            ending.set(counters.cycles == 50);
+            counters.cycles < 50
+        });
+        (end, session.counters().refused)
+    })
+}
+
 // Verifies: HID-026.
 #[test]
 fn a_stop_that_the_device_does_not_take_is_told_beside_the_end() {
-    let end = |left: u32, refused: u32| {
-        let refusals = std::cell::Cell::new(0);
-        with_table(|table| {
-            let device = Refusing(device(Mechanics::PAPER, vec![]), &refusals);
-            let mut session = Session::begin(device, table, limits()).unwrap();
-            session.run(|_, counters| {
-                let on = counters.cycles < u64::from(left);
-                refusals.set(if on { 0 } else { refused });
-                on
-            })
-        })
-    };
-    assert_eq!(end(50, 4), End::Asked);
-    let unstopped = end(50, 10);
-    assert_eq!(unstopped, End::Unstopped(Box::new(End::Asked), refused()));
+    assert_eq!(stopped(|_| false), (End::Asked, 0));
+    let unstopped = End::Unstopped(Box::new(End::Asked), refused());
+    assert_eq!(stopped(|_| true), (unstopped.clone(), 10));
+    let control = |sent: &Sent| matches!(sent, Sent::Control(_));
+    assert_eq!(stopped(control), (unstopped.clone(), 5));
+    // It took the stop, but not the force report of zero.
+    let force = |sent: &Sent| matches!(sent, Sent::Force(_));
+    assert_eq!(stopped(force), (unstopped.clone(), 1));
     let said = unstopped.to_string();
-    assert!(
-        said.contains("ended as asked") && said.contains("refused") && said.contains("watchdog")
-    );
+    for part in ["ended as asked", "refused", "watchdog"] {
+        assert!(said.contains(part), "{said}");
+    }
 }
 
 /// A defect from three random words.
@@ -485,6 +529,7 @@ fn defect(words: [u64; 4]) -> Defect {
 fn a_million_cycles_with_faults_stay_within_the_limits() {
     let generator = crate::stats::random::Generator::new(20_261_121, 5);
     let (mut cycles, mut sessions, mut ends) = (0u64, 0u64, [0u64; 3]);
+    let mut unstopped = 0u64;
     while cycles < 1_000_000 {
         let faults = (0..sessions % 4).map(|number| {
             let words = generator.words([sessions, number, 0, 0]);
@@ -494,12 +539,21 @@ fn a_million_cycles_with_faults_stay_within_the_limits() {
                 defect: defect(words),
             }
         });
-        let device = device(Mechanics::PAPER, faults.collect());
+        // In half of all sessions what is sent is refused from some time on: so often, or for ever.
+        let [when, often, ..] = generator.words([sessions, 0, 0, 1]);
+        let refusals = [0, 0, 1 + (often % 20) as u32, u32::MAX][sessions as usize / 4 % 4];
+        let (refuses_from, left) = (MS * (when % 3900) as u32, Cell::new(0));
+        let device = Watched(device(Mechanics::PAPER, faults.collect()), refuse(&left));
         with_table(|table| {
             let mut session = Session::begin(device, table, limits()).unwrap();
             let mut last = [0i32; 2];
             let mut played = true;
+            let mut last_written = Duration::ZERO;
             let end = session.run(|cycle, _| {
+                if last_written < refuses_from && cycle.written >= refuses_from {
+                    left.set(refusals);
+                }
+                last_written = cycle.written;
                 cycles += 1;
                 let force = [cycle.force.lateral, cycle.force.normal].map(i32::from);
                 for axis in 0..2 {
@@ -523,12 +577,20 @@ fn a_million_cycles_with_faults_stay_within_the_limits() {
                 End::Fault(_) => 1,
                 End::Device(_) | End::Unstopped(..) => 2,
             }] += 1;
-            if end != End::Device(DeviceError::Gone) {
-                assert_eq!(session.device().motor_force(), [0.0, 0.0]);
+            if let End::Unstopped(..) = end {
+                // The device's own watchdog drops the force after 15 ms, if no report comes through before.
+                for _ in 0..17 {
+                    let _ = session.cycle(Request::Arm);
+                }
+                unstopped += 1;
             }
+            let device = &session.device().0;
+            let gone = device.check_plugged().is_err();
+            assert!(gone || device.motor_force() == [0.0, 0.0], "{end}");
         });
         sessions += 1;
     }
     // Each way to end is met often.
     assert!(ends.iter().all(|&count| count > sessions / 20), "{ends:?}");
+    assert!(unstopped > sessions / 20, "{unstopped} of {sessions}");
 }
