@@ -236,7 +236,7 @@ impl<'a> Playback<'a> {
     /// # Errors
     /// [`DeviceError`].
     ///
-    /// Implements: HID-016, HID-025.
+    /// Implements: HID-016, HID-025, HID-029.
     pub fn stop<D: HapticDevice>(&mut self, device: &mut D) -> Result<(), DeviceError> {
         self.state.mode = Mode::Disarmed;
         self.state.force = Force::ZERO;

@@ -270,7 +270,7 @@ impl Recording {
     /// # Errors
     /// [`RecordingError::Differs`], [`RecordingError::Session`].
     ///
-    /// Implements: HID-052.
+    /// Implements: HID-052, HID-056.
     pub fn replay(&self, table: Table) -> Result<usize, RecordingError> {
         let device = Recorded {
             recording: self,

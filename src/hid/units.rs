@@ -110,7 +110,7 @@ impl Units {
     /// # Errors
     /// [`InvalidCapabilities`].
     ///
-    /// Implements: HID-008.
+    /// Implements: HID-008, HID-028.
     pub fn new(capabilities: &Capabilities) -> Result<Units, InvalidCapabilities> {
         if capabilities.version != 1 {
             return Err(InvalidCapabilities::Version {

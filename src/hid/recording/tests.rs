@@ -117,7 +117,7 @@ fn a_recording_plays_again_to_the_bit_and_tells_where_it_differs() {
     }
 }
 
-// Verifies: HID-052.
+// Verifies: HID-056.
 #[test]
 fn cycles_that_a_session_would_not_have_played_are_not_the_same() {
     let mut forged = recorded();

@@ -305,7 +305,7 @@ fn the_device_drops_its_force_by_itself_and_keeps_the_oldest_reports() {
     assert_eq!(sequences, (1..=63).collect::<Vec<u16>>());
 }
 
-// Verifies: HID-017.
+// Verifies: HID-017, HID-028.
 #[test]
 fn a_session_begins_only_with_a_device_that_can_be_trusted() {
     let refused = |change: fn(&mut Capabilities)| {
@@ -464,14 +464,27 @@ fn a_stop_is_sent_again_until_the_device_takes_it_and_nothing_arms_after_it() {
             assert_eq!(session.stop(), Ok(()), "{refusals}");
             assert_eq!(session.device().0.motor_force(), [0.0, 0.0]);
         });
+        // While the deadman is not held, the kernel would arm.
+        with_table(|table| {
+            let device = Watched(device(Mechanics::PAPER, vec![]), refuse(&left));
+            let mut session = Session::begin(device, table, limits()).unwrap();
+            session.cycle(Request::None).unwrap();
+            left.set(refusals);
+            let _ = session.stop();
+            left.set(0);
+            for request in [Request::Arm, Request::None, Request::Arm] {
+                session.cycle(request).unwrap();
+                assert_eq!(session.mode(), Mode::Disarmed, "{refusals}");
+            }
+        });
     }
 }
 
-/// Fifty cycles and the stop, at which `watch` refuses what it likes: the end, and what was refused.
-fn stopped(refuses: impl Fn(&Sent) -> bool) -> (End, u64) {
+/// Fifty cycles and the stop, which is answered as `answer` says: the end, and what was refused.
+fn stopped(answer: impl Fn(Sent) -> Result<(), DeviceError>) -> (End, u64) {
     let ending = Cell::new(false);
-    let watch = |sent| match ending.get() && refuses(&sent) {
-        true => Err(refused()),
+    let watch = |sent| match ending.get() {
+        true => answer(sent),
         false => Ok(()),
     };
     with_table(|table| {
@@ -485,17 +498,26 @@ fn stopped(refuses: impl Fn(&Sent) -> bool) -> (End, u64) {
     })
 }
 
-// Verifies: HID-026.
+// Verifies: HID-025, HID-026, HID-029.
 #[test]
 fn a_stop_that_the_device_does_not_take_is_told_beside_the_end() {
-    assert_eq!(stopped(|_| false), (End::Asked, 0));
+    assert_eq!(stopped(|_| Ok(())), (End::Asked, 0));
     let unstopped = End::Unstopped(Box::new(End::Asked), refused());
-    assert_eq!(stopped(|_| true), (unstopped.clone(), 10));
-    let control = |sent: &Sent| matches!(sent, Sent::Control(_));
-    assert_eq!(stopped(control), (unstopped.clone(), 5));
-    // It took the stop, but not the force report of zero.
-    let force = |sent: &Sent| matches!(sent, Sent::Force(_));
-    assert_eq!(stopped(force), (unstopped.clone(), 1));
+    assert_eq!(stopped(|_| Err(refused())), (unstopped.clone(), 10));
+    let no_control = |sent| match sent {
+        Sent::Control(_) => Err(refused()),
+        Sent::Force(_) => Ok(()),
+    };
+    assert_eq!(stopped(no_control), (unstopped.clone(), 5));
+    let no_zero = |sent| match sent {
+        Sent::Control(_) => Ok(()),
+        Sent::Force(_) => Err(refused()),
+    };
+    assert_eq!(stopped(no_zero), (unstopped.clone(), 1));
+    // One that is gone, or blocks each write for seconds, is asked once for each.
+    let gone = End::Device(DeviceError::Gone);
+    assert_eq!(stopped(|_| Err(DeviceError::Gone)), (gone, 2));
+    assert_eq!(stopped(|_| Err(DeviceError::Stalled)).1, 2);
     let said = unstopped.to_string();
     for part in ["ended as asked", "refused", "watchdog"] {
         assert!(said.contains(part), "{said}");
