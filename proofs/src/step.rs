@@ -141,16 +141,24 @@ fn slew_is_limited() {
         let (next, command) = step(&case.grid.table(), &limits, state, input);
         let let_go = input.sample.is_some_and(|sample| !sample.deadman);
         let released = next.mode != Mode::Armed || let_go;
-        let change = if released {
+        let fall = if released || command.playing {
             limits.release()
         } else {
             limits.slew()
         };
+        let above = input.sample.is_some_and(|sample| sample.depth < 0.0);
         for (value, last) in components(command.force)
             .into_iter()
             .zip(components(state.force))
         {
+            let grows = value.abs() > last.abs();
+            let change = if grows { limits.slew() } else { fall };
             assert!(last - change <= value && value <= last + change);
+            // Never through zero.
+            assert!(value == 0.0 || last == 0.0 || (value < 0.0) == (last < 0.0));
+            // A hand that has left the gel is not pushed any longer than the release takes.
+            let rest = last.abs() - limits.release();
+            assert!(!(command.playing && above) || value == 0.0 || value.abs() <= rest);
         }
         let rising = command.force.normal > state.force.normal;
         reached!(
@@ -163,8 +171,12 @@ fn slew_is_limited() {
         );
         reached!("a release", released && state.force != Force::ZERO);
         reached!(
-            "a change of sign",
-            command.force.normal * state.force.normal < 0.0
+            "a force that would turn",
+            command.playing && !above && command.force.normal == 0.0 && state.force.normal < 0.0
+        );
+        reached!(
+            "a hand that left the gel",
+            command.playing && above && state.force.normal > limits.release()
         );
     });
 }

@@ -15,11 +15,11 @@ use super::play::{DeviceName, PLUG_IN};
 use super::playback::{damping, limits};
 use super::progress::bar;
 use crate::force_map::ForceMap;
+use crate::hid::HapticDevice;
 use crate::hid::real::RealDevice;
 use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
-use crate::hid::{Capabilities, HapticDevice};
 use crate::psychophysics::{Felt, IdealObserver, Interval, Journal, Setup, Trial, present};
-use crate::servo::{Limits, LoadedTable};
+use crate::servo::{Damping, Limits, LoadedTable};
 
 /// How long a person may take to press the deadman.
 const PATIENCE: Duration = Duration::from_secs(600);
@@ -104,10 +104,10 @@ struct Sample {
 }
 
 impl Sample {
-    /// The map in a file, for a device of these capabilities.
-    fn read(path: &Path, capabilities: &Capabilities) -> Result<Sample, CliError> {
+    /// The map in a file, for a device of this damping.
+    fn read(path: &Path, damping: &Damping, limits: &Limits) -> Result<Sample, CliError> {
         let map = ForceMap::read(path)?;
-        let table = LoadedTable::passive(map.forces(), &damping(capabilities))
+        let table = LoadedTable::passive(map.forces(), damping, limits)
             .map_err(|error| failed(path.display(), error))?;
         Ok(Sample { map, table })
     }
@@ -129,18 +129,20 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
     let capabilities = open(arguments)?
         .capabilities()
         .map_err(|error| failed("device", error))?;
-    let reference = Sample::read(&arguments.reference, &capabilities)?;
+    let damping = damping(&capabilities, arguments.device.delay_periods());
+    let limits = limits(4.0)?;
+    let reference = Sample::read(&arguments.reference, &damping, &limits)?;
     let inclusions = arguments
         .inclusion
         .iter()
-        .map(|(_, path)| Sample::read(path, &capabilities))
+        .map(|(_, path)| Sample::read(path, &damping, &limits))
         .collect::<Result<Vec<_>, _>>()?;
     let (mut journal, mut file) = open_journal(arguments)?;
     let pairs = Pairs {
         arguments,
         reference,
         inclusions,
-        limits: limits(4.0)?,
+        limits,
     };
     let total = arguments.inclusion.len() * arguments.trials as usize;
     let bar = match arguments.observer {

@@ -51,8 +51,8 @@ pub struct PlayArguments {
     /// Records the session
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Plays a recorded session again and compares every force
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["device", "seconds", "record", "max_force"])]
+    /// Plays a session that --device recorded again and compares every force
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["seconds", "record", "max_force"])]
     replay: Option<PathBuf>,
     /// How the summary is printed
     #[arg(long, value_enum, default_value_t = Format::Table)]
@@ -68,6 +68,14 @@ pub(super) enum DeviceName {
 }
 
 impl DeviceName {
+    /// Whole periods from a sample to its force: a bus takes one each way, of which the report's is over when it is read.
+    pub(super) fn delay_periods(self) -> u16 {
+        match self {
+            DeviceName::Sim => 0,
+            DeviceName::Hid => 1,
+        }
+    }
+
     /// Refuses numbers of a device without a device that has them.
     pub(super) fn check(self, numbers: &DeviceNumbers) -> Result<(), CliError> {
         if self == DeviceName::Sim && numbers.are_given() {
@@ -114,14 +122,15 @@ pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
 fn table(
     arguments: &PlayArguments,
     capabilities: &Capabilities,
+    limits: &Limits,
 ) -> Result<(LoadedTable, f64), CliError> {
     let path = &arguments.map;
     let map = ForceMap::read(path)?;
-    let damping = damping(capabilities);
+    let damping = damping(capabilities, arguments.device.delay_periods());
     let loaded = if arguments.scale {
-        LoadedTable::scaled_to_be_passive(map.forces(), &damping)
+        LoadedTable::scaled_to_be_passive(map.forces(), &damping, limits)
     } else {
-        LoadedTable::passive(map.forces(), &damping).map(|loaded| (loaded, 1.0))
+        LoadedTable::passive(map.forces(), &damping, limits).map(|loaded| (loaded, 1.0))
     };
     loaded.map_err(|error| {
         let hint = if arguments.scale {
@@ -142,7 +151,7 @@ fn session<D: HapticDevice + Send>(
 ) -> Result<(), CliError> {
     let failed = |error: &dyn std::fmt::Display| CliError::Playback(error.to_string());
     let capabilities = device.capabilities().map_err(|error| failed(&error))?;
-    let (loaded, scale) = table(arguments, &capabilities)?;
+    let (loaded, scale) = table(arguments, &capabilities, &limits)?;
     let table = loaded.table().map_err(|error| failed(&error))?;
     let record = match (&arguments.record, duration) {
         (None, _) => 0,
@@ -329,7 +338,7 @@ fn replay(arguments: &PlayArguments, file: &std::path::Path) -> Result<(), CliEr
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", file.display());
     let recording = Recording::parse(&text).map_err(|error| CliError::Playback(named(&error)))?;
     let loaded = match arguments.scale {
-        true => table(arguments, &recording.capabilities)?.0,
+        true => table(arguments, &recording.capabilities, &recording.limits)?.0,
         false => loaded_map(&arguments.map)?,
     };
     let table = loaded

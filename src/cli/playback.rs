@@ -7,8 +7,9 @@ use crate::force_map::ForceMap;
 use crate::hid::Capabilities;
 use crate::servo::{Damping, Limits, LoadedTable};
 
-/// Largest change of the force in one cycle of 1 ms while it is played, N: 50 N/s.
-const SLEW: f32 = 0.05;
+/// Largest growth of the force in one cycle of 1 ms, N: 250 N/s. The stiffest spring of the paper's display, 1200 N/m, grows so
+/// fast under a hand of 0.2 m/s.
+const SLEW: f32 = 0.25;
 
 /// Cycles without a fresh sample that are no fault.
 const WATCHDOG: u16 = 20;
@@ -23,10 +24,11 @@ pub fn limits(force: f32) -> Result<Limits, CliError> {
         .map_err(|error| CliError::Usage(format!("--max-force {force}: {error}")))
 }
 
-/// What a device says of its damping.
-pub fn damping(capabilities: &Capabilities) -> Damping {
+/// What a device says of its damping. Its force comes `delay_periods` after the sample.
+pub fn damping(capabilities: &Capabilities, delay_periods: u16) -> Damping {
     Damping {
         period_s: f64::from(capabilities.period_us) * 1e-6,
+        delay_periods,
         damping_n_s_per_m: f64::from(capabilities.damping_mn_s_per_m) * 1e-3,
         friction_n: f64::from(capabilities.friction_mn) * 1e-3,
         resolution_m: f64::from(capabilities.position_unit_nm) * 1e-9,

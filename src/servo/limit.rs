@@ -78,8 +78,8 @@ impl fmt::Display for InvalidLimits {
 impl core::error::Error for InvalidLimits {}
 
 impl Limits {
-    /// Limits of `force` (N), of its change in one cycle while it is played (`slew`, N) and while it
-    /// is released (`release`, N), and of the run of cycles without a fresh sample (`watchdog`).
+    /// Limits of `force` (N), of its growth in one cycle (`slew`, N), of its fall in one cycle (`release`, N), and of the run
+    /// of cycles without a fresh sample (`watchdog`).
     ///
     /// ```
     /// use palpate::servo::{InvalidLimits, Limits};
@@ -126,12 +126,12 @@ impl Limits {
         self.force
     }
 
-    /// Largest change of a component in one cycle while the force is played, N.
+    /// Largest growth of a component in one cycle, N; also its largest fall in a cycle without a fresh sample.
     pub fn slew(&self) -> f32 {
         self.slew
     }
 
-    /// Largest change of a component in one cycle while the force is released, N.
+    /// Largest fall of a component in one cycle, N.
     pub fn release(&self) -> f32 {
         self.release
     }
@@ -158,20 +158,32 @@ pub fn limit(value: f32, largest: f32) -> f32 {
     between(value, -largest, largest)
 }
 
-/// From `last` towards `target` by at most `change`: within [last − change, last + change] as f32
-/// computes them, and never beyond the target. All three finite, `change` ≥ 0.
+/// From `last` towards `target` and never beyond it: away from zero by at most `rise`, towards zero by at most `fall`, as f32
+/// computes them. A force that changes its direction comes to zero first. All four finite, `rise` and `fall` ≥ 0.
 ///
 /// ```
 /// use palpate::servo::approach;
 ///
-/// assert_eq!(approach(1.0, 5.0, 0.25), 1.25);
-/// assert_eq!(approach(1.0, 1.125, 0.25), 1.125);
+/// assert_eq!(approach(1.0, 5.0, 0.25, 0.5), 1.25);
+/// assert_eq!(approach(1.0, 1.125, 0.25, 0.5), 1.125);
+/// assert_eq!(approach(1.0, -5.0, 0.25, 0.5), 0.5);
+/// assert_eq!(approach(0.5, -5.0, 0.25, 0.75), 0.0);
 /// ```
 ///
 /// Implements: SRV-021.
 #[inline]
-pub fn approach(last: f32, target: f32, change: f32) -> f32 {
-    between(target, last - change, last + change)
+pub fn approach(last: f32, target: f32, rise: f32, fall: f32) -> f32 {
+    let low = if last > 0.0 {
+        between(last - fall, 0.0, last)
+    } else {
+        last - rise
+    };
+    let high = if last < 0.0 {
+        between(last + fall, last, 0.0)
+    } else {
+        last + rise
+    };
+    between(target, low, high)
 }
 
 /// The number nearest to `value` from `low` to `high`, for `low` ≤ `high`; a NaN gives `low`.

@@ -1,12 +1,17 @@
 //! From a force map in f64 to a table of the kernel in f32.
 
-use super::passivity::{Damping, stiffness};
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+
+use super::passivity::{Damping, largest_component, rotation, stiffness};
 use super::{Axis, Force, InvalidAxis, InvalidTable, MAX_KNOTS, MIN_WIDTH, POSITION_LIMIT};
-use super::{TABLE_FORCE_LIMIT, Table};
+use super::{Limits, TABLE_FORCE_LIMIT, Table};
 use crate::force_map::{ForceTable, Matrix};
 
 /// Largest force at the surface, N, that counts as none: the noise of the paper's sensor (Table 2).
 pub const SURFACE_FORCE: f64 = 0.02;
+
+/// The fastest hand, m/s, for which a table is accepted: a quick probing motion. The slew limit lets the force follow up to here.
+pub const HAND_SPEED: f64 = 0.2;
 
 /// The largest differences between a map and its table.
 ///
@@ -134,15 +139,17 @@ pub enum LoadError {
         "{0:?}: expected period and resolution above 0, damping and friction at least 0, all finite"
     )]
     Damping(Damping),
-    /// The device would not play the table passively.
+    /// The device would give energy out with the table.
     #[error(
-        "the table is up to {stiffness:.1} N/m stiff, and the device is passive up to {stiffest:.1} N/m: scale the forces by {scale:.4}"
+        "the table has {found:.4} {what}, and the device plays at most {allowed:.4} passively: scale the forces by {scale:.4}"
     )]
-    TooStiff {
-        /// The table's stiffness, N/m.
-        stiffness: f64,
-        /// What the device allows, N/m.
-        stiffest: f64,
+    NotPassive {
+        /// What is too large, with its unit.
+        what: &'static str,
+        /// The table's.
+        found: f64,
+        /// What the device and the limits allow.
+        allowed: f64,
         /// The factor on the forces that would fit.
         scale: f64,
     },
@@ -211,61 +218,72 @@ impl LoadedTable {
         Ok(loaded)
     }
 
-    /// The table of a map for a device that must play it passively.
+    /// The table of a map for a device that must play it passively within `limits`.
     ///
     /// ```
     /// # use palpate::force_map::{ForceTable, Matrix};
-    /// use palpate::servo::{Damping, LoadError, LoadedTable};
+    /// use palpate::servo::{Damping, Limits, LoadError, LoadedTable};
     ///
     /// # let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
     /// # let map = ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
     /// // 1.5 N in 4 mm are 375 N/m; a display with 0.6 N·s/m of damping plays up to 1200 N/m.
-    /// let display = Damping { period_s: 1e-3, damping_n_s_per_m: 0.6, friction_n: 0.14, resolution_m: 1e-6 };
-    /// assert!(LoadedTable::passive(&map, &display).is_ok());
+    /// let display = Damping {
+    ///     period_s: 1e-3, delay_periods: 0, damping_n_s_per_m: 0.6, friction_n: 0.14, resolution_m: 1e-6,
+    /// };
+    /// let limits = Limits::new(4.0, 0.25, 0.5, 20)?;
+    /// assert!(LoadedTable::passive(&map, &display, &limits).is_ok());
     /// let slick = Damping { damping_n_s_per_m: 0.1, ..display };
-    /// assert!(matches!(LoadedTable::passive(&map, &slick), Err(LoadError::TooStiff { .. })));
-    /// # Ok::<(), palpate::force_map::InvalidForceMap>(())
+    /// assert!(matches!(LoadedTable::passive(&map, &slick, &limits), Err(LoadError::NotPassive { .. })));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
-    /// [`LoadError`], among them [`LoadError::TooStiff`].
+    /// [`LoadError`], among them [`LoadError::NotPassive`].
     ///
     /// Implements: SRV-051.
-    pub fn passive(map: &ForceTable, damping: &Damping) -> Result<LoadedTable, LoadError> {
+    pub fn passive(
+        map: &ForceTable,
+        damping: &Damping,
+        limits: &Limits,
+    ) -> Result<LoadedTable, LoadError> {
         let loaded = LoadedTable::new(map)?;
-        loaded.check_passive(damping)?;
+        loaded.check_passive(damping, limits)?;
         Ok(loaded)
     }
 
-    /// Like [`LoadedTable::passive`], but a table that is too stiff is scaled down. Also returns the
+    /// Like [`LoadedTable::passive`], but a table that is not passive is scaled down. Also returns the
     /// factor on its forces, 1 if none was needed.
     ///
     /// ```
     /// # use palpate::force_map::{ForceTable, Matrix};
-    /// use palpate::servo::{Damping, LoadedTable, stiffness};
+    /// use palpate::servo::{Damping, Limits, LoadedTable, stiffness};
     ///
     /// # let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
     /// # let map = ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
     /// // 375 N/m on a display that plays up to 200 N/m.
-    /// let slick = Damping { period_s: 1e-3, damping_n_s_per_m: 0.1, friction_n: 0.14, resolution_m: 1e-6 };
-    /// let (loaded, factor) = LoadedTable::scaled_to_be_passive(&map, &slick)?;
+    /// let slick = Damping {
+    ///     period_s: 1e-3, delay_periods: 0, damping_n_s_per_m: 0.1, friction_n: 0.14, resolution_m: 1e-6,
+    /// };
+    /// let limits = Limits::new(4.0, 0.25, 0.5, 20)?;
+    /// let (loaded, factor) = LoadedTable::scaled_to_be_passive(&map, &slick, &limits)?;
     /// assert!((factor - 200.0 / 375.0).abs() < 1e-6);
     /// assert!(stiffness(&loaded.table()?) <= 200.0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
-    /// [`LoadError`]; [`LoadError::TooStiff`] only for a device that no spring suits.
+    /// [`LoadError`]; [`LoadError::NotPassive`] only for a device that no spring suits.
     ///
     /// Implements: SRV-051.
     pub fn scaled_to_be_passive(
         map: &ForceTable,
         damping: &Damping,
+        limits: &Limits,
     ) -> Result<(LoadedTable, f64), LoadError> {
         let loaded = LoadedTable::new(map)?;
-        let fit = match loaded.check_passive(damping) {
+        let fit = match loaded.check_passive(damping, limits) {
             Ok(()) => return Ok((loaded, 1.0)),
-            Err(LoadError::TooStiff { scale, .. }) if scale > 0.0 => scale,
+            Err(LoadError::NotPassive { scale, .. }) if scale > 0.0 => scale,
             Err(other) => return Err(other),
         };
         // Rounding the scaled forces may leave a slope a little too steep.
@@ -273,9 +291,9 @@ impl LoadedTable {
         loop {
             let factor = fit * (1.0 - margin);
             let scaled = loaded.scaled(factor);
-            match scaled.check_passive(damping) {
+            match scaled.check_passive(damping, limits) {
                 Ok(()) => return Ok((scaled, factor)),
-                Err(too_stiff) if margin > 0.5 => return Err(too_stiff),
+                Err(refusal) if margin > 0.5 => return Err(refusal),
                 Err(_) => margin *= 2.0,
             }
         }
@@ -317,18 +335,49 @@ impl LoadedTable {
         scaled
     }
 
-    /// Refuses a table that is too stiff for the device.
-    fn check_passive(&self, damping: &Damping) -> Result<(), LoadError> {
+    /// Refuses a table with which the device would give energy out, by what is worst.
+    ///
+    /// Implements: SRV-054, SRV-055, SRV-056.
+    fn check_passive(&self, damping: &Damping, limits: &Limits) -> Result<(), LoadError> {
         let stiffest = damping.stiffest().ok_or(LoadError::Damping(*damping))?;
-        let stiffness = stiffness(&self.table()?);
-        if stiffness <= stiffest {
-            return Ok(());
+        let table = self.table()?;
+        let stiffness = stiffness(&table);
+        // A hand moves so far in a cycle, and is seen to move a step of each axis further.
+        let motion = HAND_SPEED * damping.period_s + SQRT_2 * damping.resolution_m;
+        let friction = rotation(&table) + stiffness * damping.resolution_m * FRAC_1_SQRT_2;
+        let bounds = [
+            ("N/m of stiffness", stiffness, stiffest),
+            (
+                "N of growth in a cycle",
+                stiffness * motion,
+                limits.slew().into(),
+            ),
+            (
+                "N of force without a potential",
+                friction,
+                damping.friction_n,
+            ),
+            (
+                "N of force",
+                largest_component(&table),
+                limits.force().into(),
+            ),
+        ];
+        let mut worst = Ok(());
+        let mut fit = 1.0;
+        for (what, found, allowed) in bounds {
+            let scale = allowed / found;
+            if found > allowed && scale < fit {
+                fit = scale;
+                worst = Err(LoadError::NotPassive {
+                    what,
+                    found,
+                    allowed,
+                    scale,
+                });
+            }
         }
-        Err(LoadError::TooStiff {
-            stiffness,
-            stiffest,
-            scale: stiffest / stiffness,
-        })
+        worst
     }
 }
 
@@ -401,5 +450,7 @@ fn rounded(value: f64, largest: &mut f64) -> f32 {
     rounded
 }
 
+#[cfg(test)]
+mod energy;
 #[cfg(test)]
 mod tests;

@@ -64,7 +64,9 @@ pub fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (Stat
 
     let playing = mode == Mode::Armed && fresh && sample.deadman;
     let let_go = came && !sample.deadman;
-    let change = if mode == Mode::Armed && !let_go {
+    // One lost sample is no emergency: the watchdog decides. A force that is played falls quickly, since one that lags behind
+    // a hand that withdraws would push it.
+    let fall = if mode == Mode::Armed && !playing && !let_go {
         limits.slew()
     } else {
         limits.release()
@@ -78,7 +80,10 @@ pub fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (Stat
         Force::ZERO
     };
     // Between the last force and the target, both within the limit.
-    let component = |last, target| approach(last, limit(target, limits.force()), change);
+    let component = |last, target| {
+        let target = limit(target, limits.force());
+        approach(last, target, limits.slew(), fall)
+    };
     let force = Force {
         lateral: component(last.lateral, target.lateral),
         normal: component(last.normal, target.normal),

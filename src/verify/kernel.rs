@@ -381,7 +381,7 @@ fn release() -> Result<Vec<Figure>, String> {
         let release = force / f32::from(RELEASE_CYCLES);
         let mut rest = force;
         for _ in 0..=RELEASE_CYCLES {
-            rest = approach(rest, 0.0, release);
+            rest = approach(rest, 0.0, release, release);
         }
         rest == 0.0
     })

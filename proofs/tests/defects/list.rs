@@ -90,31 +90,43 @@ pub const DEFECTS: &[Defect] = &[
     Defect {
         name: "the limit of the force left out",
         file: STEP,
-        edits: &[(
-            "approach(last, limit(target, limits.force()), change)",
-            "approach(last, target, change)",
-        )],
+        edits: &[("let target = limit(target, limits.force());", "")],
         found_by: "force_is_bounded",
     },
     Defect {
-        name: "the slew limit with the wrong sign",
+        name: "a rise without a limit",
         file: LIMIT,
-        edits: &[(
-            "last - change, last + change",
-            "last + change, last - change",
-        )],
+        edits: &[("last + rise", "target")],
+        found_by: "slew_is_limited",
+    },
+    Defect {
+        name: "a fall with the wrong sign",
+        file: LIMIT,
+        edits: &[("last - fall", "last + fall")],
+        found_by: "a_released_force_is_zero_in_three_cycles_of_half_the_limit",
+    },
+    Defect {
+        name: "a force that turns in one cycle",
+        file: LIMIT,
+        edits: &[("between(last - fall, 0.0, last)", "last - fall")],
+        found_by: "slew_is_limited",
+    },
+    Defect {
+        name: "a played force that falls as slowly as it rises",
+        file: STEP,
+        edits: &[("&& !playing && !let_go", "&& !let_go")],
         found_by: "slew_is_limited",
     },
     Defect {
         name: "a rise as fast as a release",
         file: STEP,
-        edits: &[("limits.slew()", "limits.release()")],
+        edits: &[("limits.slew(), fall", "limits.release(), fall")],
         found_by: "slew_is_limited",
     },
     Defect {
         name: "the release forgotten",
         file: STEP,
-        edits: &[("limits.release()", "limits.slew()")],
+        edits: &[("limits.release()\n    };", "limits.slew()\n    };")],
         found_by: "a_released_force_is_zero_in_three_cycles_of_half_the_limit",
     },
     Defect {

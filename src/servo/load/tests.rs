@@ -17,10 +17,16 @@ fn map(depths: &[f64], laterals: &[f64], force: impl Fn(f64, f64) -> [f64; 2]) -
 /// A device that plays everything.
 const FREE: Damping = Damping {
     period_s: 1e-3,
+    delay_periods: 0,
     damping_n_s_per_m: 1e3,
-    friction_n: 1e3,
+    friction_n: 1e6,
     resolution_m: 1e-6,
 };
+
+/// Limits that allow everything.
+fn open_limits() -> Limits {
+    Limits::new(20.0, 20.0, 20.0, 20).unwrap()
+}
 
 // Verifies: SRV-044, SRV-046.
 #[test]
@@ -207,22 +213,39 @@ fn the_stiffness_is_the_steepest_slope_by_differences() {
     }
 }
 
+// Verifies: SRV-053.
+#[test]
+fn the_rotation_is_half_the_range_of_what_has_no_potential() {
+    let rotation = |forces: fn(f64, f64) -> [f64; 2]| {
+        let map = map(&[0.0, 0.25, 0.5], &[0.0, 0.5], forces);
+        rotation(&LoadedTable::new(&map).unwrap().table().unwrap())
+    };
+    // All is linear, and continued to d = 0.75: F_x = 3 d alone, from 0 to 9/4.
+    assert_eq!(rotation(|d, _| [3.0 * d, 0.0]), 1.125);
+    // ∂F_n/∂x = 4 d alone: its integral 2 d², from 0 to 9/8.
+    assert_eq!(rotation(|d, x| [0.0, 4.0 * d * x]), 0.5625);
+    // Together −d + 2 d²: −1/8 at d = 1/4, where the parabola turns, 3/8 at the end.
+    assert_eq!(rotation(|d, x| [-d, 4.0 * d * x]), 0.25);
+    // −d/2 + 2 d² turns at 1/8, between two rows, to −1/32; 3/4 at the end.
+    assert_eq!(rotation(|d, x| [-0.5 * d, 4.0 * d * x]), 0.390_625);
+    // A force at the surface counts as it is: 2⁻⁷ N, and no more where it stays.
+    assert_eq!(rotation(|_, _| [0.0, 0.0078125]), 0.0078125);
+}
+
 // Verifies: SRV-052.
 #[test]
-fn the_stiffest_spring_is_the_lesser_of_the_two_bounds() {
+fn the_stiffest_spring_is_that_whose_delay_the_damping_makes_up_for() {
     let device = Damping {
-        period_s: 1e-3,
         damping_n_s_per_m: 0.5,
-        friction_n: 0.14,
-        resolution_m: 1e-4,
+        ..FREE
     };
-    // 2b/T = 1000, 2f_c/Δ = 2800.
+    // b / (T/2) = 1000; b / (T/2 + 2 T) = 200.
     assert!((device.stiffest().unwrap() - 1000.0).abs() < 1e-10);
-    let coarse = Damping {
-        resolution_m: 1e-3,
+    let remote = Damping {
+        delay_periods: 2,
         ..device
     };
-    assert!((coarse.stiffest().unwrap() - 280.0).abs() < 1e-10);
+    assert!((remote.stiffest().unwrap() - 200.0).abs() < 1e-10);
     for wrong in [
         Damping {
             period_s: 0.0,
@@ -254,13 +277,15 @@ fn a_table_too_stiff_is_refused_or_scaled_on_request() {
         damping_n_s_per_m: 0.1,
         ..FREE
     };
-    let text = LoadedTable::passive(&map, &device).unwrap_err().to_string();
+    let text = LoadedTable::passive(&map, &device, &open_limits())
+        .unwrap_err()
+        .to_string();
     assert!(
-        text.contains("400.0 N/m") && text.contains("200.0 N/m") && text.contains("0.5000"),
+        text.contains("400.0000 N/m") && text.contains("200.0000") && text.contains("0.5000"),
         "{text}"
     );
 
-    let (loaded, scale) = LoadedTable::scaled_to_be_passive(&map, &device).unwrap();
+    let (loaded, scale) = LoadedTable::scaled_to_be_passive(&map, &device, &open_limits()).unwrap();
     let table = loaded.table().unwrap();
     assert!(stiffness(&table) <= 200.0);
     assert!((scale - 0.5).abs() < 1e-5, "{scale}");
@@ -273,10 +298,13 @@ fn a_table_too_stiff_is_refused_or_scaled_on_request() {
         }
     );
 
-    let (unscaled, scale) = LoadedTable::scaled_to_be_passive(&map, &FREE).unwrap();
+    let (unscaled, scale) = LoadedTable::scaled_to_be_passive(&map, &FREE, &open_limits()).unwrap();
     assert_eq!(
         (unscaled, scale),
-        (LoadedTable::passive(&map, &FREE).unwrap(), 1.0)
+        (
+            LoadedTable::passive(&map, &FREE, &open_limits()).unwrap(),
+            1.0
+        )
     );
     // 2^-10 N/m above what the device plays, to be met within the rounding of the forces.
     for stiffest in [100.0, 399.999, 333.333] {
@@ -284,7 +312,8 @@ fn a_table_too_stiff_is_refused_or_scaled_on_request() {
             damping_n_s_per_m: stiffest / 2000.0,
             ..FREE
         };
-        let (loaded, scale) = LoadedTable::scaled_to_be_passive(&map, &device).unwrap();
+        let (loaded, scale) =
+            LoadedTable::scaled_to_be_passive(&map, &device, &open_limits()).unwrap();
         let found = stiffness(&loaded.table().unwrap());
         assert!(
             found <= stiffest && found > stiffest * (1.0 - 1e-6),
@@ -296,25 +325,26 @@ fn a_table_too_stiff_is_refused_or_scaled_on_request() {
         friction_n: 0.0,
         ..FREE
     };
-    assert!(LoadedTable::scaled_to_be_passive(&map, &undamped).is_err());
+    assert!(LoadedTable::scaled_to_be_passive(&map, &undamped, &open_limits()).is_err());
 }
 
 // A slope between large forces is rounded by far more than a force: the scale must go down until it fits.
 // Verifies: SRV-051.
 #[test]
 fn scaling_goes_on_until_the_rounded_slopes_fit() {
-    let map = map(&[1.0], &[0.0, 2e-6], |_, x| [0.0, 50.0 + 6850.0 * x]);
+    let map = map(&[1.0], &[0.0, 2e-6], |_, x| [0.0, 8.0 + 6850.0 * x]);
     let steepest = stiffness(&LoadedTable::new(&map).unwrap().table().unwrap());
-    // Two forces of at most 50 N, each rounded by 2⁻¹⁹ N at the most, 2 µm apart, of a slope of 6850 N/m; the
+    // Two forces of 8 N, each rounded by 2⁻²¹ N at the most, 2 µm apart, of a slope of 6850 N/m; the
     // scale goes down by twice what is needed at the most.
-    let slack = 2.0 * 2.0 * 2f64.powi(-19) / 2e-6 / 6850.0;
+    let slack = 2.0 * 2.0 * 2f64.powi(-21) / 2e-6 / 6850.0;
     let mut lowered = 0;
     for stiffest in (1..40u8).map(|k| 100.0 * f64::from(k)) {
         let device = Damping {
             damping_n_s_per_m: stiffest / 2000.0,
             ..FREE
         };
-        let (loaded, scale) = LoadedTable::scaled_to_be_passive(&map, &device).unwrap();
+        let (loaded, scale) =
+            LoadedTable::scaled_to_be_passive(&map, &device, &open_limits()).unwrap();
         assert!(stiffness(&loaded.table().unwrap()) <= stiffest);
         let fit = stiffest / steepest;
         assert!(scale < fit && scale > fit * (1.0 - slack), "{scale}");
