@@ -1,6 +1,6 @@
 use serde_json::json;
 
-use super::junit::escaped;
+use super::junit::{escaped, junit};
 use super::tolerance::{Tolerance, compare, cut};
 use super::{Outcome, Suite, Verdict};
 
@@ -131,6 +131,33 @@ fn bugs_are_counted_by_group_and_the_most_frequent_comes_first() {
             ("sign of b", 1, "b-1"),
         ]
     );
+}
+
+// Verifies: ORA-050.
+#[test]
+fn the_xml_counts_the_cases_that_it_holds() {
+    let suite = two_groups();
+    let outcomes = vec![
+        vec![Outcome::Skipped, Outcome::Skipped, Outcome::Skipped],
+        vec![failed(&["unit"]), Outcome::Refused, failed(&[])],
+    ];
+    let verdict = Verdict::new(&suite, vec![], String::new(), outcomes, vec![]);
+    let xml = junit(&verdict, &suite);
+    let parts: Vec<&str> = xml.split("<testsuite ").collect();
+    assert_eq!(parts.len(), 3);
+    for part in [&xml[..], parts[1], parts[2]] {
+        for (key, element) in [
+            ("tests", "<testcase"),
+            ("failures", "<failure"),
+            ("skipped", "<skipped"),
+        ] {
+            let expected = format!(" {key}=\"{}\"", part.matches(element).count());
+            // The first mention is that of the whole, or of the group.
+            let (_, counted) = part.split_once(&format!(" {key}=")).unwrap();
+            let found = format!(" {key}={}", &counted[..3]);
+            assert_eq!(found, expected, "{part}");
+        }
+    }
 }
 
 // Verifies: ORA-050.
