@@ -204,6 +204,18 @@ fn wrong_answers_name_their_bug() {
     assert_eq!(found.verdict["likely_bugs"][0]["flag"], "negative");
 }
 
+// Verifies: ORA-052.
+#[test]
+fn an_error_without_a_code_is_no_refusal() {
+    for error in ["null", "false", r#""no""#, "[]", "{}", r#"{"code":null}"#] {
+        let answer = format!("*choice-003*) echo '{{\"id\":\"choice-003\",\"error\":{error}}}';;");
+        let word = format!("error is {error}, expected an object with a code");
+        run("no-refusal", &shell(&answer), "20").expect(&[("choice-003", &word)]);
+    }
+    let answer = r#"*choice-003*) echo '{"id":"choice-003","error":{"code":"own"}}';;"#;
+    run("refusal-of-its-own", &shell(answer), "20").expect(&[]);
+}
+
 // Verifies: ORA-043, ORA-046.
 #[test]
 fn answers_that_are_none_are_failures_of_their_case() {
@@ -255,6 +267,11 @@ fn answers_that_are_none_are_failures_of_their_case() {
             "refusal",
             r#"echo '{"id":"choice-002","error":{"code":"x"}}'"#,
             "refused",
+        ),
+        (
+            "no-error",
+            r#"echo '{"id":"choice-002","error":null}'"#,
+            "error is null",
         ),
         ("nothing", ":", "no answer: the next one was for choice-003"),
         ("utf8", r"printf '\377\n'", "no JSON"),

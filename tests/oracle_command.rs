@@ -420,6 +420,13 @@ fn work_beyond_the_limits_is_refused_before_it_begins() {
     );
     assert_eq!(code, "out_of_range");
     assert!(message.contains("10000000"), "{message}");
+    // 1000 products at each of the shifts of the whole template: 10,000 shifts are allowed.
+    let ask = |samples: usize| {
+        json!({"residual_x": ones(samples), "residual_y": ones(samples), "template_x": ones(1000),
+               "template_y": ones(1000), "noise_sd_x": 1, "noise_sd_y": 1})
+    };
+    ok("scan", ask(10_999));
+    assert_eq!(refused("scan", ask(11_000)).0, "out_of_range");
     let (code, message) = refused(
         "theta_colored",
         json!({"residual": ones(1002), "template": ones(1002), "covariance": []}),

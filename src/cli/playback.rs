@@ -43,3 +43,83 @@ pub fn loaded_map(path: &Path) -> Result<LoadedTable, CliError> {
     LoadedTable::new(map.forces())
         .map_err(|error| CliError::Playback(format!("{}: {error}", path.display())))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hid::simulated::PAPER;
+    use crate::servo::{Axis, Force, Input, Mode, Sample, State, Table, step};
+
+    // Verifies: CLI-063.
+    #[test]
+    fn a_device_plays_what_its_own_damping_and_friction_allow() {
+        // 2b/T = 2 · 0.3 N·s/m / 0.5 ms and 2f/Δ = 2 · 0.02 N / 0.05 mm.
+        let (viscous, coulomb) = (1200.0, 800.0);
+        let device = Capabilities {
+            period_us: 500,
+            damping_mn_s_per_m: 300,
+            friction_mn: 20,
+            position_unit_nm: 50_000,
+            ..PAPER
+        };
+        let rough = Capabilities {
+            friction_mn: 200,
+            ..device
+        };
+        for (device, expected) in [(device, coulomb), (rough, viscous)] {
+            let found = damping(&device).stiffest().unwrap();
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found}");
+        }
+    }
+
+    /// The forces of each cycle after one of `force` (N) that the hand lets go of, or that the gel pushes up against from 0.
+    fn forces(force: f32, pushed: bool) -> Vec<f32> {
+        let axis = Axis::new(&[0.0, 0.5], &[2.0]).unwrap();
+        let normal = |normal| Force {
+            lateral: 0.0,
+            normal,
+        };
+        let nodes = [0.0, 0.0, force, force].map(normal);
+        let table = Table::new(axis, axis, &nodes).unwrap();
+        let mut state = State {
+            mode: Mode::Armed,
+            sequence: Some(0),
+            force: normal(if pushed { 0.0 } else { force }),
+            ..State::default()
+        };
+        let cycle = |sequence| {
+            let sample = Sample {
+                sequence,
+                deadman: pushed,
+                device_fault: false,
+                depth: 0.5,
+                lateral: 0.0,
+            };
+            let input = Input {
+                sample: Some(sample),
+                ..Input::default()
+            };
+            (state, _) = step(&table, &limits(force).unwrap(), state, input);
+            state.force.normal
+        };
+        (1..=200).map(cycle).collect()
+    }
+
+    // Verifies: CLI-064.
+    #[test]
+    fn a_force_is_released_in_eight_equal_steps_and_built_up_no_faster() {
+        for force in [4.0, 0.25] {
+            let released = forces(force, false);
+            for (cycle, found) in (1..).zip(&released[..8]) {
+                assert_eq!(*found, force * (8 - cycle) as f32 / 8.0, "cycle {cycle}");
+            }
+            // 50 N/s are 0.05 N a cycle; a release as large as that is the smaller one.
+            let change = f32::min(0.05, force / 8.0);
+            let built = forces(force, true);
+            let cycles = built.iter().filter(|found| **found < force).count() + 1;
+            // And one more for rounding.
+            let more = cycles as f32 - force / change;
+            assert!((0.0..=1.0).contains(&more), "{cycles}");
+        }
+    }
+}

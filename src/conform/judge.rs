@@ -20,7 +20,12 @@ pub fn judge(case: &Case, answer: &Value) -> Outcome {
     }
 }
 
+/// Implements: ORA-052.
 fn judge_refusal(case: &Case, error: &Value) -> Outcome {
+    if !error["code"].is_string() {
+        let error = shortened(error);
+        return Outcome::failed(format!("error is {error}, expected an object with a code"));
+    }
     match &case.expected {
         Expected::Refusal(_) => Outcome::Refused,
         Expected::Values(_) => Outcome::failed(format!("refused: {}", shortened(error))),

@@ -1,7 +1,8 @@
 use serde_json::json;
 
-use super::junit::escaped;
+use super::junit::{escaped, junit};
 use super::tolerance::{Tolerance, compare, cut};
+use super::{Outcome, Suite, Verdict};
 
 // Verifies: VEC-004, ORA-046.
 #[test]
@@ -80,6 +81,82 @@ fn a_difference_names_its_place() {
         let difference = compare(expected, found).unwrap_err();
         assert_eq!(difference.place, place);
         assert!(difference.text.starts_with(words), "{difference}");
+    }
+}
+
+/// Two groups of three questions that must be refused, each with two flags.
+fn two_groups() -> Suite {
+    let file = |group: &str| {
+        let case = |k: u32| {
+            let (id, flags) = (format!("{group}-{k}"), ["sign", "unit"]);
+            json!({"id": id, "comment": "", "args": {}, "error": "out_of_range", "flags": flags})
+        };
+        let bug = |what: &str| json!({"bug": format!("{what} of {group}"), "notes": ""});
+        json!({
+            "schema": "palpate-vectors", "schema_version": 1, "group": group, "op": "roc",
+            "source": "by hand", "generator_version": "1", "tolerance": {},
+            "flags": {"sign": bug("sign"), "unit": bug("unit")}, "cases": [case(0), case(1), case(2)],
+        })
+    };
+    let groups = ["a", "b"].map(|group| (format!("{group}.json"), file(group).to_string()));
+    Suite::of_files(groups.into()).unwrap()
+}
+
+fn failed(bugs: &[&str]) -> Outcome {
+    Outcome::Failed {
+        reason: String::new(),
+        bugs: bugs.iter().map(|bug| bug.to_string()).collect(),
+    }
+}
+
+// Verifies: ORA-053.
+#[test]
+fn bugs_are_counted_by_group_and_the_most_frequent_comes_first() {
+    let [sign, unit, both] = [&["sign"][..], &["unit"], &["unit", "sign"]].map(failed);
+    let outcomes = vec![
+        vec![unit.clone(), sign, Outcome::Refused],
+        vec![unit.clone(), both, unit],
+    ];
+    let verdict = Verdict::new(&two_groups(), vec![], String::new(), outcomes, vec![]);
+    let likely = verdict.likely_bugs.iter();
+    let found: Vec<_> = likely
+        .map(|l| (&l.bug[..], l.cases, &l.first_case[..]))
+        .collect();
+    assert_eq!(
+        found,
+        [
+            ("unit of b", 3, "b-0"),
+            ("unit of a", 1, "a-0"),
+            ("sign of a", 1, "a-1"),
+            ("sign of b", 1, "b-1"),
+        ]
+    );
+}
+
+// Verifies: ORA-050.
+#[test]
+fn the_xml_counts_the_cases_that_it_holds() {
+    let suite = two_groups();
+    let outcomes = vec![
+        vec![Outcome::Skipped, Outcome::Skipped, Outcome::Skipped],
+        vec![failed(&["unit"]), Outcome::Refused, failed(&[])],
+    ];
+    let verdict = Verdict::new(&suite, vec![], String::new(), outcomes, vec![]);
+    let xml = junit(&verdict, &suite);
+    let parts: Vec<&str> = xml.split("<testsuite ").collect();
+    assert_eq!(parts.len(), 3);
+    for part in [&xml[..], parts[1], parts[2]] {
+        for (key, element) in [
+            ("tests", "<testcase"),
+            ("failures", "<failure"),
+            ("skipped", "<skipped"),
+        ] {
+            let expected = format!(" {key}=\"{}\"", part.matches(element).count());
+            // The first mention is that of the whole, or of the group.
+            let (_, counted) = part.split_once(&format!(" {key}=")).unwrap();
+            let found = format!(" {key}={}", &counted[..3]);
+            assert_eq!(found, expected, "{part}");
+        }
     }
 }
 

@@ -191,6 +191,7 @@ impl Verdict {
     }
 }
 
+/// Implements: ORA-053.
 fn likely_bugs(suite: &Suite, failures: &[Failure]) -> Vec<LikelyBug> {
     let mut likely: Vec<LikelyBug> = Vec::new();
     for failure in failures {

@@ -35,7 +35,7 @@ pub struct Model {
     pub(super) matrix: StiffnessMatrix,
     pub(super) factor: Factor,
     surface: Surface,
-    samples: Vec<Sample>,
+    pub(super) samples: Vec<Sample>,
 }
 
 /// The probe at rest at one pose.

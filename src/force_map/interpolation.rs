@@ -177,5 +177,12 @@ mod tests {
         let single = ForceTable::new(vec![0.0], vec![0.0, 1.0], one(), one()).unwrap();
         let error = single.force(0.0, 0.0).unwrap_err().to_string();
         assert!(error.starts_with("depths_m has a single entry"), "{error}");
+        let column = || Matrix::new(1, vec![1.0, 2.0]).unwrap();
+        let single = ForceTable::new(vec![0.0, 1.0], vec![0.0], column(), column()).unwrap();
+        let error = single.force(0.0, 0.0).unwrap_err().to_string();
+        assert!(
+            error.starts_with("laterals_m has a single entry"),
+            "{error}"
+        );
     }
 }

@@ -291,6 +291,43 @@ fn a_scan_is_the_plain_sum_over_the_candidates() {
     assert!(!miss.by_mixture && miss.miss_bound <= max_miss);
 }
 
+// Verifies: TRC-036.
+#[test]
+fn the_promise_of_misses_is_kept_for_an_inclusion_at_any_sample() {
+    // With its left end cut off by the record, the signal leaves γ = 1 to the last candidate and 2 to the one before, of 4.9.
+    // Of γ²/2 + γΦ⁻¹(0.01) = −1.8, −2.7 and 0.6 the smallest is neither that of an end nor that of the smallest γ.
+    let bump = [0.0, 0.0, 0.0, 0.25, 0.1875_f64.sqrt(), 1.0, 0.5];
+    let map = |signal: f64| {
+        let laterals = (-3..=3).map(|k| f64::from(k) / 1e3).collect();
+        let normal = Matrix::from_fn(1, 7, |_, column| signal * bump[column]);
+        ForceTable::new(
+            vec![0.001],
+            laterals,
+            normal,
+            Matrix::from_fn(1, 7, |_, _| 0.0),
+        )
+        .unwrap()
+    };
+    let rows: String = (-3..=3).map(|x| format!("{x},0,0\n")).collect();
+    let record = read(&format!(
+        "position_mm,lateral_force_n,normal_force_n\n{rows}"
+    ))
+    .unwrap();
+    let criterion = Criterion::NeymanPearsonMiss { max_miss: 0.01 };
+    let found = locate(&record, &map(0.0), &map(1.0), 0.001, NOISE, criterion, 0.5).unwrap();
+    let quantile = -2.326_347_874_040_841;
+    assert!(
+        (found.eta - (2.0 + 2.0 * quantile)).abs() < 1e-12,
+        "{found:?}"
+    );
+    for candidate in 0..7 {
+        let seen = &bump[..7.min(10 - candidate)];
+        let gamma = seen.iter().map(|b| b * b).sum::<f64>().sqrt() / NOISE.y;
+        let miss = error_rates(gamma, found.eta).unwrap().miss;
+        assert!(miss < 0.01 + 1e-12, "{candidate}: {miss}");
+    }
+}
+
 // Verifies: TRC-035, TRC-038.
 #[test]
 fn by_the_mixture_decision_and_posterior_agree_where_the_maximum_would_not() {
@@ -359,16 +396,22 @@ fn a_scan_tells_how_much_of_the_signal_the_maps_cut_off() {
     let record = read(
         "position_mm,lateral_force_n,normal_force_n\n-1,1.1,2\n0,0.1,3\n1,-0.9,2\n2,-0.4,1.25\n",
     );
-    let found = locate(
-        &record.unwrap(),
-        &cut(0.0),
-        &cut(1.0),
-        0.003,
-        NOISE,
-        Criterion::Map,
-        0.25,
-    );
-    assert!((found.unwrap().template_edge - 0.5).abs() < 1e-12);
+    let record = record.unwrap();
+    let edge = |noise| {
+        let found = locate(
+            &record,
+            &cut(0.0),
+            &cut(1.0),
+            0.003,
+            noise,
+            Criterion::Map,
+            0.25,
+        );
+        found.unwrap().template_edge
+    };
+    assert!((edge(NOISE) - 0.5).abs() < 1e-12);
+    // Where the lateral force is the quiet one, its largest is at an end: 8 of 8, and 1 of 2 in the normal force.
+    assert!((edge(Channels { x: 0.125, y: 1.0 }) - 1.0).abs() < 1e-12);
 }
 
 // Verifies: TRC-030, TRC-031, TRC-033, TRC-041.

@@ -123,6 +123,20 @@ mod tests {
 
     // Verifies: EVD-050.
     #[test]
+    fn a_right_answer_that_is_not_the_case_s_own_fails() {
+        let first = "\"id\":\"normal_cdf-001\"";
+        for id in ["\"id\":\"normal_cdf-002\"", "\"id\":null", "\"id\":1"] {
+            let change = |text: String| {
+                assert_eq!(text.matches(first).count(), 1, "{text}");
+                text.replacen(first, id, 1)
+            };
+            let failed = changed(change).unwrap().pop().unwrap();
+            assert_eq!(failed.value, 1.0, "{failed}");
+        }
+    }
+
+    // Verifies: EVD-050.
+    #[test]
     fn an_answer_to_another_question_and_a_missing_one_fail() {
         let moved = |text: String| {
             let (first, rest) = text.split_once('\n').unwrap();

@@ -41,7 +41,11 @@ fn coarse_mean() {
 // Verifies: DET-013, DET-015, DET-113.
 #[test]
 fn coarse_variance() {
-    check(&["coarse_variance_h0", "coarse_variance_h1"]);
+    check(&[
+        "coarse_variance_h0",
+        "coarse_variance_h1",
+        "coarse_noise_variance",
+    ]);
 }
 
 // Verifies: DET-015, DET-113.
@@ -121,6 +125,12 @@ fn false_alarms_of_theta_max_keep_their_bound() {
 #[test]
 fn position_errors_meet_the_bound_of_cramer_and_rao_until_the_signal_is_too_weak() {
     check(&["position_error"]);
+}
+
+// Verifies: DET-050, DET-052, DET-053, DET-054.
+#[test]
+fn the_position_of_a_cut_signal_is_drawn_back_as_its_sums_say() {
+    check(&["position_error_of_a_cut_signal"]);
 }
 
 // Verifies: DET-070.

@@ -68,6 +68,20 @@ fn false_alarms_are_bounded() {
     );
 }
 
+// Verifies: DET-070.
+#[test]
+fn priors_add_up_to_one_within_a_billionth() {
+    for (off, accepted) in [
+        (0.9e-9, true),
+        (-0.9e-9, true),
+        (1.1e-9, false),
+        (-1.1e-9, false),
+    ] {
+        let found = mixture_theta(&[1.0, 2.0], &[0.5, 0.5 + off]);
+        assert_eq!(found.is_ok(), accepted, "{off}");
+    }
+}
+
 // Verifies: DET-005, DET-007, DET-070.
 #[test]
 fn banks_that_do_not_fit_are_refused() {

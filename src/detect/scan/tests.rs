@@ -73,6 +73,9 @@ fn maximum_is_the_first_of_the_largest() {
     // Θ of 6, 8, −8 at shifts −1, 0, 1: vertex ½(2 − 16)/(2 + 16).
     let found = scan().maximum(RESIDUAL, -1..=2).unwrap();
     assert_eq!((found.shift, found.refined_shift), (0, -7.0 / 18.0));
+    // At the last candidate the shift behind it, which has the same Θ, has no say.
+    let found = scan().maximum(RESIDUAL, 1..=3).unwrap();
+    assert_eq!((found.shift, found.refined_shift), (3, 3.0));
     for outside in [-3..=1, 0..=5, isize::MIN..=isize::MAX] {
         assert!(matches!(
             scan().maximum(RESIDUAL, outside),

@@ -113,6 +113,14 @@ fn what_cannot_be_judged_is_refused() {
         };
         assert!(theta_weber(OBSERVED, F0, F1, noise).is_err());
         assert!(weber_moments(F0, F1, noise).is_err());
+        // Nor where every force is so far from 0 that its noise has a finite size without the floor.
+        let [here, there] = [[1.0; 3], [2.0; 3]];
+        let [f0, f1] = [&here, &there].map(|force| Channels {
+            x: &force[..],
+            y: &force[..],
+        });
+        assert!(theta_weber(f0, f0, f1, noise).is_err());
+        assert!(weber_moments(f0, f1, noise).is_err());
     }
     let far = Channels {
         x: &[1e200, 0.0, 0.0][..],

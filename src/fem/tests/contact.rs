@@ -1,3 +1,4 @@
+use crate::fem::field::Batch;
 use crate::fem::{Contact, ContactState, FemError, MESH_SIZE, Model, Pose, PoseSolution};
 
 use super::{builtin, off_centre};
@@ -156,6 +157,56 @@ fn condensed_contact_is_the_full_solve() {
         let check = model.checks(std::slice::from_ref(&solution)).unwrap()[0];
         assert!(check.residual < 1e-8 && check.imbalance < 1e-9, "{check:?}");
         assert!(check.min_det > 0.1 && check.min_det < 1.0, "{check:?}");
+    }
+}
+
+// Verifies: FEM-013.
+#[test]
+fn a_force_that_nothing_answers_is_an_imbalance_in_either_direction() {
+    let model = coarse("4.6", CONTACTS[0]);
+    let solution = solve(&model, 3.0, 2.0);
+    let (displacements, forces) = model.surface().at_nodes(&solution.state, solution.pose);
+    let mut batch = Batch::new(model.matrix.unknowns());
+    let extra = [[0.0, 0.0], [2e-3, 0.0], [0.0, -3e-3], [-2e-3, 1e-3]];
+    for (column, extra) in extra.iter().enumerate() {
+        let mut forces = forces.clone();
+        let middle = forces.len() / 2;
+        (0..2).for_each(|k| forces[middle][k] += extra[k]);
+        batch.set(column, &model.matrix, &displacements, &forces);
+    }
+    let checks = batch.check(&model.matrix, &model.factor, &model.samples);
+    for (check, extra) in checks.unwrap().iter().zip(extra) {
+        let expected = extra[0].abs().max(extra[1].abs());
+        assert!(
+            (check.imbalance - expected).abs() < 1e-9,
+            "{extra:?}: {check:?}"
+        );
+    }
+}
+
+// Verifies: FEM-015.
+#[test]
+fn the_penetration_is_the_depth_of_the_deepest_point_inside_the_probe() {
+    for contact in CONTACTS {
+        let model = coarse("4.6", contact);
+        let surface = model.surface();
+        let untouched = ContactState::untouched(surface.positions.len());
+        let (depth, lateral, radius) = (2e-3, 1.3e-3, 6.5e-3);
+        let pose = |depth: f64| Pose { depth, lateral };
+        // The gel is flat: of the points those nearest to the probe's axis are the deepest.
+        let offsets = surface.positions.iter().map(|[x, _]| (x - lateral).abs());
+        let offset = offsets.fold(f64::INFINITY, f64::min);
+        let expected = match contact {
+            Contact::DeformedNormal => radius - offset.hypot(radius - depth),
+            Contact::VerticalGap => (radius * radius - offset * offset).sqrt() - (radius - depth),
+        };
+        let found = surface.penetration(&untouched, pose(depth));
+        assert!(
+            (found - expected).abs() < 1e-15,
+            "{contact:?}: {found} {expected}"
+        );
+        // A probe above the surface is in no point.
+        assert_eq!(surface.penetration(&untouched, pose(-1e-3)), 0.0);
     }
 }
 

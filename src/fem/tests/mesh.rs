@@ -498,3 +498,32 @@ fn a_phantom_that_no_sound_triangle_follows_is_refused_with_the_place() {
     assert!(phantom.is_symmetric() && !mesh.symmetric);
     assert!(check_angles(&mesh) >= 25.0);
 }
+
+// Verifies: FEM-013.
+#[test]
+fn strains_near_sharp_corners_do_not_count() {
+    let square = polygon(&[[-2.0, 0.0], [2.0, 0.0], [2.0, 4.0], [-2.0, 4.0]]);
+    let mut phantom = with(vec![hard(0.0, 3.0, square), hard(9.0, 4.0, disc(4.0))]);
+    let width = 1e3 * phantom.well.width;
+    let skin = 1e3 * phantom.layers[0].thickness;
+    // A point so far to the right of a place, mm.
+    let sharp = |phantom: &Phantom, [x, y]: [f64; 2], distance: f64| {
+        let at = [x + distance, y].map(|x| x * 1e-3);
+        SizeField::new(phantom, MESH_SIZE).singular(at.into())
+    };
+    let walls = [[-0.5 * width, 0.0], [-0.5 * width, -skin]];
+    let Outline::Polygon(square) = phantom.inclusions[0].outline() else {
+        panic!("a polygon")
+    };
+    let square = square.iter().map(|corner| corner.map(|x| x * 1e3));
+    for corner in walls.into_iter().chain(square) {
+        assert!(sharp(&phantom, corner, 0.99), "{corner:?}");
+        assert!(!sharp(&phantom, corner, 1.01), "{corner:?}");
+    }
+    // Neither the end of a disc's axis nor the middle of a side is sharp, nor a wall that does not hold.
+    for smooth in [[9.0, -4.0], [0.0, -3.0]] {
+        assert!(!sharp(&phantom, smooth, 0.0), "{smooth:?}");
+    }
+    phantom.well.walls = Support::Sliding;
+    assert!(!sharp(&phantom, walls[0], 0.0));
+}

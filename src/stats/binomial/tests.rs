@@ -133,6 +133,9 @@ fn impossible_counts_are_refused() {
             trials: 2
         })
     );
+    // Up to 2⁵³ every count is a number of its own.
+    let most = 1 << 53;
+    assert!(wilson(1, most, 0.9).is_ok() && wilson(1, most + 1, 0.9).is_err());
     assert!(at_least(0, u64::MAX, 0.5).is_err());
     for bad in [0.0, 1.0, -0.1, f64::NAN, f64::INFINITY] {
         assert!(clopper_pearson(1, 2, bad).is_err() && wilson(1, 2, bad).is_err());

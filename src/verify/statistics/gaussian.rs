@@ -24,6 +24,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check::new("coarse_kolmogorov_h1", |draw| kolmogorov(draw, true, 5)),
     Check::new("coarse_false_alarms_at_1_percent", coarse_false_alarms),
     Check::new("coarse_misses_at_5_percent", coarse_misses),
+    Check::new("coarse_noise_variance", coarse_noise_variance),
     Check::new("single_mean_h1", |draw| mean(draw, SINGLE, true, 100)),
     Check::new("single_variance_h0", |draw| {
         variance(draw, SINGLE, false, 110)
@@ -227,6 +228,28 @@ fn variance(draw: &Draw<'_>, series: Series, inclusion: bool, stream: u64) -> Ou
 fn kolmogorov(draw: &Draw<'_>, inclusion: bool, stream: u64) -> Outcome<bool> {
     let (law, theta) = sample(draw, COARSE, inclusion, stream)?;
     kolmogorov_rejects(&theta, law, draw.row.alpha)
+}
+
+/// The noise of each of a record's 16 samples, which tells of its variance what θ, one number a record, tells with 16 times the trials.
+fn coarse_noise_variance(draw: &Draw<'_>) -> Outcome<bool> {
+    let setting = coarse()?;
+    let f0 = view(&setting.f0);
+    let generator = draw.generator(8 + 10 * draw.replicate);
+    let simulation = Simulation::new(f0, view(&setting.template), setting.noise_sd, generator)?;
+    let excess = match draw.defect {
+        "variance_off_1_percent" => libm::sqrt(1.01),
+        _ => 1.0,
+    };
+    let mut residual = [0.0; 16];
+    let mut noise = Vec::new();
+    for trial in 0..draw.trials() {
+        simulation.trial(trial, f0, &mut residual)?;
+        let (x, y) = residual.split_at(8);
+        noise.extend(x.iter().map(|x| excess * x / setting.noise_sd.x));
+        noise.extend(y.iter().map(|y| excess * y / setting.noise_sd.y));
+    }
+    let law = Law { mean: 0.0, sd: 1.0 };
+    variance_rejects(&noise, law, draw.row.alpha)
 }
 
 fn coarse_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {

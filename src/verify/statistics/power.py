@@ -108,6 +108,8 @@ gaussian("coarse_kolmogorov_h1", coarse, True, 200_000, kolmogorov_power)
 gaussian("coarse_false_alarms_at_1_percent", coarse, False, 200_000, false_alarm_power(0.01))
 gaussian("coarse_misses_at_5_percent", coarse, True, 200_000, miss_power(0.05))
 one_channel = ["variance_off_1_percent", "half_left_out", "sd_for_variance"]
+off = [("variance_off_1_percent", variance_power((0, 1), (0, math.sqrt(1.01)), 16 * 200_000))]  # 16 samples a record
+line("coarse_noise_variance", 200_000, off)
 gaussian("single_mean_h1", single, True, 200_000, mean_power, one_channel)
 gaussian("single_variance_h0", single, False, 200_000, variance_power, one_channel)
 gaussian("traverse_mean_h1", traverse, True, 20_000, mean_power)
@@ -142,6 +144,24 @@ line("theta_max_false_alarms", 20_000, [("threshold_of_one_position", binom.sf(b
 # A shift by one sample adds 1 to a mean square of 0.07. Below the threshold effect (gamma = 2.5, 100 candidate shifts, one in three errors
 # spread over the record) the mean square is some 200 against a bound of 7.
 line("position_error", 3_000, [("template_shifted", 1), ("signal_below_the_threshold_effect", 1)])
+
+
+
+def cut_position(overlap_forgotten):
+    """(mean, sd) of the place where a signal at 6 is found whose template is cut off."""
+    u = np.arange(-36, 37) / 20
+    whole = np.array([u * np.exp(-u * u / 2), np.exp(-u * u / 2)])
+    whole *= 1000 / np.linalg.norm(whole)
+    moved = [np.pad(whole[:, 6:67], ((0, 0), (k, 0)))[:, :61] for k in range(15)]
+    energy = [np.sum((moved[0 if overlap_forgotten else k]) ** 2) for k in range(15)]
+    theta = [np.sum(m * whole[:, :61]) - e / 2 for m, e in zip(moved, energy)]
+    k = int(np.argmax(theta))
+    rise, bend = theta[k + 1] - theta[k - 1], 2 * theta[k] - theta[k - 1] - theta[k + 1]
+    slope = (moved[k + 1] - moved[k - 1]) / (2 * bend) - rise * (2 * moved[k] - moved[k - 1] - moved[k + 1]) / (2 * bend**2)
+    return k + rise / (2 * bend), np.linalg.norm(slope)
+
+
+line("position_error_of_a_cut_signal", 3_000, [("overlap_forgotten", variance_power(cut_position(False), cut_position(True), 3_000))])
 
 # theta + ln 2 instead of theta.
 rate = norm.sf(norm.isf(0.05) - math.log(2) / 2)
