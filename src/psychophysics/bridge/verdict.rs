@@ -37,14 +37,12 @@ pub fn verdict(fits: &[ConventionFit], weights: &[WeightRange], ranges: usize) -
 /// Implements: PSY-087.
 fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
     let (first, last) = (weights.first()?, weights.last()?);
-    let count = |holds: &dyn Fn(&WeightRange) -> bool| match weights
-        .iter()
-        .filter(|range| holds(range))
-        .count()
-    {
-        0 => "none".into(),
-        n if n == weights.len() => format!("all {n}"),
-        n => format!("{n}"),
+    let count = |holds: &dyn Fn(&WeightRange) -> bool| {
+        let all = weights.len();
+        match weights.iter().filter(|range| holds(range)).count() {
+            n if n == all => format!("all {all}"),
+            n => format!("{n} of {all}"),
+        }
     };
     let is_level = |range: &WeightRange| {
         let worst = range.fits_worst;
@@ -54,13 +52,10 @@ fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
         .iter()
         .fold(0.0, |w: f64, range| w.max(range.left.upper));
     Some(format!(
-        "Over sweeps of ±{:.0} to ±{:.0} mm, the peak and the whole sweep, the whole level of the normal force fits worst, \
-         against the same less its mean and the lateral force, in {} of {} fits. With the dispersion and {ranges} ranges \
-         counted it is rejected in {}; weights of the level up to {largest:.2} are left by some of them.",
+        "Over sweeps of ±{:.0} to ±{:.0} mm, by the peak and by the whole sweep, the whole level of the normal force fits worse than the same force less its mean and than the lateral force in {} fits. With the dispersion and {ranges} ranges counted it is rejected in {}; the largest weight of the level that one of them leaves is {largest:.2}.",
         1e3 * first.half_sweep,
         1e3 * last.half_sweep,
         count(&is_level),
-        weights.len(),
         count(&|range| range.left.upper < 1.0),
     ))
 }

@@ -120,6 +120,13 @@ fn the_papers_tables_are_there() {
     }
     let bridge = table("table-bridge");
     assert_eq!(bridge.matches("<th scope=\"row\"").count(), 12);
+    // Sweeps of ±5 to ±10 mm, each with the peak and the whole, hold two positions or more.
+    let weights = table("table-weights");
+    assert_eq!(weights.matches("matched filter</td>").count(), 6);
+    for words in ["±5<", "±10<", "the 36 ranges", " to "] {
+        assert!(weights.contains(words), "{words} not in {weights}");
+    }
+    assert_eq!(page.matches("36 ranges counted it is rejected").count(), 3);
     assert!(page.contains("Figure 7 is not made again"));
     let mut study = paper_study();
     study.measured = vec![map_with("mine", |_| 0.1, |_| 0.0)];
