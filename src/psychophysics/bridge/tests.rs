@@ -675,21 +675,20 @@ fn with_many_answers_each_fitted_number_takes_a_degree_of_freedom() {
     }
 }
 
-// Measured data over ±7 mm, peak less the mean: 44.804 against 31.067 and a variance of 63.183, which the gamma law gives 0.054;
-// with a lapse that is 0 the mean is less by 1 and the variance by 2, which gives 0.042 (`scipy.stats.gamma`).
+// Measured data over ±3 mm, peak less the mean: 0.0802 of the tables of new answers have such a deviance (`../reference.py`). With
+// 1.5 % lapses the deviance is less by 0.01 alone, where one degree of freedom less is expected: 43.48 against 30.84 and a variance of 63.17, which
+// the gamma law of scipy gives 0.067.
 // Verifies: PSY-080.
 #[test]
-fn a_convention_is_rejected_only_if_both_fits_by_subject_reject_it() {
+fn the_larger_p_value_of_the_two_fits_by_subject_counts() {
     let signals = computed_signals();
     let less_its_mean = convention(Statistic::Peak, Channel::Normal, Offset::Removed);
     let strengths = signals
         .iter()
-        .map(|(_, s)| s.within(7e-3).strength(less_its_mean));
+        .map(|(_, s)| s.within(3e-3).strength(less_its_mean));
     let found = fit(less_its_mean, strengths.collect(), &observations(2)).unwrap();
-    assert_near(found.by_subject.p_value, 0.054, 2e-3);
-    assert_near(found.by_subject_with_lapse.p_value, 0.042, 2e-3);
-    assert_eq!(found.p_value, found.by_subject.p_value);
-    assert!(!found.is_rejected);
+    assert_near(found.by_subject_with_lapse.p_value, 0.067, 3e-3);
+    assert_near(found.p_value, 0.080, 3e-3);
 }
 
 // Exchanges as far from 0, of 1024, by scipy: fits of each subject with one share of lapses for all by Brent's method, nested. Without
