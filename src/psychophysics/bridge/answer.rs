@@ -315,6 +315,13 @@ pub struct WeightRange {
     pub fits_worst: Option<Convention>,
 }
 
+impl WeightRange {
+    /// Whether the normal force with its whole level has the largest deviance.
+    pub fn level_fits_worst(&self) -> bool {
+        self.fits_worst.is_some_and(Convention::uses_uniform_part)
+    }
+}
+
 /// A noise level for each subject, without lapses, where the mean of the force over the sweep counts by its weight.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct WeightFit {

@@ -604,7 +604,7 @@ fn the_number_of_ranges_is_counted_in_each() {
         for words in [
             "Over sweeps of ±3 to ±10 mm",
             "the lateral force in all 16 fits",
-            "48 ranges counted",
+            "48 ranges counted,",
             &format!("it is rejected in {rejected};"),
         ] {
             assert!(text.contains(words), "{words}: {text}");

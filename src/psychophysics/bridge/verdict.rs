@@ -1,8 +1,6 @@
 //! What the fits say of the question which part of the force the subjects used.
 
-use super::{
-    Channel, ConventionFit, LEVEL, Offset, Statistic, Support, Verdict, WeightRange, told_apart,
-};
+use super::{Channel, ConventionFit, LEVEL, Statistic, Support, Verdict, WeightRange, told_apart};
 use crate::psychophysics::noise::{BACKDRIVE_FRICTION, HUMAN_PERCEPTION, QUANTIZATION};
 
 /// The verdict on all conventions of one condition, and on the weights of the level, `ranges` of them over all conditions.
@@ -44,18 +42,14 @@ fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
             n => format!("{n} of {all}"),
         }
     };
-    let is_level = |range: &WeightRange| {
-        let worst = range.fits_worst;
-        worst.is_some_and(|worst| worst.channel == Channel::Normal && worst.offset == Offset::Kept)
-    };
     let largest = weights
         .iter()
         .fold(0.0, |w: f64, range| w.max(range.left.upper));
     Some(format!(
-        "Over sweeps of ±{:.0} to ±{:.0} mm, by the peak and by the whole sweep, the whole level of the normal force fits worse than the same force less its mean and than the lateral force in {} fits. With the dispersion and {ranges} ranges counted it is rejected in {}; the largest weight of the level that one of them leaves is {largest:.2}.",
+        "Over sweeps of ±{:.0} to ±{:.0} mm, by the peak and by the whole sweep, the whole level of the normal force fits worse than the same force less its mean and than the lateral force in {} fits. Against the best weight of the level, with the dispersion and {ranges} ranges counted, it is rejected in {}; the largest weight of the level that one of them leaves is {largest:.2}.",
         1e3 * first.half_sweep,
         1e3 * last.half_sweep,
-        count(&is_level),
+        count(&WeightRange::level_fits_worst),
         count(&|range| range.left.upper < 1.0),
     ))
 }
