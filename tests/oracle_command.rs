@@ -679,13 +679,13 @@ fn a_refusal_names_the_argument_and_what_would_be_right() {
         ),
         (
             "count_analysis",
-            json!({"correct": [[4]], "trials": 4, "confidence": 0.95}),
+            json!({"correct": [[4]], "trials": 4}),
             "out_of_range",
             &["p_correct"],
         ),
         (
             "count_analysis",
-            json!({"correct": [[5], [1]], "trials": 4, "confidence": 0.95}),
+            json!({"correct": [[5], [1]], "trials": 4}),
             "out_of_range",
             &["correct[0][0]", "0 to 4"],
         ),
@@ -842,7 +842,7 @@ fn each_op_answers() {
         // p = ½: χ² = (1² + 1²)/(4·½·½).
         (
             "count_analysis",
-            json!({"correct": [[3], [1]], "trials": 4.0, "confidence": 0.95}),
+            json!({"correct": [[3], [1]], "trials": 4.0}),
             json!({"pooled": [4], "rate": [0.5], "gamma": [0.0], "chi2": [2.0], "df": 1}),
         ),
     ] {

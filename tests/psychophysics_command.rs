@@ -115,6 +115,14 @@ fn maps_add_noise_and_predicted_shares() {
     for condition in bridge["conditions"].as_array().unwrap() {
         assert_eq!(condition["verdict"]["support"], "change_along_sweep");
     }
+    // How much of the level may count, over ±3 to ±10 mm by the peak and by the whole sweep.
+    assert_eq!(bridge["weight_ranges"], 48);
+    let weights = playback["weights"].as_array().unwrap();
+    assert_eq!(weights.len(), 16);
+    assert_eq!(weights[15]["half_sweep_m"], 0.01);
+    assert_eq!(weights[15]["statistic"], "matched_filter");
+    assert!(weights[15]["left"]["upper"].as_f64().unwrap() < 1.0);
+    assert_eq!(weights[15]["fits_worst"]["offset"], "kept");
     // The other name of the option, the order of the maps, and the table for people.
     let other = maps("--map");
     assert_eq!(json(&borrowed(&other)), answer);
@@ -125,9 +133,14 @@ fn maps_add_noise_and_predicted_shares() {
         (&swept["bridge"]["positions"], &swept["bridge"]["to_m"]),
         (&11.into(), &0.005.into())
     );
+    // Within the sweep that is asked for: ±3, ±4 and ±5 mm.
+    assert_eq!(swept["bridge"]["weight_ranges"], 18);
     let arguments = [&["psychophysics"], &borrowed(&arguments)[..]].concat();
     let text = String::from_utf8(palpate(&arguments).stdout).unwrap();
     assert!(text.contains("peak, normal force less its mean") && text.contains("rejected"));
+    assert!(
+        text.contains("weight of the level") && text.contains("the lateral force in all 16 fits")
+    );
 }
 
 // Verifies: CLI-080, CLI-084, CLI-085.

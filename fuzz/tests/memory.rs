@@ -27,7 +27,7 @@ fn claims() -> Vec<Vec<u8>> {
         "depths_mm = \"0:1e9:1e-9\"".into(),
         grid(2_000),
         "palpate-experiment 1\nseed 1\ntrials 99999999999\nsubject 1\ncondition 1\ninclusions 1\n".into(),
-        r#"{"id":1,"op":"count_analysis","args":{"correct":[[1]],"trials":1000000000,"confidence":0.5}}"#
+        r#"{"id":1,"op":"count_analysis","args":{"correct":[[1]],"trials":1000000000}}"#
             .into(),
         r#"{"id":1,"op":"proportion_interval","args":{"successes":1,"trials":1000000000,"confidence":0.5,"method":"wilson"}}"#
             .into(),

@@ -1,7 +1,7 @@
 //! The answer of `palpate psychophysics` for people.
 
 use super::psychophysics::Answer;
-use crate::psychophysics::bridge::{Bridge, ConditionBridge, ConventionFit};
+use crate::psychophysics::bridge::{Bridge, ConditionBridge, ConventionFit, WeightFit};
 use crate::psychophysics::{
     Bounds, ConditionAnalysis, ConditionComparison, InclusionAnalysis, NoiseDecomposition,
     OpenBounds, Parameter, Psychometric, SubjectAnalysis,
@@ -318,7 +318,47 @@ fn bridge_condition(condition: &ConditionBridge, bridge: &Bridge) -> String {
     for row in &mut rows {
         row.resize(7 + bridge.inclusions.len(), String::new());
     }
-    format!("{}  {}\n", columns(&rows), condition.verdict.text)
+    let mut text = format!("{}  {}\n", columns(&rows), condition.verdict.text);
+    if let Some(survives) = &condition.verdict.survives {
+        text += &format!("\n{}  {survives}\n", weights(condition));
+    }
+    text
+}
+
+/// The weights that the level of the normal force may have.
+fn weights(condition: &ConditionBridge) -> String {
+    let mut rows = vec![
+        [
+            "weight of the level",
+            "sweep, mm",
+            "left",
+            "best",
+            "deviance: whole level",
+            "p",
+            "less its mean",
+            "lateral",
+            "fits worst",
+        ]
+        .map(String::from),
+    ];
+    let deviance = |fit: Option<WeightFit>| {
+        fit.map_or("-".into(), |fit: WeightFit| format!("{:.1}", fit.deviance))
+    };
+    rows.extend(condition.weights.iter().map(|range| {
+        let whole = range.whole_level;
+        [
+            range.statistic.text().into(),
+            format!("±{:.0}", 1e3 * range.half_sweep),
+            format!("{:.2}-{:.2}", range.left.lower, range.left.upper),
+            format!("{:.2}", range.best_weight),
+            deviance(whole),
+            p_value(whole.and_then(|fit| fit.p_value_dispersed)),
+            deviance(range.no_level),
+            deviance(range.lateral),
+            range.fits_worst.map_or("-".into(), |worst| worst.text()),
+        ]
+    }));
+    columns(&rows)
 }
 
 fn convention(fit: &ConventionFit) -> Vec<String> {

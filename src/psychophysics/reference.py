@@ -189,9 +189,65 @@ def bridge():
             print("   simulated mean, sd, p", draws.mean(), draws.std(), (draws >= total).mean())
 
 
+def sweeps():
+    """Weights of the level over sweeps: fits by Brent's method, the expected deviance and p by new answers and new fits."""
+    rng = np.random.default_rng(1999)
+    with open(pathlib.Path(__file__).parent / "bridge" / "signals.csv") as file:
+        rows = np.array([[float(x) for x in r] for r in list(csv.reader(file))[2:]])
+    x = np.concatenate([-rows[:0:-1, 0], rows[:, 0]])
+    channels = [np.concatenate([sign * rows[:0:-1, k:k + 4], rows[:, k:k + 4]]) for k, sign in ((1, 1), (5, -1))]
+
+    def strengths(half, peak, channel, w):
+        f = channels[channel][np.abs(x) <= half + 1e-9]
+        f = f - (1 - w) * f.mean(0)
+        return np.abs(f).max(0) if peak else np.sqrt((f ** 2).mean(0))
+
+    def fits(X, s):
+        """Each subject's ln of the noise and deviance."""
+        def loss(a, k):
+            return -log_binomial(k, N, 0.5 + 0.5 * erf(s / np.exp(a) / 2))
+        grid = np.linspace(np.log(s.max()) - 3, np.log(s.max()) + 5, 161)
+        table = np.clip(0.5 + 0.5 * erf(s[None, :] / np.exp(grid)[:, None] / 2), 1e-300, 1 - 1e-16)
+        found = []
+        for k in X:
+            at = grid[(np.log(table) @ k + np.log1p(-table) @ (N - k)).argmax()]
+            found.append(optimize.minimize_scalar(loss, args=(k,), bounds=(at - 0.1, at + 0.1), method="bounded",
+                                                  options=dict(xatol=1e-10)))
+        return np.array([r.x for r in found]), sum(2 * (saturated(k, N) + r.fun) for k, r in zip(X, found))
+
+    def simulated(X, s, draws=10000):
+        """The deviances of new answers to the fit, each fitted anew on a fine grid."""
+        own = np.exp(fits(X, s)[0])
+        grid = np.exp(np.linspace(np.log(s.min()) - 4, np.log(s.max()) + 5, 1501))
+        table = np.clip(0.5 + 0.5 * erf(s[None, :] / grid[:, None] / 2), 1e-300, 1 - 1e-15)
+        total = np.zeros(draws)
+        for noise in own:
+            K = rng.binomial(N, 0.5 + 0.5 * erf(s / noise / 2), (draws, 4))
+            top = (K @ np.log(table).T + (N - K) @ np.log1p(-table).T).max(1)
+            total += 2 * ((xlogy(K, K / N) + xlogy(N - K, (N - K) / N)).sum(1) - top)
+        return total
+
+    print("weights: deviance at 1, at 0, lateral; best weight, phi, p of 1, range left of 48; p around its end; p of 0 alone")
+    for name, half, peak in [("direct contact", 3, 1), ("direct contact", 6, 1), ("direct contact", 10, 0),
+                             ("FEM data", 3, 1), ("FEM data", 6, 1), ("FEM data", 7, 1), ("FEM data", 10, 1),
+                             ("FEM data", 10, 0), ("measured data", 3, 1), ("measured data", 7, 1), ("measured data", 10, 0)]:
+        X = TABLE[name]
+        W = np.arange(21) / 20
+        D = np.array([fits(X, strengths(half, peak, 0, w))[1] for w in W])
+        best = D.argmin()
+        null = simulated(X, strengths(half, peak, 0, W[best]))
+        phi = max(1, D[best] / null.mean())
+        p = stats.f.sf((D - D[best]) / phi, 1, 29)
+        left = np.where(p >= 0.05 / 48)[0]
+        alone = (simulated(X, strengths(half, peak, 0, 0.0)) >= D[0]).mean()
+        print(name, half, "peak" if peak else "all", D[-1], D[0], fits(X, strengths(half, peak, 1, 1.0))[1], W[best],
+              phi, p[-1], W[left[0]], W[left[-1]], p[left[-1]], p[min(left[-1] + 1, 20)], alone)
+
+
 if __name__ == "__main__":
     tails()
     clusters()
     beta_binomial()
     psychometric()
     bridge()
+    sweeps()

@@ -295,7 +295,7 @@ fn judged(fit: &ConventionFit) -> String {
         "do not reject"
     };
     format!(
-        " The answers to all depths {verdict} the peak of the normal force as what the subjects felt (p = {}).",
+        " Over the sweep of the maps, and with the answers of a subject taken as binomial, the answers to all depths {verdict} the peak of the normal force as what the subjects felt (p = {}).",
         p_value(fit.p_value)
     )
 }

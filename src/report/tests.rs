@@ -65,6 +65,23 @@ fn numbers_of_a_triangular_signal() {
     assert_close(map.two_afc, 0.997314372939209941);
 }
 
+// Either threshold keeps its own bound: with γ² = 15.5, η = γ²/2 − γΦ⁻¹(0.9) and −γ²/2 + γΦ⁻¹(0.98).
+// Verifies: REP-013.
+#[test]
+fn each_bound_has_its_own_threshold() {
+    let mut study = paper_study();
+    study.settings.max_miss = 0.1;
+    study.settings.max_false_alarm = 0.02;
+    let map = &findings(&study).unwrap().maps[2];
+    assert_close(map.bounded_miss.eta, 2.7045264409748262);
+    assert_close(map.bounded_miss.miss, 0.1);
+    assert_close(map.bounded_miss.false_alarm, 0.00396010585635342014);
+    let mirrored = map.bounded_false_alarm.unwrap();
+    assert_close(mirrored.eta, 0.335617546779076951);
+    assert_close(mirrored.false_alarm, 0.02);
+    assert_close(mirrored.miss, 0.0298329075387685601);
+}
+
 // Verifies: REP-011.
 #[test]
 fn of_equal_peaks_the_one_nearest_to_the_middle_counts() {
@@ -132,6 +149,20 @@ fn every_number_of_the_paper_has_its_row() {
 /// Expected values are from mpmath: the noise with the largest likelihood of the four counts solves one equation.
 /// The search for it stops where the likelihood is flat to 1e-9, so that the noise and the shares keep 4 digits fewer
 /// than a double at the least.
+// √(0.15² − 0.1²) and, with 0.5 N/3.28971 = 0.151989 N, √(0.151989² − 0.093²) N. The interval is 0.3 N over √2 Φ⁻¹ of 0.7415 and of 0.9452,
+// the ends with the subjects as the sample (scipy); of all answers pooled it would be 0.179 to 0.255 N.
+// Verifies: REP-020, REP-072.
+#[test]
+fn the_reasons_hold_the_numbers_that_they_name() {
+    let found = findings(&paper_study()).unwrap();
+    let display = &row(&found, "allowed to the display").why;
+    for number in ["it is 0.1118 N", "it is 0.120 N"] {
+        assert!(display.contains(number), "{number}: {display}");
+    }
+    let noise = &row(&found, "of the subjects").why;
+    assert!(noise.contains("interval is 0.133 to 0.327 N"), "{noise}");
+}
+
 // Verifies: REP-073.
 #[test]
 fn rates_are_predicted_with_one_noise_level_for_all_depths() {

@@ -357,7 +357,7 @@ def degrees_of_freedom(subjects):
     return subjects - 1
 
 
-def count_analysis(correct, trials, confidence):
+def count_analysis(correct, trials):
     if trials < 1 or not all(0 <= k <= trials for row in correct for k in row):
         raise Refused("out_of_range", "0 ≤ correct ≤ trials, and at least one trial")
     subjects, columns = len(correct), list(zip(*correct))
@@ -440,7 +440,7 @@ OPS = {
     "noise_budget": {"signal_n": number, "max_false_alarm": probability, "max_miss": probability, "sources_n": series},
     "proportion_interval": {"successes": whole, "trials": whole, "confidence": probability, "method": text},
     "interpolate": {"depths_m": axis, "laterals_m": axis, "table_n": rows, "depth_m": number, "lateral_m": number},
-    "count_analysis": {"correct": lambda v, n: rows(v, n, counts), "trials": whole, "confidence": probability},
+    "count_analysis": {"correct": lambda v, n: rows(v, n, counts), "trials": whole},
     "report_decode": {"bytes": text},
 }
 THRESHOLDS = [op for op in OPS if op.startswith("threshold_")]

@@ -290,8 +290,8 @@ def count_analysis():
         subjects, conditions, trials = draws.integer(2, 6), draws.integer(1, 4), draws.integer(5, 60)
         counts = [[draws.integer(trials // 3, trials - 1) for _ in range(conditions)] for _ in range(subjects)]
         analysis_case(group, "drawn", counts, trials)
-    args = {"correct": [[20, 15], [22, 17]], "trials": 30, "confidence": 0.95}
-    refuse_common(group, args, ["trials", "confidence"], ["correct"])
+    args = {"correct": [[20, 15], [22, 17]], "trials": 30}
+    refuse_common(group, args, ["trials"], ["correct"])
     group.refuse(
         "more right answers than trials", {**args, "correct": [[31, 15], [22, 17]]}, "out_of_range", ["out_of_range"]
     )
@@ -307,10 +307,6 @@ def count_analysis():
     group.refuse(
         "all wrong: γ would be infinite", {**args, "correct": [[0, 15], [0, 17]]}, "overflow", ["infinite_answer"]
     )
-    for confidence in (0, 1):
-        group.refuse(
-            f"confidence {confidence}", {**args, "confidence": confidence}, "out_of_range", ["infinite_answer"]
-        )
     return group
 
 
@@ -357,7 +353,7 @@ def analysis_case(group, kind, counts, trials):
     }
     group.accept(
         kind,
-        {"correct": [list(row) for row in counts], "trials": trials, "confidence": 0.95},
+        {"correct": [list(row) for row in counts], "trials": trials},
         ok,
         wrong,
         tolerance=limits,

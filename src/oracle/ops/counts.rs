@@ -12,13 +12,6 @@ use crate::psychophysics::dispersion;
 pub fn analysis(arguments: &mut Arguments) -> Result<Answer, Refusal> {
     let counts = arguments.rows("correct")?;
     let trials = arguments.whole("trials", 1, MOST_TRIALS)? as f64;
-    let confidence = arguments.number("confidence")?;
-    if !(confidence > 0.0 && confidence < 1.0) {
-        return Err(Refusal::range(
-            "confidence",
-            format_args!("is {confidence}, expected strictly between 0 and 1"),
-        ));
-    }
     check(&counts, trials)?;
     let subjects = counts.len() as f64;
     let (mut pooled, mut rates) = (Vec::new(), Vec::new());

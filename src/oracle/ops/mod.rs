@@ -64,7 +64,7 @@ const PLAIN: &[Op] = ops![
     "report_encode" ("report lateral normal buttons status sequence force_sequence flags version \
         position_unit_nm force_unit_un largest_force_mn period_us watchdog_ms \
         damping_mn_s_per_m friction_mn control") => report::encode,
-    "count_analysis" ("correct trials confidence") => counts::analysis,
+    "count_analysis" ("correct trials") => counts::analysis,
 ];
 
 /// The ops that keep models.

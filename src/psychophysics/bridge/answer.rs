@@ -14,6 +14,16 @@ pub enum Statistic {
     MatchedFilter,
 }
 
+impl Statistic {
+    /// In words.
+    pub fn text(self) -> &'static str {
+        match self {
+            Statistic::Peak => "peak",
+            Statistic::MatchedFilter => "matched filter",
+        }
+    }
+}
+
 /// Which force counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -73,10 +83,7 @@ impl Convention {
 
     /// In words: "peak, normal force", "matched filter, both forces less their means".
     pub fn text(self) -> String {
-        let statistic = match self.statistic {
-            Statistic::Peak => "peak",
-            Statistic::MatchedFilter => "matched filter",
-        };
+        let statistic = self.statistic.text();
         let channel = match self.channel {
             Channel::Normal => "normal force",
             Channel::Lateral => "lateral force",
@@ -109,6 +116,8 @@ pub struct Bridge {
     pub to: f64,
     /// The level at which a convention is rejected.
     pub level: f64,
+    /// The number of ranges of the weight of the force's level, by which that is divided for each of them.
+    pub weight_ranges: usize,
     /// The inclusions that have a map, in the order of the table.
     pub inclusions: Vec<BridgeInclusion>,
     /// Each condition of the table against each convention.
@@ -148,6 +157,8 @@ pub struct ConditionBridge {
     pub noise_by_inclusion: Vec<InclusionNoise>,
     /// The twelve conventions.
     pub conventions: Vec<ConventionFit>,
+    /// Which weights of the level of the normal force the counts leave, for each sweep and statistic.
+    pub weights: Vec<WeightRange>,
     /// What the numbers say.
     pub verdict: Verdict,
 }
@@ -280,6 +291,55 @@ pub struct SubjectFit {
     pub aic: f64,
 }
 
+/// The weights that the level of the normal force may have over one sweep.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WeightRange {
+    /// Half of the sweep, m.
+    #[serde(rename = "half_sweep_m")]
+    pub half_sweep: f64,
+    /// What of the sweep counts.
+    pub statistic: Statistic,
+    /// The smallest and the largest weight, on a grid of 0.05, that the corrected level does not reject.
+    pub left: Bounds,
+    /// φ: the deviance at the best weight over the one expected there, at least 1.
+    pub dispersion: f64,
+    /// The weight that fits best.
+    pub best_weight: f64,
+    /// The level counts as it is: weight 1; `None` without a level.
+    pub whole_level: Option<WeightFit>,
+    /// It does not count: weight 0; `None` if the normal force does not change along the sweep.
+    pub no_level: Option<WeightFit>,
+    /// The lateral force instead; `None` if there is none.
+    pub lateral: Option<WeightFit>,
+    /// Which of the last three has the largest deviance.
+    pub fits_worst: Option<Convention>,
+}
+
+impl WeightRange {
+    /// Whether the normal force with its whole level has the largest deviance.
+    pub fn level_fits_worst(&self) -> bool {
+        self.fits_worst.is_some_and(Convention::uses_uniform_part)
+    }
+}
+
+/// A noise level for each subject, without lapses, where the mean of the force over the sweep counts by its weight.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct WeightFit {
+    /// The weight.
+    pub weight: f64,
+    /// As in [`SubjectFit`].
+    pub deviance: f64,
+    /// As in [`SubjectFit`].
+    pub expected_deviance: f64,
+    /// Inclusions less one, for each subject.
+    pub degrees: u32,
+    /// As in [`SubjectFit`]: the answers of a subject are taken as binomial.
+    pub p_value: f64,
+    /// That of the deviance above the best weight's, with φ, by the F law; `None` without degrees of freedom for φ, and for the
+    /// lateral force.
+    pub p_value_dispersed: Option<f64>,
+}
+
 /// What the numbers say of the conventions, for one condition.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verdict {
@@ -289,7 +349,10 @@ pub struct Verdict {
     pub compatible: Vec<String>,
     /// Those that are.
     pub rejected: Vec<String>,
-    /// The same in sentences, with the numbers that they rest on.
+    /// What holds over sweeps of all widths, with the number of ranges and the dispersion counted; `None` where the maps are
+    /// too narrow for it.
+    pub survives: Option<String>,
+    /// What holds over the sweep of the maps in sentences, with the numbers that they rest on.
     pub text: String,
 }
 
@@ -297,10 +360,10 @@ pub struct Verdict {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Support {
-    /// Only conventions with the mean of the normal force fit.
+    /// Only conventions with the mean of the normal force are not rejected.
     UniformPart,
-    /// Only conventions without it fit: the change of the normal force along the sweep, or the lateral
-    /// force.
+    /// Only conventions without it are not: the change of the normal force along the sweep, or the
+    /// lateral force.
     ChangeAlongSweep,
     /// Some of both fit.
     Undecided,

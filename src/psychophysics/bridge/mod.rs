@@ -12,6 +12,7 @@
 //! | `signals.rs` | a convention's signal from two maps |
 //! | `common.rs` | one noise level for all subjects |
 //! | `subjects.rs` | a noise level for each |
+//! | `weights.rs` | how much of the level may count, over sweeps of other widths |
 //! | `verdict.rs` | what the numbers say |
 
 mod answer;
@@ -21,10 +22,12 @@ mod subjects;
 #[cfg(test)]
 mod tests;
 mod verdict;
+mod weights;
 
 pub use answer::{
     Bridge, BridgeInclusion, Channel, CommonFit, ConditionBridge, Convention, ConventionFit,
     InclusionNoise, LapseFit, ObservedRate, Offset, Statistic, SubjectFit, Support, Verdict,
+    WeightFit, WeightRange,
 };
 pub use signals::whole_sweep;
 
@@ -39,6 +42,7 @@ use common::{Signals, common, common_with_lapse};
 use signals::{Signal, mean};
 use subjects::{by_subject, by_subject_with_lapse};
 use verdict::verdict;
+use weights::{STATISTICS, half_sweeps, weight_ranges};
 
 /// The depth of the probe in the paper's experiments, m.
 const PROBE_DEPTH: f64 = 4e-3;
@@ -104,7 +108,7 @@ impl Observations {
 /// [`PsychophysicsError`] for a name that is no column or comes twice, fewer than two maps, and a map over
 /// other poses than the reference.
 ///
-/// Implements: PSY-070, PSY-071, PSY-072, PSY-079.
+/// Implements: PSY-070, PSY-071, PSY-072, PSY-079, PSY-085.
 pub fn bridge(
     table: &Table,
     reference: &ForceMap,
@@ -128,6 +132,8 @@ pub fn bridge(
     let columns: Vec<usize> = columns.iter().map(|&(column, _)| column).collect();
     let conditions = table.conditions().iter();
     let laterals = whole_reference.laterals();
+    let half_sweeps = half_sweeps(laterals);
+    let ranges = conditions.len() * half_sweeps.len() * STATISTICS.len();
     Ok(Bridge {
         probe_depth,
         probe_depth_note,
@@ -135,12 +141,13 @@ pub fn bridge(
         from: laterals[0],
         to: laterals[laterals.len() - 1],
         level: LEVEL,
+        weight_ranges: ranges,
         inclusions: signals
             .iter()
             .map(|(name, s)| of_inclusion(name, s))
             .collect(),
         conditions: conditions
-            .map(|condition| of_condition(condition, &columns, &signals))
+            .map(|condition| of_condition(condition, &columns, &signals, (&half_sweeps, ranges)))
             .collect::<Result<_, _>>()?,
     })
 }
@@ -207,6 +214,7 @@ fn of_condition(
     condition: &Condition,
     columns: &[usize],
     signals: &[(&str, Signal)],
+    (half_sweeps, ranges): (&[f64], usize),
 ) -> Result<ConditionBridge, PsychophysicsError> {
     let observations = Observations::new(condition, columns)?;
     let (mut observed, mut noise_by_inclusion) = (Vec::new(), Vec::new());
@@ -229,12 +237,15 @@ fn of_condition(
         });
     }
     let conventions = fits(signals, &observations)?;
+    let level = LEVEL / ranges as f64;
+    let weights = weight_ranges(signals, &observations, half_sweeps, level)?;
     Ok(ConditionBridge {
         name: condition.name.clone(),
         observed,
         noise_by_inclusion,
-        verdict: verdict(&conventions),
+        verdict: verdict(&conventions, &weights, ranges),
         conventions,
+        weights,
     })
 }
 

@@ -75,25 +75,45 @@ impl Signal {
             })
     }
 
+    /// The part within `half`, m, of x = 0.
+    pub fn within(&self, half: f64) -> Signal {
+        let inside = |channel: &[f64]| {
+            let poses = self.laterals.iter().zip(channel);
+            let kept = poses.filter(|(x, _)| x.abs() <= half + SAME_POSITION);
+            kept.map(|(_, &force)| force).collect()
+        };
+        Signal {
+            laterals: inside(&self.laterals),
+            normal: inside(&self.normal),
+            lateral: inside(&self.lateral),
+        }
+    }
+
     /// The signal in N that a convention makes of the difference.
     ///
     /// Implements: PSY-070, PSY-071.
     pub fn strength(&self, convention: Convention) -> f64 {
-        let channel = |forces: &[f64], counts: bool| -> Vec<f64> {
-            let offset = match convention.offset {
-                Offset::Kept => 0.0,
-                Offset::Removed => mean(forces),
-            };
-            let weight = f64::from(u8::from(counts));
-            forces
-                .iter()
-                .map(|force| weight * (force - offset))
-                .collect()
+        let weight = match convention.offset {
+            Offset::Kept => 1.0,
+            Offset::Removed => 0.0,
         };
-        let normal = channel(&self.normal, convention.channel != Channel::Lateral);
-        let lateral = channel(&self.lateral, convention.channel != Channel::Normal);
+        self.weighted(convention.statistic, convention.channel, weight)
+    }
+
+    /// The same where the mean over the sweep counts `weight` times, channel by channel.
+    ///
+    /// Implements: PSY-084.
+    pub fn weighted(&self, statistic: Statistic, channel: Channel, weight: f64) -> f64 {
+        let felt = |forces: &[f64], counts: bool| -> Vec<f64> {
+            let offset = (1.0 - weight) * mean(forces);
+            let counts = f64::from(u8::from(counts));
+            let force = |force: &f64| counts * (force - offset);
+            forces.iter().map(force).collect()
+        };
+        let normal = felt(&self.normal, channel != Channel::Lateral);
+        let lateral = felt(&self.lateral, channel != Channel::Normal);
         let energies = normal.iter().zip(&lateral).map(|(n, l)| n * n + l * l);
-        let energy = match convention.statistic {
+        let energy = match statistic {
             Statistic::Peak => energies.fold(0.0, f64::max),
             Statistic::MatchedFilter => energies.sum::<f64>() / self.laterals.len() as f64,
         };

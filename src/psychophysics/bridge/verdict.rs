@@ -1,12 +1,12 @@
 //! What the fits say of the question which part of the force the subjects used.
 
-use super::{Channel, ConventionFit, LEVEL, Statistic, Support, Verdict, told_apart};
+use super::{Channel, ConventionFit, LEVEL, Statistic, Support, Verdict, WeightRange, told_apart};
 use crate::psychophysics::noise::{BACKDRIVE_FRICTION, HUMAN_PERCEPTION, QUANTIZATION};
 
-/// The verdict on all conventions of one condition.
+/// The verdict on all conventions of one condition, and on the weights of the level, `ranges` of them over all conditions.
 ///
-/// Implements: PSY-080, PSY-081, PSY-082.
-pub fn verdict(fits: &[ConventionFit]) -> Verdict {
+/// Implements: PSY-080, PSY-081, PSY-082, PSY-087.
+pub fn verdict(fits: &[ConventionFit], weights: &[WeightRange], ranges: usize) -> Verdict {
     let names = |rejected: bool| {
         let chosen = fits.iter().filter(|fit| fit.is_rejected == rejected);
         chosen.map(|fit| fit.name.clone()).collect::<Vec<_>>()
@@ -25,8 +25,33 @@ pub fn verdict(fits: &[ConventionFit]) -> Verdict {
         support,
         compatible: names(false),
         rejected: names(true),
+        survives: survives(weights, ranges),
         text: text(fits, support),
     }
+}
+
+/// What holds over all sweeps, with the number of ranges and the dispersion counted.
+///
+/// Implements: PSY-087.
+fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
+    let (first, last) = (weights.first()?, weights.last()?);
+    let count = |holds: &dyn Fn(&WeightRange) -> bool| {
+        let all = weights.len();
+        match weights.iter().filter(|range| holds(range)).count() {
+            n if n == all => format!("all {all}"),
+            n => format!("{n} of {all}"),
+        }
+    };
+    let largest = weights
+        .iter()
+        .fold(0.0, |w: f64, range| w.max(range.left.upper));
+    Some(format!(
+        "Over sweeps of ±{:.0} to ±{:.0} mm, by the peak and by the whole sweep, the whole level of the normal force fits worse than the same force less its mean and than the lateral force in {} fits. Against the best weight of the level, with the dispersion and {ranges} ranges counted, it is rejected in {}; the largest weight of the level that one of them leaves is {largest:.2}.",
+        1e3 * first.half_sweep,
+        1e3 * last.half_sweep,
+        count(&WeightRange::level_fits_worst),
+        count(&|range| range.left.upper < 1.0),
+    ))
 }
 
 /// The verdict in sentences.
@@ -57,10 +82,10 @@ fn conclusion(support: Support) -> String {
     let level = LEVEL * 100.0;
     match support {
         Support::ChangeAlongSweep => format!(
-            "The counts support subjects who use how the force changes along the sweep, not its level: at {level} % every convention that counts the uniform part of the normal force is rejected, and at least one without it is not."
+            "Over the whole of these maps, each convention by itself and the answers of a subject taken as binomial, the counts support subjects who use how the force changes along the sweep: at {level} % every convention that counts the whole level of the normal force is rejected, and at least one without it is not."
         ),
         Support::UniformPart => format!(
-            "The counts support subjects who use the level of the normal force: at {level} % only conventions that count its uniform part are not rejected."
+            "Over the whole of these maps, each convention by itself and the answers of a subject taken as binomial, the counts support subjects who use the level of the normal force: at {level} % only conventions that count its uniform part are not rejected."
         ),
         Support::Undecided => format!(
             "The counts do not tell whether the subjects used the level of the normal force: at {level} % some conventions with its uniform part and some without it are not rejected."
@@ -102,12 +127,12 @@ fn both_of(normal: Option<&ConventionFit>, lateral: Option<&ConventionFit>) -> O
         [normal, lateral].map(|fit| fit.by_subject_with_lapse.deviance);
     Some(if p >= LEVEL {
         format!(
-            "The normal force less its mean and the lateral force cannot be told apart (subjects as blocks, p = {}).",
+            "Over this sweep the normal force less its mean and the lateral force cannot be told apart (subjects as blocks, p = {}).",
             p_value(p)
         )
     } else {
         format!(
-            "Of these two the {} force fits better (subjects as blocks, p = {}).",
+            "Over this sweep the {} force fits the better of these two (subjects as blocks, p = {}).",
             if normal_deviance < lateral_deviance {
                 "normal"
             } else {

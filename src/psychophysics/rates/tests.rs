@@ -160,6 +160,15 @@ fn trials_may_differ_between_subjects() {
     assert_near(dispersion.p_value, 0.0002553272005041417, 1e-15);
 }
 
+// A tenth of all answers is right: 1 of 10 and 3 of 30 are expected, and 9 and 27 wrong ones.
+// Verifies: PSY-031.
+#[test]
+fn where_few_answers_are_right_they_make_the_law_rough() {
+    let found = dispersion(&[(3, 10), (1, 30)]).unwrap().unwrap();
+    assert_near(found.smallest_expected, 1.0, 1e-15);
+    assert!(found.is_rough);
+}
+
 // Verifies: PSY-025, PSY-031.
 #[test]
 fn one_subject_or_equal_ones_say_nothing_of_the_next() {

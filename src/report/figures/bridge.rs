@@ -112,7 +112,7 @@ fn words(bridge: &Bridge, condition: &ConditionBridge) -> Words {
             "The paper has no such figure: it computed forces and counted answers, but did not predict the one from the \
              other. Each line takes one part of the force at probe depth {} mm as what the subjects used, with a noise level \
              for each of them (and one share of lapses, where that fits better); the dots are the answers of Table 1. \
-             Rejected lines are dashed; where lines lie on one another, the answers cannot tell them apart. The table below has the numbers, for the other experiments too.",
+             Lines that are rejected over this sweep are dashed; where lines lie on one another, the answers cannot tell them apart. The table below has the numbers, for the other experiments too.",
             millimetres(bridge.probe_depth)
         ),
         alt: format!(

@@ -2,7 +2,7 @@
 
 use super::detection::limit;
 use super::{CONTENTS, Page};
-use crate::psychophysics::bridge::{Bridge, Support};
+use crate::psychophysics::bridge::{Bridge, WeightRange};
 use crate::report::text::{escape, fixed, millimetres, prose, trimmed};
 use crate::report::{Topic, Value, paper};
 
@@ -80,18 +80,24 @@ fn felt(bridge: &Bridge) -> String {
     let Some(condition) = bridge.conditions.get(paper::FEM_PLAYBACK) else {
         return String::new();
     };
-    let verdict = match condition.verdict.support {
-        Support::ChangeAlongSweep => {
-            "fit subjects who feel how the force changes along the sweep, and reject those who would feel the level of the \
-             normal force, whose peak the paper's noise estimate rests on"
+    let weights = &condition.weights;
+    if weights.is_empty() {
+        return String::new();
+    }
+    let is_worst = weights.iter().all(WeightRange::level_fits_worst);
+    let verdict = match (is_worst, weights.iter().all(|of| of.left.upper < 1.0)) {
+        (true, true) => {
+            "are explained worst by the whole level of the normal force, whose peak the paper's noise estimate rests on, and \
+             reject it, however far the subjects swept"
         }
-        Support::UniformPart => {
-            "fit subjects who feel the level of the normal force, and no others"
+        (true, false) => {
+            "are explained worst by the whole level of the normal force, whose peak the paper's noise estimate rests on, \
+             however far the subjects swept, but do not reject it over every sweep"
         }
-        Support::Undecided => {
-            "do not tell whether subjects feel the level of the normal force or its change along the sweep"
+        (false, _) => {
+            "do not tell whether subjects feel the level of the normal force or its change along the sweep: that depends on how \
+             far they swept"
         }
-        Support::None => "fit none of the parts of the force that were tried",
     };
     format!(
         " Set against these forces, the answers of the paper's ten subjects to FEM playback {verdict} \

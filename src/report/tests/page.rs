@@ -2,6 +2,7 @@
 
 use super::study::*;
 use super::{findings, html};
+use crate::phantom::Phantom;
 use crate::report::figures::{chart_ground, chart_inks};
 use crate::report::html::STYLE;
 use crate::report::{Study, figures};
@@ -120,6 +121,13 @@ fn the_papers_tables_are_there() {
     }
     let bridge = table("table-bridge");
     assert_eq!(bridge.matches("<th scope=\"row\"").count(), 12);
+    // Sweeps of ±5 to ±10 mm, each with the peak and the whole, hold two positions or more.
+    let weights = table("table-weights");
+    assert_eq!(weights.matches("matched filter</td>").count(), 6);
+    for words in ["±5<", "±10<", "the 36 ranges", " to "] {
+        assert!(weights.contains(words), "{words} not in {weights}");
+    }
+    assert_eq!(page.matches("36 ranges counted, it is rejected").count(), 3);
     assert!(page.contains("Figure 7 is not made again"));
     let mut study = paper_study();
     study.measured = vec![map_with("mine", |_| 0.1, |_| 0.0)];
@@ -229,5 +237,37 @@ fn print_breaks_no_figure() {
         STYLE
             .matches("screen and (prefers-color-scheme: dark)")
             .count()
+    );
+}
+
+// Verifies: REP-060, PSY-087.
+#[test]
+fn the_page_begins_with_no_more_than_holds_over_every_sweep() {
+    let mut study = paper_study();
+    let opening = |study: &Study| {
+        let page = page(study);
+        page.split("<nav").next().unwrap().to_string()
+    };
+    // The force falls in proportion everywhere: whatever the subjects felt fits as well.
+    assert!(opening(&study).contains("do not tell whether subjects feel the level"));
+    // A level of 0.3 N over every inclusion, and a change that falls as right answers do.
+    let changes = [("2.6", 0.6), ("4.6", 0.4), ("6.6", 0.25), ("8.6", 0.06)];
+    study.maps = changes
+        .map(|(name, change)| {
+            let normal = move |x: f64| if x == 0.0 { 0.3 + change } else { 0.3 };
+            let lateral = move |x: f64| {
+                if x.abs() == 5e-3 {
+                    change * x.signum()
+                } else {
+                    0.0
+                }
+            };
+            map(Phantom::builtin(name).ok(), &DEPTHS, normal, lateral)
+        })
+        .into();
+    let text = opening(&study);
+    assert!(
+        text.contains("are explained worst by the whole level"),
+        "{text}"
     );
 }

@@ -1,0 +1,148 @@
+//! How much of the level of the normal force may count, over how wide a sweep.
+//!
+//! How far a subject swept is not known, and the level may count in part. With weight w the signal of the whole sweep is
+//! √(w² mean² + change²); w = 1 and w = 0 are the two conventions.
+
+use super::common::Signals;
+use super::signals::Signal;
+use super::subjects::by_subject;
+use super::{Channel, Convention, Observations, Offset, Statistic, WeightFit, WeightRange};
+use crate::force_map::SAME_POSITION;
+use crate::psychophysics::PsychophysicsError;
+use crate::psychophysics::dispersion::Overdispersion;
+use crate::psychophysics::rates::Bounds;
+
+/// Half sweeps that are tried, mm.
+const HALF_SWEEPS_MM: core::ops::RangeInclusive<u32> = 3..=10;
+/// Steps of the weight from 0 to 1.
+const STEPS: u32 = 20;
+/// What of the sweep counts.
+pub const STATISTICS: [Statistic; 2] = [Statistic::Peak, Statistic::MatchedFilter];
+
+/// The half sweeps, m, that lie on these positions, two of them at the least.
+///
+/// Implements: PSY-085.
+pub fn half_sweeps(laterals: &[f64]) -> Vec<f64> {
+    let widest = laterals
+        .iter()
+        .fold(0.0, |widest: f64, x| widest.max(x.abs()));
+    let fits = |half: &f64| {
+        let inside = laterals.iter().filter(|x| x.abs() <= half + SAME_POSITION);
+        *half <= widest + SAME_POSITION && inside.count() > 1
+    };
+    let sweeps = HALF_SWEEPS_MM.map(|half| 1e-3 * f64::from(half));
+    sweeps.filter(fits).collect()
+}
+
+/// The range of weights for each sweep and statistic, each rejected below `level`.
+///
+/// Implements: PSY-085, PSY-086.
+pub fn weight_ranges(
+    signals: &[(&str, Signal)],
+    observed: &Observations,
+    half_sweeps: &[f64],
+    level: f64,
+) -> Result<Vec<WeightRange>, PsychophysicsError> {
+    let mut ranges = Vec::new();
+    for &half in half_sweeps {
+        let within: Vec<_> = signals.iter().map(|(_, s)| s.within(half)).collect();
+        for statistic in STATISTICS {
+            ranges.extend(weight_range(&within, observed, (half, statistic), level)?);
+        }
+    }
+    Ok(ranges)
+}
+
+/// `None` without a difference of the normal force.
+fn weight_range(
+    signals: &[Signal],
+    observed: &Observations,
+    (half_sweep, statistic): (f64, Statistic),
+    level: f64,
+) -> Result<Option<WeightRange>, PsychophysicsError> {
+    let at = |channel, weight| weigh(signals, observed, (statistic, channel), weight);
+    let mut fits: Vec<WeightFit> = Vec::new();
+    for step in 0..=STEPS {
+        fits.extend(at(Channel::Normal, f64::from(step) / f64::from(STEPS))?);
+    }
+    let Some(&best) = fits.iter().min_by(by_deviance) else {
+        return Ok(None);
+    };
+    let ratio = if best.expected_deviance > 0.0 {
+        best.deviance / best.expected_deviance
+    } else {
+        1.0
+    };
+    // Less one for the weight itself.
+    let rest = best.degrees - 1;
+    let dispersion = Overdispersion::from((ratio, rest));
+    for fit in fits.iter_mut().filter(|_| rest > 0) {
+        fit.p_value_dispersed = dispersion.p_value(fit.deviance - best.deviance, 1)?;
+    }
+    let is_left = |fit: &&WeightFit| fit.p_value_dispersed.is_none_or(|p| p >= level);
+    let left = || fits.iter().filter(is_left).map(|fit| fit.weight);
+    let at_weight = |weight| fits.iter().find(|fit| fit.weight == weight).copied();
+    // A force that has a level but does not change has no signal at weight 0.
+    let (whole_level, no_level) = (at_weight(1.0), at_weight(0.0));
+    let lateral = at(Channel::Lateral, 1.0)?;
+    Ok(Some(WeightRange {
+        half_sweep,
+        statistic,
+        left: Bounds {
+            lower: left().fold(1.0, f64::min),
+            upper: left().fold(0.0, f64::max),
+        },
+        dispersion: dispersion.factor,
+        best_weight: best.weight,
+        fits_worst: worst(statistic, [whole_level, no_level, lateral]),
+        whole_level,
+        no_level,
+        lateral,
+    }))
+}
+
+/// One convention at one weight of the level; `None` without a signal.
+///
+/// Implements: PSY-084.
+fn weigh(
+    signals: &[Signal],
+    observed: &Observations,
+    (statistic, channel): (Statistic, Channel),
+    weight: f64,
+) -> Result<Option<WeightFit>, PsychophysicsError> {
+    let strength = |signal: &Signal| signal.weighted(statistic, channel, weight);
+    let strengths: Vec<f64> = signals.iter().map(strength).collect();
+    if strengths.iter().all(|&strength| strength == 0.0) {
+        return Ok(None);
+    }
+    let fit = by_subject(&Signals(strengths), observed)?;
+    Ok(Some(WeightFit {
+        weight,
+        deviance: fit.deviance,
+        expected_deviance: fit.expected_deviance,
+        degrees: (observed.subjects.len() * (signals.len() - 1)) as u32,
+        p_value: fit.p_value,
+        p_value_dispersed: None,
+    }))
+}
+
+fn by_deviance(a: &&WeightFit, b: &&WeightFit) -> core::cmp::Ordering {
+    a.deviance.total_cmp(&b.deviance)
+}
+
+/// Which of the normal force, the same less its mean and the lateral force has the largest deviance.
+fn worst(statistic: Statistic, fits: [Option<WeightFit>; 3]) -> Option<Convention> {
+    let conventions = [
+        (Channel::Normal, Offset::Kept),
+        (Channel::Normal, Offset::Removed),
+        (Channel::Lateral, Offset::Kept),
+    ];
+    let known = fits.iter().zip(conventions);
+    let known = known.filter_map(|(fit, convention)| Some((fit.as_ref()?, convention)));
+    let (_, (channel, offset)) = known.max_by(|a, b| by_deviance(&a.0, &b.0))?;
+    Some(Convention {
+        statistic,
+        channel,
+        offset,
+    })
+}
