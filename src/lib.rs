@@ -76,6 +76,8 @@ pub mod force_map;
 #[doc(hidden)]
 pub mod fuzzing;
 pub mod hid;
+#[cfg(feature = "std")]
+mod input;
 #[cfg(feature = "oracle")]
 pub mod oracle;
 #[cfg(feature = "std")]

@@ -465,6 +465,13 @@ fn bad_files_are_refused_with_file_and_line() {
     fs::write(folder().join("latin1.csv"), b"position_mm\xff").unwrap();
     let path = |file: &str| folder().join(file).display().to_string();
     let [trace, none, inclusion] = ["with.csv", "none.json", "inclusion.json"].map(path);
+    let mut other: Value = serde_json::from_str(&fs::read_to_string(&none).unwrap()).unwrap();
+    let mesh_size = other["certificate"]["mesh_size_m"].clone();
+    other["certificate"]["mesh_size_m"] = 0.003.into();
+    fs::write(path("coarse.json"), other.to_string()).unwrap();
+    other["certificate"]["mesh_size_m"] = mesh_size;
+    other["phantom"]["layer"][0]["material"]["youngs_modulus_pa"] = 7.5e4.into();
+    fs::write(path("other-gel.json"), other.to_string()).unwrap();
     for (trace, reference, inclusion, expected) in [
         (
             path("latin1.csv"),
@@ -485,7 +492,30 @@ fn bad_files_are_refused_with_file_and_line() {
             "palpate solve",
         ),
         (trace.clone(), &inclusion, &none, "the other way round"),
-        (trace.clone(), &none, &none, "the maps do not differ"),
+        (
+            trace.clone(),
+            &none,
+            &none,
+            "none.json: number of inclusions is 0, and 0",
+        ),
+        (
+            trace.clone(),
+            &inclusion,
+            &inclusion,
+            "number of inclusions is 1, and 1",
+        ),
+        (
+            trace.clone(),
+            &path("other-gel.json"),
+            &inclusion,
+            "phantom.layer[0].material.youngs_modulus_pa is",
+        ),
+        (
+            trace.clone(),
+            &path("coarse.json"),
+            &inclusion,
+            "mesh_size_m is",
+        ),
         (trace.clone(), &trace, &inclusion, "with.csv:2: header"),
     ] {
         let files = [
@@ -504,4 +534,26 @@ fn bad_files_are_refused_with_file_and_line() {
             "{error}"
         );
     }
+}
+
+// Verifies: CLI-047.
+#[test]
+fn maps_that_do_not_belong_together_are_taken_where_they_are_meant_and_told() {
+    let path = |file: &str| folder().join(file).display().to_string();
+    let [trace, inclusion] = ["with.csv", "inclusion.json"].map(path);
+    let maps = [
+        "--reference",
+        &inclusion,
+        "--inclusion",
+        &inclusion,
+        "--any-maps",
+    ];
+    let output = palpate(&[&["detect", &trace], &maps[..], &USUAL].concat());
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        told.contains("warning") && told.contains("number of inclusions is 1"),
+        "{told}"
+    );
+    assert_eq!(output.status.code(), Some(2));
+    assert!(told.contains("the maps do not differ"), "{told}");
 }

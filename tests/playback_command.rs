@@ -121,19 +121,23 @@ fn a_map_that_the_servo_refuses_is_refused_with_its_file() {
 fn a_map_too_stiff_is_refused_or_scaled() {
     let folder = folder("stiff");
     let stiff = map(&folder, "stiff.json", 2_400.0, 0.0);
-    let output = palpate(&["play", "--map", &stiff]);
-    assert_eq!(output.status.code(), Some(2));
-    let error = text(&output.stderr);
-    // 2b/T of the paper's display here: 2 · 0.6 N·s/m / 1 ms.
-    assert!(
-        error.contains("2400.0 N/m") && error.contains("1200.0 N/m"),
-        "{error}"
-    );
-    assert!(error.contains("--scale"), "{error}");
-    let output = palpate(&["play", "--map", &stiff, "--scale", "--format", "json"]);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert!((summary["scale"].as_f64().unwrap() - 0.5).abs() < 1e-4);
+    // 4 mm, and half a millimetre by which the table is continued: 10.8 N. 2b/T of the paper's display: 2 · 0.6 N·s/m / 1 ms.
+    for (force, found, allowed, scale) in [
+        ("4", "10.8000 N of force", "4.0000", 4.0 / 10.8),
+        ("8", "2400.0", "1200.0000", 0.5),
+    ] {
+        let output = palpate(&["play", "--map", &stiff, "--max-force", force]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = text(&output.stderr);
+        for part in [found, allowed, "--scale"] {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+        let scaled = ["--max-force", force, "--scale", "--format", "json"];
+        let output = palpate(&[&["play", "--map", &stiff], &scaled[..]].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!((summary["scale"].as_f64().unwrap() - scale).abs() < 1e-4);
+    }
     let output = palpate(&["play", "--map", &stiff, "--scale", "--max-force", "21"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("--max-force 21"));
@@ -290,6 +294,11 @@ fn an_experiment_goes_on_after_an_abort() {
         text(&output.stdout)
     );
     assert!(text(&output.stderr).contains("expected 1, 2 or q"));
+    // An input without an end is no person.
+    let zeros = std::fs::File::open("/dev/zero").unwrap();
+    let output = person.stdin(zeros).output().unwrap();
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).starts_with("8 of 20 pairs answered"));
 }
 
 // Verifies: CLI-002.

@@ -273,3 +273,16 @@ fn a_reader_who_has_gone_away_is_no_error() {
         .unwrap();
     assert_eq!(said, "");
 }
+
+// Verifies: CLI-008.
+#[test]
+fn a_file_without_an_end_is_refused() {
+    let output = palpate(&["psychophysics", "/dev/zero"]);
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        error.contains("/dev/zero") && error.contains("256 MiB"),
+        "{error}"
+    );
+    assert_eq!(error.lines().count(), 1);
+}

@@ -201,7 +201,7 @@ fn place_of_phantom(file: &Path, index: usize) -> Option<String> {
         reference: Option<Spanned<String>>,
         phantoms: Vec<Spanned<String>>,
     }
-    let text = std::fs::read_to_string(file).ok()?;
+    let text = crate::input::read(file).ok()?;
     let places: Places = toml::from_str(&text).ok()?;
     let (key, name) = match index.checked_sub(1) {
         None => ("reference".into(), places.reference.as_ref()?),

@@ -25,6 +25,9 @@ pub struct DetectArguments {
     /// The force map with the inclusion; --scan says where its x = 0 lies
     #[arg(long, value_name = "MAP")]
     inclusion: PathBuf,
+    /// Takes maps of different gels, meshes or versions of the program, and of any inclusions, and says so
+    #[arg(long)]
+    any_maps: bool,
     /// The constant depth of the sweep in mm
     #[arg(long, value_name = "D", value_parser = millimetres, allow_hyphen_values = true)]
     depth_mm: f64,
@@ -146,7 +149,7 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
         .map(|(velocity, start)| Motion { velocity, start });
     let record = Trace::read(&arguments.trace)?.record(motion)?;
     let (reference, inclusion) = (map(&arguments.reference)?, map(&arguments.inclusion)?);
-    check_not_swapped(&reference, &inclusion, &arguments.reference)?;
+    check_pair(arguments, &reference, &inclusion)?;
     let (depth, prior_h1) = (arguments.depth_mm, arguments.prior_h1);
     let (f0, f1) = (reference.forces(), inclusion.forces());
     let files = [&arguments.trace, &arguments.reference, &arguments.inclusion];
@@ -225,19 +228,23 @@ fn map(path: &Path) -> Result<ForceMap, CliError> {
     )))
 }
 
+/// Refuses maps of which one is not the other with an inclusion, or tells of them where they are meant.
+///
 /// Implements: CLI-047.
-fn check_not_swapped(
+fn check_pair(
+    arguments: &DetectArguments,
     reference: &ForceMap,
     inclusion: &ForceMap,
-    path: &Path,
 ) -> Result<(), CliError> {
-    let has_inclusion =
-        |map: &ForceMap| map.phantom().map(|phantom| !phantom.inclusions.is_empty());
-    match (has_inclusion(reference), has_inclusion(inclusion)) {
-        (Some(true), Some(false)) => Err(CliError::Usage(format!(
-            "{}: its phantom has an inclusion and that of --inclusion has none, expected --reference and --inclusion the other way round",
-            path.display()
+    let file = arguments.inclusion.display();
+    match inclusion.check_reference(reference) {
+        Ok(()) => Ok(()),
+        Err(error) if arguments.any_maps => {
+            eprintln!("palpate: warning: {file}: {error}");
+            Ok(())
+        }
+        Err(error) => Err(CliError::Usage(format!(
+            "{file}: {error} (or use --any-maps)"
         ))),
-        _ => Ok(()),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 use std::fs::{File, OpenOptions};
-use std::io::{BufRead, Write};
+use std::io::{BufRead, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -132,11 +132,13 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
     let damping = damping(&capabilities, arguments.device.delay_periods());
     let limits = limits(4.0)?;
     let reference = Sample::read(&arguments.reference, &damping, &limits)?;
-    let inclusions = arguments
-        .inclusion
-        .iter()
-        .map(|(_, path)| Sample::read(path, &damping, &limits))
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut inclusions = Vec::new();
+    for (_, path) in &arguments.inclusion {
+        let inclusion = Sample::read(path, &damping, &limits)?;
+        let checked = inclusion.map.check_reference(&reference.map);
+        checked.map_err(|error| failed(path.display(), error))?;
+        inclusions.push(inclusion);
+    }
     let (mut journal, mut file) = open_journal(arguments)?;
     let pairs = Pairs {
         arguments,
@@ -306,12 +308,18 @@ fn open(arguments: &ExperimentArguments) -> Result<Box<dyn HapticDevice>, CliErr
     Ok(Box::new(device))
 }
 
+/// The longest line that is read from the keyboard, bytes.
+const LONGEST_LINE: u64 = 1024;
+
 /// A line from the keyboard; `None` at its end.
 fn line(prompt: &str) -> Option<String> {
     eprint!("{prompt}");
     let mut text = String::new();
-    match std::io::stdin().lock().read_line(&mut text) {
-        Ok(0) | Err(_) => None,
+    let mut keyboard = std::io::stdin().lock().take(LONGEST_LINE);
+    match keyboard.read_line(&mut text) {
+        // More than a line is no person.
+        Ok(length) if length == 0 || length as u64 == LONGEST_LINE => None,
+        Err(_) => None,
         Ok(_) => Some(text.trim().to_string()),
     }
 }

@@ -63,7 +63,7 @@ fn end_of_links(path: &Path) -> PathBuf {
 
 /// Reads a text file.
 pub fn read(path: &Path) -> Result<String, CliError> {
-    std::fs::read_to_string(path).map_err(|error| CliError::File {
+    crate::input::read(path).map_err(|error| CliError::File {
         action: "read",
         path: path.display().to_string(),
         error,

@@ -1,8 +1,28 @@
-//! Progress of long work, on a terminal alone.
+//! What is told of long work.
 
 use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::fem::{FemError, Mesh};
+use crate::phantom::Phantom;
+
+/// A mesh of so many nodes takes a while: five times those of the paper's phantoms.
+const MANY_NODES: f64 = 50_000.0;
+
+/// Says on standard error, before it is made, that a mesh will be large.
+///
+/// Implements: CLI-017.
+pub fn tell_large_mesh(phantom: &Phantom, size: f64) -> Result<(), FemError> {
+    let nodes = Mesh::expected_nodes(phantom, size)?;
+    if nodes > MANY_NODES {
+        eprintln!(
+            "palpate: note: phantom {}: a mesh of about {nodes:.0} nodes, where the paper's phantoms have 10000: a pose may take minutes",
+            phantom.name
+        );
+    }
+    Ok(())
+}
 
 /// A bar on standard error that counts `total` pieces of `what`; hidden where standard error is no
 /// terminal.

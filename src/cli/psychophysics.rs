@@ -106,12 +106,15 @@ fn read_maps(arguments: &PsychophysicsArguments) -> Result<Option<Maps>, CliErro
             None => Ok(map),
         }
     };
-    let inclusions = arguments.inclusion.iter();
-    let maps = inclusions.map(|(name, path)| Ok((name.clone(), read(path)?)));
-    Ok(Some((
-        read(reference)?,
-        maps.collect::<Result<_, CliError>>()?,
-    )))
+    let reference = read(reference)?;
+    let mut maps = Vec::new();
+    for (name, path) in &arguments.inclusion {
+        let map = read(path)?;
+        let checked = map.check_reference(&reference);
+        checked.map_err(|error| CliError::Usage(format!("{}: {error}", path.display())))?;
+        maps.push((name.clone(), map));
+    }
+    Ok(Some((reference, maps)))
 }
 
 /// The part of a map within `half`, m, of x = 0.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::CliError;
 use super::config::Config;
 use super::output::{make_folder, print, write};
-use super::progress::bar;
+use super::progress::{bar, tell_large_mesh};
 use super::solve::warn_of_large_strain;
 use crate::fem::certify::certified_map;
 use crate::fem::{FemError, Model, Pose};
@@ -109,6 +109,7 @@ fn solve_phantom(
     bar: &ProgressBar,
 ) -> Result<(ForceMap, Option<DeformedMesh>), FemError> {
     let mesh = &config.mesh;
+    tell_large_mesh(phantom, mesh.size_mm / 1e3)?;
     let model = Model::new(phantom, mesh.size_mm / 1e3, mesh.contact.into())?;
     let (depths, laterals) = (&config.depths_mm.0, &config.laterals_mm.0);
     // Each map on three meshes.

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 
 use super::lists::{Positions, positions};
 use super::output::{print, write};
-use super::progress::bar;
+use super::progress::{bar, tell_large_mesh};
 use super::{CliError, ContactName};
 use crate::fem::certify::certified_map;
 use crate::fem::{FemError, MESH_SIZE, Model, Pose};
@@ -102,6 +102,7 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         error,
     };
     let size = arguments.mesh_mm.unwrap_or(MESH_SIZE);
+    tell_large_mesh(&phantom, size).map_err(failed)?;
     let model = Model::new(&phantom, size, arguments.contact.into()).map_err(failed)?;
     let meshes = if arguments.certify { 3 } else { 1 };
     let columns = model.solved_laterals(laterals).len();

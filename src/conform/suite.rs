@@ -126,7 +126,7 @@ impl Suite {
                 .to_string_lossy()
                 .into_owned();
             if name.ends_with(".json") && !name.ends_with(".data.json") {
-                let text = std::fs::read_to_string(&path).map_err(|cause| failed(&path, cause))?;
+                let text = crate::input::read(&path).map_err(|cause| failed(&path, cause))?;
                 files.insert(name, text);
             }
         }

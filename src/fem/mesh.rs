@@ -72,14 +72,8 @@ impl Mesh {
     ///
     /// Implements: FEM-018.
     pub fn new(phantom: &Phantom, size: f64) -> Result<Mesh, FemError> {
-        if !(size > 0.0 && size.is_finite()) {
-            return Err(FemError::MeshSize { size });
-        }
+        Mesh::expected_nodes(phantom, size)?;
         let field = SizeField::new(phantom, size);
-        let nodes = field.expected_nodes();
-        if nodes > MOST_NODES {
-            return Err(FemError::TooManyNodes { size, nodes });
-        }
         let mut symmetric = phantom.is_symmetric();
         let mut triangles = Triangulation::new(phantom, &field, symmetric);
         if symmetric && triangles.is_err() {
@@ -97,6 +91,23 @@ impl Mesh {
         }
         mesh.find_borders(phantom);
         Ok(mesh)
+    }
+
+    /// About how many nodes [`Mesh::new`] will make: known at once, where the mesh may take seconds and each pose a minute.
+    ///
+    /// # Errors
+    /// [`FemError::MeshSize`] and [`FemError::TooManyNodes`], as [`Mesh::new`].
+    ///
+    /// Implements: FEM-036.
+    pub fn expected_nodes(phantom: &Phantom, size: f64) -> Result<f64, FemError> {
+        if !(size > 0.0 && size.is_finite()) {
+            return Err(FemError::MeshSize { size });
+        }
+        let nodes = SizeField::new(phantom, size).expected_nodes();
+        if nodes > MOST_NODES {
+            return Err(FemError::TooManyNodes { size, nodes });
+        }
+        Ok(nodes)
     }
 
     /// Triangles with a node in the middle of each edge.

@@ -149,7 +149,7 @@ impl ForceMap {
     /// Implements: MAP-026.
     pub fn read(path: &Path) -> Result<ForceMap, ForceMapFileError> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
+        let text = crate::input::read(path)
             .map_err(|error| ForceMapFileProblem::Read(error.to_string()).at(&file, None))?;
         let is_csv = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("csv");
         if path.extension().is_some_and(is_csv) {

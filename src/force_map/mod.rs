@@ -7,6 +7,7 @@
 //! | `table.rs` | axes and matrices; symmetry, difference, one depth |
 //! | `sweep.rs` | the forces between the poses, along a sweep |
 //! | `interpolation.rs` | the paper's rule between and beyond the poses |
+//! | `pair.rs` | whether two maps are one gel without and with an inclusion |
 //! | `certificate.rs` | the quality of a computed map |
 //! | `error.rs` | what can be wrong |
 //! | `file.rs`, `json.rs`, `csv.rs` | files |
@@ -33,6 +34,7 @@ mod error;
 mod file;
 mod interpolation;
 mod json;
+mod pair;
 mod sweep;
 mod table;
 #[cfg(test)]
@@ -45,6 +47,7 @@ pub use interpolation::ProbeForce;
 #[cfg(feature = "oracle")]
 pub(crate) use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
+pub use pair::Unpaired;
 pub use sweep::Sweep;
 pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
 

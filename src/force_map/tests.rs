@@ -495,3 +495,80 @@ fn bands_follow_their_forces_and_survive_the_file() {
             .contains("discretization")
     );
 }
+
+// Verifies: MAP-053, MAP-054.
+#[test]
+fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
+    let map = |change: &dyn Fn(&mut Phantom)| {
+        let mut phantom = Phantom::builtin("6.6").unwrap();
+        change(&mut phantom);
+        ForceMap::new(measured(), Some(phantom), table()).unwrap()
+    };
+    let with = map(&|_| ());
+    let without = map(&|phantom| (phantom.inclusions.clear(), phantom.name = "plain".into()).0);
+    assert_eq!(with.check_reference(&without), Ok(()));
+    // What is not known may be anything.
+    let unknown = ForceMap::new(measured(), None, table()).unwrap();
+    for (reference, inclusion) in [
+        (&unknown, &with),
+        (&without, &unknown),
+        (&unknown, &unknown),
+    ] {
+        assert_eq!(inclusion.check_reference(reference), Ok(()));
+    }
+    let refused = |reference: &ForceMap, inclusion: &ForceMap| {
+        let error = inclusion.check_reference(reference).unwrap_err();
+        (error.key.clone(), error.reference.clone(), error.inclusion)
+    };
+    for (reference, inclusion, counts) in [
+        (&with, &without, ["1", "0"]),
+        (&with, &with, ["1", "1"]),
+        (&without, &without, ["0", "0"]),
+        (&with, &unknown, ["1", "unknown"]),
+        (&unknown, &without, ["unknown", "0"]),
+    ] {
+        let (key, found, of_inclusion) = refused(reference, inclusion);
+        assert_eq!(
+            (key.as_str(), [found.as_str(), &of_inclusion]),
+            ("number of inclusions", counts)
+        );
+    }
+    let changes: [(&str, &dyn Fn(&mut Phantom)); 4] = [
+        ("phantom.well.width_m", &|phantom| phantom.well.width *= 2.0),
+        ("phantom.layer[0].material.poisson_ratio", &|phantom| {
+            phantom.layers[0].material.poisson_ratio = 0.4
+        }),
+        ("phantom.layer", &|phantom| {
+            phantom.layers.push(phantom.layers[0].clone())
+        }),
+        ("phantom.probe.radius_m", &|phantom| {
+            phantom.probe.radius *= 0.9
+        }),
+    ];
+    for (key, change) in changes {
+        let other = map(&|phantom| {
+            phantom.inclusions.clear();
+            change(phantom);
+        });
+        assert_eq!(refused(&other, &with).0, key);
+    }
+    let solved = |name: &str, change: fn(&mut Certificate)| {
+        let ForceMap { source, .. } = computed(change).unwrap();
+        ForceMap::new(source, Phantom::builtin(name).ok(), table()).unwrap()
+    };
+    let (with, without) = (solved("6.6", |_| ()), solved("none", |_| ()));
+    assert_eq!(with.check_reference(&without), Ok(()));
+    let changes: [(&str, fn(&mut Certificate)); 3] = [
+        ("mesh_size_m", |certificate| certificate.mesh_size = 0.001),
+        ("contact", |certificate| {
+            certificate.contact = "vertical-gap".into()
+        }),
+        ("element", |certificate| certificate.element = "q4".into()),
+    ];
+    for (key, change) in changes {
+        assert_eq!(refused(&solved("none", change), &with).0, key);
+    }
+    let mut older = without;
+    older.program_version = "0.0.1".into();
+    assert_eq!(refused(&older, &with).0, "program_version");
+}

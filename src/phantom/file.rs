@@ -63,7 +63,7 @@ impl Phantom {
     /// As [`Phantom::from_toml`]; also if the file cannot be read as UTF-8.
     pub fn read(path: &Path) -> Result<Phantom, PhantomFileError> {
         let file = path.display().to_string();
-        match std::fs::read_to_string(path) {
+        match crate::input::read(path) {
             Ok(text) => Phantom::from_toml(&text, &file),
             Err(error) => Err(PhantomFileError {
                 file,

@@ -192,7 +192,7 @@ impl Table {
     /// As [`Table::from_csv`]; [`TableProblem::Read`] if the file cannot be read as UTF-8.
     pub fn read(path: &Path) -> Result<Table, TableError> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| TableError {
+        let text = crate::input::read(path).map_err(|error| TableError {
             file: file.clone(),
             line: 1,
             problem: TableProblem::Read(error.to_string()),

@@ -33,7 +33,7 @@ pub use axis::{
 pub use limit::{FORCE_CEILING, InvalidLimits, Limits, MIN_SLEW, RELEASE_CYCLES, approach, limit};
 #[cfg(feature = "std")]
 pub use load::{HAND_SPEED, LoadError, LoadedTable, RoundingError, SURFACE_FORCE};
-pub use passivity::{Damping, rotation, stiffness};
+pub use passivity::{Damping, stiffness};
 pub use state::{Command, Fault, Force, Input, Mode, Request, Sample, State};
 pub use step::{MOST_AHEAD, step};
 pub use table::{InvalidTable, TABLE_FORCE_LIMIT, Table, blend};

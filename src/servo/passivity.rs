@@ -102,68 +102,6 @@ pub fn stiffness(table: &Table) -> f64 {
     largest
 }
 
-/// The friction, N, that holds what a table would give out on closed paths.
-///
-/// Its force on the hand is −∇U and a rest that is nowhere larger than this, on the table and the continued cells. U is the
-/// work of the normal force along the depth, and a part that depends on x alone, chosen cell by cell: so the rest is lateral,
-/// F_x + ∂/∂x ∫ F_n dd less the middle of its range in the cell. Where the force jumps at the surface, by as much more.
-///
-/// ```
-/// use palpate::servo::{Axis, Force, Table, rotation};
-///
-/// // On the right, a normal force 1 N larger at a depth of half a metre, but no lateral force that would say so.
-/// let force = |normal| Force { lateral: 0.0, normal };
-/// let forces = [force(0.0), force(0.0), force(4.0), force(5.0)];
-/// let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
-/// let table = Table::new(axis, axis, &forces)?;
-/// // ∂F_n/∂x = 4 d, continued to d = 1: its integral is from 0 to 2.
-/// assert_eq!(rotation(&table), 1.0);
-/// # Ok::<(), palpate::servo::InvalidTable>(())
-/// ```
-///
-/// Implements: SRV-053.
-pub fn rotation(table: &Table) -> f64 {
-    let (depths, laterals) = (table.depths().knots(), table.laterals().knots());
-    let mut largest = 0.0;
-    for column in 0..=laterals.len() {
-        let ends = [continued(laterals, column), continued(laterals, column + 1)];
-        let width = f64::from(ends[1]) - f64::from(ends[0]);
-        // Above the surface there is no force.
-        let mut range = [0.0, 0.0];
-        let mut include = |rest: f64| {
-            range = [libm::fmin(range[0], rest), libm::fmax(range[1], rest)];
-        };
-        let mut integral = 0.0;
-        let mut above: Option<(f64, f64, [f64; 2])> = None;
-        for row in 1..=depths.len() + 1 {
-            let depth = continued(depths, row);
-            let forces = ends.map(|lateral| table.continued(depth, lateral));
-            let normal = forces.map(|force| f64::from(force.normal));
-            let (depth, slope) = (f64::from(depth), (normal[1] - normal[0]) / width);
-            let height = above.map_or(0.0, |(last, ..)| depth - last);
-            let last_slope = above.map_or(slope, |(_, slope, _)| slope);
-            integral += 0.5 * (slope + last_slope) * height;
-            let rest = forces.map(|force| f64::from(force.lateral) + integral);
-            rest.into_iter().for_each(&mut include);
-            for (end, (_, _, last)) in above.into_iter().flat_map(|above| [(0, above), (1, above)])
-            {
-                // A parabola between the rows, which may turn there.
-                let bend = (slope - last_slope) / height;
-                let start = (rest[end] - last[end]) / height - 0.5 * bend * height;
-                let turn = -start / bend;
-                if turn > 0.0 && turn < height {
-                    include(last[end] + 0.5 * start * turn);
-                }
-            }
-            above = Some((depth, slope, rest));
-        }
-        largest = libm::fmax(largest, 0.5 * (range[1] - range[0]));
-    }
-    let first = table.forces().iter().take(laterals.len());
-    let jump = first.fold(0.0, |jump, force| libm::fmax(jump, magnitude(force)));
-    largest + jump
-}
-
 /// The largest component of any force of a table and of its continued cells, N.
 pub(super) fn largest_component(table: &Table) -> f64 {
     let (depths, laterals) = (table.depths().knots(), table.laterals().knots());
@@ -179,12 +117,8 @@ pub(super) fn largest_component(table: &Table) -> f64 {
     largest
 }
 
-fn magnitude(force: &Force) -> f64 {
-    libm::hypot(f64::from(force.lateral), f64::from(force.normal))
-}
-
 /// The knots with one more on each side, as far away as the next: 0 is the one in front.
-fn continued(knots: &[f32], index: usize) -> f32 {
+pub(super) fn continued(knots: &[f32], index: usize) -> f32 {
     let knot = |index: usize| knots.get(index).copied().unwrap_or_default();
     let mirrored = |end: f32, inner: f32| 2.0 * end - inner;
     match index {

@@ -37,7 +37,7 @@ impl Trace {
     /// As [`Trace::from_csv`]; [`TraceProblem::Read`] if the file cannot be read as UTF-8.
     pub fn read(path: &Path) -> Result<Trace, TraceError> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
+        let text = crate::input::read(path)
             .map_err(|error| TraceProblem::Read(error.to_string()).at(&file, None))?;
         Trace::from_csv(&text, &file)
     }

@@ -74,7 +74,7 @@ fn weight_range(
         1.0
     };
     // Less one for the weight itself.
-    let rest = best.degrees - 1;
+    let rest = best.degrees.saturating_sub(1);
     let dispersion = Overdispersion::from((ratio, rest));
     for fit in fits.iter_mut().filter(|_| rest > 0) {
         fit.p_value_dispersed = dispersion.p_value(fit.deviance - best.deviance, 1)?;

@@ -127,7 +127,7 @@ fn path(generator: &Generator, number: u64, damping: &Damping) -> Path {
     let [kind, speed, x, size] = words(0);
     let speed = HAND_SPEED * if kind < 0.3 { 1.0 } else { 0.05 + 0.95 * speed };
     let turn = std::f64::consts::TAU;
-    let x = 16e-3 * (x - 0.5);
+    let x = 14e-3 * (x - 0.5);
     if words(1)[0] < 0.5 {
         let phases = [words(2), words(3)];
         let weights = [words(4), words(5)];
@@ -140,8 +140,8 @@ fn path(generator: &Generator, number: u64, damping: &Damping) -> Path {
                 };
                 (0..3).map(harmonic).sum()
             };
-            // Within the table and the cells by which it is continued.
-            let lateral = (x + 6e-3 * size * wave(0)).clamp(-11e-3, 11e-3);
+            // Between the sides of the table, and down to where it is continued.
+            let lateral = (x + 6e-3 * size * wave(0)).clamp(-10e-3, 10e-3);
             [lateral, (-0.2e-3 + 2.5e-3 * wave(1).abs()).min(4.5e-3)]
         };
         Path::along(curve, speed, damping.period_s)

@@ -215,21 +215,65 @@ fn the_stiffness_is_the_steepest_slope_by_differences() {
 
 // Verifies: SRV-053.
 #[test]
-fn the_rotation_is_half_the_range_of_what_has_no_potential() {
+fn the_rotation_is_the_largest_work_over_way_of_any_box() {
     let rotation = |forces: fn(f64, f64) -> [f64; 2]| {
         let map = map(&[0.0, 0.25, 0.5], &[0.0, 0.5], forces);
         rotation(&LoadedTable::new(&map).unwrap().table().unwrap())
     };
-    // All is linear, and continued to d = 0.75: F_x = 3 d alone, from 0 to 9/4.
-    assert_eq!(rotation(|d, _| [3.0 * d, 0.0]), 1.125);
-    // ∂F_n/∂x = 4 d alone: its integral 2 d², from 0 to 9/8.
-    assert_eq!(rotation(|d, x| [0.0, 4.0 * d * x]), 0.5625);
-    // Together −d + 2 d²: −1/8 at d = 1/4, where the parabola turns, 3/8 at the end.
-    assert_eq!(rotation(|d, x| [-d, 4.0 * d * x]), 0.25);
-    // −d/2 + 2 d² turns at 1/8, between two rows, to −1/32; 3/4 at the end.
-    assert_eq!(rotation(|d, x| [-0.5 * d, 4.0 * d * x]), 0.390_625);
+    let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
+    // All is linear, and continued to d = 0.75, so that a box is up to 0.5 wide and 0.75 high. F_x = 3 d: 3 w h / 2 (w + h).
+    near(rotation(|d, _| [3.0 * d, 0.0]), 3.0 * 0.375 / 2.5);
+    near(rotation(|d, _| [-3.0 * d, 0.0]), 3.0 * 0.375 / 2.5);
+    // ∂F_n/∂x = 4 d is 1, 2 and 3 at most in the three cells of 1/8: worst are the two below, 0.5 high.
+    near(rotation(|d, x| [0.0, 4.0 * d * x]), 5.0 / 8.0 / 2.0);
+    // Together −1 + 4 d: 0, 1, 2 at most, and −1 at least.
+    near(rotation(|d, x| [-d, 4.0 * d * x]), 3.0 / 8.0 / 2.0);
+    // With a potential, d² x, but F_x is linear within a cell in place of square: ∂F_x/∂d is −1/4, −3/4 and once more that, and
+    // ∂F_n/∂x = 2 d at most 1/2, 1 and 3/2. Of 1/4, 1/4 and 3/4 the last cell is as bad as the last two, and as all.
+    near(rotation(|d, x| [-d * d, 2.0 * d * x]), 0.0625);
     // A force at the surface counts as it is: 2⁻⁷ N, and no more where it stays.
-    assert_eq!(rotation(|_, _| [0.0, 0.0078125]), 0.0078125);
+    near(rotation(|_, _| [0.0, 0.0078125]), 0.0078125);
+}
+
+// Verifies: SRV-053.
+#[test]
+fn no_box_is_worse_than_the_rotation() {
+    let generator = crate::stats::random::Generator::new(20_261_122, 3);
+    for number in 0..20 {
+        let normal = |index: u64, of: u64| 0.1 * generator.normal(of, 100 * number + index);
+        let forces = Matrix::from_fn(4, 6, |row, column| normal((6 * row + column) as u64, 0));
+        let lateral = Matrix::from_fn(4, 6, |row, column| normal((6 * row + column) as u64, 1));
+        let depths = vec![1e-3, 2e-3, 4e-3, 5e-3];
+        let laterals = vec![-5e-3, -3e-3, 0.0, 1e-3, 2e-3, 5e-3];
+        let map = ForceTable::new(depths, laterals, forces, lateral).unwrap();
+        let loaded = LoadedTable::new(&map).unwrap();
+        let table = loaded.table().unwrap();
+        let depths = [0.0, 1e-3, 2e-3, 4e-3, 5e-3, 6e-3f32];
+        let laterals = table.laterals().knots();
+        // The work around a cell by its sides, where it does not change its sign within: so a lower bound.
+        let around = |row: usize, column: usize| {
+            let at = |d: usize, x: usize| table.continued(depths[row + d], laterals[column + x]);
+            let [h, w] = [
+                depths[row + 1] - depths[row],
+                laterals[column + 1] - laterals[column],
+            ];
+            let lateral = at(1, 0).lateral + at(1, 1).lateral - at(0, 0).lateral - at(0, 1).lateral;
+            let normal = at(0, 1).normal + at(1, 1).normal - at(0, 0).normal - at(1, 0).normal;
+            0.5 * f64::from(lateral * w + normal * h)
+        };
+        let found = rotation(&table);
+        let mut worst = 0.0f64;
+        for (top, left) in (0..5).flat_map(|top| (0..5).map(move |left| (top, left))) {
+            for (bottom, right) in (top..5).flat_map(|b| (left..5).map(move |r| (b, r))) {
+                let cells = (top..=bottom).flat_map(|row| (left..=right).map(move |c| (row, c)));
+                let work: f64 = cells.map(|(row, column)| around(row, column)).sum();
+                let height = f64::from(depths[bottom + 1] - depths[top]);
+                let width = f64::from(laterals[right + 1] - laterals[left]);
+                worst = worst.max(work.abs() / (2.0 * (width + height)));
+            }
+        }
+        assert!(found >= worst && found < 4.0 * worst, "{found} {worst}");
+    }
 }
 
 // Verifies: SRV-052.

@@ -1,0 +1,102 @@
+//! Whether two maps may be taken as the force without and with an inclusion.
+
+use serde_json::{Value, json};
+
+use super::ForceMap;
+
+/// In what two maps differ that are taken as one gel without and with an inclusion.
+///
+/// ```
+/// use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
+/// use palpate::phantom::Phantom;
+///
+/// let map = |name| {
+///     let forces = || Matrix::from_fn(1, 1, |_, _| 1.5);
+///     let forces = ForceTable::new(vec![0.004], vec![0.0], forces(), forces()).expect("forces");
+///     let source = Source::Measured { file: "gel.csv".into(), note: "".into() };
+///     ForceMap::new(source, Phantom::builtin(name).ok(), forces).expect("a map")
+/// };
+/// assert!(map("6.6").check_reference(&map("none")).is_ok());
+/// let swapped = map("none").check_reference(&map("6.6")).unwrap_err();
+/// assert_eq!((swapped.key.as_str(), swapped.reference.as_str()), ("number of inclusions", "1"));
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{key} is {inclusion}, and {reference} in the reference, expected {expected}")]
+pub struct Unpaired {
+    /// The key in the maps' files, or what was counted.
+    pub key: String,
+    /// The reference's.
+    pub reference: String,
+    /// That of the map with the inclusion.
+    pub inclusion: String,
+    /// What would be right.
+    pub expected: &'static str,
+}
+
+impl ForceMap {
+    /// Checks that `reference` is the same gel without an inclusion, under the same probe, from the same program, mesh and
+    /// contact law; where a map does not say, it may be anything.
+    ///
+    /// # Errors
+    /// [`Unpaired`], with the first difference.
+    ///
+    /// Implements: MAP-053, MAP-054.
+    pub fn check_reference(&self, reference: &ForceMap) -> Result<(), Unpaired> {
+        let inclusions = |map: &ForceMap| map.phantom().map(|phantom| phantom.inclusions.len());
+        let (without, with) = (inclusions(reference), inclusions(self));
+        if without.is_some_and(|n| n > 0) || with == Some(0) {
+            let counted = |n: Option<usize>| n.map_or("unknown".into(), |n| n.to_string());
+            return Err(Unpaired {
+                key: "number of inclusions".into(),
+                reference: counted(without),
+                inclusion: counted(with),
+                expected: match (without, with) {
+                    (Some(1..), Some(0)) => "the maps the other way round",
+                    _ => "one at least, and none in the reference",
+                },
+            });
+        }
+        match first_difference("", &circumstances(reference), &circumstances(self)) {
+            None => Ok(()),
+            Some((key, reference, inclusion)) => Err(Unpaired {
+                key,
+                reference,
+                inclusion,
+                expected: "maps that differ in their inclusions alone",
+            }),
+        }
+    }
+}
+
+/// All but the inclusions that a force depends on, as in the file; null where the map does not say.
+fn circumstances(map: &ForceMap) -> Value {
+    let mut phantom = json!(map.phantom());
+    if let Some(keys) = phantom.as_object_mut() {
+        keys.remove("name");
+        keys.remove("inclusion");
+    }
+    let certificate = map.certificate();
+    json!({
+        "phantom": phantom,
+        "mesh_size_m": certificate.map(|certificate| certificate.mesh_size),
+        "element": certificate.map(|certificate| &certificate.element),
+        "contact": certificate.map(|certificate| &certificate.contact),
+        "program_version": certificate.map(|_| map.program_version()),
+    })
+}
+
+/// The first key whose values are known and differ, with both.
+fn first_difference(key: &str, a: &Value, b: &Value) -> Option<(String, String, String)> {
+    match (a, b) {
+        (Value::Null, _) | (_, Value::Null) => None,
+        (Value::Object(a), Value::Object(b)) => a.iter().find_map(|(name, a)| {
+            let key = format!("{key}{}{name}", if key.is_empty() { "" } else { "." });
+            first_difference(&key, a, b.get(name)?)
+        }),
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            let mut entries = a.iter().zip(b).enumerate();
+            entries.find_map(|(k, (a, b))| first_difference(&format!("{key}[{k}]"), a, b))
+        }
+        _ => (a != b).then(|| (key.to_owned(), a.to_string(), b.to_string())),
+    }
+}
