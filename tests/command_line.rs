@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -872,4 +873,36 @@ fn a_pipe_as_output_is_written_into_and_stays() {
     succeed(&here, &quick_vtu("pipe"));
     assert!(reader.join().unwrap().starts_with("<?xml"));
     assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+}
+
+// Verifies: CLI-017.
+#[test]
+fn a_large_mesh_is_told_before_it_is_made() {
+    let folder = folder("large-mesh");
+    let phantom = folder.join("wide.toml");
+    let narrow = include_str!("../docs/phantom.toml");
+    let wide = narrow.replace("width_mm = 34.0", "width_mm = 1000.0");
+    assert_ne!(wide, narrow);
+    fs::write(&phantom, wide).unwrap();
+    let mut solve = Command::new(env!("CARGO_BIN_EXE_palpate"))
+        .args(["solve", "--depths-mm", "1", "--laterals-mm", "0"])
+        .arg("--phantom")
+        .arg(&phantom)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut told = String::new();
+    let read = BufReader::new(solve.stderr.take().unwrap()).read_line(&mut told);
+    // The rest takes minutes.
+    solve.kill().unwrap();
+    solve.wait().unwrap();
+    read.unwrap();
+    // A mesh of 178,918 nodes was made once; the forecast is within 25 % (FEM-036).
+    let nodes = told
+        .split("about ")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next());
+    let nodes: f64 = nodes.expect(&told).parse().unwrap();
+    assert!((nodes / 178_918.0 - 1.0).abs() < 0.25, "{told}");
 }

@@ -1,0 +1,79 @@
+//! Which requirements `cargo test` leaves unchecked, and what checks them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::trace::Trace;
+
+const WITNESSES: &str = "PALPATE_REQUIRE_WITNESSES=1 cargo test";
+const CHROMIUM: &str = "PALPATE_REQUIRE_CHROMIUM=1 cargo test";
+const WORKSPACE: &str = "cargo test --workspace";
+const IGNORED: &str = "cargo test --release -p palpate-proofs -- --ignored";
+
+/// Evidence that `cargo test` does not run, or skips where a program is missing: by the beginning of its name, with what runs it.
+const ELSEWHERE: [(&str, &str); 13] = [
+    ("tests/hid-stack/", "tests/hid-stack/run"),
+    ("tests/accuracy.rs", WITNESSES),
+    ("tests/vectors_suite.rs", WITNESSES),
+    ("tests/witness/", WITNESSES),
+    ("tests/report_page/", CHROMIUM),
+    ("proofs/src/", WORKSPACE),
+    ("fuzz/", WORKSPACE),
+    ("proofs/tests/", IGNORED),
+    ("proofs/gappa/", ".ci/run"),
+    ("benches/", ".ci/run"),
+    (".ci/run", ".ci/run"),
+    ("tests/same_bits/", "tests/same_bits/run"),
+    ("tests/reproducible/", "tests/reproducible/run"),
+];
+
+/// What runs one of these tests and proofs, if `cargo test` runs none; `asked` says which of the variables are set.
+fn command<'a>(
+    evidence: impl IntoIterator<Item = &'a String>,
+    asked: &impl Fn(&str) -> bool,
+) -> Option<&'static str> {
+    let mut commands = evidence.into_iter().map(|name| {
+        let mut elsewhere = ELSEWHERE.iter();
+        let (_, command) = elsewhere.find(|(begin, _)| name.starts_with(begin))?;
+        let variable = command.split_once("=1 cargo");
+        let runs = variable.is_some_and(|(variable, _)| asked(variable));
+        (!runs).then_some(*command)
+    });
+    let first = commands.next()??;
+    commands.all(|command| command.is_some()).then_some(first)
+}
+
+/// The requirements that `cargo test` does not check, or not where a program is missing, with what checks them.
+///
+/// Implements: EVD-034.
+pub fn unchecked(trace: &Trace, asked: impl Fn(&str) -> bool) -> String {
+    let mut by_command: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for (id, row) in &trace.rows {
+        if let Some(command) = command(row.tests.iter().chain(&row.proofs), &asked) {
+            by_command.entry(command).or_default().insert(id);
+        }
+    }
+    let count: usize = by_command.values().map(BTreeSet::len).sum();
+    let mut text = format!("\n{count} requirements are not checked by `cargo test` alone:\n");
+    for (command, ids) in by_command {
+        let ids: Vec<&str> = ids.into_iter().collect();
+        text += &format!("  {} by `{command}`: {}\n", ids.len(), ids.join(" "));
+    }
+    text
+}
+
+// Verifies: EVD-034.
+#[test]
+fn what_runs_elsewhere_alone_is_told_with_its_command() {
+    let found = |names: &[&str], variable: &str| {
+        let names: Vec<String> = names.iter().map(|name| name.to_string()).collect();
+        command(&names, &|asked| asked == variable)
+    };
+    let witness = "tests/accuracy.rs::a";
+    assert_eq!(found(&[witness], ""), Some(WITNESSES));
+    assert_eq!(found(&[witness], "PALPATE_REQUIRE_WITNESSES"), None);
+    assert_eq!(found(&[witness, "src/lib.rs::b"], ""), None);
+    assert_eq!(found(&["src/lib.rs::b", witness], ""), None);
+    let both = ["tests/hid-stack/src/main.rs::c", witness];
+    assert_eq!(found(&both, ""), Some("tests/hid-stack/run"));
+    assert_eq!(found(&[], ""), None);
+}
