@@ -205,13 +205,16 @@ impl TypeGenerator for Exchange {
     }
 }
 
-// Verifies: HID-008, HID-009, HID-011.
+// Verifies: HID-008, HID-009, HID-011, HID-028.
 #[test]
 #[cfg_attr(kani, kani::proof, kani::unwind(10), kani::solver(cadical))]
 fn a_device_gives_finite_samples_and_takes_any_force() {
     harness!(Exchange, |case| {
         let capabilities = capabilities(&case.words);
-        let known = case.words[0] == 1 && case.words[1] != 0 && case.words[2] != 0;
+        let [version, position, force, largest, ..] = case.words;
+        // A report holds up to 32767 counts of µN, and the largest force is in mN.
+        let held = u32::from(force) * 32_767 >= u32::from(largest) * 1000;
+        let known = version == 1 && position != 0 && force != 0 && held;
         let units = Units::new(&capabilities);
         assert!(units.is_ok() == known);
         if let Ok(units) = units {

@@ -533,15 +533,16 @@ fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
             ("number of inclusions", counts)
         );
     }
-    let changes: [(&str, &dyn Fn(&mut Phantom)); 4] = [
-        ("phantom.well.width_m", &|phantom| phantom.well.width *= 2.0),
-        ("phantom.layer[0].material.poisson_ratio", &|phantom| {
+    type Change<T> = fn(&mut T);
+    let changes: [(&str, Change<Phantom>); 4] = [
+        ("phantom.well.width_m", |phantom| phantom.well.width *= 2.0),
+        ("phantom.layer[0].material.poisson_ratio", |phantom| {
             phantom.layers[0].material.poisson_ratio = 0.4
         }),
-        ("phantom.layer", &|phantom| {
+        ("phantom.layer", |phantom| {
             phantom.layers.push(phantom.layers[0].clone())
         }),
-        ("phantom.probe.radius_m", &|phantom| {
+        ("phantom.probe.radius_m", |phantom| {
             phantom.probe.radius *= 0.9
         }),
     ];
@@ -558,7 +559,7 @@ fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
     };
     let (with, without) = (solved("6.6", |_| ()), solved("none", |_| ()));
     assert_eq!(with.check_reference(&without), Ok(()));
-    let changes: [(&str, fn(&mut Certificate)); 3] = [
+    let changes: [(&str, Change<Certificate>); 3] = [
         ("mesh_size_m", |certificate| certificate.mesh_size = 0.001),
         ("contact", |certificate| {
             certificate.contact = "vertical-gap".into()

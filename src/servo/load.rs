@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use super::passivity::{Damping, largest_component, stiffness};
+use super::passivity::{Damping, stiffness};
 use super::{Axis, Force, InvalidAxis, InvalidTable, MAX_KNOTS, MIN_WIDTH, POSITION_LIMIT};
 use super::{Limits, TABLE_FORCE_LIMIT, Table};
 use crate::force_map::{ForceTable, Matrix};
-use rotation::rotation;
+use rotation::{largest_component, rotation};
 
 /// Largest force at the surface, N, that counts as none: the noise of the paper's sensor (Table 2).
 pub const SURFACE_FORCE: f64 = 0.02;

@@ -102,35 +102,6 @@ pub fn stiffness(table: &Table) -> f64 {
     largest
 }
 
-/// The largest component of any force of a table and of its continued cells, N.
-pub(super) fn largest_component(table: &Table) -> f64 {
-    let (depths, laterals) = (table.depths().knots(), table.laterals().knots());
-    let mut largest = 0.0;
-    for row in 1..=depths.len() + 1 {
-        for column in 0..=laterals.len() + 1 {
-            let force = table.continued(continued(depths, row), continued(laterals, column));
-            for component in [force.lateral, force.normal] {
-                largest = libm::fmax(largest, libm::fabs(f64::from(component)));
-            }
-        }
-    }
-    largest
-}
-
-/// The knots with one more on each side, as far away as the next: 0 is the one in front.
-pub(super) fn continued(knots: &[f32], index: usize) -> f32 {
-    let knot = |index: usize| knots.get(index).copied().unwrap_or_default();
-    let mirrored = |end: f32, inner: f32| 2.0 * end - inner;
-    match index {
-        0 => mirrored(knot(0), knot(1)),
-        _ if index > knots.len() => {
-            let last = knots.len().saturating_sub(1);
-            mirrored(knot(last), knot(last.saturating_sub(1)))
-        }
-        _ => knot(index - 1),
-    }
-}
-
 /// The width of a cell, m.
 fn width(ends: &[f32]) -> f64 {
     match ends {

@@ -1,6 +1,5 @@
-//! What a table gives out on a closed path because its forces have no potential.
+//! What a table gives out on a closed path because its forces have no potential, and its largest force.
 
-use crate::servo::passivity::continued;
 use crate::servo::{Force, Table};
 
 /// A cell of a table between two depths and two lateral positions.
@@ -99,4 +98,33 @@ fn worst_box(rows: &[Vec<Cell>], sense: usize, ratio: f64) -> (f64, f64) {
         }
     }
     worst
+}
+
+/// The largest component of any force of a table and of its continued cells, N.
+pub(super) fn largest_component(table: &Table) -> f64 {
+    let (depths, laterals) = (table.depths().knots(), table.laterals().knots());
+    let mut largest = 0.0f64;
+    for row in 1..=depths.len() + 1 {
+        for column in 0..=laterals.len() + 1 {
+            let force = table.continued(continued(depths, row), continued(laterals, column));
+            for component in [force.lateral, force.normal] {
+                largest = f64::from(component.abs()).max(largest);
+            }
+        }
+    }
+    largest
+}
+
+/// The knots with one more on each side, as far away as the next: 0 is the one in front.
+fn continued(knots: &[f32], index: usize) -> f32 {
+    let knot = |index: usize| knots.get(index).copied().unwrap_or_default();
+    let mirrored = |end: f32, inner: f32| 2.0 * end - inner;
+    match index {
+        0 => mirrored(knot(0), knot(1)),
+        _ if index > knots.len() => {
+            let last = knots.len().saturating_sub(1);
+            mirrored(knot(last), knot(last.saturating_sub(1)))
+        }
+        _ => knot(index - 1),
+    }
 }
