@@ -454,6 +454,4 @@ fn rounded(value: f64, largest: &mut f64) -> f32 {
 mod rotation;
 
 #[cfg(test)]
-mod energy;
-#[cfg(test)]
 mod tests;

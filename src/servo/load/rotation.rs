@@ -56,7 +56,7 @@ pub fn rotation(table: &Table) -> f64 {
     };
     let rows: Vec<Vec<Cell>> = (1..=depths.len()).map(row).collect();
     let first = table.forces().iter().take(laterals.len());
-    let jump = first.map(|force| f64::from(force.lateral.hypot(force.normal)));
+    let jump = first.map(|force| libm::hypot(force.lateral.into(), force.normal.into()));
     worst(&rows, 0).max(worst(&rows, 1)) + jump.fold(0.0, f64::max)
 }
 

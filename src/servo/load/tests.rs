@@ -1,5 +1,7 @@
 //! Loading on maps whose rounding and slopes are known.
 
+mod energy;
+
 use proptest::prelude::*;
 
 use super::*;

@@ -1,6 +1,6 @@
 //! A passivity observer: a hand that is moved along closed paths on tables that were accepted gets no energy from the device.
 
-use super::*;
+use super::super::*;
 use crate::servo::{Command, Input, Mode, Request, Sample, State, step};
 use crate::stats::random::Generator;
 
