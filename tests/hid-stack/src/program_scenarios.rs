@@ -24,7 +24,7 @@ const PROGRAM: &str = "/palpate";
 
 fn play(serial: &str) -> Result<Child, String> {
     let arguments = [
-        "play", "--map", "/map.csv", "--device", "hid", "--vid", "1209", "--pid", "0001",
+        "play", "--map", "/map.csv", "--scale", "--device", "hid", "--vid", "1209", "--pid", "0001",
     ];
     Command::new(PROGRAM)
         .args(arguments)
