@@ -159,6 +159,21 @@ impl DeviceError {
     }
 }
 
+impl DeviceError {
+    /// Whether it took seconds to fail, so that asking again would hold up the loop.
+    pub fn is_stalled(&self) -> bool {
+        match self {
+            DeviceError::Stalled => true,
+            // The words of `ETIMEDOUT`: the system gives no code here.
+            #[cfg(feature = "std")]
+            DeviceError::System { message, .. } => {
+                message.contains("timed out") || message.contains("ETIMEDOUT")
+            }
+            _ => false,
+        }
+    }
+}
+
 impl fmt::Display for DeviceError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {

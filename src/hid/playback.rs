@@ -267,7 +267,7 @@ impl<'a> Playback<'a> {
             last = send();
             let Err(error) = &last else { break };
             self.counters.refused += 1;
-            if error.is_gone() || *error == DeviceError::Stalled {
+            if error.is_gone() || error.is_stalled() {
                 break;
             }
         }

@@ -64,10 +64,15 @@ fn refusal() -> Result<String, String> {
     .map_err(text)?;
     let Run { end, .. } = run("refusal", 10_000)?;
     let record = board.unplug().map_err(text)?;
-    let End::Device(error) = end else {
-        return Err(format!("the loop went on: {end}"));
+    // It takes the stop, which has an endpoint of its own, but not the force report of zero.
+    let End::Unstopped(end, unstopped) = end else {
+        return Err(format!("the loop went on, or the zero came through: {end}"));
     };
-    let error = error.to_string();
+    let error = end.to_string();
+    ensure!(
+        matches!(*end, End::Device(_)) && unstopped.is_stalled(),
+        "{error}"
+    );
     ensure!(error.contains("serial refusal"), "{error}");
     let dropped = record
         .dropped_after
