@@ -173,17 +173,17 @@ pub fn limit(value: f32, largest: f32) -> f32 {
 /// Implements: SRV-021.
 #[inline]
 pub fn approach(last: f32, target: f32, rise: f32, fall: f32) -> f32 {
-    let low = if last > 0.0 {
-        between(last - fall, 0.0, last)
+    // As if `last` were positive; the products by ±1 are exact.
+    let sign = if last < 0.0 { -1.0 } else { 1.0 };
+    let size = sign * last;
+    let low = if size > fall {
+        size - fall
+    } else if size > 0.0 {
+        0.0
     } else {
-        last - rise
+        -rise
     };
-    let high = if last < 0.0 {
-        between(last + fall, last, 0.0)
-    } else {
-        last + rise
-    };
-    between(target, low, high)
+    sign * between(sign * target, low, size + rise)
 }
 
 /// The number nearest to `value` from `low` to `high`, for `low` ≤ `high`; a NaN gives `low`.

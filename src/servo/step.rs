@@ -9,10 +9,11 @@ use super::{approach, limit};
 /// Implements: SRV-040.
 pub const MOST_AHEAD: u16 = 32767;
 
-/// What stands in for a sample that did not come, so that the time is the same with and without.
+/// What stands in for a sample that did not come, so that the time is the same with and without. The deadman counts as held: one
+/// lost sample is no emergency.
 const NO_SAMPLE: Sample = Sample {
     sequence: 0,
-    deadman: false,
+    deadman: true,
     device_fault: false,
     depth: 0.0,
     lateral: 0.0,
@@ -62,11 +63,11 @@ pub fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (Stat
     let may_arm = fresh && !sample.deadman && last == Force::ZERO && !state.arming;
     let mode = next_mode(state.mode, cause, input.request, may_arm);
 
-    let playing = mode == Mode::Armed && fresh && sample.deadman;
-    let let_go = came && !sample.deadman;
-    // One lost sample is no emergency: the watchdog decides. A force that is played falls quickly, since one that lags behind
-    // a hand that withdraws would push it.
-    let fall = if mode == Mode::Armed && !playing && !let_go {
+    let held = mode == Mode::Armed && sample.deadman;
+    let playing = held && fresh;
+    // A force that is played falls quickly, since one that lags behind a hand that withdraws would push it. Without a fresh
+    // sample it falls slowly, and the watchdog decides.
+    let fall = if held && !fresh {
         limits.slew()
     } else {
         limits.release()

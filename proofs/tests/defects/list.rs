@@ -96,25 +96,25 @@ pub const DEFECTS: &[Defect] = &[
     Defect {
         name: "a rise without a limit",
         file: LIMIT,
-        edits: &[("last + rise", "target")],
+        edits: &[("size + rise", "sign * target")],
         found_by: "slew_is_limited",
     },
     Defect {
         name: "a fall with the wrong sign",
         file: LIMIT,
-        edits: &[("last - fall", "last + fall")],
+        edits: &[("size - fall\n", "size + fall\n")],
         found_by: "a_released_force_is_zero_in_three_cycles_of_half_the_limit",
     },
     Defect {
         name: "a force that turns in one cycle",
         file: LIMIT,
-        edits: &[("between(last - fall, 0.0, last)", "last - fall")],
+        edits: &[("if size > fall", "if size > 0.0")],
         found_by: "slew_is_limited",
     },
     Defect {
         name: "a played force that falls as slowly as it rises",
         file: STEP,
-        edits: &[("&& !playing && !let_go", "&& !let_go")],
+        edits: &[("if held && !fresh", "if held")],
         found_by: "slew_is_limited",
     },
     Defect {
@@ -162,7 +162,7 @@ pub const DEFECTS: &[Defect] = &[
     Defect {
         name: "the deadman ignored",
         file: STEP,
-        edits: &[("&& fresh && sample.deadman", "&& fresh")],
+        edits: &[("Armed && sample.deadman", "Armed")],
         found_by: "no_force_unless_permitted",
     },
     Defect {
