@@ -142,9 +142,28 @@ pub enum DeviceError {
     System {
         /// Which device, what was asked of it, and what the system said.
         message: String,
-        /// The device is gone, as in [`DeviceError::Gone`].
-        gone: bool,
+        /// What that says of the device.
+        state: DeviceState,
     },
+}
+
+/// What a refusal of the system says of the device.
+///
+/// ```
+/// use palpate::hid::{DeviceError, DeviceState};
+///
+/// let late = DeviceError::System { message: "write: timed out".into(), state: DeviceState::Stalled };
+/// assert!(late.is_stalled() && !late.is_gone());
+/// ```
+#[cfg(feature = "std")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DeviceState {
+    /// It is gone, as in [`DeviceError::Gone`].
+    Gone,
+    /// It took nothing in time, as in [`DeviceError::Stalled`].
+    Stalled,
+    /// It is there, and may take the same a moment later.
+    There,
 }
 
 impl DeviceError {
@@ -153,22 +172,17 @@ impl DeviceError {
         match self {
             DeviceError::Gone => true,
             #[cfg(feature = "std")]
-            DeviceError::System { gone, .. } => *gone,
+            DeviceError::System { state, .. } => *state == DeviceState::Gone,
             _ => false,
         }
     }
-}
 
-impl DeviceError {
     /// Whether it took seconds to fail, so that asking again would hold up the loop.
     pub fn is_stalled(&self) -> bool {
         match self {
             DeviceError::Stalled => true,
-            // The words of `ETIMEDOUT`: the system gives no code here.
             #[cfg(feature = "std")]
-            DeviceError::System { message, .. } => {
-                message.contains("timed out") || message.contains("ETIMEDOUT")
-            }
+            DeviceError::System { state, .. } => *state == DeviceState::Stalled,
             _ => false,
         }
     }

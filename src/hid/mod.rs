@@ -34,6 +34,8 @@ mod tests;
 pub mod timing;
 mod units;
 
+#[cfg(feature = "std")]
+pub use device::DeviceState;
 pub use device::{DeviceError, HapticDevice, Received};
 pub use playback::{Counters, Cycle, Playback, QUEUE};
 #[cfg(feature = "std")]

@@ -34,11 +34,20 @@ pub struct Session<'a, D: HapticDevice> {
     device: D,
     capabilities: Capabilities,
     playback: Playback<'a>,
-    enabled: bool,
+    stage: Stage,
+}
+
+/// How far a session is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// The first cycle will enable the device.
+    Begun,
+    /// The device was told to play.
+    Enabled,
     /// A stop was asked for.
-    ended: bool,
-    /// The device has taken it.
-    stopped: bool,
+    Ended,
+    /// The device has taken the stop.
+    Stopped,
 }
 
 /// Why a session does not begin.
@@ -176,9 +185,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
             device,
             capabilities,
             playback: Playback::new(table, limits, units, period),
-            enabled: false,
-            ended: false,
-            stopped: false,
+            stage: Stage::Begun,
         })
     }
 
@@ -187,7 +194,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     ///
     /// Implements: HID-018.
     fn enable(&mut self) -> Result<(), DeviceError> {
-        self.enabled = true;
+        self.stage = Stage::Enabled;
         self.device.control(Control::ClearFault)?;
         self.device.control(Control::Enable)
     }
@@ -231,9 +238,11 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     ///
     /// Implements: HID-027.
     pub fn cycle(&mut self, request: Request) -> Result<Cycle, DeviceError> {
-        let request = if self.ended { Request::None } else { request };
-        let ready = self.enabled || self.ended;
-        let enabled = if ready { Ok(()) } else { self.enable() };
+        let (request, enabled) = match self.stage {
+            Stage::Begun => (request, self.enable()),
+            Stage::Enabled => (request, Ok(())),
+            Stage::Ended | Stage::Stopped => (Request::None, Ok(())),
+        };
         let cycle = enabled.and_then(|()| self.playback.cycle(&mut self.device, request));
         if cycle.is_err() {
             // The error that counts is the first.
@@ -320,10 +329,10 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     ///
     /// Implements: HID-090.
     pub fn stop(&mut self) -> Result<(), DeviceError> {
-        self.ended = true;
-        if !self.stopped {
+        if self.stage != Stage::Stopped {
+            self.stage = Stage::Ended;
             self.playback.stop(&mut self.device)?;
-            self.stopped = true;
+            self.stage = Stage::Stopped;
         }
         Ok(())
     }

@@ -276,6 +276,38 @@ fn the_force_rises_by_the_slew_limit_and_falls_by_the_release_limit() {
     assert_eq!(session.state.mode, Mode::Armed);
 }
 
+// Verifies: SRV-021.
+#[test]
+fn a_force_that_is_played_falls_by_the_release_limit_and_without_a_sample_by_the_slew_limit() {
+    let mut session = Session::playing();
+    let lost = session.cycle(None, Request::None);
+    assert_eq!(lost.force.normal, 1.75);
+    let left: Vec<f32> = (0..5)
+        .map(|_| {
+            let mut sample = session.sample(true);
+            sample.depth = -0.001;
+            let command = session.cycle(Some(sample), Request::None);
+            assert!(command.playing);
+            command.force.normal
+        })
+        .collect();
+    assert_eq!(left, [1.25, 0.75, 0.25, 0.0, 0.0]);
+}
+
+// Verifies: SRV-021.
+#[test]
+fn a_force_comes_to_zero_before_it_turns() {
+    for sign in [1.0, -1.0] {
+        let path: Vec<f32> = (0..6)
+            .scan(0.75 * sign, |last, _| {
+                *last = approach(*last, -5.0 * sign, 0.25, 0.5);
+                Some(*last * sign)
+            })
+            .collect();
+        assert_eq!(path, [0.25, 0.0, -0.25, -0.5, -0.75, -1.0]);
+    }
+}
+
 // Verifies: SRV-030, SRV-033.
 #[test]
 fn arming_needs_a_fresh_sample_without_deadman_and_a_new_request() {

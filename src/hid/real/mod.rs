@@ -21,7 +21,8 @@ pub use choose::{OpenError, Wanted};
 pub use list::{Access, Identity, ListError, Listed, Profile, list, udev_rule};
 
 use super::{
-    Capabilities, Control, DeviceError, ForceReport, HapticDevice, PositionReport, Received,
+    Capabilities, Control, DeviceError, DeviceState, ForceReport, HapticDevice, PositionReport,
+    Received,
 };
 
 /// More than any report of the profile, so that one which is too long is seen as such.
@@ -176,17 +177,23 @@ impl RealDevice {
         let problem = problem.to_string();
         DeviceError::System {
             message: format!("{}: {action}: {problem}", self.identity),
-            gone: says_gone(&problem),
+            state: state(&problem),
         }
     }
 }
 
-/// Whether the library says that the device was pulled out. It has no code for that, only words: of its `poll`, of `ENODEV`
-/// and of `ESHUTDOWN`.
-fn says_gone(problem: &str) -> bool {
-    ["device disconnected", "No such device", "endpoint shutdown"]
-        .iter()
-        .any(|said| problem.contains(said))
+/// What the library says of the device. It has no codes for that, only words: of its `poll`, of `ENODEV`, of `ESHUTDOWN` and of
+/// `ETIMEDOUT`.
+fn state(problem: &str) -> DeviceState {
+    let says = |words: &str| problem.contains(words);
+    let gone = ["device disconnected", "No such device", "endpoint shutdown"];
+    if gone.into_iter().any(says) {
+        DeviceState::Gone
+    } else if says("timed out") {
+        DeviceState::Stalled
+    } else {
+        DeviceState::There
+    }
 }
 
 /// What the system says, without the library's name for itself.

@@ -144,17 +144,28 @@ fn a_write_in_part_is_a_failure() {
 #[test]
 fn an_unplug_is_told_from_a_refusal_by_what_the_library_says() {
     let code = |code| HidError::from(std::io::Error::from_raw_os_error(code)).to_string();
-    let [no_device, shutdown, input_output, pipe] = [19, 108, 5, 32];
-    let late = |message: String| DeviceError::System {
-        message,
-        gone: false,
-    };
-    assert!(late(code(110)).is_stalled() && !late(code(input_output)).is_stalled());
-    assert!(late("ioctl (SFEATURE): ETIMEDOUT: Connection timed out".into()).is_stalled());
-    assert!(says_gone(&code(no_device)) && says_gone(&code(shutdown)));
-    assert!(says_gone("unexpected poll error (device disconnected)"));
-    assert!(says_gone("ioctl (GFEATURE): ENODEV: No such device"));
-    // A board that answers with an error is still there.
-    assert!(!says_gone(&code(input_output)) && !says_gone(&code(pipe)));
-    assert!(!says_gone("ioctl (GFEATURE): EPIPE: Broken pipe"));
+    let [no_device, shutdown, timed_out, input_output, pipe] = [19, 108, 110, 5, 32].map(code);
+    for (problem, expected) in [
+        (&*no_device, DeviceState::Gone),
+        (&shutdown, DeviceState::Gone),
+        (
+            "unexpected poll error (device disconnected)",
+            DeviceState::Gone,
+        ),
+        (
+            "ioctl (GFEATURE): ENODEV: No such device",
+            DeviceState::Gone,
+        ),
+        (&timed_out, DeviceState::Stalled),
+        (
+            "ioctl (SFEATURE): ETIMEDOUT: Connection timed out",
+            DeviceState::Stalled,
+        ),
+        // A board that answers with an error is still there.
+        (&input_output, DeviceState::There),
+        (&pipe, DeviceState::There),
+        ("ioctl (GFEATURE): EPIPE: Broken pipe", DeviceState::There),
+    ] {
+        assert_eq!(state(problem), expected, "{problem}");
+    }
 }

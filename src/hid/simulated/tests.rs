@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::*;
-use crate::hid::{End, InvalidCapabilities, Session, SessionError};
+use crate::hid::{DeviceState, End, InvalidCapabilities, Session, SessionError};
 use crate::servo::{Axis, Fault as ServoFault, Force, Limits, Mode, Request, Table};
 
 const MS: Duration = Duration::from_millis(1);
@@ -422,7 +422,7 @@ fn a_panic_stops_the_device() {
 fn refused() -> DeviceError {
     DeviceError::System {
         message: "refused".into(),
-        gone: false,
+        state: DeviceState::There,
     }
 }
 
@@ -463,6 +463,10 @@ fn a_stop_is_sent_again_until_the_device_takes_it_and_nothing_arms_after_it() {
             }
             assert_eq!(session.stop(), Ok(()), "{refusals}");
             assert_eq!(session.device().0.motor_force(), [0.0, 0.0]);
+            // Nothing is sent to a device that has taken the stop.
+            left.set(1);
+            assert_eq!(session.stop(), Ok(()), "{refusals}");
+            assert_eq!(left.replace(0), 1, "{refusals}");
         });
         // While the deadman is not held, the kernel would arm.
         with_table(|table| {
