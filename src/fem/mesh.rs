@@ -72,8 +72,7 @@ impl Mesh {
     ///
     /// Implements: FEM-018.
     pub fn new(phantom: &Phantom, size: f64) -> Result<Mesh, FemError> {
-        Mesh::expected_nodes(phantom, size)?;
-        let field = SizeField::new(phantom, size);
+        let (field, _) = Mesh::forecast(phantom, size)?;
         let mut symmetric = phantom.is_symmetric();
         let mut triangles = Triangulation::new(phantom, &field, symmetric);
         if symmetric && triangles.is_err() {
@@ -100,14 +99,20 @@ impl Mesh {
     ///
     /// Implements: FEM-036.
     pub fn expected_nodes(phantom: &Phantom, size: f64) -> Result<f64, FemError> {
+        Ok(Mesh::forecast(phantom, size)?.1)
+    }
+
+    /// The sizes of the elements, and about how many nodes they make.
+    fn forecast(phantom: &Phantom, size: f64) -> Result<(SizeField, f64), FemError> {
         if !(size > 0.0 && size.is_finite()) {
             return Err(FemError::MeshSize { size });
         }
-        let nodes = SizeField::new(phantom, size).expected_nodes();
+        let field = SizeField::new(phantom, size);
+        let nodes = field.expected_nodes();
         if nodes > MOST_NODES {
             return Err(FemError::TooManyNodes { size, nodes });
         }
-        Ok(nodes)
+        Ok((field, nodes))
     }
 
     /// Triangles with a node in the middle of each edge.

@@ -1,5 +1,7 @@
 //! From a force map in f64 to a table of the kernel in f32.
 
+mod rotation;
+
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::passivity::{Damping, stiffness};
@@ -450,8 +452,6 @@ fn rounded(value: f64, largest: &mut f64) -> f32 {
     *largest = largest.max((f64::from(rounded) - value).abs());
     rounded
 }
-
-mod rotation;
 
 #[cfg(test)]
 mod tests;

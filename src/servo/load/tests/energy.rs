@@ -93,7 +93,7 @@ fn unit(word: u64) -> f64 {
     (word >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// A gel with a random inclusion, some N stiff, with its lateral force, and up to `noise` (N) of measurement on every force.
+/// A gel of 300 to 1200 N/m with a random inclusion and its lateral force, and up to `noise` (N) of noise on every force.
 fn gel(generator: &Generator, number: u64, noise: f64) -> ForceTable {
     let [a, b, c, d] = generator.words([number, 0, 0, 0]).map(unit);
     let (stiffness, bump, width) = (300.0 + 900.0 * a, 600.0 * b, 2e-3 + 3e-3 * c);
@@ -184,7 +184,7 @@ fn no_accepted_table_gives_out_energy_on_a_closed_path() {
     }
 }
 
-/// What a hand gives that moves up and down `times` times between 0.5 mm above the surface and `depth` (m), at `speed` (m/s).
+/// What a hand gives that moves up and down `times` times from 0.5 mm above the surface to a depth of 4 mm, at `speed` (m/s).
 fn pressed(map: &ForceTable, damping: &Damping, limits: &Limits, speed: f64, times: f64) -> f64 {
     let curve = |t: f64| {
         let angle = std::f64::consts::TAU * times * t;
