@@ -1,7 +1,6 @@
 //! Reports of a device, and recordings of a session.
 
 use palpate::force_map::{ForceTable, Matrix};
-use palpate::hid::pid::{BLOCK_LOAD, JoystickReport, loaded_block};
 use palpate::hid::{
     Capabilities, Control, ForceReport, InvalidReport, PositionReport, Recording, RecordingError,
     Units, count,
@@ -55,9 +54,6 @@ pub fn hid_report(bytes: &[u8]) -> Outcome {
         }
         Err(error) => check_invalid(error, Control::NUMBER, Control::LENGTH, bytes),
     }
-    if check_fallback(bytes) == Outcome::Accepted {
-        outcome = Outcome::Accepted;
-    }
     if let Ok(capabilities) = capabilities {
         check_units(&capabilities, bytes);
     }
@@ -80,33 +76,6 @@ fn check_invalid(error: InvalidReport, number: u8, length: usize, bytes: &[u8]) 
     };
     assert_eq!(error, right);
     assert!(bytes.len() != length || bytes[0] != number);
-}
-
-/// The reports of the fallback profile that the host reads.
-fn check_fallback(bytes: &[u8]) -> Outcome {
-    let joystick = JoystickReport::decode(bytes);
-    match joystick {
-        Ok(report) => {
-            let mut encoded = vec![JoystickReport::NUMBER];
-            encoded.extend(report.buttons.to_le_bytes());
-            encoded.extend(report.x.to_le_bytes());
-            encoded.extend(report.y.to_le_bytes());
-            assert_eq!(encoded, bytes[..13]);
-        }
-        Err(error) => check_invalid(error, JoystickReport::NUMBER, JoystickReport::LENGTH, bytes),
-    }
-    match loaded_block(bytes) {
-        Ok(block) => assert!(bytes.len() == 5 && bytes[..3] == [BLOCK_LOAD, block, 1]),
-        Err(InvalidReport::Value { found }) => {
-            assert!(bytes.len() == 5 && bytes[2] == found && found != 1);
-        }
-        Err(error) => check_invalid(error, BLOCK_LOAD, 5, bytes),
-    }
-    if joystick.is_ok() || loaded_block(bytes).is_ok() {
-        Outcome::Accepted
-    } else {
-        Outcome::Refused
-    }
 }
 
 /// Units are refused or make finite numbers of every report.

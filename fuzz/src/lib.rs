@@ -44,7 +44,7 @@ pub enum Outcome {
 /// What a reader must do with any bytes.
 #[derive(Debug, Clone, Copy)]
 pub struct Target {
-    /// The name of its test, and of the folder of its corpus.
+    /// The name of its test, and of the archive of its corpus.
     pub name: &'static str,
     /// Panics where the property does not hold.
     pub check: fn(&[u8]) -> Outcome,

@@ -1,7 +1,9 @@
 //! Cases without a fuzzer: seeds with a few changes, the same in every run.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
 
 /// What readers stumble over.
 const TOKENS: &[&[u8]] = &[
@@ -42,32 +44,24 @@ const TOKENS: &[&[u8]] = &[
     b"999999999999",
 ];
 
-/// The folder of a target, with its `corpus` and its `crashes`.
-pub fn folder(target: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/__fuzz__")
-        .join(target)
-}
-
-/// The kept inputs of a target, in the order of their names: its corpus, and what once broke it.
+/// The inputs that are kept for a target, by their names in its archive: its `corpus`, and the `crashes` that once broke it.
 ///
 /// # Panics
-/// If the corpus cannot be read or is empty.
-pub fn kept(target: &str) -> Vec<Vec<u8>> {
-    let mut files: Vec<PathBuf> = Vec::new();
-    for kind in ["corpus", "crashes"] {
-        let entries = fs::read_dir(folder(target).join(kind));
-        files.extend(
-            entries
-                .into_iter()
-                .flatten()
-                .map(|entry| entry.expect("a file").path()),
-        );
-    }
-    files.sort();
-    assert!(!files.is_empty(), "no corpus of {target}");
-    let read = |path: PathBuf| fs::read(path).expect("a file");
-    files.into_iter().map(read).collect()
+/// If the archive cannot be read or is empty.
+pub fn kept(target: &str) -> BTreeMap<String, Vec<u8>> {
+    let corpora = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpora");
+    let file = File::open(corpora.join(target).with_extension("tar")).expect("an archive");
+    let mut archive = tar::Archive::new(file);
+    let entries = archive.entries().expect("an archive").map(|entry| {
+        let mut entry = entry.expect("an entry");
+        let mut bytes = Vec::new();
+        entry.read_to_end(&mut bytes).expect("the bytes of a file");
+        let name = entry.path().expect("a path").display().to_string();
+        (name, bytes)
+    });
+    let kept: BTreeMap<_, _> = entries.collect();
+    assert!(!kept.is_empty(), "no corpus of {target}");
+    kept
 }
 
 /// A counter-based sequence of numbers: SplitMix64 (Steele, Lea, Flood 2014).

@@ -13,7 +13,8 @@ macro_rules! targets {
                 let target = target(stringify!($name));
                 #[cfg(not(fuzzing))]
                 ordinary::run(target, $cases);
-                bolero::check!().with_iterations(0).for_each(|bytes: &[u8]| {
+                #[cfg(fuzzing)]
+                bolero::check!().for_each(|bytes: &[u8]| {
                     (target.check)(bytes);
                 });
             }
@@ -51,7 +52,7 @@ fn the_corpora_stay_small() {
     let kept = TARGETS
         .iter()
         .flat_map(|target| palpate_fuzz::random::kept(target.name));
-    let bytes: usize = kept.map(|input| input.len()).sum();
+    let bytes: usize = kept.map(|(_, input)| input.len()).sum();
     assert!(bytes <= 200_000, "{bytes} bytes");
 }
 
@@ -87,16 +88,9 @@ fn each_input_that_broke_a_property_is_kept() {
     for target in TARGETS {
         let finds = rows(target.name).filter(|cells| cells.len() == 6);
         for quoted in finds.flat_map(|cells| cells[2].split('`').skip(1).step_by(2)) {
-            let file = quoted.trim_start_matches("crashes/");
-            let folder = format!(
-                "{}/tests/__fuzz__/{}/crashes",
-                env!("CARGO_MANIFEST_DIR"),
-                target.name
-            );
-            assert!(
-                std::path::Path::new(&folder).join(file).is_file(),
-                "{folder}/{file}"
-            );
+            let file = format!("crashes/{}", quoted.trim_start_matches("crashes/"));
+            let kept = palpate_fuzz::random::kept(target.name);
+            assert!(kept.contains_key(&file), "{}: {file}", target.name);
             named += 1;
         }
     }
@@ -117,14 +111,19 @@ mod ordinary {
     /// reader that takes all or nothing would leave half of the property without a case. Every second
     /// case comes from an input that is accepted, since most of what a fuzzer keeps is refused.
     pub fn run(target: &Target, cases: u64) {
-        let kept = kept(target.name);
-        let is_accepted = |bytes: &&Vec<u8>| (target.check)(bytes) == Outcome::Accepted;
-        let good: Vec<Vec<u8>> = kept.iter().filter(is_accepted).cloned().collect();
+        let (mut good, mut all) = (Vec::new(), Vec::new());
+        for (what, bytes) in kept(target.name) {
+            let case = Case { what, bytes };
+            if (target.check)(&case.bytes) == Outcome::Accepted {
+                good.push(case.bytes.clone());
+            }
+            all.push(case.bytes.clone());
+        }
         let mut accepted = 0;
         for seed in 0..cases {
-            let seeds = if seed % 2 == 0 { &good } else { &kept };
+            let seeds = if seed % 2 == 0 { &good } else { &all };
             let case = Case {
-                seed,
+                what: format!("case {seed}"),
                 bytes: changed(seeds, &mut Random::new(seed)),
             };
             accepted += u64::from((target.check)(&case.bytes) == Outcome::Accepted);
@@ -136,7 +135,7 @@ mod ordinary {
 
     /// Shown if a property does not hold.
     struct Case {
-        seed: u64,
+        what: String,
         bytes: Vec<u8>,
     }
 
@@ -144,7 +143,7 @@ mod ordinary {
         fn drop(&mut self) {
             if std::thread::panicking() {
                 let text = String::from_utf8_lossy(&self.bytes);
-                eprintln!("case {}: {text:?}", self.seed);
+                eprintln!("{}: {text:?}", self.what);
             }
         }
     }

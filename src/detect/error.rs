@@ -46,13 +46,6 @@ pub enum DetectError {
         /// The values that would be right.
         range: &'static str,
     },
-    /// A table is not strictly monotone in the required direction.
-    NotMonotone {
-        /// The name of the argument.
-        what: &'static str,
-        /// The first entry out of order.
-        index: usize,
-    },
     /// γ = 0: the hypotheses predict the same force, so no threshold keeps this promise.
     NoSignal,
     /// The covariance is not symmetric.
@@ -96,12 +89,6 @@ impl fmt::Display for DetectError {
             }
             Self::OutOfRange { what, value, range } => {
                 write!(f, "{what} is {value}, but must be {range}")
-            }
-            Self::NotMonotone { what, index } => {
-                write!(
-                    f,
-                    "{what}[{index}] breaks the order; {what} must be strictly monotone"
-                )
             }
             Self::NoSignal => {
                 f.write_str("gamma is 0: without a signal no threshold bounds the false alarms")

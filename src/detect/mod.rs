@@ -39,7 +39,6 @@ pub mod matched_filter;
 pub mod mixture;
 pub mod noise_budget;
 pub mod position;
-pub mod reach;
 pub mod scan;
 pub mod simulate;
 pub mod stationary;

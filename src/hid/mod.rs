@@ -3,7 +3,6 @@
 //! | file | content |
 //! |---|---|
 //! | `report.rs` | the vendor profile's reports, byte by byte |
-//! | `pid.rs` | the fallback profile's reports |
 //! | `units.rs` | between counts and metres, newtons |
 //! | `device.rs` | what the loop needs of a device |
 //! | `playback.rs` | one cycle of the loop: read, drain, step, write |
@@ -15,7 +14,6 @@
 //! | `simulated/` | a device and a hand on a virtual clock, with faults by script |
 
 mod device;
-pub mod pid;
 mod playback;
 #[cfg(feature = "hid")]
 pub mod real;
