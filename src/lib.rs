@@ -14,6 +14,7 @@
 //! | §4 playback: reports of the device | [`hid`] |
 //! | §4 pairs of samples, felt and judged; §5 what the answers say | [`psychophysics`] |
 //! | figures, tables | [`report`] |
+//! | why an input is refused | [`refusal`] |
 //! | other implementations: questions and answers | [`oracle`] |
 //!
 //! Lengths are metres, forces newtons, moduli pascals throughout; `spec/README.md` has the signs.
@@ -84,6 +85,8 @@ pub mod oracle;
 pub mod phantom;
 #[cfg(feature = "std")]
 pub mod psychophysics;
+#[cfg(feature = "std")]
+pub mod refusal;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod servo;
