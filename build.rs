@@ -1,4 +1,4 @@
-//! Records from which sources, by which compiler and how the library is built, for `palpate::verify::build`.
+//! Records from which sources, by which compiler and how the library is built, for `palpate::build`.
 //!
 //! Nothing of it is a time or a folder of the machine, so that the same sources give the same program (EVD-070). A
 //! development build records no commit: it would have to be built again after each one.
@@ -10,11 +10,12 @@ use std::path::Path;
 use std::process::Command;
 
 /// What the program is made from.
-const SOURCES: [&str; 7] = [
+const SOURCES: [&str; 8] = [
     "Cargo.toml",
     "Cargo.lock",
     "build.rs",
     "src",
+    "proofs",
     "spec",
     "supply",
     "vectors",

@@ -140,6 +140,6 @@ pub(crate) fn shortened(text: &str) -> String {
 /// no terminal obeys it.
 ///
 /// Implements: EVD-082.
-pub(crate) fn one_line(text: &str) -> String {
+pub fn one_line(text: &str) -> String {
     text.replace(char::is_control, " ")
 }

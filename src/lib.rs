@@ -60,12 +60,12 @@
 //! alone: that part holds [`stats`], [`detect`], [`servo`] and the reports of [`hid`].
 //!
 //! Implements: DOC-013, DOC-014.
-#![cfg_attr(not(any(feature = "std", feature = "verify")), no_std)]
+#![cfg_attr(not(feature = "std"), no_std)]
 
+#[cfg(feature = "std")]
+pub mod build;
 #[cfg(feature = "cli")]
 pub mod cli;
-#[cfg(feature = "cli")]
-mod conform;
 #[cfg(feature = "std")]
 pub mod csv;
 pub mod detect;
@@ -73,12 +73,9 @@ pub mod detect;
 pub mod fem;
 #[cfg(feature = "std")]
 pub mod force_map;
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod fuzzing;
 pub mod hid;
 #[cfg(feature = "std")]
-mod input;
+pub mod input;
 #[cfg(feature = "oracle")]
 pub mod oracle;
 #[cfg(feature = "std")]
@@ -93,5 +90,3 @@ pub mod servo;
 pub mod stats;
 #[cfg(feature = "std")]
 pub mod trace;
-#[cfg(feature = "verify")]
-pub mod verify;

@@ -340,7 +340,7 @@ fn the_statistics_battery_traverses_these_force_maps() {
             "csv",
         ];
         let kept = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join(format!("src/verify/statistics/traverse_{name}.csv"));
+            .join(format!("proofs/verify/src/statistics/traverse_{name}.csv"));
         let said = succeed(&here, &arguments);
         assert!(
             said == fs::read_to_string(&kept).unwrap(),

@@ -27,13 +27,13 @@ const NOT_RUN: usize = 13;
 /// Implements: DOC-006.
 const README_NOT_RUN: [(&str, &str); 4] = [
     (
-        "tests/toys/right.py",
-        "needs Python: tests/conform_command.rs runs it",
+        "vectors/conform/tests/toys/right.py",
+        "needs Python: vectors/conform/tests/conform_command.rs runs it",
     ),
     ("palpate run ", "docs/tutorial.md runs it"),
     (
-        "palpate verify",
-        "takes minutes without optimisation; tests/verify_command.rs and tests/statistics run the battery",
+        "palpate-verify",
+        "takes minutes without optimisation; proofs/verify/tests/verify_command.rs and proofs/verify/tests/statistics run the battery",
     ),
     (
         "--device hid",

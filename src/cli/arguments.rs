@@ -5,15 +5,25 @@ use std::ffi::OsString;
 use clap::{Parser, Subcommand, ValueEnum};
 
 use super::error::CliError;
-use super::{
-    conform, detect, devices, experiment, import, oracle, play, psychophysics, run, solve, timing,
-    verify,
-};
+use super::{detect, devices, experiment, import, oracle, play, psychophysics, run, solve, timing};
 use crate::fem::Contact;
+
+/// The version, and which build this is.
+///
+/// Implements: EVD-068.
+const LONG_VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    "\ncommit ",
+    env!("PALPATE_BUILD_COMMIT"),
+    "\n",
+    env!("PALPATE_BUILD_COMPILER"),
+    " for ",
+    env!("PALPATE_BUILD_TARGET")
+);
 
 /// Inclusion probing after Yan, Scott and Fearing (1999): forces on a probe, detection of an inclusion.
 #[derive(Debug, Parser)]
-#[command(version, about, disable_help_subcommand = true)]
+#[command(version, long_version = LONG_VERSION, about, disable_help_subcommand = true)]
 pub struct Arguments {
     #[command(subcommand)]
     pub(super) command: Command,
@@ -29,8 +39,6 @@ pub(super) enum Command {
     ImportMap(import::ImportArguments),
     /// A recorded sweep against two force maps: is there an inclusion, and where.
     Detect(detect::DetectArguments),
-    /// The evidence of this build, found out on this machine: evidence.json and a dossier.
-    Verify(verify::VerifyArguments),
     /// A force map to a hand, through a haptic device or a simulated one.
     Play(play::PlayArguments),
     /// The HID devices of this machine, and which of them can play a force map.
@@ -43,8 +51,6 @@ pub(super) enum Command {
     Timing(timing::TimingArguments),
     /// Answers questions in lines of JSON, for other implementations to compare with.
     Oracle(oracle::OracleArguments),
-    /// Asks another program the questions of the vectors, and says what it gets wrong.
-    Conform(conform::ConformArguments),
 }
 
 /// How an answer is printed.
@@ -78,22 +84,22 @@ impl From<ContactName> for Contact {
 
 /// What a command line asks for.
 #[derive(Debug)]
-pub enum Asked {
-    /// To run a command.
-    Command(Box<Arguments>),
+pub enum Asked<A> {
+    /// To do what these arguments say.
+    Command(Box<A>),
     /// To print a text: help, or the version.
     Text(String),
 }
 
-impl Asked {
+impl<A: Parser> Asked<A> {
     /// Reads a command line, the first entry of which is the program's name; runs nothing.
     ///
     /// # Errors
     /// [`CliError::Usage`].
     ///
     /// Implements: CLI-001, CLI-002.
-    pub fn read(arguments: impl IntoIterator<Item = OsString>) -> Result<Asked, CliError> {
-        match Arguments::try_parse_from(arguments) {
+    pub fn read(arguments: impl IntoIterator<Item = OsString>) -> Result<Asked<A>, CliError> {
+        match A::try_parse_from(arguments) {
             Ok(arguments) => Ok(Asked::Command(Box::new(arguments))),
             Err(error) if !error.use_stderr() => Ok(Asked::Text(error.to_string())),
             Err(error) => Err(CliError::usage(&error)),

@@ -65,7 +65,7 @@ pub enum CliError {
 
 impl CliError {
     /// The first line of what the argument parser has to say.
-    pub(super) fn usage(error: &clap::Error) -> CliError {
+    pub(crate) fn usage(error: &clap::Error) -> CliError {
         let text = error.to_string();
         // The parser spreads its message over several lines; usage and hints follow an empty one.
         let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");

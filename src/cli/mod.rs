@@ -1,32 +1,32 @@
 //! The command line (`spec/command-line.md`).
 
-pub(crate) mod arguments;
-pub(crate) mod config;
-mod conform;
+pub mod arguments;
+pub mod config;
 mod detect;
 mod detection;
 mod devices;
 mod error;
 mod experiment;
 mod import;
-pub(crate) mod lists;
+pub mod lists;
 mod oracle;
-mod output;
+pub mod output;
 mod play;
 mod playback;
-mod progress;
+pub mod progress;
 mod psychophysics;
 mod psychophysics_text;
 mod run;
 mod solve;
 mod timing;
-mod verify;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use arguments::{Asked, Command, ContactName, Format};
-use error::CliError;
+use clap::Parser;
+
+use arguments::{Arguments, Asked, Command, ContactName, Format};
+pub use error::CliError;
 
 /// Runs the program with the given arguments, the first of which is its name.
 ///
@@ -41,31 +41,38 @@ use error::CliError;
 /// let code = palpate::cli::main(["palpate", "--deth"].map(OsString::from));
 /// assert_ne!(code, ExitCode::SUCCESS);
 /// ```
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    program(arguments, |arguments: Arguments| match arguments.command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Solve(arguments) => solve::solve(&arguments),
+        Command::ImportMap(arguments) => import::import(&arguments),
+        Command::Detect(arguments) => detect::detect(&arguments),
+        Command::Play(arguments) => play::play(&arguments),
+        Command::Devices(arguments) => devices::devices(&arguments),
+        Command::Experiment(arguments) => experiment::experiment(&arguments),
+        Command::Psychophysics(arguments) => psychophysics::psychophysics(&arguments),
+        Command::Timing(arguments) => timing::timing(&arguments),
+        Command::Oracle(arguments) => oracle::oracle(&arguments),
+    })
+}
+
+/// Runs a program that takes arguments `A`: prints help and version, says on standard error in one line why it failed, and
+/// gives the exit code. The companions of `palpate` use it too.
 ///
 /// Implements: CLI-001, CLI-002, CLI-003.
-pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+pub fn program<A: Parser>(
+    arguments: impl IntoIterator<Item = OsString>,
+    act: impl FnOnce(A) -> Result<(), CliError>,
+) -> ExitCode {
     let result = match Asked::read(arguments) {
-        Ok(Asked::Command(arguments)) => match arguments.command {
-            Command::Run(arguments) => run::run(&arguments),
-            Command::Solve(arguments) => solve::solve(&arguments),
-            Command::ImportMap(arguments) => import::import(&arguments),
-            Command::Detect(arguments) => detect::detect(&arguments),
-            Command::Verify(arguments) => verify::verify(&arguments),
-            Command::Play(arguments) => play::play(&arguments),
-            Command::Devices(arguments) => devices::devices(&arguments),
-            Command::Experiment(arguments) => experiment::experiment(&arguments),
-            Command::Psychophysics(arguments) => psychophysics::psychophysics(&arguments),
-            Command::Timing(arguments) => timing::timing(&arguments),
-            Command::Oracle(arguments) => oracle::oracle(&arguments),
-            Command::Conform(arguments) => conform::conform(&arguments),
-        },
+        Ok(Asked::Command(arguments)) => act(*arguments),
         Ok(Asked::Text(text)) => output::print(&text),
         Err(error) => Err(error),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("palpate: {error}");
+            eprintln!("{}: {error}", A::command().get_name());
             ExitCode::from(error.exit_code())
         }
     }

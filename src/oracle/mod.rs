@@ -13,7 +13,7 @@
 mod answer;
 mod arguments;
 mod ops;
-pub(crate) mod refusal;
+pub mod refusal;
 mod request;
 mod serve;
 #[cfg(test)]

@@ -24,7 +24,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub(crate) mod decimal;
+pub mod decimal;
 mod file;
 mod limits;
 mod pose;

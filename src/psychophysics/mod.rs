@@ -37,7 +37,7 @@ mod conditions;
 mod dispersion;
 mod error;
 #[cfg(feature = "cli")]
-pub(crate) mod journal;
+mod journal;
 pub(crate) mod noise;
 #[cfg(feature = "hid")]
 mod observer;
@@ -57,7 +57,7 @@ pub use conditions::{ConditionComparison, Difference, InclusionDifference};
 pub use dispersion::{Dispersion, dispersion};
 pub use error::PsychophysicsError;
 #[cfg(feature = "cli")]
-pub(crate) use journal::{Journal, Setup};
+pub use journal::{Journal, Setup};
 pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};
 #[cfg(feature = "hid")]
 pub use observer::{IdealObserver, ObserverError};

@@ -43,14 +43,14 @@
 mod comparison;
 mod figures;
 mod findings;
-pub(crate) mod html;
+pub mod html;
 pub mod paper;
 mod people;
 mod quality;
 mod summary;
 #[cfg(test)]
 mod tests;
-pub(crate) mod text;
+pub mod text;
 
 pub use comparison::{Comparison, Value};
 pub use figures::figures;

@@ -17,7 +17,7 @@ mod noise;
 mod opening;
 mod people;
 mod quality;
-pub(crate) mod table;
+pub mod table;
 
 use super::text::{escape, prose};
 use super::{Figure, Findings, Study, Topic};
@@ -25,7 +25,7 @@ use super::{Figure, Findings, Study, Topic};
 /// How the page looks.
 ///
 /// Implements: REP-034, REP-064, REP-067, REP-068.
-pub(crate) const STYLE: &str = include_str!("style.css");
+pub const STYLE: &str = include_str!("style.css");
 /// What the name of the SVG namespace is called inside HTML: nothing, since HTML knows `<svg>` by itself.
 const NAMESPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
 
@@ -95,7 +95,7 @@ pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
 }
 
 /// A section with its heading, which names it for a screen reader.
-pub(crate) fn section(id: &str, heading: &str, markup: &str) -> String {
+pub fn section(id: &str, heading: &str, markup: &str) -> String {
     format!(
         "<section id=\"{id}\" aria-labelledby=\"{id}-heading\">\n<h2 id=\"{id}-heading\">{}</h2>\n{markup}</section>\n",
         escape(heading)

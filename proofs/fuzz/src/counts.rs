@@ -1,0 +1,143 @@
+//! Counts of right answers, and the journal of an experiment.
+
+use std::collections::HashSet;
+
+use palpate::psychophysics::Journal;
+use palpate::psychophysics::{MOST_TRIALS, Table, TableProblem, analyse};
+
+use crate::map::check_csv;
+use crate::message::{check_file_message, check_message, check_quoted};
+use crate::{FILE, Outcome, text};
+
+/// An accepted table has counts that fit their trials and names that can be printed, is the same
+/// when it is written and read again, and can be analysed; a refusal names file and line.
+///
+/// Implements: EVD-081, EVD-082.
+pub fn counts_csv(bytes: &[u8]) -> Outcome {
+    let Some(text) = text(bytes) else {
+        return Outcome::Refused;
+    };
+    match Table::from_csv(text, FILE) {
+        Ok(table) => {
+            check_table(&table);
+            Outcome::Accepted
+        }
+        Err(error) => {
+            check_file_message(&error.to_string(), Some(error.line), text);
+            match &error.problem {
+                TableProblem::Csv(problem) => check_csv(problem, error.line, text),
+                TableProblem::Field { found, .. } => check_quoted(found, error.line, text),
+                TableProblem::Repeated { first, .. } => assert!(*first < error.line),
+                TableProblem::Empty => {}
+                TableProblem::Read(_) => panic!("no file was read"),
+            }
+            Outcome::Refused
+        }
+    }
+}
+
+fn check_table(table: &Table) {
+    let plain = |name: &str| !name.is_empty() && !name.chars().any(char::is_control);
+    let inclusions = table.inclusions();
+    let names: HashSet<_> = inclusions.iter().map(|one| &one.name).collect();
+    assert!(!names.is_empty() && names.len() == inclusions.len());
+    for inclusion in inclusions {
+        assert!(plain(&inclusion.name));
+        assert!(inclusion.depth.is_finite() && inclusion.depth > 0.0);
+    }
+    let mut rows = 0;
+    assert!(!table.conditions().is_empty());
+    for condition in table.conditions() {
+        assert!(plain(&condition.name));
+        let names: HashSet<_> = condition.subjects.iter().map(|one| &one.name).collect();
+        assert!(!names.is_empty() && names.len() == condition.subjects.len());
+        for subject in &condition.subjects {
+            assert!(plain(&subject.name));
+            assert!((1..=MOST_TRIALS).contains(&subject.trials));
+            assert_eq!(subject.correct.len(), inclusions.len());
+            assert!(subject.correct.iter().all(|&k| k <= subject.trials));
+            rows += 1;
+        }
+    }
+    let again = Table::from_csv(&written(table), FILE).expect("what was written can be read");
+    assert_eq!(again, *table);
+    // The fits take some milliseconds for each count: small tables have all their cases.
+    if rows * inclusions.len() <= 4 {
+        check_analysis(table);
+    }
+}
+
+/// An analysis is there or is refused, and holds no number that JSON cannot.
+fn check_analysis(table: &Table) {
+    match analyse(table) {
+        Ok(analysis) => {
+            let written = serde_json::to_string(&analysis).expect("numbers and texts");
+            let read: serde_json::Value = serde_json::from_str(&written).expect("JSON");
+            assert!(read.is_object());
+        }
+        Err(error) => check_message(&error.to_string()),
+    }
+}
+
+fn written(table: &Table) -> String {
+    let mut text = String::from("subject,condition,trials");
+    for inclusion in table.inclusions() {
+        text += &format!(",{}", inclusion.name);
+    }
+    for condition in table.conditions() {
+        for subject in &condition.subjects {
+            text += &format!("\n{},{},{}", subject.name, condition.name, subject.trials);
+            for correct in &subject.correct {
+                text += &format!(",{correct}");
+            }
+        }
+    }
+    text
+}
+
+/// An accepted journal is the same when it is written and read again, its counts are those of its
+/// answers, and a line that an abort left unfinished does not count; a refusal names the line.
+///
+/// Implements: EVD-081, EVD-082.
+pub fn journal(bytes: &[u8]) -> Outcome {
+    let Some(text) = text(bytes) else {
+        return Outcome::Refused;
+    };
+    match Journal::parse(text) {
+        Ok(journal) => {
+            let written = journal.to_text();
+            let again = Journal::parse(&written).expect("what was written can be read");
+            assert_eq!((&again, again.to_text()), (&journal, written.clone()));
+            for cut in ["right", "nonsense"] {
+                let again = Journal::parse(&format!("{written}{cut}"));
+                assert_eq!(again.as_ref(), Ok(&journal), "{cut:?}");
+            }
+            check_counts(&journal, &written);
+            Outcome::Accepted
+        }
+        Err(error) => {
+            check_message(&error.to_string());
+            crate::message::check_line(error.line, text);
+            check_quoted(&error.found, error.line, text);
+            Outcome::Refused
+        }
+    }
+}
+
+fn check_counts(journal: &Journal, written: &str) {
+    let count = |answer| written.lines().filter(|&line| line == answer).count();
+    let (right, answers) = journal
+        .counts()
+        .iter()
+        .fold((0, 0), |(right, all), (k, n)| (right + k, all + n));
+    assert_eq!(
+        (right, answers),
+        (count("right"), count("right") + count("wrong"))
+    );
+    let setup = journal.setup();
+    assert!((1..=1000).contains(&setup.trials));
+    assert!((1..=100).contains(&setup.inclusions.len()));
+    let all = setup.trials * setup.inclusions.len();
+    assert_eq!(journal.next().is_none(), answers == all);
+    assert_eq!(journal.table_row().is_some(), answers == all);
+}

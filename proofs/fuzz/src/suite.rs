@@ -1,0 +1,90 @@
+//! Vectors.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use palpate::oracle::Oracle;
+use palpate_conform::{Expected, Question, Suite, Tolerance};
+use serde_json::value::RawValue;
+
+use crate::message::check_message;
+use crate::{Outcome, text};
+
+/// The name of the file of cases.
+const GROUP: &str = "fuzz.json";
+/// Between the file of cases and, if there is one, the manifest.
+const SEPARATOR: char = '\u{1e}';
+
+/// An accepted file has unique ids, explained flags and bounded tolerances, and each of its
+/// questions is one line with one answer; a refusal names the file.
+///
+/// The bytes are the file, and after a record separator (1E) a manifest.
+///
+/// Implements: EVD-081, EVD-082.
+pub fn vectors(bytes: &[u8]) -> Outcome {
+    let Some(text) = text(bytes) else {
+        return Outcome::Refused;
+    };
+    let (group, manifest) = match text.split_once(SEPARATOR) {
+        Some((group, manifest)) => (group, Some(manifest)),
+        None => (text, None),
+    };
+    let mut files = BTreeMap::from([(GROUP.to_string(), group.to_string())]);
+    if let Some(manifest) = manifest {
+        files.insert("manifest.json".into(), manifest.into());
+    }
+    match Suite::of_files(files.clone()) {
+        Ok(suite) => {
+            check_suite(&suite);
+            assert_eq!(Suite::of_files(files).as_ref(), Ok(&suite));
+            Outcome::Accepted
+        }
+        Err(error) => {
+            check_message(&error.to_string());
+            assert!(error.file == GROUP || manifest.is_some(), "{error}");
+            assert!(error.to_string().starts_with(&error.file), "{error}");
+            Outcome::Refused
+        }
+    }
+}
+
+fn check_suite(suite: &Suite) {
+    assert_eq!(suite.sha256.len(), 64);
+    let [group] = &suite.groups[..] else {
+        panic!("one file is one group");
+    };
+    let ids: HashSet<_> = group.cases.iter().map(|case| &case.id).collect();
+    assert!(!ids.is_empty() && ids.len() == group.cases.len());
+    for case in &group.cases {
+        assert!(case.flags.iter().all(|flag| group.flags.contains_key(flag)));
+        if let Expected::Values(values) = &case.expected {
+            assert!(!values.is_empty());
+            for (_, _, tolerance) in values {
+                let (Tolerance::Ulp(size) | Tolerance::Absolute(size) | Tolerance::Relative(size)) =
+                    *tolerance
+                else {
+                    continue;
+                };
+                assert!(size.is_finite() && size >= 0.0);
+            }
+        }
+        let line = case.line(&group.op);
+        let (end, content) = line.split_last().expect("a line");
+        assert!(*end == b'\n' && !content.contains(&b'\n'));
+        if case.question.is_arguments() {
+            // The arguments as they stand: they may hold a number that no f64 holds.
+            let read: HashMap<&str, &RawValue> = serde_json::from_slice(content).expect("JSON");
+            let text = |key| serde_json::from_str::<String>(read[key].get()).expect("a text");
+            assert_eq!(
+                (text("id"), text("op")),
+                (case.id.clone(), group.op.clone())
+            );
+        }
+        // A question that the solver would answer takes seconds, and is no matter of reading.
+        if group.op == "probe_force" || matches!(case.question, Question::Line(_)) {
+            continue;
+        }
+        let mut answer = Vec::new();
+        Oracle::default().answer(content, &mut answer);
+        assert_eq!(answer.iter().filter(|&&byte| byte == b'\n').count(), 1);
+    }
+}

@@ -1,0 +1,154 @@
+//! The statistics battery as outcomes: what each of its checks claims, and for which requirements.
+
+use std::format;
+use std::string::{String, ToString};
+use std::vec;
+use std::vec::Vec;
+
+use super::statistics::{Check, FIXED_SEED, Failure};
+use super::{Figure, Outcome};
+
+/// Checks of the battery by the beginning of their names, with their claim and requirements.
+const GROUPS: [(&str, &str, &[&str]); 14] = [
+    (
+        "coarse_mean",
+        "Θ of full records has the mean ∓γ²/2.",
+        &["DET-012", "DET-013", "DET-015", "DET-113"],
+    ),
+    (
+        "coarse_variance",
+        "Θ of full records has the variance γ².",
+        &["DET-013", "DET-015", "DET-113"],
+    ),
+    (
+        "coarse_kolmogorov",
+        "Θ of full records is normal.",
+        &["DET-015", "DET-113"],
+    ),
+    (
+        "coarse_",
+        "The thresholds of Neyman and Pearson give their rates of error.",
+        &["DET-024", "DET-025", "DET-026"],
+    ),
+    (
+        "single_",
+        "Θ of one sample of one channel has its law.",
+        &["DET-012", "DET-015"],
+    ),
+    (
+        "traverse_",
+        "Θ over a traverse of computed maps has its law and its false alarms.",
+        &["DET-015", "DET-026", "DET-113"],
+    ),
+    ("direct_", "Θ drawn from its law has it.", &["DET-114"]),
+    (
+        "shared_noise_",
+        "Noise that the channels share is whitened.",
+        &["DET-040", "DET-041"],
+    ),
+    (
+        "feedback_noise_",
+        "Noise with feedback is whitened.",
+        &["DET-044"],
+    ),
+    (
+        "moving_average_",
+        "Noise of a moving average is whitened.",
+        &["DET-045"],
+    ),
+    (
+        "generator_",
+        "Deviates are standard normal, with their tails, and independent.",
+        &["DET-111", "DET-112"],
+    ),
+    (
+        "theta_max_",
+        "False alarms of a scan keep their bound.",
+        &["DET-056", "DET-058"],
+    ),
+    (
+        "position_error",
+        "Position errors meet the bound of Cramér and Rao until the signal is too weak.",
+        &["DET-053", "DET-054", "DET-060", "DET-061"],
+    ),
+    (
+        "",
+        "Mixtures of depths, and noise in proportion to the force, have their false alarms and tails.",
+        &["DET-070", "DET-080", "DET-081"],
+    ),
+];
+
+fn group(name: &str) -> (&'static str, &'static [&'static str]) {
+    let found = GROUPS.iter().find(|(start, ..)| name.starts_with(start));
+    found.map_or(("", &[]), |&(_, claim, requirements)| (claim, requirements))
+}
+
+/// Runs a check of the battery with the seed of the tests, and with each defect that it must see.
+///
+/// Implements: CLI-050, EVD-001.
+pub fn outcome(check: &Check) -> Outcome {
+    let (claim, requirements) = group(check.name());
+    let name = format!("statistics.{}", check.name());
+    Outcome::measured(&name, claim, requirements, || {
+        figures(check).map_err(|failure| failure.to_string())
+    })
+}
+
+fn figures(check: &Check) -> Result<Vec<Figure>, Failure> {
+    let row = check.row(FIXED_SEED)?;
+    check.run(FIXED_SEED)?;
+    check.run_negative_controls(FIXED_SEED)?;
+    Ok(vec![
+        Figure::told("probability of failing by chance", row.alpha),
+        Figure::told("trials", row.trials as f64),
+        Figure::told(
+            "defects planted and seen",
+            row.shown_defects().count() as f64,
+        ),
+    ])
+}
+
+/// Runs one check of one battery of a soak, without defects.
+///
+/// # Errors
+/// What it says when it rejects the detector.
+///
+/// Implements: CLI-051.
+pub fn soaked(check: &Check, seed: u64) -> Result<(), String> {
+    check
+        .run(seed)
+        .map(drop)
+        .map_err(|failure: Failure| failure.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::battery;
+
+    // Verifies: EVD-002.
+    #[test]
+    fn every_check_of_the_battery_has_a_claim_of_its_group() {
+        for check in battery() {
+            assert!(!group(check.name()).0.is_empty(), "{}", check.name());
+        }
+        // Every group is the first one of some check.
+        for (start, claim, _) in GROUPS {
+            let used = battery().any(|check| group(check.name()).0 == claim);
+            assert!(used, "{start}");
+        }
+    }
+
+    // Verifies: EVD-002.
+    #[test]
+    fn a_check_of_the_battery_tells_its_row_of_the_ledger() {
+        let check = battery()
+            .find(|check| check.name() == "direct_kolmogorov")
+            .unwrap();
+        let outcome = outcome(check);
+        assert!(outcome.passed(), "{outcome:?}");
+        assert_eq!(outcome.name, "statistics.direct_kolmogorov");
+        let values: Vec<f64> = outcome.figures.iter().map(|figure| figure.value).collect();
+        assert_eq!(values, [2.5e-8, 200_000.0, 1.0]);
+    }
+}

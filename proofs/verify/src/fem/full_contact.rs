@@ -1,0 +1,382 @@
+//! Contact solved over all unknowns at once, to compare with the condensed contact.
+
+use palpate::fem::element::StiffnessRule;
+use palpate::fem::{Contact, Mesh, Model, Pose};
+use palpate::force_map::ForceMap;
+use palpate::phantom::Phantom;
+
+use super::problem::inside_out;
+use super::skyline::Skyline;
+use super::{Check, Figure, Figures, largest, said};
+
+/// A contact point: its position, and weight and unknowns of each node of its edge.
+type Point = ([f64; 2], Vec<(f64, [Option<usize>; 2])>);
+
+/// A phantom with all its unknowns, the free displacements from left to right, from the element stiffnesses alone.
+struct Full {
+    phantom: Phantom,
+    contact: Contact,
+    unknowns: usize,
+    /// Row, column ≤ row and value; those of the same place add up.
+    entries: Vec<(usize, usize, f64)>,
+    /// The first column of each row.
+    first: Vec<usize>,
+    /// The contact points from left to right.
+    surface: Vec<Point>,
+}
+
+/// Forces on the probe (F_x, F_n) with the displacements of the surface.
+struct Solved {
+    force: [f64; 2],
+    surface: Vec<[f64; 2]>,
+}
+
+impl Full {
+    fn new(phantom: &Phantom, size: f64, contact: Contact) -> Result<Full, String> {
+        let mesh = Mesh::new(phantom, size).map_err(said)?;
+        let mut order: Vec<usize> = (0..mesh.nodes.len()).collect();
+        order.sort_by(|&a, &b| mesh.nodes[a][0].total_cmp(&mesh.nodes[b][0]));
+        let (mut place, mut unknowns) = (vec![[None; 2]; mesh.nodes.len()], 0);
+        for (node, i) in order.into_iter().flat_map(|node| [(node, 0), (node, 1)]) {
+            if !mesh.held[node][i] {
+                place[node][i] = Some(unknowns);
+                unknowns += 1;
+            }
+        }
+        let (mut entries, mut first) = (Vec::new(), (0..unknowns).collect::<Vec<_>>());
+        let rule = StiffnessRule::default();
+        for (nodes, &region) in mesh.elements().zip(&mesh.regions) {
+            let element = rule
+                .integrate(&mesh.positions(nodes), region.material(phantom))
+                .map_err(inside_out)?;
+            let places: Vec<Option<usize>> = nodes
+                .iter()
+                .flat_map(|&node| place[node as usize])
+                .collect();
+            for (a, row) in places.iter().enumerate() {
+                for (b, column) in places.iter().enumerate() {
+                    if let (&Some(row), &Some(column)) = (row, column)
+                        && column <= row
+                    {
+                        first[row] = first[row].min(column);
+                        entries.push((row, column, phantom.probe.length * element[(a, b)]));
+                    }
+                }
+            }
+        }
+        // Two Gauss points on each edge of three nodes, with the parabolas of its nodes.
+        let g = 1.0 / 3f64.sqrt();
+        let mut nodes: Vec<usize> = (0..mesh.nodes.len())
+            .filter(|&node| mesh.nodes[node][1] == 0.0)
+            .collect();
+        nodes.sort_by(|&a, &b| mesh.nodes[a][0].total_cmp(&mesh.nodes[b][0]));
+        let mut surface = Vec::new();
+        for (edge, t) in (nodes.windows(3).step_by(2)).flat_map(|edge| [(edge, -g), (edge, g)]) {
+            let weights = [0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)];
+            let x = edge.iter().zip(weights).map(|(&n, w)| w * mesh.nodes[n][0]);
+            let of_node = edge.iter().zip(weights).map(|(&n, w)| (w, place[n]));
+            surface.push(([x.sum(), 0.0], of_node.collect()));
+        }
+        Ok(Full {
+            phantom: phantom.clone(),
+            contact,
+            unknowns,
+            entries,
+            first,
+            surface,
+        })
+    }
+
+    /// Gap of a point moved by `u`, ∂gap/∂u and ∂²gap/∂u².
+    fn gap(&self, [x, y]: [f64; 2], u: [f64; 2], pose: Pose) -> (f64, [f64; 2], [[f64; 2]; 2]) {
+        let radius = self.phantom.probe.radius;
+        let height = radius - pose.depth;
+        match self.contact {
+            Contact::DeformedNormal => {
+                let (a, b) = (x + u[0] - pose.lateral, y + u[1] - height);
+                let r = libm::hypot(a, b);
+                let cube = r * r * r;
+                let second = [[b * b / cube, -a * b / cube], [-a * b / cube, a * a / cube]];
+                (r - radius, [a / r, b / r], second)
+            }
+            Contact::VerticalGap => {
+                let offset = x - pose.lateral;
+                let circle = height - (radius * radius - offset * offset).max(0.0).sqrt();
+                (circle - y - u[1], [0.0, -1.0], [[0.0; 2]; 2])
+            }
+        }
+    }
+
+    /// Displacement of a point, from the unknowns.
+    fn moved((_, nodes): &Point, u: &[f64]) -> [f64; 2] {
+        [0, 1].map(|i| {
+            let terms = nodes.iter().filter_map(|(w, place)| Some(w * u[place[i]?]));
+            terms.sum()
+        })
+    }
+
+    /// Newton's method on K u = Σ λ n, gap = 0 over the active points, and a change of the active set after each
+    /// convergence, until no point is pulled or inside the probe. The depth goes down in steps of at most 1 mm.
+    fn solve(&self, pose: Pose) -> Result<Solved, String> {
+        let mut u = vec![0.0; self.unknowns];
+        let mut pressure = vec![0.0; self.surface.len()];
+        let mut active: Vec<usize> = Vec::new();
+        let steps = (pose.depth / 1e-3).ceil();
+        for step in 1..=steps as usize {
+            let pose = Pose {
+                depth: pose.depth * step as f64 / steps,
+                ..pose
+            };
+            for round in 0.. {
+                if round == 60 {
+                    return Err("the set of points in contact does not settle".into());
+                }
+                self.newton(&mut u, &mut pressure, &active, pose)?;
+                let revised: Vec<usize> = (0..self.surface.len())
+                    .filter(|&k| {
+                        let point = &self.surface[k];
+                        let (at, moved) = (point.0, Full::moved(point, &u));
+                        let (gap, ..) = self.gap(at, moved, pose);
+                        if active.contains(&k) {
+                            pressure[k] >= 0.0
+                        } else {
+                            gap < 0.0 && (at[0] - pose.lateral).abs() < self.phantom.probe.radius
+                        }
+                    })
+                    .collect();
+                if revised == active {
+                    break;
+                }
+                active = revised;
+            }
+        }
+        Ok(self.solved(&u, &pressure, &active, pose))
+    }
+
+    /// Newton's method for u and the pressures λ of the active points,
+    ///
+    /// (K − Σ λ ∂n/∂u) δu − n δλ = Σ λ n − K u, −nᵀ δu = gap.
+    fn newton(
+        &self,
+        u: &mut [f64],
+        pressure: &mut [f64],
+        active: &[usize],
+        pose: Pose,
+    ) -> Result<(), String> {
+        let n = self.unknowns;
+        for point in (0..pressure.len()).filter(|point| !active.contains(point)) {
+            pressure[point] = 0.0;
+        }
+        let mut first = self.first.clone();
+        first.extend(active.iter().map(|&point| {
+            let places = self.surface[point].1.iter().flat_map(|(_, place)| place);
+            places.flatten().copied().min().unwrap_or(n)
+        }));
+        for _ in 0..30 {
+            let mut matrix = Skyline::new(first.clone());
+            let mut rest = vec![0.0; n + active.len()];
+            for &(row, column, value) in &self.entries {
+                matrix.add(row, column, value);
+                rest[row] -= value * u[column];
+                if row != column {
+                    rest[column] -= value * u[row];
+                }
+            }
+            for (k, &active) in active.iter().enumerate() {
+                let point = &self.surface[active];
+                let (gap, normal, turn) = self.gap(point.0, Full::moved(point, u), pose);
+                rest[n + k] = gap;
+                // Each unknown with its weight and direction.
+                let unknowns: Vec<(usize, f64, usize)> = (point.1.iter())
+                    .flat_map(|&(w, place)| {
+                        [0, 1]
+                            .into_iter()
+                            .filter_map(move |i| Some((place[i]?, w, i)))
+                    })
+                    .collect();
+                for &(a, w, i) in &unknowns {
+                    rest[a] += pressure[active] * w * normal[i];
+                    matrix.add(n + k, a, -w * normal[i]);
+                    for &(b, v, j) in unknowns.iter().filter(|(b, ..)| *b <= a) {
+                        matrix.add(a, b, -pressure[active] * w * v * turn[i][j]);
+                    }
+                }
+            }
+            matrix.factorise()?.solve(&mut rest);
+            let mut largest = 0.0f64;
+            for (u, step) in u.iter_mut().zip(&rest) {
+                *u += step;
+                largest = largest.max(step.abs());
+            }
+            for (k, &point) in active.iter().enumerate() {
+                pressure[point] += rest[n + k];
+            }
+            if largest < 1e-13 {
+                return Ok(());
+            }
+        }
+        Err("Newton's method on all unknowns does not converge".into())
+    }
+
+    fn solved(&self, u: &[f64], pressure: &[f64], active: &[usize], pose: Pose) -> Solved {
+        let radius = self.phantom.probe.radius;
+        let mut force = [0.0; 2];
+        for &active in active {
+            let (point, pressure) = (&self.surface[active], pressure[active]);
+            let (at, (_, normal, _)) = (point.0, self.gap(point.0, Full::moved(point, u), pose));
+            force[1] -= pressure * normal[1];
+            // The vertical gap's pressure acts on the circle's slope.
+            let offset = at[0] - pose.lateral;
+            force[0] -= match self.contact {
+                Contact::DeformedNormal => pressure * normal[0],
+                Contact::VerticalGap => {
+                    pressure * offset / (radius * radius - offset * offset).sqrt()
+                }
+            };
+        }
+        let surface = self.surface.iter().map(|point| Full::moved(point, u));
+        Solved {
+            force,
+            surface: surface.collect(),
+        }
+    }
+}
+
+/// The largest difference between two lists of displacements, m; NaN for lists of unlike lengths.
+fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+    if a.len() != b.len() {
+        return f64::NAN;
+    }
+    let pairs = a.as_flattened().iter().zip(b.as_flattened());
+    largest(pairs.map(|(a, b)| (a - b).abs()))
+}
+
+/// Both sides stop Newton's method at steps of 1e-13 m, which are worth 1e-10 N at the surface's stiffness of some
+/// 10³ N/m, and round the stiffness's sums in different orders. 1e-9 N is what FEM-060 allows.
+fn compare(name: &str, contact: Contact) -> Figures {
+    let size = 6e-3;
+    let phantom = Phantom::builtin(name).map_err(said)?;
+    let model = Model::new(&phantom, size, contact).map_err(said)?;
+    let full = Full::new(&phantom, size, contact)?;
+    let mut figures = Vec::new();
+    for (depth, lateral) in [(1.3e-3, 2.1e-3), (4e-3, 3.7e-3)] {
+        let condensed = model.solve(Pose { depth, lateral }).map_err(said)?;
+        let [right, left] = [lateral, -lateral].map(|lateral| full.solve(Pose { depth, lateral }));
+        let (right, left) = (right?, left?);
+        let off = [
+            condensed.lateral_force - right.force[0],
+            condensed.normal_force - right.force[1],
+        ];
+        // The left side is solved by itself here, where the library mirrors the right one.
+        let unlike = [
+            left.force[0] + right.force[0],
+            left.force[1] - right.force[1],
+        ];
+        let mirrored: Vec<[f64; 2]> = left.surface.iter().rev().map(|&[x, y]| [-x, y]).collect();
+        let moved = [&condensed.state.displacements, &mirrored]
+            .map(|displacements| difference(displacements, &right.surface));
+        let what = format!("d = {} mm, x = {} mm", depth * 1e3, lateral * 1e3);
+        let magnitude = |forces: [f64; 2]| largest(forces.map(f64::abs));
+        figures.extend([
+            Figure::at_least(
+                format!("{what}: lateral force to compare, N"),
+                condensed.lateral_force.abs(),
+                1e-3,
+            ),
+            Figure::at_most(
+                format!("{what}: largest difference of a force, N"),
+                magnitude(off),
+                1e-9,
+            ),
+            Figure::at_most(
+                format!("{what}: largest difference of a surface displacement, m"),
+                moved[0],
+                1e-12,
+            ),
+            Figure::at_most(
+                format!("{what}: largest difference of a force from −x's, N"),
+                magnitude(unlike),
+                1e-9,
+            ),
+            Figure::at_most(
+                format!("{what}: largest difference of a surface displacement from −x's, m"),
+                moved[1],
+                1e-12,
+            ),
+        ]);
+    }
+    Ok(figures)
+}
+
+/// The condensed contact along the deformed normal.
+pub const DEFORMED_NORMAL: Check = Check {
+    name: "fem.condensed_contact",
+    claim: "Contact solved on the condensed surface equals Newton's method on all unknowns at once, and poses at x and −x \
+            that are solved each by itself agree.",
+    requirements: &["FEM-060", "FEM-061"],
+    repeatable: true,
+    run: || compare("2.6", Contact::DeformedNormal),
+};
+
+/// The condensed contact of vertical gaps.
+pub const VERTICAL_GAP: Check = Check {
+    name: "fem.condensed_vertical_contact",
+    claim: "The same with the contact law of vertical gaps.",
+    requirements: &["FEM-060", "FEM-061"],
+    repeatable: true,
+    run: || compare("6.6", Contact::VerticalGap),
+};
+
+/// Pairs of mirrored poses of a map whose lateral positions are their own mirror image.
+pub fn symmetry(what: &str, map: &ForceMap) -> [Figure; 3] {
+    let (rows, columns) = (map.depths().len(), map.laterals().len());
+    let (mut pairs, mut unlike, mut aside) = (0, 0, 0);
+    for row in 0..rows {
+        let (normal, lateral) = (map.normal_force().row(row), map.lateral_force().row(row));
+        for (left, right) in (0..columns).zip((0..columns).rev()).take(columns / 2) {
+            let same = normal[left].to_bits() == normal[right].to_bits()
+                && lateral[left].to_bits() == (-lateral[right]).to_bits();
+            // Without a force there would be nothing to compare.
+            let loaded = normal[right] > 0.0 && lateral[right] != 0.0;
+            pairs += 1;
+            unlike += u64::from(!(same && loaded));
+        }
+        aside += u64::from(lateral[columns / 2].to_bits() != 0.0f64.to_bits());
+    }
+    let expected = (rows * (columns / 2)) as u64;
+    [
+        Figure::count(
+            format!("{what}: pairs of poses at x and −x"),
+            pairs,
+            expected,
+        ),
+        Figure::count(
+            format!("{what}: pairs that differ in a bit, or have no force"),
+            unlike,
+            0,
+        ),
+        Figure::count(
+            format!("{what}: lateral forces at x = 0 that are not 0"),
+            aside,
+            0,
+        ),
+    ]
+}
+
+/// Mirror symmetry of a map.
+pub const MIRROR: Check = Check {
+    name: "fem.mirror_symmetry",
+    claim: "A map of 8 depths and 21 lateral positions is mirror-symmetric in x to the bit.",
+    requirements: &["FEM-061", "FEM-014"],
+    repeatable: true,
+    run: mirror,
+};
+
+fn mirror() -> Figures {
+    let phantom = Phantom::builtin("2.6").map_err(said)?;
+    let model = Model::new(&phantom, 2e-3, Contact::DeformedNormal).map_err(said)?;
+    let depths: Vec<f64> = (1..=8).map(|k| 0.5e-3 * f64::from(k)).collect();
+    let laterals: Vec<f64> = (-10..=10).map(|k| 1e-3 * f64::from(k)).collect();
+    let map = model.map(&depths, &laterals, &|_| ()).map_err(said)?;
+    Ok(symmetry("2.6", &map).into())
+}

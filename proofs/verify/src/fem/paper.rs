@@ -1,0 +1,117 @@
+//! Calculation verification: how good the forces of the paper's poses are on the default mesh.
+
+use super::full_contact::symmetry;
+use super::{Check, Figure, Figures, largest, least, said};
+use palpate::fem::certify::certified_map;
+use palpate::fem::{Contact, MESH_SIZE, Model, Pose};
+use palpate::phantom::{BUILTIN_NAMES, Phantom};
+
+/// Depths and lateral positions of the poses, m.
+const DEPTHS: [f64; 3] = [1e-3, 2.5e-3, 4e-3];
+const LATERALS: [f64; 5] = [-10e-3, -3e-3, 0.0, 3e-3, 10e-3];
+
+/// The largest relative residual of a linear solve (FEM-008).
+const RESIDUAL: f64 = 1e-8;
+/// How far a node of the surface may be inside the probe, m (FEM-009).
+const PENETRATION: f64 = 1e-12;
+
+fn model(name: &str) -> Result<Model, String> {
+    let phantom = Phantom::builtin(name).map_err(said)?;
+    Model::new(&phantom, MESH_SIZE, Contact::default()).map_err(said)
+}
+
+/// Forces that another program found.
+pub const REFERENCE: Check = Check {
+    name: "fem.reference_forces",
+    claim: "The normal force at a depth of 4 mm, x = 0, is 1.48 N without inclusion and 0.31 N more with the 6.6 mm one, \
+            as an independent program found.",
+    requirements: &["FEM-020"],
+    repeatable: true,
+    run: reference,
+};
+
+/// Implements: EVD-048.
+fn reference() -> Figures {
+    let force = |name| -> Result<f64, String> {
+        let pose = Pose {
+            depth: 4e-3,
+            lateral: 0.0,
+        };
+        let solution = model(name)?.solve(pose).map_err(said)?;
+        Ok(solution.normal_force)
+    };
+    let none = force("none")?;
+    let inclusion = force("6.6")?;
+    Ok(vec![
+        Figure::within("no inclusion: normal force, N", none, 1.475, 1.485),
+        Figure::within(
+            "6.6 mm: normal force above that without inclusion, N",
+            inclusion - none,
+            0.305,
+            0.315,
+        ),
+    ])
+}
+
+/// The certificates of the paper's poses.
+pub const CERTIFICATES: Check = Check {
+    name: "fem.certificates",
+    claim: "At 15 poses of each of the paper's five phantoms the linear solves leave less than their limit, no node of the \
+            surface is inside the probe, and the forces are mirror-symmetric; the bands say how far the forces may be from \
+            those of an infinitely fine mesh.",
+    requirements: &[
+        "FEM-008", "FEM-009", "FEM-014", "FEM-015", "FEM-026", "FEM-027",
+    ],
+    repeatable: true,
+    run: certificates,
+};
+
+/// Implements: EVD-048.
+fn certificates() -> Figures {
+    let mut figures = Vec::new();
+    for name in BUILTIN_NAMES {
+        let model = model(name)?;
+        let map = certified_map(&model, &DEPTHS, &LATERALS, &|_| ()).map_err(said)?;
+        let certificate = map.certificate().ok_or("the map has no certificate")?;
+        let bands = certificate.discretization.as_ref();
+        let bands = bands.ok_or("the map has no bands")?;
+        let forces = map.normal_force().values();
+        let relative = bands.normal_force_band.values().iter().zip(forces);
+        let lateral = bands.lateral_force_band.values();
+        let told = |what: &str, value| Figure::told(format!("{name}: {what}"), value);
+        figures.extend([
+            told(
+                "normal force at 4 mm, x = 0, N",
+                map.normal_force().row(2)[2],
+            ),
+            told(
+                "largest half band of a normal force, %",
+                100.0 * largest(relative.map(|(band, force)| band / force)),
+            ),
+            told(
+                "largest half band of a lateral force, N",
+                largest(lateral.iter().copied()),
+            ),
+            Figure::at_most(
+                format!("{name}: largest relative residual"),
+                certificate.worst_relative_residual,
+                RESIDUAL,
+            ),
+            told(
+                "largest imbalance of forces, N",
+                certificate.worst_force_balance,
+            ),
+            Figure::at_most(
+                format!("{name}: largest penetration, m"),
+                certificate.largest_penetration,
+                PENETRATION,
+            ),
+            told(
+                "smallest det(I + ∇u)",
+                least(certificate.min_det.values().iter().copied()),
+            ),
+        ]);
+        figures.extend(symmetry(name, &map));
+    }
+    Ok(figures)
+}

@@ -1,0 +1,218 @@
+//! Patch test and zero-energy modes.
+
+use faer::Mat;
+
+use palpate::fem::element::{NODES, StiffnessRule};
+use palpate::phantom::Material;
+
+use super::eigenvalues::eigenvalues;
+use super::problem::{Exact, Problem, inside_out, lame};
+use super::{Check, Figure, Figures, largest, least};
+
+/// How far edges are bent: not at all, or so far that elements lose what straight ones can do.
+const CURVES: [f64; 2] = [0.0, 0.08];
+const NEARLY_INCOMPRESSIBLE: Material = Material {
+    youngs_modulus: 1.0,
+    poisson_ratio: 0.49,
+};
+
+/// Numbers that look random in (−1, 1), the same in each run (Knuth's 64-bit linear congruence).
+fn noise() -> impl FnMut() -> f64 {
+    let mut state = 1u64;
+    move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// A lattice of 4 × 4 cells of size 1 with every corner moved by up to 0.2, and middle nodes half-way between the corners,
+/// moved on by up to `curve` in each direction.
+fn distorted(curve: f64) -> Problem {
+    let mut problem = Problem::lattice(
+        [4, 4],
+        |at| at.map(|c| 4.0 * c),
+        |[x, y]| (x > 0.5) == (y > 0.5),
+        |_| NEARLY_INCOMPRESSIBLE,
+    );
+    let mut noise = noise();
+    for node in &mut problem.nodes {
+        *node = node.map(|c| c + 0.2 * noise());
+    }
+    let mut bent = vec![false; problem.nodes.len()];
+    for nodes in &problem.elements {
+        for (middle, [a, b]) in [(3, [0, 1]), (4, [1, 2]), (5, [2, 0])] {
+            if !std::mem::replace(&mut bent[nodes[middle]], true) {
+                let [a, b] = [a, b].map(|k| problem.nodes[nodes[k]]);
+                problem.nodes[nodes[middle]] =
+                    [0, 1].map(|i| 0.5 * (a[i] + b[i]) + curve * noise());
+            }
+        }
+    }
+    problem
+}
+
+/// u_i = G_i0 x + G_i1 y + Q_i0 x² + Q_i1 xy + Q_i2 y².
+struct Polynomial {
+    linear: [[f64; 2]; 2],
+    quadratic: [[f64; 3]; 2],
+}
+
+const LINEAR_FIELD: Polynomial = Polynomial {
+    linear: [[0.7, -1.1], [0.4, 0.9]],
+    quadratic: [[0.0; 3]; 2],
+};
+const QUADRATIC_FIELD: Polynomial = Polynomial {
+    linear: [[0.7, -1.1], [0.4, 0.9]],
+    quadratic: [[0.3, -0.2, 0.1], [-0.1, 0.2, 0.4]],
+};
+
+impl Exact for Polynomial {
+    fn displacement(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| {
+            let ([a, b], [xx, xy, yy]) = (self.linear[i], self.quadratic[i]);
+            a * x + b * y + xx * x * x + xy * x * y + yy * y * y
+        })
+    }
+
+    fn gradient(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 2] {
+        [0, 1].map(|i| {
+            let ([a, b], [xx, xy, yy]) = (self.linear[i], self.quadratic[i]);
+            [a + 2.0 * xx * x + xy * y, b + xy * x + 2.0 * yy * y]
+        })
+    }
+}
+
+/// The largest relative error, of displacement, gradient or stress, with the exact displacement along the border and
+/// the exact body force, which is constant.
+fn worst_error(problem: &Problem, exact: &Polynomial) -> Result<f64, String> {
+    let lattice = Problem::lattice([4, 4], |at| at, |_| true, |_| NEARLY_INCOMPRESSIBLE);
+    let border = |node: usize| lattice.nodes[node].iter().any(|&c| c == 0.0 || c == 1.0);
+    let (lambda, mu) = lame(&NEARLY_INCOMPRESSIBLE);
+    let [[xx, xy, yy], [vxx, vxy, vyy]] = exact.quadratic;
+    // f = −(λ + μ) ∇ div u − μ Δu.
+    let force = [
+        -(lambda + mu) * (2.0 * xx + vxy) - 2.0 * mu * (xx + yy),
+        -(lambda + mu) * (xy + 2.0 * vyy) - 2.0 * mu * (vxx + vyy),
+    ];
+    let (u, _) = problem.solve(problem.body_loads(|_| force), |node, direction| {
+        border(node).then(|| exact.displacement(problem.nodes[node])[direction])
+    })?;
+    let errors = problem.errors(&u, exact);
+    Ok(largest([
+        errors.displacement,
+        errors.gradient,
+        errors.stress,
+    ]))
+}
+
+/// Rounding of the solve: the matrix's condition, some 16 cells² times the ratio of the moduli (λ + 2μ)/μ = 51 at
+/// ν = 0.49, so 10³, times 1.1e-16; stresses multiply the strains' errors by λ/μ = 49 once more.
+const ROUNDING: f64 = 1e-11;
+
+/// The linear patch test.
+pub const LINEAR: Check = Check {
+    name: "fem.linear_patch",
+    claim: "A linear displacement prescribed along the border is found inside to rounding, with its gradient and \
+            stress, on a distorted mesh of straight or curved triangles.",
+    requirements: &["FEM-050"],
+    repeatable: true,
+    run: linear,
+};
+
+fn linear() -> Figures {
+    // On curved edges too: J⁻¹ det J ∇N is a polynomial of degree 2, which the rule integrates exactly, so that the internal
+    // forces of a constant stress are in balance.
+    let figure = |curve| {
+        let worst = worst_error(&distorted(curve), &LINEAR_FIELD)?;
+        let what = format!("bent by {curve}: largest relative error");
+        Ok(Figure::at_most(what, worst, ROUNDING))
+    };
+    CURVES.into_iter().map(figure).collect()
+}
+
+/// The quadratic patch test.
+pub const QUADRATIC: Check = Check {
+    name: "fem.quadratic_patch",
+    claim: "A quadratic displacement is found to rounding by straight triangles; curved ones, which cannot hold it, are \
+            seen to miss it.",
+    requirements: &["FEM-051"],
+    repeatable: true,
+    run: quadratic,
+};
+
+fn quadratic() -> Figures {
+    let [straight, curved] = CURVES.map(|curve| worst_error(&distorted(curve), &QUADRATIC_FIELD));
+    Ok(vec![
+        Figure::at_most("straight: largest relative error", straight?, ROUNDING),
+        // The check can see the difference.
+        Figure::at_least(
+            "curved: largest relative error, which must show",
+            curved?,
+            1e-3,
+        ),
+    ])
+}
+
+/// The share of the largest eigenvalue of a stiffness that the largest of the three least has by magnitude, and
+/// that the fourth has.
+///
+/// Zeros come out within 10² roundings of the largest, which goes as λ + 2μ. The smallest deformation's goes as μ
+/// times (size of an element/size of the mesh)², so at least 1e-2/51 of the largest for one element and 1e-5 for a mesh.
+fn shares(matrix: Mat<f64>) -> Result<[f64; 2], String> {
+    let values = eigenvalues(matrix)?;
+    let greatest = values[values.len() - 1];
+    Ok([
+        largest(values[..3].iter().map(|value| value.abs())) / greatest,
+        least(values[3..].iter().copied()) / greatest,
+    ])
+}
+
+/// The figures of stiffnesses whose eigenvalues have these shares: three zeros, and no other one.
+fn three_zeros(what: &str, shares: &[[f64; 2]], allowed: f64) -> [Figure; 2] {
+    [
+        Figure::at_most(
+            format!("{what}: largest of the three least eigenvalues, over the largest"),
+            largest(shares.iter().map(|share| share[0])),
+            1e-14,
+        ),
+        Figure::at_least(
+            format!("{what}: least of the other eigenvalues, over the largest"),
+            least(shares.iter().map(|share| share[1])),
+            allowed,
+        ),
+    ]
+}
+
+/// Zero-energy modes.
+pub const RIGID: Check = Check {
+    name: "fem.rigid_modes",
+    claim: "An element and a mesh without supports have three motions without energy, the rigid ones, and no other.",
+    requirements: &["FEM-052"],
+    repeatable: true,
+    run: rigid,
+};
+
+fn rigid() -> Figures {
+    let mut figures = Vec::new();
+    let rule = StiffnessRule::default();
+    for curve in CURVES {
+        let problem = distorted(curve);
+        let mut elements = Vec::new();
+        for nodes in &problem.elements {
+            let stiffness = rule
+                .integrate(&problem.positions(nodes), &NEARLY_INCOMPRESSIBLE)
+                .map_err(inside_out)?;
+            let matrix = Mat::from_fn(2 * NODES, 2 * NODES, |i, j| stiffness[(i, j)]);
+            elements.push(shares(matrix)?);
+        }
+        let n = 2 * problem.nodes.len();
+        let mut matrix = Mat::zeros(n, n);
+        problem.visit(|row, column, value| matrix[(row, column)] += value)?;
+        let what = |part: &str| format!("{part}, bent by {curve}");
+        figures.extend(three_zeros(&what("elements"), &elements, 1e-4));
+        figures.extend(three_zeros(&what("mesh"), &[shares(matrix)?], 1e-5));
+    }
+    Ok(figures)
+}

@@ -1,0 +1,181 @@
+//! Coloured noise, made as nature makes it (mixing, feedback, moving averages), never from the
+//! factor that is under test.
+
+use std::vec;
+use std::vec::Vec;
+
+use super::checks::{Law, mean_rejects, variance_rejects};
+use super::{Check, Draw, Outcome};
+use palpate::detect::coloured::{ColouredStatistic, coloured_scratch, theta_coloured};
+use palpate::detect::stationary::{banded_scratch, theta_banded, theta_stationary};
+use palpate::detect::{Channels, DetectError, MatchedFilter};
+
+/// DET-040, DET-041; DET-044; DET-045.
+pub(super) const CHECKS: &[Check] = &[
+    Check::new("shared_noise_mean_h1", |draw| mean(draw, &SHARED)),
+    Check::new("shared_noise_variance_h0", |draw| variance(draw, &SHARED)),
+    Check::new("feedback_noise_mean_h1", |draw| mean(draw, &FEEDBACK)),
+    Check::new("feedback_noise_variance_h0", |draw| {
+        variance(draw, &FEEDBACK)
+    }),
+    Check::new("moving_average_mean_h1", |draw| mean(draw, &MOVING_AVERAGE)),
+    Check::new("moving_average_variance_h0", |draw| {
+        variance(draw, &MOVING_AVERAGE)
+    }),
+];
+
+/// One kind of noise.
+struct Colour {
+    noise: Noise,
+    /// Variance of a sample, N².
+    variance: f64,
+    detector: Detector,
+    /// The first stream.
+    stream: u64,
+}
+
+const SHARED: Colour = Colour {
+    noise: shared,
+    variance: 0.13,
+    detector: shared_detector,
+    stream: 400,
+};
+const FEEDBACK: Colour = Colour {
+    noise: feedback,
+    variance: 0.04 / 0.36,
+    detector: feedback_detector,
+    stream: 430,
+};
+const MOVING_AVERAGE: Colour = Colour {
+    noise: moving_average,
+    variance: 0.0656,
+    detector: moving_average_detector,
+    stream: 460,
+};
+
+/// Samples a channel.
+const SAMPLES: usize = 6;
+const TEMPLATE: [f64; 2 * SAMPLES] = [
+    0.1, 0.3, 0.2, -0.2, -0.3, -0.1, 0.05, 0.15, 0.3, 0.34, 0.2, 0.1,
+];
+
+/// A detector of coloured noise: residual → statistic.
+type Detector = fn(&[f64]) -> Result<ColouredStatistic, DetectError>;
+/// A source of noise: 40 independent deviates → 12 samples.
+type Noise = fn(&[f64]) -> [f64; 2 * SAMPLES];
+
+fn channels(values: &[f64]) -> Channels<&[f64]> {
+    Channels {
+        x: &values[..SAMPLES],
+        y: &values[SAMPLES..],
+    }
+}
+
+/// What two channels share (a vibration of the probe) and what each has alone: n = 0.2 e + 0.3 g, g
+/// common to x and y.
+fn shared(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
+    std::array::from_fn(|i| 0.2 * deviates[i] + 0.3 * deviates[20 + i % SAMPLES])
+}
+
+fn shared_detector(residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
+    let order = 2 * SAMPLES;
+    let mut covariance = vec![0.0; order * order];
+    for i in 0..order {
+        covariance[i * order + i] = 0.04 + 0.09;
+        covariance[i * order + (i + SAMPLES) % order] = 0.09;
+    }
+    theta_coloured(
+        residual,
+        &TEMPLATE,
+        &covariance,
+        &mut vec![0.0; coloured_scratch(order)],
+    )
+}
+
+/// Feedback, nᵢ = 0.8 nᵢ₋₁ + 0.2 eᵢ, in each channel, started in its stationary law.
+fn feedback(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
+    let mut noise = [0.0; 2 * SAMPLES];
+    for i in 0..2 * SAMPLES {
+        noise[i] = if i % SAMPLES == 0 {
+            0.2 / 0.6 * deviates[i]
+        } else {
+            0.8 * noise[i - 1] + 0.2 * deviates[i]
+        };
+    }
+    noise
+}
+
+fn feedback_detector(residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
+    let lags: [f64; SAMPLES] = std::array::from_fn(|lag| 0.04 / 0.36 * libm::pow(0.8, lag as f64));
+    let lags = Channels {
+        x: &lags[..],
+        y: &lags[..],
+    };
+    theta_stationary(
+        channels(residual),
+        channels(&TEMPLATE),
+        lags,
+        &mut [0.0; 2 * SAMPLES],
+    )
+}
+
+/// A moving average, nᵢ = 0.2 eᵢ + 0.16 eᵢ₋₁.
+fn moving_average(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
+    std::array::from_fn(|i| {
+        let first = i + i / SAMPLES;
+        0.2 * deviates[first + 1] + 0.16 * deviates[first]
+    })
+}
+
+fn moving_average_detector(residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
+    let lags = [0.04 + 0.0256, 0.032];
+    let lags = Channels {
+        x: &lags[..],
+        y: &lags[..],
+    };
+    let mut scratch = [0.0; banded_scratch(2)];
+    theta_banded(channels(residual), channels(&TEMPLATE), lags, &mut scratch)
+}
+
+/// θ of a detector that takes each noise for white with its own variance.
+fn without_whitening(residual: &[f64], variance: f64) -> Result<f64, DetectError> {
+    let sd = libm::sqrt(variance);
+    let filter = MatchedFilter::new(channels(&TEMPLATE), Channels { x: sd, y: sd })?;
+    Ok(filter.statistic(channels(residual))?.theta)
+}
+
+fn sample(
+    draw: &Draw<'_>,
+    colour: &Colour,
+    inclusion: bool,
+    stream: u64,
+) -> Outcome<(Law, Vec<f64>)> {
+    let generator = draw.generator(stream + draw.replicate);
+    let mut deviates = [0.0; 40];
+    let theta = (0..draw.trials()).map(|trial| {
+        generator.normals(trial, 0, &mut deviates);
+        let mut residual = (colour.noise)(&deviates);
+        if inclusion {
+            residual.iter_mut().zip(TEMPLATE).for_each(|(r, t)| *r += t);
+        }
+        match draw.defect {
+            "whitening_left_out" => without_whitening(&residual, colour.variance),
+            _ => Ok((colour.detector)(&residual)?.theta),
+        }
+    });
+    let theta = theta.collect::<Result<_, _>>()?;
+    let gamma = (colour.detector)(&TEMPLATE)?.gamma;
+    Ok((Law::of_theta(gamma, inclusion), theta))
+}
+
+/// Mean under H = 1.
+fn mean(draw: &Draw<'_>, colour: &Colour) -> Outcome<bool> {
+    let (law, theta) = sample(draw, colour, true, colour.stream)?;
+    mean_rejects(&theta, law, draw.row.alpha)
+}
+
+/// Variance under H = 0.
+fn variance(draw: &Draw<'_>, colour: &Colour) -> Outcome<bool> {
+    let (law, theta) = sample(draw, colour, false, colour.stream + 10)?;
+    variance_rejects(&theta, law, draw.row.alpha)
+}

@@ -1,0 +1,304 @@
+//! Records in white noise, from the two forces to θ, against N(±γ²/2, γ²).
+
+use std::vec;
+use std::vec::Vec;
+
+use super::checks::{
+    Law, count_rejects, kolmogorov_rejects, mean_rejects, tail_rejects, variance_rejects,
+};
+use super::{Check, Draw, Outcome, view};
+use palpate::detect::simulate::{Simulation, draw_theta};
+use palpate::detect::{
+    Channels, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold,
+};
+
+/// DET-012, DET-013, DET-015, DET-024, DET-025, DET-026, DET-113; the last one DET-114.
+pub(super) const CHECKS: &[Check] = &[
+    Check::new("coarse_mean_h0", |draw| mean(draw, COARSE, false, 0)),
+    Check::new("coarse_mean_h1", |draw| mean(draw, COARSE, true, 1)),
+    Check::new("coarse_variance_h0", |draw| {
+        variance(draw, COARSE, false, 2)
+    }),
+    Check::new("coarse_variance_h1", |draw| variance(draw, COARSE, true, 3)),
+    Check::new("coarse_kolmogorov_h0", |draw| kolmogorov(draw, false, 4)),
+    Check::new("coarse_kolmogorov_h1", |draw| kolmogorov(draw, true, 5)),
+    Check::new("coarse_false_alarms_at_1_percent", coarse_false_alarms),
+    Check::new("coarse_misses_at_5_percent", coarse_misses),
+    Check::new("coarse_noise_variance", coarse_noise_variance),
+    Check::new("single_mean_h1", |draw| mean(draw, SINGLE, true, 100)),
+    Check::new("single_variance_h0", |draw| {
+        variance(draw, SINGLE, false, 110)
+    }),
+    Check::new("traverse_mean_h1", |draw| mean(draw, TRAVERSE, true, 200)),
+    Check::new("traverse_variance_h0", |draw| {
+        variance(draw, TRAVERSE, false, 210)
+    }),
+    Check::new("traverse_false_alarms_at_5_percent", traverse_false_alarms),
+    Check::new("direct_kolmogorov", drawn_directly),
+];
+
+/// A setting, and the distance of the streams of two replicates.
+type Series = (fn() -> Outcome<Setting>, u64);
+const COARSE: Series = (coarse, 10);
+const SINGLE: Series = (single, 1);
+const TRAVERSE: Series = (traverse, 1);
+
+/// A pair of hypotheses and their noise.
+struct Setting {
+    f0: Channels<Vec<f64>>,
+    template: Channels<Vec<f64>>,
+    noise_sd: Channels<f64>,
+}
+
+/// Eight coarse samples, both channels: γ = 1.91.
+fn coarse() -> Outcome<Setting> {
+    Ok(Setting {
+        f0: Channels {
+            x: vec![0.0; 8],
+            y: vec![1.48; 8],
+        },
+        template: Channels {
+            x: vec![0.02, 0.09, 0.16, 0.12, -0.12, -0.16, -0.09, -0.02],
+            y: vec![0.03, 0.10, 0.22, 0.33, 0.33, 0.22, 0.10, 0.03],
+        },
+        noise_sd: Channels { x: 0.25, y: 0.4 },
+    })
+}
+
+/// One lateral sample: γ = ½.
+fn single() -> Outcome<Setting> {
+    Ok(Setting {
+        f0: Channels {
+            x: vec![0.1],
+            y: vec![1.5],
+        },
+        template: Channels {
+            x: vec![-0.05],
+            y: vec![0.0],
+        },
+        noise_sd: Channels { x: 0.1, y: 0.1 },
+    })
+}
+
+/// The forces of a traverse at 4 mm depth from the finite elements, as `palpate solve --phantom NAME --depths-mm 4
+/// --laterals-mm -10:10:0.5 --format csv` prints them.
+const TRAVERSE_WITHOUT: &str = include_str!("traverse_none.csv");
+const TRAVERSE_WITH: &str = include_str!("traverse_4.6.csv");
+
+/// Samples of a traverse between two positions of its file.
+const SAMPLES_PER_POSITION: usize = 10;
+
+/// 401 samples of a traverse over the inclusion 4.6 mm deep, as the paper's probe makes it: γ = 9.30.
+fn traverse() -> Outcome<Setting> {
+    let (f0, f1) = (sampled(TRAVERSE_WITHOUT)?, sampled(TRAVERSE_WITH)?);
+    let difference =
+        |(f0, f1): (&Vec<f64>, &Vec<f64>)| f0.iter().zip(f1).map(|(f0, f1)| f1 - f0).collect();
+    let template = Channels {
+        x: difference((&f0.x, &f1.x)),
+        y: difference((&f0.y, &f1.y)),
+    };
+    Ok(Setting {
+        f0,
+        template,
+        noise_sd: Channels { x: 0.5, y: 0.6615 },
+    })
+}
+
+/// The forces of a file, interpolated linearly between its positions.
+fn sampled(file: &str) -> Outcome<Channels<Vec<f64>>> {
+    let mut rows: Vec<[f64; 2]> = Vec::new();
+    for line in file.lines().skip(1) {
+        // depth_mm, lateral_mm, normal_force_n, lateral_force_n
+        let fields = line
+            .split(',')
+            .map(str::parse)
+            .collect::<Result<Vec<f64>, _>>()?;
+        let [_, _, normal, lateral] = fields[..] else {
+            return Err(std::format!("{line:?} has not four fields").into());
+        };
+        rows.push([lateral, normal]);
+    }
+    let samples = SAMPLES_PER_POSITION * rows.len().saturating_sub(1);
+    let channel = |c: usize| {
+        let sample = |i: usize| {
+            let (row, part) = (i / SAMPLES_PER_POSITION, i % SAMPLES_PER_POSITION);
+            let (here, next) = (rows[row][c], rows[(row + 1).min(rows.len() - 1)][c]);
+            here + part as f64 / SAMPLES_PER_POSITION as f64 * (next - here)
+        };
+        (0..=samples).map(sample).collect()
+    };
+    Ok(Channels {
+        x: channel(0),
+        y: channel(1),
+    })
+}
+
+fn forces(setting: &Setting, inclusion: bool) -> Channels<Vec<f64>> {
+    let force = |f0: &[f64], template: &[f64]| {
+        f0.iter()
+            .zip(template)
+            .map(|(f0, t)| f0 + if inclusion { *t } else { 0.0 })
+            .collect()
+    };
+    Channels {
+        x: force(&setting.f0.x, &setting.template.x),
+        y: force(&setting.f0.y, &setting.template.y),
+    }
+}
+
+/// The law that θ should have, and a sample of θ from records judged by the library, or by a
+/// detector with a defect.
+fn sample(
+    draw: &Draw<'_>,
+    (setting, step): Series,
+    inclusion: bool,
+    stream: u64,
+) -> Outcome<(Law, Vec<f64>)> {
+    let setting = setting()?;
+    let simulation = Simulation::new(
+        view(&setting.f0),
+        view(&setting.template),
+        setting.noise_sd,
+        draw.generator(stream + step * draw.replicate),
+    )?;
+    let force = forces(&setting, inclusion);
+    let mut residual = vec![0.0; 2 * setting.f0.x.len()];
+    let thetas = (0..draw.trials()).map(|trial| {
+        let statistic = simulation.trial(trial, view(&force), &mut residual)?;
+        Ok(if draw.defect.is_empty() {
+            statistic.theta
+        } else {
+            with_defect(&setting, inclusion, &residual, draw.defect)
+        })
+    });
+    let thetas = thetas.collect::<Outcome<_>>()?;
+    let law = Law::of_theta(simulation.filter().gamma(), inclusion);
+    Ok((law, thetas))
+}
+
+/// θ of a detector with one defect, in plain arithmetic.
+fn with_defect(setting: &Setting, inclusion: bool, residual: &[f64], defect: &str) -> f64 {
+    let Setting {
+        template, noise_sd, ..
+    } = setting;
+    let (x, y) = residual.split_at(template.x.len());
+    let (template_x, template_y) = match defect {
+        "channels_swapped" => (&template.y, &template.x),
+        _ => (&template.x, &template.y),
+    };
+    let mut theta = 0.0;
+    for (residual, template, truth, sd) in [
+        (x, template_x, &template.x, noise_sd.x),
+        (y, template_y, &template.y, noise_sd.y),
+    ] {
+        for (i, (&residual, &truth)) in residual.iter().zip(truth).enumerate() {
+            let template = match (defect, i) {
+                ("template_shifted", 0) => 0.0,
+                ("template_shifted", i) => template[i - 1],
+                (_, i) => template[i],
+            };
+            let signal = if inclusion { truth } else { 0.0 };
+            let residual = match defect {
+                // The noise in the record has a variance 1 % above what the detector presumes.
+                "variance_off_1_percent" => signal + (residual - signal) * libm::sqrt(1.01),
+                _ => residual,
+            };
+            let half = if defect == "half_left_out" { 1.0 } else { 0.5 };
+            let variance = if defect == "sd_for_variance" {
+                sd
+            } else {
+                sd * sd
+            };
+            theta += template * (residual - half * template) / variance;
+        }
+    }
+    theta
+}
+
+fn mean(draw: &Draw<'_>, series: Series, inclusion: bool, stream: u64) -> Outcome<bool> {
+    let (law, theta) = sample(draw, series, inclusion, stream)?;
+    mean_rejects(&theta, law, draw.row.alpha)
+}
+
+fn variance(draw: &Draw<'_>, series: Series, inclusion: bool, stream: u64) -> Outcome<bool> {
+    let (law, theta) = sample(draw, series, inclusion, stream)?;
+    variance_rejects(&theta, law, draw.row.alpha)
+}
+
+fn kolmogorov(draw: &Draw<'_>, inclusion: bool, stream: u64) -> Outcome<bool> {
+    let (law, theta) = sample(draw, COARSE, inclusion, stream)?;
+    kolmogorov_rejects(&theta, law, draw.row.alpha)
+}
+
+/// The noise of each of a record's 16 samples, which tells of its variance what θ, one number a record, tells with 16 times the trials.
+fn coarse_noise_variance(draw: &Draw<'_>) -> Outcome<bool> {
+    let setting = coarse()?;
+    let f0 = view(&setting.f0);
+    let generator = draw.generator(8 + 10 * draw.replicate);
+    let simulation = Simulation::new(f0, view(&setting.template), setting.noise_sd, generator)?;
+    let excess = match draw.defect {
+        "variance_off_1_percent" => libm::sqrt(1.01),
+        _ => 1.0,
+    };
+    let mut residual = [0.0; 16];
+    let mut noise = Vec::new();
+    for trial in 0..draw.trials() {
+        simulation.trial(trial, f0, &mut residual)?;
+        let (x, y) = residual.split_at(8);
+        noise.extend(x.iter().map(|x| excess * x / setting.noise_sd.x));
+        noise.extend(y.iter().map(|y| excess * y / setting.noise_sd.y));
+    }
+    let law = Law { mean: 0.0, sd: 1.0 };
+    variance_rejects(&noise, law, draw.row.alpha)
+}
+
+fn coarse_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
+    let (law, theta) = sample(draw, COARSE, false, 6)?;
+    let eta = neyman_pearson_false_alarm_threshold(law.sd, 0.01)?;
+    let alarms = theta.iter().filter(|&&theta| theta >= eta).count();
+    count_rejects(alarms as u64, draw.trials(), 0.01, draw.row.alpha)
+}
+
+fn coarse_misses(draw: &Draw<'_>) -> Outcome<bool> {
+    let (law, theta) = sample(draw, COARSE, true, 7)?;
+    let eta = neyman_pearson_miss_threshold(law.sd, 0.05)?;
+    let misses = theta.iter().filter(|&&theta| theta < eta).count();
+    count_rejects(misses as u64, draw.trials(), 0.05, draw.row.alpha)
+}
+
+fn traverse_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
+    let (law, theta) = sample(draw, TRAVERSE, false, 220)?;
+    let eta = neyman_pearson_false_alarm_threshold(law.sd, 0.05)?;
+    tail_rejects(&theta, law, eta, draw.row.alpha)
+}
+
+/// θ drawn from its law.
+fn drawn_directly(draw: &Draw<'_>) -> Outcome<bool> {
+    let mut theta = vec![0.0; draw.row.trials];
+    let generator = draw.generator(300 + draw.replicate);
+    draw_theta(&generator, 3.0, draw.defect.is_empty(), 5, &mut theta)?;
+    kolmogorov_rejects(&theta, Law::of_theta(3.0, true), draw.row.alpha)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_plain_detector_without_a_defect_is_the_library() {
+        let row = crate::statistics::ledger::row("traverse_mean_h1").unwrap();
+        let thetas = |defect| {
+            let draw = Draw {
+                seed: 5,
+                defect,
+                replicate: 0,
+                row: &row,
+                notes: Default::default(),
+            };
+            sample(&draw, COARSE, true, 0).unwrap().1
+        };
+        for (plain, library) in std::iter::zip(thetas("none"), thetas("")) {
+            assert!((plain - library).abs() < 1e-13);
+        }
+    }
+}

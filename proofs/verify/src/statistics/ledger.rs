@@ -1,0 +1,73 @@
+//! The ledger of the battery's errors: α and power of every check.
+
+use std::format;
+use std::vec::Vec;
+
+use super::{Outcome, SHOWN_POWER};
+
+/// One row of `ledger.csv`.
+///
+/// ```
+/// use palpate_verify::statistics::{FIXED_SEED, battery};
+///
+/// let check = battery().find(|check| check.name() == "coarse_mean_h0").ok_or("no such check")?;
+/// let row = check.row(FIXED_SEED).map_err(|failure| failure.to_string())?;
+/// assert_eq!((row.alpha, row.trials), (2.5e-8, 200_000));
+/// // A mean tells nothing of a variance that is off by a per cent, and much of a missing ½.
+/// let shown: Vec<&str> = row.shown_defects().collect();
+/// assert_eq!(shown, ["half_left_out", "channels_swapped", "sd_for_variance"]);
+/// # Ok::<(), String>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// The check.
+    pub name: &'static str,
+    /// The largest probability that it fails for a detector without defect.
+    pub alpha: f64,
+    /// Its number of trials.
+    pub trials: usize,
+    /// The probability that it fails for each defect it is meant for.
+    pub powers: Vec<(&'static str, f64)>,
+}
+
+impl Row {
+    /// The defects that its negative controls plant: those of which it is all but sure to tell.
+    pub fn shown_defects(&self) -> impl Iterator<Item = &'static str> {
+        let shown = self
+            .powers
+            .iter()
+            .filter(|(_, power)| *power >= SHOWN_POWER);
+        shown.map(|&(defect, _)| defect)
+    }
+
+    fn parse(line: &'static str) -> Outcome<Row> {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [name, alpha, trials, powers] = fields[..] else {
+            return Err(format!("ledger: {line:?}, expected four fields").into());
+        };
+        let power = |text: &'static str| -> Outcome<_> {
+            let (defect, power) = text
+                .split_once('=')
+                .ok_or_else(|| format!("ledger: {text:?}, expected defect=power"))?;
+            Ok((defect, power.parse()?))
+        };
+        Ok(Row {
+            name,
+            alpha: alpha.parse()?,
+            trials: trials.parse()?,
+            powers: powers.split(';').map(power).collect::<Outcome<_>>()?,
+        })
+    }
+}
+
+/// All rows.
+pub(super) fn rows() -> Outcome<Vec<Row>> {
+    let lines = include_str!("ledger.csv").lines().skip(1);
+    lines.map(Row::parse).collect()
+}
+
+/// The row of a check.
+pub(super) fn row(name: &str) -> Outcome<Row> {
+    let row = rows()?.into_iter().find(|row| row.name == name);
+    row.ok_or_else(|| format!("{name} is not in the ledger").into())
+}

@@ -1,0 +1,187 @@
+//! The time that a step, a cycle and a force map take on this machine. A busy machine is slower, so that a time is only
+//! judged where it has a hundredfold margin at least.
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use rustix::time::{ClockId, clock_gettime};
+
+use super::{Check, Figure};
+use palpate::fem::{Contact, MESH_SIZE, Model};
+use palpate::hid::timing::{measure, paper};
+use palpate::phantom::Phantom;
+use palpate::servo::{Input, Limits, Mode, Request, Sample, State, Table, step};
+
+/// The checks of this part.
+///
+/// Implements: EVD-051, EVD-052.
+pub const CHECKS: &[Check] = &[
+    Check {
+        name: "timing.step",
+        claim: "The median time of one step of the servo kernel, on a table of 9 × 41 poses, is within the 1 ms of a cycle.",
+        requirements: &["EVD-051"],
+        repeatable: false,
+        run: steps,
+    },
+    Check {
+        name: "timing.loop",
+        claim: "The median response of the loop on the simulated device, from a report at hand to its force written, is \
+                within the 1 ms of a cycle.",
+        requirements: &["EVD-051", "HID-060", "HID-062"],
+        repeatable: false,
+        run: cycles,
+    },
+    Check {
+        name: "timing.force_map",
+        claim: "What one force map of 9 × 21 poses costs on this machine, in processor time.",
+        requirements: &["EVD-052"],
+        repeatable: false,
+        run: force_map,
+    },
+];
+
+/// The time that a cycle may take, at the 1 kHz of the loop.
+const BUDGET: Duration = Duration::from_millis(1);
+
+/// Steps are timed in batches, since reading the clock takes as long as one of them.
+const BATCHES: usize = 201;
+const BATCH: u16 = 1000;
+
+/// Cycles of the loop that are timed.
+const CYCLES: u64 = 100_000;
+
+/// As `palpate timing` has them.
+fn limits() -> Result<Limits, String> {
+    Limits::new(4.0, 0.05, 0.5, 20).map_err(|error| error.to_string())
+}
+
+fn steps() -> Result<Vec<Figure>, String> {
+    let loaded = paper::table()?;
+    let table = loaded.table().map_err(|error| format!("{error:?}"))?;
+    let limits = limits()?;
+    let mut state = State {
+        mode: Mode::Armed,
+        sequence: Some(0),
+        ..State::default()
+    };
+    let (mut times, mut played) = (Vec::new(), 0);
+    for _ in 0..BATCHES {
+        let began = Instant::now();
+        for cycle in 0..BATCH {
+            let playing;
+            (state, playing) = one_step(&table, &limits, state, cycle);
+            played += u64::from(playing);
+        }
+        times.push(began.elapsed().as_secs_f64() * 1e6 / f64::from(BATCH));
+    }
+    let steps = BATCHES as u64 * u64::from(BATCH);
+    let [median, slowest] = step_times(times);
+    Ok(vec![
+        Figure::count("steps with force", played, steps),
+        median,
+        slowest,
+    ])
+}
+
+/// What is told of the mean times of a step in each batch, µs.
+///
+/// Implements: EVD-051, EVD-052.
+fn step_times(mut times: Vec<f64>) -> [Figure; 2] {
+    times.sort_by(f64::total_cmp);
+    let budget = BUDGET.as_secs_f64() * 1e6;
+    [
+        Figure::at_most("median time of a step, µs", times[BATCHES / 2], budget),
+        Figure::told(
+            "time of a step in the slowest thousand, µs",
+            times[BATCHES - 1],
+        ),
+    ]
+}
+
+/// A step with a fresh sample from somewhere inside the table, and whether it played.
+fn one_step(table: &Table, limits: &Limits, state: State, cycle: u16) -> (State, bool) {
+    let share = f32::from(cycle) / f32::from(BATCH);
+    let sample = Sample {
+        sequence: state.sequence.unwrap_or_default().wrapping_add(1),
+        deadman: true,
+        device_fault: false,
+        depth: 1e-3 + 2e-3 * share,
+        lateral: 0.018 * share - 0.009,
+    };
+    let input = Input {
+        sample: Some(sample),
+        request: Request::None,
+    };
+    let (next, command) = step(black_box(table), black_box(limits), state, black_box(input));
+    (next, black_box(command).playing)
+}
+
+fn cycles() -> Result<Vec<Figure>, String> {
+    let loaded = paper::table()?;
+    let table = loaded.table().map_err(|error| format!("{error:?}"))?;
+    let timing = measure(
+        paper::device(CYCLES),
+        table,
+        limits()?,
+        CYCLES,
+        BUDGET,
+        None,
+    )
+    .map_err(|error| error.to_string())?;
+    let response = timing.response_us;
+    Ok(vec![
+        Figure::count("cycles", timing.cycles, CYCLES),
+        Figure::at_most("median response, µs", response.p50, timing.budget_us),
+        Figure::told("99 % of the responses are within, µs", response.p99),
+        Figure::told("99.9 % of the responses are within, µs", response.p99_9),
+        Figure::told("longest response, µs", response.max),
+        Figure::told("cycles longer than 1 ms", timing.misses as f64),
+        Figure::told(
+            "kernel's share of the response, %",
+            100.0 * timing.compute_share,
+        ),
+    ])
+}
+
+/// Processor time of this thread, s.
+fn processor_time() -> f64 {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+}
+
+fn force_map() -> Result<Vec<Figure>, String> {
+    let phantom = Phantom::builtin("6.6").map_err(|error| error.to_string())?;
+    let depths: Vec<f64> = (0..=8).map(|k| f64::from(k) * 0.5e-3).collect();
+    let laterals: Vec<f64> = (0..=20).map(|k| f64::from(k) * 0.5e-3).collect();
+    let before = processor_time();
+    let model =
+        Model::new(&phantom, MESH_SIZE, Contact::default()).map_err(|error| error.to_string())?;
+    let map = model
+        .map(&depths, &laterals, &|_| ())
+        .map_err(|error| error.to_string())?;
+    let time = processor_time() - before;
+    Ok(vec![
+        Figure::count("poses", map.normal_force().values().len() as u64, 189),
+        Figure::told("nodes", model.mesh().nodes.len() as f64),
+        Figure::told("processor time, s", time),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Verifies: EVD-051, EVD-052.
+    #[test]
+    fn the_median_step_is_judged_and_the_slowest_told() {
+        // 0 to 200 ms in another order: 77 and 201 have no common factor.
+        let mixed = |unit: f64| (0..BATCHES).map(move |k| unit * (77 * k % BATCHES) as f64);
+        let [median, slowest] = step_times(mixed(1000.0).collect());
+        assert_eq!((median.value, slowest.value), (100e3, 200e3));
+        assert!(!median.passes() && slowest.passes());
+        // A median within the millisecond passes, whatever the slowest takes.
+        let [median, slowest] = step_times(mixed(10.0).collect());
+        assert_eq!((median.value, slowest.value), (1000.0, 2000.0));
+        assert!(median.passes() && slowest.passes());
+    }
+}

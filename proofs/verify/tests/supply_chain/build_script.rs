@@ -1,0 +1,185 @@
+//! `build.rs`, compiled by itself and run in folders of several kinds.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use super::ROOT;
+
+/// The compiled build script.
+fn script() -> &'static Path {
+    static SCRIPT: OnceLock<PathBuf> = OnceLock::new();
+    SCRIPT.get_or_init(|| {
+        let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("build-script");
+        let status = Command::new("rustc")
+            .args(["--edition=2024", "-o"])
+            .arg(&program)
+            .arg(format!("{ROOT}/build.rs"))
+            .status();
+        assert!(status.unwrap().success());
+        program
+    })
+}
+
+/// An empty folder with a source file and a lock file.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("build-identity")
+        .join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.join("src")).unwrap();
+    fs::write(folder.join("src/lib.rs"), "").unwrap();
+    fs::write(folder.join("Cargo.lock"), "").unwrap();
+    folder
+}
+
+fn git(folder: &Path, arguments: &[&str]) -> String {
+    let output = Command::new("git")
+        .args(["-c", "user.name=test", "-c", "user.email=test@localhost"])
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{arguments:?}: {output:?}");
+    String::from_utf8(output.stdout).unwrap().trim().into()
+}
+
+/// A folder whose files are all in one commit; and the commit.
+fn repository(name: &str) -> (PathBuf, String) {
+    let folder = folder(name);
+    git(&folder, &["init", "--quiet"]);
+    git(&folder, &["add", "."]);
+    git(&folder, &["commit", "--quiet", "--message=all"]);
+    let id = git(&folder, &["rev-parse", "HEAD"]);
+    (folder, id)
+}
+
+/// All that the build script prints.
+fn output(folder: &Path, profile: &str, flags: &str) -> String {
+    let output = Command::new(script())
+        .current_dir(folder)
+        .env("PROFILE", profile)
+        .env("TARGET", "some-target")
+        .env("CARGO_ENCODED_RUSTFLAGS", flags)
+        .env("CARGO_CFG_FEATURE", "std,report")
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// What it records.
+fn recorded(folder: &Path, profile: &str, flags: &str) -> BTreeMap<String, String> {
+    let output = output(folder, profile, flags);
+    let pairs = output.lines().filter_map(|line| {
+        let pair = line.strip_prefix("cargo::rustc-env=PALPATE_BUILD_")?;
+        let (name, value) = pair.split_once('=')?;
+        Some((name.to_string(), value.to_string()))
+    });
+    pairs.collect()
+}
+
+fn commit(folder: &Path) -> String {
+    recorded(folder, "release", "")["COMMIT"].clone()
+}
+
+// Verifies: EVD-067, EVD-068.
+#[test]
+fn a_release_build_records_the_commit_and_whether_sources_differ() {
+    let (folder, id) = repository("release");
+    assert_eq!(commit(&folder), id);
+    // Not a source of the program.
+    fs::write(folder.join("notes.txt"), "").unwrap();
+    assert_eq!(commit(&folder), id);
+    // A new file, a changed one, and one that was only put up for the next commit.
+    fs::write(folder.join("src/new.rs"), "").unwrap();
+    assert_eq!(commit(&folder), format!("{id} with changes"));
+    fs::remove_file(folder.join("src/new.rs")).unwrap();
+    assert_eq!(commit(&folder), id);
+    fs::write(folder.join("Cargo.lock"), "changed").unwrap();
+    assert_eq!(commit(&folder), format!("{id} with changes"));
+    git(&folder, &["add", "Cargo.lock"]);
+    assert_eq!(commit(&folder), format!("{id} with changes"));
+    // Cargo runs it again after a commit.
+    let watched = output(&folder, "release", "");
+    assert!(
+        watched.contains("cargo::rerun-if-changed=.git/logs/HEAD\n"),
+        "{watched}"
+    );
+    assert!(
+        watched.contains("cargo::rerun-if-changed=src\n"),
+        "{watched}"
+    );
+}
+
+// Verifies: EVD-068.
+#[test]
+fn a_development_build_records_no_commit_and_does_not_watch_for_one() {
+    let (folder, _) = repository("development");
+    let told = output(&folder, "debug", "");
+    let development = "PALPATE_BUILD_COMMIT=not recorded: development build\n";
+    assert!(
+        told.contains(development) && !told.contains(".git"),
+        "{told}"
+    );
+}
+
+// Verifies: EVD-068.
+#[test]
+fn a_package_names_the_commit_that_it_was_made_from() {
+    // It lies within the repository of another.
+    let (outer, _) = repository("packages");
+    let folder = outer.join("package");
+    fs::create_dir(&folder).unwrap();
+    let id = "0123456789abcdef0123456789abcdef01234567";
+    let info = folder.join(".cargo_vcs_info.json");
+    fs::write(
+        &info,
+        format!("{{\n  \"git\": {{\n    \"sha1\": \"{id}\"\n  }},\n  \"path_in_vcs\": \"\"\n}}"),
+    )
+    .unwrap();
+    assert_eq!(commit(&folder), id);
+    fs::write(
+        &info,
+        format!("{{\"git\": {{\"sha1\": \"{id}\", \"dirty\": true}}}}"),
+    )
+    .unwrap();
+    assert_eq!(commit(&folder), format!("{id} with changes"));
+    fs::write(&info, "{}").unwrap();
+    assert_eq!(commit(&folder), "unknown");
+    // The other repository's commit is not this package's.
+    fs::remove_file(&info).unwrap();
+    assert_eq!(commit(&folder), "unknown");
+    // One without a commit yet.
+    let empty = self::folder("empty");
+    git(&empty, &["init", "--quiet"]);
+    assert_eq!(commit(&empty), "unknown");
+}
+
+// Verifies: EVD-067, EVD-070.
+#[test]
+fn flags_that_rename_folders_are_left_out() {
+    let folder = folder("flags");
+    let flags = |encoded: &str| recorded(&folder, "release", encoded)["FLAGS"].clone();
+    assert_eq!(flags(""), "");
+    let given = [
+        "-C",
+        "target-cpu=native",
+        "--remap-path-prefix",
+        "/home/a=/b",
+        "--remap-path-prefix=/home/c=/d",
+        "-g",
+    ];
+    assert_eq!(flags(&given.join("\x1f")), "-C target-cpu=native -g");
+    let all = recorded(&folder, "release", "");
+    assert!(all["COMPILER"].starts_with("rustc 1."), "{all:?}");
+    assert_eq!(
+        (&*all["TARGET"], &*all["FEATURES"]),
+        ("some-target", "std,report")
+    );
+    for (name, value) in &all {
+        assert!(!value.contains('/'), "{name} = {value}");
+    }
+}

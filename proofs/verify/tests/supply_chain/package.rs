@@ -1,0 +1,70 @@
+//! What `cargo package` puts into the package.
+
+use std::collections::BTreeSet;
+use std::path::{Component, Path, PathBuf};
+
+use super::ROOT;
+use super::cargo::cargo;
+
+/// All Rust files below a folder.
+pub fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// A path without `..`.
+fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => assert!(plain.pop()),
+            part => plain.push(part),
+        }
+    }
+    plain
+}
+
+// Verifies: EVD-071.
+#[test]
+fn the_package_has_every_file_that_its_sources_include() {
+    let listed = cargo(&["package", "--list", "--allow-dirty"]);
+    let listed: BTreeSet<&str> = listed.lines().collect();
+    let mut files = Vec::new();
+    sources(&Path::new(ROOT).join("src"), &mut files);
+    let mut included = 0;
+    for file in files {
+        let text = std::fs::read_to_string(&file).unwrap();
+        for part in text.split("include_str!(\"").skip(1) {
+            let name = part.split('"').next().unwrap();
+            let path = plain(&file.parent().unwrap().join(name));
+            let path = path
+                .strip_prefix(plain(Path::new(ROOT)))
+                .unwrap()
+                .to_str()
+                .unwrap();
+            assert!(
+                listed.contains(path),
+                "{path}, which {} includes",
+                file.display()
+            );
+            included += 1;
+        }
+    }
+    assert!(included >= 7, "{included} found");
+    for name in [
+        "build.rs",
+        "Cargo.lock",
+        "LICENSE-MIT",
+        "LICENSE-APACHE",
+        "CHANGELOG.md",
+        "README.md",
+    ] {
+        assert!(listed.contains(name), "{name}");
+    }
+}

@@ -1,0 +1,137 @@
+//! `palpate-verify`.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+/// Runs the command with a folder of its own.
+fn verify(folder: &str, arguments: &[&str]) -> (Output, PathBuf) {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join("verify")
+        .join(folder);
+    let _ = fs::remove_dir_all(&folder);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-verify"));
+    let output = command
+        .args(arguments)
+        .arg("--out")
+        .arg(&folder)
+        .output()
+        .unwrap();
+    (output, folder)
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+// Verifies: CLI-051, CLI-052, CLI-054, EVD-011, EVD-013.
+#[test]
+fn a_soak_says_its_seed_and_the_probability_of_a_false_failure() {
+    // The last of its seeds is beyond the largest number and begins again at 0.
+    let seed = u64::MAX.to_string();
+    let (output, folder) = verify(
+        "soak",
+        &["--only", "vectors", "--soak", "2", "--seed", &seed],
+    );
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(
+        text(&output.stdout),
+        format!(
+            "soak: 2 times 31 checks, seed {seed}\n\
+             statistics: not run\ndiagnosis: not run\nvectors: 1 of 1 checks passed\nfem: not run\nkernel: not run\n\
+             timing: not run\nsoak: all passed; a detector without defect fails such a run with probability 1.55e-6 at most\n\
+             evidence.json, dossier.html and sbom.cdx.json in {}\n",
+            folder.display()
+        )
+    );
+    // No progress bar in a pipe.
+    assert!(output.stderr.is_empty());
+    let evidence: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.join("evidence.json")).unwrap()).unwrap();
+    assert_eq!(evidence["verdict"], "partial");
+    assert_eq!(evidence["soak"]["seed"], u64::MAX);
+    assert_eq!(evidence["soak"]["failure"], serde_json::Value::Null);
+}
+
+// Verifies: EVD-001, EVD-004, EVD-010, CLI-050.
+#[test]
+fn the_statistics_give_three_files() {
+    let (output, folder) = verify("statistics", &["--only", "statistics"]);
+    assert!(output.status.success(), "{output:?}");
+    assert!(
+        text(&output.stdout)
+            .starts_with("statistics: 31 of 31 checks passed\ndiagnosis: not run\n")
+    );
+    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    let evidence: serde_json::Value = serde_json::from_str(&read("evidence.json")).unwrap();
+    assert_eq!(evidence["checks"].as_array().unwrap().len(), 31);
+    assert_eq!(evidence["verdict"], "partial");
+    assert_eq!(evidence["parts_left_out"].as_array().unwrap().len(), 5);
+    assert!(read("dossier.html").contains("not run: diagnosis, vectors, fem, kernel, timing"));
+    let bill: serde_json::Value = serde_json::from_str(&read("sbom.cdx.json")).unwrap();
+    assert_eq!(bill["bomFormat"], "CycloneDX");
+}
+
+// Verifies: EVD-005.
+#[test]
+fn the_same_build_gives_the_same_evidence_with_any_number_of_threads() {
+    let evidence = |threads: &str| {
+        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+            .join("verify")
+            .join(threads);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-verify"));
+        command
+            .args(["--only", "diagnosis", "--out"])
+            .arg(&folder)
+            .env("RAYON_NUM_THREADS", threads);
+        assert!(command.output().unwrap().status.success());
+        let text = fs::read_to_string(folder.join("evidence.json")).unwrap();
+        let mut evidence: serde_json::Value = serde_json::from_str(&text).unwrap();
+        evidence
+            .as_object_mut()
+            .unwrap()
+            .remove("measured_here")
+            .unwrap();
+        evidence
+    };
+    assert_eq!(evidence("1"), evidence("3"));
+}
+
+// Verifies: CLI-052, EVD-011.
+#[test]
+fn bad_arguments_are_refused() {
+    for arguments in [
+        &["--soak", "0"][..],
+        &["--soak", "-1"],
+        &["--soak", "many"],
+        &["--seed", "1"],
+        &["--soak", "1", "--seed", "-1"],
+        &["--only", "soak"],
+        &["--only", "statistics,physics"],
+        &["--only", ""],
+    ] {
+        let (output, folder) = verify("refused", arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let error = text(&output.stderr);
+        assert_eq!(error.lines().count(), 1, "{error}");
+        assert!(!folder.exists(), "{arguments:?}");
+    }
+}
+
+// Verifies: EVD-001.
+#[test]
+fn a_folder_that_cannot_be_made_is_told_before_the_work() {
+    let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("verify-file");
+    fs::write(&file, "").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-verify"));
+    let output = command
+        .arg("--out")
+        .arg(file.join("folder"))
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        text(&output.stderr).starts_with("palpate: make folder "),
+        "{output:?}"
+    );
+}
