@@ -1,268 +1,100 @@
 //! The program as its users meet it: `spec/command-line.md`.
 #![cfg(feature = "cli")]
 
+mod program;
+
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 use palpate::fem::{Contact, Model};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
-
-/// A folder of its own for each test, emptied at the start.
-fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).expect("a folder for the test");
-    path
-}
-
-fn palpate(folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
-    command.current_dir(folder);
-    command
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    palpate(folder)
-        .args(arguments)
-        .output()
-        .expect("the program starts")
-}
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).expect("UTF-8")
-}
-
-fn succeed(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert!(
-        output.status.success(),
-        "{arguments:?}: {}",
-        text(&output.stderr)
-    );
-    text(&output.stdout).to_string()
-}
+use program::{Place, text};
 
 // Verifies: CLI-001.
 #[test]
 fn help_describes_every_argument() {
-    let here = folder("help");
-    assert_eq!(
-        succeed(&here, &["--version"]),
-        format!("palpate {}\n", env!("CARGO_PKG_VERSION"))
+    let here = Place::new("help");
+    let version = here.succeed("-V");
+    assert_eq!(version, format!("palpate {}\n", env!("CARGO_PKG_VERSION")));
+    let long = here.succeed("--version");
+    assert!(
+        long.starts_with(version.trim_end()) && long.contains("\nrustc "),
+        "{long}"
     );
-    let all = succeed(&here, &["--help"]);
-    for (command, arguments) in [
-        ("run", &["--config", "--out"][..]),
-        (
-            "solve",
-            &[
-                "--phantom",
-                "--depths-mm",
-                "--laterals-mm",
-                "--contact",
-                "--mesh-mm",
-                "--vtu",
-                "--format",
-            ],
-        ),
-        ("import-map", &["--note", "--phantom", "--out"]),
-    ] {
-        assert!(all.contains(command), "{all}");
-        let help = succeed(&here, &[command, "--help"]);
-        for argument in arguments {
-            let line = help
-                .lines()
-                .position(|line| line.trim_start().starts_with(argument));
-            let line = line.unwrap_or_else(|| panic!("{command} --help lacks {argument}: {help}"));
-            let described = help.lines().skip(line).take(2).collect::<String>();
-            assert!(
-                described.split_whitespace().count() > 4,
-                "{argument} is not described: {described}"
-            );
-        }
+    let mut help = here.succeed("--help");
+    for command in ["run", "solve", "import-map"] {
+        help += &here.succeed(&format!("{command} --help"));
     }
+    insta::assert_snapshot!(help);
 }
 
 // Verifies: CLI-002, CLI-003, CLI-011, CLI-012, CLI-014, CLI-031, PHA-013, FEM-018.
 #[test]
 fn bad_input_gets_one_line_that_says_what_would_be_right() {
-    let here = folder("bad-input");
-    fs::write(
-        here.join("stiff.toml"),
-        "name = \"stiff\"\n[gel]\nwidth_mm = 34\nheight_mm = 15\nyoungs_modulus_kpa = -5\n",
-    )
-    .unwrap();
-    fs::write(
-        here.join("unknown.toml"),
-        "depths_mm = \"0:4:1\"\nlaterals = \"0\"\n",
-    )
-    .unwrap();
-    fs::write(here.join("list.toml"), "depths_mm = \"4,1\"\n").unwrap();
-    fs::write(
-        here.join("absent-phantom.toml"),
-        "phantoms = [\n  \"2.6\",\n  \"mine\",\n]\n",
-    )
-    .unwrap();
+    let here = Place::new("bad-input");
     let narrow = Phantom::builtin("none").unwrap().to_toml().unwrap();
     let narrow = narrow.replace("width_mm = 34.0", "width_mm = 16.0");
-    fs::write(here.join("narrow.toml"), narrow).unwrap();
-    fs::write(
-        here.join("wall.toml"),
-        "laterals_mm = \"0,8\"\nreference = \"narrow.toml\"\n",
-    )
-    .unwrap();
-    fs::write(
-        here.join("short.csv"),
-        "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n1,0,0.2\n",
-    )
-    .unwrap();
-    let solve = |rest: &[&'static str]| [&["solve", "--phantom", "none"], rest].concat();
-    for (arguments, words) in [
-        (vec![], &["palpate run"][..]),
-        (vec!["solv"], &["solv", "--help"]),
-        (vec!["solve"], &["--phantom", "--depths-mm"]),
+    for (file, text) in [
+        ("narrow.toml", &*narrow),
         (
-            solve(&["--depths-mm", "2,1", "--laterals-mm", "0"]),
-            &["--depths-mm", "2,1", "increasing"],
+            "stiff.toml",
+            "name = \"stiff\"\n[gel]\nwidth_mm = 34\nheight_mm = 15\nyoungs_modulus_kpa = -5\n",
+        ),
+        ("unknown.toml", "depths_mm = \"0:4:1\"\nlaterals = \"0\"\n"),
+        ("list.toml", "depths_mm = \"4,1\"\n"),
+        (
+            "absent-phantom.toml",
+            "phantoms = [\n  \"2.6\",\n  \"mine\",\n]\n",
         ),
         (
-            solve(&["--depths-mm", "1", "--laterals-mm", "x"]),
-            &["--laterals-mm", "\"x\"", "mm"],
+            "wall.toml",
+            "laterals_mm = \"0,8\"\nreference = \"narrow.toml\"\n",
         ),
         (
-            solve(&["--depths-mm", "16", "--laterals-mm", "0"]),
-            &["depth_mm = 16", "below 15.5"],
+            "short.csv",
+            "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n1,0,0.2\n",
         ),
-        (
-            solve(&["--depths-mm", "4", "--laterals-mm", "11.5"]),
-            &["lateral_mm = 11.5", "walls"],
-        ),
-        (
-            solve(&["--depths-mm", "-1", "--laterals-mm", "0"]),
-            &["-0.001", "depths_m"],
-        ),
-        (
-            solve(&["--depths-mm", "1", "--laterals-mm", "0", "--mesh-mm", "0"]),
-            &["--mesh-mm", "above 0"],
-        ),
-        (
-            solve(&[
-                "--depths-mm",
-                "1",
-                "--laterals-mm",
-                "0",
-                "--mesh-mm",
-                "0.001",
-            ]),
-            &["mesh size", "500000"],
-        ),
-        (
-            solve(&["--depths-mm", "1", "--laterals-mm", "0", "--contact", "no"]),
-            &["no", "vertical-gap"],
-        ),
-        (
-            solve(&["--depths-mm", "1,2", "--laterals-mm", "0", "--vtu", "x.vtu"]),
-            &["--vtu", "one depth"],
-        ),
-        (
-            solve(&[
-                "--depths-mm",
-                "1",
-                "--laterals-mm",
-                "0",
-                "--mesh-mm",
-                "3",
-                "--vtu",
-                "no/such/x.vtu",
-            ]),
-            &["no/such/x.vtu"],
-        ),
-        (
-            vec![
-                "solve",
-                "--phantom",
-                "7.7",
-                "--depths-mm",
-                "1",
-                "--laterals-mm",
-                "0",
-            ],
-            &["7.7", "8.6", "file"],
-        ),
-        (
-            vec![
-                "solve",
-                "--phantom",
-                "stiff.toml",
-                "--depths-mm",
-                "1",
-                "--laterals-mm",
-                "0",
-            ],
-            &["stiff.toml"],
-        ),
-        (vec!["run", "--config", "absent.toml"], &["absent.toml"]),
-        (
-            vec!["run", "--config", "unknown.toml"],
-            &["unknown.toml:2: laterals: ", "laterals_mm"],
-        ),
-        (
-            vec!["run", "--config", "list.toml"],
-            &["list.toml:1: depths_mm: ", "increasing"],
-        ),
-        (
-            vec!["run", "--config", "absent-phantom.toml"],
-            &["absent-phantom.toml:3: phantoms[1]: ", "\"mine\"", "8.6"],
-        ),
-        (
-            vec!["run", "--config", "wall.toml"],
-            &[
-                "wall.toml:2: reference: phantom \"narrow.toml\": lateral_mm = 8",
-                "walls",
-            ],
-        ),
-        (vec!["run", "--out", "short.csv"], &["short.csv"]),
-        (vec!["import-map", "short.csv"], &["short.csv:2:", "4"]),
     ] {
-        let output = run(&here, &arguments);
-        let message = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
-        assert!(
-            output.stdout.is_empty(),
-            "{arguments:?} printed {}",
-            text(&output.stdout)
-        );
-        assert!(
-            message.starts_with("palpate: ") && message.lines().count() == 1,
-            "{arguments:?}: {message}"
-        );
-        for word in words {
-            assert!(
-                message.contains(word),
-                "{arguments:?}: {word:?} is not in {message}"
-            );
-        }
+        here.write(file, text);
     }
+    let messages: String = "
+        solv
+        solve
+        solve --phantom none --laterals-mm 0 --depths-mm 2,1
+        solve --phantom none --laterals-mm x --depths-mm 1
+        solve --phantom none --laterals-mm 0 --depths-mm 16
+        solve --phantom none --laterals-mm 11.5 --depths-mm 4
+        solve --phantom none --laterals-mm 0 --depths-mm -1
+        solve --phantom none --laterals-mm 0 --depths-mm 1 --mesh-mm 0
+        solve --phantom none --laterals-mm 0 --depths-mm 1 --mesh-mm 0.001
+        solve --phantom none --laterals-mm 0 --depths-mm 1 --contact no
+        solve --phantom none --laterals-mm 0 --depths-mm 1,2 --vtu x.vtu
+        solve --phantom none --laterals-mm 0 --depths-mm 1 --mesh-mm 3 --vtu no/such/x.vtu
+        solve --phantom 7.7 --laterals-mm 0 --depths-mm 1
+        solve --phantom stiff.toml --laterals-mm 0 --depths-mm 1
+        run --config absent.toml
+        run --config unknown.toml
+        run --config list.toml
+        run --config absent-phantom.toml
+        run --config wall.toml
+        run --out short.csv
+        import-map short.csv"
+        .lines()
+        .map(str::trim)
+        .map(|line| format!("$ palpate {line}\n{}\n", here.refused(line)))
+        .collect();
+    insta::assert_snapshot!(messages);
 }
 
 // Verifies: CLI-007, CLI-010, CLI-013.
 #[test]
 fn solve_prints_the_librarys_map() {
-    let here = folder("solve");
-    let arguments = [
-        "solve",
-        "--phantom",
-        "4.6",
-        "--depths-mm",
-        "1:3:1",
-        "--laterals-mm=-2.6:2.6:2.6",
-        "--mesh-mm",
-        "2",
-    ];
-    let json = succeed(&here, &[&arguments[..], &["--format", "json"]].concat());
+    let here = Place::new("solve");
+    let arguments = "solve --phantom 4.6 --depths-mm 1:3:1 --laterals-mm=-2.6:2.6:2.6 --mesh-mm 2";
+    let json = here.succeed(&format!("{arguments} --format json"));
     let model = Model::new(
         &Phantom::builtin("4.6").unwrap(),
         2e-3,
@@ -273,9 +105,9 @@ fn solve_prints_the_librarys_map() {
         .map(&[1e-3, 2e-3, 3e-3], &[-2.6e-3, 0.0, 2.6e-3], &|_| ())
         .unwrap();
     assert_eq!(ForceMap::from_json(&json, "standard output").unwrap(), map);
-    let csv = succeed(&here, &[&arguments[..], &["--format", "csv"]].concat());
+    let csv = here.succeed(&format!("{arguments} --format csv"));
     assert_eq!(csv, map.forces().to_csv());
-    let table = succeed(&here, &arguments);
+    let table = here.succeed(arguments);
     assert!(
         table.contains(&format!("{:.5}", map.normal_force().row(2)[1])),
         "{table}"
@@ -294,24 +126,11 @@ fn solve_prints_the_librarys_map() {
 // Verifies: CLI-016.
 #[test]
 fn certify_adds_bands_and_changes_no_force() {
-    let here = folder("certify");
-    let arguments = [
-        "solve",
-        "--phantom",
-        "2.6",
-        "--depths-mm",
-        "1,3",
-        "--laterals-mm",
-        "0,4",
-        "--mesh-mm",
-        "2",
-    ];
-    let solve = |rest: &[&str]| succeed(&here, &[&arguments[..], rest].concat());
-    let map = |rest: &[&str]| ForceMap::from_json(&solve(rest), "standard output").unwrap();
-    let (plain, certified) = (
-        map(&["--format", "json"]),
-        map(&["--format", "json", "--certify"]),
-    );
+    let here = Place::new("certify");
+    let arguments = "solve --phantom 2.6 --depths-mm 1,3 --laterals-mm 0,4 --mesh-mm 2";
+    let solve = |rest: &str| here.succeed(&format!("{arguments} {rest}"));
+    let map = |rest: &str| ForceMap::from_json(&solve(rest), "standard output").unwrap();
+    let (plain, certified) = (map("--format json"), map("--format json --certify"));
     assert_eq!(certified.forces(), plain.forces());
     assert_eq!(plain.certificate().unwrap().discretization, None);
     let bands = certified.certificate().unwrap().discretization.clone();
@@ -319,29 +138,20 @@ fn certify_adds_bands_and_changes_no_force() {
     assert!(normal > 0.0 && lateral > 0.0);
     let said =
         format!("normal forces within {normal:.1e} N, lateral forces within {lateral:.1e} N");
-    assert!(solve(&["--certify"]).contains(&said), "{said}");
-    assert!(!solve(&[]).contains("discretization"));
+    assert!(solve("--certify").contains(&said), "{said}");
+    assert!(!solve("").contains("discretization"));
 }
 
 // Verifies: DET-113.
 #[test]
 fn the_statistics_battery_traverses_these_force_maps() {
-    let here = folder("traverse");
+    let here = Place::new("traverse");
     for name in ["none", "4.6"] {
-        let arguments = [
-            "solve",
-            "--phantom",
-            name,
-            "--depths-mm",
-            "4",
-            "--laterals-mm",
-            "-10:10:0.5",
-            "--format",
-            "csv",
-        ];
+        let arguments =
+            format!("solve --phantom {name} --depths-mm 4 --laterals-mm -10:10:0.5 --format csv");
         let kept = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join(format!("proofs/verify/src/statistics/traverse_{name}.csv"));
-        let said = succeed(&here, &arguments);
+        let said = here.succeed(&arguments);
         assert!(
             said == fs::read_to_string(&kept).unwrap(),
             "{} is not what the solver prints",
@@ -353,29 +163,17 @@ fn the_statistics_battery_traverses_these_force_maps() {
 // Verifies: CLI-013.
 #[test]
 fn the_contact_law_reaches_the_solver() {
-    let here = folder("options");
-    let arguments = [
-        "solve",
-        "--phantom",
-        "none",
-        "--depths-mm",
-        "3",
-        "--laterals-mm",
-        "0",
-        "--mesh-mm",
-        "2",
-        "--format",
-        "json",
-    ];
-    let force = |rest: &[&str]| {
-        let json = succeed(&here, &[&arguments[..], rest].concat());
+    let here = Place::new("options");
+    let arguments = "solve --phantom none --depths-mm 3 --laterals-mm 0 --mesh-mm 2 --format json";
+    let force = |rest: &str| {
+        let json = here.succeed(&format!("{arguments} {rest}"));
         let map = ForceMap::from_json(&json, "").unwrap();
         let certificate = map.certificate().unwrap();
         (map.normal_force().row(0)[0], certificate.contact.clone())
     };
-    let (plain, contact) = force(&[]);
+    let (plain, contact) = force("");
     assert_eq!(contact, "deformed-normal");
-    let (vertical, contact) = force(&["--contact", "vertical-gap"]);
+    let (vertical, contact) = force("--contact vertical-gap");
     assert_eq!(contact, "vertical-gap");
     assert!((vertical / plain - 1.0).abs() > 0.005, "{plain} {vertical}");
 }
@@ -383,20 +181,10 @@ fn the_contact_law_reaches_the_solver() {
 // Verifies: CLI-015.
 #[test]
 fn large_strain_is_warned_of() {
-    let here = folder("warning");
+    let here = Place::new("warning");
     let solve = |depth: &str| {
-        let arguments = [
-            "solve",
-            "--phantom",
-            "2.6",
-            "--depths-mm",
-            depth,
-            "--laterals-mm",
-            "0",
-            "--mesh-mm",
-            "2",
-        ];
-        text(&run(&here, &arguments).stderr).to_string()
+        let line = "solve --phantom 2.6 --laterals-mm 0 --mesh-mm 2 --depths-mm";
+        text(&here.run(&format!("{line} {depth}")).stderr).to_string()
     };
     assert_eq!(solve("1"), "");
     let warning = solve("4.25");
@@ -412,23 +200,12 @@ fn large_strain_is_warned_of() {
 // Verifies: CLI-004.
 #[test]
 fn a_reader_that_goes_away_is_no_error() {
-    let here = folder("pipe");
+    let here = Place::new("pipe");
     // Far more than a pipe holds, so that the program meets the closed end.
-    let arguments = [
-        "solve",
-        "--phantom",
-        "none",
-        "--depths-mm",
-        "1:4:0.005",
-        "--laterals-mm",
-        "-9:9:1",
-        "--mesh-mm",
-        "4",
-        "--format",
-        "csv",
-    ];
-    let mut child = palpate(&here)
-        .args(arguments)
+    let arguments =
+        "solve --phantom none --depths-mm 1:4:0.005 --laterals-mm -9:9:1 --mesh-mm 4 --format csv";
+    let mut child = here
+        .palpate(arguments)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -442,58 +219,32 @@ fn a_reader_that_goes_away_is_no_error() {
 // Verifies: CLI-005, CLI-006.
 #[test]
 fn files_are_whole_and_progress_stays_off_a_pipe() {
-    let here = folder("files");
-    let arguments = [
-        "solve",
-        "--phantom",
-        "6.6",
-        "--depths-mm",
-        "2",
-        "--laterals-mm",
-        "0",
-        "--mesh-mm",
-        "2",
-        "--vtu",
-        "pose.vtu",
-    ];
-    let output = run(&here, &arguments);
+    let here = Place::new("files");
+    let arguments = "solve --phantom 6.6 --depths-mm 2 --laterals-mm 0 --mesh-mm 2 --vtu pose.vtu";
+    let output = here.run(arguments);
     assert!(
         output.status.success() && output.stderr.is_empty(),
         "{}",
         text(&output.stderr)
     );
-    let names: Vec<_> = fs::read_dir(&here)
+    let names: Vec<_> = fs::read_dir(here.at(""))
         .unwrap()
         .map(|entry| entry.unwrap().file_name())
         .collect();
     assert_eq!(names, ["pose.vtu"]);
-    assert!(
-        fs::read_to_string(here.join("pose.vtu"))
-            .unwrap()
-            .ends_with("</VTKFile>\n")
-    );
+    assert!(here.read("pose.vtu").ends_with("</VTKFile>\n"));
 }
 
 // Verifies: CLI-020.
 #[test]
 fn a_measured_map_becomes_a_json_map() {
-    let here = folder("import");
+    let here = Place::new("import");
     let csv = "lateral_mm,depth_mm,normal_force_mn,lateral_force_n\n0,1,200,0\n2,1,190,0.01\n2,2,500,0.03\n0,2,520,0\n";
-    fs::write(here.join("gel.csv"), csv).unwrap();
-    let arguments = [
-        "import-map",
-        "gel.csv",
-        "--note",
-        "silicone",
-        "--phantom",
-        "2.6",
-    ];
-    let printed = succeed(&here, &arguments);
-    assert_eq!(
-        succeed(&here, &[&arguments[..], &["--out", "gel.json"]].concat()),
-        ""
-    );
-    assert_eq!(fs::read_to_string(here.join("gel.json")).unwrap(), printed);
+    here.write("gel.csv", csv);
+    let arguments = "import-map gel.csv --note silicone --phantom 2.6";
+    let printed = here.succeed(arguments);
+    assert_eq!(here.succeed(&format!("{arguments} --out gel.json")), "");
+    assert_eq!(here.read("gel.json"), printed);
     let map = ForceMap::from_json(&printed, "gel.json").unwrap();
     assert_eq!(map.laterals(), [0.0, 2e-3]);
     assert_eq!(map.normal_force().row(1), [0.52, 0.5]);
@@ -526,23 +277,23 @@ fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 // Verifies: CLI-007, CLI-031, CLI-032, CON-006.
 #[test]
 fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
-    let here = folder("threads");
+    let here = Place::new("threads");
     let own = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/phantom.toml"))
         .unwrap();
-    fs::write(here.join("mine.toml"), own).unwrap();
+    here.write("mine.toml", own);
     let config = "phantoms = [\"2.6\", \"mine.toml\"]\ndepths_mm = \"0:3:1\"\nlaterals_mm = \"-4:4:1\"\n[mesh]\nsize_mm = 2.0\n[detection]\nnoise_sd_n = 0.1\n";
-    fs::write(here.join("run.toml"), config).unwrap();
+    here.write("run.toml", config);
     for threads in ["1", "2", "5"] {
         let out = format!("out-{threads}");
-        let output = palpate(&here)
-            .args(["run", "--config", "run.toml", "--out", &out])
+        let output = here
+            .palpate(&format!("run --config run.toml --out {out}"))
             .env("RAYON_NUM_THREADS", threads)
             .output()
             .unwrap();
         assert!(output.status.success(), "{}", text(&output.stderr));
         assert!(text(&output.stdout).contains(&format!("{out}/report.html")));
     }
-    let one = contents(&here.join("out-1"));
+    let one = contents(&here.at("out-1"));
     assert!(one.iter().any(|(path, _)| path.ends_with("report.html")));
     assert_eq!(
         one.iter()
@@ -551,7 +302,7 @@ fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
         3
     );
     for threads in ["2", "5"] {
-        let other = contents(&here.join(format!("out-{threads}")));
+        let other = contents(&here.at(&format!("out-{threads}")));
         assert_eq!(one.len(), other.len());
         for ((path, bytes), (other_path, other_bytes)) in one.iter().zip(&other) {
             assert_eq!(path, other_path);
@@ -592,28 +343,20 @@ poisson_ratio = 0.45
 // Verifies: CLI-012, CLI-013, FEM-014.
 #[test]
 fn negative_laterals_of_an_asymmetric_phantom_are_solved_and_not_mirrored() {
-    let here = folder("asymmetric");
-    fs::write(here.join("own.toml"), ASYMMETRIC).unwrap();
+    let here = Place::new("asymmetric");
+    here.write("own.toml", ASYMMETRIC);
     let mirrored = ASYMMETRIC
         .replace("centre_x_mm = -5", "centre_x_mm = 5")
         .replace("centre_x_mm = 8", "centre_x_mm = -8")
         .replace("angle_deg = 30", "angle_deg = -30");
-    fs::write(here.join("mirrored.toml"), mirrored).unwrap();
-    let map = |phantom: &str, rest: &[&str]| {
-        let arguments = [
-            "solve",
-            "--depths-mm",
-            "1,3",
-            "--mesh-mm",
-            "1",
-            "--format",
-            "json",
-        ];
-        let arguments = [&arguments[..], &["--phantom", phantom], rest].concat();
-        ForceMap::from_json(&succeed(&here, &arguments), "").unwrap()
+    here.write("mirrored.toml", mirrored);
+    let map = |phantom: &str, laterals: &str| {
+        let line = format!(
+            "solve --depths-mm 1,3 --mesh-mm 1 --format json --phantom {phantom} --laterals-mm={laterals}"
+        );
+        ForceMap::from_json(&here.succeed(&line), "").unwrap()
     };
-    let [own, mirror] =
-        ["own.toml", "mirrored.toml"].map(|phantom| map(phantom, &["--laterals-mm=-4,0,4"]));
+    let [own, mirror] = ["own.toml", "mirrored.toml"].map(|phantom| map(phantom, "-4,0,4"));
     let [left, middle, right] = own.normal_force().row(1) else {
         panic!("three laterals");
     };
@@ -632,31 +375,19 @@ fn negative_laterals_of_an_asymmetric_phantom_are_solved_and_not_mirrored() {
         assert!((one / other - 1.0).abs() < 0.01, "{one} {other}");
     }
     // A list without negative positions stays without them.
-    let right = map("own.toml", &["--laterals-mm", "0,4"]);
+    let right = map("own.toml", "0,4");
     assert_eq!(right.laterals(), [0.0, 4e-3]);
 }
 
 // Verifies: CLI-014, CLI-016, FEM-016.
 #[test]
 fn an_asymmetric_phantom_has_bands_and_a_file_for_paraview() {
-    let here = folder("asymmetric-vtu");
-    fs::write(here.join("own.toml"), ASYMMETRIC).unwrap();
-    let arguments = [
-        "solve",
-        "--phantom",
-        "own.toml",
-        "--depths-mm",
-        "2",
-        "--laterals-mm=-4",
-        "--mesh-mm",
-        "1.5",
-        "--certify",
-        "--vtu",
-        "own.vtu",
-    ];
-    let table = succeed(&here, &arguments);
+    let here = Place::new("asymmetric-vtu");
+    here.write("own.toml", ASYMMETRIC);
+    let arguments = "solve --phantom own.toml --depths-mm 2 --laterals-mm=-4 --mesh-mm 1.5 --certify --vtu own.vtu";
+    let table = here.succeed(arguments);
     assert!(table.contains("discretization, from meshes of"), "{table}");
-    let vtu = fs::read_to_string(here.join("own.vtu")).unwrap();
+    let vtu = here.read("own.vtu");
     let (_, regions) = vtu.split_once("Name=\"region\"").unwrap();
     let (regions, _) = regions.split_once("</DataArray>").unwrap();
     let numbers: std::collections::BTreeSet<_> = regions.lines().skip(1).collect();
@@ -669,18 +400,14 @@ fn an_asymmetric_phantom_has_bands_and_a_file_for_paraview() {
 // Verifies: CLI-031, CLI-032, REP-003.
 #[test]
 fn a_run_of_own_asymmetric_phantoms_shows_them() {
-    let here = folder("own-run");
-    fs::write(here.join("own.toml"), ASYMMETRIC).unwrap();
+    let here = Place::new("own-run");
+    here.write("own.toml", ASYMMETRIC);
     let (plain, _) = ASYMMETRIC.split_once("[[inclusion]]").unwrap();
-    fs::write(
-        here.join("plain.toml"),
-        plain.replace("asymmetric", "plain"),
-    )
-    .unwrap();
+    here.write("plain.toml", plain.replace("asymmetric", "plain"));
     let config = "reference = \"plain.toml\"\nphantoms = [\"own.toml\"]\ndepths_mm = \"1,2\"\nlaterals_mm = \"-4:4:2\"\n[mesh]\nsize_mm = 1.5\n";
-    fs::write(here.join("run.toml"), config).unwrap();
-    succeed(&here, &["run", "--config", "run.toml"]);
-    let out = here.join("palpate-out");
+    here.write("run.toml", config);
+    here.succeed("run --config run.toml");
+    let out = here.at("palpate-out");
     let map = ForceMap::read(&out.join("maps/map-asymmetric.json")).unwrap();
     let forces = map.normal_force().row(1);
     assert!(forces[0] > forces[4] + 0.02, "{forces:?}");
@@ -694,63 +421,39 @@ fn a_run_of_own_asymmetric_phantoms_shows_them() {
 // Verifies: PSY-072, CLI-083.
 #[test]
 fn half_a_map_of_an_asymmetric_phantom_is_not_completed() {
-    let here = folder("half");
-    fs::write(here.join("own.toml"), ASYMMETRIC).unwrap();
+    let here = Place::new("half");
+    here.write("own.toml", ASYMMETRIC);
     for (phantom, file) in [("own.toml", "own.json"), ("none", "none.json")] {
-        let arguments = ["--depths-mm", "4", "--laterals-mm", "0,2", "--mesh-mm", "3"];
-        let arguments = [
-            &["solve", "--phantom", phantom, "--format", "json"],
-            &arguments[..],
-        ]
-        .concat();
-        fs::write(here.join(file), succeed(&here, &arguments)).unwrap();
+        let line = format!(
+            "solve --phantom {phantom} --format json --depths-mm 4 --laterals-mm 0,2 --mesh-mm 3"
+        );
+        here.write(file, here.succeed(&line));
     }
-    let arguments = [
-        "psychophysics",
-        "--reference",
-        "none.json",
-        "--sweep-mm",
-        "2",
-    ];
-    let maps = ["--inclusion", "2.6=own.json", "--inclusion", "4.6=own.json"];
-    let output = run(&here, &[&arguments[..], &maps].concat());
-    let message = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(
-        message
-            .starts_with("palpate: own.json: phantom \"asymmetric\" is not its own mirror image"),
-        "{message}"
-    );
+    let maps = "--inclusion 2.6=own.json --inclusion 4.6=own.json";
+    let line = format!("psychophysics --reference none.json --sweep-mm 2 {maps}");
+    let told = "own.json: phantom \"asymmetric\" is not its own mirror image";
+    assert!(here.refused(&line).starts_with(told));
 }
 
 // Verifies: CLI-033.
 #[test]
 fn a_measured_map_is_shown_and_a_computed_one_refused() {
-    let here = folder("measured");
+    let here = Place::new("measured");
     let csv = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n0,0,0,0\n0,3,0,0\n2,0,0.6,0\n2,3,0.5,-0.1\n";
-    fs::write(here.join("gel.csv"), csv).unwrap();
-    succeed(&here, &["import-map", "gel.csv", "--out", "gel.json"]);
+    here.write("gel.csv", csv);
+    here.succeed("import-map gel.csv --out gel.json");
     let config = |measured: &str| {
         format!(
             "phantoms = []\nmeasured = [\"{measured}\"]\ndepths_mm = \"1\"\nlaterals_mm = \"0\"\n[mesh]\nsize_mm = 3.0\n"
         )
     };
-    fs::write(here.join("run.toml"), config("gel.json")).unwrap();
-    succeed(&here, &["run", "--config", "run.toml"]);
-    assert!(
-        here.join("palpate-out/figures/figure-7-gel.csv.svg")
-            .exists()
-    );
-    let page = fs::read_to_string(here.join("palpate-out/report.html")).unwrap();
+    here.write("run.toml", config("gel.json"));
+    here.succeed("run --config run.toml");
+    assert!(here.at("palpate-out/figures/figure-7-gel.csv.svg").exists());
+    let page = here.read("palpate-out/report.html");
     assert!(page.contains("Figure 7. Measured forces, “gel.csv”"));
-    fs::write(
-        here.join("run.toml"),
-        config("palpate-out/maps/map-none.json"),
-    )
-    .unwrap();
-    let output = run(&here, &["run", "--config", "run.toml"]);
-    let message = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{message}");
+    here.write("run.toml", config("palpate-out/maps/map-none.json"));
+    let message = here.refused("run --config run.toml");
     assert!(
         message.contains("map-none.json: a computed map"),
         "{message}"
@@ -760,10 +463,10 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
 // Verifies: CLI-030, CLI-032, REP-030, REP-043.
 #[test]
 fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
-    let here = folder("paper");
-    let said = succeed(&here, &["run"]);
+    let here = Place::new("paper");
+    let said = here.succeed("run");
     assert!(said.contains("palpate-out/report.html"), "{said}");
-    let out = here.join("palpate-out");
+    let out = here.at("palpate-out");
     for name in ["none", "2.6", "4.6", "6.6", "8.6"] {
         let map = ForceMap::read(&out.join(format!("maps/map-{name}.json"))).unwrap();
         assert_eq!(map.phantom(), Some(&Phantom::builtin(name).unwrap()));
@@ -791,11 +494,9 @@ fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
     );
 }
 
-/// A quick solve, but for the name of its VTU output.
-const QUICK_VTU: &str = "solve --phantom none --depths-mm 1 --laterals-mm 0 --mesh-mm 3 --vtu";
-
-fn quick_vtu(name: &str) -> Vec<&str> {
-    QUICK_VTU.split(' ').chain([name]).collect()
+/// A quick solve with its VTU output in `name`.
+fn quick_vtu(name: &str) -> String {
+    format!("solve --phantom none --depths-mm 1 --laterals-mm 0 --mesh-mm 3 --vtu {name}")
 }
 
 // Verifies: CLI-005, CLI-086, CLI-087, CLI-088.
@@ -804,8 +505,8 @@ fn quick_vtu(name: &str) -> Vec<&str> {
 fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
     use std::os::unix::fs::{PermissionsExt, symlink};
 
-    let here = folder("links");
-    let at = |name: &str| here.join(name);
+    let here = Place::new("links");
+    let at = |name: &str| here.at(name);
     fs::create_dir(at("far")).unwrap();
     fs::write(at("far/real.vtu"), "old").unwrap();
     fs::set_permissions(at("far/real.vtu"), fs::Permissions::from_mode(0o600)).unwrap();
@@ -814,7 +515,7 @@ fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
     fs::write(at("far/victim"), "untouched").unwrap();
     symlink("victim", at("far/real.vtu.partial")).unwrap();
     symlink("far/victim", at("link.vtu.partial")).unwrap();
-    succeed(&here, &quick_vtu("link.vtu"));
+    here.succeed(&quick_vtu("link.vtu"));
     assert_eq!(
         fs::read_link(at("link.vtu")).unwrap(),
         Path::new("far/real.vtu")
@@ -830,7 +531,7 @@ fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
 
     // A link to what is not there yet, and one that leads nowhere at all.
     symlink("far/new.vtu", at("ahead.vtu")).unwrap();
-    succeed(&here, &quick_vtu("ahead.vtu"));
+    here.succeed(&quick_vtu("ahead.vtu"));
     assert!(fs::read_link(at("ahead.vtu")).is_ok() && at("far/new.vtu").is_file());
     fs::write(at("plain"), "").unwrap();
     assert_eq!(
@@ -839,9 +540,8 @@ fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
         "the mode of any new file"
     );
     symlink("loop.vtu", at("loop.vtu")).unwrap();
-    let output = run(&here, &quick_vtu("loop.vtu"));
-    assert!(text(&output.stderr).starts_with("palpate: write loop.vtu: "));
-    assert_eq!(output.status.code(), Some(2));
+    let refused = here.refused(&quick_vtu("loop.vtu"));
+    assert!(refused.starts_with("write loop.vtu: "), "{refused}");
 
     let mut left: Vec<_> = fs::read_dir(at("far"))
         .unwrap()
@@ -857,8 +557,8 @@ fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
 fn a_pipe_as_output_is_written_into_and_stays() {
     use std::os::unix::fs::FileTypeExt;
 
-    let here = folder("pipes");
-    let pipe = here.join("pipe");
+    let here = Place::new("pipes");
+    let pipe = here.at("pipe");
     assert!(
         Command::new("mkfifo")
             .arg(&pipe)
@@ -870,7 +570,7 @@ fn a_pipe_as_output_is_written_into_and_stays() {
         let pipe = pipe.clone();
         move || fs::read_to_string(pipe).unwrap()
     });
-    succeed(&here, &quick_vtu("pipe"));
+    here.succeed(&quick_vtu("pipe"));
     assert!(reader.join().unwrap().starts_with("<?xml"));
     assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
 }
@@ -878,16 +578,13 @@ fn a_pipe_as_output_is_written_into_and_stays() {
 // Verifies: CLI-017.
 #[test]
 fn a_large_mesh_is_told_before_it_is_made() {
-    let folder = folder("large-mesh");
-    let phantom = folder.join("wide.toml");
+    let here = Place::new("large-mesh");
     let narrow = include_str!("../docs/phantom.toml");
     let wide = narrow.replace("width_mm = 34.0", "width_mm = 1000.0");
     assert_ne!(wide, narrow);
-    fs::write(&phantom, wide).unwrap();
-    let mut solve = Command::new(env!("CARGO_BIN_EXE_palpate"))
-        .args(["solve", "--depths-mm", "1", "--laterals-mm", "0"])
-        .arg("--phantom")
-        .arg(&phantom)
+    here.write("wide.toml", wide);
+    let mut solve = here
+        .palpate("solve --depths-mm 1 --laterals-mm 0 --phantom wide.toml")
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()

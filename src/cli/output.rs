@@ -41,11 +41,14 @@ fn replace(path: &Path, text: &[u8]) -> std::io::Result<()> {
         None => end_of_links(path),
     };
     let folder = target.parent().filter(|folder| *folder != "");
+    let folder = folder.unwrap_or(Path::new("."));
+    // A folder that is not there is told without the name of the temporary file.
+    std::fs::metadata(folder)?;
     let mut partial = tempfile::Builder::new();
     // Less what the user's mask takes away, as for any new file.
     #[cfg(unix)]
     partial.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut partial = partial.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+    let mut partial = partial.tempfile_in(folder)?;
     partial.write_all(text)?;
     if let Some(there) = there {
         partial.as_file().set_permissions(there.permissions())?;

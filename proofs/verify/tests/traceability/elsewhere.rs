@@ -7,18 +7,21 @@ use crate::trace::Trace;
 const WITNESSES: &str = "PALPATE_REQUIRE_WITNESSES=1 cargo test";
 const CHROMIUM: &str = "PALPATE_REQUIRE_CHROMIUM=1 cargo test";
 const WORKSPACE: &str = "cargo test --workspace";
-const IGNORED: &str = "cargo test --release -p palpate-proofs -- --ignored";
+const IGNORED: &str = "cargo test --release -p palpate-proofs -p palpate-verify -- --ignored";
 
 /// Evidence that `cargo test` does not run, or skips where a program is missing: by the beginning of its name, with what runs it.
-const ELSEWHERE: [(&str, &str); 13] = [
+const ELSEWHERE: [(&str, &str); 16] = [
     ("tests/hid-stack/", "tests/hid-stack/run"),
     ("tests/accuracy.rs", WITNESSES),
     ("tests/vectors_suite.rs", WITNESSES),
     ("tests/witness/", WITNESSES),
     ("tests/report_page/", CHROMIUM),
     ("proofs/src/", WORKSPACE),
-    ("fuzz/", WORKSPACE),
+    ("proofs/fuzz/", WORKSPACE),
     ("proofs/tests/", IGNORED),
+    ("proofs/verify/tests/exhaustive.rs", IGNORED),
+    ("proofs/verify/", WORKSPACE),
+    ("vectors/conform/", WORKSPACE),
     ("proofs/gappa/", ".ci/run"),
     ("benches/", ".ci/run"),
     (".ci/run", ".ci/run"),

@@ -1,0 +1,63 @@
+//! The program `palpate` in a folder of its own, as its users run it.
+#![allow(dead_code)] // each test program uses a part
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder for one test, empty at the start.
+pub struct Place(PathBuf);
+
+impl Place {
+    pub fn new(test: &str) -> Place {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).expect("a folder for the test");
+        Place(path)
+    }
+
+    pub fn at(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    pub fn write(&self, name: &str, text: impl AsRef<[u8]>) {
+        fs::write(self.at(name), text).expect("a file for the test");
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.at(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// The program with the words of `line`.
+    pub fn palpate(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+        command.current_dir(&self.0).args(line.split_whitespace());
+        command
+    }
+
+    pub fn run(&self, line: &str) -> Output {
+        self.palpate(line).output().expect("the program starts")
+    }
+
+    /// What it prints when all goes well.
+    pub fn succeed(&self, line: &str) -> String {
+        let output = self.run(line);
+        assert!(output.status.success(), "{line}: {}", text(&output.stderr));
+        text(&output.stdout).into()
+    }
+
+    /// The one line that it prints, and only that, when the input is to blame (CLI-002, CLI-003).
+    pub fn refused(&self, line: &str) -> String {
+        let output = self.run(line);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+        assert!(output.stdout.is_empty(), "{line} printed {output:?}");
+        let said = message.strip_prefix("palpate: ").expect(message);
+        assert_eq!(message.lines().count(), 1, "{line}: {message}");
+        said.trim_end().into()
+    }
+}
+
+pub fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).expect("UTF-8")
+}
