@@ -110,6 +110,17 @@ pub struct MapFindings {
     pub warnings: Vec<String>,
 }
 
+impl MapFindings {
+    /// The three thresholds, in the order of the fields.
+    pub(super) fn thresholds(&self) -> [Option<Threshold>; 3] {
+        [
+            Some(self.map_rule),
+            Some(self.bounded_miss),
+            self.bounded_false_alarm,
+        ]
+    }
+}
+
 /// An extreme of a signal along the lateral sweep.
 ///
 /// ```

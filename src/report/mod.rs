@@ -43,14 +43,14 @@
 mod comparison;
 mod figures;
 mod findings;
-pub(crate) mod html;
+pub mod html;
 pub mod paper;
 mod people;
 mod quality;
 mod summary;
 #[cfg(test)]
 mod tests;
-pub(crate) mod text;
+pub mod text;
 
 pub use comparison::{Comparison, Value};
 pub use figures::figures;
@@ -70,6 +70,9 @@ use crate::fem::{FemError, Model, Pose};
 use crate::force_map::{ForceMap, InvalidForceMap};
 use crate::phantom::Phantom;
 use crate::psychophysics::{PsychophysicsError, TableError};
+
+/// The version of the program, which stands in every output.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Everything that a run computed.
 ///

@@ -1,6 +1,7 @@
 //! The paper's subjects: what their answers say by themselves, and against the forces.
 
 use super::findings::MapFindings;
+use super::text::extremes;
 use super::{ReportError, Study, paper};
 use crate::psychophysics::bridge::{Bridge, bridge};
 use crate::psychophysics::{
@@ -44,6 +45,12 @@ pub fn subjects(study: &Study, compared: &[MapFindings]) -> Result<Subjects, Rep
         noise: paper_noise_levels().map_err(refused)?,
         bridge,
     })
+}
+
+/// How much wider, at the least and at the most, the intervals by subject are than the exact ones of all answers pooled.
+pub(super) fn width_ratios(people: &Analysis) -> Option<[f64; 2]> {
+    let inclusions = people.conditions.iter().flat_map(|of| &of.inclusions);
+    extremes(inclusions.filter_map(|of| Some(of.clustered.as_ref()?.width_ratio)))
 }
 
 /// The normal approximation to a 95 % interval of a share of `trials` answers, cut off at 0 and 1: what the paper's
