@@ -183,12 +183,16 @@ impl Panel {
         y[1] += lack(60.0 / width * (x[1] - x[0]), y);
         let aside = 0.5 * lack(width / 600.0 * (y[1] - y[0]), x);
         x = [x[0] - aside, x[1] + aside];
+        let scale = width / (x[1] - x[0]);
+        let height = (scale * (y[1] - y[0])).ceil();
+        // Whole pixels hold a little more than was asked for.
+        y[1] = y[0] + height / scale;
         Panel {
             heading: "Height y (mm)".into(),
             x,
             y,
             is_to_scale: true,
-            height: (width * (y[1] - y[0]) / (x[1] - x[0])) as i32,
+            height: height as i32,
             cells,
             lines,
             ..Panel::default()

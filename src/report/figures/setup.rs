@@ -227,7 +227,7 @@ fn numbers(phantom: &Phantom, width: f64) -> Vec<Mark> {
         let words = (k + 1).to_string();
         let has_room = pixels * (right - left) > f64::from(text_width(&words)) + 2.0
             && pixels * (top - bottom) > 16.0;
-        has_room.then(|| Mark {
+        has_room.then_some(Mark {
             at: (0.5 * (left + right), 0.5 * (bottom + top)),
             has_dot: false,
             words,
