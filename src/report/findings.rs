@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::comparison::{self, Comparison};
-use super::people::{Subjects, subjects};
+use super::people::bridge_to;
 use super::quality::{Quality, quality, warnings};
 use super::text::{millimetres, name_of_map};
 use super::{ReportError, Settings, Study, paper};
@@ -11,20 +11,11 @@ use crate::detect::{
     Channels, DetectError, MatchedFilter, auc, error_rates, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
 };
-use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};
+use crate::force_map::{ForceCurve, ForceMap, ForceTable, InvalidForceMap, SAME_POSITION};
 use crate::psychophysics::bridge::Bridge;
-use crate::psychophysics::{Analysis, NoiseDecomposition};
+use crate::psychophysics::{Analysis, NoiseDecomposition, Table, analyse, paper_noise_levels};
 
 /// What a study found, in plain numbers.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// let findings = palpate::report::findings(&study)?;
-/// // Below 4 mm of the probe, at three lateral positions: at most 5 % of either error.
-/// assert_eq!((findings.probe_depth, findings.samples), (4e-3, 3));
-/// assert!((findings.required_gamma - 2.0 * 1.644854).abs() < 1e-5);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Findings {
     /// The depth of the probe, m, at which signals are taken.
@@ -51,13 +42,6 @@ pub struct Findings {
 }
 
 /// What the reference map says.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// let reference = palpate::report::findings(&study)?.reference;
-/// assert_eq!(reference.normal_force_at_centre, Some(study.reference.normal_force().row(1)[1]));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReferenceFindings {
     /// The name of its phantom: untrusted text.
@@ -70,15 +54,6 @@ pub struct ReferenceFindings {
 }
 
 /// What the map of one phantom says.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// let found = &palpate::report::findings(&study)?.maps[0];
-/// assert_eq!((found.paper_phantom, found.inclusion_depth), (Some("6.6"), Some(6.6e-3)));
-/// // In pairs of samples, chance is a half.
-/// assert!(found.two_afc > 0.5 && found.two_afc < 1.0 && found.two_afc == found.auc);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MapFindings {
     /// The name of its phantom: untrusted text.
@@ -110,15 +85,18 @@ pub struct MapFindings {
     pub warnings: Vec<String>,
 }
 
+impl MapFindings {
+    /// The three thresholds, in the order of the fields.
+    pub(super) fn thresholds(&self) -> [Option<Threshold>; 3] {
+        [
+            Some(self.map_rule),
+            Some(self.bounded_miss),
+            self.bounded_false_alarm,
+        ]
+    }
+}
+
 /// An extreme of a signal along the lateral sweep.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// let peak = palpate::report::findings(&study)?.maps[0].peak_normal;
-/// // Right above the inclusion.
-/// assert!(peak.lateral == 0.0 && (0.25..0.4).contains(&peak.force));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Peak {
     /// The signed force, N.
@@ -130,13 +108,6 @@ pub struct Peak {
 }
 
 /// γ with both channels and with each alone.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// let gamma = palpate::report::findings(&study)?.maps[0].gamma;
-/// assert!((gamma.both - gamma.normal.hypot(gamma.lateral)).abs() < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct GammaByChannel {
     /// Both.
@@ -148,16 +119,6 @@ pub struct GammaByChannel {
 }
 
 /// A threshold with its error rates.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// let found = &palpate::report::findings(&study)?.maps[0];
-/// // As likely as not: η = 0, and as many errors of either kind.
-/// assert_eq!(found.map_rule.eta, 0.0);
-/// assert!((found.map_rule.miss - found.map_rule.false_alarm).abs() < 1e-15);
-/// assert!((found.bounded_miss.miss - study.settings.max_miss).abs() < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Threshold {
     /// η of equation (9).
@@ -170,26 +131,17 @@ pub struct Threshold {
 
 /// Everything that the report says in numbers.
 ///
-/// ```
-#[doc = include_str!("study.example")]
-/// use palpate::report::findings;
-///
-/// let findings = findings(&study)?;
-/// assert_eq!(findings.maps.len(), study.maps.len());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// # Errors
 /// [`ReportError::Map`] if a map is over other poses than the reference, [`ReportError::Detect`] if a setting is
 /// outside its range or a signal overflows, [`ReportError::NotMeasured`] if a measured map was computed.
 ///
-/// Implements: REP-002, REP-003, REP-004.
+/// Implements: REP-002, REP-003, REP-004, REP-070.
 pub fn findings(study: &Study) -> Result<Findings, ReportError> {
     let depths = study.reference.depths();
     let probe_depth = probe_depth(depths);
     let at_paper_depth = is_paper_depth(probe_depth);
-    let settings = &study.settings;
-    let required_gamma = check(settings).map_err(|source| detect_error("settings", source))?;
+    let required_gamma =
+        check(&study.settings).map_err(|source| detect_error("settings", source))?;
     let is_computed = |map: &&ForceMap| map.certificate().is_some();
     if let Some(map) = study.measured.iter().find(is_computed) {
         return Err(ReportError::NotMeasured {
@@ -206,11 +158,11 @@ pub fn findings(study: &Study) -> Result<Findings, ReportError> {
     let comparable = at_paper_depth && is_paper_reference;
     // Only maps of the paper's phantoms, against the paper's reference, at the paper's depth are compared with it.
     let compared: &[MapFindings] = if comparable { &maps } else { &[] };
-    let Subjects {
-        people,
-        noise,
-        bridge,
-    } = subjects(study, compared)?;
+    let people_error = |source| ReportError::People { source };
+    let table = Table::paper().map_err(|error| ReportError::Table { error })?;
+    let people = analyse(&table).map_err(people_error)?;
+    let noise = paper_noise_levels().map_err(people_error)?;
+    let bridge = bridge_to(&table, study, compared)?;
     let level = reference.normal_force_at_centre.filter(|_| comparable);
     Ok(Findings {
         probe_depth,
@@ -235,49 +187,27 @@ pub fn findings(study: &Study) -> Result<Findings, ReportError> {
 ///
 /// Implements: REP-004.
 fn check(settings: &Settings) -> Result<f64, DetectError> {
-    let noise_sd = Channels {
-        x: settings.noise_sd,
-        y: settings.noise_sd,
-    };
-    MatchedFilter::new(
-        Channels {
-            x: &[0.0],
-            y: &[0.0],
-        },
-        noise_sd,
-    )?;
+    gamma(&[0.0], &[0.0], settings.noise_sd)?;
     map_threshold(settings.prior_h1)?;
     required_gamma(settings.max_false_alarm, settings.max_miss)
 }
 
 /// The signal F_1 − F_0 of `map` over all poses.
 pub(super) fn signal(study: &Study, map: &ForceMap) -> Result<ForceTable, ReportError> {
-    map.signal(&study.reference)
-        .map_err(|source| map_error(map, source))
+    map.signal(&study.reference).map_err(refused(map))
 }
 
-/// The forces of `table` at `depth`, m, which must be one of its depths.
-pub(super) fn curve<'a>(
-    name: &str,
-    table: &'a ForceTable,
-    depth: f64,
-) -> Result<ForceCurve<'a>, ReportError> {
-    table.row(depth).map_err(|source| ReportError::Map {
-        name: name.into(),
+/// The refusal of a map.
+pub(super) fn refused(map: &ForceMap) -> impl FnOnce(InvalidForceMap) -> ReportError {
+    |source| ReportError::Map {
+        name: name_of_map(map),
         source,
-    })
+    }
 }
 
 pub(super) fn detect_error(what: &str, source: DetectError) -> ReportError {
     ReportError::Detect {
         what: what.into(),
-        source,
-    }
-}
-
-fn map_error(map: &ForceMap, source: crate::force_map::InvalidForceMap) -> ReportError {
-    ReportError::Map {
-        name: name_of_map(map),
         source,
     }
 }
@@ -298,7 +228,7 @@ fn probe_depth(depths: &[f64]) -> f64 {
 
 fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindings, ReportError> {
     let name = name_of_map(map);
-    let row = curve(&name, map.forces(), depth)?;
+    let row = map.forces().row(depth).map_err(refused(map))?;
     let centre = row.laterals.iter().position(|x| x.abs() <= SAME_POSITION);
     Ok(ReferenceFindings {
         name,
@@ -310,7 +240,7 @@ fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindings, ReportE
 fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFindings, ReportError> {
     let name = name_of_map(map);
     let table = signal(study, map)?;
-    let signal = curve(&name, &table, depth)?;
+    let signal = table.row(depth).map_err(refused(map))?;
     let settings = &study.settings;
     let detect = |source| detect_error(&format!("map {name:?}"), source);
     let gamma = gamma_by_channel(signal, settings.noise_sd).map_err(detect)?;
@@ -364,20 +294,26 @@ fn peak(laterals: &[f64], forces: &[f64]) -> Peak {
         })
 }
 
-/// Implements: REP-012.
-fn gamma_by_channel(signal: ForceCurve<'_>, noise_sd: f64) -> Result<GammaByChannel, DetectError> {
-    let zeros = vec![0.0; signal.laterals.len()];
+/// γ of lateral and normal forces in noise of the same standard deviation.
+fn gamma(lateral: &[f64], normal: &[f64], noise_sd: f64) -> Result<f64, DetectError> {
     let noise_sd = Channels {
         x: noise_sd,
         y: noise_sd,
     };
-    let gamma = |x: &[f64], y: &[f64]| {
-        MatchedFilter::new(Channels { x, y }, noise_sd).map(|filter| filter.gamma())
+    let template = Channels {
+        x: lateral,
+        y: normal,
     };
+    MatchedFilter::new(template, noise_sd).map(|filter| filter.gamma())
+}
+
+/// Implements: REP-012.
+fn gamma_by_channel(signal: ForceCurve<'_>, noise_sd: f64) -> Result<GammaByChannel, DetectError> {
+    let zeros = vec![0.0; signal.laterals.len()];
     Ok(GammaByChannel {
-        both: gamma(signal.lateral_force, signal.normal_force)?,
-        normal: gamma(&zeros, signal.normal_force)?,
-        lateral: gamma(signal.lateral_force, &zeros)?,
+        both: gamma(signal.lateral_force, signal.normal_force, noise_sd)?,
+        normal: gamma(&zeros, signal.normal_force, noise_sd)?,
+        lateral: gamma(signal.lateral_force, &zeros, noise_sd)?,
     })
 }
 

@@ -71,18 +71,10 @@ use crate::force_map::{ForceMap, InvalidForceMap};
 use crate::phantom::Phantom;
 use crate::psychophysics::{PsychophysicsError, TableError};
 
+/// The version of the program.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// Everything that a run computed.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// use palpate::report::{ReportError, findings};
-///
-/// // A map over other poses than the reference cannot be compared with it.
-/// let other = inclusion.map(&depths, &[0.0], &|_| ())?;
-/// let study = Study { maps: vec![other], ..study };
-/// assert!(matches!(findings(&study), Err(ReportError::Map { .. })));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Study {
     /// Reference map F_0 of the phantom without inclusion.
@@ -97,49 +89,19 @@ pub struct Study {
     pub settings: Settings,
 }
 
-/// The mesh of one phantom under the probe.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// let DeformedMesh { nodes, displacements, corners, regions, min_det, .. } = study.deformed;
-/// assert_eq!((nodes.len(), corners.len()), (displacements.len(), regions.len()));
-/// // Pressed together in places, and nowhere to nothing.
-/// assert!(0.2 < min_det && min_det < 1.0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// The mesh of one phantom under the probe. It comes from a solution alone, so that its parts fit one another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeformedMesh {
-    /// The phantom under the probe.
-    pub phantom: Phantom,
-    /// Where the probe stands.
-    pub pose: Pose,
-    /// Undeformed position of each node, m.
-    pub nodes: Vec<[f64; 2]>,
-    /// Displacement of each node, m.
-    pub displacements: Vec<[f64; 2]>,
-    /// The nodes at the corners of each element, counter-clockwise.
-    pub corners: Vec<Vec<u32>>,
-    /// Region of each element.
-    pub regions: Vec<Region>,
+    phantom: Phantom,
+    pose: Pose,
+    /// Region of each element, and where its corners are under the probe, m, counter-clockwise.
+    elements: Vec<(Region, Vec<[f64; 2]>)>,
     /// The smallest det(I + ∇u) at this pose.
-    pub min_det: f64,
+    min_det: f64,
 }
 
 impl DeformedMesh {
     /// The mesh of `model` with the probe at `pose`.
-    ///
-    /// ```
-    /// use palpate::fem::{Contact, Model, Pose};
-    /// use palpate::phantom::Phantom;
-    /// use palpate::report::DeformedMesh;
-    ///
-    /// let model = Model::new(&Phantom::builtin("none")?, 2e-3, Contact::default())?;
-    /// let deformed = DeformedMesh::solve(&model, Pose { depth: 2e-3, lateral: 0.0 })?;
-    /// let deepest = deformed.displacements.iter().map(|[_, y]| -y).fold(0.0, f64::max);
-    /// // The node under the probe goes as deep as the probe, and none much deeper.
-    /// assert!((2e-3..2.1e-3).contains(&deepest));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     ///
     /// # Errors
     /// As [`Model::solve`] and [`Model::field`].
@@ -147,29 +109,27 @@ impl DeformedMesh {
         let solution = model.solve(pose)?;
         let mesh = model.mesh();
         let check = model.checks(std::slice::from_ref(&solution))?;
+        let displacements = model.field(&solution)?.displacements;
+        let place = |&node: &u32| {
+            let ([x, y], [u, v]) = (mesh.nodes[node as usize], displacements[node as usize]);
+            [x + u, y + v]
+        };
+        let corners = mesh
+            .elements()
+            .map(|nodes| nodes[..CORNERS].iter().map(place));
+        let elements = mesh.regions.iter().copied().zip(corners);
         Ok(DeformedMesh {
             phantom: model.phantom().clone(),
             pose,
-            nodes: mesh.nodes.clone(),
-            displacements: model.field(&solution)?.displacements,
-            corners: mesh
-                .elements()
-                .map(|nodes| nodes[..CORNERS].to_vec())
+            elements: elements
+                .map(|(region, corners)| (region, corners.collect()))
                 .collect(),
-            regions: mesh.regions.clone(),
             min_det: check[0].min_det,
         })
     }
 }
 
 /// What the detector assumes, with the paper's numbers as the default.
-///
-/// ```
-/// use palpate::report::Settings;
-///
-/// let careful = Settings { max_miss: 0.001, ..Settings::default() };
-/// assert_eq!((careful.max_false_alarm, careful.prior_h1), (0.05, 0.5));
-/// ```
 ///
 /// Implements: REP-001.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -197,16 +157,6 @@ impl Default for Settings {
 }
 
 /// Where on the page a figure stands.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// use palpate::report::{Topic, figures, findings};
-///
-/// let figures = figures(&study, &findings(&study)?)?;
-/// // The page begins with the set-up.
-/// assert_eq!(figures[0].topic, Topic::Setup);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Topic {
     /// Phantom, probe, problem.
@@ -220,24 +170,14 @@ pub enum Topic {
 }
 
 /// One picture with the words that go with it.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// use palpate::report::{figures, findings};
-///
-/// for figure in figures(&study, &findings(&study)?)? {
-///     assert!(figure.file_name.ends_with(".svg") && figure.svg.starts_with("<svg"));
-///     assert!(!figure.alt.is_empty());
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// A name of ASCII letters, digits, `.`, `-` and `_`, unique in the study; ends in `.svg`.
     pub file_name: String,
     /// Where on the page it stands.
     pub topic: Topic,
-    /// What it is; begins with the number of the paper's figure that it makes again. Plain text: it may hold a phantom's name, which markup must escape.
+    /// What it is; begins with the number of the paper's figure that it makes again. Plain text: it may hold a phantom's
+    /// name, which markup must escape.
     pub title: String,
     /// What it shows, what the paper says, and what differs and why. Plain text.
     pub caption: String,
@@ -248,15 +188,6 @@ pub struct Figure {
 }
 
 /// Why there is no report.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// use palpate::report::{ReportError, findings};
-///
-/// let study = Study { settings: Settings { noise_sd: 0.0, ..study.settings }, ..study };
-/// assert!(matches!(findings(&study), Err(ReportError::Detect { .. })));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 ///
 /// Implements: REP-004, REP-006.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -294,12 +225,6 @@ pub enum ReportError {
     Table {
         /// Why.
         error: TableError,
-    },
-    /// The deformed mesh contradicts itself.
-    #[error("deformed mesh: {problem}")]
-    Mesh {
-        /// What is wrong.
-        problem: String,
     },
     /// A picture could not be drawn.
     #[error("figure {figure:?}: {problem}")]

@@ -1,12 +1,4 @@
 //! The numbers that the paper prints, each with its place.
-//!
-//! ```
-//! use palpate::report::paper;
-//!
-//! // Table 2 adds up to more than the paper allows the display.
-//! let total = paper::NOISE_SOURCES.iter().map(|(_, sd)| sd * sd).sum::<f64>().sqrt();
-//! assert!(total > paper::DISPLAY_NOISE);
-//! ```
 
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 
@@ -75,41 +67,8 @@ pub const PRINTED_MEANS: [[f64; 4]; 3] = [
     [26.8, 22.8, 22.9, 17.4],
 ];
 
-/// One experiment in the second transcription of Table 1.
 #[cfg(test)]
-pub struct Experiment {
-    /// What Table 1 calls it.
-    pub name: &'static str,
-    /// Right answers in [`TRIALS`], one row a subject, one column an inclusion.
-    pub correct: [[u32; 4]; 10],
-}
-
-/// Table 1, typed a second time. Nothing is computed from it: it shows a slip of the pen in the table that is used.
-#[cfg(test)]
-#[rustfmt::skip]
-pub const EXPERIMENTS: [Experiment; 3] = [
-    Experiment {
-        name: "direct contact",
-        correct: [
-            [30, 28, 27, 27], [30, 30, 28, 23], [30, 29, 20, 21], [28, 25, 18, 16], [27, 26, 23, 19],
-            [30, 30, 27, 17], [23, 19, 18, 13], [30, 30, 30, 19], [30, 30, 29, 23], [30, 28, 27, 22],
-        ],
-    },
-    Experiment {
-        name: "FEM data",
-        correct: [
-            [30, 30, 30, 21], [30, 30, 29, 25], [30, 29, 28, 16], [28, 29, 24, 20], [29, 25, 20, 17],
-            [29, 29, 27, 15], [27, 23, 18, 15], [30, 30, 27, 20], [29, 24, 21, 16], [30, 28, 29, 24],
-        ],
-    },
-    Experiment {
-        name: "measured data",
-        correct: [
-            [30, 22, 24, 18], [30, 28, 28, 21], [28, 27, 19, 15], [25, 19, 19, 21], [29, 24, 23, 18],
-            [26, 21, 23, 17], [17, 15, 19, 18], [29, 26, 26, 13], [26, 21, 22, 15], [28, 25, 26, 18],
-        ],
-    },
-];
+pub use super::tests::table_1::EXPERIMENTS;
 
 /// Which of the paper's phantoms this is, whatever it and its layers are called: geometry, materials, supports and probe
 /// decide.

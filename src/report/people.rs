@@ -1,49 +1,41 @@
 //! The paper's subjects: what their answers say by themselves, and against the forces.
 
 use super::findings::MapFindings;
+use super::text::extremes;
 use super::{ReportError, Study, paper};
 use crate::psychophysics::bridge::{Bridge, bridge};
-use crate::psychophysics::{
-    Analysis, Bounds, NoiseDecomposition, PsychophysicsError, Table, analyse, paper_noise_levels,
-};
+use crate::psychophysics::{Analysis, Bounds, PsychophysicsError, Table};
 use crate::stats::normal;
 
-/// Everything about the subjects.
-pub struct Subjects {
-    /// What Table 1 says by itself.
-    pub people: Analysis,
-    /// The paper's noise levels beside ours.
-    pub noise: NoiseDecomposition,
-    /// Table 1 against the signals.
-    pub bridge: Option<Bridge>,
-}
-
-/// The analysis of Table 1, and the bridge from those maps of `study` whose findings are in `compared`.
+/// The bridge from those maps of `study` whose findings are in `compared` to the answers of `table`; `None` with fewer than two.
 ///
 /// # Errors
 /// [`ReportError::People`] if a map is not over the poses of the reference.
 ///
-/// Implements: REP-070, REP-071.
-pub fn subjects(study: &Study, compared: &[MapFindings]) -> Result<Subjects, ReportError> {
-    let refused = |source| ReportError::People { source };
-    let table = Table::paper().map_err(|error| ReportError::Table { error })?;
+/// Implements: REP-071.
+pub(super) fn bridge_to(
+    table: &Table,
+    study: &Study,
+    compared: &[MapFindings],
+) -> Result<Option<Bridge>, ReportError> {
     let columns = paper::INCLUSIONS.into_iter().filter_map(|name| {
         let of_map = |map: &MapFindings| map.paper_phantom == Some(name);
         let index = compared.iter().position(of_map)?;
         Some((name, study.maps.get(index)?))
     });
     let columns: Vec<_> = columns.collect();
-    let bridge = match bridge(&table, &study.reference, &columns) {
-        Ok(bridge) => Some(bridge),
+    match bridge(table, &study.reference, &columns) {
+        Ok(bridge) => Ok(Some(bridge)),
         // Fewer than two depths say nothing of how rates fall with depth.
-        Err(PsychophysicsError::TooFewMaps { .. }) => None,
-        Err(other) => return Err(refused(other)),
-    };
-    Ok(Subjects {
-        people: analyse(&table).map_err(refused)?,
-        noise: paper_noise_levels().map_err(refused)?,
-        bridge,
-    })
+        Err(PsychophysicsError::TooFewMaps { .. }) => Ok(None),
+        Err(source) => Err(ReportError::People { source }),
+    }
+}
+
+/// How much wider, at the least and at the most, the intervals by subject are than the exact ones of all answers pooled.
+pub(super) fn width_ratios(people: &Analysis) -> Option<[f64; 2]> {
+    let inclusions = people.conditions.iter().flat_map(|of| &of.inclusions);
+    extremes(inclusions.filter_map(|of| Some(of.clustered.as_ref()?.width_ratio)))
 }
 
 /// The normal approximation to a 95 % interval of a share of `trials` answers, cut off at 0 and 1: what the paper's

@@ -12,17 +12,6 @@ use crate::force_map::{Discretization, ForceMap};
 pub const SMALL_STRAIN_LIMIT: f64 = 0.2;
 
 /// The certificate of a computed map, in short.
-///
-/// ```
-#[doc = include_str!("study.example")]
-/// use palpate::report::{SMALL_STRAIN_LIMIT, findings};
-///
-/// let quality = findings(&study)?.maps[0].quality.clone().expect("a computed map");
-/// assert!(quality.worst_relative_residual < 1e-8 && quality.smallest_det > SMALL_STRAIN_LIMIT);
-/// // Three meshes were not asked for.
-/// assert_eq!(quality.largest_normal_band, None);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Quality {
     /// The largest relative residual of the linear solves.

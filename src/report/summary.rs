@@ -23,17 +23,6 @@ struct Summary<'a> {
 
 /// The findings as JSON, with every unit in its key; ends in a line feed.
 ///
-/// ```
-#[doc = include_str!("study.example")]
-/// use palpate::report::{SUMMARY_SCHEMA, findings, summary_json};
-///
-/// let text = summary_json(&findings(&study)?, &study);
-/// let summary: serde_json::Value = serde_json::from_str(&text)?;
-/// assert_eq!(summary["schema"], SUMMARY_SCHEMA);
-/// assert_eq!(summary["findings"]["maps"][0]["paper_phantom"], "6.6");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// Implements: REP-050, REP-051, REP-005.
 pub fn summary_json(findings: &Findings, study: &Study) -> String {
     let summary = Summary {

@@ -1,11 +1,15 @@
 //! Text for people and for files: untrusted names made safe, numbers made short.
+//!
+//! Formats take a number or a reference to one, which is what templates have.
 
+use std::borrow::Borrow;
 use std::collections::HashSet;
 
 use crate::force_map::{ForceMap, Source};
+use crate::psychophysics::Bounds;
 
 /// What to call a map: its phantom's name, or else the file that it was measured in. Untrusted text.
-pub fn name_of_map(map: &ForceMap) -> String {
+pub(super) fn name_of_map(map: &ForceMap) -> String {
     match (map.phantom(), map.source()) {
         (Some(phantom), _) => phantom.name.clone(),
         (None, Source::Measured { file, .. }) => file.clone(),
@@ -14,36 +18,28 @@ pub fn name_of_map(map: &ForceMap) -> String {
 }
 
 /// `text` without the characters that XML 1.0 cannot hold even escaped.
-pub fn printable(text: &str) -> String {
-    let allowed = |c: char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
-    text.chars()
-        .map(|c| if allowed(c) { c } else { '\u{fffd}' })
-        .collect()
+pub(super) fn printable(text: &str) -> String {
+    let allowed = |c: char| c == '\n' || !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
+    text.replace(|c| !allowed(c), "\u{fffd}")
 }
 
 /// `text` as the content of an element or of a quoted attribute, in HTML and in XML.
 ///
 /// Implements: REP-042.
 pub fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in printable(text).chars() {
-        match c {
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '&' => escaped.push_str("&amp;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            other => escaped.push(other),
-        }
-    }
-    escaped
+    printable(text)
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+        .replace('\'', "&#39;")
 }
 
-/// [`escape`]d text in which no line breaks between a number and its unit, nor around `=`.
-pub fn prose(text: &str) -> String {
-    let mut joined = String::with_capacity(text.len());
+/// Text in which no line breaks between a number and its unit, nor around `=`.
+pub(super) fn prose(text: impl AsRef<str>) -> String {
+    let mut joined = String::new();
     let mut before = "";
-    for (k, word) in text.split(' ').enumerate() {
+    for (k, word) in text.as_ref().split(' ').enumerate() {
         let after_number = before.ends_with(|c: char| c.is_ascii_digit());
         let is_unit = ["N", "mN", "mm", "%"]
             .contains(&word.trim_matches(|c: char| !c.is_alphabetic() && c != '%'));
@@ -54,17 +50,16 @@ pub fn prose(text: &str) -> String {
         joined.push_str(word);
         before = word;
     }
-    escape(&joined)
+    joined
 }
 
 /// The first `most` characters of a name, so that a long one does not run out of its figure.
-pub fn shortened(name: &str, most: usize) -> String {
+pub(super) fn shortened(name: &str, most: usize) -> String {
     if name.chars().count() <= most {
         return name.into();
     }
-    let mut short: String = name.chars().take(most.saturating_sub(1)).collect();
-    short.push('…');
-    short
+    let short = name.chars().take(most.saturating_sub(1));
+    short.chain(['…']).collect()
 }
 
 /// Gives out file names that are safe on any system and never the same twice, not even where case is ignored.
@@ -75,6 +70,7 @@ pub fn shortened(name: &str, most: usize) -> String {
 /// let mut names = FileNames::default();
 /// assert_eq!(names.unique("map", "../6.6 mm", "json"), "map-.._6.6_mm.json");
 /// assert_eq!(names.unique("map", "../6.6_MM", "json"), "map-.._6.6_MM-2.json");
+/// assert_eq!(names.unique("map", "", "json"), "map.json");
 /// ```
 #[derive(Debug, Default)]
 pub struct FileNames {
@@ -84,31 +80,13 @@ pub struct FileNames {
 impl FileNames {
     /// `prefix`, then what is safe of `name`, then a number if that is taken, then `.extension`.
     ///
-    /// ```
-    /// use palpate::report::FileNames;
-    ///
-    /// let mut names = FileNames::default();
-    /// assert_eq!(names.unique("map", "", "json"), "map.json");
-    /// assert_eq!(names.unique("map", "", "json"), "map-2.json");
-    /// ```
-    ///
     /// Implements: REP-031.
     pub fn unique(&mut self, prefix: &str, name: &str, extension: &str) -> String {
-        let safe: String = name
-            .chars()
-            .map(|c| {
-                if c.is_ascii_alphanumeric() || c == '.' {
-                    c
-                } else {
-                    '_'
-                }
-            })
-            .take(40)
-            .collect();
-        let stem = if safe.is_empty() {
-            prefix.to_string()
-        } else {
-            format!("{prefix}-{safe}")
+        let short: String = name.chars().take(40).collect();
+        let safe = short.replace(|c: char| !c.is_ascii_alphanumeric() && c != '.', "_");
+        let stem = match &*safe {
+            "" => prefix.to_string(),
+            safe => format!("{prefix}-{safe}"),
         };
         let mut candidate = format!("{stem}.{extension}");
         let mut number = 2;
@@ -120,14 +98,34 @@ impl FileNames {
     }
 }
 
+/// The least and the greatest of finite values; `None` without any.
+pub(super) fn extremes(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
+    let ends = values.into_iter().map(|value| [value, value]);
+    ends.reduce(|[least, greatest], [value, _]| [least.min(value), greatest.max(value)])
+}
+
 /// A length (m) in mm, to a nanometre, without trailing zeros.
-pub fn millimetres(length: f64) -> String {
-    trimmed(length * 1e3, 6)
+pub fn millimetres(length: impl Borrow<f64>) -> String {
+    trimmed(length.borrow() * 1e3, 6)
+}
+
+/// The first and the last of positions (m), in mm: "0 to 4 mm".
+pub(super) fn range(axis: &[f64]) -> String {
+    match axis {
+        [first, .., last] => format!("{} to {} mm", millimetres(first), millimetres(last)),
+        [only] => format!("{} mm", millimetres(only)),
+        [] => String::new(),
+    }
+}
+
+/// A force (N) in mN.
+pub(super) fn millinewtons(force: impl Borrow<f64>) -> String {
+    trimmed(1e3 * force.borrow(), 1)
 }
 
 /// `value` with at most `decimals` decimals and no trailing zeros, with a true minus sign.
-pub fn trimmed(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
+pub fn trimmed(value: impl Borrow<f64>, decimals: usize) -> String {
+    let text = format!("{:.decimals$}", value.borrow());
     let text = match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.'),
         false => &text,
@@ -136,17 +134,18 @@ pub fn trimmed(value: f64, decimals: usize) -> String {
 }
 
 /// `value` with exactly `decimals` decimals and a true minus sign.
-pub fn fixed(value: f64, decimals: usize) -> String {
-    with_minus(&format!("{value:.decimals$}"))
+pub fn fixed(value: impl Borrow<f64>, decimals: usize) -> String {
+    with_minus(&format!("{:.decimals$}", value.borrow()))
 }
 
 /// `value` as `1.2e−9`: for residuals.
-pub fn scientific(value: f64) -> String {
-    with_minus(&format!("{value:.1e}"))
+pub fn scientific(value: impl Borrow<f64>) -> String {
+    with_minus(&format!("{:.1e}", value.borrow()))
 }
 
 /// A probability in per cent; what would round to 0 or 100 % is given as a bound.
-pub fn percent(probability: f64) -> String {
+pub fn percent(probability: impl Borrow<f64>) -> String {
+    let probability = *probability.borrow();
     let percent = 100.0 * probability;
     if probability > 0.0 && percent < 0.05 {
         "< 0.1 %".into()
@@ -157,12 +156,43 @@ pub fn percent(probability: f64) -> String {
     }
 }
 
+/// A rate that was asked for, in per cent.
+pub(super) fn rate(rate: impl Borrow<f64>) -> String {
+    format!("{}\u{a0}%", trimmed(100.0 * rate.borrow(), 6))
+}
+
+/// An error rate: small ones by their power of ten.
+pub(super) fn error_rate(probability: impl Borrow<f64>) -> String {
+    match *probability.borrow() {
+        rate if rate > 0.0 && rate < 1e-3 => scientific(rate),
+        rate => percent(rate),
+    }
+}
+
 /// A p-value: small ones by their power of ten.
-pub fn p_value(p: f64) -> String {
-    match p {
+pub(super) fn p_value(p: impl Borrow<f64>) -> String {
+    match *p.borrow() {
         p if p > 0.0 && p < 1e-3 => scientific(p),
         p => fixed(p, 3),
     }
+}
+
+/// A difference of shares in percentage points, with its sign.
+pub(super) fn points(share: impl Borrow<f64>) -> String {
+    let share = *share.borrow();
+    let sign = if share > 0.0 { "+" } else { "" };
+    format!("{sign}{}", fixed(100.0 * share, 1))
+}
+
+/// "93.1 to 97.9 %".
+pub(super) fn percents(Bounds { lower, upper }: &Bounds) -> String {
+    let [lower, upper] = [lower, upper].map(|end| fixed(100.0 * end, 1));
+    format!("{lower} to {upper} %")
+}
+
+/// A number in its format, or other words where there is none.
+pub(super) fn or(value: impl Borrow<Option<f64>>, none: &str, format: fn(f64) -> String) -> String {
+    value.borrow().map_or(none.into(), format)
 }
 
 fn with_minus(text: &str) -> String {

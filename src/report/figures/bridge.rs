@@ -1,14 +1,15 @@
 //! The bridge: rates predicted from the forces, against the subjects' answers to FEM playback.
 
-use super::chart::{Line, chart};
+use askama::Template;
+
+use super::chart::Line;
 use super::people::{DEPTH, SHARE, bar, points, share_panel};
 use super::style::{INK, PALETTE};
 use super::{Draft, Words};
 use crate::psychophysics::bridge::{
     Bridge, Channel, ConditionBridge, ConventionFit, Offset, Statistic,
 };
-use crate::report::text::millimetres;
-use crate::report::{Findings, Topic, paper};
+use crate::report::{Findings, Topic, paper, text};
 
 /// The figure, if the study holds the maps for it.
 ///
@@ -37,13 +38,9 @@ pub fn draft(found: &Findings) -> Option<Draft> {
         }
         panel
     });
-    Some(Draft {
-        prefix: "bridge",
-        name: String::new(),
-        topic: Topic::People,
-        words: words(bridge, condition),
-        drawn: chart(&panels, DEPTH),
-    })
+    let text = Text { bridge, condition };
+    let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
+    Some(Draft::chart("bridge", Topic::People, words, &panels, DEPTH))
 }
 
 fn key() -> Vec<Line> {
@@ -105,23 +102,9 @@ fn short_name(fit: &ConventionFit) -> String {
     format!("{statistic}, {channel}")
 }
 
-fn words(bridge: &Bridge, condition: &ConditionBridge) -> Words {
-    Words {
-        title: "Rates predicted from the forces, and the answers to FEM playback".into(),
-        caption: format!(
-            "The paper has no such figure: it computed forces and counted answers, but did not predict the one from the \
-             other. Each line takes one part of the force at probe depth {} mm as what the subjects used, with a noise level \
-             for each of them (and one share of lapses, where that fits better); the dots are the answers of Table 1. \
-             Lines that are rejected over this sweep are dashed; where lines lie on one another, the answers cannot tell them apart. The table below has the numbers, for the other experiments too.",
-            millimetres(bridge.probe_depth)
-        ),
-        alt: format!(
-            "Two line charts of predicted right answers against the depth of the inclusion, one line for each convention, \
-             with the observed shares as dots. Not rejected: {}.",
-            match condition.verdict.compatible.as_slice() {
-                [] => "none".into(),
-                names => names.join("; "),
-            }
-        ),
-    }
+#[derive(Template)]
+#[template(path = "report/words/bridge.txt", blocks = ["title", "caption", "alt"])]
+struct Text<'a> {
+    bridge: &'a Bridge,
+    condition: &'a ConditionBridge,
 }

@@ -6,12 +6,12 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::names::{NAME_INDENT, draw_key, draw_names, key_height, names, plot_height};
-use super::style::{GRID, INK, UNIT, WIDTH, stroke, text, text_width};
-use crate::report::text::{printable, trimmed};
+use super::names::{draw_key, draw_names, key_height, plot_height, right_margin};
+use super::style::{GRID, INK, UNIT, WIDTH, stroke, text};
+use crate::report::text::{extremes, printable, trimmed};
 
-/// Why a drawing failed, in the words of the drawing library.
-pub type DrawingResult<T> = Result<T, String>;
+/// What drawing gives, or what the drawing library refused.
+pub type DrawingResult<T> = Result<T, Box<dyn std::error::Error>>;
 /// Where a chart is drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// A chart with plain axes.
@@ -36,6 +36,8 @@ pub struct Line {
     pub colour: RGBColor,
     /// Whether it is drawn in dashes.
     pub is_dashed: bool,
+    /// Whether it is the outline of an area that is filled with its colour.
+    pub is_area: bool,
     /// Its width, pixels; 0 for dots alone.
     pub width: f64,
     /// Radius of the dot on each point, pixels; 0 for none.
@@ -51,9 +53,18 @@ impl Line {
             name: String::new(),
             colour,
             is_dashed: false,
+            is_area: false,
             width: 2.0,
             dot: 0,
             points,
+        }
+    }
+
+    /// An area with a thin outline.
+    pub fn area(colour: RGBColor, points: Vec<(f64, f64)>) -> Line {
+        Line {
+            is_area: true,
+            ..Line::new(colour, points)
         }
     }
 
@@ -99,11 +110,18 @@ pub struct Mark {
     pub side: HPos,
     /// Shift of the words from the place, pixels, right and down.
     pub shift: (i32, i32),
-    /// Colour of the dot.
-    pub colour: RGBColor,
+}
+
+/// Many small areas of one colour, each given by its corners in data coordinates.
+pub struct Cells {
+    /// What they are filled with.
+    pub fill: RGBColor,
+    /// The corners of each.
+    pub areas: Vec<Vec<(f64, f64)>>,
 }
 
 /// One plot.
+#[derive(Default)]
 pub struct Panel {
     /// What the y axis shows, with its unit.
     pub heading: String,
@@ -113,131 +131,157 @@ pub struct Panel {
     pub y: [f64; 2],
     /// Where the x axis has numbers; empty for round numbers.
     pub ticks: Vec<f64>,
+    /// Whether it is a drawing to scale, and no chart: it has no grid.
+    pub is_to_scale: bool,
     /// Height of the plot, pixels.
     pub height: i32,
     /// What the kinds of lines mean: each is shown by a sample above the plot with its name.
     pub key: Vec<Line>,
+    /// Small areas under everything.
+    pub cells: Vec<Cells>,
     /// Curves, the later over the earlier.
     pub lines: Vec<Line>,
     /// Words and dots.
     pub marks: Vec<Mark>,
 }
 
-/// Draws panels below one another over one x axis, and gives the body of an SVG document that has the size returned.
-pub fn chart(panels: &[Panel], x_name: &str) -> DrawingResult<(String, [i32; 2])> {
-    let each = |panel: &Panel| HEADING + key_height(panel) + plot_height(panel) + NUMBERS;
-    let height = panels.iter().map(each).sum::<i32>() + FOOTING;
-    let widest = panels
-        .iter()
-        .flat_map(names)
-        .map(|line| NAME_INDENT + text_width(&line.name) + 8)
-        .max();
-    let right = widest.unwrap_or(0).clamp(24, WIDTH / 3);
-    let svg = draw(height, |area| {
-        let mut top = 0;
-        for panel in panels {
-            draw_panel(area, panel, top, right)?;
-            top += each(panel);
+impl Panel {
+    /// A chart of curves.
+    pub fn new(
+        heading: impl Into<String>,
+        [x, y]: [[f64; 2]; 2],
+        height: i32,
+        lines: Vec<Line>,
+    ) -> Panel {
+        Panel {
+            heading: heading.into(),
+            x,
+            y,
+            height,
+            lines,
+            ..Panel::default()
         }
-        let middle = LEFT + (WIDTH - LEFT - right) / 2;
-        write(
-            area,
-            x_name,
-            [middle, height - FOOTING / 2],
-            INK,
-            HPos::Center,
-        )
-    })?;
-    Ok((svg, [WIDTH, height]))
+    }
+
+    /// A drawing with equal scales on both axes that holds all of its areas and has some room above them. What is very
+    /// flat or very tall gets more room around it.
+    pub fn to_scale(cells: Vec<Cells>, lines: Vec<Line>) -> Panel {
+        let corners = || {
+            let cells = cells.iter().flat_map(|of| of.areas.iter().flatten());
+            cells.chain(
+                lines
+                    .iter()
+                    .filter(|line| line.is_area)
+                    .flat_map(|line| &line.points),
+            )
+        };
+        let mut x = extremes(corners().map(|corner| corner.0)).unwrap_or([-1.0, 1.0]);
+        let mut y = extremes(corners().map(|corner| corner.1)).unwrap_or([-1.0, 1.0]);
+        y[1] += 0.02 * (y[1] - y[0]);
+        let width = f64::from(WIDTH - LEFT - right_margin(&lines));
+        let lack = |wanted: f64, [from, to]: [f64; 2]| (wanted - (to - from)).max(0.0);
+        y[1] += lack(60.0 / width * (x[1] - x[0]), y);
+        let aside = 0.5 * lack(width / 600.0 * (y[1] - y[0]), x);
+        x = [x[0] - aside, x[1] + aside];
+        let scale = width / (x[1] - x[0]);
+        let height = (scale * (y[1] - y[0])).ceil();
+        // Whole pixels hold a little more than was asked for.
+        y[1] = y[0] + height / scale;
+        Panel {
+            heading: "Height y (mm)".into(),
+            x,
+            y,
+            is_to_scale: true,
+            height: height as i32,
+            cells,
+            lines,
+            ..Panel::default()
+        }
+    }
 }
 
-/// Runs `paint` on a white figure `height` pixels high, and gives the SVG document that the library wrote.
-pub fn draw(
-    height: i32,
-    paint: impl FnOnce(&Area<'_>) -> DrawingResult<()>,
-) -> DrawingResult<String> {
-    let mut svg = String::new();
+/// Draws panels below one another over one x axis, and gives an SVG document with its height, pixels.
+pub fn chart(panels: &[Panel], x_name: &str) -> DrawingResult<(String, i32)> {
+    let each = |panel: &Panel| HEADING + key_height(panel) + plot_height(panel) + NUMBERS;
+    let height = panels.iter().map(each).sum::<i32>() + FOOTING;
+    let margins = panels.iter().map(|panel| right_margin(&panel.lines));
+    let right = margins.max().unwrap_or(0);
+    let (mut svg, mut paths) = (String::new(), String::new());
     let size = ((WIDTH * UNIT) as u32, (height * UNIT) as u32);
     {
         let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-        area.fill(&WHITE).map_err(say)?;
-        paint(&area)?;
-        area.present().map_err(say)?;
+        area.fill(&WHITE)?;
+        let mut top = 0;
+        for panel in panels {
+            paths += &draw_panel(&area, panel, top, right)?;
+            top += each(panel);
+        }
+        let middle = LEFT + (WIDTH - LEFT - right) / 2;
+        let at = [middle, height - FOOTING / 2];
+        write(&area, x_name, at, HPos::Center)?;
+        area.present()?;
     }
-    Ok(svg)
-}
-
-/// The plain words of a drawing error.
-pub fn say(error: impl std::fmt::Display) -> String {
-    error.to_string()
+    // The paths stand directly over the white ground, which is the first element that the library closes.
+    Ok((svg.replacen("/>\n", &format!("/>\n{paths}"), 1), height))
 }
 
 /// Writes `words` with its `side` at a place in pixels.
-pub fn write(
-    area: &Area<'_>,
-    words: &str,
-    at: [i32; 2],
-    colour: RGBColor,
-    side: HPos,
-) -> DrawingResult<()> {
+pub fn write(area: &Area<'_>, words: &str, at: [i32; 2], side: HPos) -> DrawingResult<()> {
     let at = (at[0] * UNIT, at[1] * UNIT);
-    area.draw(&Text::new(printable(words), at, text(colour, side)))
-        .map_err(say)
+    Ok(area.draw(&Text::new(printable(words), at, text(INK, side)))?)
 }
 
-fn draw_panel(area: &Area<'_>, panel: &Panel, top: i32, right: i32) -> DrawingResult<()> {
-    write(area, &panel.heading, [8, top + 22], INK, HPos::Left)?;
+/// Draws a panel but for its cells, and gives those as paths.
+fn draw_panel(area: &Area<'_>, panel: &Panel, top: i32, right: i32) -> DrawingResult<String> {
+    write(area, &panel.heading, [8, top + 22], HPos::Left)?;
     draw_key(area, panel, top + HEADING - 4)?;
     let top = top + HEADING + key_height(panel);
-    let size = [WIDTH - LEFT - right, plot_height(panel)];
-    let mut chart = axes(
-        area,
-        [LEFT, top],
-        size,
-        panel.x,
-        panel.y,
-        Some(&panel.ticks),
-    )?;
+    let mut chart = axes(area, panel, top, right)?;
     for line in &panel.lines {
         draw_line(&mut chart, line)?;
     }
     for mark in &panel.marks {
         draw_mark(area, &chart, mark)?;
     }
-    draw_names(area, &chart, panel, top, right)
+    draw_names(area, &chart, panel, top, right)?;
+    Ok(panel.cells.iter().map(|of| path(&chart, of)).collect())
 }
 
-/// Axes with numbers around a plot at `corner` of `size` (pixels), with a grid if there are `ticks`: places of the
-/// numbers of the x axis, or none for round numbers.
-pub fn axes<'a>(
-    area: &Area<'a>,
-    corner: [i32; 2],
-    size: [i32; 2],
-    x: [f64; 2],
-    y: [f64; 2],
-    ticks: Option<&[f64]>,
-) -> DrawingResult<Context<'a>> {
+/// All cells of a colour as one path, which keeps the file small: the library would write one tag for each.
+fn path(chart: &Context<'_>, Cells { fill, areas }: &Cells) -> String {
+    let outline = |corners: &Vec<(f64, f64)>| {
+        let places = corners.iter().map(|corner| chart.backend_coord(corner));
+        let places: Vec<_> = places.map(|(x, y)| format!("{x} {y}")).collect();
+        format!("M{}Z", places.join("L"))
+    };
+    let outlines: String = areas.iter().map(outline).collect();
+    let RGBColor(r, g, b) = fill;
+    format!(
+        "<path d=\"{outlines}\" fill=\"#{r:02X}{g:02X}{b:02X}\" stroke=\"#5B6470\" stroke-width=\"4\" stroke-linejoin=\"round\"/>\n"
+    )
+}
+
+/// Axes with numbers around a plot that begins at `top` and ends `right` before the edge (pixels).
+fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResult<Context<'a>> {
     let place = |pixels: i32| pixels * UNIT;
+    let (x, y, height) = (panel.x, panel.y, plot_height(panel));
     let sub = area.clone().shrink(
-        (place(corner[0] - LEFT), place(corner[1])),
-        (place(size[0] + LEFT), place(size[1] + NUMBERS)),
+        (0, place(top)),
+        (place(WIDTH - right), place(height + NUMBERS)),
     );
     let mut chart = ChartBuilder::on(&sub)
         .set_label_area_size(LabelAreaPosition::Left, place(LEFT))
         .set_label_area_size(LabelAreaPosition::Bottom, place(NUMBERS))
-        .build_cartesian_2d(x[0]..x[1], y[0]..y[1])
-        .map_err(say)?;
-    let own_ticks = ticks.filter(|ticks| !ticks.is_empty());
-    let grid = if ticks.is_some() {
-        stroke(GRID, 1.0)
-    } else {
-        TRANSPARENT.stroke_width(0)
+        .build_cartesian_2d(x[0]..x[1], y[0]..y[1])?;
+    let grid = match panel.is_to_scale {
+        true => TRANSPARENT.stroke_width(0),
+        false => stroke(GRID, 1.0),
     };
     let number = |value: &f64| trimmed(*value, 6);
     chart
         .configure_mesh()
-        .x_labels(if own_ticks.is_some() { 0 } else { 6 })
-        .y_labels((size[1] / 40).max(2) as usize)
+        .x_labels(if panel.ticks.is_empty() { 6 } else { 0 })
+        .y_labels((height / 40).max(2) as usize)
         .x_label_formatter(&number)
         .y_label_formatter(&number)
         .label_style(text(INK, HPos::Center))
@@ -245,20 +289,15 @@ pub fn axes<'a>(
         .bold_line_style(grid)
         .light_line_style(TRANSPARENT)
         .set_all_tick_mark_size(place(5))
-        .draw()
-        .map_err(say)?;
-    for &tick in own_ticks.unwrap_or_default() {
-        let (foot, top) = (
-            chart.backend_coord(&(tick, y[0])),
-            chart.backend_coord(&(tick, y[1])),
-        );
-        let line = PathElement::new(vec![top, foot], grid);
-        area.draw(&line).map_err(say)?;
+        .draw()?;
+    for &tick in &panel.ticks {
+        let foot = chart.backend_coord(&(tick, y[0]));
+        let top = chart.backend_coord(&(tick, y[1]));
+        area.draw(&PathElement::new(vec![top, foot], grid))?;
         let end = (foot.0, foot.1 + place(5));
-        let mark = PathElement::new(vec![foot, end], stroke(INK, 1.0));
-        area.draw(&mark).map_err(say)?;
+        area.draw(&PathElement::new(vec![foot, end], stroke(INK, 1.0)))?;
         let at = [foot.0 / UNIT, foot.1 / UNIT + 15];
-        write(area, &number(&tick), at, INK, HPos::Center)?;
+        write(area, &number(&tick), at, HPos::Center)?;
     }
     Ok(chart)
 }
@@ -266,23 +305,21 @@ pub fn axes<'a>(
 fn draw_line(chart: &mut Context<'_>, line: &Line) -> DrawingResult<()> {
     let style = stroke(line.colour, line.width);
     let points = line.points.iter().copied();
-    if line.dot > 0 {
-        let filled = ShapeStyle::from(&line.colour).filled();
-        let dots = points
-            .clone()
-            .map(|at| Circle::new(at, line.dot * UNIT, filled));
-        chart.draw_series(dots).map_err(say)?;
-    }
-    if line.width <= 0.0 {
+    if line.is_area {
+        let outline = points.clone().chain(points.clone().take(1)).collect();
+        chart.draw_series([Polygon::new(line.points.clone(), line.colour.filled())])?;
+        chart.draw_series([PathElement::new::<Vec<_>, _>(outline, stroke(INK, 1.2))])?;
         return Ok(());
     }
-    if line.is_dashed {
-        let series = DashedLineSeries::new(points, 6 * UNIT, 4 * UNIT, style);
-        chart.draw_series(series).map_err(say)?;
-    } else {
-        chart
-            .draw_series(LineSeries::new(points, style))
-            .map_err(say)?;
+    if line.dot > 0 {
+        let dots = points.clone();
+        let filled = line.colour.filled();
+        chart.draw_series(dots.map(|at| Circle::new(at, line.dot * UNIT, filled)))?;
+    }
+    if line.width > 0.0 && line.is_dashed {
+        chart.draw_series(DashedLineSeries::new(points, 6 * UNIT, 4 * UNIT, style))?;
+    } else if line.width > 0.0 {
+        chart.draw_series(LineSeries::new(points, style))?;
     }
     Ok(())
 }
@@ -290,18 +327,15 @@ fn draw_line(chart: &mut Context<'_>, line: &Line) -> DrawingResult<()> {
 fn draw_mark(area: &Area<'_>, chart: &Context<'_>, mark: &Mark) -> DrawingResult<()> {
     let (x, y) = chart.backend_coord(&mark.at);
     if mark.has_dot {
-        let dot = Circle::new((x, y), 5 * UNIT, ShapeStyle::from(&mark.colour).filled());
-        area.draw(&dot).map_err(say)?;
+        area.draw(&Circle::new((x, y), 5 * UNIT, INK.filled()))?;
     }
     let at = [x / UNIT + mark.shift.0, y / UNIT + mark.shift.1];
-    write(area, &mark.words, at, INK, mark.side)
+    write(area, &mark.words, at, mark.side)
 }
 
 /// The least range of round numbers that holds all `values`, and 0, and is not empty.
 pub fn round_range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let (least, greatest) = values.fold((0.0, 0.0), |(least, greatest): (f64, f64), value| {
-        (least.min(value), greatest.max(value))
-    });
+    let [least, greatest] = extremes(values.chain([0.0])).unwrap_or_default();
     let span = greatest - least;
     // Less than a piconewton is rounding, and an overflow has no scale.
     if span < 1e-12 || !span.is_finite() {

@@ -3,13 +3,13 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::chart::{Area, Context, DrawingResult, LEFT, Line, Panel, say, write};
+use super::chart::{Area, Context, DrawingResult, LEFT, Line, Panel, write};
 use super::style::{INK, UNIT, WIDTH, stroke, text_width};
 
 /// Least distance between two names at the right, pixels.
 const NAME_DISTANCE: i32 = 18;
 /// Distance from a plot to the names at its right, pixels.
-pub const NAME_INDENT: i32 = 20;
+const NAME_INDENT: i32 = 20;
 /// Most names beside one plot.
 const MOST_NAMES: usize = 40;
 /// Height of a row of the key, pixels.
@@ -17,14 +17,15 @@ const KEY_ROW: i32 = 22;
 /// Length of a sample in the key, pixels.
 const SAMPLE: i32 = 26;
 
-/// The names of a panel's lines that stand at the right, not more than fit.
-pub fn names(panel: &Panel) -> Vec<&Line> {
-    let named: Vec<_> = panel
-        .lines
-        .iter()
-        .filter(|line| !line.name.is_empty())
-        .collect();
-    let every = named.len().div_ceil(MOST_NAMES).max(1);
+/// The names of lines that stand at the right, not more than fit.
+fn names(panel: &Panel) -> Vec<&Line> {
+    let named = panel.lines.iter().filter(|line| !line.name.is_empty());
+    let named: Vec<_> = named.collect();
+    let most = match panel.is_to_scale {
+        true => (panel.height / NAME_DISTANCE - 1).max(1) as usize,
+        false => MOST_NAMES,
+    };
+    let every = named.len().div_ceil(most).max(1);
     named.into_iter().step_by(every).collect()
 }
 
@@ -33,6 +34,13 @@ pub fn plot_height(panel: &Panel) -> i32 {
     panel
         .height
         .max(NAME_DISTANCE * (names(panel).len() as i32 + 1))
+}
+
+/// Pixels right of a plot for the names of these lines.
+pub fn right_margin(lines: &[Line]) -> i32 {
+    let named = lines.iter().filter(|line| !line.name.is_empty());
+    let widths = named.map(|line| NAME_INDENT + text_width(&line.name) + 8);
+    widths.max().unwrap_or(0).clamp(24, WIDTH / 3)
 }
 
 /// Where each entry of the key begins: pixels from the left, and its row.
@@ -61,28 +69,26 @@ pub fn draw_key(area: &Area<'_>, panel: &Panel, top: i32) -> DrawingResult<()> {
     for (entry, (left, row)) in panel.key.iter().zip(key_places(panel)) {
         let middle = top + row * KEY_ROW + KEY_ROW / 2 - 4;
         let at = |x: i32| ((left + x) * UNIT, middle * UNIT);
-        let dashes: &[[i32; 2]] = if entry.is_dashed {
-            &[[0, 6], [10, 16], [20, SAMPLE]]
-        } else {
-            &[[0, SAMPLE]]
-        };
-        for &[from, to] in dashes.iter().filter(|_| entry.width > 0.0) {
-            let sample =
-                PathElement::new(vec![at(from), at(to)], stroke(entry.colour, entry.width));
-            area.draw(&sample).map_err(say)?;
+        let (ends, style) = (vec![at(0), at(SAMPLE)], stroke(entry.colour, entry.width));
+        if entry.is_area {
+            let corners = [(0, -7), (SAMPLE, 7)].map(|(x, y)| (at(x).0, at(x).1 + y * UNIT));
+            area.draw(&Rectangle::new(corners, entry.colour.filled()))?;
+            area.draw(&Rectangle::new(corners, stroke(INK, 1.0)))?;
+        } else if entry.is_dashed {
+            area.draw(&plotters::element::DashedPathElement::new(
+                ends,
+                6 * UNIT,
+                4 * UNIT,
+                style,
+            ))?;
+        } else if entry.width > 0.0 {
+            area.draw(&PathElement::new(ends, style))?;
         }
         if entry.dot > 0 {
-            let filled = ShapeStyle::from(&entry.colour).filled();
-            let dot = Circle::new(at(SAMPLE / 2), entry.dot * UNIT, filled);
-            area.draw(&dot).map_err(say)?;
+            let filled = entry.colour.filled();
+            area.draw(&Circle::new(at(SAMPLE / 2), entry.dot * UNIT, filled))?;
         }
-        write(
-            area,
-            &entry.name,
-            [left + SAMPLE + 8, middle],
-            INK,
-            HPos::Left,
-        )?;
+        write(area, &entry.name, [left + SAMPLE + 8, middle], HPos::Left)?;
     }
     Ok(())
 }
@@ -107,47 +113,30 @@ pub fn draw_names(
     for ((line, end), height) in ends.into_iter().zip(spread) {
         let elbow = (edge + (NAME_INDENT - 4) * UNIT, height);
         let leader = PathElement::new(vec![end, elbow], stroke(line.colour, 1.4));
-        area.draw(&leader).map_err(say)?;
+        area.draw(&leader)?;
         let at = [(WIDTH - right) + NAME_INDENT, height / UNIT];
         // The leader carries the colour: pale words would be hard to read.
-        write(area, &line.name, at, INK, HPos::Left)?;
+        write(area, &line.name, at, HPos::Left)?;
     }
     Ok(())
 }
 
-/// Moves `heights` apart to at least `distance`, keeping their order and, where there is room, their mean, within
-/// `range`.
-pub fn spread(heights: &[i32], distance: i32, range: [i32; 2]) -> Vec<i32> {
+/// Moves `heights` apart to at least `distance`, keeping their order, within `range` as far as there is room: halfway between
+/// where they come to stand if the lower ones give way and if the upper ones do.
+fn spread(heights: &[i32], distance: i32, range: [i32; 2]) -> Vec<i32> {
     let mut order: Vec<_> = (0..heights.len()).collect();
     order.sort_by_key(|&k| heights[k]);
-    // Groups of names that touch, each with its members' wanted places less their place in the group.
-    let mut groups: Vec<(i64, usize)> = Vec::new();
-    let top_of = |&(sum, count): &(i64, usize)| {
-        let span = distance * (count as i32 - 1);
-        let free = (sum / count as i64) as i32;
-        free.min(range[1] - span).max(range[0])
-    };
-    for &k in &order {
-        groups.push((i64::from(heights[k]), 1));
-        while let [.., above, below] = groups[..] {
-            let shift = i64::from(distance) * above.1 as i64;
-            if i64::from(top_of(&above)) + shift <= i64::from(top_of(&below)) {
-                break;
-            }
-            groups.truncate(groups.len() - 2);
-            groups.push((
-                above.0 + below.0 - shift * below.1 as i64,
-                above.1 + below.1,
-            ));
-        }
-    }
-    let places = groups.iter().flat_map(|group| {
-        let top = top_of(group);
-        (0..group.1 as i32).map(move |k| top + k * distance)
-    });
+    // Less the place in a row without gaps, in which a name is to stand no higher than the one above it.
+    let offset = |row: usize| distance * row as i32;
+    let wanted = order.iter().enumerate();
+    let wanted: Vec<_> = wanted.map(|(row, &k)| heights[k] - offset(row)).collect();
+    let bottom = (range[1] - offset(heights.len().saturating_sub(1))).max(range[0]);
     let mut spread = vec![0; heights.len()];
-    for (&k, place) in order.iter().zip(places) {
-        spread[k] = place;
+    for (row, &k) in order.iter().enumerate() {
+        let above = wanted[..=row].iter().max();
+        let below = wanted[row..].iter().min();
+        let middle = above.zip(below).map_or(0, |(a, b)| i32::midpoint(*a, *b));
+        spread[k] = middle.clamp(range[0], bottom) + offset(row);
     }
     spread
 }

@@ -1,11 +1,17 @@
 //! Figures 10 to 13: the right answers of the paper's subjects.
 
-use super::chart::{Line, Panel, chart};
+use askama::Template;
+use plotters::style::RGBColor;
+
+use super::chart::{Line, Panel};
 use super::style::{GREEN, GREY, INK, PALETTE, VERMILION};
 use super::{Draft, Words};
-use crate::psychophysics::{Bounds, ConditionAnalysis, InclusionAnalysis};
-use crate::report::text::{millimetres, percent};
-use crate::report::{Findings, Topic, normal_approximation};
+use crate::psychophysics::{
+    Analysis, Bounds, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis,
+};
+use crate::report::people::width_ratios;
+use crate::report::text::extremes;
+use crate::report::{Findings, Topic, normal_approximation, text};
 
 /// What the x axis of all charts over the inclusions shows.
 pub const DEPTH: &str = "Depth of the inclusion (mm)";
@@ -14,25 +20,17 @@ pub const SHARE: &str = "Right answers (%)";
 
 /// A chart of shares in per cent against the depth of the inclusion (mm), with the line of pure chance.
 pub fn share_panel(heading: &str, depths: &[f64], height: i32, mut lines: Vec<Line>) -> Panel {
-    let least = depths.iter().copied().fold(f64::INFINITY, f64::min);
-    let greatest = depths.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let [least, greatest] = extremes(depths.iter().copied()).unwrap_or_default();
     let x = [least - 0.8, greatest + 0.8];
-    lines.insert(
-        0,
-        Line::new(GREY, vec![(x[0], 50.0), (x[1], 50.0)]).dashed(),
-    );
+    let chance = vec![(x[0], 50.0), (x[1], 50.0)];
+    lines.insert(0, Line::new(GREY, chance).dashed());
     let shares = lines.iter().flat_map(|line| &line.points);
     // Room below pure chance, and the same scale for all experiments of the paper.
     let lowest = shares.map(|point| point.1).fold(40.0, f64::min);
+    let y = [(lowest / 10.0).floor() * 10.0, 100.0];
     Panel {
-        heading: heading.into(),
-        x,
-        y: [(lowest / 10.0).floor() * 10.0, 100.0],
         ticks: depths.into(),
-        height,
-        key: Vec::new(),
-        lines,
-        marks: Vec::new(),
+        ..Panel::new(heading, [x, y], height, lines)
     }
 }
 
@@ -43,7 +41,7 @@ pub fn points(depths: &[f64], shares: impl IntoIterator<Item = f64>) -> Vec<(f64
 }
 
 /// An upright bar at `x` from end to end of an interval of shares.
-pub fn bar(x: f64, bounds: Bounds, colour: plotters::style::RGBColor, width: f64) -> Line {
+pub fn bar(x: f64, bounds: Bounds, colour: RGBColor, width: f64) -> Line {
     let ends = vec![(x, 100.0 * bounds.lower), (x, 100.0 * bounds.upper)];
     Line::new(colour, ends).wide(width)
 }
@@ -57,15 +55,12 @@ fn depths(condition: &ConditionAnalysis) -> Vec<f64> {
 ///
 /// Implements: REP-037, REP-038.
 pub fn drafts(found: &Findings) -> Vec<Draft> {
-    let conditions = &found.people.conditions;
     let files = ["figure-10", "figure-11", "figure-12"];
-    let mut drafts: Vec<_> = conditions
-        .iter()
-        .zip(files)
-        .zip(10..)
+    let each = found.people.conditions.iter().zip(files).zip(10..);
+    let mut drafts: Vec<_> = each
         .map(|((condition, file), number)| subjects(condition, file, number))
         .collect();
-    drafts.push(comparison(conditions));
+    drafts.push(comparison(&found.people));
     drafts
 }
 
@@ -73,139 +68,74 @@ pub fn drafts(found: &Findings) -> Vec<Draft> {
 fn subjects(condition: &ConditionAnalysis, prefix: &'static str, number: u32) -> Draft {
     let depths = depths(condition);
     let colours = &PALETTE[..6];
-    let subject = |(k, subject): (usize, &crate::psychophysics::SubjectAnalysis)| {
-        let shares = subject.rates.iter().map(|rate| rate.rate);
-        let line = Line::new(colours[k % colours.len()], points(&depths, shares));
+    let of_subject = |colour, points| Line::new(colour, points).wide(1.1).dotted(3);
+    let of_mean = |points| Line::new(INK, points).wide(3.2).dotted(5).named("mean");
+    let subject = |(k, subject): (usize, &SubjectAnalysis)| {
+        let shares = points(&depths, subject.rates.iter().map(|rate| rate.rate));
+        let line = of_subject(colours[k % colours.len()], shares);
         Line {
             is_dashed: (k / colours.len()) % 2 == 1,
-            ..line
-                .wide(1.1)
-                .dotted(3)
-                .named(format!("subject {}", subject.name))
+            ..line.named(format!("subject {}", subject.name))
         }
     };
     let mut lines: Vec<_> = condition.subjects.iter().enumerate().map(subject).collect();
-    let pooled = condition
-        .inclusions
-        .iter()
-        .map(|inclusion| inclusion.pooled.rate);
-    let mean = Line::new(INK, points(&depths, pooled)).wide(3.2).dotted(5);
-    lines.push(mean.named("mean"));
+    let pooled = condition.inclusions.iter().map(|of| of.pooled.rate);
+    lines.push(of_mean(points(&depths, pooled)));
     let mut panel = share_panel(SHARE, &depths, 300, lines);
     panel.key = vec![
-        Line::new(INK, Vec::new()).wide(3.2).dotted(5).named("mean"),
-        Line::new(colours[0], Vec::new())
-            .wide(1.1)
-            .dotted(3)
-            .named("one subject"),
+        of_mean(Vec::new()),
+        of_subject(colours[0], Vec::new()).named("one subject"),
         Line::new(GREY, Vec::new()).dashed().named("chance"),
     ];
-    let each: Vec<_> = condition
-        .inclusions
-        .iter()
-        .map(|of| {
-            format!(
-                "{} at {} mm",
-                percent(of.pooled.rate),
-                millimetres(of.depth)
-            )
-        })
-        .collect();
-    let trials = condition
-        .inclusions
-        .first()
-        .map_or(0, |of| of.pooled.trials);
-    let pairs = trials / (condition.subjects.len() as u64).max(1);
-    Draft {
-        prefix,
-        name: String::new(),
-        topic: Topic::People,
-        words: Words {
-            title: format!("Figure {number}. Detection rates, {}", condition.name),
-            caption: format!(
-                "Right answers of each of the {} subjects in {pairs} pairs at each depth, from the paper's Table 1, and \
-                 their mean. The paper's Figure {number} comes from the same counts, so that only the drawing can differ; \
-                 here each subject is named. Where counts are equal, one line covers the other: Table 1 below has all.",
-                condition.subjects.len()
-            ),
-            alt: format!(
-                "Line chart of right answers in per cent against the depth of the inclusion, a thin line for each \
-                 subject and a thick one for their mean: {}.",
-                each.join(", ")
-            ),
-        },
-        drawn: chart(&[panel], DEPTH),
-    }
+    let text = SubjectText {
+        number,
+        of: condition,
+    };
+    let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
+    Draft::chart(prefix, Topic::People, words, &[panel], DEPTH)
 }
 
 /// The colours of the conditions.
-pub const CONDITIONS: [plotters::style::RGBColor; 3] = [PALETTE[0], VERMILION, GREEN];
+const CONDITIONS: [RGBColor; 3] = [PALETTE[0], VERMILION, GREEN];
 
 /// Figure 13: the conditions side by side, with three kinds of intervals.
-fn comparison(conditions: &[ConditionAnalysis]) -> Draft {
-    let mut lines = Vec::new();
-    let mut key = Vec::new();
+fn comparison(people: &Analysis) -> Draft {
+    let conditions = &people.conditions;
+    let (mut lines, mut key) = (Vec::new(), Vec::new());
     for (k, (condition, colour)) in conditions.iter().zip(CONDITIONS).enumerate() {
         let aside = 0.54 * (k as f64 - 0.5 * (conditions.len() as f64 - 1.0));
         for inclusion in &condition.inclusions {
-            let x = 1e3 * inclusion.depth + aside;
-            lines.extend(bars(inclusion, x, colour));
+            lines.extend(bars(inclusion, 1e3 * inclusion.depth + aside, colour));
         }
-        key.push(
-            Line::new(colour, Vec::new())
-                .wide(0.0)
-                .dotted(5)
-                .named(condition.name.clone()),
-        );
+        let sample = Line::new(colour, Vec::new()).wide(0.0).dotted(5);
+        key.push(sample.named(condition.name.clone()));
     }
+    let sample = |width, name: &str| Line::new(INK, Vec::new()).wide(width).named(name);
     key.extend([
-        Line::new(INK, Vec::new())
-            .wide(1.2)
-            .named("normal approximation"),
-        Line::new(INK, Vec::new())
-            .wide(2.6)
-            .dotted(4)
-            .named("exact"),
-        Line::new(INK, Vec::new()).wide(6.0).named("by subject"),
+        sample(1.2, "normal approximation"),
+        sample(2.6, "exact").dotted(4),
+        sample(6.0, "by subject"),
     ]);
     let depths = conditions.first().map_or(Vec::new(), depths);
     let mut panel = share_panel(SHARE, &depths, 330, lines);
     panel.key = key;
-    Draft {
-        prefix: "figure-13",
-        name: String::new(),
-        topic: Topic::People,
-        words: Words {
-            title: "Figure 13. The three experiments with 95 % intervals".into(),
-            caption: format!(
-                "Share of right answers, all subjects together, each with three 95 % intervals side by side: the normal \
-                 approximation p̂\u{a0}±\u{a0}1.96\u{a0}√(p̂(1\u{a0}−\u{a0}p̂)/n) over all n answers (thin), the exact interval of Clopper and Pearson \
-                 over the same answers (dot), and Student's interval with the subjects as the sample (thick). The paper's \
-                 Figure 13 has one interval, from a table of Natrella (1963) whose formula it does not print; it counts all \
-                 answers as independent, as the first two do. But subjects differ more than chance allows, and the next \
-                 subject would differ again: the third interval, which lets them, is {} as wide as the exact one.",
-                width_ratios(conditions)
-            ),
-            alt: comparison_alt(conditions),
-        },
-        drawn: chart(&[panel], DEPTH),
-    }
+    let text = ComparisonText {
+        conditions,
+        width_ratios: width_ratios(people),
+    };
+    let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
+    Draft::chart("figure-13", Topic::People, words, &[panel], DEPTH)
 }
 
 /// The three intervals of one condition at one inclusion, about `x`.
-fn bars(inclusion: &InclusionAnalysis, x: f64, colour: plotters::style::RGBColor) -> Vec<Line> {
+fn bars(inclusion: &InclusionAnalysis, x: f64, colour: RGBColor) -> Vec<Line> {
     let pooled = &inclusion.pooled;
+    let normal = normal_approximation(pooled.rate, pooled.trials);
+    let share = Line::new(colour, vec![(x, 100.0 * pooled.rate)]);
     let mut bars = vec![
-        bar(
-            x - 0.14,
-            normal_approximation(pooled.rate, pooled.trials),
-            colour,
-            1.2,
-        ),
+        bar(x - 0.14, normal, colour, 1.2),
         bar(x, pooled.clopper_pearson, colour, 2.6),
-        Line::new(colour, vec![(x, 100.0 * pooled.rate)])
-            .wide(0.0)
-            .dotted(4),
+        share.wide(0.0).dotted(4),
     ];
     if let Some(clustered) = &inclusion.clustered {
         bars.push(bar(x + 0.15, clustered.bounds, colour, 6.0));
@@ -213,31 +143,24 @@ fn bars(inclusion: &InclusionAnalysis, x: f64, colour: plotters::style::RGBColor
     bars
 }
 
-/// How much wider the clustered intervals are: "1.1 to 2.6 times".
-fn width_ratios(conditions: &[ConditionAnalysis]) -> String {
-    let inclusions = conditions
-        .iter()
-        .flat_map(|condition| &condition.inclusions);
-    let ratios = inclusions.filter_map(|inclusion| Some(inclusion.clustered.as_ref()?.width_ratio));
-    let range = ratios.fold([f64::INFINITY, 0.0_f64], |[least, most], ratio| {
-        [least.min(ratio), most.max(ratio)]
-    });
-    format!("{:.1} to {:.1} times", range[0], range[1])
+#[derive(Template)]
+#[template(path = "report/words/subjects.txt", blocks = ["title", "caption", "alt"])]
+struct SubjectText<'a> {
+    number: u32,
+    of: &'a ConditionAnalysis,
 }
 
-fn comparison_alt(conditions: &[ConditionAnalysis]) -> String {
-    let of = |condition: &ConditionAnalysis| {
-        let shares: Vec<_> = condition
-            .inclusions
-            .iter()
-            .map(|inclusion| percent(inclusion.pooled.rate))
-            .collect();
-        format!("{}: {}", condition.name, shares.join(", "))
-    };
-    let all: Vec<_> = conditions.iter().map(of).collect();
-    format!(
-        "Chart of right answers in per cent at each depth of the inclusion, with intervals. From the shallowest to the \
-         deepest, {}.",
-        all.join("; ")
-    )
+impl SubjectText<'_> {
+    /// Pairs that each subject judged at each depth.
+    fn pairs(&self) -> u64 {
+        let trials = self.of.inclusions.first().map_or(0, |of| of.pooled.trials);
+        trials / (self.of.subjects.len() as u64).max(1)
+    }
+}
+
+#[derive(Template)]
+#[template(path = "report/words/figure-13.txt", blocks = ["title", "caption", "alt"])]
+struct ComparisonText<'a> {
+    conditions: &'a [ConditionAnalysis],
+    width_ratios: Option<[f64; 2]>,
 }

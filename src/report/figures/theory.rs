@@ -2,7 +2,7 @@
 
 use plotters::style::text_anchor::HPos;
 
-use super::chart::{Line, Mark, Panel, chart};
+use super::chart::{Line, Mark, Panel};
 use super::style::{BLUE, GREY, INK, PALETTE, VERMILION};
 use super::{Draft, Words};
 use crate::detect::{DetectError, gamma_from_two_afc, required_gamma, roc_miss, two_afc};
@@ -15,14 +15,13 @@ fn steps(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
     (0..=count).map(move |k| from + (to - from) * k as f64 / count as f64)
 }
 
-fn words(at: (f64, f64), words: String, side: HPos, shift: (i32, i32)) -> Mark {
+fn words(at: (f64, f64), words: impl Into<String>, side: HPos, shift: (i32, i32)) -> Mark {
     Mark {
         at,
         has_dot: false,
-        words,
+        words: words.into(),
         side,
         shift,
-        colour: INK,
     }
 }
 
@@ -31,24 +30,31 @@ fn words(at: (f64, f64), words: String, side: HPos, shift: (i32, i32)) -> Mark {
 /// # Errors
 /// Never for the γ that are drawn; the detector's refusal is passed on all the same.
 pub fn drafts() -> Result<[Draft; 3], DetectError> {
-    let draft = |prefix, words, panels: Vec<Panel>, x_name| Draft {
-        prefix,
-        name: String::new(),
-        topic: Topic::Detection,
-        words,
-        drawn: chart(&panels, x_name),
+    let draft = |prefix, words, panel: Panel, x_name| {
+        Draft::chart(
+            prefix,
+            Topic::Detection,
+            Words::read(words),
+            &[panel],
+            x_name,
+        )
     };
     Ok([
-        draft("figure-3", densities_words(), densities(), "Statistic θ"),
+        draft(
+            "figure-3",
+            include_str!("../../../templates/report/words/figure-3.txt"),
+            densities(),
+            "Statistic θ",
+        ),
         draft(
             "figure-4",
-            roc_words(),
+            include_str!("../../../templates/report/words/figure-4.txt"),
             roc()?,
             "False alarms Pr(e | H = 0)",
         ),
         draft(
             "figure-9",
-            pairs_words(),
+            include_str!("../../../templates/report/words/figure-9.txt"),
             pairs()?,
             "Signal-to-noise ratio γ",
         ),
@@ -56,184 +62,92 @@ pub fn drafts() -> Result<[Draft; 3], DetectError> {
 }
 
 /// Figure 3: the densities of Θ under both hypotheses.
-fn densities() -> Vec<Panel> {
+fn densities() -> Panel {
     let (mut lines, mut marks) = (Vec::new(), Vec::new());
     for (gamma, colour) in [1.0, 2.0, 3.0].into_iter().zip(PALETTE) {
         for sign in [-1.0, 1.0] {
             let mean = 0.5 * sign * gamma * gamma;
-            let density = |theta: f64| {
-                // Finite for every finite argument.
-                normal::density((theta - mean) / gamma).unwrap_or(0.0) / gamma
-            };
+            // Finite for every finite argument.
+            let density =
+                |theta: f64| normal::density((theta - mean) / gamma).unwrap_or(0.0) / gamma;
+            let points = steps(-14.0, 14.0, 140).map(|x| (x, density(x)));
             lines.push(Line {
                 is_dashed: sign < 0.0,
-                ..Line::new(
-                    colour,
-                    steps(-14.0, 14.0, 140).map(|x| (x, density(x))).collect(),
-                )
+                ..Line::new(colour, points.collect())
             });
             let side = if sign < 0.0 { HPos::Right } else { HPos::Left };
-            let name = format!("γ = {gamma}");
-            marks.push(words(
-                (mean, density(mean)),
-                name,
-                side,
-                (sign as i32 * 7, -9),
-            ));
+            let (at, shift) = ((mean, density(mean)), (sign as i32 * 7, -9));
+            marks.push(words(at, format!("γ = {gamma}"), side, shift));
         }
     }
-    let hypotheses = [
-        (-14.0, "H = 0 (dashed)", HPos::Left, 10),
-        (14.0, "H = 1 (solid)", HPos::Right, -10),
-    ];
-    for (x, name, side, shift) in hypotheses {
-        marks.push(words((x, 0.45), name.into(), side, (shift, 16)));
-    }
-    vec![Panel {
-        heading: "Probability density of the statistic Θ".into(),
-        x: [-14.0, 14.0],
-        y: [0.0, 0.45],
-        ticks: Vec::new(),
-        height: 270,
-        key: Vec::new(),
-        lines,
+    marks.push(words((-14.0, 0.45), "H = 0 (dashed)", HPos::Left, (10, 16)));
+    marks.push(words((14.0, 0.45), "H = 1 (solid)", HPos::Right, (-10, 16)));
+    let heading = "Probability density of the statistic Θ";
+    Panel {
         marks,
-    }]
+        ..Panel::new(heading, [[-14.0, 14.0], [0.0, 0.45]], 270, lines)
+    }
 }
 
 /// Figure 4: misses against false alarms.
 ///
 /// # Errors
 /// Never for these γ; the detector's refusal is passed on all the same.
-fn roc() -> Result<Vec<Panel>, DetectError> {
-    let needed = required_gamma(paper::MAX_FALSE_ALARM, paper::MAX_MISS)?;
-    let (mut lines, mut marks) = (Vec::new(), Vec::new());
-    for limit in [
-        vec![(0.0, paper::MAX_MISS), (1.0, paper::MAX_MISS)],
-        vec![(paper::MAX_FALSE_ALARM, 0.0), (paper::MAX_FALSE_ALARM, 1.0)],
-    ] {
-        lines.push(Line::new(GREY, limit).wide(1.0));
-    }
+fn roc() -> Result<Panel, DetectError> {
+    let (alarms, misses) = (paper::MAX_FALSE_ALARM, paper::MAX_MISS);
+    let needed = required_gamma(alarms, misses)?;
+    let mut lines = vec![
+        Line::new(GREY, vec![(0.0, misses), (1.0, misses)]).wide(1.0),
+        Line::new(GREY, vec![(alarms, 0.0), (alarms, 1.0)]).wide(1.0),
+    ];
+    let dot = |at, name: &str| Mark {
+        has_dot: true,
+        ..words(at, name, HPos::Left, (25, 0))
+    };
+    let mut marks = vec![dot((alarms, misses), ""), dot((0.64, 0.66), "5 % of each")];
     for (k, (gamma, colour)) in [1.0, 2.0, 3.0, needed].into_iter().zip(PALETTE).enumerate() {
         // Squares of even steps: the curve is steep at both ends.
         let rates = steps(0.0, 1.0, 100).map(|t| t * t * (3.0 - 2.0 * t));
         let points = rates.map(|rate| Ok((rate, roc_miss(gamma, rate)?)));
         lines.push(Line::new(colour, points.collect::<Result<_, _>>()?));
-        let name = if gamma == needed {
-            format!("γ = {}", fixed(gamma, 2))
-        } else {
-            format!("γ = {gamma}")
-        };
+        let digits = if gamma == needed { 2 } else { 0 };
         let height = 0.94 - 0.07 * k as f64;
         lines.push(Line::new(colour, vec![(0.60, height), (0.68, height)]));
+        let name = format!("γ = {}", fixed(gamma, digits));
         marks.push(words((0.70, height), name, HPos::Left, (0, 0)));
     }
-    marks.push(Mark {
-        at: (paper::MAX_FALSE_ALARM, paper::MAX_MISS),
-        has_dot: true,
-        words: String::new(),
-        side: HPos::Left,
-        shift: (0, 0),
-        colour: INK,
-    });
-    marks.push(Mark {
-        at: (0.64, 0.66),
-        has_dot: true,
-        words: "5 % of each".into(),
-        side: HPos::Left,
-        shift: (25, 0),
-        colour: INK,
-    });
-    Ok(vec![Panel {
-        heading: "Misses Pr(e | H = 1)".into(),
-        x: [0.0, 1.0],
-        y: [0.0, 1.0],
-        ticks: Vec::new(),
-        height: 400,
-        key: Vec::new(),
-        lines,
+    Ok(Panel {
         marks,
-    }])
+        ..Panel::new("Misses Pr(e | H = 1)", [[0.0, 1.0]; 2], 400, lines)
+    })
 }
 
 /// Figure 9: right answers in pairs, with the paper's reading of it.
 ///
 /// # Errors
 /// Never for these γ; the detector's refusal is passed on all the same.
-fn pairs() -> Result<Vec<Panel>, DetectError> {
+fn pairs() -> Result<Panel, DetectError> {
     let curve = steps(0.0, 5.0, 200).map(|gamma| Ok((gamma, two_afc(gamma)?)));
-    let gamma = gamma_from_two_afc(paper::ACCURACY_6_6)?;
-    let printed = paper::GAMMA_OF_ACCURACY;
+    let (counted, printed) = (paper::ACCURACY_6_6, paper::GAMMA_OF_ACCURACY);
+    let gamma = gamma_from_two_afc(counted)?;
     let at_printed = two_afc(printed)?;
+    let found = vec![(0.0, counted), (gamma, counted), (gamma, 0.5)];
+    let read = vec![(printed, at_printed), (printed, 0.5)];
     let lines = vec![
         Line::new(INK, curve.collect::<Result<_, _>>()?),
-        Line::new(
-            BLUE,
-            vec![
-                (0.0, paper::ACCURACY_6_6),
-                (gamma, paper::ACCURACY_6_6),
-                (gamma, 0.5),
-            ],
-        )
-        .dashed(),
-        Line::new(VERMILION, vec![(printed, at_printed), (printed, 0.5)]).dashed(),
+        Line::new(BLUE, found).dashed(),
+        Line::new(VERMILION, read).dashed(),
     ];
     let true_words = format!("true: γ = {}", fixed(gamma, 3));
     let printed_words = format!("paper: γ = {printed}, there {}", percent(at_printed));
     let marks = vec![
-        words(
-            (0.0, paper::ACCURACY_6_6),
-            "84 %".into(),
-            HPos::Left,
-            (8, -12),
-        ),
+        words((0.0, counted), "84 %", HPos::Left, (8, -12)),
         words((gamma, 0.53), true_words, HPos::Right, (-7, 0)),
         words((printed, 0.53), printed_words, HPos::Left, (7, 0)),
     ];
-    Ok(vec![Panel {
-        heading: "Probability of choosing the right one of a pair".into(),
-        x: [0.0, 5.0],
-        y: [0.5, 1.0],
-        ticks: Vec::new(),
-        height: 300,
-        key: Vec::new(),
-        lines,
+    let heading = "Probability of choosing the right one of a pair";
+    Ok(Panel {
         marks,
-    }])
-}
-
-fn densities_words() -> Words {
-    Words {
-        title: "Figure 3. Probability distributions of the statistic Θ".into(),
-        caption: "Equation (8) for γ = 1, 2 and 3: Θ is normal with mean −γ²/2 without inclusion (dashed) and +γ²/2 \
-                  with one (solid), and standard deviation γ. The text of the paper names no γ for its Figure 3, so these \
-                  may be others; the law is the same."
-            .into(),
-        alt: "Line chart of three pairs of bell curves, mirror images about θ = 0; the larger γ, the wider and the \
-              further apart."
-            .into(),
-    }
-}
-
-fn roc_words() -> Words {
-    Words {
-        title: "Figure 4. Receiver operating characteristic".into(),
-        caption: "Misses against false alarms as the threshold moves, in closed form: Φ(Φ⁻¹(1 − P_fa) − γ). As in the \
-                  paper's Figure 4, the point of 5 % misses and 5 % false alarms is marked (dot). The paper reads γ > 3.3 \
-                  off its graph; the point lies on the curve of γ = 2Φ⁻¹(0.95) = 3.29."
-            .into(),
-        alt: "Line chart of misses against false alarms, four falling curves for γ from 1 to 3.29; the last runs \
-              through the point with 5 % of each."
-            .into(),
-    }
-}
-
-fn pairs_words() -> Words {
-    Words {
-        title: "Figure 9. Probability of choosing correctly in pairs".into(),
-        caption: "Φ(γ/√2). The paper reads γ = 1.45 off its Figure 9 for its 84 %; the curve has 84 % at γ = 1.406, \
-                  and 84.7 % at 1.45."
-            .into(),
-        alt: "Line chart rising from one half at γ = 0 towards 1, with 84 % marked at γ = 1.406.".into(),
-    }
+        ..Panel::new(heading, [[0.0, 5.0], [0.5, 1.0]], 300, lines)
+    })
 }

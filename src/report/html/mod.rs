@@ -1,26 +1,15 @@
 //! The page: one file that opens from disk, without scripts and without anything from a network.
 //!
-//! | file | section |
-//! |---|---|
-//! | `opening.rs` | what was found, contents, set-up |
-//! | `forces.rs`, `detection.rs`, `people.rs`, `bridge.rs`, `noise.rs` | the paper, part by part |
-//! | `comparison.rs` | paper, here, why |
-//! | `quality.rs`, `closing.rs` | certificates; how to rerun, limits |
-//! | `table.rs`, `style.css` | how tables are written, how everything looks |
+//! What it says stands in the templates `templates/report/`, one for each section; here is what they choose from. Text is escaped
+//! by the template engine.
 
-mod bridge;
-mod closing;
-mod comparison;
-mod detection;
-mod forces;
-mod noise;
-mod opening;
-mod people;
-mod quality;
 pub mod table;
 
-use super::text::{escape, prose};
-use super::{Figure, Findings, Study, Topic};
+use askama::Template;
+
+use super::text::{escape, printable};
+use super::{Comparison, Figure, Findings, Quality, Settings, Study, Topic, Value, paper, text};
+use crate::psychophysics::bridge::WeightRange;
 
 /// How the page looks.
 ///
@@ -28,13 +17,6 @@ use super::{Figure, Findings, Study, Topic};
 pub const STYLE: &str = include_str!("style.css");
 /// What the name of the SVG namespace is called inside HTML: nothing, since HTML knows `<svg>` by itself.
 const NAMESPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
-
-/// What the page is made of.
-struct Page<'a> {
-    study: &'a Study,
-    findings: &'a Findings,
-    figures: &'a [Figure],
-}
 
 /// The sections below the opening: what the contents link to, and their headings.
 const CONTENTS: [(&str, &str); 8] = [
@@ -48,53 +30,31 @@ const CONTENTS: [(&str, &str); 8] = [
     ("closing", "How to rerun, and limits"),
 ];
 
+/// What the page is made of.
+#[derive(Template)]
+#[template(path = "report/page.html")]
+struct Page<'a> {
+    study: &'a Study,
+    settings: &'a Settings,
+    found: &'a Findings,
+    figures: &'a [Figure],
+}
+
 /// One self-contained page: what was found, the figures and tables, the comparison, the certificates.
 ///
-/// ```
-#[doc = include_str!("../study.example")]
-/// use palpate::report::{figures, findings, html};
-///
-/// let findings = findings(&study)?;
-/// let page = html(&study, &findings, &figures(&study, &findings)?);
-/// // One file, which loads nothing.
-/// assert!(page.starts_with("<!DOCTYPE html>") && !page.contains(" src="));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// Implements: REP-040, REP-041, REP-042, REP-043, REP-060, REP-065, REP-066.
+/// Implements: REP-040, REP-041, REP-042, REP-043, REP-044, REP-060, REP-061, REP-062, REP-063, REP-065, REP-066.
 pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
     let page = Page {
         study,
-        findings,
+        settings: &study.settings,
+        found: findings,
         figures,
     };
-    let sections = [
-        opening::setup,
-        forces::forces,
-        detection::detection,
-        people::people,
-        noise::noise,
-        comparison::comparison,
-        quality::quality,
-        closing::closing,
-    ];
-    let body: String = sections
-        .into_iter()
-        .zip(CONTENTS)
-        .map(|(content, (id, heading))| section(id, heading, &content(&page)))
-        .collect();
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Inclusion probing: report of palpate</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{}<main>\n{}{body}</main>\n\
-         <footer class=\"soft\">Written by palpate {}.</footer>\n</body>\n</html>\n",
-        opening::header(),
-        opening::opening(&page),
-        env!("CARGO_PKG_VERSION")
-    )
+    // Neither writing to a String nor any of our formats fails.
+    printable(&page.render().expect("a page of text and numbers"))
 }
 
-/// A section with its heading, which names it for a screen reader.
+/// A section with its heading, which names it for a screen reader. `heading` is text, `markup` is markup.
 pub fn section(id: &str, heading: &str, markup: &str) -> String {
     format!(
         "<section id=\"{id}\" aria-labelledby=\"{id}-heading\">\n<h2 id=\"{id}-heading\">{}</h2>\n{markup}</section>\n",
@@ -104,19 +64,116 @@ pub fn section(id: &str, heading: &str, markup: &str) -> String {
 
 impl Page<'_> {
     /// All figures of a topic, in their order.
-    fn figures(&self, topic: Topic) -> String {
-        let figures = self.figures.iter().filter(|figure| figure.topic == topic);
-        let figures: String = figures.map(picture).collect();
-        format!("<div class=\"figures\">\n{figures}</div>\n")
+    fn figures(&self, topic: Topic) -> impl Iterator<Item = &Figure> {
+        self.figures
+            .iter()
+            .filter(move |figure| figure.topic == topic)
+    }
+
+    /// The number of maps whose signal is strong enough for both error rates.
+    fn detected(&self) -> usize {
+        let maps = self.found.maps.iter();
+        maps.filter(|map| map.gamma.both >= self.found.required_gamma)
+            .count()
+    }
+
+    /// The least and the largest peak of the normal signals, N.
+    fn peaks(&self) -> Option<[f64; 2]> {
+        let peaks = self
+            .found
+            .maps
+            .iter()
+            .map(|map| map.peak_normal.force.abs());
+        text::extremes(peaks)
+    }
+
+    /// What the subjects' answers to FEM playback do with the force that they used.
+    fn felt(&self) -> Option<&'static str> {
+        let bridge = self.found.bridge.as_ref()?;
+        let weights = &bridge.conditions.get(paper::FEM_PLAYBACK)?.weights;
+        if weights.is_empty() {
+            return None;
+        }
+        let is_worst = weights.iter().all(WeightRange::level_fits_worst);
+        Some(
+            match (is_worst, weights.iter().all(|of| of.left.upper < 1.0)) {
+                (true, true) => {
+                    "are explained worst by the whole level of the normal force, whose peak the paper's noise estimate rests on, \
+                 and reject it, however far the subjects swept"
+                }
+                (true, false) => {
+                    "are explained worst by the whole level of the normal force, whose peak the paper's noise estimate rests on, \
+                 however far the subjects swept, but do not reject it over every sweep"
+                }
+                (false, _) => {
+                    "do not tell whether subjects feel the level of the normal force or its change along the sweep: that depends \
+                 on how far they swept"
+                }
+            },
+        )
+    }
+
+    /// The noise that explains the answers to FEM playback at 6.6 mm by the peak signal: ours beside the paper's.
+    fn subjects_noise(&self) -> Option<&Comparison> {
+        let paper = Value::ForceN(paper::SUBJECTS_NOISE);
+        self.found.comparison.iter().find(|row| row.paper == paper)
+    }
+
+    /// Name and certificate of the reference and of every map.
+    fn certificates(&self) -> impl Iterator<Item = (&String, Option<&Quality>)> {
+        let reference = &self.found.reference;
+        let maps = self.found.maps.iter();
+        [(&reference.name, reference.quality.as_ref())]
+            .into_iter()
+            .chain(maps.map(|map| (&map.name, map.quality.as_ref())))
     }
 }
 
-fn picture(figure: &Figure) -> String {
-    format!(
-        "<figure>\n<div class=\"picture\">{}</div>\n<figcaption><strong>{}</strong>{} <span class=\"file\">({})</span></figcaption>\n</figure>\n",
-        figure.svg.replacen(NAMESPACE, "", 1),
-        prose(&figure.title),
-        prose(&figure.caption),
-        escape(&figure.file_name)
-    )
+/// Which rows of [`paper::NOISE_SOURCES`] add up in an experiment.
+struct NoiseChain {
+    name: &'static str,
+    sources: &'static [usize],
+    /// The sum that the paper prints, N.
+    printed: Option<f64>,
+}
+
+const NOISE_CHAINS: [NoiseChain; 3] = [
+    NoiseChain {
+        name: "FEM playback",
+        sources: &[1, 2, 4],
+        printed: Some(paper::PLAYBACK_NOISE),
+    },
+    NoiseChain {
+        name: "Measured playback",
+        sources: &[0, 1, 2, 4],
+        printed: None,
+    },
+    NoiseChain {
+        name: "Direct contact",
+        sources: &[3, 4],
+        printed: Some(paper::DIRECT_CONTACT_NOISE),
+    },
+];
+
+impl NoiseChain {
+    fn variance(&self) -> f64 {
+        self.sources.iter().map(|&k| variance(k)).sum()
+    }
+
+    /// The standard deviation of the sum, N.
+    fn total(&self) -> f64 {
+        libm::sqrt(self.variance())
+    }
+
+    /// The share of a source in the variance, if it belongs to the experiment.
+    fn share(&self, source: usize) -> Option<f64> {
+        let belongs = self.sources.contains(&source);
+        belongs.then(|| variance(source) / self.variance())
+    }
+}
+
+/// The variance of a row of [`paper::NOISE_SOURCES`], N².
+fn variance(source: usize) -> f64 {
+    let sd = paper::NOISE_SOURCES[source].1;
+    sd * sd
 }

@@ -1,8 +1,10 @@
-//! Tables with captions, scopes and units.
+//! Tables with captions, scopes and units, of any number of columns.
 
-use std::fmt::Write;
+use askama::Template;
 
 /// A table that scrolls inside its own box. All text in it is markup.
+#[derive(Template)]
+#[template(path = "report/table.html")]
 pub struct Table<'a> {
     /// The id of its caption, unique on the page.
     pub id: &'a str,
@@ -23,8 +25,18 @@ pub enum Layout {
     Rows,
     /// Rows of cells close together, for many.
     Dense,
-    /// Rows that become blocks on a narrow page, for long text.
+    /// Rows that become blocks on a narrow page, for long text: heads are plain words.
     Stack,
+}
+
+impl Layout {
+    fn class(self) -> &'static str {
+        match self {
+            Layout::Rows => "",
+            Layout::Dense => "dense",
+            Layout::Stack => "stack",
+        }
+    }
 }
 
 /// Rows that belong together.
@@ -45,65 +57,12 @@ impl Group {
     }
 }
 
-fn class(class: &str) -> String {
-    match class {
-        "" => String::new(),
-        class => format!(" class=\"{class}\""),
-    }
-}
-
 impl Table<'_> {
     /// The table's markup.
     ///
     /// Implements: REP-061.
     pub fn markup(&self) -> String {
-        let kind = class(match self.layout {
-            Layout::Rows => "",
-            Layout::Dense => "dense",
-            Layout::Stack => "stack",
-        });
-        let mut markup = format!(
-            "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"{id}\">\n<table{kind}>\n\
-             <caption><div id=\"{id}\">{caption}</div></caption>\n<thead><tr>",
-            id = self.id,
-            caption = self.caption
-        );
-        for (name, kind) in self.head {
-            markup += &format!("<th scope=\"col\"{}>{name}</th>", class(kind));
-        }
-        markup += "</tr></thead>\n";
-        for group in &self.groups {
-            markup += "<tbody>\n";
-            if !group.heading.is_empty() {
-                let width = self.head.len();
-                // Writing to a String does not fail.
-                let _ = writeln!(
-                    markup,
-                    "<tr><th scope=\"rowgroup\" colspan=\"{width}\" class=\"group\">{}</th></tr>",
-                    group.heading
-                );
-            }
-            for row in &group.rows {
-                markup += &self.row(row);
-            }
-            markup += "</tbody>\n";
-        }
-        markup + "</table>\n</div>\n"
-    }
-
-    fn row(&self, row: &[String]) -> String {
-        let mut markup = String::from("<tr>");
-        for (k, (cell, (name, kind))) in row.iter().zip(self.head).enumerate() {
-            let kind = class(kind);
-            markup += &match k {
-                0 => format!("<th scope=\"row\"{kind}>{cell}</th>"),
-                // Only tables that stack show the name, and their heads are plain words.
-                _ if self.layout == Layout::Stack => {
-                    format!("<td{kind} data-name=\"{name}\">{cell}</td>")
-                }
-                _ => format!("<td{kind}>{cell}</td>"),
-            };
-        }
-        markup + "</tr>\n"
+        // Writing to a String does not fail.
+        self.render().expect("a table of text")
     }
 }

@@ -4,7 +4,7 @@ use crate::fem::Pose;
 use crate::fem::mesh::Region;
 use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
 use crate::phantom::Phantom;
-use crate::report::{DeformedMesh, Settings, Study};
+use crate::report::{DeformedMesh, Settings, Study, text};
 
 pub const DEPTHS: [f64; 3] = [0.0, 2e-3, 4e-3];
 pub const LATERALS: [f64; 5] = [-10e-3, -5e-3, 0.0, 5e-3, 10e-3];
@@ -90,25 +90,28 @@ pub fn computed_map(name: &str, smallest: f64) -> ForceMap {
 
 /// One square of gel under one of skin, pressed down.
 pub fn deformed() -> DeformedMesh {
+    let square = |top: f64| {
+        let corners = [(-17e-3, -7e-3), (17e-3, -7e-3), (17e-3, 0.0), (-17e-3, 0.0)];
+        corners.map(|(x, y)| [x, top + y - 1e-3]).to_vec()
+    };
     DeformedMesh {
         phantom: Phantom::builtin("2.6").unwrap(),
         pose: Pose {
             depth: 4e-3,
             lateral: 0.0,
         },
-        nodes: (0..6)
-            .map(|k| {
-                [
-                    f64::from(k % 2) * 34e-3 - 17e-3,
-                    f64::from(k / 2) * 7e-3 - 14e-3,
-                ]
-            })
-            .collect(),
-        displacements: vec![[0.0, -1e-3]; 6],
-        corners: vec![vec![0, 1, 3, 2], vec![2, 3, 5, 4]],
-        regions: vec![Region::Layer(1), Region::Layer(0)],
+        elements: vec![
+            (Region::Layer(1), square(-7e-3)),
+            (Region::Layer(0), square(0.0)),
+        ],
         min_det: 0.5,
     }
+}
+
+/// How the page shows words.
+pub fn shown(words: &str) -> String {
+    let words = askama::filters::escape(text::prose(words), askama::filters::Html);
+    words.unwrap().to_string()
 }
 
 /// The paper's phantoms with peaks of 0.6, 0.45, 0.3 and 0.15 N.
