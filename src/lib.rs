@@ -67,7 +67,7 @@ pub mod cli;
 #[cfg(feature = "cli")]
 mod conform;
 #[cfg(feature = "std")]
-pub mod csv;
+mod csv;
 pub mod detect;
 #[cfg(feature = "fem")]
 pub mod fem;

@@ -483,7 +483,7 @@ fn numbers_out_of_range_are_found_in_their_line() {
 fn files_that_cannot_be_read_are_named() {
     let folder = std::env::temp_dir();
     let error = Phantom::read(&folder.join("palpate-no-such-phantom.toml")).unwrap_err();
-    assert!(error.line.is_none() && error.message.starts_with("cannot be read: "));
+    assert!(error.line.is_none() && error.found.starts_with("cannot be read: "));
     assert!(
         error
             .to_string()

@@ -11,6 +11,7 @@ use super::solve::phantom;
 use super::{CliError, ContactName};
 use crate::csv::one_line;
 use crate::fem::MESH_SIZE;
+use crate::input::line_of;
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 use crate::report::Settings;
 
@@ -209,11 +210,6 @@ fn place_of_phantom(file: &Path, index: usize) -> Option<String> {
     };
     let line = line_of(&text, name.span().start);
     Some(format!("{}:{line}: {key}: ", file.display()))
-}
-
-/// The line of byte `at` of `text`, from 1.
-fn line_of(text: &str, at: usize) -> usize {
-    1 + text.get(..at).unwrap_or(text).matches('\n').count()
 }
 
 fn list<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Positions, D::Error> {

@@ -731,7 +731,7 @@ fn depths_outside_the_gel_are_refused() {
         assert_eq!(phantom.check_pose(depth, 0.0), Ok(()));
     }
     let message = |depth| phantom.check_pose(depth, 0.0).unwrap_err().to_string();
-    let allowed = "allowed: at least 0.0 and below 15.5 (the height of the layers)";
+    let allowed = "expected at least 0.0 and below 15.5 (the height of the layers)";
     for (depth, shown) in [
         (-0.001, "-1.0"),
         (0.0155, "15.5"),
@@ -756,13 +756,13 @@ fn a_probe_that_reaches_a_wall_is_refused() {
     assert!(stands(0.0065, 0.010_499) && !stands(0.0065, 0.010_501));
     assert!(stands(0.012, 0.010_499) && !stands(0.012, 0.010_501));
     let message = |depth, lateral| phantom.check_pose(depth, lateral).unwrap_err().to_string();
-    assert!(message(0.0155, 0.0).starts_with("depth_mm = 15.5, allowed: "));
-    assert!(message(-0.001, 0.0).starts_with("depth_mm = -1.0, allowed: "));
+    assert!(message(0.0155, 0.0).starts_with("depth_mm = 15.5, expected "));
+    assert!(message(-0.001, 0.0).starts_with("depth_mm = -1.0, expected "));
     for (lateral, shown) in [(-0.012, "-12.0"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
         assert_eq!(
             message(0.004, lateral),
             format!(
-                "lateral_mm = {shown}, allowed: above -11.0 and below 11.0 \
+                "lateral_mm = {shown}, expected above -11.0 and below 11.0 \
                  (the probe, 6.0 mm to each side when 4.0 mm deep, clears the walls)"
             )
         );

@@ -14,6 +14,7 @@ use crate::detect::{
 use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};
 use crate::psychophysics::bridge::Bridge;
 use crate::psychophysics::{Analysis, NoiseDecomposition};
+use crate::refusal::Refusal;
 
 /// What a study found, in plain numbers.
 ///
@@ -264,7 +265,7 @@ pub(super) fn curve<'a>(
 ) -> Result<ForceCurve<'a>, ReportError> {
     table.row(depth).map_err(|source| ReportError::Map {
         name: name.into(),
-        source,
+        source: source.into(),
     })
 }
 
@@ -275,10 +276,10 @@ pub(super) fn detect_error(what: &str, source: DetectError) -> ReportError {
     }
 }
 
-fn map_error(map: &ForceMap, source: crate::force_map::InvalidForceMap) -> ReportError {
+fn map_error(map: &ForceMap, source: Refusal) -> ReportError {
     ReportError::Map {
         name: name_of_map(map),
-        source,
+        source: source.into(),
     }
 }
 

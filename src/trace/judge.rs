@@ -1,12 +1,13 @@
 //! The record judged at the position that the maps are for.
 
-use super::{Record, TraceError, TraceProblem};
+use super::{Record, refused, view};
 use crate::detect::assessment::{Assessment, assess};
 use crate::detect::{
     Channels, DetectError, map_threshold, neyman_pearson_false_alarm_threshold,
     neyman_pearson_miss_threshold, theta_of_record,
 };
 use crate::force_map::ForceTable;
+use crate::refusal::Refusal;
 
 /// What the threshold shall achieve.
 ///
@@ -80,7 +81,7 @@ impl Criterion {
 /// Maps on different axes; positions or a depth outside them; maps that do not differ at the
 /// samples; whatever the detector refuses.
 ///
-/// Implements: TRC-020, CLI-043, CLI-049.
+/// Implements: TRC-008, TRC-020, CLI-043, CLI-049.
 pub fn judge(
     record: &Record,
     reference: &ForceTable,
@@ -89,23 +90,25 @@ pub fn judge(
     noise_sd: Channels<f64>,
     criterion: Criterion,
     prior_h1: f64,
-) -> Result<(f64, Assessment), TraceError> {
-    let refused = |error: DetectError| TraceProblem::from(error).at(record.file(), None);
-    // Only for its refusal of axes that differ.
-    let same_axes = inclusion.minus(reference);
-    same_axes.map_err(|error| TraceProblem::from(error).at(record.file(), None))?;
-    let f0 = record.expected(reference, depth)?;
-    let f1 = record.expected(inclusion, depth)?;
-    let (f0, f1) = (super::view(&f0), super::view(&f1));
-    let gamma = theta_of_record(record.forces(), f0, f1, noise_sd)
-        .map_err(refused)?
-        .gamma;
-    if gamma == 0.0 {
-        return Err(TraceProblem::NoSignal.at(record.file(), None));
-    }
-    let eta = criterion.threshold(gamma, prior_h1).map_err(refused)?;
-    let assessment = assess(record.forces(), f0, f1, noise_sd, prior_h1, eta).map_err(refused)?;
-    Ok((eta, assessment))
+) -> Result<(f64, Assessment), Refusal> {
+    let judged = || {
+        // Only for its refusal of axes that differ.
+        inclusion.minus(reference)?;
+        let f0 = record.expected(reference, depth)?;
+        let f1 = record.expected(inclusion, depth)?;
+        let (observed, f0, f1) = (record.forces(), view(&f0), view(&f1));
+        let assessed = || {
+            let gamma = theta_of_record(observed, f0, f1, noise_sd)?.gamma;
+            if gamma == 0.0 {
+                return Err(DetectError::NoSignal);
+            }
+            let eta = criterion.threshold(gamma, prior_h1)?;
+            let assessment = assess(observed, f0, f1, noise_sd, prior_h1, eta)?;
+            Ok((eta, assessment))
+        };
+        assessed().map_err(refused)
+    };
+    judged().map_err(|refusal: Refusal| refusal.in_file(record.file()))
 }
 
 /// How far a record is from the nearer of the two hypotheses.
@@ -149,9 +152,9 @@ impl Misfit {
         depth: f64,
         noise_sd: Channels<f64>,
         theta: f64,
-    ) -> Result<Misfit, TraceError> {
+    ) -> Result<Misfit, Refusal> {
         let f0 = record.expected(reference, depth)?;
-        let sums = record.forces().zip(super::view(&f0)).zip(noise_sd);
+        let sums = record.forces().zip(view(&f0)).zip(noise_sd);
         let sums = sums.map(|((observed, f0), noise_sd)| {
             let terms = std::iter::zip(observed, f0).map(|(observed, f0)| {
                 let standardised = (observed - f0) / noise_sd;
@@ -163,8 +166,7 @@ impl Misfit {
         let chi_square = sums.x + sums.y - 2.0 * theta.max(0.0);
         if !chi_square.is_finite() {
             let what = "chi_square";
-            let error = TraceProblem::Detect(DetectError::Overflow { what });
-            return Err(error.at(record.file(), None));
+            return Err(refused(DetectError::Overflow { what }).in_file(record.file()));
         }
         let n = 2.0 * record.positions().len() as f64;
         let t = libm::log(1e6);

@@ -43,7 +43,7 @@ fn shifted(signal: f64, shift: usize) -> Record {
 
 const NOISE: Channels<f64> = Channels { x: 0.5, y: 0.25 };
 
-fn find(record: &Record, signal: f64, criterion: Criterion) -> Result<Location, TraceError> {
+fn find(record: &Record, signal: f64, criterion: Criterion) -> Result<Location, Refusal> {
     locate(
         record,
         &table(0.0),
