@@ -104,67 +104,50 @@ impl ForceMap {
     ///
     /// Implements: MAP-020, MAP-023, MAP-024, MAP-025, MAP-026, MAP-037.
     pub fn from_json(text: &str, file: &str) -> Result<ForceMap, Refusal> {
-        // The version first: a newer file may have keys that this program does not know.
-        let map = parse::<Header>(text).and_then(|header| {
-            header.check()?;
-            parse::<Document>(text)?.into_map()
-        });
-        map.map_err(|refusal| refusal.in_file(file))
+        read(text).map_err(|refusal| refusal.in_file(file))
     }
 }
 
-impl Header {
-    fn check(self) -> Result<(), Refusal> {
-        let version = format!("{SCHEMA_VERSION}, which is what this program reads");
-        let (schema, schema_version) = (self.schema, self.schema_version);
-        for (key, is_right, found, expected) in [
-            ("schema", schema == SCHEMA, schema, format!("{SCHEMA:?}")),
-            (
-                "schema_version",
-                schema_version == SCHEMA_VERSION,
-                schema_version,
-                version,
-            ),
-        ] {
-            if !is_right {
-                return Err(Refusal::value(key, shortened(&found.to_string()), expected));
-            }
+fn read(text: &str) -> Result<ForceMap, Refusal> {
+    // The version first: a newer file may have keys that this program does not know.
+    let header: Header = parse(text)?;
+    let refused = |key, found: Value, expected| {
+        let found = shortened(&found.to_string());
+        Err(Refusal::value(key, found, expected))
+    };
+    if header.schema != SCHEMA {
+        return refused("schema", header.schema, format!("{SCHEMA:?}"));
+    }
+    if header.schema_version != SCHEMA_VERSION {
+        let expected = format!("{SCHEMA_VERSION}, which is what this program reads");
+        return refused("schema_version", header.schema_version, expected);
+    }
+    let document: Document = parse(text)?;
+    let source = match (document.source, document.certificate) {
+        (SourceKey::FiniteElements {}, Some(certificate)) => Source::FiniteElements { certificate },
+        (SourceKey::Measured { file, note }, None) => Source::Measured { file, note },
+        (SourceKey::FiniteElements {}, None) => {
+            let expected = "one for a map from finite elements";
+            return Err(Refusal::state("certificate is missing", expected));
         }
-        Ok(())
-    }
-}
-
-impl Document {
-    fn into_map(self) -> Result<ForceMap, Refusal> {
-        let refused = |found, expected| Err(Refusal::state(found, expected));
-        let source = match (self.source, self.certificate) {
-            (SourceKey::FiniteElements {}, Some(certificate)) => {
-                Source::FiniteElements { certificate }
-            }
-            (SourceKey::Measured { file, note }, None) => Source::Measured { file, note },
-            (SourceKey::FiniteElements {}, None) => {
-                return refused(
-                    "certificate is missing",
-                    "one for a map from finite elements",
-                );
-            }
-            (SourceKey::Measured { .. }, Some(_)) => {
-                return refused("certificate is there", "none for a measured map");
-            }
-        };
-        let map = ForceMap {
-            program_version: self.program_version,
-            source,
-            phantom: self.phantom,
-            forces: ForceTable::new(
-                self.depths_m,
-                self.laterals_m,
-                self.normal_force_n,
-                self.lateral_force_n,
-            )?,
-        };
-        map.checked()
-    }
+        (SourceKey::Measured { .. }, Some(_)) => {
+            let expected = "none for a measured map";
+            return Err(Refusal::state("certificate is there", expected));
+        }
+    };
+    let forces = ForceTable::new(
+        document.depths_m,
+        document.laterals_m,
+        document.normal_force_n,
+        document.lateral_force_n,
+    )?;
+    let map = ForceMap {
+        program_version: document.program_version,
+        source,
+        phantom: document.phantom,
+        forces,
+    };
+    map.checked()
 }
 
 /// What `text` says, or the line, the column and the key where it is wrong, with the text around that place.
