@@ -55,7 +55,11 @@ pub struct Mesh {
 
 /// [`Settings`] in the keys of the file.
 #[derive(Deserialize)]
-#[serde(remote = "Settings", deny_unknown_fields, default = "Settings::default")]
+#[serde(
+    remote = "Settings",
+    deny_unknown_fields,
+    default = "Settings::default"
+)]
 struct Detection {
     #[serde(rename = "noise_sd_n", deserialize_with = "positive")]
     noise_sd: f64,

@@ -9,37 +9,6 @@ use crate::refusal::Refusal;
 /// The evidence that comes with a map from finite elements. Plain data; [`super::ForceMap::new`]
 /// checks it.
 ///
-/// ```
-/// use palpate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
-/// use palpate::phantom::Phantom;
-///
-/// let matrix = |value| Matrix::from_fn(1, 1, |_, _| value);
-/// let certificate = Certificate {
-///     worst_relative_residual: 1e-14,
-///     worst_force_balance: 1e-12,
-///     largest_penetration: 0.0,
-///     newton_iterations: 12,
-///     mesh_size: 0.00075,
-///     nodes: 4000,
-///     elements: 2000,
-///     element: "t6".into(),
-///     contact: "deformed".into(),
-///     arithmetic: "other".into(),
-///     smallest_det: SmallestDet { det: 0.7, depth: 0.004, lateral: 0.0 },
-///     min_det: matrix(0.6),
-///     discretization: None,
-/// };
-/// // The smallest determinant that it names is not that of its matrix.
-/// let forces = ForceTable::new(vec![0.004], vec![0.0], matrix(1.5), matrix(0.0))?;
-/// let map = ForceMap::new(
-///     Source::FiniteElements { certificate },
-///     Some(Phantom::builtin("6.6")?),
-///     forces,
-/// );
-/// assert!(map.unwrap_err().to_string().starts_with("certificate.smallest_det = 0.7"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// Implements: MAP-006.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -82,17 +51,6 @@ pub struct Certificate {
 }
 
 /// Bands of the discretisation around the forces of a map, from three meshes.
-///
-/// ```
-/// use palpate::force_map::{Discretization, Matrix};
-///
-/// let bands = Discretization {
-///     nodes: [4000, 1000, 250],
-///     normal_force_band: Matrix::from_fn(1, 3, |_, column| [0.001, 0.003, 0.002][column]),
-///     lateral_force_band: Matrix::from_fn(1, 3, |_, _| 0.0005),
-/// };
-/// assert_eq!(bands.largest(), [0.003, 0.0005]);
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Discretization {
@@ -115,15 +73,6 @@ impl Discretization {
 }
 
 /// The smallest det(I + ∇u) of a map, and where.
-///
-/// ```
-/// use palpate::force_map::{Matrix, SmallestDet};
-///
-/// let min_det = Matrix::from_fn(1, 3, |_, column| [0.6, 0.7, 0.6][column]);
-/// let smallest = SmallestDet::of(&min_det, &[0.004], &[0.0, 0.002, 0.004]);
-/// // Of the two that are equal the one nearest to x = 0.
-/// assert_eq!(smallest, Some(SmallestDet { det: 0.6, depth: 0.004, lateral: 0.0 }));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SmallestDet {

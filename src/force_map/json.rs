@@ -87,16 +87,6 @@ impl ForceMap {
 
     /// The map in `text`, the content of `file`, which is named in errors alone.
     ///
-    /// ```
-    /// use palpate::force_map::ForceMap;
-    ///
-    /// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,0.1,0\n";
-    /// let map = ForceMap::from_csv(text, "gel.csv", "", None)?;
-    /// // Every number comes back to the bit.
-    /// assert_eq!(ForceMap::from_json(&map.to_json(), "map.json")?, map);
-    /// # Ok::<(), palpate::refusal::Refusal>(())
-    /// ```
-    ///
     /// # Errors
     /// The text is not JSON, has another schema or a newer version, a missing, unknown or repeated key, or anything but a number
     /// in a number's place, or makes a map that [`ForceMap::new`] or [`ForceTable::new`] refuses; with the file, and the line

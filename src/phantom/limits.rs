@@ -35,17 +35,6 @@ type Check = Result<(), Refusal>;
 impl Phantom {
     /// Whether this phantom can exist and be meshed.
     ///
-    /// ```
-    /// use palpate::phantom::Phantom;
-    ///
-    /// // 15.5 mm in all, less the disc's 6.4 mm and 0.1 mm of gel under it.
-    /// let mut phantom = Phantom::builtin("8.6")?;
-    /// assert!(phantom.validate().is_ok());
-    /// phantom.inclusions[0].depth = 0.0091;
-    /// assert!(phantom.validate().unwrap_err().to_string().contains("at most 9.0 "));
-    /// # Ok::<(), palpate::refusal::Refusal>(())
-    /// ```
-    ///
     /// # Errors
     /// The first offending key of the phantom file, its value and what is allowed, both in the unit of the file.
     ///

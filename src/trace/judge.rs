@@ -10,16 +10,6 @@ use crate::force_map::ForceTable;
 use crate::refusal::Refusal;
 
 /// What the threshold shall achieve.
-///
-/// ```
-/// use palpate::detect::error_rates;
-/// use palpate::trace::Criterion;
-///
-/// assert_eq!(Criterion::Map.threshold(3.0, 0.5)?, 0.0);
-/// let eta = Criterion::NeymanPearsonMiss { max_miss: 0.05 }.threshold(3.0, 0.5)?;
-/// assert!((error_rates(3.0, eta)?.miss - 0.05).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Criterion {
     /// The fewest errors for the prior.
@@ -56,26 +46,6 @@ impl Criterion {
 
 /// η and the assessment of `record` for an inclusion at x = 0 of the maps, swept at `depth` (m), in
 /// white noise of standard deviation `noise_sd` a sample (N).
-///
-/// ```
-/// use palpate::detect::{Channels, Decision};
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::trace::{Criterion, Trace, judge};
-///
-/// let map = |force: f64| {
-///     let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-///     ForceTable::new(vec![0.004], vec![0.0, 0.004], matrix(force), matrix(0.0))
-/// };
-/// let text = "position_mm,lateral_force_n,normal_force_n\n1,0,1.5\n3,0,2\n";
-/// let record = Trace::from_csv(text, "sweep.csv")?.record(None)?;
-/// // Two samples with Δ/s = 2: γ² = 8. One is as F_0 has it, the other as F_1.
-/// let noise_sd = Channels { x: 0.25, y: 0.25 };
-/// let (eta, found) = judge(&record, &map(1.5)?, &map(2.0)?, 0.004, noise_sd, Criterion::Map, 0.5)?;
-/// assert_eq!((found.statistic.theta, eta), (0.0, 0.0));
-/// assert!((found.statistic.gamma - 8.0_f64.sqrt()).abs() < 1e-15);
-/// assert_eq!(found.decision, Decision::Inclusion);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 ///
 /// # Errors
 /// Maps on different axes; positions or a depth outside them; maps that do not differ at the

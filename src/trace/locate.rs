@@ -74,28 +74,6 @@ struct Grid {
 /// Searches `record`, swept at `depth` (m), for the inclusion of the map `inclusion`, in white noise
 /// of standard deviation `noise_sd` a sample (N). The candidates are the positions of the samples.
 ///
-/// ```
-/// use palpate::detect::{Channels, Decision};
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::trace::{Criterion, Trace, locate};
-///
-/// let map = |bump: [f64; 5]| {
-///     let laterals = vec![-0.002, -0.001, 0.0, 0.001, 0.002];
-///     let matrix = |force: [f64; 5]| Matrix::from_fn(1, 5, |_, column| force[column]);
-///     ForceTable::new(vec![0.004], laterals, matrix(bump), matrix([0.0; 5]))
-/// };
-/// let (nothing, bump) = (map([0.0; 5])?, map([0.0, 1.0, 2.0, 1.0, 0.0])?);
-/// // The bump lies 1 mm to the left of x = 0.
-/// let header = "position_mm,lateral_force_n,normal_force_n\n";
-/// let text = format!("{header}-2,0,1\n-1,0,2\n0,0,1\n1,0,0\n2,0,0\n");
-/// let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
-/// let noise_sd = Channels { x: 0.25, y: 0.25 };
-/// let found = locate(&record, &nothing, &bump, 0.004, noise_sd, Criterion::Map, 0.5)?;
-/// assert_eq!(found.decision, Decision::Inclusion);
-/// assert!((found.position + 0.001).abs() < 1e-4);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// # Errors
 /// As [`super::judge`]; a record whose steps are not equal, that is too long, or shorter than the
 /// maps; maps without x = 0.
@@ -179,7 +157,9 @@ impl Grid {
         let eta = threshold(&scan, &law, criterion, prior_h1)?;
         let found: ScanAssessment = assess_scan(&scan, &law, view(&self.residual), eta)?;
         let shift = found.maximum.shift;
-        let mixture = self.mixture(&scan)?;
+        let mut theta = vec![0.0; candidates];
+        scan.theta(view(&self.residual), self.first_shift, &mut theta)?;
+        let mixture = mixture_theta(&theta, &vec![1.0 / candidates as f64; candidates])?;
         let mut location = Location {
             theta_max: found.maximum.theta,
             theta_mixture: mixture,
@@ -206,14 +186,6 @@ impl Grid {
         Ok(location)
     }
 
-    /// Implements: TRC-035.
-    fn mixture(&self, scan: &Scan<'_>) -> Result<f64, DetectError> {
-        let candidates = self.residual.x.len();
-        let mut theta = vec![0.0; candidates];
-        scan.theta(view(&self.residual), self.first_shift, &mut theta)?;
-        mixture_theta(&theta, &vec![1.0 / candidates as f64; candidates])
-    }
-
     /// Implements: TRC-042.
     fn template_edge(&self, noise_sd: Channels<f64>) -> f64 {
         let parts = view(&self.template).zip(noise_sd).map(|(signal, sd)| {
@@ -230,21 +202,16 @@ impl Grid {
     ///
     /// Implements: TRC-034.
     fn position_sd_bound(&self, shift: isize, noise_sd: Channels<f64>) -> Result<f64, DetectError> {
-        let length = self.template.x.len();
-        let mut slopes = Channels {
-            x: vec![0.0; length],
-            y: vec![0.0; length],
+        let samples = 0..self.residual.x.len() as isize;
+        let seen = |template: &[f64]| {
+            let mut slopes = vec![0.0; template.len()];
+            slope(template, self.spacing, &mut slopes)?;
+            let places = (shift..).zip(slopes);
+            let seen = places.filter(|(place, _)| samples.contains(place));
+            Ok::<Vec<f64>, DetectError>(seen.map(|(_, slope)| slope).collect())
         };
-        slope(&self.template.x, self.spacing, &mut slopes.x)?;
-        slope(&self.template.y, self.spacing, &mut slopes.y)?;
-        let seen = |sample: usize| {
-            (0..self.residual.x.len() as isize).contains(&(sample as isize + shift))
-        };
-        let seen = slopes.map(|slope| {
-            let parts = slope.iter().enumerate().filter(|(sample, _)| seen(*sample));
-            parts.map(|(_, slope)| *slope).collect::<Vec<f64>>()
-        });
-        position_bound(view(&seen), noise_sd)
+        let (x, y) = (seen(&self.template.x)?, seen(&self.template.y)?);
+        position_bound(Channels { x: &x, y: &y }, noise_sd)
     }
 }
 
