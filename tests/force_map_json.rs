@@ -239,77 +239,43 @@ fn what_is_no_number_is_named_by_key_and_row() {
         "map.json:39: column 13: normal_force_n[1][1]: invalid type: null, expected f64, \
          in \"[0.3,null,0.0]\""
     );
-    for (old, new, named) in [
-        (
-            "[0.001,0.002]",
-            "[0.001,null]",
-            "map.json:35: column 25: depths_m[1]: invalid type: null",
-        ),
-        ("[0.0,-1e-9,1e+21]", "[0.0,NaN,1.0]", "map.json:42: "),
-        (
-            "[0.0,-1e-9,1e+21]",
-            "[0.0,1e400,1.0]",
-            "lateral_force_n[0][1]: number out of range",
-        ),
-        (
-            "[0.0,-1e-9,1e+21]",
-            "[0.0,\"1\",1.0]",
-            "lateral_force_n[0][1]: invalid type: string",
-        ),
-        (
-            "[0.0,-1e-9,1e+21]",
-            "7",
-            "lateral_force_n[0]: invalid type: integer `7`",
-        ),
-        (
-            "[0.0,-1e-9,1e+21]",
-            "[0.0,0.1]",
-            "lateral_force_n: row 1 has 3 numbers, expected 2 as in row 0",
-        ),
-        (
-            "\"width_m\": 0.034",
-            "\"width_m\": null",
-            "phantom.well.width_m: invalid type: null",
-        ),
-        (
-            "\"width_m\": 0.034",
-            "\"width_m\": null",
-            "in \"\\\"width_m\\\": null,\"",
-        ),
-        (
-            "\"width_m\": 0.034",
-            "\"width_mm\": 34",
-            "phantom.well.width_mm: unknown field `width_mm`",
-        ),
-        (
-            "      \"width_m\": 0.034,\n",
-            "",
-            "phantom.well: missing field `width_m`",
-        ),
-        (
-            "\"nodes\": 6000",
-            "\"nodes\": -1",
-            "certificate.nodes: invalid value: integer `-1`",
-        ),
-        (
-            "[0.5,0.7,0.6]",
-            "[0.5,0.7,null]",
-            "certificate.min_det[1][2]: invalid type: null",
-        ),
-        (
-            "\"t6\"",
-            "6",
-            "certificate.element: invalid type: integer `6`, expected a string",
-        ),
-        (
-            "\"finite_elements\"",
-            "\"guess\"",
-            "source.kind: unknown variant `guess`",
-        ),
-    ] {
-        let message = refusal(old, new);
+    let cases = r#"
+        [0.001,0.002] -> [0.001,null]
+        map.json:35: column 25: depths_m[1]: invalid type: null
+        [0.0,-1e-9,1e+21] -> [0.0,NaN,1.0]
+        map.json:42: column
+        [0.0,-1e-9,1e+21] -> [0.0,1e400,1.0]
+        lateral_force_n[0][1]: number out of range
+        [0.0,-1e-9,1e+21] -> [0.0,"1",1.0]
+        lateral_force_n[0][1]: invalid type: string
+        [0.0,-1e-9,1e+21] -> 7
+        lateral_force_n[0]: invalid type: integer `7`
+        [0.0,-1e-9,1e+21] -> [0.0,0.1]
+        lateral_force_n: row 1 has 3 numbers, expected 2 as in row 0
+        "width_m": 0.034 -> "width_m": null
+        phantom.well.width_m: invalid type: null
+        "width_m": 0.034 -> "width_m": null
+        in "\"width_m\": null,"
+        "width_m": 0.034 -> "width_mm": 34
+        phantom.well.width_mm: unknown field `width_mm`
+        "nodes": 6000 -> "nodes": -1
+        certificate.nodes: invalid value: integer `-1`
+        [0.5,0.7,0.6] -> [0.5,0.7,null]
+        certificate.min_det[1][2]: invalid type: null
+        "t6" -> 6
+        certificate.element: invalid type: integer `6`, expected a string
+        "finite_elements" -> "guess"
+        source.kind: unknown variant `guess`
+    "#;
+    let mut lines = cases.trim().lines().map(str::trim);
+    while let Some(change) = lines.next() {
+        let (old, new) = change.split_once(" -> ").unwrap();
+        let (message, named) = (refusal(old, new), lines.next().unwrap());
         assert!(message.contains(named), "{message}");
     }
+    let message = refusal("      \"width_m\": 0.034,\n", "");
+    let named = "phantom.well: missing field `width_m`";
+    assert!(message.contains(named), "{message}");
 }
 
 // Verifies: MAP-024, MAP-026.

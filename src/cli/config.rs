@@ -209,39 +209,21 @@ mod tests {
     // Verifies: CLI-031.
     #[test]
     fn a_number_out_of_its_range_is_refused_with_its_line() {
-        let file = std::env::temp_dir().join(format!("palpate-config-{}.toml", std::process::id()));
-        for (key, value, expected) in [
-            ("[mesh]\nsize_mm", "-1.0", "-1, expected a number above 0"),
-            ("[mesh]\nsize_mm", "inf", "inf, expected"),
-            (
-                "[detection]\nnoise_sd_n",
-                "0.0",
-                "0, expected a number above 0",
-            ),
-            ("[detection]\nnoise_sd_n", "nan", "NaN, expected"),
-            (
-                "[detection]\nmax_false_alarm",
-                "1.0",
-                "1, expected a probability",
-            ),
-            ("[detection]\nmax_miss", "0.0", "0, expected a probability"),
-            (
-                "[detection]\nprior_h1",
-                "1.5",
-                "1.5, expected a probability",
-            ),
+        let (above, rate) = ("a number above 0", "a probability strictly between 0 and 1");
+        for (table, key, value, expected) in [
+            ("mesh", "size_mm", -1.0, above),
+            ("mesh", "size_mm", f64::INFINITY, above),
+            ("detection", "noise_sd_n", 0.0, above),
+            ("detection", "noise_sd_n", f64::NAN, above),
+            ("detection", "max_false_alarm", 1.0, rate),
+            ("detection", "max_miss", 0.0, rate),
+            ("detection", "prior_h1", 1.5, rate),
         ] {
-            std::fs::write(&file, format!("{key} = {value}\n")).unwrap();
-            let error = Config::read(&file).unwrap_err();
-            assert_eq!(error.exit_code(), 2, "{error}");
-            let error = error.to_string();
-            assert!(
-                error.contains(".toml:2: ") && error.contains(expected),
-                "{error}"
-            );
-            let key = key.trim_start_matches('[').replace("]\n", ".");
-            assert!(error.contains(&format!(":2: {key}: ")), "{error}");
+            let text = format!("[{table}]\n{key} = {value:?}\n").replace("NaN", "nan");
+            let error = Config::from_toml(&text, "run.toml").unwrap_err();
+            let expected = format!("run.toml:2: {table}.{key}: {value}, expected {expected}");
+            assert_eq!(error.to_string(), expected);
+            assert_eq!(CliError::from(error).exit_code(), 2);
         }
-        std::fs::remove_file(&file).unwrap();
     }
 }

@@ -47,11 +47,8 @@ impl Matrix {
     /// The matrix of `columns` columns whose rows follow one another in `values`; `None` if the last
     /// row is not full.
     pub fn new(columns: usize, values: Vec<f64>) -> Option<Matrix> {
-        let full = if columns == 0 {
-            values.is_empty()
-        } else {
-            values.len().is_multiple_of(columns)
-        };
+        let rows = values.len().checked_div(columns).unwrap_or(0);
+        let full = rows * columns == values.len();
         full.then_some(Matrix { columns, values })
     }
 
