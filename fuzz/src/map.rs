@@ -53,12 +53,12 @@ pub fn check_csv(refusal: &Refusal, text: &str) {
         return;
     };
     let line = refusal.line.expect("a line");
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let content = text.split('\n').nth(line - 1).unwrap_or("");
     let quotes = |part: &str| {
         let part: String = part.trim().chars().take(80).collect();
         format!("{part:?}")[1..] == *quoted
     };
-    let content = content.trim_start_matches('\u{feff}');
     // A text without a header has an empty one.
     assert!(
         quoted == "\"" || quotes(content) || content.split(',').any(quotes),
