@@ -2,52 +2,64 @@
 //! force maps and of traces share.
 
 use crate::phantom::decimal::parse_scaled;
+use crate::refusal::Refusal;
 
 /// What a column can be called, and for each name the power of ten from its unit to SI.
 ///
 /// Implements: CON-002.
 pub(crate) type Column = &'static [(&'static str, i32)];
 
-/// What is wrong with a line of a CSV file.
-///
-/// ```
-/// use palpate::csv::CsvProblem;
-/// use palpate::force_map::{ForceMapFileProblem, ForceTable};
-///
-/// let problem = ForceTable::from_csv("depth,force\n1,2\n", "gel.csv").unwrap_err().problem;
-/// assert!(matches!(
-///     problem,
-///     ForceMapFileProblem::Csv(CsvProblem::Header { found, .. }) if found == "depth,force"
-/// ));
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CsvProblem {
-    /// A header that does not name the columns.
-    #[error("header {found:?}, expected {expected}")]
-    Header {
-        /// The header.
-        found: String,
-        /// The headers that would be right.
-        expected: &'static str,
-    },
-    /// A row with too few or too many fields.
-    #[error("{found} fields, expected {expected}, as in the header {header:?}")]
-    Fields {
-        /// Fields in the row.
-        found: usize,
-        /// Fields in the header.
-        expected: usize,
-        /// The header.
-        header: String,
-    },
-    /// A field that is no number.
-    #[error("{column} = {found:?}, expected a finite decimal number")]
-    Number {
-        /// The column, as in the header.
-        column: String,
-        /// The field.
-        found: String,
-    },
+/// A table of `N` columns.
+pub(crate) struct Table<const N: usize> {
+    /// The line of the header, from 1.
+    pub line: usize,
+    /// What the header calls each column.
+    pub names: Vec<&'static str>,
+    /// The line of each row, and its numbers in the order of the columns, SI.
+    pub rows: Vec<(usize, [f64; N])>,
+}
+
+impl<const N: usize> Table<N> {
+    /// The table in `text`, whose header must name each of `columns` once and nothing else; `expected` says so to a person.
+    ///
+    /// # Errors
+    /// Another header; a row of another length, or with a field that is no finite decimal number; with the line.
+    ///
+    /// Implements: MAP-030, MAP-031, MAP-035, MAP-038, TRC-001, TRC-002, TRC-004.
+    pub fn parse(text: &str, columns: [Column; N], expected: &str) -> Result<Self, Refusal> {
+        let ((line, header), lines) = header_and_rows(text);
+        let names: Vec<&str> = header.split(',').map(str::trim).collect();
+        let place = |column: Column| {
+            let named = |(place, field): (usize, &&str)| {
+                let &(name, power) = column.iter().find(|(name, _)| name == field)?;
+                Some((place, name, power))
+            };
+            names.iter().enumerate().find_map(named)
+        };
+        let places: Vec<_> = columns.into_iter().filter_map(place).collect();
+        // N fields and each of the N columns among them: none is there twice.
+        if [names.len(), places.len()] != [N; 2] {
+            return Err(wrong_header(header, expected).at(line));
+        }
+        let numbers = |(line, row)| {
+            let fields = fields(row, N, header)?;
+            let mut numbers = [0.0; N];
+            for (number, &(place, name, power)) in numbers.iter_mut().zip(&places) {
+                let found = fields[place];
+                *number = parse_scaled(found, power).ok_or_else(|| {
+                    let found = format!("{:?}", shortened(found));
+                    Refusal::value(name, found, "a finite decimal number")
+                })?;
+            }
+            Ok((line, numbers))
+        };
+        let rows = lines.map(|row| numbers(row).map_err(|refusal: Refusal| refusal.at(row.0)));
+        Ok(Table {
+            line,
+            rows: rows.collect::<Result<_, _>>()?,
+            names: places.into_iter().map(|(_, name, _)| name).collect(),
+        })
+    }
 }
 
 /// The lines of `text` that say something, trimmed, with their numbers from 1: neither blank nor a
@@ -63,72 +75,23 @@ pub(crate) fn header_and_rows(text: &str) -> ((usize, &str), impl Iterator<Item 
     (lines.next().unwrap_or((1, "")), lines)
 }
 
-/// Which field of a row is what.
-pub(crate) struct Header<'a, const N: usize> {
-    text: &'a str,
-    /// Place, name and power of ten of each column.
-    columns: [(usize, &'static str, i32); N],
+/// A header that does not name the columns.
+pub(crate) fn wrong_header(header: &str, expected: &str) -> Refusal {
+    Refusal::state(format!("header {:?}", shortened(header)), expected)
 }
 
-impl<'a, const N: usize> Header<'a, N> {
-    /// The header in `text`, which must name each of `columns` once and nothing else; `expected`
-    /// says so to a person.
-    ///
-    /// Implements: MAP-030, TRC-001.
-    pub(crate) fn parse(
-        text: &'a str,
-        columns: [Column; N],
-        expected: &'static str,
-    ) -> Result<Self, CsvProblem> {
-        let fields: Vec<&str> = text.split(',').map(str::trim).collect();
-        let refused = || CsvProblem::Header {
-            found: shortened(text),
-            expected,
-        };
-        // N fields and each of the N columns among them: none is there twice.
-        if fields.len() != N {
-            return Err(refused());
-        }
-        let mut places = [(0, "", 0); N];
-        for (place, names) in places.iter_mut().zip(columns) {
-            let mut found = fields.iter().enumerate().filter_map(|(place, field)| {
-                let &(name, power) = names.iter().find(|(name, _)| name == field)?;
-                Some((place, name, power))
-            });
-            *place = found.next().ok_or_else(refused)?;
-        }
-        Ok(Header {
-            text,
-            columns: places,
-        })
+/// The fields of a row, trimmed, which must be `expected` as in the header.
+pub(crate) fn fields<'a>(
+    row: &'a str,
+    expected: usize,
+    header: &str,
+) -> Result<Vec<&'a str>, Refusal> {
+    let fields: Vec<&str> = row.split(',').map(str::trim).collect();
+    if fields.len() == expected {
+        return Ok(fields);
     }
-
-    /// The name of a column in this header.
-    pub(crate) fn name(&self, column: usize) -> &'static str {
-        self.columns[column].1
-    }
-
-    /// The numbers of a row in the order of the columns, SI.
-    ///
-    /// Implements: MAP-031, MAP-035, MAP-038, TRC-002, TRC-004.
-    pub(crate) fn numbers(&self, row: &str) -> Result<[f64; N], CsvProblem> {
-        let fields: Vec<&str> = row.split(',').map(str::trim).collect();
-        if fields.len() != N {
-            return Err(CsvProblem::Fields {
-                found: fields.len(),
-                expected: N,
-                header: self.text.into(),
-            });
-        }
-        let mut numbers = [0.0; N];
-        for (number, (place, name, power)) in numbers.iter_mut().zip(self.columns) {
-            *number = parse_scaled(fields[place], power).ok_or_else(|| {
-                let (column, found) = (name.into(), shortened(fields[place]));
-                CsvProblem::Number { column, found }
-            })?;
-        }
-        Ok(numbers)
-    }
+    let expected = format!("{expected}, as in the header {header:?}");
+    Err(Refusal::state(format!("{} fields", fields.len()), expected))
 }
 
 /// The beginning of `text`, enough to recognise it in a message.

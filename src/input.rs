@@ -1,8 +1,10 @@
 //! Text files that a user names.
 
 use std::fs::File;
-use std::io::{Error, ErrorKind, Read, Result};
+use std::io::{self, Error, ErrorKind, Read};
 use std::path::Path;
+
+use crate::refusal::Refusal;
 
 /// The longest text that is read, bytes: more than an hour of playback, recorded.
 const LONGEST: u64 = 256 << 20;
@@ -10,7 +12,7 @@ const LONGEST: u64 = 256 << 20;
 /// The text of a file in UTF-8, which may be a pipe or a device, but not an endless one.
 ///
 /// Implements: CLI-008.
-pub fn read(path: &Path) -> Result<String> {
+pub fn read(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     let length = File::open(path)?
         .take(LONGEST + 1)
@@ -20,4 +22,24 @@ pub fn read(path: &Path) -> Result<String> {
         return Err(Error::new(ErrorKind::InvalidData, message));
     }
     Ok(text)
+}
+
+/// What `parse` makes of the text of a file and its name.
+///
+/// # Errors
+/// A file that is no text; whatever `parse` refuses.
+pub fn parse<T>(
+    path: &Path,
+    parse: impl FnOnce(&str, &str) -> Result<T, Refusal>,
+) -> Result<T, Refusal> {
+    let file = path.display().to_string();
+    match read(path) {
+        Ok(text) => parse(&text, &file),
+        Err(error) => Err(Refusal::state(format!("cannot be read: {error}"), "").in_file(file)),
+    }
+}
+
+/// The line of byte `at` of `text`, from 1.
+pub fn line_of(text: &str, at: usize) -> usize {
+    1 + text.bytes().take(at).filter(|&byte| byte == b'\n').count()
 }

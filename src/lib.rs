@@ -67,7 +67,7 @@ pub mod build;
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "std")]
-pub mod csv;
+mod csv;
 pub mod detect;
 #[cfg(feature = "fem")]
 pub mod fem;

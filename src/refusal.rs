@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-/// Why an input is refused: where it stands, what it is, and what would be right.
+use crate::csv::one_line;
+
+/// Why an input is refused: where it stands, what it is, and what would be right. The message is one line, whatever it quotes.
 ///
 /// Where nothing but the message is of use, this is the error. A reason that a caller branches on has an enum of its own.
 ///
@@ -78,14 +80,14 @@ impl fmt::Display for Refusal {
             (file, None) => write!(f, "{file}: ")?,
             (file, Some(line)) => write!(f, "{file}:{line}: ")?,
         }
-        if !self.key.is_empty() {
-            write!(f, "{} = ", self.key)?;
-        }
-        f.write_str(&self.found)?;
-        match &*self.expected {
-            "" => Ok(()),
-            expected => write!(f, ", expected {expected}"),
-        }
+        let equals = if self.key.is_empty() { "" } else { " = " };
+        let comma = if self.expected.is_empty() {
+            ""
+        } else {
+            ", expected "
+        };
+        let parts = [&*self.key, equals, &self.found, comma, &self.expected];
+        f.write_str(&one_line(&parts.concat()))
     }
 }
 

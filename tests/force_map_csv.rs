@@ -200,7 +200,7 @@ fn a_measured_map_keeps_the_files_name_without_its_folder() {
     assert!(
         error
             .to_string()
-            .starts_with("lab/gel.csv: phantom: depth_mm = 15.5, allowed: ")
+            .starts_with("lab/gel.csv: phantom: depth_mm = 15.5, expected ")
     );
 }
 

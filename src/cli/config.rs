@@ -6,12 +6,12 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::lists::{Positions, positions};
-use super::output::read;
 use super::solve::phantom;
 use super::{CliError, ContactName};
-use crate::csv::one_line;
 use crate::fem::MESH_SIZE;
+use crate::input::line_of;
 use crate::phantom::{BUILTIN_NAMES, Phantom};
+use crate::refusal::Refusal;
 use crate::report::Settings;
 
 /// The paper's run, or what a file says instead.
@@ -21,9 +21,9 @@ use crate::report::Settings;
 #[serde(deny_unknown_fields, default)]
 pub struct Config {
     /// The phantom without inclusion: built in or a file.
-    pub reference: String,
+    pub reference: Spanned<String>,
     /// The phantoms that are compared with it.
-    pub phantoms: Vec<String>,
+    pub phantoms: Vec<Spanned<String>>,
     /// Files of measured force maps, shown beside the computed ones.
     pub measured: Vec<PathBuf>,
     /// Depths of the probe.
@@ -35,7 +35,11 @@ pub struct Config {
     /// How the forces are computed.
     pub mesh: Mesh,
     /// What the detector assumes.
-    pub detection: Detection,
+    #[serde(with = "Detection")]
+    pub detection: Settings,
+    /// The file and its text; empty for the paper's run.
+    #[serde(skip)]
+    source: [String; 2],
 }
 
 /// How the forces are computed.
@@ -49,42 +53,41 @@ pub struct Mesh {
     pub contact: ContactName,
 }
 
-/// What the detector assumes.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Detection {
-    /// Standard deviation of the noise on a sample, N.
-    #[serde(deserialize_with = "positive")]
-    pub noise_sd_n: f64,
-    /// Largest false-alarm rate.
+/// [`Settings`] in the keys of the file.
+#[derive(Deserialize)]
+#[serde(
+    remote = "Settings",
+    deny_unknown_fields,
+    default = "Settings::default"
+)]
+struct Detection {
+    #[serde(rename = "noise_sd_n", deserialize_with = "positive")]
+    noise_sd: f64,
     #[serde(deserialize_with = "probability")]
-    pub max_false_alarm: f64,
-    /// Largest miss rate.
+    max_false_alarm: f64,
     #[serde(deserialize_with = "probability")]
-    pub max_miss: f64,
-    /// Prior probability of an inclusion.
+    max_miss: f64,
     #[serde(deserialize_with = "probability")]
-    pub prior_h1: f64,
+    prior_h1: f64,
 }
 
 impl Default for Config {
     fn default() -> Self {
         let half_millimetres = |first: i32, last: i32| {
             // Halves of a millimetre from their decimal text, as a file would give them.
-            Positions(
-                (first..=last)
-                    .map(|k| f64::from(5 * k) / 10_000.0)
-                    .collect(),
-            )
+            let halves = first..=last;
+            Positions(halves.map(|k| f64::from(5 * k) / 10_000.0).collect())
         };
+        let name = |name: &str| Spanned::new(0..0, name.into());
         Config {
-            reference: BUILTIN_NAMES[0].into(),
-            phantoms: BUILTIN_NAMES[1..].iter().map(|&name| name.into()).collect(),
+            reference: name(BUILTIN_NAMES[0]),
+            phantoms: BUILTIN_NAMES[1..].iter().copied().map(name).collect(),
             measured: Vec::new(),
             depths_mm: half_millimetres(0, 8),
             laterals_mm: half_millimetres(-20, 20),
             mesh: Mesh::default(),
-            detection: Detection::default(),
+            detection: Settings::default(),
+            source: Default::default(),
         }
     }
 }
@@ -98,69 +101,58 @@ impl Default for Mesh {
     }
 }
 
-impl Default for Detection {
-    fn default() -> Self {
-        let Settings {
-            max_false_alarm,
-            max_miss,
-            prior_h1,
-            noise_sd,
-        } = Settings::default();
-        Detection {
-            noise_sd_n: noise_sd,
-            max_false_alarm,
-            max_miss,
-            prior_h1,
-        }
-    }
-}
-
 impl Config {
     /// Reads a file; keys that it leaves out are the paper's.
     pub fn read(path: &Path) -> Result<Config, CliError> {
-        Config::from_toml(&read(path)?, &path.display().to_string())
+        Ok(crate::input::parse(path, Config::from_toml)?)
     }
 
     /// The configuration in `text`, the content of `file`.
     ///
     /// # Errors
-    /// [`CliError::Usage`] with file, line and key.
+    /// What is wrong, with file, line and key.
     ///
     /// Implements: CLI-031.
-    pub fn from_toml(text: &str, file: &str) -> Result<Config, CliError> {
-        let refused = |at: Option<usize>, message: &str| {
+    pub fn from_toml(text: &str, file: &str) -> Result<Config, Refusal> {
+        let refused = |key: &str, error: &toml::de::Error| {
             // What the parser has no place for, such as too deep a nesting, it found up to the end.
-            let line = line_of(text, at.unwrap_or(text.len()));
-            CliError::Usage(format!("{file}:{line}: {}", one_line(message)))
+            let at = error.span().map_or(text.len(), |span| span.start);
+            let message = format!("{key}{}", error.message());
+            let line = line_of(text, at);
+            Refusal::state(message, "").at(line).in_file(file)
         };
-        let start = |error: &toml::de::Error| error.span().map(|span| span.start);
-        let document = toml::Deserializer::parse(text)
-            .map_err(|error| refused(start(&error), error.message()))?;
-        serde_path_to_error::deserialize(document).map_err(|error| {
-            let (path, error) = (error.path().to_string(), error.into_inner());
-            let key = if path == "." {
-                String::new()
-            } else {
-                path + ": "
+        let document = toml::Deserializer::parse(text).map_err(|error| refused("", &error))?;
+        let config = serde_path_to_error::deserialize(document).map_err(|error| {
+            let key = match error.path().to_string() {
+                path if path == "." => String::new(),
+                path => path + ": ",
             };
-            refused(start(&error), &(key + error.message()))
-        })
+            refused(&key, error.inner())
+        })?;
+        let source = [file.into(), text.into()];
+        Ok(Config { source, ..config })
     }
 
-    /// The reference, then the phantoms that are compared with it. `file` is that of the configuration.
+    /// The reference, then the phantoms that are compared with it.
     ///
     /// # Errors
     /// As [`phantom`], and if the probe cannot stand at one of the poses; with file, line and key.
-    pub fn read_phantoms(&self, file: Option<&Path>) -> Result<Vec<Phantom>, CliError> {
+    pub fn read_phantoms(&self) -> Result<Vec<Phantom>, CliError> {
         let names = std::iter::once(&self.reference).chain(&self.phantoms);
-        let read = |(index, name): (usize, &String)| {
-            self.read_phantom(name).map_err(|error| match error {
-                CliError::Usage(message) => {
-                    let place = file.and_then(|file| place_of_phantom(file, index));
-                    CliError::Usage(place.unwrap_or_default() + &message)
-                }
-                other => other,
-            })
+        let read = |(index, name): (usize, &Spanned<String>)| {
+            self.read_phantom(name.as_ref())
+                .map_err(|error| match error {
+                    CliError::Usage(message) if !name.span().is_empty() => {
+                        let key = match index {
+                            0 => "reference".into(),
+                            after => format!("phantoms[{}]", after - 1),
+                        };
+                        let [file, text] = &self.source;
+                        let line = line_of(text, name.span().start);
+                        CliError::Usage(format!("{file}:{line}: {key}: {message}"))
+                    }
+                    other => other,
+                })
         };
         names.enumerate().map(read).collect()
     }
@@ -175,45 +167,6 @@ impl Config {
         }
         Ok(phantom)
     }
-
-    /// Settings of the detector.
-    pub fn settings(&self) -> Settings {
-        let Detection {
-            noise_sd_n,
-            max_false_alarm,
-            max_miss,
-            prior_h1,
-        } = self.detection;
-        Settings {
-            max_false_alarm,
-            max_miss,
-            prior_h1,
-            noise_sd: noise_sd_n,
-        }
-    }
-}
-
-/// File, line and key of a phantom in a configuration, 0 for the reference.
-fn place_of_phantom(file: &Path, index: usize) -> Option<String> {
-    #[derive(Default, Deserialize)]
-    #[serde(default)]
-    struct Places {
-        reference: Option<Spanned<String>>,
-        phantoms: Vec<Spanned<String>>,
-    }
-    let text = crate::input::read(file).ok()?;
-    let places: Places = toml::from_str(&text).ok()?;
-    let (key, name) = match index.checked_sub(1) {
-        None => ("reference".into(), places.reference.as_ref()?),
-        Some(k) => (format!("phantoms[{k}]"), places.phantoms.get(k)?),
-    };
-    let line = line_of(&text, name.span().start);
-    Some(format!("{}:{line}: {key}: ", file.display()))
-}
-
-/// The line of byte `at` of `text`, from 1.
-fn line_of(text: &str, at: usize) -> usize {
-    1 + text.get(..at).unwrap_or(text).matches('\n').count()
 }
 
 fn list<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Positions, D::Error> {
@@ -223,32 +176,30 @@ fn list<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Positions, 
 
 /// Refused here, with its line, rather than after all maps are solved.
 fn positive<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    let is_positive = |number: f64| number.is_finite() && number > 0.0;
-    number(deserializer, is_positive, "a number above 0")
+    number(deserializer, f64::MAX, "a number above 0")
 }
 
 fn probability<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    let is_probability = |number: f64| number > 0.0 && number < 1.0;
+    let below_1 = 1f64.next_down();
     number(
         deserializer,
-        is_probability,
+        below_1,
         "a probability strictly between 0 and 1",
     )
 }
 
+/// A number above 0 and at most `most`.
 fn number<'de, D: serde::Deserializer<'de>>(
     deserializer: D,
-    allowed: impl Fn(f64) -> bool,
+    most: f64,
     expected: &str,
 ) -> Result<f64, D::Error> {
     let number = f64::deserialize(deserializer)?;
-    if allowed(number) {
-        Ok(number)
-    } else {
-        Err(serde::de::Error::custom(format!(
-            "{number}, expected {expected}"
-        )))
+    if number > 0.0 && number <= most {
+        return Ok(number);
     }
+    let message = format!("{number}, expected {expected}");
+    Err(serde::de::Error::custom(message))
 }
 
 #[cfg(test)]
@@ -258,39 +209,21 @@ mod tests {
     // Verifies: CLI-031.
     #[test]
     fn a_number_out_of_its_range_is_refused_with_its_line() {
-        let file = std::env::temp_dir().join(format!("palpate-config-{}.toml", std::process::id()));
-        for (key, value, expected) in [
-            ("[mesh]\nsize_mm", "-1.0", "-1, expected a number above 0"),
-            ("[mesh]\nsize_mm", "inf", "inf, expected"),
-            (
-                "[detection]\nnoise_sd_n",
-                "0.0",
-                "0, expected a number above 0",
-            ),
-            ("[detection]\nnoise_sd_n", "nan", "NaN, expected"),
-            (
-                "[detection]\nmax_false_alarm",
-                "1.0",
-                "1, expected a probability",
-            ),
-            ("[detection]\nmax_miss", "0.0", "0, expected a probability"),
-            (
-                "[detection]\nprior_h1",
-                "1.5",
-                "1.5, expected a probability",
-            ),
+        let (above, rate) = ("a number above 0", "a probability strictly between 0 and 1");
+        for (table, key, value, expected) in [
+            ("mesh", "size_mm", -1.0, above),
+            ("mesh", "size_mm", f64::INFINITY, above),
+            ("detection", "noise_sd_n", 0.0, above),
+            ("detection", "noise_sd_n", f64::NAN, above),
+            ("detection", "max_false_alarm", 1.0, rate),
+            ("detection", "max_miss", 0.0, rate),
+            ("detection", "prior_h1", 1.5, rate),
         ] {
-            std::fs::write(&file, format!("{key} = {value}\n")).unwrap();
-            let error = Config::read(&file).unwrap_err();
-            assert_eq!(error.exit_code(), 2, "{error}");
-            let error = error.to_string();
-            assert!(
-                error.contains(".toml:2: ") && error.contains(expected),
-                "{error}"
-            );
-            let key = key.trim_start_matches('[').replace("]\n", ".");
-            assert!(error.contains(&format!(":2: {key}: ")), "{error}");
+            let text = format!("[{table}]\n{key} = {value:?}\n").replace("NaN", "nan");
+            let error = Config::from_toml(&text, "run.toml").unwrap_err();
+            let expected = format!("run.toml:2: {table}.{key}: {value}, expected {expected}");
+            assert_eq!(error.to_string(), expected);
+            assert_eq!(CliError::from(error).exit_code(), 2);
         }
-        std::fs::remove_file(&file).unwrap();
     }
 }

@@ -2,11 +2,9 @@
 
 use crate::csv::one_line;
 use crate::fem::FemError;
-use crate::force_map::ForceMapFileError;
-use crate::phantom::PhantomFileError;
 use crate::psychophysics::{PsychophysicsError, TableError};
+use crate::refusal::Refusal;
 use crate::report::ReportError;
-use crate::trace::TraceError;
 
 /// Why a command failed. Its message is one line.
 ///
@@ -16,15 +14,9 @@ pub enum CliError {
     /// The command line cannot be understood.
     #[error("{0}")]
     Usage(String),
-    /// A phantom's file is not valid.
+    /// A phantom, a force map or a trace is not valid, or they do not fit one another.
     #[error("{0}")]
-    Phantom(#[from] PhantomFileError),
-    /// A force map's file is not valid.
-    #[error("{0}")]
-    Map(#[from] ForceMapFileError),
-    /// A trace is not valid, or not for these maps.
-    #[error("{0}")]
-    Trace(#[from] TraceError),
+    Refused(#[from] Refusal),
     /// Counts of right answers are not valid.
     #[error("{0}")]
     Counts(#[from] TableError),

@@ -18,32 +18,29 @@ const UNITS_PER_MM: i32 = 9;
 /// # Errors
 /// A message that names the entry and what would be right.
 pub fn positions(text: &str) -> Result<Positions, String> {
-    let values = match text.split(':').collect::<Vec<_>>()[..] {
-        [_] => text
-            .split(',')
-            .map(|entry| metres(entry.trim()))
-            .collect::<Result<Vec<_>, _>>()?,
-        [from, to, step] => steps(from.trim(), to.trim(), step.trim())?,
+    let parts: Vec<&str> = text.split(':').map(str::trim).collect();
+    let values = match parts[..] {
+        [list] => {
+            let entries = list.split(',').map(|entry| metres(entry.trim()));
+            entries.collect::<Result<Vec<_>, _>>()?
+        }
+        [from, to, step] => steps(from, to, step)?,
         _ => {
-            return Err(format!(
-                "{text:?}: expected a,b,c or from:to:step in mm, such as 0:4:0.5"
-            ));
+            let forms = "a,b,c or from:to:step in mm, such as 0:4:0.5";
+            return Err(format!("{text:?}: expected {forms}"));
         }
     };
-    if values.len() > MOST {
-        return Err(format!(
-            "{} positions, expected at most {MOST}",
-            values.len()
-        ));
+    let count = values.len();
+    if count > MOST {
+        return Err(format!("{count} positions, expected at most {MOST}"));
     }
-    match values.windows(2).find(|pair| pair[0] >= pair[1]) {
-        Some(pair) => Err(format!(
-            "{} mm after {} mm: expected increasing positions",
-            format_scaled(pair[1], 3),
-            format_scaled(pair[0], 3)
-        )),
-        None => Ok(Positions(values)),
-    }
+    let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else {
+        return Ok(Positions(values));
+    };
+    let (before, after) = (format_scaled(pair[0], 3), format_scaled(pair[1], 3));
+    Err(format!(
+        "{after} mm after {before} mm: expected increasing positions"
+    ))
 }
 
 /// Reads one length above 0 in mm, m.

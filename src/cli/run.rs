@@ -36,7 +36,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
         Some(path) => Config::read(path)?,
         None => Config::default(),
     };
-    let phantoms = config.read_phantoms(arguments.config.as_deref())?;
+    let phantoms = config.read_phantoms()?;
     let measured = config
         .measured
         .iter()
@@ -98,7 +98,7 @@ fn study(
         maps,
         measured,
         deformed,
-        settings: config.settings(),
+        settings: config.detection,
     })
 }
 

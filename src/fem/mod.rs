@@ -32,8 +32,7 @@ mod tests;
 mod triangulate;
 mod vtu;
 
-use crate::force_map::InvalidForceMap;
-use crate::phantom::{InvalidPhantom, PoseError};
+use crate::refusal::Refusal;
 pub use contact::{Contact, ContactState, Surface};
 pub use field::{Field, FieldCheck};
 pub use mesh::{Mesh, Region};
@@ -66,15 +65,12 @@ pub struct Pose {
 ///
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FemError {
-    /// The phantom is not valid.
+    /// The phantom is not valid, or the forces do not make a map: its axes are not valid, or the forces are not symmetric.
     #[error(transparent)]
-    Phantom(#[from] InvalidPhantom),
+    Refused(Box<Refusal>),
     /// The probe cannot stand there.
     #[error(transparent)]
-    Pose(#[from] PoseError),
-    /// The forces do not make a map: its axes are not valid, or the forces are not symmetric.
-    #[error(transparent)]
-    Map(#[from] InvalidForceMap),
+    Pose(Box<Refusal>),
     /// The mesh size is no length.
     #[error("mesh size {} mm, expected a finite number above 0", size * 1e3)]
     MeshSize {
@@ -135,4 +131,10 @@ pub enum FemError {
     /// Memory ran out.
     #[error("out of memory")]
     OutOfMemory,
+}
+
+impl From<Refusal> for FemError {
+    fn from(refusal: Refusal) -> FemError {
+        FemError::Refused(refusal.into())
+    }
 }

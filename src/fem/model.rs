@@ -70,12 +70,12 @@ impl Model {
     /// let mut phantom = Phantom::builtin("6.6")?;
     /// phantom.layers[1].material.poisson_ratio = 0.5; // would be incompressible
     /// let refused = Model::new(&phantom, MESH_SIZE, Contact::default());
-    /// assert!(matches!(refused, Err(FemError::Phantom(_))));
-    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+    /// assert!(matches!(refused, Err(FemError::Refused(_))));
+    /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
     /// # Errors
-    /// [`FemError::Phantom`] for a phantom that is not valid, and as [`Mesh::new`], [`StiffnessMatrix::assemble`] and
+    /// [`FemError::Refused`] for a phantom that is not valid, and as [`Mesh::new`], [`StiffnessMatrix::assemble`] and
     /// [`Factor::new`].
     pub fn new(phantom: &Phantom, mesh_size: f64, contact: Contact) -> Result<Model, FemError> {
         phantom.validate()?;
@@ -116,6 +116,11 @@ impl Model {
         &self.surface
     }
 
+    fn check_pose(&self, pose: Pose) -> Result<(), FemError> {
+        let checked = self.phantom.check_pose(pose.depth, pose.lateral);
+        checked.map_err(|refusal| FemError::Pose(refusal.into()))
+    }
+
     /// The force at one pose.
     ///
     /// # Errors
@@ -123,7 +128,7 @@ impl Model {
     ///
     /// Implements: FEM-019, FEM-020, FEM-021, FEM-025, FEM-039, FEM-080.
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
-        self.phantom.check_pose(pose.depth, pose.lateral)?;
+        self.check_pose(pose)?;
         // Where the phantom is symmetric the right half stands for both, so that mirrored poses have mirrored forces to the bit.
         let mirror = self.mesh.symmetric && pose.lateral < 0.0;
         let lateral = if mirror { -pose.lateral } else { pose.lateral };
@@ -265,7 +270,7 @@ impl Model {
     /// Implements: FEM-014, FEM-015, FEM-038, FEM-061.
     ///
     /// # Errors
-    /// As [`Model::solve`], and [`FemError::Residual`], [`FemError::Map`].
+    /// As [`Model::solve`], and [`FemError::Residual`], [`FemError::Refused`].
     pub fn map(
         &self,
         depths: &[f64],
@@ -277,7 +282,7 @@ impl Model {
         ForceTable::new(depths.to_vec(), laterals.to_vec(), zeros(), zeros())?;
         for &lateral in laterals {
             for &depth in depths {
-                self.phantom.check_pose(depth, lateral)?;
+                self.check_pose(Pose { depth, lateral })?;
             }
         }
         let right = self.solved_laterals(laterals);

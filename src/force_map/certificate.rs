@@ -2,41 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{InvalidForceMap, Matrix, SAME_POSITION};
+use super::table::check_number;
+use super::{Matrix, SAME_POSITION};
+use crate::refusal::Refusal;
 
 /// The evidence that comes with a map from finite elements. Plain data; [`super::ForceMap::new`]
 /// checks it.
-///
-/// ```
-/// use palpate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
-/// use palpate::phantom::Phantom;
-///
-/// let matrix = |value| Matrix::from_fn(1, 1, |_, _| value);
-/// let certificate = Certificate {
-///     worst_relative_residual: 1e-14,
-///     worst_force_balance: 1e-12,
-///     largest_penetration: 0.0,
-///     newton_iterations: 12,
-///     mesh_size: 0.00075,
-///     nodes: 4000,
-///     elements: 2000,
-///     element: "t6".into(),
-///     contact: "deformed".into(),
-///     arithmetic: "other".into(),
-///     smallest_det: SmallestDet { det: 0.7, depth: 0.004, lateral: 0.0 },
-///     min_det: matrix(0.6),
-///     discretization: None,
-/// };
-/// // The smallest determinant that it names is not that of its matrix.
-/// let forces = ForceTable::new(vec![0.004], vec![0.0], matrix(1.5), matrix(0.0))?;
-/// let map = ForceMap::new(
-///     Source::FiniteElements { certificate },
-///     Some(Phantom::builtin("6.6")?),
-///     forces,
-/// );
-/// assert!(map.unwrap_err().to_string().starts_with("certificate.smallest_det = 0.7"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 ///
 /// Implements: MAP-006.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -80,17 +51,6 @@ pub struct Certificate {
 }
 
 /// Bands of the discretisation around the forces of a map, from three meshes.
-///
-/// ```
-/// use palpate::force_map::{Discretization, Matrix};
-///
-/// let bands = Discretization {
-///     nodes: [4000, 1000, 250],
-///     normal_force_band: Matrix::from_fn(1, 3, |_, column| [0.001, 0.003, 0.002][column]),
-///     lateral_force_band: Matrix::from_fn(1, 3, |_, _| 0.0005),
-/// };
-/// assert_eq!(bands.largest(), [0.003, 0.0005]);
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Discretization {
@@ -110,69 +70,9 @@ impl Discretization {
         [&self.normal_force_band, &self.lateral_force_band]
             .map(|bands| bands.values().iter().copied().fold(0.0, f64::max))
     }
-
-    /// Implements: MAP-051.
-    fn check(&self, expected: [usize; 2]) -> Result<(), InvalidForceMap> {
-        for (key, bands) in [
-            (
-                "certificate.discretization.normal_force_band_n",
-                &self.normal_force_band,
-            ),
-            (
-                "certificate.discretization.lateral_force_band_n",
-                &self.lateral_force_band,
-            ),
-        ] {
-            check_shape(key, bands, expected)?;
-            let wrong = |(_, _, band): &(usize, usize, f64)| !(band.is_finite() && *band >= 0.0);
-            if let Some((row, column, value)) = bands.entries().find(wrong) {
-                return Err(InvalidForceMap::Band {
-                    key,
-                    row,
-                    column,
-                    value,
-                });
-            }
-        }
-        Ok(())
-    }
-
-    fn map(&self, change: impl Fn(&Matrix) -> Matrix) -> Discretization {
-        Discretization {
-            nodes: self.nodes,
-            normal_force_band: change(&self.normal_force_band),
-            lateral_force_band: change(&self.lateral_force_band),
-        }
-    }
-}
-
-fn check_shape(
-    key: &'static str,
-    matrix: &Matrix,
-    expected: [usize; 2],
-) -> Result<(), InvalidForceMap> {
-    let found = [matrix.row_count(), matrix.column_count()];
-    if found == expected {
-        Ok(())
-    } else {
-        Err(InvalidForceMap::Shape {
-            key,
-            found,
-            expected,
-        })
-    }
 }
 
 /// The smallest det(I + ∇u) of a map, and where.
-///
-/// ```
-/// use palpate::force_map::{Matrix, SmallestDet};
-///
-/// let min_det = Matrix::from_fn(1, 3, |_, column| [0.6, 0.7, 0.6][column]);
-/// let smallest = SmallestDet::of(&min_det, &[0.004], &[0.0, 0.002, 0.004]);
-/// // Of the two that are equal the one nearest to x = 0.
-/// assert_eq!(smallest, Some(SmallestDet { det: 0.6, depth: 0.004, lateral: 0.0 }));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SmallestDet {
@@ -209,41 +109,42 @@ impl SmallestDet {
 }
 
 impl Certificate {
-    /// Whether every number is finite and possible, and `min_det` belongs to these axes (m).
+    /// Whether every number is finite and possible, and the matrices belong to these axes (m).
     ///
-    /// Implements: MAP-006, MAP-007.
-    pub(super) fn check(&self, depths: &[f64], laterals: &[f64]) -> Result<(), InvalidForceMap> {
-        not_negative("worst_relative_residual", self.worst_relative_residual)?;
-        not_negative("worst_force_balance_n", self.worst_force_balance)?;
-        not_negative("largest_penetration_m", self.largest_penetration)?;
-        not_negative("mesh_size_m", self.mesh_size)?;
-        let key = "certificate.min_det";
-        let expected = [depths.len(), laterals.len()];
-        check_shape(key, &self.min_det, expected)?;
-        if let Some(discretization) = &self.discretization {
-            discretization.check(expected)?;
+    /// Implements: MAP-006, MAP-007, MAP-051.
+    pub(super) fn check(&self, depths: &[f64], laterals: &[f64]) -> Result<(), Refusal> {
+        for (key, value) in [
+            (
+                "certificate.worst_relative_residual",
+                self.worst_relative_residual,
+            ),
+            (
+                "certificate.worst_force_balance_n",
+                self.worst_force_balance,
+            ),
+            (
+                "certificate.largest_penetration_m",
+                self.largest_penetration,
+            ),
+            ("certificate.mesh_size_m", self.mesh_size),
+        ] {
+            check_number(key, value, 0.0)?;
         }
-        if let Some((row, column, value)) =
-            self.min_det.entries().find(|(_, _, det)| !det.is_finite())
-        {
-            return Err(InvalidForceMap::Force {
-                key,
-                row,
-                column,
-                value,
-            });
+        let shape = [depths.len(), laterals.len()];
+        self.min_det
+            .check("certificate.min_det", shape, f64::NEG_INFINITY)?;
+        if let Some(bands) = &self.discretization {
+            let (normal, lateral) = (&bands.normal_force_band, &bands.lateral_force_band);
+            normal.check("certificate.discretization.normal_force_band_n", shape, 0.0)?;
+            lateral.check(
+                "certificate.discretization.lateral_force_band_n",
+                shape,
+                0.0,
+            )?;
         }
-        self.check_smallest(depths, laterals)
-    }
-
-    fn check_smallest(&self, depths: &[f64], laterals: &[f64]) -> Result<(), InvalidForceMap> {
         let stated = self.smallest_det;
-        let least = self
-            .min_det
-            .values()
-            .iter()
-            .copied()
-            .fold(f64::INFINITY, f64::min);
+        let dets = self.min_det.values().iter().copied();
+        let least = dets.fold(f64::INFINITY, f64::min);
         let index = |axis: &[f64], value: f64| {
             axis.iter()
                 .position(|position| (position - value).abs() <= SAME_POSITION)
@@ -252,51 +153,33 @@ impl Certificate {
             .zip(index(laterals, stated.lateral))
             .map(|(row, column)| self.min_det.row(row)[column]);
         if stated.det == least && there == Some(least) {
-            Ok(())
-        } else {
-            Err(InvalidForceMap::SmallestDet { stated, least })
+            return Ok(());
         }
+        let SmallestDet {
+            det,
+            depth,
+            lateral,
+        } = stated;
+        Err(Refusal::value(
+            "certificate.smallest_det",
+            format!("{det} at depth {depth} m, lateral {lateral} m"),
+            format!("the smallest entry of min_det, {least}, and its pose"),
+        ))
     }
 
-    /// This certificate for the map with some of its columns, at lateral positions `laterals` (m).
+    /// This certificate with some of the columns of its matrices, in any order.
     ///
     /// Implements: MAP-052.
-    pub(super) fn at_columns(
-        &self,
-        columns: &[usize],
-        depths: &[f64],
-        laterals: &[f64],
-    ) -> Result<Certificate, InvalidForceMap> {
-        let min_det = self.min_det.at_columns(columns);
-        let Some(smallest_det) = SmallestDet::of(&min_det, depths, laterals) else {
-            return Err(InvalidForceMap::EmptyAxis { key: "laterals_m" });
+    pub(super) fn at_columns(&self, columns: &[usize]) -> Certificate {
+        let bands = |bands: &Discretization| Discretization {
+            nodes: bands.nodes,
+            normal_force_band: bands.normal_force_band.at_columns(columns),
+            lateral_force_band: bands.lateral_force_band.at_columns(columns),
         };
-        Ok(Certificate {
-            min_det,
-            smallest_det,
-            discretization: (self.discretization.as_ref())
-                .map(|bands| bands.map(|matrix| matrix.at_columns(columns))),
-            ..self.clone()
-        })
-    }
-
-    /// This certificate for the map that symmetry extends to x < 0.
-    ///
-    /// Implements: MAP-052.
-    pub(super) fn mirrored(&self) -> Certificate {
         Certificate {
-            min_det: self.min_det.mirrored(|det| det, |det| det),
-            discretization: (self.discretization.as_ref())
-                .map(|bands| bands.map(|matrix| matrix.mirrored(|band| band, |band| band))),
+            min_det: self.min_det.at_columns(columns),
+            discretization: self.discretization.as_ref().map(bands),
             ..self.clone()
         }
-    }
-}
-
-fn not_negative(key: &'static str, value: f64) -> Result<(), InvalidForceMap> {
-    if value.is_finite() && value >= 0.0 {
-        Ok(())
-    } else {
-        Err(InvalidForceMap::Certificate { key, value })
     }
 }

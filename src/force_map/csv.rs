@@ -1,13 +1,12 @@
 //! Measured force maps as CSV (`spec/force-map.md`).
 
-use std::cmp::Ordering;
 use std::path::Path;
 
-use super::file::{ForceMapFileError, ForceMapFileProblem};
 use super::{ForceMap, ForceTable, Matrix, Source};
-use crate::csv::{Column, Header, header_and_rows};
+use crate::csv::{Column, Table};
 use crate::phantom::Phantom;
 use crate::phantom::decimal::format_scaled;
+use crate::refusal::Refusal;
 
 /// Depth, lateral position, normal force, lateral force.
 const COLUMNS: [Column; 4] = [
@@ -30,12 +29,12 @@ impl ForceMap {
     /// let map = ForceMap::from_csv(text, "gel.csv", "third gel", None)?;
     /// assert_eq!((map.depths(), map.laterals()), (&[0.004][..], &[0.0, 0.002][..]));
     /// assert_eq!(map.lateral_force().values(), [0.0, -0.125]);
-    /// # Ok::<(), palpate::force_map::ForceMapFileError>(())
+    /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
     /// # Errors
-    /// [`ForceMapFileError`] if the header does not name the four columns, a row is malformed, a
-    /// pose is missing or there twice, or the forces make no map (see [`ForceMap::new`]).
+    /// The header does not name the four columns, a row is malformed, a pose is missing or there twice, or the forces make no map
+    /// (see [`ForceMap::new`]); with the file, and the line where there is one.
     ///
     /// Implements: MAP-026, MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-037, MAP-038.
     pub fn from_csv(
@@ -43,17 +42,14 @@ impl ForceMap {
         file: &str,
         note: &str,
         phantom: Option<Phantom>,
-    ) -> Result<ForceMap, ForceMapFileError> {
+    ) -> Result<ForceMap, Refusal> {
         let forces = ForceTable::from_csv(text, file)?;
-        let name = Path::new(file)
-            .file_name()
-            .map(|name| name.to_string_lossy().into_owned());
+        let name = Path::new(file).file_name().unwrap_or_default();
         let source = Source::Measured {
-            file: name.unwrap_or_default(),
+            file: name.to_string_lossy().into_owned(),
             note: note.into(),
         };
-        ForceMap::new(source, phantom, forces)
-            .map_err(|invalid| ForceMapFileProblem::from(invalid).at(file, None))
+        ForceMap::new(source, phantom, forces).map_err(|refusal| refusal.in_file(file))
     }
 }
 
@@ -83,104 +79,68 @@ impl ForceTable {
     /// As [`ForceMap::from_csv`].
     ///
     /// Implements: MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-038.
-    pub fn from_csv(text: &str, file: &str) -> Result<ForceTable, ForceMapFileError> {
-        let refused = |line| move |problem| ForceMapFileProblem::from(problem).at(file, line);
-        let ((line, header), rows) = header_and_rows(text);
-        let header = Header::parse(header, COLUMNS, EXPECTED_HEADER).map_err(refused(line))?;
-        let mut points = Vec::new();
-        for (line, row) in rows {
-            let numbers = header.numbers(row).map_err(refused(line))?;
-            points.push(Point::new(line, numbers));
-        }
-        check_grid(&mut points, file).and_then(|(depths, laterals)| {
-            let columns = laterals.len();
-            let matrix = |force: fn(&Point) -> f64| {
-                Matrix::from_fn(depths.len(), columns, |row, column| {
-                    force(&points[row * columns + column])
-                })
-            };
-            let normal = matrix(|point| point.normal_force);
-            let lateral = matrix(|point| point.lateral_force);
-            ForceTable::new(depths, laterals, normal, lateral)
-                .map_err(|invalid| ForceMapFileProblem::from(invalid).at(file, None))
-        })
+    pub fn from_csv(text: &str, file: &str) -> Result<ForceTable, Refusal> {
+        let table = Table::parse(text, COLUMNS, EXPECTED_HEADER);
+        table
+            .and_then(|table| on_a_grid(table.rows))
+            .map_err(|refusal| refusal.in_file(file))
     }
 }
 
-/// One row of the file, SI.
-struct Point {
-    line: usize,
-    depth: f64,
-    lateral: f64,
-    normal_force: f64,
-    lateral_force: f64,
-}
-
-impl Point {
-    /// The row in `line` with the numbers of [`COLUMNS`].
-    fn new(line: usize, [depth, lateral, normal_force, lateral_force]: [f64; 4]) -> Point {
-        Point {
-            line,
-            // Adding 0 makes −0 the same position as 0.
-            depth: depth + 0.0,
-            lateral: lateral + 0.0,
-            normal_force,
-            lateral_force,
-        }
-    }
-
-    fn order(&self, other: &Point) -> Ordering {
-        let depths = self.depth.total_cmp(&other.depth);
-        depths.then(self.lateral.total_cmp(&other.lateral))
-    }
-}
-
-/// Sorts `points` by depth, then by lateral position, and gives both axes (m). There is exactly one
-/// point for each pose of the grid, or an error.
+/// The table of `rows`, each with its line. There is exactly one for each pose of the grid, or an error.
 ///
 /// The poses are compared one by one, never laid out: n rows can span n² of them.
 ///
 /// Implements: MAP-033, MAP-034, MAP-037.
-fn check_grid(points: &mut [Point], file: &str) -> Result<(Vec<f64>, Vec<f64>), ForceMapFileError> {
-    points.sort_by(Point::order); // stable: the first line of a pose stays first
-    let mm = |length| format_scaled(length, 3);
-    for pair in points.windows(2) {
-        let [first, second] = pair else { continue };
-        if first.order(second) == Ordering::Equal {
-            let problem = ForceMapFileProblem::Repeated {
-                depth_mm: mm(second.depth),
-                lateral_mm: mm(second.lateral),
-                first: first.line,
-            };
-            return Err(problem.at(file, second.line));
+fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>) -> Result<ForceTable, Refusal> {
+    for (_, [depth, lateral, ..]) in &mut rows {
+        // Adding 0 makes −0 the same position as 0.
+        *depth += 0.0;
+        *lateral += 0.0;
+    }
+    // Stable: the first line of a pose stays first.
+    rows.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let named = |depth, lateral| {
+        let [depth, lateral] = [depth, lateral].map(|length| format_scaled(length, 3));
+        format!("row for depth {depth} mm, lateral {lateral} mm")
+    };
+    for pair in rows.windows(2) {
+        let [(first, before), (line, [depth, lateral, ..])] = pair else {
+            continue;
+        };
+        if before[..2] == [*depth, *lateral] {
+            let found = format!("second {}", named(*depth, *lateral));
+            let expected = format!("one; the first is line {first}");
+            return Err(Refusal::state(found, expected).at(*line));
         }
     }
-    let depths = distinct(points.iter().map(|point| point.depth));
-    let laterals = distinct(points.iter().map(|point| point.lateral));
-    let mut rest = points.iter().peekable();
+    let axis = |column: usize| {
+        let mut axis: Vec<f64> = rows.iter().map(|(_, row)| row[column]).collect();
+        axis.sort_by(f64::total_cmp);
+        axis.dedup();
+        axis
+    };
+    let (depths, laterals) = (axis(0), axis(1));
+    let mut rest = rows.iter().peekable();
     for &depth in &depths {
         for &lateral in &laterals {
-            let here = |point: &&Point| point.depth == depth && point.lateral == lateral;
-            if rest.next_if(here).is_none() {
+            let is_next = rest.next_if(|(_, row)| row[..2] == [depth, lateral]);
+            if is_next.is_none() {
                 let (depths, laterals) = (depths.len(), laterals.len());
-                let (depth_mm, lateral_mm) = (mm(depth), mm(lateral));
-                let problem = ForceMapFileProblem::Missing {
-                    depth_mm,
-                    lateral_mm,
-                    depths,
-                    laterals,
-                };
-                return Err(problem.at(file, None));
+                return Err(Refusal::state(
+                    format!("no {}", named(depth, lateral)),
+                    format!(
+                        "one for each of the {depths} depths at each of the {laterals} lateral positions in the file"
+                    ),
+                ));
             }
         }
     }
-    Ok((depths, laterals))
-}
-
-/// The distinct numbers of `values`, increasing.
-fn distinct(values: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    values
+    let columns = laterals.len();
+    let [normal, lateral] = [2, 3].map(|force| {
+        Matrix::from_fn(depths.len(), columns, |row, column| {
+            rows[row * columns + column].1[force]
+        })
+    });
+    ForceTable::new(depths, laterals, normal, lateral)
 }

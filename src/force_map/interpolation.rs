@@ -1,53 +1,63 @@
-//! The paper's rule between and beyond the poses of a table: "simple linear interpolation of the
-//! forces is used when the operation is within the bounds of the data and linear extrapolation is
-//! used outside these bounds" (paper §4; `spec/interpolation.md`).
+//! Forces between the poses of a table, and beyond them (paper §4; `spec/interpolation.md`, `spec/trace.md`).
 
-use super::{ForceTable, InvalidForceMap, Matrix};
+use super::{ForceTable, Matrix, SAME_POSITION};
+use crate::detect::Channels;
+use crate::refusal::Refusal;
 
-/// A force on the probe, N.
-///
-/// ```
-/// use palpate::force_map::{ForceTable, Matrix, ProbeForce};
-///
-/// let matrix = |force: f64| Matrix::from_fn(2, 2, |row, _| force * row as f64);
-/// let table = ForceTable::new(vec![0.0, 0.004], vec![0.0, 0.01], matrix(1.5), matrix(-0.25))?;
-/// assert_eq!(table.force(0.004, 0.01)?, ProbeForce { lateral: -0.25, normal: 1.5 });
-/// # Ok::<(), palpate::force_map::InvalidForceMap>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ProbeForce {
-    /// Along +x.
-    pub lateral: f64,
-    /// Positive where it pushes the probe up.
-    pub normal: f64,
+/// What stands beyond the ends of an axis.
+#[derive(Clone, Copy)]
+enum Beyond {
+    /// The cell at the border, continued.
+    Continued,
+    /// Nothing, from [`SAME_POSITION`] on; within it of an entry stands that entry.
+    Nothing,
 }
 
-/// A cell of an axis, and where a position lies in it or beyond it.
-struct Cell {
-    index: usize,
+/// Where a position lies on an axis: between two entries, or at one that then stands twice.
+#[derive(Clone, Copy)]
+struct Place {
+    entries: [usize; 2],
+    /// Weight of the second entry; the first has the rest.
     fraction: f64,
 }
 
-impl Cell {
-    /// The cell of `position` (m) on an axis of at least two entries; `None` if it is wider than the
-    /// largest number, so that no fraction has a meaning.
-    fn find(axis: &[f64], position: f64) -> Option<Cell> {
-        let passed = axis.partition_point(|&entry| entry <= position);
-        let index = passed.saturating_sub(1).min(axis.len() - 2);
-        let (start, end) = (axis[index], axis[index + 1]);
-        let width = end - start;
-        let fraction = (position - start) / width;
-        width.is_finite().then_some(Cell { index, fraction })
+impl Place {
+    /// The place of `position` (m) on an increasing axis, of at least two entries where it is continued. `None` if nothing stands
+    /// there, or the cell is wider than the largest number, so that no fraction has a meaning.
+    fn locate(axis: &[f64], position: f64, beyond: Beyond) -> Option<Place> {
+        let next = match beyond {
+            Beyond::Continued => axis
+                .partition_point(|&entry| entry <= position)
+                .clamp(1, axis.len() - 1),
+            Beyond::Nothing => {
+                // The first entry that is the position or lies beyond it.
+                let next = axis.partition_point(|&entry| entry < position - SAME_POSITION);
+                if *axis.get(next)? <= position + SAME_POSITION {
+                    return Some(Place {
+                        entries: [next; 2],
+                        fraction: 0.0,
+                    });
+                }
+                next
+            }
+        };
+        let index = next.checked_sub(1)?;
+        let (start, end) = (axis[index], axis[next]);
+        let (entries, fraction) = ([index, next], (position - start) / (end - start));
+        (end - start)
+            .is_finite()
+            .then_some(Place { entries, fraction })
     }
 
-    /// (1 − t) a + t b, which is a at t = 0 and b at t = 1 to the bit.
-    fn blend(&self, a: f64, b: f64) -> f64 {
+    /// (1 − t) a + t b of the values at the two entries: a at t = 0 and b at t = 1 to the bit.
+    fn blend(self, value: impl Fn(usize) -> f64) -> f64 {
+        let [a, b] = self.entries.map(value);
         (1.0 - self.fraction) * a + self.fraction * b
     }
 }
 
 impl ForceTable {
-    /// The force at a pose (m) by the bilinear form of its cell; outside the table, by that of the
+    /// The force on the probe at a pose (m), N, by the bilinear form of its cell; outside the table, by that of the
     /// nearest border cell, continued.
     ///
     /// ```
@@ -56,34 +66,83 @@ impl ForceTable {
     /// // Bilinear forces, d·x in units of the cell, inside and beyond it.
     /// let matrix = || Matrix::from_fn(2, 2, |row, column| (row * column) as f64);
     /// let table = ForceTable::new(vec![0.0, 0.5], vec![0.0, 0.5], matrix(), matrix())?;
-    /// assert_eq!(table.force(0.25, 0.25)?.normal, 0.25);
-    /// assert_eq!(table.force(1.0, 1.0)?.normal, 4.0);
-    /// # Ok::<(), palpate::force_map::InvalidForceMap>(())
+    /// assert_eq!(table.force(0.25, 0.25)?.y, 0.25);
+    /// assert_eq!(table.force(1.0, 1.0)?.y, 4.0);
+    /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
     /// # Errors
-    /// [`InvalidForceMap::PoseNotFinite`], [`InvalidForceMap::SinglePosition`],
-    /// [`InvalidForceMap::ForceTooLarge`].
+    /// A pose that is not finite; an axis with a single entry; a force beyond the range of f64.
     ///
     /// Implements: MAP-060, MAP-061, MAP-062.
-    pub fn force(&self, depth: f64, lateral: f64) -> Result<ProbeForce, InvalidForceMap> {
+    pub fn force(&self, depth: f64, lateral: f64) -> Result<Channels<f64>, Refusal> {
         for (key, value) in [("depth", depth), ("lateral position", lateral)] {
             if !value.is_finite() {
-                return Err(InvalidForceMap::PoseNotFinite { key, value });
+                return Err(Refusal::value(key, value, "a finite number of metres"));
             }
         }
         for (key, axis) in [("depths_m", self.depths()), ("laterals_m", self.laterals())] {
             if axis.len() < 2 {
-                return Err(InvalidForceMap::SinglePosition { key });
+                let found = format!("{key} has a single entry");
+                return Err(Refusal::state(found, "at least two to interpolate between"));
             }
         }
         let value = |matrix: &Matrix| {
-            interpolate(self.depths(), self.laterals(), matrix, depth, lateral)
-                .ok_or(InvalidForceMap::ForceTooLarge { depth, lateral })
+            let value = interpolate(self.depths(), self.laterals(), matrix, depth, lateral);
+            value.ok_or_else(|| {
+                let pose = format!("the depth {depth} m, {lateral} m lateral");
+                Refusal::state(
+                    format!("the force at {pose}, is beyond the range of numbers"),
+                    "",
+                )
+            })
         };
-        Ok(ProbeForce {
-            lateral: value(self.lateral_force())?,
-            normal: value(self.normal_force())?,
+        Ok(Channels {
+            x: value(self.lateral_force())?,
+            y: value(self.normal_force())?,
+        })
+    }
+
+    /// The forces on the probe at `depth` (m) and each of `positions` (m, in any order), N: linear in the depth
+    /// between two rows, then linear in the position between two columns. A row within
+    /// [`SAME_POSITION`] of the depth, and a column within it of a position, count to the bit.
+    ///
+    /// ```
+    /// use palpate::force_map::{ForceTable, Matrix};
+    ///
+    /// // Half-way in depth and half-way in position: the mean of the four.
+    /// let matrix = || Matrix::new(2, vec![0.0, 1.0, 2.0, 5.0]).ok_or("two rows of two");
+    /// let table = ForceTable::new(vec![0.0, 0.002], vec![0.0, 0.004], matrix()?, matrix()?)?;
+    /// assert_eq!(table.sweep(0.001, &[0.002])?.y, [2.0]);
+    /// assert!(table.sweep(0.003, &[0.002]).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A depth or position outside the table: nothing is extrapolated.
+    ///
+    /// Implements: TRC-021, TRC-022, TRC-023, TRC-024.
+    pub fn sweep(&self, depth: f64, positions: &[f64]) -> Result<Channels<Vec<f64>>, Refusal> {
+        let place = |name: &str, axis: &[f64], position: f64| {
+            let place = Place::locate(axis, position, Beyond::Nothing);
+            place.ok_or_else(|| {
+                let found = format!("{name} {position} m is outside the map");
+                Refusal::state(found, format!("{} to {} m", axis[0], axis[axis.len() - 1]))
+            })
+        };
+        let row = place("depth", self.depths(), depth)?;
+        let columns = positions
+            .iter()
+            .map(|&lateral| place("lateral position", self.laterals(), lateral))
+            .collect::<Result<Vec<_>, _>>()?;
+        let along = |matrix: &Matrix| {
+            let force =
+                |column: &Place| column.blend(|column| row.blend(|row| matrix.row(row)[column]));
+            columns.iter().map(force).collect()
+        };
+        Ok(Channels {
+            x: along(self.lateral_force()),
+            y: along(self.normal_force()),
         })
     }
 }
@@ -100,13 +159,9 @@ pub(crate) fn interpolate(
     depth: f64,
     lateral: f64,
 ) -> Option<f64> {
-    let row = Cell::find(depths, depth)?;
-    let column = Cell::find(laterals, lateral)?;
-    let along = |entries: &[f64]| column.blend(entries[column.index], entries[column.index + 1]);
-    let value = row.blend(
-        along(matrix.row(row.index)),
-        along(matrix.row(row.index + 1)),
-    );
+    let row = Place::locate(depths, depth, Beyond::Continued)?;
+    let column = Place::locate(laterals, lateral, Beyond::Continued)?;
+    let value = row.blend(|row| column.blend(|column| matrix.row(row)[column]));
     value.is_finite().then_some(value)
 }
 
@@ -136,15 +191,9 @@ mod tests {
             for lateral in [-32.0, -1.0, -0.375, 0.25, 0.625, 1.0, 4.0] {
                 let force = table.force(depth, lateral).unwrap();
                 let expected = 3.0 + 2.0 * depth - lateral + 4.0 * depth * lateral;
-                assert!(
-                    (force.normal - expected).abs() <= tolerance,
-                    "{depth} {lateral}"
-                );
+                assert!((force.y - expected).abs() <= tolerance, "{depth} {lateral}");
                 let expected = -(3.0 + 2.0 * lateral - depth + 4.0 * depth * lateral);
-                assert!(
-                    (force.lateral - expected).abs() <= tolerance,
-                    "{depth} {lateral}"
-                );
+                assert!((force.x - expected).abs() <= tolerance, "{depth} {lateral}");
             }
         }
     }
@@ -156,7 +205,7 @@ mod tests {
         let axes = (vec![0.0, 1.0], vec![0.0, 1.0, 2.0]);
         let table = ForceTable::new(axes.0, axes.1, matrix(), matrix()).unwrap();
         for (lateral, expected) in [(-1.0, -1.0), (0.5, 0.5), (1.5, 3.0), (2.0, 5.0), (3.0, 9.0)] {
-            assert_eq!(table.force(0.5, lateral).unwrap().normal, expected);
+            assert_eq!(table.force(0.5, lateral).unwrap().y, expected);
         }
     }
 
@@ -184,5 +233,67 @@ mod tests {
             error.starts_with("laterals_m has a single entry"),
             "{error}"
         );
+    }
+
+    /// Forces bilinear in depth and position, so that interpolation must reproduce them.
+    fn poses() -> ForceTable {
+        let (depths, laterals) = (vec![0.0, 0.001, 0.004], vec![-0.002, 0.0, 0.0005, 0.003]);
+        let matrix = |force: fn(f64, f64) -> f64| {
+            Matrix::from_fn(3, 4, |row, column| force(depths[row], laterals[column]))
+        };
+        let (normal, lateral) = (matrix(normal), matrix(lateral));
+        ForceTable::new(depths, laterals, normal, lateral).unwrap()
+    }
+
+    fn normal(depth: f64, x: f64) -> f64 {
+        0.1 + 300.0 * depth + 20.0 * x + 5e4 * depth * x
+    }
+
+    fn lateral(depth: f64, x: f64) -> f64 {
+        -40.0 * x + 7e4 * depth * x
+    }
+
+    // Verifies: TRC-022, TRC-023.
+    #[test]
+    fn between_poses_forces_are_bilinear() {
+        let positions = [0.0021, -0.0013, 0.0002, 0.0, 0.003];
+        for depth in [0.0005, 0.0017, 0.0039] {
+            let found = poses().sweep(depth, &positions).unwrap();
+            for (i, &x) in positions.iter().enumerate() {
+                assert!((found.y[i] - normal(depth, x)).abs() < 1e-14);
+                assert!((found.x[i] - lateral(depth, x)).abs() < 1e-14);
+            }
+        }
+    }
+
+    // Verifies: TRC-021, TRC-023.
+    #[test]
+    fn at_poses_forces_are_those_of_the_map_to_the_bit() {
+        let table = poses();
+        // Half a nanometre off, on either side, is the same position.
+        for off in [-5e-10, 0.0, 5e-10] {
+            let positions: Vec<f64> = table.laterals().iter().map(|x| x + off).collect();
+            for (row, &depth) in table.depths().iter().enumerate() {
+                let found = table.sweep(depth + off, &positions).unwrap();
+                assert_eq!(found.y, table.normal_force().row(row));
+                assert_eq!(found.x, table.lateral_force().row(row));
+            }
+        }
+    }
+
+    // Verifies: TRC-024.
+    #[test]
+    fn nothing_is_extrapolated() {
+        for depth in [-2e-9, 0.004 + 2e-9, f64::NAN, f64::INFINITY] {
+            let error = poses().sweep(depth, &[0.0]).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("depth {depth} m is outside the map")));
+        }
+        for x in [-0.002 - 2e-9, 0.003 + 2e-9, f64::NAN, f64::NEG_INFINITY] {
+            let error = poses().sweep(0.001, &[0.0, x]).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("lateral position {x} m is outside the map")));
+        }
+        let error = poses().sweep(0.005, &[0.0]).unwrap_err();
+        let expected = "depth 0.005 m is outside the map, expected 0 to 0.004 m";
+        assert_eq!(error.to_string(), expected);
     }
 }

@@ -5,12 +5,10 @@
 //! |---|---|
 //! | `mod.rs` | the map: forces and their source |
 //! | `table.rs` | axes and matrices; symmetry, difference, one depth |
-//! | `sweep.rs` | the forces between the poses, along a sweep |
-//! | `interpolation.rs` | the paper's rule between and beyond the poses |
+//! | `interpolation.rs` | forces between and beyond the poses |
 //! | `pair.rs` | whether two maps are one gel without and with an inclusion |
 //! | `certificate.rs` | the quality of a computed map |
-//! | `error.rs` | what can be wrong |
-//! | `file.rs`, `json.rs`, `csv.rs` | files |
+//! | `json.rs`, `csv.rs` | files |
 //!
 //! ```
 //! use palpate::force_map::ForceMap;
@@ -30,40 +28,25 @@
 
 mod certificate;
 mod csv;
-mod error;
-mod file;
 mod interpolation;
 mod json;
 mod pair;
-mod sweep;
 mod table;
 #[cfg(test)]
 mod tests;
 
+use std::path::Path;
+
 pub use certificate::{Certificate, Discretization, SmallestDet};
-pub use error::InvalidForceMap;
-pub use file::{ForceMapFileError, ForceMapFileProblem};
-pub use interpolation::ProbeForce;
 #[cfg(feature = "oracle")]
 pub(crate) use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
-pub use pair::Unpaired;
-pub use sweep::Sweep;
 pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
 
 use crate::phantom::Phantom;
+use crate::refusal::Refusal;
 
 /// Where the forces of a map come from.
-///
-/// ```
-/// use palpate::force_map::{ForceMap, Source};
-///
-/// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n";
-/// let map = ForceMap::from_csv(text, "folder/gel.csv", "third gel", None)?;
-/// let (file, note) = ("gel.csv".into(), "third gel".into());
-/// assert_eq!(map.source(), &Source::Measured { file, note });
-/// # Ok::<(), palpate::force_map::ForceMapFileError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "a map has one")]
 pub enum Source {
@@ -121,79 +104,77 @@ impl ForceMap {
     /// A map of `forces`, made by this version of the program.
     ///
     /// # Errors
-    /// [`InvalidForceMap`] if the phantom is missing for a computed map, is not valid, or does not
-    /// let the probe stand at one of the poses, or if the certificate does not fit the forces.
+    /// The phantom is missing for a computed map, is not valid, or does not let the probe stand at one of the poses; the
+    /// certificate does not fit the forces.
     ///
     /// Implements: MAP-006, MAP-007, MAP-008.
     pub fn new(
         source: Source,
         phantom: Option<Phantom>,
         forces: ForceTable,
-    ) -> Result<ForceMap, InvalidForceMap> {
-        let program_version = env!("CARGO_PKG_VERSION").into();
-        ForceMap::by_version(program_version, source, phantom, forces)
-    }
-
-    /// [`ForceMap::new`] for a map that another version made.
-    fn by_version(
-        program_version: String,
-        source: Source,
-        phantom: Option<Phantom>,
-        forces: ForceTable,
-    ) -> Result<ForceMap, InvalidForceMap> {
-        if let Source::FiniteElements { certificate } = &source {
-            certificate.check(forces.depths(), forces.laterals())?;
-            if phantom.is_none() {
-                return Err(InvalidForceMap::NoPhantom);
-            }
-        }
-        if let Some(phantom) = &phantom {
-            phantom.validate()?;
-            for &depth in forces.depths() {
-                for &lateral in forces.laterals() {
-                    phantom.check_pose(depth, lateral)?;
-                }
-            }
-        }
-        Ok(ForceMap {
-            program_version,
+    ) -> Result<ForceMap, Refusal> {
+        let map = ForceMap {
+            program_version: env!("CARGO_PKG_VERSION").into(),
             source,
             phantom,
             forces,
-        })
+        };
+        map.checked()
     }
 
-    /// This computed map with bands of the discretisation in its certificate; a measured map as it is.
-    ///
-    /// ```
-    /// use palpate::force_map::{Discretization, ForceMap, Matrix};
-    ///
-    /// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n";
-    /// let map = ForceMap::from_csv(text, "gel.csv", "", None)?;
-    /// // Bands of a mesh say nothing of what was measured.
-    /// let band = |value| Matrix::from_fn(1, 1, |_, _| value);
-    /// let bands = Discretization {
-    ///     nodes: [4000, 1000, 250],
-    ///     normal_force_band: band(0.002),
-    ///     lateral_force_band: band(0.0),
-    /// };
-    /// assert_eq!(map.clone().with_discretization(bands)?, map);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    fn checked(self) -> Result<ForceMap, Refusal> {
+        if let Some(certificate) = self.certificate() {
+            certificate.check(self.depths(), self.laterals())?;
+            if self.phantom.is_none() {
+                let expected = "the phantom that the finite elements computed";
+                return Err(Refusal::state("phantom is missing", expected));
+            }
+        }
+        if let Some(phantom) = &self.phantom {
+            let of_phantom = |refusal: Refusal| Refusal {
+                key: format!("phantom: {}", refusal.key),
+                ..refusal
+            };
+            phantom.validate().map_err(of_phantom)?;
+            for &depth in self.depths() {
+                for &lateral in self.laterals() {
+                    phantom.check_pose(depth, lateral).map_err(of_phantom)?;
+                }
+            }
+        }
+        Ok(self)
+    }
+
+    /// This computed map with bands of the discretisation in its certificate; a measured map as it is, for bands of a mesh say
+    /// nothing of it.
     ///
     /// # Errors
-    /// [`InvalidForceMap::Shape`], [`InvalidForceMap::Band`].
+    /// Bands of another shape than the forces, not finite or negative.
     ///
     /// Implements: MAP-050, MAP-051.
     pub fn with_discretization(
         mut self,
         discretization: Discretization,
-    ) -> Result<ForceMap, InvalidForceMap> {
+    ) -> Result<ForceMap, Refusal> {
         if let Source::FiniteElements { certificate } = &mut self.source {
             certificate.discretization = Some(discretization);
-            certificate.check(self.forces.depths(), self.forces.laterals())?;
         }
-        Ok(self)
+        self.checked()
+    }
+
+    /// Reads the map at `path`: measured forces if its name ends in `.csv`, else JSON.
+    ///
+    /// # Errors
+    /// As [`ForceMap::from_csv`] and [`ForceMap::from_json`]; a file that cannot be read as UTF-8.
+    ///
+    /// Implements: MAP-026.
+    pub fn read(path: &Path) -> Result<ForceMap, Refusal> {
+        let is_csv = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("csv");
+        let is_csv = path.extension().is_some_and(is_csv);
+        crate::input::parse(path, |text, file| match is_csv {
+            true => ForceMap::from_csv(text, file, "", None),
+            false => ForceMap::from_json(text, file),
+        })
     }
 
     /// The version of the program that made the map.
@@ -247,86 +228,68 @@ impl ForceMap {
     /// The forces at a stored depth (m): see [`ForceTable::row`].
     ///
     /// # Errors
-    /// [`InvalidForceMap::NoSuchDepth`].
-    pub fn row(&self, depth: f64) -> Result<ForceCurve<'_>, InvalidForceMap> {
+    /// No stored depth is this one.
+    pub fn row(&self, depth: f64) -> Result<ForceCurve<'_>, Refusal> {
         self.forces.row(depth)
     }
 
     /// The forces of this map minus those of `reference`: see [`ForceTable::minus`].
     ///
-    /// ```
-    /// use palpate::force_map::ForceMap;
-    ///
-    /// let map = |force: f64| {
-    ///     let text = format!("depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,{force},0\n");
-    ///     ForceMap::from_csv(&text, "gel.csv", "", None)
-    /// };
-    /// assert_eq!(map(1.75)?.signal(&map(1.5)?)?.normal_force().values(), [0.25]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
-    /// [`InvalidForceMap::AxesDiffer`], [`InvalidForceMap::Force`].
-    pub fn signal(&self, reference: &ForceMap) -> Result<ForceTable, InvalidForceMap> {
+    /// Other axes, or a difference that is not finite.
+    pub fn signal(&self, reference: &ForceMap) -> Result<ForceTable, Refusal> {
         self.forces.minus(&reference.forces)
     }
 
     /// This map over x ≥ 0, extended to x < 0 by symmetry: see [`ForceTable::mirrored`].
     ///
-    /// ```
-    /// use palpate::force_map::ForceMap;
-    ///
-    /// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n4,2,1.25,-0.125\n";
-    /// let whole = ForceMap::from_csv(text, "gel.csv", "", None)?.mirrored()?;
-    /// assert_eq!(whole.laterals(), [-0.002, 0.0, 0.002]);
-    /// assert_eq!(whole.row(0.004)?.normal_force, [1.25, 1.5, 1.25]);
-    /// assert_eq!(whole.row(0.004)?.lateral_force, [0.125, 0.0, -0.125]);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
-    /// [`InvalidForceMap::AsymmetricPhantom`], [`InvalidForceMap::NotFromZero`], [`InvalidForceMap::NotSymmetric`].
-    pub fn mirrored(&self) -> Result<ForceMap, InvalidForceMap> {
+    /// A phantom that is not its own mirror image; as [`ForceTable::mirrored`].
+    pub fn mirrored(&self) -> Result<ForceMap, Refusal> {
         if let Some(phantom) = self.phantom.as_ref().filter(|p| !p.is_symmetric()) {
-            let name = phantom.name.clone();
-            return Err(InvalidForceMap::AsymmetricPhantom { name });
+            return Err(Refusal::state(
+                format!("phantom {:?} is not its own mirror image", phantom.name),
+                "a map over negative lateral positions too: it cannot be extended by symmetry",
+            ));
         }
-        let source = match &self.source {
-            Source::FiniteElements { certificate } => Source::FiniteElements {
-                certificate: certificate.mirrored(),
-            },
-            measured => measured.clone(),
+        let map = ForceMap {
+            forces: self.forces.mirrored()?,
+            source: self.source_at(&self.forces.mirror_columns()),
+            ..self.clone()
         };
-        ForceMap::by_version(
-            self.program_version.clone(),
-            source,
-            self.phantom.clone(),
-            self.forces.mirrored()?,
-        )
+        map.checked()
     }
 
     /// The columns of this map at some of its lateral positions (m).
     ///
     /// # Errors
-    /// [`InvalidForceMap::NoSuchLateral`] for a position that the map does not hold.
+    /// A position that the map does not hold.
     ///
     /// Implements: MAP-016.
-    pub fn at_laterals(&self, laterals: &[f64]) -> Result<ForceMap, InvalidForceMap> {
+    pub fn at_laterals(&self, laterals: &[f64]) -> Result<ForceMap, Refusal> {
         if laterals == self.laterals() {
             return Ok(self.clone());
         }
         let columns = self.forces.columns_at(laterals)?;
-        let source = match &self.source {
+        let mut map = ForceMap {
+            forces: self.forces.at_columns(&columns)?,
+            source: self.source_at(&columns),
+            ..self.clone()
+        };
+        if let Source::FiniteElements { certificate } = &mut map.source {
+            let smallest = SmallestDet::of(&certificate.min_det, self.depths(), laterals);
+            certificate.smallest_det = smallest.unwrap_or(certificate.smallest_det);
+        }
+        map.checked()
+    }
+
+    /// The source with some of the columns of its certificate.
+    fn source_at(&self, columns: &[usize]) -> Source {
+        match &self.source {
             Source::FiniteElements { certificate } => Source::FiniteElements {
-                certificate: certificate.at_columns(&columns, self.depths(), laterals)?,
+                certificate: certificate.at_columns(columns),
             },
             measured => measured.clone(),
-        };
-        ForceMap::by_version(
-            self.program_version.clone(),
-            source,
-            self.phantom.clone(),
-            self.forces.at_columns(&columns)?,
-        )
+        }
     }
 }

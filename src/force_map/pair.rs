@@ -3,67 +3,54 @@
 use serde_json::{Value, json};
 
 use super::ForceMap;
-
-/// In what two maps differ that are taken as one gel without and with an inclusion.
-///
-/// ```
-/// use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
-/// use palpate::phantom::Phantom;
-///
-/// let map = |name| {
-///     let forces = || Matrix::from_fn(1, 1, |_, _| 1.5);
-///     let forces = ForceTable::new(vec![0.004], vec![0.0], forces(), forces()).expect("forces");
-///     let source = Source::Measured { file: "gel.csv".into(), note: "".into() };
-///     ForceMap::new(source, Phantom::builtin(name).ok(), forces).expect("a map")
-/// };
-/// assert!(map("6.6").check_reference(&map("none")).is_ok());
-/// let swapped = map("none").check_reference(&map("6.6")).unwrap_err();
-/// assert_eq!((swapped.key.as_str(), swapped.reference.as_str()), ("number of inclusions", "1"));
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{key} is {inclusion}, and {reference} in the reference, expected {expected}")]
-pub struct Unpaired {
-    /// The key in the maps' files, or what was counted.
-    pub key: String,
-    /// The reference's.
-    pub reference: String,
-    /// That of the map with the inclusion.
-    pub inclusion: String,
-    /// What would be right.
-    pub expected: &'static str,
-}
+use crate::refusal::Refusal;
 
 impl ForceMap {
     /// Checks that `reference` is the same gel without an inclusion, under the same probe, from the same program, mesh and
     /// contact law; where a map does not say, it may be anything.
     ///
+    /// ```
+    /// use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let map = |name| {
+    ///     let forces = || Matrix::from_fn(1, 1, |_, _| 1.5);
+    ///     let forces = ForceTable::new(vec![0.004], vec![0.0], forces(), forces())?;
+    ///     let source = Source::Measured { file: "gel.csv".into(), note: "".into() };
+    ///     ForceMap::new(source, Phantom::builtin(name).ok(), forces)
+    /// };
+    /// assert!(map("6.6")?.check_reference(&map("none")?).is_ok());
+    /// let swapped = map("none")?.check_reference(&map("6.6")?).unwrap_err().to_string();
+    /// assert!(swapped.ends_with("expected the maps the other way round"));
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
+    ///
     /// # Errors
-    /// [`Unpaired`], with the first difference.
+    /// The first key whose values differ, with both.
     ///
     /// Implements: MAP-053, MAP-054.
-    pub fn check_reference(&self, reference: &ForceMap) -> Result<(), Unpaired> {
+    pub fn check_reference(&self, reference: &ForceMap) -> Result<(), Refusal> {
+        let refused = |key: &str, reference: String, inclusion: String, expected: &str| {
+            let found = format!("{key} is {inclusion}, and {reference} in the reference");
+            Err(Refusal::state(found, expected))
+        };
         let inclusions = |map: &ForceMap| map.phantom().map(|phantom| phantom.inclusions.len());
         let (without, with) = (inclusions(reference), inclusions(self));
         if without.is_some_and(|n| n > 0) || with == Some(0) {
             let counted = |n: Option<usize>| n.map_or("unknown".into(), |n| n.to_string());
-            return Err(Unpaired {
-                key: "number of inclusions".into(),
-                reference: counted(without),
-                inclusion: counted(with),
-                expected: match (without, with) {
-                    (Some(1..), Some(0)) => "the maps the other way round",
-                    _ => "one at least, and none in the reference",
-                },
-            });
+            let expected = match (without, with) {
+                (Some(1..), Some(0)) => "the maps the other way round",
+                _ => "one at least, and none in the reference",
+            };
+            let key = "number of inclusions";
+            return refused(key, counted(without), counted(with), expected);
         }
         match first_difference("", &circumstances(reference), &circumstances(self)) {
             None => Ok(()),
-            Some((key, reference, inclusion)) => Err(Unpaired {
-                key,
-                reference,
-                inclusion,
-                expected: "maps that differ in their inclusions alone",
-            }),
+            Some((key, reference, inclusion)) => {
+                let expected = "maps that differ in their inclusions alone";
+                refused(&key, reference, inclusion, expected)
+            }
         }
     }
 }

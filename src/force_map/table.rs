@@ -1,6 +1,11 @@
 //! Forces on a grid of poses: two axes and two matrices (paper §4).
 
-use super::InvalidForceMap;
+use std::cmp::Ordering;
+use std::fmt::Display;
+
+use serde::{Deserialize, Serialize, Serializer};
+
+use crate::refusal::Refusal;
 
 /// Two positions closer than this, m, are the same position.
 ///
@@ -31,7 +36,8 @@ pub const SYMMETRY_TOLERANCE: f64 = 1e-9;
 /// ```
 ///
 /// Implements: MAP-001.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(try_from = "Vec<Vec<f64>>")]
 pub struct Matrix {
     columns: usize,
     values: Vec<f64>,
@@ -41,11 +47,8 @@ impl Matrix {
     /// The matrix of `columns` columns whose rows follow one another in `values`; `None` if the last
     /// row is not full.
     pub fn new(columns: usize, values: Vec<f64>) -> Option<Matrix> {
-        let full = if columns == 0 {
-            values.is_empty()
-        } else {
-            values.len().is_multiple_of(columns)
-        };
+        let rows = values.len().checked_div(columns).unwrap_or(0);
+        let full = rows * columns == values.len();
         full.then_some(Matrix { columns, values })
     }
 
@@ -93,6 +96,73 @@ impl Matrix {
         let place = move |(at, value): (usize, &f64)| (at / columns, at % columns, *value);
         self.values.iter().enumerate().map(place)
     }
+
+    /// This matrix with some of its columns, in any order.
+    pub(super) fn at_columns(&self, columns: &[usize]) -> Matrix {
+        Matrix::from_fn(self.row_count(), columns.len(), |row, column| {
+            self.row(row)[columns[column]]
+        })
+    }
+
+    /// Refuses this matrix under `key` if it has not the `shape` of the axes, or an entry that is not finite or below `least`.
+    pub(super) fn check(&self, key: &str, shape: [usize; 2], least: f64) -> Result<(), Refusal> {
+        if shape != [self.row_count(), self.column_count()] {
+            let [depths, laterals] = shape;
+            return Err(Refusal::state(
+                format!(
+                    "{key} has {} rows and {} columns",
+                    self.row_count(),
+                    self.columns
+                ),
+                format!(
+                    "{depths} rows (one a depth) and {laterals} columns (one a lateral position)"
+                ),
+            ));
+        }
+        self.entries().try_for_each(|(row, column, value)| {
+            check_number(format_args!("{key}[{row}][{column}]"), value, least)
+        })
+    }
+}
+
+/// Refuses a number that is not finite or below `least`, which is 0 or −∞.
+pub(super) fn check_number(key: impl Display, value: f64, least: f64) -> Result<(), Refusal> {
+    if value.is_finite() && value >= least {
+        return Ok(());
+    }
+    let expected = match least {
+        0.0 => "a finite number, at least 0",
+        _ => "a finite number",
+    };
+    Err(Refusal::value(key.to_string(), value, expected))
+}
+
+impl Serialize for Matrix {
+    /// As an array of rows.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.rows())
+    }
+}
+
+impl TryFrom<Vec<Vec<f64>>> for Matrix {
+    type Error = String;
+
+    /// From rows of one length.
+    ///
+    /// Implements: MAP-003, MAP-024.
+    fn try_from(rows: Vec<Vec<f64>>) -> Result<Matrix, String> {
+        let columns = rows.first().map_or(0, Vec::len);
+        match rows.iter().position(|row| row.len() != columns) {
+            None => Ok(Matrix {
+                columns,
+                values: rows.concat(),
+            }),
+            Some(row) => Err(format!(
+                "row {row} has {} numbers, expected {columns} as in row 0",
+                rows[row].len()
+            )),
+        }
+    }
 }
 
 /// The normal and lateral force on the probe at every pose of a grid, N.
@@ -129,17 +199,6 @@ pub struct ForceTable {
 }
 
 /// The forces at one depth, over the lateral positions.
-///
-/// ```
-/// use palpate::force_map::{ForceCurve, ForceTable};
-///
-/// let text = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n4,2,1.25,-0.1\n";
-/// let table = ForceTable::from_csv(text, "gel.csv")?;
-/// let ForceCurve { laterals, normal_force, lateral_force } = table.row(0.004)?;
-/// assert_eq!((laterals, normal_force), (&[0.0, 0.002][..], &[1.5, 1.25][..]));
-/// assert_eq!(lateral_force, [0.0, -0.1]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceCurve<'a> {
     /// Lateral positions of the probe, m.
@@ -154,16 +213,16 @@ impl ForceTable {
     /// A table over `depths` (m, rows) and `laterals` (m, columns); forces in N.
     ///
     /// # Errors
-    /// [`InvalidForceMap`] if an axis is empty, not finite or does not increase, a depth is negative,
-    /// a matrix has another shape than the axes, or a force is not finite.
+    /// [`Refusal`] if an axis is empty, not finite or does not increase, a depth is negative, a matrix has another shape than the
+    /// axes, or a force is not finite. Keys are those of the JSON file; rows and columns count from 0.
     ///
-    /// Implements: MAP-001, MAP-002, MAP-003, MAP-004, MAP-005, CON-007.
+    /// Implements: MAP-001, MAP-002, MAP-003, MAP-004, MAP-005, MAP-013, CON-007.
     pub fn new(
         mut depths: Vec<f64>,
         mut laterals: Vec<f64>,
         normal_force: Matrix,
         lateral_force: Matrix,
-    ) -> Result<ForceTable, InvalidForceMap> {
+    ) -> Result<ForceTable, Refusal> {
         // −0 and 0 are one position; adding 0 leaves one way to write it.
         for position in depths.iter_mut().chain(&mut laterals) {
             *position += 0.0;
@@ -171,17 +230,18 @@ impl ForceTable {
         check_axis("depths_m", &depths)?;
         check_axis("laterals_m", &laterals)?;
         if depths[0] < 0.0 {
-            return Err(InvalidForceMap::NegativeDepth { value: depths[0] });
+            let expected = "at least 0, the undeformed surface";
+            return Err(Refusal::value("depths_m[0]", depths[0], expected));
         }
-        let table = ForceTable {
+        let shape = [depths.len(), laterals.len()];
+        normal_force.check("normal_force_n", shape, f64::NEG_INFINITY)?;
+        lateral_force.check("lateral_force_n", shape, f64::NEG_INFINITY)?;
+        Ok(ForceTable {
             depths,
             laterals,
             normal_force,
             lateral_force,
-        };
-        table.check_matrix("normal_force_n", &table.normal_force)?;
-        table.check_matrix("lateral_force_n", &table.lateral_force)?;
-        Ok(table)
+        })
     }
 
     /// Depths of the rows, m, increasing.
@@ -207,15 +267,11 @@ impl ForceTable {
     /// The forces at a stored depth (m).
     ///
     /// # Errors
-    /// [`InvalidForceMap::NoSuchDepth`] if no stored depth lies within [`SAME_POSITION`] of `depth`.
+    /// No stored depth lies within [`SAME_POSITION`] of `depth`.
     ///
     /// Implements: MAP-012, MAP-015.
-    pub fn row(&self, depth: f64) -> Result<ForceCurve<'_>, InvalidForceMap> {
-        let stored = |&stored: &f64| (stored - depth).abs() <= SAME_POSITION;
-        let Some(row) = self.depths.iter().position(stored) else {
-            let stored = self.depths.clone();
-            return Err(InvalidForceMap::NoSuchDepth { depth, stored });
-        };
+    pub fn row(&self, depth: f64) -> Result<ForceCurve<'_>, Refusal> {
+        let row = place_of("depth", &self.depths, depth)?;
         Ok(ForceCurve {
             laterals: &self.laterals,
             normal_force: self.normal_force.row(row),
@@ -227,11 +283,10 @@ impl ForceTable {
     /// empty one, the signal F₁ − F₀ of the paper's §2.
     ///
     /// # Errors
-    /// [`InvalidForceMap::AxesDiffer`] if the two are not over the same poses;
-    /// [`InvalidForceMap::Force`] if a difference is not finite.
+    /// The two are not over the same poses; a difference is not finite.
     ///
     /// Implements: MAP-011, MAP-014.
-    pub fn minus(&self, reference: &ForceTable) -> Result<ForceTable, InvalidForceMap> {
+    pub fn minus(&self, reference: &ForceTable) -> Result<ForceTable, Refusal> {
         check_same_axis("depths_m", &self.depths, &reference.depths)?;
         check_same_axis("laterals_m", &self.laterals, &reference.laterals)?;
         let difference = |a: &Matrix, b: &Matrix| Matrix {
@@ -250,147 +305,111 @@ impl ForceTable {
     /// lateral force odd. The lateral positions become −xₙ … 0 … xₙ.
     ///
     /// # Errors
-    /// [`InvalidForceMap::NotFromZero`] if the first lateral position is not 0;
-    /// [`InvalidForceMap::NotSymmetric`] if a lateral force at x = 0, which symmetry makes zero, is
+    /// The first lateral position is not 0; a lateral force at x = 0, which symmetry makes zero, is
     /// more than [`SYMMETRY_TOLERANCE`].
     ///
     /// Implements: MAP-009, MAP-010.
-    pub fn mirrored(&self) -> Result<ForceTable, InvalidForceMap> {
+    pub fn mirrored(&self) -> Result<ForceTable, Refusal> {
         if self.laterals[0] != 0.0 {
-            let first = self.laterals[0];
-            return Err(InvalidForceMap::NotFromZero { first });
+            let expected = "0 in a map to be extended by symmetry";
+            return Err(Refusal::value("laterals_m[0]", self.laterals[0], expected));
         }
-        for (&depth, forces) in self.depths.iter().zip(self.lateral_force.rows()) {
-            if forces[0].abs() > SYMMETRY_TOLERANCE {
-                let force = forces[0];
-                return Err(InvalidForceMap::NotSymmetric { depth, force });
+        for (depth, forces) in self.depths.iter().zip(self.lateral_force.rows()) {
+            let force = forces[0];
+            if force.abs() > SYMMETRY_TOLERANCE {
+                return Err(Refusal::state(
+                    format!("lateral force {force} N at depth {depth} m, x = 0"),
+                    format!("at most {SYMMETRY_TOLERANCE:e} N in a symmetric map"),
+                ));
             }
         }
-        let negative = self.laterals[1..].iter().rev().map(|x| -x);
-        let laterals = negative
-            .chain([0.0])
-            .chain(self.laterals[1..].iter().copied());
-        ForceTable::new(
-            self.depths.clone(),
-            laterals.collect(),
-            self.normal_force.mirrored(|force| force, |force| force),
-            // Subtracted from zero, since the negative of +0 would be −0.
-            self.lateral_force.mirrored(|force| 0.0 - force, |_| 0.0),
-        )
+        let columns = self.mirror_columns();
+        let zero = self.laterals.len() - 1;
+        let odd = |values: &[f64]| -> Vec<f64> {
+            let odd = |(at, &column): (usize, &usize)| match at.cmp(&zero) {
+                // Subtracted from zero, since the negative of +0 would be −0.
+                Ordering::Less => 0.0 - values[column],
+                Ordering::Equal => 0.0,
+                Ordering::Greater => values[column],
+            };
+            columns.iter().enumerate().map(odd).collect()
+        };
+        Ok(ForceTable {
+            depths: self.depths.clone(),
+            laterals: odd(&self.laterals),
+            normal_force: self.normal_force.at_columns(&columns),
+            lateral_force: Matrix {
+                columns: columns.len(),
+                values: self.lateral_force.rows().flat_map(odd).collect(),
+            },
+        })
+    }
+
+    /// The column at |x| for each lateral position x of this table extended by symmetry.
+    pub(super) fn mirror_columns(&self) -> Vec<usize> {
+        let columns = self.laterals.len();
+        (1..columns).rev().chain(0..columns).collect()
     }
 
     /// The column of each of `laterals` (m).
-    pub(super) fn columns_at(&self, laterals: &[f64]) -> Result<Vec<usize>, InvalidForceMap> {
-        let column = |&lateral: &f64| {
-            let stored = |&stored: &f64| (stored - lateral).abs() <= SAME_POSITION;
-            let column = self.laterals.iter().position(stored);
-            column.ok_or_else(|| InvalidForceMap::NoSuchLateral {
-                lateral,
-                stored: self.laterals.clone(),
-            })
-        };
+    pub(super) fn columns_at(&self, laterals: &[f64]) -> Result<Vec<usize>, Refusal> {
+        let column = |&lateral| place_of("lateral position", &self.laterals, lateral);
         laterals.iter().map(column).collect()
     }
 
     /// This table with some of its columns.
-    pub(super) fn at_columns(&self, columns: &[usize]) -> Result<ForceTable, InvalidForceMap> {
+    pub(super) fn at_columns(&self, columns: &[usize]) -> Result<ForceTable, Refusal> {
+        let laterals = columns.iter().map(|&column| self.laterals[column]);
         ForceTable::new(
             self.depths.clone(),
-            columns
-                .iter()
-                .map(|&column| self.laterals[column])
-                .collect(),
+            laterals.collect(),
             self.normal_force.at_columns(columns),
             self.lateral_force.at_columns(columns),
         )
     }
-
-    fn check_matrix(&self, key: &'static str, matrix: &Matrix) -> Result<(), InvalidForceMap> {
-        let expected = [self.depths.len(), self.laterals.len()];
-        let found = [matrix.row_count(), matrix.column_count()];
-        if found != expected {
-            return Err(InvalidForceMap::Shape {
-                key,
-                found,
-                expected,
-            });
-        }
-        match matrix.entries().find(|(_, _, value)| !value.is_finite()) {
-            Some((row, column, value)) => Err(InvalidForceMap::Force {
-                key,
-                row,
-                column,
-                value,
-            }),
-            None => Ok(()),
-        }
-    }
 }
 
-impl Matrix {
-    /// This matrix with some of its columns.
-    pub(super) fn at_columns(&self, columns: &[usize]) -> Matrix {
-        Matrix::from_fn(self.row_count(), columns.len(), |row, column| {
-            self.row(row)[columns[column]]
-        })
-    }
-
-    /// Columns 0 … n over x ≥ 0 to columns −n … n: `at_negative` of the value at |x|, and `at_zero`
-    /// of the first column.
-    pub(super) fn mirrored(
-        &self,
-        at_negative: impl Fn(f64) -> f64,
-        at_zero: impl Fn(f64) -> f64,
-    ) -> Matrix {
-        let last = self.columns.saturating_sub(1);
-        Matrix::from_fn(self.row_count(), 2 * last + 1, |row, column| {
-            let value = self.row(row)[column.abs_diff(last)];
-            match column.cmp(&last) {
-                std::cmp::Ordering::Less => at_negative(value),
-                std::cmp::Ordering::Equal => at_zero(value),
-                std::cmp::Ordering::Greater => value,
-            }
-        })
-    }
+/// The entry of `axis` that is the same position (m).
+fn place_of(name: &str, axis: &[f64], position: f64) -> Result<usize, Refusal> {
+    let same = |&entry: &f64| (entry - position).abs() <= SAME_POSITION;
+    axis.iter().position(same).ok_or_else(|| {
+        let found = format!("{name} {position} m is not in the map");
+        Refusal::state(found, format!("one of {axis:?} m"))
+    })
 }
 
-fn check_axis(key: &'static str, axis: &[f64]) -> Result<(), InvalidForceMap> {
+fn check_axis(key: &str, axis: &[f64]) -> Result<(), Refusal> {
     if axis.is_empty() {
-        return Err(InvalidForceMap::EmptyAxis { key });
+        let found = format!("{key} is empty");
+        return Err(Refusal::state(found, "at least one position"));
     }
+    let refuse = |index, expected| {
+        let key = format!("{key}[{index}]");
+        Err(Refusal::value(key, axis[index], expected))
+    };
     if let Some(index) = axis.iter().position(|position| !position.is_finite()) {
-        let value = axis[index];
-        return Err(InvalidForceMap::AxisNotFinite { key, index, value });
+        return refuse(index, "a finite number".into());
     }
-    for (index, pair) in axis.windows(2).enumerate() {
-        // Halves, since the difference of two finite numbers may overflow.
-        if pair[1] / 2.0 - pair[0] / 2.0 <= SAME_POSITION / 2.0 {
-            let (previous, value) = (pair[0], pair[1]);
-            let index = index + 1;
-            return Err(InvalidForceMap::AxisOrder {
-                key,
-                index,
-                previous,
-                value,
-            });
-        }
-    }
-    Ok(())
+    // Halves, since the difference of two finite numbers may overflow.
+    let near = |pair: &[f64]| pair[1] / 2.0 - pair[0] / 2.0 <= SAME_POSITION / 2.0;
+    axis.windows(2).position(near).map_or(Ok(()), |before| {
+        let previous = axis[before];
+        let expected =
+            format!("more than {SAME_POSITION:e} m above the entry before it, {previous}");
+        refuse(before + 1, expected)
+    })
 }
 
-fn check_same_axis(key: &'static str, ours: &[f64], theirs: &[f64]) -> Result<(), InvalidForceMap> {
+fn check_same_axis(key: &str, ours: &[f64], theirs: &[f64]) -> Result<(), Refusal> {
     for index in 0..ours.len().max(theirs.len()) {
-        match (ours.get(index).copied(), theirs.get(index).copied()) {
-            (Some(a), Some(b)) if (a - b).abs() <= SAME_POSITION => {}
-            (ours, theirs) => {
-                return Err(InvalidForceMap::AxesDiffer {
-                    key,
-                    index,
-                    ours,
-                    theirs,
-                });
-            }
+        let both = [ours, theirs].map(|axis| axis.get(index));
+        if matches!(both, [Some(a), Some(b)] if (a - b).abs() <= SAME_POSITION) {
+            continue;
         }
+        let [ours, theirs] =
+            both.map(|entry| entry.map_or("not there".into(), |metres| format!("{metres} m")));
+        let found = format!("{key}[{index}] is {ours} in one map and {theirs} in the other");
+        return Err(Refusal::state(found, "equal axes"));
     }
     Ok(())
 }

@@ -9,68 +9,25 @@ use serde_path_to_error::Segment;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::Phantom;
 use super::decimal::parse_scaled;
 use super::limits::{UNITS, in_unit_of, power_to_si};
-use super::{InvalidPhantom, Phantom};
-use crate::csv::{one_line, shortened};
+use crate::csv::shortened;
+use crate::input::line_of;
+use crate::refusal::Refusal;
 
 /// Keys that a file has among those of a layer or an inclusion, and JSON in an object of their own.
 const MATERIAL: &str = "youngs_modulus_kpa poisson_ratio";
 const SHAPE: &str = "diameter_mm width_mm height_mm angle_deg points_mm";
 const NESTED: [(&str, &str); 2] = [("material", MATERIAL), ("shape", SHAPE)];
 
-/// Why a phantom file is refused: one line that begins with the file.
-///
-/// ```
-/// use palpate::phantom::Phantom;
-///
-/// let text = Phantom::builtin("none")?.to_toml()?.replace("radius_mm = 6.5", "radius_mm = 17.0");
-/// let error = Phantom::from_toml(&text, "wide.toml").unwrap_err();
-/// assert_eq!(error.line, Some(21));
-/// assert!(error.to_string().starts_with("wide.toml:21: probe.radius_mm = 17.0, expected "));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// Implements: PHA-022, PHA-023, PHA-024, PHA-025, PHA-026.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{file}{}: {message}", line.map_or(String::new(), |line| format!(":{line}")))]
-pub struct PhantomFileError {
-    /// The file, as its reader named it.
-    pub file: String,
-    /// The line, from 1, where there is one.
-    pub line: Option<usize>,
-    /// What is wrong there, with its key.
-    pub message: String,
-}
-
-/// Where a file is refused, if anywhere, as a byte from its start, and why.
-type Refusal = (Option<usize>, String);
-
 impl Phantom {
     /// Reads the phantom file at `path`.
     ///
-    /// ```
-    /// use palpate::phantom::Phantom;
-    ///
-    /// let path = std::env::temp_dir().join(format!("phantom-{}.toml", std::process::id()));
-    /// std::fs::write(&path, Phantom::builtin("4.6")?.to_toml()?)?;
-    /// assert_eq!(Phantom::read(&path)?, Phantom::builtin("4.6")?);
-    /// # std::fs::remove_file(&path)?;
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
     /// As [`Phantom::from_toml`]; also if the file cannot be read as UTF-8.
-    pub fn read(path: &Path) -> Result<Phantom, PhantomFileError> {
-        let file = path.display().to_string();
-        match crate::input::read(path) {
-            Ok(text) => Phantom::from_toml(&text, &file),
-            Err(error) => Err(PhantomFileError {
-                file,
-                line: None,
-                message: format!("cannot be read: {error}"),
-            }),
-        }
+    pub fn read(path: &Path) -> Result<Phantom, Refusal> {
+        crate::input::parse(path, Phantom::from_toml)
     }
 
     /// The phantom in `text`, the content of `file`, which is named in errors alone.
@@ -86,46 +43,45 @@ impl Phantom {
     /// "#;
     /// let phantom = Phantom::from_toml(text, "soft.toml")?;
     /// assert_eq!((phantom.well.width, phantom.layers[0].material.youngs_modulus), (0.034, 2500.0));
-    /// # Ok::<(), palpate::phantom::PhantomFileError>(())
+    /// let error = Phantom::from_toml(&text.replace("6.5", "17.0"), "wide.toml").unwrap_err();
+    /// assert!(error.to_string().starts_with("wide.toml:5: probe.radius_mm = 17.0, expected "));
+    /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
     /// # Errors
-    /// [`PhantomFileError`] if the text is not TOML, has an unknown key, lacks one, has a value of another type, or makes a
-    /// phantom that [`Phantom::validate`] refuses.
+    /// The text is not TOML, has an unknown key, lacks one, has a value of another type, or makes a phantom that
+    /// [`Phantom::validate`] refuses; with the file, and the line where there is one.
     ///
     /// Implements: PHA-020, PHA-021, PHA-022, PHA-023, PHA-024, PHA-025, PHA-026, PHA-028, PHA-037, PHA-038, PHA-039.
-    pub fn from_toml(text: &str, file: &str) -> Result<Phantom, PhantomFileError> {
-        let refused = |(at, message): Refusal| PhantomFileError {
-            file: file.into(),
-            line: at.map(|at| 1 + text.bytes().take(at).filter(|&byte| byte == b'\n').count()),
-            message: one_line(&message),
-        };
+    pub fn from_toml(text: &str, file: &str) -> Result<Phantom, Refusal> {
         let document = DeTable::parse(text).map_err(|error| {
             let at = error.span().map_or(text.len(), |span| span.start);
             let before = text.get(..at).unwrap_or(text);
             let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
             let message = format!("column {column}: not TOML: {}", error.message());
-            refused((Some(at), message))
+            let line = line_of(text, at);
+            Refusal::state(message, "").at(line).in_file(file)
         })?;
         let (spans, names) = Default::default();
-        let mut file = File { text, spans, names };
-        let mut json = file.object("", document.get_ref());
-        file.restructure(&mut json);
+        let mut source = File { text, spans, names };
+        let mut json = source.object("", document.get_ref());
+        source.restructure(&mut json);
         let phantom = serde_path_to_error::deserialize(Value::Object(json));
-        let phantom: Phantom = phantom.map_err(|error| refused(file.not_a_phantom(&error)))?;
-        let invalid = |error: InvalidPhantom| file.refuse(&error.key, &error.to_string());
-        let valid = phantom.validate();
-        valid.map_err(|error| refused(invalid(error)))?;
-        Ok(phantom)
+        let phantom = phantom.map_err(|error| source.not_a_phantom(&error));
+        let valid = phantom.and_then(|phantom: Phantom| match phantom.validate() {
+            Ok(()) => Ok(phantom),
+            Err(refusal) => Err(source.placed(refusal)),
+        });
+        valid.map_err(|refusal| refusal.in_file(file))
     }
 
     /// This phantom as the text of a phantom file.
     ///
     /// # Errors
-    /// [`InvalidPhantom`] if [`Phantom::validate`] refuses it, so that what is written can be read.
+    /// As [`Phantom::validate`], so that what is written can be read.
     ///
     /// Implements: PHA-021, PHA-027.
-    pub fn to_toml(&self) -> Result<String, InvalidPhantom> {
+    pub fn to_toml(&self) -> Result<String, Refusal> {
         self.validate()?;
         let si = toml::to_string(self).expect("tables of texts and finite numbers are TOML");
         let mut text = String::new();
@@ -277,32 +233,46 @@ impl File<'_> {
             let keys = format!("`{}`", keys.replace(' ', "`, `"));
             expected = expected.replace(&format!("`{outer}`"), &keys);
         }
-        if words[0] == "missing field " {
+        let is_missing = words[0] == "missing field ";
+        if is_missing {
             key = key + "." + &words[1];
         }
         let key = self.in_file(&key);
         let key = key.replace(".material.", ".").replace(".shape.", ".");
         let key = key.trim_start_matches('.');
-        if words[0] == "missing field " || found == "invalid type: null" {
-            self.refuse(key, &format!("{key} is missing"))
+        let span = self.spans.get(key).cloned();
+        let written = span.and_then(|span| self.text.get(span));
+        // Without a value it is a shape of unknown keys.
+        let written = written.unwrap_or(found.trim_start_matches("unknown variant "));
+        let refusal = Refusal::value(key, shortened(written), expected);
+        let line = self.line_of(key);
+        let refusal = if is_missing || found == "invalid type: null" {
+            Refusal::state(format!("{key} is missing"), "")
         } else if words[0] == "unknown field " {
-            self.refuse(key, &format!("{key} is unknown, expected {expected}"))
+            Refusal::state(format!("{key} is unknown"), refusal.expected)
         } else {
-            let span = self.spans.get(key).cloned();
-            let written = span.and_then(|span| self.text.get(span));
-            // Without a value it is a shape of unknown keys.
-            let found = written.unwrap_or(found.trim_start_matches("unknown variant "));
-            let found = shortened(found);
-            self.refuse(key, &format!("{key} = {found}, expected {expected}"))
+            refusal
+        };
+        Refusal { line, ..refusal }
+    }
+
+    /// A refusal of a phantom, in the keys and with the line of this file.
+    fn placed(&self, refusal: Refusal) -> Refusal {
+        let key = self.in_file(&refusal.key);
+        Refusal {
+            line: self.line_of(&key),
+            found: self.in_file(&refusal.found),
+            expected: self.in_file(&refusal.expected),
+            key,
+            ..refusal
         }
     }
 
-    /// The refusal of the value at `key`, or the innermost one around it that is there, with a message about such keys.
-    fn refuse(&self, key: &str, message: &str) -> Refusal {
-        let key = self.in_file(key);
-        let mut outer = std::iter::successors(Some(&*key), |key| key.get(..key.rfind(['.', '['])?));
-        let at = outer.find_map(|key| self.spans.get(key).map(|span| span.start));
-        (at, self.in_file(message))
+    /// The line of the value at `key`, or of the innermost one around it that is there.
+    fn line_of(&self, key: &str) -> Option<usize> {
+        let mut outer = std::iter::successors(Some(key), |key| key.get(..key.rfind(['.', '['])?));
+        let span = outer.find_map(|key| self.spans.get(key))?;
+        Some(line_of(self.text, span.start))
     }
 
     /// A text that names keys of this edition, in those of this file.

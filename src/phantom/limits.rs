@@ -6,6 +6,7 @@ use std::ops::{RangeBounds, RangeInclusive};
 use super::decimal::format_scaled;
 use super::shape::{Point, contains, cross, dot, edges, extent, minus, point_to_segment};
 use super::{Inclusion, Material, Outline, Phantom, Shape, Support};
+use crate::refusal::Refusal;
 
 /// The least distance, m, between the outline of an inclusion and its layer's top and bottom, the walls, other outlines, and
 /// parts of the same outline: no mesh of sound elements fits in less.
@@ -29,53 +30,17 @@ const SHARPEST_CORNER: f64 = 30.0;
 /// diameter, so that a distance comes out too long by at most 0.4 µm for 10 mm.
 const CHORDS: usize = 256;
 
-/// Why a phantom is refused.
-///
-/// ```
-/// use palpate::phantom::Phantom;
-///
-/// let mut phantom = Phantom::builtin("none")?;
-/// phantom.layers[1].thickness = f64::NAN;
-/// let error = phantom.validate().unwrap_err();
-/// assert_eq!(error.key, "layer[1].thickness_mm");
-/// assert_eq!(error.to_string(), "layer[1].thickness_mm = NaN, expected at least 0.001 and at most 1000.0");
-/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
-/// ```
-///
-/// Implements: PHA-009.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{key} = {found}, expected {expected}")]
-pub struct InvalidPhantom {
-    /// What is refused: a key of the phantom file, with indices from 0.
-    pub key: String,
-    /// What it is, in the unit of the phantom file.
-    pub found: String,
-    /// What is allowed, in the same unit.
-    pub expected: String,
-}
-
-type Check = Result<(), InvalidPhantom>;
+type Check = Result<(), Refusal>;
 
 impl Phantom {
     /// Whether this phantom can exist and be meshed.
     ///
-    /// ```
-    /// use palpate::phantom::Phantom;
-    ///
-    /// // 15.5 mm in all, less the disc's 6.4 mm and 0.1 mm of gel under it.
-    /// let mut phantom = Phantom::builtin("8.6")?;
-    /// assert!(phantom.validate().is_ok());
-    /// phantom.inclusions[0].depth = 0.0091;
-    /// assert!(phantom.validate().unwrap_err().to_string().contains("at most 9.0 "));
-    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
-    /// ```
-    ///
     /// # Errors
-    /// [`InvalidPhantom`] with the first offending key, its value and what is allowed.
+    /// The first offending key of the phantom file, its value and what is allowed, both in the unit of the file.
     ///
     /// Implements: PHA-003, PHA-004, PHA-005, PHA-006, PHA-007, PHA-009, PHA-010, PHA-015, PHA-018, PHA-030, PHA-031, PHA-032,
     /// PHA-033, PHA-034, PHA-035, PHA-036, CON-007.
-    pub fn validate(&self) -> Result<(), InvalidPhantom> {
+    pub fn validate(&self) -> Check {
         check_name("name", &self.name)?;
         within("well.width_mm", self.well.width, LENGTHS, "")?;
         self.check_supports()?;
@@ -163,11 +128,7 @@ pub(super) fn in_unit_of(key: &str, value: f64) -> String {
 }
 
 fn refuse(key: &str, found: String, expected: impl Into<String>) -> Check {
-    Err(InvalidPhantom {
-        key: key.into(),
-        found,
-        expected: expected.into(),
-    })
+    Err(Refusal::value(key, found, expected))
 }
 
 /// Refuses a number of `key`, SI, that is not finite or not in `range`, which is there because of `why`.

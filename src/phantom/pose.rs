@@ -3,24 +3,8 @@
 use std::ops::Bound::Excluded;
 
 use super::limits::{in_mm, within};
-use super::{InvalidPhantom, Phantom, Probe};
-
-/// Why the probe cannot stand at a pose, in mm.
-///
-/// ```
-/// use palpate::phantom::Phantom;
-///
-/// let phantom = Phantom::builtin("none")?;
-/// // 17 mm of half a well less the 6 mm of half a probe.
-/// let error = phantom.check_pose(0.004, 0.0115).unwrap_err();
-/// assert!(error.to_string().starts_with("lateral_mm = 11.5, allowed: above -11.0 and below 11.0 ("));
-/// # Ok::<(), palpate::phantom::UnknownPhantom>(())
-/// ```
-///
-/// Implements: PHA-013.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{} = {}, allowed: {}", .0.key, .0.found, .0.expected)]
-pub struct PoseError(pub InvalidPhantom);
+use super::{Phantom, Probe};
+use crate::refusal::Refusal;
 
 impl Probe {
     /// Half the width, m, of the probe in the plane of the undeformed surface when its lowest point
@@ -43,21 +27,21 @@ impl Phantom {
     /// let phantom = Phantom::builtin("none")?;
     /// assert!(phantom.check_pose(0.004, -0.010).is_ok());
     /// assert!(phantom.check_pose(0.004, -0.012).is_err());
-    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
+    /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
     /// # Errors
-    /// [`PoseError`] with the coordinate, its value and what is allowed.
+    /// The coordinate in mm, its value and what is allowed.
     ///
     /// Implements: PHA-011, PHA-012, PHA-013, FEM-019.
-    pub fn check_pose(&self, depth: f64, lateral: f64) -> Result<(), PoseError> {
+    pub fn check_pose(&self, depth: f64, lateral: f64) -> Result<(), Refusal> {
         let why = " (the height of the layers)";
-        within("depth_mm", depth, 0.0..self.height(), why).map_err(PoseError)?;
+        within("depth_mm", depth, 0.0..self.height(), why)?;
         let half_width = self.probe.half_width_at(depth);
         let limit = self.well.width / 2.0 - half_width;
         let (wide, low) = (in_mm(half_width), in_mm(depth));
         let why = format!(" (the probe, {wide} to each side when {low} deep, clears the walls)");
         let range = (Excluded(-limit), Excluded(limit));
-        within("lateral_mm", lateral, range, &why).map_err(PoseError)
+        within("lateral_mm", lateral, range, &why)
     }
 }

@@ -1,8 +1,8 @@
 //! Why an analysis was refused.
 
 use crate::detect::DetectError;
-use crate::force_map::InvalidForceMap;
 use crate::psychophysics::TableError;
+use crate::refusal::Refusal;
 use crate::stats::binomial::ProportionError;
 use crate::stats::normal::NormalError;
 use crate::stats::tails::TailError;
@@ -37,7 +37,7 @@ pub enum PsychophysicsError {
         /// The inclusion.
         name: String,
         /// What is wrong with its map.
-        source: InvalidForceMap,
+        source: Box<Refusal>,
     },
     /// An inclusion that the table does not hold.
     #[error("inclusion {name:?} is no column of the table, expected one of {expected}")]

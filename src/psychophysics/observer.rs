@@ -3,7 +3,8 @@
 
 use super::{Felt, Interval};
 use crate::detect::{Channels, DetectError, theta_of_record};
-use crate::force_map::{ForceTable, InvalidForceMap};
+use crate::force_map::ForceTable;
+use crate::refusal::Refusal;
 use crate::stats::random::Generator;
 
 /// The stream of the generator that the observer's noise is drawn from.
@@ -58,13 +59,13 @@ pub struct IdealObserver<'a> {
 /// let observer = IdealObserver { reference: &map, inclusion: &map, noise_sd: 0.1, seed: 1 };
 /// // Nothing was felt.
 /// assert!(matches!(observer.theta(&Felt::default(), 0), Err(ObserverError::Detect(_))));
-/// # Ok::<(), palpate::force_map::InvalidForceMap>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ObserverError {
     /// The maps give no force where the hand was.
     #[error("{0}")]
-    Map(#[from] InvalidForceMap),
+    Map(#[from] Refusal),
     /// The detector refuses the record.
     #[error("{0}")]
     Detect(#[from] DetectError),
@@ -87,10 +88,10 @@ impl IdealObserver<'_> {
             for (&depth, &lateral) in felt.depths.iter().zip(&felt.laterals) {
                 // Nothing is played above the surface.
                 let force = table.force(depth.max(0.0), lateral)?;
-                forces.x.push(force.lateral);
-                forces.y.push(force.normal);
+                forces.x.push(force.x);
+                forces.y.push(force.y);
             }
-            Ok::<_, InvalidForceMap>(forces)
+            Ok::<_, Refusal>(forces)
         };
         let (f0, f1) = (expected(self.reference)?, expected(self.inclusion)?);
         let noisy = |forces: &[f64], channel| {

@@ -7,8 +7,9 @@
 
 use std::path::Path;
 
-use crate::csv::{CsvProblem, header_and_rows, shortened};
+use crate::csv::{header_and_rows, shortened, wrong_header};
 use crate::phantom::decimal::parse_scaled;
+use crate::refusal::Refusal;
 
 /// Table 1.
 const PAPER: &str = include_str!("table1.csv");
@@ -137,7 +138,7 @@ pub enum TableProblem {
     Read(String),
     /// A header that does not name the columns, or a row of another length.
     #[error(transparent)]
-    Csv(#[from] CsvProblem),
+    Csv(Box<Refusal>),
     /// A field that makes no sense.
     #[error("{column} = {found:?}, expected {expected}")]
     Field {
@@ -279,10 +280,8 @@ impl Condition {
 fn inclusions(header: &str) -> Result<Vec<Inclusion>, TableProblem> {
     let fields: Vec<&str> = header.split(',').map(str::trim).collect();
     if fields.len() <= KEYS.len() || fields[..KEYS.len()] != KEYS {
-        return Err(TableProblem::Csv(CsvProblem::Header {
-            found: shortened(header),
-            expected: EXPECTED_HEADER,
-        }));
+        let refusal = wrong_header(header, EXPECTED_HEADER);
+        return Err(TableProblem::Csv(refusal.into()));
     }
     let mut inclusions: Vec<Inclusion> = Vec::new();
     for (number, field) in (KEYS.len() + 1..).zip(&fields[KEYS.len()..]) {
@@ -318,15 +317,8 @@ fn subject(
     row: &str,
     inclusions: &[Inclusion],
 ) -> Result<(String, Subject), TableProblem> {
-    let fields: Vec<&str> = row.split(',').map(str::trim).collect();
-    let expected = KEYS.len() + inclusions.len();
-    if fields.len() != expected {
-        return Err(TableProblem::Csv(CsvProblem::Fields {
-            found: fields.len(),
-            expected,
-            header: header.into(),
-        }));
-    }
+    let fields = crate::csv::fields(row, KEYS.len() + inclusions.len(), header)
+        .map_err(|refusal| TableProblem::Csv(refusal.into()))?;
     let refused = |column: &str, found: &str, expected: String| TableProblem::Field {
         column: column.into(),
         found: shortened(found),

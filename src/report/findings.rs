@@ -11,9 +11,10 @@ use crate::detect::{
     Channels, DetectError, MatchedFilter, auc, error_rates, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
 };
-use crate::force_map::{ForceCurve, ForceMap, ForceTable, InvalidForceMap, SAME_POSITION};
+use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};
 use crate::psychophysics::bridge::Bridge;
 use crate::psychophysics::{Analysis, NoiseDecomposition, Table, analyse, paper_noise_levels};
+use crate::refusal::Refusal;
 
 /// What a study found, in plain numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -198,10 +199,10 @@ pub(super) fn signal(study: &Study, map: &ForceMap) -> Result<ForceTable, Report
 }
 
 /// The refusal of a map.
-pub(super) fn refused(map: &ForceMap) -> impl FnOnce(InvalidForceMap) -> ReportError {
+pub(super) fn refused(map: &ForceMap) -> impl FnOnce(Refusal) -> ReportError {
     |source| ReportError::Map {
         name: name_of_map(map),
-        source,
+        source: source.into(),
     }
 }
 

@@ -67,9 +67,10 @@ use crate::detect::DetectError;
 use crate::fem::element::CORNERS;
 use crate::fem::mesh::Region;
 use crate::fem::{FemError, Model, Pose};
-use crate::force_map::{ForceMap, InvalidForceMap};
+use crate::force_map::ForceMap;
 use crate::phantom::Phantom;
 use crate::psychophysics::{PsychophysicsError, TableError};
+use crate::refusal::Refusal;
 
 /// The version of the program.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -198,7 +199,7 @@ pub enum ReportError {
         /// The name of the map's phantom.
         name: String,
         /// What is wrong with it.
-        source: InvalidForceMap,
+        source: Box<Refusal>,
     },
     /// A computed map among the measured ones.
     #[error("map {name:?} is among the measured maps, but was computed")]

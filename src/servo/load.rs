@@ -75,7 +75,7 @@ pub struct LoadedTable {
 /// let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
 /// let refused = LoadedTable::new(&map(matrix(150.0), matrix(0.0))?);
 /// assert!(matches!(refused, Err(LoadError::Force { key: "normal_force_n", value: 150.0, .. })));
-/// # Ok::<(), palpate::force_map::InvalidForceMap>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadError {

@@ -1,24 +1,15 @@
 //! The record judged at the position that the maps are for.
 
-use super::{Record, TraceError, TraceProblem};
+use super::{Record, refused, view};
 use crate::detect::assessment::{Assessment, assess};
 use crate::detect::{
     Channels, DetectError, map_threshold, neyman_pearson_false_alarm_threshold,
     neyman_pearson_miss_threshold, theta_of_record,
 };
 use crate::force_map::ForceTable;
+use crate::refusal::Refusal;
 
 /// What the threshold shall achieve.
-///
-/// ```
-/// use palpate::detect::error_rates;
-/// use palpate::trace::Criterion;
-///
-/// assert_eq!(Criterion::Map.threshold(3.0, 0.5)?, 0.0);
-/// let eta = Criterion::NeymanPearsonMiss { max_miss: 0.05 }.threshold(3.0, 0.5)?;
-/// assert!((error_rates(3.0, eta)?.miss - 0.05).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Criterion {
     /// The fewest errors for the prior.
@@ -56,31 +47,11 @@ impl Criterion {
 /// η and the assessment of `record` for an inclusion at x = 0 of the maps, swept at `depth` (m), in
 /// white noise of standard deviation `noise_sd` a sample (N).
 ///
-/// ```
-/// use palpate::detect::{Channels, Decision};
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::trace::{Criterion, Trace, judge};
-///
-/// let map = |force: f64| {
-///     let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-///     ForceTable::new(vec![0.004], vec![0.0, 0.004], matrix(force), matrix(0.0))
-/// };
-/// let text = "position_mm,lateral_force_n,normal_force_n\n1,0,1.5\n3,0,2\n";
-/// let record = Trace::from_csv(text, "sweep.csv")?.record(None)?;
-/// // Two samples with Δ/s = 2: γ² = 8. One is as F_0 has it, the other as F_1.
-/// let noise_sd = Channels { x: 0.25, y: 0.25 };
-/// let (eta, found) = judge(&record, &map(1.5)?, &map(2.0)?, 0.004, noise_sd, Criterion::Map, 0.5)?;
-/// assert_eq!((found.statistic.theta, eta), (0.0, 0.0));
-/// assert!((found.statistic.gamma - 8.0_f64.sqrt()).abs() < 1e-15);
-/// assert_eq!(found.decision, Decision::Inclusion);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// # Errors
 /// Maps on different axes; positions or a depth outside them; maps that do not differ at the
 /// samples; whatever the detector refuses.
 ///
-/// Implements: TRC-020, CLI-043, CLI-049.
+/// Implements: TRC-008, TRC-020, CLI-043, CLI-049.
 pub fn judge(
     record: &Record,
     reference: &ForceTable,
@@ -89,23 +60,25 @@ pub fn judge(
     noise_sd: Channels<f64>,
     criterion: Criterion,
     prior_h1: f64,
-) -> Result<(f64, Assessment), TraceError> {
-    let refused = |error: DetectError| TraceProblem::from(error).at(record.file(), None);
-    // Only for its refusal of axes that differ.
-    let same_axes = inclusion.minus(reference);
-    same_axes.map_err(|error| TraceProblem::from(error).at(record.file(), None))?;
-    let f0 = record.expected(reference, depth)?;
-    let f1 = record.expected(inclusion, depth)?;
-    let (f0, f1) = (super::view(&f0), super::view(&f1));
-    let gamma = theta_of_record(record.forces(), f0, f1, noise_sd)
-        .map_err(refused)?
-        .gamma;
-    if gamma == 0.0 {
-        return Err(TraceProblem::NoSignal.at(record.file(), None));
-    }
-    let eta = criterion.threshold(gamma, prior_h1).map_err(refused)?;
-    let assessment = assess(record.forces(), f0, f1, noise_sd, prior_h1, eta).map_err(refused)?;
-    Ok((eta, assessment))
+) -> Result<(f64, Assessment), Refusal> {
+    let judged = || {
+        // Only for its refusal of axes that differ.
+        inclusion.minus(reference)?;
+        let f0 = record.expected(reference, depth)?;
+        let f1 = record.expected(inclusion, depth)?;
+        let (observed, f0, f1) = (record.forces(), view(&f0), view(&f1));
+        let assessed = || {
+            let gamma = theta_of_record(observed, f0, f1, noise_sd)?.gamma;
+            if gamma == 0.0 {
+                return Err(DetectError::NoSignal);
+            }
+            let eta = criterion.threshold(gamma, prior_h1)?;
+            let assessment = assess(observed, f0, f1, noise_sd, prior_h1, eta)?;
+            Ok((eta, assessment))
+        };
+        assessed().map_err(refused)
+    };
+    judged().map_err(|refusal: Refusal| refusal.in_file(record.file()))
 }
 
 /// How far a record is from the nearer of the two hypotheses.
@@ -149,9 +122,9 @@ impl Misfit {
         depth: f64,
         noise_sd: Channels<f64>,
         theta: f64,
-    ) -> Result<Misfit, TraceError> {
+    ) -> Result<Misfit, Refusal> {
         let f0 = record.expected(reference, depth)?;
-        let sums = record.forces().zip(super::view(&f0)).zip(noise_sd);
+        let sums = record.forces().zip(view(&f0)).zip(noise_sd);
         let sums = sums.map(|((observed, f0), noise_sd)| {
             let terms = std::iter::zip(observed, f0).map(|(observed, f0)| {
                 let standardised = (observed - f0) / noise_sd;
@@ -163,8 +136,7 @@ impl Misfit {
         let chi_square = sums.x + sums.y - 2.0 * theta.max(0.0);
         if !chi_square.is_finite() {
             let what = "chi_square";
-            let error = TraceProblem::Detect(DetectError::Overflow { what });
-            return Err(error.at(record.file(), None));
+            return Err(refused(DetectError::Overflow { what }).in_file(record.file()));
         }
         let n = 2.0 * record.positions().len() as f64;
         let t = libm::log(1e6);

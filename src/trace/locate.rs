@@ -1,6 +1,6 @@
 //! The record judged at an unknown position of the inclusion, equation (10).
 
-use super::{Criterion, Record, TraceError, TraceProblem, channels, view};
+use super::{Criterion, Record, mm, refused, view};
 use crate::detect::assessment::{ScanAssessment, assess_scan};
 use crate::detect::mixture::mixture_theta;
 use crate::detect::position::{MaximumLaw, position_bound, slope};
@@ -10,6 +10,7 @@ use crate::detect::{
     neyman_pearson_miss_threshold, posterior,
 };
 use crate::force_map::{ForceTable, SAME_POSITION};
+use crate::refusal::Refusal;
 
 /// Steps of a record that differ by less than this share of a step are equal.
 ///
@@ -27,29 +28,6 @@ pub const MOST_SAMPLES: usize = 20_000;
 pub const DIED_AWAY: f64 = 0.1;
 
 /// What a scan says.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::trace::{Criterion, Trace, locate};
-///
-/// let map = |bump: [f64; 5]| {
-///     let laterals = vec![-0.002, -0.001, 0.0, 0.001, 0.002];
-///     let matrix = |force: [f64; 5]| Matrix::from_fn(1, 5, |_, column| force[column]);
-///     ForceTable::new(vec![0.004], laterals, matrix(bump), matrix([0.0; 5]))
-/// };
-/// let (nothing, bump) = (map([0.0; 5])?, map([0.0, 0.25, 0.5, 0.25, 0.0])?);
-/// let header = "position_mm,lateral_force_n,normal_force_n\n";
-/// let text = format!("{header}-2,0,0\n-1,0,0.25\n0,0,0.5\n1,0,0.25\n2,0,0\n");
-/// let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
-/// let noise_sd = Channels { x: 0.25, y: 0.25 };
-/// let found = locate(&record, &nothing, &bump, 0.004, noise_sd, Criterion::Map, 0.5)?;
-/// assert_eq!((found.theta_max, found.position, found.candidates), (3.0, 0.0, 5));
-/// // All candidates together are less likely than the best; the signal has died away at the ends.
-/// assert!(found.theta_mixture < found.theta_max);
-/// assert_eq!(found.template_edge, 0.0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Location {
     /// Θ_max.
@@ -96,28 +74,6 @@ struct Grid {
 /// Searches `record`, swept at `depth` (m), for the inclusion of the map `inclusion`, in white noise
 /// of standard deviation `noise_sd` a sample (N). The candidates are the positions of the samples.
 ///
-/// ```
-/// use palpate::detect::{Channels, Decision};
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::trace::{Criterion, Trace, locate};
-///
-/// let map = |bump: [f64; 5]| {
-///     let laterals = vec![-0.002, -0.001, 0.0, 0.001, 0.002];
-///     let matrix = |force: [f64; 5]| Matrix::from_fn(1, 5, |_, column| force[column]);
-///     ForceTable::new(vec![0.004], laterals, matrix(bump), matrix([0.0; 5]))
-/// };
-/// let (nothing, bump) = (map([0.0; 5])?, map([0.0, 1.0, 2.0, 1.0, 0.0])?);
-/// // The bump lies 1 mm to the left of x = 0.
-/// let header = "position_mm,lateral_force_n,normal_force_n\n";
-/// let text = format!("{header}-2,0,1\n-1,0,2\n0,0,1\n1,0,0\n2,0,0\n");
-/// let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
-/// let noise_sd = Channels { x: 0.25, y: 0.25 };
-/// let found = locate(&record, &nothing, &bump, 0.004, noise_sd, Criterion::Map, 0.5)?;
-/// assert_eq!(found.decision, Decision::Inclusion);
-/// assert!((found.position + 0.001).abs() < 1e-4);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// # Errors
 /// As [`super::judge`]; a record whose steps are not equal, that is too long, or shorter than the
 /// maps; maps without x = 0.
@@ -131,70 +87,60 @@ pub fn locate(
     noise_sd: Channels<f64>,
     criterion: Criterion,
     prior_h1: f64,
-) -> Result<Location, TraceError> {
-    let f0 = record.expected(reference, depth)?;
-    let grid = Grid::new(record, &f0, [reference, inclusion], depth)
-        .map_err(|(problem, line)| problem.at(record.file(), line))?;
-    let found = grid.locate(noise_sd, criterion, prior_h1);
-    found.map_err(|error| {
-        let problem = match error {
-            DetectError::NoSignal => TraceProblem::NoSignal,
-            error => TraceProblem::Detect(error),
-        };
-        problem.at(record.file(), None)
-    })
-}
-
-fn residual(record: &Record, f0: &Channels<Vec<f64>>) -> Channels<Vec<f64>> {
-    let difference = |(observed, f0): (&[f64], &Vec<f64>)| {
-        std::iter::zip(observed, f0)
-            .map(|(observed, f0)| observed - f0)
-            .collect()
+) -> Result<Location, Refusal> {
+    let located = || {
+        let grid = Grid::new(record, [reference, inclusion], depth)?;
+        grid.locate(noise_sd, criterion, prior_h1).map_err(refused)
     };
-    let Channels { x, y } = f0;
-    record.forces().zip(Channels { x, y }).map(difference)
+    located().map_err(|refusal: Refusal| refusal.in_file(record.file()))
 }
-
-/// A problem, with the line where there is one.
-type Refusal = (TraceProblem, Option<usize>);
 
 impl Grid {
-    /// The template of `maps`, reference and inclusion, and the residual against `f0`.
+    /// The template of `maps`, reference and inclusion, and the residual against the reference.
     ///
     /// Implements: TRC-020, TRC-030, TRC-031, TRC-032, TRC-033, TRC-041.
     fn new(
         record: &Record,
-        f0: &Channels<Vec<f64>>,
         [reference, inclusion]: [&ForceTable; 2],
         depth: f64,
     ) -> Result<Grid, Refusal> {
+        let f0 = record.expected(reference, depth)?;
         let spacing = equal_steps(record)?;
-        let refused = |problem| (problem, None);
-        let map = |error| refused(TraceProblem::Map(error));
-        let signal = inclusion.minus(reference).map_err(map)?;
+        let signal = inclusion.minus(reference)?;
         let laterals = signal.laterals();
         let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
         if first > SAME_POSITION || last < -SAME_POSITION {
-            return Err(refused(TraceProblem::NoOrigin { first, last }));
+            return Err(Refusal::state(
+                format!("the maps cover {} to {} mm", mm(first), mm(last)),
+                "the inclusion's position, 0 mm, among them",
+            ));
         }
         let first_sample = libm::ceil((first - SAME_POSITION) / spacing);
         let last_sample = libm::floor((last + SAME_POSITION) / spacing);
         let (template, samples) = (last_sample - first_sample + 1.0, record.positions().len());
         if template > samples as f64 {
-            let record = samples;
-            return Err(refused(TraceProblem::Short { record, template }));
+            return Err(Refusal::state(
+                format!("{samples} samples"),
+                format!(
+                    "at least the {template} that the maps cover at this spacing: a scan needs a sweep as long as the maps, or maps over fewer lateral positions"
+                ),
+            ));
         }
         // Both lie between −20 000 and 20 000 now: the template holds j = 0.
         let (first_shift, last_sample) = (first_sample as isize, last_sample as isize);
         let positions: Vec<f64> = (first_shift..=last_sample)
             .map(|j| j as f64 * spacing)
             .collect();
+        let residual = record.forces().zip(view(&f0)).map(|(observed, f0)| {
+            let difference = std::iter::zip(observed, f0).map(|(observed, f0)| observed - f0);
+            difference.collect()
+        });
         Ok(Grid {
             spacing,
             start: record.positions()[0],
             first_shift,
-            template: channels(signal.sweep(depth, &positions).map_err(map)?),
-            residual: residual(record, f0),
+            template: signal.sweep(depth, &positions)?,
+            residual,
         })
     }
 
@@ -211,7 +157,9 @@ impl Grid {
         let eta = threshold(&scan, &law, criterion, prior_h1)?;
         let found: ScanAssessment = assess_scan(&scan, &law, view(&self.residual), eta)?;
         let shift = found.maximum.shift;
-        let mixture = self.mixture(&scan)?;
+        let mut theta = vec![0.0; candidates];
+        scan.theta(view(&self.residual), self.first_shift, &mut theta)?;
+        let mixture = mixture_theta(&theta, &vec![1.0 / candidates as f64; candidates])?;
         let mut location = Location {
             theta_max: found.maximum.theta,
             theta_mixture: mixture,
@@ -238,14 +186,6 @@ impl Grid {
         Ok(location)
     }
 
-    /// Implements: TRC-035.
-    fn mixture(&self, scan: &Scan<'_>) -> Result<f64, DetectError> {
-        let candidates = self.residual.x.len();
-        let mut theta = vec![0.0; candidates];
-        scan.theta(view(&self.residual), self.first_shift, &mut theta)?;
-        mixture_theta(&theta, &vec![1.0 / candidates as f64; candidates])
-    }
-
     /// Implements: TRC-042.
     fn template_edge(&self, noise_sd: Channels<f64>) -> f64 {
         let parts = view(&self.template).zip(noise_sd).map(|(signal, sd)| {
@@ -262,21 +202,16 @@ impl Grid {
     ///
     /// Implements: TRC-034.
     fn position_sd_bound(&self, shift: isize, noise_sd: Channels<f64>) -> Result<f64, DetectError> {
-        let length = self.template.x.len();
-        let mut slopes = Channels {
-            x: vec![0.0; length],
-            y: vec![0.0; length],
+        let samples = 0..self.residual.x.len() as isize;
+        let seen = |template: &[f64]| {
+            let mut slopes = vec![0.0; template.len()];
+            slope(template, self.spacing, &mut slopes)?;
+            let places = (shift..).zip(slopes);
+            let seen = places.filter(|(place, _)| samples.contains(place));
+            Ok::<Vec<f64>, DetectError>(seen.map(|(_, slope)| slope).collect())
         };
-        slope(&self.template.x, self.spacing, &mut slopes.x)?;
-        slope(&self.template.y, self.spacing, &mut slopes.y)?;
-        let seen = |sample: usize| {
-            (0..self.residual.x.len() as isize).contains(&(sample as isize + shift))
-        };
-        let seen = slopes.map(|slope| {
-            let parts = slope.iter().enumerate().filter(|(sample, _)| seen(*sample));
-            parts.map(|(_, slope)| *slope).collect::<Vec<f64>>()
-        });
-        position_bound(view(&seen), noise_sd)
+        let (x, y) = (seen(&self.template.x)?, seen(&self.template.y)?);
+        position_bound(Channels { x: &x, y: &y }, noise_sd)
     }
 }
 
@@ -287,15 +222,19 @@ fn equal_steps(record: &Record) -> Result<f64, Refusal> {
     let positions = record.positions();
     let samples = positions.len();
     if !(2..=MOST_SAMPLES).contains(&samples) {
-        return Err((TraceProblem::Samples { samples }, None));
+        let expected = format!("2 to {MOST_SAMPLES} for a scan");
+        return Err(Refusal::state(format!("{samples} samples"), expected));
     }
     let start = positions[0];
     let spacing = (positions[samples - 1] - start) / (samples - 1) as f64;
-    for (i, (&found, sample)) in positions.iter().zip(&record.samples).enumerate() {
+    for (i, (&found, &line)) in positions.iter().zip(&record.lines).enumerate() {
         let expected = start + i as f64 * spacing;
         if (found - expected).abs() > UNIFORM * spacing {
-            let problem = TraceProblem::NotUniform { found, expected };
-            return Err((problem, Some(sample.line)));
+            let expected = format!(
+                "{} mm: a scan shifts the template by whole samples, so the steps must be equal within {UNIFORM:e} of a step",
+                mm(expected)
+            );
+            return Err(Refusal::state(format!("position {} mm", mm(found)), expected).at(line));
         }
     }
     Ok(spacing)

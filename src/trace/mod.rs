@@ -3,8 +3,6 @@
 //! | file | content |
 //! |---|---|
 //! | `mod.rs` | the trace, its positions, and the forces that a map expects there |
-//! | `csv.rs` | the file |
-//! | `error.rs` | what can be wrong |
 //! | `judge.rs` | criterion, and the record at a known position |
 //! | `locate.rs` | the scan for the position, equation (10) |
 //!
@@ -40,29 +38,37 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod csv;
-mod error;
 mod judge;
 mod locate;
 #[cfg(test)]
 mod tests;
 
-pub use error::{TraceError, TraceProblem};
+use std::path::Path;
+
 pub use judge::{Criterion, Misfit, judge};
 pub use locate::{DIED_AWAY, Location, MOST_SAMPLES, UNIFORM, locate};
 
-use crate::detect::Channels;
-use crate::force_map::{ForceTable, SAME_POSITION, Sweep};
+use crate::csv::{Column, Table};
+use crate::detect::{Channels, DetectError};
+use crate::force_map::{ForceTable, SAME_POSITION};
+use crate::phantom::decimal::format_scaled;
+use crate::refusal::Refusal;
+
+/// Position or time, lateral force, normal force.
+const COLUMNS: [Column; 3] = [
+    &[
+        ("position_mm", -3),
+        ("position_m", 0),
+        ("time_s", 0),
+        ("time_ms", -3),
+    ],
+    &[("lateral_force_n", 0), ("lateral_force_mn", -3)],
+    &[("normal_force_n", 0), ("normal_force_mn", -3)],
+];
+/// The headers that are right, for a person.
+const EXPECTED_HEADER: &str = "position_mm,lateral_force_n,normal_force_n, in any order, or time_s for the position, also position_m, time_ms and forces as _mn";
 
 /// What the first column of a trace counts.
-///
-/// ```
-/// use palpate::trace::{Abscissa, Trace};
-///
-/// let text = "time_s,lateral_force_n,normal_force_n\n0,0,1.5\n0.1,0,1.75\n";
-/// assert_eq!(Trace::from_csv(text, "sweep.csv")?.abscissa(), Abscissa::Time);
-/// # Ok::<(), palpate::trace::TraceError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Abscissa {
     /// Seconds since some start.
@@ -72,33 +78,12 @@ pub enum Abscissa {
 }
 
 /// Forces on the probe as they were recorded, at least one sample.
-///
-/// ```
-/// use palpate::trace::{Abscissa, Trace};
-///
-/// let text = "position_mm,lateral_force_mn,normal_force_n\n-1,-250,1.5\n1,250,1.75\n";
-/// let trace = Trace::from_csv(text, "sweep.csv")?;
-/// assert_eq!(trace.abscissa(), Abscissa::Position);
-/// let record = trace.record(None)?;
-/// assert_eq!(record.positions(), [-0.001, 0.001]);
-/// assert_eq!(record.forces().x, [-0.25, 0.25]);
-/// # Ok::<(), palpate::trace::TraceError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     file: String,
     abscissa: Abscissa,
-    samples: Vec<Sample>,
-}
-
-/// One row of the file.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Sample {
-    line: usize,
-    /// s or m.
-    abscissa: f64,
-    /// Force on the probe, N.
-    force: Channels<f64>,
+    /// The line of each sample, its abscissa (s or m), lateral and normal force (N).
+    samples: Vec<(usize, [f64; 3])>,
 }
 
 /// The motion of the probe while times were recorded.
@@ -112,7 +97,7 @@ struct Sample {
 /// let record = Trace::from_csv(text, "sweep.csv")?.record(Some(motion))?;
 /// assert_eq!(record.positions(), [0.001, 0.003]);
 /// assert_eq!(record.forces().y, [1.75, 1.5]);
-/// # Ok::<(), palpate::trace::TraceError>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
@@ -136,17 +121,57 @@ pub struct Motion {
 /// let matrix = || Matrix::from_fn(1, 3, |_, column| column as f64);
 /// let map = ForceTable::new(vec![0.004], vec![0.0, 0.002, 0.004], matrix(), matrix())?;
 /// assert_eq!(record.expected(&map, 0.004)?.y, [0.5, 1.5]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     file: String,
-    samples: Vec<Sample>,
+    /// The line of each sample.
+    lines: Vec<usize>,
     positions: Vec<f64>,
     forces: Channels<Vec<f64>>,
 }
 
 impl Trace {
+    /// Reads the trace at `path`.
+    ///
+    /// # Errors
+    /// As [`Trace::from_csv`]; a file that cannot be read as UTF-8.
+    pub fn read(path: &Path) -> Result<Trace, Refusal> {
+        crate::input::parse(path, Trace::from_csv)
+    }
+
+    /// The trace in `text`, the content of `file`.
+    ///
+    /// # Errors
+    /// The header does not name the three columns, a row is malformed, positions or times do not increase, or there is no row;
+    /// with file and line.
+    ///
+    /// Implements: TRC-001, TRC-002, TRC-003, TRC-004, TRC-005, TRC-006, TRC-007, TRC-008.
+    pub fn from_csv(text: &str, file: &str) -> Result<Trace, Refusal> {
+        let read = || {
+            let table = Table::parse(text, COLUMNS, EXPECTED_HEADER)?;
+            let samples = table.rows;
+            if samples.is_empty() {
+                let found = "no samples under the header";
+                return Err(Refusal::state(found, "at least one row").at(table.line));
+            }
+            let abscissa = if table.names[0].starts_with("time") {
+                Abscissa::Time
+            } else {
+                Abscissa::Position
+            };
+            check_order(abscissa, &samples)?;
+            let file = file.into();
+            Ok(Trace {
+                file,
+                abscissa,
+                samples,
+            })
+        };
+        read().map_err(|refusal: Refusal| refusal.in_file(file))
+    }
+
     /// What the trace is over.
     pub fn abscissa(&self) -> Abscissa {
         self.abscissa
@@ -155,59 +180,79 @@ impl Trace {
     /// The record over positions; a trace over times needs the motion, and only it.
     ///
     /// # Errors
-    /// [`TraceProblem::Motion`] if the motion is missing, or there for a trace over positions;
-    /// [`TraceProblem::Velocity`] if the probe does not move; [`TraceProblem::Position`] and
-    /// [`TraceProblem::Order`] if times make no positions.
+    /// The motion is missing, or there for a trace over positions; the probe does not move; times make no positions.
     ///
-    /// Implements: TRC-010, TRC-011, TRC-012, TRC-013.
-    pub fn record(self, motion: Option<Motion>) -> Result<Record, TraceError> {
-        let mut samples = self.samples;
-        match (self.abscissa, motion) {
-            (Abscissa::Position, None) => {}
-            (Abscissa::Time, Some(motion)) => {
-                let velocity = motion.velocity;
-                if !velocity.is_finite() || velocity == 0.0 {
-                    return Err(TraceProblem::Velocity { velocity }.at(&self.file, None));
-                }
-                for sample in &mut samples {
-                    sample.abscissa = motion.start + velocity * sample.abscissa;
-                }
-                if velocity < 0.0 {
-                    samples.reverse();
-                }
-            }
-            (abscissa, _) => return Err(TraceProblem::Motion { abscissa }.at(&self.file, None)),
-        }
-        check_positions(&samples).map_err(|(problem, line)| problem.at(&self.file, line))?;
+    /// Implements: TRC-008, TRC-010, TRC-011, TRC-012, TRC-013.
+    pub fn record(self, motion: Option<Motion>) -> Result<Record, Refusal> {
+        let Trace {
+            file,
+            mut samples,
+            abscissa,
+        } = self;
+        let placed = match (abscissa, motion) {
+            (Abscissa::Position, None) => Ok(()),
+            (Abscissa::Time, Some(motion)) => move_along(&mut samples, motion),
+            (Abscissa::Time, None) => Err(Refusal::state(
+                "the samples have times",
+                "a velocity and a start to make positions of them (--velocity-mm-s, --start-mm)",
+            )),
+            (Abscissa::Position, Some(_)) => Err(Refusal::state(
+                "the samples have positions",
+                "neither velocity nor start (--velocity-mm-s, --start-mm)",
+            )),
+        };
+        placed.map_err(|refusal| refusal.in_file(&*file))?;
+        let column = |of: usize| samples.iter().map(|(_, sample)| sample[of]).collect();
         Ok(Record {
-            positions: samples.iter().map(|sample| sample.abscissa).collect(),
+            lines: samples.iter().map(|(line, _)| *line).collect(),
+            positions: column(0),
             forces: Channels {
-                x: samples.iter().map(|sample| sample.force.x).collect(),
-                y: samples.iter().map(|sample| sample.force.y).collect(),
+                x: column(1),
+                y: column(2),
             },
-            file: self.file,
-            samples,
+            file,
         })
     }
 }
 
-/// Checks that positions are finite and increase.
-fn check_positions(samples: &[Sample]) -> Result<(), (TraceProblem, usize)> {
+/// Makes positions of times.
+fn move_along(samples: &mut [(usize, [f64; 3])], motion: Motion) -> Result<(), Refusal> {
+    let Motion { velocity, start } = motion;
+    if !velocity.is_finite() || velocity == 0.0 {
+        let expected = "a finite number other than 0";
+        return Err(Refusal::value(
+            "velocity",
+            format!("{velocity} m/s"),
+            expected,
+        ));
+    }
+    for (_, [abscissa, ..]) in samples.iter_mut() {
+        *abscissa = start + velocity * *abscissa;
+    }
+    if velocity < 0.0 {
+        samples.reverse();
+    }
+    check_order(Abscissa::Position, samples)
+}
+
+/// Checks that times increase, or that positions are finite and increase by more than [`SAME_POSITION`].
+fn check_order(abscissa: Abscissa, samples: &[(usize, [f64; 3])]) -> Result<(), Refusal> {
+    let (name, unit, power, least) = match abscissa {
+        Abscissa::Time => ("time", "s", 0, 0.0),
+        Abscissa::Position => ("position", "mm", 3, SAME_POSITION),
+    };
     let mut before = f64::NEG_INFINITY;
-    for sample in samples {
-        let position = sample.abscissa;
-        if !position.is_finite() {
-            return Err((TraceProblem::Position { position }, sample.line));
+    for &(line, [found, ..]) in samples {
+        if !found.is_finite() {
+            let found = format!("{found} m from this time");
+            return Err(Refusal::value(name, found, "a finite number").at(line));
         }
-        if position <= before + SAME_POSITION {
-            let problem = TraceProblem::Order {
-                abscissa: Abscissa::Position,
-                found: position,
-                before,
-            };
-            return Err((problem, sample.line));
+        if found <= before + least {
+            let [found, before] = [found, before].map(|value| format_scaled(value, power));
+            let found = format!("{name} {found} {unit} after {before} {unit}");
+            return Err(Refusal::state(found, "it to increase").at(line));
         }
-        before = position;
+        before = found;
     }
     Ok(())
 }
@@ -230,52 +275,40 @@ impl Record {
 
     /// The forces that `map` expects at `depth` (m) at the samples, N.
     ///
-    /// ```
-    /// use palpate::force_map::{ForceTable, Matrix};
-    /// use palpate::trace::{Trace, TraceProblem};
-    ///
-    /// let matrix = || Matrix::from_fn(1, 2, |_, column| column as f64);
-    /// let map = ForceTable::new(vec![0.004], vec![0.0, 0.004], matrix(), matrix())?;
-    /// // 5 mm is outside the map: no force is made up.
-    /// let text = "position_mm,lateral_force_n,normal_force_n\n1,0,1.5\n5,0,1.75\n";
-    /// let record = Trace::from_csv(text, "sweep.csv")?.record(None)?;
-    /// let error = record.expected(&map, 0.004).unwrap_err();
-    /// assert_eq!(error.line, Some(3));
-    /// assert!(matches!(error.problem, TraceProblem::Outside { position: 0.005, .. }));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
-    /// [`TraceProblem::Outside`] with the line of the first sample outside the map's lateral
-    /// positions; [`TraceProblem::Map`] for a depth outside its depths.
+    /// The first sample outside the map's lateral positions, with its line; a depth outside its depths.
     ///
-    /// Implements: TRC-024.
-    pub fn expected(&self, map: &ForceTable, depth: f64) -> Result<Channels<Vec<f64>>, TraceError> {
+    /// Implements: TRC-008, TRC-024.
+    pub fn expected(&self, map: &ForceTable, depth: f64) -> Result<Channels<Vec<f64>>, Refusal> {
         let laterals = map.laterals();
         let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
         let inside = first - SAME_POSITION..=last + SAME_POSITION;
-        let outside = |sample: &&Sample| !inside.contains(&sample.abscissa);
-        if let Some(sample) = self.samples.iter().find(outside) {
-            let position = sample.abscissa;
-            let problem = TraceProblem::Outside {
-                position,
-                first,
-                last,
-            };
-            return Err(problem.at(&self.file, sample.line));
-        }
-        let sweep = map.sweep(depth, &self.positions);
-        Ok(channels(sweep.map_err(|error| {
-            TraceProblem::from(error).at(&self.file, None)
-        })?))
+        let outside = |position: &f64| !inside.contains(position);
+        let expected = match self.positions.iter().position(outside) {
+            Some(sample) => {
+                let [position, first, last] = [self.positions[sample], first, last].map(mm);
+                let found = format!("position {position} mm is outside the maps");
+                Err(Refusal::state(found, format!("{first} to {last} mm")).at(self.lines[sample]))
+            }
+            None => map.sweep(depth, &self.positions),
+        };
+        expected.map_err(|refusal| refusal.in_file(&self.file))
     }
 }
 
-/// Lateral forces are channel x, normal ones channel y.
-fn channels(sweep: Sweep) -> Channels<Vec<f64>> {
-    Channels {
-        x: sweep.lateral_force,
-        y: sweep.normal_force,
+/// A position in mm, exactly.
+fn mm(position: f64) -> String {
+    format_scaled(position, 3)
+}
+
+/// What the detector refuses, in the words of a trace.
+fn refused(error: DetectError) -> Refusal {
+    match error {
+        DetectError::NoSignal => {
+            let found = "the maps do not differ at the samples";
+            Refusal::state(found, "a signal to decide by")
+        }
+        error => Refusal::state(error, ""),
     }
 }
 

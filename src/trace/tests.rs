@@ -43,7 +43,7 @@ fn shifted(signal: f64, shift: usize) -> Record {
 
 const NOISE: Channels<f64> = Channels { x: 0.5, y: 0.25 };
 
-fn find(record: &Record, signal: f64, criterion: Criterion) -> Result<Location, TraceError> {
+fn find(record: &Record, signal: f64, criterion: Criterion) -> Result<Location, Refusal> {
     locate(
         record,
         &table(0.0),
@@ -76,57 +76,53 @@ fn columns_units_and_lines() {
 // Verifies: TRC-001, TRC-004, TRC-005, TRC-006, TRC-008.
 #[test]
 fn malformed_traces_are_refused_with_their_line() {
-    let head = "position_mm,lateral_force_n,normal_force_n";
-    for (text, expected) in [
-        ("", "t.csv:1: header \"\", expected position_mm,"),
-        (
-            "position,lateral_force_n,normal_force_n\n",
-            "t.csv:1: header \"position,",
-        ),
-        (
-            "position_mm,time_s,lateral_force_n,normal_force_n\n",
-            "t.csv:1: header",
-        ),
-        (
-            "position_mm,lateral_force_n,lateral_force_mn\n",
-            "t.csv:1: header",
-        ),
-        ("-1,0.25,1.5\n", "t.csv:1: header \"-1,0.25,1.5\""),
-        (
-            head,
-            "t.csv:1: no samples under the header, expected at least one row",
-        ),
-        ("HEAD\n0,1\n", "t.csv:2: 2 fields, expected 3"),
-        ("HEAD\n0,1,2,3\n", "t.csv:2: 4 fields, expected 3"),
-        (
-            "HEAD\n# c\n0,nan,2\n",
-            "t.csv:3: lateral_force_n = \"nan\", expected a finite decimal number",
-        ),
-        ("HEAD\n0,1,inf\n", "t.csv:2: normal_force_n = \"inf\""),
-        ("HEAD\n0,1,1e999\n", "t.csv:2: normal_force_n = \"1e999\""),
-        ("HEAD\n0,,1\n", "t.csv:2: lateral_force_n = \"\""),
-        (
-            "HEAD\n0,1,1\n\n0,1,1\n",
-            "t.csv:4: position 0.0 mm after 0.0 mm, expected it to increase",
-        ),
-        (
-            "HEAD\n0,1,1\n-0.5,1,1\n",
-            "t.csv:3: position -0.5 mm after 0.0 mm",
-        ),
-        ("HEAD\n0,1,1\n0.0000009,1,1\n", "t.csv:3: position"),
-        (
-            "time_s,lateral_force_n,normal_force_n\n1,1,1\n1,1,1\n",
-            "t.csv:3: time 1.0 s after 1.0 s",
-        ),
-        (
-            "time_ms,lateral_force_n,normal_force_n\n1,1,1\n0,1,1\n",
-            "t.csv:3: time 0.0 s after 0.001 s",
-        ),
-    ] {
-        let error = read(&text.replace("HEAD", head)).unwrap_err();
-        assert!(error.starts_with(expected), "{text:?}: {error}");
+    // A text, where HEAD is a header and \n a line break, and under it the beginning of the refusal.
+    let cases = r#"
+        \n
+        1: header "", expected position_mm,
+        position,lateral_force_n,normal_force_n\n
+        1: header "position,
+        position_mm,time_s,lateral_force_n,normal_force_n\n
+        1: header
+        position_mm,lateral_force_n,lateral_force_mn\n
+        1: header
+        -1,0.25,1.5\n
+        1: header "-1,0.25,1.5"
+        HEAD
+        1: no samples under the header, expected at least one row
+        HEAD\n0,1\n
+        2: 2 fields, expected 3
+        HEAD\n0,1,2,3\n
+        2: 4 fields, expected 3
+        HEAD\n# c\n0,nan,2\n
+        3: lateral_force_n = "nan", expected a finite decimal number
+        HEAD\n0,1,inf\n
+        2: normal_force_n = "inf"
+        HEAD\n0,1,1e999\n
+        2: normal_force_n = "1e999"
+        HEAD\n0,,1\n
+        2: lateral_force_n = ""
+        HEAD\n0,1,1\n\n0,1,1\n
+        4: position 0.0 mm after 0.0 mm, expected it to increase
+        HEAD\n0,1,1\n-0.5,1,1\n
+        3: position -0.5 mm after 0.0 mm
+        HEAD\n0,1,1\n0.0000009,1,1\n
+        3: position
+        time_s,lateral_force_n,normal_force_n\n1,1,1\n1,1,1\n
+        3: time 1.0 s after 1.0 s
+        time_ms,lateral_force_n,normal_force_n\n1,1,1\n0,1,1\n
+        3: time 0.0 s after 0.001 s
+    "#;
+    let lines: Vec<_> = cases.trim().lines().map(str::trim).collect();
+    for case in lines.chunks(2) {
+        let text = case[0].replace("\\n", "\n");
+        let text = text.replace("HEAD", "position_mm,lateral_force_n,normal_force_n");
+        let error = read(&text).unwrap_err();
+        let expected = format!("t.csv:{}", case[1]);
+        assert!(error.starts_with(&expected), "{text:?}: {error}");
         assert!(!error.contains('\n'), "{error}");
     }
+    assert!(read("").unwrap_err().starts_with("t.csv:1: header \"\""));
 }
 
 // Verifies: TRC-010, TRC-011, TRC-012, TRC-013.

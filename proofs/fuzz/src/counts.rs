@@ -25,7 +25,10 @@ pub fn counts_csv(bytes: &[u8]) -> Outcome {
         Err(error) => {
             check_file_message(&error.to_string(), Some(error.line), text);
             match &error.problem {
-                TableProblem::Csv(problem) => check_csv(problem, error.line, text),
+                TableProblem::Csv(problem) => {
+                    let refusal = (**problem).clone().at(error.line);
+                    check_csv(&refusal.in_file(FILE), text);
+                }
                 TableProblem::Field { found, .. } => check_quoted(found, error.line, text),
                 TableProblem::Repeated { first, .. } => assert!(*first < error.line),
                 TableProblem::Empty => {}

@@ -21,7 +21,7 @@ pub fn phantom_toml(bytes: &[u8]) -> Outcome {
         Err(error) => {
             check_file_message(&error.to_string(), error.line, text);
             // Only a key of the whole file that is not there has no line.
-            let is_missing = error.message.ends_with(" is missing");
+            let is_missing = error.found.ends_with(" is missing");
             assert!(error.line.is_some() || is_missing, "{error}");
             Outcome::Refused
         }

@@ -1,7 +1,7 @@
 //! Recorded sweeps.
 
 use palpate::force_map::SAME_POSITION;
-use palpate::trace::{Abscissa, Motion, Record, Trace, TraceProblem};
+use palpate::trace::{Abscissa, Motion, Record, Trace};
 
 use crate::map::check_csv;
 use crate::message::check_file_message;
@@ -21,11 +21,8 @@ pub fn trace_csv(bytes: &[u8]) -> Outcome {
             Outcome::Accepted
         }
         Err(error) => {
-            check_file_message(&error.to_string(), error.line, text);
-            let line = error.line.expect("a line");
-            if let TraceProblem::Csv(problem) = &error.problem {
-                check_csv(problem, line, text);
-            }
+            assert!(error.line.is_some(), "{error}");
+            check_csv(&error, text);
             Outcome::Refused
         }
     }

@@ -167,7 +167,7 @@ fn axes_that_make_no_map_are_refused_before_anything_is_solved() {
         (vec![f64::NAN], vec![0.0]),
     ] {
         let error = model.map(&depths, &laterals, &never).unwrap_err();
-        assert!(matches!(error, FemError::Map(_)), "{error}");
+        assert!(matches!(error, FemError::Refused(_)), "{error}");
     }
     let error = model.map(&[1e-3], &[0.0, 0.016], &never).unwrap_err();
     assert!(matches!(error, FemError::Pose(_)), "{error}");

@@ -38,6 +38,7 @@ use super::noise::noise_bounds;
 use super::rates::{Rate, clustered};
 use super::{Condition, PsychophysicsError, Table};
 use crate::force_map::{ForceMap, SAME_POSITION};
+use crate::refusal::Refusal;
 use common::{Signals, common, common_with_lapse};
 use signals::{Signal, mean};
 use subjects::{by_subject, by_subject_with_lapse};
@@ -117,7 +118,10 @@ pub fn bridge(
     let columns = columns(table, inclusions)?;
     let map_error = |name: &str| {
         let name = name.to_string();
-        move |source| PsychophysicsError::Map { name, source }
+        move |refusal: Refusal| {
+            let source = refusal.into();
+            PsychophysicsError::Map { name, source }
+        }
     };
     let whole_reference = whole_sweep(reference).map_err(map_error("reference"))?;
     let (probe_depth, probe_depth_note) = probe_depth(reference.depths());

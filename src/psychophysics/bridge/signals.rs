@@ -1,7 +1,8 @@
 //! What each convention makes of the difference of two force maps along a sweep.
 
 use super::{Channel, Convention, Offset, Statistic};
-use crate::force_map::{ForceCurve, ForceMap, InvalidForceMap, SAME_POSITION};
+use crate::force_map::{ForceCurve, ForceMap, SAME_POSITION};
+use crate::refusal::Refusal;
 
 /// The difference F₁ − F₀ along a sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +31,7 @@ pub struct Peak {
 /// As [`ForceMap::mirrored`].
 ///
 /// Implements: PSY-072.
-pub fn whole_sweep(map: &ForceMap) -> Result<ForceMap, InvalidForceMap> {
+pub fn whole_sweep(map: &ForceMap) -> Result<ForceMap, Refusal> {
     let from_centre = map.laterals().len() > 1 && map.laterals()[0].abs() <= SAME_POSITION;
     if from_centre {
         map.mirrored()
@@ -41,11 +42,7 @@ pub fn whole_sweep(map: &ForceMap) -> Result<ForceMap, InvalidForceMap> {
 
 impl Signal {
     /// The difference at one depth, m, of a map from its reference.
-    pub fn new(
-        reference: &ForceMap,
-        map: &ForceMap,
-        depth: f64,
-    ) -> Result<Signal, InvalidForceMap> {
+    pub fn new(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<Signal, Refusal> {
         let difference = map.signal(reference)?;
         let ForceCurve {
             laterals,

@@ -475,7 +475,7 @@ fn distance(map: &ForceTable, depth_at: f32, lateral_at: f32, reach: f32) -> f64
         .unwrap();
     let found = table.force(depth, lateral);
     let of = |found: f32, expected: f64| (f64::from(found) - expected).abs();
-    of(found.lateral, expected.lateral).max(of(found.normal, expected.normal))
+    of(found.lateral, expected.x).max(of(found.normal, expected.y))
 }
 
 /// The unit of the bounds: 2⁻²⁴ of the smallest power of two that no entry exceeds.
