@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::case::{Case, CaseText, Expected, Question, ToleranceText, Wrong};
 use super::tolerance::{Tolerance, compare};
-use crate::oracle::refusal::Code;
+use crate::oracle::Code;
 
 /// Every code of a refusal.
 const CODES: [Code; 7] = [
