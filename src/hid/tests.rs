@@ -3,36 +3,45 @@
 extern crate std;
 
 use super::*;
-use crate::servo::{Axis, Command, Force, Limits, Table};
+use crate::servo::{Command, Force};
 
-/// Forces over a square of 8 mm by 40 mm that grow with the depth to `normal` (N), and to ±1 N to the sides.
-pub fn with_table<R>(normal: f32, then: impl FnOnce(Table) -> R) -> R {
-    let force = |lateral, normal| Force { lateral, normal };
-    let forces = [
-        Force::ZERO,
-        Force::ZERO,
-        force(-1.0, normal),
-        force(1.0, normal),
-    ];
-    let knots = [[0.0, 0.008], [-0.02, 0.02]];
-    let reciprocals = knots.map(|[start, end]| [Axis::reciprocal_width(start, end)]);
-    let axis = |at: usize| Axis::new(&knots[at], &reciprocals[at]).unwrap();
-    then(Table::new(axis(0), axis(1), &forces).unwrap())
-}
-
-/// 2 N, built up by 50 N/s and released in ten cycles.
-pub fn limits() -> Limits {
-    Limits::new(2.0, 0.05, 0.2, 10).unwrap()
-}
-
-/// The paper's display in a hand that presses by 4 mm and sweeps over 10 mm for as long as it is told.
 #[cfg(feature = "std")]
-pub fn probing(
-    sweep: core::time::Duration,
-    faults: std::vec::Vec<(core::time::Duration, simulated::Defect)>,
-) -> simulated::SimulatedDevice {
-    let hand = simulated::Trajectory::probing(0.004, 0.01, sweep);
-    simulated::SimulatedDevice::new(simulated::PAPER, simulated::Mechanics::PAPER, hand, faults)
+pub use played::{limits, probing, with_table};
+
+/// What tests of the loop share.
+#[cfg(feature = "std")]
+mod played {
+    use std::time::Duration;
+    use std::vec::Vec;
+
+    use crate::hid::simulated::{Defect, Mechanics, PAPER, SimulatedDevice, Trajectory};
+    use crate::servo::{Axis, Force, Limits, Table};
+
+    /// Forces over a square of 8 mm by 40 mm that grow with the depth to `normal` (N), and to ±1 N to the sides.
+    pub fn with_table<R>(normal: f32, then: impl FnOnce(Table) -> R) -> R {
+        let force = |lateral, normal| Force { lateral, normal };
+        let forces = [
+            Force::ZERO,
+            Force::ZERO,
+            force(-1.0, normal),
+            force(1.0, normal),
+        ];
+        let knots = [[0.0, 0.008], [-0.02, 0.02]];
+        let reciprocals = knots.map(|[start, end]| [Axis::reciprocal_width(start, end)]);
+        let axis = |at: usize| Axis::new(&knots[at], &reciprocals[at]).unwrap();
+        then(Table::new(axis(0), axis(1), &forces).unwrap())
+    }
+
+    /// 2 N, built up by 50 N/s and released in ten cycles.
+    pub fn limits() -> Limits {
+        Limits::new(2.0, 0.05, 0.2, 10).unwrap()
+    }
+
+    /// The paper's display in a hand that presses by 4 mm and sweeps over 20 mm, each sweep so long.
+    pub fn probing(sweep: Duration, faults: Vec<(Duration, Defect)>) -> SimulatedDevice {
+        let hand = Trajectory::probing(0.004, 0.01, sweep);
+        SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, faults)
+    }
 }
 
 /// The descriptor in hexadecimal, as a device's firmware has it.

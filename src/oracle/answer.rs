@@ -1,7 +1,6 @@
 //! What an op gives, or why it gives none.
 
 use std::fmt::Display;
-use std::io::Write;
 
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
@@ -138,13 +137,17 @@ impl From<FemError> for Refused {
 
 /// Appends the line of answer to the request `id`, a JSON text or number.
 pub fn write(id: &str, outcome: &Result<Answer, Refused>, out: &mut Vec<u8>) {
-    let (key, value) = match outcome {
-        Ok(answer) => ("ok", serde_json::to_string(answer).unwrap_or_default()),
+    let key = if outcome.is_ok() { "ok" } else { "error" };
+    for part in ["{\"id\":", id, ",\"", key, "\":"] {
+        out.extend_from_slice(part.as_bytes());
+    }
+    // Memory takes everything, and these types can all be written.
+    let _ = match outcome {
+        Ok(answer) => serde_json::to_writer(&mut *out, answer),
         Err(Refused { code, message }) => {
             let error = json!({"code": code.name(), "message": message});
-            ("error", error.to_string())
+            serde_json::to_writer(&mut *out, &error)
         }
     };
-    // Memory takes everything, and these types can all be written.
-    let _ = writeln!(out, r#"{{"id":{id},"{key}":{value}}}"#);
+    out.extend_from_slice(b"}\n");
 }

@@ -41,21 +41,24 @@ impl<'a> Arguments<'a> {
     ///
     /// Implements: ORA-005.
     pub fn check_known(&self, op: &Op) -> Result<(), Refused> {
-        let known: Vec<&str> = op.arguments.split_whitespace().collect();
-        self.check(&known, || match &known[..] {
-            [] => format!("{} takes no arguments", op.name),
-            known => format!("{} takes {}", op.name, known.join(", ")),
+        let knows = |name: &str| op.arguments.split(' ').any(|known| known == name);
+        self.check(knows, || match op.arguments {
+            "" => format!("{} takes no arguments", op.name),
+            known => format!("{} takes {}", op.name, known.replace(' ', ", ")),
         })
     }
 
     /// Whether the op had a use for all the arguments.
     pub fn check_used(&self, op: &Op) -> Result<(), Refused> {
         let takes = || format!("here {} takes {}", op.name, self.asked.join(", "));
-        self.check(&self.asked, takes)
+        self.check(|name| self.asked.contains(&name), takes)
     }
 
-    fn check(&self, right: &[&str], takes: impl FnOnce() -> String) -> Result<(), Refused> {
-        let right = |name: &String| right.contains(&name.as_str());
+    fn check(
+        &self,
+        right: impl Fn(&str) -> bool,
+        takes: impl FnOnce() -> String,
+    ) -> Result<(), Refused> {
         match self.members.iter().find(|(name, _)| !right(name)) {
             Some((name, _)) => Err(Refused::argument(format_args!(
                 "unknown argument {name:?}: {}",
@@ -144,15 +147,18 @@ impl<'a> Arguments<'a> {
     ) -> Result<Vec<T>, Refused> {
         let text = self.text_of(name, "a list", what)?;
         // Each entry but the first of a list has a comma before it.
-        let [commas, lists, empty] = [",", "[", "[]"].map(|part| text.matches(part).count());
-        if commas + lists - empty > MOST_ENTRIES {
+        let entries = text.bytes().filter(|byte| b",[".contains(byte)).count();
+        if entries > MOST_ENTRIES && entries - text.matches("[]").count() > MOST_ENTRIES {
             let wrong = format_args!("{name} has more entries than {MOST_ENTRIES}");
             return Err(Refused::range(wrong));
         }
-        let mut reader = serde_json::Deserializer::from_str(text);
-        serde_path_to_error::deserialize(&mut reader).map_err(|error| {
-            let wrong = wrong_entry(&error.inner().to_string());
-            Refused::argument(format_args!("{name}{}{wrong}", error.path()))
+        serde_json::from_str(text).or_else(|_| {
+            // Once more, for the place of the wrong entry.
+            let mut reader = serde_json::Deserializer::from_str(text);
+            serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+                let wrong = wrong_entry(&error.inner().to_string());
+                Refused::argument(format_args!("{name}{}{wrong}", error.path()))
+            })
         })
     }
 }

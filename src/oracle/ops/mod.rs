@@ -38,13 +38,14 @@ const fn op(name: &'static str, arguments: &'static str, function: Function) -> 
     }
 }
 
-const SERIES: &str = "template_x template_y noise_sd_x noise_sd_y";
+// Arguments of the ops that have many.
+const TEMPLATE: &str = "template_x template_y noise_sd_x noise_sd_y";
 const RECORD: &str = "observed_x observed_y f0_x f0_y f1_x f1_y noise_sd_x noise_sd_y";
 const SCAN: &str = "residual_x residual_y template_x template_y noise_sd_x noise_sd_y";
 const CRITERIA: &str = "criterion prior_h1 c00 c01 c10 c11 gamma max_miss max_false_alarm";
 const BUDGET: &str = "signal_n max_false_alarm max_miss sources_n";
-const POSE: &str = "depths_m laterals_m table_n depth_m lateral_m";
-const BITS: &str = "depth_knots lateral_knots table_bits depth_bits lateral_bits";
+const MAP_AND_POSE: &str = "depths_m laterals_m table_n depth_m lateral_m";
+const TABLE_AND_POSE: &str = "depth_knots lateral_knots table_bits depth_bits lateral_bits";
 const ELEMENT: &str = "nodes_m youngs_modulus_pa poissons_ratio";
 const PROPORTION: &str = "successes trials confidence method";
 const COLOURED: &str = "residual template covariance";
@@ -56,7 +57,7 @@ pub const OPS: &[Op] = &[
     op("capabilities", "", capabilities),
     op("normal_cdf", "x", normal::cdf),
     op("normal_quantile", "p", normal::quantile),
-    op("matched_filter", SERIES, filter::matched_filter),
+    op("matched_filter", TEMPLATE, filter::matched_filter),
     op("theta", RECORD, filter::theta),
     op("theta_colored", COLOURED, filter::theta_colored),
     op("threshold", CRITERIA, decision::threshold),
@@ -75,11 +76,11 @@ pub const OPS: &[Op] = &[
     ),
     op("proportion_interval", PROPORTION, proportion::interval),
     op("noise_budget", BUDGET, decision::noise_budget),
-    op("interpolate", POSE, interpolation::interpolate),
+    op("interpolate", MAP_AND_POSE, interpolation::interpolate),
     op("scan", SCAN, filter::scan),
     op("element_stiffness", ELEMENT, element::stiffness),
     op("servo_axis", "knots coordinate_bits", servo::axis),
-    op("servo_interpolate", BITS, servo::interpolate),
+    op("servo_interpolate", TABLE_AND_POSE, servo::interpolate),
     op("report_decode", "bytes", report::decode),
     op("report_encode", report::FIELDS, report::encode),
     op("count_analysis", "correct trials", counts::analysis),
@@ -93,8 +94,9 @@ pub const OPS: &[Op] = &[
 pub fn find(name: &str) -> Result<&'static Op, Refused> {
     OPS.iter().find(|op| op.name == name).ok_or_else(|| {
         let names: Vec<&str> = OPS.iter().map(|op| op.name).collect();
-        let expected = format_args!("expected one of {}", names.join(", ")).to_string();
-        Refused::new(Code::UnknownOp, format!("unknown op {name:?}: {expected}"))
+        let names = names.join(", ");
+        let unknown = format_args!("unknown op {name:?}: expected one of {names}");
+        Refused::new(Code::UnknownOp, unknown)
     })
 }
 
