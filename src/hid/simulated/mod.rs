@@ -220,8 +220,8 @@ impl SimulatedDevice {
             lateral: lateral.wrapping_add(glitch),
             normal: normal.wrapping_sub(glitch),
             buttons: button::DEADMAN * u8::from(deadman),
-            status: status::FAULT * u8::from(faulty)
-                | status::WATCHDOG * u8::from(self.motor.dropped),
+            status: (status::FAULT * u8::from(faulty))
+                | (status::WATCHDOG * u8::from(self.motor.dropped)),
             sequence: self.sequence,
             force_sequence: self.motor.sequence,
         }

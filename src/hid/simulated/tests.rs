@@ -277,7 +277,8 @@ fn a_session_begins_only_with_a_device_that_can_be_trusted() {
     // 2 N and not a step of an f32 more.
     assert_eq!(begins(weak, 2.0), Ok(()));
     assert!(begins(weak, 2f32.next_up()).is_err());
-    let changes: [(fn(&mut Capabilities), &str); 8] = [
+    type Change = fn(&mut Capabilities);
+    let changes: [(Change, &str); 8] = [
         (
             |c| c.version = 2,
             "the device speaks version 2 of the profile, expected 1",
