@@ -45,13 +45,7 @@ fn main() -> ExitCode {
 
     // Without end, as far as the bench goes.
     let trajectory = Trajectory::probing(3e-3, 9e-3, Duration::from_secs(1_000_000));
-    let device = SimulatedDevice::new(
-        PAPER,
-        Mechanics::PAPER,
-        trajectory,
-        Duration::ZERO,
-        Vec::new(),
-    );
+    let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Vec::new());
     let mut session = Session::begin(device, table, limits).expect("the device is sound");
     criterion.bench_function("loop", |bencher| {
         bencher.iter(|| {

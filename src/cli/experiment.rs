@@ -9,15 +9,12 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 
 use super::CliError;
-use super::devices::DeviceNumbers;
 use super::output::{print, read};
-use super::play::{DeviceName, PLUG_IN};
-use super::playback::{damping, limits};
+use super::playback::{DeviceArguments, limits};
 use super::progress::bar;
 use crate::force_map::ForceMap;
 use crate::hid::HapticDevice;
-use crate::hid::real::RealDevice;
-use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+use crate::hid::simulated::Trajectory;
 use crate::psychophysics::{Felt, IdealObserver, Interval, Journal, Setup, Trial, present};
 use crate::servo::{Damping, Limits, LoadedTable};
 
@@ -51,11 +48,8 @@ pub struct ExperimentArguments {
     /// How long each sample is felt, in s
     #[arg(long, value_name = "S", default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=60))]
     seconds: u64,
-    /// What plays the samples
-    #[arg(long, value_enum, default_value_t = DeviceName::Sim)]
-    device: DeviceName,
     #[command(flatten)]
-    numbers: DeviceNumbers,
+    device: DeviceArguments,
     /// Who answers: a person at the keyboard, or the ideal observer on the simulated device
     #[arg(long, value_enum, default_value_t = Observer::Person)]
     observer: Observer,
@@ -121,15 +115,15 @@ fn failed(what: impl Display, error: impl Display) -> CliError {
 ///
 /// Implements: CLI-070, CLI-071, CLI-072, CLI-073.
 pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
-    arguments.device.check(&arguments.numbers)?;
-    if arguments.observer == Observer::Ideal && arguments.device == DeviceName::Hid {
+    arguments.device.check()?;
+    if arguments.observer == Observer::Ideal && !arguments.device.is_simulated() {
         let message = "--observer ideal has no hand: expected --device sim";
         return Err(CliError::Usage(message.into()));
     }
     let capabilities = open(arguments)?
         .capabilities()
         .map_err(|error| failed("device", error))?;
-    let damping = damping(&capabilities, arguments.device.delay_periods());
+    let damping = arguments.device.damping(&capabilities);
     let limits = limits(4.0)?;
     let reference = Sample::read(&arguments.reference, &damping, &limits)?;
     let mut inclusions = Vec::new();
@@ -296,16 +290,12 @@ impl Pairs<'_> {
 }
 
 /// The device; the simulated one is in a hand that presses for as long as a sample lasts.
-fn open(arguments: &ExperimentArguments) -> Result<Box<dyn HapticDevice>, CliError> {
-    if arguments.device == DeviceName::Hid {
-        let device = RealDevice::open_within(&arguments.numbers.wanted(), PLUG_IN);
-        return Ok(Box::new(device.map_err(|error| failed("device", error))?));
-    }
+fn open(arguments: &ExperimentArguments) -> Result<Box<dyn HapticDevice + Send>, CliError> {
     let sweep = Duration::from_secs(arguments.seconds) / 2;
-    let trajectory = Trajectory::probing(4e-3, 9e-3, sweep);
-    let (mechanics, latency) = (Mechanics::PAPER, Duration::ZERO);
-    let device = SimulatedDevice::new(PAPER, mechanics, trajectory, latency, Vec::new());
-    Ok(Box::new(device))
+    let device = arguments
+        .device
+        .open(Trajectory::probing(4e-3, 9e-3, sweep));
+    device.map_err(|error| failed("device", error))
 }
 
 /// The longest line that is read from the keyboard, bytes.

@@ -1,22 +1,20 @@
 //! `palpate play`: a force map to a hand (`spec/playback-command.md`).
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::json;
 
-use super::devices::DeviceNumbers;
 use super::output::{print, read, write};
-use super::playback::{damping, limits, loaded_map};
+use super::playback::{DeviceArguments, limits, loaded_map};
 use super::{CliError, Format};
 use crate::force_map::ForceMap;
-use crate::hid::real::RealDevice;
-use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+use crate::hid::simulated::Trajectory;
 use crate::hid::supervise::{Board, HELD_UP, PlayOptions, Played, play as supervised};
 use crate::hid::timing::Distribution;
 use crate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session};
@@ -25,20 +23,14 @@ use crate::servo::{Limits, LoadedTable};
 /// Most seconds that can be recorded: an hour at 1 kHz.
 const MOST_RECORDED: u64 = 3600;
 
-/// How long a device that was just plugged in may take until it can be opened.
-pub(super) const PLUG_IN: Duration = Duration::from_millis(500);
-
 /// Arguments of `palpate play`.
 #[derive(Debug, Args)]
 pub struct PlayArguments {
     /// The force map
     #[arg(long, value_name = "FILE")]
     map: PathBuf,
-    /// What plays it
-    #[arg(long, value_enum, default_value_t = DeviceName::Sim)]
-    device: DeviceName,
     #[command(flatten)]
-    numbers: DeviceNumbers,
+    device: DeviceArguments,
     /// Ends after S seconds of the device's time [default: one probing on the simulated device]
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=86_400))]
     seconds: Option<u64>,
@@ -59,63 +51,28 @@ pub struct PlayArguments {
     format: Format,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum DeviceName {
-    /// The paper's display in a hand that probes the gel, on a virtual clock.
-    Sim,
-    /// A device of this machine, by its numbers if there are several.
-    Hid,
-}
-
-impl DeviceName {
-    /// Whole periods from a sample to its force: a bus takes one each way, of which the report's is over when it is read.
-    pub(super) fn delay_periods(self) -> u16 {
-        match self {
-            DeviceName::Sim => 0,
-            DeviceName::Hid => 1,
-        }
-    }
-
-    /// Refuses numbers of a device without a device that has them.
-    pub(super) fn check(self, numbers: &DeviceNumbers) -> Result<(), CliError> {
-        if self == DeviceName::Sim && numbers.are_given() {
-            let message = "--vid, --pid and --serial need --device hid";
-            return Err(CliError::Usage(message.into()));
-        }
-        Ok(())
-    }
-}
-
 /// Runs the command.
 ///
-/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, CLI-079, HID-094, HID-095.
+/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, HID-094, HID-095.
 pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
     if let Some(file) = &arguments.replay {
         return replay(arguments, file);
     }
     let limits = limits(arguments.max_force)?;
-    arguments.device.check(&arguments.numbers)?;
-    match arguments.device {
-        DeviceName::Hid => {
-            let device = RealDevice::open_within(&arguments.numbers.wanted(), PLUG_IN)
-                .map_err(|error| CliError::Playback(error.to_string()))?;
-            let duration = arguments.seconds.map(Duration::from_secs);
-            session(arguments, device, limits, duration)
-        }
-        DeviceName::Sim => {
-            let trajectory = Trajectory::probing(4e-3, 9e-3, Duration::from_millis(1500));
-            let seconds = arguments.seconds.map(Duration::from_secs);
-            let duration = seconds.unwrap_or(trajectory.duration());
-            let device = SimulatedDevice::new(
-                PAPER,
-                Mechanics::PAPER,
-                trajectory.repeated(duration),
-                Duration::ZERO,
-                Vec::new(),
-            );
-            session(arguments, device, limits, Some(duration))
-        }
-    }
+    arguments.device.check()?;
+    let probing = Trajectory::probing(4e-3, 9e-3, Duration::from_millis(1500));
+    let seconds = arguments.seconds.map(Duration::from_secs);
+    let duration = seconds.or(arguments
+        .device
+        .is_simulated()
+        .then_some(probing.duration()));
+    let hand = probing.repeated(duration.unwrap_or_default());
+    let device = arguments.device.open(hand).map_err(failed)?;
+    session(arguments, device, limits, duration)
+}
+
+fn failed(error: impl Display) -> CliError {
+    CliError::Playback(error.to_string())
 }
 
 /// The table for this device, and the factor on its forces.
@@ -126,33 +83,28 @@ fn table(
 ) -> Result<(LoadedTable, f64), CliError> {
     let path = &arguments.map;
     let map = ForceMap::read(path)?;
-    let damping = damping(capabilities, arguments.device.delay_periods());
+    let damping = arguments.device.damping(capabilities);
     let loaded = if arguments.scale {
         LoadedTable::scaled_to_be_passive(map.forces(), &damping, limits)
     } else {
         LoadedTable::passive(map.forces(), &damping, limits).map(|loaded| (loaded, 1.0))
     };
     loaded.map_err(|error| {
-        let hint = if arguments.scale {
-            ""
-        } else {
-            " (or use --scale)"
-        };
-        CliError::Playback(format!("{}: {error}{hint}", path.display()))
+        let hint = ["", " (or use --scale)"][usize::from(!arguments.scale)];
+        failed(format_args!("{}: {error}{hint}", path.display()))
     })
 }
 
 /// Plays on `device` and tells what happened.
-fn session<D: HapticDevice + Send>(
+fn session(
     arguments: &PlayArguments,
-    mut device: D,
+    mut device: Box<dyn HapticDevice + Send>,
     limits: Limits,
     duration: Option<Duration>,
 ) -> Result<(), CliError> {
-    let failed = |error: &dyn std::fmt::Display| CliError::Playback(error.to_string());
-    let capabilities = device.capabilities().map_err(|error| failed(&error))?;
+    let capabilities = device.capabilities().map_err(failed)?;
     let (loaded, scale) = table(arguments, &capabilities, &limits)?;
-    let table = loaded.table().map_err(|error| failed(&error))?;
+    let table = loaded.table().map_err(failed)?;
     let record = match (&arguments.record, duration) {
         (None, _) => 0,
         (Some(_), Some(time)) if time.as_secs() <= MOST_RECORDED => {
@@ -170,7 +122,7 @@ fn session<D: HapticDevice + Send>(
         budget: Duration::from_micros(u64::from(capabilities.period_us)),
     };
     let stop = stop_on_signals()?;
-    let session = Session::begin(device, table, limits).map_err(|error| failed(&error))?;
+    let session = Session::begin(device, table, limits).map_err(failed)?;
     let played = supervised(
         session,
         &options,
@@ -187,7 +139,7 @@ fn session<D: HapticDevice + Send>(
             "the servo thread panicked; the device was told to stop".into(),
         ));
     };
-    if arguments.device == DeviceName::Sim {
+    if arguments.device.is_simulated() {
         // The virtual clock does not see what the loop takes.
         played.timing = None;
     }
@@ -217,7 +169,7 @@ fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
     for signal in [SIGINT, SIGTERM, SIGHUP] {
         let hook = signal_hook::flag::register_conditional_shutdown(signal, 130, stop.clone())
             .and_then(|_| signal_hook::flag::register(signal, stop.clone()));
-        hook.map_err(|error| CliError::Playback(format!("signal {signal}: {error}")))?;
+        hook.map_err(|error| failed(format_args!("signal {signal}: {error}")))?;
     }
     Ok(stop)
 }
@@ -333,17 +285,15 @@ fn as_json(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
 }
 
 /// Plays a recording again.
-fn replay(arguments: &PlayArguments, file: &std::path::Path) -> Result<(), CliError> {
+fn replay(arguments: &PlayArguments, file: &Path) -> Result<(), CliError> {
     let text = read(file)?;
-    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", file.display());
-    let recording = Recording::parse(&text).map_err(|error| CliError::Playback(named(&error)))?;
+    let named = |error: &dyn Display| format!("{}: {error}", file.display());
+    let recording = Recording::parse(&text).map_err(|error| failed(named(&error)))?;
     let loaded = match arguments.scale {
         true => table(arguments, &recording.capabilities, &recording.limits)?.0,
         false => loaded_map(&arguments.map)?,
     };
-    let table = loaded
-        .table()
-        .map_err(|error| CliError::Playback(named(&error)))?;
+    let table = loaded.table().map_err(|error| failed(named(&error)))?;
     match recording.replay(table) {
         Ok(cycles) => print(&format!(
             "{cycles} cycles, all forces the same to the bit\n"

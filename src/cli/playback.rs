@@ -1,10 +1,16 @@
 //! What the commands around playback share.
 
 use std::path::Path;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
 
 use super::CliError;
 use crate::force_map::ForceMap;
-use crate::hid::Capabilities;
+use crate::hid::real::{RealDevice, Wanted};
+use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+use crate::hid::{Capabilities, HapticDevice};
+use crate::refusal::Refusal;
 use crate::servo::{Damping, Limits, LoadedTable};
 
 /// Largest growth of the force in one cycle of 1 ms, N: 250 N/s. The stiffest spring of the paper's display, 1200 N/m, grows so
@@ -13,6 +19,81 @@ const SLEW: f32 = 0.25;
 
 /// Cycles without a fresh sample that are no fault.
 const WATCHDOG: u16 = 20;
+
+/// How long a device that was just plugged in may take until it can be opened.
+const PLUG_IN: Duration = Duration::from_millis(500);
+
+/// What plays the forces.
+#[derive(Debug, Args)]
+pub struct DeviceArguments {
+    /// What plays the forces
+    #[arg(long, value_enum, default_value_t = DeviceName::Sim)]
+    device: DeviceName,
+    /// Vendor number of the device, hexadecimal
+    #[arg(long, value_name = "HEX", value_parser = number)]
+    vid: Option<u16>,
+    /// Product number of the device, hexadecimal
+    #[arg(long, value_name = "HEX", value_parser = number)]
+    pid: Option<u16>,
+    /// Serial number of the device
+    #[arg(long, value_name = "TEXT")]
+    serial: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum DeviceName {
+    /// The paper's display in a hand that probes the gel, on a virtual clock.
+    Sim,
+    /// A device of this machine, by its numbers if there are several.
+    Hid,
+}
+
+fn number(text: &str) -> Result<u16, String> {
+    let digits = text.strip_prefix("0x").unwrap_or(text);
+    u16::from_str_radix(digits, 16).map_err(|_| "expected up to four hexadecimal digits".into())
+}
+
+impl DeviceArguments {
+    fn wanted(&self) -> Wanted {
+        Wanted {
+            vendor: self.vid,
+            product: self.pid,
+            serial: self.serial.clone(),
+        }
+    }
+
+    /// Whether the device is the simulated one.
+    pub fn is_simulated(&self) -> bool {
+        self.device == DeviceName::Sim
+    }
+
+    /// Refuses numbers of a device without a device that has them.
+    pub fn check(&self) -> Result<(), CliError> {
+        if self.is_simulated() && self.wanted() != Wanted::default() {
+            let message = "--vid, --pid and --serial need --device hid";
+            return Err(CliError::Usage(message.into()));
+        }
+        Ok(())
+    }
+
+    /// The device; the simulated one is in a hand that goes this way.
+    ///
+    /// Implements: CLI-079.
+    pub fn open(&self, hand: Trajectory) -> Result<Box<dyn HapticDevice + Send>, Refusal> {
+        if self.is_simulated() {
+            let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Vec::new());
+            return Ok(Box::new(device));
+        }
+        let device = RealDevice::open_within(&self.wanted(), PLUG_IN)?;
+        Ok(Box::new(device))
+    }
+
+    /// The damping of this device, which says `capabilities` of itself. A bus takes a period from a sample to its force each
+    /// way, of which the report's is over when it is read.
+    pub fn damping(&self, capabilities: &Capabilities) -> Damping {
+        damping(capabilities, u16::from(!self.is_simulated()))
+    }
+}
 
 /// Limits for a force of at most `force` (N).
 ///
@@ -25,7 +106,7 @@ pub fn limits(force: f32) -> Result<Limits, CliError> {
 }
 
 /// What a device says of its damping. Its force comes `delay_periods` after the sample.
-pub fn damping(capabilities: &Capabilities, delay_periods: u16) -> Damping {
+fn damping(capabilities: &Capabilities, delay_periods: u16) -> Damping {
     Damping {
         period_s: f64::from(capabilities.period_us) * 1e-6,
         delay_periods,
@@ -47,7 +128,6 @@ pub fn loaded_map(path: &Path) -> Result<LoadedTable, CliError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hid::simulated::PAPER;
     use crate::servo::{Axis, Force, Input, Mode, Sample, State, Table, step};
 
     // Verifies: CLI-063.
@@ -116,6 +196,16 @@ mod tests {
             // And one more for rounding.
             let more = cycles as f32 - force / change;
             assert!((0.0..=1.0).contains(&more), "{cycles}");
+        }
+    }
+
+    // Verifies: CLI-079.
+    #[test]
+    fn numbers_are_hexadecimal() {
+        assert_eq!(number("1209"), Ok(0x1209));
+        assert_eq!(number("0xfFfF"), Ok(0xFFFF));
+        for wrong in ["", "10000", "-1", "12g9", "0x"] {
+            assert!(number(wrong).is_err(), "{wrong}");
         }
     }
 }

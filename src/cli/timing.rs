@@ -1,5 +1,6 @@
 //! `palpate timing`: the budget of the servo loop on this machine (`spec/playback-command.md`).
 
+use std::fmt::Display;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -9,7 +10,7 @@ use super::output::print;
 use super::playback::{limits, loaded_map};
 use super::{CliError, Format};
 use crate::hid::simulated::PAPER;
-use crate::hid::timing::{Distribution, Timing, TimingError, measure, paper};
+use crate::hid::timing::{Timing, measure, paper};
 
 /// Arguments of `palpate timing`.
 #[derive(Debug, Args)]
@@ -39,7 +40,7 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
         Some(path) => loaded_map(path)?,
         None => paper::table().map_err(CliError::Playback)?,
     };
-    let defect = |error: &dyn std::fmt::Display| CliError::Check(format!("timing: {error}"));
+    let defect = |error: &dyn Display| CliError::Check(format!("timing: {error}"));
     let table = loaded.table().map_err(|error| defect(&error))?;
     let limits = limits(4.0)?;
     let budget = Duration::from_micros(arguments.budget_us);
@@ -47,13 +48,10 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
     let device = paper::device(arguments.cycles);
     let paced = arguments.paced.then_some(period);
     let timing = measure(device, table, limits, arguments.cycles, budget, paced)
-        .map_err(|error: TimingError| defect(&error))?;
+        .map_err(|error| defect(&error))?;
     print(&match arguments.format {
         Format::Table => describe(&timing),
-        Format::Json => format!(
-            "{}\n",
-            serde_json::to_string_pretty(&timing).unwrap_or_default()
-        ),
+        Format::Json => serde_json::to_string_pretty(&timing).unwrap_or_default() + "\n",
     })?;
     if timing.passed {
         return Ok(());
@@ -66,35 +64,31 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
 
 /// The figures for people.
 fn describe(timing: &Timing) -> String {
-    let row = |name: &str, times: &Distribution| {
-        let Distribution {
-            p50,
-            p99,
-            p99_9,
-            max,
-        } = times;
-        format!("{name:<10}{p50:>10.2}{p99:>10.2}{p99_9:>10.2}{max:>10.2}\n")
+    let pace = match timing.paced {
+        true => "at 1 kHz, with the system's wake-up",
+        false => "as fast as they go",
     };
-    let pace = if timing.paced {
-        "at 1 kHz, with the system's wake-up"
-    } else {
-        "as fast as they go"
-    };
+    let cycles = timing.cycles;
+    let mut text = format!("{cycles} cycles on the simulated device, {pace}; times in µs\n");
+    text += &format!(
+        "{:10}{:>10}{:>10}{:>10}{:>10}\n",
+        "", "p50", "p99", "p99.9", "max"
+    );
+    for (name, times) in [
+        ("response", &timing.response_us),
+        ("compute", &timing.compute_us),
+        ("write", &timing.write_us),
+    ] {
+        text += &format!("{name:10}");
+        for time in [times.p50, times.p99, times.p99_9, times.max] {
+            text += &format!("{time:>10.2}");
+        }
+        text.push('\n');
+    }
     let verdict = if timing.passed { "kept" } else { "broken" };
-    format!(
-        "{} cycles on the simulated device, {pace}; times in µs\n{:<10}{:>10}{:>10}{:>10}{:>10}\n{}{}{}\
-         compute is {:.1} % of the response\nbudget {} µs {verdict}: {} missed\n",
-        timing.cycles,
-        "",
-        "p50",
-        "p99",
-        "p99.9",
-        "max",
-        row("response", &timing.response_us),
-        row("compute", &timing.compute_us),
-        row("write", &timing.write_us),
-        100.0 * timing.compute_share,
-        timing.budget_us,
-        timing.misses
+    let (share, budget, misses) = (timing.compute_share, timing.budget_us, timing.misses);
+    text + &format!(
+        "compute is {:.1} % of the response\nbudget {budget} µs {verdict}: {misses} missed\n",
+        100.0 * share
     )
 }

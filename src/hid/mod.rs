@@ -37,10 +37,10 @@ pub use device::DeviceState;
 pub use device::{DeviceError, HapticDevice, Received};
 pub use playback::{Counters, Cycle, Playback, QUEUE};
 #[cfg(feature = "std")]
-pub use recording::{RecordedCycle, Recording, RecordingError};
+pub use recording::{RecordedCycle, Recording};
 pub use report::{
     Capabilities, Control, DESCRIPTOR, ForceReport, InvalidReport, PositionReport, button, status,
 };
 #[cfg(feature = "std")]
-pub use session::{End, Session, SessionError};
+pub use session::{End, Session};
 pub use units::{InvalidCapabilities, Units, count};

@@ -9,22 +9,6 @@ use crate::servo::{self, Force, Input, Limits, Mode, Request, State, Table, step
 pub const QUEUE: usize = 64;
 
 /// What is played, and how far it got.
-///
-/// ```
-#[doc = include_str!("still.example")]
-/// use palpate::hid::{Playback, Units};
-/// use palpate::servo::{Mode, Request};
-///
-/// let mut device = Still { left: 9, enabled: false };
-/// let units = Units::new(&device.capabilities()?).expect("units");
-/// let mut playback = Playback::new(table, limits, units, Duration::from_millis(1));
-/// let cycle = playback.cycle(&mut device, Request::Arm)?;
-/// // This hand held the deadman already, so that nothing is armed and nothing is played.
-/// assert_eq!((playback.state().mode, cycle.force.normal), (Mode::Disarmed, 0));
-/// assert_eq!((playback.counters().cycles, playback.counters().played), (1, 0));
-/// playback.stop(&mut device)?;
-/// # Ok::<(), DeviceError>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Playback<'a> {
     table: Table<'a>,
@@ -37,22 +21,6 @@ pub struct Playback<'a> {
 }
 
 /// What happened in all cycles so far.
-///
-/// ```
-#[doc = include_str!("still.example")]
-/// use palpate::hid::{Counters, Playback, Units};
-/// use palpate::servo::Request;
-///
-/// let mut device = Still { left: 3, enabled: false };
-/// # let units = Units::new(&device.capabilities()?).expect("units");
-/// let mut playback = Playback::new(table, limits, units, Duration::from_millis(1));
-/// for _ in 0..3 {
-///     playback.cycle(&mut device, Request::None)?;
-/// }
-/// // The first report of a device is never fresh: it says where the numbers begin.
-/// assert_eq!(playback.counters(), Counters { cycles: 3, missed: 1, ..Counters::default() });
-/// # Ok::<(), DeviceError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
     /// Cycles.
@@ -72,20 +40,6 @@ pub struct Counters {
 }
 
 /// What one cycle did.
-///
-/// ```
-#[doc = include_str!("still.example")]
-/// # use palpate::hid::{Playback, Units};
-/// # use palpate::servo::Request;
-/// # let mut device = Still { left: 1, enabled: false };
-/// # let units = Units::new(&device.capabilities()?).expect("units");
-/// # let mut playback = Playback::new(table, limits, units, Duration::from_millis(1));
-/// let cycle = playback.cycle(&mut device, Request::None)?;
-/// assert_eq!(cycle.position.map(|report| report.normal), Some(-10_000));
-/// assert_eq!((cycle.force.sequence, cycle.force.normal, cycle.playing), (1, 0, false));
-/// assert!(cycle.woke <= cycle.received && cycle.computed <= cycle.written);
-/// # Ok::<(), DeviceError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cycle {
     /// The report that it used.
@@ -131,19 +85,6 @@ impl<'a> Playback<'a> {
 
     /// One cycle: waits for a report, takes the newest of the queue, steps the kernel with the
     /// `request` and writes the force.
-    ///
-    /// ```
-    #[doc = include_str!("still.example")]
-    /// # use palpate::hid::{Playback, Units};
-    /// # use palpate::servo::Request;
-    /// # let mut device = Still { left: 1, enabled: false };
-    /// # let units = Units::new(&device.capabilities()?).expect("units");
-    /// # let mut playback = Playback::new(table, limits, units, Duration::from_millis(1));
-    /// assert!(playback.cycle(&mut device, Request::None).is_ok());
-    /// // Its only report is read: the device is gone.
-    /// assert_eq!(playback.cycle(&mut device, Request::None), Err(DeviceError::Gone));
-    /// # Ok::<(), DeviceError>(())
-    /// ```
     ///
     /// # Errors
     /// [`DeviceError`]; the device must be stopped and opened again.
@@ -220,18 +161,6 @@ impl<'a> Playback<'a> {
 
     /// Ends the playback: tells the device to stop, and disarms. Tries everything even if the device
     /// fails, and returns the first failure.
-    ///
-    /// ```
-    #[doc = include_str!("still.example")]
-    /// # use palpate::hid::{Playback, Units};
-    /// # use palpate::servo::Mode;
-    /// # let mut device = Still { left: 0, enabled: true };
-    /// # let units = Units::new(&device.capabilities()?).expect("units");
-    /// # let mut playback = Playback::new(table, limits, units, Duration::from_millis(1));
-    /// playback.stop(&mut device)?;
-    /// assert!(!device.enabled && playback.state().mode == Mode::Disarmed);
-    /// # Ok::<(), DeviceError>(())
-    /// ```
     ///
     /// # Errors
     /// [`DeviceError`].

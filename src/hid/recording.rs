@@ -1,24 +1,48 @@
-//! A session in a file that can be played again to the bit.
+//! A session in a file that can be played again to the bit: lines of JSON.
 //!
 //! ```text
-//! palpate-session 1
-//! capabilities 0301 …            report 3, hexadecimal
-//! limits 40800000 3d4ccccd …     force, slew, release as f32 bits, hexadecimal; watchdog
-//! 1 received_us written_us position force playing
+//! {"format":"palpate-session 2","capabilities":{"version":1,…},"limits":{"force_n":2.0,…}}
+//! {"received_us":1000,"written_us":1000,"position":{"lateral":0,…},"force":{"lateral":0,…},"playing":false}
 //! ```
-//! One line a cycle: position and force are the reports' bytes in hexadecimal, `-` for no position.
+//! The first line says what was played on, each of the others what a cycle did; a cycle without a report has the
+//! position `null`. Reports have the fields of `report.rs`.
 
-use std::fmt::Write;
-
-use super::{
-    Capabilities, Control, Cycle, DeviceError, End, ForceReport, HapticDevice, PositionReport,
-    Received, Session, SessionError,
-};
-use crate::servo::{Limits, Table};
 use std::time::Duration;
 
-/// First line of the file.
-const HEADER: &str = "palpate-session 1";
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Capabilities, Control, Cycle, DeviceError, ForceReport, HapticDevice, PositionReport, Received,
+    Session,
+};
+use crate::csv::one_line;
+use crate::refusal::Refusal;
+use crate::servo::{Limits, Table};
+
+/// The first line of the file.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    format: Format,
+    capabilities: Capabilities,
+    limits: Within,
+}
+
+#[derive(Serialize, Deserialize)]
+enum Format {
+    #[serde(rename = "palpate-session 2")]
+    Second,
+}
+
+/// The limits of a session: each f32 is written so that it reads back to the same bits.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Within {
+    force_n: f32,
+    slew_n: f32,
+    release_n: f32,
+    watchdog_cycles: u16,
+}
 
 /// A recorded session.
 ///
@@ -50,18 +74,8 @@ pub struct Recording {
 }
 
 /// What a cycle took and gave.
-///
-/// ```
-#[doc = include_str!("simulated/probing.example")]
-/// use palpate::hid::{RecordedCycle, Session};
-/// use palpate::servo::Request;
-///
-/// let mut session = Session::begin(device, table, limits)?;
-/// let recorded = RecordedCycle::from(&session.cycle(Request::None)?);
-/// assert_eq!((recorded.written_us, recorded.playing), (1000, false)); // the device reports every millisecond
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct RecordedCycle {
     /// When the queue was drained, on the device's clock, µs.
     pub received_us: u64,
@@ -87,55 +101,6 @@ impl From<&Cycle> for RecordedCycle {
     }
 }
 
-/// Why a text is no recording, or does not play again.
-///
-/// ```
-/// use palpate::hid::{Recording, RecordingError};
-///
-/// let error = Recording::parse("palpate-session 2").unwrap_err();
-/// assert!(matches!(error, RecordingError::Line { line: 1, .. }));
-/// assert_eq!(error.to_string(), r#"line 1: "palpate-session 2", expected palpate-session 1"#);
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RecordingError {
-    /// A line can not be read.
-    #[error("line {line}: {found:?}, expected {expected}")]
-    Line {
-        /// Which line, from 1.
-        line: usize,
-        /// What stands there.
-        found: String,
-        /// What would be right.
-        expected: &'static str,
-    },
-    /// The device of the recording is refused.
-    #[error("{0}")]
-    Session(#[from] SessionError),
-    /// The same positions gave another force report.
-    #[error(
-        "cycle {cycle}: the recording has the force {}, and this table and program give {}",
-        shown(*recorded), shown(*found)
-    )]
-    Differs {
-        /// Which cycle, from 0.
-        cycle: usize,
-        /// As recorded: the report, and whether it followed the table.
-        recorded: (ForceReport, bool),
-        /// As played again.
-        found: (ForceReport, bool),
-    },
-    /// The recording goes on after what ends a session.
-    #[error("{recorded} cycles, but these positions end the session after {cycles}: {end}")]
-    Ends {
-        /// Cycles of the recording.
-        recorded: usize,
-        /// Cycles of the session.
-        cycles: usize,
-        /// Why it ends.
-        end: End,
-    },
-}
-
 fn shown((force, playing): (ForceReport, bool)) -> String {
     format!(
         "({}, {}) with number {}, flags {}, {}",
@@ -150,102 +115,46 @@ fn shown((force, playing): (ForceReport, bool)) -> String {
 impl Recording {
     /// The text of the file.
     ///
-    /// ```
-    /// use palpate::hid::{Recording, simulated::PAPER};
-    /// use palpate::servo::Limits;
-    ///
-    /// let limits = Limits::new(2.0, 0.05, 0.25, 10)?;
-    /// let text = Recording { capabilities: PAPER, limits, cycles: vec![] }.to_text();
-    /// assert_eq!(text.lines().last(), Some("limits 40000000 3d4ccccd 3e800000 10"));
-    /// # Ok::<(), palpate::servo::InvalidLimits>(())
-    /// ```
-    ///
     /// Implements: HID-050.
     pub fn to_text(&self) -> String {
-        let hex = |bytes: &[u8]| {
-            bytes.iter().fold(String::new(), |mut text, byte| {
-                let _ = write!(text, "{byte:02x}"); // a String takes everything
-                text
-            })
+        let header = Header {
+            format: Format::Second,
+            capabilities: self.capabilities,
+            limits: Within {
+                force_n: self.limits.force(),
+                slew_n: self.limits.slew(),
+                release_n: self.limits.release(),
+                watchdog_cycles: self.limits.watchdog(),
+            },
         };
-        let limits = &self.limits;
-        let bits = [limits.force(), limits.slew(), limits.release()].map(f32::to_bits);
-        let mut text = format!(
-            "{HEADER}\ncapabilities {}\nlimits {:08x} {:08x} {:08x} {}\n",
-            hex(&self.capabilities.encode()),
-            bits[0],
-            bits[1],
-            bits[2],
-            limits.watchdog()
-        );
-        for cycle in &self.cycles {
-            let position = cycle
-                .position
-                .map_or("-".into(), |report| hex(&report.encode()));
-            let _ = writeln!(
-                text,
-                "{} {} {position} {} {}",
-                cycle.received_us,
-                cycle.written_us,
-                hex(&cycle.force.encode()),
-                u8::from(cycle.playing)
-            );
-        }
+        let mut text = line(&header);
+        text.extend(self.cycles.iter().map(line));
         text
     }
 
     /// Reads the text of a file.
     ///
-    /// ```
-    /// use palpate::hid::Recording;
-    ///
-    /// let text = "palpate-session 1\n\
-    ///     capabilities 030100e803f401401fe8030f0058028c00\n\
-    ///     limits 40000000 3d4ccccd 3e800000 10\n\
-    ///     1000 1000 - 0200000000010001 0\n";
-    /// let recording = Recording::parse(text)?;
-    /// assert_eq!((recording.limits.force(), recording.cycles.len()), (2.0, 1));
-    /// assert_eq!(recording.cycles[0].position, None);
-    /// # Ok::<(), palpate::hid::RecordingError>(())
-    /// ```
-    ///
     /// # Errors
-    /// [`RecordingError::Line`].
+    /// The line that cannot be read, what stands there, and what would be right.
     ///
     /// Implements: HID-050, HID-051.
-    pub fn parse(text: &str) -> Result<Recording, RecordingError> {
-        let mut lines = text.lines().enumerate();
-        let mut next = |expected| {
-            let missing = (text.lines().count(), "");
-            let (at, found) = lines.next().unwrap_or(missing);
-            (found, move || RecordingError::Line {
-                line: at + 1,
-                found: found.chars().take(80).collect(),
-                expected,
-            })
-        };
-        let (line, wrong) = next("palpate-session 1");
-        if line != HEADER {
-            return Err(wrong());
-        }
-        let (line, wrong) = next("capabilities and 17 bytes in hexadecimal");
-        let capabilities = line
-            .strip_prefix("capabilities ")
-            .and_then(bytes)
-            .and_then(|bytes| Capabilities::decode(&bytes).ok())
-            .ok_or_else(wrong)?;
-        let (line, wrong) = next("limits, three f32 in hexadecimal and the watchdog's cycles");
-        let limits = limits(line).ok_or_else(wrong)?;
-        let cycles = lines.map(|(at, line)| {
-            recorded_cycle(line).ok_or_else(|| RecordingError::Line {
-                line: at + 1,
-                found: line.chars().take(80).collect(),
-                expected: "two times in µs, a position report or -, a force report, 0 or 1",
-            })
-        });
+    pub fn parse(text: &str) -> Result<Recording, Refusal> {
+        let mut lines = (1..).zip(text.lines());
+        let (at, first) = lines.next().unwrap_or((1, ""));
+        let what = "a recording that begins with format, capabilities and limits";
+        let header: Header = read(at, first, what)?;
+        let Within {
+            force_n,
+            slew_n,
+            release_n,
+            watchdog_cycles,
+        } = header.limits;
+        let limits = Limits::new(force_n, slew_n, release_n, watchdog_cycles);
+        let what = "the times, position, force and playing of a cycle";
+        let cycles = lines.map(|(at, line)| read(at, line, what));
         Ok(Recording {
-            capabilities,
-            limits,
+            capabilities: header.capabilities,
+            limits: limits.map_err(|error| refused(at, first, &error.to_string()))?,
             cycles: cycles.collect::<Result<_, _>>()?,
         })
     }
@@ -253,103 +162,66 @@ impl Recording {
     /// Plays the recorded positions again, on `table`; the number of cycles, whose forces were all
     /// the same to the bit.
     ///
-    /// ```
-    #[doc = include_str!("simulated/probing.example")]
-    /// use palpate::hid::{Recording, RecordingError};
-    ///
-    /// let text = "palpate-session 1\n\
-    ///     capabilities 030100e803f401401fe8030f0058028c00\n\
-    ///     limits 40000000 3d4ccccd 3e800000 10\n\
-    ///     1000 1000 - 0200000500010001 0\n";
-    /// // A force of 5 counts, where no report of the device had come yet.
-    /// let replayed = Recording::parse(text)?.replay(table);
-    /// assert!(matches!(replayed, Err(RecordingError::Differs { cycle: 0, .. })));
-    /// # Ok::<(), RecordingError>(())
-    /// ```
-    ///
     /// # Errors
-    /// [`RecordingError::Differs`], [`RecordingError::Session`].
+    /// The first cycle with another force report; cycles after those that end the session; a device
+    /// that [`Session::begin`] refuses.
     ///
     /// Implements: HID-052, HID-056.
-    pub fn replay(&self, table: Table) -> Result<usize, RecordingError> {
+    pub fn replay(&self, table: Table) -> Result<usize, Refusal> {
         let device = Recorded {
             recording: self,
             cycle: 0,
             given: false,
         };
         let mut session = Session::begin(device, table, self.limits)?;
-        let mut at = 0;
-        let mut difference = None;
         if self.cycles.is_empty() {
             return Ok(0);
         }
+        let (mut at, mut difference) = (0, None);
         let end = session.run(|cycle, _| {
             let recorded = &self.cycles[at];
             let found = (cycle.force, cycle.playing);
             let recorded = (recorded.force, recorded.playing);
             if found != recorded {
-                difference = Some(RecordingError::Differs {
-                    cycle: at,
-                    recorded,
-                    found,
-                });
+                difference = Some(format!(
+                    "cycle {at}: the recording has the force {}, and this table and program give {}",
+                    shown(recorded),
+                    shown(found)
+                ));
             }
             at += 1;
             difference.is_none() && at < self.cycles.len()
         });
-        match difference {
-            Some(difference) => Err(difference),
-            None if at < self.cycles.len() => Err(RecordingError::Ends {
-                recorded: self.cycles.len(),
-                cycles: at,
-                end,
-            }),
-            None => Ok(at),
-        }
+        let recorded = self.cycles.len();
+        let wrong = match difference {
+            Some(difference) => difference,
+            None if at < recorded => {
+                format!("{recorded} cycles, but these positions end the session after {at}: {end}")
+            }
+            None => return Ok(at),
+        };
+        Err(Refusal::state(wrong, ""))
     }
 }
 
-/// The bytes of a hexadecimal text.
-fn bytes(text: &str) -> Option<Vec<u8>> {
-    if !text.len().is_multiple_of(2) || !text.bytes().all(|byte| byte.is_ascii_hexdigit()) {
-        return None;
-    }
-    let pair = |at| u8::from_str_radix(text.get(at..at + 2)?, 16).ok();
-    (0..text.len()).step_by(2).map(pair).collect()
+/// A line of JSON.
+fn line(row: &impl Serialize) -> String {
+    // Memory takes everything, and these types can all be written.
+    serde_json::to_string(row).unwrap_or_default() + "\n"
 }
 
-fn limits(line: &str) -> Option<Limits> {
-    let mut fields = line.strip_prefix("limits ")?.split(' ');
-    let mut force = || {
-        let bits = u32::from_str_radix(fields.next()?, 16).ok()?;
-        Some(f32::from_bits(bits))
-    };
-    let (force, slew, release) = (force()?, force()?, force()?);
-    let watchdog = fields.next()?.parse().ok()?;
-    let limits = Limits::new(force, slew, release, watchdog).ok()?;
-    fields.next().is_none().then_some(limits)
-}
-
-fn recorded_cycle(line: &str) -> Option<RecordedCycle> {
-    let fields: Vec<&str> = line.split(' ').collect();
-    let &[received, written, position, force, playing] = &fields[..] else {
-        return None;
-    };
-    let position = match position {
-        "-" => None,
-        text => Some(PositionReport::decode(&bytes(text)?).ok()?),
-    };
-    Some(RecordedCycle {
-        received_us: received.parse().ok()?,
-        written_us: written.parse().ok()?,
-        position,
-        force: ForceReport::decode(&bytes(force)?).ok()?,
-        playing: match playing {
-            "0" => false,
-            "1" => true,
-            _ => return None,
-        },
+/// Reads a line of JSON; `what` it should be.
+fn read<'a, T: Deserialize<'a>>(at: usize, line: &'a str, what: &str) -> Result<T, Refusal> {
+    serde_json::from_str(line).map_err(|error| {
+        let error = error.to_string();
+        let error = error.split(" at line ").next().unwrap_or_default();
+        refused(at, line, &one_line(&format!("{what}: {error}")))
     })
+}
+
+fn refused(at: usize, line: &str, expected: &str) -> Refusal {
+    let found: String = line.chars().take(80).collect();
+    Refusal::state(format_args!("{found:?}"), expected).at(at)
 }
 
 /// A device that reports what was recorded.

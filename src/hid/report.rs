@@ -26,26 +26,12 @@ pub const DESCRIPTOR: [u8; 136] = [
 ];
 
 /// Bits of [`PositionReport::buttons`].
-///
-/// ```
-/// use palpate::hid::button;
-///
-/// let buttons = 0b0000_0011;
-/// assert!(buttons & button::DEADMAN != 0);
-/// ```
 pub mod button {
     /// The deadman switch is held.
     pub const DEADMAN: u8 = 1;
 }
 
 /// Bits of [`PositionReport::status`].
-///
-/// ```
-/// use palpate::hid::status;
-///
-/// let report = 0b10;
-/// assert_eq!(report & (status::FAULT | status::WATCHDOG), status::WATCHDOG);
-/// ```
 pub mod status {
     /// The device has found a fault in itself and plays no force.
     pub const FAULT: u8 = 1;
@@ -66,6 +52,8 @@ pub mod status {
 /// # Ok::<(), palpate::hid::InvalidReport>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "std", serde(deny_unknown_fields))]
 pub struct PositionReport {
     /// Lateral position, counts.
     pub lateral: i16,
@@ -82,15 +70,9 @@ pub struct PositionReport {
 }
 
 /// Output report 2: what to play.
-///
-/// ```
-/// use palpate::hid::ForceReport;
-///
-/// let report = ForceReport { lateral: -2, normal: 1000, sequence: 7, flags: ForceReport::PLAY };
-/// assert_eq!(report.encode(), [2, 0xFE, 0xFF, 0xE8, 0x03, 7, 0, 1]);
-/// assert_eq!(ForceReport::decode(&report.encode()), Ok(report));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "std", serde(deny_unknown_fields))]
 pub struct ForceReport {
     /// Lateral force, counts.
     pub lateral: i16,
@@ -103,18 +85,9 @@ pub struct ForceReport {
 }
 
 /// Feature report 3: what the device is.
-///
-/// ```
-/// use palpate::hid::Capabilities;
-///
-/// let bytes = [3, 1, 0, 0xE8, 0x03, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0];
-/// let device = Capabilities::decode(&bytes)?;
-/// assert_eq!((device.version, device.watchdog_ms), (1, 15));
-/// assert_eq!((device.position_unit_nm, device.force_unit_un), (1000, 500));
-/// assert_eq!(device.encode(), bytes);
-/// # Ok::<(), palpate::hid::InvalidReport>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "std", serde(deny_unknown_fields))]
 pub struct Capabilities {
     /// Version of the profile: 1.
     pub version: u16,
@@ -154,15 +127,6 @@ pub enum Control {
 }
 
 /// Why bytes are no report.
-///
-/// ```
-/// use palpate::hid::{ForceReport, InvalidReport};
-///
-/// let refused = ForceReport::decode(&[2, 0, 0]);
-/// assert_eq!(refused, Err(InvalidReport::Length { found: 3, expected: 8 }));
-/// let told = InvalidReport::Length { found: 3, expected: 8 }.to_string();
-/// assert_eq!(told, "a report of 3 bytes, expected 8");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum InvalidReport {
     /// Another number of bytes, the report's number included.
@@ -227,16 +191,6 @@ impl PositionReport {
 
     /// The report in `bytes`, which begin with the report's number.
     ///
-    /// ```
-    /// use palpate::hid::{InvalidReport, PositionReport};
-    ///
-    /// let report = PositionReport::decode(&[1, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0])?;
-    /// assert_eq!(report.normal, 5);
-    /// let of_another = PositionReport::decode(&[2, 0, 0, 5, 0, 0, 0, 0, 0, 0, 0]);
-    /// assert_eq!(of_another, Err(InvalidReport::Number { found: 2, expected: 1 }));
-    /// # Ok::<(), InvalidReport>(())
-    /// ```
-    ///
     /// # Errors
     /// [`InvalidReport`] for another length or number.
     ///
@@ -254,13 +208,6 @@ impl PositionReport {
     }
 
     /// The bytes of the report.
-    ///
-    /// ```
-    /// use palpate::hid::PositionReport;
-    ///
-    /// let report = PositionReport { lateral: 1, normal: -1, buttons: 2, status: 3, sequence: 4, force_sequence: 0x0605 };
-    /// assert_eq!(report.encode(), [1, 1, 0, 0xFF, 0xFF, 2, 3, 4, 0, 5, 6]);
-    /// ```
     ///
     /// Implements: HID-002, HID-007.
     pub fn encode(&self) -> [u8; PositionReport::LENGTH] {
@@ -283,14 +230,6 @@ impl ForceReport {
 
     /// The report in `bytes`, which begin with the report's number.
     ///
-    /// ```
-    /// use palpate::hid::ForceReport;
-    ///
-    /// let report = ForceReport::decode(&[2, 1, 0, 0xFF, 0xFF, 7, 0, ForceReport::PLAY])?;
-    /// assert_eq!((report.lateral, report.normal, report.sequence), (1, -1, 7));
-    /// # Ok::<(), palpate::hid::InvalidReport>(())
-    /// ```
-    ///
     /// # Errors
     /// [`InvalidReport`] for another length or number.
     ///
@@ -306,11 +245,6 @@ impl ForceReport {
     }
 
     /// The bytes of the report.
-    ///
-    /// ```
-    /// let none = palpate::hid::ForceReport { lateral: 0, normal: 0, sequence: 258, flags: 0 };
-    /// assert_eq!(none.encode(), [2, 0, 0, 0, 0, 2, 1, 0]);
-    /// ```
     ///
     /// Implements: HID-003, HID-007.
     pub fn encode(&self) -> [u8; ForceReport::LENGTH] {
@@ -328,13 +262,6 @@ impl Capabilities {
     pub const LENGTH: usize = 17;
 
     /// The report in `bytes`, which begin with the report's number.
-    ///
-    /// ```
-    /// use palpate::hid::{Capabilities, InvalidReport};
-    ///
-    /// let cut_off = Capabilities::decode(&[3, 1, 0]);
-    /// assert_eq!(cut_off, Err(InvalidReport::Length { found: 3, expected: 17 }));
-    /// ```
     ///
     /// # Errors
     /// [`InvalidReport`] for another length or number.
@@ -356,14 +283,6 @@ impl Capabilities {
     }
 
     /// The bytes of the report.
-    ///
-    /// ```
-    /// # use palpate::hid::Capabilities;
-    /// let zeros = Capabilities::decode(&[3, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0])?;
-    /// let device = Capabilities { watchdog_ms: 0x0102, ..zeros };
-    /// assert_eq!(device.encode()[..13], [3, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 1]);
-    /// # Ok::<(), palpate::hid::InvalidReport>(())
-    /// ```
     ///
     /// Implements: HID-004, HID-007.
     pub fn encode(&self) -> [u8; Capabilities::LENGTH] {
@@ -388,13 +307,6 @@ impl Control {
 
     /// The report in `bytes`, which begin with the report's number.
     ///
-    /// ```
-    /// use palpate::hid::{Control, InvalidReport};
-    ///
-    /// assert_eq!(Control::decode(&[4, 2]), Ok(Control::ClearFault));
-    /// assert_eq!(Control::decode(&[4, 3]), Err(InvalidReport::Value { found: 3 }));
-    /// ```
-    ///
     /// # Errors
     /// [`InvalidReport`] for another length, number or value.
     ///
@@ -410,10 +322,6 @@ impl Control {
     }
 
     /// The bytes of the report.
-    ///
-    /// ```
-    /// assert_eq!(palpate::hid::Control::Stop.encode(), [4, 0]);
-    /// ```
     ///
     /// Implements: HID-005, HID-007.
     pub fn encode(&self) -> [u8; Control::LENGTH] {

@@ -4,10 +4,8 @@
 use std::fmt;
 use std::time::Duration;
 
-use super::{
-    Capabilities, Control, Counters, Cycle, DeviceError, HapticDevice, InvalidCapabilities,
-    Playback, Units,
-};
+use super::{Capabilities, Control, Counters, Cycle, DeviceError, HapticDevice, Playback, Units};
+use crate::refusal::Refusal;
 use crate::servo::{Fault, Force, Limits, Mode, Request, Table};
 
 /// The longest that a device may go on playing a force without a report.
@@ -26,7 +24,7 @@ const LONGEST_WATCHDOG_MS: u16 = 100;
 /// assert_eq!((end, session.mode()), (End::Asked, Mode::Disarmed));
 /// assert!(session.counters().played > 500);
 /// assert_eq!(session.device().motor_force(), [0.0, 0.0]); // the device is stopped
-/// # Ok::<(), palpate::hid::SessionError>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 ///
 /// Implements: HID-016, HID-017, HID-083.
@@ -50,65 +48,7 @@ enum Stage {
     Stopped,
 }
 
-/// Why a session does not begin.
-///
-/// ```
-#[doc = include_str!("simulated/probing.example")]
-/// use palpate::hid::{Session, SessionError};
-///
-/// let strong = Limits::new(10.0, 0.05, 1.0, 10).expect("limits");
-/// let refused = Session::begin(device, table, strong).err();
-/// assert_eq!(refused, Some(SessionError::Force { limit: 10.0, largest: 8.0 }));
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SessionError {
-    /// The device fails.
-    #[error("{0}")]
-    Device(#[from] DeviceError),
-    /// The device's numbers have no meaning.
-    #[error("{0}")]
-    Capabilities(#[from] InvalidCapabilities),
-    /// The device says that it reports without end.
-    #[error("the device reports every 0 µs, expected at least 1")]
-    Period,
-    /// The device has no watchdog of its own, one that does not wait for the next force, or one that waits too long.
-    #[error(
-        "the device drops its force after {watchdog_ms} ms without a report, expected more than its period of {period_us} µs \
-         and at most {LONGEST_WATCHDOG_MS} ms: a blocked write would leave the force on the hand"
-    )]
-    Watchdog {
-        /// The device's watchdog, ms; 0 for none.
-        watchdog_ms: u16,
-        /// Its period, µs.
-        period_us: u16,
-    },
-    /// A count of the device's force is more than the force may change in a cycle.
-    #[error("the device's force unit is {unit} N, expected at most the slew limit of {slew} N")]
-    Coarse {
-        /// The device's force unit, N.
-        unit: f32,
-        /// The slew limit, N a cycle.
-        slew: f32,
-    },
-    /// The force limit exceeds what the device makes.
-    #[error("a force limit of {limit} N, expected at most {largest} N, the device's largest force")]
-    Force {
-        /// The limit, N.
-        limit: f32,
-        /// The device's largest force, N.
-        largest: f32,
-    },
-}
-
 /// Why a session ended.
-///
-/// ```
-/// use palpate::hid::End;
-/// use palpate::servo::Fault;
-///
-/// let end = End::Fault(Fault::Watchdog);
-/// assert_eq!(end.to_string(), "stopped by a fault: no fresh report for too long");
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum End {
     /// It was asked to.
@@ -135,51 +75,58 @@ impl fmt::Display for End {
     }
 }
 
+/// A refusal that says all by itself.
+fn as_it_is(error: impl fmt::Display) -> Refusal {
+    Refusal::state(error, "")
+}
+
+/// Refuses a device that could leave a force on the hand, or that does not make these limits.
+fn check(capabilities: &Capabilities, limits: &Limits) -> Result<(), Refusal> {
+    let (watchdog_ms, period_us) = (capabilities.watchdog_ms, capabilities.period_us);
+    if period_us == 0 {
+        let found = "the device reports every 0 µs";
+        return Err(Refusal::state(found, "at least 1"));
+    }
+    let waits_us = u32::from(watchdog_ms) * 1000;
+    if waits_us <= u32::from(period_us) || watchdog_ms > LONGEST_WATCHDOG_MS {
+        return Err(Refusal::state(
+            format_args!("the device drops its force after {watchdog_ms} ms without a report"),
+            format!(
+                "more than its period of {period_us} µs and at most {LONGEST_WATCHDOG_MS} ms: \
+                 a blocked write would leave the force on the hand"
+            ),
+        ));
+    }
+    let (unit, slew) = (f32::from(capabilities.force_unit_un) / 1e6, limits.slew());
+    if unit > slew {
+        let found = format_args!("the device's force unit is {unit} N");
+        let expected = format!("at most the slew limit of {slew} N");
+        return Err(Refusal::state(found, expected));
+    }
+    let largest = f32::from(capabilities.largest_force_mn) / 1e3;
+    if limits.force() > largest {
+        let found = format_args!("a force limit of {} N", limits.force());
+        let expected = format!("at most {largest} N, the device's largest force");
+        return Err(Refusal::state(found, expected));
+    }
+    Ok(())
+}
+
 impl<'a, D: HapticDevice> Session<'a, D> {
     /// Asks the device what it is; the first cycle enables it.
     ///
-    /// ```
-    #[doc = include_str!("simulated/probing.example")]
-    /// use palpate::hid::{Capabilities, Session, SessionError};
-    ///
-    /// let alone = Capabilities { watchdog_ms: 0, ..PAPER };
-    /// let trajectory = Trajectory::new(vec![]);
-    /// let device = SimulatedDevice::new(alone, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
-    /// let refused = SessionError::Watchdog { watchdog_ms: 0, period_us: 1000 };
-    /// assert_eq!(Session::begin(device, table, limits).err(), Some(refused));
-    /// ```
-    ///
     /// # Errors
-    /// [`SessionError`].
+    /// What is wrong with the device, or with the limits on it.
     ///
     /// Implements: HID-017.
     pub fn begin(
         mut device: D,
         table: Table<'a>,
         limits: Limits,
-    ) -> Result<Session<'a, D>, SessionError> {
-        let capabilities = device.capabilities()?;
-        let units = Units::new(&capabilities)?;
-        if capabilities.period_us == 0 {
-            return Err(SessionError::Period);
-        }
-        let (watchdog_ms, period_us) = (capabilities.watchdog_ms, capabilities.period_us);
-        let waits_us = u32::from(watchdog_ms) * 1000;
-        if waits_us <= u32::from(period_us) || watchdog_ms > LONGEST_WATCHDOG_MS {
-            return Err(SessionError::Watchdog {
-                watchdog_ms,
-                period_us,
-            });
-        }
-        let (unit, slew) = (f32::from(capabilities.force_unit_un) / 1e6, limits.slew());
-        if unit > slew {
-            return Err(SessionError::Coarse { unit, slew });
-        }
-        let largest = f32::from(capabilities.largest_force_mn) / 1e3;
-        let limit = limits.force();
-        if limit > largest {
-            return Err(SessionError::Force { limit, largest });
-        }
+    ) -> Result<Session<'a, D>, Refusal> {
+        let capabilities = device.capabilities().map_err(as_it_is)?;
+        let units = Units::new(&capabilities).map_err(as_it_is)?;
+        check(&capabilities, &limits)?;
         let period = Duration::from_micros(u64::from(capabilities.period_us));
         Ok(Session {
             device,
@@ -221,18 +168,6 @@ impl<'a, D: HapticDevice> Session<'a, D> {
 
     /// One cycle: see [`Playback::cycle`].
     ///
-    /// ```
-    #[doc = include_str!("simulated/probing.example")]
-    /// use palpate::hid::Session;
-    /// use palpate::servo::Request;
-    ///
-    /// let mut session = Session::begin(device, table, limits)?;
-    /// let cycle = session.cycle(Request::None)?;
-    /// // A millimetre above the surface, in counts of 1 µm.
-    /// assert_eq!(cycle.position.map(|report| report.normal), Some(1000));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
     /// [`DeviceError`], after the device was told to stop.
     ///
@@ -254,38 +189,12 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     /// Cycles until `each` says that it is enough (`false`), a fault has released the force, or the
     /// device fails; then stops the device. Arms once, as soon as the kernel allows.
     ///
-    /// ```
-    #[doc = include_str!("simulated/probing.example")]
-    /// use palpate::hid::{End, Session};
-    ///
-    /// let mut session = Session::begin(device, table, limits)?;
-    /// let mut largest = 0;
-    /// let end = session.run(|cycle, counters| {
-    ///     largest = largest.max(cycle.force.normal);
-    ///     counters.cycles < 800
-    /// });
-    /// // A hand of 500 N/m wants 4 mm against 400 N/m: 0.89 N, or 1778 counts of 0.5 mN. Friction and
-    /// // backlash hold it back by 134 counts at most.
-    /// assert!(end == End::Asked && (1644..=1778).contains(&largest));
-    /// # Ok::<(), palpate::hid::SessionError>(())
-    /// ```
-    ///
     /// Implements: HID-016, HID-019, HID-024, HID-026, HID-085, HID-087, HID-088, HID-092.
     pub fn run(&mut self, mut each: impl FnMut(&Cycle, &Counters) -> bool) -> End {
         self.run_watched(|_, cycle, counters| each(cycle, counters))
     }
 
     /// [`Session::run`] with a look at the device after each cycle.
-    ///
-    /// ```
-    #[doc = include_str!("simulated/probing.example")]
-    /// use palpate::hid::Session;
-    ///
-    /// let mut session = Session::begin(device, table, limits)?;
-    /// session.run_watched(|device, _, _| !device.finished());
-    /// assert!(session.counters().cycles > 1900);
-    /// # Ok::<(), palpate::hid::SessionError>(())
-    /// ```
     pub fn run_watched(&mut self, mut each: impl FnMut(&D, &Cycle, &Counters) -> bool) -> End {
         let mut ask = false;
         let end = loop {
@@ -313,16 +222,6 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     }
 
     /// Stops the device; once it has taken that, does nothing. No cycle arms any more, even if it has not.
-    ///
-    /// ```
-    #[doc = include_str!("simulated/probing.example")]
-    /// # use palpate::hid::Session;
-    /// # use palpate::servo::Request;
-    /// let mut session = Session::begin(device, table, limits)?;
-    /// session.cycle(Request::None)?;
-    /// assert_eq!((session.stop(), session.stop()), (Ok(()), Ok(())));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     ///
     /// # Errors
     /// [`DeviceError`].

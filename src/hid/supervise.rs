@@ -15,15 +15,6 @@ const LOOK: Duration = Duration::from_millis(20);
 pub const HELD_UP: Duration = Duration::from_millis(100);
 
 /// What the servo thread shows while it runs, without locks.
-///
-/// ```
-/// use palpate::hid::{Counters, supervise::Board};
-///
-/// // Nothing was played yet; `stop` ends the session that shows itself here.
-/// let board = Board::default();
-/// assert_eq!(board.counters(), Counters::default());
-/// board.stop();
-/// ```
 #[derive(Debug, Default)]
 pub struct Board {
     /// Set to end the session.
@@ -35,7 +26,6 @@ pub struct Board {
     drained: AtomicU64,
     garbage: AtomicU64,
     refused: AtomicU64,
-    done: AtomicBool,
 }
 
 impl Board {
@@ -71,21 +61,6 @@ impl Board {
 }
 
 /// What a session was.
-///
-/// ```
-#[doc = include_str!("simulated/probing.example")]
-/// use palpate::hid::supervise::{Board, PlayOptions, play};
-/// use palpate::hid::{End, Session};
-///
-/// let options = PlayOptions { duration: None, record: 0, budget: Duration::from_millis(1) };
-/// let session = Session::begin(device, table, limits)?;
-/// // Asked to stop before it began.
-/// let board = Board::default();
-/// board.stop();
-/// let played = play(session, &options, &board, || (), || false, |_, _| ()).expect("no panic");
-/// assert_eq!((played.end, played.counters.cycles, played.cycles), (End::Asked, 1, vec![]));
-/// # Ok::<(), palpate::hid::SessionError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Played {
     /// Why it ended.
@@ -101,19 +76,6 @@ pub struct Played {
 }
 
 /// How a session is played.
-///
-/// ```
-/// use palpate::hid::supervise::PlayOptions;
-/// use std::time::Duration;
-///
-/// // Ten seconds at 1 kHz, all recorded.
-/// let options = PlayOptions {
-///     duration: Some(Duration::from_secs(10)),
-///     record: 10_000,
-///     budget: Duration::from_millis(1),
-/// };
-/// assert_eq!(options.duration, Some(options.budget * options.record as u32));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlayOptions {
     /// Ends after this much of the device's time.
@@ -147,7 +109,7 @@ pub struct PlayOptions {
 /// let played = play(session, &options, &Board::default(), || (), || false, |_, _| ());
 /// let played = played.expect("the servo thread does not panic");
 /// assert_eq!((played.end, played.counters.cycles, played.cycles.len()), (End::Asked, 800, 500));
-/// # Ok::<(), palpate::hid::SessionError>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 ///
 /// Implements: HID-053, HID-054, HID-055.
@@ -161,15 +123,12 @@ pub fn play<D: HapticDevice + Send>(
 ) -> Option<Played> {
     std::thread::scope(|scope| {
         let servo = scope.spawn(move || {
-            let done = Done(board);
             prepare();
-            let played = servo_loop(session, options, board);
-            drop(done);
-            played
+            servo_loop(session, options, board)
         });
         let mut heartbeat = (0, Instant::now());
         let mut held_up = None;
-        while !board.done.load(Ordering::Acquire) {
+        while !servo.is_finished() {
             if stop() {
                 board.stop();
             }
@@ -190,15 +149,6 @@ pub fn play<D: HapticDevice + Send>(
     })
 }
 
-/// Tells the supervisor that the servo thread is over, also by a panic.
-struct Done<'a>(&'a Board);
-
-impl Drop for Done<'_> {
-    fn drop(&mut self) {
-        self.0.done.store(true, Ordering::Release);
-    }
-}
-
 /// The servo thread.
 fn servo_loop<D: HapticDevice>(
     mut session: Session<D>,
@@ -215,10 +165,8 @@ fn servo_loop<D: HapticDevice>(
         if cycles.len() < cycles.capacity() {
             cycles.push(RecordedCycle::from(cycle));
         }
-        let over = options
-            .duration
-            .is_some_and(|duration| cycle.written >= duration);
-        !over && !board.stop.load(Ordering::Relaxed)
+        let time = options.duration.unwrap_or(Duration::MAX);
+        cycle.written < time && !board.stop.load(Ordering::Relaxed)
     });
     // A signal that interrupts a read is the wish to stop, where there is one.
     let interrupted = end == End::Device(DeviceError::Interrupted);

@@ -5,6 +5,45 @@ extern crate std;
 use super::*;
 use crate::servo::{Command, Force};
 
+#[cfg(feature = "std")]
+pub use played::{limits, probing, with_table};
+
+/// What tests of the loop share.
+#[cfg(feature = "std")]
+mod played {
+    use std::time::Duration;
+    use std::vec::Vec;
+
+    use crate::hid::simulated::{Defect, Mechanics, PAPER, SimulatedDevice, Trajectory};
+    use crate::servo::{Axis, Force, Limits, Table};
+
+    /// Forces over a square of 8 mm by 40 mm that grow with the depth to `normal` (N), and to ±1 N to the sides.
+    pub fn with_table<R>(normal: f32, then: impl FnOnce(Table) -> R) -> R {
+        let force = |lateral, normal| Force { lateral, normal };
+        let forces = [
+            Force::ZERO,
+            Force::ZERO,
+            force(-1.0, normal),
+            force(1.0, normal),
+        ];
+        let knots = [[0.0, 0.008], [-0.02, 0.02]];
+        let reciprocals = knots.map(|[start, end]| [Axis::reciprocal_width(start, end)]);
+        let axis = |at: usize| Axis::new(&knots[at], &reciprocals[at]).unwrap();
+        then(Table::new(axis(0), axis(1), &forces).unwrap())
+    }
+
+    /// 2 N, built up by 50 N/s and released in ten cycles.
+    pub fn limits() -> Limits {
+        Limits::new(2.0, 0.05, 0.2, 10).unwrap()
+    }
+
+    /// The paper's display in a hand that presses by 4 mm and sweeps over 20 mm, each sweep so long.
+    pub fn probing(sweep: Duration, faults: Vec<(Duration, Defect)>) -> SimulatedDevice {
+        let hand = Trajectory::probing(0.004, 0.01, sweep);
+        SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, faults)
+    }
+}
+
 /// The descriptor in hexadecimal, as a device's firmware has it.
 const DESCRIPTOR_TEXT: &str = "06 00 FF 09 01 A1 01 85 01 09 10 09 11 16 01 80 26 FF 7F 75 10 95 02 81 02 \
     09 12 09 13 15 00 26 FF 00 75 08 95 02 81 02 09 14 09 15 15 00 27 FF FF 00 00 75 10 95 02 81 02 85 02 \
@@ -21,10 +60,10 @@ fn the_descriptor_is_that_of_the_vendor_profile() {
     assert!(bytes.eq(DESCRIPTOR));
 }
 
-// Verifies: HID-002, HID-007.
+// Verifies: HID-002, HID-003, HID-004, HID-007.
 #[test]
-fn a_position_report_has_its_bytes_in_order() {
-    let report = PositionReport {
+fn a_report_has_its_bytes_in_order() {
+    let position = PositionReport {
         lateral: 0x0102,
         normal: -2,
         buttons: 0x05,
@@ -32,25 +71,22 @@ fn a_position_report_has_its_bytes_in_order() {
         sequence: 0x0708,
         force_sequence: 0x090A,
     };
-    let bytes = [
-        1, 0x02, 0x01, 0xFE, 0xFF, 0x05, 0x06, 0x08, 0x07, 0x0A, 0x09,
-    ];
-    assert_eq!(report.encode(), bytes);
-    assert_eq!(PositionReport::decode(&bytes), Ok(report));
-}
-
-// Verifies: HID-003, HID-007.
-#[test]
-fn a_force_report_has_its_bytes_in_order() {
-    let report = ForceReport {
+    let bytes = [1, 0x02, 0x01, 0xFE, 0xFF, 0x05, 0x06, 0x08, 0x07, 0x0A, 9];
+    assert_eq!(position.encode(), bytes);
+    assert_eq!(PositionReport::decode(&bytes), Ok(position));
+    let force = ForceReport {
         lateral: -32767,
         normal: 0x0304,
         sequence: 0x0506,
         flags: 7,
     };
     let bytes = [2, 0x01, 0x80, 0x04, 0x03, 0x06, 0x05, 7];
-    assert_eq!(report.encode(), bytes);
-    assert_eq!(ForceReport::decode(&bytes), Ok(report));
+    assert_eq!(force.encode(), bytes);
+    assert_eq!(ForceReport::decode(&bytes), Ok(force));
+    let words = [1, 1000, 500, 8000, 1000, 15, 600, 140].map(u16::to_le_bytes);
+    let bytes = [&[3], words.as_flattened()].concat();
+    assert_eq!(capabilities().encode(), bytes[..]);
+    assert_eq!(Capabilities::decode(&bytes), Ok(capabilities()));
 }
 
 fn capabilities() -> Capabilities {
@@ -64,16 +100,6 @@ fn capabilities() -> Capabilities {
         damping_mn_s_per_m: 600,
         friction_mn: 140,
     }
-}
-
-// Verifies: HID-004, HID-007.
-#[test]
-fn the_capabilities_have_their_bytes_in_order() {
-    let bytes = [
-        3, 1, 0, 0xE8, 0x03, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0,
-    ];
-    assert_eq!(capabilities().encode(), bytes);
-    assert_eq!(Capabilities::decode(&bytes), Ok(capabilities()));
 }
 
 // Verifies: HID-005, HID-006.
@@ -97,12 +123,8 @@ fn control_has_three_values() {
 #[test]
 fn another_length_or_number_is_refused() {
     let good = capabilities().encode();
-    let length = |found| {
-        Err(InvalidReport::Length {
-            found,
-            expected: 17,
-        })
-    };
+    let expected = 17;
+    let length = |found| Err(InvalidReport::Length { found, expected });
     assert_eq!(Capabilities::decode(&[]), length(0));
     assert_eq!(Capabilities::decode(&good[..16]), length(16));
     assert_eq!(
@@ -126,18 +148,14 @@ fn a_device_without_units_is_refused() {
         change(&mut capabilities);
         Units::new(&capabilities).unwrap_err()
     };
-    assert_eq!(
-        refused(|c| c.version = 2),
-        InvalidCapabilities::Version { found: 2 }
-    );
-    assert_eq!(
-        refused(|c| c.position_unit_nm = 0),
-        InvalidCapabilities::PositionUnit
-    );
-    assert_eq!(
-        refused(|c| c.force_unit_un = 0),
-        InvalidCapabilities::ForceUnit
-    );
+    let version = InvalidCapabilities::Version(2);
+    assert_eq!(refused(|c| c.version = 2), version);
+    let position = InvalidCapabilities::Unit("position unit is 0 nm");
+    assert_eq!(refused(|c| c.position_unit_nm = 0), position);
+    let force = InvalidCapabilities::Unit("force unit is 0 µN");
+    assert_eq!(refused(|c| c.force_unit_un = 0), force);
+    let expected = "the device's force unit is 0 µN, expected at least 1";
+    assert_eq!(std::format!("{force}"), expected);
 }
 
 // Verifies: HID-009, HID-010.
@@ -154,27 +172,15 @@ fn counts_are_micrometres_and_half_millinewtons_here() {
     };
     let sample = units.sample(&report);
     // The constant 1e-9 and two products are rounded: at most 3 · 2⁻²⁴ of the value.
-    assert!(
-        (sample.depth - 0.004).abs() < 0.004 * 1.8e-7,
-        "{}",
-        sample.depth
-    );
-    assert!(
-        (sample.lateral + 0.012).abs() < 0.012 * 1.8e-7,
-        "{}",
-        sample.lateral
-    );
-    assert_eq!(
-        (sample.sequence, sample.deadman, sample.device_fault),
-        (9, true, false)
-    );
-    for bit in [status::FAULT, status::WATCHDOG] {
+    let near = |found: f32, expected: f32| (found / expected - 1.0).abs() < 1.8e-7;
+    assert!(near(sample.depth, 0.004), "{}", sample.depth);
+    assert!(near(sample.lateral, -0.012), "{}", sample.lateral);
+    let told = (sample.sequence, sample.deadman, sample.device_fault);
+    assert_eq!(told, (9, true, false));
+    for status in [status::FAULT, status::WATCHDOG] {
         assert!(
             units
-                .sample(&PositionReport {
-                    status: bit,
-                    ..report
-                })
+                .sample(&PositionReport { status, ..report })
                 .device_fault
         );
     }
@@ -182,13 +188,8 @@ fn counts_are_micrometres_and_half_millinewtons_here() {
         lateral: -0.1,
         normal: 1.5,
     };
-    let report = units.report(
-        &Command {
-            force,
-            playing: true,
-        },
-        77,
-    );
+    let playing = true;
+    let report = units.report(&Command { force, playing }, 77);
     assert_eq!((report.lateral, report.normal), (-200, 3000));
     assert_eq!((report.sequence, report.flags), (77, ForceReport::PLAY));
 }

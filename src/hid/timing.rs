@@ -7,26 +7,12 @@ use std::time::{Duration, Instant};
 use hdrhistogram::Histogram;
 
 use super::{
-    Capabilities, Control, Cycle, DeviceError, End, ForceReport, HapticDevice, Received, Session,
-    SessionError,
+    Capabilities, Control, Cycle, DeviceError, ForceReport, HapticDevice, Received, Session,
 };
+use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
 
 /// A device on the clock of the host instead of its own, and at the host's pace if it is asked to.
-///
-/// ```
-/// use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
-/// use palpate::hid::timing::HostClock;
-/// use palpate::hid::{HapticDevice, Received};
-/// use std::time::{Duration, Instant};
-///
-/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, Trajectory::new(vec![]), Duration::ZERO, vec![]);
-/// let (began, period) = (Instant::now(), Duration::from_millis(1));
-/// let mut paced = HostClock::new(device, Some(period));
-/// assert!(matches!(paced.read(period)?, Received::Report(_)));
-/// assert!(began.elapsed() >= period && paced.now() >= period + paced.late());
-/// # Ok::<(), palpate::hid::DeviceError>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct HostClock<D> {
     device: D,
@@ -97,18 +83,6 @@ impl<D: HapticDevice> HapticDevice for HostClock<D> {
 }
 
 /// Distribution of a time, µs.
-///
-/// ```
-#[doc = include_str!("simulated/probing.example")]
-/// # let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_secs(1));
-/// # let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
-/// use palpate::hid::timing::{Distribution, measure};
-///
-/// let timing = measure(device, table, limits, 1000, Duration::from_millis(1), None)?;
-/// let Distribution { p50, p99, p99_9, max } = timing.compute_us;
-/// assert!(p50 <= p99 && p99 <= p99_9 && p99_9 <= max);
-/// # Ok::<(), palpate::hid::timing::TimingError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Distribution {
     /// Half of all cycles are no longer.
@@ -134,17 +108,6 @@ impl Distribution {
 }
 
 /// What was measured.
-///
-/// ```
-#[doc = include_str!("simulated/probing.example")]
-/// use palpate::hid::timing::measure;
-///
-/// let timing = measure(device, table, limits, 1000, Duration::from_secs(3600), None)?;
-/// // A budget of an hour is kept by all, and the kernel takes a part of the response.
-/// assert!(timing.passed && timing.misses == 0 && !timing.paced);
-/// assert!(timing.compute_share > 0.0 && timing.compute_share < 1.0);
-/// # Ok::<(), palpate::hid::timing::TimingError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Timing {
     /// Cycles measured.
@@ -189,12 +152,12 @@ const SENT: usize = 64;
 impl Times {
     pub(super) fn new() -> Option<Times> {
         // 1 ns to 100 s within 0.1 %: everything that a cycle can take.
-        let histogram = || Histogram::new_with_bounds(1, 100_000_000_000, 3).ok();
+        let histogram = Histogram::new_with_bounds(1, 100_000_000_000, 3).ok()?;
         Some(Times {
-            response: histogram()?,
-            compute: histogram()?,
-            write: histogram()?,
-            round_trip: histogram()?,
+            response: histogram.clone(),
+            compute: histogram.clone(),
+            write: histogram.clone(),
+            round_trip: histogram,
             sent: [None; SENT],
             total: [Duration::ZERO; 2],
             misses: 0,
@@ -204,17 +167,17 @@ impl Times {
     pub(super) fn record(&mut self, cycle: &Cycle, late: Duration, budget: Duration) {
         let response = late + cycle.written.saturating_sub(cycle.woke);
         let compute = cycle.computed.saturating_sub(cycle.received);
-        let nanoseconds = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
-        self.response.saturating_record(nanoseconds(response));
-        self.compute.saturating_record(nanoseconds(compute));
+        let record = |times: &mut Histogram<u64>, time: Duration| {
+            times.saturating_record(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX));
+        };
+        record(&mut self.response, response);
+        record(&mut self.compute, compute);
         let write = cycle.written.saturating_sub(cycle.computed);
-        self.write.saturating_record(nanoseconds(write));
-        if let Some(sent) = cycle
-            .position
-            .and_then(|report| self.take(report.force_sequence))
+        record(&mut self.write, write);
+        if let Some(position) = cycle.position
+            && let Some(sent) = self.take(position.force_sequence)
         {
-            let round_trip = cycle.woke.saturating_sub(sent);
-            self.round_trip.saturating_record(nanoseconds(round_trip));
+            record(&mut self.round_trip, cycle.woke.saturating_sub(sent));
         }
         let sequence = cycle.force.sequence;
         self.sent[usize::from(sequence) % SENT] = Some((sequence, cycle.written));
@@ -242,42 +205,11 @@ impl Times {
             write_us: Distribution::of(&self.write),
             round_trip_us: (!self.round_trip.is_empty())
                 .then(|| Distribution::of(&self.round_trip)),
-            compute_share: if response > 0.0 {
-                compute / response
-            } else {
-                0.0
-            },
+            compute_share: compute / response.max(f64::MIN_POSITIVE),
             paced,
             passed: self.misses <= cycles / 1000,
         })
     }
-}
-
-/// Why a timing could not be taken.
-///
-/// ```
-#[doc = include_str!("simulated/probing.example")]
-/// use palpate::hid::timing::{TimingError, measure};
-///
-/// let timing = measure(device, table, limits, 999, Duration::from_millis(1), None);
-/// assert_eq!(timing, Err(TimingError::TooFew(999)));
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum TimingError {
-    /// The session did not begin.
-    #[error("{0}")]
-    Session(#[from] SessionError),
-    /// The session ended before the cycles were through.
-    #[error("after {cycles} cycles: {end}")]
-    Ended {
-        /// Cycles until then.
-        cycles: u64,
-        /// Why.
-        end: End,
-    },
-    /// Fewer cycles than a p99.9 needs.
-    #[error("{0} cycles, expected at least 1000 for a p99.9")]
-    TooFew(u64),
 }
 
 /// Measures `cycles` cycles of the shipped loop on `device`, against `budget`; at the pace of `period`
@@ -290,11 +222,11 @@ pub enum TimingError {
 /// // Nothing keeps a budget of 0.
 /// let timing = measure(device, table, limits, 1000, Duration::ZERO, None)?;
 /// assert_eq!((timing.cycles, timing.misses, timing.passed), (1000, 1000, false));
-/// # Ok::<(), palpate::hid::timing::TimingError>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 ///
 /// # Errors
-/// [`TimingError`].
+/// Why the session did not begin, or ended before the cycles were through; fewer cycles than a p99.9 needs.
 ///
 /// Implements: HID-060, HID-061, HID-062, HID-063, HID-084.
 pub fn measure<D: HapticDevice>(
@@ -304,9 +236,11 @@ pub fn measure<D: HapticDevice>(
     cycles: u64,
     budget: Duration,
     period: Option<Duration>,
-) -> Result<Timing, TimingError> {
-    let too_few = TimingError::TooFew(cycles);
-    let mut times = Times::new().filter(|_| cycles >= 1000).ok_or(too_few)?;
+) -> Result<Timing, Refusal> {
+    let found = format_args!("{cycles} cycles").to_string();
+    let too_few = Refusal::state(found, "at least 1000 for a p99.9");
+    let times = Times::new().filter(|_| cycles >= 1000);
+    let mut times = times.ok_or_else(|| too_few.clone())?;
     let mut session = Session::begin(HostClock::new(device, period), table, limits)?;
     let mut measured = 0;
     let end = session.run_watched(|device: &HostClock<D>, cycle, _| {
@@ -315,14 +249,11 @@ pub fn measure<D: HapticDevice>(
         measured < cycles
     });
     if measured < cycles {
-        return Err(TimingError::Ended {
-            cycles: measured,
-            end,
-        });
+        let ended = format_args!("after {measured} cycles: {end}");
+        return Err(Refusal::state(ended, ""));
     }
-    times
-        .timing(cycles, budget, period.is_some())
-        .ok_or(TimingError::TooFew(cycles))
+    let timing = times.timing(cycles, budget, period.is_some());
+    timing.ok_or(too_few)
 }
 
 #[cfg(test)]

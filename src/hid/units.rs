@@ -33,27 +33,12 @@ pub struct Units {
 }
 
 /// Why the numbers of a device's reports cannot be turned into metres and newtons.
-///
-/// ```
-/// use palpate::hid::{Capabilities, InvalidCapabilities, Units};
-///
-/// // A device whose positions are counts of 0 nm.
-/// let bytes = [3, 1, 0, 0, 0, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0];
-/// let device = Capabilities::decode(&bytes)?;
-/// assert_eq!(Units::new(&device), Err(InvalidCapabilities::PositionUnit));
-/// # Ok::<(), palpate::hid::InvalidReport>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InvalidCapabilities {
-    /// Another version of the profile than 1.
-    Version {
-        /// The device's.
-        found: u16,
-    },
-    /// A count of a position is 0 nm.
-    PositionUnit,
-    /// A count of a force is 0 µN.
-    ForceUnit,
+    /// Another version of the profile than 1: the device's.
+    Version(u16),
+    /// A count of a position or of a force is nothing.
+    Unit(&'static str),
     /// 32767 counts, the most that a report holds, are less than the device's largest force.
     ForceRange {
         /// The device's force unit, µN.
@@ -65,27 +50,20 @@ pub enum InvalidCapabilities {
 
 impl fmt::Display for InvalidCapabilities {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            InvalidCapabilities::Version { found } => {
-                write!(
-                    f,
-                    "the device speaks version {found} of the profile, expected 1"
-                )
+        write!(f, "the device")?;
+        match *self {
+            InvalidCapabilities::Version(found) => {
+                write!(f, " speaks version {found} of the profile, expected 1")
             }
-            InvalidCapabilities::PositionUnit => {
-                write!(f, "the device's position unit is 0 nm, expected at least 1")
-            }
-            InvalidCapabilities::ForceUnit => {
-                write!(f, "the device's force unit is 0 µN, expected at least 1")
-            }
+            InvalidCapabilities::Unit(unit) => write!(f, "'s {unit}, expected at least 1"),
             InvalidCapabilities::ForceRange {
                 unit_un,
                 largest_mn,
             } => write!(
                 f,
-                "the device's force unit is {unit_un} µN, so that no report holds its largest force of {largest_mn} mN, \
+                "'s force unit is {unit_un} µN, so that no report holds its largest force of {largest_mn} mN, \
                  expected a unit of at least {} µN",
-                (u32::from(*largest_mn) * 1000).div_ceil(32767)
+                (u32::from(largest_mn) * 1000).div_ceil(32767)
             ),
         }
     }
@@ -96,32 +74,19 @@ impl core::error::Error for InvalidCapabilities {}
 impl Units {
     /// The units of a device.
     ///
-    /// ```
-    /// use palpate::hid::{Capabilities, InvalidCapabilities, Units};
-    ///
-    /// let bytes = [3, 2, 0, 0xE8, 0x03, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0];
-    /// let mut device = Capabilities::decode(&bytes)?;
-    /// assert_eq!(Units::new(&device), Err(InvalidCapabilities::Version { found: 2 }));
-    /// device.version = 1;
-    /// assert!(Units::new(&device).is_ok());
-    /// # Ok::<(), palpate::hid::InvalidReport>(())
-    /// ```
-    ///
     /// # Errors
     /// [`InvalidCapabilities`].
     ///
     /// Implements: HID-008, HID-028.
     pub fn new(capabilities: &Capabilities) -> Result<Units, InvalidCapabilities> {
         if capabilities.version != 1 {
-            return Err(InvalidCapabilities::Version {
-                found: capabilities.version,
-            });
+            return Err(InvalidCapabilities::Version(capabilities.version));
         }
         if capabilities.position_unit_nm == 0 {
-            return Err(InvalidCapabilities::PositionUnit);
+            return Err(InvalidCapabilities::Unit("position unit is 0 nm"));
         }
         if capabilities.force_unit_un == 0 {
-            return Err(InvalidCapabilities::ForceUnit);
+            return Err(InvalidCapabilities::Unit("force unit is 0 µN"));
         }
         let (unit_un, largest_mn) = (capabilities.force_unit_un, capabilities.largest_force_mn);
         if u32::from(unit_un) * 32767 < u32::from(largest_mn) * 1000 {

@@ -1,66 +1,14 @@
-//! What an op gives.
+//! What an op gives, or why it gives none.
 
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use std::fmt::Display;
 
-use super::{Code, Refusal};
+use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
 
-/// One value of an answer.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Value {
-    /// A number.
-    Number(f64),
-    /// A whole number.
-    Whole(u64),
-    /// A whole number of either sign.
-    Integer(i64),
-    /// A text.
-    Text(String),
-    /// Numbers.
-    Numbers(Vec<f64>),
-    /// Whole numbers.
-    Wholes(Vec<u64>),
-    /// Texts.
-    Texts(Vec<&'static str>),
-    /// Rows of numbers.
-    Rows(Vec<Vec<f64>>),
-}
+use crate::detect::DetectError;
+use crate::fem::FemError;
 
-impl Serialize for Value {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Value::Number(value) => value.serialize(serializer),
-            Value::Whole(value) => value.serialize(serializer),
-            Value::Integer(value) => value.serialize(serializer),
-            Value::Text(value) => value.serialize(serializer),
-            Value::Numbers(value) => value.serialize(serializer),
-            Value::Wholes(value) => value.serialize(serializer),
-            Value::Texts(value) => value.serialize(serializer),
-            Value::Rows(value) => value.serialize(serializer),
-        }
-    }
-}
-
-macro_rules! values {
-    ($($from:ty => $variant:ident),* $(,)?) => {$(
-        impl From<$from> for Value {
-            fn from(value: $from) -> Value {
-                Value::$variant(value.into())
-            }
-        }
-    )*};
-}
-values!(
-    f64 => Number, u64 => Whole, u16 => Whole, u8 => Whole, i16 => Integer, String => Text, &str => Text,
-    Vec<f64> => Numbers, Vec<u64> => Wholes, Vec<&'static str> => Texts, Vec<Vec<f64>> => Rows,
-);
-
-impl From<usize> for Value {
-    fn from(value: usize) -> Value {
-        Value::Whole(value as u64) // no machine has larger ones
-    }
-}
-
-/// What an op gives: values by name.
+/// What an op gives: values by name. A number that is not finite is a `null`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Answer(Vec<(&'static str, Value)>);
 
@@ -74,39 +22,132 @@ impl Answer {
     /// This answer, if all its numbers are finite.
     ///
     /// Implements: ORA-010, ORA-022.
-    pub(super) fn finite(self) -> Result<Answer, Refusal> {
-        let finite = |value: &Value| match value {
-            Value::Number(value) => value.is_finite(),
-            Value::Numbers(values) => values.iter().all(|value| value.is_finite()),
-            Value::Rows(rows) => rows.iter().flatten().all(|value| value.is_finite()),
-            _ => true,
-        };
-        match self.0.iter().find(|(_, value)| !finite(value)) {
-            Some((name, _)) => Err(Refusal::new(
+    pub fn finite(self) -> Result<Answer, Refused> {
+        fn is_finite(value: &Value) -> bool {
+            match value {
+                Value::Array(values) => values.iter().all(is_finite),
+                value => !value.is_null(),
+            }
+        }
+        match self.0.iter().find(|(_, value)| !is_finite(value)) {
+            Some((name, _)) => Err(Refused::new(
                 Code::Overflow,
-                format!("{name} would be no finite number"),
+                format_args!("{name} would be no finite number"),
             )),
             None => Ok(self),
         }
-    }
-
-    /// Appends the line of the answer to the request `id`, a JSON text or number.
-    pub(super) fn write(&self, id: &str, out: &mut Vec<u8>) {
-        out.extend_from_slice(b"{\"id\":");
-        out.extend_from_slice(id.as_bytes());
-        out.extend_from_slice(b",\"ok\":");
-        // Neither memory nor these types can fail to be written.
-        let _ = serde_json::to_writer(&mut *out, self);
-        out.extend_from_slice(b"}\n");
     }
 }
 
 impl Serialize for Answer {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (name, value) in &self.0 {
-            map.serialize_entry(name, value)?;
-        }
-        map.end()
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
     }
+}
+
+/// The kind of a refusal.
+///
+/// Implements: ORA-008.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Code {
+    /// The line is no JSON.
+    BadJson,
+    /// JSON, but no request.
+    BadRequest,
+    /// No such op.
+    UnknownOp,
+    /// An argument that is missing or is not what it must be.
+    BadArgument,
+    /// An argument outside the range of the op.
+    OutOfRange,
+    /// The answer is no finite number.
+    Overflow,
+    /// The solver found no answer.
+    Failed,
+}
+
+impl Code {
+    /// As it stands in an answer.
+    pub fn name(self) -> &'static str {
+        match self {
+            Code::BadJson => "bad_json",
+            Code::BadRequest => "bad_request",
+            Code::UnknownOp => "unknown_op",
+            Code::BadArgument => "bad_argument",
+            Code::OutOfRange => "out_of_range",
+            Code::Overflow => "overflow",
+            Code::Failed => "failed",
+        }
+    }
+}
+
+/// Why a request got no answer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refused {
+    /// Its kind.
+    pub code: Code,
+    /// What is wrong, and what would be right.
+    pub message: String,
+}
+
+impl Refused {
+    /// A refusal of a kind. A message that quotes a whole line is cut.
+    pub fn new(code: Code, message: impl Display) -> Refused {
+        const MOST_CHARACTERS: usize = 1000;
+        let mut message = message.to_string();
+        if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {
+            message.truncate(end);
+            message.push('…');
+        }
+        Refused { code, message }
+    }
+
+    /// An argument that is not what it must be.
+    pub fn argument(message: impl Display) -> Refused {
+        Refused::new(Code::BadArgument, message)
+    }
+
+    /// An argument outside the range of the op.
+    pub fn range(message: impl Display) -> Refused {
+        Refused::new(Code::OutOfRange, message)
+    }
+}
+
+impl From<DetectError> for Refused {
+    fn from(error: DetectError) -> Refused {
+        let code = match error {
+            DetectError::Empty { .. }
+            | DetectError::LengthMismatch { .. }
+            | DetectError::NotFinite { .. } => Code::BadArgument,
+            DetectError::Overflow { .. } => Code::Overflow,
+            _ => Code::OutOfRange,
+        };
+        Refused::new(code, error)
+    }
+}
+
+impl From<FemError> for Refused {
+    fn from(error: FemError) -> Refused {
+        match error {
+            FemError::Pose(_) => Refused::range(error),
+            _ => Refused::new(Code::Failed, error),
+        }
+    }
+}
+
+/// Appends the line of answer to the request `id`, a JSON text or number.
+pub fn write(id: &str, outcome: &Result<Answer, Refused>, out: &mut Vec<u8>) {
+    let key = if outcome.is_ok() { "ok" } else { "error" };
+    for part in ["{\"id\":", id, ",\"", key, "\":"] {
+        out.extend_from_slice(part.as_bytes());
+    }
+    // Memory takes everything, and these types can all be written.
+    let _ = match outcome {
+        Ok(answer) => serde_json::to_writer(&mut *out, answer),
+        Err(Refused { code, message }) => {
+            let error = json!({"code": code.name(), "message": message});
+            serde_json::to_writer(&mut *out, &error)
+        }
+    };
+    out.extend_from_slice(b"}\n");
 }

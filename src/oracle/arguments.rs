@@ -1,25 +1,26 @@
 //! The arguments of an op, by name.
 
-use std::cell::Cell;
-use std::fmt;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
 
-use serde::de::{DeserializeSeed, Deserializer, Error, SeqAccess, Visitor};
-
-use super::ops::Op;
+use super::Refused;
+use super::answer::Code;
+use super::ops::{Models, Op};
 use super::request::{Members, kind};
-use super::{Code, Refusal};
 
 /// Most entries of a list, and of all the lists of a matrix together.
 ///
 /// Implements: ORA-011.
 pub const MOST_ENTRIES: usize = 1_000_000;
 
-/// The arguments of a request.
+/// The arguments of a request, and what earlier requests left for it.
 #[derive(Debug)]
 pub struct Arguments<'a> {
     members: Vec<(String, &'a str)>,
     /// What the op asked for.
     asked: Vec<&'static str>,
+    /// Models that were made before.
+    pub models: &'a mut Models,
 }
 
 impl<'a> Arguments<'a> {
@@ -27,53 +28,56 @@ impl<'a> Arguments<'a> {
     ///
     /// # Errors
     /// What stands there instead of an object; a key that is given twice.
-    pub fn parse(text: Option<&'a str>) -> Result<Arguments<'a>, Refusal> {
+    pub fn parse(text: Option<&'a str>, models: &'a mut Models) -> Result<Arguments<'a>, Refused> {
         let Members(members) = Members::parse("args", text.unwrap_or("{}"), Code::BadArgument)?;
-        let asked = Vec::new();
-        Ok(Arguments { members, asked })
+        Ok(Arguments {
+            members,
+            asked: Vec::new(),
+            models,
+        })
     }
 
     /// Whether the op knows all the arguments.
     ///
     /// Implements: ORA-005.
-    pub(super) fn check_known(&self, op: &Op) -> Result<(), Refusal> {
-        self.check(
-            |name| op.arguments.split(' ').any(|known| known == name),
-            || {
-                let known = op.arguments.replace(' ', ", ");
-                let none = if known.is_empty() { "no arguments" } else { "" };
-                format!("{} takes {none}{known}", op.name)
-            },
-        )
+    pub fn check_known(&self, op: &Op) -> Result<(), Refused> {
+        let knows = |name: &str| op.arguments.split(' ').any(|known| known == name);
+        self.check(knows, || match op.arguments {
+            "" => format!("{} takes no arguments", op.name),
+            known => format!("{} takes {}", op.name, known.replace(' ', ", ")),
+        })
     }
 
     /// Whether the op had a use for all the arguments.
-    pub(super) fn check_used(&self, op: &Op) -> Result<(), Refusal> {
-        self.check(
-            |name| self.asked.contains(&name),
-            || format!("here {} takes {}", op.name, self.asked.join(", ")),
-        )
+    pub fn check_used(&self, op: &Op) -> Result<(), Refused> {
+        let takes = || format!("here {} takes {}", op.name, self.asked.join(", "));
+        self.check(|name| self.asked.contains(&name), takes)
     }
 
     fn check(
         &self,
         right: impl Fn(&str) -> bool,
         takes: impl FnOnce() -> String,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), Refused> {
         match self.members.iter().find(|(name, _)| !right(name)) {
-            Some((name, _)) => Err(Refusal::new(
-                Code::BadArgument,
-                format!("unknown argument {name:?}: {}", takes()),
-            )),
+            Some((name, _)) => Err(Refused::argument(format_args!(
+                "unknown argument {name:?}: {}",
+                takes()
+            ))),
             None => Ok(()),
         }
     }
 
-    fn text_of(&mut self, name: &'static str) -> Result<&'a str, Refusal> {
+    /// The JSON text of an argument, which is of a kind; if not, `what` is said to be expected.
+    fn text_of(&mut self, name: &'static str, of: &str, what: &str) -> Result<&'a str, Refused> {
         self.asked.push(name);
         match self.members.iter().find(|(key, _)| key == name) {
-            Some((_, text)) => Ok(text),
-            None => Err(Refusal::argument(name, "is missing")),
+            Some((_, text)) if kind(text) == of => Ok(text),
+            Some((_, text)) => Err(Refused::argument(format_args!(
+                "{name} is {}, expected {what}",
+                kind(text)
+            ))),
+            None => Err(Refused::argument(format_args!("{name} is missing"))),
         }
     }
 
@@ -83,237 +87,131 @@ impl<'a> Arguments<'a> {
     /// As all the functions below: the argument is missing, or is something else.
     ///
     /// Implements: ORA-009.
-    pub fn number(&mut self, name: &'static str) -> Result<f64, Refusal> {
-        let text = self.text_of(name)?;
-        if kind(text) != "a number" {
-            return Err(expected(name, "a number", text));
-        }
+    pub fn number(&mut self, name: &'static str) -> Result<f64, Refused> {
+        let text = self.text_of(name, "a number", "a number")?;
         serde_json::from_str(text).map_err(|_| {
-            Refusal::argument(name, "is beyond the largest f64, expected a finite number")
+            let wrong = "is beyond the largest f64, expected a finite number";
+            Refused::argument(format_args!("{name} {wrong}"))
         })
     }
 
     /// A whole number from `least` to `most`, which is at most 2⁵³.
-    pub fn whole(&mut self, name: &'static str, least: i64, most: i64) -> Result<i64, Refusal> {
+    pub fn whole(&mut self, name: &'static str, least: i64, most: i64) -> Result<i64, Refused> {
         let value = self.number(name)?;
         if value.trunc() != value {
-            return Err(Refusal::argument(
-                name,
-                format_args!("is {value}, expected a whole number"),
-            ));
+            let wrong = format_args!("{name} is {value}, expected a whole number");
+            return Err(Refused::argument(wrong));
         }
         if !(least as f64..=most as f64).contains(&value) {
-            return Err(Refusal::range(
-                name,
-                format_args!("is {value}, expected {least} to {most}"),
-            ));
+            let wrong = format_args!("{name} is {value}, expected {least} to {most}");
+            return Err(Refused::range(wrong));
         }
         Ok(value as i64) // whole, and between two of that type
     }
 
     /// A text.
-    pub fn text(&mut self, name: &'static str) -> Result<String, Refusal> {
-        let text = self.text_of(name)?;
-        serde_json::from_str(text).map_err(|_| expected(name, "a text", text))
-    }
-
-    /// A list of finite numbers, which may be empty.
-    ///
-    /// Implements: ORA-009, ORA-011.
-    pub fn numbers(&mut self, name: &'static str) -> Result<Vec<f64>, Refusal> {
-        let text = self.text_of(name)?;
-        list(name, text, "a list of numbers", |reader| {
-            List {
-                entry: Number,
-                room: &Room::new(),
-            }
-            .deserialize(reader)
-        })
-    }
-
-    /// Rows of finite numbers, which may be empty and of any lengths.
-    pub fn rows(&mut self, name: &'static str) -> Result<Vec<Vec<f64>>, Refusal> {
-        let text = self.text_of(name)?;
-        list(name, text, "a list of lists of numbers", |reader| {
-            let room = &Room::new();
-            let entry = List {
-                entry: Number,
-                room,
-            };
-            List { entry, room }.deserialize(reader)
-        })
-    }
-
-    /// Rows of texts, which may be empty and of any lengths.
-    pub fn rows_of_texts(&mut self, name: &'static str) -> Result<Vec<Vec<String>>, Refusal> {
-        let text = self.text_of(name)?;
-        list(name, text, "a list of lists of texts", |reader| {
-            let room = &Room::new();
-            let entry = List { entry: Text, room };
-            List { entry, room }.deserialize(reader)
-        })
+    pub fn text(&mut self, name: &'static str) -> Result<String, Refused> {
+        let text = self.text_of(name, "a text", "a text")?;
+        let wrong = || format!("{name} is a text, expected a text");
+        serde_json::from_str(text).map_err(|_| Refused::argument(wrong()))
     }
 
     /// The f32 whose bits are given, NaN and infinities included.
     ///
     /// Implements: ORA-023.
-    pub fn bits(&mut self, name: &'static str) -> Result<f32, Refusal> {
+    pub fn bits(&mut self, name: &'static str) -> Result<f32, Refused> {
         let text = self.text(name)?;
-        parse_bits(&text).ok_or_else(|| Refusal::argument(name, not_bits(&text)))
-    }
-}
-
-/// The f32 whose bits are `0x` and eight hexadecimal digits.
-pub fn parse_bits(text: &str) -> Option<f32> {
-    let digits = text.strip_prefix("0x")?;
-    let plain = digits.len() == 8 && digits.bytes().all(|byte| byte.is_ascii_hexdigit());
-    let bits = u32::from_str_radix(digits, 16).ok()?;
-    plain.then_some(f32::from_bits(bits))
-}
-
-/// What is wrong with a text that is no bits.
-pub fn not_bits(text: &str) -> String {
-    format!("is {text:?}, expected the bits of an f32, such as \"0x3f800000\"")
-}
-
-fn expected(name: &str, what: &str, text: &str) -> Refusal {
-    Refusal::argument(name, format_args!("is {}, expected {what}", kind(text)))
-}
-
-/// Reads a list with a reader of JSON; the message of an error begins with the place in the list.
-fn list<T>(
-    name: &str,
-    text: &str,
-    what: &str,
-    read: impl FnOnce(
-        &mut serde_json::Deserializer<serde_json::de::StrRead<'_>>,
-    ) -> serde_json::Result<T>,
-) -> Result<T, Refusal> {
-    if kind(text) != "a list" {
-        return Err(expected(name, what, text));
-    }
-    read(&mut serde_json::Deserializer::from_str(text)).map_err(|error| {
-        let message = error.to_string();
-        // Line and column within an argument help nobody.
-        let message = message.split(" at line ").next().unwrap_or_default();
-        let code = if message.contains(TOO_MANY) {
-            Code::OutOfRange
-        } else {
-            Code::BadArgument
-        };
-        let gap = if message.starts_with('[') { "" } else { " " };
-        Refusal::new(code, format!("{name}{gap}{message}"))
-    })
-}
-
-const TOO_MANY: &str = "has more entries than";
-
-/// How many entries there may still be.
-struct Room(Cell<usize>);
-
-impl Room {
-    fn new() -> Room {
-        Room(Cell::new(MOST_ENTRIES))
-    }
-}
-
-/// Reads a list whose entries `entry` reads, with the place of the first wrong one.
-#[derive(Clone, Copy)]
-struct List<'a, E> {
-    entry: E,
-    room: &'a Room,
-}
-
-impl<'de, E: DeserializeSeed<'de> + Copy> DeserializeSeed<'de> for List<'_, E> {
-    type Value = Vec<E::Value>;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de, E: DeserializeSeed<'de> + Copy> Visitor<'de> for List<'_, E> {
-    type Value = Vec<E::Value>;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str("a list")
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<Self::Value, A::Error> {
-        let mut list = Vec::new();
-        loop {
-            match entries.next_element_seed(self.entry) {
-                Ok(Some(entry)) => list.push(entry),
-                Ok(None) => return Ok(list),
-                Err(error) => {
-                    let message = error.to_string();
-                    let gap = if message.starts_with('[') { "" } else { ": " };
-                    return Err(A::Error::custom(format_args!(
-                        "[{}]{gap}{message}",
-                        list.len()
-                    )));
-                }
-            }
-            match self.room.0.get().checked_sub(1) {
-                Some(left) => self.room.0.set(left),
-                None => return Err(A::Error::custom(format_args!("{TOO_MANY} {MOST_ENTRIES}"))),
-            }
-        }
-    }
-}
-
-/// Reads a finite number.
-#[derive(Clone, Copy)]
-struct Number;
-
-impl<'de> DeserializeSeed<'de> for Number {
-    type Value = f64;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<f64, D::Error> {
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl Visitor<'_> for Number {
-    type Value = f64;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str("a finite number")
-    }
-
-    fn visit_f64<E>(self, value: f64) -> Result<f64, E> {
+        let Bits(value) = text
+            .try_into()
+            .map_err(|wrong| Refused::argument(format_args!("{name} {wrong}")))?;
         Ok(value)
     }
 
-    fn visit_u64<E>(self, value: u64) -> Result<f64, E> {
-        Ok(value as f64) // the nearest
+    /// Finite numbers.
+    pub fn numbers(&mut self, name: &'static str) -> Result<Vec<f64>, Refused> {
+        self.list(name, "a list of numbers")
     }
 
-    fn visit_i64<E>(self, value: i64) -> Result<f64, E> {
-        Ok(value as f64) // the nearest
+    /// Rows of finite numbers, of any lengths.
+    pub fn rows(&mut self, name: &'static str) -> Result<Vec<Vec<f64>>, Refused> {
+        self.list(name, "a list of lists of numbers")
+    }
+
+    /// A list, which may be empty; `what` it should be.
+    ///
+    /// Implements: ORA-009, ORA-011.
+    pub fn list<T: DeserializeOwned>(
+        &mut self,
+        name: &'static str,
+        what: &str,
+    ) -> Result<Vec<T>, Refused> {
+        let text = self.text_of(name, "a list", what)?;
+        // Each entry but the first of a list has a comma before it.
+        let entries = text.bytes().filter(|byte| b",[".contains(byte)).count();
+        if entries > MOST_ENTRIES && entries - text.matches("[]").count() > MOST_ENTRIES {
+            let wrong = format_args!("{name} has more entries than {MOST_ENTRIES}");
+            return Err(Refused::range(wrong));
+        }
+        serde_json::from_str(text).or_else(|_| {
+            // Once more, for the place of the wrong entry.
+            let mut reader = serde_json::Deserializer::from_str(text);
+            serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+                let wrong = wrong_entry(&error.inner().to_string());
+                Refused::argument(format_args!("{name}{}{wrong}", error.path()))
+            })
+        })
     }
 }
 
-/// Reads a text.
-#[derive(Clone, Copy)]
-struct Text;
-
-impl<'de> DeserializeSeed<'de> for Text {
-    type Value = String;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<String, D::Error> {
-        deserializer.deserialize_any(self)
+/// What a reader of JSON says of an entry, in the words of this protocol.
+fn wrong_entry(message: &str) -> String {
+    // Line and column within an argument help nobody.
+    let message = message.split(" at line ").next().unwrap_or_default();
+    match message.rsplit_once(", expected ") {
+        Some((found, "f64")) => format!(": {found}, expected a finite number"),
+        Some((found, "a sequence")) => format!(": {found}, expected a list"),
+        Some((found, "a string")) => format!(": {found}, expected a text"),
+        // A text of bits says what is wrong with it by itself.
+        _ if message.starts_with("is ") => format!(" {message}"),
+        _ => format!(": {message}"),
     }
 }
 
-impl Visitor<'_> for Text {
-    type Value = String;
+/// The f32 whose bits are written as `0x` and eight hexadecimal digits.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(try_from = "String")]
+pub struct Bits(pub f32);
 
-    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str("a text")
+impl TryFrom<String> for Bits {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Bits, String> {
+        let digits = text.strip_prefix("0x").filter(|digits| digits.len() == 8);
+        let plain = digits.filter(|text| text.bytes().all(|byte| byte.is_ascii_hexdigit()));
+        let bits = plain.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+        let expected = "expected the bits of an f32, such as \"0x3f800000\"";
+        let bits = bits.ok_or_else(|| format!("is {text:?}, {expected}"))?;
+        Ok(Bits(f32::from_bits(bits)))
     }
+}
 
-    fn visit_str<E>(self, value: &str) -> Result<String, E> {
-        Ok(value.into())
+/// Refuses rows of another number or length than these; `words` say what is expected of the two.
+pub fn check_rows<T>(
+    name: &str,
+    rows: &[Vec<T>],
+    [height, width]: [usize; 2],
+    words: [String; 2],
+) -> Result<(), Refused> {
+    if rows.len() != height {
+        let wrong = format!("{name} has {} rows, expected {}", rows.len(), words[0]);
+        return Err(Refused::argument(wrong));
+    }
+    match rows.iter().position(|row| row.len() != width) {
+        Some(row) => Err(Refused::argument(format_args!(
+            "{name}[{row}] has {} entries, expected {}",
+            rows[row].len(),
+            words[1]
+        ))),
+        None => Ok(()),
     }
 }

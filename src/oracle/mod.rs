@@ -6,25 +6,22 @@
 //! | `serve.rs` | the loop: lines in, lines out |
 //! | `request.rs` | from a line to an op with arguments |
 //! | `arguments.rs` | arguments by name, each with a message if it is wrong |
-//! | `answer.rs` | what an op gives, and how it is written |
-//! | `refusal.rs` | what it gives instead |
+//! | `answer.rs` | what an op gives, or why it gives none |
 //! | `ops/` | the ops, a file a topic |
 
 mod answer;
 mod arguments;
 mod ops;
-pub mod refusal;
 mod request;
 mod serve;
 #[cfg(test)]
 mod tests;
 
-use answer::Answer;
+pub use answer::Code;
+use answer::{Answer, Refused};
 use arguments::Arguments;
-use refusal::{Code, Refusal};
-pub use serve::{LONGEST_LINE, serve};
-
 use request::Request;
+pub use serve::{LONGEST_LINE, serve};
 
 /// What answers: the ops, and the models that were solved before.
 ///
@@ -50,30 +47,20 @@ pub struct Oracle {
 impl Oracle {
     /// Answers one line, without its end, and appends the answer's line to `out`.
     ///
-    /// ```
-    /// let mut answer = Vec::new();
-    /// palpate::oracle::Oracle::default().answer(b"no JSON", &mut answer);
-    /// assert!(answer.starts_with(br#"{"id":null,"error":{"code":"bad_json""#));
-    /// assert_eq!(answer.last(), Some(&b'\n'));
-    /// ```
-    ///
     /// Implements: ORA-001, ORA-004, ORA-006, ORA-012, ACC-030.
     pub fn answer(&mut self, line: &[u8], out: &mut Vec<u8>) {
         match Request::parse(line) {
-            Ok(request) => match self.perform(&request) {
-                Ok(answer) => answer.write(request.id, out),
-                Err(refusal) => refusal.write(request.id, out),
-            },
-            Err((id, refusal)) => refusal.write(id.unwrap_or("null"), out),
+            Ok(request) => answer::write(request.id, &self.perform(&request), out),
+            Err((id, refused)) => answer::write(id.unwrap_or("null"), &Err(refused), out),
         }
     }
 
-    fn perform(&mut self, request: &Request) -> Result<Answer, Refusal> {
+    fn perform(&mut self, request: &Request) -> Result<Answer, Refused> {
         let op = ops::find(&request.op)?;
-        let mut arguments = Arguments::parse(request.args)?;
+        let mut arguments = Arguments::parse(request.args, &mut self.models)?;
         // First, since an argument with a wrong name also makes another one missing.
         arguments.check_known(op)?;
-        let answer = (op.function)(&mut self.models, &mut arguments)?;
+        let answer = (op.function)(&mut arguments)?;
         arguments.check_used(op)?;
         answer.finite()
     }

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 
-use super::{Code, Refusal};
+use super::answer::{Code, Refused};
 
 /// A line that asks something.
 #[derive(Debug)]
@@ -57,8 +57,8 @@ impl<'a> Members<'a> {
     ///
     /// # Errors
     /// A refusal that names a key that is given twice, or what stands there instead of an object.
-    pub fn parse(what: &str, text: &'a str, code: Code) -> Result<Members<'a>, Refusal> {
-        let wrong = |wrong: String| Refusal::new(code, format!("{what}: {wrong}"));
+    pub fn parse(what: &str, text: &'a str, code: Code) -> Result<Members<'a>, Refused> {
+        let wrong = |wrong: String| Refused::new(code, format!("{what}: {wrong}"));
         if !text.starts_with('{') {
             return Err(wrong(format!("expected an object, found {}", kind(text))));
         }
@@ -92,23 +92,21 @@ impl<'a> Request<'a> {
     /// The id, if there is one, and what is wrong.
     ///
     /// Implements: ORA-004, ORA-005, ORA-008.
-    pub fn parse(line: &'a [u8]) -> Result<Request<'a>, (Option<&'a str>, Refusal)> {
-        let refuse = |code, message: String| (None, Refusal::new(code, message));
+    pub fn parse(line: &'a [u8]) -> Result<Request<'a>, (Option<&'a str>, Refused)> {
+        let bad_json = |message: fmt::Arguments| (None, Refused::new(Code::BadJson, message));
         let text = str::from_utf8(line)
-            .map_err(|error| refuse(Code::BadJson, format!("the line is not UTF-8: {error}")))?;
+            .map_err(|error| bad_json(format_args!("the line is not UTF-8: {error}")))?;
         // The whole line first: what comes after its first mistake has no meaning.
         let value: &RawValue = serde_json::from_str(text)
-            .map_err(|error| refuse(Code::BadJson, format!("the line is no JSON: {error}")))?;
+            .map_err(|error| bad_json(format_args!("the line is no JSON: {error}")))?;
         let Members(members) = Members::parse("request", value.get(), Code::BadRequest)
             .map_err(|error| (None, error))?;
         let find = |key| {
-            members
-                .iter()
-                .find(|(name, _)| name == key)
-                .map(|(_, text)| *text)
+            let mut members = members.iter();
+            members.find_map(|(name, text)| (name == key).then_some(*text))
         };
         let id = find("id").filter(|text| matches!(kind(text), "a text" | "a number"));
-        let bad = |message: String| (id, Refusal::new(Code::BadRequest, message));
+        let bad = |message: String| (id, Refused::new(Code::BadRequest, message));
         let Some(known_id) = id else {
             return Err(bad("expected an \"id\" that is a text or a number".into()));
         };

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use crate::detect::Channels;
-use crate::hid::{Counters, End, HapticDevice, Session, SessionError};
+use crate::hid::{Counters, End, HapticDevice, Session};
+use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
 
 /// Where the handle was, and what was played, while the force followed the table.
@@ -39,7 +40,7 @@ pub struct Felt {
 pub enum PresentationError {
     /// The device was refused.
     #[error("{0}")]
-    Session(#[from] SessionError),
+    Session(#[from] Refusal),
     /// It ended early.
     #[error("{0}")]
     Ended(End),
@@ -61,7 +62,7 @@ pub enum PresentationError {
 /// let map = ForceTable::new(depths, laterals, matrix(1.0), matrix(0.0))?;
 /// let loaded = LoadedTable::new(&map)?;
 /// let hand = Trajectory::probing(0.003, 0.008, Duration::from_secs(1));
-/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Duration::ZERO, vec![]);
+/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, vec![]);
 /// let limits = Limits::new(4.0, 0.05, 0.5, 20)?;
 /// let (half, second) = (Duration::from_millis(500), Duration::from_secs(1));
 /// let felt = present(device, loaded.table()?, limits, half, second)?;

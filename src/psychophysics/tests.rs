@@ -82,8 +82,7 @@ mod observer {
     /// One sample of half a second, felt through the shipped loop.
     fn felt(table: &LoadedTable) -> Felt {
         let trajectory = Trajectory::probing(3e-3, 8e-3, Duration::from_millis(200));
-        let device =
-            SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
+        let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, vec![]);
         let limits = Limits::new(4.0, 0.05, 0.5, 20).unwrap();
         let (half, second) = (Duration::from_millis(500), Duration::from_secs(1));
         present(device, table.table().unwrap(), limits, half, second).unwrap()

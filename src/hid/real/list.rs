@@ -2,23 +2,14 @@
 
 use std::fmt;
 use std::fs::OpenOptions;
-use std::io::ErrorKind;
 use std::path::Path;
 
-use hidapi::{DeviceInfo, HidApi, HidError};
+use hidapi::{DeviceInfo, HidApi};
 
 use crate::hid::DESCRIPTOR;
+use crate::refusal::Refusal;
 
 /// What a device is called, and where it is.
-///
-/// ```
-/// use palpate::hid::real::Identity;
-///
-/// let device = Identity {
-///     vendor: 0x1209, product: 1, serial: "7".into(), name: "probe".into(), node: "/dev/hidraw3".into(),
-/// };
-/// assert_eq!(device.to_string(), "probe (1209:0001, serial 7) at /dev/hidraw3");
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
     /// Vendor number.
@@ -44,17 +35,6 @@ impl fmt::Display for Identity {
 }
 
 /// What a device's report descriptor says that it is.
-///
-/// ```
-/// use palpate::hid::{DESCRIPTOR, real::Profile};
-///
-/// assert_eq!(Profile::of(&DESCRIPTOR), Profile::Vendor);
-/// let joystick_with_forces = [0x05, 0x0F, 0x09, 0x92];
-/// assert_eq!(Profile::of(&joystick_with_forces), Profile::Pid);
-/// let mut newer = DESCRIPTOR;
-/// newer[3] = 0x0A;
-/// assert_eq!(Profile::of(&newer), Profile::Other { length: 136, differs_at: 3 });
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Profile {
     /// The vendor profile.
@@ -133,39 +113,7 @@ fn uses_page(descriptor: &[u8], page: u32) -> bool {
     false
 }
 
-/// Whether a device can be opened.
-///
-/// ```
-/// use palpate::hid::real::{Access, Identity, Listed, Profile};
-///
-/// let identity = Identity {
-///     vendor: 0x1209, product: 1, serial: "7".into(), name: "probe".into(), node: "/no/such/node".into(),
-/// };
-/// let gone = Listed { identity, profile: Profile::Vendor };
-/// assert!(matches!(gone.access(), Access::Failed(_)));
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Access {
-    /// For reading and writing.
-    Granted,
-    /// Its file has no permission for this user: a udev rule is missing.
-    Denied,
-    /// Not, for another reason.
-    Failed(String),
-}
-
 /// A device and what it is.
-///
-/// ```
-/// use palpate::hid::real::{Access, Identity, Listed, Profile};
-/// # let identity = Identity {
-/// #     vendor: 0x1209, product: 1, serial: "7".into(), name: "probe".into(), node: "/no/such/node".into(),
-/// # };
-///
-/// let pulled_out = Listed { identity, profile: Profile::Vendor };
-/// assert_eq!(pulled_out.profile.to_string(), "vendor profile");
-/// assert!(!matches!(pulled_out.access(), Access::Granted | Access::Denied));
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listed {
     /// Which device.
@@ -177,32 +125,14 @@ pub struct Listed {
 impl Listed {
     /// Whether the device can be opened, found out by opening it for a moment.
     ///
+    /// # Errors
+    /// What the system says; `PermissionDenied` where a udev rule is missing.
+    ///
     /// Implements: HID-032.
-    pub fn access(&self) -> Access {
+    pub fn access(&self) -> std::io::Result<()> {
         let node = &self.identity.node;
-        match OpenOptions::new().read(true).write(true).open(node) {
-            Ok(_) => Access::Granted,
-            Err(error) if error.kind() == ErrorKind::PermissionDenied => Access::Denied,
-            Err(error) => Access::Failed(error.to_string()),
-        }
-    }
-}
-
-/// Why the devices can not be listed.
-///
-/// ```
-/// use palpate::hid::real::{ListError, OpenError};
-///
-/// let error = ListError::from(hidapi::HidError::InitializationError);
-/// assert!(OpenError::from(error).to_string().starts_with("HID devices: "));
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("HID devices: {0}")]
-pub struct ListError(String);
-
-impl From<HidError> for ListError {
-    fn from(error: HidError) -> ListError {
-        ListError(super::message(&error))
+        let opened = OpenOptions::new().read(true).write(true).open(node);
+        opened.map(|_| ())
     }
 }
 
@@ -210,21 +140,18 @@ impl From<HidError> for ListError {
 ///
 /// Takes milliseconds and allocates: not for the thread that runs the loop.
 ///
-/// ```
-/// if let Ok(devices) = palpate::hid::real::list() {
-///     for device in &devices {
-///         println!("{}: {}", device.identity, device.profile);
-///     }
-///     assert!(devices.windows(2).all(|two| two[0].identity.node < two[1].identity.node));
-/// }
-/// ```
-///
 /// # Errors
-/// [`ListError`].
+/// What the system says.
 ///
 /// Implements: HID-031, HID-032.
-pub fn list() -> Result<Vec<Listed>, ListError> {
-    Ok(look(&HidApi::new()?))
+pub fn list() -> Result<Vec<Listed>, Refusal> {
+    Ok(look(&api()?))
+}
+
+/// The system's HID devices.
+pub(super) fn api() -> Result<HidApi, Refusal> {
+    let refused = |error| Refusal::state(format!("HID devices: {}", super::message(&error)), "");
+    HidApi::new().map_err(refused)
 }
 
 /// The devices that `api` has found. A device with many usages is found once for each.
@@ -280,4 +207,10 @@ pub fn udev_rule(identity: &Identity) -> String {
         r#"KERNEL=="hidraw*", KERNELS=="*:{:04X}:{:04X}.*", TAG+="uaccess""#,
         identity.vendor, identity.product
     )
+}
+
+/// What is said of a device that this user may not open.
+pub fn no_permission(identity: &Identity) -> String {
+    let rule = udev_rule(identity);
+    format!("no permission; the udev rule {rule} would give it")
 }

@@ -13,17 +13,19 @@ mod tests;
 
 use std::ffi::CString;
 use std::fmt::Display;
+use std::io::ErrorKind;
 use std::time::{Duration, Instant};
 
-use hidapi::{HidApi, HidError};
+use hidapi::HidError;
 
-pub use choose::{OpenError, Wanted};
-pub use list::{Access, Identity, ListError, Listed, Profile, list, udev_rule};
+pub use choose::Wanted;
+pub use list::{Identity, Listed, Profile, list, no_permission, udev_rule};
 
 use super::{
     Capabilities, Control, DeviceError, DeviceState, ForceReport, HapticDevice, PositionReport,
     Received,
 };
+use crate::refusal::Refusal;
 
 /// More than any report of the profile, so that one which is too long is seen as such.
 const LONGEST: usize = 64;
@@ -75,40 +77,28 @@ pub struct RealDevice {
 impl RealDevice {
     /// Opens the only device that is wanted and fits the vendor profile.
     ///
-    /// ```
-    /// use palpate::hid::real::{RealDevice, Wanted};
-    ///
-    /// let wanted = Wanted { vendor: Some(0xFFFF), product: Some(0xFFFF), serial: Some("lost".into()) };
-    /// match RealDevice::open(&wanted) {
-    ///     Ok(device) => assert_eq!(device.identity().serial, "lost"),
-    ///     Err(error) => assert!(!error.to_string().is_empty()), // there is none, and it says so
-    /// }
-    /// ```
-    ///
     /// # Errors
-    /// [`OpenError`].
+    /// The devices that there are instead, or why it can not be opened.
     ///
     /// Implements: HID-030.
-    pub fn open(wanted: &Wanted) -> Result<RealDevice, OpenError> {
-        let api = HidApi::new().map_err(ListError::from)?;
+    pub fn open(wanted: &Wanted) -> Result<RealDevice, Refusal> {
+        let api = list::api()?;
         let listed = list::look(&api);
         let chosen = choose::choose(&listed, wanted)?;
-        let device = chosen.identity.clone();
-        let path = CString::new(device.node.as_str()).unwrap_or_default();
-        let opened = api.open_path(&path);
-        let opened = opened.map_err(|error| match chosen.access() {
-            Access::Denied => OpenError::Denied {
-                rule: udev_rule(&device),
-                device: device.clone(),
-            },
-            _ => OpenError::Refused {
-                error: message(&error),
-                device: device.clone(),
-            },
+        let identity = chosen.identity.clone();
+        let path = CString::new(identity.node.as_str()).unwrap_or_default();
+        let device = api.open_path(&path).map_err(|error| {
+            let wrong = match chosen.access() {
+                Err(error) if error.kind() == ErrorKind::PermissionDenied => {
+                    no_permission(&identity)
+                }
+                _ => message(&error),
+            };
+            Refusal::state(format_args!("{identity}: {wrong}"), "")
         })?;
         Ok(RealDevice {
-            device: opened,
-            identity: device,
+            device,
+            identity,
             opened: Instant::now(),
             period: Duration::from_millis(1),
         })
@@ -117,34 +107,11 @@ impl RealDevice {
     /// [`RealDevice::open`], again and again for as long as `patience`: a device that was just plugged
     /// in is listed before it may be opened, and one that was replugged may have another node.
     ///
-    /// ```no_run
-    /// use palpate::hid::real::{RealDevice, Wanted};
-    /// use std::time::Duration;
-    ///
-    /// let device = RealDevice::open(&Wanted::default())?;
-    /// let same = Wanted::again(device.identity());
-    /// drop(device); // and somebody pulls the cable and puts it back
-    /// let device = RealDevice::open_within(&same, Duration::from_secs(5))?;
-    /// # Ok::<(), palpate::hid::real::OpenError>(())
-    /// ```
-    ///
-    /// Without the device, it gives up after that time:
-    ///
-    /// ```
-    /// use palpate::hid::real::{RealDevice, Wanted};
-    /// use std::time::{Duration, Instant};
-    ///
-    /// let lost = Wanted { vendor: Some(0xFFFF), product: Some(0xFFFF), serial: Some("lost".into()) };
-    /// let (began, patience) = (Instant::now(), Duration::from_millis(50));
-    /// let opened = RealDevice::open_within(&lost, patience);
-    /// assert!(opened.is_ok() || began.elapsed() >= patience);
-    /// ```
-    ///
     /// # Errors
-    /// The last [`OpenError`].
+    /// The last one of [`RealDevice::open`].
     ///
     /// Implements: HID-036, HID-086.
-    pub fn open_within(wanted: &Wanted, patience: Duration) -> Result<RealDevice, OpenError> {
+    pub fn open_within(wanted: &Wanted, patience: Duration) -> Result<RealDevice, Refusal> {
         let began = Instant::now();
         loop {
             match RealDevice::open(wanted) {

@@ -1,45 +1,24 @@
-//! What goes wrong, and when.
+//! What goes wrong.
 
 use std::time::Duration;
 
 use crate::hid::InvalidReport;
 
-/// A defect and its time.
-///
-/// ```
-#[doc = include_str!("probing.example")]
-/// use palpate::hid::simulated::{Defect, Fault};
-/// use palpate::hid::{DeviceError, End, Session};
-///
-/// let unplug = Fault { at: Duration::from_millis(600), defect: Defect::Unplug };
-/// # let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_millis(500));
-/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![unplug]);
-/// let end = Session::begin(device, table, limits)?.run(|_, _| true);
-/// assert_eq!(end, End::Device(DeviceError::Gone));
-/// # Ok::<(), palpate::hid::SessionError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Fault {
-    /// When it begins, on the device's clock.
-    pub at: Duration,
-    /// What happens.
-    pub defect: Defect,
-}
-
 /// What can go wrong between a device and the loop.
 ///
 /// ```
 #[doc = include_str!("probing.example")]
-/// use palpate::hid::simulated::{Defect, Fault};
+/// use palpate::hid::simulated::Defect;
 /// use palpate::hid::{End, Session};
 /// use palpate::servo;
 ///
-/// let silence = Fault { at: Duration::from_millis(600), defect: Defect::Silence(Duration::from_millis(100)) };
+/// // From 0.6 s on, no report comes for 0.1 s.
+/// let silence = (Duration::from_millis(600), Defect::Silence(Duration::from_millis(100)));
 /// # let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_millis(500));
-/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![silence]);
+/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, vec![silence]);
 /// let end = Session::begin(device, table, limits)?.run(|_, _| true);
 /// assert_eq!(end, End::Fault(servo::Fault::Watchdog));
-/// # Ok::<(), palpate::hid::SessionError>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Defect {

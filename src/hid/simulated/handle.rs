@@ -5,15 +5,6 @@
 const STEPS: u32 = 10;
 
 /// What moves on an axis, and what holds it.
-///
-/// ```
-/// use palpate::hid::simulated::Mechanics;
-///
-/// // The paper's display with the friction halved.
-/// let better = Mechanics { friction_n: 0.07, ..Mechanics::PAPER };
-/// assert_eq!(better.hand_n_per_m, 500.0);
-/// assert_eq!(Mechanics::IDEAL.friction_n, 0.0);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mechanics {
     /// Mass of handle and hand, kg.
@@ -56,9 +47,11 @@ impl Mechanics {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Handle {
     mechanics: Mechanics,
-    position: f64,
+    /// Where the handle is, m.
+    pub position: f64,
     velocity: f64,
-    encoder: f64,
+    /// Where the encoder sees it, m.
+    pub encoder: f64,
 }
 
 impl Handle {
@@ -70,16 +63,6 @@ impl Handle {
             velocity: 0.0,
             encoder: position,
         }
-    }
-
-    /// Where the handle is, m.
-    pub fn position(&self) -> f64 {
-        self.position
-    }
-
-    /// Where the encoder sees it, m.
-    pub fn encoder(&self) -> f64 {
-        self.encoder
     }
 
     /// Moves for `time` (s) under the motor's `force` (N), with the hand drawn to `target` (m).

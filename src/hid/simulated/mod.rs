@@ -6,7 +6,7 @@
 //! | `mod.rs` | the device: its clock, queue, watchdog and faults |
 //! | `handle.rs` | one axis: mass, damping, friction, backlash, the hand's spring |
 //! | `trajectory.rs` | where the hand wants to be |
-//! | `fault.rs` | what goes wrong, and when |
+//! | `fault.rs` | what goes wrong |
 
 mod fault;
 mod handle;
@@ -17,10 +17,10 @@ mod trajectory;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-pub use fault::{Defect, Fault};
+pub use fault::Defect;
 use handle::Handle;
 pub use handle::Mechanics;
-pub use trajectory::{Trajectory, Waypoint};
+pub use trajectory::Trajectory;
 
 use super::{
     Capabilities, Control, DeviceError, ForceReport, HapticDevice, InvalidReport, PositionReport,
@@ -54,7 +54,7 @@ pub const PAPER: Capabilities = Capabilities {
 /// use std::time::Duration;
 ///
 /// let trajectory = Trajectory::probing(4e-3, 10e-3, Duration::from_secs(1));
-/// let mut device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
+/// let mut device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, vec![]);
 /// device.control(Control::Enable)?;
 /// device.write(&ForceReport { lateral: -200, normal: 3000, sequence: 1, flags: ForceReport::PLAY })?;
 /// assert_eq!(device.motor_force(), [-0.1, 1.5]);
@@ -71,15 +71,14 @@ pub struct SimulatedDevice {
     capabilities: Capabilities,
     trajectory: Trajectory,
     /// What goes wrong, by time.
-    faults: VecDeque<Fault>,
-    lateral: Handle,
-    normal: Handle,
+    faults: VecDeque<(Duration, Defect)>,
+    /// Lateral, and along the normal.
+    handles: [Handle; 2],
     clock: Duration,
     /// Periods simulated so far.
     periods: u64,
-    latency: Duration,
-    /// What was sent and not read yet, with the time at which it can be.
-    queue: VecDeque<(Duration, Received)>,
+    /// What was sent and not read yet.
+    queue: VecDeque<Received>,
     sequence: u16,
     motor: Motor,
     ongoing: Ongoing,
@@ -112,38 +111,23 @@ struct Ongoing {
 }
 
 impl SimulatedDevice {
-    /// A device of these capabilities, whose reports arrive `latency` after they were made, in a hand
-    /// that follows `trajectory`, with `faults` in the order of their times.
-    ///
-    /// ```
-    /// # use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
-    /// # use palpate::hid::{HapticDevice, Received};
-    /// # use std::time::Duration;
-    /// # let trajectory = Trajectory::probing(4e-3, 10e-3, Duration::from_secs(1));
-    /// let late = Duration::from_millis(5);
-    /// let mut device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, late, vec![]);
-    /// assert_eq!(device.read(Duration::from_millis(2))?, Received::Nothing);
-    /// assert!(matches!(device.read(late)?, Received::Report(_)));
-    /// # Ok::<(), palpate::hid::DeviceError>(())
-    /// ```
+    /// A device of these capabilities, in a hand that follows `trajectory`, with `faults` and the times of
+    /// the device's clock at which they begin.
     pub fn new(
         capabilities: Capabilities,
         mechanics: Mechanics,
         trajectory: Trajectory,
-        latency: Duration,
-        mut faults: Vec<Fault>,
+        mut faults: Vec<(Duration, Defect)>,
     ) -> SimulatedDevice {
-        faults.sort_by_key(|fault| fault.at);
-        let [lateral, normal] = trajectory.at(Duration::ZERO);
+        faults.sort_by_key(|&(at, _)| at);
+        let start = trajectory.at(Duration::ZERO);
         SimulatedDevice {
             capabilities,
             trajectory,
             faults: faults.into(),
-            lateral: Handle::at(mechanics, lateral),
-            normal: Handle::at(mechanics, normal),
+            handles: start.map(|position| Handle::at(mechanics, position)),
             clock: Duration::ZERO,
             periods: 0,
-            latency,
             queue: VecDeque::with_capacity(QUEUE),
             sequence: 0,
             motor: Motor::default(),
@@ -165,7 +149,7 @@ impl SimulatedDevice {
 
     /// Where the handle is, m: lateral, and along the normal, positive out of the gel.
     pub fn position(&self) -> [f64; 2] {
-        [self.lateral.position(), self.normal.position()]
+        self.handles.map(|handle| handle.position)
     }
 
     /// Whether the trajectory has come to its end.
@@ -189,11 +173,11 @@ impl SimulatedDevice {
 
     /// One period of the device: faults, motion, watchdog, report.
     fn simulate_period(&mut self) {
-        while let Some(fault) = self.faults.front().copied()
-            && fault.at <= self.clock
+        while let Some(&(at, defect)) = self.faults.front()
+            && at <= self.clock
         {
             self.faults.pop_front();
-            self.begin(fault.defect);
+            self.begin(defect);
         }
         let watchdog = Duration::from_millis(u64::from(self.capabilities.watchdog_ms));
         if self.motor.enabled && self.clock.saturating_sub(self.motor.written) > watchdog {
@@ -202,8 +186,9 @@ impl SimulatedDevice {
         let period = self.period().as_secs_f64();
         let target = self.trajectory.at(self.clock);
         let force = self.motor_force();
-        self.lateral.advance(period, target[0], force[0]);
-        self.normal.advance(period, target[1], force[1]);
+        for axis in 0..2 {
+            self.handles[axis].advance(period, target[axis], force[axis]);
+        }
         self.send();
     }
 
@@ -220,28 +205,23 @@ impl SimulatedDevice {
             None => Received::Report(self.report()),
         };
         if self.queue.len() < QUEUE {
-            self.queue.push_back((self.clock + self.latency, received));
+            self.queue.push_back(received);
         }
     }
 
     fn report(&mut self) -> PositionReport {
-        let count = |position: f64| {
-            let unit = f64::from(self.capabilities.position_unit_nm) * 1e-9;
-            super::count((position / unit) as f32)
-        };
+        let unit = f64::from(self.capabilities.position_unit_nm) * 1e-9;
+        let counts = |handle: Handle| super::count((handle.encoder / unit) as f32);
+        let [lateral, normal] = self.handles.map(counts);
         let glitch = std::mem::take(&mut self.ongoing.glitch);
         let deadman = self.clock >= self.ongoing.released_until && self.trajectory.held(self.clock);
         let faulty = self.clock < self.ongoing.faulty_until;
         PositionReport {
-            lateral: count(self.lateral.encoder()).wrapping_add(glitch),
-            normal: count(self.normal.encoder()).wrapping_sub(glitch),
-            buttons: if deadman { button::DEADMAN } else { 0 },
-            status: if faulty { status::FAULT } else { 0 }
-                | if self.motor.dropped {
-                    status::WATCHDOG
-                } else {
-                    0
-                },
+            lateral: lateral.wrapping_add(glitch),
+            normal: normal.wrapping_sub(glitch),
+            buttons: button::DEADMAN * u8::from(deadman),
+            status: (status::FAULT * u8::from(faulty))
+                | (status::WATCHDOG * u8::from(self.motor.dropped)),
             sequence: self.sequence,
             force_sequence: self.motor.sequence,
         }
@@ -269,10 +249,9 @@ impl SimulatedDevice {
     }
 
     fn check_plugged(&self) -> Result<(), DeviceError> {
-        if self.ongoing.unplugged {
-            Err(DeviceError::Gone)
-        } else {
-            Ok(())
+        match self.ongoing.unplugged {
+            true => Err(DeviceError::Gone),
+            false => Ok(()),
         }
     }
 }
@@ -290,18 +269,14 @@ impl HapticDevice for SimulatedDevice {
             if std::mem::take(&mut self.ongoing.interrupted) {
                 return Err(DeviceError::Interrupted);
             }
-            match self.queue.front() {
-                Some(&(at, received)) if at <= self.clock => {
-                    self.queue.pop_front();
-                    return Ok(received);
-                }
-                _ if self.clock >= deadline => return Ok(Received::Nothing),
-                next => {
-                    let tick = self.period() * (self.periods as u32 + 1);
-                    let next = next.map_or(tick, |&(at, _)| at.min(tick));
-                    self.pass(next.min(deadline));
-                }
+            if let Some(received) = self.queue.pop_front() {
+                return Ok(received);
             }
+            if self.clock >= deadline {
+                return Ok(Received::Nothing);
+            }
+            let tick = self.period() * (self.periods as u32 + 1);
+            self.pass(tick.min(deadline));
         }
     }
 
@@ -316,12 +291,8 @@ impl HapticDevice for SimulatedDevice {
             }
             self.check_plugged()?;
         }
-        let play = report.flags & ForceReport::PLAY != 0;
-        self.motor.force = if play {
-            [report.lateral, report.normal]
-        } else {
-            [0, 0]
-        };
+        let playing = i16::from(report.flags & ForceReport::PLAY != 0);
+        self.motor.force = [report.lateral, report.normal].map(|force| force * playing);
         self.motor.sequence = report.sequence;
         self.motor.written = self.clock;
         Ok(())

@@ -3,42 +3,20 @@
 use std::cell::Cell;
 
 use super::*;
-use crate::hid::{DeviceState, End, InvalidCapabilities, Session, SessionError};
-use crate::servo::{Axis, Fault as ServoFault, Force, Limits, Mode, Request, Table};
+use crate::hid::tests::limits;
+use crate::hid::{DeviceState, End, Session};
+use crate::servo::{Fault as ServoFault, Limits, Mode, Request, Table};
 
 const MS: Duration = Duration::from_millis(1);
 
-const DEPTHS: [f32; 2] = [0.0, 0.008];
-const LATERALS: [f32; 2] = [-0.02, 0.02];
-
 /// A table with 400 N/m along the depth and 50 N/m along x.
 fn with_table<R>(then: impl FnOnce(Table) -> R) -> R {
-    let force = |lateral, normal| Force { lateral, normal };
-    let forces = [
-        force(0.0, 0.0),
-        force(0.0, 0.0),
-        force(-1.0, 3.2),
-        force(1.0, 3.2),
-    ];
-    let heights = [Axis::reciprocal_width(DEPTHS[0], DEPTHS[1])];
-    let widths = [Axis::reciprocal_width(LATERALS[0], LATERALS[1])];
-    let depths = Axis::new(&DEPTHS, &heights).unwrap();
-    let laterals = Axis::new(&LATERALS, &widths).unwrap();
-    then(Table::new(depths, laterals, &forces).unwrap())
+    crate::hid::tests::with_table(3.2, then)
 }
 
-fn limits() -> Limits {
-    Limits::new(2.0, 0.05, 0.2, 10).unwrap()
-}
-
-fn device(mechanics: Mechanics, faults: Vec<Fault>) -> SimulatedDevice {
-    let sweep = Duration::from_millis(1500);
-    let trajectory = Trajectory::probing(0.004, 0.01, sweep);
-    SimulatedDevice::new(PAPER, mechanics, trajectory, Duration::ZERO, faults)
-}
-
-fn fault(at: Duration, defect: Defect) -> Vec<Fault> {
-    vec![Fault { at, defect }]
+fn device(mechanics: Mechanics, faults: Vec<(Duration, Defect)>) -> SimulatedDevice {
+    let trajectory = Trajectory::probing(0.004, 0.01, 1500 * MS);
+    SimulatedDevice::new(PAPER, mechanics, trajectory, faults)
 }
 
 // Verifies: HID-022.
@@ -63,9 +41,9 @@ fn the_handle_swings_as_a_damped_spring_does() {
         // The spring acts half a step early on 0.01 m at 100/s, and the damping (σ = 56/s) up to a
         // step late: 0.01 · (100/2 + 56) · 1e-4.
         assert!(
-            (handle.position() - expected).abs() < 1.06e-4,
+            (handle.position - expected).abs() < 1.06e-4,
             "{t}: {}",
-            handle.position()
+            handle.position
         );
     }
 }
@@ -77,18 +55,18 @@ fn friction_holds_the_handle_and_backlash_hides_a_small_motion() {
     for _ in 0..100 {
         handle.advance(1e-3, 0.0, 0.139);
     }
-    assert_eq!(handle.position(), 0.0);
+    assert_eq!(handle.position, 0.0);
     // 0.3 N against 0.14 N of friction: 0.16 N on the hand's 500 N/m, less the friction on the way back.
     for _ in 0..2000 {
         handle.advance(1e-3, 0.0, 0.3);
     }
     let (low, high) = ((0.3 - 0.14) / 500.0, (0.3 + 0.14) / 500.0);
     assert!(
-        (low - 1e-9..=high + 1e-9).contains(&handle.position()),
+        (low - 1e-9..=high + 1e-9).contains(&handle.position),
         "{}",
-        handle.position()
+        handle.position
     );
-    assert!((handle.encoder() - (handle.position() - 10e-6)).abs() < 1e-12);
+    assert!((handle.encoder - (handle.position - 10e-6)).abs() < 1e-12);
 }
 
 // Verifies: HID-013, HID-018, HID-020.
@@ -137,14 +115,8 @@ fn each_force_report_is_one_ahead_of_the_last() {
     with_table(|table| {
         // Repeated numbers, silence and a long session change nothing: 70 000 cycles go round the 65 536 numbers.
         let faults = vec![
-            Fault {
-                at: MS * 100,
-                defect: Defect::Repeat(4),
-            },
-            Fault {
-                at: MS * 200,
-                defect: Defect::Silence(MS * 3),
-            },
+            (MS * 100, Defect::Repeat(4)),
+            (MS * 200, Defect::Silence(MS * 3)),
         ];
         let mut session =
             Session::begin(device(Mechanics::IDEAL, faults), table, limits()).unwrap();
@@ -164,7 +136,7 @@ fn each_force_report_is_one_ahead_of_the_last() {
 fn a_session_is_the_same_to_the_bit_every_time() {
     let run = || {
         with_table(|table| {
-            let faults = fault(MS * 900, Defect::Repeat(4));
+            let faults = vec![(MS * 900, Defect::Repeat(4))];
             let mut session =
                 Session::begin(device(Mechanics::PAPER, faults), table, limits()).unwrap();
             let mut cycles = Vec::new();
@@ -182,7 +154,7 @@ fn a_session_is_the_same_to_the_bit_every_time() {
 /// the motors' force then, and the counters.
 fn run_with(defect: Defect) -> (End, Mode, [f64; 2], crate::hid::Counters) {
     with_table(|table| {
-        let device = device(Mechanics::PAPER, fault(MS * 1200, defect));
+        let device = device(Mechanics::PAPER, vec![(MS * 1200, defect)]);
         let mut session = Session::begin(device, table, limits()).unwrap();
         let end = session.run(|cycle, _| {
             if cycle.written < MS * 1200 && cycle.written > MS * 700 {
@@ -207,6 +179,8 @@ fn every_fault_that_ends_a_session_is_named_and_leaves_the_motors_without_force(
         found: 3,
         expected: 11,
     };
+    let [stale, faulty] = ["no fresh report for too long", "the device reports a fault"]
+        .map(|fault| format!("stopped by a fault: {fault}"));
     for (defect, message) in [
         (Defect::Unplug, "stopped: the device is gone"),
         (
@@ -217,31 +191,13 @@ fn every_fault_that_ends_a_session_is_named_and_leaves_the_motors_without_force(
             Defect::Interrupt,
             "stopped: a signal interrupted the device",
         ),
-        (
-            Defect::Silence(second),
-            "stopped by a fault: no fresh report for too long",
-        ),
-        (
-            Defect::DeviceFault(MS * 2),
-            "stopped by a fault: the device reports a fault",
-        ),
-        (
-            Defect::Repeat(30),
-            "stopped by a fault: no fresh report for too long",
-        ),
-        (
-            Defect::SequenceBack(500),
-            "stopped by a fault: no fresh report for too long",
-        ),
-        (
-            Defect::ClockJump(second * 33),
-            "stopped by a fault: no fresh report for too long",
-        ),
+        (Defect::Silence(second), &stale),
+        (Defect::DeviceFault(MS * 2), &faulty),
+        (Defect::Repeat(30), &stale),
+        (Defect::SequenceBack(500), &stale),
+        (Defect::ClockJump(second * 33), &stale),
         // Blocks the loop for longer than the device's watchdog.
-        (
-            Defect::Stall(MS * 200),
-            "stopped by a fault: the device reports a fault",
-        ),
+        (Defect::Stall(MS * 200), &faulty),
     ] {
         let (end, _, force, _) = run_with(defect);
         assert_eq!(end.to_string(), message, "{defect:?}");
@@ -308,62 +264,64 @@ fn the_device_drops_its_force_by_itself_and_keeps_the_oldest_reports() {
 // Verifies: HID-017, HID-028.
 #[test]
 fn a_session_begins_only_with_a_device_that_can_be_trusted() {
-    let refused = |change: fn(&mut Capabilities)| {
+    let begins = |capabilities: Capabilities, force: f32| {
         let mut device = device(Mechanics::IDEAL, vec![]);
-        change(&mut device.capabilities);
-        with_table(|table| Session::begin(device, table, limits()).err().unwrap())
+        device.capabilities = capabilities;
+        let limits = Limits::new(force, 0.05, 0.2, 10).unwrap();
+        with_table(|table| Session::begin(device, table, limits).map(|_| ()))
     };
-    assert!(matches!(
-        refused(|c| c.version = 2),
-        SessionError::Capabilities(_)
-    ));
-    assert_eq!(refused(|c| c.period_us = 0), SessionError::Period);
-    let none = SessionError::Watchdog {
-        watchdog_ms: 0,
-        period_us: 1000,
+    let weak = Capabilities {
+        largest_force_mn: 2000,
+        ..PAPER
     };
-    assert_eq!(refused(|c| c.watchdog_ms = 0), none);
-    let weak = SessionError::Force {
-        limit: 2.0,
-        largest: 1.9,
-    };
-    assert_eq!(refused(|c| c.largest_force_mn = 1900), weak);
     // 2 N and not a step of an f32 more.
-    with_table(|table| {
-        let mut device = device(Mechanics::IDEAL, vec![]);
-        device.capabilities.largest_force_mn = 2000;
-        let begins = |force| {
-            let limits = Limits::new(force, 0.05, 0.2, 10).unwrap();
-            Session::begin(device.clone(), table, limits).is_ok()
-        };
-        assert!(begins(2.0) && !begins(2f32.next_up()));
-    });
-    // A device whose numbers do not reach its force, or cannot tell one step of it from two.
-    let short = InvalidCapabilities::ForceRange {
-        unit_un: 10,
-        largest_mn: 8000,
-    };
-    assert_eq!(
-        refused(|c| c.force_unit_un = 10),
-        SessionError::Capabilities(short)
-    );
-    let coarse = SessionError::Coarse {
-        unit: 0.051,
-        slew: 0.05,
-    };
-    assert_eq!(refused(|c| c.force_unit_un = 51_000), coarse);
-    // 10 ms of watchdog on a device that reports every 10 ms.
-    let impatient = |c: &mut Capabilities| (c.watchdog_ms, c.period_us) = (10, 10_000);
-    let told = SessionError::Watchdog {
-        watchdog_ms: 10,
-        period_us: 10_000,
-    };
-    assert_eq!(refused(impatient), told);
-    let idle = SessionError::Watchdog {
-        watchdog_ms: 101,
-        period_us: 1000,
-    };
-    assert_eq!(refused(|c| c.watchdog_ms = 101), idle);
+    assert_eq!(begins(weak, 2.0), Ok(()));
+    assert!(begins(weak, 2f32.next_up()).is_err());
+    type Change = fn(&mut Capabilities);
+    let changes: [(Change, &str); 8] = [
+        (
+            |c| c.version = 2,
+            "the device speaks version 2 of the profile, expected 1",
+        ),
+        (
+            |c| c.period_us = 0,
+            "the device reports every 0 µs, expected at least 1",
+        ),
+        (
+            |c| c.watchdog_ms = 0,
+            "the device drops its force after 0 ms without a report, expected more than its period of 1000 µs \
+             and at most 100 ms: a blocked write would leave the force on the hand",
+        ),
+        (
+            |c| c.watchdog_ms = 101,
+            "the device drops its force after 101 ms",
+        ),
+        // 10 ms of watchdog on a device that reports every 10 ms.
+        (
+            |c| (c.watchdog_ms, c.period_us) = (10, 10_000),
+            "the device drops its force after 10 ms",
+        ),
+        (
+            |c| c.largest_force_mn = 1900,
+            "a force limit of 2 N, expected at most 1.9 N, the device's largest force",
+        ),
+        // A device whose numbers do not reach its force, or cannot tell one step of it from two.
+        (
+            |c| c.force_unit_un = 10,
+            "the device's force unit is 10 µN, so that no report holds its largest force of 8000 mN, \
+             expected a unit of at least 245 µN",
+        ),
+        (
+            |c| c.force_unit_un = 51_000,
+            "the device's force unit is 0.051 N, expected at most the slew limit of 0.05 N",
+        ),
+    ];
+    for (change, expected) in changes {
+        let mut capabilities = PAPER;
+        change(&mut capabilities);
+        let refused = begins(capabilities, 2.0).unwrap_err().to_string();
+        assert!(refused.starts_with(expected), "{refused}");
+    }
 }
 
 /// What the loop sends to a device.
@@ -560,10 +518,7 @@ fn a_million_cycles_with_faults_stay_within_the_limits() {
         let faults = (0..sessions % 4).map(|number| {
             let words = generator.words([sessions, number, 0, 0]);
             let at = MS * (words[3] >> 32).rem_euclid(4000) as u32;
-            Fault {
-                at,
-                defect: defect(words),
-            }
+            (at, defect(words))
         });
         // In half of all sessions what is sent is refused from some time on: so often, or for ever.
         let [when, often, ..] = generator.words([sessions, 0, 0, 1]);

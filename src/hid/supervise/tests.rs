@@ -1,9 +1,9 @@
 //! The supervisor over devices that fail on the clock of the host.
 
 use super::*;
-use crate::hid::simulated::{Defect, Fault, Mechanics, PAPER, SimulatedDevice, Trajectory};
+use crate::hid::simulated::{Defect, SimulatedDevice};
+use crate::hid::tests::{limits, probing, with_table};
 use crate::hid::{Capabilities, Control, ForceReport, Received};
-use crate::servo::{Axis, Force, Limits, Table};
 
 /// A device whose first write after `trouble`, and one every 100 ms from then on, does what it says.
 struct Troubled<F> {
@@ -34,22 +34,13 @@ impl<F: FnMut()> HapticDevice for Troubled<F> {
     }
 }
 
-/// A table without a force.
-fn with_table<R>(then: impl FnOnce(Table, Limits) -> R) -> R {
-    let (knots, reciprocals) = ([0.0, 0.5], [2.0]);
-    let axis = Axis::new(&knots, &reciprocals).unwrap();
-    let table = Table::new(axis, axis, &[Force::ZERO; 4]).unwrap();
-    then(table, Limits::new(2.0, 0.05, 0.2, 10).unwrap())
-}
-
 /// Plays on the paper's device, with trouble after a second of its time.
 fn played(
     what: impl FnMut() + Send,
     stop: impl Fn() -> bool,
     look: impl FnMut(&Counters, Duration),
 ) -> Option<Played> {
-    let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_secs(1));
-    let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
+    let device = probing(Duration::from_secs(1), vec![]);
     let device = Troubled {
         device,
         trouble: Duration::from_secs(1),
@@ -60,8 +51,8 @@ fn played(
         record: 1500,
         budget: Duration::from_millis(1),
     };
-    with_table(|table, limits| {
-        let session = Session::begin(device, table, limits).unwrap();
+    with_table(0.0, |table| {
+        let session = Session::begin(device, table, limits()).unwrap();
         play(session, &options, &Board::default(), || (), stop, look)
     })
 }
@@ -103,13 +94,7 @@ fn the_longest_time_that_a_loop_is_held_up_is_told() {
 fn a_signal_that_interrupts_a_read_ends_the_session_as_asked_only_if_it_was_asked() {
     let end = |asked: bool| {
         let at = Duration::from_millis(1);
-        let fault = Fault {
-            at,
-            defect: Defect::Interrupt,
-        };
-        let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_secs(1));
-        let (mechanics, latency) = (Mechanics::PAPER, Duration::ZERO);
-        let device = SimulatedDevice::new(PAPER, mechanics, trajectory, latency, vec![fault]);
+        let device = probing(Duration::from_secs(1), vec![(at, Defect::Interrupt)]);
         let options = PlayOptions {
             duration: None,
             record: 0,
@@ -119,8 +104,8 @@ fn a_signal_that_interrupts_a_read_ends_the_session_as_asked_only_if_it_was_aske
         if asked {
             board.stop();
         }
-        with_table(|table, limits| {
-            let session = Session::begin(device, table, limits).unwrap();
+        with_table(0.0, |table| {
+            let session = Session::begin(device, table, limits()).unwrap();
             servo_loop(session, &options, &board).end
         })
     };

@@ -9,14 +9,6 @@ use crate::servo::LoadedTable;
 /// A table on the poses of the paper's force maps, 9 depths × 41 lateral positions, with forces of
 /// the same size.
 ///
-/// ```
-/// let loaded = palpate::hid::timing::paper::table()?;
-/// // 0.18 N for each half millimetre.
-/// let force = loaded.table().map_err(|error| error.to_string())?.force(2e-3, 0.0);
-/// assert!((force.normal - 0.72).abs() < 1e-6 && force.lateral == 0.0);
-/// # Ok::<(), String>(())
-/// ```
-///
 /// # Errors
 /// None, as long as a table may be as large.
 pub fn table() -> Result<LoadedTable, String> {
@@ -34,21 +26,8 @@ pub fn table() -> Result<LoadedTable, String> {
 }
 
 /// The paper's display in a hand that sweeps through the gel and back until `cycles` are over.
-///
-/// ```
-/// let device = palpate::hid::timing::paper::device(1000);
-/// // At rest a millimetre above the surface, 9 mm left of the middle.
-/// assert_eq!(device.position(), [-9e-3, 1e-3]);
-/// assert!(!device.finished());
-/// ```
 pub fn device(cycles: u64) -> SimulatedDevice {
     let sweep = Duration::from_millis(1000 + cycles);
     let trajectory = Trajectory::probing(3e-3, 9e-3, sweep);
-    SimulatedDevice::new(
-        PAPER,
-        Mechanics::PAPER,
-        trajectory,
-        Duration::ZERO,
-        Vec::new(),
-    )
+    SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Vec::new())
 }

@@ -1,17 +1,18 @@
 //! What a timing counts. No assertion is about the speed of this machine.
 
 use super::*;
-use crate::hid::simulated::{Defect, Fault, Mechanics, PAPER, SimulatedDevice, Trajectory};
-use crate::servo::{Axis, Force};
+use crate::hid::simulated::Defect;
+use crate::hid::tests::{limits, probing, with_table};
 
-fn timing(cycles: u64, budget: Duration, faults: Vec<Fault>) -> Result<Timing, TimingError> {
-    let (knots, reciprocals, forces) = ([0.0, 0.5], [2.0], [Force::ZERO; 4]);
-    let axis = Axis::new(&knots, &reciprocals).unwrap();
-    let table = Table::new(axis, axis, &forces).unwrap();
-    let limits = Limits::new(2.0, 0.05, 0.2, 10).unwrap();
-    let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_secs(10));
-    let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, faults);
-    measure(device, table, limits, cycles, budget, None)
+fn timing(
+    cycles: u64,
+    budget: Duration,
+    faults: Vec<(Duration, Defect)>,
+) -> Result<Timing, Refusal> {
+    let device = probing(Duration::from_secs(10), faults);
+    with_table(0.0, |table| {
+        measure(device, table, limits(), cycles, budget, None)
+    })
 }
 
 // Verifies: HID-060, HID-062.
@@ -46,11 +47,8 @@ fn one_cycle_in_a_thousand_may_miss() {
 // Verifies: HID-061.
 #[test]
 fn a_paced_device_counts_how_late_it_was() {
-    let (trajectory, short) = (
-        Trajectory::probing(0.0, 0.0, Duration::ZERO),
-        Duration::from_millis(1),
-    );
-    let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, Duration::ZERO, vec![]);
+    let short = Duration::from_millis(1);
+    let device = probing(Duration::ZERO, vec![]);
     let mut clock = HostClock::new(device, Some(short));
     clock.began -= 20 * short;
     clock.read(short).unwrap();
@@ -63,23 +61,12 @@ fn a_paced_device_counts_how_late_it_was() {
 // Verifies: HID-060.
 #[test]
 fn a_timing_that_ends_early_is_an_error() {
-    assert_eq!(
-        timing(999, Duration::ZERO, vec![]),
-        Err(TimingError::TooFew(999))
-    );
-    let at = Duration::from_millis(300);
-    let ended = timing(
-        1000,
-        Duration::ZERO,
-        vec![Fault {
-            at,
-            defect: Defect::Unplug,
-        }],
-    );
-    assert!(
-        matches!(ended, Err(TimingError::Ended { cycles: 299, .. })),
-        "{ended:?}"
-    );
+    let told = |timing: Result<Timing, Refusal>| timing.unwrap_err().to_string();
+    let few = told(timing(999, Duration::ZERO, vec![]));
+    assert_eq!(few, "999 cycles, expected at least 1000 for a p99.9");
+    let unplug = (Duration::from_millis(300), Defect::Unplug);
+    let ended = told(timing(1000, Duration::ZERO, vec![unplug]));
+    assert_eq!(ended, "after 299 cycles: stopped: the device is gone");
 }
 
 // Verifies: HID-063.

@@ -1,7 +1,7 @@
 //! Counts of right answers of several subjects under several conditions, as in Table 1.
 
-use super::super::{Answer, Arguments, Code, Refusal};
 use super::proportion::MOST_TRIALS;
+use super::{Answer, Arguments, Refused, check_rows};
 use crate::detect::gamma_from_two_afc;
 use crate::psychophysics::dispersion;
 
@@ -9,7 +9,7 @@ use crate::psychophysics::dispersion;
 /// binomial.
 ///
 /// Implements: ORA-026.
-pub fn analysis(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+pub fn analysis(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let counts = arguments.rows("correct")?;
     let trials = arguments.whole("trials", 1, MOST_TRIALS)? as f64;
     check(&counts, trials)?;
@@ -26,7 +26,11 @@ pub fn analysis(arguments: &mut Arguments) -> Result<Answer, Refusal> {
         rates.push(rate);
         gammas.push(gamma_from_two_afc(rate)?);
         // A single subject has the pooled rate.
-        chi2s.push(dispersion(&column)?.map_or(0.0, |found| found.chi_square));
+        chi2s.push(
+            dispersion(&column)
+                .map_err(Refused::range)?
+                .map_or(0.0, |found| found.chi_square),
+        );
     }
     Ok(Answer::default()
         .with("pooled", pooled)
@@ -36,32 +40,20 @@ pub fn analysis(arguments: &mut Arguments) -> Result<Answer, Refusal> {
         .with("df", counts.len() - 1))
 }
 
-fn check(counts: &[Vec<f64>], trials: f64) -> Result<(), Refusal> {
+fn check(counts: &[Vec<f64>], trials: f64) -> Result<(), Refused> {
     let conditions = counts.first().map_or(0, Vec::len);
     if conditions == 0 {
-        return Err(Refusal::argument(
-            "correct",
-            "is empty, expected a row for each subject",
-        ));
+        let wrong = "correct is empty, expected a row for each subject";
+        return Err(Refused::argument(wrong));
     }
+    let words = [String::new(), conditions.to_string()];
+    check_rows("correct", counts, [counts.len(), conditions], words)?;
     for (subject, row) in counts.iter().enumerate() {
-        if row.len() != conditions {
-            return Err(Refusal::new(
-                Code::BadArgument,
-                format!(
-                    "correct[{subject}] has {} entries, expected {conditions}",
-                    row.len()
-                ),
-            ));
-        }
         for (condition, &count) in row.iter().enumerate() {
             if count.trunc() != count || !(0.0..=trials).contains(&count) {
-                return Err(Refusal::new(
-                    Code::OutOfRange,
-                    format!(
-                        "correct[{subject}][{condition}] is {count}, expected a whole number from 0 to {trials}"
-                    ),
-                ));
+                return Err(Refused::range(format_args!(
+                    "correct[{subject}][{condition}] is {count}, expected a whole number from 0 to {trials}"
+                )));
             }
         }
     }

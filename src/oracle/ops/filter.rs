@@ -1,6 +1,6 @@
 //! The matched filter, Θ in white and coloured noise, and the scan.
 
-use super::super::{Answer, Arguments, Code, Refusal};
+use super::{Answer, Arguments, Refused, check_rows};
 use crate::detect::coloured::{coloured_scratch, theta_coloured};
 use crate::detect::scan::Scan;
 use crate::detect::{Channels, MatchedFilter, theta_of_record};
@@ -10,7 +10,7 @@ const MOST_ROWS: usize = 1000;
 /// Most products of a scan in each channel.
 const MOST_PRODUCTS: usize = 10_000_000;
 
-fn noise_sd(arguments: &mut Arguments) -> Result<Channels<f64>, Refusal> {
+fn noise_sd(arguments: &mut Arguments) -> Result<Channels<f64>, Refused> {
     Ok(Channels {
         x: arguments.number("noise_sd_x")?,
         y: arguments.number("noise_sd_y")?,
@@ -21,22 +21,19 @@ fn series(
     arguments: &mut Arguments,
     x: &'static str,
     y: &'static str,
-) -> Result<Channels<Vec<f64>>, Refusal> {
+) -> Result<Channels<Vec<f64>>, Refused> {
     Ok(Channels {
         x: arguments.numbers(x)?,
         y: arguments.numbers(y)?,
     })
 }
 
-fn slices(series: &Channels<Vec<f64>>) -> Channels<&[f64]> {
-    Channels {
-        x: &series.x,
-        y: &series.y,
-    }
+fn slices(Channels { x, y }: &Channels<Vec<f64>>) -> Channels<&[f64]> {
+    Channels { x, y }
 }
 
 /// b, σ and γ of a template.
-pub fn matched_filter(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+pub fn matched_filter(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let template = series(arguments, "template_x", "template_y")?;
     let noise_sd = noise_sd(arguments)?;
     let filter = MatchedFilter::new(slices(&template), noise_sd)?;
@@ -50,7 +47,7 @@ pub fn matched_filter(arguments: &mut Arguments) -> Result<Answer, Refusal> {
 }
 
 /// θ, y(0) and γ of a record.
-pub fn theta(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+pub fn theta(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let observed = series(arguments, "observed_x", "observed_y")?;
     let f0 = series(arguments, "f0_x", "f0_y")?;
     let f1 = series(arguments, "f1_x", "f1_y")?;
@@ -64,40 +61,22 @@ pub fn theta(arguments: &mut Arguments) -> Result<Answer, Refusal> {
 }
 
 /// θ and γ in coloured noise.
-pub fn theta_colored(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+pub fn theta_colored(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let residual = arguments.numbers("residual")?;
     let template = arguments.numbers("template")?;
     let covariance = arguments.rows("covariance")?;
     let order = template.len();
     if order > MOST_ROWS {
-        return Err(Refusal::range(
-            "template",
-            format_args!("has {order} samples, expected at most {MOST_ROWS}"),
-        ));
+        let wrong = format_args!("template has {order} samples, expected at most {MOST_ROWS}");
+        return Err(Refused::range(wrong));
     }
     if order % 2 == 1 {
-        return Err(Refusal::argument(
-            "template",
-            format_args!("has {order} samples, expected as many lateral as normal ones"),
-        ));
+        let expected = "expected as many lateral as normal ones";
+        let wrong = format_args!("template has {order} samples, {expected}");
+        return Err(Refused::argument(wrong));
     }
-    if covariance.len() != order {
-        return Err(Refusal::argument(
-            "covariance",
-            format_args!("has {} rows, expected {order}", covariance.len()),
-        ));
-    }
-    for (row, entries) in covariance.iter().enumerate() {
-        if entries.len() != order {
-            return Err(Refusal::new(
-                Code::BadArgument,
-                format!(
-                    "covariance[{row}] has {} entries, expected {order}",
-                    entries.len()
-                ),
-            ));
-        }
-    }
+    let words = [order, order].map(|order| order.to_string());
+    check_rows("covariance", &covariance, [order; 2], words)?;
     let mut scratch = vec![0.0; coloured_scratch(order)];
     let found = theta_coloured(&residual, &template, &covariance.concat(), &mut scratch)?;
     Ok(Answer::default()
@@ -108,18 +87,15 @@ pub fn theta_colored(arguments: &mut Arguments) -> Result<Answer, Refusal> {
 /// Θ at every shift with the whole template in the record.
 ///
 /// Implements: ORA-011.
-pub fn scan(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+pub fn scan(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let residual = series(arguments, "residual_x", "residual_y")?;
     let template = series(arguments, "template_x", "template_y")?;
     let noise_sd = noise_sd(arguments)?;
     let (samples, length) = (residual.x.len(), template.x.len());
     if length.saturating_mul((samples + 1).saturating_sub(length)) > MOST_PRODUCTS {
-        return Err(Refusal::range(
-            "template_x",
-            format_args!(
-                "of {length} samples on {samples} takes more than {MOST_PRODUCTS} products"
-            ),
-        ));
+        return Err(Refused::range(format_args!(
+            "template_x of {length} samples on {samples} takes more than {MOST_PRODUCTS} products"
+        )));
     }
     let scan = Scan::new(samples, slices(&template), noise_sd)?;
     let mut theta = vec![0.0; samples - length + 1];

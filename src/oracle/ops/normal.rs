@@ -1,16 +1,16 @@
 //! The normal law.
 
-use super::super::{Answer, Arguments, Refusal};
+use super::{Answer, Arguments, Refused};
 use crate::stats::normal;
 
 /// Φ(x).
-pub fn cdf(arguments: &mut Arguments) -> Result<Answer, Refusal> {
-    let x = arguments.number("x")?;
-    Ok(Answer::default().with("p", normal::cdf(x)?))
+pub fn cdf(arguments: &mut Arguments) -> Result<Answer, Refused> {
+    let p = normal::cdf(arguments.number("x")?).map_err(Refused::range)?;
+    Ok(Answer::default().with("p", p))
 }
 
 /// Φ⁻¹(p).
-pub fn quantile(arguments: &mut Arguments) -> Result<Answer, Refusal> {
-    let p = arguments.number("p")?;
-    Ok(Answer::default().with("x", normal::quantile(p)?))
+pub fn quantile(arguments: &mut Arguments) -> Result<Answer, Refused> {
+    let x = normal::quantile(arguments.number("p")?).map_err(Refused::range)?;
+    Ok(Answer::default().with("x", x))
 }

@@ -1,6 +1,6 @@
 //! The force on the probe.
 
-use super::super::{Answer, Arguments, Refusal};
+use super::{Answer, Arguments, Refused};
 use crate::fem::{Contact, MESH_SIZE, Model, Pose};
 use crate::phantom::Phantom;
 
@@ -10,17 +10,19 @@ pub type Models = Vec<(String, Model)>;
 /// The forces at one pose, on the mesh and with the contact that `palpate solve` takes by default.
 ///
 /// Implements: ORA-012.
-pub fn force(models: &mut Models, arguments: &mut Arguments) -> Result<Answer, Refusal> {
+pub fn force(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let name = arguments.text("phantom")?;
     let pose = Pose {
         depth: arguments.number("depth_m")?,
         lateral: arguments.number("lateral_m")?,
     };
-    let phantom = Phantom::builtin(&name).map_err(|error| Refusal::range("phantom", error))?;
+    let phantom =
+        Phantom::builtin(&name).map_err(|error| Refused::range(format_args!("phantom {error}")))?;
     // Before the model is made: a pose that cannot be is cheap to refuse.
     phantom
         .check_pose(pose.depth, pose.lateral)
-        .map_err(|error| Refusal::range("pose:", error))?;
+        .map_err(|error| Refused::range(format_args!("pose: {error}")))?;
+    let models = &mut *arguments.models;
     let solution = match models.iter().find(|(known, _)| *known == name) {
         Some((_, model)) => model.solve(pose)?,
         None => {

@@ -2,14 +2,13 @@
 
 use std::fmt::Debug;
 
-use super::super::arguments::{not_bits, parse_bits};
-use super::super::{Answer, Arguments, Code, Refusal};
+use super::{Answer, Arguments, Bits, Refused};
 use crate::servo::{Axis, Force, Table};
 
 /// Knots as the kernel stores them, with the reciprocals of the widths.
 ///
 /// Implements: ORA-024.
-fn knots(arguments: &mut Arguments, name: &'static str) -> Result<(Vec<f32>, Vec<f32>), Refusal> {
+fn knots(arguments: &mut Arguments, name: &'static str) -> Result<(Vec<f32>, Vec<f32>), Refused> {
     let knots: Vec<f32> = arguments
         .numbers(name)?
         .into_iter()
@@ -25,7 +24,7 @@ fn knots(arguments: &mut Arguments, name: &'static str) -> Result<(Vec<f32>, Vec
 fn axis_of<'a>(
     name: &str,
     (knots, reciprocals): &'a (Vec<f32>, Vec<f32>),
-) -> Result<Axis<'a>, Refusal> {
+) -> Result<Axis<'a>, Refused> {
     Axis::new(knots, reciprocals).map_err(|error| {
         refused(
             name,
@@ -35,11 +34,10 @@ fn axis_of<'a>(
     })
 }
 
-fn refused(name: &str, error: impl Debug, right: &str) -> Refusal {
-    Refusal::range(
-        name,
-        format_args!("is refused by the kernel, {error:?}: expected {right}"),
-    )
+fn refused(name: &str, error: impl Debug, right: &str) -> Refused {
+    Refused::range(format_args!(
+        "{name} is refused by the kernel, {error:?}: expected {right}"
+    ))
 }
 
 fn bits(value: f32) -> String {
@@ -47,7 +45,7 @@ fn bits(value: f32) -> String {
 }
 
 /// Cell and fraction of a coordinate.
-pub fn axis(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+pub fn axis(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let knots = knots(arguments, "knots")?;
     let coordinate = arguments.bits("coordinate_bits")?;
     let cell = axis_of("knots", &knots)?.locate(coordinate);
@@ -57,10 +55,10 @@ pub fn axis(arguments: &mut Arguments) -> Result<Answer, Refusal> {
 }
 
 /// The force of a table at a pose.
-pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refusal> {
+pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let depth_knots = knots(arguments, "depth_knots")?;
     let lateral_knots = knots(arguments, "lateral_knots")?;
-    let rows = arguments.rows_of_texts("table_bits")?;
+    let rows = arguments.list("table_bits", "a list of lists of texts")?;
     let depth = arguments.bits("depth_bits")?;
     let lateral = arguments.bits("lateral_bits")?;
     let depths = axis_of("depth_knots", &depth_knots)?;
@@ -72,27 +70,15 @@ pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refusal> {
 }
 
 /// The entries of a table, both components alike.
-fn forces(rows: &[Vec<String>], depths: usize, laterals: usize) -> Result<Vec<Force>, Refusal> {
+fn forces(rows: &[Vec<Bits>], depths: usize, laterals: usize) -> Result<Vec<Force>, Refused> {
     if rows.len() != depths || rows.iter().any(|row| row.len() != laterals) {
-        return Err(Refusal::argument(
-            "table_bits",
-            format_args!("is expected to have {depths} rows of {laterals} entries"),
-        ));
+        return Err(Refused::argument(format_args!(
+            "table_bits is expected to have {depths} rows of {laterals} entries"
+        )));
     }
-    let mut forces = Vec::with_capacity(depths * laterals);
-    for (i, row) in rows.iter().enumerate() {
-        for (j, text) in row.iter().enumerate() {
-            let force = parse_bits(text).ok_or_else(|| {
-                Refusal::new(
-                    Code::BadArgument,
-                    format!("table_bits[{i}][{j}] {}", not_bits(text)),
-                )
-            })?;
-            forces.push(Force {
-                lateral: force,
-                normal: force,
-            });
-        }
-    }
-    Ok(forces)
+    let both = |&Bits(force)| Force {
+        lateral: force,
+        normal: force,
+    };
+    Ok(rows.iter().flatten().map(both).collect())
 }

@@ -4,10 +4,11 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use assert_no_alloc::assert_no_alloc;
-use palpate::hid::real::{OpenError, RealDevice, Wanted};
+use palpate::hid::real::{RealDevice, Wanted};
 use palpate::hid::{
-    Capabilities, Control, DeviceError, ForceReport, HapticDevice, Received, Session, SessionError,
+    Capabilities, Control, DeviceError, ForceReport, HapticDevice, Received, Session,
 };
+use palpate::refusal::Refusal;
 use palpate::servo::{Axis, Force, Limits, Table};
 
 use crate::link::NUMBERS;
@@ -33,7 +34,7 @@ pub fn wanted(serial: &str) -> Wanted {
 }
 
 /// Opens the board with this serial number.
-pub fn open(serial: &str) -> Result<RealDevice, OpenError> {
+pub fn open(serial: &str) -> Result<RealDevice, Refusal> {
     RealDevice::open_within(&wanted(serial), PATIENCE)
 }
 
@@ -63,7 +64,7 @@ pub fn with_session<D: HapticDevice, T>(
     then: impl FnOnce(Session<D>) -> T,
 ) -> Result<T, String> {
     let begun = with_table(|table, limits| Session::begin(device, table, limits).map(then))?;
-    begun.map_err(|error: SessionError| error.to_string())
+    begun.map_err(|error: Refusal| error.to_string())
 }
 
 /// A device whose reads and writes must not allocate, and which burns time before each write.

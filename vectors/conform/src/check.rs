@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::case::{Case, CaseText, Expected, Question, ToleranceText, Wrong};
 use super::tolerance::{Tolerance, compare};
-use palpate::oracle::refusal::Code;
+use palpate::oracle::Code;
 
 /// Every code of a refusal.
 const CODES: [Code; 7] = [
