@@ -4,7 +4,8 @@ use crate::csv::one_line;
 use crate::fem::FemError;
 use crate::force_map::ForceMapFileError;
 use crate::phantom::PhantomFileError;
-use crate::psychophysics::{PsychophysicsError, TableError};
+use crate::psychophysics::PsychophysicsError;
+use crate::refusal::Refusal;
 use crate::report::ReportError;
 use crate::trace::TraceError;
 
@@ -25,9 +26,9 @@ pub enum CliError {
     /// A trace is not valid, or not for these maps.
     #[error("{0}")]
     Trace(#[from] TraceError),
-    /// Counts of right answers are not valid.
+    /// An input is not valid.
     #[error("{0}")]
-    Counts(#[from] TableError),
+    Refused(#[from] Refusal),
     /// Counts and maps do not fit.
     #[error("{0}")]
     Psychophysics(#[from] PsychophysicsError),

@@ -56,14 +56,15 @@ pub use beta_binomial::BetaBinomial;
 pub use conditions::{ConditionComparison, Difference, InclusionDifference};
 pub use dispersion::{Dispersion, dispersion};
 pub use error::PsychophysicsError;
+use error::Result;
 #[cfg(feature = "cli")]
 pub(crate) use journal::{Journal, Setup};
 pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};
 #[cfg(feature = "hid")]
-pub use observer::{IdealObserver, ObserverError};
-pub use plan::{Interval, Plan, Trial};
+pub use observer::IdealObserver;
+pub use plan::{Interval, Trial, plan};
 #[cfg(feature = "hid")]
-pub use presentation::{Felt, PresentationError, present};
+pub use presentation::{Felt, present};
 pub use psychometric::{Parameter, Psychometric};
 pub use rates::{Bounds, CONFIDENCE, Clustered, GammaEstimate, OpenBounds, Rate};
-pub use table::{Condition, Inclusion, MOST_TRIALS, Subject, Table, TableError, TableProblem};
+pub use table::{Condition, Inclusion, MOST_TRIALS, Subject, Table};

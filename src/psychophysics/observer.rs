@@ -2,8 +2,9 @@
 //! sample of the pair with the larger Θ.
 
 use super::{Felt, Interval};
-use crate::detect::{Channels, DetectError, theta_of_record};
+use crate::detect::{Channels, theta_of_record};
 use crate::force_map::{ForceTable, InvalidForceMap};
+use crate::refusal::Refusal;
 use crate::stats::random::Generator;
 
 /// The stream of the generator that the observer's noise is drawn from.
@@ -47,93 +48,50 @@ pub struct IdealObserver<'a> {
     pub seed: u64,
 }
 
-/// Why the observer can not decide.
-///
-/// ```
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::psychophysics::{Felt, IdealObserver, ObserverError};
-///
-/// let matrix = || Matrix::from_fn(2, 2, |_, _| 1.5);
-/// let map = ForceTable::new(vec![0.0, 0.004], vec![0.0, 0.01], matrix(), matrix())?;
-/// let observer = IdealObserver { reference: &map, inclusion: &map, noise_sd: 0.1, seed: 1 };
-/// // Nothing was felt.
-/// assert!(matches!(observer.theta(&Felt::default(), 0), Err(ObserverError::Detect(_))));
-/// # Ok::<(), palpate::force_map::InvalidForceMap>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ObserverError {
-    /// The maps give no force where the hand was.
-    #[error("{0}")]
-    Map(#[from] InvalidForceMap),
-    /// The detector refuses the record.
-    #[error("{0}")]
-    Detect(#[from] DetectError),
-}
-
 impl IdealObserver<'_> {
     /// θ of one sample felt with noise, and γ of the way that the hand took; `draw` tells the noises
     /// apart.
     ///
     /// # Errors
-    /// [`ObserverError`].
+    /// The maps give no force where the hand was, or the detector refuses the record.
     ///
     /// Implements: PSY-011.
-    pub fn theta(&self, felt: &Felt, draw: u64) -> Result<(f64, f64), ObserverError> {
+    pub fn theta(&self, felt: &Felt, draw: u64) -> Result<(f64, f64), Refusal> {
         let expected = |table: &ForceTable| {
-            let mut forces = Channels {
-                x: Vec::with_capacity(felt.depths.len()),
-                y: Vec::with_capacity(felt.depths.len()),
-            };
-            for (&depth, &lateral) in felt.depths.iter().zip(&felt.laterals) {
+            let force = |(&depth, &lateral): (&f64, &f64)| {
                 // Nothing is played above the surface.
                 let force = table.force(depth.max(0.0), lateral)?;
-                forces.x.push(force.lateral);
-                forces.y.push(force.normal);
-            }
-            Ok::<_, InvalidForceMap>(forces)
+                Ok((force.lateral, force.normal))
+            };
+            let forces = felt.depths.iter().zip(&felt.laterals).map(force);
+            let forces: Result<(Vec<f64>, Vec<f64>), InvalidForceMap> = forces.collect();
+            forces.map_err(|error| Refusal::state(error, ""))
         };
         let (f0, f1) = (expected(self.reference)?, expected(self.inclusion)?);
-        let noisy = |forces: &[f64], channel| {
-            let generator = Generator::new(self.seed, STREAM + channel);
+        let noisy = |forces: &[f64], channel| -> Vec<f64> {
             let mut noise = vec![0.0; forces.len()];
-            generator.normals(draw, 0, &mut noise);
-            for (noise, force) in noise.iter_mut().zip(forces) {
-                *noise = force + self.noise_sd * *noise;
-            }
-            noise
+            Generator::new(self.seed, STREAM + channel).normals(draw, 0, &mut noise);
+            let noisy = noise.iter().zip(forces);
+            noisy.map(|(n, force)| force + self.noise_sd * n).collect()
         };
-        let observed = Channels {
-            x: noisy(&felt.forces.x, 0),
-            y: noisy(&felt.forces.y, 1),
-        };
-        let noise_sd = Channels {
-            x: self.noise_sd,
-            y: self.noise_sd,
-        };
+        let (x, y) = (noisy(&felt.forces.x, 0), noisy(&felt.forces.y, 1));
         let statistic = theta_of_record(
-            Channels {
-                x: &observed.x,
-                y: &observed.y,
-            },
-            Channels { x: &f0.x, y: &f0.y },
-            Channels { x: &f1.x, y: &f1.y },
-            noise_sd,
-        )?;
+            Channels { x: &x, y: &y },
+            Channels { x: &f0.0, y: &f0.1 },
+            Channels { x: &f1.0, y: &f1.1 },
+            Channels { x: (), y: () }.map(|()| self.noise_sd),
+        );
+        let statistic = statistic.map_err(|error| Refusal::state(error, ""))?;
         Ok((statistic.theta, statistic.gamma))
     }
 
     /// Which of two samples has the inclusion, by the larger θ.
     ///
     /// # Errors
-    /// [`ObserverError`].
+    /// As [`IdealObserver::theta`].
     ///
     /// Implements: PSY-012, PSY-013.
-    pub fn choose(
-        &self,
-        first: &Felt,
-        second: &Felt,
-        pair: u64,
-    ) -> Result<Interval, ObserverError> {
+    pub fn choose(&self, first: &Felt, second: &Felt, pair: u64) -> Result<Interval, Refusal> {
         let (of_first, _) = self.theta(first, 2 * pair)?;
         let (of_second, _) = self.theta(second, 2 * pair + 1)?;
         Ok(if of_first >= of_second {

@@ -1,20 +1,14 @@
 //! One sample, as a hand feels it: played through device, servo and table.
 
+use std::fmt::Display;
 use std::time::Duration;
 
 use crate::detect::Channels;
-use crate::hid::{Counters, End, HapticDevice, Session, SessionError};
+use crate::hid::{Counters, End, HapticDevice, Session};
+use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
 
 /// Where the handle was, and what was played, while the force followed the table.
-///
-/// ```
-/// use palpate::psychophysics::Felt;
-///
-/// // Before anything is played.
-/// let felt = Felt::default();
-/// assert!(felt.depths.is_empty() && felt.forces.x.is_empty());
-/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Felt {
     /// Depths, m.
@@ -25,24 +19,6 @@ pub struct Felt {
     pub forces: Channels<Vec<f64>>,
     /// What happened.
     pub counters: Counters,
-}
-
-/// Why a presentation was not whole.
-///
-/// ```
-/// use palpate::hid::End;
-/// use palpate::psychophysics::PresentationError;
-///
-/// assert_eq!(PresentationError::Ended(End::Asked).to_string(), End::Asked.to_string());
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PresentationError {
-    /// The device was refused.
-    #[error("{0}")]
-    Session(#[from] SessionError),
-    /// It ended early.
-    #[error("{0}")]
-    Ended(End),
 }
 
 /// Plays `table` on `device` for `duration` of the device's time from the first force on, at most
@@ -72,7 +48,7 @@ pub enum PresentationError {
 /// ```
 ///
 /// # Errors
-/// [`PresentationError`].
+/// The device was refused, or ended early.
 ///
 /// Implements: PSY-010.
 pub fn present<D: HapticDevice>(
@@ -81,8 +57,9 @@ pub fn present<D: HapticDevice>(
     limits: Limits,
     duration: Duration,
     patience: Duration,
-) -> Result<Felt, PresentationError> {
-    let mut session = Session::begin(device, table, limits)?;
+) -> Result<Felt, Refusal> {
+    let refused = |reason: &dyn Display| Refusal::state(reason, "");
+    let mut session = Session::begin(device, table, limits).map_err(|error| refused(&error))?;
     let capabilities = *session.capabilities();
     let metres = f64::from(capabilities.position_unit_nm) * 1e-9;
     let newtons = f64::from(capabilities.force_unit_un) * 1e-6;
@@ -102,6 +79,6 @@ pub fn present<D: HapticDevice>(
     felt.counters = session.counters();
     match end {
         End::Asked => Ok(felt),
-        end => Err(PresentationError::Ended(end)),
+        end => Err(refused(&end)),
     }
 }

@@ -69,7 +69,8 @@ use crate::fem::mesh::Region;
 use crate::fem::{FemError, Model, Pose};
 use crate::force_map::{ForceMap, InvalidForceMap};
 use crate::phantom::Phantom;
-use crate::psychophysics::{PsychophysicsError, TableError};
+use crate::psychophysics::PsychophysicsError;
+use crate::refusal::Refusal;
 
 /// Everything that a run computed.
 ///
@@ -293,7 +294,7 @@ pub enum ReportError {
     #[error("{error}")]
     Table {
         /// Why.
-        error: TableError,
+        error: Refusal,
     },
     /// The deformed mesh contradicts itself.
     #[error("deformed mesh: {problem}")]

@@ -4,7 +4,7 @@ use super::findings::MapFindings;
 use super::{ReportError, Study, paper};
 use crate::psychophysics::bridge::{Bridge, bridge};
 use crate::psychophysics::{
-    Analysis, Bounds, NoiseDecomposition, PsychophysicsError, Table, analyse, paper_noise_levels,
+    Analysis, Bounds, NoiseDecomposition, Table, analyse, paper_noise_levels,
 };
 use crate::stats::normal;
 
@@ -33,16 +33,13 @@ pub fn subjects(study: &Study, compared: &[MapFindings]) -> Result<Subjects, Rep
         Some((name, study.maps.get(index)?))
     });
     let columns: Vec<_> = columns.collect();
-    let bridge = match bridge(&table, &study.reference, &columns) {
-        Ok(bridge) => Some(bridge),
-        // Fewer than two depths say nothing of how rates fall with depth.
-        Err(PsychophysicsError::TooFewMaps { .. }) => None,
-        Err(other) => return Err(refused(other)),
-    };
+    // Fewer than two depths say nothing of how rates fall with depth.
+    let has_depths = columns.len() >= 2;
+    let bridge = has_depths.then(|| bridge(&table, &study.reference, &columns, None));
     Ok(Subjects {
         people: analyse(&table).map_err(refused)?,
         noise: paper_noise_levels().map_err(refused)?,
-        bridge,
+        bridge: bridge.transpose().map_err(refused)?,
     })
 }
 
