@@ -224,7 +224,8 @@ impl Pairs<'_> {
             Interval::First => [with, without],
             Interval::Second => [without, with],
         };
-        let Some(noise_sd) = self.arguments.noise.filter(|_| self.is_ideal()) else {
+        let is_ideal = self.arguments.observer == Observer::Ideal;
+        let Some(noise_sd) = self.arguments.noise.filter(|_| is_ideal) else {
             return self.ask(&format!("pair {} of {total}", number + 1), samples);
         };
         let observer = IdealObserver {
@@ -238,10 +239,6 @@ impl Pairs<'_> {
         Ok(Some(
             answer.map_err(|error| failed("the ideal observer", error))?,
         ))
-    }
-
-    fn is_ideal(&self) -> bool {
-        self.arguments.observer == Observer::Ideal
     }
 
     /// A sample as it is felt.

@@ -1,14 +1,93 @@
-//! The ideal observer of the paper's theory: knows both force maps and his own noise, and takes the
-//! sample of the pair with the larger Θ.
+//! One sample, as a hand feels it: played through device, servo and table; and the ideal observer of the paper's theory, who knows
+//! both force maps and his own noise, and takes the sample of the pair with the larger Θ.
 
-use super::{Felt, Interval};
+use std::fmt::Display;
+use std::time::Duration;
+
+use super::Interval;
 use crate::detect::{Channels, theta_of_record};
 use crate::force_map::{ForceTable, InvalidForceMap};
+use crate::hid::{Counters, End, HapticDevice, Session};
 use crate::refusal::Refusal;
+use crate::servo::{Limits, Table};
 use crate::stats::random::Generator;
 
 /// The stream of the generator that the observer's noise is drawn from.
 const STREAM: u64 = 0x0B5E;
+
+/// Where the handle was, and what was played, while the force followed the table.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Felt {
+    /// Depths, m.
+    pub depths: Vec<f64>,
+    /// Lateral positions, m.
+    pub laterals: Vec<f64>,
+    /// Forces as sent to the device: x lateral, y normal, N.
+    pub forces: Channels<Vec<f64>>,
+    /// What happened.
+    pub counters: Counters,
+}
+
+/// Plays `table` on `device` for `duration` of the device's time from the first force on, at most
+/// `patience` from the beginning.
+///
+/// ```
+/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+/// use palpate::psychophysics::present;
+/// use palpate::servo::{Limits, LoadedTable};
+/// use std::time::Duration;
+///
+/// # let (depths, laterals) = (vec![0.0, 0.004], vec![-0.01, 0.01]);
+/// # let matrix = |force: f64| Matrix::from_fn(2, 2, |row, _| force * row as f64);
+/// // A map whose force grows from 0 to 1 N at 4 mm, and a hand that presses and sweeps.
+/// let map = ForceTable::new(depths, laterals, matrix(1.0), matrix(0.0))?;
+/// let loaded = LoadedTable::new(&map)?;
+/// let hand = Trajectory::probing(0.003, 0.008, Duration::from_secs(1));
+/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Duration::ZERO, vec![]);
+/// let limits = Limits::new(4.0, 0.05, 0.5, 20)?;
+/// let (half, second) = (Duration::from_millis(500), Duration::from_secs(1));
+/// let felt = present(device, loaded.table()?, limits, half, second)?;
+/// // 1 kHz for half a second, and pushed out of the gel.
+/// assert!(felt.forces.y.len() > 480);
+/// assert!(felt.forces.y.iter().all(|&force| (0.0..1.0).contains(&force)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// The device was refused, or ended early.
+///
+/// Implements: PSY-010.
+pub fn present<D: HapticDevice>(
+    device: D,
+    table: Table,
+    limits: Limits,
+    duration: Duration,
+    patience: Duration,
+) -> Result<Felt, Refusal> {
+    let mut session = Session::begin(device, table, limits).map_err(refused)?;
+    let capabilities = *session.capabilities();
+    let metres = f64::from(capabilities.position_unit_nm) * 1e-9;
+    let newtons = f64::from(capabilities.force_unit_un) * 1e-6;
+    let mut felt = Felt::default();
+    let mut began = None;
+    let end = session.run(|cycle, _| {
+        if let (true, Some(position)) = (cycle.playing, cycle.position) {
+            began.get_or_insert(cycle.written);
+            felt.depths.push(-f64::from(position.normal) * metres);
+            felt.laterals.push(f64::from(position.lateral) * metres);
+            felt.forces.x.push(f64::from(cycle.force.lateral) * newtons);
+            felt.forces.y.push(f64::from(cycle.force.normal) * newtons);
+        }
+        let until = began.map_or(patience, |began| began + duration);
+        cycle.written < until
+    });
+    felt.counters = session.counters();
+    match end {
+        End::Asked => Ok(felt),
+        end => Err(refused(end)),
+    }
+}
 
 /// Knows what to expect.
 ///
@@ -65,7 +144,7 @@ impl IdealObserver<'_> {
             };
             let forces = felt.depths.iter().zip(&felt.laterals).map(force);
             let forces: Result<(Vec<f64>, Vec<f64>), InvalidForceMap> = forces.collect();
-            forces.map_err(|error| Refusal::state(error, ""))
+            forces.map_err(refused)
         };
         let (f0, f1) = (expected(self.reference)?, expected(self.inclusion)?);
         let noisy = |forces: &[f64], channel| -> Vec<f64> {
@@ -81,7 +160,7 @@ impl IdealObserver<'_> {
             Channels { x: &f1.0, y: &f1.1 },
             Channels { x: (), y: () }.map(|()| self.noise_sd),
         );
-        let statistic = statistic.map_err(|error| Refusal::state(error, ""))?;
+        let statistic = statistic.map_err(refused)?;
         Ok((statistic.theta, statistic.gamma))
     }
 
@@ -100,4 +179,8 @@ impl IdealObserver<'_> {
             Interval::Second
         })
     }
+}
+
+fn refused(reason: impl Display) -> Refusal {
+    Refusal::state(reason, "")
 }
