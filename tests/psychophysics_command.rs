@@ -166,84 +166,44 @@ fn a_file_of_counts_is_analysed_alone() {
 // Verifies: CLI-081, CLI-083, CLI-085.
 #[test]
 fn what_is_refused_is_named_in_one_line() {
-    let folder = folder();
-    let write = |name: &str, text: &str| {
-        fs::write(folder.join(name), text).unwrap();
-        folder.join(name).display().to_string()
-    };
-    let bad = write("bad.csv", "subject,condition,trials,2.6\n1,gel,30,31\n");
-    let none = folder.join("none").display().to_string();
-    let named = |name: &str| format!("{name}={}", folder.join("2.6").display());
-    let (shallow, unknown, deep) = (named("2.6"), named("3.1"), named("8.6"));
+    let bad = "subject,condition,trials,2.6\n1,gel,30,31\n";
+    fs::write(folder().join("bad.csv"), bad).unwrap();
     for (arguments, message) in [
         (
-            vec![bad.as_str()],
+            "bad.csv",
             "bad.csv:2: 2.6 = \"31\", expected a whole number from 0 to the 30 trials",
         ),
-        (vec!["missing.csv"], "missing.csv"),
-        (vec!["--reference", &none], "--inclusion"),
-        (vec!["--inclusion", &shallow], "--reference"),
+        ("missing.csv", "missing.csv"),
+        ("--reference none", "--inclusion"),
+        ("--inclusion 2.6=2.6", "--reference"),
         (
-            vec!["--reference", &none, "--inclusion", &shallow],
+            "--reference none --inclusion 2.6=2.6",
             "1 inclusions with a map, expected at least two",
         ),
         (
-            vec![
-                "--reference",
-                &none,
-                "--inclusion",
-                &shallow,
-                "--inclusion",
-                &unknown,
-            ],
+            "--reference none --inclusion 2.6=2.6 --inclusion 3.1=2.6",
             "inclusion \"3.1\" is no column of the table",
         ),
         (
-            vec![
-                "--reference",
-                &none,
-                "--inclusion",
-                &shallow,
-                "--inclusion",
-                &shallow,
-            ],
+            "--reference none --inclusion 2.6=2.6 --inclusion 2.6=2.6",
             "has two maps",
         ),
+        ("--reference none --inclusion 2.6", "expected NAME=FILE"),
         (
-            vec!["--reference", &none, "--inclusion", "2.6"],
-            "expected NAME=FILE",
-        ),
-        (
-            vec![
-                "--reference",
-                &none,
-                "--inclusion",
-                &shallow,
-                "--inclusion",
-                &deep,
-                "--sweep-mm",
-                "0",
-            ],
+            "--reference none --inclusion 2.6=2.6 --inclusion 8.6=2.6 --sweep-mm 0",
             "expected mm above 0",
         ),
         (
-            vec![
-                "--reference",
-                &none,
-                "--inclusion",
-                &shallow,
-                "--inclusion",
-                &deep,
-                "--sweep-mm",
-                "0.5",
-            ],
+            "--reference none --inclusion 2.6=2.6 --inclusion 8.6=2.6 --sweep-mm 0.5",
             "1 lateral positions within --sweep-mm, expected at least two",
         ),
-        (vec!["--sweep-mm", "3"], "--reference"),
+        ("--sweep-mm 3", "--reference"),
     ] {
-        let output = palpate(&[&["psychophysics"], &arguments[..]].concat());
+        let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+        command.current_dir(folder()).arg("psychophysics");
+        let output = command.args(arguments.split(' ')).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {said}");
         assert!(
             said.starts_with("palpate: ") && said.contains(message),
             "{said}"

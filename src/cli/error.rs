@@ -2,7 +2,7 @@
 
 use crate::csv::one_line;
 use crate::fem::FemError;
-use crate::psychophysics::{PsychophysicsError, TableError};
+use crate::psychophysics::PsychophysicsError;
 use crate::refusal::Refusal;
 use crate::report::ReportError;
 
@@ -19,7 +19,7 @@ pub enum CliError {
     Refused(#[from] Refusal),
     /// Counts of right answers are not valid.
     #[error("{0}")]
-    Counts(#[from] TableError),
+    Refused(#[from] Refusal),
     /// Counts and maps do not fit.
     #[error("{0}")]
     Psychophysics(#[from] PsychophysicsError),

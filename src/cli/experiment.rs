@@ -1,7 +1,7 @@
 //! `palpate experiment`: two-alternative forced choice (`spec/playback-command.md`).
 
 use std::fmt::Display;
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{BufRead, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -9,14 +9,14 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 
 use super::CliError;
-use super::output::{print, read};
+use super::output::{print, read, write};
 use super::playback::{DeviceArguments, limits};
 use super::progress::bar;
 use crate::force_map::ForceMap;
 use crate::hid::HapticDevice;
 use crate::hid::simulated::Trajectory;
 use crate::psychophysics::{Felt, IdealObserver, Interval, Journal, Setup, Trial, present};
-use crate::servo::{Damping, Limits, LoadedTable};
+use crate::servo::{Limits, LoadedTable};
 
 /// How long a person may take to press the deadman.
 const PATIENCE: Duration = Duration::from_secs(600);
@@ -86,25 +86,8 @@ fn plain_name(text: &str) -> Result<String, String> {
 
 fn noise(text: &str) -> Result<f64, String> {
     let value = text.parse().ok();
-    value
-        .filter(|&value: &f64| value > 0.0 && value.is_finite())
-        .ok_or_else(|| format!("{text:?}: expected N above 0, such as 6"))
-}
-
-/// A map, and the table that plays it.
-struct Sample {
-    map: ForceMap,
-    table: LoadedTable,
-}
-
-impl Sample {
-    /// The map in a file, for a device of this damping.
-    fn read(path: &Path, damping: &Damping, limits: &Limits) -> Result<Sample, CliError> {
-        let map = ForceMap::read(path)?;
-        let table = LoadedTable::passive(map.forces(), damping, limits)
-            .map_err(|error| failed(path.display(), error))?;
-        Ok(Sample { map, table })
-    }
+    let value = value.filter(|&value: &f64| value > 0.0 && value.is_finite());
+    value.ok_or_else(|| format!("{text:?}: expected N above 0, such as 6"))
 }
 
 fn failed(what: impl Display, error: impl Display) -> CliError {
@@ -120,26 +103,8 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
         let message = "--observer ideal has no hand: expected --device sim";
         return Err(CliError::Usage(message.into()));
     }
-    let capabilities = open(arguments)?
-        .capabilities()
-        .map_err(|error| failed("device", error))?;
-    let damping = arguments.device.damping(&capabilities);
-    let limits = limits(4.0)?;
-    let reference = Sample::read(&arguments.reference, &damping, &limits)?;
-    let mut inclusions = Vec::new();
-    for (_, path) in &arguments.inclusion {
-        let inclusion = Sample::read(path, &damping, &limits)?;
-        let checked = inclusion.map.check_reference(&reference.map);
-        checked.map_err(|error| failed(path.display(), error))?;
-        inclusions.push(inclusion);
-    }
-    let (mut journal, mut file) = open_journal(arguments)?;
-    let pairs = Pairs {
-        arguments,
-        reference,
-        inclusions,
-        limits,
-    };
+    let pairs = Pairs::read(arguments)?;
+    let mut journal = open_journal(arguments)?;
     let total = arguments.inclusion.len() * arguments.trials as usize;
     let bar = match arguments.observer {
         Observer::Ideal => bar(total, "pairs"),
@@ -151,62 +116,58 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
                 "{number} of {total} pairs answered; the same command goes on with the next\n"
             ));
         };
-        let line = journal.answer(answer == trial.with_inclusion);
-        file.write_all(line.as_bytes())
-            .and_then(|()| file.flush())
-            .map_err(|error| journal_failed(arguments, "write", error))?;
+        append(
+            &arguments.journal,
+            journal.answer(answer == trial.with_inclusion),
+        )?;
         bar.set_position(number as u64 + 1);
     }
     bar.finish_and_clear();
     print(&journal.table_row().unwrap_or_default())
 }
 
-fn journal_failed(
-    arguments: &ExperimentArguments,
-    action: &'static str,
-    error: std::io::Error,
-) -> CliError {
-    CliError::File {
-        action,
-        path: arguments.journal.display().to_string(),
-        error,
-    }
-}
-
-/// The journal so far, and the file to go on with.
-fn open_journal(arguments: &ExperimentArguments) -> Result<(Journal, File), CliError> {
-    let setup = Setup {
+/// The journal so far.
+fn open_journal(arguments: &ExperimentArguments) -> Result<Journal, CliError> {
+    let names: Vec<&str> = arguments
+        .inclusion
+        .iter()
+        .map(|(name, _)| &name[..])
+        .collect();
+    let mut journal = Journal::new(Setup {
         seed: arguments.seed,
         trials: arguments.trials as usize,
         subject: arguments.subject.clone(),
         condition: arguments.condition.clone(),
-        inclusions: arguments
-            .inclusion
-            .iter()
-            .map(|(name, _)| name.clone())
-            .collect(),
-    };
+        inclusions: names.join(","),
+    });
     let path = &arguments.journal;
-    let journal = if path.exists() {
-        let journal =
-            Journal::parse(&read(path)?).map_err(|error| failed(path.display(), error))?;
-        if *journal.setup() != setup {
-            let found = journal.setup();
-            return Err(failed(
-                path.display(),
-                format!("another experiment ({found}) than asked for ({setup})"),
-            ));
+    if path.exists() {
+        let found = Journal::parse(&read(path)?).map_err(|error| failed(path.display(), error))?;
+        let (of, asked) = (found.setup(), journal.setup());
+        if of != asked {
+            let message = format!("another experiment ({of}) than asked for ({asked})");
+            return Err(failed(path.display(), message));
         }
-        journal
-    } else {
-        Journal::new(setup)
-    };
+        journal = found;
+    }
     // Written anew, since an abort may have left part of a line.
-    let write = |error| journal_failed(arguments, "write", error);
-    super::output::write(path, &journal.to_text())?;
-    let file = OpenOptions::new().append(true).open(path).map_err(write)?;
-    Ok((journal, file))
+    write(path, &journal.to_text())?;
+    Ok(journal)
 }
+
+/// Appends a line to the journal.
+fn append(path: &Path, line: &str) -> Result<(), CliError> {
+    let file = File::options().append(true).open(path);
+    let written = file.and_then(|mut file| file.write_all(line.as_bytes()));
+    written.map_err(|error| CliError::File {
+        action: "write",
+        path: path.display().to_string(),
+        error,
+    })
+}
+
+/// A map, and the table that plays it.
+type Sample = (ForceMap, LoadedTable);
 
 /// The pairs and who judges them.
 struct Pairs<'a> {
@@ -217,6 +178,34 @@ struct Pairs<'a> {
 }
 
 impl Pairs<'_> {
+    /// The maps, checked against the device and one another.
+    fn read(arguments: &ExperimentArguments) -> Result<Pairs<'_>, CliError> {
+        let capabilities = open(arguments)?.capabilities();
+        let capabilities = capabilities.map_err(|error| failed("device", error))?;
+        let damping = arguments.device.damping(&capabilities);
+        let limits = limits(4.0)?;
+        let sample = |path: &Path| {
+            let map = ForceMap::read(path)?;
+            let table = LoadedTable::passive(map.forces(), &damping, &limits);
+            let table = table.map_err(|error| failed(path.display(), error))?;
+            Ok::<Sample, CliError>((map, table))
+        };
+        let reference = sample(&arguments.reference)?;
+        let mut inclusions = Vec::new();
+        for (_, path) in &arguments.inclusion {
+            let inclusion = sample(path)?;
+            let checked = inclusion.0.check_reference(&reference.0);
+            checked.map_err(|error| failed(path.display(), error))?;
+            inclusions.push(inclusion);
+        }
+        Ok(Pairs {
+            arguments,
+            reference,
+            inclusions,
+            limits,
+        })
+    }
+
     /// The answer to a pair; `None` if the person stops.
     fn judge(
         &self,
@@ -224,35 +213,31 @@ impl Pairs<'_> {
         total: usize,
         trial: Trial,
     ) -> Result<Option<Interval>, CliError> {
-        let with = &self.inclusions[trial.inclusion];
-        let [first, second] = match trial.with_inclusion {
-            Interval::First => [with, &self.reference],
-            Interval::Second => [&self.reference, with],
+        let (with, without) = (&self.inclusions[trial.inclusion], &self.reference);
+        let samples = match trial.with_inclusion {
+            Interval::First => [with, without],
+            Interval::Second => [without, with],
         };
-        match self.arguments.noise {
-            Some(noise_sd) if self.arguments.observer == Observer::Ideal => {
-                let observer = IdealObserver {
-                    reference: self.reference.map.forces(),
-                    inclusion: with.map.forces(),
-                    noise_sd,
-                    seed: self.arguments.seed,
-                };
-                let (first, second) = (self.felt(first)?, self.felt(second)?);
-                let answer = observer.choose(&first, &second, number as u64);
-                answer
-                    .map(Some)
-                    .map_err(|error| failed("the ideal observer", error))
-            }
-            _ => self.ask(number, total, first, second),
-        }
+        let is_ideal = self.arguments.observer == Observer::Ideal;
+        let Some(noise_sd) = self.arguments.noise.filter(|_| is_ideal) else {
+            return self.ask(&format!("pair {} of {total}", number + 1), samples);
+        };
+        let observer = IdealObserver {
+            reference: without.0.forces(),
+            inclusion: with.0.forces(),
+            noise_sd,
+            seed: self.arguments.seed,
+        };
+        let [first, second] = samples.map(|sample| self.felt(sample));
+        let answer = observer.choose(&first?, &second?, number as u64);
+        Ok(Some(
+            answer.map_err(|error| failed("the ideal observer", error))?,
+        ))
     }
 
     /// A sample as it is felt.
-    fn felt(&self, sample: &Sample) -> Result<Felt, CliError> {
-        let table = sample
-            .table
-            .table()
-            .map_err(|error| failed("servo", error))?;
+    fn felt(&self, (_, table): &Sample) -> Result<Felt, CliError> {
+        let table = table.table().map_err(|error| failed("servo", error))?;
         let duration = Duration::from_secs(self.arguments.seconds);
         let device = open(self.arguments)?;
         present(device, table, self.limits, duration, PATIENCE)
@@ -260,21 +245,13 @@ impl Pairs<'_> {
     }
 
     /// Lets a person feel both samples, and answer.
-    fn ask(
-        &self,
-        number: usize,
-        total: usize,
-        first: &Sample,
-        second: &Sample,
-    ) -> Result<Option<Interval>, CliError> {
-        for (name, sample) in [("first", first), ("second", second)] {
+    fn ask(&self, pair: &str, samples: [&Sample; 2]) -> Result<Option<Interval>, CliError> {
+        for (name, sample) in ["first", "second"].into_iter().zip(samples) {
             let prompt = format!(
-                "pair {} of {total}, {name} sample: let go of the deadman, press Enter (q ends), then hold it ",
-                number + 1
+                "{pair}, {name} sample: let go of the deadman, press Enter (q ends), then hold it "
             );
-            match line(&prompt) {
-                None => return Ok(None),
-                Some(text) if text == "q" => return Ok(None),
+            match line(&prompt).as_deref() {
+                None | Some("q") => return Ok(None),
                 Some(_) => self.felt(sample)?,
             };
         }

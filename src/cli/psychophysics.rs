@@ -1,7 +1,7 @@
 //! `palpate psychophysics`: counts of right answers, and force maps against them
 //! (`spec/psychophysics-command.md`).
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
@@ -11,8 +11,8 @@ use super::lists::length;
 use super::output::print;
 use super::psychophysics_text::text;
 use super::{CliError, Format};
-use crate::force_map::{ForceMap, SAME_POSITION};
-use crate::psychophysics::bridge::{Bridge, bridge, whole_sweep};
+use crate::force_map::ForceMap;
+use crate::psychophysics::bridge::{Bridge, bridge};
 use crate::psychophysics::{Analysis, NoiseDecomposition, Table, analyse, paper_noise_levels};
 
 /// Arguments of `palpate psychophysics`.
@@ -55,34 +55,19 @@ pub struct Answer {
 ///
 /// Implements: CLI-080, CLI-081, CLI-082, CLI-083, CLI-084, CLI-085.
 pub fn psychophysics(arguments: &PsychophysicsArguments) -> Result<(), CliError> {
-    let table = match &arguments.counts {
-        Some(path) => Table::read(path)?,
-        None => Table::paper()?,
-    };
-    let maps = read_maps(arguments)?;
-    let bridge = match &maps {
-        Some((reference, maps)) => {
-            let named: Vec<_> = maps
-                .iter()
-                .map(|(name, map)| (name.as_str(), map))
-                .collect();
-            Some(bridge(&table, reference, &named)?)
-        }
-        None => None,
-    };
     let path = arguments.counts.as_ref();
+    let table = path.map_or_else(Table::paper, |path| Table::read(path))?;
+    let bridge = arguments.reference.as_ref();
+    let bridge = bridge.map(|reference| against_maps(arguments, &table, reference));
+    let noise_levels = path.is_none().then(paper_noise_levels);
     let answer = Answer {
         schema: "palpate-psychophysics",
         schema_version: 1,
         program_version: env!("CARGO_PKG_VERSION"),
+        bridge: bridge.transpose()?,
         counts: path.map_or("Table 1".into(), |path| path.display().to_string()),
         analysis: analyse(&table)?,
-        noise_levels: if path.is_none() {
-            Some(paper_noise_levels()?)
-        } else {
-            None
-        },
-        bridge,
+        noise_levels: noise_levels.transpose()?,
     };
     print(&match arguments.format {
         Format::Table => text(&answer),
@@ -91,46 +76,19 @@ pub fn psychophysics(arguments: &PsychophysicsArguments) -> Result<(), CliError>
     })
 }
 
-/// The reference and the maps with their names.
-type Maps = (ForceMap, Vec<(String, ForceMap)>);
-
-fn read_maps(arguments: &PsychophysicsArguments) -> Result<Option<Maps>, CliError> {
-    let Some(reference) = &arguments.reference else {
-        return Ok(None);
-    };
-    let read = |path: &PathBuf| -> Result<ForceMap, CliError> {
-        let map = ForceMap::read(path)?;
-        match arguments.sweep_mm {
-            Some(half) => swept(&map, half)
-                .map_err(|error| CliError::Usage(format!("{}: {error}", path.display()))),
-            None => Ok(map),
-        }
-    };
-    let reference = read(reference)?;
+fn against_maps(
+    arguments: &PsychophysicsArguments,
+    table: &Table,
+    reference: &Path,
+) -> Result<Bridge, CliError> {
+    let reference = ForceMap::read(reference)?;
     let mut maps = Vec::new();
     for (name, path) in &arguments.inclusion {
-        let map = read(path)?;
+        let map = ForceMap::read(path)?;
         let checked = map.check_reference(&reference);
         checked.map_err(|error| CliError::Usage(format!("{}: {error}", path.display())))?;
-        maps.push((name.clone(), map));
+        maps.push((name.as_str(), map));
     }
-    Ok(Some((reference, maps)))
-}
-
-/// The part of a map within `half`, m, of x = 0.
-///
-/// Implements: CLI-083.
-fn swept(map: &ForceMap, half: f64) -> Result<ForceMap, String> {
-    let whole = whole_sweep(map).map_err(|error| error.to_string())?;
-    let inside = |x: &f64| x.abs() <= half + SAME_POSITION;
-    let laterals: Vec<f64> = whole.laterals().iter().copied().filter(inside).collect();
-    if laterals.len() < 2 {
-        return Err(format!(
-            "{} lateral positions within --sweep-mm, expected at least two",
-            laterals.len()
-        ));
-    }
-    whole
-        .at_laterals(&laterals)
-        .map_err(|error| error.to_string())
+    let named: Vec<_> = maps.iter().map(|(name, map)| (*name, map)).collect();
+    Ok(bridge(table, &reference, &named, arguments.sweep_mm)?)
 }

@@ -3,8 +3,8 @@
 use super::psychophysics::Answer;
 use crate::psychophysics::bridge::{Bridge, ConditionBridge, ConventionFit, WeightFit};
 use crate::psychophysics::{
-    Bounds, ConditionAnalysis, ConditionComparison, InclusionAnalysis, NoiseDecomposition,
-    OpenBounds, Parameter, Psychometric, SubjectAnalysis,
+    Bounds, ConditionAnalysis, ConditionComparison, Difference, InclusionAnalysis,
+    NoiseDecomposition, OpenBounds, Parameter, Psychometric,
 };
 
 /// The whole answer.
@@ -24,107 +24,56 @@ pub fn text(answer: &Answer) -> String {
 }
 
 fn condition(condition: &ConditionAnalysis) -> String {
-    let mut rows = vec![[
-        "inclusion".into(),
-        "right".into(),
-        "share".into(),
-        "Clopper-Pearson".into(),
-        "Wilson".into(),
-        "subjects as sample".into(),
-        "gamma".into(),
-        "chi2/df".into(),
-        "p".into(),
-        "rho".into(),
-    ]];
-    rows.extend(condition.inclusions.iter().map(inclusion));
+    let over_all = condition.dispersion;
+    let over_all = over_all.map(|ratio| format!(", chi2/df {ratio:.2} over all"));
     let mut text = format!(
-        "{} ({} subjects{})\n{}",
+        "{} ({} subjects{})\n",
         condition.name,
         condition.subjects.len(),
-        condition.dispersion.map_or(String::new(), |ratio| format!(
-            ", chi2/df {ratio:.2} over all"
-        )),
-        columns(&rows)
+        over_all.unwrap_or_default()
     );
-    if condition
-        .inclusions
-        .iter()
-        .any(|i| i.dispersion.is_some_and(|d| d.is_rough))
-    {
+    text += &table(
+        "inclusion|right|share|Clopper-Pearson|Wilson|subjects as sample|gamma|chi2/df|p|rho",
+        condition.inclusions.iter().map(inclusion),
+    );
+    let mut dispersions = condition.inclusions.iter().filter_map(|of| of.dispersion);
+    if dispersions.any(|found| found.is_rough) {
         text += "  * p is rough: a subject's expected count of wrong answers is below 5\n";
     }
     text += &match &condition.psychometric {
         Some(found) => psychometric(found),
         None => "  no psychometric function: it needs three depths and answers of two subjects that are not all right\n".into(),
     };
-    text + &subjects(condition)
+    let names = row(&["subject"], &condition.inclusions, |of| of.name.clone());
+    let subjects = condition.subjects.iter().map(|subject| {
+        row(&[&subject.name], &subject.rates, |of| {
+            let exact = bounds(of.clopper_pearson);
+            format!("{}/{} {exact}", of.correct, of.trials)
+        })
+    });
+    text + &columns(&[names].into_iter().chain(subjects).collect::<Vec<_>>())
 }
 
-fn inclusion(inclusion: &InclusionAnalysis) -> [String; 10] {
+fn inclusion(inclusion: &InclusionAnalysis) -> Vec<String> {
     let pooled = &inclusion.pooled;
-    let none = || "-".to_string();
-    [
+    let gamma = or_dash(pooled.gamma.gamma, |gamma| format!("{gamma:.2}"));
+    vec![
         inclusion.name.clone(),
         format!("{}/{}", pooled.correct, pooled.trials),
         format!("{:.3}", pooled.rate),
         bounds(pooled.clopper_pearson),
         bounds(pooled.wilson),
-        inclusion
-            .clustered
-            .map_or_else(none, |found| bounds(found.bounds)),
-        format!(
-            "{} {}",
-            pooled
-                .gamma
-                .gamma
-                .map_or_else(none, |gamma| format!("{gamma:.2}")),
-            open(
-                OpenBounds {
-                    lower: pooled.gamma.lower,
-                    upper: pooled.gamma.upper
-                },
-                1.0,
-                2
-            )
-        ),
-        inclusion
-            .dispersion
-            .map_or_else(none, |found| format!("{:.2}", found.ratio)),
-        inclusion.dispersion.map_or_else(none, |found| {
+        or_dash(inclusion.clustered, |found| bounds(found.bounds)),
+        format!("{gamma} {}", open(pooled.gamma.bounds, 1.0, 2)),
+        or_dash(inclusion.dispersion, |found| format!("{:.2}", found.ratio)),
+        or_dash(inclusion.dispersion, |found| {
             p_value(Some(found.p_value)) + if found.is_rough { " *" } else { "" }
         }),
-        inclusion.beta_binomial.map_or_else(none, |found| {
-            format!(
-                "{:.3} {}",
-                found.correlation,
-                open(found.correlation_bounds, 1.0, 3)
-            )
+        or_dash(inclusion.beta_binomial, |found| {
+            let ends = open(found.correlation_bounds, 1.0, 3);
+            format!("{:.3} {ends}", found.correlation)
         }),
     ]
-}
-
-fn subjects(condition: &ConditionAnalysis) -> String {
-    let mut header = vec!["subject".to_string()];
-    header.extend(
-        condition
-            .inclusions
-            .iter()
-            .map(|inclusion| inclusion.name.clone()),
-    );
-    let mut rows = vec![header];
-    rows.extend(condition.subjects.iter().map(|subject: &SubjectAnalysis| {
-        let mut row = vec![subject.name.clone()];
-        row.extend(subject.rates.iter().map(|rate| {
-            format!(
-                "{}/{} {}",
-                rate.correct,
-                rate.trials,
-                bounds(rate.clopper_pearson)
-            )
-        }));
-        row
-    }));
-    columns(&rows)
 }
 
 fn psychometric(found: &Psychometric) -> String {
@@ -149,85 +98,44 @@ fn psychometric(found: &Psychometric) -> String {
 }
 
 fn comparisons(comparisons: &[ConditionComparison]) -> Option<String> {
-    let mut rows = vec![
-        [
-            "difference of shares",
-            "inclusion",
-            "mean",
-            "subjects as sample",
-            "p, signs exchanged",
-            "p, Holm",
+    let row = |pair: String, inclusion: &str, difference: &Difference, holm: String| {
+        vec![
+            pair,
+            inclusion.into(),
+            format!("{:+.3}", difference.mean),
+            or_dash(difference.bounds, bounds),
+            p_value(difference.p_value),
+            holm,
         ]
-        .map(String::from),
-    ];
-    for comparison in comparisons {
-        let pair = format!("{} - {}", comparison.first, comparison.second);
-        let overall = &comparison.overall;
-        rows.push(row_of(
-            &pair,
-            "all",
-            overall,
-            p_value(comparison.p_value_holm),
-        ));
-        for found in &comparison.by_inclusion {
-            rows.push(row_of(
-                "",
-                &found.inclusion,
-                &found.difference,
-                String::new(),
-            ));
-        }
-    }
-    (rows.len() > 1).then(|| {
-        format!(
-            "Conditions, each subject against itself (the order in which a subject met the conditions is not known)\n{}",
-            columns(&rows)
-        )
-    })
-}
-
-fn row_of(
-    pair: &str,
-    inclusion: &str,
-    difference: &crate::psychophysics::Difference,
-    holm: String,
-) -> [String; 6] {
-    [
-        pair.into(),
-        inclusion.into(),
-        format!("{:+.3}", difference.mean),
-        difference.bounds.map_or("-".into(), bounds),
-        p_value(difference.p_value),
-        holm,
-    ]
+    };
+    let rows = comparisons.iter().flat_map(|of| {
+        let pair = format!("{} - {}", of.first, of.second);
+        let mut rows = vec![row(pair, "all", &of.overall, p_value(of.p_value_holm))];
+        let each = of.by_inclusion.iter();
+        let none = String::new;
+        rows.extend(each.map(|of| row(none(), &of.inclusion, &of.difference, none())));
+        rows
+    });
+    let header =
+        "difference of shares|inclusion|mean|subjects as sample|p, signs exchanged|p, Holm";
+    let title = "Conditions, each subject against itself (the order in which a subject met the conditions is not known)\n";
+    (!comparisons.is_empty()).then(|| title.to_string() + &table(header, rows))
 }
 
 fn noise_levels(found: &NoiseDecomposition) -> String {
-    let mut rows = vec![
-        [
-            "noise, mN",
-            "paper",
-            "here",
-            "all pooled",
-            "subjects as sample",
-            "formula",
-        ]
-        .map(String::from),
-    ];
     let milli = |bounds: Option<OpenBounds>| bounds.map_or(String::new(), |b| open(b, 1e3, 0));
-    rows.extend(found.levels.iter().map(|level| {
-        [
+    let levels = found.levels.iter().map(|level| {
+        vec![
             level.name.into(),
-            level
-                .printed
-                .map_or("-".into(), |noise| format!("{:.0}", 1e3 * noise)),
+            or_dash(level.printed, |noise| format!("{:.0}", 1e3 * noise)),
             format!("{:.1}", 1e3 * level.noise),
             milli(level.pooled_bounds),
             milli(level.clustered_bounds),
             level.formula.clone(),
         ]
-    }));
-    let mut text = format!("Noise levels of the paper's section 5\n{}", columns(&rows));
+    });
+    let header = "noise, mN|paper|here|all pooled|subjects as sample|formula";
+    let mut text = "Noise levels of the paper's section 5\n".to_string() + &table(header, levels);
     for level in &found.levels {
         text += &format!("  {}: assumes that {}\n", level.name, level.assumption);
     }
@@ -242,34 +150,21 @@ fn bridge(bridge: &Bridge) -> String {
         1e3 * bridge.from,
         1e3 * bridge.to
     );
-    text.extend(
-        bridge
-            .probe_depth_note
-            .iter()
-            .map(|note| format!("  {note}\n")),
+    let note = bridge.probe_depth_note.iter();
+    text.extend(note.map(|note| format!("  {note}\n")));
+    text += &table(
+        "inclusion|normal: peak, N|at, mm|mean, N|lateral: peak, N|at, mm",
+        bridge.inclusions.iter().map(|found| {
+            vec![
+                found.name.clone(),
+                format!("{:.3}", found.peak_normal),
+                format!("{:.1}", 1e3 * found.peak_normal_at),
+                format!("{:.3}", found.mean_normal),
+                format!("{:.3}", found.peak_lateral),
+                format!("{:.1}", 1e3 * found.peak_lateral_at),
+            ]
+        }),
     );
-    let mut rows = vec![
-        [
-            "inclusion",
-            "normal: peak, N",
-            "at, mm",
-            "mean, N",
-            "lateral: peak, N",
-            "at, mm",
-        ]
-        .map(String::from),
-    ];
-    rows.extend(bridge.inclusions.iter().map(|found| {
-        [
-            found.name.clone(),
-            format!("{:.3}", found.peak_normal),
-            format!("{:.1}", 1e3 * found.peak_normal_at),
-            format!("{:.3}", found.mean_normal),
-            format!("{:.3}", found.peak_lateral),
-            format!("{:.1}", 1e3 * found.peak_lateral_at),
-        ]
-    }));
-    text += &columns(&rows);
     text += "  The maps are what the subjects felt only where the maps were played back.\n";
     for condition in &bridge.conditions {
         text += &format!("\n{}", bridge_condition(condition, bridge));
@@ -278,46 +173,26 @@ fn bridge(bridge: &Bridge) -> String {
 }
 
 fn bridge_condition(condition: &ConditionBridge, bridge: &Bridge) -> String {
-    let mut header: Vec<String> = vec![condition.name.clone(), "noise, N".into()];
-    header.extend(
-        bridge
-            .inclusions
-            .iter()
-            .map(|inclusion| inclusion.name.clone()),
-    );
-    header.extend(["p, one noise", "p, by subject", "lapse", "p", ""].map(String::from));
-    let mut observed = vec!["counted".into(), String::new()];
-    observed.extend(
-        condition
-            .observed
-            .iter()
-            .map(|found| format!("{:.3}", found.rate)),
-    );
-    let mut subjects = vec!["  subjects as sample".into(), String::new()];
-    subjects.extend(
-        condition
-            .observed
-            .iter()
-            .map(|found| found.clustered_bounds.map_or("-".into(), bounds)),
-    );
-    let mut noise = vec!["  peak normal force/gamma, N".into(), String::new()];
-    noise.extend(condition.noise_by_inclusion.iter().map(|found| {
-        let value = found
-            .noise
-            .map_or("-".into(), |noise| format!("{noise:.3}"));
-        format!("{value} {}", open(found.pooled_bounds, 1.0, 2))
-    }));
-    let mut clustered = vec!["  subjects as sample".into(), String::new()];
-    clustered.extend(condition.noise_by_inclusion.iter().map(|found| {
-        found
-            .clustered_bounds
-            .map_or("-".into(), |found| open(found, 1.0, 2))
-    }));
-    let mut rows = vec![header, observed, subjects, noise, clustered];
+    let (observed, noise) = (&condition.observed, &condition.noise_by_inclusion);
+    let mut header = row(&[&condition.name, "noise, N"], &bridge.inclusions, |of| {
+        of.name.clone()
+    });
+    header.extend(["p, one noise", "p, by subject", "lapse", "p"].map(String::from));
+    let mut rows = vec![
+        header,
+        row(&["counted", ""], observed, |of| format!("{:.3}", of.rate)),
+        row(&["  subjects as sample", ""], observed, |of| {
+            or_dash(of.clustered_bounds, bounds)
+        }),
+        row(&["  peak normal force/gamma, N", ""], noise, |of| {
+            let value = or_dash(of.noise, |noise| format!("{noise:.3}"));
+            format!("{value} {}", open(of.pooled_bounds, 1.0, 2))
+        }),
+        row(&["  subjects as sample", ""], noise, |of| {
+            or_dash(of.clustered_bounds, |found| open(found, 1.0, 2))
+        }),
+    ];
     rows.extend(condition.conventions.iter().map(convention));
-    for row in &mut rows {
-        row.resize(7 + bridge.inclusions.len(), String::new());
-    }
     let mut text = format!("{}  {}\n", columns(&rows), condition.verdict.text);
     if let Some(survives) = &condition.verdict.survives {
         text += &format!("\n{}  {survives}\n", weights(condition));
@@ -327,26 +202,10 @@ fn bridge_condition(condition: &ConditionBridge, bridge: &Bridge) -> String {
 
 /// The weights that the level of the normal force may have.
 fn weights(condition: &ConditionBridge) -> String {
-    let mut rows = vec![
-        [
-            "weight of the level",
-            "sweep, mm",
-            "left",
-            "best",
-            "deviance: whole level",
-            "p",
-            "less its mean",
-            "lateral",
-            "fits worst",
-        ]
-        .map(String::from),
-    ];
-    let deviance = |fit: Option<WeightFit>| {
-        fit.map_or("-".into(), |fit: WeightFit| format!("{:.1}", fit.deviance))
-    };
-    rows.extend(condition.weights.iter().map(|range| {
+    let deviance = |fit: Option<WeightFit>| or_dash(fit, |fit| format!("{:.1}", fit.deviance));
+    let rows = condition.weights.iter().map(|range| {
         let whole = range.whole_level;
-        [
+        vec![
             range.statistic.text().into(),
             format!("±{:.0}", 1e3 * range.half_sweep),
             format!("{:.2}-{:.2}", range.left.lower, range.left.upper),
@@ -355,53 +214,64 @@ fn weights(condition: &ConditionBridge) -> String {
             p_value(whole.and_then(|fit| fit.p_value_dispersed)),
             deviance(range.no_level),
             deviance(range.lateral),
-            range.fits_worst.map_or("-".into(), |worst| worst.text()),
+            or_dash(range.fits_worst, |worst| worst.text()),
         ]
-    }));
-    columns(&rows)
+    });
+    table(
+        "weight of the level|sweep, mm|left|best|deviance: whole level|p|less its mean|lateral|fits worst",
+        rows,
+    )
 }
 
 fn convention(fit: &ConventionFit) -> Vec<String> {
     let mut row = vec![fit.name.clone()];
-    match &fit.common {
-        Some(common) => {
-            row.push(format!("{:.3}", common.noise));
-            row.extend(common.predicted.iter().map(|share| format!("{share:.3}")));
-            row.push(p_value(
-                common.p_value_clustered.or(common.p_value_dispersed),
-            ));
-        }
-        None => row.resize(3 + fit.signals.len(), "-".into()),
+    if let Some(common) = &fit.common {
+        row.push(format!("{:.3}", common.noise));
+        row.extend(common.predicted.iter().map(|share| format!("{share:.3}")));
+        row.push(p_value(
+            common.p_value_clustered.or(common.p_value_dispersed),
+        ));
     }
+    row.resize(3 + fit.signals.len(), "-".into());
     let with_lapse = &fit.by_subject_with_lapse;
     row.extend([
         p_value(Some(fit.by_subject.p_value)),
         format!("{:.3}", with_lapse.lapse),
         p_value(Some(with_lapse.p_value)),
-        if fit.is_rejected {
-            "rejected".into()
-        } else {
-            String::new()
-        },
     ]);
+    row.extend(fit.is_rejected.then(|| "rejected".into()));
     row
 }
 
-/// Lines of left-aligned columns.
-fn columns<Row: AsRef<[String]>>(rows: &[Row]) -> String {
+/// Lines of left-aligned columns under the headings, which | separates.
+fn table(headings: &str, rows: impl Iterator<Item = Vec<String>>) -> String {
+    let headings = headings.split('|').map(String::from).collect();
+    columns(&[headings].into_iter().chain(rows).collect::<Vec<_>>())
+}
+
+/// A row with a cell for each of some things.
+fn row<T>(first: &[&str], things: &[T], text: impl Fn(&T) -> String) -> Vec<String> {
+    let first = first.iter().map(|cell| cell.to_string());
+    first.chain(things.iter().map(text)).collect()
+}
+
+/// Lines of left-aligned columns; a row may have fewer than others.
+fn columns(rows: &[Vec<String>]) -> String {
     let width = |column: usize| {
-        let cells = rows.iter().filter_map(|row| row.as_ref().get(column));
+        let cells = rows.iter().filter_map(|row| row.get(column));
         cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
     };
-    let line = |row: &Row| {
-        let cells = row.as_ref().iter().enumerate();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().enumerate();
         let padded = cells.map(|(column, cell)| format!("{cell:<0$}", width(column)));
-        format!("  {}", padded.collect::<Vec<_>>().join("  "))
-            .trim_end()
-            .to_string()
-            + "\n"
+        let line = format!("  {}", padded.collect::<Vec<_>>().join("  "));
+        line.trim_end().to_string() + "\n"
     };
     rows.iter().map(line).collect()
+}
+
+fn or_dash<T>(found: Option<T>, text: impl FnOnce(T) -> String) -> String {
+    found.map_or("-".into(), text)
 }
 
 fn bounds(found: Bounds) -> String {
@@ -416,9 +286,8 @@ fn open(found: OpenBounds, scale: f64, digits: usize) -> String {
 }
 
 fn p_value(p: Option<f64>) -> String {
-    match p {
-        None => "-".into(),
-        Some(p) if p < 1e-3 => format!("{p:.0e}"),
-        Some(p) => format!("{p:.3}"),
-    }
+    or_dash(p, |p| match p < 1e-3 {
+        true => format!("{p:.0e}"),
+        false => format!("{p:.3}"),
+    })
 }

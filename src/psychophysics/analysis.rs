@@ -4,21 +4,12 @@ use serde::Serialize;
 
 use super::beta_binomial::{BetaBinomial, beta_binomial};
 use super::conditions::{ConditionComparison, comparisons};
-use super::dispersion::{Dispersion, Overdispersion, dispersion, overall_dispersion};
+use super::dispersion::{Dispersion, Overdispersion, dispersion};
 use super::psychometric::{Psychometric, psychometric};
-use super::rates::{CONFIDENCE, Clustered, Rate, clustered};
-use super::{Condition, Inclusion, PsychophysicsError, Subject, Table};
+use super::rates::{CONFIDENCE, Clustered, Rate, pooled};
+use super::{Condition, Inclusion, Result, Subject, Table};
 
 /// The analysis of a table of counts.
-///
-/// ```
-/// use palpate::psychophysics::{Table, analyse};
-///
-/// let analysis = analyse(&Table::paper()?)?;
-/// // Three conditions make three pairs.
-/// assert_eq!((analysis.conditions.len(), analysis.comparisons.len()), (3, 3));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Analysis {
     /// The confidence of every interval.
@@ -30,17 +21,6 @@ pub struct Analysis {
 }
 
 /// One condition.
-///
-/// ```
-/// use palpate::psychophysics::{Table, analyse};
-///
-/// let condition = &analyse(&Table::paper()?)?.conditions[0];
-/// assert_eq!(condition.name, "direct contact");
-/// assert_eq!((condition.inclusions.len(), condition.subjects.len()), (4, 10));
-/// // Subjects differ more than chance allows.
-/// assert!(condition.dispersion > Some(2.0));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConditionAnalysis {
     /// Its name: untrusted text.
@@ -58,15 +38,6 @@ pub struct ConditionAnalysis {
 }
 
 /// All subjects at one inclusion.
-///
-/// ```
-/// use palpate::psychophysics::{Table, analyse};
-///
-/// let inclusion = &analyse(&Table::paper()?)?.conditions[1].inclusions[2];
-/// assert_eq!((inclusion.name.as_str(), inclusion.depth), ("6.6", 0.0066));
-/// assert!((inclusion.pooled.rate - 0.843).abs() < 1e-3);
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InclusionAnalysis {
     /// Its name: untrusted text.
@@ -86,14 +57,6 @@ pub struct InclusionAnalysis {
 }
 
 /// One subject.
-///
-/// ```
-/// use palpate::psychophysics::{Table, analyse};
-///
-/// let subject = &analyse(&Table::paper()?)?.conditions[0].subjects[6];
-/// assert_eq!((subject.name.as_str(), subject.rates[3].rate), ("7", 13.0 / 30.0));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SubjectAnalysis {
     /// The name: untrusted text.
@@ -115,7 +78,7 @@ pub struct SubjectAnalysis {
 ///
 /// # Errors
 /// Never for counts that fit their trials, as a [`Table`] holds them.
-pub fn analyse(table: &Table) -> Result<Analysis, PsychophysicsError> {
+pub fn analyse(table: &Table) -> Result<Analysis> {
     let conditions = table.conditions().iter();
     Ok(Analysis {
         confidence: CONFIDENCE,
@@ -126,10 +89,7 @@ pub fn analyse(table: &Table) -> Result<Analysis, PsychophysicsError> {
     })
 }
 
-fn analyse_condition(
-    table: &Table,
-    condition: &Condition,
-) -> Result<ConditionAnalysis, PsychophysicsError> {
+fn analyse_condition(table: &Table, condition: &Condition) -> Result<ConditionAnalysis> {
     let columns = table.inclusions().iter().enumerate();
     let inclusions = columns
         .map(|(column, inclusion)| analyse_inclusion(inclusion, condition, column))
@@ -142,18 +102,14 @@ fn analyse_condition(
         })
     };
     let subjects = condition.subjects.iter().map(subject);
-    let dispersion = overall_dispersion(condition, table.inclusions().len())?;
+    let dispersion = Overdispersion::new(condition, table.inclusions().len())?;
     Ok(ConditionAnalysis {
         name: condition.name.clone(),
         inclusions,
-        subjects: subjects.collect::<Result<_, PsychophysicsError>>()?,
-        dispersion: dispersion.map(|(ratio, _)| ratio),
-        dispersion_degrees: dispersion.map_or(0, |(_, degrees)| degrees),
-        psychometric: psychometric(
-            table.inclusions(),
-            condition,
-            dispersion.map(Overdispersion::from),
-        )?,
+        subjects: subjects.collect::<Result<_>>()?,
+        dispersion: dispersion.map(|found| found.ratio),
+        dispersion_degrees: dispersion.map_or(0, |found| found.degrees),
+        psychometric: psychometric(table.inclusions(), condition, dispersion)?,
     })
 }
 
@@ -161,16 +117,15 @@ fn analyse_inclusion(
     inclusion: &Inclusion,
     condition: &Condition,
     column: usize,
-) -> Result<InclusionAnalysis, PsychophysicsError> {
+) -> Result<InclusionAnalysis> {
     let counts = condition.counts(column);
-    let (correct, trials) = condition.pooled(column);
-    let pooled = Rate::new(correct, trials)?;
+    let (pooled, clustered) = pooled(condition, column)?;
     Ok(InclusionAnalysis {
         name: inclusion.name.clone(),
         depth: inclusion.depth,
-        clustered: clustered(&counts, &pooled)?,
+        pooled,
+        clustered,
         dispersion: dispersion(&counts)?,
         beta_binomial: beta_binomial(&counts)?,
-        pooled,
     })
 }

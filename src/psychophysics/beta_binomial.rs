@@ -9,9 +9,9 @@
 
 use serde::Serialize;
 
-use super::PsychophysicsError;
+use super::Result;
 use super::rates::{Bounds, CONFIDENCE, OpenBounds};
-use super::search::{change, crossing, maximum};
+use super::search::{change, crossing, interval, maximum};
 use crate::stats::normal;
 use crate::stats::tails::chi_square_tail;
 
@@ -21,19 +21,6 @@ const LARGEST_CORRELATION: f64 = 0.9999;
 const CELLS: u32 = 12;
 
 /// The beta-binomial law that fits the subjects best.
-///
-/// ```
-/// use palpate::psychophysics::{BetaBinomial, Table, analyse};
-///
-/// let analysis = analyse(&Table::paper()?)?;
-/// let at_8_6 = |condition: usize| analysis.conditions[condition].inclusions[3].beta_binomial;
-/// // Direct contact: subjects differ. Measured data: no more than chance, and near guessing.
-/// assert!(at_8_6(0).is_some_and(|law| law.correlation > 0.0 && law.p_value < 0.05));
-/// assert!(at_8_6(2).is_some_and(|BetaBinomial { correlation, is_binomial, rate, .. }| {
-///     correlation == 0.0 && is_binomial && (rate - 174.0 / 300.0).abs() < 1e-6
-/// }));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BetaBinomial {
     /// The mean probability of a right answer.
@@ -60,7 +47,7 @@ pub struct BetaBinomial {
 /// Never for counts that fit their trials.
 ///
 /// Implements: PSY-032, PSY-033.
-pub fn beta_binomial(counts: &[(u32, u32)]) -> Result<Option<BetaBinomial>, PsychophysicsError> {
+pub fn beta_binomial(counts: &[(u32, u32)]) -> Result<Option<BetaBinomial>> {
     let likelihood = Likelihood::new(counts);
     if counts.len() < 2 || likelihood.right.is_empty() || likelihood.wrong.is_empty() {
         return Ok(None);
@@ -72,35 +59,24 @@ pub fn beta_binomial(counts: &[(u32, u32)]) -> Result<Option<BetaBinomial>, Psyc
     let deviance_gain = 2.0 * (top - binomial).max(0.0);
     let z = normal::quantile(0.5 + 0.5 * CONFIDENCE)?;
     let floor = top - 0.5 * z * z;
-    let correlation_bounds = OpenBounds {
-        lower: Some(if binomial >= floor {
-            0.0
-        } else {
-            crossing(|rho| of_correlation(rho) - floor, correlation, 0.0)
-        }),
-        upper: (of_correlation(LARGEST_CORRELATION) < floor).then(|| {
-            crossing(
-                |rho| of_correlation(rho) - floor,
-                correlation,
-                LARGEST_CORRELATION,
-            )
-        }),
-    };
-    let of_rate = |p| best_correlation(|rho| likelihood.value(p, rho)).1;
+    let at_rate = |p| best_correlation(|rho| likelihood.value(p, rho)).1 - floor;
+    let range = [0.0, LARGEST_CORRELATION];
+    let mut correlation_bounds = interval(of_correlation, floor, correlation, range);
+    // No correlation is the end of the range, not a bound that is missing.
+    correlation_bounds.lower = correlation_bounds.lower.or(Some(0.0));
     Ok(Some(BetaBinomial {
         rate,
         rate_bounds: Bounds {
-            lower: crossing(|p| of_rate(p) - floor, rate, 0.0),
-            upper: crossing(|p| of_rate(p) - floor, rate, 1.0),
+            lower: crossing(at_rate, rate, 0.0),
+            upper: crossing(at_rate, rate, 1.0),
         },
         correlation,
         correlation_bounds,
         is_binomial: correlation == 0.0,
         deviance_gain,
-        p_value: if deviance_gain > 0.0 {
-            0.5 * chi_square_tail(deviance_gain, 1.0)?
-        } else {
-            1.0
+        p_value: match deviance_gain > 0.0 {
+            true => 0.5 * chi_square_tail(deviance_gain, 1.0)?,
+            false => 1.0,
         },
     }))
 }
@@ -135,24 +111,25 @@ impl Likelihood {
 
     /// The log-likelihood but for a constant.
     fn value(&self, rate: f64, correlation: f64) -> f64 {
-        let theta = correlation / (1.0 - correlation);
-        let sum = |weights: &[f64], first: f64| {
-            let term = |(r, weight): (usize, &f64)| weight * libm::log(first + r as f64 * theta);
-            weights.iter().enumerate().map(term).sum::<f64>()
-        };
+        let sum = |weights, first| sum(weights, first, correlation, |w, p| w * libm::log(p));
         sum(&self.right, rate) + sum(&self.wrong, 1.0 - rate) - sum(&self.trials, 1.0)
     }
 
     /// The mean with the largest likelihood for a given ρ: the derivative falls from +∞ to −∞.
     fn best_rate(&self, correlation: f64) -> f64 {
-        let theta = correlation / (1.0 - correlation);
-        let slope = |weights: &[f64], first: f64| {
-            let term = |(r, weight): (usize, &f64)| weight / (first + r as f64 * theta);
-            weights.iter().enumerate().map(term).sum::<f64>()
-        };
+        let slope = |weights, first| sum(weights, first, correlation, |w, p| w / p);
         let rises = |rate: f64| slope(&self.right, rate) > slope(&self.wrong, 1.0 - rate);
         change(rises, 0.0, 1.0)
     }
+}
+
+/// Σ term(weightᵣ, first + rθ).
+fn sum(weights: &[f64], first: f64, correlation: f64, term: impl Fn(f64, f64) -> f64) -> f64 {
+    let theta = correlation / (1.0 - correlation);
+    let weights = weights.iter().enumerate();
+    weights
+        .map(|(r, &weight)| term(weight, first + r as f64 * theta))
+        .sum()
 }
 
 #[cfg(test)]

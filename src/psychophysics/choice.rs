@@ -4,7 +4,7 @@
 use super::search::change;
 
 /// Right answers and pairs at one inclusion.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Count {
     /// Right answers.
     pub right: f64,
@@ -19,10 +19,15 @@ impl Count {
         Count { right, wrong }
     }
 
+    /// The pairs.
+    pub fn trials(self) -> f64 {
+        self.right + self.wrong
+    }
+
     /// The log-likelihood at its largest, with a share of its own.
     pub fn saturated(self) -> f64 {
-        let trials = self.right + self.wrong;
-        times_log(self.right, self.right / trials) + times_log(self.wrong, self.wrong / trials)
+        let of = |n: f64| times_log(n, n / self.trials());
+        of(self.right) + of(self.wrong)
     }
 }
 
@@ -67,12 +72,16 @@ impl Perceived {
     }
 }
 
+/// Twice the log-likelihood that a share of its own for each of `counts` gains.
+pub fn deviance<'a>(counts: impl IntoIterator<Item = &'a Count>, log_likelihood: f64) -> f64 {
+    let saturated: f64 = counts.into_iter().map(|count| count.saturated()).sum();
+    2.0 * (saturated - log_likelihood).max(0.0)
+}
+
 /// The log-likelihood of counts at several inclusions.
 pub fn log_likelihood(counts: &[Count], perceived: &[Perceived], lapse: f64) -> f64 {
-    let pairs = counts.iter().zip(perceived);
-    pairs
-        .map(|(&count, perceived)| perceived.log_likelihood(count, lapse))
-        .sum()
+    let of = |(&count, perceived): (&Count, &Perceived)| perceived.log_likelihood(count, lapse);
+    counts.iter().zip(perceived).map(of).sum()
 }
 
 /// The share of lapses, from 0 to ½, with the largest likelihood, which is concave in it.

@@ -2,22 +2,13 @@
 
 use serde::Serialize;
 
-use super::{Condition, PsychophysicsError};
+use super::{Condition, Result};
 use crate::stats::tails::{chi_square_tail, f_tail};
 
 /// Expected counts below this make the chi-square law rough (Cochran's rule).
 const ROUGH_BELOW: f64 = 5.0;
 
 /// χ² of the subjects against one share of right answers for all.
-///
-/// ```
-/// use palpate::psychophysics::dispersion;
-///
-/// // With 4 pairs a subject the chi-square law is rough.
-/// let found = dispersion(&[(1, 4), (3, 4)])?;
-/// assert!(found.is_some_and(|found| found.smallest_expected == 2.0 && found.is_rough));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Dispersion {
     /// Σ (kᵢ − nᵢp̂)²/(nᵢ p̂ (1−p̂)).
@@ -51,7 +42,7 @@ pub struct Dispersion {
 /// Never for counts that fit their trials.
 ///
 /// Implements: PSY-031, ERR-007.
-pub fn dispersion(counts: &[(u32, u32)]) -> Result<Option<Dispersion>, PsychophysicsError> {
+pub fn dispersion(counts: &[(u32, u32)]) -> Result<Option<Dispersion>> {
     let sum = |part: fn(&(u32, u32)) -> u32| counts.iter().map(part).map(f64::from).sum::<f64>();
     let (correct, trials) = (sum(|count| count.0), sum(|count| count.1));
     if counts.len() < 2 || correct == 0.0 || correct == trials {
@@ -76,56 +67,50 @@ pub fn dispersion(counts: &[(u32, u32)]) -> Result<Option<Dispersion>, Psychophy
     }))
 }
 
-/// χ² per degree of freedom over the first `inclusions` columns, and its degrees of freedom; `None` where
-/// no inclusion has a χ².
-///
-/// # Errors
-/// As [`dispersion`].
-///
-/// Implements: PSY-034.
-pub fn overall_dispersion(
-    condition: &Condition,
-    inclusions: usize,
-) -> Result<Option<(f64, u32)>, PsychophysicsError> {
-    let (mut chi_square, mut degrees) = (0.0, 0);
-    for column in 0..inclusions {
-        if let Some(found) = dispersion(&condition.counts(column))? {
-            chi_square += found.chi_square;
-            degrees += found.degrees;
-        }
-    }
-    Ok((degrees > 0).then(|| (chi_square / f64::from(degrees), degrees)))
-}
-
-/// How much the subjects of a condition differ: φ and its degrees of freedom.
+/// How much the subjects of a condition differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overdispersion {
-    /// χ² per degree of freedom, at least 1.
-    pub factor: f64,
+    /// χ² per degree of freedom.
+    pub ratio: f64,
     /// Its degrees of freedom.
-    pub degrees: f64,
+    pub degrees: u32,
 }
 
 impl Overdispersion {
+    /// χ² over the first `inclusions` columns; `None` where no inclusion has one.
+    ///
+    /// # Errors
+    /// As [`dispersion`].
+    ///
+    /// Implements: PSY-034.
+    pub fn new(condition: &Condition, inclusions: usize) -> Result<Option<Self>> {
+        let (mut chi_square, mut degrees) = (0.0, 0);
+        for column in 0..inclusions {
+            if let Some(found) = dispersion(&condition.counts(column))? {
+                chi_square += found.chi_square;
+                degrees += found.degrees;
+            }
+        }
+        let ratio = chi_square / f64::from(degrees);
+        Ok((degrees > 0).then_some(Overdispersion { ratio, degrees }))
+    }
+
+    /// φ, at least 1: answers that vary less than chance allows are no reason for narrower intervals.
+    ///
+    /// Implements: PSY-034.
+    pub fn factor(self) -> f64 {
+        self.ratio.max(1.0)
+    }
+
     /// The p-value of a deviance by the F law; `None` without degrees of freedom.
     ///
     /// Implements: PSY-043.
-    pub fn p_value(self, deviance: f64, degrees: u32) -> Result<Option<f64>, PsychophysicsError> {
+    pub fn p_value(self, deviance: f64, degrees: u32) -> Result<Option<f64>> {
         if degrees == 0 {
             return Ok(None);
         }
-        let degrees = f64::from(degrees);
-        let ratio = deviance / degrees / self.factor;
-        Ok(Some(f_tail(ratio, degrees, self.degrees)?))
-    }
-}
-
-impl From<(f64, u32)> for Overdispersion {
-    fn from((ratio, degrees): (f64, u32)) -> Overdispersion {
-        Overdispersion {
-            // Answers that vary less than chance allows are no reason for narrower intervals.
-            factor: ratio.max(1.0),
-            degrees: f64::from(degrees),
-        }
+        let ratio = deviance / f64::from(degrees) / self.factor();
+        let p_value = f_tail(ratio, f64::from(degrees), f64::from(self.degrees))?;
+        Ok(Some(p_value))
     }
 }

@@ -1,7 +1,6 @@
 //! Why an analysis was refused.
 
 use crate::detect::DetectError;
-use crate::psychophysics::TableError;
 use crate::refusal::Refusal;
 use crate::stats::binomial::ProportionError;
 use crate::stats::normal::NormalError;
@@ -15,48 +14,19 @@ use crate::stats::tails::TailError;
 /// assert!(matches!(Rate::new(31, 30), Err(PsychophysicsError::Proportion(_))));
 /// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(transparent)]
 pub enum PsychophysicsError {
     /// Counts that fit no trials.
-    #[error("{0}")]
     Proportion(#[from] ProportionError),
-    /// Table 1 itself.
-    #[error("{0}")]
-    Table(#[from] TableError),
     /// A probability outside (0, 1).
-    #[error("{0}")]
     Normal(#[from] NormalError),
     /// A number outside the range of a law.
-    #[error("{0}")]
     Tail(#[from] TailError),
     /// A γ or a share that the detector refuses.
-    #[error("{0}")]
     Detect(#[from] DetectError),
-    /// Maps that cannot be compared.
-    #[error("{name}: {source}")]
-    Map {
-        /// The inclusion.
-        name: String,
-        /// What is wrong with its map.
-        source: Box<Refusal>,
-    },
-    /// An inclusion that the table does not hold.
-    #[error("inclusion {name:?} is no column of the table, expected one of {expected}")]
-    NoSuchInclusion {
-        /// The inclusion.
-        name: String,
-        /// The columns.
-        expected: String,
-    },
-    /// A map for the same inclusion twice.
-    #[error("inclusion {name:?} has two maps, expected one")]
-    Repeated {
-        /// The inclusion.
-        name: String,
-    },
-    /// Too few maps to compare depths.
-    #[error("{found} inclusions with a map, expected at least two")]
-    TooFewMaps {
-        /// How many there are.
-        found: usize,
-    },
+    /// A table that cannot be read, or maps that do not fit it.
+    Refused(#[from] Refusal),
 }
+
+/// What an analysis found, or why it was refused.
+pub type Result<T, E = PsychophysicsError> = core::result::Result<T, E>;

@@ -12,7 +12,9 @@
 //! wrong
 //! ```
 
-use super::{Plan, Trial};
+use super::{Trial, plan};
+use crate::csv::shortened;
+use crate::refusal::Refusal;
 
 const HEADER: &str = "palpate-experiment 1";
 
@@ -27,23 +29,16 @@ pub struct Setup {
     pub subject: String,
     /// What is played, as in Table 1: "FEM data".
     pub condition: String,
-    /// Names of the inclusions, as in Table 1: their depths in mm.
-    pub inclusions: Vec<String>,
+    /// Names of the inclusions, as in Table 1: their depths in mm, with commas between.
+    pub inclusions: String,
 }
 
 impl std::fmt::Display for Setup {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Setup {
-            seed,
-            trials,
-            subject,
-            condition,
-            inclusions,
-        } = self;
         write!(
             f,
-            "seed {seed}, {trials} trials, subject {subject}, condition {condition}, inclusions {}",
-            inclusions.join(",")
+            "seed {}, {} trials, subject {}, condition {}, inclusions {}",
+            self.seed, self.trials, self.subject, self.condition, self.inclusions
         )
     }
 }
@@ -52,29 +47,20 @@ impl std::fmt::Display for Setup {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Journal {
     setup: Setup,
-    plan: Plan,
+    plan: Vec<Trial>,
     right: Vec<bool>,
-}
-
-/// Why a text is no journal.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {found:?}, expected {expected}")]
-pub struct JournalError {
-    /// Which line, from 1.
-    pub line: usize,
-    /// What stands there.
-    pub found: String,
-    /// What would be right.
-    pub expected: String,
 }
 
 impl Journal {
     /// A journal without answers.
     pub fn new(setup: Setup) -> Journal {
-        let plan = Plan::new(setup.seed, setup.inclusions.len(), setup.trials);
         Journal {
+            plan: plan(
+                setup.seed,
+                setup.inclusions.split(',').count(),
+                setup.trials,
+            ),
             setup,
-            plan,
             right: Vec::new(),
         }
     }
@@ -87,7 +73,7 @@ impl Journal {
     /// The next pair, with its number from 0; `None` when all are answered.
     pub fn next(&self) -> Option<(usize, Trial)> {
         let number = self.right.len();
-        Some((number, *self.plan.trials().get(number)?))
+        Some((number, *self.plan.get(number)?))
     }
 
     /// Notes the answer to the next pair; the line that the file grows by.
@@ -100,8 +86,8 @@ impl Journal {
     ///
     /// Implements: PSY-004.
     pub fn counts(&self) -> Vec<(usize, usize)> {
-        let mut counts = vec![(0, 0); self.setup.inclusions.len()];
-        for (trial, &right) in self.plan.trials().iter().zip(&self.right) {
+        let mut counts = vec![(0, 0); self.setup.inclusions.split(',').count()];
+        for (trial, &right) in self.plan.iter().zip(&self.right) {
             let (correct, answered) = &mut counts[trial.inclusion];
             *correct += usize::from(right);
             *answered += 1;
@@ -116,100 +102,65 @@ impl Journal {
         if self.next().is_some() {
             return None;
         }
-        let counts = self.counts();
-        let correct: Vec<String> = counts.iter().map(|(right, _)| right.to_string()).collect();
-        let Setup {
-            subject,
-            condition,
-            trials,
-            inclusions,
-            ..
-        } = &self.setup;
-        Some(format!(
-            "subject,condition,trials,{}\n{subject},{condition},{trials},{}\n",
-            inclusions.join(","),
-            correct.join(",")
-        ))
+        let of = &self.setup;
+        let mut row = format!("subject,condition,trials,{}\n", of.inclusions);
+        row += &format!("{},{},{}", of.subject, of.condition, of.trials);
+        for (correct, _) in self.counts() {
+            row += &format!(",{correct}");
+        }
+        Some(row + "\n")
     }
 
     /// The text of the file.
     pub fn to_text(&self) -> String {
-        let Setup {
-            seed,
-            trials,
-            subject,
-            condition,
-            inclusions,
-        } = &self.setup;
+        let of = &self.setup;
         let answers: String = self.right.iter().map(|&right| line(right)).collect();
         format!(
-            "{HEADER}\nseed {seed}\ntrials {trials}\nsubject {subject}\ncondition {condition}\ninclusions {}\n{answers}",
-            inclusions.join(",")
+            "{HEADER}\nseed {}\ntrials {}\nsubject {}\ncondition {}\ninclusions {}\n{answers}",
+            of.seed, of.trials, of.subject, of.condition, of.inclusions
         )
     }
 
     /// Reads the text of a file. A last line that is not whole, as an abort leaves it, does not count.
     ///
     /// # Errors
-    /// [`JournalError`].
+    /// The first line that is wrong.
     ///
     /// Implements: PSY-003.
-    pub fn parse(text: &str) -> Result<Journal, JournalError> {
+    pub fn parse(text: &str) -> Result<Journal, Refusal> {
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-        let mut lines = whole.lines().enumerate();
-        let mut key = |key: &str, expected: &str| {
-            let (at, line) = lines.next().unwrap_or((whole.lines().count(), ""));
-            let error = JournalError {
-                line: at + 1,
-                found: line.chars().take(80).collect(),
-                expected: format!("{key}{expected}"),
-            };
-            match line.strip_prefix(key) {
-                Some(value) => Ok((value.to_string(), error)),
-                None => Err(error),
-            }
+        let mut lines = (1..).zip(whole.lines());
+        let head: Vec<_> = lines.by_ref().take(6).collect();
+        // A carriage return would not be read back, and no name of the program holds one.
+        let name = |text: &str| (!text.chars().any(char::is_control)).then(|| text.to_string());
+        let are_names = |text: &String| {
+            let count = text.split(',').count();
+            count <= 100 && !text.split(',').any(str::is_empty)
         };
-        let (rest, error) = key(HEADER, "")?;
-        if !rest.is_empty() {
-            return Err(error);
-        }
-        let (seed, error) = key("seed ", "and a whole number")?;
-        let seed = seed.parse().map_err(|_| error)?;
-        let (trials, error) = key("trials ", "and a number from 1 to 1000")?;
-        let trials = trials.parse().map_err(|_| error.clone())?;
-        if !(1..=1000).contains(&trials) {
-            return Err(error);
-        }
-        let mut name = |which: &str, expected: &str| {
-            let (name, error) = key(which, expected)?;
-            // A carriage return would not be read back, and no name of the program holds one.
-            if name.chars().any(char::is_control) {
-                return Err(error);
-            }
-            Ok((name, error))
-        };
-        let (subject, _) = name("subject ", "and a name")?;
-        let (condition, _) = name("condition ", "and its name")?;
-        let (inclusions, error) = name("inclusions ", "and 1 to 100 names with commas between")?;
-        let inclusions: Vec<String> = inclusions.split(',').map(str::to_string).collect();
-        if inclusions.len() > 100 || inclusions.iter().any(String::is_empty) {
-            return Err(error);
-        }
+        let names = "and 1 to 100 names with commas between";
+        let thousand = |trials: &usize| (1..=1000).contains(trials);
+        value(&head, 1, HEADER, "", |rest| rest.is_empty().then_some(()))?;
         let mut journal = Journal::new(Setup {
-            seed,
-            trials,
-            subject,
-            condition,
-            inclusions,
+            seed: value(&head, 2, "seed ", "and a whole number", |text| {
+                text.parse().ok()
+            })?,
+            trials: value(&head, 3, "trials ", "and a number from 1 to 1000", |text| {
+                text.parse().ok().filter(thousand)
+            })?,
+            subject: value(&head, 4, "subject ", "and a name", name)?,
+            condition: value(&head, 5, "condition ", "and its name", name)?,
+            inclusions: value(&head, 6, "inclusions ", names, |text| {
+                name(text).filter(are_names)
+            })?,
         });
-        for (at, line) in lines {
+        for (number, line) in lines {
             let right = match line {
                 "right" => true,
                 "wrong" => false,
-                _ => return Err(wrong_answer(at, line, "right or wrong")),
+                _ => return Err(refused(number, line, "right or wrong")),
             };
             if journal.next().is_none() {
-                return Err(wrong_answer(at, line, "no more answers than pairs"));
+                return Err(refused(number, line, "no more answers than pairs"));
             }
             journal.answer(right);
         }
@@ -217,17 +168,27 @@ impl Journal {
     }
 }
 
+/// What `read` makes of the rest of line `number` of the head, which begins with `key`.
+fn value<T>(
+    head: &[(usize, &str)],
+    number: usize,
+    key: &str,
+    expected: &str,
+    read: impl Fn(&str) -> Option<T>,
+) -> Result<T, Refusal> {
+    // The line after the end is empty.
+    let line = head.get(number - 1).map_or("", |(_, line)| line);
+    let value = line.strip_prefix(key).and_then(read);
+    value.ok_or_else(|| refused(number, line, &format!("{key}{expected}")))
+}
+
 /// The line of an answer.
 fn line(right: bool) -> &'static str {
     if right { "right\n" } else { "wrong\n" }
 }
 
-fn wrong_answer(at: usize, line: &str, expected: &str) -> JournalError {
-    JournalError {
-        line: at + 1,
-        found: line.chars().take(80).collect(),
-        expected: expected.to_string(),
-    }
+fn refused(number: usize, line: &str, expected: &str) -> Refusal {
+    Refusal::state(format!("{:?}", shortened(line)), expected).at(number)
 }
 
 #[cfg(test)]

@@ -4,8 +4,7 @@
 //! |---|---|
 //! | `plan.rs` | which pair when: random, from a seed |
 //! | `journal.rs` | the answers so far, in a file that survives an abort |
-//! | `presentation.rs` | one sample played through device and servo, as it was felt |
-//! | `observer.rs` | the ideal observer, who decides by Θ |
+//! | `observer.rs` | one sample played through device and servo, as it was felt; the ideal observer, who decides by Θ |
 //! | `table.rs`, `table1.csv` | counts of right answers: Table 1 and files of its form |
 //! | `analysis.rs` | everything that the counts say by themselves, from the files below |
 //! | `rates.rs` | shares, intervals, γ |
@@ -42,8 +41,6 @@ pub(crate) mod noise;
 #[cfg(feature = "hid")]
 mod observer;
 mod plan;
-#[cfg(feature = "hid")]
-mod presentation;
 mod psychometric;
 mod rates;
 mod search;
@@ -56,14 +53,13 @@ pub use beta_binomial::BetaBinomial;
 pub use conditions::{ConditionComparison, Difference, InclusionDifference};
 pub use dispersion::{Dispersion, dispersion};
 pub use error::PsychophysicsError;
+use error::Result;
 #[cfg(feature = "cli")]
 pub use journal::{Journal, Setup};
 pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};
 #[cfg(feature = "hid")]
-pub use observer::{IdealObserver, ObserverError};
-pub use plan::{Interval, Plan, Trial};
-#[cfg(feature = "hid")]
-pub use presentation::{Felt, PresentationError, present};
+pub use observer::{Felt, IdealObserver, present};
+pub use plan::{Interval, Trial, plan};
 pub use psychometric::{Parameter, Psychometric};
 pub use rates::{Bounds, CONFIDENCE, Clustered, GammaEstimate, OpenBounds, Rate};
-pub use table::{Condition, Inclusion, MOST_TRIALS, Subject, Table, TableError, TableProblem};
+pub use table::{Condition, Inclusion, MOST_TRIALS, Subject, Table};

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::rates::{GammaEstimate, OpenBounds, Rate, clustered};
-use super::{PsychophysicsError, Table};
+use super::rates::{Clustered, GammaEstimate, OpenBounds, Rate, pooled};
+use super::{Result, Table};
 use crate::detect::noise_budget::noise_total;
 
 /// "The peak signal strength for this inclusion is 340mN" (§5, 6.6 mm), N.
@@ -24,16 +24,6 @@ pub const HUMAN_PERCEPTION: f64 = 0.093;
 const PLAYBACK: (usize, usize) = (1, 2);
 
 /// The noise levels of §5.
-///
-/// ```
-/// use palpate::psychophysics::paper_noise_levels;
-///
-/// let decomposition = paper_noise_levels()?;
-/// // As printed in the paper, 235 mN = 340 mN / 1.45, and from its Table 2, each with how.
-/// let printed = decomposition.levels.iter().filter_map(|level| level.printed);
-/// assert!(printed.eq([0.235, 0.170, 0.220]));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseDecomposition {
     /// Each level.
@@ -44,16 +34,6 @@ pub struct NoiseDecomposition {
 }
 
 /// One of the paper's noise levels beside ours.
-///
-/// ```
-/// use palpate::psychophysics::paper_noise_levels;
-///
-/// // The paper's 170 mN are 168 mN.
-/// let levels = paper_noise_levels()?.levels;
-/// let table_2 = levels.iter().find(|level| level.printed == Some(0.170));
-/// assert!(table_2.is_some_and(|level| (level.noise - 0.168).abs() < 1e-3));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseLevel {
     /// Where it comes from.
@@ -76,11 +56,41 @@ pub struct NoiseLevel {
     pub assumption: &'static str,
 }
 
+/// A signal over the γ of one inclusion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InclusionNoise {
+    /// The signal, N.
+    #[serde(rename = "signal_n")]
+    pub signal: f64,
+    /// The noise, N; `None` if the answers set none: half or fewer right, or all right.
+    #[serde(rename = "noise_n")]
+    pub noise: Option<f64>,
+    /// From Clopper and Pearson's interval, N; an upper end that is missing is no bound.
+    #[serde(rename = "pooled_bounds_n")]
+    pub pooled_bounds: OpenBounds,
+    /// With the subjects as the sample, N.
+    #[serde(rename = "clustered_bounds_n")]
+    pub clustered_bounds: Option<OpenBounds>,
+}
+
+impl InclusionNoise {
+    /// The noise of a signal, N, from the share of all subjects, and from that with the subjects as the sample.
+    pub fn new(signal: f64, pooled: &Rate, clustered: Option<Clustered>) -> InclusionNoise {
+        let (noise, pooled_bounds) = noise_bounds(signal, pooled.gamma);
+        InclusionNoise {
+            signal,
+            noise,
+            pooled_bounds,
+            clustered_bounds: clustered.map(|found| noise_bounds(signal, found.gamma).1),
+        }
+    }
+}
+
 /// Noise of a signal (N) with a γ: signal/γ, and the interval the other way round; a lower end is 0 where
 /// γ has no bound, an upper end missing where γ may be 0.
 ///
 /// Implements: PSY-060.
-pub fn noise_bounds(signal: f64, gamma: GammaEstimate) -> (Option<f64>, OpenBounds) {
+fn noise_bounds(signal: f64, gamma: GammaEstimate) -> (Option<f64>, OpenBounds) {
     let quotient = |gamma: Option<f64>| match gamma {
         None => Some(0.0),
         Some(0.0) => None,
@@ -88,20 +98,43 @@ pub fn noise_bounds(signal: f64, gamma: GammaEstimate) -> (Option<f64>, OpenBoun
     };
     let noise = quotient(gamma.gamma).filter(|&noise| noise > 0.0);
     let bounds = OpenBounds {
-        lower: quotient(gamma.upper),
-        upper: quotient(gamma.lower),
+        lower: quotient(gamma.bounds.upper),
+        upper: quotient(gamma.bounds.lower),
     };
     (noise, bounds)
 }
+
+/// Sums of Table 2: what for, the paper's number (N), the sources (N), and what the sum takes for granted.
+const SUMS: [(&str, Option<f64>, &[f64], &str); 3] = [
+    (
+        "playback of FEM data, from Table 2",
+        Some(0.170),
+        &[QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION],
+        "the sources are independent, so that their variances add; the human perception of Jones (1998) holds for this hand and handle",
+    ),
+    (
+        "direct contact, from Table 2",
+        Some(0.220),
+        &[UNMODELLED_CONTACT, HUMAN_PERCEPTION],
+        "the sources are independent, and the 200 mN of friction, hysteresis and nonlinearity, which the paper does not derive, are right",
+    ),
+    (
+        "playback of measured data, from Table 2",
+        None,
+        &[SENSOR, QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION],
+        "the sources are independent; the paper prints no such sum, and it would be as small as that of FEM data, although the answers are poorer",
+    ),
+];
 
 /// The noise levels of §5 from Table 2 and from the answers to FEM playback at 6.6 mm.
 ///
 /// ```
 /// use palpate::psychophysics::paper_noise_levels;
 ///
-/// // 340 mN over the γ of 253 right answers of 300, and over the γ as printed.
 /// let levels = paper_noise_levels()?.levels;
-/// assert!(levels.iter().any(|level| (level.noise - 0.340 / 1.45).abs() < 1e-12));
+/// // As printed in the paper, 235 mN = 340 mN / 1.45, and from its Table 2.
+/// assert!(levels.iter().filter_map(|level| level.printed).eq([0.235, 0.170, 0.220]));
+/// // 340 mN over the γ of 253 right answers of 300.
 /// assert!(levels.iter().any(|level| (level.noise - 0.340 / 1.4257).abs() < 1e-3));
 /// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
 /// ```
@@ -110,15 +143,7 @@ pub fn noise_bounds(signal: f64, gamma: GammaEstimate) -> (Option<f64>, OpenBoun
 /// Never for the paper's own numbers.
 ///
 /// Implements: PSY-061, PSY-062, ERR-008, ERR-009.
-pub fn paper_noise_levels() -> Result<NoiseDecomposition, PsychophysicsError> {
-    let answers = from_answers()?;
-    let playback = sum(
-        "playback of FEM data, from Table 2",
-        Some(0.170),
-        &[QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION],
-        "the sources are independent, so that their variances add; the human perception of Jones (1998) holds for this hand and handle",
-    )?;
-    let agreement = agreement(&answers, playback.noise);
+pub fn paper_noise_levels() -> Result<NoiseDecomposition> {
     let printed = NoiseLevel {
         name: "answers to FEM playback at 6.6 mm, as printed",
         printed: Some(0.235),
@@ -128,64 +153,39 @@ pub fn paper_noise_levels() -> Result<NoiseDecomposition, PsychophysicsError> {
         formula: format!("{} mN / {PRINTED_GAMMA}", millinewtons(PEAK_SIGNAL)),
         assumption: "γ is 1.45, as the paper read it off its Figure 9, where 84 % is 1.406",
     };
-    let direct = sum(
-        "direct contact, from Table 2",
-        Some(0.220),
-        &[UNMODELLED_CONTACT, HUMAN_PERCEPTION],
-        "the sources are independent, and the 200 mN of friction, hysteresis and nonlinearity, which the paper does not derive, are right",
-    )?;
-    let measured = sum(
-        "playback of measured data, from Table 2",
-        None,
-        &[SENSOR, QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION],
-        "the sources are independent; the paper prints no such sum, and it would be as small as that of FEM data, although the answers are poorer",
-    )?;
+    let mut levels = vec![printed.clone(), from_answers()?];
+    for (name, printed_sum, sources, assumption) in SUMS {
+        let square = |&source| format!("{}²", millinewtons(source));
+        let squares: Vec<String> = sources.iter().map(square).collect();
+        levels.push(NoiseLevel {
+            name,
+            printed: printed_sum,
+            noise: noise_total(sources)?.total,
+            formula: format!("√({}) mN", squares.join(" + ")),
+            assumption,
+            ..printed.clone()
+        });
+    }
     Ok(NoiseDecomposition {
-        levels: vec![printed, answers, playback, direct, measured],
-        agreement,
+        agreement: agreement(&levels[1], levels[2].noise),
+        levels,
     })
 }
 
 /// The peak signal of §5 over the γ of the 253 of 300.
-fn from_answers() -> Result<NoiseLevel, PsychophysicsError> {
+fn from_answers() -> Result<NoiseLevel> {
     let table = Table::paper()?;
-    let condition = &table.conditions()[PLAYBACK.0];
-    let (correct, trials) = condition.pooled(PLAYBACK.1);
-    let pooled = Rate::new(correct, trials)?;
-    let clustered = clustered(&condition.counts(PLAYBACK.1), &pooled)?;
-    let (noise, pooled_bounds) = noise_bounds(PEAK_SIGNAL, pooled.gamma);
+    let (rate, clustered) = pooled(&table.conditions()[PLAYBACK.0], PLAYBACK.1)?;
+    let found = InclusionNoise::new(PEAK_SIGNAL, &rate, clustered);
+    let peak = millinewtons(PEAK_SIGNAL);
     Ok(NoiseLevel {
         name: "answers to FEM playback at 6.6 mm",
         printed: None,
-        noise: noise.unwrap_or_default(),
-        pooled_bounds: Some(pooled_bounds),
-        clustered_bounds: clustered.map(|found| noise_bounds(PEAK_SIGNAL, found.gamma).1),
-        formula: format!(
-            "{} mN / (√2 Φ⁻¹({correct}/{trials}))",
-            millinewtons(PEAK_SIGNAL)
-        ),
+        noise: found.noise.unwrap_or_default(),
+        pooled_bounds: Some(found.pooled_bounds),
+        clustered_bounds: found.clustered_bounds,
+        formula: format!("{peak} mN / (√2 Φ⁻¹({}/{}))", rate.correct, rate.trials),
         assumption: "all subjects have one noise, and decide by the force at the one position of the peak",
-    })
-}
-
-fn sum(
-    name: &'static str,
-    printed: Option<f64>,
-    sources: &[f64],
-    assumption: &'static str,
-) -> Result<NoiseLevel, PsychophysicsError> {
-    let squares: Vec<String> = sources
-        .iter()
-        .map(|&source| format!("{}²", millinewtons(source)))
-        .collect();
-    Ok(NoiseLevel {
-        name,
-        printed,
-        noise: noise_total(sources)?.total,
-        pooled_bounds: None,
-        clustered_bounds: None,
-        formula: format!("√({}) mN", squares.join(" + ")),
-        assumption,
     })
 }
 
@@ -201,15 +201,18 @@ fn agreement(answers: &NoiseLevel, explained: f64) -> String {
             return format!("{name}: no interval");
         };
         let lower = lower.unwrap_or(0.0);
-        let within = explained >= lower && upper.is_none_or(|upper| explained <= upper);
-        let upper = upper.map_or("no upper bound".into(), |upper| {
-            format!("{:.0} mN", upper * 1e3)
+        let is_below = upper.is_none_or(|upper| explained <= upper);
+        let side = if explained >= lower && is_below {
+            "inside"
+        } else {
+            "outside"
+        };
+        let [lower, upper] = [Some(lower), upper].map(|end| {
+            end.map_or("no upper bound".into(), |end| {
+                format!("{:.0} mN", end * 1e3)
+            })
         });
-        format!(
-            "{} the 95 % interval of {name} ({:.0} mN to {upper})",
-            if within { "inside" } else { "outside" },
-            lower * 1e3
-        )
+        format!("{side} the 95 % interval of {name} ({lower} to {upper})")
     };
     format!(
         "The paper calls the {:.0} mN that Table 2 explains \"reasonable given the confidence intervals\" of the noise in the answers, {:.0} mN. It lies {}, and {}.",

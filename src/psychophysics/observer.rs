@@ -1,14 +1,93 @@
-//! The ideal observer of the paper's theory: knows both force maps and his own noise, and takes the
-//! sample of the pair with the larger Θ.
+//! One sample, as a hand feels it: played through device, servo and table; and the ideal observer of the paper's theory, who knows
+//! both force maps and his own noise, and takes the sample of the pair with the larger Θ.
 
-use super::{Felt, Interval};
-use crate::detect::{Channels, DetectError, theta_of_record};
+use std::fmt::Display;
+use std::time::Duration;
+
+use super::Interval;
+use crate::detect::{Channels, theta_of_record};
 use crate::force_map::ForceTable;
+use crate::hid::{Counters, End, HapticDevice, Session};
 use crate::refusal::Refusal;
+use crate::servo::{Limits, Table};
 use crate::stats::random::Generator;
 
 /// The stream of the generator that the observer's noise is drawn from.
 const STREAM: u64 = 0x0B5E;
+
+/// Where the handle was, and what was played, while the force followed the table.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Felt {
+    /// Depths, m.
+    pub depths: Vec<f64>,
+    /// Lateral positions, m.
+    pub laterals: Vec<f64>,
+    /// Forces as sent to the device: x lateral, y normal, N.
+    pub forces: Channels<Vec<f64>>,
+    /// What happened.
+    pub counters: Counters,
+}
+
+/// Plays `table` on `device` for `duration` of the device's time from the first force on, at most
+/// `patience` from the beginning.
+///
+/// ```
+/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+/// use palpate::psychophysics::present;
+/// use palpate::servo::{Limits, LoadedTable};
+/// use std::time::Duration;
+///
+/// # let (depths, laterals) = (vec![0.0, 0.004], vec![-0.01, 0.01]);
+/// # let matrix = |force: f64| Matrix::from_fn(2, 2, |row, _| force * row as f64);
+/// // A map whose force grows from 0 to 1 N at 4 mm, and a hand that presses and sweeps.
+/// let map = ForceTable::new(depths, laterals, matrix(1.0), matrix(0.0))?;
+/// let loaded = LoadedTable::new(&map)?;
+/// let hand = Trajectory::probing(0.003, 0.008, Duration::from_secs(1));
+/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Duration::ZERO, vec![]);
+/// let limits = Limits::new(4.0, 0.05, 0.5, 20)?;
+/// let (half, second) = (Duration::from_millis(500), Duration::from_secs(1));
+/// let felt = present(device, loaded.table()?, limits, half, second)?;
+/// // 1 kHz for half a second, and pushed out of the gel.
+/// assert!(felt.forces.y.len() > 480);
+/// assert!(felt.forces.y.iter().all(|&force| (0.0..1.0).contains(&force)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// The device was refused, or ended early.
+///
+/// Implements: PSY-010.
+pub fn present<D: HapticDevice>(
+    device: D,
+    table: Table,
+    limits: Limits,
+    duration: Duration,
+    patience: Duration,
+) -> Result<Felt, Refusal> {
+    let mut session = Session::begin(device, table, limits).map_err(refused)?;
+    let capabilities = *session.capabilities();
+    let metres = f64::from(capabilities.position_unit_nm) * 1e-9;
+    let newtons = f64::from(capabilities.force_unit_un) * 1e-6;
+    let mut felt = Felt::default();
+    let mut began = None;
+    let end = session.run(|cycle, _| {
+        if let (true, Some(position)) = (cycle.playing, cycle.position) {
+            began.get_or_insert(cycle.written);
+            felt.depths.push(-f64::from(position.normal) * metres);
+            felt.laterals.push(f64::from(position.lateral) * metres);
+            felt.forces.x.push(f64::from(cycle.force.lateral) * newtons);
+            felt.forces.y.push(f64::from(cycle.force.normal) * newtons);
+        }
+        let until = began.map_or(patience, |began| began + duration);
+        cycle.written < until
+    });
+    felt.counters = session.counters();
+    match end {
+        End::Asked => Ok(felt),
+        end => Err(refused(end)),
+    }
+}
 
 /// Knows what to expect.
 ///
@@ -48,93 +127,50 @@ pub struct IdealObserver<'a> {
     pub seed: u64,
 }
 
-/// Why the observer can not decide.
-///
-/// ```
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::psychophysics::{Felt, IdealObserver, ObserverError};
-///
-/// let matrix = || Matrix::from_fn(2, 2, |_, _| 1.5);
-/// let map = ForceTable::new(vec![0.0, 0.004], vec![0.0, 0.01], matrix(), matrix())?;
-/// let observer = IdealObserver { reference: &map, inclusion: &map, noise_sd: 0.1, seed: 1 };
-/// // Nothing was felt.
-/// assert!(matches!(observer.theta(&Felt::default(), 0), Err(ObserverError::Detect(_))));
-/// # Ok::<(), palpate::refusal::Refusal>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ObserverError {
-    /// The maps give no force where the hand was.
-    #[error("{0}")]
-    Map(#[from] Refusal),
-    /// The detector refuses the record.
-    #[error("{0}")]
-    Detect(#[from] DetectError),
-}
-
 impl IdealObserver<'_> {
     /// θ of one sample felt with noise, and γ of the way that the hand took; `draw` tells the noises
     /// apart.
     ///
     /// # Errors
-    /// [`ObserverError`].
+    /// The maps give no force where the hand was, or the detector refuses the record.
     ///
     /// Implements: PSY-011.
-    pub fn theta(&self, felt: &Felt, draw: u64) -> Result<(f64, f64), ObserverError> {
+    pub fn theta(&self, felt: &Felt, draw: u64) -> Result<(f64, f64), Refusal> {
         let expected = |table: &ForceTable| {
-            let mut forces = Channels {
-                x: Vec::with_capacity(felt.depths.len()),
-                y: Vec::with_capacity(felt.depths.len()),
-            };
-            for (&depth, &lateral) in felt.depths.iter().zip(&felt.laterals) {
+            let force = |(&depth, &lateral): (&f64, &f64)| {
                 // Nothing is played above the surface.
                 let force = table.force(depth.max(0.0), lateral)?;
-                forces.x.push(force.x);
-                forces.y.push(force.y);
-            }
-            Ok::<_, Refusal>(forces)
+                Ok((force.lateral, force.normal))
+            };
+            let forces = felt.depths.iter().zip(&felt.laterals).map(force);
+            let forces: Result<(Vec<f64>, Vec<f64>), Refusal> = forces.collect();
+            forces.map_err(refused)
         };
         let (f0, f1) = (expected(self.reference)?, expected(self.inclusion)?);
-        let noisy = |forces: &[f64], channel| {
-            let generator = Generator::new(self.seed, STREAM + channel);
+        let noisy = |forces: &[f64], channel| -> Vec<f64> {
             let mut noise = vec![0.0; forces.len()];
-            generator.normals(draw, 0, &mut noise);
-            for (noise, force) in noise.iter_mut().zip(forces) {
-                *noise = force + self.noise_sd * *noise;
-            }
-            noise
+            Generator::new(self.seed, STREAM + channel).normals(draw, 0, &mut noise);
+            let noisy = noise.iter().zip(forces);
+            noisy.map(|(n, force)| force + self.noise_sd * n).collect()
         };
-        let observed = Channels {
-            x: noisy(&felt.forces.x, 0),
-            y: noisy(&felt.forces.y, 1),
-        };
-        let noise_sd = Channels {
-            x: self.noise_sd,
-            y: self.noise_sd,
-        };
+        let (x, y) = (noisy(&felt.forces.x, 0), noisy(&felt.forces.y, 1));
         let statistic = theta_of_record(
-            Channels {
-                x: &observed.x,
-                y: &observed.y,
-            },
-            Channels { x: &f0.x, y: &f0.y },
-            Channels { x: &f1.x, y: &f1.y },
-            noise_sd,
-        )?;
+            Channels { x: &x, y: &y },
+            Channels { x: &f0.0, y: &f0.1 },
+            Channels { x: &f1.0, y: &f1.1 },
+            Channels { x: (), y: () }.map(|()| self.noise_sd),
+        );
+        let statistic = statistic.map_err(refused)?;
         Ok((statistic.theta, statistic.gamma))
     }
 
     /// Which of two samples has the inclusion, by the larger θ.
     ///
     /// # Errors
-    /// [`ObserverError`].
+    /// As [`IdealObserver::theta`].
     ///
     /// Implements: PSY-012, PSY-013.
-    pub fn choose(
-        &self,
-        first: &Felt,
-        second: &Felt,
-        pair: u64,
-    ) -> Result<Interval, ObserverError> {
+    pub fn choose(&self, first: &Felt, second: &Felt, pair: u64) -> Result<Interval, Refusal> {
         let (of_first, _) = self.theta(first, 2 * pair)?;
         let (of_second, _) = self.theta(second, 2 * pair + 1)?;
         Ok(if of_first >= of_second {
@@ -143,4 +179,8 @@ impl IdealObserver<'_> {
             Interval::Second
         })
     }
+}
+
+fn refused(reason: impl Display) -> Refusal {
+    Refusal::state(reason, "")
 }

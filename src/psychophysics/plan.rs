@@ -6,15 +6,6 @@ use crate::stats::random::Generator;
 const STREAM: u64 = 0x2AFC;
 
 /// The two samples of a pair, in the order in which they are felt.
-///
-/// ```
-/// use palpate::psychophysics::{Interval, Plan};
-///
-/// // As a fair coin has it: 500 of 1000, give or take four standard deviations of 16.
-/// let plan = Plan::new(42, 1, 1000);
-/// let first = plan.trials().iter().filter(|trial| trial.with_inclusion == Interval::First);
-/// assert!(first.count().abs_diff(500) < 64);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Interval {
     /// The first.
@@ -24,14 +15,6 @@ pub enum Interval {
 }
 
 /// One pair.
-///
-/// ```
-/// use palpate::psychophysics::{Interval, Plan, Trial};
-///
-/// let Trial { inclusion, with_inclusion } = Plan::new(42, 4, 30).trials()[0];
-/// assert!(inclusion < 4);
-/// assert!([Interval::First, Interval::Second].contains(&with_inclusion));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Trial {
     /// Which inclusion, by its place in the list.
@@ -40,50 +23,35 @@ pub struct Trial {
     pub with_inclusion: Interval,
 }
 
-/// All pairs of a subject, in random order.
+/// All pairs of a subject in random order: `trials` pairs for each of `inclusions`, each with the inclusion first or second as a
+/// fair coin has it.
 ///
 /// ```
-/// use palpate::psychophysics::Plan;
+/// use palpate::psychophysics::plan;
 ///
 /// // The paper's: 30 pairs for each of four inclusions. The same seed gives the same plan.
-/// let plan = Plan::new(42, 4, 30);
-/// assert_eq!(plan.trials().iter().filter(|trial| trial.inclusion == 3).count(), 30);
-/// assert_eq!(plan.trials().len(), 120);
-/// assert_eq!(plan, Plan::new(42, 4, 30));
+/// let pairs = plan(42, 4, 30);
+/// assert_eq!(pairs.iter().filter(|pair| pair.inclusion == 3).count(), 30);
+/// assert_eq!(pairs, plan(42, 4, 30));
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Plan {
-    trials: Vec<Trial>,
-}
-
-impl Plan {
-    /// `trials` pairs for each of `inclusions`, mixed, each with the inclusion first or second as a
-    /// fair coin has it.
-    ///
-    /// Implements: PSY-001, PSY-002.
-    pub fn new(seed: u64, inclusions: usize, trials: usize) -> Plan {
-        let generator = Generator::new(seed, STREAM);
-        let mut plan: Vec<Trial> = (0..inclusions * trials)
-            .map(|number| Trial {
-                inclusion: number % inclusions,
-                with_inclusion: match generator.words([number as u64, 0, 0, 0])[0] >> 63 {
-                    0 => Interval::First,
-                    _ => Interval::Second,
-                },
-            })
-            .collect();
-        // Fisher and Yates: every order is as likely as any other.
-        for last in (1..plan.len()).rev() {
-            let other = below(&generator, last as u64, last as u64 + 1);
-            plan.swap(last, other as usize);
-        }
-        Plan { trials: plan }
+///
+/// Implements: PSY-001, PSY-002.
+pub fn plan(seed: u64, inclusions: usize, trials: usize) -> Vec<Trial> {
+    let generator = Generator::new(seed, STREAM);
+    let trial = |number: usize| Trial {
+        inclusion: number % inclusions,
+        with_inclusion: match generator.words([number as u64, 0, 0, 0])[0] >> 63 {
+            0 => Interval::First,
+            _ => Interval::Second,
+        },
+    };
+    let mut plan: Vec<Trial> = (0..inclusions * trials).map(trial).collect();
+    // Fisher and Yates: every order is as likely as any other.
+    for last in (1..plan.len()).rev() {
+        let other = below(&generator, last as u64, last as u64 + 1);
+        plan.swap(last, other as usize);
     }
-
-    /// The pairs in their order.
-    pub fn trials(&self) -> &[Trial] {
-        &self.trials
-    }
+    plan
 }
 
 /// A number from 0 to `bound` − 1, each as likely as any other; `place` tells the draws apart.

@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::choice::{Count, Perceived, best_lapse, log_likelihood};
+use super::choice::{Count, Perceived, best_lapse, deviance, log_likelihood};
 use super::dispersion::Overdispersion;
 use super::rates::{CONFIDENCE, OpenBounds};
-use super::search::{crossing, maximum};
-use super::{Condition, Inclusion, PsychophysicsError};
+use super::search::{interval, maximum};
+use super::{Condition, Inclusion, Result};
 use crate::stats::normal::{self, lower_tail};
 use crate::stats::tails::{chi_square_tail, student_quantile};
 
@@ -18,16 +18,6 @@ const SPREADS: [f64; 2] = [0.01, 10.0];
 const CELLS: u32 = 8;
 
 /// The psychometric function ½ + (½ − λ) Φ((m − d)/s) of the depth d that fits a condition best.
-///
-/// ```
-/// use palpate::psychophysics::{Table, analyse};
-///
-/// let analysis = analyse(&Table::paper()?)?;
-/// let fit = analysis.conditions[1].psychometric.as_ref();
-/// // The deeper, the fewer are right.
-/// assert!(fit.is_some_and(|fit| fit.predicted.is_sorted_by(|a, b| a > b)));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Psychometric {
     /// m, the depth at which the share is half-way from ½ to 1 − λ, m.
@@ -52,17 +42,6 @@ pub struct Psychometric {
 }
 
 /// A parameter with the ends of its profile likelihood.
-///
-/// ```
-/// use palpate::psychophysics::{Table, analyse};
-///
-/// let analysis = analyse(&Table::paper()?)?;
-/// let fit = analysis.conditions[1].psychometric.as_ref();
-/// // Half of the way from 100 % to guesses is lost near 8 mm.
-/// let midpoint = fit.map(|fit| fit.midpoint.value).unwrap_or_default();
-/// assert!((midpoint - 0.008).abs() < 0.001);
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Parameter {
     /// The most likely value.
@@ -84,28 +63,20 @@ pub fn psychometric(
     inclusions: &[Inclusion],
     condition: &Condition,
     dispersion: Option<Overdispersion>,
-) -> Result<Option<Psychometric>, PsychophysicsError> {
+) -> Result<Option<Psychometric>> {
     let depths: Vec<f64> = inclusions.iter().map(|inclusion| inclusion.depth).collect();
-    let pooled = |column| {
-        let (correct, trials) = condition.pooled(column);
-        Count::new(correct as f64, trials as f64)
-    };
-    let counts: Vec<Count> = (0..depths.len()).map(pooled).collect();
     let mut distinct = depths.clone();
     distinct.sort_by(f64::total_cmp);
     distinct.dedup();
-    let (Some(dispersion), true) = (dispersion, distinct.len() >= 3) else {
+    let (Some(dispersion), &[first, _, .., last]) = (dispersion, &distinct[..]) else {
         return Ok(None);
     };
-    let span = distinct[distinct.len() - 1] - distinct[0];
+    let span = last - first;
     let model = Model {
-        midpoints: [
-            distinct[0] - SPANS * span,
-            distinct[distinct.len() - 1] + SPANS * span,
-        ],
+        midpoints: [first - SPANS * span, last + SPANS * span],
         log_spreads: SPREADS.map(|share| libm::log(share * span)),
+        counts: (0..depths.len()).map(|j| condition.count(j)).collect(),
         depths,
-        counts,
     };
     model.fit(dispersion).map(Some)
 }
@@ -156,31 +127,25 @@ impl Model {
         maximum(|s| self.over_midpoints(s, lapse).1, low, high, CELLS)
     }
 
-    fn fit(&self, dispersion: Overdispersion) -> Result<Psychometric, PsychophysicsError> {
+    fn fit(&self, dispersion: Overdispersion) -> Result<Psychometric> {
         let (log_spread, top) = self.over_both(None);
         let (midpoint, _) = self.over_midpoints(log_spread, None);
         let perceived = self.perceived(midpoint, log_spread);
         let lapse = best_lapse(&self.counts, &perceived);
         let z = normal::quantile(0.5 + 0.5 * CONFIDENCE)?;
-        let t = student_quantile(CONFIDENCE, dispersion.degrees)?;
+        let t = student_quantile(CONFIDENCE, f64::from(dispersion.degrees))?;
         // Where the profile falls below these, a value is outside its interval.
-        let floors = [top - 0.5 * z * z, top - 0.5 * dispersion.factor * t * t];
+        let floors = [top - 0.5 * z * z, top - 0.5 * dispersion.factor() * t * t];
         let parameter = |value: f64, profile: &dyn Fn(f64) -> f64, ends: [f64; 2]| {
-            let end = |floor: f64, end: f64| {
-                (profile(end) < floor).then(|| crossing(|at| profile(at) - floor, value, end))
-            };
-            let [bounds, dispersed_bounds] = floors.map(|floor| OpenBounds {
-                lower: end(floor, ends[0]),
-                upper: end(floor, ends[1]),
-            });
+            let [bounds, dispersed_bounds] =
+                floors.map(|floor| interval(profile, floor, value, ends));
             Parameter {
                 value,
                 bounds,
                 dispersed_bounds,
             }
         };
-        let saturated: f64 = self.counts.iter().map(|count| count.saturated()).sum();
-        let deviance = 2.0 * (saturated - top).max(0.0);
+        let deviance = deviance(&self.counts, top);
         let degrees = self.counts.len() as u32 - 3;
         let spread = parameter(
             log_spread,
@@ -199,10 +164,9 @@ impl Model {
             lapse,
             deviance,
             degrees,
-            p_value: if degrees == 0 {
-                None
-            } else {
-                Some(chi_square_tail(deviance, f64::from(degrees))?)
+            p_value: match degrees {
+                0 => None,
+                _ => Some(chi_square_tail(deviance, f64::from(degrees))?),
             },
             p_value_dispersed: dispersion.p_value(deviance, degrees)?,
         })
@@ -212,14 +176,10 @@ impl Model {
 impl Parameter {
     /// The same with an increasing function applied to every number.
     fn map(self, function: impl Fn(f64) -> f64) -> Parameter {
-        let bounds = |bounds: OpenBounds| OpenBounds {
-            lower: bounds.lower.map(&function),
-            upper: bounds.upper.map(&function),
-        };
         Parameter {
             value: function(self.value),
-            bounds: bounds(self.bounds),
-            dispersed_bounds: bounds(self.dispersed_bounds),
+            bounds: self.bounds.map(&function),
+            dispersed_bounds: self.dispersed_bounds.map(&function),
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use super::PsychophysicsError;
+use super::{Condition, Result};
 use crate::detect::gamma_from_two_afc;
-use crate::stats::binomial::{Interval, clopper_pearson, wilson};
+pub use crate::stats::binomial::Interval as Bounds;
+use crate::stats::binomial::{clopper_pearson, wilson};
 use crate::stats::tails::student_quantile;
 
 /// The confidence of every interval in an analysis.
@@ -12,49 +13,23 @@ use crate::stats::tails::student_quantile;
 /// Implements: PSY-023.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// Two ends of an interval.
-///
-/// ```
-/// use palpate::psychophysics::{Bounds, Rate};
-/// use palpate::stats::binomial::clopper_pearson;
-///
-/// let bounds = Bounds::from(clopper_pearson(253, 300, 0.95)?);
-/// assert_eq!(Rate::new(253, 300)?.clopper_pearson, bounds);
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Bounds {
-    /// Lower end.
-    pub lower: f64,
-    /// Upper end.
-    pub upper: f64,
-}
-
-impl From<Interval> for Bounds {
-    fn from(Interval { lower, upper }: Interval) -> Bounds {
-        Bounds { lower, upper }
-    }
-}
-
 /// Two ends of an interval, either of which may be missing: the data set no bound there.
-///
-/// ```
-/// use palpate::psychophysics::{OpenBounds, paper_noise_levels};
-///
-/// // The noise behind 253 of 300 right answers, N.
-/// let levels = paper_noise_levels()?.levels;
-/// let bounds = levels.iter().find_map(|level| level.pooled_bounds);
-/// assert!(bounds.is_some_and(|OpenBounds { lower, upper }| {
-///     lower < Some(0.235) && upper > Some(0.242)
-/// }));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct OpenBounds {
     /// Lower end.
     pub lower: Option<f64>,
     /// Upper end.
     pub upper: Option<f64>,
+}
+
+impl OpenBounds {
+    /// The same with an increasing function applied to the ends.
+    pub(super) fn map(self, function: impl Fn(f64) -> f64) -> OpenBounds {
+        OpenBounds {
+            lower: self.lower.map(&function),
+            upper: self.upper.map(&function),
+        }
+    }
 }
 
 /// A share of right answers.
@@ -86,49 +61,33 @@ pub struct Rate {
 }
 
 /// γ of a share of right answers, √2 Φ⁻¹(share), and of the ends of an interval for it.
-///
-/// ```
-/// use palpate::psychophysics::{Bounds, GammaEstimate};
-///
-/// let gamma = GammaEstimate::of(0.84, Bounds { lower: 0.4, upper: 1.0 })?;
-/// assert!(gamma.gamma.is_some_and(|gamma| (gamma - 1.406).abs() < 1e-3));
-/// assert_eq!((gamma.lower, gamma.upper), (Some(0.0), None));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct GammaEstimate {
     /// 0 for half of the answers or fewer; `None` if all are right: no γ is large enough.
     pub gamma: Option<f64>,
-    /// The lower end; `None` if there is no bound, as above a share whose lower end is 1.
-    pub lower: Option<f64>,
-    /// The upper end; `None`: no upper bound.
-    pub upper: Option<f64>,
+    /// The interval: no lower bound above a share whose lower end is 1.
+    #[serde(flatten)]
+    pub bounds: OpenBounds,
 }
 
 impl GammaEstimate {
-    /// The image of a share and of an interval for it.
+    /// The image of a share and of an interval for it: 0 below one half, `None` for 1.
     ///
     /// Implements: PSY-024.
-    pub fn of(share: f64, bounds: Bounds) -> Result<GammaEstimate, PsychophysicsError> {
+    pub fn of(share: f64, bounds: Bounds) -> Result<GammaEstimate> {
+        let gamma = |share: f64| match share {
+            ..=0.5 => Ok(Some(0.0)),
+            1.0.. => Ok(None),
+            _ => gamma_from_two_afc(share).map(Some),
+        };
         Ok(GammaEstimate {
-            gamma: gamma_of_share(share)?,
-            lower: gamma_of_share(bounds.lower)?,
-            upper: gamma_of_share(bounds.upper)?,
+            gamma: gamma(share)?,
+            bounds: OpenBounds {
+                lower: gamma(bounds.lower)?,
+                upper: gamma(bounds.upper)?,
+            },
         })
     }
-}
-
-/// The γ of a share, 0 below one half, `None` for 1.
-///
-/// Implements: PSY-024.
-fn gamma_of_share(share: f64) -> Result<Option<f64>, PsychophysicsError> {
-    if share <= 0.5 {
-        return Ok(Some(0.0));
-    }
-    if share >= 1.0 {
-        return Ok(None);
-    }
-    Ok(Some(gamma_from_two_afc(share)?))
 }
 
 impl Rate {
@@ -138,30 +97,32 @@ impl Rate {
     /// No trials, or more right answers than trials.
     ///
     /// Implements: PSY-023, PSY-024.
-    pub fn new(correct: u64, trials: u64) -> Result<Rate, PsychophysicsError> {
-        let exact = Bounds::from(clopper_pearson(correct, trials, CONFIDENCE)?);
+    pub fn new(correct: u64, trials: u64) -> Result<Rate> {
+        let exact = clopper_pearson(correct, trials, CONFIDENCE)?;
         let rate = correct as f64 / trials as f64;
         Ok(Rate {
             correct,
             trials,
             rate,
             clopper_pearson: exact,
-            wilson: wilson(correct, trials, CONFIDENCE)?.into(),
+            wilson: wilson(correct, trials, CONFIDENCE)?,
             gamma: GammaEstimate::of(rate, exact)?,
         })
     }
 }
 
+/// The share of all subjects at the inclusion in `column`, and the same with the subjects as the sample.
+///
+/// # Errors
+/// Never for counts that fit their trials.
+pub fn pooled(condition: &Condition, column: usize) -> Result<(Rate, Option<Clustered>)> {
+    let (correct, trials) = condition.pooled(column);
+    let rate = Rate::new(correct, trials)?;
+    let clustered = clustered(&condition.counts(column), &rate)?;
+    Ok((rate, clustered))
+}
+
 /// An interval that lets subjects differ: their shares are the sample, not their answers.
-///
-/// ```
-/// use palpate::psychophysics::{Table, analyse};
-///
-/// let inclusion = &analyse(&Table::paper()?)?.conditions[1].inclusions[2];
-/// // Ten subjects say less than 300 answers that are all independent.
-/// assert!(inclusion.clustered.is_some_and(|clustered| clustered.width_ratio > 1.5));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Clustered {
     /// The standard error of the pooled share.
@@ -182,10 +143,7 @@ pub struct Clustered {
 /// Never for counts that fit their trials.
 ///
 /// Implements: PSY-025.
-pub fn clustered(
-    counts: &[(u32, u32)],
-    pooled: &Rate,
-) -> Result<Option<Clustered>, PsychophysicsError> {
+pub fn clustered(counts: &[(u32, u32)], pooled: &Rate) -> Result<Option<Clustered>> {
     let subjects = counts.len() as f64;
     let squares = counts.iter().map(|&(k, n)| {
         let excess = f64::from(k) - pooled.rate * f64::from(n);

@@ -1,5 +1,7 @@
 //! Maxima and crossings of functions of one number, in a fixed number of steps.
 
+use super::rates::OpenBounds;
+
 /// Steps of the golden section: the bracket shrinks by 0.618²⁶ = 4·10⁻⁶, and the value, flat at the
 /// top, is right to the square of that.
 const GOLDEN_STEPS: u32 = 26;
@@ -94,6 +96,14 @@ pub fn crossing(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
         }
     }
     yes
+}
+
+/// Where a profile of log-likelihoods with its top at `best` falls below `floor` on the way to either end of its range; missing
+/// where it does not.
+pub fn interval(profile: impl Fn(f64) -> f64, floor: f64, best: f64, ends: [f64; 2]) -> OpenBounds {
+    let [lower, upper] = ends
+        .map(|end| (profile(end) < floor).then(|| crossing(|at| profile(at) - floor, best, end)));
+    OpenBounds { lower, upper }
 }
 
 #[cfg(test)]

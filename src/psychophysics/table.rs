@@ -5,9 +5,11 @@
 //! 1,direct contact,30,30,28,27,27
 //! ```
 
+use std::collections::HashMap;
 use std::path::Path;
 
-use crate::csv::{header_and_rows, shortened, wrong_header};
+use super::choice::Count;
+use crate::csv::{header_and_rows, shortened};
 use crate::phantom::decimal::parse_scaled;
 use crate::refusal::Refusal;
 
@@ -18,18 +20,13 @@ const KEYS: [&str; 3] = ["subject", "condition", "trials"];
 /// The headers that are right, for a person.
 const EXPECTED_HEADER: &str =
     "subject,condition,trials and a column for each inclusion, such as 2.6,4.6,6.6,8.6";
+/// The names of inclusions that are right, for a person.
+const EXPECTED_INCLUSION: &str =
+    "the name of an inclusion that ends in its depth in mm, such as 6.6 or soft 6.6";
 /// Most trials of a row, as many as an experiment may have; it keeps the work of an analysis small.
 pub const MOST_TRIALS: u32 = 1_000;
 
 /// An inclusion: a column of the table.
-///
-/// ```
-/// use palpate::psychophysics::{Inclusion, Table};
-///
-/// let inclusion = Inclusion { name: "6.6".into(), depth: 0.0066 };
-/// assert_eq!(Table::paper()?.inclusions()[2], inclusion);
-/// # Ok::<(), palpate::psychophysics::TableError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inclusion {
     /// As in the header: untrusted text.
@@ -39,16 +36,6 @@ pub struct Inclusion {
 }
 
 /// The answers of one subject in one condition.
-///
-/// ```
-/// use palpate::psychophysics::Table;
-///
-/// let table = Table::paper()?;
-/// let subject = &table.conditions()[0].subjects[6];
-/// assert_eq!((subject.name.as_str(), subject.trials), ("7", 30));
-/// assert_eq!(subject.correct, [23, 19, 18, 13]);
-/// # Ok::<(), palpate::psychophysics::TableError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Subject {
     /// Who answered: untrusted text.
@@ -59,19 +46,15 @@ pub struct Subject {
     pub correct: Vec<u32>,
 }
 
+impl Subject {
+    /// The share of right answers to each inclusion.
+    pub(super) fn shares(&self) -> impl Iterator<Item = f64> {
+        let share = |&correct| f64::from(correct) / f64::from(self.trials);
+        self.correct.iter().map(share)
+    }
+}
+
 /// One of the experiments.
-///
-/// ```
-/// use palpate::psychophysics::Table;
-///
-/// let table = Table::paper()?;
-/// let (contact, playback) = (&table.conditions()[0], &table.conditions()[1]);
-/// assert_eq!((contact.name.as_str(), playback.name.as_str()), ("direct contact", "FEM data"));
-/// // The inclusion at 6.6 mm.
-/// assert_eq!(playback.counts(2)[0], (30, 30));
-/// assert_eq!(playback.pooled(2), (253, 300));
-/// # Ok::<(), palpate::psychophysics::TableError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Condition {
     /// What was felt: untrusted text.
@@ -89,10 +72,9 @@ pub struct Condition {
 /// let table = Table::from_csv("subject,condition,trials,2.6,8.6\nA,gel,20,19,12\n", "mine.csv")?;
 /// assert_eq!(table.inclusions()[1].depth, 0.0086);
 /// assert_eq!(table.conditions()[0].pooled(1), (12, 20));
-/// // Three conditions, ten subjects each.
-/// let paper = Table::paper()?;
-/// assert!(paper.conditions().iter().all(|condition| condition.subjects.len() == 10));
-/// # Ok::<(), palpate::psychophysics::TableError>(())
+/// let refused = Table::from_csv("subject,condition,trials,2.6\nA,gel,20,21\n", "mine.csv");
+/// assert!(refused.unwrap_err().to_string().starts_with("mine.csv:2: 2.6 = \"21\", expected a whole"));
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 ///
 /// Implements: PSY-020, PSY-021.
@@ -102,70 +84,6 @@ pub struct Table {
     conditions: Vec<Condition>,
 }
 
-/// Why a table of counts is refused: one line that begins with the file.
-///
-/// ```
-/// use palpate::psychophysics::Table;
-///
-/// let error = Table::from_csv("subject,condition,trials,2.6\nA,gel,20,21\n", "mine.csv");
-/// assert!(error.unwrap_err().to_string().starts_with("mine.csv:2: 2.6 = \"21\""));
-/// ```
-///
-/// Implements: PSY-022.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{file}:{line}: {problem}")]
-pub struct TableError {
-    /// The file, as its reader named it.
-    pub file: String,
-    /// The line, from 1.
-    pub line: usize,
-    /// What is wrong there.
-    pub problem: TableProblem,
-}
-
-/// What is wrong with a table of counts.
-///
-/// ```
-/// use palpate::psychophysics::{Table, TableProblem};
-///
-/// let error = Table::from_csv("subject,condition,trials,2.6\n", "mine.csv").unwrap_err();
-/// assert_eq!(error.problem, TableProblem::Empty);
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum TableProblem {
-    /// The file cannot be read.
-    #[error("cannot be read: {0}")]
-    Read(String),
-    /// A header that does not name the columns, or a row of another length.
-    #[error(transparent)]
-    Csv(Box<Refusal>),
-    /// A field that makes no sense.
-    #[error("{column} = {found:?}, expected {expected}")]
-    Field {
-        /// The column, as in the header.
-        column: String,
-        /// The field.
-        found: String,
-        /// What would be right.
-        expected: String,
-    },
-    /// A subject twice in one condition.
-    #[error(
-        "subject {subject:?} again under condition {condition:?}, expected once; first in line {first}"
-    )]
-    Repeated {
-        /// Who.
-        subject: String,
-        /// Under which condition.
-        condition: String,
-        /// The line of the other row.
-        first: usize,
-    },
-    /// A header and nothing under it.
-    #[error("no rows under the header, expected at least one")]
-    Empty,
-}
-
 impl Table {
     /// Table 1 of the paper.
     ///
@@ -173,76 +91,51 @@ impl Table {
     /// None: the text is part of the program, and a test reads it.
     ///
     /// Implements: PSY-020.
-    pub fn paper() -> Result<Table, TableError> {
+    pub fn paper() -> Result<Table, Refusal> {
         Table::from_csv(PAPER, "Table 1")
     }
 
     /// Reads the table at `path`.
     ///
-    /// ```
-    /// use palpate::psychophysics::Table;
-    ///
-    /// let path = std::env::temp_dir().join(format!("counts-{}.csv", std::process::id()));
-    /// std::fs::write(&path, "subject,condition,trials,2.6\nA,gel,20,19\n")?;
-    /// assert_eq!(Table::read(&path)?.conditions()[0].pooled(0), (19, 20));
-    /// # std::fs::remove_file(&path)?;
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
-    /// As [`Table::from_csv`]; [`TableProblem::Read`] if the file cannot be read as UTF-8.
-    pub fn read(path: &Path) -> Result<Table, TableError> {
+    /// As [`Table::from_csv`], and if the file cannot be read as UTF-8.
+    pub fn read(path: &Path) -> Result<Table, Refusal> {
         let file = path.display().to_string();
-        let text = crate::input::read(path).map_err(|error| TableError {
-            file: file.clone(),
-            line: 1,
-            problem: TableProblem::Read(error.to_string()),
-        })?;
+        let unread = |error| Refusal::state(format!("cannot be read: {error}"), "").at(1);
+        let text = crate::input::read(path).map_err(|error| unread(error).in_file(&file))?;
         Table::from_csv(&text, &file)
     }
 
     /// The table in `text`, the content of `file`.
     ///
     /// # Errors
-    /// [`TableError`] with the first line that is wrong.
+    /// The first line that is wrong.
     ///
     /// Implements: PSY-020, PSY-021, PSY-022.
-    pub fn from_csv(text: &str, file: &str) -> Result<Table, TableError> {
-        let at = |line| {
-            move |problem| TableError {
-                file: file.into(),
-                line,
-                problem,
-            }
-        };
+    pub fn from_csv(text: &str, file: &str) -> Result<Table, Refusal> {
+        let at = |line| move |refusal: Refusal| refusal.at(line).in_file(file);
         let ((header_line, header), rows) = header_and_rows(text);
         let inclusions = inclusions(header).map_err(at(header_line))?;
         let mut conditions: Vec<Condition> = Vec::new();
-        let mut lines: Vec<Vec<usize>> = Vec::new();
+        let mut lines = HashMap::new();
         for (line, row) in rows {
             let (name, subject) = subject(header, row, &inclusions).map_err(at(line))?;
-            let known = conditions.iter().position(|known| known.name == name);
-            let place = known.unwrap_or_else(|| {
-                conditions.push(Condition {
-                    name: name.clone(),
-                    subjects: Vec::new(),
-                });
-                lines.push(Vec::new());
-                conditions.len() - 1
-            });
-            let subjects = &mut conditions[place].subjects;
-            if let Some(other) = subjects.iter().position(|s| s.name == subject.name) {
-                return Err(at(line)(TableProblem::Repeated {
-                    subject: subject.name,
-                    condition: name,
-                    first: lines[place][other],
-                }));
+            if let Some(first) = lines.insert((name.clone(), subject.name.clone()), line) {
+                let again = format!("subject {:?} again under condition {name:?}", subject.name);
+                let once = format!("once; first in line {first}");
+                return Err(at(line)(Refusal::state(again, once)));
             }
-            subjects.push(subject);
-            lines[place].push(line);
+            match conditions.iter_mut().find(|known| known.name == name) {
+                Some(known) => known.subjects.push(subject),
+                None => conditions.push(Condition {
+                    name,
+                    subjects: vec![subject],
+                }),
+            }
         }
         if conditions.is_empty() {
-            return Err(at(header_line)(TableProblem::Empty));
+            let empty = Refusal::state("no rows under the header", "at least one");
+            return Err(at(header_line)(empty));
         }
         Ok(Table {
             inclusions,
@@ -274,39 +167,31 @@ impl Condition {
             |(correct, trials), (k, n): (u32, u32)| (correct + u64::from(k), trials + u64::from(n));
         self.counts(column).into_iter().fold((0, 0), add)
     }
+
+    /// The same as a count of the likelihood.
+    pub(super) fn count(&self, column: usize) -> Count {
+        let (correct, trials) = self.pooled(column);
+        Count::new(correct as f64, trials as f64)
+    }
 }
 
 /// The inclusions that a header names.
-fn inclusions(header: &str) -> Result<Vec<Inclusion>, TableProblem> {
+fn inclusions(header: &str) -> Result<Vec<Inclusion>, Refusal> {
     let fields: Vec<&str> = header.split(',').map(str::trim).collect();
-    if fields.len() <= KEYS.len() || fields[..KEYS.len()] != KEYS {
-        let refusal = wrong_header(header, EXPECTED_HEADER);
-        return Err(TableProblem::Csv(refusal.into()));
-    }
+    let names = fields.strip_prefix(&KEYS).filter(|rest| !rest.is_empty());
+    let wrong = || Refusal::state(format!("header {:?}", shortened(header)), EXPECTED_HEADER);
     let mut inclusions: Vec<Inclusion> = Vec::new();
-    for (number, field) in (KEYS.len() + 1..).zip(&fields[KEYS.len()..]) {
-        let refused = |expected: &str| TableProblem::Field {
-            column: format!("header, column {number}"),
-            found: shortened(field),
-            expected: expected.into(),
-        };
-        let depth = field
-            .split_whitespace()
-            .next_back()
-            .and_then(|word| parse_scaled(word, -3))
-            .filter(|&depth| depth > 0.0 && is_plain(field));
-        let depth = depth.ok_or_else(|| {
-            refused(
-                "the name of an inclusion that ends in its depth in mm, such as 6.6 or soft 6.6",
-            )
-        })?;
-        if inclusions.iter().any(|other| other.name == *field) {
+    for (number, name) in (KEYS.len() + 1..).zip(names.ok_or_else(wrong)?) {
+        let refused = |expected| refused(&format!("header, column {number}"), name, expected);
+        let depth = name.split_whitespace().next_back();
+        let depth = depth.and_then(|word| parse_scaled(word, -3));
+        let depth = depth.filter(|&depth| depth > 0.0 && is_plain(name));
+        let depth = depth.ok_or_else(|| refused(EXPECTED_INCLUSION))?;
+        if inclusions.iter().any(|other| other.name == *name) {
             return Err(refused("each inclusion once"));
         }
-        inclusions.push(Inclusion {
-            name: field.to_string(),
-            depth,
-        });
+        let name = name.to_string();
+        inclusions.push(Inclusion { name, depth });
     }
     Ok(inclusions)
 }
@@ -316,44 +201,40 @@ fn subject(
     header: &str,
     row: &str,
     inclusions: &[Inclusion],
-) -> Result<(String, Subject), TableProblem> {
-    let fields = crate::csv::fields(row, KEYS.len() + inclusions.len(), header)
-        .map_err(|refusal| TableProblem::Csv(refusal.into()))?;
-    let refused = |column: &str, found: &str, expected: String| TableProblem::Field {
-        column: column.into(),
-        found: shortened(found),
-        expected,
+) -> Result<(String, Subject), Refusal> {
+    let fields: Vec<&str> = row.split(',').map(str::trim).collect();
+    let expected = KEYS.len() + inclusions.len();
+    let (&[name, condition, trials, ref correct @ ..], true) =
+        (&fields[..], fields.len() == expected)
+    else {
+        let expected = format!("{expected}, as in the header {header:?}");
+        return Err(Refusal::state(format!("{} fields", fields.len()), expected));
     };
-    for (column, name) in KEYS.iter().zip(&fields[..2]) {
+    for (column, name) in KEYS.iter().zip([name, condition]) {
         if name.is_empty() || !is_plain(name) {
-            return Err(refused(
-                column,
-                name,
-                "a name of printable characters".into(),
-            ));
+            return Err(refused(column, name, "a name of printable characters"));
         }
     }
-    let in_range = |text: &str, first: u32, last: u32| {
+    let whole = |column: &str, text: &str, first: u32, last: u32, of: &str| {
         let number = text.parse().ok();
-        number.filter(|number| (first..=last).contains(number))
+        let number = number.filter(|number| (first..=last).contains(number));
+        let expected = || format!("a whole number from {first} to {of}");
+        number.ok_or_else(|| refused(column, text, &expected()))
     };
-    let trials = in_range(fields[2], 1, MOST_TRIALS).ok_or_else(|| {
-        let expected = format!("a whole number from 1 to {MOST_TRIALS}");
-        refused(KEYS[2], fields[2], expected)
-    })?;
-    let correct = inclusions.iter().zip(&fields[KEYS.len()..]);
-    let correct = correct.map(|(inclusion, field)| {
-        in_range(field, 0, trials).ok_or_else(|| {
-            let expected = format!("a whole number from 0 to the {trials} trials of the row");
-            refused(&inclusion.name, field, expected)
-        })
-    });
+    let trials = whole(KEYS[2], trials, 1, MOST_TRIALS, &MOST_TRIALS.to_string())?;
+    let of_row = format!("the {trials} trials of the row");
+    let correct = inclusions.iter().zip(correct);
+    let correct = correct.map(|(of, field)| whole(&of.name, field, 0, trials, &of_row));
     let subject = Subject {
-        name: fields[0].into(),
+        name: name.into(),
         trials,
         correct: correct.collect::<Result<_, _>>()?,
     };
-    Ok((fields[1].into(), subject))
+    Ok((condition.into(), subject))
+}
+
+fn refused(column: &str, found: &str, expected: &str) -> Refusal {
+    Refusal::value(column, format!("{:?}", shortened(found)), expected)
 }
 
 /// Whether a name can be printed as it is.

@@ -69,7 +69,7 @@ use crate::fem::mesh::Region;
 use crate::fem::{FemError, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::phantom::Phantom;
-use crate::psychophysics::{PsychophysicsError, TableError};
+use crate::psychophysics::PsychophysicsError;
 use crate::refusal::Refusal;
 
 /// The version of the program.
@@ -225,7 +225,7 @@ pub enum ReportError {
     #[error("{error}")]
     Table {
         /// Why.
-        error: TableError,
+        error: Refusal,
     },
     /// A picture could not be drawn.
     #[error("figure {figure:?}: {problem}")]

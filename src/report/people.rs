@@ -4,7 +4,7 @@ use super::findings::MapFindings;
 use super::text::extremes;
 use super::{ReportError, Study, paper};
 use crate::psychophysics::bridge::{Bridge, bridge};
-use crate::psychophysics::{Analysis, Bounds, PsychophysicsError, Table};
+use crate::psychophysics::{Analysis, Bounds, Table};
 use crate::stats::normal;
 
 /// The bridge from those maps of `study` whose findings are in `compared` to the answers of `table`; `None` with fewer than two.
@@ -24,12 +24,11 @@ pub(super) fn bridge_to(
         Some((name, study.maps.get(index)?))
     });
     let columns: Vec<_> = columns.collect();
-    match bridge(table, &study.reference, &columns) {
-        Ok(bridge) => Ok(Some(bridge)),
-        // Fewer than two depths say nothing of how rates fall with depth.
-        Err(PsychophysicsError::TooFewMaps { .. }) => Ok(None),
-        Err(source) => Err(ReportError::People { source }),
-    }
+    // Fewer than two depths say nothing of how rates fall with depth.
+    let has_depths = columns.len() >= 2;
+    let bridge = has_depths.then(|| bridge(table, &study.reference, &columns, None));
+    let refused = |source| ReportError::People { source };
+    bridge.transpose().map_err(refused)
 }
 
 /// How much wider, at the least and at the most, the intervals by subject are than the exact ones of all answers pooled.

@@ -74,6 +74,7 @@ impl core::error::Error for ProportionError {}
 /// # Ok::<(), palpate::stats::binomial::ProportionError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "std", derive(serde::Serialize))]
 pub struct Interval {
     /// Lower end, ≥ 0.
     pub lower: f64,

@@ -2,63 +2,46 @@
 
 use super::*;
 use crate::psychophysics::Table;
+use crate::psychophysics::tests::numbers;
 use crate::stats::check::assert_near;
 
 // The golden section leaves √ρ within 2/12 · 4·10⁻⁶, so ρ within 5·10⁻⁷ and p, which hardly depends on it, too; the
 // ends follow from a value that is right to 10⁻⁹ with slopes above 1.
 const TOLERANCE: f64 = 1e-6;
 
+/// Condition, column, rate with the ends of its interval, correlation with those of its own, and the gain of deviance.
+const EXPECTED: &str = "
+0 0 0.961657767425 0.822940147366 0.991350597537 0.174123113798 0.034349420313 0.704373442059 16.380638854229
+1 0 0.973339226530 0.935077823966 0.989284946490 0.009892941480 0.000000000000 0.150811341087 0.278731235576
+1 2 0.844473543190 0.725125901220 0.914044796706 0.114613948876 0.036376577753 0.314868409432 18.763086784063
+0 3 0.666931299883 0.574452831637 0.747410687533 0.043149488507 0.002130736476 0.153434864593 4.559789469857
+";
+
 // Verifies: PSY-032, PSY-033.
 #[test]
 fn fits_of_table_1() {
     let table = Table::paper().unwrap();
-    for (condition, column, rate, rate_ends, correlation, ends, gain) in [
-        (
-            0,
-            0,
-            0.9616577674253071,
-            [0.8229401473664738, 0.9913505975367575],
-            0.17412311379838546,
-            [0.03434942031347645, 0.7043734420586059],
-            16.380638854229282,
-        ),
-        (
-            1,
-            0,
-            0.973339226529758,
-            [0.9350778239655425, 0.9892849464899945],
-            0.00989294147969269,
-            [0.0, 0.15081134108663063],
-            0.2787312355760143,
-        ),
-        (
-            1,
-            2,
-            0.8444735431904716,
-            [0.7251259012201761, 0.9140447967057539],
-            0.1146139488762808,
-            [0.03637657775319252, 0.3148684094323343],
-            18.763086784063354,
-        ),
-        (
-            0,
-            3,
-            0.6669312998834205,
-            [0.574452831636971, 0.747410687532652],
-            0.0431494885066823,
-            [0.0021307364762822856, 0.1534348645926911],
-            4.559789469856781,
-        ),
-    ] {
-        let found = beta_binomial(&table.conditions()[condition].counts(column))
-            .unwrap()
-            .unwrap();
+    for [
+        condition,
+        column,
+        rate,
+        low,
+        high,
+        correlation,
+        lower,
+        upper,
+        gain,
+    ] in numbers(EXPECTED)
+    {
+        let condition = &table.conditions()[condition as usize];
+        let found = beta_binomial(&condition.counts(column as usize));
+        let found = found.unwrap().unwrap();
         assert_near(found.rate, rate, TOLERANCE);
-        assert_near(found.rate_bounds.lower, rate_ends[0], TOLERANCE);
-        assert_near(found.rate_bounds.upper, rate_ends[1], TOLERANCE);
+        assert_near(found.rate_bounds.lower, low, TOLERANCE);
+        assert_near(found.rate_bounds.upper, high, TOLERANCE);
         assert_near(found.correlation, correlation, TOLERANCE);
-        assert_near(found.correlation_bounds.lower.unwrap(), ends[0], TOLERANCE);
-        assert_near(found.correlation_bounds.upper.unwrap(), ends[1], TOLERANCE);
+        assert_near(found.correlation_bounds.lower.unwrap(), lower, TOLERANCE);
+        assert_near(found.correlation_bounds.upper.unwrap(), upper, TOLERANCE);
         assert_near(found.deviance_gain, gain, 1e-8);
         assert!(!found.is_binomial);
         // Half the tail of one degree of freedom: Φ(−√gain).

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::psychophysics::rates::{Bounds, OpenBounds};
+use crate::psychophysics::noise::InclusionNoise;
+use crate::psychophysics::rates::Bounds;
 
 /// What of the sweep counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -60,20 +61,11 @@ pub struct Convention {
 impl Convention {
     /// All twelve.
     pub fn all() -> impl Iterator<Item = Convention> {
-        let of_statistic = |statistic| {
-            [Channel::Normal, Channel::Lateral, Channel::Both]
-                .into_iter()
-                .flat_map(move |channel| {
-                    [Offset::Kept, Offset::Removed].map(|offset| Convention {
-                        statistic,
-                        channel,
-                        offset,
-                    })
-                })
-        };
-        [Statistic::Peak, Statistic::MatchedFilter]
-            .into_iter()
-            .flat_map(of_statistic)
+        (0..12).map(|k| Convention {
+            statistic: [Statistic::Peak, Statistic::MatchedFilter][k / 6],
+            channel: [Channel::Normal, Channel::Lateral, Channel::Both][k / 2 % 3],
+            offset: [Offset::Kept, Offset::Removed][k % 2],
+        })
     }
 
     /// Whether the uniform part of the normal force counts.
@@ -172,23 +164,6 @@ pub struct ObservedRate {
     pub pooled_bounds: Bounds,
     /// With the subjects as the sample; `None` for one subject or if none differs.
     pub clustered_bounds: Option<Bounds>,
-}
-
-/// Peak normal force over the γ of one inclusion.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct InclusionNoise {
-    /// The signal, N.
-    #[serde(rename = "signal_n")]
-    pub signal: f64,
-    /// The noise, N; `None` if the answers set none: half or fewer right, or all right.
-    #[serde(rename = "noise_n")]
-    pub noise: Option<f64>,
-    /// From Clopper and Pearson's interval, N; an upper end that is missing is no bound.
-    #[serde(rename = "pooled_bounds_n")]
-    pub pooled_bounds: OpenBounds,
-    /// With the subjects as the sample, N.
-    #[serde(rename = "clustered_bounds_n")]
-    pub clustered_bounds: Option<OpenBounds>,
 }
 
 /// One convention against the counts of one condition.

@@ -1,8 +1,10 @@
 //! One noise level for all subjects.
 
+use super::signals::Signal;
 use super::{CommonFit, LapseFit, Observations};
-use crate::psychophysics::PsychophysicsError;
-use crate::psychophysics::choice::{Count, Perceived, best_lapse, log_likelihood};
+use crate::psychophysics::Result;
+use crate::psychophysics::choice::{Count, Perceived, best_lapse, deviance, log_likelihood};
+use crate::psychophysics::dispersion::Overdispersion;
 use crate::psychophysics::rates::{Bounds, CONFIDENCE};
 use crate::psychophysics::search::maximum;
 use crate::stats::tails::{f_tail, student_quantile};
@@ -20,6 +22,13 @@ const SINGULAR: f64 = 1e-12;
 pub struct Signals(pub Vec<f64>);
 
 impl Signals {
+    /// What `strength` makes of each signal; `None` if that is 0 for all.
+    pub fn new(signals: &[Signal], strength: impl Fn(&Signal) -> f64) -> Option<Signals> {
+        let strengths: Vec<f64> = signals.iter().map(strength).collect();
+        let is_some = strengths.iter().any(|&strength| strength != 0.0);
+        is_some.then_some(Signals(strengths))
+    }
+
     /// What is perceived with noise 1/`sensitivity`, N.
     pub fn perceived(&self, sensitivity: f64) -> Vec<Perceived> {
         let at = |signal: &f64| Perceived::at_gamma(signal * sensitivity);
@@ -69,71 +78,62 @@ pub fn is_inside([low, high]: [f64; 2], log: f64) -> bool {
 /// The noise level that fits the pooled counts best; `None` if there is none.
 ///
 /// Implements: PSY-073, PSY-075, PSY-076.
-pub fn common(
-    signals: &Signals,
-    observed: &Observations,
-) -> Result<Option<CommonFit>, PsychophysicsError> {
-    let (log, value) = signals.best(&observed.pooled, Some(0.0));
-    if !is_inside(signals.range(), log) {
+pub fn common(signals: &Signals, observed: &Observations) -> Result<Option<CommonFit>> {
+    let Some((log, fit)) = fit(signals, observed, Some(0.0))? else {
         return Ok(None);
-    }
-    let perceived = signals.perceived(libm::exp(log));
-    let deviance = observed.deviance(value);
-    let degrees = signals.0.len() as u32 - 1;
-    let dispersed = observed.dispersion;
+    };
     Ok(Some(CommonFit {
-        noise: libm::exp(-log),
+        noise: fit.noise,
         noise_bounds: noise_bounds(signals, observed, log)?,
-        predicted: perceived.iter().map(|at| at.right(0.0)).collect(),
-        deviance,
-        degrees,
-        p_value_dispersed: match dispersed {
-            Some(dispersion) => dispersion.p_value(deviance, degrees)?,
-            None => None,
-        },
+        predicted: fit.predicted,
+        deviance: fit.deviance,
+        degrees: fit.degrees,
+        p_value_dispersed: fit.p_value_dispersed,
         p_value_clustered: hotelling(signals, observed)?,
-        aic: observed.deviance_of_subjects(value) + 2.0,
+        aic: fit.aic,
     }))
 }
 
 /// The noise level and share of lapses that fit the pooled counts best; `None` as for [`common`].
 ///
 /// Implements: PSY-074.
-pub fn common_with_lapse(
+pub fn common_with_lapse(signals: &Signals, observed: &Observations) -> Result<Option<LapseFit>> {
+    Ok(fit(signals, observed, None)?.map(|(_, fit)| fit))
+}
+
+/// The noise level that fits the pooled counts best with this share of lapses, or the best one, and its ln(1/σ).
+fn fit(
     signals: &Signals,
     observed: &Observations,
-) -> Result<Option<LapseFit>, PsychophysicsError> {
-    let (log, value) = signals.best(&observed.pooled, None);
+    lapse: Option<f64>,
+) -> Result<Option<(f64, LapseFit)>> {
+    let (log, value) = signals.best(&observed.pooled, lapse);
     if !is_inside(signals.range(), log) {
         return Ok(None);
     }
     let perceived = signals.perceived(libm::exp(log));
-    let lapse = best_lapse(&observed.pooled, &perceived);
-    let deviance = observed.deviance(value);
-    let degrees = (signals.0.len() as u32).saturating_sub(2);
-    Ok(Some(LapseFit {
+    let parameters = 1 + u32::from(lapse.is_none());
+    let lapse = lapse.unwrap_or_else(|| best_lapse(&observed.pooled, &perceived));
+    let deviance_of_all = deviance(&observed.pooled, value);
+    let degrees = (signals.0.len() as u32).saturating_sub(parameters);
+    let p_value = |dispersion: Overdispersion| dispersion.p_value(deviance_of_all, degrees);
+    let fit = LapseFit {
         noise: libm::exp(-log),
         lapse,
         predicted: perceived.iter().map(|at| at.right(lapse)).collect(),
-        deviance,
+        deviance: deviance_of_all,
         degrees,
-        p_value_dispersed: match observed.dispersion {
-            Some(dispersion) => dispersion.p_value(deviance, degrees)?,
-            None => None,
-        },
-        aic: observed.deviance_of_subjects(value) + 4.0,
-    }))
+        p_value_dispersed: observed.dispersion.map(p_value).transpose()?.flatten(),
+        aic: deviance(observed.subjects.iter().flatten(), value) + 2.0 * f64::from(parameters),
+    };
+    Ok(Some((log, fit)))
 }
 
 /// Student's interval of ln σ by the subjects' scores, σ: with U_i the derivative of the log-likelihood of
 /// subject i and I the information, the variance is m/(m−1) Σ U_i²/I².
 ///
 /// Implements: PSY-075.
-fn noise_bounds(
-    signals: &Signals,
-    observed: &Observations,
-    log: f64,
-) -> Result<Option<Bounds>, PsychophysicsError> {
+fn noise_bounds(signals: &Signals, observed: &Observations, log: f64) -> Result<Option<Bounds>> {
     let subjects = observed.subjects.len() as f64;
     if observed.subjects.len() < 2 {
         return Ok(None);
@@ -147,7 +147,7 @@ fn noise_bounds(
             let (right, wrong) = (at.right(0.0), at.wrong(0.0));
             if *slope > 0.0 && wrong > 0.0 {
                 score += slope * (count.right / right - count.wrong / wrong);
-                information += slope * slope * (count.right + count.wrong) / (right * wrong);
+                information += slope * slope * count.trials() / (right * wrong);
             }
         }
         squares += score * score;
@@ -164,24 +164,17 @@ fn noise_bounds(
 /// m − q degrees of freedom. `None` with too few subjects, or if S is singular.
 ///
 /// Implements: PSY-076.
-fn hotelling(
-    signals: &Signals,
-    observed: &Observations,
-) -> Result<Option<f64>, PsychophysicsError> {
+fn hotelling(signals: &Signals, observed: &Observations) -> Result<Option<f64>> {
     let inclusions = signals.0.len();
     let (m, q) = (observed.subjects.len() as f64, inclusions as f64 - 1.0);
     if observed.subjects.len() <= inclusions {
         return Ok(None);
     }
-    let share = |count: &Count| count.right / (count.right + count.wrong);
-    let shares: Vec<Vec<f64>> = observed
-        .subjects
-        .iter()
-        .map(|counts| counts.iter().map(share).collect())
-        .collect();
-    let means: Vec<f64> = (0..inclusions)
-        .map(|j| shares.iter().map(|row| row[j]).sum::<f64>() / m)
-        .collect();
+    let share = |count: &Count| count.right / count.trials();
+    let shares = |counts: &Vec<Count>| counts.iter().map(share).collect();
+    let shares: Vec<Vec<f64>> = observed.subjects.iter().map(shares).collect();
+    let mean = |j: usize| shares.iter().map(|row| row[j]).sum::<f64>() / m;
+    let means: Vec<f64> = (0..inclusions).map(mean).collect();
     let covariance = |i: usize, j: usize| {
         let product = |row: &Vec<f64>| (row[i] - means[i]) * (row[j] - means[j]);
         shares.iter().map(product).sum::<f64>() / (m - 1.0)
@@ -191,34 +184,23 @@ fn hotelling(
     };
     let less_t_squared = |log: f64| {
         let perceived = signals.perceived(libm::exp(log));
-        let rest = means
-            .iter()
-            .zip(&perceived)
-            .map(|(mean, at)| mean - at.right(0.0));
-        -m * solved_square(&factor, rest)
+        let rest = means.iter().zip(&perceived);
+        let white = forward(&factor, rest.map(|(mean, at)| mean - at.right(0.0)));
+        -m * square(&white)
     };
     let [low, high] = signals.range();
     let t_squared = -maximum(less_t_squared, low, high, CELLS).1;
-    Ok(Some(f_tail(
-        (m - q) / (q * (m - 1.0)) * t_squared,
-        q,
-        m - q,
-    )?))
+    let ratio = (m - q) / (q * (m - 1.0)) * t_squared;
+    Ok(Some(f_tail(ratio, q, m - q)?))
 }
 
 /// The rows of L in S = LLᵀ; `None` if S is singular.
 fn cholesky(order: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Vec<Vec<f64>>> {
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(order);
     for i in 0..order {
-        let mut row = Vec::with_capacity(i + 1);
-        for j in 0..i {
-            let above: &Vec<f64> = &rows[j];
-            let dot: f64 = (0..j).map(|k| row[k] * above[k]).sum();
-            row.push((entry(i, j) - dot) / above[j]);
-        }
-        let diagonal = entry(i, i);
-        let pivot = diagonal - row.iter().map(|l| l * l).sum::<f64>();
-        if pivot.is_nan() || pivot <= SINGULAR * diagonal {
+        let mut row = forward(&rows, (0..i).map(|j| entry(i, j)));
+        let pivot = entry(i, i) - square(&row);
+        if pivot.is_nan() || pivot <= SINGULAR * entry(i, i) {
             return None;
         }
         row.push(libm::sqrt(pivot));
@@ -227,12 +209,17 @@ fn cholesky(order: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Vec<Vec
     Some(rows)
 }
 
-/// |L⁻¹v|².
-fn solved_square(factor: &[Vec<f64>], vector: impl Iterator<Item = f64>) -> f64 {
+/// L⁻¹v.
+fn forward(factor: &[Vec<f64>], vector: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut solved: Vec<f64> = Vec::with_capacity(factor.len());
     for (row, entry) in factor.iter().zip(vector) {
         let dot: f64 = solved.iter().zip(row).map(|(x, l)| x * l).sum();
         solved.push((entry - dot) / row[solved.len()]);
     }
-    solved.iter().map(|x| x * x).sum()
+    solved
+}
+
+/// |v|².
+fn square(vector: &[f64]) -> f64 {
+    vector.iter().map(|x| x * x).sum()
 }

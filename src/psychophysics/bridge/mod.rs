@@ -26,21 +26,20 @@ mod weights;
 
 pub use answer::{
     Bridge, BridgeInclusion, Channel, CommonFit, ConditionBridge, Convention, ConventionFit,
-    InclusionNoise, LapseFit, ObservedRate, Offset, Statistic, SubjectFit, Support, Verdict,
-    WeightFit, WeightRange,
+    LapseFit, ObservedRate, Offset, Statistic, SubjectFit, Support, Verdict, WeightFit,
+    WeightRange,
 };
-pub use signals::whole_sweep;
 
 use super::choice::Count;
 use super::conditions::sign_flip;
-use super::dispersion::{Overdispersion, overall_dispersion};
-use super::noise::noise_bounds;
-use super::rates::{Rate, clustered};
-use super::{Condition, PsychophysicsError, Table};
+use super::dispersion::Overdispersion;
+use super::noise::InclusionNoise;
+use super::rates::pooled;
+use super::{Condition, Result, Table};
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
 use common::{Signals, common, common_with_lapse};
-use signals::{Signal, mean};
+use signals::{Signal, mean, sweep};
 use subjects::{by_subject, by_subject_with_lapse};
 use verdict::verdict;
 use weights::{STATISTICS, half_sweeps, weight_ranges};
@@ -59,85 +58,68 @@ struct Observations {
     pooled: Vec<Count>,
     /// Each subject.
     subjects: Vec<Vec<Count>>,
-    /// How much the subjects differ.
+    /// How much the subjects differ, over all inclusions of the table.
     dispersion: Option<Overdispersion>,
 }
 
 impl Observations {
-    fn new(condition: &Condition, columns: &[usize]) -> Result<Observations, PsychophysicsError> {
-        let pooled = |&column: &usize| {
-            let (correct, trials) = condition.pooled(column);
-            Count::new(correct as f64, trials as f64)
-        };
+    fn new(condition: &Condition, columns: &[usize]) -> Result<Observations> {
         let inclusions = condition.subjects.first().map_or(0, |s| s.correct.len());
+        let subjects = condition.subjects.iter().map(|subject| {
+            let count = |&j: &usize| Count::new(subject.correct[j].into(), subject.trials.into());
+            columns.iter().map(count).collect()
+        });
         Ok(Observations {
-            pooled: columns.iter().map(pooled).collect(),
-            subjects: condition
-                .subjects
-                .iter()
-                .map(|subject| {
-                    let count = |&column: &usize| {
-                        Count::new(
-                            f64::from(subject.correct[column]),
-                            f64::from(subject.trials),
-                        )
-                    };
-                    columns.iter().map(count).collect()
-                })
-                .collect(),
-            dispersion: overall_dispersion(condition, inclusions)?.map(Overdispersion::from),
+            pooled: columns.iter().map(|&j| condition.count(j)).collect(),
+            subjects: subjects.collect(),
+            dispersion: Overdispersion::new(condition, inclusions)?,
         })
-    }
-
-    /// Twice the log-likelihood that a share of its own for each inclusion gains.
-    fn deviance(&self, log_likelihood: f64) -> f64 {
-        let saturated: f64 = self.pooled.iter().map(|count| count.saturated()).sum();
-        2.0 * (saturated - log_likelihood).max(0.0)
-    }
-
-    /// Twice the log-likelihood that a share of its own for each subject and inclusion gains.
-    fn deviance_of_subjects(&self, log_likelihood: f64) -> f64 {
-        let counts = self.subjects.iter().flatten();
-        let saturated: f64 = counts.map(|count| count.saturated()).sum();
-        2.0 * (saturated - log_likelihood).max(0.0)
     }
 }
 
-/// Maps of some inclusions of `table`, each with the name of its column, against its counts.
+/// Maps of some inclusions of `table`, each with the name of its column, against its counts; over the part of the sweep within
+/// `half_sweep`, m, of x = 0, if that is given.
 ///
 /// # Errors
-/// [`PsychophysicsError`] for a name that is no column or comes twice, fewer than two maps, and a map over
-/// other poses than the reference.
+/// A name that is no column or comes twice, fewer than two maps or positions within the sweep, and a map over other poses than the
+/// reference.
 ///
-/// Implements: PSY-070, PSY-071, PSY-072, PSY-079, PSY-085.
+/// Implements: PSY-070, PSY-071, PSY-072, PSY-079, PSY-085, CLI-083.
 pub fn bridge(
     table: &Table,
     reference: &ForceMap,
     inclusions: &[(&str, &ForceMap)],
-) -> Result<Bridge, PsychophysicsError> {
-    let columns = columns(table, inclusions)?;
-    let map_error = |name: &str| {
-        let name = name.to_string();
-        move |refusal: Refusal| {
-            let source = refusal.into();
-            PsychophysicsError::Map { name, source }
+    half_sweep: Option<f64>,
+) -> Result<Bridge> {
+    let maps = columns(table, inclusions)?;
+    let reference = sweep(reference, half_sweep).map_err(|error| error.in_file("reference"))?;
+    let (probe_depth, probe_depth_note) = probe_depth(reference.depths());
+    let (mut columns, mut signals) = (Vec::new(), Vec::new());
+    for (column, map) in maps {
+        let map = sweep(map, half_sweep);
+        let signal = map.and_then(|map| Signal::new(&reference, &map, probe_depth));
+        let name = &table.inclusions()[column].name;
+        signals.push(signal.map_err(|error| error.in_file(name))?);
+        columns.push(column);
+    }
+    let laterals = reference.laterals();
+    let half_sweeps = half_sweeps(laterals);
+    let conditions = table.conditions().iter();
+    let ranges = conditions.len() * half_sweeps.len() * STATISTICS.len();
+    let conditions = conditions
+        .map(|condition| of_condition(condition, &columns, &signals, (&half_sweeps, ranges)));
+    let of_inclusion = |(&column, signal): (&usize, &Signal)| {
+        let (peak_normal, peak_normal_at) = signal.peak(&signal.normal);
+        let (peak_lateral, peak_lateral_at) = signal.peak(&signal.lateral);
+        BridgeInclusion {
+            name: table.inclusions()[column].name.clone(),
+            peak_normal,
+            peak_normal_at,
+            mean_normal: mean(&signal.normal),
+            peak_lateral,
+            peak_lateral_at,
         }
     };
-    let whole_reference = whole_sweep(reference).map_err(map_error("reference"))?;
-    let (probe_depth, probe_depth_note) = probe_depth(reference.depths());
-    let mut signals = Vec::new();
-    for &(column, map) in &columns {
-        let name = &table.inclusions()[column].name;
-        let signal = whole_sweep(map)
-            .and_then(|map| Signal::new(&whole_reference, &map, probe_depth))
-            .map_err(map_error(name))?;
-        signals.push((name.as_str(), signal));
-    }
-    let columns: Vec<usize> = columns.iter().map(|&(column, _)| column).collect();
-    let conditions = table.conditions().iter();
-    let laterals = whole_reference.laterals();
-    let half_sweeps = half_sweeps(laterals);
-    let ranges = conditions.len() * half_sweeps.len() * STATISTICS.len();
     Ok(Bridge {
         probe_depth,
         probe_depth_note,
@@ -146,13 +128,8 @@ pub fn bridge(
         to: laterals[laterals.len() - 1],
         level: LEVEL,
         weight_ranges: ranges,
-        inclusions: signals
-            .iter()
-            .map(|(name, s)| of_inclusion(name, s))
-            .collect(),
-        conditions: conditions
-            .map(|condition| of_condition(condition, &columns, &signals, (&half_sweeps, ranges)))
-            .collect::<Result<_, _>>()?,
+        inclusions: columns.iter().zip(&signals).map(of_inclusion).collect(),
+        conditions: conditions.collect::<Result<_, _>>()?,
     })
 }
 
@@ -160,28 +137,24 @@ pub fn bridge(
 fn columns<'a>(
     table: &Table,
     inclusions: &[(&str, &'a ForceMap)],
-) -> Result<Vec<(usize, &'a ForceMap)>, PsychophysicsError> {
-    let known = table.inclusions();
+) -> Result<Vec<(usize, &'a ForceMap)>, Refusal> {
+    let known: Vec<&str> = table.inclusions().iter().map(|of| &of.name[..]).collect();
     let mut columns: Vec<(usize, &ForceMap)> = Vec::new();
     for &(name, map) in inclusions {
-        let column = known.iter().position(|inclusion| inclusion.name == name);
-        let column = column.ok_or_else(|| PsychophysicsError::NoSuchInclusion {
-            name: name.into(),
-            expected: known
-                .iter()
-                .map(|i| i.name.as_str())
-                .collect::<Vec<_>>()
-                .join(", "),
-        })?;
+        let Some(column) = known.iter().position(|known| *known == name) else {
+            let found = format!("inclusion {name:?} is no column of the table");
+            let expected = format!("one of {}", known.join(", "));
+            return Err(Refusal::state(found, expected));
+        };
         if columns.iter().any(|&(other, _)| other == column) {
-            return Err(PsychophysicsError::Repeated { name: name.into() });
+            let found = format!("inclusion {name:?} has two maps");
+            return Err(Refusal::state(found, "one"));
         }
         columns.push((column, map));
     }
     if columns.len() < 2 {
-        return Err(PsychophysicsError::TooFewMaps {
-            found: columns.len(),
-        });
+        let found = format!("{} inclusions with a map", columns.len());
+        return Err(Refusal::state(found, "at least two"));
     }
     columns.sort_by_key(|&(column, _)| column);
     Ok(columns)
@@ -189,8 +162,8 @@ fn columns<'a>(
 
 /// The paper's depth if the maps hold it, or else the deepest with a note.
 fn probe_depth(depths: &[f64]) -> (f64, Option<String>) {
-    let paper = |depth: &f64| (depth - PROBE_DEPTH).abs() <= SAME_POSITION;
-    if let Some(&depth) = depths.iter().find(|depth| paper(depth)) {
+    let paper = |depth: &&f64| (**depth - PROBE_DEPTH).abs() <= SAME_POSITION;
+    if let Some(&depth) = depths.iter().find(paper) {
         return (depth, None);
     }
     let deepest = depths.iter().copied().fold(0.0, f64::max);
@@ -201,39 +174,18 @@ fn probe_depth(depths: &[f64]) -> (f64, Option<String>) {
     (deepest, Some(note))
 }
 
-fn of_inclusion(name: &str, signal: &Signal) -> BridgeInclusion {
-    let normal = signal.peak(&signal.normal);
-    let lateral = signal.peak(&signal.lateral);
-    BridgeInclusion {
-        name: name.into(),
-        peak_normal: normal.force,
-        peak_normal_at: normal.at,
-        mean_normal: mean(&signal.normal),
-        peak_lateral: lateral.force,
-        peak_lateral_at: lateral.at,
-    }
-}
-
 fn of_condition(
     condition: &Condition,
     columns: &[usize],
-    signals: &[(&str, Signal)],
+    signals: &[Signal],
     (half_sweeps, ranges): (&[f64], usize),
-) -> Result<ConditionBridge, PsychophysicsError> {
+) -> Result<ConditionBridge> {
     let observations = Observations::new(condition, columns)?;
     let (mut observed, mut noise_by_inclusion) = (Vec::new(), Vec::new());
-    for (&column, (_, signal)) in columns.iter().zip(signals) {
-        let (correct, trials) = condition.pooled(column);
-        let pooled = Rate::new(correct, trials)?;
-        let clustered = clustered(&condition.counts(column), &pooled)?;
-        let peak = signal.peak(&signal.normal).force.abs();
-        let (noise, pooled_bounds) = noise_bounds(peak, pooled.gamma);
-        noise_by_inclusion.push(InclusionNoise {
-            signal: peak,
-            noise,
-            pooled_bounds,
-            clustered_bounds: clustered.map(|found| noise_bounds(peak, found.gamma).1),
-        });
+    for (&column, signal) in columns.iter().zip(signals) {
+        let (pooled, clustered) = pooled(condition, column)?;
+        let (peak, _) = signal.peak(&signal.normal);
+        noise_by_inclusion.push(InclusionNoise::new(peak.abs(), &pooled, clustered));
         observed.push(ObservedRate {
             rate: pooled.rate,
             pooled_bounds: pooled.clopper_pearson,
@@ -254,27 +206,20 @@ fn of_condition(
 }
 
 /// Every convention with a signal, against the counts.
-fn fits(
-    signals: &[(&str, Signal)],
-    observed: &Observations,
-) -> Result<Vec<ConventionFit>, PsychophysicsError> {
+fn fits(signals: &[Signal], observed: &Observations) -> Result<Vec<ConventionFit>> {
     let mut fits: Vec<ConventionFit> = Vec::new();
     for convention in Convention::all() {
-        let strengths = signals
-            .iter()
-            .map(|(_, signal)| signal.strength(convention));
-        let strengths: Vec<f64> = strengths.collect();
-        if strengths.iter().all(|&strength| strength == 0.0) {
+        let Some(signals) = Signals::new(signals, |signal| signal.strength(convention)) else {
             continue;
-        }
-        let fit = match fits.iter().find(|fit| fit.signals == strengths) {
+        };
+        let fit = match fits.iter().find(|fit| fit.signals == signals.0) {
             // As with the mean of a lateral force, which is 0: nothing to compute again.
             Some(same) => ConventionFit {
                 convention,
                 name: convention.text(),
                 ..same.clone()
             },
-            None => fit(convention, strengths, observed)?,
+            None => fit(convention, signals, observed)?,
         };
         fits.push(fit);
     }
@@ -294,28 +239,23 @@ fn fits(
 ///
 /// Implements: PSY-079.
 fn told_apart(one: &ConventionFit, other: &ConventionFit) -> Option<f64> {
-    let deviances = |fit: &ConventionFit| fit.by_subject_with_lapse.deviance_by_subject.clone();
-    let pairs = deviances(one).into_iter().zip(deviances(other));
-    sign_flip(&pairs.map(|(one, other)| one - other).collect::<Vec<_>>())
+    let [one, other] = [one, other].map(|fit| &fit.by_subject_with_lapse.deviance_by_subject);
+    let differences = one.iter().zip(other).map(|(one, other)| one - other);
+    sign_flip(&differences.collect::<Vec<_>>())
 }
 
-fn fit(
-    convention: Convention,
-    strengths: Vec<f64>,
-    observed: &Observations,
-) -> Result<ConventionFit, PsychophysicsError> {
-    let signals = Signals(strengths);
-    let alone = by_subject(&signals, observed)?;
-    let with_lapse = by_subject_with_lapse(&signals, observed)?;
-    let p_value = alone.p_value.max(with_lapse.p_value);
+fn fit(convention: Convention, signals: Signals, observed: &Observations) -> Result<ConventionFit> {
+    let by_subject = by_subject(&signals, observed)?;
+    let by_subject_with_lapse = by_subject_with_lapse(&signals, observed, &by_subject)?;
+    let p_value = by_subject.p_value.max(by_subject_with_lapse.p_value);
     Ok(ConventionFit {
         convention,
         name: convention.text(),
         common: common(&signals, observed)?,
         common_with_lapse: common_with_lapse(&signals, observed)?,
         signals: signals.0,
-        by_subject: alone,
-        by_subject_with_lapse: with_lapse,
+        by_subject,
+        by_subject_with_lapse,
         worse_than_best_p: None,
         p_value,
         is_rejected: p_value < LEVEL,

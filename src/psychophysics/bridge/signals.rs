@@ -1,7 +1,7 @@
 //! What each convention makes of the difference of two force maps along a sweep.
 
 use super::{Channel, Convention, Offset, Statistic};
-use crate::force_map::{ForceCurve, ForceMap, SAME_POSITION};
+use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
 
 /// The difference F₁ − F₀ along a sweep.
@@ -15,68 +15,63 @@ pub struct Signal {
     pub lateral: Vec<f64>,
 }
 
-/// A difference and where it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Peak {
-    /// The force with its sign, N.
-    pub force: f64,
-    /// The position, m.
-    pub at: f64,
-}
-
-/// A map over the whole sweep: one that begins at x = 0 is completed by symmetry, as the paper does, and refused if its phantom
-/// has none.
+/// A map over the whole sweep, or its part within `half`, m, of x = 0: a map that begins at x = 0 is completed by symmetry, as the
+/// paper does, and refused if its phantom has none.
 ///
 /// # Errors
-/// As [`ForceMap::mirrored`].
+/// As [`ForceMap::mirrored`], and for fewer than two positions.
 ///
-/// Implements: PSY-072.
-pub fn whole_sweep(map: &ForceMap) -> Result<ForceMap, Refusal> {
-    let from_centre = map.laterals().len() > 1 && map.laterals()[0].abs() <= SAME_POSITION;
-    if from_centre {
-        map.mirrored()
-    } else {
-        Ok(map.clone())
+/// Implements: PSY-072, CLI-083.
+pub fn sweep(map: &ForceMap, half: Option<f64>) -> Result<ForceMap, Refusal> {
+    let begins_at_centre = map.laterals().len() > 1 && map.laterals()[0].abs() <= SAME_POSITION;
+    let whole = match begins_at_centre {
+        true => map.mirrored()?,
+        false => map.clone(),
+    };
+    let Some(half) = half else { return Ok(whole) };
+    let inside = whole.laterals().iter().copied();
+    let inside: Vec<f64> = inside.filter(|&x| is_within(x, half)).collect();
+    if inside.len() < 2 {
+        let found = format!("{} lateral positions within --sweep-mm", inside.len());
+        return Err(Refusal::state(found, "at least two"));
     }
+    whole.at_laterals(&inside)
+}
+
+/// Whether x is within `half` of 0, both in m.
+pub fn is_within(x: f64, half: f64) -> bool {
+    x.abs() <= half + SAME_POSITION
 }
 
 impl Signal {
     /// The difference at one depth, m, of a map from its reference.
     pub fn new(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<Signal, Refusal> {
-        let difference = map.signal(reference)?;
-        let ForceCurve {
-            laterals,
-            normal_force,
-            lateral_force,
-        } = difference.row(depth)?;
+            let difference = map.signal(reference)?;
+        let row = difference.row(depth)?;
         Ok(Signal {
-            laterals: laterals.to_vec(),
-            normal: normal_force.to_vec(),
-            lateral: lateral_force.to_vec(),
+            laterals: row.laterals.to_vec(),
+            normal: row.normal_force.to_vec(),
+            lateral: row.lateral_force.to_vec(),
         })
     }
 
-    /// The largest magnitude in a channel of this signal; of equals the one nearest to x = 0, then that at x > 0.
-    pub fn peak(&self, channel: &[f64]) -> Peak {
-        let poses = self.laterals.iter().zip(channel);
-        poses
-            .map(|(&at, &force)| Peak { force, at })
-            .max_by(|a, b| {
-                let larger = a.force.abs().total_cmp(&b.force.abs());
-                let nearer = b.at.abs().total_cmp(&a.at.abs());
-                larger.then(nearer).then(a.at.total_cmp(&b.at))
-            })
-            .unwrap_or(Peak {
-                force: 0.0,
-                at: 0.0,
-            })
+    /// The force of largest magnitude in a channel of this signal, N, with its sign, and its position, m; of equals the one nearest
+    /// to x = 0, then that at x > 0.
+    pub fn peak(&self, channel: &[f64]) -> (f64, f64) {
+        let poses = channel.iter().copied().zip(self.laterals.iter().copied());
+        let peak = poses.max_by(|(force, at), (other, other_at)| {
+            let larger = force.abs().total_cmp(&other.abs());
+            let nearer = other_at.abs().total_cmp(&at.abs());
+            larger.then(nearer).then(at.total_cmp(other_at))
+        });
+        peak.unwrap_or_default()
     }
 
     /// The part within `half`, m, of x = 0.
     pub fn within(&self, half: f64) -> Signal {
         let inside = |channel: &[f64]| {
             let poses = self.laterals.iter().zip(channel);
-            let kept = poses.filter(|(x, _)| x.abs() <= half + SAME_POSITION);
+            let kept = poses.filter(|&(&x, _)| is_within(x, half));
             kept.map(|(_, &force)| force).collect()
         };
         Signal {

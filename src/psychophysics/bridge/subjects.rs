@@ -6,8 +6,8 @@
 
 use super::common::{Signals, is_inside};
 use super::{Observations, SubjectFit};
-use crate::psychophysics::PsychophysicsError;
-use crate::psychophysics::choice::{Count, Perceived, log_likelihood};
+use crate::psychophysics::Result;
+use crate::psychophysics::choice::{Count, Perceived, deviance, log_likelihood};
 use crate::psychophysics::search::{golden, maximum};
 use crate::stats::{binomial, tails::gamma_tail};
 
@@ -24,44 +24,38 @@ const SURE: f64 = 1e6;
 /// The noise of each subject that fits best without lapses.
 ///
 /// Implements: PSY-077, PSY-078.
-pub fn by_subject(
-    signals: &Signals,
-    observed: &Observations,
-) -> Result<SubjectFit, PsychophysicsError> {
+pub fn by_subject(signals: &Signals, observed: &Observations) -> Result<SubjectFit> {
     assemble(signals, observed, 0.0, 0)
 }
 
-/// The same with the share of lapses, one for all, that fits best.
+/// The same with the share of lapses, one for all, that fits best; `without` is the fit without.
 ///
 /// Implements: PSY-077, PSY-078.
 pub fn by_subject_with_lapse(
     signals: &Signals,
     observed: &Observations,
-) -> Result<SubjectFit, PsychophysicsError> {
-    let without: Vec<f64> = observed
-        .subjects
-        .iter()
-        .map(|counts| signals.best(counts, Some(0.0)).0)
-        .collect();
+    without: &SubjectFit,
+) -> Result<SubjectFit> {
+    let best = |counts: &Vec<Count>| signals.best(counts, Some(0.0)).0;
+    let logs: Vec<f64> = observed.subjects.iter().map(best).collect();
     let profile = |lapse: f64| {
-        let subjects = observed.subjects.iter().zip(&without);
         let best = |(counts, from): (&Vec<Count>, &f64)| {
             let value =
                 |log: f64| log_likelihood(counts, &signals.perceived(libm::exp(log)), lapse);
             golden(&value, from + LAPSE_RANGE[0], from + LAPSE_RANGE[1]).1
         };
-        subjects.map(best).sum::<f64>()
+        observed.subjects.iter().zip(&logs).map(best).sum::<f64>()
     };
     let (lapse, _) = maximum(profile, 0.0, LARGEST_LAPSE, CELLS);
     let with = assemble(signals, observed, lapse, 1)?;
-    let without = assemble(signals, observed, 0.0, 0)?;
     // The search for the lapse is coarser than the fit without: it must not lose to it.
     Ok(if with.deviance < without.deviance {
         with
     } else {
-        let mut none = without;
-        none.aic += 2.0;
-        none
+        SubjectFit {
+            aic: without.aic + 2.0,
+            ..without.clone()
+        }
     })
 }
 
@@ -70,52 +64,44 @@ fn assemble(
     observed: &Observations,
     lapse: f64,
     fitted_lapses: u32,
-) -> Result<SubjectFit, PsychophysicsError> {
+) -> Result<SubjectFit> {
     let range = signals.range();
     let (mut noise, mut deviances) = (Vec::new(), Vec::new());
-    let mut predicted = vec![
-        Count {
-            right: 0.0,
-            wrong: 0.0
-        };
-        signals.0.len()
-    ];
+    let mut predicted = vec![Count::default(); signals.0.len()];
     let mut moments = Moments::default();
     for counts in &observed.subjects {
         let (log, _) = signals.best(counts, Some(lapse));
         let is_fitted = is_inside(range, log);
-        let sensitivity = if is_fitted {
-            libm::exp(log)
-        } else if log > 0.5 * (range[0] + range[1]) {
-            libm::exp(range[1]) * SURE
-        } else {
-            0.0
+        let sensitivity = match log > 0.5 * (range[0] + range[1]) {
+            _ if is_fitted => libm::exp(log),
+            true => libm::exp(range[1]) * SURE,
+            false => 0.0,
         };
-        noise.push(if is_fitted {
-            Some(1.0 / sensitivity)
-        } else {
-            (sensitivity > 0.0).then_some(0.0)
+        noise.push(match is_fitted {
+            true => Some(1.0 / sensitivity),
+            false => (sensitivity > 0.0).then_some(0.0),
         });
         let perceived = signals.perceived(sensitivity);
         for ((sum, count), at) in predicted.iter_mut().zip(counts).zip(&perceived) {
-            let trials = count.right + count.wrong;
-            sum.right += trials * at.right(lapse);
-            sum.wrong += trials * at.wrong(lapse);
+            sum.right += count.trials() * at.right(lapse);
+            sum.wrong += count.trials() * at.wrong(lapse);
         }
-        let saturated: f64 = counts.iter().map(|count| count.saturated()).sum();
-        let value = log_likelihood(counts, &perceived, lapse);
-        deviances.push(2.0 * (saturated - value).max(0.0));
+        deviances.push(deviance(counts, log_likelihood(counts, &perceived, lapse)));
         let slopes = signals.slopes(sensitivity);
         moments.add(counts, &perceived, &slopes, lapse, is_fitted)?;
     }
     let deviance: f64 = deviances.iter().sum();
-    let moments = moments.less_fitted(fitted_lapses);
-    let share = |sum: &Count| sum.right / (sum.right + sum.wrong);
-    let parameters = observed.subjects.len() as f64 + f64::from(fitted_lapses);
+    // Less what further fitted parameters take away, as in the chi-square law.
+    let lapses = f64::from(fitted_lapses);
+    let moments = Moments {
+        mean: (moments.mean - lapses).max(0.0),
+        variance: (moments.variance - 2.0 * lapses).max(0.0),
+    };
+    let parameters = observed.subjects.len() as f64 + lapses;
     Ok(SubjectFit {
         noise,
         lapse,
-        predicted: predicted.iter().map(share).collect(),
+        predicted: predicted.iter().map(|of| of.right / of.trials()).collect(),
         deviance,
         expected_deviance: moments.mean,
         deviance_sd: libm::sqrt(moments.variance),
@@ -145,16 +131,16 @@ impl Moments {
         slopes: &[f64],
         lapse: f64,
         is_fitted: bool,
-    ) -> Result<(), PsychophysicsError> {
+    ) -> Result<()> {
         let (mut information, mut fourth, mut with_square) = (0.0, 0.0, 0.0);
         for ((count, at), slope) in counts.iter().zip(perceived).zip(slopes) {
             let slope = (1.0 - 2.0 * lapse) * slope;
-            let of_count = CountMoments::new(count.right + count.wrong, *at, lapse, slope)?;
-            self.mean += of_count.mean;
-            self.variance += of_count.variance;
-            information += of_count.score_square;
-            fourth += of_count.score_fourth - 3.0 * of_count.score_square * of_count.score_square;
-            with_square += of_count.deviance_with_square;
+            let [d, dd, uu, uuuu, duu] = expectations(count.trials(), *at, lapse, slope)?;
+            self.mean += d;
+            self.variance += dd - d * d;
+            information += uu;
+            fourth += uuuu - 3.0 * uu * uu;
+            with_square += duu - d * uu;
         }
         if is_fitted && information > 0.0 {
             self.mean -= 1.0;
@@ -164,17 +150,8 @@ impl Moments {
         Ok(())
     }
 
-    /// Less what further fitted parameters take away, as in the chi-square law; never below 0.
-    fn less_fitted(self, parameters: u32) -> Moments {
-        let parameters = f64::from(parameters);
-        Moments {
-            mean: (self.mean - parameters).max(0.0),
-            variance: (self.variance - 2.0 * parameters).max(0.0),
-        }
-    }
-
     /// Pr(X ≥ deviance) by the gamma law.
-    fn tail(self, deviance: f64) -> Result<f64, PsychophysicsError> {
+    fn tail(self, deviance: f64) -> Result<f64> {
         if self.mean == 0.0 || self.variance == 0.0 {
             return Ok(1.0);
         }
@@ -183,63 +160,24 @@ impl Moments {
     }
 }
 
-/// Expectations over the possible counts at one inclusion, d their deviance and u their score.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct CountMoments {
-    /// E d.
-    mean: f64,
-    /// Var d.
-    variance: f64,
-    /// E u².
-    score_square: f64,
-    /// E u⁴.
-    score_fourth: f64,
-    /// Cov(d, u²).
-    deviance_with_square: f64,
-}
-
-impl CountMoments {
-    fn new(
-        trials: f64,
-        perceived: Perceived,
-        lapse: f64,
-        slope: f64,
-    ) -> Result<CountMoments, PsychophysicsError> {
-        let (right, wrong) = (perceived.right(lapse), perceived.wrong(lapse));
-        let mut sums = [0.0; 5];
-        if wrong == 0.0 {
-            // Every answer is right, and no count has a deviance.
-            return Ok(CountMoments::default());
-        }
-        for errors in 0..=trials as u64 {
-            // By the wrong answers, whose probability keeps its digits where it is small.
-            let weight = binomial::probability(errors, trials as u64, wrong)?;
-            let errors = errors as f64;
-            let count = Count {
-                right: trials - errors,
-                wrong: errors,
-            };
-            let deviance = 2.0 * (count.saturated() - perceived.log_likelihood(count, lapse));
-            let score = slope * (count.right / right - count.wrong / wrong);
-            let square = score * score;
-            let terms = [
-                deviance,
-                deviance * deviance,
-                square,
-                square * square,
-                deviance * square,
-            ];
-            for (sum, term) in sums.iter_mut().zip(terms) {
-                *sum += weight * term;
-            }
-        }
-        let [mean, mean_square, score_square, score_fourth, product] = sums;
-        Ok(CountMoments {
-            mean,
-            variance: mean_square - mean * mean,
-            score_square,
-            score_fourth,
-            deviance_with_square: product - mean * score_square,
-        })
+/// E d, E d², E u², E u⁴ and E du² over the possible counts at one inclusion, d their deviance and u their score.
+fn expectations(trials: f64, perceived: Perceived, lapse: f64, slope: f64) -> Result<[f64; 5]> {
+    let (right, wrong) = (perceived.right(lapse), perceived.wrong(lapse));
+    let mut sums = [0.0; 5];
+    if wrong == 0.0 {
+        // Every answer is right, and no count has a deviance.
+        return Ok(sums);
     }
+    for errors in 0..=trials as u64 {
+        // By the wrong answers, whose probability keeps its digits where it is small.
+        let weight = binomial::probability(errors, trials as u64, wrong)?;
+        let count = Count::new(trials - errors as f64, trials);
+        let d = 2.0 * (count.saturated() - perceived.log_likelihood(count, lapse));
+        let u = slope * (count.right / right - count.wrong / wrong);
+        let terms = [d, d * d, u * u, u * u * (u * u), d * (u * u)];
+        for (sum, term) in sums.iter_mut().zip(terms) {
+            *sum += weight * term;
+        }
+    }
+    Ok(sums)
 }

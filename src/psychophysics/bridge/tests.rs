@@ -5,11 +5,14 @@ use crate::detect::two_afc;
 use crate::force_map::{ForceTable, Matrix, Source};
 use crate::phantom::Phantom;
 use crate::psychophysics::OpenBounds;
+use crate::psychophysics::tests::numbers;
 use crate::stats::check::assert_near;
 
 /// Signals that fall with depth like a change along the sweep, and signals that level off.
 const FALLING: [f64; 4] = [0.26, 0.17, 0.09, 0.05];
 const LEVEL_OFF: [f64; 4] = [0.61, 0.44, 0.31, 0.28];
+/// The columns of Table 1.
+const NAMES: [&str; 4] = ["2.6", "4.6", "6.6", "8.6"];
 
 fn observations(condition: usize) -> Observations {
     let table = Table::paper().unwrap();
@@ -77,13 +80,7 @@ fn each_convention_makes_its_own_signal() {
         4
     );
     // Of equal magnitudes the one nearest to x = 0, then that at x > 0.
-    assert_eq!(
-        (
-            signal.peak(&signal.lateral).force,
-            signal.peak(&signal.lateral).at
-        ),
-        (3.0, 2e-3)
-    );
+    assert_eq!(signal.peak(&signal.lateral), (3.0, 2e-3));
     assert_eq!(mean(&signal.normal), 2.0);
 }
 
@@ -93,11 +90,11 @@ fn half_a_sweep_is_completed_by_symmetry() {
     let half = map_over(&[4e-3], &[0.0, 2e-3, 4e-3], |column| {
         [[4.0, 0.0], [2.0, 3.0], [-1.0, 1.0]][column]
     });
-    let whole = whole_sweep(&half).unwrap();
+    let whole = sweep(&half, None).unwrap();
     assert_eq!(whole.laterals().len(), 5);
     assert_eq!(whole.lateral_force().row(0), [-1.0, -3.0, 0.0, 3.0, 1.0]);
     // A whole one stays, and so does one that begins elsewhere.
-    assert_eq!(whole_sweep(&whole).unwrap(), whole);
+    assert_eq!(sweep(&whole, None).unwrap(), whole);
 }
 
 // Verifies: PSY-072.
@@ -109,13 +106,48 @@ fn half_a_sweep_over_an_asymmetric_phantom_is_refused() {
         let (source, forces) = (half.source().clone(), half.forces().clone());
         ForceMap::new(source, Some(phantom.clone()), forces).unwrap()
     };
-    assert_eq!(whole_sweep(&of(&phantom)).unwrap().laterals().len(), 3);
+    assert_eq!(sweep(&of(&phantom), None).unwrap().laterals().len(), 3);
     phantom.inclusions[0].centre_x = 1e-3;
-    let error = whole_sweep(&of(&phantom)).unwrap_err().to_string();
+    let error = sweep(&of(&phantom), None).unwrap_err().to_string();
     assert!(
         error.starts_with("phantom \"6.6\" is not its own mirror image"),
         "{error}"
     );
+}
+
+/// Condition and signals (0 falling, 1 levelling off); noise (N), deviance, ends of the noise, p of Hotelling's T²; with lapses
+/// noise, their share and deviance.
+const COMMON: &str = "
+1 0 0.0843169982 12.6102531198 0.0612892902 0.1159967125 0.0837074630 0.0709760842 0.0238601419 7.8118536894
+1 1 0.2541946080 45.1439870792 0.1978339543 0.3266117739 0.0070722142 0.2541946080 0.0000000000 45.1439870792
+2 0 0.1453109247 15.3651040691 0.1003942458 0.2103234569 0.0297046002 0.1086240474 0.0794104371 14.2191826247
+";
+/// Condition and signals; deviance, its mean, its standard deviation, its p; the noise of the first three subjects, N.
+const BY_SUBJECT: &str = "
+1 0 36.9652839034 25.228 6.914 0.058 0.0389010902 0.0353445600 0.0634713330
+1 1 90.4159561479 30.934 7.758 0.0 0.1664287317 0.1464572538 0.2242340265
+2 0 39.1906725034 31.196 8.024 0.1581 0.1120244924 0.0631871125 0.1221643358
+2 1 62.5889903031 31.592 8.095 0.0009 0.3250217475 0.2044450100 0.3702536134
+";
+/// Condition, half of the sweep (mm), 0 for the peak or 1 for the whole sweep; the best weight, φ, p of weight 1, the end of the
+/// range or −1, p of weight 0 by itself; the deviances of the whole level, without it, and of the lateral force.
+const SWEEPS: &str = "
+0 3 0 0.0 1.3493 6.2e-4 -1.0 0.1097 53.73764448 33.86547267 35.36542742
+0 6 0 0.0 1.7695 2.6e-4 -1.0 0.0107 73.13295377 42.52959023 31.73407062
+0 10 1 0.0 1.5210 4.0e-8 0.2 0.0507 117.64520962 34.97828365 32.75966892
+1 3 0 0.0 1.2517 4.5e-5 0.0 0.1704 61.41142404 32.66751241 31.24852547
+1 6 0 0.0 2.0272 2.5e-4 -1.0 0.0018 86.60879017 51.19558874 33.55770912
+1 7 0 0.0 1.9843 8.6e-5 -1.0 0.0024 90.86480916 49.58611852 33.55770912
+1 10 0 0.05 1.3397 3.6e-7 0.25 0.0646 90.91710982 36.05822402 38.38527927
+1 10 1 0.0 1.6370 1.5e-8 0.15 0.0212 138.78765230 40.05004592 36.36072739
+2 3 0 0.0 1.3791 0.076 1.0 0.0802 48.07570340 43.40598226 38.61573582
+2 7 0 0.0 1.4466 1.35e-3 1.0 0.0534 63.00612476 44.81748862 38.94268181
+2 10 1 0.0 1.3574 2.3e-6 0.3 0.1002 88.87411698 42.05470433 40.24601550
+";
+
+fn of_row(condition: f64, signals: f64) -> (Signals, Observations) {
+    let signals = [FALLING, LEVEL_OFF][signals as usize];
+    (Signals(signals.into()), observations(condition as usize))
 }
 
 /// The search leaves ln σ within 2 · 0.37 · 4·10⁻⁶.
@@ -124,45 +156,18 @@ const OF_NOISE: f64 = 1e-5;
 // Verifies: PSY-073, PSY-074, PSY-075, PSY-076.
 #[test]
 fn one_noise_level_for_all() {
-    for (condition, signals, [noise, deviance, lower, upper, hotelling], lapse) in [
-        (
-            1,
-            FALLING,
-            [
-                0.08431699817023484,
-                12.610253119836898,
-                0.06128929022873949,
-                0.11599671253992919,
-                0.08370746295411118,
-            ],
-            [0.07097608418327135, 0.023860141901075486, 7.811853689385771],
-        ),
-        (
-            1,
-            LEVEL_OFF,
-            [
-                0.25419460804503885,
-                45.14398707924488,
-                0.1978339543286572,
-                0.3266117738910866,
-                0.007072214210082523,
-            ],
-            [0.25419460804503885, 0.0, 45.14398707924488],
-        ),
-        (
-            2,
-            FALLING,
-            [
-                0.14531092467082696,
-                15.365104069126573,
-                0.10039424578273465,
-                0.2103234569278676,
-                0.029704600228877068,
-            ],
-            [0.10862404741963108, 0.07941043711093759, 14.219182624737186],
-        ),
-    ] {
-        let (signals, observed) = (Signals(signals.into()), observations(condition));
+    for [
+        condition,
+        row,
+        noise,
+        deviance,
+        lower,
+        upper,
+        hotelling,
+        lapsed @ ..,
+    ] in numbers::<10>(COMMON)
+    {
+        let (signals, observed) = of_row(condition, row);
         let found = common(&signals, &observed).unwrap().unwrap();
         assert_near(found.noise / noise, 1.0, OF_NOISE);
         assert_near(found.deviance, deviance, 1e-7);
@@ -175,7 +180,7 @@ fn one_noise_level_for_all() {
         for (predicted, signal) in found.predicted.iter().zip(&signals.0) {
             assert_near(*predicted, two_afc(signal / noise).unwrap(), 1e-5);
         }
-        let [noise, share, deviance] = lapse;
+        let [noise, share, deviance] = lapsed;
         let found = common_with_lapse(&signals, &observed).unwrap().unwrap();
         assert_near(found.noise / noise, 1.0, OF_NOISE);
         assert_near(found.lapse, share, 1e-5);
@@ -189,45 +194,8 @@ fn one_noise_level_for_all() {
 // Verifies: PSY-077, PSY-078.
 #[test]
 fn a_noise_level_for_each_subject() {
-    for (condition, signals, deviance, noise, [mean, sd, p]) in [
-        (
-            1,
-            FALLING,
-            36.9652839033983,
-            [
-                0.03890109020615932,
-                0.035344559969540036,
-                0.06347133302877378,
-            ],
-            [25.228, 6.914, 0.058],
-        ),
-        (
-            1,
-            LEVEL_OFF,
-            90.41595614793138,
-            [
-                0.16642873170856473,
-                0.14645725383550443,
-                0.22423402645835108,
-            ],
-            [30.934, 7.758, 0.0],
-        ),
-        (
-            2,
-            FALLING,
-            39.19067250339036,
-            [0.11202449238817942, 0.0631871124741566, 0.1221643358165089],
-            [31.196, 8.024, 0.1581],
-        ),
-        (
-            2,
-            LEVEL_OFF,
-            62.58899030305092,
-            [0.3250217475123391, 0.20444501002490287, 0.370253613405996],
-            [31.592, 8.095, 0.0009],
-        ),
-    ] {
-        let (signals, observed) = (Signals(signals.into()), observations(condition));
+    for [condition, row, deviance, mean, sd, p, noise @ ..] in numbers::<9>(BY_SUBJECT) {
+        let (signals, observed) = of_row(condition, row);
         let found = by_subject(&signals, &observed).unwrap();
         assert_near(found.deviance, deviance, 1e-6);
         for (found, noise) in found.noise.iter().zip(noise) {
@@ -289,9 +257,8 @@ fn table(signals: [f64; 4]) -> Table {
 }
 
 fn verdict_on(table: &Table, maps: &(ForceMap, [ForceMap; 4])) -> Verdict {
-    let names = ["2.6", "4.6", "6.6", "8.6"];
-    let named: Vec<_> = names.into_iter().zip(&maps.1).collect();
-    bridge(table, &maps.0, &named).unwrap().conditions[0]
+    let named: Vec<_> = NAMES.into_iter().zip(&maps.1).collect();
+    bridge(table, &maps.0, &named, None).unwrap().conditions[0]
         .verdict
         .clone()
 }
@@ -358,8 +325,11 @@ fn the_verdict_says_what_it_rests_on() {
 fn what_does_not_fit_is_refused_or_noted() {
     let table = Table::paper().unwrap();
     let (reference, [a, b, ..]) = maps(FALLING, FALLING);
-    let refused =
-        |named: &[(&str, &ForceMap)]| bridge(&table, &reference, named).unwrap_err().to_string();
+    let refused = |named: &[(&str, &ForceMap)]| {
+        bridge(&table, &reference, named, None)
+            .unwrap_err()
+            .to_string()
+    };
     assert_eq!(
         refused(&[("2.6", &a)]),
         "1 inclusions with a map, expected at least two"
@@ -372,7 +342,7 @@ fn what_does_not_fit_is_refused_or_noted() {
     let other = map_over(&[4e-3], &[-1e-3, 0.0, 1e-3], |_| [1.0, 0.0]);
     assert!(refused(&[("2.6", &a), ("4.6", &other)]).starts_with("4.6: "));
     // In the order of the table, whatever that of the maps.
-    let found = bridge(&table, &reference, &[("6.6", &b), ("2.6", &a)]).unwrap();
+    let found = bridge(&table, &reference, &[("6.6", &b), ("2.6", &a)], None).unwrap();
     let names: Vec<_> = found.inclusions.iter().map(|i| i.name.as_str()).collect();
     assert_eq!((names, found.probe_depth_note), (vec!["2.6", "6.6"], None));
     let shallow = |force: f64| {
@@ -384,6 +354,7 @@ fn what_does_not_fit_is_refused_or_noted() {
         &table,
         &shallow(0.0),
         &[("2.6", &shallow(0.2)), ("8.6", &shallow(0.1))],
+        None,
     )
     .unwrap();
     assert_eq!(found.probe_depth, 2e-3);
@@ -393,31 +364,21 @@ fn what_does_not_fit_is_refused_or_noted() {
 }
 
 /// The signals of `signals.csv`, over the whole sweep.
-fn computed_signals() -> Vec<(&'static str, Signal)> {
+fn computed_signals() -> [Signal; 4] {
     let rows: Vec<Vec<f64>> = include_str!("signals.csv")
         .lines()
         .skip(2)
         .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
         .collect();
-    let whole = |column: usize, sign: f64| {
+    let whole = |column: usize, sign: f64| -> Vec<f64> {
         let left = rows[1..].iter().rev().map(|row| sign * row[column]);
         left.chain(rows.iter().map(|row| row[column])).collect()
     };
-    let of = |(k, name)| {
-        let laterals: Vec<f64> = whole(0, -1.0);
-        let laterals = laterals.iter().map(|x| 1e-3 * x).collect();
-        let (normal, lateral) = (whole(1 + k, 1.0), whole(5 + k, -1.0));
-        (
-            name,
-            Signal {
-                laterals,
-                normal,
-                lateral,
-            },
-        )
-    };
-    let names = ["2.6", "4.6", "6.6", "8.6"];
-    names.into_iter().enumerate().map(of).collect()
+    [0, 1, 2, 3].map(|k| Signal {
+        laterals: whole(0, -1.0).iter().map(|x| 1e-3 * x).collect(),
+        normal: whole(1 + k, 1.0),
+        lateral: whole(5 + k, -1.0),
+    })
 }
 
 // A force of 1, 2, 3, 6 (mean 3), whose change is −2, −1, 0, 3.
@@ -447,97 +408,30 @@ fn part_of_the_level_counts_in_part() {
 // Verifies: PSY-085, PSY-086, PSY-087.
 #[test]
 fn how_much_of_the_level_may_count_over_which_sweep() {
-    use Statistic::{MatchedFilter as All, Peak};
     let signals = computed_signals();
-    let half_sweeps = half_sweeps(&signals[0].1.laterals);
+    let half_sweeps = half_sweeps(&signals[0].laterals);
     assert_eq!(half_sweeps.len(), 8);
     let found = [0, 1, 2].map(|condition| {
         let observed = observations(condition);
         weight_ranges(&signals, &observed, &half_sweeps, LEVEL / 48.0).unwrap()
     });
-    for (condition, half, statistic, deviances, [best, phi, p, left, alone]) in [
-        (
-            0,
-            3,
-            Peak,
-            [53.73764448, 33.86547267, 35.36542742],
-            [0.0, 1.3493, 6.2e-4, -1.0, 0.1097],
-        ),
-        (
-            0,
-            6,
-            Peak,
-            [73.13295377, 42.52959023, 31.73407062],
-            [0.0, 1.7695, 2.6e-4, -1.0, 0.0107],
-        ),
-        (
-            0,
-            10,
-            All,
-            [117.64520962, 34.97828365, 32.75966892],
-            [0.0, 1.5210, 4.0e-8, 0.2, 0.0507],
-        ),
-        (
-            1,
-            3,
-            Peak,
-            [61.41142404, 32.66751241, 31.24852547],
-            [0.0, 1.2517, 4.5e-5, 0.0, 0.1704],
-        ),
-        (
-            1,
-            6,
-            Peak,
-            [86.60879017, 51.19558874, 33.55770912],
-            [0.0, 2.0272, 2.5e-4, -1.0, 0.0018],
-        ),
-        (
-            1,
-            7,
-            Peak,
-            [90.86480916, 49.58611852, 33.55770912],
-            [0.0, 1.9843, 8.6e-5, -1.0, 0.0024],
-        ),
-        (
-            1,
-            10,
-            Peak,
-            [90.91710982, 36.05822402, 38.38527927],
-            [0.05, 1.3397, 3.6e-7, 0.25, 0.0646],
-        ),
-        (
-            1,
-            10,
-            All,
-            [138.78765230, 40.05004592, 36.36072739],
-            [0.0, 1.6370, 1.5e-8, 0.15, 0.0212],
-        ),
-        (
-            2,
-            3,
-            Peak,
-            [48.07570340, 43.40598226, 38.61573582],
-            [0.0, 1.3791, 0.076, 1.0, 0.0802],
-        ),
-        (
-            2,
-            7,
-            Peak,
-            [63.00612476, 44.81748862, 38.94268181],
-            [0.0, 1.4466, 1.35e-3, 1.0, 0.0534],
-        ),
-        (
-            2,
-            10,
-            All,
-            [88.87411698, 42.05470433, 40.24601550],
-            [0.0, 1.3574, 2.3e-6, 0.3, 0.1002],
-        ),
-    ] {
+    for [
+        condition,
+        half,
+        statistic,
+        best,
+        phi,
+        p,
+        left,
+        alone,
+        deviances @ ..,
+    ] in numbers::<11>(SWEEPS)
+    {
+        let statistic = STATISTICS[statistic as usize];
         let is_asked = |range: &&WeightRange| {
-            range.statistic == statistic && (1e3 * range.half_sweep).round() == f64::from(half)
+            range.statistic == statistic && (1e3 * range.half_sweep).round() == half
         };
-        let range = found[condition].iter().find(is_asked).unwrap();
+        let range = found[condition as usize].iter().find(is_asked).unwrap();
         let fits = [range.whole_level, range.no_level, range.lateral].map(Option::unwrap);
         for (fit, deviance) in fits.iter().zip(deviances) {
             assert_near(fit.deviance, deviance, 1e-6);
@@ -582,12 +476,12 @@ fn only_sweeps_that_the_maps_have_are_judged() {
 }
 
 /// The computed signals as maps.
-fn computed_maps() -> (ForceMap, Vec<(&'static str, ForceMap)>) {
+fn computed_maps() -> (ForceMap, [ForceMap; 4]) {
     let signals = computed_signals();
-    let laterals = signals[0].1.laterals.clone();
+    let laterals = signals[0].laterals.clone();
     let map = |forces: &dyn Fn(usize) -> [f64; 2]| map_over(&[4e-3], &laterals, forces);
-    let of = |(name, s): &(&'static str, Signal)| (*name, map(&|at| [s.normal[at], s.lateral[at]]));
-    (map(&|_| [0.0; 2]), signals.iter().map(of).collect())
+    let of = |s: Signal| map(&|at| [s.normal[at], s.lateral[at]]);
+    (map(&|_| [0.0; 2]), signals.map(of))
 }
 
 /// The numbers of rejections are from `../reference.py`, `sweeps`, over all sweeps.
@@ -595,8 +489,8 @@ fn computed_maps() -> (ForceMap, Vec<(&'static str, ForceMap)>) {
 #[test]
 fn the_number_of_ranges_is_counted_in_each() {
     let (reference, maps) = computed_maps();
-    let named: Vec<_> = maps.iter().map(|(name, map)| (*name, map)).collect();
-    let found = bridge(&Table::paper().unwrap(), &reference, &named).unwrap();
+    let named: Vec<_> = NAMES.into_iter().zip(&maps).collect();
+    let found = bridge(&Table::paper().unwrap(), &reference, &named, None).unwrap();
     assert_eq!(found.weight_ranges, 48);
     for (condition, rejected) in found.conditions.iter().zip(["all 16", "all 16", "8 of 16"]) {
         assert_eq!(condition.weights.len(), 16);
@@ -612,7 +506,13 @@ fn the_number_of_ranges_is_counted_in_each() {
     }
     // One condition: a third of the ranges.
     let one = "subject,condition,trials,2.6,4.6,6.6,8.6\n1,x,30,30,28,27,27\n2,x,30,30,29,20,21\n";
-    let found = bridge(&Table::from_csv(one, "t").unwrap(), &reference, &named).unwrap();
+    let found = bridge(
+        &Table::from_csv(one, "t").unwrap(),
+        &reference,
+        &named,
+        None,
+    )
+    .unwrap();
     assert_eq!(found.weight_ranges, 16);
 }
 
@@ -623,11 +523,8 @@ fn the_number_of_ranges_is_counted_in_each() {
 fn noise_at_one_inclusion_has_the_subjects_as_the_sample() {
     let force = [0.3; 4];
     let (reference, maps) = maps(force, force);
-    let named: Vec<_> = ["2.6", "4.6", "6.6", "8.6"]
-        .into_iter()
-        .zip(&maps)
-        .collect();
-    let found = bridge(&Table::paper().unwrap(), &reference, &named).unwrap();
+    let named: Vec<_> = NAMES.into_iter().zip(&maps).collect();
+    let found = bridge(&Table::paper().unwrap(), &reference, &named, None).unwrap();
     let noise = &found.conditions[1].noise_by_inclusion[2];
     let ends = |bounds: OpenBounds| [bounds.lower.unwrap(), bounds.upper.unwrap()];
     for (found, expected) in [
@@ -662,10 +559,9 @@ fn with_many_answers_each_fitted_number_takes_a_degree_of_freedom() {
         subjects: counts.into(),
         dispersion: None,
     };
-    for (fit, degrees) in [
-        (by_subject(&signals, &observed).unwrap(), 6.0),
-        (by_subject_with_lapse(&signals, &observed).unwrap(), 5.0),
-    ] {
+    let alone = by_subject(&signals, &observed).unwrap();
+    let with_lapse = by_subject_with_lapse(&signals, &observed, &alone).unwrap();
+    for (fit, degrees) in [(alone, 6.0), (with_lapse, 5.0)] {
         assert_near(fit.expected_deviance / degrees, 1.0, 0.01);
         assert_near(
             fit.deviance_sd * fit.deviance_sd / (2.0 * degrees),
@@ -683,10 +579,8 @@ fn with_many_answers_each_fitted_number_takes_a_degree_of_freedom() {
 fn the_larger_p_value_of_the_two_fits_by_subject_counts() {
     let signals = computed_signals();
     let less_its_mean = convention(Statistic::Peak, Channel::Normal, Offset::Removed);
-    let strengths = signals
-        .iter()
-        .map(|(_, s)| s.within(3e-3).strength(less_its_mean));
-    let found = fit(less_its_mean, strengths.collect(), &observations(2)).unwrap();
+    let strengths = Signals::new(&signals, |s| s.within(3e-3).strength(less_its_mean));
+    let found = fit(less_its_mean, strengths.unwrap(), &observations(2)).unwrap();
     assert_near(found.by_subject_with_lapse.p_value, 0.067, 3e-3);
     assert_near(found.p_value, 0.080, 3e-3);
 }
@@ -700,8 +594,8 @@ fn conventions_are_compared_with_their_lapses() {
     for (condition, half, exchanges) in [(1, 10e-3, 4.0), (1, 5e-3, 54.0), (2, 10e-3, 16.0)] {
         let [normal, lateral] = [Channel::Normal, Channel::Lateral].map(|channel| {
             let of = convention(Statistic::MatchedFilter, channel, Offset::Removed);
-            let strengths = signals.iter().map(|(_, s)| s.within(half).strength(of));
-            fit(of, strengths.collect(), &observations(condition)).unwrap()
+            let strengths = Signals::new(&signals, |s| s.within(half).strength(of));
+            fit(of, strengths.unwrap(), &observations(condition)).unwrap()
         });
         let p = told_apart(&normal, &lateral).unwrap();
         assert_near(1024.0 * p, exchanges, 4.0);

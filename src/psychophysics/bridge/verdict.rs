@@ -1,6 +1,8 @@
 //! What the fits say of the question which part of the force the subjects used.
 
-use super::{Channel, ConventionFit, LEVEL, Statistic, Support, Verdict, WeightRange, told_apart};
+use super::{
+    Channel, Convention, ConventionFit, LEVEL, Statistic, Support, Verdict, WeightRange, told_apart,
+};
 use crate::psychophysics::noise::{BACKDRIVE_FRICTION, HUMAN_PERCEPTION, QUANTIZATION};
 
 /// The verdict on all conventions of one condition, and on the weights of the level, `ranges` of them over all conditions.
@@ -35,16 +37,17 @@ pub fn verdict(fits: &[ConventionFit], weights: &[WeightRange], ranges: usize) -
 /// Implements: PSY-087.
 fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
     let (first, last) = (weights.first()?, weights.last()?);
-    let count = |holds: &dyn Fn(&WeightRange) -> bool| {
-        let all = weights.len();
-        match weights.iter().filter(|range| holds(range)).count() {
-            n if n == all => format!("all {all}"),
-            n => format!("{n} of {all}"),
-        }
-    };
-    let largest = weights
+    let all = weights.len();
+    let count = |holds: &dyn Fn(&WeightRange) -> bool| match weights
         .iter()
-        .fold(0.0, |w: f64, range| w.max(range.left.upper));
+        .filter(|of| holds(of))
+        .count()
+    {
+        n if n == all => format!("all {all}"),
+        n => format!("{n} of {all}"),
+    };
+    let uppers = weights.iter().map(|range| range.left.upper);
+    let largest = uppers.fold(0.0, f64::max);
     Some(format!(
         "Over sweeps of ±{:.0} to ±{:.0} mm, by the peak and by the whole sweep, the whole level of the normal force fits worse than the same force less its mean and than the lateral force in {} fits. Against the best weight of the level, with the dispersion and {ranges} ranges counted, it is rejected in {}; the largest weight of the level that one of them leaves is {largest:.2}.",
         1e3 * first.half_sweep,
@@ -56,21 +59,20 @@ fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
 
 /// The verdict in sentences.
 fn text(fits: &[ConventionFit], support: Support) -> String {
-    let uniform = best(fits, |fit| fit.convention.uses_uniform_part());
-    let normal = best(fits, |fit| {
-        !fit.convention.uses_uniform_part() && fit.convention.channel == Channel::Normal
-    });
-    let lateral = best(fits, |fit| fit.convention.channel == Channel::Lateral);
+    let uniform = best(fits, |of, _| of.uses_uniform_part());
+    let is_normal = |of: Convention| of.channel == Channel::Normal && !of.uses_uniform_part();
+    let normal = best(fits, |of, _| is_normal(of));
+    let lateral = best(fits, |of, _| of.channel == Channel::Lateral);
     let mut sentences = vec![conclusion(support)];
-    for (what, fit) in [
+    for (kind, fit) in [
         (
-            "Of the conventions with the level of the normal force",
+            "the conventions with the level of the normal force",
             uniform,
         ),
-        ("Of those with the normal force less its mean", normal),
-        ("Of those with the lateral force alone", lateral),
+        ("those with the normal force less its mean", normal),
+        ("those with the lateral force alone", lateral),
     ] {
-        sentences.extend(fit.map(|fit| evidence(what, fit)));
+        sentences.extend(fit.map(|fit| evidence(kind, fit)));
     }
     sentences.extend(both_of(normal, lateral));
     sentences.push(heterogeneity(fits));
@@ -96,19 +98,17 @@ fn conclusion(support: Support) -> String {
     }
 }
 
-fn evidence(what: &str, fit: &ConventionFit) -> String {
-    let best = if fit.by_subject_with_lapse.p_value > fit.by_subject.p_value {
-        &fit.by_subject_with_lapse
-    } else {
-        &fit.by_subject
+fn evidence(kind: &str, fit: &ConventionFit) -> String {
+    let best = match fit.by_subject_with_lapse.p_value > fit.by_subject.p_value {
+        true => &fit.by_subject_with_lapse,
+        false => &fit.by_subject,
     };
-    let lapse = if best.lapse > 0.0 {
-        format!(" and {:.1} % lapses", 100.0 * best.lapse)
-    } else {
-        String::new()
+    let lapse = match best.lapse > 0.0 {
+        true => format!(" and {:.1} % lapses", 100.0 * best.lapse),
+        false => String::new(),
     };
     format!(
-        "{what}, “{}” fits best: with a noise level for each subject{lapse} the deviance is {:.1} where {:.1} ± {:.1} is expected, p = {}.",
+        "Of {kind}, “{}” fits best: with a noise level for each subject{lapse} the deviance is {:.1} where {:.1} ± {:.1} is expected, p = {}.",
         fit.name,
         best.deviance,
         best.expected_deviance,
@@ -121,36 +121,26 @@ fn evidence(what: &str, fit: &ConventionFit) -> String {
 ///
 /// Implements: PSY-081.
 fn both_of(normal: Option<&ConventionFit>, lateral: Option<&ConventionFit>) -> Option<String> {
-    let (normal, lateral) = (normal?, lateral?);
-    let p = told_apart(normal, lateral)?;
-    let [normal_deviance, lateral_deviance] =
-        [normal, lateral].map(|fit| fit.by_subject_with_lapse.deviance);
-    Some(if p >= LEVEL {
-        format!(
-            "Over this sweep the normal force less its mean and the lateral force cannot be told apart (subjects as blocks, p = {}).",
-            p_value(p)
-        )
-    } else {
-        format!(
-            "Over this sweep the {} force fits the better of these two (subjects as blocks, p = {}).",
-            if normal_deviance < lateral_deviance {
-                "normal"
-            } else {
-                "lateral"
-            },
-            p_value(p)
-        )
-    })
+    let p = told_apart(normal?, lateral?)?;
+    let [normal, lateral] = [normal?, lateral?].map(|fit| fit.by_subject_with_lapse.deviance);
+    let said = match normal < lateral {
+        _ if p >= LEVEL => "normal force less its mean and the lateral force cannot be told apart",
+        true => "normal force fits the better of these two",
+        false => "lateral force fits the better of these two",
+    };
+    let p = p_value(p);
+    Some(format!(
+        "Over this sweep the {said} (subjects as blocks, p = {p})."
+    ))
 }
 
 /// Whether one noise level for all would do, by Akaike's criterion of the best convention.
 ///
 /// Implements: PSY-082.
 fn heterogeneity(fits: &[ConventionFit]) -> String {
-    let smallest = fits
-        .iter()
-        .min_by(|a, b| a.by_subject.aic.total_cmp(&b.by_subject.aic));
-    let Some((best, common)) = smallest.and_then(|best| Some((best, best.common.as_ref()?))) else {
+    let aic = |fit: &&ConventionFit| fit.by_subject.aic;
+    let best = fits.iter().min_by(|a, b| aic(a).total_cmp(&aic(b)));
+    let Some((best, common)) = best.and_then(|best| Some((best, best.common.as_ref()?))) else {
         return "No noise level for all subjects together can be fitted.".into();
     };
     let gain = common.aic - best.by_subject.aic;
@@ -171,20 +161,17 @@ fn heterogeneity(fits: &[ConventionFit]) -> String {
 ///
 /// Implements: PSY-083.
 fn against_table_2(fits: &[ConventionFit]) -> Option<String> {
-    let compatible_peak =
-        |fit: &ConventionFit| fit.convention.statistic == Statistic::Peak && !fit.is_rejected;
-    let fit = best(fits, compatible_peak)?;
+    let fit = best(fits, |of, is_rejected| {
+        of.statistic == Statistic::Peak && !is_rejected
+    })?;
     let noise = fit.common.as_ref()?.noise;
-    let table = libm::sqrt(
-        [QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION]
-            .iter()
-            .map(|source| source * source)
-            .sum(),
-    );
-    let remark = if noise < table {
-        "smaller, so that subjects with the noise of Table 2 would have to combine several moments of the sweep"
-    } else {
-        "at least as large, so that Table 2 leaves room for it"
+    let squares = [QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION].map(|n| n * n);
+    let table = libm::sqrt(squares.iter().sum());
+    let remark = match noise < table {
+        true => {
+            "smaller, so that subjects with the noise of Table 2 would have to combine several moments of the sweep"
+        }
+        false => "at least as large, so that Table 2 leaves room for it",
     };
     Some(format!(
         "The one noise level for “{}”, {noise:.3} N, is {:.2} of the {table:.3} N that Table 2 of the paper adds up to for playback: {remark}.",
@@ -193,25 +180,21 @@ fn against_table_2(fits: &[ConventionFit]) -> Option<String> {
     ))
 }
 
-/// The first convention of a kind with the largest p-value.
+/// The first convention of a kind, rejected or not, with the largest p-value.
 fn best(
     fits: &[ConventionFit],
-    is_kind: impl Fn(&ConventionFit) -> bool,
+    is_kind: impl Fn(Convention, bool) -> bool,
 ) -> Option<&ConventionFit> {
-    let of_kind = fits.iter().filter(|fit| is_kind(fit));
-    of_kind.reduce(|best, fit| {
-        if fit.p_value > best.p_value {
-            fit
-        } else {
-            best
-        }
-    })
+    let of_kind = fits
+        .iter()
+        .filter(|fit| is_kind(fit.convention, fit.is_rejected));
+    // The last of equals, backwards.
+    of_kind.rev().max_by(|a, b| a.p_value.total_cmp(&b.p_value))
 }
 
 fn p_value(p: f64) -> String {
-    if p < 0.001 {
-        format!("{p:.0e}").replace('-', "−")
-    } else {
-        format!("{p:.3}")
+    match p < 0.001 {
+        true => format!("{p:.0e}").replace('-', "−"),
+        false => format!("{p:.3}"),
     }
 }

@@ -4,11 +4,11 @@
 //! √(w² mean² + change²); w = 1 and w = 0 are the two conventions.
 
 use super::common::Signals;
-use super::signals::Signal;
+use super::signals::{Signal, is_within};
 use super::subjects::by_subject;
 use super::{Channel, Convention, Observations, Offset, Statistic, WeightFit, WeightRange};
 use crate::force_map::SAME_POSITION;
-use crate::psychophysics::PsychophysicsError;
+use crate::psychophysics::Result;
 use crate::psychophysics::dispersion::Overdispersion;
 use crate::psychophysics::rates::Bounds;
 
@@ -27,7 +27,7 @@ pub fn half_sweeps(laterals: &[f64]) -> Vec<f64> {
         .iter()
         .fold(0.0, |widest: f64, x| widest.max(x.abs()));
     let fits = |half: &f64| {
-        let inside = laterals.iter().filter(|x| x.abs() <= half + SAME_POSITION);
+        let inside = laterals.iter().filter(|&&x| is_within(x, *half));
         *half <= widest + SAME_POSITION && inside.count() > 1
     };
     let sweeps = HALF_SWEEPS_MM.map(|half| 1e-3 * f64::from(half));
@@ -38,14 +38,14 @@ pub fn half_sweeps(laterals: &[f64]) -> Vec<f64> {
 ///
 /// Implements: PSY-085, PSY-086.
 pub fn weight_ranges(
-    signals: &[(&str, Signal)],
+    signals: &[Signal],
     observed: &Observations,
     half_sweeps: &[f64],
     level: f64,
-) -> Result<Vec<WeightRange>, PsychophysicsError> {
+) -> Result<Vec<WeightRange>> {
     let mut ranges = Vec::new();
     for &half in half_sweeps {
-        let within: Vec<_> = signals.iter().map(|(_, s)| s.within(half)).collect();
+        let within: Vec<_> = signals.iter().map(|signal| signal.within(half)).collect();
         for statistic in STATISTICS {
             ranges.extend(weight_range(&within, observed, (half, statistic), level)?);
         }
@@ -59,7 +59,7 @@ fn weight_range(
     observed: &Observations,
     (half_sweep, statistic): (f64, Statistic),
     level: f64,
-) -> Result<Option<WeightRange>, PsychophysicsError> {
+) -> Result<Option<WeightRange>> {
     let at = |channel, weight| weigh(signals, observed, (statistic, channel), weight);
     let mut fits: Vec<WeightFit> = Vec::new();
     for step in 0..=STEPS {
@@ -68,15 +68,15 @@ fn weight_range(
     let Some(&best) = fits.iter().min_by(by_deviance) else {
         return Ok(None);
     };
-    let ratio = if best.expected_deviance > 0.0 {
-        best.deviance / best.expected_deviance
-    } else {
-        1.0
+    let dispersion = Overdispersion {
+        ratio: match best.expected_deviance > 0.0 {
+            true => best.deviance / best.expected_deviance,
+            false => 1.0,
+        },
+        // Less one for the weight itself.
+        degrees: best.degrees.saturating_sub(1),
     };
-    // Less one for the weight itself.
-    let rest = best.degrees.saturating_sub(1);
-    let dispersion = Overdispersion::from((ratio, rest));
-    for fit in fits.iter_mut().filter(|_| rest > 0) {
+    for fit in fits.iter_mut().filter(|_| dispersion.degrees > 0) {
         fit.p_value_dispersed = dispersion.p_value(fit.deviance - best.deviance, 1)?;
     }
     let is_left = |fit: &&WeightFit| fit.p_value_dispersed.is_none_or(|p| p >= level);
@@ -92,7 +92,7 @@ fn weight_range(
             lower: left().fold(1.0, f64::min),
             upper: left().fold(0.0, f64::max),
         },
-        dispersion: dispersion.factor,
+        dispersion: dispersion.factor(),
         best_weight: best.weight,
         fits_worst: worst(statistic, [whole_level, no_level, lateral]),
         whole_level,
@@ -109,13 +109,12 @@ fn weigh(
     observed: &Observations,
     (statistic, channel): (Statistic, Channel),
     weight: f64,
-) -> Result<Option<WeightFit>, PsychophysicsError> {
+) -> Result<Option<WeightFit>> {
     let strength = |signal: &Signal| signal.weighted(statistic, channel, weight);
-    let strengths: Vec<f64> = signals.iter().map(strength).collect();
-    if strengths.iter().all(|&strength| strength == 0.0) {
+    let Some(strengths) = Signals::new(signals, strength) else {
         return Ok(None);
-    }
-    let fit = by_subject(&Signals(strengths), observed)?;
+    };
+    let fit = by_subject(&strengths, observed)?;
     Ok(Some(WeightFit {
         weight,
         deviance: fit.deviance,

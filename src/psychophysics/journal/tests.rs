@@ -6,7 +6,7 @@ fn setup(seed: u64) -> Setup {
         trials: 30,
         subject: "1".into(),
         condition: "FEM data".into(),
-        inclusions: ["2.6", "4.6", "6.6", "8.6"].map(String::from).to_vec(),
+        inclusions: "2.6,4.6,6.6,8.6".into(),
     }
 }
 
@@ -15,11 +15,11 @@ fn setup(seed: u64) -> Setup {
 fn an_aborted_experiment_goes_on_where_it_stopped() {
     let mut journal = Journal::new(setup(3));
     let mut text = journal.to_text();
-    let plan = Plan::new(3, 4, 30);
+    let plan = plan(3, 4, 30);
     let mut expected = [0; 4];
     for number in 0..120 {
         let (at, trial) = journal.next().unwrap();
-        assert_eq!((at, trial), (number, plan.trials()[number]));
+        assert_eq!((at, trial), (number, plan[number]));
         assert_eq!(journal.table_row(), None);
         let right = number % 5 != 0;
         expected[trial.inclusion] += usize::from(right);
@@ -34,7 +34,7 @@ fn an_aborted_experiment_goes_on_where_it_stopped() {
     let error = Journal::parse(&format!("{text}right\n")).unwrap_err();
     assert_eq!(
         (error.line, error.expected.as_str()),
-        (127, "no more answers than pairs")
+        (Some(127), "no more answers than pairs")
     );
 }
 
@@ -52,11 +52,12 @@ fn what_is_no_journal_is_refused_with_its_line() {
         ("2.6,4.6", "2.6,,4.6", 6),
     ] {
         let error = Journal::parse(&good.replace(from, to)).unwrap_err();
-        assert_eq!(error.line, line, "{error}");
+        assert_eq!(error.line, Some(line), "{error}");
     }
+    let refused = |text: &str| Journal::parse(text).unwrap_err().to_string();
     assert_eq!(
-        Journal::parse(&format!("{good}maybe\n")).unwrap_err().line,
-        7
+        refused(&format!("{good}maybe\n")),
+        "line 7: \"maybe\", expected right or wrong"
     );
-    assert_eq!(Journal::parse("").unwrap_err().line, 1);
+    assert_eq!(refused(""), "line 1: \"\", expected palpate-experiment 1");
 }

@@ -13,12 +13,12 @@ fn noise_is_the_image_of_gamma() {
     assert_near(noise.unwrap(), 2.0 / rate.gamma.gamma.unwrap(), 1e-15);
     assert_near(
         bounds.lower.unwrap(),
-        2.0 / rate.gamma.upper.unwrap(),
+        2.0 / rate.gamma.bounds.upper.unwrap(),
         1e-15,
     );
     assert_near(
         bounds.upper.unwrap(),
-        2.0 / rate.gamma.lower.unwrap(),
+        2.0 / rate.gamma.bounds.lower.unwrap(),
         1e-15,
     );
     // All right: no noise can be named, and none is too small.

@@ -1,14 +1,13 @@
 //! Expected values: scipy, Nelder and Mead from 27 starts, and Brent's method (`reference.py`).
 
 use super::*;
-use crate::psychophysics::dispersion::overall_dispersion;
+use crate::psychophysics::tests::numbers;
 use crate::psychophysics::{Subject, Table};
 use crate::stats::check::assert_near;
 
 fn fitted(table: &Table, condition: usize) -> Option<Psychometric> {
     let condition = &table.conditions()[condition];
-    let dispersion = overall_dispersion(condition, table.inclusions().len()).unwrap();
-    let dispersion = dispersion.map(Overdispersion::from);
+    let dispersion = Overdispersion::new(condition, table.inclusions().len()).unwrap();
     psychometric(table.inclusions(), condition, dispersion).unwrap()
 }
 
@@ -17,62 +16,41 @@ fn fitted(table: &Table, condition: usize) -> Option<Psychometric> {
 const OF_LENGTH: f64 = 5e-8;
 const OF_LAPSE: f64 = 2e-6;
 
+/// For each condition the midpoint and the spread, mm, and the lapse: the value, and its ends, binomial and dispersed.
+const EXPECTED: &str = "
+0 7.7450074400 7.1545209862 8.3352296625 6.5539482954 9.2771090507
+0 2.4695137100 1.6778529458 3.8427891939 1.0706728176 5.4209094835
+0 0.0322562100 0.0000000000 0.0650366616 0.0000000000 0.1010487789
+1 7.5588688400 7.1038913982 8.0332078377 6.7426816241 8.4382758845
+1 2.1029176600 1.4215729521 3.0816117317 1.0230577927 3.7782608787
+1 0.0258421500 0.0000000000 0.0548494097 0.0000000000 0.0766215619
+2 5.6038125500 5.0557020800 7.5267074592 4.6489548907 8.3552241438
+2 4.0580699600 2.0684164153 5.3947996638 0.8675007282 6.9386421267
+2 0.0000000000 0.0000000000 0.1467907667 0.0000000000 0.1984146067
+";
+/// Those of the three fits.
+const DEVIANCES: [f64; 3] = [0.1524763348, 2.4262896179, 10.1608743260];
+
 // Verifies: PSY-040, PSY-041, PSY-042.
 #[test]
 fn fits_of_table_1() {
     let table = Table::paper().unwrap();
-    // Midpoint, spread (mm), lapse, deviance; for each parameter the ends, binomial and dispersed.
-    for (condition, [midpoint, spread, lapse, deviance], ends) in [
-        (
-            0,
-            [7.74500744, 2.46951371, 0.03225621, 0.1524763348321585],
-            [
-                [7.15452098617069, 8.335229662478492],
-                [1.6778529457950633, 3.842789193931479],
-                [0.0, 0.0650366615507864],
-                [6.55394829536329, 9.277109050674452],
-                [1.0706728176131655, 5.4209094834596305],
-                [0.0, 0.1010487789060305],
-            ],
-        ),
-        (
-            1,
-            [7.55886884, 2.10291766, 0.02584215, 2.42628961791695],
-            [
-                [7.103891398171133, 8.033207837740134],
-                [1.421572952126431, 3.081611731717176],
-                [0.0, 0.054849409737700874],
-                [6.7426816241182905, 8.438275884460522],
-                [1.0230577926942983, 3.7782608786706713],
-                [0.0, 0.07662156191482597],
-            ],
-        ),
-        (
-            2,
-            [5.60381255, 4.05806996, 0.0, 10.160874325978739],
-            [
-                [5.05570207997582, 7.526707459247028],
-                [2.068416415261931, 5.394799663796417],
-                [0.0, 0.14679076672760252],
-                [4.6489548906971185, 8.355224143760363],
-                [0.8675007281784124, 6.938642126670472],
-                [0.0, 0.19841460666836233],
-            ],
-        ),
-    ] {
+    let expected = numbers::<6>(EXPECTED);
+    for (condition, deviance) in DEVIANCES.into_iter().enumerate() {
         let found = fitted(&table, condition).unwrap();
-        for (parameter, value, at, scale, tolerance) in [
-            (found.midpoint, midpoint, 0, 1e-3, OF_LENGTH),
-            (found.spread, spread, 1, 1e-3, OF_LENGTH),
-            (found.lapse, lapse, 2, 1.0, OF_LAPSE),
-        ] {
-            assert_near(parameter.value, scale * value, tolerance);
-            for (bounds, ends) in [
-                (parameter.bounds, ends[at]),
-                (parameter.dispersed_bounds, ends[at + 3]),
-            ] {
-                assert_near(bounds.lower.unwrap(), scale * ends[0], tolerance);
-                assert_near(bounds.upper.unwrap(), scale * ends[1], tolerance);
+        let parameters = [
+            (found.midpoint, 1e-3, OF_LENGTH),
+            (found.spread, 1e-3, OF_LENGTH),
+            (found.lapse, 1.0, OF_LAPSE),
+        ];
+        let rows = expected[3 * condition..].iter();
+        for ((parameter, scale, tolerance), row) in parameters.into_iter().zip(rows) {
+            let [_, value, ends @ ..] = row.map(|number| scale * number);
+            assert_near(parameter.value, value, tolerance);
+            let bounds = [parameter.bounds, parameter.dispersed_bounds];
+            let found = bounds.map(|bounds| [bounds.lower, bounds.upper].map(Option::unwrap));
+            for (found, end) in found.as_flattened().iter().zip(ends) {
+                assert_near(*found, end, tolerance);
             }
         }
         assert_near(found.deviance, deviance, 1e-7);
@@ -88,15 +66,15 @@ fn fits_of_table_1() {
 #[test]
 fn dispersion_makes_deviances_smaller() {
     let table = Table::paper().unwrap();
-    let (ratio, degrees) = overall_dispersion(&table.conditions()[0], 4)
-        .unwrap()
-        .unwrap();
-    assert_near(ratio, 4.276968045639429, 1e-12);
-    assert_eq!(degrees, 36);
+    let found = Overdispersion::new(&table.conditions()[0], 4).unwrap();
+    let mut found = found.unwrap();
+    assert_near(found.ratio, 4.276968045639429, 1e-12);
+    assert_eq!(found.degrees, 36);
     let p = fitted(&table, 0).unwrap().p_value_dispersed.unwrap();
     assert_near(p, 0.8512993614712892, 1e-6);
     // Never narrower than a binomial.
-    assert_eq!(Overdispersion::from((0.5, 36)).factor, 1.0);
+    found.ratio = 0.5;
+    assert_eq!(found.factor(), 1.0);
 }
 
 // Verifies: PSY-040, PSY-041.
@@ -149,7 +127,10 @@ fn the_function_is_the_one_that_the_spec_states() {
         name: "x".into(),
         subjects: vec![subject("1"), subject("2")],
     };
-    let dispersion = Some(Overdispersion::from((1.0, 6)));
+    let dispersion = Some(Overdispersion {
+        ratio: 1.0,
+        degrees: 6,
+    });
     let found = psychometric(&inclusions, &condition, dispersion)
         .unwrap()
         .unwrap();

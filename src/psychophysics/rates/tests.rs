@@ -5,6 +5,7 @@ use super::*;
 use crate::detect::two_afc;
 use crate::psychophysics::Table;
 use crate::psychophysics::dispersion::dispersion;
+use crate::psychophysics::tests::numbers;
 use crate::stats::check::assert_near;
 
 // Verifies: PSY-023, PSY-024.
@@ -15,8 +16,8 @@ fn gamma_is_the_image_of_the_share_and_of_its_interval() {
     // mpmath: √2 Φ⁻¹(253/300) as in the errata.
     assert_near(rate.gamma.gamma.unwrap(), 1.4258841436632816, 1e-14);
     for (gamma, share) in [
-        (rate.gamma.lower, rate.clopper_pearson.lower),
-        (rate.gamma.upper, rate.clopper_pearson.upper),
+        (rate.gamma.bounds.lower, rate.clopper_pearson.lower),
+        (rate.gamma.bounds.upper, rate.clopper_pearson.upper),
     ] {
         // Φ(γ/√2) and its inverse are good to some ULP.
         assert_near(two_afc(gamma.unwrap()).unwrap(), share, 1e-15);
@@ -30,11 +31,11 @@ fn gamma_is_the_image_of_the_share_and_of_its_interval() {
 #[test]
 fn nothing_is_infinite_and_nothing_negative() {
     let all = Rate::new(30, 30).unwrap().gamma;
-    assert_eq!((all.gamma, all.upper), (None, None));
-    assert!(all.lower.unwrap() > 1.0);
+    assert_eq!((all.gamma, all.bounds.upper), (None, None));
+    assert!(all.bounds.lower.unwrap() > 1.0);
     for correct in [0, 13, 15] {
         let few = Rate::new(correct, 30).unwrap().gamma;
-        assert_eq!((few.gamma, few.lower), (Some(0.0), Some(0.0)));
+        assert_eq!((few.gamma, few.bounds.lower), (Some(0.0), Some(0.0)));
     }
     assert!(
         serde_json::to_string(&all)
@@ -44,80 +45,20 @@ fn nothing_is_infinite_and_nothing_negative() {
 }
 
 /// Lower and upper end before the cut-off, χ² and its tail, for each condition and inclusion.
-const EXPECTED: [[f64; 4]; 12] = [
-    [
-        0.9051617305621628,
-        1.014838269437837,
-        41.31944444444446,
-        4.374804485492237e-06,
-    ],
-    [
-        0.8338733779880325,
-        0.9994599553453007,
-        47.345454545454544,
-        3.383915055317462e-07,
-    ],
-    [
-        0.7143212442431454,
-        0.9323454224235214,
-        43.10595065312046,
-        2.0611933374887466e-06,
-    ],
-    [
-        0.5699700848127016,
-        0.7633632485206316,
-        22.200000000000003,
-        0.008266275900149146,
-    ],
-    [
-        0.9487060854807214,
-        0.9979605811859453,
-        12.328767123287674,
-        0.19540307994314718,
-    ],
-    [
-        0.8596963946298454,
-        0.9869702720368213,
-        30.183644639773977,
-        0.0004082428194519249,
-    ],
-    [
-        0.7415129904453714,
-        0.9451536762212953,
-        41.40105962492641,
-        4.227475307496366e-06,
-    ],
-    [
-        0.5426036258747011,
-        0.7173963741252989,
-        17.288717288717287,
-        0.04438204724797066,
-    ],
-    [
-        0.8014612650152119,
-        0.9852054016514548,
-        46.73507462686569,
-        4.396686039699827e-07,
-    ],
-    [
-        0.6647516448284977,
-        0.8552483551715023,
-        26.242690058479532,
-        0.0018642518493005985,
-    ],
-    [
-        0.6867228642189007,
-        0.8399438024477659,
-        17.14127560120549,
-        0.046549034415613436,
-    ],
-    [
-        0.5192583355609178,
-        0.6407416644390821,
-        7.991242474001094,
-        0.5350290076823754,
-    ],
-];
+const EXPECTED: &str = "
+0.9051617305621628 1.014838269437837  41.31944444444446  4.374804485492237e-06
+0.8338733779880325 0.9994599553453007 47.345454545454544 3.383915055317462e-07
+0.7143212442431454 0.9323454224235214 43.10595065312046  2.0611933374887466e-06
+0.5699700848127016 0.7633632485206316 22.200000000000003 0.008266275900149146
+0.9487060854807214 0.9979605811859453 12.328767123287674 0.19540307994314718
+0.8596963946298454 0.9869702720368213 30.183644639773977 0.0004082428194519249
+0.7415129904453714 0.9451536762212953 41.40105962492641  4.227475307496366e-06
+0.5426036258747011 0.7173963741252989 17.288717288717287 0.04438204724797066
+0.8014612650152119 0.9852054016514548 46.73507462686569  4.396686039699827e-07
+0.6647516448284977 0.8552483551715023 26.242690058479532 0.0018642518493005985
+0.6867228642189007 0.8399438024477659 17.14127560120549  0.046549034415613436
+0.5192583355609178 0.6407416644390821 7.991242474001094  0.5350290076823754
+";
 
 // Verifies: PSY-025, PSY-031.
 #[test]
@@ -127,7 +68,7 @@ fn subjects_as_the_sample_and_chi_square_of_table_1() {
         .conditions()
         .iter()
         .flat_map(|condition| (0..4).map(move |j| (condition, j)));
-    for ((condition, column), [lower, upper, chi_square, p_value]) in cells.zip(EXPECTED) {
+    for ((condition, column), [lower, upper, chi_square, p_value]) in cells.zip(numbers(EXPECTED)) {
         let counts = condition.counts(column);
         let (correct, trials) = condition.pooled(column);
         let pooled = Rate::new(correct, trials).unwrap();
