@@ -6,15 +6,6 @@ use super::error::{check_length, check_samples, representable};
 use crate::stats::compensated::{self, Accumulator, DoubleDouble};
 
 /// What a record in coloured noise says.
-///
-/// ```
-/// use palpate::detect::coloured::{ColouredStatistic, coloured_scratch, theta_coloured};
-///
-/// let mut scratch = [0.0; coloured_scratch(2)];
-/// let statistic = theta_coloured(&[3.0, 0.0], &[3.0, 0.0], &[9.0, 0.0, 0.0, 9.0], &mut scratch)?;
-/// assert_eq!(statistic, ColouredStatistic { theta: 0.5, gamma: 1.0 });
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColouredStatistic {
     /// θ, the log-likelihood ratio.
@@ -24,12 +15,6 @@ pub struct ColouredStatistic {
 }
 
 /// Length of the scratch that [`theta_coloured`] needs for a covariance of `order` rows.
-///
-/// ```
-/// use palpate::detect::coloured::coloured_scratch;
-///
-/// assert_eq!(coloured_scratch(10), 120);
-/// ```
 ///
 /// Implements: DET-046.
 pub const fn coloured_scratch(order: usize) -> usize {
@@ -80,18 +65,6 @@ pub fn theta_coloured(
 }
 
 /// The Cholesky factor L of a covariance, K = LLᵀ, for records to be whitened one after the other.
-///
-/// ```
-/// use palpate::detect::coloured::Cholesky;
-///
-/// // K = LLᵀ with L = (2 0; 1 1), and L⁻¹(2, 3) = (1, 2).
-/// let mut factor = [0.0; 4];
-/// let cholesky = Cholesky::new(&[4.0, 2.0, 2.0, 2.0], 2, &mut factor)?;
-/// let mut white = [0.0; 2];
-/// cholesky.whiten(&[2.0, 3.0], &mut white)?;
-/// assert_eq!(white, [1.0, 2.0]);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Cholesky<'a> {
     order: usize,

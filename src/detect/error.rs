@@ -5,13 +5,6 @@ use core::fmt;
 /// Why the detector refused to answer. A refusal is never a decision: no error means "no
 /// inclusion".
 ///
-/// ```
-/// use palpate::detect::{DetectError, required_gamma};
-///
-/// let error = required_gamma(0.0, 0.05);
-/// assert!(matches!(error, Err(DetectError::OutOfRange { what: "max_false_alarm", .. })));
-/// ```
-///
 /// Implements: DET-005, DET-006, DET-007.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]

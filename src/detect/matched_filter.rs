@@ -33,17 +33,6 @@ pub struct MatchedFilter<'a> {
 }
 
 /// What the filter says about one record.
-///
-/// ```
-/// use palpate::detect::{Channels, MatchedFilter, Statistic};
-///
-/// let template = Channels { x: &[0.0, 0.0][..], y: &[0.5, 0.5] };
-/// let filter = MatchedFilter::new(template, Channels { x: 1.0, y: 0.5 })?;
-/// // Y(0) of the template itself is its root mean square b; there is no filter for zeros.
-/// let Statistic { y, theta } = filter.statistic(template)?;
-/// assert_eq!((y.x, y.y, theta), (0.0, 0.5, 1.0));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistic {
     /// Y(0) of equation (5), N. A channel whose template is zero has 0.
@@ -53,16 +42,6 @@ pub struct Statistic {
 }
 
 /// What a record says, with the signal-to-noise ratio of the hypotheses.
-///
-/// ```
-/// use palpate::detect::{Channels, RecordStatistic, theta_of_record};
-///
-/// let (f0, f1) = (Channels { x: &[0.0][..], y: &[1.0] }, Channels { x: &[0.0][..], y: &[1.5] });
-/// let RecordStatistic { theta, gamma, .. } =
-///     theta_of_record(f0, f0, f1, Channels { x: 0.25, y: 0.25 })?;
-/// assert_eq!((theta, gamma), (-2.0, 2.0));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordStatistic {
     /// Y(0) of equation (5), N.

@@ -41,15 +41,6 @@ pub fn mixture_theta(theta: &[f64], prior: &[f64]) -> Result<f64, DetectError> {
 
 /// The posterior of every depth given an inclusion, π_m exp(θ_m)/Σ, into `posterior`.
 ///
-/// ```
-/// use palpate::detect::mixture::depth_posterior;
-///
-/// let mut posterior = [0.0; 2];
-/// depth_posterior(&[0.0, 3.0_f64.ln()], &[0.5, 0.5], &mut posterior)?;
-/// assert!((posterior[0] - 0.25).abs() < 1e-15 && (posterior[1] - 0.75).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// As [`mixture_theta`]; `posterior` of another length.
 ///
@@ -80,13 +71,6 @@ pub fn depth_posterior(
 
 /// The generalised likelihood ratio: the first depth whose θ_m is largest, and that θ_m.
 ///
-/// ```
-/// use palpate::detect::mixture::generalised_theta;
-///
-/// assert_eq!(generalised_theta(&[-0.5, 3.0, 2.0, 3.0])?, (1, 3.0));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// No depths; θ not finite.
 ///
@@ -105,14 +89,6 @@ pub fn generalised_theta(theta: &[f64]) -> Result<(usize, f64), DetectError> {
 /// An upper bound on the false alarms of the mixture at threshold η: min(1, e^−η), because the mean
 /// of a likelihood ratio is 1 under H = 0 (Markov).
 ///
-/// ```
-/// use palpate::detect::mixture::mixture_false_alarm_bound;
-///
-/// assert!((mixture_false_alarm_bound(20.0_f64.ln())? - 0.05).abs() < 1e-15);
-/// assert_eq!(mixture_false_alarm_bound(-1.0)?, 1.0);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// η not finite.
 ///
@@ -124,17 +100,6 @@ pub fn mixture_false_alarm_bound(eta: f64) -> Result<f64, DetectError> {
 
 /// An upper bound on the false alarms of the generalised likelihood ratio at η, min(1, Σ Φ(−(η +
 /// γ_m²/2)/γ_m)).
-///
-/// ```
-/// use palpate::detect::error_rates;
-/// use palpate::detect::mixture::generalised_false_alarm_bound;
-///
-/// // Two depths with the same γ have at most twice the false alarms of one.
-/// let one = error_rates(3.0, 1.0)?.false_alarm;
-/// let bound = generalised_false_alarm_bound(&[3.0, 3.0], 1.0)?;
-/// assert!(bound >= 2.0 * one && bound < 2.001 * one);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 ///
 /// # Errors
 /// No depths; γ_m negative or not finite; η not finite.

@@ -53,14 +53,6 @@ pub use error::DetectError;
 pub use matched_filter::{MatchedFilter, RecordStatistic, Statistic, theta_of_record};
 
 /// One thing for each of the two channels of force.
-///
-/// ```
-/// use palpate::detect::Channels;
-///
-/// let force = Channels { x: -0.1, y: 1.6 };
-/// assert_eq!(force.map(|newtons| newtons > 0.0), Channels { x: false, y: true });
-/// assert_eq!(force.zip(Channels { x: 1, y: 2 }).y, (1.6, 2));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Channels<T> {
     /// Lateral, along the surface.

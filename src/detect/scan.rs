@@ -10,27 +10,6 @@ use core::ops::RangeInclusive;
 /// A *shift* k puts template sample 0 on record sample k. At −(M−1) ≤ k < 0 and N−M < k ≤ N−1 a
 /// part of the template falls off the record: what was not observed adds neither to Y nor to b, so
 /// Θ(k) is the log-likelihood ratio of what was.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::scan::Scan;
-///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let noise_sd = Channels { x: 0.125, y: 0.125 };
-/// let scan = Scan::new(6, template, noise_sd)?;
-/// assert_eq!((scan.samples(), scan.noise_sd()), (6, noise_sd));
-/// assert_eq!((scan.shifts(), scan.full_shifts()), (-2..=5, 0..=3));
-/// // Of all three samples, and of the first alone.
-/// assert_eq!((scan.full_gamma()?, scan.gamma(5)?), (3.0, 1.0));
-/// // The template begins at sample 2 of the record.
-/// let residual = Channels { x: &[0.0; 6][..], y: &[0.0, 0.0, 0.125, 0.25, 0.25, 0.0] };
-/// assert_eq!(scan.at(residual, 2)?.theta, 4.5);
-/// assert_eq!(scan.maximum(residual, scan.shifts())?.shift, 2);
-/// let mut theta = [0.0; 4];
-/// scan.theta(residual, 0, &mut theta)?;
-/// assert_eq!(theta, [-2.5, 1.5, 4.5, 1.5]);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Scan<'a> {
     template: Channels<&'a [f64]>,
@@ -41,19 +20,6 @@ pub struct Scan<'a> {
 }
 
 /// Θ at one shift.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::scan::{Scan, ScanPoint};
-///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
-/// let nothing = Channels { x: &[0.0; 6][..], y: &[0.0; 6] };
-/// // −γ²/2, of the whole template and of its first sample.
-/// assert_eq!(scan.at(nothing, 0)?, ScanPoint { theta: -4.5, gamma: 3.0 });
-/// assert_eq!(scan.at(nothing, 5)?, ScanPoint { theta: -0.5, gamma: 1.0 });
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanPoint {
     /// θ(k).
@@ -63,19 +29,6 @@ pub struct ScanPoint {
 }
 
 /// The largest Θ of a scan.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::scan::Scan;
-///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.25, 0.5, 0.25] };
-/// let scan = Scan::new(7, template, Channels { x: 0.25, y: 0.25 })?;
-/// // The template half-way between shifts 2 and 3: the first of the two, refined.
-/// let residual = [0.0, 0.0, 0.125, 0.375, 0.375, 0.125, 0.0];
-/// let found = scan.maximum(Channels { x: &[0.0; 7][..], y: &residual }, 0..=4)?;
-/// assert_eq!((found.shift, found.refined_shift), (2, 2.5));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanMaximum {
     /// Θ_max.
@@ -168,19 +121,6 @@ impl<'a> Scan<'a> {
     }
 
     /// The covariance of Θ at two shifts, Σ_c Σ_i Δ_{i−k} Δ_{i−l}/s² over the record.
-    ///
-    /// ```
-    /// use palpate::detect::Channels;
-    /// use palpate::detect::scan::Scan;
-    ///
-    /// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-    /// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
-    /// // 1·2 + 2·2 of neighbours, γ² of a shift with itself, nothing of shifts that do not overlap.
-    /// assert_eq!(scan.covariance(0, 1)?, 6.0);
-    /// assert_eq!(scan.covariance(1, 1)?, 9.0);
-    /// assert_eq!(scan.covariance(0, 3)?, 0.0);
-    /// # Ok::<(), palpate::detect::DetectError>(())
-    /// ```
     ///
     /// Implements: DET-055.
     pub fn covariance(&self, shift: isize, other: isize) -> Result<f64, DetectError> {

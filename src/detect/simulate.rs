@@ -68,24 +68,6 @@ impl<'a> Simulation<'a> {
     /// F_1 under H = 1). Lateral samples take the trial's deviates 0 … N−1, normal ones N … 2N−1.
     /// `residual` (2N numbers, x then y) is left holding F_p − F_0.
     ///
-    /// ```
-    /// use palpate::detect::Channels;
-    /// use palpate::detect::simulate::Simulation;
-    /// use palpate::stats::random::Generator;
-    ///
-    /// let f0 = Channels { x: &[0.0; 3][..], y: &[1.0; 3] };
-    /// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-    /// let noise_sd = Channels { x: 0.125, y: 0.125 };
-    /// let simulation = Simulation::new(f0, template, noise_sd, Generator::new(1999, 0))?;
-    /// // Any trial again, alone; the record is there for other tests of it.
-    /// let mut residual = [0.0; 6];
-    /// let statistic = simulation.trial(42, f0, &mut residual)?;
-    /// let (x, y) = residual.split_at(3);
-    /// assert_eq!(simulation.filter().statistic(Channels { x, y })?, statistic);
-    /// assert_eq!(simulation.trial(42, f0, &mut [0.0; 6])?, statistic);
-    /// # Ok::<(), palpate::detect::DetectError>(())
-    /// ```
-    ///
     /// # Errors
     /// Lengths that differ; a force that is not finite.
     ///
@@ -118,19 +100,6 @@ fn observe(deviates: &mut [f64], force: &[f64], f0: &[f64], noise_sd: f64) {
 
 /// θ drawn from its own law (8), N(±γ²/2, γ²), for the trials `first`, `first` + 1, …
 ///
-/// ```
-/// use palpate::detect::simulate::draw_theta;
-/// use palpate::stats::random::Generator;
-///
-/// let generator = Generator::new(1999, 0);
-/// let (mut without, mut with) = ([0.0; 5], [0.0; 5]);
-/// draw_theta(&generator, 2.0, false, 0, &mut without)?;
-/// draw_theta(&generator, 2.0, true, 0, &mut with)?;
-/// // The same deviates about −γ²/2 and γ²/2.
-/// assert!(std::iter::zip(without, with).all(|(a, b)| (b - a - 4.0).abs() < 1e-14));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// γ not finite or < 0, or γ² not representable.
 ///
@@ -156,24 +125,6 @@ pub fn draw_theta(
 /// [`crate::stats::binomial::clopper_pearson`] the Monte Carlo value of the false-alarm rate and
 /// its interval, beside the bound of [`super::position::MaximumLaw`]. `residual` is scratch of 2N
 /// numbers.
-///
-/// ```
-/// use palpate::detect::position::MaximumLaw;
-/// use palpate::detect::scan::Scan;
-/// use palpate::detect::{Channels, simulate::count_false_alarms};
-/// use palpate::stats::random::Generator;
-///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
-/// let (mut gamma, mut angle) = ([0.0; 4], [0.0; 4]);
-/// let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle)?;
-/// let (eta, generator) = (law.threshold(0.1)?, Generator::new(1999, 0));
-/// let alarms =
-///     count_false_alarms(&scan, law.shifts(), eta, &generator, 0..2000, &mut [0.0; 12])?;
-/// // Near the bound of 10 %, of which the standard error is 0.7 %.
-/// assert!(alarms > 100 && alarms < 2000 / 10 + 4 * 14);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 ///
 /// # Errors
 /// η not finite; no shifts; scratch of another length.

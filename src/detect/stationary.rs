@@ -11,19 +11,6 @@ use crate::stats::compensated;
 /// θ and γ by the recursion of Levinson and Durbin, for any autocovariance ρ(0) … ρ(N−1) (N², N
 /// lags a channel). Time N²; `scratch` holds 2N numbers.
 ///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::stationary::theta_stationary;
-///
-/// // Two samples with covariance ½: γ² = ΔᵀK⁻¹Δ = 4/3 of Δ = (1, 1), where white noise has 2.
-/// let template = Channels { x: &[0.0; 2][..], y: &[1.0, 1.0] };
-/// let autocovariance = Channels { x: &[1.0, 0.0][..], y: &[1.0, 0.5] };
-/// let statistic = theta_stationary(template, template, autocovariance, &mut [0.0; 4])?;
-/// assert!((statistic.gamma - (4.0_f64 / 3.0).sqrt()).abs() < 1e-15);
-/// assert!((statistic.theta - 2.0 / 3.0).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// Lengths that do not fit; NaN or infinity; an autocovariance that is not positive definite;
 /// overflow.
@@ -58,12 +45,6 @@ pub fn theta_stationary(
 
 /// Length of the scratch that [`theta_banded`] needs for `lags` = m + 1 lags.
 ///
-/// ```
-/// use palpate::detect::stationary::banded_scratch;
-///
-/// assert_eq!(banded_scratch(4), 28);
-/// ```
-///
 /// Implements: DET-046.
 pub const fn banded_scratch(lags: usize) -> usize {
     lags.saturating_mul(lags.saturating_add(3))
@@ -72,19 +53,6 @@ pub const fn banded_scratch(lags: usize) -> usize {
 /// θ and γ by a banded Cholesky factor that forgets what it has used, for an autocovariance that is
 /// zero beyond its last lag: ρ(0) … ρ(m) (N², the same number of lags for both channels). Time N
 /// m², memory m².
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::stationary::{banded_scratch, theta_banded};
-///
-/// // White noise is the band of one lag: γ² = Σ (Δ/s)² = 9.
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let autocovariance = Channels { x: &[1.0][..], y: &[0.125 * 0.125] };
-/// let mut scratch = [0.0; banded_scratch(1)];
-/// let statistic = theta_banded(template, template, autocovariance, &mut scratch)?;
-/// assert_eq!((statistic.theta, statistic.gamma), (4.5, 3.0));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 ///
 /// # Errors
 /// As [`theta_stationary`]; more lags than samples.

@@ -7,14 +7,6 @@ use crate::stats::compensated::{self, DoubleDouble};
 
 /// The variance of one sample is floor² + (fraction · F)², where F is the force that the hypothesis
 /// expects.
-///
-/// ```
-/// use palpate::detect::weber::WeberNoise;
-///
-/// let noise = WeberNoise { floor: 0.03, fraction: 0.1 };
-/// assert_eq!(noise.sd(0.0), 0.03);
-/// assert!((noise.sd(0.4) - 0.05).abs() < 1e-15);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeberNoise {
     /// The standard deviation at force 0, N.
@@ -40,19 +32,6 @@ impl WeberNoise {
 
 /// Mean and variance of Θ under either hypothesis. Θ is not normal; far tails need simulation, or
 /// e^−η bounds.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::weber::{WeberNoise, weber_moments};
-///
-/// let (f0, f1) = (Channels { x: &[0.0][..], y: &[1.0] }, Channels { x: &[0.0][..], y: &[1.5] });
-/// let noise = WeberNoise { floor: 0.25, fraction: 0.2 };
-/// let moments = weber_moments(f0, f1, Channels { x: noise, y: noise })?;
-/// // The means are those of a likelihood ratio: below 0 without an inclusion, above 0 with one.
-/// assert!(moments.mean[0] < 0.0 && 0.0 < moments.mean[1]);
-/// assert!(moments.variance[0] != moments.variance[1]);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeberMoments {
     /// Mean under H = 0 and under H = 1.
@@ -108,18 +87,6 @@ pub fn theta_weber(
 }
 
 /// The exact mean and variance of Θ under both hypotheses.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::weber::{WeberNoise, weber_moments};
-///
-/// // Without a Weber fraction, Θ ~ N(∓γ²/2, γ²) with γ = 2.
-/// let (f0, f1) = (Channels { x: &[0.0][..], y: &[1.0] }, Channels { x: &[0.0][..], y: &[1.5] });
-/// let noise = WeberNoise { floor: 0.25, fraction: 0.0 };
-/// let moments = weber_moments(f0, f1, Channels { x: noise, y: noise })?;
-/// assert_eq!((moments.mean, moments.variance), ([-2.0, 2.0], [4.0, 4.0]));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 ///
 /// # Errors
 /// As [`theta_weber`].

@@ -14,19 +14,6 @@ const HELD: u32 = u32::MAX;
 /// Upper triangle of the stiffness matrix, N/m for the whole probe length. Its unknowns are the displacements that no wall or
 /// floor holds: those below the surface in the order of elimination, then those at the surface from left to right.
 ///
-/// ```
-/// use palpate::fem::assembly::StiffnessMatrix;
-/// use palpate::fem::Mesh;
-/// use palpate::phantom::Phantom;
-///
-/// let phantom = Phantom::builtin("6.6")?;
-/// let mesh = Mesh::new(&phantom, 2e-3)?;
-/// let matrix = StiffnessMatrix::assemble(&mesh, &phantom)?;
-/// assert_eq!(matrix.unknown(mesh.surface[0], 1), None); // held by the wall
-/// assert_eq!(matrix.unknown(mesh.surface[1], 0), Some(matrix.first_surface_unknown));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// Implements: FEM-006.
 #[derive(Debug, Clone)]
 pub struct StiffnessMatrix {

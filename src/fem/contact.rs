@@ -16,13 +16,6 @@ use super::{FemError, Pose};
 use crate::phantom::Probe;
 
 /// How the gap between a surface node and the probe is measured.
-///
-/// ```
-/// use palpate::fem::Contact;
-///
-/// assert_eq!(Contact::default(), Contact::DeformedNormal);
-/// assert_eq!(Contact::VerticalGap.name(), "vertical-gap");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Contact {
     /// Distance of the deformed node from the circle, force along the circle's normal there: the default.

@@ -29,19 +29,6 @@ impl Region {
 
 /// Nodes, elements and regions of one phantom.
 ///
-/// ```
-/// use palpate::fem::Mesh;
-/// use palpate::phantom::Phantom;
-///
-/// let mesh = Mesh::new(&Phantom::builtin("6.6")?, 2e-3)?;
-/// assert_eq!(mesh.elements().count(), mesh.regions.len());
-/// // The surface runs from wall to wall at y = 0, where the walls hold its ends.
-/// let [first, .., last] = mesh.surface[..] else { unreachable!() };
-/// assert_eq!([mesh.nodes[first], mesh.nodes[last]], [[-0.017, 0.0], [0.017, 0.0]]);
-/// assert_eq!([mesh.held[first], mesh.held[mesh.surface[1]]], [[true; 2], [false; 2]]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// Implements: FEM-001, FEM-002, FEM-003, FEM-004, CON-003.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {

@@ -63,17 +63,6 @@ const HALVINGS: u32 = 6;
 impl Model {
     /// Meshes and factorises a phantom; the mesh size, m, is that of [`Mesh::new`].
     ///
-    /// ```
-    /// use palpate::fem::{Contact, FemError, MESH_SIZE, Model};
-    /// use palpate::phantom::Phantom;
-    ///
-    /// let mut phantom = Phantom::builtin("6.6")?;
-    /// phantom.layers[1].material.poisson_ratio = 0.5; // would be incompressible
-    /// let refused = Model::new(&phantom, MESH_SIZE, Contact::default());
-    /// assert!(matches!(refused, Err(FemError::Phantom(_))));
-    /// # Ok::<(), palpate::phantom::UnknownPhantom>(())
-    /// ```
-    ///
     /// # Errors
     /// [`FemError::Phantom`] for a phantom that is not valid, and as [`Mesh::new`], [`StiffnessMatrix::assemble`] and
     /// [`Factor::new`].

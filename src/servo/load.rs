@@ -17,18 +17,6 @@ pub const SURFACE_FORCE: f64 = 0.02;
 pub const HAND_SPEED: f64 = 0.2;
 
 /// The largest differences between a map and its table.
-///
-/// ```
-/// # use palpate::force_map::{ForceTable, Matrix};
-/// # use palpate::servo::LoadedTable;
-/// let matrix = |force: f64| Matrix::from_fn(2, 2, |row, _| force * row as f64);
-/// let map = ForceTable::new(vec![0.0, 4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
-/// let rounding = LoadedTable::new(&map)?.rounding();
-/// // 1.5 N is a number of f32, and 4 mm and 5 mm are nearly.
-/// assert_eq!(rounding.force_n, 0.0);
-/// assert!(rounding.position_m > 0.0 && rounding.position_m < 1e-9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RoundingError {
     /// Of a position, m.
@@ -66,17 +54,6 @@ pub struct LoadedTable {
 }
 
 /// Why a map can not be played. Rows and columns are the map's, from 0.
-///
-/// ```
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::servo::{LoadError, LoadedTable};
-///
-/// let map = |normal, lateral| ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], normal, lateral);
-/// let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-/// let refused = LoadedTable::new(&map(matrix(150.0), matrix(0.0))?);
-/// assert!(matches!(refused, Err(LoadError::Force { key: "normal_force_n", value: 150.0, .. })));
-/// # Ok::<(), palpate::force_map::InvalidForceMap>(())
-/// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadError {
     /// An axis has too few or too many entries.
@@ -177,17 +154,6 @@ impl LoadedTable {
     /// The table of a map's forces, each rounded to f32, with the surface in front if the map does
     /// not begin there.
     ///
-    /// ```
-    /// # use palpate::force_map::{ForceTable, Matrix};
-    /// use palpate::servo::LoadedTable;
-    ///
-    /// let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-    /// let map = ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
-    /// let loaded = LoadedTable::new(&map)?;
-    /// assert_eq!(loaded.table()?.force(4e-3, 0.0).normal, 1.5);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
     /// [`LoadError`].
     ///
@@ -223,23 +189,6 @@ impl LoadedTable {
 
     /// The table of a map for a device that must play it passively within `limits`.
     ///
-    /// ```
-    /// # use palpate::force_map::{ForceTable, Matrix};
-    /// use palpate::servo::{Damping, Limits, LoadError, LoadedTable};
-    ///
-    /// # let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-    /// # let map = ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
-    /// // 1.5 N in 4 mm are 375 N/m; a display with 0.6 N·s/m of damping plays up to 1200 N/m.
-    /// let display = Damping {
-    ///     period_s: 1e-3, delay_periods: 0, damping_n_s_per_m: 0.6, friction_n: 0.14, resolution_m: 1e-6,
-    /// };
-    /// let limits = Limits::new(4.0, 0.25, 0.5, 20)?;
-    /// assert!(LoadedTable::passive(&map, &display, &limits).is_ok());
-    /// let slick = Damping { damping_n_s_per_m: 0.1, ..display };
-    /// assert!(matches!(LoadedTable::passive(&map, &slick, &limits), Err(LoadError::NotPassive { .. })));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
     /// [`LoadError`], among them [`LoadError::NotPassive`].
     ///
@@ -256,23 +205,6 @@ impl LoadedTable {
 
     /// Like [`LoadedTable::passive`], but a table that is not passive is scaled down. Also returns the
     /// factor on its forces, 1 if none was needed.
-    ///
-    /// ```
-    /// # use palpate::force_map::{ForceTable, Matrix};
-    /// use palpate::servo::{Damping, Limits, LoadedTable, stiffness};
-    ///
-    /// # let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-    /// # let map = ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
-    /// // 375 N/m on a display that plays up to 200 N/m.
-    /// let slick = Damping {
-    ///     period_s: 1e-3, delay_periods: 0, damping_n_s_per_m: 0.1, friction_n: 0.14, resolution_m: 1e-6,
-    /// };
-    /// let limits = Limits::new(4.0, 0.25, 0.5, 20)?;
-    /// let (loaded, factor) = LoadedTable::scaled_to_be_passive(&map, &slick, &limits)?;
-    /// assert!((factor - 200.0 / 375.0).abs() < 1e-6);
-    /// assert!(stiffness(&loaded.table()?) <= 200.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     ///
     /// # Errors
     /// [`LoadError`]; [`LoadError::NotPassive`] only for a device that no spring suits.
@@ -303,16 +235,6 @@ impl LoadedTable {
     }
 
     /// The table as the kernel takes it.
-    ///
-    /// ```
-    /// # use palpate::force_map::{ForceTable, Matrix};
-    /// # use palpate::servo::LoadedTable;
-    /// # let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-    /// # let map = ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
-    /// let loaded = LoadedTable::new(&map)?;
-    /// assert_eq!(loaded.table()?.forces().len(), 4);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     ///
     /// # Errors
     /// [`LoadError::Refused`], which would be a defect of this program.

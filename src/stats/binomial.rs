@@ -10,14 +10,6 @@ use core::fmt;
 
 /// Why a question about a proportion was refused.
 ///
-/// ```
-/// use palpate::stats::binomial::{ProportionError, clopper_pearson};
-///
-/// let error = ProportionError::Successes { successes: 31, trials: 30 };
-/// assert_eq!(clopper_pearson(31, 30, 0.95), Err(error));
-/// assert_eq!(error.to_string(), "31 successes are more than the 30 trials");
-/// ```
-///
 /// Implements: DET-123.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ProportionError {
@@ -65,14 +57,6 @@ impl fmt::Display for ProportionError {
 impl core::error::Error for ProportionError {}
 
 /// An interval for a proportion.
-///
-/// ```
-/// use palpate::stats::binomial::{Interval, clopper_pearson};
-///
-/// let Interval { lower, upper } = clopper_pearson(27, 30, 0.95)?;
-/// assert!(lower < 0.9 && 0.9 < upper);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// Lower end, ≥ 0.
@@ -82,13 +66,6 @@ pub struct Interval {
 }
 
 /// Pr(X = successes) for X ~ Binomial(trials, p).
-///
-/// ```
-/// use palpate::stats::binomial::probability;
-///
-/// assert!((probability(2, 4, 0.5)? - 6.0 / 16.0).abs() < 1e-15);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
-/// ```
 ///
 /// # Errors
 /// No trials; more successes than trials; p not strictly between 0 and 1.
@@ -101,14 +78,6 @@ pub fn probability(successes: u64, trials: u64, p: f64) -> Result<f64, Proportio
 }
 
 /// Pr(X ≥ successes) for X ~ Binomial(trials, p). Takes about √trials steps.
-///
-/// ```
-/// use palpate::stats::binomial::at_least;
-///
-/// // Guessing gets 20 or more of 30 pairs right once in twenty times.
-/// assert!((at_least(20, 30, 0.5)? - 0.0494).abs() < 1e-4);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
-/// ```
 ///
 /// # Errors
 /// As [`probability`].
@@ -127,14 +96,6 @@ pub fn at_least(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionEr
 }
 
 /// Pr(X ≤ successes) for X ~ Binomial(trials, p).
-///
-/// ```
-/// use palpate::stats::binomial::{at_least, at_most};
-///
-/// assert!((at_most(1, 4, 0.5)? - 5.0 / 16.0).abs() < 1e-15);
-/// assert!((at_most(9, 30, 0.2)? + at_least(10, 30, 0.2)? - 1.0).abs() < 1e-15);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
-/// ```
 ///
 /// # Errors
 /// As [`probability`].
@@ -190,15 +151,6 @@ pub fn clopper_pearson(
 }
 
 /// The score interval of Wilson.
-///
-/// ```
-/// use palpate::stats::binomial::wilson;
-///
-/// // No miss in 10 trials: upper = z²/(10 + z²).
-/// let square = 1.959963984540054_f64.powi(2);
-/// assert!((wilson(0, 10, 0.95)?.upper - square / (10.0 + square)).abs() < 1e-14);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
-/// ```
 ///
 /// # Errors
 /// As [`clopper_pearson`].

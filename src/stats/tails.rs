@@ -5,12 +5,6 @@
 use core::fmt;
 
 /// An argument outside the range in which the question has an answer, or NaN.
-///
-/// ```
-/// use palpate::stats::tails::{TailError, gamma_tail};
-///
-/// assert_eq!(gamma_tail(-1.0, 2.0), Err(TailError { what: "shape", value: -1.0 }));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TailError {
     /// The name of the argument.
@@ -40,14 +34,6 @@ const TINY: f64 = 1e-300;
 
 /// Pr(X ≥ x) for a gamma law of the given shape and unit scale: the regularised upper incomplete
 /// gamma function Q(shape, x).
-///
-/// ```
-/// use palpate::stats::tails::gamma_tail;
-///
-/// // With shape 1 it is the exponential law.
-/// assert!((gamma_tail(1.0, 3.0)? - (-3.0_f64).exp()).abs() < 1e-15);
-/// # Ok::<(), palpate::stats::tails::TailError>(())
-/// ```
 ///
 /// # Errors
 /// A shape not in (0, 10⁶], x negative or not finite.
@@ -83,13 +69,6 @@ pub fn gamma_tail(shape: f64, x: f64) -> Result<f64, TailError> {
 
 /// Pr(X ≥ x) for the chi-square law.
 ///
-/// ```
-/// use palpate::stats::tails::chi_square_tail;
-///
-/// assert!((chi_square_tail(3.841458820694124, 1.0)? - 0.05).abs() < 1e-14);
-/// # Ok::<(), palpate::stats::tails::TailError>(())
-/// ```
-///
 /// # Errors
 /// As [`gamma_tail`], for half the degrees of freedom.
 ///
@@ -99,14 +78,6 @@ pub fn chi_square_tail(x: f64, degrees: f64) -> Result<f64, TailError> {
 }
 
 /// Pr(X ≥ x) for the F law.
-///
-/// ```
-/// use palpate::stats::tails::f_tail;
-///
-/// // The quotient of two alike is as often above 1 as below.
-/// assert!((f_tail(1.0, 7.0, 7.0)? - 0.5).abs() < 1e-13);
-/// # Ok::<(), palpate::stats::tails::TailError>(())
-/// ```
 ///
 /// # Errors
 /// Degrees of freedom not in (0, 2·10⁶], x negative or not finite.
@@ -125,14 +96,6 @@ pub fn f_tail(x: f64, numerator: f64, denominator: f64) -> Result<f64, TailError
 }
 
 /// Pr(|T| ≥ |t|) for Student's law.
-///
-/// ```
-/// use palpate::stats::tails::student_two_sided;
-///
-/// // One degree of freedom is the Cauchy law: half of it lies beyond ±1.
-/// assert!((student_two_sided(-1.0, 1.0)? - 0.5).abs() < 1e-14);
-/// # Ok::<(), palpate::stats::tails::TailError>(())
-/// ```
 ///
 /// # Errors
 /// Degrees of freedom not in (0, 2·10⁶], t not finite.
