@@ -1,7 +1,7 @@
 //! All that a record says, in one call: what `palpate detect` prints.
 
 use super::decision::{Decision, ErrorRates, decide, error_rates, posterior};
-use super::matched_filter::{RecordStatistic, theta_of_record};
+use super::matched_filter::{Statistic, theta_of_record};
 use super::position::MaximumLaw;
 use super::scan::{Scan, ScanMaximum};
 use super::{Channels, DetectError};
@@ -10,7 +10,7 @@ use super::{Channels, DetectError};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assessment {
     /// y(0), θ and γ.
-    pub statistic: RecordStatistic,
+    pub statistic: Statistic,
     /// Ĥ at the threshold.
     pub decision: Decision,
     /// Pr(H = 1 | θ).

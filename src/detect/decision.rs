@@ -2,11 +2,10 @@
 //! equations (8) and (9).
 
 use super::DetectError;
-use super::error::{
+use crate::stats::error::{
     check_finite, check_not_negative, check_positive, check_probability, in_range, representable,
 };
-use crate::stats::normal;
-use crate::stats::normal::lower_tail;
+use crate::stats::normal::{lower_tail, quantile_of as quantile};
 
 /// Ĥ of equation (9).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -100,16 +99,12 @@ pub fn map_threshold(prior_h1: f64) -> Result<f64, DetectError> {
 ///
 /// Implements: DET-023, ACC-011.
 pub fn bayes_threshold(prior_h1: f64, costs: Costs) -> Result<f64, DetectError> {
-    for (what, cost) in [
-        ("c00", costs.c00),
-        ("c01", costs.c01),
-        ("c10", costs.c10),
-        ("c11", costs.c11),
-    ] {
+    let Costs { c00, c01, c10, c11 } = costs;
+    for (what, cost) in [("c00", c00), ("c01", c01), ("c10", c10), ("c11", c11)] {
         check_finite(what, cost)?;
     }
-    let false_alarm = check_positive("c10 - c00", costs.c10 - costs.c00)?;
-    let miss = check_positive("c01 - c11", costs.c01 - costs.c11)?;
+    let false_alarm = check_positive("c10 - c00", c10 - c00)?;
+    let miss = check_positive("c01 - c11", c01 - c11)?;
     // Two logarithms: a product or quotient of extreme costs could overflow.
     let log_cost_ratio = if false_alarm <= 2.0 * miss && miss <= 2.0 * false_alarm {
         libm::log1p((false_alarm - miss) / miss)
@@ -173,16 +168,10 @@ pub fn error_rates(gamma: f64, eta: f64) -> Result<ErrorRates, DetectError> {
     check_not_negative("gamma", gamma)?;
     check_finite("eta", eta)?;
     if gamma == 0.0 {
-        return Ok(if eta > 0.0 {
-            ErrorRates {
-                false_alarm: 0.0,
-                miss: 1.0,
-            }
-        } else {
-            ErrorRates {
-                false_alarm: 1.0,
-                miss: 0.0,
-            }
+        let miss = f64::from(eta > 0.0);
+        return Ok(ErrorRates {
+            false_alarm: 1.0 - miss,
+            miss,
         });
     }
     // η/γ ± γ/2 instead of (η ± γ²/2)/γ: γ² may overflow. An infinite η/γ has the right limit.
@@ -202,12 +191,8 @@ pub fn error_rates(gamma: f64, eta: f64) -> Result<ErrorRates, DetectError> {
 /// Implements: DET-027, ACC-006.
 pub fn roc_miss(gamma: f64, false_alarm: f64) -> Result<f64, DetectError> {
     check_not_negative("gamma", gamma)?;
-    in_range(
-        (0.0..=1.0).contains(&false_alarm),
-        "false_alarm",
-        false_alarm,
-        "between 0 and 1",
-    )?;
+    let is_right = (0.0..=1.0).contains(&false_alarm);
+    in_range(is_right, "false_alarm", false_alarm, "between 0 and 1")?;
     if false_alarm == 0.0 || false_alarm == 1.0 {
         return Ok(1.0 - false_alarm);
     }
@@ -265,13 +250,4 @@ pub fn two_afc(gamma: f64) -> Result<f64, DetectError> {
 /// Implements: DET-030, ACC-009, ERR-004.
 pub fn gamma_from_two_afc(p_correct: f64) -> Result<f64, DetectError> {
     Ok(core::f64::consts::SQRT_2 * quantile("p_correct", p_correct)?)
-}
-
-fn quantile(what: &'static str, p: f64) -> Result<f64, DetectError> {
-    check_probability(what, p)?;
-    normal::quantile(p).map_err(|_| DetectError::OutOfRange {
-        what,
-        value: p,
-        range: "strictly between 0 and 1",
-    })
 }

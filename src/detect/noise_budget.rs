@@ -1,8 +1,8 @@
 //! How much noise a display may add: the paper's example after figure 4, and Table 2.
 
 use super::DetectError;
-use super::decision::{required_gamma, two_afc};
-use super::error::{check_not_negative, check_positive, check_samples, representable};
+use super::decision::required_gamma;
+use crate::stats::error::{check_not_negative, check_positive, check_samples, representable};
 
 /// A noise budget. All standard deviations in N.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,53 +79,14 @@ pub fn noise_budget(
 pub fn noise_total(sources: &[f64]) -> Result<NoiseTotal, DetectError> {
     check_samples("sources", sources, sources.len())?;
     let total = check_positive("total", root_sum_square(sources)?)?;
-    let (dominant, largest) = sources
-        .iter()
-        .copied()
-        .enumerate()
-        .fold(
-            (0, 0.0),
-            |best, next| if next.1 > best.1 { next } else { best },
-        );
+    let larger = |best: (usize, f64), next: (usize, f64)| if next.1 > best.1 { next } else { best };
+    let (dominant, largest) = sources.iter().copied().enumerate().fold((0, 0.0), larger);
     let ratio = largest / total;
     Ok(NoiseTotal {
         total,
         dominant,
         dominant_share: ratio * ratio,
     })
-}
-
-/// The share of right forced choices for a signal in a total noise (both N), Φ(signal/(noise √2)):
-/// the budget read forwards.
-///
-/// # Errors
-/// A signal negative or not finite; noise not positive and finite; overflow of their ratio.
-///
-/// Implements: DET-103.
-pub fn two_afc_in_noise(signal: f64, noise_sd: f64) -> Result<f64, DetectError> {
-    check_not_negative("signal", signal)?;
-    check_positive("noise_sd", noise_sd)?;
-    two_afc(representable("gamma", signal / noise_sd)?)
-}
-
-/// The standard deviation Δ/√12 of the error of a quantiser with steps of `step`, N.
-///
-/// # Errors
-/// A step negative or not finite.
-///
-/// Implements: DET-104.
-pub fn quantisation_sd(step: f64) -> Result<f64, DetectError> {
-    Ok(check_not_negative("step", step)? / libm::sqrt(12.0))
-}
-
-/// The largest quantisation step whose error has at most the standard deviation `sd`, √12 · sd, N.
-///
-/// # Errors
-/// A standard deviation negative or not finite; overflow.
-///
-/// Implements: DET-104.
-pub fn quantisation_step(sd: f64) -> Result<f64, DetectError> {
-    representable("step", check_not_negative("sd", sd)? * libm::sqrt(12.0))
 }
 
 /// (Σ s²)^½ without overflow or underflow of squares.

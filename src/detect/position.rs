@@ -1,9 +1,11 @@
 //! The law of Θ_max: bounds on its rates of error, its thresholds, and how well a position can be
 //! known.
 
-use super::error::{check_finite, check_positive, check_probability, check_samples};
 use super::scan::Scan;
 use super::{Channels, DetectError, MatchedFilter};
+use crate::stats::error::{
+    check_finite, check_length, check_positive, check_probability, check_samples,
+};
 use crate::stats::normal::lower_tail;
 use core::ops::RangeInclusive;
 
@@ -107,10 +109,8 @@ impl<'a> MaximumLaw<'a> {
     /// Implements: DET-056.
     pub fn union_bound(&self, eta: f64) -> Result<f64, DetectError> {
         check_finite("eta", eta)?;
-        let sum = self
-            .gamma
-            .iter()
-            .fold(0.0, |sum, &gamma| sum + exceedance(gamma, eta).0);
+        let tails = self.gamma.iter().map(|&gamma| exceedance(gamma, eta).0);
+        let sum = tails.fold(0.0, |sum, tail| sum + tail);
         Ok((sum * (1.0 + 1e-9)).min(1.0))
     }
 
@@ -123,10 +123,7 @@ impl<'a> MaximumLaw<'a> {
     /// Implements: DET-058.
     pub fn threshold(&self, max_false_alarm: f64) -> Result<f64, DetectError> {
         check_probability("max_false_alarm", max_false_alarm)?;
-        let gamma = self
-            .gamma
-            .iter()
-            .fold(0.0_f64, |largest, &gamma| largest.max(gamma));
+        let gamma = self.gamma.iter().copied().fold(0.0, f64::max);
         if gamma == 0.0 {
             return Err(DetectError::NoSignal);
         }
@@ -167,10 +164,9 @@ pub fn position_bound(
 ) -> Result<f64, DetectError> {
     let information = MatchedFilter::new(slope, noise_sd)?.gamma();
     if information == 0.0 {
-        Err(DetectError::NoSignal)
-    } else {
-        Ok(1.0 / information)
+        return Err(DetectError::NoSignal);
     }
+    Ok(1.0 / information)
 }
 
 /// ∂Δ/∂x of a template sampled every `spacing` metres, by central differences, and by one-sided
@@ -184,14 +180,8 @@ pub fn position_bound(
 pub fn slope(template: &[f64], spacing: f64, slope: &mut [f64]) -> Result<(), DetectError> {
     check_samples("template", template, slope.len())?;
     check_positive("spacing", spacing)?;
+    check_length("template", template.len().max(2), template.len())?;
     let last = template.len() - 1;
-    if last == 0 {
-        return Err(DetectError::LengthMismatch {
-            what: "template",
-            expected: 2,
-            found: 1,
-        });
-    }
     for (i, slope) in slope.iter_mut().enumerate() {
         let (left, right) = (i.saturating_sub(1), (i + 1).min(last));
         let rise = template[right] - template[left];

@@ -1,9 +1,9 @@
 //! Simulated records and statistics. Every trial is a function of the generator and its number
 //! alone.
 
-use super::error::{check_finite, check_length, check_not_negative, check_samples};
 use super::scan::Scan;
 use super::{Channels, DetectError, MatchedFilter, Statistic};
+use crate::stats::error::{check_finite, check_length, check_not_negative};
 use crate::stats::random::Generator;
 use core::ops::{Range, RangeInclusive};
 
@@ -49,8 +49,7 @@ impl<'a> Simulation<'a> {
         generator: Generator,
     ) -> Result<Self, DetectError> {
         let filter = MatchedFilter::new(template, noise_sd)?;
-        check_samples("f0_x", f0.x, filter.samples())?;
-        check_samples("f0_y", f0.y, filter.samples())?;
+        f0.check("f0_x", "f0_y", filter.samples())?;
         Ok(Self {
             filter,
             f0,
@@ -82,20 +81,32 @@ impl<'a> Simulation<'a> {
         check_length("force_x", samples, force.x.len())?;
         check_length("force_y", samples, force.y.len())?;
         check_length("residual", 2 * samples, residual.len())?;
-        self.generator.normals(trial, 0, residual);
-        let (x, y) = residual.split_at_mut(samples);
-        observe(x, force.x, self.f0.x, self.noise_sd.x);
-        observe(y, force.y, self.f0.y, self.noise_sd.y);
+        let noise = noise(&self.generator, trial, self.noise_sd, residual);
+        let forces = force.zip(self.f0).zip(noise).into_array();
+        for ((force, f0), samples) in forces {
+            for ((sample, force), f0) in samples.iter_mut().zip(force).zip(f0) {
+                let observed = force + *sample;
+                *sample = observed - f0;
+            }
+        }
+        let (x, y) = residual.split_at(samples);
         self.filter.statistic(Channels { x, y })
     }
 }
 
-/// Turns deviates into a record F_p = F + s·n, and the record into F_p − F_0.
-fn observe(deviates: &mut [f64], force: &[f64], f0: &[f64], noise_sd: f64) {
-    for ((sample, force), f0) in deviates.iter_mut().zip(force).zip(f0) {
-        let observed = force + noise_sd * *sample;
-        *sample = observed - f0;
-    }
+/// Fills `samples` with the noise of a trial of N samples a channel: lateral ones, then normal ones.
+fn noise<'a>(
+    generator: &Generator,
+    trial: u64,
+    sd: Channels<f64>,
+    samples: &'a mut [f64],
+) -> Channels<&'a mut [f64]> {
+    generator.normals(trial, 0, samples);
+    let (x, y) = samples.split_at_mut(samples.len() / 2);
+    Channels { x, y }.zip(sd).map(|(samples, sd)| {
+        samples.iter_mut().for_each(|sample| *sample *= sd);
+        samples
+    })
 }
 
 /// θ drawn from its own law (8), N(±γ²/2, γ²), for the trials `first`, `first` + 1, …
@@ -140,13 +151,9 @@ pub fn count_false_alarms(
 ) -> Result<u64, DetectError> {
     check_finite("eta", eta)?;
     check_length("residual", scan.samples().saturating_mul(2), residual.len())?;
-    let noise_sd = scan.noise_sd();
     let mut alarms = 0;
     for trial in trials {
-        generator.normals(trial, 0, residual);
-        let (x, y) = residual.split_at_mut(scan.samples());
-        x.iter_mut().for_each(|sample| *sample *= noise_sd.x);
-        y.iter_mut().for_each(|sample| *sample *= noise_sd.y);
+        let Channels { x, y } = noise(generator, trial, scan.noise_sd(), residual);
         let maximum = scan.maximum(Channels { x, y }, shifts.clone())?;
         alarms += u64::from(maximum.theta >= eta);
     }

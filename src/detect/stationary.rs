@@ -4,9 +4,9 @@
 //! Both functions whiten as `L⁻¹` does in [`super::coloured`], and give the same θ.
 
 use super::coloured::{ColouredStatistic, Innovations, pivot};
-use super::error::{check_length, check_positive, check_samples};
 use super::{Channels, DetectError};
 use crate::stats::compensated;
+use crate::stats::error::{check_length, check_positive};
 
 /// θ and γ by the recursion of Levinson and Durbin, for any autocovariance ρ(0) … ρ(N−1) (N², N
 /// lags a channel). Time N²; `scratch` holds 2N numbers.
@@ -24,21 +24,11 @@ pub fn theta_stationary(
 ) -> Result<ColouredStatistic, DetectError> {
     let samples = template.x.len();
     check_records(residual, template)?;
-    check_samples("autocovariance_x", autocovariance.x, samples)?;
-    check_samples("autocovariance_y", autocovariance.y, samples)?;
+    autocovariance.check("autocovariance_x", "autocovariance_y", samples)?;
     check_length("scratch", 2 * samples, scratch.len())?;
     let mut innovations = Innovations::default();
-    for (residual, template, autocovariance) in [
-        (residual.x, template.x, autocovariance.x),
-        (residual.y, template.y, autocovariance.y),
-    ] {
-        levinson(
-            residual,
-            template,
-            autocovariance,
-            scratch,
-            &mut innovations,
-        )?;
+    for (records, lags) in residual.zip(template).zip(autocovariance).into_array() {
+        levinson(records, lags, scratch, &mut innovations)?;
     }
     innovations.statistic()
 }
@@ -66,30 +56,13 @@ pub fn theta_banded(
 ) -> Result<ColouredStatistic, DetectError> {
     check_records(residual, template)?;
     let lags = autocovariance.x.len();
-    check_samples("autocovariance_x", autocovariance.x, lags)?;
-    check_samples("autocovariance_y", autocovariance.y, lags)?;
-    if lags > template.x.len() {
-        let expected = template.x.len();
-        return Err(DetectError::LengthMismatch {
-            what: "autocovariance_x",
-            expected,
-            found: lags,
-        });
-    }
+    autocovariance.check("autocovariance_x", "autocovariance_y", lags)?;
+    check_length("autocovariance_x", lags.min(template.x.len()), lags)?;
     check_length("scratch", banded_scratch(lags), scratch.len())?;
     let mut innovations = Innovations::default();
-    for (residual, template, autocovariance) in [
-        (residual.x, template.x, autocovariance.x),
-        (residual.y, template.y, autocovariance.y),
-    ] {
+    for (records, lags) in residual.zip(template).zip(autocovariance).into_array() {
         scratch.fill(0.0);
-        banded(
-            residual,
-            template,
-            autocovariance,
-            scratch,
-            &mut innovations,
-        )?;
+        banded(records, lags, scratch, &mut innovations)?;
     }
     innovations.statistic()
 }
@@ -99,17 +72,14 @@ fn check_records(
     template: Channels<&[f64]>,
 ) -> Result<(), DetectError> {
     let samples = template.x.len();
-    check_samples("template_x", template.x, samples)?;
-    check_samples("template_y", template.y, samples)?;
-    check_samples("residual_x", residual.x, samples)?;
-    check_samples("residual_y", residual.y, samples)
+    template.check("template_x", "template_y", samples)?;
+    residual.check("residual_x", "residual_y", samples)
 }
 
 /// One channel by Levinson and Durbin. The best prediction of sample i from those before it is Σ_j
 /// w_j x_j with error variance v; the error over √v is the innovation.
 fn levinson(
-    residual: &[f64],
-    template: &[f64],
+    (residual, template): (&[f64], &[f64]),
     autocovariance: &[f64],
     scratch: &mut [f64],
     innovations: &mut Innovations,
@@ -146,8 +116,7 @@ fn levinson(
 /// last m + 1 rows are kept, and the last m whitened samples. Columns before 0 are zeros, which
 /// `scratch` must hold at the start.
 fn banded(
-    residual: &[f64],
-    template: &[f64],
+    (residual, template): (&[f64], &[f64]),
     autocovariance: &[f64],
     scratch: &mut [f64],
     innovations: &mut Innovations,
@@ -161,9 +130,8 @@ fn banded(
         for column in band.saturating_sub(i)..band {
             // Column number `column` of this row is row j = i − band + column of L.
             let pivot_row = &rows[(i + column - band) % lags * lags..][..lags];
-            let sum =
-                compensated::dot(&row[..column], &pivot_row[band - column..band], 1.0).value();
-            row[column] = (autocovariance[band - column] - sum) / pivot_row[band];
+            let sum = compensated::dot(&row[..column], &pivot_row[band - column..band], 1.0);
+            row[column] = (autocovariance[band - column] - sum.value()) / pivot_row[band];
         }
         row[..band.saturating_sub(i)].fill(0.0);
         let sum = compensated::dot(&row[..band], &row[..band], 1.0);
@@ -173,8 +141,8 @@ fn banded(
             (&mut *white_template, template[i]),
             (&mut *white_residual, residual[i]),
         ] {
-            white[band] =
-                (sample - compensated::dot(&row[..band], &white[..band], 1.0).value()) / row[band];
+            let known = compensated::dot(&row[..band], &white[..band], 1.0).value();
+            white[band] = (sample - known) / row[band];
         }
         innovations.add(white_template[band], white_residual[band]);
         white_template.copy_within(1.., 0);

@@ -2,11 +2,9 @@
 
 use std::fmt::Display;
 
-use crate::detect::DetectError;
 use crate::fem::FemError;
 use crate::psychophysics::PsychophysicsError;
-use crate::stats::binomial::ProportionError;
-use crate::stats::normal::NormalError;
+use crate::stats::NumericError;
 
 /// The kind of a refusal.
 ///
@@ -91,28 +89,16 @@ impl Refusal {
     }
 }
 
-impl From<DetectError> for Refusal {
-    fn from(error: DetectError) -> Refusal {
+impl From<NumericError> for Refusal {
+    fn from(error: NumericError) -> Refusal {
         let code = match error {
-            DetectError::Empty { .. }
-            | DetectError::LengthMismatch { .. }
-            | DetectError::NotFinite { .. } => Code::BadArgument,
-            DetectError::Overflow { .. } => Code::Overflow,
+            NumericError::Empty { .. }
+            | NumericError::LengthMismatch { .. }
+            | NumericError::NotFinite { .. } => Code::BadArgument,
+            NumericError::Overflow { .. } => Code::Overflow,
             _ => Code::OutOfRange,
         };
         Refusal::new(code, error.to_string())
-    }
-}
-
-impl From<ProportionError> for Refusal {
-    fn from(error: ProportionError) -> Refusal {
-        Refusal::new(Code::OutOfRange, error.to_string())
-    }
-}
-
-impl From<NormalError> for Refusal {
-    fn from(error: NormalError) -> Refusal {
-        Refusal::new(Code::OutOfRange, error.to_string())
     }
 }
 

@@ -1,36 +1,24 @@
 //! Why an analysis was refused.
 
-use crate::detect::DetectError;
 use crate::force_map::InvalidForceMap;
 use crate::psychophysics::TableError;
-use crate::stats::binomial::ProportionError;
-use crate::stats::normal::NormalError;
-use crate::stats::tails::TailError;
+use crate::stats::NumericError;
 
 /// Why an analysis was refused.
 ///
 /// ```
 /// use palpate::psychophysics::{PsychophysicsError, Rate};
 ///
-/// assert!(matches!(Rate::new(31, 30), Err(PsychophysicsError::Proportion(_))));
+/// assert!(matches!(Rate::new(31, 30), Err(PsychophysicsError::Numeric(_))));
 /// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PsychophysicsError {
-    /// Counts that fit no trials.
+    /// A number outside the range of a law, or counts that fit no trials.
     #[error("{0}")]
-    Proportion(#[from] ProportionError),
+    Numeric(#[from] NumericError),
     /// Table 1 itself.
     #[error("{0}")]
     Table(#[from] TableError),
-    /// A probability outside (0, 1).
-    #[error("{0}")]
-    Normal(#[from] NormalError),
-    /// A number outside the range of a law.
-    #[error("{0}")]
-    Tail(#[from] TailError),
-    /// A γ or a share that the detector refuses.
-    #[error("{0}")]
-    Detect(#[from] DetectError),
     /// Maps that cannot be compared.
     #[error("{name}: {source}")]
     Map {

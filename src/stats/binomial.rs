@@ -5,56 +5,9 @@
 //! probabilities*, 2000), whose terms do not cancel; tails by summing ratios from the point
 //! outwards.
 
+use super::NumericError;
+use super::error::{check_probability, in_range};
 use super::normal;
-use core::fmt;
-
-/// Why a question about a proportion was refused.
-///
-/// Implements: DET-123.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ProportionError {
-    /// There were no trials, or more than 2^53.
-    Trials {
-        /// The number of trials.
-        trials: u64,
-    },
-    /// More successes than trials.
-    Successes {
-        /// The number of successes.
-        successes: u64,
-        /// The number of trials.
-        trials: u64,
-    },
-    /// A probability or confidence that is not strictly between 0 and 1.
-    Probability {
-        /// Its value.
-        value: f64,
-    },
-}
-
-impl fmt::Display for ProportionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Trials { trials } => {
-                write!(
-                    f,
-                    "{trials} trials; there must be at least one, and at most 2^53"
-                )
-            }
-            Self::Successes { successes, trials } => {
-                write!(f, "{successes} successes are more than the {trials} trials")
-            }
-            Self::Probability { value } => {
-                write!(
-                    f,
-                    "the probability must lie strictly between 0 and 1, not {value}"
-                )
-            }
-        }
-    }
-}
-
-impl core::error::Error for ProportionError {}
 
 /// An interval for a proportion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,9 +24,9 @@ pub struct Interval {
 /// No trials; more successes than trials; p not strictly between 0 and 1.
 ///
 /// Implements: DET-120.
-pub fn probability(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionError> {
+pub fn probability(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError> {
     check(successes, trials)?;
-    check_probability(p)?;
+    check_probability("p", p)?;
     Ok(point(successes as f64, trials as f64, p, 1.0 - p))
 }
 
@@ -83,9 +36,9 @@ pub fn probability(successes: u64, trials: u64, p: f64) -> Result<f64, Proportio
 /// As [`probability`].
 ///
 /// Implements: DET-120.
-pub fn at_least(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionError> {
+pub fn at_least(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError> {
     check(successes, trials)?;
-    check_probability(p)?;
+    check_probability("p", p)?;
     let (k, n) = (successes as f64, trials as f64);
     // The smaller tail by summation, the larger as its complement.
     Ok(if k > n * p {
@@ -101,9 +54,9 @@ pub fn at_least(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionEr
 /// As [`probability`].
 ///
 /// Implements: DET-120.
-pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionError> {
+pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError> {
     check(successes, trials)?;
-    check_probability(p)?;
+    check_probability("p", p)?;
     let (k, n) = (successes as f64, trials as f64);
     Ok(if k < n * p {
         outwards(n - k, n, 1.0 - p, p)
@@ -122,7 +75,7 @@ pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionErr
 /// let interval = clopper_pearson(0, 10, 0.95)?;
 /// assert_eq!(interval.lower, 0.0);
 /// assert!((interval.upper - (1.0 - 0.025_f64.powf(0.1))).abs() < 1e-14);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
+/// # Ok::<(), palpate::stats::NumericError>(())
 /// ```
 ///
 /// # Errors
@@ -133,9 +86,9 @@ pub fn clopper_pearson(
     successes: u64,
     trials: u64,
     confidence: f64,
-) -> Result<Interval, ProportionError> {
+) -> Result<Interval, NumericError> {
     check(successes, trials)?;
-    check_probability(confidence)?;
+    check_probability("confidence", confidence)?;
     let tail = 0.5 * (1.0 - confidence);
     let lower = if successes == 0 {
         0.0
@@ -156,11 +109,10 @@ pub fn clopper_pearson(
 /// As [`clopper_pearson`].
 ///
 /// Implements: DET-122, ACC-013.
-pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Interval, ProportionError> {
+pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Interval, NumericError> {
     check(successes, trials)?;
-    let tail = 0.5 * (1.0 - check_probability(confidence)?);
-    let z =
-        -normal::quantile(tail).map_err(|_| ProportionError::Probability { value: confidence })?;
+    let tail = 0.5 * (1.0 - check_probability("confidence", confidence)?);
+    let z = -normal::quantile_of("confidence", tail)?;
     let (k, n) = (successes as f64, trials as f64);
     let square = z * z;
     let half_width = z * libm::sqrt(k / n * (n - k) + 0.25 * square);
@@ -175,27 +127,23 @@ pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Interval, 
     })
 }
 
-fn check(successes: u64, trials: u64) -> Result<(), ProportionError> {
-    if trials == 0 || trials > 1 << 53 {
-        return Err(ProportionError::Trials { trials });
-    }
+fn check(successes: u64, trials: u64) -> Result<(), NumericError> {
+    let is_right = (1..=1 << 53).contains(&trials);
+    in_range(
+        is_right,
+        "trials",
+        trials as f64,
+        "at least 1 and at most 2^53",
+    )?;
     if successes > trials {
-        return Err(ProportionError::Successes { successes, trials });
+        return Err(NumericError::Successes { successes, trials });
     }
     Ok(())
 }
 
-fn check_probability(value: f64) -> Result<f64, ProportionError> {
-    if value > 0.0 && value < 1.0 {
-        Ok(value)
-    } else {
-        Err(ProportionError::Probability { value })
-    }
-}
-
 /// The p at which an increasing function of p reaches `value`, to the last bit: bisection over the
 /// bits of p, so that small p keep their digits.
-fn least_p(increasing: impl Fn(f64) -> Result<f64, ProportionError>, value: f64) -> f64 {
+fn least_p(increasing: impl Fn(f64) -> Result<f64, NumericError>, value: f64) -> f64 {
     let (mut low, mut high) = (0, 1.0_f64.to_bits());
     while high - low > 1 {
         let middle = low + (high - low) / 2;
@@ -291,10 +239,8 @@ fn stirling_error(n: f64) -> f64 {
         0.0059513701127588475,
         0.005554733551962801,
     ];
-    for (index, &error) in TABLE.iter().enumerate() {
-        if n == index as f64 + 1.0 {
-            return error;
-        }
+    if n <= TABLE.len() as f64 {
+        return TABLE[n as usize - 1];
     }
     let square = n * n;
     let mut series = 1.0 / 1188.0;
