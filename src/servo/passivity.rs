@@ -58,9 +58,9 @@ impl Damping {
 pub fn stiffness(table: &Table) -> f64 {
     let (depths, laterals) = (table.depths().knots(), table.laterals().knots());
     let columns = laterals.len();
-    let node = |row: usize, column: usize| {
-        table
-            .forces()
+    let forces = table.forces();
+    let node = |row, column| {
+        forces
             .get(row * columns + column)
             .copied()
             .unwrap_or_default()
@@ -80,9 +80,7 @@ pub fn stiffness(table: &Table) -> f64 {
             for s in along_depth {
                 for t in along_lateral {
                     let slope = largest_singular_value(slopes(&corners, size, s, t));
-                    if slope > largest {
-                        largest = slope;
-                    }
+                    largest = if slope > largest { slope } else { largest };
                 }
             }
         }
