@@ -297,6 +297,12 @@ fn records_that_cannot_be_judged_are_refused() {
     assert_eq!(found.unwrap_err(), DetectError::Overflow { what: "gamma" });
 }
 
+const fn costs(c00: f64, c01: f64, c10: f64, c11: f64) -> Costs {
+    Costs { c00, c01, c10, c11 }
+}
+
+const ZERO_ONE: Costs = costs(0.0, 1.0, 1.0, 0.0);
+
 // Verifies: DET-022.
 #[test]
 fn threshold_of_largest_posterior() {
@@ -318,36 +324,21 @@ fn threshold_of_largest_posterior() {
 // Verifies: DET-023.
 #[test]
 fn threshold_of_least_cost() {
-    let costs = Costs {
-        c00: 1.0,
-        c01: 500.0,
-        c10: 20.0,
-        c11: 5.0,
-    };
+    let costs = costs(1.0, 500.0, 20.0, 5.0);
     // The sum of two logarithms of about 3.9 and −3.3: four roundings of 4.
     assert_near(
         bayes_threshold(0.02, costs).unwrap(),
         0.6317015147083768,
         16.0 * f64::EPSILON,
     );
-    let zero_one = Costs {
-        c00: 0.0,
-        c01: 1.0,
-        c10: 1.0,
-        c11: 0.0,
-    };
-    assert_eq!(bayes_threshold(0.02, zero_one), map_threshold(0.02));
+    assert_eq!(bayes_threshold(0.02, ZERO_ONE), map_threshold(0.02));
 }
 
 // Verifies: DET-023.
 #[test]
 fn a_bayes_threshold_is_accurate_for_costs_almost_equal_and_far_apart() {
-    let threshold = |false_alarm, miss| {
-        let (c00, c11) = (0.0, 0.0);
-        let (c10, c01) = (false_alarm, miss);
-        let costs = Costs { c00, c01, c10, c11 };
-        bayes_threshold(0.5, costs).unwrap()
-    };
+    let threshold =
+        |false_alarm, miss| bayes_threshold(0.5, costs(0.0, miss, false_alarm, 0.0)).unwrap();
     // ln(1 + 2⁻⁴⁰) = 2⁻⁴⁰ − 2⁻⁸¹ + …; the difference of two logarithms would be off by 10⁻¹⁵.
     let almost = 1024.0 * (1.0 + f64::powi(2.0, -40));
     assert_near(threshold(almost, 1024.0), 9.094947017725146e-13, 1e-27);
@@ -360,16 +351,10 @@ fn a_bayes_threshold_is_accurate_for_costs_almost_equal_and_far_apart() {
 // Verifies: DET-024, DET-025.
 #[test]
 fn thresholds_of_neyman_and_pearson() {
-    assert_ulps(
-        neyman_pearson_miss_threshold(2.5, 0.05).unwrap(),
-        -0.9871340673786817,
-        8.0,
-    );
-    assert_ulps(
-        neyman_pearson_false_alarm_threshold(2.5, 0.001).unwrap(),
-        4.600580765419534,
-        8.0,
-    );
+    let by_miss = neyman_pearson_miss_threshold(2.5, 0.05).unwrap();
+    assert_ulps(by_miss, -0.9871340673786817, 8.0);
+    let by_false_alarm = neyman_pearson_false_alarm_threshold(2.5, 0.001).unwrap();
+    assert_ulps(by_false_alarm, 4.600580765419534, 8.0);
 }
 
 // Verifies: DET-026.
@@ -393,34 +378,15 @@ fn rates_of_error_at_a_threshold() {
         assert_ulps(rates.miss, miss, ulps(eta / gamma - gamma / 2.0));
     }
     // Θ ≡ 0 decides by equation (9) alone.
-    assert_eq!(
-        error_rates(0.0, 0.0),
-        Ok(ErrorRates {
-            false_alarm: 1.0,
-            miss: 0.0
-        })
-    );
-    assert_eq!(
-        error_rates(0.0, 1e-300),
-        Ok(ErrorRates {
-            false_alarm: 0.0,
-            miss: 1.0
-        })
-    );
-    assert_eq!(
-        error_rates(1e-300, f64::MAX),
-        Ok(ErrorRates {
-            false_alarm: 0.0,
-            miss: 1.0
-        })
-    );
-    assert_eq!(
-        error_rates(f64::MAX, 1.0),
-        Ok(ErrorRates {
-            false_alarm: 0.0,
-            miss: 0.0
-        })
-    );
+    for (gamma, eta, false_alarm, miss) in [
+        (0.0, 0.0, 1.0, 0.0),
+        (0.0, 1e-300, 0.0, 1.0),
+        (1e-300, f64::MAX, 0.0, 1.0),
+        (f64::MAX, 1.0, 0.0, 0.0),
+    ] {
+        let expected = ErrorRates { false_alarm, miss };
+        assert_eq!(error_rates(gamma, eta), Ok(expected), "{gamma} {eta}");
+    }
 }
 
 // Verifies: DET-027, DET-028.
@@ -493,17 +459,8 @@ fn the_threshold_itself_decides_for_an_inclusion() {
 #[test]
 fn questions_without_a_finite_answer_are_refused() {
     for p in [0.0, 1.0, -0.1, 1.5, f64::NAN] {
-        let costs = Costs {
-            c00: 0.0,
-            c01: 1.0,
-            c10: 1.0,
-            c11: 0.0,
-        };
-        assert!(
-            map_threshold(p).is_err()
-                && bayes_threshold(p, costs).is_err()
-                && posterior(0.0, p).is_err()
-        );
+        assert!(map_threshold(p).is_err() && posterior(0.0, p).is_err());
+        assert!(bayes_threshold(p, ZERO_ONE).is_err());
         assert!(neyman_pearson_miss_threshold(1.0, p).is_err());
         assert!(neyman_pearson_false_alarm_threshold(1.0, p).is_err());
         assert!(required_gamma(p, 0.1).is_err() && required_gamma(0.1, p).is_err());
@@ -532,18 +489,7 @@ fn questions_without_a_finite_answer_are_refused() {
         (f64::INFINITY, 1.0),
         (1.0, f64::NAN),
     ] {
-        assert!(
-            bayes_threshold(
-                0.5,
-                Costs {
-                    c00: 0.0,
-                    c01,
-                    c10,
-                    c11: 0.0
-                }
-            )
-            .is_err()
-        );
+        assert!(bayes_threshold(0.5, costs(0.0, c01, c10, 0.0)).is_err());
     }
 }
 
