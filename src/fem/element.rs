@@ -18,18 +18,13 @@ pub type PerNode = SMatrix<f64, 2, NODES>;
 /// Implements: FEM-005, FEM-050, FEM-051, FEM-052, FEM-053, FEM-058.
 pub type Stiffness = SMatrix<f64, { 2 * NODES }, { 2 * NODES }>;
 
-/// Parent coordinates of the points of a quadrature rule, and their weights, which add up to the parent's area, ½.
-type Points<const N: usize> = [([f64; 2], f64); N];
+/// The points at which strains and stresses are sampled, in parent coordinates: where they are most accurate.
+pub(super) const SAMPLES: [[f64; 2]; 3] = symmetric_points(1.0 / 6.0);
 
-/// The points at which strains and stresses are sampled: where they are most accurate.
-pub(super) fn sampling_rule() -> Points<3> {
-    symmetric_points(1.0 / 6.0, 1.0 / 6.0)
-}
-
-/// The three images of barycentric coordinates (a, a, 1 − 2a).
-fn symmetric_points(a: f64, weight: f64) -> Points<3> {
+/// The three images of barycentric coordinates (a, a, 1 − 2a), in parent coordinates.
+const fn symmetric_points(a: f64) -> [[f64; 2]; 3] {
     let b = 1.0 - 2.0 * a;
-    [[a, a], [b, a], [a, b]].map(|at| (at, weight))
+    [[a, a], [b, a], [a, b]]
 }
 
 /// Derivatives of the shape functions with respect to the parent coordinates, a column for each node.
@@ -96,16 +91,20 @@ pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
 /// The quadrature of an element's stiffness, exact to degree 4, so that bent elements are integrated well too: Cowper's 6
 /// points. Parent gradients there, and weights.
 #[derive(Debug, Clone)]
-pub struct StiffnessRule([(PerNode, f64); 6]);
+pub struct StiffnessRule(Vec<(PerNode, f64)>);
+
+/// Where its points lie on the medians, and their weights, which add up to the parent's area with three points each: ½.
+const COWPER: [(f64, f64); 2] = [
+    (0.445_948_490_915_964_9, 0.223_381_589_678_011_47 / 2.0),
+    (0.091_576_213_509_770_74, 0.109_951_743_655_321_87 / 2.0),
+];
 
 impl Default for StiffnessRule {
     fn default() -> StiffnessRule {
-        let outer = symmetric_points(0.445_948_490_915_964_9, 0.223_381_589_678_011_47 / 2.0);
-        let inner = symmetric_points(0.091_576_213_509_770_74, 0.109_951_743_655_321_87 / 2.0);
-        let [a, b, c, d, e, f] = [outer, inner].concat()[..] else {
-            unreachable!("twice three points")
-        };
-        StiffnessRule([a, b, c, d, e, f].map(|(at, weight)| (parent_gradients(at), weight)))
+        let points = COWPER
+            .iter()
+            .flat_map(|&(a, weight)| symmetric_points(a).map(|at| (parent_gradients(at), weight)));
+        StiffnessRule(points.collect())
     }
 }
 

@@ -7,6 +7,7 @@ use super::element::NODES;
 use super::size::SizeField;
 use super::triangulate::{Point, Triangulation};
 use crate::phantom::{Material, Outline, Phantom, Support};
+use crate::refusal::Refusal;
 
 /// What an element is made of: an entry of the phantom's list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -54,8 +55,8 @@ impl Mesh {
     /// `spec/fem.md`, any other scales them all.
     ///
     /// # Errors
-    /// [`FemError::MeshSize`] if the size is not positive and finite, or the mesh would have more than 500 000
-    /// nodes; [`FemError::Shape`] if a triangle comes out too flat.
+    /// [`FemError::Refused`] if the size is not positive and finite, if the mesh would have more than 500 000 nodes, and if a
+    /// triangle comes out too flat.
     ///
     /// Implements: FEM-018.
     pub fn new(phantom: &Phantom, size: f64) -> Result<Mesh, FemError> {
@@ -82,7 +83,7 @@ impl Mesh {
     /// About how many nodes [`Mesh::new`] will make: known at once, where the mesh may take seconds and each pose a minute.
     ///
     /// # Errors
-    /// [`FemError::MeshSize`] and [`FemError::TooManyNodes`], as [`Mesh::new`].
+    /// [`FemError::Refused`] for the size, as [`Mesh::new`].
     ///
     /// Implements: FEM-036.
     pub fn expected_nodes(phantom: &Phantom, size: f64) -> Result<f64, FemError> {
@@ -91,24 +92,24 @@ impl Mesh {
 
     /// The sizes of the elements, and about how many nodes they make.
     fn forecast(phantom: &Phantom, size: f64) -> Result<(SizeField, f64), FemError> {
+        let asked = format!("mesh size {} mm", size * 1e3);
         if !(size > 0.0 && size.is_finite()) {
-            return Err(FemError::MeshSize { size });
+            return Err(Refusal::state(asked, "a finite number above 0").into());
         }
         let field = SizeField::new(phantom, size);
         let nodes = field.expected_nodes();
         if nodes > MOST_NODES {
-            return Err(FemError::TooManyNodes { size, nodes });
+            let found = format!(
+                "{asked} makes about {nodes:.0} nodes, allowed: at most {MOST_NODES}; a larger size makes fewer"
+            );
+            return Err(Refusal::state(found, "").into());
         }
         Ok((field, nodes))
     }
 
     /// Triangles with a node in the middle of each edge.
     fn place(&mut self, phantom: &Phantom, triangles: &Triangulation<'_>) {
-        self.nodes = triangles
-            .corners
-            .iter()
-            .map(|&corner| corner.into())
-            .collect();
+        self.nodes = triangles.corners.iter().map(|&p| p.into()).collect();
         let levels = phantom.levels();
         let outlines: Vec<Outline> = phantom.inclusions.iter().map(|i| i.outline()).collect();
         let on_lines = triangles.middles();

@@ -39,11 +39,11 @@ fn a_shift_of_everything_costs_nothing() {
             for unknown in (0..mesh.nodes.len()).filter_map(|k| matrix.unknown(k, direction)) {
                 shift[unknown] = [1.0];
             }
-            let mut force: Vec<[f64; 1]> = (matrix.reaction[direction].iter())
+            let force: Vec<[f64; 1]> = (matrix.reaction[direction].iter())
                 .map(|&reaction| [-reaction])
                 .collect();
-            matrix.subtract_product(&shift, &mut force);
-            let left = force.iter().fold(0.0, |a: f64, [f]| a.max(f.abs()));
+            let (rest, _) = matrix.residual(&shift, &force);
+            let left = rest.iter().fold(0.0, |a: f64, [f]| a.max(f.abs()));
             let diagonal = (0..n).map(|k| matrix.upper.val_of_col(k).last().copied().unwrap());
             // Rows of some thirty entries of at most the largest diagonal.
             let largest = diagonal.fold(0.0, f64::max);
