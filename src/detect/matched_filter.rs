@@ -149,7 +149,7 @@ pub fn theta_of_record(
     let forces = observed.zip(f0.zip(f1)).zip(noise);
     let sums = forces.map(|((observed, (f0, f1)), noise)| {
         let difference = |a: &[f64], b: &[f64], i: usize| {
-            DoubleDouble::difference(a[i] * noise.factor, b[i] * noise.factor)
+            DoubleDouble::new(a[i] * noise.factor, -b[i] * noise.factor)
         };
         let template = |i| difference(f1, f0, i);
         let cross = compensated::sum(samples, |i| {

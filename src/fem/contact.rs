@@ -4,6 +4,8 @@
 //! points. Each point i obeys gap_i ≥ 0, λ_i ≥ 0, λ_i gap_i = 0, and carries the force λ_i n_i. With the probe's true normal at the
 //! deformed point, n turns with u: Newton's method needs the curvature term λ (I − n nᵀ)/r.
 
+mod state;
+
 use std::ops::Range;
 
 use faer::linalg::solvers::{Llt, Solve};
@@ -14,6 +16,7 @@ use nalgebra::Vector2;
 use super::mesh::Mesh;
 use super::{FemError, Pose};
 use crate::phantom::Probe;
+pub use state::ContactState;
 
 /// How the gap between a surface node and the probe is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -95,57 +98,6 @@ pub struct Surface {
     pub probe: Probe,
     /// How the gap is measured.
     pub contact: Contact,
-}
-
-/// Surface displacements and contact forces at one pose.
-///
-/// Implements: FEM-010.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ContactState {
-    /// Displacement of each contact point, m.
-    pub displacements: Vec<[f64; 2]>,
-    /// λ of each contact point, N; zero off the contact.
-    pub pressures: Vec<f64>,
-    /// Points in contact, ascending.
-    pub active: Vec<usize>,
-    /// Iterations spent on this pose.
-    pub iterations: usize,
-}
-
-impl ContactState {
-    /// The untouched surface.
-    pub fn untouched(points: usize) -> ContactState {
-        ContactState {
-            displacements: vec![[0.0; 2]; points],
-            pressures: vec![0.0; points],
-            active: Vec::new(),
-            iterations: 0,
-        }
-    }
-
-    /// Where the state goes if it keeps changing as it did since `earlier`, `ahead` times as far.
-    pub fn extrapolated(&self, earlier: &ContactState, ahead: f64) -> ContactState {
-        let on = |now: f64, then: f64| now + ahead * (now - then);
-        let mut state = self.clone();
-        let then = earlier.displacements.as_flattened();
-        for (u, &then) in state.displacements.as_flattened_mut().iter_mut().zip(then) {
-            *u = on(*u, then);
-        }
-        for &point in &state.active {
-            state.pressures[point] = on(state.pressures[point], earlier.pressures[point]).max(0.0);
-        }
-        state
-    }
-
-    /// The state of the mirror image.
-    pub(super) fn mirrored(mut self) -> ContactState {
-        let last = self.pressures.len() - 1;
-        self.displacements.reverse();
-        self.displacements.iter_mut().for_each(|u| u[0] = -u[0]);
-        self.pressures.reverse();
-        self.active = self.active.iter().rev().map(|i| last - i).collect();
-        self
-    }
 }
 
 /// Newton's matrix for increments of λ and of each point's slip b along its tangent t, factorised. With δu = −gap n + b t,

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use super::FemError;
 use super::element::NODES;
 use super::size::SizeField;
-use super::triangulate::{Point, Triangulation};
+use super::triangle::Point;
+use super::triangulate::Triangulation;
 use crate::phantom::{Material, Outline, Phantom, Support};
 use crate::refusal::Refusal;
 

@@ -29,6 +29,7 @@ mod ordering;
 pub mod size;
 #[cfg(test)]
 mod tests;
+mod triangle;
 mod triangulate;
 mod vtu;
 

@@ -4,7 +4,6 @@
 use core::f64::consts::PI;
 use std::collections::HashMap;
 
-use nalgebra::Vector2;
 use spade::{
     ConstrainedDelaunayTriangulation, HierarchyHintGenerator, Point2, PositionInTriangulation,
     Triangulation as _,
@@ -12,10 +11,10 @@ use spade::{
 
 use super::FemError;
 use super::size::SizeField;
+use super::triangle::{Point, circumcircle, doubled_area, mean, shortest_edge, smallest_angle};
 use crate::phantom::{Ellipse, Outline, Phantom};
 use crate::refusal::Refusal;
 
-pub(super) type Point = Vector2<f64>;
 type Delaunay =
     ConstrainedDelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
 
@@ -452,37 +451,4 @@ fn flat(at: Point, angle: f64) -> FemError {
     let found = format!("a triangle near x = {x:.3} mm, y = {y:.3} mm has an angle of {angle:.1}°");
     let expected = "the mesh cannot follow this phantom; try another mesh size";
     Refusal::state(found, format!("at least {SMALLEST_ANGLE}°: {expected}")).into()
-}
-
-fn mean([a, b, c]: [Point; 3]) -> Point {
-    (a + b + c) / 3.0
-}
-
-/// Positive if the corners run counter-clockwise.
-fn doubled_area([a, b, c]: [Point; 3]) -> f64 {
-    (b - a).perp(&(c - a))
-}
-
-fn shortest_edge([a, b, c]: [Point; 3]) -> f64 {
-    (b - a).norm().min((c - b).norm()).min((a - c).norm())
-}
-
-/// Centre and radius.
-fn circumcircle([a, b, c]: [Point; 3]) -> (Point, f64) {
-    let (p, q) = (b - a, c - a);
-    let turned =
-        p.norm_squared() * Point::new(q.y, -q.x) - q.norm_squared() * Point::new(p.y, -p.x);
-    let arm = turned / (2.0 * p.perp(&q));
-    (a + arm, arm.norm())
-}
-
-/// The smallest angle of a triangle, degrees: opposite of the shortest edge, whose sine is that edge over the circumcircle's
-/// diameter. 0 for a triangle that is turned over.
-fn smallest_angle(corners: [Point; 3]) -> f64 {
-    if doubled_area(corners) > 0.0 {
-        let (_, radius) = circumcircle(corners);
-        libm::asin(shortest_edge(corners) / (2.0 * radius)).to_degrees()
-    } else {
-        0.0
-    }
 }
