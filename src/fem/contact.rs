@@ -32,7 +32,6 @@ pub enum Contact {
 
 impl Contact {
     /// The name on the command line and in files.
-    ///
     pub fn name(self) -> &'static str {
         match self {
             Contact::DeformedNormal => "deformed-normal",

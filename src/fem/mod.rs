@@ -65,7 +65,6 @@ pub struct Pose {
 }
 
 /// What can go wrong between a phantom and a force.
-///
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FemError {
     /// The phantom is not valid.
