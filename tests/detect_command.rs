@@ -13,7 +13,7 @@ use palpate::stats::random::Generator;
 use serde_json::Value;
 
 /// Standard deviation of the noise in the sweeps, N.
-const NOISE: Channels<f64> = Channels { x: 0.05, y: 0.12 };
+const NOISE: Channels<f64> = Channels::new(0.05, 0.12);
 /// Where the moved inclusion lies, in samples of half a millimetre: 1.5 mm.
 const MOVED: usize = 3;
 
@@ -97,10 +97,10 @@ fn observed(path: &Path) -> Channels<Vec<f64>> {
     let rows = text.lines().skip(2).map(|row| row.split(',').collect());
     let rows: Vec<Vec<&str>> = rows.collect();
     let column = |at: usize| rows.iter().map(move |row| row[at].parse::<f64>().unwrap());
-    Channels {
-        x: column(2).collect(),
-        y: column(1).map(|millinewton| millinewton / 1e3).collect(),
-    }
+    Channels::new(
+        column(2).collect(),
+        column(1).map(|millinewton| millinewton / 1e3).collect(),
+    )
 }
 
 fn detect(trace: &str, more: &[&str]) -> Output {
@@ -161,10 +161,7 @@ fn plain(trace: &str, shift: isize) -> (f64, f64) {
 }
 
 fn view(channels: &Channels<Vec<f64>>) -> Channels<&[f64]> {
-    Channels {
-        x: &channels.x,
-        y: &channels.y,
-    }
+    Channels::new(&channels.x, &channels.y)
 }
 
 #[track_caller]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::detection::{Answer, Question};
+use super::detection::Answer;
 use super::output::print;
 use super::{CliError, Format};
 use crate::detect::Channels;
@@ -96,36 +96,38 @@ fn probability(text: &str) -> Result<f64, String> {
 }
 
 impl DetectArguments {
+    fn criterion_name(&self) -> String {
+        let name = self.criterion.to_possible_value();
+        name.map_or(String::new(), |name| name.get_name().into())
+    }
+
     /// Implements: CLI-042.
     fn criterion(&self) -> Result<Criterion, CliError> {
+        use CriterionName::{Map, NeymanPearsonFalseAlarm, NeymanPearsonMiss};
         match (self.criterion, self.max_miss, self.max_false_alarm) {
-            (CriterionName::Map, None, None) => Ok(Criterion::Map),
-            (CriterionName::NeymanPearsonMiss, Some(max_miss), None) => {
+            (Map, None, None) => Ok(Criterion::Map),
+            (NeymanPearsonMiss, Some(max_miss), None) => {
                 Ok(Criterion::NeymanPearsonMiss { max_miss })
             }
-            (CriterionName::NeymanPearsonFalseAlarm, None, Some(max_false_alarm)) => {
+            (NeymanPearsonFalseAlarm, None, Some(max_false_alarm)) => {
                 Ok(Criterion::NeymanPearsonFalseAlarm { max_false_alarm })
             }
-            (criterion, ..) => Err(CliError::Usage(format!(
-                "--criterion {}: expected {} --max-miss and {} --max-false-alarm",
-                criterion
-                    .to_possible_value()
-                    .map_or(String::new(), |name| name.get_name().into()),
-                with(criterion == CriterionName::NeymanPearsonMiss),
-                with(criterion == CriterionName::NeymanPearsonFalseAlarm),
-            ))),
+            (criterion, ..) => {
+                let name = self.criterion_name();
+                let [miss, false_alarm] = [NeymanPearsonMiss, NeymanPearsonFalseAlarm]
+                    .map(|of| if criterion == of { "a" } else { "no" });
+                Err(CliError::Usage(format!(
+                    "--criterion {name}: expected {miss} --max-miss and {false_alarm} --max-false-alarm"
+                )))
+            }
         }
     }
 
     /// Implements: CLI-041.
     fn noise_sd(&self) -> Result<Channels<f64>, CliError> {
-        let both = (self.noise_sd_lateral_n, self.noise_sd_normal_n);
-        match (self.noise_sd_n, both) {
-            (Some(noise_sd), (None, None)) => Ok(Channels {
-                x: noise_sd,
-                y: noise_sd,
-            }),
-            (None, (Some(x), Some(y))) => Ok(Channels { x, y }),
+        let of = |channel: Option<f64>| self.noise_sd_n.or(channel);
+        match (of(self.noise_sd_lateral_n), of(self.noise_sd_normal_n)) {
+            (Some(x), Some(y)) => Ok(Channels { x, y }),
             // The parser has refused it already.
             _ => Err(CliError::Usage(
                 "expected --noise-sd-n, or --noise-sd-lateral-n and --noise-sd-normal-n".into(),
@@ -134,8 +136,29 @@ impl DetectArguments {
     }
 }
 
-fn with(wanted: bool) -> &'static str {
-    if wanted { "a" } else { "no" }
+/// What was asked.
+fn question(arguments: &DetectArguments, samples: usize, noise_sd: Channels<f64>) -> Answer {
+    let mut answer = Answer::default();
+    answer.tell("schema", "palpate-detection");
+    answer.tell("schema_version", 1);
+    answer.tell("program_version", env!("CARGO_PKG_VERSION"));
+    let path = |path: &Path| path.display().to_string();
+    answer.tell("trace", path(&arguments.trace));
+    answer.tell("reference", path(&arguments.reference));
+    answer.tell("inclusion", path(&arguments.inclusion));
+    answer.tell("samples", samples);
+    answer.tell("depth_m", arguments.depth_mm);
+    answer.tell("noise_sd_lateral_n", noise_sd.x);
+    answer.tell("noise_sd_normal_n", noise_sd.y);
+    answer.tell("prior_h1", arguments.prior_h1);
+    answer.tell("criterion", arguments.criterion_name());
+    if let Some(rate) = arguments.max_miss {
+        answer.tell("max_miss", rate);
+    }
+    if let Some(rate) = arguments.max_false_alarm {
+        answer.tell("max_false_alarm", rate);
+    }
+    answer
 }
 
 /// Runs the command.
@@ -152,27 +175,21 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     check_pair(arguments, &reference, &inclusion)?;
     let (depth, prior_h1) = (arguments.depth_mm, arguments.prior_h1);
     let (f0, f1) = (reference.forces(), inclusion.forces());
-    let files = [&arguments.trace, &arguments.reference, &arguments.inclusion];
-    let samples = record.positions().len();
-    let question = Question::new(files, samples, depth, noise_sd, prior_h1, criterion);
+    let mut answer = question(arguments, record.positions().len(), noise_sd);
     let misfit = |theta| Misfit::of(&record, f0, depth, noise_sd, theta);
-    let (answer, misfit) = if arguments.scan {
+    let misfit = if arguments.scan {
         let found = locate(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
         let misfit = misfit(found.theta_max)?;
         warn_of_broad_signal(&found, &record);
         warn_of_other_place(&inclusion, &arguments.inclusion);
-        (
-            Answer::new(question, None, Some(found.into()), misfit),
-            misfit,
-        )
+        answer.located(&found);
+        misfit
     } else {
-        let found = judge(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
-        let misfit = misfit(found.1.statistic.theta)?;
-        (
-            Answer::new(question, Some(found.into()), None, misfit),
-            misfit,
-        )
+        let (eta, found) = judge(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
+        answer.judged(eta, &found);
+        misfit(found.statistic.theta)?
     };
+    answer.misfit(&misfit);
     if misfit.is_too_large() {
         eprintln!(
             "palpate: warning: {}: the record fits neither map: chi-square {:.1}, expected at most {:.1}: depth, noise or maps are probably not those of the sweep, and the decision means little",
@@ -182,7 +199,7 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
         );
     }
     print(&match arguments.format {
-        Format::Table => answer.table(),
+        Format::Table => answer.table,
         Format::Json => answer.json(),
     })
 }

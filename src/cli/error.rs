@@ -14,10 +14,7 @@ pub enum CliError {
     /// The command line cannot be understood.
     #[error("{0}")]
     Usage(String),
-    /// A phantom, a force map or a trace is not valid, or they do not fit one another.
-    #[error("{0}")]
-    Refused(#[from] Refusal),
-    /// Counts of right answers are not valid.
+    /// A phantom, a force map, a trace or a table of answers is not valid, or they do not fit one another.
     #[error("{0}")]
     Refused(#[from] Refusal),
     /// Counts and maps do not fit.

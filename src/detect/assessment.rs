@@ -1,28 +1,16 @@
 //! All that a record says, in one call: what `palpate detect` prints.
 
 use super::decision::{Decision, ErrorRates, decide, error_rates, posterior};
-use super::matched_filter::{RecordStatistic, theta_of_record};
+use super::matched_filter::{Statistic, theta_of_record};
 use super::position::MaximumLaw;
 use super::scan::{Scan, ScanMaximum};
 use super::{Channels, DetectError};
 
 /// A record judged at a known position.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::assessment::assess;
-///
-/// let (f0, f1) = (Channels { x: &[0.0][..], y: &[1.0] }, Channels { x: &[0.0][..], y: &[1.5] });
-/// let assessment = assess(f0, f0, f1, Channels { x: 0.25, y: 0.25 }, 0.5, 0.0)?;
-/// // θ = −2, so an inclusion is e^−2 times as likely as none.
-/// let odds = (-assessment.statistic.theta).exp();
-/// assert!((assessment.posterior - 1.0 / (1.0 + odds)).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assessment {
     /// y(0), θ and γ.
-    pub statistic: RecordStatistic,
+    pub statistic: Statistic,
     /// Ĥ at the threshold.
     pub decision: Decision,
     /// Pr(H = 1 | θ).
@@ -71,24 +59,6 @@ pub fn assess(
 }
 
 /// A record judged at an unknown position.
-///
-/// ```
-/// use palpate::detect::assessment::assess_scan;
-/// use palpate::detect::position::MaximumLaw;
-/// use palpate::detect::scan::Scan;
-/// use palpate::detect::{Channels, error_rates};
-///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
-/// let (mut gamma, mut angle) = ([0.0; 4], [0.0; 4]);
-/// let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle)?;
-/// let nothing = Channels { x: &[0.0; 6][..], y: &[0.0; 6] };
-/// let assessment = assess_scan(&scan, &law, nothing, 1.0)?;
-/// // To look at four places gives more false alarms than to look at one.
-/// assert!(assessment.false_alarm_bound > error_rates(3.0, 1.0)?.false_alarm);
-/// assert_eq!(assessment.miss_bound, error_rates(3.0, 1.0)?.miss);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanAssessment {
     /// Θ_max and its shift.
@@ -102,23 +72,6 @@ pub struct ScanAssessment {
 }
 
 /// Judges a residual F_p − F_0 by Θ_max over the shifts of a law, at threshold η.
-///
-/// ```
-/// use palpate::detect::assessment::assess_scan;
-/// use palpate::detect::position::MaximumLaw;
-/// use palpate::detect::scan::Scan;
-/// use palpate::detect::{Channels, Decision};
-///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
-/// let (mut gamma, mut angle) = ([0.0; 4], [0.0; 4]);
-/// let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle)?;
-/// let residual = Channels { x: &[0.0; 6][..], y: &[0.0, 0.0, 0.125, 0.25, 0.25, 0.0] };
-/// let found = assess_scan(&scan, &law, residual, law.threshold(0.1)?)?;
-/// assert_eq!((found.decision, found.maximum.shift), (Decision::Inclusion, 2));
-/// assert!(found.false_alarm_bound <= 0.1);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 ///
 /// # Errors
 /// As [`assess`].

@@ -2,19 +2,10 @@
 //! of §2).
 
 use super::DetectError;
-use super::error::{check_length, check_samples, representable};
 use crate::stats::compensated::{self, Accumulator, DoubleDouble};
+use crate::stats::error::{check_length, check_samples, representable};
 
 /// What a record in coloured noise says.
-///
-/// ```
-/// use palpate::detect::coloured::{ColouredStatistic, coloured_scratch, theta_coloured};
-///
-/// let mut scratch = [0.0; coloured_scratch(2)];
-/// let statistic = theta_coloured(&[3.0, 0.0], &[3.0, 0.0], &[9.0, 0.0, 0.0, 9.0], &mut scratch)?;
-/// assert_eq!(statistic, ColouredStatistic { theta: 0.5, gamma: 1.0 });
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColouredStatistic {
     /// θ, the log-likelihood ratio.
@@ -24,12 +15,6 @@ pub struct ColouredStatistic {
 }
 
 /// Length of the scratch that [`theta_coloured`] needs for a covariance of `order` rows.
-///
-/// ```
-/// use palpate::detect::coloured::coloured_scratch;
-///
-/// assert_eq!(coloured_scratch(10), 120);
-/// ```
 ///
 /// Implements: DET-046.
 pub const fn coloured_scratch(order: usize) -> usize {
@@ -79,38 +64,24 @@ pub fn theta_coloured(
     innovations.statistic()
 }
 
-/// The Cholesky factor L of a covariance, K = LLᵀ, for records to be whitened one after the other.
-///
-/// ```
-/// use palpate::detect::coloured::Cholesky;
-///
-/// // K = LLᵀ with L = (2 0; 1 1), and L⁻¹(2, 3) = (1, 2).
-/// let mut factor = [0.0; 4];
-/// let cholesky = Cholesky::new(&[4.0, 2.0, 2.0, 2.0], 2, &mut factor)?;
-/// let mut white = [0.0; 2];
-/// cholesky.whiten(&[2.0, 3.0], &mut white)?;
-/// assert_eq!(white, [1.0, 2.0]);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
+/// The Cholesky factor L of a covariance, K = LLᵀ, for records to be whitened one after the other, in storage of the
+/// caller's: a slice, an array or a vector.
 #[derive(Debug, Clone, Copy)]
-pub struct Cholesky<'a> {
+pub struct Cholesky<S> {
     order: usize,
     /// L, row by row; what lies above the diagonal is not used.
-    factor: &'a [f64],
+    factor: S,
 }
 
-impl<'a> Cholesky<'a> {
-    /// Factors a covariance of `order` rows into `factor`; both hold order² numbers.
+impl<S: AsRef<[f64]> + AsMut<[f64]>> Cholesky<S> {
+    /// Factors a covariance of `order` rows into `storage`; both hold order² numbers.
     ///
     /// # Errors
     /// As [`theta_coloured`].
     ///
     /// Implements: DET-041, DET-042, DET-043.
-    pub fn new(
-        covariance: &[f64],
-        order: usize,
-        factor: &'a mut [f64],
-    ) -> Result<Self, DetectError> {
+    pub fn new(covariance: &[f64], order: usize, mut storage: S) -> Result<Self, DetectError> {
+        let factor = storage.as_mut();
         let entries = order.saturating_mul(order);
         check_samples("covariance", covariance, entries)?;
         check_length("factor", entries, factor.len())?;
@@ -126,7 +97,10 @@ impl<'a> Cholesky<'a> {
             let sum = compensated::dot(&current[..row], &current[..row], 1.0);
             current[row] = pivot(current[row], sum, order, row)?;
         }
-        Ok(Self { order, factor })
+        Ok(Self {
+            order,
+            factor: storage,
+        })
     }
 
     /// L⁻¹v, whose noise is white with standard deviation 1.
@@ -139,7 +113,7 @@ impl<'a> Cholesky<'a> {
         check_samples("vector", vector, self.order)?;
         check_length("white", self.order, white.len())?;
         for (row, sample) in vector.iter().enumerate() {
-            let factor = &self.factor[row * self.order..][..=row];
+            let factor = &self.factor.as_ref()[row * self.order..][..=row];
             let known = compensated::dot(&factor[..row], &white[..row], 1.0).value();
             white[row] = (sample - known) / factor[row];
         }
@@ -171,13 +145,13 @@ pub(super) fn pivot(
 fn check_symmetric(covariance: &[f64], order: usize) -> Result<(), DetectError> {
     /// Asymmetry that rounding explains, relative to the two standard deviations.
     const TOLERANCE: f64 = 1e-12;
+    let entry = |row: usize, column: usize| covariance[row * order + column];
+    // The root of each variance, because their product may underflow.
+    let sd = |row| libm::sqrt(entry(row, row).abs());
     for row in 0..order {
         for column in 0..row {
-            let difference = covariance[row * order + column] - covariance[column * order + row];
-            // The root of each, because the product may underflow.
-            let size = libm::sqrt(covariance[row * order + row].abs())
-                * libm::sqrt(covariance[column * order + column].abs());
-            if difference.abs() > TOLERANCE * size {
+            let difference = entry(row, column) - entry(column, row);
+            if difference.abs() > TOLERANCE * (sd(row) * sd(column)) {
                 return Err(DetectError::NotSymmetric { row, column });
             }
         }
@@ -195,10 +169,9 @@ pub(super) struct Innovations {
 
 impl Innovations {
     pub(super) fn add(&mut self, template: f64, residual: f64) {
-        self.energy
-            .add(self.samples, DoubleDouble::product(template, template));
-        self.cross
-            .add(self.samples, DoubleDouble::product(template, residual));
+        let term = |factor| DoubleDouble::product(template, factor);
+        self.energy.add(self.samples, term(template));
+        self.cross.add(self.samples, term(residual));
         self.samples += 1;
     }
 

@@ -1,8 +1,9 @@
 //! The matched filter and the sufficient statistic Θ in white noise, paper equations (2) to (7).
 
-use super::error::{check_positive, check_samples, representable};
+use super::noise::WhiteNoise;
 use super::{Channels, DetectError};
 use crate::stats::compensated::{self, DoubleDouble};
+use crate::stats::error::representable;
 
 /// The filter h of equations (2) and (4), for a template Δ = F_1 − F_0 and independent noise of
 /// constant standard deviation s in each channel.
@@ -26,78 +27,21 @@ use crate::stats::compensated::{self, DoubleDouble};
 #[derive(Debug, Clone, Copy)]
 pub struct MatchedFilter<'a> {
     template: Channels<&'a [f64]>,
-    scale: Channels<Scale>,
-    /// Σ (Δ/s)² of each channel, where s counts as the number in `Scale::noise_sd`.
+    noise: Channels<WhiteNoise>,
+    /// ΣΔ² of each channel, in units of its scaled force squared.
     energy: Channels<DoubleDouble>,
     gamma: f64,
 }
 
 /// What the filter says about one record.
-///
-/// ```
-/// use palpate::detect::{Channels, MatchedFilter, Statistic};
-///
-/// let template = Channels { x: &[0.0, 0.0][..], y: &[0.5, 0.5] };
-/// let filter = MatchedFilter::new(template, Channels { x: 1.0, y: 0.5 })?;
-/// // Y(0) of the template itself is its root mean square b; there is no filter for zeros.
-/// let Statistic { y, theta } = filter.statistic(template)?;
-/// assert_eq!((y.x, y.y, theta), (0.0, 0.5, 1.0));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistic {
     /// Y(0) of equation (5), N. A channel whose template is zero has 0.
     pub y: Channels<f64>,
     /// θ of equation (7), the log-likelihood ratio.
     pub theta: f64,
-}
-
-/// What a record says, with the signal-to-noise ratio of the hypotheses.
-///
-/// ```
-/// use palpate::detect::{Channels, RecordStatistic, theta_of_record};
-///
-/// let (f0, f1) = (Channels { x: &[0.0][..], y: &[1.0] }, Channels { x: &[0.0][..], y: &[1.5] });
-/// let RecordStatistic { theta, gamma, .. } =
-///     theta_of_record(f0, f0, f1, Channels { x: 0.25, y: 0.25 })?;
-/// assert_eq!((theta, gamma), (-2.0, 2.0));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RecordStatistic {
-    /// Y(0) of equation (5), N.
-    pub y: Channels<f64>,
-    /// θ of equation (7).
-    pub theta: f64,
-    /// γ.
+    /// γ, the signal-to-noise ratio of the hypotheses.
     pub gamma: f64,
-}
-
-/// The noise of one channel with a power of two that brings it near 1: squares of forces are taken
-/// in these units, where they neither overflow nor underflow unless Δ/s itself is absurd.
-///
-/// Implements: DET-016.
-#[derive(Debug, Clone, Copy)]
-struct Scale {
-    /// A power of two, 1/N.
-    factor: f64,
-    /// s · factor.
-    noise_sd: f64,
-}
-
-impl Scale {
-    fn new(noise_sd: f64) -> Self {
-        let factor = compensated::reciprocal_power_of_two(noise_sd);
-        Self {
-            factor,
-            noise_sd: noise_sd * factor,
-        }
-    }
-
-    /// Σ in units of the scaled force squared → in units of the noise variance.
-    fn over_variance(self, sum: f64) -> f64 {
-        sum / (self.noise_sd * self.noise_sd)
-    }
 }
 
 impl<'a> MatchedFilter<'a> {
@@ -113,16 +57,15 @@ impl<'a> MatchedFilter<'a> {
         template: Channels<&'a [f64]>,
         noise_sd: Channels<f64>,
     ) -> Result<Self, DetectError> {
-        check_samples("template_x", template.x, template.x.len())?;
-        check_samples("template_y", template.y, template.x.len())?;
-        let scale = scales(noise_sd)?;
+        template.check("template_x", "template_y", template.x.len())?;
+        let noise = WhiteNoise::new(noise_sd)?;
         let energy = template
-            .zip(scale)
-            .map(|(template, scale)| compensated::dot(template, template, scale.factor));
-        let gamma = gamma(energy, scale)?;
+            .zip(noise)
+            .map(|(template, noise)| noise.dot(template, template));
+        let gamma = noise.gamma(energy)?;
         Ok(Self {
             template,
-            scale,
+            noise,
             energy,
             gamma,
         })
@@ -138,9 +81,8 @@ impl<'a> MatchedFilter<'a> {
     /// Implements: DET-010.
     pub fn b(&self) -> Channels<f64> {
         let samples = self.samples() as f64;
-        self.energy
-            .zip(self.scale)
-            .map(|(energy, scale)| libm::sqrt(energy.value() / samples) / scale.factor)
+        let energies = self.energy.zip(self.noise);
+        energies.map(|(energy, noise)| libm::sqrt(energy.value() / samples) / noise.factor)
     }
 
     /// σ_c = s_c/√N, the standard deviation of Y_c(0), N.
@@ -148,7 +90,8 @@ impl<'a> MatchedFilter<'a> {
     /// Implements: DET-011.
     pub fn sigma(&self) -> Channels<f64> {
         let root = libm::sqrt(self.samples() as f64);
-        self.scale.map(|scale| scale.noise_sd / root / scale.factor)
+        self.noise
+            .map(|noise| noise.scaled_sd() / root / noise.factor)
     }
 
     /// γ = (Σ_c Σ_i Δ²/s²)^½, the signal-to-noise ratio.
@@ -165,16 +108,10 @@ impl<'a> MatchedFilter<'a> {
     ///
     /// Implements: DET-005, DET-012, DET-014, DET-015, ACC-003, ACC-004, CON-007.
     pub fn statistic(&self, residual: Channels<&[f64]>) -> Result<Statistic, DetectError> {
-        check_samples("residual_x", residual.x, self.samples())?;
-        check_samples("residual_y", residual.y, self.samples())?;
-        let cross =
-            residual
-                .zip(self.template)
-                .zip(self.scale)
-                .map(|((residual, template), scale)| {
-                    compensated::dot(residual, template, scale.factor)
-                });
-        statistic(cross, self.energy, self.scale, self.samples())
+        residual.check("residual_x", "residual_y", self.samples())?;
+        let pairs = residual.zip(self.template).zip(self.noise);
+        let cross = pairs.map(|((residual, template), noise)| noise.dot(residual, template));
+        statistic(cross, self.energy, self.noise, self.samples(), self.gamma)
     }
 }
 
@@ -203,38 +140,26 @@ pub fn theta_of_record(
     f0: Channels<&[f64]>,
     f1: Channels<&[f64]>,
     noise_sd: Channels<f64>,
-) -> Result<RecordStatistic, DetectError> {
+) -> Result<Statistic, DetectError> {
     let samples = observed.x.len();
-    for (what, series) in [
-        ("observed_x", observed.x),
-        ("observed_y", observed.y),
-        ("f0_x", f0.x),
-        ("f0_y", f0.y),
-        ("f1_x", f1.x),
-        ("f1_y", f1.y),
-    ] {
-        check_samples(what, series, samples)?;
-    }
-    let scale = scales(noise_sd)?;
-    let sums = observed
-        .zip(f0.zip(f1))
-        .zip(scale)
-        .map(|((observed, (f0, f1)), scale)| {
-            let difference =
-                |a: f64, b: f64| DoubleDouble::difference(a * scale.factor, b * scale.factor);
-            let energy = compensated::sum(samples, |i| {
-                let template = difference(f1[i], f0[i]);
-                product(template, template)
-            });
-            let cross = compensated::sum(samples, |i| {
-                product(difference(observed[i], f0[i]), difference(f1[i], f0[i]))
-            });
-            (cross, energy)
+    observed.check("observed_x", "observed_y", samples)?;
+    f0.check("f0_x", "f0_y", samples)?;
+    f1.check("f1_x", "f1_y", samples)?;
+    let noise = WhiteNoise::new(noise_sd)?;
+    let forces = observed.zip(f0.zip(f1)).zip(noise);
+    let sums = forces.map(|((observed, (f0, f1)), noise)| {
+        let difference = |a: &[f64], b: &[f64], i: usize| {
+            DoubleDouble::new(a[i] * noise.factor, -b[i] * noise.factor)
+        };
+        let template = |i| difference(f1, f0, i);
+        let cross = compensated::sum(samples, |i| {
+            product(difference(observed, f0, i), template(i))
         });
+        let energy = compensated::sum(samples, |i| product(template(i), template(i)));
+        (cross, energy)
+    });
     let (cross, energy) = (sums.map(|(cross, _)| cross), sums.map(|(_, energy)| energy));
-    let gamma = gamma(energy, scale)?;
-    let Statistic { y, theta } = statistic(cross, energy, scale, samples)?;
-    Ok(RecordStatistic { y, theta, gamma })
+    statistic(cross, energy, noise, samples, noise.gamma(energy)?)
 }
 
 /// The product of two double-doubles, with a relative error of a few u².
@@ -246,52 +171,28 @@ fn product(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     }
 }
 
-fn scales(noise_sd: Channels<f64>) -> Result<Channels<Scale>, DetectError> {
-    Ok(Channels {
-        x: Scale::new(check_positive("noise_sd_x", noise_sd.x)?),
-        y: Scale::new(check_positive("noise_sd_y", noise_sd.y)?),
-    })
-}
-
-fn gamma(energy: Channels<DoubleDouble>, scale: Channels<Scale>) -> Result<f64, DetectError> {
-    let square = energy
-        .zip(scale)
-        .map(|(energy, scale)| scale.over_variance(energy.value()));
-    representable("gamma", libm::sqrt(square.x + square.y))
-}
-
-/// Equations (5) and (7) from Σ rΔ and ΣΔ². With b/σ² (Y − b/2) = (Σ rΔ − ½ΣΔ²)/s², the weight 1/N
-/// drops out, and the one subtraction that may cancel is done in twice the working precision.
+/// Equations (5) and (7) from Σ rΔ and ΣΔ².
 fn statistic(
     cross: Channels<DoubleDouble>,
     energy: Channels<DoubleDouble>,
-    scale: Channels<Scale>,
+    noise: Channels<WhiteNoise>,
     samples: usize,
+    gamma: f64,
 ) -> Result<Statistic, DetectError> {
-    let samples = samples as f64;
     let y = cross
         .zip(energy)
-        .zip(scale)
-        .map(|((cross, energy), scale)| {
+        .zip(noise)
+        .map(|((cross, energy), noise)| {
             let energy = energy.value();
-            // The matched filter of a template of zeros is not defined, and its weight in θ is
-            // zero.
+            // The matched filter of a template of zeros is not defined, and its weight in θ is zero.
             if energy == 0.0 {
                 0.0
             } else {
-                cross.value() / libm::sqrt(energy * samples) / scale.factor
+                cross.value() / libm::sqrt(energy * samples as f64) / noise.factor
             }
-        });
-    let theta = cross
-        .zip(energy)
-        .zip(scale)
-        .map(|((cross, energy), scale)| {
-            scale.over_variance(cross.plus(energy.scaled(-0.5)).value())
         });
     representable("y_x", y.x)?;
     representable("y_y", y.y)?;
-    Ok(Statistic {
-        y,
-        theta: representable("theta", theta.x + theta.y)?,
-    })
+    let theta = noise.theta(cross, energy)?;
+    Ok(Statistic { y, theta, gamma })
 }

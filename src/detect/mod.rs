@@ -34,9 +34,9 @@
 pub mod assessment;
 pub mod coloured;
 pub mod decision;
-mod error;
 pub mod matched_filter;
 pub mod mixture;
+mod noise;
 pub mod noise_budget;
 pub mod position;
 pub mod scan;
@@ -49,18 +49,12 @@ pub use decision::{
     map_threshold, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, posterior,
     required_gamma, roc_miss, two_afc,
 };
-pub use error::DetectError;
-pub use matched_filter::{MatchedFilter, RecordStatistic, Statistic, theta_of_record};
+pub use matched_filter::{MatchedFilter, Statistic, theta_of_record};
+
+pub use crate::stats::NumericError as DetectError;
+use crate::stats::error::check_samples;
 
 /// One thing for each of the two channels of force.
-///
-/// ```
-/// use palpate::detect::Channels;
-///
-/// let force = Channels { x: -0.1, y: 1.6 };
-/// assert_eq!(force.map(|newtons| newtons > 0.0), Channels { x: false, y: true });
-/// assert_eq!(force.zip(Channels { x: 1, y: 2 }).y, (1.6, 2));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Channels<T> {
     /// Lateral, along the surface.
@@ -70,20 +64,32 @@ pub struct Channels<T> {
 }
 
 impl<T> Channels<T> {
+    /// The lateral and the normal one.
+    pub const fn new(x: T, y: T) -> Channels<T> {
+        Channels { x, y }
+    }
+
     /// The same function of either channel.
     pub fn map<U>(self, mut function: impl FnMut(T) -> U) -> Channels<U> {
-        Channels {
-            x: function(self.x),
-            y: function(self.y),
-        }
+        Channels::new(function(self.x), function(self.y))
     }
 
     /// Pairs the channels of two things.
     pub fn zip<U>(self, other: Channels<U>) -> Channels<(T, U)> {
-        Channels {
-            x: (self.x, other.x),
-            y: (self.y, other.y),
-        }
+        Channels::new((self.x, other.x), (self.y, other.y))
+    }
+
+    /// Lateral first.
+    pub fn into_array(self) -> [T; 2] {
+        [self.x, self.y]
+    }
+}
+
+impl Channels<&[f64]> {
+    /// Checks that both channels have `length` samples, all of them finite; `x` and `y` are their names.
+    fn check(self, x: &'static str, y: &'static str, length: usize) -> Result<(), DetectError> {
+        check_samples(x, self.x, length)?;
+        check_samples(y, self.y, length)
     }
 }
 

@@ -1,20 +1,10 @@
 //! How much noise a display may add: the paper's example after figure 4, and Table 2.
 
 use super::DetectError;
-use super::decision::{required_gamma, two_afc};
-use super::error::{check_not_negative, check_positive, check_samples, representable};
+use super::decision::required_gamma;
+use crate::stats::error::{check_not_negative, check_positive, check_samples, representable};
 
 /// A noise budget. All standard deviations in N.
-///
-/// ```
-/// use palpate::detect::noise_budget::noise_budget;
-///
-/// // Sources that are as large as the budget leave nothing.
-/// let budget = noise_budget(0.340, 0.05, 0.05, &[0.120])?;
-/// assert!(budget.total_allowed < 0.120);
-/// assert_eq!(budget.remaining, 0.0);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseBudget {
     /// The signal-to-noise ratio that the error rates need.
@@ -26,15 +16,6 @@ pub struct NoiseBudget {
 }
 
 /// What given sources of noise amount to.
-///
-/// ```
-/// use palpate::detect::noise_budget::noise_total;
-///
-/// let total = noise_total(&[0.3, 0.4])?;
-/// assert_eq!((total.total, total.dominant), (0.5, 1));
-/// assert!((total.dominant_share - 0.64).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseTotal {
     /// (Σ s²)^½ of independent sources, N.
@@ -91,16 +72,6 @@ pub fn noise_budget(
 
 /// The sum of independent sources (standard deviations, N) and the one that dominates.
 ///
-/// ```
-/// use palpate::detect::noise_budget::noise_total;
-///
-/// // Table 2, playback of FEM data: quantisation, friction, human perception, N.
-/// let total = noise_total(&[0.5e-3, 0.140, 0.093])?;
-/// assert!((total.total - 0.168).abs() < 1e-3);
-/// assert_eq!(total.dominant, 1);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// No source; a source negative or not finite; all of them 0; overflow.
 ///
@@ -108,77 +79,14 @@ pub fn noise_budget(
 pub fn noise_total(sources: &[f64]) -> Result<NoiseTotal, DetectError> {
     check_samples("sources", sources, sources.len())?;
     let total = check_positive("total", root_sum_square(sources)?)?;
-    let (dominant, largest) = sources
-        .iter()
-        .copied()
-        .enumerate()
-        .fold(
-            (0, 0.0),
-            |best, next| if next.1 > best.1 { next } else { best },
-        );
+    let larger = |best: (usize, f64), next: (usize, f64)| if next.1 > best.1 { next } else { best };
+    let (dominant, largest) = sources.iter().copied().enumerate().fold((0, 0.0), larger);
     let ratio = largest / total;
     Ok(NoiseTotal {
         total,
         dominant,
         dominant_share: ratio * ratio,
     })
-}
-
-/// The share of right forced choices for a signal in a total noise (both N), Φ(signal/(noise √2)):
-/// the budget read forwards.
-///
-/// ```
-/// use palpate::detect::noise_budget::two_afc_in_noise;
-///
-/// assert_eq!(two_afc_in_noise(0.0, 0.170)?, 0.5);
-/// // 340 mN in 242 mN, γ = 1.406: 84 %.
-/// assert!((two_afc_in_noise(0.340, 0.2418)? - 0.84).abs() < 1e-4);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
-/// # Errors
-/// A signal negative or not finite; noise not positive and finite; overflow of their ratio.
-///
-/// Implements: DET-103.
-pub fn two_afc_in_noise(signal: f64, noise_sd: f64) -> Result<f64, DetectError> {
-    check_not_negative("signal", signal)?;
-    check_positive("noise_sd", noise_sd)?;
-    two_afc(representable("gamma", signal / noise_sd)?)
-}
-
-/// The standard deviation Δ/√12 of the error of a quantiser with steps of `step`, N.
-///
-/// ```
-/// use palpate::detect::noise_budget::quantisation_sd;
-///
-/// assert!((quantisation_sd(0.0017)? - 0.49e-3).abs() < 1e-5);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
-/// # Errors
-/// A step negative or not finite.
-///
-/// Implements: DET-104.
-pub fn quantisation_sd(step: f64) -> Result<f64, DetectError> {
-    Ok(check_not_negative("step", step)? / libm::sqrt(12.0))
-}
-
-/// The largest quantisation step whose error has at most the standard deviation `sd`, √12 · sd, N.
-///
-/// ```
-/// use palpate::detect::noise_budget::{quantisation_sd, quantisation_step};
-///
-/// let step = quantisation_step(0.5e-3)?;
-/// assert!((quantisation_sd(step)? - 0.5e-3).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
-/// # Errors
-/// A standard deviation negative or not finite; overflow.
-///
-/// Implements: DET-104.
-pub fn quantisation_step(sd: f64) -> Result<f64, DetectError> {
-    representable("step", check_not_negative("sd", sd)? * libm::sqrt(12.0))
 }
 
 /// (Σ s²)^½ without overflow or underflow of squares.

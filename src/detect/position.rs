@@ -1,9 +1,11 @@
 //! The law of Θ_max: bounds on its rates of error, its thresholds, and how well a position can be
 //! known.
 
-use super::error::{check_finite, check_positive, check_probability, check_samples};
 use super::scan::Scan;
 use super::{Channels, DetectError, MatchedFilter};
+use crate::stats::error::{
+    check_finite, check_length, check_positive, check_probability, check_samples,
+};
 use crate::stats::normal::lower_tail;
 use core::ops::RangeInclusive;
 
@@ -107,32 +109,13 @@ impl<'a> MaximumLaw<'a> {
     /// Implements: DET-056.
     pub fn union_bound(&self, eta: f64) -> Result<f64, DetectError> {
         check_finite("eta", eta)?;
-        let sum = self
-            .gamma
-            .iter()
-            .fold(0.0, |sum, &gamma| sum + exceedance(gamma, eta).0);
+        let tails = self.gamma.iter().map(|&gamma| exceedance(gamma, eta).0);
+        let sum = tails.fold(0.0, |sum, tail| sum + tail);
         Ok((sum * (1.0 + 1e-9)).min(1.0))
     }
 
     /// A threshold η for Θ_max at which the false-alarm rate is certainly at most
     /// `max_false_alarm`: where the bound is, to about 10 digits of η.
-    ///
-    /// ```
-    /// use palpate::detect::position::MaximumLaw;
-    /// use palpate::detect::scan::Scan;
-    /// use palpate::detect::{Channels, neyman_pearson_false_alarm_threshold};
-    ///
-    /// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-    /// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
-    /// let threshold = |gamma: &mut [f64], angle: &mut [f64]| {
-    ///     MaximumLaw::new(&scan, 0, gamma, angle)?.threshold(0.05)
-    /// };
-    /// // For one place as at a known position, γ = 3; the more places, the higher.
-    /// let one = threshold(&mut [0.0], &mut [0.0])?;
-    /// assert!((one - neyman_pearson_false_alarm_threshold(3.0, 0.05)?).abs() < 1e-6);
-    /// assert!(threshold(&mut [0.0; 4], &mut [0.0; 4])? > one);
-    /// # Ok::<(), palpate::detect::DetectError>(())
-    /// ```
     ///
     /// # Errors
     /// A rate not strictly between 0 and 1; a scan without signal.
@@ -140,10 +123,7 @@ impl<'a> MaximumLaw<'a> {
     /// Implements: DET-058.
     pub fn threshold(&self, max_false_alarm: f64) -> Result<f64, DetectError> {
         check_probability("max_false_alarm", max_false_alarm)?;
-        let gamma = self
-            .gamma
-            .iter()
-            .fold(0.0_f64, |largest, &gamma| largest.max(gamma));
+        let gamma = self.gamma.iter().copied().fold(0.0, f64::max);
         if gamma == 0.0 {
             return Err(DetectError::NoSignal);
         }
@@ -174,17 +154,6 @@ fn exceedance(gamma: f64, eta: f64) -> (f64, f64) {
 /// The Cramér–Rao bound: no unbiased estimate of the position has a smaller standard deviation, in
 /// m, than (Σ_c Σ_i (∂Δ/∂x)²/s²)^-½. `slope` is ∂Δ/∂x at each sample, N/m.
 ///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::position::position_bound;
-///
-/// // A slope of 100 N/m in noise of 0.1 N tells a position to 1 mm; four such samples to 0.5 mm.
-/// let bound = |y| position_bound(Channels { x: &[0.0; 4][..], y }, Channels { x: 0.1, y: 0.1 });
-/// assert!((bound(&[100.0, 0.0, 0.0, 0.0])? - 0.001).abs() < 1e-15);
-/// assert!((bound(&[100.0, -100.0, 100.0, 100.0])? - 0.0005).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// As [`MatchedFilter::new`]; a template without slope, which says nothing of a position.
 ///
@@ -195,24 +164,13 @@ pub fn position_bound(
 ) -> Result<f64, DetectError> {
     let information = MatchedFilter::new(slope, noise_sd)?.gamma();
     if information == 0.0 {
-        Err(DetectError::NoSignal)
-    } else {
-        Ok(1.0 / information)
+        return Err(DetectError::NoSignal);
     }
+    Ok(1.0 / information)
 }
 
 /// ∂Δ/∂x of a template sampled every `spacing` metres, by central differences, and by one-sided
 /// ones at the ends: in error by spacing²/6 of the third derivative.
-///
-/// ```
-/// use palpate::detect::position::slope;
-///
-/// // x² at 0, 1, 2, 3: exact but at the ends.
-/// let mut found = [0.0; 4];
-/// slope(&[0.0, 1.0, 4.0, 9.0], 1.0, &mut found)?;
-/// assert_eq!(found, [1.0, 2.0, 4.0, 5.0]);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 ///
 /// # Errors
 /// Fewer than two samples, or lengths that differ; NaN or infinity; a spacing not positive and
@@ -222,14 +180,8 @@ pub fn position_bound(
 pub fn slope(template: &[f64], spacing: f64, slope: &mut [f64]) -> Result<(), DetectError> {
     check_samples("template", template, slope.len())?;
     check_positive("spacing", spacing)?;
+    check_length("template", template.len().max(2), template.len())?;
     let last = template.len() - 1;
-    if last == 0 {
-        return Err(DetectError::LengthMismatch {
-            what: "template",
-            expected: 2,
-            found: 1,
-        });
-    }
     for (i, slope) in slope.iter_mut().enumerate() {
         let (left, right) = (i.saturating_sub(1), (i + 1).min(last));
         let rise = template[right] - template[left];

@@ -1,59 +1,24 @@
 //! Where the inclusion is: Θ for every position of a template within a record, paper equation (10).
 
-use super::error::{check_positive, check_samples, representable};
+use super::noise::WhiteNoise;
 use super::{Channels, DetectError};
-use crate::stats::compensated;
-use core::ops::RangeInclusive;
+use crate::stats::compensated::DoubleDouble;
+use crate::stats::error::{check_length, in_range, representable};
+use core::ops::{Range, RangeInclusive};
 
 /// A template of M samples a channel that may begin at any sample of a record of N.
 ///
 /// A *shift* k puts template sample 0 on record sample k. At −(M−1) ≤ k < 0 and N−M < k ≤ N−1 a
 /// part of the template falls off the record: what was not observed adds neither to Y nor to b, so
 /// Θ(k) is the log-likelihood ratio of what was.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::scan::Scan;
-///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let noise_sd = Channels { x: 0.125, y: 0.125 };
-/// let scan = Scan::new(6, template, noise_sd)?;
-/// assert_eq!((scan.samples(), scan.noise_sd()), (6, noise_sd));
-/// assert_eq!((scan.shifts(), scan.full_shifts()), (-2..=5, 0..=3));
-/// // Of all three samples, and of the first alone.
-/// assert_eq!((scan.full_gamma()?, scan.gamma(5)?), (3.0, 1.0));
-/// // The template begins at sample 2 of the record.
-/// let residual = Channels { x: &[0.0; 6][..], y: &[0.0, 0.0, 0.125, 0.25, 0.25, 0.0] };
-/// assert_eq!(scan.at(residual, 2)?.theta, 4.5);
-/// assert_eq!(scan.maximum(residual, scan.shifts())?.shift, 2);
-/// let mut theta = [0.0; 4];
-/// scan.theta(residual, 0, &mut theta)?;
-/// assert_eq!(theta, [-2.5, 1.5, 4.5, 1.5]);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Scan<'a> {
     template: Channels<&'a [f64]>,
-    noise_sd: Channels<f64>,
-    /// A power of two near 1/s for each channel.
-    scale: Channels<f64>,
+    noise: Channels<WhiteNoise>,
     samples: usize,
 }
 
 /// Θ at one shift.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::scan::{Scan, ScanPoint};
-///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
-/// let nothing = Channels { x: &[0.0; 6][..], y: &[0.0; 6] };
-/// // −γ²/2, of the whole template and of its first sample.
-/// assert_eq!(scan.at(nothing, 0)?, ScanPoint { theta: -4.5, gamma: 3.0 });
-/// assert_eq!(scan.at(nothing, 5)?, ScanPoint { theta: -0.5, gamma: 1.0 });
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanPoint {
     /// θ(k).
@@ -63,19 +28,6 @@ pub struct ScanPoint {
 }
 
 /// The largest Θ of a scan.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::scan::Scan;
-///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.25, 0.5, 0.25] };
-/// let scan = Scan::new(7, template, Channels { x: 0.25, y: 0.25 })?;
-/// // The template half-way between shifts 2 and 3: the first of the two, refined.
-/// let residual = [0.0, 0.0, 0.125, 0.375, 0.375, 0.125, 0.0];
-/// let found = scan.maximum(Channels { x: &[0.0; 7][..], y: &residual }, 0..=4)?;
-/// assert_eq!((found.shift, found.refined_shift), (2, 2.5));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanMaximum {
     /// Θ_max.
@@ -103,23 +55,13 @@ impl<'a> Scan<'a> {
         template: Channels<&'a [f64]>,
         noise_sd: Channels<f64>,
     ) -> Result<Self, DetectError> {
-        check_samples("template_x", template.x, template.x.len())?;
-        check_samples("template_y", template.y, template.x.len())?;
-        if template.x.len() > samples {
-            let found = template.x.len();
-            return Err(DetectError::LengthMismatch {
-                what: "template_x",
-                expected: samples,
-                found,
-            });
-        }
-        check_positive("noise_sd_x", noise_sd.x)?;
-        check_positive("noise_sd_y", noise_sd.y)?;
-        let scale = noise_sd.map(compensated::reciprocal_power_of_two);
+        let length = template.x.len();
+        template.check("template_x", "template_y", length)?;
+        check_length("template_x", samples.min(length), length)?;
+        let noise = WhiteNoise::new(noise_sd)?;
         Ok(Self {
             template,
-            noise_sd,
-            scale,
+            noise,
             samples,
         })
     }
@@ -131,7 +73,7 @@ impl<'a> Scan<'a> {
 
     /// The standard deviation of a sample's noise, N.
     pub fn noise_sd(&self) -> Channels<f64> {
-        self.noise_sd
+        self.noise.map(|noise| noise.sd)
     }
 
     /// The shifts at which at least one sample overlaps, −(M−1) … N−1.
@@ -148,14 +90,6 @@ impl<'a> Scan<'a> {
         0..=(self.samples - self.template.x.len()) as isize
     }
 
-    /// γ of the whole template.
-    ///
-    /// # Errors
-    /// Overflow.
-    pub fn full_gamma(&self) -> Result<f64, DetectError> {
-        self.gamma(0)
-    }
-
     /// γ(k), with the energy of the overlap alone; 0 where nothing overlaps.
     ///
     /// # Errors
@@ -163,28 +97,15 @@ impl<'a> Scan<'a> {
     ///
     /// Implements: DET-052.
     pub fn gamma(&self, shift: isize) -> Result<f64, DetectError> {
-        let square = self.template_product(shift, shift);
-        representable("gamma", libm::sqrt(square))
+        self.noise.gamma(self.template_product(shift, shift))
     }
 
     /// The covariance of Θ at two shifts, Σ_c Σ_i Δ_{i−k} Δ_{i−l}/s² over the record.
     ///
-    /// ```
-    /// use palpate::detect::Channels;
-    /// use palpate::detect::scan::Scan;
-    ///
-    /// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-    /// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
-    /// // 1·2 + 2·2 of neighbours, γ² of a shift with itself, nothing of shifts that do not overlap.
-    /// assert_eq!(scan.covariance(0, 1)?, 6.0);
-    /// assert_eq!(scan.covariance(1, 1)?, 9.0);
-    /// assert_eq!(scan.covariance(0, 3)?, 0.0);
-    /// # Ok::<(), palpate::detect::DetectError>(())
-    /// ```
-    ///
     /// Implements: DET-055.
     pub fn covariance(&self, shift: isize, other: isize) -> Result<f64, DetectError> {
-        representable("covariance", self.template_product(shift, other))
+        let product = self.noise.total(self.template_product(shift, other));
+        representable("covariance", product)
     }
 
     /// Θ(k) and γ(k) of a residual (N samples a channel, N).
@@ -194,7 +115,7 @@ impl<'a> Scan<'a> {
     ///
     /// Implements: DET-005, DET-050, DET-052, ERR-002, ERR-003.
     pub fn at(&self, residual: Channels<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
-        self.check(residual)?;
+        residual.check("residual_x", "residual_y", self.samples)?;
         self.point(residual, shift)
     }
 
@@ -210,7 +131,7 @@ impl<'a> Scan<'a> {
         first: isize,
         theta: &mut [f64],
     ) -> Result<(), DetectError> {
-        self.check(residual)?;
+        residual.check("residual_x", "residual_y", self.samples)?;
         self.check_shifts(first, theta.len())?;
         for (shift, theta) in (first..).zip(theta) {
             *theta = self.point(residual, shift)?.theta;
@@ -245,7 +166,7 @@ impl<'a> Scan<'a> {
         residual: Channels<&[f64]>,
         shifts: RangeInclusive<isize>,
     ) -> Result<ScanMaximum, DetectError> {
-        self.check(residual)?;
+        residual.check("residual_x", "residual_y", self.samples)?;
         let (first, last) = (*shifts.start(), *shifts.end());
         self.check_shifts(first, 1)?;
         self.check_shifts(last, 1)?;
@@ -256,15 +177,14 @@ impl<'a> Scan<'a> {
                 best = Some((shift, point));
             }
         }
-        let (shift, ScanPoint { theta, gamma }) =
-            best.ok_or(DetectError::Empty { what: "shifts" })?;
-        let refined_shift = if shift == first || shift == last {
-            shift as f64
-        } else {
+        let (shift, point) = best.ok_or(DetectError::Empty { what: "shifts" })?;
+        let ScanPoint { theta, gamma } = point;
+        let mut refined_shift = shift as f64;
+        if shift != first && shift != last {
             let before = self.point(residual, shift - 1)?.theta;
             let after = self.point(residual, shift + 1)?.theta;
-            shift as f64 + vertex(before, theta, after)
-        };
+            refined_shift += vertex(before, theta, after);
+        }
         Ok(ScanMaximum {
             theta,
             gamma,
@@ -279,78 +199,48 @@ impl<'a> Scan<'a> {
         let shifts = self.shifts();
         let last = first.saturating_add_unsigned(count.saturating_sub(1));
         let wrong = if shifts.contains(&first) { last } else { first };
-        if shifts.contains(&wrong) {
-            return Ok(());
-        }
         let range = "a shift at which the template overlaps the record";
-        Err(DetectError::OutOfRange {
-            what: "shift",
-            value: wrong as f64,
-            range,
-        })
-    }
-
-    fn check(&self, residual: Channels<&[f64]>) -> Result<(), DetectError> {
-        check_samples("residual_x", residual.x, self.samples)?;
-        check_samples("residual_y", residual.y, self.samples)
+        in_range(shifts.contains(&wrong), "shift", wrong as f64, range)?;
+        Ok(())
     }
 
     fn point(&self, residual: Channels<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
         let (record, template) = overlap(self.samples, self.template.x.len(), shift);
-        let parts = self
-            .template
-            .zip(residual)
-            .zip(self.scale.zip(self.noise_sd))
-            .map(|((all, residual), (scale, noise_sd))| {
-                let part = &all[template.0..template.1];
-                let energy = compensated::dot(part, part, scale);
-                let cross = compensated::dot(&residual[record.0..record.1], part, scale);
-                let variance = (noise_sd * scale) * (noise_sd * scale);
-                (
-                    cross.plus(energy.scaled(-0.5)).value() / variance,
-                    energy.value() / variance,
-                )
-            });
-        let theta = representable("theta", parts.x.0 + parts.y.0)?;
-        let gamma = representable("gamma", libm::sqrt(parts.x.1 + parts.y.1))?;
-        Ok(ScanPoint { theta, gamma })
+        let template = self.template.map(|samples| &samples[template.clone()]);
+        let residual = residual.map(|samples| &samples[record.clone()]);
+        let pairs = template.zip(residual).zip(self.noise);
+        let energy = pairs.map(|((template, _), noise)| noise.dot(template, template));
+        let cross = pairs.map(|((template, residual), noise)| noise.dot(residual, template));
+        Ok(ScanPoint {
+            theta: self.noise.theta(cross, energy)?,
+            gamma: self.noise.gamma(energy)?,
+        })
     }
 
-    /// Σ_c Σ_i Δ_{i−k} Δ_{i−l}/s² over 0 ≤ i < N.
-    fn template_product(&self, shift: isize, other: isize) -> f64 {
-        let length = self.template.x.len();
-        let (record, template) = overlap(self.samples, length, shift);
-        let (other_record, other_template) = overlap(self.samples, length, other);
-        let start = record.0.max(other_record.0);
-        let end = record.1.min(other_record.1);
-        if start >= end {
-            return 0.0;
-        }
-        let parts =
-            self.template
-                .zip(self.scale.zip(self.noise_sd))
-                .map(|(all, (scale, noise_sd))| {
-                    let one = &all[template.0 + start - record.0..][..end - start];
-                    let two = &all[other_template.0 + start - other_record.0..][..end - start];
-                    let variance = (noise_sd * scale) * (noise_sd * scale);
-                    compensated::dot(one, two, scale).value() / variance
-                });
-        parts.x + parts.y
+    /// Σ_i Δ_{i−k} Δ_{i−l} over 0 ≤ i < N of each channel, in units of its scaled force squared.
+    fn template_product(&self, shift: isize, other: isize) -> Channels<DoubleDouble> {
+        let overlap = |shift| overlap(self.samples, self.template.x.len(), shift);
+        let [(one, from_one), (two, from_two)] = [shift, other].map(overlap);
+        let start = one.start.max(two.start);
+        let count = one.end.min(two.end).saturating_sub(start);
+        self.template.zip(self.noise).map(|(template, noise)| {
+            // Where the shifts do not meet there may be nothing to begin with.
+            let part = |record: &Range<usize>, from: &Range<usize>| match count {
+                0 => &[],
+                _ => &template[from.start + start - record.start..][..count],
+            };
+            noise.dot(part(&one, &from_one), part(&two, &from_two))
+        })
     }
 }
 
 /// The samples of the record, and of the template, that meet: half-open ranges of the same length,
 /// empty ones if none do.
-fn overlap(samples: usize, length: usize, shift: isize) -> ((usize, usize), (usize, usize)) {
-    if shift >= 0 {
-        let start = shift.unsigned_abs().min(samples);
-        let count = length.min(samples - start);
-        ((start, start + count), (0, count))
-    } else {
-        let skipped = shift.unsigned_abs().min(length);
-        let count = (length - skipped).min(samples);
-        ((0, count), (skipped, skipped + count))
-    }
+fn overlap(samples: usize, length: usize, shift: isize) -> (Range<usize>, Range<usize>) {
+    let start = shift.max(0).unsigned_abs().min(samples);
+    let skipped = shift.min(0).unsigned_abs().min(length);
+    let count = (length - skipped).min(samples - start);
+    (start..start + count, skipped..skipped + count)
 }
 
 /// The abscissa, from −½ to ½, of the top of the parabola through (−1, before), (0, top) and (1,

@@ -1,9 +1,9 @@
 //! Simulated records and statistics. Every trial is a function of the generator and its number
 //! alone.
 
-use super::error::{check_finite, check_length, check_not_negative, check_samples};
 use super::scan::Scan;
 use super::{Channels, DetectError, MatchedFilter, Statistic};
+use crate::stats::error::{check_finite, check_length, check_not_negative};
 use crate::stats::random::Generator;
 use core::ops::{Range, RangeInclusive};
 
@@ -49,8 +49,7 @@ impl<'a> Simulation<'a> {
         generator: Generator,
     ) -> Result<Self, DetectError> {
         let filter = MatchedFilter::new(template, noise_sd)?;
-        check_samples("f0_x", f0.x, filter.samples())?;
-        check_samples("f0_y", f0.y, filter.samples())?;
+        f0.check("f0_x", "f0_y", filter.samples())?;
         Ok(Self {
             filter,
             f0,
@@ -68,24 +67,6 @@ impl<'a> Simulation<'a> {
     /// F_1 under H = 1). Lateral samples take the trial's deviates 0 … N−1, normal ones N … 2N−1.
     /// `residual` (2N numbers, x then y) is left holding F_p − F_0.
     ///
-    /// ```
-    /// use palpate::detect::Channels;
-    /// use palpate::detect::simulate::Simulation;
-    /// use palpate::stats::random::Generator;
-    ///
-    /// let f0 = Channels { x: &[0.0; 3][..], y: &[1.0; 3] };
-    /// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-    /// let noise_sd = Channels { x: 0.125, y: 0.125 };
-    /// let simulation = Simulation::new(f0, template, noise_sd, Generator::new(1999, 0))?;
-    /// // Any trial again, alone; the record is there for other tests of it.
-    /// let mut residual = [0.0; 6];
-    /// let statistic = simulation.trial(42, f0, &mut residual)?;
-    /// let (x, y) = residual.split_at(3);
-    /// assert_eq!(simulation.filter().statistic(Channels { x, y })?, statistic);
-    /// assert_eq!(simulation.trial(42, f0, &mut [0.0; 6])?, statistic);
-    /// # Ok::<(), palpate::detect::DetectError>(())
-    /// ```
-    ///
     /// # Errors
     /// Lengths that differ; a force that is not finite.
     ///
@@ -100,36 +81,35 @@ impl<'a> Simulation<'a> {
         check_length("force_x", samples, force.x.len())?;
         check_length("force_y", samples, force.y.len())?;
         check_length("residual", 2 * samples, residual.len())?;
-        self.generator.normals(trial, 0, residual);
-        let (x, y) = residual.split_at_mut(samples);
-        observe(x, force.x, self.f0.x, self.noise_sd.x);
-        observe(y, force.y, self.f0.y, self.noise_sd.y);
+        let noise = noise(&self.generator, trial, self.noise_sd, residual);
+        let forces = force.zip(self.f0).zip(noise).into_array();
+        for ((force, f0), samples) in forces {
+            for ((sample, force), f0) in samples.iter_mut().zip(force).zip(f0) {
+                let observed = force + *sample;
+                *sample = observed - f0;
+            }
+        }
+        let (x, y) = residual.split_at(samples);
         self.filter.statistic(Channels { x, y })
     }
 }
 
-/// Turns deviates into a record F_p = F + s·n, and the record into F_p − F_0.
-fn observe(deviates: &mut [f64], force: &[f64], f0: &[f64], noise_sd: f64) {
-    for ((sample, force), f0) in deviates.iter_mut().zip(force).zip(f0) {
-        let observed = force + noise_sd * *sample;
-        *sample = observed - f0;
-    }
+/// Fills `samples` with the noise of a trial of N samples a channel: lateral ones, then normal ones.
+fn noise<'a>(
+    generator: &Generator,
+    trial: u64,
+    sd: Channels<f64>,
+    samples: &'a mut [f64],
+) -> Channels<&'a mut [f64]> {
+    generator.normals(trial, 0, samples);
+    let (x, y) = samples.split_at_mut(samples.len() / 2);
+    Channels { x, y }.zip(sd).map(|(samples, sd)| {
+        samples.iter_mut().for_each(|sample| *sample *= sd);
+        samples
+    })
 }
 
 /// θ drawn from its own law (8), N(±γ²/2, γ²), for the trials `first`, `first` + 1, …
-///
-/// ```
-/// use palpate::detect::simulate::draw_theta;
-/// use palpate::stats::random::Generator;
-///
-/// let generator = Generator::new(1999, 0);
-/// let (mut without, mut with) = ([0.0; 5], [0.0; 5]);
-/// draw_theta(&generator, 2.0, false, 0, &mut without)?;
-/// draw_theta(&generator, 2.0, true, 0, &mut with)?;
-/// // The same deviates about −γ²/2 and γ²/2.
-/// assert!(std::iter::zip(without, with).all(|(a, b)| (b - a - 4.0).abs() < 1e-14));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 ///
 /// # Errors
 /// γ not finite or < 0, or γ² not representable.
@@ -157,24 +137,6 @@ pub fn draw_theta(
 /// its interval, beside the bound of [`super::position::MaximumLaw`]. `residual` is scratch of 2N
 /// numbers.
 ///
-/// ```
-/// use palpate::detect::position::MaximumLaw;
-/// use palpate::detect::scan::Scan;
-/// use palpate::detect::{Channels, simulate::count_false_alarms};
-/// use palpate::stats::random::Generator;
-///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
-/// let (mut gamma, mut angle) = ([0.0; 4], [0.0; 4]);
-/// let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle)?;
-/// let (eta, generator) = (law.threshold(0.1)?, Generator::new(1999, 0));
-/// let alarms =
-///     count_false_alarms(&scan, law.shifts(), eta, &generator, 0..2000, &mut [0.0; 12])?;
-/// // Near the bound of 10 %, of which the standard error is 0.7 %.
-/// assert!(alarms > 100 && alarms < 2000 / 10 + 4 * 14);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// η not finite; no shifts; scratch of another length.
 ///
@@ -189,13 +151,9 @@ pub fn count_false_alarms(
 ) -> Result<u64, DetectError> {
     check_finite("eta", eta)?;
     check_length("residual", scan.samples().saturating_mul(2), residual.len())?;
-    let noise_sd = scan.noise_sd();
     let mut alarms = 0;
     for trial in trials {
-        generator.normals(trial, 0, residual);
-        let (x, y) = residual.split_at_mut(scan.samples());
-        x.iter_mut().for_each(|sample| *sample *= noise_sd.x);
-        y.iter_mut().for_each(|sample| *sample *= noise_sd.y);
+        let Channels { x, y } = noise(generator, trial, scan.noise_sd(), residual);
         let maximum = scan.maximum(Channels { x, y }, shifts.clone())?;
         alarms += u64::from(maximum.theta >= eta);
     }

@@ -4,25 +4,12 @@
 //! Both functions whiten as `L⁻¹` does in [`super::coloured`], and give the same θ.
 
 use super::coloured::{ColouredStatistic, Innovations, pivot};
-use super::error::{check_length, check_positive, check_samples};
 use super::{Channels, DetectError};
 use crate::stats::compensated;
+use crate::stats::error::{check_length, check_positive};
 
 /// θ and γ by the recursion of Levinson and Durbin, for any autocovariance ρ(0) … ρ(N−1) (N², N
 /// lags a channel). Time N²; `scratch` holds 2N numbers.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::stationary::theta_stationary;
-///
-/// // Two samples with covariance ½: γ² = ΔᵀK⁻¹Δ = 4/3 of Δ = (1, 1), where white noise has 2.
-/// let template = Channels { x: &[0.0; 2][..], y: &[1.0, 1.0] };
-/// let autocovariance = Channels { x: &[1.0, 0.0][..], y: &[1.0, 0.5] };
-/// let statistic = theta_stationary(template, template, autocovariance, &mut [0.0; 4])?;
-/// assert!((statistic.gamma - (4.0_f64 / 3.0).sqrt()).abs() < 1e-15);
-/// assert!((statistic.theta - 2.0 / 3.0).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 ///
 /// # Errors
 /// Lengths that do not fit; NaN or infinity; an autocovariance that is not positive definite;
@@ -37,32 +24,16 @@ pub fn theta_stationary(
 ) -> Result<ColouredStatistic, DetectError> {
     let samples = template.x.len();
     check_records(residual, template)?;
-    check_samples("autocovariance_x", autocovariance.x, samples)?;
-    check_samples("autocovariance_y", autocovariance.y, samples)?;
+    autocovariance.check("autocovariance_x", "autocovariance_y", samples)?;
     check_length("scratch", 2 * samples, scratch.len())?;
     let mut innovations = Innovations::default();
-    for (residual, template, autocovariance) in [
-        (residual.x, template.x, autocovariance.x),
-        (residual.y, template.y, autocovariance.y),
-    ] {
-        levinson(
-            residual,
-            template,
-            autocovariance,
-            scratch,
-            &mut innovations,
-        )?;
+    for (records, lags) in residual.zip(template).zip(autocovariance).into_array() {
+        levinson(records, lags, scratch, &mut innovations)?;
     }
     innovations.statistic()
 }
 
 /// Length of the scratch that [`theta_banded`] needs for `lags` = m + 1 lags.
-///
-/// ```
-/// use palpate::detect::stationary::banded_scratch;
-///
-/// assert_eq!(banded_scratch(4), 28);
-/// ```
 ///
 /// Implements: DET-046.
 pub const fn banded_scratch(lags: usize) -> usize {
@@ -72,19 +43,6 @@ pub const fn banded_scratch(lags: usize) -> usize {
 /// θ and γ by a banded Cholesky factor that forgets what it has used, for an autocovariance that is
 /// zero beyond its last lag: ρ(0) … ρ(m) (N², the same number of lags for both channels). Time N
 /// m², memory m².
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::stationary::{banded_scratch, theta_banded};
-///
-/// // White noise is the band of one lag: γ² = Σ (Δ/s)² = 9.
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let autocovariance = Channels { x: &[1.0][..], y: &[0.125 * 0.125] };
-/// let mut scratch = [0.0; banded_scratch(1)];
-/// let statistic = theta_banded(template, template, autocovariance, &mut scratch)?;
-/// assert_eq!((statistic.theta, statistic.gamma), (4.5, 3.0));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 ///
 /// # Errors
 /// As [`theta_stationary`]; more lags than samples.
@@ -98,30 +56,13 @@ pub fn theta_banded(
 ) -> Result<ColouredStatistic, DetectError> {
     check_records(residual, template)?;
     let lags = autocovariance.x.len();
-    check_samples("autocovariance_x", autocovariance.x, lags)?;
-    check_samples("autocovariance_y", autocovariance.y, lags)?;
-    if lags > template.x.len() {
-        let expected = template.x.len();
-        return Err(DetectError::LengthMismatch {
-            what: "autocovariance_x",
-            expected,
-            found: lags,
-        });
-    }
+    autocovariance.check("autocovariance_x", "autocovariance_y", lags)?;
+    check_length("autocovariance_x", lags.min(template.x.len()), lags)?;
     check_length("scratch", banded_scratch(lags), scratch.len())?;
     let mut innovations = Innovations::default();
-    for (residual, template, autocovariance) in [
-        (residual.x, template.x, autocovariance.x),
-        (residual.y, template.y, autocovariance.y),
-    ] {
+    for (records, lags) in residual.zip(template).zip(autocovariance).into_array() {
         scratch.fill(0.0);
-        banded(
-            residual,
-            template,
-            autocovariance,
-            scratch,
-            &mut innovations,
-        )?;
+        banded(records, lags, scratch, &mut innovations)?;
     }
     innovations.statistic()
 }
@@ -131,17 +72,14 @@ fn check_records(
     template: Channels<&[f64]>,
 ) -> Result<(), DetectError> {
     let samples = template.x.len();
-    check_samples("template_x", template.x, samples)?;
-    check_samples("template_y", template.y, samples)?;
-    check_samples("residual_x", residual.x, samples)?;
-    check_samples("residual_y", residual.y, samples)
+    template.check("template_x", "template_y", samples)?;
+    residual.check("residual_x", "residual_y", samples)
 }
 
 /// One channel by Levinson and Durbin. The best prediction of sample i from those before it is Σ_j
 /// w_j x_j with error variance v; the error over √v is the innovation.
 fn levinson(
-    residual: &[f64],
-    template: &[f64],
+    (residual, template): (&[f64], &[f64]),
     autocovariance: &[f64],
     scratch: &mut [f64],
     innovations: &mut Innovations,
@@ -178,8 +116,7 @@ fn levinson(
 /// last m + 1 rows are kept, and the last m whitened samples. Columns before 0 are zeros, which
 /// `scratch` must hold at the start.
 fn banded(
-    residual: &[f64],
-    template: &[f64],
+    (residual, template): (&[f64], &[f64]),
     autocovariance: &[f64],
     scratch: &mut [f64],
     innovations: &mut Innovations,
@@ -193,9 +130,8 @@ fn banded(
         for column in band.saturating_sub(i)..band {
             // Column number `column` of this row is row j = i − band + column of L.
             let pivot_row = &rows[(i + column - band) % lags * lags..][..lags];
-            let sum =
-                compensated::dot(&row[..column], &pivot_row[band - column..band], 1.0).value();
-            row[column] = (autocovariance[band - column] - sum) / pivot_row[band];
+            let sum = compensated::dot(&row[..column], &pivot_row[band - column..band], 1.0);
+            row[column] = (autocovariance[band - column] - sum.value()) / pivot_row[band];
         }
         row[..band.saturating_sub(i)].fill(0.0);
         let sum = compensated::dot(&row[..band], &row[..band], 1.0);
@@ -205,8 +141,8 @@ fn banded(
             (&mut *white_template, template[i]),
             (&mut *white_residual, residual[i]),
         ] {
-            white[band] =
-                (sample - compensated::dot(&row[..band], &white[..band], 1.0).value()) / row[band];
+            let known = compensated::dot(&row[..band], &white[..band], 1.0).value();
+            white[band] = (sample - known) / row[band];
         }
         innovations.add(white_template[band], white_residual[band]);
         white_template.copy_within(1.., 0);

@@ -7,15 +7,10 @@ use crate::stats::check::{assert_near, assert_ulps};
 use std::{vec, vec::Vec};
 extern crate std;
 
-const TEMPLATE: Channels<&[f64]> = Channels {
-    x: &[0.25, -0.5, 0.125, 0.3],
-    y: &[0.34, 0.31, 0.22, 0.05],
-};
-const RESIDUAL: Channels<&[f64]> = Channels {
-    x: &[0.3, -0.4, 0.2, 0.1],
-    y: &[0.4, 0.1, 0.3, -0.05],
-};
-const NOISE_SD: Channels<f64> = Channels { x: 0.1, y: 0.235 };
+const TEMPLATE: Channels<&[f64]> =
+    Channels::new(&[0.25, -0.5, 0.125, 0.3], &[0.34, 0.31, 0.22, 0.05]);
+const RESIDUAL: Channels<&[f64]> = Channels::new(&[0.3, -0.4, 0.2, 0.1], &[0.4, 0.1, 0.3, -0.05]);
+const NOISE_SD: Channels<f64> = Channels::new(0.1, 0.235);
 
 fn filter() -> MatchedFilter<'static> {
     MatchedFilter::new(TEMPLATE, NOISE_SD).unwrap()
@@ -45,19 +40,10 @@ fn statistic_of_a_residual() {
 #[test]
 fn statistic_of_a_record() {
     let found = theta_of_record(
-        Channels {
-            x: &[0.1, 0.05, 0.3, 0.0],
-            y: &[1.7, 1.9, 1.3, 1.6],
-        },
-        Channels {
-            x: &[0.0, 0.1, 0.2, 0.1],
-            y: &[1.6, 1.5, 1.4, 1.45],
-        },
-        Channels {
-            x: &[0.3, -0.2, 0.25, 0.15],
-            y: &[1.94, 1.8, 1.55, 1.5],
-        },
-        Channels { x: 0.07, y: 0.2 },
+        Channels::new(&[0.1, 0.05, 0.3, 0.0], &[1.7, 1.9, 1.3, 1.6]),
+        Channels::new(&[0.0, 0.1, 0.2, 0.1], &[1.6, 1.5, 1.4, 1.45]),
+        Channels::new(&[0.3, -0.2, 0.25, 0.15], &[1.94, 1.8, 1.55, 1.5]),
+        Channels::new(0.07, 0.2),
     )
     .unwrap();
     // Unrounded differences: without them F_p − F_0 alone would cost dozens of ulps.
@@ -88,22 +74,13 @@ fn long_sums_that_cancel_stay_exact() {
     let expected = (SAMPLES / 2) as f64 * 1.5 + (SAMPLES / 2) as f64 * 0.5 * big;
     let sum = crate::stats::compensated::dot(&residual, &template, 1.0).value();
     assert_ulps(sum, expected, 2.0);
-    let filter = MatchedFilter::new(
-        Channels {
-            x: &template,
-            y: &zeros,
-        },
-        Channels { x: 1.0, y: 1.0 },
-    )
-    .unwrap();
+    let filter =
+        MatchedFilter::new(Channels::new(&template, &zeros), Channels::new(1.0, 1.0)).unwrap();
     // r = Δ/2 but for one sample, which is ¼ larger where Δ = 1: Σ rΔ − ½ΣΔ² = ¼, of sums of 2^98.
     let mut halves: Vec<f64> = template.iter().map(|sample| sample / 2.0).collect();
     halves[0] += 0.25;
     let theta = filter
-        .statistic(Channels {
-            x: &halves,
-            y: &zeros,
-        })
+        .statistic(Channels::new(&halves, &zeros))
         .unwrap()
         .theta;
     assert_eq!(theta, 0.25);
@@ -149,20 +126,10 @@ fn a_million_samples_are_within_the_stated_bound_of_exact_arithmetic() {
             .map(|(r, t)| 2 * (r * t).abs() + t * t)
             .sum();
         let (template, residual) = (floats(&template), floats(&residual));
-        let unit = Channels { x: 1.0, y: 1.0 };
-        let filter = MatchedFilter::new(
-            Channels {
-                x: &template,
-                y: &zeros,
-            },
-            unit,
-        )
-        .unwrap();
+        let unit = Channels::new(1.0, 1.0);
+        let filter = MatchedFilter::new(Channels::new(&template, &zeros), unit).unwrap();
         let theta = filter
-            .statistic(Channels {
-                x: &residual,
-                y: &zeros,
-            })
+            .statistic(Channels::new(&residual, &zeros))
             .unwrap()
             .theta;
         // Twice θ is a whole number here too, and its distance from the exact one is taken in whole
@@ -196,7 +163,7 @@ fn a_difference_that_would_round_to_nothing_is_kept() {
     // Δ = 2^54 − 1 needs 54 bits and r = 2^53: 2Θ = Δ(2r − Δ) = 2^54 − 1, or 0 if Δ is rounded.
     const TOP: f64 = 9_007_199_254_740_992.0;
     let channels = |x| Channels { x, y: &[0.0][..] };
-    let unit = Channels { x: 1.0, y: 1.0 };
+    let unit = Channels::new(1.0, 1.0);
     let (observed, f0, f1) = ([1.0], [1.0 - TOP], [TOP]);
     let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
     assert_ulps(found.theta, TOP, 2.0);
@@ -217,7 +184,7 @@ fn differences_of_forces_are_not_rounded() {
     }
     let [observed, f0, f1] = [observed, f0, f1].map(|forces| floats(&forces));
     let channels = |x| Channels { x, y: &zeros[..] };
-    let unit = Channels { x: 1.0, y: 1.0 };
+    let unit = Channels::new(1.0, 1.0);
     let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
     let error = ((2.0 * found.theta) as i128 - twice).unsigned_abs() as f64;
     let bound = 2.5 * f64::EPSILON * twice.unsigned_abs() as f64 + 1e-19 * size as f64;
@@ -242,20 +209,18 @@ fn units_of_any_size_give_the_same_gamma_and_theta() {
         let (tx, ty) = (scale(TEMPLATE.x), scale(TEMPLATE.y));
         let (rx, ry) = (scale(RESIDUAL.x), scale(RESIDUAL.y));
         let filter =
-            MatchedFilter::new(Channels { x: &tx, y: &ty }, NOISE_SD.map(|sd| sd * unit)).unwrap();
+            MatchedFilter::new(Channels::new(&tx, &ty), NOISE_SD.map(|sd| sd * unit)).unwrap();
         assert_eq!(filter.gamma(), self::filter().gamma());
-        let found = filter.statistic(Channels { x: &rx, y: &ry }).unwrap();
+        let found = filter.statistic(Channels::new(&rx, &ry)).unwrap();
         let expected = self::filter().statistic(RESIDUAL).unwrap();
         assert_eq!(found.theta, expected.theta);
         assert_ulps(found.y.x, expected.y.x * unit, 1.0);
     }
     // Subnormal template and noise.
     let tiny = f64::from_bits(2);
-    let template: Channels<&[f64]> = Channels {
-        x: &[tiny, tiny],
-        y: &[tiny, -tiny],
-    };
-    let filter = MatchedFilter::new(template, Channels { x: tiny, y: tiny }).unwrap();
+    let (x, y) = ([tiny, tiny], [tiny, -tiny]);
+    let template = Channels::new(&x[..], &y);
+    let filter = MatchedFilter::new(template, Channels::new(tiny, tiny)).unwrap();
     assert_eq!(filter.gamma(), 2.0);
 }
 
@@ -263,18 +228,12 @@ fn units_of_any_size_give_the_same_gamma_and_theta() {
 #[test]
 fn channel_without_signal_contributes_nothing() {
     let filter = MatchedFilter::new(
-        Channels {
-            x: &[0.0, 0.0],
-            y: &[3.0, 4.0],
-        },
-        Channels { x: 1e-9, y: 1.0 },
+        Channels::new(&[0.0, 0.0], &[3.0, 4.0]),
+        Channels::new(1e-9, 1.0),
     );
     let filter = filter.unwrap();
     let found = filter
-        .statistic(Channels {
-            x: &[1e9, -1e9],
-            y: &[3.0, 4.0],
-        })
+        .statistic(Channels::new(&[1e9, -1e9], &[3.0, 4.0]))
         .unwrap();
     assert_eq!(found.y.x, 0.0);
     assert_eq!(found.theta, 12.5);
@@ -285,24 +244,14 @@ fn channel_without_signal_contributes_nothing() {
 #[test]
 fn records_that_cannot_be_judged_are_refused() {
     let samples = [1.0, 2.0];
-    let good: Channels<&[f64]> = Channels {
-        x: &samples,
-        y: &samples,
-    };
-    let sd = Channels { x: 1.0, y: 1.0 };
+    let good: Channels<&[f64]> = Channels::new(&samples, &samples);
+    let sd = Channels::new(1.0, 1.0);
     assert_eq!(
-        MatchedFilter::new(Channels { x: &[], y: &[] }, sd).unwrap_err(),
+        MatchedFilter::new(Channels::new(&[], &[]), sd).unwrap_err(),
         DetectError::Empty { what: "template_x" }
     );
     assert_eq!(
-        MatchedFilter::new(
-            Channels {
-                x: &samples,
-                y: &[1.0]
-            },
-            sd
-        )
-        .unwrap_err(),
+        MatchedFilter::new(Channels::new(&samples, &[1.0]), sd).unwrap_err(),
         DetectError::LengthMismatch {
             what: "template_y",
             expected: 2,
@@ -316,10 +265,7 @@ fn records_that_cannot_be_judged_are_refused() {
         let statistic = |x, y| filter.statistic(Channels { x, y }).unwrap_err();
         assert_eq!(statistic(&bad, &samples), expected("residual_x"));
         assert_eq!(statistic(&samples, &bad), expected("residual_y"));
-        let template = Channels {
-            x: &samples[..],
-            y: &bad,
-        };
+        let template = Channels::new(&samples[..], &bad);
         assert_eq!(
             MatchedFilter::new(template, sd).unwrap_err(),
             expected("template_y")
@@ -338,7 +284,7 @@ fn records_that_cannot_be_judged_are_refused() {
         }
     }
     for bad in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let found = MatchedFilter::new(good, Channels { x: 1.0, y: bad }).unwrap_err();
+        let found = MatchedFilter::new(good, Channels::new(1.0, bad)).unwrap_err();
         assert!(matches!(
             found,
             DetectError::OutOfRange {
@@ -347,15 +293,15 @@ fn records_that_cannot_be_judged_are_refused() {
             }
         ));
     }
-    let found = MatchedFilter::new(
-        Channels {
-            x: &[1e300],
-            y: &[0.0],
-        },
-        Channels { x: 1e-300, y: 1.0 },
-    );
+    let found = MatchedFilter::new(Channels::new(&[1e300], &[0.0]), Channels::new(1e-300, 1.0));
     assert_eq!(found.unwrap_err(), DetectError::Overflow { what: "gamma" });
 }
+
+const fn costs(c00: f64, c01: f64, c10: f64, c11: f64) -> Costs {
+    Costs { c00, c01, c10, c11 }
+}
+
+const ZERO_ONE: Costs = costs(0.0, 1.0, 1.0, 0.0);
 
 // Verifies: DET-022.
 #[test]
@@ -378,36 +324,21 @@ fn threshold_of_largest_posterior() {
 // Verifies: DET-023.
 #[test]
 fn threshold_of_least_cost() {
-    let costs = Costs {
-        c00: 1.0,
-        c01: 500.0,
-        c10: 20.0,
-        c11: 5.0,
-    };
+    let costs = costs(1.0, 500.0, 20.0, 5.0);
     // The sum of two logarithms of about 3.9 and −3.3: four roundings of 4.
     assert_near(
         bayes_threshold(0.02, costs).unwrap(),
         0.6317015147083768,
         16.0 * f64::EPSILON,
     );
-    let zero_one = Costs {
-        c00: 0.0,
-        c01: 1.0,
-        c10: 1.0,
-        c11: 0.0,
-    };
-    assert_eq!(bayes_threshold(0.02, zero_one), map_threshold(0.02));
+    assert_eq!(bayes_threshold(0.02, ZERO_ONE), map_threshold(0.02));
 }
 
 // Verifies: DET-023.
 #[test]
 fn a_bayes_threshold_is_accurate_for_costs_almost_equal_and_far_apart() {
-    let threshold = |false_alarm, miss| {
-        let (c00, c11) = (0.0, 0.0);
-        let (c10, c01) = (false_alarm, miss);
-        let costs = Costs { c00, c01, c10, c11 };
-        bayes_threshold(0.5, costs).unwrap()
-    };
+    let threshold =
+        |false_alarm, miss| bayes_threshold(0.5, costs(0.0, miss, false_alarm, 0.0)).unwrap();
     // ln(1 + 2⁻⁴⁰) = 2⁻⁴⁰ − 2⁻⁸¹ + …; the difference of two logarithms would be off by 10⁻¹⁵.
     let almost = 1024.0 * (1.0 + f64::powi(2.0, -40));
     assert_near(threshold(almost, 1024.0), 9.094947017725146e-13, 1e-27);
@@ -420,16 +351,10 @@ fn a_bayes_threshold_is_accurate_for_costs_almost_equal_and_far_apart() {
 // Verifies: DET-024, DET-025.
 #[test]
 fn thresholds_of_neyman_and_pearson() {
-    assert_ulps(
-        neyman_pearson_miss_threshold(2.5, 0.05).unwrap(),
-        -0.9871340673786817,
-        8.0,
-    );
-    assert_ulps(
-        neyman_pearson_false_alarm_threshold(2.5, 0.001).unwrap(),
-        4.600580765419534,
-        8.0,
-    );
+    let by_miss = neyman_pearson_miss_threshold(2.5, 0.05).unwrap();
+    assert_ulps(by_miss, -0.9871340673786817, 8.0);
+    let by_false_alarm = neyman_pearson_false_alarm_threshold(2.5, 0.001).unwrap();
+    assert_ulps(by_false_alarm, 4.600580765419534, 8.0);
 }
 
 // Verifies: DET-026.
@@ -453,34 +378,15 @@ fn rates_of_error_at_a_threshold() {
         assert_ulps(rates.miss, miss, ulps(eta / gamma - gamma / 2.0));
     }
     // Θ ≡ 0 decides by equation (9) alone.
-    assert_eq!(
-        error_rates(0.0, 0.0),
-        Ok(ErrorRates {
-            false_alarm: 1.0,
-            miss: 0.0
-        })
-    );
-    assert_eq!(
-        error_rates(0.0, 1e-300),
-        Ok(ErrorRates {
-            false_alarm: 0.0,
-            miss: 1.0
-        })
-    );
-    assert_eq!(
-        error_rates(1e-300, f64::MAX),
-        Ok(ErrorRates {
-            false_alarm: 0.0,
-            miss: 1.0
-        })
-    );
-    assert_eq!(
-        error_rates(f64::MAX, 1.0),
-        Ok(ErrorRates {
-            false_alarm: 0.0,
-            miss: 0.0
-        })
-    );
+    for (gamma, eta, false_alarm, miss) in [
+        (0.0, 0.0, 1.0, 0.0),
+        (0.0, 1e-300, 0.0, 1.0),
+        (1e-300, f64::MAX, 0.0, 1.0),
+        (f64::MAX, 1.0, 0.0, 0.0),
+    ] {
+        let expected = ErrorRates { false_alarm, miss };
+        assert_eq!(error_rates(gamma, eta), Ok(expected), "{gamma} {eta}");
+    }
 }
 
 // Verifies: DET-027, DET-028.
@@ -553,17 +459,8 @@ fn the_threshold_itself_decides_for_an_inclusion() {
 #[test]
 fn questions_without_a_finite_answer_are_refused() {
     for p in [0.0, 1.0, -0.1, 1.5, f64::NAN] {
-        let costs = Costs {
-            c00: 0.0,
-            c01: 1.0,
-            c10: 1.0,
-            c11: 0.0,
-        };
-        assert!(
-            map_threshold(p).is_err()
-                && bayes_threshold(p, costs).is_err()
-                && posterior(0.0, p).is_err()
-        );
+        assert!(map_threshold(p).is_err() && posterior(0.0, p).is_err());
+        assert!(bayes_threshold(p, ZERO_ONE).is_err());
         assert!(neyman_pearson_miss_threshold(1.0, p).is_err());
         assert!(neyman_pearson_false_alarm_threshold(1.0, p).is_err());
         assert!(required_gamma(p, 0.1).is_err() && required_gamma(0.1, p).is_err());
@@ -592,18 +489,7 @@ fn questions_without_a_finite_answer_are_refused() {
         (f64::INFINITY, 1.0),
         (1.0, f64::NAN),
     ] {
-        assert!(
-            bayes_threshold(
-                0.5,
-                Costs {
-                    c00: 0.0,
-                    c01,
-                    c10,
-                    c11: 0.0
-                }
-            )
-            .is_err()
-        );
+        assert!(bayes_threshold(0.5, costs(0.0, c01, c10, 0.0)).is_err());
     }
 }
 

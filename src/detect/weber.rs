@@ -1,20 +1,12 @@
 //! Noise that grows with the force, as Weber's law has it for touch (paper §5): the exact
 //! likelihood ratio of two heteroscedastic Gaussian hypotheses.
 
-use super::error::{check_not_negative, check_positive, check_samples, representable};
 use super::{Channels, DetectError};
 use crate::stats::compensated::{self, DoubleDouble};
+use crate::stats::error::{check_not_negative, check_positive, representable};
 
 /// The variance of one sample is floor² + (fraction · F)², where F is the force that the hypothesis
 /// expects.
-///
-/// ```
-/// use palpate::detect::weber::WeberNoise;
-///
-/// let noise = WeberNoise { floor: 0.03, fraction: 0.1 };
-/// assert_eq!(noise.sd(0.0), 0.03);
-/// assert!((noise.sd(0.4) - 0.05).abs() < 1e-15);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeberNoise {
     /// The standard deviation at force 0, N.
@@ -24,41 +16,12 @@ pub struct WeberNoise {
 }
 
 impl WeberNoise {
-    fn check(self) -> Result<Self, DetectError> {
-        check_positive("floor", self.floor)?;
-        check_not_negative("fraction", self.fraction)?;
-        Ok(self)
-    }
-
     /// The standard deviation of a sample at a force, N.
     ///
     /// Implements: DET-080.
     pub fn sd(&self, force: f64) -> f64 {
         libm::hypot(self.floor, self.fraction * force)
     }
-}
-
-/// Mean and variance of Θ under either hypothesis. Θ is not normal; far tails need simulation, or
-/// e^−η bounds.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::weber::{WeberNoise, weber_moments};
-///
-/// let (f0, f1) = (Channels { x: &[0.0][..], y: &[1.0] }, Channels { x: &[0.0][..], y: &[1.5] });
-/// let noise = WeberNoise { floor: 0.25, fraction: 0.2 };
-/// let moments = weber_moments(f0, f1, Channels { x: noise, y: noise })?;
-/// // The means are those of a likelihood ratio: below 0 without an inclusion, above 0 with one.
-/// assert!(moments.mean[0] < 0.0 && 0.0 < moments.mean[1]);
-/// assert!(moments.variance[0] != moments.variance[1]);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WeberMoments {
-    /// Mean under H = 0 and under H = 1.
-    pub mean: [f64; 2],
-    /// Variance under H = 0 and under H = 1.
-    pub variance: [f64; 2],
 }
 
 /// Θ = Σ_c Σ_i ½[(F_p − F_0)²/v_0 − (F_p − F_1)²/v_1 + ln(v_0/v_1)] with v_h = floor² + (fraction
@@ -87,91 +50,27 @@ pub fn theta_weber(
     f1: Channels<&[f64]>,
     noise: Channels<WeberNoise>,
 ) -> Result<f64, DetectError> {
-    check_samples("observed_x", observed.x, f0.x.len())?;
-    check_samples("observed_y", observed.y, f0.x.len())?;
-    check_hypotheses(f0, f1, noise)?;
-    let theta = observed
-        .zip(f0.zip(f1))
-        .zip(noise)
-        .map(|((observed, (f0, f1)), noise)| {
-            compensated::sum(observed.len(), |i| {
-                let (sd0, sd1) = (noise.sd(f0[i]), noise.sd(f1[i]));
-                // Both quotients may be large and nearly equal: (z0 − z1)(z0 + z1) keeps the digits
-                // of z0 − z1.
-                let z0 = (observed[i] - f0[i]) / sd0;
-                let z1 = (observed[i] - f1[i]) / sd1;
-                let half = DoubleDouble::product(0.5 * (z0 - z1), z0 + z1);
-                half.plus(DoubleDouble::new(log_ratio(sd0, sd1), 0.0))
-            })
-        });
-    representable("theta", theta.x.plus(theta.y).value())
-}
-
-/// The exact mean and variance of Θ under both hypotheses.
-///
-/// ```
-/// use palpate::detect::Channels;
-/// use palpate::detect::weber::{WeberNoise, weber_moments};
-///
-/// // Without a Weber fraction, Θ ~ N(∓γ²/2, γ²) with γ = 2.
-/// let (f0, f1) = (Channels { x: &[0.0][..], y: &[1.0] }, Channels { x: &[0.0][..], y: &[1.5] });
-/// let noise = WeberNoise { floor: 0.25, fraction: 0.0 };
-/// let moments = weber_moments(f0, f1, Channels { x: noise, y: noise })?;
-/// assert_eq!((moments.mean, moments.variance), ([-2.0, 2.0], [4.0, 4.0]));
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
-/// # Errors
-/// As [`theta_weber`].
-///
-/// Implements: DET-082.
-pub fn weber_moments(
-    f0: Channels<&[f64]>,
-    f1: Channels<&[f64]>,
-    noise: Channels<WeberNoise>,
-) -> Result<WeberMoments, DetectError> {
-    check_hypotheses(f0, f1, noise)?;
-    let mut mean = [0.0; 2];
-    let mut variance = [0.0; 2];
-    for (f0, f1, noise) in [(f0.x, f1.x, noise.x), (f0.y, f1.y, noise.y)] {
-        for (&f0, &f1) in f0.iter().zip(f1) {
-            let (sd0, sd1) = (noise.sd(f0), noise.sd(f1));
-            let ratio = (sd0 / sd1) * (sd0 / sd1);
-            let (shift0, shift1) = ((f1 - f0) / sd0, (f1 - f0) / sd1);
-            let logarithm = log_ratio(sd0, sd1);
-            // Under H = 0, n ~ N(0, v0): ½[n²/v0 − (n − Δ)²/v1] is quadratic in n, and n and n² are
-            // uncorrelated.
-            mean[0] += 0.5 * ((1.0 - ratio) - shift1 * shift1) + logarithm;
-            mean[1] += 0.5 * ((1.0 / ratio - 1.0) + shift0 * shift0) + logarithm;
-            variance[0] += 0.5 * (1.0 - ratio) * (1.0 - ratio) + ratio * shift1 * shift1;
-            variance[1] +=
-                0.5 * (1.0 / ratio - 1.0) * (1.0 / ratio - 1.0) + shift0 * shift0 / ratio;
-        }
-    }
-    for moment in mean.iter().chain(&variance) {
-        representable("moment", *moment)?;
-    }
-    Ok(WeberMoments { mean, variance })
-}
-
-/// ln(a/b), accurate near 1.
-fn log_ratio(a: f64, b: f64) -> f64 {
-    libm::log1p((a - b) / b)
-}
-
-fn check_hypotheses(
-    f0: Channels<&[f64]>,
-    f1: Channels<&[f64]>,
-    noise: Channels<WeberNoise>,
-) -> Result<(), DetectError> {
     let samples = f0.x.len();
-    check_samples("f0_x", f0.x, samples)?;
-    check_samples("f0_y", f0.y, samples)?;
-    check_samples("f1_x", f1.x, samples)?;
-    check_samples("f1_y", f1.y, samples)?;
-    noise.x.check()?;
-    noise.y.check()?;
-    Ok(())
+    observed.check("observed_x", "observed_y", samples)?;
+    f0.check("f0_x", "f0_y", samples)?;
+    f1.check("f1_x", "f1_y", samples)?;
+    for noise in noise.into_array() {
+        check_positive("floor", noise.floor)?;
+        check_not_negative("fraction", noise.fraction)?;
+    }
+    let forces = observed.zip(f0.zip(f1)).zip(noise);
+    let theta = forces.map(|((observed, (f0, f1)), noise)| {
+        compensated::sum(samples, |i| {
+            let (sd0, sd1) = (noise.sd(f0[i]), noise.sd(f1[i]));
+            // Both quotients may be large and nearly equal: (z0 − z1)(z0 + z1) keeps the digits of z0 − z1.
+            let z0 = (observed[i] - f0[i]) / sd0;
+            let z1 = (observed[i] - f1[i]) / sd1;
+            let half = DoubleDouble::product(0.5 * (z0 - z1), z0 + z1);
+            // ln(sd0/sd1), accurate near 1.
+            half.plus(DoubleDouble::new(libm::log1p((sd0 - sd1) / sd1), 0.0))
+        })
+    });
+    representable("theta", theta.x.plus(theta.y).value())
 }
 
 #[cfg(test)]

@@ -7,25 +7,13 @@ use super::element::StiffnessRule;
 use super::mesh::Mesh;
 use super::ordering::dissection;
 use crate::phantom::Phantom;
+use crate::refusal::Refusal;
 
 /// In place of the unknown of a displacement that is held.
 const HELD: u32 = u32::MAX;
 
 /// Upper triangle of the stiffness matrix, N/m for the whole probe length. Its unknowns are the displacements that no wall or
 /// floor holds: those below the surface in the order of elimination, then those at the surface from left to right.
-///
-/// ```
-/// use palpate::fem::assembly::StiffnessMatrix;
-/// use palpate::fem::Mesh;
-/// use palpate::phantom::Phantom;
-///
-/// let phantom = Phantom::builtin("6.6")?;
-/// let mesh = Mesh::new(&phantom, 2e-3)?;
-/// let matrix = StiffnessMatrix::assemble(&mesh, &phantom)?;
-/// assert_eq!(matrix.unknown(mesh.surface[0], 1), None); // held by the wall
-/// assert_eq!(matrix.unknown(mesh.surface[1], 0), Some(matrix.first_surface_unknown));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 ///
 /// Implements: FEM-006.
 #[derive(Debug, Clone)]
@@ -47,7 +35,7 @@ impl StiffnessMatrix {
     /// Assembles the stiffness of a meshed phantom.
     ///
     /// # Errors
-    /// [`FemError::Degenerate`] if an element is turned inside out; [`FemError::OutOfMemory`].
+    /// [`FemError::Refused`] if an element is turned inside out; [`FemError::OutOfMemory`].
     ///
     /// Implements: FEM-081, CON-005.
     pub fn assemble(mesh: &Mesh, phantom: &Phantom) -> Result<StiffnessMatrix, FemError> {
@@ -71,13 +59,13 @@ impl StiffnessMatrix {
         for (index, nodes) in mesh.elements().enumerate() {
             let positions = mesh.positions(nodes);
             let material = mesh.regions[index].material(phantom);
-            let stiffness =
-                rule.integrate(&positions, material)
-                    .map_err(|jacobian| FemError::Degenerate {
-                        element: index,
-                        at: positions[0],
-                        jacobian,
-                    })?;
+            let stiffness = rule.integrate(&positions, material).map_err(|jacobian| {
+                let [x, y] = positions[0].map(|x| x * 1e3);
+                let found = format!(
+                    "element {index} near x = {x:.3} mm, y = {y:.3} mm has the Jacobian {jacobian:e}: the mesh cannot follow this phantom; try a finer mesh"
+                );
+                Refusal::state(found, "")
+            })?;
             let row_of = |k: usize| unknown[nodes[k / 2] as usize][k % 2];
             for k in 0..2 * nodes.len() {
                 let column = row_of(k);
@@ -119,19 +107,39 @@ impl StiffnessMatrix {
         (unknown != HELD).then_some(unknown as usize)
     }
 
-    /// `out −= K x` for `W` vectors at once, one row of `W` numbers per unknown.
-    pub(super) fn subtract_product<const W: usize>(&self, x: &[[f64; W]], out: &mut [[f64; W]]) {
+    /// f − K u for `W` displacement fields and `W` loads at once, one row of `W` numbers per unknown, and its size
+    /// ‖f − K u‖ / ‖f‖ in each; absolute, N, where there is no load.
+    pub(super) fn residual<const W: usize>(
+        &self,
+        u: &[[f64; W]],
+        force: &[[f64; W]],
+    ) -> (Vec<[f64; W]>, [f64; W]) {
+        let mut residual = force.to_vec();
         for j in 0..self.unknowns() {
             for (i, &value) in self.upper.row_idx_of_col(j).zip(self.upper.val_of_col(j)) {
                 for w in 0..W {
-                    out[i][w] -= value * x[j][w];
+                    residual[i][w] -= value * u[j][w];
                 }
                 if i != j {
                     for w in 0..W {
-                        out[j][w] -= value * x[i][w];
+                        residual[j][w] -= value * u[i][w];
                     }
                 }
             }
         }
+        let [left, loads] = [&residual, force].map(|rows| {
+            let mut squares = [0.0; W];
+            for row in rows {
+                for w in 0..W {
+                    squares[w] += row[w] * row[w];
+                }
+            }
+            squares.map(libm::sqrt)
+        });
+        let relative = core::array::from_fn(|w| match loads[w] {
+            0.0 => left[w],
+            load => left[w] / load,
+        });
+        (residual, relative)
     }
 }

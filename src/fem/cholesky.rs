@@ -16,6 +16,7 @@ use faer::{Conj, Mat, MatMut, Par, Side};
 
 use super::FemError;
 use super::assembly::StiffnessMatrix;
+use crate::refusal::Refusal;
 
 /// The largest relative residual ‖f − K u‖ / ‖f‖ that a solve may leave.
 pub const RESIDUAL_LIMIT: f64 = 1e-8;
@@ -41,7 +42,7 @@ impl Factor {
     /// Implements: FEM-006, FEM-037.
     ///
     /// # Errors
-    /// [`FemError::NotPositiveDefinite`], [`FemError::OutOfMemory`].
+    /// [`FemError::Refused`] if it is not positive definite in double precision, [`FemError::OutOfMemory`].
     pub fn new(matrix: &StiffnessMatrix) -> Result<Factor, FemError> {
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
@@ -68,7 +69,10 @@ impl Factor {
                 MemStack::new(&mut memory),
                 Default::default(),
             )
-            .map_err(|_| FemError::NotPositiveDefinite)?;
+            .map_err(|_| {
+                let found = "the stiffness matrix is not positive definite in double precision: moduli or sizes differ by too many orders of magnitude";
+                Refusal::state(found, "")
+            })?;
         let mut factor = Factor {
             symbolic: Arc::new(symbolic),
             values,
@@ -143,16 +147,17 @@ impl Factor {
         matrix: &StiffnessMatrix,
         force: &[f64],
     ) -> Result<(Vec<f64>, f64), FemError> {
+        let force = force.as_chunks::<1>().0;
         let mut u = force.to_vec();
-        self.solve_once(&mut u)?;
-        let mut correction = residual(matrix, &u, force);
-        self.solve_once(&mut correction)?;
-        for (u, correction) in u.iter_mut().zip(&correction) {
+        self.solve_once(u.as_flattened_mut())?;
+        let (mut correction, _) = matrix.residual(&u, force);
+        self.solve_once(correction.as_flattened_mut())?;
+        for ([u], [correction]) in u.iter_mut().zip(&correction) {
             *u += correction;
         }
-        let left = relative(&residual(matrix, &u, force), force);
+        let (_, [left]) = matrix.residual(&u, force);
         check_residual(left)?;
-        Ok((u, left))
+        Ok((u.into_flattened(), left))
     }
 
     fn solve_once(&self, rhs: &mut [f64]) -> Result<(), FemError> {
@@ -185,24 +190,6 @@ impl Factor {
         let mut memory = scratch(factor.symbolic().solve_in_place_scratch::<f64>(W, Par::Seq))?;
         factor.l_transpose_solve_with_conj(Conj::No, u, Par::Seq, MemStack::new(&mut memory));
         Ok(())
-    }
-}
-
-/// f − K u.
-fn residual(matrix: &StiffnessMatrix, u: &[f64], force: &[f64]) -> Vec<f64> {
-    let single = |x: &[f64]| x.iter().map(|&x| [x]).collect::<Vec<_>>();
-    let mut out = single(force);
-    matrix.subtract_product(&single(u), &mut out);
-    out.into_iter().map(|[x]| x).collect()
-}
-
-fn relative(residual: &[f64], force: &[f64]) -> f64 {
-    let norm = |v: &[f64]| libm::sqrt(v.iter().map(|x| x * x).sum());
-    let (residual, force) = (norm(residual), norm(force));
-    if force == 0.0 {
-        residual
-    } else {
-        residual / force
     }
 }
 

@@ -4,6 +4,8 @@
 //! points. Each point i obeys gap_i ≥ 0, λ_i ≥ 0, λ_i gap_i = 0, and carries the force λ_i n_i. With the probe's true normal at the
 //! deformed point, n turns with u: Newton's method needs the curvature term λ (I − n nᵀ)/r.
 
+mod state;
+
 use std::ops::Range;
 
 use faer::linalg::solvers::{Llt, Solve};
@@ -14,15 +16,9 @@ use nalgebra::Vector2;
 use super::mesh::Mesh;
 use super::{FemError, Pose};
 use crate::phantom::Probe;
+pub use state::ContactState;
 
 /// How the gap between a surface node and the probe is measured.
-///
-/// ```
-/// use palpate::fem::Contact;
-///
-/// assert_eq!(Contact::default(), Contact::DeformedNormal);
-/// assert_eq!(Contact::VerticalGap.name(), "vertical-gap");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Contact {
     /// Distance of the deformed node from the circle, force along the circle's normal there: the default.
@@ -36,7 +32,6 @@ pub enum Contact {
 
 impl Contact {
     /// The name on the command line and in files.
-    ///
     pub fn name(self) -> &'static str {
         match self {
             Contact::DeformedNormal => "deformed-normal",
@@ -70,6 +65,20 @@ struct Constraint {
     curvature: f64,
 }
 
+impl Constraint {
+    fn normal(&self) -> Vector2<f64> {
+        self.normal
+    }
+
+    /// The normal turned by a quarter.
+    fn tangent(&self) -> Vector2<f64> {
+        Vector2::new(-self.normal.y, self.normal.x)
+    }
+}
+
+/// A direction at a point in contact.
+type Direction = fn(&Constraint) -> Vector2<f64>;
+
 /// The surface of a phantom, ready for contact.
 ///
 /// Implements: FEM-009, FEM-023, FEM-032.
@@ -90,57 +99,6 @@ pub struct Surface {
     pub contact: Contact,
 }
 
-/// Surface displacements and contact forces at one pose.
-///
-/// Implements: FEM-010.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ContactState {
-    /// Displacement of each contact point, m.
-    pub displacements: Vec<[f64; 2]>,
-    /// λ of each contact point, N; zero off the contact.
-    pub pressures: Vec<f64>,
-    /// Points in contact, ascending.
-    pub active: Vec<usize>,
-    /// Iterations spent on this pose.
-    pub iterations: usize,
-}
-
-impl ContactState {
-    /// The untouched surface.
-    pub fn untouched(points: usize) -> ContactState {
-        ContactState {
-            displacements: vec![[0.0; 2]; points],
-            pressures: vec![0.0; points],
-            active: Vec::new(),
-            iterations: 0,
-        }
-    }
-
-    /// Where the state goes if it keeps changing as it did since `earlier`, `ahead` times as far.
-    pub fn extrapolated(&self, earlier: &ContactState, ahead: f64) -> ContactState {
-        let on = |now: f64, then: f64| now + ahead * (now - then);
-        let mut state = self.clone();
-        let then = earlier.displacements.as_flattened();
-        for (u, &then) in state.displacements.as_flattened_mut().iter_mut().zip(then) {
-            *u = on(*u, then);
-        }
-        for &point in &state.active {
-            state.pressures[point] = on(state.pressures[point], earlier.pressures[point]).max(0.0);
-        }
-        state
-    }
-
-    /// The state of the mirror image.
-    pub(super) fn mirrored(mut self) -> ContactState {
-        let last = self.pressures.len() - 1;
-        self.displacements.reverse();
-        self.displacements.iter_mut().for_each(|u| u[0] = -u[0]);
-        self.pressures.reverse();
-        self.active = self.active.iter().rev().map(|i| last - i).collect();
-        self
-    }
-}
-
 /// Newton's matrix for increments of λ and of each point's slip b along its tangent t, factorised. With δu = −gap n + b t,
 /// u = C (n λ) linearised and projected on n and t reads
 ///
@@ -150,7 +108,8 @@ impl ContactState {
 /// Q = C_tt − WᵀW, W = L⁻¹ C_nt. With D^½ on both sides it is symmetric, and positive definite where the contact is stable.
 #[derive(Debug)]
 struct Tangent {
-    normals: Vec<Vector2<f64>>,
+    /// Those of the state at which it was built.
+    constraints: Vec<Constraint>,
     /// Factor of C_nn.
     pushed: Llt<f64>,
     /// C_tn.
@@ -167,12 +126,12 @@ impl Tangent {
     /// Increments of λ, and slips, that mend the mismatch u − C (n λ) of the points in contact, m. `None` if an
     /// increment is not finite.
     fn solve(&self, mismatch: &[Vector2<f64>]) -> Option<(Col<f64>, Col<f64>)> {
-        let along = |direction: fn(Vector2<f64>) -> Vector2<f64>| {
-            let project = |k: usize| direction(self.normals[k]).dot(&mismatch[k]);
+        let along = |direction: Direction| {
+            let project = |k: usize| direction(&self.constraints[k]).dot(&mismatch[k]);
             Col::from_fn(mismatch.len(), project)
         };
         let scaled = |x: &Col<f64>| Col::from_fn(x.nrows(), |k| self.roots[k] * x[k]);
-        let (normal, tangential) = (along(|n| n), along(tangent));
+        let (normal, tangential) = (along(Constraint::normal), along(Constraint::tangent));
         let r = &self.across * self.pushed.solve(&normal) - tangential;
         // b = r + Q D^½ (I − D^½ Q D^½)⁻¹ D^½ r.
         let slips = &r + &self.slid * scaled(&self.slip.solve(scaled(&r)));
@@ -194,11 +153,6 @@ fn nodes_of(point: usize) -> [(usize, f64); 3] {
         (first + 1, 1.0 - x * x),
         (first + 2, 0.5 * x * (x + 1.0)),
     ]
-}
-
-/// The tangent to a normal: n turned by a quarter.
-fn tangent(n: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(-n.y, n.x)
 }
 
 impl Surface {
@@ -365,16 +319,13 @@ impl Surface {
     /// gap, and the displacements under them. `None` if C_nn is singular or a point lies on the probe's axis.
     fn settle(&self, state: &mut ContactState, pose: Pose, reach: Range<usize>) -> Option<()> {
         let constraints = self.constraints(state, pose)?;
-        let normals: Vec<Vector2<f64>> = constraints.iter().map(|c| c.normal).collect();
-        let pushed = self.between(&state.active, &normals, &normals);
+        let pushed = self.between(state, &constraints, [Constraint::normal; 2]);
         let onto = |k: usize| {
             let u = Vector2::from(state.displacements[state.active[k]]);
-            normals[k].dot(&u) - constraints[k].gap
+            constraints[k].normal.dot(&u) - constraints[k].gap
         };
-        let pressures = pushed
-            .llt(Side::Lower)
-            .ok()?
-            .solve(Col::from_fn(normals.len(), onto));
+        let onto = Col::from_fn(constraints.len(), onto);
+        let pressures = pushed.llt(Side::Lower).ok()?.solve(onto);
         for (&i, pressure) in state.active.iter().zip(pressures.iter()) {
             state.pressures[i] = *pressure;
         }
@@ -383,13 +334,21 @@ impl Surface {
     }
 
     /// Displacements of the points in contact along one direction each, per force along another, m/N.
-    fn between(&self, active: &[usize], of: &[Vector2<f64>], by: &[Vector2<f64>]) -> Mat<f64> {
-        let mut compliance = Mat::zeros(active.len(), active.len());
-        for (b, &j) in active.iter().enumerate() {
+    fn between(
+        &self,
+        state: &ContactState,
+        constraints: &[Constraint],
+        [of, by]: [Direction; 2],
+    ) -> Mat<f64> {
+        let places = || state.active.iter().zip(constraints);
+        let mut compliance = Mat::zeros(constraints.len(), constraints.len());
+        for (column, (&j, constraint)) in places().enumerate() {
             let [by_x, by_y] = [0, 1].map(|k| self.compliance.col_as_slice(2 * j + k));
-            let u = |row| by_x[row] * by[b].x + by_y[row] * by[b].y;
-            let column = compliance.col_as_slice_mut(b).iter_mut();
-            for ((to, of), &i) in column.zip(of).zip(active) {
+            let by = by(constraint);
+            let u = |row| by_x[row] * by.x + by_y[row] * by.y;
+            let column = compliance.col_as_slice_mut(column).iter_mut();
+            for (to, (&i, constraint)) in column.zip(places()) {
+                let of = of(constraint);
                 *to = of.x * u(2 * i) + of.y * u(2 * i + 1);
             }
         }
@@ -403,14 +362,14 @@ impl Surface {
     fn tangent(&self, state: &ContactState, pose: Pose) -> Option<Tangent> {
         let m = state.active.len();
         let constraints = self.constraints(state, pose)?;
-        let normals: Vec<Vector2<f64>> = constraints.iter().map(|c| c.normal).collect();
-        let tangents: Vec<Vector2<f64>> = normals.iter().map(|&n| tangent(n)).collect();
-        let pushed = self
-            .between(&state.active, &normals, &normals)
-            .llt(Side::Lower)
-            .ok()?;
-        let across = self.between(&state.active, &tangents, &normals);
-        let mut slid = self.between(&state.active, &tangents, &tangents);
+        let (normal, tangent) = (
+            Constraint::normal as Direction,
+            Constraint::tangent as Direction,
+        );
+        let between = |of, by| self.between(state, &constraints, [of, by]);
+        let pushed = between(normal, normal).llt(Side::Lower).ok()?;
+        let across = between(tangent, normal);
+        let mut slid = between(tangent, tangent);
         let mut w = across.transpose().to_owned();
         solve_lower_triangular_in_place(pushed.L(), w.as_mut(), Par::Seq);
         slid -= w.transpose() * &w;
@@ -422,7 +381,7 @@ impl Surface {
             unit - roots[a] * slid[(a, b)] * roots[b]
         });
         Some(Tangent {
-            normals,
+            constraints,
             pushed,
             across,
             roots,
@@ -457,7 +416,7 @@ impl Surface {
         let (pressures, slips) = system.solve(&mismatch)?;
         let mut largest = 0.0f64;
         for (a, (&i, constraint)) in pairs.enumerate() {
-            let step = slips[a] * tangent(constraint.normal) - constraint.gap * constraint.normal;
+            let step = slips[a] * constraint.tangent() - constraint.gap * constraint.normal;
             largest = largest.max(step.amax());
             state.displacements[i] = (Vector2::from(state.displacements[i]) + step).into();
             state.pressures[i] += pressures[a];

@@ -3,19 +3,12 @@
 use super::FemError;
 use super::assembly::StiffnessMatrix;
 use super::cholesky::Factor;
-use super::element::{NODES, PerNode, gradients, parent_gradients, sampling_rule};
+use super::element::{NODES, PerNode, SAMPLES, gradients, parent_gradients};
 use super::mesh::Mesh;
 use super::size::SizeField;
 
 /// How many poses are checked at once: the factor is read from memory once for all of them.
 pub(super) const BATCH: usize = 24;
-
-/// Loads on the surface and displacements of it for up to [`BATCH`] poses, one column each.
-#[derive(Debug, Clone)]
-pub(super) struct Batch {
-    displacements: Vec<[f64; BATCH]>,
-    forces: Vec<[f64; BATCH]>,
-}
 
 /// Checks on the displacement field of one pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,9 +43,8 @@ pub(super) struct Sample {
 
 /// The sampling points of all elements in turn.
 pub(super) fn samples(mesh: &Mesh, matrix: &StiffnessMatrix, size: &SizeField) -> Vec<Sample> {
-    let rule = sampling_rule();
     let zeros = matrix.unknowns();
-    let mut samples = Vec::with_capacity(mesh.regions.len() * rule.len());
+    let mut samples = Vec::with_capacity(mesh.regions.len() * SAMPLES.len());
     for nodes in mesh.elements() {
         let positions = mesh.positions(nodes);
         let mut rows = [[zeros as u32; 2]; NODES];
@@ -60,7 +52,7 @@ pub(super) fn samples(mesh: &Mesh, matrix: &StiffnessMatrix, size: &SizeField) -
             let unknown = |direction| matrix.unknown(node as usize, direction).unwrap_or(zeros);
             *row = [unknown(0) as u32, unknown(1) as u32];
         }
-        samples.extend(rule.map(|(at, _)| Sample {
+        samples.extend(SAMPLES.map(|at| Sample {
             shape: gradients(&parent_gradients(at), &positions).of_node,
             rows,
             singular: size.singular(positions[0].into()),
@@ -92,90 +84,57 @@ pub(super) fn determinant(gradient: [[f64; 2]; 2]) -> f64 {
     (1.0 + gradient[0][0]) * (1.0 + gradient[1][1]) - gradient[0][1] * gradient[1][0]
 }
 
-impl Batch {
-    /// An empty batch for a matrix of `unknowns` rows.
-    pub(super) fn new(unknowns: usize) -> Batch {
-        // One more row than unknowns: the zeros of the fixed nodes.
-        Batch {
-            displacements: vec![[0.0; BATCH]; unknowns + 1],
-            forces: vec![[0.0; BATCH]; unknowns],
-        }
-    }
-
-    /// Puts the surface displacements and loads of a pose into `column`; below the surface no pose has a load.
-    pub(super) fn set(
-        &mut self,
-        column: usize,
-        matrix: &StiffnessMatrix,
-        displacements: &[[f64; 2]],
-        forces: &[[f64; 2]],
-    ) {
-        let nodes = displacements
-            .as_flattened()
-            .iter()
-            .zip(forces.as_flattened());
-        for (place, (u, force)) in matrix.surface.iter().zip(nodes) {
+/// Fills in and checks the fields of up to [`BATCH`] poses, given by displacements and loads of the nodes at the surface; below
+/// it no pose has a load.
+///
+/// Implements: FEM-008, FEM-013.
+pub(super) fn check(
+    matrix: &StiffnessMatrix,
+    factor: &Factor,
+    samples: &[Sample],
+    poses: &[(Vec<[f64; 2]>, Vec<[f64; 2]>)],
+) -> Result<Vec<FieldCheck>, FemError> {
+    let unknowns = matrix.unknowns();
+    // One more row than unknowns: the zeros of what is held.
+    let mut displacements = vec![[0.0; BATCH]; unknowns + 1];
+    let mut forces = vec![[0.0; BATCH]; unknowns];
+    for (w, (u, force)) in poses.iter().enumerate() {
+        let components = u.as_flattened().iter().zip(force.as_flattened());
+        for (place, (u, force)) in matrix.surface.iter().zip(components) {
             if let Some(unknown) = *place {
-                self.displacements[unknown][column] = *u;
-                self.forces[unknown][column] = *force;
+                displacements[unknown][w] = *u;
+                forces[unknown][w] = *force;
             }
         }
     }
-
-    /// Fills in the fields and checks each column.
-    ///
-    /// Implements: FEM-008, FEM-013.
-    pub(super) fn check(
-        &mut self,
-        matrix: &StiffnessMatrix,
-        factor: &Factor,
-        samples: &[Sample],
-    ) -> Result<[FieldCheck; BATCH], FemError> {
-        let unknowns = self.forces.len();
-        factor.extend_to_interior(&mut self.displacements[..unknowns])?;
-        let u = &self.displacements[..unknowns];
-        let mut residual = self.forces.clone();
-        matrix.subtract_product(u, &mut residual);
-        let norms = |v: &[[f64; BATCH]]| {
-            let mut squares = [0.0; BATCH];
-            for row in v {
-                for w in 0..BATCH {
-                    squares[w] += row[w] * row[w];
-                }
-            }
-            squares.map(libm::sqrt)
-        };
-        let (left, loads) = (norms(&residual), norms(&self.forces));
-        let mut balance = [[0.0; BATCH]; 2];
-        for direction in 0..2 {
-            for (u, reaction) in u.iter().zip(&matrix.reaction[direction]) {
-                for w in 0..BATCH {
-                    balance[direction][w] += reaction * u[w];
-                }
-            }
-            for unknown in matrix.surface.iter().skip(direction).step_by(2).flatten() {
-                for w in 0..BATCH {
-                    balance[direction][w] += self.forces[*unknown][w];
-                }
-            }
-        }
-        let mut min_det = [f64::INFINITY; BATCH];
-        for sample in samples.iter().filter(|sample| !sample.singular) {
-            let g = sample.gradient(&self.displacements);
+    factor.extend_to_interior(&mut displacements[..unknowns])?;
+    let u = &displacements[..unknowns];
+    let (_, residual) = matrix.residual(u, &forces);
+    let mut balance = [[0.0; BATCH]; 2];
+    for direction in 0..2 {
+        for (u, reaction) in u.iter().zip(&matrix.reaction[direction]) {
             for w in 0..BATCH {
-                let [[xx, xy], [yx, yy]] = &g;
-                let det = determinant([[xx[w], xy[w]], [yx[w], yy[w]]]);
-                min_det[w] = if det < min_det[w] { det } else { min_det[w] };
+                balance[direction][w] += reaction * u[w];
             }
         }
-        Ok(core::array::from_fn(|w| FieldCheck {
-            residual: if loads[w] == 0.0 {
-                left[w]
-            } else {
-                left[w] / loads[w]
-            },
-            imbalance: balance[0][w].abs().max(balance[1][w].abs()),
-            min_det: min_det[w],
-        }))
+        for unknown in matrix.surface.iter().skip(direction).step_by(2).flatten() {
+            for w in 0..BATCH {
+                balance[direction][w] += forces[*unknown][w];
+            }
+        }
     }
+    let mut min_det = [f64::INFINITY; BATCH];
+    for sample in samples.iter().filter(|sample| !sample.singular) {
+        let [[xx, xy], [yx, yy]] = sample.gradient(&displacements);
+        for w in 0..BATCH {
+            let det = determinant([[xx[w], xy[w]], [yx[w], yy[w]]]);
+            min_det[w] = if det < min_det[w] { det } else { min_det[w] };
+        }
+    }
+    let check = |w: usize| FieldCheck {
+        residual: residual[w],
+        imbalance: balance[0][w].abs().max(balance[1][w].abs()),
+        min_det: min_det[w],
+    };
+    Ok((0..poses.len()).map(check).collect())
 }

@@ -5,8 +5,10 @@ use std::collections::HashMap;
 use super::FemError;
 use super::element::NODES;
 use super::size::SizeField;
-use super::triangulate::{Point, Triangulation};
+use super::triangle::Point;
+use super::triangulate::Triangulation;
 use crate::phantom::{Material, Outline, Phantom, Support};
+use crate::refusal::Refusal;
 
 /// What an element is made of: an entry of the phantom's list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,19 +30,6 @@ impl Region {
 }
 
 /// Nodes, elements and regions of one phantom.
-///
-/// ```
-/// use palpate::fem::Mesh;
-/// use palpate::phantom::Phantom;
-///
-/// let mesh = Mesh::new(&Phantom::builtin("6.6")?, 2e-3)?;
-/// assert_eq!(mesh.elements().count(), mesh.regions.len());
-/// // The surface runs from wall to wall at y = 0, where the walls hold its ends.
-/// let [first, .., last] = mesh.surface[..] else { unreachable!() };
-/// assert_eq!([mesh.nodes[first], mesh.nodes[last]], [[-0.017, 0.0], [0.017, 0.0]]);
-/// assert_eq!([mesh.held[first], mesh.held[mesh.surface[1]]], [[true; 2], [false; 2]]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 ///
 /// Implements: FEM-001, FEM-002, FEM-003, FEM-004, CON-003.
 #[derive(Debug, Clone, Default)]
@@ -67,8 +56,8 @@ impl Mesh {
     /// `spec/fem.md`, any other scales them all.
     ///
     /// # Errors
-    /// [`FemError::MeshSize`] if the size is not positive and finite, or the mesh would have more than 500 000
-    /// nodes; [`FemError::Shape`] if a triangle comes out too flat.
+    /// [`FemError::Refused`] if the size is not positive and finite, if the mesh would have more than 500 000 nodes, and if a
+    /// triangle comes out too flat.
     ///
     /// Implements: FEM-018.
     pub fn new(phantom: &Phantom, size: f64) -> Result<Mesh, FemError> {
@@ -95,7 +84,7 @@ impl Mesh {
     /// About how many nodes [`Mesh::new`] will make: known at once, where the mesh may take seconds and each pose a minute.
     ///
     /// # Errors
-    /// [`FemError::MeshSize`] and [`FemError::TooManyNodes`], as [`Mesh::new`].
+    /// [`FemError::Refused`] for the size, as [`Mesh::new`].
     ///
     /// Implements: FEM-036.
     pub fn expected_nodes(phantom: &Phantom, size: f64) -> Result<f64, FemError> {
@@ -104,24 +93,24 @@ impl Mesh {
 
     /// The sizes of the elements, and about how many nodes they make.
     fn forecast(phantom: &Phantom, size: f64) -> Result<(SizeField, f64), FemError> {
+        let asked = format!("mesh size {} mm", size * 1e3);
         if !(size > 0.0 && size.is_finite()) {
-            return Err(FemError::MeshSize { size });
+            return Err(Refusal::state(asked, "a finite number above 0").into());
         }
         let field = SizeField::new(phantom, size);
         let nodes = field.expected_nodes();
         if nodes > MOST_NODES {
-            return Err(FemError::TooManyNodes { size, nodes });
+            let found = format!(
+                "{asked} makes about {nodes:.0} nodes, allowed: at most {MOST_NODES}; a larger size makes fewer"
+            );
+            return Err(Refusal::state(found, "").into());
         }
         Ok((field, nodes))
     }
 
     /// Triangles with a node in the middle of each edge.
     fn place(&mut self, phantom: &Phantom, triangles: &Triangulation<'_>) {
-        self.nodes = triangles
-            .corners
-            .iter()
-            .map(|&corner| corner.into())
-            .collect();
+        self.nodes = triangles.corners.iter().map(|&p| p.into()).collect();
         let levels = phantom.levels();
         let outlines: Vec<Outline> = phantom.inclusions.iter().map(|i| i.outline()).collect();
         let on_lines = triangles.middles();

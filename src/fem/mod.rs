@@ -29,6 +29,7 @@ mod ordering;
 pub mod size;
 #[cfg(test)]
 mod tests;
+mod triangle;
 mod triangulate;
 mod vtu;
 
@@ -62,55 +63,15 @@ pub struct Pose {
 }
 
 /// What can go wrong between a phantom and a force.
-///
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FemError {
-    /// The phantom is not valid, or the forces do not make a map: its axes are not valid, or the forces are not symmetric.
+    /// The phantom is not valid, no sound mesh has the size that was asked for, double precision does not hold its stiffness, or the
+    /// forces do not make a map.
     #[error(transparent)]
     Refused(Box<Refusal>),
     /// The probe cannot stand there.
     #[error(transparent)]
     Pose(Box<Refusal>),
-    /// The mesh size is no length.
-    #[error("mesh size {} mm, expected a finite number above 0", size * 1e3)]
-    MeshSize {
-        /// Wanted size, m.
-        size: f64,
-    },
-    /// The mesh would be too large.
-    #[error("mesh size {} mm makes about {nodes:.0} nodes, allowed: at most 500000; a larger size makes fewer", size * 1e3)]
-    TooManyNodes {
-        /// Wanted size, m.
-        size: f64,
-        /// About how many nodes that makes.
-        nodes: f64,
-    },
-    /// A triangle came out too flat, or two lines cross.
-    #[error(
-        "a triangle near x = {:.3} mm, y = {:.3} mm has an angle of {angle:.1}°, expected at least {}°: the mesh cannot follow this phantom; try another mesh size",
-        at[0] * 1e3, at[1] * 1e3, triangulate::SMALLEST_ANGLE
-    )]
-    Shape {
-        /// One of its corners, m.
-        at: [f64; 2],
-        /// Its smallest angle, degrees; 0 where lines cross.
-        angle: f64,
-    },
-    /// An element is turned inside out.
-    #[error("element {element} near x = {:.3} mm, y = {:.3} mm has the Jacobian {jacobian:e}: the mesh cannot follow this phantom; try a finer mesh", at[0] * 1e3, at[1] * 1e3)]
-    Degenerate {
-        /// Number of the element.
-        element: usize,
-        /// Position of its first node, m.
-        at: [f64; 2],
-        /// The Jacobian that is not positive.
-        jacobian: f64,
-    },
-    /// The stiffness matrix cannot be factorised.
-    #[error(
-        "the stiffness matrix is not positive definite in double precision: moduli or sizes differ by too many orders of magnitude"
-    )]
-    NotPositiveDefinite,
     /// A linear solve left too much.
     #[error(
         "a linear solve left the relative residual {residual:e}, more than {:e}",

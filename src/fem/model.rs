@@ -3,8 +3,8 @@
 use super::assembly::StiffnessMatrix;
 use super::cholesky::{Factor, check_residual};
 use super::contact::{Contact, ContactState, Surface};
-use super::element::sampling_rule;
-use super::field::{BATCH, Batch, Field, FieldCheck, Sample, samples};
+use super::element::SAMPLES;
+use super::field::{BATCH, Field, FieldCheck, Sample, check, samples};
 use super::mesh::Mesh;
 use super::size::SizeField;
 use super::{FemError, Pose, arithmetic};
@@ -63,17 +63,6 @@ const HALVINGS: u32 = 6;
 impl Model {
     /// Meshes and factorises a phantom; the mesh size, m, is that of [`Mesh::new`].
     ///
-    /// ```
-    /// use palpate::fem::{Contact, FemError, MESH_SIZE, Model};
-    /// use palpate::phantom::Phantom;
-    ///
-    /// let mut phantom = Phantom::builtin("6.6")?;
-    /// phantom.layers[1].material.poisson_ratio = 0.5; // would be incompressible
-    /// let refused = Model::new(&phantom, MESH_SIZE, Contact::default());
-    /// assert!(matches!(refused, Err(FemError::Refused(_))));
-    /// # Ok::<(), palpate::refusal::Refusal>(())
-    /// ```
-    ///
     /// # Errors
     /// [`FemError::Refused`] for a phantom that is not valid, and as [`Mesh::new`], [`StiffnessMatrix::assemble`] and
     /// [`Factor::new`].
@@ -130,14 +119,11 @@ impl Model {
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
         self.check_pose(pose)?;
         // Where the phantom is symmetric the right half stands for both, so that mirrored poses have mirrored forces to the bit.
-        let mirror = self.mesh.symmetric && pose.lateral < 0.0;
-        let lateral = if mirror { -pose.lateral } else { pose.lateral };
-        let solution = self.column(&[pose.depth], lateral)?.swap_remove(0);
-        Ok(if mirror {
-            solution.mirrored()
-        } else {
-            solution
-        })
+        if self.mesh.symmetric && pose.lateral < 0.0 {
+            let mut image = self.column(&[pose.depth], -pose.lateral)?;
+            return Ok(image.swap_remove(0).mirrored());
+        }
+        Ok(self.column(&[pose.depth], pose.lateral)?.swap_remove(0))
     }
 
     /// Leads the contact from a solved pose down to `pose`, in steps that halve where they fail.
@@ -178,16 +164,16 @@ impl Model {
 
     fn solution(&self, pose: Pose, state: ContactState) -> PoseSolution {
         let [lateral_force, normal_force] = self.surface.probe_force(&state, pose);
-        let work = |(point, force): (usize, [f64; 2])| {
+        let forces = self.surface.forces(&state, pose).into_iter();
+        let work = forces.map(|(point, force)| {
             let u = state.displacements[point];
             0.5 * (force[0] * u[0] + force[1] * u[1])
-        };
-        let forces = self.surface.forces(&state, pose);
+        });
         PoseSolution {
             pose,
             normal_force,
             lateral_force,
-            energy: forces.into_iter().map(work).sum(),
+            energy: work.sum(),
             penetration: self.surface.penetration(&state, pose),
             state,
         }
@@ -212,7 +198,7 @@ impl Model {
         let displacements =
             (0..self.mesh.nodes.len()).map(|node| [0, 1].map(|k| rows[row(node, k)][0]));
         let gradient = |sample: &Sample| sample.gradient(&rows).map(|row| row.map(|[g]| g));
-        let elements = self.samples.chunks(sampling_rule().len());
+        let elements = self.samples.chunks(SAMPLES.len());
         let gradients = elements.map(|samples| samples.iter().map(gradient).collect());
         Ok(Field {
             displacements: displacements.collect(),
@@ -225,15 +211,11 @@ impl Model {
     /// # Errors
     /// [`FemError::OutOfMemory`].
     pub fn checks(&self, solutions: &[PoseSolution]) -> Result<Vec<FieldCheck>, FemError> {
-        let mut batch = Batch::new(self.matrix.unknowns());
+        let pose = |s: &PoseSolution| self.surface.at_nodes(&s.state, s.pose);
         let mut checks = Vec::with_capacity(solutions.len());
         for chunk in solutions.chunks(BATCH) {
-            for (column, PoseSolution { state, pose, .. }) in chunk.iter().enumerate() {
-                let (displacements, forces) = self.surface.at_nodes(state, *pose);
-                batch.set(column, &self.matrix, &displacements, &forces);
-            }
-            let columns = batch.check(&self.matrix, &self.factor, &self.samples)?;
-            checks.extend(columns.into_iter().take(chunk.len()));
+            let poses: Vec<_> = chunk.iter().map(pose).collect();
+            checks.extend(check(&self.matrix, &self.factor, &self.samples, &poses)?);
         }
         Ok(checks)
     }
@@ -308,23 +290,13 @@ impl Model {
             matrix(&|at| solutions[at].normal_force),
             matrix(&|at| solutions[at].lateral_force),
         )?;
-        let certificate = self.certificate(
-            &solutions,
-            &checks,
-            matrix(&|at| checks[at].min_det),
-            depths,
-            &right,
-        )?;
-        let map = ForceMap::new(
-            Source::FiniteElements { certificate },
-            Some(self.phantom.clone()),
-            table,
-        )?;
-        let map = if self.mesh.symmetric && right[0] == 0.0 {
-            map.mirrored()?
-        } else {
-            map
-        };
+        let min_det = matrix(&|at| checks[at].min_det);
+        let certificate = self.certificate(&solutions, &checks, min_det, [depths, &right])?;
+        let source = Source::FiniteElements { certificate };
+        let mut map = ForceMap::new(source, Some(self.phantom.clone()), table)?;
+        if self.mesh.symmetric && right[0] == 0.0 {
+            map = map.mirrored()?;
+        }
         Ok(map.at_laterals(laterals)?)
     }
 
@@ -346,18 +318,15 @@ impl Model {
         solutions: &[PoseSolution],
         checks: &[FieldCheck],
         min_det: Matrix,
-        depths: &[f64],
-        laterals: &[f64],
+        [depths, laterals]: [&[f64]; 2],
     ) -> Result<Certificate, FemError> {
-        let worst =
-            |value: &dyn Fn(&FieldCheck) -> f64| checks.iter().map(value).fold(0.0, f64::max);
         // No det can be found only where a field is not finite, and then its residual is not either.
         let smallest_det = SmallestDet::of(&min_det, depths, laterals)
             .ok_or(FemError::Residual { residual: f64::NAN })?;
         Ok(Certificate {
-            worst_relative_residual: worst(&|check| check.residual),
-            worst_force_balance: worst(&|check| check.imbalance),
-            largest_penetration: solutions.iter().map(|s| s.penetration).fold(0.0, f64::max),
+            worst_relative_residual: largest(checks.iter().map(|check| check.residual)),
+            worst_force_balance: largest(checks.iter().map(|check| check.imbalance)),
+            largest_penetration: largest(solutions.iter().map(|s| s.penetration)),
             newton_iterations: solutions.iter().map(|s| s.state.iterations).sum(),
             mesh_size: self.mesh_size,
             nodes: self.mesh.nodes.len(),
@@ -370,6 +339,11 @@ impl Model {
             discretization: None,
         })
     }
+}
+
+/// The largest of values that are at least 0.
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, f64::max)
 }
 
 impl PoseSolution {

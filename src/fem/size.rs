@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use super::triangulate::Point;
+use super::triangle::Point;
 use crate::phantom::{Outline, Phantom, Support, edges, point_to_segment};
 
 /// The mesh size, m, at which the sizes below hold as they stand; any other scales them all.

@@ -4,7 +4,6 @@
 use core::f64::consts::PI;
 use std::collections::HashMap;
 
-use nalgebra::Vector2;
 use spade::{
     ConstrainedDelaunayTriangulation, HierarchyHintGenerator, Point2, PositionInTriangulation,
     Triangulation as _,
@@ -12,9 +11,10 @@ use spade::{
 
 use super::FemError;
 use super::size::SizeField;
+use super::triangle::{Point, circumcircle, doubled_area, mean, shortest_edge, smallest_angle};
 use crate::phantom::{Ellipse, Outline, Phantom};
+use crate::refusal::Refusal;
 
-pub(super) type Point = Vector2<f64>;
 type Delaunay =
     ConstrainedDelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
 
@@ -108,7 +108,7 @@ impl Triangulation<'_> {
             }
         }
         let (angle, at) = new.flattest();
-        Err(FemError::Shape { at, angle })
+        Err(flat(at, angle))
     }
 
     /// The middle of each piece of a line, on the line where that is bent, by the numbers of its ends, smaller first.
@@ -126,12 +126,14 @@ impl Triangulation<'_> {
     }
 
     /// The smallest angle of all, degrees, and its place.
-    fn flattest(&self) -> (f64, [f64; 2]) {
-        let angle = |t: &[usize; 3]| (smallest_angle(self.at(t)), self.corners[t[0]].into());
-        let angles = self.triangles.iter().map(angle);
-        angles
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .unwrap_or((180.0, [0.0; 2]))
+    fn flattest(&self) -> (f64, Point) {
+        let angle = |t: &[usize; 3]| (smallest_angle(self.at(t)), self.corners[t[0]]);
+        let flattest = self
+            .triangles
+            .iter()
+            .map(angle)
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        flattest.unwrap_or((180.0, Point::zeros()))
     }
 
     fn draw_lines(&mut self, phantom: &Phantom) {
@@ -230,10 +232,7 @@ impl Triangulation<'_> {
     /// Corner by corner, since spade's bulk loading depends on a random order.
     fn delaunay(&self) -> Result<Delaunay, FemError> {
         let mut delaunay = Delaunay::new();
-        let crossing = |corner: usize| FemError::Shape {
-            at: self.corners[corner].into(),
-            angle: 0.0,
-        };
+        let crossing = |corner: usize| flat(self.corners[corner], 0.0);
         let mut handles = Vec::with_capacity(self.corners.len());
         for (corner, p) in self.corners.iter().enumerate() {
             match delaunay.insert(Point2::new(p.x, p.y)) {
@@ -446,35 +445,10 @@ fn cuts(at: &Line, size: &SizeField) -> Vec<f64> {
         .collect()
 }
 
-fn mean([a, b, c]: [Point; 3]) -> Point {
-    (a + b + c) / 3.0
-}
-
-/// Positive if the corners run counter-clockwise.
-fn doubled_area([a, b, c]: [Point; 3]) -> f64 {
-    (b - a).perp(&(c - a))
-}
-
-fn shortest_edge([a, b, c]: [Point; 3]) -> f64 {
-    (b - a).norm().min((c - b).norm()).min((a - c).norm())
-}
-
-/// Centre and radius.
-fn circumcircle([a, b, c]: [Point; 3]) -> (Point, f64) {
-    let (p, q) = (b - a, c - a);
-    let turned =
-        p.norm_squared() * Point::new(q.y, -q.x) - q.norm_squared() * Point::new(p.y, -p.x);
-    let arm = turned / (2.0 * p.perp(&q));
-    (a + arm, arm.norm())
-}
-
-/// The smallest angle of a triangle, degrees: opposite of the shortest edge, whose sine is that edge over the circumcircle's
-/// diameter. 0 for a triangle that is turned over.
-fn smallest_angle(corners: [Point; 3]) -> f64 {
-    if doubled_area(corners) > 0.0 {
-        let (_, radius) = circumcircle(corners);
-        libm::asin(shortest_edge(corners) / (2.0 * radius)).to_degrees()
-    } else {
-        0.0
-    }
+/// The refusal of a triangle at `at` (m) that is too flat, or of lines that cross there (0°).
+fn flat(at: Point, angle: f64) -> FemError {
+    let (x, y) = (at.x * 1e3, at.y * 1e3);
+    let found = format!("a triangle near x = {x:.3} mm, y = {y:.3} mm has an angle of {angle:.1}°");
+    let expected = "the mesh cannot follow this phantom; try another mesh size";
+    Refusal::state(found, format!("at least {SMALLEST_ANGLE}°: {expected}")).into()
 }

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
-use crate::detect::DetectError;
+use crate::stats::NumericError;
 use crate::fem::FemError;
 
 /// What an op gives: values by name. A number that is not finite is a `null`.
@@ -113,13 +113,13 @@ impl Refused {
     }
 }
 
-impl From<DetectError> for Refused {
-    fn from(error: DetectError) -> Refused {
+impl From<NumericError> for Refused {
+    fn from(error: NumericError) -> Refused {
         let code = match error {
-            DetectError::Empty { .. }
-            | DetectError::LengthMismatch { .. }
-            | DetectError::NotFinite { .. } => Code::BadArgument,
-            DetectError::Overflow { .. } => Code::Overflow,
+            NumericError::Empty { .. }
+            | NumericError::LengthMismatch { .. }
+            | NumericError::NotFinite { .. } => Code::BadArgument,
+            NumericError::Overflow { .. } => Code::Overflow,
             _ => Code::OutOfRange,
         };
         Refused::new(code, error)

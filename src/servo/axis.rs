@@ -43,15 +43,6 @@ pub struct Axis<'a> {
 }
 
 /// Where a position lies: a cell of an axis, and the fraction of its width.
-///
-/// ```
-/// use palpate::servo::{Axis, Cell};
-///
-/// let axis = Axis::new(&[0.0, 0.5, 1.0], &[2.0, 2.0])?;
-/// // A quarter of a metre beyond the last knot: half a cell further.
-/// assert_eq!(axis.locate(1.25), Cell { index: 1, fraction: 1.5 });
-/// # Ok::<(), palpate::servo::InvalidAxis>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
     /// The cell, from 0 to the number of cells minus 1.
@@ -61,13 +52,6 @@ pub struct Cell {
 }
 
 /// Why numbers are no axis.
-///
-/// ```
-/// use palpate::servo::{Axis, InvalidAxis};
-///
-/// let turned = Axis::new(&[0.5, 0.0], &[2.0]);
-/// assert_eq!(turned, Err(InvalidAxis::Width { index: 1, width: -0.5 }));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum InvalidAxis {
     /// Fewer than 2 knots or more than [`MAX_KNOTS`].
@@ -109,14 +93,6 @@ impl<'a> Axis<'a> {
     /// The axis of `knots` (m), each cell with its reciprocal width (1/m) as
     /// [`Axis::reciprocal_width`] gives it. The division is done once, here and there, so that the
     /// servo loop has none.
-    ///
-    /// ```
-    /// use palpate::servo::{Axis, InvalidAxis};
-    ///
-    /// assert!(Axis::new(&[0.0, 0.5], &[2.0]).is_ok());
-    /// let imprecise = Axis::new(&[0.0, 0.5], &[2.001]);
-    /// assert_eq!(imprecise, Err(InvalidAxis::Reciprocal { index: 0, value: 2.001 }));
-    /// ```
     ///
     /// # Errors
     /// [`InvalidAxis`].
@@ -167,21 +143,11 @@ impl<'a> Axis<'a> {
     }
 
     /// What an axis stores of the cell between two knots (m): 1/(end − start), 1/m.
-    ///
-    /// ```
-    /// assert_eq!(palpate::servo::Axis::reciprocal_width(0.25, 0.75), 2.0);
-    /// ```
     pub fn reciprocal_width(start: f32, end: f32) -> f32 {
         1.0 / (end - start)
     }
 
     /// The knots, m.
-    ///
-    /// ```
-    /// let axis = palpate::servo::Axis::new(&[0.0, 0.5], &[2.0])?;
-    /// assert_eq!(axis.knots(), [0.0, 0.5]);
-    /// # Ok::<(), palpate::servo::InvalidAxis>(())
-    /// ```
     pub fn knots(&self) -> &'a [f32] {
         self.knots
     }
@@ -190,15 +156,6 @@ impl<'a> Axis<'a> {
     /// ask.
     ///
     /// The index is found bit by bit, the highest first: as many comparisons for every position.
-    ///
-    /// ```
-    /// use palpate::servo::{Axis, Cell};
-    ///
-    /// let axis = Axis::new(&[0.0, 0.5, 1.0], &[2.0, 2.0])?;
-    /// assert_eq!(axis.locate(0.5), Cell { index: 1, fraction: 0.0 });
-    /// assert_eq!(axis.locate(-9.0), Cell { index: 0, fraction: -1.0 });
-    /// # Ok::<(), palpate::servo::InvalidAxis>(())
-    /// ```
     ///
     /// Implements: SRV-004, SRV-005, SRV-006, SRV-015.
     #[inline]

@@ -12,16 +12,6 @@ pub const MIN_SLEW: f32 = 1e-4;
 pub const RELEASE_CYCLES: u16 = 16;
 
 /// What the commands must keep to, component by component.
-///
-/// ```
-/// use palpate::servo::Limits;
-///
-/// // 2 N, built up by 0.05 N and released by 0.25 N a cycle; ten cycles without a report are a fault.
-/// let limits = Limits::new(2.0, 0.05, 0.25, 10)?;
-/// assert_eq!((limits.force(), limits.slew()), (2.0, 0.05));
-/// assert_eq!((limits.release(), limits.watchdog()), (0.25, 10));
-/// # Ok::<(), palpate::servo::InvalidLimits>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     force: f32,
@@ -31,14 +21,6 @@ pub struct Limits {
 }
 
 /// Which limit is out of its range.
-///
-/// ```
-/// use palpate::servo::{InvalidLimits, Limits};
-///
-/// let refused = Limits::new(f32::NAN, 0.05, 0.25, 10);
-/// assert_eq!(refused, Err(InvalidLimits::Force));
-/// assert_eq!(InvalidLimits::Force.to_string(), "force limit: expected above 0 and at most 20 N");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InvalidLimits {
     /// The force is not above 0 and at most [`FORCE_CEILING`].
@@ -80,14 +62,6 @@ impl core::error::Error for InvalidLimits {}
 impl Limits {
     /// Limits of `force` (N), of its growth in one cycle (`slew`, N), of its fall in one cycle (`release`, N), and of the run
     /// of cycles without a fresh sample (`watchdog`).
-    ///
-    /// ```
-    /// use palpate::servo::{InvalidLimits, Limits};
-    ///
-    /// assert!(Limits::new(2.0, 0.05, 0.25, 10).is_ok());
-    /// // 2 N would take 40 cycles to be gone.
-    /// assert_eq!(Limits::new(2.0, 0.05, 0.05, 10), Err(InvalidLimits::Release));
-    /// ```
     ///
     /// # Errors
     /// [`InvalidLimits`].
@@ -144,13 +118,6 @@ impl Limits {
 
 /// `value` within ±`largest`; a NaN gives 0.
 ///
-/// ```
-/// use palpate::servo::limit;
-///
-/// assert_eq!([limit(3.0, 2.0), limit(-3.0, 2.0), limit(0.5, 2.0)], [2.0, -2.0, 0.5]);
-/// assert_eq!(limit(f32::NAN, 2.0), 0.0);
-/// ```
-///
 /// Implements: SRV-020.
 #[inline]
 pub fn limit(value: f32, largest: f32) -> f32 {
@@ -160,15 +127,6 @@ pub fn limit(value: f32, largest: f32) -> f32 {
 
 /// From `last` towards `target` and never beyond it: away from zero by at most `rise`, towards zero by at most `fall`, as f32
 /// computes them. A force that changes its direction comes to zero first. All four finite, `rise` and `fall` ≥ 0.
-///
-/// ```
-/// use palpate::servo::approach;
-///
-/// assert_eq!(approach(1.0, 5.0, 0.25, 0.5), 1.25);
-/// assert_eq!(approach(1.0, 1.125, 0.25, 0.5), 1.125);
-/// assert_eq!(approach(1.0, -5.0, 0.25, 0.5), 0.5);
-/// assert_eq!(approach(0.5, -5.0, 0.25, 0.75), 0.0);
-/// ```
 ///
 /// Implements: SRV-021.
 #[inline]

@@ -3,11 +3,13 @@
 mod rotation;
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+use std::fmt::Debug;
 
 use super::passivity::{Damping, stiffness};
-use super::{Axis, Force, InvalidAxis, InvalidTable, MAX_KNOTS, MIN_WIDTH, POSITION_LIMIT};
-use super::{Limits, TABLE_FORCE_LIMIT, Table};
+use super::{Axis, Force, Limits, Table};
+use super::{MAX_KNOTS, MIN_WIDTH, POSITION_LIMIT, TABLE_FORCE_LIMIT};
 use crate::force_map::{ForceTable, Matrix};
+use crate::refusal::Refusal;
 use rotation::{largest_component, rotation};
 
 /// Largest force at the surface, N, that counts as none: the noise of the paper's sensor (Table 2).
@@ -17,18 +19,6 @@ pub const SURFACE_FORCE: f64 = 0.02;
 pub const HAND_SPEED: f64 = 0.2;
 
 /// The largest differences between a map and its table.
-///
-/// ```
-/// # use palpate::force_map::{ForceTable, Matrix};
-/// # use palpate::servo::LoadedTable;
-/// let matrix = |force: f64| Matrix::from_fn(2, 2, |row, _| force * row as f64);
-/// let map = ForceTable::new(vec![0.0, 4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
-/// let rounding = LoadedTable::new(&map)?.rounding();
-/// // 1.5 N is a number of f32, and 4 mm and 5 mm are nearly.
-/// assert_eq!(rounding.force_n, 0.0);
-/// assert!(rounding.position_m > 0.0 && rounding.position_m < 1e-9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RoundingError {
     /// Of a position, m.
@@ -65,111 +55,33 @@ pub struct LoadedTable {
     rounding: RoundingError,
 }
 
-/// Why a map can not be played. Rows and columns are the map's, from 0.
-///
-/// ```
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::servo::{LoadError, LoadedTable};
-///
-/// let map = |normal, lateral| ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], normal, lateral);
-/// let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-/// let refused = LoadedTable::new(&map(matrix(150.0), matrix(0.0))?);
-/// assert!(matches!(refused, Err(LoadError::Force { key: "normal_force_n", value: 150.0, .. })));
-/// # Ok::<(), palpate::refusal::Refusal>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum LoadError {
-    /// An axis has too few or too many entries.
-    #[error("{key} has {found} entries for the servo, expected 2 to {MAX_KNOTS}")]
-    Knots {
-        /// The axis.
-        key: &'static str,
-        /// How many there are, with the surface in front.
-        found: usize,
-    },
-    /// A position is too far out.
-    #[error("{key}[{index}] = {value}, expected at most ±{POSITION_LIMIT} m for the servo")]
-    Position {
-        /// The axis.
-        key: &'static str,
-        /// Which entry.
-        index: usize,
-        /// Its value, m.
-        value: f64,
-    },
-    /// Two positions are too close.
-    #[error(
-        "{key}[{index}] = {value}, expected at least {MIN_WIDTH:e} m above the one before, {previous}, for the servo"
-    )]
-    Width {
-        /// The axis.
-        key: &'static str,
-        /// Which entry.
-        index: usize,
-        /// The entry before it (the surface, 0, before the first depth), m.
-        previous: f64,
-        /// Its value, m.
-        value: f64,
-    },
-    /// A force is too large.
-    #[error(
-        "{key}[{row}][{column}] = {value}, expected at most ±{TABLE_FORCE_LIMIT} N for the servo"
-    )]
-    Force {
-        /// The matrix.
-        key: &'static str,
-        /// The row.
-        row: usize,
-        /// The column.
-        column: usize,
-        /// Its value, N.
-        value: f64,
-    },
-    /// There is a force where the probe touches nothing.
-    #[error(
-        "{key}[0][{column}] = {value} at depth 0, expected at most ±{SURFACE_FORCE} N, since nothing is touched there"
-    )]
-    SurfaceForce {
-        /// The matrix.
-        key: &'static str,
-        /// The column.
-        column: usize,
-        /// Its value, N.
-        value: f64,
-    },
-    /// The numbers that describe the device are none.
-    #[error(
-        "{0:?}: expected period and resolution above 0, damping and friction at least 0, all finite"
-    )]
-    Damping(Damping),
-    /// The device would give energy out with the table.
-    #[error(
-        "the table has {found:.4} {what}, and the device plays at most {allowed:.4} passively: scale the forces by {scale:.4}"
-    )]
-    NotPassive {
-        /// What is too large, with its unit.
-        what: &'static str,
-        /// The table's.
-        found: f64,
-        /// What the device and the limits allow.
-        allowed: f64,
-        /// The factor on the forces that would fit.
-        scale: f64,
-    },
-    /// The kernel refuses what was loaded: a defect of this program.
-    #[error("the servo refuses the table as loaded ({0}): this is a defect of the program")]
-    Refused(String),
+/// A bound that a table breaks, so that the device would give energy out with it.
+struct Excess {
+    /// What is too large, with its unit.
+    what: &'static str,
+    /// The table's.
+    found: f64,
+    /// What the device and the limits allow.
+    allowed: f64,
 }
 
-impl From<InvalidAxis> for LoadError {
-    fn from(refusal: InvalidAxis) -> LoadError {
-        LoadError::Refused(format!("{refusal:?}"))
+impl Excess {
+    /// The factor on the forces that would fit.
+    fn scale(&self) -> f64 {
+        self.allowed / self.found
     }
-}
 
-impl From<InvalidTable> for LoadError {
-    fn from(refusal: InvalidTable) -> LoadError {
-        LoadError::Refused(format!("{refusal:?}"))
+    fn refusal(&self) -> Refusal {
+        let Excess {
+            what,
+            found,
+            allowed,
+        } = self;
+        let scale = self.scale();
+        let found = format!(
+            "the table has {found:.4} {what}, and the device plays at most {allowed:.4} passively: scale the forces by {scale:.4}"
+        );
+        Refusal::state(found, "")
     }
 }
 
@@ -177,22 +89,11 @@ impl LoadedTable {
     /// The table of a map's forces, each rounded to f32, with the surface in front if the map does
     /// not begin there.
     ///
-    /// ```
-    /// # use palpate::force_map::{ForceTable, Matrix};
-    /// use palpate::servo::LoadedTable;
-    ///
-    /// let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-    /// let map = ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
-    /// let loaded = LoadedTable::new(&map)?;
-    /// assert_eq!(loaded.table()?.force(4e-3, 0.0).normal, 1.5);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
-    /// [`LoadError`].
+    /// Positions or forces that the kernel cannot hold, with row and column of the map, from 0; a force at the surface.
     ///
     /// Implements: SRV-044, SRV-045, SRV-046, SRV-047.
-    pub fn new(map: &ForceTable) -> Result<LoadedTable, LoadError> {
+    pub fn new(map: &ForceTable) -> Result<LoadedTable, Refusal> {
         check_forces("lateral_force_n", map.lateral_force(), map.depths())?;
         check_forces("normal_force_n", map.normal_force(), map.depths())?;
         let mut rounding = RoundingError::default();
@@ -223,103 +124,61 @@ impl LoadedTable {
 
     /// The table of a map for a device that must play it passively within `limits`.
     ///
-    /// ```
-    /// # use palpate::force_map::{ForceTable, Matrix};
-    /// use palpate::servo::{Damping, Limits, LoadError, LoadedTable};
-    ///
-    /// # let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-    /// # let map = ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
-    /// // 1.5 N in 4 mm are 375 N/m; a display with 0.6 N·s/m of damping plays up to 1200 N/m.
-    /// let display = Damping {
-    ///     period_s: 1e-3, delay_periods: 0, damping_n_s_per_m: 0.6, friction_n: 0.14, resolution_m: 1e-6,
-    /// };
-    /// let limits = Limits::new(4.0, 0.25, 0.5, 20)?;
-    /// assert!(LoadedTable::passive(&map, &display, &limits).is_ok());
-    /// let slick = Damping { damping_n_s_per_m: 0.1, ..display };
-    /// assert!(matches!(LoadedTable::passive(&map, &slick, &limits), Err(LoadError::NotPassive { .. })));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
-    /// [`LoadError`], among them [`LoadError::NotPassive`].
+    /// As [`LoadedTable::new`]; numbers that describe no device; a table with which it would give energy out.
     ///
     /// Implements: SRV-051.
     pub fn passive(
         map: &ForceTable,
         damping: &Damping,
         limits: &Limits,
-    ) -> Result<LoadedTable, LoadError> {
+    ) -> Result<LoadedTable, Refusal> {
         let loaded = LoadedTable::new(map)?;
-        loaded.check_passive(damping, limits)?;
-        Ok(loaded)
+        match loaded.excess(damping, limits)? {
+            None => Ok(loaded),
+            Some(excess) => Err(excess.refusal()),
+        }
     }
 
     /// Like [`LoadedTable::passive`], but a table that is not passive is scaled down. Also returns the
     /// factor on its forces, 1 if none was needed.
     ///
-    /// ```
-    /// # use palpate::force_map::{ForceTable, Matrix};
-    /// use palpate::servo::{Damping, Limits, LoadedTable, stiffness};
-    ///
-    /// # let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-    /// # let map = ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
-    /// // 375 N/m on a display that plays up to 200 N/m.
-    /// let slick = Damping {
-    ///     period_s: 1e-3, delay_periods: 0, damping_n_s_per_m: 0.1, friction_n: 0.14, resolution_m: 1e-6,
-    /// };
-    /// let limits = Limits::new(4.0, 0.25, 0.5, 20)?;
-    /// let (loaded, factor) = LoadedTable::scaled_to_be_passive(&map, &slick, &limits)?;
-    /// assert!((factor - 200.0 / 375.0).abs() < 1e-6);
-    /// assert!(stiffness(&loaded.table()?) <= 200.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
-    /// [`LoadError`]; [`LoadError::NotPassive`] only for a device that no spring suits.
+    /// As [`LoadedTable::new`]; numbers that describe no device, or one that no spring suits.
     ///
     /// Implements: SRV-051.
     pub fn scaled_to_be_passive(
         map: &ForceTable,
         damping: &Damping,
         limits: &Limits,
-    ) -> Result<(LoadedTable, f64), LoadError> {
+    ) -> Result<(LoadedTable, f64), Refusal> {
         let loaded = LoadedTable::new(map)?;
-        let fit = match loaded.check_passive(damping, limits) {
-            Ok(()) => return Ok((loaded, 1.0)),
-            Err(LoadError::NotPassive { scale, .. }) if scale > 0.0 => scale,
-            Err(other) => return Err(other),
+        let fit = match loaded.excess(damping, limits)? {
+            None => return Ok((loaded, 1.0)),
+            Some(excess) if excess.scale() > 0.0 => excess.scale(),
+            Some(excess) => return Err(excess.refusal()),
         };
         // Rounding the scaled forces may leave a slope a little too steep.
         let mut margin = 1e-7;
         loop {
             let factor = fit * (1.0 - margin);
             let scaled = loaded.scaled(factor);
-            match scaled.check_passive(damping, limits) {
-                Ok(()) => return Ok((scaled, factor)),
-                Err(refusal) if margin > 0.5 => return Err(refusal),
-                Err(_) => margin *= 2.0,
+            match scaled.excess(damping, limits)? {
+                None => return Ok((scaled, factor)),
+                Some(excess) if margin > 0.5 => return Err(excess.refusal()),
+                Some(_) => margin *= 2.0,
             }
         }
     }
 
     /// The table as the kernel takes it.
     ///
-    /// ```
-    /// # use palpate::force_map::{ForceTable, Matrix};
-    /// # use palpate::servo::LoadedTable;
-    /// # let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-    /// # let map = ForceTable::new(vec![4e-3], vec![-5e-3, 5e-3], matrix(1.5), matrix(0.0))?;
-    /// let loaded = LoadedTable::new(&map)?;
-    /// assert_eq!(loaded.table()?.forces().len(), 4);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// # Errors
-    /// [`LoadError::Refused`], which would be a defect of this program.
-    pub fn table(&self) -> Result<Table<'_>, LoadError> {
-        let depths = Axis::new(&self.depths, &self.reciprocal_heights)?;
-        let laterals = Axis::new(&self.laterals, &self.reciprocal_widths)?;
-        Ok(Table::new(depths, laterals, &self.forces)?)
+    /// A refusal by the kernel would be a defect of this program.
+    pub fn table(&self) -> Result<Table<'_>, Refusal> {
+        let depths = Axis::new(&self.depths, &self.reciprocal_heights).map_err(defect)?;
+        let laterals = Axis::new(&self.laterals, &self.reciprocal_widths).map_err(defect)?;
+        Table::new(depths, laterals, &self.forces).map_err(defect)
     }
 
     /// The largest rounding errors of loading. Scaling is not counted.
@@ -338,66 +197,62 @@ impl LoadedTable {
         scaled
     }
 
-    /// Refuses a table with which the device would give energy out, by what is worst.
+    /// The worst of the bounds that the table breaks, beyond which the device would give energy out.
     ///
     /// Implements: SRV-054, SRV-055, SRV-056.
-    fn check_passive(&self, damping: &Damping, limits: &Limits) -> Result<(), LoadError> {
-        let stiffest = damping.stiffest().ok_or(LoadError::Damping(*damping))?;
+    fn excess(&self, damping: &Damping, limits: &Limits) -> Result<Option<Excess>, Refusal> {
+        let expected = "period and resolution above 0, damping and friction at least 0, all finite";
+        let no_device = || Refusal::state(format!("{damping:?}: expected {expected}"), "");
+        let stiffest = damping.stiffest().ok_or_else(no_device)?;
         let table = self.table()?;
         let stiffness = stiffness(&table);
         // A hand moves so far in a cycle, and is seen to move a step of each axis further.
         let motion = HAND_SPEED * damping.period_s + SQRT_2 * damping.resolution_m;
+        let growth = stiffness * motion;
         let friction = rotation(&table) + stiffness * damping.resolution_m * FRAC_1_SQRT_2;
+        let (slew, force) = (limits.slew().into(), limits.force().into());
+        let bound = |(what, found, allowed)| Excess {
+            what,
+            found,
+            allowed,
+        };
         let bounds = [
             ("N/m of stiffness", stiffness, stiffest),
-            (
-                "N of growth in a cycle",
-                stiffness * motion,
-                limits.slew().into(),
-            ),
+            ("N of growth in a cycle", growth, slew),
             (
                 "N of force without a potential",
                 friction,
                 damping.friction_n,
             ),
-            (
-                "N of force",
-                largest_component(&table),
-                limits.force().into(),
-            ),
+            ("N of force", largest_component(&table), force),
         ];
-        let mut worst = Ok(());
-        let mut fit = 1.0;
-        for (what, found, allowed) in bounds {
-            let scale = allowed / found;
-            if found > allowed && scale < fit {
-                fit = scale;
-                worst = Err(LoadError::NotPassive {
-                    what,
-                    found,
-                    allowed,
-                    scale,
-                });
-            }
-        }
-        worst
+        let broken = bounds
+            .map(bound)
+            .into_iter()
+            .filter(|b| b.found > b.allowed);
+        Ok(broken.min_by(|a, b| a.scale().total_cmp(&b.scale())))
     }
 }
 
+/// A refusal by the kernel of what was loaded.
+fn defect(refusal: impl Debug) -> Refusal {
+    let found = format_args!("the servo refuses the table as loaded ({refusal:?})");
+    Refusal::state(format!("{found}: this is a defect of the program"), "")
+}
+
 /// Refuses forces that are too large, or that are there without a touch.
-fn check_forces(key: &'static str, matrix: &Matrix, depths: &[f64]) -> Result<(), LoadError> {
+fn check_forces(name: &str, matrix: &Matrix, depths: &[f64]) -> Result<(), Refusal> {
     let surface = depths.first() == Some(&0.0);
     for (row, column, value) in matrix.entries() {
+        let key = || format!("{name}[{row}][{column}]");
         if value.abs() > f64::from(TABLE_FORCE_LIMIT) {
-            return Err(LoadError::Force {
-                key,
-                row,
-                column,
-                value,
-            });
+            let expected = format!("at most ±{TABLE_FORCE_LIMIT} N for the servo");
+            return Err(Refusal::value(key(), value, expected));
         }
         if surface && row == 0 && value.abs() > SURFACE_FORCE {
-            return Err(LoadError::SurfaceForce { key, column, value });
+            let found = format_args!("{value} at depth 0");
+            let expected = format!("at most ±{SURFACE_FORCE} N, since nothing is touched there");
+            return Err(Refusal::value(key(), found, expected));
         }
     }
     Ok(())
@@ -405,36 +260,34 @@ fn check_forces(key: &'static str, matrix: &Matrix, depths: &[f64]) -> Result<()
 
 /// The knots of an axis in f32, with the surface (0) in front if it is missing.
 fn knots(
-    key: &'static str,
+    name: &str,
     surface: bool,
     axis: &[f64],
     rounding: &mut RoundingError,
-) -> Result<Vec<f32>, LoadError> {
+) -> Result<Vec<f32>, Refusal> {
     let mut knots = Vec::with_capacity(axis.len() + 1);
     if surface {
         knots.push(0.0);
     }
     for (index, &value) in axis.iter().enumerate() {
+        let refused = |expected| Err(Refusal::value(format!("{name}[{index}]"), value, expected));
         if value.abs() > f64::from(POSITION_LIMIT) {
-            return Err(LoadError::Position { key, index, value });
+            return refused(format!("at most ±{POSITION_LIMIT} m for the servo"));
         }
         let knot = rounded(value, &mut rounding.position_m);
-        if let Some(&previous) = knots
-            .last()
-            .filter(|&&previous| knot - previous < MIN_WIDTH)
+        if let Some(&before) = knots.last()
+            && knot - before < MIN_WIDTH
         {
-            return Err(LoadError::Width {
-                key,
-                index,
-                previous: f64::from(previous),
-                value,
-            });
+            let before = f64::from(before);
+            return refused(format!(
+                "at least {MIN_WIDTH:e} m above the one before, {before}, for the servo"
+            ));
         }
         knots.push(knot);
     }
     if !(2..=MAX_KNOTS).contains(&knots.len()) {
-        let found = knots.len();
-        return Err(LoadError::Knots { key, found });
+        let found = format_args!("{name} has {} entries for the servo", knots.len());
+        return Err(Refusal::state(found, format!("2 to {MAX_KNOTS}")));
     }
     Ok(knots)
 }

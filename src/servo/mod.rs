@@ -32,7 +32,7 @@ pub use axis::{
 };
 pub use limit::{FORCE_CEILING, InvalidLimits, Limits, MIN_SLEW, RELEASE_CYCLES, approach, limit};
 #[cfg(feature = "std")]
-pub use load::{HAND_SPEED, LoadError, LoadedTable, RoundingError, SURFACE_FORCE};
+pub use load::{HAND_SPEED, LoadedTable, RoundingError, SURFACE_FORCE};
 pub use passivity::{Damping, stiffness};
 pub use state::{Command, Fault, Force, Input, Mode, Request, Sample, State};
 pub use step::{MOST_AHEAD, step};

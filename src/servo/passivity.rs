@@ -4,18 +4,6 @@
 use super::{EXTRAPOLATION_CELLS, Force, Table};
 
 /// What damps a device, and what its samples miss.
-///
-/// ```
-/// use palpate::servo::Damping;
-///
-/// let display = Damping {
-///     period_s: 1e-3, delay_periods: 0, damping_n_s_per_m: 0.5, friction_n: 0.14, resolution_m: 1e-6,
-/// };
-/// assert_eq!(display.stiffest(), Some(1000.0));
-/// // A bus that brings the force one period later: three halves of a period in place of one half.
-/// assert_eq!(Damping { delay_periods: 1, ..display }.stiffest(), Some(1000.0 / 3.0));
-/// assert_eq!(Damping { period_s: 0.0, ..display }.stiffest(), None);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {
     /// Time between two samples, T, s.
@@ -70,9 +58,9 @@ impl Damping {
 pub fn stiffness(table: &Table) -> f64 {
     let (depths, laterals) = (table.depths().knots(), table.laterals().knots());
     let columns = laterals.len();
-    let node = |row: usize, column: usize| {
-        table
-            .forces()
+    let forces = table.forces();
+    let node = |row, column| {
+        forces
             .get(row * columns + column)
             .copied()
             .unwrap_or_default()
@@ -92,9 +80,7 @@ pub fn stiffness(table: &Table) -> f64 {
             for s in along_depth {
                 for t in along_lateral {
                     let slope = largest_singular_value(slopes(&corners, size, s, t));
-                    if slope > largest {
-                        largest = slope;
-                    }
+                    largest = if slope > largest { slope } else { largest };
                 }
             }
         }

@@ -3,13 +3,6 @@
 use core::fmt;
 
 /// A force on the probe, N: lateral along +x, normal positive out of the gel.
-///
-/// ```
-/// use palpate::servo::Force;
-///
-/// let up = Force { normal: 1.5, ..Force::ZERO };
-/// assert_eq!(up.lateral, 0.0);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Force {
     /// Along +x.
@@ -27,15 +20,6 @@ impl Force {
 }
 
 /// One report of the device.
-///
-/// ```
-/// use palpate::servo::{Input, Request, Sample};
-///
-/// // 2 mm deep and 1 mm left of the middle, in a hand that holds on.
-/// let sample = Sample { sequence: 7, deadman: true, device_fault: false, depth: 2e-3, lateral: -1e-3 };
-/// let input = Input { sample: Some(sample), ..Input::default() };
-/// assert_eq!(input.request, Request::None);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Its number, modulo 65536.
@@ -51,17 +35,6 @@ pub struct Sample {
 }
 
 /// What the person at the controls asks for.
-///
-/// ```
-/// # use palpate::servo::{Axis, Force, Input, Limits, Mode, Request, Sample, State, Table, step};
-/// # let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
-/// # let table = Table::new(axis, axis, &[Force::ZERO; 4]).expect("a table");
-/// # let limits = Limits::new(2.0, 0.05, 0.2, 10).expect("limits");
-/// let arm = Input { request: Request::Arm, ..Input::default() };
-/// // Without a fresh sample, asking is not enough.
-/// let (state, _) = step(&table, &limits, State::default(), arm);
-/// assert_eq!(state.mode, Mode::Disarmed);
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Request {
     /// Nothing.
@@ -74,16 +47,6 @@ pub enum Request {
 }
 
 /// What happened since the last cycle.
-///
-/// ```
-/// # use palpate::servo::{Axis, Force, Input, Limits, State, Table, step};
-/// # let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
-/// # let table = Table::new(axis, axis, &[Force::ZERO; 4]).expect("a table");
-/// # let limits = Limits::new(2.0, 0.05, 0.2, 10).expect("limits");
-/// // Nothing came and nothing is asked for.
-/// let (state, command) = step(&table, &limits, State::default(), Input::default());
-/// assert_eq!((state.missed, command.force), (1, Force::ZERO));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Input {
     /// The newest report, if one came.
@@ -93,17 +56,6 @@ pub struct Input {
 }
 
 /// Why there is no force.
-///
-/// ```
-/// # use palpate::servo::{Axis, Fault, Force, Input, Limits, Mode, Request, Sample, State, Table, step};
-/// # let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
-/// # let table = Table::new(axis, axis, &[Force::ZERO; 4]).expect("a table");
-/// # let limits = Limits::new(2.0, 0.05, 0.2, 10).expect("limits");
-/// let sample = Sample { sequence: 1, deadman: true, device_fault: false, depth: f32::NAN, lateral: 0.0 };
-/// let input = Input { sample: Some(sample), request: Request::None };
-/// let (state, _) = step(&table, &limits, State::default(), input);
-/// assert_eq!(state.mode, Mode::Faulted(Fault::NotFinite));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
     /// A position that is NaN or infinite.
@@ -128,17 +80,6 @@ impl fmt::Display for Fault {
 }
 
 /// Whether there may be a force.
-///
-/// ```
-/// use palpate::servo::{Fault, Mode, State};
-///
-/// assert_eq!(State::default().mode, Mode::Disarmed);
-/// let message = match Mode::Faulted(Fault::Device) {
-///     Mode::Faulted(fault) => fault.to_string(),
-///     _ => unreachable!(),
-/// };
-/// assert_eq!(message, "the device reports a fault");
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mode {
     /// Not yet.
@@ -151,17 +92,6 @@ pub enum Mode {
 }
 
 /// What one cycle leaves to the next. The default is the state to begin with.
-///
-/// ```
-/// # use palpate::servo::{Axis, Fault, Force, Input, Limits, Mode, State, Table, step};
-/// # let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
-/// # let table = Table::new(axis, axis, &[Force::ZERO; 4]).expect("a table");
-/// # let limits = Limits::new(2.0, 0.05, 0.2, 10).expect("limits");
-/// let armed = State { mode: Mode::Armed, missed: 10, ..State::default() };
-/// // The eleventh cycle without a report is one more than these limits allow.
-/// let (state, _) = step(&table, &limits, armed, Input::default());
-/// assert_eq!(state.mode, Mode::Faulted(Fault::Watchdog));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct State {
     /// Whether there may be a force.
@@ -177,19 +107,6 @@ pub struct State {
 }
 
 /// What one cycle tells the device.
-///
-/// ```
-/// # use palpate::servo::{Axis, Command, Force, Input, Limits, Mode, Request, Sample, State, Table, step};
-/// # let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
-/// # let table = Table::new(axis, axis, &[Force::ZERO; 4]).expect("a table");
-/// # let limits = Limits::new(2.0, 0.05, 0.25, 10).expect("limits");
-/// let pressed = Force { lateral: 0.0, normal: 1.0 };
-/// let state = State { mode: Mode::Armed, force: pressed, sequence: Some(1), ..State::default() };
-/// // The deadman is let go: the force is released, as quickly as the limits allow.
-/// let sample = Sample { sequence: 2, deadman: false, device_fault: false, depth: 0.1, lateral: 0.0 };
-/// let (_, command) = step(&table, &limits, state, Input { sample: Some(sample), request: Request::None });
-/// assert_eq!(command, Command { force: Force { normal: 0.75, ..pressed }, playing: false });
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Command {
     /// The force to play, N.

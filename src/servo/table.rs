@@ -31,14 +31,6 @@ pub struct Table<'a> {
 }
 
 /// Why forces are no table.
-///
-/// ```
-/// use palpate::servo::{Axis, Force, InvalidTable, Table};
-///
-/// let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
-/// let too_few = Table::new(axis, axis, &[Force::ZERO; 3]);
-/// assert_eq!(too_few, Err(InvalidTable::Shape { found: 3, expected: 4 }));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum InvalidTable {
     /// Not one force for each pair of knots.
@@ -59,17 +51,6 @@ pub enum InvalidTable {
 
 impl<'a> Table<'a> {
     /// The table of `forces`, one row after the other: depths × lateral positions.
-    ///
-    /// ```
-    /// use palpate::servo::{Axis, Force, InvalidTable, Table};
-    ///
-    /// let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
-    /// let mut forces = [Force::ZERO; 4];
-    /// assert!(Table::new(axis, axis, &forces).is_ok());
-    /// forces[2].normal = 200.0;
-    /// let value = forces[2];
-    /// assert_eq!(Table::new(axis, axis, &forces), Err(InvalidTable::Force { index: 2, value }));
-    /// ```
     ///
     /// # Errors
     /// [`InvalidTable`].
@@ -117,17 +98,6 @@ impl<'a> Table<'a> {
     /// The force at a depth and lateral position (m): bilinear in the cell, continued one cell width
     /// beyond the border, constant from there on, and zero above the surface.
     ///
-    /// ```
-    /// # use palpate::servo::{Axis, Force, Table};
-    /// # let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
-    /// # let forces = [0.0, 0.0, 4.0, 4.0].map(|normal| Force { lateral: 0.0, normal });
-    /// # let table = Table::new(axis, axis, &forces)?;
-    /// assert_eq!(table.force(0.5, 0.0).normal, 4.0);
-    /// assert_eq!(table.force(1.0, 0.0), table.force(9.0, 0.0)); // 8 N: one cell further, and no more
-    /// assert_eq!(table.force(-0.1, 0.0), Force::ZERO);
-    /// # Ok::<(), palpate::servo::InvalidTable>(())
-    /// ```
-    ///
     /// Implements: SRV-010, SRV-011, SRV-012, SRV-013, SRV-014, SRV-015.
     #[inline]
     pub fn force(&self, depth: f32, lateral: f32) -> Force {
@@ -143,16 +113,6 @@ impl<'a> Table<'a> {
 
     /// The bilinear form of the cell in row `depth.index` and column `lateral.index`, at the fractions
     /// given; zero for a cell that the table does not have.
-    ///
-    /// ```
-    /// # use palpate::servo::{Axis, Cell, Force, Table};
-    /// # let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
-    /// # let forces = [0.0, 0.0, 2.0, 4.0].map(|normal| Force { lateral: 0.0, normal });
-    /// # let table = Table::new(axis, axis, &forces)?;
-    /// let [depth, lateral] = [0.5, 1.0].map(|fraction| Cell { index: 0, fraction });
-    /// assert_eq!(table.force_in(depth, lateral).normal, 2.0);
-    /// # Ok::<(), palpate::servo::InvalidTable>(())
-    /// ```
     #[inline]
     pub fn force_in(&self, depth: Cell, lateral: Cell) -> Force {
         let columns = self.laterals.knots().len();
@@ -181,12 +141,6 @@ impl<'a> Table<'a> {
 ///
 /// This form, of the two that are common, is exact at both ends; rounding may still carry it out of
 /// the hull by a bit (for a = b, say).
-///
-/// ```
-/// use palpate::servo::blend;
-///
-/// assert_eq!([blend(1.0, 3.0, 0.25), blend(1.0, 3.0, 1.0), blend(1.0, 3.0, 1.5)], [1.5, 3.0, 4.0]);
-/// ```
 #[inline]
 pub fn blend(a: f32, b: f32, t: f32) -> f32 {
     let value = (1.0 - t) * a + t * b;

@@ -101,43 +101,32 @@ fn a_blend_of_equals_is_the_same_to_the_bit() {
 // Verifies: SRV-002.
 #[test]
 fn an_axis_is_refused_with_its_place() {
-    let new = |knots: &[f32], reciprocals: &[f32]| Axis::new(knots, reciprocals).unwrap_err();
-    assert_eq!(new(&[0.0], &[]), InvalidAxis::Knots { found: 1 });
     let many = vec![0.0; MAX_KNOTS + 1];
-    assert_eq!(new(&many, &many[1..]), InvalidAxis::Knots { found: 1025 });
-    assert_eq!(
-        new(&[0.0, 1.0], &[]),
-        InvalidAxis::Reciprocals {
-            found: 0,
-            expected: 1
-        }
-    );
-    assert_eq!(
-        new(&[0.0, 1.5], &[1.0]),
-        InvalidAxis::Position {
-            index: 1,
-            value: 1.5
-        }
-    );
-    assert!(matches!(
-        new(&[f32::NAN, 1.0], &[1.0]),
-        InvalidAxis::Position { index: 0, .. }
-    ));
-    assert!(matches!(
-        new(&[0.0, 0.5, 0.5], &[2.0, 1.0]),
-        InvalidAxis::Width { index: 2, .. }
-    ));
-    assert_eq!(
-        new(&[0.0, 0.5], &[2.5]),
-        InvalidAxis::Reciprocal {
-            index: 0,
-            value: 2.5
-        }
-    );
-    assert!(matches!(
-        new(&[0.0, 0.5], &[f32::NAN]),
-        InvalidAxis::Reciprocal { .. }
-    ));
+    for (knots, reciprocals, expected) in [
+        (&[0.0][..], &[][..], "Knots { found: 1 }"),
+        (&many, &many[1..], "Knots { found: 1025 }"),
+        (&[0.0, 1.0], &[], "Reciprocals { found: 0, expected: 1 }"),
+        (&[0.0, 1.5], &[1.0], "Position { index: 1, value: 1.5 }"),
+        (
+            &[f32::NAN, 1.0],
+            &[1.0],
+            "Position { index: 0, value: NaN }",
+        ),
+        (
+            &[0.0, 0.5, 0.5],
+            &[2.0, 1.0],
+            "Width { index: 2, width: 0.0 }",
+        ),
+        (&[0.0, 0.5], &[2.5], "Reciprocal { index: 0, value: 2.5 }"),
+        (
+            &[0.0, 0.5],
+            &[f32::NAN],
+            "Reciprocal { index: 0, value: NaN }",
+        ),
+    ] {
+        let refusal = Axis::new(knots, reciprocals).unwrap_err();
+        assert_eq!(std::format!("{refusal:?}"), expected);
+    }
 }
 
 // Verifies: SRV-003.
@@ -145,28 +134,18 @@ fn an_axis_is_refused_with_its_place() {
 fn a_table_is_refused_with_its_place() {
     let axis = Axis::new(&[0.0, 0.5], &[2.0]).unwrap();
     let new = |forces: &[Force]| Table::new(axis, axis, forces).unwrap_err();
+    let (found, expected) = (3, 4);
     assert_eq!(
         new(&[Force::ZERO; 3]),
-        InvalidTable::Shape {
-            found: 3,
-            expected: 4
-        }
+        InvalidTable::Shape { found, expected }
     );
-    for wrong in [force(100.1, 0.0), force(0.0, -f32::INFINITY)] {
-        let mut forces = [Force::ZERO; 4];
-        forces[2] = wrong;
-        assert_eq!(
-            new(&forces),
-            InvalidTable::Force {
-                index: 2,
-                value: wrong
-            }
-        );
+    for value in [force(100.1, 0.0), force(0.0, -f32::INFINITY)] {
+        let (mut forces, index) = ([Force::ZERO; 4], 2);
+        forces[index] = value;
+        assert_eq!(new(&forces), InvalidTable::Force { index, value });
     }
-    assert!(matches!(
-        new(&[force(0.0, f32::NAN); 4]),
-        InvalidTable::Force { index: 0, .. }
-    ));
+    let nothing = new(&[force(0.0, f32::NAN); 4]);
+    assert!(matches!(nothing, InvalidTable::Force { index: 0, .. }));
 }
 
 // Verifies: SRV-022.
@@ -174,23 +153,20 @@ fn a_table_is_refused_with_its_place() {
 fn limits_are_refused_by_name() {
     let ok = Limits::new(2.0, 0.01, 0.125, 5);
     assert!(ok.is_ok());
+    let refused = |force, slew, release, watchdog, expected| {
+        assert_eq!(Limits::new(force, slew, release, watchdog), Err(expected));
+    };
     for force in [0.0, -1.0, 20.5, f32::NAN] {
-        assert_eq!(Limits::new(force, 0.01, 0.2, 5), Err(InvalidLimits::Force));
+        refused(force, 0.01, 0.2, 5, InvalidLimits::Force);
     }
     for slew in [0.0, 9e-5, 2.5, f32::NAN] {
-        assert_eq!(Limits::new(2.0, slew, 2.5, 5), Err(InvalidLimits::Slew));
+        refused(2.0, slew, 2.5, 5, InvalidLimits::Slew);
     }
     for release in [0.005, 0.12, f32::INFINITY, f32::NAN] {
-        assert_eq!(
-            Limits::new(2.0, 0.01, release, 5),
-            Err(InvalidLimits::Release)
-        );
+        refused(2.0, 0.01, release, 5, InvalidLimits::Release);
     }
     for watchdog in [0, 101] {
-        assert_eq!(
-            Limits::new(2.0, 0.01, 0.2, watchdog),
-            Err(InvalidLimits::Watchdog)
-        );
+        refused(2.0, 0.01, 0.2, watchdog, InvalidLimits::Watchdog);
     }
     for (limit, name) in [
         (InvalidLimits::Force, "force limit: "),

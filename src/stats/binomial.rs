@@ -5,74 +5,11 @@
 //! probabilities*, 2000), whose terms do not cancel; tails by summing ratios from the point
 //! outwards.
 
+use super::NumericError;
+use super::error::{check_probability, in_range};
 use super::normal;
-use core::fmt;
-
-/// Why a question about a proportion was refused.
-///
-/// ```
-/// use palpate::stats::binomial::{ProportionError, clopper_pearson};
-///
-/// let error = ProportionError::Successes { successes: 31, trials: 30 };
-/// assert_eq!(clopper_pearson(31, 30, 0.95), Err(error));
-/// assert_eq!(error.to_string(), "31 successes are more than the 30 trials");
-/// ```
-///
-/// Implements: DET-123.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ProportionError {
-    /// There were no trials, or more than 2^53.
-    Trials {
-        /// The number of trials.
-        trials: u64,
-    },
-    /// More successes than trials.
-    Successes {
-        /// The number of successes.
-        successes: u64,
-        /// The number of trials.
-        trials: u64,
-    },
-    /// A probability or confidence that is not strictly between 0 and 1.
-    Probability {
-        /// Its value.
-        value: f64,
-    },
-}
-
-impl fmt::Display for ProportionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Trials { trials } => {
-                write!(
-                    f,
-                    "{trials} trials; there must be at least one, and at most 2^53"
-                )
-            }
-            Self::Successes { successes, trials } => {
-                write!(f, "{successes} successes are more than the {trials} trials")
-            }
-            Self::Probability { value } => {
-                write!(
-                    f,
-                    "the probability must lie strictly between 0 and 1, not {value}"
-                )
-            }
-        }
-    }
-}
-
-impl core::error::Error for ProportionError {}
 
 /// An interval for a proportion.
-///
-/// ```
-/// use palpate::stats::binomial::{Interval, clopper_pearson};
-///
-/// let Interval { lower, upper } = clopper_pearson(27, 30, 0.95)?;
-/// assert!(lower < 0.9 && 0.9 < upper);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "std", derive(serde::Serialize))]
 pub struct Interval {
@@ -84,40 +21,25 @@ pub struct Interval {
 
 /// Pr(X = successes) for X ~ Binomial(trials, p).
 ///
-/// ```
-/// use palpate::stats::binomial::probability;
-///
-/// assert!((probability(2, 4, 0.5)? - 6.0 / 16.0).abs() < 1e-15);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
-/// ```
-///
 /// # Errors
 /// No trials; more successes than trials; p not strictly between 0 and 1.
 ///
 /// Implements: DET-120.
-pub fn probability(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionError> {
+pub fn probability(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError> {
     check(successes, trials)?;
-    check_probability(p)?;
+    check_probability("p", p)?;
     Ok(point(successes as f64, trials as f64, p, 1.0 - p))
 }
 
 /// Pr(X ≥ successes) for X ~ Binomial(trials, p). Takes about √trials steps.
 ///
-/// ```
-/// use palpate::stats::binomial::at_least;
-///
-/// // Guessing gets 20 or more of 30 pairs right once in twenty times.
-/// assert!((at_least(20, 30, 0.5)? - 0.0494).abs() < 1e-4);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
-/// ```
-///
 /// # Errors
 /// As [`probability`].
 ///
 /// Implements: DET-120.
-pub fn at_least(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionError> {
+pub fn at_least(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError> {
     check(successes, trials)?;
-    check_probability(p)?;
+    check_probability("p", p)?;
     let (k, n) = (successes as f64, trials as f64);
     // The smaller tail by summation, the larger as its complement.
     Ok(if k > n * p {
@@ -129,21 +51,13 @@ pub fn at_least(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionEr
 
 /// Pr(X ≤ successes) for X ~ Binomial(trials, p).
 ///
-/// ```
-/// use palpate::stats::binomial::{at_least, at_most};
-///
-/// assert!((at_most(1, 4, 0.5)? - 5.0 / 16.0).abs() < 1e-15);
-/// assert!((at_most(9, 30, 0.2)? + at_least(10, 30, 0.2)? - 1.0).abs() < 1e-15);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
-/// ```
-///
 /// # Errors
 /// As [`probability`].
 ///
 /// Implements: DET-120.
-pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionError> {
+pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError> {
     check(successes, trials)?;
-    check_probability(p)?;
+    check_probability("p", p)?;
     let (k, n) = (successes as f64, trials as f64);
     Ok(if k < n * p {
         outwards(n - k, n, 1.0 - p, p)
@@ -162,7 +76,7 @@ pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, ProportionErr
 /// let interval = clopper_pearson(0, 10, 0.95)?;
 /// assert_eq!(interval.lower, 0.0);
 /// assert!((interval.upper - (1.0 - 0.025_f64.powf(0.1))).abs() < 1e-14);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
+/// # Ok::<(), palpate::stats::NumericError>(())
 /// ```
 ///
 /// # Errors
@@ -173,9 +87,9 @@ pub fn clopper_pearson(
     successes: u64,
     trials: u64,
     confidence: f64,
-) -> Result<Interval, ProportionError> {
+) -> Result<Interval, NumericError> {
     check(successes, trials)?;
-    check_probability(confidence)?;
+    check_probability("confidence", confidence)?;
     let tail = 0.5 * (1.0 - confidence);
     let lower = if successes == 0 {
         0.0
@@ -192,24 +106,14 @@ pub fn clopper_pearson(
 
 /// The score interval of Wilson.
 ///
-/// ```
-/// use palpate::stats::binomial::wilson;
-///
-/// // No miss in 10 trials: upper = z²/(10 + z²).
-/// let square = 1.959963984540054_f64.powi(2);
-/// assert!((wilson(0, 10, 0.95)?.upper - square / (10.0 + square)).abs() < 1e-14);
-/// # Ok::<(), palpate::stats::binomial::ProportionError>(())
-/// ```
-///
 /// # Errors
 /// As [`clopper_pearson`].
 ///
 /// Implements: DET-122, ACC-013.
-pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Interval, ProportionError> {
+pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Interval, NumericError> {
     check(successes, trials)?;
-    let tail = 0.5 * (1.0 - check_probability(confidence)?);
-    let z =
-        -normal::quantile(tail).map_err(|_| ProportionError::Probability { value: confidence })?;
+    let tail = 0.5 * (1.0 - check_probability("confidence", confidence)?);
+    let z = -normal::quantile_of("confidence", tail)?;
     let (k, n) = (successes as f64, trials as f64);
     let square = z * z;
     let half_width = z * libm::sqrt(k / n * (n - k) + 0.25 * square);
@@ -224,27 +128,23 @@ pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Interval, 
     })
 }
 
-fn check(successes: u64, trials: u64) -> Result<(), ProportionError> {
-    if trials == 0 || trials > 1 << 53 {
-        return Err(ProportionError::Trials { trials });
-    }
+fn check(successes: u64, trials: u64) -> Result<(), NumericError> {
+    let is_right = (1..=1 << 53).contains(&trials);
+    in_range(
+        is_right,
+        "trials",
+        trials as f64,
+        "at least 1 and at most 2^53",
+    )?;
     if successes > trials {
-        return Err(ProportionError::Successes { successes, trials });
+        return Err(NumericError::Successes { successes, trials });
     }
     Ok(())
 }
 
-fn check_probability(value: f64) -> Result<f64, ProportionError> {
-    if value > 0.0 && value < 1.0 {
-        Ok(value)
-    } else {
-        Err(ProportionError::Probability { value })
-    }
-}
-
 /// The p at which an increasing function of p reaches `value`, to the last bit: bisection over the
 /// bits of p, so that small p keep their digits.
-fn least_p(increasing: impl Fn(f64) -> Result<f64, ProportionError>, value: f64) -> f64 {
+fn least_p(increasing: impl Fn(f64) -> Result<f64, NumericError>, value: f64) -> f64 {
     let (mut low, mut high) = (0, 1.0_f64.to_bits());
     while high - low > 1 {
         let middle = low + (high - low) / 2;
@@ -340,10 +240,8 @@ fn stirling_error(n: f64) -> f64 {
         0.0059513701127588475,
         0.005554733551962801,
     ];
-    for (index, &error) in TABLE.iter().enumerate() {
-        if n == index as f64 + 1.0 {
-            return error;
-        }
+    if n <= TABLE.len() as f64 {
+        return TABLE[n as usize - 1];
     }
     let square = n * n;
     let mut series = 1.0 / 1188.0;

@@ -19,32 +19,32 @@ pub struct DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// `high + low` for any two numbers, made canonical.
+    /// The exact sum of two numbers (Knuth), unless it overflows.
     #[inline]
-    pub fn new(high: f64, low: f64) -> Self {
-        let (high, low) = two_sum(high, low);
+    pub fn new(a: f64, b: f64) -> Self {
+        let high = a + b;
+        let b_seen = high - a;
+        let a_seen = high - b_seen;
+        let low = (a - a_seen) + (b - b_seen);
         Self { high, low }
     }
 
-    /// The exact product of two numbers (see [`two_product`] for its range).
+    /// The exact product of two numbers (Dekker, Veltkamp), if both are below 2^996 in size and the product does not overflow and
+    /// is not below 2^-969.
     #[inline]
     pub fn product(a: f64, b: f64) -> Self {
-        let (high, low) = two_product(a, b);
-        Self { high, low }
-    }
-
-    /// The exact difference of two numbers.
-    #[inline]
-    pub fn difference(a: f64, b: f64) -> Self {
-        let (high, low) = two_sum(a, -b);
+        let high = a * b;
+        let (a_high, a_low) = split(a);
+        let (b_high, b_low) = split(b);
+        let low = a_low * b_low - (((high - a_high * b_high) - a_low * b_high) - a_high * b_low);
         Self { high, low }
     }
 
     /// `self + other`, with an error of at most 4u²(|self| + |other|).
     #[inline]
     pub fn plus(self, other: Self) -> Self {
-        let (high, low) = two_sum(self.high, other.high);
-        Self::new(high, low + (self.low + other.low))
+        let sum = Self::new(self.high, other.high);
+        Self::new(sum.high, sum.low + (self.low + other.low))
     }
 
     /// `self · factor` for a power of two, exactly.
@@ -61,26 +61,6 @@ impl DoubleDouble {
     pub fn value(self) -> f64 {
         self.high + self.low
     }
-}
-
-/// `(s, e)` with s = fl(a + b) and s + e = a + b exactly (Knuth), unless s overflows.
-#[inline]
-pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let b_seen = sum - a;
-    let a_seen = sum - b_seen;
-    (sum, (a - a_seen) + (b - b_seen))
-}
-
-/// `(p, e)` with p = fl(a·b) and p + e = a·b exactly (Dekker, Veltkamp), if |a|, |b| < 2^996 and
-/// the product does not overflow and is not below 2^-969.
-#[inline]
-pub fn two_product(a: f64, b: f64) -> (f64, f64) {
-    let product = a * b;
-    let (a_high, a_low) = split(a);
-    let (b_high, b_low) = split(b);
-    let error = a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low);
-    (product, error)
 }
 
 /// The two halves of a number, of 26 bits each, whose products are exact.
@@ -105,9 +85,9 @@ impl Accumulator {
     #[inline]
     pub fn add(&mut self, index: usize, term: DoubleDouble) {
         let lane = index % LANES;
-        let (high, low) = two_sum(self.high[lane], term.high);
-        self.high[lane] = high;
-        self.low[lane] += low + term.low;
+        let sum = DoubleDouble::new(self.high[lane], term.high);
+        self.high[lane] = sum.high;
+        self.low[lane] += sum.low + term.low;
     }
 
     /// [`Accumulator::add`] of 64 products, in passes that compilers turn into vector code: the
@@ -118,17 +98,13 @@ impl Accumulator {
         let b = b.map(|b| b * power_of_two);
         let (mut high, mut low) = ([0.0; BATCH], [0.0; BATCH]);
         for index in 0..BATCH {
-            (high[index], low[index]) = two_product(a[index], b[index]);
+            let product = DoubleDouble::product(a[index], b[index]);
+            (high[index], low[index]) = (product.high, product.low);
         }
         for part in 0..LANES {
             for index in (part..BATCH).step_by(LANES) {
-                self.add(
-                    part,
-                    DoubleDouble {
-                        high: high[index],
-                        low: low[index],
-                    },
-                );
+                let (high, low) = (high[index], low[index]);
+                self.add(part, DoubleDouble { high, low });
             }
         }
     }
@@ -159,10 +135,8 @@ pub fn dot(a: &[f64], b: &[f64], power_of_two: f64) -> DoubleDouble {
         sum.add_products(a, b, power_of_two);
     }
     for (index, (&a, &b)) in a_rest.iter().zip(b_rest).enumerate() {
-        sum.add(
-            index,
-            DoubleDouble::product(a * power_of_two, b * power_of_two),
-        );
+        let term = DoubleDouble::product(a * power_of_two, b * power_of_two);
+        sum.add(index, term);
     }
     sum.total()
 }

@@ -5,10 +5,13 @@
 
 pub mod binomial;
 pub(crate) mod compensated;
+pub(crate) mod error;
 pub mod normal;
 pub mod random;
 pub mod tails;
 mod ziggurat;
+
+pub use error::NumericError;
 
 #[cfg(test)]
 pub(crate) mod check;

@@ -1,7 +1,8 @@
 //! The standard normal law: density φ, distribution Φ, upper tail 1 − Φ, and quantile Φ⁻¹.
 
+use super::NumericError;
 use super::compensated::DoubleDouble;
-use core::fmt;
+use super::error::{check_finite, check_probability};
 
 /// 1/√2 as a double-double.
 const FRAC_1_SQRT_2: DoubleDouble = DoubleDouble {
@@ -13,96 +14,34 @@ const FRAC_2_SQRT_PI: f64 = core::f64::consts::FRAC_2_SQRT_PI;
 /// 1/√(2π).
 const DENSITY_AT_ZERO: f64 = 0.398_942_280_401_432_7;
 
-/// Why a value of the normal law was refused.
-///
-/// ```
-/// use palpate::stats::normal::{NormalError, quantile};
-///
-/// assert_eq!(quantile(1.0), Err(NormalError::ProbabilityOutOfRange { value: 1.0 }));
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum NormalError {
-    /// The argument is NaN or infinite.
-    NotFinite {
-        /// The argument.
-        value: f64,
-    },
-    /// The probability is not in the open interval (0, 1): its quantile is not a finite number.
-    ProbabilityOutOfRange {
-        /// The probability.
-        value: f64,
-    },
-}
-
-impl fmt::Display for NormalError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotFinite { value } => write!(f, "the argument must be finite, not {value}"),
-            Self::ProbabilityOutOfRange { value } => {
-                write!(
-                    f,
-                    "the probability must lie strictly between 0 and 1, not {value}"
-                )
-            }
-        }
-    }
-}
-
-impl core::error::Error for NormalError {}
-
 /// φ(x) = exp(−x²/2)/√(2π).
 ///
-/// ```
-/// use palpate::stats::normal::density;
-///
-/// let top = 1.0 / core::f64::consts::TAU.sqrt();
-/// assert!((density(0.0)? - top).abs() < 1e-16);
-/// assert_eq!(density(1.5)?, density(-1.5)?);
-/// # Ok::<(), palpate::stats::normal::NormalError>(())
-/// ```
-///
 /// # Errors
-/// [`NormalError::NotFinite`].
+/// x NaN or infinite.
 ///
 /// Implements: DET-001.
-pub fn density(x: f64) -> Result<f64, NormalError> {
-    finite(x).map(unchecked_density)
+pub fn density(x: f64) -> Result<f64, NumericError> {
+    check_finite("x", x).map(unchecked_density)
 }
 
 /// Φ(x), the probability of a value of at most x.
 ///
-/// ```
-/// use palpate::stats::normal::cdf;
-///
-/// assert_eq!(cdf(0.0)?, 0.5);
-/// assert!((cdf(1.0)? - cdf(-1.0)? - 0.6827).abs() < 1e-4);
-/// # Ok::<(), palpate::stats::normal::NormalError>(())
-/// ```
-///
 /// # Errors
-/// [`NormalError::NotFinite`].
+/// x NaN or infinite.
 ///
 /// Implements: DET-001, DET-002, ACC-001.
-pub fn cdf(x: f64) -> Result<f64, NormalError> {
-    finite(x).map(lower_tail)
+pub fn cdf(x: f64) -> Result<f64, NumericError> {
+    check_finite("x", x).map(lower_tail)
 }
 
 /// 1 − Φ(x), without cancellation.
 ///
-/// ```
-/// use palpate::stats::normal::{cdf, upper_tail};
-///
-/// assert_eq!(1.0 - cdf(10.0)?, 0.0);
-/// assert!((upper_tail(10.0)? / 7.619853024160527e-24 - 1.0).abs() < 1e-13);
-/// # Ok::<(), palpate::stats::normal::NormalError>(())
-/// ```
-///
 /// # Errors
-/// [`NormalError::NotFinite`].
+/// x NaN or infinite.
 ///
 /// Implements: DET-001, DET-002, ACC-001.
-pub fn upper_tail(x: f64) -> Result<f64, NormalError> {
-    finite(x).map(|x| lower_tail(-x))
+pub fn upper_tail(x: f64) -> Result<f64, NumericError> {
+    check_finite("x", x).map(|x| lower_tail(-x))
 }
 
 /// Φ⁻¹(p), the x with Φ(x) = p.
@@ -115,31 +54,26 @@ pub fn upper_tail(x: f64) -> Result<f64, NormalError> {
 ///
 /// assert!((quantile(0.95)? - 1.6448536269514722).abs() < 1e-15);
 /// assert_eq!(quantile(0.5)?, 0.0);
-/// # Ok::<(), palpate::stats::normal::NormalError>(())
+/// # Ok::<(), palpate::stats::NumericError>(())
 /// ```
 ///
 /// # Errors
-/// [`NormalError::ProbabilityOutOfRange`] unless 0 < p < 1.
+/// p not strictly between 0 and 1.
 ///
 /// Implements: DET-003, DET-004, ACC-002.
-pub fn quantile(p: f64) -> Result<f64, NormalError> {
-    if !(p > 0.0 && p < 1.0) {
-        return Err(NormalError::ProbabilityOutOfRange { value: p });
-    }
+pub fn quantile(p: f64) -> Result<f64, NumericError> {
+    quantile_of("p", p)
+}
+
+/// [`quantile`] of an argument called `what`.
+pub(crate) fn quantile_of(what: &'static str, p: f64) -> Result<f64, NumericError> {
+    check_probability(what, p)?;
     // 1 − p is exact for p ≥ 1/2, so the upper half is the lower one mirrored.
     Ok(if p > 0.5 {
         -lower_quantile(1.0 - p)
     } else {
         lower_quantile(p)
     })
-}
-
-fn finite(value: f64) -> Result<f64, NormalError> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(NormalError::NotFinite { value })
-    }
 }
 
 fn unchecked_density(x: f64) -> f64 {
@@ -191,86 +125,54 @@ fn lower_quantile(p: f64) -> f64 {
 fn wichura(p: f64) -> f64 {
     let q = p - 0.5;
     if q.abs() <= 0.425 {
-        let r = 0.180625 - q * q;
-        return q * polynomial(&CENTRE_NUMERATOR, r) / polynomial(&CENTRE_DENOMINATOR, r);
+        return rational(&CENTRE, q, 0.180625 - q * q);
     }
     let r = libm::sqrt(-libm::log(p));
     if r <= 5.0 {
-        let r = r - 1.6;
-        -polynomial(&TAIL_NUMERATOR, r) / polynomial(&TAIL_DENOMINATOR, r)
+        rational(&TAIL, -1.0, r - 1.6)
     } else {
-        let r = r - 5.0;
-        -polynomial(&FAR_NUMERATOR, r) / polynomial(&FAR_DENOMINATOR, r)
+        rational(&FAR, -1.0, r - 5.0)
     }
 }
 
-/// Σ cᵢ xⁱ by Horner's rule.
-fn polynomial(coefficients: &[f64], x: f64) -> f64 {
-    coefficients
+/// factor · Σ aᵢ xⁱ / Σ bᵢ xⁱ by Horner's rule, for coefficients [aᵢ, bᵢ] from i = 0 on.
+fn rational(coefficients: &[[f64; 2]; 8], factor: f64, x: f64) -> f64 {
+    let [numerator, denominator] = coefficients
         .iter()
         .rev()
-        .fold(0.0, |sum, coefficient| sum * x + coefficient)
+        .fold([0.0; 2], |sums, ab| [0, 1].map(|k| sums[k] * x + ab[k]));
+    factor * numerator / denominator
 }
 
-const CENTRE_NUMERATOR: [f64; 8] = [
-    3.387_132_872_796_366_5,
-    1.331_416_678_917_843_8e2,
-    1.971_590_950_306_551_3e3,
-    1.373_169_376_550_946e4,
-    4.592_195_393_154_987e4,
-    6.726_577_092_700_87e4,
-    3.343_057_558_358_813e4,
-    2.509_080_928_730_122_7e3,
+const CENTRE: [[f64; 2]; 8] = [
+    [3.387_132_872_796_366_5, 1.0],
+    [1.331_416_678_917_843_8e2, 4.231_333_070_160_091e1],
+    [1.971_590_950_306_551_3e3, 6.871_870_074_920_579e2],
+    [1.373_169_376_550_946e4, 5.394_196_021_424_751e3],
+    [4.592_195_393_154_987e4, 2.121_379_430_158_659_7e4],
+    [6.726_577_092_700_87e4, 3.930_789_580_009_271e4],
+    [3.343_057_558_358_813e4, 2.872_908_573_572_194_3e4],
+    [2.509_080_928_730_122_7e3, 5.226_495_278_852_545e3],
 ];
-const CENTRE_DENOMINATOR: [f64; 8] = [
-    1.0,
-    4.231_333_070_160_091e1,
-    6.871_870_074_920_579e2,
-    5.394_196_021_424_751e3,
-    2.121_379_430_158_659_7e4,
-    3.930_789_580_009_271e4,
-    2.872_908_573_572_194_3e4,
-    5.226_495_278_852_545e3,
+const TAIL: [[f64; 2]; 8] = [
+    [1.423_437_110_749_683_5, 1.0],
+    [4.630_337_846_156_546, 2.053_191_626_637_759],
+    [5.769_497_221_460_691, 1.676_384_830_183_803_8],
+    [3.647_848_324_763_204_5, 6.897_673_349_851e-1],
+    [1.270_458_252_452_368_4, 1.481_039_764_274_800_8e-1],
+    [2.417_807_251_774_506e-1, 1.519_866_656_361_645_7e-2],
+    [2.272_384_498_926_918_4e-2, 5.475_938_084_995_345e-4],
+    [7.745_450_142_783_414e-4, 1.050_750_071_644_416_9e-9],
 ];
-const TAIL_NUMERATOR: [f64; 8] = [
-    1.423_437_110_749_683_5,
-    4.630_337_846_156_546,
-    5.769_497_221_460_691,
-    3.647_848_324_763_204_5,
-    1.270_458_252_452_368_4,
-    2.417_807_251_774_506e-1,
-    2.272_384_498_926_918_4e-2,
-    7.745_450_142_783_414e-4,
-];
-const TAIL_DENOMINATOR: [f64; 8] = [
-    1.0,
-    2.053_191_626_637_759,
-    1.676_384_830_183_803_8,
-    6.897_673_349_851e-1,
-    1.481_039_764_274_800_8e-1,
-    1.519_866_656_361_645_7e-2,
-    5.475_938_084_995_345e-4,
-    1.050_750_071_644_416_9e-9,
-];
-const FAR_NUMERATOR: [f64; 8] = [
-    6.657_904_643_501_103,
-    5.463_784_911_164_114,
-    1.784_826_539_917_291_3,
-    2.965_605_718_285_048_7e-1,
-    2.653_218_952_657_612_4e-2,
-    1.242_660_947_388_078_4e-3,
-    2.711_555_568_743_487_6e-5,
-    2.010_334_399_292_288_1e-7,
-];
-const FAR_DENOMINATOR: [f64; 8] = [
-    1.0,
-    5.998_322_065_558_88e-1,
-    1.369_298_809_227_358e-1,
-    1.487_536_129_085_061_5e-2,
-    7.868_691_311_456_133e-4,
-    1.846_318_317_510_054_8e-5,
-    1.421_511_758_316_446e-7,
-    2.044_263_103_389_939_8e-15,
+const FAR: [[f64; 2]; 8] = [
+    [6.657_904_643_501_103, 1.0],
+    [5.463_784_911_164_114, 5.998_322_065_558_88e-1],
+    [1.784_826_539_917_291_3, 1.369_298_809_227_358e-1],
+    [2.965_605_718_285_048_7e-1, 1.487_536_129_085_061_5e-2],
+    [2.653_218_952_657_612_4e-2, 7.868_691_311_456_133e-4],
+    [1.242_660_947_388_078_4e-3, 1.846_318_317_510_054_8e-5],
+    [2.711_555_568_743_487_6e-5, 1.421_511_758_316_446e-7],
+    [2.010_334_399_292_288_1e-7, 2.044_263_103_389_939_8e-15],
 ];
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! 3*, SC 2011), the transformation Marsaglia and Tsang's ziggurat with `libm` for the few deviates
 //! that need a transcendental function.
 
-use super::ziggurat::{EDGES, HEIGHTS, TAIL};
+use super::ziggurat::{EDGES, TAIL};
 
 /// Deviates made in one go: a multiple of 4, and one for each bit of a word.
 const BATCH: usize = 64;
@@ -148,8 +148,8 @@ impl Generator {
                     };
                 }
             } else {
-                let (floor, ceiling) = (HEIGHTS[layer], HEIGHTS[layer + 1]);
-                if floor + (ceiling - floor) * uniform(first) < libm::exp(-0.5 * x * x) {
+                let (floor, ceiling) = (height(EDGES[layer]), height(EDGES[layer + 1]));
+                if floor + (ceiling - floor) * uniform(first) < height(x) {
                     return x;
                 }
                 (x, layer) = candidate(next);
@@ -159,6 +159,11 @@ impl Generator {
             }
         }
     }
+}
+
+/// The curve over the layers, exp(−x²/2).
+fn height(x: f64) -> f64 {
+    libm::exp(-0.5 * x * x)
 }
 
 /// A point in a layer of the ziggurat: its abscissa and the layer, from disjoint bits.

@@ -2,31 +2,8 @@
 //! functions: series where they converge fast, Lentz's evaluation of the continued fractions
 //! elsewhere.
 
-use core::fmt;
-
-/// An argument outside the range in which the question has an answer, or NaN.
-///
-/// ```
-/// use palpate::stats::tails::{TailError, gamma_tail};
-///
-/// assert_eq!(gamma_tail(-1.0, 2.0), Err(TailError { what: "shape", value: -1.0 }));
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TailError {
-    /// The name of the argument.
-    pub what: &'static str,
-    /// Its value.
-    pub value: f64,
-}
-
-impl fmt::Display for TailError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { what, value } = self;
-        write!(f, "{what} = {value} is not in its range")
-    }
-}
-
-impl core::error::Error for TailError {}
+use super::NumericError;
+use super::error::{check_not_negative, check_probability, in_range};
 
 /// Parameters up to which the tails are tested.
 const LARGEST: f64 = 1e6;
@@ -41,21 +18,13 @@ const TINY: f64 = 1e-300;
 /// Pr(X ≥ x) for a gamma law of the given shape and unit scale: the regularised upper incomplete
 /// gamma function Q(shape, x).
 ///
-/// ```
-/// use palpate::stats::tails::gamma_tail;
-///
-/// // With shape 1 it is the exponential law.
-/// assert!((gamma_tail(1.0, 3.0)? - (-3.0_f64).exp()).abs() < 1e-15);
-/// # Ok::<(), palpate::stats::tails::TailError>(())
-/// ```
-///
 /// # Errors
 /// A shape not in (0, 10⁶], x negative or not finite.
 ///
 /// Implements: PSY-030.
-pub fn gamma_tail(shape: f64, x: f64) -> Result<f64, TailError> {
-    parameter("shape", shape)?;
-    argument("x", x)?;
+pub fn gamma_tail(shape: f64, x: f64) -> Result<f64, NumericError> {
+    check_parameter("shape", shape)?;
+    check_not_negative("x", x)?;
     if x == 0.0 {
         return Ok(1.0);
     }
@@ -83,37 +52,22 @@ pub fn gamma_tail(shape: f64, x: f64) -> Result<f64, TailError> {
 
 /// Pr(X ≥ x) for the chi-square law.
 ///
-/// ```
-/// use palpate::stats::tails::chi_square_tail;
-///
-/// assert!((chi_square_tail(3.841458820694124, 1.0)? - 0.05).abs() < 1e-14);
-/// # Ok::<(), palpate::stats::tails::TailError>(())
-/// ```
-///
 /// # Errors
 /// As [`gamma_tail`], for half the degrees of freedom.
 ///
 /// Implements: PSY-030.
-pub fn chi_square_tail(x: f64, degrees: f64) -> Result<f64, TailError> {
+pub fn chi_square_tail(x: f64, degrees: f64) -> Result<f64, NumericError> {
     gamma_tail(0.5 * degrees, 0.5 * x)
 }
 
 /// Pr(X ≥ x) for the F law.
 ///
-/// ```
-/// use palpate::stats::tails::f_tail;
-///
-/// // The quotient of two alike is as often above 1 as below.
-/// assert!((f_tail(1.0, 7.0, 7.0)? - 0.5).abs() < 1e-13);
-/// # Ok::<(), palpate::stats::tails::TailError>(())
-/// ```
-///
 /// # Errors
 /// Degrees of freedom not in (0, 2·10⁶], x negative or not finite.
 ///
 /// Implements: PSY-030.
-pub fn f_tail(x: f64, numerator: f64, denominator: f64) -> Result<f64, TailError> {
-    argument("x", x)?;
+pub fn f_tail(x: f64, numerator: f64, denominator: f64) -> Result<f64, NumericError> {
+    check_not_negative("x", x)?;
     let sum = denominator + numerator * x;
     // Both shares from their own quotients: a difference from 1 would lose the small one.
     incomplete_beta(
@@ -126,19 +80,11 @@ pub fn f_tail(x: f64, numerator: f64, denominator: f64) -> Result<f64, TailError
 
 /// Pr(|T| ≥ |t|) for Student's law.
 ///
-/// ```
-/// use palpate::stats::tails::student_two_sided;
-///
-/// // One degree of freedom is the Cauchy law: half of it lies beyond ±1.
-/// assert!((student_two_sided(-1.0, 1.0)? - 0.5).abs() < 1e-14);
-/// # Ok::<(), palpate::stats::tails::TailError>(())
-/// ```
-///
 /// # Errors
 /// Degrees of freedom not in (0, 2·10⁶], t not finite.
 ///
 /// Implements: PSY-030.
-pub fn student_two_sided(t: f64, degrees: f64) -> Result<f64, TailError> {
+pub fn student_two_sided(t: f64, degrees: f64) -> Result<f64, NumericError> {
     f_tail(t * t, 1.0, degrees)
 }
 
@@ -149,19 +95,15 @@ pub fn student_two_sided(t: f64, degrees: f64) -> Result<f64, TailError> {
 ///
 /// // Ten subjects.
 /// assert!((student_quantile(0.95, 9.0)? - 2.2621571628).abs() < 1e-9);
-/// # Ok::<(), palpate::stats::tails::TailError>(())
+/// # Ok::<(), palpate::stats::NumericError>(())
 /// ```
 ///
 /// # Errors
 /// A confidence not strictly between 0 and 1; as [`student_two_sided`].
 ///
 /// Implements: PSY-030.
-pub fn student_quantile(confidence: f64, degrees: f64) -> Result<f64, TailError> {
-    if !(confidence > 0.0 && confidence < 1.0) {
-        let (what, value) = ("confidence", confidence);
-        return Err(TailError { what, value });
-    }
-    let outside = 1.0 - confidence;
+pub fn student_quantile(confidence: f64, degrees: f64) -> Result<f64, NumericError> {
+    let outside = 1.0 - check_probability("confidence", confidence)?;
     let (mut low, mut high) = (0.0, 1.0);
     while high < 1e150 && student_two_sided(high, degrees)? > outside {
         (low, high) = (high, 2.0 * high);
@@ -179,9 +121,9 @@ pub fn student_quantile(confidence: f64, degrees: f64) -> Result<f64, TailError>
 }
 
 /// I_x(a, b) with y = 1 − x given beside x.
-fn incomplete_beta(a: f64, b: f64, x: f64, y: f64) -> Result<f64, TailError> {
-    parameter("degrees", a)?;
-    parameter("degrees", b)?;
+fn incomplete_beta(a: f64, b: f64, x: f64, y: f64) -> Result<f64, NumericError> {
+    check_parameter("half the degrees of freedom", a)?;
+    check_parameter("half the degrees of freedom", b)?;
     if x <= 0.0 || y <= 0.0 {
         return Ok(if x <= 0.0 { 0.0 } else { 1.0 });
     }
@@ -229,20 +171,9 @@ fn fraction(b0: f64, coefficients: impl Fn(u32) -> (f64, f64)) -> f64 {
     value
 }
 
-fn parameter(what: &'static str, value: f64) -> Result<(), TailError> {
-    if value > 0.0 && value <= LARGEST {
-        Ok(())
-    } else {
-        Err(TailError { what, value })
-    }
-}
-
-fn argument(what: &'static str, value: f64) -> Result<(), TailError> {
-    if value >= 0.0 && value.is_finite() {
-        Ok(())
-    } else {
-        Err(TailError { what, value })
-    }
+fn check_parameter(what: &'static str, value: f64) -> Result<f64, NumericError> {
+    let is_right = value > 0.0 && value <= LARGEST;
+    in_range(is_right, what, value, "above 0 and at most 1e6")
 }
 
 #[cfg(test)]

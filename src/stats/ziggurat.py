@@ -34,15 +34,10 @@ for _ in range(160):
 xs, area = edges(r)
 xs.append(mpf(0))
 
-
-def table(name, doc, values):
-    print(f"/// {doc}\n#[rustfmt::skip]\npub(super) const {name}: [f64; {len(values)}] = [")
-    for start in range(0, len(values), 4):
-        print("    " + ", ".join(repr(float(v)) for v in values[start : start + 4]) + ",")
-    print("];")
-
-
-print("//! Tables of the ziggurat for the normal law; written by `ziggurat.py`, checked by `random/tests.rs`.\n")
+print("//! Table of the ziggurat for the normal law; written by `ziggurat.py`, checked by `random/tests.rs`.\n")
 print("/// Where the tail begins.\npub(super) const TAIL: f64 = %r;" % float(r))
-table("EDGES", "Right edges xᵢ of the layers, from the base (whose area includes the tail) to the top.", xs)
-table("HEIGHTS", "exp(−xᵢ²/2).", [exp(-x * x / 2) for x in xs])
+print("/// Right edges xᵢ of the layers, from the base (whose area includes the tail) to the top.")
+print(f"#[rustfmt::skip]\npub(super) const EDGES: [f64; {len(xs)}] = [")
+for start in range(0, len(xs), 4):
+    print("    " + ", ".join(repr(float(x)) for x in xs[start : start + 4]) + ",")
+print("];")

@@ -3,19 +3,10 @@
 use super::*;
 use crate::stats::check::assert_ulps;
 
-const UNIT: Channels<f64> = Channels { x: 1.0, y: 1.0 };
-const F0: Channels<&[f64]> = Channels {
-    x: &[0.0, 1.0],
-    y: &[1.0, 1.0],
-};
-const F1: Channels<&[f64]> = Channels {
-    x: &[1.0, 1.0],
-    y: &[2.0, 3.0],
-};
-const OBSERVED: Channels<&[f64]> = Channels {
-    x: &[1.0, 5.0],
-    y: &[1.0, 2.0],
-};
+const UNIT: Channels<f64> = Channels::new(1.0, 1.0);
+const F0: Channels<&[f64]> = Channels::new(&[0.0, 1.0], &[1.0, 1.0]);
+const F1: Channels<&[f64]> = Channels::new(&[1.0, 1.0], &[2.0, 3.0]);
+const OBSERVED: Channels<&[f64]> = Channels::new(&[1.0, 5.0], &[1.0, 2.0]);
 
 // Verifies: DET-031.
 #[test]
@@ -55,40 +46,21 @@ fn what_is_refused_is_never_a_decision() {
                 Err(DetectError::NotFinite { index: 1, .. })
             ));
         }
-        assert!(assess(OBSERVED, F0, F1, Channels { x: bad[1], y: 1.0 }, 0.5, 0.0).is_err());
+        assert!(assess(OBSERVED, F0, F1, Channels::new(bad[1], 1.0), 0.5, 0.0).is_err());
         assert!(assess(OBSERVED, F0, F1, UNIT, bad[1], 0.0).is_err());
         assert!(assess(OBSERVED, F0, F1, UNIT, 0.5, bad[1]).is_err());
     }
-    assert!(
-        assess(
-            Channels {
-                x: &[1.0],
-                y: &[1.0, 2.0]
-            },
-            F0,
-            F1,
-            UNIT,
-            0.5,
-            0.0
-        )
-        .is_err()
-    );
+    assert!(assess(Channels::new(&[1.0], &[1.0, 2.0]), F0, F1, UNIT, 0.5, 0.0).is_err());
 }
 
 // Verifies: DET-053, DET-057, DET-059.
 #[test]
 fn record_at_an_unknown_position() {
-    let template: Channels<&[f64]> = Channels {
-        x: &[0.0],
-        y: &[2.0],
-    };
+    let template: Channels<&[f64]> = Channels::new(&[0.0], &[2.0]);
     let scan = Scan::new(3, template, UNIT).unwrap();
     let (mut gamma, mut angle) = ([0.0; 3], [0.0; 3]);
     let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle).unwrap();
-    let residual: Channels<&[f64]> = Channels {
-        x: &[9.0, 9.0, 9.0],
-        y: &[0.0, 3.0, 1.0],
-    };
+    let residual: Channels<&[f64]> = Channels::new(&[9.0, 9.0, 9.0], &[0.0, 3.0, 1.0]);
     let found = assess_scan(&scan, &law, residual, 2.0).unwrap();
     assert_eq!((found.maximum.shift, found.maximum.theta), (1, 4.0));
     assert_eq!(found.decision, Decision::Inclusion);
@@ -99,10 +71,7 @@ fn record_at_an_unknown_position() {
         assess_scan(&scan, &law, residual, 4.1).unwrap().decision,
         Decision::NoInclusion
     );
-    let bad: Channels<&[f64]> = Channels {
-        x: &[9.0, f64::NAN, 9.0],
-        y: residual.y,
-    };
+    let bad: Channels<&[f64]> = Channels::new(&[9.0, f64::NAN, 9.0], residual.y);
     assert!(assess_scan(&scan, &law, bad, 2.0).is_err());
     assert!(assess_scan(&scan, &law, residual, f64::NAN).is_err());
 }

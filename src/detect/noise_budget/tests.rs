@@ -40,19 +40,6 @@ fn sources_of_table_2() {
     assert_ulps(noise_total(&[3e-200, 4e-200]).unwrap().total, 5e-200, 2.0);
 }
 
-// Verifies: DET-103, DET-104.
-#[test]
-fn forced_choices_and_quantisation() {
-    assert_ulps(
-        two_afc_in_noise(0.34, 0.17).unwrap(),
-        0.9213503964748574,
-        4.0,
-    );
-    // A step of √12 mN is an error of 1 mN.
-    assert_ulps(quantisation_sd(3.4641016151377546e-3).unwrap(), 1e-3, 2.0);
-    assert_ulps(quantisation_step(1e-3).unwrap(), 3.4641016151377546e-3, 2.0);
-}
-
 // Verifies: DET-005, DET-006, DET-008.
 #[test]
 fn budgets_without_an_answer_are_refused() {
@@ -64,15 +51,13 @@ fn budgets_without_an_answer_are_refused() {
     assert!(noise_budget(0.5, 0.5, 0.5, &[]).is_err() && noise_budget(0.5, 0.9, 0.5, &[]).is_err());
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(noise_budget(bad, 0.05, 0.05, &[]).is_err());
-        assert!(two_afc_in_noise(1.0, bad).is_err());
     }
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
         assert!(noise_budget(0.5, 0.05, 0.05, &[0.1, bad]).is_err());
-        assert!(noise_total(&[bad]).is_err() && two_afc_in_noise(bad, 1.0).is_err());
-        assert!(quantisation_sd(bad).is_err() && quantisation_step(bad).is_err());
+        assert!(noise_total(&[bad]).is_err());
     }
     assert!(noise_total(&[]).is_err() && noise_total(&[0.0]).is_err());
-    assert!(quantisation_step(1e308).is_err() && noise_total(&[1.7e308, 1.7e308]).is_err());
+    assert!(noise_total(&[1.7e308, 1.7e308]).is_err());
 }
 
 // Verifies: DET-102.

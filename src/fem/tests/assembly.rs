@@ -1,9 +1,9 @@
 use nalgebra::DMatrix;
 
+use crate::fem::Mesh;
 use crate::fem::assembly::StiffnessMatrix;
 use crate::fem::element::StiffnessRule;
 use crate::fem::ordering::dissection;
-use crate::fem::{FemError, Mesh};
 use crate::phantom::{Phantom, Support};
 
 use super::{builtin, off_centre, small};
@@ -111,9 +111,9 @@ fn an_element_turned_inside_out_is_an_error_that_says_where() {
     let node = mesh.connectivity[6 * 100] as usize;
     mesh.nodes[node][1] += 0.01;
     let error = StiffnessMatrix::assemble(&mesh, &phantom).unwrap_err();
+    let said = error.to_string();
     assert!(
-        matches!(error, FemError::Degenerate { jacobian, .. } if jacobian <= 0.0),
-        "{error}"
+        said.contains("near x = ") && said.contains("has the Jacobian -"),
+        "{said}"
     );
-    assert!(error.to_string().contains("near x = "), "{error}");
 }

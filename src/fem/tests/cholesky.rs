@@ -144,7 +144,8 @@ fn a_matrix_that_is_not_positive_definite_is_an_error() {
         let diagonal = matrix.upper.val_of_col_mut(200).last_mut().unwrap();
         *diagonal = spoil(*diagonal);
         let error = Factor::new(&matrix).unwrap_err();
-        assert_eq!(error, FemError::NotPositiveDefinite);
+        let said = error.to_string();
+        assert!(said.contains("is not positive definite"), "{said}");
     }
 }
 

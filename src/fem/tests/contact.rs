@@ -1,7 +1,7 @@
-use crate::fem::field::Batch;
+use crate::fem::field::check;
 use crate::fem::{Contact, ContactState, FemError, MESH_SIZE, Model, Pose, PoseSolution};
 
-use super::{builtin, off_centre};
+use super::{builtin, off_centre, pose};
 
 fn coarse(name: &str, contact: Contact) -> Model {
     super::coarse(&builtin(name), contact)
@@ -11,10 +11,7 @@ const CONTACTS: [Contact; 2] = [Contact::DeformedNormal, Contact::VerticalGap];
 
 fn solve(model: &Model, depth_mm: f64, lateral_mm: f64) -> PoseSolution {
     model
-        .solve(Pose {
-            depth: depth_mm * 1e-3,
-            lateral: lateral_mm * 1e-3,
-        })
+        .solve(pose(depth_mm * 1e-3, lateral_mm * 1e-3))
         .unwrap()
 }
 
@@ -60,10 +57,7 @@ fn contact_points_are_the_gauss_points_of_the_edges() {
 fn nothing_is_inside_the_probe_and_nothing_is_pulled() {
     for phantom in [builtin("2.6"), off_centre(2.6, 3.0)] {
         let model = super::coarse(&phantom, Contact::DeformedNormal);
-        let pose = Pose {
-            depth: 3e-3,
-            lateral: 2.2e-3,
-        };
+        let pose = pose(3e-3, 2.2e-3);
         let solution = model.solve(pose).unwrap();
         let centre = [2.2e-3, 6.5e-3 - 3e-3];
         let state = &solution.state;
@@ -166,15 +160,14 @@ fn a_force_that_nothing_answers_is_an_imbalance_in_either_direction() {
     let model = coarse("4.6", CONTACTS[0]);
     let solution = solve(&model, 3.0, 2.0);
     let (displacements, forces) = model.surface().at_nodes(&solution.state, solution.pose);
-    let mut batch = Batch::new(model.matrix.unknowns());
     let extra = [[0.0, 0.0], [2e-3, 0.0], [0.0, -3e-3], [-2e-3, 1e-3]];
-    for (column, extra) in extra.iter().enumerate() {
+    let poses = extra.map(|extra| {
         let mut forces = forces.clone();
         let middle = forces.len() / 2;
         (0..2).for_each(|k| forces[middle][k] += extra[k]);
-        batch.set(column, &model.matrix, &displacements, &forces);
-    }
-    let checks = batch.check(&model.matrix, &model.factor, &model.samples);
+        (displacements.clone(), forces)
+    });
+    let checks = check(&model.matrix, &model.factor, &model.samples, &poses);
     for (check, extra) in checks.unwrap().iter().zip(extra) {
         let expected = extra[0].abs().max(extra[1].abs());
         assert!(
@@ -299,10 +292,7 @@ fn the_contact_laws_agree_where_the_gel_hardly_moves() {
 #[test]
 fn a_pose_that_does_not_converge_is_an_error_that_names_it() {
     let mut surface = coarse("none", Contact::DeformedNormal).surface().clone();
-    let pose = Pose {
-        depth: 2.5e-3,
-        lateral: 1.5e-3,
-    };
+    let pose = pose(2.5e-3, 1.5e-3);
     let untouched = ContactState::untouched(surface.positions.len());
     surface
         .solve(pose, &untouched)
@@ -337,12 +327,7 @@ fn poses_where_the_probe_cannot_stand_are_refused() {
         let error = model.solve(Pose { depth, lateral }).unwrap_err();
         assert!(matches!(error, FemError::Pose(_)), "{error}");
     }
-    let still = model
-        .solve(Pose {
-            depth: 0.0,
-            lateral: 3e-3,
-        })
-        .unwrap();
+    let still = model.solve(pose(0.0, 3e-3)).unwrap();
     assert_eq!(
         [still.normal_force, still.lateral_force, still.energy],
         [0.0; 3]
@@ -354,10 +339,7 @@ fn poses_where_the_probe_cannot_stand_are_refused() {
 fn the_curvature_term_makes_newton_fast() {
     let model = coarse("2.6", Contact::DeformedNormal);
     let start = solve(&model, 3.0, 2.0).state;
-    let pose = Pose {
-        depth: 3.0005e-3,
-        lateral: 2e-3,
-    };
+    let pose = pose(3.0005e-3, 2e-3);
     let next = model.surface().solve(pose, &start).unwrap();
     assert_eq!(
         next.active, start.active,

@@ -1,6 +1,6 @@
 use crate::fem::{Contact, FemError, MESH_SIZE, Model, Pose};
 
-use super::{builtin, finest, off_centre};
+use super::{builtin, finest, off_centre, pose};
 
 fn coarse(name: &str, contact: Contact) -> Model {
     super::coarse(&builtin(name), contact)
@@ -22,10 +22,7 @@ fn maps_are_mirror_symmetric_to_the_bit() {
         assert_eq!(lateral[2].to_bits(), 0.0f64.to_bits());
         assert!(lateral[3] > 1e-4, "nothing to mirror");
     }
-    let right = Pose {
-        depth: 2.5e-3,
-        lateral: 2e-3,
-    };
+    let right = pose(2.5e-3, 2e-3);
     let left = Pose {
         lateral: -2e-3,
         ..right
@@ -132,16 +129,7 @@ fn the_certificate_tells_the_checks_of_every_pose() {
     // Deeper presses squeeze more, and here most over the inclusion.
     assert!(certificate.min_det.row(0)[0] > certificate.min_det.row(2)[0]);
     assert_eq!(certificate.smallest_det.depth, 4e-3);
-    let field = model
-        .field(
-            &model
-                .solve(Pose {
-                    depth: 4e-3,
-                    lateral: 0.0,
-                })
-                .unwrap(),
-        )
-        .unwrap();
+    let field = model.field(&model.solve(pose(4e-3, 0.0)).unwrap()).unwrap();
     let least = field
         .gradients
         .iter()
@@ -180,13 +168,7 @@ fn the_paper_s_poses_have_the_forces_of_an_independent_program() {
     // 0.31 N over the 6.6 mm inclusion; both given to two digits.
     let force = |name: &str| {
         let model = Model::new(&builtin(name), MESH_SIZE, Contact::DeformedNormal).unwrap();
-        model
-            .solve(Pose {
-                depth: 4e-3,
-                lateral: 0.0,
-            })
-            .unwrap()
-            .normal_force
+        model.solve(pose(4e-3, 0.0)).unwrap().normal_force
     };
     let (none, inclusion) = (force("none"), force("6.6"));
     assert!((none - 1.48).abs() < 0.005, "{none}");
@@ -231,10 +213,7 @@ fn forces_of_the_default_mesh_are_converged() {
 #[test]
 fn the_vtu_file_holds_the_mesh_and_the_stresses() {
     let model = coarse("2.6", Contact::DeformedNormal);
-    let pose = Pose {
-        depth: 2e-3,
-        lateral: 0.0,
-    };
+    let pose = pose(2e-3, 0.0);
     let solution = model.solve(pose).unwrap();
     let text = model.vtu(&solution).unwrap();
     let array = |name: &str| -> Vec<f64> {

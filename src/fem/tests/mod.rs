@@ -9,12 +9,16 @@ mod map;
 mod mesh;
 mod supports;
 
-use super::{Contact, MESH_SIZE, Model};
+use super::{Contact, MESH_SIZE, Model, Pose};
 use crate::phantom::{Inclusion, Layer, Material, Phantom, Shape};
 
 /// A built-in phantom.
 fn builtin(name: &str) -> Phantom {
     Phantom::builtin(name).expect("a built-in name")
+}
+
+fn pose(depth: f64, lateral: f64) -> Pose {
+    Pose { depth, lateral }
 }
 
 /// A coarse model, for laws that hold on any mesh.

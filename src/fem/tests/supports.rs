@@ -3,10 +3,10 @@
 use crate::fem::assembly::StiffnessMatrix;
 use crate::fem::cholesky::Factor;
 use crate::fem::element::lame;
-use crate::fem::{Contact, Mesh, Pose};
+use crate::fem::{Contact, Mesh};
 use crate::phantom::{Material, Phantom, Support};
 
-use super::{builtin, coarse, off_centre, small};
+use super::{builtin, coarse, off_centre, pose, small};
 
 /// The supports that hold a phantom in place.
 const SUPPORTS: [(Support, Support); 6] = [
@@ -39,11 +39,11 @@ fn a_shift_of_everything_costs_nothing() {
             for unknown in (0..mesh.nodes.len()).filter_map(|k| matrix.unknown(k, direction)) {
                 shift[unknown] = [1.0];
             }
-            let mut force: Vec<[f64; 1]> = (matrix.reaction[direction].iter())
+            let force: Vec<[f64; 1]> = (matrix.reaction[direction].iter())
                 .map(|&reaction| [-reaction])
                 .collect();
-            matrix.subtract_product(&shift, &mut force);
-            let left = force.iter().fold(0.0, |a: f64, [f]| a.max(f.abs()));
+            let (rest, _) = matrix.residual(&shift, &force);
+            let left = rest.iter().fold(0.0, |a: f64, [f]| a.max(f.abs()));
             let diagonal = (0..n).map(|k| matrix.upper.val_of_col(k).last().copied().unwrap());
             // Rows of some thirty entries of at most the largest diagonal.
             let largest = diagonal.fold(0.0, f64::max);
@@ -102,10 +102,7 @@ fn a_slab_between_lubricated_walls_is_squeezed_as_a_column() {
 // Verifies: FEM-035.
 #[test]
 fn what_holds_less_pushes_back_less() {
-    let pose = Pose {
-        depth: 3e-3,
-        lateral: 8e-3,
-    };
+    let pose = pose(3e-3, 8e-3);
     for (chain, at_least) in [
         // The walls go first, then the floor.
         (vec![0, 3, 4], 0.02),

@@ -184,23 +184,14 @@ fn the_stiffness_is_the_steepest_slope_by_differences() {
     let reciprocals = |knots: &[f32; 4]| [0, 1, 2].map(|i| 1.0 / (knots[i + 1] - knots[i]));
     for depths in knots {
         for place in 0..16 {
-            for steep in [
-                Force {
-                    lateral: 8.0,
-                    normal: 0.5,
-                },
-                Force {
-                    lateral: -1.0,
-                    normal: 4.0,
-                },
-            ] {
+            for [lateral, normal] in [[8.0, 0.5], [-1.0, 4.0]] {
                 let mut forces: Vec<Force> = (0..16u8)
                     .map(|k| Force {
                         lateral: f32::from(k * 7 % 5) / 8.0,
                         normal: f32::from(k * 3 % 7) / 8.0,
                     })
                     .collect();
-                forces[place] = steep;
+                forces[place] = Force { lateral, normal };
                 let (heights, widths) = (reciprocals(&depths), reciprocals(&laterals));
                 let depths = Axis::new(&depths, &heights).unwrap();
                 let table = Table::new(depths, Axis::new(&laterals, &widths).unwrap(), &forces);
@@ -300,24 +291,15 @@ fn the_stiffest_spring_is_that_whose_delay_the_damping_makes_up_for() {
         ..device
     };
     assert!((remote.stiffest().unwrap() - 200.0).abs() < 1e-10);
-    for wrong in [
-        Damping {
-            period_s: 0.0,
-            ..device
-        },
-        Damping {
-            damping_n_s_per_m: -1.0,
-            ..device
-        },
-        Damping {
-            friction_n: f64::NAN,
-            ..device
-        },
-        Damping {
-            resolution_m: f64::INFINITY,
-            ..device
-        },
-    ] {
+    let spoils: [fn(&mut Damping); 4] = [
+        |damping| damping.period_s = 0.0,
+        |damping| damping.damping_n_s_per_m = -1.0,
+        |damping| damping.friction_n = f64::NAN,
+        |damping| damping.resolution_m = f64::INFINITY,
+    ];
+    for spoil in spoils {
+        let mut wrong = device;
+        spoil(&mut wrong);
         assert_eq!(wrong.stiffest(), None, "{wrong:?}");
     }
 }
@@ -343,23 +325,12 @@ fn a_table_too_stiff_is_refused_or_scaled_on_request() {
     let table = loaded.table().unwrap();
     assert!(stiffness(&table) <= 200.0);
     assert!((scale - 0.5).abs() < 1e-5, "{scale}");
-    let expected = (1.6 * scale) as f32;
-    assert_eq!(
-        table.forces()[2],
-        Force {
-            lateral: 0.0,
-            normal: expected
-        }
-    );
+    let (lateral, normal) = (0.0, (1.6 * scale) as f32);
+    assert_eq!(table.forces()[2], Force { lateral, normal });
 
-    let (unscaled, scale) = LoadedTable::scaled_to_be_passive(&map, &FREE, &open_limits()).unwrap();
-    assert_eq!(
-        (unscaled, scale),
-        (
-            LoadedTable::passive(&map, &FREE, &open_limits()).unwrap(),
-            1.0
-        )
-    );
+    let found = LoadedTable::scaled_to_be_passive(&map, &FREE, &open_limits()).unwrap();
+    let unscaled = LoadedTable::passive(&map, &FREE, &open_limits()).unwrap();
+    assert_eq!(found, (unscaled, 1.0));
     // 2^-10 N/m above what the device plays, to be met within the rounding of the forces.
     for stiffest in [100.0, 399.999, 333.333] {
         let device = Damping {

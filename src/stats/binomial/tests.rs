@@ -124,11 +124,15 @@ fn intervals_of_clopper_and_pearson_and_of_wilson() {
 fn impossible_counts_are_refused() {
     assert_eq!(
         clopper_pearson(0, 0, 0.9),
-        Err(ProportionError::Trials { trials: 0 })
+        Err(NumericError::OutOfRange {
+            what: "trials",
+            value: 0.0,
+            range: "at least 1 and at most 2^53"
+        })
     );
     assert_eq!(
         wilson(3, 2, 0.9),
-        Err(ProportionError::Successes {
+        Err(NumericError::Successes {
             successes: 3,
             trials: 2
         })

@@ -4,7 +4,7 @@ use super::*;
 
 /// Asserts |found/expected − 1| ≤ `tolerance`.
 #[track_caller]
-fn assert_relative(found: Result<f64, TailError>, expected: f64, tolerance: f64) {
+fn assert_relative(found: Result<f64, NumericError>, expected: f64, tolerance: f64) {
     let found = found.unwrap();
     assert!(
         (found / expected - 1.0).abs() <= tolerance,
@@ -90,16 +90,19 @@ fn quantiles_of_students_law() {
 // Verifies: PSY-030.
 #[test]
 fn what_has_no_answer_is_refused() {
+    let refused = |found: Result<f64, NumericError>, name: &str| {
+        let named = |error| matches!(error, NumericError::OutOfRange { what, .. } if what == name);
+        assert!(found.is_err_and(named), "{name}: {found:?}");
+    };
     for (shape, x) in [(0.0, 1.0), (-1.0, 1.0), (2e6, 1.0), (f64::NAN, 1.0)] {
-        assert_eq!(gamma_tail(shape, x).unwrap_err().what, "shape");
+        refused(gamma_tail(shape, x), "shape");
     }
     for x in [-1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(gamma_tail(1.0, x).unwrap_err().what, "x");
-        assert_eq!(f_tail(x, 1.0, 1.0).unwrap_err().what, "x");
+        refused(gamma_tail(1.0, x), "x");
+        refused(f_tail(x, 1.0, 1.0), "x");
     }
     for confidence in [0.0, 1.0, f64::NAN] {
-        let error = student_quantile(confidence, 9.0).unwrap_err();
-        assert_eq!(error.what, "confidence");
+        refused(student_quantile(confidence, 9.0), "confidence");
     }
-    assert_eq!(f_tail(1.0, 0.0, 3.0).unwrap_err().what, "degrees");
+    refused(f_tail(1.0, 0.0, 3.0), "half the degrees of freedom");
 }

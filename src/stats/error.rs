@@ -1,21 +1,13 @@
-//! Why the detector refused to answer.
+//! Why a numerical question is refused.
 
 use core::fmt;
 
-/// Why the detector refused to answer. A refusal is never a decision: no error means "no
-/// inclusion".
+/// Why a numerical question is refused. A refusal is never an answer: no error of the detector means "no inclusion".
 ///
-/// ```
-/// use palpate::detect::{DetectError, required_gamma};
-///
-/// let error = required_gamma(0.0, 0.05);
-/// assert!(matches!(error, Err(DetectError::OutOfRange { what: "max_false_alarm", .. })));
-/// ```
-///
-/// Implements: DET-005, DET-006, DET-007.
+/// Implements: DET-005, DET-006, DET-007, DET-123.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum DetectError {
+pub enum NumericError {
     /// There is no sample at all.
     Empty {
         /// The name of the argument.
@@ -46,6 +38,13 @@ pub enum DetectError {
         /// The values that would be right.
         range: &'static str,
     },
+    /// There are more successes than trials.
+    Successes {
+        /// The number of successes.
+        successes: u64,
+        /// The number of trials.
+        trials: u64,
+    },
     /// γ = 0: the hypotheses predict the same force, so no threshold keeps this promise.
     NoSignal,
     /// The covariance is not symmetric.
@@ -67,38 +66,35 @@ pub enum DetectError {
     },
 }
 
-impl fmt::Display for DetectError {
+impl fmt::Display for NumericError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
+        match *self {
             Self::Empty { what } => write!(f, "{what} has no samples; at least one is needed"),
             Self::LengthMismatch {
                 what,
                 expected,
                 found,
-            } => {
-                write!(
-                    f,
-                    "{what} has length {found}, but must have length {expected}"
-                )
-            }
-            Self::NotFinite { what, index } => {
-                write!(
-                    f,
-                    "{what}[{index}] is NaN or infinite; every sample must be finite"
-                )
-            }
+            } => write!(
+                f,
+                "{what} has length {found}, but must have length {expected}"
+            ),
+            Self::NotFinite { what, index } => write!(
+                f,
+                "{what}[{index}] is NaN or infinite; every sample must be finite"
+            ),
             Self::OutOfRange { what, value, range } => {
                 write!(f, "{what} is {value}, but must be {range}")
+            }
+            Self::Successes { successes, trials } => {
+                write!(f, "{successes} successes are more than the {trials} trials")
             }
             Self::NoSignal => {
                 f.write_str("gamma is 0: without a signal no threshold bounds the false alarms")
             }
-            Self::NotSymmetric { row, column } => {
-                write!(
-                    f,
-                    "the covariance is not symmetric: entries ({row}, {column}) and ({column}, {row}) differ"
-                )
-            }
+            Self::NotSymmetric { row, column } => write!(
+                f,
+                "the covariance is not symmetric: entries ({row}, {column}) and ({column}, {row}) differ"
+            ),
             Self::NotPositiveDefinite { pivot } => {
                 write!(f, "the covariance is not positive definite (pivot {pivot})")
             }
@@ -107,26 +103,20 @@ impl fmt::Display for DetectError {
     }
 }
 
-impl core::error::Error for DetectError {}
+impl core::error::Error for NumericError {}
 
 /// Checks that every sample is finite and that there are `length` of them.
 pub(crate) fn check_samples(
     what: &'static str,
     samples: &[f64],
     length: usize,
-) -> Result<(), DetectError> {
+) -> Result<(), NumericError> {
     if samples.is_empty() {
-        return Err(DetectError::Empty { what });
+        return Err(NumericError::Empty { what });
     }
-    if samples.len() != length {
-        return Err(DetectError::LengthMismatch {
-            what,
-            expected: length,
-            found: samples.len(),
-        });
-    }
+    check_length(what, length, samples.len())?;
     match samples.iter().position(|sample| !sample.is_finite()) {
-        Some(index) => Err(DetectError::NotFinite { what, index }),
+        Some(index) => Err(NumericError::NotFinite { what, index }),
         None => Ok(()),
     }
 }
@@ -136,51 +126,36 @@ pub(crate) fn check_length(
     what: &'static str,
     expected: usize,
     found: usize,
-) -> Result<(), DetectError> {
-    if expected == found {
-        Ok(())
-    } else {
-        Err(DetectError::LengthMismatch {
-            what,
-            expected,
-            found,
-        })
-    }
+) -> Result<(), NumericError> {
+    let mismatch = NumericError::LengthMismatch {
+        what,
+        expected,
+        found,
+    };
+    (expected == found).then_some(()).ok_or(mismatch)
 }
 
 /// Passes a finite number > 0.
-pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<f64, DetectError> {
-    in_range(
-        value > 0.0 && value < f64::INFINITY,
-        what,
-        value,
-        "finite and greater than 0",
-    )
+pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<f64, NumericError> {
+    let is_right = value > 0.0 && value < f64::INFINITY;
+    in_range(is_right, what, value, "finite and greater than 0")
 }
 
 /// Passes a finite number ≥ 0.
-pub(crate) fn check_not_negative(what: &'static str, value: f64) -> Result<f64, DetectError> {
-    in_range(
-        (0.0..f64::INFINITY).contains(&value),
-        what,
-        value,
-        "finite and at least 0",
-    )
+pub(crate) fn check_not_negative(what: &'static str, value: f64) -> Result<f64, NumericError> {
+    let is_right = (0.0..f64::INFINITY).contains(&value);
+    in_range(is_right, what, value, "finite and at least 0")
 }
 
 /// Passes a finite number.
-pub(crate) fn check_finite(what: &'static str, value: f64) -> Result<f64, DetectError> {
+pub(crate) fn check_finite(what: &'static str, value: f64) -> Result<f64, NumericError> {
     in_range(value.is_finite(), what, value, "finite")
 }
 
 /// Passes a probability strictly between 0 and 1.
-pub(crate) fn check_probability(what: &'static str, value: f64) -> Result<f64, DetectError> {
-    in_range(
-        value > 0.0 && value < 1.0,
-        what,
-        value,
-        "strictly between 0 and 1",
-    )
+pub(crate) fn check_probability(what: &'static str, value: f64) -> Result<f64, NumericError> {
+    let is_right = value > 0.0 && value < 1.0;
+    in_range(is_right, what, value, "strictly between 0 and 1")
 }
 
 /// Passes `value` if `is_right`, a condition that must be false for NaN.
@@ -189,21 +164,15 @@ pub(crate) fn in_range(
     what: &'static str,
     value: f64,
     range: &'static str,
-) -> Result<f64, DetectError> {
-    if is_right {
-        Ok(value)
-    } else {
-        Err(DetectError::OutOfRange { what, value, range })
-    }
+) -> Result<f64, NumericError> {
+    let error = NumericError::OutOfRange { what, value, range };
+    is_right.then_some(value).ok_or(error)
 }
 
 /// Passes a result that did not overflow.
 ///
 /// Implements: DET-008.
-pub(crate) fn representable(what: &'static str, value: f64) -> Result<f64, DetectError> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(DetectError::Overflow { what })
-    }
+pub(crate) fn representable(what: &'static str, value: f64) -> Result<f64, NumericError> {
+    let error = NumericError::Overflow { what };
+    value.is_finite().then_some(value).ok_or(error)
 }

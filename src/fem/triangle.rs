@@ -1,0 +1,41 @@
+//! Triangles by the positions of their corners, m.
+
+use nalgebra::Vector2;
+
+/// A position, m.
+pub type Point = Vector2<f64>;
+
+/// The centroid.
+pub fn mean([a, b, c]: [Point; 3]) -> Point {
+    (a + b + c) / 3.0
+}
+
+/// Twice the area, m²: positive if the corners run counter-clockwise.
+pub fn doubled_area([a, b, c]: [Point; 3]) -> f64 {
+    (b - a).perp(&(c - a))
+}
+
+/// The length of the shortest edge, m.
+pub fn shortest_edge([a, b, c]: [Point; 3]) -> f64 {
+    (b - a).norm().min((c - b).norm()).min((a - c).norm())
+}
+
+/// Centre and radius of the circumcircle, m.
+pub fn circumcircle([a, b, c]: [Point; 3]) -> (Point, f64) {
+    let (p, q) = (b - a, c - a);
+    let turned =
+        p.norm_squared() * Point::new(q.y, -q.x) - q.norm_squared() * Point::new(p.y, -p.x);
+    let arm = turned / (2.0 * p.perp(&q));
+    (a + arm, arm.norm())
+}
+
+/// The smallest angle of a triangle, degrees: opposite of the shortest edge, whose sine is that edge over the circumcircle's
+/// diameter. 0 for a triangle that is turned over.
+pub fn smallest_angle(corners: [Point; 3]) -> f64 {
+    if doubled_area(corners) > 0.0 {
+        let (_, radius) = circumcircle(corners);
+        libm::asin(shortest_edge(corners) / (2.0 * radius)).to_degrees()
+    } else {
+        0.0
+    }
+}
