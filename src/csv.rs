@@ -98,11 +98,3 @@ pub(crate) fn fields<'a>(
 pub(crate) fn shortened(text: &str) -> String {
     text.chars().take(80).collect()
 }
-
-/// `text` with a space for each control character: a message that quotes a file stays one line, and
-/// no terminal obeys it.
-///
-/// Implements: EVD-082.
-pub fn one_line(text: &str) -> String {
-    text.replace(char::is_control, " ")
-}

@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use crate::csv::one_line;
-
 /// Why an input is refused: where it stands, what it is, and what would be right. The message is one line, whatever it quotes.
 ///
 /// Where nothing but the message is of use, this is the error. A reason that a caller branches on has an enum of its own.
@@ -92,3 +90,11 @@ impl fmt::Display for Refusal {
 }
 
 impl std::error::Error for Refusal {}
+
+/// `text` with a space for each control character: a message that quotes a file stays one line, and
+/// no terminal obeys it.
+///
+/// Implements: EVD-082.
+pub fn one_line(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}

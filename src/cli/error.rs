@@ -1,9 +1,8 @@
 //! What the program says when it cannot do what it was asked to, and with which exit code.
 
-use crate::csv::one_line;
 use crate::fem::FemError;
 use crate::psychophysics::PsychophysicsError;
-use crate::refusal::Refusal;
+use crate::refusal::{Refusal, one_line};
 use crate::report::ReportError;
 
 /// Why a command failed. Its message is one line.

@@ -15,7 +15,6 @@ use super::{
     Capabilities, Control, Cycle, DeviceError, ForceReport, HapticDevice, PositionReport, Received,
     Session,
 };
-use crate::csv::one_line;
 use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
 
@@ -215,7 +214,7 @@ fn read<'a, T: Deserialize<'a>>(at: usize, line: &'a str, what: &str) -> Result<
     serde_json::from_str(line).map_err(|error| {
         let error = error.to_string();
         let error = error.split(" at line ").next().unwrap_or_default();
-        refused(at, line, &one_line(&format!("{what}: {error}")))
+        refused(at, line, &format!("{what}: {error}"))
     })
 }
 

@@ -5,8 +5,8 @@ use std::fmt::Display;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
-use crate::stats::NumericError;
 use crate::fem::FemError;
+use crate::stats::NumericError;
 
 /// What an op gives: values by name. A number that is not finite is a `null`.
 #[derive(Debug, Clone, PartialEq, Default)]

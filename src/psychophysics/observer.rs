@@ -140,7 +140,7 @@ impl IdealObserver<'_> {
             let force = |(&depth, &lateral): (&f64, &f64)| {
                 // Nothing is played above the surface.
                 let force = table.force(depth.max(0.0), lateral)?;
-                Ok((force.lateral, force.normal))
+                Ok((force.x, force.y))
             };
             let forces = felt.depths.iter().zip(&felt.laterals).map(force);
             let forces: Result<(Vec<f64>, Vec<f64>), Refusal> = forces.collect();

@@ -38,12 +38,3 @@ pub fn check_line(line: usize, text: &str) {
         "line {line} of a text of {lines}"
     );
 }
-
-/// Checks that what a message quotes stands in the line that it names.
-pub fn check_quoted(found: &str, line: usize, text: &str) {
-    let content = text.split('\n').nth(line - 1).unwrap_or("");
-    assert!(
-        content.contains(found),
-        "{found:?} is not in line {line}, {content:?}"
-    );
-}

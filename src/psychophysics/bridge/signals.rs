@@ -46,7 +46,7 @@ pub fn is_within(x: f64, half: f64) -> bool {
 impl Signal {
     /// The difference at one depth, m, of a map from its reference.
     pub fn new(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<Signal, Refusal> {
-            let difference = map.signal(reference)?;
+        let difference = map.signal(reference)?;
         let row = difference.row(depth)?;
         Ok(Signal {
             laterals: row.laterals.to_vec(),

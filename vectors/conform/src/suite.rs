@@ -10,7 +10,7 @@ use sha2::Digest;
 
 use super::case::{Case, CaseText, ToleranceText};
 use super::{check, embedded};
-use palpate::csv::one_line;
+use palpate::refusal::Refusal;
 
 /// What a bug is.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
@@ -44,16 +44,6 @@ pub struct Suite {
     pub sha256: String,
 }
 
-/// Why files are no suite: the file, the case if it is one, and what is wrong.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{file}: {message}")]
-pub struct SuiteError {
-    /// The file's name.
-    pub file: String,
-    /// What is wrong.
-    pub message: String,
-}
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct GroupText {
@@ -84,12 +74,8 @@ struct ManifestFile {
 const MANIFEST: &str = "manifest.json";
 const SCHEMA: &str = "schema.json";
 
-/// Names and texts of the files may stand in either, with any characters.
-fn error(file: &str, message: impl AsRef<str>) -> SuiteError {
-    SuiteError {
-        file: one_line(file),
-        message: one_line(message.as_ref()),
-    }
+fn error(file: &str, message: impl AsRef<str>) -> Refusal {
+    Refusal::state(message.as_ref(), "").in_file(file)
 }
 
 impl Suite {
@@ -99,7 +85,7 @@ impl Suite {
     /// Never, as long as the tests pass.
     ///
     /// Implements: ORA-040.
-    pub fn embedded() -> Result<Suite, SuiteError> {
+    pub fn embedded() -> Result<Suite, Refusal> {
         let files = embedded::FILES
             .iter()
             .map(|(name, text)| (name.to_string(), text.to_string()));
@@ -112,7 +98,7 @@ impl Suite {
     /// A file that cannot be read or is not valid; no file at all.
     ///
     /// Implements: ORA-040, ORA-041.
-    pub fn read(folder: &Path) -> Result<Suite, SuiteError> {
+    pub fn read(folder: &Path) -> Result<Suite, Refusal> {
         let failed = |path: &Path, cause: std::io::Error| {
             error(&path.display().to_string(), cause.to_string())
         };
@@ -145,7 +131,7 @@ impl Suite {
     /// As [`Suite::read`].
     ///
     /// Implements: VEC-002, VEC-007.
-    pub fn of_files(mut files: BTreeMap<String, String>) -> Result<Suite, SuiteError> {
+    pub fn of_files(mut files: BTreeMap<String, String>) -> Result<Suite, Refusal> {
         let manifest = files.remove(MANIFEST);
         let mut lines = String::new();
         let mut sums = BTreeMap::new();
@@ -203,11 +189,7 @@ fn sha256(text: &str) -> String {
 }
 
 /// Implements: VEC-007.
-fn check_manifest(
-    text: &str,
-    sums: &BTreeMap<&str, String>,
-    sha256: &str,
-) -> Result<(), SuiteError> {
+fn check_manifest(text: &str, sums: &BTreeMap<&str, String>, sha256: &str) -> Result<(), Refusal> {
     let manifest: Manifest =
         serde_json::from_str(text).map_err(|cause| error(MANIFEST, cause.to_string()))?;
     for (name, sum) in sums {
@@ -247,7 +229,7 @@ fn check_manifest(
 /// Reads one file.
 ///
 /// Implements: VEC-001, VEC-002.
-fn group(file: &str, text: &str) -> Result<Group, SuiteError> {
+fn group(file: &str, text: &str) -> Result<Group, Refusal> {
     let read: GroupText =
         serde_json::from_str(text).map_err(|cause| error(file, cause.to_string()))?;
     if read.schema != "palpate-vectors" || read.schema_version != 1 {
