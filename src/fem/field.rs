@@ -84,6 +84,9 @@ pub(super) fn determinant(gradient: [[f64; 2]; 2]) -> f64 {
     (1.0 + gradient[0][0]) * (1.0 + gradient[1][1]) - gradient[0][1] * gradient[1][0]
 }
 
+/// A vector at each node of the surface.
+type AtSurface = Vec<[f64; 2]>;
+
 /// Fills in and checks the fields of up to [`BATCH`] poses, given by displacements and loads of the nodes at the surface; below
 /// it no pose has a load.
 ///
@@ -92,7 +95,7 @@ pub(super) fn check(
     matrix: &StiffnessMatrix,
     factor: &Factor,
     samples: &[Sample],
-    poses: &[(Vec<[f64; 2]>, Vec<[f64; 2]>)],
+    poses: &[(AtSurface, AtSurface)],
 ) -> Result<Vec<FieldCheck>, FemError> {
     let unknowns = matrix.unknowns();
     // One more row than unknowns: the zeros of what is held.
