@@ -24,7 +24,7 @@
 //! ```
 //! # #[cfg(feature = "fem")]
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! use palpate::detect::{Channels, Decision, assessment::assess};
+//! use palpate::detect::{Force, Decision, assessment::assess};
 //! use palpate::fem::{Contact, Model};
 //! use palpate::phantom::Phantom;
 //! use palpate::servo::LoadedTable;
@@ -39,9 +39,9 @@
 //!
 //! // A sweep at 4 mm, as it would come without noise over the inclusion. Samples in noise of 0.1 N.
 //! let (f0, f1) = (without.row(4e-3)?, with.row(4e-3)?);
-//! let f0 = Channels { x: f0.lateral_force, y: f0.normal_force };
-//! let f1 = Channels { x: f1.lateral_force, y: f1.normal_force };
-//! let found = assess(f1, f0, f1, Channels { x: 0.1, y: 0.1 }, 0.5, 0.0)?;
+//! let f0 = Force { lateral: f0.lateral_force, normal: f0.normal_force };
+//! let f1 = Force { lateral: f1.lateral_force, normal: f1.normal_force };
+//! let found = assess(f1, f0, f1, Force { lateral: 0.1, normal: 0.1 }, 0.5, 0.0)?;
 //! assert_eq!(found.decision, Decision::Inclusion);
 //! assert!((found.statistic.theta - found.statistic.gamma.powi(2) / 2.0).abs() < 1e-9);
 //!
@@ -71,6 +71,7 @@ mod csv;
 pub mod detect;
 #[cfg(feature = "fem")]
 pub mod fem;
+pub mod force;
 #[cfg(feature = "std")]
 pub mod force_map;
 pub mod hid;

@@ -7,13 +7,13 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use palpate::detect::assessment::assess;
-use palpate::detect::{Channels, Decision};
+use palpate::detect::{Force, Decision};
 use palpate::force_map::{ForceMap, ForceTable};
 use palpate::stats::random::Generator;
 use serde_json::Value;
 
 /// Standard deviation of the noise in the sweeps, N.
-const NOISE: Channels<f64> = Channels::new(0.05, 0.12);
+const NOISE: Force<f64> = Force::new(0.05, 0.12);
 /// Where the moved inclusion lies, in samples of half a millimetre: 1.5 mm.
 const MOVED: usize = 3;
 
@@ -92,12 +92,12 @@ fn write_trace(path: &Path, forces: &[[f64; 3]], stream: u64) {
 }
 
 /// The observed forces in a file that `write_trace` wrote.
-fn observed(path: &Path) -> Channels<Vec<f64>> {
+fn observed(path: &Path) -> Force<Vec<f64>> {
     let text = fs::read_to_string(path).unwrap();
     let rows = text.lines().skip(2).map(|row| row.split(',').collect());
     let rows: Vec<Vec<&str>> = rows.collect();
     let column = |at: usize| rows.iter().map(move |row| row[at].parse::<f64>().unwrap());
-    Channels::new(
+    Force::new(
         column(2).collect(),
         column(1).map(|millinewton| millinewton / 1e3).collect(),
     )
@@ -160,8 +160,8 @@ fn plain(trace: &str, shift: isize) -> (f64, f64) {
     (theta, energy)
 }
 
-fn view(channels: &Channels<Vec<f64>>) -> Channels<&[f64]> {
-    Channels::new(&channels.x, &channels.y)
+fn view(channels: &Force<Vec<f64>>) -> Force<&[f64]> {
+    Force::new(&channels.x, &channels.y)
 }
 
 #[track_caller]
@@ -191,7 +191,7 @@ fn theta_is_that_of_the_library_and_of_a_plain_sum() {
         let forces = |map: &ForceMap| {
             let row = map.row(0.003).unwrap();
             let (x, y) = (row.lateral_force.to_vec(), row.normal_force.to_vec());
-            Channels { x, y }
+            Force { lateral: x, normal: y }
         };
         let (f0, f1) = (forces(&none), forces(&inclusion));
         let (observed, f0, f1) = (view(&observed), view(&f0), view(&f1));

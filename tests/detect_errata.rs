@@ -2,7 +2,7 @@
 
 use palpate::detect::scan::Scan;
 use palpate::detect::{
-    Channels, MatchedFilter, error_rates, gamma_from_two_afc, neyman_pearson_false_alarm_threshold,
+    Force, MatchedFilter, error_rates, gamma_from_two_afc, neyman_pearson_false_alarm_threshold,
     required_gamma, two_afc,
 };
 use palpate::stats::binomial::clopper_pearson;
@@ -24,9 +24,9 @@ fn err_001_second_row_of_equation_3() {
     let f1 = [1.5, 2.25, 3.5];
     let template = [0.5, 0.25, 0.5];
     let zeros = [0.0; 3];
-    let sd = Channels::new(1.0, 1.0);
-    let filter = MatchedFilter::new(Channels::new(&template, &zeros), sd).unwrap();
-    let y = |input: &[f64]| filter.statistic(Channels::new(input, &zeros)).unwrap().y.x;
+    let sd = Force::new(1.0, 1.0);
+    let filter = MatchedFilter::new(Force::new(&template, &zeros), sd).unwrap();
+    let y = |input: &[f64]| filter.statistic(Force::new(input, &zeros)).unwrap().y.x;
     // Equation (6) wants ‖F_1x − F_0x‖ = (0.5625/3)^½ in the absence of noise.
     let mean_by_6 = 0.1875_f64.sqrt();
     let without_f0: Vec<f64> = f1.iter().zip(f0).map(|(f1, f0)| f1 - f0).collect();
@@ -51,10 +51,10 @@ fn y_at(time: f64, position: f64) -> f64 {
     let mut template = [0.0; 21];
     template[at - 1..=at + 1].copy_from_slice(&BUMP);
     let zeros = [0.0; 21];
-    let sd = Channels::new(1.0, 1.0);
-    let filter = MatchedFilter::new(Channels::new(&template, &zeros), sd).unwrap();
+    let sd = Force::new(1.0, 1.0);
+    let filter = MatchedFilter::new(Force::new(&template, &zeros), sd).unwrap();
     filter
-        .statistic(Channels::new(&record, &zeros))
+        .statistic(Force::new(&record, &zeros))
         .unwrap()
         .y
         .x
@@ -129,22 +129,22 @@ fn err_006_false_alarms_of_theta_max() {
     const TRIALS: u64 = 4000;
     let gamma = 3.0;
     let template = [gamma];
-    let sd = Channels::new(1.0, 1.0);
-    let scan = Scan::new(PLACES, Channels::new(&template, &[0.0]), sd).unwrap();
+    let sd = Force::new(1.0, 1.0);
+    let scan = Scan::new(PLACES, Force::new(&template, &[0.0]), sd).unwrap();
     let eta = neyman_pearson_false_alarm_threshold(gamma, 0.05).unwrap();
     let (mut false_alarms, mut misses, mut misses_without_scan) = (0, 0, 0);
     let (mut noise, zeros) = ([0.0; PLACES], [0.0; PLACES]);
     for trial in 0..TRIALS {
         Generator::new(6, 0).normals(trial, 0, &mut noise);
         let maximum = |residual: &[f64]| {
-            let residual = Channels::new(residual, &zeros);
+            let residual = Force::new(residual, &zeros);
             scan.maximum(residual, scan.full_shifts()).unwrap().theta
         };
         false_alarms += u32::from(maximum(&noise) >= eta);
         let mut with_inclusion = noise;
         with_inclusion[7] += gamma;
         let there = scan
-            .at(Channels::new(&with_inclusion, &zeros), 7)
+            .at(Force::new(&with_inclusion, &zeros), 7)
             .unwrap()
             .theta;
         assert!(maximum(&with_inclusion) >= there);

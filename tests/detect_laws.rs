@@ -3,7 +3,7 @@
 use palpate::detect::coloured::{coloured_scratch, theta_coloured};
 use palpate::detect::scan::Scan;
 use palpate::detect::{
-    Channels, Costs, Decision, MatchedFilter, auc, bayes_threshold, decide, error_rates,
+    Force, Costs, Decision, MatchedFilter, auc, bayes_threshold, decide, error_rates,
     gamma_from_two_afc, map_threshold, neyman_pearson_false_alarm_threshold,
     neyman_pearson_miss_threshold, posterior, required_gamma, roc_miss, theta_of_record, two_afc,
 };
@@ -22,16 +22,16 @@ fn series(count: usize) -> impl Strategy<Value = Vec<Vec<f64>>> {
     (1_usize..40).prop_flat_map(move |samples| vec(vec(force(), samples), count))
 }
 
-fn noise() -> impl Strategy<Value = Channels<f64>> {
-    (0.01..3.0, 0.01..3.0).prop_map(|(x, y)| Channels { x, y })
+fn noise() -> impl Strategy<Value = Force<f64>> {
+    (0.01..3.0, 0.01..3.0).prop_map(|(x, y)| Force { lateral: x, normal: y })
 }
 
-fn channels<'a>(x: &'a [f64], y: &'a [f64]) -> Channels<&'a [f64]> {
-    Channels { x, y }
+fn channels<'a>(x: &'a [f64], y: &'a [f64]) -> Force<&'a [f64]> {
+    Force { lateral: x, normal: y }
 }
 
 /// Σ (|rΔ| + Δ²/2)/s², the size that rounding errors of θ are in proportion to.
-fn size(residual: Channels<&[f64]>, template: Channels<&[f64]>, sd: Channels<f64>) -> f64 {
+fn size(residual: Force<&[f64]>, template: Force<&[f64]>, sd: Force<f64>) -> f64 {
     let part = |r: &[f64], t: &[f64], s: f64| {
         r.iter()
             .zip(t)

@@ -2,12 +2,12 @@
 
 use palpate::detect::scan::Scan;
 use palpate::detect::simulate::{Simulation, count_false_alarms, draw_theta};
-use palpate::detect::{Channels, DetectError};
+use palpate::detect::{Force, DetectError};
 use palpate::stats::random::Generator;
 
-const TEMPLATE: Channels<&[f64]> = Channels::new(&[0.3, -0.2, 0.1], &[0.2, 0.4, 0.2]);
-const F0: Channels<&[f64]> = Channels::new(&[0.0, 0.1, 0.0], &[1.5, 1.4, 1.5]);
-const NOISE_SD: Channels<f64> = Channels::new(0.2, 0.3);
+const TEMPLATE: Force<&[f64]> = Force::new(&[0.3, -0.2, 0.1], &[0.2, 0.4, 0.2]);
+const F0: Force<&[f64]> = Force::new(&[0.0, 0.1, 0.0], &[1.5, 1.4, 1.5]);
+const NOISE_SD: Force<f64> = Force::new(0.2, 0.3);
 
 fn simulation() -> Simulation<'static> {
     Simulation::new(F0, TEMPLATE, NOISE_SD, Generator::new(4, 5)).unwrap()
@@ -57,7 +57,7 @@ fn a_record_is_the_force_and_the_deviates_of_its_trial() {
     }
     let (x, y) = residual.split_at(3);
     assert_eq!(
-        simulation().filter().statistic(Channels { x, y }),
+        simulation().filter().statistic(Force { lateral: x, normal: y }),
         Ok(found)
     );
 }
@@ -86,7 +86,7 @@ fn false_alarms_add_up_over_any_split() {
     let by_hand = (0..200).filter(|&trial| {
         let x: Vec<f64> = (0..12).map(|i| 0.2 * generator.normal(trial, i)).collect();
         let y: Vec<f64> = (12..24).map(|i| 0.3 * generator.normal(trial, i)).collect();
-        scan.maximum(Channels::new(&x, &y), scan.shifts())
+        scan.maximum(Force::new(&x, &y), scan.shifts())
             .unwrap()
             .theta
             >= 1.0
@@ -111,9 +111,9 @@ fn theta_is_drawn_by_the_number_of_its_trial() {
 #[test]
 fn simulations_that_cannot_be_are_refused() {
     let generator = Generator::new(1, 2);
-    let short = Channels::new(&F0.x[..2], F0.y);
+    let short = Force::new(&F0.x[..2], F0.y);
     assert!(Simulation::new(short, TEMPLATE, NOISE_SD, generator).is_err());
-    let bad = Channels::new(&[0.0, f64::NAN, 0.0][..], F0.y);
+    let bad = Force::new(&[0.0, f64::NAN, 0.0][..], F0.y);
     let found = Simulation::new(bad, TEMPLATE, NOISE_SD, generator).unwrap_err();
     assert_eq!(
         found,

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::detection::Answer;
 use super::output::print;
 use super::{CliError, Format};
-use crate::detect::Channels;
+use crate::detect::Force;
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::parse_scaled;
 use crate::report::text;
@@ -124,10 +124,10 @@ impl DetectArguments {
     }
 
     /// Implements: CLI-041.
-    fn noise_sd(&self) -> Result<Channels<f64>, CliError> {
+    fn noise_sd(&self) -> Result<Force<f64>, CliError> {
         let of = |channel: Option<f64>| self.noise_sd_n.or(channel);
         match (of(self.noise_sd_lateral_n), of(self.noise_sd_normal_n)) {
-            (Some(x), Some(y)) => Ok(Channels { x, y }),
+            (Some(x), Some(y)) => Ok(Force { lateral: x, normal: y }),
             // The parser has refused it already.
             _ => Err(CliError::Usage(
                 "expected --noise-sd-n, or --noise-sd-lateral-n and --noise-sd-normal-n".into(),
@@ -137,7 +137,7 @@ impl DetectArguments {
 }
 
 /// What was asked.
-fn question(arguments: &DetectArguments, samples: usize, noise_sd: Channels<f64>) -> Answer {
+fn question(arguments: &DetectArguments, samples: usize, noise_sd: Force<f64>) -> Answer {
     let mut answer = Answer::default();
     answer.tell("schema", "palpate-detection");
     answer.tell("schema_version", 1);
@@ -148,8 +148,8 @@ fn question(arguments: &DetectArguments, samples: usize, noise_sd: Channels<f64>
     answer.tell("inclusion", path(&arguments.inclusion));
     answer.tell("samples", samples);
     answer.tell("depth_m", arguments.depth_mm);
-    answer.tell("noise_sd_lateral_n", noise_sd.x);
-    answer.tell("noise_sd_normal_n", noise_sd.y);
+    answer.tell("noise_sd_lateral_n", noise_sd.lateral);
+    answer.tell("noise_sd_normal_n", noise_sd.normal);
     answer.tell("prior_h1", arguments.prior_h1);
     answer.tell("criterion", arguments.criterion_name());
     if let Some(rate) = arguments.max_miss {

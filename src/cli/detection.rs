@@ -59,8 +59,8 @@ impl Answer {
         self.number("posterior_h1", "posterior of an inclusion", found.posterior);
         self.number("false_alarm", "P(false alarm) at eta", rates.false_alarm);
         self.number("miss", "P(miss) at eta", rates.miss);
-        self.number("y_lateral_n", "Y(0) lateral, N", statistic.y.x);
-        self.number("y_normal_n", "Y(0) normal, N", statistic.y.y);
+        self.number("y_lateral_n", "Y(0) lateral, N", statistic.y.lateral);
+        self.number("y_normal_n", "Y(0) normal, N", statistic.y.normal);
     }
 
     /// The record searched for the inclusion.

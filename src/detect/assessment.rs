@@ -4,7 +4,7 @@ use super::decision::{Decision, ErrorRates, decide, error_rates, posterior};
 use super::matched_filter::{Statistic, theta_of_record};
 use super::position::MaximumLaw;
 use super::scan::{Scan, ScanMaximum};
-use super::{Channels, DetectError};
+use super::{Force, DetectError};
 
 /// A record judged at a known position.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,12 +24,12 @@ pub struct Assessment {
 ///
 /// ```
 /// use palpate::detect::assessment::assess;
-/// use palpate::detect::{Channels, Decision};
+/// use palpate::detect::{Force, Decision};
 ///
-/// let f0 = Channels { x: &[0.0; 3][..], y: &[1.0; 3] };
-/// let f1 = Channels { x: &[0.0; 3][..], y: &[1.125, 1.25, 1.25] };
-/// let observed = Channels { x: &[0.01, -0.02, 0.0][..], y: &[1.11, 1.28, 1.21] };
-/// let assessment = assess(observed, f0, f1, Channels { x: 0.125, y: 0.125 }, 0.5, 0.0)?;
+/// let f0 = Force { lateral: &[0.0; 3][..], normal: &[1.0; 3] };
+/// let f1 = Force { lateral: &[0.0; 3][..], normal: &[1.125, 1.25, 1.25] };
+/// let observed = Force { lateral: &[0.01, -0.02, 0.0][..], normal: &[1.11, 1.28, 1.21] };
+/// let assessment = assess(observed, f0, f1, Force { lateral: 0.125, normal: 0.125 }, 0.5, 0.0)?;
 /// assert_eq!(assessment.decision, Decision::Inclusion);
 /// assert_eq!(assessment.statistic.gamma, 3.0);
 /// assert!(assessment.posterior > 0.98);
@@ -42,10 +42,10 @@ pub struct Assessment {
 ///
 /// Implements: DET-009, DET-031.
 pub fn assess(
-    observed: Channels<&[f64]>,
-    f0: Channels<&[f64]>,
-    f1: Channels<&[f64]>,
-    noise_sd: Channels<f64>,
+    observed: Force<&[f64]>,
+    f0: Force<&[f64]>,
+    f1: Force<&[f64]>,
+    noise_sd: Force<f64>,
     prior_h1: f64,
     eta: f64,
 ) -> Result<Assessment, DetectError> {
@@ -80,7 +80,7 @@ pub struct ScanAssessment {
 pub fn assess_scan(
     scan: &Scan<'_>,
     law: &MaximumLaw<'_>,
-    residual: Channels<&[f64]>,
+    residual: Force<&[f64]>,
     eta: f64,
 ) -> Result<ScanAssessment, DetectError> {
     let maximum = scan.maximum(residual, law.shifts())?;

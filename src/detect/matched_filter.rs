@@ -1,7 +1,7 @@
 //! The matched filter and the sufficient statistic Θ in white noise, paper equations (2) to (7).
 
 use super::noise::WhiteNoise;
-use super::{Channels, DetectError};
+use super::{Force, DetectError};
 use crate::stats::compensated::{self, DoubleDouble};
 use crate::stats::error::representable;
 
@@ -11,25 +11,25 @@ use crate::stats::error::representable;
 /// It borrows the template and keeps its energy ΣΔ², so that each further record costs one pass.
 ///
 /// ```
-/// use palpate::detect::{Channels, MatchedFilter};
+/// use palpate::detect::{Force, MatchedFilter};
 ///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let filter = MatchedFilter::new(template, Channels { x: 0.5, y: 0.125 })?;
+/// let template = Force { lateral: &[0.0; 3][..], normal: &[0.125, 0.25, 0.25] };
+/// let filter = MatchedFilter::new(template, Force { lateral: 0.5, normal: 0.125 })?;
 /// assert_eq!(filter.samples(), 3);
 /// // γ² = Σ (Δ/s)² = 1 + 4 + 4 = b²/σ².
 /// assert_eq!(filter.gamma(), 3.0);
 /// assert!((filter.b().y / filter.sigma().y - 3.0).abs() < 1e-15);
 /// // The middle between the hypotheses.
-/// let halfway = Channels { x: &[0.0; 3][..], y: &[0.0625, 0.125, 0.125] };
+/// let halfway = Force { lateral: &[0.0; 3][..], normal: &[0.0625, 0.125, 0.125] };
 /// assert_eq!(filter.statistic(halfway)?.theta, 0.0);
 /// # Ok::<(), palpate::detect::DetectError>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct MatchedFilter<'a> {
-    template: Channels<&'a [f64]>,
-    noise: Channels<WhiteNoise>,
+    template: Force<&'a [f64]>,
+    noise: Force<WhiteNoise>,
     /// ΣΔ² of each channel, in units of its scaled force squared.
-    energy: Channels<DoubleDouble>,
+    energy: Force<DoubleDouble>,
     gamma: f64,
 }
 
@@ -37,7 +37,7 @@ pub struct MatchedFilter<'a> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistic {
     /// Y(0) of equation (5), N. A channel whose template is zero has 0.
-    pub y: Channels<f64>,
+    pub y: Force<f64>,
     /// θ of equation (7), the log-likelihood ratio.
     pub theta: f64,
     /// γ, the signal-to-noise ratio of the hypotheses.
@@ -54,10 +54,10 @@ impl<'a> MatchedFilter<'a> {
     ///
     /// Implements: DET-005, DET-006, DET-007, DET-010, DET-013.
     pub fn new(
-        template: Channels<&'a [f64]>,
-        noise_sd: Channels<f64>,
+        template: Force<&'a [f64]>,
+        noise_sd: Force<f64>,
     ) -> Result<Self, DetectError> {
-        template.check("template_x", "template_y", template.x.len())?;
+        template.check("template_x", "template_y", template.lateral.len())?;
         let noise = WhiteNoise::new(noise_sd)?;
         let energy = template
             .zip(noise)
@@ -73,13 +73,13 @@ impl<'a> MatchedFilter<'a> {
 
     /// N, the number of samples in each channel.
     pub fn samples(&self) -> usize {
-        self.template.x.len()
+        self.template.lateral.len()
     }
 
     /// b_c = (Σ Δ_c²/N)^½, the root mean square of the template, N.
     ///
     /// Implements: DET-010.
-    pub fn b(&self) -> Channels<f64> {
+    pub fn b(&self) -> Force<f64> {
         let samples = self.samples() as f64;
         let energies = self.energy.zip(self.noise);
         energies.map(|(energy, noise)| libm::sqrt(energy.value() / samples) / noise.factor)
@@ -88,7 +88,7 @@ impl<'a> MatchedFilter<'a> {
     /// σ_c = s_c/√N, the standard deviation of Y_c(0), N.
     ///
     /// Implements: DET-011.
-    pub fn sigma(&self) -> Channels<f64> {
+    pub fn sigma(&self) -> Force<f64> {
         let root = libm::sqrt(self.samples() as f64);
         self.noise
             .map(|noise| noise.scaled_sd() / root / noise.factor)
@@ -107,7 +107,7 @@ impl<'a> MatchedFilter<'a> {
     /// Lengths other than the template's; NaN or infinity in the residual; overflow.
     ///
     /// Implements: DET-005, DET-012, DET-014, DET-015, ACC-003, ACC-004, CON-007.
-    pub fn statistic(&self, residual: Channels<&[f64]>) -> Result<Statistic, DetectError> {
+    pub fn statistic(&self, residual: Force<&[f64]>) -> Result<Statistic, DetectError> {
         residual.check("residual_x", "residual_y", self.samples())?;
         let pairs = residual.zip(self.template).zip(self.noise);
         let cross = pairs.map(|((residual, template), noise)| noise.dot(residual, template));
@@ -120,11 +120,11 @@ impl<'a> MatchedFilter<'a> {
 /// are not rounded.
 ///
 /// ```
-/// use palpate::detect::{Channels, theta_of_record};
+/// use palpate::detect::{Force, theta_of_record};
 ///
-/// let f0 = Channels { x: &[0.25, 0.0, -0.25][..], y: &[1.0, 1.0, 1.0] };
-/// let f1 = Channels { x: &[0.25, 0.0, -0.25][..], y: &[1.125, 1.25, 1.25] };
-/// let noise_sd = Channels { x: 0.125, y: 0.125 };
+/// let f0 = Force { lateral: &[0.25, 0.0, -0.25][..], normal: &[1.0, 1.0, 1.0] };
+/// let f1 = Force { lateral: &[0.25, 0.0, -0.25][..], normal: &[1.125, 1.25, 1.25] };
+/// let noise_sd = Force { lateral: 0.125, normal: 0.125 };
 /// // What either hypothesis expects: ∓γ²/2.
 /// assert_eq!(theta_of_record(f0, f0, f1, noise_sd)?.theta, -4.5);
 /// assert_eq!(theta_of_record(f1, f0, f1, noise_sd)?.theta, 4.5);
@@ -136,12 +136,12 @@ impl<'a> MatchedFilter<'a> {
 ///
 /// Implements: DET-005, DET-006, DET-007, DET-012, DET-014, DET-015, ERR-001.
 pub fn theta_of_record(
-    observed: Channels<&[f64]>,
-    f0: Channels<&[f64]>,
-    f1: Channels<&[f64]>,
-    noise_sd: Channels<f64>,
+    observed: Force<&[f64]>,
+    f0: Force<&[f64]>,
+    f1: Force<&[f64]>,
+    noise_sd: Force<f64>,
 ) -> Result<Statistic, DetectError> {
-    let samples = observed.x.len();
+    let samples = observed.lateral.len();
     observed.check("observed_x", "observed_y", samples)?;
     f0.check("f0_x", "f0_y", samples)?;
     f1.check("f1_x", "f1_y", samples)?;
@@ -173,9 +173,9 @@ fn product(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
 
 /// Equations (5) and (7) from Σ rΔ and ΣΔ².
 fn statistic(
-    cross: Channels<DoubleDouble>,
-    energy: Channels<DoubleDouble>,
-    noise: Channels<WhiteNoise>,
+    cross: Force<DoubleDouble>,
+    energy: Force<DoubleDouble>,
+    noise: Force<WhiteNoise>,
     samples: usize,
     gamma: f64,
 ) -> Result<Statistic, DetectError> {
@@ -191,8 +191,8 @@ fn statistic(
                 cross.value() / libm::sqrt(energy * samples as f64) / noise.factor
             }
         });
-    representable("y_x", y.x)?;
-    representable("y_y", y.y)?;
+    representable("y_x", y.lateral)?;
+    representable("y_y", y.normal)?;
     let theta = noise.theta(cross, energy)?;
     Ok(Statistic { y, theta, gamma })
 }

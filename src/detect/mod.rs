@@ -13,14 +13,14 @@
 //! normative.
 //!
 //! ```
-//! use palpate::detect::{Channels, Decision, MatchedFilter, decide, error_rates, required_gamma};
+//! use palpate::detect::{Force, Decision, MatchedFilter, decide, error_rates, required_gamma};
 //!
 //! // At most 5 % false alarms and 5 % misses need γ = 3.29.
 //! assert!((required_gamma(0.05, 0.05)? - 3.29).abs() < 1e-3);
 //!
 //! // A signal of three samples in the normal force, in noise of 0.125 N: γ = 3.
-//! let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-//! let filter = MatchedFilter::new(template, Channels { x: 0.125, y: 0.125 })?;
+//! let template = Force { lateral: &[0.0; 3][..], normal: &[0.125, 0.25, 0.25] };
+//! let filter = MatchedFilter::new(template, Force { lateral: 0.125, normal: 0.125 })?;
 //! assert_eq!(filter.gamma(), 3.0);
 //!
 //! // The record without noise: θ = γ²/2, and at η = 0 it is an inclusion.
@@ -51,45 +51,15 @@ pub use decision::{
 };
 pub use matched_filter::{MatchedFilter, Statistic, theta_of_record};
 
+pub use crate::force::Force;
 pub use crate::stats::NumericError as DetectError;
 use crate::stats::error::check_samples;
 
-/// One thing for each of the two channels of force.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Channels<T> {
-    /// Lateral, along the surface.
-    pub x: T,
-    /// Normal, out of the gel.
-    pub y: T,
-}
-
-impl<T> Channels<T> {
-    /// The lateral and the normal one.
-    pub const fn new(x: T, y: T) -> Channels<T> {
-        Channels { x, y }
-    }
-
-    /// The same function of either channel.
-    pub fn map<U>(self, mut function: impl FnMut(T) -> U) -> Channels<U> {
-        Channels::new(function(self.x), function(self.y))
-    }
-
-    /// Pairs the channels of two things.
-    pub fn zip<U>(self, other: Channels<U>) -> Channels<(T, U)> {
-        Channels::new((self.x, other.x), (self.y, other.y))
-    }
-
-    /// Lateral first.
-    pub fn into_array(self) -> [T; 2] {
-        [self.x, self.y]
-    }
-}
-
-impl Channels<&[f64]> {
-    /// Checks that both channels have `length` samples, all of them finite; `x` and `y` are their names.
+impl Force<&[f64]> {
+    /// Checks that both components have `length` samples, all of them finite; `x` and `y` are their names.
     fn check(self, x: &'static str, y: &'static str, length: usize) -> Result<(), DetectError> {
-        check_samples(x, self.x, length)?;
-        check_samples(y, self.y, length)
+        check_samples(x, self.lateral, length)?;
+        check_samples(y, self.normal, length)
     }
 }
 

@@ -1,6 +1,6 @@
 //! White noise, and what sums over a record amount to in it.
 
-use super::{Channels, DetectError};
+use super::{Force, DetectError};
 use crate::stats::compensated::{self, DoubleDouble};
 use crate::stats::error::{check_positive, representable};
 
@@ -18,9 +18,9 @@ pub(super) struct WhiteNoise {
 
 impl WhiteNoise {
     /// Noise of standard deviation `sd` a sample (N), if that is finite and above 0.
-    pub fn new(sd: Channels<f64>) -> Result<Channels<WhiteNoise>, DetectError> {
-        check_positive("noise_sd_x", sd.x)?;
-        check_positive("noise_sd_y", sd.y)?;
+    pub fn new(sd: Force<f64>) -> Result<Force<WhiteNoise>, DetectError> {
+        check_positive("noise_sd_x", sd.lateral)?;
+        check_positive("noise_sd_y", sd.normal)?;
         let factor = compensated::reciprocal_power_of_two;
         Ok(sd.map(|sd| WhiteNoise {
             sd,
@@ -43,15 +43,15 @@ impl WhiteNoise {
     }
 }
 
-impl Channels<WhiteNoise> {
+impl Force<WhiteNoise> {
     /// Σ_c Σ ab/s² from Σ ab of each channel.
-    pub(super) fn total(self, sums: Channels<DoubleDouble>) -> f64 {
+    pub(super) fn total(self, sums: Force<DoubleDouble>) -> f64 {
         let [x, y] = self.zip(sums).into_array();
         x.0.over_variance(x.1.value()) + y.0.over_variance(y.1.value())
     }
 
     /// γ from ΣΔ² of each channel.
-    pub(super) fn gamma(self, energy: Channels<DoubleDouble>) -> Result<f64, DetectError> {
+    pub(super) fn gamma(self, energy: Force<DoubleDouble>) -> Result<f64, DetectError> {
         representable("gamma", libm::sqrt(self.total(energy)))
     }
 
@@ -59,8 +59,8 @@ impl Channels<WhiteNoise> {
     /// the one subtraction that may cancel is done in twice the working precision.
     pub(super) fn theta(
         self,
-        cross: Channels<DoubleDouble>,
-        energy: Channels<DoubleDouble>,
+        cross: Force<DoubleDouble>,
+        energy: Force<DoubleDouble>,
     ) -> Result<f64, DetectError> {
         let difference = cross
             .zip(energy)

@@ -2,7 +2,7 @@
 //! known.
 
 use super::scan::Scan;
-use super::{Channels, DetectError, MatchedFilter};
+use super::{Force, DetectError, MatchedFilter};
 use crate::stats::error::{
     check_finite, check_length, check_positive, check_probability, check_samples,
 };
@@ -13,12 +13,12 @@ use core::ops::RangeInclusive;
 /// the templates of neighbours. Computed once for a scan, in memory of the caller's.
 ///
 /// ```
-/// use palpate::detect::Channels;
+/// use palpate::detect::Force;
 /// use palpate::detect::position::MaximumLaw;
 /// use palpate::detect::scan::Scan;
 ///
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let scan = Scan::new(6, template, Channels { x: 0.125, y: 0.125 })?;
+/// let template = Force { lateral: &[0.0; 3][..], normal: &[0.125, 0.25, 0.25] };
+/// let scan = Scan::new(6, template, Force { lateral: 0.125, normal: 0.125 })?;
 /// let (mut gamma, mut angle) = ([0.0; 4], [0.0; 4]);
 /// let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle)?;
 /// assert_eq!(law.shifts(), 0..=3);
@@ -159,8 +159,8 @@ fn exceedance(gamma: f64, eta: f64) -> (f64, f64) {
 ///
 /// Implements: DET-060.
 pub fn position_bound(
-    slope: Channels<&[f64]>,
-    noise_sd: Channels<f64>,
+    slope: Force<&[f64]>,
+    noise_sd: Force<f64>,
 ) -> Result<f64, DetectError> {
     let information = MatchedFilter::new(slope, noise_sd)?.gamma();
     if information == 0.0 {

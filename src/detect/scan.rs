@@ -1,7 +1,7 @@
 //! Where the inclusion is: Θ for every position of a template within a record, paper equation (10).
 
 use super::noise::WhiteNoise;
-use super::{Channels, DetectError};
+use super::{Force, DetectError};
 use crate::stats::compensated::DoubleDouble;
 use crate::stats::error::{check_length, in_range, representable};
 use core::ops::{Range, RangeInclusive};
@@ -13,8 +13,8 @@ use core::ops::{Range, RangeInclusive};
 /// Θ(k) is the log-likelihood ratio of what was.
 #[derive(Debug, Clone, Copy)]
 pub struct Scan<'a> {
-    template: Channels<&'a [f64]>,
-    noise: Channels<WhiteNoise>,
+    template: Force<&'a [f64]>,
+    noise: Force<WhiteNoise>,
     samples: usize,
 }
 
@@ -52,10 +52,10 @@ impl<'a> Scan<'a> {
     /// Implements: DET-005, DET-006, DET-007, DET-050.
     pub fn new(
         samples: usize,
-        template: Channels<&'a [f64]>,
-        noise_sd: Channels<f64>,
+        template: Force<&'a [f64]>,
+        noise_sd: Force<f64>,
     ) -> Result<Self, DetectError> {
-        let length = template.x.len();
+        let length = template.lateral.len();
         template.check("template_x", "template_y", length)?;
         check_length("template_x", samples.min(length), length)?;
         let noise = WhiteNoise::new(noise_sd)?;
@@ -72,7 +72,7 @@ impl<'a> Scan<'a> {
     }
 
     /// The standard deviation of a sample's noise, N.
-    pub fn noise_sd(&self) -> Channels<f64> {
+    pub fn noise_sd(&self) -> Force<f64> {
         self.noise.map(|noise| noise.sd)
     }
 
@@ -80,14 +80,14 @@ impl<'a> Scan<'a> {
     ///
     /// Implements: DET-051.
     pub fn shifts(&self) -> RangeInclusive<isize> {
-        1 - self.template.x.len() as isize..=self.samples as isize - 1
+        1 - self.template.lateral.len() as isize..=self.samples as isize - 1
     }
 
     /// The shifts at which the whole template lies in the record, 0 … N−M.
     ///
     /// Implements: DET-051.
     pub fn full_shifts(&self) -> RangeInclusive<isize> {
-        0..=(self.samples - self.template.x.len()) as isize
+        0..=(self.samples - self.template.lateral.len()) as isize
     }
 
     /// γ(k), with the energy of the overlap alone; 0 where nothing overlaps.
@@ -114,7 +114,7 @@ impl<'a> Scan<'a> {
     /// Lengths other than N; NaN or infinity; overflow.
     ///
     /// Implements: DET-005, DET-050, DET-052, ERR-002, ERR-003.
-    pub fn at(&self, residual: Channels<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
+    pub fn at(&self, residual: Force<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
         residual.check("residual_x", "residual_y", self.samples)?;
         self.point(residual, shift)
     }
@@ -127,7 +127,7 @@ impl<'a> Scan<'a> {
     /// Implements: DET-050, DET-052.
     pub fn theta(
         &self,
-        residual: Channels<&[f64]>,
+        residual: Force<&[f64]>,
         first: isize,
         theta: &mut [f64],
     ) -> Result<(), DetectError> {
@@ -143,13 +143,13 @@ impl<'a> Scan<'a> {
     /// + k̂·v·dt.
     ///
     /// ```
-    /// use palpate::detect::Channels;
+    /// use palpate::detect::Force;
     /// use palpate::detect::scan::Scan;
     ///
     /// // Samples every 0.1 mm from x₀ = −0.3 mm on; the template's sample 1 is the inclusion's place.
-    /// let template = Channels { x: &[0.0; 3][..], y: &[0.25, 0.5, 0.25] };
-    /// let scan = Scan::new(7, template, Channels { x: 0.25, y: 0.25 })?;
-    /// let residual = Channels { x: &[0.0; 7][..], y: &[0.0, 0.0, 0.25, 0.5, 0.25, 0.0, 0.0] };
+    /// let template = Force { lateral: &[0.0; 3][..], normal: &[0.25, 0.5, 0.25] };
+    /// let scan = Scan::new(7, template, Force { lateral: 0.25, normal: 0.25 })?;
+    /// let residual = Force { lateral: &[0.0; 7][..], normal: &[0.0, 0.0, 0.25, 0.5, 0.25, 0.0, 0.0] };
     /// let found = scan.maximum(residual, scan.full_shifts())?;
     /// let position = -0.3 + 0.1 * (found.refined_shift + 1.0);
     /// assert_eq!((found.theta, found.gamma, found.shift), (3.0, 6.0_f64.sqrt(), 2));
@@ -163,7 +163,7 @@ impl<'a> Scan<'a> {
     /// Implements: DET-053, DET-054.
     pub fn maximum(
         &self,
-        residual: Channels<&[f64]>,
+        residual: Force<&[f64]>,
         shifts: RangeInclusive<isize>,
     ) -> Result<ScanMaximum, DetectError> {
         residual.check("residual_x", "residual_y", self.samples)?;
@@ -204,8 +204,8 @@ impl<'a> Scan<'a> {
         Ok(())
     }
 
-    fn point(&self, residual: Channels<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
-        let (record, template) = overlap(self.samples, self.template.x.len(), shift);
+    fn point(&self, residual: Force<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
+        let (record, template) = overlap(self.samples, self.template.lateral.len(), shift);
         let template = self.template.map(|samples| &samples[template.clone()]);
         let residual = residual.map(|samples| &samples[record.clone()]);
         let pairs = template.zip(residual).zip(self.noise);
@@ -218,8 +218,8 @@ impl<'a> Scan<'a> {
     }
 
     /// Σ_i Δ_{i−k} Δ_{i−l} over 0 ≤ i < N of each channel, in units of its scaled force squared.
-    fn template_product(&self, shift: isize, other: isize) -> Channels<DoubleDouble> {
-        let overlap = |shift| overlap(self.samples, self.template.x.len(), shift);
+    fn template_product(&self, shift: isize, other: isize) -> Force<DoubleDouble> {
+        let overlap = |shift| overlap(self.samples, self.template.lateral.len(), shift);
         let [(one, from_one), (two, from_two)] = [shift, other].map(overlap);
         let start = one.start.max(two.start);
         let count = one.end.min(two.end).saturating_sub(start);

@@ -2,7 +2,7 @@
 //! alone.
 
 use super::scan::Scan;
-use super::{Channels, DetectError, MatchedFilter, Statistic};
+use super::{Force, DetectError, MatchedFilter, Statistic};
 use crate::stats::error::{check_finite, check_length, check_not_negative};
 use crate::stats::random::Generator;
 use core::ops::{Range, RangeInclusive};
@@ -10,14 +10,14 @@ use core::ops::{Range, RangeInclusive};
 /// Records F_p = F + noise, and what the matched filter for F_0 against F_1 says about them.
 ///
 /// ```
-/// use palpate::detect::Channels;
+/// use palpate::detect::Force;
 /// use palpate::detect::simulate::Simulation;
 /// use palpate::stats::random::Generator;
 ///
-/// let f0 = Channels { x: &[0.0; 3][..], y: &[1.0; 3] };
-/// let f1 = Channels { x: &[0.0; 3][..], y: &[1.125, 1.25, 1.25] };
-/// let template = Channels { x: &[0.0; 3][..], y: &[0.125, 0.25, 0.25] };
-/// let noise_sd = Channels { x: 0.125, y: 0.125 };
+/// let f0 = Force { lateral: &[0.0; 3][..], normal: &[1.0; 3] };
+/// let f1 = Force { lateral: &[0.0; 3][..], normal: &[1.125, 1.25, 1.25] };
+/// let template = Force { lateral: &[0.0; 3][..], normal: &[0.125, 0.25, 0.25] };
+/// let noise_sd = Force { lateral: 0.125, normal: 0.125 };
 /// let simulation = Simulation::new(f0, template, noise_sd, Generator::new(1999, 0))?;
 /// assert_eq!(simulation.filter().gamma(), 3.0);
 /// let mut residual = [0.0; 6];
@@ -32,8 +32,8 @@ use core::ops::{Range, RangeInclusive};
 #[derive(Debug, Clone, Copy)]
 pub struct Simulation<'a> {
     filter: MatchedFilter<'a>,
-    f0: Channels<&'a [f64]>,
-    noise_sd: Channels<f64>,
+    f0: Force<&'a [f64]>,
+    noise_sd: Force<f64>,
     generator: Generator,
 }
 
@@ -43,9 +43,9 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// As [`MatchedFilter::new`]; `f0` not of the template's length, or not finite.
     pub fn new(
-        f0: Channels<&'a [f64]>,
-        template: Channels<&'a [f64]>,
-        noise_sd: Channels<f64>,
+        f0: Force<&'a [f64]>,
+        template: Force<&'a [f64]>,
+        noise_sd: Force<f64>,
         generator: Generator,
     ) -> Result<Self, DetectError> {
         let filter = MatchedFilter::new(template, noise_sd)?;
@@ -74,12 +74,12 @@ impl<'a> Simulation<'a> {
     pub fn trial(
         &self,
         trial: u64,
-        force: Channels<&[f64]>,
+        force: Force<&[f64]>,
         residual: &mut [f64],
     ) -> Result<Statistic, DetectError> {
         let samples = self.filter.samples();
-        check_length("force_x", samples, force.x.len())?;
-        check_length("force_y", samples, force.y.len())?;
+        check_length("force_x", samples, force.lateral.len())?;
+        check_length("force_y", samples, force.normal.len())?;
         check_length("residual", 2 * samples, residual.len())?;
         let noise = noise(&self.generator, trial, self.noise_sd, residual);
         let forces = force.zip(self.f0).zip(noise).into_array();
@@ -90,7 +90,7 @@ impl<'a> Simulation<'a> {
             }
         }
         let (x, y) = residual.split_at(samples);
-        self.filter.statistic(Channels { x, y })
+        self.filter.statistic(Force { lateral: x, normal: y })
     }
 }
 
@@ -98,12 +98,12 @@ impl<'a> Simulation<'a> {
 fn noise<'a>(
     generator: &Generator,
     trial: u64,
-    sd: Channels<f64>,
+    sd: Force<f64>,
     samples: &'a mut [f64],
-) -> Channels<&'a mut [f64]> {
+) -> Force<&'a mut [f64]> {
     generator.normals(trial, 0, samples);
     let (x, y) = samples.split_at_mut(samples.len() / 2);
-    Channels { x, y }.zip(sd).map(|(samples, sd)| {
+    Force { lateral: x, normal: y }.zip(sd).map(|(samples, sd)| {
         samples.iter_mut().for_each(|sample| *sample *= sd);
         samples
     })
@@ -153,8 +153,8 @@ pub fn count_false_alarms(
     check_length("residual", scan.samples().saturating_mul(2), residual.len())?;
     let mut alarms = 0;
     for trial in trials {
-        let Channels { x, y } = noise(generator, trial, scan.noise_sd(), residual);
-        let maximum = scan.maximum(Channels { x, y }, shifts.clone())?;
+        let Force { lateral: x, normal: y } = noise(generator, trial, scan.noise_sd(), residual);
+        let maximum = scan.maximum(Force { lateral: x, normal: y }, shifts.clone())?;
         alarms += u64::from(maximum.theta >= eta);
     }
     Ok(alarms)

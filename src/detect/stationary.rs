@@ -4,7 +4,7 @@
 //! Both functions whiten as `L⁻¹` does in [`super::coloured`], and give the same θ.
 
 use super::coloured::{ColouredStatistic, Innovations, pivot};
-use super::{Channels, DetectError};
+use super::{Force, DetectError};
 use crate::stats::compensated;
 use crate::stats::error::{check_length, check_positive};
 
@@ -17,12 +17,12 @@ use crate::stats::error::{check_length, check_positive};
 ///
 /// Implements: DET-005, DET-007, DET-043, DET-044, DET-046.
 pub fn theta_stationary(
-    residual: Channels<&[f64]>,
-    template: Channels<&[f64]>,
-    autocovariance: Channels<&[f64]>,
+    residual: Force<&[f64]>,
+    template: Force<&[f64]>,
+    autocovariance: Force<&[f64]>,
     scratch: &mut [f64],
 ) -> Result<ColouredStatistic, DetectError> {
-    let samples = template.x.len();
+    let samples = template.lateral.len();
     check_records(residual, template)?;
     autocovariance.check("autocovariance_x", "autocovariance_y", samples)?;
     check_length("scratch", 2 * samples, scratch.len())?;
@@ -49,15 +49,15 @@ pub const fn banded_scratch(lags: usize) -> usize {
 ///
 /// Implements: DET-005, DET-007, DET-043, DET-045, DET-046.
 pub fn theta_banded(
-    residual: Channels<&[f64]>,
-    template: Channels<&[f64]>,
-    autocovariance: Channels<&[f64]>,
+    residual: Force<&[f64]>,
+    template: Force<&[f64]>,
+    autocovariance: Force<&[f64]>,
     scratch: &mut [f64],
 ) -> Result<ColouredStatistic, DetectError> {
     check_records(residual, template)?;
-    let lags = autocovariance.x.len();
+    let lags = autocovariance.lateral.len();
     autocovariance.check("autocovariance_x", "autocovariance_y", lags)?;
-    check_length("autocovariance_x", lags.min(template.x.len()), lags)?;
+    check_length("autocovariance_x", lags.min(template.lateral.len()), lags)?;
     check_length("scratch", banded_scratch(lags), scratch.len())?;
     let mut innovations = Innovations::default();
     for (records, lags) in residual.zip(template).zip(autocovariance).into_array() {
@@ -68,10 +68,10 @@ pub fn theta_banded(
 }
 
 fn check_records(
-    residual: Channels<&[f64]>,
-    template: Channels<&[f64]>,
+    residual: Force<&[f64]>,
+    template: Force<&[f64]>,
 ) -> Result<(), DetectError> {
-    let samples = template.x.len();
+    let samples = template.lateral.len();
     template.check("template_x", "template_y", samples)?;
     residual.check("residual_x", "residual_y", samples)
 }

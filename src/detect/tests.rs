@@ -7,10 +7,10 @@ use crate::stats::check::{assert_near, assert_ulps};
 use std::{vec, vec::Vec};
 extern crate std;
 
-const TEMPLATE: Channels<&[f64]> =
-    Channels::new(&[0.25, -0.5, 0.125, 0.3], &[0.34, 0.31, 0.22, 0.05]);
-const RESIDUAL: Channels<&[f64]> = Channels::new(&[0.3, -0.4, 0.2, 0.1], &[0.4, 0.1, 0.3, -0.05]);
-const NOISE_SD: Channels<f64> = Channels::new(0.1, 0.235);
+const TEMPLATE: Force<&[f64]> =
+    Force::new(&[0.25, -0.5, 0.125, 0.3], &[0.34, 0.31, 0.22, 0.05]);
+const RESIDUAL: Force<&[f64]> = Force::new(&[0.3, -0.4, 0.2, 0.1], &[0.4, 0.1, 0.3, -0.05]);
+const NOISE_SD: Force<f64> = Force::new(0.1, 0.235);
 
 fn filter() -> MatchedFilter<'static> {
     MatchedFilter::new(TEMPLATE, NOISE_SD).unwrap()
@@ -20,10 +20,10 @@ fn filter() -> MatchedFilter<'static> {
 #[test]
 fn filter_has_the_expected_signal_and_noise() {
     let filter = filter();
-    assert_ulps(filter.b().x, 0.3233129289094391, 4.0);
-    assert_ulps(filter.b().y, 0.2562225595063791, 4.0);
-    assert_ulps(filter.sigma().x, 0.05, 4.0);
-    assert_ulps(filter.sigma().y, 0.1175, 4.0);
+    assert_ulps(filter.b().lateral, 0.3233129289094391, 4.0);
+    assert_ulps(filter.b().normal, 0.2562225595063791, 4.0);
+    assert_ulps(filter.sigma().lateral, 0.05, 4.0);
+    assert_ulps(filter.sigma().normal, 0.1175, 4.0);
     assert_ulps(filter.gamma(), 6.824045193444496, 4.0);
 }
 
@@ -31,8 +31,8 @@ fn filter_has_the_expected_signal_and_noise() {
 #[test]
 fn statistic_of_a_residual() {
     let statistic = filter().statistic(RESIDUAL).unwrap();
-    assert_ulps(statistic.y.x, 0.2551707420989295, 4.0);
-    assert_ulps(statistic.y.y, 0.2249021323923092, 4.0);
+    assert_ulps(statistic.y.lateral, 0.2551707420989295, 4.0);
+    assert_ulps(statistic.y.normal, 0.2249021323923092, 4.0);
     assert_ulps(statistic.theta, 13.890037913082843, 8.0);
 }
 
@@ -40,15 +40,15 @@ fn statistic_of_a_residual() {
 #[test]
 fn statistic_of_a_record() {
     let found = theta_of_record(
-        Channels::new(&[0.1, 0.05, 0.3, 0.0], &[1.7, 1.9, 1.3, 1.6]),
-        Channels::new(&[0.0, 0.1, 0.2, 0.1], &[1.6, 1.5, 1.4, 1.45]),
-        Channels::new(&[0.3, -0.2, 0.25, 0.15], &[1.94, 1.8, 1.55, 1.5]),
-        Channels::new(0.07, 0.2),
+        Force::new(&[0.1, 0.05, 0.3, 0.0], &[1.7, 1.9, 1.3, 1.6]),
+        Force::new(&[0.0, 0.1, 0.2, 0.1], &[1.6, 1.5, 1.4, 1.45]),
+        Force::new(&[0.3, -0.2, 0.25, 0.15], &[1.94, 1.8, 1.55, 1.5]),
+        Force::new(0.07, 0.2),
     )
     .unwrap();
     // Unrounded differences: without them F_p − F_0 alone would cost dozens of ulps.
-    assert_ulps(found.y.x, 0.05231143743471868, 4.0);
-    assert_ulps(found.y.y, 0.1525379753095442, 4.0);
+    assert_ulps(found.y.lateral, 0.05231143743471868, 4.0);
+    assert_ulps(found.y.normal, 0.1525379753095442, 4.0);
     assert_ulps(found.gamma, 6.596976734900338, 4.0);
     assert_ulps(found.theta, -8.913877551020407, 8.0);
 }
@@ -75,12 +75,12 @@ fn long_sums_that_cancel_stay_exact() {
     let sum = crate::stats::compensated::dot(&residual, &template, 1.0).value();
     assert_ulps(sum, expected, 2.0);
     let filter =
-        MatchedFilter::new(Channels::new(&template, &zeros), Channels::new(1.0, 1.0)).unwrap();
+        MatchedFilter::new(Force::new(&template, &zeros), Force::new(1.0, 1.0)).unwrap();
     // r = Δ/2 but for one sample, which is ¼ larger where Δ = 1: Σ rΔ − ½ΣΔ² = ¼, of sums of 2^98.
     let mut halves: Vec<f64> = template.iter().map(|sample| sample / 2.0).collect();
     halves[0] += 0.25;
     let theta = filter
-        .statistic(Channels::new(&halves, &zeros))
+        .statistic(Force::new(&halves, &zeros))
         .unwrap()
         .theta;
     assert_eq!(theta, 0.25);
@@ -126,10 +126,10 @@ fn a_million_samples_are_within_the_stated_bound_of_exact_arithmetic() {
             .map(|(r, t)| 2 * (r * t).abs() + t * t)
             .sum();
         let (template, residual) = (floats(&template), floats(&residual));
-        let unit = Channels::new(1.0, 1.0);
-        let filter = MatchedFilter::new(Channels::new(&template, &zeros), unit).unwrap();
+        let unit = Force::new(1.0, 1.0);
+        let filter = MatchedFilter::new(Force::new(&template, &zeros), unit).unwrap();
         let theta = filter
-            .statistic(Channels::new(&residual, &zeros))
+            .statistic(Force::new(&residual, &zeros))
             .unwrap()
             .theta;
         // Twice θ is a whole number here too, and its distance from the exact one is taken in whole
@@ -162,8 +162,8 @@ fn rounding_errors_of_one_sign_do_not_add_up() {
 fn a_difference_that_would_round_to_nothing_is_kept() {
     // Δ = 2^54 − 1 needs 54 bits and r = 2^53: 2Θ = Δ(2r − Δ) = 2^54 − 1, or 0 if Δ is rounded.
     const TOP: f64 = 9_007_199_254_740_992.0;
-    let channels = |x| Channels { x, y: &[0.0][..] };
-    let unit = Channels::new(1.0, 1.0);
+    let channels = |x| Force { lateral: x, normal: &[0.0][..] };
+    let unit = Force::new(1.0, 1.0);
     let (observed, f0, f1) = ([1.0], [1.0 - TOP], [TOP]);
     let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
     assert_ulps(found.theta, TOP, 2.0);
@@ -183,8 +183,8 @@ fn differences_of_forces_are_not_rounded() {
         size += 2 * (r * t).abs() + t * t;
     }
     let [observed, f0, f1] = [observed, f0, f1].map(|forces| floats(&forces));
-    let channels = |x| Channels { x, y: &zeros[..] };
-    let unit = Channels::new(1.0, 1.0);
+    let channels = |x| Force { lateral: x, normal: &zeros[..] };
+    let unit = Force::new(1.0, 1.0);
     let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
     let error = ((2.0 * found.theta) as i128 - twice).unsigned_abs() as f64;
     let bound = 2.5 * f64::EPSILON * twice.unsigned_abs() as f64 + 1e-19 * size as f64;
@@ -206,21 +206,21 @@ fn units_of_any_size_give_the_same_gamma_and_theta() {
                 .map(|sample| sample * unit)
                 .collect::<Vec<_>>()
         };
-        let (tx, ty) = (scale(TEMPLATE.x), scale(TEMPLATE.y));
-        let (rx, ry) = (scale(RESIDUAL.x), scale(RESIDUAL.y));
+        let (tx, ty) = (scale(TEMPLATE.lateral), scale(TEMPLATE.normal));
+        let (rx, ry) = (scale(RESIDUAL.lateral), scale(RESIDUAL.normal));
         let filter =
-            MatchedFilter::new(Channels::new(&tx, &ty), NOISE_SD.map(|sd| sd * unit)).unwrap();
+            MatchedFilter::new(Force::new(&tx, &ty), NOISE_SD.map(|sd| sd * unit)).unwrap();
         assert_eq!(filter.gamma(), self::filter().gamma());
-        let found = filter.statistic(Channels::new(&rx, &ry)).unwrap();
+        let found = filter.statistic(Force::new(&rx, &ry)).unwrap();
         let expected = self::filter().statistic(RESIDUAL).unwrap();
         assert_eq!(found.theta, expected.theta);
-        assert_ulps(found.y.x, expected.y.x * unit, 1.0);
+        assert_ulps(found.y.lateral, expected.y.lateral * unit, 1.0);
     }
     // Subnormal template and noise.
     let tiny = f64::from_bits(2);
     let (x, y) = ([tiny, tiny], [tiny, -tiny]);
-    let template = Channels::new(&x[..], &y);
-    let filter = MatchedFilter::new(template, Channels::new(tiny, tiny)).unwrap();
+    let template = Force::new(&x[..], &y);
+    let filter = MatchedFilter::new(template, Force::new(tiny, tiny)).unwrap();
     assert_eq!(filter.gamma(), 2.0);
 }
 
@@ -228,14 +228,14 @@ fn units_of_any_size_give_the_same_gamma_and_theta() {
 #[test]
 fn channel_without_signal_contributes_nothing() {
     let filter = MatchedFilter::new(
-        Channels::new(&[0.0, 0.0], &[3.0, 4.0]),
-        Channels::new(1e-9, 1.0),
+        Force::new(&[0.0, 0.0], &[3.0, 4.0]),
+        Force::new(1e-9, 1.0),
     );
     let filter = filter.unwrap();
     let found = filter
-        .statistic(Channels::new(&[1e9, -1e9], &[3.0, 4.0]))
+        .statistic(Force::new(&[1e9, -1e9], &[3.0, 4.0]))
         .unwrap();
-    assert_eq!(found.y.x, 0.0);
+    assert_eq!(found.y.lateral, 0.0);
     assert_eq!(found.theta, 12.5);
     assert_eq!(filter.gamma(), 5.0);
 }
@@ -244,14 +244,14 @@ fn channel_without_signal_contributes_nothing() {
 #[test]
 fn records_that_cannot_be_judged_are_refused() {
     let samples = [1.0, 2.0];
-    let good: Channels<&[f64]> = Channels::new(&samples, &samples);
-    let sd = Channels::new(1.0, 1.0);
+    let good: Force<&[f64]> = Force::new(&samples, &samples);
+    let sd = Force::new(1.0, 1.0);
     assert_eq!(
-        MatchedFilter::new(Channels::new(&[], &[]), sd).unwrap_err(),
+        MatchedFilter::new(Force::new(&[], &[]), sd).unwrap_err(),
         DetectError::Empty { what: "template_x" }
     );
     assert_eq!(
-        MatchedFilter::new(Channels::new(&samples, &[1.0]), sd).unwrap_err(),
+        MatchedFilter::new(Force::new(&samples, &[1.0]), sd).unwrap_err(),
         DetectError::LengthMismatch {
             what: "template_y",
             expected: 2,
@@ -262,10 +262,10 @@ fn records_that_cannot_be_judged_are_refused() {
         let bad = [0.0, bad];
         let filter = MatchedFilter::new(good, sd).unwrap();
         let expected = |what| DetectError::NotFinite { what, index: 1 };
-        let statistic = |x, y| filter.statistic(Channels { x, y }).unwrap_err();
+        let statistic = |x, y| filter.statistic(Force { lateral: x, normal: y }).unwrap_err();
         assert_eq!(statistic(&bad, &samples), expected("residual_x"));
         assert_eq!(statistic(&samples, &bad), expected("residual_y"));
-        let template = Channels::new(&samples[..], &bad);
+        let template = Force::new(&samples[..], &bad);
         assert_eq!(
             MatchedFilter::new(template, sd).unwrap_err(),
             expected("template_y")
@@ -274,7 +274,7 @@ fn records_that_cannot_be_judged_are_refused() {
             let mut series = [&samples[..]; 6];
             series[position] = &bad;
             let [ox, oy, ax, ay, bx, by] = series;
-            let channels = |x, y| Channels { x, y };
+            let channels = |x, y| Force { lateral: x, normal: y };
             let names = ["observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y"];
             assert_eq!(
                 theta_of_record(channels(ox, oy), channels(ax, ay), channels(bx, by), sd)
@@ -284,7 +284,7 @@ fn records_that_cannot_be_judged_are_refused() {
         }
     }
     for bad in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let found = MatchedFilter::new(good, Channels::new(1.0, bad)).unwrap_err();
+        let found = MatchedFilter::new(good, Force::new(1.0, bad)).unwrap_err();
         assert!(matches!(
             found,
             DetectError::OutOfRange {
@@ -293,7 +293,7 @@ fn records_that_cannot_be_judged_are_refused() {
             }
         ));
     }
-    let found = MatchedFilter::new(Channels::new(&[1e300], &[0.0]), Channels::new(1e-300, 1.0));
+    let found = MatchedFilter::new(Force::new(&[1e300], &[0.0]), Force::new(1e-300, 1.0));
     assert_eq!(found.unwrap_err(), DetectError::Overflow { what: "gamma" });
 }
 

@@ -1,7 +1,7 @@
 //! Noise that grows with the force, as Weber's law has it for touch (paper §5): the exact
 //! likelihood ratio of two heteroscedastic Gaussian hypotheses.
 
-use super::{Channels, DetectError};
+use super::{Force, DetectError};
 use crate::stats::compensated::{self, DoubleDouble};
 use crate::stats::error::{check_not_negative, check_positive, representable};
 
@@ -28,13 +28,13 @@ impl WeberNoise {
 /// F_h)².
 ///
 /// ```
-/// use palpate::detect::Channels;
+/// use palpate::detect::Force;
 /// use palpate::detect::weber::{WeberNoise, theta_weber};
 ///
 /// // One sample, at F_0: θ = ½[0 − (Δ/s_1)²] + ln(s_0/s_1), s = 1 at no force and 5 at 2 N.
-/// let channels = |y| Channels { x: &[0.0][..], y };
+/// let channels = |y| Force { lateral: &[0.0][..], normal: y };
 /// let noise = WeberNoise { floor: 1.0, fraction: 6.0_f64.sqrt() };
-/// let noise = Channels { x: noise, y: noise };
+/// let noise = Force { lateral: noise, normal: noise };
 /// let theta = theta_weber(channels(&[0.0]), channels(&[0.0]), channels(&[2.0]), noise)?;
 /// assert!((theta - (-0.5 * 0.16 - 5.0_f64.ln())).abs() < 1e-14);
 /// # Ok::<(), palpate::detect::DetectError>(())
@@ -45,12 +45,12 @@ impl WeberNoise {
 ///
 /// Implements: DET-005, DET-007, DET-080, DET-081.
 pub fn theta_weber(
-    observed: Channels<&[f64]>,
-    f0: Channels<&[f64]>,
-    f1: Channels<&[f64]>,
-    noise: Channels<WeberNoise>,
+    observed: Force<&[f64]>,
+    f0: Force<&[f64]>,
+    f1: Force<&[f64]>,
+    noise: Force<WeberNoise>,
 ) -> Result<f64, DetectError> {
-    let samples = f0.x.len();
+    let samples = f0.lateral.len();
     observed.check("observed_x", "observed_y", samples)?;
     f0.check("f0_x", "f0_y", samples)?;
     f1.check("f1_x", "f1_y", samples)?;
@@ -70,7 +70,7 @@ pub fn theta_weber(
             half.plus(DoubleDouble::new(libm::log1p((sd0 - sd1) / sd1), 0.0))
         })
     });
-    representable("theta", theta.x.plus(theta.y).value())
+    representable("theta", theta.lateral.plus(theta.normal).value())
 }
 
 #[cfg(test)]

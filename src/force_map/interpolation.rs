@@ -1,7 +1,7 @@
 //! Forces between the poses of a table, and beyond them (paper §4; `spec/interpolation.md`, `spec/trace.md`).
 
 use super::{ForceTable, Matrix, SAME_POSITION};
-use crate::detect::Channels;
+use crate::detect::Force;
 use crate::refusal::Refusal;
 
 /// What stands beyond the ends of an axis.
@@ -75,7 +75,7 @@ impl ForceTable {
     /// A pose that is not finite; an axis with a single entry; a force beyond the range of f64.
     ///
     /// Implements: MAP-060, MAP-061, MAP-062.
-    pub fn force(&self, depth: f64, lateral: f64) -> Result<Channels<f64>, Refusal> {
+    pub fn force(&self, depth: f64, lateral: f64) -> Result<Force<f64>, Refusal> {
         for (key, value) in [("depth", depth), ("lateral position", lateral)] {
             if !value.is_finite() {
                 return Err(Refusal::value(key, value, "a finite number of metres"));
@@ -97,9 +97,9 @@ impl ForceTable {
                 )
             })
         };
-        Ok(Channels {
-            x: value(self.lateral_force())?,
-            y: value(self.normal_force())?,
+        Ok(Force {
+            lateral: value(self.lateral_force())?,
+            normal: value(self.normal_force())?,
         })
     }
 
@@ -122,7 +122,7 @@ impl ForceTable {
     /// A depth or position outside the table: nothing is extrapolated.
     ///
     /// Implements: TRC-021, TRC-022, TRC-023, TRC-024.
-    pub fn sweep(&self, depth: f64, positions: &[f64]) -> Result<Channels<Vec<f64>>, Refusal> {
+    pub fn sweep(&self, depth: f64, positions: &[f64]) -> Result<Force<Vec<f64>>, Refusal> {
         let place = |name: &str, axis: &[f64], position: f64| {
             let place = Place::locate(axis, position, Beyond::Nothing);
             place.ok_or_else(|| {
@@ -140,9 +140,9 @@ impl ForceTable {
                 |column: &Place| column.blend(|column| row.blend(|row| matrix.row(row)[column]));
             columns.iter().map(force).collect()
         };
-        Ok(Channels {
-            x: along(self.lateral_force()),
-            y: along(self.normal_force()),
+        Ok(Force {
+            lateral: along(self.lateral_force()),
+            normal: along(self.normal_force()),
         })
     }
 }
@@ -191,9 +191,9 @@ mod tests {
             for lateral in [-32.0, -1.0, -0.375, 0.25, 0.625, 1.0, 4.0] {
                 let force = table.force(depth, lateral).unwrap();
                 let expected = 3.0 + 2.0 * depth - lateral + 4.0 * depth * lateral;
-                assert!((force.y - expected).abs() <= tolerance, "{depth} {lateral}");
+                assert!((force.normal - expected).abs() <= tolerance, "{depth} {lateral}");
                 let expected = -(3.0 + 2.0 * lateral - depth + 4.0 * depth * lateral);
-                assert!((force.x - expected).abs() <= tolerance, "{depth} {lateral}");
+                assert!((force.lateral - expected).abs() <= tolerance, "{depth} {lateral}");
             }
         }
     }
@@ -205,7 +205,7 @@ mod tests {
         let axes = (vec![0.0, 1.0], vec![0.0, 1.0, 2.0]);
         let table = ForceTable::new(axes.0, axes.1, matrix(), matrix()).unwrap();
         for (lateral, expected) in [(-1.0, -1.0), (0.5, 0.5), (1.5, 3.0), (2.0, 5.0), (3.0, 9.0)] {
-            assert_eq!(table.force(0.5, lateral).unwrap().y, expected);
+            assert_eq!(table.force(0.5, lateral).unwrap().normal, expected);
         }
     }
 
@@ -260,8 +260,8 @@ mod tests {
         for depth in [0.0005, 0.0017, 0.0039] {
             let found = poses().sweep(depth, &positions).unwrap();
             for (i, &x) in positions.iter().enumerate() {
-                assert!((found.y[i] - normal(depth, x)).abs() < 1e-14);
-                assert!((found.x[i] - lateral(depth, x)).abs() < 1e-14);
+                assert!((found.normal[i] - normal(depth, x)).abs() < 1e-14);
+                assert!((found.lateral[i] - lateral(depth, x)).abs() < 1e-14);
             }
         }
     }
@@ -275,8 +275,8 @@ mod tests {
             let positions: Vec<f64> = table.laterals().iter().map(|x| x + off).collect();
             for (row, &depth) in table.depths().iter().enumerate() {
                 let found = table.sweep(depth + off, &positions).unwrap();
-                assert_eq!(found.y, table.normal_force().row(row));
-                assert_eq!(found.x, table.lateral_force().row(row));
+                assert_eq!(found.normal, table.normal_force().row(row));
+                assert_eq!(found.lateral, table.lateral_force().row(row));
             }
         }
     }

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::time::Duration;
 
 use super::Interval;
-use crate::detect::{Channels, theta_of_record};
+use crate::detect::{Force, theta_of_record};
 use crate::force_map::ForceTable;
 use crate::hid::{Counters, End, HapticDevice, Session};
 use crate::refusal::Refusal;
@@ -23,7 +23,7 @@ pub struct Felt {
     /// Lateral positions, m.
     pub laterals: Vec<f64>,
     /// Forces as sent to the device: x lateral, y normal, N.
-    pub forces: Channels<Vec<f64>>,
+    pub forces: Force<Vec<f64>>,
     /// What happened.
     pub counters: Counters,
 }
@@ -76,8 +76,8 @@ pub fn present<D: HapticDevice>(
             began.get_or_insert(cycle.written);
             felt.depths.push(-f64::from(position.normal) * metres);
             felt.laterals.push(f64::from(position.lateral) * metres);
-            felt.forces.x.push(f64::from(cycle.force.lateral) * newtons);
-            felt.forces.y.push(f64::from(cycle.force.normal) * newtons);
+            felt.forces.lateral.push(f64::from(cycle.force.lateral) * newtons);
+            felt.forces.normal.push(f64::from(cycle.force.normal) * newtons);
         }
         let until = began.map_or(patience, |began| began + duration);
         cycle.written < until
@@ -92,7 +92,7 @@ pub fn present<D: HapticDevice>(
 /// Knows what to expect.
 ///
 /// ```
-/// use palpate::detect::Channels;
+/// use palpate::detect::Force;
 /// use palpate::force_map::{ForceTable, Matrix};
 /// use palpate::psychophysics::{Felt, IdealObserver, Interval};
 ///
@@ -103,7 +103,7 @@ pub fn present<D: HapticDevice>(
 /// let felt = |force: f64| Felt {
 ///     depths: vec![0.004; 2],
 ///     laterals: vec![0.0, 0.005],
-///     forces: Channels { x: vec![0.0; 2], y: vec![force; 2] },
+///     forces: Force { lateral: vec![0.0; 2], normal: vec![force; 2] },
 ///     ..Felt::default()
 /// };
 /// let (reference, inclusion) = (map(1.5)?, map(1.75)?);
@@ -140,7 +140,7 @@ impl IdealObserver<'_> {
             let force = |(&depth, &lateral): (&f64, &f64)| {
                 // Nothing is played above the surface.
                 let force = table.force(depth.max(0.0), lateral)?;
-                Ok((force.x, force.y))
+                Ok((force.lateral, force.normal))
             };
             let forces = felt.depths.iter().zip(&felt.laterals).map(force);
             let forces: Result<(Vec<f64>, Vec<f64>), Refusal> = forces.collect();
@@ -153,12 +153,12 @@ impl IdealObserver<'_> {
             let noisy = noise.iter().zip(forces);
             noisy.map(|(n, force)| force + self.noise_sd * n).collect()
         };
-        let (x, y) = (noisy(&felt.forces.x, 0), noisy(&felt.forces.y, 1));
+        let (x, y) = (noisy(&felt.forces.lateral, 0), noisy(&felt.forces.normal, 1));
         let statistic = theta_of_record(
-            Channels { x: &x, y: &y },
-            Channels { x: &f0.0, y: &f0.1 },
-            Channels { x: &f1.0, y: &f1.1 },
-            Channels { x: (), y: () }.map(|()| self.noise_sd),
+            Force { lateral: &x, normal: &y },
+            Force { lateral: &f0.0, normal: &f0.1 },
+            Force { lateral: &f1.0, normal: &f1.1 },
+            Force { lateral: (), normal: () }.map(|()| self.noise_sd),
         );
         let statistic = statistic.map_err(refused)?;
         Ok((statistic.theta, statistic.gamma))

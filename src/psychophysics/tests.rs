@@ -108,7 +108,7 @@ mod observer {
             seed: 20_261_121,
         };
         let (without, with) = (felt(&loaded[0]), felt(&loaded[1]));
-        assert!(without.forces.y.len() > 480 && with != without);
+        assert!(without.forces.normal.len() > 480 && with != without);
         let (_, gamma_in_1n) = observer(1.0).theta(&with, 0).unwrap();
         for target in [1.0, 1.406, 2.0] {
             let observer = observer(gamma_in_1n / target);

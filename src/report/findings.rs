@@ -8,7 +8,7 @@ use super::quality::{Quality, quality, warnings};
 use super::text::{millimetres, name_of_map};
 use super::{ReportError, Settings, Study, paper};
 use crate::detect::{
-    Channels, DetectError, MatchedFilter, auc, error_rates, map_threshold,
+    Force, DetectError, MatchedFilter, auc, error_rates, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
 };
 use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};
@@ -297,13 +297,13 @@ fn peak(laterals: &[f64], forces: &[f64]) -> Peak {
 
 /// γ of lateral and normal forces in noise of the same standard deviation.
 fn gamma(lateral: &[f64], normal: &[f64], noise_sd: f64) -> Result<f64, DetectError> {
-    let noise_sd = Channels {
-        x: noise_sd,
-        y: noise_sd,
+    let noise_sd = Force {
+        lateral: noise_sd,
+        normal: noise_sd,
     };
-    let template = Channels {
-        x: lateral,
-        y: normal,
+    let template = Force {
+        lateral: lateral,
+        normal: normal,
     };
     MatchedFilter::new(template, noise_sd).map(|filter| filter.gamma())
 }

@@ -51,7 +51,7 @@ pub struct LoadedTable {
     laterals: Vec<f32>,
     reciprocal_heights: Vec<f32>,
     reciprocal_widths: Vec<f32>,
-    forces: Vec<Force>,
+    forces: Vec<Force<f32>>,
     rounding: RoundingError,
 }
 

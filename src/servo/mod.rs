@@ -27,6 +27,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+pub use crate::force::Force;
 pub use axis::{
     Axis, Cell, EXTRAPOLATION_CELLS, InvalidAxis, MAX_KNOTS, MIN_WIDTH, POSITION_LIMIT,
 };
@@ -34,6 +35,6 @@ pub use limit::{FORCE_CEILING, InvalidLimits, Limits, MIN_SLEW, RELEASE_CYCLES, 
 #[cfg(feature = "std")]
 pub use load::{HAND_SPEED, LoadedTable, RoundingError, SURFACE_FORCE};
 pub use passivity::{Damping, stiffness};
-pub use state::{Command, Fault, Force, Input, Mode, Request, Sample, State};
+pub use state::{Command, Fault, Input, Mode, Request, Sample, State};
 pub use step::{MOST_AHEAD, step};
 pub use table::{InvalidTable, TABLE_FORCE_LIMIT, Table, blend};

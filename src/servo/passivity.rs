@@ -106,8 +106,8 @@ fn fractions(first: bool, last: bool) -> [f64; 2] {
 }
 
 /// ∂(F_x, F_n)/∂(x, d) of a bilinear cell of the size (depth, lateral) at the fractions s, t.
-fn slopes(corners: &[[Force; 2]; 2], size: [f64; 2], s: f64, t: f64) -> [[f64; 2]; 2] {
-    let component = |of: fn(&Force) -> f32| {
+fn slopes(corners: &[[Force<f32>; 2]; 2], size: [f64; 2], s: f64, t: f64) -> [[f64; 2]; 2] {
+    let component = |of: fn(&Force<f32>) -> f32| {
         let [[a, b], [c, d]] = corners.map(|row| row.map(|force| f64::from(of(&force))));
         let along_lateral = ((1.0 - s) * (b - a) + s * (d - c)) / size[1];
         let along_depth = ((1.0 - t) * (c - a) + t * (d - b)) / size[0];

@@ -2,22 +2,7 @@
 
 use core::fmt;
 
-/// A force on the probe, N: lateral along +x, normal positive out of the gel.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Force {
-    /// Along +x.
-    pub lateral: f32,
-    /// Out of the gel.
-    pub normal: f32,
-}
-
-impl Force {
-    /// No force.
-    pub const ZERO: Force = Force {
-        lateral: 0.0,
-        normal: 0.0,
-    };
-}
+use super::Force;
 
 /// One report of the device.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,7 +82,7 @@ pub struct State {
     /// Whether there may be a force.
     pub mode: Mode,
     /// The last command, N.
-    pub force: Force,
+    pub force: Force<f32>,
     /// The sequence number of the last sample taken over.
     pub sequence: Option<u16>,
     /// Cycles since the last fresh sample.
@@ -110,7 +95,7 @@ pub struct State {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Command {
     /// The force to play, N.
-    pub force: Force,
+    pub force: Force<f32>,
     /// The force follows the table; otherwise it is on its way to zero.
     pub playing: bool,
 }

@@ -27,7 +27,7 @@ pub struct Table<'a> {
     depths: Axis<'a>,
     laterals: Axis<'a>,
     /// One row for each depth.
-    forces: &'a [Force],
+    forces: &'a [Force<f32>],
 }
 
 /// Why forces are no table.
@@ -45,7 +45,7 @@ pub enum InvalidTable {
         /// Its place: row times the number of lateral positions, plus column.
         index: usize,
         /// Its value, N.
-        value: Force,
+        value: Force<f32>,
     },
 }
 
@@ -59,7 +59,7 @@ impl<'a> Table<'a> {
     pub fn new(
         depths: Axis<'a>,
         laterals: Axis<'a>,
-        forces: &'a [Force],
+        forces: &'a [Force<f32>],
     ) -> Result<Table<'a>, InvalidTable> {
         let expected = depths.knots().len() * laterals.knots().len(); // at most 1024²
         if forces.len() != expected {
@@ -91,7 +91,7 @@ impl<'a> Table<'a> {
     }
 
     /// The forces at the nodes, N: depths × lateral positions, row by row.
-    pub fn forces(&self) -> &'a [Force] {
+    pub fn forces(&self) -> &'a [Force<f32>] {
         self.forces
     }
 
@@ -100,21 +100,21 @@ impl<'a> Table<'a> {
     ///
     /// Implements: SRV-010, SRV-011, SRV-012, SRV-013, SRV-014, SRV-015.
     #[inline]
-    pub fn force(&self, depth: f32, lateral: f32) -> Force {
+    pub fn force(&self, depth: f32, lateral: f32) -> Force<f32> {
         let force = self.continued(depth, lateral);
         if depth < 0.0 { Force::ZERO } else { force }
     }
 
     /// [`Table::force`] without regard to the surface, for who looks after it himself.
     #[inline]
-    pub(super) fn continued(&self, depth: f32, lateral: f32) -> Force {
+    pub(super) fn continued(&self, depth: f32, lateral: f32) -> Force<f32> {
         self.force_in(self.depths.locate(depth), self.laterals.locate(lateral))
     }
 
     /// The bilinear form of the cell in row `depth.index` and column `lateral.index`, at the fractions
     /// given; zero for a cell that the table does not have.
     #[inline]
-    pub fn force_in(&self, depth: Cell, lateral: Cell) -> Force {
+    pub fn force_in(&self, depth: Cell, lateral: Cell) -> Force<f32> {
         let columns = self.laterals.knots().len();
         let first = depth
             .index

@@ -13,17 +13,17 @@ use super::*;
 const DEPTHS: ([f32; 3], [f32; 2]) = ([0.0, 0.25, 0.75], [4.0, 2.0]);
 const LATERALS: ([f32; 3], [f32; 2]) = ([-0.5, 0.0, 0.25], [2.0, 4.0]);
 
-fn force(lateral: f32, normal: f32) -> Force {
+fn force(lateral: f32, normal: f32) -> Force<f32> {
     Force { lateral, normal }
 }
 
 /// Forces that are bilinear over the whole table, all exact in f32.
-fn bilinear(depth: f32, lateral: f32) -> Force {
+fn bilinear(depth: f32, lateral: f32) -> Force<f32> {
     force(8.0 * lateral * depth, 4.0 * depth + 2.0 * lateral * depth)
 }
 
 fn with_table<R>(then: impl FnOnce(&Table) -> R) -> R {
-    let forces: Vec<Force> = DEPTHS
+    let forces: Vec<Force<f32>> = DEPTHS
         .0
         .iter()
         .flat_map(|&d| LATERALS.0.map(|x| bilinear(d, x)))
@@ -133,7 +133,7 @@ fn an_axis_is_refused_with_its_place() {
 #[test]
 fn a_table_is_refused_with_its_place() {
     let axis = Axis::new(&[0.0, 0.5], &[2.0]).unwrap();
-    let new = |forces: &[Force]| Table::new(axis, axis, forces).unwrap_err();
+    let new = |forces: &[Force<f32>]| Table::new(axis, axis, forces).unwrap_err();
     let (found, expected) = (3, 4);
     assert_eq!(
         new(&[Force::ZERO; 3]),

@@ -3,7 +3,7 @@
 use super::{Record, refused, view};
 use crate::detect::assessment::{Assessment, assess};
 use crate::detect::{
-    Channels, DetectError, map_threshold, neyman_pearson_false_alarm_threshold,
+    Force, DetectError, map_threshold, neyman_pearson_false_alarm_threshold,
     neyman_pearson_miss_threshold, theta_of_record,
 };
 use crate::force_map::ForceTable;
@@ -57,7 +57,7 @@ pub fn judge(
     reference: &ForceTable,
     inclusion: &ForceTable,
     depth: f64,
-    noise_sd: Channels<f64>,
+    noise_sd: Force<f64>,
     criterion: Criterion,
     prior_h1: f64,
 ) -> Result<(f64, Assessment), Refusal> {
@@ -84,13 +84,13 @@ pub fn judge(
 /// How far a record is from the nearer of the two hypotheses.
 ///
 /// ```
-/// use palpate::detect::Channels;
+/// use palpate::detect::Force;
 /// use palpate::force_map::{ForceTable, Matrix};
 /// use palpate::trace::{Misfit, Trace};
 ///
 /// let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
 /// let map = ForceTable::new(vec![0.004], vec![0.0, 0.004], matrix(1.5), matrix(0.0))?;
-/// let noise_sd = Channels { x: 0.25, y: 0.25 };
+/// let noise_sd = Force { lateral: 0.25, normal: 0.25 };
 /// let misfit = |force: f64| {
 ///     let text = format!("position_mm,lateral_force_n,normal_force_n\n2,0,{force}\n");
 ///     let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
@@ -120,7 +120,7 @@ impl Misfit {
         record: &Record,
         reference: &ForceTable,
         depth: f64,
-        noise_sd: Channels<f64>,
+        noise_sd: Force<f64>,
         theta: f64,
     ) -> Result<Misfit, Refusal> {
         let f0 = record.expected(reference, depth)?;
@@ -133,7 +133,7 @@ impl Misfit {
             terms.sum::<f64>()
         });
         // Σ (r − Δ)²/s² = Σ r²/s² − 2θ.
-        let chi_square = sums.x + sums.y - 2.0 * theta.max(0.0);
+        let chi_square = sums.lateral + sums.normal - 2.0 * theta.max(0.0);
         if !chi_square.is_finite() {
             let what = "chi_square";
             return Err(refused(DetectError::Overflow { what }).in_file(record.file()));

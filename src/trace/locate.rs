@@ -6,7 +6,7 @@ use crate::detect::mixture::mixture_theta;
 use crate::detect::position::{MaximumLaw, position_bound, slope};
 use crate::detect::scan::Scan;
 use crate::detect::{
-    Channels, Decision, DetectError, decide, error_rates, map_threshold,
+    Force, Decision, DetectError, decide, error_rates, map_threshold,
     neyman_pearson_miss_threshold, posterior,
 };
 use crate::force_map::{ForceTable, SAME_POSITION};
@@ -67,8 +67,8 @@ struct Grid {
     start: f64,
     /// The shift at which the inclusion lies at the first sample, ≤ 0.
     first_shift: isize,
-    template: Channels<Vec<f64>>,
-    residual: Channels<Vec<f64>>,
+    template: Force<Vec<f64>>,
+    residual: Force<Vec<f64>>,
 }
 
 /// Searches `record`, swept at `depth` (m), for the inclusion of the map `inclusion`, in white noise
@@ -84,7 +84,7 @@ pub fn locate(
     reference: &ForceTable,
     inclusion: &ForceTable,
     depth: f64,
-    noise_sd: Channels<f64>,
+    noise_sd: Force<f64>,
     criterion: Criterion,
     prior_h1: f64,
 ) -> Result<Location, Refusal> {
@@ -146,11 +146,11 @@ impl Grid {
 
     fn locate(
         &self,
-        noise_sd: Channels<f64>,
+        noise_sd: Force<f64>,
         criterion: Criterion,
         prior_h1: f64,
     ) -> Result<Location, DetectError> {
-        let candidates = self.residual.x.len();
+        let candidates = self.residual.lateral.len();
         let scan = Scan::new(candidates, view(&self.template), noise_sd)?;
         let (mut gamma, mut angle) = (vec![0.0; candidates], vec![0.0; candidates]);
         let law = MaximumLaw::new(&scan, self.first_shift, &mut gamma, &mut angle)?;
@@ -187,22 +187,22 @@ impl Grid {
     }
 
     /// Implements: TRC-042.
-    fn template_edge(&self, noise_sd: Channels<f64>) -> f64 {
+    fn template_edge(&self, noise_sd: Force<f64>) -> f64 {
         let parts = view(&self.template).zip(noise_sd).map(|(signal, sd)| {
             let largest =
                 |samples: &[f64]| samples.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
             let ends = [signal[0], signal[signal.len() - 1]];
             (largest(&ends) / sd, largest(signal) / sd)
         });
-        let (ends, all) = (parts.x.0.max(parts.y.0), parts.x.1.max(parts.y.1));
+        let (ends, all) = (parts.lateral.0.max(parts.normal.0), parts.lateral.1.max(parts.normal.1));
         if all > 0.0 { ends / all } else { 0.0 }
     }
 
     /// The Cramér–Rao bound of what the record holds of the template at a shift.
     ///
     /// Implements: TRC-034.
-    fn position_sd_bound(&self, shift: isize, noise_sd: Channels<f64>) -> Result<f64, DetectError> {
-        let samples = 0..self.residual.x.len() as isize;
+    fn position_sd_bound(&self, shift: isize, noise_sd: Force<f64>) -> Result<f64, DetectError> {
+        let samples = 0..self.residual.lateral.len() as isize;
         let seen = |template: &[f64]| {
             let mut slopes = vec![0.0; template.len()];
             slope(template, self.spacing, &mut slopes)?;
@@ -210,8 +210,8 @@ impl Grid {
             let seen = places.filter(|(place, _)| samples.contains(place));
             Ok::<Vec<f64>, DetectError>(seen.map(|(_, slope)| slope).collect())
         };
-        let (x, y) = (seen(&self.template.x)?, seen(&self.template.y)?);
-        position_bound(Channels { x: &x, y: &y }, noise_sd)
+        let (x, y) = (seen(&self.template.lateral)?, seen(&self.template.normal)?);
+        position_bound(Force { lateral: &x, normal: &y }, noise_sd)
     }
 }
 

@@ -7,7 +7,7 @@
 //! | `locate.rs` | the scan for the position, equation (10) |
 //!
 //! ```
-//! use palpate::detect::{Channels, Decision};
+//! use palpate::detect::{Force, Decision};
 //! use palpate::force_map::{ForceTable, Matrix};
 //! use palpate::trace::{Criterion, Trace, judge, locate};
 //!
@@ -26,7 +26,7 @@
 //!     text += &format!("{},0,{force}\n", i as i32 - 3);
 //! }
 //! let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
-//! let noise_sd = Channels { x: 0.125, y: 0.125 };
+//! let noise_sd = Force { lateral: 0.125, normal: 0.125 };
 //!
 //! // Where the maps have it, half of the signal is found: θ = Σ rΔ/s² − γ²/2 = 16 − 12.
 //! let (eta, found) =
@@ -49,7 +49,7 @@ pub use judge::{Criterion, Misfit, judge};
 pub use locate::{DIED_AWAY, Location, MOST_SAMPLES, UNIFORM, locate};
 
 use crate::csv::{Column, Table};
-use crate::detect::{Channels, DetectError};
+use crate::detect::{Force, DetectError};
 use crate::force_map::{ForceTable, SAME_POSITION};
 use crate::phantom::decimal::format_scaled;
 use crate::refusal::Refusal;
@@ -129,7 +129,7 @@ pub struct Record {
     /// The line of each sample.
     lines: Vec<usize>,
     positions: Vec<f64>,
-    forces: Channels<Vec<f64>>,
+    forces: Force<Vec<f64>>,
 }
 
 impl Trace {
@@ -206,9 +206,9 @@ impl Trace {
         Ok(Record {
             lines: samples.iter().map(|(line, _)| *line).collect(),
             positions: column(0),
-            forces: Channels {
-                x: column(1),
-                y: column(2),
+            forces: Force {
+                lateral: column(1),
+                normal: column(2),
             },
             file,
         })
@@ -269,7 +269,7 @@ impl Record {
     }
 
     /// The recorded force on the probe, N, one sample for each position.
-    pub fn forces(&self) -> Channels<&[f64]> {
+    pub fn forces(&self) -> Force<&[f64]> {
         view(&self.forces)
     }
 
@@ -279,7 +279,7 @@ impl Record {
     /// The first sample outside the map's lateral positions, with its line; a depth outside its depths.
     ///
     /// Implements: TRC-008, TRC-024.
-    pub fn expected(&self, map: &ForceTable, depth: f64) -> Result<Channels<Vec<f64>>, Refusal> {
+    pub fn expected(&self, map: &ForceTable, depth: f64) -> Result<Force<Vec<f64>>, Refusal> {
         let laterals = map.laterals();
         let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
         let inside = first - SAME_POSITION..=last + SAME_POSITION;
@@ -312,9 +312,9 @@ fn refused(error: DetectError) -> Refusal {
     }
 }
 
-fn view(channels: &Channels<Vec<f64>>) -> Channels<&[f64]> {
-    Channels {
-        x: &channels.x,
-        y: &channels.y,
+fn view(channels: &Force<Vec<f64>>) -> Force<&[f64]> {
+    Force {
+        lateral: &channels.lateral,
+        normal: &channels.normal,
     }
 }

@@ -41,7 +41,7 @@ fn shifted(signal: f64, shift: usize) -> Record {
     read(&text).unwrap()
 }
 
-const NOISE: Channels<f64> = Channels { x: 0.5, y: 0.25 };
+const NOISE: Force<f64> = Force { lateral: 0.5, normal: 0.25 };
 
 fn find(record: &Record, signal: f64, criterion: Criterion) -> Result<Location, Refusal> {
     locate(
@@ -60,8 +60,8 @@ fn find(record: &Record, signal: f64, criterion: Criterion) -> Result<Location, 
 fn columns_units_and_lines() {
     let expected = read(EXAMPLE).unwrap();
     assert_eq!(expected.positions(), [-0.001, 0.0005]);
-    assert_eq!(expected.forces().x, [0.25, -0.5]);
-    assert_eq!(expected.forces().y, [1.5, 1.25]);
+    assert_eq!(expected.forces().lateral, [0.25, -0.5]);
+    assert_eq!(expected.forces().normal, [1.5, 1.25]);
     let same = [
         "\u{feff}# pass 3\r\n\r\nposition_mm , lateral_force_n,normal_force_n\r\n -1,0.25 ,1.5\r\n #\r\n0.5,-0.5,1.25",
         "normal_force_mn,position_m,lateral_force_mn\n1500,-1e-3,250\n1250,0.0005,-500\n",
@@ -135,11 +135,11 @@ fn times_become_positions_by_the_motion() {
     let record = |velocity, start| trace().record(Some(Motion { velocity, start }));
     let there = record(0.5, -0.25).unwrap();
     assert_eq!(there.positions(), [0.25, 0.5]);
-    assert_eq!(there.forces().x, [1.0, 3.0]);
+    assert_eq!(there.forces().lateral, [1.0, 3.0]);
     let back = record(-0.5, 0.25).unwrap();
     assert_eq!(back.positions(), [-0.5, -0.25]);
     assert_eq!(
-        (back.forces().x, back.forces().y),
+        (back.forces().lateral, back.forces().normal),
         (&[3.0, 1.0][..], &[4.0, 2.0][..])
     );
     let wrong = [
@@ -240,11 +240,11 @@ fn plain_theta(record: &Record, signal: f64, n: usize) -> (f64, f64) {
         };
         for (observed, force, sd) in [
             (
-                record.forces().x,
+                record.forces().lateral,
                 ForceTable::lateral_force as fn(&ForceTable) -> &Matrix,
-                NOISE.x,
+                NOISE.lateral,
             ),
-            (record.forces().y, ForceTable::normal_force, NOISE.y),
+            (record.forces().normal, ForceTable::normal_force, NOISE.normal),
         ] {
             let delta = force(&inclusion).row(1)[column] - force(&reference).row(1)[column];
             let residual = observed[i] - force(&reference).row(1)[i];
@@ -318,7 +318,7 @@ fn the_promise_of_misses_is_kept_for_an_inclusion_at_any_sample() {
     );
     for candidate in 0..7 {
         let seen = &bump[..7.min(10 - candidate)];
-        let gamma = seen.iter().map(|b| b * b).sum::<f64>().sqrt() / NOISE.y;
+        let gamma = seen.iter().map(|b| b * b).sum::<f64>().sqrt() / NOISE.normal;
         let miss = error_rates(gamma, found.eta).unwrap().miss;
         assert!(miss < 0.01 + 1e-12, "{candidate}: {miss}");
     }
@@ -407,7 +407,7 @@ fn a_scan_tells_how_much_of_the_signal_the_maps_cut_off() {
     };
     assert!((edge(NOISE) - 0.5).abs() < 1e-12);
     // Where the lateral force is the quiet one, its largest is at an end: 8 of 8, and 1 of 2 in the normal force.
-    assert!((edge(Channels { x: 0.125, y: 1.0 }) - 1.0).abs() < 1e-12);
+    assert!((edge(Force { lateral: 0.125, normal: 1.0 }) - 1.0).abs() < 1e-12);
 }
 
 // Verifies: TRC-030, TRC-031, TRC-033, TRC-041.

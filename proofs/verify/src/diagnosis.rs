@@ -7,7 +7,7 @@ use std::vec::Vec;
 
 use super::{Check, Figure};
 use palpate::detect::simulate::Simulation;
-use palpate::detect::{Channels, auc, error_rates, neyman_pearson_false_alarm_threshold};
+use palpate::detect::{Force, auc, error_rates, neyman_pearson_false_alarm_threshold};
 use palpate::fem::{Contact, MESH_SIZE, Model};
 use palpate::phantom::Phantom;
 use palpate::stats::binomial::clopper_pearson;
@@ -72,11 +72,11 @@ fn diagnosis(inclusion: &str, noise: f64) -> Result<Vec<Figure>, String> {
     let difference = |one: &[f64], zero: &[f64]| -> Vec<f64> {
         one.iter().zip(zero).map(|(one, zero)| one - zero).collect()
     };
-    let template = Channels {
-        x: difference(&f1.x, &f0.x),
-        y: difference(&f1.y, &f0.y),
+    let template = Force {
+        lateral: difference(&f1.lateral, &f0.lateral),
+        normal: difference(&f1.normal, &f0.normal),
     };
-    let noise_sd = Channels { x: noise, y: noise };
+    let noise_sd = Force { lateral: noise, normal: noise };
     let simulation = Simulation::new(
         view(&f0),
         view(&template),
@@ -124,11 +124,11 @@ struct Counts {
 
 fn count(
     simulation: &Simulation<'_>,
-    f0: &Channels<Vec<f64>>,
-    f1: &Channels<Vec<f64>>,
+    f0: &Force<Vec<f64>>,
+    f1: &Force<Vec<f64>>,
     eta: f64,
 ) -> Result<Counts, palpate::detect::DetectError> {
-    let mut scratch = vec![0.0; 2 * f0.x.len()];
+    let mut scratch = vec![0.0; 2 * f0.lateral.len()];
     let mut counts = Counts {
         silent: 0,
         found: 0,
@@ -147,23 +147,23 @@ fn count(
 }
 
 /// Forces along the paper's traverse.
-fn forces(name: &str) -> Result<Channels<Vec<f64>>, String> {
+fn forces(name: &str) -> Result<Force<Vec<f64>>, String> {
     let failed = |error: &dyn std::fmt::Display| format!("phantom {name}: {error}");
     let phantom = Phantom::builtin(name).map_err(|error| failed(&error))?;
     let laterals: Vec<f64> = (-20..=20).map(|k| f64::from(k) * 0.5e-3).collect();
     let map = Model::new(&phantom, MESH_SIZE, Contact::default())
         .and_then(|model| model.map(&[DEPTH], &laterals, &|_| ()))
         .map_err(|error| failed(&error))?;
-    Ok(Channels {
-        x: map.lateral_force().row(0).to_vec(),
-        y: map.normal_force().row(0).to_vec(),
+    Ok(Force {
+        lateral: map.lateral_force().row(0).to_vec(),
+        normal: map.normal_force().row(0).to_vec(),
     })
 }
 
-fn view(channels: &Channels<Vec<f64>>) -> Channels<&[f64]> {
-    Channels {
-        x: &channels.x,
-        y: &channels.y,
+fn view(channels: &Force<Vec<f64>>) -> Force<&[f64]> {
+    Force {
+        lateral: &channels.lateral,
+        normal: &channels.normal,
     }
 }
 

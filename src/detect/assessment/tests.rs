@@ -3,10 +3,10 @@
 use super::*;
 use crate::stats::check::assert_ulps;
 
-const UNIT: Channels<f64> = Channels::new(1.0, 1.0);
-const F0: Channels<&[f64]> = Channels::new(&[0.0, 1.0], &[1.0, 1.0]);
-const F1: Channels<&[f64]> = Channels::new(&[1.0, 1.0], &[2.0, 3.0]);
-const OBSERVED: Channels<&[f64]> = Channels::new(&[1.0, 5.0], &[1.0, 2.0]);
+const UNIT: Force<f64> = Force::new(1.0, 1.0);
+const F0: Force<&[f64]> = Force::new(&[0.0, 1.0], &[1.0, 1.0]);
+const F1: Force<&[f64]> = Force::new(&[1.0, 1.0], &[2.0, 3.0]);
+const OBSERVED: Force<&[f64]> = Force::new(&[1.0, 5.0], &[1.0, 2.0]);
 
 // Verifies: DET-031.
 #[test]
@@ -29,10 +29,10 @@ fn what_is_refused_is_never_a_decision() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let bad = [0.0, bad];
         for position in 0..6 {
-            let mut series = [OBSERVED.x, OBSERVED.y, F0.x, F0.y, F1.x, F1.y];
+            let mut series = [OBSERVED.lateral, OBSERVED.normal, F0.lateral, F0.normal, F1.lateral, F1.normal];
             series[position] = &bad;
             let [ox, oy, ax, ay, bx, by] = series;
-            let channels = |x, y| Channels { x, y };
+            let channels = |x, y| Force { lateral: x, normal: y };
             let found = assess(
                 channels(ox, oy),
                 channels(ax, ay),
@@ -46,21 +46,21 @@ fn what_is_refused_is_never_a_decision() {
                 Err(DetectError::NotFinite { index: 1, .. })
             ));
         }
-        assert!(assess(OBSERVED, F0, F1, Channels::new(bad[1], 1.0), 0.5, 0.0).is_err());
+        assert!(assess(OBSERVED, F0, F1, Force::new(bad[1], 1.0), 0.5, 0.0).is_err());
         assert!(assess(OBSERVED, F0, F1, UNIT, bad[1], 0.0).is_err());
         assert!(assess(OBSERVED, F0, F1, UNIT, 0.5, bad[1]).is_err());
     }
-    assert!(assess(Channels::new(&[1.0], &[1.0, 2.0]), F0, F1, UNIT, 0.5, 0.0).is_err());
+    assert!(assess(Force::new(&[1.0], &[1.0, 2.0]), F0, F1, UNIT, 0.5, 0.0).is_err());
 }
 
 // Verifies: DET-053, DET-057, DET-059.
 #[test]
 fn record_at_an_unknown_position() {
-    let template: Channels<&[f64]> = Channels::new(&[0.0], &[2.0]);
+    let template: Force<&[f64]> = Force::new(&[0.0], &[2.0]);
     let scan = Scan::new(3, template, UNIT).unwrap();
     let (mut gamma, mut angle) = ([0.0; 3], [0.0; 3]);
     let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle).unwrap();
-    let residual: Channels<&[f64]> = Channels::new(&[9.0, 9.0, 9.0], &[0.0, 3.0, 1.0]);
+    let residual: Force<&[f64]> = Force::new(&[9.0, 9.0, 9.0], &[0.0, 3.0, 1.0]);
     let found = assess_scan(&scan, &law, residual, 2.0).unwrap();
     assert_eq!((found.maximum.shift, found.maximum.theta), (1, 4.0));
     assert_eq!(found.decision, Decision::Inclusion);
@@ -71,7 +71,7 @@ fn record_at_an_unknown_position() {
         assess_scan(&scan, &law, residual, 4.1).unwrap().decision,
         Decision::NoInclusion
     );
-    let bad: Channels<&[f64]> = Channels::new(&[9.0, f64::NAN, 9.0], residual.y);
+    let bad: Force<&[f64]> = Force::new(&[9.0, f64::NAN, 9.0], residual.normal);
     assert!(assess_scan(&scan, &law, bad, 2.0).is_err());
     assert!(assess_scan(&scan, &law, residual, f64::NAN).is_err());
 }

@@ -2,7 +2,7 @@
 //! exact binary64 arguments; or closed forms, where named.
 
 use super::super::stationary::{banded_scratch, theta_banded, theta_stationary};
-use super::super::{Channels, MatchedFilter};
+use super::super::{Force, MatchedFilter};
 use super::*;
 use crate::stats::check::assert_near;
 use crate::stats::random::Generator;
@@ -127,8 +127,8 @@ fn arguments_that_do_not_fit_are_refused() {
         index: 3,
     };
     assert_eq!(dense(&bad, &TEMPLATE, covariance), Err(expected));
-    fn both(v: &[f64]) -> Channels<&[f64]> {
-        Channels::new(v, v)
+    fn both(v: &[f64]) -> Force<&[f64]> {
+        Force::new(v, v)
     }
     let (two, one) = ([1.0, 0.5], [1.0]);
     let two = both(&two[..]);
@@ -136,7 +136,7 @@ fn arguments_that_do_not_fit_are_refused() {
     assert!(theta_stationary(two, two, two, &mut [0.0; 3]).is_err());
     assert!(theta_banded(two, two, both(&[]), &mut []).is_err());
     assert!(theta_banded(two, two, both(&[1.0, 0.1, 0.0]), &mut [0.0; 18]).is_err());
-    let uneven = Channels::new(&one[..], &[1.0, 0.5]);
+    let uneven = Force::new(&one[..], &[1.0, 0.5]);
     for (residual, template) in [(both(&one), two), (uneven, two), (two, uneven)] {
         let mismatch = |found| matches!(found, Err(DetectError::LengthMismatch { .. }));
         assert!(mismatch(theta_stationary(
@@ -158,11 +158,11 @@ fn arguments_that_do_not_fit_are_refused() {
     }
 }
 
-const LONG_TEMPLATE: Channels<&[f64]> = Channels::new(
+const LONG_TEMPLATE: Force<&[f64]> = Force::new(
     &[0.1, 0.3, -0.2, 0.5, 0.4, -0.1, 0.05],
     &[0.0, 0.2, 0.34, 0.31, 0.2, 0.1, 0.0],
 );
-const LONG_RESIDUAL: Channels<&[f64]> = Channels::new(
+const LONG_RESIDUAL: Force<&[f64]> = Force::new(
     &[0.2, 0.1, -0.3, 0.6, 0.2, 0.0, -0.1],
     &[0.1, 0.1, 0.4, 0.2, 0.3, -0.1, 0.05],
 );
@@ -170,7 +170,7 @@ const LONG_RESIDUAL: Channels<&[f64]> = Channels::new(
 // Verifies: DET-044, DET-045.
 #[test]
 fn stationary_noise_by_either_method() {
-    let lags: Channels<&[f64]> = Channels::new(&[0.05, 0.02, -0.005], &[0.08, -0.03, 0.01]);
+    let lags: Force<&[f64]> = Force::new(&[0.05, 0.02, -0.005], &[0.08, -0.03, 0.01]);
     let banded = theta_banded(
         LONG_RESIDUAL,
         LONG_TEMPLATE,
@@ -184,7 +184,7 @@ fn stationary_noise_by_either_method() {
         padded[..3].copy_from_slice(lags);
         padded
     });
-    let padded = Channels::new(&padded.x[..], &padded.y[..]);
+    let padded = Force::new(&padded.lateral[..], &padded.normal[..]);
     let levinson =
         theta_stationary(LONG_RESIDUAL, LONG_TEMPLATE, padded, &mut [f64::NAN; 14]).unwrap();
     for found in [banded, levinson] {
@@ -206,18 +206,18 @@ fn exponential_autocovariance_has_a_closed_form() {
     // ρ(k) = v aᵏ is a first-order autoregression: white are n₀/√v and (nᵢ − a nᵢ₋₁)/√(v(1−a²)).
     const SAMPLES: usize = 200;
     let (template, residual) = (numbers(0, 2 * SAMPLES), numbers(1, 2 * SAMPLES));
-    let (variance, memory) = (Channels::new(0.3, 2.0), Channels::new(0.8, -0.5));
+    let (variance, memory) = (Force::new(0.3, 2.0), Force::new(0.8, -0.5));
     let lags = variance.zip(memory).map(|(variance, memory): (f64, f64)| {
         (0..SAMPLES as i32)
             .map(|lag| variance * memory.powi(lag))
             .collect::<Vec<_>>()
     });
-    let split = |v: &'static [f64]| Channels::new(&v[..SAMPLES], &v[SAMPLES..]);
+    let split = |v: &'static [f64]| Force::new(&v[..SAMPLES], &v[SAMPLES..]);
     let (template, residual) = (split(Vec::leak(template)), split(Vec::leak(residual)));
     let mut expected = (0.0, 0.0);
     for (((t, r), v), a) in [
-        (((template.x, residual.x), variance.x), memory.x),
-        (((template.y, residual.y), variance.y), memory.y),
+        (((template.lateral, residual.lateral), variance.lateral), memory.lateral),
+        (((template.normal, residual.normal), variance.normal), memory.normal),
     ] {
         for i in 0..SAMPLES {
             let white = |n: &[f64]| match i {
@@ -228,7 +228,7 @@ fn exponential_autocovariance_has_a_closed_form() {
             expected.1 += white(t) * (white(r) - 0.5 * white(t));
         }
     }
-    let lags = Channels::new(&lags.x[..], &lags.y[..]);
+    let lags = Force::new(&lags.lateral[..], &lags.normal[..]);
     let found = theta_stationary(residual, template, lags, &mut [0.0; 2 * SAMPLES]).unwrap();
     assert_near(
         found.gamma,
@@ -241,7 +241,7 @@ fn exponential_autocovariance_has_a_closed_form() {
 // Verifies: DET-041, DET-044, DET-045.
 #[test]
 fn white_noise_is_a_special_case_of_every_colour() {
-    let sd = Channels::new(0.3, 0.2);
+    let sd = Force::new(0.3, 0.2);
     let filter = MatchedFilter::new(LONG_TEMPLATE, sd).unwrap();
     let expected = (
         filter.gamma(),
@@ -249,9 +249,9 @@ fn white_noise_is_a_special_case_of_every_colour() {
     );
     let mut covariance = [[0.0; 14]; 14];
     for (i, row) in covariance.iter_mut().enumerate() {
-        row[i] = if i < 7 { sd.x * sd.x } else { sd.y * sd.y };
+        row[i] = if i < 7 { sd.lateral * sd.lateral } else { sd.normal * sd.normal };
     }
-    let join = |c: Channels<&[f64]>| [c.x, c.y].concat();
+    let join = |c: Force<&[f64]>| [c.lateral, c.normal].concat();
     let mut found = vec![
         dense(
             &join(LONG_RESIDUAL),
@@ -261,10 +261,10 @@ fn white_noise_is_a_special_case_of_every_colour() {
         .unwrap(),
     ];
     let variance = sd.map(|sd| [sd * sd]);
-    let lags = Channels::new(&variance.x[..], &variance.y[..]);
+    let lags = Force::new(&variance.lateral[..], &variance.normal[..]);
     found.push(theta_banded(LONG_RESIDUAL, LONG_TEMPLATE, lags, &mut [0.0; 4]).unwrap());
     let padded = variance.map(|v| [v[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    let lags = Channels::new(&padded.x[..], &padded.y[..]);
+    let lags = Force::new(&padded.lateral[..], &padded.normal[..]);
     found.push(theta_stationary(LONG_RESIDUAL, LONG_TEMPLATE, lags, &mut [0.0; 14]).unwrap());
     for found in found {
         // s² and a division round where white noise does not.
@@ -292,9 +292,9 @@ fn a_long_record_in_banded_noise_agrees_with_its_dense_covariance() {
         }
     }
     let expected = dense(&residual, &template, &covariance).unwrap();
-    let channels = |v: &'static [f64]| Channels::new(&v[..SAMPLES], &v[SAMPLES..]);
+    let channels = |v: &'static [f64]| Force::new(&v[..SAMPLES], &v[SAMPLES..]);
     let (residual, template) = (channels(Vec::leak(residual)), channels(Vec::leak(template)));
-    let lags = Channels::new(&lags[..], &lags[..]);
+    let lags = Force::new(&lags[..], &lags[..]);
     let found = theta_banded(residual, template, lags, &mut vec![0.0; banded_scratch(4)]).unwrap();
     assert_near(found.gamma, expected.gamma, TOLERANCE * expected.gamma);
     assert_near(
@@ -334,8 +334,8 @@ fn a_pivot_counts_as_positive_beyond_what_rounding_explains() {
         let stationary = |delta: f64| {
             let lags = [power, power * (1.0 - delta), power * (1.0 - delta).powi(2)];
             let white = [power, 0.0, 0.0];
-            let channels = Channels::new(&lags[..], &white);
-            let nothing = Channels::new(&[0.0; 3][..], &[0.0; 3]);
+            let channels = Force::new(&lags[..], &white);
+            let nothing = Force::new(&[0.0; 3][..], &[0.0; 3]);
             theta_stationary(nothing, nothing, channels, &mut [0.0; 6])
         };
         assert!(stationary(11.0 * E).is_ok(), "22 ε, beyond 20 ε");
@@ -376,8 +376,8 @@ fn asymmetry_counts_beyond_what_rounding_explains() {
 // Verifies: DET-045.
 #[test]
 fn as_many_lags_as_samples_are_a_band() {
-    let lags = Channels::new(&[1.0, 0.5][..], &[1.0, 0.5]);
-    let ones = Channels::new(&[1.0, 1.0][..], &[1.0, 1.0]);
+    let lags = Force::new(&[1.0, 0.5][..], &[1.0, 0.5]);
+    let ones = Force::new(&[1.0, 1.0][..], &[1.0, 1.0]);
     let found = theta_banded(ones, ones, lags, &mut [0.0; banded_scratch(2)]).unwrap();
     // Each channel: 1ᵀK⁻¹1 = 2/1.5; γ² twice that, and θ half of it.
     assert_near(found.theta, 4.0 / 3.0, 16.0 * f64::EPSILON);

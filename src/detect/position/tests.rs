@@ -5,11 +5,11 @@ use crate::stats::check::{assert_near, assert_ulps};
 extern crate std;
 use std::vec::Vec;
 
-const UNIT: Channels<f64> = Channels::new(1.0, 1.0);
+const UNIT: Force<f64> = Force::new(1.0, 1.0);
 
 fn bounds(template: &[f64], samples: usize, count: usize, eta: f64) -> (f64, f64) {
     let zeros: Vec<f64> = template.iter().map(|_| 0.0).collect();
-    let scan = Scan::new(samples, Channels::new(template, &zeros), UNIT).unwrap();
+    let scan = Scan::new(samples, Force::new(template, &zeros), UNIT).unwrap();
     let (mut gamma, mut angle) = ([0.0; 32], [0.0; 32]);
     let law = MaximumLaw::new(&scan, 0, &mut gamma[..count], &mut angle[..count]).unwrap();
     (
@@ -87,7 +87,7 @@ fn independent_shifts_have_an_exact_probability_below_the_bound() {
 #[test]
 fn threshold_keeps_the_promise_and_is_the_least_that_does() {
     let template = [0.5, 1.0, 2.0, 1.0, 0.5];
-    let scan = Scan::new(20, Channels::new(&template, &template), UNIT).unwrap();
+    let scan = Scan::new(20, Force::new(&template, &template), UNIT).unwrap();
     let (mut gamma, mut angle) = ([0.0; 24], [0.0; 24]);
     let law = MaximumLaw::new(&scan, -4, &mut gamma, &mut angle).unwrap();
     for rate in [0.3, 0.05, 1e-3, 1e-9] {
@@ -99,7 +99,7 @@ fn threshold_keeps_the_promise_and_is_the_least_that_does() {
         assert!(law.threshold(rate).is_err());
     }
     assert!(law.false_alarm_bound(f64::INFINITY).is_err() && law.union_bound(f64::NAN).is_err());
-    let nothing = Scan::new(5, Channels::new(&[0.0], &[0.0]), UNIT).unwrap();
+    let nothing = Scan::new(5, Force::new(&[0.0], &[0.0]), UNIT).unwrap();
     assert!(MaximumLaw::new(&nothing, 0, &mut gamma, &mut angle).is_err());
     let law = MaximumLaw::new(&nothing, 0, &mut gamma[..5], &mut angle[..5]).unwrap();
     assert_eq!(law.threshold(0.1), Err(DetectError::NoSignal));
@@ -116,13 +116,13 @@ fn position_bound_of_a_straight_slope() {
     let line: Vec<f64> = (0..100).map(|i| 1.0 + 3.0 * 0.25 * f64::from(i)).collect();
     slope(&line, 0.25, &mut slopes).unwrap();
     assert_eq!(slopes, [3.0; 100]);
-    let sd = Channels::new(0.1, 0.6);
+    let sd = Force::new(0.1, 0.6);
     assert_ulps(
-        position_bound(Channels::new(&flat, &slopes), sd).unwrap(),
+        position_bound(Force::new(&flat, &slopes), sd).unwrap(),
         0.02,
         4.0,
     );
-    let none = Channels::new(&flat[..], &flat[..]);
+    let none = Force::new(&flat[..], &flat[..]);
     assert_eq!(position_bound(none, sd), Err(DetectError::NoSignal));
     // A parabola: the middle is exact, an end is half a step off.
     slope(&[0.0, 1.0, 4.0, 9.0], 1.0, &mut slopes[..4]).unwrap();
@@ -140,7 +140,7 @@ fn position_bound_of_a_straight_slope() {
 fn a_shift_without_signal_exceeds_what_is_not_above_zero() {
     // Template (0, 1) one sample before the record's end: nothing overlaps, so Θ = 0 for certain.
     let template = [0.0, 1.0];
-    let channels = Channels::new(&template[..], &[0.0, 0.0]);
+    let channels = Force::new(&template[..], &[0.0, 0.0]);
     let scan = Scan::new(3, channels, UNIT).unwrap();
     let (mut gamma, mut angle) = ([0.0; 1], [0.0; 1]);
     let law = MaximumLaw::new(&scan, 2, &mut gamma, &mut angle).unwrap();
@@ -173,7 +173,7 @@ fn the_threshold_is_found_wherever_it_lies() {
             (0.999_999_999, -5.997_807_015_007_686_7),
         ] {
             let template = [gamma];
-            let channels = Channels::new(&template[..], &[0.0]);
+            let channels = Force::new(&template[..], &[0.0]);
             let scan = Scan::new(1, channels, UNIT).unwrap();
             let (mut gammas, mut angle) = ([0.0; 1], [0.0; 1]);
             let law = MaximumLaw::new(&scan, 0, &mut gammas, &mut angle).unwrap();

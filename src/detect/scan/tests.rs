@@ -8,11 +8,11 @@ const TEMPLATE: [f64; 3] = [1.0, 2.0, 1.0];
 const NOTHING: [f64; 5] = [0.0; 5];
 
 fn scan() -> Scan<'static> {
-    let template = Channels::new(&NOTHING[..3], &TEMPLATE);
-    Scan::new(5, template, Channels::new(1.0, 0.5)).unwrap()
+    let template = Force::new(&NOTHING[..3], &TEMPLATE);
+    Scan::new(5, template, Force::new(1.0, 0.5)).unwrap()
 }
 
-const RESIDUAL: Channels<&[f64]> = Channels::new(&RECORD, &RECORD);
+const RESIDUAL: Force<&[f64]> = Force::new(&RECORD, &RECORD);
 
 /// Σ rΔ − ½ΣΔ² over the overlap; over s² = ¼ it is four times that.
 const BY_HAND: [(isize, f64, f64); 7] = [
@@ -112,12 +112,12 @@ fn covariance_of_two_shifts() {
 // Verifies: DET-005, DET-006, DET-007.
 #[test]
 fn scans_that_cannot_be_are_refused() {
-    let template: Channels<&[f64]> = Channels::new(&TEMPLATE, &TEMPLATE);
-    let sd = Channels::new(1.0, 1.0);
+    let template: Force<&[f64]> = Force::new(&TEMPLATE, &TEMPLATE);
+    let sd = Force::new(1.0, 1.0);
     assert!(Scan::new(2, template, sd).is_err());
-    assert!(Scan::new(5, Channels::new(&TEMPLATE, &TEMPLATE[..2]), sd).is_err());
-    assert!(Scan::new(5, Channels::new(&[], &[]), sd).is_err());
-    assert!(Scan::new(5, template, Channels::new(1.0, 0.0)).is_err());
+    assert!(Scan::new(5, Force::new(&TEMPLATE, &TEMPLATE[..2]), sd).is_err());
+    assert!(Scan::new(5, Force::new(&[], &[]), sd).is_err());
+    assert!(Scan::new(5, template, Force::new(1.0, 0.0)).is_err());
     let scan = Scan::new(5, template, sd).unwrap();
     let mut bad = RECORD;
     bad[4] = f64::NAN;
@@ -126,16 +126,16 @@ fn scans_that_cannot_be_are_refused() {
         index: 4,
     });
     // The NaN lies where this template is not: the record is refused all the same.
-    assert_eq!(scan.at(Channels::new(&RECORD, &bad), 0), expected);
-    let short = Channels::new(&RECORD[..4], &RECORD);
+    assert_eq!(scan.at(Force::new(&RECORD, &bad), 0), expected);
+    let short = Force::new(&RECORD[..4], &RECORD);
     assert!(scan.maximum(short, 0..=1).is_err());
 }
 
 // Verifies: DET-050, DET-052, DET-055.
 #[test]
 fn noise_that_is_no_power_of_two_counts_by_its_square() {
-    let template = Channels::new(&TEMPLATE[..], &TEMPLATE);
-    let scan = Scan::new(5, template, Channels::new(0.3, 0.7)).unwrap();
+    let template = Force::new(&TEMPLATE[..], &TEMPLATE);
+    let scan = Scan::new(5, template, Force::new(0.3, 0.7)).unwrap();
     assert_eq!(scan.samples(), 5);
     let inverse = 1.0 / 0.09 + 1.0 / 0.49;
     for (shift, quarter, energy) in BY_HAND {

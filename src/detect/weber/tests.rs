@@ -4,15 +4,15 @@ use super::super::theta_of_record;
 use super::*;
 use crate::stats::check::assert_near;
 
-const OBSERVED: Channels<&[f64]> = Channels::new(&[0.1, 0.5, -0.2], &[1.7, 1.9, 1.3]);
-const F0: Channels<&[f64]> = Channels::new(&[0.0, 0.1, 0.2], &[1.6, 1.5, 1.4]);
-const F1: Channels<&[f64]> = Channels::new(&[0.3, -0.2, 0.25], &[1.94, 1.8, 1.55]);
-const NOISE: Channels<WeberNoise> = Channels {
-    x: WeberNoise {
+const OBSERVED: Force<&[f64]> = Force::new(&[0.1, 0.5, -0.2], &[1.7, 1.9, 1.3]);
+const F0: Force<&[f64]> = Force::new(&[0.0, 0.1, 0.2], &[1.6, 1.5, 1.4]);
+const F1: Force<&[f64]> = Force::new(&[0.3, -0.2, 0.25], &[1.94, 1.8, 1.55]);
+const NOISE: Force<WeberNoise> = Force {
+    lateral: WeberNoise {
         floor: 0.07,
         fraction: 0.2,
     },
-    y: WeberNoise {
+    normal: WeberNoise {
         floor: 0.1,
         fraction: 0.125,
     },
@@ -56,10 +56,10 @@ fn exchanging_the_hypotheses_changes_the_sign() {
 #[test]
 fn what_cannot_be_judged_is_refused() {
     let names = ["observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y"];
-    let all = [OBSERVED.x, OBSERVED.y, F0.x, F0.y, F1.x, F1.y];
+    let all = [OBSERVED.lateral, OBSERVED.normal, F0.lateral, F0.normal, F1.lateral, F1.normal];
     let judge = |series: [&[f64]; 6]| {
         let [ox, oy, ax, ay, bx, by] = series;
-        let channels = |x, y| Channels { x, y };
+        let channels = |x, y| Force { lateral: x, normal: y };
         theta_weber(channels(ox, oy), channels(ax, ay), channels(bx, by), NOISE).unwrap_err()
     };
     for (position, what) in names.into_iter().enumerate() {
@@ -77,8 +77,8 @@ fn what_cannot_be_judged_is_refused() {
         (f64::NAN, 0.1),
         (0.1, f64::INFINITY),
     ] {
-        let noise = Channels {
-            x: WeberNoise {
+        let noise = Force {
+            lateral: WeberNoise {
                 floor: noise.0,
                 fraction: noise.1,
             },
@@ -87,10 +87,10 @@ fn what_cannot_be_judged_is_refused() {
         assert!(theta_weber(OBSERVED, F0, F1, noise).is_err());
         // Nor where every force is so far from 0 that its noise has a finite size without the floor.
         let [here, there] = [[1.0; 3], [2.0; 3]];
-        let [f0, f1] = [&here, &there].map(|force| Channels::new(&force[..], &force[..]));
+        let [f0, f1] = [&here, &there].map(|force| Force::new(&force[..], &force[..]));
         assert!(theta_weber(f0, f0, f1, noise).is_err());
     }
-    let far = Channels::new(&[1e200, 0.0, 0.0][..], F0.y);
+    let far = Force::new(&[1e200, 0.0, 0.0][..], F0.normal);
     assert_eq!(
         theta_weber(far, F0, F1, NOISE),
         Err(DetectError::Overflow { what: "theta" })

@@ -3,17 +3,17 @@
 use super::{Answer, Arguments, Refused, check_rows};
 use crate::detect::coloured::{coloured_scratch, theta_coloured};
 use crate::detect::scan::Scan;
-use crate::detect::{Channels, MatchedFilter, theta_of_record};
+use crate::detect::{Force, MatchedFilter, theta_of_record};
 
 /// Most rows of a covariance: its factorisation takes n³/6 products.
 const MOST_ROWS: usize = 1000;
 /// Most products of a scan in each channel.
 const MOST_PRODUCTS: usize = 10_000_000;
 
-fn noise_sd(arguments: &mut Arguments) -> Result<Channels<f64>, Refused> {
-    Ok(Channels {
-        x: arguments.number("noise_sd_x")?,
-        y: arguments.number("noise_sd_y")?,
+fn noise_sd(arguments: &mut Arguments) -> Result<Force<f64>, Refused> {
+    Ok(Force {
+        lateral: arguments.number("noise_sd_x")?,
+        normal: arguments.number("noise_sd_y")?,
     })
 }
 
@@ -21,15 +21,15 @@ fn series(
     arguments: &mut Arguments,
     x: &'static str,
     y: &'static str,
-) -> Result<Channels<Vec<f64>>, Refused> {
-    Ok(Channels {
-        x: arguments.numbers(x)?,
-        y: arguments.numbers(y)?,
+) -> Result<Force<Vec<f64>>, Refused> {
+    Ok(Force {
+        lateral: arguments.numbers(x)?,
+        normal: arguments.numbers(y)?,
     })
 }
 
-fn slices(Channels { x, y }: &Channels<Vec<f64>>) -> Channels<&[f64]> {
-    Channels { x, y }
+fn slices(Force { lateral: x, normal: y }: &Force<Vec<f64>>) -> Force<&[f64]> {
+    Force { lateral: x, normal: y }
 }
 
 /// b, σ and γ of a template.
@@ -39,10 +39,10 @@ pub fn matched_filter(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let filter = MatchedFilter::new(slices(&template), noise_sd)?;
     let (b, sigma) = (filter.b(), filter.sigma());
     Ok(Answer::default()
-        .with("b_x", b.x)
-        .with("b_y", b.y)
-        .with("sigma_x", sigma.x)
-        .with("sigma_y", sigma.y)
+        .with("b_x", b.lateral)
+        .with("b_y", b.normal)
+        .with("sigma_x", sigma.lateral)
+        .with("sigma_y", sigma.normal)
         .with("gamma", filter.gamma()))
 }
 
@@ -55,8 +55,8 @@ pub fn theta(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let found = theta_of_record(slices(&observed), slices(&f0), slices(&f1), noise_sd)?;
     Ok(Answer::default()
         .with("theta", found.theta)
-        .with("y_x", found.y.x)
-        .with("y_y", found.y.y)
+        .with("y_x", found.y.lateral)
+        .with("y_y", found.y.normal)
         .with("gamma", found.gamma))
 }
 
@@ -91,7 +91,7 @@ pub fn scan(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let residual = series(arguments, "residual_x", "residual_y")?;
     let template = series(arguments, "template_x", "template_y")?;
     let noise_sd = noise_sd(arguments)?;
-    let (samples, length) = (residual.x.len(), template.x.len());
+    let (samples, length) = (residual.lateral.len(), template.lateral.len());
     if length.saturating_mul((samples + 1).saturating_sub(length)) > MOST_PRODUCTS {
         return Err(Refused::range(format_args!(
             "template_x of {length} samples on {samples} takes more than {MOST_PRODUCTS} products"

@@ -70,7 +70,7 @@ pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refused> {
 }
 
 /// The entries of a table, both components alike.
-fn forces(rows: &[Vec<Bits>], depths: usize, laterals: usize) -> Result<Vec<Force>, Refused> {
+fn forces(rows: &[Vec<Bits>], depths: usize, laterals: usize) -> Result<Vec<Force<f32>>, Refused> {
     if rows.len() != depths || rows.iter().any(|row| row.len() != laterals) {
         return Err(Refused::argument(format_args!(
             "table_bits is expected to have {depths} rows of {laterals} entries"

@@ -15,7 +15,7 @@ struct Cell {
 impl Cell {
     /// The force on the hand is (F_x, −F_n) along (x, d): by Stokes the work around a part is the integral of
     /// ∂F_x/∂d + ∂F_n/∂x, which is linear in the cell and has its extremes at the corners.
-    fn new(depths: [f32; 2], laterals: [f32; 2], forces: [[Force; 2]; 2]) -> Cell {
+    fn new(depths: [f32; 2], laterals: [f32; 2], forces: [[Force<f32>; 2]; 2]) -> Cell {
         let difference = |a: f32, b: f32| f64::from(b) - f64::from(a);
         let [height, width] = [depths, laterals].map(|[a, b]| difference(a, b));
         let [above, below] = forces;

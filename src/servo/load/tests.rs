@@ -185,7 +185,7 @@ fn the_stiffness_is_the_steepest_slope_by_differences() {
     for depths in knots {
         for place in 0..16 {
             for [lateral, normal] in [[8.0, 0.5], [-1.0, 4.0]] {
-                let mut forces: Vec<Force> = (0..16u8)
+                let mut forces: Vec<Force<f32>> = (0..16u8)
                     .map(|k| Force {
                         lateral: f32::from(k * 7 % 5) / 8.0,
                         normal: f32::from(k * 3 % 7) / 8.0,
@@ -431,7 +431,7 @@ fn distance(map: &ForceTable, depth_at: f32, lateral_at: f32, reach: f32) -> f64
             .map(|&knot| f64::from(knot))
             .collect();
         let columns = map.laterals().len();
-        let matrix = |component: fn(&Force) -> f32| {
+        let matrix = |component: fn(&Force<f32>) -> f32| {
             let values = table
                 .forces()
                 .iter()
@@ -446,7 +446,7 @@ fn distance(map: &ForceTable, depth_at: f32, lateral_at: f32, reach: f32) -> f64
         .unwrap();
     let found = table.force(depth, lateral);
     let of = |found: f32, expected: f64| (f64::from(found) - expected).abs();
-    of(found.lateral, expected.x).max(of(found.normal, expected.y))
+    of(found.lateral, expected.lateral).max(of(found.normal, expected.normal))
 }
 
 /// The unit of the bounds: 2⁻²⁴ of the smallest power of two that no entry exceeds.

@@ -11,7 +11,7 @@ use palpate::detect::position::{MaximumLaw, position_bound, slope};
 use palpate::detect::scan::Scan;
 use palpate::detect::simulate::count_false_alarms;
 use palpate::detect::weber::{WeberNoise, theta_weber};
-use palpate::detect::{Channels, neyman_pearson_false_alarm_threshold, theta_of_record};
+use palpate::detect::{Force, neyman_pearson_false_alarm_threshold, theta_of_record};
 use palpate::stats::binomial::clopper_pearson;
 use palpate::stats::normal::{cdf, upper_tail};
 
@@ -25,20 +25,20 @@ pub(super) const CHECKS: &[Check] = &[
     Check::new("weber_tail_h1", |draw| weber(draw, true, 640)),
 ];
 
-const UNIT: Channels<f64> = Channels { x: 1.0, y: 1.0 };
+const UNIT: Force<f64> = Force { lateral: 1.0, normal: 1.0 };
 
 /// A bump and its slope, `length` samples, with that γ in noise of 1 N.
-fn template(length: usize, width: f64, gamma: f64) -> Channels<Vec<f64>> {
+fn template(length: usize, width: f64, gamma: f64) -> Force<Vec<f64>> {
     let position = |i: usize| (i as f64 - (length - 1) as f64 / 2.0) / width;
     let bump = |i: usize| libm::exp(-0.5 * position(i) * position(i));
-    let mut template = Channels {
-        x: (0..length)
+    let mut template = Force {
+        lateral: (0..length)
             .map(|i| position(i) * bump(i))
             .collect::<Vec<_>>(),
-        y: (0..length).map(bump).collect::<Vec<_>>(),
+        normal: (0..length).map(bump).collect::<Vec<_>>(),
     };
-    let energy: f64 = template.x.iter().chain(&template.y).map(|t| t * t).sum();
-    for sample in template.x.iter_mut().chain(&mut template.y) {
+    let energy: f64 = template.lateral.iter().chain(&template.normal).map(|t| t * t).sum();
+    for sample in template.lateral.iter_mut().chain(&mut template.normal) {
         *sample *= gamma / energy.sqrt();
     }
     template
@@ -74,7 +74,7 @@ fn theta_max_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
 /// record of 160 samples and lies at `place`.
 fn position_errors(
     draw: &Draw<'_>,
-    template: &Channels<Vec<f64>>,
+    template: &Force<Vec<f64>>,
     place: usize,
 ) -> Outcome<Vec<f64>> {
     const SAMPLES: usize = 160;
@@ -84,11 +84,11 @@ fn position_errors(
     let errors = (0..draw.trials()).map(|trial| {
         generator.normals(trial, 0, &mut deviates);
         let (x, y) = deviates.split_at_mut(SAMPLES);
-        for i in 0..template.x.len() {
-            x[place + i] += template.x[i];
-            y[place + i] += template.y[i];
+        for i in 0..template.lateral.len() {
+            x[place + i] += template.lateral[i];
+            y[place + i] += template.normal[i];
         }
-        let found = scan.maximum(Channels { x, y }, scan.full_shifts())?;
+        let found = scan.maximum(Force { lateral: x, normal: y }, scan.full_shifts())?;
         Ok(found.refined_shift - 60.0)
     });
     errors.collect()
@@ -101,12 +101,12 @@ fn position_error(draw: &Draw<'_>) -> Outcome<bool> {
         _ => 25.0,
     };
     let template = template(61, 6.0, gamma);
-    let mut slopes = Channels {
-        x: vec![0.0; 61],
-        y: vec![0.0; 61],
+    let mut slopes = Force {
+        lateral: vec![0.0; 61],
+        normal: vec![0.0; 61],
     };
-    slope(&template.x, 1.0, &mut slopes.x)?;
-    slope(&template.y, 1.0, &mut slopes.y)?;
+    slope(&template.lateral, 1.0, &mut slopes.lateral)?;
+    slope(&template.normal, 1.0, &mut slopes.normal)?;
     let sd = position_bound(view(&slopes), UNIT)?;
     let place = match draw.defect {
         "template_shifted" => 61,
@@ -126,7 +126,7 @@ const CUT: usize = 61;
 
 /// The vertex of the sums of DET-050 over the shifts 0 to 14, in plain arithmetic. `record` holds x, then y. Where the overlap is
 /// forgotten, each shift has the energy of the whole template.
-fn plain_place(template: &Channels<Vec<f64>>, record: &[f64], overlap_forgotten: bool) -> f64 {
+fn plain_place(template: &Force<Vec<f64>>, record: &[f64], overlap_forgotten: bool) -> f64 {
     let (x, y) = record.split_at(CUT);
     let theta = |shift: usize| -> f64 {
         let kept = if overlap_forgotten { CUT } else { CUT - shift };
@@ -135,7 +135,7 @@ fn plain_place(template: &Channels<Vec<f64>>, record: &[f64], overlap_forgotten:
             let energy: f64 = template[..kept].iter().map(|t| t * t).sum();
             pairs.map(|(t, r)| t * r).sum::<f64>() - 0.5 * energy
         };
-        of_channel(&template.x, x) + of_channel(&template.y, y)
+        of_channel(&template.lateral, x) + of_channel(&template.normal, y)
     };
     let thetas: Vec<f64> = (0..15).map(theta).collect();
     let larger = |best: usize, k| if thetas[k] > thetas[best] { k } else { best };
@@ -150,11 +150,11 @@ fn cut_position_error(draw: &Draw<'_>) -> Outcome<bool> {
     const PLACE: usize = 6;
     const STEP: f64 = 1e-3;
     let whole = template(CUT + 2 * PLACE, 20.0, 1000.0);
-    let template = Channels {
-        x: whole.x[PLACE..][..CUT].to_vec(),
-        y: whole.y[PLACE..][..CUT].to_vec(),
+    let template = Force {
+        lateral: whole.lateral[PLACE..][..CUT].to_vec(),
+        normal: whole.normal[PLACE..][..CUT].to_vec(),
     };
-    let signal = [&whole.x[..CUT], &whole.y[..CUT]].concat();
+    let signal = [&whole.lateral[..CUT], &whole.normal[..CUT]].concat();
     let mean = plain_place(&template, &signal, false);
     let slope = |i: usize| {
         let mut moved = signal.clone();
@@ -172,7 +172,7 @@ fn cut_position_error(draw: &Draw<'_>) -> Outcome<bool> {
             return Ok(plain_place(&template, &record, true));
         }
         let (x, y) = record.split_at(CUT);
-        Ok(scan.maximum(Channels { x, y }, 0..=14)?.refined_shift)
+        Ok(scan.maximum(Force { lateral: x, normal: y }, 0..=14)?.refined_shift)
     });
     let places = places.collect::<Outcome<Vec<f64>>>()?;
     variance_rejects(&places, Law { mean, sd }, draw.row.alpha)
@@ -226,17 +226,17 @@ fn weber_tail(inclusion: bool, eta: f64) -> Outcome<f64> {
 
 /// θ of one observed force, by the detector or by one with a defect.
 fn weber_theta(observed: f64, defect: &str) -> Outcome<f64> {
-    let channels = |y| Channels { x: &[0.0][..], y };
+    let channels = |y| Force { lateral: &[0.0][..], normal: y };
     let record = channels(core::slice::from_ref(&observed));
     let (f0, f1) = (channels(&FORCE[..1]), channels(&FORCE[1..]));
     if defect == "constant_noise_presumed" {
-        let sd = Channels {
-            x: 1.0,
-            y: WEBER.sd(FORCE[0]),
+        let sd = Force {
+            lateral: 1.0,
+            normal: WEBER.sd(FORCE[0]),
         };
         return Ok(theta_of_record(record, f0, f1, sd)?.theta);
     }
-    let theta = theta_weber(record, f0, f1, Channels { x: WEBER, y: WEBER })?;
+    let theta = theta_weber(record, f0, f1, Force { lateral: WEBER, normal: WEBER })?;
     Ok(match defect {
         "logarithm_left_out" => theta - libm::log(WEBER.sd(FORCE[0]) / WEBER.sd(FORCE[1])),
         _ => theta,

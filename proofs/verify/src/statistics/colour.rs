@@ -8,7 +8,7 @@ use super::checks::{Law, mean_rejects, variance_rejects};
 use super::{Check, Draw, Outcome};
 use palpate::detect::coloured::{ColouredStatistic, coloured_scratch, theta_coloured};
 use palpate::detect::stationary::{banded_scratch, theta_banded, theta_stationary};
-use palpate::detect::{Channels, DetectError, MatchedFilter};
+use palpate::detect::{Force, DetectError, MatchedFilter};
 
 /// DET-040, DET-041; DET-044; DET-045.
 pub(super) const CHECKS: &[Check] = &[
@@ -64,10 +64,10 @@ type Detector = fn(&[f64]) -> Result<ColouredStatistic, DetectError>;
 /// A source of noise: 40 independent deviates → 12 samples.
 type Noise = fn(&[f64]) -> [f64; 2 * SAMPLES];
 
-fn channels(values: &[f64]) -> Channels<&[f64]> {
-    Channels {
-        x: &values[..SAMPLES],
-        y: &values[SAMPLES..],
+fn channels(values: &[f64]) -> Force<&[f64]> {
+    Force {
+        lateral: &values[..SAMPLES],
+        normal: &values[SAMPLES..],
     }
 }
 
@@ -107,9 +107,9 @@ fn feedback(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
 
 fn feedback_detector(residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
     let lags: [f64; SAMPLES] = std::array::from_fn(|lag| 0.04 / 0.36 * libm::pow(0.8, lag as f64));
-    let lags = Channels {
-        x: &lags[..],
-        y: &lags[..],
+    let lags = Force {
+        lateral: &lags[..],
+        normal: &lags[..],
     };
     theta_stationary(
         channels(residual),
@@ -129,9 +129,9 @@ fn moving_average(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
 
 fn moving_average_detector(residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
     let lags = [0.04 + 0.0256, 0.032];
-    let lags = Channels {
-        x: &lags[..],
-        y: &lags[..],
+    let lags = Force {
+        lateral: &lags[..],
+        normal: &lags[..],
     };
     let mut scratch = [0.0; banded_scratch(2)];
     theta_banded(channels(residual), channels(&TEMPLATE), lags, &mut scratch)
@@ -140,7 +140,7 @@ fn moving_average_detector(residual: &[f64]) -> Result<ColouredStatistic, Detect
 /// θ of a detector that takes each noise for white with its own variance.
 fn without_whitening(residual: &[f64], variance: f64) -> Result<f64, DetectError> {
     let sd = libm::sqrt(variance);
-    let filter = MatchedFilter::new(channels(&TEMPLATE), Channels { x: sd, y: sd })?;
+    let filter = MatchedFilter::new(channels(&TEMPLATE), Force { lateral: sd, normal: sd })?;
     Ok(filter.statistic(channels(residual))?.theta)
 }
 

@@ -9,7 +9,7 @@ use super::checks::{
 use super::{Check, Draw, Outcome, view};
 use palpate::detect::simulate::{Simulation, draw_theta};
 use palpate::detect::{
-    Channels, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold,
+    Force, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold,
 };
 
 /// DET-012, DET-013, DET-015, DET-024, DET-025, DET-026, DET-113; the last one DET-114.
@@ -45,38 +45,38 @@ const TRAVERSE: Series = (traverse, 1);
 
 /// A pair of hypotheses and their noise.
 struct Setting {
-    f0: Channels<Vec<f64>>,
-    template: Channels<Vec<f64>>,
-    noise_sd: Channels<f64>,
+    f0: Force<Vec<f64>>,
+    template: Force<Vec<f64>>,
+    noise_sd: Force<f64>,
 }
 
 /// Eight coarse samples, both channels: γ = 1.91.
 fn coarse() -> Outcome<Setting> {
     Ok(Setting {
-        f0: Channels {
-            x: vec![0.0; 8],
-            y: vec![1.48; 8],
+        f0: Force {
+            lateral: vec![0.0; 8],
+            normal: vec![1.48; 8],
         },
-        template: Channels {
-            x: vec![0.02, 0.09, 0.16, 0.12, -0.12, -0.16, -0.09, -0.02],
-            y: vec![0.03, 0.10, 0.22, 0.33, 0.33, 0.22, 0.10, 0.03],
+        template: Force {
+            lateral: vec![0.02, 0.09, 0.16, 0.12, -0.12, -0.16, -0.09, -0.02],
+            normal: vec![0.03, 0.10, 0.22, 0.33, 0.33, 0.22, 0.10, 0.03],
         },
-        noise_sd: Channels { x: 0.25, y: 0.4 },
+        noise_sd: Force { lateral: 0.25, normal: 0.4 },
     })
 }
 
 /// One lateral sample: γ = ½.
 fn single() -> Outcome<Setting> {
     Ok(Setting {
-        f0: Channels {
-            x: vec![0.1],
-            y: vec![1.5],
+        f0: Force {
+            lateral: vec![0.1],
+            normal: vec![1.5],
         },
-        template: Channels {
-            x: vec![-0.05],
-            y: vec![0.0],
+        template: Force {
+            lateral: vec![-0.05],
+            normal: vec![0.0],
         },
-        noise_sd: Channels { x: 0.1, y: 0.1 },
+        noise_sd: Force { lateral: 0.1, normal: 0.1 },
     })
 }
 
@@ -93,19 +93,19 @@ fn traverse() -> Outcome<Setting> {
     let (f0, f1) = (sampled(TRAVERSE_WITHOUT)?, sampled(TRAVERSE_WITH)?);
     let difference =
         |(f0, f1): (&Vec<f64>, &Vec<f64>)| f0.iter().zip(f1).map(|(f0, f1)| f1 - f0).collect();
-    let template = Channels {
-        x: difference((&f0.x, &f1.x)),
-        y: difference((&f0.y, &f1.y)),
+    let template = Force {
+        lateral: difference((&f0.lateral, &f1.lateral)),
+        normal: difference((&f0.normal, &f1.normal)),
     };
     Ok(Setting {
         f0,
         template,
-        noise_sd: Channels { x: 0.5, y: 0.6615 },
+        noise_sd: Force { lateral: 0.5, normal: 0.6615 },
     })
 }
 
 /// The forces of a file, interpolated linearly between its positions.
-fn sampled(file: &str) -> Outcome<Channels<Vec<f64>>> {
+fn sampled(file: &str) -> Outcome<Force<Vec<f64>>> {
     let mut rows: Vec<[f64; 2]> = Vec::new();
     for line in file.lines().skip(1) {
         // depth_mm, lateral_mm, normal_force_n, lateral_force_n
@@ -127,22 +127,22 @@ fn sampled(file: &str) -> Outcome<Channels<Vec<f64>>> {
         };
         (0..=samples).map(sample).collect()
     };
-    Ok(Channels {
-        x: channel(0),
-        y: channel(1),
+    Ok(Force {
+        lateral: channel(0),
+        normal: channel(1),
     })
 }
 
-fn forces(setting: &Setting, inclusion: bool) -> Channels<Vec<f64>> {
+fn forces(setting: &Setting, inclusion: bool) -> Force<Vec<f64>> {
     let force = |f0: &[f64], template: &[f64]| {
         f0.iter()
             .zip(template)
             .map(|(f0, t)| f0 + if inclusion { *t } else { 0.0 })
             .collect()
     };
-    Channels {
-        x: force(&setting.f0.x, &setting.template.x),
-        y: force(&setting.f0.y, &setting.template.y),
+    Force {
+        lateral: force(&setting.f0.lateral, &setting.template.lateral),
+        normal: force(&setting.f0.normal, &setting.template.normal),
     }
 }
 
@@ -162,7 +162,7 @@ fn sample(
         draw.generator(stream + step * draw.replicate),
     )?;
     let force = forces(&setting, inclusion);
-    let mut residual = vec![0.0; 2 * setting.f0.x.len()];
+    let mut residual = vec![0.0; 2 * setting.f0.lateral.len()];
     let thetas = (0..draw.trials()).map(|trial| {
         let statistic = simulation.trial(trial, view(&force), &mut residual)?;
         Ok(if draw.defect.is_empty() {
@@ -181,15 +181,15 @@ fn with_defect(setting: &Setting, inclusion: bool, residual: &[f64], defect: &st
     let Setting {
         template, noise_sd, ..
     } = setting;
-    let (x, y) = residual.split_at(template.x.len());
+    let (x, y) = residual.split_at(template.lateral.len());
     let (template_x, template_y) = match defect {
-        "channels_swapped" => (&template.y, &template.x),
-        _ => (&template.x, &template.y),
+        "channels_swapped" => (&template.normal, &template.lateral),
+        _ => (&template.lateral, &template.normal),
     };
     let mut theta = 0.0;
     for (residual, template, truth, sd) in [
-        (x, template_x, &template.x, noise_sd.x),
-        (y, template_y, &template.y, noise_sd.y),
+        (x, template_x, &template.lateral, noise_sd.lateral),
+        (y, template_y, &template.normal, noise_sd.normal),
     ] {
         for (i, (&residual, &truth)) in residual.iter().zip(truth).enumerate() {
             let template = match (defect, i) {
@@ -245,8 +245,8 @@ fn coarse_noise_variance(draw: &Draw<'_>) -> Outcome<bool> {
     for trial in 0..draw.trials() {
         simulation.trial(trial, f0, &mut residual)?;
         let (x, y) = residual.split_at(8);
-        noise.extend(x.iter().map(|x| excess * x / setting.noise_sd.x));
-        noise.extend(y.iter().map(|y| excess * y / setting.noise_sd.y));
+        noise.extend(x.iter().map(|x| excess * x / setting.noise_sd.lateral));
+        noise.extend(y.iter().map(|y| excess * y / setting.noise_sd.normal));
     }
     let law = Law { mean: 0.0, sd: 1.0 };
     variance_rejects(&noise, law, draw.row.alpha)

@@ -32,7 +32,7 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 pub use ledger::Row;
-use palpate::detect::Channels;
+use palpate::detect::Force;
 use palpate::stats::random::Generator;
 
 /// The seed of the battery in the tests, whose result is therefore always the same.
@@ -306,10 +306,10 @@ impl Check {
     }
 }
 
-fn view(channels: &Channels<Vec<f64>>) -> Channels<&[f64]> {
-    Channels {
-        x: &channels.x,
-        y: &channels.y,
+fn view(channels: &Force<Vec<f64>>) -> Force<&[f64]> {
+    Force {
+        lateral: &channels.lateral,
+        normal: &channels.normal,
     }
 }
 
