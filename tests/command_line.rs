@@ -423,16 +423,19 @@ fn a_run_of_own_asymmetric_phantoms_shows_them() {
 fn half_a_map_of_an_asymmetric_phantom_is_not_completed() {
     let here = Place::new("half");
     here.write("own.toml", ASYMMETRIC);
-    for (phantom, file) in [("own.toml", "own.json"), ("none", "none.json")] {
+    let (layers, _) = ASYMMETRIC.split_once("[[inclusion]]").unwrap();
+    here.write("none.toml", layers);
+    for name in ["own", "none"] {
         let line = format!(
-            "solve --phantom {phantom} --format json --depths-mm 4 --laterals-mm 0,2 --mesh-mm 3"
+            "solve --phantom {name}.toml --format json --depths-mm 4 --laterals-mm 0,2 --mesh-mm 3"
         );
-        here.write(file, here.succeed(&line));
+        here.write(&format!("{name}.json"), here.succeed(&line));
     }
     let maps = "--inclusion 2.6=own.json --inclusion 4.6=own.json";
     let line = format!("psychophysics --reference none.json --sweep-mm 2 {maps}");
-    let told = "own.json: phantom \"asymmetric\" is not its own mirror image";
-    assert!(here.refused(&line).starts_with(told));
+    let told = "inclusion 2.6: phantom \"asymmetric\" is not its own mirror image";
+    let said = here.refused(&line);
+    assert!(said.starts_with(told), "{said}");
 }
 
 // Verifies: CLI-033.

@@ -130,8 +130,7 @@ pub enum DeviceError {
     },
 }
 
-/// What a refusal of the system says of the device.
-#[cfg(feature = "std")]
+/// What an error says of the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DeviceState {
     /// It is gone, as in [`DeviceError::Gone`].
@@ -143,24 +142,25 @@ pub enum DeviceState {
 }
 
 impl DeviceError {
+    /// What it says of the device.
+    fn state(&self) -> DeviceState {
+        match self {
+            DeviceError::Gone => DeviceState::Gone,
+            DeviceError::Stalled => DeviceState::Stalled,
+            #[cfg(feature = "std")]
+            DeviceError::System { state, .. } => *state,
+            _ => DeviceState::There,
+        }
+    }
+
     /// Whether the device is gone, so that nothing more can be sent to it.
     pub fn is_gone(&self) -> bool {
-        match self {
-            DeviceError::Gone => true,
-            #[cfg(feature = "std")]
-            DeviceError::System { state, .. } => *state == DeviceState::Gone,
-            _ => false,
-        }
+        self.state() == DeviceState::Gone
     }
 
     /// Whether it took seconds to fail, so that asking again would hold up the loop.
     pub fn is_stalled(&self) -> bool {
-        match self {
-            DeviceError::Stalled => true,
-            #[cfg(feature = "std")]
-            DeviceError::System { state, .. } => *state == DeviceState::Stalled,
-            _ => false,
-        }
+        self.state() == DeviceState::Stalled
     }
 }
 

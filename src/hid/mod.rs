@@ -32,9 +32,7 @@ mod tests;
 pub mod timing;
 mod units;
 
-#[cfg(feature = "std")]
-pub use device::DeviceState;
-pub use device::{DeviceError, HapticDevice, Received};
+pub use device::{DeviceError, DeviceState, HapticDevice, Received};
 pub use playback::{Counters, Cycle, Playback, QUEUE};
 #[cfg(feature = "std")]
 pub use recording::{RecordedCycle, Recording};

@@ -44,7 +44,7 @@ pub struct Felt {
 /// let map = ForceTable::new(depths, laterals, matrix(1.0), matrix(0.0))?;
 /// let loaded = LoadedTable::new(&map)?;
 /// let hand = Trajectory::probing(0.003, 0.008, Duration::from_secs(1));
-/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Duration::ZERO, vec![]);
+/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, vec![]);
 /// let limits = Limits::new(4.0, 0.05, 0.5, 20)?;
 /// let (half, second) = (Duration::from_millis(500), Duration::from_secs(1));
 /// let felt = present(device, loaded.table()?, limits, half, second)?;

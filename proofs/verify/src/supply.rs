@@ -16,6 +16,9 @@ pub const LOCK: &str = include_str!("../../../Cargo.lock");
 /// What the program itself asks for: the lock file has that of its tests beside it.
 const MANIFEST: &str = include_str!("../../../Cargo.toml");
 
+/// The program whose components these are.
+const PROGRAM: &str = "palpate";
+
 /// Licence, layer, role and reason of each component.
 const TABLE: &str = include_str!("../../../supply/components.csv");
 
@@ -147,7 +150,7 @@ fn listed() -> Result<(Vec<Component>, Vec<String>), SupplyError> {
     let manifest: Manifest = toml::from_str(MANIFEST).map_err(broken)?;
     let names: BTreeSet<&str> = rows.iter().map(|row| first_word(row.name)).collect();
     for package in &mut lock.package {
-        let program = package.name == env!("CARGO_PKG_NAME");
+        let program = package.name == PROGRAM;
         package.dependencies.retain(|asked| {
             let asked = first_word(asked);
             names.contains(asked) && (!program || manifest.dependencies.contains_key(asked))
@@ -177,7 +180,7 @@ fn listed() -> Result<(Vec<Component>, Vec<String>), SupplyError> {
         });
     }
     components.sort_by(|a, b| (a.name, &a.version).cmp(&(b.name, &b.version)));
-    let program = packages[env!("CARGO_PKG_NAME")];
+    let program = packages[PROGRAM];
     Ok((components, program.dependencies.clone()))
 }
 
@@ -185,7 +188,7 @@ fn listed() -> Result<(Vec<Component>, Vec<String>), SupplyError> {
 /// `name version` where it holds several.
 fn reached(lock: &Lock) -> Result<BTreeMap<&str, &Package>, SupplyError> {
     let mut found = BTreeMap::new();
-    let mut open = vec![env!("CARGO_PKG_NAME")];
+    let mut open = vec![PROGRAM];
     while let Some(wanted) = open.pop() {
         let fits = |package: &&Package| {
             package.name == wanted || format!("{} {}", package.name, package.version) == wanted
@@ -245,7 +248,7 @@ fn rows(table: &'static str) -> Result<Vec<Row>, SupplyError> {
 pub fn sbom() -> Result<Value, SupplyError> {
     let (components, direct) = listed()?;
     let build = Build::THIS;
-    let program = purl(env!("CARGO_PKG_NAME"), build.version);
+    let program = purl(PROGRAM, build.version);
     // What the lock file may call it.
     let references: BTreeMap<String, String> = (components.iter())
         .flat_map(|Component { name, version, .. }| {
@@ -276,9 +279,8 @@ pub fn sbom() -> Result<Value, SupplyError> {
             "component": {
                 "type": "application",
                 "bom-ref": program,
-                "name": env!("CARGO_PKG_NAME"),
+                "name": PROGRAM,
                 "version": build.version,
-                "description": env!("CARGO_PKG_DESCRIPTION"),
                 "licenses": [{ "expression": env!("CARGO_PKG_LICENSE") }],
                 "purl": program,
                 "properties": [

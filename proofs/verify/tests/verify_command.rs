@@ -131,7 +131,7 @@ fn a_folder_that_cannot_be_made_is_told_before_the_work() {
         .unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        text(&output.stderr).starts_with("palpate: make folder "),
+        text(&output.stderr).starts_with("palpate-verify: make folder "),
         "{output:?}"
     );
 }

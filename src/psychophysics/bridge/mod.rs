@@ -99,7 +99,7 @@ pub fn bridge(
         let map = sweep(map, half_sweep);
         let signal = map.and_then(|map| Signal::new(&reference, &map, probe_depth));
         let name = &table.inclusions()[column].name;
-        signals.push(signal.map_err(|error| error.in_file(name))?);
+        signals.push(signal.map_err(|error| error.in_file(format!("inclusion {name}")))?);
         columns.push(column);
     }
     let laterals = reference.laterals();

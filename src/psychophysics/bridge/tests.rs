@@ -340,7 +340,7 @@ fn what_does_not_fit_is_refused_or_noted() {
             .contains("\"3\" is no column of the table, expected one of 2.6, 4.6, 6.6, 8.6")
     );
     let other = map_over(&[4e-3], &[-1e-3, 0.0, 1e-3], |_| [1.0, 0.0]);
-    assert!(refused(&[("2.6", &a), ("4.6", &other)]).starts_with("4.6: "));
+    assert!(refused(&[("2.6", &a), ("4.6", &other)]).starts_with("inclusion 4.6: "));
     // In the order of the table, whatever that of the maps.
     let found = bridge(&table, &reference, &[("6.6", &b), ("2.6", &a)], None).unwrap();
     let names: Vec<_> = found.inclusions.iter().map(|i| i.name.as_str()).collect();
