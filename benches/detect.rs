@@ -7,7 +7,7 @@
 //! ```
 
 use palpate::detect::simulate::{Simulation, draw_theta};
-use palpate::detect::{Force, DetectError};
+use palpate::detect::{DetectError, Force};
 use palpate::stats::random::Generator;
 use std::time::Instant;
 
@@ -52,7 +52,10 @@ fn main() -> Result<(), DetectError> {
         Box::leak(Box::new(f1)),
         Box::leak(Box::new(template)),
     );
-    let noise_sd = Force { lateral: 3.0, normal: 3.0 };
+    let noise_sd = Force {
+        lateral: 3.0,
+        normal: 3.0,
+    };
     let generator = Generator::new(2026, 0);
     let simulation = Simulation::new(channels(f0), channels(template), noise_sd, generator)?;
     let mut scratch = vec![0.0; 2 * SAMPLES];

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use palpate::detect::assessment::assess;
-use palpate::detect::{Force, Decision};
+use palpate::detect::{Decision, Force};
 use palpate::force_map::{ForceMap, ForceTable};
 use palpate::stats::random::Generator;
 use serde_json::Value;
@@ -84,8 +84,8 @@ fn write_trace(path: &Path, forces: &[[f64; 3]], stream: u64) {
     let generator = Generator::new(20_261_121, stream);
     let mut text = String::from("# simulated\nposition_mm,normal_force_mn,lateral_force_n\n");
     for (i, [position, lateral, normal]) in (0..).zip(forces) {
-        let lateral = lateral + NOISE.x * generator.normal(0, i);
-        let normal = normal + NOISE.y * generator.normal(1, i);
+        let lateral = lateral + NOISE.lateral * generator.normal(0, i);
+        let normal = normal + NOISE.normal * generator.normal(1, i);
         text += &format!("{position},{:e},{lateral:e}\n", normal * 1e3);
     }
     fs::write(path, text).unwrap();
@@ -146,7 +146,10 @@ fn plain(trace: &str, shift: isize) -> (f64, f64) {
     let (without, with) = (sweep(none.forces()), sweep(inclusion.forces()));
     let observed = observed(&folder().join(trace));
     let (mut theta, mut energy) = (0.0, 0.0);
-    for (channel, observed, sd) in [(1, &observed.x, NOISE.x), (2, &observed.y, NOISE.y)] {
+    for (channel, observed, sd) in [
+        (1, &observed.lateral, NOISE.lateral),
+        (2, &observed.normal, NOISE.normal),
+    ] {
         for (i, observed) in observed.iter().enumerate() {
             let Some(j) = i.checked_add_signed(-shift).filter(|j| *j < with.len()) else {
                 continue;
@@ -161,7 +164,7 @@ fn plain(trace: &str, shift: isize) -> (f64, f64) {
 }
 
 fn view(channels: &Force<Vec<f64>>) -> Force<&[f64]> {
-    Force::new(&channels.x, &channels.y)
+    Force::new(&channels.lateral, &channels.normal)
 }
 
 #[track_caller]
@@ -191,7 +194,10 @@ fn theta_is_that_of_the_library_and_of_a_plain_sum() {
         let forces = |map: &ForceMap| {
             let row = map.row(0.003).unwrap();
             let (x, y) = (row.lateral_force.to_vec(), row.normal_force.to_vec());
-            Force { lateral: x, normal: y }
+            Force {
+                lateral: x,
+                normal: y,
+            }
         };
         let (f0, f1) = (forces(&none), forces(&inclusion));
         let (observed, f0, f1) = (view(&observed), view(&f0), view(&f1));
@@ -199,8 +205,8 @@ fn theta_is_that_of_the_library_and_of_a_plain_sum() {
         assert_near(number(&found, "theta"), library.statistic.theta);
         assert_near(number(&found, "false_alarm"), library.rates.false_alarm);
         assert_near(number(&found, "miss"), library.rates.miss);
-        assert_near(number(&found, "y_lateral_n"), library.statistic.y.x);
-        assert_near(number(&found, "y_normal_n"), library.statistic.y.y);
+        assert_near(number(&found, "y_lateral_n"), library.statistic.y.lateral);
+        assert_near(number(&found, "y_normal_n"), library.statistic.y.normal);
         let name = match decision {
             Decision::Inclusion => "inclusion",
             Decision::NoInclusion => "no_inclusion",
@@ -210,7 +216,7 @@ fn theta_is_that_of_the_library_and_of_a_plain_sum() {
             (decision, &name.into())
         );
         assert_eq!(number(&found, "depth_m"), 0.003);
-        assert_eq!(number(&found, "noise_sd_normal_n"), NOISE.y);
+        assert_eq!(number(&found, "noise_sd_normal_n"), NOISE.normal);
     }
 }
 
@@ -241,8 +247,8 @@ fn a_record_that_fits_neither_map_is_reported() {
             .iter()
             .enumerate()
             .map(|(i, [_, lateral, normal])| {
-                ((observed.x[i] - lateral) / NOISE.x).powi(2)
-                    + ((observed.y[i] - normal) / NOISE.y).powi(2)
+                ((observed.lateral[i] - lateral) / NOISE.lateral).powi(2)
+                    + ((observed.normal[i] - normal) / NOISE.normal).powi(2)
             })
             .sum();
         assert_near(number(&found, "chi_square"), chi_square);

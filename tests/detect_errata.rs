@@ -26,7 +26,13 @@ fn err_001_second_row_of_equation_3() {
     let zeros = [0.0; 3];
     let sd = Force::new(1.0, 1.0);
     let filter = MatchedFilter::new(Force::new(&template, &zeros), sd).unwrap();
-    let y = |input: &[f64]| filter.statistic(Force::new(input, &zeros)).unwrap().y.x;
+    let y = |input: &[f64]| {
+        filter
+            .statistic(Force::new(input, &zeros))
+            .unwrap()
+            .y
+            .lateral
+    };
     // Equation (6) wants ‖F_1x − F_0x‖ = (0.5625/3)^½ in the absence of noise.
     let mean_by_6 = 0.1875_f64.sqrt();
     let without_f0: Vec<f64> = f1.iter().zip(f0).map(|(f1, f0)| f1 - f0).collect();
@@ -57,7 +63,7 @@ fn y_at(time: f64, position: f64) -> f64 {
         .statistic(Force::new(&record, &zeros))
         .unwrap()
         .y
-        .x
+        .lateral
 }
 
 /// The root mean square of that bump in 21 samples: 0.33/21.

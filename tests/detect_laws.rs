@@ -3,7 +3,7 @@
 use palpate::detect::coloured::{coloured_scratch, theta_coloured};
 use palpate::detect::scan::Scan;
 use palpate::detect::{
-    Force, Costs, Decision, MatchedFilter, auc, bayes_threshold, decide, error_rates,
+    Costs, Decision, Force, MatchedFilter, auc, bayes_threshold, decide, error_rates,
     gamma_from_two_afc, map_threshold, neyman_pearson_false_alarm_threshold,
     neyman_pearson_miss_threshold, posterior, required_gamma, roc_miss, theta_of_record, two_afc,
 };
@@ -23,11 +23,17 @@ fn series(count: usize) -> impl Strategy<Value = Vec<Vec<f64>>> {
 }
 
 fn noise() -> impl Strategy<Value = Force<f64>> {
-    (0.01..3.0, 0.01..3.0).prop_map(|(x, y)| Force { lateral: x, normal: y })
+    (0.01..3.0, 0.01..3.0).prop_map(|(x, y)| Force {
+        lateral: x,
+        normal: y,
+    })
 }
 
 fn channels<'a>(x: &'a [f64], y: &'a [f64]) -> Force<&'a [f64]> {
-    Force { lateral: x, normal: y }
+    Force {
+        lateral: x,
+        normal: y,
+    }
 }
 
 /// Σ (|rΔ| + Δ²/2)/s², the size that rounding errors of θ are in proportion to.
@@ -39,7 +45,8 @@ fn size(residual: Force<&[f64]>, template: Force<&[f64]>, sd: Force<f64>) -> f64
             .sum::<f64>()
             / (s * s)
     };
-    part(residual.x, template.x, sd.x) + part(residual.y, template.y, sd.y)
+    part(residual.lateral, template.lateral, sd.lateral)
+        + part(residual.normal, template.normal, sd.normal)
 }
 
 const U: f64 = f64::EPSILON / 2.0;
@@ -65,10 +72,10 @@ proptest! {
         let filter = MatchedFilter::new(channels(&s[0], &s[1]), sd).unwrap();
         // With any weight w: b² = wΣΔ², σ² = w s². The library has w = 1/N; here it is 1.
         let energy = |t: &[f64], s: f64| t.iter().map(|t| t * t).sum::<f64>() / (s * s);
-        let expected = (energy(&s[0], sd.x) + energy(&s[1], sd.y)).sqrt();
+        let expected = (energy(&s[0], sd.lateral) + energy(&s[1], sd.normal)).sqrt();
         prop_assert!((filter.gamma() - expected).abs() <= 1e-13 * expected);
         let (b, sigma) = (filter.b(), filter.sigma());
-        let by_parts = ((b.x / sigma.x).powi(2) + (b.y / sigma.y).powi(2)).sqrt();
+        let by_parts = ((b.lateral / sigma.lateral).powi(2) + (b.normal / sigma.normal).powi(2)).sqrt();
         prop_assert!((filter.gamma() - by_parts).abs() <= 1e-14 * expected);
         let scaled: Vec<Vec<f64>> =
             s.iter().map(|s| s.iter().map(|t| t * unit).collect()).collect();
@@ -107,7 +114,7 @@ proptest! {
         let sum = |c: usize, h: usize, s_c: f64| {
             s[c].iter().zip(&s[c + 2 * h]).map(|(p, f)| (p - f).powi(2)).sum::<f64>() / (s_c * s_c)
         };
-        let (h0, h1) = (sum(0, 1, sd.x) + sum(1, 1, sd.y), sum(0, 2, sd.x) + sum(1, 2, sd.y));
+        let (h0, h1) = (sum(0, 1, sd.lateral) + sum(1, 1, sd.normal), sum(0, 2, sd.lateral) + sum(1, 2, sd.normal));
         let found =
             theta_of_record(channels(&s[0], &s[1]), channels(&s[2], &s[3]), channels(&s[4], &s[5]), sd).unwrap();
         prop_assert!((found.theta - 0.5 * (h0 - h1)).abs() <= 100.0 * U * (h0 + h1));

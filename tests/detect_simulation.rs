@@ -2,7 +2,7 @@
 
 use palpate::detect::scan::Scan;
 use palpate::detect::simulate::{Simulation, count_false_alarms, draw_theta};
-use palpate::detect::{Force, DetectError};
+use palpate::detect::{DetectError, Force};
 use palpate::stats::random::Generator;
 
 const TEMPLATE: Force<&[f64]> = Force::new(&[0.3, -0.2, 0.1], &[0.2, 0.4, 0.2]);
@@ -57,7 +57,10 @@ fn a_record_is_the_force_and_the_deviates_of_its_trial() {
     }
     let (x, y) = residual.split_at(3);
     assert_eq!(
-        simulation().filter().statistic(Force { lateral: x, normal: y }),
+        simulation().filter().statistic(Force {
+            lateral: x,
+            normal: y
+        }),
         Ok(found)
     );
 }
@@ -111,9 +114,9 @@ fn theta_is_drawn_by_the_number_of_its_trial() {
 #[test]
 fn simulations_that_cannot_be_are_refused() {
     let generator = Generator::new(1, 2);
-    let short = Force::new(&F0.x[..2], F0.y);
+    let short = Force::new(&F0.lateral[..2], F0.normal);
     assert!(Simulation::new(short, TEMPLATE, NOISE_SD, generator).is_err());
-    let bad = Force::new(&[0.0, f64::NAN, 0.0][..], F0.y);
+    let bad = Force::new(&[0.0, f64::NAN, 0.0][..], F0.normal);
     let found = Simulation::new(bad, TEMPLATE, NOISE_SD, generator).unwrap_err();
     assert_eq!(
         found,

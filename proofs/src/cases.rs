@@ -174,7 +174,7 @@ pub struct Grid {
     pub laterals: [f32; 4],
     depth_reciprocals: [f32; 2],
     lateral_reciprocals: [f32; 3],
-    pub forces: [Force; 12],
+    pub forces: [Force<f32>; 12],
 }
 
 impl TypeGenerator for Grid {
@@ -216,10 +216,10 @@ impl Grid {
 pub fn plain_table() -> Table<'static> {
     const KNOTS: [f32; 2] = [0.0, 0.5];
     const RECIPROCAL: [f32; 1] = [2.0];
-    const fn force(lateral: f32, normal: f32) -> Force {
+    const fn force(lateral: f32, normal: f32) -> Force<f32> {
         Force { lateral, normal }
     }
-    const FORCES: [Force; 4] = [
+    const FORCES: [Force<f32>; 4] = [
         Force::ZERO,
         Force::ZERO,
         force(-4.0, 32.0),
@@ -353,7 +353,7 @@ impl TypeGenerator for SoundCycle {
 }
 
 /// A force within the limits, one time in two zero.
-pub fn sound_force<D: Driver>(driver: &mut D, limits: &Limits) -> Option<Force> {
+pub fn sound_force<D: Driver>(driver: &mut D, limits: &Limits) -> Option<Force<f32>> {
     let force = Force {
         lateral: folded(driver.produce::<Newtons>()?.0, limits.force()),
         normal: folded(driver.produce::<Newtons>()?.0, limits.force()),
@@ -365,7 +365,7 @@ pub fn sound_force<D: Driver>(driver: &mut D, limits: &Limits) -> Option<Force> 
     })
 }
 
-fn cycle<D: Driver>(driver: &mut D, limits: Limits, force: Force) -> Option<Cycle> {
+fn cycle<D: Driver>(driver: &mut D, limits: Limits, force: Force<f32>) -> Option<Cycle> {
     let last: u16 = driver.produce()?;
     let missed = match driver.gen_variant(6, 0)? {
         0 => driver.produce()?,

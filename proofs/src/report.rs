@@ -181,7 +181,7 @@ struct Exchange {
     words: [u16; 8],
     report: [i16; 2],
     bits: [u8; 2],
-    force: Force,
+    force: Force<f32>,
 }
 
 impl TypeGenerator for Exchange {

@@ -56,7 +56,7 @@ fn play(case: &Cycle) -> (State, Command) {
     step(&plain_table(), &case.limits, case.state, case.input)
 }
 
-fn components(force: Force) -> [f32; 2] {
+fn components(force: Force<f32>) -> [f32; 2] {
     [force.lateral, force.normal]
 }
 
@@ -466,7 +466,7 @@ impl TypeGenerator for Released<ValidLimits> {
 
 impl<L> Released<L> {
     /// The force after so many cycles of release.
-    fn force_after(&self, limits: &Limits, cycles: u16) -> Force {
+    fn force_after(&self, limits: &Limits, cycles: u16) -> Force<f32> {
         let table = plain_table();
         let mut state = self.state;
         for cycle in 1..=cycles {

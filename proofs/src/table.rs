@@ -45,7 +45,7 @@ fn enclosing(knots: &[f32], position: f32) -> Option<usize> {
     found
 }
 
-fn component(force: Force, normal: bool) -> f32 {
+fn component(force: Force<f32>, normal: bool) -> f32 {
     if normal { force.normal } else { force.lateral }
 }
 

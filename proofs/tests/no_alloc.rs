@@ -33,7 +33,7 @@ fn play(cycles: u32) -> u32 {
         Axis::reciprocal_width(knots[1], knots[2]),
     ];
     let axis = Axis::new(&knots, &reciprocals).unwrap();
-    let forces: [Force; 9] = core::array::from_fn(|index| Force {
+    let forces: [Force<f32>; 9] = core::array::from_fn(|index| Force {
         lateral: index as f32 * -0.25,
         normal: index as f32,
     });

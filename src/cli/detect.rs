@@ -127,7 +127,10 @@ impl DetectArguments {
     fn noise_sd(&self) -> Result<Force<f64>, CliError> {
         let of = |channel: Option<f64>| self.noise_sd_n.or(channel);
         match (of(self.noise_sd_lateral_n), of(self.noise_sd_normal_n)) {
-            (Some(x), Some(y)) => Ok(Force { lateral: x, normal: y }),
+            (Some(x), Some(y)) => Ok(Force {
+                lateral: x,
+                normal: y,
+            }),
             // The parser has refused it already.
             _ => Err(CliError::Usage(
                 "expected --noise-sd-n, or --noise-sd-lateral-n and --noise-sd-normal-n".into(),

@@ -4,7 +4,7 @@ use super::decision::{Decision, ErrorRates, decide, error_rates, posterior};
 use super::matched_filter::{Statistic, theta_of_record};
 use super::position::MaximumLaw;
 use super::scan::{Scan, ScanMaximum};
-use super::{Force, DetectError};
+use super::{DetectError, Force};
 
 /// A record judged at a known position.
 #[derive(Debug, Clone, Copy, PartialEq)]

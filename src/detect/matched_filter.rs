@@ -1,7 +1,7 @@
 //! The matched filter and the sufficient statistic Θ in white noise, paper equations (2) to (7).
 
 use super::noise::WhiteNoise;
-use super::{Force, DetectError};
+use super::{DetectError, Force};
 use crate::stats::compensated::{self, DoubleDouble};
 use crate::stats::error::representable;
 
@@ -53,10 +53,7 @@ impl<'a> MatchedFilter<'a> {
     /// largest number.
     ///
     /// Implements: DET-005, DET-006, DET-007, DET-010, DET-013.
-    pub fn new(
-        template: Force<&'a [f64]>,
-        noise_sd: Force<f64>,
-    ) -> Result<Self, DetectError> {
+    pub fn new(template: Force<&'a [f64]>, noise_sd: Force<f64>) -> Result<Self, DetectError> {
         template.check("template_x", "template_y", template.lateral.len())?;
         let noise = WhiteNoise::new(noise_sd)?;
         let energy = template

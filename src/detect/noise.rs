@@ -1,6 +1,6 @@
 //! White noise, and what sums over a record amount to in it.
 
-use super::{Force, DetectError};
+use super::{DetectError, Force};
 use crate::stats::compensated::{self, DoubleDouble};
 use crate::stats::error::{check_positive, representable};
 

@@ -2,7 +2,7 @@
 //! known.
 
 use super::scan::Scan;
-use super::{Force, DetectError, MatchedFilter};
+use super::{DetectError, Force, MatchedFilter};
 use crate::stats::error::{
     check_finite, check_length, check_positive, check_probability, check_samples,
 };
@@ -158,10 +158,7 @@ fn exceedance(gamma: f64, eta: f64) -> (f64, f64) {
 /// As [`MatchedFilter::new`]; a template without slope, which says nothing of a position.
 ///
 /// Implements: DET-060.
-pub fn position_bound(
-    slope: Force<&[f64]>,
-    noise_sd: Force<f64>,
-) -> Result<f64, DetectError> {
+pub fn position_bound(slope: Force<&[f64]>, noise_sd: Force<f64>) -> Result<f64, DetectError> {
     let information = MatchedFilter::new(slope, noise_sd)?.gamma();
     if information == 0.0 {
         return Err(DetectError::NoSignal);

@@ -1,7 +1,7 @@
 //! Where the inclusion is: Θ for every position of a template within a record, paper equation (10).
 
 use super::noise::WhiteNoise;
-use super::{Force, DetectError};
+use super::{DetectError, Force};
 use crate::stats::compensated::DoubleDouble;
 use crate::stats::error::{check_length, in_range, representable};
 use core::ops::{Range, RangeInclusive};

@@ -2,7 +2,7 @@
 //! alone.
 
 use super::scan::Scan;
-use super::{Force, DetectError, MatchedFilter, Statistic};
+use super::{DetectError, Force, MatchedFilter, Statistic};
 use crate::stats::error::{check_finite, check_length, check_not_negative};
 use crate::stats::random::Generator;
 use core::ops::{Range, RangeInclusive};
@@ -90,7 +90,10 @@ impl<'a> Simulation<'a> {
             }
         }
         let (x, y) = residual.split_at(samples);
-        self.filter.statistic(Force { lateral: x, normal: y })
+        self.filter.statistic(Force {
+            lateral: x,
+            normal: y,
+        })
     }
 }
 
@@ -103,7 +106,12 @@ fn noise<'a>(
 ) -> Force<&'a mut [f64]> {
     generator.normals(trial, 0, samples);
     let (x, y) = samples.split_at_mut(samples.len() / 2);
-    Force { lateral: x, normal: y }.zip(sd).map(|(samples, sd)| {
+    Force {
+        lateral: x,
+        normal: y,
+    }
+    .zip(sd)
+    .map(|(samples, sd)| {
         samples.iter_mut().for_each(|sample| *sample *= sd);
         samples
     })
@@ -153,8 +161,17 @@ pub fn count_false_alarms(
     check_length("residual", scan.samples().saturating_mul(2), residual.len())?;
     let mut alarms = 0;
     for trial in trials {
-        let Force { lateral: x, normal: y } = noise(generator, trial, scan.noise_sd(), residual);
-        let maximum = scan.maximum(Force { lateral: x, normal: y }, shifts.clone())?;
+        let Force {
+            lateral: x,
+            normal: y,
+        } = noise(generator, trial, scan.noise_sd(), residual);
+        let maximum = scan.maximum(
+            Force {
+                lateral: x,
+                normal: y,
+            },
+            shifts.clone(),
+        )?;
         alarms += u64::from(maximum.theta >= eta);
     }
     Ok(alarms)

@@ -4,7 +4,7 @@
 //! Both functions whiten as `L⁻¹` does in [`super::coloured`], and give the same θ.
 
 use super::coloured::{ColouredStatistic, Innovations, pivot};
-use super::{Force, DetectError};
+use super::{DetectError, Force};
 use crate::stats::compensated;
 use crate::stats::error::{check_length, check_positive};
 
@@ -67,10 +67,7 @@ pub fn theta_banded(
     innovations.statistic()
 }
 
-fn check_records(
-    residual: Force<&[f64]>,
-    template: Force<&[f64]>,
-) -> Result<(), DetectError> {
+fn check_records(residual: Force<&[f64]>, template: Force<&[f64]>) -> Result<(), DetectError> {
     let samples = template.lateral.len();
     template.check("template_x", "template_y", samples)?;
     residual.check("residual_x", "residual_y", samples)

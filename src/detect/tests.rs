@@ -7,8 +7,7 @@ use crate::stats::check::{assert_near, assert_ulps};
 use std::{vec, vec::Vec};
 extern crate std;
 
-const TEMPLATE: Force<&[f64]> =
-    Force::new(&[0.25, -0.5, 0.125, 0.3], &[0.34, 0.31, 0.22, 0.05]);
+const TEMPLATE: Force<&[f64]> = Force::new(&[0.25, -0.5, 0.125, 0.3], &[0.34, 0.31, 0.22, 0.05]);
 const RESIDUAL: Force<&[f64]> = Force::new(&[0.3, -0.4, 0.2, 0.1], &[0.4, 0.1, 0.3, -0.05]);
 const NOISE_SD: Force<f64> = Force::new(0.1, 0.235);
 
@@ -74,15 +73,11 @@ fn long_sums_that_cancel_stay_exact() {
     let expected = (SAMPLES / 2) as f64 * 1.5 + (SAMPLES / 2) as f64 * 0.5 * big;
     let sum = crate::stats::compensated::dot(&residual, &template, 1.0).value();
     assert_ulps(sum, expected, 2.0);
-    let filter =
-        MatchedFilter::new(Force::new(&template, &zeros), Force::new(1.0, 1.0)).unwrap();
+    let filter = MatchedFilter::new(Force::new(&template, &zeros), Force::new(1.0, 1.0)).unwrap();
     // r = Δ/2 but for one sample, which is ¼ larger where Δ = 1: Σ rΔ − ½ΣΔ² = ¼, of sums of 2^98.
     let mut halves: Vec<f64> = template.iter().map(|sample| sample / 2.0).collect();
     halves[0] += 0.25;
-    let theta = filter
-        .statistic(Force::new(&halves, &zeros))
-        .unwrap()
-        .theta;
+    let theta = filter.statistic(Force::new(&halves, &zeros)).unwrap().theta;
     assert_eq!(theta, 0.25);
 }
 
@@ -162,7 +157,10 @@ fn rounding_errors_of_one_sign_do_not_add_up() {
 fn a_difference_that_would_round_to_nothing_is_kept() {
     // Δ = 2^54 − 1 needs 54 bits and r = 2^53: 2Θ = Δ(2r − Δ) = 2^54 − 1, or 0 if Δ is rounded.
     const TOP: f64 = 9_007_199_254_740_992.0;
-    let channels = |x| Force { lateral: x, normal: &[0.0][..] };
+    let channels = |x| Force {
+        lateral: x,
+        normal: &[0.0][..],
+    };
     let unit = Force::new(1.0, 1.0);
     let (observed, f0, f1) = ([1.0], [1.0 - TOP], [TOP]);
     let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
@@ -183,7 +181,10 @@ fn differences_of_forces_are_not_rounded() {
         size += 2 * (r * t).abs() + t * t;
     }
     let [observed, f0, f1] = [observed, f0, f1].map(|forces| floats(&forces));
-    let channels = |x| Force { lateral: x, normal: &zeros[..] };
+    let channels = |x| Force {
+        lateral: x,
+        normal: &zeros[..],
+    };
     let unit = Force::new(1.0, 1.0);
     let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
     let error = ((2.0 * found.theta) as i128 - twice).unsigned_abs() as f64;
@@ -227,10 +228,7 @@ fn units_of_any_size_give_the_same_gamma_and_theta() {
 // Verifies: DET-012.
 #[test]
 fn channel_without_signal_contributes_nothing() {
-    let filter = MatchedFilter::new(
-        Force::new(&[0.0, 0.0], &[3.0, 4.0]),
-        Force::new(1e-9, 1.0),
-    );
+    let filter = MatchedFilter::new(Force::new(&[0.0, 0.0], &[3.0, 4.0]), Force::new(1e-9, 1.0));
     let filter = filter.unwrap();
     let found = filter
         .statistic(Force::new(&[1e9, -1e9], &[3.0, 4.0]))
@@ -262,7 +260,14 @@ fn records_that_cannot_be_judged_are_refused() {
         let bad = [0.0, bad];
         let filter = MatchedFilter::new(good, sd).unwrap();
         let expected = |what| DetectError::NotFinite { what, index: 1 };
-        let statistic = |x, y| filter.statistic(Force { lateral: x, normal: y }).unwrap_err();
+        let statistic = |x, y| {
+            filter
+                .statistic(Force {
+                    lateral: x,
+                    normal: y,
+                })
+                .unwrap_err()
+        };
         assert_eq!(statistic(&bad, &samples), expected("residual_x"));
         assert_eq!(statistic(&samples, &bad), expected("residual_y"));
         let template = Force::new(&samples[..], &bad);
@@ -274,7 +279,10 @@ fn records_that_cannot_be_judged_are_refused() {
             let mut series = [&samples[..]; 6];
             series[position] = &bad;
             let [ox, oy, ax, ay, bx, by] = series;
-            let channels = |x, y| Force { lateral: x, normal: y };
+            let channels = |x, y| Force {
+                lateral: x,
+                normal: y,
+            };
             let names = ["observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y"];
             assert_eq!(
                 theta_of_record(channels(ox, oy), channels(ax, ay), channels(bx, by), sd)

@@ -1,7 +1,7 @@
 //! Noise that grows with the force, as Weber's law has it for touch (paper §5): the exact
 //! likelihood ratio of two heteroscedastic Gaussian hypotheses.
 
-use super::{Force, DetectError};
+use super::{DetectError, Force};
 use crate::stats::compensated::{self, DoubleDouble};
 use crate::stats::error::{check_not_negative, check_positive, representable};
 

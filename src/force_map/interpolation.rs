@@ -191,9 +191,15 @@ mod tests {
             for lateral in [-32.0, -1.0, -0.375, 0.25, 0.625, 1.0, 4.0] {
                 let force = table.force(depth, lateral).unwrap();
                 let expected = 3.0 + 2.0 * depth - lateral + 4.0 * depth * lateral;
-                assert!((force.normal - expected).abs() <= tolerance, "{depth} {lateral}");
+                assert!(
+                    (force.normal - expected).abs() <= tolerance,
+                    "{depth} {lateral}"
+                );
                 let expected = -(3.0 + 2.0 * lateral - depth + 4.0 * depth * lateral);
-                assert!((force.lateral - expected).abs() <= tolerance, "{depth} {lateral}");
+                assert!(
+                    (force.lateral - expected).abs() <= tolerance,
+                    "{depth} {lateral}"
+                );
             }
         }
     }

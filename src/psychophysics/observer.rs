@@ -76,8 +76,12 @@ pub fn present<D: HapticDevice>(
             began.get_or_insert(cycle.written);
             felt.depths.push(-f64::from(position.normal) * metres);
             felt.laterals.push(f64::from(position.lateral) * metres);
-            felt.forces.lateral.push(f64::from(cycle.force.lateral) * newtons);
-            felt.forces.normal.push(f64::from(cycle.force.normal) * newtons);
+            felt.forces
+                .lateral
+                .push(f64::from(cycle.force.lateral) * newtons);
+            felt.forces
+                .normal
+                .push(f64::from(cycle.force.normal) * newtons);
         }
         let until = began.map_or(patience, |began| began + duration);
         cycle.written < until
@@ -153,12 +157,28 @@ impl IdealObserver<'_> {
             let noisy = noise.iter().zip(forces);
             noisy.map(|(n, force)| force + self.noise_sd * n).collect()
         };
-        let (x, y) = (noisy(&felt.forces.lateral, 0), noisy(&felt.forces.normal, 1));
+        let (x, y) = (
+            noisy(&felt.forces.lateral, 0),
+            noisy(&felt.forces.normal, 1),
+        );
         let statistic = theta_of_record(
-            Force { lateral: &x, normal: &y },
-            Force { lateral: &f0.0, normal: &f0.1 },
-            Force { lateral: &f1.0, normal: &f1.1 },
-            Force { lateral: (), normal: () }.map(|()| self.noise_sd),
+            Force {
+                lateral: &x,
+                normal: &y,
+            },
+            Force {
+                lateral: &f0.0,
+                normal: &f0.1,
+            },
+            Force {
+                lateral: &f1.0,
+                normal: &f1.1,
+            },
+            Force {
+                lateral: (),
+                normal: (),
+            }
+            .map(|()| self.noise_sd),
         );
         let statistic = statistic.map_err(refused)?;
         Ok((statistic.theta, statistic.gamma))

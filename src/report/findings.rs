@@ -8,7 +8,7 @@ use super::quality::{Quality, quality, warnings};
 use super::text::{millimetres, name_of_map};
 use super::{ReportError, Settings, Study, paper};
 use crate::detect::{
-    Force, DetectError, MatchedFilter, auc, error_rates, map_threshold,
+    DetectError, Force, MatchedFilter, auc, error_rates, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
 };
 use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};

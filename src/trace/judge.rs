@@ -3,7 +3,7 @@
 use super::{Record, refused, view};
 use crate::detect::assessment::{Assessment, assess};
 use crate::detect::{
-    Force, DetectError, map_threshold, neyman_pearson_false_alarm_threshold,
+    DetectError, Force, map_threshold, neyman_pearson_false_alarm_threshold,
     neyman_pearson_miss_threshold, theta_of_record,
 };
 use crate::force_map::ForceTable;

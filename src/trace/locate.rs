@@ -6,7 +6,7 @@ use crate::detect::mixture::mixture_theta;
 use crate::detect::position::{MaximumLaw, position_bound, slope};
 use crate::detect::scan::Scan;
 use crate::detect::{
-    Force, Decision, DetectError, decide, error_rates, map_threshold,
+    Decision, DetectError, Force, decide, error_rates, map_threshold,
     neyman_pearson_miss_threshold, posterior,
 };
 use crate::force_map::{ForceTable, SAME_POSITION};
@@ -194,7 +194,10 @@ impl Grid {
             let ends = [signal[0], signal[signal.len() - 1]];
             (largest(&ends) / sd, largest(signal) / sd)
         });
-        let (ends, all) = (parts.lateral.0.max(parts.normal.0), parts.lateral.1.max(parts.normal.1));
+        let (ends, all) = (
+            parts.lateral.0.max(parts.normal.0),
+            parts.lateral.1.max(parts.normal.1),
+        );
         if all > 0.0 { ends / all } else { 0.0 }
     }
 
@@ -211,7 +214,13 @@ impl Grid {
             Ok::<Vec<f64>, DetectError>(seen.map(|(_, slope)| slope).collect())
         };
         let (x, y) = (seen(&self.template.lateral)?, seen(&self.template.normal)?);
-        position_bound(Force { lateral: &x, normal: &y }, noise_sd)
+        position_bound(
+            Force {
+                lateral: &x,
+                normal: &y,
+            },
+            noise_sd,
+        )
     }
 }
 

@@ -49,7 +49,7 @@ pub use judge::{Criterion, Misfit, judge};
 pub use locate::{DIED_AWAY, Location, MOST_SAMPLES, UNIFORM, locate};
 
 use crate::csv::{Column, Table};
-use crate::detect::{Force, DetectError};
+use crate::detect::{DetectError, Force};
 use crate::force_map::{ForceTable, SAME_POSITION};
 use crate::phantom::decimal::format_scaled;
 use crate::refusal::Refusal;

@@ -41,7 +41,10 @@ fn shifted(signal: f64, shift: usize) -> Record {
     read(&text).unwrap()
 }
 
-const NOISE: Force<f64> = Force { lateral: 0.5, normal: 0.25 };
+const NOISE: Force<f64> = Force {
+    lateral: 0.5,
+    normal: 0.25,
+};
 
 fn find(record: &Record, signal: f64, criterion: Criterion) -> Result<Location, Refusal> {
     locate(
@@ -244,7 +247,11 @@ fn plain_theta(record: &Record, signal: f64, n: usize) -> (f64, f64) {
                 ForceTable::lateral_force as fn(&ForceTable) -> &Matrix,
                 NOISE.lateral,
             ),
-            (record.forces().normal, ForceTable::normal_force, NOISE.normal),
+            (
+                record.forces().normal,
+                ForceTable::normal_force,
+                NOISE.normal,
+            ),
         ] {
             let delta = force(&inclusion).row(1)[column] - force(&reference).row(1)[column];
             let residual = observed[i] - force(&reference).row(1)[i];
@@ -407,7 +414,14 @@ fn a_scan_tells_how_much_of_the_signal_the_maps_cut_off() {
     };
     assert!((edge(NOISE) - 0.5).abs() < 1e-12);
     // Where the lateral force is the quiet one, its largest is at an end: 8 of 8, and 1 of 2 in the normal force.
-    assert!((edge(Force { lateral: 0.125, normal: 1.0 }) - 1.0).abs() < 1e-12);
+    assert!(
+        (edge(Force {
+            lateral: 0.125,
+            normal: 1.0
+        }) - 1.0)
+            .abs()
+            < 1e-12
+    );
 }
 
 // Verifies: TRC-030, TRC-031, TRC-033, TRC-041.

@@ -119,15 +119,15 @@ fn check_between(table: &ForceTable) {
     let (depth, lateral) = (table.depths()[0], table.laterals()[0]);
     match table.force(depth, lateral) {
         Ok(force) => {
-            assert_eq!(force.y, table.normal_force().row(0)[0]);
-            assert_eq!(force.x, table.lateral_force().row(0)[0]);
+            assert_eq!(force.normal, table.normal_force().row(0)[0]);
+            assert_eq!(force.lateral, table.lateral_force().row(0)[0]);
         }
         Err(error) if error.found.ends_with(" a single entry") => {}
         Err(error) if error.found.ends_with(" beyond the range of numbers") => {}
         Err(error) => panic!("{error}"),
     }
     if let Ok(force) = table.force(2e-3, 1e-3) {
-        assert!(force.x.is_finite() && force.y.is_finite());
+        assert!(force.lateral.is_finite() && force.normal.is_finite());
     }
     let row = table.row(depth).expect("a stored depth");
     assert_eq!(row.normal_force, table.normal_force().row(0));

@@ -52,12 +52,15 @@ fn check_trace(trace: Trace, text: &str) {
             .all(|pair| pair[1] > pair[0] + SAME_POSITION)
     );
     let forces = record.forces();
-    assert_eq!([forces.x.len(), forces.y.len()], [positions.len(); 2]);
+    assert_eq!(
+        [forces.lateral.len(), forces.normal.len()],
+        [positions.len(); 2]
+    );
     assert!(
         forces
-            .x
+            .lateral
             .iter()
-            .chain(forces.y)
+            .chain(forces.normal)
             .all(|force| force.is_finite())
     );
     let again = Trace::from_csv(&written(&record), FILE).expect("what was written can be read");
@@ -70,7 +73,10 @@ fn written(record: &Record) -> String {
     let mut text = String::from("lateral_force_n,position_m,normal_force_n\n");
     let forces = record.forces();
     for (at, position) in record.positions().iter().enumerate() {
-        text += &format!("{:?},{position:?},{:?}\n", forces.x[at], forces.y[at]);
+        text += &format!(
+            "{:?},{position:?},{:?}\n",
+            forces.lateral[at], forces.normal[at]
+        );
     }
     text
 }

@@ -76,7 +76,10 @@ fn diagnosis(inclusion: &str, noise: f64) -> Result<Vec<Figure>, String> {
         lateral: difference(&f1.lateral, &f0.lateral),
         normal: difference(&f1.normal, &f0.normal),
     };
-    let noise_sd = Force { lateral: noise, normal: noise };
+    let noise_sd = Force {
+        lateral: noise,
+        normal: noise,
+    };
     let simulation = Simulation::new(
         view(&f0),
         view(&template),

@@ -29,10 +29,20 @@ fn what_is_refused_is_never_a_decision() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let bad = [0.0, bad];
         for position in 0..6 {
-            let mut series = [OBSERVED.lateral, OBSERVED.normal, F0.lateral, F0.normal, F1.lateral, F1.normal];
+            let mut series = [
+                OBSERVED.lateral,
+                OBSERVED.normal,
+                F0.lateral,
+                F0.normal,
+                F1.lateral,
+                F1.normal,
+            ];
             series[position] = &bad;
             let [ox, oy, ax, ay, bx, by] = series;
-            let channels = |x, y| Force { lateral: x, normal: y };
+            let channels = |x, y| Force {
+                lateral: x,
+                normal: y,
+            };
             let found = assess(
                 channels(ox, oy),
                 channels(ax, ay),

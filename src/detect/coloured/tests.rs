@@ -216,8 +216,14 @@ fn exponential_autocovariance_has_a_closed_form() {
     let (template, residual) = (split(Vec::leak(template)), split(Vec::leak(residual)));
     let mut expected = (0.0, 0.0);
     for (((t, r), v), a) in [
-        (((template.lateral, residual.lateral), variance.lateral), memory.lateral),
-        (((template.normal, residual.normal), variance.normal), memory.normal),
+        (
+            ((template.lateral, residual.lateral), variance.lateral),
+            memory.lateral,
+        ),
+        (
+            ((template.normal, residual.normal), variance.normal),
+            memory.normal,
+        ),
     ] {
         for i in 0..SAMPLES {
             let white = |n: &[f64]| match i {
@@ -249,7 +255,11 @@ fn white_noise_is_a_special_case_of_every_colour() {
     );
     let mut covariance = [[0.0; 14]; 14];
     for (i, row) in covariance.iter_mut().enumerate() {
-        row[i] = if i < 7 { sd.lateral * sd.lateral } else { sd.normal * sd.normal };
+        row[i] = if i < 7 {
+            sd.lateral * sd.lateral
+        } else {
+            sd.normal * sd.normal
+        };
     }
     let join = |c: Force<&[f64]>| [c.lateral, c.normal].concat();
     let mut found = vec![

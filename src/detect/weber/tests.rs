@@ -56,10 +56,20 @@ fn exchanging_the_hypotheses_changes_the_sign() {
 #[test]
 fn what_cannot_be_judged_is_refused() {
     let names = ["observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y"];
-    let all = [OBSERVED.lateral, OBSERVED.normal, F0.lateral, F0.normal, F1.lateral, F1.normal];
+    let all = [
+        OBSERVED.lateral,
+        OBSERVED.normal,
+        F0.lateral,
+        F0.normal,
+        F1.lateral,
+        F1.normal,
+    ];
     let judge = |series: [&[f64]; 6]| {
         let [ox, oy, ax, ay, bx, by] = series;
-        let channels = |x, y| Force { lateral: x, normal: y };
+        let channels = |x, y| Force {
+            lateral: x,
+            normal: y,
+        };
         theta_weber(channels(ox, oy), channels(ax, ay), channels(bx, by), NOISE).unwrap_err()
     };
     for (position, what) in names.into_iter().enumerate() {

@@ -28,8 +28,16 @@ fn series(
     })
 }
 
-fn slices(Force { lateral: x, normal: y }: &Force<Vec<f64>>) -> Force<&[f64]> {
-    Force { lateral: x, normal: y }
+fn slices(
+    Force {
+        lateral: x,
+        normal: y,
+    }: &Force<Vec<f64>>,
+) -> Force<&[f64]> {
+    Force {
+        lateral: x,
+        normal: y,
+    }
 }
 
 /// b, σ and γ of a template.

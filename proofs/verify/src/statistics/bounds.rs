@@ -25,7 +25,10 @@ pub(super) const CHECKS: &[Check] = &[
     Check::new("weber_tail_h1", |draw| weber(draw, true, 640)),
 ];
 
-const UNIT: Force<f64> = Force { lateral: 1.0, normal: 1.0 };
+const UNIT: Force<f64> = Force {
+    lateral: 1.0,
+    normal: 1.0,
+};
 
 /// A bump and its slope, `length` samples, with that γ in noise of 1 N.
 fn template(length: usize, width: f64, gamma: f64) -> Force<Vec<f64>> {
@@ -37,7 +40,12 @@ fn template(length: usize, width: f64, gamma: f64) -> Force<Vec<f64>> {
             .collect::<Vec<_>>(),
         normal: (0..length).map(bump).collect::<Vec<_>>(),
     };
-    let energy: f64 = template.lateral.iter().chain(&template.normal).map(|t| t * t).sum();
+    let energy: f64 = template
+        .lateral
+        .iter()
+        .chain(&template.normal)
+        .map(|t| t * t)
+        .sum();
     for sample in template.lateral.iter_mut().chain(&mut template.normal) {
         *sample *= gamma / energy.sqrt();
     }
@@ -72,11 +80,7 @@ fn theta_max_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
 
 /// Errors of the refined shift, in samples, for an inclusion that is taken to be at shift 60 of a
 /// record of 160 samples and lies at `place`.
-fn position_errors(
-    draw: &Draw<'_>,
-    template: &Force<Vec<f64>>,
-    place: usize,
-) -> Outcome<Vec<f64>> {
+fn position_errors(draw: &Draw<'_>, template: &Force<Vec<f64>>, place: usize) -> Outcome<Vec<f64>> {
     const SAMPLES: usize = 160;
     let generator = draw.generator(610 + draw.replicate);
     let scan = Scan::new(SAMPLES, view(template), UNIT)?;
@@ -88,7 +92,13 @@ fn position_errors(
             x[place + i] += template.lateral[i];
             y[place + i] += template.normal[i];
         }
-        let found = scan.maximum(Force { lateral: x, normal: y }, scan.full_shifts())?;
+        let found = scan.maximum(
+            Force {
+                lateral: x,
+                normal: y,
+            },
+            scan.full_shifts(),
+        )?;
         Ok(found.refined_shift - 60.0)
     });
     errors.collect()
@@ -172,7 +182,15 @@ fn cut_position_error(draw: &Draw<'_>) -> Outcome<bool> {
             return Ok(plain_place(&template, &record, true));
         }
         let (x, y) = record.split_at(CUT);
-        Ok(scan.maximum(Force { lateral: x, normal: y }, 0..=14)?.refined_shift)
+        Ok(scan
+            .maximum(
+                Force {
+                    lateral: x,
+                    normal: y,
+                },
+                0..=14,
+            )?
+            .refined_shift)
     });
     let places = places.collect::<Outcome<Vec<f64>>>()?;
     variance_rejects(&places, Law { mean, sd }, draw.row.alpha)
@@ -226,7 +244,10 @@ fn weber_tail(inclusion: bool, eta: f64) -> Outcome<f64> {
 
 /// θ of one observed force, by the detector or by one with a defect.
 fn weber_theta(observed: f64, defect: &str) -> Outcome<f64> {
-    let channels = |y| Force { lateral: &[0.0][..], normal: y };
+    let channels = |y| Force {
+        lateral: &[0.0][..],
+        normal: y,
+    };
     let record = channels(core::slice::from_ref(&observed));
     let (f0, f1) = (channels(&FORCE[..1]), channels(&FORCE[1..]));
     if defect == "constant_noise_presumed" {
@@ -236,7 +257,15 @@ fn weber_theta(observed: f64, defect: &str) -> Outcome<f64> {
         };
         return Ok(theta_of_record(record, f0, f1, sd)?.theta);
     }
-    let theta = theta_weber(record, f0, f1, Force { lateral: WEBER, normal: WEBER })?;
+    let theta = theta_weber(
+        record,
+        f0,
+        f1,
+        Force {
+            lateral: WEBER,
+            normal: WEBER,
+        },
+    )?;
     Ok(match defect {
         "logarithm_left_out" => theta - libm::log(WEBER.sd(FORCE[0]) / WEBER.sd(FORCE[1])),
         _ => theta,

@@ -8,7 +8,7 @@ use super::checks::{Law, mean_rejects, variance_rejects};
 use super::{Check, Draw, Outcome};
 use palpate::detect::coloured::{ColouredStatistic, coloured_scratch, theta_coloured};
 use palpate::detect::stationary::{banded_scratch, theta_banded, theta_stationary};
-use palpate::detect::{Force, DetectError, MatchedFilter};
+use palpate::detect::{DetectError, Force, MatchedFilter};
 
 /// DET-040, DET-041; DET-044; DET-045.
 pub(super) const CHECKS: &[Check] = &[
@@ -140,7 +140,13 @@ fn moving_average_detector(residual: &[f64]) -> Result<ColouredStatistic, Detect
 /// θ of a detector that takes each noise for white with its own variance.
 fn without_whitening(residual: &[f64], variance: f64) -> Result<f64, DetectError> {
     let sd = libm::sqrt(variance);
-    let filter = MatchedFilter::new(channels(&TEMPLATE), Force { lateral: sd, normal: sd })?;
+    let filter = MatchedFilter::new(
+        channels(&TEMPLATE),
+        Force {
+            lateral: sd,
+            normal: sd,
+        },
+    )?;
     Ok(filter.statistic(channels(residual))?.theta)
 }
 

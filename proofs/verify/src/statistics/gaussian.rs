@@ -8,9 +8,7 @@ use super::checks::{
 };
 use super::{Check, Draw, Outcome, view};
 use palpate::detect::simulate::{Simulation, draw_theta};
-use palpate::detect::{
-    Force, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold,
-};
+use palpate::detect::{Force, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold};
 
 /// DET-012, DET-013, DET-015, DET-024, DET-025, DET-026, DET-113; the last one DET-114.
 pub(super) const CHECKS: &[Check] = &[
@@ -61,7 +59,10 @@ fn coarse() -> Outcome<Setting> {
             lateral: vec![0.02, 0.09, 0.16, 0.12, -0.12, -0.16, -0.09, -0.02],
             normal: vec![0.03, 0.10, 0.22, 0.33, 0.33, 0.22, 0.10, 0.03],
         },
-        noise_sd: Force { lateral: 0.25, normal: 0.4 },
+        noise_sd: Force {
+            lateral: 0.25,
+            normal: 0.4,
+        },
     })
 }
 
@@ -76,7 +77,10 @@ fn single() -> Outcome<Setting> {
             lateral: vec![-0.05],
             normal: vec![0.0],
         },
-        noise_sd: Force { lateral: 0.1, normal: 0.1 },
+        noise_sd: Force {
+            lateral: 0.1,
+            normal: 0.1,
+        },
     })
 }
 
@@ -100,7 +104,10 @@ fn traverse() -> Outcome<Setting> {
     Ok(Setting {
         f0,
         template,
-        noise_sd: Force { lateral: 0.5, normal: 0.6615 },
+        noise_sd: Force {
+            lateral: 0.5,
+            normal: 0.6615,
+        },
     })
 }
 
