@@ -301,10 +301,7 @@ fn gamma(lateral: &[f64], normal: &[f64], noise_sd: f64) -> Result<f64, DetectEr
         lateral: noise_sd,
         normal: noise_sd,
     };
-    let template = Force {
-        lateral: lateral,
-        normal: normal,
-    };
+    let template = Force { lateral, normal };
     MatchedFilter::new(template, noise_sd).map(|filter| filter.gamma())
 }
 
