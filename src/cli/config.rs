@@ -136,7 +136,7 @@ impl Config {
     /// The reference, then the phantoms that are compared with it.
     ///
     /// # Errors
-    /// As [`phantom`], and if the probe cannot stand at one of the poses; with file, line and key.
+    /// A phantom that is refused, or whose probe cannot stand at one of the poses; with file, line and key.
     pub fn read_phantoms(&self) -> Result<Vec<Phantom>, CliError> {
         let names = std::iter::once(&self.reference).chain(&self.phantoms);
         let read = |(index, name): (usize, &Spanned<String>)| {

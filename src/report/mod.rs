@@ -1,6 +1,6 @@
 //! What a run found: numbers, figures and a page to read (`spec/report.md`).
 //!
-//! [`findings`] turns force maps into plain numbers, [`figures`] into pictures, and [`html`] and
+//! [`findings`] turns force maps into plain numbers, [`figures`] into pictures, and [`mod@html`] and
 //! [`summary_json`] put them into files. Nothing here solves anything, and nothing depends on the date or the
 //! machine: the same [`Study`] gives the same bytes.
 //!
