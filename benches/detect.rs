@@ -6,8 +6,9 @@
 //! python3 benches/detect_numpy.py
 //! ```
 
+use palpate::detect::DetectError;
 use palpate::detect::simulate::{Simulation, draw_theta};
-use palpate::detect::{DetectError, Force};
+use palpate::force::Force;
 use palpate::stats::random::Generator;
 use std::time::Instant;
 
@@ -43,19 +44,13 @@ fn main() -> Result<(), DetectError> {
     let (f0, f1) = (force(0.0), force(0.34));
     let template: [Vec<f64>; 2] =
         [0, 1].map(|c| f1[c].iter().zip(&f0[c]).map(|(f1, f0)| f1 - f0).collect());
-    let channels = |f: &'static [Vec<f64>; 2]| Force {
-        lateral: &f[0][..],
-        normal: &f[1][..],
-    };
+    let channels = |f: &'static [Vec<f64>; 2]| Force::new(&f[0][..], &f[1][..]);
     let (f0, f1, template) = (
         Box::leak(Box::new(f0)),
         Box::leak(Box::new(f1)),
         Box::leak(Box::new(template)),
     );
-    let noise_sd = Force {
-        lateral: 3.0,
-        normal: 3.0,
-    };
+    let noise_sd = Force::new(3.0, 3.0);
     let generator = Generator::new(2026, 0);
     let simulation = Simulation::new(channels(f0), channels(template), noise_sd, generator)?;
     let mut scratch = vec![0.0; 2 * SAMPLES];

@@ -44,7 +44,7 @@ fn playing(change: impl FnOnce(&mut Sample)) -> Case {
 #[bench::disarmed(case(State::default(), Some(sample()), Request::Arm))]
 #[bench::late(case(State { missed: 20, ..armed() }, None, Request::None))]
 #[bench::faulted(case(State { mode: Mode::Faulted(Fault::Device), ..armed() }, Some(sample()), Request::Arm))]
-#[bench::overwritten(case(State { missed: 9, sequence: None, force: palpate::servo::Force { lateral: f32::NAN, normal: 0.0 }, ..armed() }, Some(sample()), Request::None))]
+#[bench::overwritten(case(State { missed: 9, sequence: None, force: palpate::force::Force { lateral: f32::NAN, normal: 0.0 }, ..armed() }, Some(sample()), Request::None))]
 fn servo_step((loaded, limits, state, input): Case) -> (State, Command) {
     let table = loaded.table().expect("the servo takes it");
     black_box(measured(&table, &limits, state, input))

@@ -34,6 +34,14 @@ impl<T> Force<T> {
         Force::new((self.lateral, other.lateral), (self.normal, other.normal))
     }
 
+    /// What each component points to, such as the samples of a vector.
+    pub fn as_deref(&self) -> Force<&T::Target>
+    where
+        T: core::ops::Deref,
+    {
+        Force::new(&*self.lateral, &*self.normal)
+    }
+
     /// Lateral first.
     pub fn into_array(self) -> [T; 2] {
         [self.lateral, self.normal]

@@ -24,7 +24,8 @@
 //! ```
 //! # #[cfg(feature = "fem")]
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! use palpate::detect::{Force, Decision, assessment::assess};
+//! use palpate::force::Force;
+//! use palpate::detect::{Decision, assessment::assess};
 //! use palpate::fem::{Contact, Model};
 //! use palpate::phantom::Phantom;
 //! use palpate::servo::LoadedTable;

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
+use palpate::detect::Decision;
 use palpate::detect::assessment::assess;
-use palpate::detect::{Decision, Force};
+use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable};
 use palpate::stats::random::Generator;
 use serde_json::Value;
@@ -163,10 +164,6 @@ fn plain(trace: &str, shift: isize) -> (f64, f64) {
     (theta, energy)
 }
 
-fn view(channels: &Force<Vec<f64>>) -> Force<&[f64]> {
-    Force::new(&channels.lateral, &channels.normal)
-}
-
 #[track_caller]
 fn assert_near(found: f64, expected: f64) {
     let error = (found - expected).abs() / expected.abs().max(1.0);
@@ -194,13 +191,10 @@ fn theta_is_that_of_the_library_and_of_a_plain_sum() {
         let forces = |map: &ForceMap| {
             let row = map.row(0.003).unwrap();
             let (x, y) = (row.lateral_force.to_vec(), row.normal_force.to_vec());
-            Force {
-                lateral: x,
-                normal: y,
-            }
+            Force::new(x, y)
         };
         let (f0, f1) = (forces(&none), forces(&inclusion));
-        let (observed, f0, f1) = (view(&observed), view(&f0), view(&f1));
+        let (observed, f0, f1) = (observed.as_deref(), f0.as_deref(), f1.as_deref());
         let library = assess(observed, f0, f1, NOISE, 0.2, 4.0_f64.ln()).unwrap();
         assert_near(number(&found, "theta"), library.statistic.theta);
         assert_near(number(&found, "false_alarm"), library.rates.false_alarm);

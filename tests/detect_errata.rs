@@ -2,9 +2,10 @@
 
 use palpate::detect::scan::Scan;
 use palpate::detect::{
-    Force, MatchedFilter, error_rates, gamma_from_two_afc, neyman_pearson_false_alarm_threshold,
+    MatchedFilter, error_rates, gamma_from_two_afc, neyman_pearson_false_alarm_threshold,
     required_gamma, two_afc,
 };
+use palpate::force::Force;
 use palpate::stats::binomial::clopper_pearson;
 use palpate::stats::random::Generator;
 

@@ -3,10 +3,11 @@
 use palpate::detect::coloured::{coloured_scratch, theta_coloured};
 use palpate::detect::scan::Scan;
 use palpate::detect::{
-    Costs, Decision, Force, MatchedFilter, auc, bayes_threshold, decide, error_rates,
-    gamma_from_two_afc, map_threshold, neyman_pearson_false_alarm_threshold,
-    neyman_pearson_miss_threshold, posterior, required_gamma, roc_miss, theta_of_record, two_afc,
+    Costs, Decision, MatchedFilter, auc, bayes_threshold, decide, error_rates, gamma_from_two_afc,
+    map_threshold, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, posterior,
+    required_gamma, roc_miss, theta_of_record, two_afc,
 };
+use palpate::force::Force;
 use palpate::stats::normal::{cdf, quantile, upper_tail};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -23,17 +24,11 @@ fn series(count: usize) -> impl Strategy<Value = Vec<Vec<f64>>> {
 }
 
 fn noise() -> impl Strategy<Value = Force<f64>> {
-    (0.01..3.0, 0.01..3.0).prop_map(|(x, y)| Force {
-        lateral: x,
-        normal: y,
-    })
+    (0.01..3.0, 0.01..3.0).prop_map(|(x, y)| Force::new(x, y))
 }
 
 fn channels<'a>(x: &'a [f64], y: &'a [f64]) -> Force<&'a [f64]> {
-    Force {
-        lateral: x,
-        normal: y,
-    }
+    Force::new(x, y)
 }
 
 /// Σ (|rΔ| + Δ²/2)/s², the size that rounding errors of θ are in proportion to.

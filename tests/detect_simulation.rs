@@ -1,8 +1,9 @@
 //! Simulations give the same for any split of the work.
 
+use palpate::detect::DetectError;
 use palpate::detect::scan::Scan;
 use palpate::detect::simulate::{Simulation, count_false_alarms, draw_theta};
-use palpate::detect::{DetectError, Force};
+use palpate::force::Force;
 use palpate::stats::random::Generator;
 
 const TEMPLATE: Force<&[f64]> = Force::new(&[0.3, -0.2, 0.1], &[0.2, 0.4, 0.2]);

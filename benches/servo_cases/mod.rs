@@ -1,7 +1,8 @@
 //! What both benches of the servo kernel step: a table of the paper's size and states to start from.
 
+use palpate::force::Force;
 use palpate::force_map::{ForceTable, Matrix};
-use palpate::servo::{Force, LoadedTable, Mode, Sample, State};
+use palpate::servo::{LoadedTable, Mode, Sample, State};
 
 /// 9 depths × 41 lateral positions, both components, uneven enough that nothing cancels.
 pub fn paper_table() -> LoadedTable {
@@ -22,10 +23,7 @@ pub fn paper_table() -> LoadedTable {
 pub fn armed() -> State {
     State {
         mode: Mode::Armed,
-        force: Force {
-            lateral: 0.4,
-            normal: 0.9,
-        },
+        force: Force::new(0.4, 0.9),
         sequence: Some(4711),
         missed: 0,
         arming: false,

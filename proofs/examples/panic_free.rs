@@ -4,12 +4,11 @@
 use std::hint::black_box;
 
 use no_panic::no_panic;
+use palpate::force::Force;
 use palpate::hid::{
     Capabilities, Control, ForceReport, InvalidReport, PositionReport, Units, count,
 };
-use palpate::servo::{
-    Axis, Cell, Command, Force, Input, Limits, Request, Sample, State, Table, limit,
-};
+use palpate::servo::{Axis, Cell, Command, Input, Limits, Request, Sample, State, Table, limit};
 
 #[no_panic]
 fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (State, Command) {

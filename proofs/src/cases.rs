@@ -5,8 +5,9 @@
 use core::ops::Bound::Included;
 
 use bolero::{Driver, TypeGenerator};
+use palpate::force::Force;
 use palpate::servo::{
-    Axis, FORCE_CEILING, Fault, Force, Input, Limits, MIN_SLEW, Mode, Request, Sample, State,
+    Axis, FORCE_CEILING, Fault, Input, Limits, MIN_SLEW, Mode, Request, Sample, State,
     TABLE_FORCE_LIMIT, Table,
 };
 
@@ -183,10 +184,7 @@ impl TypeGenerator for Grid {
         let lateral = driver.gen_variant(LATERALS.len(), 0)?;
         let mut forces = [Force::ZERO; 12];
         for force in &mut forces {
-            *force = Force {
-                lateral: driver.produce::<Entry>()?.0,
-                normal: driver.produce::<Entry>()?.0,
-            };
+            *force = Force::new(driver.produce::<Entry>()?.0, driver.produce::<Entry>()?.0);
         }
         Some(Grid {
             depths: DEPTHS[depth],
@@ -330,10 +328,10 @@ pub struct Cycle {
 impl TypeGenerator for Cycle {
     fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
         let ValidLimits(limits) = driver.produce()?;
-        let any = Force {
-            lateral: driver.produce::<Newtons>()?.0,
-            normal: driver.produce::<Newtons>()?.0,
-        };
+        let any = Force::new(
+            driver.produce::<Newtons>()?.0,
+            driver.produce::<Newtons>()?.0,
+        );
         let sound = sound_force(driver, &limits)?;
         let force = if driver.produce()? { any } else { sound };
         cycle(driver, limits, force)
@@ -354,10 +352,10 @@ impl TypeGenerator for SoundCycle {
 
 /// A force within the limits, one time in two zero.
 pub fn sound_force<D: Driver>(driver: &mut D, limits: &Limits) -> Option<Force<f32>> {
-    let force = Force {
-        lateral: folded(driver.produce::<Newtons>()?.0, limits.force()),
-        normal: folded(driver.produce::<Newtons>()?.0, limits.force()),
-    };
+    let force = Force::new(
+        folded(driver.produce::<Newtons>()?.0, limits.force()),
+        folded(driver.produce::<Newtons>()?.0, limits.force()),
+    );
     Some(if driver.produce()? {
         force
     } else {

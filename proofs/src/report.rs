@@ -4,10 +4,11 @@ use core::ops::Bound::Included;
 
 use bolero::generator::bolero_generator;
 use bolero::{Driver, TypeGenerator};
+use palpate::force::Force;
 use palpate::hid::{
     Capabilities, Control, ForceReport, InvalidReport, PositionReport, Units, count,
 };
-use palpate::servo::{Command, Force};
+use palpate::servo::Command;
 
 use crate::cases::{Count, Newtons};
 
@@ -197,10 +198,10 @@ impl TypeGenerator for Exchange {
             words,
             report: driver.produce()?,
             bits: driver.produce()?,
-            force: Force {
-                lateral: driver.produce::<Newtons>()?.0,
-                normal: driver.produce::<Newtons>()?.0,
-            },
+            force: Force::new(
+                driver.produce::<Newtons>()?.0,
+                driver.produce::<Newtons>()?.0,
+            ),
         })
     }
 }

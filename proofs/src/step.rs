@@ -2,7 +2,8 @@
 //! words of the specification.
 
 use bolero::{Driver, TypeGenerator};
-use palpate::servo::{Command, Fault, Force, Input, Limits, Mode, Request, Sample, State, step};
+use palpate::force::Force;
+use palpate::servo::{Command, Fault, Input, Limits, Mode, Request, Sample, State, step};
 
 use crate::cases::{
     Cycle, Grid, QuickLimits, SoundCycle, ValidLimits, plain_table, sound_force, stale,

@@ -1,7 +1,8 @@
 //! The force of a table: in the hull, at the nodes, on the borders, beyond.
 
 use bolero::{Driver, TypeGenerator};
-use palpate::servo::{Cell, Force};
+use palpate::force::Force;
+use palpate::servo::Cell;
 
 use crate::cases::{Fraction, Grid, Position};
 

@@ -2,8 +2,9 @@
 #![cfg(not(any(kani, fuzzing)))]
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
+use palpate::force::Force;
 use palpate::hid::{Capabilities, ForceReport, PositionReport, Units};
-use palpate::servo::{Axis, Force, Input, Limits, Mode, Request, State, Table, step};
+use palpate::servo::{Axis, Input, Limits, Mode, Request, State, Table, step};
 
 /// Counts the allocations within `assert_no_alloc`, for each thread by itself.
 #[global_allocator]
@@ -33,10 +34,8 @@ fn play(cycles: u32) -> u32 {
         Axis::reciprocal_width(knots[1], knots[2]),
     ];
     let axis = Axis::new(&knots, &reciprocals).unwrap();
-    let forces: [Force<f32>; 9] = core::array::from_fn(|index| Force {
-        lateral: index as f32 * -0.25,
-        normal: index as f32,
-    });
+    let forces: [Force<f32>; 9] =
+        core::array::from_fn(|index| Force::new(index as f32 * -0.25, index as f32));
     let table = Table::new(axis, axis, &forces).unwrap();
     let limits = Limits::new(2.0, 0.01, 0.125, 5).unwrap();
     let units = Units::new(&DEVICE).unwrap();

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::detection::Answer;
 use super::output::print;
 use super::{CliError, Format};
-use crate::detect::Force;
+use crate::force::Force;
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::parse_scaled;
 use crate::report::text;
@@ -127,10 +127,7 @@ impl DetectArguments {
     fn noise_sd(&self) -> Result<Force<f64>, CliError> {
         let of = |channel: Option<f64>| self.noise_sd_n.or(channel);
         match (of(self.noise_sd_lateral_n), of(self.noise_sd_normal_n)) {
-            (Some(x), Some(y)) => Ok(Force {
-                lateral: x,
-                normal: y,
-            }),
+            (Some(x), Some(y)) => Ok(Force::new(x, y)),
             // The parser has refused it already.
             _ => Err(CliError::Usage(
                 "expected --noise-sd-n, or --noise-sd-lateral-n and --noise-sd-normal-n".into(),

@@ -128,7 +128,8 @@ pub fn loaded_map(path: &Path) -> Result<LoadedTable, CliError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::servo::{Axis, Force, Input, Mode, Sample, State, Table, step};
+    use crate::force::Force;
+    use crate::servo::{Axis, Input, Mode, Sample, State, Table, step};
 
     // Verifies: CLI-063.
     #[test]

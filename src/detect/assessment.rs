@@ -24,7 +24,8 @@ pub struct Assessment {
 ///
 /// ```
 /// use palpate::detect::assessment::assess;
-/// use palpate::detect::{Force, Decision};
+/// use palpate::force::Force;
+/// use palpate::detect::Decision;
 ///
 /// let f0 = Force { lateral: &[0.0; 3][..], normal: &[1.0; 3] };
 /// let f1 = Force { lateral: &[0.0; 3][..], normal: &[1.125, 1.25, 1.25] };

@@ -11,7 +11,8 @@ use crate::stats::error::representable;
 /// It borrows the template and keeps its energy ΣΔ², so that each further record costs one pass.
 ///
 /// ```
-/// use palpate::detect::{Force, MatchedFilter};
+/// use palpate::force::Force;
+/// use palpate::detect::MatchedFilter;
 ///
 /// let template = Force { lateral: &[0.0; 3][..], normal: &[0.125, 0.25, 0.25] };
 /// let filter = MatchedFilter::new(template, Force { lateral: 0.5, normal: 0.125 })?;
@@ -117,7 +118,8 @@ impl<'a> MatchedFilter<'a> {
 /// are not rounded.
 ///
 /// ```
-/// use palpate::detect::{Force, theta_of_record};
+/// use palpate::force::Force;
+/// use palpate::detect::theta_of_record;
 ///
 /// let f0 = Force { lateral: &[0.25, 0.0, -0.25][..], normal: &[1.0, 1.0, 1.0] };
 /// let f1 = Force { lateral: &[0.25, 0.0, -0.25][..], normal: &[1.125, 1.25, 1.25] };

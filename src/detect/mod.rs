@@ -13,7 +13,8 @@
 //! normative.
 //!
 //! ```
-//! use palpate::detect::{Force, Decision, MatchedFilter, decide, error_rates, required_gamma};
+//! use palpate::force::Force;
+//! use palpate::detect::{Decision, MatchedFilter, decide, error_rates, required_gamma};
 //!
 //! // At most 5 % false alarms and 5 % misses need γ = 3.29.
 //! assert!((required_gamma(0.05, 0.05)? - 3.29).abs() < 1e-3);

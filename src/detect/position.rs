@@ -13,7 +13,7 @@ use core::ops::RangeInclusive;
 /// the templates of neighbours. Computed once for a scan, in memory of the caller's.
 ///
 /// ```
-/// use palpate::detect::Force;
+/// use palpate::force::Force;
 /// use palpate::detect::position::MaximumLaw;
 /// use palpate::detect::scan::Scan;
 ///

@@ -143,7 +143,7 @@ impl<'a> Scan<'a> {
     /// + k̂·v·dt.
     ///
     /// ```
-    /// use palpate::detect::Force;
+    /// use palpate::force::Force;
     /// use palpate::detect::scan::Scan;
     ///
     /// // Samples every 0.1 mm from x₀ = −0.3 mm on; the template's sample 1 is the inclusion's place.

@@ -10,7 +10,7 @@ use core::ops::{Range, RangeInclusive};
 /// Records F_p = F + noise, and what the matched filter for F_0 against F_1 says about them.
 ///
 /// ```
-/// use palpate::detect::Force;
+/// use palpate::force::Force;
 /// use palpate::detect::simulate::Simulation;
 /// use palpate::stats::random::Generator;
 ///
@@ -90,10 +90,7 @@ impl<'a> Simulation<'a> {
             }
         }
         let (x, y) = residual.split_at(samples);
-        self.filter.statistic(Force {
-            lateral: x,
-            normal: y,
-        })
+        self.filter.statistic(Force::new(x, y))
     }
 }
 
@@ -106,12 +103,7 @@ fn noise<'a>(
 ) -> Force<&'a mut [f64]> {
     generator.normals(trial, 0, samples);
     let (x, y) = samples.split_at_mut(samples.len() / 2);
-    Force {
-        lateral: x,
-        normal: y,
-    }
-    .zip(sd)
-    .map(|(samples, sd)| {
+    Force::new(x, y).zip(sd).map(|(samples, sd)| {
         samples.iter_mut().for_each(|sample| *sample *= sd);
         samples
     })
@@ -161,17 +153,8 @@ pub fn count_false_alarms(
     check_length("residual", scan.samples().saturating_mul(2), residual.len())?;
     let mut alarms = 0;
     for trial in trials {
-        let Force {
-            lateral: x,
-            normal: y,
-        } = noise(generator, trial, scan.noise_sd(), residual);
-        let maximum = scan.maximum(
-            Force {
-                lateral: x,
-                normal: y,
-            },
-            shifts.clone(),
-        )?;
+        let noise = noise(generator, trial, scan.noise_sd(), residual);
+        let maximum = scan.maximum(noise.as_deref(), shifts.clone())?;
         alarms += u64::from(maximum.theta >= eta);
     }
     Ok(alarms)

@@ -157,10 +157,7 @@ fn rounding_errors_of_one_sign_do_not_add_up() {
 fn a_difference_that_would_round_to_nothing_is_kept() {
     // Δ = 2^54 − 1 needs 54 bits and r = 2^53: 2Θ = Δ(2r − Δ) = 2^54 − 1, or 0 if Δ is rounded.
     const TOP: f64 = 9_007_199_254_740_992.0;
-    let channels = |x| Force {
-        lateral: x,
-        normal: &[0.0][..],
-    };
+    let channels = |x| Force::new(x, &[0.0][..]);
     let unit = Force::new(1.0, 1.0);
     let (observed, f0, f1) = ([1.0], [1.0 - TOP], [TOP]);
     let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
@@ -181,10 +178,7 @@ fn differences_of_forces_are_not_rounded() {
         size += 2 * (r * t).abs() + t * t;
     }
     let [observed, f0, f1] = [observed, f0, f1].map(|forces| floats(&forces));
-    let channels = |x| Force {
-        lateral: x,
-        normal: &zeros[..],
-    };
+    let channels = |x| Force::new(x, &zeros[..]);
     let unit = Force::new(1.0, 1.0);
     let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
     let error = ((2.0 * found.theta) as i128 - twice).unsigned_abs() as f64;
@@ -260,14 +254,7 @@ fn records_that_cannot_be_judged_are_refused() {
         let bad = [0.0, bad];
         let filter = MatchedFilter::new(good, sd).unwrap();
         let expected = |what| DetectError::NotFinite { what, index: 1 };
-        let statistic = |x, y| {
-            filter
-                .statistic(Force {
-                    lateral: x,
-                    normal: y,
-                })
-                .unwrap_err()
-        };
+        let statistic = |x, y| filter.statistic(Force::new(x, y)).unwrap_err();
         assert_eq!(statistic(&bad, &samples), expected("residual_x"));
         assert_eq!(statistic(&samples, &bad), expected("residual_y"));
         let template = Force::new(&samples[..], &bad);
@@ -279,10 +266,7 @@ fn records_that_cannot_be_judged_are_refused() {
             let mut series = [&samples[..]; 6];
             series[position] = &bad;
             let [ox, oy, ax, ay, bx, by] = series;
-            let channels = |x, y| Force {
-                lateral: x,
-                normal: y,
-            };
+            let channels = |x, y| Force::new(x, y);
             let names = ["observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y"];
             assert_eq!(
                 theta_of_record(channels(ox, oy), channels(ax, ay), channels(bx, by), sd)

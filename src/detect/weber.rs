@@ -28,7 +28,7 @@ impl WeberNoise {
 /// F_h)².
 ///
 /// ```
-/// use palpate::detect::Force;
+/// use palpate::force::Force;
 /// use palpate::detect::weber::{WeberNoise, theta_weber};
 ///
 /// // One sample, at F_0: θ = ½[0 − (Δ/s_1)²] + ln(s_0/s_1), s = 1 at no force and 5 at 2 N.

@@ -1,7 +1,7 @@
 //! Forces between the poses of a table, and beyond them (paper §4; `spec/interpolation.md`, `spec/trace.md`).
 
 use super::{ForceTable, Matrix, SAME_POSITION};
-use crate::detect::Force;
+use crate::force::Force;
 use crate::refusal::Refusal;
 
 /// What stands beyond the ends of an axis.
@@ -97,10 +97,10 @@ impl ForceTable {
                 )
             })
         };
-        Ok(Force {
-            lateral: value(self.lateral_force())?,
-            normal: value(self.normal_force())?,
-        })
+        Ok(Force::new(
+            value(self.lateral_force())?,
+            value(self.normal_force())?,
+        ))
     }
 
     /// The forces on the probe at `depth` (m) and each of `positions` (m, in any order), N: linear in the depth
@@ -140,10 +140,10 @@ impl ForceTable {
                 |column: &Place| column.blend(|column| row.blend(|row| matrix.row(row)[column]));
             columns.iter().map(force).collect()
         };
-        Ok(Force {
-            lateral: along(self.lateral_force()),
-            normal: along(self.normal_force()),
-        })
+        Ok(Force::new(
+            along(self.lateral_force()),
+            along(self.normal_force()),
+        ))
     }
 }
 

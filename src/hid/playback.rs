@@ -3,7 +3,8 @@
 use core::time::Duration;
 
 use super::{DeviceError, ForceReport, HapticDevice, PositionReport, Received, Units};
-use crate::servo::{self, Force, Input, Limits, Mode, Request, State, Table, step};
+use crate::force::Force;
+use crate::servo::{self, Input, Limits, Mode, Request, State, Table, step};
 
 /// Reports that one cycle takes from the queue at most: what the kernel of the system keeps.
 pub const QUEUE: usize = 64;

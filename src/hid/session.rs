@@ -5,8 +5,9 @@ use std::fmt;
 use std::time::Duration;
 
 use super::{Capabilities, Control, Counters, Cycle, DeviceError, HapticDevice, Playback, Units};
+use crate::force::Force;
 use crate::refusal::Refusal;
-use crate::servo::{Fault, Force, Limits, Mode, Request, Table};
+use crate::servo::{Fault, Limits, Mode, Request, Table};
 
 /// The longest that a device may go on playing a force without a report.
 const LONGEST_WATCHDOG_MS: u16 = 100;

@@ -3,7 +3,8 @@
 extern crate std;
 
 use super::*;
-use crate::servo::{Command, Force};
+use crate::force::Force;
+use crate::servo::Command;
 
 #[cfg(feature = "std")]
 pub use played::{limits, probing, with_table};
@@ -14,8 +15,9 @@ mod played {
     use std::time::Duration;
     use std::vec::Vec;
 
+    use crate::force::Force;
     use crate::hid::simulated::{Defect, Mechanics, PAPER, SimulatedDevice, Trajectory};
-    use crate::servo::{Axis, Force, Limits, Table};
+    use crate::servo::{Axis, Limits, Table};
 
     /// Forces over a square of 8 mm by 40 mm that grow with the depth to `normal` (N), and to ±1 N to the sides.
     pub fn with_table<R>(normal: f32, then: impl FnOnce(Table) -> R) -> R {
@@ -184,10 +186,7 @@ fn counts_are_micrometres_and_half_millinewtons_here() {
                 .device_fault
         );
     }
-    let force = Force {
-        lateral: -0.1,
-        normal: 1.5,
-    };
+    let force = Force::new(-0.1, 1.5);
     let playing = true;
     let report = units.report(&Command { force, playing }, 77);
     assert_eq!((report.lateral, report.normal), (-200, 3000));

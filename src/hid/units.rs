@@ -9,7 +9,8 @@ use crate::servo::{Command, Sample};
 ///
 /// ```
 /// use palpate::hid::{Capabilities, ForceReport, PositionReport, Units, button};
-/// use palpate::servo::{Command, Force};
+/// use palpate::force::Force;
+/// use palpate::servo::Command;
 ///
 /// # let bytes = [3, 1, 0, 0xE8, 0x03, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0];
 /// # let capabilities = Capabilities::decode(&bytes).expect("a report");

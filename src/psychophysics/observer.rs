@@ -5,7 +5,8 @@ use std::fmt::Display;
 use std::time::Duration;
 
 use super::Interval;
-use crate::detect::{Force, theta_of_record};
+use crate::detect::theta_of_record;
+use crate::force::Force;
 use crate::force_map::ForceTable;
 use crate::hid::{Counters, End, HapticDevice, Session};
 use crate::refusal::Refusal;
@@ -96,7 +97,7 @@ pub fn present<D: HapticDevice>(
 /// Knows what to expect.
 ///
 /// ```
-/// use palpate::detect::Force;
+/// use palpate::force::Force;
 /// use palpate::force_map::{ForceTable, Matrix};
 /// use palpate::psychophysics::{Felt, IdealObserver, Interval};
 ///
@@ -162,23 +163,10 @@ impl IdealObserver<'_> {
             noisy(&felt.forces.normal, 1),
         );
         let statistic = theta_of_record(
-            Force {
-                lateral: &x,
-                normal: &y,
-            },
-            Force {
-                lateral: &f0.0,
-                normal: &f0.1,
-            },
-            Force {
-                lateral: &f1.0,
-                normal: &f1.1,
-            },
-            Force {
-                lateral: (),
-                normal: (),
-            }
-            .map(|()| self.noise_sd),
+            Force::new(&x, &y),
+            Force::new(&f0.0, &f0.1),
+            Force::new(&f1.0, &f1.1),
+            Force::new((), ()).map(|()| self.noise_sd),
         );
         let statistic = statistic.map_err(refused)?;
         Ok((statistic.theta, statistic.gamma))

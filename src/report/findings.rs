@@ -8,9 +8,10 @@ use super::quality::{Quality, quality, warnings};
 use super::text::{millimetres, name_of_map};
 use super::{ReportError, Settings, Study, paper};
 use crate::detect::{
-    DetectError, Force, MatchedFilter, auc, error_rates, map_threshold,
+    DetectError, MatchedFilter, auc, error_rates, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
 };
+use crate::force::Force;
 use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};
 use crate::psychophysics::bridge::Bridge;
 use crate::psychophysics::{Analysis, NoiseDecomposition, Table, analyse, paper_noise_levels};
@@ -297,10 +298,7 @@ fn peak(laterals: &[f64], forces: &[f64]) -> Peak {
 
 /// γ of lateral and normal forces in noise of the same standard deviation.
 fn gamma(lateral: &[f64], normal: &[f64], noise_sd: f64) -> Result<f64, DetectError> {
-    let noise_sd = Force {
-        lateral: noise_sd,
-        normal: noise_sd,
-    };
+    let noise_sd = Force::new(noise_sd, noise_sd);
     let template = Force { lateral, normal };
     MatchedFilter::new(template, noise_sd).map(|filter| filter.gamma())
 }

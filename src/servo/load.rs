@@ -105,10 +105,10 @@ impl LoadedTable {
         let mut forces = vec![Force::ZERO; rows_in_front];
         let normal = map.normal_force().values();
         for (&lateral, &normal) in map.lateral_force().values().iter().zip(normal) {
-            forces.push(Force {
-                lateral: rounded(lateral, &mut rounding.force_n),
-                normal: rounded(normal, &mut rounding.force_n),
-            });
+            forces.push(Force::new(
+                rounded(lateral, &mut rounding.force_n),
+                rounded(normal, &mut rounding.force_n),
+            ));
         }
         let loaded = LoadedTable {
             reciprocal_heights: reciprocals(&depths),

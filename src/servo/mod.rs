@@ -27,7 +27,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use crate::force::Force;
+use crate::force::Force;
 pub use axis::{
     Axis, Cell, EXTRAPOLATION_CELLS, InvalidAxis, MAX_KNOTS, MIN_WIDTH, POSITION_LIMIT,
 };

@@ -43,7 +43,8 @@ impl Damping {
 /// ∂F/∂x is linear in d, and ∂F/∂d in x, so that the largest is at a corner of a cell.
 ///
 /// ```
-/// use palpate::servo::{Axis, Force, Table, stiffness};
+/// use palpate::force::Force;
+/// use palpate::servo::{Axis, Table, stiffness};
 ///
 /// // 4 N at half a metre, wherever the probe stands.
 /// let force = |normal| Force { lateral: 0.0, normal };

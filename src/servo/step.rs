@@ -25,7 +25,8 @@ const NO_SAMPLE: Sample = Sample {
 /// Total and bounded for every bit pattern of `state` and `input`.
 ///
 /// ```
-/// use palpate::servo::{Axis, Force, Input, Limits, Mode, Request, Sample, State, Table, step};
+/// use palpate::force::Force;
+/// use palpate::servo::{Axis, Input, Limits, Mode, Request, Sample, State, Table, step};
 ///
 /// # let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
 /// # let forces = [0.0, 0.0, 4.0, 4.0].map(|normal| Force { lateral: 0.0, normal });
@@ -85,10 +86,10 @@ pub fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (Stat
         let target = limit(target, limits.force());
         approach(last, target, limits.slew(), fall)
     };
-    let force = Force {
-        lateral: component(last.lateral, target.lateral),
-        normal: component(last.normal, target.normal),
-    };
+    let force = Force::new(
+        component(last.lateral, target.lateral),
+        component(last.normal, target.normal),
+    );
     let taken_over = came && (fresh || mode != Mode::Armed);
     let next = State {
         mode,

@@ -9,7 +9,8 @@ pub const TABLE_FORCE_LIMIT: f32 = 100.0;
 /// The force on the probe over depth and lateral position, at 1 kHz.
 ///
 /// ```
-/// use palpate::servo::{Axis, Force, Table};
+/// use palpate::force::Force;
+/// use palpate::servo::{Axis, Table};
 ///
 /// let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
 /// let forces = [0.0, 0.0, 2.0, 4.0].map(|normal| Force { lateral: 0.0, normal });
@@ -130,10 +131,10 @@ impl<'a> Table<'a> {
             let lower = blend(c, d, lateral.fraction);
             blend(upper, lower, depth.fraction)
         };
-        Force {
-            lateral: component(a.lateral, b.lateral, c.lateral, d.lateral),
-            normal: component(a.normal, b.normal, c.normal, d.normal),
-        }
+        Force::new(
+            component(a.lateral, b.lateral, c.lateral, d.lateral),
+            component(a.normal, b.normal, c.normal, d.normal),
+        )
     }
 }
 

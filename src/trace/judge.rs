@@ -1,11 +1,12 @@
 //! The record judged at the position that the maps are for.
 
-use super::{Record, refused, view};
+use super::{Record, refused};
 use crate::detect::assessment::{Assessment, assess};
 use crate::detect::{
-    DetectError, Force, map_threshold, neyman_pearson_false_alarm_threshold,
+    DetectError, map_threshold, neyman_pearson_false_alarm_threshold,
     neyman_pearson_miss_threshold, theta_of_record,
 };
+use crate::force::Force;
 use crate::force_map::ForceTable;
 use crate::refusal::Refusal;
 
@@ -66,7 +67,7 @@ pub fn judge(
         inclusion.minus(reference)?;
         let f0 = record.expected(reference, depth)?;
         let f1 = record.expected(inclusion, depth)?;
-        let (observed, f0, f1) = (record.forces(), view(&f0), view(&f1));
+        let (observed, f0, f1) = (record.forces(), f0.as_deref(), f1.as_deref());
         let assessed = || {
             let gamma = theta_of_record(observed, f0, f1, noise_sd)?.gamma;
             if gamma == 0.0 {
@@ -84,7 +85,7 @@ pub fn judge(
 /// How far a record is from the nearer of the two hypotheses.
 ///
 /// ```
-/// use palpate::detect::Force;
+/// use palpate::force::Force;
 /// use palpate::force_map::{ForceTable, Matrix};
 /// use palpate::trace::{Misfit, Trace};
 ///
@@ -124,7 +125,7 @@ impl Misfit {
         theta: f64,
     ) -> Result<Misfit, Refusal> {
         let f0 = record.expected(reference, depth)?;
-        let sums = record.forces().zip(view(&f0)).zip(noise_sd);
+        let sums = record.forces().zip(f0.as_deref()).zip(noise_sd);
         let sums = sums.map(|((observed, f0), noise_sd)| {
             let terms = std::iter::zip(observed, f0).map(|(observed, f0)| {
                 let standardised = (observed - f0) / noise_sd;

@@ -1,14 +1,15 @@
 //! The record judged at an unknown position of the inclusion, equation (10).
 
-use super::{Criterion, Record, mm, refused, view};
+use super::{Criterion, Record, mm, refused};
 use crate::detect::assessment::{ScanAssessment, assess_scan};
 use crate::detect::mixture::mixture_theta;
 use crate::detect::position::{MaximumLaw, position_bound, slope};
 use crate::detect::scan::Scan;
 use crate::detect::{
-    Decision, DetectError, Force, decide, error_rates, map_threshold,
-    neyman_pearson_miss_threshold, posterior,
+    Decision, DetectError, decide, error_rates, map_threshold, neyman_pearson_miss_threshold,
+    posterior,
 };
+use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION};
 use crate::refusal::Refusal;
 
@@ -131,7 +132,7 @@ impl Grid {
         let positions: Vec<f64> = (first_shift..=last_sample)
             .map(|j| j as f64 * spacing)
             .collect();
-        let residual = record.forces().zip(view(&f0)).map(|(observed, f0)| {
+        let residual = record.forces().zip(f0.as_deref()).map(|(observed, f0)| {
             let difference = std::iter::zip(observed, f0).map(|(observed, f0)| observed - f0);
             difference.collect()
         });
@@ -151,14 +152,14 @@ impl Grid {
         prior_h1: f64,
     ) -> Result<Location, DetectError> {
         let candidates = self.residual.lateral.len();
-        let scan = Scan::new(candidates, view(&self.template), noise_sd)?;
+        let scan = Scan::new(candidates, self.template.as_deref(), noise_sd)?;
         let (mut gamma, mut angle) = (vec![0.0; candidates], vec![0.0; candidates]);
         let law = MaximumLaw::new(&scan, self.first_shift, &mut gamma, &mut angle)?;
         let eta = threshold(&scan, &law, criterion, prior_h1)?;
-        let found: ScanAssessment = assess_scan(&scan, &law, view(&self.residual), eta)?;
+        let found: ScanAssessment = assess_scan(&scan, &law, self.residual.as_deref(), eta)?;
         let shift = found.maximum.shift;
         let mut theta = vec![0.0; candidates];
-        scan.theta(view(&self.residual), self.first_shift, &mut theta)?;
+        scan.theta(self.residual.as_deref(), self.first_shift, &mut theta)?;
         let mixture = mixture_theta(&theta, &vec![1.0 / candidates as f64; candidates])?;
         let mut location = Location {
             theta_max: found.maximum.theta,
@@ -188,7 +189,7 @@ impl Grid {
 
     /// Implements: TRC-042.
     fn template_edge(&self, noise_sd: Force<f64>) -> f64 {
-        let parts = view(&self.template).zip(noise_sd).map(|(signal, sd)| {
+        let parts = self.template.as_deref().zip(noise_sd).map(|(signal, sd)| {
             let largest =
                 |samples: &[f64]| samples.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
             let ends = [signal[0], signal[signal.len() - 1]];
@@ -214,13 +215,7 @@ impl Grid {
             Ok::<Vec<f64>, DetectError>(seen.map(|(_, slope)| slope).collect())
         };
         let (x, y) = (seen(&self.template.lateral)?, seen(&self.template.normal)?);
-        position_bound(
-            Force {
-                lateral: &x,
-                normal: &y,
-            },
-            noise_sd,
-        )
+        position_bound(Force::new(&x, &y), noise_sd)
     }
 }
 

@@ -7,7 +7,8 @@
 //! | `locate.rs` | the scan for the position, equation (10) |
 //!
 //! ```
-//! use palpate::detect::{Force, Decision};
+//! use palpate::force::Force;
+//! use palpate::detect::Decision;
 //! use palpate::force_map::{ForceTable, Matrix};
 //! use palpate::trace::{Criterion, Trace, judge, locate};
 //!
@@ -49,7 +50,8 @@ pub use judge::{Criterion, Misfit, judge};
 pub use locate::{DIED_AWAY, Location, MOST_SAMPLES, UNIFORM, locate};
 
 use crate::csv::{Column, Table};
-use crate::detect::{DetectError, Force};
+use crate::detect::DetectError;
+use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION};
 use crate::phantom::decimal::format_scaled;
 use crate::refusal::Refusal;
@@ -206,10 +208,7 @@ impl Trace {
         Ok(Record {
             lines: samples.iter().map(|(line, _)| *line).collect(),
             positions: column(0),
-            forces: Force {
-                lateral: column(1),
-                normal: column(2),
-            },
+            forces: Force::new(column(1), column(2)),
             file,
         })
     }
@@ -270,7 +269,7 @@ impl Record {
 
     /// The recorded force on the probe, N, one sample for each position.
     pub fn forces(&self) -> Force<&[f64]> {
-        view(&self.forces)
+        self.forces.as_deref()
     }
 
     /// The forces that `map` expects at `depth` (m) at the samples, N.
@@ -309,12 +308,5 @@ fn refused(error: DetectError) -> Refusal {
             Refusal::state(found, "a signal to decide by")
         }
         error => Refusal::state(error, ""),
-    }
-}
-
-fn view(channels: &Force<Vec<f64>>) -> Force<&[f64]> {
-    Force {
-        lateral: &channels.lateral,
-        normal: &channels.normal,
     }
 }

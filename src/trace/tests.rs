@@ -41,10 +41,7 @@ fn shifted(signal: f64, shift: usize) -> Record {
     read(&text).unwrap()
 }
 
-const NOISE: Force<f64> = Force {
-    lateral: 0.5,
-    normal: 0.25,
-};
+const NOISE: Force<f64> = Force::new(0.5, 0.25);
 
 fn find(record: &Record, signal: f64, criterion: Criterion) -> Result<Location, Refusal> {
     locate(

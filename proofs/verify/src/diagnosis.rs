@@ -7,8 +7,9 @@ use std::vec::Vec;
 
 use super::{Check, Figure};
 use palpate::detect::simulate::Simulation;
-use palpate::detect::{Force, auc, error_rates, neyman_pearson_false_alarm_threshold};
+use palpate::detect::{auc, error_rates, neyman_pearson_false_alarm_threshold};
 use palpate::fem::{Contact, MESH_SIZE, Model};
+use palpate::force::Force;
 use palpate::phantom::Phantom;
 use palpate::stats::binomial::clopper_pearson;
 use palpate::stats::random::Generator;
@@ -72,17 +73,14 @@ fn diagnosis(inclusion: &str, noise: f64) -> Result<Vec<Figure>, String> {
     let difference = |one: &[f64], zero: &[f64]| -> Vec<f64> {
         one.iter().zip(zero).map(|(one, zero)| one - zero).collect()
     };
-    let template = Force {
-        lateral: difference(&f1.lateral, &f0.lateral),
-        normal: difference(&f1.normal, &f0.normal),
-    };
-    let noise_sd = Force {
-        lateral: noise,
-        normal: noise,
-    };
+    let template = Force::new(
+        difference(&f1.lateral, &f0.lateral),
+        difference(&f1.normal, &f0.normal),
+    );
+    let noise_sd = Force::new(noise, noise);
     let simulation = Simulation::new(
-        view(&f0),
-        view(&template),
+        f0.as_deref(),
+        template.as_deref(),
         noise_sd,
         Generator::new(SEED, 0),
     )
@@ -138,9 +136,11 @@ fn count(
         in_order: 0,
     };
     for record in 0..RECORDS {
-        let without = simulation.trial(2 * record, view(f0), &mut scratch)?.theta;
+        let without = simulation
+            .trial(2 * record, f0.as_deref(), &mut scratch)?
+            .theta;
         let with = simulation
-            .trial(2 * record + 1, view(f1), &mut scratch)?
+            .trial(2 * record + 1, f1.as_deref(), &mut scratch)?
             .theta;
         counts.silent += u64::from(without < eta);
         counts.found += u64::from(with >= eta);
@@ -157,17 +157,10 @@ fn forces(name: &str) -> Result<Force<Vec<f64>>, String> {
     let map = Model::new(&phantom, MESH_SIZE, Contact::default())
         .and_then(|model| model.map(&[DEPTH], &laterals, &|_| ()))
         .map_err(|error| failed(&error))?;
-    Ok(Force {
-        lateral: map.lateral_force().row(0).to_vec(),
-        normal: map.normal_force().row(0).to_vec(),
-    })
-}
-
-fn view(channels: &Force<Vec<f64>>) -> Force<&[f64]> {
-    Force {
-        lateral: &channels.lateral,
-        normal: &channels.normal,
-    }
+    Ok(Force::new(
+        map.lateral_force().row(0).to_vec(),
+        map.normal_force().row(0).to_vec(),
+    ))
 }
 
 #[cfg(test)]

@@ -4,10 +4,11 @@ use std::ops::RangeInclusive;
 use std::thread::Builder;
 
 use super::{Check, Figure};
+use palpate::force::Force;
 use palpate::hid::count;
 use palpate::servo::{
-    Axis, Cell, FORCE_CEILING, Force, Input, Limits, MIN_SLEW, MIN_WIDTH, Mode, RELEASE_CYCLES,
-    Request, Sample, State, Table, approach, blend, limit, step,
+    Axis, Cell, FORCE_CEILING, Input, Limits, MIN_SLEW, MIN_WIDTH, Mode, RELEASE_CYCLES, Request,
+    Sample, State, Table, approach, blend, limit, step,
 };
 
 /// The checks of this part.

@@ -39,10 +39,7 @@ fn what_is_refused_is_never_a_decision() {
             ];
             series[position] = &bad;
             let [ox, oy, ax, ay, bx, by] = series;
-            let channels = |x, y| Force {
-                lateral: x,
-                normal: y,
-            };
+            let channels = |x, y| Force::new(x, y);
             let found = assess(
                 channels(ox, oy),
                 channels(ax, ay),

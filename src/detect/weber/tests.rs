@@ -66,10 +66,7 @@ fn what_cannot_be_judged_is_refused() {
     ];
     let judge = |series: [&[f64]; 6]| {
         let [ox, oy, ax, ay, bx, by] = series;
-        let channels = |x, y| Force {
-            lateral: x,
-            normal: y,
-        };
+        let channels = |x, y| Force::new(x, y);
         theta_weber(channels(ox, oy), channels(ax, ay), channels(bx, by), NOISE).unwrap_err()
     };
     for (position, what) in names.into_iter().enumerate() {

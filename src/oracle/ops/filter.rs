@@ -3,7 +3,8 @@
 use super::{Answer, Arguments, Refused, check_rows};
 use crate::detect::coloured::{coloured_scratch, theta_coloured};
 use crate::detect::scan::Scan;
-use crate::detect::{Force, MatchedFilter, theta_of_record};
+use crate::detect::{MatchedFilter, theta_of_record};
+use crate::force::Force;
 
 /// Most rows of a covariance: its factorisation takes n³/6 products.
 const MOST_ROWS: usize = 1000;
@@ -11,10 +12,10 @@ const MOST_ROWS: usize = 1000;
 const MOST_PRODUCTS: usize = 10_000_000;
 
 fn noise_sd(arguments: &mut Arguments) -> Result<Force<f64>, Refused> {
-    Ok(Force {
-        lateral: arguments.number("noise_sd_x")?,
-        normal: arguments.number("noise_sd_y")?,
-    })
+    Ok(Force::new(
+        arguments.number("noise_sd_x")?,
+        arguments.number("noise_sd_y")?,
+    ))
 }
 
 fn series(
@@ -22,29 +23,14 @@ fn series(
     x: &'static str,
     y: &'static str,
 ) -> Result<Force<Vec<f64>>, Refused> {
-    Ok(Force {
-        lateral: arguments.numbers(x)?,
-        normal: arguments.numbers(y)?,
-    })
-}
-
-fn slices(
-    Force {
-        lateral: x,
-        normal: y,
-    }: &Force<Vec<f64>>,
-) -> Force<&[f64]> {
-    Force {
-        lateral: x,
-        normal: y,
-    }
+    Ok(Force::new(arguments.numbers(x)?, arguments.numbers(y)?))
 }
 
 /// b, σ and γ of a template.
 pub fn matched_filter(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let template = series(arguments, "template_x", "template_y")?;
     let noise_sd = noise_sd(arguments)?;
-    let filter = MatchedFilter::new(slices(&template), noise_sd)?;
+    let filter = MatchedFilter::new(template.as_deref(), noise_sd)?;
     let (b, sigma) = (filter.b(), filter.sigma());
     Ok(Answer::default()
         .with("b_x", b.lateral)
@@ -60,7 +46,7 @@ pub fn theta(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let f0 = series(arguments, "f0_x", "f0_y")?;
     let f1 = series(arguments, "f1_x", "f1_y")?;
     let noise_sd = noise_sd(arguments)?;
-    let found = theta_of_record(slices(&observed), slices(&f0), slices(&f1), noise_sd)?;
+    let found = theta_of_record(observed.as_deref(), f0.as_deref(), f1.as_deref(), noise_sd)?;
     Ok(Answer::default()
         .with("theta", found.theta)
         .with("y_x", found.y.lateral)
@@ -105,10 +91,10 @@ pub fn scan(arguments: &mut Arguments) -> Result<Answer, Refused> {
             "template_x of {length} samples on {samples} takes more than {MOST_PRODUCTS} products"
         )));
     }
-    let scan = Scan::new(samples, slices(&template), noise_sd)?;
+    let scan = Scan::new(samples, template.as_deref(), noise_sd)?;
     let mut theta = vec![0.0; samples - length + 1];
-    scan.theta(slices(&residual), 0, &mut theta)?;
-    let maximum = scan.maximum(slices(&residual), scan.full_shifts())?;
+    scan.theta(residual.as_deref(), 0, &mut theta)?;
+    let maximum = scan.maximum(residual.as_deref(), scan.full_shifts())?;
     Ok(Answer::default()
         .with("theta", theta)
         .with("max_theta", maximum.theta)

@@ -3,7 +3,8 @@
 use std::fmt::Debug;
 
 use super::{Answer, Arguments, Bits, Refused};
-use crate::servo::{Axis, Force, Table};
+use crate::force::Force;
+use crate::servo::{Axis, Table};
 
 /// Knots as the kernel stores them, with the reciprocals of the widths.
 ///
@@ -76,9 +77,6 @@ fn forces(rows: &[Vec<Bits>], depths: usize, laterals: usize) -> Result<Vec<Forc
             "table_bits is expected to have {depths} rows of {laterals} entries"
         )));
     }
-    let both = |&Bits(force)| Force {
-        lateral: force,
-        normal: force,
-    };
+    let both = |&Bits(force)| Force::new(force, force);
     Ok(rows.iter().flatten().map(both).collect())
 }

@@ -1,6 +1,7 @@
 //! What a table gives out on a closed path because its forces have no potential, and its largest force.
 
-use crate::servo::{Force, Table};
+use crate::force::Force;
+use crate::servo::Table;
 
 /// A cell of a table between two depths and two lateral positions.
 struct Cell {

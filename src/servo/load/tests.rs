@@ -186,10 +186,7 @@ fn the_stiffness_is_the_steepest_slope_by_differences() {
         for place in 0..16 {
             for [lateral, normal] in [[8.0, 0.5], [-1.0, 4.0]] {
                 let mut forces: Vec<Force<f32>> = (0..16u8)
-                    .map(|k| Force {
-                        lateral: f32::from(k * 7 % 5) / 8.0,
-                        normal: f32::from(k * 3 % 7) / 8.0,
-                    })
+                    .map(|k| Force::new(f32::from(k * 7 % 5) / 8.0, f32::from(k * 3 % 7) / 8.0))
                     .collect();
                 forces[place] = Force { lateral, normal };
                 let (heights, widths) = (reciprocals(&depths), reciprocals(&laterals));

@@ -4,12 +4,13 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use assert_no_alloc::assert_no_alloc;
+use palpate::force::Force;
 use palpate::hid::real::{RealDevice, Wanted};
 use palpate::hid::{
     Capabilities, Control, DeviceError, ForceReport, HapticDevice, Received, Session,
 };
 use palpate::refusal::Refusal;
-use palpate::servo::{Axis, Force, Limits, Table};
+use palpate::servo::{Axis, Limits, Table};
 
 use crate::link::NUMBERS;
 use crate::schedule::{self, Fifo};

@@ -5,13 +5,14 @@ use std::vec;
 use std::vec::Vec;
 
 use super::checks::{Law, count_rejects, excess_rejects, variance_rejects};
-use super::{Check, Draw, Outcome, view};
+use super::{Check, Draw, Outcome};
 use palpate::detect::mixture::mixture_theta;
 use palpate::detect::position::{MaximumLaw, position_bound, slope};
 use palpate::detect::scan::Scan;
 use palpate::detect::simulate::count_false_alarms;
 use palpate::detect::weber::{WeberNoise, theta_weber};
-use palpate::detect::{Force, neyman_pearson_false_alarm_threshold, theta_of_record};
+use palpate::detect::{neyman_pearson_false_alarm_threshold, theta_of_record};
+use palpate::force::Force;
 use palpate::stats::binomial::clopper_pearson;
 use palpate::stats::normal::{cdf, upper_tail};
 
@@ -25,21 +26,18 @@ pub(super) const CHECKS: &[Check] = &[
     Check::new("weber_tail_h1", |draw| weber(draw, true, 640)),
 ];
 
-const UNIT: Force<f64> = Force {
-    lateral: 1.0,
-    normal: 1.0,
-};
+const UNIT: Force<f64> = Force::new(1.0, 1.0);
 
 /// A bump and its slope, `length` samples, with that γ in noise of 1 N.
 fn template(length: usize, width: f64, gamma: f64) -> Force<Vec<f64>> {
     let position = |i: usize| (i as f64 - (length - 1) as f64 / 2.0) / width;
     let bump = |i: usize| libm::exp(-0.5 * position(i) * position(i));
-    let mut template = Force {
-        lateral: (0..length)
+    let mut template = Force::new(
+        (0..length)
             .map(|i| position(i) * bump(i))
             .collect::<Vec<_>>(),
-        normal: (0..length).map(bump).collect::<Vec<_>>(),
-    };
+        (0..length).map(bump).collect::<Vec<_>>(),
+    );
     let energy: f64 = template
         .lateral
         .iter()
@@ -56,7 +54,7 @@ fn template(length: usize, width: f64, gamma: f64) -> Force<Vec<f64>> {
 fn theta_max_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
     const SAMPLES: usize = 48;
     let template = template(17, 3.0, 3.0);
-    let scan = Scan::new(SAMPLES, view(&template), UNIT)?;
+    let scan = Scan::new(SAMPLES, template.as_deref(), UNIT)?;
     let count = scan.shifts().count();
     let (mut gamma, mut angle) = (vec![0.0; count], vec![0.0; count]);
     let law = MaximumLaw::new(&scan, *scan.shifts().start(), &mut gamma, &mut angle)?;
@@ -83,7 +81,7 @@ fn theta_max_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
 fn position_errors(draw: &Draw<'_>, template: &Force<Vec<f64>>, place: usize) -> Outcome<Vec<f64>> {
     const SAMPLES: usize = 160;
     let generator = draw.generator(610 + draw.replicate);
-    let scan = Scan::new(SAMPLES, view(template), UNIT)?;
+    let scan = Scan::new(SAMPLES, template.as_deref(), UNIT)?;
     let mut deviates = [0.0; 2 * SAMPLES];
     let errors = (0..draw.trials()).map(|trial| {
         generator.normals(trial, 0, &mut deviates);
@@ -92,13 +90,7 @@ fn position_errors(draw: &Draw<'_>, template: &Force<Vec<f64>>, place: usize) ->
             x[place + i] += template.lateral[i];
             y[place + i] += template.normal[i];
         }
-        let found = scan.maximum(
-            Force {
-                lateral: x,
-                normal: y,
-            },
-            scan.full_shifts(),
-        )?;
+        let found = scan.maximum(Force::new(x, y), scan.full_shifts())?;
         Ok(found.refined_shift - 60.0)
     });
     errors.collect()
@@ -111,13 +103,10 @@ fn position_error(draw: &Draw<'_>) -> Outcome<bool> {
         _ => 25.0,
     };
     let template = template(61, 6.0, gamma);
-    let mut slopes = Force {
-        lateral: vec![0.0; 61],
-        normal: vec![0.0; 61],
-    };
+    let mut slopes = Force::new(vec![0.0; 61], vec![0.0; 61]);
     slope(&template.lateral, 1.0, &mut slopes.lateral)?;
     slope(&template.normal, 1.0, &mut slopes.normal)?;
-    let sd = position_bound(view(&slopes), UNIT)?;
+    let sd = position_bound(slopes.as_deref(), UNIT)?;
     let place = match draw.defect {
         "template_shifted" => 61,
         _ => 60,
@@ -160,10 +149,10 @@ fn cut_position_error(draw: &Draw<'_>) -> Outcome<bool> {
     const PLACE: usize = 6;
     const STEP: f64 = 1e-3;
     let whole = template(CUT + 2 * PLACE, 20.0, 1000.0);
-    let template = Force {
-        lateral: whole.lateral[PLACE..][..CUT].to_vec(),
-        normal: whole.normal[PLACE..][..CUT].to_vec(),
-    };
+    let template = Force::new(
+        whole.lateral[PLACE..][..CUT].to_vec(),
+        whole.normal[PLACE..][..CUT].to_vec(),
+    );
     let signal = [&whole.lateral[..CUT], &whole.normal[..CUT]].concat();
     let mean = plain_place(&template, &signal, false);
     let slope = |i: usize| {
@@ -173,7 +162,7 @@ fn cut_position_error(draw: &Draw<'_>) -> Outcome<bool> {
     };
     let sd = (0..2 * CUT).map(|i| slope(i).powi(2)).sum::<f64>().sqrt();
     let generator = draw.generator(615 + draw.replicate);
-    let scan = Scan::new(CUT, view(&template), UNIT)?;
+    let scan = Scan::new(CUT, template.as_deref(), UNIT)?;
     let mut record = [0.0; 2 * CUT];
     let places = (0..draw.trials()).map(|trial| {
         generator.normals(trial, 0, &mut record);
@@ -182,15 +171,7 @@ fn cut_position_error(draw: &Draw<'_>) -> Outcome<bool> {
             return Ok(plain_place(&template, &record, true));
         }
         let (x, y) = record.split_at(CUT);
-        Ok(scan
-            .maximum(
-                Force {
-                    lateral: x,
-                    normal: y,
-                },
-                0..=14,
-            )?
-            .refined_shift)
+        Ok(scan.maximum(Force::new(x, y), 0..=14)?.refined_shift)
     });
     let places = places.collect::<Outcome<Vec<f64>>>()?;
     variance_rejects(&places, Law { mean, sd }, draw.row.alpha)
@@ -244,28 +225,14 @@ fn weber_tail(inclusion: bool, eta: f64) -> Outcome<f64> {
 
 /// θ of one observed force, by the detector or by one with a defect.
 fn weber_theta(observed: f64, defect: &str) -> Outcome<f64> {
-    let channels = |y| Force {
-        lateral: &[0.0][..],
-        normal: y,
-    };
+    let channels = |y| Force::new(&[0.0][..], y);
     let record = channels(core::slice::from_ref(&observed));
     let (f0, f1) = (channels(&FORCE[..1]), channels(&FORCE[1..]));
     if defect == "constant_noise_presumed" {
-        let sd = Force {
-            lateral: 1.0,
-            normal: WEBER.sd(FORCE[0]),
-        };
+        let sd = Force::new(1.0, WEBER.sd(FORCE[0]));
         return Ok(theta_of_record(record, f0, f1, sd)?.theta);
     }
-    let theta = theta_weber(
-        record,
-        f0,
-        f1,
-        Force {
-            lateral: WEBER,
-            normal: WEBER,
-        },
-    )?;
+    let theta = theta_weber(record, f0, f1, Force::new(WEBER, WEBER))?;
     Ok(match defect {
         "logarithm_left_out" => theta - libm::log(WEBER.sd(FORCE[0]) / WEBER.sd(FORCE[1])),
         _ => theta,

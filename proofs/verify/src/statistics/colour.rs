@@ -8,7 +8,8 @@ use super::checks::{Law, mean_rejects, variance_rejects};
 use super::{Check, Draw, Outcome};
 use palpate::detect::coloured::{ColouredStatistic, coloured_scratch, theta_coloured};
 use palpate::detect::stationary::{banded_scratch, theta_banded, theta_stationary};
-use palpate::detect::{DetectError, Force, MatchedFilter};
+use palpate::detect::{DetectError, MatchedFilter};
+use palpate::force::Force;
 
 /// DET-040, DET-041; DET-044; DET-045.
 pub(super) const CHECKS: &[Check] = &[
@@ -65,10 +66,7 @@ type Detector = fn(&[f64]) -> Result<ColouredStatistic, DetectError>;
 type Noise = fn(&[f64]) -> [f64; 2 * SAMPLES];
 
 fn channels(values: &[f64]) -> Force<&[f64]> {
-    Force {
-        lateral: &values[..SAMPLES],
-        normal: &values[SAMPLES..],
-    }
+    Force::new(&values[..SAMPLES], &values[SAMPLES..])
 }
 
 /// What two channels share (a vibration of the probe) and what each has alone: n = 0.2 e + 0.3 g, g
@@ -107,10 +105,7 @@ fn feedback(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
 
 fn feedback_detector(residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
     let lags: [f64; SAMPLES] = std::array::from_fn(|lag| 0.04 / 0.36 * libm::pow(0.8, lag as f64));
-    let lags = Force {
-        lateral: &lags[..],
-        normal: &lags[..],
-    };
+    let lags = Force::new(&lags[..], &lags[..]);
     theta_stationary(
         channels(residual),
         channels(&TEMPLATE),
@@ -129,10 +124,7 @@ fn moving_average(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
 
 fn moving_average_detector(residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
     let lags = [0.04 + 0.0256, 0.032];
-    let lags = Force {
-        lateral: &lags[..],
-        normal: &lags[..],
-    };
+    let lags = Force::new(&lags[..], &lags[..]);
     let mut scratch = [0.0; banded_scratch(2)];
     theta_banded(channels(residual), channels(&TEMPLATE), lags, &mut scratch)
 }
@@ -140,13 +132,7 @@ fn moving_average_detector(residual: &[f64]) -> Result<ColouredStatistic, Detect
 /// θ of a detector that takes each noise for white with its own variance.
 fn without_whitening(residual: &[f64], variance: f64) -> Result<f64, DetectError> {
     let sd = libm::sqrt(variance);
-    let filter = MatchedFilter::new(
-        channels(&TEMPLATE),
-        Force {
-            lateral: sd,
-            normal: sd,
-        },
-    )?;
+    let filter = MatchedFilter::new(channels(&TEMPLATE), Force::new(sd, sd))?;
     Ok(filter.statistic(channels(residual))?.theta)
 }
 

@@ -6,9 +6,10 @@ use std::vec::Vec;
 use super::checks::{
     Law, count_rejects, kolmogorov_rejects, mean_rejects, tail_rejects, variance_rejects,
 };
-use super::{Check, Draw, Outcome, view};
+use super::{Check, Draw, Outcome};
 use palpate::detect::simulate::{Simulation, draw_theta};
-use palpate::detect::{Force, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold};
+use palpate::detect::{neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold};
+use palpate::force::Force;
 
 /// DET-012, DET-013, DET-015, DET-024, DET-025, DET-026, DET-113; the last one DET-114.
 pub(super) const CHECKS: &[Check] = &[
@@ -51,36 +52,21 @@ struct Setting {
 /// Eight coarse samples, both channels: γ = 1.91.
 fn coarse() -> Outcome<Setting> {
     Ok(Setting {
-        f0: Force {
-            lateral: vec![0.0; 8],
-            normal: vec![1.48; 8],
-        },
-        template: Force {
-            lateral: vec![0.02, 0.09, 0.16, 0.12, -0.12, -0.16, -0.09, -0.02],
-            normal: vec![0.03, 0.10, 0.22, 0.33, 0.33, 0.22, 0.10, 0.03],
-        },
-        noise_sd: Force {
-            lateral: 0.25,
-            normal: 0.4,
-        },
+        f0: Force::new(vec![0.0; 8], vec![1.48; 8]),
+        template: Force::new(
+            vec![0.02, 0.09, 0.16, 0.12, -0.12, -0.16, -0.09, -0.02],
+            vec![0.03, 0.10, 0.22, 0.33, 0.33, 0.22, 0.10, 0.03],
+        ),
+        noise_sd: Force::new(0.25, 0.4),
     })
 }
 
 /// One lateral sample: γ = ½.
 fn single() -> Outcome<Setting> {
     Ok(Setting {
-        f0: Force {
-            lateral: vec![0.1],
-            normal: vec![1.5],
-        },
-        template: Force {
-            lateral: vec![-0.05],
-            normal: vec![0.0],
-        },
-        noise_sd: Force {
-            lateral: 0.1,
-            normal: 0.1,
-        },
+        f0: Force::new(vec![0.1], vec![1.5]),
+        template: Force::new(vec![-0.05], vec![0.0]),
+        noise_sd: Force::new(0.1, 0.1),
     })
 }
 
@@ -97,17 +83,14 @@ fn traverse() -> Outcome<Setting> {
     let (f0, f1) = (sampled(TRAVERSE_WITHOUT)?, sampled(TRAVERSE_WITH)?);
     let difference =
         |(f0, f1): (&Vec<f64>, &Vec<f64>)| f0.iter().zip(f1).map(|(f0, f1)| f1 - f0).collect();
-    let template = Force {
-        lateral: difference((&f0.lateral, &f1.lateral)),
-        normal: difference((&f0.normal, &f1.normal)),
-    };
+    let template = Force::new(
+        difference((&f0.lateral, &f1.lateral)),
+        difference((&f0.normal, &f1.normal)),
+    );
     Ok(Setting {
         f0,
         template,
-        noise_sd: Force {
-            lateral: 0.5,
-            normal: 0.6615,
-        },
+        noise_sd: Force::new(0.5, 0.6615),
     })
 }
 
@@ -134,10 +117,7 @@ fn sampled(file: &str) -> Outcome<Force<Vec<f64>>> {
         };
         (0..=samples).map(sample).collect()
     };
-    Ok(Force {
-        lateral: channel(0),
-        normal: channel(1),
-    })
+    Ok(Force::new(channel(0), channel(1)))
 }
 
 fn forces(setting: &Setting, inclusion: bool) -> Force<Vec<f64>> {
@@ -147,10 +127,10 @@ fn forces(setting: &Setting, inclusion: bool) -> Force<Vec<f64>> {
             .map(|(f0, t)| f0 + if inclusion { *t } else { 0.0 })
             .collect()
     };
-    Force {
-        lateral: force(&setting.f0.lateral, &setting.template.lateral),
-        normal: force(&setting.f0.normal, &setting.template.normal),
-    }
+    Force::new(
+        force(&setting.f0.lateral, &setting.template.lateral),
+        force(&setting.f0.normal, &setting.template.normal),
+    )
 }
 
 /// The law that θ should have, and a sample of θ from records judged by the library, or by a
@@ -163,15 +143,15 @@ fn sample(
 ) -> Outcome<(Law, Vec<f64>)> {
     let setting = setting()?;
     let simulation = Simulation::new(
-        view(&setting.f0),
-        view(&setting.template),
+        setting.f0.as_deref(),
+        setting.template.as_deref(),
         setting.noise_sd,
         draw.generator(stream + step * draw.replicate),
     )?;
     let force = forces(&setting, inclusion);
     let mut residual = vec![0.0; 2 * setting.f0.lateral.len()];
     let thetas = (0..draw.trials()).map(|trial| {
-        let statistic = simulation.trial(trial, view(&force), &mut residual)?;
+        let statistic = simulation.trial(trial, force.as_deref(), &mut residual)?;
         Ok(if draw.defect.is_empty() {
             statistic.theta
         } else {
@@ -240,9 +220,9 @@ fn kolmogorov(draw: &Draw<'_>, inclusion: bool, stream: u64) -> Outcome<bool> {
 /// The noise of each of a record's 16 samples, which tells of its variance what θ, one number a record, tells with 16 times the trials.
 fn coarse_noise_variance(draw: &Draw<'_>) -> Outcome<bool> {
     let setting = coarse()?;
-    let f0 = view(&setting.f0);
+    let f0 = setting.f0.as_deref();
     let generator = draw.generator(8 + 10 * draw.replicate);
-    let simulation = Simulation::new(f0, view(&setting.template), setting.noise_sd, generator)?;
+    let simulation = Simulation::new(f0, setting.template.as_deref(), setting.noise_sd, generator)?;
     let excess = match draw.defect {
         "variance_off_1_percent" => libm::sqrt(1.01),
         _ => 1.0,

@@ -32,7 +32,6 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 pub use ledger::Row;
-use palpate::detect::Force;
 use palpate::stats::random::Generator;
 
 /// The seed of the battery in the tests, whose result is therefore always the same.
@@ -303,13 +302,6 @@ impl Check {
             seed,
             reason,
         }
-    }
-}
-
-fn view(channels: &Force<Vec<f64>>) -> Force<&[f64]> {
-    Force {
-        lateral: &channels.lateral,
-        normal: &channels.normal,
     }
 }
 
