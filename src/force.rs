@@ -34,6 +34,11 @@ impl<T> Force<T> {
         Force::new((self.lateral, other.lateral), (self.normal, other.normal))
     }
 
+    /// The components by reference.
+    pub const fn as_ref(&self) -> Force<&T> {
+        Force::new(&self.lateral, &self.normal)
+    }
+
     /// What each component points to, such as the samples of a vector.
     pub fn as_deref(&self) -> Force<&T::Target>
     where

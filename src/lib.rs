@@ -47,9 +47,9 @@
 //! assert!((found.statistic.theta - found.statistic.gamma.powi(2) / 2.0).abs() < 1e-9);
 //!
 //! // The force on a hand that probes there, 3 mm deep: between the forces at 2 and at 4 mm.
-//! let loaded = LoadedTable::new(with.forces())?;
+//! let loaded = LoadedTable::new(with.table())?;
 //! let force = loaded.table()?.force(3e-3, 0.0);
-//! let [shallow, deep] = [0, 1].map(|row| with.normal_force().row(row)[5] as f32);
+//! let [shallow, deep] = [0, 1].map(|row| with.forces().normal.row(row)[5] as f32);
 //! assert!(shallow < force.normal && force.normal < deep);
 //! # Ok(())
 //! # }

@@ -106,10 +106,10 @@ fn solve_prints_the_librarys_map() {
         .unwrap();
     assert_eq!(ForceMap::from_json(&json, "standard output").unwrap(), map);
     let csv = here.succeed(&format!("{arguments} --format csv"));
-    assert_eq!(csv, map.forces().to_csv());
+    assert_eq!(csv, map.table().to_csv());
     let table = here.succeed(arguments);
     assert!(
-        table.contains(&format!("{:.5}", map.normal_force().row(2)[1])),
+        table.contains(&format!("{:.5}", map.forces().normal.row(2)[1])),
         "{table}"
     );
     assert!(
@@ -131,7 +131,7 @@ fn certify_adds_bands_and_changes_no_force() {
     let solve = |rest: &str| here.succeed(&format!("{arguments} {rest}"));
     let map = |rest: &str| ForceMap::from_json(&solve(rest), "standard output").unwrap();
     let (plain, certified) = (map("--format json"), map("--format json --certify"));
-    assert_eq!(certified.forces(), plain.forces());
+    assert_eq!(certified.table(), plain.table());
     assert_eq!(plain.certificate().unwrap().discretization, None);
     let bands = certified.certificate().unwrap().discretization.clone();
     let [normal, lateral] = bands.expect("bands").largest();
@@ -169,7 +169,7 @@ fn the_contact_law_reaches_the_solver() {
         let json = here.succeed(&format!("{arguments} {rest}"));
         let map = ForceMap::from_json(&json, "").unwrap();
         let certificate = map.certificate().unwrap();
-        (map.normal_force().row(0)[0], certificate.contact.clone())
+        (map.forces().normal.row(0)[0], certificate.contact.clone())
     };
     let (plain, contact) = force("");
     assert_eq!(contact, "deformed-normal");
@@ -247,8 +247,8 @@ fn a_measured_map_becomes_a_json_map() {
     assert_eq!(here.read("gel.json"), printed);
     let map = ForceMap::from_json(&printed, "gel.json").unwrap();
     assert_eq!(map.laterals(), [0.0, 2e-3]);
-    assert_eq!(map.normal_force().row(1), [0.52, 0.5]);
-    assert_eq!(map.lateral_force().row(0), [0.0, 0.01]);
+    assert_eq!(map.forces().normal.row(1), [0.52, 0.5]);
+    assert_eq!(map.forces().lateral.row(0), [0.0, 0.01]);
     assert_eq!(map.phantom().unwrap().name, "2.6");
     assert!(printed.contains("silicone"));
 }
@@ -357,13 +357,13 @@ fn negative_laterals_of_an_asymmetric_phantom_are_solved_and_not_mirrored() {
         ForceMap::from_json(&here.succeed(&line), "").unwrap()
     };
     let [own, mirror] = ["own.toml", "mirrored.toml"].map(|phantom| map(phantom, "-4,0,4"));
-    let [left, middle, right] = own.normal_force().row(1) else {
+    let [left, middle, right] = own.forces().normal.row(1) else {
         panic!("three laterals");
     };
     // The stiff inclusion lies at the left.
     assert!(*left > right + 0.05, "{left} {right}");
-    assert!(own.lateral_force().row(1)[1].abs() > 0.01);
-    let [other_left, other_middle, other_right] = mirror.normal_force().row(1) else {
+    assert!(own.forces().lateral.row(1)[1].abs() > 0.01);
+    let [other_left, other_middle, other_right] = mirror.forces().normal.row(1) else {
         panic!("three laterals");
     };
     // The meshes are no mirror images, so that this holds to their errors.
@@ -409,7 +409,7 @@ fn a_run_of_own_asymmetric_phantoms_shows_them() {
     here.succeed("run --config run.toml");
     let out = here.at("palpate-out");
     let map = ForceMap::read(&out.join("maps/map-asymmetric.json")).unwrap();
-    let forces = map.normal_force().row(1);
+    let forces = map.forces().normal.row(1);
     assert!(forces[0] > forces[4] + 0.02, "{forces:?}");
     // The mesh under the probe where it is nearest to the first inclusion.
     let page = fs::read_to_string(out.join("report.html")).unwrap();

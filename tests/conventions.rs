@@ -147,7 +147,7 @@ fn the_axes_are_those_of_the_specification() {
     assert!((lowest[0] - lateral).abs() < SIZE, "{lowest:?}");
     let rise = SIZE * SIZE / (2.0 * phantom.probe.radius);
     assert!((lowest[1] + depth).abs() < rise, "{lowest:?}");
-    assert_eq!(solve(&model, 0.0, lateral).normal_force, 0.0);
+    assert_eq!(solve(&model, 0.0, lateral).force.normal, 0.0);
 }
 
 // Verifies: CON-004.
@@ -156,10 +156,10 @@ fn forces_on_the_probe_point_out_of_the_gel_and_away_from_the_inclusion() {
     let [none, inclusion] = ["none", "2.6"].map(|name| model(&builtin(name)));
     for (lateral, side) in [(3e-3, 1.0), (-3e-3, -1.0)] {
         let [none, inclusion] = [&none, &inclusion].map(|model| solve(model, 2e-3, lateral));
-        assert!(none.normal_force > 0.1, "{none:?}");
-        assert!(inclusion.normal_force > none.normal_force);
+        assert!(none.force.normal > 0.1, "{none:?}");
+        assert!(inclusion.force.normal > none.force.normal);
         // Beside the hard disc the probe is pushed away from it.
-        let pushed = side * (inclusion.lateral_force - none.lateral_force);
+        let pushed = side * (inclusion.force.lateral - none.force.lateral);
         assert!(pushed > 1e-3, "{pushed}");
     }
 }
@@ -171,7 +171,7 @@ fn a_probe_twice_as_long_has_twice_the_force() {
         let mut phantom = builtin("4.6");
         phantom.probe.length = length;
         let solution = solve(&model(&phantom), 2e-3, 3e-3);
-        [solution.normal_force, solution.lateral_force]
+        [solution.force.normal, solution.force.lateral]
     };
     let (once, twice) = (force(0.015), force(0.030));
     for (once, twice) in once.into_iter().zip(twice) {

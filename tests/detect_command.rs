@@ -46,8 +46,8 @@ fn folder() -> &'static Path {
             fs::write(folder.join(file), solved.stdout).unwrap();
         }
         let [none, inclusion] = maps(&folder);
-        write_trace(&folder.join("with.csv"), &sweep(inclusion.forces()), 1);
-        write_trace(&folder.join("without.csv"), &sweep(none.forces()), 2);
+        write_trace(&folder.join("with.csv"), &sweep(inclusion.table()), 1);
+        write_trace(&folder.join("without.csv"), &sweep(none.table()), 2);
         write_trace(&folder.join("moved.csv"), &moved(&none, &inclusion), 3);
         folder
     })
@@ -60,17 +60,17 @@ fn maps(folder: &Path) -> [ForceMap; 2] {
 /// The forces at 3 mm depth: position in mm, lateral, normal.
 fn sweep(map: &ForceTable) -> Vec<[f64; 3]> {
     let row = map.row(0.003).unwrap();
-    (0..row.laterals.len())
+    (0..row.lateral.len())
         .map(|i| {
             let position = i as f64 * 0.5 - 8.0;
-            [position, row.lateral_force[i], row.normal_force[i]]
+            [position, row.lateral[i], row.normal[i]]
         })
         .collect()
 }
 
 /// The sweep over an inclusion that lies `MOVED` samples further to the right.
 fn moved(none: &ForceMap, inclusion: &ForceMap) -> Vec<[f64; 3]> {
-    let (without, with) = (sweep(none.forces()), sweep(inclusion.forces()));
+    let (without, with) = (sweep(none.table()), sweep(inclusion.table()));
     let force = |i: usize, channel: usize| {
         let signal = i.checked_sub(MOVED);
         without[i][channel] + signal.map_or(0.0, |j| with[j][channel] - without[j][channel])
@@ -144,7 +144,7 @@ fn number(answer: &Value, key: &str) -> f64 {
 /// arithmetic from the rows of the maps.
 fn plain(trace: &str, shift: isize) -> (f64, f64) {
     let [none, inclusion] = maps(folder());
-    let (without, with) = (sweep(none.forces()), sweep(inclusion.forces()));
+    let (without, with) = (sweep(none.table()), sweep(inclusion.table()));
     let observed = observed(&folder().join(trace));
     let (mut theta, mut energy) = (0.0, 0.0);
     for (channel, observed, sd) in [
@@ -188,13 +188,8 @@ fn theta_is_that_of_the_library_and_of_a_plain_sum() {
             1.0 / (1.0 + 4.0 * (-theta).exp()),
         );
         let observed = observed(&folder().join(trace));
-        let forces = |map: &ForceMap| {
-            let row = map.row(0.003).unwrap();
-            let (x, y) = (row.lateral_force.to_vec(), row.normal_force.to_vec());
-            Force::new(x, y)
-        };
-        let (f0, f1) = (forces(&none), forces(&inclusion));
-        let (observed, f0, f1) = (observed.as_deref(), f0.as_deref(), f1.as_deref());
+        let [f0, f1] = [&none, &inclusion].map(|map| map.row(0.003).unwrap());
+        let observed = observed.as_deref();
         let library = assess(observed, f0, f1, NOISE, 0.2, 4.0_f64.ln()).unwrap();
         assert_near(number(&found, "theta"), library.statistic.theta);
         assert_near(number(&found, "false_alarm"), library.rates.false_alarm);
@@ -237,7 +232,7 @@ fn a_record_that_fits_neither_map_is_reported() {
     for (trace, map) in [("with.csv", &inclusion), ("without.csv", &none)] {
         let found = answer(trace, &[]);
         let observed = observed(&folder().join(trace));
-        let chi_square: f64 = sweep(map.forces())
+        let chi_square: f64 = sweep(map.table())
             .iter()
             .enumerate()
             .map(|(i, [_, lateral, normal])| {

@@ -1,6 +1,7 @@
 //! Measured force maps as CSV through the public interface.
 #![cfg(feature = "std")]
 
+use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
 use palpate::phantom::Phantom;
 use proptest::prelude::*;
@@ -21,8 +22,10 @@ fn table() -> ForceTable {
     ForceTable::new(
         vec![0.0, 0.0015],
         vec![-0.0026, 0.0, 0.0026],
-        matrix([[0.0; 3], [0.21, 0.25, 0.22]]),
-        matrix([[0.0; 3], [-0.034, 0.0, 0.033]]),
+        Force::new(
+            matrix([[0.0; 3], [-0.034, 0.0, 0.033]]),
+            matrix([[0.0; 3], [0.21, 0.25, 0.22]]),
+        ),
     )
     .unwrap()
 }
@@ -194,7 +197,7 @@ fn a_measured_map_keeps_the_files_name_without_its_folder() {
         note: "ATI".into(),
     };
     assert_eq!((map.source(), map.phantom()), (&source, Some(&phantom)));
-    assert_eq!(map.forces(), &table());
+    assert_eq!(map.table(), &table());
     let deep = EXAMPLE.replace("\n1.5,", "\n15.5,");
     let error = ForceMap::from_csv(&deep, "lab/gel.csv", "", Some(phantom)).unwrap_err();
     assert!(
@@ -239,7 +242,7 @@ fn any_table() -> impl Strategy<Value = ForceTable> {
             })
         };
         let (depths, laterals) = (axis(&down, 0.0), axis(&across, -0.01));
-        ForceTable::new(depths, laterals, matrix(0), matrix(16)).unwrap()
+        ForceTable::new(depths, laterals, Force::new(matrix(16), matrix(0))).unwrap()
     })
 }
 
@@ -258,7 +261,7 @@ proptest! {
         prop_assert_eq!(bits(back.depths()), bits(table.depths()));
         prop_assert_eq!(bits(back.laterals()), bits(table.laterals()));
         let forces = |t: &ForceTable| {
-            [bits(t.normal_force().values()), bits(t.lateral_force().values())]
+            [bits(t.forces().normal.values()), bits(t.forces().lateral.values())]
         };
         prop_assert_eq!(forces(&back), forces(&table));
     }

@@ -1,6 +1,7 @@
 //! Force maps as JSON through the public interface.
 #![cfg(feature = "std")]
 
+use palpate::force::Force;
 use palpate::force_map::{
     Certificate, ForceMap, ForceTable, Matrix, SCHEMA, SCHEMA_VERSION, SmallestDet, Source,
 };
@@ -108,8 +109,10 @@ fn computed() -> ForceMap {
     let forces = ForceTable::new(
         vec![0.001, 0.002],
         vec![0.0, 0.005, 0.01],
-        matrix(&[[0.25, 0.5, 1.0], [0.1 + 0.2, 5e-324, -0.0]]),
-        matrix(&[[0.0, -1e-9, 1e21], [0.0, 0.2, 0.3]]),
+        Force::new(
+            matrix(&[[0.0, -1e-9, 1e21], [0.0, 0.2, 0.3]]),
+            matrix(&[[0.25, 0.5, 1.0], [0.1 + 0.2, 5e-324, -0.0]]),
+        ),
     );
     let phantom = Phantom::builtin("none").unwrap();
     ForceMap::new(
@@ -143,8 +146,11 @@ fn assert_same(read: &ForceMap, written: &ForceMap) {
             .map(|v| v.to_bits())
             .collect::<Vec<_>>()
     };
-    assert_eq!(bits(read.normal_force()), bits(written.normal_force()));
-    assert_eq!(bits(read.lateral_force()), bits(written.lateral_force()));
+    assert_eq!(bits(&read.forces().normal), bits(&written.forces().normal));
+    assert_eq!(
+        bits(&read.forces().lateral),
+        bits(&written.forces().lateral)
+    );
 }
 
 // Verifies: MAP-020, MAP-021, MAP-022, PHA-029.
@@ -162,7 +168,7 @@ fn a_measured_map_is_written_and_read_back() {
         file: "gel \"1\".csv".into(),
         note: "ATI\nsensor".into(),
     };
-    let map = ForceMap::new(source, None, computed().forces().clone()).unwrap();
+    let map = ForceMap::new(source, None, computed().table().clone()).unwrap();
     let text = map.to_json();
     assert!(text.contains("\"kind\": \"measured\""));
     assert!(text.contains("\"phantom\": null") && text.contains("\"certificate\": null"));
@@ -420,7 +426,8 @@ fn any_map() -> impl Strategy<Value = ForceMap> {
                         min_det,
                         discretization: None,
                     };
-                    let forces = ForceTable::new(depths, laterals, normal, lateral).unwrap();
+                    let forces =
+                        ForceTable::new(depths, laterals, Force::new(lateral, normal)).unwrap();
                     let phantom = Phantom::builtin("8.6").unwrap();
                     ForceMap::new(
                         Source::FiniteElements { certificate },

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
+use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
 
 fn palpate(arguments: &[&str]) -> Output {
@@ -41,7 +42,7 @@ fn map(folder: &Path, name: &str, stiffness: f64, bump: f64) -> String {
         depths[row] * (stiffness + bump * (-x * x).exp())
     });
     let lateral = Matrix::from_fn(9, 41, |_, _| 0.0);
-    let forces = ForceTable::new(depths, laterals, normal, lateral).unwrap();
+    let forces = ForceTable::new(depths, laterals, Force::new(lateral, normal)).unwrap();
     let source = Source::Measured {
         file: "made".into(),
         note: "for a test".into(),

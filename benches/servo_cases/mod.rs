@@ -15,7 +15,8 @@ pub fn paper_table() -> LoadedTable {
     };
     let normal = Matrix::from_fn(9, 41, |row, column| force(row, column, 0.0));
     let lateral = Matrix::from_fn(9, 41, |row, column| force(row, column, 1.0));
-    let forces = ForceTable::new(depths, laterals, normal, lateral).expect("the axes increase");
+    let forces =
+        ForceTable::new(depths, laterals, Force::new(lateral, normal)).expect("the axes increase");
     LoadedTable::new(&forces).expect("the servo takes it")
 }
 

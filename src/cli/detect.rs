@@ -174,7 +174,7 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     let (reference, inclusion) = (map(&arguments.reference)?, map(&arguments.inclusion)?);
     check_pair(arguments, &reference, &inclusion)?;
     let (depth, prior_h1) = (arguments.depth_mm, arguments.prior_h1);
-    let (f0, f1) = (reference.forces(), inclusion.forces());
+    let (f0, f1) = (reference.table(), inclusion.table());
     let mut answer = question(arguments, record.positions().len(), noise_sd);
     let misfit = |theta| Misfit::of(&record, f0, depth, noise_sd, theta);
     let misfit = if arguments.scan {

@@ -186,7 +186,7 @@ impl Pairs<'_> {
         let limits = limits(4.0)?;
         let sample = |path: &Path| {
             let map = ForceMap::read(path)?;
-            let table = LoadedTable::passive(map.forces(), &damping, &limits);
+            let table = LoadedTable::passive(map.table(), &damping, &limits);
             let table = table.map_err(|error| failed(path.display(), error))?;
             Ok::<Sample, CliError>((map, table))
         };
@@ -223,8 +223,8 @@ impl Pairs<'_> {
             return self.ask(&format!("pair {} of {total}", number + 1), samples);
         };
         let observer = IdealObserver {
-            reference: without.0.forces(),
-            inclusion: with.0.forces(),
+            reference: without.0.table(),
+            inclusion: with.0.table(),
             noise_sd,
             seed: self.arguments.seed,
         };

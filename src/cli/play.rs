@@ -85,9 +85,9 @@ fn table(
     let map = ForceMap::read(path)?;
     let damping = arguments.device.damping(capabilities);
     let loaded = if arguments.scale {
-        LoadedTable::scaled_to_be_passive(map.forces(), &damping, limits)
+        LoadedTable::scaled_to_be_passive(map.table(), &damping, limits)
     } else {
-        LoadedTable::passive(map.forces(), &damping, limits).map(|loaded| (loaded, 1.0))
+        LoadedTable::passive(map.table(), &damping, limits).map(|loaded| (loaded, 1.0))
     };
     loaded.map_err(|error| {
         let hint = ["", " (or use --scale)"][usize::from(!arguments.scale)];

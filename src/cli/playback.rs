@@ -121,7 +121,7 @@ fn damping(capabilities: &Capabilities, delay_periods: u16) -> Damping {
 /// Implements: CLI-062.
 pub fn loaded_map(path: &Path) -> Result<LoadedTable, CliError> {
     let map = ForceMap::read(path)?;
-    LoadedTable::new(map.forces())
+    LoadedTable::new(map.table())
         .map_err(|error| CliError::Playback(format!("{}: {error}", path.display())))
 }
 

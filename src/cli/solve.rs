@@ -123,7 +123,7 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     print(&match arguments.format {
         Format::Table => table(&map),
         Format::Json => map.to_json(),
-        Format::Csv => map.forces().to_csv(),
+        Format::Csv => map.table().to_csv(),
     })
 }
 
@@ -156,10 +156,10 @@ pub fn warn_of_large_strain(map: &ForceMap) {
 fn table(map: &ForceMap) -> String {
     let mut text = String::new();
     for (title, matrix) in [
-        ("normal force, N (up out of the gel)", map.normal_force()),
+        ("normal force, N (up out of the gel)", &map.forces().normal),
         (
             "lateral force, N (on the probe along +x)",
-            map.lateral_force(),
+            &map.forces().lateral,
         ),
     ] {
         // Writing to a String cannot fail.

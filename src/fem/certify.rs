@@ -38,16 +38,19 @@ pub fn certified_map(
     };
     let (middle_nodes, middle) = coarser(RATIOS[0])?;
     let (coarse_nodes, coarse) = coarser(RATIOS[0] * RATIOS[1])?;
-    let bands = |force: fn(&ForceMap) -> &Matrix| {
-        let [fine, middle, coarse] = [&finest, &middle, &coarse].map(force);
-        Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
-            band([fine, middle, coarse].map(|force| force.row(row)[column]))
-        })
-    };
+    let [fine, middle, coarse] = [&finest, &middle, &coarse].map(|map| map.forces().as_ref());
+    let bands = fine
+        .zip(middle)
+        .zip(coarse)
+        .map(|((fine, middle), coarse)| {
+            Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
+                band([fine, middle, coarse].map(|force| force.row(row)[column]))
+            })
+        });
     let discretization = Discretization {
         nodes: [model.mesh().nodes.len(), middle_nodes, coarse_nodes],
-        normal_force_band: bands(ForceMap::normal_force),
-        lateral_force_band: bands(ForceMap::lateral_force),
+        normal_force_band: bands.normal,
+        lateral_force_band: bands.lateral,
     };
     Ok(finest.with_discretization(discretization)?)
 }

@@ -15,6 +15,7 @@ use nalgebra::Vector2;
 
 use super::mesh::Mesh;
 use super::{FemError, Pose};
+use crate::force::Force;
 use crate::phantom::Probe;
 pub use state::ContactState;
 
@@ -481,15 +482,15 @@ impl Surface {
         state.active.iter().filter_map(force).collect()
     }
 
-    /// Force on the probe (lateral, normal), N: that on the gel reversed, or, for the vertical gap, the
+    /// Force on the probe, N: that on the gel reversed, or, for the vertical gap, the
     /// pressure on the circle's slope, so that F = −∂U/∂(x, y) of the probe in both cases.
     ///
     /// Implements: FEM-012, FEM-057, FEM-059, CON-004.
-    pub(super) fn probe_force(&self, state: &ContactState, pose: Pose) -> [f64; 2] {
-        let mut total = [0.0; 2];
+    pub(super) fn probe_force(&self, state: &ContactState, pose: Pose) -> Force<f64> {
+        let mut total = Force::default();
         for (i, [x, y]) in self.forces(state, pose) {
-            total[1] -= y;
-            total[0] -= match self.contact {
+            total.normal -= y;
+            total.lateral -= match self.contact {
                 Contact::DeformedNormal => x,
                 Contact::VerticalGap => {
                     let offset = self.positions[i][0] - pose.lateral;

@@ -8,6 +8,7 @@ use super::field::{BATCH, Field, FieldCheck, Sample, check, samples};
 use super::mesh::Mesh;
 use super::size::SizeField;
 use super::{FemError, Pose, arithmetic};
+use crate::force::Force;
 use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
 use crate::phantom::Phantom;
 
@@ -43,10 +44,8 @@ pub struct Model {
 pub struct PoseSolution {
     /// The pose.
     pub pose: Pose,
-    /// Force on the probe out of the gel, N.
-    pub normal_force: f64,
-    /// Force on the probe along +x, N.
-    pub lateral_force: f64,
+    /// Force on the probe, N.
+    pub force: Force<f64>,
     /// Strain energy of phantom and skin, J.
     pub energy: f64,
     /// Largest penetration of a contact point, m.
@@ -163,7 +162,6 @@ impl Model {
     }
 
     fn solution(&self, pose: Pose, state: ContactState) -> PoseSolution {
-        let [lateral_force, normal_force] = self.surface.probe_force(&state, pose);
         let forces = self.surface.forces(&state, pose).into_iter();
         let work = forces.map(|(point, force)| {
             let u = state.displacements[point];
@@ -171,8 +169,7 @@ impl Model {
         });
         PoseSolution {
             pose,
-            normal_force,
-            lateral_force,
+            force: self.surface.probe_force(&state, pose),
             energy: work.sum(),
             penetration: self.surface.penetration(&state, pose),
             state,
@@ -260,8 +257,9 @@ impl Model {
         solved: &dyn Fn(usize),
     ) -> Result<ForceMap, FemError> {
         // Axes first: a list that cannot be a map shall not cost the time to solve it.
-        let zeros = || Matrix::from_fn(depths.len(), laterals.len(), |_, _| 0.0);
-        ForceTable::new(depths.to_vec(), laterals.to_vec(), zeros(), zeros())?;
+        let zeros = Matrix::from_fn(depths.len(), laterals.len(), |_, _| 0.0);
+        let forces = Force::new(zeros.clone(), zeros);
+        ForceTable::new(depths.to_vec(), laterals.to_vec(), forces)?;
         for &lateral in laterals {
             for &depth in depths {
                 self.check_pose(Pose { depth, lateral })?;
@@ -284,12 +282,11 @@ impl Model {
                 entry(column * depths.len() + row)
             })
         };
-        let table = ForceTable::new(
-            depths.to_vec(),
-            right.clone(),
-            matrix(&|at| solutions[at].normal_force),
-            matrix(&|at| solutions[at].lateral_force),
-        )?;
+        let forces = Force {
+            lateral: matrix(&|at| solutions[at].force.lateral),
+            normal: matrix(&|at| solutions[at].force.normal),
+        };
+        let table = ForceTable::new(depths.to_vec(), right.clone(), forces)?;
         let min_det = matrix(&|at| checks[at].min_det);
         let certificate = self.certificate(&solutions, &checks, min_det, [depths, &right])?;
         let source = Source::FiniteElements { certificate };
@@ -350,7 +347,7 @@ impl PoseSolution {
     /// The same probe at −x.
     fn mirrored(mut self) -> PoseSolution {
         self.pose.lateral = -self.pose.lateral;
-        self.lateral_force = -self.lateral_force;
+        self.force.lateral = -self.force.lateral;
         self.state = self.state.mirrored();
         self
     }

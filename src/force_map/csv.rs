@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{ForceMap, ForceTable, Matrix, Source};
 use crate::csv::{Column, Table};
+use crate::force::Force;
 use crate::phantom::Phantom;
 use crate::phantom::decimal::format_scaled;
 use crate::refusal::Refusal;
@@ -28,7 +29,7 @@ impl ForceMap {
     /// let text = "lateral_mm,depth_mm,normal_force_mn,lateral_force_mn\n0,4,1500,0\n2,4,1250,-125\n";
     /// let map = ForceMap::from_csv(text, "gel.csv", "third gel", None)?;
     /// assert_eq!((map.depths(), map.laterals()), (&[0.004][..], &[0.0, 0.002][..]));
-    /// assert_eq!(map.lateral_force().values(), [0.0, -0.125]);
+    /// assert_eq!(map.forces().lateral.values(), [0.0, -0.125]);
     /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
@@ -60,9 +61,10 @@ impl ForceTable {
     pub fn to_csv(&self) -> String {
         let mut text = COLUMNS.map(|names| names[0].0).join(",") + "\n";
         let forces = self
-            .normal_force()
+            .forces()
+            .normal
             .entries()
-            .zip(self.lateral_force().values());
+            .zip(self.forces().lateral.values());
         for ((row, column, normal), &lateral) in forces {
             let fields = [self.depths()[row], self.laterals()[column], normal, lateral];
             let written = std::iter::zip(fields, COLUMNS)
@@ -142,5 +144,5 @@ fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>) -> Result<ForceTable, Refusal> {
             rows[row * columns + column].1[force]
         })
     });
-    ForceTable::new(depths, laterals, normal, lateral)
+    ForceTable::new(depths, laterals, Force::new(lateral, normal))
 }

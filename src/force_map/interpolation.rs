@@ -65,7 +65,7 @@ impl ForceTable {
     ///
     /// // Bilinear forces, d·x in units of the cell, inside and beyond it.
     /// let matrix = || Matrix::from_fn(2, 2, |row, column| (row * column) as f64);
-    /// let table = ForceTable::new(vec![0.0, 0.5], vec![0.0, 0.5], matrix(), matrix())?;
+    /// let table = ForceTable::new(vec![0.0, 0.5], vec![0.0, 0.5], Force::new(matrix(), matrix()))?;
     /// assert_eq!(table.force(0.25, 0.25)?.y, 0.25);
     /// assert_eq!(table.force(1.0, 1.0)?.y, 4.0);
     /// # Ok::<(), palpate::refusal::Refusal>(())
@@ -97,10 +97,8 @@ impl ForceTable {
                 )
             })
         };
-        Ok(Force::new(
-            value(self.lateral_force())?,
-            value(self.normal_force())?,
-        ))
+        let Force { lateral, normal } = self.forces().as_ref().map(value);
+        Ok(Force::new(lateral?, normal?))
     }
 
     /// The forces on the probe at `depth` (m) and each of `positions` (m, in any order), N: linear in the depth
@@ -112,7 +110,7 @@ impl ForceTable {
     ///
     /// // Half-way in depth and half-way in position: the mean of the four.
     /// let matrix = || Matrix::new(2, vec![0.0, 1.0, 2.0, 5.0]).ok_or("two rows of two");
-    /// let table = ForceTable::new(vec![0.0, 0.002], vec![0.0, 0.004], matrix()?, matrix()?)?;
+    /// let table = ForceTable::new(vec![0.0, 0.002], vec![0.0, 0.004], Force::new(matrix()?, matrix()?))?;
     /// assert_eq!(table.sweep(0.001, &[0.002])?.y, [2.0]);
     /// assert!(table.sweep(0.003, &[0.002]).is_err());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -140,10 +138,7 @@ impl ForceTable {
                 |column: &Place| column.blend(|column| row.blend(|row| matrix.row(row)[column]));
             columns.iter().map(force).collect()
         };
-        Ok(Force::new(
-            along(self.lateral_force()),
-            along(self.normal_force()),
-        ))
+        Ok(self.forces().as_ref().map(along))
     }
 }
 
@@ -178,7 +173,12 @@ mod tests {
             Matrix::from_fn(3, 3, |row, column| force(depths[row], laterals[column]))
         };
         let (normal, lateral) = (matrix(&normal), matrix(&lateral));
-        ForceTable::new(depths.clone(), laterals.clone(), normal, lateral).unwrap()
+        ForceTable::new(
+            depths.clone(),
+            laterals.clone(),
+            Force::new(lateral, normal),
+        )
+        .unwrap()
     }
 
     // Verifies: MAP-060.
@@ -209,7 +209,7 @@ mod tests {
     fn outside_the_border_cell_is_continued_not_the_whole_table() {
         let matrix = || Matrix::new(3, vec![0.0, 1.0, 5.0, 0.0, 1.0, 5.0]).unwrap();
         let axes = (vec![0.0, 1.0], vec![0.0, 1.0, 2.0]);
-        let table = ForceTable::new(axes.0, axes.1, matrix(), matrix()).unwrap();
+        let table = ForceTable::new(axes.0, axes.1, Force::new(matrix(), matrix())).unwrap();
         for (lateral, expected) in [(-1.0, -1.0), (0.5, 0.5), (1.5, 3.0), (2.0, 5.0), (3.0, 9.0)] {
             assert_eq!(table.force(0.5, lateral).unwrap().normal, expected);
         }
@@ -226,14 +226,15 @@ mod tests {
         // A cell whose width is infinite would make every fraction 0.
         let matrix = || Matrix::new(2, vec![1.0, 2.0, 3.0, 4.0]).unwrap();
         let wide = vec![-1e308, 1e308];
-        let wide = ForceTable::new(vec![0.0, 1.0], wide, matrix(), matrix()).unwrap();
+        let wide = ForceTable::new(vec![0.0, 1.0], wide, Force::new(matrix(), matrix())).unwrap();
         assert!(wide.force(0.0, 1e307).is_err());
         let one = || Matrix::new(2, vec![1.0, 2.0]).unwrap();
-        let single = ForceTable::new(vec![0.0], vec![0.0, 1.0], one(), one()).unwrap();
+        let single = ForceTable::new(vec![0.0], vec![0.0, 1.0], Force::new(one(), one())).unwrap();
         let error = single.force(0.0, 0.0).unwrap_err().to_string();
         assert!(error.starts_with("depths_m has a single entry"), "{error}");
         let column = || Matrix::new(1, vec![1.0, 2.0]).unwrap();
-        let single = ForceTable::new(vec![0.0, 1.0], vec![0.0], column(), column()).unwrap();
+        let single =
+            ForceTable::new(vec![0.0, 1.0], vec![0.0], Force::new(column(), column())).unwrap();
         let error = single.force(0.0, 0.0).unwrap_err().to_string();
         assert!(
             error.starts_with("laterals_m has a single entry"),
@@ -248,7 +249,7 @@ mod tests {
             Matrix::from_fn(3, 4, |row, column| force(depths[row], laterals[column]))
         };
         let (normal, lateral) = (matrix(normal), matrix(lateral));
-        ForceTable::new(depths, laterals, normal, lateral).unwrap()
+        ForceTable::new(depths, laterals, Force::new(lateral, normal)).unwrap()
     }
 
     fn normal(depth: f64, x: f64) -> f64 {
@@ -281,8 +282,8 @@ mod tests {
             let positions: Vec<f64> = table.laterals().iter().map(|x| x + off).collect();
             for (row, &depth) in table.depths().iter().enumerate() {
                 let found = table.sweep(depth + off, &positions).unwrap();
-                assert_eq!(found.normal, table.normal_force().row(row));
-                assert_eq!(found.lateral, table.lateral_force().row(row));
+                assert_eq!(found.normal, table.forces().normal.row(row));
+                assert_eq!(found.lateral, table.forces().lateral.row(row));
             }
         }
     }

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::{Certificate, ForceMap, ForceTable, Matrix, Source};
 use crate::csv::shortened;
+use crate::force::Force;
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
 
@@ -71,8 +72,8 @@ impl ForceMap {
             phantom: self.phantom().cloned(),
             depths_m: self.depths().into(),
             laterals_m: self.laterals().into(),
-            normal_force_n: self.normal_force().clone(),
-            lateral_force_n: self.lateral_force().clone(),
+            normal_force_n: self.forces().normal.clone(),
+            lateral_force_n: self.forces().lateral.clone(),
             certificate: self.certificate().cloned(),
         };
         let mut text = Vec::new();
@@ -125,17 +126,12 @@ fn read(text: &str) -> Result<ForceMap, Refusal> {
             return Err(Refusal::state("certificate is there", expected));
         }
     };
-    let forces = ForceTable::new(
-        document.depths_m,
-        document.laterals_m,
-        document.normal_force_n,
-        document.lateral_force_n,
-    )?;
+    let forces = Force::new(document.lateral_force_n, document.normal_force_n);
     let map = ForceMap {
         program_version: document.program_version,
         source,
         phantom: document.phantom,
-        forces,
+        table: ForceTable::new(document.depths_m, document.laterals_m, forces)?,
     };
     map.checked()
 }

@@ -35,13 +35,14 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Deref;
 use std::path::Path;
 
 pub use certificate::{Certificate, Discretization, SmallestDet};
 #[cfg(feature = "oracle")]
 pub(crate) use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
-pub use table::{ForceCurve, ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
+pub use table::{ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
 
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
@@ -72,14 +73,14 @@ pub enum Source {
 ///
 /// let matrix = |values: [f64; 4]| Matrix::from_fn(2, 2, |row, column| values[2 * row + column]);
 /// let (normal, lateral) = (matrix([0.25, 0.25, 1.5, 1.25]), matrix([0.0, 0.0, 0.0, -0.125]));
-/// let forces = ForceTable::new(vec![0.001, 0.004], vec![0.0, 0.005], normal, lateral)?;
+/// let forces = ForceTable::new(vec![0.001, 0.004], vec![0.0, 0.005], Force::new(lateral, normal))?;
 /// let source = Source::Measured { file: "gel.csv".into(), note: "".into() };
 /// let map = ForceMap::new(source, Some(Phantom::builtin("6.6")?), forces)?;
 ///
 /// assert_eq!((map.depths(), map.laterals()), (&[0.001, 0.004][..], &[0.0, 0.005][..]));
-/// assert_eq!(map.normal_force().row(1), [1.5, 1.25]);
-/// assert_eq!(map.lateral_force().values(), [0.0, 0.0, 0.0, -0.125]);
-/// assert_eq!(map.forces().row(0.004)?, map.row(0.004)?);
+/// assert_eq!(map.forces().normal.row(1), [1.5, 1.25]);
+/// assert_eq!(map.forces().lateral.values(), [0.0, 0.0, 0.0, -0.125]);
+/// assert_eq!(map.table().row(0.004)?, map.row(0.004)?);
 /// // Measured, by this version, on a phantom that is known.
 /// assert!(map.certificate().is_none() && matches!(map.source(), Source::Measured { .. }));
 /// assert_eq!(map.program_version(), env!("CARGO_PKG_VERSION"));
@@ -97,11 +98,19 @@ pub struct ForceMap {
     program_version: String,
     source: Source,
     phantom: Option<Phantom>,
-    forces: ForceTable,
+    table: ForceTable,
+}
+
+impl Deref for ForceMap {
+    type Target = ForceTable;
+
+    fn deref(&self) -> &ForceTable {
+        &self.table
+    }
 }
 
 impl ForceMap {
-    /// A map of `forces`, made by this version of the program.
+    /// A map of `table`, made by this version of the program.
     ///
     /// # Errors
     /// The phantom is missing for a computed map, is not valid, or does not let the probe stand at one of the poses; the
@@ -111,13 +120,13 @@ impl ForceMap {
     pub fn new(
         source: Source,
         phantom: Option<Phantom>,
-        forces: ForceTable,
+        table: ForceTable,
     ) -> Result<ForceMap, Refusal> {
         let map = ForceMap {
             program_version: env!("CARGO_PKG_VERSION").into(),
             source,
             phantom,
-            forces,
+            table,
         };
         map.checked()
     }
@@ -201,36 +210,8 @@ impl ForceMap {
     }
 
     /// Axes and forces.
-    pub fn forces(&self) -> &ForceTable {
-        &self.forces
-    }
-
-    /// Depths of the rows, m, increasing.
-    pub fn depths(&self) -> &[f64] {
-        self.forces.depths()
-    }
-
-    /// Lateral positions of the columns, m, increasing.
-    pub fn laterals(&self) -> &[f64] {
-        self.forces.laterals()
-    }
-
-    /// Normal forces, N, positive where they push the probe up; depths × lateral positions.
-    pub fn normal_force(&self) -> &Matrix {
-        self.forces.normal_force()
-    }
-
-    /// Lateral forces on the probe along +x, N; depths × lateral positions.
-    pub fn lateral_force(&self) -> &Matrix {
-        self.forces.lateral_force()
-    }
-
-    /// The forces at a stored depth (m): see [`ForceTable::row`].
-    ///
-    /// # Errors
-    /// No stored depth is this one.
-    pub fn row(&self, depth: f64) -> Result<ForceCurve<'_>, Refusal> {
-        self.forces.row(depth)
+    pub fn table(&self) -> &ForceTable {
+        &self.table
     }
 
     /// The forces of this map minus those of `reference`: see [`ForceTable::minus`].
@@ -238,7 +219,7 @@ impl ForceMap {
     /// # Errors
     /// Other axes, or a difference that is not finite.
     pub fn signal(&self, reference: &ForceMap) -> Result<ForceTable, Refusal> {
-        self.forces.minus(&reference.forces)
+        self.table.minus(&reference.table)
     }
 
     /// This map over x ≥ 0, extended to x < 0 by symmetry: see [`ForceTable::mirrored`].
@@ -253,8 +234,8 @@ impl ForceMap {
             ));
         }
         let map = ForceMap {
-            forces: self.forces.mirrored()?,
-            source: self.source_at(&self.forces.mirror_columns()),
+            table: self.table.mirrored()?,
+            source: self.source_at(&self.table.mirror_columns()),
             ..self.clone()
         };
         map.checked()
@@ -270,9 +251,9 @@ impl ForceMap {
         if laterals == self.laterals() {
             return Ok(self.clone());
         }
-        let columns = self.forces.columns_at(laterals)?;
+        let columns = self.table.columns_at(laterals)?;
         let mut map = ForceMap {
-            forces: self.forces.at_columns(&columns)?,
+            table: self.table.at_columns(&columns)?,
             source: self.source_at(&columns),
             ..self.clone()
         };

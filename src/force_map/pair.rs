@@ -15,7 +15,7 @@ impl ForceMap {
     ///
     /// let map = |name| {
     ///     let forces = || Matrix::from_fn(1, 1, |_, _| 1.5);
-    ///     let forces = ForceTable::new(vec![0.004], vec![0.0], forces(), forces())?;
+    ///     let forces = ForceTable::new(vec![0.004], vec![0.0], Force::new(forces(), forces()))?;
     ///     let source = Source::Measured { file: "gel.csv".into(), note: "".into() };
     ///     ForceMap::new(source, Phantom::builtin(name).ok(), forces)
     /// };

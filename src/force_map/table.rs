@@ -5,6 +5,7 @@ use std::fmt::Display;
 
 use serde::{Deserialize, Serialize, Serializer};
 
+use crate::force::Force;
 use crate::refusal::Refusal;
 
 /// Two positions closer than this, m, are the same position.
@@ -171,20 +172,23 @@ impl TryFrom<Vec<Vec<f64>>> for Matrix {
 /// column for each lateral position.
 ///
 /// ```
+/// use palpate::force::Force;
 /// use palpate::force_map::{ForceTable, Matrix};
 ///
 /// // N = 1000 d, and no lateral force.
 /// let depths = vec![0.001, 0.004];
-/// let normal = Matrix::from_fn(2, 3, |row, _| 1000.0 * [0.001, 0.004][row]);
-/// let lateral = Matrix::from_fn(2, 3, |_, _| 0.0);
-/// let table = ForceTable::new(depths, vec![0.0, 0.002, 0.004], normal, lateral)?;
+/// let forces = Force {
+///     lateral: Matrix::from_fn(2, 3, |_, _| 0.0),
+///     normal: Matrix::from_fn(2, 3, |row, _| 1000.0 * [0.001, 0.004][row]),
+/// };
+/// let table = ForceTable::new(depths, vec![0.0, 0.002, 0.004], forces)?;
 /// assert_eq!((table.depths().len(), table.laterals().len()), (2, 3));
-/// assert_eq!(table.normal_force().row(1), [4.0; 3]);
-/// assert_eq!(table.lateral_force().values(), [0.0; 6]);
+/// assert_eq!(table.forces().normal.row(1), [4.0; 3]);
+/// assert_eq!(table.forces().lateral.values(), [0.0; 6]);
 /// // Of a depth that is there; against itself there is no signal.
-/// assert_eq!(table.row(0.004)?.normal_force, [4.0; 3]);
+/// assert_eq!(table.row(0.004)?.normal, [4.0; 3]);
 /// assert!(table.row(0.003).is_err());
-/// assert_eq!(table.minus(&table)?.normal_force().values(), [0.0; 6]);
+/// assert_eq!(table.minus(&table)?.forces().normal.values(), [0.0; 6]);
 /// assert_eq!(table.mirrored()?.laterals(), [-0.004, -0.002, 0.0, 0.002, 0.004]);
 /// // What is written can be read.
 /// assert_eq!(ForceTable::from_csv(&table.to_csv(), "table.csv")?, table);
@@ -194,19 +198,7 @@ impl TryFrom<Vec<Vec<f64>>> for Matrix {
 pub struct ForceTable {
     depths: Vec<f64>,
     laterals: Vec<f64>,
-    normal_force: Matrix,
-    lateral_force: Matrix,
-}
-
-/// The forces at one depth, over the lateral positions.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ForceCurve<'a> {
-    /// Lateral positions of the probe, m.
-    pub laterals: &'a [f64],
-    /// Normal force at each of them, N.
-    pub normal_force: &'a [f64],
-    /// Lateral force at each of them, N.
-    pub lateral_force: &'a [f64],
+    forces: Force<Matrix>,
 }
 
 impl ForceTable {
@@ -220,8 +212,7 @@ impl ForceTable {
     pub fn new(
         mut depths: Vec<f64>,
         mut laterals: Vec<f64>,
-        normal_force: Matrix,
-        lateral_force: Matrix,
+        forces: Force<Matrix>,
     ) -> Result<ForceTable, Refusal> {
         // −0 and 0 are one position; adding 0 leaves one way to write it.
         for position in depths.iter_mut().chain(&mut laterals) {
@@ -234,13 +225,12 @@ impl ForceTable {
             return Err(Refusal::value("depths_m[0]", depths[0], expected));
         }
         let shape = [depths.len(), laterals.len()];
-        normal_force.check("normal_force_n", shape, f64::NEG_INFINITY)?;
-        lateral_force.check("lateral_force_n", shape, f64::NEG_INFINITY)?;
+        (forces.normal).check("normal_force_n", shape, f64::NEG_INFINITY)?;
+        (forces.lateral).check("lateral_force_n", shape, f64::NEG_INFINITY)?;
         Ok(ForceTable {
             depths,
             laterals,
-            normal_force,
-            lateral_force,
+            forces,
         })
     }
 
@@ -254,29 +244,20 @@ impl ForceTable {
         &self.laterals
     }
 
-    /// Normal forces, N, positive where they push the probe up; depths × lateral positions.
-    pub fn normal_force(&self) -> &Matrix {
-        &self.normal_force
+    /// The forces, N: depths × lateral positions.
+    pub fn forces(&self) -> &Force<Matrix> {
+        &self.forces
     }
 
-    /// Lateral forces on the probe along +x, N; depths × lateral positions.
-    pub fn lateral_force(&self) -> &Matrix {
-        &self.lateral_force
-    }
-
-    /// The forces at a stored depth (m).
+    /// The forces at a stored depth (m), one at each lateral position, N.
     ///
     /// # Errors
     /// No stored depth lies within [`SAME_POSITION`] of `depth`.
     ///
     /// Implements: MAP-012, MAP-015.
-    pub fn row(&self, depth: f64) -> Result<ForceCurve<'_>, Refusal> {
+    pub fn row(&self, depth: f64) -> Result<Force<&[f64]>, Refusal> {
         let row = place_of("depth", &self.depths, depth)?;
-        Ok(ForceCurve {
-            laterals: &self.laterals,
-            normal_force: self.normal_force.row(row),
-            lateral_force: self.lateral_force.row(row),
-        })
+        Ok(self.forces.as_ref().map(|force| force.row(row)))
     }
 
     /// This table minus `reference`, pose by pose: with the map of a phantom and the map of the
@@ -289,16 +270,12 @@ impl ForceTable {
     pub fn minus(&self, reference: &ForceTable) -> Result<ForceTable, Refusal> {
         check_same_axis("depths_m", &self.depths, &reference.depths)?;
         check_same_axis("laterals_m", &self.laterals, &reference.laterals)?;
-        let difference = |a: &Matrix, b: &Matrix| Matrix {
+        let forces = self.forces.as_ref().zip(reference.forces.as_ref());
+        let difference = forces.map(|(a, b)| Matrix {
             columns: a.columns,
             values: a.values.iter().zip(&b.values).map(|(a, b)| a - b).collect(),
-        };
-        ForceTable::new(
-            self.depths.clone(),
-            self.laterals.clone(),
-            difference(&self.normal_force, &reference.normal_force),
-            difference(&self.lateral_force, &reference.lateral_force),
-        )
+        });
+        ForceTable::new(self.depths.clone(), self.laterals.clone(), difference)
     }
 
     /// This table over x ≥ 0, extended to x < 0 by symmetry: the normal force is even in x, the
@@ -314,7 +291,7 @@ impl ForceTable {
             let expected = "0 in a map to be extended by symmetry";
             return Err(Refusal::value("laterals_m[0]", self.laterals[0], expected));
         }
-        for (depth, forces) in self.depths.iter().zip(self.lateral_force.rows()) {
+        for (depth, forces) in self.depths.iter().zip(self.forces.lateral.rows()) {
             let force = forces[0];
             if force.abs() > SYMMETRY_TOLERANCE {
                 return Err(Refusal::state(
@@ -337,10 +314,12 @@ impl ForceTable {
         Ok(ForceTable {
             depths: self.depths.clone(),
             laterals: odd(&self.laterals),
-            normal_force: self.normal_force.at_columns(&columns),
-            lateral_force: Matrix {
-                columns: columns.len(),
-                values: self.lateral_force.rows().flat_map(odd).collect(),
+            forces: Force {
+                lateral: Matrix {
+                    columns: columns.len(),
+                    values: self.forces.lateral.rows().flat_map(odd).collect(),
+                },
+                normal: self.forces.normal.at_columns(&columns),
             },
         })
     }
@@ -360,12 +339,9 @@ impl ForceTable {
     /// This table with some of its columns.
     pub(super) fn at_columns(&self, columns: &[usize]) -> Result<ForceTable, Refusal> {
         let laterals = columns.iter().map(|&column| self.laterals[column]);
-        ForceTable::new(
-            self.depths.clone(),
-            laterals.collect(),
-            self.normal_force.at_columns(columns),
-            self.lateral_force.at_columns(columns),
-        )
+        let forces = self.forces.as_ref();
+        let forces = forces.map(|force| force.at_columns(columns));
+        ForceTable::new(self.depths.clone(), laterals.collect(), forces)
     }
 }
 

@@ -1,3 +1,4 @@
+use crate::force::Force;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -11,7 +12,12 @@ fn matrix<const N: usize>(rows: &[[f64; N]]) -> Matrix {
 fn table() -> ForceTable {
     let normal = matrix(&[[0.0, 0.1, 0.2], [1.0, 1.1, 1.2]]);
     let lateral = matrix(&[[0.0, 0.01, 0.02], [0.0, -0.11, -0.12]]);
-    ForceTable::new(vec![0.0, 0.001], vec![0.0, 0.002, 0.005], normal, lateral).unwrap()
+    ForceTable::new(
+        vec![0.0, 0.001],
+        vec![0.0, 0.002, 0.005],
+        Force::new(lateral, normal),
+    )
+    .unwrap()
 }
 
 fn certificate(min_det: Matrix, det: f64, depth: f64, lateral: f64) -> Certificate {
@@ -58,7 +64,11 @@ fn measured() -> Source {
 
 fn axes(depths: &[f64], laterals: &[f64]) -> Result<ForceTable, Refusal> {
     let zeros = Matrix::from_fn(depths.len(), laterals.len(), |_, _| 0.0);
-    ForceTable::new(depths.to_vec(), laterals.to_vec(), zeros.clone(), zeros)
+    ForceTable::new(
+        depths.to_vec(),
+        laterals.to_vec(),
+        Force::new(zeros, zeros.clone()),
+    )
 }
 
 fn refusal<T>(result: Result<T, Refusal>) -> String {
@@ -119,7 +129,11 @@ fn bad_axes_are_refused() {
 #[test]
 fn bad_matrices_are_refused() {
     let with = |normal: Matrix, lateral: Matrix| {
-        ForceTable::new(vec![0.0, 0.001], vec![0.0, 0.002, 0.005], normal, lateral)
+        ForceTable::new(
+            vec![0.0, 0.001],
+            vec![0.0, 0.002, 0.005],
+            Force::new(lateral, normal),
+        )
     };
     let good = Matrix::from_fn(2, 3, |_, _| 0.0);
     let transposed = Matrix::from_fn(3, 2, |_, _| 0.0);
@@ -230,10 +244,10 @@ fn symmetry_extends_a_map_to_negative_positions() {
     let map = computed(|_| ()).unwrap().mirrored().unwrap();
     assert_eq!(map.depths(), [0.0, 0.001]);
     assert_eq!(map.laterals(), [-0.005, -0.002, 0.0, 0.002, 0.005]);
-    assert_eq!(map.normal_force().row(0), [0.2, 0.1, 0.0, 0.1, 0.2]);
-    assert_eq!(map.normal_force().row(1), [1.2, 1.1, 1.0, 1.1, 1.2]);
-    assert_eq!(map.lateral_force().row(0), [-0.02, -0.01, 0.0, 0.01, 0.02]);
-    assert_eq!(map.lateral_force().row(1), [0.12, 0.11, 0.0, -0.11, -0.12]);
+    assert_eq!(map.forces().normal.row(0), [0.2, 0.1, 0.0, 0.1, 0.2]);
+    assert_eq!(map.forces().normal.row(1), [1.2, 1.1, 1.0, 1.1, 1.2]);
+    assert_eq!(map.forces().lateral.row(0), [-0.02, -0.01, 0.0, 0.01, 0.02]);
+    assert_eq!(map.forces().lateral.row(1), [0.12, 0.11, 0.0, -0.11, -0.12]);
     let certificate = map.certificate().unwrap();
     assert_eq!(certificate.min_det.row(1), [0.85, 0.8, 0.9, 0.8, 0.85]);
     assert_eq!(certificate.smallest_det.lateral, 0.002);
@@ -246,14 +260,20 @@ fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
     let with = |force: f64| {
         let normal = matrix(&[[0.0, 0.0], [1.0, 1.0]]);
         let lateral = matrix(&[[0.0, 0.0], [force, 0.2]]);
-        ForceTable::new(vec![0.0, 0.001], vec![0.0, 0.002], normal, lateral).unwrap()
+        ForceTable::new(
+            vec![0.0, 0.001],
+            vec![0.0, 0.002],
+            Force::new(lateral, normal),
+        )
+        .unwrap()
     };
     for force in [1e-9, -1e-9, -0.0] {
         let mirrored = with(force).mirrored().unwrap();
-        assert_eq!(mirrored.lateral_force().row(1), [-0.2, 0.0, 0.2]);
+        assert_eq!(mirrored.forces().lateral.row(1), [-0.2, 0.0, 0.2]);
         // A force of +0 stays +0 on both sides: −0 would show in a diff.
         let zeros = mirrored
-            .lateral_force()
+            .forces()
+            .lateral
             .values()
             .iter()
             .filter(|&&force| force == 0.0);
@@ -293,16 +313,16 @@ fn a_signal_is_the_map_minus_its_reference() {
     let still = Matrix::from_fn(2, 3, |_, _| 0.0);
     // The same positions but for the last bits, as a sum of steps gives them.
     let laterals = vec![0.0, 0.002 + 1e-17, 0.005 - 0.9e-9];
-    let table = ForceTable::new(vec![0.0, 0.001], laterals, reference, still).unwrap();
+    let table = ForceTable::new(vec![0.0, 0.001], laterals, Force::new(still, reference)).unwrap();
     let reference = ForceMap::new(measured(), None, table).unwrap();
     let signal = map.signal(&reference).unwrap();
     assert_eq!(signal.laterals(), map.laterals());
-    assert_eq!(signal.normal_force().row(0), [0.0, 0.1, 0.2]);
+    assert_eq!(signal.forces().normal.row(0), [0.0, 0.1, 0.2]);
     assert_eq!(
-        signal.normal_force().row(1),
+        signal.forces().normal.row(1),
         [1.0 - 0.75, 1.1 - 0.5, 1.2 - 0.25]
     );
-    assert_eq!(signal.lateral_force(), map.lateral_force());
+    assert_eq!(signal.forces().lateral, map.forces().lateral);
 }
 
 // Verifies: MAP-005, MAP-013, MAP-014.
@@ -321,7 +341,7 @@ fn a_signal_needs_equal_axes() {
     assert!(shorter.minus(&table()).is_err());
     let huge = |sign: f64| {
         let forces = Matrix::from_fn(1, 1, |_, _| sign * f64::MAX);
-        ForceTable::new(vec![0.0], vec![0.0], forces.clone(), forces).unwrap()
+        ForceTable::new(vec![0.0], vec![0.0], Force::new(forces, forces.clone())).unwrap()
     };
     assert_eq!(
         refusal(huge(1.0).minus(&huge(-1.0))),
@@ -335,8 +355,8 @@ fn forces_at_a_stored_depth() {
     let table = table();
     let row = table.row(0.001 + 0.9e-9).unwrap();
     assert_eq!(row.laterals, [0.0, 0.002, 0.005]);
-    assert_eq!(row.normal_force, [1.0, 1.1, 1.2]);
-    assert_eq!(row.lateral_force, [0.0, -0.11, -0.12]);
+    assert_eq!(row.normal, [1.0, 1.1, 1.2]);
+    assert_eq!(row.lateral, [0.0, -0.11, -0.12]);
     assert_eq!(
         refusal(table.row(0.0005)),
         "depth 0.0005 m is not in the map, expected one of [0.0, 0.001] m"
@@ -372,7 +392,7 @@ proptest! {
         };
         let normal = Matrix::from_fn(2, last + 1, force(0));
         let lateral = Matrix::from_fn(2, last + 1, force(1));
-        let half = ForceTable::new(vec![0.0, 0.001], laterals, normal, lateral).unwrap();
+        let half = ForceTable::new(vec![0.0, 0.001], laterals, Force::new(lateral, normal)).unwrap();
         let whole = half.mirrored().unwrap();
         for row in 0..2 {
             for column in 0..=last {
@@ -380,12 +400,12 @@ proptest! {
                 let of = |matrix: &Matrix, column: usize| matrix.row(row)[column];
                 prop_assert_eq!(whole.laterals()[left], -half.laterals()[column]);
                 prop_assert_eq!(whole.laterals()[right], half.laterals()[column]);
-                let normal = of(half.normal_force(), column).to_bits();
-                prop_assert_eq!(of(whole.normal_force(), left).to_bits(), normal);
-                prop_assert_eq!(of(whole.normal_force(), right).to_bits(), normal);
-                let lateral = of(half.lateral_force(), column);
-                prop_assert_eq!(of(whole.lateral_force(), left), -lateral);
-                prop_assert_eq!(of(whole.lateral_force(), right).to_bits(), lateral.to_bits());
+                let normal = of(&half.forces().normal, column).to_bits();
+                prop_assert_eq!(of(&whole.forces().normal, left).to_bits(), normal);
+                prop_assert_eq!(of(&whole.forces().normal, right).to_bits(), normal);
+                let lateral = of(&half.forces().lateral, column);
+                prop_assert_eq!(of(&whole.forces().lateral, left), -lateral);
+                prop_assert_eq!(of(&whole.forces().lateral, right).to_bits(), lateral.to_bits());
             }
         }
     }
@@ -438,8 +458,8 @@ fn a_map_cut_to_some_positions_keeps_their_columns() {
         for (kept, column) in [(0, 0), (1, 2)] {
             let bits = |matrix: &Matrix, column: usize| matrix.row(row)[column].to_bits();
             let pairs = [
-                (cut.normal_force(), map.normal_force()),
-                (cut.lateral_force(), map.lateral_force()),
+                (cut.forces().normal, map.forces().normal),
+                (cut.forces().lateral, map.forces().lateral),
             ];
             for (ours, whole) in pairs {
                 assert_eq!(bits(ours, kept), bits(whole, column));

@@ -42,7 +42,7 @@ pub struct Felt {
 /// # let (depths, laterals) = (vec![0.0, 0.004], vec![-0.01, 0.01]);
 /// # let matrix = |force: f64| Matrix::from_fn(2, 2, |row, _| force * row as f64);
 /// // A map whose force grows from 0 to 1 N at 4 mm, and a hand that presses and sweeps.
-/// let map = ForceTable::new(depths, laterals, matrix(1.0), matrix(0.0))?;
+/// let map = ForceTable::new(depths, laterals, Force::new(matrix(0.0), matrix(1.0)))?;
 /// let loaded = LoadedTable::new(&map)?;
 /// let hand = Trajectory::probing(0.003, 0.008, Duration::from_secs(1));
 /// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, vec![]);
@@ -103,7 +103,7 @@ pub fn present<D: HapticDevice>(
 ///
 /// let map = |force: f64| {
 ///     let matrix = |force| Matrix::from_fn(2, 2, |_, _| force);
-///     ForceTable::new(vec![0.0, 0.004], vec![0.0, 0.01], matrix(force), matrix(0.0))
+///     ForceTable::new(vec![0.0, 0.004], vec![0.0, 0.01], Force::new(matrix(0.0), matrix(force)))
 /// };
 /// let felt = |force: f64| Felt {
 ///     depths: vec![0.004; 2],

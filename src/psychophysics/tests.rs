@@ -1,6 +1,7 @@
 //! Plans, and the paper's theory closed through the loop.
 
 use super::*;
+use crate::force::Force;
 
 /// The numbers of a table, whose rows are lines.
 pub fn numbers<const N: usize>(table: &str) -> Vec<[f64; N]> {
@@ -80,7 +81,12 @@ mod observer {
         };
         let normal = matrix(&|d, x| d * (300.0 + bump * shape(x)));
         let lateral = matrix(&|d, x| d * bump * 60.0 * x * shape(x));
-        ForceTable::new(depths.clone(), laterals.clone(), normal, lateral).unwrap()
+        ForceTable::new(
+            depths.clone(),
+            laterals.clone(),
+            Force::new(lateral, normal),
+        )
+        .unwrap()
     }
 
     /// One sample of half a second, felt through the shipped loop.

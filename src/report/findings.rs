@@ -12,7 +12,7 @@ use crate::detect::{
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
 };
 use crate::force::Force;
-use crate::force_map::{ForceCurve, ForceMap, ForceTable, SAME_POSITION};
+use crate::force_map::{ForceMap, ForceTable, SAME_POSITION};
 use crate::psychophysics::bridge::Bridge;
 use crate::psychophysics::{Analysis, NoiseDecomposition, Table, analyse, paper_noise_levels};
 use crate::refusal::Refusal;
@@ -230,11 +230,11 @@ fn probe_depth(depths: &[f64]) -> f64 {
 
 fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindings, ReportError> {
     let name = name_of_map(map);
-    let row = map.forces().row(depth).map_err(refused(map))?;
-    let centre = row.laterals.iter().position(|x| x.abs() <= SAME_POSITION);
+    let row = map.row(depth).map_err(refused(map))?;
+    let centre = map.laterals().iter().position(|x| x.abs() <= SAME_POSITION);
     Ok(ReferenceFindings {
         name,
-        normal_force_at_centre: centre.map(|column| row.normal_force[column]),
+        normal_force_at_centre: centre.map(|column| row.normal[column]),
         quality: quality(map),
     })
 }
@@ -261,8 +261,8 @@ fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFindings, Repo
         paper_phantom: phantom.and_then(paper::name_of),
         inclusion_depth: phantom
             .and_then(|p| p.inclusions.iter().map(|i| i.depth).reduce(f64::min)),
-        peak_normal: peak(signal.laterals, signal.normal_force),
-        peak_lateral: peak(signal.laterals, signal.lateral_force),
+        peak_normal: peak(table.laterals(), signal.normal),
+        peak_lateral: peak(table.laterals(), signal.lateral),
         map_rule: at(map_threshold(settings.prior_h1)).map_err(detect)?,
         bounded_miss: at(neyman_pearson_miss_threshold(gamma.both, settings.max_miss))
             .map_err(detect)?,
@@ -304,12 +304,12 @@ fn gamma(lateral: &[f64], normal: &[f64], noise_sd: f64) -> Result<f64, DetectEr
 }
 
 /// Implements: REP-012.
-fn gamma_by_channel(signal: ForceCurve<'_>, noise_sd: f64) -> Result<GammaByChannel, DetectError> {
-    let zeros = vec![0.0; signal.laterals.len()];
+fn gamma_by_channel(signal: Force<&[f64]>, noise_sd: f64) -> Result<GammaByChannel, DetectError> {
+    let zeros = vec![0.0; signal.normal.len()];
     Ok(GammaByChannel {
-        both: gamma(signal.lateral_force, signal.normal_force, noise_sd)?,
-        normal: gamma(&zeros, signal.normal_force, noise_sd)?,
-        lateral: gamma(signal.lateral_force, &zeros, noise_sd)?,
+        both: gamma(signal.lateral, signal.normal, noise_sd)?,
+        normal: gamma(&zeros, signal.normal, noise_sd)?,
+        lateral: gamma(signal.lateral, &zeros, noise_sd)?,
     })
 }
 

@@ -36,7 +36,7 @@ pub struct RoundingError {
 /// // 0.5 N at 1 mm and 1 N at 2 mm, with a lateral force to the right on the right.
 /// let normal = Matrix::from_fn(2, 3, |row, _| 0.5 * (row + 1) as f64);
 /// let lateral = Matrix::from_fn(2, 3, |_, column| 0.25 * (column as f64 - 1.0));
-/// let map = ForceTable::new(vec![1e-3, 2e-3], vec![-5e-3, 0.0, 5e-3], normal, lateral)?;
+/// let map = ForceTable::new(vec![1e-3, 2e-3], vec![-5e-3, 0.0, 5e-3], Force::new(lateral, normal))?;
 ///
 /// let loaded = LoadedTable::new(&map)?;
 /// assert!(loaded.rounding().position_m < 1e-9);
@@ -94,8 +94,8 @@ impl LoadedTable {
     ///
     /// Implements: SRV-044, SRV-045, SRV-046, SRV-047.
     pub fn new(map: &ForceTable) -> Result<LoadedTable, Refusal> {
-        check_forces("lateral_force_n", map.lateral_force(), map.depths())?;
-        check_forces("normal_force_n", map.normal_force(), map.depths())?;
+        check_forces("lateral_force_n", &map.forces().lateral, map.depths())?;
+        check_forces("normal_force_n", &map.forces().normal, map.depths())?;
         let mut rounding = RoundingError::default();
         let surface = map.depths().first().is_some_and(|&first| first > 0.0);
         let depths = knots("depths_m", surface, map.depths(), &mut rounding)?;
@@ -103,8 +103,8 @@ impl LoadedTable {
 
         let rows_in_front = if surface { laterals.len() } else { 0 };
         let mut forces = vec![Force::ZERO; rows_in_front];
-        let normal = map.normal_force().values();
-        for (&lateral, &normal) in map.lateral_force().values().iter().zip(normal) {
+        let normal = map.forces().normal.values();
+        for (&lateral, &normal) in map.forces().lateral.values().iter().zip(normal) {
             forces.push(Force::new(
                 rounded(lateral, &mut rounding.force_n),
                 rounded(normal, &mut rounding.force_n),

@@ -90,7 +90,7 @@ pub fn judge(
 /// use palpate::trace::{Misfit, Trace};
 ///
 /// let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-/// let map = ForceTable::new(vec![0.004], vec![0.0, 0.004], matrix(1.5), matrix(0.0))?;
+/// let map = ForceTable::new(vec![0.004], vec![0.0, 0.004], Force::new(matrix(0.0), matrix(1.5)))?;
 /// let noise_sd = Force { lateral: 0.25, normal: 0.25 };
 /// let misfit = |force: f64| {
 ///     let text = format!("position_mm,lateral_force_n,normal_force_n\n2,0,{force}\n");

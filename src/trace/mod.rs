@@ -16,7 +16,7 @@
 //! let map = |bump: [f64; 7]| {
 //!     let laterals = (-3..=3).map(|x| f64::from(x) * 1e-3).collect();
 //!     let matrix = |force: [f64; 7]| Matrix::from_fn(1, 7, |_, column| force[column]);
-//!     ForceTable::new(vec![0.004], laterals, matrix(bump.map(|b| 1.5 + b)), matrix([0.0; 7]))
+//!     ForceTable::new(vec![0.004], laterals, Force::new(matrix([0.0; 7]), matrix(bump.map(|b| 1.5 + b))))
 //! };
 //! let reference = map([0.0; 7])?;
 //! let inclusion = map([0.0, 0.0, 0.25, 0.5, 0.25, 0.0, 0.0])?;
@@ -121,7 +121,7 @@ pub struct Motion {
 /// assert_eq!((record.positions(), record.forces().y), (&[0.001, 0.003][..], &[1.5, 1.75][..]));
 /// // What a map of 0, 1, 2 N at 0, 2, 4 mm expects there.
 /// let matrix = || Matrix::from_fn(1, 3, |_, column| column as f64);
-/// let map = ForceTable::new(vec![0.004], vec![0.0, 0.002, 0.004], matrix(), matrix())?;
+/// let map = ForceTable::new(vec![0.004], vec![0.0, 0.002, 0.004], Force::new(matrix(), matrix()))?;
 /// assert_eq!(record.expected(&map, 0.004)?.y, [0.5, 1.5]);
 /// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```

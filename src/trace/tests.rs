@@ -21,7 +21,7 @@ fn table(signal: f64) -> ForceTable {
         })
     };
     let (normal, lateral) = (matrix(1.0, normal), matrix(0.1, lateral));
-    ForceTable::new(vec![0.001, 0.003], laterals, normal, lateral).unwrap()
+    ForceTable::new(vec![0.001, 0.003], laterals, Force::new(lateral, normal)).unwrap()
 }
 
 /// A noiseless record at 3 mm depth over −3 … 3 mm by 1 mm with the bump moved by `shift` samples.
@@ -222,8 +222,10 @@ fn maps_that_do_not_fit_are_refused() {
     let other = ForceTable::new(
         vec![0.001, 0.0031],
         table(0.0).laterals().to_vec(),
-        table(0.0).normal_force().clone(),
-        table(0.0).lateral_force().clone(),
+        Force::new(
+            table(0.0).forces().lateral.clone(),
+            table(0.0).forces().normal.clone(),
+        ),
     );
     let error = judged(&record, &other.unwrap(), 0.001);
     assert!(error.starts_with("t.csv: depths_m[1] is 0.003"), "{error}");
@@ -303,8 +305,7 @@ fn the_promise_of_misses_is_kept_for_an_inclusion_at_any_sample() {
         ForceTable::new(
             vec![0.001],
             laterals,
-            normal,
-            Matrix::from_fn(1, 7, |_, _| 0.0),
+            Force::new(Matrix::from_fn(1, 7, |_, _| 0.0), normal),
         )
         .unwrap()
     };
@@ -390,8 +391,13 @@ fn a_scan_tells_how_much_of_the_signal_the_maps_cut_off() {
         let part =
             |matrix: &Matrix| Matrix::from_fn(2, 4, |row, column| matrix.row(row)[column + 2]);
         let laterals = whole.laterals()[2..6].to_vec();
-        let (normal, lateral) = (part(whole.normal_force()), part(whole.lateral_force()));
-        ForceTable::new(whole.depths().to_vec(), laterals, normal, lateral).unwrap()
+        let (normal, lateral) = (part(&whole.forces().normal), part(&whole.forces().lateral));
+        ForceTable::new(
+            whole.depths().to_vec(),
+            laterals,
+            Force::new(lateral, normal),
+        )
+        .unwrap()
     };
     let record = read(
         "position_mm,lateral_force_n,normal_force_n\n-1,1.1,2\n0,0.1,3\n1,-0.9,2\n2,-0.4,1.25\n",
@@ -458,8 +464,16 @@ fn records_that_cannot_be_scanned_are_refused() {
     let off = |signal| {
         let table = table(signal);
         let laterals = (1..=7).map(|k| f64::from(k) / 1e3).collect();
-        let (normal, lateral) = (table.normal_force().clone(), table.lateral_force().clone());
-        ForceTable::new(table.depths().to_vec(), laterals, normal, lateral).unwrap()
+        let (normal, lateral) = (
+            table.forces().normal.clone(),
+            table.forces().lateral.clone(),
+        );
+        ForceTable::new(
+            table.depths().to_vec(),
+            laterals,
+            Force::new(lateral, normal),
+        )
+        .unwrap()
     };
     let record = rows(&["1", "2", "3", "4", "5", "6", "7"]);
     let found = locate(

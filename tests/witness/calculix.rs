@@ -84,12 +84,12 @@ fn compare(name: &str, centre_x: f64, lateral: f64) {
     let model = Model::new(&phantom, size, Contact::DeformedNormal).unwrap();
     for (&depth, [along, normal]) in DEPTHS.iter().zip(forces) {
         let ours = model.solve(Pose { depth, lateral }).unwrap();
-        let [off, aside] = [ours.normal_force - normal, ours.lateral_force - along]
+        let [off, aside] = [ours.force.normal - normal, ours.force.lateral - along]
             .map(|difference| 100.0 * difference / normal);
         println!(
             "{name} at {centre_x}, d = {depth}, x = {lateral}: F_n {:.6} N, CalculiX {normal:.6} N; \
              F_x {:.6} N, CalculiX {along:.6} N; {off:+.3} % and {aside:+.3} % of F_n",
-            ours.normal_force, ours.lateral_force
+            ours.force.normal, ours.force.lateral
         );
         assert!(off.abs() < 0.5, "{name} at {depth}, {lateral}: {off} %");
         assert!(

@@ -1,5 +1,6 @@
 //! Reports of a device, and recordings of a session.
 
+use palpate::force::Force;
 use palpate::force_map::{ForceTable, Matrix};
 use palpate::hid::{
     Capabilities, Control, ForceReport, InvalidReport, PositionReport, Recording, Units, count,
@@ -139,8 +140,7 @@ fn check_replay(recording: &Recording) {
     let map = ForceTable::new(
         vec![0.0, 0.004],
         vec![-0.01, 0.01],
-        matrix([0.0, 0.0, 1.5, 1.5]),
-        matrix([0.0, 0.0, 0.1, -0.1]),
+        Force::new(matrix([0.0, 0.0, 0.1, -0.1]), matrix([0.0, 0.0, 1.5, 1.5])),
     );
     let loaded = LoadedTable::new(&map.expect("a map")).expect("a table");
     match recording.replay(loaded.table().expect("loaded")) {

@@ -67,7 +67,7 @@ pub fn check_csv(refusal: &Refusal, text: &str) {
 }
 
 fn check_map(map: &ForceMap) {
-    check_table(map.forces());
+    check_table(map.table());
     if let Some(phantom) = map.phantom() {
         phantom.validate().expect("valid");
     }
@@ -79,7 +79,7 @@ fn check_map(map: &ForceMap) {
     match map.mirrored() {
         Ok(whole) => {
             assert_eq!(whole.laterals().len(), 2 * map.laterals().len() - 1);
-            check_table(whole.forces());
+            check_table(whole.table());
         }
         Err(error) if error.key == "laterals_m[0]" => assert!(map.laterals()[0] != 0.0),
         Err(error) if error.found.starts_with("lateral force ") => {}
@@ -99,7 +99,7 @@ fn check_table(table: &ForceTable) {
     }
     assert!(table.depths()[0] >= 0.0);
     let shape = (table.depths().len(), table.laterals().len());
-    for forces in [table.normal_force(), table.lateral_force()] {
+    for forces in [&table.forces().normal, &table.forces().lateral] {
         assert_eq!((forces.row_count(), forces.column_count()), shape);
         assert!(forces.values().iter().all(|force| force.is_finite()));
     }
@@ -119,8 +119,8 @@ fn check_between(table: &ForceTable) {
     let (depth, lateral) = (table.depths()[0], table.laterals()[0]);
     match table.force(depth, lateral) {
         Ok(force) => {
-            assert_eq!(force.normal, table.normal_force().row(0)[0]);
-            assert_eq!(force.lateral, table.lateral_force().row(0)[0]);
+            assert_eq!(force.normal, table.forces().normal.row(0)[0]);
+            assert_eq!(force.lateral, table.forces().lateral.row(0)[0]);
         }
         Err(error) if error.found.ends_with(" a single entry") => {}
         Err(error) if error.found.ends_with(" beyond the range of numbers") => {}
@@ -130,5 +130,5 @@ fn check_between(table: &ForceTable) {
         assert!(force.lateral.is_finite() && force.normal.is_finite());
     }
     let row = table.row(depth).expect("a stored depth");
-    assert_eq!(row.normal_force, table.normal_force().row(0));
+    assert_eq!(row.normal, table.forces().normal.row(0));
 }

@@ -158,8 +158,8 @@ fn forces(name: &str) -> Result<Force<Vec<f64>>, String> {
         .and_then(|model| model.map(&[DEPTH], &laterals, &|_| ()))
         .map_err(|error| failed(&error))?;
     Ok(Force::new(
-        map.lateral_force().row(0).to_vec(),
-        map.normal_force().row(0).to_vec(),
+        map.forces().lateral.row(0).to_vec(),
+        map.forces().normal.row(0).to_vec(),
     ))
 }
 

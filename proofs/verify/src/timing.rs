@@ -161,7 +161,7 @@ fn force_map() -> Result<Vec<Figure>, String> {
         .map_err(|error| error.to_string())?;
     let time = processor_time() - before;
     Ok(vec![
-        Figure::count("poses", map.normal_force().values().len() as u64, 189),
+        Figure::count("poses", map.forces().normal.values().len() as u64, 189),
         Figure::told("nodes", model.mesh().nodes.len() as f64),
         Figure::told("processor time, s", time),
     ])

@@ -52,7 +52,7 @@ fn a_certified_map_has_the_published_forces_and_bands_that_hold_the_error() {
     let counted = std::cell::Cell::new(0);
     let count = |poses| counted.set(counted.get() + poses);
     let map = certified_map(&model, &depths, &laterals, &count).unwrap();
-    assert_eq!(map.forces(), plain.forces());
+    assert_eq!(map.table(), plain.table());
     // Three meshes over |x| = 0, 1, 2, 4, 6 mm.
     assert_eq!(counted.get(), 3 * 3 * 5);
     let bands = map.certificate().unwrap().discretization.clone().unwrap();
@@ -64,14 +64,15 @@ fn a_certified_map_has_the_published_forces_and_bands_that_hold_the_error() {
     let (mut within, mut widest) = (0, 0.0f64);
     for row in 0..3 {
         for column in 0..5 {
-            let normal =
-                (map.normal_force().row(row)[column] - truth.normal_force().row(row)[column]).abs();
-            let lateral = (map.lateral_force().row(row)[column]
-                - truth.lateral_force().row(row)[column])
+            let normal = (map.forces().normal.row(row)[column]
+                - truth.forces().normal.row(row)[column])
+                .abs();
+            let lateral = (map.forces().lateral.row(row)[column]
+                - truth.forces().lateral.row(row)[column])
                 .abs();
             within += usize::from(normal <= bands.normal_force_band.row(row)[column]);
             within += usize::from(lateral <= bands.lateral_force_band.row(row)[column]);
-            let force = map.normal_force().row(row)[column];
+            let force = map.forces().normal.row(row)[column];
             widest = widest.max(bands.normal_force_band.row(row)[column] / force);
         }
     }
@@ -88,8 +89,8 @@ fn a_certified_map_has_the_published_forces_and_bands_that_hold_the_error() {
 fn banded(map: &ForceMap) -> [Vec<(f64, f64)>; 2] {
     let bands = map.certificate().unwrap().discretization.as_ref().unwrap();
     let pairs = [
-        (map.normal_force(), &bands.normal_force_band),
-        (map.lateral_force(), &bands.lateral_force_band),
+        (&map.forces().normal, &bands.normal_force_band),
+        (&map.forces().lateral, &bands.lateral_force_band),
     ];
     pairs.map(|(forces, bands)| {
         let forces = forces.values().iter().copied();

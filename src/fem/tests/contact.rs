@@ -122,10 +122,10 @@ fn the_vertical_gap_is_the_height_of_the_circle_above_the_undeformed_place() {
     let forces = model.surface().forces(state, solution.pose);
     let down: f64 = forces.iter().map(|(_, force)| -force[1]).sum();
     assert!(forces.iter().all(|(_, force)| force[0] == 0.0));
-    assert!((down - solution.normal_force).abs() < 1e-12);
+    assert!((down - solution.force.normal).abs() < 1e-12);
     // The pressure on the circle's right flank pushes the probe to the left.
-    assert!((slopes + solution.lateral_force).abs() < 1e-12);
-    assert!(solution.lateral_force.abs() > 1e-3);
+    assert!((slopes + solution.force.lateral).abs() < 1e-12);
+    assert!(solution.force.lateral.abs() > 1e-3);
 }
 
 // Verifies: FEM-007, FEM-008, FEM-013, FEM-032.
@@ -232,11 +232,11 @@ fn reaction_of_floor_and_walls_is_the_force_on_the_probe() {
     }
     // The gel is pushed down by the probe and held up by the floor.
     assert!(
-        (reaction[1] - solution.normal_force).abs() < 1e-9,
+        (reaction[1] - solution.force.normal).abs() < 1e-9,
         "{reaction:?} {solution:?}"
     );
-    assert!((reaction[0] - solution.lateral_force).abs() < 1e-9);
-    assert!(solution.normal_force > 0.1);
+    assert!((reaction[0] - solution.force.lateral).abs() < 1e-9);
+    assert!(solution.force.normal > 0.1);
 }
 
 // Verifies: FEM-012.
@@ -254,17 +254,17 @@ fn forces_are_the_slopes_of_the_strain_energy() {
             let normal = (at(d + h, x).energy - at(d - h, x).energy) / (2.0 * h);
             let lateral = -(at(d, x + h).energy - at(d, x - h).energy) / (2.0 * h);
             assert!(
-                (normal - here.normal_force).abs() < 1e-5,
+                (normal - here.force.normal).abs() < 1e-5,
                 "{contact:?} F_n {} dU/dd {normal}",
-                here.normal_force
+                here.force.normal
             );
             assert!(
-                (lateral - here.lateral_force).abs() < 1e-5,
+                (lateral - here.force.lateral).abs() < 1e-5,
                 "{contact:?} F_x {} -dU/dx {lateral}",
-                here.lateral_force
+                here.force.lateral
             );
             assert!(
-                here.lateral_force.abs() > 1e-4,
+                here.force.lateral.abs() > 1e-4,
                 "{contact:?}: nothing to compare"
             );
         }
@@ -276,7 +276,7 @@ fn forces_are_the_slopes_of_the_strain_energy() {
 fn the_contact_laws_agree_where_the_gel_hardly_moves() {
     let (deformed, vertical) = (coarse("none", CONTACTS[0]), coarse("none", CONTACTS[1]));
     let ratio = |depth_mm: f64| {
-        solve(&deformed, depth_mm, 1.0).normal_force / solve(&vertical, depth_mm, 1.0).normal_force
+        solve(&deformed, depth_mm, 1.0).force.normal / solve(&vertical, depth_mm, 1.0).force.normal
             - 1.0
     };
     // Slopes at the contact's edge are √(2d/R): the laws differ by their square, some per cent at 1 mm.
@@ -329,7 +329,7 @@ fn poses_where_the_probe_cannot_stand_are_refused() {
     }
     let still = model.solve(pose(0.0, 3e-3)).unwrap();
     assert_eq!(
-        [still.normal_force, still.lateral_force, still.energy],
+        [still.force.normal, still.force.lateral, still.energy],
         [0.0; 3]
     );
 }

@@ -16,7 +16,7 @@ fn maps_are_mirror_symmetric_to_the_bit() {
         .map(&MILLIMETRES, &[-5e-3, -2e-3, 0.0, 2e-3, 6e-3], &|_| ())
         .unwrap();
     for row in 0..3 {
-        let (normal, lateral) = (map.normal_force().row(row), map.lateral_force().row(row));
+        let (normal, lateral) = (map.forces().normal.row(row), map.forces().lateral.row(row));
         assert_eq!(normal[1].to_bits(), normal[3].to_bits());
         assert_eq!(lateral[1].to_bits(), (-lateral[3]).to_bits());
         assert_eq!(lateral[2].to_bits(), 0.0f64.to_bits());
@@ -28,10 +28,10 @@ fn maps_are_mirror_symmetric_to_the_bit() {
         ..right
     };
     let (right, left) = (model.solve(right).unwrap(), model.solve(left).unwrap());
-    assert_eq!(right.normal_force.to_bits(), left.normal_force.to_bits());
+    assert_eq!(right.force.normal.to_bits(), left.force.normal.to_bits());
     assert_eq!(
-        right.lateral_force.to_bits(),
-        (-left.lateral_force).to_bits()
+        right.force.lateral.to_bits(),
+        (-left.force.lateral).to_bits()
     );
     let fields = [model.field(&right).unwrap(), model.field(&left).unwrap()];
     let key = |[x, y]: [f64; 2]| [x + 0.0, y].map(f64::to_bits);
@@ -60,14 +60,14 @@ fn a_map_holds_the_forces_of_its_poses() {
         for (column, &lateral) in laterals.iter().enumerate() {
             let alone = model.solve(Pose { depth, lateral }).unwrap();
             let [normal, along] =
-                [map.normal_force(), map.lateral_force()].map(|m| m.row(row)[column]);
+                [map.forces().normal, map.forces().lateral].map(|m| m.row(row)[column]);
             // Reached by another path: equal within what Newton leaves, 1e-13 m at 10³ N/m.
             assert!(
-                (normal - alone.normal_force).abs() < 1e-10,
+                (normal - alone.force.normal).abs() < 1e-10,
                 "{normal} {alone:?}"
             );
             assert!(
-                (along - alone.lateral_force).abs() < 1e-10,
+                (along - alone.force.lateral).abs() < 1e-10,
                 "{along} {alone:?}"
             );
         }
@@ -88,12 +88,12 @@ fn a_map_of_an_asymmetric_phantom_solves_each_side_by_itself() {
     assert_eq!(counted.get(), 9);
     assert_eq!(model.solved_laterals(&laterals), laterals);
     for (row, &depth) in MILLIMETRES.iter().enumerate() {
-        let (normal, along) = (map.normal_force().row(row), map.lateral_force().row(row));
+        let (normal, along) = (map.forces().normal.row(row), map.forces().lateral.row(row));
         for (column, &lateral) in laterals.iter().enumerate() {
             let alone = model.solve(Pose { depth, lateral }).unwrap();
             // As above.
-            assert!((normal[column] - alone.normal_force).abs() < 1e-10);
-            assert!((along[column] - alone.lateral_force).abs() < 1e-10);
+            assert!((normal[column] - alone.force.normal).abs() < 1e-10);
+            assert!((along[column] - alone.force.lateral).abs() < 1e-10);
         }
         // The disc is under the right side, pushes harder there, and to the left at x = 0.
         assert!(normal[2] > 1.01 * normal[0], "{normal:?}");
@@ -103,8 +103,8 @@ fn a_map_of_an_asymmetric_phantom_solves_each_side_by_itself() {
     let image = super::coarse(&off_centre(2.6, -2.0), Contact::DeformedNormal);
     let image = image.map(&MILLIMETRES, &laterals, &count).unwrap();
     for row in 0..3 {
-        assert!(image.normal_force().row(row)[0] > 1.01 * image.normal_force().row(row)[2]);
-        assert!(image.lateral_force().row(row)[1] > 1e-4);
+        assert!(image.forces().normal.row(row)[0] > 1.01 * image.forces().normal.row(row)[2]);
+        assert!(image.forces().lateral.row(row)[1] > 1e-4);
     }
 }
 
@@ -168,7 +168,7 @@ fn the_paper_s_poses_have_the_forces_of_an_independent_program() {
     // 0.31 N over the 6.6 mm inclusion; both given to two digits.
     let force = |name: &str| {
         let model = Model::new(&builtin(name), MESH_SIZE, Contact::DeformedNormal).unwrap();
-        model.solve(pose(4e-3, 0.0)).unwrap().normal_force
+        model.solve(pose(4e-3, 0.0)).unwrap().force.normal
     };
     let (none, inclusion) = (force("none"), force("6.6"));
     assert!((none - 1.48).abs() < 0.005, "{none}");
@@ -200,8 +200,8 @@ fn forces_of_the_default_mesh_are_converged() {
         ] {
             let [found, limit] =
                 [&default, fine].map(|model| model.solve(Pose { depth, lateral }).unwrap());
-            let normal = (found.normal_force / limit.normal_force - 1.0).abs();
-            let along = (found.lateral_force - limit.lateral_force).abs();
+            let normal = (found.force.normal / limit.force.normal - 1.0).abs();
+            let along = (found.force.lateral - limit.force.lateral).abs();
             println!("d = {depth}, x = {lateral}: {normal:.2e}, {along:.2e} N");
             assert!(normal < limits[0], "at {depth}, {lateral}: {normal}");
             assert!(along < limits[1], "at {depth}, {lateral}: {along} N");

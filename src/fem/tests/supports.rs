@@ -116,7 +116,7 @@ fn what_holds_less_pushes_back_less() {
             let check = model.checks(std::slice::from_ref(&solution)).unwrap()[0];
             // Forces on the gel that a support without friction cannot take are none.
             assert!(check.imbalance < 1e-9 && check.residual < 1e-8, "{check:?}");
-            solution.normal_force
+            solution.force.normal
         };
         let forces: Vec<f64> = chain.iter().map(force).collect();
         let less = |a: &f64, b: &f64| *b < (1.0 - at_least) * a;

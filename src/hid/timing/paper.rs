@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::force::Force;
 use crate::force_map::{ForceTable, Matrix};
 use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
 use crate::servo::LoadedTable;
@@ -20,7 +21,7 @@ pub fn table() -> Result<LoadedTable, String> {
     let lateral = Matrix::from_fn(9, 41, |row, column| {
         1e-3 * row as f64 * (column as f64 - 20.0)
     });
-    let forces = ForceTable::new(depths, laterals, normal, lateral);
+    let forces = ForceTable::new(depths, laterals, Force::new(lateral, normal));
     let forces = forces.map_err(|error| error.to_string())?;
     LoadedTable::new(&forces).map_err(|error| error.to_string())
 }

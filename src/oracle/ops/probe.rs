@@ -33,6 +33,6 @@ pub fn force(arguments: &mut Arguments) -> Result<Answer, Refused> {
         }
     };
     Ok(Answer::default()
-        .with("normal_force_n", solution.normal_force)
-        .with("lateral_force_n", solution.lateral_force))
+        .with("normal_force_n", solution.force.normal)
+        .with("lateral_force_n", solution.force.lateral))
 }

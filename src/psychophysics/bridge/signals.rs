@@ -47,11 +47,11 @@ impl Signal {
     /// The difference at one depth, m, of a map from its reference.
     pub fn new(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<Signal, Refusal> {
         let difference = map.signal(reference)?;
-        let row = difference.row(depth)?;
+        let forces = difference.row(depth)?;
         Ok(Signal {
-            laterals: row.laterals.to_vec(),
-            normal: row.normal_force.to_vec(),
-            lateral: row.lateral_force.to_vec(),
+            laterals: difference.laterals().to_vec(),
+            normal: forces.normal.to_vec(),
+            lateral: forces.lateral.to_vec(),
         })
     }
 

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::detect::two_afc;
+use crate::force::Force;
 use crate::force_map::{ForceTable, Matrix, Source};
 use crate::phantom::Phantom;
 use crate::psychophysics::OpenBounds;
@@ -33,7 +34,12 @@ fn map_over(depths: &[f64], laterals: &[f64], forces: impl Fn(usize) -> [f64; 2]
             forces(column)[part]
         })
     };
-    let table = ForceTable::new(depths.into(), laterals.into(), matrix(0), matrix(1)).unwrap();
+    let table = ForceTable::new(
+        depths.into(),
+        laterals.into(),
+        Force::new(matrix(1), matrix(0)),
+    )
+    .unwrap();
     let source = Source::Measured {
         file: "test".into(),
         note: String::new(),
@@ -92,7 +98,7 @@ fn half_a_sweep_is_completed_by_symmetry() {
     });
     let whole = sweep(&half, None).unwrap();
     assert_eq!(whole.laterals().len(), 5);
-    assert_eq!(whole.lateral_force().row(0), [-1.0, -3.0, 0.0, 3.0, 1.0]);
+    assert_eq!(whole.forces().lateral.row(0), [-1.0, -3.0, 0.0, 3.0, 1.0]);
     // A whole one stays, and so does one that begins elsewhere.
     assert_eq!(sweep(&whole, None).unwrap(), whole);
 }
@@ -103,7 +109,7 @@ fn half_a_sweep_over_an_asymmetric_phantom_is_refused() {
     let half = map_over(&[4e-3], &[0.0, 2e-3], |_| [1.0, 0.0]);
     let mut phantom = Phantom::builtin("6.6").unwrap();
     let of = |phantom: &Phantom| {
-        let (source, forces) = (half.source().clone(), half.forces().clone());
+        let (source, forces) = (half.source().clone(), half.table().clone());
         ForceMap::new(source, Some(phantom.clone()), forces).unwrap()
     };
     assert_eq!(sweep(&of(&phantom), None).unwrap().laterals().len(), 3);

@@ -23,7 +23,7 @@ pub fn drafts(study: &Study, found: &Findings) -> Result<Vec<Draft>, ReportError
         Draft::chart(prefix, Topic::Forces, words, panels, LATERAL_POSITION)
     };
     let of_map = |map: &ForceMap, prefix, words| {
-        draft(prefix, words, &force_curves(map.forces())).named(text::name_of_map(map))
+        draft(prefix, words, &force_curves(map.table())).named(text::name_of_map(map))
     };
     let mut drafts = Vec::new();
     if !study.maps.is_empty() {
@@ -79,8 +79,8 @@ fn force_curves(table: &ForceTable) -> [Panel; 2] {
         panel(heading, table.laterals(), height, lines.collect())
     };
     [
-        panel("Normal force (N)", table.normal_force(), 230),
-        panel("Lateral force (N)", table.lateral_force(), 200),
+        panel("Normal force (N)", &table.forces().normal, 230),
+        panel("Lateral force (N)", &table.forces().lateral, 200),
     ]
 }
 
@@ -105,11 +105,11 @@ fn signals(study: &Study, found: &Findings) -> Result<[Panel; 2], ReportError> {
             .map_err(findings::refused(map))?;
         let line = |forces| Line {
             is_dashed: (k / PALETTE.len()) % 2 == 1,
-            ..Line::new(PALETTE[k % PALETTE.len()], points(curve.laterals, forces))
+            ..Line::new(PALETTE[k % PALETTE.len()], points(table.laterals(), forces))
                 .named(label(of_map))
         };
-        normal.push(line(curve.normal_force));
-        lateral.push(line(curve.lateral_force));
+        normal.push(line(curve.normal));
+        lateral.push(line(curve.lateral));
     }
     let laterals = study.reference.laterals();
     Ok([
@@ -141,7 +141,7 @@ impl ForceText<'_> {
 
     /// The largest normal force, N.
     fn largest(&self) -> f64 {
-        let forces = self.map.normal_force().values();
+        let forces = self.map.forces().normal.values();
         forces.iter().copied().fold(0.0, f64::max)
     }
 }

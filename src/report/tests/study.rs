@@ -2,6 +2,7 @@
 
 use crate::fem::Pose;
 use crate::fem::mesh::Region;
+use crate::force::Force;
 use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
 use crate::phantom::Phantom;
 use crate::report::{DeformedMesh, Settings, Study, text};
@@ -22,7 +23,12 @@ fn forces(depths: &[f64], normal: impl Fn(f64) -> f64, lateral: impl Fn(f64) -> 
         })
     };
     let normal = matrix(&|x| 1.48 + normal(x));
-    ForceTable::new(depths.into(), LATERALS.into(), normal, matrix(&lateral)).unwrap()
+    ForceTable::new(
+        depths.into(),
+        LATERALS.into(),
+        Force::new(matrix(&lateral), normal),
+    )
+    .unwrap()
 }
 
 /// A measured map of 1.48 N and the signal given, both at 4 mm.

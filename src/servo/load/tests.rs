@@ -13,7 +13,12 @@ fn map(depths: &[f64], laterals: &[f64], force: impl Fn(f64, f64) -> [f64; 2]) -
             force(depths[row], laterals[column])[component]
         })
     };
-    ForceTable::new(depths.to_vec(), laterals.to_vec(), matrix(1), matrix(0)).unwrap()
+    ForceTable::new(
+        depths.to_vec(),
+        laterals.to_vec(),
+        Force::new(matrix(0), matrix(1)),
+    )
+    .unwrap()
 }
 
 /// A device that plays everything.
@@ -235,7 +240,7 @@ fn no_box_is_worse_than_the_rotation() {
         let lateral = Matrix::from_fn(4, 6, |row, column| normal((6 * row + column) as u64, 1));
         let depths = vec![1e-3, 2e-3, 4e-3, 5e-3];
         let laterals = vec![-5e-3, -3e-3, 0.0, 1e-3, 2e-3, 5e-3];
-        let map = ForceTable::new(depths, laterals, forces, lateral).unwrap();
+        let map = ForceTable::new(depths, laterals, Force::new(lateral, forces)).unwrap();
         let loaded = LoadedTable::new(&map).unwrap();
         let table = loaded.table().unwrap();
         let depths = [0.0, 1e-3, 2e-3, 4e-3, 5e-3, 6e-3f32];
@@ -397,7 +402,12 @@ fn any_map() -> impl Strategy<Value = (ForceTable, f64)> {
                 Matrix::new(laterals.len(), values.iter().map(round).collect()).unwrap()
             };
             let (normal, lateral) = (matrix(|v| v.0), matrix(|v| v.1));
-            let map = ForceTable::new(depths.clone(), laterals.clone(), normal, lateral).unwrap();
+            let map = ForceTable::new(
+                depths.clone(),
+                laterals.clone(),
+                Force::new(lateral, normal),
+            )
+            .unwrap();
             (map, scale)
         })
     })
@@ -436,7 +446,7 @@ fn distance(map: &ForceTable, depth_at: f32, lateral_at: f32, reach: f32) -> f64
             Matrix::new(columns, values.collect()).unwrap()
         };
         let (normal, lateral) = (matrix(|f| f.normal), matrix(|f| f.lateral));
-        ForceTable::new(depths, map.laterals().to_vec(), normal, lateral).unwrap()
+        ForceTable::new(depths, map.laterals().to_vec(), Force::new(lateral, normal)).unwrap()
     };
     let expected = reference
         .force(f64::from(depth), f64::from(lateral))

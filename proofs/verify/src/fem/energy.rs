@@ -36,11 +36,11 @@ fn at_pose(model: &Model, depth: f64, lateral: f64) -> Result<Option<[f64; 3]>, 
     if !down.iter().chain(&aside).all(same) {
         return Ok(None);
     }
-    let other = slope(&down, |s| s.lateral_force);
-    let mixed = slope(&aside, |s| s.normal_force);
+    let other = slope(&down, |s| s.force.lateral);
+    let mixed = slope(&aside, |s| s.force.normal);
     let laws = [
-        (slope(&down, |s| s.energy), here.normal_force, ENERGY),
-        (slope(&aside, |s| -s.energy), here.lateral_force, ENERGY),
+        (slope(&down, |s| s.energy), here.force.normal, ENERGY),
+        (slope(&aside, |s| -s.energy), here.force.lateral, ENERGY),
         ((mixed.0, mixed.1 + other.1), -other.0, FORCE),
     ];
     Ok(Some(laws.map(|((slope, error), expected, rounding)| {

@@ -264,8 +264,8 @@ fn compare(name: &str, contact: Contact) -> Figures {
         let [right, left] = [lateral, -lateral].map(|lateral| full.solve(Pose { depth, lateral }));
         let (right, left) = (right?, left?);
         let off = [
-            condensed.lateral_force - right.force[0],
-            condensed.normal_force - right.force[1],
+            condensed.force.lateral - right.force[0],
+            condensed.force.normal - right.force[1],
         ];
         // The left side is solved by itself here, where the library mirrors the right one.
         let unlike = [
@@ -280,7 +280,7 @@ fn compare(name: &str, contact: Contact) -> Figures {
         figures.extend([
             Figure::at_least(
                 format!("{what}: lateral force to compare, N"),
-                condensed.lateral_force.abs(),
+                condensed.force.lateral.abs(),
                 1e-3,
             ),
             Figure::at_most(
@@ -332,7 +332,7 @@ pub fn symmetry(what: &str, map: &ForceMap) -> [Figure; 3] {
     let (rows, columns) = (map.depths().len(), map.laterals().len());
     let (mut pairs, mut unlike, mut aside) = (0, 0, 0);
     for row in 0..rows {
-        let (normal, lateral) = (map.normal_force().row(row), map.lateral_force().row(row));
+        let (normal, lateral) = (map.forces().normal.row(row), map.forces().lateral.row(row));
         for (left, right) in (0..columns).zip((0..columns).rev()).take(columns / 2) {
             let same = normal[left].to_bits() == normal[right].to_bits()
                 && lateral[left].to_bits() == (-lateral[right]).to_bits();

@@ -74,9 +74,9 @@ fn compare(model: &Model, depth: f64, curvature: f64) -> Result<[f64; 3], String
     let square = 4.0 * moment / force;
     let compliance =
         (1.0 - MATERIAL.poisson_ratio * MATERIAL.poisson_ratio) / MATERIAL.youngs_modulus;
-    let hertz = 4.0 * solution.normal_force * RADIUS * compliance / PI;
+    let hertz = 4.0 * solution.force.normal * RADIUS * compliance / PI;
     let base = 1.0 - curvature * square / (HEIGHT * HEIGHT);
-    let highest = 2.0 * solution.normal_force / (PI * square.sqrt() * surface.probe.length);
+    let highest = 2.0 * solution.force.normal / (PI * square.sqrt() * surface.probe.length);
     let off = (0..surface.positions.len()).map(|point| {
         let x = place(point);
         let exact = highest * (1.0 - x * x / square).max(0.0).sqrt();

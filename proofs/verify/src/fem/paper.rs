@@ -38,7 +38,7 @@ fn reference() -> Figures {
             lateral: 0.0,
         };
         let solution = model(name)?.solve(pose).map_err(said)?;
-        Ok(solution.normal_force)
+        Ok(solution.force.normal)
     };
     let none = force("none")?;
     let inclusion = force("6.6")?;
@@ -75,14 +75,14 @@ fn certificates() -> Figures {
         let certificate = map.certificate().ok_or("the map has no certificate")?;
         let bands = certificate.discretization.as_ref();
         let bands = bands.ok_or("the map has no bands")?;
-        let forces = map.normal_force().values();
+        let forces = map.forces().normal.values();
         let relative = bands.normal_force_band.values().iter().zip(forces);
         let lateral = bands.lateral_force_band.values();
         let told = |what: &str, value| Figure::told(format!("{name}: {what}"), value);
         figures.extend([
             told(
                 "normal force at 4 mm, x = 0, N",
-                map.normal_force().row(2)[2],
+                map.forces().normal.row(2)[2],
             ),
             told(
                 "largest half band of a normal force, %",

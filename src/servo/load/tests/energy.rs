@@ -118,7 +118,7 @@ fn gel(generator: &Generator, number: u64, noise: f64) -> ForceTable {
         let x = laterals[column];
         depths[row].powi(2) * x / (width * width) * hill(x) + noise(row, column, 1)
     });
-    ForceTable::new(depths, laterals, normal, lateral).unwrap()
+    ForceTable::new(depths, laterals, Force::new(lateral, normal)).unwrap()
 }
 
 /// A random closed path from outside of the gel: a wandering of three harmonics, or in, so many times round, and out.
@@ -211,7 +211,7 @@ fn spring(stiffness: f64) -> ForceTable {
     let depths = vec![0.0, 4e-3, 4.5e-3];
     let normal = Matrix::from_fn(3, 2, |row, _| depths[row] * stiffness);
     let lateral = Matrix::from_fn(3, 2, |_, _| 0.0);
-    ForceTable::new(depths, vec![-0.01, 0.01], normal, lateral).unwrap()
+    ForceTable::new(depths, vec![-0.01, 0.01], Force::new(lateral, normal)).unwrap()
 }
 
 // What is refused does give energy out, each by the bound that refuses it: the observer can see it.
@@ -244,7 +244,7 @@ fn what_is_refused_gives_energy_out() {
         let normal = Matrix::from_fn(2, 3, |row, column| row as f64 * twist * column as f64);
         let lateral = Matrix::from_fn(2, 3, |_, _| 0.0);
         let laterals = vec![-0.01, 0.0, 0.01];
-        ForceTable::new(vec![0.0, 4.5e-3], laterals, normal, lateral).unwrap()
+        ForceTable::new(vec![0.0, 4.5e-3], laterals, Force::new(lateral, normal)).unwrap()
     };
     let round = |twist: f64| {
         let loaded = LoadedTable::new(&twisted(twist)).unwrap();
