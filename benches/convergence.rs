@@ -115,9 +115,13 @@ fn study(name: &str, phantom: &Phantom, laterals: &[f64]) -> Shares {
         );
         (text, within)
     };
-    let (normal, normal_within) = errors(ForceMap::normal_force, &bands.normal_force_band, true);
-    let (lateral, lateral_within) =
-        errors(ForceMap::lateral_force, &bands.lateral_force_band, false);
+    let (normal, normal_within) =
+        errors(|map| &map.forces().normal, &bands.normal_force_band, true);
+    let (lateral, lateral_within) = errors(
+        |map| &map.forces().lateral,
+        &bands.lateral_force_band,
+        false,
+    );
     let nodes = [default.mesh().nodes.len(), references[0].0];
     println!(
         "{name:>12}  {:>6} {:>7} | {normal} | {lateral}",

@@ -40,8 +40,6 @@
 //!
 //! // A sweep at 4 mm, as it would come without noise over the inclusion. Samples in noise of 0.1 N.
 //! let (f0, f1) = (without.row(4e-3)?, with.row(4e-3)?);
-//! let f0 = Force { lateral: f0.lateral_force, normal: f0.normal_force };
-//! let f1 = Force { lateral: f1.lateral_force, normal: f1.normal_force };
 //! let found = assess(f1, f0, f1, Force { lateral: 0.1, normal: 0.1 }, 0.5, 0.0)?;
 //! assert_eq!(found.decision, Decision::Inclusion);
 //! assert!((found.statistic.theta - found.statistic.gamma.powi(2) / 2.0).abs() < 1e-9);

@@ -19,7 +19,7 @@ use crate::stats::error::representable;
 /// assert_eq!(filter.samples(), 3);
 /// // γ² = Σ (Δ/s)² = 1 + 4 + 4 = b²/σ².
 /// assert_eq!(filter.gamma(), 3.0);
-/// assert!((filter.b().y / filter.sigma().y - 3.0).abs() < 1e-15);
+/// assert!((filter.b().normal / filter.sigma().normal - 3.0).abs() < 1e-15);
 /// // The middle between the hypotheses.
 /// let halfway = Force { lateral: &[0.0; 3][..], normal: &[0.0625, 0.125, 0.125] };
 /// assert_eq!(filter.statistic(halfway)?.theta, 0.0);

@@ -9,7 +9,7 @@
 //!
 //! let force = |name| -> Result<f64, Box<dyn std::error::Error>> {
 //!     let model = Model::new(&Phantom::builtin(name)?, 2e-3, Contact::default())?;
-//!     Ok(model.solve(Pose { depth: 4e-3, lateral: 0.0 })?.normal_force)
+//!     Ok(model.solve(Pose { depth: 4e-3, lateral: 0.0 })?.force.normal)
 //! };
 //! // The inclusion under 6.6 mm of gel pushes back with some 0.3 N more.
 //! let signal = force("6.6")? - force("none")?;

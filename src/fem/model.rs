@@ -25,7 +25,7 @@ use crate::phantom::Phantom;
 /// assert_eq!(model.surface().positions.len(), model.mesh().surface.len() - 1);
 ///
 /// let [left, right] = [-1e-3, 1e-3].map(|lateral| model.solve(Pose { depth: 2e-3, lateral }));
-/// assert_eq!(left?.lateral_force, -right?.lateral_force);
+/// assert_eq!(left?.force.lateral, -right?.force.lateral);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]

@@ -22,7 +22,7 @@
 //!     ForceMap::from_csv(&text, "sweep.csv", "", None)
 //! };
 //! let signal = map([1.75, 1.5, 1.5])?.signal(&map([1.5, 1.5, 1.5])?)?;
-//! assert_eq!(signal.row(0.004)?.normal_force, [0.25, 0.0, 0.0]);
+//! assert_eq!(signal.row(0.004)?.normal, [0.25, 0.0, 0.0]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -68,6 +68,7 @@ pub enum Source {
 /// The force on the probe at every pose of a grid, and where it comes from.
 ///
 /// ```
+/// use palpate::force::Force;
 /// use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
 /// use palpate::phantom::Phantom;
 ///
@@ -87,7 +88,7 @@ pub enum Source {
 /// assert!(map.phantom().is_some_and(|phantom| phantom.name == "6.6"));
 /// // The normal force is even in x, the lateral force odd.
 /// let whole = map.mirrored()?;
-/// assert_eq!(whole.row(0.004)?.lateral_force, [0.125, 0.0, -0.125]);
+/// assert_eq!(whole.row(0.004)?.lateral, [0.125, 0.0, -0.125]);
 /// assert_eq!(whole.at_laterals(&[0.0, 0.005])?, map);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

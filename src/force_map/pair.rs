@@ -10,6 +10,7 @@ impl ForceMap {
     /// contact law; where a map does not say, it may be anything.
     ///
     /// ```
+    /// use palpate::force::Force;
     /// use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
     /// use palpate::phantom::Phantom;
     ///

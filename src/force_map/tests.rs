@@ -67,7 +67,7 @@ fn axes(depths: &[f64], laterals: &[f64]) -> Result<ForceTable, Refusal> {
     ForceTable::new(
         depths.to_vec(),
         laterals.to_vec(),
-        Force::new(zeros, zeros.clone()),
+        Force::new(zeros.clone(), zeros),
     )
 }
 
@@ -341,7 +341,7 @@ fn a_signal_needs_equal_axes() {
     assert!(shorter.minus(&table()).is_err());
     let huge = |sign: f64| {
         let forces = Matrix::from_fn(1, 1, |_, _| sign * f64::MAX);
-        ForceTable::new(vec![0.0], vec![0.0], Force::new(forces, forces.clone())).unwrap()
+        ForceTable::new(vec![0.0], vec![0.0], Force::new(forces.clone(), forces)).unwrap()
     };
     assert_eq!(
         refusal(huge(1.0).minus(&huge(-1.0))),
@@ -354,7 +354,7 @@ fn a_signal_needs_equal_axes() {
 fn forces_at_a_stored_depth() {
     let table = table();
     let row = table.row(0.001 + 0.9e-9).unwrap();
-    assert_eq!(row.laterals, [0.0, 0.002, 0.005]);
+    assert_eq!(table.laterals(), [0.0, 0.002, 0.005]);
     assert_eq!(row.normal, [1.0, 1.1, 1.2]);
     assert_eq!(row.lateral, [0.0, -0.11, -0.12]);
     assert_eq!(
@@ -457,11 +457,8 @@ fn a_map_cut_to_some_positions_keeps_their_columns() {
     for row in 0..2 {
         for (kept, column) in [(0, 0), (1, 2)] {
             let bits = |matrix: &Matrix, column: usize| matrix.row(row)[column].to_bits();
-            let pairs = [
-                (cut.forces().normal, map.forces().normal),
-                (cut.forces().lateral, map.forces().lateral),
-            ];
-            for (ours, whole) in pairs {
+            let pairs = cut.forces().as_ref().zip(map.forces().as_ref());
+            for (ours, whole) in pairs.into_array() {
                 assert_eq!(bits(ours, kept), bits(whole, column));
             }
         }

@@ -33,6 +33,7 @@ pub struct Felt {
 /// `patience` from the beginning.
 ///
 /// ```
+/// use palpate::force::Force;
 /// use palpate::force_map::{ForceTable, Matrix};
 /// use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
 /// use palpate::psychophysics::present;
@@ -50,8 +51,8 @@ pub struct Felt {
 /// let (half, second) = (Duration::from_millis(500), Duration::from_secs(1));
 /// let felt = present(device, loaded.table()?, limits, half, second)?;
 /// // 1 kHz for half a second, and pushed out of the gel.
-/// assert!(felt.forces.y.len() > 480);
-/// assert!(felt.forces.y.iter().all(|&force| (0.0..1.0).contains(&force)));
+/// assert!(felt.forces.normal.len() > 480);
+/// assert!(felt.forces.normal.iter().all(|&force| (0.0..1.0).contains(&force)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

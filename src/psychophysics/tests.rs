@@ -1,7 +1,6 @@
 //! Plans, and the paper's theory closed through the loop.
 
 use super::*;
-use crate::force::Force;
 
 /// The numbers of a table, whose rows are lines.
 pub fn numbers<const N: usize>(table: &str) -> Vec<[f64; N]> {
@@ -64,6 +63,7 @@ mod observer {
 
     use super::super::*;
     use crate::detect::two_afc;
+    use crate::force::Force;
     use crate::force_map::{ForceTable, Matrix};
     use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
     use crate::servo::{Limits, LoadedTable};

@@ -30,6 +30,7 @@ pub struct RoundingError {
 /// A table of the kernel with its storage.
 ///
 /// ```
+/// use palpate::force::Force;
 /// use palpate::force_map::{ForceTable, Matrix};
 /// use palpate::servo::LoadedTable;
 ///

@@ -98,7 +98,7 @@ pub struct Trace {
 /// let motion = Motion { velocity: -0.02, start: 0.003 };
 /// let record = Trace::from_csv(text, "sweep.csv")?.record(Some(motion))?;
 /// assert_eq!(record.positions(), [0.001, 0.003]);
-/// assert_eq!(record.forces().y, [1.75, 1.5]);
+/// assert_eq!(record.forces().normal, [1.75, 1.5]);
 /// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,17 +112,18 @@ pub struct Motion {
 /// A trace over positions, which increase by more than [`SAME_POSITION`] from sample to sample.
 ///
 /// ```
+/// use palpate::force::Force;
 /// use palpate::force_map::{ForceTable, Matrix};
 /// use palpate::trace::Trace;
 ///
 /// let text = "position_mm,lateral_force_n,normal_force_n\n1,0,1.5\n3,0,1.75\n";
 /// let record = Trace::from_csv(text, "sweep.csv")?.record(None)?;
 /// assert_eq!(record.file(), "sweep.csv");
-/// assert_eq!((record.positions(), record.forces().y), (&[0.001, 0.003][..], &[1.5, 1.75][..]));
+/// assert_eq!((record.positions(), record.forces().normal), (&[0.001, 0.003][..], &[1.5, 1.75][..]));
 /// // What a map of 0, 1, 2 N at 0, 2, 4 mm expects there.
 /// let matrix = || Matrix::from_fn(1, 3, |_, column| column as f64);
 /// let map = ForceTable::new(vec![0.004], vec![0.0, 0.002, 0.004], Force::new(matrix(), matrix()))?;
-/// assert_eq!(record.expected(&map, 0.004)?.y, [0.5, 1.5]);
+/// assert_eq!(record.expected(&map, 0.004)?.normal, [0.5, 1.5]);
 /// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]

@@ -27,15 +27,17 @@ fn table(signal: f64) -> ForceTable {
 /// A noiseless record at 3 mm depth over −3 … 3 mm by 1 mm with the bump moved by `shift` samples.
 fn shifted(signal: f64, shift: usize) -> Record {
     let (reference, inclusion) = (table(0.0), table(signal));
-    let force = |force: fn(&ForceTable) -> &Matrix, i: usize| {
-        let moved = i.saturating_sub(shift);
-        force(&reference).row(1)[i] + force(&inclusion).row(1)[moved]
-            - force(&reference).row(1)[moved]
-    };
+    let both = reference.forces().as_ref().zip(inclusion.forces().as_ref());
+    let force = both.map(|(reference, inclusion)| {
+        let (reference, inclusion) = (reference.row(1), inclusion.row(1));
+        move |i: usize| {
+            let moved = i.saturating_sub(shift);
+            reference[i] + inclusion[moved] - reference[moved]
+        }
+    });
     let mut text = String::from("position_mm,lateral_force_n,normal_force_n\n");
     for i in 0..7 {
-        let lateral = force(ForceTable::lateral_force, i);
-        let normal = force(ForceTable::normal_force, i);
+        let (lateral, normal) = ((force.lateral)(i), (force.normal)(i));
         text += &format!("{},{lateral},{normal}\n", i as f64 - 3.0);
     }
     read(&text).unwrap()
@@ -240,20 +242,11 @@ fn plain_theta(record: &Record, signal: f64, n: usize) -> (f64, f64) {
         let Some(column) = (i + 3_usize).checked_sub(n).filter(|column| *column < 7) else {
             continue;
         };
-        for (observed, force, sd) in [
-            (
-                record.forces().lateral,
-                ForceTable::lateral_force as fn(&ForceTable) -> &Matrix,
-                NOISE.lateral,
-            ),
-            (
-                record.forces().normal,
-                ForceTable::normal_force,
-                NOISE.normal,
-            ),
-        ] {
-            let delta = force(&inclusion).row(1)[column] - force(&reference).row(1)[column];
-            let residual = observed[i] - force(&reference).row(1)[i];
+        let maps = reference.forces().as_ref().zip(inclusion.forces().as_ref());
+        let components = record.forces().zip(maps).zip(NOISE).into_array();
+        for ((observed, (reference, inclusion)), sd) in components {
+            let delta = inclusion.row(1)[column] - reference.row(1)[column];
+            let residual = observed[i] - reference.row(1)[i];
             theta += delta * (residual - 0.5 * delta) / (sd * sd);
             energy += delta * delta / (sd * sd);
         }

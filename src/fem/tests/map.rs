@@ -60,7 +60,7 @@ fn a_map_holds_the_forces_of_its_poses() {
         for (column, &lateral) in laterals.iter().enumerate() {
             let alone = model.solve(Pose { depth, lateral }).unwrap();
             let [normal, along] =
-                [map.forces().normal, map.forces().lateral].map(|m| m.row(row)[column]);
+                [&map.forces().normal, &map.forces().lateral].map(|m| m.row(row)[column]);
             // Reached by another path: equal within what Newton leaves, 1e-13 m at 10³ N/m.
             assert!(
                 (normal - alone.force.normal).abs() < 1e-10,
