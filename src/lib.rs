@@ -25,7 +25,7 @@
 //! # #[cfg(feature = "fem")]
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use palpate::force::Force;
-//! use palpate::detect::{Decision, assessment::assess};
+//! use palpate::detect::{Decision, assessment::assess, theta_of_record};
 //! use palpate::fem::{Contact, Model};
 //! use palpate::phantom::Phantom;
 //! use palpate::servo::LoadedTable;
@@ -40,7 +40,7 @@
 //!
 //! // A sweep at 4 mm, as it would come without noise over the inclusion. Samples in noise of 0.1 N.
 //! let (f0, f1) = (without.row(4e-3)?, with.row(4e-3)?);
-//! let found = assess(f1, f0, f1, Force { lateral: 0.1, normal: 0.1 }, 0.5, 0.0)?;
+//! let found = assess(theta_of_record(f1, f0, f1, Force { lateral: 0.1, normal: 0.1 })?, 0.5, 0.0)?;
 //! assert_eq!(found.decision, Decision::Inclusion);
 //! assert!((found.statistic.theta - found.statistic.gamma.powi(2) / 2.0).abs() < 1e-9);
 //!

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-use palpate::detect::Decision;
 use palpate::detect::assessment::assess;
+use palpate::detect::{Decision, theta_of_record};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable};
 use palpate::stats::random::Generator;
@@ -190,7 +190,8 @@ fn theta_is_that_of_the_library_and_of_a_plain_sum() {
         let observed = observed(&folder().join(trace));
         let [f0, f1] = [&none, &inclusion].map(|map| map.row(0.003).unwrap());
         let observed = observed.as_deref();
-        let library = assess(observed, f0, f1, NOISE, 0.2, 4.0_f64.ln()).unwrap();
+        let statistic = theta_of_record(observed, f0, f1, NOISE).unwrap();
+        let library = assess(statistic, 0.2, 4.0_f64.ln()).unwrap();
         assert_near(number(&found, "theta"), library.statistic.theta);
         assert_near(number(&found, "false_alarm"), library.rates.false_alarm);
         assert_near(number(&found, "miss"), library.rates.miss);

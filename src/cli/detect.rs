@@ -8,10 +8,10 @@ use super::detection::Answer;
 use super::output::print;
 use super::{CliError, Format};
 use crate::force::Force;
-use crate::force_map::ForceMap;
+use crate::force_map::{ForceMap, Hypotheses};
 use crate::phantom::decimal::parse_scaled;
 use crate::report::text;
-use crate::trace::{Criterion, DIED_AWAY, Location, Misfit, Motion, Record, Trace, judge, locate};
+use crate::trace::{Criterion, DIED_AWAY, Location, Motion, Question, Record, Trace};
 
 /// Arguments of `palpate detect`.
 #[derive(Debug, Args)]
@@ -137,7 +137,7 @@ impl DetectArguments {
 }
 
 /// What was asked.
-fn question(arguments: &DetectArguments, samples: usize, noise_sd: Force<f64>) -> Answer {
+fn asked(arguments: &DetectArguments, samples: usize, noise_sd: Force<f64>) -> Answer {
     let mut answer = Answer::default();
     answer.tell("schema", "palpate-detection");
     answer.tell("schema_version", 1);
@@ -172,22 +172,24 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
         .map(|(velocity, start)| Motion { velocity, start });
     let record = Trace::read(&arguments.trace)?.record(motion)?;
     let (reference, inclusion) = (map(&arguments.reference)?, map(&arguments.inclusion)?);
-    check_pair(arguments, &reference, &inclusion)?;
-    let (depth, prior_h1) = (arguments.depth_mm, arguments.prior_h1);
-    let (f0, f1) = (reference.table(), inclusion.table());
-    let mut answer = question(arguments, record.positions().len(), noise_sd);
-    let misfit = |theta| Misfit::of(&record, f0, depth, noise_sd, theta);
+    let question = Question {
+        hypotheses: hypotheses(arguments, &reference, &inclusion)?,
+        depth: arguments.depth_mm,
+        noise_sd,
+        criterion,
+        prior_h1: arguments.prior_h1,
+    };
+    let mut answer = asked(arguments, record.positions().len(), noise_sd);
     let misfit = if arguments.scan {
-        let found = locate(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
-        let misfit = misfit(found.theta_max)?;
+        let found = question.locate(&record)?;
         warn_of_broad_signal(&found, &record);
         warn_of_other_place(&inclusion, &arguments.inclusion);
         answer.located(&found);
-        misfit
+        found.misfit
     } else {
-        let (eta, found) = judge(&record, f0, f1, depth, noise_sd, criterion, prior_h1)?;
-        answer.judged(eta, &found);
-        misfit(found.statistic.theta)?
+        let found = question.judge(&record)?;
+        answer.judged(&found);
+        found.misfit
     };
     answer.misfit(&misfit);
     if misfit.is_too_large() {
@@ -248,17 +250,19 @@ fn map(path: &Path) -> Result<ForceMap, CliError> {
 /// Refuses maps of which one is not the other with an inclusion, or tells of them where they are meant.
 ///
 /// Implements: CLI-047.
-fn check_pair(
+fn hypotheses<'a>(
     arguments: &DetectArguments,
-    reference: &ForceMap,
-    inclusion: &ForceMap,
-) -> Result<(), CliError> {
+    reference: &'a ForceMap,
+    inclusion: &'a ForceMap,
+) -> Result<Hypotheses<'a>, CliError> {
     let file = arguments.inclusion.display();
-    match inclusion.check_reference(reference) {
-        Ok(()) => Ok(()),
+    let any = Hypotheses::of_tables(reference.table(), inclusion.table());
+    let any = any.map_err(|error| error.in_file(file.to_string()))?;
+    match Hypotheses::new(reference, inclusion) {
+        Ok(hypotheses) => Ok(hypotheses),
         Err(error) if arguments.any_maps => {
             eprintln!("palpate: warning: {file}: {error}");
-            Ok(())
+            Ok(any)
         }
         Err(error) => Err(CliError::Usage(format!(
             "{file}: {error} (or use --any-maps)"

@@ -4,8 +4,7 @@ use serde::Serializer as _;
 use serde_json::Value;
 
 use crate::detect::Decision;
-use crate::detect::assessment::Assessment;
-use crate::trace::{Location, Misfit};
+use crate::trace::{Judgement, Location, Misfit};
 
 /// What was asked and what the record says, in the order in which it is printed.
 ///
@@ -47,11 +46,10 @@ impl Answer {
         self.line("decision", text);
     }
 
-    /// The record judged with the inclusion at x = 0, at the threshold η.
-    pub fn judged(&mut self, eta: f64, found: &Assessment) {
-        let Assessment {
-            statistic, rates, ..
-        } = found;
+    /// The record judged with the inclusion at x = 0.
+    pub fn judged(&mut self, found: &Judgement) {
+        let (eta, found) = (found.eta, &found.assessment);
+        let (statistic, rates) = (found.statistic, found.rates);
         self.decision(found.decision);
         self.number("theta", "theta (log-likelihood ratio)", statistic.theta);
         self.number("eta", "eta (threshold)", eta);

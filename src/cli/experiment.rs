@@ -12,7 +12,7 @@ use super::CliError;
 use super::output::{print, read, write};
 use super::playback::{DeviceArguments, limits};
 use super::progress::bar;
-use crate::force_map::ForceMap;
+use crate::force_map::{ForceMap, Hypotheses};
 use crate::hid::HapticDevice;
 use crate::hid::simulated::Trajectory;
 use crate::psychophysics::{Felt, IdealObserver, Interval, Journal, Setup, Trial, present};
@@ -103,7 +103,9 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
         let message = "--observer ideal has no hand: expected --device sim";
         return Err(CliError::Usage(message.into()));
     }
-    let pairs = Pairs::read(arguments)?;
+    let limits = limits(4.0)?;
+    let samples = samples(arguments, &limits)?;
+    let pairs = Pairs::new(arguments, &samples, limits)?;
     let mut journal = open_journal(arguments)?;
     let total = arguments.inclusion.len() * arguments.trials as usize;
     let bar = match arguments.observer {
@@ -169,39 +171,51 @@ fn append(path: &Path, line: &str) -> Result<(), CliError> {
 /// A map, and the table that plays it.
 type Sample = (ForceMap, LoadedTable);
 
+/// The samples without an inclusion and with each one, checked against the device.
+fn samples(
+    arguments: &ExperimentArguments,
+    limits: &Limits,
+) -> Result<(Sample, Vec<Sample>), CliError> {
+    let capabilities = open(arguments)?.capabilities();
+    let capabilities = capabilities.map_err(|error| failed("device", error))?;
+    let damping = arguments.device.damping(&capabilities);
+    let sample = |path: &Path| {
+        let map = ForceMap::read(path)?;
+        let table = LoadedTable::passive(map.table(), &damping, limits);
+        let table = table.map_err(|error| failed(path.display(), error))?;
+        Ok::<Sample, CliError>((map, table))
+    };
+    let reference = sample(&arguments.reference)?;
+    let inclusions = arguments.inclusion.iter().map(|(_, path)| sample(path));
+    Ok((reference, inclusions.collect::<Result<_, _>>()?))
+}
+
 /// The pairs and who judges them.
 struct Pairs<'a> {
     arguments: &'a ExperimentArguments,
-    reference: Sample,
-    inclusions: Vec<Sample>,
+    without: &'a LoadedTable,
+    /// The table with each inclusion, and the forces of the pair.
+    inclusions: Vec<(&'a LoadedTable, Hypotheses<'a>)>,
     limits: Limits,
 }
 
-impl Pairs<'_> {
-    /// The maps, checked against the device and one another.
-    fn read(arguments: &ExperimentArguments) -> Result<Pairs<'_>, CliError> {
-        let capabilities = open(arguments)?.capabilities();
-        let capabilities = capabilities.map_err(|error| failed("device", error))?;
-        let damping = arguments.device.damping(&capabilities);
-        let limits = limits(4.0)?;
-        let sample = |path: &Path| {
-            let map = ForceMap::read(path)?;
-            let table = LoadedTable::passive(map.table(), &damping, &limits);
-            let table = table.map_err(|error| failed(path.display(), error))?;
-            Ok::<Sample, CliError>((map, table))
+impl<'a> Pairs<'a> {
+    /// The pairs of the sample without an inclusion and each of the others, of the same gel.
+    fn new(
+        arguments: &'a ExperimentArguments,
+        ((reference, without), inclusions): &'a (Sample, Vec<Sample>),
+        limits: Limits,
+    ) -> Result<Pairs<'a>, CliError> {
+        let named = inclusions.iter().zip(&arguments.inclusion);
+        let pair = |((map, table), (_, path)): (&'a Sample, &(String, PathBuf))| {
+            let hypotheses = Hypotheses::new(reference, map);
+            let hypotheses = hypotheses.map_err(|error| failed(path.display(), error))?;
+            Ok((table, hypotheses))
         };
-        let reference = sample(&arguments.reference)?;
-        let mut inclusions = Vec::new();
-        for (_, path) in &arguments.inclusion {
-            let inclusion = sample(path)?;
-            let checked = inclusion.0.check_reference(&reference.0);
-            checked.map_err(|error| failed(path.display(), error))?;
-            inclusions.push(inclusion);
-        }
         Ok(Pairs {
             arguments,
-            reference,
-            inclusions,
+            without,
+            inclusions: named.map(pair).collect::<Result<_, CliError>>()?,
             limits,
         })
     }
@@ -213,7 +227,8 @@ impl Pairs<'_> {
         total: usize,
         trial: Trial,
     ) -> Result<Option<Interval>, CliError> {
-        let (with, without) = (&self.inclusions[trial.inclusion], &self.reference);
+        let (with, hypotheses) = self.inclusions[trial.inclusion];
+        let without = self.without;
         let samples = match trial.with_inclusion {
             Interval::First => [with, without],
             Interval::Second => [without, with],
@@ -223,8 +238,7 @@ impl Pairs<'_> {
             return self.ask(&format!("pair {} of {total}", number + 1), samples);
         };
         let observer = IdealObserver {
-            reference: without.0.table(),
-            inclusion: with.0.table(),
+            hypotheses,
             noise_sd,
             seed: self.arguments.seed,
         };
@@ -236,7 +250,7 @@ impl Pairs<'_> {
     }
 
     /// A sample as it is felt.
-    fn felt(&self, (_, table): &Sample) -> Result<Felt, CliError> {
+    fn felt(&self, table: &LoadedTable) -> Result<Felt, CliError> {
         let table = table.table().map_err(|error| failed("servo", error))?;
         let duration = Duration::from_secs(self.arguments.seconds);
         let device = open(self.arguments)?;
@@ -245,7 +259,7 @@ impl Pairs<'_> {
     }
 
     /// Lets a person feel both samples, and answer.
-    fn ask(&self, pair: &str, samples: [&Sample; 2]) -> Result<Option<Interval>, CliError> {
+    fn ask(&self, pair: &str, samples: [&LoadedTable; 2]) -> Result<Option<Interval>, CliError> {
         for (name, sample) in ["first", "second"].into_iter().zip(samples) {
             let prompt = format!(
                 "{pair}, {name} sample: let go of the deadman, press Enter (q ends), then hold it "

@@ -11,7 +11,7 @@ use super::lists::length;
 use super::output::print;
 use super::psychophysics_text::text;
 use super::{CliError, Format};
-use crate::force_map::ForceMap;
+use crate::force_map::{ForceMap, Hypotheses};
 use crate::psychophysics::bridge::{Bridge, bridge};
 use crate::psychophysics::{Analysis, NoiseDecomposition, Table, analyse, paper_noise_levels};
 
@@ -85,7 +85,7 @@ fn against_maps(
     let mut maps = Vec::new();
     for (name, path) in &arguments.inclusion {
         let map = ForceMap::read(path)?;
-        let checked = map.check_reference(&reference);
+        let checked = Hypotheses::new(&reference, &map);
         checked.map_err(|error| CliError::Usage(format!("{}: {error}", path.display())))?;
         maps.push((name.as_str(), map));
     }

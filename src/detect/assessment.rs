@@ -1,7 +1,7 @@
 //! All that a record says, in one call: what `palpate detect` prints.
 
 use super::decision::{Decision, ErrorRates, decide, error_rates, posterior};
-use super::matched_filter::{Statistic, theta_of_record};
+use super::matched_filter::Statistic;
 use super::position::MaximumLaw;
 use super::scan::{Scan, ScanMaximum};
 use super::{DetectError, Force};
@@ -19,18 +19,18 @@ pub struct Assessment {
     pub rates: ErrorRates,
 }
 
-/// Judges a record F_p against F_0 and F_1 (N samples a channel each, N) in white noise, at
-/// threshold η and with the prior Pr(H = 1).
+/// Judges the statistic of a record at threshold η and with the prior Pr(H = 1).
 ///
 /// ```
 /// use palpate::detect::assessment::assess;
+/// use palpate::detect::{Decision, theta_of_record};
 /// use palpate::force::Force;
-/// use palpate::detect::Decision;
 ///
 /// let f0 = Force { lateral: &[0.0; 3][..], normal: &[1.0; 3] };
 /// let f1 = Force { lateral: &[0.0; 3][..], normal: &[1.125, 1.25, 1.25] };
 /// let observed = Force { lateral: &[0.01, -0.02, 0.0][..], normal: &[1.11, 1.28, 1.21] };
-/// let assessment = assess(observed, f0, f1, Force { lateral: 0.125, normal: 0.125 }, 0.5, 0.0)?;
+/// let noise_sd = Force { lateral: 0.125, normal: 0.125 };
+/// let assessment = assess(theta_of_record(observed, f0, f1, noise_sd)?, 0.5, 0.0)?;
 /// assert_eq!(assessment.decision, Decision::Inclusion);
 /// assert_eq!(assessment.statistic.gamma, 3.0);
 /// assert!(assessment.posterior > 0.98);
@@ -42,15 +42,7 @@ pub struct Assessment {
 /// Whatever any step refuses: there is a decision only if every number that leads to it is sound.
 ///
 /// Implements: DET-009, DET-031.
-pub fn assess(
-    observed: Force<&[f64]>,
-    f0: Force<&[f64]>,
-    f1: Force<&[f64]>,
-    noise_sd: Force<f64>,
-    prior_h1: f64,
-    eta: f64,
-) -> Result<Assessment, DetectError> {
-    let statistic = theta_of_record(observed, f0, f1, noise_sd)?;
+pub fn assess(statistic: Statistic, prior_h1: f64, eta: f64) -> Result<Assessment, DetectError> {
     Ok(Assessment {
         statistic,
         decision: decide(statistic.theta, eta)?,

@@ -42,6 +42,7 @@ pub use certificate::{Certificate, Discretization, SmallestDet};
 #[cfg(feature = "oracle")]
 pub(crate) use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
+pub use pair::Hypotheses;
 pub use table::{ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
 
 use crate::phantom::Phantom;

@@ -1,57 +1,105 @@
-//! Whether two maps may be taken as the force without and with an inclusion.
+//! Two maps that may be taken as the force without and with an inclusion.
 
 use serde_json::{Value, json};
 
-use super::ForceMap;
+use super::table::check_same_poses;
+use super::{ForceMap, ForceTable};
 use crate::refusal::Refusal;
 
-impl ForceMap {
-    /// Checks that `reference` is the same gel without an inclusion, under the same probe, from the same program, mesh and
-    /// contact law; where a map does not say, it may be anything.
+/// The forces that the two hypotheses expect, F₀ and F₁, over the same poses.
+#[derive(Debug, Clone, Copy)]
+pub struct Hypotheses<'a> {
+    without: &'a ForceTable,
+    with: &'a ForceTable,
+}
+
+impl<'a> Hypotheses<'a> {
+    /// `without` and `with` an inclusion: the same gel under the same probe, from the same program, mesh and contact law;
+    /// where a map does not say, it may be anything.
     ///
     /// ```
     /// use palpate::force::Force;
-    /// use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
+    /// use palpate::force_map::{ForceMap, ForceTable, Hypotheses, Matrix, Source};
     /// use palpate::phantom::Phantom;
     ///
     /// let map = |name| {
-    ///     let forces = || Matrix::from_fn(1, 1, |_, _| 1.5);
-    ///     let forces = ForceTable::new(vec![0.004], vec![0.0], Force::new(forces(), forces()))?;
+    ///     let force = Matrix::from_fn(1, 1, |_, _| 1.5);
+    ///     let forces = Force::new(force.clone(), force);
+    ///     let table = ForceTable::new(vec![0.004], vec![0.0], forces)?;
     ///     let source = Source::Measured { file: "gel.csv".into(), note: "".into() };
-    ///     ForceMap::new(source, Phantom::builtin(name).ok(), forces)
+    ///     ForceMap::new(source, Phantom::builtin(name).ok(), table)
     /// };
-    /// assert!(map("6.6")?.check_reference(&map("none")?).is_ok());
-    /// let swapped = map("none")?.check_reference(&map("6.6")?).unwrap_err().to_string();
+    /// let (without, with) = (map("none")?, map("6.6")?);
+    /// assert!(Hypotheses::new(&without, &with).is_ok());
+    /// let swapped = Hypotheses::new(&with, &without).unwrap_err().to_string();
     /// assert!(swapped.ends_with("expected the maps the other way round"));
     /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
     /// # Errors
-    /// The first key whose values differ, with both.
+    /// The first key whose values differ, with both; maps over other poses.
     ///
     /// Implements: MAP-053, MAP-054.
-    pub fn check_reference(&self, reference: &ForceMap) -> Result<(), Refusal> {
-        let refused = |key: &str, reference: String, inclusion: String, expected: &str| {
-            let found = format!("{key} is {inclusion}, and {reference} in the reference");
-            Err(Refusal::state(found, expected))
+    pub fn new(without: &'a ForceMap, with: &'a ForceMap) -> Result<Hypotheses<'a>, Refusal> {
+        check_gel(without, with)?;
+        Hypotheses::of_tables(without.table(), with.table())
+    }
+
+    /// Any two tables over the same poses; the caller says that they belong together.
+    ///
+    /// # Errors
+    /// Tables over other poses.
+    ///
+    /// Implements: TRC-020.
+    pub fn of_tables(
+        without: &'a ForceTable,
+        with: &'a ForceTable,
+    ) -> Result<Hypotheses<'a>, Refusal> {
+        check_same_poses(with, without)?;
+        Ok(Hypotheses { without, with })
+    }
+
+    /// The forces without inclusion, F₀.
+    pub fn without(&self) -> &'a ForceTable {
+        self.without
+    }
+
+    /// The forces with the inclusion, F₁.
+    pub fn with(&self) -> &'a ForceTable {
+        self.with
+    }
+
+    /// F₁ − F₀.
+    ///
+    /// # Errors
+    /// A difference that is not finite.
+    pub fn signal(&self) -> Result<ForceTable, Refusal> {
+        self.with.minus(self.without)
+    }
+}
+
+/// Checks that `with` is the gel of `without` with an inclusion.
+fn check_gel(without: &ForceMap, with: &ForceMap) -> Result<(), Refusal> {
+    let refused = |key: &str, reference: String, inclusion: String, expected: &str| {
+        let found = format!("{key} is {inclusion}, and {reference} in the reference");
+        Err(Refusal::state(found, expected))
+    };
+    let inclusions = |map: &ForceMap| map.phantom().map(|phantom| phantom.inclusions.len());
+    let counts = (inclusions(without), inclusions(with));
+    if counts.0.is_some_and(|n| n > 0) || counts.1 == Some(0) {
+        let counted = |n: Option<usize>| n.map_or("unknown".into(), |n| n.to_string());
+        let expected = match counts {
+            (Some(1..), Some(0)) => "the maps the other way round",
+            _ => "one at least, and none in the reference",
         };
-        let inclusions = |map: &ForceMap| map.phantom().map(|phantom| phantom.inclusions.len());
-        let (without, with) = (inclusions(reference), inclusions(self));
-        if without.is_some_and(|n| n > 0) || with == Some(0) {
-            let counted = |n: Option<usize>| n.map_or("unknown".into(), |n| n.to_string());
-            let expected = match (without, with) {
-                (Some(1..), Some(0)) => "the maps the other way round",
-                _ => "one at least, and none in the reference",
-            };
-            let key = "number of inclusions";
-            return refused(key, counted(without), counted(with), expected);
-        }
-        match first_difference("", &circumstances(reference), &circumstances(self)) {
-            None => Ok(()),
-            Some((key, reference, inclusion)) => {
-                let expected = "maps that differ in their inclusions alone";
-                refused(&key, reference, inclusion, expected)
-            }
+        let key = "number of inclusions";
+        return refused(key, counted(counts.0), counted(counts.1), expected);
+    }
+    match first_difference("", &circumstances(without), &circumstances(with)) {
+        None => Ok(()),
+        Some((key, reference, inclusion)) => {
+            let expected = "maps that differ in their inclusions alone";
+            refused(&key, reference, inclusion, expected)
         }
     }
 }

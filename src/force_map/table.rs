@@ -268,8 +268,7 @@ impl ForceTable {
     ///
     /// Implements: MAP-011, MAP-014.
     pub fn minus(&self, reference: &ForceTable) -> Result<ForceTable, Refusal> {
-        check_same_axis("depths_m", &self.depths, &reference.depths)?;
-        check_same_axis("laterals_m", &self.laterals, &reference.laterals)?;
+        check_same_poses(self, reference)?;
         let forces = self.forces.as_ref().zip(reference.forces.as_ref());
         let difference = forces.map(|(a, b)| Matrix {
             columns: a.columns,
@@ -374,6 +373,12 @@ fn check_axis(key: &str, axis: &[f64]) -> Result<(), Refusal> {
             format!("more than {SAME_POSITION:e} m above the entry before it, {previous}");
         refuse(before + 1, expected)
     })
+}
+
+/// Refuses a table over other poses than `reference`.
+pub(super) fn check_same_poses(table: &ForceTable, reference: &ForceTable) -> Result<(), Refusal> {
+    check_same_axis("depths_m", &table.depths, &reference.depths)?;
+    check_same_axis("laterals_m", &table.laterals, &reference.laterals)
 }
 
 fn check_same_axis(key: &str, ours: &[f64], theirs: &[f64]) -> Result<(), Refusal> {

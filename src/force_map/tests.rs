@@ -526,7 +526,7 @@ fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
     };
     let with = map(&|_| ());
     let without = map(&|phantom| (phantom.inclusions.clear(), phantom.name = "plain".into()).0);
-    assert_eq!(with.check_reference(&without), Ok(()));
+    assert!(Hypotheses::new(&without, &with).is_ok());
     // What is not known may be anything.
     let unknown = ForceMap::new(measured(), None, table()).unwrap();
     for (reference, inclusion) in [
@@ -534,10 +534,11 @@ fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
         (&without, &unknown),
         (&unknown, &unknown),
     ] {
-        assert_eq!(inclusion.check_reference(reference), Ok(()));
+        assert!(Hypotheses::new(reference, inclusion).is_ok());
     }
-    let refused =
-        |reference: &ForceMap, inclusion: &ForceMap| refusal(inclusion.check_reference(reference));
+    let refused = |reference: &ForceMap, inclusion: &ForceMap| {
+        refusal(Hypotheses::new(reference, inclusion).map(|_| ()))
+    };
     let one = "one at least, and none in the reference";
     for (reference, inclusion, [n, of_inclusion], expected) in [
         (&with, &without, ["1", "0"], "the maps the other way round"),
@@ -583,7 +584,7 @@ fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
         ForceMap::new(source, Phantom::builtin(name).ok(), table()).unwrap()
     };
     let (with, without) = (solved("6.6", |_| ()), solved("none", |_| ()));
-    assert_eq!(with.check_reference(&without), Ok(()));
+    assert!(Hypotheses::new(&without, &with).is_ok());
     let changes: [(&str, Change<Certificate>); 3] = [
         ("mesh_size_m", |certificate| certificate.mesh_size = 0.001),
         ("contact", |certificate| {

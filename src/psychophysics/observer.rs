@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::Interval;
 use crate::detect::theta_of_record;
 use crate::force::Force;
-use crate::force_map::ForceTable;
+use crate::force_map::{ForceTable, Hypotheses};
 use crate::hid::{Counters, End, HapticDevice, Session};
 use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
@@ -99,7 +99,7 @@ pub fn present<D: HapticDevice>(
 ///
 /// ```
 /// use palpate::force::Force;
-/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::force_map::{ForceTable, Hypotheses, Matrix};
 /// use palpate::psychophysics::{Felt, IdealObserver, Interval};
 ///
 /// let map = |force: f64| {
@@ -113,8 +113,8 @@ pub fn present<D: HapticDevice>(
 ///     ..Felt::default()
 /// };
 /// let (reference, inclusion) = (map(1.5)?, map(1.75)?);
-/// let observer =
-///     IdealObserver { reference: &reference, inclusion: &inclusion, noise_sd: 0.025, seed: 1 };
+/// let hypotheses = Hypotheses::of_tables(&reference, &inclusion)?;
+/// let observer = IdealObserver { hypotheses, noise_sd: 0.025, seed: 1 };
 /// // Two samples with Δ/s = 10: γ² = 200, and hardly ever a wrong answer.
 /// let (_, gamma) = observer.theta(&felt(1.5), 0)?;
 /// assert!((gamma - 200.0_f64.sqrt()).abs() < 1e-9);
@@ -123,10 +123,8 @@ pub fn present<D: HapticDevice>(
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct IdealObserver<'a> {
-    /// Forces without inclusion, F_0.
-    pub reference: &'a ForceTable,
-    /// Forces with the inclusion, F_1.
-    pub inclusion: &'a ForceTable,
+    /// The forces without and with the inclusion.
+    pub hypotheses: Hypotheses<'a>,
     /// Standard deviation of the noise on each sample of each channel, N.
     pub noise_sd: f64,
     /// Seed of the noise.
@@ -143,31 +141,32 @@ impl IdealObserver<'_> {
     /// Implements: PSY-011.
     pub fn theta(&self, felt: &Felt, draw: u64) -> Result<(f64, f64), Refusal> {
         let expected = |table: &ForceTable| {
-            let force = |(&depth, &lateral): (&f64, &f64)| {
+            let mut forces = Force::<Vec<f64>>::default();
+            for (&depth, &lateral) in felt.depths.iter().zip(&felt.laterals) {
                 // Nothing is played above the surface.
-                let force = table.force(depth.max(0.0), lateral)?;
-                Ok((force.lateral, force.normal))
-            };
-            let forces = felt.depths.iter().zip(&felt.laterals).map(force);
-            let forces: Result<(Vec<f64>, Vec<f64>), Refusal> = forces.collect();
-            forces.map_err(refused)
+                let force = table.force(depth.max(0.0), lateral).map_err(refused)?;
+                forces.lateral.push(force.lateral);
+                forces.normal.push(force.normal);
+            }
+            Ok(forces)
         };
-        let (f0, f1) = (expected(self.reference)?, expected(self.inclusion)?);
+        let f0 = expected(self.hypotheses.without())?;
+        let f1 = expected(self.hypotheses.with())?;
         let noisy = |forces: &[f64], channel| -> Vec<f64> {
             let mut noise = vec![0.0; forces.len()];
             Generator::new(self.seed, STREAM + channel).normals(draw, 0, &mut noise);
             let noisy = noise.iter().zip(forces);
             noisy.map(|(n, force)| force + self.noise_sd * n).collect()
         };
-        let (x, y) = (
-            noisy(&felt.forces.lateral, 0),
-            noisy(&felt.forces.normal, 1),
-        );
+        let observed = Force {
+            lateral: noisy(&felt.forces.lateral, 0),
+            normal: noisy(&felt.forces.normal, 1),
+        };
         let statistic = theta_of_record(
-            Force::new(&x, &y),
-            Force::new(&f0.0, &f0.1),
-            Force::new(&f1.0, &f1.1),
-            Force::new((), ()).map(|()| self.noise_sd),
+            observed.as_deref(),
+            f0.as_deref(),
+            f1.as_deref(),
+            Force::new(self.noise_sd, self.noise_sd),
         );
         let statistic = statistic.map_err(refused)?;
         Ok((statistic.theta, statistic.gamma))

@@ -64,7 +64,7 @@ mod observer {
     use super::super::*;
     use crate::detect::two_afc;
     use crate::force::Force;
-    use crate::force_map::{ForceTable, Matrix};
+    use crate::force_map::{ForceTable, Hypotheses, Matrix};
     use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
     use crate::servo::{Limits, LoadedTable};
     use crate::stats::binomial::clopper_pearson;
@@ -108,8 +108,7 @@ mod observer {
         let (reference, inclusion) = (map(0.0), map(40.0));
         let loaded = [&reference, &inclusion].map(|map| LoadedTable::new(map).unwrap());
         let observer = |noise_sd| IdealObserver {
-            reference: &reference,
-            inclusion: &inclusion,
+            hypotheses: Hypotheses::of_tables(&reference, &inclusion).unwrap(),
             noise_sd,
             seed: 20_261_121,
         };

@@ -7,7 +7,7 @@ use crate::detect::{
     neyman_pearson_miss_threshold, theta_of_record,
 };
 use crate::force::Force;
-use crate::force_map::ForceTable;
+use crate::force_map::Hypotheses;
 use crate::refusal::Refusal;
 
 /// What the threshold shall achieve.
@@ -45,62 +45,80 @@ impl Criterion {
     }
 }
 
-/// η and the assessment of `record` for an inclusion at x = 0 of the maps, swept at `depth` (m), in
-/// white noise of standard deviation `noise_sd` a sample (N).
-///
-/// # Errors
-/// Maps on different axes; positions or a depth outside them; maps that do not differ at the
-/// samples; whatever the detector refuses.
-///
-/// Implements: TRC-008, TRC-020, CLI-043, CLI-049.
-pub fn judge(
-    record: &Record,
-    reference: &ForceTable,
-    inclusion: &ForceTable,
-    depth: f64,
-    noise_sd: Force<f64>,
-    criterion: Criterion,
-    prior_h1: f64,
-) -> Result<(f64, Assessment), Refusal> {
-    let judged = || {
-        // Only for its refusal of axes that differ.
-        inclusion.minus(reference)?;
-        let f0 = record.expected(reference, depth)?;
-        let f1 = record.expected(inclusion, depth)?;
-        let (observed, f0, f1) = (record.forces(), f0.as_deref(), f1.as_deref());
-        let assessed = || {
-            let gamma = theta_of_record(observed, f0, f1, noise_sd)?.gamma;
-            if gamma == 0.0 {
+/// What is asked of a record: does the gel under its sweep hold the inclusion?
+#[derive(Debug, Clone, Copy)]
+pub struct Question<'a> {
+    /// The forces that are expected without and with it.
+    pub hypotheses: Hypotheses<'a>,
+    /// Depth of the sweep, m.
+    pub depth: f64,
+    /// Standard deviation of the white noise on a sample of either force, N.
+    pub noise_sd: Force<f64>,
+    /// What the threshold shall achieve.
+    pub criterion: Criterion,
+    /// Pr(H = 1) before the sweep.
+    pub prior_h1: f64,
+}
+
+/// The answer at the position that the maps are for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judgement {
+    /// The threshold.
+    pub eta: f64,
+    /// What the detector says at it.
+    pub assessment: Assessment,
+    /// How far the record is from either hypothesis.
+    pub misfit: Misfit,
+}
+
+impl Question<'_> {
+    /// Judges `record` for an inclusion at x = 0 of the maps.
+    ///
+    /// # Errors
+    /// Positions or a depth outside the maps; maps that do not differ at the samples; whatever the detector refuses.
+    ///
+    /// Implements: TRC-008, CLI-043, CLI-049.
+    pub fn judge(&self, record: &Record) -> Result<Judgement, Refusal> {
+        let f0 = record.expected(self.hypotheses.without(), self.depth)?;
+        let f1 = record.expected(self.hypotheses.with(), self.depth)?;
+        let judged = || {
+            let (observed, f0, f1) = (record.forces(), f0.as_deref(), f1.as_deref());
+            let statistic = theta_of_record(observed, f0, f1, self.noise_sd)?;
+            if statistic.gamma == 0.0 {
                 return Err(DetectError::NoSignal);
             }
-            let eta = criterion.threshold(gamma, prior_h1)?;
-            let assessment = assess(observed, f0, f1, noise_sd, prior_h1, eta)?;
-            Ok((eta, assessment))
+            let eta = self.criterion.threshold(statistic.gamma, self.prior_h1)?;
+            let residual = residual(record, &f0);
+            Ok(Judgement {
+                eta,
+                assessment: assess(statistic, self.prior_h1, eta)?,
+                misfit: Misfit::of(residual.as_deref(), self.noise_sd, statistic.theta)?,
+            })
         };
-        assessed().map_err(refused)
-    };
-    judged().map_err(|refusal: Refusal| refusal.in_file(record.file()))
+        judged().map_err(|error| refused(error).in_file(record.file()))
+    }
+}
+
+/// What is left of a record without the forces `f0`, N.
+pub(super) fn residual(record: &Record, f0: &Force<&[f64]>) -> Force<Vec<f64>> {
+    record.forces().zip(*f0).map(|(observed, f0)| {
+        let difference = std::iter::zip(observed, f0).map(|(observed, f0)| observed - f0);
+        difference.collect()
+    })
 }
 
 /// How far a record is from the nearer of the two hypotheses.
 ///
 /// ```
 /// use palpate::force::Force;
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::trace::{Misfit, Trace};
+/// use palpate::trace::Misfit;
 ///
-/// let matrix = |force| Matrix::from_fn(1, 2, |_, _| force);
-/// let map = ForceTable::new(vec![0.004], vec![0.0, 0.004], Force::new(matrix(0.0), matrix(1.5)))?;
 /// let noise_sd = Force { lateral: 0.25, normal: 0.25 };
-/// let misfit = |force: f64| {
-///     let text = format!("position_mm,lateral_force_n,normal_force_n\n2,0,{force}\n");
-///     let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
-///     Misfit::of(&record, &map, 0.004, noise_sd, 0.0)
-/// };
+/// let misfit = |force: f64| Misfit::of(Force::new(&[0.0], &[force]), noise_sd, 0.0);
 /// // 2 s from the map, and 20 s.
-/// assert_eq!((misfit(2.0)?.chi_square, misfit(2.0)?.is_too_large()), (4.0, false));
-/// assert_eq!((misfit(6.5)?.chi_square, misfit(6.5)?.is_too_large()), (400.0, true));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// assert_eq!((misfit(0.5)?.chi_square, misfit(0.5)?.is_too_large()), (4.0, false));
+/// assert_eq!((misfit(5.0)?.chi_square, misfit(5.0)?.is_too_large()), (400.0, true));
+/// # Ok::<(), palpate::detect::DetectError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Misfit {
@@ -111,35 +129,28 @@ pub struct Misfit {
 }
 
 impl Misfit {
-    /// The misfit of `record`, swept at `depth` (m), whose θ against the map `reference` is `theta`.
+    /// The misfit of a record whose `residual` is left without inclusion (N) and whose θ is `theta`.
     ///
     /// # Errors
-    /// As [`Record::expected`]; a sum that overflows.
+    /// A sum that overflows.
     ///
     /// Implements: TRC-050, TRC-051.
     pub fn of(
-        record: &Record,
-        reference: &ForceTable,
-        depth: f64,
+        residual: Force<&[f64]>,
         noise_sd: Force<f64>,
         theta: f64,
-    ) -> Result<Misfit, Refusal> {
-        let f0 = record.expected(reference, depth)?;
-        let sums = record.forces().zip(f0.as_deref()).zip(noise_sd);
-        let sums = sums.map(|((observed, f0), noise_sd)| {
-            let terms = std::iter::zip(observed, f0).map(|(observed, f0)| {
-                let standardised = (observed - f0) / noise_sd;
-                standardised * standardised
-            });
-            terms.sum::<f64>()
+    ) -> Result<Misfit, DetectError> {
+        let n = (residual.lateral.len() + residual.normal.len()) as f64;
+        let sums = residual.zip(noise_sd).map(|(residual, noise_sd)| {
+            let standardised = residual.iter().map(|residual| residual / noise_sd);
+            standardised.map(|value| value * value).sum::<f64>()
         });
         // Σ (r − Δ)²/s² = Σ r²/s² − 2θ.
         let chi_square = sums.lateral + sums.normal - 2.0 * theta.max(0.0);
         if !chi_square.is_finite() {
             let what = "chi_square";
-            return Err(refused(DetectError::Overflow { what }).in_file(record.file()));
+            return Err(DetectError::Overflow { what });
         }
-        let n = 2.0 * record.positions().len() as f64;
         let t = libm::log(1e6);
         Ok(Misfit {
             // Rounding may leave a little below 0 of a record without noise.

@@ -1,5 +1,6 @@
 //! The record judged at an unknown position of the inclusion, equation (10).
 
+use super::judge::{Misfit, Question, residual};
 use super::{Criterion, Record, mm, refused};
 use crate::detect::assessment::{ScanAssessment, assess_scan};
 use crate::detect::mixture::mixture_theta;
@@ -10,7 +11,7 @@ use crate::detect::{
     posterior,
 };
 use crate::force::Force;
-use crate::force_map::{ForceTable, SAME_POSITION};
+use crate::force_map::{Hypotheses, SAME_POSITION};
 use crate::refusal::Refusal;
 
 /// Steps of a record that differ by less than this share of a step are equal.
@@ -58,6 +59,8 @@ pub struct Location {
     pub template_edge: f64,
     /// Positions that were tried.
     pub candidates: usize,
+    /// How far the record is from either hypothesis.
+    pub misfit: Misfit,
 }
 
 /// The signal on the grid of the record, and what is left of the record without inclusion.
@@ -72,42 +75,31 @@ struct Grid {
     residual: Force<Vec<f64>>,
 }
 
-/// Searches `record`, swept at `depth` (m), for the inclusion of the map `inclusion`, in white noise
-/// of standard deviation `noise_sd` a sample (N). The candidates are the positions of the samples.
-///
-/// # Errors
-/// As [`super::judge`]; a record whose steps are not equal, that is too long, or shorter than the
-/// maps; maps without x = 0.
-///
-/// Implements: TRC-034, TRC-035, TRC-036, TRC-037, TRC-038, TRC-039, TRC-040.
-pub fn locate(
-    record: &Record,
-    reference: &ForceTable,
-    inclusion: &ForceTable,
-    depth: f64,
-    noise_sd: Force<f64>,
-    criterion: Criterion,
-    prior_h1: f64,
-) -> Result<Location, Refusal> {
-    let located = || {
-        let grid = Grid::new(record, [reference, inclusion], depth)?;
-        grid.locate(noise_sd, criterion, prior_h1).map_err(refused)
-    };
-    located().map_err(|refusal: Refusal| refusal.in_file(record.file()))
+impl Question<'_> {
+    /// Searches `record` for the inclusion. The candidates are the positions of the samples.
+    ///
+    /// # Errors
+    /// As [`Question::judge`]; a record whose steps are not equal, that is too long, or shorter than the maps; maps without
+    /// x = 0.
+    ///
+    /// Implements: TRC-034, TRC-035, TRC-036, TRC-037, TRC-038, TRC-039, TRC-040.
+    pub fn locate(&self, record: &Record) -> Result<Location, Refusal> {
+        let located = || {
+            let grid = Grid::new(record, &self.hypotheses, self.depth)?;
+            grid.locate(self).map_err(refused)
+        };
+        located().map_err(|refusal: Refusal| refusal.in_file(record.file()))
+    }
 }
 
 impl Grid {
-    /// The template of `maps`, reference and inclusion, and the residual against the reference.
+    /// The template of the hypotheses, and the residual of the record without inclusion.
     ///
-    /// Implements: TRC-020, TRC-030, TRC-031, TRC-032, TRC-033, TRC-041.
-    fn new(
-        record: &Record,
-        [reference, inclusion]: [&ForceTable; 2],
-        depth: f64,
-    ) -> Result<Grid, Refusal> {
-        let f0 = record.expected(reference, depth)?;
+    /// Implements: TRC-030, TRC-031, TRC-032, TRC-033, TRC-041.
+    fn new(record: &Record, hypotheses: &Hypotheses<'_>, depth: f64) -> Result<Grid, Refusal> {
+        let f0 = record.expected(hypotheses.without(), depth)?;
         let spacing = equal_steps(record)?;
-        let signal = inclusion.minus(reference)?;
+        let signal = hypotheses.signal()?;
         let laterals = signal.laterals();
         let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
         if first > SAME_POSITION || last < -SAME_POSITION {
@@ -132,25 +124,22 @@ impl Grid {
         let positions: Vec<f64> = (first_shift..=last_sample)
             .map(|j| j as f64 * spacing)
             .collect();
-        let residual = record.forces().zip(f0.as_deref()).map(|(observed, f0)| {
-            let difference = std::iter::zip(observed, f0).map(|(observed, f0)| observed - f0);
-            difference.collect()
-        });
         Ok(Grid {
             spacing,
             start: record.positions()[0],
             first_shift,
             template: signal.sweep(depth, &positions)?,
-            residual,
+            residual: residual(record, &f0.as_deref()),
         })
     }
 
-    fn locate(
-        &self,
-        noise_sd: Force<f64>,
-        criterion: Criterion,
-        prior_h1: f64,
-    ) -> Result<Location, DetectError> {
+    fn locate(&self, question: &Question<'_>) -> Result<Location, DetectError> {
+        let &Question {
+            noise_sd,
+            criterion,
+            prior_h1,
+            ..
+        } = question;
         let candidates = self.residual.lateral.len();
         let scan = Scan::new(candidates, self.template.as_deref(), noise_sd)?;
         let (mut gamma, mut angle) = (vec![0.0; candidates], vec![0.0; candidates]);
@@ -175,6 +164,7 @@ impl Grid {
                 + (found.maximum.refined_shift - self.first_shift as f64) * self.spacing,
             position_sd_bound: self.position_sd_bound(shift, noise_sd)?,
             template_edge: self.template_edge(noise_sd),
+            misfit: Misfit::of(self.residual.as_deref(), noise_sd, found.maximum.theta)?,
             candidates,
         };
         if location.by_mixture {

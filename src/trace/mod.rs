@@ -9,8 +9,8 @@
 //! ```
 //! use palpate::force::Force;
 //! use palpate::detect::Decision;
-//! use palpate::force_map::{ForceTable, Matrix};
-//! use palpate::trace::{Criterion, Trace, judge, locate};
+//! use palpate::force_map::{ForceTable, Hypotheses, Matrix};
+//! use palpate::trace::{Criterion, Question, Trace};
 //!
 //! // Maps at 4 mm over −3 … 3 mm: 1.5 N, and with the inclusion a bump.
 //! let map = |bump: [f64; 7]| {
@@ -27,13 +27,18 @@
 //!     text += &format!("{},0,{force}\n", i as i32 - 3);
 //! }
 //! let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
-//! let noise_sd = Force { lateral: 0.125, normal: 0.125 };
+//! let question = Question {
+//!     hypotheses: Hypotheses::of_tables(&reference, &inclusion)?,
+//!     depth: 0.004,
+//!     noise_sd: Force { lateral: 0.125, normal: 0.125 },
+//!     criterion: Criterion::Map,
+//!     prior_h1: 0.5,
+//! };
 //!
 //! // Where the maps have it, half of the signal is found: θ = Σ rΔ/s² − γ²/2 = 16 − 12.
-//! let (eta, found) =
-//!     judge(&record, &reference, &inclusion, 0.004, noise_sd, Criterion::Map, 0.5)?;
-//! assert_eq!((eta, found.statistic.theta), (0.0, 4.0));
-//! let found = locate(&record, &reference, &inclusion, 0.004, noise_sd, Criterion::Map, 0.5)?;
+//! let found = question.judge(&record)?;
+//! assert_eq!((found.eta, found.assessment.statistic.theta), (0.0, 4.0));
+//! let found = question.locate(&record)?;
 //! assert_eq!((found.decision, found.theta_max), (Decision::Inclusion, 12.0));
 //! assert!((found.position - 0.001).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -46,8 +51,8 @@ mod tests;
 
 use std::path::Path;
 
-pub use judge::{Criterion, Misfit, judge};
-pub use locate::{DIED_AWAY, Location, MOST_SAMPLES, UNIFORM, locate};
+pub use judge::{Criterion, Judgement, Misfit, Question};
+pub use locate::{DIED_AWAY, Location, MOST_SAMPLES, UNIFORM};
 
 use crate::csv::{Column, Table};
 use crate::detect::DetectError;

@@ -1,6 +1,6 @@
 use super::*;
 use crate::detect::{Decision, error_rates};
-use crate::force_map::Matrix;
+use crate::force_map::{Hypotheses, Matrix};
 
 const EXAMPLE: &str = "position_mm,lateral_force_n,normal_force_n\n-1,0.25,1.5\n0.5,-0.5,1.25\n";
 
@@ -45,16 +45,23 @@ fn shifted(signal: f64, shift: usize) -> Record {
 
 const NOISE: Force<f64> = Force::new(0.5, 0.25);
 
+/// Whether the second map's inclusion lies under a sweep at `depth`; a priori one in four has it.
+fn question<'a>(without: &'a ForceTable, with: &'a ForceTable, depth: f64) -> Question<'a> {
+    Question {
+        hypotheses: Hypotheses::of_tables(without, with).unwrap(),
+        depth,
+        noise_sd: NOISE,
+        criterion: Criterion::Map,
+        prior_h1: 0.25,
+    }
+}
+
 fn find(record: &Record, signal: f64, criterion: Criterion) -> Result<Location, Refusal> {
-    locate(
-        record,
-        &table(0.0),
-        &table(signal),
-        0.003,
-        NOISE,
+    Question {
         criterion,
-        0.25,
-    )
+        ..question(&table(0.0), &table(signal), 0.003)
+    }
+    .locate(record)
 }
 
 // Verifies: TRC-001, TRC-002, TRC-003.
@@ -177,31 +184,24 @@ fn a_record_at_a_known_position_by_hand() {
     // At 2 mm, half-way, the bump is 1.5 times that of the first row; at −0.5 mm, half-way, it is
     // 1.125 N normal, 0.375 N lateral.
     let record = read("position_mm,lateral_force_n,normal_force_n\n-0.5,0.1,2.125\n").unwrap();
-    let (eta, found) = judge(
-        &record,
-        &table(0.0),
-        &table(1.0),
-        0.002,
-        NOISE,
-        Criterion::Map,
-        0.25,
-    )
-    .unwrap();
+    let found = question(&table(0.0), &table(1.0), 0.002).judge(&record);
+    let Judgement {
+        eta, assessment, ..
+    } = found.unwrap();
     // r = (0, 1.125), Δ = (0.375, 1.125).
     let theta = -0.5 * 0.375 * 0.375 / 0.25 + 0.5 * 1.125 * 1.125 / 0.0625;
     let gamma = f64::sqrt(0.375 * 0.375 / 0.25 + 1.125 * 1.125 / 0.0625);
-    assert!((found.statistic.theta - theta).abs() < 1e-12);
-    assert!((found.statistic.gamma - gamma).abs() < 1e-12);
+    assert!((assessment.statistic.theta - theta).abs() < 1e-12);
+    assert!((assessment.statistic.gamma - gamma).abs() < 1e-12);
     assert!((eta - f64::ln(3.0)).abs() < 1e-15);
-    assert_eq!(found.decision, Decision::Inclusion);
+    assert_eq!(assessment.decision, Decision::Inclusion);
 }
 
 // Verifies: TRC-020, TRC-024, CLI-049.
 #[test]
 fn maps_that_do_not_fit_are_refused() {
     let judged = |record: &Record, reference: &ForceTable, depth: f64| {
-        let criterion = Criterion::Map;
-        let found = judge(record, reference, &table(1.0), depth, NOISE, criterion, 0.5);
+        let found = question(reference, &table(1.0), depth).judge(record);
         found.unwrap_err().to_string()
     };
     let record = read(EXAMPLE).unwrap();
@@ -224,13 +224,11 @@ fn maps_that_do_not_fit_are_refused() {
     let other = ForceTable::new(
         vec![0.001, 0.0031],
         table(0.0).laterals().to_vec(),
-        Force::new(
-            table(0.0).forces().lateral.clone(),
-            table(0.0).forces().normal.clone(),
-        ),
+        table(0.0).forces().clone(),
     );
-    let error = judged(&record, &other.unwrap(), 0.001);
-    assert!(error.starts_with("t.csv: depths_m[1] is 0.003"), "{error}");
+    let error = Hypotheses::of_tables(&other.unwrap(), &table(1.0)).unwrap_err();
+    let error = error.to_string();
+    assert!(error.starts_with("depths_m[1] is 0.003"), "{error}");
 }
 
 /// Θ at candidate `n` of the 7 samples at 3 mm depth, by the sum of DET-050.
@@ -308,7 +306,12 @@ fn the_promise_of_misses_is_kept_for_an_inclusion_at_any_sample() {
     ))
     .unwrap();
     let criterion = Criterion::NeymanPearsonMiss { max_miss: 0.01 };
-    let found = locate(&record, &map(0.0), &map(1.0), 0.001, NOISE, criterion, 0.5).unwrap();
+    let (without, with) = (map(0.0), map(1.0));
+    let question = Question {
+        criterion,
+        ..question(&without, &with, 0.001)
+    };
+    let found = question.locate(&record).unwrap();
     let quantile = -2.326_347_874_040_841;
     assert!(
         (found.eta - (2.0 + 2.0 * quantile)).abs() < 1e-12,
@@ -328,16 +331,12 @@ fn by_the_mixture_decision_and_posterior_agree_where_the_maximum_would_not() {
     // A record of zeros but for a weak bump: the best of 7 positions is more probable than none,
     // but an inclusion somewhere is not.
     let record = shifted(0.16, 1);
-    let found = locate(
-        &record,
-        &table(0.0),
-        &table(0.16),
-        0.003,
-        NOISE,
-        Criterion::Map,
-        0.42,
-    )
-    .unwrap();
+    let (without, with) = (table(0.0), table(0.16));
+    let question = Question {
+        prior_h1: 0.42,
+        ..question(&without, &with, 0.003)
+    };
+    let found = question.locate(&record).unwrap();
     assert!(found.theta_max > found.eta, "{found:?}");
     assert!(found.posterior < 0.5, "{found:?}");
     assert_eq!(found.decision, Decision::NoInclusion);
@@ -397,16 +396,12 @@ fn a_scan_tells_how_much_of_the_signal_the_maps_cut_off() {
     );
     let record = record.unwrap();
     let edge = |noise| {
-        let found = locate(
-            &record,
-            &cut(0.0),
-            &cut(1.0),
-            0.003,
-            noise,
-            Criterion::Map,
-            0.25,
-        );
-        found.unwrap().template_edge
+        let (without, with) = (cut(0.0), cut(1.0));
+        let question = Question {
+            noise_sd: noise,
+            ..question(&without, &with, 0.003)
+        };
+        question.locate(&record).unwrap().template_edge
     };
     assert!((edge(NOISE) - 0.5).abs() < 1e-12);
     // Where the lateral force is the quiet one, its largest is at an end: 8 of 8, and 1 of 2 in the normal force.
@@ -457,27 +452,10 @@ fn records_that_cannot_be_scanned_are_refused() {
     let off = |signal| {
         let table = table(signal);
         let laterals = (1..=7).map(|k| f64::from(k) / 1e3).collect();
-        let (normal, lateral) = (
-            table.forces().normal.clone(),
-            table.forces().lateral.clone(),
-        );
-        ForceTable::new(
-            table.depths().to_vec(),
-            laterals,
-            Force::new(lateral, normal),
-        )
-        .unwrap()
+        ForceTable::new(table.depths().to_vec(), laterals, table.forces().clone()).unwrap()
     };
     let record = rows(&["1", "2", "3", "4", "5", "6", "7"]);
-    let found = locate(
-        &record,
-        &off(0.0),
-        &off(1.0),
-        0.003,
-        NOISE,
-        Criterion::Map,
-        0.5,
-    );
+    let found = question(&off(0.0), &off(1.0), 0.003).locate(&record);
     let error = found.unwrap_err().to_string();
     assert!(
         error.contains("expected the inclusion's position, 0 mm"),

@@ -1,6 +1,7 @@
 //! Expected values: whole numbers by hand, and Φ by mpmath 1.4.1.
 
 use super::*;
+use crate::detect::theta_of_record;
 use crate::stats::check::assert_ulps;
 
 const UNIT: Force<f64> = Force::new(1.0, 1.0);
@@ -8,18 +9,22 @@ const F0: Force<&[f64]> = Force::new(&[0.0, 1.0], &[1.0, 1.0]);
 const F1: Force<&[f64]> = Force::new(&[1.0, 1.0], &[2.0, 3.0]);
 const OBSERVED: Force<&[f64]> = Force::new(&[1.0, 5.0], &[1.0, 2.0]);
 
+fn judged(prior_h1: f64, eta: f64) -> Result<Assessment, DetectError> {
+    assess(theta_of_record(OBSERVED, F0, F1, UNIT)?, prior_h1, eta)
+}
+
 // Verifies: DET-031.
 #[test]
 fn record_at_a_known_position() {
     // Δ = (1, 0; 1, 2), r = (1, 4; 0, 1): Σ rΔ = 3, γ² = 6, θ = 0.
-    let found = assess(OBSERVED, F0, F1, UNIT, 0.25, -0.5).unwrap();
+    let found = judged(0.25, -0.5).unwrap();
     assert_eq!(
         (found.statistic.theta, found.decision),
         (0.0, Decision::Inclusion)
     );
     assert_ulps(found.posterior, 0.25, 4.0);
     assert_eq!(found.rates, error_rates(libm::sqrt(6.0), -0.5).unwrap());
-    let found = assess(OBSERVED, F0, F1, UNIT, 0.25, 0.5).unwrap();
+    let found = judged(0.25, 0.5).unwrap();
     assert_eq!(found.decision, Decision::NoInclusion);
 }
 
@@ -40,24 +45,17 @@ fn what_is_refused_is_never_a_decision() {
             series[position] = &bad;
             let [ox, oy, ax, ay, bx, by] = series;
             let channels = |x, y| Force::new(x, y);
-            let found = assess(
-                channels(ox, oy),
-                channels(ax, ay),
-                channels(bx, by),
-                UNIT,
-                0.5,
-                0.0,
-            );
+            let found = theta_of_record(channels(ox, oy), channels(ax, ay), channels(bx, by), UNIT);
             assert!(matches!(
                 found,
                 Err(DetectError::NotFinite { index: 1, .. })
             ));
         }
-        assert!(assess(OBSERVED, F0, F1, Force::new(bad[1], 1.0), 0.5, 0.0).is_err());
-        assert!(assess(OBSERVED, F0, F1, UNIT, bad[1], 0.0).is_err());
-        assert!(assess(OBSERVED, F0, F1, UNIT, 0.5, bad[1]).is_err());
+        assert!(theta_of_record(OBSERVED, F0, F1, Force::new(bad[1], 1.0)).is_err());
+        assert!(judged(bad[1], 0.0).is_err());
+        assert!(judged(0.5, bad[1]).is_err());
     }
-    assert!(assess(Force::new(&[1.0], &[1.0, 2.0]), F0, F1, UNIT, 0.5, 0.0).is_err());
+    assert!(theta_of_record(Force::new(&[1.0], &[1.0, 2.0]), F0, F1, UNIT).is_err());
 }
 
 // Verifies: DET-053, DET-057, DET-059.
