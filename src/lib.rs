@@ -76,7 +76,7 @@ pub mod force_map;
 pub mod hid;
 #[cfg(feature = "std")]
 pub mod input;
-#[cfg(feature = "oracle")]
+#[cfg(feature = "fem")]
 pub mod oracle;
 #[cfg(feature = "std")]
 pub mod phantom;
@@ -84,7 +84,7 @@ pub mod phantom;
 pub mod psychophysics;
 #[cfg(feature = "std")]
 pub mod refusal;
-#[cfg(feature = "report")]
+#[cfg(feature = "cli")]
 pub mod report;
 pub mod servo;
 pub mod stats;

@@ -39,7 +39,7 @@ use std::ops::Deref;
 use std::path::Path;
 
 pub use certificate::{Certificate, Discretization, SmallestDet};
-#[cfg(feature = "oracle")]
+#[cfg(feature = "fem")]
 pub(crate) use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use pair::Hypotheses;

@@ -48,7 +48,7 @@ pub struct Perceived {
 
 impl Perceived {
     /// F = 2Φ(γ/√2) − 1, so that ½ + ½F is the paper's Figure 9.
-    #[cfg(feature = "report")]
+    #[cfg(feature = "cli")]
     pub fn at_gamma(gamma: f64) -> Perceived {
         Perceived {
             share: libm::erf(0.5 * gamma),

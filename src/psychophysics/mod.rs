@@ -29,7 +29,7 @@
 
 mod analysis;
 mod beta_binomial;
-#[cfg(feature = "report")]
+#[cfg(feature = "cli")]
 pub(crate) mod bridge;
 mod choice;
 mod conditions;

@@ -24,7 +24,7 @@ fn table_1_is_built_in() {
 
 // The report keeps the same table: a slip of the pen in one of them shows.
 // Verifies: PSY-020.
-#[cfg(feature = "report")]
+#[cfg(feature = "cli")]
 #[test]
 fn the_report_has_the_same_table() {
     use crate::report::paper::EXPERIMENTS;
