@@ -3,7 +3,6 @@
 use crate::fem::FemError;
 use crate::psychophysics::PsychophysicsError;
 use crate::refusal::{Refusal, one_line};
-use crate::report::ReportError;
 
 /// Why a command failed. Its message is one line.
 ///
@@ -35,7 +34,7 @@ pub enum CliError {
     },
     /// The report refused the study.
     #[error("report: {0}")]
-    Report(#[from] ReportError),
+    Report(Refusal),
     /// A file could not be written or read.
     #[error("{action} {path}: {error}")]
     File {

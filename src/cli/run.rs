@@ -146,8 +146,8 @@ fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError
 
 /// Writes everything and says where.
 fn write_study(study: &Study, out: &Path) -> Result<(), CliError> {
-    let findings = findings(study)?;
-    let figures = figures(study, &findings)?;
+    let findings = findings(study).map_err(CliError::Report)?;
+    let figures = figures(study, &findings).map_err(CliError::Report)?;
     make_folder(&out.join("maps"))?;
     make_folder(&out.join("figures"))?;
     let mut names = FileNames::default();
