@@ -124,14 +124,12 @@ impl DetectArguments {
     }
 
     /// Implements: CLI-041.
-    fn noise_sd(&self) -> Result<Channels<f64>, CliError> {
-        let of = |channel: Option<f64>| self.noise_sd_n.or(channel);
-        match (of(self.noise_sd_lateral_n), of(self.noise_sd_normal_n)) {
-            (Some(x), Some(y)) => Ok(Channels { x, y }),
-            // The parser has refused it already.
-            _ => Err(CliError::Usage(
-                "expected --noise-sd-n, or --noise-sd-lateral-n and --noise-sd-normal-n".into(),
-            )),
+    fn noise_sd(&self) -> Channels<f64> {
+        // The parser has refused all but one for both or one for each; of 0 the detector would.
+        let of = |channel: Option<f64>| self.noise_sd_n.or(channel).unwrap_or(0.0);
+        Channels {
+            x: of(self.noise_sd_lateral_n),
+            y: of(self.noise_sd_normal_n),
         }
     }
 }
@@ -152,11 +150,9 @@ fn question(arguments: &DetectArguments, samples: usize, noise_sd: Channels<f64>
     answer.tell("noise_sd_normal_n", noise_sd.y);
     answer.tell("prior_h1", arguments.prior_h1);
     answer.tell("criterion", arguments.criterion_name());
-    if let Some(rate) = arguments.max_miss {
-        answer.tell("max_miss", rate);
-    }
-    if let Some(rate) = arguments.max_false_alarm {
-        answer.tell("max_false_alarm", rate);
+    let bounds = [arguments.max_miss, arguments.max_false_alarm];
+    for (key, bound) in ["max_miss", "max_false_alarm"].into_iter().zip(bounds) {
+        bound.map(|rate| answer.tell(key, rate));
     }
     answer
 }
@@ -165,7 +161,7 @@ fn question(arguments: &DetectArguments, samples: usize, noise_sd: Channels<f64>
 ///
 /// Implements: CLI-040, CLI-043, CLI-044, CLI-046, CLI-048, CLI-055.
 pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
-    let (criterion, noise_sd) = (arguments.criterion()?, arguments.noise_sd()?);
+    let (criterion, noise_sd) = (arguments.criterion()?, arguments.noise_sd());
     let motion = arguments
         .velocity_mm_s
         .zip(arguments.start_mm)
@@ -255,13 +251,13 @@ fn check_pair(
 ) -> Result<(), CliError> {
     let file = arguments.inclusion.display();
     match inclusion.check_reference(reference) {
-        Ok(()) => Ok(()),
-        Err(error) if arguments.any_maps => {
-            eprintln!("palpate: warning: {file}: {error}");
-            Ok(())
+        Err(error) if arguments.any_maps => eprintln!("palpate: warning: {file}: {error}"),
+        Err(error) => {
+            return Err(CliError::Usage(format!(
+                "{file}: {error} (or use --any-maps)"
+            )));
         }
-        Err(error) => Err(CliError::Usage(format!(
-            "{file}: {error} (or use --any-maps)"
-        ))),
+        Ok(()) => {}
     }
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! `palpate play`: a force map to a hand (`spec/playback-command.md`).
 
-use std::fmt::{Display, Write};
+use std::fmt::Display;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -62,17 +62,15 @@ pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
     arguments.device.check()?;
     let probing = Trajectory::probing(4e-3, 9e-3, Duration::from_millis(1500));
     let seconds = arguments.seconds.map(Duration::from_secs);
-    let duration = seconds.or(arguments
-        .device
-        .is_simulated()
-        .then_some(probing.duration()));
+    let is_simulated = arguments.device.is_simulated();
+    let duration = seconds.or(is_simulated.then_some(probing.duration()));
     let hand = probing.repeated(duration.unwrap_or_default());
     let device = arguments.device.open(hand).map_err(failed)?;
     session(arguments, device, limits, duration)
 }
 
 fn failed(error: impl Display) -> CliError {
-    CliError::Playback(error.to_string())
+    CliError::Usage(error.to_string())
 }
 
 /// The table for this device, and the factor on its forces.
@@ -84,15 +82,17 @@ fn table(
     let path = &arguments.map;
     let map = ForceMap::read(path)?;
     let damping = arguments.device.damping(capabilities);
-    let loaded = if arguments.scale {
-        LoadedTable::scaled_to_be_passive(map.forces(), &damping, limits)
-    } else {
-        LoadedTable::passive(map.forces(), &damping, limits).map(|loaded| (loaded, 1.0))
+    let (loaded, hint) = match arguments.scale {
+        true => (
+            LoadedTable::scaled_to_be_passive(map.forces(), &damping, limits),
+            "",
+        ),
+        false => {
+            let loaded = LoadedTable::passive(map.forces(), &damping, limits);
+            (loaded.map(|loaded| (loaded, 1.0)), " (or use --scale)")
+        }
     };
-    loaded.map_err(|error| {
-        let hint = ["", " (or use --scale)"][usize::from(!arguments.scale)];
-        failed(format_args!("{}: {error}{hint}", path.display()))
-    })
+    loaded.map_err(|error| failed(format_args!("{}: {error}{hint}", path.display())))
 }
 
 /// Plays on `device` and tells what happened.
@@ -236,29 +236,36 @@ fn counted(counters: &Counters) -> String {
 /// The summary for people.
 fn describe(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
     let rounding = loaded.rounding();
-    let mut text = format!("{}\n{}\n", played.end, counted(&played.counters));
-    let mut line = |line: String| {
-        let _ = writeln!(text, "{line}"); // a String takes everything
-    };
-    line(format!(
-        "table rounded by at most {:.1e} m and {:.1e} N, forces × {scale}",
-        rounding.position_m, rounding.force_n
-    ));
-    if let Some(timing) = &played.timing {
-        let mut times = |name: &str, times: &Distribution| {
-            line(format!(
-                "{name}: p50 {:.1} µs, p99.9 {:.1} µs, largest {:.1} µs",
-                times.p50, times.p99_9, times.max
-            ));
-        };
-        times("age of the input when answered", &timing.response_us);
-        times("writes", &timing.write_us);
-        if let Some(round_trip) = &timing.round_trip_us {
-            times("round trip", round_trip);
-        }
+    let mut text = format!(
+        "{}\n{}\ntable rounded by at most {:.1e} m and {:.1e} N, forces × {scale}\n",
+        played.end,
+        counted(&played.counters),
+        rounding.position_m,
+        rounding.force_n
+    );
+    let timing = played.timing.as_ref();
+    for (name, times) in [
+        (
+            "age of the input when answered",
+            timing.map(|of| &of.response_us),
+        ),
+        ("writes", timing.map(|of| &of.write_us)),
+        (
+            "round trip",
+            timing.and_then(|of| of.round_trip_us.as_ref()),
+        ),
+    ] {
+        let said = times.map(
+            |Distribution {
+                 p50, p99_9, max, ..
+             }| {
+                format!("{name}: p50 {p50:.1} µs, p99.9 {p99_9:.1} µs, largest {max:.1} µs\n")
+            },
+        );
+        text += &said.unwrap_or_default();
     }
     if let Some(time) = played.held_up {
-        line(format!("held up once for {} ms", time.as_millis()));
+        text += &format!("held up once for {} ms\n", time.as_millis());
     }
     text
 }
@@ -287,17 +294,16 @@ fn as_json(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
 /// Plays a recording again.
 fn replay(arguments: &PlayArguments, file: &Path) -> Result<(), CliError> {
     let text = read(file)?;
-    let named = |error: &dyn Display| format!("{}: {error}", file.display());
-    let recording = Recording::parse(&text).map_err(|error| failed(named(&error)))?;
+    let refused = |error: &dyn Display| CliError::refused(file.display(), error);
+    let recording = Recording::parse(&text).map_err(|error| refused(&error))?;
     let loaded = match arguments.scale {
         true => table(arguments, &recording.capabilities, &recording.limits)?.0,
         false => loaded_map(&arguments.map)?,
     };
-    let table = loaded.table().map_err(|error| failed(named(&error)))?;
-    match recording.replay(table) {
-        Ok(cycles) => print(&format!(
-            "{cycles} cycles, all forces the same to the bit\n"
-        )),
-        Err(error) => Err(CliError::Check(named(&error))),
-    }
+    let table = loaded.table().map_err(|error| refused(&error))?;
+    let cycles = recording.replay(table);
+    let cycles = cycles.map_err(|error| CliError::Check(refused(&error).to_string()))?;
+    print(&format!(
+        "{cycles} cycles, all forces the same to the bit\n"
+    ))
 }

@@ -10,7 +10,7 @@ use super::output::{print, write};
 use super::progress::{bar, tell_large_mesh};
 use super::{CliError, ContactName};
 use crate::fem::certify::certified_map;
-use crate::fem::{FemError, MESH_SIZE, Model, Pose};
+use crate::fem::{MESH_SIZE, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::{format_scaled, parse_scaled};
 use crate::phantom::{BUILTIN_NAMES, Phantom};
@@ -97,27 +97,23 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         }
     };
     let phantom = phantom(&arguments.phantom)?;
-    let failed = |error: FemError| CliError::Fem {
-        phantom: phantom.name.clone(),
-        error,
-    };
+    let failed = CliError::fem(&phantom.name);
     let size = arguments.mesh_mm.unwrap_or(MESH_SIZE);
-    tell_large_mesh(&phantom, size).map_err(failed)?;
-    let model = Model::new(&phantom, size, arguments.contact.into()).map_err(failed)?;
+    tell_large_mesh(&phantom, size).map_err(&failed)?;
+    let model = Model::new(&phantom, size, arguments.contact.into()).map_err(&failed)?;
     let meshes = if arguments.certify { 3 } else { 1 };
     let columns = model.solved_laterals(laterals).len();
     let bar = bar(meshes * depths.len() * columns, &phantom.name);
     let solved = |poses| bar.inc(poses as u64);
-    let map = if arguments.certify {
-        certified_map(&model, depths, laterals, &solved)
-    } else {
-        model.map(depths, laterals, &solved)
+    let map = match arguments.certify {
+        true => certified_map(&model, depths, laterals, &solved),
+        false => model.map(depths, laterals, &solved),
     };
-    let map = map.map_err(failed)?;
+    let map = map.map_err(&failed)?;
     bar.finish_and_clear();
     if let Some((path, pose)) = pose {
-        let solution = model.solve(pose).map_err(failed)?;
-        write(path, &model.vtu(&solution).map_err(failed)?)?;
+        let solution = model.solve(pose).map_err(&failed)?;
+        write(path, &model.vtu(&solution).map_err(&failed)?)?;
     }
     warn_of_large_strain(&map);
     print(&match arguments.format {
@@ -131,18 +127,12 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
 ///
 /// Implements: CLI-015.
 pub fn warn_of_large_strain(map: &ForceMap) {
-    let Some(smallest) = map
-        .certificate()
-        .map(|certificate| certificate.smallest_det)
-    else {
-        return;
-    };
-    if smallest.det < SMALL_STRAIN_LIMIT {
+    let smallest = map.certificate().map(|of| of.smallest_det);
+    if let Some(smallest) = smallest.filter(|of| of.det < SMALL_STRAIN_LIMIT) {
         let name = map.phantom().map_or("", |phantom| &phantom.name);
-        let meaning = if smallest.det > 0.0 {
-            "the small-strain model is at its limit there"
-        } else {
-            "the gel is turned inside out there, and the forces mean nothing"
+        let meaning = match smallest.det > 0.0 {
+            true => "the small-strain model is at its limit there",
+            false => "the gel is turned inside out there, and the forces mean nothing",
         };
         eprintln!(
             "palpate: warning: phantom {name}: det(I + grad u) falls to {:.3} at depth {} mm, lateral {} mm: {meaning}",
@@ -164,9 +154,8 @@ fn table(map: &ForceMap) -> String {
     ] {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{title}");
-        let head: String = map
-            .laterals()
-            .iter()
+        let head = map.laterals().iter();
+        let head: String = head
             .map(|&x| format!("{:>10}", format_scaled(x, 3)))
             .collect();
         let _ = writeln!(text, "{:>9} {head}", "d\\x, mm");

@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::output::print;
 use super::playback::{limits, loaded_map};
 use super::{CliError, Format};
 use crate::hid::simulated::PAPER;
@@ -38,21 +37,17 @@ pub struct TimingArguments {
 pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
     let loaded = match &arguments.map {
         Some(path) => loaded_map(path)?,
-        None => paper::table().map_err(CliError::Playback)?,
+        None => paper::table().map_err(CliError::Usage)?,
     };
-    let defect = |error: &dyn Display| CliError::Check(format!("timing: {error}"));
-    let table = loaded.table().map_err(|error| defect(&error))?;
+    let table = loaded.table().map_err(defect)?;
     let limits = limits(4.0)?;
     let budget = Duration::from_micros(arguments.budget_us);
     let period = Duration::from_micros(u64::from(PAPER.period_us));
     let device = paper::device(arguments.cycles);
     let paced = arguments.paced.then_some(period);
-    let timing = measure(device, table, limits, arguments.cycles, budget, paced)
-        .map_err(|error| defect(&error))?;
-    print(&match arguments.format {
-        Format::Table => describe(&timing),
-        Format::Json => serde_json::to_string_pretty(&timing).unwrap_or_default() + "\n",
-    })?;
+    let timing = measure(device, table, limits, arguments.cycles, budget, paced);
+    let timing = timing.map_err(defect)?;
+    arguments.format.print(&timing, describe)?;
     if timing.passed {
         return Ok(());
     }
@@ -60,6 +55,10 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
         "timing: {} of {} cycles took longer than {} µs, expected at most 1 in 1000",
         timing.misses, timing.cycles, arguments.budget_us
     )))
+}
+
+fn defect(error: impl Display) -> CliError {
+    CliError::Check(format!("timing: {error}"))
 }
 
 /// The figures for people.
@@ -70,20 +69,16 @@ fn describe(timing: &Timing) -> String {
     };
     let cycles = timing.cycles;
     let mut text = format!("{cycles} cycles on the simulated device, {pace}; times in µs\n");
-    text += &format!(
-        "{:10}{:>10}{:>10}{:>10}{:>10}\n",
-        "", "p50", "p99", "p99.9", "max"
-    );
+    let heads = ["p50", "p99", "p99.9", "max"].map(|head| format!("{head:>10}"));
+    text += &format!("{:10}{}\n", "", heads.concat());
     for (name, times) in [
         ("response", &timing.response_us),
         ("compute", &timing.compute_us),
         ("write", &timing.write_us),
     ] {
-        text += &format!("{name:10}");
-        for time in [times.p50, times.p99, times.p99_9, times.max] {
-            text += &format!("{time:>10.2}");
-        }
-        text.push('\n');
+        let times = [times.p50, times.p99, times.p99_9, times.max];
+        let times = times.map(|time| format!("{time:>10.2}"));
+        text += &format!("{name:10}{}\n", times.concat());
     }
     let verdict = if timing.passed { "kept" } else { "broken" };
     let (share, budget, misses) = (timing.compute_share, timing.budget_us, timing.misses);
