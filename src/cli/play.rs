@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use askama::Template;
 use clap::Args;
 use serde_json::json;
 
@@ -16,9 +17,8 @@ use super::{CliError, Format};
 use crate::force_map::ForceMap;
 use crate::hid::simulated::Trajectory;
 use crate::hid::supervise::{Board, HELD_UP, PlayOptions, Played, play as supervised};
-use crate::hid::timing::Distribution;
 use crate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session};
-use crate::servo::{Limits, LoadedTable};
+use crate::servo::{Limits, LoadedTable, RoundingError};
 
 /// Most seconds that can be recorded: an hour at 1 kHz.
 const MOST_RECORDED: u64 = 3600;
@@ -151,8 +151,14 @@ fn session(
         };
         write(path, &recording.to_text())?;
     }
+    let text = Text {
+        played: &played,
+        rounding: loaded.rounding(),
+        scale,
+    };
     print(&match arguments.format {
-        Format::Table => describe(&played, &loaded, scale),
+        // Writing to a String does not fail.
+        Format::Table => text.render().unwrap_or_default(),
         Format::Json => as_json(&played, &loaded, scale),
     })?;
     match &played.end {
@@ -234,40 +240,12 @@ fn counted(counters: &Counters) -> String {
 }
 
 /// The summary for people.
-fn describe(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
-    let rounding = loaded.rounding();
-    let mut text = format!(
-        "{}\n{}\ntable rounded by at most {:.1e} m and {:.1e} N, forces × {scale}\n",
-        played.end,
-        counted(&played.counters),
-        rounding.position_m,
-        rounding.force_n
-    );
-    let timing = played.timing.as_ref();
-    for (name, times) in [
-        (
-            "age of the input when answered",
-            timing.map(|of| &of.response_us),
-        ),
-        ("writes", timing.map(|of| &of.write_us)),
-        (
-            "round trip",
-            timing.and_then(|of| of.round_trip_us.as_ref()),
-        ),
-    ] {
-        let said = times.map(
-            |Distribution {
-                 p50, p99_9, max, ..
-             }| {
-                format!("{name}: p50 {p50:.1} µs, p99.9 {p99_9:.1} µs, largest {max:.1} µs\n")
-            },
-        );
-        text += &said.unwrap_or_default();
-    }
-    if let Some(time) = played.held_up {
-        text += &format!("held up once for {} ms\n", time.as_millis());
-    }
-    text
+#[derive(Template)]
+#[template(path = "cli/play.txt")]
+struct Text<'a> {
+    played: &'a Played,
+    rounding: RoundingError,
+    scale: f64,
 }
 
 /// The summary for programs.

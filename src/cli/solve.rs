@@ -1,8 +1,8 @@
 //! `palpate solve`: the forces over depths and lateral positions of one phantom.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use askama::Template;
 use clap::{Args, ValueEnum};
 
 use super::lists::{Positions, positions};
@@ -117,7 +117,8 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     }
     warn_of_large_strain(&map);
     print(&match arguments.format {
-        Format::Table => table(&map),
+        // Writing to a String does not fail.
+        Format::Table => Table { map: &map }.render().unwrap_or_default(),
         Format::Json => map.to_json(),
         Format::Csv => map.forces().to_csv(),
     })
@@ -137,54 +138,19 @@ pub fn warn_of_large_strain(map: &ForceMap) {
         eprintln!(
             "palpate: warning: phantom {name}: det(I + grad u) falls to {:.3} at depth {} mm, lateral {} mm: {meaning}",
             smallest.det,
-            format_scaled(smallest.depth, 3),
-            format_scaled(smallest.lateral, 3)
+            in_millimetres(&smallest.depth),
+            in_millimetres(&smallest.lateral)
         );
     }
 }
 
-fn table(map: &ForceMap) -> String {
-    let mut text = String::new();
-    for (title, matrix) in [
-        ("normal force, N (up out of the gel)", map.normal_force()),
-        (
-            "lateral force, N (on the probe along +x)",
-            map.lateral_force(),
-        ),
-    ] {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{title}");
-        let head = map.laterals().iter();
-        let head: String = head
-            .map(|&x| format!("{:>10}", format_scaled(x, 3)))
-            .collect();
-        let _ = writeln!(text, "{:>9} {head}", "d\\x, mm");
-        for (depth, row) in map.depths().iter().zip(matrix.rows()) {
-            let forces: String = row.iter().map(|force| format!("{force:>10.5}")).collect();
-            let _ = writeln!(text, "{:>9} {forces}", format_scaled(*depth, 3));
-        }
-        text.push('\n');
-    }
-    if let Some(c) = map.certificate() {
-        let _ = writeln!(
-            text,
-            "{} nodes, {} elements ({}), contact {}; residual {:.1e}, force balance {:.1e} N, smallest det(I + grad u) {:.3}",
-            c.nodes,
-            c.elements,
-            c.element,
-            c.contact,
-            c.worst_relative_residual,
-            c.worst_force_balance,
-            c.smallest_det.det
-        );
-        if let Some(discretization) = &c.discretization {
-            let [normal, lateral] = discretization.largest();
-            let [fine, middle, coarse] = discretization.nodes;
-            let _ = writeln!(
-                text,
-                "discretization, from meshes of {fine}, {middle} and {coarse} nodes: normal forces within {normal:.1e} N, lateral forces within {lateral:.1e} N"
-            );
-        }
-    }
-    text
+/// The map for people.
+#[derive(Template)]
+#[template(path = "cli/solve.txt")]
+struct Table<'a> {
+    map: &'a ForceMap,
+}
+
+fn in_millimetres(metres: &f64) -> String {
+    format_scaled(*metres, 3)
 }

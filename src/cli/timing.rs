@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use askama::Template;
 use clap::Args;
 
 use super::playback::{limits, loaded_map};
@@ -62,28 +63,13 @@ fn defect(error: impl Display) -> CliError {
 }
 
 /// The figures for people.
+#[derive(Template)]
+#[template(path = "cli/timing.txt")]
+struct Text<'a> {
+    timing: &'a Timing,
+}
+
 fn describe(timing: &Timing) -> String {
-    let pace = match timing.paced {
-        true => "at 1 kHz, with the system's wake-up",
-        false => "as fast as they go",
-    };
-    let cycles = timing.cycles;
-    let mut text = format!("{cycles} cycles on the simulated device, {pace}; times in µs\n");
-    let heads = ["p50", "p99", "p99.9", "max"].map(|head| format!("{head:>10}"));
-    text += &format!("{:10}{}\n", "", heads.concat());
-    for (name, times) in [
-        ("response", &timing.response_us),
-        ("compute", &timing.compute_us),
-        ("write", &timing.write_us),
-    ] {
-        let times = [times.p50, times.p99, times.p99_9, times.max];
-        let times = times.map(|time| format!("{time:>10.2}"));
-        text += &format!("{name:10}{}\n", times.concat());
-    }
-    let verdict = if timing.passed { "kept" } else { "broken" };
-    let (share, budget, misses) = (timing.compute_share, timing.budget_us, timing.misses);
-    text + &format!(
-        "compute is {:.1} % of the response\nbudget {budget} µs {verdict}: {misses} missed\n",
-        100.0 * share
-    )
+    // Writing to a String does not fail.
+    Text { timing }.render().unwrap_or_default()
 }
