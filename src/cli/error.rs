@@ -29,13 +29,13 @@ pub enum CliError {
 
 impl CliError {
     /// `what` is to blame, for a reason.
-    pub(super) fn refused(what: impl Display, reason: impl Display) -> CliError {
-        CliError::Usage(format!("{what}: {reason}"))
+    pub(super) fn refused<E: Display>(what: impl Display) -> impl FnOnce(E) -> CliError {
+        move |reason| CliError::Usage(format!("{what}: {reason}"))
     }
 
     /// The system did not let a file be read, written or made.
     pub(super) fn file(action: &str, path: &Path) -> impl FnOnce(io::Error) -> CliError {
-        move |error| CliError::refused(format_args!("{action} {}", path.display()), error)
+        CliError::refused(format!("{action} {}", path.display()))
     }
 
     /// The solver refused a phantom, the mesh or a pose, or failed.

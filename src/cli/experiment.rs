@@ -132,12 +132,11 @@ fn open_journal(arguments: &ExperimentArguments) -> Result<Journal, CliError> {
     });
     let path = &arguments.journal;
     if path.exists() {
-        let found = Journal::parse(&read(path)?)
-            .map_err(|error| CliError::refused(path.display(), error))?;
+        let found = Journal::parse(&read(path)?).map_err(CliError::refused(path.display()))?;
         let (of, asked) = (found.setup(), journal.setup());
         if of != asked {
             let message = format!("another experiment ({of}) than asked for ({asked})");
-            return Err(CliError::refused(path.display(), message));
+            return Err(CliError::refused(path.display())(message));
         }
         journal = found;
     }
@@ -168,13 +167,13 @@ impl Pairs<'_> {
     /// The maps, checked against the device and one another.
     fn read(arguments: &ExperimentArguments) -> Result<Pairs<'_>, CliError> {
         let capabilities = open(arguments)?.capabilities();
-        let capabilities = capabilities.map_err(|error| CliError::refused("device", error))?;
+        let capabilities = capabilities.map_err(CliError::refused("device"))?;
         let damping = arguments.device.damping(&capabilities);
         let limits = limits(4.0)?;
         let sample = |path: &Path| {
             let map = ForceMap::read(path)?;
             let table = LoadedTable::passive(map.forces(), &damping, &limits);
-            let table = table.map_err(|error| CliError::refused(path.display(), error))?;
+            let table = table.map_err(CliError::refused(path.display()))?;
             Ok::<Sample, CliError>((map, table))
         };
         let reference = sample(&arguments.reference)?;
@@ -182,7 +181,7 @@ impl Pairs<'_> {
         for (_, path) in &arguments.inclusion {
             let inclusion = sample(path)?;
             let checked = inclusion.0.check_reference(&reference.0);
-            checked.map_err(|error| CliError::refused(path.display(), error))?;
+            checked.map_err(CliError::refused(path.display()))?;
             inclusions.push(inclusion);
         }
         Ok(Pairs {
@@ -217,15 +216,13 @@ impl Pairs<'_> {
         };
         let [first, second] = samples.map(|sample| self.felt(sample));
         let answer = observer.choose(&first?, &second?, number as u64);
-        let answer = answer.map_err(|error| CliError::refused("the ideal observer", error))?;
+        let answer = answer.map_err(CliError::refused("the ideal observer"))?;
         Ok(Some(answer))
     }
 
     /// A sample as it is felt.
     fn felt(&self, (_, table): &Sample) -> Result<Felt, CliError> {
-        let table = table
-            .table()
-            .map_err(|error| CliError::refused("servo", error))?;
+        let table = table.table().map_err(CliError::refused("servo"))?;
         let duration = Duration::from_secs(self.arguments.seconds);
         let device = open(self.arguments)?;
         present(device, table, self.limits, duration, PATIENCE)
@@ -259,7 +256,7 @@ fn open(arguments: &ExperimentArguments) -> Result<Box<dyn HapticDevice + Send>,
     let sweep = Duration::from_secs(arguments.seconds) / 2;
     let hand = Trajectory::probing(4e-3, 9e-3, sweep);
     let device = arguments.device.open(hand);
-    device.map_err(|error| CliError::refused("device", error))
+    device.map_err(CliError::refused("device"))
 }
 
 /// The longest line that is read from the keyboard, bytes.

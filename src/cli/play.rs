@@ -272,15 +272,15 @@ fn as_json(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
 /// Plays a recording again.
 fn replay(arguments: &PlayArguments, file: &Path) -> Result<(), CliError> {
     let text = read(file)?;
-    let refused = |error: &dyn Display| CliError::refused(file.display(), error);
-    let recording = Recording::parse(&text).map_err(|error| refused(&error))?;
+    let recording = Recording::parse(&text).map_err(CliError::refused(file.display()))?;
     let loaded = match arguments.scale {
         true => table(arguments, &recording.capabilities, &recording.limits)?.0,
         false => loaded_map(&arguments.map)?,
     };
-    let table = loaded.table().map_err(|error| refused(&error))?;
+    let table = loaded.table().map_err(CliError::refused(file.display()))?;
     let cycles = recording.replay(table);
-    let cycles = cycles.map_err(|error| CliError::Check(refused(&error).to_string()))?;
+    let failed = |error| CliError::Check(format!("{}: {error}", file.display()));
+    let cycles = cycles.map_err(failed)?;
     print(&format!(
         "{cycles} cycles, all forces the same to the bit\n"
     ))

@@ -81,7 +81,7 @@ fn against_maps(
     for (name, path) in &arguments.inclusion {
         let map = ForceMap::read(path)?;
         let checked = map.check_reference(&reference);
-        checked.map_err(|error| CliError::refused(path.display(), error))?;
+        checked.map_err(CliError::refused(path.display()))?;
         maps.push((name.as_str(), map));
     }
     let named: Vec<_> = maps.iter().map(|(name, map)| (*name, map)).collect();

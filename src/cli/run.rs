@@ -57,7 +57,7 @@ fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
     let map = ForceMap::read(path)?;
     if map.certificate().is_some() {
         let reason = "a computed map; 'measured' takes maps that palpate import-map wrote";
-        return Err(CliError::refused(path.display(), reason));
+        return Err(CliError::refused(path.display())(reason));
     }
     Ok(map)
 }
