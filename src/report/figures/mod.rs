@@ -18,7 +18,7 @@ mod mesh;
 mod names;
 mod people;
 mod setup;
-mod style;
+pub(super) mod style;
 mod theory;
 
 use super::text::{FileNames, escape};
@@ -119,25 +119,4 @@ fn with_head(
          role=\"img\" aria-labelledby=\"{id}-title {id}-desc\">\n\
          <title id=\"{id}-title\">{title}</title>\n<desc id=\"{id}-desc\">{alt}</desc>{body}"
     ))
-}
-
-/// The ground of every chart, sRGB.
-#[cfg(test)]
-pub(super) fn chart_ground() -> [f64; 3] {
-    [255.0; 3]
-}
-
-/// Every colour of lines and words, sRGB, with the contrast that it needs.
-#[cfg(test)]
-pub(super) fn chart_inks() -> Vec<(String, [f64; 3], f64)> {
-    use plotters::style::RGBColor;
-    let values = |RGBColor(r, g, b): RGBColor| [r, g, b].map(f64::from);
-    let lines = style::PALETTE.into_iter().chain([style::GREY]);
-    let ramp = (0..9).map(|k| style::ramp(k, 9));
-    let mut inks: Vec<_> = lines
-        .chain(ramp)
-        .map(|colour| (format!("{colour:?}"), values(colour), 3.0))
-        .collect();
-    inks.push(("words".into(), values(style::INK), 4.5));
-    inks
 }
