@@ -14,6 +14,7 @@ use super::solve::warn_of_large_strain;
 use crate::fem::certify::certified_map;
 use crate::fem::{FemError, Model, Pose};
 use crate::force_map::ForceMap;
+use crate::input::parse;
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
 use crate::report::{DeformedMesh, FileNames, Study, figures, findings, html, summary_json};
@@ -34,7 +35,7 @@ pub struct RunArguments {
 /// Implements: CLI-030, CLI-031, CLI-032.
 pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let config = match &arguments.config {
-        Some(path) => Config::read(path)?,
+        Some(path) => parse(path, Config::from_toml)?,
         None => Config::default(),
     };
     let phantoms = config.read_phantoms()?;
