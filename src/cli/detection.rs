@@ -49,9 +49,7 @@ impl Answer {
 
     /// The record judged with the inclusion at x = 0, at the threshold η.
     pub fn judged(&mut self, eta: f64, found: &Assessment) {
-        let Assessment {
-            statistic, rates, ..
-        } = found;
+        let (statistic, rates) = (&found.statistic, &found.rates);
         self.decision(found.decision);
         self.number("theta", "theta (log-likelihood ratio)", statistic.theta);
         self.number("eta", "eta (threshold)", eta);
@@ -65,11 +63,10 @@ impl Answer {
 
     /// The record searched for the inclusion.
     pub fn located(&mut self, found: &Location) {
-        let (by_mixture, mixture) = (found.by_mixture, found.theta_mixture);
-        let decided_by = if by_mixture {
-            "theta_mixture"
-        } else {
-            "theta_max"
+        let mixture = found.theta_mixture;
+        let decided_by = match found.by_mixture {
+            true => "theta_mixture",
+            false => "theta_max",
         };
         let (false_alarm, miss) = (found.false_alarm_bound, found.miss_bound);
         let sd_label = "its sd at least (Cramer-Rao), mm";

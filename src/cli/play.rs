@@ -82,17 +82,14 @@ fn table(
     let path = &arguments.map;
     let map = ForceMap::read(path)?;
     let damping = arguments.device.damping(capabilities);
-    let (loaded, hint) = match arguments.scale {
-        true => (
-            LoadedTable::scaled_to_be_passive(map.forces(), &damping, limits),
-            "",
-        ),
-        false => {
-            let loaded = LoadedTable::passive(map.forces(), &damping, limits);
-            (loaded.map(|loaded| (loaded, 1.0)), " (or use --scale)")
-        }
-    };
-    loaded.map_err(|error| failed(format_args!("{}: {error}{hint}", path.display())))
+    let file = path.display();
+    if arguments.scale {
+        let scaled = LoadedTable::scaled_to_be_passive(map.forces(), &damping, limits);
+        return scaled.map_err(CliError::refused(file));
+    }
+    let refused = |error| failed(format_args!("{file}: {error} (or use --scale)"));
+    let loaded = LoadedTable::passive(map.forces(), &damping, limits);
+    Ok((loaded.map_err(refused)?, 1.0))
 }
 
 /// Plays on `device` and tells what happened.
@@ -123,21 +120,14 @@ fn session(
     };
     let stop = stop_on_signals()?;
     let session = Session::begin(device, table, limits).map_err(failed)?;
-    let played = supervised(
-        session,
-        &options,
-        &Board::default(),
-        raise_priority,
-        || stop.load(Ordering::Relaxed),
-        live(),
-    );
+    let (board, stop) = (Board::default(), || stop.load(Ordering::Relaxed));
+    let played = supervised(session, &options, &board, raise_priority, stop, live());
     if std::io::stderr().is_terminal() {
         eprint!("\r\x1b[K"); // the summary begins on an empty line
     }
     let Some(mut played) = played else {
-        return Err(CliError::Check(
-            "the servo thread panicked; the device was told to stop".into(),
-        ));
+        let message = "the servo thread panicked; the device was told to stop";
+        return Err(CliError::Check(message.into()));
     };
     if arguments.device.is_simulated() {
         // The virtual clock does not see what the loop takes.
@@ -159,7 +149,7 @@ fn session(
     print(&match arguments.format {
         // Writing to a String does not fail.
         Format::Table => text.render().unwrap_or_default(),
-        Format::Json => as_json(&played, &loaded, scale),
+        Format::Json => as_json(&text),
     })?;
     match &played.end {
         End::Asked => Ok(()),
@@ -239,7 +229,7 @@ fn counted(counters: &Counters) -> String {
     )
 }
 
-/// The summary for people.
+/// The summary; as text for people.
 #[derive(Template)]
 #[template(path = "cli/play.txt")]
 struct Text<'a> {
@@ -249,7 +239,12 @@ struct Text<'a> {
 }
 
 /// The summary for programs.
-fn as_json(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
+fn as_json(text: &Text<'_>) -> String {
+    let Text {
+        played,
+        rounding,
+        scale,
+    } = text;
     let counters = &played.counters;
     let summary = json!({
         "end": played.end.to_string(),
@@ -261,8 +256,8 @@ fn as_json(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
         "garbage": counters.garbage,
         "stops_refused": counters.refused,
         "held_up_ms": played.held_up.map(|time| time.as_millis() as u64),
-        "rounding_position_m": loaded.rounding().position_m,
-        "rounding_force_n": loaded.rounding().force_n,
+        "rounding_position_m": rounding.position_m,
+        "rounding_force_n": rounding.force_n,
         "scale": scale,
         "timing": played.timing,
     });

@@ -129,13 +129,16 @@ pub fn table(
     Ok(rows.filter_map(|(words, of)| row(words, of)).collect())
 }
 
+/// What the numbers of a row are, the paper's, and ours if the study has it.
+type Numbers = (fn(f64) -> Value, f64, Option<f64>);
+
 impl Known<'_> {
-    /// For each row the kind of its numbers, the paper's, and ours if the study has it.
+    /// The numbers of each row.
     fn values(
         &self,
         level: Option<f64>,
         noise: &NoiseDecomposition,
-    ) -> Result<Vec<(fn(f64) -> Value, f64, Option<f64>)>, DetectError> {
+    ) -> Result<Vec<Numbers>, DetectError> {
         let [force, gamma, share]: [fn(f64) -> Value; 3] =
             [Value::ForceN, Value::Gamma, Value::Probability];
         let allowed = paper::SIGNAL / self.needed;
@@ -175,10 +178,7 @@ impl Known<'_> {
 }
 
 /// A row from its line of words and its numbers, if the study has ours.
-fn row(
-    words: &str,
-    (kind, paper, here): (fn(f64) -> Value, f64, Option<f64>),
-) -> Option<Comparison> {
+fn row(words: &str, (kind, paper, here): Numbers) -> Option<Comparison> {
     let mut parts = words.splitn(4, " | ").map(String::from);
     Some(Comparison {
         quantity: parts.next()?,

@@ -71,9 +71,6 @@ fn densities() -> Panel {
 }
 
 /// Figure 4: misses against false alarms.
-///
-/// # Errors
-/// Never for these γ; the detector's refusal is passed on all the same.
 fn roc() -> Result<Panel, DetectError> {
     let (alarms, misses) = (paper::MAX_FALSE_ALARM, paper::MAX_MISS);
     let needed = required_gamma(alarms, misses)?;
@@ -104,9 +101,6 @@ fn roc() -> Result<Panel, DetectError> {
 }
 
 /// Figure 9: right answers in pairs, with the paper's reading of it.
-///
-/// # Errors
-/// Never for these γ; the detector's refusal is passed on all the same.
 fn pairs() -> Result<Panel, DetectError> {
     let curve = steps(0.0, 5.0, 200).map(|gamma| Ok((gamma, two_afc(gamma)?)));
     let (counted, printed) = (paper::ACCURACY_6_6, paper::GAMMA_OF_ACCURACY);

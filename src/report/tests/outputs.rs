@@ -90,6 +90,11 @@ fn nothing_is_drawn_outside() {
 // Verifies: REP-031.
 #[test]
 fn file_names_are_safe_and_unique() {
+    let mut names = FileNames::default();
+    let mut unique = |name| names.unique("map", name, "json");
+    assert_eq!(unique("../6.6 mm"), "map-.._6.6_mm.json");
+    assert_eq!(unique("../6.6_MM"), "map-.._6.6_MM-2.json");
+    assert_eq!(unique(""), "map.json");
     let drawn = made(&hostile_study()).figures;
     let mut seen = HashSet::new();
     for Figure { file_name, .. } in &drawn {
