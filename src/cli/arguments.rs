@@ -3,8 +3,10 @@
 use std::ffi::OsString;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use serde::Serialize;
 
 use super::error::CliError;
+use super::output::print;
 use super::{detect, devices, experiment, import, oracle, play, psychophysics, run, solve, timing};
 use crate::fem::Contact;
 
@@ -60,6 +62,21 @@ pub enum Format {
     Table,
     /// For programs; each key ends with its unit.
     Json,
+}
+
+impl Format {
+    /// Prints an answer.
+    pub(super) fn print<A: Serialize>(
+        self,
+        answer: &A,
+        table: impl FnOnce(&A) -> String,
+    ) -> Result<(), CliError> {
+        print(&match self {
+            Format::Table => table(answer),
+            // Keys are strings, and nothing else could fail.
+            Format::Json => serde_json::to_string_pretty(answer).unwrap_or_default() + "\n",
+        })
+    }
 }
 
 /// How the gap to the probe is measured.

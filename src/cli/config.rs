@@ -1,6 +1,6 @@
 //! The configuration of `palpate run`: which phantoms, where the probe goes, what the detector assumes.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -73,18 +73,15 @@ struct Detection {
 
 impl Default for Config {
     fn default() -> Self {
-        let half_millimetres = |first: i32, last: i32| {
-            // Halves of a millimetre from their decimal text, as a file would give them.
-            let halves = first..=last;
-            Positions(halves.map(|k| f64::from(5 * k) / 10_000.0).collect())
-        };
+        // As a file would give them.
+        let list = |text| positions(text).expect("a list of positions");
         let name = |name: &str| Spanned::new(0..0, name.into());
         Config {
             reference: name(BUILTIN_NAMES[0]),
             phantoms: BUILTIN_NAMES[1..].iter().copied().map(name).collect(),
             measured: Vec::new(),
-            depths_mm: half_millimetres(0, 8),
-            laterals_mm: half_millimetres(-20, 20),
+            depths_mm: list("0:4:0.5"),
+            laterals_mm: list("-10:10:0.5"),
             mesh: Mesh::default(),
             detection: Settings::default(),
             source: Default::default(),
@@ -102,12 +99,7 @@ impl Default for Mesh {
 }
 
 impl Config {
-    /// Reads a file; keys that it leaves out are the paper's.
-    pub fn read(path: &Path) -> Result<Config, CliError> {
-        Ok(crate::input::parse(path, Config::from_toml)?)
-    }
-
-    /// The configuration in `text`, the content of `file`.
+    /// The configuration in `text`, the content of `file`; keys that it leaves out are the paper's.
     ///
     /// # Errors
     /// What is wrong, with file, line and key.

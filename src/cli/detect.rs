@@ -124,14 +124,12 @@ impl DetectArguments {
     }
 
     /// Implements: CLI-041.
-    fn noise_sd(&self) -> Result<Force<f64>, CliError> {
-        let of = |channel: Option<f64>| self.noise_sd_n.or(channel);
-        match (of(self.noise_sd_lateral_n), of(self.noise_sd_normal_n)) {
-            (Some(x), Some(y)) => Ok(Force::new(x, y)),
-            // The parser has refused it already.
-            _ => Err(CliError::Usage(
-                "expected --noise-sd-n, or --noise-sd-lateral-n and --noise-sd-normal-n".into(),
-            )),
+    fn noise_sd(&self) -> Force<f64> {
+        // The parser has refused all but one for both or one for each; of 0 the detector would.
+        let of = |channel: Option<f64>| self.noise_sd_n.or(channel).unwrap_or(0.0);
+        Force {
+            lateral: of(self.noise_sd_lateral_n),
+            normal: of(self.noise_sd_normal_n),
         }
     }
 }
@@ -152,11 +150,12 @@ fn asked(arguments: &DetectArguments, samples: usize, noise_sd: Force<f64>) -> A
     answer.tell("noise_sd_normal_n", noise_sd.normal);
     answer.tell("prior_h1", arguments.prior_h1);
     answer.tell("criterion", arguments.criterion_name());
-    if let Some(rate) = arguments.max_miss {
-        answer.tell("max_miss", rate);
-    }
-    if let Some(rate) = arguments.max_false_alarm {
-        answer.tell("max_false_alarm", rate);
+    let bounds = [
+        ("max_miss", arguments.max_miss),
+        ("max_false_alarm", arguments.max_false_alarm),
+    ];
+    for (key, bound) in bounds {
+        bound.into_iter().for_each(|rate| answer.tell(key, rate));
     }
     answer
 }
@@ -165,11 +164,9 @@ fn asked(arguments: &DetectArguments, samples: usize, noise_sd: Force<f64>) -> A
 ///
 /// Implements: CLI-040, CLI-043, CLI-044, CLI-046, CLI-048, CLI-055.
 pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
-    let (criterion, noise_sd) = (arguments.criterion()?, arguments.noise_sd()?);
-    let motion = arguments
-        .velocity_mm_s
-        .zip(arguments.start_mm)
-        .map(|(velocity, start)| Motion { velocity, start });
+    let (criterion, noise_sd) = (arguments.criterion()?, arguments.noise_sd());
+    let motion = arguments.velocity_mm_s.zip(arguments.start_mm);
+    let motion = motion.map(|(velocity, start)| Motion { velocity, start });
     let record = Trace::read(&arguments.trace)?.record(motion)?;
     let (reference, inclusion) = (map(&arguments.reference)?, map(&arguments.inclusion)?);
     let question = Question {
@@ -193,11 +190,9 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     };
     answer.misfit(&misfit);
     if misfit.is_too_large() {
+        let (file, chi_square, limit) = (record.file(), misfit.chi_square, misfit.limit);
         eprintln!(
-            "palpate: warning: {}: the record fits neither map: chi-square {:.1}, expected at most {:.1}: depth, noise or maps are probably not those of the sweep, and the decision means little",
-            record.file(),
-            misfit.chi_square,
-            misfit.limit
+            "palpate: warning: {file}: the record fits neither map: chi-square {chi_square:.1}, expected at most {limit:.1}: depth, noise or maps are probably not those of the sweep, and the decision means little"
         );
     }
     print(&match arguments.format {
@@ -209,29 +204,26 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
 /// Implements: TRC-042.
 fn warn_of_broad_signal(found: &Location, record: &Record) {
     if found.template_edge > DIED_AWAY {
+        let (file, share) = (record.file(), 100.0 * found.template_edge);
         eprintln!(
-            "palpate: warning: {}: the signal at an end of the maps is still {:.0} % of its largest: the position is drawn towards the maps' x = 0, which its sd does not count",
-            record.file(),
-            100.0 * found.template_edge
+            "palpate: warning: {file}: the signal at an end of the maps is still {share:.0} % of its largest: the position is drawn towards the maps' x = 0, which its sd does not count"
         );
     }
 }
 
 /// Implements: CLI-043.
 fn warn_of_other_place(inclusion: &ForceMap, path: &Path) {
-    let Some(phantom) = inclusion.phantom() else {
-        return;
-    };
-    let middles = phantom.inclusions.iter().map(|inclusion| {
+    let inclusions = inclusion.phantom().into_iter();
+    let inclusions = inclusions.flat_map(|of| &of.inclusions);
+    let middles = inclusions.map(|inclusion| {
         let [left, right, ..] = inclusion.extent();
-        0.5 * (left + right)
+        text::millimetres(0.5 * (left + right))
     });
-    let middles: Vec<String> = middles.map(text::millimetres).collect();
+    let middles: Vec<String> = middles.collect();
     if middles.iter().any(|x| x != "0") {
+        let (file, middles) = (path.display(), middles.join(", "));
         eprintln!(
-            "palpate: warning: {}: the position is where x = 0 of this map lies; its phantom has inclusions at x = {} mm",
-            path.display(),
-            middles.join(", ")
+            "palpate: warning: {file}: the position is where x = 0 of this map lies; its phantom has inclusions at x = {middles} mm"
         );
     }
 }
@@ -241,10 +233,8 @@ fn map(path: &Path) -> Result<ForceMap, CliError> {
         return Ok(ForceMap::read(path)?);
     }
     // A built-in phantom has a name elsewhere, but its forces depend on depths and mesh.
-    Err(CliError::Usage(format!(
-        "{}: no such force map; 'palpate solve --phantom none --depths-mm ... --laterals-mm ... --format json' makes one",
-        path.display()
-    )))
+    let hint = "no such force map; 'palpate solve --phantom none --depths-mm ... --laterals-mm ... --format json' makes one";
+    Err(CliError::refused(path.display())(hint))
 }
 
 /// Refuses maps of which one is not the other with an inclusion, or tells of them where they are meant.
@@ -264,8 +254,9 @@ fn hypotheses<'a>(
             eprintln!("palpate: warning: {file}: {error}");
             Ok(any)
         }
-        Err(error) => Err(CliError::Usage(format!(
-            "{file}: {error} (or use --any-maps)"
-        ))),
+        Err(error) => {
+            let hint = format!("{error} (or use --any-maps)");
+            Err(CliError::refused(file)(hint))
+        }
     }
 }

@@ -63,11 +63,10 @@ impl Answer {
 
     /// The record searched for the inclusion.
     pub fn located(&mut self, found: &Location) {
-        let (by_mixture, mixture) = (found.by_mixture, found.theta_mixture);
-        let decided_by = if by_mixture {
-            "theta_mixture"
-        } else {
-            "theta_max"
+        let mixture = found.theta_mixture;
+        let decided_by = match found.by_mixture {
+            true => "theta_mixture",
+            false => "theta_max",
         };
         let (false_alarm, miss) = (found.false_alarm_bound, found.miss_bound);
         let sd_label = "its sd at least (Cramer-Rao), mm";

@@ -1,6 +1,5 @@
 //! `palpate devices`: the HID devices of this machine (`spec/playback-command.md`).
 
-use std::fmt::Write;
 use std::io::ErrorKind;
 
 use clap::Args;
@@ -22,7 +21,7 @@ pub struct DevicesArguments {
 ///
 /// Implements: CLI-078, HID-093.
 pub fn devices(arguments: &DevicesArguments) -> Result<(), CliError> {
-    let listed = list().map_err(|error| CliError::Playback(error.to_string()))?;
+    let listed = list()?;
     print(&match arguments.format {
         Format::Table => describe(&listed),
         Format::Json => format!("{:#}\n", listed.iter().map(as_json).collect::<Value>()),
@@ -35,18 +34,14 @@ fn describe(listed: &[Listed]) -> String {
     }
     let mut text = String::new();
     for one in listed {
-        let mut line = |line: String| {
-            let _ = writeln!(text, "{line}"); // a String takes everything
-        };
-        line(one.identity.to_string());
-        line(format!("    {}", one.profile));
-        match one.access() {
-            Ok(()) => {}
+        text += &format!("{}\n    {}\n", one.identity, one.profile);
+        text += &match one.access() {
+            Ok(()) => String::new(),
             Err(error) if error.kind() == ErrorKind::PermissionDenied => {
-                line(format!("    {}", no_permission(&one.identity)));
+                format!("    {}\n", no_permission(&one.identity))
             }
-            Err(error) => line(format!("    cannot be opened: {error}")),
-        }
+            Err(error) => format!("    cannot be opened: {error}\n"),
+        };
     }
     text
 }

@@ -1,16 +1,19 @@
 //! What the program says when it cannot do what it was asked to, and with which exit code.
 
+use std::fmt::Display;
+use std::io;
+use std::path::Path;
+
 use crate::fem::FemError;
 use crate::psychophysics::PsychophysicsError;
 use crate::refusal::{Refusal, one_line};
-use crate::report::ReportError;
 
 /// Why a command failed. Its message is one line.
 ///
 /// Implements: CLI-002, CLI-003.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
-    /// The command line cannot be understood.
+    /// The command line, a file or a device is to blame.
     #[error("{0}")]
     Usage(String),
     /// A phantom, a force map, a trace or a table of answers is not valid, or they do not fit one another.
@@ -19,39 +22,34 @@ pub enum CliError {
     /// Counts and maps do not fit.
     #[error("{0}")]
     Psychophysics(#[from] PsychophysicsError),
-    /// A map can not be played, or a device not be used.
-    #[error("{0}")]
-    Playback(String),
-    /// A check of the statistics battery failed.
+    /// A computation or a check failed.
     #[error("{0}")]
     Check(String),
-    /// The solver refused the phantom, the mesh or a pose, or failed.
-    #[error("phantom {phantom}: {error}")]
-    Fem {
-        /// Which phantom.
-        phantom: String,
-        /// What was wrong.
-        error: FemError,
-    },
-    /// The report refused the study.
-    #[error("report: {0}")]
-    Report(#[from] ReportError),
-    /// A file could not be written or read.
-    #[error("{action} {path}: {error}")]
-    File {
-        /// `read` or `write`.
-        action: &'static str,
-        /// Which file.
-        path: String,
-        /// What the system said.
-        error: std::io::Error,
-    },
-    /// Standard output could not be written.
-    #[error("standard output: {0}")]
-    Output(std::io::Error),
 }
 
 impl CliError {
+    /// `what` is to blame, for a reason.
+    pub(super) fn refused<E: Display>(what: impl Display) -> impl FnOnce(E) -> CliError {
+        move |reason| CliError::Usage(format!("{what}: {reason}"))
+    }
+
+    /// The system did not let a file be read, written or made.
+    pub(super) fn file(action: &str, path: &Path) -> impl FnOnce(io::Error) -> CliError {
+        CliError::refused(format!("{action} {}", path.display()))
+    }
+
+    /// The solver refused a phantom, the mesh or a pose, or failed.
+    pub(super) fn fem(phantom: &str) -> impl Fn(FemError) -> CliError {
+        use FemError::{NoConvergence, OutOfMemory, Residual};
+        move |error| {
+            let message = format!("phantom {phantom}: {error}");
+            match error {
+                NoConvergence { .. } | Residual { .. } | OutOfMemory => CliError::Check(message),
+                _ => CliError::Usage(message),
+            }
+        }
+    }
+
     /// The first line of what the argument parser has to say.
     pub(crate) fn usage(error: &clap::Error) -> CliError {
         let text = error.to_string();
@@ -73,12 +71,7 @@ impl CliError {
     /// 1 where a computation failed, 2 where the input is to blame.
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::Fem {
-                error:
-                    FemError::NoConvergence { .. } | FemError::Residual { .. } | FemError::OutOfMemory,
-                ..
-            } => 1,
-            CliError::Report(_) | CliError::Output(_) | CliError::Check(_) => 1,
+            CliError::Check(_) => 1,
             _ => 2,
         }
     }

@@ -1,6 +1,5 @@
 //! `palpate experiment`: two-alternative forced choice (`spec/playback-command.md`).
 
-use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufRead, Read, Write};
 use std::path::{Path, PathBuf};
@@ -90,10 +89,6 @@ fn noise(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| format!("{text:?}: expected N above 0, such as 6"))
 }
 
-fn failed(what: impl Display, error: impl Display) -> CliError {
-    CliError::Playback(format!("{what}: {error}"))
-}
-
 /// Runs the command.
 ///
 /// Implements: CLI-070, CLI-071, CLI-072, CLI-073.
@@ -118,10 +113,8 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
                 "{number} of {total} pairs answered; the same command goes on with the next\n"
             ));
         };
-        append(
-            &arguments.journal,
-            journal.answer(answer == trial.with_inclusion),
-        )?;
+        let line = journal.answer(answer == trial.with_inclusion);
+        append(&arguments.journal, line)?;
         bar.set_position(number as u64 + 1);
     }
     bar.finish_and_clear();
@@ -130,11 +123,8 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
 
 /// The journal so far.
 fn open_journal(arguments: &ExperimentArguments) -> Result<Journal, CliError> {
-    let names: Vec<&str> = arguments
-        .inclusion
-        .iter()
-        .map(|(name, _)| &name[..])
-        .collect();
+    let names = arguments.inclusion.iter().map(|(name, _)| &name[..]);
+    let names: Vec<&str> = names.collect();
     let mut journal = Journal::new(Setup {
         seed: arguments.seed,
         trials: arguments.trials as usize,
@@ -144,11 +134,11 @@ fn open_journal(arguments: &ExperimentArguments) -> Result<Journal, CliError> {
     });
     let path = &arguments.journal;
     if path.exists() {
-        let found = Journal::parse(&read(path)?).map_err(|error| failed(path.display(), error))?;
+        let found = Journal::parse(&read(path)?).map_err(CliError::refused(path.display()))?;
         let (of, asked) = (found.setup(), journal.setup());
         if of != asked {
             let message = format!("another experiment ({of}) than asked for ({asked})");
-            return Err(failed(path.display(), message));
+            return Err(CliError::refused(path.display())(message));
         }
         journal = found;
     }
@@ -161,11 +151,7 @@ fn open_journal(arguments: &ExperimentArguments) -> Result<Journal, CliError> {
 fn append(path: &Path, line: &str) -> Result<(), CliError> {
     let file = File::options().append(true).open(path);
     let written = file.and_then(|mut file| file.write_all(line.as_bytes()));
-    written.map_err(|error| CliError::File {
-        action: "write",
-        path: path.display().to_string(),
-        error,
-    })
+    written.map_err(CliError::file("write", path))
 }
 
 /// A map, and the table that plays it.
@@ -177,12 +163,12 @@ fn samples(
     limits: &Limits,
 ) -> Result<(Sample, Vec<Sample>), CliError> {
     let capabilities = open(arguments)?.capabilities();
-    let capabilities = capabilities.map_err(|error| failed("device", error))?;
+    let capabilities = capabilities.map_err(CliError::refused("device"))?;
     let damping = arguments.device.damping(&capabilities);
     let sample = |path: &Path| {
         let map = ForceMap::read(path)?;
         let table = LoadedTable::passive(map.table(), &damping, limits);
-        let table = table.map_err(|error| failed(path.display(), error))?;
+        let table = table.map_err(CliError::refused(path.display()))?;
         Ok::<Sample, CliError>((map, table))
     };
     let reference = sample(&arguments.reference)?;
@@ -209,7 +195,7 @@ impl<'a> Pairs<'a> {
         let named = inclusions.iter().zip(&arguments.inclusion);
         let pair = |((map, table), (_, path)): (&'a Sample, &(String, PathBuf))| {
             let hypotheses = Hypotheses::new(reference, map);
-            let hypotheses = hypotheses.map_err(|error| failed(path.display(), error))?;
+            let hypotheses = hypotheses.map_err(CliError::refused(path.display()))?;
             Ok((table, hypotheses))
         };
         Ok(Pairs {
@@ -244,14 +230,13 @@ impl<'a> Pairs<'a> {
         };
         let [first, second] = samples.map(|sample| self.felt(sample));
         let answer = observer.choose(&first?, &second?, number as u64);
-        Ok(Some(
-            answer.map_err(|error| failed("the ideal observer", error))?,
-        ))
+        let answer = answer.map_err(CliError::refused("the ideal observer"))?;
+        Ok(Some(answer))
     }
 
     /// A sample as it is felt.
     fn felt(&self, table: &LoadedTable) -> Result<Felt, CliError> {
-        let table = table.table().map_err(|error| failed("servo", error))?;
+        let table = table.table().map_err(CliError::refused("servo"))?;
         let duration = Duration::from_secs(self.arguments.seconds);
         let device = open(self.arguments)?;
         present(device, table, self.limits, duration, PATIENCE)
@@ -283,10 +268,9 @@ impl<'a> Pairs<'a> {
 /// The device; the simulated one is in a hand that presses for as long as a sample lasts.
 fn open(arguments: &ExperimentArguments) -> Result<Box<dyn HapticDevice + Send>, CliError> {
     let sweep = Duration::from_secs(arguments.seconds) / 2;
-    let device = arguments
-        .device
-        .open(Trajectory::probing(4e-3, 9e-3, sweep));
-    device.map_err(|error| failed("device", error))
+    let hand = Trajectory::probing(4e-3, 9e-3, sweep);
+    let device = arguments.device.open(hand);
+    device.map_err(CliError::refused("device"))
 }
 
 /// The longest line that is read from the keyboard, bytes.

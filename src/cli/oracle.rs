@@ -20,7 +20,9 @@ pub struct OracleArguments {}
 /// Implements: ORA-002, ORA-013.
 pub fn oracle(OracleArguments {}: &OracleArguments) -> Result<(), CliError> {
     match serve(stdin().lock(), stdout().lock()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(error)),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(CliError::Check(format!("standard output: {error}")))
+        }
         _ => Ok(()),
     }
 }

@@ -12,7 +12,9 @@ use super::CliError;
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(error)),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(CliError::Check(format!("standard output: {error}")))
+        }
         _ => Ok(()),
     }
 }
@@ -21,11 +23,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
 ///
 /// Implements: CLI-005, CLI-007.
 pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
-    replace(path, text.as_bytes()).map_err(|error| CliError::File {
-        action: "write",
-        path: path.display().to_string(),
-        error,
-    })
+    replace(path, text.as_bytes()).map_err(CliError::file("write", path))
 }
 
 /// Implements: CLI-086, CLI-087, CLI-088, CLI-089.
@@ -66,18 +64,10 @@ fn end_of_links(path: &Path) -> PathBuf {
 
 /// Reads a text file.
 pub fn read(path: &Path) -> Result<String, CliError> {
-    crate::input::read(path).map_err(|error| CliError::File {
-        action: "read",
-        path: path.display().to_string(),
-        error,
-    })
+    crate::input::read(path).map_err(CliError::file("read", path))
 }
 
 /// Makes a folder and those above it.
 pub fn make_folder(path: &Path) -> Result<(), CliError> {
-    std::fs::create_dir_all(path).map_err(|error| CliError::File {
-        action: "make folder",
-        path: path.display().to_string(),
-        error,
-    })
+    std::fs::create_dir_all(path).map_err(CliError::file("make folder", path))
 }

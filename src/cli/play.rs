@@ -1,12 +1,13 @@
 //! `palpate play`: a force map to a hand (`spec/playback-command.md`).
 
-use std::fmt::{Display, Write};
+use std::fmt::Display;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use askama::Template;
 use clap::Args;
 use serde_json::json;
 
@@ -16,9 +17,8 @@ use super::{CliError, Format};
 use crate::force_map::ForceMap;
 use crate::hid::simulated::Trajectory;
 use crate::hid::supervise::{Board, HELD_UP, PlayOptions, Played, play as supervised};
-use crate::hid::timing::Distribution;
 use crate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session};
-use crate::servo::{Limits, LoadedTable};
+use crate::servo::{Limits, LoadedTable, RoundingError};
 
 /// Most seconds that can be recorded: an hour at 1 kHz.
 const MOST_RECORDED: u64 = 3600;
@@ -62,17 +62,15 @@ pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
     arguments.device.check()?;
     let probing = Trajectory::probing(4e-3, 9e-3, Duration::from_millis(1500));
     let seconds = arguments.seconds.map(Duration::from_secs);
-    let duration = seconds.or(arguments
-        .device
-        .is_simulated()
-        .then_some(probing.duration()));
+    let is_simulated = arguments.device.is_simulated();
+    let duration = seconds.or(is_simulated.then_some(probing.duration()));
     let hand = probing.repeated(duration.unwrap_or_default());
     let device = arguments.device.open(hand).map_err(failed)?;
     session(arguments, device, limits, duration)
 }
 
 fn failed(error: impl Display) -> CliError {
-    CliError::Playback(error.to_string())
+    CliError::Usage(error.to_string())
 }
 
 /// The table for this device, and the factor on its forces.
@@ -84,15 +82,14 @@ fn table(
     let path = &arguments.map;
     let map = ForceMap::read(path)?;
     let damping = arguments.device.damping(capabilities);
-    let loaded = if arguments.scale {
-        LoadedTable::scaled_to_be_passive(map.table(), &damping, limits)
-    } else {
-        LoadedTable::passive(map.table(), &damping, limits).map(|loaded| (loaded, 1.0))
-    };
-    loaded.map_err(|error| {
-        let hint = ["", " (or use --scale)"][usize::from(!arguments.scale)];
-        failed(format_args!("{}: {error}{hint}", path.display()))
-    })
+    let file = path.display();
+    if arguments.scale {
+        let scaled = LoadedTable::scaled_to_be_passive(map.table(), &damping, limits);
+        return scaled.map_err(CliError::refused(file));
+    }
+    let refused = |error| failed(format_args!("{file}: {error} (or use --scale)"));
+    let loaded = LoadedTable::passive(map.table(), &damping, limits);
+    Ok((loaded.map_err(refused)?, 1.0))
 }
 
 /// Plays on `device` and tells what happened.
@@ -123,21 +120,14 @@ fn session(
     };
     let stop = stop_on_signals()?;
     let session = Session::begin(device, table, limits).map_err(failed)?;
-    let played = supervised(
-        session,
-        &options,
-        &Board::default(),
-        raise_priority,
-        || stop.load(Ordering::Relaxed),
-        live(),
-    );
+    let (board, stop) = (Board::default(), || stop.load(Ordering::Relaxed));
+    let played = supervised(session, &options, &board, raise_priority, stop, live());
     if std::io::stderr().is_terminal() {
         eprint!("\r\x1b[K"); // the summary begins on an empty line
     }
     let Some(mut played) = played else {
-        return Err(CliError::Check(
-            "the servo thread panicked; the device was told to stop".into(),
-        ));
+        let message = "the servo thread panicked; the device was told to stop";
+        return Err(CliError::Check(message.into()));
     };
     if arguments.device.is_simulated() {
         // The virtual clock does not see what the loop takes.
@@ -151,9 +141,15 @@ fn session(
         };
         write(path, &recording.to_text())?;
     }
+    let text = Text {
+        played: &played,
+        rounding: loaded.rounding(),
+        scale,
+    };
     print(&match arguments.format {
-        Format::Table => describe(&played, &loaded, scale),
-        Format::Json => as_json(&played, &loaded, scale),
+        // Writing to a String does not fail.
+        Format::Table => text.render().unwrap_or_default(),
+        Format::Json => as_json(&text),
     })?;
     match &played.end {
         End::Asked => Ok(()),
@@ -233,38 +229,22 @@ fn counted(counters: &Counters) -> String {
     )
 }
 
-/// The summary for people.
-fn describe(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
-    let rounding = loaded.rounding();
-    let mut text = format!("{}\n{}\n", played.end, counted(&played.counters));
-    let mut line = |line: String| {
-        let _ = writeln!(text, "{line}"); // a String takes everything
-    };
-    line(format!(
-        "table rounded by at most {:.1e} m and {:.1e} N, forces × {scale}",
-        rounding.position_m, rounding.force_n
-    ));
-    if let Some(timing) = &played.timing {
-        let mut times = |name: &str, times: &Distribution| {
-            line(format!(
-                "{name}: p50 {:.1} µs, p99.9 {:.1} µs, largest {:.1} µs",
-                times.p50, times.p99_9, times.max
-            ));
-        };
-        times("age of the input when answered", &timing.response_us);
-        times("writes", &timing.write_us);
-        if let Some(round_trip) = &timing.round_trip_us {
-            times("round trip", round_trip);
-        }
-    }
-    if let Some(time) = played.held_up {
-        line(format!("held up once for {} ms", time.as_millis()));
-    }
-    text
+/// The summary; as text for people.
+#[derive(Template)]
+#[template(path = "cli/play.txt")]
+struct Text<'a> {
+    played: &'a Played,
+    rounding: RoundingError,
+    scale: f64,
 }
 
 /// The summary for programs.
-fn as_json(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
+fn as_json(text: &Text<'_>) -> String {
+    let Text {
+        played,
+        rounding,
+        scale,
+    } = text;
     let counters = &played.counters;
     let summary = json!({
         "end": played.end.to_string(),
@@ -276,8 +256,8 @@ fn as_json(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
         "garbage": counters.garbage,
         "stops_refused": counters.refused,
         "held_up_ms": played.held_up.map(|time| time.as_millis() as u64),
-        "rounding_position_m": loaded.rounding().position_m,
-        "rounding_force_n": loaded.rounding().force_n,
+        "rounding_position_m": rounding.position_m,
+        "rounding_force_n": rounding.force_n,
         "scale": scale,
         "timing": played.timing,
     });
@@ -287,17 +267,16 @@ fn as_json(played: &Played, loaded: &LoadedTable, scale: f64) -> String {
 /// Plays a recording again.
 fn replay(arguments: &PlayArguments, file: &Path) -> Result<(), CliError> {
     let text = read(file)?;
-    let named = |error: &dyn Display| format!("{}: {error}", file.display());
-    let recording = Recording::parse(&text).map_err(|error| failed(named(&error)))?;
+    let recording = Recording::parse(&text).map_err(CliError::refused(file.display()))?;
     let loaded = match arguments.scale {
         true => table(arguments, &recording.capabilities, &recording.limits)?.0,
         false => loaded_map(&arguments.map)?,
     };
-    let table = loaded.table().map_err(|error| failed(named(&error)))?;
-    match recording.replay(table) {
-        Ok(cycles) => print(&format!(
-            "{cycles} cycles, all forces the same to the bit\n"
-        )),
-        Err(error) => Err(CliError::Check(named(&error))),
-    }
+    let table = loaded.table().map_err(CliError::refused(file.display()))?;
+    let cycles = recording.replay(table);
+    let failed = |error| CliError::Check(format!("{}: {error}", file.display()));
+    let cycles = cycles.map_err(failed)?;
+    print(&format!(
+        "{cycles} cycles, all forces the same to the bit\n"
+    ))
 }

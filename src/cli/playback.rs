@@ -102,7 +102,7 @@ pub fn limits(force: f32) -> Result<Limits, CliError> {
     let release = force / 8.0;
     let slew = if SLEW < release { SLEW } else { release };
     Limits::new(force, slew, release, WATCHDOG)
-        .map_err(|error| CliError::Usage(format!("--max-force {force}: {error}")))
+        .map_err(CliError::refused(format_args!("--max-force {force}")))
 }
 
 /// What a device says of its damping. Its force comes `delay_periods` after the sample.
@@ -121,8 +121,7 @@ fn damping(capabilities: &Capabilities, delay_periods: u16) -> Damping {
 /// Implements: CLI-062.
 pub fn loaded_map(path: &Path) -> Result<LoadedTable, CliError> {
     let map = ForceMap::read(path)?;
-    LoadedTable::new(map.table())
-        .map_err(|error| CliError::Playback(format!("{}: {error}", path.display())))
+    LoadedTable::new(map.table()).map_err(CliError::refused(path.display()))
 }
 
 #[cfg(test)]

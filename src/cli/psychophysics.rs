@@ -8,7 +8,6 @@ use serde::Serialize;
 
 use super::experiment::named_file;
 use super::lists::length;
-use super::output::print;
 use super::psychophysics_text::text;
 use super::{CliError, Format};
 use crate::force_map::{ForceMap, Hypotheses};
@@ -69,11 +68,7 @@ pub fn psychophysics(arguments: &PsychophysicsArguments) -> Result<(), CliError>
         analysis: analyse(&table)?,
         noise_levels: noise_levels.transpose()?,
     };
-    print(&match arguments.format {
-        Format::Table => text(&answer),
-        // Keys are strings and every number is finite: nothing here can fail.
-        Format::Json => serde_json::to_string_pretty(&answer).unwrap_or_default() + "\n",
-    })
+    arguments.format.print(&answer, text)
 }
 
 fn against_maps(
@@ -86,7 +81,7 @@ fn against_maps(
     for (name, path) in &arguments.inclusion {
         let map = ForceMap::read(path)?;
         let checked = Hypotheses::new(&reference, &map);
-        checked.map_err(|error| CliError::Usage(format!("{}: {error}", path.display())))?;
+        checked.map_err(CliError::refused(path.display()))?;
         maps.push((name.as_str(), map));
     }
     let named: Vec<_> = maps.iter().map(|(name, map)| (*name, map)).collect();

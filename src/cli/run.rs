@@ -14,7 +14,9 @@ use super::solve::warn_of_large_strain;
 use crate::fem::certify::certified_map;
 use crate::fem::{FemError, Model, Pose};
 use crate::force_map::ForceMap;
+use crate::input::parse;
 use crate::phantom::Phantom;
+use crate::refusal::Refusal;
 use crate::report::{DeformedMesh, FileNames, Study, figures, findings, html, summary_json};
 
 /// Arguments of `palpate run`.
@@ -33,15 +35,13 @@ pub struct RunArguments {
 /// Implements: CLI-030, CLI-031, CLI-032.
 pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let config = match &arguments.config {
-        Some(path) => Config::read(path)?,
+        Some(path) => parse(path, Config::from_toml)?,
         None => Config::default(),
     };
     let phantoms = config.read_phantoms()?;
-    let measured = config
-        .measured
-        .iter()
-        .map(|path| measured_map(path))
-        .collect::<Result<Vec<_>, _>>()?;
+    let measured = config.measured.iter();
+    let measured = measured.map(|path| measured_map(path));
+    let measured = measured.collect::<Result<Vec<_>, _>>()?;
     // The folder first: a run shall not fail at its end for want of a place.
     make_folder(&arguments.out)?;
     let study = study(&config, &phantoms, measured)?;
@@ -57,10 +57,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
 fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
     let map = ForceMap::read(path)?;
     if map.certificate().is_some() {
-        let path = path.display();
-        return Err(CliError::Usage(format!(
-            "{path}: a computed map; 'measured' takes maps that palpate import-map wrote"
-        )));
+        let reason = "a computed map; 'measured' takes maps that palpate import-map wrote";
+        return Err(CliError::refused(path.display())(reason));
     }
     Ok(map)
 }
@@ -77,27 +75,20 @@ fn study(
     // The figure shows the first inclusion, or the reference where there is none.
     let shown = usize::from(phantoms.len() > 1);
     let solve = |(index, phantom): (usize, &Phantom)| {
-        solve_phantom(config, phantom, index == shown, &bar).map_err(|error| CliError::Fem {
-            phantom: phantom.name.clone(),
-            error,
-        })
+        solve_phantom(config, phantom, index == shown, &bar).map_err(CliError::fem(&phantom.name))
     };
-    let solved: Vec<_> = phantoms
-        .par_iter()
-        .enumerate()
-        .map(solve)
-        .collect::<Result<_, _>>()?;
+    let solved = phantoms.par_iter().enumerate().map(solve);
+    let solved: Vec<_> = solved.collect::<Result<_, _>>()?;
     bar.finish_and_clear();
     let (mut maps, deformed): (Vec<_>, Vec<_>) = solved.into_iter().unzip();
-    let Some(deformed) = deformed.into_iter().flatten().next() else {
-        return Err(CliError::Usage("no phantom to run".into()));
-    };
+    let deformed = deformed.into_iter().flatten().next();
+    let none = || CliError::Usage("no phantom to run".into());
     let reference = maps.remove(0);
     Ok(Study {
         reference,
         maps,
         measured,
-        deformed,
+        deformed: deformed.ok_or_else(none)?,
         settings: config.detection,
     })
 }
@@ -115,11 +106,7 @@ fn solve_phantom(
     // Each map on three meshes.
     bar.inc_length((3 * depths.len() * model.solved_laterals(laterals).len()) as u64);
     let map = certified_map(&model, depths, laterals, &|poses| bar.inc(poses as u64))?;
-    let deformed = if shown {
-        Some(deformed_mesh(&model, &map)?)
-    } else {
-        None
-    };
+    let deformed = shown.then(|| deformed_mesh(&model, &map)).transpose()?;
     Ok((map, deformed))
 }
 
@@ -132,11 +119,8 @@ fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError
         0.5 * (left + right)
     });
     let distance = |x: f64| (x - middle).abs();
-    let nearest = map
-        .laterals()
-        .iter()
-        .copied()
-        .min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+    let laterals = map.laterals().iter().copied();
+    let nearest = laterals.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
     let pose = Pose {
         depth: deepest,
         lateral: nearest.unwrap_or(0.0),
@@ -146,17 +130,16 @@ fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError
 
 /// Writes everything and says where.
 fn write_study(study: &Study, out: &Path) -> Result<(), CliError> {
-    let findings = findings(study)?;
-    let figures = figures(study, &findings)?;
+    let failed = |refusal: Refusal| CliError::Check(format!("report: {refusal}"));
+    let findings = findings(study).map_err(failed)?;
+    let figures = figures(study, &findings).map_err(failed)?;
     make_folder(&out.join("maps"))?;
     make_folder(&out.join("figures"))?;
     let mut names = FileNames::default();
     for map in std::iter::once(&study.reference).chain(&study.maps) {
         let name = map.phantom().map_or("", |phantom| &phantom.name);
-        write(
-            &out.join("maps").join(names.unique("map", name, "json")),
-            &map.to_json(),
-        )?;
+        let name = names.unique("map", name, "json");
+        write(&out.join("maps").join(name), &map.to_json())?;
     }
     for figure in &figures {
         write(&out.join("figures").join(&figure.file_name), &figure.svg)?;

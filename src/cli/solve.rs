@@ -1,8 +1,8 @@
 //! `palpate solve`: the forces over depths and lateral positions of one phantom.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use askama::Template;
 use clap::{Args, ValueEnum};
 
 use super::lists::{Positions, positions};
@@ -10,7 +10,7 @@ use super::output::{print, write};
 use super::progress::{bar, tell_large_mesh};
 use super::{CliError, ContactName};
 use crate::fem::certify::certified_map;
-use crate::fem::{FemError, MESH_SIZE, Model, Pose};
+use crate::fem::{MESH_SIZE, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::phantom::decimal::{format_scaled, parse_scaled};
 use crate::phantom::{BUILTIN_NAMES, Phantom};
@@ -97,31 +97,28 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         }
     };
     let phantom = phantom(&arguments.phantom)?;
-    let failed = |error: FemError| CliError::Fem {
-        phantom: phantom.name.clone(),
-        error,
-    };
+    let failed = CliError::fem(&phantom.name);
     let size = arguments.mesh_mm.unwrap_or(MESH_SIZE);
-    tell_large_mesh(&phantom, size).map_err(failed)?;
-    let model = Model::new(&phantom, size, arguments.contact.into()).map_err(failed)?;
+    tell_large_mesh(&phantom, size).map_err(&failed)?;
+    let model = Model::new(&phantom, size, arguments.contact.into()).map_err(&failed)?;
     let meshes = if arguments.certify { 3 } else { 1 };
     let columns = model.solved_laterals(laterals).len();
     let bar = bar(meshes * depths.len() * columns, &phantom.name);
     let solved = |poses| bar.inc(poses as u64);
-    let map = if arguments.certify {
-        certified_map(&model, depths, laterals, &solved)
-    } else {
-        model.map(depths, laterals, &solved)
+    let map = match arguments.certify {
+        true => certified_map(&model, depths, laterals, &solved),
+        false => model.map(depths, laterals, &solved),
     };
-    let map = map.map_err(failed)?;
+    let map = map.map_err(&failed)?;
     bar.finish_and_clear();
     if let Some((path, pose)) = pose {
-        let solution = model.solve(pose).map_err(failed)?;
-        write(path, &model.vtu(&solution).map_err(failed)?)?;
+        let solution = model.solve(pose).map_err(&failed)?;
+        write(path, &model.vtu(&solution).map_err(&failed)?)?;
     }
     warn_of_large_strain(&map);
     print(&match arguments.format {
-        Format::Table => table(&map),
+        // Writing to a String does not fail.
+        Format::Table => Table { map: &map }.render().unwrap_or_default(),
         Format::Json => map.to_json(),
         Format::Csv => map.table().to_csv(),
     })
@@ -131,71 +128,29 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
 ///
 /// Implements: CLI-015.
 pub fn warn_of_large_strain(map: &ForceMap) {
-    let Some(smallest) = map
-        .certificate()
-        .map(|certificate| certificate.smallest_det)
-    else {
-        return;
-    };
-    if smallest.det < SMALL_STRAIN_LIMIT {
+    let smallest = map.certificate().map(|of| of.smallest_det);
+    if let Some(smallest) = smallest.filter(|of| of.det < SMALL_STRAIN_LIMIT) {
         let name = map.phantom().map_or("", |phantom| &phantom.name);
-        let meaning = if smallest.det > 0.0 {
-            "the small-strain model is at its limit there"
-        } else {
-            "the gel is turned inside out there, and the forces mean nothing"
+        let meaning = match smallest.det > 0.0 {
+            true => "the small-strain model is at its limit there",
+            false => "the gel is turned inside out there, and the forces mean nothing",
         };
         eprintln!(
             "palpate: warning: phantom {name}: det(I + grad u) falls to {:.3} at depth {} mm, lateral {} mm: {meaning}",
             smallest.det,
-            format_scaled(smallest.depth, 3),
-            format_scaled(smallest.lateral, 3)
+            in_millimetres(&smallest.depth),
+            in_millimetres(&smallest.lateral)
         );
     }
 }
 
-fn table(map: &ForceMap) -> String {
-    let mut text = String::new();
-    for (title, matrix) in [
-        ("normal force, N (up out of the gel)", &map.forces().normal),
-        (
-            "lateral force, N (on the probe along +x)",
-            &map.forces().lateral,
-        ),
-    ] {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{title}");
-        let head: String = map
-            .laterals()
-            .iter()
-            .map(|&x| format!("{:>10}", format_scaled(x, 3)))
-            .collect();
-        let _ = writeln!(text, "{:>9} {head}", "d\\x, mm");
-        for (depth, row) in map.depths().iter().zip(matrix.rows()) {
-            let forces: String = row.iter().map(|force| format!("{force:>10.5}")).collect();
-            let _ = writeln!(text, "{:>9} {forces}", format_scaled(*depth, 3));
-        }
-        text.push('\n');
-    }
-    if let Some(c) = map.certificate() {
-        let _ = writeln!(
-            text,
-            "{} nodes, {} elements ({}), contact {}; residual {:.1e}, force balance {:.1e} N, smallest det(I + grad u) {:.3}",
-            c.nodes,
-            c.elements,
-            c.element,
-            c.contact,
-            c.worst_relative_residual,
-            c.worst_force_balance,
-            c.smallest_det.det
-        );
-        if let Some(discretization) = &c.discretization {
-            let [normal, lateral] = discretization.largest();
-            let [fine, middle, coarse] = discretization.nodes;
-            let _ = writeln!(
-                text,
-                "discretization, from meshes of {fine}, {middle} and {coarse} nodes: normal forces within {normal:.1e} N, lateral forces within {lateral:.1e} N"
-            );
-        }
-    }
-    text
+/// The map for people.
+#[derive(Template)]
+#[template(path = "cli/solve.txt")]
+struct Table<'a> {
+    map: &'a ForceMap,
+}
+
+fn in_millimetres(metres: &f64) -> String {
+    format_scaled(*metres, 3)
 }

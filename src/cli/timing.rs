@@ -4,9 +4,9 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use askama::Template;
 use clap::Args;
 
-use super::output::print;
 use super::playback::{limits, loaded_map};
 use super::{CliError, Format};
 use crate::hid::simulated::PAPER;
@@ -38,21 +38,17 @@ pub struct TimingArguments {
 pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
     let loaded = match &arguments.map {
         Some(path) => loaded_map(path)?,
-        None => paper::table().map_err(CliError::Playback)?,
+        None => paper::table().map_err(CliError::Usage)?,
     };
-    let defect = |error: &dyn Display| CliError::Check(format!("timing: {error}"));
-    let table = loaded.table().map_err(|error| defect(&error))?;
+    let table = loaded.table().map_err(defect)?;
     let limits = limits(4.0)?;
     let budget = Duration::from_micros(arguments.budget_us);
     let period = Duration::from_micros(u64::from(PAPER.period_us));
     let device = paper::device(arguments.cycles);
     let paced = arguments.paced.then_some(period);
-    let timing = measure(device, table, limits, arguments.cycles, budget, paced)
-        .map_err(|error| defect(&error))?;
-    print(&match arguments.format {
-        Format::Table => describe(&timing),
-        Format::Json => serde_json::to_string_pretty(&timing).unwrap_or_default() + "\n",
-    })?;
+    let timing = measure(device, table, limits, arguments.cycles, budget, paced);
+    let timing = timing.map_err(defect)?;
+    arguments.format.print(&timing, describe)?;
     if timing.passed {
         return Ok(());
     }
@@ -62,33 +58,18 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
     )))
 }
 
+fn defect(error: impl Display) -> CliError {
+    CliError::Check(format!("timing: {error}"))
+}
+
 /// The figures for people.
+#[derive(Template)]
+#[template(path = "cli/timing.txt")]
+struct Text<'a> {
+    timing: &'a Timing,
+}
+
 fn describe(timing: &Timing) -> String {
-    let pace = match timing.paced {
-        true => "at 1 kHz, with the system's wake-up",
-        false => "as fast as they go",
-    };
-    let cycles = timing.cycles;
-    let mut text = format!("{cycles} cycles on the simulated device, {pace}; times in µs\n");
-    text += &format!(
-        "{:10}{:>10}{:>10}{:>10}{:>10}\n",
-        "", "p50", "p99", "p99.9", "max"
-    );
-    for (name, times) in [
-        ("response", &timing.response_us),
-        ("compute", &timing.compute_us),
-        ("write", &timing.write_us),
-    ] {
-        text += &format!("{name:10}");
-        for time in [times.p50, times.p99, times.p99_9, times.max] {
-            text += &format!("{time:>10.2}");
-        }
-        text.push('\n');
-    }
-    let verdict = if timing.passed { "kept" } else { "broken" };
-    let (share, budget, misses) = (timing.compute_share, timing.budget_us, timing.misses);
-    text + &format!(
-        "compute is {:.1} % of the response\nbudget {budget} µs {verdict}: {misses} missed\n",
-        100.0 * share
-    )
+    // Writing to a String does not fail.
+    Text { timing }.render().unwrap_or_default()
 }

@@ -4,15 +4,15 @@ use serde::Serialize;
 
 use super::comparison::{self, Comparison};
 use super::people::bridge_to;
-use super::quality::{Quality, quality, warnings};
+use super::quality::{Quality, warnings};
 use super::text::{millimetres, name_of_map};
-use super::{ReportError, Settings, Study, paper};
+use super::{Settings, Study, paper, refused};
 use crate::detect::{
-    DetectError, MatchedFilter, auc, error_rates, map_threshold,
+    DetectError, ErrorRates, MatchedFilter, auc, error_rates, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
 };
 use crate::force::Force;
-use crate::force_map::{ForceMap, ForceTable, SAME_POSITION};
+use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::psychophysics::bridge::Bridge;
 use crate::psychophysics::{Analysis, NoiseDecomposition, Table, analyse, paper_noise_levels};
 use crate::refusal::Refusal;
@@ -87,19 +87,8 @@ pub struct MapFindings {
     pub warnings: Vec<String>,
 }
 
-impl MapFindings {
-    /// The three thresholds, in the order of the fields.
-    pub(super) fn thresholds(&self) -> [Option<Threshold>; 3] {
-        [
-            Some(self.map_rule),
-            Some(self.bounded_miss),
-            self.bounded_false_alarm,
-        ]
-    }
-}
-
 /// An extreme of a signal along the lateral sweep.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Peak {
     /// The signed force, N.
     #[serde(rename = "force_n")]
@@ -134,41 +123,40 @@ pub struct Threshold {
 /// Everything that the report says in numbers.
 ///
 /// # Errors
-/// [`ReportError::Map`] if a map is over other poses than the reference, [`ReportError::Detect`] if a setting is
-/// outside its range or a signal overflows, [`ReportError::NotMeasured`] if a measured map was computed.
+/// If a map is over other poses than the reference, a setting is outside its range, a signal overflows, or a measured map was
+/// computed.
 ///
-/// Implements: REP-002, REP-003, REP-004, REP-070.
-pub fn findings(study: &Study) -> Result<Findings, ReportError> {
+/// Implements: REP-002, REP-003, REP-004, REP-006, REP-070.
+pub fn findings(study: &Study) -> Result<Findings, Refusal> {
     let depths = study.reference.depths();
-    let probe_depth = probe_depth(depths);
-    let at_paper_depth = is_paper_depth(probe_depth);
-    let required_gamma =
-        check(&study.settings).map_err(|source| detect_error("settings", source))?;
+    let is_paper_depth = |depth: &f64| (depth - paper::PROBE_DEPTH).abs() <= SAME_POSITION;
+    let quoted = depths.iter().copied().find(is_paper_depth);
+    let deepest = depths.last().copied().unwrap_or(0.0);
+    let probe_depth = quoted.unwrap_or(deepest);
+    let required_gamma = check(&study.settings).map_err(refused("settings"))?;
     let is_computed = |map: &&ForceMap| map.certificate().is_some();
     if let Some(map) = study.measured.iter().find(is_computed) {
-        return Err(ReportError::NotMeasured {
-            name: name_of_map(map),
-        });
+        let name = name_of_map(map);
+        let found = format!("map {name:?} is among the measured maps, but was computed");
+        return Err(Refusal::state(found, ""));
     }
-    let maps = study
-        .maps
-        .iter()
-        .map(|map| of_map(study, map, probe_depth))
-        .collect::<Result<Vec<_>, _>>()?;
+    let maps = study.maps.iter();
+    let maps = maps.map(|map| of_map(study, map, probe_depth));
+    let maps = maps.collect::<Result<Vec<_>, _>>()?;
     let reference = of_reference(&study.reference, probe_depth)?;
     let is_paper_reference = study.reference.phantom().and_then(paper::name_of) == Some("none");
-    let comparable = at_paper_depth && is_paper_reference;
+    let is_comparable = quoted.is_some() && is_paper_reference;
     // Only maps of the paper's phantoms, against the paper's reference, at the paper's depth are compared with it.
-    let compared: &[MapFindings] = if comparable { &maps } else { &[] };
-    let people_error = |source| ReportError::People { source };
-    let table = Table::paper().map_err(|error| ReportError::Table { error })?;
-    let people = analyse(&table).map_err(people_error)?;
-    let noise = paper_noise_levels().map_err(people_error)?;
-    let bridge = bridge_to(&table, study, compared)?;
-    let level = reference.normal_force_at_centre.filter(|_| comparable);
+    let compared: &[MapFindings] = if is_comparable { &maps } else { &[] };
+    let table = Table::paper()?;
+    let people = analyse(&table).map_err(refused("Table 1"))?;
+    let noise = paper_noise_levels().map_err(refused("Table 1"))?;
+    let bridge = bridge_to(&table, study, compared).map_err(refused("Table 1"))?;
+    let level = reference.normal_force_at_centre.filter(|_| is_comparable);
+    let comparison = comparison::table(level, compared, &people, &noise, bridge.as_ref());
     Ok(Findings {
         probe_depth,
-        probe_depth_note: (!at_paper_depth).then(|| {
+        probe_depth_note: quoted.is_none().then(|| {
             format!(
                 "The maps hold no depth of 4 mm, at which the paper quotes its forces: signals are taken at their deepest depth, {} mm, and are not compared with the paper.",
                 millimetres(probe_depth)
@@ -176,7 +164,7 @@ pub fn findings(study: &Study) -> Result<Findings, ReportError> {
         }),
         samples: study.reference.laterals().len(),
         required_gamma,
-        comparison: comparison::table(level, compared, &people, &noise, bridge.as_ref())?,
+        comparison: comparison.map_err(refused("the paper's numbers"))?,
         reference,
         maps,
         people,
@@ -194,85 +182,80 @@ fn check(settings: &Settings) -> Result<f64, DetectError> {
     required_gamma(settings.max_false_alarm, settings.max_miss)
 }
 
-/// The signal F_1 − F_0 of `map` over all poses.
-pub(super) fn signal(study: &Study, map: &ForceMap) -> Result<ForceTable, ReportError> {
-    map.signal(&study.reference).map_err(refused(map))
-}
-
 /// The refusal of a map.
-pub(super) fn refused(map: &ForceMap) -> impl FnOnce(Refusal) -> ReportError {
-    |source| ReportError::Map {
-        name: name_of_map(map),
-        source: source.into(),
-    }
-}
-
-pub(super) fn detect_error(what: &str, source: DetectError) -> ReportError {
-    ReportError::Detect {
-        what: what.into(),
-        source,
-    }
-}
-
-fn is_paper_depth(depth: f64) -> bool {
-    (depth - paper::PROBE_DEPTH).abs() <= SAME_POSITION
-}
-
-/// The paper's depth if the maps hold it, or else the deepest.
-fn probe_depth(depths: &[f64]) -> f64 {
-    let deepest = depths.last().copied().unwrap_or(0.0);
-    depths
-        .iter()
-        .copied()
-        .find(|&depth| is_paper_depth(depth))
-        .unwrap_or(deepest)
-}
-
-fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindings, ReportError> {
+///
+/// Implements: REP-004.
+pub(super) fn incomparable(map: &ForceMap) -> impl FnOnce(Refusal) -> Refusal {
     let name = name_of_map(map);
-    let row = map.row(depth).map_err(refused(map))?;
+    refused(format!(
+        "map {name:?} cannot be compared with the reference"
+    ))
+}
+
+fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindings, Refusal> {
+    let row = map.row(depth).map_err(incomparable(map))?;
     let centre = map.laterals().iter().position(|x| x.abs() <= SAME_POSITION);
     Ok(ReferenceFindings {
-        name,
+        name: name_of_map(map),
         normal_force_at_centre: centre.map(|column| row.normal[column]),
-        quality: quality(map),
+        quality: Quality::of(map),
     })
 }
 
-fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFindings, ReportError> {
-    let name = name_of_map(map);
-    let table = signal(study, map)?;
-    let signal = table.row(depth).map_err(refused(map))?;
-    let settings = &study.settings;
-    let detect = |source| detect_error(&format!("map {name:?}"), source);
-    let gamma = gamma_by_channel(signal, settings.noise_sd).map_err(detect)?;
-    let at = |eta: Result<f64, DetectError>| threshold(gamma.both, eta?);
-    let bounded_false_alarm = match at(neyman_pearson_false_alarm_threshold(
-        gamma.both,
-        settings.max_false_alarm,
-    )) {
-        // Two phantoms that feel the same: there is no threshold to state.
-        Err(DetectError::NoSignal) => None,
-        other => Some(other.map_err(detect)?),
+fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFindings, Refusal> {
+    let signal = map.signal(&study.reference);
+    let signal = signal.map_err(incomparable(map))?;
+    let signal = signal.row(depth).map_err(incomparable(map))?;
+    let found = judged(&study.settings, map, signal);
+    found.map_err(refused(format!("map {:?}", name_of_map(map))))
+}
+
+/// What the detector makes of a map's signal.
+///
+/// Implements: REP-012, REP-013.
+fn judged(
+    settings: &Settings,
+    map: &ForceMap,
+    signal: Force<&[f64]>,
+) -> Result<MapFindings, DetectError> {
+    let Force { lateral, normal } = signal;
+    let zeros = vec![0.0; normal.len()];
+    let gamma = GammaByChannel {
+        both: gamma(lateral, normal, settings.noise_sd)?,
+        normal: gamma(&zeros, normal, settings.noise_sd)?,
+        lateral: gamma(lateral, &zeros, settings.noise_sd)?,
     };
-    let quality = quality(map);
+    let both = gamma.both;
+    let at = |eta: f64| {
+        let ErrorRates { false_alarm, miss } = error_rates(both, eta)?;
+        Ok(Threshold {
+            eta,
+            false_alarm,
+            miss,
+        })
+    };
+    let bounded = neyman_pearson_false_alarm_threshold(both, settings.max_false_alarm);
+    let quality = Quality::of(map);
     let phantom = map.phantom();
+    let depths = phantom.map(|of| of.inclusions.iter().map(|inclusion| inclusion.depth));
     Ok(MapFindings {
+        name: name_of_map(map),
         paper_phantom: phantom.and_then(paper::name_of),
-        inclusion_depth: phantom
-            .and_then(|p| p.inclusions.iter().map(|i| i.depth).reduce(f64::min)),
-        peak_normal: peak(table.laterals(), signal.normal),
-        peak_lateral: peak(table.laterals(), signal.lateral),
-        map_rule: at(map_threshold(settings.prior_h1)).map_err(detect)?,
-        bounded_miss: at(neyman_pearson_miss_threshold(gamma.both, settings.max_miss))
-            .map_err(detect)?,
-        bounded_false_alarm,
-        auc: auc(gamma.both).map_err(detect)?,
-        two_afc: two_afc(gamma.both).map_err(detect)?,
-        warnings: warnings(quality.as_ref(), gamma.both),
+        inclusion_depth: depths.and_then(|depths| depths.reduce(f64::min)),
+        peak_normal: peak(map.laterals(), normal),
+        peak_lateral: peak(map.laterals(), lateral),
         gamma,
+        map_rule: at(map_threshold(settings.prior_h1)?)?,
+        bounded_miss: at(neyman_pearson_miss_threshold(both, settings.max_miss)?)?,
+        bounded_false_alarm: match bounded.and_then(at) {
+            // Two phantoms that feel the same: there is no threshold to state.
+            Err(DetectError::NoSignal) => None,
+            other => Some(other?),
+        },
+        auc: auc(both)?,
+        two_afc: two_afc(both)?,
+        warnings: warnings(quality.as_ref(), both),
         quality,
-        name,
     })
 }
 
@@ -281,44 +264,19 @@ fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFindings, Repo
 /// Implements: REP-011.
 fn peak(laterals: &[f64], forces: &[f64]) -> Peak {
     let poses = laterals.iter().zip(forces);
-    poses
-        .map(|(&lateral, &force)| Peak { force, lateral })
-        .max_by(|a, b| {
-            a.force
-                .abs()
-                .total_cmp(&b.force.abs())
-                .then(b.lateral.abs().total_cmp(&a.lateral.abs()))
-                .then(a.lateral.total_cmp(&b.lateral))
-        })
-        .unwrap_or(Peak {
-            force: 0.0,
-            lateral: 0.0,
-        })
+    let peaks = poses.map(|(&lateral, &force)| Peak { force, lateral });
+    let peak = peaks.max_by(|a, b| {
+        let by_force = a.force.abs().total_cmp(&b.force.abs());
+        by_force
+            .then(b.lateral.abs().total_cmp(&a.lateral.abs()))
+            .then(a.lateral.total_cmp(&b.lateral))
+    });
+    peak.unwrap_or_default()
 }
 
 /// γ of lateral and normal forces in noise of the same standard deviation.
 fn gamma(lateral: &[f64], normal: &[f64], noise_sd: f64) -> Result<f64, DetectError> {
-    let noise_sd = Force::new(noise_sd, noise_sd);
     let template = Force { lateral, normal };
+    let noise_sd = Force::new(noise_sd, noise_sd);
     MatchedFilter::new(template, noise_sd).map(|filter| filter.gamma())
-}
-
-/// Implements: REP-012.
-fn gamma_by_channel(signal: Force<&[f64]>, noise_sd: f64) -> Result<GammaByChannel, DetectError> {
-    let zeros = vec![0.0; signal.normal.len()];
-    Ok(GammaByChannel {
-        both: gamma(signal.lateral, signal.normal, noise_sd)?,
-        normal: gamma(&zeros, signal.normal, noise_sd)?,
-        lateral: gamma(signal.lateral, &zeros, noise_sd)?,
-    })
-}
-
-/// Implements: REP-013.
-fn threshold(gamma: f64, eta: f64) -> Result<Threshold, DetectError> {
-    let rates = error_rates(gamma, eta)?;
-    Ok(Threshold {
-        eta,
-        false_alarm: rates.false_alarm,
-        miss: rates.miss,
-    })
 }

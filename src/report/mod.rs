@@ -60,16 +60,16 @@ pub use findings::{
 pub use html::html;
 use people::normal_approximation;
 pub use quality::{Quality, SMALL_STRAIN_LIMIT};
-pub use summary::{SUMMARY_SCHEMA, SUMMARY_SCHEMA_VERSION, summary_json};
+pub use summary::summary_json;
 pub use text::FileNames;
 
-use crate::detect::DetectError;
+use core::fmt::Display;
+
 use crate::fem::element::CORNERS;
 use crate::fem::mesh::Region;
 use crate::fem::{FemError, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::phantom::Phantom;
-use crate::psychophysics::PsychophysicsError;
 use crate::refusal::Refusal;
 
 /// The version of the program.
@@ -188,51 +188,9 @@ pub struct Figure {
     pub svg: String,
 }
 
-/// Why there is no report.
+/// The refusal of `what` for a reason.
 ///
 /// Implements: REP-004, REP-006.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ReportError {
-    /// A map does not fit the reference.
-    #[error("map {name:?} cannot be compared with the reference: {source}")]
-    Map {
-        /// The name of the map's phantom.
-        name: String,
-        /// What is wrong with it.
-        source: Box<Refusal>,
-    },
-    /// A computed map among the measured ones.
-    #[error("map {name:?} is among the measured maps, but was computed")]
-    NotMeasured {
-        /// The name of the map's phantom.
-        name: String,
-    },
-    /// A setting or a signal that the detector refuses.
-    #[error("{what}: {source}")]
-    Detect {
-        /// What was being computed.
-        what: String,
-        /// Why the detector refused.
-        source: DetectError,
-    },
-    /// Table 1 cannot be set against the maps.
-    #[error("Table 1: {source}")]
-    People {
-        /// Why.
-        source: PsychophysicsError,
-    },
-    /// Table 1 itself cannot be read.
-    #[error("{error}")]
-    Table {
-        /// Why.
-        error: Refusal,
-    },
-    /// A picture could not be drawn.
-    #[error("figure {figure:?}: {problem}")]
-    Drawing {
-        /// The title of the figure.
-        figure: String,
-        /// What the drawing library said.
-        problem: String,
-    },
+fn refused<E: Display>(what: impl Display) -> impl FnOnce(E) -> Refusal {
+    move |reason| Refusal::state(format!("{what}: {reason}"), "")
 }

@@ -70,20 +70,20 @@ pub const PRINTED_MEANS: [[f64; 4]; 3] = [
 #[cfg(test)]
 pub use super::tests::table_1::EXPERIMENTS;
 
+/// A phantom without the names of itself and its layers.
+pub(super) fn unnamed(phantom: &Phantom) -> Phantom {
+    let mut phantom = phantom.clone();
+    phantom.name.clear();
+    let layers = phantom.layers.iter_mut();
+    layers.for_each(|layer| layer.name.clear());
+    phantom
+}
+
 /// Which of the paper's phantoms this is, whatever it and its layers are called: geometry, materials, supports and probe
 /// decide.
 ///
 /// Implements: REP-010.
 pub(super) fn name_of(phantom: &Phantom) -> Option<&'static str> {
-    let unnamed = |phantom: &Phantom| {
-        let mut phantom = phantom.clone();
-        phantom.name.clear();
-        phantom
-            .layers
-            .iter_mut()
-            .for_each(|layer| layer.name.clear());
-        phantom
-    };
     let is_it = |name: &&str| Phantom::builtin(name).is_ok_and(|p| unnamed(&p) == unnamed(phantom));
     BUILTIN_NAMES.into_iter().find(is_it)
 }

@@ -2,22 +2,22 @@
 
 use super::findings::MapFindings;
 use super::text::extremes;
-use super::{ReportError, Study, paper};
+use super::{Study, paper};
 use crate::psychophysics::bridge::{Bridge, bridge};
-use crate::psychophysics::{Analysis, Bounds, Table};
+use crate::psychophysics::{Analysis, Bounds, PsychophysicsError, Table};
 use crate::stats::normal;
 
 /// The bridge from those maps of `study` whose findings are in `compared` to the answers of `table`; `None` with fewer than two.
 ///
 /// # Errors
-/// [`ReportError::People`] if a map is not over the poses of the reference.
+/// If a map is not over the poses of the reference.
 ///
 /// Implements: REP-071.
 pub(super) fn bridge_to(
     table: &Table,
     study: &Study,
     compared: &[MapFindings],
-) -> Result<Option<Bridge>, ReportError> {
+) -> Result<Option<Bridge>, PsychophysicsError> {
     let columns = paper::INCLUSIONS.into_iter().filter_map(|name| {
         let of_map = |map: &MapFindings| map.paper_phantom == Some(name);
         let index = compared.iter().position(of_map)?;
@@ -26,9 +26,9 @@ pub(super) fn bridge_to(
     let columns: Vec<_> = columns.collect();
     // Fewer than two depths say nothing of how rates fall with depth.
     let has_depths = columns.len() >= 2;
-    let bridge = has_depths.then(|| bridge(table, &study.reference, &columns, None));
-    let refused = |source| ReportError::People { source };
-    bridge.transpose().map_err(refused)
+    has_depths
+        .then(|| bridge(table, &study.reference, &columns, None))
+        .transpose()
 }
 
 /// How much wider, at the least and at the most, the intervals by subject are than the exact ones of all answers pooled.

@@ -1,9 +1,10 @@
 //! The certificates of the maps in short, and what a reader must be warned of.
 
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 use super::text::millimetres;
-use crate::force_map::{Discretization, ForceMap};
+use crate::force_map::{Certificate, Discretization, ForceMap};
 
 /// Below this det(I + ∇u) a compressed neighbourhood has lost four fifths of its area, and small-strain
 /// elasticity is far outside its range.
@@ -11,77 +12,65 @@ use crate::force_map::{Discretization, ForceMap};
 /// Implements: REP-015.
 pub const SMALL_STRAIN_LIMIT: f64 = 0.2;
 
-/// The certificate of a computed map, in short.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// The certificate of a computed map; in JSON without what it says of every pose.
+///
+/// Implements: REP-044.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Quality {
-    /// The largest relative residual of the linear solves.
-    pub worst_relative_residual: f64,
-    /// The largest difference between the force on the probe and the reaction of the well, N.
-    #[serde(rename = "worst_force_balance_n")]
-    pub worst_force_balance: f64,
-    /// The largest half band of the discretisation around a normal force, N, where it was estimated.
-    #[serde(rename = "largest_normal_band_n")]
-    pub largest_normal_band: Option<f64>,
-    /// The same of the lateral forces, N.
-    #[serde(rename = "largest_lateral_band_n")]
-    pub largest_lateral_band: Option<f64>,
-    /// The largest depth of a surface node inside the probe, m.
-    #[serde(rename = "largest_penetration_m")]
-    pub largest_penetration: f64,
-    /// The smallest det(I + ∇u) of all poses.
-    pub smallest_det: f64,
-    /// The depth of that pose, m.
-    #[serde(rename = "smallest_det_depth_m")]
-    pub smallest_det_depth: f64,
-    /// The lateral position of that pose, m.
-    #[serde(rename = "smallest_det_lateral_m")]
-    pub smallest_det_lateral: f64,
-    /// The size of the mesh, m.
-    #[serde(rename = "mesh_size_m")]
-    pub mesh_size: f64,
-    /// The number of nodes.
-    pub nodes: usize,
-    /// The element's name.
-    pub element: String,
-    /// The contact law's name.
-    pub contact: String,
+    /// How good the computation was.
+    pub certificate: Certificate,
     /// The version of the program that computed the map.
     pub program_version: String,
 }
 
-pub(super) fn quality(map: &ForceMap) -> Option<Quality> {
-    let certificate = map.certificate()?;
-    let smallest = certificate.smallest_det;
-    let bands = certificate
-        .discretization
-        .as_ref()
-        .map(Discretization::largest);
-    Some(Quality {
-        worst_relative_residual: certificate.worst_relative_residual,
-        worst_force_balance: certificate.worst_force_balance,
-        largest_normal_band: bands.map(|[normal, _]| normal),
-        largest_lateral_band: bands.map(|[_, lateral]| lateral),
-        largest_penetration: certificate.largest_penetration,
-        smallest_det: smallest.det,
-        smallest_det_depth: smallest.depth,
-        smallest_det_lateral: smallest.lateral,
-        mesh_size: certificate.mesh_size,
-        nodes: certificate.nodes,
-        element: certificate.element.clone(),
-        contact: certificate.contact.clone(),
-        program_version: map.program_version().into(),
-    })
+impl Quality {
+    /// What is known of a map; `None` for measured forces.
+    pub(super) fn of(map: &ForceMap) -> Option<Quality> {
+        Some(Quality {
+            certificate: map.certificate()?.clone(),
+            program_version: map.program_version().into(),
+        })
+    }
+
+    /// The largest half bands of the discretisation around a normal and a lateral force, N, where they were estimated.
+    pub fn bands(&self) -> [Option<f64>; 2] {
+        let bands = self.certificate.discretization.as_ref();
+        let bands = bands.map(Discretization::largest);
+        [0, 1].map(|channel| bands.map(|bands| bands[channel]))
+    }
+}
+
+impl Serialize for Quality {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (of, [normal, lateral]) = (&self.certificate, self.bands());
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("worst_relative_residual", &of.worst_relative_residual)?;
+        map.serialize_entry("worst_force_balance_n", &of.worst_force_balance)?;
+        map.serialize_entry("largest_normal_band_n", &normal)?;
+        map.serialize_entry("largest_lateral_band_n", &lateral)?;
+        map.serialize_entry("largest_penetration_m", &of.largest_penetration)?;
+        map.serialize_entry("smallest_det", &of.smallest_det.det)?;
+        map.serialize_entry("smallest_det_depth_m", &of.smallest_det.depth)?;
+        map.serialize_entry("smallest_det_lateral_m", &of.smallest_det.lateral)?;
+        map.serialize_entry("mesh_size_m", &of.mesh_size)?;
+        map.serialize_entry("nodes", &of.nodes)?;
+        map.serialize_entry("element", &of.element)?;
+        map.serialize_entry("contact", &of.contact)?;
+        map.serialize_entry("program_version", &self.program_version)?;
+        map.end()
+    }
 }
 
 /// Implements: REP-014, REP-015.
 pub(super) fn warnings(quality: Option<&Quality>, gamma: f64) -> Vec<String> {
     let mut warnings = Vec::new();
-    if let Some(quality) = quality.filter(|quality| quality.smallest_det < SMALL_STRAIN_LIMIT) {
+    let smallest = quality.map(|quality| quality.certificate.smallest_det);
+    if let Some(smallest) = smallest.filter(|of| of.det < SMALL_STRAIN_LIMIT) {
         warnings.push(format!(
             "Small strain is at its limit: det(I + ∇u) falls to {:.3} at depth {} mm, x = {} mm (below {SMALL_STRAIN_LIMIT}); forces near that pose are the linear model's, not a real gel's.",
-            quality.smallest_det,
-            millimetres(quality.smallest_det_depth),
-            millimetres(quality.smallest_det_lateral),
+            smallest.det,
+            millimetres(smallest.depth),
+            millimetres(smallest.lateral),
         ));
     }
     if gamma == 0.0 {

@@ -2,12 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Findings, Settings, Study};
-
-/// The value of the key `schema`.
-pub const SUMMARY_SCHEMA: &str = "palpate-summary";
-/// The value of the key `schema_version`.
-pub const SUMMARY_SCHEMA_VERSION: u32 = 2;
+use super::{Findings, Settings, Study, VERSION};
 
 /// Implements: REP-050.
 #[derive(Serialize)]
@@ -26,9 +21,9 @@ struct Summary<'a> {
 /// Implements: REP-050, REP-051, REP-005.
 pub fn summary_json(findings: &Findings, study: &Study) -> String {
     let summary = Summary {
-        schema: SUMMARY_SCHEMA,
-        schema_version: SUMMARY_SCHEMA_VERSION,
-        program_version: env!("CARGO_PKG_VERSION"),
+        schema: "palpate-summary",
+        schema_version: 2,
+        program_version: VERSION,
         settings: &study.settings,
         depths_m: study.reference.depths(),
         laterals_m: study.reference.laterals(),

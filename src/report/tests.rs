@@ -25,15 +25,13 @@ fn assert_close(found: f64, expected: f64) {
 // Verifies: REP-001.
 #[test]
 fn settings_default_to_the_paper() {
-    let Settings {
-        max_false_alarm,
-        max_miss,
-        prior_h1,
-        noise_sd,
-    } = Settings::default();
+    let noise_sd = 0.235;
     assert_eq!(
-        [max_false_alarm, max_miss, prior_h1, noise_sd],
-        [0.05, 0.05, 0.5, 0.235]
+        Settings::default(),
+        Settings {
+            noise_sd,
+            ..SETTINGS
+        }
     );
 }
 
@@ -43,26 +41,33 @@ fn numbers_of_a_triangular_signal() {
     let found = findings(&paper_study()).unwrap();
     let map = &found.maps[2];
     assert_eq!(map.name, "6.6");
-    assert_close(map.peak_normal.force, 0.3);
-    assert_eq!(map.peak_normal.lateral, 0.0);
-    assert_close(map.peak_lateral.force, 0.1);
-    assert_eq!(map.peak_lateral.lateral, 5e-3);
     // ΣΔ² is 1.5 · 0.3² normal and 2 · 0.1² lateral, in noise of 0.1 N.
-    assert_close(map.gamma.normal, libm::sqrt(13.5));
-    assert_close(map.gamma.lateral, libm::sqrt(2.0));
-    assert_close(map.gamma.both, libm::sqrt(15.5));
-    assert_eq!(map.map_rule.eta, 0.0);
-    assert_close(map.map_rule.false_alarm, 0.0245051549198494117);
-    assert_close(map.map_rule.miss, 0.0245051549198494117);
-    assert_close(map.bounded_miss.eta, 1.27420479489360891);
-    assert_close(map.bounded_miss.miss, 0.05);
-    assert_close(map.bounded_miss.false_alarm, 0.0109484855667236183);
-    let mirrored = map.bounded_false_alarm.unwrap();
-    assert_close(mirrored.eta, -1.27420479489360891);
-    assert_close(mirrored.false_alarm, 0.05);
-    assert_close(mirrored.miss, 0.0109484855667236183);
-    assert_close(map.auc, 0.997314372939209941);
-    assert_close(map.two_afc, 0.997314372939209941);
+    for (found, expected) in [
+        (map.peak_normal.force, 0.3),
+        (map.peak_normal.lateral, 0.0),
+        (map.peak_lateral.force, 0.1),
+        (map.peak_lateral.lateral, 5e-3),
+        (map.gamma.normal, libm::sqrt(13.5)),
+        (map.gamma.lateral, libm::sqrt(2.0)),
+        (map.gamma.both, libm::sqrt(15.5)),
+        (map.auc, 0.997314372939209941),
+        (map.two_afc, 0.997314372939209941),
+    ] {
+        assert_close(found, expected);
+    }
+    let even = 0.0245051549198494117;
+    assert_threshold(map.map_rule, [0.0, even, even]);
+    let (eta, rare) = (1.27420479489360891, 0.0109484855667236183);
+    assert_threshold(map.bounded_miss, [eta, rare, 0.05]);
+    assert_threshold(map.bounded_false_alarm.unwrap(), [-eta, 0.05, rare]);
+}
+
+/// η, false alarms, misses.
+fn assert_threshold(found: Threshold, expected: [f64; 3]) {
+    let found = [found.eta, found.false_alarm, found.miss];
+    for (found, expected) in found.into_iter().zip(expected) {
+        assert_close(found, expected);
+    }
 }
 
 // Either threshold keeps its own bound: with γ² = 15.5, η = γ²/2 − γΦ⁻¹(0.9) and −γ²/2 + γΦ⁻¹(0.98).
@@ -73,47 +78,42 @@ fn each_bound_has_its_own_threshold() {
     study.settings.max_miss = 0.1;
     study.settings.max_false_alarm = 0.02;
     let map = &findings(&study).unwrap().maps[2];
-    assert_close(map.bounded_miss.eta, 2.7045264409748262);
-    assert_close(map.bounded_miss.miss, 0.1);
-    assert_close(map.bounded_miss.false_alarm, 0.00396010585635342014);
-    let mirrored = map.bounded_false_alarm.unwrap();
-    assert_close(mirrored.eta, 0.335617546779076951);
-    assert_close(mirrored.false_alarm, 0.02);
-    assert_close(mirrored.miss, 0.0298329075387685601);
+    let expected = [2.7045264409748262, 0.00396010585635342014, 0.1];
+    assert_threshold(map.bounded_miss, expected);
+    let expected = [0.335617546779076951, 0.02, 0.0298329075387685601];
+    assert_threshold(map.bounded_false_alarm.unwrap(), expected);
 }
 
 // Verifies: REP-011.
 #[test]
 fn of_equal_peaks_the_one_nearest_to_the_middle_counts() {
-    let mut study = paper_study();
-    // −0.2 N at both ends, 0.2 N at ±5 mm.
-    let normal = |x: f64| {
-        if x.abs() > 7e-3 {
-            -0.2
-        } else {
-            0.2 * x.abs() / 5e-3
-        }
+    let ties = |x: f64| match x.abs() > 7e-3 {
+        true => -0.2,
+        false => 0.2 * x.abs() / 5e-3,
     };
-    study.maps = vec![map_with("ties", normal, |_| 0.0)];
+    let pit = |x: f64| if x == 0.0 { -0.3 } else { 0.2 };
+    let mut study = paper_study();
+    // The first is −0.2 N at both ends, 0.2 N at ±5 mm.
+    study.maps = vec![
+        map_with("ties", ties, |_| 0.0),
+        map_with("pit", pit, |_| 0.0),
+    ];
     let found = findings(&study).unwrap();
-    assert_eq!(found.maps[0].peak_normal.lateral, 5e-3);
-    assert!(found.maps[0].peak_normal.force > 0.0);
-    study.maps = vec![map_with(
-        "pit",
-        |x| if x == 0.0 { -0.3 } else { 0.2 },
-        |_| 0.0,
-    )];
-    assert_close(findings(&study).unwrap().maps[0].peak_normal.force, -0.3);
+    let [ties, pit] = [0, 1].map(|map| found.maps[map].peak_normal);
+    assert!(ties.lateral == 5e-3 && ties.force > 0.0);
+    assert_close(pit.force, -0.3);
 }
 
 fn row<'a>(found: &'a Findings, quantity: &str) -> &'a Comparison {
-    let mut rows = found
-        .comparison
-        .iter()
-        .filter(|row| row.quantity.contains(quantity));
-    let row = rows.next().unwrap_or_else(|| panic!("no row {quantity:?}"));
-    assert!(rows.next().is_none(), "two rows {quantity:?}");
-    row
+    let rows = found.comparison.iter();
+    let rows: Vec<_> = rows.filter(|row| row.quantity.contains(quantity)).collect();
+    assert_eq!(rows.len(), 1, "rows {quantity:?}");
+    rows[0]
+}
+
+fn has_row(found: &Findings, quantity: &str) -> bool {
+    let mut rows = found.comparison.iter();
+    rows.any(|row| row.quantity.contains(quantity))
 }
 
 fn number(value: Value) -> f64 {
@@ -216,35 +216,20 @@ fn rows_without_their_phantom_are_left_out() {
     let found = findings(&study).unwrap();
     let bridge = found.bridge.as_ref().unwrap();
     assert_eq!(bridge.inclusions.len(), 3);
-    assert!(
-        !found
-            .comparison
-            .iter()
-            .any(|row| row.quantity.contains("6.6"))
-    );
+    assert!(!has_row(&found, "6.6"));
     study.maps.truncate(1);
     assert_eq!(findings(&study).unwrap().bridge, None);
     row(&found, "Force level");
     study.maps.clear();
     let found = findings(&study).unwrap();
-    assert!(
-        !found
-            .comparison
-            .iter()
-            .any(|row| row.quantity.contains("Signal F₁"))
-    );
+    assert!(!has_row(&found, "Signal F₁"));
     // Another reference: no number of the paper is about it.
     let mut softer = Phantom::builtin("none").unwrap();
     softer.layers[1].material.youngs_modulus = 4e3;
     let mut study = paper_study();
     study.reference = map(Some(softer), &DEPTHS, |_| 0.0, |_| 0.0);
     let found = findings(&study).unwrap();
-    assert!(
-        !found
-            .comparison
-            .iter()
-            .any(|row| row.quantity.contains("Force level"))
-    );
+    assert!(!has_row(&found, "Force level"));
     assert_eq!(found.bridge, None);
     assert_eq!(found.people.conditions.len(), 3);
 }
@@ -294,18 +279,10 @@ fn without_4_mm_the_deepest_depth_counts_and_is_named() {
     let note = found.probe_depth_note.clone().unwrap();
     assert!(note.contains("3 mm"), "{note}");
     assert_eq!(found.bridge, None);
-    assert!(
-        !found
-            .comparison
-            .iter()
-            .any(|row| row.quantity.contains("Force level"))
-    );
-    let figures = figures(&study, &found).unwrap();
-    assert!(html(&study, &found, &figures).contains(&shown(&note)));
-    let signals = figures
-        .iter()
-        .find(|figure| figure.file_name == "signals.svg");
-    assert!(signals.unwrap().title.contains("3 mm"));
+    assert!(!has_row(&found, "Force level"));
+    let made = made(&study);
+    assert!(made.page.contains(&shown(&note)));
+    assert!(made.figure("signals").title.contains("3 mm"));
 }
 
 // Verifies: REP-002.
@@ -330,11 +307,7 @@ fn a_map_like_the_reference_cannot_be_detected() {
     assert_eq!(map.gamma.both, 0.0);
     assert_eq!(map.bounded_false_alarm, None);
     assert_eq!(map.auc, 0.5);
-    assert!(
-        map.warnings
-            .iter()
-            .any(|warning| warning.contains("nothing can be detected"))
-    );
+    assert!(map.warnings.concat().contains("nothing can be detected"));
 }
 
 // Verifies: REP-015.
@@ -346,47 +319,43 @@ fn a_squeezed_gel_is_warned_of() {
         let found = findings(&study).unwrap();
         let warnings = &found.maps[0].warnings;
         assert_eq!(warnings.len(), warned, "{warnings:?}");
-        if let Some(warning) = warnings.first() {
-            assert!(
-                warning.contains("0.190 at depth 4 mm, x = −5 mm"),
-                "{warning}"
-            );
-        }
+        let place = "0.190 at depth 4 mm, x = −5 mm";
+        assert!(warnings.iter().all(|warning| warning.contains(place)));
     }
 }
 
 // Verifies: REP-004.
 #[test]
 fn what_does_not_fit_is_refused() {
-    let mut study = paper_study();
-    study.maps[1] = map(Phantom::builtin("4.6").ok(), &[0.0, 4e-3], |_| 0.0, |_| 0.0);
-    let error = findings(&study).unwrap_err().to_string();
-    assert!(
-        error.contains("\"4.6\"") && error.contains("depths_m"),
-        "{error}"
-    );
-    type Damage = fn(&mut Settings);
-    let damages: [(Damage, &str); 5] = [
-        (|settings| settings.noise_sd = 0.0, "noise_sd"),
-        (|settings| settings.noise_sd = f64::NAN, "noise_sd"),
-        (|settings| settings.max_miss = 1.0, "max_miss"),
+    let refused = |settings, maps: &[ForceMap], words: &[&str]| {
+        let maps = maps.to_vec();
+        let study = Study {
+            settings,
+            maps,
+            ..paper_study()
+        };
+        let error = findings(&study).unwrap_err().to_string();
+        assert!(words.iter().all(|word| error.contains(word)), "{error}");
+    };
+    let other = map(Phantom::builtin("4.6").ok(), &[0.0, 4e-3], |_| 0.0, |_| 0.0);
+    refused(SETTINGS, &[other], &["\"4.6\"", "depths_m"]);
+    type Damage = fn(&mut Settings) -> &mut f64;
+    let damages: [(Damage, f64, &str); 5] = [
+        (|settings| &mut settings.noise_sd, 0.0, "noise_sd"),
+        (|settings| &mut settings.noise_sd, f64::NAN, "noise_sd"),
+        (|settings| &mut settings.max_miss, 1.0, "max_miss"),
         (
-            |settings| settings.max_false_alarm = f64::NAN,
+            |settings| &mut settings.max_false_alarm,
+            f64::NAN,
             "max_false_alarm",
         ),
-        (|settings| settings.prior_h1 = -0.1, "prior_h1"),
+        (|settings| &mut settings.prior_h1, -0.1, "prior_h1"),
     ];
-    for (damage, word) in damages {
+    for (setting, value, word) in damages {
         let mut settings = SETTINGS;
-        damage(&mut settings);
+        *setting(&mut settings) = value;
         for maps in [paper_study().maps, Vec::new()] {
-            let study = Study {
-                settings,
-                maps,
-                ..paper_study()
-            };
-            let error = findings(&study).unwrap_err().to_string();
-            assert!(error.contains(word), "{error}");
+            refused(settings, &maps, &[word]);
         }
     }
 }

@@ -63,15 +63,6 @@ pub(super) fn shortened(name: &str, most: usize) -> String {
 }
 
 /// Gives out file names that are safe on any system and never the same twice, not even where case is ignored.
-///
-/// ```
-/// use palpate::report::FileNames;
-///
-/// let mut names = FileNames::default();
-/// assert_eq!(names.unique("map", "../6.6 mm", "json"), "map-.._6.6_mm.json");
-/// assert_eq!(names.unique("map", "../6.6_MM", "json"), "map-.._6.6_MM-2.json");
-/// assert_eq!(names.unique("map", "", "json"), "map.json");
-/// ```
 #[derive(Debug, Default)]
 pub struct FileNames {
     used: HashSet<String>,
@@ -84,15 +75,14 @@ impl FileNames {
     pub fn unique(&mut self, prefix: &str, name: &str, extension: &str) -> String {
         let short: String = name.chars().take(40).collect();
         let safe = short.replace(|c: char| !c.is_ascii_alphanumeric() && c != '.', "_");
-        let stem = match &*safe {
-            "" => prefix.to_string(),
-            safe => format!("{prefix}-{safe}"),
-        };
+        let hyphen = if safe.is_empty() { "" } else { "-" };
+        let stem = format!("{prefix}{hyphen}{safe}");
         let mut candidate = format!("{stem}.{extension}");
-        let mut number = 2;
-        while !self.used.insert(candidate.to_ascii_lowercase()) {
+        for number in 2.. {
+            if self.used.insert(candidate.to_ascii_lowercase()) {
+                break;
+            }
             candidate = format!("{stem}-{number}.{extension}");
-            number += 1;
         }
         candidate
     }

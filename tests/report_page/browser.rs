@@ -9,6 +9,9 @@ use std::time::{Duration, Instant};
 
 /// Names of the program on the systems that have it.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+/// What it is told beside the page: to show nothing, to ask nothing, to use no network, and to print what it made of the page.
+const SWITCHES: &str = "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
+    --disable-component-update --disable-sync --allow-file-access-from-files --enable-logging=stderr --dump-dom --hide-scrollbars";
 /// A page takes a second or two; a browser that hangs shall not hang the tests.
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -48,15 +51,13 @@ impl Browser {
     /// If there is none although `PALPATE_REQUIRE_CHROMIUM` is set.
     pub fn find() -> Option<Browser> {
         let path = std::env::var_os("PATH").unwrap_or_default();
-        let found = std::env::split_paths(&path)
-            .flat_map(|folder| NAMES.map(|name| folder.join(name)))
-            .find(|program| program.is_file());
+        let mut programs =
+            std::env::split_paths(&path).flat_map(|folder| NAMES.map(|name| folder.join(name)));
+        let found = programs.find(|program| program.is_file());
         if found.is_none() {
             let notice = "no Chromium is installed: the layout of the report was not checked";
-            assert!(
-                std::env::var_os("PALPATE_REQUIRE_CHROMIUM").is_none(),
-                "{notice}"
-            );
+            let is_required = std::env::var_os("PALPATE_REQUIRE_CHROMIUM").is_some();
+            assert!(!is_required, "{notice}");
             eprintln!("{notice}");
         }
         found.map(|program| Browser { program })
@@ -78,16 +79,11 @@ impl Browser {
         );
         fs::write(&wrapper, markup).unwrap();
         let (dom, log) = self.run(&folder, &wrapper, scheme);
-        let console = log
-            .lines()
-            .filter(|line| line.contains("CONSOLE"))
-            .map(String::from)
-            .collect();
+        let said = log.lines().filter(|line| line.contains("CONSOLE"));
         let result = dom
             .split_once("<pre>")
-            .and_then(|(_, rest)| rest.split_once("</pre>"))
-            .unwrap_or_else(|| panic!("no result: {dom}\n{log}"))
-            .0;
+            .and_then(|(_, rest)| rest.split_once("</pre>"));
+        let (result, _) = result.unwrap_or_else(|| panic!("no result: {dom}\n{log}"));
         // The DOM is printed as markup.
         let result = result
             .replace("&lt;", "<")
@@ -97,17 +93,14 @@ impl Browser {
         let result: serde_json::Value = serde_json::from_str(&result)
             .unwrap_or_else(|error| panic!("{error}: {result:?}\n{log}"));
         let number = |key: &str| result[key].as_u64().unwrap();
-        let faults = result["faults"].as_array().unwrap();
+        let faults = result["faults"].as_array().unwrap().iter();
         Seen {
             width: number("width") as u32,
             is_dark: result["dark"].as_bool().unwrap(),
             figures: number("figures") as usize,
             texts: number("texts") as usize,
-            faults: faults
-                .iter()
-                .map(|fault| fault.as_str().unwrap().into())
-                .collect(),
-            console,
+            faults: faults.map(|fault| fault.as_str().unwrap().into()).collect(),
+            console: said.map(String::from).collect(),
         }
     }
 
@@ -120,24 +113,7 @@ impl Browser {
             Scheme::Light => "--blink-settings=preferredColorScheme=1",
         };
         let mut child = Command::new(&self.program)
-            .args([
-                "--headless",
-                "--no-sandbox",
-                "--disable-gpu",
-                "--disable-quic",
-                "--no-first-run",
-            ])
-            .args([
-                "--disable-background-networking",
-                "--disable-component-update",
-                "--disable-sync",
-            ])
-            .args([
-                "--allow-file-access-from-files",
-                "--enable-logging=stderr",
-                "--dump-dom",
-                "--hide-scrollbars",
-            ])
+            .args(SWITCHES.split(' '))
             .args(["--window-size=1600,1000", dark, &profile])
             .arg(format!("file://{}", page.display()))
             .stdin(Stdio::null())

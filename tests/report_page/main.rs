@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use browser::{Browser, Scheme};
+use browser::{Browser, Scheme, Seen};
 
 /// A phone, a tablet, a screen.
 const WIDTHS: [u32; 3] = [400, 800, 1400];
@@ -23,44 +23,52 @@ fn folder(name: &str) -> PathBuf {
 
 /// Runs the paper's phantoms on a coarse mesh, one more with a long name, and a measured map, and gives the page.
 fn report(folder: &Path) -> PathBuf {
-    let phantom =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/phantom.toml"))
-            .unwrap()
-            .lines()
-            .map(|line| match line.starts_with("name =") {
-                true => format!("name = \"{}\"\n", "a_name_without_any_space_".repeat(3)),
-                false => format!("{line}\n"),
-            })
-            .collect::<String>();
-    fs::write(folder.join("long.toml"), phantom).unwrap();
-    fs::write(
-        folder.join("gel.csv"),
-        "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n\
-         0,0,0,0\n0,5,0,0\n3,0,0.9,0\n3,5,0.8,-0.1\n",
-    )
-    .unwrap();
-    let run = |arguments: &[&str]| {
-        let output = Command::new(env!("CARGO_BIN_EXE_palpate"))
-            .current_dir(folder)
-            .args(arguments)
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{said}");
-    };
-    run(&[
-        "import-map",
-        "gel.csv",
-        "--note",
-        "by hand",
-        "--out",
-        "gel.json",
-    ]);
+    let phantom = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/phantom.toml");
+    let phantom = fs::read_to_string(phantom).unwrap();
+    let name = "a_name_without_any_space_".repeat(3);
+    let lines = phantom
+        .lines()
+        .map(|line| match line.starts_with("name =") {
+            true => format!("name = \"{name}\"\n"),
+            false => format!("{line}\n"),
+        });
+    let long: String = lines.collect();
+    let gel = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n0,0,0,0\n0,5,0,0\n3,0,0.9,0\n3,5,0.8,-0.1\n";
     let config = "phantoms = [\"2.6\", \"4.6\", \"6.6\", \"8.6\", \"long.toml\"]\nmeasured = [\"gel.json\"]\n\
                   laterals_mm = \"-10:10:2\"\n[mesh]\nsize_mm = 2.0\n";
-    fs::write(folder.join("run.toml"), config).unwrap();
-    run(&["run", "--config", "run.toml", "--out", "out"]);
+    for (file, text) in [
+        ("long.toml", &*long),
+        ("gel.csv", gel),
+        ("run.toml", config),
+    ] {
+        fs::write(folder.join(file), text).unwrap();
+    }
+    for arguments in [
+        "import-map gel.csv --note hand --out gel.json",
+        "run --config run.toml --out out",
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+        command.current_dir(folder).args(arguments.split(' '));
+        let output = command.output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+    }
     folder.join("out/report.html")
+}
+
+/// Looks at a page on every device, light and dark, and finds no fault.
+fn looks(browser: &Browser, page: &Path) -> Vec<Seen> {
+    let schemes = [Scheme::Light, Scheme::Dark].into_iter();
+    let looks = schemes.flat_map(|scheme| WIDTHS.map(|width| (scheme, width)));
+    let look = |(scheme, width)| {
+        let seen = browser.look(page, width, scheme);
+        assert_eq!(seen.width, width);
+        assert_eq!(seen.is_dark, scheme == Scheme::Dark);
+        assert!(seen.faults.is_empty(), "{width} px: {:#?}", seen.faults);
+        assert!(seen.console.is_empty(), "{:?}", seen.console);
+        seen
+    };
+    looks.map(look).collect()
 }
 
 // Verifies: REP-064, REP-065.
@@ -72,16 +80,9 @@ fn the_page_fits_phones_and_screens() {
     let here = folder("fits");
     let page = report(&here);
     let figures = fs::read_dir(here.join("out/figures")).unwrap().count();
-    for scheme in [Scheme::Light, Scheme::Dark] {
-        for width in WIDTHS {
-            let seen = browser.look(&page, width, scheme);
-            assert_eq!(seen.width, width);
-            assert_eq!(seen.is_dark, scheme == Scheme::Dark);
-            assert_eq!(seen.figures, figures);
-            assert!(seen.texts > 10 * figures, "{}", seen.texts);
-            assert!(seen.faults.is_empty(), "{width} px: {:#?}", seen.faults);
-            assert!(seen.console.is_empty(), "{:?}", seen.console);
-        }
+    for seen in looks(&browser, &page) {
+        assert_eq!(seen.figures, figures);
+        assert!(seen.texts > 10 * figures, "{}", seen.texts);
     }
 }
 
@@ -95,19 +96,10 @@ fn the_dossier_fits_phones_and_screens() {
     let program = Path::new(env!("CARGO_BIN_EXE_palpate")).with_file_name("palpate-verify");
     assert!(program.exists(), "first: cargo build -p palpate-verify");
     let mut command = Command::new(program);
-    command
-        .args(["--only", "vectors,timing", "--out"])
-        .arg(&here);
-    let output = command.output().unwrap();
+    command.args(["--only", "vectors,timing", "--out"]);
+    let output = command.arg(&here).output().unwrap();
     assert!(output.status.success(), "{output:?}");
-    for scheme in [Scheme::Light, Scheme::Dark] {
-        for width in WIDTHS {
-            let seen = browser.look(&here.join("dossier.html"), width, scheme);
-            assert_eq!(seen.width, width);
-            assert!(seen.faults.is_empty(), "{width} px: {:#?}", seen.faults);
-            assert!(seen.console.is_empty(), "{:?}", seen.console);
-        }
-    }
+    looks(&browser, &here.join("dossier.html"));
 }
 
 /// The same look at pages with planted faults: it must see them.
@@ -133,29 +125,25 @@ fn faults_are_seen() {
             "overlap",
         ),
     ];
+    let page = here.join("page.html");
+    let write = |markup: &str| {
+        let text = format!("<!DOCTYPE html><title>t</title><body>{markup}</body>");
+        fs::write(&page, text).unwrap();
+    };
     for (markup, word) in planted {
-        let page = here.join("page.html");
-        fs::write(
-            &page,
-            format!("<!DOCTYPE html><title>t</title><body>{markup}</body>"),
-        )
-        .unwrap();
+        write(markup);
         for width in WIDTHS {
-            let seen = browser.look(&page, width, Scheme::Light);
-            let found = seen.faults.iter().any(|fault| fault.contains(word));
-            assert!(found, "{markup} at {width} px: {:?}", seen.faults);
+            let faults = browser.look(&page, width, Scheme::Light).faults;
+            let found = faults.iter().any(|fault| fault.contains(word));
+            assert!(found, "{markup} at {width} px: {faults:?}");
         }
     }
-    let page = here.join("page.html");
-    fs::write(
-        &page,
-        "<!DOCTYPE html><title>t</title><script>console.error('planted')</script>",
-    )
-    .unwrap();
+    write("<script>console.error('planted')</script>");
     let seen = browser.look(&page, 400, Scheme::Light);
     assert!(seen.faults.is_empty(), "{:?}", seen.faults);
+    let mut said = seen.console.iter();
     assert!(
-        seen.console.iter().any(|line| line.contains("planted")),
+        said.any(|line| line.contains("planted")),
         "{:?}",
         seen.console
     );

@@ -2,86 +2,74 @@
 
 use askama::Template;
 
-use super::chart::Line;
+use super::chart::{Line, chart};
 use super::people::{DEPTH, SHARE, bar, points, share_panel};
 use super::style::{INK, PALETTE};
-use super::{Draft, Words};
+use super::{Figures, Words};
 use crate::psychophysics::bridge::{
     Bridge, Channel, ConditionBridge, ConventionFit, Offset, Statistic,
 };
+use crate::refusal::Refusal;
 use crate::report::{Findings, Topic, paper, text};
 
 /// The figure, if the study holds the maps for it.
 ///
+/// # Errors
+/// If drawing fails.
+///
 /// Implements: REP-039.
-pub fn draft(found: &Findings) -> Option<Draft> {
-    let bridge = found.bridge.as_ref()?;
-    let condition = bridge.conditions.get(paper::FEM_PLAYBACK)?;
-    let depths: Vec<_> = bridge
-        .inclusions
-        .iter()
-        .filter_map(|of| {
-            let inclusions = &found.people.conditions.get(paper::FEM_PLAYBACK)?.inclusions;
-            let known = inclusions.iter().find(|known| known.name == of.name)?;
-            Some(1e3 * known.depth)
-        })
-        .collect();
-    let panels = [
-        (Offset::Kept, "with the mean of the force"),
-        (Offset::Removed, "without its mean over the sweep"),
-    ]
-    .map(|(offset, words)| {
-        let heading = format!("{SHARE}, {words}");
-        let mut panel = share_panel(&heading, &depths, 270, lines(condition, &depths, offset));
-        if offset == Offset::Kept {
-            panel.key = key();
-        }
-        panel
+pub fn draw(figures: &mut Figures, found: &Findings) -> Result<(), Refusal> {
+    let bridge = found.bridge.as_ref();
+    let played = bridge.and_then(|bridge| bridge.conditions.get(paper::FEM_PLAYBACK));
+    let counted = found.people.conditions.get(paper::FEM_PLAYBACK);
+    let (Some(bridge), Some(condition), Some(counted)) = (bridge, played, counted) else {
+        return Ok(());
+    };
+    let depths = bridge.inclusions.iter().filter_map(|of| {
+        let mut known = counted.inclusions.iter();
+        Some(1e3 * known.find(|known| known.name == of.name)?.depth)
     });
+    let depths: Vec<_> = depths.collect();
+    let panel = |offset, words| {
+        let lines = lines(condition, &depths, offset);
+        share_panel(&format!("{SHARE}, {words}"), &depths, 270, lines)
+    };
+    let mut panels = [
+        panel(Offset::Kept, "with the mean of the force"),
+        panel(Offset::Removed, "without its mean over the sweep"),
+    ];
+    let sample = |colour, name| Line::new(colour, Vec::new()).named(name);
+    panels[0].key = vec![
+        sample(INK, "answers, 95 % by subject").wide(6.0).dotted(5),
+        sample(PALETTE[0], "not rejected"),
+        sample(PALETTE[0], "rejected").dashed(true),
+    ];
     let text = Text { bridge, condition };
-    let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
-    Some(Draft::chart("bridge", Topic::People, words, &panels, DEPTH))
-}
-
-fn key() -> Vec<Line> {
-    vec![
-        Line::new(INK, Vec::new())
-            .wide(6.0)
-            .dotted(5)
-            .named("answers, 95 % by subject"),
-        Line::new(PALETTE[0], Vec::new()).named("not rejected"),
-        Line::new(PALETTE[0], Vec::new()).dashed().named("rejected"),
-    ]
+    let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
+    figures.add(("bridge", ""), Topic::People, words, chart(&panels, DEPTH))
 }
 
 /// The fit by subject that explains the answers better.
 fn predicted(fit: &ConventionFit) -> &[f64] {
     let (plain, lapse) = (&fit.by_subject, &fit.by_subject_with_lapse);
-    if lapse.p_value > plain.p_value {
-        &lapse.predicted
-    } else {
-        &plain.predicted
+    match lapse.p_value > plain.p_value {
+        true => &lapse.predicted,
+        false => &plain.predicted,
     }
 }
 
 /// Predictions of the conventions with one treatment of the mean, and what was observed.
 fn lines(condition: &ConditionBridge, depths: &[f64], offset: Offset) -> Vec<Line> {
-    let fits = condition
-        .conventions
-        .iter()
-        .filter(|fit| fit.convention.offset == offset);
-    let mut lines: Vec<_> = fits
-        .zip(PALETTE)
-        .map(|(fit, colour)| Line {
-            is_dashed: fit.is_rejected,
-            ..Line::new(colour, points(depths, predicted(fit).iter().copied()))
-                .named(short_name(fit))
-        })
-        .collect();
+    let fits = condition.conventions.iter();
+    let fits = fits.filter(|fit| fit.convention.offset == offset);
+    let line = |(fit, colour): (&ConventionFit, _)| {
+        let line = Line::new(colour, points(depths, predicted(fit).iter().copied()));
+        line.dashed(fit.is_rejected).named(short_name(fit))
+    };
+    let mut lines: Vec<_> = fits.zip(PALETTE).map(line).collect();
     for (observed, &depth) in condition.observed.iter().zip(depths) {
-        if let Some(bounds) = observed.clustered_bounds {
-            lines.push(bar(depth, bounds, INK, 6.0));
-        }
+        let bounds = observed.clustered_bounds;
+        lines.extend(bounds.map(|bounds| bar(depth, bounds, INK, 6.0)));
         let dot = Line::new(INK, vec![(depth, 100.0 * observed.rate)]);
         lines.push(dot.wide(0.0).dotted(5));
     }

@@ -28,7 +28,7 @@ const NUMBERS: i32 = 28;
 const FOOTING: i32 = 34;
 
 /// One curve.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Line {
     /// Its name at the right end of the curve; empty for none.
     pub name: String,
@@ -50,13 +50,10 @@ impl Line {
     /// A solid curve two pixels wide, without a name and without dots.
     pub fn new(colour: RGBColor, points: Vec<(f64, f64)>) -> Line {
         Line {
-            name: String::new(),
             colour,
-            is_dashed: false,
-            is_area: false,
             width: 2.0,
-            dot: 0,
             points,
+            ..Line::default()
         }
     }
 
@@ -69,32 +66,27 @@ impl Line {
     }
 
     /// This curve with a name at its right end.
-    pub fn named(self, name: impl Into<String>) -> Line {
-        Line {
-            name: name.into(),
-            ..self
-        }
+    pub fn named(mut self, name: impl Into<String>) -> Line {
+        self.name = name.into();
+        self
     }
 
-    /// This curve in dashes.
-    pub fn dashed(self) -> Line {
-        Line {
-            is_dashed: true,
-            ..self
-        }
+    /// This curve in dashes, if it is to have them.
+    pub fn dashed(mut self, is_dashed: bool) -> Line {
+        self.is_dashed = is_dashed;
+        self
     }
 
     /// This curve `width` pixels wide.
-    pub fn wide(self, width: f64) -> Line {
-        Line { width, ..self }
+    pub fn wide(mut self, width: f64) -> Line {
+        self.width = width;
+        self
     }
 
     /// This curve with a dot of `radius` pixels on each point.
-    pub fn dotted(self, radius: i32) -> Line {
-        Line {
-            dot: radius,
-            ..self
-        }
+    pub fn dotted(mut self, radius: i32) -> Line {
+        self.dot = radius;
+        self
     }
 }
 
@@ -110,6 +102,19 @@ pub struct Mark {
     pub side: HPos,
     /// Shift of the words from the place, pixels, right and down.
     pub shift: (i32, i32),
+}
+
+impl Mark {
+    /// Words at a place, without a dot.
+    pub fn new(at: (f64, f64), words: impl Into<String>, side: HPos, shift: (i32, i32)) -> Mark {
+        Mark {
+            at,
+            has_dot: false,
+            words: words.into(),
+            side,
+            shift,
+        }
+    }
 }
 
 /// Many small areas of one colour, each given by its corners in data coordinates.
@@ -166,17 +171,12 @@ impl Panel {
     /// A drawing with equal scales on both axes that holds all of its areas and has some room above them. What is very
     /// flat or very tall gets more room around it.
     pub fn to_scale(cells: Vec<Cells>, lines: Vec<Line>) -> Panel {
-        let corners = || {
-            let cells = cells.iter().flat_map(|of| of.areas.iter().flatten());
-            cells.chain(
-                lines
-                    .iter()
-                    .filter(|line| line.is_area)
-                    .flat_map(|line| &line.points),
-            )
-        };
-        let mut x = extremes(corners().map(|corner| corner.0)).unwrap_or([-1.0, 1.0]);
-        let mut y = extremes(corners().map(|corner| corner.1)).unwrap_or([-1.0, 1.0]);
+        let areas = lines.iter().filter(|line| line.is_area);
+        let areas = areas.flat_map(|line| &line.points);
+        let corners = cells.iter().flat_map(|of| of.areas.iter().flatten());
+        let corners = corners.chain(areas);
+        let mut x = extremes(corners.clone().map(|corner| corner.0)).unwrap_or([-1.0, 1.0]);
+        let mut y = extremes(corners.map(|corner| corner.1)).unwrap_or([-1.0, 1.0]);
         y[1] += 0.02 * (y[1] - y[0]);
         let width = f64::from(WIDTH - LEFT - right_margin(&lines));
         let lack = |wanted: f64, [from, to]: [f64; 2]| (wanted - (to - from)).max(0.0);

@@ -2,46 +2,43 @@
 
 use askama::Template;
 
-use super::chart::{Line, Panel, round_range};
+use super::chart::{Line, Panel, chart, round_range};
 use super::style::{PALETTE, ramp};
-use super::{Draft, Words};
+use super::{Figures, Words};
 use crate::force_map::{ForceMap, ForceTable, Matrix, Source};
 use crate::phantom::Inclusion;
+use crate::refusal::Refusal;
+use crate::report::findings::incomparable;
 use crate::report::text::{millimetres, shortened};
-use crate::report::{Findings, MapFindings, ReportError, Study, Topic, findings, paper, text};
-
-const LATERAL_POSITION: &str = "Lateral position of the probe x (mm)";
+use crate::report::{Findings, MapFindings, Study, Topic, paper, text};
 
 /// The signals, if there are any, and the forces of every map: computed ones, then the measured ones.
 ///
 /// # Errors
-/// [`ReportError::Map`] if a map does not fit the reference.
+/// If a map does not fit the reference.
 ///
 /// Implements: REP-036.
-pub fn drafts(study: &Study, found: &Findings) -> Result<Vec<Draft>, ReportError> {
-    let draft = |prefix, words, panels: &[Panel]| {
-        Draft::chart(prefix, Topic::Forces, words, panels, LATERAL_POSITION)
+pub fn draw(figures: &mut Figures, study: &Study, found: &Findings) -> Result<(), Refusal> {
+    let mut add = |file: (&str, &str), words: Words<'_>, panels: &[Panel]| {
+        let drawn = chart(panels, "Lateral position of the probe x (mm)");
+        figures.add(file, Topic::Forces, words, drawn)
     };
-    let of_map = |map: &ForceMap, prefix, words| {
-        draft(prefix, words, &force_curves(map.table())).named(text::name_of_map(map))
-    };
-    let mut drafts = Vec::new();
     if !study.maps.is_empty() {
         let text = SignalText { found };
-        let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
-        drafts.push(draft("signals", words, &signals(study, found)?));
+        let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
+        add(("signals", ""), words, &signals(study, found)?)?;
     }
     for map in [&study.reference].into_iter().chain(&study.maps) {
-        let text = ForceText { map };
-        let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
-        drafts.push(of_map(map, "figure-5", words));
+        let (text, name) = (ForceText { map }, text::name_of_map(map));
+        let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
+        add(("figure-5", &name), words, &force_curves(map.table()))?;
     }
     for map in &study.measured {
-        let text = MeasuredText { map };
-        let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
-        drafts.push(of_map(map, "figure-7", words));
+        let (text, name) = (MeasuredText { map }, text::name_of_map(map));
+        let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
+        add(("figure-7", &name), words, &force_curves(map.table()))?;
     }
-    Ok(drafts)
+    Ok(())
 }
 
 /// Lateral positions of the plot's ends, mm. One position alone gets some room.
@@ -95,17 +92,17 @@ fn label(map: &MapFindings) -> String {
 /// F_1 − F_0 of every map at one depth of the probe.
 ///
 /// # Errors
-/// [`ReportError::Map`] if a map does not fit the reference.
-fn signals(study: &Study, found: &Findings) -> Result<[Panel; 2], ReportError> {
+/// If a map does not fit the reference.
+fn signals(study: &Study, found: &Findings) -> Result<[Panel; 2], Refusal> {
     let (mut normal, mut lateral) = (Vec::new(), Vec::new());
     for (k, (map, of_map)) in study.maps.iter().zip(&found.maps).enumerate() {
-        let table = findings::signal(study, map)?;
-        let curve = table
-            .row(found.probe_depth)
-            .map_err(findings::refused(map))?;
-        let line = |forces| Line {
-            is_dashed: (k / PALETTE.len()) % 2 == 1,
-            ..Line::new(PALETTE[k % PALETTE.len()], points(table.laterals(), forces))
+        let table = map.signal(&study.reference);
+        let table = table.map_err(incomparable(map))?;
+        let curve = table.row(found.probe_depth);
+        let curve = curve.map_err(incomparable(map))?;
+        let line = |forces| {
+            Line::new(PALETTE[k % PALETTE.len()], points(table.laterals(), forces))
+                .dashed((k / PALETTE.len()) % 2 == 1)
                 .named(label(of_map))
         };
         normal.push(line(curve.normal));

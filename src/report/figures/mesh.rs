@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use askama::Template;
 
-use super::chart::{Cells, Line, Panel};
+use super::chart::{Cells, Line, Panel, chart};
 use super::setup::{PROBE, in_millimetres, inclusion_key, layer_key, probe, tint};
-use super::{Draft, Words};
+use super::{Figures, Words};
+use crate::refusal::Refusal;
 use crate::report::{DeformedMesh, Topic, paper, text};
 
 #[derive(Template)]
@@ -16,7 +17,7 @@ struct Text<'a> {
 }
 
 /// Figure 6: the mesh to scale, with straight sides between the corners of its elements.
-pub fn draft(mesh: &DeformedMesh) -> Draft {
+pub fn draw(figures: &mut Figures, mesh: &DeformedMesh) -> Result<(), Refusal> {
     let phantom = &mesh.phantom;
     let mut regions: BTreeMap<_, Vec<_>> = BTreeMap::new();
     for (region, corners) in &mesh.elements {
@@ -38,7 +39,7 @@ pub fn draft(mesh: &DeformedMesh) -> Draft {
         _ => Some(inclusion_key("inclusions")),
     });
     let text = Text { mesh };
-    let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
-    let x_name = "Lateral position x (mm)";
-    Draft::chart("figure-6", Topic::Setup, words, &[panel], x_name)
+    let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
+    let drawn = chart(&[panel], "Lateral position x (mm)");
+    figures.add(("figure-6", ""), Topic::Setup, words, drawn)
 }

@@ -18,140 +18,86 @@ mod mesh;
 mod names;
 mod people;
 mod setup;
-mod style;
+pub(super) mod style;
 mod theory;
 
-use super::findings::detect_error;
 use super::text::{FileNames, escape};
-use super::{Figure, Findings, ReportError, Study, Topic};
-use chart::{DrawingResult, Panel, chart};
+use super::{Figure, Findings, Study, Topic, refused};
+use crate::refusal::Refusal;
+use chart::DrawingResult;
+use std::fmt::Display;
 use style::{UNIT, WIDTH};
 
-/// The words around a picture.
-struct Words {
-    title: String,
-    caption: String,
-    alt: String,
+/// The words around a picture: title, caption, and the picture in words.
+type Words<'a> = [&'a dyn Display; 3];
+
+/// The figures so far.
+#[derive(Default)]
+struct Figures {
+    all: Vec<Figure>,
+    names: FileNames,
 }
 
-impl Words {
-    /// From the blocks of a template: title, caption, and the picture in words.
-    fn of(blocks: [&dyn std::fmt::Display; 3]) -> Words {
-        let [title, caption, alt] = blocks.map(|block| block.to_string());
-        Words {
-            title,
-            caption,
-            alt,
-        }
-    }
-
-    /// From a file of three paragraphs: title, caption, and the picture in words.
-    fn read(file: &str) -> Words {
-        let mut paragraphs = file.trim_end().split("\n\n");
-        let [title, caption, alt] = [(); 3].map(|()| paragraphs.next().unwrap_or_default());
-        Words::of([&title, &caption, &alt])
-    }
-}
-
-/// A picture that has no file name yet.
-struct Draft {
-    /// What its file name begins with.
-    prefix: &'static str,
-    /// What its file name goes on with: untrusted, may be empty.
-    name: String,
-    topic: Topic,
-    words: Words,
-    /// The SVG document with any head, and the height of the picture, pixels.
-    drawn: DrawingResult<(String, i32)>,
-}
-
-impl Draft {
-    /// A chart of panels below one another over one x axis.
-    fn chart(prefix: &'static str, topic: Topic, words: Words, panels: &[Panel], x: &str) -> Draft {
-        Draft {
-            prefix,
-            name: String::new(),
-            topic,
-            words,
-            drawn: chart(panels, x),
-        }
-    }
-
-    /// A picture that is the same for every study.
-    fn fixed(prefix: &'static str, topic: Topic, words: &str, svg: &str, height: i32) -> Draft {
-        Draft {
-            prefix,
-            name: String::new(),
-            topic,
-            words: Words::read(words),
-            drawn: Ok((svg.into(), height)),
-        }
-    }
-
-    fn named(self, name: impl Into<String>) -> Draft {
-        Draft {
-            name: name.into(),
-            ..self
-        }
-    }
-
-    fn figure(self, names: &mut FileNames) -> Result<Figure, ReportError> {
-        let file_name = names.unique(self.prefix, &self.name, "svg");
-        let Words {
-            title,
-            caption,
-            alt,
-        } = self.words;
-        let svg = self
-            .drawn
-            .and_then(|drawn| with_head(drawn, &file_name, &title, &alt))
-            .map_err(|problem| ReportError::Drawing {
-                figure: title.clone(),
-                problem: problem.to_string(),
-            })?;
-        Ok(Figure {
+impl Figures {
+    /// Adds a figure with its words: an SVG document with any head, and the height of the picture, pixels. Its file name begins
+    /// with `prefix` and goes on with `name`, which is untrusted and may be empty.
+    fn add(
+        &mut self,
+        (prefix, name): (&str, &str),
+        topic: Topic,
+        words: Words<'_>,
+        drawn: DrawingResult<(String, i32)>,
+    ) -> Result<(), Refusal> {
+        let file_name = self.names.unique(prefix, name, "svg");
+        let [title, caption, alt] = words.map(ToString::to_string);
+        let svg = drawn.and_then(|drawn| with_head(drawn, &file_name, &title, &alt));
+        let svg = svg.map_err(refused(format!("figure {title:?}")))?;
+        self.all.push(Figure {
             file_name,
-            topic: self.topic,
+            topic,
             title,
             caption,
             alt,
             svg,
-        })
+        });
+        Ok(())
+    }
+
+    /// Adds a figure that is the same for every study: its words are in a file, four paragraphs for each.
+    fn add_fixed(
+        &mut self,
+        prefix: &str,
+        topic: Topic,
+        drawn: DrawingResult<(String, i32)>,
+    ) -> Result<(), Refusal> {
+        let file = include_str!("../../../templates/report/words/fixed.txt");
+        let mut words = file.trim_end().split("\n\n");
+        words.find(|paragraph| *paragraph == prefix);
+        let words = [(); 3].map(|()| words.next().unwrap_or_default());
+        let [title, caption, alt] = &words;
+        self.add((prefix, ""), topic, [title, caption, alt], drawn)
     }
 }
 
 /// All figures of a study, in the order of the page.
 ///
 /// # Errors
-/// [`ReportError`] if a map does not fit the reference, or if drawing fails.
+/// If a map does not fit the reference, or if drawing fails.
 ///
 /// Implements: REP-030, REP-031.
-pub fn figures(study: &Study, findings: &Findings) -> Result<Vec<Figure>, ReportError> {
-    let mut drafts = setup::drafts(study);
-    drafts.push(mesh::draft(&study.deformed));
-    drafts.extend(forces::drafts(study, findings)?);
-    drafts.push(Draft::fixed(
-        "figure-2",
-        Topic::Detection,
-        include_str!("../../../templates/report/words/figure-2.txt"),
-        include_str!("figure-2.svg"),
-        560,
-    ));
-    drafts.extend(theory::drafts().map_err(|source| detect_error("figures", source))?);
-    drafts.push(Draft::fixed(
-        "figure-8",
-        Topic::People,
-        include_str!("../../../templates/report/words/figure-8.txt"),
-        include_str!("figure-8.svg"),
-        436,
-    ));
-    drafts.extend(people::drafts(findings));
-    drafts.extend(bridge::draft(findings));
-    let mut names = FileNames::default();
-    drafts
-        .into_iter()
-        .map(|draft| draft.figure(&mut names))
-        .collect()
+pub fn figures(study: &Study, findings: &Findings) -> Result<Vec<Figure>, Refusal> {
+    let mut figures = Figures::default();
+    setup::draw(&mut figures, study)?;
+    mesh::draw(&mut figures, &study.deformed)?;
+    forces::draw(&mut figures, study, findings)?;
+    let fixed = (include_str!("figure-2.svg").into(), 560);
+    figures.add_fixed("figure-2", Topic::Detection, Ok(fixed))?;
+    theory::draw(&mut figures)?;
+    let fixed = (include_str!("figure-8.svg").into(), 436);
+    figures.add_fixed("figure-8", Topic::People, Ok(fixed))?;
+    people::draw(&mut figures, &findings.people)?;
+    bridge::draw(&mut figures, findings)?;
+    Ok(figures.all)
 }
 
 /// The document with a head that scales and that a screen reader can read. The ids come from the file name, which
@@ -173,25 +119,4 @@ fn with_head(
          role=\"img\" aria-labelledby=\"{id}-title {id}-desc\">\n\
          <title id=\"{id}-title\">{title}</title>\n<desc id=\"{id}-desc\">{alt}</desc>{body}"
     ))
-}
-
-/// The ground of every chart, sRGB.
-#[cfg(test)]
-pub(super) fn chart_ground() -> [f64; 3] {
-    [255.0; 3]
-}
-
-/// Every colour of lines and words, sRGB, with the contrast that it needs.
-#[cfg(test)]
-pub(super) fn chart_inks() -> Vec<(String, [f64; 3], f64)> {
-    use plotters::style::RGBColor;
-    let values = |RGBColor(r, g, b): RGBColor| [r, g, b].map(f64::from);
-    let lines = style::PALETTE.into_iter().chain([style::GREY]);
-    let ramp = (0..9).map(|k| style::ramp(k, 9));
-    let mut inks: Vec<_> = lines
-        .chain(ramp)
-        .map(|colour| (format!("{colour:?}"), values(colour), 3.0))
-        .collect();
-    inks.push(("words".into(), values(style::INK), 4.5));
-    inks
 }

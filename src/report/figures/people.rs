@@ -3,15 +3,16 @@
 use askama::Template;
 use plotters::style::RGBColor;
 
-use super::chart::{Line, Panel};
+use super::chart::{Line, Panel, chart};
 use super::style::{GREEN, GREY, INK, PALETTE, VERMILION};
-use super::{Draft, Words};
+use super::{Figures, Words};
 use crate::psychophysics::{
     Analysis, Bounds, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis,
 };
+use crate::refusal::Refusal;
 use crate::report::people::width_ratios;
 use crate::report::text::extremes;
-use crate::report::{Findings, Topic, normal_approximation, text};
+use crate::report::{Topic, normal_approximation, text};
 
 /// What the x axis of all charts over the inclusions shows.
 pub const DEPTH: &str = "Depth of the inclusion (mm)";
@@ -23,7 +24,7 @@ pub fn share_panel(heading: &str, depths: &[f64], height: i32, mut lines: Vec<Li
     let [least, greatest] = extremes(depths.iter().copied()).unwrap_or_default();
     let x = [least - 0.8, greatest + 0.8];
     let chance = vec![(x[0], 50.0), (x[1], 50.0)];
-    lines.insert(0, Line::new(GREY, chance).dashed());
+    lines.insert(0, Line::new(GREY, chance).dashed(true));
     let shares = lines.iter().flat_map(|line| &line.points);
     // Room below pure chance, and the same scale for all experiments of the paper.
     let lowest = shares.map(|point| point.1).fold(40.0, f64::min);
@@ -53,30 +54,47 @@ fn depths(condition: &ConditionAnalysis) -> Vec<f64> {
 
 /// Figures 10 to 13.
 ///
+/// # Errors
+/// If drawing fails.
+///
 /// Implements: REP-037, REP-038.
-pub fn drafts(found: &Findings) -> Vec<Draft> {
-    let files = ["figure-10", "figure-11", "figure-12"];
-    let each = found.people.conditions.iter().zip(files).zip(10..);
-    let mut drafts: Vec<_> = each
-        .map(|((condition, file), number)| subjects(condition, file, number))
-        .collect();
-    drafts.push(comparison(&found.people));
-    drafts
+pub fn draw(figures: &mut Figures, people: &Analysis) -> Result<(), Refusal> {
+    for (of, number) in people.conditions.iter().zip(10..13) {
+        let text = SubjectText { number, of };
+        let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
+        let file = format!("figure-{number}");
+        figures.add(
+            (&file, ""),
+            Topic::People,
+            words,
+            chart(&[subjects(of)], DEPTH),
+        )?;
+    }
+    let text = ComparisonText {
+        conditions: &people.conditions,
+        width_ratios: width_ratios(people),
+    };
+    let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
+    let panel = comparison(&people.conditions);
+    figures.add(
+        ("figure-13", ""),
+        Topic::People,
+        words,
+        chart(&[panel], DEPTH),
+    )
 }
 
 /// Figures 10, 11 and 12: one condition, each subject and the mean.
-fn subjects(condition: &ConditionAnalysis, prefix: &'static str, number: u32) -> Draft {
+fn subjects(condition: &ConditionAnalysis) -> Panel {
     let depths = depths(condition);
     let colours = &PALETTE[..6];
     let of_subject = |colour, points| Line::new(colour, points).wide(1.1).dotted(3);
     let of_mean = |points| Line::new(INK, points).wide(3.2).dotted(5).named("mean");
     let subject = |(k, subject): (usize, &SubjectAnalysis)| {
         let shares = points(&depths, subject.rates.iter().map(|rate| rate.rate));
-        let line = of_subject(colours[k % colours.len()], shares);
-        Line {
-            is_dashed: (k / colours.len()) % 2 == 1,
-            ..line.named(format!("subject {}", subject.name))
-        }
+        of_subject(colours[k % colours.len()], shares)
+            .dashed((k / colours.len()) % 2 == 1)
+            .named(format!("subject {}", subject.name))
     };
     let mut lines: Vec<_> = condition.subjects.iter().enumerate().map(subject).collect();
     let pooled = condition.inclusions.iter().map(|of| of.pooled.rate);
@@ -85,22 +103,16 @@ fn subjects(condition: &ConditionAnalysis, prefix: &'static str, number: u32) ->
     panel.key = vec![
         of_mean(Vec::new()),
         of_subject(colours[0], Vec::new()).named("one subject"),
-        Line::new(GREY, Vec::new()).dashed().named("chance"),
+        Line::new(GREY, Vec::new()).dashed(true).named("chance"),
     ];
-    let text = SubjectText {
-        number,
-        of: condition,
-    };
-    let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
-    Draft::chart(prefix, Topic::People, words, &[panel], DEPTH)
+    panel
 }
 
 /// The colours of the conditions.
 const CONDITIONS: [RGBColor; 3] = [PALETTE[0], VERMILION, GREEN];
 
 /// Figure 13: the conditions side by side, with three kinds of intervals.
-fn comparison(people: &Analysis) -> Draft {
-    let conditions = &people.conditions;
+fn comparison(conditions: &[ConditionAnalysis]) -> Panel {
     let (mut lines, mut key) = (Vec::new(), Vec::new());
     for (k, (condition, colour)) in conditions.iter().zip(CONDITIONS).enumerate() {
         let aside = 0.54 * (k as f64 - 0.5 * (conditions.len() as f64 - 1.0));
@@ -117,14 +129,8 @@ fn comparison(people: &Analysis) -> Draft {
         sample(6.0, "by subject"),
     ]);
     let depths = conditions.first().map_or(Vec::new(), depths);
-    let mut panel = share_panel(SHARE, &depths, 330, lines);
-    panel.key = key;
-    let text = ComparisonText {
-        conditions,
-        width_ratios: width_ratios(people),
-    };
-    let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
-    Draft::chart("figure-13", Topic::People, words, &[panel], DEPTH)
+    let panel = share_panel(SHARE, &depths, 330, lines);
+    Panel { key, ..panel }
 }
 
 /// The three intervals of one condition at one inclusion, about `x`.
@@ -137,9 +143,8 @@ fn bars(inclusion: &InclusionAnalysis, x: f64, colour: RGBColor) -> Vec<Line> {
         bar(x, pooled.clopper_pearson, colour, 2.6),
         share.wide(0.0).dotted(4),
     ];
-    if let Some(clustered) = &inclusion.clustered {
-        bars.push(bar(x + 0.15, clustered.bounds, colour, 6.0));
-    }
+    let clustered = inclusion.clustered.as_ref();
+    bars.extend(clustered.map(|of| bar(x + 0.15, of.bounds, colour, 6.0)));
     bars
 }
 

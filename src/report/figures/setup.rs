@@ -6,12 +6,13 @@ use askama::Template;
 use plotters::style::text_anchor::HPos;
 use plotters::style::{RGBColor, WHITE};
 
-use super::chart::{Line, Mark, Panel};
+use super::chart::{Line, Mark, Panel, chart};
 use super::style::{GREY, INK, text_width};
-use super::{Draft, Words};
+use super::{Figures, Words};
 use crate::fem::Pose;
 use crate::fem::mesh::Region;
 use crate::phantom::{Inclusion, Material, Phantom, Shape, Support};
+use crate::refusal::Refusal;
 use crate::report::text::{millimetres, shortened, trimmed};
 use crate::report::{Study, Topic, paper, text};
 
@@ -90,29 +91,42 @@ pub fn in_millimetres(corners: impl IntoIterator<Item = [f64; 2]>) -> Vec<(f64, 
 
 /// Figure 1 for the phantom of Figure 6, and for each other that differs in more than its inclusions from those before it.
 ///
+/// # Errors
+/// If drawing fails.
+///
 /// Implements: REP-035.
-pub fn drafts(study: &Study) -> Vec<Draft> {
+pub fn draw(figures: &mut Figures, study: &Study) -> Result<(), Refusal> {
     let maps = once(&study.reference).chain(&study.maps);
     let all: Vec<&Phantom> = maps.filter_map(|map| map.phantom()).collect();
     let (full, plain): (Vec<_>, Vec<_>) = all.iter().partition(|p| !p.inclusions.is_empty());
     let mut drawn: Vec<&Phantom> = Vec::new();
     for phantom in once(&study.deformed.phantom).chain(full).chain(plain) {
-        if !drawn.iter().any(|other| alike(other, phantom)) {
-            drawn.push(phantom);
+        if drawn.iter().any(|other| alike(other, phantom)) {
+            continue;
         }
+        let text = Text {
+            phantom,
+            others: others(phantom, &all),
+            is_named: !drawn.is_empty(),
+        };
+        let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
+        let name = if text.is_named { &*phantom.name } else { "" };
+        let width = millimetres(phantom.well.width);
+        let x_name = format!("Lateral position x (mm); the well is {width} mm wide");
+        let picture = chart(&[panel(phantom, &text.others)], &x_name);
+        figures.add(("figure-1", name), Topic::Setup, words, picture)?;
+        drawn.push(phantom);
     }
-    let draft = |(k, phantom): (usize, &&Phantom)| draft(phantom, &others(phantom, &all), k > 0);
-    drawn.iter().enumerate().map(draft).collect()
+    Ok(())
 }
 
 /// Whether two phantoms differ in names and inclusions alone.
 fn alike(a: &Phantom, b: &Phantom) -> bool {
-    let layers = |p: &Phantom| -> Vec<_> {
-        let each = p.layers.iter();
-        each.map(|layer| (layer.thickness, layer.material))
-            .collect()
-    };
-    (a.well, a.probe, layers(a)) == (b.well, b.probe, layers(b))
+    let [a, b] = [a, b].map(|phantom| Phantom {
+        inclusions: Vec::new(),
+        ..paper::unnamed(phantom)
+    });
+    a == b
 }
 
 /// Inclusions of phantoms that differ from this one in nothing else.
@@ -128,13 +142,14 @@ fn others<'a>(phantom: &Phantom, all: &[&'a Phantom]) -> Vec<&'a Inclusion> {
     others
 }
 
-fn draft(phantom: &Phantom, others: &[&Inclusion], is_named: bool) -> Draft {
+/// The phantom and the probe to scale, and in dashes the inclusions of others.
+fn panel(phantom: &Phantom, others: &[&Inclusion]) -> Panel {
     let mut lines = well(phantom);
     let outline = |inclusion: &Inclusion| in_millimetres(inclusion.outline().chords(CHORDS));
     lines.extend(others.iter().map(|other| {
         let mut corners = outline(other);
         corners.extend(corners.first().copied());
-        Line::new(INK, corners).wide(1.2).dashed()
+        Line::new(INK, corners).wide(1.2).dashed(true)
     }));
     let own = phantom.inclusions.iter();
     let all = own.clone().chain(others.iter().copied());
@@ -145,21 +160,12 @@ fn draft(phantom: &Phantom, others: &[&Inclusion], is_named: bool) -> Draft {
         lateral: 0.0,
     };
     lines.push(probe(phantom, pose));
-    let mut panel = Panel::to_scale(Vec::new(), lines);
-    panel.marks = numbers(phantom, panel.x[1] - panel.x[0]);
-    panel.key = key(phantom);
-    let x_name = format!(
-        "Lateral position x (mm); the well is {} mm wide",
-        millimetres(phantom.well.width)
-    );
-    let name = if is_named { &*phantom.name } else { "" };
-    let text = Text {
-        phantom,
-        has_others: !others.is_empty(),
-        is_named,
-    };
-    let words = Words::of([&text.as_title(), &text.as_caption(), &text.as_alt()]);
-    Draft::chart("figure-1", Topic::Setup, words, &[panel], &x_name).named(name)
+    let panel = Panel::to_scale(Vec::new(), lines);
+    Panel {
+        marks: numbers(phantom, panel.x[1] - panel.x[0]),
+        key: key(phantom),
+        ..panel
+    }
 }
 
 /// What is fixed is held by a block, what slides stands on rollers, and what is free has nothing at it; then the layers.
@@ -212,7 +218,7 @@ fn depths<'a>(phantom: &'a Phantom, mut all: Vec<&'a Inclusion>) -> Vec<Line> {
         let top = corners.into_iter().max_by(|a, b| a[1].total_cmp(&b[1]));
         let [x, y] = top.unwrap_or_default();
         let line = Line::new(GREY, in_millimetres([[x, y], [edge, y]]));
-        line.wide(1.2).dashed().named(label(inclusion))
+        line.wide(1.2).dashed(true).named(label(inclusion))
     };
     all.into_iter().map(line).collect()
 }
@@ -227,13 +233,8 @@ fn numbers(phantom: &Phantom, width: f64) -> Vec<Mark> {
         let words = (k + 1).to_string();
         let has_room = pixels * (right - left) > f64::from(text_width(&words)) + 2.0
             && pixels * (top - bottom) > 16.0;
-        has_room.then_some(Mark {
-            at: (0.5 * (left + right), 0.5 * (bottom + top)),
-            has_dot: false,
-            words,
-            side: HPos::Center,
-            shift: (0, 0),
-        })
+        let at = (0.5 * (left + right), 0.5 * (bottom + top));
+        has_room.then(|| Mark::new(at, words, HPos::Center, (0, 0)))
     };
     let several = all.iter().enumerate().filter(|_| all.len() > 1);
     several.filter_map(number).collect()
@@ -312,23 +313,6 @@ fn name(phantom: &Phantom, k: usize) -> String {
     }
 }
 
-/// Shape and place of an inclusion.
-fn describe(inclusion: &Inclusion) -> String {
-    let shape = match &inclusion.shape {
-        Shape::Disc { diameter } => format!("a disc of {} mm diameter", millimetres(*diameter)),
-        Shape::Ellipse { angle_deg, .. } => {
-            let angle = trimmed(*angle_deg, 3);
-            format!("an ellipse of {}, turned by {angle}°", size(inclusion))
-        }
-        Shape::Polygon { points } => {
-            format!("a polygon of {} corners, {}", points.len(), size(inclusion))
-        }
-    };
-    let depth = millimetres(inclusion.depth);
-    let place = middle(inclusion).map_or(String::new(), |x| format!(", its middle at {x}"));
-    format!("{shape}{place}, its top {depth} mm below the surface")
-}
-
 /// The first of many items, and how many more there are.
 fn first(mut items: Vec<String>) -> Vec<String> {
     let count = items.len();
@@ -343,25 +327,11 @@ fn first(mut items: Vec<String>) -> Vec<String> {
 #[template(path = "report/words/figure-1.txt", blocks = ["title", "caption", "alt"])]
 struct Text<'a> {
     phantom: &'a Phantom,
-    has_others: bool,
+    others: Vec<&'a Inclusion>,
     is_named: bool,
 }
 
 impl Text<'_> {
-    /// The inclusions.
-    fn inside(&self) -> String {
-        let inside = self.phantom.inclusions.iter().map(describe);
-        match self.phantom.inclusions.len() {
-            0 => "The phantom holds no inclusion.".into(),
-            1 => format!("Its inclusion is filled: {}.", inside.collect::<String>()),
-            _ => {
-                let inside = inside.zip(1..).map(|(words, k)| format!("{k}: {words}"));
-                let inside = first(inside.collect()).join("; ");
-                format!("Its inclusions are filled and numbered: {inside}.")
-            }
-        }
-    }
-
     /// Names and thicknesses of the layers.
     fn layers(&self) -> String {
         let layers = self.phantom.layers.iter();
@@ -382,8 +352,10 @@ impl Text<'_> {
 
 /// A name and a value, told apart.
 fn named(name: &str, value: &str) -> String {
-    match name.ends_with(|c: char| c.is_numeric()) {
-        true => format!("{name}: {value}"),
-        false => format!("{name} {value}"),
-    }
+    let colon = if name.ends_with(char::is_numeric) {
+        ":"
+    } else {
+        ""
+    };
+    format!("{name}{colon} {value}")
 }

@@ -2,12 +2,13 @@
 
 use plotters::style::text_anchor::HPos;
 
-use super::chart::{Line, Mark, Panel};
+use super::Figures;
+use super::chart::{Line, Mark, Panel, chart};
 use super::style::{BLUE, GREY, INK, PALETTE, VERMILION};
-use super::{Draft, Words};
 use crate::detect::{DetectError, gamma_from_two_afc, required_gamma, roc_miss, two_afc};
+use crate::refusal::Refusal;
 use crate::report::text::{fixed, percent};
-use crate::report::{Topic, paper};
+use crate::report::{Topic, paper, refused};
 use crate::stats::normal;
 
 /// `count` + 1 evenly spaced numbers.
@@ -15,50 +16,23 @@ fn steps(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
     (0..=count).map(move |k| from + (to - from) * k as f64 / count as f64)
 }
 
-fn words(at: (f64, f64), words: impl Into<String>, side: HPos, shift: (i32, i32)) -> Mark {
-    Mark {
-        at,
-        has_dot: false,
-        words: words.into(),
-        side,
-        shift,
-    }
-}
-
 /// Figures 3, 4 and 9.
 ///
 /// # Errors
 /// Never for the γ that are drawn; the detector's refusal is passed on all the same.
-pub fn drafts() -> Result<[Draft; 3], DetectError> {
-    let draft = |prefix, words, panel: Panel, x_name| {
-        Draft::chart(
-            prefix,
-            Topic::Detection,
-            Words::read(words),
-            &[panel],
-            x_name,
-        )
-    };
-    Ok([
-        draft(
-            "figure-3",
-            include_str!("../../../templates/report/words/figure-3.txt"),
-            densities(),
-            "Statistic θ",
-        ),
-        draft(
-            "figure-4",
-            include_str!("../../../templates/report/words/figure-4.txt"),
-            roc()?,
-            "False alarms Pr(e | H = 0)",
-        ),
-        draft(
-            "figure-9",
-            include_str!("../../../templates/report/words/figure-9.txt"),
-            pairs()?,
-            "Signal-to-noise ratio γ",
-        ),
-    ])
+pub fn draw(figures: &mut Figures) -> Result<(), Refusal> {
+    let (roc, pairs) = (
+        roc().map_err(refused("figures"))?,
+        pairs().map_err(refused("figures"))?,
+    );
+    for (prefix, panel, x_name) in [
+        ("figure-3", densities(), "Statistic θ"),
+        ("figure-4", roc, "False alarms Pr(e | H = 0)"),
+        ("figure-9", pairs, "Signal-to-noise ratio γ"),
+    ] {
+        figures.add_fixed(prefix, Topic::Detection, chart(&[panel], x_name))?;
+    }
+    Ok(())
 }
 
 /// Figure 3: the densities of Θ under both hypotheses.
@@ -71,17 +45,24 @@ fn densities() -> Panel {
             let density =
                 |theta: f64| normal::density((theta - mean) / gamma).unwrap_or(0.0) / gamma;
             let points = steps(-14.0, 14.0, 140).map(|x| (x, density(x)));
-            lines.push(Line {
-                is_dashed: sign < 0.0,
-                ..Line::new(colour, points.collect())
-            });
+            lines.push(Line::new(colour, points.collect()).dashed(sign < 0.0));
             let side = if sign < 0.0 { HPos::Right } else { HPos::Left };
             let (at, shift) = ((mean, density(mean)), (sign as i32 * 7, -9));
-            marks.push(words(at, format!("γ = {gamma}"), side, shift));
+            marks.push(Mark::new(at, format!("γ = {gamma}"), side, shift));
         }
     }
-    marks.push(words((-14.0, 0.45), "H = 0 (dashed)", HPos::Left, (10, 16)));
-    marks.push(words((14.0, 0.45), "H = 1 (solid)", HPos::Right, (-10, 16)));
+    marks.push(Mark::new(
+        (-14.0, 0.45),
+        "H = 0 (dashed)",
+        HPos::Left,
+        (10, 16),
+    ));
+    marks.push(Mark::new(
+        (14.0, 0.45),
+        "H = 1 (solid)",
+        HPos::Right,
+        (-10, 16),
+    ));
     let heading = "Probability density of the statistic Θ";
     Panel {
         marks,
@@ -90,9 +71,6 @@ fn densities() -> Panel {
 }
 
 /// Figure 4: misses against false alarms.
-///
-/// # Errors
-/// Never for these γ; the detector's refusal is passed on all the same.
 fn roc() -> Result<Panel, DetectError> {
     let (alarms, misses) = (paper::MAX_FALSE_ALARM, paper::MAX_MISS);
     let needed = required_gamma(alarms, misses)?;
@@ -102,7 +80,7 @@ fn roc() -> Result<Panel, DetectError> {
     ];
     let dot = |at, name: &str| Mark {
         has_dot: true,
-        ..words(at, name, HPos::Left, (25, 0))
+        ..Mark::new(at, name, HPos::Left, (25, 0))
     };
     let mut marks = vec![dot((alarms, misses), ""), dot((0.64, 0.66), "5 % of each")];
     for (k, (gamma, colour)) in [1.0, 2.0, 3.0, needed].into_iter().zip(PALETTE).enumerate() {
@@ -114,7 +92,7 @@ fn roc() -> Result<Panel, DetectError> {
         let height = 0.94 - 0.07 * k as f64;
         lines.push(Line::new(colour, vec![(0.60, height), (0.68, height)]));
         let name = format!("γ = {}", fixed(gamma, digits));
-        marks.push(words((0.70, height), name, HPos::Left, (0, 0)));
+        marks.push(Mark::new((0.70, height), name, HPos::Left, (0, 0)));
     }
     Ok(Panel {
         marks,
@@ -123,9 +101,6 @@ fn roc() -> Result<Panel, DetectError> {
 }
 
 /// Figure 9: right answers in pairs, with the paper's reading of it.
-///
-/// # Errors
-/// Never for these γ; the detector's refusal is passed on all the same.
 fn pairs() -> Result<Panel, DetectError> {
     let curve = steps(0.0, 5.0, 200).map(|gamma| Ok((gamma, two_afc(gamma)?)));
     let (counted, printed) = (paper::ACCURACY_6_6, paper::GAMMA_OF_ACCURACY);
@@ -135,15 +110,15 @@ fn pairs() -> Result<Panel, DetectError> {
     let read = vec![(printed, at_printed), (printed, 0.5)];
     let lines = vec![
         Line::new(INK, curve.collect::<Result<_, _>>()?),
-        Line::new(BLUE, found).dashed(),
-        Line::new(VERMILION, read).dashed(),
+        Line::new(BLUE, found).dashed(true),
+        Line::new(VERMILION, read).dashed(true),
     ];
     let true_words = format!("true: γ = {}", fixed(gamma, 3));
     let printed_words = format!("paper: γ = {printed}, there {}", percent(at_printed));
     let marks = vec![
-        words((0.0, counted), "84 %", HPos::Left, (8, -12)),
-        words((gamma, 0.53), true_words, HPos::Right, (-7, 0)),
-        words((printed, 0.53), printed_words, HPos::Left, (7, 0)),
+        Mark::new((0.0, counted), "84 %", HPos::Left, (8, -12)),
+        Mark::new((gamma, 0.53), true_words, HPos::Right, (-7, 0)),
+        Mark::new((printed, 0.53), printed_words, HPos::Left, (7, 0)),
     ];
     let heading = "Probability of choosing the right one of a pair";
     Ok(Panel {

@@ -5,10 +5,14 @@
 
 pub mod table;
 
+use core::iter::once;
+
 use askama::Template;
 
 use super::text::{escape, printable};
-use super::{Comparison, Figure, Findings, Quality, Settings, Study, Topic, Value, paper, text};
+use super::{
+    Comparison, Figure, Findings, MapFindings, Quality, Settings, Study, Topic, Value, paper, text,
+};
 use crate::psychophysics::bridge::WeightRange;
 
 /// How the page looks.
@@ -65,52 +69,31 @@ pub fn section(id: &str, heading: &str, markup: &str) -> String {
 impl Page<'_> {
     /// All figures of a topic, in their order.
     fn figures(&self, topic: Topic) -> impl Iterator<Item = &Figure> {
-        self.figures
-            .iter()
-            .filter(move |figure| figure.topic == topic)
+        let figures = self.figures.iter();
+        figures.filter(move |figure| figure.topic == topic)
     }
 
     /// The number of maps whose signal is strong enough for both error rates.
     fn detected(&self) -> usize {
         let maps = self.found.maps.iter();
-        maps.filter(|map| map.gamma.both >= self.found.required_gamma)
-            .count()
+        let is_detected = |map: &&MapFindings| map.gamma.both >= self.found.required_gamma;
+        maps.filter(is_detected).count()
     }
 
     /// The least and the largest peak of the normal signals, N.
     fn peaks(&self) -> Option<[f64; 2]> {
-        let peaks = self
-            .found
-            .maps
-            .iter()
-            .map(|map| map.peak_normal.force.abs());
-        text::extremes(peaks)
+        let maps = self.found.maps.iter();
+        text::extremes(maps.map(|map| map.peak_normal.force.abs()))
     }
 
-    /// What the subjects' answers to FEM playback do with the force that they used.
-    fn felt(&self) -> Option<&'static str> {
+    /// Whether the whole level of the normal force explains the answers to FEM playback worst over every sweep, and whether they
+    /// reject it over every one.
+    fn felt(&self) -> Option<(bool, bool)> {
         let bridge = self.found.bridge.as_ref()?;
         let weights = &bridge.conditions.get(paper::FEM_PLAYBACK)?.weights;
-        if weights.is_empty() {
-            return None;
-        }
         let is_worst = weights.iter().all(WeightRange::level_fits_worst);
-        Some(
-            match (is_worst, weights.iter().all(|of| of.left.upper < 1.0)) {
-                (true, true) => {
-                    "are explained worst by the whole level of the normal force, whose peak the paper's noise estimate rests on, \
-                 and reject it, however far the subjects swept"
-                }
-                (true, false) => {
-                    "are explained worst by the whole level of the normal force, whose peak the paper's noise estimate rests on, \
-                 however far the subjects swept, but do not reject it over every sweep"
-                }
-                (false, _) => {
-                    "do not tell whether subjects feel the level of the normal force or its change along the sweep: that depends \
-                 on how far they swept"
-                }
-            },
-        )
+        let is_rejected = weights.iter().all(|of| of.left.upper < 1.0);
+        (!weights.is_empty()).then_some((is_worst, is_rejected))
     }
 
     /// The noise that explains the answers to FEM playback at 6.6 mm by the peak signal: ours beside the paper's.
@@ -123,57 +106,26 @@ impl Page<'_> {
     fn certificates(&self) -> impl Iterator<Item = (&String, Option<&Quality>)> {
         let reference = &self.found.reference;
         let maps = self.found.maps.iter();
-        [(&reference.name, reference.quality.as_ref())]
-            .into_iter()
-            .chain(maps.map(|map| (&map.name, map.quality.as_ref())))
+        let maps = maps.map(|map| (&map.name, map.quality.as_ref()));
+        once((&reference.name, reference.quality.as_ref())).chain(maps)
     }
 }
 
-/// Which rows of [`paper::NOISE_SOURCES`] add up in an experiment.
-struct NoiseChain {
-    name: &'static str,
-    sources: &'static [usize],
-    /// The sum that the paper prints, N.
-    printed: Option<f64>,
-}
-
-const NOISE_CHAINS: [NoiseChain; 3] = [
-    NoiseChain {
-        name: "FEM playback",
-        sources: &[1, 2, 4],
-        printed: Some(paper::PLAYBACK_NOISE),
-    },
-    NoiseChain {
-        name: "Measured playback",
-        sources: &[0, 1, 2, 4],
-        printed: None,
-    },
-    NoiseChain {
-        name: "Direct contact",
-        sources: &[3, 4],
-        printed: Some(paper::DIRECT_CONTACT_NOISE),
-    },
+/// The experiments: name, which rows of [`paper::NOISE_SOURCES`] add up, and the sum that the paper prints, N.
+const NOISE_CHAINS: [(&str, &[usize], Option<f64>); 3] = [
+    ("FEM playback", &[1, 2, 4], Some(paper::PLAYBACK_NOISE)),
+    ("Measured playback", &[0, 1, 2, 4], None),
+    ("Direct contact", &[3, 4], Some(paper::DIRECT_CONTACT_NOISE)),
 ];
 
-impl NoiseChain {
-    fn variance(&self) -> f64 {
-        self.sources.iter().map(|&k| variance(k)).sum()
-    }
-
-    /// The standard deviation of the sum, N.
-    fn total(&self) -> f64 {
-        libm::sqrt(self.variance())
-    }
-
-    /// The share of a source in the variance, if it belongs to the experiment.
-    fn share(&self, source: usize) -> Option<f64> {
-        let belongs = self.sources.contains(&source);
-        belongs.then(|| variance(source) / self.variance())
-    }
+/// The variance of the sum of some rows of [`paper::NOISE_SOURCES`], N².
+fn variance(sources: &[usize]) -> f64 {
+    let sds = sources.iter().map(|&k| paper::NOISE_SOURCES[k].1);
+    sds.map(|sd| sd * sd).sum()
 }
 
-/// The variance of a row of [`paper::NOISE_SOURCES`], N².
-fn variance(source: usize) -> f64 {
-    let sd = paper::NOISE_SOURCES[source].1;
-    sd * sd
+/// The share of a source in the variance of the sum of some, if it belongs to them.
+fn share(sources: &[usize], source: usize) -> Option<f64> {
+    let belongs = sources.contains(&source);
+    belongs.then(|| variance(&[source]) / variance(sources))
 }

@@ -1,55 +1,30 @@
 //! The page as a document: headings, tables, contrast, print.
 
 use super::study::*;
-use super::{findings, html};
 use crate::phantom::Phantom;
-use crate::report::figures::{chart_ground, chart_inks};
+use crate::report::Study;
+use crate::report::figures::style::{GREY, INK, PALETTE, ramp};
 use crate::report::html::STYLE;
-use crate::report::{Study, figures};
-
-fn page(study: &Study) -> String {
-    let found = findings(study).unwrap();
-    let drawn = figures(study, &found).unwrap();
-    html(study, &found, &drawn)
-}
 
 // Verifies: REP-060, REP-066.
 #[test]
 fn headings_go_down_by_one_and_contents_lead_to_sections() {
     for study in [paper_study(), hostile_study()] {
-        let page = page(&study);
+        let page = made(&study).page;
         assert!(page.contains("<html lang=\"en\">"));
+        let digit = |tag: &str| tag.chars().next().and_then(|c| c.to_digit(10));
         let mut last = 0;
-        for (place, _) in page.match_indices("<h") {
-            let Some(level) = page[place + 2..]
-                .chars()
-                .next()
-                .and_then(|c| c.to_digit(10))
-            else {
-                continue;
-            };
-            assert!(
-                level <= last + 1,
-                "h{level} after h{last}: {}",
-                &page[place..place + 60]
-            );
+        for level in page.split("<h").skip(1).filter_map(digit) {
+            assert!(level <= last + 1, "h{level} after h{last}");
             assert!(level > 1 || last == 0, "a second h1");
             last = level;
         }
         let short = page.find("id=\"short\"").unwrap();
         assert!(short < page.find("<nav").unwrap());
-        let cards = page[short..]
-            .split_once("</ul>")
-            .unwrap()
-            .0
-            .matches("<li>")
-            .count();
+        let cards = between(&page[short..], "", "</ul>").matches("<li>").count();
         assert!((1..=5).contains(&cards), "{cards}");
-        let links: Vec<_> = page
-            .split("href=\"#")
-            .skip(1)
-            .map(|rest| rest.split_once('"').unwrap().0)
-            .collect();
+        let links = page.split("href=\"#").skip(1);
+        let links: Vec<_> = links.map(|rest| between(rest, "", "\"")).collect();
         assert!(links.len() >= 8);
         for link in links {
             assert_eq!(
@@ -64,24 +39,15 @@ fn headings_go_down_by_one_and_contents_lead_to_sections() {
 // Verifies: REP-061.
 #[test]
 fn tables_have_captions_and_scopes() {
-    let page = page(&paper_study());
+    let page = made(&paper_study()).page;
     let tables: Vec<_> = page.split("<table").skip(1).collect();
     assert!(tables.len() >= 8, "{}", tables.len());
     for table in tables {
-        let table = table.split_once("</table>").unwrap().0;
-        let caption = table
-            .split_once("<caption>")
-            .unwrap()
-            .1
-            .split_once("</caption>")
-            .unwrap()
-            .0;
+        let table = between(table, "", "</table>");
+        let caption = between(table, "<caption>", "</caption>");
         assert!(caption.len() > 40, "{caption}");
-        for head in table
-            .split("<th")
-            .skip(1)
-            .filter(|head| !head.starts_with("ead"))
-        {
+        let heads = table.split("<th").skip(1);
+        for head in heads.filter(|head| !head.starts_with("ead")) {
             assert!(head.starts_with(" scope=\""), "{head}");
         }
     }
@@ -91,62 +57,58 @@ fn tables_have_captions_and_scopes() {
 // Verifies: REP-036, REP-062, REP-063, REP-071.
 #[test]
 fn the_papers_tables_are_there() {
-    let page = page(&paper_study());
-    let table = |id: &str| {
-        let start = page.find(&format!("<div id=\"{id}\">")).unwrap();
-        page[start..].split_once("</table>").unwrap().0.to_string()
-    };
+    let page = made(&paper_study()).page;
+    let table = |id: &str| between(&page, &format!("<div id=\"{id}\">"), "</table>");
     let first = table("table-1");
-    for row in [
-        ">1</th><td class=\"number\">30</td><td class=\"number\">28</td><td class=\"number\">27</td><td class=\"number\">27</td>",
-        ">7</th><td class=\"number\">17</td><td class=\"number\">15</td><td class=\"number\">19</td><td class=\"number\">18</td>",
-        ">mean</th><td class=\"number\">29.2</td><td class=\"number\">27.7</td><td class=\"number\">25.3</td><td class=\"number\">18.9</td>",
+    for (head, cells) in [
+        ("1", ["30", "28", "27", "27"]),
+        ("7", ["17", "15", "19", "18"]),
+        ("mean", ["29.2", "27.7", "25.3", "18.9"]),
     ] {
-        assert!(first.contains(row), "{row} not in {first}");
+        let cells = cells.map(|cell| format!("<td class=\"number\">{cell}</td>"));
+        let row = format!(">{head}</th>{}", cells.concat());
+        assert!(first.contains(&row), "{row} not in {first}");
     }
-    assert_eq!(first.matches("<th scope=\"row\">").count(), 3 * (10 + 6));
-    assert_eq!(first.matches("scope=\"rowgroup\"").count(), 3);
-    let second = table("table-2");
-    for words in [
-        "Sensor (ATI)",
-        ">20<",
-        ">0.5<",
-        ">140<",
-        ">200<",
-        ">93<",
-        ">168.1<",
-        ">220.6<",
-    ] {
-        assert!(second.contains(words), "{words}");
-    }
-    let bridge = table("table-bridge");
-    assert_eq!(bridge.matches("<th scope=\"row\"").count(), 12);
     // Sweeps of ±5 to ±10 mm, each with the peak and the whole, hold two positions or more.
-    let weights = table("table-weights");
-    assert_eq!(weights.matches("matched filter</td>").count(), 6);
-    for words in ["±5<", "±10<", "the 36 ranges", " to "] {
-        assert!(weights.contains(words), "{words} not in {weights}");
+    for (id, words, count) in [
+        ("table-1", "<th scope=\"row\">", 3 * (10 + 6)),
+        ("table-1", "scope=\"rowgroup\"", 3),
+        ("table-2", "Sensor (ATI)", 1),
+        ("table-bridge", "<th scope=\"row\"", 12),
+        ("table-weights", "matched filter</td>", 6),
+        ("table-weights", "the 36 ranges", 1),
+    ] {
+        assert_eq!(table(id).matches(words).count(), count, "{words} in {id}");
+    }
+    for words in [
+        ">20<", ">0.5<", ">140<", ">200<", ">93<", ">168.1<", ">220.6<",
+    ] {
+        assert!(table("table-2").contains(words), "{words}");
+    }
+    for words in ["±5<", "±10<", " to "] {
+        assert!(table("table-weights").contains(words), "{words}");
     }
     assert_eq!(page.matches("36 ranges counted, it is rejected").count(), 3);
     assert!(page.contains("Figure 7 is not made again"));
     let mut study = paper_study();
     study.measured = vec![map_with("mine", |_| 0.1, |_| 0.0)];
-    let page = self::page(&study);
+    let page = made(&study).page;
     assert!(page.contains("Figure 7. Measured forces, “mine”"));
     assert!(!page.contains("Figure 7 is not made again"));
     study.maps.clear();
-    assert!(self::page(&study).contains("are not set against the answers"));
+    assert!(
+        made(&study)
+            .page
+            .contains("are not set against the answers")
+    );
 }
 
 type Colour = [f64; 3];
 
 /// `#abc` and `#aabbcc` as sRGB, 0 to 255.
 fn colour(text: &str) -> Colour {
-    let digits: Vec<_> = text
-        .trim_start_matches('#')
-        .chars()
-        .map(|c| f64::from(c.to_digit(16).unwrap()))
-        .collect();
+    let digits = text.trim_start_matches('#').chars();
+    let digits: Vec<_> = digits.map(|c| f64::from(c.to_digit(16).unwrap())).collect();
     match digits[..] {
         [r, g, b] => [17.0 * r, 17.0 * g, 17.0 * b],
         [a, b, c, d, e, f] => [16.0 * a + b, 16.0 * c + d, 16.0 * e + f],
@@ -167,10 +129,9 @@ fn contrast(a: Colour, b: Colour) -> f64 {
     a.max(b) / a.min(b)
 }
 
-/// The custom properties of one `:root { … }`, from `start` of the stylesheet on.
+/// A custom property of one `:root { … }`, from `start` of the stylesheet on.
 fn property(start: &str, name: &str) -> Colour {
-    let (_, rest) = start.split_once(&format!("--{name}: ")).unwrap();
-    colour(rest.split_once(';').unwrap().0)
+    colour(between(start, &format!("--{name}: "), ";"))
 }
 
 // Verifies: REP-067.
@@ -211,60 +172,48 @@ fn in_the_dark(colour: Colour) -> Colour {
 #[test]
 fn charts_stand_out_in_light_and_dark() {
     assert!(STYLE.contains("filter: invert(.88) hue-rotate(180deg)"));
-    let ground = chart_ground();
-    for (name, ink, needed) in chart_inks() {
-        let light = contrast(ink, ground);
-        let dark = contrast(in_the_dark(ink), in_the_dark(ground));
-        assert!(light >= needed, "{name}: {light:.2}");
-        assert!(dark >= needed, "{name} in the dark: {dark:.2}");
+    let lines = PALETTE.into_iter().chain([GREY]);
+    let lines = lines.chain((0..9).map(|k| ramp(k, 9)));
+    let needed = lines.map(|colour| (colour, 3.0)).chain([(INK, 4.5)]);
+    for (colour, needed) in needed {
+        let ink = [colour.0, colour.1, colour.2].map(f64::from);
+        let light = contrast(ink, [255.0; 3]);
+        let dark = contrast(in_the_dark(ink), in_the_dark([255.0; 3]));
+        assert!(light >= needed, "{colour:?}: {light:.2}");
+        assert!(dark >= needed, "{colour:?} in the dark: {dark:.2}");
     }
 }
 
 // Verifies: REP-068.
 #[test]
 fn print_breaks_no_figure() {
-    let print = STYLE.split_once("@media print").unwrap().1;
-    let unbroken = print
-        .lines()
-        .find(|line| line.contains("break-inside: avoid"))
-        .unwrap();
+    let (_, print) = STYLE.split_once("@media print").unwrap();
+    let mut rules = print.lines();
+    let unbroken = rules.find(|line| line.contains("break-inside: avoid"));
     for part in ["figure", "tr", ".note", ".warning", ".numbers li"] {
-        assert!(unbroken.contains(part), "{part}");
+        assert!(unbroken.unwrap().contains(part), "{part}");
     }
     // Dark colours are for screens alone.
-    assert_eq!(
-        STYLE.matches("prefers-color-scheme: dark").count(),
-        STYLE
-            .matches("screen and (prefers-color-scheme: dark)")
-            .count()
-    );
+    let count = |words: &str| STYLE.matches(words).count();
+    let dark = "(prefers-color-scheme: dark)";
+    assert_eq!(count(dark), count(&format!("screen and {dark}")));
 }
 
 // Verifies: REP-060, PSY-087.
 #[test]
 fn the_page_begins_with_no_more_than_holds_over_every_sweep() {
     let mut study = paper_study();
-    let opening = |study: &Study| {
-        let page = page(study);
-        page.split("<nav").next().unwrap().to_string()
-    };
+    let opening = |study: &Study| between(&made(study).page, "", "<nav").to_string();
     // The force falls in proportion everywhere: whatever the subjects felt fits as well.
     assert!(opening(&study).contains("do not tell whether subjects feel the level"));
     // A level of 0.3 N over every inclusion, and a change that falls as right answers do.
     let changes = [("2.6", 0.6), ("4.6", 0.4), ("6.6", 0.25), ("8.6", 0.06)];
-    study.maps = changes
-        .map(|(name, change)| {
-            let normal = move |x: f64| if x == 0.0 { 0.3 + change } else { 0.3 };
-            let lateral = move |x: f64| {
-                if x.abs() == 5e-3 {
-                    change * x.signum()
-                } else {
-                    0.0
-                }
-            };
-            map(Phantom::builtin(name).ok(), &DEPTHS, normal, lateral)
-        })
-        .into();
+    let changed = |(name, change): (&str, f64)| {
+        let normal = move |x: f64| if x == 0.0 { 0.3 + change } else { 0.3 };
+        let phantom = Phantom::builtin(name).ok();
+        map(phantom, &DEPTHS, normal, at_5_mm(change))
+    };
+    study.maps = changes.map(changed).into();
     let text = opening(&study);
     assert!(
         text.contains("are explained worst by the whole level"),

@@ -1,59 +1,66 @@
 //! What the figures show, read back from their coordinates.
 
+use super::findings;
 use super::study::*;
-use super::{figures, findings};
 use crate::fem::mesh::Region;
 use crate::phantom::Phantom;
 use crate::psychophysics::Bounds;
-use crate::report::{Figure, Findings, Study, normal_approximation};
+use crate::report::{Study, normal_approximation, text};
 
-fn drawn(study: &Study) -> (Findings, Vec<Figure>) {
-    let found = findings(study).unwrap();
-    let drawn = figures(study, &found).unwrap();
-    (found, drawn)
+fn svg(made: &Made, name: &str) -> String {
+    made.figure(name).svg.clone()
 }
 
-fn svg<'a>(figures: &'a [Figure], name: &str) -> &'a str {
-    let figure = figures.iter().find(|figure| figure.file_name == name);
-    &figure.unwrap_or_else(|| panic!("no {name}")).svg
+/// The value of an attribute.
+fn attribute(element: &str, name: &str) -> f64 {
+    let value = between(element, &format!(" {name}=\""), "\"");
+    value.parse().unwrap()
 }
 
 /// The corners of every element of one name, with the element's text.
 fn shapes<'a>(svg: &'a str, name: &str) -> Vec<(&'a str, Vec<[f64; 2]>)> {
+    let corner = |point: &str| {
+        let (x, y) = point.split_once(',').unwrap();
+        [x, y].map(|number| number.parse().unwrap())
+    };
     let tag = format!("<{name} ");
-    let elements = svg.split(tag.as_str()).skip(1);
+    let elements = svg
+        .split(tag.as_str())
+        .skip(1)
+        .map(|rest| between(rest, "", ">"));
+    let points = |element| {
+        between(element, "points=\"", "\"")
+            .split_whitespace()
+            .map(corner)
+    };
     elements
-        .map(|rest| {
-            let element = rest.split_once('>').unwrap().0;
-            let points = element
-                .split_once("points=\"")
-                .unwrap()
-                .1
-                .split_once('"')
-                .unwrap()
-                .0;
-            let corner = |point: &str| {
-                let (x, y) = point.split_once(',').unwrap();
-                [x, y].map(|number| number.parse().unwrap())
-            };
-            (element, points.split_whitespace().map(corner).collect())
-        })
+        .map(|element| (element, points(element).collect()))
         .collect()
 }
 
-/// Width, height and centre of the box around `corners`.
+/// The corners of every area that is filled with a colour.
+fn filled(svg: &str, fill: &str) -> Vec<Vec<[f64; 2]>> {
+    let shapes = shapes(svg, "polygon").into_iter();
+    let shapes = shapes.filter(|(element, _)| element.contains(fill));
+    shapes.map(|(_, corners)| corners).collect()
+}
+
+/// Size and centre of the box around `corners`.
 fn extent(corners: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
-    let range = |k: usize| {
-        let values = corners.iter().map(|corner| corner[k]);
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| {
-            [a.min(v), b.max(v)]
-        })
-    };
-    let (x, y) = (range(0), range(1));
+    let range = |k: usize| text::extremes(corners.iter().map(|corner| corner[k])).unwrap();
+    let [x, y] = [0, 1].map(range);
     (
         [x[1] - x[0], y[1] - y[0]],
-        [0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1])],
+        [x, y].map(|[from, to]| 0.5 * (from + to)),
     )
+}
+
+/// How often a figure has each of some words as a text of their own.
+fn assert_words(svg: &str, count: usize, words: &[&str]) {
+    for words in words {
+        let found = svg.matches(&format!("\n{words}\n")).count();
+        assert_eq!(found, count, "{words}");
+    }
 }
 
 /// A drawing unit is 1/91 mm of the paper's phantom, and every place is rounded to a whole one.
@@ -65,22 +72,13 @@ fn figure_1_is_to_scale() {
     let mut wide = Phantom::builtin("8.6").unwrap();
     wide.well.width = 0.04;
     study.maps.push(map(Some(wide), &DEPTHS, |_| 0.1, |_| 0.0));
-    let (_, figures) = drawn(&study);
-    assert!(svg(&figures, "figure-1-8.6.svg").contains("the well is 40 mm wide"));
-    let picture = svg(&figures, "figure-1.svg");
-    let filled = |fill: &str| {
-        let shapes = shapes(picture, "polygon");
-        let (_, corners) = shapes
-            .iter()
-            .find(|(element, _)| element.contains(fill))
-            .unwrap();
-        extent(corners)
-    };
-    let (gel, _) = filled("#FAF3E0");
+    let made = made(&study);
+    assert!(svg(&made, "figure-1-8.6").contains("the well is 40 mm wide"));
+    let picture = svg(&made, "figure-1");
+    let shape = |fill: &str| extent(&filled(&picture, fill)[0]);
+    let [(gel, _), (probe, _)] = ["#FAF3E0", "#D0D4DA"].map(shape);
+    let [(skin, place), (disc, centre)] = ["#56B4E9", "#E69F00"].map(shape);
     let scale = gel[0] / 34.0;
-    let (probe, _) = filled("#D0D4DA");
-    let (skin, place) = filled("#56B4E9");
-    let (disc, centre) = filled("#E69F00");
     for (found, millimetres) in [
         (gel[1], 15.0),
         (probe[0], 13.0),
@@ -91,21 +89,16 @@ fn figure_1_is_to_scale() {
         // The disc's centre below the skin's middle.
         (centre[1] - place[1], 2.6 + 3.2 - 0.25),
     ] {
-        assert!(
-            (found - scale * millimetres).abs() <= 2.0,
-            "{found} for {millimetres} mm"
-        );
+        let error = found - scale * millimetres;
+        assert!(error.abs() <= 2.0, "{found} for {millimetres} mm");
     }
     // One outline in dashes for each depth in this gel; "shallow" lies where 2.6 mm does.
+    assert_words(&picture, 1, &["2.6 mm", "4.6 mm", "6.6 mm", "8.6 mm"]);
     for words in [
         "the well is 34 mm wide\n",
         "\ngel: 15 mm, E = ",
         "\nskin: 0.5 mm, E = ",
         "\ninclusion: ø 6.4 mm, E = ",
-        "\n2.6 mm\n",
-        "\n4.6 mm\n",
-        "\n6.6 mm\n",
-        "\n8.6 mm\n",
     ] {
         assert_eq!(picture.matches(words).count(), 1, "{words}");
     }
@@ -142,24 +135,12 @@ fn study_of(phantoms: &[Phantom]) -> Study {
     study
 }
 
-fn filled(svg: &str, fill: &str) -> Vec<Vec<[f64; 2]>> {
-    let shapes = shapes(svg, "polygon").into_iter();
-    shapes
-        .filter(|(element, _)| element.contains(fill))
-        .map(|(_, corners)| corners)
-        .collect()
-}
-
 /// Left, right, top and bottom of all words, pixels, by the report's own estimate of their width.
 fn words(svg: &str) -> Vec<(String, [f64; 4])> {
-    let number = |element: &str, key: &str| -> f64 {
-        let (_, rest) = element.split_once(&format!(" {key}=\"")).unwrap();
-        rest.split_once('"').unwrap().0.parse().unwrap()
-    };
     let boxes = svg.split("<text").skip(1).map(|rest| {
-        let (element, rest) = rest.split_once('>').unwrap();
-        let text = rest.split_once("</text>").unwrap().0.trim().to_string();
-        let (x, y) = (number(element, "x") / 10.0, number(element, "y") / 10.0);
+        let element = between(rest, "", ">");
+        let text = between(rest, ">", "</text>").trim().to_string();
+        let [x, y] = ["x", "y"].map(|name| attribute(element, name) / 10.0);
         let wide = 8.7 * text.chars().count() as f64;
         let left = match element {
             _ if element.contains("\"end\"") => x - wide,
@@ -180,8 +161,8 @@ const DISC: &str = "depth_mm = 4\ndiameter_mm = 5";
 #[test]
 fn figure_1_shows_inclusions_of_any_shape_and_place() {
     let phantom = own("two", "", &TWO, &[ELLIPSE, TRIANGLE]);
-    let (_, figures) = drawn(&study_of(&[phantom, own("one", "", &TWO, &[DISC])]));
-    let picture = svg(&figures, "figure-1.svg");
+    let made = made(&study_of(&[phantom, own("one", "", &TWO, &[DISC])]));
+    let picture = &svg(&made, "figure-1");
     let (gel, axis) = extent(&filled(picture, "#FAF3E0")[0]);
     let scale = gel[0] / 34.0;
     let surface = axis[1] - scale * (0.5 + 7.5);
@@ -202,27 +183,18 @@ fn figure_1_shows_inclusions_of_any_shape_and_place() {
         }
     }
     // Both numbers, and each depth once: the disc of the other phantom is as deep as the ellipse.
-    for words in ["1", "2", "4 mm", "6 mm"] {
-        let count = picture.matches(&format!("\n{words}\n")).count();
-        assert_eq!(count, 1, "{words}");
-    }
-    let figure = figures
-        .iter()
-        .find(|f| f.file_name == "figure-1.svg")
-        .unwrap();
+    assert_words(picture, 1, &["1", "2", "4 mm", "6 mm"]);
+    let caption = &made.figure("figure-1").caption;
     for words in [
         "1: an ellipse of 5 × 2 mm, turned by 90°, its middle at x = −6 mm, its top 4 mm below the surface",
         "2: a polygon of 3 corners, 6 × 5 mm, its middle at x = 5 mm, its top 6 mm below the surface",
         "In dashes are",
     ] {
-        assert!(figure.caption.contains(words), "{}", figure.caption);
+        assert!(caption.contains(words), "{caption}");
     }
     // The other phantom differs in nothing else, so that it needs no drawing of its own.
-    assert!(
-        figures
-            .iter()
-            .all(|f| !f.file_name.starts_with("figure-1-"))
-    );
+    let mut names = made.figures.iter().map(|figure| &figure.file_name);
+    assert!(names.all(|name| !name.starts_with("figure-1-")));
 }
 
 // Verifies: REP-035.
@@ -232,88 +204,88 @@ fn figure_1_is_drawn_for_each_phantom_that_differs_in_more_than_inclusions() {
     softer.layers[1].material.youngs_modulus = 4e3;
     let mut renamed = own("renamed", "", &TWO, &[DISC]);
     renamed.layers[1].name = "agar".into();
-    let (_, figures) = drawn(&study_of(&[own("plain", "", &TWO, &[]), softer, renamed]));
-    let names = figures.iter().map(|figure| figure.file_name.as_str());
-    let names: Vec<_> = names
-        .filter(|n| n.starts_with("figure-1") && !n.starts_with("figure-1."))
-        .collect();
-    let own: Vec<_> = names
-        .iter()
-        .filter(|name| name.starts_with("figure-1-"))
-        .collect();
-    assert_eq!(own, [&"figure-1-softer.svg"]);
-    let softer = svg(&figures, "figure-1-softer.svg");
-    for words in [
+    let made = made(&study_of(&[own("plain", "", &TWO, &[]), softer, renamed]));
+    let names = made.figures.iter().map(|figure| &figure.file_name[..]);
+    let others: Vec<_> = names.filter(|name| name.starts_with("figure-1-")).collect();
+    assert_eq!(others, ["figure-1-softer.svg"]);
+    let words = [
         "skin: 0.5 mm, E = 5 kPa",
         "gel: 15 mm, E = 4 kPa",
         "inclusion: ø 5 mm, E = 5 kPa",
-    ] {
-        assert!(softer.contains(&format!("\n{words}\n")), "{words}");
-    }
+    ];
+    let softer = svg(&made, "figure-1-softer");
+    assert!(
+        words
+            .iter()
+            .all(|words| softer.contains(&format!("\n{words}\n")))
+    );
 }
 
 // Verifies: REP-035.
 #[test]
 fn figure_1_shows_how_walls_and_floor_hold() {
-    let picture = |well: &str| {
-        let (_, figures) = drawn(&study_of(&[own("held", well, &TWO, &[])]));
-        svg(&figures, "figure-1.svg").to_string()
-    };
-    // Width and height of the block, mm.
-    let block = |svg: &str| {
-        let scale = extent(&filled(svg, "#FAF3E0")[0]).0[0] / 34.0;
-        extent(&filled(svg, "#E2DDD4")[0])
-            .0
-            .map(|side| side / scale)
-    };
-    let rollers = |svg: &str| svg.matches("<circle ").count();
-    let fixed = picture("");
-    let sliding = picture("walls = \"sliding\"\n");
-    let free = picture("walls = \"free\"\n");
-    let floor = picture("floor = \"free\"\n");
     // The layers are 34 mm wide and 15.5 mm high; what holds them is drawn 2.38 mm thick.
-    for (svg, expected) in [
-        (&fixed, [38.76, 17.88]),
-        (&sliding, [38.76, 17.88]),
-        (&free, [34.0, 17.88]),
-        (&floor, [38.76, 15.5]),
+    for (well, words, block, has_rollers) in [
+        ("", "walls and floor fixed", [38.76, 17.88], false),
+        (
+            "walls = \"sliding\"\n",
+            "walls sliding, floor fixed",
+            [38.76, 17.88],
+            true,
+        ),
+        (
+            "walls = \"free\"\n",
+            "walls free, floor fixed",
+            [34.0, 17.88],
+            false,
+        ),
+        (
+            "floor = \"free\"\n",
+            "walls fixed, floor free",
+            [38.76, 15.5],
+            false,
+        ),
     ] {
-        let found = block(svg);
-        for (found, expected) in found.into_iter().zip(expected) {
-            assert!((found - expected).abs() < 0.05, "{found} for {expected}");
+        let picture = svg(
+            &made(&study_of(&[own("held", well, &TWO, &[])])),
+            "figure-1",
+        );
+        let shape = |fill: &str| extent(&filled(&picture, fill)[0]).0;
+        let scale = shape("#FAF3E0")[0] / 34.0;
+        for (found, expected) in shape("#E2DDD4").into_iter().zip(block) {
+            let error = found / scale - expected;
+            assert!(error.abs() < 0.05, "{words}: {error} from {expected}");
         }
-    }
-    assert_eq!([&fixed, &free, &floor].map(|svg| rollers(svg)), [0; 3]);
-    assert!(rollers(&sliding) >= 10);
-    for (svg, words) in [
-        (fixed, "walls and floor fixed"),
-        (sliding, "walls sliding, floor fixed"),
-        (free, "walls free, floor fixed"),
-        (floor, "walls fixed, floor free"),
-    ] {
-        assert!(svg.contains(&format!("\n{words}\n")), "{words}");
+        let rollers = picture.matches("<circle ").count();
+        assert!(
+            if has_rollers {
+                rollers >= 10
+            } else {
+                rollers == 0
+            },
+            "{words}"
+        );
+        assert_words(&picture, 1, &[words]);
     }
 }
 
 // Verifies: REP-003, REP-035, REP-064.
 #[test]
 fn no_words_of_the_phantoms_figures_lie_on_others() {
-    let many: Vec<(String, f64)> = (0..9)
+    let many: Vec<_> = (0..9)
         .map(|k| (format!("layer {k}"), [0.5, 3.0][k % 2]))
         .collect();
     let many: Vec<_> = many
         .iter()
-        .map(|(name, thickness)| (name.as_str(), *thickness))
+        .map(|(name, thickness)| (&name[..], *thickness))
         .collect();
     let places = (0..30).map(|k| {
         let (x, depth) = (
             -14 + 3 * (k % 10),
             1.0 + 4.5 * f64::from(k / 10) + 0.1 * f64::from(k % 10),
         );
-        format!(
-            "centre_x_mm = {x}\ndepth_mm = {depth:.1}\ndiameter_mm = {}",
-            1.0 + 0.1 * f64::from(k % 9)
-        )
+        let diameter = 1.0 + 0.1 * f64::from(k % 9);
+        format!("centre_x_mm = {x}\ndepth_mm = {depth:.1}\ndiameter_mm = {diameter}")
     });
     let places: Vec<String> = places.collect();
     let crowd: Vec<&str> = places.iter().map(String::as_str).collect();
@@ -332,23 +304,14 @@ fn no_words_of_the_phantoms_figures_lie_on_others() {
     ];
     for phantom in phantoms {
         let name = phantom.name.clone();
-        let (_, figures) = drawn(&study_of(&[phantom]));
-        for figure in ["figure-1.svg".into(), "figure-6.svg".into()] {
-            let figure: String = figure;
-            let picture = svg(&figures, &figure);
-            let (_, height) = picture.split_once(" height=\"").unwrap();
-            let height: f64 = height.split_once('"').unwrap().0.parse().unwrap();
-            let words = words(picture);
+        let made = made(&study_of(&[phantom]));
+        for figure in ["figure-1", "figure-6"] {
+            let picture = svg(&made, figure);
+            let (height, words) = (attribute(&picture, "height"), words(&picture));
             assert!(words.len() > 4);
             for (k, (one, a)) in words.iter().enumerate() {
-                assert!(
-                    a[0] >= 0.0 && a[1] <= 520.0,
-                    "{name} {figure}: {one:?} {a:?}"
-                );
-                assert!(
-                    a[2] >= -3.0 && a[3] <= height,
-                    "{name} {figure}: {one:?} {a:?}"
-                );
+                let is_inside = a[0] >= 0.0 && a[1] <= 520.0 && a[2] >= -3.0 && a[3] <= height;
+                assert!(is_inside, "{name} {figure}: {one:?} {a:?}");
                 for (other, b) in &words[..k] {
                     let apart = a[0] >= b[1] || b[0] >= a[1] || a[2] >= b[3] || b[2] >= a[3];
                     assert!(apart, "{name} {figure}: {one:?} {a:?} on {other:?} {b:?}");
@@ -367,38 +330,29 @@ fn figure_6_tells_layers_and_inclusions_apart() {
     let regions = [1, 2].map(Region::Layer).into_iter();
     let regions = regions.chain([0, 1].map(Region::Inclusion));
     study.deformed.elements = regions.map(|region| (region, corners.clone())).collect();
-    let (_, figures) = drawn(&study);
-    let picture = svg(&figures, "figure-6.svg");
-    for name in ["skin", "fat", "gel", "inclusions"] {
-        assert_eq!(picture.matches(&format!("\n{name}\n")).count(), 1, "{name}");
-    }
+    let picture = svg(&made(&study), "figure-6");
+    assert_words(&picture, 1, &["skin", "fat", "gel", "inclusions"]);
     let paths = |fill: &str| {
         let paths = picture.split("<path ").skip(1);
         paths
-            .filter(|path| {
-                path.split_once("/>")
-                    .is_some_and(|(tag, _)| tag.contains(fill))
-            })
+            .filter(|path| between(path, "", "/>").contains(fill))
             .count()
     };
-    assert_eq!(
-        ["#56B4E9", "#D3EAD4", "#FAF3E0", "#E69F00"].map(paths),
-        [0, 1, 1, 2]
-    );
+    let found = ["#56B4E9", "#D3EAD4", "#FAF3E0", "#E69F00"].map(paths);
+    assert_eq!(found, [0, 1, 1, 2]);
 }
 
 // Verifies: REP-037.
 #[test]
 fn figures_10_to_12_show_every_subject() {
-    let (_, figures) = drawn(&paper_study());
+    let made = made(&paper_study());
     for number in 10..13 {
-        let picture = svg(&figures, &format!("figure-{number}.svg"));
-        for subject in 1..=10 {
-            assert_eq!(
-                picture.matches(&format!("\nsubject {subject}\n")).count(),
-                1
-            );
-        }
+        let picture = svg(&made, &format!("figure-{number}"));
+        let subjects: Vec<_> = (1..=10)
+            .map(|subject| format!("subject {subject}"))
+            .collect();
+        let subjects: Vec<_> = subjects.iter().map(String::as_str).collect();
+        assert_words(&picture, 1, &subjects);
         // Ten subjects and the mean at four depths, and two samples in the key.
         assert_eq!(picture.matches("<circle ").count(), 11 * 4 + 2);
     }
@@ -406,38 +360,24 @@ fn figures_10_to_12_show_every_subject() {
 
 /// Upright bars with their width (drawing units), for a panel whose `range` of per cent is `height` units high.
 fn bars(picture: &str) -> Vec<(f64, [f64; 2], [f64; 2])> {
-    let upright = |(element, corners): (&str, Vec<[f64; 2]>)| {
-        let width = element
-            .split_once("stroke-width=\"")
-            .unwrap()
-            .1
-            .split_once('"')
-            .unwrap()
-            .0;
-        match corners[..] {
-            [from, to] if from[0] == to[0] && from[1] != to[1] => {
-                Some((width.parse().unwrap(), from, to))
-            }
-            _ => None,
+    let upright = |(element, corners): (&str, Vec<[f64; 2]>)| match corners[..] {
+        [from, to] if from[0] == to[0] && from[1] != to[1] => {
+            Some((attribute(element, "stroke-width"), from, to))
         }
+        _ => None,
     };
-    shapes(picture, "polyline")
-        .into_iter()
-        .filter_map(upright)
-        .collect()
+    let lines = shapes(picture, "polyline").into_iter();
+    lines.filter_map(upright).collect()
 }
 
 // Verifies: REP-038.
 #[test]
 fn figure_13_has_three_intervals_for_each_share() {
-    let (found, figures) = drawn(&paper_study());
-    let bars = bars(svg(&figures, "figure-13.svg"));
+    let made = made(&paper_study());
+    let bars = bars(&made.figure("figure-13").svg);
     // The axis from 40 to 100 % is 330 pixels of ten units high; its foot is the lowest place of all.
-    let foot = bars
-        .iter()
-        .map(|bar| bar.1[1].max(bar.2[1]))
-        .fold(0.0, f64::max)
-        - 50.0;
+    let ends = bars.iter().flat_map(|(_, from, to)| [from[1], to[1]]);
+    let foot = ends.fold(0.0, f64::max) - 50.0;
     let share = |y: f64| 40.0 + 60.0 * (foot - y) / 3300.0;
     let shows = |width: f64, Bounds { lower, upper }: Bounds| {
         bars.iter().any(|(found, from, to)| {
@@ -446,16 +386,14 @@ fn figure_13_has_three_intervals_for_each_share() {
             *found == width && off(from[1], lower) < 0.05 && off(to[1], upper) < 0.05
         })
     };
-    for condition in &found.people.conditions {
-        for inclusion in &condition.inclusions {
-            let pooled = &inclusion.pooled;
-            assert!(shows(
-                12.0,
-                normal_approximation(pooled.rate, pooled.trials)
-            ));
-            assert!(shows(26.0, pooled.clopper_pearson));
-            assert!(shows(60.0, inclusion.clustered.unwrap().bounds));
-        }
+    let conditions = made.found.people.conditions.iter();
+    for inclusion in conditions.flat_map(|condition| &condition.inclusions) {
+        let pooled = &inclusion.pooled;
+        let normal = normal_approximation(pooled.rate, pooled.trials);
+        let clustered = inclusion.clustered.unwrap().bounds;
+        assert!(
+            shows(12.0, normal) && shows(26.0, pooled.clopper_pearson) && shows(60.0, clustered)
+        );
     }
 }
 
@@ -463,28 +401,23 @@ fn figure_13_has_three_intervals_for_each_share() {
 #[test]
 fn the_bridge_shows_every_convention_and_the_answers() {
     let mut study = paper_study();
-    let (found, figures) = drawn(&study);
-    let picture = svg(&figures, "bridge.svg");
-    let observed = &found.bridge.as_ref().unwrap().conditions[1].observed;
+    let found = made(&study);
+    let picture = svg(&found, "bridge");
+    let observed = &found.found.bridge.as_ref().unwrap().conditions[1].observed;
     // In both panels each share with its interval.
-    let wide = bars(picture).iter().filter(|bar| bar.0 == 60.0).count();
+    let wide = bars(&picture).iter().filter(|bar| bar.0 == 60.0).count();
     assert_eq!(wide, 2 * observed.len());
     assert_eq!(picture.matches("<circle ").count(), 2 * observed.len() + 1);
-    for name in [
-        "peak, normal",
-        "peak, lateral",
-        "peak, both",
-        "filter, normal",
-        "filter, lateral",
-        "filter, both",
-    ] {
-        assert_eq!(picture.matches(&format!("\n{name}\n")).count(), 2, "{name}");
+    for statistic in ["peak", "filter"] {
+        let names = ["normal", "lateral", "both"].map(|channel| format!("{statistic}, {channel}"));
+        assert_words(&picture, 2, &names.each_ref().map(String::as_str));
     }
     study.maps.truncate(1);
-    let (found, figures) = drawn(&study);
-    assert_eq!(found.bridge, None);
+    let found = made(&study);
+    assert_eq!(found.found.bridge, None);
     assert!(
-        figures
+        found
+            .figures
             .iter()
             .all(|figure| figure.file_name != "bridge.svg")
     );
@@ -494,20 +427,18 @@ fn the_bridge_shows_every_convention_and_the_answers() {
 #[test]
 fn a_measured_map_is_figure_7_and_a_computed_one_is_refused() {
     let mut study = paper_study();
-    let depths = [0.0, 1e-3];
-    study.measured = vec![map(None, &depths, |_| 0.1, |_| 0.0)];
-    let (_, figures) = drawn(&study);
-    let figure = figures
+    study.measured = vec![map(None, &[0.0, 1e-3], |_| 0.1, |_| 0.0)];
+    let figures = made(&study).figures;
+    let mut sevenths = figures
         .iter()
-        .find(|figure| figure.file_name.starts_with("figure-7"))
-        .unwrap();
+        .filter(|figure| figure.file_name.starts_with("figure-7"));
+    let caption = &sevenths.next().unwrap().caption;
     assert!(
-        figure.caption.contains("those data are not available"),
-        "{}",
-        figure.caption
+        caption.contains("those data are not available"),
+        "{caption}"
     );
     study.measured = vec![computed_map("8.6", 0.5)];
-    let error = findings(&study).err().unwrap().to_string();
+    let error = findings(&study).unwrap_err().to_string();
     assert!(
         error.contains("\"8.6\"") && error.contains("computed"),
         "{error}"

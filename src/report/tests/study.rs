@@ -5,7 +5,9 @@ use crate::fem::mesh::Region;
 use crate::force::Force;
 use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
 use crate::phantom::Phantom;
-use crate::report::{DeformedMesh, Settings, Study, text};
+use crate::report::{
+    DeformedMesh, Figure, Findings, Settings, Study, figures, findings, html, summary_json, text,
+};
 
 pub const DEPTHS: [f64; 3] = [0.0, 2e-3, 4e-3];
 pub const LATERALS: [f64; 5] = [-10e-3, -5e-3, 0.0, 5e-3, 10e-3];
@@ -52,28 +54,30 @@ pub fn map_with(name: &str, normal: impl Fn(f64) -> f64, lateral: impl Fn(f64) -
     map(Some(phantom), &DEPTHS, normal, lateral)
 }
 
+/// Forces of this size at ±5 mm along x, and none elsewhere.
+pub fn at_5_mm(force: f64) -> impl Fn(f64) -> f64 {
+    move |x| match x.abs() == 5e-3 {
+        true => force * x.signum(),
+        false => 0.0,
+    }
+}
+
 /// A triangle of the height `peak` over ±10 mm, and a lateral third of it at ±5 mm.
 fn triangle(name: &str, peak: f64) -> ForceMap {
-    let lateral = move |x: f64| {
-        if x.abs() == 5e-3 {
-            peak / 3.0 * x.signum()
-        } else {
-            0.0
-        }
-    };
     let normal = move |x: f64| peak * (1.0 - x.abs() / 10e-3);
-    map(Phantom::builtin(name).ok(), &DEPTHS, normal, lateral)
+    let phantom = Phantom::builtin(name).ok();
+    map(phantom, &DEPTHS, normal, at_5_mm(peak / 3.0))
+}
+
+/// Numbers for all poses, one of which has its own.
+pub fn matrix_with(pose: (usize, usize), one: f64, others: f64) -> Matrix {
+    let number = |row, column| if (row, column) == pose { one } else { others };
+    Matrix::from_fn(DEPTHS.len(), LATERALS.len(), number)
 }
 
 /// A computed map whose smallest det(I + ∇u) stands at x = −5 mm.
 pub fn computed_map(name: &str, smallest: f64) -> ForceMap {
-    let min_det = Matrix::from_fn(3, 5, |row, column| {
-        if (row, column) == (2, 1) {
-            smallest
-        } else {
-            0.9
-        }
-    });
+    let min_det = matrix_with((2, 1), smallest, 0.9);
     let certificate = Certificate {
         worst_relative_residual: 1.5e-13,
         worst_force_balance: 2.5e-12,
@@ -114,6 +118,47 @@ pub fn deformed() -> DeformedMesh {
     }
 }
 
+/// All that a study gives.
+#[derive(PartialEq)]
+pub struct Made {
+    pub found: Findings,
+    pub figures: Vec<Figure>,
+    pub page: String,
+    pub summary: String,
+}
+
+pub fn made(study: &Study) -> Made {
+    let found = findings(study).unwrap();
+    let figures = figures(study, &found).unwrap();
+    Made {
+        page: html(study, &found, &figures),
+        summary: summary_json(&found, study),
+        found,
+        figures,
+    }
+}
+
+impl Made {
+    pub fn figure(&self, name: &str) -> &Figure {
+        let found = self
+            .figures
+            .iter()
+            .find(|of| of.file_name == format!("{name}.svg"));
+        found.unwrap_or_else(|| panic!("no {name}"))
+    }
+}
+
+/// What stands in `text` between the first `from` and the next `to`.
+pub fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
+    let (_, after) = text
+        .split_once(from)
+        .unwrap_or_else(|| panic!("no {from} in {text}"));
+    after
+        .split_once(to)
+        .unwrap_or_else(|| panic!("no {to} in {after}"))
+        .0
+}
+
 /// How the page shows words.
 pub fn shown(words: &str) -> String {
     let words = askama::filters::escape(text::prose(words), askama::filters::Html);
@@ -150,13 +195,10 @@ pub const HOSTILE: [&str; 10] = [
 pub fn hostile_study() -> Study {
     let mut study = paper_study();
     study.maps = HOSTILE.map(|name| map_with(name, |_| 0.1, |_| 0.0)).into();
-    study.maps.push(map(
-        Phantom::builtin("none").ok(),
-        &DEPTHS,
-        |_| 0.1,
-        |_| 0.0,
-    ));
-    study.maps.push(map(None, &DEPTHS, |_| 0.1, |_| 0.0));
+    let others = [Phantom::builtin("none").ok(), None];
+    study
+        .maps
+        .extend(others.map(|phantom| map(phantom, &DEPTHS, |_| 0.1, |_| 0.0)));
     study.deformed.phantom.name = "<b>\u{0}\u{8}".into();
     study
 }

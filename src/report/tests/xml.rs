@@ -3,11 +3,9 @@
 /// The names of all elements and the text between tags, or what is wrong.
 pub fn read(document: &str) -> Result<(Vec<String>, String), String> {
     let (mut open, mut seen, mut text) = (Vec::new(), Vec::new(), String::new());
-    if let Some(c) = document
-        .chars()
-        .find(|&c| c.is_control() && c != '\n' || c == '\u{ffff}')
-    {
-        return Err(format!("character {c:?}"));
+    let is_forbidden = |c: char| c.is_control() && c != '\n' || c == '\u{ffff}';
+    if document.contains(is_forbidden) {
+        return Err("a character that XML cannot hold".into());
     }
     let mut rest = document;
     while let Some((before, after)) = rest.split_once('<') {
@@ -34,19 +32,16 @@ pub fn read(document: &str) -> Result<(Vec<String>, String), String> {
         }
     }
     content(rest)?;
-    if open.is_empty() {
-        Ok((seen, text))
-    } else {
-        Err(format!("{open:?} left open"))
+    match open.is_empty() {
+        true => Ok((seen, text)),
+        false => Err(format!("{open:?} left open")),
     }
 }
 
 fn attributes(mut rest: &str) -> Result<(), String> {
     let mut names = Vec::new();
     while !rest.trim().is_empty() {
-        let (name, after) = rest
-            .split_once("=\"")
-            .ok_or(format!("attribute {rest:?}"))?;
+        let (name, after) = rest.split_once("=\"").ok_or("attribute without value")?;
         let name = name.trim();
         let valid = |c: char| c.is_ascii_alphanumeric() || c == '-';
         if name.is_empty() || !name.chars().all(valid) || names.contains(&name) {
@@ -68,10 +63,9 @@ fn content(text: &str) -> Result<(), String> {
             return Err(format!("entity &{part}"));
         }
     }
-    if text.contains('>') {
-        Err(format!("> in {text:?}"))
-    } else {
-        Ok(())
+    match text.contains('>') {
+        true => Err(format!("> in {text:?}")),
+        false => Ok(()),
     }
 }
 
