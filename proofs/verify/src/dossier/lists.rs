@@ -22,8 +22,7 @@ pub fn components(evidence: &Evidence) -> String {
     };
     let table = Table {
         id: "components-table",
-        caption: "Crates in the shipped program; version and checksum are the lock file's, and stand with the graph of dependencies in \
-                  sbom.cdx.json (CycloneDX)",
+        caption: "Crates in the shipped program; version, checksum and dependencies are the lock file's, and stand in evidence.json",
         layout: Layout::Stack,
         head: &[
             ("Component", ""),

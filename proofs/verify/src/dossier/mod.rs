@@ -113,7 +113,7 @@ pub fn dossier(evidence: &Evidence) -> String {
          machine where it ran.</p>\n{}</header>\n<main>\n\
          <nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ol>\n{contents}</ol>\n</nav>\n{body}</main>\n\
          <footer class=\"soft\">Written by <code>palpate-verify</code>, version {version}; the same results for programs are in \
-         <code>evidence.json</code>, the components in <code>sbom.cdx.json</code>.</footer>\n</body>\n</html>\n",
+         <code>evidence.json</code>.</footer>\n</body>\n</html>\n",
         opening::opening(evidence),
     )
 }
