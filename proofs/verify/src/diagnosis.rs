@@ -1,10 +1,5 @@
 //! The detector's diagnostic accuracy on the paper's inclusions: by the closed form, and counted in simulated records.
 
-use std::format;
-use std::string::{String, ToString};
-use std::vec;
-use std::vec::Vec;
-
 use super::{Check, Figure};
 use palpate::detect::simulate::Simulation;
 use palpate::detect::{Channels, auc, error_rates, neyman_pearson_false_alarm_threshold};

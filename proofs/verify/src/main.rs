@@ -14,7 +14,7 @@ use palpate::cli::{CliError, program};
 use palpate_verify::evidence::{Evidence, PARTS, Soak, Verdict};
 use palpate_verify::statistics::{battery, total_alpha};
 use palpate_verify::{
-    Check, Outcome, battery_outcome, build, checks, dossier, soaked, supply, traceability,
+    Check, Outcome, battery_outcome, build, checks, dossier, supply, traceability,
 };
 
 /// The evidence for this build, found out on this machine: evidence.json and a dossier.
@@ -139,7 +139,7 @@ fn soak_battery(batteries: u32, seed: u64) -> Result<Soak, CliError> {
     let failed = |job: u64| {
         let check = checks[(job % checks.len() as u64) as usize];
         let seed = seed.wrapping_add(job / checks.len() as u64);
-        let failure = soaked(check, seed).err();
+        let failure = check.run(seed).err();
         bar.inc(1);
         failure.map(|failure| {
             format!("{failure}; repeat with: palpate-verify --only soak --soak 1 --seed {seed}")

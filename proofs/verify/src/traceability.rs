@@ -20,9 +20,10 @@ const SEPARATOR: &str = "; ";
 /// assert!(decision.code.contains(&"src/detect/decision.rs decide".to_string()));
 /// # Ok::<(), String>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
 pub struct Requirement {
     /// As `FEM-012`.
+    #[serde(rename = "requirement")]
     pub id: String,
     /// The file of its chapter in `spec/`.
     pub chapter: String,
@@ -41,19 +42,24 @@ pub struct Requirement {
 }
 
 /// How many requirements have what.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Summary {
     /// All of them.
     pub requirements: usize,
     /// Those with code.
+    #[serde(rename = "with_code")]
     pub code: usize,
     /// Those with a test.
+    #[serde(rename = "with_tests")]
     pub tests: usize,
     /// Those with a proof.
+    #[serde(rename = "with_proofs")]
     pub proofs: usize,
     /// Those with vectors.
+    #[serde(rename = "with_vectors")]
     pub vectors: usize,
     /// Those that a person inspects.
+    #[serde(rename = "by_inspection")]
     pub inspection: usize,
 }
 

@@ -44,7 +44,7 @@ fn failures(evidence: &Evidence) -> String {
         format!(
             "<li><code>{}</code>: {} {}{}</li>\n",
             escape(&outcome.name),
-            escape(&outcome.claim),
+            escape(outcome.claim),
             outcome.failure.as_deref().map(escape).unwrap_or_default(),
             figures(outcome)
         )

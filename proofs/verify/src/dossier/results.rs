@@ -54,7 +54,7 @@ fn row(outcome: &Outcome) -> Vec<String> {
     vec![
         format!("<code>{}</code>", breakable(&outcome.name)),
         format!("<span class=\"{class}\">{word}</span>"),
-        escape(&outcome.claim),
+        escape(outcome.claim),
         format!("{failure}{}", figures(outcome)),
         escape(&outcome.requirements.join(", ")),
     ]

@@ -6,8 +6,8 @@ use palpate::build::Build;
 fn outcome(name: &str, value: f64) -> Outcome {
     Outcome {
         name: name.into(),
-        claim: "The error is small.".into(),
-        requirements: vec!["FEM-050".into()],
+        claim: "The error is small.",
+        requirements: &["FEM-050"],
         figures: vec![Figure::at_most("largest error, m", value, 1e-11)],
         failure: None,
         repeatable: true,
