@@ -10,13 +10,9 @@ use std::time::Instant;
 /// ```
 /// use palpate_verify::{Check, Figure, Outcome};
 ///
-/// let check = Check {
-///     name: "arithmetic.third",
-///     claim: "Three thirds are one.",
-///     requirements: &["CON-006"],
-///     repeatable: true,
-///     run: || Ok(vec![Figure::at_most("error", (1.0f64 / 3.0 * 3.0 - 1.0).abs(), 1e-15)]),
-/// };
+/// let check = Check::new("arithmetic.third", "Three thirds are one.", &["CON-006"], || {
+///     Ok(vec![Figure::at_most("error", (1.0f64 / 3.0 * 3.0 - 1.0).abs(), 1e-15)])
+/// });
 /// assert!(Outcome::of(&check).passed());
 /// let blind = Check { run: || Ok(Vec::new()), ..check };
 /// assert_eq!(Outcome::of(&blind).complaint().unwrap(), "check arithmetic.third: measured nothing");
@@ -36,6 +32,24 @@ pub struct Check {
     /// Measures. An error is a check that could not be carried out, or whose claim does not hold for a reason
     /// that is no number.
     pub run: fn() -> Result<Vec<Figure>, String>,
+}
+
+impl Check {
+    /// A check with the same figures in every run.
+    pub const fn new(
+        name: &'static str,
+        claim: &'static str,
+        requirements: &'static [&'static str],
+        run: fn() -> Result<Vec<Figure>, String>,
+    ) -> Check {
+        Check {
+            name,
+            claim,
+            requirements,
+            repeatable: true,
+            run,
+        }
+    }
 }
 
 /// A number that a check measured, and the bounds it must keep.
@@ -246,13 +260,7 @@ mod tests {
     }
 
     fn outcome(run: fn() -> Result<Vec<Figure>, String>) -> Outcome {
-        Outcome::of(&Check {
-            name: "part.what",
-            claim: "It holds.",
-            requirements: &["EVD-002"],
-            repeatable: true,
-            run,
-        })
+        Outcome::of(&Check::new("part.what", "It holds.", &["EVD-002"], run))
     }
 
     // Verifies: EVD-002, EVD-043.

@@ -12,67 +12,59 @@ use palpate::servo::{
 
 /// The checks of this part.
 pub const CHECKS: &[Check] = &[
-    Check {
-        name: "kernel.locate_uneven",
-        claim: "On an axis with cells from 1 µm to 1 m, every f32 gets a cell of the axis and a fraction in range, \
+    Check::new(
+        "kernel.locate_uneven",
+        "On an axis with cells from 1 µm to 1 m, every f32 gets a cell of the axis and a fraction in range, \
                 a position on the axis one whose ends enclose it, a knot 0 or 1, and neither ever falls as the \
                 position rises.",
-        requirements: &["SRV-002", "SRV-004", "SRV-005", "SRV-006"],
-        repeatable: true,
-        run: locate_uneven,
-    },
-    Check {
-        name: "kernel.locate_even",
-        claim: "The same on a uniform axis of 41 knots 0.5 mm apart, as a force map's.",
-        requirements: &["SRV-004", "SRV-005", "SRV-006"],
-        repeatable: true,
-        run: locate_even,
-    },
-    Check {
-        name: "kernel.last_knot",
-        claim: "No width of a cell times its stored reciprocal is above 1, and the last knot has the fraction 1.",
-        requirements: &["SRV-005", "SRV-006"],
-        repeatable: true,
-        run: last_knot,
-    },
-    Check {
-        name: "kernel.limit",
-        claim: "The limit of a force gives every f32 within it unchanged, the limit with its sign beyond, and 0 for \
+        &["SRV-002", "SRV-004", "SRV-005", "SRV-006"],
+        locate_uneven,
+    ),
+    Check::new(
+        "kernel.locate_even",
+        "The same on a uniform axis of 41 knots 0.5 mm apart, as a force map's.",
+        &["SRV-004", "SRV-005", "SRV-006"],
+        locate_even,
+    ),
+    Check::new(
+        "kernel.last_knot",
+        "No width of a cell times its stored reciprocal is above 1, and the last knot has the fraction 1.",
+        &["SRV-005", "SRV-006"],
+        last_knot,
+    ),
+    Check::new(
+        "kernel.limit",
+        "The limit of a force gives every f32 within it unchanged, the limit with its sign beyond, and 0 for \
                 a NaN.",
-        requirements: &["SRV-020"],
-        repeatable: true,
-        run: limits,
-    },
-    Check {
-        name: "kernel.count",
-        claim: "The force in the device's counts is the nearest whole number, within ±32767, for every f32.",
-        requirements: &["HID-010", "HID-011"],
-        repeatable: true,
-        run: counts,
-    },
-    Check {
-        name: "kernel.blend",
-        claim: "A blend of two forces lies between them for every fraction from 0 to 1, is each of them at its end, \
+        &["SRV-020"],
+        limits,
+    ),
+    Check::new(
+        "kernel.count",
+        "The force in the device's counts is the nearest whole number, within ±32767, for every f32.",
+        &["HID-010", "HID-011"],
+        counts,
+    ),
+    Check::new(
+        "kernel.blend",
+        "A blend of two forces lies between them for every fraction from 0 to 1, is each of them at its end, \
                 and is at most three times as large from −1 to 2.",
-        requirements: &["SRV-010", "SRV-011", "SRV-013"],
-        repeatable: true,
-        run: blends,
-    },
-    Check {
-        name: "kernel.release",
-        claim: "Every force up to the ceiling is released to 0 within 17 cycles of the slowest release.",
-        requirements: &["SRV-031"],
-        repeatable: true,
-        run: release,
-    },
-    Check {
-        name: "kernel.freshness",
-        claim: "A sample is played if and only if its number is 1 to 32767 ahead of the last, from every 257th \
+        &["SRV-010", "SRV-011", "SRV-013"],
+        blends,
+    ),
+    Check::new(
+        "kernel.release",
+        "Every force up to the ceiling is released to 0 within 17 cycles of the slowest release.",
+        &["SRV-031"],
+        release,
+    ),
+    Check::new(
+        "kernel.freshness",
+        "A sample is played if and only if its number is 1 to 32767 ahead of the last, from every 257th \
                 number.",
-        requirements: &["SRV-040"],
-        repeatable: true,
-        run: freshness,
-    },
+        &["SRV-040"],
+        freshness,
+    ),
 ];
 
 /// What a run over many inputs found.

@@ -7,14 +7,13 @@ use palpate::oracle::serve;
 use palpate_conform::{Case, Count, Outcome, Question, Suite, Verdict, judge};
 
 /// The checks of this part.
-pub const CHECKS: &[Check] = &[Check {
-    name: "vectors.oracle",
-    claim: "The oracle of this build answers every vector of the embedded suite within its tolerance, \
+pub const CHECKS: &[Check] = &[Check::new(
+    "vectors.oracle",
+    "The oracle of this build answers every vector of the embedded suite within its tolerance, \
             and refuses what must be refused.",
-    requirements: &["ORA-001", "ORA-046", "VEC-002", "EVD-050"],
-    repeatable: true,
-    run: oracle,
-}];
+    &["ORA-001", "ORA-046", "VEC-002", "EVD-050"],
+    oracle,
+)];
 
 /// Implements: EVD-050.
 fn oracle() -> Result<Vec<Figure>, String> {
