@@ -1,7 +1,8 @@
-//! Functions of one f32 on all 2³² of them: proofs by enumeration, each in two threads.
+//! Functions of one f32 on all 2³² of them: proofs by enumeration, on all processors.
 
 use std::ops::RangeInclusive;
-use std::thread::Builder;
+
+use rayon::prelude::*;
 
 use super::{Check, Figure};
 use palpate::hid::count;
@@ -15,8 +16,8 @@ pub const CHECKS: &[Check] = &[
     Check::new(
         "kernel.locate_uneven",
         "On an axis with cells from 1 µm to 1 m, every f32 gets a cell of the axis and a fraction in range, \
-                a position on the axis one whose ends enclose it, a knot 0 or 1, and neither ever falls as the \
-                position rises.",
+         a position on the axis one whose ends enclose it, a knot 0 or 1, and neither ever falls as the \
+         position rises.",
         &["SRV-002", "SRV-004", "SRV-005", "SRV-006"],
         locate_uneven,
     ),
@@ -35,7 +36,7 @@ pub const CHECKS: &[Check] = &[
     Check::new(
         "kernel.limit",
         "The limit of a force gives every f32 within it unchanged, the limit with its sign beyond, and 0 for \
-                a NaN.",
+         a NaN.",
         &["SRV-020"],
         limits,
     ),
@@ -48,7 +49,7 @@ pub const CHECKS: &[Check] = &[
     Check::new(
         "kernel.blend",
         "A blend of two forces lies between them for every fraction from 0 to 1, is each of them at its end, \
-                and is at most three times as large from −1 to 2.",
+         and is at most three times as large from −1 to 2.",
         &["SRV-010", "SRV-011", "SRV-013"],
         blends,
     ),
@@ -61,7 +62,7 @@ pub const CHECKS: &[Check] = &[
     Check::new(
         "kernel.freshness",
         "A sample is played if and only if its number is 1 to 32767 ahead of the last, from every 257th \
-                number.",
+         number.",
         &["SRV-040"],
         freshness,
     ),
@@ -154,39 +155,16 @@ fn size(bits: &RangeInclusive<u32>) -> u64 {
     u64::from(bits.end() - bits.start()) + 1
 }
 
-/// Runs two jobs at once, and adds up what they found.
-fn both(jobs: [impl FnOnce() -> Tally + Send; 2]) -> Result<Tally, String> {
-    let failed = |error: std::io::Error| format!("cannot start a thread: {error}");
-    std::thread::scope(|scope| {
-        let mut threads = Vec::new();
-        for job in jobs {
-            threads.push(Builder::new().spawn_scoped(scope, job).map_err(failed)?);
-        }
-        let found = threads.into_iter().map(|thread| {
-            let ended = thread.join();
-            ended.map_err(|_| "a thread of the check panicked".to_string())
-        });
-        found
-            .reduce(|a, b| Ok(a?.and(b?)))
-            .unwrap_or(Ok(Tally::EMPTY))
-    })
-}
-
-/// Hands all bits of a range to `check`.
-fn for_bits(
-    bits: &RangeInclusive<u32>,
-    check: impl Fn(u32, &mut Tally) + Sync,
-) -> Result<Tally, String> {
-    let (low, high) = (*bits.start(), *bits.end());
-    let half = low + (high - low) / 2;
-    let check = &check;
-    both([low..=half, half + 1..=high].map(|part| {
-        move || {
-            let mut tally = Tally::EMPTY;
-            part.for_each(|bits| check(bits, &mut tally));
+/// Hands all bits of a range to `check`, and adds up what it found.
+fn for_bits(bits: &RangeInclusive<u32>, check: impl Fn(u32, &mut Tally) + Sync) -> Tally {
+    let parts = bits.clone().into_par_iter().fold(
+        || Tally::EMPTY,
+        |mut tally, bits| {
+            check(bits, &mut tally);
             tally
-        }
-    }))
+        },
+    );
+    parts.reduce(|| Tally::EMPTY, Tally::and)
 }
 
 /// Whether `holds` is true of every f32 with bits in a range.
@@ -196,11 +174,11 @@ fn holds_for(
     what: &str,
     bits: RangeInclusive<u32>,
     holds: impl Fn(f32) -> bool + Sync,
-) -> Result<Vec<Figure>, String> {
+) -> Vec<Figure> {
     let tally = for_bits(&bits, |bits, tally| {
         tally.take(bits, holds(f32::from_bits(bits)));
-    })?;
-    Ok(tally.figures(what, size(&bits), float))
+    });
+    tally.figures(what, size(&bits), float)
 }
 
 fn locate_uneven() -> Result<Vec<Figure>, String> {
@@ -223,33 +201,33 @@ fn locate(knots: &[f32]) -> Result<Vec<Figure>, String> {
         .collect();
     let axis = Axis::new(knots, &reciprocals).map_err(refused)?;
     // Upwards from 0 and downwards from −0, each from one number to its neighbour.
-    let tally = both([(0, true), (1 << 31, false)].map(|(sign, upwards)| {
-        move || {
-            let mut tally = Tally::EMPTY;
-            let mut previous = axis.locate(f32::from_bits(sign));
-            for bits in 0..=f32::INFINITY.to_bits() {
-                let position = f32::from_bits(sign | bits);
-                let next = axis.locate(position);
-                let [lower, upper] = if upwards {
-                    [previous, next]
-                } else {
-                    [next, previous]
-                };
-                let rises = (lower.index, lower.fraction) <= (upper.index, upper.fraction);
-                tally.take(sign | bits, rises && is_right(knots, position, next));
-                previous = next;
-            }
-            // The rest are NaN.
-            for bits in f32::INFINITY.to_bits() + 1..1 << 31 {
-                let position = f32::from_bits(sign | bits);
-                tally.take(
-                    sign | bits,
-                    is_right(knots, position, axis.locate(position)),
-                );
-            }
-            tally
+    let run = |(sign, upwards)| {
+        let mut tally = Tally::EMPTY;
+        let mut previous = axis.locate(f32::from_bits(sign));
+        for bits in 0..=f32::INFINITY.to_bits() {
+            let position = f32::from_bits(sign | bits);
+            let next = axis.locate(position);
+            let [lower, upper] = if upwards {
+                [previous, next]
+            } else {
+                [next, previous]
+            };
+            let rises = (lower.index, lower.fraction) <= (upper.index, upper.fraction);
+            tally.take(sign | bits, rises && is_right(knots, position, next));
+            previous = next;
         }
-    }))?;
+        // The rest are NaN.
+        for bits in f32::INFINITY.to_bits() + 1..1 << 31 {
+            let position = f32::from_bits(sign | bits);
+            tally.take(
+                sign | bits,
+                is_right(knots, position, axis.locate(position)),
+            );
+        }
+        tally
+    };
+    let runs = [(0, true), (1 << 31, false)].into_par_iter().map(run);
+    let tally = runs.reduce(|| Tally::EMPTY, Tally::and);
     Ok(tally.figures("positions", size(&ALL), float))
 }
 
@@ -285,7 +263,7 @@ fn last_knot() -> Result<Vec<Figure>, String> {
         let product = width * Axis::reciprocal_width(0.0, width);
         tally.measure(product);
         tally.take(bits, product <= 1.0);
-    })?;
+    });
     let mut figures = product.figures("widths up to 2 m", size(&widths), float);
     let largest = f64::from(product.worst);
     figures.push(Figure::at_most(
@@ -303,7 +281,7 @@ fn last_knot() -> Result<Vec<Figure>, String> {
             })
         },
     );
-    figures.extend(ends?);
+    figures.extend(ends);
     Ok(figures)
 }
 
@@ -319,17 +297,17 @@ fn limits() -> Result<Vec<Figure>, String> {
                 largest.copysign(value)
             };
             limit(value, largest).to_bits() == expected.to_bits()
-        })?);
+        }));
     }
     Ok(figures)
 }
 
 fn counts() -> Result<Vec<Figure>, String> {
-    holds_for("forces in counts", ALL, |value| {
+    Ok(holds_for("forces in counts", ALL, |value| {
         // The conversion of a NaN gives 0.
         let expected = f64::from(value).round_ties_even().clamp(-32767.0, 32767.0) as i16;
         count(value) == expected
-    })
+    }))
 }
 
 fn blends() -> Result<Vec<Figure>, String> {
@@ -344,7 +322,7 @@ fn blends() -> Result<Vec<Figure>, String> {
             }
             let inside = (0.0..=1.0).contains(&t);
             tally.take(bits, !inside || (low <= value && value <= high));
-        })?;
+        });
         let what = format!("{a} to {b}");
         figures.extend(tally.figures(&what, size(&ALL), float));
         let allowed = 3.0 * high.abs().max(low.abs()) * 1.000_001;
@@ -369,14 +347,15 @@ fn blends() -> Result<Vec<Figure>, String> {
 /// The slowest release from the largest force. A smaller force and a quicker release are never later: rounding
 /// keeps the order of differences.
 fn release() -> Result<Vec<Figure>, String> {
-    holds_for("force limits", between(MIN_SLEW, FORCE_CEILING), |force| {
+    let limits = between(MIN_SLEW, FORCE_CEILING);
+    Ok(holds_for("force limits", limits, |force| {
         let release = force / f32::from(RELEASE_CYCLES);
         let mut rest = force;
         for _ in 0..=RELEASE_CYCLES {
             rest = approach(rest, 0.0, release, release);
         }
         rest == 0.0
-    })
+    }))
 }
 
 /// Every distance of two sequence numbers, from every 257th number.
@@ -415,8 +394,9 @@ fn freshness() -> Result<Vec<Figure>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Outcome;
 
-    // That a violation is counted, and the first of both threads named.
+    // That a violation is counted, and the first of all threads named.
     // Verifies: EVD-044.
     #[test]
     fn the_first_input_that_breaks_a_property_is_named() {
@@ -425,7 +405,7 @@ mod tests {
             (1.25f32, "1.25e0 (0x3fa00000)"),
             (1.75, "1.75e0 (0x3fe00000)"),
         ] {
-            let figures = holds_for("numbers", bits.clone(), |x| x < threshold).unwrap();
+            let figures = holds_for("numbers", bits.clone(), |x| x < threshold);
             let broken = u64::from(2f32.to_bits() - threshold.to_bits()) + 1;
             assert_eq!(
                 figures[0],
@@ -439,10 +419,10 @@ mod tests {
 
     // Verifies: EVD-044.
     #[test]
-    fn the_worst_of_both_threads_is_kept_and_so_is_a_nan() {
+    fn the_worst_of_all_threads_is_kept_and_so_is_a_nan() {
         let worst = |of: fn(f32) -> f32| {
             let measure = |bits, tally: &mut Tally| tally.measure(of(f32::from_bits(bits)));
-            for_bits(&between(1.0, 2.0), measure).unwrap().worst
+            for_bits(&between(1.0, 2.0), measure).worst
         };
         assert_eq!(worst(|x| x), 2.0);
         assert_eq!(worst(|x| 4.0 - x), 3.0);
@@ -453,8 +433,12 @@ mod tests {
     // Verifies: EVD-044.
     #[test]
     fn a_thread_that_panics_fails_the_check() {
-        let jobs: [fn() -> Tally; 2] = [|| Tally::EMPTY, || panic!("planted")];
-        let panicked = both(jobs);
-        assert!(panicked.unwrap_err().contains("panicked"));
+        let check = Check::new("kernel.planted", "It panics.", &[], || {
+            Ok(holds_for("numbers", between(1.0, 2.0), |_| {
+                panic!("planted")
+            }))
+        });
+        let failure = Outcome::of(&check).failure;
+        assert_eq!(failure.as_deref(), Some("panicked: planted"));
     }
 }

@@ -10,7 +10,7 @@ use palpate_conform::{Case, Count, Outcome, Question, Suite, Verdict, judge};
 pub const CHECKS: &[Check] = &[Check::new(
     "vectors.oracle",
     "The oracle of this build answers every vector of the embedded suite within its tolerance, \
-            and refuses what must be refused.",
+         and refuses what must be refused.",
     &["ORA-001", "ORA-046", "VEC-002", "EVD-050"],
     oracle,
 )];

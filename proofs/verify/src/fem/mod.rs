@@ -40,14 +40,14 @@ pub const CHECKS: &[Check] = &[
     Check::new(
         "fem.linear_patch",
         "A linear displacement prescribed along the border is found inside to rounding, with its gradient and \
-            stress, on a distorted mesh of straight or curved triangles.",
+         stress, on a distorted mesh of straight or curved triangles.",
         &["FEM-050"],
         patch::linear,
     ),
     Check::new(
         "fem.quadratic_patch",
         "A quadratic displacement is found to rounding by straight triangles; curved ones, which cannot hold it, are \
-            seen to miss it.",
+         seen to miss it.",
         &["FEM-051"],
         patch::quadratic,
     ),
@@ -60,7 +60,7 @@ pub const CHECKS: &[Check] = &[
     Check::new(
         "fem.manufactured_t6",
         "On four bent meshes t6 converges to a manufactured solution with the orders 3 (displacement) and 2 \
-            (gradient), at ν = 0.3 and 0.49, with the errors that scikit-fem has on the same meshes.",
+         (gradient), at ν = 0.3 and 0.49, with the errors that scikit-fem has on the same meshes.",
         &["FEM-053", "FEM-062"],
         manufactured::triangles,
     ),
@@ -73,7 +73,7 @@ pub const CHECKS: &[Check] = &[
     Check::new(
         "fem.cylinder",
         "A cylinder under internal pressure at ν = 0.49 converges to Lamé's displacement and stress, with the errors \
-            that scikit-fem has on the same five meshes.",
+         that scikit-fem has on the same five meshes.",
         &["FEM-054", "FEM-062"],
         cylinder::pressed,
     ),
@@ -86,21 +86,21 @@ pub const CHECKS: &[Check] = &[
     Check::new(
         "fem.disc",
         "A stiff disc in a far field, with the moduli of gel and inclusion, converges to the exact field, and the \
-            stress in it to Eshelby's uniform one.",
+         stress in it to Eshelby's uniform one.",
         &["FEM-055", "FEM-062"],
         inclusion::disc,
     ),
     Check::new(
         "fem.bonded_layer",
         "A layer bonded to a rigid base under a wave of pressure, short or long against its thickness, converges to \
-            the closed form.",
+         the closed form.",
         &["FEM-056", "FEM-062"],
         layer::bonded,
     ),
     Check::new(
         "fem.thin_strip",
         "The force on a thin strip between rigid bonded plates tends to the lubrication limit, 1 − tanh(2)/2 of a wide \
-            strip's.",
+         strip's.",
         &["FEM-057"],
         layer::thin,
     ),
@@ -113,14 +113,14 @@ pub const CHECKS: &[Check] = &[
     Check::new(
         "fem.energy_slopes",
         "Over whole maps the normal force is the slope of the strain energy in the depth, the lateral force its \
-            negative slope in x, and their cross slopes agree, within the error of central differences.",
+         negative slope in x, and their cross slopes agree, within the error of central differences.",
         &["FEM-059", "FEM-012"],
         energy::slopes,
     ),
     Check::new(
         "fem.condensed_contact",
         "Contact solved on the condensed surface equals Newton's method on all unknowns at once, and poses at x and −x \
-            that are solved each by itself agree.",
+         that are solved each by itself agree.",
         &["FEM-060", "FEM-061"],
         || full_contact::compare("2.6", Contact::DeformedNormal),
     ),
@@ -139,15 +139,15 @@ pub const CHECKS: &[Check] = &[
     Check::new(
         "fem.reference_forces",
         "The normal force at a depth of 4 mm, x = 0, is 1.48 N without inclusion and 0.31 N more with the 6.6 mm one, \
-            as an independent program found.",
+         as an independent program found.",
         &["FEM-020"],
         paper::reference,
     ),
     Check::new(
         "fem.certificates",
         "At 15 poses of each of the paper's five phantoms the linear solves leave less than their limit, no node of the \
-            surface is inside the probe, and the forces are mirror-symmetric; the bands say how far the forces may be from \
-            those of an infinitely fine mesh.",
+         surface is inside the probe, and the forces are mirror-symmetric; the bands say how far the forces may be from \
+         those of an infinitely fine mesh.",
         &[
             "FEM-008", "FEM-009", "FEM-014", "FEM-015", "FEM-026", "FEM-027",
         ],
