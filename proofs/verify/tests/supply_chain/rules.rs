@@ -28,7 +28,7 @@ fn forbidden(bans: &toml::Value, name: &str, version: &str) -> bool {
 /// Whether an SPDX expression can be kept with the allowed licences: of alternatives one is enough. `AND` binds
 /// closer than `OR`; a licence with an exception is another licence.
 fn allowed(expression: &str, allow: &[&str]) -> bool {
-    let spaced = expression.replace('/', " OR ");
+    let spaced = expression.replace('/', " OR ").replace(" or ", " OR ");
     let plain = spaced.trim();
     let inner = plain
         .strip_prefix('(')

@@ -73,7 +73,8 @@ impl Trace {
         lines: &[&str],
         line: usize,
     ) -> Result<(), String> {
-        let (said, ending) = (comment(lines[line], ending(path)), ending(path));
+        let ending = ending(path);
+        let said = comment(lines[line], ending);
         let word = WORDS
             .into_iter()
             .find(|word| said.is_some_and(|said| said.starts_with(&format!("{word}:"))));
@@ -89,10 +90,8 @@ impl Trace {
         };
         let (mut listed, mut end) = (said[word.len() + 1..].trim().to_string(), line + 1);
         while listed.ends_with(',') && end < lines.len() {
-            listed = format!(
-                "{listed} {}",
-                comment(lines[end], ending).unwrap_or_default()
-            );
+            listed += " ";
+            listed += comment(lines[end], ending).unwrap_or_default();
             end += 1;
         }
         let ids = listed.split_once('.').map(|(ids, _)| ids.split(", "));
@@ -125,20 +124,13 @@ impl Trace {
     ///
     /// Implements: EVD-020, EVD-029.
     fn judge(&mut self, defined: &BTreeMap<String, Defined>) {
-        for (
-            id,
-            Defined {
-                requirement,
-                path,
-                line,
-            },
-        ) in defined
-        {
-            let tested = !requirement.tests.is_empty() || !requirement.proofs.is_empty();
-            let inspected = requirement.inspection.as_deref();
+        for (id, defined) in defined {
+            let row = &defined.requirement;
+            let tested = !row.tests.is_empty() || !row.proofs.is_empty();
+            let inspected = row.inspection.as_deref();
             for (wrong, message) in [
                 (
-                    requirement.code.is_empty(),
+                    row.code.is_empty(),
                     "has no code: no annotation \"Implements:\" names it",
                 ),
                 (
@@ -155,8 +147,9 @@ impl Trace {
                 ),
             ] {
                 if wrong {
+                    let message = format!("{id} {message}");
                     self.problems
-                        .insert((path.clone(), *line, format!("{id} {message}")));
+                        .insert((defined.path.clone(), defined.line, message));
                 }
             }
         }
