@@ -33,7 +33,7 @@ const README_NOT_RUN: [(&str, &str); 4] = [
     ("palpate run ", "docs/tutorial.md runs it"),
     (
         "palpate-verify",
-        "takes minutes without optimisation; proofs/verify/tests/verify_command.rs and proofs/verify/tests/statistics run the battery",
+        "takes minutes without optimisation; proofs/verify/tests/verify_command.rs and proofs/verify/tests/statistics.rs run the battery",
     ),
     (
         "--device hid",

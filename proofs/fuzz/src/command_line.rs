@@ -3,11 +3,11 @@
 use std::ffi::OsString;
 
 use palpate::cli::arguments::{Arguments, Asked};
-use palpate::cli::lists::{length, positions};
+use palpate::cli::lists::{Positions, length, positions};
 use palpate::phantom::decimal::{format_scaled, parse_scaled};
 
 use crate::message::check_message;
-use crate::{Outcome, text};
+use crate::{Outcome, judged};
 
 /// Most positions of a list (CLI-011).
 const MOST: usize = 10_000;
@@ -16,28 +16,23 @@ const MOST: usize = 10_000;
 /// and read again, and has its ends where the text says.
 ///
 /// Implements: EVD-081, EVD-082.
-pub fn list(bytes: &[u8]) -> Outcome {
-    let Some(text) = text(bytes) else {
-        return Outcome::Refused;
-    };
+pub fn list(text: &str) -> Outcome {
     match length(text) {
         Ok(length) => assert!(length.is_finite() && length > 0.0),
         Err(error) => check_message(&error),
     }
-    let positions = match positions(text) {
-        Ok(positions) => positions.0,
-        Err(error) => {
-            check_message(&error);
-            return Outcome::Refused;
-        }
-    };
-    check_positions(&positions);
+    let accepted = |positions: Positions| check_list(&positions.0, text);
+    judged(positions(text), accepted, |error| check_message(&error))
+}
+
+fn check_list(positions: &[f64], text: &str) {
+    check_positions(positions);
     let written: Vec<String> = positions.iter().map(|&x| format_scaled(x, 3)).collect();
     let again = palpate::cli::lists::positions(&written.join(","))
         .expect("it was written")
         .0;
     let bits = |positions: &[f64]| positions.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-    assert_eq!(bits(&again), bits(&positions));
+    assert_eq!(bits(&again), bits(positions));
     let metres = |text: &str| parse_scaled(text.trim(), -3).expect("it was accepted");
     if let [from, to, step] = text.split(':').collect::<Vec<_>>()[..] {
         assert_eq!(positions[0], metres(from));
@@ -47,7 +42,6 @@ pub fn list(bytes: &[u8]) -> Outcome {
     } else {
         assert_eq!(positions.len(), text.split(',').count());
     }
-    Outcome::Accepted
 }
 
 /// Positions are finite and increase, and there are at most 10 000.
@@ -67,7 +61,7 @@ pub fn decimal(bytes: &[u8]) -> Outcome {
     let Some((&first, rest)) = bytes.split_first() else {
         return Outcome::Refused;
     };
-    let Some(text) = text(rest) else {
+    let Ok(text) = std::str::from_utf8(rest) else {
         return Outcome::Refused;
     };
     let power = i32::from(first) % 25 - 12;
@@ -103,24 +97,15 @@ pub fn decimal(bytes: &[u8]) -> Outcome {
 /// The bytes are the arguments, with a NUL between.
 ///
 /// Implements: EVD-082.
-pub fn command_line(bytes: &[u8]) -> Outcome {
-    let Some(text) = text(bytes) else {
-        return Outcome::Refused;
-    };
+pub fn command_line(text: &str) -> Outcome {
     let arguments = text.split('\0').map(OsString::from);
-    match Asked::<Arguments>::read(std::iter::once("palpate".into()).chain(arguments)) {
-        Ok(Asked::Command(arguments)) => {
-            assert!(!format!("{arguments:?}").is_empty());
-            Outcome::Accepted
-        }
-        Ok(Asked::Text(text)) => {
-            assert!(!text.is_empty());
-            Outcome::Accepted
-        }
-        Err(error) => {
-            check_message(&error.to_string());
-            assert_eq!(error.exit_code(), 2);
-            Outcome::Refused
-        }
-    }
+    let asked = Asked::<Arguments>::read(std::iter::once("palpate".into()).chain(arguments));
+    let accepted = |asked| match asked {
+        Asked::Command(arguments) => assert!(!format!("{arguments:?}").is_empty()),
+        Asked::Text(text) => assert!(!text.is_empty()),
+    };
+    judged(asked, accepted, |error| {
+        check_message(&error.to_string());
+        assert_eq!(error.exit_code(), 2);
+    })
 }

@@ -5,27 +5,20 @@ use std::collections::HashSet;
 use palpate::psychophysics::Journal;
 use palpate::psychophysics::{MOST_TRIALS, Table, analyse};
 
-use crate::message::{check_file_message, check_message};
-use crate::{FILE, Outcome, text};
+use crate::message::{check_file_message, check_message, check_quoting};
+use crate::{FILE, Outcome, judged};
 
 /// An accepted table has counts that fit their trials and names that can be printed, is the same
 /// when it is written and read again, and can be analysed; a refusal names file and line.
 ///
 /// Implements: EVD-081, EVD-082.
-pub fn counts_csv(bytes: &[u8]) -> Outcome {
-    let Some(text) = text(bytes) else {
-        return Outcome::Refused;
-    };
-    match Table::from_csv(text, FILE) {
-        Ok(table) => {
-            check_table(&table);
-            Outcome::Accepted
-        }
-        Err(error) => {
-            check_file_message(&error.to_string(), error.line, text);
-            Outcome::Refused
-        }
-    }
+pub fn counts_csv(text: &str) -> Outcome {
+    let read = Table::from_csv(text, FILE);
+    judged(
+        read,
+        |table| check_table(&table),
+        |error| check_file_message(&error, text),
+    )
 }
 
 fn check_table(table: &Table) {
@@ -91,33 +84,22 @@ fn written(table: &Table) -> String {
 /// answers, and a line that an abort left unfinished does not count; a refusal names the line.
 ///
 /// Implements: EVD-081, EVD-082.
-pub fn journal(bytes: &[u8]) -> Outcome {
-    let Some(text) = text(bytes) else {
-        return Outcome::Refused;
+pub fn journal(text: &str) -> Outcome {
+    let accepted = |journal: Journal| {
+        let written = journal.to_text();
+        let again = Journal::parse(&written).expect("what was written can be read");
+        assert_eq!((&again, again.to_text()), (&journal, written.clone()));
+        for cut in ["right", "nonsense"] {
+            let again = Journal::parse(&format!("{written}{cut}"));
+            assert_eq!(again.as_ref(), Ok(&journal), "{cut:?}");
+        }
+        check_counts(&journal, &written);
     };
-    match Journal::parse(text) {
-        Ok(journal) => {
-            let written = journal.to_text();
-            let again = Journal::parse(&written).expect("what was written can be read");
-            assert_eq!((&again, again.to_text()), (&journal, written.clone()));
-            for cut in ["right", "nonsense"] {
-                let again = Journal::parse(&format!("{written}{cut}"));
-                assert_eq!(again.as_ref(), Ok(&journal), "{cut:?}");
-            }
-            check_counts(&journal, &written);
-            Outcome::Accepted
-        }
-        Err(error) => {
-            check_message(&error.to_string());
-            let number = error.line.expect("the line");
-            crate::message::check_line(number, text);
-            // Of an unfinished line, and behind the last one, there is nothing.
-            let line = text.lines().nth(number - 1).unwrap_or("");
-            let line: String = line.chars().take(80).collect();
-            assert!([format!("{line:?}"), "\"\"".into()].contains(&error.found));
-            Outcome::Refused
-        }
-    }
+    judged(Journal::parse(text), accepted, |error| {
+        let quoted = check_quoting(&error, text);
+        // Of an unfinished line, and behind the last one, there is nothing.
+        assert!([quoted, "\"\"".into()].contains(&error.found));
+    })
 }
 
 fn check_counts(journal: &Journal, written: &str) {

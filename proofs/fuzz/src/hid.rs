@@ -7,8 +7,8 @@ use palpate::hid::{
 };
 use palpate::servo::LoadedTable;
 
-use crate::message::{check_line, check_message};
-use crate::{Outcome, text};
+use crate::message::{check_message, check_quoting};
+use crate::{Outcome, judged};
 
 /// Bytes are a report if, and only if, length and number are its own; what is decoded encodes to
 /// the same bytes, and a refusal tells what was found.
@@ -111,28 +111,16 @@ fn check_units(capabilities: &Capabilities, bytes: &[u8]) {
 /// which cycle differs; a refusal names the line and quotes its beginning.
 ///
 /// Implements: EVD-081, EVD-082.
-pub fn recording(bytes: &[u8]) -> Outcome {
-    let Some(text) = text(bytes) else {
-        return Outcome::Refused;
+pub fn recording(text: &str) -> Outcome {
+    let accepted = |recording: Recording| {
+        let written = recording.to_text();
+        let again = Recording::parse(&written).expect("what was written can be read");
+        assert_eq!((&again, again.to_text()), (&recording, written));
+        check_replay(&recording);
     };
-    match Recording::parse(text) {
-        Ok(recording) => {
-            let written = recording.to_text();
-            let again = Recording::parse(&written).expect("what was written can be read");
-            assert_eq!((&again, again.to_text()), (&recording, written));
-            check_replay(&recording);
-            Outcome::Accepted
-        }
-        Err(refusal) => {
-            check_message(&refusal.to_string());
-            let line = refusal.line.expect("a line");
-            check_line(line, text);
-            let there = text.lines().nth(line - 1).unwrap_or_default();
-            let start: String = there.chars().take(80).collect();
-            assert_eq!(refusal.found, format!("{start:?}"));
-            Outcome::Refused
-        }
-    }
+    judged(Recording::parse(text), accepted, |refusal| {
+        assert_eq!(refusal.found, check_quoting(&refusal, text));
+    })
 }
 
 fn check_replay(recording: &Recording) {

@@ -46,43 +46,68 @@ pub enum Outcome {
 pub struct Target {
     /// The name of its test, and of the archive of its corpus.
     pub name: &'static str,
-    /// Panics where the property does not hold.
-    pub check: fn(&[u8]) -> Outcome,
+    property: Property,
 }
 
-macro_rules! targets {
-    ($($module:ident::$name:ident),* $(,)?) => {
-        /// All targets.
-        ///
-        /// Implements: EVD-080.
-        pub const TARGETS: &[Target] = &[$(Target {
-            name: stringify!($name),
-            check: $module::$name,
-        }),*];
-    };
+/// Panics where it does not hold.
+#[derive(Debug, Clone, Copy)]
+enum Property {
+    OfBytes(fn(&[u8]) -> Outcome),
+    /// A file that is not UTF-8 is refused before any reader sees it.
+    OfText(fn(&str) -> Outcome),
 }
-targets!(
-    phantom::phantom_toml,
-    config::config_toml,
-    map::map_json,
-    map::map_csv,
-    trace::trace_csv,
-    counts::counts_csv,
-    counts::journal,
-    suite::vectors,
-    oracle::oracle_line,
-    hid::hid_report,
-    hid::recording,
-    command_line::list,
-    command_line::decimal,
-    command_line::command_line,
-);
+use Property::{OfBytes, OfText};
+
+/// All targets.
+///
+/// Implements: EVD-080.
+pub const TARGETS: &[Target] = &[
+    Target::new("phantom_toml", OfText(phantom::phantom_toml)),
+    Target::new("config_toml", OfText(config::config_toml)),
+    Target::new("map_json", OfText(map::map_json)),
+    Target::new("map_csv", OfText(map::map_csv)),
+    Target::new("trace_csv", OfText(trace::trace_csv)),
+    Target::new("counts_csv", OfText(counts::counts_csv)),
+    Target::new("journal", OfText(counts::journal)),
+    Target::new("vectors", OfText(suite::vectors)),
+    Target::new("oracle_line", OfBytes(oracle::oracle_line)),
+    Target::new("hid_report", OfBytes(hid::hid_report)),
+    Target::new("recording", OfText(hid::recording)),
+    Target::new("list", OfText(command_line::list)),
+    Target::new("decimal", OfBytes(command_line::decimal)),
+    Target::new("command_line", OfText(command_line::command_line)),
+];
+
+impl Target {
+    const fn new(name: &'static str, property: Property) -> Target {
+        Target { name, property }
+    }
+
+    /// What the reader does with some bytes.
+    ///
+    /// # Panics
+    /// Where the property does not hold.
+    pub fn check(&self, bytes: &[u8]) -> Outcome {
+        match self.property {
+            OfBytes(check) => check(bytes),
+            OfText(check) => std::str::from_utf8(bytes).map_or(Outcome::Refused, check),
+        }
+    }
+}
+
+/// What a reader did, with a check of what it accepted or of what it says.
+fn judged<T, E>(read: Result<T, E>, accepted: impl FnOnce(T), refused: impl FnOnce(E)) -> Outcome {
+    match read {
+        Ok(value) => {
+            accepted(value);
+            Outcome::Accepted
+        }
+        Err(error) => {
+            refused(error);
+            Outcome::Refused
+        }
+    }
+}
 
 /// The name under which texts are read, to be found in every message.
 const FILE: &str = "fuzz.txt";
-
-/// The text that a file with these bytes is read as; a file that is not UTF-8 is refused before any
-/// reader sees it.
-fn text(bytes: &[u8]) -> Option<&str> {
-    std::str::from_utf8(bytes).ok()
-}

@@ -5,50 +5,28 @@ use palpate::refusal::Refusal;
 use palpate::servo::LoadedTable;
 
 use crate::message::check_file_message;
-use crate::{FILE, Outcome, text};
+use crate::{FILE, Outcome, judged};
 
 /// An accepted map has increasing axes and finite forces, and is the same to the bit when it is
 /// written and read again; a refusal names file and line, or the key.
 ///
 /// Implements: EVD-081, EVD-082.
-pub fn map_json(bytes: &[u8]) -> Outcome {
-    let Some(text) = text(bytes) else {
-        return Outcome::Refused;
-    };
-    match ForceMap::from_json(text, FILE) {
-        Ok(map) => {
-            check_map(&map);
-            Outcome::Accepted
-        }
-        Err(error) => {
-            check_file_message(&error.to_string(), error.line, text);
-            Outcome::Refused
-        }
-    }
+pub fn map_json(text: &str) -> Outcome {
+    let read = ForceMap::from_json(text, FILE);
+    judged(read, check_map, |error| check_file_message(&error, text))
 }
 
 /// As [`map_json`] for CSV; what a refusal quotes stands in the line that it names.
 ///
 /// Implements: EVD-081, EVD-082.
-pub fn map_csv(bytes: &[u8]) -> Outcome {
-    let Some(text) = text(bytes) else {
-        return Outcome::Refused;
-    };
-    match ForceMap::from_csv(text, FILE, "a note", None) {
-        Ok(map) => {
-            check_map(&map);
-            Outcome::Accepted
-        }
-        Err(error) => {
-            check_csv(&error, text);
-            Outcome::Refused
-        }
-    }
+pub fn map_csv(text: &str) -> Outcome {
+    let read = ForceMap::from_csv(text, FILE, "a note", None);
+    judged(read, check_map, |error| check_csv(&error, text))
 }
 
 /// Checks that what a refusal quotes stands in the line that it names.
 pub fn check_csv(refusal: &Refusal, text: &str) {
-    check_file_message(&refusal.to_string(), refusal.line, text);
+    check_file_message(refusal, text);
     let Some((_, quoted)) = refusal.found.split_once('"') else {
         return;
     };
@@ -66,7 +44,7 @@ pub fn check_csv(refusal: &Refusal, text: &str) {
     );
 }
 
-fn check_map(map: &ForceMap) {
+fn check_map(map: ForceMap) {
     check_table(map.table());
     if let Some(phantom) = map.phantom() {
         phantom.validate().expect("valid");
@@ -75,7 +53,7 @@ fn check_map(map: &ForceMap) {
     let written = map.to_json();
     let again = ForceMap::from_json(&written, FILE).expect("what was written can be read");
     // Texts as well, since −0 = 0.
-    assert_eq!((&again, again.to_json()), (map, written));
+    assert_eq!((&again, again.to_json()), (&map, written));
     match map.mirrored() {
         Ok(whole) => {
             assert_eq!(whole.laterals().len(), 2 * map.laterals().len() - 1);

@@ -1,5 +1,7 @@
 //! What a refusal must say.
 
+use palpate::refusal::Refusal;
+
 /// Checks that a message is one line without control characters, which a terminal would obey.
 ///
 /// Implements: EVD-082.
@@ -15,9 +17,10 @@ pub fn check_message(message: &str) {
 /// a line of the text.
 ///
 /// Implements: EVD-082.
-pub fn check_file_message(message: &str, line: Option<usize>, text: &str) {
-    check_message(message);
-    let place = match line {
+pub fn check_file_message(refusal: &Refusal, text: &str) {
+    let message = refusal.to_string();
+    check_message(&message);
+    let place = match refusal.line {
         Some(line) => format!("{}:{line}: ", crate::FILE),
         None => format!("{}: ", crate::FILE),
     };
@@ -25,7 +28,7 @@ pub fn check_file_message(message: &str, line: Option<usize>, text: &str) {
         message.starts_with(&place),
         "{message:?} without {place:?} in front"
     );
-    if let Some(line) = line {
+    if let Some(line) = refusal.line {
         check_line(line, text);
     }
 }
@@ -37,4 +40,14 @@ pub fn check_line(line: usize, text: &str) {
         (1..=lines + 1).contains(&line),
         "line {line} of a text of {lines}"
     );
+}
+
+/// Checks a message without a file about one of the lines of the text, and gives what it may quote of that.
+pub fn check_quoting(refusal: &Refusal, text: &str) -> String {
+    check_message(&refusal.to_string());
+    let line = refusal.line.expect("a line");
+    check_line(line, text);
+    let there = text.lines().nth(line - 1).unwrap_or_default();
+    let start: String = there.chars().take(80).collect();
+    format!("{start:?}")
 }

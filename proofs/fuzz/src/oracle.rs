@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use palpate::oracle::{Oracle, serve};
+use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
 use serde_json::value::RawValue;
 
@@ -119,28 +120,23 @@ fn id(line: &[u8]) -> Option<String> {
 
 /// How many members an object has, repeated keys included.
 fn count_members(text: &str) -> Option<usize> {
-    struct Count(usize);
-    impl<'de> serde::Deserialize<'de> for Count {
-        fn deserialize<D: serde::Deserializer<'de>>(reader: D) -> Result<Count, D::Error> {
-            struct Visit;
-            impl<'de> serde::de::Visitor<'de> for Visit {
-                type Value = Count;
-                fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                    f.write_str("an object")
-                }
-                fn visit_map<A: serde::de::MapAccess<'de>>(
-                    self,
-                    mut map: A,
-                ) -> Result<Count, A::Error> {
-                    let mut count = 0;
-                    while map.next_entry::<String, serde::de::IgnoredAny>()?.is_some() {
-                        count += 1;
-                    }
-                    Ok(Count(count))
-                }
+    struct Count;
+    impl<'de> Visitor<'de> for Count {
+        type Value = usize;
+
+        fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+            f.write_str("an object")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<usize, A::Error> {
+            let mut count = 0;
+            while map.next_entry::<String, IgnoredAny>()?.is_some() {
+                count += 1;
             }
-            reader.deserialize_map(Visit)
+            Ok(count)
         }
     }
-    serde_json::from_str(text).ok().map(|Count(count)| count)
+    serde_json::Deserializer::from_str(text)
+        .deserialize_map(Count)
+        .ok()
 }

@@ -3,39 +3,29 @@
 use palpate::phantom::Phantom;
 
 use crate::message::check_file_message;
-use crate::{FILE, Outcome, text};
+use crate::{FILE, Outcome, judged};
 
 /// An accepted phantom is valid, and the same when it is written and read again, as TOML and as
 /// JSON; a refusal names file, line and key.
 ///
 /// Implements: EVD-081, EVD-082.
-pub fn phantom_toml(bytes: &[u8]) -> Outcome {
-    let Some(text) = text(bytes) else {
-        return Outcome::Refused;
-    };
-    match Phantom::from_toml(text, FILE) {
-        Ok(phantom) => {
-            check_phantom(&phantom);
-            Outcome::Accepted
-        }
-        Err(error) => {
-            check_file_message(&error.to_string(), error.line, text);
-            // Only a key of the whole file that is not there has no line.
-            let is_missing = error.found.ends_with(" is missing");
-            assert!(error.line.is_some() || is_missing, "{error}");
-            Outcome::Refused
-        }
-    }
+pub fn phantom_toml(text: &str) -> Outcome {
+    judged(Phantom::from_toml(text, FILE), check_phantom, |error| {
+        check_file_message(&error, text);
+        // Only a key of the whole file that is not there has no line.
+        let is_missing = error.found.ends_with(" is missing");
+        assert!(error.line.is_some() || is_missing, "{error}");
+    })
 }
 
-fn check_phantom(phantom: &Phantom) {
+fn check_phantom(phantom: Phantom) {
     phantom.validate().expect("valid");
     let written = phantom.to_toml().expect("valid");
     let again = Phantom::from_toml(&written, FILE).expect("what was written can be read");
     // Texts as well, since −0 = 0.
-    assert_eq!((&again, again.to_toml()), (phantom, Ok(written)));
-    let written = serde_json::to_string(phantom).expect("numbers and a text");
+    assert_eq!((&again, again.to_toml()), (&phantom, Ok(written)));
+    let written = serde_json::to_string(&phantom).expect("numbers and a text");
     let again: Phantom = serde_json::from_str(&written).expect("what was written can be read");
-    assert_eq!(again, *phantom);
+    assert_eq!(again, phantom);
     assert_eq!(serde_json::to_string(&again).ok(), Some(written));
 }

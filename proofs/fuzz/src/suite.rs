@@ -7,7 +7,7 @@ use palpate_conform::{Expected, Question, Suite, Tolerance};
 use serde_json::value::RawValue;
 
 use crate::message::check_message;
-use crate::{Outcome, text};
+use crate::{Outcome, judged};
 
 /// The name of the file of cases.
 const GROUP: &str = "fuzz.json";
@@ -20,10 +20,7 @@ const SEPARATOR: char = '\u{1e}';
 /// The bytes are the file, and after a record separator (1E) a manifest.
 ///
 /// Implements: EVD-081, EVD-082.
-pub fn vectors(bytes: &[u8]) -> Outcome {
-    let Some(text) = text(bytes) else {
-        return Outcome::Refused;
-    };
+pub fn vectors(text: &str) -> Outcome {
     let (group, manifest) = match text.split_once(SEPARATOR) {
         Some((group, manifest)) => (group, Some(manifest)),
         None => (text, None),
@@ -32,19 +29,15 @@ pub fn vectors(bytes: &[u8]) -> Outcome {
     if let Some(manifest) = manifest {
         files.insert("manifest.json".into(), manifest.into());
     }
-    match Suite::of_files(files.clone()) {
-        Ok(suite) => {
-            check_suite(&suite);
-            assert_eq!(Suite::of_files(files).as_ref(), Ok(&suite));
-            Outcome::Accepted
-        }
-        Err(error) => {
-            check_message(&error.to_string());
-            assert!(error.file == GROUP || manifest.is_some(), "{error}");
-            assert!(error.to_string().starts_with(&error.file), "{error}");
-            Outcome::Refused
-        }
-    }
+    let accepted = |suite: Suite| {
+        check_suite(&suite);
+        assert_eq!(Suite::of_files(files.clone()).as_ref(), Ok(&suite));
+    };
+    judged(Suite::of_files(files.clone()), accepted, |error| {
+        check_message(&error.to_string());
+        assert!(error.file == GROUP || manifest.is_some(), "{error}");
+        assert!(error.to_string().starts_with(&error.file), "{error}");
+    })
 }
 
 fn check_suite(suite: &Suite) {

@@ -1,31 +1,27 @@
 //! Recorded sweeps.
 
 use palpate::force_map::SAME_POSITION;
+use palpate::refusal::Refusal;
 use palpate::trace::{Abscissa, Motion, Record, Trace};
 
 use crate::map::check_csv;
 use crate::message::check_file_message;
-use crate::{FILE, Outcome, text};
+use crate::{FILE, Outcome, judged};
 
 /// An accepted trace has finite forces at increasing positions, and is the same when these are
 /// written and read again; a refusal names file and line, and quotes what stands there.
 ///
 /// Implements: EVD-081, EVD-082.
-pub fn trace_csv(bytes: &[u8]) -> Outcome {
-    let Some(text) = text(bytes) else {
-        return Outcome::Refused;
+pub fn trace_csv(text: &str) -> Outcome {
+    let refused = |error: Refusal| {
+        assert!(error.line.is_some(), "{error}");
+        check_csv(&error, text);
     };
-    match Trace::from_csv(text, FILE) {
-        Ok(trace) => {
-            check_trace(trace, text);
-            Outcome::Accepted
-        }
-        Err(error) => {
-            assert!(error.line.is_some(), "{error}");
-            check_csv(&error, text);
-            Outcome::Refused
-        }
-    }
+    judged(
+        Trace::from_csv(text, FILE),
+        |trace| check_trace(trace, text),
+        refused,
+    )
 }
 
 fn check_trace(trace: Trace, text: &str) {
@@ -41,7 +37,7 @@ fn check_trace(trace: Trace, text: &str) {
         // Times that increase can still make positions that do not.
         Err(error) => {
             assert!(motion.is_some(), "{error}");
-            return check_file_message(&error.to_string(), error.line, text);
+            return check_file_message(&error, text);
         }
     };
     let positions = record.positions();

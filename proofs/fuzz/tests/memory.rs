@@ -63,7 +63,7 @@ fn memory_is_in_proportion_to_the_input() {
         for bytes in cases {
             MEMORY.reset_peak_usage();
             let before = MEMORY.current_usage();
-            (target.check)(&bytes);
+            target.check(&bytes);
             let used = MEMORY.peak_usage().saturating_sub(before);
             most = most.max((used, bytes.len()));
             let text = String::from_utf8_lossy(&bytes[..bytes.len().min(80)]);

@@ -15,7 +15,7 @@ macro_rules! targets {
                 ordinary::run(target, $cases);
                 #[cfg(fuzzing)]
                 bolero::check!().for_each(|bytes: &[u8]| {
-                    (target.check)(bytes);
+                    target.check(bytes);
                 });
             }
         )*
@@ -114,7 +114,7 @@ mod ordinary {
         let (mut good, mut all) = (Vec::new(), Vec::new());
         for (what, bytes) in kept(target.name) {
             let case = Case { what, bytes };
-            if (target.check)(&case.bytes) == Outcome::Accepted {
+            if target.check(&case.bytes) == Outcome::Accepted {
                 good.push(case.bytes.clone());
             }
             all.push(case.bytes.clone());
@@ -126,7 +126,7 @@ mod ordinary {
                 what: format!("case {seed}"),
                 bytes: changed(seeds, &mut Random::new(seed)),
             };
-            accepted += u64::from((target.check)(&case.bytes) == Outcome::Accepted);
+            accepted += u64::from(target.check(&case.bytes) == Outcome::Accepted);
         }
         println!("{}: {accepted} of {cases} accepted", target.name);
         let share = cases / 100;

@@ -1,11 +1,6 @@
 //! The statistics battery as outcomes: what each of its checks claims, and for which requirements.
 
-use std::format;
-use std::string::{String, ToString};
-use std::vec;
-use std::vec::Vec;
-
-use super::statistics::{Check, FIXED_SEED, Failure};
+use super::statistics::{Check, FIXED_SEED};
 use super::{Figure, Outcome};
 
 /// Checks of the battery by the beginning of their names, with their claim and requirements.
@@ -87,14 +82,12 @@ fn group(name: &str) -> (&'static str, &'static [&'static str]) {
 ///
 /// Implements: CLI-050, EVD-001.
 pub fn outcome(check: &Check) -> Outcome {
-    let (claim, requirements) = group(check.name());
-    let name = format!("statistics.{}", check.name());
-    Outcome::measured(&name, claim, requirements, || {
-        figures(check).map_err(|failure| failure.to_string())
-    })
+    let (claim, requirements) = group(check.name);
+    let name = format!("statistics.{}", check.name);
+    Outcome::measured(name, claim, requirements, || figures(check))
 }
 
-fn figures(check: &Check) -> Result<Vec<Figure>, Failure> {
+fn figures(check: &Check) -> Result<Vec<Figure>, String> {
     let row = check.row(FIXED_SEED)?;
     check.run(FIXED_SEED)?;
     check.run_negative_controls(FIXED_SEED)?;
@@ -108,19 +101,6 @@ fn figures(check: &Check) -> Result<Vec<Figure>, Failure> {
     ])
 }
 
-/// Runs one check of one battery of a soak, without defects.
-///
-/// # Errors
-/// What it says when it rejects the detector.
-///
-/// Implements: CLI-051.
-pub fn soaked(check: &Check, seed: u64) -> Result<(), String> {
-    check
-        .run(seed)
-        .map(drop)
-        .map_err(|failure: Failure| failure.to_string())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -130,11 +110,11 @@ mod tests {
     #[test]
     fn every_check_of_the_battery_has_a_claim_of_its_group() {
         for check in battery() {
-            assert!(!group(check.name()).0.is_empty(), "{}", check.name());
+            assert!(!group(check.name).0.is_empty(), "{}", check.name);
         }
         // Every group is the first one of some check.
         for (start, claim, _) in GROUPS {
-            let used = battery().any(|check| group(check.name()).0 == claim);
+            let used = battery().any(|check| group(check.name).0 == claim);
             assert!(used, "{start}");
         }
     }
@@ -143,7 +123,7 @@ mod tests {
     #[test]
     fn a_check_of_the_battery_tells_its_row_of_the_ledger() {
         let check = battery()
-            .find(|check| check.name() == "direct_kolmogorov")
+            .find(|check| check.name == "direct_kolmogorov")
             .unwrap();
         let outcome = outcome(check);
         assert!(outcome.passed(), "{outcome:?}");

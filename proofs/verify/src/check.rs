@@ -1,25 +1,21 @@
-//! One thing that `palpate-verify` finds out on the user's own build.
+//! One thing that `palpate-verify` finds out on the user's own build, and what became of it.
 
+use std::any::Any;
 use std::fmt;
-use std::format;
-use std::string::{String, ToString};
-use std::vec::Vec;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Instant;
 
 /// A check: what it claims, which requirements it serves, and how it finds out.
 ///
 /// ```
-/// use palpate_verify::{Check, Figure};
+/// use palpate_verify::{Check, Figure, Outcome};
 ///
-/// let check = Check {
-///     name: "arithmetic.third",
-///     claim: "Three thirds are one.",
-///     requirements: &["CON-006"],
-///     repeatable: true,
-///     run: || Ok(vec![Figure::at_most("error", (1.0f64 / 3.0 * 3.0 - 1.0).abs(), 1e-15)]),
-/// };
-/// assert_eq!(check.judge().unwrap().len(), 1);
+/// let check = Check::new("arithmetic.third", "Three thirds are one.", &["CON-006"], || {
+///     Ok(vec![Figure::at_most("error", (1.0f64 / 3.0 * 3.0 - 1.0).abs(), 1e-15)])
+/// });
+/// assert!(Outcome::of(&check).passed());
 /// let blind = Check { run: || Ok(Vec::new()), ..check };
-/// assert_eq!(blind.judge().unwrap_err(), "check arithmetic.third measured nothing");
+/// assert_eq!(Outcome::of(&blind).complaint().unwrap(), "check arithmetic.third: measured nothing");
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Check {
@@ -39,43 +35,24 @@ pub struct Check {
 }
 
 impl Check {
-    /// Runs the check, and gives its figures if all of them pass.
-    ///
-    /// # Errors
-    /// Its name, with why it could not be carried out or with the figures that break their bounds.
-    ///
-    /// Implements: EVD-043.
-    pub fn judge(&self) -> Result<Vec<Figure>, String> {
-        let name = self.name;
-        let figures = (self.run)().map_err(|error| format!("check {name}: {error}"))?;
-        let broken: Vec<String> = figures
-            .iter()
-            .filter(|figure| !figure.passes())
-            .map(Figure::to_string)
-            .collect();
-        if figures.is_empty() {
-            return Err(format!("check {name} measured nothing"));
+    /// A check with the same figures in every run.
+    pub const fn new(
+        name: &'static str,
+        claim: &'static str,
+        requirements: &'static [&'static str],
+        run: fn() -> Result<Vec<Figure>, String>,
+    ) -> Check {
+        Check {
+            name,
+            claim,
+            requirements,
+            repeatable: true,
+            run,
         }
-        if broken.is_empty() {
-            return Ok(figures);
-        }
-        Err(format!("check {name}: {}", broken.join("; ")))
     }
 }
 
 /// A number that a check measured, and the bounds it must keep.
-///
-/// ```
-/// use palpate_verify::Figure;
-///
-/// assert!(Figure::at_most("error, N", 1e-9, 1e-9).passes());
-/// assert!(!Figure::at_least("observed order", 1.8, 1.9).passes());
-/// assert!(!Figure::within("share", f64::NAN, 0.0, 1.0).passes());
-/// assert!(Figure::count("cases that failed", 0, 0).passes());
-/// // Without bounds, only a number that is not finite fails.
-/// assert!(Figure::told("time, s", 1e300).passes());
-/// assert!(!Figure::told("time, s", f64::INFINITY).passes());
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// What was measured, with its unit at the end where it has one: `largest error of the displacement, m`.
@@ -146,6 +123,101 @@ impl fmt::Display for Figure {
     }
 }
 
+/// A check that was carried out, or tried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The check, `part.what`.
+    pub name: String,
+    /// What holds if it passed.
+    pub claim: &'static str,
+    /// The requirements whose evidence it is.
+    pub requirements: &'static [&'static str],
+    /// What it measured; none if it could not be carried out.
+    pub figures: Vec<Figure>,
+    /// Why it failed beside its figures, or that it could not be carried out.
+    pub failure: Option<String>,
+    /// Whether the figures are the same on every run: not so for times.
+    pub repeatable: bool,
+    /// How long it took, s.
+    pub seconds: f64,
+}
+
+impl Outcome {
+    /// Carries a check out. A panic in it is a failure of this check, not of the run.
+    ///
+    /// Implements: EVD-002, EVD-003.
+    pub fn of(check: &Check) -> Outcome {
+        Outcome {
+            repeatable: check.repeatable,
+            ..Outcome::measured(
+                check.name.into(),
+                check.claim,
+                check.requirements,
+                check.run,
+            )
+        }
+    }
+
+    /// As [`Outcome::of`], for what is no [`Check`].
+    pub(crate) fn measured(
+        name: String,
+        claim: &'static str,
+        requirements: &'static [&'static str],
+        run: impl FnOnce() -> Result<Vec<Figure>, String>,
+    ) -> Outcome {
+        let start = Instant::now();
+        // What a check leaves behind is thrown away with it.
+        let result = catch_unwind(AssertUnwindSafe(run))
+            .unwrap_or_else(|panic| Err(format!("panicked: {}", message(&*panic))));
+        let (figures, failure) = match result {
+            Ok(figures) if figures.is_empty() => (figures, Some("measured nothing".into())),
+            Ok(figures) => (figures, None),
+            Err(failure) => (Vec::new(), Some(failure)),
+        };
+        Outcome {
+            name,
+            claim,
+            requirements,
+            figures,
+            failure,
+            repeatable: true,
+            seconds: start.elapsed().as_secs_f64(),
+        }
+    }
+
+    /// The part that the check belongs to.
+    pub fn part(&self) -> &str {
+        self.name.split('.').next().unwrap_or_default()
+    }
+
+    /// Whether it was carried out and every figure keeps its bounds.
+    ///
+    /// Implements: EVD-002.
+    pub fn passed(&self) -> bool {
+        self.failure.is_none() && self.figures.iter().all(Figure::passes)
+    }
+
+    /// Of a check that did not pass its name, with why it could not be carried out or with the figures that break their bounds.
+    ///
+    /// Implements: EVD-043.
+    pub fn complaint(&self) -> Option<String> {
+        let broken = self
+            .figures
+            .iter()
+            .filter(|figure| !figure.passes())
+            .map(Figure::to_string);
+        let wrong: Vec<String> = self.failure.iter().cloned().chain(broken).collect();
+        (!wrong.is_empty()).then(|| format!("check {}: {}", self.name, wrong.join("; ")))
+    }
+}
+
+/// What a panic says.
+fn message(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied())
+        .unwrap_or("without a message")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -178,48 +250,80 @@ mod tests {
     // Verifies: EVD-041.
     #[test]
     fn bounds_are_where_they_are_said_to_be() {
-        assert!(Figure::at_most("", -1e300, 0.5).passes());
-        assert!(!Figure::at_most("", 0.6, 0.5).passes());
-        assert!(Figure::at_least("", 1e300, 0.5).passes());
-        assert!(!Figure::at_least("", 0.4, 0.5).passes());
-        assert!(Figure::count("", 3, 3).passes());
-        assert!(!Figure::count("", 2, 3).passes() && !Figure::count("", 4, 3).passes());
-        assert!(Figure::told("", -1e300).passes() && !Figure::told("", f64::NAN).passes());
-    }
-
-    fn check(run: fn() -> Result<Vec<Figure>, String>) -> Check {
-        Check {
-            name: "part.what",
-            claim: "",
-            requirements: &[],
-            repeatable: true,
-            run,
+        for (figure, passes) in [
+            (Figure::at_most("", -1e300, 0.5), true),
+            (Figure::at_most("", 0.6, 0.5), false),
+            (Figure::at_least("", 1e300, 0.5), true),
+            (Figure::at_least("", 0.4, 0.5), false),
+            (Figure::count("", 3, 3), true),
+            (Figure::count("", 2, 3), false),
+            (Figure::count("", 4, 3), false),
+            (Figure::told("", -1e300), true),
+            (Figure::told("", f64::NAN), false),
+        ] {
+            assert_eq!(figure.passes(), passes, "{figure}");
         }
     }
 
-    // Verifies: EVD-043.
+    fn outcome(run: fn() -> Result<Vec<Figure>, String>) -> Outcome {
+        Outcome::of(&Check::new("part.what", "It holds.", &["EVD-002"], run))
+    }
+
+    // Verifies: EVD-002, EVD-043.
     #[test]
-    fn a_check_that_fails_names_every_figure_that_broke_its_bound() {
-        let broken = check(|| {
-            Ok([
+    fn a_check_passes_if_all_its_figures_do_and_names_those_that_break_their_bounds() {
+        let good = outcome(|| {
+            Ok(vec![
+                Figure::told("force, N", 1.5),
+                Figure::at_most("error", 1.0, 1.0),
+            ])
+        });
+        assert!(good.passed() && good.complaint().is_none());
+        assert_eq!(good.part(), "part");
+        for bad in [1.1, f64::NAN, f64::INFINITY] {
+            let figures = vec![
+                Figure::told("told", 1.0),
+                Figure::at_most("error", bad, 1.0),
+            ];
+            let outcome = Outcome {
+                figures,
+                ..good.clone()
+            };
+            assert!(!outcome.passed(), "{bad}");
+        }
+        let broken = outcome(|| {
+            Ok(vec![
                 Figure::at_most("error, m", 2e-9, 1e-9),
                 Figure::told("force, N", 1.5),
                 Figure::at_least("order", f64::NAN, 2.9),
                 Figure::count("cases", 3, 4),
-            ]
-            .into())
+            ])
         });
         assert_eq!(
-            broken.judge().unwrap_err(),
+            broken.complaint().unwrap(),
             "check part.what: error, m: 2e-9, expected at most 1e-9; order: NaN, expected at least 2.9; \
              cases: 3.0, expected 4.0"
         );
-        let failed = check(|| Err("no".into())).judge();
-        assert_eq!(failed.unwrap_err(), "check part.what: no");
-        // Nothing measured is nothing shown.
-        let empty = check(|| Ok(Vec::new())).judge();
-        assert_eq!(empty.unwrap_err(), "check part.what measured nothing");
-        let passed = check(|| Ok([Figure::told("force, N", 1.5)].into()));
-        assert_eq!(passed.judge().unwrap().len(), 1);
+    }
+
+    // Verifies: EVD-002, EVD-003, EVD-043.
+    #[test]
+    fn a_check_that_cannot_run_or_panics_or_measures_nothing_fails_and_says_why() {
+        for (run, why) in [
+            (
+                (|| Err("no mesh".into())) as fn() -> Result<Vec<Figure>, String>,
+                "no mesh",
+            ),
+            (|| panic!("index {}", 7), "panicked: index 7"),
+            (|| Ok(Vec::new()), "measured nothing"),
+        ] {
+            let failed = outcome(run);
+            assert!(!failed.passed());
+            assert_eq!(failed.failure.as_deref(), Some(why));
+            assert_eq!(
+                failed.complaint().unwrap(),
+                format!("check part.what: {why}")
+            );
+        }
     }
 }

@@ -1,10 +1,5 @@
 //! The detector's diagnostic accuracy on the paper's inclusions: by the closed form, and counted in simulated records.
 
-use std::format;
-use std::string::{String, ToString};
-use std::vec;
-use std::vec::Vec;
-
 use super::{Check, Figure};
 use palpate::detect::simulate::Simulation;
 use palpate::detect::{auc, error_rates, neyman_pearson_false_alarm_threshold};
@@ -16,8 +11,8 @@ use palpate::stats::random::Generator;
 
 /// The noise of the paper's subjects, N, in each sample of both channels.
 const NOISE_SD: f64 = 0.235;
-/// So much more noise that errors are frequent enough to be counted.
-const LOUD: f64 = 4.0;
+/// So much noise that errors are frequent enough to be counted, N.
+const LOUD: f64 = 4.0 * NOISE_SD;
 /// The false alarms that are allowed.
 const FALSE_ALARM: f64 = 0.05;
 /// The depth of the probe, m.
@@ -36,31 +31,17 @@ const REQUIREMENTS: &[&str] = &["EVD-012", "DET-013", "DET-025", "DET-026", "DET
 /// Two checks for each of the paper's inclusions: with its noise, and with more.
 pub(super) const CHECKS: &[Check] = &[
     check("diagnosis.2.6_mm", || diagnosis("2.6", NOISE_SD)),
-    check("diagnosis.2.6_mm_loud", || {
-        diagnosis("2.6", LOUD * NOISE_SD)
-    }),
+    check("diagnosis.2.6_mm_loud", || diagnosis("2.6", LOUD)),
     check("diagnosis.4.6_mm", || diagnosis("4.6", NOISE_SD)),
-    check("diagnosis.4.6_mm_loud", || {
-        diagnosis("4.6", LOUD * NOISE_SD)
-    }),
+    check("diagnosis.4.6_mm_loud", || diagnosis("4.6", LOUD)),
     check("diagnosis.6.6_mm", || diagnosis("6.6", NOISE_SD)),
-    check("diagnosis.6.6_mm_loud", || {
-        diagnosis("6.6", LOUD * NOISE_SD)
-    }),
+    check("diagnosis.6.6_mm_loud", || diagnosis("6.6", LOUD)),
     check("diagnosis.8.6_mm", || diagnosis("8.6", NOISE_SD)),
-    check("diagnosis.8.6_mm_loud", || {
-        diagnosis("8.6", LOUD * NOISE_SD)
-    }),
+    check("diagnosis.8.6_mm_loud", || diagnosis("8.6", LOUD)),
 ];
 
 const fn check(name: &'static str, run: fn() -> Result<Vec<Figure>, String>) -> Check {
-    Check {
-        name,
-        claim: CLAIM,
-        requirements: REQUIREMENTS,
-        repeatable: true,
-        run,
-    }
+    Check::new(name, CLAIM, REQUIREMENTS, run)
 }
 
 /// Simulates records over the inclusion and over none, and counts.

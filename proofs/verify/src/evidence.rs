@@ -129,6 +129,7 @@ impl Evidence {
         let (checks, others): (Vec<&Outcome>, Vec<&Outcome>) =
             self.outcomes.iter().partition(|outcome| outcome.repeatable);
         let all = |outcomes: Vec<&Outcome>| outcomes.into_iter().map(check).collect::<Vec<_>>();
+        let time = |outcome: &Outcome| json!({"name": outcome.name, "seconds": outcome.seconds});
         let seconds: Vec<Value> = self.outcomes.iter().map(time).collect();
         let evidence = json!({
             "schema": SCHEMA,
@@ -140,7 +141,7 @@ impl Evidence {
             "anomalies": self.anomalies(),
             "checks": all(checks),
             "soak": self.soak,
-            "traceability": trace(&self.requirements),
+            "traceability": Trace { summary: summary(&self.requirements), rows: &self.requirements },
             "components": self.components,
             "measured_here": {"processor": self.processor, "checks": all(others), "seconds": seconds},
         });
@@ -170,36 +171,10 @@ fn figure(figure: &Figure) -> Value {
     })
 }
 
-fn time(outcome: &Outcome) -> Value {
-    json!({"name": outcome.name, "seconds": outcome.seconds})
-}
-
-fn trace(requirements: &[Requirement]) -> Value {
-    let rows: Vec<Value> = requirements.iter().map(row).collect();
-    let Summary {
-        requirements: number,
-        code,
-        tests,
-        proofs,
-        vectors,
-        inspection,
-    } = summary(requirements);
-    json!({
-        "requirements": number, "with_code": code, "with_tests": tests, "with_proofs": proofs,
-        "with_vectors": vectors, "by_inspection": inspection,
-        "rows": rows,
-    })
-}
-
-fn row(requirement: &Requirement) -> Value {
-    json!({
-        "requirement": requirement.id,
-        "chapter": requirement.chapter,
-        "text": requirement.text,
-        "code": requirement.code,
-        "tests": requirement.tests,
-        "proofs": requirement.proofs,
-        "vectors": requirement.vectors,
-        "inspection": requirement.inspection,
-    })
+/// How many requirements there are, and each of them.
+#[derive(Serialize)]
+struct Trace<'a> {
+    #[serde(flatten)]
+    summary: Summary,
+    rows: &'a [Requirement],
 }

@@ -1,7 +1,8 @@
-//! Functions of one f32 on all 2³² of them: proofs by enumeration, each in two threads.
+//! Functions of one f32 on all 2³² of them: proofs by enumeration, on all processors.
 
 use std::ops::RangeInclusive;
-use std::thread::Builder;
+
+use rayon::prelude::*;
 
 use super::{Check, Figure};
 use palpate::force::Force;
@@ -13,67 +14,59 @@ use palpate::servo::{
 
 /// The checks of this part.
 pub const CHECKS: &[Check] = &[
-    Check {
-        name: "kernel.locate_uneven",
-        claim: "On an axis with cells from 1 µm to 1 m, every f32 gets a cell of the axis and a fraction in range, \
-                a position on the axis one whose ends enclose it, a knot 0 or 1, and neither ever falls as the \
-                position rises.",
-        requirements: &["SRV-002", "SRV-004", "SRV-005", "SRV-006"],
-        repeatable: true,
-        run: locate_uneven,
-    },
-    Check {
-        name: "kernel.locate_even",
-        claim: "The same on a uniform axis of 41 knots 0.5 mm apart, as a force map's.",
-        requirements: &["SRV-004", "SRV-005", "SRV-006"],
-        repeatable: true,
-        run: locate_even,
-    },
-    Check {
-        name: "kernel.last_knot",
-        claim: "No width of a cell times its stored reciprocal is above 1, and the last knot has the fraction 1.",
-        requirements: &["SRV-005", "SRV-006"],
-        repeatable: true,
-        run: last_knot,
-    },
-    Check {
-        name: "kernel.limit",
-        claim: "The limit of a force gives every f32 within it unchanged, the limit with its sign beyond, and 0 for \
-                a NaN.",
-        requirements: &["SRV-020"],
-        repeatable: true,
-        run: limits,
-    },
-    Check {
-        name: "kernel.count",
-        claim: "The force in the device's counts is the nearest whole number, within ±32767, for every f32.",
-        requirements: &["HID-010", "HID-011"],
-        repeatable: true,
-        run: counts,
-    },
-    Check {
-        name: "kernel.blend",
-        claim: "A blend of two forces lies between them for every fraction from 0 to 1, is each of them at its end, \
-                and is at most three times as large from −1 to 2.",
-        requirements: &["SRV-010", "SRV-011", "SRV-013"],
-        repeatable: true,
-        run: blends,
-    },
-    Check {
-        name: "kernel.release",
-        claim: "Every force up to the ceiling is released to 0 within 17 cycles of the slowest release.",
-        requirements: &["SRV-031"],
-        repeatable: true,
-        run: release,
-    },
-    Check {
-        name: "kernel.freshness",
-        claim: "A sample is played if and only if its number is 1 to 32767 ahead of the last, from every 257th \
-                number.",
-        requirements: &["SRV-040"],
-        repeatable: true,
-        run: freshness,
-    },
+    Check::new(
+        "kernel.locate_uneven",
+        "On an axis with cells from 1 µm to 1 m, every f32 gets a cell of the axis and a fraction in range, \
+         a position on the axis one whose ends enclose it, a knot 0 or 1, and neither ever falls as the \
+         position rises.",
+        &["SRV-002", "SRV-004", "SRV-005", "SRV-006"],
+        locate_uneven,
+    ),
+    Check::new(
+        "kernel.locate_even",
+        "The same on a uniform axis of 41 knots 0.5 mm apart, as a force map's.",
+        &["SRV-004", "SRV-005", "SRV-006"],
+        locate_even,
+    ),
+    Check::new(
+        "kernel.last_knot",
+        "No width of a cell times its stored reciprocal is above 1, and the last knot has the fraction 1.",
+        &["SRV-005", "SRV-006"],
+        last_knot,
+    ),
+    Check::new(
+        "kernel.limit",
+        "The limit of a force gives every f32 within it unchanged, the limit with its sign beyond, and 0 for \
+         a NaN.",
+        &["SRV-020"],
+        limits,
+    ),
+    Check::new(
+        "kernel.count",
+        "The force in the device's counts is the nearest whole number, within ±32767, for every f32.",
+        &["HID-010", "HID-011"],
+        counts,
+    ),
+    Check::new(
+        "kernel.blend",
+        "A blend of two forces lies between them for every fraction from 0 to 1, is each of them at its end, \
+         and is at most three times as large from −1 to 2.",
+        &["SRV-010", "SRV-011", "SRV-013"],
+        blends,
+    ),
+    Check::new(
+        "kernel.release",
+        "Every force up to the ceiling is released to 0 within 17 cycles of the slowest release.",
+        &["SRV-031"],
+        release,
+    ),
+    Check::new(
+        "kernel.freshness",
+        "A sample is played if and only if its number is 1 to 32767 ahead of the last, from every 257th \
+         number.",
+        &["SRV-040"],
+        freshness,
+    ),
 ];
 
 /// What a run over many inputs found.
@@ -163,39 +156,18 @@ fn size(bits: &RangeInclusive<u32>) -> u64 {
     u64::from(bits.end() - bits.start()) + 1
 }
 
-/// Runs two jobs at once, and adds up what they found.
-fn both(jobs: [impl FnOnce() -> Tally + Send; 2]) -> Result<Tally, String> {
-    let failed = |error: std::io::Error| format!("cannot start a thread: {error}");
-    std::thread::scope(|scope| {
-        let mut threads = Vec::new();
-        for job in jobs {
-            threads.push(Builder::new().spawn_scoped(scope, job).map_err(failed)?);
-        }
-        let found = threads.into_iter().map(|thread| {
-            let ended = thread.join();
-            ended.map_err(|_| "a thread of the check panicked".to_string())
-        });
-        found
-            .reduce(|a, b| Ok(a?.and(b?)))
-            .unwrap_or(Ok(Tally::EMPTY))
-    })
-}
+/// Parts of a range that are taken at a time by one processor.
+const PARTS: u64 = 64;
 
-/// Hands all bits of a range to `check`.
-fn for_bits(
-    bits: &RangeInclusive<u32>,
-    check: impl Fn(u32, &mut Tally) + Sync,
-) -> Result<Tally, String> {
-    let (low, high) = (*bits.start(), *bits.end());
-    let half = low + (high - low) / 2;
-    let check = &check;
-    both([low..=half, half + 1..=high].map(|part| {
-        move || {
-            let mut tally = Tally::EMPTY;
-            part.for_each(|bits| check(bits, &mut tally));
-            tally
-        }
-    }))
+/// Hands all bits of a range to `check`, and adds up what it found.
+fn for_bits(bits: &RangeInclusive<u32>, check: impl Fn(u32, &mut Tally) + Sync) -> Tally {
+    let border = |part: u64| u64::from(*bits.start()) + part * size(bits) / PARTS;
+    let parts = (0..PARTS).into_par_iter().map(|part| {
+        let mut tally = Tally::EMPTY;
+        (border(part)..border(part + 1)).for_each(|bits| check(bits as u32, &mut tally));
+        tally
+    });
+    parts.reduce(|| Tally::EMPTY, Tally::and)
 }
 
 /// Whether `holds` is true of every f32 with bits in a range.
@@ -205,11 +177,11 @@ fn holds_for(
     what: &str,
     bits: RangeInclusive<u32>,
     holds: impl Fn(f32) -> bool + Sync,
-) -> Result<Vec<Figure>, String> {
+) -> Vec<Figure> {
     let tally = for_bits(&bits, |bits, tally| {
         tally.take(bits, holds(f32::from_bits(bits)));
-    })?;
-    Ok(tally.figures(what, size(&bits), float))
+    });
+    tally.figures(what, size(&bits), float)
 }
 
 fn locate_uneven() -> Result<Vec<Figure>, String> {
@@ -232,33 +204,33 @@ fn locate(knots: &[f32]) -> Result<Vec<Figure>, String> {
         .collect();
     let axis = Axis::new(knots, &reciprocals).map_err(refused)?;
     // Upwards from 0 and downwards from −0, each from one number to its neighbour.
-    let tally = both([(0, true), (1 << 31, false)].map(|(sign, upwards)| {
-        move || {
-            let mut tally = Tally::EMPTY;
-            let mut previous = axis.locate(f32::from_bits(sign));
-            for bits in 0..=f32::INFINITY.to_bits() {
-                let position = f32::from_bits(sign | bits);
-                let next = axis.locate(position);
-                let [lower, upper] = if upwards {
-                    [previous, next]
-                } else {
-                    [next, previous]
-                };
-                let rises = (lower.index, lower.fraction) <= (upper.index, upper.fraction);
-                tally.take(sign | bits, rises && is_right(knots, position, next));
-                previous = next;
-            }
-            // The rest are NaN.
-            for bits in f32::INFINITY.to_bits() + 1..1 << 31 {
-                let position = f32::from_bits(sign | bits);
-                tally.take(
-                    sign | bits,
-                    is_right(knots, position, axis.locate(position)),
-                );
-            }
-            tally
+    let run = |(sign, upwards)| {
+        let mut tally = Tally::EMPTY;
+        let mut previous = axis.locate(f32::from_bits(sign));
+        for bits in 0..=f32::INFINITY.to_bits() {
+            let position = f32::from_bits(sign | bits);
+            let next = axis.locate(position);
+            let [lower, upper] = if upwards {
+                [previous, next]
+            } else {
+                [next, previous]
+            };
+            let rises = (lower.index, lower.fraction) <= (upper.index, upper.fraction);
+            tally.take(sign | bits, rises && is_right(knots, position, next));
+            previous = next;
         }
-    }))?;
+        // The rest are NaN.
+        for bits in f32::INFINITY.to_bits() + 1..1 << 31 {
+            let position = f32::from_bits(sign | bits);
+            tally.take(
+                sign | bits,
+                is_right(knots, position, axis.locate(position)),
+            );
+        }
+        tally
+    };
+    let runs = [(0, true), (1 << 31, false)].into_par_iter().map(run);
+    let tally = runs.reduce(|| Tally::EMPTY, Tally::and);
     Ok(tally.figures("positions", size(&ALL), float))
 }
 
@@ -294,7 +266,7 @@ fn last_knot() -> Result<Vec<Figure>, String> {
         let product = width * Axis::reciprocal_width(0.0, width);
         tally.measure(product);
         tally.take(bits, product <= 1.0);
-    })?;
+    });
     let mut figures = product.figures("widths up to 2 m", size(&widths), float);
     let largest = f64::from(product.worst);
     figures.push(Figure::at_most(
@@ -312,7 +284,7 @@ fn last_knot() -> Result<Vec<Figure>, String> {
             })
         },
     );
-    figures.extend(ends?);
+    figures.extend(ends);
     Ok(figures)
 }
 
@@ -328,17 +300,17 @@ fn limits() -> Result<Vec<Figure>, String> {
                 largest.copysign(value)
             };
             limit(value, largest).to_bits() == expected.to_bits()
-        })?);
+        }));
     }
     Ok(figures)
 }
 
 fn counts() -> Result<Vec<Figure>, String> {
-    holds_for("forces in counts", ALL, |value| {
+    Ok(holds_for("forces in counts", ALL, |value| {
         // The conversion of a NaN gives 0.
         let expected = f64::from(value).round_ties_even().clamp(-32767.0, 32767.0) as i16;
         count(value) == expected
-    })
+    }))
 }
 
 fn blends() -> Result<Vec<Figure>, String> {
@@ -353,7 +325,7 @@ fn blends() -> Result<Vec<Figure>, String> {
             }
             let inside = (0.0..=1.0).contains(&t);
             tally.take(bits, !inside || (low <= value && value <= high));
-        })?;
+        });
         let what = format!("{a} to {b}");
         figures.extend(tally.figures(&what, size(&ALL), float));
         let allowed = 3.0 * high.abs().max(low.abs()) * 1.000_001;
@@ -378,14 +350,15 @@ fn blends() -> Result<Vec<Figure>, String> {
 /// The slowest release from the largest force. A smaller force and a quicker release are never later: rounding
 /// keeps the order of differences.
 fn release() -> Result<Vec<Figure>, String> {
-    holds_for("force limits", between(MIN_SLEW, FORCE_CEILING), |force| {
+    let limits = between(MIN_SLEW, FORCE_CEILING);
+    Ok(holds_for("force limits", limits, |force| {
         let release = force / f32::from(RELEASE_CYCLES);
         let mut rest = force;
         for _ in 0..=RELEASE_CYCLES {
             rest = approach(rest, 0.0, release, release);
         }
         rest == 0.0
-    })
+    }))
 }
 
 /// Every distance of two sequence numbers, from every 257th number.
@@ -424,8 +397,9 @@ fn freshness() -> Result<Vec<Figure>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Outcome;
 
-    // That a violation is counted, and the first of both threads named.
+    // That a violation is counted, and the first of all threads named.
     // Verifies: EVD-044.
     #[test]
     fn the_first_input_that_breaks_a_property_is_named() {
@@ -434,7 +408,7 @@ mod tests {
             (1.25f32, "1.25e0 (0x3fa00000)"),
             (1.75, "1.75e0 (0x3fe00000)"),
         ] {
-            let figures = holds_for("numbers", bits.clone(), |x| x < threshold).unwrap();
+            let figures = holds_for("numbers", bits.clone(), |x| x < threshold);
             let broken = u64::from(2f32.to_bits() - threshold.to_bits()) + 1;
             assert_eq!(
                 figures[0],
@@ -448,10 +422,10 @@ mod tests {
 
     // Verifies: EVD-044.
     #[test]
-    fn the_worst_of_both_threads_is_kept_and_so_is_a_nan() {
+    fn the_worst_of_all_threads_is_kept_and_so_is_a_nan() {
         let worst = |of: fn(f32) -> f32| {
             let measure = |bits, tally: &mut Tally| tally.measure(of(f32::from_bits(bits)));
-            for_bits(&between(1.0, 2.0), measure).unwrap().worst
+            for_bits(&between(1.0, 2.0), measure).worst
         };
         assert_eq!(worst(|x| x), 2.0);
         assert_eq!(worst(|x| 4.0 - x), 3.0);
@@ -462,8 +436,13 @@ mod tests {
     // Verifies: EVD-044.
     #[test]
     fn a_thread_that_panics_fails_the_check() {
-        let jobs: [fn() -> Tally; 2] = [|| Tally::EMPTY, || panic!("planted")];
-        let panicked = both(jobs);
-        assert!(panicked.unwrap_err().contains("panicked"));
+        let check = Check::new("kernel.planted", "It panics.", &[], || {
+            Ok(holds_for("numbers", between(1.0, 2.0), |x| {
+                assert!(x < 1.5, "planted");
+                true
+            }))
+        });
+        let failure = Outcome::of(&check).failure;
+        assert_eq!(failure.as_deref(), Some("panicked: planted"));
     }
 }

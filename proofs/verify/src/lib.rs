@@ -2,7 +2,7 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `check.rs`, `outcome.rs` | what a check is, when its figures pass, and what became of it |
+//! | `check.rs` | what a check is, when its figures pass, and what became of it |
 //! | `statistics/`, `battery.rs` | Monte Carlo of the detector, with the probability of failing by chance |
 //! | `diagnosis.rs` | sensitivity and specificity on the paper's inclusions |
 //! | `kernel.rs` | functions of one f32 on all 2³² of them |
@@ -20,16 +20,14 @@ pub mod dossier;
 pub mod evidence;
 pub mod fem;
 pub mod kernel;
-mod outcome;
 pub mod statistics;
 pub mod supply;
 pub mod timing;
 pub mod traceability;
 pub mod vectors;
 
-pub use battery::{outcome as battery_outcome, soaked};
-pub use check::{Check, Figure};
-pub use outcome::Outcome;
+pub use battery::outcome as battery_outcome;
+pub use check::{Check, Figure, Outcome};
 
 /// All checks of this build but the statistics battery, in a fixed order.
 ///
@@ -40,24 +38,18 @@ pub use outcome::Outcome;
 ///
 /// Implements: EVD-040.
 pub fn checks() -> impl Iterator<Item = &'static Check> {
-    let parts: &[&'static [Check]] = &[
+    [
         diagnosis::CHECKS,
         vectors::CHECKS,
         fem::CHECKS,
         kernel::CHECKS,
         timing::CHECKS,
-    ];
-    let parts = parts.to_vec();
-    parts.into_iter().flatten()
+    ]
+    .into_iter()
+    .flatten()
 }
 
 /// The check of a name, if there is one in this build.
-///
-/// ```
-/// let check = palpate_verify::find("kernel.limit").unwrap();
-/// assert_eq!(check.requirements, ["SRV-020"]);
-/// assert!(palpate_verify::find("kernel.unknown").is_none());
-/// ```
 pub fn find(name: &str) -> Option<&'static Check> {
     checks().find(|check| check.name == name)
 }

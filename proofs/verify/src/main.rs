@@ -14,14 +14,14 @@ use palpate::cli::{CliError, program};
 use palpate_verify::evidence::{Evidence, PARTS, Soak, Verdict};
 use palpate_verify::statistics::{battery, total_alpha};
 use palpate_verify::{
-    Check, Outcome, battery_outcome, build, checks, dossier, soaked, supply, traceability,
+    Check, Outcome, battery_outcome, build, checks, dossier, supply, traceability,
 };
 
 /// The evidence for this build, found out on this machine: evidence.json and a dossier.
 #[derive(Debug, Parser)]
 #[command(version, about)]
 struct Arguments {
-    /// The folder for evidence.json, dossier.html and sbom.cdx.json
+    /// The folder for evidence.json and dossier.html
     #[arg(long, value_name = "DIR", default_value = "palpate-evidence")]
     out: PathBuf,
     /// Only these parts; the dossier is then no verdict on the build
@@ -77,7 +77,7 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
     // What can fail at once comes first: minutes of work shall not end for want of a place.
     make_folder(&arguments.out)?;
     let requirements = traceability::requirements().map_err(CliError::Check)?;
-    let components = supply::components().map_err(|error| CliError::Check(error.to_string()))?;
+    let components = supply::components().map_err(CliError::Check)?;
     let soak = arguments
         .soak
         .map(|batteries| (batteries, arguments.seed.unwrap_or_else(fresh_seed)));
@@ -139,7 +139,7 @@ fn soak_battery(batteries: u32, seed: u64) -> Result<Soak, CliError> {
     let failed = |job: u64| {
         let check = checks[(job % checks.len() as u64) as usize];
         let seed = seed.wrapping_add(job / checks.len() as u64);
-        let failure = soaked(check, seed).err();
+        let failure = check.run(seed).err();
         bar.inc(1);
         failure.map(|failure| {
             format!("{failure}; repeat with: palpate-verify --only soak --soak 1 --seed {seed}")
@@ -156,22 +156,14 @@ fn soak_battery(batteries: u32, seed: u64) -> Result<Soak, CliError> {
     })
 }
 
-/// Writes the three files, says what was found and where it is told.
+/// Writes the two files, says what was found and where it is told.
 fn write_evidence(evidence: &Evidence, arguments: &Arguments) -> Result<(), CliError> {
     let page = arguments.out.join("dossier.html");
     write(&arguments.out.join("evidence.json"), &evidence.to_json())?;
-    let bill = supply::sbom().map_err(|error| CliError::Check(error.to_string()))?;
-    write(
-        &arguments.out.join("sbom.cdx.json"),
-        &format!(
-            "{bill:#}
-"
-        ),
-    )?;
     write(&page, &dossier::dossier(evidence))?;
     print(&summary(evidence))?;
     print(&format!(
-        "evidence.json, dossier.html and sbom.cdx.json in {}\n",
+        "evidence.json and dossier.html in {}\n",
         arguments.out.display()
     ))?;
     match evidence.verdict() {

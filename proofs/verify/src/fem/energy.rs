@@ -3,7 +3,7 @@
 use palpate::fem::{Contact, Model, Pose, PoseSolution};
 use palpate::phantom::Phantom;
 
-use super::{Check, Figure, Figures, largest, said};
+use super::{Figure, Figures, largest, said};
 
 /// Step h of the differences, m.
 const STEP: f64 = 2e-6;
@@ -88,17 +88,7 @@ fn map(name: &str, contact: Contact) -> Figures {
     Ok(figures)
 }
 
-/// Forces as slopes of the energy.
-pub const SLOPES: Check = Check {
-    name: "fem.energy_slopes",
-    claim: "Over whole maps the normal force is the slope of the strain energy in the depth, the lateral force its \
-            negative slope in x, and their cross slopes agree, within the error of central differences.",
-    requirements: &["FEM-059", "FEM-012"],
-    repeatable: true,
-    run: slopes,
-};
-
-fn slopes() -> Figures {
+pub fn slopes() -> Figures {
     let mut figures = map("none", Contact::DeformedNormal)?;
     figures.extend(map("2.6", Contact::DeformedNormal)?);
     figures.extend(map("2.6", Contact::VerticalGap)?);

@@ -1,26 +1,24 @@
 //! Contact solved over all unknowns at once, to compare with the condensed contact.
 
-use palpate::fem::element::StiffnessRule;
+use faer::sparse::Triplet;
 use palpate::fem::{Contact, Mesh, Model, Pose};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
 
-use super::problem::inside_out;
-use super::skyline::Skyline;
-use super::{Check, Figure, Figures, largest, said};
+use super::problem::{Problem, solved};
+use super::{Figure, Figures, largest, said};
 
-/// A contact point: its position, and weight and unknowns of each node of its edge.
-type Point = ([f64; 2], Vec<(f64, [Option<usize>; 2])>);
+/// A contact point: its position, and the nodes of its edge with their weights.
+type Point = ([f64; 2], [(f64, usize); 3]);
 
-/// A phantom with all its unknowns, the free displacements from left to right, from the element stiffnesses alone.
+/// A phantom with the displacements of all its nodes, from the element stiffnesses alone.
 struct Full {
     phantom: Phantom,
     contact: Contact,
-    unknowns: usize,
-    /// Row, column ≤ row and value; those of the same place add up.
-    entries: Vec<(usize, usize, f64)>,
-    /// The first column of each row.
-    first: Vec<usize>,
+    /// Whether a displacement is free, two for each node.
+    free: Vec<bool>,
+    /// The stiffness of the free displacements, and ones for those that are held.
+    entries: Vec<Triplet<usize, usize, f64>>,
     /// The contact points from left to right.
     surface: Vec<Point>,
 }
@@ -34,36 +32,23 @@ struct Solved {
 impl Full {
     fn new(phantom: &Phantom, size: f64, contact: Contact) -> Result<Full, String> {
         let mesh = Mesh::new(phantom, size).map_err(said)?;
-        let mut order: Vec<usize> = (0..mesh.nodes.len()).collect();
-        order.sort_by(|&a, &b| mesh.nodes[a][0].total_cmp(&mesh.nodes[b][0]));
-        let (mut place, mut unknowns) = (vec![[None; 2]; mesh.nodes.len()], 0);
-        for (node, i) in order.into_iter().flat_map(|node| [(node, 0), (node, 1)]) {
-            if !mesh.held[node][i] {
-                place[node][i] = Some(unknowns);
-                unknowns += 1;
+        let free: Vec<bool> = mesh.held.as_flattened().iter().map(|held| !held).collect();
+        let regions = mesh.regions.iter();
+        let problem = Problem {
+            nodes: mesh.nodes.clone(),
+            elements: mesh
+                .elements()
+                .map(|nodes| std::array::from_fn(|k| nodes[k] as usize))
+                .collect(),
+            materials: regions.map(|region| *region.material(phantom)).collect(),
+        };
+        let held = (0..free.len()).filter(|&k| !free[k]);
+        let mut entries: Vec<_> = held.map(|k| Triplet::new(k, k, 1.0)).collect();
+        problem.visit(|row, column, value| {
+            if free[row] && free[column] {
+                entries.push(Triplet::new(row, column, phantom.probe.length * value));
             }
-        }
-        let (mut entries, mut first) = (Vec::new(), (0..unknowns).collect::<Vec<_>>());
-        let rule = StiffnessRule::default();
-        for (nodes, &region) in mesh.elements().zip(&mesh.regions) {
-            let element = rule
-                .integrate(&mesh.positions(nodes), region.material(phantom))
-                .map_err(inside_out)?;
-            let places: Vec<Option<usize>> = nodes
-                .iter()
-                .flat_map(|&node| place[node as usize])
-                .collect();
-            for (a, row) in places.iter().enumerate() {
-                for (b, column) in places.iter().enumerate() {
-                    if let (&Some(row), &Some(column)) = (row, column)
-                        && column <= row
-                    {
-                        first[row] = first[row].min(column);
-                        entries.push((row, column, phantom.probe.length * element[(a, b)]));
-                    }
-                }
-            }
-        }
+        })?;
         // Two Gauss points on each edge of three nodes, with the parabolas of its nodes.
         let g = 1.0 / 3f64.sqrt();
         let mut nodes: Vec<usize> = (0..mesh.nodes.len())
@@ -73,16 +58,15 @@ impl Full {
         let mut surface = Vec::new();
         for (edge, t) in (nodes.windows(3).step_by(2)).flat_map(|edge| [(edge, -g), (edge, g)]) {
             let weights = [0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)];
-            let x = edge.iter().zip(weights).map(|(&n, w)| w * mesh.nodes[n][0]);
-            let of_node = edge.iter().zip(weights).map(|(&n, w)| (w, place[n]));
-            surface.push(([x.sum(), 0.0], of_node.collect()));
+            let nodes = [0, 1, 2].map(|k| (weights[k], edge[k]));
+            let x = nodes.iter().map(|(w, node)| w * mesh.nodes[*node][0]);
+            surface.push(([x.sum(), 0.0], nodes));
         }
         Ok(Full {
             phantom: phantom.clone(),
             contact,
-            unknowns,
+            free,
             entries,
-            first,
             surface,
         })
     }
@@ -107,18 +91,15 @@ impl Full {
         }
     }
 
-    /// Displacement of a point, from the unknowns.
+    /// Displacement of a point, from those of the nodes.
     fn moved((_, nodes): &Point, u: &[f64]) -> [f64; 2] {
-        [0, 1].map(|i| {
-            let terms = nodes.iter().filter_map(|(w, place)| Some(w * u[place[i]?]));
-            terms.sum()
-        })
+        [0, 1].map(|i| nodes.iter().map(|(w, node)| w * u[2 * node + i]).sum())
     }
 
     /// Newton's method on K u = Σ λ n, gap = 0 over the active points, and a change of the active set after each
     /// convergence, until no point is pulled or inside the probe. The depth goes down in steps of at most 1 mm.
     fn solve(&self, pose: Pose) -> Result<Solved, String> {
-        let mut u = vec![0.0; self.unknowns];
+        let mut u = vec![0.0; self.free.len()];
         let mut pressure = vec![0.0; self.surface.len()];
         let mut active: Vec<usize> = Vec::new();
         let steps = (pose.depth / 1e-3).ceil();
@@ -163,53 +144,43 @@ impl Full {
         active: &[usize],
         pose: Pose,
     ) -> Result<(), String> {
-        let n = self.unknowns;
+        let n = self.free.len();
         for point in (0..pressure.len()).filter(|point| !active.contains(point)) {
             pressure[point] = 0.0;
         }
-        let mut first = self.first.clone();
-        first.extend(active.iter().map(|&point| {
-            let places = self.surface[point].1.iter().flat_map(|(_, place)| place);
-            places.flatten().copied().min().unwrap_or(n)
-        }));
         for _ in 0..30 {
-            let mut matrix = Skyline::new(first.clone());
+            let mut entries = self.entries.clone();
             let mut rest = vec![0.0; n + active.len()];
-            for &(row, column, value) in &self.entries {
-                matrix.add(row, column, value);
-                rest[row] -= value * u[column];
-                if row != column {
-                    rest[column] -= value * u[row];
-                }
+            for &Triplet { row, col, val } in &self.entries {
+                rest[row] -= val * u[col];
             }
             for (k, &active) in active.iter().enumerate() {
                 let point = &self.surface[active];
                 let (gap, normal, turn) = self.gap(point.0, Full::moved(point, u), pose);
                 rest[n + k] = gap;
-                // Each unknown with its weight and direction.
-                let unknowns: Vec<(usize, f64, usize)> = (point.1.iter())
-                    .flat_map(|&(w, place)| {
-                        [0, 1]
-                            .into_iter()
-                            .filter_map(move |i| Some((place[i]?, w, i)))
-                    })
-                    .collect();
+                // Each free displacement with its weight and direction.
+                let unknowns = point
+                    .1
+                    .iter()
+                    .flat_map(|&(w, node)| [0, 1].map(|i| (2 * node + i, w, i)));
+                let unknowns: Vec<_> = unknowns.filter(|(a, ..)| self.free[*a]).collect();
                 for &(a, w, i) in &unknowns {
                     rest[a] += pressure[active] * w * normal[i];
-                    matrix.add(n + k, a, -w * normal[i]);
-                    for &(b, v, j) in unknowns.iter().filter(|(b, ..)| *b <= a) {
-                        matrix.add(a, b, -pressure[active] * w * v * turn[i][j]);
+                    entries.push(Triplet::new(n + k, a, -w * normal[i]));
+                    entries.push(Triplet::new(a, n + k, -w * normal[i]));
+                    for &(b, v, j) in &unknowns {
+                        entries.push(Triplet::new(a, b, -pressure[active] * w * v * turn[i][j]));
                     }
                 }
             }
-            matrix.factorise()?.solve(&mut rest);
+            let step = solved(&entries, &rest)?;
             let mut largest = 0.0f64;
-            for (u, step) in u.iter_mut().zip(&rest) {
+            for (u, step) in u.iter_mut().zip(&step) {
                 *u += step;
                 largest = largest.max(step.abs());
             }
             for (k, &point) in active.iter().enumerate() {
-                pressure[point] += rest[n + k];
+                pressure[point] += step[n + k];
             }
             if largest < 1e-13 {
                 return Ok(());
@@ -253,7 +224,7 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 
 /// Both sides stop Newton's method at steps of 1e-13 m, which are worth 1e-10 N at the surface's stiffness of some
 /// 10³ N/m, and round the stiffness's sums in different orders. 1e-9 N is what FEM-060 allows.
-fn compare(name: &str, contact: Contact) -> Figures {
+pub fn compare(name: &str, contact: Contact) -> Figures {
     let size = 6e-3;
     let phantom = Phantom::builtin(name).map_err(said)?;
     let model = Model::new(&phantom, size, contact).map_err(said)?;
@@ -308,25 +279,6 @@ fn compare(name: &str, contact: Contact) -> Figures {
     Ok(figures)
 }
 
-/// The condensed contact along the deformed normal.
-pub const DEFORMED_NORMAL: Check = Check {
-    name: "fem.condensed_contact",
-    claim: "Contact solved on the condensed surface equals Newton's method on all unknowns at once, and poses at x and −x \
-            that are solved each by itself agree.",
-    requirements: &["FEM-060", "FEM-061"],
-    repeatable: true,
-    run: || compare("2.6", Contact::DeformedNormal),
-};
-
-/// The condensed contact of vertical gaps.
-pub const VERTICAL_GAP: Check = Check {
-    name: "fem.condensed_vertical_contact",
-    claim: "The same with the contact law of vertical gaps.",
-    requirements: &["FEM-060", "FEM-061"],
-    repeatable: true,
-    run: || compare("6.6", Contact::VerticalGap),
-};
-
 /// Pairs of mirrored poses of a map whose lateral positions are their own mirror image.
 pub fn symmetry(what: &str, map: &ForceMap) -> [Figure; 3] {
     let (rows, columns) = (map.depths().len(), map.laterals().len());
@@ -363,16 +315,7 @@ pub fn symmetry(what: &str, map: &ForceMap) -> [Figure; 3] {
     ]
 }
 
-/// Mirror symmetry of a map.
-pub const MIRROR: Check = Check {
-    name: "fem.mirror_symmetry",
-    claim: "A map of 8 depths and 21 lateral positions is mirror-symmetric in x to the bit.",
-    requirements: &["FEM-061", "FEM-014"],
-    repeatable: true,
-    run: mirror,
-};
-
-fn mirror() -> Figures {
+pub fn mirror() -> Figures {
     let phantom = Phantom::builtin("2.6").map_err(said)?;
     let model = Model::new(&phantom, 2e-3, Contact::DeformedNormal).map_err(said)?;
     let depths: Vec<f64> = (1..=8).map(|k| 0.5e-3 * f64::from(k)).collect();

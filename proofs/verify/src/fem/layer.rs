@@ -6,7 +6,7 @@ use palpate::phantom::Material;
 
 use super::convergence::convergence;
 use super::problem::{Errors, Exact, Problem, lame};
-use super::{Check, Figure, Figures, largest};
+use super::{Figure, Figures, largest};
 
 /// A layer 0 ≤ y ≤ h, u = 0 at y = 0, under the traction σ_yy = −cos kx, σ_xy = 0 at y = h.
 ///
@@ -105,17 +105,7 @@ fn errors(layer: &BondedLayer, columns: usize) -> Result<[Errors; 4], String> {
     Ok([solve(4)?, solve(8)?, solve(16)?, solve(32)?])
 }
 
-/// The bonded layer.
-pub const BONDED: Check = Check {
-    name: "fem.bonded_layer",
-    claim: "A layer bonded to a rigid base under a wave of pressure, short or long against its thickness, converges to \
-            the closed form.",
-    requirements: &["FEM-056", "FEM-062"],
-    repeatable: true,
-    run: bonded,
-};
-
-fn bonded() -> Figures {
+pub fn bonded() -> Figures {
     let mut figures = Vec::new();
     // Orders 3 and 2 at the end (a tenth less is let pass); the nearer to incompressible, the longer they stay near 2 and 1, which hold for all ν.
     for (number, columns, nu, stored, orders) in [
@@ -228,17 +218,7 @@ fn strip(slenderness: usize) -> Result<f64, String> {
     Ok(2.0 * down / (2.0 * b * (lambda + 2.0 * mu)))
 }
 
-/// The thin strip.
-pub const STRIP: Check = Check {
-    name: "fem.thin_strip",
-    claim: "The force on a thin strip between rigid bonded plates tends to the lubrication limit, 1 − tanh(2)/2 of a wide \
-            strip's.",
-    requirements: &["FEM-057"],
-    repeatable: true,
-    run: thin,
-};
-
-fn thin() -> Figures {
+pub fn thin() -> Figures {
     // In a thin strip the pressure p(x) does not vary through the thickness. Between bonded plates it drives the flux
     // q = −t³ p'/(12 μ), and what the plates displace either flows or is compressed, δ/t = p/M + q'/t, where M stands for
     // the bulk modulus to the order of μ/M. So p'' = β² (p − M δ/t), p(±b) = 0, β² = 12 μ/(M t²), and

@@ -1,10 +1,11 @@
 //! Boundary-value problems of plane strain with known solutions, on meshes made for them. Element stiffness,
 //! gradients and stress are the library's; loads, solver and error norms are the checks' own.
 
+use faer::Col;
+use faer::linalg::solvers::Solve;
+use faer::sparse::{SparseColMat, Triplet};
 use palpate::fem::element::{NODES, PerNode, StiffnessRule, gradients, parent_gradients, stress};
 use palpate::phantom::Material;
-
-use super::skyline::Skyline;
 
 /// A displacement field with its gradient, `gradient(x)[i][j]` = ∂u_i/∂x_j.
 pub trait Exact {
@@ -87,15 +88,7 @@ impl Problem {
         let points = cells.map(|n| 2 * n + 1);
         let at =
             |i: usize, j: usize| [(i, 0), (j, 1)].map(|(k, d)| k as f64 / (points[d] - 1) as f64);
-        // Numbered along the shorter side, which keeps the profile small.
-        let across = points[0] < points[1];
-        let number = |i: usize, j: usize| {
-            if across {
-                j * points[0] + i
-            } else {
-                i * points[1] + j
-            }
-        };
+        let number = |i: usize, j: usize| i * points[1] + j;
         let mut nodes = vec![[0.0; 2]; points[0] * points[1]];
         for i in 0..points[0] {
             for j in 0..points[1] {
@@ -141,28 +134,22 @@ impl Problem {
         held: impl Fn(usize, usize) -> Option<f64>,
     ) -> Result<(Vec<f64>, Vec<f64>), String> {
         let held: Vec<Option<f64>> = (0..loads.len()).map(|k| held(k / 2, k % 2)).collect();
-        let mut first: Vec<usize> = (0..loads.len()).collect();
-        for nodes in &self.elements {
-            let least = 2 * nodes.iter().min().unwrap_or(&0);
-            for k in nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]) {
-                first[k] = first[k].min(least);
-            }
-        }
-        let mut matrix = Skyline::new(first);
+        let mut entries = Vec::new();
         self.visit(|row, column, value| match (held[row], held[column]) {
-            (None, None) if row >= column => matrix.add(row, column, value),
+            (None, None) => entries.push(Triplet::new(row, column, value)),
             (None, Some(u)) => loads[row] -= value * u,
             _ => {}
         })?;
         for (k, u) in held.iter().enumerate() {
             if let Some(u) = u {
-                matrix.add(k, k, 1.0);
+                entries.push(Triplet::new(k, k, 1.0));
                 loads[k] = *u;
             }
         }
-        matrix.factorise()?.solve(&mut loads);
-        let force = self.internal_force(&loads)?;
-        Ok((loads, force))
+        let u = solved(&entries, &loads)?;
+        let mut force = vec![0.0; u.len()];
+        self.visit(|row, column, value| force[row] += value * u[column])?;
+        Ok((u, force))
     }
 
     /// Hands every entry of every element's stiffness to `visit(row, column, value)`.
@@ -184,13 +171,6 @@ impl Problem {
             }
         }
         Ok(())
-    }
-
-    /// K u.
-    fn internal_force(&self, u: &[f64]) -> Result<Vec<f64>, String> {
-        let mut force = vec![0.0; u.len()];
-        self.visit(|row, column, value| force[row] += value * u[column])?;
-        Ok(force)
     }
 
     /// Calls `visit(element, position, weight × Jacobian, shape functions, their gradients)` at the points of the fine rule.
@@ -318,6 +298,21 @@ impl Problem {
             stress,
         }
     }
+}
+
+/// x of A x = b, where the entries of A at the same place add up; by elimination with pivots (LU), since A need not be definite.
+///
+/// # Errors
+/// A singular matrix.
+pub fn solved(entries: &[Triplet<usize, usize, f64>], b: &[f64]) -> Result<Vec<f64>, String> {
+    let matrix = SparseColMat::try_new_from_triplets(b.len(), b.len(), entries)
+        .map_err(|error| format!("no matrix: {error:?}"))?;
+    let factors = matrix
+        .sp_lu()
+        .map_err(|error| format!("a singular matrix: {error:?}"))?;
+    let mut x = Col::from_fn(b.len(), |k| b[k]);
+    factors.solve_in_place(&mut x);
+    Ok(x.iter().copied().collect())
 }
 
 /// What is said of an element whose Jacobian is not positive.

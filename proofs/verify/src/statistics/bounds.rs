@@ -1,9 +1,5 @@
 //! Θ_max, the position, and noise in proportion to force.
 
-use std::format;
-use std::vec;
-use std::vec::Vec;
-
 use super::checks::{Law, count_rejects, excess_rejects, variance_rejects};
 use super::{Check, Draw, Outcome};
 use palpate::detect::mixture::mixture_theta;
@@ -13,7 +9,6 @@ use palpate::detect::simulate::count_false_alarms;
 use palpate::detect::weber::{WeberNoise, theta_weber};
 use palpate::detect::{neyman_pearson_false_alarm_threshold, theta_of_record};
 use palpate::force::Force;
-use palpate::stats::binomial::clopper_pearson;
 use palpate::stats::normal::{cdf, upper_tail};
 
 /// DET-056, DET-058; DET-053, DET-054, DET-060, DET-061; DET-070; DET-080, DET-081.
@@ -66,13 +61,6 @@ fn theta_max_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
     let (shifts, trials) = (scan.shifts(), 0..draw.trials());
     let mut residual = [0.0; 2 * SAMPLES];
     let alarms = count_false_alarms(&scan, shifts, eta, &generator, trials, &mut residual)?;
-    // How far the bound is from the truth: the interval of the rate that was seen.
-    let seen = clopper_pearson(alarms, draw.trials(), 0.99)?;
-    let union = law.union_bound(eta)?;
-    draw.notes.borrow_mut().push(format!(
-        "false alarms of theta_max: {:.4} to {:.4}, bound 0.05, union bound {union:.4}",
-        seen.lower, seen.upper
-    ));
     excess_rejects(alarms, draw.trials(), 0.05, draw.row.alpha)
 }
 
@@ -112,11 +100,6 @@ fn position_error(draw: &Draw<'_>) -> Outcome<bool> {
         _ => 60,
     };
     let errors = position_errors(draw, &template, place)?;
-    let ratio = errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64 / sd / sd;
-    draw.notes.borrow_mut().push(format!(
-        "position at gamma = {gamma}: mean square error {ratio:.3} of the bound's {:.5}",
-        sd * sd
-    ));
     variance_rejects(&errors, Law { mean: 0.0, sd }, draw.row.alpha)
 }
 

@@ -1,9 +1,6 @@
 //! Coloured noise, made as nature makes it (mixing, feedback, moving averages), never from the
 //! factor that is under test.
 
-use std::vec;
-use std::vec::Vec;
-
 use super::checks::{Law, mean_rejects, variance_rejects};
 use super::{Check, Draw, Outcome};
 use palpate::detect::coloured::{ColouredStatistic, coloured_scratch, theta_coloured};

@@ -1,8 +1,5 @@
 //! Records in white noise, from the two forces to θ, against N(±γ²/2, γ²).
 
-use std::vec;
-use std::vec::Vec;
-
 use super::checks::{
     Law, count_rejects, kolmogorov_rejects, mean_rejects, tail_rejects, variance_rejects,
 };
@@ -104,7 +101,7 @@ fn sampled(file: &str) -> Outcome<Force<Vec<f64>>> {
             .map(str::parse)
             .collect::<Result<Vec<f64>, _>>()?;
         let [_, _, normal, lateral] = fields[..] else {
-            return Err(std::format!("{line:?} has not four fields").into());
+            return Err(format!("{line:?} has not four fields").into());
         };
         rows.push([lateral, normal]);
     }
@@ -280,7 +277,6 @@ mod tests {
                 defect,
                 replicate: 0,
                 row: &row,
-                notes: Default::default(),
             };
             sample(&draw, COARSE, true, 0).unwrap().1
         };

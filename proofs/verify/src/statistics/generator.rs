@@ -1,8 +1,5 @@
 //! The deviates themselves.
 
-use std::vec;
-use std::vec::Vec;
-
 use super::checks::{Law, count_rejects, kolmogorov_rejects};
 use super::{Check, Draw, Outcome};
 use palpate::stats::normal::upper_tail;

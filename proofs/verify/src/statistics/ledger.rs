@@ -1,23 +1,8 @@
 //! The ledger of the battery's errors: α and power of every check.
 
-use std::format;
-use std::vec::Vec;
-
 use super::{Outcome, SHOWN_POWER};
 
 /// One row of `ledger.csv`.
-///
-/// ```
-/// use palpate_verify::statistics::{FIXED_SEED, battery};
-///
-/// let check = battery().find(|check| check.name() == "coarse_mean_h0").ok_or("no such check")?;
-/// let row = check.row(FIXED_SEED).map_err(|failure| failure.to_string())?;
-/// assert_eq!((row.alpha, row.trials), (2.5e-8, 200_000));
-/// // A mean tells nothing of a variance that is off by a per cent, and much of a missing ½.
-/// let shown: Vec<&str> = row.shown_defects().collect();
-/// assert_eq!(shown, ["half_left_out", "channels_swapped", "sd_for_variance"]);
-/// # Ok::<(), String>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// The check.

@@ -9,13 +9,11 @@ use super::cargo::{ALL, IN_THE_PROGRAM, OURS, WITHOUT_BUILD_SCRIPTS, locked, tre
 use super::rules::rules;
 
 /// The layers in their order, and the features that they are built with.
-const LAYERS: [(&str, &str); 7] = [
+const LAYERS: [(&str, &str); 5] = [
     ("core", ""),
     ("std", "std"),
     ("fem", "fem"),
-    ("report", "report"),
     ("hid", "hid"),
-    ("oracle", "oracle"),
     ("cli", "default"),
 ];
 
@@ -105,15 +103,15 @@ fn a_crate_has_several_versions_only_where_specification_and_rules_say_so() {
     let row = |(name, series): (&&str, &Vec<String>)| format!("| {name} | {}", series.join(", "));
     assert!(rows.map(|row| row.0).eq(versions.iter().map(row)));
     // The newest of each needs no leave.
-    let skip = rules().bans.skip;
+    let rules = rules();
+    let skip = rules["bans"]["skip"].as_array().unwrap().iter();
     let old = versions.iter().flat_map(|(name, series)| {
         let (_, old) = series.split_last().unwrap();
         old.iter().map(move |series| format!("{name}@{series}"))
     });
     assert!(
-        skip.iter()
-            .map(|entry| &entry["crate"])
-            .eq(&old.collect::<Vec<_>>())
+        skip.map(|entry| entry["crate"].as_str().unwrap().to_string())
+            .eq(old)
     );
 }
 

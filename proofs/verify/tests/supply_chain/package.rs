@@ -1,7 +1,7 @@
 //! What `cargo package` puts into the package.
 
 use std::collections::BTreeSet;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use super::ROOT;
 use super::cargo::cargo;
@@ -18,36 +18,21 @@ pub fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// A path without `..`.
-fn plain(path: &Path) -> PathBuf {
-    let mut plain = PathBuf::new();
-    for part in path.components() {
-        match part {
-            Component::ParentDir => assert!(plain.pop()),
-            part => plain.push(part),
-        }
-    }
-    plain
-}
-
 // Verifies: EVD-071.
 #[test]
 fn the_package_has_every_file_that_its_sources_include() {
     let listed = cargo(&["package", "--list", "--allow-dirty"]);
     let listed: BTreeSet<&str> = listed.lines().collect();
+    let root = Path::new(ROOT).canonicalize().unwrap();
     let mut files = Vec::new();
-    sources(&Path::new(ROOT).join("src"), &mut files);
+    sources(&root.join("src"), &mut files);
     let mut included = 0;
     for file in files {
         let text = std::fs::read_to_string(&file).unwrap();
         for part in text.split("include_str!(\"").skip(1) {
             let name = part.split('"').next().unwrap();
-            let path = plain(&file.parent().unwrap().join(name));
-            let path = path
-                .strip_prefix(plain(Path::new(ROOT)))
-                .unwrap()
-                .to_str()
-                .unwrap();
+            let path = file.with_file_name(name).canonicalize().unwrap();
+            let path = path.strip_prefix(&root).unwrap().to_str().unwrap();
             assert!(
                 listed.contains(path),
                 "{path}, which {} includes",

@@ -50,9 +50,9 @@ fn command<'a>(
 /// Implements: EVD-034.
 pub fn unchecked(trace: &Trace, asked: impl Fn(&str) -> bool) -> String {
     let mut by_command: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-    for (id, row) in &trace.rows {
+    for row in &trace.requirements {
         if let Some(command) = command(row.tests.iter().chain(&row.proofs), &asked) {
-            by_command.entry(command).or_default().insert(id);
+            by_command.entry(command).or_default().insert(&row.id);
         }
     }
     let count: usize = by_command.values().map(BTreeSet::len).sum();

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::trace::{Evidence, Trace, names_program};
+use crate::trace::Trace;
 
 /// How a test ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -12,17 +12,11 @@ enum End {
     Failed,
 }
 
-/// The output of one or more runs.
+/// The output of one or more runs: the worst end of each test by its program and name, except that a test that one run
+/// ignores may pass in another. What succeeded otherwise is there by its line, and each word of a command, since that may name a
+/// script.
 #[derive(Debug, Default)]
-pub struct Log {
-    /// By the root as cargo shows it, the name of the crate and the name of the test: the worst end, except that a
-    /// test that one run ignores may pass in another.
-    tests: BTreeMap<(String, String, String), End>,
-    /// Scenarios that passed.
-    scenarios: Vec<String>,
-    /// Commands of `.ci/run` that succeeded.
-    commands: Vec<String>,
-}
+pub struct Log(BTreeMap<String, End>);
 
 impl Log {
     /// Adds the output of a run, standard output and standard error in one, so that the lines in which cargo names a
@@ -38,19 +32,30 @@ impl Log {
             } else if line.trim_start().starts_with("Doc-tests ") || line.starts_with("== ") {
                 program = None;
             }
-            if let Some((root, krate)) = &program
+            if let Some(program) = &program
                 && let Some((name, end)) = test_line(line, &mut begun)
             {
-                let key = (root.clone(), krate.clone(), name.into());
-                let noted = self.tests.entry(key).or_insert(end);
+                let noted = self.0.entry(format!("{program} {name}")).or_insert(end);
                 *noted = end.max(*noted);
             }
             if let Some(command) = line.strip_prefix("== ok: ") {
-                self.commands.push(command.into());
+                let benches = command
+                    .split_once("--bench ")
+                    .map(|(_, name)| format!("benches/{name}.rs"));
+                let words = command.split_whitespace().map(String::from);
+                self.0.extend(
+                    words
+                        .chain(benches)
+                        .chain([line.into()])
+                        .map(|passed| (passed, End::Ok)),
+                );
             }
-            if let Some(rest) = line.strip_prefix("hid-stack: ok") {
-                let name = rest.trim_start().split_once(':');
-                self.scenarios.extend(name.map(|(name, _)| name.into()));
+            if let Some((passed, _)) = line
+                .strip_prefix("hid-stack: ok ")
+                .and_then(|name| name.split_once(':'))
+            {
+                self.0
+                    .insert(format!("hid-stack: ok {}", passed.trim_start()), End::Ok);
             }
         }
     }
@@ -60,54 +65,30 @@ impl Log {
     /// Implements: EVD-031.
     pub fn missing(&self, trace: &Trace) -> Vec<String> {
         let mut missing = Vec::new();
-        for (name, evidence) in &trace.evidence {
-            if let Some(how) = self.missed(evidence) {
-                let rows = trace.rows.iter();
-                let ids =
-                    rows.filter(|(_, row)| row.tests.contains(name) || row.proofs.contains(name));
-                let ids: Vec<&str> = ids.map(|(id, _)| id.as_str()).collect();
+        for (name, lines) in &trace.evidence {
+            let missed = lines.iter().find_map(|line| match self.0.get(line) {
+                Some(End::Ok) => None,
+                Some(End::Ignored) => Some("was ignored in every run".into()),
+                Some(End::Failed) => Some("failed".into()),
+                None => Some(format!("did not run: the log has no \"{line}\"")),
+            });
+            if let Some(how) = missed {
+                let rows = trace.requirements.iter();
+                let ids = rows.filter(|row| row.tests.contains(name) || row.proofs.contains(name));
+                let ids: Vec<&str> = ids.map(|row| row.id.as_str()).collect();
                 missing.push(format!("{name} {how} ({})", ids.join(", ")));
             }
         }
         missing
     }
-
-    /// What the log says instead of "passed"; nothing if it says so.
-    fn missed(&self, evidence: &Evidence) -> Option<String> {
-        match evidence {
-            Evidence::Test { krate, name } => {
-                let key = (krate.shown.clone(), krate.name.clone(), name.clone());
-                match self.tests.get(&key) {
-                    Some(End::Ok) => None,
-                    Some(End::Ignored) => Some("was ignored in every run".into()),
-                    Some(End::Failed) => Some("failed".into()),
-                    None => Some("did not run: it is not in the log".into()),
-                }
-            }
-            Evidence::Scenario { lines } => {
-                let absent = lines.iter().find(|line| !self.scenarios.contains(line))?;
-                Some(format!("did not run: no line \"hid-stack: ok {absent}\""))
-            }
-            Evidence::Step { command } => {
-                let ran = self.commands.contains(command);
-                (!ran).then(|| format!("did not run: no line \"== ok: {command}\""))
-            }
-            Evidence::Program { path } => {
-                let mut commands = self.commands.iter();
-                let ran = commands.any(|command| names_program(command, path));
-                (!ran).then(|| "did not run: no line \"== ok: …\" names it".into())
-            }
-        }
-    }
 }
 
-/// Root and name of the crate of `unittests src/lib.rs (target/debug/deps/palpate-0123)`.
-fn test_program(running: &str) -> Option<(String, String)> {
+/// Name and root of the program of `unittests src/lib.rs (target/debug/deps/palpate-0123)`.
+fn test_program(running: &str) -> Option<String> {
     let (root, file) = running.strip_suffix(')')?.split_once(" (")?;
     let root = root.strip_prefix("unittests ").unwrap_or(root);
-    let name = file.rsplit(['/', '\\']).next()?;
-    let (name, _) = name.rsplit_once('-')?;
-    Some((root.replace('\\', "/"), name.into()))
+    let (name, _) = file.rsplit('/').next()?.rsplit_once('-')?;
+    Some(format!("{name} {root}"))
 }
 
 /// Name and end of `test a::b ... ok`; of `test a::b - should panic ... ok` as well. Where something else follows the dots,

@@ -1,334 +1,296 @@
-//! From each requirement to its code, tests, proofs and vectors.
+//! From each requirement to its code, tests, proofs and vectors, by the annotations: comments that name requirements
+//! (`spec/traceability.md`).
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::annotation::{Annotation, Word, annotations};
-use crate::crates::{Crate, Crates};
-use crate::problem::Problem;
-use crate::rust::{Item, item_below, names_by_macro};
-use crate::scenarios::Scenarios;
-use crate::sources::{Repository, Source};
-use crate::spec::{Requirement, requirements};
+use palpate_verify::traceability::Requirement;
+
+use crate::repository::{Program, Repository, ending, program};
+use crate::rust::{item_below, names_by_macro};
+use crate::spec::{Defined, is_id, requirements};
 
 /// How many requirements a person may inspect instead of a test (EVD-029).
-pub const MOST_INSPECTED: usize = 10;
+const MOST_INSPECTED: usize = 10;
 
-/// The script that runs everything.
-const CI: &str = ".ci/run";
+/// What is wrong: file, line from 1 and message.
+///
+/// Implements: EVD-025.
+pub type Problems = BTreeSet<(String, usize, String)>;
 
-/// What shows that a test or proof has run.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Evidence {
-    /// A test function: cargo's line for `name` in the section of its crate.
-    Test { krate: Crate, name: String },
-    /// A scenario of the test on the HID stack: its lines, by their names.
-    Scenario { lines: Vec<String> },
-    /// A script, a bench or a Gappa file that `.ci/run` runs.
-    Program { path: String },
-    /// A step of `.ci/run`: the command.
-    Step { command: String },
-}
-
-/// What the annotations say of one requirement.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Row {
-    pub code: BTreeSet<String>,
-    pub tests: BTreeSet<String>,
-    pub proofs: BTreeSet<String>,
-    pub vectors: BTreeSet<String>,
-}
+/// Three kinds of annotations: served by this code; checked by this test; shown for every input in a stated range.
+const WORDS: [&str; 3] = ["Implements", "Verifies", "Proves"];
 
 /// All requirements with what serves and what checks them.
 #[derive(Debug, Default)]
 pub struct Trace {
+    /// In the order of their ids.
     pub requirements: Vec<Requirement>,
-    pub rows: BTreeMap<String, Row>,
-    /// Every test and proof that a row names.
-    pub evidence: BTreeMap<String, Evidence>,
-    pub problems: Vec<Problem>,
+    /// The lines of a log that show that a test or proof has passed, as [`crate::log::Log`] notes them.
+    pub evidence: BTreeMap<String, Vec<String>>,
+    pub problems: Problems,
+}
+
+/// What stands below an annotation.
+enum Place {
+    Code(String),
+    Vectors(String),
+    /// Tests or proofs by their names, with the lines of their log.
+    Evidence(BTreeMap<String, Vec<String>>),
 }
 
 impl Trace {
     pub fn of(repository: &Repository) -> Trace {
-        let mut problems = Vec::new();
-        let requirements = requirements(&repository.chapters, &mut problems);
-        let ids = requirements
+        let mut trace = Trace::default();
+        let mut defined = requirements(repository, &mut trace.problems);
+        for (path, text) in repository
             .iter()
-            .map(|requirement| requirement.id.clone());
-        let rows = ids.map(|id| (id, Row::default())).collect();
-        let mut trace = Trace {
-            requirements,
-            rows,
-            problems,
-            ..Trace::default()
-        };
-        let crates = Crates::find(repository);
-        let scenarios = Scenarios::find(repository);
-        for source in &repository.sources {
-            for annotation in annotations(source, &mut trace.problems) {
-                let found = Place::of(repository, &crates, &scenarios, source, &annotation);
-                match found {
-                    Ok(place) => trace.enter(source, &annotation, place),
-                    Err(message) => trace.refuse(source, &annotation, message),
+            .filter(|(path, _)| !path.starts_with("spec/"))
+        {
+            let lines: Vec<&str> = text.lines().collect();
+            for line in 0..lines.len() {
+                if let Err(message) = trace.annotation(repository, &mut defined, path, &lines, line)
+                {
+                    trace.problems.insert((path.clone(), line + 1, message));
                 }
             }
         }
-        trace.judge();
+        trace.judge(&defined);
+        trace.requirements = defined
+            .into_values()
+            .map(|defined| defined.requirement)
+            .collect();
         trace
     }
 
-    fn refuse(&mut self, source: &Source, annotation: &Annotation, message: String) {
-        let problem = Problem::new(&source.path, annotation.line + 1, message);
-        self.problems.push(problem);
-    }
-
-    /// Implements: EVD-021.
-    fn enter(&mut self, source: &Source, annotation: &Annotation, place: Place) {
-        for id in &annotation.ids {
-            let Some(row) = self.rows.get_mut(id) else {
-                let message = format!("no chapter in spec/ has a requirement {id}");
-                self.refuse(source, annotation, message);
-                continue;
+    /// Enters the annotation that begins on a line, if one does.
+    ///
+    /// Implements: EVD-021, EVD-023.
+    fn annotation(
+        &mut self,
+        repository: &Repository,
+        defined: &mut BTreeMap<String, Defined>,
+        path: &str,
+        lines: &[&str],
+        line: usize,
+    ) -> Result<(), String> {
+        let ending = ending(path);
+        let said = comment(lines[line], ending);
+        let word = WORDS
+            .into_iter()
+            .find(|word| said.is_some_and(|said| said.starts_with(&format!("{word}:"))));
+        let Some((word, said)) = word.zip(said) else {
+            // A page may talk of annotations.
+            return match ending != "md" && names_an_id(lines[line]) {
+                true => Err(format!(
+                    "{:?} is no annotation: a comment of its own begins with \"Implements: \", \"Verifies: \" or \"Proves: \"",
+                    lines[line].trim()
+                )),
+                false => Ok(()),
             };
-            let cell = match (&place, annotation.word) {
-                (Place::Code(_), _) => &mut row.code,
-                (Place::Vectors(_), _) => &mut row.vectors,
-                (Place::Evidence(_), Word::Proves) => &mut row.proofs,
-                (Place::Evidence(_), _) => &mut row.tests,
+        };
+        let (mut listed, mut end) = (said[word.len() + 1..].trim().to_string(), line + 1);
+        while listed.ends_with(',') && end < lines.len() {
+            listed += " ";
+            listed += comment(lines[end], ending).unwrap_or_default();
+            end += 1;
+        }
+        let ids = listed.split_once('.').map(|(ids, _)| ids.split(", "));
+        let ids = ids.filter(|ids| ids.clone().all(is_id)).ok_or_else(|| {
+            format!("{said:?} is no annotation, expected \"{word}: ABC-001, ABC-002.\"")
+        })?;
+        let place = place(repository, path, word, lines[line], end)?;
+        for id in ids {
+            let row = defined.get_mut(id).map(|defined| &mut defined.requirement);
+            let row = row.ok_or_else(|| format!("no chapter in spec/ has a requirement {id}"))?;
+            let (cell, names) = match &place {
+                Place::Code(name) => (&mut row.code, vec![name]),
+                Place::Vectors(name) => (&mut row.vectors, vec![name]),
+                Place::Evidence(tests) if word == "Proves" => {
+                    (&mut row.proofs, tests.keys().collect())
+                }
+                Place::Evidence(tests) => (&mut row.tests, tests.keys().collect()),
             };
-            cell.extend(place.names());
+            cell.extend(names.into_iter().cloned());
+            cell.sort();
+            cell.dedup();
         }
-        if let Place::Evidence(evidence) = place {
-            self.evidence.extend(evidence);
+        if let Place::Evidence(tests) = place {
+            self.evidence.extend(tests);
         }
+        Ok(())
     }
 
     /// Every requirement has code, and a test or proof.
     ///
     /// Implements: EVD-020, EVD-029.
-    fn judge(&mut self) {
-        for requirement in &self.requirements {
-            let Requirement { id, chapter, .. } = requirement;
-            let row = &self.rows[id];
+    fn judge(&mut self, defined: &BTreeMap<String, Defined>) {
+        for (id, defined) in defined {
+            let row = &defined.requirement;
             let tested = !row.tests.is_empty() || !row.proofs.is_empty();
-            let mut refuse = |message: String| {
-                let path = format!("spec/{chapter}");
-                let problem = Problem::new(&path, requirement.line, message);
-                self.problems.push(problem);
-            };
-            if row.code.is_empty() {
-                refuse(format!(
-                    "{id} has no code: nothing says \"Implements: {id}.\""
-                ));
-            }
-            match (&requirement.inspection, tested) {
-                (None, false) => refuse(format!(
-                    "{id} has neither test nor proof: nothing says \"Verifies: {id}.\""
-                )),
-                (Some(_), true) => refuse(format!(
-                    "{id} is marked \"by inspection\", but there is a test or proof of it"
-                )),
-                (Some(reason), false) if reason.is_empty() => {
-                    refuse(format!("{id} does not say where it is inspected, and why"));
+            let inspected = row.inspection.as_deref();
+            for (wrong, message) in [
+                (
+                    row.code.is_empty(),
+                    "has no code: no annotation \"Implements:\" names it",
+                ),
+                (
+                    inspected.is_none() && !tested,
+                    "has neither test nor proof: no annotation \"Verifies:\" names it",
+                ),
+                (
+                    inspected.is_some() && tested,
+                    "is marked \"by inspection\", but there is a test or proof of it",
+                ),
+                (
+                    inspected == Some(""),
+                    "does not say where it is inspected, and why",
+                ),
+            ] {
+                if wrong {
+                    let message = format!("{id} {message}");
+                    self.problems
+                        .insert((defined.path.clone(), defined.line, message));
                 }
-                _ => {}
             }
         }
-        let inspected = self.requirements.iter().filter(|r| r.inspection.is_some());
-        let inspected: Vec<&str> = inspected.map(|r| r.id.as_str()).collect();
+        let inspected = defined
+            .iter()
+            .filter(|(_, defined)| defined.requirement.inspection.is_some());
+        let inspected: Vec<&str> = inspected.map(|(id, _)| id.as_str()).collect();
         if inspected.len() > MOST_INSPECTED {
             let message = format!(
                 "{} requirements are marked \"by inspection\", at most {MOST_INSPECTED} may be: {}",
                 inspected.len(),
                 inspected.join(", ")
             );
-            self.problems.push(Problem::new("spec", 0, message));
+            self.problems.insert(("spec".into(), 0, message));
         }
     }
 }
 
-/// What an annotation stands at.
+/// What a line says as a comment: in Python every line counts, since docstrings have no mark.
+fn comment<'a>(line: &'a str, ending: &str) -> Option<&'a str> {
+    let line = line.trim();
+    let said = match ending {
+        "rs" | "js" => line.strip_prefix("//")?.trim_start_matches(['/', '!']),
+        "md" => line.strip_prefix("<!--")?.trim_end_matches("-->"),
+        "py" => line.trim_matches(['#', '"']),
+        _ => line.strip_prefix('#')?,
+    };
+    Some(said.trim())
+}
+
+/// Whether a line has one of the words, in capitals or not, with an id behind it.
+fn names_an_id(line: &str) -> bool {
+    let mut words = line
+        .split_whitespace()
+        .map(|word| word.trim_matches(|c: char| !c.is_alphanumeric()));
+    let named = |word: &str| WORDS.iter().any(|known| known.eq_ignore_ascii_case(word));
+    words.any(named) && words.next().is_some_and(is_id)
+}
+
+/// What an annotation of this word, which ends before line `end`, is about.
 ///
 /// Implements: EVD-024.
-enum Place {
-    Code(String),
-    Vectors(String),
-    /// By name.
-    Evidence(Vec<(String, Evidence)>),
-}
-
-impl Place {
-    fn names(&self) -> Vec<String> {
-        match self {
-            Place::Code(name) | Place::Vectors(name) => vec![name.clone()],
-            Place::Evidence(evidence) => evidence.iter().map(|(name, _)| name.clone()).collect(),
-        }
-    }
-
-    /// Implements: EVD-024, EVD-026.
-    fn of(
-        repository: &Repository,
-        crates: &Crates,
-        scenarios: &Scenarios,
-        source: &Source,
-        annotation: &Annotation,
-    ) -> Result<Place, String> {
-        let path = source.path.as_str();
-        let proof_folder = path.starts_with("proofs/");
-        if annotation.word == Word::Proves && !proof_folder {
-            return Err("\"Proves:\" stands in proofs/ alone".into());
-        }
-        let rust = source.extension() == "rs";
-        match annotation.word {
-            Word::Implements if rust => code(source, annotation),
-            Word::Implements => Ok(Place::Code(path.into())),
-            Word::Verifies if path.starts_with("vectors/generator/") => {
-                vectors(repository, source, annotation)
-            }
-            _ if rust && !path.starts_with("benches/") => {
-                test(crates, scenarios, source, annotation)
-            }
-            _ if path == CI => step(source, annotation),
-            _ => program(repository, path),
-        }
-    }
-}
-
-fn code(source: &Source, annotation: &Annotation) -> Result<Place, String> {
-    let path = &source.path;
-    let line = source.text.lines().nth(annotation.line).unwrap_or_default();
-    if line.starts_with("//!") {
-        return Ok(Place::Code(path.clone()));
-    }
-    let item = item_below(&source.text, annotation.end)
-        .ok_or("below it stands no item, field or variant that it could be about")?;
-    let owner = item.owner.map(|owner| format!("{owner}::"));
-    let owner = owner.unwrap_or_default();
-    Ok(Place::Code(format!("{path} {owner}{}", item.name)))
-}
-
-fn test(
-    crates: &Crates,
-    scenarios: &Scenarios,
-    source: &Source,
-    annotation: &Annotation,
-) -> Result<Place, String> {
-    let item = item_below(&source.text, annotation.end)
-        .filter(|item| item.kind == "fn")
-        .ok_or("it does not stand above a test function")?;
-    let places = crates.places.get(&source.path).ok_or(
-        "the file belongs to no crate: no `mod` leads to it, so that nothing in it can run",
-    )?;
-    if !item
-        .attributes
-        .iter()
-        .any(|attribute| attribute == "#[test]")
-    {
-        return scenario(scenarios, source, places, &item);
-    }
-    let functions = if item.name.starts_with('$') {
-        names_by_macro(&source.text, annotation.line)
-    } else {
-        vec![item.name]
-    };
-    let mut named = Vec::new();
-    for (krate, module) in places {
-        for function in &functions {
-            let path = [module.clone(), item.modules.clone(), vec![function.clone()]];
-            let (krate, name) = (krate.clone(), path.concat().join("::"));
-            let key = format!("{}::{name}", krate.root);
-            named.push((key, Evidence::Test { krate, name }));
-        }
-    }
-    if named.is_empty() {
-        return Err("nothing calls the macro that makes the test".into());
-    }
-    Ok(Place::Evidence(named))
-}
-
-/// Implements: EVD-027.
-fn scenario(
-    scenarios: &Scenarios,
-    source: &Source,
-    places: &[(Crate, Vec<String>)],
-    item: &Item,
-) -> Result<Place, String> {
-    let Item { name, .. } = item;
-    if !source.path.starts_with("tests/hid-stack/") {
-        return Err(format!("`{name}` below it has no #[test]"));
-    }
-    let lines = scenarios.lines_of(name);
-    if lines.is_empty() {
-        return Err(format!("no list `ALL` of scenarios runs `{name}`"));
-    }
-    let (krate, module) = &places[0];
-    let path = [module.clone(), vec![name.clone()]].concat().join("::");
-    let key = format!("{}::{path}", krate.root);
-    Ok(Place::Evidence(vec![(key, Evidence::Scenario { lines })]))
-}
-
-/// The group of vectors that the function below the annotation makes: the file of its name.
-fn vectors(
+fn place(
     repository: &Repository,
-    source: &Source,
-    annotation: &Annotation,
+    path: &str,
+    word: &str,
+    line: &str,
+    end: usize,
 ) -> Result<Place, String> {
-    let below = source.text.lines().nth(annotation.end).unwrap_or_default();
-    let name = below
-        .strip_prefix("def ")
-        .and_then(|def| def.split_once('('));
-    let (name, _) = name.ok_or("it does not stand above a function that makes a group")?;
-    let file = format!("vectors/{name}.json");
-    if repository.vectors.contains(&file) {
-        Ok(Place::Vectors(file))
-    } else {
-        Err(format!("there is no {file}"))
+    let text = &repository[path];
+    let (rust, below) = (
+        path.ends_with(".rs"),
+        text.lines().nth(end).unwrap_or_default(),
+    );
+    match word {
+        "Proves" if !path.starts_with("proofs/") => {
+            Err("\"Proves:\" stands in proofs/ alone".into())
+        }
+        "Implements" if rust && !line.starts_with("//!") => {
+            let item = item_below(text, end)
+                .ok_or("below it stands no item, field or variant that it could be about")?;
+            let owner = item.owner.map(|owner| owner + "::").unwrap_or_default();
+            Ok(Place::Code(format!("{path} {owner}{}", item.name)))
+        }
+        "Implements" => Ok(Place::Code(path.into())),
+        _ if rust && !path.starts_with("benches/") => test(repository, path, end),
+        _ if path.starts_with("vectors/generator/") => {
+            let name = below
+                .strip_prefix("def ")
+                .and_then(|def| def.split_once('('));
+            let (name, _) = name.ok_or("it does not stand above a function that makes a group")?;
+            let file = format!("vectors/{name}.json");
+            match repository.contains_key(&file) {
+                true => Ok(Place::Vectors(file)),
+                false => Err(format!("there is no {file}")),
+            }
+        }
+        _ if path == ".ci/run" => {
+            let command = below
+                .strip_prefix("step ")
+                .ok_or("it does not stand above a step")?;
+            let shown = format!("== ok: {command}");
+            Ok(Place::Evidence(
+                [(format!("{path} {command}"), vec![shown])].into(),
+            ))
+        }
+        _ => Ok(Place::Evidence([(path.into(), vec![path.into()])].into())),
     }
 }
 
-/// The step of `.ci/run` below the annotation.
-fn step(source: &Source, annotation: &Annotation) -> Result<Place, String> {
-    let below = source.text.lines().nth(annotation.end).unwrap_or_default();
-    let command = below
-        .strip_prefix("step ")
-        .ok_or("it does not stand above a step")?;
-    let command = command.to_string();
-    let name = format!("{CI} {command}");
-    Ok(Place::Evidence(vec![(name, Evidence::Step { command })]))
-}
-
-/// A script, a bench or a Gappa file as a whole.
-///
-/// Implements: EVD-027.
-fn program(repository: &Repository, path: &str) -> Result<Place, String> {
-    let run = repository.source(CI).map_or("", |run| &run.text);
-    let commands = run.lines().filter(|line| !line.trim().starts_with('#'));
-    if commands.into_iter().any(|line| names_program(line, path)) {
-        let path = path.to_string();
-        let evidence = Evidence::Program { path: path.clone() };
-        Ok(Place::Evidence(vec![(path, evidence)]))
-    } else {
-        Err(format!(
-            "{path} is no evidence of its own: .ci/run does not run it (if a cargo test does, annotate that one)"
-        ))
+/// A test function, or a scenario of the test on the HID stack.
+fn test(repository: &Repository, path: &str, end: usize) -> Result<Place, String> {
+    let item = item_below(&repository[path], end).filter(|item| item.kind == "fn");
+    let item = item.ok_or("it does not stand above a test function")?;
+    let Program {
+        root,
+        shown,
+        modules,
+    } = program(repository, path).ok_or("the file belongs to no program")?;
+    let functions = match item.name.starts_with('$') {
+        true => names_by_macro(&repository[path], end),
+        false => vec![item.name],
+    };
+    let mut tests = BTreeMap::new();
+    for function in functions {
+        let name = [&modules[..], &item.modules, std::slice::from_ref(&function)]
+            .concat()
+            .join("::");
+        let passed = if item.is_test {
+            vec![format!("{shown} {name}")]
+        } else if path.starts_with("tests/hid-stack/") {
+            scenarios(repository, &function)
+        } else {
+            return Err(format!("`{function}` below it has no #[test]"));
+        };
+        if passed.is_empty() {
+            return Err(format!("no list `ALL` of scenarios runs `{function}`"));
+        }
+        tests.insert(format!("{root}::{name}"), passed);
     }
+    Ok(Place::Evidence(tests))
 }
 
-/// Whether a command names this program: by its path, which may hold one `*`, or as `--bench NAME`.
-pub fn names_program(command: &str, path: &str) -> bool {
-    let bench = path.strip_prefix("benches/");
-    let bench = bench.and_then(|bench| bench.strip_suffix(".rs"));
-    let words: Vec<&str> = command
-        .split_whitespace()
-        .map(|word| word.trim_matches(['"', ';']))
-        .collect();
-    let by_path = words.iter().any(|word| match word.split_once('*') {
-        Some((start, end)) => start.contains('/') && path.starts_with(start) && path.ends_with(end),
-        None => *word == path,
+/// The lines of the scenarios that call a function: the guest runs those in its lists `ALL`, each a name and a call.
+fn scenarios(repository: &Repository, function: &str) -> Vec<String> {
+    let sources = repository
+        .iter()
+        .filter(|(path, _)| path.starts_with("tests/hid-stack/src/"));
+    let lists = sources.filter_map(|(_, text)| {
+        let (_, list) = text.split_once("const ALL: ")?;
+        list.split("];").next()
     });
-    let by_bench = bench.is_some_and(|bench| {
-        let mut pairs = words.windows(2);
-        pairs.any(|pair| pair == ["--bench", bench])
-    });
-    by_path || by_bench
+    let mut passed = Vec::new();
+    for entry in lists.flat_map(|list| list.split('(')) {
+        let Some((name, call)) = entry.trim_start().split_once("\",") else {
+            continue;
+        };
+        let mut words = call.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+        if words.any(|word| word == function) {
+            passed.push(format!("hid-stack: ok {}", name.trim_start_matches('"')));
+        }
+    }
+    passed
 }
