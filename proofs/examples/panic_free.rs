@@ -18,12 +18,12 @@ fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (State, C
 }
 
 #[no_panic]
-fn force(table: &Table, depth: f32, lateral: f32) -> Force {
+fn force(table: &Table, depth: f32, lateral: f32) -> Force<f32> {
     table.force(depth, lateral)
 }
 
 #[no_panic]
-fn force_in(table: &Table, depth: Cell, lateral: Cell) -> Force {
+fn force_in(table: &Table, depth: Cell, lateral: Cell) -> Force<f32> {
     table.force_in(depth, lateral)
 }
 
@@ -43,7 +43,7 @@ fn axis<'a>(knots: &'a [f32], reciprocals: &'a [f32]) -> Option<Axis<'a>> {
 }
 
 #[no_panic]
-fn table<'a>(depths: Axis<'a>, laterals: Axis<'a>, forces: &'a [Force]) -> Option<Table<'a>> {
+fn table<'a>(depths: Axis<'a>, laterals: Axis<'a>, forces: &'a [Force<f32>]) -> Option<Table<'a>> {
     Table::new(depths, laterals, forces).ok()
 }
 

@@ -35,7 +35,7 @@ pub struct Component {
     pub sha256: String,
     /// Its licence, an SPDX expression.
     pub licence: &'static str,
-    /// The first layer that has it, of core, std, fem, report, hid, verify, oracle, cli.
+    /// The first layer that has it, of core, std, fem, hid, cli.
     pub layer: &'static str,
     /// What it does.
     pub role: Role,

@@ -3,13 +3,11 @@
 //! What it says stands in the templates `templates/report/`, one for each section; here is what they choose from. Text is escaped
 //! by the template engine.
 
-pub mod table;
-
 use core::iter::once;
 
 use askama::Template;
 
-use super::text::{escape, printable};
+use super::text::printable;
 use super::{
     Comparison, Figure, Findings, MapFindings, Quality, Settings, Study, Topic, Value, paper, text,
 };
@@ -56,14 +54,6 @@ pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
     };
     // Neither writing to a String nor any of our formats fails.
     printable(&page.render().expect("a page of text and numbers"))
-}
-
-/// A section with its heading, which names it for a screen reader. `heading` is text, `markup` is markup.
-pub fn section(id: &str, heading: &str, markup: &str) -> String {
-    format!(
-        "<section id=\"{id}\" aria-labelledby=\"{id}-heading\">\n<h2 id=\"{id}-heading\">{}</h2>\n{markup}</section>\n",
-        escape(heading)
-    )
 }
 
 impl Page<'_> {
