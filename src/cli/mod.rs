@@ -15,7 +15,6 @@ mod play;
 mod playback;
 pub mod progress;
 mod psychophysics;
-mod psychophysics_text;
 mod run;
 mod solve;
 mod timing;

@@ -4,7 +4,7 @@
 use askama::Template;
 use serde::Serialize;
 
-use super::findings::MapFindings;
+use super::maps::MapFindings;
 use super::text::{fixed, percent};
 use super::{paper, text};
 use crate::detect::{DetectError, gamma_from_two_afc, required_gamma};

@@ -1,17 +1,13 @@
-//! Signals, signal-to-noise ratios, thresholds and error rates of a study.
+//! What a study found.
 
 use serde::Serialize;
 
 use super::comparison::{self, Comparison};
+use super::maps::{MapFindings, ReferenceFindings, gamma, of_map, of_reference};
 use super::people::bridge_to;
-use super::quality::{Quality, warnings};
 use super::text::{millimetres, name_of_map};
 use super::{Settings, Study, paper, refused};
-use crate::detect::{
-    DetectError, ErrorRates, MatchedFilter, auc, error_rates, map_threshold,
-    neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, required_gamma, two_afc,
-};
-use crate::force::Force;
+use crate::detect::{DetectError, map_threshold, required_gamma};
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::psychophysics::bridge::Bridge;
 use crate::psychophysics::{Analysis, NoiseDecomposition, Table, analyse, paper_noise_levels};
@@ -41,83 +37,6 @@ pub struct Findings {
     pub bridge: Option<Bridge>,
     /// Each number that the paper prints beside ours.
     pub comparison: Vec<Comparison>,
-}
-
-/// What the reference map says.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ReferenceFindings {
-    /// The name of its phantom: untrusted text.
-    pub name: String,
-    /// The normal force at x = 0, N, if x = 0 is on the axis.
-    #[serde(rename = "normal_force_at_centre_n")]
-    pub normal_force_at_centre: Option<f64>,
-    /// How good the computation was; `None` for measured forces.
-    pub quality: Option<Quality>,
-}
-
-/// What the map of one phantom says.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MapFindings {
-    /// The name of its phantom: untrusted text.
-    pub name: String,
-    /// Which of the paper's phantoms it is, if any.
-    pub paper_phantom: Option<&'static str>,
-    /// The depth of the highest point of all inclusions, m; `None` without any.
-    #[serde(rename = "inclusion_depth_m")]
-    pub inclusion_depth: Option<f64>,
-    /// Where F_1 − F_0 of the normal force is largest in magnitude.
-    pub peak_normal: Peak,
-    /// Where F_1 − F_0 of the lateral force is largest in magnitude.
-    pub peak_lateral: Peak,
-    /// γ of the matched filter over the whole lateral sweep.
-    pub gamma: GammaByChannel,
-    /// The maximum a-posteriori rule.
-    pub map_rule: Threshold,
-    /// Neyman–Pearson with the miss rate bounded; the fewest false alarms.
-    pub bounded_miss: Threshold,
-    /// Neyman–Pearson with the false-alarm rate bounded; the fewest misses. `None` if γ = 0.
-    pub bounded_false_alarm: Option<Threshold>,
-    /// The area under the curve of hits against false alarms.
-    pub auc: f64,
-    /// The share of right answers in pairs.
-    pub two_afc: f64,
-    /// How good the computation was; `None` for measured forces.
-    pub quality: Option<Quality>,
-    /// What a reader must know before using these numbers.
-    pub warnings: Vec<String>,
-}
-
-/// An extreme of a signal along the lateral sweep.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Peak {
-    /// The signed force, N.
-    #[serde(rename = "force_n")]
-    pub force: f64,
-    /// The lateral position, m; of mirror images the one with x ≥ 0.
-    #[serde(rename = "lateral_m")]
-    pub lateral: f64,
-}
-
-/// γ with both channels and with each alone.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct GammaByChannel {
-    /// Both.
-    pub both: f64,
-    /// The normal force alone.
-    pub normal: f64,
-    /// The lateral force alone.
-    pub lateral: f64,
-}
-
-/// A threshold with its error rates.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Threshold {
-    /// η of equation (9).
-    pub eta: f64,
-    /// Pr(Ĥ = 1 | H = 0).
-    pub false_alarm: f64,
-    /// Pr(Ĥ = 0 | H = 1).
-    pub miss: f64,
 }
 
 /// Everything that the report says in numbers.
@@ -180,103 +99,4 @@ fn check(settings: &Settings) -> Result<f64, DetectError> {
     gamma(&[0.0], &[0.0], settings.noise_sd)?;
     map_threshold(settings.prior_h1)?;
     required_gamma(settings.max_false_alarm, settings.max_miss)
-}
-
-/// The refusal of a map.
-///
-/// Implements: REP-004.
-pub(super) fn incomparable(map: &ForceMap) -> impl FnOnce(Refusal) -> Refusal {
-    let name = name_of_map(map);
-    refused(format!(
-        "map {name:?} cannot be compared with the reference"
-    ))
-}
-
-fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindings, Refusal> {
-    let row = map.row(depth).map_err(incomparable(map))?;
-    let centre = map.laterals().iter().position(|x| x.abs() <= SAME_POSITION);
-    Ok(ReferenceFindings {
-        name: name_of_map(map),
-        normal_force_at_centre: centre.map(|column| row.normal[column]),
-        quality: Quality::of(map),
-    })
-}
-
-fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFindings, Refusal> {
-    let signal = map.signal(&study.reference);
-    let signal = signal.map_err(incomparable(map))?;
-    let signal = signal.row(depth).map_err(incomparable(map))?;
-    let found = judged(&study.settings, map, signal);
-    found.map_err(refused(format!("map {:?}", name_of_map(map))))
-}
-
-/// What the detector makes of a map's signal.
-///
-/// Implements: REP-012, REP-013.
-fn judged(
-    settings: &Settings,
-    map: &ForceMap,
-    signal: Force<&[f64]>,
-) -> Result<MapFindings, DetectError> {
-    let Force { lateral, normal } = signal;
-    let zeros = vec![0.0; normal.len()];
-    let gamma = GammaByChannel {
-        both: gamma(lateral, normal, settings.noise_sd)?,
-        normal: gamma(&zeros, normal, settings.noise_sd)?,
-        lateral: gamma(lateral, &zeros, settings.noise_sd)?,
-    };
-    let both = gamma.both;
-    let at = |eta: f64| {
-        let ErrorRates { false_alarm, miss } = error_rates(both, eta)?;
-        Ok(Threshold {
-            eta,
-            false_alarm,
-            miss,
-        })
-    };
-    let bounded = neyman_pearson_false_alarm_threshold(both, settings.max_false_alarm);
-    let quality = Quality::of(map);
-    let phantom = map.phantom();
-    let depths = phantom.map(|of| of.inclusions.iter().map(|inclusion| inclusion.depth));
-    Ok(MapFindings {
-        name: name_of_map(map),
-        paper_phantom: phantom.and_then(paper::name_of),
-        inclusion_depth: depths.and_then(|depths| depths.reduce(f64::min)),
-        peak_normal: peak(map.laterals(), normal),
-        peak_lateral: peak(map.laterals(), lateral),
-        gamma,
-        map_rule: at(map_threshold(settings.prior_h1)?)?,
-        bounded_miss: at(neyman_pearson_miss_threshold(both, settings.max_miss)?)?,
-        bounded_false_alarm: match bounded.and_then(at) {
-            // Two phantoms that feel the same: there is no threshold to state.
-            Err(DetectError::NoSignal) => None,
-            other => Some(other?),
-        },
-        auc: auc(both)?,
-        two_afc: two_afc(both)?,
-        warnings: warnings(quality.as_ref(), both),
-        quality,
-    })
-}
-
-/// The largest magnitude; of equals the one nearest to x = 0, then the one at x > 0.
-///
-/// Implements: REP-011.
-fn peak(laterals: &[f64], forces: &[f64]) -> Peak {
-    let poses = laterals.iter().zip(forces);
-    let peaks = poses.map(|(&lateral, &force)| Peak { force, lateral });
-    let peak = peaks.max_by(|a, b| {
-        let by_force = a.force.abs().total_cmp(&b.force.abs());
-        by_force
-            .then(b.lateral.abs().total_cmp(&a.lateral.abs()))
-            .then(a.lateral.total_cmp(&b.lateral))
-    });
-    peak.unwrap_or_default()
-}
-
-/// γ of lateral and normal forces in noise of the same standard deviation.
-fn gamma(lateral: &[f64], normal: &[f64], noise_sd: f64) -> Result<f64, DetectError> {
-    let template = Force { lateral, normal };
-    let noise_sd = Force::new(noise_sd, noise_sd);
-    MatchedFilter::new(template, noise_sd).map(|filter| filter.gamma())
 }

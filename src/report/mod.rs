@@ -7,7 +7,8 @@
 //! | file | content |
 //! |---|---|
 //! | `paper.rs` | the numbers that the paper prints |
-//! | `findings.rs` | signals, signal-to-noise ratios, thresholds |
+//! | `maps.rs` | what each map says: signal, signal-to-noise ratios, thresholds |
+//! | `findings.rs` | what the study found, all together |
 //! | `people.rs` | the subjects of Table 1, and the bridge from forces to their answers |
 //! | `quality.rs` | certificates in short, warnings |
 //! | `comparison.rs` | "paper, here, why" |
@@ -44,6 +45,7 @@ mod comparison;
 mod figures;
 mod findings;
 pub mod html;
+mod maps;
 pub mod paper;
 mod people;
 mod quality;
@@ -54,10 +56,9 @@ pub mod text;
 
 pub use comparison::{Comparison, Value};
 pub use figures::figures;
-pub use findings::{
-    Findings, GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold, findings,
-};
+pub use findings::{Findings, findings};
 pub use html::html;
+pub use maps::{GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold};
 use people::normal_approximation;
 pub use quality::{Quality, SMALL_STRAIN_LIMIT};
 pub use summary::summary_json;

@@ -1,6 +1,6 @@
 //! The paper's subjects: what their answers say by themselves, and against the forces.
 
-use super::findings::MapFindings;
+use super::maps::MapFindings;
 use super::text::extremes;
 use super::{Study, paper};
 use crate::psychophysics::bridge::{Bridge, bridge};

@@ -2,7 +2,8 @@
 
 use askama::Template;
 
-use super::chart::{Line, chart};
+use super::chart::chart;
+use super::panel::Line;
 use super::people::{DEPTH, SHARE, bar, points, share_panel};
 use super::style::{INK, PALETTE};
 use super::{Figures, Words};

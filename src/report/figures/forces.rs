@@ -2,13 +2,14 @@
 
 use askama::Template;
 
-use super::chart::{Line, Panel, chart, round_range};
+use super::chart::{chart, round_range};
+use super::panel::{Line, Panel};
 use super::style::{PALETTE, ramp};
 use super::{Figures, Words};
 use crate::force_map::{ForceMap, ForceTable, Matrix, Source};
 use crate::phantom::Inclusion;
 use crate::refusal::Refusal;
-use crate::report::findings::incomparable;
+use crate::report::maps::incomparable;
 use crate::report::text::{millimetres, shortened};
 use crate::report::{Findings, MapFindings, Study, Topic, paper, text};
 

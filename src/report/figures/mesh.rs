@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use askama::Template;
 
-use super::chart::{Cells, Line, Panel, chart};
+use super::chart::chart;
+use super::panel::{Cells, Line, Panel};
 use super::setup::{PROBE, in_millimetres, inclusion_key, layer_key, probe, tint};
 use super::{Figures, Words};
 use crate::refusal::Refusal;

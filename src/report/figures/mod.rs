@@ -9,13 +9,14 @@
 //! | `theory.rs` | Figures 3, 4, 9: the detector alone |
 //! | `forces.rs` | Figures 5 and 7, and the signals |
 //! | `people.rs`, `bridge.rs` | Figures 10 to 13: Table 1; the forces against it |
-//! | `chart.rs`, `names.rs`, `style.rs` | how charts are drawn and look |
+//! | `panel.rs`, `chart.rs`, `names.rs`, `style.rs` | how charts are drawn and look |
 
 mod bridge;
 mod chart;
 mod forces;
 mod mesh;
 mod names;
+mod panel;
 mod people;
 mod setup;
 pub(super) mod style;
@@ -24,7 +25,7 @@ mod theory;
 use super::text::{FileNames, escape};
 use super::{Figure, Findings, Study, Topic, refused};
 use crate::refusal::Refusal;
-use chart::DrawingResult;
+use panel::DrawingResult;
 use std::fmt::Display;
 use style::{UNIT, WIDTH};
 

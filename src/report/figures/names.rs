@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::chart::{Area, Context, DrawingResult, LEFT, Line, Panel, write};
+use super::panel::{Area, Context, DrawingResult, LEFT, Line, Panel, write};
 use super::style::{INK, UNIT, WIDTH, stroke, text_width};
 
 /// Least distance between two names at the right, pixels.

@@ -3,7 +3,8 @@
 use askama::Template;
 use plotters::style::RGBColor;
 
-use super::chart::{Line, Panel, chart};
+use super::chart::chart;
+use super::panel::{Line, Panel};
 use super::style::{GREEN, GREY, INK, PALETTE, VERMILION};
 use super::{Figures, Words};
 use crate::psychophysics::{

@@ -6,7 +6,8 @@ use askama::Template;
 use plotters::style::text_anchor::HPos;
 use plotters::style::{RGBColor, WHITE};
 
-use super::chart::{Line, Mark, Panel, chart};
+use super::chart::chart;
+use super::panel::{Line, Mark, Panel};
 use super::style::{GREY, INK, text_width};
 use super::{Figures, Words};
 use crate::fem::Pose;

@@ -3,7 +3,8 @@
 use plotters::style::text_anchor::HPos;
 
 use super::Figures;
-use super::chart::{Line, Mark, Panel, chart};
+use super::chart::chart;
+use super::panel::{Line, Mark, Panel};
 use super::style::{BLUE, GREY, INK, PALETTE, VERMILION};
 use crate::detect::{DetectError, gamma_from_two_afc, required_gamma, roc_miss, two_afc};
 use crate::refusal::Refusal;
