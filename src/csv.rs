@@ -1,8 +1,8 @@
 //! Tables of numbers as CSV, whose header names each column with its unit: what the readers of
 //! force maps and of traces share.
 
-use crate::phantom::decimal::parse_scaled;
-use crate::refusal::Refusal;
+use crate::decimal::parse_scaled;
+use crate::refusal::{Refusal, shortened};
 
 /// What a column can be called, and for each name the power of ten from its unit to SI.
 ///
@@ -92,9 +92,4 @@ pub(crate) fn fields<'a>(
     }
     let expected = format!("{expected}, as in the header {header:?}");
     Err(Refusal::state(format!("{} fields", fields.len()), expected))
-}
-
-/// The beginning of `text`, enough to recognise it in a message.
-pub(crate) fn shortened(text: &str) -> String {
-    text.chars().take(80).collect()
 }

@@ -67,6 +67,8 @@ pub mod build;
 pub mod cli;
 #[cfg(feature = "std")]
 mod csv;
+#[cfg(feature = "std")]
+pub mod decimal;
 pub mod detect;
 #[cfg(feature = "fem")]
 pub mod fem;

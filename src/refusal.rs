@@ -98,3 +98,8 @@ impl std::error::Error for Refusal {}
 pub fn one_line(text: &str) -> String {
     text.replace(char::is_control, " ")
 }
+
+/// The beginning of `text`, enough to recognise it in a message.
+pub(crate) fn shortened(text: &str) -> String {
+    text.chars().take(80).collect()
+}

@@ -7,9 +7,9 @@ use clap::{Args, ValueEnum};
 use super::detection::Answer;
 use super::output::print;
 use super::{CliError, Format};
+use crate::decimal::parse_scaled;
 use crate::force::Force;
 use crate::force_map::{ForceMap, Hypotheses};
-use crate::phantom::decimal::parse_scaled;
 use crate::report::text;
 use crate::trace::{Criterion, DIED_AWAY, Location, Motion, Question, Record, Trace};
 

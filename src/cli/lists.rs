@@ -1,6 +1,6 @@
 //! Lists of positions on the command line: `a,b,c` or `from:to:step`, in mm.
 
-use crate::phantom::decimal::{format_scaled, parse_scaled};
+use crate::decimal::{format_scaled, parse_scaled};
 
 /// Positions, m.
 #[derive(Debug, Clone, PartialEq)]

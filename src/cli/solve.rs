@@ -9,10 +9,10 @@ use super::lists::{Positions, positions};
 use super::output::{print, write};
 use super::progress::{bar, tell_large_mesh};
 use super::{CliError, ContactName};
+use crate::decimal::{format_scaled, parse_scaled};
 use crate::fem::certify::certified_map;
 use crate::fem::{MESH_SIZE, Model, Pose};
 use crate::force_map::ForceMap;
-use crate::phantom::decimal::{format_scaled, parse_scaled};
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 use crate::report::SMALL_STRAIN_LIMIT;
 

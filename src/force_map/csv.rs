@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::{ForceMap, ForceTable, Matrix, Source};
 use crate::csv::{Column, Table};
+use crate::decimal::format_scaled;
 use crate::force::Force;
 use crate::phantom::Phantom;
-use crate::phantom::decimal::format_scaled;
 use crate::refusal::Refusal;
 
 /// Depth, lateral position, normal force, lateral force.

@@ -7,10 +7,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{Certificate, ForceMap, ForceTable, Matrix, Source};
-use crate::csv::shortened;
 use crate::force::Force;
 use crate::phantom::Phantom;
-use crate::refusal::Refusal;
+use crate::refusal::{Refusal, shortened};
 
 /// What the key `schema` of a force map says.
 ///

@@ -10,11 +10,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::Phantom;
-use super::decimal::parse_scaled;
 use super::limits::{UNITS, in_unit_of, power_to_si};
-use crate::csv::shortened;
+use crate::decimal::parse_scaled;
 use crate::input::line_of;
-use crate::refusal::Refusal;
+use crate::refusal::{Refusal, shortened};
 
 /// Keys that a file has among those of a layer or an inclusion, and JSON in an object of their own.
 const MATERIAL: &str = "youngs_modulus_kpa poisson_ratio";

@@ -3,9 +3,9 @@
 use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::ops::{RangeBounds, RangeInclusive};
 
-use super::decimal::format_scaled;
 use super::shape::{Point, contains, cross, dot, edges, extent, minus, point_to_segment};
 use super::{Inclusion, Material, Outline, Phantom, Shape, Support};
+use crate::decimal::format_scaled;
 use crate::refusal::Refusal;
 
 /// The least distance, m, between the outline of an inclusion and its layer's top and bottom, the walls, other outlines, and

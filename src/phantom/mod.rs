@@ -9,7 +9,6 @@
 //! | `limits.rs` | which phantoms are physical and can be meshed |
 //! | `pose.rs` | where the probe may stand |
 //! | `file.rs` | phantom files in TOML |
-//! | `decimal.rs` | mm and kPa to SI and back |
 //!
 //! ```
 //! use palpate::phantom::Phantom;
@@ -24,7 +23,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod decimal;
 mod file;
 mod limits;
 mod pose;
@@ -32,7 +30,7 @@ mod shape;
 #[cfg(test)]
 mod tests;
 
-use decimal::parse_scaled;
+use crate::decimal::parse_scaled;
 use serde::{Deserialize, Serialize};
 
 pub use limits::CLEARANCE;

@@ -1,8 +1,8 @@
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use super::decimal::{format_scaled, parse_scaled};
 use super::*;
+use crate::decimal::{format_scaled, parse_scaled};
 
 /// The paper's phantom with the inclusion at 2.6 mm, to be spoilt.
 fn paper() -> Phantom {

@@ -13,8 +13,7 @@
 //! ```
 
 use super::{Trial, plan};
-use crate::csv::shortened;
-use crate::refusal::Refusal;
+use crate::refusal::{Refusal, shortened};
 
 const HEADER: &str = "palpate-experiment 1";
 

@@ -9,9 +9,9 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::choice::Count;
-use crate::csv::{header_and_rows, shortened};
-use crate::phantom::decimal::parse_scaled;
-use crate::refusal::Refusal;
+use crate::csv::header_and_rows;
+use crate::decimal::parse_scaled;
+use crate::refusal::{Refusal, shortened};
 
 /// Table 1.
 const PAPER: &str = include_str!("table1.csv");

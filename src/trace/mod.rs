@@ -55,10 +55,10 @@ pub use judge::{Criterion, Judgement, Misfit, Question};
 pub use locate::{DIED_AWAY, Location, MOST_SAMPLES, UNIFORM};
 
 use crate::csv::{Column, Table};
+use crate::decimal::format_scaled;
 use crate::detect::DetectError;
 use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION};
-use crate::phantom::decimal::format_scaled;
 use crate::refusal::Refusal;
 
 /// Position or time, lateral force, normal force.

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 use palpate::cli::arguments::{Arguments, Asked};
 use palpate::cli::lists::{Positions, length, positions};
-use palpate::phantom::decimal::{format_scaled, parse_scaled};
+use palpate::decimal::{format_scaled, parse_scaled};
 
 use crate::message::check_message;
 use crate::{Outcome, judged};

@@ -2,7 +2,7 @@
 
 use palpate::cli::arguments::ContactName;
 use palpate::cli::config::Config;
-use palpate::phantom::decimal::format_scaled;
+use palpate::decimal::format_scaled;
 use serde_json::json;
 
 use crate::command_line::check_positions;
