@@ -10,7 +10,7 @@ use crate::refusal::{Refusal, shortened};
 pub(crate) type Column = &'static [(&'static str, i32)];
 
 /// A table of `N` columns.
-pub(crate) struct Table<const N: usize> {
+pub(crate) struct Rows<const N: usize> {
     /// The line of the header, from 1.
     pub line: usize,
     /// What the header calls each column.
@@ -19,7 +19,7 @@ pub(crate) struct Table<const N: usize> {
     pub rows: Vec<(usize, [f64; N])>,
 }
 
-impl<const N: usize> Table<N> {
+impl<const N: usize> Rows<N> {
     /// The table in `text`, whose header must name each of `columns` once and nothing else; `expected` says so to a person.
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl<const N: usize> Table<N> {
             Ok((line, numbers))
         };
         let rows = lines.map(|row| numbers(row).map_err(|refusal: Refusal| refusal.at(row.0)));
-        Ok(Table {
+        Ok(Rows {
             line,
             rows: rows.collect::<Result<_, _>>()?,
             names: places.into_iter().map(|(_, name, _)| name).collect(),

@@ -33,7 +33,7 @@ pub struct Config {
     #[serde(deserialize_with = "list")]
     pub laterals_mm: Positions,
     /// How the forces are computed.
-    pub mesh: Mesh,
+    pub mesh: MeshConfig,
     /// What the detector assumes.
     #[serde(with = "Detection")]
     pub detection: Settings,
@@ -45,7 +45,7 @@ pub struct Config {
 /// How the forces are computed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Mesh {
+pub struct MeshConfig {
     /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them.
     #[serde(deserialize_with = "positive")]
     pub size_mm: f64,
@@ -82,16 +82,16 @@ impl Default for Config {
             measured: Vec::new(),
             depths_mm: list("0:4:0.5"),
             laterals_mm: list("-10:10:0.5"),
-            mesh: Mesh::default(),
+            mesh: MeshConfig::default(),
             detection: Settings::default(),
             source: Default::default(),
         }
     }
 }
 
-impl Default for Mesh {
+impl Default for MeshConfig {
     fn default() -> Self {
-        Mesh {
+        MeshConfig {
             size_mm: MESH_SIZE * 1e3,
             contact: ContactName::DeformedNormal,
         }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::detection::Answer;
+use super::detection::DetectAnswer;
 use super::output::print;
 use super::{CliError, Format};
 use crate::decimal::parse_scaled;
@@ -135,8 +135,8 @@ impl DetectArguments {
 }
 
 /// What was asked.
-fn asked(arguments: &DetectArguments, samples: usize, noise_sd: Force<f64>) -> Answer {
-    let mut answer = Answer::default();
+fn asked(arguments: &DetectArguments, samples: usize, noise_sd: Force<f64>) -> DetectAnswer {
+    let mut answer = DetectAnswer::default();
     answer.tell("schema", "palpate-detection");
     answer.tell("schema_version", 1);
     answer.tell("program_version", env!("CARGO_PKG_VERSION"));

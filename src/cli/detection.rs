@@ -10,14 +10,14 @@ use crate::trace::{Judgement, Location, Misfit};
 ///
 /// Implements: CLI-045.
 #[derive(Debug, Default)]
-pub struct Answer {
+pub struct DetectAnswer {
     /// For programs, in SI.
     entries: Vec<(&'static str, Value)>,
     /// For people, lengths in mm.
     pub table: String,
 }
 
-impl Answer {
+impl DetectAnswer {
     /// What programs alone are told.
     pub fn tell(&mut self, key: &'static str, value: impl Into<Value>) {
         self.entries.push((key, value.into()));

@@ -39,7 +39,7 @@ pub struct PsychophysicsArguments {
 
 /// The answer.
 #[derive(Debug, Serialize)]
-struct Answer {
+struct PsychophysicsAnswer {
     schema: &'static str,
     schema_version: u32,
     program_version: &'static str,
@@ -62,7 +62,7 @@ pub fn psychophysics(arguments: &PsychophysicsArguments) -> Result<(), CliError>
     let bridge = arguments.reference.as_ref();
     let bridge = bridge.map(|reference| against_maps(arguments, &table, reference));
     let noise_levels = path.is_none().then(paper_noise_levels);
-    let answer = Answer {
+    let answer = PsychophysicsAnswer {
         schema: "palpate-psychophysics",
         schema_version: 1,
         program_version: env!("CARGO_PKG_VERSION"),
@@ -94,7 +94,7 @@ fn against_maps(
 /// The answer for people. Its words are in `templates/cli/psychophysics.txt`.
 ///
 /// Implements: CLI-084.
-fn text(answer: &Answer) -> String {
+fn text(answer: &PsychophysicsAnswer) -> String {
     let (counts, confidence) = (&answer.counts, 100.0 * answer.analysis.confidence);
     let words = Text { answer }.render();
     // Writing to a String does not fail.
@@ -130,7 +130,7 @@ fn columns(lines: &[&str]) -> String {
 #[derive(Template)]
 #[template(path = "cli/psychophysics.txt")]
 struct Text<'a> {
-    answer: &'a Answer,
+    answer: &'a PsychophysicsAnswer,
 }
 
 fn has_rough_p(condition: &ConditionAnalysis) -> bool {

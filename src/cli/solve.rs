@@ -41,12 +41,12 @@ pub struct SolveArguments {
     #[arg(long, value_name = "FILE")]
     vtu: Option<PathBuf>,
     /// How the forces are printed
-    #[arg(long, value_enum, default_value_t = Format::Table)]
-    format: Format,
+    #[arg(long, value_enum, default_value_t = MapFormat::Table)]
+    format: MapFormat,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
+enum MapFormat {
     /// For people.
     Table,
     /// The force map with its certificate.
@@ -118,9 +118,9 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     warn_of_large_strain(&map);
     print(&match arguments.format {
         // Writing to a String does not fail.
-        Format::Table => Table { map: &map }.render().unwrap_or_default(),
-        Format::Json => map.to_json(),
-        Format::Csv => map.table().to_csv(),
+        MapFormat::Table => Table { map: &map }.render().unwrap_or_default(),
+        MapFormat::Json => map.to_json(),
+        MapFormat::Csv => map.table().to_csv(),
     })
 }
 

@@ -34,7 +34,7 @@ pub struct Field {
 /// The shape functions' gradients at one sampling point of an element, with the unknowns of its nodes' two displacement
 /// components: for one that is held, the row of zeros behind the last unknown.
 #[derive(Debug, Clone)]
-pub(super) struct Sample {
+pub(super) struct SamplingPoint {
     shape: PerNode,
     rows: [[u32; 2]; NODES],
     /// Whether it is too near to a sharp corner for its strain to mean anything.
@@ -42,7 +42,11 @@ pub(super) struct Sample {
 }
 
 /// The sampling points of all elements in turn.
-pub(super) fn samples(mesh: &Mesh, matrix: &StiffnessMatrix, size: &SizeField) -> Vec<Sample> {
+pub(super) fn samples(
+    mesh: &Mesh,
+    matrix: &StiffnessMatrix,
+    size: &SizeField,
+) -> Vec<SamplingPoint> {
     let zeros = matrix.unknowns();
     let mut samples = Vec::with_capacity(mesh.regions.len() * SAMPLES.len());
     for nodes in mesh.elements() {
@@ -52,7 +56,7 @@ pub(super) fn samples(mesh: &Mesh, matrix: &StiffnessMatrix, size: &SizeField) -
             let unknown = |direction| matrix.unknown(node as usize, direction).unwrap_or(zeros);
             *row = [unknown(0) as u32, unknown(1) as u32];
         }
-        samples.extend(SAMPLES.map(|at| Sample {
+        samples.extend(SAMPLES.map(|at| SamplingPoint {
             shape: gradients(&parent_gradients(at), &positions).of_node,
             rows,
             singular: size.singular(positions[0].into()),
@@ -61,7 +65,7 @@ pub(super) fn samples(mesh: &Mesh, matrix: &StiffnessMatrix, size: &SizeField) -
     samples
 }
 
-impl Sample {
+impl SamplingPoint {
     /// ∂u_i/∂x_j of `W` fields, given by their unknowns and a row of zeros.
     pub(super) fn gradient<const W: usize>(&self, u: &[[f64; W]]) -> [[[f64; W]; 2]; 2] {
         let mut gradient = [[[0.0; W]; 2]; 2];
@@ -94,7 +98,7 @@ type AtSurface = Vec<[f64; 2]>;
 pub(super) fn check(
     matrix: &StiffnessMatrix,
     factor: &Factor,
-    samples: &[Sample],
+    samples: &[SamplingPoint],
     poses: &[(AtSurface, AtSurface)],
 ) -> Result<Vec<FieldCheck>, FemError> {
     let unknowns = matrix.unknowns();

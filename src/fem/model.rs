@@ -4,7 +4,7 @@ use super::assembly::StiffnessMatrix;
 use super::cholesky::{Factor, check_residual};
 use super::contact::{Contact, ContactState, Surface};
 use super::element::SAMPLES;
-use super::field::{BATCH, Field, FieldCheck, Sample, check, samples};
+use super::field::{BATCH, Field, FieldCheck, SamplingPoint, check, samples};
 use super::mesh::Mesh;
 use super::size::SizeField;
 use super::{FemError, Pose, arithmetic};
@@ -36,7 +36,7 @@ pub struct Model {
     pub(super) matrix: StiffnessMatrix,
     pub(super) factor: Factor,
     surface: Surface,
-    pub(super) samples: Vec<Sample>,
+    pub(super) samples: Vec<SamplingPoint>,
 }
 
 /// The probe at rest at one pose.
@@ -194,7 +194,7 @@ impl Model {
         let row = |node, k| self.matrix.unknown(node, k).unwrap_or(u.len());
         let displacements =
             (0..self.mesh.nodes.len()).map(|node| [0, 1].map(|k| rows[row(node, k)][0]));
-        let gradient = |sample: &Sample| sample.gradient(&rows).map(|row| row.map(|[g]| g));
+        let gradient = |sample: &SamplingPoint| sample.gradient(&rows).map(|row| row.map(|[g]| g));
         let elements = self.samples.chunks(SAMPLES.len());
         let gradients = elements.map(|samples| samples.iter().map(gradient).collect());
         Ok(Field {

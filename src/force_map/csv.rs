@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{ForceMap, ForceTable, Matrix, Source};
-use crate::csv::{Column, Table};
+use crate::csv::{Column, Rows};
 use crate::decimal::format_scaled;
 use crate::force::Force;
 use crate::phantom::Phantom;
@@ -82,7 +82,7 @@ impl ForceTable {
     ///
     /// Implements: MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-038.
     pub fn from_csv(text: &str, file: &str) -> Result<ForceTable, Refusal> {
-        let table = Table::parse(text, COLUMNS, EXPECTED_HEADER);
+        let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER);
         table
             .and_then(|table| on_a_grid(table.rows))
             .map_err(|refusal| refusal.in_file(file))

@@ -54,7 +54,7 @@ use std::path::Path;
 pub use judge::{Criterion, Judgement, Misfit, Question};
 pub use locate::{DIED_AWAY, Location, MOST_SAMPLES, UNIFORM};
 
-use crate::csv::{Column, Table};
+use crate::csv::{Column, Rows};
 use crate::decimal::format_scaled;
 use crate::detect::DetectError;
 use crate::force::Force;
@@ -158,7 +158,7 @@ impl Trace {
     /// Implements: TRC-001, TRC-002, TRC-003, TRC-004, TRC-005, TRC-006, TRC-007, TRC-008.
     pub fn from_csv(text: &str, file: &str) -> Result<Trace, Refusal> {
         let read = || {
-            let table = Table::parse(text, COLUMNS, EXPECTED_HEADER)?;
+            let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER)?;
             let samples = table.rows;
             if samples.is_empty() {
                 let found = "no samples under the header";
