@@ -1,5 +1,6 @@
 //! `palpate detect`, end to end: two solved maps, a simulated sweep, the program, and its answer
 //! against the library's and against plain sums.
+#![cfg(feature = "cli")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
 //! `palpate oracle` as another program meets it: `spec/oracle.md`.
+#![cfg(feature = "cli")]
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, Command, Stdio};

@@ -1,4 +1,5 @@
 //! `palpate timing`, `play` and `experiment` as a person runs them.
+#![cfg(feature = "cli")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

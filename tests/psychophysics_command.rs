@@ -1,4 +1,5 @@
 //! `palpate psychophysics`, end to end.
+#![cfg(feature = "cli")]
 
 use std::fs;
 use std::io::Read;

@@ -1,6 +1,7 @@
 //! The report and the dossier as a browser lays them out: nothing overflows, nothing overlaps, nothing is said on the console.
 //!
 //! Needs Chromium. Without one it passes with a notice, unless `PALPATE_REQUIRE_CHROMIUM` is set.
+#![cfg(feature = "cli")]
 
 mod browser;
 
