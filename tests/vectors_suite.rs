@@ -1,5 +1,6 @@
 //! The vectors are as their generator writes them, and the suite is sound, by the Python programs that come with it.
 //! Where Python or mpmath is missing, a notice is given, unless `PALPATE_REQUIRE_WITNESSES=1` asks for them.
+#![cfg(feature = "std")]
 
 #[path = "witness/present.rs"]
 mod present;
