@@ -1,6 +1,7 @@
 //! Standard output and files.
 
 use std::fs::File;
+use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -42,17 +43,29 @@ fn replace(path: &Path, text: &[u8]) -> std::io::Result<()> {
     let folder = folder.unwrap_or(Path::new("."));
     // A folder that is not there is told without the name of the temporary file.
     std::fs::metadata(folder)?;
-    let mut partial = tempfile::Builder::new();
-    // Less what the user's mask takes away, as for any new file.
-    #[cfg(unix)]
-    partial.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut partial = partial.tempfile_in(folder)?;
-    partial.write_all(text)?;
+    let (name, mut partial) = partial_file(folder)?;
+    let mut written = partial.write_all(text);
     if let Some(there) = there {
-        partial.as_file().set_permissions(there.permissions())?;
+        written = written.and_then(|()| partial.set_permissions(there.permissions()));
     }
-    partial.persist(target)?;
-    Ok(())
+    let moved = written.and_then(|()| std::fs::rename(&name, target));
+    moved.inspect_err(|_| {
+        // What failed is told; a file that stays behind is not worth a second message.
+        let _ = std::fs::remove_file(&name);
+    })
+}
+
+/// A new file in `folder` under a name drawn at random.
+fn partial_file(folder: &Path) -> std::io::Result<(PathBuf, File)> {
+    loop {
+        // The keys of a hash map are random.
+        let number = RandomState::new().build_hasher().finish();
+        let name = folder.join(format!(".palpate-{number:016x}.partial"));
+        match File::create_new(&name) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            made => return Ok((name, made?)),
+        }
+    }
 }
 
 /// Where a chain of symbolic links to a file that is not there yet ends.
