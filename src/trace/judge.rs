@@ -88,7 +88,7 @@ impl Question<'_> {
                 return Err(DetectError::NoSignal);
             }
             let eta = self.criterion.threshold(statistic.gamma, self.prior_h1)?;
-            let residual = residual(record, &f0);
+            let residual = residual(record, f0);
             Ok(Judgement {
                 eta,
                 assessment: assess(statistic, self.prior_h1, eta)?,
@@ -100,8 +100,8 @@ impl Question<'_> {
 }
 
 /// What is left of a record without the forces `f0`, N.
-pub(super) fn residual(record: &Record, f0: &Force<&[f64]>) -> Force<Vec<f64>> {
-    record.forces().zip(*f0).map(|(observed, f0)| {
+pub(super) fn residual(record: &Record, f0: Force<&[f64]>) -> Force<Vec<f64>> {
+    record.forces().zip(f0).map(|(observed, f0)| {
         let difference = std::iter::zip(observed, f0).map(|(observed, f0)| observed - f0);
         difference.collect()
     })

@@ -129,7 +129,7 @@ impl Grid {
             start: record.positions()[0],
             first_shift,
             template: signal.sweep(depth, &positions)?,
-            residual: residual(record, &f0.as_deref()),
+            residual: residual(record, f0.as_deref()),
         })
     }
 
