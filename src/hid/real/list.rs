@@ -66,9 +66,7 @@ impl Profile {
         let same = descriptor.iter().zip(&DESCRIPTOR);
         Profile::Other {
             length: descriptor.len(),
-            differs_at: same
-                .take_while(|(found, expected)| found == expected)
-                .count(),
+            differs_at: same.take_while(|(one, other)| one == other).count(),
         }
     }
 }

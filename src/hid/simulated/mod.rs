@@ -23,8 +23,8 @@ pub use handle::Mechanics;
 pub use trajectory::Trajectory;
 
 use super::{
-    Capabilities, Control, DeviceError, ForceReport, HapticDevice, InvalidReport, PositionReport,
-    Received, button, status,
+    Capabilities, Control, DeviceError, DeviceState, ForceReport, HapticDevice, InvalidReport,
+    PositionReport, Received, button, status,
 };
 
 /// Reports that the system's queue holds; when it is full, the oldest stay.
@@ -158,7 +158,7 @@ impl SimulatedDevice {
     }
 
     fn period(&self) -> Duration {
-        Duration::from_micros(u64::from(self.capabilities.period_us.max(1)))
+        self.capabilities.period().max(Duration::from_micros(1))
     }
 
     /// Lets the time pass up to `until`, period by period.
@@ -179,10 +179,8 @@ impl SimulatedDevice {
             self.faults.pop_front();
             self.begin(defect);
         }
-        let watchdog = Duration::from_millis(u64::from(self.capabilities.watchdog_ms));
-        if self.motor.enabled && self.clock.saturating_sub(self.motor.written) > watchdog {
-            self.motor.dropped = true;
-        }
+        let silent = self.clock.saturating_sub(self.motor.written);
+        self.motor.dropped |= self.motor.enabled && silent > self.capabilities.watchdog();
         let period = self.period().as_secs_f64();
         let target = self.trajectory.at(self.clock);
         let force = self.motor_force();
@@ -250,7 +248,7 @@ impl SimulatedDevice {
 
     fn check_plugged(&self) -> Result<(), DeviceError> {
         match self.ongoing.unplugged {
-            true => Err(DeviceError::Gone),
+            true => Err(DeviceError::new(DeviceState::Gone, "the device is gone")),
             false => Ok(()),
         }
     }
@@ -267,7 +265,8 @@ impl HapticDevice for SimulatedDevice {
         loop {
             self.check_plugged()?;
             if std::mem::take(&mut self.ongoing.interrupted) {
-                return Err(DeviceError::Interrupted);
+                let message = "a signal interrupted the device";
+                return Err(DeviceError::new(DeviceState::Interrupted, message));
             }
             if let Some(received) = self.queue.pop_front() {
                 return Ok(received);
@@ -287,7 +286,8 @@ impl HapticDevice for SimulatedDevice {
             let stalled_until = self.ongoing.stalled_until;
             self.pass(stalled_until.min(give_up));
             if stalled_until >= give_up {
-                return Err(DeviceError::Stalled);
+                let message = "the device takes no more reports";
+                return Err(DeviceError::new(DeviceState::Stalled, message));
             }
             self.check_plugged()?;
         }
