@@ -81,14 +81,15 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    fn of(times: &Histogram<u64>) -> Distribution {
+    /// `None` of no time.
+    fn of(times: &Histogram<u64>) -> Option<Distribution> {
         let quantile = |share| times.value_at_quantile(share) as f64 / 1e3;
-        Distribution {
+        (!times.is_empty()).then(|| Distribution {
             p50: quantile(0.5),
             p99: quantile(0.99),
             p99_9: quantile(0.999),
             max: times.max() as f64 / 1e3,
-        }
+        })
     }
 }
 
@@ -122,10 +123,8 @@ pub struct Timing {
 /// Times by quantity, recorded without allocation.
 pub(super) struct Times {
     budget: Duration,
-    response: Histogram<u64>,
-    compute: Histogram<u64>,
-    write: Histogram<u64>,
-    round_trip: Histogram<u64>,
+    /// Of the response, the kernel, the write, the round trip.
+    histograms: [Histogram<u64>; 4],
     /// When the last force reports were written, by their number.
     sent: [Option<(u16, Duration)>; SENT],
     total: [Duration; 2],
@@ -135,10 +134,6 @@ pub(super) struct Times {
 /// Force reports whose round trip may be under way at a time: more is no playback.
 const SENT: usize = 64;
 
-fn record(times: &mut Histogram<u64>, time: Duration) {
-    times.saturating_record(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX));
-}
-
 impl Times {
     /// No times yet, of cycles that may each take as long as `budget`.
     pub(super) fn new(budget: Duration) -> Option<Times> {
@@ -146,29 +141,34 @@ impl Times {
         let histogram = Histogram::new_with_bounds(1, 100_000_000_000, 3).ok()?;
         Some(Times {
             budget,
-            response: histogram.clone(),
-            compute: histogram.clone(),
-            write: histogram.clone(),
-            round_trip: histogram,
+            histograms: std::array::from_fn(|_| histogram.clone()),
             sent: [None; SENT],
             total: [Duration::ZERO; 2],
             misses: 0,
         })
     }
 
+    /// The cycles so far.
+    fn cycles(&self) -> u64 {
+        self.histograms[0].len()
+    }
+
     pub(super) fn record(&mut self, cycle: &Cycle, late: Duration) {
         let response = late + cycle.written.saturating_sub(cycle.woke);
         let compute = cycle.computed.saturating_sub(cycle.received);
         let write = cycle.written.saturating_sub(cycle.computed);
-        record(&mut self.response, response);
-        record(&mut self.compute, compute);
-        record(&mut self.write, write);
-        if let Some(position) = cycle.position
-            && let Some((_, written)) = self
-                .slot(position.force_sequence)
-                .take_if(|(sent, _)| *sent == position.force_sequence)
-        {
-            record(&mut self.round_trip, cycle.woke.saturating_sub(written));
+        // Each report that was sent is answered once.
+        let answered = cycle.position.and_then(|position| {
+            let number = position.force_sequence;
+            self.slot(number).take_if(|(sent, _)| *sent == number)
+        });
+        let round_trip = answered.map(|(_, written)| cycle.woke.saturating_sub(written));
+        let times = [Some(response), Some(compute), Some(write), round_trip];
+        for (histogram, time) in self.histograms.iter_mut().zip(times) {
+            if let Some(time) = time {
+                let time = u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
+                histogram.saturating_record(time);
+            }
         }
         let sequence = cycle.force.sequence;
         *self.slot(sequence) = Some((sequence, cycle.written));
@@ -185,16 +185,17 @@ impl Times {
     /// The figures of the cycles so far; `None` without one.
     pub(super) fn timing(&self, paced: bool) -> Option<Timing> {
         let [response, compute] = self.total.map(|total| total.as_secs_f64());
-        let cycles = self.response.len();
-        (cycles > 0).then(|| Timing {
+        let cycles = self.cycles();
+        let [response_us, compute_us, write_us, round_trip_us] =
+            self.histograms.each_ref().map(Distribution::of);
+        Some(Timing {
             cycles,
             budget_us: self.budget.as_secs_f64() * 1e6,
             misses: self.misses,
-            response_us: Distribution::of(&self.response),
-            compute_us: Distribution::of(&self.compute),
-            write_us: Distribution::of(&self.write),
-            round_trip_us: (!self.round_trip.is_empty())
-                .then(|| Distribution::of(&self.round_trip)),
+            response_us: response_us?,
+            compute_us: compute_us?,
+            write_us: write_us?,
+            round_trip_us,
             compute_share: compute / response.max(f64::MIN_POSITIVE),
             paced,
             passed: self.misses <= cycles / 1000,
@@ -240,13 +241,13 @@ pub fn measure<D: HapticDevice>(
     };
     let end = Session::begin(clock, table, limits)?.run(|cycle, _| {
         times.record(cycle, late.get());
-        times.response.len() < cycles
+        times.cycles() < cycles
     });
     let timing = times.timing(period.is_some());
     timing
         .filter(|timing| timing.cycles == cycles)
         .ok_or_else(|| {
-            let measured = times.response.len();
+            let measured = times.cycles();
             Refusal::state(format_args!("after {measured} cycles: {end}"), "")
         })
 }

@@ -15,7 +15,7 @@ pub struct Mechanics {
     pub friction_n: f64,
     /// Play between handle and encoder, m.
     pub backlash_m: f64,
-    /// Stiffness of the hand towards where it wants to be, N/m.
+    /// Stiffness of the hand towards where it wants to be, N/m; an infinite one is there at once.
     pub hand_n_per_m: f64,
     /// Damping of the hand, N·s/m.
     pub hand_n_s_per_m: f64,
@@ -30,16 +30,6 @@ impl Mechanics {
         backlash_m: 20e-6,
         hand_n_per_m: 500.0,
         hand_n_s_per_m: 5.0,
-    };
-
-    /// A device that follows the hand without force, friction or play.
-    pub const IDEAL: Mechanics = Mechanics {
-        mass_kg: 0.05,
-        damping_n_s_per_m: 0.0,
-        friction_n: 0.0,
-        backlash_m: 0.0,
-        hand_n_per_m: f64::INFINITY,
-        hand_n_s_per_m: 0.0,
     };
 }
 

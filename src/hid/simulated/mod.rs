@@ -58,10 +58,8 @@ pub const PAPER: Capabilities = Capabilities {
 /// device.control(Control::Enable)?;
 /// device.write(&ForceReport { lateral: -200, normal: 3000, sequence: 1, flags: ForceReport::PLAY })?;
 /// assert_eq!(device.motor_force(), [-0.1, 1.5]);
-/// assert_eq!(device.position(), [-10e-3, 1e-3]);
 /// device.read(Duration::from_millis(2))?;
 /// assert_eq!(device.now(), Duration::from_millis(1)); // when the report came
-/// assert!(device.position()[1] > 1e-3 && !device.finished());
 /// # Ok::<(), palpate::hid::DeviceError>(())
 /// ```
 ///
@@ -145,16 +143,6 @@ impl SimulatedDevice {
         self.motor
             .force
             .map(|count| (f64::from(count) * unit).clamp(-largest, largest))
-    }
-
-    /// Where the handle is, m: lateral, and along the normal, positive out of the gel.
-    pub fn position(&self) -> [f64; 2] {
-        self.handles.map(|handle| handle.position)
-    }
-
-    /// Whether the trajectory has come to its end.
-    pub fn finished(&self) -> bool {
-        self.clock >= self.trajectory.duration()
     }
 
     fn period(&self) -> Duration {
