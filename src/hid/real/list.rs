@@ -86,7 +86,7 @@ impl fmt::Display for Profile {
 }
 
 /// Whether a report descriptor has an item that selects the usage page `page`.
-fn uses_page(descriptor: &[u8], page: u32) -> bool {
+fn uses_page(descriptor: &[u8], page: u8) -> bool {
     const LONG_ITEM: u8 = 0xFE;
     const USAGE_PAGE: u8 = 0x04;
     let mut rest = descriptor;
@@ -99,11 +99,8 @@ fn uses_page(descriptor: &[u8], page: u32) -> bool {
         let Some(data) = after.get(..size) else {
             return false;
         };
-        let value = data
-            .iter()
-            .rev()
-            .fold(0, |sum, &byte| sum << 8 | u32::from(byte));
-        if prefix & !3 == USAGE_PAGE && value == page {
+        let (low, high) = data.split_at(data.len().min(1));
+        if prefix & !3 == USAGE_PAGE && low == [page] && high.iter().all(|&byte| byte == 0) {
             return true;
         }
         rest = &after[size..];

@@ -73,8 +73,8 @@ pub struct SimulatedDevice {
     /// Lateral, and along the normal.
     handles: [Handle; 2],
     clock: Duration,
-    /// Periods simulated so far.
-    periods: u64,
+    /// When the last period ended.
+    ticked: Duration,
     /// What was sent and not read yet.
     queue: VecDeque<Received>,
     sequence: u16,
@@ -125,7 +125,7 @@ impl SimulatedDevice {
             faults: faults.into(),
             handles: start.map(|position| Handle::at(mechanics, position)),
             clock: Duration::ZERO,
-            periods: 0,
+            ticked: Duration::ZERO,
             queue: VecDeque::with_capacity(QUEUE),
             sequence: 0,
             motor: Motor::default(),
@@ -151,9 +151,9 @@ impl SimulatedDevice {
 
     /// Lets the time pass up to `until`, period by period.
     fn pass(&mut self, until: Duration) {
-        while self.period() * (self.periods as u32 + 1) <= until {
-            self.periods += 1;
-            self.clock = self.period() * self.periods as u32;
+        while self.ticked + self.period() <= until {
+            self.ticked += self.period();
+            self.clock = self.ticked;
             self.simulate_period();
         }
         self.clock = until;
@@ -262,16 +262,14 @@ impl HapticDevice for SimulatedDevice {
             if self.clock >= deadline {
                 return Ok(Received::Nothing);
             }
-            let tick = self.period() * (self.periods as u32 + 1);
-            self.pass(tick.min(deadline));
+            self.pass(deadline.min(self.ticked + self.period()));
         }
     }
 
     fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
         self.check_plugged()?;
-        if self.clock < self.ongoing.stalled_until {
-            let give_up = self.clock + GIVE_UP;
-            let stalled_until = self.ongoing.stalled_until;
+        let (stalled_until, give_up) = (self.ongoing.stalled_until, self.clock + GIVE_UP);
+        if self.clock < stalled_until {
             self.pass(stalled_until.min(give_up));
             if stalled_until >= give_up {
                 let message = "the device takes no more reports";
