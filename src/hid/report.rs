@@ -109,14 +109,6 @@ pub struct Capabilities {
 }
 
 /// Feature report 4: what the device is told.
-///
-/// ```
-/// use palpate::hid::{Control, InvalidReport};
-///
-/// assert_eq!(Control::Enable.encode(), [4, 1]);
-/// assert_eq!(Control::decode(&[4, 0]), Ok(Control::Stop));
-/// assert_eq!(Control::decode(&[4, 9]), Err(InvalidReport::Value { found: 9 }));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Control {
     /// Play no force until enabled.

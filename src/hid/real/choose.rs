@@ -6,13 +6,6 @@ use super::{Identity, Listed, Profile};
 use crate::refusal::Refusal;
 
 /// What is known of the device that is wanted; what is `None` does not matter.
-///
-/// ```
-/// use palpate::hid::real::Wanted;
-///
-/// let wanted = Wanted { vendor: Some(0x1209), serial: Some("7".into()), ..Wanted::default() };
-/// assert_eq!(wanted.to_string(), "1209:any, serial 7");
-/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// Vendor number.

@@ -187,15 +187,6 @@ fn descriptor(node: &str) -> std::io::Result<Vec<u8>> {
 /// It matches the `hidraw` node by the name of the HID device above it, which holds bus, vendor and
 /// product on every bus; a rule for `SUBSYSTEM=="usb"` does not cover the node.
 ///
-/// ```
-/// use palpate::hid::real::{Identity, udev_rule};
-///
-/// let device = Identity {
-///     vendor: 0x1209, product: 0xAB, serial: "7".into(), name: "probe".into(), node: "/dev/hidraw3".into(),
-/// };
-/// assert_eq!(udev_rule(&device), r#"KERNEL=="hidraw*", KERNELS=="*:1209:00AB.*", TAG+="uaccess""#);
-/// ```
-///
 /// Implements: HID-032.
 pub fn udev_rule(identity: &Identity) -> String {
     format!(

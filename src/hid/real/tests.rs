@@ -56,13 +56,15 @@ fn the_only_device_of_the_profile_needs_no_name_and_another_is_explained() {
         "Display (1209:0001, serial other) at /dev/other: not the vendor profile: \
          a report descriptor of 135 bytes, different from byte 135 on"
     );
-    let mut others = [wanted("b"), wanted("a"), wanted("a")];
+    let mut others = [wanted("b"), wanted("a"), wanted("a"), any];
     others[1].vendor = Some(0x1208);
     others[2].product = Some(2);
+    others[3].product = Some(3);
     let names = [
         "1209:0001, serial b",
         "1208:0001, serial a",
         "1209:0002, serial a",
+        "any:0003",
     ];
     for (other, name) in others.iter().zip(names) {
         let missing = format!("no HID device {name}; `palpate devices` lists those there are");
