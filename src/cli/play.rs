@@ -114,11 +114,7 @@ fn session(
             )));
         }
     };
-    let options = PlayOptions {
-        duration,
-        record,
-        budget: capabilities.period(),
-    };
+    let options = PlayOptions { duration, record };
     let stop = stop_on_signals()?;
     let session = Session::begin(device, table, limits).map_err(failed)?;
     let stop = || stop.load(Ordering::Relaxed);

@@ -236,6 +236,8 @@ impl<'a, D: HapticDevice> Session<'a, D> {
         self.device.control(Control::Enable)
     }
 
+    /// Reads, steps the kernel, writes.
+    ///
     /// Implements: HID-013, HID-015.
     fn play(&mut self, request: Request) -> Result<Cycle, DeviceError> {
         let (position, woke) = self.newest()?;

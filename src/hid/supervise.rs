@@ -76,8 +76,6 @@ pub struct PlayOptions {
     pub duration: Option<Duration>,
     /// Cycles to record at most; room for them is made before the first.
     pub record: usize,
-    /// The budget of a cycle that misses are counted against.
-    pub budget: Duration,
 }
 
 /// Plays `session` in a thread of its own until it ends by itself, `stop` says so, or its time is
@@ -88,23 +86,6 @@ pub struct PlayOptions {
 ///
 /// The servo thread neither allocates nor locks. Returns `None` if it panicked, after the device was
 /// stopped.
-///
-/// ```
-#[doc = include_str!("simulated/probing.example")]
-/// use palpate::hid::supervise::{PlayOptions, play};
-/// use palpate::hid::{End, Session};
-///
-/// let options = PlayOptions {
-///     duration: Some(Duration::from_millis(800)),
-///     record: 500,
-///     budget: Duration::from_millis(1),
-/// };
-/// let session = Session::begin(device, table, limits)?;
-/// let played = play(session, &options, || (), || false, |_, _| ());
-/// let played = played.expect("the servo thread does not panic");
-/// assert_eq!((played.end, played.counters.cycles, played.cycles.len()), (End::Asked, 800, 500));
-/// # Ok::<(), palpate::refusal::Refusal>(())
-/// ```
 ///
 /// Implements: HID-053, HID-054, HID-055.
 pub fn play<D: HapticDevice + Send>(
@@ -149,7 +130,8 @@ fn servo_loop<D: HapticDevice>(
     board: &Board,
 ) -> Played {
     let mut cycles = Vec::with_capacity(options.record);
-    let mut times = Times::new(options.budget);
+    // A cycle's budget is its period.
+    let mut times = Times::new(session.capabilities().period());
     let end = session.run(|cycle, counters| {
         board.show(counters);
         if let Some(times) = &mut times {

@@ -22,7 +22,6 @@ fn played(
     let options = PlayOptions {
         duration: Some(2000 * MS),
         record: 1500,
-        budget: MS,
     };
     play(begin(device), &options, || (), stop, look)
 }
@@ -67,7 +66,6 @@ fn a_signal_that_interrupts_a_read_ends_the_session_as_asked_only_if_it_was_aske
         let options = PlayOptions {
             duration: None,
             record: 0,
-            budget: MS,
         };
         let board = Board::default();
         board.stop.store(asked, Ordering::Relaxed);
