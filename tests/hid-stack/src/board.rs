@@ -62,13 +62,11 @@ impl Make {
     }
 }
 
-/// What happens, tick by tick since the board was first enabled; until then it reports.
-pub type Script = fn(tick: u32) -> Act;
+/// What happens from which tick on, counted since the board was first enabled; before that it reports.
+pub type Script = &'static [(u32, Act)];
 
 /// Nothing but reports.
-pub fn reports(_: u32) -> Act {
-    Act::Report
-}
+pub const REPORTS: Script = &[];
 
 /// What the board saw and did.
 #[derive(Debug, Clone, Default)]
@@ -199,7 +197,9 @@ fn tick(link: &dyn Link, shared: &Mutex<State>) -> io::Result<()> {
         if state.record.unplugged.is_some() {
             break;
         }
-        let act = state.tick.map_or(Act::Report, state.make.script);
+        let begun = |(from, _): &&(u32, Act)| state.tick.is_some_and(|tick| tick >= *from);
+        let act = state.make.script.iter().rfind(begun);
+        let act = act.map_or(Act::Report, |&(_, act)| act);
         let report = state.advance(act);
         drop(state);
         if let Act::Unplug = act {

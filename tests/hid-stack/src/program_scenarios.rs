@@ -5,7 +5,7 @@ use std::fs;
 use std::process::{Child, Command, Stdio};
 
 use crate::Scenario;
-use crate::board::{Act, Board, reports};
+use crate::board::{Act, Board, REPORTS};
 use crate::checks::{WATCHDOG, stopped};
 use crate::link::{Kind, NAME};
 use crate::servo::open;
@@ -58,7 +58,7 @@ fn has_fifo_thread(id: u32) -> bool {
 
 /// Verifies: HID-093, HID-032.
 fn devices() -> String {
-    let board = Board::good(Kind::Uhid, "devices", reports);
+    let board = Board::good(Kind::Uhid, "devices", REPORTS);
     open("devices");
     let output = Command::new(PROGRAM).arg("devices").output();
     let output = output.expect("the program starts");
@@ -80,10 +80,7 @@ fn devices() -> String {
 
 /// Verifies: HID-094, HID-085.
 fn unplugged() -> String {
-    let board = Board::good(Kind::Uhid, "unplugged", |tick| match tick {
-        500 => Act::Unplug,
-        _ => Act::Report,
-    });
+    let board = Board::good(Kind::Uhid, "unplugged", &[(500, Act::Unplug)]);
     let (code, said) = end(play("unplugged"));
     let record = board.unplug();
     assert_eq!(code, Some(1), "{said}");
@@ -95,7 +92,7 @@ fn unplugged() -> String {
 
 /// Verifies: HID-094, HID-055.
 fn signalled(signal: &str) -> String {
-    let board = Board::good(Kind::Uhid, "signalled", reports);
+    let board = Board::good(Kind::Uhid, "signalled", REPORTS);
     let player = play("signalled");
     board.wait_for_force();
     let real_time = has_fifo_thread(player.id());
@@ -117,10 +114,7 @@ fn signalled(signal: &str) -> String {
 
 /// Verifies: HID-095, HID-054.
 pub fn held_up() -> String {
-    let board = Board::good(Kind::Usb, "heldup", |tick| match tick {
-        300 => Act::Refuse,
-        _ => Act::Report,
-    });
+    let board = Board::good(Kind::Usb, "heldup", &[(300, Act::Refuse)]);
     // A USB device is there only a while after it was plugged in.
     open("heldup");
     let (code, said) = end(play("heldup"));

@@ -13,7 +13,7 @@ use palpate::hid::{
 use palpate::servo::Fault;
 
 use crate::Scenario;
-use crate::board::{Act, Board, CAPABILITIES, Make, PERIOD, reports};
+use crate::board::{Act, Board, CAPABILITIES, Make, PERIOD, REPORTS, Script};
 use crate::checks::{Run, WATCHDOG, dropped, ended, largest, run, safe, stopped};
 use crate::link::{Answer, Kind, NAME, NUMBERS};
 use crate::schedule::{self, Fifo};
@@ -35,7 +35,7 @@ pub const ALL: &[Scenario] = &[
 
 /// Verifies: HID-080, HID-081, HID-030, HID-031, HID-032.
 pub fn protocol(kind: Kind) -> String {
-    let board = Board::good(kind, "protocol", reports);
+    let board = Board::good(kind, "protocol", REPORTS);
     let mut device = open("protocol");
     let began = Instant::now();
     let listed = list().expect("a list");
@@ -93,7 +93,7 @@ fn answers() -> String {
     let measured = measured.map(|(name, answer)| {
         let make = Make {
             answer,
-            ..Make::new(Kind::Uhid, reports)
+            ..Make::new(Kind::Uhid, REPORTS)
         };
         let board = Board::plug("answers", make);
         let mut device = open("answers");
@@ -111,7 +111,7 @@ fn answers() -> String {
 
 /// Verifies: HID-083, HID-035.
 pub fn cycles(kind: Kind) -> String {
-    let board = Board::good(kind, "cycles", reports);
+    let board = Board::good(kind, "cycles", REPORTS);
     let allocations = assert_no_alloc::violation_count();
     let mut run = run("cycles", 2100);
     let mut record = board.unplug();
@@ -140,7 +140,7 @@ fn burn() -> String {
     schedule::fifo(Fifo::Loop);
     // 1000 cycles of 1.2 ms and more last 1200 ticks and more, so that 200 and more have no answer.
     let measured = [(700, 0, 0..1), (1200, 1000, 195..400)].map(|(burn, misses, unanswered)| {
-        let board = Board::good(Kind::Uhid, "burn", reports);
+        let board = Board::good(Kind::Uhid, "burn", REPORTS);
         let device = Watched {
             device: open("burn"),
             burn: Duration::from_micros(burn),
@@ -166,10 +166,7 @@ fn plays(serial: &str) {
 
 /// Verifies: HID-085, HID-086, HID-036.
 pub fn unplug(kind: Kind) -> String {
-    let board = Board::good(kind, "unplug", |tick| match tick {
-        500 => Act::Unplug,
-        _ => Act::Report,
-    });
+    let board = Board::good(kind, "unplug", &[(500, Act::Unplug)]);
     let first = open("unplug").identity().clone();
     let Run { end, counters, .. } = run("unplug", 10_000);
     let seen = Instant::now();
@@ -187,9 +184,9 @@ pub fn unplug(kind: Kind) -> String {
     assert!(gone.to_string().starts_with("no HID device"), "{gone}");
 
     // Another board takes the node that was the first one's.
-    let other = Board::good(kind, "another", reports);
+    let other = Board::good(kind, "another", REPORTS);
     assert_eq!(open("another").identity().node, first.node);
-    let board = Board::good(kind, "unplug", reports);
+    let board = Board::good(kind, "unplug", REPORTS);
     let again = RealDevice::open_within(&Wanted::again(&first), Duration::from_secs(2));
     let second = again.expect("the board again").identity().node.clone();
     assert_ne!(second, first.node);
@@ -205,19 +202,23 @@ const LONG: &[u8] = &[1; 30];
 const WRONG: &[u8] = &[7, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 const EMPTY: &[u8] = &[];
 
-fn malformed(tick: u32) -> Act {
-    match tick {
-        200 => Act::Bytes(SHORT),
-        220 => Act::Bytes(LONG),
-        240 => Act::Bytes(WRONG),
-        260 => Act::Bytes(EMPTY),
-        _ => Act::Report,
-    }
-}
+const MALFORMED: Script = &[
+    (200, Act::Bytes(SHORT)),
+    (201, Act::Report),
+    (220, Act::Bytes(LONG)),
+    (221, Act::Report),
+    (240, Act::Bytes(WRONG)),
+    (241, Act::Report),
+    (260, Act::Bytes(EMPTY)),
+    (261, Act::Report),
+    (280, Act::Repeat),
+    (285, Act::Report),
+    (400, Act::Bytes(LONG)),
+];
 
 /// Verifies: HID-087, HID-002, HID-006.
 fn malformed_reports() -> String {
-    let board = Board::good(Kind::Uhid, "malformed", malformed);
+    let board = Board::good(Kind::Uhid, "malformed", MALFORMED);
     let mut device = open("malformed");
     device.control(Control::Enable).expect("a control");
     let mut found = Vec::new();
@@ -239,11 +240,7 @@ fn malformed_reports() -> String {
 
 /// Verifies: HID-087.
 fn garbage() -> String {
-    let board = Board::good(Kind::Uhid, "garbage", |tick| match tick {
-        280..285 => Act::Repeat,
-        400.. => Act::Bytes(LONG),
-        _ => malformed(tick),
-    });
+    let board = Board::good(Kind::Uhid, "garbage", MALFORMED);
     let run = run("garbage", 10_000);
     let record = board.unplug();
     assert_eq!(run.end, End::Fault(Fault::Watchdog));
@@ -262,7 +259,7 @@ fn garbage() -> String {
 
 /// Verifies: HID-090, HID-016.
 fn panics() -> String {
-    let board = Board::good(Kind::Uhid, "panics", reports);
+    let board = Board::good(Kind::Uhid, "panics", REPORTS);
     let mut session = begin(open("panics"));
     let ended = catch_unwind(AssertUnwindSafe(move || {
         session.run(|_, counters| {
@@ -281,10 +278,7 @@ fn panics() -> String {
 
 /// Verifies: HID-088.
 fn silence() -> String {
-    let board = Board::good(Kind::Uhid, "silence", |tick| match tick {
-        300.. => Act::Silence,
-        _ => Act::Report,
-    });
+    let board = Board::good(Kind::Uhid, "silence", &[(300, Act::Silence)]);
     let Run { end, counters, .. } = run("silence", 10_000);
     let record = board.unplug();
     assert_eq!(end, End::Fault(Fault::Watchdog));
@@ -295,7 +289,7 @@ fn silence() -> String {
 
 /// Verifies: HID-089, HID-042.
 fn killed() -> String {
-    let board = Board::good(Kind::Uhid, "killed", reports);
+    let board = Board::good(Kind::Uhid, "killed", REPORTS);
     let mut player = Command::new("/proc/self/exe");
     let mut player = player.args(["play", "killed"]).spawn().expect("a player");
     board.wait_for_force();

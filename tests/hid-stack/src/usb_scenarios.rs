@@ -3,7 +3,7 @@
 use palpate::hid::{DeviceState, End};
 
 use crate::Scenario;
-use crate::board::{Act, Board, Make, PERIOD, reports};
+use crate::board::{Act, Board, Make, PERIOD, REPORTS};
 use crate::checks::{Run, dropped, ended, largest, run, safe};
 use crate::link::{Completion, Kind};
 use crate::program_scenarios::held_up;
@@ -24,7 +24,7 @@ fn blocking_write() -> String {
     let takes = Completion::NextFrame;
     let make = Make {
         takes,
-        ..Make::new(Kind::Usb, reports)
+        ..Make::new(Kind::Usb, REPORTS)
     };
     let board = Board::plug("blocking", make);
     let mut run = run("blocking", 1100);
@@ -43,10 +43,7 @@ fn blocking_write() -> String {
 
 /// Verifies: HID-092.
 fn refusal() -> String {
-    let board = Board::good(Kind::Usb, "refusal", |tick| match tick {
-        300 => Act::Refuse,
-        _ => Act::Report,
-    });
+    let board = Board::good(Kind::Usb, "refusal", &[(300, Act::Refuse)]);
     let Run { end, .. } = run("refusal", 10_000);
     let record = board.unplug();
     // It takes the stop, which has an endpoint of its own, but not the force report of zero.
