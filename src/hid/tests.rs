@@ -174,7 +174,8 @@ fn another_length_or_number_is_refused() {
 // Verifies: HID-008.
 #[test]
 fn a_device_without_units_is_refused() {
-    let changes: [(fn(&mut Capabilities), &str); 3] = [
+    type Change = fn(&mut Capabilities);
+    let changes: [(Change, &str); 3] = [
         (
             |c| c.version = 2,
             " speaks version 2 of the profile, expected 1",

@@ -75,7 +75,8 @@ fn a_recording_plays_again_to_the_bit_and_tells_where_it_differs() {
     assert_eq!(recording.replay(table(3.2)), Ok(700));
     let differs = recording.replay(table(3.3)).unwrap_err();
     assert!(differs.found.starts_with("cycle 2"), "{differs}");
-    let spoils: [(usize, fn(&mut RecordedCycle)); 4] = [
+    type Spoil = fn(&mut RecordedCycle);
+    let spoils: [(usize, Spoil); 4] = [
         (650, |cycle| cycle.force.lateral += 1),
         (699, |cycle| cycle.playing = false),
         (699, |cycle| cycle.force.sequence += 1),

@@ -82,7 +82,9 @@ impl Link for Uhid {
     fn serve(&self, board: &dyn Board) -> io::Result<()> {
         loop {
             let mut message = [0; 2 * DATA];
-            (&self.0).read(&mut message)?;
+            if (&self.0).read(&mut message)? == 0 {
+                return Err(io::ErrorKind::UnexpectedEof.into());
+            }
             let word = |at: usize| u32::from_ne_bytes([0, 1, 2, 3].map(|byte| message[at + byte]));
             // The data at one place, whose size is at another.
             let data = |at: usize, size_at: usize| {
