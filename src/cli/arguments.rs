@@ -8,7 +8,6 @@ use serde::Serialize;
 use super::error::CliError;
 use super::output::print;
 use super::{detect, devices, experiment, import, oracle, play, psychophysics, run, solve, timing};
-use crate::fem::Contact;
 
 /// The version, and which build this is.
 ///
@@ -76,26 +75,6 @@ impl Format {
             // Keys are strings, and nothing else could fail.
             Format::Json => serde_json::to_string_pretty(answer).unwrap_or_default() + "\n",
         })
-    }
-}
-
-/// How the gap to the probe is measured.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ContactName {
-    /// Distance of the deformed surface from the circle; force along its normal.
-    #[default]
-    DeformedNormal,
-    /// Height of the circle over the undeformed point; vertical force on the gel.
-    VerticalGap,
-}
-
-impl From<ContactName> for Contact {
-    fn from(name: ContactName) -> Contact {
-        match name {
-            ContactName::DeformedNormal => Contact::DeformedNormal,
-            ContactName::VerticalGap => Contact::VerticalGap,
-        }
     }
 }
 

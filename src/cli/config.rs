@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::CliError;
 use super::lists::{Positions, positions};
 use super::solve::phantom;
-use super::{CliError, ContactName};
-use crate::fem::MESH_SIZE;
+use crate::fem::{Contact, MESH_SIZE};
 use crate::input::line_of;
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 use crate::refusal::Refusal;
@@ -50,7 +50,7 @@ pub struct MeshConfig {
     #[serde(deserialize_with = "positive")]
     pub size_mm: f64,
     /// How the gap to the probe is measured.
-    pub contact: ContactName,
+    pub contact: Contact,
 }
 
 /// [`Settings`] in the keys of the file.
@@ -93,7 +93,7 @@ impl Default for MeshConfig {
     fn default() -> Self {
         MeshConfig {
             size_mm: MESH_SIZE * 1e3,
-            contact: ContactName::DeformedNormal,
+            contact: Contact::DeformedNormal,
         }
     }
 }

@@ -98,9 +98,7 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
         let message = "--observer ideal has no hand: expected --device sim";
         return Err(CliError::Usage(message.into()));
     }
-    let limits = limits(4.0)?;
-    let samples = samples(arguments, &limits)?;
-    let pairs = Pairs::new(arguments, &samples, limits)?;
+    let pairs = Pairs::read(arguments)?;
     let mut journal = open_journal(arguments)?;
     let total = arguments.inclusion.len() * arguments.trials as usize;
     let bar = match arguments.observer {
@@ -157,53 +155,46 @@ fn append(path: &Path, line: &str) -> Result<(), CliError> {
 /// A map, and the table that plays it.
 type Sample = (ForceMap, LoadedTable);
 
-/// The samples without an inclusion and with each one, checked against the device.
-fn samples(
-    arguments: &ExperimentArguments,
-    limits: &Limits,
-) -> Result<(Sample, Vec<Sample>), CliError> {
-    let capabilities = open(arguments)?.capabilities();
-    let capabilities = capabilities.map_err(CliError::refused("device"))?;
-    let damping = arguments.device.damping(&capabilities);
-    let sample = |path: &Path| {
-        let map = ForceMap::read(path)?;
-        let table = LoadedTable::passive(map.table(), &damping, limits);
-        let table = table.map_err(CliError::refused(path.display()))?;
-        Ok::<Sample, CliError>((map, table))
-    };
-    let reference = sample(&arguments.reference)?;
-    let inclusions = arguments.inclusion.iter().map(|(_, path)| sample(path));
-    Ok((reference, inclusions.collect::<Result<_, _>>()?))
-}
-
 /// The pairs and who judges them.
 struct Pairs<'a> {
     arguments: &'a ExperimentArguments,
-    without: &'a LoadedTable,
-    /// The table with each inclusion, and the forces of the pair.
-    inclusions: Vec<(&'a LoadedTable, Hypotheses<'a>)>,
     limits: Limits,
+    reference: Sample,
+    inclusions: Vec<Sample>,
 }
 
 impl<'a> Pairs<'a> {
-    /// The pairs of the sample without an inclusion and each of the others, of the same gel.
-    fn new(
-        arguments: &'a ExperimentArguments,
-        ((reference, without), inclusions): &'a (Sample, Vec<Sample>),
-        limits: Limits,
-    ) -> Result<Pairs<'a>, CliError> {
-        let named = inclusions.iter().zip(&arguments.inclusion);
-        let pair = |((map, table), (_, path)): (&'a Sample, &(String, PathBuf))| {
-            let hypotheses = Hypotheses::new(reference, map);
-            let hypotheses = hypotheses.map_err(CliError::refused(path.display()))?;
-            Ok((table, hypotheses))
+    /// The samples without an inclusion and with each one, of the same gel, checked against the device.
+    fn read(arguments: &'a ExperimentArguments) -> Result<Pairs<'a>, CliError> {
+        let limits = limits(4.0)?;
+        let capabilities = open(arguments)?.capabilities();
+        let capabilities = capabilities.map_err(CliError::refused("device"))?;
+        let damping = arguments.device.damping(&capabilities);
+        let sample = |path: &Path| {
+            let map = ForceMap::read(path)?;
+            let table = LoadedTable::passive(map.table(), &damping, &limits);
+            let table = table.map_err(CliError::refused(path.display()))?;
+            Ok::<Sample, CliError>((map, table))
         };
-        Ok(Pairs {
+        let reference = sample(&arguments.reference)?;
+        let inclusions = arguments.inclusion.iter().map(|(_, path)| sample(path));
+        let pairs = Pairs {
             arguments,
-            without,
-            inclusions: named.map(pair).collect::<Result<_, CliError>>()?,
             limits,
-        })
+            reference,
+            inclusions: inclusions.collect::<Result<_, _>>()?,
+        };
+        for number in 0..pairs.inclusions.len() {
+            pairs.hypotheses(number)?;
+        }
+        Ok(pairs)
+    }
+
+    /// The forces without the inclusion of this number, and with it.
+    fn hypotheses(&self, number: usize) -> Result<Hypotheses<'_>, CliError> {
+        let path = &self.arguments.inclusion[number].1;
+        let hypotheses = Hypotheses::new(&self.reference.0, &self.inclusions[number].0);
+        hypotheses.map_err(CliError::refused(path.display()))
     }
 
     /// The answer to a pair; `None` if the person stops.
@@ -213,8 +204,7 @@ impl<'a> Pairs<'a> {
         total: usize,
         trial: Trial,
     ) -> Result<Option<Interval>, CliError> {
-        let (with, hypotheses) = self.inclusions[trial.inclusion];
-        let without = self.without;
+        let [without, with] = [&self.reference.1, &self.inclusions[trial.inclusion].1];
         let samples = match trial.with_inclusion {
             Interval::First => [with, without],
             Interval::Second => [without, with],
@@ -224,14 +214,15 @@ impl<'a> Pairs<'a> {
             return self.ask(&format!("pair {} of {total}", number + 1), samples);
         };
         let observer = IdealObserver {
-            hypotheses,
+            hypotheses: self.hypotheses(trial.inclusion)?,
             noise_sd,
             seed: self.arguments.seed,
         };
         let [first, second] = samples.map(|sample| self.felt(sample));
         let answer = observer.choose(&first?, &second?, number as u64);
-        let answer = answer.map_err(CliError::refused("the ideal observer"))?;
-        Ok(Some(answer))
+        answer
+            .map(Some)
+            .map_err(CliError::refused("the ideal observer"))
     }
 
     /// A sample as it is felt.
@@ -281,10 +272,8 @@ fn line(prompt: &str) -> Option<String> {
     eprint!("{prompt}");
     let mut text = String::new();
     let mut keyboard = std::io::stdin().lock().take(LONGEST_LINE);
-    match keyboard.read_line(&mut text) {
-        // More than a line is no person.
-        Ok(length) if length == 0 || length as u64 == LONGEST_LINE => None,
-        Err(_) => None,
-        Ok(_) => Some(text.trim().to_string()),
-    }
+    // More than a line is no person.
+    let is_line = |length: usize| (1..LONGEST_LINE).contains(&(length as u64));
+    let length = keyboard.read_line(&mut text).ok()?;
+    is_line(length).then(|| text.trim().to_string())
 }

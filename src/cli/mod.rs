@@ -24,7 +24,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use arguments::{Arguments, Asked, Command, ContactName, Format};
+use arguments::{Arguments, Asked, Command, Format};
 pub use error::CliError;
 
 /// Runs the program with the given arguments, the first of which is its name.

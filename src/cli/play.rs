@@ -9,16 +9,17 @@ use std::time::Duration;
 
 use askama::Template;
 use clap::Args;
-use serde_json::json;
+use serde::Serialize;
 
 use super::output::{print, read, write};
 use super::playback::{DeviceArguments, limits, loaded_map};
 use super::{CliError, Format};
 use crate::force_map::ForceMap;
 use crate::hid::simulated::Trajectory;
-use crate::hid::supervise::{Board, HELD_UP, PlayOptions, Played, play as supervised};
+use crate::hid::supervise::{HELD_UP, PlayOptions, play as supervised};
+use crate::hid::timing::Timing;
 use crate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session};
-use crate::servo::{Limits, LoadedTable, RoundingError};
+use crate::servo::{Limits, LoadedTable};
 
 /// Most seconds that can be recorded: an hour at 1 kHz.
 const MOST_RECORDED: u64 = 3600;
@@ -113,47 +114,42 @@ fn session(
             )));
         }
     };
-    let options = PlayOptions {
-        duration,
-        record,
-        budget: Duration::from_micros(u64::from(capabilities.period_us)),
-    };
+    let options = PlayOptions { duration, record };
     let stop = stop_on_signals()?;
     let session = Session::begin(device, table, limits).map_err(failed)?;
-    let (board, stop) = (Board::default(), || stop.load(Ordering::Relaxed));
-    let played = supervised(session, &options, &board, raise_priority, stop, live());
+    let stop = || stop.load(Ordering::Relaxed);
+    let played = supervised(session, &options, raise_priority, stop, live());
     if std::io::stderr().is_terminal() {
         eprint!("\r\x1b[K"); // the summary begins on an empty line
     }
-    let Some(mut played) = played else {
-        let message = "the servo thread panicked; the device was told to stop";
-        return Err(CliError::Check(message.into()));
-    };
-    if arguments.device.is_simulated() {
-        // The virtual clock does not see what the loop takes.
-        played.timing = None;
-    }
+    let panicked = "the servo thread panicked; the device was told to stop";
+    let played = played.ok_or(CliError::Check(panicked.into()))?;
     if let Some(path) = &arguments.record {
         let recording = Recording {
             capabilities,
             limits,
-            cycles: played.cycles.clone(),
+            cycles: played.cycles,
         };
         write(path, &recording.to_text())?;
     }
-    let text = Text {
-        played: &played,
-        rounding: loaded.rounding(),
+    let rounding = loaded.rounding();
+    let summary = Summary {
+        end: played.end.to_string(),
+        counters: played.counters,
+        held_up_ms: played.held_up.map(|time| time.as_millis() as u64),
+        rounding_position_m: rounding.position_m,
+        rounding_force_n: rounding.force_n,
         scale,
+        // A virtual clock does not see what the loop takes.
+        timing: played.timing.filter(|_| !arguments.device.is_simulated()),
     };
-    print(&match arguments.format {
-        // Writing to a String does not fail.
-        Format::Table => text.render().unwrap_or_default(),
-        Format::Json => as_json(&text),
-    })?;
-    match &played.end {
+    // With its keys sorted; neither this nor writing to a String fails.
+    let sorted = serde_json::to_value(&summary).unwrap_or_default();
+    let text = |_: &_| summary.render().unwrap_or_default();
+    arguments.format.print(&sorted, text)?;
+    match played.end {
         End::Asked => Ok(()),
-        end => Err(CliError::Check(end.to_string())),
+        _ => Err(CliError::Check(summary.end)),
     }
 }
 
@@ -229,39 +225,18 @@ fn counted(counters: &Counters) -> String {
     )
 }
 
-/// The summary; as text for people.
-#[derive(Template)]
+/// The summary.
+#[derive(Template, Serialize)]
 #[template(path = "cli/play.txt")]
-struct Text<'a> {
-    played: &'a Played,
-    rounding: RoundingError,
+struct Summary {
+    end: String,
+    #[serde(flatten)]
+    counters: Counters,
+    held_up_ms: Option<u64>,
+    rounding_position_m: f64,
+    rounding_force_n: f64,
     scale: f64,
-}
-
-/// The summary for programs.
-fn as_json(text: &Text<'_>) -> String {
-    let Text {
-        played,
-        rounding,
-        scale,
-    } = text;
-    let counters = &played.counters;
-    let summary = json!({
-        "end": played.end.to_string(),
-        "cycles": counters.cycles,
-        "played": counters.played,
-        "missed": counters.missed,
-        "skipped": counters.skipped,
-        "passed_over": counters.drained,
-        "garbage": counters.garbage,
-        "stops_refused": counters.refused,
-        "held_up_ms": played.held_up.map(|time| time.as_millis() as u64),
-        "rounding_position_m": rounding.position_m,
-        "rounding_force_n": rounding.force_n,
-        "scale": scale,
-        "timing": played.timing,
-    });
-    format!("{summary:#}\n")
+    timing: Option<Timing>,
 }
 
 /// Plays a recording again.

@@ -101,7 +101,7 @@ fn solve_phantom(
 ) -> Result<(ForceMap, Option<DeformedMesh>), FemError> {
     let mesh = &config.mesh;
     tell_large_mesh(phantom, mesh.size_mm / 1e3)?;
-    let model = Model::new(phantom, mesh.size_mm / 1e3, mesh.contact.into())?;
+    let model = Model::new(phantom, mesh.size_mm / 1e3, mesh.contact)?;
     let (depths, laterals) = (&config.depths_mm.0, &config.laterals_mm.0);
     // Each map on three meshes.
     bar.inc_length((3 * depths.len() * model.solved_laterals(laterals).len()) as u64);

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use askama::Template;
 use clap::{Args, ValueEnum};
 
+use super::{CliError, ContactName};
 use super::lists::{Positions, positions};
 use super::output::{print, write};
 use super::progress::{bar, tell_large_mesh};
-use super::{CliError, ContactName};
 use crate::decimal::{format_scaled, parse_scaled};
 use crate::fem::certify::certified_map;
-use crate::fem::{MESH_SIZE, Model, Pose};
+use crate::fem::{Contact, MESH_SIZE, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 use crate::report::SMALL_STRAIN_LIMIT;
@@ -29,8 +29,8 @@ pub struct SolveArguments {
     #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
     laterals_mm: Positions,
     /// How the gap to the probe is measured
-    #[arg(long, value_enum, default_value_t = ContactName::DeformedNormal)]
-    contact: ContactName,
+    #[arg(long, value_enum, default_value_t = Contact::DeformedNormal)]
+    contact: Contact,
     /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them [default: 0.5]
     #[arg(long, value_parser = millimetres, value_name = "H")]
     mesh_mm: Option<f64>,
@@ -100,7 +100,7 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     let failed = CliError::fem(&phantom.name);
     let size = arguments.mesh_mm.unwrap_or(MESH_SIZE);
     tell_large_mesh(&phantom, size).map_err(&failed)?;
-    let model = Model::new(&phantom, size, arguments.contact.into()).map_err(&failed)?;
+    let model = Model::new(&phantom, size, arguments.contact).map_err(&failed)?;
     let meshes = if arguments.certify { 3 } else { 1 };
     let columns = model.solved_laterals(laterals).len();
     let bar = bar(meshes * depths.len() * columns, &phantom.name);

@@ -38,14 +38,13 @@ pub struct TimingArguments {
 pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
     let loaded = match &arguments.map {
         Some(path) => loaded_map(path)?,
-        None => paper::table().map_err(CliError::Usage)?,
+        None => paper::table()?,
     };
     let table = loaded.table().map_err(defect)?;
     let limits = limits(4.0)?;
     let budget = Duration::from_micros(arguments.budget_us);
-    let period = Duration::from_micros(u64::from(PAPER.period_us));
     let device = paper::device(arguments.cycles);
-    let paced = arguments.paced.then_some(period);
+    let paced = arguments.paced.then(|| PAPER.period());
     let timing = measure(device, table, limits, arguments.cycles, budget, paced);
     let timing = timing.map_err(defect)?;
     arguments.format.print(&timing, describe)?;

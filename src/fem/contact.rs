@@ -20,14 +20,17 @@ use crate::phantom::Probe;
 pub use state::ContactState;
 
 /// How the gap between a surface node and the probe is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Contact {
-    /// Distance of the deformed node from the circle, force along the circle's normal there: the default.
+    /// Distance of the deformed surface from the circle; force along its normal.
     #[default]
     DeformedNormal,
-    /// Height of the circle above the node at its undeformed x, vertical force on the gel: the linear
-    /// contact of small-displacement theory. The lateral force on the probe is that of the pressure
-    /// on its slope, −∂U/∂x.
+    /// Height of the circle over the undeformed point; vertical force on the gel.
+    ///
+    /// The linear contact of small-displacement theory. The lateral force on the probe is that of the
+    /// pressure on its slope, −∂U/∂x.
     VerticalGap,
 }
 

@@ -1,7 +1,6 @@
 //! What the loop needs of a haptic device, real or simulated.
 
-use core::fmt;
-use core::time::Duration;
+use std::time::Duration;
 
 use super::{Capabilities, Control, ForceReport, InvalidReport, PositionReport};
 
@@ -9,15 +8,15 @@ use super::{Capabilities, Control, ForceReport, InvalidReport, PositionReport};
 ///
 /// A handle that stands still is a device:
 /// ```
-/// use core::time::Duration;
+/// use palpate::hid::simulated::PAPER;
 /// use palpate::hid::{Capabilities, Control, DeviceError, ForceReport, HapticDevice, PositionReport, Received};
+/// use std::time::Duration;
 ///
 /// struct Still(PositionReport);
 ///
 /// impl HapticDevice for Still {
 ///     fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
-///         let bytes = [3, 1, 0, 0xE8, 0x03, 0xF4, 0x01, 0x40, 0x1F, 0xE8, 0x03, 15, 0, 0x58, 0x02, 140, 0];
-///         Capabilities::decode(&bytes).map_err(|_| DeviceError::Gone)
+///         Ok(PAPER)
 ///     }
 ///     fn read(&mut self, _: Duration) -> Result<Received, DeviceError> {
 ///         self.0.sequence = self.0.sequence.wrapping_add(1);
@@ -35,15 +34,11 @@ use super::{Capabilities, Control, ForceReport, InvalidReport, PositionReport};
 ///     }
 /// }
 ///
-/// let zeros = PositionReport::decode(&[1; 11])?;
-/// let mut device = Still(PositionReport { sequence: 0, ..zeros });
-/// device.write(&ForceReport { lateral: 0, normal: 0, sequence: 42, flags: 0 })?;
+/// let mut device = Still(PositionReport::default());
+/// device.write(&ForceReport { sequence: 42, ..ForceReport::default() })?;
 /// let Received::Report(report) = device.read(Duration::from_millis(2))? else { unreachable!() };
 /// assert_eq!((report.sequence, report.force_sequence), (1, 42));
-/// assert_eq!(device.now(), Duration::from_millis(1));
-/// assert_eq!(device.capabilities()?.watchdog_ms, 15);
-/// device.control(Control::Stop)?;
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), palpate::hid::DeviceError>(())
 /// ```
 ///
 /// Implements: HID-012.
@@ -77,7 +72,6 @@ pub trait HapticDevice {
     fn now(&self) -> Duration;
 }
 
-#[cfg(feature = "std")]
 impl<D: HapticDevice + ?Sized> HapticDevice for Box<D> {
     fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
         (**self).capabilities()
@@ -112,68 +106,32 @@ pub enum Received {
 }
 
 /// Why a device can no longer be used.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum DeviceError {
-    /// It is gone: unplugged, or its node removed.
-    Gone,
-    /// It did not take a report in time.
-    Stalled,
-    /// A signal interrupted the wait.
-    Interrupted,
-    /// The system refused.
-    #[cfg(feature = "std")]
-    System {
-        /// Which device, what was asked of it, and what the system said.
-        message: String,
-        /// What that says of the device.
-        state: DeviceState,
-    },
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct DeviceError {
+    /// What it says of the device.
+    pub state: DeviceState,
+    /// Which device, what was asked of it, and what the system said.
+    pub message: String,
 }
 
 /// What an error says of the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DeviceState {
-    /// It is gone, as in [`DeviceError::Gone`].
+    /// It is gone: unplugged, or its node removed. Nothing more can be sent to it.
     Gone,
-    /// It took nothing in time, as in [`DeviceError::Stalled`].
+    /// It did not take a report in time, which took seconds: asking again would hold up the loop.
     Stalled,
+    /// A signal interrupted the wait for it.
+    Interrupted,
     /// It is there, and may take the same a moment later.
     There,
 }
 
 impl DeviceError {
-    /// What it says of the device.
-    fn state(&self) -> DeviceState {
-        match self {
-            DeviceError::Gone => DeviceState::Gone,
-            DeviceError::Stalled => DeviceState::Stalled,
-            #[cfg(feature = "std")]
-            DeviceError::System { state, .. } => *state,
-            _ => DeviceState::There,
-        }
-    }
-
-    /// Whether the device is gone, so that nothing more can be sent to it.
-    pub fn is_gone(&self) -> bool {
-        self.state() == DeviceState::Gone
-    }
-
-    /// Whether it took seconds to fail, so that asking again would hold up the loop.
-    pub fn is_stalled(&self) -> bool {
-        self.state() == DeviceState::Stalled
+    /// A failure.
+    pub fn new(state: DeviceState, message: impl Into<String>) -> DeviceError {
+        let message = message.into();
+        DeviceError { state, message }
     }
 }
-
-impl fmt::Display for DeviceError {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            DeviceError::Gone => write!(f, "the device is gone"),
-            DeviceError::Stalled => write!(f, "the device takes no more reports"),
-            DeviceError::Interrupted => write!(f, "a signal interrupted the device"),
-            #[cfg(feature = "std")]
-            DeviceError::System { message, .. } => write!(f, "{message}"),
-        }
-    }
-}
-
-impl core::error::Error for DeviceError {}

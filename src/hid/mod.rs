@@ -5,16 +5,15 @@
 //! | `report.rs` | the vendor profile's reports, byte by byte |
 //! | `units.rs` | between counts and metres, newtons |
 //! | `device.rs` | what the loop needs of a device |
-//! | `playback.rs` | one cycle of the loop: read, drain, step, write |
+//! | `session.rs` | the loop: read, drain, step, write; it ends with a stopped device |
 //! | `recording.rs` | a session in a file that plays again to the bit |
 //! | `supervise.rs` | the servo thread and its supervisor |
-//! | `session.rs` | a session: it ends with a stopped device |
 //! | `real/` | a device on the system's HID stack |
 //! | `timing.rs` | how long the cycles take on this machine |
 //! | `simulated/` | a device and a hand on a virtual clock, with faults by script |
 
+#[cfg(feature = "std")]
 mod device;
-mod playback;
 #[cfg(feature = "hid")]
 pub mod real;
 #[cfg(feature = "std")]
@@ -32,13 +31,13 @@ mod tests;
 pub mod timing;
 mod units;
 
+#[cfg(feature = "std")]
 pub use device::{DeviceError, DeviceState, HapticDevice, Received};
-pub use playback::{Counters, Cycle, Playback, QUEUE};
 #[cfg(feature = "std")]
 pub use recording::{RecordedCycle, Recording};
 pub use report::{
     Capabilities, Control, DESCRIPTOR, ForceReport, InvalidReport, PositionReport, button, status,
 };
 #[cfg(feature = "std")]
-pub use session::{End, Session};
+pub use session::{Counters, Cycle, End, Session};
 pub use units::{InvalidCapabilities, Units, count};

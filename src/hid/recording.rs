@@ -12,8 +12,8 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Capabilities, Control, Cycle, DeviceError, ForceReport, HapticDevice, PositionReport, Received,
-    Session,
+    Capabilities, Control, Cycle, DeviceError, DeviceState, ForceReport, HapticDevice,
+    PositionReport, Received, Session,
 };
 use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
@@ -100,15 +100,11 @@ impl From<&Cycle> for RecordedCycle {
     }
 }
 
-fn shown((force, playing): (ForceReport, bool)) -> String {
-    format!(
-        "({}, {}) with number {}, flags {}, {}",
-        force.lateral,
-        force.normal,
-        force.sequence,
-        force.flags,
-        if playing { "playing" } else { "not playing" }
-    )
+fn shown(force: &ForceReport, playing: bool) -> String {
+    let playing = if playing { "playing" } else { "not playing" };
+    let (lateral, normal) = (force.lateral, force.normal);
+    let (number, flags) = (force.sequence, force.flags);
+    format!("({lateral}, {normal}) with number {number}, flags {flags}, {playing}")
 }
 
 impl Recording {
@@ -167,39 +163,32 @@ impl Recording {
     ///
     /// Implements: HID-052, HID-056.
     pub fn replay(&self, table: Table) -> Result<usize, Refusal> {
-        let device = Recorded {
-            recording: self,
-            cycle: 0,
-            given: false,
-        };
-        let mut session = Session::begin(device, table, self.limits)?;
-        if self.cycles.is_empty() {
+        let mut session = Session::begin(Recorded::new(self), table, self.limits)?;
+        let recorded = self.cycles.len();
+        if recorded == 0 {
             return Ok(0);
         }
-        let (mut at, mut difference) = (0, None);
+        let (mut same, mut difference) = (0, None);
         let end = session.run(|cycle, _| {
-            let recorded = &self.cycles[at];
-            let found = (cycle.force, cycle.playing);
-            let recorded = (recorded.force, recorded.playing);
-            if found != recorded {
-                difference = Some(format!(
-                    "cycle {at}: the recording has the force {}, and this table and program give {}",
-                    shown(recorded),
-                    shown(found)
-                ));
+            let recorded = &self.cycles[same];
+            if (cycle.force, cycle.playing) == (recorded.force, recorded.playing) {
+                same += 1;
+                return same < self.cycles.len();
             }
-            at += 1;
-            difference.is_none() && at < self.cycles.len()
+            difference = Some(format!(
+                "cycle {same}: the recording has the force {}, and this table and program give {}",
+                shown(&recorded.force, recorded.playing),
+                shown(&cycle.force, cycle.playing)
+            ));
+            false
         });
-        let recorded = self.cycles.len();
-        let wrong = match difference {
-            Some(difference) => difference,
-            None if at < recorded => {
-                format!("{recorded} cycles, but these positions end the session after {at}: {end}")
-            }
-            None => return Ok(at),
+        if same == recorded {
+            return Ok(same);
+        }
+        let early = || {
+            format!("{recorded} cycles, but these positions end the session after {same}: {end}")
         };
-        Err(Refusal::state(wrong, ""))
+        Err(Refusal::state(difference.unwrap_or_else(early), ""))
     }
 }
 
@@ -230,15 +219,29 @@ struct Recorded<'a> {
     given: bool,
 }
 
+impl<'a> Recorded<'a> {
+    fn new(recording: &'a Recording) -> Recorded<'a> {
+        Recorded {
+            recording,
+            cycle: 0,
+            given: false,
+        }
+    }
+
+    /// The cycle that is played.
+    fn now_played(&self) -> Option<&'a RecordedCycle> {
+        self.recording.cycles.get(self.cycle)
+    }
+}
+
 impl HapticDevice for Recorded<'_> {
     fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
         Ok(self.recording.capabilities)
     }
 
     fn read(&mut self, _: Duration) -> Result<Received, DeviceError> {
-        let cycle = self.recording.cycles.get(self.cycle);
-        let cycle = cycle.ok_or(DeviceError::Gone)?;
-        match cycle.position {
+        let over = || DeviceError::new(DeviceState::Gone, "the recording is over");
+        match self.now_played().ok_or_else(over)?.position {
             Some(report) if !std::mem::replace(&mut self.given, true) => {
                 Ok(Received::Report(report))
             }
@@ -257,8 +260,7 @@ impl HapticDevice for Recorded<'_> {
     }
 
     fn now(&self) -> Duration {
-        let cycle = self.recording.cycles.get(self.cycle);
-        Duration::from_micros(cycle.map_or(0, |cycle| cycle.received_us))
+        Duration::from_micros(self.now_played().map_or(0, |cycle| cycle.received_us))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The vendor profile: four reports of fixed length, numbers little-endian.
 
 use core::fmt;
+use core::time::Duration;
 
 /// The report descriptor of the vendor profile (usage page FF00).
 ///
@@ -51,7 +52,7 @@ pub mod status {
 /// assert_eq!(report.encode(), bytes);
 /// # Ok::<(), palpate::hid::InvalidReport>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
 pub struct PositionReport {
@@ -70,7 +71,7 @@ pub struct PositionReport {
 }
 
 /// Output report 2: what to play.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
 pub struct ForceReport {
@@ -108,14 +109,6 @@ pub struct Capabilities {
 }
 
 /// Feature report 4: what the device is told.
-///
-/// ```
-/// use palpate::hid::{Control, InvalidReport};
-///
-/// assert_eq!(Control::Enable.encode(), [4, 1]);
-/// assert_eq!(Control::decode(&[4, 0]), Ok(Control::Stop));
-/// assert_eq!(Control::decode(&[4, 9]), Err(InvalidReport::Value { found: 9 }));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Control {
     /// Play no force until enabled.
@@ -260,6 +253,16 @@ impl Capabilities {
     pub const NUMBER: u8 = 3;
     /// Its length with the number, bytes.
     pub const LENGTH: usize = 17;
+
+    /// Time between two position reports.
+    pub fn period(&self) -> Duration {
+        Duration::from_micros(self.period_us.into())
+    }
+
+    /// Time without a force report after which the device drops the force.
+    pub fn watchdog(&self) -> Duration {
+        Duration::from_millis(self.watchdog_ms.into())
+    }
 
     /// The report in `bytes`, which begin with the report's number.
     ///

@@ -1,16 +1,25 @@
 //! A playback session: begins with what the device says of itself, and ends with a stopped device,
-//! whatever happens in between.
+//! whatever happens in between. A cycle of its loop: read, drain, step, write.
 
 use std::fmt;
 use std::time::Duration;
 
-use super::{Capabilities, Control, Counters, Cycle, DeviceError, HapticDevice, Playback, Units};
+use super::{
+    Capabilities, Control, DeviceError, DeviceState, ForceReport, HapticDevice, PositionReport,
+    Received, Units,
+};
 use crate::force::Force;
 use crate::refusal::Refusal;
-use crate::servo::{Fault, Limits, Mode, Request, Table};
+use crate::servo::{Fault, Input, Limits, MOST_AHEAD, Mode, Request, State, Table, step};
 
 /// The longest that a device may go on playing a force without a report.
 const LONGEST_WATCHDOG_MS: u16 = 100;
+
+/// Reports that one cycle takes from the queue at most: what the kernel of the system keeps.
+const QUEUE: usize = 64;
+
+/// How often a stop is sent to a device that does not take it.
+const STOP_TRIES: usize = 5;
 
 /// A device that plays a table, until it is dropped: also by a panic.
 ///
@@ -32,8 +41,14 @@ const LONGEST_WATCHDOG_MS: u16 = 100;
 pub struct Session<'a, D: HapticDevice> {
     device: D,
     capabilities: Capabilities,
-    playback: Playback<'a>,
+    units: Units,
+    table: Table<'a>,
+    limits: Limits,
     stage: Stage,
+    state: State,
+    /// Number of the last force report.
+    sequence: u16,
+    counters: Counters,
 }
 
 /// How far a session is.
@@ -49,31 +64,61 @@ enum Stage {
     Stopped,
 }
 
-/// Why a session ended.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum End {
-    /// It was asked to.
-    Asked,
-    /// The servo kernel found a fault; the force has been released.
-    Fault(Fault),
-    /// The device failed.
-    Device(DeviceError),
-    /// The end, and why stopping the device failed.
-    Unstopped(Box<End>, DeviceError),
+/// What happened in all cycles so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+pub struct Counters {
+    /// Cycles.
+    pub cycles: u64,
+    /// Cycles in which the force followed the table.
+    pub played: u64,
+    /// Cycles without a fresh sample.
+    pub missed: u64,
+    /// Reports that never came, by the gaps between sequence numbers.
+    pub skipped: u64,
+    /// Reports that had come with a newer one, and were passed over.
+    #[serde(rename = "passed_over")]
+    pub drained: u64,
+    /// Reports that did not decode.
+    pub garbage: u64,
+    /// Stops, and reports of zero that go with them, that the device refused.
+    #[serde(rename = "stops_refused")]
+    pub refused: u64,
 }
 
-impl fmt::Display for End {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            End::Asked => write!(f, "ended as asked"),
-            End::Fault(fault) => write!(f, "stopped by a fault: {fault}"),
-            End::Device(error) => write!(f, "stopped: {error}"),
-            End::Unstopped(end, error) => write!(
-                f,
-                "{end}; stopping the device failed ({error}): its own watchdog must drop the force"
-            ),
-        }
-    }
+/// What one cycle did.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Cycle {
+    /// The report that it used.
+    pub position: Option<PositionReport>,
+    /// The report that it sent.
+    pub force: ForceReport,
+    /// The force follows the table.
+    pub playing: bool,
+    /// When the wait for a report ended, on the device's clock.
+    pub woke: Duration,
+    /// When the queue was drained.
+    pub received: Duration,
+    /// When the force was computed.
+    pub computed: Duration,
+    /// When it was written.
+    pub written: Duration,
+}
+
+/// Why a session ended.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum End {
+    /// It was asked to.
+    #[error("ended as asked")]
+    Asked,
+    /// The servo kernel found a fault; the force has been released.
+    #[error("stopped by a fault: {0}")]
+    Fault(Fault),
+    /// The device failed.
+    #[error("stopped: {0}")]
+    Device(DeviceError),
+    /// The end, and why stopping the device failed.
+    #[error("{0}; stopping the device failed ({1}): its own watchdog must drop the force")]
+    Unstopped(Box<End>, DeviceError),
 }
 
 /// A refusal that says all by itself.
@@ -128,23 +173,17 @@ impl<'a, D: HapticDevice> Session<'a, D> {
         let capabilities = device.capabilities().map_err(as_it_is)?;
         let units = Units::new(&capabilities).map_err(as_it_is)?;
         check(&capabilities, &limits)?;
-        let period = Duration::from_micros(u64::from(capabilities.period_us));
         Ok(Session {
             device,
             capabilities,
-            playback: Playback::new(table, limits, units, period),
+            units,
+            table,
+            limits,
             stage: Stage::Begun,
+            state: State::default(),
+            sequence: 0,
+            counters: Counters::default(),
         })
-    }
-
-    /// Clears the device's faults and enables it, which starts its watchdog: so this is left to the
-    /// first cycle, however long its thread took to prepare.
-    ///
-    /// Implements: HID-018.
-    fn enable(&mut self) -> Result<(), DeviceError> {
-        self.stage = Stage::Enabled;
-        self.device.control(Control::ClearFault)?;
-        self.device.control(Control::Enable)
     }
 
     /// The device.
@@ -159,27 +198,27 @@ impl<'a, D: HapticDevice> Session<'a, D> {
 
     /// What happened so far.
     pub fn counters(&self) -> Counters {
-        self.playback.counters()
+        self.counters
     }
 
     /// Whether there may be a force.
     pub fn mode(&self) -> Mode {
-        self.playback.state().mode
+        self.state.mode
     }
 
-    /// One cycle: see [`Playback::cycle`].
+    /// One cycle: waits for a report, takes the newest of the queue, steps the kernel with the
+    /// `request` and writes the force. The first enables the device; after a stop none arms.
     ///
     /// # Errors
     /// [`DeviceError`], after the device was told to stop.
     ///
     /// Implements: HID-027.
     pub fn cycle(&mut self, request: Request) -> Result<Cycle, DeviceError> {
-        let (request, enabled) = match self.stage {
-            Stage::Begun => (request, self.enable()),
-            Stage::Enabled => (request, Ok(())),
-            Stage::Ended | Stage::Stopped => (Request::None, Ok(())),
+        let cycle = match self.stage {
+            Stage::Begun => self.enable().and_then(|()| self.play(request)),
+            Stage::Enabled => self.play(request),
+            Stage::Ended | Stage::Stopped => self.play(Request::None),
         };
-        let cycle = enabled.and_then(|()| self.playback.cycle(&mut self.device, request));
         if cycle.is_err() {
             // The error that counts is the first.
             let _ = self.stop();
@@ -187,54 +226,151 @@ impl<'a, D: HapticDevice> Session<'a, D> {
         cycle
     }
 
+    /// Clears the device's faults and enables it, which starts its watchdog: so this is left to the
+    /// first cycle, however long its thread took to prepare.
+    ///
+    /// Implements: HID-018.
+    fn enable(&mut self) -> Result<(), DeviceError> {
+        self.stage = Stage::Enabled;
+        self.device.control(Control::ClearFault)?;
+        self.device.control(Control::Enable)
+    }
+
+    /// Reads, steps the kernel, writes.
+    ///
+    /// Implements: HID-013, HID-015.
+    fn play(&mut self, request: Request) -> Result<Cycle, DeviceError> {
+        let (position, woke) = self.newest()?;
+        let received = self.device.now();
+        let input = Input {
+            sample: position.map(|report| self.units.sample(&report)),
+            request,
+        };
+        let (state, command) = step(&self.table, &self.limits, self.state, input);
+        self.state = state;
+        self.sequence = self.sequence.wrapping_add(1);
+        let force = self.units.report(&command, self.sequence);
+        self.counters.missed += u64::from(state.missed > 0);
+        self.counters.played += u64::from(command.playing);
+        let computed = self.device.now();
+        self.device.write(&force)?;
+        Ok(Cycle {
+            position,
+            force,
+            playing: command.playing,
+            woke,
+            received,
+            computed,
+            written: self.device.now(),
+        })
+    }
+
+    /// Waits for a report and takes what the queue holds besides: the newest, and the time when the wait
+    /// was over. Garbage ends the wait, since a cycle must not last. Counts the cycle, the reports that it
+    /// passed over, and those that never came.
+    ///
+    /// Implements: HID-013, HID-014.
+    fn newest(&mut self) -> Result<(Option<PositionReport>, Duration), DeviceError> {
+        let (mut newest, mut passed_over) = (None, 0);
+        let mut received = self.device.read(2 * self.capabilities.period())?;
+        let woke = self.device.now();
+        for _ in 0..QUEUE {
+            match received {
+                Received::Report(report) => {
+                    passed_over += u64::from(newest.replace(report).is_some());
+                }
+                Received::Garbage(_) => self.counters.garbage += 1,
+                Received::Nothing => break,
+            }
+            received = self.device.read(Duration::ZERO)?;
+        }
+        self.counters.cycles += 1;
+        self.counters.drained += passed_over;
+        if let (Some(report), Some(last)) = (newest, self.state.sequence) {
+            let ahead = report.sequence.wrapping_sub(last);
+            if (1..=MOST_AHEAD).contains(&ahead) {
+                self.counters.skipped += u64::from(ahead - 1).saturating_sub(passed_over);
+            }
+        }
+        Ok((newest, woke))
+    }
+
     /// Cycles until `each` says that it is enough (`false`), a fault has released the force, or the
     /// device fails; then stops the device. Arms once, as soon as the kernel allows.
     ///
     /// Implements: HID-016, HID-019, HID-024, HID-026, HID-085, HID-087, HID-088, HID-092.
     pub fn run(&mut self, mut each: impl FnMut(&Cycle, &Counters) -> bool) -> End {
-        self.run_watched(|_, cycle, counters| each(cycle, counters))
-    }
-
-    /// [`Session::run`] with a look at the device after each cycle.
-    pub fn run_watched(&mut self, mut each: impl FnMut(&D, &Cycle, &Counters) -> bool) -> End {
         let mut ask = false;
         let end = loop {
             ask = !ask && self.mode() == Mode::Disarmed;
             let request = if ask { Request::Arm } else { Request::None };
-            let cycle = match self.cycle(request) {
-                Ok(cycle) => cycle,
+            match self.cycle(request) {
                 Err(error) => break End::Device(error),
-            };
-            let state = self.playback.state();
-            if !each(&self.device, &cycle, &self.counters()) {
-                break End::Asked;
+                Ok(cycle) if !each(&cycle, &self.counters) => break End::Asked,
+                Ok(_) => {}
             }
-            if let Mode::Faulted(fault) = state.mode
-                && state.force == Force::ZERO
+            if let Mode::Faulted(fault) = self.mode()
+                && self.state.force == Force::ZERO
             {
                 break End::Fault(fault);
             }
         };
         match (self.stop(), end) {
-            (Err(error), End::Asked) if error.is_gone() => End::Device(error),
-            (Err(error), end) if !error.is_gone() => End::Unstopped(Box::new(end), error),
+            (Ok(()), end) => end,
+            (Err(error), end) if error.state != DeviceState::Gone => {
+                End::Unstopped(Box::new(end), error)
+            }
+            (Err(error), End::Asked) => End::Device(error),
             (_, end) => end,
         }
     }
 
-    /// Stops the device; once it has taken that, does nothing. No cycle arms any more, even if it has not.
+    /// Stops the device: tries everything even if it fails. Once it has taken that, does nothing. No cycle
+    /// arms any more, even if it has not.
     ///
     /// # Errors
-    /// [`DeviceError`].
+    /// The first [`DeviceError`].
     ///
-    /// Implements: HID-090.
+    /// Implements: HID-016, HID-025, HID-029, HID-090.
     pub fn stop(&mut self) -> Result<(), DeviceError> {
-        if self.stage != Stage::Stopped {
-            self.stage = Stage::Ended;
-            self.playback.stop(&mut self.device)?;
-            self.stage = Stage::Stopped;
+        if self.stage == Stage::Stopped {
+            return Ok(());
         }
+        self.stage = Stage::Ended;
+        self.state.mode = Mode::Disarmed;
+        self.state.force = Force::ZERO;
+        self.sequence = self.sequence.wrapping_add(1);
+        let zero = ForceReport {
+            sequence: self.sequence,
+            ..ForceReport::default()
+        };
+        // First what a device takes that no longer takes forces: a blocked write would hold it up.
+        let stopped = self.tried(STOP_TRIES, |device| device.control(Control::Stop));
+        // Once the device is stopped, a force report is a courtesy.
+        let tries = if stopped.is_ok() { 1 } else { STOP_TRIES };
+        let written = self.tried(tries, |device| device.write(&zero));
+        stopped.and(written)?;
+        self.stage = Stage::Stopped;
         Ok(())
+    }
+
+    /// Sends until the device takes it, is gone or takes nothing in time, or was asked so many times; the last answer. Counts
+    /// what was refused.
+    fn tried(
+        &mut self,
+        tries: usize,
+        send: impl Fn(&mut D) -> Result<(), DeviceError>,
+    ) -> Result<(), DeviceError> {
+        let mut last = Ok(());
+        for _ in 0..tries {
+            last = send(&mut self.device);
+            let Err(error) = &last else { break };
+            self.counters.refused += 1;
+            if matches!(error.state, DeviceState::Gone | DeviceState::Stalled) {
+                break;
+            }
+        }
+        last
     }
 }
 

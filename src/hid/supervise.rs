@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use super::timing::{Times, Timing};
-use super::{Counters, DeviceError, End, HapticDevice, RecordedCycle, Session};
+use super::{Counters, DeviceState, End, HapticDevice, RecordedCycle, Session};
 
 /// How often the supervisor looks.
 const LOOK: Duration = Duration::from_millis(20);
@@ -14,49 +14,43 @@ const LOOK: Duration = Duration::from_millis(20);
 /// device should have, so that its force is gone by then.
 pub const HELD_UP: Duration = Duration::from_millis(100);
 
-/// What the servo thread shows while it runs, without locks.
-#[derive(Debug, Default)]
-pub struct Board {
+/// What the servo thread and its supervisor show each other while it runs, without locks.
+#[derive(Default)]
+struct Board {
     /// Set to end the session.
     stop: AtomicBool,
-    cycles: AtomicU64,
-    played: AtomicU64,
-    missed: AtomicU64,
-    skipped: AtomicU64,
-    drained: AtomicU64,
-    garbage: AtomicU64,
-    refused: AtomicU64,
+    counters: [AtomicU64; 7],
 }
 
 impl Board {
-    /// Asks the session to end.
-    pub fn stop(&self) {
-        self.stop.store(true, Ordering::Relaxed);
-    }
-
     fn show(&self, counters: &Counters) {
-        let set = |cell: &AtomicU64, value| cell.store(value, Ordering::Relaxed);
-        set(&self.played, counters.played);
-        set(&self.missed, counters.missed);
-        set(&self.skipped, counters.skipped);
-        set(&self.drained, counters.drained);
-        set(&self.garbage, counters.garbage);
-        set(&self.refused, counters.refused);
-        set(&self.cycles, counters.cycles);
+        let c = counters;
+        let values = [
+            c.cycles, c.played, c.missed, c.skipped, c.drained, c.garbage, c.refused,
+        ];
+        for (cell, value) in self.counters.iter().zip(values) {
+            cell.store(value, Ordering::Relaxed);
+        }
     }
 
     /// The counters as last shown.
-    pub fn counters(&self) -> Counters {
+    fn counters(&self) -> Counters {
         let get = |cell: &AtomicU64| cell.load(Ordering::Relaxed);
+        let [cycles, played, missed, skipped, drained, garbage, refused] =
+            self.counters.each_ref().map(get);
         Counters {
-            cycles: get(&self.cycles),
-            played: get(&self.played),
-            missed: get(&self.missed),
-            skipped: get(&self.skipped),
-            drained: get(&self.drained),
-            garbage: get(&self.garbage),
-            refused: get(&self.refused),
+            cycles,
+            played,
+            missed,
+            skipped,
+            drained,
+            garbage,
+            refused,
         }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 }
 
@@ -82,8 +76,6 @@ pub struct PlayOptions {
     pub duration: Option<Duration>,
     /// Cycles to record at most; room for them is made before the first.
     pub record: usize,
-    /// The budget of a cycle that misses are counted against.
-    pub budget: Duration,
 }
 
 /// Plays `session` in a thread of its own until it ends by itself, `stop` says so, or its time is
@@ -95,32 +87,15 @@ pub struct PlayOptions {
 /// The servo thread neither allocates nor locks. Returns `None` if it panicked, after the device was
 /// stopped.
 ///
-/// ```
-#[doc = include_str!("simulated/probing.example")]
-/// use palpate::hid::supervise::{Board, PlayOptions, play};
-/// use palpate::hid::{End, Session};
-///
-/// let options = PlayOptions {
-///     duration: Some(Duration::from_millis(800)),
-///     record: 500,
-///     budget: Duration::from_millis(1),
-/// };
-/// let session = Session::begin(device, table, limits)?;
-/// let played = play(session, &options, &Board::default(), || (), || false, |_, _| ());
-/// let played = played.expect("the servo thread does not panic");
-/// assert_eq!((played.end, played.counters.cycles, played.cycles.len()), (End::Asked, 800, 500));
-/// # Ok::<(), palpate::refusal::Refusal>(())
-/// ```
-///
 /// Implements: HID-053, HID-054, HID-055.
 pub fn play<D: HapticDevice + Send>(
     session: Session<D>,
     options: &PlayOptions,
-    board: &Board,
     prepare: impl FnOnce() + Send,
     stop: impl Fn() -> bool,
     mut look: impl FnMut(&Counters, Duration),
 ) -> Option<Played> {
+    let board = &Board::default();
     std::thread::scope(|scope| {
         let servo = scope.spawn(move || {
             prepare();
@@ -130,7 +105,7 @@ pub fn play<D: HapticDevice + Send>(
         let mut held_up = None;
         while !servo.is_finished() {
             if stop() {
-                board.stop();
+                board.stop.store(true, Ordering::Relaxed);
             }
             let counters = board.counters();
             if counters.cycles != heartbeat.0 {
@@ -143,9 +118,8 @@ pub fn play<D: HapticDevice + Send>(
             look(&counters, silent);
             std::thread::park_timeout(LOOK);
         }
-        let mut played = servo.join().ok()?;
-        played.held_up = held_up;
-        Some(played)
+        let played = servo.join().ok()?;
+        Some(Played { held_up, ..played })
     })
 }
 
@@ -156,26 +130,29 @@ fn servo_loop<D: HapticDevice>(
     board: &Board,
 ) -> Played {
     let mut cycles = Vec::with_capacity(options.record);
-    let mut times = Times::new();
+    // A cycle's budget is its period.
+    let mut times = Times::new(session.capabilities().period());
     let end = session.run(|cycle, counters| {
         board.show(counters);
         if let Some(times) = &mut times {
-            times.record(cycle, Duration::ZERO, options.budget);
+            times.record(cycle, Duration::ZERO);
         }
         if cycles.len() < cycles.capacity() {
             cycles.push(RecordedCycle::from(cycle));
         }
         let time = options.duration.unwrap_or(Duration::MAX);
-        cycle.written < time && !board.stop.load(Ordering::Relaxed)
+        cycle.written < time && !board.is_stopped()
     });
-    // A signal that interrupts a read is the wish to stop, where there is one.
-    let interrupted = end == End::Device(DeviceError::Interrupted);
-    let asked = interrupted && board.stop.load(Ordering::Relaxed);
-    let counters = session.counters();
     Played {
-        end: if asked { End::Asked } else { end },
-        counters,
-        timing: times.and_then(|times| times.timing(counters.cycles, options.budget, true)),
+        end: match end {
+            // A signal that interrupts a read is the wish to stop, where there is one.
+            End::Device(error) if error.state == DeviceState::Interrupted && board.is_stopped() => {
+                End::Asked
+            }
+            end => end,
+        },
+        counters: session.counters(),
+        timing: times.and_then(|times| times.timing(true)),
         held_up: None,
         cycles,
     }

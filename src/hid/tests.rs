@@ -7,31 +7,30 @@ use crate::force::Force;
 use crate::servo::Command;
 
 #[cfg(feature = "std")]
-pub use played::{limits, probing, with_table};
+pub use played::{MS, Sent, Watched, begin, limits, probing, recorded, table};
 
 /// What tests of the loop share.
 #[cfg(feature = "std")]
 mod played {
     use std::time::Duration;
+    use std::vec;
     use std::vec::Vec;
 
-    use crate::force::Force;
+    use super::*;
     use crate::hid::simulated::{Defect, Mechanics, PAPER, SimulatedDevice, Trajectory};
     use crate::servo::{Axis, Limits, Table};
 
+    pub const MS: Duration = Duration::from_millis(1);
+
     /// Forces over a square of 8 mm by 40 mm that grow with the depth to `normal` (N), and to ±1 N to the sides.
-    pub fn with_table<R>(normal: f32, then: impl FnOnce(Table) -> R) -> R {
-        let force = |lateral, normal| Force { lateral, normal };
-        let forces = [
-            Force::ZERO,
-            Force::ZERO,
-            force(-1.0, normal),
-            force(1.0, normal),
-        ];
-        let knots = [[0.0, 0.008], [-0.02, 0.02]];
-        let reciprocals = knots.map(|[start, end]| [Axis::reciprocal_width(start, end)]);
-        let axis = |at: usize| Axis::new(&knots[at], &reciprocals[at]).unwrap();
-        then(Table::new(axis(0), axis(1), &forces).unwrap())
+    pub fn table(normal: f32) -> Table<'static> {
+        let axis = |start, end| {
+            let width = vec![Axis::reciprocal_width(start, end)];
+            Axis::new(vec![start, end].leak(), width.leak()).unwrap()
+        };
+        let deep = [-1.0, 1.0].map(|lateral| Force { lateral, normal });
+        let forces = vec![Force::ZERO, Force::ZERO, deep[0], deep[1]];
+        Table::new(axis(0.0, 0.008), axis(-0.02, 0.02), forces.leak()).unwrap()
     }
 
     /// 2 N, built up by 50 N/s and released in ten cycles.
@@ -43,6 +42,49 @@ mod played {
     pub fn probing(sweep: Duration, faults: Vec<(Duration, Defect)>) -> SimulatedDevice {
         let hand = Trajectory::probing(0.004, 0.01, sweep);
         SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, faults)
+    }
+
+    /// A session with 400 N/m along the depth.
+    pub fn begin<D: HapticDevice>(device: D) -> Session<'static, D> {
+        Session::begin(device, table(3.2), limits()).unwrap()
+    }
+
+    /// The cycles of a session until it ends, at most so many.
+    pub fn recorded(device: impl HapticDevice, most: usize) -> Vec<Cycle> {
+        let mut cycles = Vec::new();
+        begin(device).run(|cycle, _| {
+            cycles.push(*cycle);
+            cycles.len() < most
+        });
+        cycles
+    }
+
+    /// What the loop sends to a device.
+    pub enum Sent {
+        Force(ForceReport),
+        Control(Control),
+    }
+
+    /// A device with a say in what is sent to it, and when. It has the operations of HID-012 and no other: a further one that
+    /// the loop needs would not compile here.
+    pub struct Watched<F>(pub SimulatedDevice, pub F);
+
+    impl<F: FnMut(Sent, Duration) -> Result<(), DeviceError>> HapticDevice for Watched<F> {
+        fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
+            self.0.capabilities()
+        }
+        fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
+            self.0.read(timeout)
+        }
+        fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
+            (self.1)(Sent::Force(*report), self.0.now()).and_then(|()| self.0.write(report))
+        }
+        fn control(&mut self, control: Control) -> Result<(), DeviceError> {
+            (self.1)(Sent::Control(control), self.0.now()).and_then(|()| self.0.control(control))
+        }
+        fn now(&self) -> Duration {
+            self.0.now()
+        }
     }
 }
 
@@ -87,90 +129,84 @@ fn a_report_has_its_bytes_in_order() {
     assert_eq!(ForceReport::decode(&bytes), Ok(force));
     let words = [1, 1000, 500, 8000, 1000, 15, 600, 140].map(u16::to_le_bytes);
     let bytes = [&[3], words.as_flattened()].concat();
-    assert_eq!(capabilities().encode(), bytes[..]);
-    assert_eq!(Capabilities::decode(&bytes), Ok(capabilities()));
+    assert_eq!(DEVICE.encode(), bytes[..]);
+    assert_eq!(Capabilities::decode(&bytes), Ok(DEVICE));
 }
 
-fn capabilities() -> Capabilities {
-    Capabilities {
-        version: 1,
-        position_unit_nm: 1000,
-        force_unit_un: 500,
-        largest_force_mn: 8000,
-        period_us: 1000,
-        watchdog_ms: 15,
-        damping_mn_s_per_m: 600,
-        friction_mn: 140,
-    }
-}
+const DEVICE: Capabilities = Capabilities {
+    version: 1,
+    position_unit_nm: 1000,
+    force_unit_un: 500,
+    largest_force_mn: 8000,
+    period_us: 1000,
+    watchdog_ms: 15,
+    damping_mn_s_per_m: 600,
+    friction_mn: 140,
+};
 
 // Verifies: HID-005, HID-006.
 #[test]
 fn control_has_three_values() {
-    for (value, control) in [
-        (0, Control::Stop),
-        (1, Control::Enable),
-        (2, Control::ClearFault),
-    ] {
+    let controls = [Control::Stop, Control::Enable, Control::ClearFault];
+    for (value, control) in (0..).zip(controls) {
         assert_eq!(control.encode(), [4, value]);
         assert_eq!(Control::decode(&[4, value]), Ok(control));
     }
-    assert_eq!(
-        Control::decode(&[4, 3]),
-        Err(InvalidReport::Value { found: 3 })
-    );
+    let refused = Err(InvalidReport::Value { found: 3 });
+    assert_eq!(Control::decode(&[4, 3]), refused);
 }
 
 // Verifies: HID-006.
 #[test]
 fn another_length_or_number_is_refused() {
-    let good = capabilities().encode();
-    let expected = 17;
-    let length = |found| Err(InvalidReport::Length { found, expected });
-    assert_eq!(Capabilities::decode(&[]), length(0));
-    assert_eq!(Capabilities::decode(&good[..16]), length(16));
-    assert_eq!(
-        Capabilities::decode(&[[3; 17], [3; 17]].concat()),
-        length(34)
-    );
-    let mut other = good;
-    other[0] = 2;
-    let expected = 3;
-    assert_eq!(
-        Capabilities::decode(&other),
-        Err(InvalidReport::Number { found: 2, expected })
-    );
+    let good = DEVICE.encode();
+    let (found, expected) = (2, 3);
+    let number = InvalidReport::Number { found, expected };
+    let other = [&[found], &good[1..]].concat();
+    assert_eq!(Capabilities::decode(&other), Err(number));
+    for bytes in [&[][..], &good[..16], &[3; 34]] {
+        let (found, expected) = (bytes.len(), 17);
+        let length = InvalidReport::Length { found, expected };
+        assert_eq!(Capabilities::decode(bytes), Err(length));
+    }
 }
 
 // Verifies: HID-008.
 #[test]
 fn a_device_without_units_is_refused() {
-    let refused = |change: fn(&mut Capabilities)| {
-        let mut capabilities = capabilities();
-        change(&mut capabilities);
-        Units::new(&capabilities).unwrap_err()
-    };
-    let version = InvalidCapabilities::Version(2);
-    assert_eq!(refused(|c| c.version = 2), version);
-    let position = InvalidCapabilities::Unit("position unit is 0 nm");
-    assert_eq!(refused(|c| c.position_unit_nm = 0), position);
-    let force = InvalidCapabilities::Unit("force unit is 0 µN");
-    assert_eq!(refused(|c| c.force_unit_un = 0), force);
-    let expected = "the device's force unit is 0 µN, expected at least 1";
-    assert_eq!(std::format!("{force}"), expected);
+    type Change = fn(&mut Capabilities);
+    let changes: [(Change, &str); 3] = [
+        (
+            |c| c.version = 2,
+            " speaks version 2 of the profile, expected 1",
+        ),
+        (
+            |c| c.position_unit_nm = 0,
+            "'s position unit is 0 nm, expected at least 1",
+        ),
+        (
+            |c| c.force_unit_un = 0,
+            "'s force unit is 0 µN, expected at least 1",
+        ),
+    ];
+    for (change, expected) in changes {
+        let mut device = DEVICE;
+        change(&mut device);
+        let refused = Units::new(&device).unwrap_err();
+        assert_eq!(std::format!("{refused}"), ["the device", expected].concat());
+    }
 }
 
 // Verifies: HID-009, HID-010.
 #[test]
 fn counts_are_micrometres_and_half_millinewtons_here() {
-    let units = Units::new(&capabilities()).unwrap();
+    let units = Units::new(&DEVICE).unwrap();
     let report = PositionReport {
         lateral: -12_000,
         normal: -4_000,
         buttons: button::DEADMAN,
-        status: 0,
         sequence: 9,
-        force_sequence: 0,
+        ..PositionReport::default()
     };
     let sample = units.sample(&report);
     // The constant 1e-9 and two products are rounded: at most 3 · 2⁻²⁴ of the value.
@@ -180,17 +216,17 @@ fn counts_are_micrometres_and_half_millinewtons_here() {
     let told = (sample.sequence, sample.deadman, sample.device_fault);
     assert_eq!(told, (9, true, false));
     for status in [status::FAULT, status::WATCHDOG] {
-        assert!(
-            units
-                .sample(&PositionReport { status, ..report })
-                .device_fault
-        );
+        let report = PositionReport { status, ..report };
+        assert!(units.sample(&report).device_fault);
     }
-    let force = Force::new(-0.1, 1.5);
-    let playing = true;
-    let report = units.report(&Command { force, playing }, 77);
-    assert_eq!((report.lateral, report.normal), (-200, 3000));
-    assert_eq!((report.sequence, report.flags), (77, ForceReport::PLAY));
+    let (force, playing) = (Force::new(-0.1, 1.5), true);
+    let sent = ForceReport {
+        lateral: -200,
+        normal: 3000,
+        sequence: 77,
+        flags: ForceReport::PLAY,
+    };
+    assert_eq!(units.report(&Command { force, playing }, 77), sent);
 }
 
 // Verifies: HID-010, HID-011.

@@ -2,6 +2,7 @@
 
 pub mod paper;
 
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use hdrhistogram::Histogram;
@@ -13,33 +14,17 @@ use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
 
 /// A device on the clock of the host instead of its own, and at the host's pace if it is asked to.
-#[derive(Debug, Clone)]
-pub struct HostClock<D> {
+struct HostClock<'a, D> {
     device: D,
     began: Instant,
     /// Time between two cycles; `None` goes on as fast as it can.
     period: Option<Duration>,
     due: Duration,
-    late: Duration,
+    /// How much too late the last wait for a cycle ended.
+    late: &'a Cell<Duration>,
 }
 
-impl<D> HostClock<D> {
-    /// `device` at a `period`, or as fast as it goes.
-    pub fn new(device: D, period: Option<Duration>) -> HostClock<D> {
-        HostClock {
-            device,
-            began: Instant::now(),
-            period,
-            due: Duration::ZERO,
-            late: Duration::ZERO,
-        }
-    }
-
-    /// How much too late the last wait for a cycle ended.
-    pub fn late(&self) -> Duration {
-        self.late
-    }
-
+impl<D> HostClock<'_, D> {
     /// Sleeps until the next cycle is due.
     fn wait(&mut self) {
         let Some(period) = self.period else { return };
@@ -49,7 +34,7 @@ impl<D> HostClock<D> {
             std::thread::sleep(left);
         }
         let now = self.began.elapsed();
-        self.late = now.saturating_sub(self.due);
+        self.late.set(now.saturating_sub(self.due));
         // A cycle that was lost is not made up for.
         while self.due + period <= now {
             self.due += period;
@@ -57,7 +42,7 @@ impl<D> HostClock<D> {
     }
 }
 
-impl<D: HapticDevice> HapticDevice for HostClock<D> {
+impl<D: HapticDevice> HapticDevice for HostClock<'_, D> {
     fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
         self.device.capabilities()
     }
@@ -96,14 +81,15 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    fn of(times: &Histogram<u64>) -> Distribution {
+    /// `None` of no time.
+    fn of(times: &Histogram<u64>) -> Option<Distribution> {
         let quantile = |share| times.value_at_quantile(share) as f64 / 1e3;
-        Distribution {
+        (!times.is_empty()).then(|| Distribution {
             p50: quantile(0.5),
             p99: quantile(0.99),
             p99_9: quantile(0.999),
             max: times.max() as f64 / 1e3,
-        }
+        })
     }
 }
 
@@ -136,10 +122,9 @@ pub struct Timing {
 
 /// Times by quantity, recorded without allocation.
 pub(super) struct Times {
-    response: Histogram<u64>,
-    compute: Histogram<u64>,
-    write: Histogram<u64>,
-    round_trip: Histogram<u64>,
+    budget: Duration,
+    /// Of the response, the kernel, the write, the round trip.
+    histograms: [Histogram<u64>; 4],
     /// When the last force reports were written, by their number.
     sent: [Option<(u16, Duration)>; SENT],
     total: [Duration; 2],
@@ -150,61 +135,67 @@ pub(super) struct Times {
 const SENT: usize = 64;
 
 impl Times {
-    pub(super) fn new() -> Option<Times> {
+    /// No times yet, of cycles that may each take as long as `budget`.
+    pub(super) fn new(budget: Duration) -> Option<Times> {
         // 1 ns to 100 s within 0.1 %: everything that a cycle can take.
         let histogram = Histogram::new_with_bounds(1, 100_000_000_000, 3).ok()?;
         Some(Times {
-            response: histogram.clone(),
-            compute: histogram.clone(),
-            write: histogram.clone(),
-            round_trip: histogram,
+            budget,
+            histograms: std::array::from_fn(|_| histogram.clone()),
             sent: [None; SENT],
             total: [Duration::ZERO; 2],
             misses: 0,
         })
     }
 
-    pub(super) fn record(&mut self, cycle: &Cycle, late: Duration, budget: Duration) {
+    /// The cycles so far.
+    fn cycles(&self) -> u64 {
+        self.histograms[0].len()
+    }
+
+    pub(super) fn record(&mut self, cycle: &Cycle, late: Duration) {
         let response = late + cycle.written.saturating_sub(cycle.woke);
         let compute = cycle.computed.saturating_sub(cycle.received);
-        let record = |times: &mut Histogram<u64>, time: Duration| {
-            times.saturating_record(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX));
-        };
-        record(&mut self.response, response);
-        record(&mut self.compute, compute);
         let write = cycle.written.saturating_sub(cycle.computed);
-        record(&mut self.write, write);
-        if let Some(position) = cycle.position
-            && let Some(sent) = self.take(position.force_sequence)
-        {
-            record(&mut self.round_trip, cycle.woke.saturating_sub(sent));
+        // Each report that was sent is answered once.
+        let answered = cycle.position.and_then(|position| {
+            let number = position.force_sequence;
+            self.slot(number).take_if(|(sent, _)| *sent == number)
+        });
+        let round_trip = answered.map(|(_, written)| cycle.woke.saturating_sub(written));
+        let times = [Some(response), Some(compute), Some(write), round_trip];
+        for (histogram, time) in self.histograms.iter_mut().zip(times) {
+            if let Some(time) = time {
+                let time = u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
+                histogram.saturating_record(time);
+            }
         }
         let sequence = cycle.force.sequence;
-        self.sent[usize::from(sequence) % SENT] = Some((sequence, cycle.written));
+        *self.slot(sequence) = Some((sequence, cycle.written));
         self.total[0] += response;
         self.total[1] += compute;
-        self.misses += u64::from(response > budget);
+        self.misses += u64::from(response > self.budget);
     }
 
-    /// When the force report of this number was written; once for each.
-    fn take(&mut self, sequence: u16) -> Option<Duration> {
-        let slot = &mut self.sent[usize::from(sequence) % SENT];
-        let (_, written) = slot.take_if(|(sent, _)| *sent == sequence)?;
-        Some(written)
+    /// Where the force report of this number is kept, or another one.
+    fn slot(&mut self, sequence: u16) -> &mut Option<(u16, Duration)> {
+        &mut self.sent[usize::from(sequence) % SENT]
     }
 
-    /// The figures of `cycles` cycles; `None` for fewer than one.
-    pub(super) fn timing(&self, cycles: u64, budget: Duration, paced: bool) -> Option<Timing> {
+    /// The figures of the cycles so far; `None` without one.
+    pub(super) fn timing(&self, paced: bool) -> Option<Timing> {
         let [response, compute] = self.total.map(|total| total.as_secs_f64());
-        (cycles > 0).then(|| Timing {
+        let cycles = self.cycles();
+        let [response_us, compute_us, write_us, round_trip_us] =
+            self.histograms.each_ref().map(Distribution::of);
+        Some(Timing {
             cycles,
-            budget_us: budget.as_secs_f64() * 1e6,
+            budget_us: self.budget.as_secs_f64() * 1e6,
             misses: self.misses,
-            response_us: Distribution::of(&self.response),
-            compute_us: Distribution::of(&self.compute),
-            write_us: Distribution::of(&self.write),
-            round_trip_us: (!self.round_trip.is_empty())
-                .then(|| Distribution::of(&self.round_trip)),
+            response_us: response_us?,
+            compute_us: compute_us?,
+            write_us: write_us?,
+            round_trip_us,
             compute_share: compute / response.max(f64::MIN_POSITIVE),
             paced,
             passed: self.misses <= cycles / 1000,
@@ -237,23 +228,28 @@ pub fn measure<D: HapticDevice>(
     budget: Duration,
     period: Option<Duration>,
 ) -> Result<Timing, Refusal> {
-    let found = format_args!("{cycles} cycles").to_string();
-    let too_few = Refusal::state(found, "at least 1000 for a p99.9");
-    let times = Times::new().filter(|_| cycles >= 1000);
-    let mut times = times.ok_or_else(|| too_few.clone())?;
-    let mut session = Session::begin(HostClock::new(device, period), table, limits)?;
-    let mut measured = 0;
-    let end = session.run_watched(|device: &HostClock<D>, cycle, _| {
-        times.record(cycle, device.late(), budget);
-        measured += 1;
-        measured < cycles
+    let too_few = || Refusal::state(format_args!("{cycles} cycles"), "at least 1000 for a p99.9");
+    let times = Times::new(budget).filter(|_| cycles >= 1000);
+    let mut times = times.ok_or_else(too_few)?;
+    let late = Cell::new(Duration::ZERO);
+    let clock = HostClock {
+        device,
+        began: Instant::now(),
+        period,
+        due: Duration::ZERO,
+        late: &late,
+    };
+    let end = Session::begin(clock, table, limits)?.run(|cycle, _| {
+        times.record(cycle, late.get());
+        times.cycles() < cycles
     });
-    if measured < cycles {
-        let ended = format_args!("after {measured} cycles: {end}");
-        return Err(Refusal::state(ended, ""));
-    }
-    let timing = times.timing(cycles, budget, period.is_some());
-    timing.ok_or(too_few)
+    let timing = times.timing(period.is_some());
+    timing
+        .filter(|timing| timing.cycles == cycles)
+        .ok_or_else(|| {
+            let measured = times.cycles();
+            Refusal::state(format_args!("after {measured} cycles: {end}"), "")
+        })
 }
 
 #[cfg(test)]

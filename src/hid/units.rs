@@ -33,39 +33,33 @@ pub struct Units {
     counts_per_newton: f32,
 }
 
-/// Why the numbers of a device's reports cannot be turned into metres and newtons.
+/// Why the numbers of a device's reports cannot be turned into metres and newtons: what it says of itself has another version of
+/// the profile than 1, a unit of 0, or a force that 32767 counts, the most that a report holds, do not reach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum InvalidCapabilities {
-    /// Another version of the profile than 1: the device's.
-    Version(u16),
-    /// A count of a position or of a force is nothing.
-    Unit(&'static str),
-    /// 32767 counts, the most that a report holds, are less than the device's largest force.
-    ForceRange {
-        /// The device's force unit, µN.
-        unit_un: u16,
-        /// Its largest force, mN.
-        largest_mn: u16,
-    },
-}
+pub struct InvalidCapabilities(pub Capabilities);
 
 impl fmt::Display for InvalidCapabilities {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let device = &self.0;
+        let (unit, largest) = (device.force_unit_un, device.largest_force_mn);
         write!(f, "the device")?;
-        match *self {
-            InvalidCapabilities::Version(found) => {
-                write!(f, " speaks version {found} of the profile, expected 1")
-            }
-            InvalidCapabilities::Unit(unit) => write!(f, "'s {unit}, expected at least 1"),
-            InvalidCapabilities::ForceRange {
-                unit_un,
-                largest_mn,
-            } => write!(
+        if device.version != 1 {
+            write!(
                 f,
-                "'s force unit is {unit_un} µN, so that no report holds its largest force of {largest_mn} mN, \
+                " speaks version {} of the profile, expected 1",
+                device.version
+            )
+        } else if device.position_unit_nm == 0 {
+            write!(f, "'s position unit is 0 nm, expected at least 1")
+        } else if unit == 0 {
+            write!(f, "'s force unit is 0 µN, expected at least 1")
+        } else {
+            write!(
+                f,
+                "'s force unit is {unit} µN, so that no report holds its largest force of {largest} mN, \
                  expected a unit of at least {} µN",
-                (u32::from(largest_mn) * 1000).div_ceil(32767)
-            ),
+                (u32::from(largest) * 1000).div_ceil(32767)
+            )
         }
     }
 }
@@ -80,21 +74,13 @@ impl Units {
     ///
     /// Implements: HID-008, HID-028.
     pub fn new(capabilities: &Capabilities) -> Result<Units, InvalidCapabilities> {
-        if capabilities.version != 1 {
-            return Err(InvalidCapabilities::Version(capabilities.version));
-        }
-        if capabilities.position_unit_nm == 0 {
-            return Err(InvalidCapabilities::Unit("position unit is 0 nm"));
-        }
-        if capabilities.force_unit_un == 0 {
-            return Err(InvalidCapabilities::Unit("force unit is 0 µN"));
-        }
-        let (unit_un, largest_mn) = (capabilities.force_unit_un, capabilities.largest_force_mn);
-        if u32::from(unit_un) * 32767 < u32::from(largest_mn) * 1000 {
-            return Err(InvalidCapabilities::ForceRange {
-                unit_un,
-                largest_mn,
-            });
+        let units = [capabilities.position_unit_nm, capabilities.force_unit_un];
+        let [reach, largest] = [
+            u32::from(capabilities.force_unit_un) * 32767,
+            u32::from(capabilities.largest_force_mn) * 1000,
+        ];
+        if capabilities.version != 1 || units.contains(&0) || reach < largest {
+            return Err(InvalidCapabilities(*capabilities));
         }
         Ok(Units {
             metres_per_count: f32::from(capabilities.position_unit_nm) * 1e-9,

@@ -1,6 +1,5 @@
 //! The configuration of `palpate run`.
 
-use palpate::cli::arguments::ContactName;
 use palpate::cli::config::Config;
 use palpate::decimal::format_scaled;
 use serde_json::json;
@@ -52,10 +51,7 @@ fn written(config: &Config) -> String {
         let written = positions.iter().map(|&x| format_scaled(x, 3));
         written.collect::<Vec<_>>().join(",")
     };
-    let contact = match config.mesh.contact {
-        ContactName::DeformedNormal => "deformed-normal",
-        ContactName::VerticalGap => "vertical-gap",
-    };
+    let contact = config.mesh.contact.name();
     let detection = &config.detection;
     let file = json!({
         "reference": config.reference.as_ref(),

@@ -56,7 +56,7 @@ fn limits() -> Result<Limits, String> {
 }
 
 fn steps() -> Result<Vec<Figure>, String> {
-    let loaded = paper::table()?;
+    let loaded = paper::table().map_err(|error| error.to_string())?;
     let table = loaded.table().map_err(|error| format!("{error:?}"))?;
     let limits = limits()?;
     let mut state = State {
@@ -117,7 +117,7 @@ fn one_step(table: &Table, limits: &Limits, state: State, cycle: u16) -> (State,
 }
 
 fn cycles() -> Result<Vec<Figure>, String> {
-    let loaded = paper::table()?;
+    let loaded = paper::table().map_err(|error| error.to_string())?;
     let table = loaded.table().map_err(|error| format!("{error:?}"))?;
     let timing = measure(
         paper::device(CYCLES),

@@ -6,13 +6,6 @@ use super::{Identity, Listed, Profile};
 use crate::refusal::Refusal;
 
 /// What is known of the device that is wanted; what is `None` does not matter.
-///
-/// ```
-/// use palpate::hid::real::Wanted;
-///
-/// let wanted = Wanted { vendor: Some(0x1209), serial: Some("7".into()), ..Wanted::default() };
-/// assert_eq!(wanted.to_string(), "1209:any, serial 7");
-/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// Vendor number.
@@ -34,10 +27,12 @@ impl Wanted {
     }
 
     fn is(&self, identity: &Identity) -> bool {
-        let serial = self.serial.as_ref();
-        self.vendor.is_none_or(|vendor| vendor == identity.vendor)
-            && self.product.is_none_or(|number| number == identity.product)
-            && serial.is_none_or(|serial| *serial == identity.serial)
+        fn fits<T: PartialEq>(wanted: &Option<T>, found: &T) -> bool {
+            wanted.as_ref().is_none_or(|wanted| wanted == found)
+        }
+        fits(&self.vendor, &identity.vendor)
+            && fits(&self.product, &identity.product)
+            && fits(&self.serial, &identity.serial)
     }
 }
 
@@ -56,18 +51,18 @@ impl fmt::Display for Wanted {
 ///
 /// Implements: HID-030.
 pub(super) fn choose<'a>(listed: &'a [Listed], wanted: &Wanted) -> Result<&'a Listed, Refusal> {
-    let named: Vec<&Listed> = listed
-        .iter()
-        .filter(|one| wanted.is(&one.identity))
+    let named = || listed.iter().filter(|one| wanted.is(&one.identity));
+    let fitting: Vec<&Listed> = named()
+        .filter(|one| one.profile == Profile::Vendor)
         .collect();
-    let fits = |one: &&&Listed| one.profile == Profile::Vendor;
-    let fitting: Vec<&Listed> = named.iter().filter(fits).copied().collect();
-    let wrong = match (&fitting[..], &named[..]) {
-        (&[one], _) => return Ok(one),
+    let wrong = match (&fitting[..], named().count(), named().next()) {
+        (&[one], ..) => return Ok(one),
         // One that was asked for by name, and is something else, deserves an explanation.
-        ([], [one]) if *wanted != Wanted::default() => format!("{}: {}", one.identity, one.profile),
-        ([], _) => format!("no HID device {wanted}; `palpate devices` lists those there are"),
-        (several, _) => {
+        ([], 1, Some(one)) if *wanted != Wanted::default() => {
+            format!("{}: {}", one.identity, one.profile)
+        }
+        ([], ..) => format!("no HID device {wanted}; `palpate devices` lists those there are"),
+        (several, ..) => {
             let names: Vec<String> = several.iter().map(|one| one.identity.to_string()).collect();
             let (number, names) = (names.len(), names.join(", "));
             format!("{number} devices: {names}; choose one by its numbers")

@@ -66,9 +66,7 @@ impl Profile {
         let same = descriptor.iter().zip(&DESCRIPTOR);
         Profile::Other {
             length: descriptor.len(),
-            differs_at: same
-                .take_while(|(found, expected)| found == expected)
-                .count(),
+            differs_at: same.take_while(|(one, other)| one == other).count(),
         }
     }
 }
@@ -88,7 +86,7 @@ impl fmt::Display for Profile {
 }
 
 /// Whether a report descriptor has an item that selects the usage page `page`.
-fn uses_page(descriptor: &[u8], page: u32) -> bool {
+fn uses_page(descriptor: &[u8], page: u8) -> bool {
     const LONG_ITEM: u8 = 0xFE;
     const USAGE_PAGE: u8 = 0x04;
     let mut rest = descriptor;
@@ -101,11 +99,8 @@ fn uses_page(descriptor: &[u8], page: u32) -> bool {
         let Some(data) = after.get(..size) else {
             return false;
         };
-        let value = data
-            .iter()
-            .rev()
-            .fold(0, |sum, &byte| sum << 8 | u32::from(byte));
-        if prefix & !3 == USAGE_PAGE && value == page {
+        let (low, high) = data.split_at(data.len().min(1));
+        if prefix & !3 == USAGE_PAGE && low == [page] && high.iter().all(|&byte| byte == 0) {
             return true;
         }
         rest = &after[size..];
@@ -191,15 +186,6 @@ fn descriptor(node: &str) -> std::io::Result<Vec<u8>> {
 ///
 /// It matches the `hidraw` node by the name of the HID device above it, which holds bus, vendor and
 /// product on every bus; a rule for `SUBSYSTEM=="usb"` does not cover the node.
-///
-/// ```
-/// use palpate::hid::real::{Identity, udev_rule};
-///
-/// let device = Identity {
-///     vendor: 0x1209, product: 0xAB, serial: "7".into(), name: "probe".into(), node: "/dev/hidraw3".into(),
-/// };
-/// assert_eq!(udev_rule(&device), r#"KERNEL=="hidraw*", KERNELS=="*:1209:00AB.*", TAG+="uaccess""#);
-/// ```
 ///
 /// Implements: HID-032.
 pub fn udev_rule(identity: &Identity) -> String {

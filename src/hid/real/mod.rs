@@ -52,18 +52,6 @@ const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Which one it is, or why there is none:
-///
-/// ```
-/// use palpate::hid::real::{RealDevice, Wanted};
-///
-/// let wanted = Wanted { serial: Some("lost".into()), ..Wanted::default() };
-/// match RealDevice::open(&wanted) {
-///     Ok(device) => assert_eq!(device.identity().serial, "lost"),
-///     Err(error) => assert!(!error.to_string().is_empty()),
-/// }
-/// ```
-///
 /// Implements: HID-033, HID-034, HID-035, HID-080, HID-081.
 #[derive(Debug)]
 pub struct RealDevice {
@@ -142,10 +130,8 @@ impl RealDevice {
     /// What failed, with the device's name.
     fn failed(&self, action: &str, problem: &dyn Display) -> DeviceError {
         let problem = problem.to_string();
-        DeviceError::System {
-            message: format!("{}: {action}: {problem}", self.identity),
-            state: state(&problem),
-        }
+        let message = format!("{}: {action}: {problem}", self.identity);
+        DeviceError::new(state(&problem), message)
     }
 }
 
@@ -204,7 +190,7 @@ impl HapticDevice for RealDevice {
             .map_err(|error| self.failed("ask for feature report 3", &message(&error)))?;
         let capabilities = Capabilities::decode(&bytes[..length.min(LONGEST)])
             .map_err(|problem| self.failed("feature report 3", &problem))?;
-        self.period = Duration::from_micros(u64::from(capabilities.period_us));
+        self.period = capabilities.period();
         Ok(capabilities)
     }
 

@@ -27,51 +27,49 @@ fn wanted(serial: &str) -> Wanted {
     }
 }
 
-// Verifies: HID-030.
+// Verifies: HID-030, HID-031.
 #[test]
-fn the_only_device_of_the_profile_needs_no_name_and_one_of_several_does() {
-    let devices = [listed("mouse", Profile::Pid), listed("a", Profile::Vendor)];
-    let chosen = choose(&devices, &Wanted::default()).unwrap();
-    assert_eq!(chosen.identity.serial, "a");
-    let devices = [listed("a", Profile::Vendor), listed("b", Profile::Vendor)];
-    let several = choose(&devices, &Wanted::default()).unwrap_err();
+fn the_only_device_of_the_profile_needs_no_name_and_another_is_explained() {
+    let devices = |names: &str| -> Vec<Listed> {
+        let profile = |name: &str| match name {
+            "mouse" => Profile::Pid,
+            "other" => Profile::of(&DESCRIPTOR[..135]),
+            _ => Profile::Vendor,
+        };
+        let names = names.split(' ');
+        names.map(|name| listed(name, profile(name))).collect()
+    };
+    let chosen = |names: &str, wanted: &Wanted| match choose(&devices(names), wanted) {
+        Ok(one) => one.identity.serial.clone(),
+        Err(refusal) => refusal.to_string(),
+    };
+    let any = Wanted::default();
+    assert_eq!(chosen("mouse a", &any), "a");
+    assert_eq!(chosen("a b", &wanted("b")), "b");
     assert_eq!(
-        several.to_string(),
+        chosen("a b", &any),
         "2 devices: Display (1209:0001, serial a) at /dev/a, Display (1209:0001, serial b) at /dev/b; \
          choose one by its numbers"
     );
-    assert_eq!(choose(&devices, &wanted("b")).unwrap().identity.serial, "b");
-}
-
-// Verifies: HID-030.
-#[test]
-fn each_number_that_is_given_must_be_the_devices() {
-    let devices = [listed("a", Profile::Vendor)];
-    let missing = |wanted: Wanted| {
-        let error = choose(&devices, &wanted).unwrap_err().to_string();
-        assert!(error.starts_with("no HID device 120"), "{error}");
-    };
-    missing(wanted("b"));
-    missing(Wanted {
-        vendor: Some(0x1208),
-        ..wanted("a")
-    });
-    missing(Wanted {
-        product: Some(2),
-        ..wanted("a")
-    });
-}
-
-// Verifies: HID-030, HID-031.
-#[test]
-fn a_named_device_that_is_something_else_is_explained() {
-    let devices = [listed("a", Profile::of(&DESCRIPTOR[..135]))];
-    let error = choose(&devices, &wanted("a")).unwrap_err();
     assert_eq!(
-        error.to_string(),
-        "Display (1209:0001, serial a) at /dev/a: not the vendor profile: \
+        chosen("other", &wanted("other")),
+        "Display (1209:0001, serial other) at /dev/other: not the vendor profile: \
          a report descriptor of 135 bytes, different from byte 135 on"
     );
+    let mut others = [wanted("b"), wanted("a"), wanted("a"), any];
+    others[1].vendor = Some(0x1208);
+    others[2].product = Some(2);
+    others[3].product = Some(3);
+    let names = [
+        "1209:0001, serial b",
+        "1208:0001, serial a",
+        "1209:0002, serial a",
+        "any:0003",
+    ];
+    for (other, name) in others.iter().zip(names) {
+        let missing = format!("no HID device {name}; `palpate devices` lists those there are");
+        assert_eq!(chosen("a", other), missing);
+    }
 }
 
 // Verifies: HID-031.
@@ -117,10 +115,9 @@ fn the_rule_matches_the_node_by_the_device_above_it() {
 // Verifies: HID-033.
 #[test]
 fn a_timeout_is_never_shorter_than_asked_for() {
-    assert_eq!(milliseconds(Duration::ZERO), 0);
-    assert_eq!(milliseconds(Duration::from_nanos(1)), 1);
-    assert_eq!(milliseconds(Duration::from_millis(2)), 2);
-    assert_eq!(milliseconds(Duration::from_micros(2001)), 3);
+    for (nanoseconds, expected) in [(0, 0), (1, 1), (2_000_000, 2), (2_001_000, 3)] {
+        assert_eq!(milliseconds(Duration::from_nanos(nanoseconds)), expected);
+    }
     assert_eq!(milliseconds(Duration::MAX), i32::MAX);
 }
 

@@ -5,21 +5,6 @@ use std::time::Duration;
 use crate::hid::InvalidReport;
 
 /// What can go wrong between a device and the loop.
-///
-/// ```
-#[doc = include_str!("probing.example")]
-/// use palpate::hid::simulated::Defect;
-/// use palpate::hid::{End, Session};
-/// use palpate::servo;
-///
-/// // From 0.6 s on, no report comes for 0.1 s.
-/// let silence = (Duration::from_millis(600), Defect::Silence(Duration::from_millis(100)));
-/// # let trajectory = Trajectory::probing(0.004, 0.01, Duration::from_millis(500));
-/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, vec![silence]);
-/// let end = Session::begin(device, table, limits)?.run(|_, _| true);
-/// assert_eq!(end, End::Fault(servo::Fault::Watchdog));
-/// # Ok::<(), palpate::refusal::Refusal>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Defect {
     /// The cable is pulled.

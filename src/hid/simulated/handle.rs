@@ -15,7 +15,7 @@ pub struct Mechanics {
     pub friction_n: f64,
     /// Play between handle and encoder, m.
     pub backlash_m: f64,
-    /// Stiffness of the hand towards where it wants to be, N/m.
+    /// Stiffness of the hand towards where it wants to be, N/m; an infinite one is there at once.
     pub hand_n_per_m: f64,
     /// Damping of the hand, N·s/m.
     pub hand_n_s_per_m: f64,
@@ -30,16 +30,6 @@ impl Mechanics {
         backlash_m: 20e-6,
         hand_n_per_m: 500.0,
         hand_n_s_per_m: 5.0,
-    };
-
-    /// A device that follows the hand without force, friction or play.
-    pub const IDEAL: Mechanics = Mechanics {
-        mass_kg: 0.05,
-        damping_n_s_per_m: 0.0,
-        friction_n: 0.0,
-        backlash_m: 0.0,
-        hand_n_per_m: f64::INFINITY,
-        hand_n_s_per_m: 0.0,
     };
 }
 
@@ -85,19 +75,12 @@ impl Handle {
 
     /// One step: velocity first, then position, so that the spring loses no energy to the method.
     fn advance_step(&mut self, step: f64, target: f64, force: f64) {
-        let Mechanics {
-            mass_kg,
-            damping_n_s_per_m,
-            friction_n,
-            hand_n_per_m,
-            hand_n_s_per_m,
-            ..
-        } = self.mechanics;
-        let spring = hand_n_per_m * (target - self.position);
-        let viscous = (damping_n_s_per_m + hand_n_s_per_m) * self.velocity;
-        let free = self.velocity + step / mass_kg * (force + spring - viscous);
+        let by = &self.mechanics;
+        let spring = by.hand_n_per_m * (target - self.position);
+        let viscous = (by.damping_n_s_per_m + by.hand_n_s_per_m) * self.velocity;
+        let free = self.velocity + step / by.mass_kg * (force + spring - viscous);
         // Friction takes at most its impulse, and never reverses the motion: it sticks.
-        let impulse = step / mass_kg * friction_n;
+        let impulse = step / by.mass_kg * by.friction_n;
         self.velocity = free.signum() * (free.abs() - impulse).max(0.0);
         self.position += step * self.velocity;
     }

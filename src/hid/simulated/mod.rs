@@ -23,8 +23,8 @@ pub use handle::Mechanics;
 pub use trajectory::Trajectory;
 
 use super::{
-    Capabilities, Control, DeviceError, ForceReport, HapticDevice, InvalidReport, PositionReport,
-    Received, button, status,
+    Capabilities, Control, DeviceError, DeviceState, ForceReport, HapticDevice, InvalidReport,
+    PositionReport, Received, button, status,
 };
 
 /// Reports that the system's queue holds; when it is full, the oldest stay.
@@ -58,10 +58,8 @@ pub const PAPER: Capabilities = Capabilities {
 /// device.control(Control::Enable)?;
 /// device.write(&ForceReport { lateral: -200, normal: 3000, sequence: 1, flags: ForceReport::PLAY })?;
 /// assert_eq!(device.motor_force(), [-0.1, 1.5]);
-/// assert_eq!(device.position(), [-10e-3, 1e-3]);
 /// device.read(Duration::from_millis(2))?;
 /// assert_eq!(device.now(), Duration::from_millis(1)); // when the report came
-/// assert!(device.position()[1] > 1e-3 && !device.finished());
 /// # Ok::<(), palpate::hid::DeviceError>(())
 /// ```
 ///
@@ -75,8 +73,8 @@ pub struct SimulatedDevice {
     /// Lateral, and along the normal.
     handles: [Handle; 2],
     clock: Duration,
-    /// Periods simulated so far.
-    periods: u64,
+    /// When the last period ended.
+    ticked: Duration,
     /// What was sent and not read yet.
     queue: VecDeque<Received>,
     sequence: u16,
@@ -127,7 +125,7 @@ impl SimulatedDevice {
             faults: faults.into(),
             handles: start.map(|position| Handle::at(mechanics, position)),
             clock: Duration::ZERO,
-            periods: 0,
+            ticked: Duration::ZERO,
             queue: VecDeque::with_capacity(QUEUE),
             sequence: 0,
             motor: Motor::default(),
@@ -147,25 +145,15 @@ impl SimulatedDevice {
             .map(|count| (f64::from(count) * unit).clamp(-largest, largest))
     }
 
-    /// Where the handle is, m: lateral, and along the normal, positive out of the gel.
-    pub fn position(&self) -> [f64; 2] {
-        self.handles.map(|handle| handle.position)
-    }
-
-    /// Whether the trajectory has come to its end.
-    pub fn finished(&self) -> bool {
-        self.clock >= self.trajectory.duration()
-    }
-
     fn period(&self) -> Duration {
-        Duration::from_micros(u64::from(self.capabilities.period_us.max(1)))
+        self.capabilities.period().max(Duration::from_micros(1))
     }
 
     /// Lets the time pass up to `until`, period by period.
     fn pass(&mut self, until: Duration) {
-        while self.period() * (self.periods as u32 + 1) <= until {
-            self.periods += 1;
-            self.clock = self.period() * self.periods as u32;
+        while self.ticked + self.period() <= until {
+            self.ticked += self.period();
+            self.clock = self.ticked;
             self.simulate_period();
         }
         self.clock = until;
@@ -179,10 +167,8 @@ impl SimulatedDevice {
             self.faults.pop_front();
             self.begin(defect);
         }
-        let watchdog = Duration::from_millis(u64::from(self.capabilities.watchdog_ms));
-        if self.motor.enabled && self.clock.saturating_sub(self.motor.written) > watchdog {
-            self.motor.dropped = true;
-        }
+        let silent = self.clock.saturating_sub(self.motor.written);
+        self.motor.dropped |= self.motor.enabled && silent > self.capabilities.watchdog();
         let period = self.period().as_secs_f64();
         let target = self.trajectory.at(self.clock);
         let force = self.motor_force();
@@ -250,7 +236,7 @@ impl SimulatedDevice {
 
     fn check_plugged(&self) -> Result<(), DeviceError> {
         match self.ongoing.unplugged {
-            true => Err(DeviceError::Gone),
+            true => Err(DeviceError::new(DeviceState::Gone, "the device is gone")),
             false => Ok(()),
         }
     }
@@ -267,7 +253,8 @@ impl HapticDevice for SimulatedDevice {
         loop {
             self.check_plugged()?;
             if std::mem::take(&mut self.ongoing.interrupted) {
-                return Err(DeviceError::Interrupted);
+                let message = "a signal interrupted the device";
+                return Err(DeviceError::new(DeviceState::Interrupted, message));
             }
             if let Some(received) = self.queue.pop_front() {
                 return Ok(received);
@@ -275,19 +262,18 @@ impl HapticDevice for SimulatedDevice {
             if self.clock >= deadline {
                 return Ok(Received::Nothing);
             }
-            let tick = self.period() * (self.periods as u32 + 1);
-            self.pass(tick.min(deadline));
+            self.pass(deadline.min(self.ticked + self.period()));
         }
     }
 
     fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
         self.check_plugged()?;
-        if self.clock < self.ongoing.stalled_until {
-            let give_up = self.clock + GIVE_UP;
-            let stalled_until = self.ongoing.stalled_until;
+        let (stalled_until, give_up) = (self.ongoing.stalled_until, self.clock + GIVE_UP);
+        if self.clock < stalled_until {
             self.pass(stalled_until.min(give_up));
             if stalled_until >= give_up {
-                return Err(DeviceError::Stalled);
+                let message = "the device takes no more reports";
+                return Err(DeviceError::new(DeviceState::Stalled, message));
             }
             self.check_plugged()?;
         }

@@ -3,19 +3,22 @@
 use std::cell::Cell;
 
 use super::*;
-use crate::hid::tests::limits;
-use crate::hid::{DeviceState, End, Session};
-use crate::servo::{Fault as ServoFault, Limits, Mode, Request, Table};
+use crate::hid::tests::{MS, Sent, Watched, begin, probing, recorded, table};
+use crate::hid::{Counters, End, Session};
+use crate::servo::{Fault as ServoFault, Limits, Mode, Request};
 
-const MS: Duration = Duration::from_millis(1);
-
-/// A table with 400 N/m along the depth and 50 N/m along x.
-fn with_table<R>(then: impl FnOnce(Table) -> R) -> R {
-    crate::hid::tests::with_table(3.2, then)
+fn device(faults: Vec<(Duration, Defect)>) -> SimulatedDevice {
+    probing(1500 * MS, faults)
 }
 
-fn device(mechanics: Mechanics, faults: Vec<(Duration, Defect)>) -> SimulatedDevice {
-    let trajectory = Trajectory::probing(0.004, 0.01, 1500 * MS);
+/// A device that follows the hand without force, friction or play.
+fn ideal(faults: Vec<(Duration, Defect)>) -> SimulatedDevice {
+    let mechanics = Mechanics {
+        backlash_m: 0.0,
+        hand_n_per_m: f64::INFINITY,
+        ..Mechanics::PAPER
+    };
+    let trajectory = device(vec![]).trajectory;
     SimulatedDevice::new(PAPER, mechanics, trajectory, faults)
 }
 
@@ -72,113 +75,79 @@ fn friction_holds_the_handle_and_backlash_hides_a_small_motion() {
 // Verifies: HID-013, HID-018, HID-020.
 #[test]
 fn the_force_of_the_table_reaches_the_motors() {
-    with_table(|table| {
-        let mut session =
-            Session::begin(device(Mechanics::IDEAL, vec![]), table, limits()).unwrap();
-        let mut compared = 0;
-        let mut last = [0.0; 2];
-        let end = session.run(|cycle, _| {
-            let report = cycle.position.unwrap();
-            let depth = -f64::from(report.normal) * 1e-6;
-            let lateral = f64::from(report.lateral) * 1e-6;
-            let expected = [50.0 * lateral * depth / 0.008, 400.0 * depth];
-            let found =
-                [cycle.force.lateral, cycle.force.normal].map(|count| f64::from(count) * 5e-4);
-            let settled = (0..2).all(|axis| (expected[axis] - last[axis]).abs() < 0.05);
-            if cycle.playing && settled && depth > 0.0 {
-                compared += 1;
-                for axis in 0..2 {
-                    // Half a count, and the rounding of the kernel, which is far below.
-                    assert!(
-                        (found[axis] - expected[axis]).abs() < 0.26e-3,
-                        "{expected:?} {found:?}"
-                    );
-                }
-            }
-            last = found;
-            cycle.written < Duration::from_millis(3900)
-        });
-        assert_eq!(end, End::Asked);
-        assert!(compared > 3000, "{compared}");
-        assert_eq!(session.device().motor_force(), [0.0, 0.0]);
-        let counters = session.counters();
-        assert_eq!(
-            (counters.missed, counters.skipped, counters.garbage),
-            (1, 0, 0)
-        ); // the first
+    let mut session = begin(ideal(vec![]));
+    let mut compared = 0;
+    let mut last = [0.0; 2];
+    let end = session.run(|cycle, _| {
+        let report = cycle.position.unwrap();
+        let depth = -f64::from(report.normal) * 1e-6;
+        let lateral = f64::from(report.lateral) * 1e-6;
+        // 400 N/m along the depth and 50 N/m along x.
+        let expected = [50.0 * lateral * depth / 0.008, 400.0 * depth];
+        let found = [cycle.force.lateral, cycle.force.normal].map(|count| f64::from(count) * 5e-4);
+        let settled = (0..2).all(|axis| (expected[axis] - last[axis]).abs() < 0.05);
+        if cycle.playing && settled && depth > 0.0 {
+            compared += 1;
+            // Half a count, and the rounding of the kernel, which is far below.
+            let near = |axis| f64::abs(found[axis] - expected[axis]) < 0.26e-3;
+            assert!(near(0) && near(1), "{expected:?} {found:?}");
+        }
+        last = found;
+        cycle.written < 3900 * MS
     });
+    assert_eq!(end, End::Asked);
+    assert!(compared > 3000, "{compared}");
+    assert_eq!(session.device().motor_force(), [0.0, 0.0]);
+    let found = session.counters();
+    let missed = 1; // the first
+    assert_eq!((found.missed, found.skipped, found.garbage), (missed, 0, 0));
 }
 
 // Verifies: HID-015.
 #[test]
 fn each_force_report_is_one_ahead_of_the_last() {
-    with_table(|table| {
-        // Repeated numbers, silence and a long session change nothing: 70 000 cycles go round the 65 536 numbers.
-        let faults = vec![
-            (MS * 100, Defect::Repeat(4)),
-            (MS * 200, Defect::Silence(MS * 3)),
-        ];
-        let mut session =
-            Session::begin(device(Mechanics::IDEAL, faults), table, limits()).unwrap();
-        let mut numbers = Vec::new();
-        session.run(|cycle, _| {
-            numbers.push(cycle.force.sequence);
-            numbers.len() < 70_000
-        });
-        assert_eq!(numbers.len(), 70_000);
-        let ahead = |pair: &[u16]| pair[1] == pair[0].wrapping_add(1);
-        assert!(numbers.windows(2).all(ahead));
-    });
+    // Repeated numbers, silence and a long session change nothing: 70 000 cycles go round the 65 536 numbers.
+    let faults = vec![
+        (100 * MS, Defect::Repeat(4)),
+        (200 * MS, Defect::Silence(3 * MS)),
+    ];
+    let cycles = recorded(ideal(faults), 70_000);
+    assert_eq!(cycles.len(), 70_000);
+    for pair in cycles.windows(2) {
+        assert_eq!(
+            pair[1].force.sequence,
+            pair[0].force.sequence.wrapping_add(1)
+        );
+    }
 }
 
 // Verifies: HID-020.
 #[test]
 fn a_session_is_the_same_to_the_bit_every_time() {
-    let run = || {
-        with_table(|table| {
-            let faults = vec![(MS * 900, Defect::Repeat(4))];
-            let mut session =
-                Session::begin(device(Mechanics::PAPER, faults), table, limits()).unwrap();
-            let mut cycles = Vec::new();
-            session.run(|cycle, _| {
-                cycles.push(*cycle);
-                cycles.len() < 3000
-            });
-            cycles
-        })
-    };
+    let faults = || vec![(900 * MS, Defect::Repeat(4))];
+    let run = || recorded(device(faults()), 3000);
     assert_eq!(run(), run());
 }
 
 /// Runs the paper's device with one fault at 1.2 s, in the middle of a sweep; the end, the last mode,
 /// the motors' force then, and the counters.
-fn run_with(defect: Defect) -> (End, Mode, [f64; 2], crate::hid::Counters) {
-    with_table(|table| {
-        let device = device(Mechanics::PAPER, vec![(MS * 1200, defect)]);
-        let mut session = Session::begin(device, table, limits()).unwrap();
-        let end = session.run(|cycle, _| {
-            if cycle.written < MS * 1200 && cycle.written > MS * 700 {
-                assert!(cycle.playing && cycle.force.normal > 1000, "{cycle:?}");
-            }
-            cycle.written < MS * 3000
-        });
-        (
-            end,
-            session.mode(),
-            session.device().motor_force(),
-            session.counters(),
-        )
-    })
+fn run_with(defect: Defect) -> (End, Mode, [f64; 2], Counters) {
+    let mut session = begin(device(vec![(1200 * MS, defect)]));
+    let end = session.run(|cycle, _| {
+        if cycle.written < 1200 * MS && cycle.written > 700 * MS {
+            assert!(cycle.playing && cycle.force.normal > 1000, "{cycle:?}");
+        }
+        cycle.written < 3000 * MS
+    });
+    let force = session.device().motor_force();
+    (end, session.mode(), force, session.counters())
 }
 
 // Verifies: HID-016, HID-019, HID-023.
 #[test]
 fn every_fault_that_ends_a_session_is_named_and_leaves_the_motors_without_force() {
     let second = Duration::from_secs(1);
-    let garbage = InvalidReport::Length {
-        found: 3,
-        expected: 11,
-    };
+    let garbage = InvalidReport::Value { found: 3 };
     let [stale, faulty] = ["no fresh report for too long", "the device reports a fault"]
         .map(|fault| format!("stopped by a fault: {fault}"));
     for (defect, message) in [
@@ -224,22 +193,23 @@ fn every_fault_that_ends_a_session_is_named_and_leaves_the_motors_without_force(
 // Verifies: HID-014.
 #[test]
 fn reports_passed_over_and_reports_that_never_came_are_counted_apart() {
-    let counters = run_with(Defect::Stall(MS * 10)).3;
-    assert_eq!((counters.drained, counters.skipped), (9, 0));
-    let counters = run_with(Defect::ClockJump(MS * 20)).3;
-    assert_eq!((counters.drained, counters.skipped), (0, 20));
-    let garbage = InvalidReport::Number {
-        found: 9,
-        expected: 1,
-    };
-    let counters = run_with(Defect::Garbage(garbage)).3;
-    assert_eq!((counters.garbage, counters.skipped), (1, 1));
+    let (found, expected) = (9, 1);
+    let garbage = InvalidReport::Number { found, expected };
+    for (defect, counted) in [
+        (Defect::Stall(10 * MS), [9, 0, 0]),
+        (Defect::ClockJump(20 * MS), [0, 20, 0]),
+        (Defect::Garbage(garbage), [0, 1, 1]),
+    ] {
+        let counters = run_with(defect).3;
+        let found = [counters.drained, counters.skipped, counters.garbage];
+        assert_eq!(found, counted, "{defect:?}");
+    }
 }
 
 // Verifies: HID-021.
 #[test]
 fn the_device_drops_its_force_by_itself_and_keeps_the_oldest_reports() {
-    let mut device = device(Mechanics::IDEAL, vec![]);
+    let mut device = ideal(vec![]);
     device.control(Control::Enable).unwrap();
     let force = ForceReport {
         lateral: 200,
@@ -248,27 +218,26 @@ fn the_device_drops_its_force_by_itself_and_keeps_the_oldest_reports() {
         flags: ForceReport::PLAY,
     };
     device.write(&force).unwrap();
-    assert_eq!(device.motor_force(), [0.1, -0.2]);
-    device.pass(MS * 15);
-    assert_eq!(device.motor_force(), [0.1, -0.2]);
-    device.pass(MS * 16);
-    assert_eq!(device.motor_force(), [0.0, 0.0]);
-    device.pass(MS * 200);
+    let on = [0.1, -0.2];
+    for (time, force) in [(0, on), (15, on), (16, [0.0; 2]), (200, [0.0; 2])] {
+        device.pass(time * MS);
+        assert_eq!(device.motor_force(), force, "{time} ms");
+    }
     let mut sequences = Vec::new();
     while let Received::Report(report) = device.read(Duration::ZERO).unwrap() {
         sequences.push(report.sequence);
     }
-    assert_eq!(sequences, (1..=63).collect::<Vec<u16>>());
+    assert!(sequences.into_iter().eq(1..=63));
 }
 
 // Verifies: HID-017, HID-028.
 #[test]
 fn a_session_begins_only_with_a_device_that_can_be_trusted() {
     let begins = |capabilities: Capabilities, force: f32| {
-        let mut device = device(Mechanics::IDEAL, vec![]);
+        let mut device = ideal(vec![]);
         device.capabilities = capabilities;
         let limits = Limits::new(force, 0.05, 0.2, 10).unwrap();
-        with_table(|table| Session::begin(device, table, limits).map(|_| ()))
+        Session::begin(device, table(3.2), limits).map(|_| ())
     };
     let weak = Capabilities {
         largest_force_mn: 2000,
@@ -324,69 +293,38 @@ fn a_session_begins_only_with_a_device_that_can_be_trusted() {
     }
 }
 
-/// What the loop sends to a device.
-enum Sent {
-    Force(ForceReport),
-    Control(Control),
-}
-
-/// A device with a say in what is sent to it. It has the operations of HID-012 and no other: a further one that the loop
-/// needs would not compile here.
-struct Watched<F>(SimulatedDevice, F);
-
-impl<F: FnMut(Sent) -> Result<(), DeviceError>> HapticDevice for Watched<F> {
-    fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
-        self.0.capabilities()
-    }
-    fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
-        self.0.read(timeout)
-    }
-    fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
-        (self.1)(Sent::Force(*report)).and_then(|()| self.0.write(report))
-    }
-    fn control(&mut self, control: Control) -> Result<(), DeviceError> {
-        (self.1)(Sent::Control(control)).and_then(|()| self.0.control(control))
-    }
-    fn now(&self) -> Duration {
-        self.0.now()
-    }
-}
-
 // Verifies: HID-012, HID-016.
 #[test]
 fn a_panic_stops_the_device() {
     let (force, stopped) = (Cell::new(0), Cell::new(false));
     let run = std::panic::AssertUnwindSafe(|| {
-        with_table(|table| {
-            let watch = |sent| {
-                match sent {
-                    Sent::Force(report) => force.set(report.normal),
-                    Sent::Control(control) => stopped.set(control == Control::Stop),
-                }
-                Ok(())
-            };
-            let device = Watched(device(Mechanics::PAPER, vec![]), watch);
-            let mut session = Session::begin(device, table, limits()).unwrap();
-            session.run(|cycle, _| {
-                assert!(cycle.force.normal < 1000, "planted");
-                true
-            })
+        let watch = |sent, _| {
+            match sent {
+                Sent::Force(report) => force.set(report.normal),
+                Sent::Control(control) => stopped.set(control == Control::Stop),
+            }
+            Ok(())
+        };
+        begin(Watched(device(vec![]), watch)).run(|cycle, _| {
+            assert!(cycle.force.normal < 1000, "planted");
+            true
         })
     });
     assert!(std::panic::catch_unwind(run).is_err());
     assert_eq!((force.get(), stopped.get()), (0, true));
 }
 
+fn failed(state: DeviceState) -> DeviceError {
+    DeviceError::new(state, "refused")
+}
+
 fn refused() -> DeviceError {
-    DeviceError::System {
-        message: "refused".into(),
-        state: DeviceState::There,
-    }
+    failed(DeviceState::There)
 }
 
 /// Refuses as many times as `left` says.
-fn refuse(left: &Cell<u32>) -> impl FnMut(Sent) -> Result<(), DeviceError> {
-    move |_| {
+fn refuse(left: &Cell<u32>) -> impl FnMut(Sent, Duration) -> Result<(), DeviceError> {
+    move |_, _| {
         let after = left.get().checked_sub(1);
         left.set(after.unwrap_or(0));
         after.map_or(Ok(()), |_| Err(refused()))
@@ -398,95 +336,82 @@ fn refuse(left: &Cell<u32>) -> impl FnMut(Sent) -> Result<(), DeviceError> {
 fn a_stop_is_sent_again_until_the_device_takes_it_and_nothing_arms_after_it() {
     for refusals in 0..30 {
         let left = Cell::new(0);
-        with_table(|table| {
-            let device = Watched(device(Mechanics::PAPER, vec![]), refuse(&left));
-            let mut session = Session::begin(device, table, limits()).unwrap();
-            let mut arm = true;
-            while session.device().0.motor_force()[1] <= 0.0 {
-                arm = !arm && session.mode() == Mode::Disarmed;
-                let request = if arm { Request::Arm } else { Request::None };
-                session.cycle(request).unwrap();
-            }
-            left.set(refusals);
-            // Five stops, then five zeros: the last of them fails where ten are refused.
-            let first = session.stop();
-            assert_eq!(first.is_ok(), refusals < 5, "{refusals}");
-            let refused = u64::from(refusals.min(10));
-            assert_eq!(session.counters().refused, refused);
-            let moved = session.device().0.motor_force() != [0.0, 0.0];
-            assert_eq!(moved, refusals >= 10, "{refusals}");
-            for _ in 0..20 {
-                let cycle = session.cycle(Request::Arm);
-                assert!(cycle.is_err() || session.mode() == Mode::Disarmed);
-            }
-            assert_eq!(session.stop(), Ok(()), "{refusals}");
-            assert_eq!(session.device().0.motor_force(), [0.0, 0.0]);
-            // Nothing is sent to a device that has taken the stop.
-            left.set(1);
-            assert_eq!(session.stop(), Ok(()), "{refusals}");
-            assert_eq!(left.replace(0), 1, "{refusals}");
-        });
+        let mut session = begin(Watched(device(vec![]), refuse(&left)));
+        let mut arm = true;
+        while session.device().0.motor_force()[1] <= 0.0 {
+            arm = !arm && session.mode() == Mode::Disarmed;
+            let request = if arm { Request::Arm } else { Request::None };
+            session.cycle(request).unwrap();
+        }
+        left.set(refusals);
+        // Five stops, then five zeros: the last of them fails where ten are refused.
+        let first = session.stop();
+        assert_eq!(first.is_ok(), refusals < 5, "{refusals}");
+        let refused = u64::from(refusals.min(10));
+        assert_eq!(session.counters().refused, refused);
+        let moved = session.device().0.motor_force() != [0.0, 0.0];
+        assert_eq!(moved, refusals >= 10, "{refusals}");
+        for _ in 0..20 {
+            let cycle = session.cycle(Request::Arm);
+            assert!(cycle.is_err() || session.mode() == Mode::Disarmed);
+        }
+        assert_eq!(session.stop(), Ok(()), "{refusals}");
+        assert_eq!(session.device().0.motor_force(), [0.0, 0.0]);
+        // Nothing is sent to a device that has taken the stop.
+        left.set(1);
+        assert_eq!(session.stop(), Ok(()), "{refusals}");
+        assert_eq!(left.replace(0), 1, "{refusals}");
         // While the deadman is not held, the kernel would arm.
-        with_table(|table| {
-            let device = Watched(device(Mechanics::PAPER, vec![]), refuse(&left));
-            let mut session = Session::begin(device, table, limits()).unwrap();
-            session.cycle(Request::None).unwrap();
-            left.set(refusals);
-            let _ = session.stop();
-            left.set(0);
-            for request in [Request::Arm, Request::None, Request::Arm] {
-                session.cycle(request).unwrap();
-                assert_eq!(session.mode(), Mode::Disarmed, "{refusals}");
-            }
-        });
+        let mut session = begin(Watched(device(vec![]), refuse(&left)));
+        session.cycle(Request::None).unwrap();
+        left.set(refusals);
+        let _ = session.stop();
+        left.set(0);
+        for request in [Request::Arm, Request::None, Request::Arm] {
+            session.cycle(request).unwrap();
+            assert_eq!(session.mode(), Mode::Disarmed, "{refusals}");
+        }
     }
-}
-
-/// Fifty cycles and the stop, which is answered as `answer` says: the end, and what was refused.
-fn stopped(answer: impl Fn(Sent) -> Result<(), DeviceError>) -> (End, u64) {
-    let ending = Cell::new(false);
-    let watch = |sent| match ending.get() {
-        true => answer(sent),
-        false => Ok(()),
-    };
-    with_table(|table| {
-        let device = Watched(device(Mechanics::PAPER, vec![]), watch);
-        let mut session = Session::begin(device, table, limits()).unwrap();
-        let end = session.run(|_, counters| {
-            ending.set(counters.cycles == 50);
-            counters.cycles < 50
-        });
-        (end, session.counters().refused)
-    })
 }
 
 // Verifies: HID-025, HID-026, HID-029.
 #[test]
 fn a_stop_that_the_device_does_not_take_is_told_beside_the_end() {
-    assert_eq!(stopped(|_| Ok(())), (End::Asked, 0));
-    let unstopped = End::Unstopped(Box::new(End::Asked), refused());
-    assert_eq!(stopped(|_| Err(refused())), (unstopped.clone(), 10));
-    let no_control = |sent| match sent {
-        Sent::Control(_) => Err(refused()),
-        Sent::Force(_) => Ok(()),
-    };
-    assert_eq!(stopped(no_control), (unstopped.clone(), 5));
-    let no_zero = |sent| match sent {
-        Sent::Control(_) => Ok(()),
-        Sent::Force(_) => Err(refused()),
-    };
-    assert_eq!(stopped(no_zero), (unstopped.clone(), 1));
-    // One that is gone, or blocks each write for seconds, is asked once for each.
-    let gone = End::Device(DeviceError::Gone);
-    assert_eq!(stopped(|_| Err(DeviceError::Gone)), (gone, 2));
-    assert_eq!(stopped(|_| Err(DeviceError::Stalled)).1, 2);
-    let said = unstopped.to_string();
-    for part in ["ended as asked", "refused", "watchdog"] {
-        assert!(said.contains(part), "{said}");
+    use DeviceState::{Gone, Stalled, There};
+    let unstopped = |state| End::Unstopped(Box::new(End::Asked), failed(state));
+    // Who answers so: the control, the force report; and how often in all. One that is gone, or blocks each write for
+    // seconds, is asked once for each.
+    for (control, force, end, refusals) in [
+        (None, None, End::Asked, 0),
+        (Some(There), Some(There), unstopped(There), 10),
+        (Some(There), None, unstopped(There), 5),
+        (None, Some(There), unstopped(There), 1),
+        (Some(Gone), Some(Gone), End::Device(failed(Gone)), 2),
+        (Some(Stalled), Some(Stalled), unstopped(Stalled), 2),
+    ] {
+        let ending = Cell::new(false);
+        let watch = |sent, _| {
+            let answer = match sent {
+                Sent::Control(_) => control,
+                Sent::Force(_) => force,
+            };
+            let answer = answer.filter(|_| ending.get());
+            answer.map_or(Ok(()), |state| Err(failed(state)))
+        };
+        let mut session = begin(Watched(device(vec![]), watch));
+        let found = session.run(|_, counters| {
+            ending.set(counters.cycles == 50);
+            counters.cycles < 50
+        });
+        assert_eq!((found, session.counters().refused), (end, refusals));
     }
+    assert_eq!(
+        unstopped(There).to_string(),
+        "ended as asked; stopping the device failed (refused): its own watchdog must drop the force"
+    );
 }
 
-/// A defect from three random words.
+/// A defect from random words.
 fn defect(words: [u64; 4]) -> Defect {
     let time = MS * (words[1] % 60) as u32;
     let small = (words[2] % 40) as u16;
@@ -499,10 +424,7 @@ fn defect(words: [u64; 4]) -> Defect {
         6 => Defect::Interrupt,
         7 => Defect::Repeat(small),
         8 => Defect::SequenceBack(small),
-        9 => Defect::Garbage(InvalidReport::Length {
-            found: usize::from(small),
-            expected: 11,
-        }),
+        9 => Defect::Garbage(InvalidReport::Value { found: small as u8 }),
         10 => Defect::Glitch(words[3] as i16),
         _ => Defect::ClockJump(time),
     }
@@ -524,51 +446,51 @@ fn a_million_cycles_with_faults_stay_within_the_limits() {
         let [when, often, ..] = generator.words([sessions, 0, 0, 1]);
         let refusals = [0, 0, 1 + (often % 20) as u32, u32::MAX][sessions as usize / 4 % 4];
         let (refuses_from, left) = (MS * (when % 3900) as u32, Cell::new(0));
-        let device = Watched(device(Mechanics::PAPER, faults.collect()), refuse(&left));
-        with_table(|table| {
-            let mut session = Session::begin(device, table, limits()).unwrap();
-            let mut last = [0i32; 2];
-            let mut played = true;
-            let mut last_written = Duration::ZERO;
-            let end = session.run(|cycle, _| {
-                if last_written < refuses_from && cycle.written >= refuses_from {
-                    left.set(refusals);
-                }
-                last_written = cycle.written;
-                cycles += 1;
-                let force = [cycle.force.lateral, cycle.force.normal].map(i32::from);
-                for axis in 0..2 {
-                    // 2 N are 4000 counts; released by 0.2 N, 400 counts, a cycle, and one for rounding.
-                    assert!(force[axis].abs() <= 4000, "{cycle:?}");
-                    assert!((force[axis] - last[axis]).abs() <= 401, "{cycle:?}");
-                    if !cycle.playing {
-                        assert!(force[axis].abs() <= last[axis].abs(), "{cycle:?}");
-                    }
-                }
-                (last, played) = (force, cycle.playing);
-                cycle.written < MS * 3900
-            });
-            if let End::Fault(fault) = end {
+        let mut session = begin(Watched(device(faults.collect()), refuse(&left)));
+        let mut last = [0i32; 2];
+        let mut played = true;
+        let mut last_written = Duration::ZERO;
+        let end = session.run(|cycle, _| {
+            if last_written < refuses_from && cycle.written >= refuses_from {
+                left.set(refusals);
+            }
+            last_written = cycle.written;
+            cycles += 1;
+            let force = [cycle.force.lateral, cycle.force.normal].map(i32::from);
+            for axis in 0..2 {
+                // 2 N are 4000 counts; released by 0.2 N, 400 counts, a cycle, and one for rounding.
+                assert!(force[axis].abs() <= 4000, "{cycle:?}");
+                assert!((force[axis] - last[axis]).abs() <= 401, "{cycle:?}");
+                assert!(
+                    cycle.playing || force[axis].abs() <= last[axis].abs(),
+                    "{cycle:?}"
+                );
+            }
+            (last, played) = (force, cycle.playing);
+            cycle.written < MS * 3900
+        });
+        assert!(!end.to_string().is_empty());
+        let kind = match end {
+            End::Asked => 0,
+            End::Fault(fault) => {
                 assert!(!played && last == [0, 0], "{fault:?}");
                 assert_ne!(fault, ServoFault::State);
+                1
             }
-            assert!(!end.to_string().is_empty());
-            ends[match end {
-                End::Asked => 0,
-                End::Fault(_) => 1,
-                End::Device(_) | End::Unstopped(..) => 2,
-            }] += 1;
-            if let End::Unstopped(..) = end {
+            End::Device(_) => 2,
+            End::Unstopped(..) => {
                 // The device's own watchdog drops the force after 15 ms, if no report comes through before.
                 for _ in 0..17 {
                     let _ = session.cycle(Request::Arm);
                 }
                 unstopped += 1;
+                2
             }
-            let device = &session.device().0;
-            let gone = device.check_plugged().is_err();
-            assert!(gone || device.motor_force() == [0.0, 0.0], "{end}");
-        });
+        };
+        ends[kind] += 1;
+        let device = &session.device().0;
+        let gone = device.check_plugged().is_err();
+        assert!(gone || device.motor_force() == [0.0, 0.0], "{kind}");
         sessions += 1;
     }
     // Each way to end is met often.

@@ -27,71 +27,74 @@ struct Waypoint {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
-    waypoints: Vec<Waypoint>,
+    /// Of one probing, which ends where it began.
+    waypoints: [Waypoint; 7],
+    once: Duration,
+    duration: Duration,
 }
 
 impl Trajectory {
     /// A probing of the gel: rest above the surface, press to `depth` (m) at −`reach` (m), sweep to
     /// +`reach` and back, leave. The deadman is held from 0.1 s on; `sweep` is the time of one sweep.
     pub fn probing(depth: f64, reach: f64, sweep: Duration) -> Trajectory {
-        let (rest, short) = (-1e-3, Duration::from_millis(100));
+        let (rest, short) = (1e-3, Duration::from_millis(100));
         let mut at = Duration::ZERO;
-        let mut go = |time: Duration, lateral, depth: f64, held| {
+        let mut go = |time, lateral, normal, held| {
             at += time;
-            let place = [lateral, -depth];
+            let place = [lateral, normal];
             Waypoint { at, place, held }
         };
-        let waypoints = vec![
-            go(Duration::ZERO, -reach, rest, false),
-            go(short, -reach, rest, true),
-            go(short * 4, -reach, depth, true),
-            go(sweep, reach, depth, true),
-            go(sweep, -reach, depth, true),
-            go(short * 4, -reach, rest, true),
-            go(short, -reach, rest, false),
-        ];
-        Trajectory { waypoints }
+        Trajectory {
+            waypoints: [
+                go(Duration::ZERO, -reach, rest, false),
+                go(short, -reach, rest, true),
+                go(short * 4, -reach, -depth, true),
+                go(sweep, reach, -depth, true),
+                go(sweep, -reach, -depth, true),
+                go(short * 4, -reach, rest, true),
+                go(short, -reach, rest, false),
+            ],
+            once: at,
+            duration: at,
+        }
     }
 
     /// This way again and again, until it lasts `duration`.
-    pub fn repeated(&self, duration: Duration) -> Trajectory {
-        let once = self.duration();
-        let mut way = self.clone();
-        while way.duration() < duration && !once.is_zero() {
-            let begun = way.duration();
-            let again = self.waypoints.iter().map(|waypoint| Waypoint {
-                at: waypoint.at + begun,
-                ..*waypoint
-            });
-            way.waypoints.extend(again);
+    pub fn repeated(mut self, duration: Duration) -> Trajectory {
+        while self.duration < duration {
+            self.duration += self.once;
         }
-        way
+        self
     }
 
     /// When it ends.
     pub fn duration(&self) -> Duration {
-        self.waypoints.last().map_or(Duration::ZERO, |last| last.at)
+        self.duration
     }
 
     /// Where it is at a time, m: lateral, and along the normal, positive out of the gel.
     pub fn at(&self, time: Duration) -> [f64; 2] {
-        let next = self.waypoints.partition_point(|point| point.at <= time);
-        let before = next.checked_sub(1).map(|before| &self.waypoints[before]);
-        match (before, self.waypoints.get(next)) {
-            (Some(from), Some(to)) => {
-                let whole = (to.at - from.at).as_secs_f64();
-                let share = smooth((time - from.at).as_secs_f64() / whole);
-                [0, 1].map(|axis| from.place[axis] + share * (to.place[axis] - from.place[axis]))
-            }
-            (Some(only), None) | (None, Some(only)) => only.place,
-            (None, None) => [0.0, 0.0],
-        }
+        let (time, [from, to]) = self.leg(time);
+        let whole = (to.at - from.at).as_secs_f64();
+        let share = smooth((time - from.at).as_secs_f64() / whole);
+        [0, 1].map(|axis| from.place[axis] + share * (to.place[axis] - from.place[axis]))
     }
 
     /// Whether the deadman is held at a time.
     pub fn held(&self, time: Duration) -> bool {
+        self.leg(time).1[0].held
+    }
+
+    /// The time in its probing, and the waypoints before and after it. The end is like the beginning.
+    fn leg(&self, time: Duration) -> (Duration, [Waypoint; 2]) {
+        let time = if time < self.duration {
+            time
+        } else {
+            Duration::ZERO
+        };
+        let time = Duration::from_nanos((time.as_nanos() % self.once.as_nanos()) as u64);
         let next = self.waypoints.partition_point(|point| point.at <= time);
-        next > 0 && self.waypoints[next - 1].held
+        (time, [self.waypoints[next - 1], self.waypoints[next]])
     }
 }
 

@@ -1,60 +1,29 @@
 //! The supervisor over devices that fail on the clock of the host.
 
 use super::*;
-use crate::hid::simulated::{Defect, SimulatedDevice};
-use crate::hid::tests::{limits, probing, with_table};
-use crate::hid::{Capabilities, Control, ForceReport, Received};
+use crate::hid::simulated::Defect;
+use crate::hid::tests::{MS, Sent, Watched, begin, probing};
 
-/// A device whose first write after `trouble`, and one every 100 ms from then on, does what it says.
-struct Troubled<F> {
-    device: SimulatedDevice,
-    trouble: Duration,
-    what: F,
-}
-
-impl<F: FnMut()> HapticDevice for Troubled<F> {
-    fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
-        self.device.capabilities()
-    }
-    fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
-        self.device.read(timeout)
-    }
-    fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
-        if self.device.now() >= self.trouble {
-            self.trouble += Duration::from_millis(100);
-            (self.what)();
-        }
-        self.device.write(report)
-    }
-    fn control(&mut self, control: Control) -> Result<(), DeviceError> {
-        self.device.control(control)
-    }
-    fn now(&self) -> Duration {
-        self.device.now()
-    }
-}
-
-/// Plays on the paper's device, with trouble after a second of its time.
+/// Plays on the paper's device, of which the first write after a second of its time, and one every 100 ms from then on, does
+/// `what` it should.
 fn played(
-    what: impl FnMut() + Send,
+    mut what: impl FnMut() + Send,
     stop: impl Fn() -> bool,
     look: impl FnMut(&Counters, Duration),
 ) -> Option<Played> {
-    let device = probing(Duration::from_secs(1), vec![]);
-    let device = Troubled {
-        device,
-        trouble: Duration::from_secs(1),
-        what,
-    };
+    let mut trouble = 1000 * MS;
+    let device = Watched(probing(1000 * MS, vec![]), move |sent, now| {
+        if matches!(sent, Sent::Force(_)) && now >= trouble {
+            trouble += 100 * MS;
+            what();
+        }
+        Ok(())
+    });
     let options = PlayOptions {
-        duration: Some(Duration::from_secs(2)),
+        duration: Some(2000 * MS),
         record: 1500,
-        budget: Duration::from_millis(1),
     };
-    with_table(0.0, |table| {
-        let session = Session::begin(device, table, limits()).unwrap();
-        play(session, &options, &Board::default(), || (), stop, look)
-    })
+    play(begin(device), &options, || (), stop, look)
 }
 
 // Verifies: HID-053.
@@ -93,24 +62,17 @@ fn the_longest_time_that_a_loop_is_held_up_is_told() {
 #[test]
 fn a_signal_that_interrupts_a_read_ends_the_session_as_asked_only_if_it_was_asked() {
     let end = |asked: bool| {
-        let at = Duration::from_millis(1);
-        let device = probing(Duration::from_secs(1), vec![(at, Defect::Interrupt)]);
+        let device = probing(1000 * MS, vec![(MS, Defect::Interrupt)]);
         let options = PlayOptions {
             duration: None,
             record: 0,
-            budget: at,
         };
         let board = Board::default();
-        if asked {
-            board.stop();
-        }
-        with_table(0.0, |table| {
-            let session = Session::begin(device, table, limits()).unwrap();
-            servo_loop(session, &options, &board).end
-        })
+        board.stop.store(asked, Ordering::Relaxed);
+        servo_loop(begin(device), &options, &board).end.to_string()
     };
-    assert_eq!(end(true), End::Asked);
-    assert_eq!(end(false), End::Device(DeviceError::Interrupted));
+    assert_eq!(end(true), "ended as asked");
+    assert_eq!(end(false), "stopped: a signal interrupted the device");
 }
 
 // Verifies: HID-054.

@@ -5,6 +5,7 @@ use std::time::Duration;
 use crate::force::Force;
 use crate::force_map::{ForceTable, Matrix};
 use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
+use crate::refusal::Refusal;
 use crate::servo::LoadedTable;
 
 /// A table on the poses of the paper's force maps, 9 depths × 41 lateral positions, with forces of
@@ -12,7 +13,7 @@ use crate::servo::LoadedTable;
 ///
 /// # Errors
 /// None, as long as a table may be as large.
-pub fn table() -> Result<LoadedTable, String> {
+pub fn table() -> Result<LoadedTable, Refusal> {
     let depths: Vec<f64> = (0..9).map(|row| f64::from(row) * 0.5e-3).collect();
     let laterals: Vec<f64> = (-20..=20)
         .map(|column| f64::from(column) * 0.5e-3)
@@ -21,9 +22,8 @@ pub fn table() -> Result<LoadedTable, String> {
     let lateral = Matrix::from_fn(9, 41, |row, column| {
         1e-3 * row as f64 * (column as f64 - 20.0)
     });
-    let forces = ForceTable::new(depths, laterals, Force::new(lateral, normal));
-    let forces = forces.map_err(|error| error.to_string())?;
-    LoadedTable::new(&forces).map_err(|error| error.to_string())
+    let forces = ForceTable::new(depths, laterals, Force::new(lateral, normal))?;
+    LoadedTable::new(&forces)
 }
 
 /// The paper's display in a hand that sweeps through the gel and back until `cycles` are over.

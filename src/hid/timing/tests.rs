@@ -1,18 +1,17 @@
 //! What a timing counts. No assertion is about the speed of this machine.
 
 use super::*;
+use crate::hid::PositionReport;
 use crate::hid::simulated::Defect;
-use crate::hid::tests::{limits, probing, with_table};
+use crate::hid::tests::{MS, limits, probing, table};
 
 fn timing(
     cycles: u64,
     budget: Duration,
     faults: Vec<(Duration, Defect)>,
 ) -> Result<Timing, Refusal> {
-    let device = probing(Duration::from_secs(10), faults);
-    with_table(0.0, |table| {
-        measure(device, table, limits(), cycles, budget, None)
-    })
+    let device = probing(10_000 * MS, faults);
+    measure(device, table(0.0), limits(), cycles, budget, None)
 }
 
 // Verifies: HID-060, HID-062.
@@ -29,33 +28,34 @@ fn a_budget_that_nothing_keeps_is_broken_and_one_that_all_keep_is_not() {
 // Verifies: HID-062.
 #[test]
 fn one_cycle_in_a_thousand_may_miss() {
-    let times = Times::new().unwrap();
-    let of = |misses| {
-        let times = Times {
-            misses,
-            ..Times::new().unwrap()
-        };
-        times
-            .timing(2000, Duration::from_millis(1), false)
-            .unwrap()
-            .passed
-    };
-    assert!(of(2) && !of(3));
-    assert_eq!(times.timing(0, Duration::ZERO, false), None);
+    let mut times = Times::new(MS).unwrap();
+    assert_eq!(times.timing(false), None);
+    for _ in 0..2000 {
+        times.record(&Cycle::default(), MS);
+    }
+    assert_eq!(times.misses, 0);
+    for (misses, passed) in [(2, true), (3, false)] {
+        times.misses = misses;
+        assert_eq!(times.timing(false).unwrap().passed, passed, "{misses}");
+    }
 }
 
 // Verifies: HID-061.
 #[test]
 fn a_paced_device_counts_how_late_it_was() {
-    let short = Duration::from_millis(1);
-    let device = probing(Duration::ZERO, vec![]);
-    let mut clock = HostClock::new(device, Some(short));
-    clock.began -= 20 * short;
-    clock.read(short).unwrap();
-    assert!(clock.late() >= 19 * short);
+    let late = Cell::default();
+    let mut clock = HostClock {
+        device: probing(Duration::ZERO, vec![]),
+        began: Instant::now() - 20 * MS,
+        period: Some(MS),
+        due: Duration::ZERO,
+        late: &late,
+    };
+    clock.read(MS).unwrap();
+    assert!(late.get() >= 19 * MS);
     // What is lost is not made up for: the next is due after this one ended.
-    let ended = short + clock.late();
-    assert!(clock.due > ended - short && clock.due <= ended, "{clock:?}");
+    let ended = MS + late.get();
+    assert!(clock.due > ended - MS && clock.due <= ended, "{ended:?}");
 }
 
 // Verifies: HID-060.
@@ -64,7 +64,7 @@ fn a_timing_that_ends_early_is_an_error() {
     let told = |timing: Result<Timing, Refusal>| timing.unwrap_err().to_string();
     let few = told(timing(999, Duration::ZERO, vec![]));
     assert_eq!(few, "999 cycles, expected at least 1000 for a p99.9");
-    let unplug = (Duration::from_millis(300), Defect::Unplug);
+    let unplug = (300 * MS, Defect::Unplug);
     let ended = told(timing(1000, Duration::ZERO, vec![unplug]));
     assert_eq!(ended, "after 299 cycles: stopped: the device is gone");
 }
@@ -72,62 +72,46 @@ fn a_timing_that_ends_early_is_an_error() {
 // Verifies: HID-063.
 #[test]
 fn the_round_trip_ends_with_the_report_that_says_played() {
-    let report = |force_sequence| crate::hid::PositionReport {
-        lateral: 0,
-        normal: 0,
-        buttons: 0,
-        status: 0,
-        sequence: 0,
-        force_sequence,
-    };
-    let cycle = |at: u64, sequence, played| {
-        let time = |more| Duration::from_micros(at + more);
-        Cycle {
-            position: Some(report(played)),
+    let budget = Duration::from_micros(9);
+    let mut times = Times::new(budget).unwrap();
+    let mut record = |at: u64, sequence, force_sequence, late| {
+        let [woke, received, computed, written] =
+            [0, 3, 4, 9].map(|more| Duration::from_micros(at + more));
+        let cycle = Cycle {
+            position: Some(PositionReport {
+                force_sequence,
+                ..PositionReport::default()
+            }),
             force: ForceReport {
-                lateral: 0,
-                normal: 0,
                 sequence,
-                flags: 1,
+                ..ForceReport::default()
             },
             playing: true,
-            woke: time(0),
-            received: time(3),
-            computed: time(4),
-            written: time(9),
-        }
+            woke,
+            received,
+            computed,
+            written,
+        };
+        times.record(&cycle, Duration::from_micros(late));
+        times.timing(true).unwrap()
     };
-    let mut times = Times::new().unwrap();
     // Reports 1 and 2 are answered after 991 and 1991 µs, 2 is said twice, and 200 and 67 were never sent: 67 has the
     // place of 3, which is not answered yet.
-    for (at, sequence, played) in [
-        (0, 1, 200),
-        (1000, 2, 1),
-        (3000, 3, 2),
-        (4000, 4, 2),
-        (5000, 5, 67),
-    ] {
-        times.record(
-            &cycle(at, sequence, played),
-            Duration::ZERO,
-            Duration::from_micros(9),
-        );
-    }
-    let timing = times.timing(5, Duration::from_micros(9), true).unwrap();
-    assert_eq!((timing.misses, times.round_trip.len()), (0, 2));
+    record(0, 1, 200, 0);
+    record(1000, 2, 1, 0);
+    record(3000, 3, 2, 0);
+    record(4000, 4, 2, 0);
+    let timing = record(5000, 5, 67, 0);
     // Histograms keep three digits.
     let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-3;
     let round_trip = timing.round_trip_us.unwrap();
-    assert!(
-        near(round_trip.p50, 991.0) && near(round_trip.max, 1991.0),
-        "{round_trip:?}"
-    );
+    let (first, last) = (round_trip.p50, round_trip.max);
+    assert!(near(first, 991.0) && near(last, 1991.0), "{round_trip:?}");
     assert!(near(timing.write_us.max, 5.0) && near(timing.compute_us.max, 1.0));
     assert!(near(timing.response_us.p99, 9.0));
     // The wait for the next cycle that ended late is a part of the response.
-    let budget = Duration::from_micros(9);
-    times.record(&cycle(6000, 6, 200), Duration::from_micros(1), budget);
-    let timing = times.timing(6, budget, true).unwrap();
-    assert_eq!(timing.misses, 1);
-    assert!(near(timing.response_us.max, 10.0));
+    let late = record(6000, 6, 200, 1);
+    assert_eq!((timing.misses, late.misses), (0, 1));
+    assert!(near(late.response_us.max, 10.0));
+    assert_eq!(times.histograms[3].len(), 2);
 }

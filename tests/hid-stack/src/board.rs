@@ -2,7 +2,7 @@
 //! sent (the system checks none), and has a watchdog of its own.
 
 use std::io;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -37,34 +37,36 @@ pub enum Act {
     Refuse,
 }
 
-/// How the board answers the question for its capabilities.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Answers {
-    /// As the profile says.
-    Good,
-    /// With a report that is cut off.
-    Short,
-    /// With an error.
-    Error,
-    /// Not.
-    None,
-}
-
 /// Which board.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Make {
     /// Its cable.
     pub kind: Kind,
     /// What it does.
     pub script: Script,
-    /// What it says of itself.
-    pub answers: Answers,
+    /// The answer to the question for its capabilities.
+    pub answer: Answer,
     /// When a force report is taken.
     pub takes: Completion,
 }
 
-/// What happens, tick by tick since the board was first enabled; until then it reports.
-pub type Script = fn(tick: u32) -> Act;
+impl Make {
+    /// A good board.
+    pub fn new(kind: Kind, script: Script) -> Make {
+        Make {
+            kind,
+            script,
+            answer: Answer::Report(CAPABILITIES.encode().to_vec()),
+            takes: Completion::Now,
+        }
+    }
+}
+
+/// What happens from which tick on, counted since the board was first enabled; before that it reports.
+pub type Script = &'static [(u32, Act)];
+
+/// Nothing but reports.
+pub const REPORTS: Script = &[];
 
 /// What the board saw and did.
 #[derive(Debug, Clone, Default)]
@@ -118,122 +120,100 @@ struct State {
     sequence: u16,
 }
 
-/// What the system talks to.
-struct Shared(Mutex<State>);
-
 /// A board that is plugged in.
 ///
 /// Implements: HID-089.
 pub struct Board {
     link: Arc<dyn Link>,
-    shared: Arc<Shared>,
-    clock: Option<JoinHandle<io::Result<()>>>,
-    server: Option<JoinHandle<io::Result<()>>>,
+    shared: Arc<Mutex<State>>,
+    threads: [JoinHandle<()>; 2],
 }
 
 impl Board {
+    /// Plugs a good board in.
+    pub fn good(kind: Kind, serial: &str, script: Script) -> Board {
+        Board::plug(serial, Make::new(kind, script))
+    }
+
     /// Plugs a board in.
-    pub fn plug(serial: &str, make: Make) -> io::Result<Board> {
-        let link = link::plug(make.kind, serial)?;
-        let shared = Arc::new(Shared(Mutex::new(State::new(make))));
+    pub fn plug(serial: &str, make: Make) -> Board {
+        let link = link::plug(make.kind, serial).expect("a cable");
+        let shared = Arc::new(Mutex::new(State::new(make)));
         let (cable, board) = (link.clone(), shared.clone());
         let server = thread::spawn(move || {
-            schedule::fifo(Fifo::Board)?;
-            cable.serve(&*board)
+            schedule::fifo(Fifo::Board);
+            cable.serve(&*board).expect("the board answers");
         });
         let (cable, board) = (link.clone(), shared.clone());
-        let clock = thread::spawn(move || tick(&*cable, &board));
-        Ok(Board {
+        let clock = thread::spawn(move || tick(&*cable, &board).expect("the board reports"));
+        Board {
             link,
             shared,
-            clock: Some(clock),
-            server: Some(server),
-        })
+            threads: [server, clock],
+        }
     }
 
     /// What it saw so far.
     pub fn record(&self) -> Record {
-        self.shared.lock().record.clone()
+        self.shared.lock().unwrap().record.clone()
+    }
+
+    /// Waits until the board made a force for 100 ticks.
+    pub fn wait_for_force(&self) {
+        while self.record().ticks_with_force < 100 {
+            thread::sleep(PERIOD);
+            assert!(self.record().ticks < 10_000, "no force for 10 s");
+        }
     }
 
     /// Pulls the cable, if the script has not done so, and returns what the board saw.
-    pub fn unplug(mut self) -> io::Result<Record> {
-        self.shared.pull(&*self.link)?;
-        for thread in [self.clock.take(), self.server.take()] {
-            let ended = thread.map_or(Ok(Ok(())), JoinHandle::join);
-            ended.map_err(|_| io::Error::other("a thread of the board panicked"))??;
+    pub fn unplug(self) -> Record {
+        pull(&self.shared, &*self.link).expect("the cable is pulled");
+        for thread in self.threads {
+            thread.join().expect("a thread of the board");
         }
-        Ok(self.record())
+        self.shared.lock().unwrap().record.clone()
     }
 }
 
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+/// Pulls the cable, once.
+fn pull(shared: &Mutex<State>, link: &dyn Link) -> io::Result<()> {
+    let mut state = shared.lock().unwrap();
+    if state.record.unplugged.is_some() {
+        return Ok(());
     }
-
-    /// Pulls the cable, once.
-    fn pull(&self, link: &dyn Link) -> io::Result<()> {
-        let before = {
-            let unplugged = &mut self.lock().record.unplugged;
-            let before = *unplugged;
-            *unplugged = before.or(Some(Instant::now()));
-            before
-        };
-        before.map_or_else(|| link.unplug(), |_| Ok(()))
-    }
+    state.record.unplugged = Some(Instant::now());
+    drop(state);
+    link.unplug()
 }
 
 /// The board's clock: a frame of the bus and a report each period, until it is unplugged.
-fn tick(link: &dyn Link, shared: &Shared) -> io::Result<()> {
-    schedule::fifo(Fifo::BoardClock)?;
+fn tick(link: &dyn Link, shared: &Mutex<State>) -> io::Result<()> {
+    schedule::fifo(Fifo::BoardClock);
     let began = Instant::now();
     for tick in 0.. {
         thread::sleep((PERIOD * tick).saturating_sub(began.elapsed()));
-        let mut state = shared.lock();
+        let mut state = shared.lock().unwrap();
         if state.record.unplugged.is_some() {
             break;
         }
-        let act = state.tick.map_or(Act::Report, state.make.script);
+        let begun = |(from, _): &&(u32, Act)| state.tick.is_some_and(|tick| tick >= *from);
+        let act = state.make.script.iter().rfind(begun);
+        let act = act.map_or(Act::Report, |&(_, act)| act);
         let report = state.advance(act);
         drop(state);
         if let Act::Unplug = act {
-            return shared.pull(link);
+            return pull(shared, link);
         }
         let sent = link
             .frame()
             .and_then(|()| report.map_or(Ok(()), |report| link.input(&report)));
         // The cable may have been pulled in between.
-        if sent.is_err() && shared.lock().record.unplugged.is_none() {
+        if sent.is_err() && shared.lock().unwrap().record.unplugged.is_none() {
             return sent;
         }
     }
     Ok(())
-}
-
-impl link::Board for Shared {
-    fn output(&self, report: &[u8]) -> Completion {
-        self.lock().output(report)
-    }
-
-    fn get(&self, number: u8) -> Answer {
-        let mut state = self.lock();
-        if number != Capabilities::NUMBER {
-            return Answer::Error;
-        }
-        state.record.questions += 1;
-        let report = CAPABILITIES.encode();
-        match state.make.answers {
-            Answers::Good => Answer::Report(report.to_vec()),
-            Answers::Short => Answer::Report(report[..9].to_vec()),
-            Answers::Error => Answer::Error,
-            Answers::None => Answer::Nothing,
-        }
-    }
-
-    fn set(&self, report: &[u8]) -> bool {
-        self.lock().control(report)
-    }
 }
 
 impl State {
@@ -263,8 +243,7 @@ impl State {
         self.tick = self.tick.map(|tick| tick + 1);
         self.record.unanswered += u32::from(self.enabled && !self.answered);
         let silent = self.written.elapsed();
-        let watchdog = Duration::from_millis(u64::from(CAPABILITIES.watchdog_ms));
-        if self.enabled && !self.dropped && silent > watchdog {
+        if self.enabled && !self.dropped && silent > CAPABILITIES.watchdog() {
             self.dropped = true;
             self.record.dropped_after = Some(silent);
         }
@@ -314,59 +293,69 @@ impl State {
             self.record.largest_force = self.record.largest_force.max(force);
         }
     }
+}
 
-    fn output(&mut self, bytes: &[u8]) -> Completion {
-        if self.refuses {
+impl link::Board for Mutex<State> {
+    fn get(&self, number: u8) -> Answer {
+        let mut state = self.lock().unwrap();
+        if number != Capabilities::NUMBER {
+            return Answer::Error;
+        }
+        state.record.questions += 1;
+        state.make.answer.clone()
+    }
+
+    fn output(&self, bytes: &[u8]) -> Completion {
+        let mut state = self.lock().unwrap();
+        if state.refuses {
             return Completion::Never;
         }
         let Ok(report) = ForceReport::decode(bytes) else {
-            self.record.invalid += 1;
+            state.record.invalid += 1;
             return Completion::Now;
         };
-        if !self.answered {
-            self.record.round_trips.push(self.sent.elapsed());
+        let round_trip = state.sent.elapsed();
+        if !state.answered {
+            state.record.round_trips.push(round_trip);
         }
-        self.answered = true;
-        self.written = Instant::now();
-        self.record.forces += 1;
-        let last = self.record.last.replace(report);
+        state.answered = true;
+        state.written = Instant::now();
+        state.record.forces += 1;
+        let last = state.record.last.replace(report);
         let next = last.map(|last| last.sequence.wrapping_add(1));
-        self.record.out_of_order += u32::from(next.is_some_and(|next| next != report.sequence));
-        let play = report.flags & ForceReport::PLAY != 0;
-        self.force = if play {
-            [report.lateral, report.normal]
-        } else {
-            [0, 0]
-        };
-        let early = !self.held() && self.force != [0, 0];
-        self.record.too_early += u32::from(early);
-        self.move_motors();
-        self.make.takes
+        state.record.out_of_order += u32::from(next.is_some_and(|next| next != report.sequence));
+        let play = i16::from(report.flags & ForceReport::PLAY != 0);
+        state.force = [report.lateral, report.normal].map(|force| force * play);
+        let early = !state.held() && state.force != [0, 0];
+        state.record.too_early += u32::from(early);
+        state.move_motors();
+        state.make.takes
     }
 
-    fn control(&mut self, bytes: &[u8]) -> bool {
+    fn set(&self, bytes: &[u8]) -> bool {
+        let mut state = self.lock().unwrap();
         let Ok(control) = Control::decode(bytes) else {
-            self.record.invalid += 1;
+            state.record.invalid += 1;
             return false;
         };
         match control {
             Control::Stop => {
-                self.enabled = false;
-                self.record.stopped_after = Some(self.written.elapsed());
+                state.enabled = false;
+                state.record.stopped_after = Some(state.written.elapsed());
             }
             Control::Enable => {
-                self.enabled = true;
-                self.tick = self.tick.or(Some(0));
+                state.enabled = true;
+                state.tick = state.tick.or(Some(0));
             }
             Control::ClearFault => {
                 // The hand lets go.
-                self.tick = self.tick.filter(|_| !self.dropped);
-                self.dropped = false;
+                state.tick = state.tick.filter(|_| !state.dropped);
+                state.dropped = false;
             }
         }
-        self.written = Instant::now();
-        self.record.controls.push(control);
-        self.move_motors();
+        state.written = Instant::now();
+        state.record.controls.push(control);
+        state.move_motors();
         true
     }
 }

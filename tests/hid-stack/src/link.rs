@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use palpate::hid::DESCRIPTOR;
 
-use crate::uhid::{Event, Uhid};
+use crate::uhid::Uhid;
 use crate::usb::Usb;
 
 /// Vendor and product, of the numbers that pid.codes keeps for tests.
@@ -73,36 +73,4 @@ pub fn plug(kind: Kind, serial: &str) -> io::Result<Arc<dyn Link>> {
         Kind::Uhid => Arc::new(Uhid::create(NAME, serial, NUMBERS, &DESCRIPTOR)?),
         Kind::Usb => Arc::new(Usb::attach(NAME, serial, NUMBERS, &DESCRIPTOR)?),
     })
-}
-
-impl Link for Uhid {
-    fn input(&self, report: &[u8]) -> io::Result<()> {
-        self.send_input(report)
-    }
-
-    fn frame(&self) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn unplug(&self) -> io::Result<()> {
-        self.destroy()
-    }
-
-    fn serve(&self, board: &dyn Board) -> io::Result<()> {
-        loop {
-            match self.event()? {
-                Event::Stop => return Ok(()),
-                Event::Start | Event::Open | Event::Close => {}
-                Event::Output(report) => {
-                    board.output(&report);
-                }
-                Event::GetReport { id, number } => match board.get(number) {
-                    Answer::Report(report) => self.answer_get(id, Some(&report))?,
-                    Answer::Error => self.answer_get(id, None)?,
-                    Answer::Nothing => {}
-                },
-                Event::SetReport { id, report } => self.answer_set(id, board.set(&report))?,
-            }
-        }
-    }
 }

@@ -13,10 +13,14 @@ mod uhid;
 mod usb;
 mod usb_scenarios;
 
+use std::panic::catch_unwind;
 use std::process::ExitCode;
 
 #[global_allocator]
 static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;
+
+/// Panics if something is wrong, and says what was measured.
+type Scenario = (&'static str, fn() -> String);
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -31,12 +35,15 @@ fn main() -> ExitCode {
     };
     let mut passed = 0;
     for &(name, scenario) in &scenarios {
-        match scenario() {
+        match catch_unwind(scenario) {
             Ok(measured) => {
                 passed += 1;
                 println!("hid-stack: ok      {name}: {measured}");
             }
-            Err(problem) => println!("hid-stack: FAILED  {name}: {problem}"),
+            Err(panic) => {
+                let problem = panic.downcast::<String>().unwrap_or_default();
+                println!("hid-stack: FAILED  {name}: {}", problem.replace('\n', ";"));
+            }
         }
     }
     let all = scenarios.len();

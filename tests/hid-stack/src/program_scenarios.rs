@@ -2,17 +2,16 @@
 //! signals do to it.
 
 use std::fs;
-use std::process::{Child, Command, Output, Stdio};
-use std::thread;
+use std::process::{Child, Command, Stdio};
 
-use palpate::hid::Control;
-
-use crate::board::{Act, Board, PERIOD};
-use crate::checks::{Scenario, WATCHDOG, ensure, plug, reports, stopped, text};
+use crate::Scenario;
+use crate::board::{Act, Board, REPORTS};
+use crate::checks::{WATCHDOG, stopped};
 use crate::link::{Kind, NAME};
+use crate::servo::open;
 
 /// Those without a bus.
-pub const ALL: &[(&str, Scenario)] = &[
+pub const ALL: &[Scenario] = &[
     ("palpate devices", devices),
     ("palpate play, unplugged", unplugged),
     ("palpate play, SIGINT", || signalled("INT")),
@@ -22,63 +21,50 @@ pub const ALL: &[(&str, Scenario)] = &[
 
 const PROGRAM: &str = "/palpate";
 
-fn play(serial: &str) -> Result<Child, String> {
-    let arguments = [
-        "play", "--map", "/map.csv", "--scale", "--device", "hid", "--vid", "1209", "--pid", "0001",
-    ];
+fn play(serial: &str) -> Child {
+    let arguments =
+        "play --map /map.csv --scale --device hid --vid 1209 --pid 0001 --seconds 60 --serial";
     Command::new(PROGRAM)
-        .args(arguments)
-        .args(["--serial", serial, "--seconds", "60"])
+        .args(arguments.split(' '))
+        .arg(serial)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
-        .map_err(text)
+        .expect("the program starts")
 }
 
-/// Waits until the board makes a force.
-fn wait_for_force(board: &Board) -> Result<(), String> {
-    while board.record().ticks_with_force < 100 {
-        thread::sleep(PERIOD);
-        ensure!(board.record().ticks < 10_000, "no force for 10 s");
-    }
-    Ok(())
+/// The exit code of the program, and what it said on standard error, of which the last line counts.
+fn end(player: Child) -> (Option<i32>, String) {
+    let output = player.wait_with_output().expect("the program ends");
+    (output.status.code(), text(&output.stderr))
 }
 
-/// What the program said on standard error, of which the last line counts.
-fn message(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).trim().to_owned()
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).trim().to_owned()
 }
 
 /// Whether a thread of process `id` runs by SCHED_FIFO, as the system says.
-fn has_fifo_thread(id: u32) -> Result<bool, String> {
+fn has_fifo_thread(id: u32) -> bool {
     const FIFO: &str = "1";
-    let threads = fs::read_dir(format!("/proc/{id}/task")).map_err(text)?;
-    let mut found = false;
-    for thread in threads {
-        let stat = fs::read_to_string(thread.map_err(text)?.path().join("stat")).map_err(text)?;
+    let threads = fs::read_dir(format!("/proc/{id}/task")).expect("threads");
+    let is_fifo = |thread: fs::DirEntry| {
+        let stat = fs::read_to_string(thread.path().join("stat")).expect("a thread");
         // After the name in brackets, which may hold anything, the policy is the 39th field.
         let fields = stat.rsplit(')').next().unwrap_or_default();
-        found |= fields.split_whitespace().nth(38) == Some(FIFO);
-    }
-    Ok(found)
+        fields.split_whitespace().nth(38) == Some(FIFO)
+    };
+    threads.map(|thread| thread.expect("a thread")).any(is_fifo)
 }
 
 /// Verifies: HID-093, HID-032.
-fn devices() -> Result<String, String> {
-    let board = plug(Kind::Uhid, "devices", reports)?;
-    crate::servo::open("devices").map_err(text)?;
-    let output = Command::new(PROGRAM)
-        .arg("devices")
-        .output()
-        .map_err(text)?;
-    let record = board.unplug().map_err(text)?;
-    let said = String::from_utf8_lossy(&output.stdout).trim().to_owned();
-    ensure!(
-        output.status.success(),
-        "{}: {}",
-        output.status,
-        message(&output)
-    );
+fn devices() -> String {
+    let board = Board::good(Kind::Uhid, "devices", REPORTS);
+    open("devices");
+    let output = Command::new(PROGRAM).arg("devices").output();
+    let output = output.expect("the program starts");
+    let record = board.unplug();
+    assert!(output.status.success(), "{output:?}");
+    let said = text(&output.stdout);
     for part in [
         NAME,
         "1209:0001",
@@ -86,98 +72,64 @@ fn devices() -> Result<String, String> {
         "/dev/hidraw",
         "vendor profile",
     ] {
-        ensure!(said.contains(part), "{part} not in {said}");
+        assert!(said.contains(part), "{part} not in {said}");
     }
-    ensure!(
-        record.forces == 0 && record.controls.is_empty(),
-        "{:?}",
-        record.controls
-    );
-    Ok(said.replace('\n', "; "))
+    assert_eq!((record.forces, record.controls), (0, vec![]));
+    said.replace('\n', "; ")
 }
 
 /// Verifies: HID-094, HID-085.
-fn unplugged() -> Result<String, String> {
-    let board = plug(Kind::Uhid, "unplugged", |tick| match tick {
-        500 => Act::Unplug,
-        _ => Act::Report,
-    })?;
-    let player = play("unplugged")?;
-    let output = player.wait_with_output().map_err(text)?;
-    let record = board.unplug().map_err(text)?;
-    let said = message(&output);
-    ensure!(output.status.code() == Some(1), "{}: {said}", output.status);
-    ensure!(
-        record.ticks_with_force > 100,
-        "{}: {said}",
-        record.ticks_with_force
-    );
-    ensure!(said.contains("serial unplugged"), "{said}");
-    Ok(format!("exit code 1, \"{said}\""))
+fn unplugged() -> String {
+    let board = Board::good(Kind::Uhid, "unplugged", &[(500, Act::Unplug)]);
+    let (code, said) = end(play("unplugged"));
+    let record = board.unplug();
+    assert_eq!(code, Some(1), "{said}");
+    let ticks = record.ticks_with_force;
+    assert!(ticks > 100, "{ticks}: {said}");
+    assert!(said.contains("serial unplugged"), "{said}");
+    format!("exit code 1, \"{said}\"")
 }
 
 /// Verifies: HID-094, HID-055.
-fn signalled(signal: &str) -> Result<String, String> {
-    let board = plug(Kind::Uhid, "signalled", reports)?;
-    let player = play("signalled")?;
-    wait_for_force(&board)?;
-    let real_time = has_fifo_thread(player.id())?;
+fn signalled(signal: &str) -> String {
+    let board = Board::good(Kind::Uhid, "signalled", REPORTS);
+    let player = play("signalled");
+    board.wait_for_force();
+    let real_time = has_fifo_thread(player.id());
     let id = player.id().to_string();
     let kill = Command::new("/bin/busybox")
         .args(["kill", "-s", signal, &id])
         .status();
-    ensure!(kill.map_err(text)?.success(), "kill");
-    let output = player.wait_with_output().map_err(text)?;
-    let record = board.unplug().map_err(text)?;
-    let said = message(&output);
-    ensure!(output.status.code() == Some(0), "{}: {said}", output.status);
-    ensure!(real_time, "no thread by SCHED_FIFO: {said}");
-    ensure!(
-        record.dropped_after.is_none_or(|after| after > WATCHDOG),
-        "{:?}",
-        record.dropped_after
-    );
-    ensure!(
-        record.controls.last() == Some(&Control::Stop),
-        "{:?}",
-        record.controls
-    );
-    stopped(&record)?;
-    Ok(format!(
-        "exit code 0, a thread by SCHED_FIFO, {} force reports, stopped",
-        record.forces
-    ))
+    assert!(kill.expect("busybox starts").success());
+    let (code, said) = end(player);
+    let record = board.unplug();
+    assert_eq!(code, Some(0), "{said}");
+    assert!(real_time, "no thread by SCHED_FIFO: {said}");
+    let dropped = record.dropped_after;
+    assert!(dropped.is_none_or(|after| after > WATCHDOG), "{dropped:?}");
+    stopped(&record);
+    let forces = record.forces;
+    format!("exit code 0, a thread by SCHED_FIFO, {forces} force reports, stopped")
 }
 
 /// Verifies: HID-095, HID-054.
-pub fn held_up() -> Result<String, String> {
-    let board = plug(Kind::Usb, "heldup", |tick| match tick {
-        300 => Act::Refuse,
-        _ => Act::Report,
-    })?;
+pub fn held_up() -> String {
+    let board = Board::good(Kind::Usb, "heldup", &[(300, Act::Refuse)]);
     // A USB device is there only a while after it was plugged in.
-    crate::servo::open("heldup").map_err(text)?;
-    let output = play("heldup")?.wait_with_output().map_err(text)?;
-    let record = board.unplug().map_err(text)?;
-    let said = message(&output);
-    ensure!(output.status.code() == Some(1), "{}: {said}", output.status);
-    ensure!(record.motors == [0, 0], "{:?}", record.motors);
-    let told = said
-        .split("held up for ")
-        .nth(1)
-        .and_then(|rest| rest.split(' ').next());
-    let told: u32 = told
-        .and_then(|told| told.parse().ok())
-        .ok_or(said.clone())?;
-    ensure!(told <= 130, "{said}");
-    Ok(said.replace('\n', "; "))
+    open("heldup");
+    let (code, said) = end(play("heldup"));
+    let record = board.unplug();
+    assert_eq!((code, record.motors), (Some(1), [0, 0]), "{said}");
+    let (_, told) = said.split_once("held up for ").expect(&said);
+    let told = told.split(' ').next().and_then(|told| told.parse().ok());
+    assert!(told.is_some_and(|told: u32| told <= 130), "{said}");
+    said.replace('\n', "; ")
 }
 
 /// Verifies: HID-094, HID-030.
-fn no_device() -> Result<String, String> {
-    let output = play("nobody")?.wait_with_output().map_err(text)?;
-    let said = message(&output);
-    ensure!(output.status.code() != Some(0), "{}: {said}", output.status);
-    ensure!(said.contains("serial nobody"), "{said}");
-    Ok(format!("{}, \"{said}\"", output.status))
+fn no_device() -> String {
+    let (code, said) = end(play("nobody"));
+    assert_ne!(code, Some(0), "{said}");
+    assert!(said.contains("serial nobody"), "{said}");
+    format!("{code:?}, \"{said}\"")
 }

@@ -1,4 +1,4 @@
-//! The host's part: the loop that is shipped, and devices that wrap the real one to watch or to disturb it.
+//! The host's part: the loop that is shipped, and a device that wraps the real one to watch or to disturb it.
 
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -9,7 +9,6 @@ use palpate::hid::real::{RealDevice, Wanted};
 use palpate::hid::{
     Capabilities, Control, DeviceError, ForceReport, HapticDevice, Received, Session,
 };
-use palpate::refusal::Refusal;
 use palpate::servo::{Axis, Limits, Table};
 
 use crate::link::NUMBERS;
@@ -35,37 +34,33 @@ pub fn wanted(serial: &str) -> Wanted {
 }
 
 /// Opens the board with this serial number.
-pub fn open(serial: &str) -> Result<RealDevice, Refusal> {
-    RealDevice::open_within(&wanted(serial), PATIENCE)
+pub fn open(serial: &str) -> RealDevice {
+    RealDevice::open_within(&wanted(serial), PATIENCE).expect("the board can be opened")
 }
 
-/// Hands the table and the limits of this test to `then`.
-pub fn with_table<T>(then: impl FnOnce(Table, Limits) -> T) -> Result<T, String> {
-    let depths = [0.0, 0.002, 0.004];
-    let laterals = [-0.005, 0.0, 0.005];
-    let reciprocals =
-        |knots: [f32; 3]| [0, 1].map(|cell| Axis::reciprocal_width(knots[cell], knots[cell + 1]));
-    let mut forces = [Force::ZERO; 9];
-    for (index, force) in forces.iter_mut().enumerate() {
-        force.normal = FORCE_AT_2_MM * [0.0, 1.0, 2.0][index / 3];
-        force.lateral = 0.1 * force.normal * [-1.0, 0.0, 1.0][index % 3];
-    }
-    let widths = [reciprocals(depths), reciprocals(laterals)];
-    let failed = |problem: &dyn std::fmt::Debug| format!("the test's own table: {problem:?}");
-    let depths = Axis::new(&depths, &widths[0]).map_err(|e| failed(&e))?;
-    let laterals = Axis::new(&laterals, &widths[1]).map_err(|e| failed(&e))?;
-    let table = Table::new(depths, laterals, &forces).map_err(|e| failed(&e))?;
-    let limits = Limits::new(FORCE_LIMIT, 0.05, 0.5, 10).map_err(|e| failed(&e))?;
-    Ok(then(table, limits))
+/// The table and the limits of this test.
+pub fn played() -> (Table<'static>, Limits) {
+    let axis = |knots: [f32; 3]| {
+        let width = |cell| Axis::reciprocal_width(knots[cell], knots[cell + 1]);
+        let widths = vec![width(0), width(1)];
+        Axis::new(knots.to_vec().leak(), widths.leak()).expect("an axis")
+    };
+    let force = |index: usize| {
+        let normal = FORCE_AT_2_MM * [0.0, 1.0, 2.0][index / 3];
+        let lateral = 0.1 * normal * [-1.0, 0.0, 1.0][index % 3];
+        Force { lateral, normal }
+    };
+    let forces: Vec<Force<f32>> = (0..9).map(force).collect();
+    let (depths, laterals) = (axis([0.0, 0.002, 0.004]), axis([-0.005, 0.0, 0.005]));
+    let table = Table::new(depths, laterals, forces.leak()).expect("a table");
+    let limits = Limits::new(FORCE_LIMIT, 0.05, 0.5, 10).expect("limits");
+    (table, limits)
 }
 
-/// Begins a session with `device` and hands it to `then`.
-pub fn with_session<D: HapticDevice, T>(
-    device: D,
-    then: impl FnOnce(Session<D>) -> T,
-) -> Result<T, String> {
-    let begun = with_table(|table, limits| Session::begin(device, table, limits).map(then))?;
-    begun.map_err(|error: Refusal| error.to_string())
+/// Begins a session with `device`.
+pub fn begin<D: HapticDevice>(device: D) -> Session<'static, D> {
+    let (table, limits) = played();
+    Session::begin(device, table, limits).expect("the board can be trusted")
 }
 
 /// A device whose reads and writes must not allocate, and which burns time before each write.
@@ -104,10 +99,8 @@ impl<D: HapticDevice> HapticDevice for Watched<D> {
 
 /// A process of its own that plays on the board `serial`, until it is killed.
 pub fn play_until_killed(serial: &str) -> ExitCode {
-    let played = schedule::fifo(Fifo::Loop)
-        .map_err(|error| error.to_string())
-        .and_then(|()| open(serial).map_err(|error| error.to_string()))
-        .and_then(|device| with_session(device, |mut session| session.run(|_, _| true)));
-    println!("the process that was to be killed ended: {played:?}");
+    schedule::fifo(Fifo::Loop);
+    let end = begin(open(serial)).run(|_, _| true);
+    println!("the process that was to be killed ended: {end}");
     ExitCode::FAILURE
 }

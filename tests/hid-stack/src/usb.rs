@@ -8,7 +8,7 @@ use std::net::Shutdown;
 use std::os::fd::AsRawFd;
 use std::os::unix::net::UnixStream;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
 
 use crate::link::{Answer, Board, Completion, Link};
 
@@ -37,30 +37,20 @@ static NEXT_PORT: AtomicU32 = AtomicU32::new(0);
 /// A device in a port.
 pub struct Usb {
     socket: UnixStream,
-    pending: Mutex<Pending>,
+    /// Transfers that are not complete, by number, in the order in which they came.
+    pending: Mutex<Vec<(u32, Waits)>>,
     descriptors: Descriptors,
 }
 
-/// Transfers that are not complete.
-#[derive(Default)]
-struct Pending {
-    /// Wait for an input report.
-    input: Vec<u32>,
-    /// Wait for the next frame, with the number of bytes taken.
-    frame: Vec<(u32, usize)>,
-    /// Complete never.
-    never: Vec<u32>,
-}
-
-impl Pending {
-    /// Takes back a transfer; whether there was one.
-    fn withdraw(&mut self, number: u32) -> bool {
-        let before = self.input.len() + self.frame.len() + self.never.len();
-        self.input.retain(|&one| one != number);
-        self.frame.retain(|&(one, _)| one != number);
-        self.never.retain(|&one| one != number);
-        before > self.input.len() + self.frame.len() + self.never.len()
-    }
+/// What completes a transfer.
+#[derive(PartialEq)]
+enum Waits {
+    /// An input report.
+    Input,
+    /// The next frame, which takes so many bytes.
+    Frame(usize),
+    /// Nothing.
+    Never,
 }
 
 struct Descriptors {
@@ -104,10 +94,7 @@ impl Descriptors {
         match kind {
             1 => Some(&self.device),
             2 => Some(&self.configuration),
-            3 => self
-                .strings
-                .get(usize::from(index))
-                .map(|string| &string[..]),
+            3 => self.strings.get(usize::from(index)).map(Vec::as_slice),
             0x22 => Some(&self.report),
             _ => None,
         }
@@ -141,8 +128,15 @@ impl Usb {
         })
     }
 
-    fn pending(&self) -> MutexGuard<'_, Pending> {
-        self.pending.lock().unwrap_or_else(PoisonError::into_inner)
+    fn pending(&self) -> MutexGuard<'_, Vec<(u32, Waits)>> {
+        self.pending.lock().expect("the transfers")
+    }
+
+    /// Takes back the first pending transfer that fits.
+    fn withdraw(&self, fits: impl Fn(&(u32, Waits)) -> bool) -> Option<u32> {
+        let mut pending = self.pending();
+        let at = pending.iter().position(fits)?;
+        Some(pending.remove(at).0)
     }
 
     /// The next message; `None` once the cable is pulled.
@@ -175,24 +169,22 @@ impl Usb {
 
     /// Says how transfer `number` ended: with so many bytes, of which `data` go into the host.
     fn complete(&self, number: u32, status: i32, length: usize, data: &[u8]) -> io::Result<()> {
-        let mut message = Vec::with_capacity(HEADER + data.len());
-        for word in [SUBMITTED, number, 0, 0, 0, -status as u32, length as u32] {
-            message.extend(word.to_be_bytes());
-        }
-        message.resize(HEADER, 0);
-        message.extend(data);
-        (&self.socket).write_all(&message)
+        let header = [SUBMITTED, number, 0, 0, 0, -status as u32, length as u32];
+        self.send(&header, data)
     }
 
     /// Takes transfer `transfer.unlinks` back, if it is not complete.
     fn unlink(&self, transfer: &Transfer) -> io::Result<()> {
-        let withdrawn = self.pending().withdraw(transfer.unlinks);
-        let status = if withdrawn { -ECONNRESET } else { 0 };
-        let mut message = Vec::with_capacity(HEADER);
-        for word in [UNLINKED, transfer.number, 0, 0, 0, status as u32] {
-            message.extend(word.to_be_bytes());
-        }
+        let withdrawn = self.withdraw(|&(number, _)| number == transfer.unlinks);
+        let status = withdrawn.map_or(0, |_| -ECONNRESET);
+        let header = [UNLINKED, transfer.number, 0, 0, 0, status as u32];
+        self.send(&header, &[])
+    }
+
+    fn send(&self, header: &[u32], data: &[u8]) -> io::Result<()> {
+        let mut message: Vec<u8> = header.iter().flat_map(|word| word.to_be_bytes()).collect();
         message.resize(HEADER, 0);
+        message.extend(data);
         (&self.socket).write_all(&message)
     }
 
@@ -215,10 +207,7 @@ impl Usb {
             (0xA1, 1) => match board.get(low) {
                 Answer::Report(report) => done(&report),
                 Answer::Error => stall(),
-                Answer::Nothing => {
-                    self.pending().never.push(transfer.number);
-                    Ok(())
-                }
+                Answer::Nothing => self.wait(transfer.number, Waits::Never),
             },
             // Set report.
             (0x21, 9) if board.set(&transfer.data) => {
@@ -228,38 +217,42 @@ impl Usb {
         }
     }
 
-    fn submit(&self, transfer: &Transfer, board: &dyn Board) -> io::Result<()> {
-        let number = transfer.number;
-        match (transfer.endpoint, transfer.into_host) {
-            (0, _) => return self.control(transfer, board),
-            (1, true) => self.pending().input.push(number),
-            (2, false) => match board.output(&transfer.data) {
-                Completion::Now => return self.complete(number, 0, transfer.length, &[]),
-                Completion::NextFrame => self.pending().frame.push((number, transfer.length)),
-                Completion::Never => self.pending().never.push(number),
-            },
-            _ => return self.complete(number, EPIPE, 0, &[]),
-        }
+    fn wait(&self, number: u32, until: Waits) -> io::Result<()> {
+        self.pending().push((number, until));
         Ok(())
+    }
+
+    fn submit(&self, transfer: &Transfer, board: &dyn Board) -> io::Result<()> {
+        let (number, length) = (transfer.number, transfer.length);
+        match (transfer.endpoint, transfer.into_host) {
+            (0, _) => self.control(transfer, board),
+            (1, true) => self.wait(number, Waits::Input),
+            (2, false) => match board.output(&transfer.data) {
+                Completion::Now => self.complete(number, 0, length, &[]),
+                Completion::NextFrame => self.wait(number, Waits::Frame(length)),
+                Completion::Never => self.wait(number, Waits::Never),
+            },
+            _ => self.complete(number, EPIPE, 0, &[]),
+        }
     }
 }
 
 impl Link for Usb {
     fn input(&self, report: &[u8]) -> io::Result<()> {
         // Without a transfer that waits the report is lost, as on a bus that nobody polls.
-        let waiting = {
-            let input = &mut self.pending().input;
-            (!input.is_empty()).then(|| input.remove(0))
-        };
+        let waiting = self.withdraw(|(_, until)| *until == Waits::Input);
         waiting.map_or(Ok(()), |number| {
             self.complete(number, 0, report.len(), report)
         })
     }
 
     fn frame(&self) -> io::Result<()> {
-        let due = std::mem::take(&mut self.pending().frame);
-        due.into_iter()
-            .try_for_each(|(number, length)| self.complete(number, 0, length, &[]))
+        let is_due = |transfer: &mut (u32, Waits)| matches!(transfer.1, Waits::Frame(_));
+        let due: Vec<_> = self.pending().extract_if(.., is_due).collect();
+        due.into_iter().try_for_each(|(number, until)| match until {
+            Waits::Frame(length) => self.complete(number, 0, length, &[]),
+            _ => Ok(()),
+        })
     }
 
     fn unplug(&self) -> io::Result<()> {
