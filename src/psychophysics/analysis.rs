@@ -43,8 +43,7 @@ pub struct InclusionAnalysis {
     /// Its name: untrusted text.
     pub name: String,
     /// The depth of its top, m.
-    #[serde(rename = "depth_m")]
-    pub depth: f64,
+    pub depth_m: f64,
     /// All answers as one sample: the paper's way.
     pub pooled: Rate,
     /// The subjects as the sample; `None` for one subject or if none differs.
@@ -122,7 +121,7 @@ fn analyse_inclusion(
     let (pooled, clustered) = pooled(condition, column)?;
     Ok(InclusionAnalysis {
         name: inclusion.name.clone(),
-        depth: inclusion.depth,
+        depth_m: inclusion.depth,
         pooled,
         clustered,
         dispersion: dispersion(&counts)?,

@@ -175,11 +175,11 @@ fn one_noise_level_for_all() {
     {
         let (signals, observed) = of_row(condition, row);
         let found = common(&signals, &observed).unwrap().unwrap();
-        assert_near(found.noise / noise, 1.0, OF_NOISE);
+        assert_near(found.noise_n / noise, 1.0, OF_NOISE);
         assert_near(found.deviance, deviance, 1e-7);
         assert_eq!(found.degrees, 3);
         // The scores change with the noise; their differences in the reference have 6 digits.
-        let bounds = found.noise_bounds.unwrap();
+        let bounds = found.noise_bounds_n.unwrap();
         assert_near(bounds.lower / lower, 1.0, 1e-4);
         assert_near(bounds.upper / upper, 1.0, 1e-4);
         assert_near(found.p_value_clustered.unwrap() / hotelling, 1.0, 1e-6);
@@ -188,7 +188,7 @@ fn one_noise_level_for_all() {
         }
         let [noise, share, deviance] = lapsed;
         let found = common_with_lapse(&signals, &observed).unwrap().unwrap();
-        assert_near(found.noise / noise, 1.0, OF_NOISE);
+        assert_near(found.noise_n / noise, 1.0, OF_NOISE);
         assert_near(found.lapse, share, 1e-5);
         assert_near(found.deviance, deviance, 1e-7);
         assert_eq!(found.degrees, 2);
@@ -204,7 +204,7 @@ fn a_noise_level_for_each_subject() {
         let (signals, observed) = of_row(condition, row);
         let found = by_subject(&signals, &observed).unwrap();
         assert_near(found.deviance, deviance, 1e-6);
-        for (found, noise) in found.noise.iter().zip(noise) {
+        for (found, noise) in found.noise_n.iter().zip(noise) {
             assert_near(found.unwrap() / noise, 1.0, OF_NOISE);
         }
         assert_near(found.expected_deviance / mean, 1.0, 0.02);
@@ -227,11 +227,11 @@ fn who_is_never_wrong_or_only_guesses_has_no_noise_level() {
     let perfect = observed([30.0, 30.0]);
     assert_eq!(common(&signals, &perfect), Ok(None));
     let found = by_subject(&signals, &perfect).unwrap();
-    assert_eq!((&found.noise[..], found.p_value), (&[Some(0.0)][..], 1.0));
+    assert_eq!((&found.noise_n[..], found.p_value), (&[Some(0.0)][..], 1.0));
     let guesses = observed([14.0, 15.0]);
     assert_eq!(common(&signals, &guesses), Ok(None));
     let found = by_subject(&signals, &guesses).unwrap();
-    assert_eq!(found.noise, [None]);
+    assert_eq!(found.noise_n, [None]);
     assert_near(found.predicted[0], 0.5, 1e-2);
     assert!(found.p_value > 0.05 && found.p_value < 1.0);
 }
@@ -363,7 +363,7 @@ fn what_does_not_fit_is_refused_or_noted() {
         None,
     )
     .unwrap();
-    assert_eq!(found.probe_depth, 2e-3);
+    assert_eq!(found.probe_depth_m, 2e-3);
     assert!(found.probe_depth_note.unwrap().contains("2 mm"));
     // No lateral force, no convention with it alone.
     assert_eq!(found.conditions[0].conventions.len(), 8);
@@ -435,7 +435,7 @@ fn how_much_of_the_level_may_count_over_which_sweep() {
     {
         let statistic = STATISTICS[statistic as usize];
         let is_asked = |range: &&WeightRange| {
-            range.statistic == statistic && (1e3 * range.half_sweep).round() == half
+            range.statistic == statistic && (1e3 * range.half_sweep_m).round() == half
         };
         let range = found[condition as usize].iter().find(is_asked).unwrap();
         let fits = [range.whole_level, range.no_level, range.lateral].map(Option::unwrap);
@@ -535,11 +535,11 @@ fn noise_at_one_inclusion_has_the_subjects_as_the_sample() {
     let ends = |bounds: OpenBounds| [bounds.lower.unwrap(), bounds.upper.unwrap()];
     for (found, expected) in [
         (
-            noise.clustered_bounds.unwrap(),
+            noise.clustered_bounds_n.unwrap(),
             [0.13261765446519622, 0.32735571257341434],
         ),
         (
-            noise.pooled_bounds,
+            noise.pooled_bounds_n,
             [0.178580358952328, 0.25510394635585865],
         ),
     ] {

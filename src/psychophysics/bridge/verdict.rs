@@ -50,8 +50,8 @@ fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
     let largest = uppers.fold(0.0, f64::max);
     Some(format!(
         "Over sweeps of ±{:.0} to ±{:.0} mm, by the peak and by the whole sweep, the whole level of the normal force fits worse than the same force less its mean and than the lateral force in {} fits. Against the best weight of the level, with the dispersion and {ranges} ranges counted, it is rejected in {}; the largest weight of the level that one of them leaves is {largest:.2}.",
-        1e3 * first.half_sweep,
-        1e3 * last.half_sweep,
+        1e3 * first.half_sweep_m,
+        1e3 * last.half_sweep_m,
         count(&WeightRange::level_fits_worst),
         count(&|range| range.left.upper < 1.0),
     ))
@@ -147,12 +147,12 @@ fn heterogeneity(fits: &[ConventionFit]) -> String {
     if gain > 0.0 {
         format!(
             "Subjects differ: for “{}”, one noise level for all, {:.3} N, has an AIC larger by {gain:.0} than one for each.",
-            best.name, common.noise
+            best.name, common.noise_n
         )
     } else {
         format!(
             "One noise level for all, {:.3} N for “{}”, is enough: its AIC is smaller by {:.0} than with one for each.",
-            common.noise, best.name, -gain
+            common.noise_n, best.name, -gain
         )
     }
 }
@@ -164,7 +164,7 @@ fn against_table_2(fits: &[ConventionFit]) -> Option<String> {
     let fit = best(fits, |of, is_rejected| {
         of.statistic == Statistic::Peak && !is_rejected
     })?;
-    let noise = fit.common.as_ref()?.noise;
+    let noise = fit.common.as_ref()?.noise_n;
     let squares = [QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION].map(|n| n * n);
     let table = libm::sqrt(squares.iter().sum());
     let remark = match noise < table {

@@ -39,8 +39,8 @@ fn fits_of_table_1() {
     for (condition, deviance) in DEVIANCES.into_iter().enumerate() {
         let found = fitted(&table, condition).unwrap();
         let parameters = [
-            (found.midpoint, 1e-3, OF_LENGTH),
-            (found.spread, 1e-3, OF_LENGTH),
+            (found.midpoint_m, 1e-3, OF_LENGTH),
+            (found.spread_m, 1e-3, OF_LENGTH),
             (found.lapse, 1.0, OF_LAPSE),
         ];
         let rows = expected[3 * condition..].iter();
@@ -98,7 +98,7 @@ fn without_three_depths_or_wrong_answers_there_is_no_function() {
     // Three depths leave no degree of freedom, and answers that do not fall set no bounds.
     let flat = fitted(&table("2,4,6", "1,x,30,25,25,26\n2,x,30,26,25,26\n"), 0).unwrap();
     assert_eq!((flat.degrees, flat.p_value), (0, None));
-    assert_eq!(flat.midpoint.bounds.upper, None);
+    assert_eq!(flat.midpoint_m.bounds.upper, None);
 }
 
 // Answers as the function has them are fitted by it, so that a midpoint taken for a threshold, or a spread for a slope,
@@ -134,7 +134,7 @@ fn the_function_is_the_one_that_the_spec_states() {
     let found = psychometric(&inclusions, &condition, dispersion)
         .unwrap()
         .unwrap();
-    assert_near(found.midpoint.value, 1e-3 * midpoint, 2e-5);
-    assert_near(found.spread.value, 1e-3 * spread, 4e-5);
+    assert_near(found.midpoint_m.value, 1e-3 * midpoint, 2e-5);
+    assert_near(found.spread_m.value, 1e-3 * spread, 4e-5);
     assert_near(found.lapse.value, lapse, 2e-3);
 }
