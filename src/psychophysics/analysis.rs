@@ -72,7 +72,7 @@ pub struct SubjectAnalysis {
 /// let text = "subject,condition,trials,2.6\nA,gel,20,20\nB,gel,20,10\n";
 /// let analysis = analyse(&Table::from_csv(text, "mine.csv")?)?;
 /// assert_eq!(analysis.conditions[0].inclusions[0].pooled.rate, 0.75);
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 ///
 /// # Errors

@@ -35,7 +35,7 @@ pub struct Dispersion {
 /// let found = dispersion(&[(10, 30), (20, 30)])?;
 /// assert!(found.is_some_and(|found| (found.chi_square - 20.0 / 3.0).abs() < 1e-12));
 /// assert_eq!(dispersion(&[(30, 30), (30, 30)])?, None);
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 ///
 /// # Errors

@@ -128,7 +128,7 @@ const SUMS: [(&str, Option<f64>, &[f64], &str); 3] = [
 /// assert!(levels.iter().filter_map(|level| level.printed).eq([0.235, 0.170, 0.220]));
 /// // 340 mN over the γ of 253 right answers of 300.
 /// assert!(levels.iter().any(|level| (level.noise - 0.340 / 1.4257).abs() < 1e-3));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 ///
 /// # Errors

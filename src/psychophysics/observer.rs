@@ -78,12 +78,10 @@ pub fn present<D: HapticDevice>(
             began.get_or_insert(cycle.written);
             felt.depths.push(-f64::from(position.normal) * metres);
             felt.laterals.push(f64::from(position.lateral) * metres);
-            felt.forces
-                .lateral
-                .push(f64::from(cycle.force.lateral) * newtons);
-            felt.forces
-                .normal
-                .push(f64::from(cycle.force.normal) * newtons);
+            let force = cycle.force;
+            let forces = &mut felt.forces;
+            forces.lateral.push(f64::from(force.lateral) * newtons);
+            forces.normal.push(f64::from(force.normal) * newtons);
         }
         let until = began.map_or(patience, |began| began + duration);
         cycle.written < until
@@ -140,7 +138,7 @@ impl IdealObserver<'_> {
     ///
     /// Implements: PSY-011.
     pub fn theta(&self, felt: &Felt, draw: u64) -> Result<(f64, f64), Refusal> {
-        let expected = |table: &ForceTable| {
+        let expected = |table: &ForceTable| -> Result<_, Refusal> {
             let mut forces = Force::<Vec<f64>>::default();
             for (&depth, &lateral) in felt.depths.iter().zip(&felt.laterals) {
                 // Nothing is played above the surface.
@@ -167,8 +165,7 @@ impl IdealObserver<'_> {
             f0.as_deref(),
             f1.as_deref(),
             Force::new(self.noise_sd, self.noise_sd),
-        );
-        let statistic = statistic.map_err(refused)?;
+        )?;
         Ok((statistic.theta, statistic.gamma))
     }
 
@@ -181,10 +178,9 @@ impl IdealObserver<'_> {
     pub fn choose(&self, first: &Felt, second: &Felt, pair: u64) -> Result<Interval, Refusal> {
         let (of_first, _) = self.theta(first, 2 * pair)?;
         let (of_second, _) = self.theta(second, 2 * pair + 1)?;
-        Ok(if of_first >= of_second {
-            Interval::First
-        } else {
-            Interval::Second
+        Ok(match of_first >= of_second {
+            true => Interval::First,
+            false => Interval::Second,
         })
     }
 }

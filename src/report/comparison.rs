@@ -108,9 +108,10 @@ pub fn table(
     });
     let rates = playback.and_then(|(bridge, (condition, fit))| {
         let common = fit.common.as_ref()?;
+        let noise = common.noise_n;
         let each = bridge.inclusions.iter().zip(&condition.observed);
         let each = each.zip(&common.predicted);
-        Some(each.map(|((inclusion, observed), share)| (inclusion, observed, common.noise_n, *share)))
+        Some(each.map(move |((inclusion, observed), share)| (inclusion, observed, noise, *share)))
     });
     let study = Known {
         nearest: peaks.iter().min_by(|a, b| {

@@ -80,7 +80,11 @@ fn the_levels_of_section_5() {
 fn table_2_is_within_the_honest_interval_only() {
     let found = paper_noise_levels().unwrap();
     let answers = &found.levels[1];
-    assert_near(answers.pooled_bounds_n.unwrap().lower.unwrap(), 0.2024, 5e-5);
+    assert_near(
+        answers.pooled_bounds_n.unwrap().lower.unwrap(),
+        0.2024,
+        5e-5,
+    );
     assert_near(
         answers.clustered_bounds_n.unwrap().lower.unwrap(),
         0.1503,

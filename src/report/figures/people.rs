@@ -49,7 +49,7 @@ pub fn bar(x: f64, bounds: Bounds, colour: RGBColor, width: f64) -> Line {
 
 fn depths(condition: &ConditionAnalysis) -> Vec<f64> {
     let inclusions = condition.inclusions.iter();
-    inclusions.map(|inclusion| 1e3 * inclusion.depth_m).collect()
+    inclusions.map(|of| 1e3 * of.depth_m).collect()
 }
 
 /// Figures 10 to 13.
