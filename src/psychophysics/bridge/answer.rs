@@ -186,6 +186,16 @@ pub struct ConventionFit {
     pub is_rejected: bool,
 }
 
+impl ConventionFit {
+    /// The fit by subject with the larger p-value.
+    pub(super) fn better_by_subject(&self) -> &SubjectFit {
+        match self.by_subject_with_lapse.p_value > self.by_subject.p_value {
+            true => &self.by_subject_with_lapse,
+            false => &self.by_subject,
+        }
+    }
+}
+
 /// One noise level for all subjects.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CommonFit {
