@@ -95,6 +95,15 @@ impl<'a> Arguments<'a> {
         })
     }
 
+    /// Finite numbers, each of a name.
+    pub fn each<const N: usize>(&mut self, names: [&'static str; N]) -> Result<[f64; N], Refused> {
+        let mut numbers = [0.0; N];
+        for (number, name) in numbers.iter_mut().zip(names) {
+            *number = self.number(name)?;
+        }
+        Ok(numbers)
+    }
+
     /// A whole number from `least` to `most`, which is at most 2⁵³.
     pub fn whole(&mut self, name: &'static str, least: i64, most: i64) -> Result<i64, Refused> {
         let value = self.number(name)?;
