@@ -3,7 +3,7 @@
 //! arguments, rounded once.
 
 use super::*;
-use crate::stats::check::{assert_near, assert_ulps};
+use crate::stats::tests::{assert_near, assert_ulps};
 use std::{vec, vec::Vec};
 extern crate std;
 

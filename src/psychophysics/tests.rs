@@ -2,15 +2,6 @@
 
 use super::*;
 
-/// The numbers of a table, whose rows are lines.
-pub fn numbers<const N: usize>(table: &str) -> Vec<[f64; N]> {
-    let row = |line: &str| {
-        let cells = line.split_whitespace().map(|cell| cell.parse().unwrap());
-        cells.collect::<Vec<f64>>().try_into().unwrap()
-    };
-    table.trim().lines().map(row).collect()
-}
-
 // Verifies: PSY-001, PSY-002.
 #[test]
 fn a_plan_is_balanced_mixed_and_drawn_from_its_seed() {

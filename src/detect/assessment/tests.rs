@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::detect::theta_of_record;
-use crate::stats::check::assert_ulps;
+use crate::stats::tests::assert_ulps;
 
 const UNIT: Force<f64> = Force::new(1.0, 1.0);
 const F0: Force<&[f64]> = Force::new(&[0.0, 1.0], &[1.0, 1.0]);

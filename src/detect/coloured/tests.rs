@@ -4,8 +4,8 @@
 use super::super::stationary::{banded_scratch, theta_banded, theta_stationary};
 use super::super::{Force, MatchedFilter};
 use super::*;
-use crate::stats::check::assert_near;
 use crate::stats::random::Generator;
+use crate::stats::tests::assert_near;
 extern crate std;
 use std::{vec, vec::Vec};
 

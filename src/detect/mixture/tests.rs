@@ -1,7 +1,7 @@
 //! Expected values: mpmath 1.4.1 at 40 digits from the definitions.
 
 use super::*;
-use crate::stats::check::assert_ulps;
+use crate::stats::tests::assert_ulps;
 
 const THETA: [f64; 4] = [1.5, -2.0, 4.0, 0.25];
 const PRIOR: [f64; 4] = [0.1, 0.4, 0.2, 0.3];

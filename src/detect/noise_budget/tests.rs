@@ -1,7 +1,7 @@
 //! Expected values: mpmath 1.4.1 at 40 digits from the definitions, and the paper's print.
 
 use super::*;
-use crate::stats::check::{assert_near, assert_ulps};
+use crate::stats::tests::{assert_near, assert_ulps};
 
 // Verifies: DET-100, DET-101.
 #[test]

@@ -1,7 +1,7 @@
 //! Expected values: closed forms, and mpmath 1.4.1 at 40 digits for Owen's T by quadrature.
 
 use super::*;
-use crate::stats::check::{assert_near, assert_ulps};
+use crate::stats::tests::{assert_near, assert_ulps};
 extern crate std;
 use std::vec::Vec;
 

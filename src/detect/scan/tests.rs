@@ -1,7 +1,7 @@
 //! Expected values: by hand, in whole and half numbers.
 
 use super::*;
-use crate::stats::check::assert_near;
+use crate::stats::tests::assert_near;
 
 const RECORD: [f64; 5] = [1.0, 2.0, 0.0, -1.0, 3.0];
 const TEMPLATE: [f64; 3] = [1.0, 2.0, 1.0];

@@ -2,7 +2,7 @@
 
 use super::super::theta_of_record;
 use super::*;
-use crate::stats::check::assert_near;
+use crate::stats::tests::assert_near;
 
 const OBSERVED: Force<&[f64]> = Force::new(&[0.1, 0.5, -0.2], &[1.7, 1.9, 1.3]);
 const F0: Force<&[f64]> = Force::new(&[0.0, 0.1, 0.2], &[1.6, 1.5, 1.4]);

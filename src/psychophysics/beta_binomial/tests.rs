@@ -2,8 +2,7 @@
 
 use super::*;
 use crate::psychophysics::Table;
-use crate::psychophysics::tests::numbers;
-use crate::stats::check::assert_near;
+use crate::stats::tests::{assert_near, numbers};
 
 // The golden section leaves √ρ within 2/12 · 4·10⁻⁶, so ρ within 5·10⁻⁷ and p, which hardly depends on it, too; the
 // ends follow from a value that is right to 10⁻⁹ with slopes above 1.

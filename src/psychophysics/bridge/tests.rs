@@ -6,8 +6,7 @@ use crate::force::Force;
 use crate::force_map::{ForceTable, Matrix, Source};
 use crate::phantom::Phantom;
 use crate::psychophysics::OpenBounds;
-use crate::psychophysics::tests::numbers;
-use crate::stats::check::assert_near;
+use crate::stats::tests::{assert_near, numbers};
 
 /// Signals that fall with depth like a change along the sweep, and signals that level off.
 const FALLING: [f64; 4] = [0.26, 0.17, 0.09, 0.05];

@@ -1,7 +1,7 @@
 //! Closed forms: few subjects, whose exchanges of signs can be counted by hand.
 
 use super::*;
-use crate::stats::check::assert_near;
+use crate::stats::tests::assert_near;
 
 // Verifies: PSY-050.
 #[test]

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::psychophysics::Bounds;
-use crate::stats::check::assert_near;
+use crate::stats::tests::assert_near;
 
 // Verifies: PSY-060.
 #[test]

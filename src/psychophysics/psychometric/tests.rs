@@ -1,9 +1,8 @@
 //! Expected values: scipy, Nelder and Mead from 27 starts, and Brent's method (`reference.py`).
 
 use super::*;
-use crate::psychophysics::tests::numbers;
 use crate::psychophysics::{Subject, Table};
-use crate::stats::check::assert_near;
+use crate::stats::tests::{assert_near, numbers};
 
 fn fitted(table: &Table, condition: usize) -> Option<Psychometric> {
     let condition = &table.conditions()[condition];

@@ -5,8 +5,7 @@ use super::*;
 use crate::detect::two_afc;
 use crate::psychophysics::Table;
 use crate::psychophysics::dispersion::dispersion;
-use crate::psychophysics::tests::numbers;
-use crate::stats::check::assert_near;
+use crate::stats::tests::{assert_near, numbers};
 
 // Verifies: PSY-023, PSY-024.
 #[test]

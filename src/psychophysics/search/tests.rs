@@ -1,7 +1,7 @@
 //! Functions whose maxima and crossings are known.
 
 use super::*;
-use crate::stats::check::assert_near;
+use crate::stats::tests::assert_near;
 
 // Verifies: PSY-041.
 #[test]
