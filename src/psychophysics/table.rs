@@ -100,10 +100,7 @@ impl Table {
     /// # Errors
     /// As [`Table::from_csv`], and if the file cannot be read as UTF-8.
     pub fn read(path: &Path) -> Result<Table, Refusal> {
-        let file = path.display().to_string();
-        let unread = |error| Refusal::state(format!("cannot be read: {error}"), "").at(1);
-        let text = crate::input::read(path).map_err(|error| unread(error).in_file(&file))?;
-        Table::from_csv(&text, &file)
+        crate::input::parse(path, Table::from_csv)
     }
 
     /// The table in `text`, the content of `file`.
