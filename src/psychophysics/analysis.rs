@@ -66,15 +66,6 @@ pub struct SubjectAnalysis {
 
 /// The analysis of a table.
 ///
-/// ```
-/// use palpate::psychophysics::{Table, analyse};
-///
-/// let text = "subject,condition,trials,2.6\nA,gel,20,20\nB,gel,20,10\n";
-/// let analysis = analyse(&Table::from_csv(text, "mine.csv")?)?;
-/// assert_eq!(analysis.conditions[0].inclusions[0].pooled.rate, 0.75);
-/// # Ok::<(), palpate::refusal::Refusal>(())
-/// ```
-///
 /// # Errors
 /// Never for counts that fit their trials, as a [`Table`] holds them.
 pub fn analyse(table: &Table) -> Result<Analysis> {
