@@ -109,13 +109,13 @@ pub fn bridge(
     let conditions = conditions
         .map(|condition| of_condition(condition, &columns, &signals, (&half_sweeps, ranges)));
     let of_inclusion = |(&column, signal): (&usize, &Signal)| {
-        let (peak_normal, peak_normal_at) = signal.peak(&signal.normal);
-        let (peak_lateral, peak_lateral_at) = signal.peak(&signal.lateral);
+        let (peak_normal, peak_normal_at) = signal.peak(&signal.forces.normal);
+        let (peak_lateral, peak_lateral_at) = signal.peak(&signal.forces.lateral);
         BridgeInclusion {
             name: table.inclusions()[column].name.clone(),
             peak_normal_n: peak_normal,
             peak_normal_at_m: peak_normal_at,
-            mean_normal_n: mean(&signal.normal),
+            mean_normal_n: mean(&signal.forces.normal),
             peak_lateral_n: peak_lateral,
             peak_lateral_at_m: peak_lateral_at,
         }
@@ -184,7 +184,7 @@ fn of_condition(
     let (mut observed, mut noise_by_inclusion) = (Vec::new(), Vec::new());
     for (&column, signal) in columns.iter().zip(signals) {
         let (pooled, clustered) = pooled(condition, column)?;
-        let (peak, _) = signal.peak(&signal.normal);
+        let (peak, _) = signal.peak(&signal.forces.normal);
         noise_by_inclusion.push(InclusionNoise::new(peak.abs(), &pooled, clustered));
         observed.push(ObservedRate {
             rate: pooled.rate,

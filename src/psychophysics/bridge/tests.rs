@@ -70,8 +70,8 @@ fn each_convention_makes_its_own_signal() {
     let uniform = Convention::all().filter(|c| c.uses_uniform_part());
     assert_eq!(uniform.count(), 4);
     // Of equal magnitudes the one nearest to x = 0, then that at x > 0.
-    assert_eq!(signal.peak(&signal.lateral), (3.0, 2e-3));
-    assert_eq!(mean(&signal.normal), 2.0);
+    assert_eq!(signal.peak(&signal.forces.lateral), (3.0, 2e-3));
+    assert_eq!(mean(&signal.forces.normal), 2.0);
 }
 
 // Verifies: PSY-072.
@@ -327,8 +327,7 @@ fn computed_signals() -> [Signal; 4] {
     };
     [0, 1, 2, 3].map(|k| Signal {
         laterals: whole(0, -1.0).iter().map(|x| 1e-3 * x).collect(),
-        normal: whole(1 + k, 1.0),
-        lateral: whole(5 + k, -1.0),
+        forces: Force::new(whole(5 + k, -1.0), whole(1 + k, 1.0)),
     })
 }
 
@@ -338,8 +337,7 @@ fn computed_signals() -> [Signal; 4] {
 fn part_of_the_level_counts_in_part() {
     let signal = Signal {
         laterals: vec![-1e-3, 0.0, 1e-3, 2e-3],
-        normal: vec![1.0, 2.0, 3.0, 6.0],
-        lateral: vec![0.0; 4],
+        forces: Force::new(vec![0.0; 4], vec![1.0, 2.0, 3.0, 6.0]),
     };
     // w² 3² + (4 + 1 + 0 + 9)/4, and 3 + 3w.
     for weight in [0.0, 0.25, 0.5, 1.0] {
@@ -349,8 +347,8 @@ fn part_of_the_level_counts_in_part() {
         assert_near(peak, 3.0 + 3.0 * weight, 1e-14);
     }
     let within = signal.within(1e-3);
-    assert_eq!(within.normal, [1.0, 2.0, 3.0]);
-    assert_eq!((within.laterals.len(), within.lateral.len()), (3, 3));
+    assert_eq!(within.forces.normal, [1.0, 2.0, 3.0]);
+    assert_eq!((within.laterals.len(), within.forces.lateral.len()), (3, 3));
 }
 
 /// `../reference.py`, `sweeps`: each subject's noise by Brent's method, the expected deviance and the p of weight 0 from 10 000
@@ -421,7 +419,7 @@ fn computed_maps() -> (ForceMap, [ForceMap; 4]) {
     let signals = computed_signals();
     let laterals = signals[0].laterals.clone();
     let map = |forces: &dyn Fn(usize) -> [f64; 2]| map_over(&[4e-3], &laterals, forces);
-    let of = |s: Signal| map(&|at| [s.normal[at], s.lateral[at]]);
+    let of = |s: Signal| map(&|at| [s.forces.normal[at], s.forces.lateral[at]]);
     (map(&|_| [0.0; 2]), signals.map(of))
 }
 
