@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::stats::NumericError;
+
 /// Why an input is refused: where it stands, what it is, and what would be right. The message is one line, whatever it quotes.
 ///
 /// Where nothing but the message is of use, this is the error. A reason that a caller branches on has an enum of its own.
@@ -90,6 +92,13 @@ impl fmt::Display for Refusal {
 }
 
 impl std::error::Error for Refusal {}
+
+/// A number that the input holds, or that follows from it, is refused.
+impl From<NumericError> for Refusal {
+    fn from(error: NumericError) -> Refusal {
+        Refusal::state(error, "")
+    }
+}
 
 /// `text` with a space for each control character: a message that quotes a file stays one line, and
 /// no terminal obeys it.

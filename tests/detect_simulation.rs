@@ -20,24 +20,20 @@ fn trials_are_the_same_in_any_order_and_on_any_thread() {
     let theta = |trial: u64| simulation().trial(trial, F0, &mut [0.0; 6]).unwrap().theta;
     // One scratch for all: nothing of a trial may leak into the next.
     let mut scratch = [f64::NAN; 6];
-    let forwards: Vec<f64> = (0..1000)
-        .map(|trial| simulation().trial(trial, F0, &mut scratch).unwrap().theta)
-        .collect();
+    let forwards = (0..1000).map(|trial| simulation().trial(trial, F0, &mut scratch));
+    let forwards: Vec<f64> = forwards.map(|found| found.unwrap().theta).collect();
     let mut backwards: Vec<f64> = (0..1000).rev().map(theta).collect();
     backwards.reverse();
     assert_eq!(forwards, backwards);
     for threads in [2, 3, 7] {
         let threaded: Vec<f64> = std::thread::scope(|scope| {
-            let parts: Vec<_> = (0..threads)
-                .map(|part| {
-                    let range = 1000 * part / threads..1000 * (part + 1) / threads;
-                    scope.spawn(move || range.map(theta).collect::<Vec<_>>())
-                })
-                .collect();
-            parts
-                .into_iter()
-                .flat_map(|part| part.join().unwrap())
-                .collect()
+            let part = |part: u64| {
+                let range = 1000 * part / threads..1000 * (part + 1) / threads;
+                scope.spawn(move || range.map(theta).collect::<Vec<_>>())
+            };
+            let parts: Vec<_> = (0..threads).map(part).collect();
+            let joined = parts.into_iter().flat_map(|part| part.join().unwrap());
+            joined.collect()
         });
         assert_eq!(threaded, forwards);
     }
@@ -57,13 +53,8 @@ fn a_record_is_the_force_and_the_deviates_of_its_trial() {
         assert!((residual[3 + i] - normal).abs() < 4.0 * f64::EPSILON);
     }
     let (x, y) = residual.split_at(3);
-    assert_eq!(
-        simulation().filter().statistic(Force {
-            lateral: x,
-            normal: y
-        }),
-        Ok(found)
-    );
+    let judged = simulation().filter().statistic(Force::new(x, y));
+    assert_eq!(judged, Ok(found));
 }
 
 // Verifies: DET-111, DET-115.
@@ -72,15 +63,8 @@ fn false_alarms_add_up_over_any_split() {
     let scan = Scan::new(12, TEMPLATE, NOISE_SD).unwrap();
     let generator = Generator::new(8, 9);
     let count = |trials| {
-        count_false_alarms(
-            &scan,
-            scan.shifts(),
-            1.0,
-            &generator,
-            trials,
-            &mut [0.0; 24],
-        )
-        .unwrap()
+        let scratch = &mut [0.0; 24];
+        count_false_alarms(&scan, scan.shifts(), 1.0, &generator, trials, scratch).unwrap()
     };
     let all = count(0..3000);
     assert!(all > 100 && all < 2900, "{all}");
@@ -90,10 +74,8 @@ fn false_alarms_add_up_over_any_split() {
     let by_hand = (0..200).filter(|&trial| {
         let x: Vec<f64> = (0..12).map(|i| 0.2 * generator.normal(trial, i)).collect();
         let y: Vec<f64> = (12..24).map(|i| 0.3 * generator.normal(trial, i)).collect();
-        scan.maximum(Force::new(&x, &y), scan.shifts())
-            .unwrap()
-            .theta
-            >= 1.0
+        let found = scan.maximum(Force::new(&x, &y), scan.shifts());
+        found.unwrap().theta >= 1.0
     });
     assert_eq!(count(0..200), by_hand.count() as u64);
 }
@@ -119,13 +101,8 @@ fn simulations_that_cannot_be_are_refused() {
     assert!(Simulation::new(short, TEMPLATE, NOISE_SD, generator).is_err());
     let bad = Force::new(&[0.0, f64::NAN, 0.0][..], F0.normal);
     let found = Simulation::new(bad, TEMPLATE, NOISE_SD, generator).unwrap_err();
-    assert_eq!(
-        found,
-        DetectError::NotFinite {
-            what: "f0_x",
-            index: 1
-        }
-    );
+    let (what, index) = ("f0_x", 1);
+    assert_eq!(found, DetectError::NotFinite { what, index });
     assert!(simulation().trial(0, short, &mut [0.0; 6]).is_err());
     assert!(simulation().trial(0, bad, &mut [0.0; 6]).is_err());
     assert!(simulation().trial(0, F0, &mut [0.0; 5]).is_err());

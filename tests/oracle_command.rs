@@ -1,19 +1,19 @@
 //! `palpate oracle` as another program meets it: `spec/oracle.md`.
 #![cfg(feature = "cli")]
 
-use std::io::{BufRead, BufReader, Read, Write};
+mod program;
+
+use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
 use std::thread;
 
+use program::text;
 use serde_json::{Value, json};
 
 fn start(command: &mut Command) -> Child {
-    command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts")
+    let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped());
+    let child = piped.stderr(Stdio::piped()).spawn();
+    child.expect("the program starts")
 }
 
 fn oracle() -> Child {
@@ -25,17 +25,12 @@ fn lines_of(mut child: Child, input: Vec<u8>) -> Vec<String> {
     let mut pipe = child.stdin.take().expect("its input");
     let writer = thread::spawn(move || pipe.write_all(&input));
     let output = child.wait_with_output().expect("it ends");
-    writer
-        .join()
-        .expect("the writer ends")
-        .expect("it reads all");
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        output.status.success() && stderr.is_empty(),
-        "{:?} {stderr}",
-        output.status
-    );
-    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    let written = writer.join().expect("the writer ends");
+    written.expect("it reads all");
+    let stderr = text(&output.stderr);
+    assert!(output.status.success(), "{:?} {stderr}", output.status);
+    assert_eq!(stderr, "");
+    let text = text(&output.stdout);
     assert!(text.is_empty() || text.ends_with('\n'));
     text.lines().map(str::to_string).collect()
 }
@@ -44,10 +39,14 @@ fn answers(input: impl Into<Vec<u8>>) -> Vec<String> {
     lines_of(oracle(), input.into())
 }
 
+/// The line of a request.
+fn line(id: impl Into<Value>, op: &str, args: Value) -> String {
+    json!({"id": id.into(), "op": op, "args": args}).to_string()
+}
+
 /// The answer to one op.
 fn ask(op: &str, args: Value) -> Value {
-    let line = json!({"id": 7, "op": op, "args": args}).to_string();
-    let lines = answers(line);
+    let lines = answers(line(7, op, args));
     assert_eq!(lines.len(), 1, "{lines:?}");
     let answer: Value = serde_json::from_str(&lines[0]).expect("JSON");
     assert_eq!(answer["id"], 7);
@@ -63,18 +62,29 @@ fn ok(op: &str, args: Value) -> Value {
 /// The code and message of a refusal.
 fn refused(op: &str, args: Value) -> (String, String) {
     let answer = ask(op, args);
-    let text = |key| {
-        answer["error"][key]
-            .as_str()
-            .unwrap_or_else(|| panic!("{op}: {answer}"))
-            .to_string()
-    };
-    (text("code"), text("message"))
+    let text = |key| answer["error"][key].as_str().map(str::to_string);
+    let found = text("code").zip(text("message"));
+    found.unwrap_or_else(|| panic!("{op}: {answer}"))
 }
 
 fn code_of(line: &str) -> String {
     let answer: Value = serde_json::from_str(line).expect("JSON");
     answer["error"]["code"].as_str().unwrap_or("ok").to_string()
+}
+
+/// Asserts that `child` answers each line with its code, and a good line after it as if nothing had been.
+fn assert_codes(child: Child, cases: &[(Vec<u8>, &str)]) {
+    let after = |(line, _): &(Vec<u8>, &str)| [line, GOOD.as_bytes()].join(&b'\n');
+    // The last line has no end.
+    let input = cases.iter().map(after).collect::<Vec<_>>().join(&b'\n');
+    let lines = lines_of(child, input);
+    assert_eq!(lines.len(), 2 * cases.len());
+    for (pair, (line, code)) in lines.chunks(2).zip(cases) {
+        let line = String::from_utf8_lossy(&line[..line.len().min(100)]);
+        assert_eq!(code_of(&pair[0]), *code, "{line}: {}", pair[0]);
+        assert_eq!(pair[1], GOOD_ANSWER, "after {line}");
+        assert!(pair[0].len() < 3000, "{line}: the answer quotes it all");
+    }
 }
 
 const GOOD: &str = r#"{"id":"good","op":"normal_cdf","args":{"x":0}}"#;
@@ -108,16 +118,9 @@ fn a_number_is_read_as_the_nearest_f64() {
 fn a_number_of_an_answer_is_the_shortest_that_reads_back() {
     let mut digits = 0;
     for k in 1..200 {
-        let line = format!(
-            r#"{{"id":1,"op":"normal_cdf","args":{{"x":{}}}}}"#,
-            -0.03 * f64::from(k)
-        );
-        let answer = &answers(line)[0];
-        let number = answer
-            .split(r#""p":"#)
-            .nth(1)
-            .unwrap()
-            .trim_end_matches('}');
+        let answer = &answers(line(1, "normal_cdf", json!({"x": -0.03 * f64::from(k)})))[0];
+        let number = answer.split(r#""p":"#).nth(1).unwrap();
+        let number = number.trim_end_matches('}');
         let value: f64 = number.parse().unwrap();
         // Significant digits, with and without a point or an exponent.
         let significant = |text: &str| {
@@ -133,9 +136,9 @@ fn a_number_of_an_answer_is_the_shortest_that_reads_back() {
     }
     assert!(digits > 100, "{digits}");
     // γ = 10³⁰⁸ · 10 is no f64.
-    let args =
+    let template =
         json!({"template_x": [1e308], "template_y": [0], "noise_sd_x": 0.1, "noise_sd_y": 1});
-    assert_eq!(refused("matched_filter", args).0, "overflow");
+    assert_eq!(refused("matched_filter", template).0, "overflow");
 }
 
 // Verifies: ORA-001, ORA-002, ORA-006.
@@ -175,51 +178,32 @@ bad_argument {"id":1,"op":"normal_cdf","args":{"x":-1e999}}
 bad_argument {"id":1,"op":"normal_cdf","args":{"x":true}}
 bad_argument {"id":1,"op":"normal_cdf","args":null}
 "#;
-    let mut garbage: Vec<(&[u8], &str)> = vec![
-        (b"", "bad_json"),
-        (b"   ", "bad_json"),
-        (b"\r", "bad_json"),
-        (b"\xff\xfe\x00", "bad_json"),
-        (b"{\"id\":1,\"op\":\"\xc3\"}", "bad_json"),
-        (b"\0", "bad_json"),
-        (deep.as_bytes(), "bad_json"),
-        (nested.as_bytes(), "bad_argument"),
-        (objects.as_bytes(), "bad_json"),
+    let mut garbage: Vec<(Vec<u8>, &str)> = vec![
+        (b"".into(), "bad_json"),
+        (b"   ".into(), "bad_json"),
+        (b"\r".into(), "bad_json"),
+        (b"\xff\xfe\x00".into(), "bad_json"),
+        (b"{\"id\":1,\"op\":\"\xc3\"}".into(), "bad_json"),
+        (b"\0".into(), "bad_json"),
+        (deep.into(), "bad_json"),
+        (nested.into(), "bad_argument"),
+        (objects.into(), "bad_json"),
     ];
     garbage.extend(lines.trim().lines().map(|line| {
         let (code, line) = line.split_once(' ').unwrap();
-        (line.as_bytes(), code)
+        (line.into(), code)
     }));
-    let mut input = Vec::new();
-    for (line, _) in &garbage {
-        input.extend_from_slice(line);
-        input.push(b'\n');
-        input.extend_from_slice(GOOD.as_bytes());
-        input.push(b'\n');
-    }
-    input.pop(); // the last line has no end
-    let lines = answers(input);
-    assert_eq!(lines.len(), 2 * garbage.len());
-    for (pair, (line, code)) in lines.chunks(2).zip(&garbage) {
-        let line = String::from_utf8_lossy(&line[..line.len().min(100)]);
-        assert_eq!(code_of(&pair[0]), *code, "{line}: {}", pair[0]);
-        assert_eq!(pair[1], GOOD_ANSWER, "after {line}");
-        assert!(pair[0].len() < 3000, "{line}: the answer quotes it all");
-    }
+    assert_codes(oracle(), &garbage);
 }
 
 // Verifies: ORA-002.
 #[test]
 fn no_input_is_no_answer() {
     assert!(answers("").is_empty());
-    let code = |bytes: &str| {
-        answers(bytes)
-            .iter()
-            .map(|line| code_of(line))
-            .collect::<Vec<_>>()
-    };
-    assert_eq!(code("\n"), ["bad_json"]);
-    assert_eq!(code(" "), ["bad_json"]);
+    for blank in ["\n", " "] {
+        let codes: Vec<_> = answers(blank).iter().map(|line| code_of(line)).collect();
+        assert_eq!(codes, ["bad_json"]);
+    }
 }
 
 // Verifies: ORA-004.
@@ -240,10 +224,8 @@ fn the_id_comes_back_as_it_was_written() {
         r#""\ud800""#,
     ] {
         let line = format!(" {{ \"op\" : \"normal_cdf\",\"args\":{{\"x\":0}} , \"id\" : {id} }}\t");
-        assert_eq!(
-            answers(line),
-            [format!("{{\"id\":{id},\"ok\":{{\"p\":0.5}}}}")]
-        );
+        let answer = format!("{{\"id\":{id},\"ok\":{{\"p\":0.5}}}}");
+        assert_eq!(answers(line), [answer]);
         let line = format!("{{\"id\":{id},\"op\":\"none\"}}");
         assert!(answers(line)[0].starts_with(&format!("{{\"id\":{id},\"error\":")));
     }
@@ -263,9 +245,7 @@ fn an_answer_comes_before_the_next_question() {
     };
     for _ in 0..3 {
         // A piece of the next line is there already, and must not hold up the answer.
-        input
-            .write_all(format!("{GOOD}\n{{\"id\":").as_bytes())
-            .unwrap();
+        write!(input, "{GOOD}\n{{\"id\":").unwrap();
         expect(&|answer| answer.trim_end() == GOOD_ANSWER);
         input.write_all(b"1}\n").unwrap();
         expect(&|answer| code_of(answer) == "bad_request");
@@ -283,16 +263,10 @@ fn a_reader_who_has_gone_ends_it_quietly() {
     let line = format!("{GOOD}\n");
     // Until the oracle is gone, and so the pipe is closed.
     while input.write_all(line.as_bytes()).is_ok() {}
-    let mut stderr = String::new();
-    child
-        .stderr
-        .take()
-        .unwrap()
-        .read_to_string(&mut stderr)
-        .unwrap();
+    let output = child.wait_with_output().unwrap();
     assert!(
-        child.wait().unwrap().success() && stderr.is_empty(),
-        "{stderr}"
+        output.status.success() && output.stderr.is_empty(),
+        "{output:?}"
     );
 }
 
@@ -302,11 +276,8 @@ fn a_million_lines_in_a_row() {
     const LINES: usize = 1_000_000;
     let mut input = Vec::with_capacity(LINES * 60);
     for index in 0..LINES {
-        writeln!(
-            input,
-            r#"{{"id":{index},"op":"normal_cdf","args":{{"x":0}}}}"#
-        )
-        .unwrap();
+        let args = r#""op":"normal_cdf","args":{"x":0}"#;
+        writeln!(input, r#"{{"id":{index},{args}}}"#).unwrap();
     }
     let lines = answers(input);
     assert_eq!(lines.len(), LINES);
@@ -329,87 +300,48 @@ fn memory_is_bounded_for_lines_of_any_length() {
         let count = (LONGEST - open.len() - close.len()) / entry.len();
         format!("{open}{}{close}", entry.repeat(count)).into_bytes()
     };
+    let rates = r#"{"id":1,"op":"roc","args":{"gamma":1,"false_alarm":[0"#;
+    let rows = r#"{"id":1,"op":"interpolate","args":{"depths_m":[],"laterals_m":[],"table_n":[[]"#;
+    let names = r#"{"id":1,"op":"capabilities","args":{"a":0"#;
     let cases: [(Vec<u8>, &str); 8] = [
         (padded(LONGEST), "ok"),
         (padded(LONGEST + 1), "bad_json"),
         (vec![b'['; 300 << 20], "bad_json"),
         (filled("", "[", ""), "bad_json"),
-        (
-            filled(
-                r#"{"id":1,"op":"roc","args":{"gamma":1,"false_alarm":[0"#,
-                ",1",
-                "]}}",
-            ),
-            "out_of_range",
-        ),
-        (
-            filled(
-                r#"{"id":1,"op":"interpolate","args":{"depths_m":[],"laterals_m":[],"table_n":[[]"#,
-                ",[]",
-                "]}}",
-            ),
-            "out_of_range",
-        ),
+        (filled(rates, ",1", "]}}"), "out_of_range"),
+        (filled(rows, ",[]", "]}}"), "out_of_range"),
         (filled(r#"{"id":1,"op":""#, "\u{80}", "\"}"), "unknown_op"),
-        (
-            filled(
-                r#"{"id":1,"op":"capabilities","args":{"a":0"#,
-                ",\"b\":0",
-                "}}",
-            ),
-            "bad_argument",
-        ),
+        (filled(names, ",\"b\":0", "}}"), "bad_argument"),
     ];
-    let mut input = Vec::new();
-    for (line, _) in &cases {
-        input.extend_from_slice(line);
-        input.push(b'\n');
-        input.extend_from_slice(GOOD.as_bytes());
-        input.push(b'\n');
-    }
-    let limited = format!(
-        "ulimit -v 400000 && exec {} oracle",
-        env!("CARGO_BIN_EXE_palpate")
-    );
-    let lines = lines_of(start(Command::new("sh").args(["-c", &limited])), input);
-    assert_eq!(lines.len(), 2 * cases.len());
-    for (pair, (line, code)) in lines.chunks(2).zip(&cases) {
-        let line = String::from_utf8_lossy(&line[..60]);
-        assert_eq!(code_of(&pair[0]), *code, "{line}: {}", pair[0]);
-        assert_eq!(pair[1], GOOD_ANSWER, "after {line}");
-    }
+    let program = env!("CARGO_BIN_EXE_palpate");
+    let limited = format!("ulimit -v 400000 && exec {program} oracle");
+    assert_codes(start(Command::new("sh").args(["-c", &limited])), &cases);
 }
 
 // Verifies: ORA-011.
 #[test]
 fn work_beyond_the_limits_is_refused_before_it_begins() {
     let ones = |count: usize| vec![1; count];
-    let (code, message) = refused(
-        "scan",
-        json!({"residual_x": ones(20_000), "residual_y": ones(20_000), "template_x": ones(10_000),
-               "template_y": ones(10_000), "noise_sd_x": 1, "noise_sd_y": 1}),
-    );
-    assert_eq!(code, "out_of_range");
-    assert!(message.contains("10000000"), "{message}");
-    // 1000 products at each of the shifts of the whole template: 10,000 shifts are allowed.
-    let ask = |samples: usize| {
-        json!({"residual_x": ones(samples), "residual_y": ones(samples), "template_x": ones(1000),
-               "template_y": ones(1000), "noise_sd_x": 1, "noise_sd_y": 1})
+    let scan = |samples: usize, length: usize| {
+        json!({"residual_x": ones(samples), "residual_y": ones(samples), "template_x": ones(length),
+               "template_y": ones(length), "noise_sd_x": 1, "noise_sd_y": 1})
     };
-    ok("scan", ask(10_999));
-    assert_eq!(refused("scan", ask(11_000)).0, "out_of_range");
-    let (code, message) = refused(
-        "theta_colored",
-        json!({"residual": ones(1002), "template": ones(1002), "covariance": []}),
-    );
-    assert_eq!(code, "out_of_range");
-    assert!(message.contains("at most 1000"), "{message}");
+    let coloured = json!({"residual": ones(1002), "template": ones(1002), "covariance": []});
+    // 1000 products at each of the shifts of the whole template: 10,000 shifts are allowed.
+    ok("scan", scan(10_999, 1000));
+    for (op, args, words) in [
+        ("scan", scan(20_000, 10_000), "10000000"),
+        ("scan", scan(11_000, 1000), "10000000"),
+        ("theta_colored", coloured, "at most 1000"),
+    ] {
+        let (code, message) = refused(op, args);
+        assert_eq!(code, "out_of_range");
+        assert!(message.contains(words), "{message}");
+    }
     for method in ["wilson", "clopper_pearson"] {
         let ask = |trials: u64| json!({"successes": 5, "trials": trials, "confidence": 0.9, "method": method});
-        assert_eq!(
-            refused("proportion_interval", ask(1_000_000_001)).0,
-            "out_of_range"
-        );
+        let (code, _) = refused("proportion_interval", ask(1_000_000_001));
+        assert_eq!(code, "out_of_range");
         ok("proportion_interval", ask(1_000_000_000));
     }
 }
@@ -476,32 +408,20 @@ count_analysis {"correct": [[5], [1]], "trials": 4} => out_of_range: correct[0][
 #[test]
 fn each_op_answers() {
     let ops = ok("capabilities", json!({}))["ops"].clone();
-    let mut asked = vec!["capabilities"];
+    let mut asked = vec!["capabilities", "element_stiffness"];
     let spec = include_str!("../spec/oracle.md");
     let triangle = json!([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]]);
-    let stiffness = ok(
-        "element_stiffness",
-        json!({"nodes_m": triangle, "youngs_modulus_pa": 1, "poissons_ratio": 0}),
-    )["stiffness"]
-        .clone();
+    let element = json!({"nodes_m": triangle, "youngs_modulus_pa": 1, "poissons_ratio": 0});
+    let stiffness = &ok("element_stiffness", element)["stiffness"][0][0];
     // ∫ (∂N₁/∂x)² + ½ (∂N₁/∂y)² = 3/2 · ½: both derivatives are 1 − 4q, and ∫ (1 − 4q)² = ½.
     assert!(
-        (stiffness[0][0].as_f64().unwrap() - 0.75).abs() < 1e-15,
+        (stiffness.as_f64().unwrap() - 0.75).abs() < 1e-15,
         "{stiffness}"
     );
-    asked.push("element_stiffness");
-    let force = ok(
-        "probe_force",
-        json!({"phantom": "none", "depth_m": 0, "lateral_m": 0}),
-    );
-    assert_eq!(
-        force,
-        json!({"normal_force_n": 0.0, "lateral_force_n": 0.0})
-    );
-    asked.push("probe_force");
     // K = diag(4, 1) in theta_colored: 6·(1 − 3)/4 + 4·(3 − 2)/1, and 36/4 + 16/1 is 5². p = ½ in count_analysis:
     // χ² = (1² + 1²)/(4·½·½).
     let cases = r#"
+probe_force {"phantom": "none", "depth_m": 0, "lateral_m": 0} => {"normal_force_n": 0.0, "lateral_force_n": 0.0}
 normal_cdf {"x": -50} => {"p": 0.0}
 normal_quantile {"p": 0.5} => {"x": 0.0}
 matched_filter {"template_x": [3, 4, 0, 0], "template_y": [0, 0, 0, 0], "noise_sd_x": 2, "noise_sd_y": 4} => {"b_x": 2.5, "b_y": 0.0, "sigma_x": 1.0, "sigma_y": 2.0, "gamma": 2.5}
@@ -539,10 +459,8 @@ count_analysis {"correct": [[3], [1]], "trials": 4.0} => {"pooled": [4], "rate":
     for op in ops.as_array().unwrap() {
         let op = op.as_str().unwrap();
         assert!(asked.contains(&op), "{op} was not asked");
-        assert!(
-            spec.contains(&format!("| `{op}` |")),
-            "{op} is not in the specification's table"
-        );
+        let row = format!("| `{op}` |");
+        assert!(spec.contains(&row), "{op} is not in the specification");
     }
 }
 
@@ -550,9 +468,10 @@ count_analysis {"correct": [[3], [1]], "trials": 4.0} => {"pooled": [4], "rate":
 #[test]
 fn answers_do_not_depend_on_what_was_asked_before() {
     let pose = |id: u32, phantom: &str, depth: f64| {
-        json!({"id": id, "op": "probe_force", "args": {"phantom": phantom, "depth_m": depth, "lateral_m": 1e-3}}).to_string()
+        let args = json!({"phantom": phantom, "depth_m": depth, "lateral_m": 1e-3});
+        line(id, "probe_force", args)
     };
-    let requests = [
+    let mut requests = [
         pose(1, "none", 4e-3),
         pose(2, "6.6", 4e-3),
         pose(3, "none", 1e-3),
@@ -560,18 +479,10 @@ fn answers_do_not_depend_on_what_was_asked_before() {
         GOOD.into(),
     ];
     let forward = answers(requests.join("\n"));
-    let mut backward = answers(
-        requests
-            .iter()
-            .rev()
-            .cloned()
-            .collect::<Vec<_>>()
-            .join("\n"),
-    );
+    requests.reverse();
+    let mut backward = answers(requests.join("\n"));
     backward.reverse();
     assert_eq!(forward, backward);
-    assert!(
-        forward.iter().all(|line| line.contains("\"ok\"")),
-        "{forward:?}"
-    );
+    let mut lines = forward.iter();
+    assert!(lines.all(|line| line.contains("\"ok\"")), "{forward:?}");
 }

@@ -5,7 +5,6 @@ use std::io;
 use std::path::Path;
 
 use crate::fem::FemError;
-use crate::psychophysics::PsychophysicsError;
 use crate::refusal::{Refusal, one_line};
 
 /// Why a command failed. Its message is one line.
@@ -19,9 +18,6 @@ pub enum CliError {
     /// A phantom, a force map, a trace or a table of answers is not valid, or they do not fit one another.
     #[error("{0}")]
     Refused(#[from] Refusal),
-    /// Counts and maps do not fit.
-    #[error("{0}")]
-    Psychophysics(#[from] PsychophysicsError),
     /// A computation or a check failed.
     #[error("{0}")]
     Check(String),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use askama::Template;
 use clap::{Args, ValueEnum};
 
-use super::{CliError, ContactName};
+use super::CliError;
 use super::lists::{Positions, positions};
 use super::output::{print, write};
 use super::progress::{bar, tell_large_mesh};

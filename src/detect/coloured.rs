@@ -53,10 +53,10 @@ pub fn theta_coloured(
     check_samples("residual", residual, order)?;
     check_length("scratch", coloured_scratch(order), scratch.len())?;
     let (factor, vectors) = scratch.split_at_mut(order * order);
-    let cholesky = Cholesky::new(covariance, order, factor)?;
+    factorise(covariance, order, factor)?;
     let (white_template, white_residual) = vectors.split_at_mut(order);
-    cholesky.whiten(template, white_template)?;
-    cholesky.whiten(residual, white_residual)?;
+    whiten(factor, template, white_template);
+    whiten(factor, residual, white_residual);
     let mut innovations = Innovations::default();
     for (&template, &residual) in white_template.iter().zip(white_residual.iter()) {
         innovations.add(template, residual);
@@ -64,60 +64,34 @@ pub fn theta_coloured(
     innovations.statistic()
 }
 
-/// The Cholesky factor L of a covariance, K = LLᵀ, for records to be whitened one after the other, in storage of the
-/// caller's: a slice, an array or a vector.
-#[derive(Debug, Clone, Copy)]
-pub struct Cholesky<S> {
-    order: usize,
-    /// L, row by row; what lies above the diagonal is not used.
-    factor: S,
+/// The Cholesky factor L of a covariance K = LLᵀ of `order` rows, row by row; what lies above the diagonal is not used.
+///
+/// Implements: DET-041, DET-042, DET-043.
+fn factorise(covariance: &[f64], order: usize, factor: &mut [f64]) -> Result<(), DetectError> {
+    check_samples("covariance", covariance, factor.len())?;
+    check_symmetric(covariance, order)?;
+    factor.copy_from_slice(covariance);
+    for row in 0..order {
+        let (above, current) = factor.split_at_mut(row * order);
+        for column in 0..row {
+            let pivot_row = &above[column * order..][..order];
+            let sum = compensated::dot(&current[..column], &pivot_row[..column], 1.0).value();
+            current[column] = (current[column] - sum) / pivot_row[column];
+        }
+        let sum = compensated::dot(&current[..row], &current[..row], 1.0);
+        current[row] = pivot(current[row], sum, order, row)?;
+    }
+    Ok(())
 }
 
-impl<S: AsRef<[f64]> + AsMut<[f64]>> Cholesky<S> {
-    /// Factors a covariance of `order` rows into `storage`; both hold order² numbers.
-    ///
-    /// # Errors
-    /// As [`theta_coloured`].
-    ///
-    /// Implements: DET-041, DET-042, DET-043.
-    pub fn new(covariance: &[f64], order: usize, mut storage: S) -> Result<Self, DetectError> {
-        let factor = storage.as_mut();
-        let entries = order.saturating_mul(order);
-        check_samples("covariance", covariance, entries)?;
-        check_length("factor", entries, factor.len())?;
-        check_symmetric(covariance, order)?;
-        factor.copy_from_slice(covariance);
-        for row in 0..order {
-            let (above, current) = factor.split_at_mut(row * order);
-            for column in 0..row {
-                let pivot_row = &above[column * order..][..order];
-                let sum = compensated::dot(&current[..column], &pivot_row[..column], 1.0).value();
-                current[column] = (current[column] - sum) / pivot_row[column];
-            }
-            let sum = compensated::dot(&current[..row], &current[..row], 1.0);
-            current[row] = pivot(current[row], sum, order, row)?;
-        }
-        Ok(Self {
-            order,
-            factor: storage,
-        })
-    }
-
-    /// L⁻¹v, whose noise is white with standard deviation 1.
-    ///
-    /// # Errors
-    /// Lengths other than the order; NaN or infinity.
-    ///
-    /// Implements: DET-040.
-    pub fn whiten(&self, vector: &[f64], white: &mut [f64]) -> Result<(), DetectError> {
-        check_samples("vector", vector, self.order)?;
-        check_length("white", self.order, white.len())?;
-        for (row, sample) in vector.iter().enumerate() {
-            let factor = &self.factor.as_ref()[row * self.order..][..=row];
-            let known = compensated::dot(&factor[..row], &white[..row], 1.0).value();
-            white[row] = (sample - known) / factor[row];
-        }
-        Ok(())
+/// L⁻¹v, whose noise is white with standard deviation 1.
+///
+/// Implements: DET-040.
+fn whiten(factor: &[f64], vector: &[f64], white: &mut [f64]) {
+    for (row, sample) in vector.iter().enumerate() {
+        let factor = &factor[row * vector.len()..][..=row];
+        let known = compensated::dot(&factor[..row], &white[..row], 1.0).value();
+        white[row] = (sample - known) / factor[row];
     }
 }
 

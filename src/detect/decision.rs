@@ -150,16 +150,6 @@ pub fn neyman_pearson_false_alarm_threshold(
 /// P_fa = Φ(−(η + γ²/2)/γ) and P_miss = Φ((η − γ²/2)/γ). With γ = 0, Θ is always 0 and equation (9)
 /// decides.
 ///
-/// ```
-/// use palpate::detect::{error_rates, required_gamma};
-///
-/// // At η = 0 both are Φ(−γ/2).
-/// let rates = error_rates(required_gamma(0.05, 0.05)?, 0.0)?;
-/// assert!((rates.false_alarm - 0.05).abs() < 1e-15);
-/// assert!((rates.miss - 0.05).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// γ not finite or < 0; η not finite.
 ///

@@ -8,15 +8,6 @@ use crate::stats::error::{check_not_negative, check_samples, in_range, represent
 /// The likelihood ratio of "an inclusion at some depth", ln Σ π_m exp(θ_m), for a prior π_m over
 /// the depths given an inclusion.
 ///
-/// ```
-/// use palpate::detect::mixture::mixture_theta;
-///
-/// // ln(½ e^0 + ½ e^ln 3) = ln 2.
-/// let theta = mixture_theta(&[0.0, 3.0_f64.ln()], &[0.5, 0.5])?;
-/// assert!((theta - 2.0_f64.ln()).abs() < 1e-15);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// Empty or unequal lengths; θ not finite; priors that are negative or do not add up to 1 within
 /// 10⁻⁹.

@@ -3,8 +3,8 @@
 //! arguments, rounded once.
 
 use super::*;
-use crate::stats::check::{assert_near, assert_ulps};
-use std::{vec, vec::Vec};
+use crate::stats::tests::{assert_near, assert_ulps};
+use std::{format, vec, vec::Vec};
 extern crate std;
 
 const TEMPLATE: Force<&[f64]> = Force::new(&[0.25, -0.5, 0.125, 0.3], &[0.34, 0.31, 0.22, 0.05]);
@@ -58,16 +58,8 @@ fn long_sums_that_cancel_stay_exact() {
     // r·Δ runs through 1.5, 2^80 + 2^39, 1.5, −2^80 + 2^39: plain summation loses every 1.5.
     const SAMPLES: usize = 1_000_000;
     let big = 2_f64.powi(40);
-    let template: Vec<f64> = (0..SAMPLES)
-        .map(|i| if i % 2 == 0 { 1.0 } else { big })
-        .collect();
-    let residual: Vec<f64> = (0..SAMPLES)
-        .map(|i| match i % 4 {
-            1 => big + 0.5,
-            3 => -big + 0.5,
-            _ => 1.0 + 0.5,
-        })
-        .collect();
+    let template = [1.0, big, 1.0, big].repeat(SAMPLES / 4);
+    let residual = [1.5, big + 0.5, 1.5, -big + 0.5].repeat(SAMPLES / 4);
     let zeros = vec![0.0; SAMPLES];
     // Σ rΔ = Σ(even) 1.5 + Σ(odd) ½·2^40, of terms of 2^80.
     let expected = (SAMPLES / 2) as f64 * 1.5 + (SAMPLES / 2) as f64 * 0.5 * big;
@@ -94,6 +86,20 @@ fn floats(integers: &[i128]) -> Vec<f64> {
     integers.iter().map(|&i| i as f64).collect()
 }
 
+/// Asserts that θ is within the stated bound of Σ rΔ − ½ΣΔ² for whole numbers (r, Δ): 2θ is a whole number too, or its nearest f64.
+fn assert_exact(theta: f64, pairs: impl Iterator<Item = (i128, i128)>) {
+    // Twice Θ and twice the size, exactly; 10⁶ · 2^101 is below 2^121.
+    let (mut twice, mut size) = (0_i128, 0_i128);
+    for (r, t) in pairs {
+        twice += 2 * r * t - t * t;
+        size += 2 * (r * t).abs() + t * t;
+    }
+    let error = ((2.0 * theta) as i128 - twice).unsigned_abs() as f64;
+    let bound = 2.5 * f64::EPSILON * twice.unsigned_abs() as f64 + 1e-19 * size as f64;
+    let found = format!("error {error:e}, bound {bound:e}, of {twice:e}");
+    assert!(error <= bound + 1.0, "{found}");
+}
+
 // Verifies: DET-014.
 #[test]
 fn a_million_samples_are_within_the_stated_bound_of_exact_arithmetic() {
@@ -103,38 +109,13 @@ fn a_million_samples_are_within_the_stated_bound_of_exact_arithmetic() {
     // Plain noise, and a residual Δ/2 + small, where Σ rΔ − ½ΣΔ² cancels to a part in 10⁷ or so.
     let plain = integers(1, SAMPLES, 50);
     let small = integers(2, SAMPLES, 30);
-    let half: Vec<i128> = template
-        .iter()
-        .zip(&small)
-        .map(|(t, s)| t / 2 + s)
-        .collect();
-    for residual in [plain, half] {
-        // Twice Θ and twice the size, exactly; 10⁶ · 2^101 is below 2^121.
-        let twice: i128 = residual
-            .iter()
-            .zip(&template)
-            .map(|(r, t)| 2 * r * t - t * t)
-            .sum();
-        let size: i128 = residual
-            .iter()
-            .zip(&template)
-            .map(|(r, t)| 2 * (r * t).abs() + t * t)
-            .sum();
-        let (template, residual) = (floats(&template), floats(&residual));
+    let half = template.iter().zip(&small).map(|(t, s)| t / 2 + s);
+    for residual in [plain, half.collect()] {
+        let (t, r) = (floats(&template), floats(&residual));
         let unit = Force::new(1.0, 1.0);
-        let filter = MatchedFilter::new(Force::new(&template, &zeros), unit).unwrap();
-        let theta = filter
-            .statistic(Force::new(&residual, &zeros))
-            .unwrap()
-            .theta;
-        // Twice θ is a whole number here too, and its distance from the exact one is taken in whole
-        // numbers.
-        let error = ((2.0 * theta) as i128 - twice).unsigned_abs() as f64;
-        let bound = 2.5 * f64::EPSILON * twice.unsigned_abs() as f64 + 1e-19 * size as f64;
-        assert!(
-            error <= bound + 1.0,
-            "error {error:e}, bound {bound:e}, of {twice:e}"
-        );
+        let filter = MatchedFilter::new(Force::new(&t, &zeros), unit).unwrap();
+        let found = filter.statistic(Force::new(&r, &zeros)).unwrap();
+        assert_exact(found.theta, residual.into_iter().zip(template.clone()));
     }
 }
 
@@ -144,9 +125,7 @@ fn rounding_errors_of_one_sign_do_not_add_up() {
     // (2^27+1)² has 55 bits, and every second product of this sum loses a 1: all in the same
     // direction.
     let factor = 134_217_729.0;
-    let a: Vec<f64> = (0..100_000)
-        .map(|i| if i % 2 == 0 { factor } else { 1.0 - factor })
-        .collect();
+    let a = [factor, 1.0 - factor].repeat(50_000);
     let b = vec![factor; 100_000];
     let exact = 50_000.0 * factor;
     assert_eq!(crate::stats::compensated::dot(&a, &b, 1.0).value(), exact);
@@ -171,22 +150,11 @@ fn differences_of_forces_are_not_rounded() {
     const SAMPLES: usize = 500;
     let [observed, f0, f1] = [3, 4, 5].map(|stream| integers(stream, SAMPLES, 53));
     let zeros = vec![0.0; SAMPLES];
-    let (mut twice, mut size) = (0_i128, 0_i128);
-    for i in 0..SAMPLES {
-        let (r, t) = (observed[i] - f0[i], f1[i] - f0[i]);
-        twice += 2 * r * t - t * t;
-        size += 2 * (r * t).abs() + t * t;
-    }
-    let [observed, f0, f1] = [observed, f0, f1].map(|forces| floats(&forces));
-    let channels = |x| Force::new(x, &zeros[..]);
-    let unit = Force::new(1.0, 1.0);
-    let found = theta_of_record(channels(&observed), channels(&f0), channels(&f1), unit).unwrap();
-    let error = ((2.0 * found.theta) as i128 - twice).unsigned_abs() as f64;
-    let bound = 2.5 * f64::EPSILON * twice.unsigned_abs() as f64 + 1e-19 * size as f64;
-    assert!(
-        error <= bound,
-        "error {error:e}, bound {bound:e}, of {twice:e}"
-    );
+    let pairs = (0..SAMPLES).map(|i| (observed[i] - f0[i], f1[i] - f0[i]));
+    let series = [&observed, &f0, &f1].map(|forces| floats(forces));
+    let [observed, f0, f1] = series.each_ref().map(|x| Force::new(&x[..], &zeros[..]));
+    let found = theta_of_record(observed, f0, f1, Force::new(1.0, 1.0)).unwrap();
+    assert_exact(found.theta, pairs);
 }
 
 // Verifies: DET-016.
@@ -195,12 +163,7 @@ fn units_of_any_size_give_the_same_gamma_and_theta() {
     // Powers of two: every result must be the same to the bit, unless the samples become subnormal.
     for power in [-900, -300, 40, 900] {
         let unit = 2_f64.powi(power);
-        let scale = |samples: &[f64]| {
-            samples
-                .iter()
-                .map(|sample| sample * unit)
-                .collect::<Vec<_>>()
-        };
+        let scale = |samples: &[f64]| -> Vec<f64> { samples.iter().map(|s| s * unit).collect() };
         let (tx, ty) = (scale(TEMPLATE.lateral), scale(TEMPLATE.normal));
         let (rx, ry) = (scale(RESIDUAL.lateral), scale(RESIDUAL.normal));
         let filter =
@@ -224,9 +187,8 @@ fn units_of_any_size_give_the_same_gamma_and_theta() {
 fn channel_without_signal_contributes_nothing() {
     let filter = MatchedFilter::new(Force::new(&[0.0, 0.0], &[3.0, 4.0]), Force::new(1e-9, 1.0));
     let filter = filter.unwrap();
-    let found = filter
-        .statistic(Force::new(&[1e9, -1e9], &[3.0, 4.0]))
-        .unwrap();
+    let found = filter.statistic(Force::new(&[1e9, -1e9], &[3.0, 4.0]));
+    let found = found.unwrap();
     assert_eq!(found.y.lateral, 0.0);
     assert_eq!(found.theta, 12.5);
     assert_eq!(filter.gamma(), 5.0);
@@ -238,16 +200,18 @@ fn records_that_cannot_be_judged_are_refused() {
     let samples = [1.0, 2.0];
     let good: Force<&[f64]> = Force::new(&samples, &samples);
     let sd = Force::new(1.0, 1.0);
+    fn filter_of(x: &[f64], y: &[f64], sd: Force<f64>) -> DetectError {
+        MatchedFilter::new(Force::new(x, y), sd).unwrap_err()
+    }
+    let empty = DetectError::Empty { what: "template_x" };
+    assert_eq!(filter_of(&[], &[], sd), empty);
+    let (what, expected, found) = ("template_y", 2, 1);
     assert_eq!(
-        MatchedFilter::new(Force::new(&[], &[]), sd).unwrap_err(),
-        DetectError::Empty { what: "template_x" }
-    );
-    assert_eq!(
-        MatchedFilter::new(Force::new(&samples, &[1.0]), sd).unwrap_err(),
+        filter_of(&samples, &[1.0], sd),
         DetectError::LengthMismatch {
-            what: "template_y",
-            expected: 2,
-            found: 1
+            what,
+            expected,
+            found
         }
     );
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -257,26 +221,19 @@ fn records_that_cannot_be_judged_are_refused() {
         let statistic = |x, y| filter.statistic(Force::new(x, y)).unwrap_err();
         assert_eq!(statistic(&bad, &samples), expected("residual_x"));
         assert_eq!(statistic(&samples, &bad), expected("residual_y"));
-        let template = Force::new(&samples[..], &bad);
-        assert_eq!(
-            MatchedFilter::new(template, sd).unwrap_err(),
-            expected("template_y")
-        );
+        assert_eq!(filter_of(&samples, &bad, sd), expected("template_y"));
         for position in 0..6 {
             let mut series = [&samples[..]; 6];
             series[position] = &bad;
             let [ox, oy, ax, ay, bx, by] = series;
-            let channels = |x, y| Force::new(x, y);
-            let names = ["observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y"];
-            assert_eq!(
-                theta_of_record(channels(ox, oy), channels(ax, ay), channels(bx, by), sd)
-                    .unwrap_err(),
-                expected(names[position])
-            );
+            let [record, f0, f1] = [(ox, oy), (ax, ay), (bx, by)].map(|(x, y)| Force::new(x, y));
+            let what = ["observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y"][position];
+            let found = theta_of_record(record, f0, f1, sd);
+            assert_eq!(found.unwrap_err(), expected(what));
         }
     }
     for bad in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let found = MatchedFilter::new(good, Force::new(1.0, bad)).unwrap_err();
+        let found = filter_of(&samples, &samples, Force::new(1.0, bad));
         assert!(matches!(
             found,
             DetectError::OutOfRange {
@@ -285,8 +242,8 @@ fn records_that_cannot_be_judged_are_refused() {
             }
         ));
     }
-    let found = MatchedFilter::new(Force::new(&[1e300], &[0.0]), Force::new(1e-300, 1.0));
-    assert_eq!(found.unwrap_err(), DetectError::Overflow { what: "gamma" });
+    let found = filter_of(&[1e300], &[0.0], Force::new(1e-300, 1.0));
+    assert_eq!(found, DetectError::Overflow { what: "gamma" });
 }
 
 const fn costs(c00: f64, c01: f64, c10: f64, c11: f64) -> Costs {
@@ -318,11 +275,8 @@ fn threshold_of_largest_posterior() {
 fn threshold_of_least_cost() {
     let costs = costs(1.0, 500.0, 20.0, 5.0);
     // The sum of two logarithms of about 3.9 and −3.3: four roundings of 4.
-    assert_near(
-        bayes_threshold(0.02, costs).unwrap(),
-        0.6317015147083768,
-        16.0 * f64::EPSILON,
-    );
+    let eta = bayes_threshold(0.02, costs).unwrap();
+    assert_near(eta, 0.6317015147083768, 16.0 * f64::EPSILON);
     assert_eq!(bayes_threshold(0.02, ZERO_ONE), map_threshold(0.02));
 }
 
@@ -362,12 +316,9 @@ fn rates_of_error_at_a_threshold() {
         let rates = error_rates(gamma, eta).unwrap();
         // Two roundings of z = η/γ ± γ/2 change Φ(−z) by at most 2u z² of itself.
         let ulps = |z: f64| 4.0 + 4.0 * z * z;
-        assert_ulps(
-            rates.false_alarm,
-            false_alarm,
-            ulps(eta / gamma + gamma / 2.0),
-        );
-        assert_ulps(rates.miss, miss, ulps(eta / gamma - gamma / 2.0));
+        let (middle, half) = (eta / gamma, gamma / 2.0);
+        assert_ulps(rates.false_alarm, false_alarm, ulps(middle + half));
+        assert_ulps(rates.miss, miss, ulps(middle - half));
     }
     // Θ ≡ 0 decides by equation (9) alone.
     for (gamma, eta, false_alarm, miss) in [
@@ -408,12 +359,9 @@ fn operating_characteristic() {
 // Verifies: DET-029, DET-030.
 #[test]
 fn signal_to_noise_ratio_for_given_rates() {
-    assert_ulps(required_gamma(0.05, 0.05).unwrap(), 3.2897072539029453, 4.0);
-    assert_ulps(
-        required_gamma(0.001, 0.05).unwrap(),
-        4.7350859331192865,
-        4.0,
-    );
+    for (rate, gamma) in [(0.05, 3.2897072539029453), (0.001, 4.7350859331192865)] {
+        assert_ulps(required_gamma(rate, 0.05).unwrap(), gamma, 4.0);
+    }
     assert_eq!(required_gamma(0.5, 0.5), Ok(0.0));
     assert_eq!(required_gamma(0.9, 0.5), Ok(0.0));
     for (p, expected) in [
@@ -468,19 +416,12 @@ fn questions_without_a_finite_answer_are_refused() {
         assert!(neyman_pearson_false_alarm_threshold(gamma, 0.1).is_err());
     }
     assert!(error_rates(1.0, f64::NAN).is_err() && posterior(f64::NAN, 0.5).is_err());
-    assert_eq!(
-        neyman_pearson_false_alarm_threshold(0.0, 0.1),
-        Err(DetectError::NoSignal)
-    );
+    let without_signal = neyman_pearson_false_alarm_threshold(0.0, 0.1);
+    assert_eq!(without_signal, Err(DetectError::NoSignal));
     assert_eq!(neyman_pearson_miss_threshold(0.0, 0.1), Ok(0.0));
     assert!(neyman_pearson_miss_threshold(1e200, 0.1).is_err());
-    for (c01, c10) in [
-        (0.0, 1.0),
-        (1.0, 0.0),
-        (-1.0, 1.0),
-        (f64::INFINITY, 1.0),
-        (1.0, f64::NAN),
-    ] {
+    let (inf, nan) = (f64::INFINITY, f64::NAN);
+    for (c01, c10) in [(0.0, 1.0), (1.0, 0.0), (-1.0, 1.0), (inf, 1.0), (1.0, nan)] {
         assert!(bayes_threshold(0.5, costs(0.0, c01, c10, 0.0)).is_err());
     }
 }

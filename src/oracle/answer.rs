@@ -2,17 +2,23 @@
 
 use std::fmt::Display;
 
-use serde::{Serialize, Serializer};
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize, Serializer};
+use serde_json::Value;
 
 use crate::fem::FemError;
 use crate::stats::NumericError;
 
 /// What an op gives: values by name. A number that is not finite is a `null`.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Answer(Vec<(&'static str, Value)>);
 
 impl Answer {
+    /// Values by name.
+    pub fn of<const N: usize>(values: [(&'static str, impl Into<Value>); N]) -> Answer {
+        let values = values.into_iter();
+        Answer(values.map(|(name, value)| (name, value.into())).collect())
+    }
+
     /// This answer with one more value.
     pub fn with(mut self, name: &'static str, value: impl Into<Value>) -> Answer {
         self.0.push((name, value.into()));
@@ -48,7 +54,8 @@ impl Serialize for Answer {
 /// The kind of a refusal.
 ///
 /// Implements: ORA-008.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Code {
     /// The line is no JSON.
     BadJson,
@@ -66,23 +73,8 @@ pub enum Code {
     Failed,
 }
 
-impl Code {
-    /// As it stands in an answer.
-    pub fn name(self) -> &'static str {
-        match self {
-            Code::BadJson => "bad_json",
-            Code::BadRequest => "bad_request",
-            Code::UnknownOp => "unknown_op",
-            Code::BadArgument => "bad_argument",
-            Code::OutOfRange => "out_of_range",
-            Code::Overflow => "overflow",
-            Code::Failed => "failed",
-        }
-    }
-}
-
 /// Why a request got no answer.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Refused {
     /// Its kind.
     pub code: Code,
@@ -144,10 +136,7 @@ pub fn write(id: &str, outcome: &Result<Answer, Refused>, out: &mut Vec<u8>) {
     // Memory takes everything, and these types can all be written.
     let _ = match outcome {
         Ok(answer) => serde_json::to_writer(&mut *out, answer),
-        Err(Refused { code, message }) => {
-            let error = json!({"code": code.name(), "message": message});
-            serde_json::to_writer(&mut *out, &error)
-        }
+        Err(refused) => serde_json::to_writer(&mut *out, refused),
     };
     out.extend_from_slice(b"}\n");
 }

@@ -88,11 +88,16 @@ impl<'a> Arguments<'a> {
     ///
     /// Implements: ORA-009.
     pub fn number(&mut self, name: &'static str) -> Result<f64, Refused> {
-        let text = self.text_of(name, "a number", "a number")?;
-        serde_json::from_str(text).map_err(|_| {
-            let wrong = "is beyond the largest f64, expected a finite number";
-            Refused::argument(format_args!("{name} {wrong}"))
-        })
+        read(name, self.text_of(name, "a number", "a number")?)
+    }
+
+    /// Finite numbers, each of a name.
+    pub fn each<const N: usize>(&mut self, names: [&'static str; N]) -> Result<[f64; N], Refused> {
+        let mut numbers = [0.0; N];
+        for (number, name) in numbers.iter_mut().zip(names) {
+            *number = self.number(name)?;
+        }
+        Ok(numbers)
     }
 
     /// A whole number from `least` to `most`, which is at most 2⁵³.
@@ -111,19 +116,14 @@ impl<'a> Arguments<'a> {
 
     /// A text.
     pub fn text(&mut self, name: &'static str) -> Result<String, Refused> {
-        let text = self.text_of(name, "a text", "a text")?;
-        let wrong = || format!("{name} is a text, expected a text");
-        serde_json::from_str(text).map_err(|_| Refused::argument(wrong()))
+        read(name, self.text_of(name, "a text", "a text")?)
     }
 
     /// The f32 whose bits are given, NaN and infinities included.
     ///
     /// Implements: ORA-023.
     pub fn bits(&mut self, name: &'static str) -> Result<f32, Refused> {
-        let text = self.text(name)?;
-        let Bits(value) = text
-            .try_into()
-            .map_err(|wrong| Refused::argument(format_args!("{name} {wrong}")))?;
+        let Bits(value) = read(name, self.text_of(name, "a text", "a text")?)?;
         Ok(value)
     }
 
@@ -152,18 +152,25 @@ impl<'a> Arguments<'a> {
             let wrong = format_args!("{name} has more entries than {MOST_ENTRIES}");
             return Err(Refused::range(wrong));
         }
-        serde_json::from_str(text).or_else(|_| {
-            // Once more, for the place of the wrong entry.
-            let mut reader = serde_json::Deserializer::from_str(text);
-            serde_path_to_error::deserialize(&mut reader).map_err(|error| {
-                let wrong = wrong_entry(&error.inner().to_string());
-                Refused::argument(format_args!("{name}{}{wrong}", error.path()))
-            })
-        })
+        read(name, text)
     }
 }
 
-/// What a reader of JSON says of an entry, in the words of this protocol.
+/// The value in a JSON text.
+fn read<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, Refused> {
+    serde_json::from_str(text).or_else(|_| {
+        // Once more, for the place of the wrong entry.
+        let mut reader = serde_json::Deserializer::from_str(text);
+        serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+            let wrong = wrong_entry(&error.inner().to_string());
+            let place = error.path().iter().map(ToString::to_string);
+            let place: String = place.collect();
+            Refused::argument(format_args!("{name}{place}{wrong}"))
+        })
+    })
+}
+
+/// What a reader of JSON says of a value, in the words of this protocol.
 fn wrong_entry(message: &str) -> String {
     // Line and column within an argument help nobody.
     let message = message.split(" at line ").next().unwrap_or_default();
@@ -171,6 +178,9 @@ fn wrong_entry(message: &str) -> String {
         Some((found, "f64")) => format!(": {found}, expected a finite number"),
         Some((found, "a sequence")) => format!(": {found}, expected a list"),
         Some((found, "a string")) => format!(": {found}, expected a text"),
+        _ if message == "number out of range" => {
+            " is beyond the largest f64, expected a finite number".into()
+        }
         // A text of bits says what is wrong with it by itself.
         _ if message.starts_with("is ") => format!(" {message}"),
         _ => format!(": {message}"),

@@ -15,17 +15,6 @@ const CHUNK: usize = 64 << 10;
 
 /// Answers every line of `input` on `output`, until the input ends.
 ///
-/// ```
-/// use palpate::oracle::serve;
-///
-/// let questions = "{\"id\":\"a\",\"op\":\"normal_cdf\",\"args\":{\"x\":0}}\n\n";
-/// let mut answers = Vec::new();
-/// serve(questions.as_bytes(), &mut answers)?;
-/// // Every line is answered, the empty one with an error.
-/// assert_eq!(answers.split(|&byte| byte == b'\n').count(), 3);
-/// # Ok::<(), std::io::Error>(())
-/// ```
-///
 /// # Errors
 /// What the system said of input or output, a reader who is gone (`BrokenPipe`) included.
 ///

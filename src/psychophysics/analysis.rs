@@ -43,8 +43,7 @@ pub struct InclusionAnalysis {
     /// Its name: untrusted text.
     pub name: String,
     /// The depth of its top, m.
-    #[serde(rename = "depth_m")]
-    pub depth: f64,
+    pub depth_m: f64,
     /// All answers as one sample: the paper's way.
     pub pooled: Rate,
     /// The subjects as the sample; `None` for one subject or if none differs.
@@ -66,15 +65,6 @@ pub struct SubjectAnalysis {
 }
 
 /// The analysis of a table.
-///
-/// ```
-/// use palpate::psychophysics::{Table, analyse};
-///
-/// let text = "subject,condition,trials,2.6\nA,gel,20,20\nB,gel,20,10\n";
-/// let analysis = analyse(&Table::from_csv(text, "mine.csv")?)?;
-/// assert_eq!(analysis.conditions[0].inclusions[0].pooled.rate, 0.75);
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
 ///
 /// # Errors
 /// Never for counts that fit their trials, as a [`Table`] holds them.
@@ -122,7 +112,7 @@ fn analyse_inclusion(
     let (pooled, clustered) = pooled(condition, column)?;
     Ok(InclusionAnalysis {
         name: inclusion.name.clone(),
-        depth: inclusion.depth,
+        depth_m: inclusion.depth,
         pooled,
         clustered,
         dispersion: dispersion(&counts)?,

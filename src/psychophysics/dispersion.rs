@@ -28,16 +28,6 @@ pub struct Dispersion {
 /// χ² of the counts (right answers, pairs); `None` for one subject, or if all answers are right or
 /// all wrong.
 ///
-/// ```
-/// use palpate::psychophysics::dispersion;
-///
-/// // Each 5 from the 15 of 30 expected: χ² = 2 · 25/7.5.
-/// let found = dispersion(&[(10, 30), (20, 30)])?;
-/// assert!(found.is_some_and(|found| (found.chi_square - 20.0 / 3.0).abs() < 1e-12));
-/// assert_eq!(dispersion(&[(30, 30), (30, 30)])?, None);
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
-/// ```
-///
 /// # Errors
 /// Never for counts that fit their trials.
 ///

@@ -128,8 +128,8 @@ impl Journal {
     /// Implements: PSY-003.
     pub fn parse(text: &str) -> Result<Journal, Refusal> {
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-        let mut lines = (1..).zip(whole.lines());
-        let head: Vec<_> = lines.by_ref().take(6).collect();
+        // The lines after the end are empty.
+        let head = &mut (1..).zip(whole.lines().chain(std::iter::repeat("")));
         // A carriage return would not be read back, and no name of the program holds one.
         let name = |text: &str| (!text.chars().any(char::is_control)).then(|| text.to_string());
         let are_names = |text: &String| {
@@ -138,21 +138,19 @@ impl Journal {
         };
         let names = "and 1 to 100 names with commas between";
         let thousand = |trials: &usize| (1..=1000).contains(trials);
-        value(&head, 1, HEADER, "", |rest| rest.is_empty().then_some(()))?;
+        let number = |text: &str| text.parse().ok().filter(thousand);
+        let list = |text: &str| name(text).filter(are_names);
+        value(head, HEADER, "", |rest| rest.is_empty().then_some(()))?;
         let mut journal = Journal::new(Setup {
-            seed: value(&head, 2, "seed ", "and a whole number", |text| {
+            seed: value(head, "seed ", "and a whole number", |text| {
                 text.parse().ok()
             })?,
-            trials: value(&head, 3, "trials ", "and a number from 1 to 1000", |text| {
-                text.parse().ok().filter(thousand)
-            })?,
-            subject: value(&head, 4, "subject ", "and a name", name)?,
-            condition: value(&head, 5, "condition ", "and its name", name)?,
-            inclusions: value(&head, 6, "inclusions ", names, |text| {
-                name(text).filter(are_names)
-            })?,
+            trials: value(head, "trials ", "and a number from 1 to 1000", number)?,
+            subject: value(head, "subject ", "and a name", name)?,
+            condition: value(head, "condition ", "and its name", name)?,
+            inclusions: value(head, "inclusions ", names, list)?,
         });
-        for (number, line) in lines {
+        for (number, line) in (1..).zip(whole.lines()).skip(6) {
             let right = match line {
                 "right" => true,
                 "wrong" => false,
@@ -167,16 +165,14 @@ impl Journal {
     }
 }
 
-/// What `read` makes of the rest of line `number` of the head, which begins with `key`.
-fn value<T>(
-    head: &[(usize, &str)],
-    number: usize,
+/// What `read` makes of the rest of the next line of the head, which begins with `key`.
+fn value<'a, T>(
+    head: &mut impl Iterator<Item = (usize, &'a str)>,
     key: &str,
     expected: &str,
     read: impl Fn(&str) -> Option<T>,
 ) -> Result<T, Refusal> {
-    // The line after the end is empty.
-    let line = head.get(number - 1).map_or("", |(_, line)| line);
+    let (number, line) = head.next().unwrap_or_default();
     let value = line.strip_prefix(key).and_then(read);
     value.ok_or_else(|| refused(number, line, &format!("{key}{expected}")))
 }

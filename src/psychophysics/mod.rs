@@ -24,7 +24,7 @@
 //! let pooled = analysis.conditions[1].inclusions[2].pooled;
 //! assert_eq!((pooled.correct, pooled.trials), (253, 300));
 //! assert_eq!(pooled.gamma.gamma, Some(gamma_from_two_afc(253.0 / 300.0)?));
-//! # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+//! # Ok::<(), palpate::refusal::Refusal>(())
 //! ```
 
 mod analysis;
@@ -34,7 +34,6 @@ pub(crate) mod bridge;
 mod choice;
 mod conditions;
 mod dispersion;
-mod error;
 #[cfg(feature = "cli")]
 mod journal;
 pub(crate) mod noise;
@@ -52,8 +51,6 @@ pub use analysis::{Analysis, ConditionAnalysis, InclusionAnalysis, SubjectAnalys
 pub use beta_binomial::BetaBinomial;
 pub use conditions::{ConditionComparison, Difference, InclusionDifference};
 pub use dispersion::{Dispersion, dispersion};
-pub use error::PsychophysicsError;
-use error::Result;
 #[cfg(feature = "cli")]
 pub use journal::{Journal, Setup};
 pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};
@@ -63,3 +60,8 @@ pub use plan::{Interval, Trial, plan};
 pub use psychometric::{Parameter, Psychometric};
 pub use rates::{Bounds, CONFIDENCE, Clustered, GammaEstimate, OpenBounds, Rate};
 pub use table::{Condition, Inclusion, MOST_TRIALS, Subject, Table};
+
+use crate::refusal::Refusal;
+
+/// What an analysis found, or why it was refused.
+type Result<T, E = Refusal> = core::result::Result<T, E>;

@@ -39,17 +39,13 @@ pub struct NoiseLevel {
     /// Where it comes from.
     pub name: &'static str,
     /// The paper's number, N, if it prints one.
-    #[serde(rename = "printed_n")]
-    pub printed: Option<f64>,
+    pub printed_n: Option<f64>,
     /// Ours, N.
-    #[serde(rename = "noise_n")]
-    pub noise: f64,
+    pub noise_n: f64,
     /// The interval that follows from all answers together, N; `None` for sums of Table 2.
-    #[serde(rename = "pooled_bounds_n")]
-    pub pooled_bounds: Option<OpenBounds>,
+    pub pooled_bounds_n: Option<OpenBounds>,
     /// The interval with the subjects as the sample, N.
-    #[serde(rename = "clustered_bounds_n")]
-    pub clustered_bounds: Option<OpenBounds>,
+    pub clustered_bounds_n: Option<OpenBounds>,
     /// How it is computed, in words.
     pub formula: String,
     /// What that takes for granted.
@@ -60,17 +56,13 @@ pub struct NoiseLevel {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InclusionNoise {
     /// The signal, N.
-    #[serde(rename = "signal_n")]
-    pub signal: f64,
+    pub signal_n: f64,
     /// The noise, N; `None` if the answers set none: half or fewer right, or all right.
-    #[serde(rename = "noise_n")]
-    pub noise: Option<f64>,
+    pub noise_n: Option<f64>,
     /// From Clopper and Pearson's interval, N; an upper end that is missing is no bound.
-    #[serde(rename = "pooled_bounds_n")]
-    pub pooled_bounds: OpenBounds,
+    pub pooled_bounds_n: OpenBounds,
     /// With the subjects as the sample, N.
-    #[serde(rename = "clustered_bounds_n")]
-    pub clustered_bounds: Option<OpenBounds>,
+    pub clustered_bounds_n: Option<OpenBounds>,
 }
 
 impl InclusionNoise {
@@ -78,10 +70,10 @@ impl InclusionNoise {
     pub fn new(signal: f64, pooled: &Rate, clustered: Option<Clustered>) -> InclusionNoise {
         let (noise, pooled_bounds) = noise_bounds(signal, pooled.gamma);
         InclusionNoise {
-            signal,
-            noise,
-            pooled_bounds,
-            clustered_bounds: clustered.map(|found| noise_bounds(signal, found.gamma).1),
+            signal_n: signal,
+            noise_n: noise,
+            pooled_bounds_n: pooled_bounds,
+            clustered_bounds_n: clustered.map(|found| noise_bounds(signal, found.gamma).1),
         }
     }
 }
@@ -136,7 +128,7 @@ const SUMS: [(&str, Option<f64>, &[f64], &str); 3] = [
 /// assert!(levels.iter().filter_map(|level| level.printed).eq([0.235, 0.170, 0.220]));
 /// // 340 mN over the γ of 253 right answers of 300.
 /// assert!(levels.iter().any(|level| (level.noise - 0.340 / 1.4257).abs() < 1e-3));
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 ///
 /// # Errors
@@ -146,10 +138,10 @@ const SUMS: [(&str, Option<f64>, &[f64], &str); 3] = [
 pub fn paper_noise_levels() -> Result<NoiseDecomposition> {
     let printed = NoiseLevel {
         name: "answers to FEM playback at 6.6 mm, as printed",
-        printed: Some(0.235),
-        noise: PEAK_SIGNAL / PRINTED_GAMMA,
-        pooled_bounds: None,
-        clustered_bounds: None,
+        printed_n: Some(0.235),
+        noise_n: PEAK_SIGNAL / PRINTED_GAMMA,
+        pooled_bounds_n: None,
+        clustered_bounds_n: None,
         formula: format!("{} mN / {PRINTED_GAMMA}", millinewtons(PEAK_SIGNAL)),
         assumption: "γ is 1.45, as the paper read it off its Figure 9, where 84 % is 1.406",
     };
@@ -159,15 +151,15 @@ pub fn paper_noise_levels() -> Result<NoiseDecomposition> {
         let squares: Vec<String> = sources.iter().map(square).collect();
         levels.push(NoiseLevel {
             name,
-            printed: printed_sum,
-            noise: noise_total(sources)?.total,
+            printed_n: printed_sum,
+            noise_n: noise_total(sources)?.total,
             formula: format!("√({}) mN", squares.join(" + ")),
             assumption,
             ..printed.clone()
         });
     }
     Ok(NoiseDecomposition {
-        agreement: agreement(&levels[1], levels[2].noise),
+        agreement: agreement(&levels[1], levels[2].noise_n),
         levels,
     })
 }
@@ -180,10 +172,10 @@ fn from_answers() -> Result<NoiseLevel> {
     let peak = millinewtons(PEAK_SIGNAL);
     Ok(NoiseLevel {
         name: "answers to FEM playback at 6.6 mm",
-        printed: None,
-        noise: found.noise.unwrap_or_default(),
-        pooled_bounds: Some(found.pooled_bounds),
-        clustered_bounds: found.clustered_bounds,
+        printed_n: None,
+        noise_n: found.noise_n.unwrap_or_default(),
+        pooled_bounds_n: Some(found.pooled_bounds_n),
+        clustered_bounds_n: found.clustered_bounds_n,
         formula: format!("{peak} mN / (√2 Φ⁻¹({}/{}))", rate.correct, rate.trials),
         assumption: "all subjects have one noise, and decide by the force at the one position of the peak",
     })
@@ -217,12 +209,12 @@ fn agreement(answers: &NoiseLevel, explained: f64) -> String {
     format!(
         "The paper calls the {:.0} mN that Table 2 explains \"reasonable given the confidence intervals\" of the noise in the answers, {:.0} mN. It lies {}, and {}.",
         explained * 1e3,
-        answers.noise * 1e3,
+        answers.noise_n * 1e3,
         said(
             "all answers pooled, as the paper draws them",
-            answers.pooled_bounds
+            answers.pooled_bounds_n
         ),
-        said("the subjects as the sample", answers.clustered_bounds),
+        said("the subjects as the sample", answers.clustered_bounds_n),
     )
 }
 

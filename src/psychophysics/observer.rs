@@ -32,30 +32,6 @@ pub struct Felt {
 /// Plays `table` on `device` for `duration` of the device's time from the first force on, at most
 /// `patience` from the beginning.
 ///
-/// ```
-/// use palpate::force::Force;
-/// use palpate::force_map::{ForceTable, Matrix};
-/// use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
-/// use palpate::psychophysics::present;
-/// use palpate::servo::{Limits, LoadedTable};
-/// use std::time::Duration;
-///
-/// # let (depths, laterals) = (vec![0.0, 0.004], vec![-0.01, 0.01]);
-/// # let matrix = |force: f64| Matrix::from_fn(2, 2, |row, _| force * row as f64);
-/// // A map whose force grows from 0 to 1 N at 4 mm, and a hand that presses and sweeps.
-/// let map = ForceTable::new(depths, laterals, Force::new(matrix(0.0), matrix(1.0)))?;
-/// let loaded = LoadedTable::new(&map)?;
-/// let hand = Trajectory::probing(0.003, 0.008, Duration::from_secs(1));
-/// let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, vec![]);
-/// let limits = Limits::new(4.0, 0.05, 0.5, 20)?;
-/// let (half, second) = (Duration::from_millis(500), Duration::from_secs(1));
-/// let felt = present(device, loaded.table()?, limits, half, second)?;
-/// // 1 kHz for half a second, and pushed out of the gel.
-/// assert!(felt.forces.normal.len() > 480);
-/// assert!(felt.forces.normal.iter().all(|&force| (0.0..1.0).contains(&force)));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// # Errors
 /// The device was refused, or ended early.
 ///
@@ -78,12 +54,10 @@ pub fn present<D: HapticDevice>(
             began.get_or_insert(cycle.written);
             felt.depths.push(-f64::from(position.normal) * metres);
             felt.laterals.push(f64::from(position.lateral) * metres);
-            felt.forces
-                .lateral
-                .push(f64::from(cycle.force.lateral) * newtons);
-            felt.forces
-                .normal
-                .push(f64::from(cycle.force.normal) * newtons);
+            let force = cycle.force;
+            let forces = &mut felt.forces;
+            forces.lateral.push(f64::from(force.lateral) * newtons);
+            forces.normal.push(f64::from(force.normal) * newtons);
         }
         let until = began.map_or(patience, |began| began + duration);
         cycle.written < until
@@ -140,11 +114,11 @@ impl IdealObserver<'_> {
     ///
     /// Implements: PSY-011.
     pub fn theta(&self, felt: &Felt, draw: u64) -> Result<(f64, f64), Refusal> {
-        let expected = |table: &ForceTable| {
+        let expected = |table: &ForceTable| -> Result<_, Refusal> {
             let mut forces = Force::<Vec<f64>>::default();
             for (&depth, &lateral) in felt.depths.iter().zip(&felt.laterals) {
                 // Nothing is played above the surface.
-                let force = table.force(depth.max(0.0), lateral).map_err(refused)?;
+                let force = table.force(depth.max(0.0), lateral)?;
                 forces.lateral.push(force.lateral);
                 forces.normal.push(force.normal);
             }
@@ -167,8 +141,7 @@ impl IdealObserver<'_> {
             f0.as_deref(),
             f1.as_deref(),
             Force::new(self.noise_sd, self.noise_sd),
-        );
-        let statistic = statistic.map_err(refused)?;
+        )?;
         Ok((statistic.theta, statistic.gamma))
     }
 
@@ -181,10 +154,9 @@ impl IdealObserver<'_> {
     pub fn choose(&self, first: &Felt, second: &Felt, pair: u64) -> Result<Interval, Refusal> {
         let (of_first, _) = self.theta(first, 2 * pair)?;
         let (of_second, _) = self.theta(second, 2 * pair + 1)?;
-        Ok(if of_first >= of_second {
-            Interval::First
-        } else {
-            Interval::Second
+        Ok(match of_first >= of_second {
+            true => Interval::First,
+            false => Interval::Second,
         })
     }
 }

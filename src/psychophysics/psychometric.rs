@@ -21,11 +21,9 @@ const CELLS: u32 = 8;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Psychometric {
     /// m, the depth at which the share is half-way from ½ to 1 − λ, m.
-    #[serde(rename = "midpoint_m")]
-    pub midpoint: Parameter,
+    pub midpoint_m: Parameter,
     /// s, the scale of depth over which it falls, m.
-    #[serde(rename = "spread_m")]
-    pub spread: Parameter,
+    pub spread_m: Parameter,
     /// λ, the share of wrong answers to inclusions of any depth.
     pub lapse: Parameter,
     /// The shares at the inclusions.
@@ -158,8 +156,8 @@ impl Model {
             bounds.lower = bounds.lower.or(Some(0.0));
         }
         Ok(Psychometric {
-            midpoint: parameter(midpoint, &|m| self.over_spreads(m), self.midpoints),
-            spread: spread.map(libm::exp),
+            midpoint_m: parameter(midpoint, &|m| self.over_spreads(m), self.midpoints),
+            spread_m: spread.map(libm::exp),
             predicted: perceived.iter().map(|at| at.right(lapse.value)).collect(),
             lapse,
             deviance,

@@ -42,7 +42,7 @@ impl OpenBounds {
 /// assert!(rate.gamma.gamma.is_some_and(|gamma| (gamma - 1.406).abs() < 1e-3));
 /// // No γ is large enough for an answer that is always right.
 /// assert_eq!(Rate::new(30, 30)?.gamma.gamma, None);
-/// # Ok::<(), palpate::psychophysics::PsychophysicsError>(())
+/// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Rate {

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::choice::Count;
-use crate::csv::header_and_rows;
+use crate::csv::{fields, header_and_rows, wrong_header};
 use crate::decimal::parse_scaled;
 use crate::refusal::{Refusal, shortened};
 
@@ -100,10 +100,7 @@ impl Table {
     /// # Errors
     /// As [`Table::from_csv`], and if the file cannot be read as UTF-8.
     pub fn read(path: &Path) -> Result<Table, Refusal> {
-        let file = path.display().to_string();
-        let unread = |error| Refusal::state(format!("cannot be read: {error}"), "").at(1);
-        let text = crate::input::read(path).map_err(|error| unread(error).in_file(&file))?;
-        Table::from_csv(&text, &file)
+        crate::input::parse(path, Table::from_csv)
     }
 
     /// The table in `text`, the content of `file`.
@@ -179,9 +176,9 @@ impl Condition {
 fn inclusions(header: &str) -> Result<Vec<Inclusion>, Refusal> {
     let fields: Vec<&str> = header.split(',').map(str::trim).collect();
     let names = fields.strip_prefix(&KEYS).filter(|rest| !rest.is_empty());
-    let wrong = || Refusal::state(format!("header {:?}", shortened(header)), EXPECTED_HEADER);
+    let names = names.ok_or_else(|| wrong_header(header, EXPECTED_HEADER))?;
     let mut inclusions: Vec<Inclusion> = Vec::new();
-    for (number, name) in (KEYS.len() + 1..).zip(names.ok_or_else(wrong)?) {
+    for (number, name) in (KEYS.len() + 1..).zip(names) {
         let refused = |expected| refused(&format!("header, column {number}"), name, expected);
         let depth = name.split_whitespace().next_back();
         let depth = depth.and_then(|word| parse_scaled(word, -3));
@@ -202,15 +199,9 @@ fn subject(
     row: &str,
     inclusions: &[Inclusion],
 ) -> Result<(String, Subject), Refusal> {
-    let fields: Vec<&str> = row.split(',').map(str::trim).collect();
-    let expected = KEYS.len() + inclusions.len();
-    let (&[name, condition, trials, ref correct @ ..], true) =
-        (&fields[..], fields.len() == expected)
-    else {
-        let expected = format!("{expected}, as in the header {header:?}");
-        return Err(Refusal::state(format!("{} fields", fields.len()), expected));
-    };
-    for (column, name) in KEYS.iter().zip([name, condition]) {
+    let fields = fields(row, KEYS.len() + inclusions.len(), header)?;
+    let (keys, correct) = fields.split_at(KEYS.len());
+    for (column, name) in KEYS.iter().zip(&keys[..2]) {
         if name.is_empty() || !is_plain(name) {
             return Err(refused(column, name, "a name of printable characters"));
         }
@@ -221,16 +212,16 @@ fn subject(
         let expected = || format!("a whole number from {first} to {of}");
         number.ok_or_else(|| refused(column, text, &expected()))
     };
-    let trials = whole(KEYS[2], trials, 1, MOST_TRIALS, &MOST_TRIALS.to_string())?;
+    let trials = whole(KEYS[2], keys[2], 1, MOST_TRIALS, &MOST_TRIALS.to_string())?;
     let of_row = format!("the {trials} trials of the row");
     let correct = inclusions.iter().zip(correct);
     let correct = correct.map(|(of, field)| whole(&of.name, field, 0, trials, &of_row));
     let subject = Subject {
-        name: name.into(),
+        name: keys[0].into(),
         trials,
         correct: correct.collect::<Result<_, _>>()?,
     };
-    Ok((condition.into(), subject))
+    Ok((keys[1].into(), subject))
 }
 
 fn refused(column: &str, found: &str, expected: &str) -> Refusal {

@@ -2,15 +2,6 @@
 
 use super::*;
 
-/// The numbers of a table, whose rows are lines.
-pub fn numbers<const N: usize>(table: &str) -> Vec<[f64; N]> {
-    let row = |line: &str| {
-        let cells = line.split_whitespace().map(|cell| cell.parse().unwrap());
-        cells.collect::<Vec<f64>>().try_into().unwrap()
-    };
-    table.trim().lines().map(row).collect()
-}
-
 // Verifies: PSY-001, PSY-002.
 #[test]
 fn a_plan_is_balanced_mixed_and_drawn_from_its_seed() {
@@ -36,9 +27,8 @@ fn every_order_and_every_side_comes_as_often_as_it_should() {
             pairs.iter().fold(0, |sum, trial| base * sum + digit(trial))
         };
         orders[number(3, &|trial| trial.inclusion)] += 1;
-        sides[number(2, &|trial| {
-            usize::from(trial.with_inclusion == Interval::First)
-        })] += 1;
+        let is_first = |trial: &Trial| usize::from(trial.with_inclusion == Interval::First);
+        sides[number(2, &is_first)] += 1;
     }
     // Six standard deviations of a binomial count: 2e-9 each.
     let near = |count: u64, share: f64| {
@@ -47,13 +37,14 @@ fn every_order_and_every_side_comes_as_often_as_it_should() {
         (count as f64 - expected).abs() < 6.0 * sd
     };
     let seen: Vec<u64> = orders.into_iter().filter(|&count| count > 0).collect();
+    assert_eq!(seen.len(), 6, "{orders:?}");
+    let mut counts = seen
+        .iter()
+        .map(|&n| (n, 6.0))
+        .chain(sides.map(|n| (n, 8.0)));
     assert!(
-        seen.len() == 6 && seen.iter().all(|&count| near(count, 1.0 / 6.0)),
-        "{orders:?}"
-    );
-    assert!(
-        sides.iter().all(|&count| near(count, 1.0 / 8.0)),
-        "{sides:?}"
+        counts.all(|(count, of)| near(count, 1.0 / of)),
+        "{orders:?} {sides:?}"
     );
 }
 
@@ -72,21 +63,16 @@ mod observer {
     /// A gel of 300 N/m, with a bump of the normal force of `bump` (N/m of depth) about x = 0.
     fn map(bump: f64) -> ForceTable {
         let depths: Vec<f64> = (0..9).map(|row| f64::from(row) * 0.5e-3).collect();
-        let laterals: Vec<f64> = (-20..=20)
-            .map(|column| f64::from(column) * 0.5e-3)
-            .collect();
+        let laterals = (-20..=20).map(|column| f64::from(column) * 0.5e-3);
+        let laterals: Vec<f64> = laterals.collect();
         let shape = |x: f64| (-(x / 3e-3) * (x / 3e-3)).exp();
         let matrix = |force: &dyn Fn(f64, f64) -> f64| {
             Matrix::from_fn(9, 41, |row, column| force(depths[row], laterals[column]))
         };
         let normal = matrix(&|d, x| d * (300.0 + bump * shape(x)));
         let lateral = matrix(&|d, x| d * bump * 60.0 * x * shape(x));
-        ForceTable::new(
-            depths.clone(),
-            laterals.clone(),
-            Force::new(lateral, normal),
-        )
-        .unwrap()
+        let forces = Force::new(lateral, normal);
+        ForceTable::new(depths.clone(), laterals.clone(), forces).unwrap()
     }
 
     /// One sample of half a second, felt through the shipped loop.

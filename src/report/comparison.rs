@@ -104,13 +104,14 @@ pub fn table(
     let subjects = playback.and_then(|(bridge, (condition, fit))| {
         let index = bridge.inclusions.iter().position(|of| of.name == PRINTED)?;
         let of = condition.noise_by_inclusion.get(index)?;
-        Some((fit, of.signal, of.noise?, of.clustered_bounds))
+        Some((fit, of.signal_n, of.noise_n?, of.clustered_bounds_n))
     });
     let rates = playback.and_then(|(bridge, (condition, fit))| {
         let common = fit.common.as_ref()?;
+        let noise = common.noise_n;
         let each = bridge.inclusions.iter().zip(&condition.observed);
         let each = each.zip(&common.predicted);
-        Some(each.map(|((inclusion, observed), share)| (inclusion, observed, common.noise, *share)))
+        Some(each.map(move |((inclusion, observed), share)| (inclusion, observed, noise, *share)))
     });
     let study = Known {
         nearest: peaks.iter().min_by(|a, b| {
@@ -145,8 +146,8 @@ impl Known<'_> {
         let of_accuracy = gamma_from_two_afc(paper::ACCURACY_6_6)?;
         let printed = self.peaks.iter().find(|(name, _)| *name == PRINTED);
         let noise_of = |printed: f64| {
-            let level = noise.levels.iter().find(|of| of.printed == Some(printed));
-            (force, printed, level.map(|level| level.noise))
+            let level = noise.levels.iter().find(|of| of.printed_n == Some(printed));
+            (force, printed, level.map(|level| level.noise_n))
         };
         let of_subjects = self.subjects.map(|(_, _, noise, _)| noise);
         let to_display = self.remaining(allowed, paper::HUMAN_NOISE);

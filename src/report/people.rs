@@ -4,7 +4,8 @@ use super::maps::MapFindings;
 use super::text::extremes;
 use super::{Study, paper};
 use crate::psychophysics::bridge::{Bridge, bridge};
-use crate::psychophysics::{Analysis, Bounds, PsychophysicsError, Table};
+use crate::psychophysics::{Analysis, Bounds, Table};
+use crate::refusal::Refusal;
 use crate::stats::normal;
 
 /// The bridge from those maps of `study` whose findings are in `compared` to the answers of `table`; `None` with fewer than two.
@@ -17,7 +18,7 @@ pub(super) fn bridge_to(
     table: &Table,
     study: &Study,
     compared: &[MapFindings],
-) -> Result<Option<Bridge>, PsychophysicsError> {
+) -> Result<Option<Bridge>, Refusal> {
     let columns = paper::INCLUSIONS.into_iter().filter_map(|name| {
         let of_map = |map: &MapFindings| map.paper_phantom == Some(name);
         let index = compared.iter().position(of_map)?;

@@ -14,4 +14,4 @@ mod ziggurat;
 pub use error::NumericError;
 
 #[cfg(test)]
-pub(crate) mod check;
+pub(crate) mod tests;

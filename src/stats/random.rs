@@ -38,15 +38,6 @@ impl Generator {
     }
 
     /// Philox4x64-10 of one counter.
-    ///
-    /// ```
-    /// use palpate::stats::random::Generator;
-    ///
-    /// // A known answer of the authors' Random123.
-    /// let words = Generator::new(0, 0).words([0; 4]);
-    /// assert_eq!(words[0], 0x1655_4d9e_ca36_314c);
-    /// assert_eq!(words[3], 0x7e68_b68a_ec7b_a23b);
-    /// ```
     #[inline]
     pub fn words(&self, counter: [u64; 4]) -> [u64; 4] {
         const MULTIPLIERS: [u64; 2] = [0xD2E7_470E_E14C_6C93, 0xCA5A_8263_9512_1157];

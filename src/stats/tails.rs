@@ -90,14 +90,6 @@ pub fn student_two_sided(t: f64, degrees: f64) -> Result<f64, NumericError> {
 
 /// The t that |T| stays below with probability `confidence`.
 ///
-/// ```
-/// use palpate::stats::tails::student_quantile;
-///
-/// // Ten subjects.
-/// assert!((student_quantile(0.95, 9.0)? - 2.2621571628).abs() < 1e-9);
-/// # Ok::<(), palpate::stats::NumericError>(())
-/// ```
-///
 /// # Errors
 /// A confidence not strictly between 0 and 1; as [`student_two_sided`].
 ///

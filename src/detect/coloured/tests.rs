@@ -4,10 +4,10 @@
 use super::super::stationary::{banded_scratch, theta_banded, theta_stationary};
 use super::super::{Force, MatchedFilter};
 use super::*;
-use crate::stats::check::assert_near;
 use crate::stats::random::Generator;
+use crate::stats::tests::assert_near;
 extern crate std;
-use std::{vec, vec::Vec};
+use std::{format, vec, vec::Vec};
 
 const COVARIANCE: [[f64; 6]; 6] = [
     [0.04, 0.01, 0.002, 0.005, 0.0, 0.001],
@@ -25,12 +25,8 @@ fn dense(
     template: &[f64],
     covariance: &[f64],
 ) -> Result<ColouredStatistic, DetectError> {
-    theta_coloured(
-        residual,
-        template,
-        covariance,
-        &mut vec![0.0; coloured_scratch(template.len())],
-    )
+    let scratch = &mut vec![0.0; coloured_scratch(template.len())];
+    theta_coloured(residual, template, covariance, scratch)
 }
 
 /// The condition number of every covariance here is below 100, and each of the orders ≤ 200 of
@@ -50,17 +46,10 @@ fn dense_covariance_with_both_channels_correlated() {
 fn forces_in_other_units_give_the_same_statistic() {
     let expected = dense(&RESIDUAL, &TEMPLATE, COVARIANCE.as_flattened()).unwrap();
     for unit in [2_f64.powi(-500), 2_f64.powi(500)] {
-        let scaled =
-            |values: &[f64], unit: f64| values.iter().map(|v| v * unit).collect::<Vec<_>>();
+        let scaled = |of: &[f64], unit: f64| -> Vec<f64> { of.iter().map(|v| v * unit).collect() };
+        let [residual, template] = [RESIDUAL, TEMPLATE].map(|of| scaled(&of, unit));
         let covariance = scaled(COVARIANCE.as_flattened(), unit * unit);
-        assert_eq!(
-            dense(
-                &scaled(&RESIDUAL, unit),
-                &scaled(&TEMPLATE, unit),
-                &covariance
-            ),
-            Ok(expected)
-        );
+        assert_eq!(dense(&residual, &template, &covariance), Ok(expected));
     }
 }
 
@@ -74,31 +63,24 @@ fn covariances_that_are_none_are_refused() {
         }
         dense(&RESIDUAL, &TEMPLATE, covariance.as_flattened()).unwrap_err()
     };
-    assert_eq!(
-        change(&[(0, 3, 0.0051)]),
-        DetectError::NotSymmetric { row: 3, column: 0 }
-    );
-    // Correlation above 1, a variance of 0 and below 0, and two samples that are one.
-    let strong = change(&[(0, 1, 0.05), (1, 0, 0.05)]);
-    assert_eq!(strong, DetectError::NotPositiveDefinite { pivot: 1 });
-    assert_eq!(
-        change(&[(4, 4, 0.0)]),
-        DetectError::NotPositiveDefinite { pivot: 4 }
-    );
-    assert_eq!(
-        change(&[(4, 4, -1.0)]),
-        DetectError::NotPositiveDefinite { pivot: 4 }
-    );
+    use DetectError::{NotFinite, NotPositiveDefinite, NotSymmetric};
+    let (what, index) = ("covariance", 14);
+    for (changes, expected) in [
+        (&[(0, 3, 0.0051)][..], NotSymmetric { row: 3, column: 0 }),
+        // Correlation above 1, a variance of 0 and below 0, and two samples that are one.
+        (
+            &[(0, 1, 0.05), (1, 0, 0.05)],
+            NotPositiveDefinite { pivot: 1 },
+        ),
+        (&[(4, 4, 0.0)], NotPositiveDefinite { pivot: 4 }),
+        (&[(4, 4, -1.0)], NotPositiveDefinite { pivot: 4 }),
+        (&[(2, 2, f64::NAN)], NotFinite { what, index }),
+    ] {
+        assert_eq!(change(changes), expected);
+    }
     let singular = [0.1, 0.3, 0.3, 0.9].map(|v: f64| v / 3.0);
     let found = dense(&[0.0, 1.0], &[1.0, 0.0], &singular).unwrap_err();
-    assert_eq!(found, DetectError::NotPositiveDefinite { pivot: 1 });
-    assert_eq!(
-        change(&[(2, 2, f64::NAN)]),
-        DetectError::NotFinite {
-            what: "covariance",
-            index: 14
-        }
-    );
+    assert_eq!(found, NotPositiveDefinite { pivot: 1 });
 }
 
 // Verifies: DET-005, DET-007, DET-046.
@@ -109,23 +91,22 @@ fn arguments_that_do_not_fit_are_refused() {
     assert!(dense(&RESIDUAL[..5], &TEMPLATE, covariance).is_err());
     assert!(dense(&RESIDUAL, &TEMPLATE, &covariance[..35]).is_err());
     for found in [47, 49] {
-        let expected = DetectError::LengthMismatch {
-            what: "scratch",
-            expected: 48,
-            found,
-        };
         let scratch = &mut vec![0.0; found];
+        let wrong = theta_coloured(&RESIDUAL, &TEMPLATE, covariance, scratch).unwrap_err();
+        let (what, expected) = ("scratch", 48);
         assert_eq!(
-            theta_coloured(&RESIDUAL, &TEMPLATE, covariance, scratch),
-            Err(expected)
+            wrong,
+            DetectError::LengthMismatch {
+                what,
+                expected,
+                found
+            }
         );
     }
     let mut bad = RESIDUAL;
     bad[3] = f64::INFINITY;
-    let expected = DetectError::NotFinite {
-        what: "residual",
-        index: 3,
-    };
+    let (what, index) = ("residual", 3);
+    let expected = DetectError::NotFinite { what, index };
     assert_eq!(dense(&bad, &TEMPLATE, covariance), Err(expected));
     fn both(v: &[f64]) -> Force<&[f64]> {
         Force::new(v, v)
@@ -138,19 +119,11 @@ fn arguments_that_do_not_fit_are_refused() {
     assert!(theta_banded(two, two, both(&[1.0, 0.1, 0.0]), &mut [0.0; 18]).is_err());
     let uneven = Force::new(&one[..], &[1.0, 0.5]);
     for (residual, template) in [(both(&one), two), (uneven, two), (two, uneven)] {
-        let mismatch = |found| matches!(found, Err(DetectError::LengthMismatch { .. }));
-        assert!(mismatch(theta_stationary(
-            residual,
-            template,
-            two,
-            &mut [0.0; 4]
-        )));
-        assert!(mismatch(theta_banded(
-            residual,
-            template,
-            two,
-            &mut [0.0; 10]
-        )));
+        let stationary = theta_stationary(residual, template, two, &mut [0.0; 4]);
+        let banded = theta_banded(residual, template, two, &mut [0.0; 10]);
+        for found in [stationary, banded] {
+            assert!(matches!(found, Err(DetectError::LengthMismatch { .. })));
+        }
     }
     for bad in [[-1.0, 0.0], [1.0, 1.0], [1.0, f64::NAN]] {
         assert!(theta_stationary(two, two, both(&bad), &mut [0.0; 4]).is_err());
@@ -171,14 +144,9 @@ const LONG_RESIDUAL: Force<&[f64]> = Force::new(
 #[test]
 fn stationary_noise_by_either_method() {
     let lags: Force<&[f64]> = Force::new(&[0.05, 0.02, -0.005], &[0.08, -0.03, 0.01]);
-    let banded = theta_banded(
-        LONG_RESIDUAL,
-        LONG_TEMPLATE,
-        lags,
-        // What was in the scratch has no say.
-        &mut vec![f64::NAN; banded_scratch(3)],
-    )
-    .unwrap();
+    // What was in the scratch has no say.
+    let scratch = &mut vec![f64::NAN; banded_scratch(3)];
+    let banded = theta_banded(LONG_RESIDUAL, LONG_TEMPLATE, lags, scratch).unwrap();
     let padded = lags.map(|lags| {
         let mut padded = [0.0; 7];
         padded[..3].copy_from_slice(lags);
@@ -207,24 +175,15 @@ fn exponential_autocovariance_has_a_closed_form() {
     const SAMPLES: usize = 200;
     let (template, residual) = (numbers(0, 2 * SAMPLES), numbers(1, 2 * SAMPLES));
     let (variance, memory) = (Force::new(0.3, 2.0), Force::new(0.8, -0.5));
-    let lags = variance.zip(memory).map(|(variance, memory): (f64, f64)| {
-        (0..SAMPLES as i32)
-            .map(|lag| variance * memory.powi(lag))
-            .collect::<Vec<_>>()
+    let lags = variance.zip(memory).map(|(v, a): (f64, f64)| {
+        let lags = (0..SAMPLES as i32).map(|lag| v * a.powi(lag));
+        lags.collect::<Vec<_>>()
     });
     let split = |v: &'static [f64]| Force::new(&v[..SAMPLES], &v[SAMPLES..]);
     let (template, residual) = (split(Vec::leak(template)), split(Vec::leak(residual)));
     let mut expected = (0.0, 0.0);
-    for (((t, r), v), a) in [
-        (
-            ((template.lateral, residual.lateral), variance.lateral),
-            memory.lateral,
-        ),
-        (
-            ((template.normal, residual.normal), variance.normal),
-            memory.normal,
-        ),
-    ] {
+    let noise = variance.zip(memory);
+    for ((t, r), (v, a)) in template.zip(residual).zip(noise).into_array() {
         for i in 0..SAMPLES {
             let white = |n: &[f64]| match i {
                 0 => n[0] / v.sqrt(),
@@ -236,11 +195,8 @@ fn exponential_autocovariance_has_a_closed_form() {
     }
     let lags = Force::new(&lags.lateral[..], &lags.normal[..]);
     let found = theta_stationary(residual, template, lags, &mut [0.0; 2 * SAMPLES]).unwrap();
-    assert_near(
-        found.gamma,
-        expected.0.sqrt(),
-        TOLERANCE * expected.0.sqrt(),
-    );
+    let gamma = expected.0.sqrt();
+    assert_near(found.gamma, gamma, TOLERANCE * gamma);
     assert_near(found.theta, expected.1, TOLERANCE * expected.0);
 }
 
@@ -249,27 +205,15 @@ fn exponential_autocovariance_has_a_closed_form() {
 fn white_noise_is_a_special_case_of_every_colour() {
     let sd = Force::new(0.3, 0.2);
     let filter = MatchedFilter::new(LONG_TEMPLATE, sd).unwrap();
-    let expected = (
-        filter.gamma(),
-        filter.statistic(LONG_RESIDUAL).unwrap().theta,
-    );
+    let expected = filter.statistic(LONG_RESIDUAL).unwrap();
     let mut covariance = [[0.0; 14]; 14];
     for (i, row) in covariance.iter_mut().enumerate() {
-        row[i] = if i < 7 {
-            sd.lateral * sd.lateral
-        } else {
-            sd.normal * sd.normal
-        };
+        let sd = if i < 7 { sd.lateral } else { sd.normal };
+        row[i] = sd * sd;
     }
     let join = |c: Force<&[f64]>| [c.lateral, c.normal].concat();
-    let mut found = vec![
-        dense(
-            &join(LONG_RESIDUAL),
-            &join(LONG_TEMPLATE),
-            covariance.as_flattened(),
-        )
-        .unwrap(),
-    ];
+    let (residual, template) = (join(LONG_RESIDUAL), join(LONG_TEMPLATE));
+    let mut found = vec![dense(&residual, &template, covariance.as_flattened()).unwrap()];
     let variance = sd.map(|sd| [sd * sd]);
     let lags = Force::new(&variance.lateral[..], &variance.normal[..]);
     found.push(theta_banded(LONG_RESIDUAL, LONG_TEMPLATE, lags, &mut [0.0; 4]).unwrap());
@@ -278,12 +222,10 @@ fn white_noise_is_a_special_case_of_every_colour() {
     found.push(theta_stationary(LONG_RESIDUAL, LONG_TEMPLATE, lags, &mut [0.0; 14]).unwrap());
     for found in found {
         // s² and a division round where white noise does not.
-        assert_near(found.gamma, expected.0, 8.0 * f64::EPSILON * expected.0);
-        assert_near(
-            found.theta,
-            expected.1,
-            8.0 * f64::EPSILON * expected.0 * expected.0,
-        );
+        let gamma = expected.gamma;
+        assert_near(found.gamma, gamma, 8.0 * f64::EPSILON * gamma);
+        let tolerance = 8.0 * f64::EPSILON * gamma * gamma;
+        assert_near(found.theta, expected.theta, tolerance);
     }
 }
 
@@ -307,11 +249,8 @@ fn a_long_record_in_banded_noise_agrees_with_its_dense_covariance() {
     let lags = Force::new(&lags[..], &lags[..]);
     let found = theta_banded(residual, template, lags, &mut vec![0.0; banded_scratch(4)]).unwrap();
     assert_near(found.gamma, expected.gamma, TOLERANCE * expected.gamma);
-    assert_near(
-        found.theta,
-        expected.theta,
-        TOLERANCE * expected.gamma * expected.gamma,
-    );
+    let tolerance = TOLERANCE * expected.gamma * expected.gamma;
+    assert_near(found.theta, expected.theta, tolerance);
 }
 
 /// The covariance of two samples a channel: unit variance times `power`, correlated by
@@ -336,10 +275,8 @@ fn a_pivot_counts_as_positive_beyond_what_rounding_explains() {
     for power in [1.0, 1e-6, 1e6] {
         let dense = |delta: f64| dense(&[0.0; 4], &[1.0; 4], &pair(1.0 - delta, power));
         assert!(dense(14.0 * E).is_ok(), "28 ε, beyond 4 (4 + 2) ε");
-        assert_eq!(
-            dense(11.0 * E),
-            Err(DetectError::NotPositiveDefinite { pivot: 1 })
-        );
+        let refused = Err(DetectError::NotPositiveDefinite { pivot: 1 });
+        assert_eq!(dense(11.0 * E), refused);
         // Three samples, so 4 (3 + 2) ε; an autoregression, whose third pivot equals the second.
         let stationary = |delta: f64| {
             let lags = [power, power * (1.0 - delta), power * (1.0 - delta).powi(2)];
@@ -349,10 +286,7 @@ fn a_pivot_counts_as_positive_beyond_what_rounding_explains() {
             theta_stationary(nothing, nothing, channels, &mut [0.0; 6])
         };
         assert!(stationary(11.0 * E).is_ok(), "22 ε, beyond 20 ε");
-        assert_eq!(
-            stationary(9.0 * E),
-            Err(DetectError::NotPositiveDefinite { pivot: 1 })
-        );
+        assert_eq!(stationary(9.0 * E), refused);
     }
 }
 
@@ -373,11 +307,8 @@ fn asymmetry_counts_beyond_what_rounding_explains() {
                 covariance[4 * column + row] = 0.25 * size;
                 let found = dense(&[0.0; 4], &[1.0; 4], &covariance);
                 let expected = Err(DetectError::NotSymmetric { row, column });
-                assert_eq!(
-                    found == expected,
-                    !symmetric,
-                    "{row} {column} {share}: {found:?}"
-                );
+                let case = format!("{row} {column} {share}: {found:?}");
+                assert_eq!(found == expected, !symmetric, "{case}");
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Expected values: closed forms, and mpmath 1.4.1 at 40 digits for Owen's T by quadrature.
 
 use super::*;
-use crate::stats::check::{assert_near, assert_ulps};
+use crate::stats::tests::{assert_near, assert_ulps, numbers};
 extern crate std;
 use std::vec::Vec;
 
@@ -12,37 +12,21 @@ fn bounds(template: &[f64], samples: usize, count: usize, eta: f64) -> (f64, f64
     let scan = Scan::new(samples, Force::new(template, &zeros), UNIT).unwrap();
     let (mut gamma, mut angle) = ([0.0; 32], [0.0; 32]);
     let law = MaximumLaw::new(&scan, 0, &mut gamma[..count], &mut angle[..count]).unwrap();
-    (
-        law.false_alarm_bound(eta).unwrap(),
-        law.union_bound(eta).unwrap(),
-    )
+    let bound = law.false_alarm_bound(eta).unwrap();
+    (bound, law.union_bound(eta).unwrap())
 }
+
+/// Template (4, 2): γ² = 20 and correlation 8/20. η, exact, Rice or the union if less, union.
+const TWO_SHIFTS: &str = "
+-5.0 0.2231260551744205 0.23053468050979498 0.2635524772829727
+0.0 0.024118759567461175 0.025347318677468263 0.025347318677468263
+5.0 0.0007885616214067944 0.0007962301575908116 0.0007962301575908116
+";
 
 // Verifies: DET-055, DET-056, DET-057.
 #[test]
 fn two_shifts_have_an_exact_probability_below_the_bound() {
-    // Template (4, 2): γ² = 20 and correlation 8/20. Columns: η, exact, Rice or the union if less,
-    // union.
-    for (eta, exact, rice, union) in [
-        (
-            -5.0,
-            0.2231260551744205,
-            0.23053468050979498,
-            0.2635524772829727,
-        ),
-        (
-            0.0,
-            0.024118759567461175,
-            0.025347318677468263,
-            0.025347318677468263,
-        ),
-        (
-            5.0,
-            0.0007885616214067944,
-            0.0007962301575908116,
-            0.0007962301575908116,
-        ),
-    ] {
+    for [eta, exact, rice, union] in numbers(TWO_SHIFTS) {
         let (bound, union_bound) = bounds(&[4.0, 2.0], 3, 2, eta);
         // The bound is rounded up by a part in 10⁹.
         assert_near(bound, rice, 2e-9 * rice);
@@ -54,9 +38,8 @@ fn two_shifts_have_an_exact_probability_below_the_bound() {
 // Verifies: DET-057.
 #[test]
 fn bound_is_all_but_exact_for_a_smooth_template() {
-    let template: Vec<f64> = (0..21)
-        .map(|i| libm::exp(-f64::from((i - 10) * (i - 10)) / 50.0))
-        .collect();
+    let bump = |i| libm::exp(-f64::from((i - 10) * (i - 10)) / 50.0);
+    let template: Vec<f64> = (0..21).map(bump).collect();
     for (eta, exact, rice) in [
         (0.0, 0.07661734145065467, 0.07663454113807089),
         (2.0, 0.017767753579670687, 0.017778378599135128),
@@ -117,20 +100,16 @@ fn position_bound_of_a_straight_slope() {
     slope(&line, 0.25, &mut slopes).unwrap();
     assert_eq!(slopes, [3.0; 100]);
     let sd = Force::new(0.1, 0.6);
-    assert_ulps(
-        position_bound(Force::new(&flat, &slopes), sd).unwrap(),
-        0.02,
-        4.0,
-    );
+    let bound = position_bound(Force::new(&flat, &slopes), sd).unwrap();
+    assert_ulps(bound, 0.02, 4.0);
     let none = Force::new(&flat[..], &flat[..]);
     assert_eq!(position_bound(none, sd), Err(DetectError::NoSignal));
     // A parabola: the middle is exact, an end is half a step off.
     slope(&[0.0, 1.0, 4.0, 9.0], 1.0, &mut slopes[..4]).unwrap();
     assert_eq!(slopes[..4], [1.0, 2.0, 4.0, 5.0]);
     assert!(slope(&[1.0], 1.0, &mut [0.0]).is_err() && slope(&[], 1.0, &mut []).is_err());
-    assert!(
-        slope(&line, 0.0, &mut slopes).is_err() && slope(&line, 1.0, &mut slopes[..9]).is_err()
-    );
+    assert!(slope(&line, 0.0, &mut slopes).is_err());
+    assert!(slope(&line, 1.0, &mut slopes[..9]).is_err());
     assert!(slope(&[0.0, f64::NAN], 1.0, &mut slopes[..2]).is_err());
     assert!(slope(&[-f64::MAX, f64::MAX], 1.0, &mut slopes[..2]).is_err());
 }

@@ -1,7 +1,7 @@
 //! Expected values: by hand, in whole and half numbers.
 
 use super::*;
-use crate::stats::check::assert_near;
+use crate::stats::tests::assert_near;
 
 const RECORD: [f64; 5] = [1.0, 2.0, 0.0, -1.0, 3.0];
 const TEMPLATE: [f64; 3] = [1.0, 2.0, 1.0];
@@ -32,20 +32,14 @@ fn every_shift_counts_what_overlaps_and_nothing_else() {
     assert_eq!((scan.shifts(), scan.full_shifts()), (-2..=4, 0..=2));
     for (shift, quarter, energy) in BY_HAND {
         let found = scan.at(RESIDUAL, shift).unwrap();
-        assert_eq!(
-            (found.theta, found.gamma),
-            (4.0 * quarter, libm::sqrt(4.0 * energy))
-        );
+        let (theta, gamma) = (4.0 * quarter, libm::sqrt(4.0 * energy));
+        assert_eq!(found, ScanPoint { theta, gamma });
         assert_eq!(scan.gamma(shift), Ok(found.gamma));
     }
+    let (theta, gamma) = (0.0, 0.0);
     for outside in [isize::MIN, -3, 5, isize::MAX] {
-        assert_eq!(
-            scan.at(RESIDUAL, outside),
-            Ok(ScanPoint {
-                theta: 0.0,
-                gamma: 0.0
-            })
-        );
+        let found = scan.at(RESIDUAL, outside);
+        assert_eq!(found, Ok(ScanPoint { theta, gamma }));
     }
     let mut theta = [0.0; 7];
     scan.theta(RESIDUAL, -2, &mut theta).unwrap();
@@ -55,35 +49,29 @@ fn every_shift_counts_what_overlaps_and_nothing_else() {
 // Verifies: DET-053, DET-054.
 #[test]
 fn maximum_is_the_first_of_the_largest() {
-    let found = scan().maximum(RESIDUAL, -2..=4).unwrap();
-    assert_eq!((found.shift, found.theta), (3, 10.0));
-    // The parabola through −8, 10, 10 has its top half way between the equal ones.
-    assert_eq!(found.refined_shift, 3.5);
-    let found = scan().maximum(RESIDUAL, 0..=2).unwrap();
-    assert_eq!(
-        (found.shift, found.theta, found.refined_shift),
-        (0, 8.0, 0.0)
-    );
-    // Θ of 6, 8, −8 at shifts −1, 0, 1: vertex ½(2 − 16)/(2 + 16).
-    let found = scan().maximum(RESIDUAL, -1..=2).unwrap();
-    assert_eq!((found.shift, found.refined_shift), (0, -7.0 / 18.0));
-    // At the last candidate the shift behind it, which has the same Θ, has no say.
-    let found = scan().maximum(RESIDUAL, 1..=3).unwrap();
-    assert_eq!((found.shift, found.refined_shift), (3, 3.0));
+    for (shifts, shift, theta, refined) in [
+        // The parabola through −8, 10, 10 has its top half way between the equal ones.
+        (-2..=4, 3, 10.0, 3.5),
+        (0..=2, 0, 8.0, 0.0),
+        // Θ of 6, 8, −8 at shifts −1, 0, 1: vertex ½(2 − 16)/(2 + 16).
+        (-1..=2, 0, 8.0, -7.0 / 18.0),
+        // At the last candidate the shift behind it, which has the same Θ, has no say.
+        (1..=3, 3, 10.0, 3.0),
+    ] {
+        let found = scan().maximum(RESIDUAL, shifts).unwrap();
+        assert_eq!((found.shift, found.theta), (shift, theta));
+        assert_eq!(found.refined_shift, refined);
+    }
     for outside in [-3..=1, 0..=5, isize::MIN..=isize::MAX] {
-        assert!(matches!(
-            scan().maximum(RESIDUAL, outside),
-            Err(DetectError::OutOfRange { .. })
-        ));
+        let found = scan().maximum(RESIDUAL, outside);
+        assert!(matches!(found, Err(DetectError::OutOfRange { .. })));
     }
     assert!(scan().theta(RESIDUAL, -3, &mut [0.0; 2]).is_err());
     assert!(scan().theta(RESIDUAL, 3, &mut [0.0; 3]).is_err());
     assert!(scan().theta(RESIDUAL, isize::MAX, &mut [0.0; 3]).is_err());
     let empty = RangeInclusive::new(2, 1);
-    assert_eq!(
-        scan().maximum(RESIDUAL, empty),
-        Err(DetectError::Empty { what: "shifts" })
-    );
+    let found = scan().maximum(RESIDUAL, empty).unwrap_err();
+    assert_eq!(found, DetectError::Empty { what: "shifts" });
 }
 
 // Verifies: DET-055.
@@ -101,11 +89,8 @@ fn covariance_of_two_shifts() {
         (0, 3, 0.0),
         (-3, 0, 0.0),
     ] {
-        assert_eq!(
-            scan.covariance(one, other),
-            Ok(4.0 * product),
-            "shifts {one} and {other}"
-        );
+        let found = scan.covariance(one, other);
+        assert_eq!(found, Ok(4.0 * product), "shifts {one} and {other}");
     }
 }
 
@@ -121,10 +106,8 @@ fn scans_that_cannot_be_are_refused() {
     let scan = Scan::new(5, template, sd).unwrap();
     let mut bad = RECORD;
     bad[4] = f64::NAN;
-    let expected = Err(DetectError::NotFinite {
-        what: "residual_y",
-        index: 4,
-    });
+    let (what, index) = ("residual_y", 4);
+    let expected = Err(DetectError::NotFinite { what, index });
     // The NaN lies where this template is not: the record is refused all the same.
     assert_eq!(scan.at(Force::new(&RECORD, &bad), 0), expected);
     let short = Force::new(&RECORD[..4], &RECORD);
@@ -146,10 +129,7 @@ fn noise_that_is_no_power_of_two_counts_by_its_square() {
         let gamma = libm::sqrt(energy * inverse);
         assert_near(found.gamma, gamma, 4.0 * f64::EPSILON * gamma);
         let covariance = scan.covariance(shift, shift).unwrap();
-        assert_near(
-            covariance,
-            energy * inverse,
-            4.0 * f64::EPSILON * covariance,
-        );
+        let tolerance = 4.0 * f64::EPSILON * covariance;
+        assert_near(covariance, energy * inverse, tolerance);
     }
 }

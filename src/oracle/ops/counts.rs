@@ -26,14 +26,10 @@ pub fn analysis(arguments: &mut Arguments) -> Result<Answer, Refused> {
         rates.push(rate);
         gammas.push(gamma_from_two_afc(rate)?);
         // A single subject has the pooled rate.
-        chi2s.push(
-            dispersion(&column)
-                .map_err(Refused::range)?
-                .map_or(0.0, |found| found.chi_square),
-        );
+        let dispersion = dispersion(&column).map_err(Refused::range)?;
+        chi2s.push(dispersion.map_or(0.0, |found| found.chi_square));
     }
-    Ok(Answer::default()
-        .with("pooled", pooled)
+    Ok(Answer::of([("pooled", pooled)])
         .with("rate", rates)
         .with("gamma", gammas)
         .with("chi2", chi2s)

@@ -7,8 +7,8 @@ use crate::phantom::Material;
 /// The stiffness matrix, Pa, of an element in plane strain, 1 m thick.
 pub fn stiffness(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let rows = arguments.rows("nodes_m")?;
-    let youngs_modulus = arguments.number("youngs_modulus_pa")?;
-    let poisson_ratio = arguments.number("poissons_ratio")?;
+    let [youngs_modulus, poisson_ratio] =
+        arguments.each(["youngs_modulus_pa", "poissons_ratio"])?;
     let node = |row: &Vec<f64>| <[f64; 2]>::try_from(&row[..]).ok();
     let nodes: Option<Vec<[f64; 2]>> = rows.iter().map(node).collect();
     let Some(nodes) = nodes.filter(|nodes| nodes.len() == NODES) else {
@@ -33,7 +33,7 @@ pub fn stiffness(arguments: &mut Arguments) -> Result<Answer, Refused> {
         .map_err(not_positive)?;
     let row = stiffness.row_iter();
     let rows: Vec<Vec<f64>> = row.map(|row| row.iter().copied().collect()).collect();
-    Ok(Answer::default().with("stiffness", rows))
+    Ok(Answer::of([("stiffness", rows)]))
 }
 
 fn not_positive(jacobian: f64) -> Refused {

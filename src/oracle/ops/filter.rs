@@ -12,10 +12,8 @@ const MOST_ROWS: usize = 1000;
 const MOST_PRODUCTS: usize = 10_000_000;
 
 fn noise_sd(arguments: &mut Arguments) -> Result<Force<f64>, Refused> {
-    Ok(Force::new(
-        arguments.number("noise_sd_x")?,
-        arguments.number("noise_sd_y")?,
-    ))
+    let [x, y] = arguments.each(["noise_sd_x", "noise_sd_y"])?;
+    Ok(Force::new(x, y))
 }
 
 fn series(
@@ -32,12 +30,13 @@ pub fn matched_filter(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let noise_sd = noise_sd(arguments)?;
     let filter = MatchedFilter::new(template.as_deref(), noise_sd)?;
     let (b, sigma) = (filter.b(), filter.sigma());
-    Ok(Answer::default()
-        .with("b_x", b.lateral)
-        .with("b_y", b.normal)
-        .with("sigma_x", sigma.lateral)
-        .with("sigma_y", sigma.normal)
-        .with("gamma", filter.gamma()))
+    Ok(Answer::of([
+        ("b_x", b.lateral),
+        ("b_y", b.normal),
+        ("sigma_x", sigma.lateral),
+        ("sigma_y", sigma.normal),
+        ("gamma", filter.gamma()),
+    ]))
 }
 
 /// θ, y(0) and γ of a record.
@@ -47,11 +46,12 @@ pub fn theta(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let f1 = series(arguments, "f1_x", "f1_y")?;
     let noise_sd = noise_sd(arguments)?;
     let found = theta_of_record(observed.as_deref(), f0.as_deref(), f1.as_deref(), noise_sd)?;
-    Ok(Answer::default()
-        .with("theta", found.theta)
-        .with("y_x", found.y.lateral)
-        .with("y_y", found.y.normal)
-        .with("gamma", found.gamma))
+    Ok(Answer::of([
+        ("theta", found.theta),
+        ("y_x", found.y.lateral),
+        ("y_y", found.y.normal),
+        ("gamma", found.gamma),
+    ]))
 }
 
 /// θ and γ in coloured noise.
@@ -73,9 +73,7 @@ pub fn theta_colored(arguments: &mut Arguments) -> Result<Answer, Refused> {
     check_rows("covariance", &covariance, [order; 2], words)?;
     let mut scratch = vec![0.0; coloured_scratch(order)];
     let found = theta_coloured(&residual, &template, &covariance.concat(), &mut scratch)?;
-    Ok(Answer::default()
-        .with("theta", found.theta)
-        .with("gamma", found.gamma))
+    Ok(Answer::of([("theta", found.theta), ("gamma", found.gamma)]))
 }
 
 /// Θ at every shift with the whole template in the record.
@@ -95,8 +93,7 @@ pub fn scan(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let mut theta = vec![0.0; samples - length + 1];
     scan.theta(residual.as_deref(), 0, &mut theta)?;
     let maximum = scan.maximum(residual.as_deref(), scan.full_shifts())?;
-    Ok(Answer::default()
-        .with("theta", theta)
+    Ok(Answer::of([("theta", theta)])
         .with("max_theta", maximum.theta)
         .with("argmax", maximum.shift.unsigned_abs()))
 }

@@ -8,8 +8,7 @@ pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let depths = arguments.numbers("depths_m")?;
     let laterals = arguments.numbers("laterals_m")?;
     let rows = arguments.rows("table_n")?;
-    let depth = arguments.number("depth_m")?;
-    let lateral = arguments.number("lateral_m")?;
+    let [depth, lateral] = arguments.each(["depth_m", "lateral_m"])?;
     check_axis("depths_m", &depths)?;
     check_axis("laterals_m", &laterals)?;
     let size = [depths.len(), laterals.len()];
@@ -22,7 +21,7 @@ pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let force = force_map::interpolate(&depths, &laterals, &forces, depth, lateral);
     let overflow = "force_n would be beyond the largest number";
     let force = force.ok_or_else(|| Refused::new(Code::Overflow, overflow))?;
-    Ok(Answer::default().with("force_n", force))
+    Ok(Answer::of([("force_n", force)]))
 }
 
 /// Whether an axis has a cell and increases; how closely, does not matter to the rule.

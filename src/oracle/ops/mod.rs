@@ -5,7 +5,6 @@ mod decision;
 mod element;
 mod filter;
 mod interpolation;
-mod normal;
 mod probe;
 mod proportion;
 mod report;
@@ -15,6 +14,8 @@ pub use probe::Models;
 
 use super::answer::{Answer, Code, Refused};
 use super::arguments::{Arguments, Bits, check_rows};
+use crate::detect;
+use crate::stats::{NumericError, normal};
 
 /// What computes an answer from arguments.
 pub type Function = fn(&mut Arguments) -> Result<Answer, Refused>;
@@ -55,8 +56,10 @@ const COLOURED: &str = "residual template covariance";
 /// Implements: ORA-020.
 pub const OPS: &[Op] = &[
     op("capabilities", "", capabilities),
-    op("normal_cdf", "x", normal::cdf),
-    op("normal_quantile", "p", normal::quantile),
+    op("normal_cdf", "x", |a| number(a, "x", "p", normal::cdf)),
+    op("normal_quantile", "p", |a| {
+        number(a, "p", "x", normal::quantile)
+    }),
     op("matched_filter", TEMPLATE, filter::matched_filter),
     op("theta", RECORD, filter::theta),
     op("theta_colored", COLOURED, filter::theta_colored),
@@ -68,12 +71,12 @@ pub const OPS: &[Op] = &[
         "max_false_alarm max_miss",
         decision::required_gamma,
     ),
-    op("two_afc", "gamma", decision::two_afc),
-    op(
-        "gamma_from_two_afc",
-        "p_correct",
-        decision::gamma_from_two_afc,
-    ),
+    op("two_afc", "gamma", |a| {
+        number(a, "gamma", "p_correct", detect::two_afc)
+    }),
+    op("gamma_from_two_afc", "p_correct", |a| {
+        number(a, "p_correct", "gamma", detect::gamma_from_two_afc)
+    }),
     op("proportion_interval", PROPORTION, proportion::interval),
     op("noise_budget", BUDGET, decision::noise_budget),
     op("interpolate", MAP_AND_POSE, interpolation::interpolate),
@@ -100,10 +103,19 @@ pub fn find(name: &str) -> Result<&'static Op, Refused> {
     })
 }
 
+/// What `function` makes of the number `name`, as the number `result`.
+fn number(
+    arguments: &mut Arguments,
+    name: &'static str,
+    result: &'static str,
+    function: fn(f64) -> Result<f64, NumericError>,
+) -> Result<Answer, Refused> {
+    Ok(Answer::of([(result, function(arguments.number(name)?)?)]))
+}
+
 /// Implements: ORA-021.
 fn capabilities(_: &mut Arguments) -> Result<Answer, Refused> {
     let names: Vec<&str> = OPS.iter().map(|op| op.name).collect();
-    Ok(Answer::default()
-        .with("version", env!("CARGO_PKG_VERSION"))
-        .with("ops", names))
+    let version = env!("CARGO_PKG_VERSION");
+    Ok(Answer::of([("version", version)]).with("ops", names))
 }

@@ -12,16 +12,13 @@ pub type Models = Vec<(String, Model)>;
 /// Implements: ORA-012.
 pub fn force(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let name = arguments.text("phantom")?;
-    let pose = Pose {
-        depth: arguments.number("depth_m")?,
-        lateral: arguments.number("lateral_m")?,
-    };
+    let [depth, lateral] = arguments.each(["depth_m", "lateral_m"])?;
+    let pose = Pose { depth, lateral };
     let phantom =
         Phantom::builtin(&name).map_err(|error| Refused::range(format_args!("phantom {error}")))?;
     // Before the model is made: a pose that cannot be is cheap to refuse.
-    phantom
-        .check_pose(pose.depth, pose.lateral)
-        .map_err(|error| Refused::range(format_args!("pose: {error}")))?;
+    let checked = phantom.check_pose(depth, lateral);
+    checked.map_err(|error| Refused::range(format_args!("pose: {error}")))?;
     let models = &mut *arguments.models;
     let solution = match models.iter().find(|(known, _)| *known == name) {
         Some((_, model)) => model.solve(pose)?,
@@ -32,7 +29,8 @@ pub fn force(arguments: &mut Arguments) -> Result<Answer, Refused> {
             solution
         }
     };
-    Ok(Answer::default()
-        .with("normal_force_n", solution.force.normal)
-        .with("lateral_force_n", solution.force.lateral))
+    Ok(Answer::of([
+        ("normal_force_n", solution.force.normal),
+        ("lateral_force_n", solution.force.lateral),
+    ]))
 }

@@ -23,7 +23,8 @@ pub fn interval(arguments: &mut Arguments) -> Result<Answer, Refused> {
         }
     };
     let interval = interval.map_err(Refused::range)?;
-    Ok(Answer::default()
-        .with("lower", interval.lower)
-        .with("upper", interval.upper))
+    Ok(Answer::of([
+        ("lower", interval.lower),
+        ("upper", interval.upper),
+    ]))
 }

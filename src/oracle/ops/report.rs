@@ -59,7 +59,7 @@ pub fn decode(arguments: &mut Arguments) -> Result<Answer, Refused> {
     };
     let report = report.map_err(|error| Refused::range(format_args!("bytes: {error}")))?;
     let mut report = report.map_err(Refused::range)?;
-    let answer = Answer::default().with("report", number);
+    let answer = Answer::of([("report", number)]);
     Ok(fields.split(' ').fold(answer, |answer, field| {
         answer.with(field, report[field].take())
     }))
@@ -86,7 +86,7 @@ pub fn encode(arguments: &mut Arguments) -> Result<Answer, Refused> {
     };
     let bytes = bytes.map_err(Refused::range)?.into_iter();
     let text: String = bytes.map(|byte| format!("{byte:02x}")).collect();
-    Ok(Answer::default().with("bytes", text))
+    Ok(Answer::of([("bytes", text)]))
 }
 
 /// Bytes from pairs of hexadecimal digits.

@@ -10,15 +10,10 @@ use crate::servo::{Axis, Table};
 ///
 /// Implements: ORA-024.
 fn knots(arguments: &mut Arguments, name: &'static str) -> Result<(Vec<f32>, Vec<f32>), Refused> {
-    let knots: Vec<f32> = arguments
-        .numbers(name)?
-        .into_iter()
-        .map(|knot| knot as f32)
-        .collect();
-    let reciprocals = knots
-        .windows(2)
-        .map(|pair| Axis::reciprocal_width(pair[0], pair[1]))
-        .collect();
+    let knots = arguments.numbers(name)?;
+    let knots: Vec<f32> = knots.into_iter().map(|knot| knot as f32).collect();
+    let width = |pair: &[f32]| Axis::reciprocal_width(pair[0], pair[1]);
+    let reciprocals = knots.windows(2).map(width).collect();
     Ok((knots, reciprocals))
 }
 
@@ -50,9 +45,7 @@ pub fn axis(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let knots = knots(arguments, "knots")?;
     let coordinate = arguments.bits("coordinate_bits")?;
     let cell = axis_of("knots", &knots)?.locate(coordinate);
-    Ok(Answer::default()
-        .with("cell", cell.index)
-        .with("fraction_bits", bits(cell.fraction)))
+    Ok(Answer::of([("cell", cell.index)]).with("fraction_bits", bits(cell.fraction)))
 }
 
 /// The force of a table at a pose.
@@ -67,7 +60,8 @@ pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let forces = forces(&rows, depths.knots().len(), laterals.knots().len())?;
     let table = Table::new(depths, laterals, &forces)
         .map_err(|error| refused("table_bits", error, "numbers within 100 N"))?;
-    Ok(Answer::default().with("force_bits", bits(table.force(depth, lateral).normal)))
+    let force = table.force(depth, lateral).normal;
+    Ok(Answer::of([("force_bits", bits(force))]))
 }
 
 /// The entries of a table, both components alike.

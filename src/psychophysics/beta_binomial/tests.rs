@@ -2,8 +2,7 @@
 
 use super::*;
 use crate::psychophysics::Table;
-use crate::psychophysics::tests::numbers;
-use crate::stats::check::assert_near;
+use crate::stats::tests::{assert_near, numbers};
 
 // The golden section leaves √ρ within 2/12 · 4·10⁻⁶, so ρ within 5·10⁻⁷ and p, which hardly depends on it, too; the
 // ends follow from a value that is right to 10⁻⁹ with slopes above 1.
@@ -21,27 +20,22 @@ const EXPECTED: &str = "
 #[test]
 fn fits_of_table_1() {
     let table = Table::paper().unwrap();
-    for [
-        condition,
-        column,
-        rate,
-        low,
-        high,
-        correlation,
-        lower,
-        upper,
-        gain,
-    ] in numbers(EXPECTED)
-    {
+    for [condition, column, expected @ .., gain] in numbers::<9>(EXPECTED) {
         let condition = &table.conditions()[condition as usize];
         let found = beta_binomial(&condition.counts(column as usize));
         let found = found.unwrap().unwrap();
-        assert_near(found.rate, rate, TOLERANCE);
-        assert_near(found.rate_bounds.lower, low, TOLERANCE);
-        assert_near(found.rate_bounds.upper, high, TOLERANCE);
-        assert_near(found.correlation, correlation, TOLERANCE);
-        assert_near(found.correlation_bounds.lower.unwrap(), lower, TOLERANCE);
-        assert_near(found.correlation_bounds.upper.unwrap(), upper, TOLERANCE);
+        let (of_rate, of_correlation) = (found.rate_bounds, found.correlation_bounds);
+        let numbers = [
+            found.rate,
+            of_rate.lower,
+            of_rate.upper,
+            found.correlation,
+            of_correlation.lower.unwrap(),
+            of_correlation.upper.unwrap(),
+        ];
+        for (found, expected) in numbers.into_iter().zip(expected) {
+            assert_near(found, expected, TOLERANCE);
+        }
         assert_near(found.deviance_gain, gain, 1e-8);
         assert!(!found.is_binomial);
         // Half the tail of one degree of freedom: Φ(−√gain).

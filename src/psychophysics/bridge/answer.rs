@@ -94,18 +94,15 @@ impl Convention {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bridge {
     /// The depth of the probe, m, at which forces are taken.
-    #[serde(rename = "probe_depth_m")]
-    pub probe_depth: f64,
+    pub probe_depth_m: f64,
     /// Why that is not the paper's 4 mm.
     pub probe_depth_note: Option<String>,
     /// Lateral positions of the sweep.
     pub positions: usize,
     /// The first of them, m.
-    #[serde(rename = "from_m")]
-    pub from: f64,
+    pub from_m: f64,
     /// The last, m.
-    #[serde(rename = "to_m")]
-    pub to: f64,
+    pub to_m: f64,
     /// The level at which a convention is rejected.
     pub level: f64,
     /// The number of ranges of the weight of the force's level, by which that is divided for each of them.
@@ -122,20 +119,15 @@ pub struct BridgeInclusion {
     /// Its name: untrusted text.
     pub name: String,
     /// The largest difference of the normal force, N, with its sign.
-    #[serde(rename = "peak_normal_n")]
-    pub peak_normal: f64,
+    pub peak_normal_n: f64,
     /// Where, m.
-    #[serde(rename = "peak_normal_at_m")]
-    pub peak_normal_at: f64,
+    pub peak_normal_at_m: f64,
     /// The mean difference of the normal force over the sweep, N.
-    #[serde(rename = "mean_normal_n")]
-    pub mean_normal: f64,
+    pub mean_normal_n: f64,
     /// The largest difference of the lateral force, N.
-    #[serde(rename = "peak_lateral_n")]
-    pub peak_lateral: f64,
+    pub peak_lateral_n: f64,
     /// Where, m.
-    #[serde(rename = "peak_lateral_at_m")]
-    pub peak_lateral_at: f64,
+    pub peak_lateral_at_m: f64,
 }
 
 /// One condition against all conventions.
@@ -175,8 +167,7 @@ pub struct ConventionFit {
     /// The same in words.
     pub name: String,
     /// The signal of each inclusion, N.
-    #[serde(rename = "signals_n")]
-    pub signals: Vec<f64>,
+    pub signals_n: Vec<f64>,
     /// One noise level for all subjects; `None` if no noise level is likelier than all others.
     pub common: Option<CommonFit>,
     /// One noise level for all subjects, and answers that miss what was felt.
@@ -195,15 +186,23 @@ pub struct ConventionFit {
     pub is_rejected: bool,
 }
 
+impl ConventionFit {
+    /// The fit by subject with the larger p-value.
+    pub(super) fn better_by_subject(&self) -> &SubjectFit {
+        match self.by_subject_with_lapse.p_value > self.by_subject.p_value {
+            true => &self.by_subject_with_lapse,
+            false => &self.by_subject,
+        }
+    }
+}
+
 /// One noise level for all subjects.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CommonFit {
     /// The noise, N: of one position for a peak, of the filter's output otherwise.
-    #[serde(rename = "noise_n")]
-    pub noise: f64,
+    pub noise_n: f64,
     /// With the subjects as the sample, N; `None` for one subject.
-    #[serde(rename = "noise_bounds_n")]
-    pub noise_bounds: Option<Bounds>,
+    pub noise_bounds_n: Option<Bounds>,
     /// The share of right answers at each inclusion.
     pub predicted: Vec<f64>,
     /// Twice the log-likelihood that a share of its own for each inclusion gains.
@@ -223,8 +222,7 @@ pub struct CommonFit {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LapseFit {
     /// The noise, N.
-    #[serde(rename = "noise_n")]
-    pub noise: f64,
+    pub noise_n: f64,
     /// λ: right answers are ½ + (½ − λ)(2Φ(γ/√2) − 1).
     pub lapse: f64,
     /// The share of right answers at each inclusion.
@@ -244,8 +242,7 @@ pub struct LapseFit {
 pub struct SubjectFit {
     /// The noise of each subject, N: 0 for one who was never wrong; `None` for one who did not do better
     /// than guessing.
-    #[serde(rename = "noise_n")]
-    pub noise: Vec<Option<f64>>,
+    pub noise_n: Vec<Option<f64>>,
     /// λ, the same for all subjects; 0 if it was not fitted.
     pub lapse: f64,
     /// The mean share of right answers at each inclusion, over the pairs of all subjects.
@@ -270,8 +267,7 @@ pub struct SubjectFit {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WeightRange {
     /// Half of the sweep, m.
-    #[serde(rename = "half_sweep_m")]
-    pub half_sweep: f64,
+    pub half_sweep_m: f64,
     /// What of the sweep counts.
     pub statistic: Statistic,
     /// The smallest and the largest weight, on a grid of 0.05, that the corrected level does not reject.

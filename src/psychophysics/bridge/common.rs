@@ -83,8 +83,8 @@ pub fn common(signals: &Signals, observed: &Observations) -> Result<Option<Commo
         return Ok(None);
     };
     Ok(Some(CommonFit {
-        noise: fit.noise,
-        noise_bounds: noise_bounds(signals, observed, log)?,
+        noise_n: fit.noise_n,
+        noise_bounds_n: noise_bounds(signals, observed, log)?,
         predicted: fit.predicted,
         deviance: fit.deviance,
         degrees: fit.degrees,
@@ -118,7 +118,7 @@ fn fit(
     let degrees = (signals.0.len() as u32).saturating_sub(parameters);
     let p_value = |dispersion: Overdispersion| dispersion.p_value(deviance_of_all, degrees);
     let fit = LapseFit {
-        noise: libm::exp(-log),
+        noise_n: libm::exp(-log),
         lapse,
         predicted: perceived.iter().map(|at| at.right(lapse)).collect(),
         deviance: deviance_of_all,

@@ -109,23 +109,23 @@ pub fn bridge(
     let conditions = conditions
         .map(|condition| of_condition(condition, &columns, &signals, (&half_sweeps, ranges)));
     let of_inclusion = |(&column, signal): (&usize, &Signal)| {
-        let (peak_normal, peak_normal_at) = signal.peak(&signal.normal);
-        let (peak_lateral, peak_lateral_at) = signal.peak(&signal.lateral);
+        let (peak_normal, peak_normal_at) = signal.peak(&signal.forces.normal);
+        let (peak_lateral, peak_lateral_at) = signal.peak(&signal.forces.lateral);
         BridgeInclusion {
             name: table.inclusions()[column].name.clone(),
-            peak_normal,
-            peak_normal_at,
-            mean_normal: mean(&signal.normal),
-            peak_lateral,
-            peak_lateral_at,
+            peak_normal_n: peak_normal,
+            peak_normal_at_m: peak_normal_at,
+            mean_normal_n: mean(&signal.forces.normal),
+            peak_lateral_n: peak_lateral,
+            peak_lateral_at_m: peak_lateral_at,
         }
     };
     Ok(Bridge {
-        probe_depth,
+        probe_depth_m: probe_depth,
         probe_depth_note,
         positions: laterals.len(),
-        from: laterals[0],
-        to: laterals[laterals.len() - 1],
+        from_m: laterals[0],
+        to_m: laterals[laterals.len() - 1],
         level: LEVEL,
         weight_ranges: ranges,
         inclusions: columns.iter().zip(&signals).map(of_inclusion).collect(),
@@ -184,7 +184,7 @@ fn of_condition(
     let (mut observed, mut noise_by_inclusion) = (Vec::new(), Vec::new());
     for (&column, signal) in columns.iter().zip(signals) {
         let (pooled, clustered) = pooled(condition, column)?;
-        let (peak, _) = signal.peak(&signal.normal);
+        let (peak, _) = signal.peak(&signal.forces.normal);
         noise_by_inclusion.push(InclusionNoise::new(peak.abs(), &pooled, clustered));
         observed.push(ObservedRate {
             rate: pooled.rate,
@@ -212,7 +212,7 @@ fn fits(signals: &[Signal], observed: &Observations) -> Result<Vec<ConventionFit
         let Some(signals) = Signals::new(signals, |signal| signal.strength(convention)) else {
             continue;
         };
-        let fit = match fits.iter().find(|fit| fit.signals == signals.0) {
+        let fit = match fits.iter().find(|fit| fit.signals_n == signals.0) {
             // As with the mean of a lateral force, which is 0: nothing to compute again.
             Some(same) => ConventionFit {
                 convention,
@@ -253,7 +253,7 @@ fn fit(convention: Convention, signals: Signals, observed: &Observations) -> Res
         name: convention.text(),
         common: common(&signals, observed)?,
         common_with_lapse: common_with_lapse(&signals, observed)?,
-        signals: signals.0,
+        signals_n: signals.0,
         by_subject,
         by_subject_with_lapse,
         worse_than_best_p: None,

@@ -1,6 +1,7 @@
 //! What each convention makes of the difference of two force maps along a sweep.
 
 use super::{Channel, Convention, Offset, Statistic};
+use crate::force::Force;
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
 
@@ -9,10 +10,8 @@ use crate::refusal::Refusal;
 pub struct Signal {
     /// Lateral positions, m.
     pub laterals: Vec<f64>,
-    /// Of the normal force, N.
-    pub normal: Vec<f64>,
-    /// Of the lateral force, N.
-    pub lateral: Vec<f64>,
+    /// Of each component of the force, N.
+    pub forces: Force<Vec<f64>>,
 }
 
 /// A map over the whole sweep, or its part within `half`, m, of x = 0: a map that begins at x = 0 is completed by symmetry, as the
@@ -47,11 +46,9 @@ impl Signal {
     /// The difference at one depth, m, of a map from its reference.
     pub fn new(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<Signal, Refusal> {
         let difference = map.signal(reference)?;
-        let forces = difference.row(depth)?;
         Ok(Signal {
             laterals: difference.laterals().to_vec(),
-            normal: forces.normal.to_vec(),
-            lateral: forces.lateral.to_vec(),
+            forces: difference.row(depth)?.map(<[f64]>::to_vec),
         })
     }
 
@@ -76,8 +73,7 @@ impl Signal {
         };
         Signal {
             laterals: inside(&self.laterals),
-            normal: inside(&self.normal),
-            lateral: inside(&self.lateral),
+            forces: self.forces.as_deref().map(inside),
         }
     }
 
@@ -96,15 +92,13 @@ impl Signal {
     ///
     /// Implements: PSY-084.
     pub fn weighted(&self, statistic: Statistic, channel: Channel, weight: f64) -> f64 {
-        let felt = |forces: &[f64], counts: bool| -> Vec<f64> {
+        let counted = Force::new(channel != Channel::Normal, channel != Channel::Lateral);
+        let felt = self.forces.as_deref().zip(counted).map(|(forces, counts)| {
             let offset = (1.0 - weight) * mean(forces);
             let counts = f64::from(u8::from(counts));
-            let force = |force: &f64| counts * (force - offset);
-            forces.iter().map(force).collect()
-        };
-        let normal = felt(&self.normal, channel != Channel::Lateral);
-        let lateral = felt(&self.lateral, channel != Channel::Normal);
-        let energies = normal.iter().zip(&lateral).map(|(n, l)| n * n + l * l);
+            forces.iter().map(move |force| counts * (force - offset))
+        });
+        let energies = felt.normal.zip(felt.lateral).map(|(n, l)| n * n + l * l);
         let energy = match statistic {
             Statistic::Peak => energies.fold(0.0, f64::max),
             Statistic::MatchedFilter => energies.sum::<f64>() / self.laterals.len() as f64,

@@ -99,7 +99,7 @@ fn assemble(
     };
     let parameters = observed.subjects.len() as f64 + lapses;
     Ok(SubjectFit {
-        noise,
+        noise_n: noise,
         lapse,
         predicted: predicted.iter().map(|of| of.right / of.trials()).collect(),
         deviance,

@@ -1,7 +1,10 @@
 //! What the fits say of the question which part of the force the subjects used.
 
+use askama::Template;
+
 use super::{
-    Channel, Convention, ConventionFit, LEVEL, Statistic, Support, Verdict, WeightRange, told_apart,
+    Channel, CommonFit, Convention, ConventionFit, LEVEL, Statistic, Support, Verdict, WeightRange,
+    told_apart,
 };
 use crate::psychophysics::noise::{BACKDRIVE_FRICTION, HUMAN_PERCEPTION, QUANTIZATION};
 
@@ -28,7 +31,8 @@ pub fn verdict(fits: &[ConventionFit], weights: &[WeightRange], ranges: usize) -
         compatible: names(false),
         rejected: names(true),
         survives: survives(weights, ranges),
-        text: text(fits, support),
+        // Writing to a String does not fail.
+        text: Words::new(fits, support).render().expect("sentences"),
     }
 }
 
@@ -50,134 +54,71 @@ fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
     let largest = uppers.fold(0.0, f64::max);
     Some(format!(
         "Over sweeps of ±{:.0} to ±{:.0} mm, by the peak and by the whole sweep, the whole level of the normal force fits worse than the same force less its mean and than the lateral force in {} fits. Against the best weight of the level, with the dispersion and {ranges} ranges counted, it is rejected in {}; the largest weight of the level that one of them leaves is {largest:.2}.",
-        1e3 * first.half_sweep,
-        1e3 * last.half_sweep,
+        1e3 * first.half_sweep_m,
+        1e3 * last.half_sweep_m,
         count(&WeightRange::level_fits_worst),
         count(&|range| range.left.upper < 1.0),
     ))
 }
 
-/// The verdict in sentences.
-fn text(fits: &[ConventionFit], support: Support) -> String {
-    let uniform = best(fits, |of, _| of.uses_uniform_part());
-    let is_normal = |of: Convention| of.channel == Channel::Normal && !of.uses_uniform_part();
-    let normal = best(fits, |of, _| is_normal(of));
-    let lateral = best(fits, |of, _| of.channel == Channel::Lateral);
-    let mut sentences = vec![conclusion(support)];
-    for (kind, fit) in [
-        (
-            "the conventions with the level of the normal force",
-            uniform,
-        ),
-        ("those with the normal force less its mean", normal),
-        ("those with the lateral force alone", lateral),
-    ] {
-        sentences.extend(fit.map(|fit| evidence(kind, fit)));
-    }
-    sentences.extend(both_of(normal, lateral));
-    sentences.push(heterogeneity(fits));
-    sentences.extend(against_table_2(fits));
-    sentences.join(" ")
+/// The verdict in sentences: the words are in the template.
+///
+/// Implements: PSY-081, PSY-082, PSY-083.
+#[derive(Template)]
+#[template(path = "psychophysics/verdict.txt")]
+struct Words<'a> {
+    support: Support,
+    /// The level, %.
+    level: f64,
+    /// The conventions that fit best with the level of the normal force, with it less its mean, and with the lateral force.
+    uniform: Option<&'a ConventionFit>,
+    normal: Option<&'a ConventionFit>,
+    lateral: Option<&'a ConventionFit>,
+    /// Whether the last two can be told apart, with the p-value of that.
+    apart: Option<(&'static str, f64)>,
+    /// The convention that is best by Akaike's criterion, to tell whether one noise level for all would do.
+    common: Option<(&'a ConventionFit, &'a CommonFit)>,
+    /// The best peak convention that is not rejected and its noise, N: like that of Table 2, N, it is for one moment.
+    peak: Option<(&'a ConventionFit, f64)>,
+    table_2: f64,
 }
 
-fn conclusion(support: Support) -> String {
-    let level = LEVEL * 100.0;
-    match support {
-        Support::ChangeAlongSweep => format!(
-            "Over the whole of these maps, each convention by itself and the answers of a subject taken as binomial, the counts support subjects who use how the force changes along the sweep: at {level} % every convention that counts the whole level of the normal force is rejected, and at least one without it is not."
-        ),
-        Support::UniformPart => format!(
-            "Over the whole of these maps, each convention by itself and the answers of a subject taken as binomial, the counts support subjects who use the level of the normal force: at {level} % only conventions that count its uniform part are not rejected."
-        ),
-        Support::Undecided => format!(
-            "The counts do not tell whether the subjects used the level of the normal force: at {level} % some conventions with its uniform part and some without it are not rejected."
-        ),
-        Support::None => {
-            format!("No convention fits the counts: at {level} % all are rejected.")
+impl Words<'_> {
+    fn new(fits: &[ConventionFit], support: Support) -> Words<'_> {
+        let is_normal = |of: Convention| of.channel == Channel::Normal && !of.uses_uniform_part();
+        let normal = best(fits, |of, _| is_normal(of));
+        let lateral = best(fits, |of, _| of.channel == Channel::Lateral);
+        let aic = |fit: &&ConventionFit| fit.by_subject.aic;
+        let least = fits.iter().min_by(|a, b| aic(a).total_cmp(&aic(b)));
+        let of_moment =
+            |of: Convention, is_rejected: bool| of.statistic == Statistic::Peak && !is_rejected;
+        let squares = [QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION].map(|n| n * n);
+        Words {
+            support,
+            level: LEVEL * 100.0,
+            uniform: best(fits, |of, _| of.uses_uniform_part()),
+            normal,
+            lateral,
+            apart: normal.zip(lateral).and_then(apart),
+            common: least.and_then(|fit| Some((fit, fit.common.as_ref()?))),
+            peak: best(fits, of_moment).and_then(|fit| Some((fit, fit.common.as_ref()?.noise_n))),
+            table_2: libm::sqrt(squares.iter().sum()),
         }
     }
-}
-
-fn evidence(kind: &str, fit: &ConventionFit) -> String {
-    let best = match fit.by_subject_with_lapse.p_value > fit.by_subject.p_value {
-        true => &fit.by_subject_with_lapse,
-        false => &fit.by_subject,
-    };
-    let lapse = match best.lapse > 0.0 {
-        true => format!(" and {:.1} % lapses", 100.0 * best.lapse),
-        false => String::new(),
-    };
-    format!(
-        "Of {kind}, “{}” fits best: with a noise level for each subject{lapse} the deviance is {:.1} where {:.1} ± {:.1} is expected, p = {}.",
-        fit.name,
-        best.deviance,
-        best.expected_deviance,
-        best.deviance_sd,
-        p_value(fit.p_value)
-    )
 }
 
 /// Whether the normal force less its mean and the lateral force can be told apart.
 ///
 /// Implements: PSY-081.
-fn both_of(normal: Option<&ConventionFit>, lateral: Option<&ConventionFit>) -> Option<String> {
-    let p = told_apart(normal?, lateral?)?;
-    let [normal, lateral] = [normal?, lateral?].map(|fit| fit.by_subject_with_lapse.deviance);
-    let said = match normal < lateral {
+fn apart((normal, lateral): (&ConventionFit, &ConventionFit)) -> Option<(&'static str, f64)> {
+    let p = told_apart(normal, lateral)?;
+    let [normal, lateral] = [normal, lateral].map(|fit| fit.by_subject_with_lapse.deviance);
+    let words = match normal < lateral {
         _ if p >= LEVEL => "normal force less its mean and the lateral force cannot be told apart",
         true => "normal force fits the better of these two",
         false => "lateral force fits the better of these two",
     };
-    let p = p_value(p);
-    Some(format!(
-        "Over this sweep the {said} (subjects as blocks, p = {p})."
-    ))
-}
-
-/// Whether one noise level for all would do, by Akaike's criterion of the best convention.
-///
-/// Implements: PSY-082.
-fn heterogeneity(fits: &[ConventionFit]) -> String {
-    let aic = |fit: &&ConventionFit| fit.by_subject.aic;
-    let best = fits.iter().min_by(|a, b| aic(a).total_cmp(&aic(b)));
-    let Some((best, common)) = best.and_then(|best| Some((best, best.common.as_ref()?))) else {
-        return "No noise level for all subjects together can be fitted.".into();
-    };
-    let gain = common.aic - best.by_subject.aic;
-    if gain > 0.0 {
-        format!(
-            "Subjects differ: for “{}”, one noise level for all, {:.3} N, has an AIC larger by {gain:.0} than one for each.",
-            best.name, common.noise
-        )
-    } else {
-        format!(
-            "One noise level for all, {:.3} N for “{}”, is enough: its AIC is smaller by {:.0} than with one for each.",
-            common.noise, best.name, -gain
-        )
-    }
-}
-
-/// The noise of the best peak convention that is not rejected beside that of Table 2, which is for one moment.
-///
-/// Implements: PSY-083.
-fn against_table_2(fits: &[ConventionFit]) -> Option<String> {
-    let fit = best(fits, |of, is_rejected| {
-        of.statistic == Statistic::Peak && !is_rejected
-    })?;
-    let noise = fit.common.as_ref()?.noise;
-    let squares = [QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION].map(|n| n * n);
-    let table = libm::sqrt(squares.iter().sum());
-    let remark = match noise < table {
-        true => {
-            "smaller, so that subjects with the noise of Table 2 would have to combine several moments of the sweep"
-        }
-        false => "at least as large, so that Table 2 leaves room for it",
-    };
-    Some(format!(
-        "The one noise level for “{}”, {noise:.3} N, is {:.2} of the {table:.3} N that Table 2 of the paper adds up to for playback: {remark}.",
-        fit.name,
-        noise / table
-    ))
+    Some((words, p))
 }
 
 /// The first convention of a kind, rejected or not, with the largest p-value.
@@ -192,8 +133,8 @@ fn best(
     of_kind.rev().max_by(|a, b| a.p_value.total_cmp(&b.p_value))
 }
 
-fn p_value(p: f64) -> String {
-    match p < 0.001 {
+fn p_value(p: &f64) -> String {
+    match *p < 0.001 {
         true => format!("{p:.0e}").replace('-', "−"),
         false => format!("{p:.3}"),
     }

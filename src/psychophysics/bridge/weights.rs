@@ -86,7 +86,7 @@ fn weight_range(
     let (whole_level, no_level) = (at_weight(1.0), at_weight(0.0));
     let lateral = at(Channel::Lateral, 1.0)?;
     Ok(Some(WeightRange {
-        half_sweep,
+        half_sweep_m: half_sweep,
         statistic,
         left: Bounds {
             lower: left().fold(1.0, f64::min),

@@ -1,7 +1,7 @@
 //! Closed forms: few subjects, whose exchanges of signs can be counted by hand.
 
 use super::*;
-use crate::stats::check::assert_near;
+use crate::stats::tests::assert_near;
 
 // Verifies: PSY-050.
 #[test]
@@ -29,53 +29,38 @@ fn subjects_are_their_own_blocks() {
     let text = "subject,condition,trials,2,4\n1,a,30,30,30\n2,a,30,28,28\n3,a,30,20,20\n4,a,30,0,0\n3,b,10,5,5\n2,b,30,22,22\n1,b,60,60,48\n";
     let found = comparisons(&Table::from_csv(text, "t").unwrap()).unwrap();
     let [comparison] = &found[..] else { panic!() };
-    assert_eq!(
-        (comparison.first.as_str(), comparison.second.as_str()),
-        ("a", "b")
-    );
+    assert_eq!([&comparison.first[..], &comparison.second], ["a", "b"]);
     assert_eq!(comparison.subjects, 3);
     // Means over both inclusions: 0.1, 0.2, 1/6.
     let mean = (0.1 + 0.2 + 1.0 / 6.0) / 3.0;
     assert_near(comparison.overall.mean, mean, 1e-15);
     assert_eq!(comparison.overall.p_value, Some(2.0 / 8.0));
     // Student's quantile with 2 degrees of freedom at 95 %: 4.302652729749464 (closed form, 0.95 √2/√(1 − 0.95²)).
-    let spread: f64 = [0.1_f64, 0.2, 1.0 / 6.0]
-        .iter()
-        .map(|d| (d - mean).powi(2))
-        .sum();
+    let squares = [0.1_f64, 0.2, 1.0 / 6.0].map(|d| (d - mean).powi(2));
+    let spread: f64 = squares.iter().sum();
     let reach = 4.302652729749464 * (spread / 2.0 / 3.0).sqrt();
     let bounds = comparison.overall.bounds.unwrap();
     assert_near(bounds.lower, mean - reach, 1e-13);
     assert_near(bounds.upper, mean + reach, 1e-13);
     assert_eq!(comparison.by_inclusion[1].inclusion, "4");
-    assert_near(
-        comparison.by_inclusion[1].difference.mean,
-        (0.2 + 0.2 + 1.0 / 6.0) / 3.0,
-        1e-15,
-    );
-    assert_near(
-        comparison.by_inclusion[0].difference.mean,
-        (0.0 + 0.2 + 1.0 / 6.0) / 3.0,
-        1e-15,
-    );
+    for (column, first) in [0.0, 0.2].into_iter().enumerate() {
+        let found = comparison.by_inclusion[column].difference.mean;
+        assert_near(found, (first + 0.2 + 1.0 / 6.0) / 3.0, 1e-15);
+    }
 }
 
 // Verifies: PSY-050, PSY-052.
 #[test]
 fn conditions_of_table_1() {
     let found = comparisons(&Table::paper().unwrap()).unwrap();
-    let p_values: Vec<_> = found
-        .iter()
-        .map(|found| found.overall.p_value.unwrap())
-        .collect();
+    let p_values = found.iter().map(|found| found.overall.p_value.unwrap());
+    let p_values: Vec<f64> = p_values.collect();
     // Direct less measured, right answers of 120: 18 4 11 3 1 17 4 15 28 10, so only all signs or none; FEM less
     // measured: 17 7 14 17 −3 13 14 13 6 14, so with the −3 of either sign. Direct less FEM adds up to −1, the least
     // that it can, since it is odd.
     assert_eq!(p_values, [1.0, 2.0 / 1024.0, 4.0 / 1024.0]);
-    let holm: Vec<_> = found
-        .iter()
-        .map(|found| found.p_value_holm.unwrap())
-        .collect();
+    let holm = found.iter().map(|found| found.p_value_holm.unwrap());
+    let holm: Vec<f64> = holm.collect();
     assert_eq!(holm, [1.0, 3.0 * 2.0 / 1024.0, 2.0 * 4.0 / 1024.0]);
 }
 
@@ -84,26 +69,20 @@ fn conditions_of_table_1() {
 fn holm_orders_multiplies_and_never_decreases() {
     let corrected = holm(&[Some(0.04), None, Some(0.01), Some(0.03), Some(0.9)]);
     // 4·0.01, 3·0.03, then 2·0.04 = 0.08 below 0.09, and 0.9.
-    assert_eq!(
-        corrected,
-        [Some(0.09), None, Some(0.04), Some(0.09), Some(0.9)]
-    );
+    let expected = [Some(0.09), None, Some(0.04), Some(0.09), Some(0.9)];
+    assert_eq!(corrected, expected);
     assert_eq!(holm(&[Some(0.8), Some(0.7)]), [Some(1.0), Some(1.0)]);
 }
 
 // Verifies: PSY-051.
 #[test]
 fn conditions_without_a_common_subject_are_not_compared() {
-    let text = "subject,condition,trials,2\n1,a,30,30\n2,b,30,28\n";
-    assert_eq!(
-        comparisons(&Table::from_csv(text, "t").unwrap()),
-        Ok(vec![])
-    );
+    let compared = |rows: &str| {
+        let text = format!("subject,condition,trials,2\n{rows}");
+        comparisons(&Table::from_csv(&text, "t").unwrap()).unwrap()
+    };
+    assert_eq!(compared("1,a,30,30\n2,b,30,28\n"), []);
     // One subject, or equal differences: no interval.
-    let text = "subject,condition,trials,2\n1,a,30,30\n1,b,30,28\n";
-    let found = comparisons(&Table::from_csv(text, "t").unwrap()).unwrap();
-    assert_eq!(
-        (found[0].overall.bounds, found[0].overall.p_value),
-        (None, Some(1.0))
-    );
+    let overall = compared("1,a,30,30\n1,b,30,28\n")[0].overall;
+    assert_eq!((overall.bounds, overall.p_value), (None, Some(1.0)));
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::psychophysics::Bounds;
-use crate::stats::check::assert_near;
+use crate::stats::tests::assert_near;
 
 // Verifies: PSY-060.
 #[test]
@@ -10,17 +10,14 @@ fn noise_is_the_image_of_gamma() {
     let of = |correct| noise_bounds(2.0, Rate::new(correct, 30).unwrap().gamma);
     let rate = Rate::new(26, 30).unwrap();
     let (noise, bounds) = of(26);
-    assert_near(noise.unwrap(), 2.0 / rate.gamma.gamma.unwrap(), 1e-15);
-    assert_near(
-        bounds.lower.unwrap(),
-        2.0 / rate.gamma.bounds.upper.unwrap(),
-        1e-15,
-    );
-    assert_near(
-        bounds.upper.unwrap(),
-        2.0 / rate.gamma.bounds.lower.unwrap(),
-        1e-15,
-    );
+    let ends = rate.gamma.bounds;
+    for (found, gamma) in [
+        (noise, rate.gamma.gamma),
+        (bounds.lower, ends.upper),
+        (bounds.upper, ends.lower),
+    ] {
+        assert_near(found.unwrap(), 2.0 / gamma.unwrap(), 1e-15);
+    }
     // All right: no noise can be named, and none is too small.
     let (noise, bounds) = of(30);
     assert_eq!((noise, bounds.lower), (None, Some(0.0)));
@@ -28,28 +25,17 @@ fn noise_is_the_image_of_gamma() {
     // Guesses: no noise is too large.
     let (noise, bounds) = of(14);
     assert_eq!((noise, bounds.upper), (None, None));
-    let half = GammaEstimate::of(
-        0.5,
-        Bounds {
-            lower: 0.2,
-            upper: 1.0,
-        },
-    )
-    .unwrap();
-    assert_eq!(
-        noise_bounds(2.0, half).1,
-        OpenBounds {
-            lower: Some(0.0),
-            upper: None
-        }
-    );
+    let (lower, upper) = (0.2, 1.0);
+    let half = GammaEstimate::of(0.5, Bounds { lower, upper }).unwrap();
+    let (lower, upper) = (Some(0.0), None);
+    assert_eq!(noise_bounds(2.0, half).1, OpenBounds { lower, upper });
 }
 
 // Verifies: PSY-061.
 #[test]
 fn the_levels_of_section_5() {
     let found = paper_noise_levels().unwrap();
-    let noise: Vec<f64> = found.levels.iter().map(|level| level.noise).collect();
+    let noise: Vec<f64> = found.levels.iter().map(|level| level.noise_n).collect();
     let expected = [
         340.0 / 1.45,
         // mpmath: 340/(√2 Φ⁻¹(253/300)).
@@ -62,15 +48,11 @@ fn the_levels_of_section_5() {
         assert_near(noise, 1e-3 * expected, 1e-15);
     }
     // What the paper prints is within its rounding of ours, but for the γ that it read off.
-    let printed: Vec<_> = found.levels.iter().map(|level| level.printed).collect();
+    let printed: Vec<_> = found.levels.iter().map(|level| level.printed_n).collect();
     assert_eq!(printed, [Some(0.235), None, Some(0.17), Some(0.22), None]);
     assert_eq!(found.levels[2].formula, "√(0.5² + 140² + 93²) mN");
-    assert!(
-        found
-            .levels
-            .iter()
-            .all(|level| !level.assumption.is_empty())
-    );
+    let mut assumptions = found.levels.iter().map(|level| level.assumption);
+    assert!(assumptions.all(|words| !words.is_empty()));
 }
 
 // Table 2's 168 mN against 0.34 N/γ at the ends of 253/300: scipy gives shares of 0.7972 to 0.8826 pooled, so γ = 1.176
@@ -80,31 +62,28 @@ fn the_levels_of_section_5() {
 fn table_2_is_within_the_honest_interval_only() {
     let found = paper_noise_levels().unwrap();
     let answers = &found.levels[1];
-    assert_near(answers.pooled_bounds.unwrap().lower.unwrap(), 0.2024, 5e-5);
-    assert_near(
-        answers.clustered_bounds.unwrap().lower.unwrap(),
-        0.1503,
-        5e-5,
-    );
-    assert!(
-        found
-            .agreement
-            .contains("It lies outside the 95 % interval of all answers pooled")
-    );
-    assert!(
-        found
-            .agreement
-            .contains("and inside the 95 % interval of the subjects")
-    );
+    let lower = |bounds: Option<OpenBounds>| bounds.unwrap().lower.unwrap();
+    assert_near(lower(answers.pooled_bounds_n), 0.2024, 5e-5);
+    assert_near(lower(answers.clustered_bounds_n), 0.1503, 5e-5);
     // The words follow the numbers.
-    let other = agreement(answers, 0.25);
-    assert!(
-        other.contains("It lies inside the 95 % interval of all answers"),
-        "{other}"
-    );
-    let other = agreement(answers, 0.05);
-    assert!(
-        other.contains("outside the 95 % interval of the subjects"),
-        "{other}"
-    );
+    for (text, words) in [
+        (
+            &found.agreement,
+            "It lies outside the 95 % interval of all answers pooled",
+        ),
+        (
+            &found.agreement,
+            "and inside the 95 % interval of the subjects",
+        ),
+        (
+            &agreement(answers, 0.25),
+            "It lies inside the 95 % interval of all answers",
+        ),
+        (
+            &agreement(answers, 0.05),
+            "outside the 95 % interval of the subjects",
+        ),
+    ] {
+        assert!(text.contains(words), "{text}");
+    }
 }

@@ -1,9 +1,8 @@
 //! Expected values: scipy, Nelder and Mead from 27 starts, and Brent's method (`reference.py`).
 
 use super::*;
-use crate::psychophysics::tests::numbers;
-use crate::psychophysics::{Subject, Table};
-use crate::stats::check::assert_near;
+use crate::psychophysics::Table;
+use crate::stats::tests::{assert_near, numbers};
 
 fn fitted(table: &Table, condition: usize) -> Option<Psychometric> {
     let condition = &table.conditions()[condition];
@@ -39,8 +38,8 @@ fn fits_of_table_1() {
     for (condition, deviance) in DEVIANCES.into_iter().enumerate() {
         let found = fitted(&table, condition).unwrap();
         let parameters = [
-            (found.midpoint, 1e-3, OF_LENGTH),
-            (found.spread, 1e-3, OF_LENGTH),
+            (found.midpoint_m, 1e-3, OF_LENGTH),
+            (found.spread_m, 1e-3, OF_LENGTH),
             (found.lapse, 1.0, OF_LAPSE),
         ];
         let rows = expected[3 * condition..].iter();
@@ -83,22 +82,17 @@ fn without_three_depths_or_wrong_answers_there_is_no_function() {
     let table = |header: &str, rows: &str| {
         Table::from_csv(&format!("subject,condition,trials,{header}\n{rows}"), "t").unwrap()
     };
-    assert_eq!(
-        fitted(&table("2,4", "1,x,30,30,20\n2,x,30,28,21\n"), 0),
-        None
-    );
-    assert_eq!(
-        fitted(&table("a 2,b 2,4", "1,x,30,30,29,20\n2,x,30,28,29,21\n"), 0),
-        None
-    );
-    assert_eq!(
-        fitted(&table("2,4,6", "1,x,30,30,30,30\n2,x,30,30,30,30\n"), 0),
-        None
-    );
+    for (header, rows) in [
+        ("2,4", "1,x,30,30,20\n2,x,30,28,21\n"),
+        ("a 2,b 2,4", "1,x,30,30,29,20\n2,x,30,28,29,21\n"),
+        ("2,4,6", "1,x,30,30,30,30\n2,x,30,30,30,30\n"),
+    ] {
+        assert_eq!(fitted(&table(header, rows), 0), None);
+    }
     // Three depths leave no degree of freedom, and answers that do not fall set no bounds.
     let flat = fitted(&table("2,4,6", "1,x,30,25,25,26\n2,x,30,26,25,26\n"), 0).unwrap();
     assert_eq!((flat.degrees, flat.p_value), (0, None));
-    assert_eq!(flat.midpoint.bounds.upper, None);
+    assert_eq!(flat.midpoint_m.bounds.upper, None);
 }
 
 // Answers as the function has them are fitted by it, so that a midpoint taken for a threshold, or a spread for a slope,
@@ -108,33 +102,21 @@ fn without_three_depths_or_wrong_answers_there_is_no_function() {
 fn the_function_is_the_one_that_the_spec_states() {
     let depths = [2.0, 4.0, 5.0, 6.0, 8.0, 11.0];
     let (midpoint, spread, lapse) = (6.0, 2.0, 0.04);
-    let inclusions: Vec<Inclusion> = depths
-        .map(|depth| Inclusion {
-            name: depth.to_string(),
-            depth: depth * 1e-3,
-        })
-        .into();
     let right = depths.map(|depth| {
         let share = 0.5 + (0.5 - lapse) * lower_tail((midpoint - depth) / spread);
-        (1000.0 * share).round() as u32
+        format!(",{}", (1000.0 * share).round())
     });
-    let subject = |name: &str| Subject {
-        name: name.into(),
-        trials: 1000,
-        correct: right.into(),
-    };
-    let condition = Condition {
-        name: "x".into(),
-        subjects: vec![subject("1"), subject("2")],
-    };
-    let dispersion = Some(Overdispersion {
-        ratio: 1.0,
-        degrees: 6,
-    });
-    let found = psychometric(&inclusions, &condition, dispersion)
-        .unwrap()
-        .unwrap();
-    assert_near(found.midpoint.value, 1e-3 * midpoint, 2e-5);
-    assert_near(found.spread.value, 1e-3 * spread, 4e-5);
+    let (header, right) = (
+        depths.map(|depth| format!(",{depth}")).concat(),
+        right.concat(),
+    );
+    let text = format!("subject,condition,trials{header}\n1,x,1000{right}\n2,x,1000{right}\n");
+    let table = Table::from_csv(&text, "t").unwrap();
+    let (ratio, degrees) = (1.0, 6);
+    let dispersion = Some(Overdispersion { ratio, degrees });
+    let found = psychometric(table.inclusions(), &table.conditions()[0], dispersion);
+    let found = found.unwrap().unwrap();
+    assert_near(found.midpoint_m.value, 1e-3 * midpoint, 2e-5);
+    assert_near(found.spread_m.value, 1e-3 * spread, 4e-5);
     assert_near(found.lapse.value, lapse, 2e-3);
 }

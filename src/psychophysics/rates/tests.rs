@@ -5,8 +5,7 @@ use super::*;
 use crate::detect::two_afc;
 use crate::psychophysics::Table;
 use crate::psychophysics::dispersion::dispersion;
-use crate::psychophysics::tests::numbers;
-use crate::stats::check::assert_near;
+use crate::stats::tests::{assert_near, numbers};
 
 // Verifies: PSY-023, PSY-024.
 #[test]
@@ -37,11 +36,8 @@ fn nothing_is_infinite_and_nothing_negative() {
         let few = Rate::new(correct, 30).unwrap().gamma;
         assert_eq!((few.gamma, few.bounds.lower), (Some(0.0), Some(0.0)));
     }
-    assert!(
-        serde_json::to_string(&all)
-            .unwrap()
-            .contains("\"upper\":null")
-    );
+    let text = serde_json::to_string(&all).unwrap();
+    assert!(text.contains("\"upper\":null"));
 }
 
 /// Lower and upper end before the cut-off, χ² and its tail, for each condition and inclusion.
@@ -64,10 +60,8 @@ const EXPECTED: &str = "
 #[test]
 fn subjects_as_the_sample_and_chi_square_of_table_1() {
     let table = Table::paper().unwrap();
-    let cells = table
-        .conditions()
-        .iter()
-        .flat_map(|condition| (0..4).map(move |j| (condition, j)));
+    let conditions = table.conditions().iter();
+    let cells = conditions.flat_map(|condition| (0..4).map(move |j| (condition, j)));
     for ((condition, column), [lower, upper, chi_square, p_value]) in cells.zip(numbers(EXPECTED)) {
         let counts = condition.counts(column);
         let (correct, trials) = condition.pooled(column);

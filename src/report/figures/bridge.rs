@@ -28,7 +28,7 @@ pub fn draw(figures: &mut Figures, found: &Findings) -> Result<(), Refusal> {
     };
     let depths = bridge.inclusions.iter().filter_map(|of| {
         let mut known = counted.inclusions.iter();
-        Some(1e3 * known.find(|known| known.name == of.name)?.depth)
+        Some(1e3 * known.find(|known| known.name == of.name)?.depth_m)
     });
     let depths: Vec<_> = depths.collect();
     let panel = |offset, words| {

@@ -50,7 +50,7 @@ pub fn bar(x: f64, bounds: Bounds, colour: RGBColor, width: f64) -> Line {
 
 fn depths(condition: &ConditionAnalysis) -> Vec<f64> {
     let inclusions = condition.inclusions.iter();
-    inclusions.map(|inclusion| 1e3 * inclusion.depth).collect()
+    inclusions.map(|of| 1e3 * of.depth_m).collect()
 }
 
 /// Figures 10 to 13.
@@ -118,7 +118,7 @@ fn comparison(conditions: &[ConditionAnalysis]) -> Panel {
     for (k, (condition, colour)) in conditions.iter().zip(CONDITIONS).enumerate() {
         let aside = 0.54 * (k as f64 - 0.5 * (conditions.len() as f64 - 1.0));
         for inclusion in &condition.inclusions {
-            lines.extend(bars(inclusion, 1e3 * inclusion.depth + aside, colour));
+            lines.extend(bars(inclusion, 1e3 * inclusion.depth_m + aside, colour));
         }
         let sample = Line::new(colour, Vec::new()).wide(0.0).dotted(5);
         key.push(sample.named(condition.name.clone()));

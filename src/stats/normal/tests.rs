@@ -2,7 +2,7 @@
 //! iteration on the former, for the exact binary64 argument, rounded once.
 
 use super::*;
-use crate::stats::check::assert_ulps;
+use crate::stats::tests::assert_ulps;
 
 // Verifies: DET-001, DET-002.
 #[test]

@@ -1,5 +1,17 @@
 //! What the unit tests compare with.
 
+extern crate std;
+use std::vec::Vec;
+
+/// The numbers of a table, whose rows are lines.
+pub(crate) fn numbers<const N: usize>(table: &str) -> Vec<[f64; N]> {
+    let row = |line: &str| {
+        let cells = line.split_whitespace().map(|cell| cell.parse().unwrap());
+        cells.collect::<Vec<f64>>().try_into().unwrap()
+    };
+    table.trim().lines().map(row).collect()
+}
+
 /// Asserts |found − expected| ≤ `ulps` units in the last place of `expected`.
 #[track_caller]
 pub(crate) fn assert_ulps(found: f64, expected: f64, ulps: f64) {
