@@ -7,7 +7,7 @@ use palpate::detect::{
     required_gamma, two_afc,
 };
 use palpate::force::Force;
-use palpate::psychophysics::Table;
+use palpate::psychophysics::AnswerTable;
 use palpate::stats::binomial::clopper_pearson;
 use palpate::stats::random::Generator;
 
@@ -162,7 +162,7 @@ fn dispersion(counts: &[(u32, u32)]) -> f64 {
 // Verifies: ERR-007.
 #[test]
 fn err_007_subjects_vary_more_than_a_binomial() {
-    let table = Table::paper().unwrap();
+    let table = AnswerTable::paper().unwrap();
     let columns = table.conditions().iter();
     let columns: Vec<_> = columns
         .flat_map(|of| [0, 1, 2, 3].map(|j| of.counts(j)))
@@ -206,7 +206,7 @@ fn err_009_noise_of_table_2() {
     assert!((200.0..205.0).contains(&least), "{least}");
     assert!(explained < least);
     // Student's interval of the ten subjects' shares at 6.6 mm, t₉(0.975) = 2.262 (Natrella, Table T-4).
-    let counts = Table::paper().unwrap().conditions()[1].counts(2);
+    let counts = AnswerTable::paper().unwrap().conditions()[1].counts(2);
     let shares = counts.iter().map(|&(right, _)| f64::from(right) / 30.0);
     let shares: Vec<f64> = shares.collect();
     let mean = shares.iter().sum::<f64>() / 10.0;

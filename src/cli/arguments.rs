@@ -25,7 +25,7 @@ const LONG_VERSION: &str = concat!(
 /// Inclusion probing after Yan, Scott and Fearing (1999): forces on a probe, detection of an inclusion.
 #[derive(Debug, Parser)]
 #[command(version, long_version = LONG_VERSION, about, disable_help_subcommand = true)]
-pub struct Arguments {
+pub struct CommandLine {
     #[command(subcommand)]
     pub(super) command: Command,
 }

@@ -1,6 +1,6 @@
 //! What the program says when it cannot do what it was asked to, and with which exit code.
 
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::io;
 use std::path::Path;
 
@@ -10,17 +10,29 @@ use crate::refusal::{Refusal, one_line};
 /// Why a command failed. Its message is one line.
 ///
 /// Implements: CLI-002, CLI-003.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug)]
 pub enum CliError {
     /// The command line, a file or a device is to blame.
-    #[error("{0}")]
     Usage(String),
     /// A phantom, a force map, a trace or a table of answers is not valid, or they do not fit one another.
-    #[error("{0}")]
-    Refused(#[from] Refusal),
+    Refused(Refusal),
     /// A computation or a check failed.
-    #[error("{0}")]
     Check(String),
+}
+
+impl Display for CliError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            CliError::Usage(message) | CliError::Check(message) => f.write_str(message),
+            CliError::Refused(refusal) => refusal.fmt(f),
+        }
+    }
+}
+
+impl From<Refusal> for CliError {
+    fn from(refusal: Refusal) -> CliError {
+        CliError::Refused(refusal)
+    }
 }
 
 impl CliError {

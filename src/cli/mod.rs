@@ -24,7 +24,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use arguments::{Arguments, Asked, Command, Format};
+use arguments::{Asked, Command, CommandLine, Format};
 pub use error::CliError;
 
 /// Runs the program with the given arguments, the first of which is its name.
@@ -41,17 +41,19 @@ pub use error::CliError;
 /// assert_ne!(code, ExitCode::SUCCESS);
 /// ```
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    program(arguments, |arguments: Arguments| match arguments.command {
-        Command::Run(arguments) => run::run(&arguments),
-        Command::Solve(arguments) => solve::solve(&arguments),
-        Command::ImportMap(arguments) => import::import(&arguments),
-        Command::Detect(arguments) => detect::detect(&arguments),
-        Command::Play(arguments) => play::play(&arguments),
-        Command::Devices(arguments) => devices::devices(&arguments),
-        Command::Experiment(arguments) => experiment::experiment(&arguments),
-        Command::Psychophysics(arguments) => psychophysics::psychophysics(&arguments),
-        Command::Timing(arguments) => timing::timing(&arguments),
-        Command::Oracle(arguments) => oracle::oracle(&arguments),
+    program(arguments, |arguments: CommandLine| {
+        match arguments.command {
+            Command::Run(arguments) => run::run(&arguments),
+            Command::Solve(arguments) => solve::solve(&arguments),
+            Command::ImportMap(arguments) => import::import(&arguments),
+            Command::Detect(arguments) => detect::detect(&arguments),
+            Command::Play(arguments) => play::play(&arguments),
+            Command::Devices(arguments) => devices::devices(&arguments),
+            Command::Experiment(arguments) => experiment::experiment(&arguments),
+            Command::Psychophysics(arguments) => psychophysics::psychophysics(&arguments),
+            Command::Timing(arguments) => timing::timing(&arguments),
+            Command::Oracle(arguments) => oracle::oracle(&arguments),
+        }
     })
 }
 

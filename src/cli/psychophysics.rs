@@ -13,8 +13,8 @@ use super::{CliError, Format};
 use crate::force_map::{ForceMap, Hypotheses};
 use crate::psychophysics::bridge::{Bridge, bridge};
 use crate::psychophysics::{
-    Analysis, Bounds, ConditionAnalysis, NoiseDecomposition, OpenBounds, Parameter, Table, analyse,
-    paper_noise_levels,
+    Analysis, AnswerTable, Bounds, ConditionAnalysis, NoiseDecomposition, OpenBounds, Parameter,
+    analyse, paper_noise_levels,
 };
 
 /// Arguments of `palpate psychophysics`.
@@ -58,7 +58,7 @@ struct PsychophysicsAnswer {
 /// Implements: CLI-080, CLI-081, CLI-082, CLI-083, CLI-084, CLI-085.
 pub fn psychophysics(arguments: &PsychophysicsArguments) -> Result<(), CliError> {
     let path = arguments.counts.as_ref();
-    let table = path.map_or_else(Table::paper, |path| Table::read(path))?;
+    let table = path.map_or_else(AnswerTable::paper, |path| AnswerTable::read(path))?;
     let bridge = arguments.reference.as_ref();
     let bridge = bridge.map(|reference| against_maps(arguments, &table, reference));
     let noise_levels = path.is_none().then(paper_noise_levels);
@@ -76,7 +76,7 @@ pub fn psychophysics(arguments: &PsychophysicsArguments) -> Result<(), CliError>
 
 fn against_maps(
     arguments: &PsychophysicsArguments,
-    table: &Table,
+    table: &AnswerTable,
     reference: &Path,
 ) -> Result<Bridge, CliError> {
     let reference = ForceMap::read(reference)?;

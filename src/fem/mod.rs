@@ -33,6 +33,8 @@ mod triangle;
 mod triangulate;
 mod vtu;
 
+use std::fmt;
+
 use crate::refusal::Refusal;
 pub use contact::{Contact, ContactState, Surface};
 pub use field::{Field, FieldCheck};
@@ -63,26 +65,19 @@ pub struct Pose {
 }
 
 /// What can go wrong between a phantom and a force.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum FemError {
     /// The phantom is not valid, no sound mesh has the size that was asked for, double precision does not hold its stiffness, or the
     /// forces do not make a map.
-    #[error(transparent)]
     Refused(Box<Refusal>),
     /// The probe cannot stand there.
-    #[error(transparent)]
     Pose(Box<Refusal>),
     /// A linear solve left too much.
-    #[error(
-        "a linear solve left the relative residual {residual:e}, more than {:e}",
-        cholesky::RESIDUAL_LIMIT
-    )]
     Residual {
         /// ‖f − K u‖ / ‖f‖.
         residual: f64,
     },
     /// Contact did not converge.
-    #[error("contact at depth {} mm, lateral {} mm did not converge in {iterations} iterations", pose.depth * 1e3, pose.lateral * 1e3)]
     NoConvergence {
         /// The pose.
         pose: Pose,
@@ -90,9 +85,33 @@ pub enum FemError {
         iterations: usize,
     },
     /// Memory ran out.
-    #[error("out of memory")]
     OutOfMemory,
 }
+
+impl fmt::Display for FemError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            FemError::Refused(refusal) | FemError::Pose(refusal) => refusal.fmt(f),
+            FemError::Residual { residual } => {
+                let limit = cholesky::RESIDUAL_LIMIT;
+                write!(
+                    f,
+                    "a linear solve left the relative residual {residual:e}, more than {limit:e}"
+                )
+            }
+            FemError::NoConvergence { pose, iterations } => {
+                let (depth, lateral) = (pose.depth * 1e3, pose.lateral * 1e3);
+                write!(
+                    f,
+                    "contact at depth {depth} mm, lateral {lateral} mm did not converge in {iterations} iterations"
+                )
+            }
+            FemError::OutOfMemory => f.write_str("out of memory"),
+        }
+    }
+}
+
+impl std::error::Error for FemError {}
 
 impl From<Refusal> for FemError {
     fn from(refusal: Refusal) -> FemError {

@@ -1,5 +1,6 @@
 //! What the loop needs of a haptic device, real or simulated.
 
+use std::fmt;
 use std::time::Duration;
 
 use super::{Capabilities, Control, ForceReport, InvalidReport, PositionReport};
@@ -106,8 +107,7 @@ pub enum Received {
 }
 
 /// Why a device can no longer be used.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DeviceError {
     /// What it says of the device.
     pub state: DeviceState,
@@ -127,6 +127,14 @@ pub enum DeviceState {
     /// It is there, and may take the same a moment later.
     There,
 }
+
+impl fmt::Display for DeviceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for DeviceError {}
 
 impl DeviceError {
     /// A failure.

@@ -105,20 +105,30 @@ pub struct Cycle {
 }
 
 /// Why a session ended.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum End {
     /// It was asked to.
-    #[error("ended as asked")]
     Asked,
     /// The servo kernel found a fault; the force has been released.
-    #[error("stopped by a fault: {0}")]
     Fault(Fault),
     /// The device failed.
-    #[error("stopped: {0}")]
     Device(DeviceError),
     /// The end, and why stopping the device failed.
-    #[error("{0}; stopping the device failed ({1}): its own watchdog must drop the force")]
     Unstopped(Box<End>, DeviceError),
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            End::Asked => f.write_str("ended as asked"),
+            End::Fault(fault) => write!(f, "stopped by a fault: {fault}"),
+            End::Device(error) => write!(f, "stopped: {error}"),
+            End::Unstopped(end, error) => write!(
+                f,
+                "{end}; stopping the device failed ({error}): its own watchdog must drop the force"
+            ),
+        }
+    }
 }
 
 /// A refusal that says all by itself.

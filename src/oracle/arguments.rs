@@ -5,13 +5,16 @@ use serde::de::DeserializeOwned;
 
 use super::Refused;
 use super::answer::Code;
-use super::ops::{Models, Op};
 use super::request::{Members, kind};
+use crate::fem::Model;
 
 /// Most entries of a list, and of all the lists of a matrix together.
 ///
 /// Implements: ORA-011.
 pub const MOST_ENTRIES: usize = 1_000_000;
+
+/// Models that were made, each with the name of its phantom: at most one for each that is built in.
+pub type Models = Vec<(String, Model)>;
 
 /// The arguments of a request, and what earlier requests left for it.
 #[derive(Debug)]
@@ -37,20 +40,20 @@ impl<'a> Arguments<'a> {
         })
     }
 
-    /// Whether the op knows all the arguments.
+    /// Whether the op knows all the arguments: `known` are their names, with a space between them.
     ///
     /// Implements: ORA-005.
-    pub fn check_known(&self, op: &Op) -> Result<(), Refused> {
-        let knows = |name: &str| op.arguments.split(' ').any(|known| known == name);
-        self.check(knows, || match op.arguments {
-            "" => format!("{} takes no arguments", op.name),
-            known => format!("{} takes {}", op.name, known.replace(' ', ", ")),
+    pub fn check_known(&self, op: &str, known: &str) -> Result<(), Refused> {
+        let knows = |name: &str| known.split(' ').any(|known| known == name);
+        self.check(knows, || match known {
+            "" => format!("{op} takes no arguments"),
+            known => format!("{op} takes {}", known.replace(' ', ", ")),
         })
     }
 
     /// Whether the op had a use for all the arguments.
-    pub fn check_used(&self, op: &Op) -> Result<(), Refused> {
-        let takes = || format!("here {} takes {}", op.name, self.asked.join(", "));
+    pub fn check_used(&self, op: &str) -> Result<(), Refused> {
+        let takes = || format!("here {op} takes {}", self.asked.join(", "));
         self.check(|name| self.asked.contains(&name), takes)
     }
 

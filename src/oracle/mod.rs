@@ -20,7 +20,7 @@ mod tests;
 pub use answer::Code;
 use answer::{Answer, Refused};
 use arguments::Arguments;
-use request::Request;
+use request::Query;
 pub use serve::{LONGEST_LINE, serve};
 
 /// What answers: the ops, and the models that were solved before.
@@ -41,7 +41,7 @@ pub use serve::{LONGEST_LINE, serve};
 #[derive(Debug, Default)]
 pub struct Oracle {
     /// Models of the built-in phantoms that were asked for, which take long to make.
-    models: ops::Models,
+    models: arguments::Models,
 }
 
 impl Oracle {
@@ -49,19 +49,19 @@ impl Oracle {
     ///
     /// Implements: ORA-001, ORA-004, ORA-006, ORA-012, ACC-030.
     pub fn answer(&mut self, line: &[u8], out: &mut Vec<u8>) {
-        match Request::parse(line) {
+        match Query::parse(line) {
             Ok(request) => answer::write(request.id, &self.perform(&request), out),
             Err((id, refused)) => answer::write(id.unwrap_or("null"), &Err(refused), out),
         }
     }
 
-    fn perform(&mut self, request: &Request) -> Result<Answer, Refused> {
+    fn perform(&mut self, request: &Query) -> Result<Answer, Refused> {
         let op = ops::find(&request.op)?;
         let mut arguments = Arguments::parse(request.args, &mut self.models)?;
         // First, since an argument with a wrong name also makes another one missing.
-        arguments.check_known(op)?;
+        arguments.check_known(op.name, op.arguments)?;
         let answer = (op.function)(&mut arguments)?;
-        arguments.check_used(op)?;
+        arguments.check_used(op.name)?;
         answer.finite()
     }
 }

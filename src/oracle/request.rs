@@ -9,7 +9,7 @@ use super::answer::{Code, Refused};
 
 /// A line that asks something.
 #[derive(Debug)]
-pub struct Request<'a> {
+pub struct Query<'a> {
     /// The JSON text of the id.
     pub id: &'a str,
     /// The name of the op.
@@ -85,14 +85,14 @@ pub fn kind(text: &str) -> &'static str {
     }
 }
 
-impl<'a> Request<'a> {
+impl<'a> Query<'a> {
     /// Reads a line.
     ///
     /// # Errors
     /// The id, if there is one, and what is wrong.
     ///
     /// Implements: ORA-004, ORA-005, ORA-008.
-    pub fn parse(line: &'a [u8]) -> Result<Request<'a>, (Option<&'a str>, Refused)> {
+    pub fn parse(line: &'a [u8]) -> Result<Query<'a>, (Option<&'a str>, Refused)> {
         let bad_json = |message: fmt::Arguments| (None, Refused::new(Code::BadJson, message));
         let text = str::from_utf8(line)
             .map_err(|error| bad_json(format_args!("the line is not UTF-8: {error}")))?;
@@ -115,7 +115,7 @@ impl<'a> Request<'a> {
             return Err(bad(format!("unknown key {name:?}: expected id, op, args")));
         }
         match find("op").map(serde_json::from_str) {
-            Some(Ok(op)) => Ok(Request {
+            Some(Ok(op)) => Ok(Query {
                 id: known_id,
                 op,
                 args: find("args"),

@@ -69,7 +69,7 @@ fn lines_are_found_however_the_input_is_cut() {
 fn the_registry_names_the_arguments_that_the_ops_ask_for() {
     for op in ops::OPS {
         // Whatever is missing, an op asks for arguments that its entry has.
-        let mut models = ops::Models::default();
+        let mut models = super::arguments::Models::default();
         let mut arguments = Arguments::parse(None, &mut models).unwrap();
         match (op.function)(&mut arguments) {
             Ok(_) => assert_eq!(op.name, "capabilities"),

@@ -7,7 +7,7 @@ use super::conditions::{ConditionComparison, comparisons};
 use super::dispersion::{Dispersion, Overdispersion, dispersion};
 use super::psychometric::{Psychometric, psychometric};
 use super::rates::{CONFIDENCE, Clustered, Rate, pooled};
-use super::{Condition, Inclusion, Result, Subject, Table};
+use super::{AnswerTable, Column, Condition, Result, Subject};
 
 /// The analysis of a table of counts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -67,8 +67,8 @@ pub struct SubjectAnalysis {
 /// The analysis of a table.
 ///
 /// # Errors
-/// Never for counts that fit their trials, as a [`Table`] holds them.
-pub fn analyse(table: &Table) -> Result<Analysis> {
+/// Never for counts that fit their trials, as an [`AnswerTable`] holds them.
+pub fn analyse(table: &AnswerTable) -> Result<Analysis> {
     let conditions = table.conditions().iter();
     Ok(Analysis {
         confidence: CONFIDENCE,
@@ -79,7 +79,7 @@ pub fn analyse(table: &Table) -> Result<Analysis> {
     })
 }
 
-fn analyse_condition(table: &Table, condition: &Condition) -> Result<ConditionAnalysis> {
+fn analyse_condition(table: &AnswerTable, condition: &Condition) -> Result<ConditionAnalysis> {
     let columns = table.inclusions().iter().enumerate();
     let inclusions = columns
         .map(|(column, inclusion)| analyse_inclusion(inclusion, condition, column))
@@ -104,7 +104,7 @@ fn analyse_condition(table: &Table, condition: &Condition) -> Result<ConditionAn
 }
 
 fn analyse_inclusion(
-    inclusion: &Inclusion,
+    inclusion: &Column,
     condition: &Condition,
     column: usize,
 ) -> Result<InclusionAnalysis> {

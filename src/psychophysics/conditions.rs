@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::rates::{Bounds, CONFIDENCE};
-use super::{Condition, Inclusion, Result, Table};
+use super::{AnswerTable, Column, Condition, Result};
 use crate::stats::tails::student_quantile;
 
 /// Most subjects whose exchanges of signs are all tried: a million.
@@ -56,7 +56,7 @@ pub struct Difference {
 /// Never for counts that fit their trials.
 ///
 /// Implements: PSY-050, PSY-051, PSY-052.
-pub fn comparisons(table: &Table) -> Result<Vec<ConditionComparison>> {
+pub fn comparisons(table: &AnswerTable) -> Result<Vec<ConditionComparison>> {
     let conditions = table.conditions();
     let mut found = Vec::new();
     for (at, first) in conditions.iter().enumerate() {
@@ -73,7 +73,7 @@ pub fn comparisons(table: &Table) -> Result<Vec<ConditionComparison>> {
 
 /// `None` without a subject in both.
 fn compare(
-    inclusions: &[Inclusion],
+    inclusions: &[Column],
     first: &Condition,
     second: &Condition,
 ) -> Result<Option<ConditionComparison>> {
@@ -92,7 +92,7 @@ fn compare(
     let overall = differences
         .iter()
         .map(|row| row.iter().sum::<f64>() / inclusions.len() as f64);
-    let column = |(column, inclusion): (usize, &Inclusion)| {
+    let column = |(column, inclusion): (usize, &Column)| {
         let differences: Vec<f64> = differences.iter().map(|row| row[column]).collect();
         Ok(InclusionDifference {
             inclusion: inclusion.name.clone(),

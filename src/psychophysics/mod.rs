@@ -17,10 +17,10 @@
 //!
 //! ```
 //! use palpate::detect::gamma_from_two_afc;
-//! use palpate::psychophysics::{Table, analyse};
+//! use palpate::psychophysics::{AnswerTable, analyse};
 //!
 //! // Playback of FEM data, inclusion 6.6 mm deep: 84 % of all answers are right, γ = 1.42.
-//! let analysis = analyse(&Table::paper()?)?;
+//! let analysis = analyse(&AnswerTable::paper()?)?;
 //! let pooled = analysis.conditions[1].inclusions[2].pooled;
 //! assert_eq!((pooled.correct, pooled.trials), (253, 300));
 //! assert_eq!(pooled.gamma.gamma, Some(gamma_from_two_afc(253.0 / 300.0)?));
@@ -59,7 +59,7 @@ pub use observer::{Felt, IdealObserver, present};
 pub use plan::{Interval, Trial, plan};
 pub use psychometric::{Parameter, Psychometric};
 pub use rates::{Bounds, CONFIDENCE, Clustered, GammaEstimate, OpenBounds, Rate};
-pub use table::{Condition, Inclusion, MOST_TRIALS, Subject, Table};
+pub use table::{AnswerTable, Column, Condition, MOST_TRIALS, Subject};
 
 use crate::refusal::Refusal;
 

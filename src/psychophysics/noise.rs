@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::rates::{Clustered, GammaEstimate, OpenBounds, Rate, pooled};
-use super::{Result, Table};
+use super::{AnswerTable, Result};
 use crate::detect::noise_budget::noise_total;
 
 /// "The peak signal strength for this inclusion is 340mN" (§5, 6.6 mm), N.
@@ -125,9 +125,9 @@ const SUMS: [(&str, Option<f64>, &[f64], &str); 3] = [
 ///
 /// let levels = paper_noise_levels()?.levels;
 /// // As printed in the paper, 235 mN = 340 mN / 1.45, and from its Table 2.
-/// assert!(levels.iter().filter_map(|level| level.printed).eq([0.235, 0.170, 0.220]));
+/// assert!(levels.iter().filter_map(|level| level.printed_n).eq([0.235, 0.170, 0.220]));
 /// // 340 mN over the γ of 253 right answers of 300.
-/// assert!(levels.iter().any(|level| (level.noise - 0.340 / 1.4257).abs() < 1e-3));
+/// assert!(levels.iter().any(|level| (level.noise_n - 0.340 / 1.4257).abs() < 1e-3));
 /// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 ///
@@ -166,7 +166,7 @@ pub fn paper_noise_levels() -> Result<NoiseDecomposition> {
 
 /// The peak signal of §5 over the γ of the 253 of 300.
 fn from_answers() -> Result<NoiseLevel> {
-    let table = Table::paper()?;
+    let table = AnswerTable::paper()?;
     let (rate, clustered) = pooled(&table.conditions()[PLAYBACK.0], PLAYBACK.1)?;
     let found = InclusionNoise::new(PEAK_SIGNAL, &rate, clustered);
     let peak = millinewtons(PEAK_SIGNAL);

@@ -6,7 +6,7 @@ use super::choice::{Count, Perceived, best_lapse, deviance, log_likelihood};
 use super::dispersion::Overdispersion;
 use super::rates::{CONFIDENCE, OpenBounds};
 use super::search::{interval, maximum};
-use super::{Condition, Inclusion, Result};
+use super::{Column, Condition, Result};
 use crate::stats::normal::{self, lower_tail};
 use crate::stats::tails::{chi_square_tail, student_quantile};
 
@@ -58,7 +58,7 @@ pub struct Parameter {
 ///
 /// Implements: PSY-040, PSY-041, PSY-042, PSY-043.
 pub fn psychometric(
-    inclusions: &[Inclusion],
+    inclusions: &[Column],
     condition: &Condition,
     dispersion: Option<Overdispersion>,
 ) -> Result<Option<Psychometric>> {

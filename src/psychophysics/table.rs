@@ -28,7 +28,7 @@ pub const MOST_TRIALS: u32 = 1_000;
 
 /// An inclusion: a column of the table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Inclusion {
+pub struct Column {
     /// As in the header: untrusted text.
     pub name: String,
     /// The depth of its top, m.
@@ -67,40 +67,40 @@ pub struct Condition {
 /// is at least one of each.
 ///
 /// ```
-/// use palpate::psychophysics::Table;
+/// use palpate::psychophysics::AnswerTable;
 ///
-/// let table = Table::from_csv("subject,condition,trials,2.6,8.6\nA,gel,20,19,12\n", "mine.csv")?;
+/// let table = AnswerTable::from_csv("subject,condition,trials,2.6,8.6\nA,gel,20,19,12\n", "mine.csv")?;
 /// assert_eq!(table.inclusions()[1].depth, 0.0086);
 /// assert_eq!(table.conditions()[0].pooled(1), (12, 20));
-/// let refused = Table::from_csv("subject,condition,trials,2.6\nA,gel,20,21\n", "mine.csv");
+/// let refused = AnswerTable::from_csv("subject,condition,trials,2.6\nA,gel,20,21\n", "mine.csv");
 /// assert!(refused.unwrap_err().to_string().starts_with("mine.csv:2: 2.6 = \"21\", expected a whole"));
 /// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 ///
 /// Implements: PSY-020, PSY-021.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
-    inclusions: Vec<Inclusion>,
+pub struct AnswerTable {
+    inclusions: Vec<Column>,
     conditions: Vec<Condition>,
 }
 
-impl Table {
+impl AnswerTable {
     /// Table 1 of the paper.
     ///
     /// # Errors
     /// None: the text is part of the program, and a test reads it.
     ///
     /// Implements: PSY-020.
-    pub fn paper() -> Result<Table, Refusal> {
-        Table::from_csv(PAPER, "Table 1")
+    pub fn paper() -> Result<AnswerTable, Refusal> {
+        AnswerTable::from_csv(PAPER, "Table 1")
     }
 
     /// Reads the table at `path`.
     ///
     /// # Errors
-    /// As [`Table::from_csv`], and if the file cannot be read as UTF-8.
-    pub fn read(path: &Path) -> Result<Table, Refusal> {
-        crate::input::parse(path, Table::from_csv)
+    /// As [`AnswerTable::from_csv`], and if the file cannot be read as UTF-8.
+    pub fn read(path: &Path) -> Result<AnswerTable, Refusal> {
+        crate::input::parse(path, AnswerTable::from_csv)
     }
 
     /// The table in `text`, the content of `file`.
@@ -109,7 +109,7 @@ impl Table {
     /// The first line that is wrong.
     ///
     /// Implements: PSY-020, PSY-021, PSY-022.
-    pub fn from_csv(text: &str, file: &str) -> Result<Table, Refusal> {
+    pub fn from_csv(text: &str, file: &str) -> Result<AnswerTable, Refusal> {
         let at = |line| move |refusal: Refusal| refusal.at(line).in_file(file);
         let ((header_line, header), rows) = header_and_rows(text);
         let inclusions = inclusions(header).map_err(at(header_line))?;
@@ -134,14 +134,14 @@ impl Table {
             let empty = Refusal::state("no rows under the header", "at least one");
             return Err(at(header_line)(empty));
         }
-        Ok(Table {
+        Ok(AnswerTable {
             inclusions,
             conditions,
         })
     }
 
     /// The columns.
-    pub fn inclusions(&self) -> &[Inclusion] {
+    pub fn inclusions(&self) -> &[Column] {
         &self.inclusions
     }
 
@@ -173,11 +173,11 @@ impl Condition {
 }
 
 /// The inclusions that a header names.
-fn inclusions(header: &str) -> Result<Vec<Inclusion>, Refusal> {
+fn inclusions(header: &str) -> Result<Vec<Column>, Refusal> {
     let fields: Vec<&str> = header.split(',').map(str::trim).collect();
     let names = fields.strip_prefix(&KEYS).filter(|rest| !rest.is_empty());
     let names = names.ok_or_else(|| wrong_header(header, EXPECTED_HEADER))?;
-    let mut inclusions: Vec<Inclusion> = Vec::new();
+    let mut inclusions: Vec<Column> = Vec::new();
     for (number, name) in (KEYS.len() + 1..).zip(names) {
         let refused = |expected| refused(&format!("header, column {number}"), name, expected);
         let depth = name.split_whitespace().next_back();
@@ -188,17 +188,13 @@ fn inclusions(header: &str) -> Result<Vec<Inclusion>, Refusal> {
             return Err(refused("each inclusion once"));
         }
         let name = name.to_string();
-        inclusions.push(Inclusion { name, depth });
+        inclusions.push(Column { name, depth });
     }
     Ok(inclusions)
 }
 
 /// The condition and the subject of a row.
-fn subject(
-    header: &str,
-    row: &str,
-    inclusions: &[Inclusion],
-) -> Result<(String, Subject), Refusal> {
+fn subject(header: &str, row: &str, inclusions: &[Column]) -> Result<(String, Subject), Refusal> {
     let fields = fields(row, KEYS.len() + inclusions.len(), header)?;
     let (keys, correct) = fields.split_at(KEYS.len());
     for (column, name) in KEYS.iter().zip(&keys[..2]) {

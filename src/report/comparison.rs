@@ -9,8 +9,8 @@ use super::text::{fixed, percent};
 use super::{paper, text};
 use crate::detect::{DetectError, gamma_from_two_afc, required_gamma};
 use crate::psychophysics::bridge::{
-    Bridge, BridgeInclusion, Channel, ConditionBridge, Convention, ConventionFit, ObservedRate,
-    Offset, Statistic,
+    Bridge, BridgeInclusion, Channel, ConditionBridge, Convention, ConventionFit, Cue,
+    ObservedRate, Offset,
 };
 use crate::psychophysics::{Analysis, NoiseDecomposition, OpenBounds, Rate};
 
@@ -195,7 +195,7 @@ fn row(words: &str, (kind, paper, here): Numbers) -> Option<Comparison> {
 fn of_paper(bridge: &Bridge) -> Option<(&ConditionBridge, &ConventionFit)> {
     let condition = bridge.conditions.get(paper::FEM_PLAYBACK)?;
     let convention = Convention {
-        statistic: Statistic::Peak,
+        statistic: Cue::Peak,
         channel: Channel::Normal,
         offset: Offset::Kept,
     };

@@ -10,7 +10,9 @@ use super::{Settings, Study, paper, refused};
 use crate::detect::{DetectError, map_threshold, required_gamma};
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::psychophysics::bridge::Bridge;
-use crate::psychophysics::{Analysis, NoiseDecomposition, Table, analyse, paper_noise_levels};
+use crate::psychophysics::{
+    Analysis, AnswerTable, NoiseDecomposition, analyse, paper_noise_levels,
+};
 use crate::refusal::Refusal;
 
 /// What a study found, in plain numbers.
@@ -67,7 +69,7 @@ pub fn findings(study: &Study) -> Result<Findings, Refusal> {
     let is_comparable = quoted.is_some() && is_paper_reference;
     // Only maps of the paper's phantoms, against the paper's reference, at the paper's depth are compared with it.
     let compared: &[MapFindings] = if is_comparable { &maps } else { &[] };
-    let table = Table::paper()?;
+    let table = AnswerTable::paper()?;
     let people = analyse(&table).map_err(refused("Table 1"))?;
     let noise = paper_noise_levels().map_err(refused("Table 1"))?;
     let bridge = bridge_to(&table, study, compared).map_err(refused("Table 1"))?;

@@ -4,7 +4,7 @@ use super::maps::MapFindings;
 use super::text::extremes;
 use super::{Study, paper};
 use crate::psychophysics::bridge::{Bridge, bridge};
-use crate::psychophysics::{Analysis, Bounds, Table};
+use crate::psychophysics::{Analysis, AnswerTable, Bounds};
 use crate::refusal::Refusal;
 use crate::stats::normal;
 
@@ -15,7 +15,7 @@ use crate::stats::normal;
 ///
 /// Implements: REP-071.
 pub(super) fn bridge_to(
-    table: &Table,
+    table: &AnswerTable,
     study: &Study,
     compared: &[MapFindings],
 ) -> Result<Option<Bridge>, Refusal> {

@@ -12,7 +12,7 @@ use super::normal;
 /// An interval for a proportion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "std", derive(serde::Serialize))]
-pub struct Interval {
+pub struct ConfidenceInterval {
     /// Lower end, ≥ 0.
     pub lower: f64,
     /// Upper end, ≤ 1.
@@ -87,7 +87,7 @@ pub fn clopper_pearson(
     successes: u64,
     trials: u64,
     confidence: f64,
-) -> Result<Interval, NumericError> {
+) -> Result<ConfidenceInterval, NumericError> {
     check(successes, trials)?;
     check_probability("confidence", confidence)?;
     let tail = 0.5 * (1.0 - confidence);
@@ -101,7 +101,7 @@ pub fn clopper_pearson(
     } else {
         least_p(|p| at_most(successes, trials, p).map(|tail| -tail), -tail)
     };
-    Ok(Interval { lower, upper })
+    Ok(ConfidenceInterval { lower, upper })
 }
 
 /// The score interval of Wilson.
@@ -110,7 +110,11 @@ pub fn clopper_pearson(
 /// As [`clopper_pearson`].
 ///
 /// Implements: DET-122, ACC-013.
-pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Interval, NumericError> {
+pub fn wilson(
+    successes: u64,
+    trials: u64,
+    confidence: f64,
+) -> Result<ConfidenceInterval, NumericError> {
     check(successes, trials)?;
     let tail = 0.5 * (1.0 - check_probability("confidence", confidence)?);
     let z = -normal::quantile_of("confidence", tail)?;
@@ -122,7 +126,7 @@ pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Interval, 
     // z²)), for it would cancel.
     let upper = (sum + half_width) / (n + square);
     let lower = k * (k / n) / (sum + half_width);
-    Ok(Interval {
+    Ok(ConfidenceInterval {
         lower,
         upper: if successes == trials { 1.0 } else { upper },
     })

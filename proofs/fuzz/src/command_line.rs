@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use palpate::cli::arguments::{Arguments, Asked};
+use palpate::cli::arguments::{Asked, CommandLine};
 use palpate::cli::lists::{Positions, length, positions};
 use palpate::decimal::{format_scaled, parse_scaled};
 
@@ -99,7 +99,7 @@ pub fn decimal(bytes: &[u8]) -> Outcome {
 /// Implements: EVD-082.
 pub fn command_line(text: &str) -> Outcome {
     let arguments = text.split('\0').map(OsString::from);
-    let asked = Asked::<Arguments>::read(std::iter::once("palpate".into()).chain(arguments));
+    let asked = Asked::<CommandLine>::read(std::iter::once("palpate".into()).chain(arguments));
     let accepted = |asked| match asked {
         Asked::Command(arguments) => assert!(!format!("{arguments:?}").is_empty()),
         Asked::Text(text) => assert!(!text.is_empty()),

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use palpate::psychophysics::Journal;
-use palpate::psychophysics::{MOST_TRIALS, Table, analyse};
+use palpate::psychophysics::{AnswerTable, MOST_TRIALS, analyse};
 
 use crate::message::{check_file_message, check_message, check_quoting};
 use crate::{FILE, Outcome, judged};
@@ -13,7 +13,7 @@ use crate::{FILE, Outcome, judged};
 ///
 /// Implements: EVD-081, EVD-082.
 pub fn counts_csv(text: &str) -> Outcome {
-    let read = Table::from_csv(text, FILE);
+    let read = AnswerTable::from_csv(text, FILE);
     judged(
         read,
         |table| check_table(&table),
@@ -21,7 +21,7 @@ pub fn counts_csv(text: &str) -> Outcome {
     )
 }
 
-fn check_table(table: &Table) {
+fn check_table(table: &AnswerTable) {
     let plain = |name: &str| !name.is_empty() && !name.chars().any(char::is_control);
     let inclusions = table.inclusions();
     let names: HashSet<_> = inclusions.iter().map(|one| &one.name).collect();
@@ -44,7 +44,7 @@ fn check_table(table: &Table) {
             rows += 1;
         }
     }
-    let again = Table::from_csv(&written(table), FILE).expect("what was written can be read");
+    let again = AnswerTable::from_csv(&written(table), FILE).expect("what was written can be read");
     assert_eq!(again, *table);
     // The fits take some milliseconds for each count: small tables have all their cases.
     if rows * inclusions.len() <= 4 {
@@ -53,7 +53,7 @@ fn check_table(table: &Table) {
 }
 
 /// An analysis is there or is refused, and holds no number that JSON cannot.
-fn check_analysis(table: &Table) {
+fn check_analysis(table: &AnswerTable) {
     match analyse(table) {
         Ok(analysis) => {
             let written = serde_json::to_string(&analysis).expect("numbers and texts");
@@ -64,7 +64,7 @@ fn check_analysis(table: &Table) {
     }
 }
 
-fn written(table: &Table) -> String {
+fn written(table: &AnswerTable) -> String {
     let mut text = String::from("subject,condition,trials");
     for inclusion in table.inclusions() {
         text += &format!(",{}", inclusion.name);

@@ -10,8 +10,6 @@ mod proportion;
 mod report;
 mod servo;
 
-pub use probe::Models;
-
 use super::answer::{Answer, Code, Refused};
 use super::arguments::{Arguments, Bits, check_rows};
 use crate::detect;

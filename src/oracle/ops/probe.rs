@@ -4,9 +4,6 @@ use super::{Answer, Arguments, Refused};
 use crate::fem::{Contact, MESH_SIZE, Model, Pose};
 use crate::phantom::Phantom;
 
-/// Models that were made, each with the name of its phantom: at most one for each that is built in.
-pub type Models = Vec<(String, Model)>;
-
 /// The forces at one pose, on the mesh and with the contact that `palpate solve` takes by default.
 ///
 /// Implements: ORA-012.

@@ -1,7 +1,7 @@
 //! Expected values: scipy, Nelder and Mead on gamma functions, and Brent's method (`reference.py`).
 
 use super::*;
-use crate::psychophysics::Table;
+use crate::psychophysics::AnswerTable;
 use crate::stats::tests::{assert_near, numbers};
 
 // The golden section leaves √ρ within 2/12 · 4·10⁻⁶, so ρ within 5·10⁻⁷ and p, which hardly depends on it, too; the
@@ -19,7 +19,7 @@ const EXPECTED: &str = "
 // Verifies: PSY-032, PSY-033.
 #[test]
 fn fits_of_table_1() {
-    let table = Table::paper().unwrap();
+    let table = AnswerTable::paper().unwrap();
     for [condition, column, expected @ .., gain] in numbers::<9>(EXPECTED) {
         let condition = &table.conditions()[condition as usize];
         let found = beta_binomial(&condition.counts(column as usize));
@@ -47,7 +47,7 @@ fn fits_of_table_1() {
 // Verifies: PSY-033.
 #[test]
 fn counts_that_vary_no_more_than_a_binomial_have_no_correlation() {
-    let measured = &Table::paper().unwrap().conditions()[2].counts(3);
+    let measured = &AnswerTable::paper().unwrap().conditions()[2].counts(3);
     let found = beta_binomial(measured).unwrap().unwrap();
     assert!(found.is_binomial && found.correlation == 0.0);
     assert_eq!(found.correlation_bounds.lower, Some(0.0));

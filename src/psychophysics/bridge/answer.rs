@@ -8,19 +8,19 @@ use crate::psychophysics::rates::Bounds;
 /// What of the sweep counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Statistic {
+pub enum Cue {
     /// The largest difference of force at one position, as in the paper's §5.
     Peak,
     /// The root mean square over the sweep, ‖F₁ − F₀‖ of equation (2).
     MatchedFilter,
 }
 
-impl Statistic {
+impl Cue {
     /// In words.
     pub fn text(self) -> &'static str {
         match self {
-            Statistic::Peak => "peak",
-            Statistic::MatchedFilter => "matched filter",
+            Cue::Peak => "peak",
+            Cue::MatchedFilter => "matched filter",
         }
     }
 }
@@ -51,7 +51,7 @@ pub enum Offset {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Convention {
     /// What of the sweep counts.
-    pub statistic: Statistic,
+    pub statistic: Cue,
     /// Which force counts.
     pub channel: Channel,
     /// Whether its mean counts.
@@ -62,7 +62,7 @@ impl Convention {
     /// All twelve.
     pub fn all() -> impl Iterator<Item = Convention> {
         (0..12).map(|k| Convention {
-            statistic: [Statistic::Peak, Statistic::MatchedFilter][k / 6],
+            statistic: [Cue::Peak, Cue::MatchedFilter][k / 6],
             channel: [Channel::Normal, Channel::Lateral, Channel::Both][k / 2 % 3],
             offset: [Offset::Kept, Offset::Removed][k % 2],
         })
@@ -269,7 +269,7 @@ pub struct WeightRange {
     /// Half of the sweep, m.
     pub half_sweep_m: f64,
     /// What of the sweep counts.
-    pub statistic: Statistic,
+    pub statistic: Cue,
     /// The smallest and the largest weight, on a grid of 0.05, that the corrected level does not reject.
     pub left: Bounds,
     /// φ: the deviance at the best weight over the one expected there, at least 1.
@@ -315,7 +315,7 @@ pub struct WeightFit {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verdict {
     /// The answer to the question which part of the force the subjects used.
-    pub support: Support,
+    pub support: Favoured,
     /// The conventions that are not rejected.
     pub compatible: Vec<String>,
     /// Those that are.
@@ -330,7 +330,7 @@ pub struct Verdict {
 /// Which explanation the counts support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Support {
+pub enum Favoured {
     /// Only conventions with the mean of the normal force are not rejected.
     UniformPart,
     /// Only conventions without it are not: the change of the normal force along the sweep, or the

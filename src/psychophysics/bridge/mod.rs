@@ -25,9 +25,8 @@ mod verdict;
 mod weights;
 
 pub use answer::{
-    Bridge, BridgeInclusion, Channel, CommonFit, ConditionBridge, Convention, ConventionFit,
-    LapseFit, ObservedRate, Offset, Statistic, SubjectFit, Support, Verdict, WeightFit,
-    WeightRange,
+    Bridge, BridgeInclusion, Channel, CommonFit, ConditionBridge, Convention, ConventionFit, Cue,
+    Favoured, LapseFit, ObservedRate, Offset, SubjectFit, Verdict, WeightFit, WeightRange,
 };
 
 use super::choice::Count;
@@ -35,7 +34,7 @@ use super::conditions::sign_flip;
 use super::dispersion::Overdispersion;
 use super::noise::InclusionNoise;
 use super::rates::pooled;
-use super::{Condition, Result, Table};
+use super::{AnswerTable, Condition, Result};
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
 use common::{Signals, common, common_with_lapse};
@@ -86,7 +85,7 @@ impl Observations {
 ///
 /// Implements: PSY-070, PSY-071, PSY-072, PSY-079, PSY-085, CLI-083.
 pub fn bridge(
-    table: &Table,
+    table: &AnswerTable,
     reference: &ForceMap,
     inclusions: &[(&str, &ForceMap)],
     half_sweep: Option<f64>,
@@ -135,7 +134,7 @@ pub fn bridge(
 
 /// Each map with the column that it belongs to, in the order of the table.
 fn columns<'a>(
-    table: &Table,
+    table: &AnswerTable,
     inclusions: &[(&str, &'a ForceMap)],
 ) -> Result<Vec<(usize, &'a ForceMap)>, Refusal> {
     let known: Vec<&str> = table.inclusions().iter().map(|of| &of.name[..]).collect();

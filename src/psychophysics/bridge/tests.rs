@@ -14,7 +14,7 @@ const LEVEL_OFF: [f64; 4] = [0.61, 0.44, 0.31, 0.28];
 const NAMES: [&str; 4] = ["2.6", "4.6", "6.6", "8.6"];
 
 fn observations(condition: usize) -> Observations {
-    let table = Table::paper().unwrap();
+    let table = AnswerTable::paper().unwrap();
     Observations::new(&table.conditions()[condition], &[0, 1, 2, 3]).unwrap()
 }
 
@@ -33,7 +33,7 @@ fn map_over(depths: &[f64], laterals: &[f64], forces: impl Fn(usize) -> [f64; 2]
     ForceMap::new(Source::Measured { file, note }, None, table).unwrap()
 }
 
-fn convention(statistic: Statistic, channel: Channel, offset: Offset) -> Convention {
+fn convention(statistic: Cue, channel: Channel, offset: Offset) -> Convention {
     Convention {
         statistic,
         channel,
@@ -48,7 +48,7 @@ fn each_convention_makes_its_own_signal() {
     // The differences are −1, 2, 4, 2, 3 (mean 2) and 0, −3, 0, 3, 0 (mean 0), all exact.
     let with = map([0.0, 3.5, 6.0, 3.5, 4.0], [0.5, -2.5, 0.0, 2.5, -0.5]);
     let signal = Signal::new(&reference, &with, 4e-3).unwrap();
-    use {Channel::*, Offset::*, Statistic::*};
+    use {Channel::*, Cue::*, Offset::*};
     for (statistic, channel, offset, square) in [
         (Peak, Normal, Kept, 16.0),
         (Peak, Normal, Removed, 9.0), // at the end: −1 − 2
@@ -217,7 +217,7 @@ fn maps(level: [f64; 4], lateral: [f64; 4]) -> (ForceMap, [ForceMap; 4]) {
 }
 
 /// Eight subjects who answer as the signals and their own noise have it, as nearly as counts allow.
-fn table(signals: [f64; 4]) -> Table {
+fn table(signals: [f64; 4]) -> AnswerTable {
     let mut text = String::from("subject,condition,trials,2.6,4.6,6.6,8.6\n");
     for subject in 0..8 {
         let noise = 0.05 * 1.35_f64.powi(subject);
@@ -225,15 +225,15 @@ fn table(signals: [f64; 4]) -> Table {
         let [a, b, c, d] = signals.map(right);
         text += &format!("{subject},x,100,{a},{b},{c},{d}\n");
     }
-    Table::from_csv(&text, "t").unwrap()
+    AnswerTable::from_csv(&text, "t").unwrap()
 }
 
-fn bridged(table: &Table, (reference, maps): &(ForceMap, [ForceMap; 4])) -> Bridge {
+fn bridged(table: &AnswerTable, (reference, maps): &(ForceMap, [ForceMap; 4])) -> Bridge {
     let named: Vec<_> = NAMES.into_iter().zip(maps).collect();
     bridge(table, reference, &named, None).unwrap()
 }
 
-fn verdict_on(table: &Table, maps: &(ForceMap, [ForceMap; 4])) -> Verdict {
+fn verdict_on(table: &AnswerTable, maps: &(ForceMap, [ForceMap; 4])) -> Verdict {
     bridged(table, maps).conditions.remove(0).verdict
 }
 
@@ -249,11 +249,11 @@ fn the_verdict_follows_the_answers() {
     let (level, change) = ([0.3, 0.28, 0.26, 0.25], [0.3, 0.15, 0.05, 0.01]);
     let apart = maps(level, change);
     let found = verdict_on(&table(change), &apart);
-    assert_eq!(found.support, Support::ChangeAlongSweep, "{}", found.text);
+    assert_eq!(found.support, Favoured::ChangeAlongSweep, "{}", found.text);
     assert!(found.compatible.contains(&"peak, lateral force".into()));
     assert!(found.rejected.contains(&"peak, normal force".into()));
     let found = verdict_on(&table(change), &maps(change, change));
-    assert_eq!(found.support, Support::Undecided, "{}", found.text);
+    assert_eq!(found.support, Favoured::Undecided, "{}", found.text);
     // The normal force less its mean falls with depth as its level does: only the lateral force is apart.
     let found = verdict_on(&table(level), &apart);
     assert!(found.compatible.contains(&"peak, normal force".into()));
@@ -262,7 +262,7 @@ fn the_verdict_follows_the_answers() {
     let mut rising = change;
     rising.reverse();
     let found = verdict_on(&table(rising), &apart);
-    assert_eq!(found.support, Support::None, "{}", found.text);
+    assert_eq!(found.support, Favoured::None, "{}", found.text);
     assert!(found.compatible.is_empty() && found.text.starts_with("No convention fits"));
 }
 
@@ -278,14 +278,17 @@ fn the_verdict_says_what_it_rests_on() {
     assert_says(&found.text, words);
     assert_eq!(found.compatible.len() + found.rejected.len(), 12);
     let same = "subject,condition,trials,2.6,4.6,6.6,8.6\n1,x,300,294,258,192,159\n2,x,300,294,258,192,159\n";
-    let found = verdict_on(&Table::from_csv(same, "t").unwrap(), &maps(change, change));
+    let found = verdict_on(
+        &AnswerTable::from_csv(same, "t").unwrap(),
+        &maps(change, change),
+    );
     assert_says(&found.text, "One noise level for all");
 }
 
 // Verifies: PSY-070, PSY-073.
 #[test]
 fn what_does_not_fit_is_refused_or_noted() {
-    let table = Table::paper().unwrap();
+    let table = AnswerTable::paper().unwrap();
     let (reference, [a, b, ..]) = maps(FALLING, FALLING);
     let other = map_over(&[4e-3], &[-1e-3, 0.0, 1e-3], |_| [1.0, 0.0]);
     let unknown = "\"3\" is no column of the table, expected one of 2.6, 4.6, 6.6, 8.6";
@@ -341,9 +344,9 @@ fn part_of_the_level_counts_in_part() {
     };
     // w² 3² + (4 + 1 + 0 + 9)/4, and 3 + 3w.
     for weight in [0.0, 0.25, 0.5, 1.0] {
-        let all = signal.weighted(Statistic::MatchedFilter, Channel::Normal, weight);
+        let all = signal.weighted(Cue::MatchedFilter, Channel::Normal, weight);
         assert_near(all * all, 9.0 * weight * weight + 3.5, 1e-14);
-        let peak = signal.weighted(Statistic::Peak, Channel::Normal, weight);
+        let peak = signal.weighted(Cue::Peak, Channel::Normal, weight);
         assert_near(peak, 3.0 + 3.0 * weight, 1e-14);
     }
     let within = signal.within(1e-3);
@@ -428,7 +431,7 @@ fn computed_maps() -> (ForceMap, [ForceMap; 4]) {
 #[test]
 fn the_number_of_ranges_is_counted_in_each() {
     let maps = computed_maps();
-    let found = bridged(&Table::paper().unwrap(), &maps);
+    let found = bridged(&AnswerTable::paper().unwrap(), &maps);
     assert_eq!(found.weight_ranges, 48);
     for (condition, rejected) in found.conditions.iter().zip(["all 16", "all 16", "8 of 16"]) {
         assert_eq!(condition.weights.len(), 16);
@@ -444,7 +447,7 @@ fn the_number_of_ranges_is_counted_in_each() {
     }
     // One condition: a third of the ranges.
     let one = "subject,condition,trials,2.6,4.6,6.6,8.6\n1,x,30,30,28,27,27\n2,x,30,30,29,20,21\n";
-    let found = bridged(&Table::from_csv(one, "t").unwrap(), &maps);
+    let found = bridged(&AnswerTable::from_csv(one, "t").unwrap(), &maps);
     assert_eq!(found.weight_ranges, 16);
 }
 
@@ -453,7 +456,7 @@ fn the_number_of_ranges_is_counted_in_each() {
 // Verifies: PSY-060.
 #[test]
 fn noise_at_one_inclusion_has_the_subjects_as_the_sample() {
-    let found = bridged(&Table::paper().unwrap(), &maps([0.3; 4], [0.3; 4]));
+    let found = bridged(&AnswerTable::paper().unwrap(), &maps([0.3; 4], [0.3; 4]));
     let noise = &found.conditions[1].noise_by_inclusion[2];
     let (clustered, pooled) = (noise.clustered_bounds_n.unwrap(), noise.pooled_bounds_n);
     for (found, expected) in [
@@ -498,7 +501,7 @@ fn with_many_answers_each_fitted_number_takes_a_degree_of_freedom() {
 #[test]
 fn the_larger_p_value_of_the_two_fits_by_subject_counts() {
     let signals = computed_signals();
-    let less_its_mean = convention(Statistic::Peak, Channel::Normal, Offset::Removed);
+    let less_its_mean = convention(Cue::Peak, Channel::Normal, Offset::Removed);
     let strengths = Signals::new(&signals, |s| s.within(3e-3).strength(less_its_mean));
     let found = fit(less_its_mean, strengths.unwrap(), &observations(2)).unwrap();
     assert_near(found.by_subject_with_lapse.p_value, 0.067, 3e-3);
@@ -513,7 +516,7 @@ fn conventions_are_compared_with_their_lapses() {
     let signals = computed_signals();
     for (condition, half, exchanges) in [(1, 10e-3, 4.0), (1, 5e-3, 54.0), (2, 10e-3, 16.0)] {
         let [normal, lateral] = [Channel::Normal, Channel::Lateral].map(|channel| {
-            let of = convention(Statistic::MatchedFilter, channel, Offset::Removed);
+            let of = convention(Cue::MatchedFilter, channel, Offset::Removed);
             let strengths = Signals::new(&signals, |s| s.within(half).strength(of));
             fit(of, strengths.unwrap(), &observations(condition)).unwrap()
         });

@@ -3,7 +3,7 @@
 use askama::Template;
 
 use super::{
-    Channel, CommonFit, Convention, ConventionFit, LEVEL, Statistic, Support, Verdict, WeightRange,
+    Channel, CommonFit, Convention, ConventionFit, Cue, Favoured, LEVEL, Verdict, WeightRange,
     told_apart,
 };
 use crate::psychophysics::noise::{BACKDRIVE_FRICTION, HUMAN_PERCEPTION, QUANTIZATION};
@@ -21,10 +21,10 @@ pub fn verdict(fits: &[ConventionFit], weights: &[WeightRange], ranges: usize) -
         fits.iter().filter(of_kind).any(|fit| !fit.is_rejected)
     };
     let support = match (fits_some(true), fits_some(false)) {
-        (true, true) => Support::Undecided,
-        (true, false) => Support::UniformPart,
-        (false, true) => Support::ChangeAlongSweep,
-        (false, false) => Support::None,
+        (true, true) => Favoured::Undecided,
+        (true, false) => Favoured::UniformPart,
+        (false, true) => Favoured::ChangeAlongSweep,
+        (false, false) => Favoured::None,
     };
     Verdict {
         support,
@@ -67,7 +67,7 @@ fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
 #[derive(Template)]
 #[template(path = "psychophysics/verdict.txt")]
 struct Words<'a> {
-    support: Support,
+    support: Favoured,
     /// The level, %.
     level: f64,
     /// The conventions that fit best with the level of the normal force, with it less its mean, and with the lateral force.
@@ -84,14 +84,14 @@ struct Words<'a> {
 }
 
 impl Words<'_> {
-    fn new(fits: &[ConventionFit], support: Support) -> Words<'_> {
+    fn new(fits: &[ConventionFit], support: Favoured) -> Words<'_> {
         let is_normal = |of: Convention| of.channel == Channel::Normal && !of.uses_uniform_part();
         let normal = best(fits, |of, _| is_normal(of));
         let lateral = best(fits, |of, _| of.channel == Channel::Lateral);
         let aic = |fit: &&ConventionFit| fit.by_subject.aic;
         let least = fits.iter().min_by(|a, b| aic(a).total_cmp(&aic(b)));
         let of_moment =
-            |of: Convention, is_rejected: bool| of.statistic == Statistic::Peak && !is_rejected;
+            |of: Convention, is_rejected: bool| of.statistic == Cue::Peak && !is_rejected;
         let squares = [QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION].map(|n| n * n);
         Words {
             support,

@@ -27,7 +27,7 @@ fn exchanges_of_signs_are_all_counted() {
 fn subjects_are_their_own_blocks() {
     // Subjects 1 to 3 lose 3, 6 and 6 of 30; subject 4 took part once. The order in the file does not matter.
     let text = "subject,condition,trials,2,4\n1,a,30,30,30\n2,a,30,28,28\n3,a,30,20,20\n4,a,30,0,0\n3,b,10,5,5\n2,b,30,22,22\n1,b,60,60,48\n";
-    let found = comparisons(&Table::from_csv(text, "t").unwrap()).unwrap();
+    let found = comparisons(&AnswerTable::from_csv(text, "t").unwrap()).unwrap();
     let [comparison] = &found[..] else { panic!() };
     assert_eq!([&comparison.first[..], &comparison.second], ["a", "b"]);
     assert_eq!(comparison.subjects, 3);
@@ -52,7 +52,7 @@ fn subjects_are_their_own_blocks() {
 // Verifies: PSY-050, PSY-052.
 #[test]
 fn conditions_of_table_1() {
-    let found = comparisons(&Table::paper().unwrap()).unwrap();
+    let found = comparisons(&AnswerTable::paper().unwrap()).unwrap();
     let p_values = found.iter().map(|found| found.overall.p_value.unwrap());
     let p_values: Vec<f64> = p_values.collect();
     // Direct less measured, right answers of 120: 18 4 11 3 1 17 4 15 28 10, so only all signs or none; FEM less
@@ -79,7 +79,7 @@ fn holm_orders_multiplies_and_never_decreases() {
 fn conditions_without_a_common_subject_are_not_compared() {
     let compared = |rows: &str| {
         let text = format!("subject,condition,trials,2\n{rows}");
-        comparisons(&Table::from_csv(&text, "t").unwrap()).unwrap()
+        comparisons(&AnswerTable::from_csv(&text, "t").unwrap()).unwrap()
     };
     assert_eq!(compared("1,a,30,30\n2,b,30,28\n"), []);
     // One subject, or equal differences: no interval.

@@ -1,10 +1,10 @@
 //! Expected values: scipy, Nelder and Mead from 27 starts, and Brent's method (`reference.py`).
 
 use super::*;
-use crate::psychophysics::Table;
+use crate::psychophysics::AnswerTable;
 use crate::stats::tests::{assert_near, numbers};
 
-fn fitted(table: &Table, condition: usize) -> Option<Psychometric> {
+fn fitted(table: &AnswerTable, condition: usize) -> Option<Psychometric> {
     let condition = &table.conditions()[condition];
     let dispersion = Overdispersion::new(condition, table.inclusions().len()).unwrap();
     psychometric(table.inclusions(), condition, dispersion).unwrap()
@@ -33,7 +33,7 @@ const DEVIANCES: [f64; 3] = [0.1524763348, 2.4262896179, 10.1608743260];
 // Verifies: PSY-040, PSY-041, PSY-042.
 #[test]
 fn fits_of_table_1() {
-    let table = Table::paper().unwrap();
+    let table = AnswerTable::paper().unwrap();
     let expected = numbers::<6>(EXPECTED);
     for (condition, deviance) in DEVIANCES.into_iter().enumerate() {
         let found = fitted(&table, condition).unwrap();
@@ -64,7 +64,7 @@ fn fits_of_table_1() {
 // Verifies: PSY-034, PSY-043.
 #[test]
 fn dispersion_makes_deviances_smaller() {
-    let table = Table::paper().unwrap();
+    let table = AnswerTable::paper().unwrap();
     let found = Overdispersion::new(&table.conditions()[0], 4).unwrap();
     let mut found = found.unwrap();
     assert_near(found.ratio, 4.276968045639429, 1e-12);
@@ -80,7 +80,7 @@ fn dispersion_makes_deviances_smaller() {
 #[test]
 fn without_three_depths_or_wrong_answers_there_is_no_function() {
     let table = |header: &str, rows: &str| {
-        Table::from_csv(&format!("subject,condition,trials,{header}\n{rows}"), "t").unwrap()
+        AnswerTable::from_csv(&format!("subject,condition,trials,{header}\n{rows}"), "t").unwrap()
     };
     for (header, rows) in [
         ("2,4", "1,x,30,30,20\n2,x,30,28,21\n"),
@@ -111,7 +111,7 @@ fn the_function_is_the_one_that_the_spec_states() {
         right.concat(),
     );
     let text = format!("subject,condition,trials{header}\n1,x,1000{right}\n2,x,1000{right}\n");
-    let table = Table::from_csv(&text, "t").unwrap();
+    let table = AnswerTable::from_csv(&text, "t").unwrap();
     let (ratio, degrees) = (1.0, 6);
     let dispersion = Some(Overdispersion { ratio, degrees });
     let found = psychometric(table.inclusions(), &table.conditions()[0], dispersion);

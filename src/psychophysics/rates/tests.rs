@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::detect::two_afc;
-use crate::psychophysics::Table;
+use crate::psychophysics::AnswerTable;
 use crate::psychophysics::dispersion::dispersion;
 use crate::stats::tests::{assert_near, numbers};
 
@@ -59,7 +59,7 @@ const EXPECTED: &str = "
 // Verifies: PSY-025, PSY-031.
 #[test]
 fn subjects_as_the_sample_and_chi_square_of_table_1() {
-    let table = Table::paper().unwrap();
+    let table = AnswerTable::paper().unwrap();
     let conditions = table.conditions().iter();
     let cells = conditions.flat_map(|condition| (0..4).map(move |j| (condition, j)));
     for ((condition, column), [lower, upper, chi_square, p_value]) in cells.zip(numbers(EXPECTED)) {

@@ -5,7 +5,7 @@ use super::*;
 // Verifies: PSY-020.
 #[test]
 fn table_1_is_built_in() {
-    let table = Table::paper().unwrap();
+    let table = AnswerTable::paper().unwrap();
     let depths: Vec<f64> = table.inclusions().iter().map(|i| i.depth).collect();
     assert_eq!(depths, [2.6e-3, 4.6e-3, 6.6e-3, 8.6e-3]);
     // The means that the paper prints below each experiment, with one decimal.
@@ -28,7 +28,7 @@ fn table_1_is_built_in() {
 #[test]
 fn the_report_has_the_same_table() {
     use crate::report::paper::EXPERIMENTS;
-    let table = Table::paper().unwrap();
+    let table = AnswerTable::paper().unwrap();
     for (condition, experiment) in table.conditions().iter().zip(&EXPERIMENTS) {
         assert_eq!(condition.name, experiment.name);
         let subjects: Vec<&[u32]> = condition.subjects.iter().map(|s| &s.correct[..]).collect();
@@ -40,7 +40,7 @@ fn the_report_has_the_same_table() {
 #[test]
 fn names_and_trials_are_free() {
     let text = "\u{feff}# mine\nsubject, condition, trials, soft 6.6, stiff 6.6\n a b , x , 7 , 0 , 7 \n\nc,x,1000,999,1\na b,y,1,1,0\n";
-    let table = Table::from_csv(text, "file").unwrap();
+    let table = AnswerTable::from_csv(text, "file").unwrap();
     let names = table.inclusions().iter().map(|i| (&i.name[..], i.depth));
     assert!(names.eq([("soft 6.6", 6.6e-3), ("stiff 6.6", 6.6e-3)]));
     let [x, y] = table.conditions() else { panic!() };
@@ -72,17 +72,19 @@ subject, => sbjct, => t.csv:1: header \"sbjct,condition,trials,2.6,8.6\", expect
 #[test]
 fn what_is_no_table_is_refused_with_line_column_and_value() {
     let good = "subject,condition,trials,2.6,8.6\n1,gel,30,28,20\n2,gel,30,30,21\n";
-    assert!(Table::from_csv(good, "t.csv").is_ok());
+    assert!(AnswerTable::from_csv(good, "t.csv").is_ok());
     for case in REFUSED.trim().lines() {
         let [from, to, message] = case.split(" => ").collect::<Vec<_>>()[..] else {
             panic!("{case}");
         };
         let text = good.replacen(from, to, 1);
-        let error = Table::from_csv(&text, "t.csv").unwrap_err().to_string();
+        let error = AnswerTable::from_csv(&text, "t.csv")
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(message) && !error.contains('\n'), "{error}");
     }
-    let empty = Table::from_csv("subject,condition,trials,2.6\n", "t").unwrap_err();
+    let empty = AnswerTable::from_csv("subject,condition,trials,2.6\n", "t").unwrap_err();
     let words = "t:1: no rows under the header, expected at least one";
     assert_eq!(empty.to_string(), words);
-    assert!(Table::from_csv("", "t").is_err());
+    assert!(AnswerTable::from_csv("", "t").is_err());
 }

@@ -7,9 +7,7 @@ use super::panel::Line;
 use super::people::{DEPTH, SHARE, bar, points, share_panel};
 use super::style::{INK, PALETTE};
 use super::{Figures, Words};
-use crate::psychophysics::bridge::{
-    Bridge, Channel, ConditionBridge, ConventionFit, Offset, Statistic,
-};
+use crate::psychophysics::bridge::{Bridge, Channel, ConditionBridge, ConventionFit, Cue, Offset};
 use crate::refusal::Refusal;
 use crate::report::{Findings, Topic, paper, text};
 
@@ -80,8 +78,8 @@ fn lines(condition: &ConditionBridge, depths: &[f64], offset: Offset) -> Vec<Lin
 /// What the heading of the panel does not say: "peak, normal".
 fn short_name(fit: &ConventionFit) -> String {
     let statistic = match fit.convention.statistic {
-        Statistic::Peak => "peak",
-        Statistic::MatchedFilter => "filter",
+        Cue::Peak => "peak",
+        Cue::MatchedFilter => "filter",
     };
     let channel = match fit.convention.channel {
         Channel::Normal => "normal",
