@@ -8,15 +8,20 @@ use crate::trace::Trace;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum End {
     Ignored,
+    Later,
     Ok,
     Failed,
 }
 
-/// The output of one or more runs: the worst end of each test by its program and name, except that a test that one run
-/// ignores may pass in another. What succeeded otherwise is there by its line, and each word of a command, since that may name a
-/// script.
+/// The output of one or more runs.
 #[derive(Debug, Default)]
-pub struct Log(BTreeMap<String, End>);
+pub struct Log {
+    /// The worst end of each test by its program and name, except that a test that one run ignores may pass in another. What
+    /// succeeded otherwise is there by its line, and each word of a command, since that may name a script.
+    ends: BTreeMap<String, End>,
+    /// Tests that are ignored run later.
+    ignored_later: bool,
+}
 
 impl Log {
     /// Adds the output of a run, standard output and standard error in one, so that the lines in which cargo names a
@@ -35,28 +40,35 @@ impl Log {
             if let Some(program) = &program
                 && let Some((name, end)) = test_line(line, &mut begun)
             {
-                let noted = self.0.entry(format!("{program} {name}")).or_insert(end);
-                *noted = end.max(*noted);
+                self.note(format!("{program} {name}"), end);
             }
             if let Some(command) = line.strip_prefix("== ok: ") {
-                let benches = command
-                    .split_once("--bench ")
-                    .map(|(_, name)| format!("benches/{name}.rs"));
-                let words = command.split_whitespace().map(String::from);
-                self.0.extend(
-                    words
-                        .chain(benches)
-                        .chain([line.into()])
-                        .map(|passed| (passed, End::Ok)),
-                );
+                self.note_command(command, End::Ok);
+            } else if let Some(command) = line.strip_prefix("== left to .ci/run all: ") {
+                self.note_command(command, End::Later);
+                self.ignored_later |= command.ends_with(" -- --ignored");
             }
             if let Some((passed, _)) = line
                 .strip_prefix("hid-stack: ok ")
                 .and_then(|name| name.split_once(':'))
             {
-                self.0
-                    .insert(format!("hid-stack: ok {}", passed.trim_start()), End::Ok);
+                self.note(format!("hid-stack: ok {}", passed.trim_start()), End::Ok);
             }
+        }
+    }
+
+    fn note(&mut self, what: String, end: End) {
+        let noted = self.ends.entry(what).or_insert(end);
+        *noted = end.max(*noted);
+    }
+
+    fn note_command(&mut self, command: &str, end: End) {
+        let bench = command.split_once("--bench ");
+        let bench = bench.map(|(_, name)| format!("benches/{name}.rs"));
+        let words = command.split_whitespace().map(String::from);
+        let line = format!("== ok: {command}");
+        for what in words.chain(bench).chain([line]) {
+            self.note(what, end);
         }
     }
 
@@ -66,8 +78,9 @@ impl Log {
     pub fn missing(&self, trace: &Trace) -> Vec<String> {
         let mut missing = Vec::new();
         for (name, lines) in &trace.evidence {
-            let missed = lines.iter().find_map(|line| match self.0.get(line) {
-                Some(End::Ok) => None,
+            let missed = lines.iter().find_map(|line| match self.ends.get(line) {
+                Some(End::Ok | End::Later) => None,
+                Some(End::Ignored) if self.ignored_later => None,
                 Some(End::Ignored) => Some("was ignored in every run".into()),
                 Some(End::Failed) => Some("failed".into()),
                 None => Some(format!("did not run: the log has no \"{line}\"")),

@@ -237,6 +237,28 @@ ok lost ¦ FAILED lost ¦ tests/hid-stack/src/main.rs::lost did not run: the log
 
 // Verifies: EVD-031.
 #[test]
+fn what_is_left_to_the_night_is_not_missed_by_day() {
+    let by_day = PASSED
+        .replace("waits ... ok", "waits ... ignored, slow")
+        .replace("== ok: gappa", "== left to .ci/run all: gappa");
+    let missing = |output: &str| {
+        let mut log = Log::default();
+        log.read(output);
+        log.missing(&sound())
+    };
+    assert_eq!(missing(&by_day).len(), 1);
+    let left = format!("{by_day}== left to .ci/run all: cargo test -- --ignored\n");
+    assert_eq!(missing(&left), Vec::<String>::new());
+    // Nor does it hide a failure.
+    let failed = format!(
+        "{left}{}",
+        PASSED.replace("waits ... ok", "waits ... FAILED")
+    );
+    assert_eq!(missing(&failed).len(), 1);
+}
+
+// Verifies: EVD-031.
+#[test]
 fn a_test_that_did_not_pass_is_named_with_its_requirements() {
     let missing = |from: &str, to: &str| {
         assert_eq!(PASSED.matches(from).count(), 1, "{from}");
