@@ -19,6 +19,7 @@ pub type Context<'a> =
 
 /// Pixels left of a plot for the numbers of its y axis.
 pub const LEFT: i32 = 58;
+
 /// One curve.
 #[derive(Debug, Clone, Default)]
 pub struct Line {

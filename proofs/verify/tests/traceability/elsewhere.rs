@@ -29,17 +29,23 @@ const ELSEWHERE: [(&str, &str); 16] = [
     ("tests/reproducible/", "tests/reproducible/run"),
 ];
 
+/// What runs a test or proof that `cargo test` does not run, or skips where a program is missing.
+pub fn runner(name: &str) -> Option<&'static str> {
+    let mut elsewhere = ELSEWHERE.iter();
+    let (_, command) = elsewhere.find(|(begin, _)| name.starts_with(begin))?;
+    Some(command)
+}
+
 /// What runs one of these tests and proofs, if `cargo test` runs none; `asked` says which of the variables are set.
 fn command<'a>(
     evidence: impl IntoIterator<Item = &'a String>,
     asked: &impl Fn(&str) -> bool,
 ) -> Option<&'static str> {
     let mut commands = evidence.into_iter().map(|name| {
-        let mut elsewhere = ELSEWHERE.iter();
-        let (_, command) = elsewhere.find(|(begin, _)| name.starts_with(begin))?;
+        let command = runner(name)?;
         let variable = command.split_once("=1 cargo");
         let runs = variable.is_some_and(|(variable, _)| asked(variable));
-        (!runs).then_some(*command)
+        (!runs).then_some(command)
     });
     let first = commands.next()??;
     commands.all(|command| command.is_some()).then_some(first)

@@ -2,16 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use crate::elsewhere::runner;
 use crate::trace::Trace;
-
-/// Runs the scenarios.
-const HID_STACK: &str = "tests/hid-stack/run";
 
 /// How a test ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum End {
     Ignored,
-    Later,
     Ok,
     Failed,
 }
@@ -22,8 +19,8 @@ pub struct Log {
     /// The worst end of each test by its program and name, except that a test that one run ignores may pass in another. What
     /// succeeded otherwise is there by its line, and each word of a command, since that may name a script.
     ends: BTreeMap<String, End>,
-    /// Tests that are ignored run later.
-    ignored_later: bool,
+    /// The commands that the run left to another.
+    left: Vec<String>,
 }
 
 impl Log {
@@ -46,11 +43,17 @@ impl Log {
                 self.note(format!("{program} {name}"), end);
             }
             if let Some(command) = line.strip_prefix("== ok: ") {
-                self.note_command(command, End::Ok);
-            } else if let Some(command) = line.strip_prefix("== left to .ci/run all: ") {
-                self.note_command(command, End::Later);
-                self.ignored_later |= command.ends_with(" -- --ignored");
+                let bench = command.split_once("--bench ");
+                let bench = bench.map(|(_, name)| format!("benches/{name}.rs"));
+                let words = command.split_whitespace().map(String::from);
+                for what in words.chain(bench).chain([line.into()]) {
+                    self.note(what, End::Ok);
+                }
             }
+            self.left.extend(
+                line.strip_prefix("== left to .ci/run all: ")
+                    .map(String::from),
+            );
             if let Some((passed, _)) = line
                 .strip_prefix("hid-stack: ok ")
                 .and_then(|name| name.split_once(':'))
@@ -60,23 +63,14 @@ impl Log {
         }
     }
 
-    fn is_later(&self, what: &str) -> bool {
-        self.ends.get(what) == Some(&End::Later)
-    }
-
     fn note(&mut self, what: String, end: End) {
         let noted = self.ends.entry(what).or_insert(end);
         *noted = end.max(*noted);
     }
 
-    fn note_command(&mut self, command: &str, end: End) {
-        let bench = command.split_once("--bench ");
-        let bench = bench.map(|(_, name)| format!("benches/{name}.rs"));
-        let words = command.split_whitespace().map(String::from);
-        let line = format!("== ok: {command}");
-        for what in words.chain(bench).chain([line]) {
-            self.note(what, end);
-        }
+    /// What runs a test or proof, if that was left to another run.
+    fn left_to(&self, name: &str) -> Option<&'static str> {
+        runner(name).filter(|command| self.left.iter().any(|left| left.contains(command)))
     }
 
     /// The tests and proofs of the trace that did not run or did not pass, each with how and for which requirements.
@@ -85,12 +79,14 @@ impl Log {
     pub fn missing(&self, trace: &Trace) -> Vec<String> {
         let mut missing = Vec::new();
         for (name, lines) in &trace.evidence {
+            let left = self.left_to(name);
             let missed = lines.iter().find_map(|line| match self.ends.get(line) {
-                Some(End::Ok | End::Later) => None,
-                Some(End::Ignored) if self.ignored_later => None,
+                Some(End::Ok) => None,
+                Some(End::Ignored) if left.is_some() => None,
                 Some(End::Ignored) => Some("was ignored in every run".into()),
                 Some(End::Failed) => Some("failed".into()),
-                None if line.starts_with("hid-stack: ") && self.is_later(HID_STACK) => None,
+                // Of a script nothing is in the output; a test that cargo leaves out is there as ignored.
+                None if left.is_some_and(|command| !command.starts_with("cargo")) => None,
                 None => Some(format!("did not run: the log has no \"{line}\"")),
             });
             if let Some(how) = missed {
