@@ -2,7 +2,7 @@
 //! prints the same lines. On a quiet machine (wall clock), one after the other:
 //!
 //! ```sh
-//! cargo bench --no-default-features --bench detect
+//! cargo bench -p palpate-benches --bench detect
 //! python3 benches/detect_numpy.py
 //! ```
 

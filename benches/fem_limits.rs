@@ -1,4 +1,4 @@
-//! The solver's speed against its bars, on one core: `cargo bench --bench fem_limits`. Prints each figure with its
+//! The solver's speed against its bars, on one core: `cargo bench -p palpate-benches --bench fem_limits`. Prints each figure with its
 //! bar, and ends with exit code 1 where one is missed by more than [`MARGIN`], which is what a busy machine adds.
 //! `--report` never fails. Times are the processor's, by Linux's accounting; elsewhere, the clock's.
 

@@ -45,7 +45,7 @@ fn main() {
     let surface = &mesh.surface[places.clone()];
     let load = |&node: &usize| {
         let x = mesh.nodes[node][0] - 3e-3;
-        let bump = libm::exp(-x * x / 8e-6);
+        let bump = (-x * x / 8e-6).exp();
         [0.003 * bump, -0.01 * bump]
     };
     let load: Vec<f64> = surface.iter().flat_map(load).collect();

@@ -1,6 +1,6 @@
 //! Times the force-map job of `palpate run` on one core: five phantoms × 9 depths × 21 lateral positions x ≥ 0.
 //!
-//! `cargo bench --bench force_maps`. Processor time and peak memory are Linux's own accounting of this process.
+//! `cargo bench -p palpate-benches --bench force_maps`. Processor time and peak memory are Linux's own accounting of this process.
 //! The bar: 1.6 s of processor time, 150 MB. It is reported, not enforced: on a shared machine time is no gate.
 
 use palpate::fem::{Contact, MESH_SIZE, Model};

@@ -1,7 +1,8 @@
 //! Answers a second of `palpate oracle` through pipes (ORA-013): in a stream, and one question at a time.
 //!
-//! `cargo bench --bench oracle` fails below the rate that the specification promises for the stream.
+//! `cargo bench -p palpate-benches --bench oracle` fails below the rate that the specification promises for the stream.
 
+use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, ExitCode, Stdio};
 use std::thread;
@@ -14,7 +15,7 @@ const QUESTIONS: usize = 20_000;
 const PROMISED: f64 = 50_000.0;
 
 fn oracle() -> (Child, ChildStdin, BufReader<ChildStdout>) {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_palpate"))
+    let mut child = Command::new(std::env::current_exe().expect("a path of this program"))
         .arg("oracle")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -72,6 +73,10 @@ fn one_at_a_time() -> f64 {
 }
 
 fn main() -> ExitCode {
+    // Started by itself it is the program.
+    if std::env::args().nth(1).as_deref() == Some("oracle") {
+        return palpate::cli::main(["palpate", "oracle"].map(OsString::from));
+    }
     let best = (0..3).map(|_| stream()).fold(0.0, f64::max);
     println!("error_rates in a stream: {best:.0} answers a second (best of 3 × {REQUESTS})");
     println!(

@@ -1,5 +1,5 @@
 //! Instructions of one step of the servo kernel on a 9 × 41 table, counted by callgrind on every kind of
-//! path, with a hard ceiling: `cargo bench --bench servo_instructions` (needs valgrind and the runner
+//! path, with a hard ceiling: `cargo bench -p palpate-benches --bench servo_instructions` (needs valgrind and the runner
 //! `gungraun-runner`). Ends with an error above it (SRV-060).
 
 #![allow(missing_docs)] // of what its macros make
