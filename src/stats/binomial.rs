@@ -204,7 +204,7 @@ fn point(k: f64, n: f64, p: f64, q: f64) -> f64 {
 }
 
 /// x ln(x/m) + m − x without cancellation.
-fn deviance(x: f64, m: f64) -> f64 {
+pub(super) fn deviance(x: f64, m: f64) -> f64 {
     let difference = x - m;
     if difference.abs() < 0.1 * (x + m) {
         // With v = (x−m)/(x+m): (x−m)v + 2x Σ v^(2j+1)/(2j+1), j ≥ 1.
@@ -224,9 +224,9 @@ fn deviance(x: f64, m: f64) -> f64 {
     x * libm::log(x / m) - difference
 }
 
-/// ln n! less Stirling's formula: a table (mpmath, 50 digits) for n < 16 and the series beyond,
+/// ln n! less Stirling's formula: a table (mpmath, 50 digits) for whole n < 16 and the series beyond,
 /// whose next term is below 1e-16.
-fn stirling_error(n: f64) -> f64 {
+pub(super) fn stirling_error(n: f64) -> f64 {
     const TABLE: [f64; 15] = [
         0.08106146679532726,
         0.0413406959554093,

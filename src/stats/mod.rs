@@ -1,4 +1,4 @@
-//! The normal law and the arithmetic under it, without `std` and without allocation.
+//! The normal law, the laws of squares and counts, and the arithmetic under them, without `std` and without allocation.
 //!
 //! Everything here gives the same bits on every machine: the only transcendental functions are
 //! those of `libm`, sums run in an order that the source fixes, and no fused multiply-add is used.
@@ -6,6 +6,7 @@
 pub mod binomial;
 pub(crate) mod compensated;
 pub(crate) mod error;
+pub mod noncentral;
 pub mod normal;
 pub mod random;
 pub mod tails;

@@ -12,6 +12,8 @@ const LARGEST: f64 = 1e6;
 const MOST_TERMS: u32 = 20_000;
 /// Relative size of a term that changes nothing any more.
 const NEGLIGIBLE: f64 = 1e-17;
+/// Where the search for a number ends.
+pub(super) const BEYOND: f64 = 1e150;
 /// In place of a zero denominator (Lentz).
 const TINY: f64 = 1e-300;
 
@@ -30,24 +32,33 @@ pub fn gamma_tail(shape: f64, x: f64) -> Result<f64, NumericError> {
     }
     let front = libm::exp(shape * libm::log(x) - x - libm::lgamma(shape));
     Ok(if x < shape + 1.0 {
-        // P = front Σ xⁿ/(shape (shape+1) … (shape+n)).
-        let (mut term, mut sum, mut n) = (1.0 / shape, 1.0 / shape, shape);
-        for _ in 0..MOST_TERMS {
-            n += 1.0;
-            term *= x / n;
-            sum += term;
-            if term < NEGLIGIBLE * sum {
-                break;
-            }
-        }
-        1.0 - front * sum
+        1.0 - front * gamma_series(shape, x)
     } else {
-        let coefficients = |n: u32| {
-            let n = f64::from(n);
-            (-n * (n - shape), x + 2.0 * n + 1.0 - shape)
-        };
-        front / fraction(x + 1.0 - shape, coefficients)
+        front / gamma_fraction(shape, x)
     })
+}
+
+/// P(shape, x) = front Σ xⁿ/(shape (shape+1) … (shape+n)): the sum.
+pub(super) fn gamma_series(shape: f64, x: f64) -> f64 {
+    let (mut term, mut sum, mut n) = (1.0 / shape, 1.0 / shape, shape);
+    for _ in 0..MOST_TERMS {
+        n += 1.0;
+        term *= x / n;
+        sum += term;
+        if term < NEGLIGIBLE * sum {
+            break;
+        }
+    }
+    sum
+}
+
+/// Q(shape, x) = front over the continued fraction: the fraction, for x ≥ shape that are not small.
+pub(super) fn gamma_fraction(shape: f64, x: f64) -> f64 {
+    let coefficients = |n: u32| {
+        let n = f64::from(n);
+        (-n * (n - shape), x + 2.0 * n + 1.0 - shape)
+    };
+    fraction(x + 1.0 - shape, coefficients)
 }
 
 /// Pr(X ≥ x) for the chi-square law.
@@ -96,14 +107,25 @@ pub fn student_two_sided(t: f64, degrees: f64) -> Result<f64, NumericError> {
 /// Implements: PSY-030.
 pub fn student_quantile(confidence: f64, degrees: f64) -> Result<f64, NumericError> {
     let outside = 1.0 - check_probability("confidence", confidence)?;
+    // Enough for all the bits of a t above 2⁻¹¹.
+    crossing(64, |t| Ok(student_two_sided(t, degrees)? > outside))
+}
+
+/// The least number ≥ 0 for which a condition fails that holds for all smaller ones: to the last bit, if the halvings suffice.
+pub(super) fn crossing(
+    halvings: u32,
+    holds: impl Fn(f64) -> Result<bool, NumericError>,
+) -> Result<f64, NumericError> {
     let (mut low, mut high) = (0.0, 1.0);
-    while high < 1e150 && student_two_sided(high, degrees)? > outside {
+    while high < BEYOND && holds(high)? {
         (low, high) = (high, 2.0 * high);
     }
-    // Until the ends are neighbours: halving reaches that in fewer steps than a number has bits.
-    for _ in 0..64 {
+    for _ in 0..halvings {
         let middle = 0.5 * (low + high);
-        if student_two_sided(middle, degrees)? > outside {
+        if middle == low || middle == high {
+            break;
+        }
+        if holds(middle)? {
             low = middle;
         } else {
             high = middle;
@@ -130,8 +152,8 @@ fn incomplete_beta(a: f64, b: f64, x: f64, y: f64) -> Result<f64, NumericError> 
     })
 }
 
-/// The continued fraction of the incomplete beta function.
-fn beta_fraction(a: f64, b: f64, x: f64) -> f64 {
+/// The continued fraction of the incomplete beta function: I_x(a, b) = front · fraction/a.
+pub(super) fn beta_fraction(a: f64, b: f64, x: f64) -> f64 {
     let coefficients = |n: u32| {
         let m = f64::from(n / 2);
         let ends = (a + 2.0 * m - 1.0) * (a + 2.0 * m);
@@ -146,7 +168,7 @@ fn beta_fraction(a: f64, b: f64, x: f64) -> f64 {
 }
 
 /// b₀ + a₁/(b₁ + a₂/(b₂ + …)) with (aₙ, bₙ) from `coefficients`, by Lentz's method.
-fn fraction(b0: f64, coefficients: impl Fn(u32) -> (f64, f64)) -> f64 {
+pub(super) fn fraction(b0: f64, coefficients: impl Fn(u32) -> (f64, f64)) -> f64 {
     let nonzero = |value: f64| if value == 0.0 { TINY } else { value };
     let mut value = nonzero(b0);
     let (mut upper, mut lower) = (value, 0.0);
