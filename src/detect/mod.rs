@@ -34,11 +34,13 @@
 
 pub mod assessment;
 pub mod coloured;
+pub mod correlation;
 pub mod decision;
 pub mod matched_filter;
 pub mod mixture;
 mod noise;
 pub mod noise_budget;
+pub mod nuisance;
 pub mod position;
 pub mod scan;
 pub mod simulate;

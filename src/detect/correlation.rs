@@ -1,0 +1,69 @@
+//! Samples that are not independent: sensors with a low pass, values that were held or interpolated. Means over blocks that are
+//! longer than the correlation are nearly independent again, whatever the cause (batch means).
+
+use super::DetectError;
+use crate::stats::compensated;
+use crate::stats::error::check_length;
+use crate::stats::tails::chi_square_tail;
+
+/// The sum over the autocorrelation ends at this multiple of what it has come to.
+const WINDOW: f64 = 5.0;
+
+/// Σ xᵢ xᵢ₊ₖ / Σ xᵢ², 0 of a series of zeros.
+fn autocorrelation(series: &[f64], lag: usize) -> f64 {
+    let product = |lag: usize| {
+        let later = series.get(lag..).unwrap_or_default();
+        compensated::dot(series, later, 1.0).value()
+    };
+    let power = product(0);
+    if power > 0.0 {
+        product(lag) / power
+    } else {
+        0.0
+    }
+}
+
+/// The probability that `lags` autocorrelations of white noise are as large as those of the series, or larger, by the statistic of
+/// Ljung and Box: n (n + 2) Σ ρ_k²/(n − k) is χ² with as many degrees of freedom, for a long series.
+///
+/// # Errors
+/// No lags, or as many as there are samples.
+///
+/// Implements: NUI-020.
+pub fn ljung_box(series: &[f64], lags: usize) -> Result<f64, DetectError> {
+    let samples = series.len() as f64;
+    check_length("lags", lags.clamp(1, series.len().max(2) - 1), lags)?;
+    let terms = (1..=lags).map(|lag| {
+        let correlation = autocorrelation(series, lag);
+        correlation * correlation / (samples - lag as f64)
+    });
+    let sum: f64 = terms.sum();
+    chi_square_tail(samples * (samples + 2.0) * sum, lags as f64)
+}
+
+/// How many samples count as one: τ = 1 + 2 Σ ρ_k over the lags k below 5 τ (Sokal), at least 1.
+///
+/// Implements: NUI-021.
+pub fn correlation_length(series: &[f64]) -> f64 {
+    let mut length = 1.0;
+    for lag in 1..series.len() {
+        length += 2.0 * autocorrelation(series, lag);
+        if lag as f64 >= WINDOW * length {
+            break;
+        }
+    }
+    length.max(1.0)
+}
+
+/// The sums over blocks of `length` samples, over √length, so that white noise keeps its standard deviation. What is left behind the
+/// last whole block is not used.
+///
+/// Implements: NUI-022.
+pub fn block_sums(series: &[f64], length: usize) -> impl Iterator<Item = f64> {
+    let scale = 1.0 / libm::sqrt(length.max(1) as f64);
+    let blocks = series.chunks_exact(length.max(1));
+    blocks.map(move |block| scale * block.iter().sum::<f64>())
+}
+
+#[cfg(test)]
+mod tests;
