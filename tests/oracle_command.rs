@@ -327,12 +327,18 @@ fn work_beyond_the_limits_is_refused_before_it_begins() {
                "template_y": ones(length), "noise_sd_x": 1, "noise_sd_y": 1})
     };
     let coloured = json!({"residual": ones(1002), "template": ones(1002), "covariance": []});
+    let beside = |number: usize| {
+        json!({"residual": [1, 2, 0], "template": [0, 1, 0], "nuisances": vec![[1, 1, 1]; number], "level": "known",
+               "bias": 0, "eta": 0})
+    };
+    ok("theta_nuisances", beside(100));
     // 1000 products at each of the shifts of the whole template: 10,000 shifts are allowed.
     ok("scan", scan(10_999, 1000));
     for (op, args, words) in [
         ("scan", scan(20_000, 10_000), "10000000"),
         ("scan", scan(11_000, 1000), "10000000"),
         ("theta_colored", coloured, "at most 1000"),
+        ("theta_nuisances", beside(101), "at most 100"),
     ] {
         let (code, message) = refused(op, args);
         assert_eq!(code, "out_of_range");
@@ -373,8 +379,22 @@ theta_colored {"residual": [1, 1], "template": [1, 1], "covariance": [[1, 0.5], 
 theta_colored {"residual": [1, 1], "template": [1, 1], "covariance": [[1, 2], [2, 1]]} => out_of_range: not positive definite
 theta_colored {"residual": [1, 1], "template": [1, 1], "covariance": [[1, 0], [0]]} => bad_argument: covariance[1] | 1 entries | 2
 theta_colored {"residual": [1, 1, 1], "template": [1, 1, 1], "covariance": []} => bad_argument: template | as many lateral as normal
+theta_nuisances {"residual": [1, 2, 3], "template": [0, 1, 0], "nuisances": [[1, 1]], "level": "known", "bias": 0, "eta": 0} => bad_argument: nuisances[0] | 2 entries | 3
+theta_nuisances {"residual": [1, 2], "template": [0, 1, 0], "nuisances": [], "level": "known", "bias": 0, "eta": 0} => bad_argument: residual | length 2 | length 3
+theta_nuisances {"residual": [], "template": [], "nuisances": [], "level": "known", "bias": 0, "eta": 0} => bad_argument: template | at least one
+theta_nuisances {"residual": [1, 2, 3], "template": [2, 2, 2], "nuisances": [[1, 1, 1]], "level": "known", "bias": 0, "eta": 0} => out_of_range: gamma is 0
+theta_nuisances {"residual": [1, 2], "template": [0, 1], "nuisances": [[1, 1]], "level": "known", "bias": 0, "eta": 0} => out_of_range: degrees of freedom | greater than 0
+theta_nuisances {"residual": [0, 0, 0], "template": [0, 1, 0], "nuisances": [], "level": "unknown", "bias": 0, "eta": 0} => out_of_range: noise of the residual | greater than 0
+theta_nuisances {"residual": [1, 2, 3], "template": [0, 1, 0], "nuisances": [], "level": "guessed", "bias": 0, "eta": 0} => out_of_range: guessed | known or unknown
+theta_nuisances {"residual": [1, 2, 3], "template": [0, 1, 0], "nuisances": [], "level": "known", "bias": -1, "eta": 0} => out_of_range: bias | -1 | at least 0
 proportion_interval {"successes": 2.5, "trials": 3, "confidence": 0.9, "method": "wilson"} => bad_argument: successes | whole
 proportion_interval {"successes": 4, "trials": 3, "confidence": 0.9, "method": "wilson"} => out_of_range: 4 successes | 3 trials
+chi_square_tail {"x": 1, "degrees": 0, "noncentrality": 0} => out_of_range: degrees | 0.1 to 2e6
+chi_square_tail {"x": 1, "degrees": 3, "noncentrality": -1} => out_of_range: noncentrality | 0 to 1e8
+chi_square_tail {"x": 1, "degrees": 3} => bad_argument: noncentrality | missing
+f_tail {"x": -1, "numerator": 2, "denominator": 2, "noncentrality": 0} => out_of_range: x | 0 to 1e152
+f_tail {"x": 1, "numerator": 2, "denominator": 3e6, "noncentrality": 0} => out_of_range: denominator | 0.1 to 2e6
+student_tail {"x": 1, "degrees": 2, "noncentrality": 10001} => out_of_range: noncentrality | -1e4 to 1e4
 interpolate {"depths_m": [0, 0], "laterals_m": [0, 1], "table_n": [[1, 2], [3, 4]], "depth_m": 0, "lateral_m": 0} => out_of_range: depths_m[1]
 interpolate {"depths_m": [0], "laterals_m": [0, 1], "table_n": [[1, 2]], "depth_m": 0, "lateral_m": 0} => bad_argument: depths_m | at least 2
 scan {"residual_x": [1], "residual_y": [1], "template_x": [1, 1], "template_y": [1, 1], "noise_sd_x": 1, "noise_sd_y": 1} => bad_argument: template_x
@@ -404,7 +424,7 @@ count_analysis {"correct": [[5], [1]], "trials": 4} => out_of_range: correct[0][
     }
 }
 
-// Verifies: ORA-020, ORA-021, ORA-023, ORA-024, ORA-025, ORA-026. Cases that are exact in binary, by hand.
+// Verifies: ORA-020, ORA-021, ORA-023, ORA-024, ORA-025, ORA-026, ORA-027. Cases that are exact in binary, by hand.
 #[test]
 fn each_op_answers() {
     let ops = ok("capabilities", json!({}))["ops"].clone();
@@ -419,7 +439,7 @@ fn each_op_answers() {
         "{stiffness}"
     );
     // K = diag(4, 1) in theta_colored: 6·(1 − 3)/4 + 4·(3 − 2)/1, and 36/4 + 16/1 is 5². p = ½ in count_analysis:
-    // χ² = (1² + 1²)/(4·½·½).
+    // χ² = (1² + 1²)/(4·½·½). In theta_nuisances the offset 3 leaves (1, −1, 0, 0): T = 2/2, R = 2 − 1.
     let cases = r#"
 probe_force {"phantom": "none", "depth_m": 0, "lateral_m": 0} => {"normal_force_n": 0.0, "lateral_force_n": 0.0}
 normal_cdf {"x": -50} => {"p": 0.0}
@@ -427,6 +447,7 @@ normal_quantile {"p": 0.5} => {"x": 0.0}
 matched_filter {"template_x": [3, 4, 0, 0], "template_y": [0, 0, 0, 0], "noise_sd_x": 2, "noise_sd_y": 4} => {"b_x": 2.5, "b_y": 0.0, "sigma_x": 1.0, "sigma_y": 2.0, "gamma": 2.5}
 theta {"observed_x": [4], "observed_y": [0], "f0_x": [1], "f0_y": [0], "f1_x": [3], "f1_y": [0], "noise_sd_x": 1, "noise_sd_y": 1} => {"theta": 4.0, "y_x": 3.0, "y_y": 0.0, "gamma": 2.0}
 theta_colored {"residual": [1, 3], "template": [6, 4], "covariance": [[4, 0], [0, 1]]} => {"theta": 1.0, "gamma": 5.0}
+theta_nuisances {"residual": [4, 2, 3, 3], "template": [1, -1, 1, -1], "nuisances": [[1, 1, 1, 1], [2, 2, 2, 2]], "level": "known", "bias": 0, "eta": 1e6} => {"t": 1.0, "gamma": 2.0, "gamma_nominal": 2.0, "rank": 1, "residual": 1.0, "degrees": 2, "theta": 0.0, "false_alarm": 0.0, "miss": 1.0}
 threshold {"criterion": "map", "prior_h1": 0.5} => {"eta": 0.0}
 error_rates {"gamma": 0, "eta": 1} => {"false_alarm": 0.0, "miss": 1.0}
 roc {"gamma": 0, "false_alarm": [0, 0.5, 1]} => {"miss": [1.0, 0.5, 0.0], "auc": 0.5}
@@ -434,6 +455,9 @@ required_gamma {"max_false_alarm": 0.5, "max_miss": 0.5} => {"gamma": 0.0}
 two_afc {"gamma": 0} => {"p_correct": 0.5}
 gamma_from_two_afc {"p_correct": 0.5} => {"gamma": 0.0}
 proportion_interval {"successes": 0, "trials": 1, "confidence": 0.5, "method": "clopper_pearson"} => {"lower": 0.0, "upper": 0.75}
+chi_square_tail {"x": 0, "degrees": 3, "noncentrality": 2} => {"lower": 0.0, "upper": 1.0}
+f_tail {"x": 1e152, "numerator": 3, "denominator": 9, "noncentrality": 2} => {"lower": 1.0, "upper": 0.0}
+student_tail {"x": -1e152, "degrees": 3, "noncentrality": 0} => {"lower": 0.0, "upper": 1.0}
 noise_budget {"signal_n": 0, "max_false_alarm": 0.4, "max_miss": 0.4, "sources_n": []} => null
 interpolate {"depths_m": [0, 1], "laterals_m": [0, 1], "table_n": [[1, 2], [3, 4]], "depth_m": 0.5, "lateral_m": 2} => {"force_n": 4.0}
 scan {"residual_x": [0, 1, 2], "residual_y": [0, 0, 0], "template_x": [1, 2], "template_y": [0, 0], "noise_sd_x": 1, "noise_sd_y": 1} => {"theta": [-0.5, 2.5], "max_theta": 2.5, "argmax": 1}

@@ -1,13 +1,14 @@
 """The expected answers once more, by other ways than the generator's: for check.py.
 
 Φ by its series and Mills' continued fraction, inverses by bisection, Θ as a difference of squared residuals, binomial
-tails by the continued fraction of the incomplete beta function, f32 by rounding f64, reports by `struct`.
+tails by the continued fraction of the incomplete beta function, tails of quadratic statistics by integrals, f32 by
+rounding f64, reports by `struct`.
 """
 
 import struct
 from fractions import Fraction
 
-from mpmath import exp, log, loggamma, matrix, mp, mpf, pi, sqrt
+from mpmath import besseli, exp, hyp1f1, isinf, log, loggamma, matrix, mp, mpf, pi, quad, sqrt
 
 mp.dps = 40
 
@@ -157,6 +158,51 @@ def theta_colored(a):
     return {"theta": (square(r) - square(r - d)) / 2, "gamma": sqrt(square(d))}
 
 
+def theta_nuisances(a):
+    """By elimination in the signals' exact Gram matrix: what is left of its last corner are the squares of Pδ and Pz, and their
+    product. θ is the ratio of the two likelihoods; the threshold is where it passes η."""
+    columns = [[Fraction(v) for v in column] for column in (*a["nuisances"], a["template"], a["residual"])]
+    gram = [[sum(x * y for x, y in zip(p, q)) for q in columns] for p in columns]
+    squares, rank = [row[k] for k, row in enumerate(gram)], 0
+    for k in range(len(gram) - 2):
+        pivot_row = gram[k]
+        if pivot_row[k] == 0 or pivot_row[k] * 10**18 < squares[k]:
+            continue
+        rank += 1
+        for i in range(k + 1, len(gram)):
+            factor = gram[i][k] / pivot_row[k]
+            gram[i] = [x - factor * y for x, y in zip(gram[i], pivot_row)]
+    ratio = lambda v: mpf(v.numerator) / v.denominator
+    dd, dz, zz = ratio(gram[-2][-2]), ratio(gram[-2][-1]), ratio(gram[-1][-1])
+    residual, nu, eta = ratio(gram[-1][-1] - gram[-2][-1] ** 2 / gram[-2][-2]), len(a["residual"]) - rank - 1, real(a["eta"])
+    level = sqrt(residual / nu) if a["level"] == "unknown" else mpf(1)
+    g, bias = sqrt(dd) / level, real(a["bias"]) / level
+    if a["level"] == "known":
+        value, tau = (zz - (zz - 2 * dz + dd)) / 2, (eta + g**2 / 2) / g
+        above = lambda x: lower(-x)
+    else:
+        value = log(zz / (zz - 2 * dz + dd)) * (nu + 1) / 2
+        excess = lambda t: log((nu + t * t) / (nu + (t - g) ** 2)) * (nu + 1) / 2 - eta
+        reach = sqrt(g**2 / 4 + nu)
+        least, most = g / 2 - reach, g / 2 + reach
+        if excess(most) < 0 or excess(least) > 0:
+            tau = mpf("inf" if excess(most) < 0 else "-inf")
+        else:
+            tau = bisect(excess, least, most)
+        above = lambda x: mpf(x < 0) if isinf(x) else student_tail({"x": x, "degrees": nu, "noncentrality": 0})["upper"]
+    return {
+        "t": dz / sqrt(dd) / level,
+        "gamma": g,
+        "gamma_nominal": sqrt(ratio(squares[-2])),
+        "residual": residual,
+        "theta": value,
+        "false_alarm": above(tau - bias),
+        "miss": above(g - bias - tau),
+        "rank": rank,
+        "degrees": nu,
+    }
+
+
 def scan(a):
     values = []
     for shift in range(len(a["residual_x"]) - len(a["template_x"]) + 1):
@@ -223,6 +269,80 @@ def exact_limit(k, n, tail):
         old, f_old, new = new, f_new, min(new - step, log(1 - mpf(10) ** -9 / n))
         f_new = f(new)
     raise ArithmeticError("no convergence")
+
+
+def tail_by_density(density, x, is_upper, width):
+    """The integral of a density beyond x, in ln x, over intervals of growing length until nothing is added."""
+    total, at = mpf(0), log(x)
+    # mpmath's quadrature has an absolute tolerance.
+    unit = density(x) * x
+    while True:
+        to = at + width if is_upper else at - width
+        part = abs(quad(lambda u: density(exp(u)) * exp(u) / unit, [at, to], method="gauss-legendre", maxdegree=5))
+        total += part
+        if part <= total * mpf(10) ** -25:
+            return total * unit
+        at, width = to, width * mpf("1.3")
+
+
+def two_tails(density, x, mean, deviation):
+    if x == 0:
+        return {"lower": mpf(0), "upper": mpf(1)}
+    tail = tail_by_density(density, x, x >= mean, min(mpf(1), deviation / mean) / 8)
+    return {"lower": 1 - tail, "upper": tail} if x >= mean else {"lower": tail, "upper": 1 - tail}
+
+
+def chi_square_tail(a):
+    x, k, lam = real(a["x"]), real(a["degrees"]), real(a["noncentrality"])
+    if lam < mpf(10) ** -60:
+        front = loggamma(k / 2)
+        density = lambda v: exp((k / 2 - 1) * log(v / 2) - v / 2 - front) / 2
+    else:
+        bessel = lambda v: (v / lam) ** (k / 4 - mpf(1) / 2) * besseli(k / 2 - 1, sqrt(lam * v))
+        density = lambda v: exp(-(v + lam) / 2) * bessel(v) / 2
+    return two_tails(density, x, k + lam, sqrt(2 * (k + 2 * lam)))
+
+
+def f_tail(a):
+    x, m, n = (real(a[key]) for key in ("x", "numerator", "denominator"))
+    h = real(a["noncentrality"]) / 2
+    front = loggamma(m / 2) + loggamma(n / 2) - loggamma((m + n) / 2)
+
+    def density(v):
+        share = m * v / (n + m * v)
+        power = m / 2 * log(share) + n / 2 * log(n / (n + m * v))
+        return exp(power - front - h) / v * hyp1f1((m + n) / 2, m / 2, h * share)
+
+    mean = (m + 2 * h) / m
+    return two_tails(density, x, mean, mean * sqrt(2 / n + 2 * (m + 4 * h) / (m + 2 * h) ** 2))
+
+
+def student_tail(a):
+    """The mean of Φ(x √(G/c) − δ) over the gamma law of shape c, by the trapezoidal rule in ln(G/c)."""
+    x, c, delta = real(a["x"]), real(a["degrees"]) / 2, real(a["noncentrality"])
+    step = min(mpf(1) / 40, 1 / sqrt(c) / 2, 1 / (1 + abs(delta)) / 2)
+    front = exp(c * log(c) - c - loggamma(c)) * step
+    law = lambda u: exp(c * (u + 1 - exp(u)))
+    below = lambda u: law(u) * lower(x * exp(u / 2) - delta)
+    above = lambda u: law(u) * lower(delta - x * exp(u / 2))
+    # Where x √(G/c) is no large number any more.
+    least = int((-2 * log(1 + abs(x)) - 10) / step)
+    return {key: front * sum_outwards(part, step, least) for key, part in (("lower", below), ("upper", above))}
+
+
+def sum_outwards(part, step, least):
+    """Σ part(i step) over all whole i, from the largest of a coarse grid that begins at `least`."""
+    size = lambda i: part(i * step)
+    best = max(range(least, int(10 / step), 64), key=size)
+    best = max(range(best - 64, best + 65, 4), key=size)
+    total = size(best)
+    for way in (1, -1):
+        i, term = best, total
+        while term > total * mpf(10) ** -25:
+            i += way
+            term = size(i)
+            total += term
+    return total
 
 
 def count_analysis(a):

@@ -18,7 +18,7 @@ import sys
 from decimal import Decimal, getcontext
 from fractions import Fraction
 
-from mpmath import erfc, exp, log, loggamma, mp, mpf, pi, sqrt
+from mpmath import erfc, exp, fdot, log, loggamma, matrix, mp, mpf, pi, sqrt
 
 mp.dps = 40
 getcontext().prec = 36
@@ -298,9 +298,52 @@ def intervals(oracle, draw):
     return [exact_ends, score]
 
 
+def length(v):
+    return sqrt(fdot(v, v))
+
+
+def nuisances(oracle, draw):
+    """By elimination in the signals' Gram matrix, whose last corner keeps the squares of Pδ and Pz, and their product."""
+    sweeps = {key: Sweep(f"{key} beside nuisances") for key in ("t", "gamma", "residual", "theta")}
+    requests = []
+    for _ in range(10_000):
+        count, signals = draw.randint(5, 16), []
+        vector = lambda size: [draw.gauss(0, size) for _ in range(count)]
+        for _ in range(draw.randint(0, 3)):
+            size = 10 ** draw.uniform(-4, 0)
+            signals.append([a + size * b for a, b in zip(signals[0] if signals else [0] * count, vector(1))])
+        residual, template = vector(1), vector(10 ** draw.uniform(-2, 1))
+        for signal in signals:
+            amplitude = 10 ** draw.uniform(0, 6)
+            residual = [a + amplitude * b for a, b in zip(residual, signal)]
+        args = {"residual": residual, "template": template, "nuisances": signals, "level": "known", "bias": 0, "eta": 0}
+        requests.append(args)
+    for args, ok in zip(requests, oracle.ask("theta_nuisances", requests)):
+        count, signals = len(args["template"]), [[mpf(v) for v in s] for s in args["nuisances"]]
+        units = [[v / length(s) for v in s] for s in signals]
+        inverse = matrix([[fdot(a, b) for b in units] for a in units]) ** -1 if units else None
+        condition = sqrt(sum(inverse[k, k] for k in range(len(units)))) if units else 0
+        columns = [*signals, [mpf(v) for v in args["template"]], [mpf(v) for v in args["residual"]]]
+        gram = [[fdot(a, b) for b in columns] for a in columns]
+        for k in range(len(signals)):
+            for i in range(k + 1, len(columns)):
+                factor = gram[i][k] / gram[k][k]
+                gram[i] = [a - factor * b for a, b in zip(gram[i], gram[k])]
+        z, d, gamma = length(columns[-1]), length(columns[-2]), sqrt(gram[-2][-2])
+        t = gram[-2][-1] / gamma
+        residual, e = gram[-1][-1] - t * t, 2 * (len(signals) + 1) * (count + 4) * (1 + condition) * U
+        of_t, of_gamma = e * d * z / gamma, e * d
+        of_residual = 2 * e * z * sqrt(residual) + (e * z) ** 2 + (count + 4) * U * residual
+        of_theta = gamma * of_t + abs(t - gamma) * of_gamma + of_t * of_gamma + 10 * U * gamma * (abs(t) + gamma)
+        exact = (t, gamma, residual, gamma * (t - gamma / 2))
+        for (key, sweep), value, bound in zip(sweeps.items(), exact, (of_t, of_gamma, of_residual, of_theta)):
+            sweep.point(ok[key], value, bound, args)
+    return list(sweeps.values())
+
+
 def swept(number):
     """The report of one topic with its own oracle and seed, and whether every sweep of it kept its bound."""
-    topic = (normal, filters, decisions, thresholds, intervals)[number]
+    topic = (normal, filters, decisions, thresholds, intervals, nuisances)[number]
     text = io.StringIO()
     with contextlib.redirect_stdout(text):
         good = [sweep.report() for sweep in topic(Oracle(sys.argv[1:]), random.Random(number))]
@@ -312,7 +355,7 @@ def main():
         sys.exit(__doc__.splitlines()[0])
     # The topic with the most digits first; the reports in the order of the topics.
     with multiprocessing.Pool(2) as pool:
-        order = [4, 0, 1, 2, 3]
+        order = [4, 5, 0, 1, 2, 3]
         reports = dict(zip(order, pool.map(swept, order, chunksize=1)))
     for number in sorted(reports):
         print(reports[number][0], end="")

@@ -19,6 +19,10 @@ def absolute(bound, unit, reason):
     return {"absolute": round_up(bound), "unit": unit, "reason": reason}
 
 
+def relative(bound, reason):
+    return {"relative": round_up(bound), "reason": reason}
+
+
 def is_exact(reason):
     return {"exact": True, "reason": reason}
 

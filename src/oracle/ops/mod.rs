@@ -5,6 +5,8 @@ mod decision;
 mod element;
 mod filter;
 mod interpolation;
+mod law;
+mod nuisance;
 mod probe;
 mod proportion;
 mod report;
@@ -47,7 +49,10 @@ const MAP_AND_POSE: &str = "depths_m laterals_m table_n depth_m lateral_m";
 const TABLE_AND_POSE: &str = "depth_knots lateral_knots table_bits depth_bits lateral_bits";
 const ELEMENT: &str = "nodes_m youngs_modulus_pa poissons_ratio";
 const PROPORTION: &str = "successes trials confidence method";
+const LAW: &str = "x degrees noncentrality";
+const LAW_OF_RATIO: &str = "x numerator denominator noncentrality";
 const COLOURED: &str = "residual template covariance";
+const BESIDE_NUISANCES: &str = "residual template nuisances level bias eta";
 
 /// All ops.
 ///
@@ -61,6 +66,7 @@ pub const OPS: &[Op] = &[
     op("matched_filter", TEMPLATE, filter::matched_filter),
     op("theta", RECORD, filter::theta),
     op("theta_colored", COLOURED, filter::theta_colored),
+    op("theta_nuisances", BESIDE_NUISANCES, nuisance::theta),
     op("threshold", CRITERIA, decision::threshold),
     op("error_rates", "gamma eta", decision::error_rates),
     op("roc", "gamma false_alarm", decision::roc),
@@ -76,6 +82,9 @@ pub const OPS: &[Op] = &[
         number(a, "p_correct", "gamma", detect::gamma_from_two_afc)
     }),
     op("proportion_interval", PROPORTION, proportion::interval),
+    op("chi_square_tail", LAW, law::chi_square),
+    op("f_tail", LAW_OF_RATIO, law::f_ratio),
+    op("student_tail", LAW, law::student),
     op("noise_budget", BUDGET, decision::noise_budget),
     op("interpolate", MAP_AND_POSE, interpolation::interpolate),
     op("scan", SCAN, filter::scan),

@@ -10,9 +10,11 @@ macro_rules! files {
 ///
 /// Implements: ORA-040.
 pub(super) const FILES: &[(&str, &str)] = files![
+    "chi_square_tail.json",
     "count_analysis.json",
     "element_stiffness.json",
     "error_rates.json",
+    "f_tail.json",
     "gamma_from_two_afc.json",
     "interpolate.json",
     "manifest.json",
@@ -31,8 +33,10 @@ pub(super) const FILES: &[(&str, &str)] = files![
     "schema.json",
     "servo_axis.json",
     "servo_interpolate.json",
+    "student_tail.json",
     "theta.json",
     "theta_colored.json",
+    "theta_nuisances.json",
     "threshold.json",
     "two_afc.json",
 ];

@@ -712,3 +712,43 @@ fn the_bug_of_another_implementation_is_named() {
         assert!(named, "{bug} is not named: {}", verdict["likely_bugs"]);
     }
 }
+
+// Verifies: ORA-047. Our oracle, with requests that are changed on their way to it.
+#[test]
+fn bugs_of_laws_and_nuisances_are_named() {
+    let palpate = palpate();
+    for (flag, group, change) in [
+        (
+            "noncentrality_ignored",
+            "f_tail",
+            r#"s/"noncentrality": [^,}]*/"noncentrality": 0/"#,
+        ),
+        (
+            "noncentrality_sign",
+            "student_tail",
+            r#"s/"noncentrality": -/"noncentrality": /"#,
+        ),
+        (
+            "nuisances_ignored",
+            "theta_nuisances",
+            r#"s/"nuisances": .*, "level"/"nuisances": [], "level"/"#,
+        ),
+        (
+            "level_ignored",
+            "theta_nuisances",
+            r#"s/"unknown"/"known"/"#,
+        ),
+        (
+            "bias_ignored",
+            "theta_nuisances",
+            r#"s/"bias": [^,}]*/"bias": 0/"#,
+        ),
+    ] {
+        let program = format!("sed -u '{change}' | '{palpate}' oracle");
+        let options = ["--format", "json", "--only", group];
+        let output = conform(&options, &["sh", "-c", &program]);
+        let verdict: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let likely = &verdict["likely_bugs"];
+        assert_eq!(likely[0]["flag"], flag, "{likely}");
+    }
+}
