@@ -2,7 +2,7 @@
 #![cfg(feature = "std")]
 
 use palpate::force::Force;
-use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
+use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use palpate::phantom::Phantom;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -59,17 +59,50 @@ fn columns_are_found_by_name_and_units_by_header() {
     assert_eq!(read(text), Ok(table()));
 }
 
-// Verifies: MAP-030.
+// Verifies: MAP-040, MAP-041, MAP-042, MAP-043, MAP-044.
+#[test]
+fn tables_of_spreadsheets_are_read() {
+    let header = "\"\";Depth_mm;lateral_mm;T/°C;\"normal_force_N\";lateral_force_n";
+    let rows = EXAMPLE.lines().skip(1).zip(0..).map(|(row, number)| {
+        let fields: Vec<String> = row
+            .split(',')
+            .map(|field| field.replace('.', ","))
+            .collect();
+        let [depth, lateral, normal, sideways] = &fields[..] else {
+            panic!("{row}")
+        };
+        format!("{number};{depth};{lateral};20,5;\"{normal}\";{sideways}")
+    });
+    let text = format!("{header}\r\n{}", rows.collect::<Vec<_>>().join("\r\n"));
+    let (found, notes) = ForceTable::from_csv_with_notes(&text, "gel.csv").unwrap();
+    assert_eq!(found, table());
+    let decimal = "commas in its numbers are decimal commas";
+    assert_eq!(notes, ["column \"T/°C\" is not used", decimal]);
+    let (found, notes) = ForceTable::from_csv_with_notes(EXAMPLE, "gel.csv").unwrap();
+    assert_eq!((found, notes.len()), (table(), 0));
+}
+
+// Verifies: MAP-030, MAP-045.
 #[test]
 fn bad_headers_are_refused() {
-    for header in [
-        "depth_mm,lateral_mm,normal_force_n",
-        "depth_mm,lateral_mm,normal_force_n,lateral_force_n,time_s",
-        "depth_mm,lateral_mm,normal_force_n,lateral_force",
-        "depth_mm,lateral_mm,normal_force_n,normal_force_mn",
-        "depth_mm,depth_m,lateral_mm,normal_force_n,lateral_force_n",
-        "depth_mm;lateral_mm;normal_force_n;lateral_force_n",
-        "0.0,-2.6,0.0,0.0",
+    for (header, wrong) in [
+        (
+            "depth_mm,lateral_mm,normal_force_n",
+            "no column lateral_force_n or lateral_force_mn",
+        ),
+        (
+            "depth_mm,lateral_mm,normal_force_n,lateral_force",
+            "no column lateral_force_n or lateral_force_mn",
+        ),
+        (
+            "depth_mm,lateral_mm,normal_force_n,normal_force_mn",
+            "columns normal_force_n and normal_force_mn",
+        ),
+        (
+            "depth_mm,depth_m,lateral_mm,normal_force_n,lateral_force_n",
+            "columns depth_mm and depth_m",
+        ),
+        ("0.0,-2.6,0.0,0.0", "no column depth_mm or depth_m"),
     ] {
         let text = EXAMPLE.replacen(
             "depth_mm,lateral_mm,normal_force_n,lateral_force_n",
@@ -79,18 +112,16 @@ fn bad_headers_are_refused() {
         assert_eq!(
             read(&text),
             Err(format!(
-                "gel.csv:1: header {header:?}, \
+                "gel.csv:1: {wrong} in the header {header:?}, \
                  expected depth_mm,lateral_mm,normal_force_n,lateral_force_n, \
                  in any order, lengths also as _m, forces also as _mn"
             ))
         );
     }
     for empty in ["", "\n\n", "# nothing\n"] {
-        assert!(
-            read(empty)
-                .unwrap_err()
-                .starts_with("gel.csv:1: header \"\", expected depth_mm")
-        );
+        assert!(read(empty).unwrap_err().starts_with(
+            "gel.csv:1: no column depth_mm or depth_m in the header \"\", expected depth_mm"
+        ));
     }
     let no_rows = EXAMPLE.lines().next().unwrap();
     let expected = "gel.csv: depths_m is empty, expected at least one position";
@@ -162,7 +193,7 @@ fn malformed_rows_are_refused_with_line_column_and_value() {
         ("depth_mm", ",0.0,0.25,0.0", ""),
         ("lateral_mm", "1.5,zero,0.25,0.0", "zero"),
         ("normal_force_n", "1.5,0.0,NaN,0.0", "NaN"),
-        ("normal_force_n", "1.5,0.0,\"0.25\",0.0", "\"0.25\""),
+        ("normal_force_n", "1.5,0.0,\"0,25\",0.0", "0,25"),
         ("lateral_force_n", "1.5,0.0,0.25,-inf", "-inf"),
         ("lateral_force_n", "1.5,0.0,0.25,1e999", "1e999"),
     ] {
@@ -192,10 +223,7 @@ fn what_makes_no_table_is_refused_with_the_file() {
 fn a_measured_map_keeps_the_files_name_without_its_folder() {
     let phantom = Phantom::builtin("2.6").unwrap();
     let map = ForceMap::from_csv(EXAMPLE, "lab/gel.csv", "ATI", Some(phantom.clone())).unwrap();
-    let source = Source::Measured {
-        file: "gel.csv".into(),
-        note: "ATI".into(),
-    };
+    let source = Source::Measured(Measurement::new("gel.csv", "ATI"));
     assert_eq!((map.source(), map.phantom()), (&source, Some(&phantom)));
     assert_eq!(map.table(), &table());
     let deep = EXAMPLE.replace("\n1.5,", "\n15.5,");
@@ -271,10 +299,11 @@ proptest! {
     fn mutated_files_never_panic(
         at in 0..EXAMPLE.len(),
         removed in 0usize..20,
-        added in "([-+0-9eE.,\\n\\r#_ m]{0,8}|\\PC{0,4})",
+        added in "([-+0-9eE.,;\\t\"\\n\\r#_ m]{0,8}|\\PC{0,4})",
+        separator in "[,;\t]",
     ) {
         let end = (at + removed).min(EXAMPLE.len());
-        let text = format!("{}{added}{}", &EXAMPLE[..at], &EXAMPLE[end..]);
+        let text = format!("{}{added}{}", &EXAMPLE[..at], &EXAMPLE[end..]).replace(',', &separator);
         if let Err(message) = read(&text) {
             prop_assert!(message.starts_with("gel.csv:"));
             prop_assert!(!message.contains('\n'), "{message:?}");

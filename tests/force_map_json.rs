@@ -3,7 +3,8 @@
 
 use palpate::force::Force;
 use palpate::force_map::{
-    Certificate, ForceMap, ForceTable, Matrix, SCHEMA, SCHEMA_VERSION, SmallestDet, Source,
+    Certificate, ForceMap, ForceTable, Matrix, Measurement, SCHEMA, SCHEMA_VERSION, SmallestDet,
+    Source,
 };
 use palpate::phantom::Phantom;
 use proptest::prelude::*;
@@ -161,15 +162,29 @@ fn a_computed_map_is_written_as_the_spec_says_and_read_back() {
     assert_same(&read(&example()).unwrap(), &computed());
 }
 
-// Verifies: MAP-020, MAP-022, MAP-025.
+// Verifies: MAP-020, MAP-022, MAP-025, MAP-074.
 #[test]
 fn a_measured_map_is_written_and_read_back() {
-    let source = Source::Measured {
-        file: "gel \"1\".csv".into(),
-        note: "ATI\nsensor".into(),
+    let source = Measurement::new("gel \"1\".csv", "ATI\nsensor");
+    let map = |source| {
+        let source = Source::Measured(source);
+        ForceMap::new(source, None, computed().table().clone())
     };
-    let map = ForceMap::new(source, None, computed().table().clone()).unwrap();
+    let smoothed = |half_width| Measurement {
+        smoothed_half_width: Some(half_width),
+        ..source.clone()
+    };
+    let text = map(smoothed(0.0025)).unwrap().to_json();
+    assert!(text.contains("\"smoothed_half_width_m\": 0.0025"));
+    assert_same(&read(&text).unwrap(), &map(smoothed(0.0025)).unwrap());
+    for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = map(smoothed(wrong)).unwrap_err().to_string();
+        let expected = format!("source.smoothed_half_width_m = {wrong}, expected a finite");
+        assert!(error.starts_with(&expected), "{error}");
+    }
+    let map = map(source).unwrap();
     let text = map.to_json();
+    assert!(!text.contains("smoothed"));
     assert!(text.contains("\"kind\": \"measured\""));
     assert!(text.contains("\"phantom\": null") && text.contains("\"certificate\": null"));
     assert_same(&read(&text).unwrap(), &map);

@@ -9,7 +9,8 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use palpate::force::Force;
-use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
+use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
+use palpate::stats::random::Generator;
 use program::{Place, text};
 use serde_json::Value;
 
@@ -26,10 +27,7 @@ fn place(test: &str, maps: &[(&str, f64, f64)]) -> Place {
         let lateral = Matrix::from_fn(9, 41, |_, _| 0.0);
         let forces = Force::new(lateral, normal);
         let forces = ForceTable::new(depths.clone(), laterals.clone(), forces).unwrap();
-        let source = Source::Measured {
-            file: "made".into(),
-            note: "for a test".into(),
-        };
+        let source = Source::Measured(Measurement::new("made", "for a test"));
         let map = ForceMap::new(source, None, forces).unwrap();
         here.write(name, map.to_json());
     }
@@ -47,6 +45,50 @@ fn failed(here: &Place, line: &str) -> String {
     assert_eq!(output.status.code(), Some(1), "{line}: {said}");
     assert_eq!(said.lines().count(), 1, "{said}");
     said.strip_prefix("palpate: ").expect(said).into()
+}
+
+// Verifies: CLI-025, MAP-070, MAP-073.
+#[test]
+fn a_noisy_map_that_is_refused_is_played_when_smoothed() {
+    let here = place("smoothed", &[("clean.json", 300.0, 20.0)]);
+    let clean = ForceMap::read(&here.at("clean.json")).unwrap();
+    let generator = Generator::new(20_261_122, 4);
+    let noisy = clean
+        .forces()
+        .as_ref()
+        .zip(Force::new(0, 1))
+        .map(|(forces, channel)| {
+            Matrix::from_fn(9, 41, |row, column| {
+                // The sensor is set to zero above the gel.
+                let noise = if row == 0 { 0.0 } else { 0.1 };
+                forces.row(row)[column]
+                    + noise * generator.normal(channel, (41 * row + column) as u64)
+            })
+        });
+    let noisy = ForceTable::new(clean.depths().into(), clean.laterals().into(), noisy).unwrap();
+    here.write("noisy.csv", noisy.to_csv());
+    here.succeed("import-map noisy.csv --out noisy.json");
+    let refused = here.refused("play --map noisy.json --seconds 1");
+    assert!(refused.contains("passively"), "{refused}");
+    let output = here.run("import-map noisy.csv --smooth-mm 5 --out smooth.json");
+    let said = text(&output.stderr);
+    let expected = "palpate: note: noisy.csv: smoothing leaves a residual of 0.0";
+    assert!(
+        output.status.success() && said.starts_with(expected),
+        "{said}"
+    );
+    assert!(
+        here.read("smooth.json")
+            .contains("\"smoothed_half_width_m\": 0.005")
+    );
+    here.succeed("play --map smooth.json --seconds 1");
+    let refused = here.refused("import-map noisy.csv --smooth-mm 0.5");
+    assert!(
+        refused.starts_with("noisy.csv: 3 lateral positions are within 0.0005 m"),
+        "{refused}"
+    );
+    let refused = here.refused("import-map noisy.csv --smooth-mm -1");
+    assert!(refused.contains("expected mm above 0"), "{refused}");
 }
 
 // Verifies: CLI-060.

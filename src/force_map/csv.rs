@@ -1,8 +1,6 @@
 //! Measured force maps as CSV (`spec/force-map.md`).
 
-use std::path::Path;
-
-use super::{ForceMap, ForceTable, Matrix, Source};
+use super::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use crate::csv::{Column, Rows};
 use crate::decimal::format_scaled;
 use crate::force::Force;
@@ -11,10 +9,10 @@ use crate::refusal::Refusal;
 
 /// Depth, lateral position, normal force, lateral force.
 const COLUMNS: [Column; 4] = [
-    &[("depth_mm", -3), ("depth_m", 0)],
-    &[("lateral_mm", -3), ("lateral_m", 0)],
-    &[("normal_force_n", 0), ("normal_force_mn", -3)],
-    &[("lateral_force_n", 0), ("lateral_force_mn", -3)],
+    &[&[("depth_mm", -3), ("depth_m", 0)]],
+    &[&[("lateral_mm", -3), ("lateral_m", 0)]],
+    &[&[("normal_force_n", 0), ("normal_force_mn", -3)]],
+    &[&[("lateral_force_n", 0), ("lateral_force_mn", -3)]],
 ];
 /// The headers that are right, for a person.
 const EXPECTED_HEADER: &str = "depth_mm,lateral_mm,normal_force_n,lateral_force_n, in any order, lengths also as _m, forces also as _mn";
@@ -34,8 +32,8 @@ impl ForceMap {
     /// ```
     ///
     /// # Errors
-    /// The header does not name the four columns, a row is malformed, a pose is missing or there twice, or the forces make no map
-    /// (see [`ForceMap::new`]); with the file, and the line where there is one.
+    /// The header does not name each of the four columns once, a row is malformed, a pose is missing or there twice, or the forces
+    /// make no map (see [`ForceMap::new`]); with the file, and the line where there is one.
     ///
     /// Implements: MAP-026, MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-037, MAP-038.
     pub fn from_csv(
@@ -45,11 +43,7 @@ impl ForceMap {
         phantom: Option<Phantom>,
     ) -> Result<ForceMap, Refusal> {
         let forces = ForceTable::from_csv(text, file)?;
-        let name = Path::new(file).file_name().unwrap_or_default();
-        let source = Source::Measured {
-            file: name.to_string_lossy().into_owned(),
-            note: note.into(),
-        };
+        let source = Source::Measured(Measurement::new(file, note));
         ForceMap::new(source, phantom, forces).map_err(|refusal| refusal.in_file(file))
     }
 }
@@ -59,7 +53,8 @@ impl ForceTable {
     ///
     /// Implements: MAP-030, MAP-036.
     pub fn to_csv(&self) -> String {
-        let mut text = COLUMNS.map(|names| names[0].0).join(",") + "\n";
+        let columns = COLUMNS.map(|names| names[0][0]);
+        let mut text = columns.map(|(name, _)| name).join(",") + "\n";
         let forces = self
             .forces()
             .normal
@@ -67,8 +62,8 @@ impl ForceTable {
             .zip(self.forces().lateral.values());
         for ((row, column, normal), &lateral) in forces {
             let fields = [self.depths()[row], self.laterals()[column], normal, lateral];
-            let written = std::iter::zip(fields, COLUMNS)
-                .map(|(value, names)| format_scaled(value, -names[0].1));
+            let written = std::iter::zip(fields, columns)
+                .map(|(value, (_, power))| format_scaled(value, -power));
             text.push_str(&written.collect::<Vec<_>>().join(","));
             text.push('\n');
         }
@@ -82,10 +77,34 @@ impl ForceTable {
     ///
     /// Implements: MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-038.
     pub fn from_csv(text: &str, file: &str) -> Result<ForceTable, Refusal> {
-        let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER);
-        table
-            .and_then(|table| on_a_grid(table.rows))
-            .map_err(|refusal| refusal.in_file(file))
+        Ok(ForceTable::from_csv_with_notes(text, file)?.0)
+    }
+
+    /// As [`ForceTable::from_csv`], and what a person should know of how the text was read, such as the columns that are not used.
+    ///
+    /// ```
+    /// use palpate::force_map::ForceTable;
+    ///
+    /// let text = "\"\";depth_mm;lateral_mm;normal_force_n;lateral_force_n;volt\n1;4;0;1,5;0,0;2,25\n";
+    /// let (table, notes) = ForceTable::from_csv_with_notes(text, "gel.csv")?;
+    /// assert_eq!(table.forces().normal.values(), [1.5]);
+    /// assert_eq!(notes[0], "column \"volt\" is not used");
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ForceMap::from_csv`].
+    ///
+    /// Implements: MAP-041, MAP-044.
+    pub fn from_csv_with_notes(
+        text: &str,
+        file: &str,
+    ) -> Result<(ForceTable, Vec<String>), Refusal> {
+        let read = || {
+            let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER)?;
+            Ok((on_a_grid(table.rows)?, table.notes))
+        };
+        read().map_err(|refusal: Refusal| refusal.in_file(file))
     }
 }
 

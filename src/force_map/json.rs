@@ -6,7 +6,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{Certificate, ForceMap, ForceTable, Matrix, Source};
+use super::{Certificate, ForceMap, ForceTable, Matrix, Measurement, Source};
 use crate::force::Force;
 use crate::phantom::Phantom;
 use crate::refusal::{Refusal, shortened};
@@ -26,7 +26,7 @@ pub const SCHEMA_VERSION: u64 = 1;
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 enum SourceKey {
     FiniteElements {},
-    Measured { file: String, note: String },
+    Measured(Measurement),
 }
 
 /// The file's keys, in the order in which they are written.
@@ -61,7 +61,7 @@ impl ForceMap {
     pub fn to_json(&self) -> String {
         let source = match self.source().clone() {
             Source::FiniteElements { .. } => SourceKey::FiniteElements {},
-            Source::Measured { file, note } => SourceKey::Measured { file, note },
+            Source::Measured(measurement) => SourceKey::Measured(measurement),
         };
         let document = Document {
             schema: SCHEMA.into(),
@@ -115,12 +115,12 @@ fn read(text: &str) -> Result<ForceMap, Refusal> {
     let document: Document = parse(text)?;
     let source = match (document.source, document.certificate) {
         (SourceKey::FiniteElements {}, Some(certificate)) => Source::FiniteElements { certificate },
-        (SourceKey::Measured { file, note }, None) => Source::Measured { file, note },
+        (SourceKey::Measured(measurement), None) => Source::Measured(measurement),
         (SourceKey::FiniteElements {}, None) => {
             let expected = "one for a map from finite elements";
             return Err(Refusal::state("certificate is missing", expected));
         }
-        (SourceKey::Measured { .. }, Some(_)) => {
+        (SourceKey::Measured(_), Some(_)) => {
             let expected = "none for a measured map";
             return Err(Refusal::state("certificate is there", expected));
         }

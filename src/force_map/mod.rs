@@ -8,6 +8,7 @@
 //! | `interpolation.rs` | forces between and beyond the poses |
 //! | `pair.rs` | whether two maps are one gel without and with an inclusion |
 //! | `certificate.rs` | the quality of a computed map |
+//! | `smoothing.rs` | measured forces with less of their noise |
 //! | `json.rs`, `csv.rs` | files |
 //!
 //! ```
@@ -31,6 +32,8 @@ mod csv;
 mod interpolation;
 mod json;
 mod pair;
+#[cfg(feature = "fem")]
+mod smoothing;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -38,11 +41,15 @@ mod tests;
 use std::ops::Deref;
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
+
 pub use certificate::{Certificate, Discretization, SmallestDet};
 #[cfg(feature = "fem")]
 pub(crate) use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use pair::Hypotheses;
+#[cfg(feature = "fem")]
+pub use smoothing::Smoothed;
 pub use table::{ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
 
 use crate::phantom::Phantom;
@@ -58,25 +65,51 @@ pub enum Source {
         certificate: Certificate,
     },
     /// Measured on a gel, as the paper's §3.2.
-    Measured {
-        /// The file that the measurement came in.
-        file: String,
-        /// Whatever else is known of it.
-        note: String,
-    },
+    Measured(Measurement),
+}
+
+/// Where measured forces come from.
+///
+/// Implements: MAP-020, MAP-074.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Measurement {
+    /// The file that they came in.
+    pub file: String,
+    /// Whatever else is known of them.
+    pub note: String,
+    /// Half-width, m, of the parabolas that smoothed them, above 0; `None` if nothing was smoothed.
+    #[serde(
+        rename = "smoothed_half_width_m",
+        default,
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub smoothed_half_width: Option<f64>,
+}
+
+impl Measurement {
+    /// Forces that came in `file`, of which the name without its folder counts, as they are.
+    pub fn new(file: &str, note: &str) -> Measurement {
+        let name = Path::new(file).file_name().unwrap_or_default();
+        Measurement {
+            file: name.to_string_lossy().into_owned(),
+            note: note.into(),
+            smoothed_half_width: None,
+        }
+    }
 }
 
 /// The force on the probe at every pose of a grid, and where it comes from.
 ///
 /// ```
 /// use palpate::force::Force;
-/// use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
+/// use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
 /// use palpate::phantom::Phantom;
 ///
 /// let matrix = |values: [f64; 4]| Matrix::from_fn(2, 2, |row, column| values[2 * row + column]);
 /// let (normal, lateral) = (matrix([0.25, 0.25, 1.5, 1.25]), matrix([0.0, 0.0, 0.0, -0.125]));
 /// let forces = ForceTable::new(vec![0.001, 0.004], vec![0.0, 0.005], Force::new(lateral, normal))?;
-/// let source = Source::Measured { file: "gel.csv".into(), note: "".into() };
+/// let source = Source::Measured(Measurement::new("lab/gel.csv", ""));
 /// let map = ForceMap::new(source, Some(Phantom::builtin("6.6")?), forces)?;
 ///
 /// assert_eq!((map.depths(), map.laterals()), (&[0.001, 0.004][..], &[0.0, 0.005][..]));
@@ -84,7 +117,7 @@ pub enum Source {
 /// assert_eq!(map.forces().lateral.values(), [0.0, 0.0, 0.0, -0.125]);
 /// assert_eq!(map.table().row(0.004)?, map.row(0.004)?);
 /// // Measured, by this version, on a phantom that is known.
-/// assert!(map.certificate().is_none() && matches!(map.source(), Source::Measured { .. }));
+/// assert!(map.certificate().is_none() && matches!(map.source(), Source::Measured(_)));
 /// assert_eq!(map.program_version(), env!("CARGO_PKG_VERSION"));
 /// assert!(map.phantom().is_some_and(|phantom| phantom.name == "6.6"));
 /// // The normal force is even in x, the lateral force odd.
@@ -116,9 +149,9 @@ impl ForceMap {
     ///
     /// # Errors
     /// The phantom is missing for a computed map, is not valid, or does not let the probe stand at one of the poses; the
-    /// certificate does not fit the forces.
+    /// certificate does not fit the forces; the half-width of a smoothing is not above 0.
     ///
-    /// Implements: MAP-006, MAP-007, MAP-008.
+    /// Implements: MAP-006, MAP-007, MAP-008, MAP-074.
     pub fn new(
         source: Source,
         phantom: Option<Phantom>,
@@ -134,6 +167,13 @@ impl ForceMap {
     }
 
     fn checked(self) -> Result<ForceMap, Refusal> {
+        if let Source::Measured(of) = &self.source
+            && let Some(width) = of.smoothed_half_width
+            && !(width > 0.0 && width.is_finite())
+        {
+            let key = "source.smoothed_half_width_m";
+            return Err(Refusal::value(key, width, "a finite number above 0"));
+        }
         if let Some(certificate) = self.certificate() {
             certificate.check(self.depths(), self.laterals())?;
             if self.phantom.is_none() {
@@ -202,7 +242,7 @@ impl ForceMap {
     pub fn certificate(&self) -> Option<&Certificate> {
         match &self.source {
             Source::FiniteElements { certificate } => Some(certificate),
-            Source::Measured { .. } => None,
+            Source::Measured(_) => None,
         }
     }
 

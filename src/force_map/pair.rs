@@ -19,14 +19,14 @@ impl<'a> Hypotheses<'a> {
     ///
     /// ```
     /// use palpate::force::Force;
-    /// use palpate::force_map::{ForceMap, ForceTable, Hypotheses, Matrix, Source};
+    /// use palpate::force_map::{ForceMap, ForceTable, Hypotheses, Matrix, Measurement, Source};
     /// use palpate::phantom::Phantom;
     ///
     /// let map = |name| {
     ///     let force = Matrix::from_fn(1, 1, |_, _| 1.5);
     ///     let forces = Force::new(force.clone(), force);
     ///     let table = ForceTable::new(vec![0.004], vec![0.0], forces)?;
-    ///     let source = Source::Measured { file: "gel.csv".into(), note: "".into() };
+    ///     let source = Source::Measured(Measurement::new("gel.csv", ""));
     ///     ForceMap::new(source, Phantom::builtin(name).ok(), table)
     /// };
     /// let (without, with) = (map("none")?, map("6.6")?);

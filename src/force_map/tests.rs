@@ -56,10 +56,7 @@ fn computed(change: impl FnOnce(&mut Certificate)) -> Result<ForceMap, Refusal> 
 }
 
 fn measured() -> Source {
-    Source::Measured {
-        file: "gel.csv".into(),
-        note: String::new(),
-    }
+    Source::Measured(Measurement::new("gel.csv", ""))
 }
 
 fn axes(depths: &[f64], laterals: &[f64]) -> Result<ForceTable, Refusal> {

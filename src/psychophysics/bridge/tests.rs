@@ -3,7 +3,7 @@
 use super::*;
 use crate::detect::two_afc;
 use crate::force::Force;
-use crate::force_map::{ForceTable, Matrix, Source};
+use crate::force_map::{ForceTable, Matrix, Measurement, Source};
 use crate::phantom::Phantom;
 use crate::stats::tests::{assert_near, numbers};
 
@@ -29,8 +29,8 @@ fn map_over(depths: &[f64], laterals: &[f64], forces: impl Fn(usize) -> [f64; 2]
     let matrix = |part: usize| Matrix::from_fn(size[0], size[1], |_, column| forces(column)[part]);
     let forces = Force::new(matrix(1), matrix(0));
     let table = ForceTable::new(depths.into(), laterals.into(), forces).unwrap();
-    let (file, note) = ("test".into(), String::new());
-    ForceMap::new(Source::Measured { file, note }, None, table).unwrap()
+    let source = Source::Measured(Measurement::new("test", ""));
+    ForceMap::new(source, None, table).unwrap()
 }
 
 fn convention(statistic: Cue, channel: Channel, offset: Offset) -> Convention {
