@@ -6,8 +6,9 @@
 //! python3 benches/detect_numpy.py
 //! ```
 
-use palpate::detect::DetectError;
+use palpate::detect::nuisance::{Nuisances, SubspaceDetector};
 use palpate::detect::simulate::{Simulation, draw_theta};
+use palpate::detect::{DetectError, MatchedFilter};
 use palpate::force::Force;
 use palpate::stats::random::Generator;
 use std::time::Instant;
@@ -78,5 +79,53 @@ fn main() -> Result<(), DetectError> {
         Ok(sum)
     })?;
     println!("theta drawn directly: {direct:.4e} /s");
+    beside_nuisances(channels(f0), channels(template), noise_sd)
+}
+
+/// What a record costs with all nuisances, against the statistic of known parameters.
+fn beside_nuisances(
+    f0: Force<&[f64]>,
+    template: Force<&[f64]>,
+    noise_sd: Force<f64>,
+) -> Result<(), DetectError> {
+    let white = |force: Force<&[f64]>| -> Vec<f64> {
+        let channels = force.zip(noise_sd).into_array().into_iter();
+        channels
+            .flat_map(|(samples, sd)| samples.iter().map(move |sample| sample / sd))
+            .collect()
+    };
+    let power = |n: i32| -> Vec<f64> { (0..SAMPLES).map(|i| (i as f64 / 400.0).powi(n)).collect() };
+    let [none, one, line, square, cube] =
+        [vec![0.0; SAMPLES], power(0), power(1), power(2), power(3)];
+    // An offset and a drift of each channel, and what a gain and a depth may be like.
+    let signals = [
+        [&one, &none],
+        [&none, &one],
+        [&line, &none],
+        [&none, &line],
+        [&line, &square],
+        [&square, &cube],
+    ];
+    let mut signals = signals
+        .map(|[lateral, normal]| white(Force::new(lateral, normal)))
+        .concat();
+    let (mut white_template, mut record) = (white(template), white(template));
+    let nuisances = Nuisances::new(&mut signals, 2 * SAMPLES)?;
+    assert_eq!(nuisances.rank(), 6);
+    let detector = SubspaceDetector::new(nuisances, &mut white_template)?;
+    let filter = MatchedFilter::new(template, noise_sd)?;
+    let of_known = rate(RECORDS as f64, || {
+        let thetas = (0..RECORDS).map(|_| Ok(filter.statistic(std::hint::black_box(f0))?.theta));
+        thetas.sum()
+    })?;
+    let beside = rate(RECORDS as f64, || {
+        let ts = (0..RECORDS).map(|_| Ok(detector.statistic(std::hint::black_box(&mut record))?.t));
+        ts.sum()
+    })?;
+    let [of_known, beside] = [of_known, beside].map(|rate| 1e6 / rate);
+    println!(
+        "statistic of a record: {of_known:.3} us with known parameters, {beside:.3} us beside 6 nuisances: {:.2} times",
+        beside / of_known
+    );
     Ok(())
 }

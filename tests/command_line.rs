@@ -253,6 +253,77 @@ fn a_measured_map_becomes_a_json_map() {
     assert!(printed.contains("silicone"));
 }
 
+// Verifies: CLI-021, CLI-022, CLI-023, CLI-024, CLI-025.
+#[test]
+fn a_measured_map_is_told_beside_its_phantom() {
+    let here = Place::new("import-compared");
+    let poses = "--depths-mm 0,2,4 --laterals-mm=-8:8:2 --mesh-mm 0.5 --format csv";
+    let solved = here.succeed(&format!("solve --phantom 6.6 {poses}"));
+    let rows = |change: &dyn Fn([f64; 4]) -> [f64; 4]| {
+        let rows = solved.lines().skip(1).map(|row| {
+            let fields: Vec<f64> = row.split(',').map(|field| field.parse().unwrap()).collect();
+            let row = change([fields[0], fields[1], fields[2], fields[3]]);
+            row.map(|field| field.to_string()).join(";") + ";x\n"
+        });
+        "depth_mm;lateral_mm;normal_force_n;lateral_force_n;by\n".to_string()
+            + &rows.collect::<String>()
+    };
+    type Change = dyn Fn([f64; 4]) -> [f64; 4];
+    let cases: &[(&Change, &str)] = &[
+        // Its own forces times 1.01 are 1.01 of them, and 1 % off.
+        (
+            &|[d, x, n, t]| [d, x, 1.01 * n, t],
+            "the normal force is 1.0100 of that computed (median), and 0.0",
+        ),
+        (
+            &|[d, x, n, t]| [d, x, 1e3 * n, 1e3 * t],
+            "the forces look like mN in a column of N: the normal force is 1000.0000",
+        ),
+        (
+            &|[d, x, n, t]| [d, x, -n, t],
+            "the normal force looks negated",
+        ),
+        (
+            &|[d, x, n, t]| [d, x, n, -t],
+            "the lateral force looks negated",
+        ),
+        (
+            &|[d, x, n, t]| [d / 1e3, x, n, t],
+            "the depths look like metres in a column of mm",
+        ),
+        (
+            &|[d, x, n, t]| [d, x / 1e3, n, t],
+            "the lateral positions look like metres in a column of mm",
+        ),
+    ];
+    for (change, expected) in cases {
+        here.write("gel.csv", rows(*change));
+        let output = here.run("import-map gel.csv --phantom 6.6 --out gel.json");
+        let said = text(&output.stderr);
+        assert!(
+            output.status.success() && here.read("gel.json").contains("\"6.6\""),
+            "{said}"
+        );
+        let expected = format!("palpate: note: gel.csv: phantom 6.6: {expected}");
+        let unused = said.starts_with("palpate: note: gel.csv: column \"by\" is not used\n");
+        assert!(
+            unused && said.contains(&expected) && said.lines().count() == 2,
+            "{said}"
+        );
+    }
+    // The probe cannot stand at metres but for 0, nor at 12 mm when 4 mm deep, but when 2 mm deep.
+    for (factor, words) in [(1e3, "24 of 27 poses"), (1.5, "2 of 27 poses")] {
+        here.write(
+            "wide.csv",
+            rows(&|[d, x, n, t]| [d, factor * x, n, t]).replace("\n0;", "\n0.5;"),
+        );
+        let output = here.run("import-map wide.csv --phantom 6.6");
+        let said = text(&output.stderr);
+        assert!(output.status.success() && said.contains(words), "{said}");
+        assert!(text(&output.stdout).contains("\"phantom\": null"), "{said}");
+    }
+}
+
 /// Everything below a folder, by its relative path.
 fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut files = Vec::new();
@@ -461,6 +532,48 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
         message.contains("map-none.json: a computed map"),
         "{message}"
     );
+}
+
+// Verifies: CLI-130, CLI-131, CLI-132.
+#[test]
+fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
+    let here = Place::new("demo");
+    let files = [
+        "study.toml",
+        "none.json",
+        "inclusion.json",
+        "sweep-without.csv",
+        "sweep-with.csv",
+        "sweep-disturbed.csv",
+        "blank.csv",
+        "measured.csv",
+    ];
+    let printed = here.succeed("demo first");
+    let expected: String = files.map(|file| format!("first/{file}\n")).concat();
+    assert_eq!(printed, expected);
+    here.succeed("demo second");
+    let [first, second] = ["first", "second"].map(|folder| contents(&here.at(folder)));
+    let bytes = |files: Vec<(PathBuf, Vec<u8>)>| files.into_iter().map(|(_, bytes)| bytes);
+    assert_eq!(first.len(), files.len());
+    assert!(bytes(first).eq(bytes(second)));
+    // The forces of the sensor without a gel are its offset and half its drift, within 5 standard deviations of a mean.
+    let blank = here.read("first/blank.csv");
+    let rows = blank
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').map(|field| field.parse().unwrap()).collect());
+    let rows: Vec<Vec<f64>> = rows.collect();
+    assert_eq!((rows.len(), rows[0][0], rows[400][0]), (401, -8.0, 8.0));
+    for (channel, mean) in [(1, 0.05 - 0.025), (2, 0.3 + 0.05)] {
+        let found = rows.iter().map(|row| row[channel]).sum::<f64>() / 401.0;
+        assert!((found - mean).abs() < 0.5 / 401_f64.sqrt(), "{found}");
+    }
+    // A configuration in another folder, with its files beside it.
+    let own = "phantoms = [\"gel.toml\"]\nmeasured = [\"measured.csv\"]\ndepths_mm = \"1\"\nlaterals_mm = \"0\"\n[mesh]\nsize_mm = 3.0\n";
+    here.write("first/own.toml", own);
+    here.write("first/gel.toml", include_str!("../docs/phantom.toml"));
+    here.succeed("run --config first/own.toml --out out");
+    assert!(here.at("out/figures/figure-7-measured.csv.svg").exists());
 }
 
 // Verifies: CLI-030, CLI-032, REP-030, REP-043.

@@ -33,7 +33,7 @@ fn help(arguments: &[&str]) -> String {
 const UNITS: [&str; 6] = ["mm", "mm-s", "kpa", "us", "n", "s"];
 
 /// Options whose value is no quantity, has no unit, or is in SI.
-const NO_OTHER_UNIT: [&str; 34] = [
+const NO_OTHER_UNIT: [&str; 35] = [
     "condition",
     "config",
     "contact",
@@ -44,6 +44,7 @@ const NO_OTHER_UNIT: [&str; 34] = [
     "inclusion",
     "journal",
     "junit",
+    "known",
     "map",
     "max-false-alarm",
     "max-force",

@@ -13,7 +13,7 @@ use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable};
 use palpate::stats::random::Generator;
 use program::{Place, text};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Standard deviation of the noise in the sweeps, N.
 const NOISE: Force<f64> = Force::new(0.05, 0.12);
@@ -36,6 +36,7 @@ fn place() -> &'static Place {
         write_trace(&place, "with.csv", &sweep(inclusion.table()), 1);
         write_trace(&place, "without.csv", &sweep(none.table()), 2);
         write_trace(&place, "moved.csv", &moved(&none, &inclusion), 3);
+        write_trace(&place, "disturbed.csv", &disturbed(inclusion.table()), 1);
         place
     })
 }
@@ -60,6 +61,13 @@ fn moved(none: &ForceMap, inclusion: &ForceMap) -> Vec<[f64; 3]> {
     };
     let sample = |i: usize| [without[i][0], force(i, 1), force(i, 2)];
     (0..without.len()).map(sample).collect()
+}
+
+/// The sweep by a sensor with an offset and a drift of each channel.
+fn disturbed(map: &ForceTable) -> Vec<[f64; 3]> {
+    let sensor =
+        |[x, lateral, normal]: [f64; 3]| [x, lateral + 0.3 - 0.01 * x, normal - 0.2 + 0.02 * x];
+    sweep(map).into_iter().map(sensor).collect()
 }
 
 /// Writes a trace with noise of `NOISE`, from a fixed seed.
@@ -88,6 +96,8 @@ fn observed(name: &str) -> Force<Vec<f64>> {
 
 /// The usual noise and depth.
 const USUAL: &str = "--depth-mm 3 --noise-sd-lateral-n 0.05 --noise-sd-normal-n 0.12";
+/// All is as the maps say.
+const KNOWN: &str = "--known all --noise white --depth-tolerance-mm 0";
 /// The two maps.
 const MAPS: &str = "--reference none.json --inclusion inclusion.json";
 
@@ -109,7 +119,7 @@ fn number(answer: &Value, key: &str) -> f64 {
     number.unwrap_or_else(|| panic!("{key} in {answer}"))
 }
 
-/// Σ (rΔ − Δ²/2)/s² and ΣΔ²/s² over both channels, Δ shifted by `shift` samples, in plain
+/// Σ (rΔ − Δ²/2)/s² and ΣΔ²/s² over both channels, Δ shifted by `shift` samples and beyond the maps as at their end, in plain
 /// arithmetic from the rows of the maps.
 fn plain(trace: &str, shift: isize) -> (f64, f64) {
     let [none, inclusion] = maps(place());
@@ -119,9 +129,7 @@ fn plain(trace: &str, shift: isize) -> (f64, f64) {
     let channels = observed.zip(NOISE).into_array();
     for (channel, (observed, sd)) in (1..).zip(channels) {
         for (i, observed) in observed.iter().enumerate() {
-            let Some(j) = i.checked_add_signed(-shift).filter(|j| *j < with.len()) else {
-                continue;
-            };
+            let j = i.saturating_add_signed(-shift).min(with.len() - 1);
             let signal = with[j][channel] - without[j][channel];
             let residual = observed - without[i][channel];
             theta += (residual * signal - 0.5 * signal * signal) / (sd * sd);
@@ -137,15 +145,15 @@ fn assert_near(found: f64, expected: f64) {
     assert!(error < 1e-11, "found {found}, expected {expected}");
 }
 
-// Verifies: CLI-040, CLI-041, CLI-043, CLI-045, CLI-046, TRC-021.
+// Verifies: CLI-040, CLI-041, CLI-043, CLI-045, CLI-046, CLI-140, TRC-021.
 #[test]
-fn theta_is_that_of_the_library_and_of_a_plain_sum() {
+fn where_all_is_known_theta_is_that_of_the_library_and_of_a_plain_sum() {
     let [none, inclusion] = maps(place());
     for (trace, decision, name) in [
         ("with.csv", Decision::Inclusion, "inclusion"),
         ("without.csv", Decision::NoInclusion, "no_inclusion"),
     ] {
-        let found = answer(trace, "--prior-h1 0.2");
+        let found = answer(trace, &format!("{KNOWN} --prior-h1 0.2"));
         let (theta, energy) = plain(trace, 0);
         let observed = observed(trace);
         let [f0, f1] = [&none, &inclusion].map(|map| map.row(0.003).unwrap());
@@ -154,64 +162,185 @@ fn theta_is_that_of_the_library_and_of_a_plain_sum() {
         for (key, expected) in [
             ("theta", theta),
             ("gamma", energy.sqrt()),
-            ("eta", 4.0_f64.ln()),
+            ("gamma_nominal", energy.sqrt()),
+            (
+                "t_threshold",
+                4.0_f64.ln() / energy.sqrt() + 0.5 * energy.sqrt(),
+            ),
             ("posterior_h1", 1.0 / (1.0 + 4.0 * (-theta).exp())),
             ("theta", library.statistic.theta),
             ("false_alarm", library.rates.false_alarm),
             ("miss", library.rates.miss),
-            ("y_lateral_n", library.statistic.y.lateral),
-            ("y_normal_n", library.statistic.y.normal),
+            ("amplitude", theta / energy + 0.5),
+            ("amplitude_sd", 1.0 / energy.sqrt()),
+            ("depth_m", 0.003),
+            ("noise_sd_normal_n", NOISE.normal),
         ] {
             assert_near(number(&found, key), expected);
         }
         assert_eq!(library.decision, decision);
         assert_eq!(found["decision"], name);
-        assert_eq!(number(&found, "depth_m"), 0.003);
-        assert_eq!(number(&found, "noise_sd_normal_n"), NOISE.normal);
+        assert_eq!(found["unknown"], Value::Array(Vec::new()));
     }
+}
+
+// Verifies: CLI-140, CLI-141, CLI-041.
+#[test]
+fn unless_told_otherwise_the_record_tells_what_is_unknown() {
+    let unknown = |more: &str| answer("with.csv", more)["unknown"].clone();
+    assert_eq!(unknown(""), json!(["offset", "drift", "gain", "variance"]));
+    assert_eq!(
+        unknown("--known offset,gain"),
+        json!(["drift", "depth", "variance"])
+    );
+    let all = json!(["offset", "drift", "gain", "depth", "variance"]);
+    assert_eq!(unknown("--known none"), all);
+    let found = answer("disturbed.csv", "");
+    assert_eq!(found["decision"], "inclusion");
+    let same = answer("with.csv", "");
+    // An offset and a drift of each channel change T by rounding of the positions' decimals alone.
+    assert_near(number(&found, "t"), number(&same, "t"));
+    assert!(number(&same, "gamma") < number(&same, "gamma_nominal"));
+    // The noise is not stated: by 66 samples it is known to a tenth.
+    let output = detect("with.csv", "--depth-mm 3 --format json");
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!((number(&found, "noise_sd_normal_n") / NOISE.normal - 1.0).abs() < 0.4);
+    assert_eq!(found["chi_square_limits"], Value::Null);
+    assert_eq!(found["decision"], "inclusion");
+}
+
+// Verifies: CLI-141, CLI-142, TRC-076.
+#[test]
+fn a_blank_sweep_tells_the_noise() {
+    let generator = Generator::new(20_261_123, 1);
+    let rows = (0..300).map(|i| {
+        let (lateral, normal) = (generator.normal(0, i), generator.normal(1, i));
+        let (lateral, normal) = (NOISE.lateral * lateral + 0.3, NOISE.normal * normal - 2.0);
+        format!("{i},{lateral},{normal}\n")
+    });
+    let head = "time_ms,lateral_force_n,normal_force_n\n".to_string();
+    place().write("blank.csv", head + &rows.collect::<String>());
+    let output = detect(
+        "with.csv",
+        "--depth-mm 3 --noise blank.csv --known depth,variance --format json",
+    );
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    // The standard deviation of 300 samples is known to 1/√600.
+    for (key, sd) in [
+        ("noise_sd_lateral_n", NOISE.lateral),
+        ("noise_sd_normal_n", NOISE.normal),
+    ] {
+        assert!(
+            (number(&found, key) / sd - 1.0).abs() < 5.0 / 600_f64.sqrt(),
+            "{found}"
+        );
+    }
+    assert_eq!(found["noise"], "blank.csv");
+    assert!(found["chi_square_limits"].is_array());
 }
 
 // Verifies: CLI-042, CLI-043.
 #[test]
 fn criteria_set_the_threshold_and_keep_their_rate() {
-    let found = answer(
-        "with.csv",
-        "--criterion neyman-pearson-miss --max-miss 0.01",
-    );
-    assert!((number(&found, "miss") / 0.01 - 1.0).abs() < 1e-9);
-    let criterion = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.02";
-    let found = answer("with.csv", criterion);
-    assert!((number(&found, "false_alarm") / 0.02 - 1.0).abs() < 1e-9);
-    assert_eq!(number(&found, "max_false_alarm"), 0.02);
-    assert!(found.get("max_miss").is_none());
+    for known in ["", KNOWN] {
+        let miss = "--criterion neyman-pearson-miss --max-miss 0.01";
+        let found = answer("with.csv", &format!("{known} {miss}"));
+        assert!((number(&found, "miss") / 0.01 - 1.0).abs() < 1e-9);
+        let false_alarm = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.02";
+        let found = answer("with.csv", &format!("{known} {false_alarm}"));
+        assert!((number(&found, "false_alarm") / 0.02 - 1.0).abs() < 1e-9);
+        assert_eq!(number(&found, "max_false_alarm"), 0.02);
+        assert!(found.get("max_miss").is_none());
+    }
 }
 
-// Verifies: CLI-055, TRC-050, TRC-051.
+// Verifies: CLI-046, CLI-055, CLI-143, CLI-144, TRC-070, TRC-071.
 #[test]
-fn a_record_that_fits_neither_map_is_reported() {
-    let [none, inclusion] = maps(place());
-    for (trace, map) in [("with.csv", &inclusion), ("without.csv", &none)] {
-        let found = answer(trace, "");
-        let observed = observed(trace);
-        let squares = (0..)
-            .zip(sweep(map.table()))
-            .map(|(i, [_, lateral, normal]): (usize, _)| {
-                ((observed.lateral[i] - lateral) / NOISE.lateral).powi(2)
-                    + ((observed.normal[i] - normal) / NOISE.normal).powi(2)
-            });
-        assert_near(number(&found, "chi_square"), squares.sum());
-        // n = 66 and t = 13.8155: 66 + 2·30.1964 + 27.6310.
-        assert!((number(&found, "chi_square_limit") - 154.024).abs() < 1e-3);
-    }
+fn a_record_that_cannot_be_judged_is_neither_and_says_why() {
+    let [none, _] = maps(place());
+    let found = answer("without.csv", KNOWN);
+    let observed = observed("without.csv");
+    let expected = sweep(none.table());
+    let squares = (0..)
+        .zip(expected)
+        .map(|(i, [_, lateral, normal]): (usize, _)| {
+            ((observed.lateral[i] - lateral) / NOISE.lateral).powi(2)
+                + ((observed.normal[i] - normal) / NOISE.normal).powi(2)
+        });
+    // Less the one square that the template takes.
+    let t = number(&found, "t");
+    assert_near(number(&found, "chi_square"), squares.sum::<f64>() - t * t);
+    // SciPy: χ² with 65 degrees of freedom, 5·10⁻⁷ to either side.
+    let limits = &found["chi_square_limits"];
+    assert_near(limits[0].as_f64().unwrap(), 23.549203479709945);
+    assert_near(limits[1].as_f64().unwrap(), 136.7380108059163);
+    assert_eq!(found["fits"], true);
     // The sweep was at 3 mm.
-    for (scan, ends) in [("", 0), ("--scan", 1)] {
-        let output = detect("with.csv", &format!("--depth-mm 2 --noise-sd-n 0.1 {scan}"));
-        let warning = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(0));
-        let lines = |words: &str| warning.lines().filter(|line| line.contains(words)).count();
-        assert_eq!(lines("fits neither map"), 1, "{warning}");
-        // The maps end at ±8 mm, where the signal is not yet gone: only a scan minds.
-        assert_eq!(lines("at an end of the maps"), ends, "{warning}");
+    for scan in ["", "--scan"] {
+        let arguments = format!("{MAPS} --depth-mm 2 --noise-sd-n 0.1 {KNOWN} {scan}");
+        let output = place().run(&format!("detect with.csv {arguments}"));
+        assert_eq!(output.status.code(), Some(3), "{output:?}");
+        let told = text(&output.stderr)
+            .lines()
+            .filter(|line| !line.contains("at an end of"));
+        let told: Vec<&str> = told.collect();
+        let words = "palpate: with.csv: cannot be judged: there is more noise than was stated";
+        assert!(told.len() == 1 && told[0].starts_with(words), "{told:?}");
+        let table = text(&output.stdout);
+        assert!(
+            table.starts_with("decision                           cannot be judged\n"),
+            "{table}"
+        );
+        assert!(!table.contains("posterior"), "{table}");
+        assert!(
+            table
+                .lines()
+                .last()
+                .unwrap()
+                .starts_with("The record cannot be judged: ")
+        );
+        let output = place().run(&format!("detect with.csv {arguments} --format json"));
+        assert_eq!(output.status.code(), Some(3));
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(found["decision"], "cannot_be_judged");
+        assert_eq!(found["causes"], json!(["misfit"]));
+        assert_eq!(
+            (&found["fits"], &found["posterior_h1"]),
+            (&json!(false), &Value::Null)
+        );
+    }
+}
+
+// Verifies: CLI-144.
+#[test]
+fn the_last_line_is_a_sentence() {
+    let usual = "taken as known: depth; fitted: offset, drift, gain, variance.";
+    let known = "taken as known: offset, drift, gain, depth, variance; fitted: nothing.";
+    for (trace, more, expected) in [
+        (
+            "with.csv",
+            USUAL,
+            format!("An inclusion was found, in a record that fits the noise stated; {usual}"),
+        ),
+        (
+            "without.csv",
+            USUAL,
+            format!("No inclusion was found, in a record that fits the noise stated; {usual}"),
+        ),
+        (
+            "with.csv",
+            "--depth-mm 3",
+            format!("An inclusion was found, in the noise that the record itself shows; {usual}"),
+        ),
+        (
+            "with.csv",
+            &format!("{USUAL} {KNOWN}"),
+            format!("An inclusion was found, in a record that fits the noise stated; {known}"),
+        ),
+    ] {
+        let table = place().succeed(&format!("detect {trace} {MAPS} {more}"));
+        assert_eq!(table.lines().last(), Some(&*expected));
     }
 }
 
@@ -219,6 +348,7 @@ fn a_record_that_fits_neither_map_is_reported() {
 #[test]
 fn the_scan_finds_an_inclusion_that_was_moved() {
     let scan = "--scan --criterion neyman-pearson-false-alarm --max-false-alarm 0.001";
+    let scan = &format!("{scan} {KNOWN}");
     let found = answer("moved.csv", scan);
     let best = (-16..=16).map(|shift| plain("moved.csv", shift).0);
     assert_near(number(&found, "theta_max"), best.fold(f64::MIN, f64::max));
@@ -245,6 +375,31 @@ fn a_scan_with_an_inclusion_off_the_axis_says_what_its_position_means() {
     let words = "off.json: the position is where x = 0 of this map lies";
     assert!(warnings.contains(words), "{warnings}");
     assert!(warnings.contains("x = 3 mm"), "{warnings}");
+}
+
+// Verifies: CLI-145, CLI-146.
+#[test]
+fn a_tolerance_that_no_map_can_count_is_told() {
+    for map in ["none", "inclusion"] {
+        let phantom = map.replace("inclusion", "2.6");
+        let poses = "--depths-mm 3 --laterals-mm=-8:8:0.5 --mesh-mm 2 --format json";
+        let solved = place().succeed(&format!("solve --phantom {phantom} {poses}"));
+        place().write(&format!("{map}-3.json"), solved);
+    }
+    let maps = "--reference none-3.json --inclusion inclusion-3.json";
+    let told = |more: &str| {
+        let output = place().run(&format!("detect with.csv {maps} {USUAL} {more}"));
+        assert_eq!(output.status.code(), Some(0));
+        text(&output.stderr).to_string()
+    };
+    let expected = "palpate: warning: none-3.json: a single depth: what another depth within its tolerance does is not counted\n";
+    assert_eq!(told(""), expected);
+    assert_eq!(told("--depth-tolerance-mm 0"), "");
+    let output = place().run(&format!(
+        "detect with.csv {maps} {USUAL} --format json --scan"
+    ));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["warnings"], json!(["single_depth", "template_edge"]));
 }
 
 // Verifies: TRC-010, TRC-012.
@@ -274,10 +429,58 @@ fn people_get_a_table_and_no_decision_is_a_failure() {
     assert_eq!(detect("without.csv", USUAL).status.code(), Some(0));
 }
 
+/// The answer to `trace` in JSON but for its name, and what was said.
+fn answer_and_notes(trace: &str, more: &str) -> (Value, String) {
+    let output = detect(trace, &format!("{USUAL} --format json {more}"));
+    assert!(output.status.success(), "{output:?}");
+    let mut answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    answer["trace"] = Value::Null;
+    (answer, text(&output.stderr).into())
+}
+
+// Verifies: CLI-056, MAP-040, MAP-041, MAP-044, TRC-001.
+#[test]
+fn a_record_of_a_logger_is_the_same_record() {
+    let rows = place().read("with.csv");
+    let rows = rows.lines().skip(2).zip(0..).map(|(row, number)| {
+        let row = row.replace(',', ";").replace('.', ",");
+        format!("{number};0,{number};{row};21,5\r\n")
+    });
+    let head =
+        "\"\";\"time_s\";\"Position_mm\";\"normal_force_mN\";\"lateral_force_N\";\"T, °C\"\r\n";
+    place().write("logger.csv", head.to_string() + &rows.collect::<String>());
+    let (found, notes) = answer_and_notes("logger.csv", "");
+    assert_eq!(
+        notes,
+        "palpate: note: logger.csv: columns \"time_s\", \"T, °C\" are not used\n\
+         palpate: note: logger.csv: commas in its numbers are decimal commas\n"
+    );
+    assert_eq!((found, String::new()), answer_and_notes("with.csv", ""));
+}
+
+// Verifies: CLI-057, TRC-025.
+#[test]
+fn samples_beyond_the_maps_are_trimmed_and_counted() {
+    let rows = place().read("with.csv");
+    let more = format!("{rows}8.5,1,0\n9,1,0\n").replace("-8,", "-12,0,9\n-8,");
+    place().write("long.csv", more);
+    let (found, notes) = answer_and_notes("long.csv", "--trim");
+    let expected = "3 of 36 samples left out, which are outside the maps, -8.0 to 8.0 mm";
+    assert_eq!(notes, format!("palpate: note: long.csv: {expected}\n"));
+    assert_eq!(
+        (&found, String::new()),
+        (&answer_and_notes("with.csv", "").0, String::new())
+    );
+    // Nothing to trim, nothing to tell.
+    assert_eq!(
+        answer_and_notes("with.csv", "--trim"),
+        (found, String::new())
+    );
+}
+
 /// Arguments, and words of the refusal.
 const REFUSED: &str = "
 --noise-sd-n 0.1 => --depth-mm
---depth-mm 3 => --noise-sd-n
 --depth-mm 3 --noise-sd-lateral-n 1 => --noise-sd-normal-n
 --depth-mm 3 --noise-sd-n 0.1 --noise-sd-lateral-n 1 --noise-sd-normal-n 1 => cannot be used with
 --depth-mm 3 --noise-sd-n 0 => expected N above 0
@@ -293,9 +496,15 @@ const REFUSED: &str = "
 --depth-mm 3 --noise-sd-n 0.1 --velocity-mm-s 1 => --start-mm
 --depth-mm 3 --noise-sd-n 0.1 --velocity-mm-s 1 --start-mm 0 => expected neither velocity nor start
 --depth-mm 3 --noise-sd-n 0.1 --sacn => --scan
+--depth-mm 3 --known ofset => \"ofset\" is none of offset, drift, gain, depth, variance, all and none
+--depth-mm 3 --known variance => --known variance: expected --noise-sd-n, or --noise FILE
+--depth-mm 3 --known all => --known variance: expected --noise-sd-n, or --noise FILE
+--depth-mm 3 --noise pink => pink: cannot be read
+--depth-mm 3 --noise with.csv => with.csv: 33 samples, expected at least 100
+--depth-mm 3 --depth-tolerance-mm -1 => expected mm, at least 0
 ";
 
-// Verifies: CLI-041, CLI-042, CLI-046, CLI-048.
+// Verifies: CLI-041, CLI-042, CLI-046, CLI-048, CLI-140, CLI-141, CLI-142.
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
     for case in REFUSED.trim().lines() {
@@ -309,8 +518,10 @@ fn bad_arguments_are_refused_in_one_line() {
 const REFUSED_FILES: &str = "
 word.csv --reference none.json --inclusion inclusion.json => word.csv:3: lateral_force_n = \"zero\"
 nan.csv --reference none.json --inclusion inclusion.json => nan.csv:2: normal_force_n = \"NaN\"
-unsorted.csv --reference none.json --inclusion inclusion.json => unsorted.csv:3: position 0.0 mm after 1.0 mm
-far.csv --reference none.json --inclusion inclusion.json => far.csv:3: position 9.0 mm is outside the maps
+unsorted.csv --reference none.json --inclusion inclusion.json => unsorted.csv:4: position 0.5 mm after 1.0 mm
+far.csv --reference none.json --inclusion inclusion.json => far.csv:3: position 9.0 mm is outside the maps, expected -8.0 to 8.0 mm (or use --trim)
+away.csv --trim --reference none.json --inclusion inclusion.json => away.csv: all of 2 samples are outside the maps, expected -8.0 to 8.0 mm
+twice.csv --reference none.json --inclusion inclusion.json => twice.csv:1: columns position_m and position_mm in the header
 empty.csv --reference none.json --inclusion inclusion.json => empty.csv:1: no samples
 latin1.csv --reference none.json --inclusion inclusion.json => latin1.csv: cannot be read
 missing.csv --reference none.json --inclusion inclusion.json => missing.csv: cannot be read
@@ -320,23 +531,25 @@ with.csv --reference none.json --inclusion none.json => none.json: number of inc
 with.csv --reference inclusion.json --inclusion inclusion.json => number of inclusions is 1, and 1
 with.csv --reference other-gel.json --inclusion inclusion.json => phantom.layer[0].material.youngs_modulus_pa is
 with.csv --reference coarse.json --inclusion inclusion.json => mesh_size_m is
-with.csv --reference with.csv --inclusion inclusion.json => with.csv:2: header
+with.csv --reference with.csv --inclusion inclusion.json => with.csv:2: no column depth_mm or depth_m in the header
 ";
 
-// Verifies: TRC-004, TRC-006, TRC-008, TRC-024, CLI-047.
+// Verifies: TRC-004, TRC-008, TRC-009, TRC-024, TRC-025, CLI-047, CLI-058, MAP-045.
 #[test]
 fn bad_files_are_refused_with_file_and_line() {
     let head = "position_mm,lateral_force_n,normal_force_n\n";
     for (name, rows) in [
         ("word.csv", "0,0,1\n1,zero,1\n"),
         ("nan.csv", "0,0,NaN\n"),
-        ("unsorted.csv", "1,0,1\n0,0,1\n"),
+        ("unsorted.csv", "0,0,1\n1,0,1\n0.5,0,1\n2,0,1\n"),
         ("far.csv", "0,0,1\n9,0,1\n"),
+        ("away.csv", "9,0,1\n9.5,0,1\n"),
         ("empty.csv", ""),
     ] {
         place().write(name, format!("{head}{rows}"));
     }
     place().write("latin1.csv", b"position_mm\xff");
+    place().write("twice.csv", format!("position_m,{head}0,0,0,1\n"));
     let mut other: Value = serde_json::from_str(&place().read("none.json")).unwrap();
     let mesh_size = other["certificate"]["mesh_size_m"].clone();
     other["certificate"]["mesh_size_m"] = 0.003.into();

@@ -30,7 +30,10 @@ const README_NOT_RUN: [(&str, &str); 4] = [
         "vectors/conform/tests/toys/right.py",
         "needs Python: vectors/conform/tests/conform_command.rs runs it",
     ),
-    ("palpate run ", "docs/tutorial.md runs it"),
+    (
+        "palpate run ",
+        "docs/tutorial.md and docs/how-to/demo.md run it",
+    ),
     (
         "palpate-verify",
         "takes minutes without optimisation; proofs/verify/tests/verify_command.rs and proofs/verify/tests/statistics.rs run the battery",
@@ -283,20 +286,9 @@ fn the_commands_of_the_readme_succeed() {
         folder.join("docs/phantom.toml"),
     )
     .unwrap();
-    // Coarse maps where 'palpate run' leaves fine ones; a sweep over them; a measured map of two depths.
-    let sweep: String = (-10..=10).map(|x| format!("{x},0,1.5\n")).collect();
-    let files = [
-        ("coarse.toml", "laterals_mm = \"-10:10:1\"\n[mesh]\nsize_mm = 1.5\n".into()),
-        ("trace.csv", format!("position_mm,lateral_force_n,normal_force_n\n{sweep}")),
-        (
-            "gel.csv",
-            "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n0,-1,0,0\n0,1,0,0\n1,-1,0.3,0\n1,1,0.3,0\n".into(),
-        ),
-    ];
-    for (name, text) in files {
-        let text: String = text;
-        fs::write(folder.join(name), text).unwrap();
-    }
+    // Coarse maps where 'palpate run' leaves fine ones.
+    let coarse = "laterals_mm = \"-10:10:1\"\n[mesh]\nsize_mm = 1.5\n";
+    fs::write(folder.join("coarse.toml"), coarse).unwrap();
     let (output, code) = shell(&folder, "palpate run --config coarse.toml", 0);
     assert_eq!(code, 0, "{output}");
     let commands = Page::read(&Path::new(ROOT).join("README.md")).plain_commands();

@@ -7,7 +7,9 @@ use serde::Serialize;
 
 use super::error::CliError;
 use super::output::print;
-use super::{detect, devices, experiment, import, oracle, play, psychophysics, run, solve, timing};
+use super::{
+    demo, detect, devices, experiment, import, oracle, play, psychophysics, run, solve, timing,
+};
 
 /// The version, and which build this is.
 ///
@@ -34,6 +36,8 @@ pub struct CommandLine {
 pub(super) enum Command {
     /// The whole paper: force maps of the phantoms, signals, detection, report.
     Run(run::RunArguments),
+    /// Files to try the other commands on: maps, recorded sweeps, a measured map, a study.
+    Demo(demo::DemoArguments),
     /// Forces on the probe over depths and lateral positions of one phantom.
     Solve(solve::SolveArguments),
     /// A measured force map in CSV, checked and written as JSON.

@@ -1,6 +1,6 @@
 //! The configuration of `palpate run`: which phantoms, where the probe goes, what the detector assumes.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -149,8 +149,22 @@ impl Config {
         names.enumerate().map(read).collect()
     }
 
+    /// A file that the configuration names, seen from where the program runs.
+    ///
+    /// Implements: CLI-132.
+    pub fn file(&self, name: &Path) -> PathBuf {
+        let [source, _] = &self.source;
+        Path::new(source)
+            .parent()
+            .unwrap_or(Path::new(""))
+            .join(name)
+    }
+
     fn read_phantom(&self, name: &str) -> Result<Phantom, CliError> {
-        let phantom = phantom(name)?;
+        let phantom = match BUILTIN_NAMES.contains(&name) {
+            true => phantom(name)?,
+            false => phantom(&self.file(Path::new(name)).to_string_lossy())?,
+        };
         for &depth in &self.depths_mm.0 {
             for &lateral in &self.laterals_mm.0 {
                 let pose = phantom.check_pose(depth, lateral);

@@ -4,7 +4,8 @@ use serde::Serializer as _;
 use serde_json::Value;
 
 use crate::detect::Decision;
-use crate::trace::{Judgement, Location, Misfit};
+use crate::detect::nuisance::{SubspaceTest, Threshold};
+use crate::trace::{Cause, Fit, Judgement, Location};
 
 /// What was asked and what the record says, in the order in which it is printed.
 ///
@@ -37,28 +38,38 @@ impl DetectAnswer {
         self.line(label, &format!("{:.3}", metres * 1e3));
     }
 
-    fn decision(&mut self, decision: Decision) {
+    fn decision(&mut self, decision: Option<Decision>, causes: &[Cause]) {
         let (key, text) = match decision {
-            Decision::Inclusion => ("inclusion", "inclusion"),
-            Decision::NoInclusion => ("no_inclusion", "no inclusion"),
+            Some(Decision::Inclusion) => ("inclusion", "inclusion"),
+            Some(Decision::NoInclusion) => ("no_inclusion", "no inclusion"),
+            None => ("cannot_be_judged", "cannot be judged"),
         };
         self.tell("decision", key);
         self.line("decision", text);
+        self.tell(
+            "causes",
+            causes.iter().map(|cause| cause.code()).collect::<Vec<_>>(),
+        );
     }
 
     /// The record judged with the inclusion at x = 0.
     pub fn judged(&mut self, found: &Judgement) {
-        let (eta, found) = (found.eta, &found.assessment);
-        let (statistic, rates) = (found.statistic, found.rates);
-        self.decision(found.decision);
-        self.number("theta", "theta (log-likelihood ratio)", statistic.theta);
-        self.number("eta", "eta (threshold)", eta);
-        self.number("gamma", "gamma (signal to noise)", statistic.gamma);
-        self.number("posterior_h1", "posterior of an inclusion", found.posterior);
-        self.number("false_alarm", "P(false alarm) at eta", rates.false_alarm);
-        self.number("miss", "P(miss) at eta", rates.miss);
-        self.number("y_lateral_n", "Y(0) lateral, N", statistic.y.lateral);
-        self.number("y_normal_n", "Y(0) normal, N", statistic.y.normal);
+        let (test, rates) = (&found.test, found.rates);
+        self.decision(found.decision, &found.causes);
+        self.number("t", "T (signal over noise)", test.t);
+        let (least, text) = match found.threshold {
+            Threshold::Always => (None, "any T is enough".into()),
+            Threshold::At(threshold) => (Some(threshold), number(threshold)),
+            Threshold::Never => (None, "no T is enough".into()),
+        };
+        self.tell("t_threshold", least);
+        self.line("T of an inclusion, at least", &text);
+        self.number("theta", "theta (log-likelihood ratio)", test.theta());
+        self.test(test, found.gamma_nominal);
+        self.posterior(found.decision.map(|_| found.posterior));
+        self.number("false_alarm", "P(false alarm) at most", rates.false_alarm);
+        self.number("miss", "P(miss) at most", rates.miss);
+        self.fit(&found.fit);
     }
 
     /// The record searched for the inclusion.
@@ -70,29 +81,77 @@ impl DetectAnswer {
         };
         let (false_alarm, miss) = (found.false_alarm_bound, found.miss_bound);
         let sd_label = "its sd at least (Cramer-Rao), mm";
-        self.decision(found.decision);
+        self.decision(found.decision, &found.causes);
         self.tell("decided_by", decided_by);
         self.line("decided by", &format!("{decided_by} >= eta"));
         self.number("theta_max", "theta_max", found.theta_max);
         self.number("theta_mixture", "theta_mixture, any position", mixture);
         self.number("eta", "eta (threshold)", found.eta);
-        self.number("gamma", "gamma at the maximum", found.gamma);
-        self.number("posterior_h1", "posterior of an inclusion", found.posterior);
+        self.test(&found.test, found.gamma_nominal);
+        self.posterior(found.decision.map(|_| found.posterior));
         self.number("false_alarm_bound", "P(false alarm) at most", false_alarm);
         self.number("miss_bound", "P(miss) there at most", miss);
         self.length("position_m", "position, mm", found.position);
         self.length("position_sd_bound_m", sd_label, found.position_sd_bound);
         self.tell("template_edge", found.template_edge);
         self.tell("candidates", found.candidates);
+        self.fit(&found.fit);
     }
 
-    /// How well the nearer map fits the record.
-    pub fn misfit(&mut self, misfit: &Misfit) {
-        self.tell("chi_square", misfit.chi_square);
-        self.tell("chi_square_limit", misfit.limit);
-        let [chi_square, limit] = [misfit.chi_square, misfit.limit].map(number);
-        let text = format!("{chi_square}, at most {limit} if it fits");
-        self.line("chi-square of the nearer map", &text);
+    /// What was found at the place where it was found.
+    fn test(&mut self, test: &SubspaceTest, gamma_nominal: f64) {
+        self.number("gamma", "gamma (signal to noise)", test.gamma);
+        self.number(
+            "gamma_nominal",
+            "gamma if nothing were unknown",
+            gamma_nominal,
+        );
+        self.number(
+            "amplitude",
+            "signal found over expected",
+            test.t / test.gamma,
+        );
+        self.number("amplitude_sd", "its standard deviation", 1.0 / test.gamma);
+    }
+
+    fn posterior(&mut self, posterior: Option<f64>) {
+        self.tell("posterior_h1", posterior);
+        if let Some(posterior) = posterior {
+            self.line("posterior of an inclusion", &number(posterior));
+        }
+    }
+
+    /// How well the record fits.
+    fn fit(&mut self, fit: &Fit) {
+        let sd = fit.noise_sd;
+        self.tell("fits", fit.noise_is_right());
+        self.number(
+            "noise_sd_lateral_n",
+            "noise of a sample, lateral, N",
+            sd.lateral,
+        );
+        self.number(
+            "noise_sd_normal_n",
+            "noise of a sample, normal, N",
+            sd.normal,
+        );
+        self.tell("chi_square", fit.chi_square);
+        self.tell("chi_square_limits", fit.limits.map(Vec::from));
+        if let Some([low, high]) = fit.limits {
+            let [chi_square, low, high] = [fit.chi_square, low, high].map(number);
+            let text = format!("{chi_square}, {low} to {high} if it fits");
+            self.line("chi-square of what is left", &text);
+        }
+        self.tell("degrees", fit.degrees);
+        self.tell("whiteness", fit.whiteness);
+        self.tell("block", fit.block);
+        let samples = format!("{:.0}", fit.effective_samples);
+        self.tell("effective_samples", fit.effective_samples);
+        self.line("independent samples, both channels", &samples);
+        self.tell("level", fit.level);
+        if let Some(level) = fit.level {
+            self.line("forces over the reference's", &number(level));
+        }
     }
 
     /// The answer as JSON.

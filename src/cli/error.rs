@@ -18,12 +18,16 @@ pub enum CliError {
     Refused(Refusal),
     /// A computation or a check failed.
     Check(String),
+    /// A record cannot be judged.
+    Unjudged(String),
 }
 
 impl Display for CliError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            CliError::Usage(message) | CliError::Check(message) => f.write_str(message),
+            CliError::Usage(message) | CliError::Check(message) | CliError::Unjudged(message) => {
+                f.write_str(message)
+            }
             CliError::Refused(refusal) => refusal.fmt(f),
         }
     }
@@ -76,11 +80,12 @@ impl CliError {
         CliError::Usage(one_line(&format!("{message}{tip}; see --help")))
     }
 
-    /// 1 where a computation failed, 2 where the input is to blame.
+    /// 1 where a computation failed, 2 where the input is to blame, 3 where a record cannot be judged.
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Check(_) => 1,
-            _ => 2,
+            CliError::Usage(_) | CliError::Refused(_) => 2,
+            CliError::Unjudged(_) => 3,
         }
     }
 }

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::CliError;
-use super::output::{print, read, write};
-use super::solve::phantom;
-use crate::force_map::ForceMap;
+use super::comparison::{compare, left_out};
+use super::output::{note, print, read, write};
+use super::solve::{millimetres, phantom};
+use crate::force_map::{ForceMap, ForceTable, Measurement, Smoothed, Source};
+use crate::phantom::Phantom;
 
 /// Arguments of `palpate import-map`.
 #[derive(Debug, Args)]
@@ -18,9 +20,12 @@ pub struct ImportArguments {
     /// What was measured, kept in the map
     #[arg(long, default_value = "")]
     note: String,
-    /// The phantom that was measured: built in or a file
+    /// The phantom that was measured: built in or a file; its computed forces are compared
     #[arg(long, value_name = "NAME|FILE")]
     phantom: Option<String>,
+    /// Smooths the forces over W mm to either side by parabolas along the lateral positions, and tells the noise
+    #[arg(long, value_name = "W", value_parser = millimetres, allow_hyphen_values = true)]
+    smooth_mm: Option<f64>,
     /// Writes the map there instead of to standard output
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -28,14 +33,60 @@ pub struct ImportArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-020.
+/// Implements: CLI-020, CLI-021, CLI-025.
 pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
     let phantom = arguments.phantom.as_deref().map(phantom).transpose()?;
     let text = read(&arguments.csv)?;
     let file = arguments.csv.display().to_string();
-    let map = ForceMap::from_csv(&text, &file, &arguments.note, phantom)?;
+    let (mut forces, notes) = ForceTable::from_csv_with_notes(&text, &file)?;
+    notes.iter().for_each(|text| note(&file, text));
+    let mut measurement = Measurement::new(&file, &arguments.note);
+    if let Some(half_width) = arguments.smooth_mm {
+        let smoothed = forces.smoothed(half_width);
+        let smoothed = smoothed.map_err(|refusal| refusal.in_file(&*file))?;
+        note(&file, &noise(&smoothed));
+        forces = smoothed.table;
+        measurement.smoothed_half_width = Some(half_width);
+    }
+    let phantom = phantom.and_then(|phantom| compared(&file, &forces, phantom));
+    let map = ForceMap::new(Source::Measured(measurement), phantom, forces);
+    let map = map.map_err(|refusal| refusal.in_file(file))?;
     match &arguments.out {
         Some(path) => write(path, &map.to_json()),
         None => print(&map.to_json()),
     }
+}
+
+/// Implements: CLI-025.
+fn noise(smoothed: &Smoothed) -> String {
+    let (sd, freedom) = (smoothed.noise_sd, smoothed.degrees_of_freedom);
+    format!(
+        "smoothing leaves a residual of {:.4} N (normal) and {:.4} N (lateral), of {freedom:.1} degrees of freedom each: the noise of a sample",
+        sd.normal, sd.lateral
+    )
+}
+
+/// The phantom, if its probe can stand at each pose; tells what stands out in its forces.
+///
+/// Implements: CLI-022, CLI-024.
+fn compared(file: &str, forces: &ForceTable, phantom: Phantom) -> Option<Phantom> {
+    let name = &phantom.name;
+    match compare(forces, &phantom) {
+        Ok(said) => said
+            .iter()
+            .for_each(|text| note(file, &format!("phantom {name}: {text}"))),
+        Err(error) => note(file, &format!("phantom {name}: not compared: {error}")),
+    }
+    let left_out = left_out(forces, &phantom);
+    if left_out == 0 {
+        return Some(phantom);
+    }
+    let all = forces.forces().normal.values().len();
+    note(
+        file,
+        &format!(
+            "phantom {name}: its probe cannot stand at {left_out} of {all} poses: the map is kept without a phantom"
+        ),
+    );
+    None
 }

@@ -1,7 +1,9 @@
 //! The command line (`spec/command-line.md`).
 
 pub mod arguments;
+mod comparison;
 pub mod config;
+mod demo;
 mod detect;
 mod detection;
 mod devices;
@@ -44,6 +46,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     program(arguments, |arguments: CommandLine| {
         match arguments.command {
             Command::Run(arguments) => run::run(&arguments),
+            Command::Demo(arguments) => demo::demo(&arguments),
             Command::Solve(arguments) => solve::solve(&arguments),
             Command::ImportMap(arguments) => import::import(&arguments),
             Command::Detect(arguments) => detect::detect(&arguments),

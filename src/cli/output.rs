@@ -1,11 +1,13 @@
 //! Standard output and files.
 
+use std::fmt::Display;
 use std::fs::File;
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use super::CliError;
+use crate::refusal::one_line;
 
 /// Prints text; a reader who has gone away (`| head`) is no error.
 ///
@@ -18,6 +20,11 @@ pub fn print(text: &str) -> Result<(), CliError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Says something about a file on standard error that is no error.
+pub fn note(file: impl Display, text: &str) {
+    eprintln!("palpate: note: {}", one_line(&format!("{file}: {text}")));
 }
 
 /// Writes a file so that it is there whole or, if the program is stopped, as it was.

@@ -40,7 +40,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     };
     let phantoms = config.read_phantoms()?;
     let measured = config.measured.iter();
-    let measured = measured.map(|path| measured_map(path));
+    let measured = measured.map(|path| measured_map(&config.file(path)));
     let measured = measured.collect::<Result<Vec<_>, _>>()?;
     // The folder first: a run shall not fail at its end for want of a place.
     make_folder(&arguments.out)?;

@@ -55,7 +55,8 @@ enum MapFormat {
     Csv,
 }
 
-fn millimetres(text: &str) -> Result<f64, String> {
+/// A length above 0, m.
+pub fn millimetres(text: &str) -> Result<f64, String> {
     parse_scaled(text, -3)
         .filter(|&size| size > 0.0)
         .ok_or_else(|| format!("{text:?}: expected mm above 0, such as 0.75"))

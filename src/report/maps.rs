@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::nuisances::GammaLeft;
 use super::quality::{Quality, warnings};
 use super::text::name_of_map;
 use super::{Settings, Study, paper, refused};
@@ -39,8 +40,10 @@ pub struct MapFindings {
     pub peak_normal: Peak,
     /// Where F_1 − F_0 of the lateral force is largest in magnitude.
     pub peak_lateral: Peak,
-    /// γ of the matched filter over the whole lateral sweep.
+    /// γ of the matched filter over the whole lateral sweep, if all but the noise is known; the thresholds are for it.
     pub gamma: GammaByChannel,
+    /// What is left of it if more is unknown.
+    pub gamma_left: GammaLeft,
     /// The maximum a-posteriori rule.
     pub map_rule: Threshold,
     /// Neyman–Pearson with the miss rate bounded; the fewest false alarms.
@@ -114,7 +117,8 @@ pub(super) fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFin
     let signal = map.signal(&study.reference);
     let signal = signal.map_err(incomparable(map))?;
     let signal = signal.row(depth).map_err(incomparable(map))?;
-    let found = judged(&study.settings, map, signal);
+    let left = GammaLeft::of(study, signal, depth).map_err(incomparable(map))?;
+    let found = judged(&study.settings, map, signal, left);
     found.map_err(refused(format!("map {:?}", name_of_map(map))))
 }
 
@@ -125,6 +129,7 @@ fn judged(
     settings: &Settings,
     map: &ForceMap,
     signal: Force<&[f64]>,
+    gamma_left: GammaLeft,
 ) -> Result<MapFindings, DetectError> {
     let Force { lateral, normal } = signal;
     let zeros = vec![0.0; normal.len()];
@@ -153,6 +158,7 @@ fn judged(
         peak_normal: peak(map.laterals(), normal),
         peak_lateral: peak(map.laterals(), lateral),
         gamma,
+        gamma_left,
         map_rule: at(map_threshold(settings.prior_h1)?)?,
         bounded_miss: at(neyman_pearson_miss_threshold(both, settings.max_miss)?)?,
         bounded_false_alarm: match bounded.and_then(at) {

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `paper.rs` | the numbers that the paper prints |
 //! | `maps.rs` | what each map says: signal, signal-to-noise ratios, thresholds |
+//! | `nuisances.rs` | what is left of γ where more is unknown than the noise |
 //! | `findings.rs` | what the study found, all together |
 //! | `people.rs` | the subjects of Table 1, and the bridge from forces to their answers |
 //! | `quality.rs` | certificates in short, warnings |
@@ -46,6 +47,7 @@ mod figures;
 mod findings;
 pub mod html;
 mod maps;
+mod nuisances;
 pub mod paper;
 mod people;
 mod quality;
@@ -59,6 +61,7 @@ pub use figures::figures;
 pub use findings::{Findings, findings};
 pub use html::html;
 pub use maps::{GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold};
+pub use nuisances::{GammaBeside, GammaLeft};
 use people::normal_approximation;
 pub use quality::{Quality, SMALL_STRAIN_LIMIT};
 pub use summary::summary_json;

@@ -12,7 +12,7 @@ use crate::psychophysics::Bounds;
 pub(super) fn name_of_map(map: &ForceMap) -> String {
     match (map.phantom(), map.source()) {
         (Some(phantom), _) => phantom.name.clone(),
-        (None, Source::Measured { file, .. }) => file.clone(),
+        (None, Source::Measured(measurement)) => measurement.file.clone(),
         (None, Source::FiniteElements { .. }) => "unnamed".into(),
     }
 }

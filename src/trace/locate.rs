@@ -1,28 +1,21 @@
 //! The record judged at an unknown position of the inclusion, equation (10).
 
-use super::judge::{Misfit, Question, residual};
-use super::{Criterion, Record, mm, refused};
-use crate::detect::assessment::{ScanAssessment, assess_scan};
+use super::design::{Design, Series, blocked, difference, scaled, stacked};
+use super::fit::{Cause, Fit};
+use super::judge::{Criterion, Question};
+use super::{Record, mm, refused};
 use crate::detect::mixture::mixture_theta;
-use crate::detect::position::{MaximumLaw, position_bound, slope};
-use crate::detect::scan::Scan;
-use crate::detect::{
-    Decision, DetectError, decide, error_rates, map_threshold, neyman_pearson_miss_threshold,
-    posterior,
-};
+use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector, SubspaceTest};
+use crate::detect::{Decision, DetectError, map_threshold, posterior};
 use crate::force::Force;
-use crate::force_map::{Hypotheses, SAME_POSITION};
+use crate::force_map::{ForceTable, SAME_POSITION};
 use crate::refusal::Refusal;
+use crate::stats::error::check_probability;
 
-/// Steps of a record that differ by less than this share of a step are equal.
+/// Most positions of the inclusion that are tried.
 ///
-/// Implements: TRC-030.
-pub const UNIFORM: f64 = 1e-6;
-
-/// Most samples of a record to scan: the work grows with their square.
-///
-/// Implements: TRC-041.
-pub const MOST_SAMPLES: usize = 20_000;
+/// Implements: TRC-032.
+pub const MOST_CANDIDATES: usize = 401;
 
 /// A signal that is at most this share of its largest at the ends of the maps has died away there.
 ///
@@ -30,20 +23,22 @@ pub const MOST_SAMPLES: usize = 20_000;
 pub const DIED_AWAY: f64 = 0.1;
 
 /// What a scan says.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Location {
+    /// Ĥ; none if the record cannot be judged.
+    pub decision: Option<Decision>,
+    /// Why not, the likeliest cause first.
+    pub causes: Vec<Cause>,
+    /// T with its law at the position of the maximum.
+    pub test: SubspaceTest,
     /// Θ_max.
     pub theta_max: f64,
     /// ln of the likelihood ratio of an inclusion at any candidate, all equally probable.
     pub theta_mixture: f64,
-    /// γ at the shift of the maximum.
-    pub gamma: f64,
-    /// The threshold.
+    /// The threshold of Θ_max, or of the mixture.
     pub eta: f64,
     /// Whether the mixture is compared with η, and not Θ_max.
     pub by_mixture: bool,
-    /// Ĥ.
-    pub decision: Decision,
     /// Pr(H = 1), by the mixture.
     pub posterior: f64,
     /// The false-alarm rate is at most this.
@@ -59,197 +54,318 @@ pub struct Location {
     pub template_edge: f64,
     /// Positions that were tried.
     pub candidates: usize,
-    /// How far the record is from either hypothesis.
-    pub misfit: Misfit,
+    /// γ at the maximum of all samples if nothing but the position were unknown and the noise white.
+    pub gamma_nominal: f64,
+    /// How well the record fits with the inclusion there.
+    pub fit: Fit,
 }
 
-/// The signal on the grid of the record, and what is left of the record without inclusion.
-struct Grid {
-    /// Distance of the samples, m.
-    spacing: f64,
-    /// Position of the first sample, m.
-    start: f64,
-    /// The shift at which the inclusion lies at the first sample, ≤ 0.
-    first_shift: isize,
-    template: Force<Vec<f64>>,
-    residual: Force<Vec<f64>>,
+/// The signal of the maps, wherever the inclusion is.
+struct Shape<'a> {
+    signal: ForceTable,
+    depth: f64,
+    positions: &'a [f64],
+    noise_sd: Force<f64>,
+}
+
+/// One position of the inclusion, and the test for it.
+struct Candidate {
+    position: f64,
+    test: SubspaceTest,
 }
 
 impl Question<'_> {
-    /// Searches `record` for the inclusion. The candidates are the positions of the samples.
+    /// Searches `record` for the inclusion.
     ///
     /// # Errors
-    /// As [`Question::judge`]; a record whose steps are not equal, that is too long, or shorter than the maps; maps without
-    /// x = 0.
+    /// As [`Question::judge`]; maps without x = 0.
     ///
-    /// Implements: TRC-034, TRC-035, TRC-036, TRC-037, TRC-038, TRC-039, TRC-040.
+    /// Implements: TRC-031, TRC-033.
     pub fn locate(&self, record: &Record) -> Result<Location, Refusal> {
         let located = || {
-            let grid = Grid::new(record, &self.hypotheses, self.depth)?;
-            grid.locate(self).map_err(refused)
+            let mut design = Design::new(self, record)?;
+            // First where it probably lies, which does not depend on the level of the noise, so that its signal is not taken for noise.
+            let noise_sd = self.noise.sd.unwrap_or(Force::new(1.0, 1.0));
+            let mut shape = Shape::new(self, record, noise_sd)?;
+            let white = design.whitened(noise_sd);
+            let found = self.candidates(&shape, &white, 1, NoiseLevel::Known)?;
+            design.template = shape.template(likeliest(&found).position)?;
+            if self.noise.sd.is_none() {
+                shape.noise_sd = design.noise_sd().map_err(refused)?;
+            }
+            let white = design.whitened(shape.noise_sd);
+            let fit = Fit::new(self, &white, shape.noise_sd).map_err(refused)?;
+            let found = self.candidates(&shape, &white, fit.block, self.noise_level(&fit))?;
+            self.location(&shape, &white, fit, &found)
         };
         located().map_err(|refusal: Refusal| refusal.in_file(record.file()))
     }
+
+    /// The test for each candidate that the nuisances leave something of.
+    ///
+    /// Implements: TRC-032.
+    fn candidates(
+        &self,
+        shape: &Shape<'_>,
+        white: &Design,
+        block: usize,
+        level: NoiseLevel,
+    ) -> Result<Vec<Candidate>, Refusal> {
+        let blocks = white.blocks(block);
+        let mut residual = stacked(&blocks.residual);
+        let mut signals = blocks.signals(false);
+        let nuisances = Nuisances::new(&mut signals, residual.len()).map_err(refused)?;
+        let mut test = |position: f64| {
+            let mut template = stacked(&blocked(&shape.whitened(position)?, block));
+            let mut judged = || {
+                let detector = SubspaceDetector::new(nuisances, &mut template)?;
+                detector
+                    .statistic(&mut residual)?
+                    .test(level, blocks.bias(&detector))
+            };
+            match judged() {
+                // What is unknown explains all of it.
+                Err(DetectError::NoSignal) => Ok(None),
+                test => Ok(Some(Candidate {
+                    position,
+                    test: test.map_err(refused)?,
+                })),
+            }
+        };
+        let found = shape
+            .candidates()
+            .filter_map(|position| test(position).transpose());
+        let found = found.collect::<Result<Vec<_>, Refusal>>()?;
+        match found.is_empty() {
+            true => Err(refused(DetectError::NoSignal)),
+            false => Ok(found),
+        }
+    }
+
+    /// Implements: TRC-034, TRC-035, TRC-038, TRC-039, TRC-040.
+    fn location(
+        &self,
+        shape: &Shape<'_>,
+        white: &Design,
+        fit: Fit,
+        found: &[Candidate],
+    ) -> Result<Location, Refusal> {
+        let best = likeliest(found);
+        let located = || {
+            let theta: Vec<f64> = found
+                .iter()
+                .map(|candidate| candidate.test.theta())
+                .collect();
+            let share = 1.0 / found.len() as f64;
+            let mixture = mixture_theta(&theta, &vec![share; found.len()])?;
+            let eta = self.eta(found)?;
+            let by_mixture = self.criterion == Criterion::Map;
+            let (statistic, lower) = match by_mixture {
+                true => (mixture, eta - libm::log(share)),
+                false => (best.test.theta(), eta),
+            };
+            let causes = fit.causes(&best.test)?;
+            let decision = if statistic >= eta {
+                Decision::Inclusion
+            } else {
+                Decision::NoInclusion
+            };
+            let miss = best.test.rates(best.test.bayes_threshold(lower)?)?.miss;
+            Ok((causes, decision, mixture, eta, by_mixture, miss))
+        };
+        let (causes, decision, theta_mixture, eta, by_mixture, miss_bound) =
+            located().map_err(refused)?;
+        Ok(Location {
+            decision: causes.is_empty().then_some(decision),
+            causes,
+            test: best.test,
+            theta_max: best.test.theta(),
+            theta_mixture,
+            eta,
+            by_mixture,
+            posterior: posterior(theta_mixture, self.prior_h1).map_err(refused)?,
+            false_alarm_bound: false_alarm_bound(found, eta).map_err(refused)?,
+            miss_bound,
+            position: refined(found),
+            position_sd_bound: shape.position_sd_bound(white, &fit, best)?,
+            template_edge: shape.edge()?,
+            candidates: found.len(),
+            gamma_nominal: norm(&stacked(&shape.whitened(best.position)?)),
+            fit,
+        })
+    }
+
+    /// The threshold of Θ_max, or of the mixture for the MAP criterion.
+    ///
+    /// Implements: TRC-036, TRC-037, TRC-038.
+    fn eta(&self, found: &[Candidate]) -> Result<f64, DetectError> {
+        match self.criterion {
+            Criterion::Map => map_threshold(self.prior_h1),
+            // The promise is for an inclusion anywhere: the lowest threshold keeps it.
+            Criterion::NeymanPearsonMiss { max_miss } => {
+                found.iter().try_fold(f64::INFINITY, |lowest, candidate| {
+                    let test = candidate.test;
+                    let t = test.miss_threshold(max_miss)?.max(test.least_theta_at());
+                    Ok(lowest.min(SubspaceTest { t, ..test }.theta()))
+                })
+            }
+            Criterion::NeymanPearsonFalseAlarm { max_false_alarm } => {
+                check_probability("max_false_alarm", max_false_alarm)?;
+                let (mut low, mut high) = (-1.0, 1.0);
+                while false_alarm_bound(found, low)? <= max_false_alarm {
+                    low *= 2.0;
+                }
+                while false_alarm_bound(found, high)? > max_false_alarm {
+                    high *= 2.0;
+                }
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    match false_alarm_bound(found, middle)? <= max_false_alarm {
+                        true => high = middle,
+                        false => low = middle,
+                    }
+                }
+                Ok(high)
+            }
+        }
+    }
 }
 
-impl Grid {
-    /// The template of the hypotheses, and the residual of the record without inclusion.
-    ///
-    /// Implements: TRC-030, TRC-031, TRC-032, TRC-033, TRC-041.
-    fn new(record: &Record, hypotheses: &Hypotheses<'_>, depth: f64) -> Result<Grid, Refusal> {
-        let f0 = record.expected(hypotheses.without(), depth)?;
-        let spacing = equal_steps(record)?;
-        let signal = hypotheses.signal()?;
-        let laterals = signal.laterals();
-        let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
+/// Σ_k Pr(Θ_k ≥ η | H = 0), at most 1.
+///
+/// Implements: TRC-039.
+fn false_alarm_bound(found: &[Candidate], eta: f64) -> Result<f64, DetectError> {
+    let sum = found.iter().try_fold(0.0, |sum, Candidate { test, .. }| {
+        Ok(sum + test.rates(test.bayes_threshold(eta)?)?.false_alarm)
+    });
+    Ok(f64::min(sum?, 1.0))
+}
+
+/// The first candidate of the largest θ; there is at least one.
+fn likeliest(found: &[Candidate]) -> &Candidate {
+    let theta = |candidate: &Candidate| candidate.test.theta();
+    let better = |best, next| {
+        if theta(next) > theta(best) {
+            next
+        } else {
+            best
+        }
+    };
+    found.iter().fold(&found[0], better)
+}
+
+/// The vertex of the parabola through θ at the likeliest candidate and its neighbours.
+///
+/// Implements: TRC-034.
+fn refined(found: &[Candidate]) -> f64 {
+    let best = likeliest(found).position;
+    let around = found.windows(3).find(|around| around[1].position == best);
+    let Some([before, at, after]) = around else {
+        return best;
+    };
+    let step = 0.5 * (after.position - before.position);
+    let [left, top, right] = [before, at, after].map(|candidate| candidate.test.theta());
+    let bend = left - 2.0 * top + right;
+    let offset = if bend < 0.0 {
+        0.5 * (left - right) / bend
+    } else {
+        0.0
+    };
+    best + step * offset.clamp(-0.5, 0.5)
+}
+
+impl<'a> Shape<'a> {
+    /// # Errors
+    /// Maps without x = 0.
+    fn new(
+        question: &Question<'_>,
+        record: &'a Record,
+        noise_sd: Force<f64>,
+    ) -> Result<Shape<'a>, Refusal> {
+        let signal = question.hypotheses.signal()?;
+        let [first, last] = ends(signal.laterals());
         if first > SAME_POSITION || last < -SAME_POSITION {
             return Err(Refusal::state(
                 format!("the maps cover {} to {} mm", mm(first), mm(last)),
                 "the inclusion's position, 0 mm, among them",
             ));
         }
-        let first_sample = libm::ceil((first - SAME_POSITION) / spacing);
-        let last_sample = libm::floor((last + SAME_POSITION) / spacing);
-        let (template, samples) = (last_sample - first_sample + 1.0, record.positions().len());
-        if template > samples as f64 {
-            return Err(Refusal::state(
-                format!("{samples} samples"),
-                format!(
-                    "at least the {template} that the maps cover at this spacing: a scan needs a sweep as long as the maps, or maps over fewer lateral positions"
-                ),
-            ));
-        }
-        // Both lie between −20 000 and 20 000 now: the template holds j = 0.
-        let (first_shift, last_sample) = (first_sample as isize, last_sample as isize);
-        let positions: Vec<f64> = (first_shift..=last_sample)
-            .map(|j| j as f64 * spacing)
-            .collect();
-        Ok(Grid {
-            spacing,
-            start: record.positions()[0],
-            first_shift,
-            template: signal.sweep(depth, &positions)?,
-            residual: residual(record, f0.as_deref()),
+        let (depth, positions) = (question.depth, record.positions());
+        Ok(Shape {
+            signal,
+            depth,
+            positions,
+            noise_sd,
         })
     }
 
-    fn locate(&self, question: &Question<'_>) -> Result<Location, DetectError> {
-        let &Question {
-            noise_sd,
-            criterion,
-            prior_h1,
-            ..
-        } = question;
-        let candidates = self.residual.lateral.len();
-        let scan = Scan::new(candidates, self.template.as_deref(), noise_sd)?;
-        let (mut gamma, mut angle) = (vec![0.0; candidates], vec![0.0; candidates]);
-        let law = MaximumLaw::new(&scan, self.first_shift, &mut gamma, &mut angle)?;
-        let eta = threshold(&scan, &law, criterion, prior_h1)?;
-        let found: ScanAssessment = assess_scan(&scan, &law, self.residual.as_deref(), eta)?;
-        let shift = found.maximum.shift;
-        let mut theta = vec![0.0; candidates];
-        scan.theta(self.residual.as_deref(), self.first_shift, &mut theta)?;
-        let mixture = mixture_theta(&theta, &vec![1.0 / candidates as f64; candidates])?;
-        let mut location = Location {
-            theta_max: found.maximum.theta,
-            theta_mixture: mixture,
-            gamma: found.maximum.gamma,
-            eta,
-            by_mixture: criterion == Criterion::Map,
-            decision: found.decision,
-            posterior: posterior(mixture, prior_h1)?,
-            false_alarm_bound: found.false_alarm_bound,
-            miss_bound: found.miss_bound,
-            position: self.start
-                + (found.maximum.refined_shift - self.first_shift as f64) * self.spacing,
-            position_sd_bound: self.position_sd_bound(shift, noise_sd)?,
-            template_edge: self.template_edge(noise_sd),
-            misfit: Misfit::of(self.residual.as_deref(), noise_sd, found.maximum.theta)?,
-            candidates,
-        };
-        if location.by_mixture {
-            location.decision = decide(mixture, eta)?;
-            let markov = libm::exp(-eta);
-            location.false_alarm_bound = location.false_alarm_bound.min(markov);
-            let lower = eta + libm::log(candidates as f64);
-            location.miss_bound = error_rates(location.gamma, lower)?.miss;
+    /// The positions of the inclusion that are tried: of the samples, or as many as there may be from the first to the last.
+    ///
+    /// Implements: TRC-032.
+    fn candidates(&self) -> impl Iterator<Item = f64> {
+        let [first, last] = ends(self.positions);
+        let most = self.positions.len().min(MOST_CANDIDATES);
+        let step = (last - first) / most.saturating_sub(1).max(1) as f64;
+        (0..most).map(move |k| first + k as f64 * step)
+    }
+
+    /// The signal of an inclusion at `position` at the samples, N; beyond the maps it is what it is at their end.
+    ///
+    /// Implements: TRC-031.
+    fn template(&self, position: f64) -> Result<Series, Refusal> {
+        let [first, last] = ends(self.signal.laterals());
+        let from_it = self.positions.iter().map(|x| x - position);
+        let reached: Vec<f64> = from_it.map(|x| x.clamp(first, last)).collect();
+        self.signal.sweep(self.depth, &reached)
+    }
+
+    /// The same over the noise.
+    fn whitened(&self, position: f64) -> Result<Series, Refusal> {
+        Ok(scaled(
+            &self.template(position)?,
+            self.noise_sd.map(|sd| 1.0 / sd),
+        ))
+    }
+
+    /// The Cramér–Rao bound at a candidate, with the nuisances unknown.
+    ///
+    /// Implements: TRC-034.
+    fn position_sd_bound(&self, white: &Design, fit: &Fit, at: &Candidate) -> Result<f64, Refusal> {
+        let [first, last] = ends(self.signal.laterals());
+        let step = (last - first) / 1e3;
+        let beside = [at.position - step, at.position + step].map(|x| self.whitened(x));
+        let [before, after] = beside;
+        let rise = difference(after?.as_deref(), before?.as_deref());
+        let mut slope = stacked(&blocked(&rise, fit.block));
+        let blocks = white.blocks(fit.block);
+        let mut signals = blocks.signals(false);
+        let nuisances = Nuisances::new(&mut signals, slope.len()).map_err(refused)?;
+        let left = nuisances.project(&mut slope) / (2.0 * step);
+        let mut template = stacked(&blocked(&self.whitened(at.position)?, fit.block));
+        let noise = nuisances.project(&mut template) / at.test.gamma;
+        match left > 0.0 {
+            true => Ok(noise / left),
+            false => Err(refused(DetectError::NoSignal)),
         }
-        Ok(location)
     }
 
     /// Implements: TRC-042.
-    fn template_edge(&self, noise_sd: Force<f64>) -> f64 {
-        let parts = self.template.as_deref().zip(noise_sd).map(|(signal, sd)| {
-            let largest =
-                |samples: &[f64]| samples.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
-            let ends = [signal[0], signal[signal.len() - 1]];
-            (largest(&ends) / sd, largest(signal) / sd)
-        });
-        let (ends, all) = (
-            parts.lateral.0.max(parts.normal.0),
-            parts.lateral.1.max(parts.normal.1),
-        );
-        if all > 0.0 { ends / all } else { 0.0 }
-    }
-
-    /// The Cramér–Rao bound of what the record holds of the template at a shift.
-    ///
-    /// Implements: TRC-034.
-    fn position_sd_bound(&self, shift: isize, noise_sd: Force<f64>) -> Result<f64, DetectError> {
-        let samples = 0..self.residual.lateral.len() as isize;
-        let seen = |template: &[f64]| {
-            let mut slopes = vec![0.0; template.len()];
-            slope(template, self.spacing, &mut slopes)?;
-            let places = (shift..).zip(slopes);
-            let seen = places.filter(|(place, _)| samples.contains(place));
-            Ok::<Vec<f64>, DetectError>(seen.map(|(_, slope)| slope).collect())
-        };
-        let (x, y) = (seen(&self.template.lateral)?, seen(&self.template.normal)?);
-        position_bound(Force::new(&x, &y), noise_sd)
+    fn edge(&self) -> Result<f64, Refusal> {
+        let signal = self.signal.sweep(self.depth, self.signal.laterals())?;
+        let signal = scaled(&signal, self.noise_sd.map(|sd| 1.0 / sd));
+        let largest = |samples: &[f64]| samples.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+        let both = signal.map(|signal| (largest(&ends(&signal)), largest(&signal)));
+        let all = both.lateral.1.max(both.normal.1);
+        let at_ends = both.lateral.0.max(both.normal.0);
+        Ok(if all > 0.0 { at_ends / all } else { 0.0 })
     }
 }
 
-/// The mean spacing of a record's samples, m, if all are equal.
-///
-/// Implements: TRC-030, TRC-041.
-fn equal_steps(record: &Record) -> Result<f64, Refusal> {
-    let positions = record.positions();
-    let samples = positions.len();
-    if !(2..=MOST_SAMPLES).contains(&samples) {
-        let expected = format!("2 to {MOST_SAMPLES} for a scan");
-        return Err(Refusal::state(format!("{samples} samples"), expected));
-    }
-    let start = positions[0];
-    let spacing = (positions[samples - 1] - start) / (samples - 1) as f64;
-    for (i, (&found, &line)) in positions.iter().zip(&record.lines).enumerate() {
-        let expected = start + i as f64 * spacing;
-        if (found - expected).abs() > UNIFORM * spacing {
-            let expected = format!(
-                "{} mm: a scan shifts the template by whole samples, so the steps must be equal within {UNIFORM:e} of a step",
-                mm(expected)
-            );
-            return Err(Refusal::state(format!("position {} mm", mm(found)), expected).at(line));
-        }
-    }
-    Ok(spacing)
+/// The first and the last; there is at least one.
+fn ends(values: &[f64]) -> [f64; 2] {
+    [values[0], values[values.len() - 1]]
 }
 
-/// Implements: TRC-036, TRC-037, TRC-038.
-fn threshold(
-    scan: &Scan<'_>,
-    law: &MaximumLaw<'_>,
-    criterion: Criterion,
-    prior_h1: f64,
-) -> Result<f64, DetectError> {
-    match criterion {
-        Criterion::Map => map_threshold(prior_h1),
-        Criterion::NeymanPearsonFalseAlarm { max_false_alarm } => law.threshold(max_false_alarm),
-        Criterion::NeymanPearsonMiss { max_miss } => {
-            // The promise is for an inclusion anywhere: the lowest threshold keeps it.
-            law.shifts().try_fold(f64::INFINITY, |lowest, shift| {
-                let eta = neyman_pearson_miss_threshold(scan.gamma(shift)?, max_miss)?;
-                Ok(lowest.min(eta))
-            })
-        }
-    }
+fn norm(values: &[f64]) -> f64 {
+    libm::sqrt(values.iter().map(|value| value * value).sum())
 }

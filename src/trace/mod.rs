@@ -3,14 +3,16 @@
 //! | file | content |
 //! |---|---|
 //! | `mod.rs` | the trace, its positions, and the forces that a map expects there |
+//! | `design.rs` | what the record may hold: signal, nuisances |
+//! | `fit.rs` | whether it fits, and the likeliest cause if not |
 //! | `judge.rs` | criterion, and the record at a known position |
 //! | `locate.rs` | the scan for the position, equation (10) |
 //!
 //! ```
-//! use palpate::force::Force;
 //! use palpate::detect::Decision;
+//! use palpate::force::Force;
 //! use palpate::force_map::{ForceTable, Hypotheses, Matrix};
-//! use palpate::trace::{Criterion, Question, Trace};
+//! use palpate::trace::{Correlation, Criterion, Noise, Question, Trace, Unknown};
 //!
 //! // Maps at 4 mm over −3 … 3 mm: 1.5 N, and with the inclusion a bump.
 //! let map = |bump: [f64; 7]| {
@@ -21,29 +23,32 @@
 //! let reference = map([0.0; 7])?;
 //! let inclusion = map([0.0, 0.0, 0.25, 0.5, 0.25, 0.0, 0.0])?;
 //!
-//! // A sweep over an inclusion 1 mm to the right of where the maps have theirs.
+//! // A sweep over an inclusion 1 mm to the right of where the maps have theirs, by a sensor with an offset of 0.3 N.
 //! let mut text = String::from("position_mm,lateral_force_n,normal_force_n\n");
-//! for (i, force) in [1.5, 1.5, 1.5, 1.75, 2.0, 1.75, 1.5].iter().enumerate() {
-//!     text += &format!("{},0,{force}\n", i as i32 - 3);
+//! for (i, force) in [1.81, 1.78, 1.79, 2.07, 2.28, 2.06, 1.79].iter().enumerate() {
+//!     let lateral = [0.02, -0.02, 0.01, -0.01, -0.02, 0.01, 0.01][i];
+//!     text += &format!("{},{lateral},{force}\n", i as i32 - 3);
 //! }
 //! let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
 //! let question = Question {
 //!     hypotheses: Hypotheses::of_tables(&reference, &inclusion)?,
 //!     depth: 0.004,
-//!     noise_sd: Force { lateral: 0.125, normal: 0.125 },
+//!     depth_tolerance: 0.0,
+//!     unknown: &[Unknown::Offset],
+//!     noise: Noise { sd: Some(Force::new(0.02, 0.02)), correlation: Correlation::None },
 //!     criterion: Criterion::Map,
 //!     prior_h1: 0.5,
 //! };
-//!
-//! // Where the maps have it, half of the signal is found: θ = Σ rΔ/s² − γ²/2 = 16 − 12.
-//! let found = question.judge(&record)?;
-//! assert_eq!((found.eta, found.assessment.statistic.theta), (0.0, 4.0));
+//! // Where the maps have it, the record does not fit; 1 mm to the right it does.
+//! assert_eq!(question.judge(&record)?.decision, None);
 //! let found = question.locate(&record)?;
-//! assert_eq!((found.decision, found.theta_max), (Decision::Inclusion, 12.0));
-//! assert!((found.position - 0.001).abs() < 1e-12);
+//! assert_eq!(found.decision, Some(Decision::Inclusion));
+//! assert!((found.position - 0.001).abs() < 2.0 * found.position_sd_bound);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod design;
+mod fit;
 mod judge;
 mod locate;
 #[cfg(test)]
@@ -51,8 +56,11 @@ mod tests;
 
 use std::path::Path;
 
-pub use judge::{Criterion, Judgement, Misfit, Question};
-pub use locate::{DIED_AWAY, Location, MOST_SAMPLES, UNIFORM};
+pub use design::Unknown;
+pub(crate) use design::nuisances;
+pub use fit::{Cause, Fit, MISFIT_RATE, WHITENESS};
+pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
+pub use locate::{DIED_AWAY, Location, MOST_CANDIDATES};
 
 use crate::csv::{Column, Rows};
 use crate::decimal::format_scaled;
@@ -61,21 +69,24 @@ use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION};
 use crate::refusal::Refusal;
 
-/// Position or time, lateral force, normal force.
+/// Position, or time where there is no position; lateral force, normal force.
 const COLUMNS: [Column; 3] = [
     &[
-        ("position_mm", -3),
-        ("position_m", 0),
-        ("time_s", 0),
-        ("time_ms", -3),
+        &[("position_mm", -3), ("position_m", 0)],
+        &[("time_s", 0), ("time_ms", -3)],
     ],
-    &[("lateral_force_n", 0), ("lateral_force_mn", -3)],
-    &[("normal_force_n", 0), ("normal_force_mn", -3)],
+    &[&[("lateral_force_n", 0), ("lateral_force_mn", -3)]],
+    &[&[("normal_force_n", 0), ("normal_force_mn", -3)]],
 ];
 /// The headers that are right, for a person.
 const EXPECTED_HEADER: &str = "position_mm,lateral_force_n,normal_force_n, in any order, or time_s for the position, also position_m, time_ms and forces as _mn";
 
-/// What the first column of a trace counts.
+/// The share of the range of its positions by which a sample may lie behind one before it: the jitter of an encoder.
+///
+/// Implements: TRC-009.
+pub const JITTER: f64 = 0.05;
+
+/// What the samples of a trace are over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Abscissa {
     /// Seconds since some start.
@@ -89,9 +100,12 @@ pub enum Abscissa {
 pub struct Trace {
     file: String,
     abscissa: Abscissa,
-    /// The line of each sample, its abscissa (s or m), lateral and normal force (N).
-    samples: Vec<(usize, [f64; 3])>,
+    samples: Vec<Sample>,
+    notes: Vec<String>,
 }
+
+/// The line of a sample, and its abscissa (s or m), lateral and normal force (N).
+type Sample = (usize, [f64; 3]);
 
 /// The motion of the probe while times were recorded.
 ///
@@ -114,7 +128,7 @@ pub struct Motion {
     pub start: f64,
 }
 
-/// A trace over positions, which increase by more than [`SAME_POSITION`] from sample to sample.
+/// A trace over positions, which increase but for jitter (see [`JITTER`]).
 ///
 /// ```
 /// use palpate::force::Force;
@@ -152,10 +166,10 @@ impl Trace {
     /// The trace in `text`, the content of `file`.
     ///
     /// # Errors
-    /// The header does not name the three columns, a row is malformed, positions or times do not increase, or there is no row;
-    /// with file and line.
+    /// The header does not name each of the three columns once, a row is malformed, times do not increase, positions do not go one
+    /// way, or there is no row; with file and line.
     ///
-    /// Implements: TRC-001, TRC-002, TRC-003, TRC-004, TRC-005, TRC-006, TRC-007, TRC-008.
+    /// Implements: TRC-001, TRC-002, TRC-003, TRC-004, TRC-005, TRC-006, TRC-007, TRC-008, TRC-009.
     pub fn from_csv(text: &str, file: &str) -> Result<Trace, Refusal> {
         let read = || {
             let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER)?;
@@ -165,19 +179,27 @@ impl Trace {
                 return Err(Refusal::state(found, "at least one row").at(table.line));
             }
             let abscissa = if table.names[0].starts_with("time") {
+                check_times(&samples)?;
                 Abscissa::Time
             } else {
+                check_pass(&samples)?;
                 Abscissa::Position
             };
-            check_order(abscissa, &samples)?;
-            let file = file.into();
             Ok(Trace {
-                file,
+                file: file.into(),
                 abscissa,
                 samples,
+                notes: table.notes,
             })
         };
         read().map_err(|refusal: Refusal| refusal.in_file(file))
+    }
+
+    /// What a person should know of how the file was read, such as the columns that are not used.
+    ///
+    /// Implements: MAP-041, MAP-044.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// What the trace is over.
@@ -185,10 +207,10 @@ impl Trace {
         self.abscissa
     }
 
-    /// The record over positions; a trace over times needs the motion, and only it.
+    /// The record over positions, towards +x; a trace over times needs the motion, and only it.
     ///
     /// # Errors
-    /// The motion is missing, or there for a trace over positions; the probe does not move; times make no positions.
+    /// The motion is missing, or there for a trace over positions; the probe does not move; times make no finite positions.
     ///
     /// Implements: TRC-008, TRC-010, TRC-011, TRC-012, TRC-013.
     pub fn record(self, motion: Option<Motion>) -> Result<Record, Refusal> {
@@ -196,6 +218,7 @@ impl Trace {
             file,
             mut samples,
             abscissa,
+            ..
         } = self;
         let placed = match (abscissa, motion) {
             (Abscissa::Position, None) => Ok(()),
@@ -210,6 +233,9 @@ impl Trace {
             )),
         };
         placed.map_err(|refusal| refusal.in_file(&*file))?;
+        if backwards(&samples) {
+            samples.reverse();
+        }
         let column = |of: usize| samples.iter().map(|(_, sample)| sample[of]).collect();
         Ok(Record {
             lines: samples.iter().map(|(line, _)| *line).collect(),
@@ -221,43 +247,68 @@ impl Trace {
 }
 
 /// Makes positions of times.
-fn move_along(samples: &mut [(usize, [f64; 3])], motion: Motion) -> Result<(), Refusal> {
+fn move_along(samples: &mut [Sample], motion: Motion) -> Result<(), Refusal> {
     let Motion { velocity, start } = motion;
     if !velocity.is_finite() || velocity == 0.0 {
+        let found = format!("{velocity} m/s");
         let expected = "a finite number other than 0";
-        return Err(Refusal::value(
-            "velocity",
-            format!("{velocity} m/s"),
-            expected,
-        ));
+        return Err(Refusal::value("velocity", found, expected));
     }
-    for (_, [abscissa, ..]) in samples.iter_mut() {
+    for (line, [abscissa, ..]) in samples {
         *abscissa = start + velocity * *abscissa;
+        if !abscissa.is_finite() {
+            let found = format!("{abscissa} m from this time");
+            return Err(Refusal::value("position", found, "a finite number").at(*line));
+        }
     }
-    if velocity < 0.0 {
-        samples.reverse();
-    }
-    check_order(Abscissa::Position, samples)
+    Ok(())
 }
 
-/// Checks that times increase, or that positions are finite and increase by more than [`SAME_POSITION`].
-fn check_order(abscissa: Abscissa, samples: &[(usize, [f64; 3])]) -> Result<(), Refusal> {
-    let (name, unit, power, least) = match abscissa {
-        Abscissa::Time => ("time", "s", 0, 0.0),
-        Abscissa::Position => ("position", "mm", 3, SAME_POSITION),
-    };
-    let mut before = f64::NEG_INFINITY;
-    for &(line, [found, ..]) in samples {
-        if !found.is_finite() {
-            let found = format!("{found} m from this time");
-            return Err(Refusal::value(name, found, "a finite number").at(line));
+/// Checks that times increase.
+///
+/// Implements: TRC-006.
+fn check_times(samples: &[Sample]) -> Result<(), Refusal> {
+    for pair in samples.windows(2) {
+        let [(_, [before, ..]), (line, [found, ..])] = pair else {
+            continue;
+        };
+        if found <= before {
+            let found = format!("time {found:?} s after {before:?} s");
+            return Err(Refusal::state(found, "it to increase").at(*line));
         }
-        if found <= before + least {
-            let [found, before] = [found, before].map(|value| format_scaled(value, power));
-            let found = format!("{name} {found} {unit} after {before} {unit}");
-            return Err(Refusal::state(found, "it to increase").at(line));
+    }
+    Ok(())
+}
+
+/// Did the probe go towards −x?
+fn backwards(samples: &[Sample]) -> bool {
+    matches!(samples, [(_, first), .., (_, last)] if last[0] < first[0])
+}
+
+/// Checks that positions go one way, but for jitter.
+///
+/// Implements: TRC-009.
+fn check_pass(samples: &[Sample]) -> Result<(), Refusal> {
+    let sign = if backwards(samples) { -1.0 } else { 1.0 };
+    let ways = || samples.iter().map(|(line, [x, ..])| (line, sign * x));
+    let least = ways().fold(f64::INFINITY, |least, (_, way)| least.min(way));
+    let most = ways().fold(f64::NEG_INFINITY, |most, (_, way)| most.max(way));
+    let jitter = JITTER * (most - least) + SAME_POSITION;
+    let mut furthest = f64::NEG_INFINITY;
+    for (&line, way) in ways() {
+        if furthest - way > jitter {
+            let [found, furthest] = [way, furthest].map(|way| mm(sign * way));
+            return Err(Refusal::state(
+                format!("position {found} mm after {furthest} mm"),
+                format!(
+                    "at most {:.3} mm back, {} % of the range: one pass of the probe, in the order of time",
+                    1e3 * jitter,
+                    100.0 * JITTER
+                ),
+            )
+            .at(line));
         }
-        before = found;
+        furthest = furthest.max(way);
     }
     Ok(())
 }
@@ -268,7 +319,7 @@ impl Record {
         &self.file
     }
 
-    /// Lateral positions of the samples, m, increasing.
+    /// Lateral positions of the samples, m, increasing but for jitter.
     pub fn positions(&self) -> &[f64] {
         &self.positions
     }
@@ -278,27 +329,82 @@ impl Record {
         self.forces.as_deref()
     }
 
+    /// This record without the samples outside the lateral positions of `map`, and in words how many these are, if any.
+    ///
+    /// ```
+    /// use palpate::force_map::ForceTable;
+    /// use palpate::trace::Trace;
+    ///
+    /// let map = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n4,2,1.5,0\n";
+    /// let map = ForceTable::from_csv(map, "map.csv")?;
+    /// let text = "position_mm,lateral_force_n,normal_force_n\n-1,0,1.5\n1,0,1.75\n";
+    /// let (record, note) = Trace::from_csv(text, "sweep.csv")?.record(None)?.trimmed(&map)?;
+    /// assert_eq!(record.positions(), [0.001]);
+    /// assert_eq!(note.unwrap(), "1 of 2 samples left out, which are outside the maps, 0.0 to 2.0 mm");
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
+    ///
+    /// # Errors
+    /// No sample is left.
+    ///
+    /// Implements: TRC-025.
+    pub fn trimmed(self, map: &ForceTable) -> Result<(Record, Option<String>), Refusal> {
+        let all = self.positions.len();
+        let kept = (0..all).filter(|&sample| is_over(map, self.positions[sample]));
+        let kept: Vec<usize> = kept.collect();
+        let (left_out, range) = (all - kept.len(), range(map));
+        if kept.is_empty() {
+            let found = format!("all of {all} samples are outside the maps");
+            return Err(Refusal::state(found, range).in_file(self.file));
+        }
+        let note =
+            format!("{left_out} of {all} samples left out, which are outside the maps, {range}");
+        let column = |values: Vec<f64>| kept.iter().map(|&sample| values[sample]).collect();
+        let record = Record {
+            lines: kept.iter().map(|&sample| self.lines[sample]).collect(),
+            positions: column(self.positions),
+            forces: self.forces.map(column),
+            file: self.file,
+        };
+        Ok((record, (left_out > 0).then_some(note)))
+    }
+
     /// The forces that `map` expects at `depth` (m) at the samples, N.
     ///
     /// # Errors
     /// The first sample outside the map's lateral positions, with its line; a depth outside its depths.
     ///
-    /// Implements: TRC-008, TRC-024.
+    /// Implements: TRC-008, TRC-024, CLI-058.
     pub fn expected(&self, map: &ForceTable, depth: f64) -> Result<Force<Vec<f64>>, Refusal> {
-        let laterals = map.laterals();
-        let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
-        let inside = first - SAME_POSITION..=last + SAME_POSITION;
-        let outside = |position: &f64| !inside.contains(position);
+        let outside = |&position: &f64| !is_over(map, position);
         let expected = match self.positions.iter().position(outside) {
             Some(sample) => {
-                let [position, first, last] = [self.positions[sample], first, last].map(mm);
+                let position = mm(self.positions[sample]);
                 let found = format!("position {position} mm is outside the maps");
-                Err(Refusal::state(found, format!("{first} to {last} mm")).at(self.lines[sample]))
+                let expected = format!("{} (or use --trim)", range(map));
+                Err(Refusal::state(found, expected).at(self.lines[sample]))
             }
             None => map.sweep(depth, &self.positions),
         };
         expected.map_err(|refusal| refusal.in_file(&self.file))
     }
+}
+
+/// Whether a position (m) is within the lateral positions of `map`.
+fn is_over(map: &ForceTable, position: f64) -> bool {
+    let laterals = map.laterals();
+    let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
+    (first - SAME_POSITION..=last + SAME_POSITION).contains(&position)
+}
+
+/// The lateral positions of `map` in words.
+fn range(map: &ForceTable) -> String {
+    let laterals = map.laterals();
+    format!(
+        "{} to {} mm",
+        mm(laterals[0]),
+        mm(laterals[laterals.len() - 1])
+    )
 }
 
 /// A position in mm, exactly.

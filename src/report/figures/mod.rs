@@ -1,4 +1,4 @@
-//! The pictures: every figure of the paper that is no photograph, the signals, and the bridge to Table 1.
+//! The pictures: every figure of the paper that is no photograph, the signals, what is left of γ, and the bridge to Table 1.
 //!
 //! Their words are in `templates/report/words/`.
 //!
@@ -8,12 +8,14 @@
 //! | `setup.rs`, `mesh.rs` | Figures 1 and 6: phantom and probe to scale, and as the probe deforms it |
 //! | `theory.rs` | Figures 3, 4, 9: the detector alone |
 //! | `forces.rs` | Figures 5 and 7, and the signals |
+//! | `gamma.rs` | γ of a sweep beside what may be unknown of it |
 //! | `people.rs`, `bridge.rs` | Figures 10 to 13: Table 1; the forces against it |
 //! | `panel.rs`, `chart.rs`, `names.rs`, `style.rs` | how charts are drawn and look |
 
 mod bridge;
 mod chart;
 mod forces;
+mod gamma;
 mod mesh;
 mod names;
 mod panel;
@@ -94,6 +96,7 @@ pub fn figures(study: &Study, findings: &Findings) -> Result<Vec<Figure>, Refusa
     let fixed = (include_str!("figure-2.svg").into(), 560);
     figures.add_fixed("figure-2", Topic::Detection, Ok(fixed))?;
     theory::draw(&mut figures)?;
+    gamma::draw(&mut figures, study, findings)?;
     let fixed = (include_str!("figure-8.svg").into(), 436);
     figures.add_fixed("figure-8", Topic::People, Ok(fixed))?;
     people::draw(&mut figures, &findings.people)?;

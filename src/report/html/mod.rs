@@ -44,7 +44,7 @@ struct Page<'a> {
 
 /// One self-contained page: what was found, the figures and tables, the comparison, the certificates.
 ///
-/// Implements: REP-040, REP-041, REP-042, REP-043, REP-044, REP-060, REP-061, REP-062, REP-063, REP-065, REP-066.
+/// Implements: REP-040, REP-041, REP-042, REP-043, REP-044, REP-060, REP-061, REP-062, REP-063, REP-065, REP-066, REP-069.
 pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
     let page = Page {
         study,
@@ -63,11 +63,18 @@ impl Page<'_> {
         figures.filter(move |figure| figure.topic == topic)
     }
 
-    /// The number of maps whose signal is strong enough for both error rates.
-    fn detected(&self) -> usize {
-        let maps = self.found.maps.iter();
-        let is_detected = |map: &&MapFindings| map.gamma.both >= self.found.required_gamma;
-        maps.filter(is_detected).count()
+    /// The number of maps whose signal is strong enough for both error rates, and of those where it is with more unknown.
+    fn detected(&self) -> [usize; 2] {
+        let count = |gamma: fn(&MapFindings) -> f64| {
+            let gammas = self.found.maps.iter().map(gamma);
+            gammas
+                .filter(|gamma| *gamma >= self.found.required_gamma)
+                .count()
+        };
+        [
+            count(|map| map.gamma.both),
+            count(|map| map.gamma_left.by_default.both),
+        ]
     }
 
     /// The least and the largest peak of the normal signals, N.

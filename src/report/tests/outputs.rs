@@ -36,7 +36,7 @@ fn every_figure_is_there() {
     let names = made.figures.iter().map(|figure| &*figure.file_name);
     let names: Vec<_> = names.map(|name| name.trim_end_matches(".svg")).collect();
     let expected = "figure-1 figure-6 signals figure-5-none figure-5-2.6 figure-5-4.6 figure-5-6.6 figure-5-8.6 \
-        figure-2 figure-3 figure-4 figure-9 figure-8 figure-10 figure-11 figure-12 figure-13 bridge";
+        figure-2 figure-3 figure-4 figure-9 gamma figure-8 figure-10 figure-11 figure-12 figure-13 bridge";
     assert_eq!(names.join(" "), expected);
 }
 
@@ -107,8 +107,8 @@ fn file_names_are_safe_and_unique() {
             "{file_name} twice"
         );
     }
-    // Signals, one figure for each map, Figures 1, 6; 2, 3, 4, 9; 8 and 10 to 13.
-    assert_eq!(drawn.len(), 1 + 1 + HOSTILE.len() + 2 + 2 + 4 + 5);
+    // Signals, one figure for each map, Figures 1, 6; 2, 3, 4, 9; γ; 8 and 10 to 13.
+    assert_eq!(drawn.len(), 1 + 1 + HOSTILE.len() + 2 + 2 + 4 + 1 + 5);
 }
 
 // Verifies: REP-003.

@@ -3,7 +3,9 @@
 use crate::fem::Pose;
 use crate::fem::mesh::Region;
 use crate::force::Force;
-use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
+use crate::force_map::{
+    Certificate, ForceMap, ForceTable, Matrix, Measurement, SmallestDet, Source,
+};
 use crate::phantom::Phantom;
 use crate::report::{
     DeformedMesh, Figure, Findings, Settings, Study, figures, findings, html, summary_json, text,
@@ -40,10 +42,8 @@ pub fn map(
     normal: impl Fn(f64) -> f64,
     lateral: impl Fn(f64) -> f64,
 ) -> ForceMap {
-    let source = Source::Measured {
-        file: "a<b>&\"'\u{0}\u{1b}[31m.csv".into(),
-        note: String::new(),
-    };
+    let file = "a<b>&\"'\u{0}\u{1b}[31m.csv";
+    let source = Source::Measured(Measurement::new(file, ""));
     ForceMap::new(source, phantom, forces(depths, normal, lateral)).unwrap()
 }
 

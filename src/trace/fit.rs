@@ -1,0 +1,266 @@
+//! Whether a record fits either hypothesis, and if not, what is probably the cause.
+
+use std::fmt;
+
+use super::design::{Design, Unknown, stacked};
+use super::judge::{Correlation, Noise, Question};
+use super::{Trace, refused};
+use crate::detect::DetectError;
+use crate::detect::correlation::{correlation_length, ljung_box};
+use crate::detect::nuisance::{Nuisances, SubspaceTest};
+use crate::force::Force;
+use crate::refusal::Refusal;
+use crate::stats::error::check_positive;
+use crate::stats::noncentral::{Tail, chi_square_point};
+
+/// A record that fits is refused with at most this probability, by each of its checks.
+pub const MISFIT_RATE: f64 = 1e-6;
+/// A channel whose autocorrelations are less probable than this in white noise is taken for coloured.
+pub const WHITENESS: f64 = 1e-3;
+/// Lags of the test for white noise, at most a fifth of the samples.
+const LAGS: usize = 20;
+/// A block holds so many lengths of the correlation.
+const BLOCK: f64 = 5.0;
+/// Degrees of freedom below which the blocks tell too little of their own noise.
+const LEAST_DEGREES: f64 = 4.0;
+/// Least samples of a blank sweep.
+const LEAST_BLANK: usize = 100;
+/// What an unknown level of noise may be off by from the one that is stated.
+const STATED_WITHIN: f64 = 2.0;
+/// The forces of a record are between −0.4 and 2.5 times those of the reference, or no gel that the maps are for made them. A
+/// record that was set to zero at its start is near 0.
+const LEVEL: [f64; 2] = [-0.4, 2.5];
+/// From here on, or below its inverse, another unit is likelier than anything else.
+const UNIT: f64 = 100.0;
+
+/// How well a record fits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// Standard deviation of the noise that the record is held against, N.
+    pub noise_sd: Force<f64>,
+    /// Σ of the squares that nothing explains, over all samples and over the variance of their noise.
+    pub chi_square: f64,
+    /// Between these it is if the record fits, but with the probability [`MISFIT_RATE`]; none if nobody has stated the noise.
+    pub limits: Option<[f64; 2]>,
+    /// Degrees of freedom of the squares, if all samples were independent.
+    pub degrees: f64,
+    /// The probability of such autocorrelations in white noise, of the worse channel.
+    pub whiteness: f64,
+    /// Samples that are taken together.
+    pub block: usize,
+    /// How many independent samples the record is worth, of both channels.
+    pub effective_samples: f64,
+    /// Σ F_p F_0 / Σ F_0², both over the noise; none if the noise hides it.
+    pub level: Option<f64>,
+    /// The blocks should be longer, and would be too few.
+    is_short: bool,
+}
+
+/// Why a record cannot be judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cause {
+    /// The forces have the other sign.
+    Sign,
+    /// The forces are in another unit.
+    ForceUnit,
+    /// The forces are too large for this gel at this depth.
+    Level,
+    /// The noise was stated in another unit.
+    NoiseUnit,
+    /// There is more noise than was stated, or what the maps do not hold.
+    Misfit,
+    /// There is less noise than was stated.
+    NoiseTooSmall,
+    /// The samples depend on one another so much that too few are left.
+    TooFewSamples,
+    /// The signal is there with the other sign.
+    Opposite,
+}
+
+impl Cause {
+    /// Its name in JSON.
+    pub fn code(self) -> &'static str {
+        match self {
+            Cause::Sign => "sign",
+            Cause::ForceUnit => "force_unit",
+            Cause::Level => "level",
+            Cause::NoiseUnit => "noise_unit",
+            Cause::Misfit => "misfit",
+            Cause::NoiseTooSmall => "noise_too_small",
+            Cause::TooFewSamples => "too_few_samples",
+            Cause::Opposite => "opposite",
+        }
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Cause::Sign => "the forces have the other sign than those of the maps",
+            Cause::ForceUnit => "the forces are in another unit than the header says, such as mN",
+            Cause::Level => "the forces are too large for the maps' gel at this depth",
+            Cause::NoiseUnit => "the noise is in another unit than N, such as mN",
+            Cause::Misfit => "there is more noise than was stated, or a force that the maps do not hold: another offset, drift, gain or depth than is taken as known, or other maps",
+            Cause::NoiseTooSmall => "there is less noise than was stated, or the record was smoothed",
+            Cause::TooFewSamples => "the samples depend on one another, and too few independent ones are left",
+            Cause::Opposite => "the signal is there with the other sign: the maps may be swapped",
+        })
+    }
+}
+
+impl Fit {
+    /// How well `white`, the parts of `record` over the standard deviations `noise_sd`, fits.
+    ///
+    /// Implements: TRC-070, TRC-071, TRC-072, TRC-073.
+    pub(super) fn new(
+        question: &Question<'_>,
+        white: &Design,
+        noise_sd: Force<f64>,
+    ) -> Result<Fit, DetectError> {
+        let (left, explained) = white.unexplained()?;
+        let samples = white.samples() as f64;
+        let degrees = 2.0 * samples - explained as f64;
+        let chi_square = stacked(&left).iter().map(|value| value * value).sum();
+        let lags = LAGS.min(white.samples() / 5);
+        let mut whiteness = 1.0_f64;
+        let mut length = 1.0_f64;
+        for channel in left.as_ref().into_array() {
+            if lags > 0 {
+                whiteness = whiteness.min(ljung_box(channel, lags)?);
+            }
+            // What was fitted has taken its share of the slow noise with it.
+            let found = correlation_length(channel);
+            let taken = 0.5 * explained as f64 * found / samples;
+            length = length.max(found / (1.0 - taken.min(0.5)));
+        }
+        let length = match question.noise.correlation {
+            Correlation::None => 1.0,
+            Correlation::OfRecord if whiteness >= WHITENESS => 1.0,
+            Correlation::OfRecord => length,
+            Correlation::Known(length) => length,
+        };
+        let wanted = if length > 1.0 {
+            libm::ceil(BLOCK * length)
+        } else {
+            1.0
+        };
+        let most = libm::floor(2.0 * samples / (explained as f64 + LEAST_DEGREES)).max(1.0);
+        let effective_samples = 2.0 * samples / length;
+        let exact = !question.is_unknown(Unknown::Variance) && wanted == 1.0;
+        let within = if exact {
+            1.0
+        } else {
+            STATED_WITHIN * STATED_WITHIN
+        };
+        let limits = question
+            .noise
+            .sd
+            .map(|_| limits(effective_samples - explained as f64, within));
+        let limits = limits.transpose()?;
+        Ok(Fit {
+            noise_sd,
+            chi_square,
+            limits: limits.map(|limits| limits.map(|limit| limit * degrees)),
+            degrees,
+            whiteness,
+            block: wanted.min(most) as usize,
+            is_short: wanted > most,
+            effective_samples,
+            level: white.level(),
+        })
+    }
+
+    /// Does the record have as much noise as was stated, as far as anybody did?
+    pub fn noise_is_right(&self) -> bool {
+        self.limits
+            .is_none_or(|[low, high]| (low..=high).contains(&self.chi_square))
+    }
+
+    /// Why the record cannot be judged, the likeliest cause first; none if it can.
+    ///
+    /// Implements: TRC-074, TRC-075.
+    pub(super) fn causes(&self, test: &SubspaceTest) -> Result<Vec<Cause>, DetectError> {
+        let level = self.level.unwrap_or(1.0);
+        let excess = libm::sqrt(self.chi_square / self.degrees);
+        let is_small = self.limits.is_some_and(|[low, _]| self.chi_square < low);
+        let checks = [
+            (level < LEVEL[0], Cause::Sign),
+            (level > UNIT, Cause::ForceUnit),
+            (level > LEVEL[1], Cause::Level),
+            (
+                !self.noise_is_right() && !(1.0 / UNIT..UNIT).contains(&excess),
+                Cause::NoiseUnit,
+            ),
+            (is_small, Cause::NoiseTooSmall),
+            (!self.noise_is_right() && !is_small, Cause::Misfit),
+            (test.opposite()? < MISFIT_RATE, Cause::Opposite),
+            (self.is_short, Cause::TooFewSamples),
+        ];
+        Ok(checks
+            .into_iter()
+            .filter_map(|(is_so, cause)| is_so.then_some(cause))
+            .collect())
+    }
+}
+
+impl Noise {
+    /// The noise of a blank sweep, whose forces are an offset and a drift.
+    ///
+    /// # Errors
+    /// Too few samples; a channel without noise.
+    ///
+    /// Implements: TRC-076.
+    pub fn of_blank(blank: &Trace) -> Result<Noise, Refusal> {
+        let samples = blank.samples.len();
+        if samples < LEAST_BLANK {
+            let expected = format!("at least {LEAST_BLANK}, to tell its noise");
+            return Err(
+                Refusal::state(format!("{samples} samples"), expected).in_file(&*blank.file)
+            );
+        }
+        let told = || {
+            let step = 2.0 / (samples - 1) as f64;
+            let line = (0..samples).map(|sample| step * sample as f64 - 1.0);
+            let mut lines: Vec<f64> = vec![1.0; samples];
+            lines.extend(line);
+            let lines = Nuisances::new(&mut lines, samples)?;
+            let (mut whiteness, mut length) = (1.0_f64, 1.0_f64);
+            let mut sd = [0.0; 2];
+            for (channel, sd) in (1..).zip(&mut sd) {
+                let mut left: Vec<f64> = blank
+                    .samples
+                    .iter()
+                    .map(|(_, sample)| sample[channel])
+                    .collect();
+                *sd = lines.project(&mut left) / libm::sqrt(samples as f64 - 2.0);
+                whiteness = whiteness.min(ljung_box(&left, LAGS)?);
+                length = length.max(correlation_length(&left));
+            }
+            let [lateral, normal] = sd;
+            check_positive("noise_sd_x", lateral)?;
+            check_positive("noise_sd_y", normal)?;
+            let correlation = match whiteness < WHITENESS {
+                true => Correlation::Known(length),
+                false => Correlation::None,
+            };
+            Ok(Noise {
+                sd: Some(Force::new(lateral, normal)),
+                correlation,
+            })
+        };
+        told().map_err(|error| refused(error).in_file(&*blank.file))
+    }
+}
+
+/// Between these is the mean square of white noise of variance 1 with `degrees` of freedom, but with the probability
+/// [`MISFIT_RATE`]; `within` is what the variance may be off by.
+fn limits(degrees: f64, within: f64) -> Result<[f64; 2], DetectError> {
+    let degrees = degrees.max(1.0);
+    let point = |tail| Ok(chi_square_point(tail, degrees)? / degrees);
+    let [low, high] = [
+        Tail::Lower(0.5 * MISFIT_RATE),
+        Tail::Upper(0.5 * MISFIT_RATE),
+    ]
+    .map(point);
+    Ok([low? / within, high? * within])
+}

@@ -1,0 +1,415 @@
+//! Records judged at a known position. Expected values: NumPy's QR of the same signals, SciPy's laws of t.
+
+use super::super::design::Design;
+use super::*;
+use crate::detect::Decision;
+use crate::detect::correlation::correlation_length;
+use crate::detect::nuisance::Threshold;
+use crate::stats::random::Generator;
+
+fn at(threshold: Threshold) -> f64 {
+    match threshold {
+        Threshold::At(t) => t,
+        _ => panic!("{threshold:?}"),
+    }
+}
+
+/// Whether the second map's inclusion lies under a sweep at `depth`, of which all is known; a priori one in four has it.
+pub fn question<'a>(without: &'a ForceTable, with: &'a ForceTable, depth: f64) -> Question<'a> {
+    Question {
+        hypotheses: Hypotheses::of_tables(without, with).unwrap(),
+        depth,
+        depth_tolerance: 0.0,
+        unknown: &[],
+        noise: Noise {
+            sd: Some(Force::new(0.5, 0.25)),
+            correlation: Correlation::None,
+        },
+        criterion: Criterion::Map,
+        prior_h1: 0.25,
+    }
+}
+
+// Verifies: TRC-020, TRC-022, TRC-023, TRC-065, TRC-066, TRC-067, CLI-043.
+#[test]
+fn a_record_at_a_known_position_by_hand() {
+    // At 2 mm, half-way, the bump is 1.5 times that of the first row; at −0.5 mm, half-way, it is
+    // 1.125 N normal, 0.375 N lateral.
+    let record = read("position_mm,lateral_force_n,normal_force_n\n-0.5,0.1,2.125\n").unwrap();
+    let (without, with) = (table(0.0), table(1.0));
+    let found = question(&without, &with, 0.002).judge(&record).unwrap();
+    // r = (0, 1.125), Δ = (0.375, 1.125).
+    let theta = -0.5 * 0.375 * 0.375 / 0.25 + 0.5 * 1.125 * 1.125 / 0.0625;
+    let gamma = f64::sqrt(0.375 * 0.375 / 0.25 + 1.125 * 1.125 / 0.0625);
+    assert!((found.test.theta() - theta).abs() < 1e-12);
+    assert!((found.test.gamma - gamma).abs() < 1e-12);
+    let threshold = f64::ln(3.0) / gamma + 0.5 * gamma;
+    assert!((at(found.threshold) - threshold).abs() < 1e-12);
+    let posterior = 1.0 / (1.0 + 3.0 * f64::exp(-theta));
+    assert!((found.posterior - posterior).abs() < 1e-12);
+    assert_eq!(found.decision, Some(Decision::Inclusion));
+}
+
+// Verifies: TRC-020, TRC-024, TRC-063, CLI-049.
+#[test]
+fn maps_that_do_not_fit_are_refused() {
+    let judged = |record: &Record, reference: &ForceTable, depth: f64| {
+        let found = question(reference, &table(1.0), depth).judge(record);
+        found.unwrap_err().to_string()
+    };
+    let record = read(EXAMPLE).unwrap();
+    let far = read(&format!("{EXAMPLE}# far\n3.1,0,0\n")).unwrap();
+    for (found, expected) in [
+        (
+            judged(&record, &table(1.0), 0.001),
+            "t.csv: the maps do not differ at the samples, expected a signal to decide by",
+        ),
+        (
+            judged(&record, &table(0.0), 0.0035),
+            "t.csv: depth 0.0035 m is outside the map, expected 0.001 to 0.003 m",
+        ),
+        (
+            judged(&far, &table(0.0), 0.001),
+            "t.csv:5: position 3.1 mm is outside the maps, expected -3.0 to 3.0 mm (or use --trim)",
+        ),
+    ] {
+        assert_eq!(found, expected);
+    }
+    let table = |depths: [f64; 2]| {
+        let (laterals, forces) = (table(0.0).laterals().to_vec(), table(0.0).forces().clone());
+        ForceTable::new(depths.to_vec(), laterals, forces).unwrap()
+    };
+    let (a, b) = (table([0.001, 0.003]), table([0.001, 0.0031]));
+    let error = Hypotheses::of_tables(&b, &a).unwrap_err().to_string();
+    assert!(error.starts_with("depths_m[1] is 0.003"), "{error}");
+    let single = |signal| {
+        let normal = Matrix::from_fn(1, 2, |_, column| 1.0 + signal * column as f64);
+        let forces = Force::new(Matrix::from_fn(1, 2, |_, _| 0.0), normal);
+        ForceTable::new(vec![0.001], vec![-0.001, 0.001], forces).unwrap()
+    };
+    let (without, with) = (single(0.0), single(1.0));
+    let question = Question {
+        unknown: &[Unknown::Depth],
+        ..question(&without, &with, 0.001)
+    };
+    let error = question.judge(&record).unwrap_err().to_string();
+    let expected = "the maps have a single depth, expected rows at other depths";
+    assert!(error.contains(expected), "{error}");
+}
+
+/// Maps at 3.7, 4 and 4.3 mm over −8 … 8 mm by ½ mm, with an inclusion of so much signal (N).
+pub fn gel(signal: f64) -> ForceTable {
+    let x = |column: usize| column as f64 / 2.0 - 8.0;
+    let bump = |x: f64| signal / ((1.0 + x * x / 4.0) * (1.0 + x * x / 4.0));
+    let depths = [3.7, 4.0, 4.3];
+    let lateral = Matrix::from_fn(3, 33, |row, column| {
+        let x = x(column);
+        0.25 * depths[row] * (0.02 * x - 0.5 * x * bump(x))
+    });
+    let normal = Matrix::from_fn(3, 33, |row, column| {
+        let (d, x) = (depths[row], x(column));
+        1.5 * d * d / 16.0 + 0.004 * x * x + 0.25 * d * bump(x)
+    });
+    let laterals = (0..33).map(|column| 1e-3 * x(column)).collect();
+    let depths = depths.iter().map(|depth| 1e-3 * depth).collect();
+    ForceTable::new(depths, laterals, Force::new(lateral, normal)).unwrap()
+}
+
+/// A record over these positions (m), of the force that `of` gives for a sample, N.
+pub fn record(positions: Vec<f64>, of: impl Fn(usize) -> [f64; 2]) -> Record {
+    let column = |channel: usize| (0..positions.len()).map(|i| of(i)[channel]).collect();
+    Record {
+        file: "t.csv".into(),
+        lines: (2..).take(positions.len()).collect(),
+        forces: Force::new(column(0), column(1)),
+        positions,
+    }
+}
+
+/// A record of 161 samples with jitter, and with what the model does not have: its gel is 10 % stiffer, its sensor has offsets and drifts;
+/// `signal` gives the force of the inclusion at a sample, N.
+pub fn recorded(signal: impl Fn(f64) -> [f64; 2]) -> Record {
+    let positions = (0..161_u16).map(|i| {
+        let jitter = f64::from((i * i % 7 * 5 + i) % 7) - 3.0;
+        1e-3 * (-8.0 + 0.1 * f64::from(i) + 0.01 * jitter).clamp(-8.0, 8.0)
+    });
+    let positions: Vec<f64> = positions.collect();
+    let exact = gel(0.0).sweep(4e-3, &positions).unwrap();
+    record(positions.clone(), |i| {
+        let line = 2.0 * i as f64 / 160.0 - 1.0;
+        let noise = [(i * i * 7 + 3 * i) % 11, (i * i * 5 + 2 * i) % 13];
+        let [lateral, normal] = signal(positions[i]);
+        [
+            1.1 * exact.lateral[i]
+                + lateral
+                + 0.25
+                + 0.1 * line
+                + 0.3 / 11.0 * (noise[0] as f64 - 5.0),
+            1.1 * exact.normal[i] + normal - 0.5 - 0.2 * line
+                + 0.3 / 13.0 * (noise[1] as f64 - 6.0),
+        ]
+    })
+}
+
+/// The standard deviations that are stated of that record's noise, N.
+pub const STATED: Force<f64> = Force::new(0.1, 0.08);
+
+#[track_caller]
+pub fn close(found: f64, expected: f64) {
+    let error = (found - expected).abs() / expected.abs();
+    assert!(error < 1e-9, "{found}, not {expected}");
+}
+
+// Verifies: TRC-060, TRC-061, TRC-062, TRC-063, TRC-064, TRC-065, TRC-066, TRC-067, TRC-068, TRC-070, TRC-074.
+#[test]
+fn what_is_unknown_is_fitted_by_least_squares() {
+    use Unknown::{Depth, Drift, Gain, Offset, Variance};
+    let (without, with) = (gel(0.0), gel(0.2));
+    let signal = with.minus(&without).unwrap();
+    let record = recorded(|x| {
+        let signal = signal.sweep(4e-3, &[x]).unwrap();
+        signal.map(|signal| 0.8 * signal[0]).into_array()
+    });
+    let noise = |sd, correlation| Noise { sd, correlation };
+    let white = noise(Some(STATED), Correlation::None);
+    let blocks = noise(Some(STATED), Correlation::Known(1.7));
+    let of_the_record = noise(None, Correlation::None);
+    // What is unknown, the tolerance of the depth (m) and the noise; χ² and its degrees, T, γ, θ, threshold and rate of misses.
+    #[rustfmt::skip]
+    let cases: [(&[Unknown], _, _, _); 7] = [
+        (&[Offset], 0.0, white,
+            "799.4244995614722 319 5.824996501068192 9.915940204836977 8.597381925025607 2.0537489106318225 1.8873548914461486e-15"),
+        (&[Offset, Drift, Gain], 0.0, white,
+            "384.5330530254016 316 6.301881197215209 7.7741019113226715 18.77313639638376 2.0537489106318225 5.3151482144953576e-09"),
+        (&[Offset, Drift, Gain, Depth], 0.3e-3, white,
+            "384.45405287405015 315 6.301261218221724 7.774083880156563 18.768343173378145 2.0537489106318225 5.3157123313174165e-09"),
+        (&[Offset, Drift, Gain], 0.3e-3, white,
+            "384.5330530254016 316 6.301881197215209 7.7741019113226715 18.77313639638376 2.636816542338049 2.629043646583619e-06"),
+        (&[Offset, Drift, Gain, Variance], 0.0, white,
+            "384.5330530254016 316 5.712772308095997 7.047367719173405 14.687372168873093 2.0622612001565277 5.11354167711858e-7"),
+        (&[Offset, Drift, Gain, Depth, Variance], 0.0, of_the_record,
+            "314.9999862721934 315 5.431020422293289 6.727327051309264 13.30191441728586 2.0622883327535564 2.283796350787377e-6"),
+        (&[Offset, Drift, Gain], 0.1e-3, blocks,
+            "384.5330530254016 316 6.839988560372772 7.913838846268948 13.659872024495744 2.351795236466693 5.1279382140775336e-6"),
+    ];
+    for (unknown, depth_tolerance, noise, expected) in cases {
+        let question = Question {
+            unknown,
+            depth_tolerance,
+            noise,
+            criterion: Criterion::NeymanPearsonFalseAlarm {
+                max_false_alarm: 0.02,
+            },
+            ..question(&without, &with, 4e-3)
+        };
+        let found = question.judge(&record).unwrap();
+        let (test, fit) = (found.test, found.fit);
+        let threshold = at(found.threshold);
+        let chi_square = [fit.chi_square, fit.degrees];
+        let of_t = [
+            test.t,
+            test.gamma,
+            test.theta(),
+            threshold,
+            found.rates.miss,
+        ];
+        let found_all = chi_square.into_iter().chain(of_t);
+        for (found, expected) in found_all.zip(expected.split(' ')) {
+            close(found, expected.parse().unwrap());
+        }
+        close(found.rates.false_alarm, 0.02);
+        let [gamma, level] = match noise.sd {
+            Some(_) => [11.669211961222613, 0.8209638396640837],
+            None => [9.776655129796268, 0.822188179971719],
+        };
+        close(found.gamma_nominal, gamma);
+        close(fit.level.unwrap(), level);
+    }
+}
+
+/// A sweep of 401 samples at 4 mm over the gel with an inclusion of so much signal (N), in noise of 0.1 N.
+fn sweep(signal: f64, stream: u64) -> Record {
+    let positions: Vec<f64> = (0..401).map(|i| 4e-5 * f64::from(i) - 8e-3).collect();
+    let exact = gel(signal).sweep(4e-3, &positions).unwrap();
+    let generator = Generator::new(20_261_123, stream);
+    record(positions, |i| {
+        let noise = |channel| 0.1 * generator.normal(channel, i as u64);
+        [exact.lateral[i] + noise(0), exact.normal[i] + noise(1)]
+    })
+}
+
+/// The same question about a gel with a signal of 0.5 N, as the program asks it.
+fn asked(record: &Record, unknown: &[Unknown], sd: Option<f64>) -> Judgement {
+    let (without, with) = (gel(0.0), gel(0.5));
+    let question = Question {
+        unknown,
+        noise: Noise {
+            sd: sd.map(|sd| Force::new(sd, sd)),
+            correlation: Correlation::OfRecord,
+        },
+        ..question(&without, &with, 4e-3)
+    };
+    question.judge(record).unwrap()
+}
+
+/// All that is unknown unless a user says otherwise.
+const USUAL: &[Unknown] = {
+    use Unknown::{Drift, Gain, Offset, Variance};
+    &[Offset, Drift, Gain, Variance]
+};
+
+// Verifies: TRC-072, TRC-074, TRC-075.
+#[test]
+fn a_record_that_cannot_be_judged_has_a_cause() {
+    let held = {
+        let mut record = sweep(0.5, 1);
+        let columns = [&mut record.forces.lateral, &mut record.forces.normal];
+        for column in columns {
+            let values = column.clone();
+            (0..column.len()).for_each(|i| column[i] = values[i / 80 * 80]);
+        }
+        record
+    };
+    // The lateral and the normal forces times these.
+    let scaled = |signal: f64, lateral: f64, normal: f64| {
+        let mut record = sweep(signal, 1);
+        let forces = [&mut record.forces.lateral, &mut record.forces.normal];
+        for (column, factor) in std::iter::zip(forces, [lateral, normal]) {
+            column.iter_mut().for_each(|force| *force *= factor);
+        }
+        record
+    };
+    for (record, stated, cause) in [
+        (scaled(0.5, 1.0, 1.0), 0.1, None),
+        (scaled(0.0, 1.0, 1.0), 0.1, None),
+        // A gel that is nearly twice as stiff, in nearly twice the noise.
+        (scaled(0.5, 1.9, 1.9), 0.19, None),
+        (scaled(0.5, 1.0, -1.0), 0.1, Some(Cause::Sign)),
+        (scaled(0.5, 1e3, 1e3), 0.1, Some(Cause::ForceUnit)),
+        (scaled(0.5, 4.0, 4.0), 0.4, Some(Cause::Level)),
+        (scaled(0.5, 1.0, 1.0), 100.0, Some(Cause::NoiseUnit)),
+        (scaled(0.5, 1.0, 1.0), 1e-4, Some(Cause::NoiseUnit)),
+        (scaled(0.5, 1.0, 1.0), 0.035, Some(Cause::Misfit)),
+        (scaled(0.5, 1.0, 1.0), 0.29, Some(Cause::NoiseTooSmall)),
+        (scaled(-0.5, 1.0, 1.0), 0.1, Some(Cause::Opposite)),
+        (held, 0.1, Some(Cause::TooFewSamples)),
+    ] {
+        let found = asked(&record, USUAL, Some(stated));
+        assert_eq!(found.causes.first(), cause.as_ref(), "{found:?}");
+        assert_eq!(found.decision.is_none(), cause.is_some());
+    }
+}
+
+// Verifies: TRC-071.
+#[test]
+fn the_limits_of_chi_square() {
+    let record = sweep(0.5, 2);
+    let limits = |unknown, sd| asked(&record, unknown, sd).fit.limits;
+    // SciPy: χ² with 802 − 6 and 802 − 1 degrees of freedom, 5·10⁻⁷ to either side.
+    let known = &USUAL[..3];
+    for (unknown, within, expected) in [
+        (known, 1.0, [615.8671227778298, 1006.6805218906653]),
+        (USUAL, 4.0, [615.8671227778298, 1006.6805218906653]),
+        (&[][..], 1.0, [620.2558895848359, 1012.2918998427099]),
+    ] {
+        let [low, high] = limits(unknown, Some(0.1)).unwrap();
+        close(low, expected[0] / within);
+        close(high, expected[1] * within);
+    }
+    assert_eq!(limits(USUAL, None), None);
+}
+
+// Verifies: TRC-072, TRC-073.
+#[test]
+fn samples_that_depend_on_one_another_do_not_count_twice() {
+    // 41 samples, and the 2001 that a line through them gives.
+    let few: Vec<usize> = (0..41).map(|i| 10 * i).collect();
+    let whole = sweep(0.5, 3);
+    let sample = |i: usize| whole.forces().map(|force| force[i]).into_array();
+    let few = record(few.iter().map(|&i| whole.positions[i]).collect(), |i| {
+        sample(10 * i)
+    });
+    let many: Vec<f64> = (0..2001).map(|i| 8e-6 * f64::from(i) - 8e-3).collect();
+    let many = record(many, |i| {
+        let (from, share) = ((i / 50).min(39), (i - (i / 50).min(39) * 50) as f64 / 50.0);
+        let [a, b] = [sample(10 * from), sample(10 * from + 10)];
+        [0, 1].map(|channel| (1.0 - share) * a[channel] + share * b[channel])
+    });
+    let record_of_many = many;
+    let records = [&whole, &few, &record_of_many];
+    let [white, few, many] = records.map(|record| asked(record, USUAL, None));
+    assert_eq!((white.fit.block, white.fit.effective_samples), (1, 802.0));
+    assert_eq!((few.fit.block, few.fit.effective_samples), (1, 82.0));
+    // Without blocks γ were 7 times as large.
+    let ratio = many.test.gamma / few.test.gamma;
+    assert!((0.5..1.5).contains(&ratio), "{ratio}");
+    assert!((40.0..120.0).contains(&many.fit.effective_samples));
+    // Of the longer correlation, and of the share of the 2001 samples a channel that 6 amplitudes leave to its noise.
+    let (without, with) = (gel(0.0), gel(0.5));
+    let question = Question {
+        unknown: USUAL,
+        ..question(&without, &with, 4e-3)
+    };
+    let design = Design::new(&question, &record_of_many).unwrap();
+    let (left, explained) = design.whitened(many.fit.noise_sd).unexplained().unwrap();
+    assert_eq!(explained, 6);
+    let lengths = left.map(|left| {
+        let length = correlation_length(&left);
+        length / (1.0 - 3.0 * length / 2001.0)
+    });
+    let length = lengths.lateral.max(lengths.normal);
+    close(many.fit.effective_samples, 4002.0 / length);
+    assert_eq!(many.fit.block, (5.0 * length).ceil() as usize);
+}
+
+// Verifies: TRC-076.
+#[test]
+fn a_blank_sweep_tells_its_noise() {
+    let generator = Generator::new(20_261_123, 4);
+    let blank = |samples: u64, hold: u64, quiet: f64| {
+        let rows = (0..samples).map(|i| {
+            let noise = |channel| generator.normal(channel, i / hold);
+            let (lateral, normal) = (0.05 * noise(0), quiet * noise(1));
+            let line = 0.01 * i as f64;
+            format!("{i},{},{}\n", 3.0 + line + lateral, -1.0 - line + normal)
+        });
+        let head = "time_ms,lateral_force_n,normal_force_n\n".to_string();
+        Trace::from_csv(&(head + &rows.collect::<String>()), "blank.csv").unwrap()
+    };
+    // The least squares of a line, in the middle of the samples.
+    let sd = |trace: &Trace, channel: usize| {
+        let n = trace.samples.len() as f64;
+        let rows = || {
+            (0..)
+                .zip(&trace.samples)
+                .map(|(i, (_, row))| (f64::from(i) - 0.5 * (n - 1.0), row[channel]))
+        };
+        let mean = rows().map(|(_, y)| y).sum::<f64>() / n;
+        let slope =
+            rows().map(|(x, y)| x * y).sum::<f64>() / rows().map(|(x, _)| x * x).sum::<f64>();
+        let left = rows().map(|(x, y)| y - mean - slope * x);
+        (left.map(|left| left * left).sum::<f64>() / (n - 2.0)).sqrt()
+    };
+    let trace = blank(400, 1, 0.2);
+    let found = Noise::of_blank(&trace).unwrap();
+    assert_eq!(found.correlation, Correlation::None);
+    let found = found.sd.unwrap();
+    close(found.lateral, sd(&trace, 1));
+    close(found.normal, sd(&trace, 2));
+    let Correlation::Known(length) = Noise::of_blank(&blank(4000, 10, 0.2)).unwrap().correlation
+    else {
+        panic!("each value was held");
+    };
+    // τ is 10; its estimate has a standard deviation of √(2 · 51/4000) of it.
+    assert!((length / 10.0 - 1.0).abs() < 0.5, "{length}");
+    for (trace, expected) in [
+        (
+            blank(99, 1, 0.2),
+            "blank.csv: 99 samples, expected at least 100",
+        ),
+        (blank(100, 100, 0.2), "blank.csv: noise_sd_x"),
+    ] {
+        let error = Noise::of_blank(&trace).unwrap_err().to_string();
+        assert!(error.starts_with(expected), "{error}");
+    }
+}
