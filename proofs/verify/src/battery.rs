@@ -4,7 +4,7 @@ use super::statistics::{Check, FIXED_SEED};
 use super::{Figure, Outcome};
 
 /// Checks of the battery by the beginning of their names, with their claim and requirements.
-const GROUPS: [(&str, &str, &[&str]); 14] = [
+const GROUPS: [(&str, &str, &[&str]); 19] = [
     (
         "coarse_mean",
         "Θ of full records has the mean ∓γ²/2.",
@@ -65,6 +65,31 @@ const GROUPS: [(&str, &str, &[&str]); 14] = [
         "position_error",
         "Position errors meet the bound of Cramér and Rao until the signal is too weak.",
         &["DET-053", "DET-054", "DET-060", "DET-061"],
+    ),
+    (
+        "nuisance_t_",
+        "T beside offsets, drifts and a gain of any size is normal with standard deviation 1.",
+        &["NUI-001", "NUI-003", "NUI-005", "NUI-016"],
+    ),
+    (
+        "nuisance_residual_",
+        "What neither the nuisances nor the template explain is χ².",
+        &["NUI-006", "NUI-017", "DET-130"],
+    ),
+    (
+        "nuisance_errors_",
+        "The thresholds of T give their rates of error, whether or not the level of the noise is known.",
+        &["NUI-008", "NUI-011", "NUI-013"],
+    ),
+    (
+        "nuisance_",
+        "Where the level of the noise is unknown, T has Student's law, and T² that of F.",
+        &["NUI-006", "NUI-008", "NUI-018", "DET-131", "DET-132"],
+    ),
+    (
+        "ljung_box_",
+        "The test for white noise rejects it as often as it should.",
+        &["NUI-020"],
     ),
     (
         "",

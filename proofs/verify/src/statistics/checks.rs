@@ -45,20 +45,22 @@ pub(super) fn variance_rejects(sample: &[f64], law: Law, alpha: f64) -> Outcome<
     Ok(excess > 2.0 * (n * t).sqrt() + 2.0 * t || excess < -2.0 * (n * t).sqrt())
 }
 
-/// Is the sample not from the law? Kolmogorov's distance D with Massart's bound Pr(√n D > λ) ≤ 2
-/// exp(−2λ²) (Ann. Probab. 18, 1990).
+/// Is the sample not from the law?
 pub(super) fn kolmogorov_rejects(sample: &[f64], law: Law, alpha: f64) -> Outcome<bool> {
-    let mut sorted = sample.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let n = sorted.len() as f64;
+    let below = sample.iter().map(|x| cdf((x - law.mean) / law.sd));
+    Ok(uniform_rejects(below.collect::<Result<_, _>>()?, alpha))
+}
+
+/// Is the sample not uniform between 0 and 1? Kolmogorov's distance D with Massart's bound Pr(√n D > λ) ≤ 2 exp(−2λ²) (Ann. Probab.
+/// 18, 1990).
+pub(super) fn uniform_rejects(mut sample: Vec<f64>, alpha: f64) -> bool {
+    sample.sort_unstable_by(f64::total_cmp);
+    let n = sample.len() as f64;
     let mut distance = 0.0_f64;
-    for (i, x) in sorted.iter().enumerate() {
-        let law = cdf((x - law.mean) / law.sd)?;
-        distance = distance
-            .max(law - i as f64 / n)
-            .max((i + 1) as f64 / n - law);
+    for (i, x) in sample.iter().enumerate() {
+        distance = distance.max(x - i as f64 / n).max((i + 1) as f64 / n - x);
     }
-    Ok(distance * n.sqrt() > libm::sqrt(0.5 * libm::log(2.0 / alpha)))
+    distance * n.sqrt() > libm::sqrt(0.5 * libm::log(2.0 / alpha))
 }
 
 /// Is the share of the sample at or beyond `threshold` not that of the law? An exact binomial test.

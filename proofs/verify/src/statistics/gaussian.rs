@@ -40,9 +40,9 @@ const SINGLE: Series = (single, 1);
 const TRAVERSE: Series = (traverse, 1);
 
 /// A pair of hypotheses and their noise.
-struct Setting {
-    f0: Force<Vec<f64>>,
-    template: Force<Vec<f64>>,
+pub(super) struct Setting {
+    pub f0: Force<Vec<f64>>,
+    pub template: Force<Vec<f64>>,
     noise_sd: Force<f64>,
 }
 
@@ -76,7 +76,7 @@ const TRAVERSE_WITH: &str = include_str!("traverse_4.6.csv");
 const SAMPLES_PER_POSITION: usize = 10;
 
 /// 401 samples of a traverse over the inclusion 4.6 mm deep, as the paper's probe makes it: γ = 9.30.
-fn traverse() -> Outcome<Setting> {
+pub(super) fn traverse() -> Outcome<Setting> {
     let (f0, f1) = (sampled(TRAVERSE_WITHOUT)?, sampled(TRAVERSE_WITH)?);
     let difference =
         |(f0, f1): (&Vec<f64>, &Vec<f64>)| f0.iter().zip(f1).map(|(f0, f1)| f1 - f0).collect();

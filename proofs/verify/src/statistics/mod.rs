@@ -24,6 +24,7 @@ mod colour;
 mod gaussian;
 mod generator;
 mod ledger;
+mod nuisance;
 
 use std::error::Error;
 
@@ -81,6 +82,7 @@ pub fn battery() -> impl Iterator<Item = &'static Check> {
         colour::CHECKS,
         generator::CHECKS,
         bounds::CHECKS,
+        nuisance::CHECKS,
     ]
     .into_iter()
     .flatten()

@@ -1,12 +1,13 @@
 """Prints ledger.csv: python3 power.py > ledger.csv (needs numpy and scipy).
 
-The power of every check against its defects, from the normal (or binomial) law that theta has under the defect; nothing is
-simulated, and nothing comes from the Rust code. Powers are rounded down to 4 digits."""
+The power of every check against its defects, from the law that its statistic has under the defect; nothing is simulated, and
+nothing comes from the Rust code. Powers are rounded down to 4 digits."""
 import math
 import pathlib
 
 import numpy as np
-from scipy.stats import binom, norm
+from scipy.integrate import quad
+from scipy.stats import binom, chi2, f, nct, ncf, ncx2, norm, t
 
 ALPHA = 2.5e-8
 DEFECTS = ["variance_off_1_percent", "half_left_out", "template_shifted", "channels_swapped", "sd_for_variance"]
@@ -22,13 +23,16 @@ def single():
     return (np.array([-0.05]), np.array([0.0])), (0.1, 0.1)
 
 
-def traverse():
-    """Forces of the finite elements at 41 positions, interpolated linearly to 401 samples."""
+def maps():
+    """Forces of the finite elements without inclusion, and what it adds: 41 positions, interpolated linearly to 401 samples."""
     folder = pathlib.Path(__file__).parent
     without, inclusion = [np.loadtxt(folder / f"traverse_{name}.csv", delimiter=",", skiprows=1) for name in ("none", "4.6")]
     at, positions = np.arange(401) / 10, np.arange(41)
-    normal, lateral = [np.interp(at, positions, inclusion[:, c] - without[:, c]) for c in (2, 3)]
-    return (lateral, normal), (0.5, 0.6615)
+    return [[np.interp(at, positions, force[:, c]) for c in (3, 2)] for force in (without, inclusion - without)]
+
+
+def traverse():
+    return maps()[1], (0.5, 0.6615)
 
 
 def laws(setting, inclusion, defect):
@@ -64,10 +68,13 @@ def variance_power(good, bad, n):
     return norm.sf((upper - excess) / sd) + norm.cdf((lower - excess) / sd)
 
 
+def distance_power(distance, n):
+    return norm.cdf((distance * math.sqrt(n) - math.sqrt(math.log(2 / ALPHA) / 2)) / 0.5)
+
+
 def kolmogorov_power(good, bad, n):
     x = np.linspace(good[0] - 8 * good[1], good[0] + 8 * good[1], 20001)
-    distance = np.max(np.abs(norm.cdf(x, *good) - norm.cdf(x, *bad)))
-    return norm.cdf((distance * math.sqrt(n) - math.sqrt(math.log(2 / ALPHA) / 2)) / 0.5)
+    return distance_power(np.max(np.abs(norm.cdf(x, *good) - norm.cdf(x, *bad))), n)
 
 
 def count_power(p, bad, n):
@@ -180,3 +187,102 @@ for h in (0, 1):
         ("logarithm_left_out", count_power(rate(log_ratio), rate(log_ratio - 0.5 * math.log(v[0] / v[1])), 200_000)),
     ]
     line(f"weber_tail_h{h}", 200_000, powers)
+
+# Offsets and drifts of both channels and a gain beside the template, whitened; the inclusion is in every second record.
+AMPLITUDE, NUISANCES = 100, ["lateral_offset", "normal_offset", "lateral_drift", "normal_drift", "gain"]
+
+
+def beside(step, left_out=None):
+    """Nominal gamma, gamma, degrees of freedom, and what the amplitude of a nuisance that is left out adds to the variance of T."""
+    white = lambda forces: np.concatenate([force[::step] / sd for force, sd in zip(forces, (0.07, 0.09))])
+    f0, template = map(white, maps())
+    samples = len(f0) // 2
+    channel = lambda shape: list(np.kron(np.eye(2), shape))
+    columns = dict(zip(NUISANCES, channel(np.ones(samples)) + channel(np.linspace(-1, 1, samples)) + [f0]))
+    other = columns.pop(left_out, 0 * f0)
+    basis = np.linalg.qr(np.transpose(list(columns.values())))[0]
+    rest = template - basis @ (basis.T @ template)
+    gamma = np.linalg.norm(rest)
+    return np.linalg.norm(template), gamma, 2 * samples - basis.shape[1] - 1, (AMPLITUDE * (rest @ other) / gamma) ** 2
+
+
+def share_power(presumed, true, x, n):
+    """Of Kolmogorov's test of the presumed distribution function at T: those without and with an inclusion, and the true ones."""
+    share = np.linspace(0, 1, 20001)[1:-1]
+    found = [np.interp(share, presumed(x), true(x)) for presumed, true in zip(presumed, true)]
+    return distance_power(np.max(np.abs(np.mean(found, axis=0) - share)), n)
+
+
+nominal, gamma, _, _ = beside(10)
+good, line_of_t = (0, 1), np.linspace(-40, 40, 400_001)
+powers = []
+for nuisance in ("lateral_drift", "gain"):
+    powers.append((f"{nuisance}_left_out", kolmogorov_power(good, (0, math.sqrt(1 + beside(10, nuisance)[3])), 20_000)))
+presumed = [norm(0, 1).cdf, norm(nominal, 1).cdf]
+true = [norm(0, gamma / nominal).cdf, norm(gamma**2 / nominal, gamma / nominal).cdf]
+line("nuisance_t_kolmogorov", 20_000, powers + [("nominal_gamma", share_power(presumed, true, line_of_t, 20_000))])
+
+nominal, gamma, nu, _ = beside(100)
+squares = np.geomspace(1e-8, 1e8, 4001)
+roots = np.concatenate([-np.sqrt(squares[::-1]), np.sqrt(squares)])
+presumed, both = [chi2(nu).cdf] * 2, [chi2(nu + 1).cdf, ncx2(nu + 1, gamma**2).cdf]
+powers = [
+    ("degrees_off_by_one", share_power([chi2(nu + 1).cdf] * 2, presumed, squares, 20_000)),
+    ("template_left_in", share_power(presumed, both, squares, 20_000)),
+]
+line("nuisance_residual_kolmogorov", 20_000, powers)
+
+# With a degree too many the noise is taken for smaller, too.
+scale = math.sqrt((nu + 1) / nu)
+student, off = [t(nu), nct(nu, gamma)], [t(nu + 1), nct(nu + 1, gamma)]
+true = [law.cdf for law in student]
+powers = [
+    ("central_law", share_power([t(nu).cdf] * 2, true, roots, 20_000)),
+    ("normal_law", share_power([norm(0, 1).cdf, norm(gamma, 1).cdf], true, roots, 20_000)),
+    ("degrees_off_by_one", share_power([lambda x, law=law: law.cdf(scale * x) for law in off], true, roots, 20_000)),
+]
+line("nuisance_student_kolmogorov", 20_000, powers)
+true = [f(1, nu).cdf, ncf(1, nu, gamma**2).cdf]
+powers = [
+    ("central_law", share_power([f(1, nu).cdf] * 2, true, squares, 20_000)),
+    ("chi_square_law", share_power([chi2(1).cdf, ncx2(1, gamma**2).cdf], true, squares, 20_000)),
+]
+line("nuisance_f_kolmogorov", 20_000, powers)
+
+
+def errors_power(without, inclusion, alarm, miss, n):
+    """Of a rate of 1 % in all, if these are the laws and thresholds. Two binomials vary less than one with their mean rate."""
+    return count_power(0.01, (without.sf(alarm) + inclusion.cdf(miss)) / 2, n)
+
+
+point, bias = norm.isf(0.01), 0.5
+scaled = gamma / nominal
+powers = [
+    ("bias_left_out", errors_power(norm(bias, 1), norm(gamma - bias, 1), point, gamma - point, 50_000)),
+    ("nominal_gamma", errors_power(
+        norm(scaled * bias, scaled), norm(scaled * (gamma - bias), scaled), bias + point, nominal - bias - point, 50_000)),
+]
+line("nuisance_errors_of_known_level", 50_000, powers)
+# A record's own estimate of the noise is in its thresholds, too: T less its centre has a central law.
+powers = [
+    ("bias_left_out", errors_power(nct(nu, bias), nct(nu, -bias), t(nu).isf(0.01), -t(nu).isf(0.01), 100_000)),
+    ("normal_law", errors_power(t(nu), t(nu), point, -point, 100_000)),
+    ("degrees_off_by_one", errors_power(t(nu), t(nu), t(nu + 1).isf(0.01) / scale, -t(nu + 1).isf(0.01) / scale, 100_000)),
+]
+line("nuisance_errors_of_unknown_level", 100_000, powers)
+
+
+def autocorrelation_rate(q):
+    """Pr(n (n + 2) rho_1^2/(n - 1) >= q) for n = 20: rho_1 >= r is a sum of squares >= 0, whose law is Imhof's integral."""
+    n = 20
+    r = math.sqrt(q * (n - 1) / (n * (n + 2)))
+    weights = np.cos(np.arange(1, n + 1) * math.pi / (n + 1)) - r
+    angle = lambda u: np.sum(np.arctan(weights * u)) / 2
+    integrand = lambda u: math.sin(angle(u)) / u / np.prod((1 + (weights * u) ** 2) ** 0.25)
+    return 1 + 2 / math.pi * quad(integrand, 0, math.inf, epsabs=1e-13, limit=500)[0]
+
+
+q = chi2.isf(0.05, 1)
+rate = autocorrelation_rate(q)  # RATE in nuisance.rs
+defects = [("degrees_off_by_one", chi2.isf(0.05, 2)), ("n_for_n_plus_2", q * 22 / 20)]
+line("ljung_box_at_5_percent", 50_000, [(name, count_power(rate, autocorrelation_rate(q), 50_000)) for name, q in defects])
