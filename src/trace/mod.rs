@@ -56,8 +56,7 @@ mod tests;
 
 use std::path::Path;
 
-pub use design::Unknown;
-pub(crate) use design::nuisances;
+pub use design::{Unknown, nuisances};
 pub use fit::{Cause, Fit, MISFIT_RATE, WHITENESS};
 pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
 pub use locate::{DIED_AWAY, Location, MOST_CANDIDATES};
