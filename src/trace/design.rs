@@ -111,7 +111,7 @@ impl Design {
 
     /// The parts over the standard deviations of the noise.
     pub fn whitened(&self, noise_sd: Force<f64>) -> Design {
-        self.map(|series| scaled(series, noise_sd.map(|sd| 1.0 / sd)))
+        self.map(|series| whitened(series, noise_sd))
     }
 
     /// The sums over blocks of so many samples.
@@ -165,10 +165,13 @@ impl Design {
         let degrees = self.samples() as f64 - 0.5 * explained as f64;
         let sd = left.as_deref().zip(self.residual.as_deref());
         let sd = sd.map(|(left, all)| {
-            let squares = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+            let found = squares(left);
             // Less is rounding.
-            let is_told = squares(left) > DEPENDENT * DEPENDENT * squares(all);
-            libm::sqrt(f64::from(u8::from(is_told)) * squares(left) / degrees.max(1.0))
+            if found > DEPENDENT * DEPENDENT * squares(all) {
+                libm::sqrt(found / degrees.max(1.0))
+            } else {
+                0.0
+            }
         });
         check_positive("noise_sd_x", sd.lateral)?;
         check_positive("noise_sd_y", sd.normal)?;
@@ -180,7 +183,7 @@ impl Design {
     /// Implements: TRC-074.
     pub fn level(&self) -> Option<f64> {
         let (reference, residual) = (stacked(&self.reference), stacked(&self.residual));
-        let square: f64 = reference.iter().map(|value| value * value).sum();
+        let square = squares(&reference);
         let cross: f64 = std::iter::zip(reference, residual)
             .map(|(a, b)| a * b)
             .sum();
@@ -199,7 +202,17 @@ pub(super) fn stacked(series: &Series) -> Vec<f64> {
     [&series.lateral[..], &series.normal[..]].concat()
 }
 
-pub(super) fn scaled(series: &Series, factor: Force<f64>) -> Series {
+/// Σ of the squares.
+pub(super) fn squares(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
+}
+
+/// A series over the standard deviations of the noise.
+pub(super) fn whitened(series: &Series, noise_sd: Force<f64>) -> Series {
+    scaled(series, noise_sd.map(|sd| 1.0 / sd))
+}
+
+fn scaled(series: &Series, factor: Force<f64>) -> Series {
     let channels = series.as_deref().zip(factor);
     channels.map(|(series, factor)| series.iter().map(|value| factor * value).collect())
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::design::{Design, Unknown, stacked};
+use super::design::{Design, Series, Unknown, squares, stacked};
 use super::judge::{Correlation, Noise, Question};
 use super::{Trace, refused};
 use crate::detect::DetectError;
@@ -120,19 +120,12 @@ impl Fit {
         let (left, explained) = white.unexplained()?;
         let samples = white.samples() as f64;
         let degrees = 2.0 * samples - explained as f64;
-        let chi_square = stacked(&left).iter().map(|value| value * value).sum();
+        let chi_square = squares(&stacked(&left));
         let lags = LAGS.min(white.samples() / 5);
-        let mut whiteness = 1.0_f64;
-        let mut length = 1.0_f64;
-        for channel in left.as_ref().into_array() {
-            if lags > 0 {
-                whiteness = whiteness.min(ljung_box(channel, lags)?);
-            }
-            // What was fitted has taken its share of the slow noise with it.
-            let found = correlation_length(channel);
-            let taken = 0.5 * explained as f64 * found / samples;
-            length = length.max(found / (1.0 - taken.min(0.5)));
-        }
+        let (whiteness, found) = dependence(&left, lags)?;
+        // What was fitted has taken its share of the slow noise with it.
+        let taken = 0.5 * explained as f64 * found / samples;
+        let length = found / (1.0 - taken.min(0.5));
         let length = match question.noise.correlation {
             Correlation::None => 1.0,
             Correlation::OfRecord if whiteness >= WHITENESS => 1.0,
@@ -224,32 +217,42 @@ impl Noise {
             let mut lines: Vec<f64> = vec![1.0; samples];
             lines.extend(line);
             let lines = Nuisances::new(&mut lines, samples)?;
-            let (mut whiteness, mut length) = (1.0_f64, 1.0_f64);
-            let mut sd = [0.0; 2];
-            for (channel, sd) in (1..).zip(&mut sd) {
-                let mut left: Vec<f64> = blank
-                    .samples
-                    .iter()
-                    .map(|(_, sample)| sample[channel])
-                    .collect();
-                *sd = lines.project(&mut left) / libm::sqrt(samples as f64 - 2.0);
-                whiteness = whiteness.min(ljung_box(&left, LAGS)?);
-                length = length.max(correlation_length(&left));
-            }
-            let [lateral, normal] = sd;
-            check_positive("noise_sd_x", lateral)?;
-            check_positive("noise_sd_y", normal)?;
+            let column = |channel: usize| {
+                let samples = blank.samples.iter();
+                samples.map(|(_, sample)| sample[channel]).collect()
+            };
+            let mut left: Series = Force::new(column(1), column(2));
+            let root = libm::sqrt(samples as f64 - 2.0);
+            let sd = Force::new(
+                lines.project(&mut left.lateral) / root,
+                lines.project(&mut left.normal) / root,
+            );
+            check_positive("noise_sd_x", sd.lateral)?;
+            check_positive("noise_sd_y", sd.normal)?;
+            let (whiteness, length) = dependence(&left, LAGS)?;
             let correlation = match whiteness < WHITENESS {
                 true => Correlation::Known(length),
                 false => Correlation::None,
             };
             Ok(Noise {
-                sd: Some(Force::new(lateral, normal)),
+                sd: Some(sd),
                 correlation,
             })
         };
         told().map_err(|error| refused(error).in_file(&*blank.file))
     }
+}
+
+/// The smaller probability of white noise having such autocorrelations, 1 without lags, and the longer correlation of both channels.
+fn dependence(noise: &Series, lags: usize) -> Result<(f64, f64), DetectError> {
+    let (mut whiteness, mut length) = (1.0_f64, 1.0_f64);
+    for channel in noise.as_ref().into_array() {
+        if lags > 0 {
+            whiteness = whiteness.min(ljung_box(channel, lags)?);
+        }
+        length = length.max(correlation_length(channel));
+    }
+    Ok((whiteness, length))
 }
 
 /// Between these is the mean square of white noise of variance 1 with `degrees` of freedom, but with the probability

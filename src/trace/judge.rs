@@ -1,6 +1,6 @@
 //! The record judged at the position that the maps are for.
 
-use super::design::{Design, Unknown, stacked};
+use super::design::{Design, Unknown, squares, stacked};
 use super::fit::{Cause, Fit};
 use super::{Record, refused};
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector, SubspaceTest, Threshold};
@@ -128,10 +128,6 @@ impl Question<'_> {
             } else {
                 Decision::NoInclusion
             };
-            let energy = stacked(&white.template)
-                .iter()
-                .map(|value| value * value)
-                .sum::<f64>();
             Ok(Judgement {
                 decision: causes.is_empty().then_some(decision),
                 causes,
@@ -139,7 +135,7 @@ impl Question<'_> {
                 threshold,
                 posterior: posterior(test.theta(), self.prior_h1)?,
                 rates: test.rates(threshold)?,
-                gamma_nominal: libm::sqrt(energy),
+                gamma_nominal: libm::sqrt(squares(&stacked(&white.template))),
                 fit,
             })
         };

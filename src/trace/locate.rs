@@ -1,6 +1,6 @@
 //! The record judged at an unknown position of the inclusion, equation (10).
 
-use super::design::{Design, Series, blocked, difference, scaled, stacked};
+use super::design::{Design, Series, blocked, difference, squares, stacked, whitened};
 use super::fit::{Cause, Fit};
 use super::judge::{Criterion, Question};
 use super::{Record, mm, refused};
@@ -190,7 +190,7 @@ impl Question<'_> {
             position_sd_bound: shape.position_sd_bound(white, &fit, best)?,
             template_edge: shape.edge()?,
             candidates: found.len(),
-            gamma_nominal: norm(&stacked(&shape.whitened(best.position)?)),
+            gamma_nominal: libm::sqrt(squares(&stacked(&shape.whitened(best.position)?))),
             fit,
         })
     }
@@ -321,10 +321,7 @@ impl<'a> Shape<'a> {
 
     /// The same over the noise.
     fn whitened(&self, position: f64) -> Result<Series, Refusal> {
-        Ok(scaled(
-            &self.template(position)?,
-            self.noise_sd.map(|sd| 1.0 / sd),
-        ))
+        Ok(whitened(&self.template(position)?, self.noise_sd))
     }
 
     /// The Cramér–Rao bound at a candidate, with the nuisances unknown.
@@ -352,7 +349,7 @@ impl<'a> Shape<'a> {
     /// Implements: TRC-042.
     fn edge(&self) -> Result<f64, Refusal> {
         let signal = self.signal.sweep(self.depth, self.signal.laterals())?;
-        let signal = scaled(&signal, self.noise_sd.map(|sd| 1.0 / sd));
+        let signal = whitened(&signal, self.noise_sd);
         let largest = |samples: &[f64]| samples.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
         let both = signal.map(|signal| (largest(&ends(&signal)), largest(&signal)));
         let all = both.lateral.1.max(both.normal.1);
@@ -364,8 +361,4 @@ impl<'a> Shape<'a> {
 /// The first and the last; there is at least one.
 fn ends(values: &[f64]) -> [f64; 2] {
     [values[0], values[values.len() - 1]]
-}
-
-fn norm(values: &[f64]) -> f64 {
-    libm::sqrt(values.iter().map(|value| value * value).sum())
 }
