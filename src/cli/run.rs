@@ -17,7 +17,9 @@ use crate::force_map::ForceMap;
 use crate::input::parse;
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
-use crate::report::{DeformedMesh, FileNames, Study, figures, findings, html, summary_json};
+use crate::report::{
+    ArraySweep, DeformedMesh, FileNames, Study, figures, findings, html, probe_depth, summary_json,
+};
 
 /// Arguments of `palpate run`.
 #[derive(Debug, Args)]
@@ -80,7 +82,7 @@ fn study(
     let solved = phantoms.par_iter().enumerate().map(solve);
     let solved: Vec<_> = solved.collect::<Result<_, _>>()?;
     bar.finish_and_clear();
-    let (mut maps, deformed): (Vec<_>, Vec<_>) = solved.into_iter().unzip();
+    let (mut maps, arrays, deformed): (Vec<_>, _, Vec<_>) = solved.into_iter().collect();
     let deformed = deformed.into_iter().flatten().next();
     let none = || CliError::Usage("no phantom to run".into());
     let reference = maps.remove(0);
@@ -88,6 +90,7 @@ fn study(
         reference,
         maps,
         measured,
+        arrays,
         deformed: deformed.ok_or_else(none)?,
         settings: config.detection,
     })
@@ -98,7 +101,7 @@ fn solve_phantom(
     phantom: &Phantom,
     shown: bool,
     bar: &ProgressBar,
-) -> Result<(ForceMap, Option<DeformedMesh>), FemError> {
+) -> Result<(ForceMap, ArraySweep, Option<DeformedMesh>), FemError> {
     let mesh = &config.mesh;
     tell_large_mesh(phantom, mesh.size_mm / 1e3)?;
     let model = Model::new(phantom, mesh.size_mm / 1e3, mesh.contact)?;
@@ -107,7 +110,8 @@ fn solve_phantom(
     bar.inc_length((3 * depths.len() * model.solved_laterals(laterals).len()) as u64);
     let map = certified_map(&model, depths, laterals, &|poses| bar.inc(poses as u64))?;
     let deformed = shown.then(|| deformed_mesh(&model, &map)).transpose()?;
-    Ok((map, deformed))
+    let array = ArraySweep::solve(&model, probe_depth(depths), laterals)?;
+    Ok((map, array, deformed))
 }
 
 /// The mesh at the deepest pose, as near as possible to above the middle of the first inclusion, or else to x = 0.

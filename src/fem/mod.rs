@@ -17,6 +17,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod array;
 pub mod assembly;
 pub mod certify;
 pub mod cholesky;

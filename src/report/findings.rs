@@ -41,6 +41,18 @@ pub struct Findings {
     pub comparison: Vec<Comparison>,
 }
 
+fn is_paper_depth(depth: &f64) -> bool {
+    (depth - paper::PROBE_DEPTH).abs() <= SAME_POSITION
+}
+
+/// Of the depths of a study's maps, m, the one at which signals are taken: the paper's, or else the deepest.
+///
+/// Implements: REP-002.
+pub fn probe_depth(depths: &[f64]) -> f64 {
+    let quoted = depths.iter().find(|depth| is_paper_depth(depth));
+    quoted.or(depths.last()).copied().unwrap_or(0.0)
+}
+
 /// Everything that the report says in numbers.
 ///
 /// # Errors
@@ -50,10 +62,8 @@ pub struct Findings {
 /// Implements: REP-002, REP-003, REP-004, REP-006, REP-070.
 pub fn findings(study: &Study) -> Result<Findings, Refusal> {
     let depths = study.reference.depths();
-    let is_paper_depth = |depth: &f64| (depth - paper::PROBE_DEPTH).abs() <= SAME_POSITION;
-    let quoted = depths.iter().copied().find(is_paper_depth);
-    let deepest = depths.last().copied().unwrap_or(0.0);
-    let probe_depth = quoted.unwrap_or(deepest);
+    let probe_depth = probe_depth(depths);
+    let is_quoted = is_paper_depth(&probe_depth);
     let required_gamma = check(&study.settings).map_err(refused("settings"))?;
     let is_computed = |map: &&ForceMap| map.certificate().is_some();
     if let Some(map) = study.measured.iter().find(is_computed) {
@@ -66,7 +76,7 @@ pub fn findings(study: &Study) -> Result<Findings, Refusal> {
     let maps = maps.collect::<Result<Vec<_>, _>>()?;
     let reference = of_reference(&study.reference, probe_depth)?;
     let is_paper_reference = study.reference.phantom().and_then(paper::name_of) == Some("none");
-    let is_comparable = quoted.is_some() && is_paper_reference;
+    let is_comparable = is_quoted && is_paper_reference;
     // Only maps of the paper's phantoms, against the paper's reference, at the paper's depth are compared with it.
     let compared: &[MapFindings] = if is_comparable { &maps } else { &[] };
     let table = AnswerTable::paper()?;
@@ -77,7 +87,7 @@ pub fn findings(study: &Study) -> Result<Findings, Refusal> {
     let comparison = comparison::table(level, compared, &people, &noise, bridge.as_ref());
     Ok(Findings {
         probe_depth,
-        probe_depth_note: quoted.is_none().then(|| {
+        probe_depth_note: (!is_quoted).then(|| {
             format!(
                 "The maps hold no depth of 4 mm, at which the paper quotes its forces: signals are taken at their deepest depth, {} mm, and are not compared with the paper.",
                 millimetres(probe_depth)

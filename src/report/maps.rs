@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::nuisances::GammaLeft;
+use super::pressure::ArrayFindings;
 use super::quality::{Quality, warnings};
 use super::text::name_of_map;
 use super::{Settings, Study, paper, refused};
@@ -44,6 +45,8 @@ pub struct MapFindings {
     pub gamma: GammaByChannel,
     /// What is left of it if more is unknown.
     pub gamma_left: GammaLeft,
+    /// γ of tactile arrays under the probe; `None` where the study does not hold what they read.
+    pub array: Option<ArrayFindings>,
     /// The maximum a-posteriori rule.
     pub map_rule: Threshold,
     /// Neyman–Pearson with the miss rate bounded; the fewest false alarms.
@@ -118,7 +121,8 @@ pub(super) fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFin
     let signal = signal.map_err(incomparable(map))?;
     let signal = signal.row(depth).map_err(incomparable(map))?;
     let left = GammaLeft::of(study, signal, depth).map_err(incomparable(map))?;
-    let found = judged(&study.settings, map, signal, left);
+    let found = ArrayFindings::of(study, map, signal, depth)
+        .and_then(|array| judged(&study.settings, map, signal, (left, array)));
     found.map_err(refused(format!("map {:?}", name_of_map(map))))
 }
 
@@ -129,7 +133,7 @@ fn judged(
     settings: &Settings,
     map: &ForceMap,
     signal: Force<&[f64]>,
-    gamma_left: GammaLeft,
+    (gamma_left, array): (GammaLeft, Option<ArrayFindings>),
 ) -> Result<MapFindings, DetectError> {
     let Force { lateral, normal } = signal;
     let zeros = vec![0.0; normal.len()];
@@ -159,6 +163,7 @@ fn judged(
         peak_lateral: peak(map.laterals(), lateral),
         gamma,
         gamma_left,
+        array,
         map_rule: at(map_threshold(settings.prior_h1)?)?,
         bounded_miss: at(neyman_pearson_miss_threshold(both, settings.max_miss)?)?,
         bounded_false_alarm: match bounded.and_then(at) {

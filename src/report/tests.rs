@@ -7,6 +7,7 @@ mod nuisances;
 mod outputs;
 mod page;
 mod pictures;
+mod pressure;
 mod study;
 pub mod table_1;
 mod xml;

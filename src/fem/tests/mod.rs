@@ -1,5 +1,6 @@
 //! Tests of the solver, one file a topic.
 
+mod array;
 mod assembly;
 mod certify;
 mod cholesky;

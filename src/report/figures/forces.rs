@@ -83,7 +83,7 @@ fn force_curves(table: &ForceTable) -> [Panel; 2] {
 }
 
 /// How a map is called in a figure: the inclusion's depth for the paper's phantoms, or else its name.
-fn label(map: &MapFindings) -> String {
+pub fn label(map: &MapFindings) -> String {
     match map.paper_phantom {
         Some("none") | None => shortened(&map.name, 14),
         Some(depth) => format!("{depth} mm"),

@@ -7,6 +7,7 @@ use core::iter::once;
 
 use askama::Template;
 
+use super::pressure::times;
 use super::text::printable;
 use super::{
     Comparison, Figure, Findings, MapFindings, Quality, Settings, Study, Topic, Value, paper, text,
@@ -21,10 +22,11 @@ pub const STYLE: &str = include_str!("style.css");
 const NAMESPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
 
 /// The sections below the opening: what the contents link to, and their headings.
-const CONTENTS: [(&str, &str); 8] = [
+const CONTENTS: [(&str, &str); 9] = [
     ("setup", "Set-up"),
     ("forces", "Forces and signals"),
     ("detection", "Detection"),
+    ("pressure", "Pressure as a record"),
     ("people", "People"),
     ("noise", "Noise"),
     ("comparison", "Paper | here | why"),
@@ -44,7 +46,7 @@ struct Page<'a> {
 
 /// One self-contained page: what was found, the figures and tables, the comparison, the certificates.
 ///
-/// Implements: REP-040, REP-041, REP-042, REP-043, REP-044, REP-060, REP-061, REP-062, REP-063, REP-065, REP-066, REP-069.
+/// Implements: REP-040, REP-041, REP-042, REP-043, REP-044, REP-060, REP-061, REP-062, REP-063, REP-065, REP-066, REP-069, REP-074.
 pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
     let page = Page {
         study,
@@ -75,6 +77,12 @@ impl Page<'_> {
             count(|map| map.gamma.both),
             count(|map| map.gamma_left.by_default.both),
         ]
+    }
+
+    /// How many of these γ are enough for both error rates.
+    fn met(&self, which: usize, gammas: impl Iterator<Item = [f64; 2]>) -> usize {
+        let needed = self.found.required_gamma;
+        gammas.filter(|of| of[which] >= needed).count()
     }
 
     /// The least and the largest peak of the normal signals, N.
@@ -114,6 +122,11 @@ const NOISE_CHAINS: [(&str, &[usize], Option<f64>); 3] = [
     ("Measured playback", &[0, 1, 2, 4], None),
     ("Direct contact", &[3, 4], Some(paper::DIRECT_CONTACT_NOISE)),
 ];
+
+/// γ as tables have it.
+fn short(gamma: f64) -> String {
+    text::fixed(gamma, 2)
+}
 
 /// The variance of the sum of some rows of [`paper::NOISE_SOURCES`], N².
 fn variance(sources: &[usize]) -> f64 {

@@ -172,6 +172,7 @@ pub fn paper_study() -> Study {
         reference: map(Phantom::builtin("none").ok(), &DEPTHS, |_| 0.0, |_| 0.0),
         maps: peaks.map(|(name, peak)| triangle(name, peak)).into(),
         measured: Vec::new(),
+        arrays: Vec::new(),
         deformed: deformed(),
         settings: SETTINGS,
     }
