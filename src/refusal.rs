@@ -70,6 +70,20 @@ impl Refusal {
         };
         Refusal { key, ..self }
     }
+
+    /// The same of one of many parts, whose name comes before the message.
+    pub(crate) fn of_part(self, part: &str) -> Refusal {
+        match &*self.key {
+            "" => Refusal {
+                found: format!("{part}: {}", self.found),
+                ..self
+            },
+            key => Refusal {
+                key: format!("{part}: {key}"),
+                ..self
+            },
+        }
+    }
 }
 
 impl fmt::Display for Refusal {

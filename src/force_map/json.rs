@@ -32,7 +32,7 @@ enum SourceKey {
 /// The file's keys, in the order in which they are written.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Document {
+pub(super) struct Document {
     schema: String,
     schema_version: u64,
     program_version: String,
@@ -59,30 +59,7 @@ impl ForceMap {
     ///
     /// Implements: MAP-020, MAP-021, MAP-022.
     pub fn to_json(&self) -> String {
-        let source = match self.source().clone() {
-            Source::FiniteElements { .. } => SourceKey::FiniteElements {},
-            Source::Measured(measurement) => SourceKey::Measured(measurement),
-        };
-        let document = Document {
-            schema: SCHEMA.into(),
-            schema_version: SCHEMA_VERSION,
-            program_version: self.program_version().into(),
-            source,
-            phantom: self.phantom().cloned(),
-            depths_m: self.depths().into(),
-            laterals_m: self.laterals().into(),
-            normal_force_n: self.forces().normal.clone(),
-            lateral_force_n: self.forces().lateral.clone(),
-            certificate: self.certificate().cloned(),
-        };
-        let mut text = Vec::new();
-        let mut serializer =
-            serde_json::Serializer::with_formatter(&mut text, RowPerLine::default());
-        document
-            .serialize(&mut serializer)
-            .expect("strings and finite numbers go into memory without an error");
-        text.push(b'\n');
-        String::from_utf8(text).expect("serde_json writes UTF-8")
+        to_json(self)
     }
 
     /// The map in `text`, the content of `file`, which is named in errors alone.
@@ -98,45 +75,94 @@ impl ForceMap {
     }
 }
 
+/// A document as JSON, each row of a matrix on one line.
+pub(crate) fn to_json(document: &impl Serialize) -> String {
+    let mut text = Vec::new();
+    let mut serializer = serde_json::Serializer::with_formatter(&mut text, RowPerLine::default());
+    document
+        .serialize(&mut serializer)
+        .expect("strings and finite numbers go into memory without an error");
+    text.push(b'\n');
+    String::from_utf8(text).expect("serde_json writes UTF-8")
+}
+
+impl From<ForceMap> for Document {
+    fn from(map: ForceMap) -> Document {
+        let (source, certificate) = match map.source {
+            Source::FiniteElements { certificate } => {
+                (SourceKey::FiniteElements {}, Some(certificate))
+            }
+            Source::Measured(measurement) => (SourceKey::Measured(measurement), None),
+        };
+        Document {
+            schema: SCHEMA.into(),
+            schema_version: SCHEMA_VERSION,
+            program_version: map.program_version,
+            source,
+            phantom: map.phantom,
+            depths_m: map.table.depths().into(),
+            laterals_m: map.table.laterals().into(),
+            normal_force_n: map.table.forces().normal.clone(),
+            lateral_force_n: map.table.forces().lateral.clone(),
+            certificate,
+        }
+    }
+}
+
+impl TryFrom<Document> for ForceMap {
+    type Error = Refusal;
+
+    fn try_from(document: Document) -> Result<ForceMap, Refusal> {
+        let source = match (document.source, document.certificate) {
+            (SourceKey::FiniteElements {}, Some(certificate)) => {
+                Source::FiniteElements { certificate }
+            }
+            (SourceKey::Measured(measurement), None) => Source::Measured(measurement),
+            (SourceKey::FiniteElements {}, None) => {
+                let expected = "one for a map from finite elements";
+                return Err(Refusal::state("certificate is missing", expected));
+            }
+            (SourceKey::Measured(_), Some(_)) => {
+                let expected = "none for a measured map";
+                return Err(Refusal::state("certificate is there", expected));
+            }
+        };
+        let forces = Force::new(document.lateral_force_n, document.normal_force_n);
+        let map = ForceMap {
+            program_version: document.program_version,
+            source,
+            phantom: document.phantom,
+            table: ForceTable::new(document.depths_m, document.laterals_m, forces)?,
+        };
+        map.checked()
+    }
+}
+
 fn read(text: &str) -> Result<ForceMap, Refusal> {
-    // The version first: a newer file may have keys that this program does not know.
+    check_schema(text, SCHEMA, SCHEMA_VERSION)?;
+    parse::<Document>(text)?.try_into()
+}
+
+/// Whether a document has the schema and the version that this program reads. They come first: a newer file may have keys that
+/// this program does not know.
+pub(crate) fn check_schema(text: &str, schema: &str, version: u64) -> Result<(), Refusal> {
     let header: Header = parse(text)?;
     let refused = |key, found: Value, expected| {
         let found = shortened(&found.to_string());
         Err(Refusal::value(key, found, expected))
     };
-    if header.schema != SCHEMA {
-        return refused("schema", header.schema, format!("{SCHEMA:?}"));
+    if header.schema != schema {
+        return refused("schema", header.schema, format!("{schema:?}"));
     }
-    if header.schema_version != SCHEMA_VERSION {
-        let expected = format!("{SCHEMA_VERSION}, which is what this program reads");
+    if header.schema_version != version {
+        let expected = format!("{version}, which is what this program reads");
         return refused("schema_version", header.schema_version, expected);
     }
-    let document: Document = parse(text)?;
-    let source = match (document.source, document.certificate) {
-        (SourceKey::FiniteElements {}, Some(certificate)) => Source::FiniteElements { certificate },
-        (SourceKey::Measured(measurement), None) => Source::Measured(measurement),
-        (SourceKey::FiniteElements {}, None) => {
-            let expected = "one for a map from finite elements";
-            return Err(Refusal::state("certificate is missing", expected));
-        }
-        (SourceKey::Measured(_), Some(_)) => {
-            let expected = "none for a measured map";
-            return Err(Refusal::state("certificate is there", expected));
-        }
-    };
-    let forces = Force::new(document.lateral_force_n, document.normal_force_n);
-    let map = ForceMap {
-        program_version: document.program_version,
-        source,
-        phantom: document.phantom,
-        table: ForceTable::new(document.depths_m, document.laterals_m, forces)?,
-    };
-    map.checked()
+    Ok(())
 }
 
 /// What `text` says, or the line, the column and the key where it is wrong, with the text around that place.
-fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Refusal> {
+pub(crate) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Refusal> {
     let mut json = serde_json::Deserializer::from_str(text);
     let document = serde_path_to_error::deserialize(&mut json).map_err(|error| {
         let key = match error.path().to_string() {

@@ -47,7 +47,9 @@ pub use certificate::{Certificate, Discretization, SmallestDet};
 #[cfg(feature = "fem")]
 pub(crate) use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
+pub(crate) use json::{check_schema, parse, to_json};
 pub use pair::Hypotheses;
+pub(crate) use pair::check_gel;
 #[cfg(feature = "fem")]
 pub use smoothing::Smoothed;
 pub use table::{ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
@@ -128,7 +130,8 @@ impl Measurement {
 /// ```
 ///
 /// Implements: MAP-001, MAP-008.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "json::Document", try_from = "json::Document")]
 pub struct ForceMap {
     program_version: String,
     source: Source,
@@ -280,6 +283,32 @@ impl ForceMap {
             source: self.source_at(&self.table.mirror_columns()),
             ..self.clone()
         };
+        map.checked()
+    }
+
+    /// The map of the mirror image of this map's phantom, over the negatives of its lateral positions.
+    ///
+    /// # Errors
+    /// No phantom; one with an inclusion that is not the mirror image of itself but for its place.
+    ///
+    /// Implements: MAP-017.
+    pub fn mirror_image(&self) -> Result<ForceMap, Refusal> {
+        let phantom = self.phantom.as_ref().and_then(Phantom::mirror_image);
+        let phantom = phantom.ok_or_else(|| {
+            let found = "no phantom, or an inclusion that is not symmetric";
+            Refusal::state(found, "a phantom to take the mirror image of")
+        })?;
+        let mut map = ForceMap {
+            phantom: Some(phantom),
+            ..self.clone()
+        };
+        let columns: Vec<usize> = (0..self.table.laterals().len()).rev().collect();
+        map.table = self.table.mirror_image(&columns)?;
+        map.source = self.source_at(&columns);
+        if let Source::FiniteElements { certificate } = &mut map.source {
+            let smallest = &mut certificate.smallest_det;
+            smallest.lateral = 0.0 - smallest.lateral;
+        }
         map.checked()
     }
 

@@ -79,7 +79,10 @@ impl<'a> Hypotheses<'a> {
 }
 
 /// Checks that `with` is the gel of `without` with an inclusion.
-fn check_gel(without: &ForceMap, with: &ForceMap) -> Result<(), Refusal> {
+///
+/// # Errors
+/// The first key whose values differ, with both.
+pub(crate) fn check_gel(without: &ForceMap, with: &ForceMap) -> Result<(), Refusal> {
     let refused = |key: &str, reference: String, inclusion: String, expected: &str| {
         let found = format!("{key} is {inclusion}, and {reference} in the reference");
         Err(Refusal::state(found, expected))

@@ -323,6 +323,15 @@ impl ForceTable {
         })
     }
 
+    /// The table of the mirror image, whose `columns` are those of this one from the last to the first.
+    pub(super) fn mirror_image(&self, columns: &[usize]) -> Result<ForceTable, Refusal> {
+        let mut forces = self.forces.as_ref().map(|force| force.at_columns(columns));
+        let lateral = &mut forces.lateral.values;
+        lateral.iter_mut().for_each(|force| *force = 0.0 - *force);
+        let laterals = self.laterals.iter().rev().map(|x| 0.0 - x);
+        ForceTable::new(self.depths.clone(), laterals.collect(), forces)
+    }
+
     /// The column at |x| for each lateral position x of this table extended by symmetry.
     pub(super) fn mirror_columns(&self) -> Vec<usize> {
         let columns = self.laterals.len();

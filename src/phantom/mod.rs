@@ -206,4 +206,20 @@ impl Phantom {
         };
         self.inclusions.iter().filter_map(image).collect()
     }
+
+    /// The phantom seen from behind: its mirror image in x. `None` where an inclusion is no mirror image of itself but for its
+    /// place.
+    pub(crate) fn mirror_image(&self) -> Option<Phantom> {
+        let mut image = self.clone();
+        for inclusion in &mut image.inclusions {
+            let place = std::mem::take(&mut inclusion.centre_x);
+            let outline = inclusion.outline();
+            if !outline.clone().mirrored().is_same(&outline) {
+                return None;
+            }
+            // Subtracted from zero, since the negative of +0 would be −0.
+            inclusion.centre_x = 0.0 - place;
+        }
+        Some(image)
+    }
 }
