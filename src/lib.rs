@@ -10,6 +10,7 @@
 //! | §3.1 finite elements | [`fem`] |
 //! | §3, §4 force tables | [`force_map`] |
 //! | a recorded sweep against two of them | [`trace`] |
+//! | §5 inclusions of any place and size | [`bank`] |
 //! | §4 playback: from a table to a force | [`servo`] |
 //! | §4 playback: reports of the device | [`hid`] |
 //! | §4 pairs of samples, felt and judged; §5 what the answers say | [`psychophysics`] |
@@ -61,6 +62,8 @@
 //! Implements: DOC-013, DOC-014.
 #![cfg_attr(not(feature = "std"), no_std)]
 
+#[cfg(feature = "std")]
+pub mod bank;
 #[cfg(feature = "std")]
 pub mod build;
 #[cfg(feature = "cli")]

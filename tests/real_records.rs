@@ -146,7 +146,6 @@ impl Case {
     /// Judges the records over `map`.
     fn judge(&self, hypotheses: Hypotheses<'_>, map: &ForceMap, records: u64) -> Counts {
         let question = Question {
-            hypotheses,
             depth: DEPTH,
             depth_tolerance: 0.3e-3,
             unknown: &[
@@ -164,7 +163,9 @@ impl Case {
         };
         let mut counts = Counts::default();
         for number in 0..records {
-            let found = question.judge(&self.record(map, number)).unwrap();
+            let found = question
+                .judge(hypotheses, &self.record(map, number))
+                .unwrap();
             counts.inclusions += u64::from(found.decision == Some(Decision::Inclusion));
             counts.unjudged += u64::from(found.decision.is_none());
             counts.stated += found.rates.false_alarm;

@@ -56,6 +56,12 @@ impl<'a> Nuisances<'a> {
         Ok(Nuisances { basis, samples })
     }
 
+    /// The space of a basis that [`Nuisances::new`] made, of vectors of `samples` numbers.
+    #[cfg(feature = "std")]
+    pub(crate) fn of_basis(basis: &'a [f64], samples: usize) -> Nuisances<'a> {
+        Nuisances { basis, samples }
+    }
+
     /// The number of independent signals.
     pub fn rank(&self) -> usize {
         self.basis.len() / self.samples
@@ -97,7 +103,7 @@ fn normalise(vector: &mut [f64]) -> f64 {
 }
 
 /// Σ ab in independent parts, whose number is fixed, so that registers of any width give the same bits.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     const PARTS: usize = 8;
     let mut parts = [0.0; PARTS];
     let (a, b) = (a.chunks(PARTS), b.chunks(PARTS));

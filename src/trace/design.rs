@@ -7,7 +7,7 @@ use crate::detect::DetectError;
 use crate::detect::correlation::block_sums;
 use crate::detect::nuisance::{DEPENDENT, Nuisances, SubspaceDetector};
 use crate::force::Force;
-use crate::force_map::SAME_POSITION;
+use crate::force_map::{ForceTable, SAME_POSITION};
 use crate::refusal::Refusal;
 use crate::stats::error::check_positive;
 
@@ -49,16 +49,16 @@ impl Unknown {
 }
 
 /// Samples of both channels.
-pub(super) type Series = Force<Vec<f64>>;
+pub(crate) type Series = Force<Vec<f64>>;
 
 /// The parts of a record, all in the same unit and over the same samples.
 #[derive(Debug, Clone)]
-pub(super) struct Design {
+pub(crate) struct Design {
     /// F_0.
     reference: Series,
     /// F_p − F_0.
     pub residual: Series,
-    /// F_1 − F_0.
+    /// F_1 − F_0; nothing until it is set.
     pub template: Series,
     /// One for each amplitude that is unknown.
     pub nuisances: Vec<Series>,
@@ -67,34 +67,59 @@ pub(super) struct Design {
 }
 
 impl Design {
-    /// The parts of `record` by the maps of `question`, N.
+    /// The parts of `record` but for the template, by the map `without` inclusion, N.
     ///
     /// Implements: TRC-064.
-    pub fn new(question: &Question<'_>, record: &Record) -> Result<Design, Refusal> {
-        let (without, with) = (question.hypotheses.without(), question.hypotheses.with());
-        let f0 = record.expected(without, question.depth)?;
-        let f1 = record.expected(with, question.depth)?;
+    pub fn new(
+        question: &Question<'_>,
+        without: &ForceTable,
+        record: &Record,
+    ) -> Result<Design, Refusal> {
         let depth = question.depth;
+        let f0 = record.expected(without, depth)?;
         let nuisances = nuisances(question.unknown, without.depths(), depth, |depth| {
             record.expected(without, depth)
         })?;
-        let mut depth_errors = Vec::new();
-        let tolerance = question.depth_tolerance;
-        if !question.is_unknown(Unknown::Depth) && tolerance > 0.0 {
-            for map in [without, with] {
-                let slope = depth_slope(map.depths(), depth, |depth| record.expected(map, depth))?;
-                let slope = slope.into_iter();
-                depth_errors
-                    .extend(slope.map(|slope| scaled(&slope, Force::new(tolerance, tolerance))));
-            }
-        }
-        Ok(Design {
-            reference: f0.clone(),
+        let none = vec![0.0; record.positions().len()];
+        let mut design = Design {
             residual: difference(record.forces(), f0.as_deref()),
-            template: difference(f1.as_deref(), f0.as_deref()),
+            reference: f0,
+            template: Force::new(none.clone(), none),
             nuisances,
-            depth_errors,
-        })
+            depth_errors: Vec::new(),
+        };
+        design.add_depth_error(question, without, record)?;
+        Ok(design)
+    }
+
+    /// Counts what the tolerance of the depth does to the forces of `map`.
+    ///
+    /// Implements: TRC-064.
+    pub fn add_depth_error(
+        &mut self,
+        question: &Question<'_>,
+        map: &ForceTable,
+        record: &Record,
+    ) -> Result<(), Refusal> {
+        let (depth, tolerance) = (question.depth, question.depth_tolerance);
+        if !question.is_unknown(Unknown::Depth) && tolerance > 0.0 {
+            let slope = depth_slope(map.depths(), depth, |depth| record.expected(map, depth))?;
+            let error = slope.map(|slope| scaled(&slope, Force::new(tolerance, tolerance)));
+            self.depth_errors.extend(error);
+        }
+        Ok(())
+    }
+
+    /// Takes the forces of the map `with` an inclusion for those of the inclusion that is looked for.
+    pub fn set_template(
+        &mut self,
+        question: &Question<'_>,
+        with: &ForceTable,
+        record: &Record,
+    ) -> Result<(), Refusal> {
+        let f1 = record.expected(with, question.depth)?;
+        self.template = difference(f1.as_deref(), self.reference.as_deref());
+        Ok(())
     }
 
     /// The same with a function of each channel's series.
@@ -191,24 +216,24 @@ impl Design {
     }
 }
 
-pub(super) fn blocked(series: &Series, length: usize) -> Series {
+pub(crate) fn blocked(series: &Series, length: usize) -> Series {
     series
         .as_deref()
         .map(|series| block_sums(series, length).collect())
 }
 
 /// The lateral samples and then the normal ones.
-pub(super) fn stacked(series: &Series) -> Vec<f64> {
+pub(crate) fn stacked(series: &Series) -> Vec<f64> {
     [&series.lateral[..], &series.normal[..]].concat()
 }
 
 /// Σ of the squares.
-pub(super) fn squares(values: &[f64]) -> f64 {
+pub(crate) fn squares(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
 /// A series over the standard deviations of the noise.
-pub(super) fn whitened(series: &Series, noise_sd: Force<f64>) -> Series {
+pub(crate) fn whitened(series: &Series, noise_sd: Force<f64>) -> Series {
     scaled(series, noise_sd.map(|sd| 1.0 / sd))
 }
 
@@ -217,7 +242,7 @@ fn scaled(series: &Series, factor: Force<f64>) -> Series {
     channels.map(|(series, factor)| series.iter().map(|value| factor * value).collect())
 }
 
-pub(super) fn difference(a: Force<&[f64]>, b: Force<&[f64]>) -> Series {
+pub(crate) fn difference(a: Force<&[f64]>, b: Force<&[f64]>) -> Series {
     a.zip(b)
         .map(|(a, b)| std::iter::zip(a, b).map(|(a, b)| a - b).collect())
 }

@@ -112,7 +112,7 @@ impl Fit {
     /// How well `white`, the parts of `record` over the standard deviations `noise_sd`, fits.
     ///
     /// Implements: TRC-070, TRC-071, TRC-072, TRC-073.
-    pub(super) fn new(
+    pub(crate) fn new(
         question: &Question<'_>,
         white: &Design,
         noise_sd: Force<f64>,
@@ -172,7 +172,7 @@ impl Fit {
     /// Why the record cannot be judged, the likeliest cause first; none if it can.
     ///
     /// Implements: TRC-074, TRC-075.
-    pub(super) fn causes(&self, test: &SubspaceTest) -> Result<Vec<Cause>, DetectError> {
+    pub(crate) fn causes(&self, test: &SubspaceTest) -> Result<Vec<Cause>, DetectError> {
         let level = self.level.unwrap_or(1.0);
         let excess = libm::sqrt(self.chi_square / self.degrees);
         let is_small = self.limits.is_some_and(|[low, _]| self.chi_square < low);

@@ -26,11 +26,9 @@ pub enum Criterion {
     },
 }
 
-/// What is asked of a record: does the gel under its sweep hold the inclusion?
+/// What is known of a record, and what is asked: does the gel under its sweep hold an inclusion?
 #[derive(Debug, Clone, Copy)]
 pub struct Question<'a> {
-    /// The forces that are expected without and with it.
-    pub hypotheses: Hypotheses<'a>,
     /// Depth of the sweep, m.
     pub depth: f64,
     /// The true depth is within so much of it, m, unless it is unknown; 0 if it is exact.
@@ -87,27 +85,29 @@ pub struct Judgement {
 }
 
 impl Question<'_> {
-    pub(super) fn is_unknown(&self, what: Unknown) -> bool {
+    pub(crate) fn is_unknown(&self, what: Unknown) -> bool {
         self.unknown.contains(&what)
     }
 
     /// Sums over blocks have a noise of their own, whatever a sample has.
-    pub(super) fn noise_level(&self, fit: &Fit) -> NoiseLevel {
+    pub(crate) fn noise_level(&self, fit: &Fit) -> NoiseLevel {
         match self.is_unknown(Unknown::Variance) || fit.block > 1 {
             true => NoiseLevel::Unknown,
             false => NoiseLevel::Known,
         }
     }
 
-    /// Judges `record` for an inclusion at x = 0 of the maps.
+    /// Judges `record` for the inclusion of one map, where that map has it.
     ///
     /// # Errors
     /// Positions or a depth outside the maps; maps that do not differ at the samples but by what is unknown; whatever the
     /// detector refuses.
     ///
     /// Implements: TRC-008, TRC-065, TRC-066, TRC-067, TRC-077, CLI-043, CLI-049.
-    pub fn judge(&self, record: &Record) -> Result<Judgement, Refusal> {
-        let design = Design::new(self, record)?;
+    pub fn judge(&self, hypotheses: Hypotheses<'_>, record: &Record) -> Result<Judgement, Refusal> {
+        let mut design = Design::new(self, hypotheses.without(), record)?;
+        design.set_template(self, hypotheses.with(), record)?;
+        design.add_depth_error(self, hypotheses.with(), record)?;
         let judged = || {
             let noise_sd = match self.noise.sd {
                 Some(sd) => sd,

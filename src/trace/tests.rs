@@ -2,7 +2,6 @@ use super::*;
 use crate::force_map::{Hypotheses, Matrix};
 
 mod judge;
-mod locate;
 
 const EXAMPLE: &str = "position_mm,lateral_force_n,normal_force_n\n-1,0.25,1.5\n0.5,-0.5,1.25\n";
 

@@ -14,10 +14,9 @@ fn at(threshold: Threshold) -> f64 {
     }
 }
 
-/// Whether the second map's inclusion lies under a sweep at `depth`, of which all is known; a priori one in four has it.
-pub fn question<'a>(without: &'a ForceTable, with: &'a ForceTable, depth: f64) -> Question<'a> {
+/// What is known of a sweep at `depth`: all of it; a priori one in four has an inclusion.
+pub fn question<'a>(depth: f64) -> Question<'a> {
     Question {
-        hypotheses: Hypotheses::of_tables(without, with).unwrap(),
         depth,
         depth_tolerance: 0.0,
         unknown: &[],
@@ -37,7 +36,8 @@ fn a_record_at_a_known_position_by_hand() {
     // 1.125 N normal, 0.375 N lateral.
     let record = read("position_mm,lateral_force_n,normal_force_n\n-0.5,0.1,2.125\n").unwrap();
     let (without, with) = (table(0.0), table(1.0));
-    let found = question(&without, &with, 0.002).judge(&record).unwrap();
+    let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+    let found = question(0.002).judge(hypotheses, &record).unwrap();
     // r = (0, 1.125), Δ = (0.375, 1.125).
     let theta = -0.5 * 0.375 * 0.375 / 0.25 + 0.5 * 1.125 * 1.125 / 0.0625;
     let gamma = f64::sqrt(0.375 * 0.375 / 0.25 + 1.125 * 1.125 / 0.0625);
@@ -54,7 +54,9 @@ fn a_record_at_a_known_position_by_hand() {
 #[test]
 fn maps_that_do_not_fit_are_refused() {
     let judged = |record: &Record, reference: &ForceTable, depth: f64| {
-        let found = question(reference, &table(1.0), depth).judge(record);
+        let with = table(1.0);
+        let hypotheses = Hypotheses::of_tables(reference, &with).unwrap();
+        let found = question(depth).judge(hypotheses, record);
         found.unwrap_err().to_string()
     };
     let record = read(EXAMPLE).unwrap();
@@ -90,9 +92,10 @@ fn maps_that_do_not_fit_are_refused() {
     let (without, with) = (single(0.0), single(1.0));
     let question = Question {
         unknown: &[Unknown::Depth],
-        ..question(&without, &with, 0.001)
+        ..question(0.001)
     };
-    let error = question.judge(&record).unwrap_err().to_string();
+    let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+    let error = question.judge(hypotheses, &record).unwrap_err().to_string();
     let expected = "the maps have a single depth, expected rows at other depths";
     assert!(error.contains(expected), "{error}");
 }
@@ -200,9 +203,10 @@ fn what_is_unknown_is_fitted_by_least_squares() {
             criterion: Criterion::NeymanPearsonFalseAlarm {
                 max_false_alarm: 0.02,
             },
-            ..question(&without, &with, 4e-3)
+            ..question(4e-3)
         };
-        let found = question.judge(&record).unwrap();
+        let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+        let found = question.judge(hypotheses, &record).unwrap();
         let (test, fit) = (found.test, found.fit);
         let threshold = at(found.threshold);
         let chi_square = [fit.chi_square, fit.degrees];
@@ -247,9 +251,10 @@ fn asked(record: &Record, unknown: &[Unknown], sd: Option<f64>) -> Judgement {
             sd: sd.map(|sd| Force::new(sd, sd)),
             correlation: Correlation::OfRecord,
         },
-        ..question(&without, &with, 4e-3)
+        ..question(4e-3)
     };
-    question.judge(record).unwrap()
+    let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+    question.judge(hypotheses, record).unwrap()
 }
 
 /// All that is unknown unless a user says otherwise.
@@ -348,9 +353,12 @@ fn samples_that_depend_on_one_another_do_not_count_twice() {
     let (without, with) = (gel(0.0), gel(0.5));
     let question = Question {
         unknown: USUAL,
-        ..question(&without, &with, 4e-3)
+        ..question(4e-3)
     };
-    let design = Design::new(&question, &record_of_many).unwrap();
+    let mut design = Design::new(&question, &without, &record_of_many).unwrap();
+    design
+        .set_template(&question, &with, &record_of_many)
+        .unwrap();
     let (left, explained) = design.whitened(many.fit.noise_sd).unexplained().unwrap();
     assert_eq!(explained, 6);
     let lengths = left.map(|left| {

@@ -1,0 +1,188 @@
+//! Signals between the points of a bank: on each axis the polynomial through the four nearest points.
+
+/// The points whose polynomial stands for a signal, at most.
+///
+/// Implements: BNK-030.
+pub(super) const SIGNAL: usize = 4;
+/// Those for a prior.
+pub(super) const PRIOR: usize = 2;
+
+/// One axis of a bank.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct BankAxis {
+    /// Its points, increasing; one at least.
+    pub points: Vec<f64>,
+    /// Nodes in each cell between two points; 1 of an axis with one point.
+    pub nodes: usize,
+}
+
+/// Neighbouring points with their weights.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Stencil {
+    pub first: usize,
+    pub weights: Vec<f64>,
+}
+
+impl BankAxis {
+    /// An axis with one node in a cell.
+    pub fn new(points: &[f64]) -> BankAxis {
+        BankAxis {
+            points: points.to_vec(),
+            nodes: 1,
+        }
+    }
+
+    /// The number of cells.
+    pub fn cells(&self) -> usize {
+        (self.points.len() - 1).max(1)
+    }
+
+    /// Whether there is anything between its points.
+    pub fn is_free(&self) -> bool {
+        self.points.len() > 1
+    }
+
+    /// Both ends of a cell.
+    pub fn ends(&self, cell: usize) -> [f64; 2] {
+        let last = self.points.len() - 1;
+        [self.points[cell], self.points[(cell + 1).min(last)]]
+    }
+
+    /// The size of a cell, 1 of an axis with one point.
+    pub fn size(&self, cell: usize) -> f64 {
+        let [from, to] = self.ends(cell);
+        if self.is_free() { to - from } else { 1.0 }
+    }
+
+    /// The cell of `x`, or the nearest.
+    pub fn cell(&self, x: f64) -> usize {
+        let next = self.points.partition_point(|&point| point <= x);
+        next.saturating_sub(1).min(self.cells() - 1)
+    }
+
+    /// The middle of part `node` of a cell.
+    pub fn node(&self, cell: usize, node: usize) -> f64 {
+        let [from, to] = self.ends(cell);
+        from + (node as f64 + 0.5) / self.nodes as f64 * (to - from)
+    }
+
+    /// At most `most` points around a cell, with the weights of Lagrange's polynomial at `x`.
+    pub fn stencil(&self, cell: usize, x: f64, most: usize) -> Stencil {
+        let number = self.points.len().min(most);
+        let first = cell.saturating_sub(most / 2 - 1);
+        let first = first.min(self.points.len() - number);
+        let points = &self.points[first..first + number];
+        let weight = |own: usize| {
+            let others = (0..number).filter(|&other| other != own);
+            let factor = |other: usize| (x - points[other]) / (points[own] - points[other]);
+            others.map(factor).product()
+        };
+        Stencil {
+            first,
+            weights: (0..number).map(weight).collect(),
+        }
+    }
+
+    /// The stencils of all nodes of a cell.
+    fn stencils(&self, cell: usize, most: usize) -> Vec<Stencil> {
+        let nodes = 0..self.nodes;
+        nodes
+            .map(|node| self.stencil(cell, self.node(cell, node), most))
+            .collect()
+    }
+}
+
+/// The points around `at` with their weights, as numbers of maps.
+pub(super) fn weights(axes: &[Vec<f64>; 4], at: [f64; 4]) -> Vec<(usize, f64)> {
+    let mut found = vec![(0, 1.0)];
+    let mut stride = 1;
+    for (points, x) in axes.iter().zip(at) {
+        let axis = BankAxis::new(points);
+        let Stencil { first, weights } = axis.stencil(axis.cell(x), x, SIGNAL);
+        let along = |&(map, weight): &(usize, f64)| {
+            let points = (first..).zip(&weights);
+            let points = points.map(move |(point, along)| (map + stride * point, weight * along));
+            points.collect::<Vec<_>>()
+        };
+        found = found.iter().flat_map(along).collect();
+        stride *= axis.points.len();
+    }
+    found
+}
+
+/// A cell of the bank, ready to interpolate in.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct BankCell {
+    /// Its number on each axis.
+    pub at: [usize; 4],
+    /// The maps around it, those of the first axis first.
+    maps: Vec<usize>,
+    /// For each axis, the stencils of its nodes.
+    stencils: [Vec<Stencil>; 4],
+}
+
+impl BankCell {
+    /// The cell with the numbers `at`, for interpolation between at most `most` points along an axis.
+    pub fn new(axes: &[BankAxis; 4], at: [usize; 4], most: usize) -> BankCell {
+        let stencils = [0, 1, 2, 3].map(|axis: usize| axes[axis].stencils(at[axis], most));
+        let mut maps = vec![0];
+        let mut stride = 1;
+        for (axis, stencils) in axes.iter().zip(&stencils) {
+            let Stencil { first, weights } = &stencils[0];
+            let points = (0..weights.len()).map(|point| stride * (first + point));
+            let along = |offset: usize| maps.iter().map(move |map| map + offset);
+            maps = points.flat_map(along).collect();
+            stride *= axis.points.len();
+        }
+        BankCell { at, maps, stencils }
+    }
+
+    /// The numbers of the maps at its corners.
+    pub fn corners(&self, axes: &[BankAxis; 4]) -> Vec<usize> {
+        let mut corners = vec![0];
+        let mut stride = 1;
+        for (axis, &cell) in axes.iter().zip(&self.at) {
+            let next = usize::from(axis.is_free());
+            let along = |end: usize| {
+                corners
+                    .iter()
+                    .map(move |corner| corner + stride * (cell + end))
+            };
+            corners = (0..=next).flat_map(along).collect();
+            stride *= axis.points.len();
+        }
+        corners
+    }
+
+    /// The values at all nodes, those of the first axis first, from the `value` of each map around. `spare` is memory.
+    ///
+    /// Implements: BNK-030.
+    pub fn interpolate(
+        &self,
+        value: impl Fn(usize) -> f64,
+        nodes: &mut Vec<f64>,
+        spare: &mut Vec<f64>,
+    ) {
+        nodes.clear();
+        nodes.extend(self.maps.iter().map(|&map| value(map)));
+        let mut inner = 1;
+        for stencils in &self.stencils {
+            let points = stencils[0].weights.len();
+            if points == 1 {
+                continue;
+            }
+            spare.clear();
+            for block in nodes.chunks_exact(inner * points) {
+                for stencil in stencils {
+                    for at in 0..inner {
+                        let along = block[at..].iter().step_by(inner);
+                        let terms = stencil.weights.iter().zip(along);
+                        spare.push(terms.map(|(weight, value)| weight * value).sum());
+                    }
+                }
+            }
+            std::mem::swap(nodes, spare);
+            inner *= stencils.len();
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! The likelihood ratio of each point of a bank, beside nuisances.
+
+use std::sync::OnceLock;
+
+use super::place::Places;
+use crate::detect::DetectError;
+use crate::detect::mixture::mixture_theta;
+use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceStatistic, SubspaceTest, dot};
+use crate::stats::error::{check_positive, check_samples, representable};
+
+/// Of a record whose level of noise is unknown at least this share of its squares is taken for noise: less is rounding.
+///
+/// Implements: BNK-032.
+const LEAST_NOISE: f64 = 1e-12;
+
+/// Templates of all points of a bank, less what nuisances explain of them, ready for records over the same positions. Records and
+/// templates are whitened: both channels one after the other, each sample over the standard deviation of its noise.
+///
+/// Implements: BNK-031, BNK-032.
+#[derive(Debug, Clone)]
+pub struct BankDetector {
+    /// An orthonormal basis of what the nuisances add.
+    basis: Vec<f64>,
+    samples: usize,
+    level: NoiseLevel,
+    degrees: f64,
+    /// Pδ of one point after the other.
+    templates: Vec<f64>,
+    /// |Pδ|, 0 where the nuisances explain all.
+    gamma: Vec<f64>,
+    bias: Vec<f64>,
+    deviations: Vec<Vec<f64>>,
+    prior: Vec<f64>,
+    axes: [Vec<f64>; 4],
+    places: OnceLock<Places>,
+}
+
+/// What a record says of each point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BankStatistic {
+    /// Pz.
+    pub(super) left: Vec<f64>,
+    /// (Pδ)ᵀz of each point.
+    pub(super) along: Vec<f64>,
+    /// |Pz|².
+    pub(super) squares: f64,
+    /// ln of the likelihood ratio of each point, 0 where the nuisances explain its signal.
+    pub theta: Vec<f64>,
+}
+
+impl BankDetector {
+    /// The detector of `templates`, one for each point of a bank with `axes` in its order, one after the other. `prior` has the
+    /// probability of each point given an inclusion; `nuisances` are signals of unknown amplitude, one after the other; `deviations` are what a nuisance within its tolerance adds to a record.
+    ///
+    /// # Errors
+    /// Lengths that do not fit; NaN or infinity; a prior that does not add up to 1; fewer samples than nuisances and two; no point of which
+    /// the nuisances leave something.
+    ///
+    /// Implements: BNK-031, BNK-032, BNK-033.
+    pub fn new(
+        axes: &[Vec<f64>; 4],
+        mut templates: Vec<f64>,
+        prior: &[f64],
+        mut nuisances: Vec<f64>,
+        deviations: &[Vec<f64>],
+        level: NoiseLevel,
+    ) -> Result<BankDetector, DetectError> {
+        let points: usize = axes.iter().map(Vec::len).product();
+        let samples = templates.len() / points.max(1);
+        check_samples("template", &templates, points * samples)?;
+        // Also whether the prior is one.
+        mixture_theta(&vec![0.0; points], prior)?;
+        let space = Nuisances::new(&mut nuisances, samples)?;
+        let rank = space.rank();
+        let degrees = (samples as f64 - 1.0) - rank as f64;
+        check_positive("degrees of freedom", degrees)?;
+        let all = templates.chunks_exact_mut(samples);
+        let gamma: Vec<f64> = all.map(|template| space.project(template)).collect();
+        nuisances.truncate(rank * samples);
+        let mut points = gamma.iter().zip(prior);
+        if !points.any(|(gamma, prior)| *gamma > 0.0 && *prior > 0.0) {
+            return Err(DetectError::NoSignal);
+        }
+        let mut bias = vec![0.0; gamma.len()];
+        for deviation in deviations {
+            check_samples("deviation", deviation, samples)?;
+            let pairs = templates.chunks_exact(samples).zip(&gamma);
+            for (bias, (template, gamma)) in bias.iter_mut().zip(pairs) {
+                if *gamma > 0.0 {
+                    *bias = f64::max(*bias, dot(template, deviation).abs() / gamma);
+                }
+            }
+        }
+        Ok(BankDetector {
+            basis: nuisances,
+            samples,
+            level,
+            degrees,
+            templates,
+            gamma,
+            bias,
+            deviations: deviations.to_vec(),
+            prior: prior.to_vec(),
+            axes: axes.clone(),
+            places: OnceLock::new(),
+        })
+    }
+
+    /// What a whitened residual (F_p − F_0)/s says of each point; the residual becomes what the nuisances leave of it.
+    ///
+    /// # Errors
+    /// Another length than the templates'; NaN or infinity; overflow.
+    ///
+    /// Implements: BNK-032, BNK-033.
+    pub fn statistic(&self, residual: &mut [f64]) -> Result<BankStatistic, DetectError> {
+        check_samples("residual", residual, self.samples)?;
+        let length = Nuisances::of_basis(&self.basis, self.samples).project(residual);
+        let squares = representable("residual", length * length)?;
+        if self.level == NoiseLevel::Unknown {
+            check_positive("noise of the residual", squares)?;
+        }
+        let templates = self.templates.chunks_exact(self.samples);
+        let along: Vec<f64> = templates.map(|template| dot(template, residual)).collect();
+        let pairs = along.iter().zip(&self.gamma);
+        let theta = pairs.map(|(along, gamma)| {
+            let theta = self.theta(along - 0.5 * gamma * gamma, squares);
+            representable("theta", theta)
+        });
+        let theta = theta.collect::<Result<_, _>>()?;
+        Ok(BankStatistic {
+            left: residual.to_vec(),
+            along,
+            squares,
+            theta,
+        })
+    }
+
+    /// θ of a signal Δ from (Pδ)ᵀz − |Pδ|²/2 and |Pz|².
+    ///
+    /// Implements: NUI-007, NUI-009.
+    pub(super) fn theta(&self, gain: f64, squares: f64) -> f64 {
+        match self.level {
+            NoiseLevel::Known => gain,
+            NoiseLevel::Unknown => {
+                let explained = f64::min(2.0 * gain / squares, 1.0 - LEAST_NOISE);
+                -0.5 * (self.degrees + 1.0) * libm::log1p(-explained)
+            }
+        }
+    }
+
+    /// T with its law for one point; `None` where the nuisances explain its signal.
+    ///
+    /// # Errors
+    /// A record without noise, of an unknown level.
+    pub fn test(
+        &self,
+        statistic: &BankStatistic,
+        point: usize,
+    ) -> Option<Result<SubspaceTest, DetectError>> {
+        let gamma = self.gamma[point];
+        let t = statistic.along[point] / gamma;
+        let of_point = SubspaceStatistic {
+            t,
+            gamma,
+            residual: f64::max(statistic.squares - t * t, 0.0),
+            degrees: self.degrees,
+        };
+        (gamma > 0.0).then(|| of_point.test(self.level, self.bias[point]))
+    }
+
+    /// The points that can be told from no inclusion, and may be there by the prior.
+    pub fn points(&self) -> impl Iterator<Item = usize> {
+        let counts = |&point: &usize| self.gamma[point] > 0.0 && self.prior[point] > 0.0;
+        (0..self.gamma.len()).filter(counts)
+    }
+
+    /// The first point of the largest θ.
+    pub fn likeliest(&self, statistic: &BankStatistic) -> usize {
+        let better = |best: usize, next: usize| match statistic.theta[next] > statistic.theta[best]
+        {
+            true => next,
+            false => best,
+        };
+        // `new` has seen that there is one.
+        self.points().reduce(better).unwrap_or(0)
+    }
+
+    /// ln of the likelihood ratio of an inclusion at any point, with their prior.
+    ///
+    /// # Errors
+    /// As [`mixture_theta`].
+    ///
+    /// Implements: BNK-034.
+    pub fn mixture(&self, statistic: &BankStatistic) -> Result<f64, DetectError> {
+        mixture_theta(&statistic.theta, &self.prior)
+    }
+
+    /// γ of each point beside the nuisances.
+    pub fn gamma(&self) -> &[f64] {
+        &self.gamma
+    }
+
+    /// The prior of each point.
+    pub fn prior(&self) -> &[f64] {
+        &self.prior
+    }
+
+    /// Samples of both channels.
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// What a nuisance within its tolerance adds to a record.
+    pub(super) fn deviations(&self) -> &[Vec<f64>] {
+        &self.deviations
+    }
+
+    pub(super) fn level(&self) -> NoiseLevel {
+        self.level
+    }
+
+    /// The cells between the points, which take much longer than the detector, and are not always wanted.
+    pub(super) fn places(&self) -> &Places {
+        let new = || Places::new(&self.axes, &self.templates, self.samples);
+        self.places.get_or_init(new)
+    }
+
+    /// Pδ of a point.
+    pub(super) fn template(&self, point: usize) -> &[f64] {
+        &self.templates[point * self.samples..][..self.samples]
+    }
+
+    /// Pδ between the points, at the parameters `at` in the order of [`super::Parameter::ALL`].
+    pub fn template_at(&self, at: [f64; 4]) -> Vec<f64> {
+        let mut template = vec![0.0; self.samples];
+        for (point, weight) in super::axis::weights(&self.axes, at) {
+            for (sample, of_point) in template.iter_mut().zip(self.template(point)) {
+                *sample += weight * of_point;
+            }
+        }
+        template
+    }
+}

@@ -1,0 +1,122 @@
+//! Banks as JSON (`spec/bank.md`).
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::Bank;
+use crate::csv::{Column, Rows};
+use crate::force_map::{ForceMap, check_schema, parse, to_json};
+use crate::refusal::Refusal;
+
+/// What the key `schema` of a bank says.
+///
+/// Implements: BNK-010.
+pub const SCHEMA: &str = "palpate-bank";
+
+/// The version of the schema that this program writes and reads.
+///
+/// Implements: BNK-010.
+pub const SCHEMA_VERSION: u64 = 1;
+
+/// The parameters of an inclusion, and its weight.
+const PRIOR_COLUMNS: [Column; 5] = [
+    &[&[("position_mm", -3), ("position_m", 0)]],
+    &[&[("depth_mm", -3), ("depth_m", 0)]],
+    &[&[("diameter_mm", -3), ("diameter_m", 0)]],
+    &[&[("youngs_modulus_kpa", 3), ("youngs_modulus_pa", 0)]],
+    &[&[("weight", 0)]],
+];
+const PRIOR_HEADER: &str =
+    "position_mm,depth_mm,diameter_mm,youngs_modulus_kpa,weight, in any order";
+
+/// The file's keys, in the order in which they are written.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    schema: String,
+    schema_version: u64,
+    reference: ForceMap,
+    maps: Vec<ForceMap>,
+}
+
+impl Bank {
+    /// This bank as JSON.
+    ///
+    /// Implements: BNK-010.
+    pub fn to_json(&self) -> String {
+        to_json(&Document {
+            schema: SCHEMA.into(),
+            schema_version: SCHEMA_VERSION,
+            reference: self.reference.clone(),
+            maps: self.maps.clone(),
+        })
+    }
+
+    /// The bank in `text`, the content of `file`, which is named in errors alone.
+    ///
+    /// # Errors
+    /// As [`ForceMap::from_json`] for the document and each of its maps, and as [`Bank::new`].
+    ///
+    /// Implements: BNK-010, BNK-011.
+    pub fn from_json(text: &str, file: &str) -> Result<Bank, Refusal> {
+        let read = || {
+            check_schema(text, SCHEMA, SCHEMA_VERSION)?;
+            let document: Document = parse(text)?;
+            Bank::new(document.reference, document.maps)
+        };
+        read().map_err(|refusal| refusal.in_file(file))
+    }
+
+    /// Reads the bank at `path`.
+    ///
+    /// # Errors
+    /// As [`Bank::from_json`]; a file that cannot be read as UTF-8.
+    ///
+    /// Implements: BNK-011.
+    pub fn read(path: &Path) -> Result<Bank, Refusal> {
+        crate::input::parse(path, Bank::from_json)
+    }
+
+    /// Reads a prior from `path`: CSV with the parameters of each inclusion and its weight, in any order and unit of weight.
+    ///
+    /// # Errors
+    /// A row that is malformed, names no inclusion of the bank or one for the second time, or has a weight below 0; with the line.
+    /// Inclusions without a row have the weight 0, but not all.
+    ///
+    /// Implements: BNK-012.
+    pub fn read_prior(&self, path: &Path) -> Result<Vec<f64>, Refusal> {
+        let read =
+            |text: &str, file: &str| self.prior(text).map_err(|refusal| refusal.in_file(file));
+        crate::input::parse(path, read)
+    }
+
+    /// The prior of each map in `text`.
+    pub(super) fn prior(&self, text: &str) -> Result<Vec<f64>, Refusal> {
+        let table = Rows::parse(text, PRIOR_COLUMNS, PRIOR_HEADER)?;
+        let mut prior: Vec<Option<f64>> = vec![None; self.maps.len()];
+        for (line, [position, depth, diameter, modulus, weight]) in table.rows {
+            let same = |(a, b): (f64, f64)| (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0);
+            let asked = [position, depth, diameter, modulus];
+            let is_asked = |&map: &usize| self.point(map).into_iter().zip(asked).all(same);
+            let found = (0..self.maps.len()).find(is_asked).ok_or_else(|| {
+                Refusal::state("an inclusion that is not in the bank", "one of its").at(line)
+            })?;
+            if prior[found].is_some() {
+                let found = "an inclusion for the second time";
+                return Err(Refusal::state(found, "each once").at(line));
+            }
+            if !(0.0..f64::INFINITY).contains(&weight) {
+                return Err(Refusal::value("weight", weight, "at least 0").at(line));
+            }
+            prior[found] = Some(weight);
+        }
+        let whole: f64 = prior.iter().flatten().sum();
+        if !(whole > 0.0 && whole.is_finite()) {
+            let found = format!("weights that add up to {whole}");
+            return Err(Refusal::state(found, "above 0 and finite"));
+        }
+        let share = |weight: Option<f64>| weight.unwrap_or(0.0) / whole;
+        Ok(prior.into_iter().map(share).collect())
+    }
+}

@@ -1,0 +1,209 @@
+//! Which maps a bank needs, and their computation.
+
+use super::{Bank, Parameter};
+use crate::fem::{Contact, FemError, Model};
+use crate::force_map::ForceMap;
+use crate::phantom::{Phantom, Shape};
+use crate::refusal::Refusal;
+
+/// The mesh size of a bank unless another is asked for, m: a third longer than that of a single map, which takes half
+/// the time. `spec/bank.md` has what it does to estimates.
+///
+/// Implements: BNK-024.
+pub const MESH_SIZE: f64 = 0.65e-3;
+
+/// How far from the depth of the probe the reference has further depths, m: for a depth that is known within a tolerance or
+/// unknown.
+///
+/// Implements: BNK-022.
+const BESIDE: f64 = 0.3e-3;
+
+/// The maps that make a bank.
+///
+/// ```
+/// use palpate::bank::{Bank, BankPlan};
+/// use palpate::phantom::Phantom;
+///
+/// let mut plan = BankPlan::new(Phantom::builtin("6.6")?, 4e-3, &[-6e-3, -3e-3, 0.0, 3e-3, 6e-3])?;
+/// plan.positions = vec![-2e-3, 0.0, 2e-3];
+/// plan.mesh_size = 2e-3;
+/// let solves = plan.solves()?;
+/// // The inclusion at −2 mm is the mirror image of that at 2 mm.
+/// assert_eq!(solves.len(), 2);
+/// let mut maps = Vec::new();
+/// for solve in &solves {
+///     maps.extend(plan.solve(solve)?);
+/// }
+/// let bank = Bank::new(plan.reference()?, maps)?;
+/// assert_eq!(bank.axes()[0], [-2e-3, 0.0, 2e-3]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Implements: BNK-020.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BankPlan {
+    /// The gel with the one inclusion that all hypotheses are made of.
+    phantom: Phantom,
+    /// Depth of the probe, m.
+    depth: f64,
+    /// Lateral positions of the probe, m.
+    laterals: Vec<f64>,
+    /// x of the inclusion's centre, m.
+    pub positions: Vec<f64>,
+    /// Depth of its highest point, m.
+    pub depths: Vec<f64>,
+    /// Its diameter, m, of a disc.
+    pub diameters: Vec<f64>,
+    /// Its Young's modulus, Pa.
+    pub moduli: Vec<f64>,
+    /// The mesh size, m.
+    pub mesh_size: f64,
+    /// How the gap to the probe is measured.
+    pub contact: Contact,
+}
+
+/// One computation for a bank.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BankSolve {
+    /// The gel with the inclusion.
+    pub phantom: Phantom,
+    /// Whether the mirror image is of the bank too.
+    pub image: bool,
+}
+
+impl BankPlan {
+    /// The plan for the inclusion of `phantom` alone, under a probe at `depth` and `laterals` (m); the lists of the hypotheses
+    /// can be changed.
+    ///
+    /// # Errors
+    /// A phantom with no inclusion or several.
+    ///
+    /// Implements: BNK-020.
+    pub fn new(phantom: Phantom, depth: f64, laterals: &[f64]) -> Result<BankPlan, Refusal> {
+        let [inclusion] = &phantom.inclusions[..] else {
+            let found = format!("{} inclusions", phantom.inclusions.len());
+            let expected = "one, of which the hypotheses are made";
+            return Err(Refusal::value("phantom.inclusion", found, expected));
+        };
+        let [positions, depths, diameters, moduli] =
+            Parameter::ALL.map(|parameter| vec![parameter.of(inclusion)]);
+        Ok(BankPlan {
+            depth,
+            laterals: laterals.to_vec(),
+            positions,
+            depths,
+            diameters,
+            moduli,
+            mesh_size: MESH_SIZE,
+            contact: Contact::default(),
+            phantom,
+        })
+    }
+
+    /// The computations, in the order of the bank but without those that are mirror images of others.
+    ///
+    /// # Errors
+    /// A diameter for a shape that has none; a hypothesis that does not fit into the gel, with its parameters; a pose that the
+    /// probe cannot take.
+    ///
+    /// Implements: BNK-021, BNK-023.
+    pub fn solves(&self) -> Result<Vec<BankSolve>, Refusal> {
+        for &lateral in &self.laterals {
+            self.phantom.check_pose(self.depth, lateral)?;
+        }
+        let mirrored = self.laterals.iter().rev().map(|x| 0.0 - x);
+        let is_even = mirrored.eq(self.laterals.iter().copied());
+        let mut solves = Vec::new();
+        for &modulus in &self.moduli {
+            for &diameter in &self.diameters {
+                for &depth in &self.depths {
+                    for &position in &self.positions {
+                        let point = [position, depth, diameter, modulus];
+                        let phantom = self.hypothesis(point)?;
+                        let has_image = |x: f64| {
+                            let images = x != 0.0 && self.positions.contains(&(0.0 - x));
+                            is_even && images && phantom.mirror_image().is_some()
+                        };
+                        let image = has_image(position);
+                        if position > 0.0 || !image {
+                            solves.push(BankSolve { phantom, image });
+                        }
+                    }
+                }
+            }
+        }
+        Ok(solves)
+    }
+
+    /// The phantom of one hypothesis.
+    fn hypothesis(&self, point: [f64; 4]) -> Result<Phantom, Refusal> {
+        let [position, depth, diameter, modulus] = point;
+        let mut phantom = self.phantom.clone();
+        let inclusion = &mut phantom.inclusions[0];
+        let same_width = Parameter::Diameter.of(inclusion) == diameter;
+        inclusion.centre_x = position;
+        inclusion.depth = depth;
+        inclusion.material.youngs_modulus = modulus;
+        match &mut inclusion.shape {
+            Shape::Disc { diameter: of } => *of = diameter,
+            _ if same_width => {}
+            _ => {
+                let found = "the inclusion is no disc";
+                return Err(Refusal::state(found, "a disc where its diameter varies"));
+            }
+        }
+        let [x, y, d] = [position, depth, diameter].map(|length| 1e3 * length);
+        let of = format!(
+            "the inclusion at {x:.3} mm, {y:.3} mm deep, {d:.3} mm wide, of {:.1} kPa",
+            1e-3 * modulus
+        );
+        let checked = phantom.validate();
+        checked.map_err(|refusal| refusal.of_part(&of))?;
+        Ok(phantom)
+    }
+
+    /// The forces without inclusion, at the depth of the probe and at one on either side, where the probe can stand.
+    ///
+    /// # Errors
+    /// As [`Model::map`].
+    ///
+    /// Implements: BNK-022.
+    pub fn reference(&self) -> Result<ForceMap, FemError> {
+        let mut phantom = self.phantom.clone();
+        phantom.inclusions.clear();
+        let above = (self.depth - BESIDE).max(0.5 * self.depth);
+        let mut depths = vec![above, self.depth, self.depth + BESIDE];
+        let stands = |depth| {
+            let mut poses = self.laterals.iter();
+            poses.all(|&lateral| phantom.check_pose(depth, lateral).is_ok())
+        };
+        depths.retain(|&depth| depth == self.depth || stands(depth));
+        let model = Model::new(&phantom, self.mesh_size, self.contact)?;
+        model.map(&depths, &self.laterals, &|_| ())
+    }
+
+    /// The map of one hypothesis, and that of its mirror image.
+    ///
+    /// # Errors
+    /// As [`Model::sweep`].
+    ///
+    /// Implements: BNK-023.
+    pub fn solve(&self, solve: &BankSolve) -> Result<Vec<ForceMap>, FemError> {
+        let model = Model::new(&solve.phantom, self.mesh_size, self.contact)?;
+        let map = model.sweep(self.depth, &self.laterals)?;
+        let image = solve.image.then(|| map.mirror_image()).transpose()?;
+        Ok(std::iter::once(map).chain(image).collect())
+    }
+
+    /// The bank, computed on this thread.
+    ///
+    /// # Errors
+    /// As [`BankPlan::solves`], [`BankPlan::reference`] and [`BankPlan::solve`].
+    pub fn bank(&self) -> Result<Bank, FemError> {
+        let mut maps = Vec::new();
+        for solve in self.solves()? {
+            maps.extend(self.solve(&solve)?);
+        }
+        Ok(Bank::new(self.reference()?, maps)?)
+    }
+}

@@ -1,0 +1,97 @@
+//! Banks of signals that are known in closed form.
+
+use super::*;
+use crate::detect::nuisance::NoiseLevel;
+use crate::force::Force;
+use crate::force_map::{ForceTable, Matrix, Measurement, Source};
+use crate::phantom::Phantom;
+
+mod detector;
+mod file;
+mod locate;
+mod place;
+mod rates;
+
+/// Samples of a sweep over −8 … 8 mm.
+pub const SAMPLES: usize = 33;
+
+/// The signal of an inclusion at `x` (mm) with the depth `d` (mm): a bump as wide as it is deep.
+pub fn signal(x: f64, d: f64) -> Vec<f64> {
+    let sample = |k: usize| 0.5 * k as f64 - 8.0 - x;
+    let shape = |k: usize| (-0.5 * (sample(k) / (1.0 + d)).powi(2)).exp() / d;
+    (0..SAMPLES).map(shape).collect()
+}
+
+/// Positions by 1 mm and depths by 0.5 mm.
+pub fn axes() -> [Vec<f64>; 4] {
+    let positions = (-6..=6).map(f64::from).collect();
+    let depths = (4..=8).map(|k| 0.5 * f64::from(k)).collect();
+    [positions, depths, vec![1.0], vec![1.0]]
+}
+
+/// The detector of these signals in noise of standard deviation 1/`scale`, beside an unknown offset if it is so.
+pub fn detector(scale: f64, has_offset: bool, level: NoiseLevel) -> BankDetector {
+    let [positions, depths, ..] = axes();
+    let points = depths
+        .iter()
+        .flat_map(|d| positions.iter().map(move |x| (*x, *d)));
+    let scaled = |(x, d)| {
+        signal(x, d)
+            .into_iter()
+            .map(|value| scale * value)
+            .collect::<Vec<_>>()
+    };
+    let templates: Vec<f64> = points.flat_map(scaled).collect();
+    let number = templates.len() / SAMPLES;
+    let offset = vec![1.0; if has_offset { SAMPLES } else { 0 }];
+    let prior = vec![1.0 / number as f64; number];
+    BankDetector::new(&axes(), templates, &prior, offset, &[], level).unwrap()
+}
+
+/// A map of one depth and −3 … 3 mm: a bump at `x` mm that is the larger, the shallower `depth` (mm), on 1 N; without an inclusion if
+/// there is none.
+pub fn map(inclusion: Option<(f64, f64, f64)>, depths: &[f64]) -> ForceMap {
+    let laterals: Vec<f64> = (-6..=6).map(|k| f64::from(k) * 5e-4).collect();
+    let mut phantom = Phantom::builtin("6.6").unwrap();
+    let bump = |lateral: f64| {
+        let (x, depth, diameter) = inclusion?;
+        let from = (1e3 * lateral - x) / (0.5 + 0.1 * depth);
+        Some(diameter / 10.0 * (2.0 / depth) * (-0.5 * from * from).exp())
+    };
+    let normal =
+        |row: usize, column: usize| 250.0 * depths[row] + bump(laterals[column]).unwrap_or(0.0);
+    let forces = Force {
+        lateral: Matrix::from_fn(depths.len(), laterals.len(), |_, _| 0.0),
+        normal: Matrix::from_fn(depths.len(), laterals.len(), normal),
+    };
+    match inclusion {
+        None => phantom.inclusions.clear(),
+        Some((x, depth, diameter)) => {
+            phantom.inclusions[0].centre_x = 1e-3 * x;
+            phantom.inclusions[0].depth = 1e-3 * depth;
+            phantom.inclusions[0].shape = Shape::Disc {
+                diameter: 1e-3 * diameter,
+            };
+        }
+    }
+    let table = ForceTable::new(depths.to_vec(), laterals, forces).unwrap();
+    let source = Source::Measured(Measurement::new("gel.csv", ""));
+    ForceMap::new(source, Some(phantom), table).unwrap()
+}
+
+/// Inclusions at −2 … 2 mm, 3, 4, 5 and 6 mm deep, of 4 and 8 mm, the last first.
+pub fn maps() -> Vec<ForceMap> {
+    let mut maps = Vec::new();
+    for diameter in [8.0, 4.0] {
+        for depth in [6.0, 5.0, 4.0, 3.0] {
+            for x in [-2.0, -1.0, 0.0, 1.0, 2.0] {
+                maps.push(map(Some((x, depth, diameter)), &[4e-3]));
+            }
+        }
+    }
+    maps
+}
+
+pub fn reference() -> ForceMap {
+    map(None, &[3.7e-3, 4e-3, 4.3e-3])
+}
