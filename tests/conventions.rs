@@ -33,13 +33,15 @@ fn help(arguments: &[&str]) -> String {
 const UNITS: [&str; 6] = ["mm", "mm-s", "kpa", "us", "n", "s"];
 
 /// Options whose value is no quantity, has no unit, or is in SI.
-const NO_OTHER_UNIT: [&str; 35] = [
+const NO_OTHER_UNIT: [&str; 40] = [
+    "bank",
     "condition",
     "config",
     "contact",
     "criterion",
     "cycles",
     "device",
+    "figure",
     "format",
     "inclusion",
     "journal",
@@ -56,13 +58,16 @@ const NO_OTHER_UNIT: [&str; 35] = [
     "out",
     "phantom",
     "pid",
+    "prior",
     "prior-h1",
     "record",
     "reference",
     "replay",
+    "samples",
     "seconds",
     "seed",
     "serial",
+    "simulations",
     "soak",
     "subject",
     "trials",

@@ -1,4 +1,4 @@
-//! `palpate detect`, end to end: two solved maps, a simulated sweep, the program, and its answer
+//! `palpate detect`, end to end: two solved maps or a small bank, a simulated sweep, the program, and its answer
 //! against the library's and against plain sums.
 #![cfg(feature = "cli")]
 
@@ -7,6 +7,7 @@ mod program;
 use std::process::Output;
 use std::sync::OnceLock;
 
+use palpate::bank::Bank;
 use palpate::detect::assessment::assess;
 use palpate::detect::{Decision, theta_of_record};
 use palpate::force::Force;
@@ -17,7 +18,7 @@ use serde_json::{Value, json};
 
 /// Standard deviation of the noise in the sweeps, N.
 const NOISE: Force<f64> = Force::new(0.05, 0.12);
-/// Where the moved inclusion lies, in samples of half a millimetre: 1.5 mm.
+/// The map of the bank whose inclusion is in `moved.csv`: at 1.5 mm, 2.6 mm deep.
 const MOVED: usize = 3;
 
 /// The folder with maps and traces, made once.
@@ -35,7 +36,13 @@ fn place() -> &'static Place {
         let [none, inclusion] = maps(&place);
         write_trace(&place, "with.csv", &sweep(inclusion.table()), 1);
         write_trace(&place, "without.csv", &sweep(none.table()), 2);
-        write_trace(&place, "moved.csv", &moved(&none, &inclusion), 3);
+        let output = place.run(
+            "bank --phantom 2.6 --offsets-mm=-3:3:1.5 --depths-mm 2.6,3.6 --probe-depth-mm 3 --laterals-mm=-8:8:0.5 \
+             --mesh-mm 2 --out bank.json",
+        );
+        assert!(output.status.success(), "{output:?}");
+        let bank = Bank::read(&place.at("bank.json")).unwrap();
+        write_trace(&place, "moved.csv", &sweep(bank.maps()[MOVED].table()), 3);
         write_trace(&place, "disturbed.csv", &disturbed(inclusion.table()), 1);
         place
     })
@@ -50,17 +57,6 @@ fn sweep(map: &ForceTable) -> Vec<[f64; 3]> {
     let row = map.row(0.003).unwrap();
     let sample = |i| [i as f64 * 0.5 - 8.0, row.lateral[i], row.normal[i]];
     (0..row.lateral.len()).map(sample).collect()
-}
-
-/// The sweep over an inclusion that lies `MOVED` samples further to the right.
-fn moved(none: &ForceMap, inclusion: &ForceMap) -> Vec<[f64; 3]> {
-    let (without, with) = (sweep(none.table()), sweep(inclusion.table()));
-    let force = |i: usize, channel: usize| {
-        let signal = i.checked_sub(MOVED);
-        without[i][channel] + signal.map_or(0.0, |j| with[j][channel] - without[j][channel])
-    };
-    let sample = |i: usize| [without[i][0], force(i, 1), force(i, 2)];
-    (0..without.len()).map(sample).collect()
 }
 
 /// The sweep by a sensor with an offset and a drift of each channel.
@@ -107,10 +103,10 @@ fn detect(trace: &str, more: &str) -> Output {
 
 fn answer(trace: &str, more: &str) -> Value {
     let output = detect(trace, &format!("{USUAL} --format json {more}"));
-    // These maps end where the signal is not yet gone, of which a scan warns.
-    let mut warnings = text(&output.stderr).lines();
-    let only_of_the_ends = warnings.all(|line| line.contains("at an end of the maps"));
-    assert!(output.status.success() && only_of_the_ends, "{output:?}");
+    assert!(
+        output.status.success() && output.stderr.is_empty(),
+        "{output:?}"
+    );
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
@@ -119,18 +115,15 @@ fn number(answer: &Value, key: &str) -> f64 {
     number.unwrap_or_else(|| panic!("{key} in {answer}"))
 }
 
-/// Σ (rΔ − Δ²/2)/s² and ΣΔ²/s² over both channels, Δ shifted by `shift` samples and beyond the maps as at their end, in plain
-/// arithmetic from the rows of the maps.
-fn plain(trace: &str, shift: isize) -> (f64, f64) {
-    let [none, inclusion] = maps(place());
-    let (without, with) = (sweep(none.table()), sweep(inclusion.table()));
+/// Σ (rΔ − Δ²/2)/s² and ΣΔ²/s² over both channels, in plain arithmetic from the rows of the maps.
+fn plain(trace: &str, [none, inclusion]: [&ForceTable; 2]) -> (f64, f64) {
+    let (without, with) = (sweep(none), sweep(inclusion));
     let observed = observed(trace);
     let (mut theta, mut energy) = (0.0, 0.0);
     let channels = observed.zip(NOISE).into_array();
     for (channel, (observed, sd)) in (1..).zip(channels) {
         for (i, observed) in observed.iter().enumerate() {
-            let j = i.saturating_add_signed(-shift).min(with.len() - 1);
-            let signal = with[j][channel] - without[j][channel];
+            let signal = with[i][channel] - without[i][channel];
             let residual = observed - without[i][channel];
             theta += (residual * signal - 0.5 * signal * signal) / (sd * sd);
             energy += signal * signal / (sd * sd);
@@ -154,7 +147,7 @@ fn where_all_is_known_theta_is_that_of_the_library_and_of_a_plain_sum() {
         ("without.csv", Decision::NoInclusion, "no_inclusion"),
     ] {
         let found = answer(trace, &format!("{KNOWN} --prior-h1 0.2"));
-        let (theta, energy) = plain(trace, 0);
+        let (theta, energy) = plain(trace, [none.table(), inclusion.table()]);
         let observed = observed(trace);
         let [f0, f1] = [&none, &inclusion].map(|map| map.row(0.003).unwrap());
         let statistic = theta_of_record(observed.as_deref(), f0, f1, NOISE).unwrap();
@@ -277,14 +270,12 @@ fn a_record_that_cannot_be_judged_is_neither_and_says_why() {
     assert_near(limits[1].as_f64().unwrap(), 136.7380108059163);
     assert_eq!(found["fits"], true);
     // The sweep was at 3 mm.
-    for scan in ["", "--scan"] {
-        let arguments = format!("{MAPS} --depth-mm 2 --noise-sd-n 0.1 {KNOWN} {scan}");
+    let maps = format!("{MAPS} --depth-mm 2 --noise-sd-n 0.1 {KNOWN}");
+    let bank = format!("--bank bank.json --noise-sd-n 0.03 {KNOWN}");
+    for arguments in [maps, bank] {
         let output = place().run(&format!("detect with.csv {arguments}"));
         assert_eq!(output.status.code(), Some(3), "{output:?}");
-        let told = text(&output.stderr)
-            .lines()
-            .filter(|line| !line.contains("at an end of"));
-        let told: Vec<&str> = told.collect();
+        let told: Vec<&str> = text(&output.stderr).lines().collect();
         let words = "palpate: with.csv: cannot be judged: there is more noise than was stated";
         assert!(told.len() == 1 && told[0].starts_with(words), "{told:?}");
         let table = text(&output.stdout);
@@ -344,37 +335,147 @@ fn the_last_line_is_a_sentence() {
     }
 }
 
-// Verifies: CLI-044, TRC-032, TRC-034.
-#[test]
-fn the_scan_finds_an_inclusion_that_was_moved() {
-    let scan = "--scan --criterion neyman-pearson-false-alarm --max-false-alarm 0.001";
-    let scan = &format!("{scan} {KNOWN}");
-    let found = answer("moved.csv", scan);
-    let best = (-16..=16).map(|shift| plain("moved.csv", shift).0);
-    assert_near(number(&found, "theta_max"), best.fold(f64::MIN, f64::max));
-    assert_eq!(found["decision"], "inclusion");
-    let [position, bound] = ["position_m", "position_sd_bound_m"].map(|key| number(&found, key));
-    let moved = MOVED as f64 * 0.0005;
-    assert!((position - moved).abs() < 4.0 * bound, "{found}");
-    assert!(bound > 1e-5 && bound < 5e-4, "{found}");
-    assert!(number(&found, "false_alarm_bound") <= 0.001);
-    assert_eq!(number(&found, "candidates"), 33.0);
-    let nothing = answer("without.csv", scan);
-    assert_eq!(nothing["decision"], "no_inclusion");
+/// The usual noise, with the bank.
+const BY_BANK: &str =
+    "--bank bank.json --noise-sd-lateral-n 0.05 --noise-sd-normal-n 0.12 --format json";
+
+/// The answer by the bank.
+fn located(trace: &str, more: &str) -> Value {
+    let answer = place().succeed(&format!("detect {trace} {BY_BANK} {more}"));
+    serde_json::from_str(&answer).unwrap()
 }
 
-// Verifies: CLI-044.
+/// θ of each map of the bank, in plain arithmetic.
+fn thetas(trace: &str) -> Vec<f64> {
+    let bank = Bank::read(&place().at("bank.json")).unwrap();
+    let theta = |map: &ForceMap| plain(trace, [bank.reference().table(), map.table()]).0;
+    bank.maps().iter().map(theta).collect()
+}
+
+/// ln Σ pₖ exp θₖ.
+fn mixture(weighted: impl Iterator<Item = (f64, f64)>) -> f64 {
+    weighted.map(|(p, theta)| p * theta.exp()).sum::<f64>().ln()
+}
+
+// Verifies: CLI-044, CLI-150, CLI-153.
 #[test]
-fn a_scan_with_an_inclusion_off_the_axis_says_what_its_position_means() {
-    let mut map: Value = serde_json::from_str(&place().read("inclusion.json")).unwrap();
-    map["phantom"]["inclusion"][0]["centre_x_m"] = 3e-3.into();
-    place().write("off.json", map.to_string());
-    let maps = "--reference none.json --inclusion off.json";
-    let output = place().run(&format!("detect with.csv {maps} --scan {USUAL}"));
-    let warnings = text(&output.stderr);
-    let words = "off.json: the position is where x = 0 of this map lies";
-    assert!(warnings.contains(words), "{warnings}");
-    assert!(warnings.contains("x = 3 mm"), "{warnings}");
+fn the_bank_finds_an_inclusion_that_was_moved() {
+    let bound = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.001";
+    let found = located("moved.csv", &format!("{KNOWN} {bound}"));
+    let thetas = thetas("moved.csv");
+    let best = thetas.iter().copied().fold(f64::MIN, f64::max);
+    assert_eq!(best, thetas[MOVED]);
+    assert_near(number(&found, "theta_max"), best);
+    let of_any = mixture(thetas.iter().map(|&theta| (0.1, theta)));
+    assert_near(number(&found, "theta_mixture"), of_any);
+    assert_eq!(
+        (&found["decision"], &found["decided_by"]),
+        (&json!("inclusion"), &json!("theta_max"))
+    );
+    assert!(number(&found, "false_alarm_bound") <= 0.001);
+    assert_eq!(
+        (number(&found, "hypotheses"), number(&found, "depth_m")),
+        (10.0, 0.003)
+    );
+    for (key, truth) in [("position", 1.5e-3), ("inclusion_depth", 2.6e-3)] {
+        let of = &found[key];
+        let [estimate, sd] = ["estimate", "sd_bound"].map(|key| number(of, key));
+        assert!((estimate - truth).abs() < 4.0 * sd, "{key}: {of}");
+        assert!(sd > 1e-6 && sd < 1e-3, "{key}: {of}");
+        let [low, high] = [0, 1].map(|end: usize| of["interval"][end].as_f64().unwrap());
+        assert!(
+            low < high && low - sd < truth && truth < high + sd,
+            "{key}: {of}"
+        );
+        assert_eq!(of["unit"], "m");
+    }
+    // The bank has one diameter and one modulus.
+    assert!(found.get("diameter").is_none() && found.get("youngs_modulus").is_none());
+    assert_eq!(
+        located("without.csv", &format!("{KNOWN} {bound}"))["decision"],
+        "no_inclusion"
+    );
+    let error = place().refused(&format!("detect moved.csv {BY_BANK} --depth-mm 3.1"));
+    assert!(error.contains("0.003 m, for which the bank is"), "{error}");
+    // Beside what is unknown by default, the same place.
+    let found = located("moved.csv", "");
+    assert_eq!(
+        (&found["decision"], &found["decided_by"]),
+        (&json!("inclusion"), &json!("theta_mixture"))
+    );
+    let [estimate, sd] = ["estimate", "sd_bound"].map(|key| number(&found["position"], key));
+    assert!((estimate - 1.5e-3).abs() < 4.0 * sd, "{found}");
+}
+
+// Verifies: CLI-151, BNK-012.
+#[test]
+fn a_prior_weighs_the_inclusions_of_the_bank() {
+    let head = "position_mm,depth_mm,diameter_mm,youngs_modulus_kpa,weight\n";
+    place().write(
+        "prior.csv",
+        format!("{head}1.5,2.6,6.4,1200,1\n-1.5,3.6,6.4,1200,3\n"),
+    );
+    let found = located("moved.csv", &format!("{KNOWN} --prior prior.csv"));
+    let thetas = thetas("moved.csv");
+    // Five positions, then those of the next depth: −1.5 mm is the second.
+    let weighted = [(0.25, thetas[MOVED]), (0.75, thetas[5 + 1])];
+    assert_near(
+        number(&found, "theta_mixture"),
+        mixture(weighted.into_iter()),
+    );
+    assert_eq!(found["prior"], "prior.csv");
+    place().write("elsewhere.csv", format!("{head}1,2.6,6.4,1200,1\n"));
+    let error = place().refused(&format!("detect moved.csv {BY_BANK} --prior elsewhere.csv"));
+    assert!(
+        error.contains("elsewhere.csv:2: an inclusion that is not in the bank"),
+        "{error}"
+    );
+}
+
+// Verifies: CLI-152.
+#[test]
+fn simulated_records_set_the_threshold() {
+    let alarms = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.05";
+    let bound = located("moved.csv", &format!("{KNOWN} {alarms}"));
+    let found = located("moved.csv", &format!("{KNOWN} {alarms} --simulations 2000"));
+    // A sum of ten dependent tails is more than their union.
+    assert!(number(&found, "eta") < number(&bound, "eta"), "{found}");
+    assert_eq!(number(&found, "simulations"), 2000.0);
+    let interval = &found["calibrated_false_alarm"];
+    let [low, high] = [0, 1].map(|end: usize| interval[end].as_f64().unwrap());
+    // Clopper-Pearson at 99 % of 100 of 2000: SciPy's beta.ppf gives 0.0382 and 0.0640.
+    assert!(
+        (low - 0.0382).abs() < 1e-4 && (high - 0.0640).abs() < 1e-4,
+        "{interval}"
+    );
+    assert!(bound.get("simulations").is_none());
+    let again = located(
+        "moved.csv",
+        &format!("{KNOWN} {alarms} --simulations 2000 --seed 1999"),
+    );
+    assert_eq!(again, found);
+}
+
+// Verifies: CLI-163, CLI-164, CLI-165.
+#[test]
+fn a_figure_shows_where_the_inclusion_lies() {
+    located("moved.csv", "--figure place.svg");
+    let figure = place().read("place.svg");
+    for words in [
+        "<svg ",
+        ">\nlikeliest inclusion\n<",
+        ">\nDepth below the surface (mm)\n<",
+        ">\nPosition x (mm)\n<",
+        ">\nPosition x of the inclusion (mm)\n<",
+        ">\nDepth of the inclusion (mm)\n<",
+        ">\nProbability density (1/mm)\n<",
+    ] {
+        assert!(figure.contains(words), "no {words:?} in {figure}");
+    }
+    assert!(
+        !figure.contains("iameter") && !figure.contains("odulus"),
+        "{figure}"
+    );
 }
 
 // Verifies: CLI-145, CLI-146.
@@ -395,11 +496,9 @@ fn a_tolerance_that_no_map_can_count_is_told() {
     let expected = "palpate: warning: none-3.json: a single depth: what another depth within its tolerance does is not counted\n";
     assert_eq!(told(""), expected);
     assert_eq!(told("--depth-tolerance-mm 0"), "");
-    let output = place().run(&format!(
-        "detect with.csv {maps} {USUAL} --format json --scan"
-    ));
+    let output = place().run(&format!("detect with.csv {maps} {USUAL} --format json"));
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(found["warnings"], json!(["single_depth", "template_edge"]));
+    assert_eq!(found["warnings"], json!(["single_depth"]));
 }
 
 // Verifies: TRC-010, TRC-012.
@@ -423,7 +522,7 @@ fn a_trace_over_time_is_the_same_trace() {
 // Verifies: CLI-046.
 #[test]
 fn people_get_a_table_and_no_decision_is_a_failure() {
-    let table = place().succeed(&format!("detect with.csv {MAPS} {USUAL} --scan"));
+    let table = place().succeed("detect with.csv --bank bank.json --noise-sd-n 0.1");
     assert!(table.starts_with("decision  "), "{table}");
     assert!(table.contains("position, mm"), "{table}");
     assert_eq!(detect("without.csv", USUAL).status.code(), Some(0));
@@ -495,7 +594,11 @@ const REFUSED: &str = "
 --depth-mm 3 --noise-sd-n 0.1 --criterion neyman-pearson => neyman-pearson-miss
 --depth-mm 3 --noise-sd-n 0.1 --velocity-mm-s 1 => --start-mm
 --depth-mm 3 --noise-sd-n 0.1 --velocity-mm-s 1 --start-mm 0 => expected neither velocity nor start
---depth-mm 3 --noise-sd-n 0.1 --sacn => --scan
+--depth-mm 3 --noise-sd-n 0.1 --tirm => --trim
+--depth-mm 3 --noise-sd-n 0.1 --bank bank.json => cannot be used with
+--depth-mm 3 --noise-sd-n 0.1 --figure place.svg => cannot be used with '--figure
+--depth-mm 3 --noise-sd-n 0.1 --simulations 1000 => cannot be used with '--simulations
+--depth-mm 3 --noise-sd-n 0.1 --prior prior.csv => cannot be used with '--prior
 --depth-mm 3 --known ofset => \"ofset\" is none of offset, drift, gain, depth, variance, all and none
 --depth-mm 3 --known variance => --known variance: expected --noise-sd-n, or --noise FILE
 --depth-mm 3 --known all => --known variance: expected --noise-sd-n, or --noise FILE
@@ -532,6 +635,7 @@ with.csv --reference inclusion.json --inclusion inclusion.json => number of incl
 with.csv --reference other-gel.json --inclusion inclusion.json => phantom.layer[0].material.youngs_modulus_pa is
 with.csv --reference coarse.json --inclusion inclusion.json => mesh_size_m is
 with.csv --reference with.csv --inclusion inclusion.json => with.csv:2: no column depth_mm or depth_m in the header
+with.csv --bank missing.json => missing.json: cannot be read
 ";
 
 // Verifies: TRC-004, TRC-008, TRC-009, TRC-024, TRC-025, CLI-047, CLI-058, MAP-045.

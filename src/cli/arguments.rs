@@ -8,7 +8,8 @@ use serde::Serialize;
 use super::error::CliError;
 use super::output::print;
 use super::{
-    demo, detect, devices, experiment, import, oracle, play, psychophysics, run, solve, timing,
+    bank, demo, detect, devices, experiment, import, oracle, play, psychophysics, reach, run,
+    solve, timing,
 };
 
 /// The version, and which build this is.
@@ -42,8 +43,12 @@ pub(super) enum Command {
     Solve(solve::SolveArguments),
     /// A measured force map in CSV, checked and written as JSON.
     ImportMap(import::ImportArguments),
-    /// A recorded sweep against two force maps: is there an inclusion, and where.
+    /// The forces for every inclusion that may be there: a bank, for 'palpate detect' and 'palpate reach'.
+    Bank(bank::BankArguments),
+    /// A recorded sweep against two force maps or a bank: is there an inclusion, and where.
     Detect(detect::DetectArguments),
+    /// How deep an inclusion of a bank may lie, and how small it may be, to be found.
+    Reach(reach::ReachArguments),
     /// A force map to a hand, through a haptic device or a simulated one.
     Play(play::PlayArguments),
     /// The HID devices of this machine, and which of them can play a force map.

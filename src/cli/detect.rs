@@ -6,17 +6,17 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::detection::DetectAnswer;
-use super::output::{note, print};
+use super::output::{note, print, write};
 use super::{CliError, Format};
+use crate::bank::{Bank, BankSearch};
 use crate::decimal::parse_scaled;
 use crate::detect::Decision;
 use crate::force::Force;
-use crate::force_map::{ForceMap, Hypotheses};
+use crate::force_map::{ForceMap, ForceTable, Hypotheses};
 use crate::refusal::one_line;
-use crate::report::text;
+use crate::report::place_figure;
 use crate::trace::{
-    Cause, Correlation, Criterion, DIED_AWAY, Fit, Location, Motion, Noise, Question, Record,
-    Trace, Unknown,
+    Cause, Correlation, Criterion, Fit, Motion, Noise, Question, Record, Trace, Unknown,
 };
 
 /// Arguments of `palpate detect`.
@@ -26,17 +26,55 @@ pub struct DetectArguments {
     #[arg(value_name = "TRACE.csv")]
     trace: PathBuf,
     /// The force map without inclusion: JSON as 'palpate solve --phantom none --format json' prints it, or measured CSV
-    #[arg(long, value_name = "MAP")]
-    reference: PathBuf,
-    /// The force map with the inclusion; --scan says where its x = 0 lies
-    #[arg(long, value_name = "MAP")]
-    inclusion: PathBuf,
+    #[arg(
+        long,
+        value_name = "MAP",
+        requires = "inclusion",
+        required_unless_present = "bank"
+    )]
+    reference: Option<PathBuf>,
+    /// The force map with the inclusion, where that map has it
+    #[arg(
+        long,
+        value_name = "MAP",
+        requires = "reference",
+        required_unless_present = "bank"
+    )]
+    inclusion: Option<PathBuf>,
+    /// A bank of inclusions, as 'palpate bank' makes it: says whether one of them is there, and where it lies
+    #[arg(long, value_name = "BANK", conflicts_with_all = ["reference", "inclusion", "any_maps"])]
+    bank: Option<PathBuf>,
+    /// The probability of each inclusion of the bank given that there is one: a CSV file with position_mm, depth_mm, diameter_mm,
+    /// youngs_modulus_kpa and weight [default: all the same]
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "bank",
+        conflicts_with = "reference"
+    )]
+    prior: Option<PathBuf>,
+    /// Sets the threshold for neyman-pearson-false-alarm with a bank by so many simulated records, and not by a bound
+    #[arg(
+        long,
+        value_name = "N",
+        requires = "bank",
+        conflicts_with = "reference"
+    )]
+    simulations: Option<u64>,
+    /// The seed of these simulations
+    #[arg(
+        long,
+        value_name = "SEED",
+        requires = "simulations",
+        default_value = "1999"
+    )]
+    seed: u64,
     /// Takes maps of different gels, meshes or versions of the program, and of any inclusions, and says so
     #[arg(long)]
     any_maps: bool,
-    /// The constant depth of the sweep in mm
-    #[arg(long, value_name = "D", value_parser = millimetres, allow_hyphen_values = true)]
-    depth_mm: f64,
+    /// The constant depth of the sweep in mm [default with a bank: that of the bank]
+    #[arg(long, value_name = "D", value_parser = millimetres, allow_hyphen_values = true, required_unless_present = "bank")]
+    depth_mm: Option<f64>,
     /// The true depth is within so many mm of that
     #[arg(long, value_name = "T", value_parser = at_least_0, allow_hyphen_values = true, default_value = "0.3")]
     depth_tolerance_mm: f64,
@@ -68,9 +106,6 @@ pub struct DetectArguments {
     /// Largest rate of false alarms, for neyman-pearson-false-alarm
     #[arg(long, value_name = "A", value_parser = probability, allow_hyphen_values = true)]
     max_false_alarm: Option<f64>,
-    /// Searches for the lateral position of the inclusion; without it the inclusion would lie at x = 0
-    #[arg(long)]
-    scan: bool,
     /// Leaves out the samples outside the lateral positions of the maps, and says how many
     #[arg(long)]
     trim: bool,
@@ -83,6 +118,14 @@ pub struct DetectArguments {
     /// How the answer is printed
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
+    /// Writes a figure of where the inclusion lies, if there is one, as SVG
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "bank",
+        conflicts_with = "reference"
+    )]
+    figure: Option<PathBuf>,
 }
 
 /// The criteria by name.
@@ -98,12 +141,12 @@ enum CriterionName {
 
 /// What is unknown of a sweep.
 #[derive(Debug, Clone)]
-struct Unknowns(Vec<Unknown>);
+pub(super) struct Unknowns(pub Vec<Unknown>);
 
 /// What is unknown where `text` lists what is known.
 ///
 /// Implements: CLI-140.
-fn unknowns(text: &str) -> Result<Unknowns, String> {
+pub(super) fn unknowns(text: &str) -> Result<Unknowns, String> {
     let known: Vec<&str> = match text {
         "none" => Vec::new(),
         "all" => Unknown::ALL.map(Unknown::name).into(),
@@ -136,13 +179,13 @@ fn millimetres(text: &str) -> Result<f64, String> {
     parse_scaled(text, -3).ok_or_else(|| "expected a finite number, such as 2.5".into())
 }
 
-fn newtons(text: &str) -> Result<f64, String> {
+pub(super) fn newtons(text: &str) -> Result<f64, String> {
     parse_scaled(text, 0)
         .filter(|&noise| noise > 0.0)
         .ok_or_else(|| "expected N above 0, such as 0.1".into())
 }
 
-fn probability(text: &str) -> Result<f64, String> {
+pub(super) fn probability(text: &str) -> Result<f64, String> {
     parse_scaled(text, 0)
         .filter(|&probability| probability > 0.0 && probability < 1.0)
         .ok_or_else(|| "expected a probability strictly between 0 and 1".into())
@@ -209,17 +252,24 @@ impl DetectArguments {
 }
 
 /// What was asked.
-fn asked(arguments: &DetectArguments, samples: usize) -> DetectAnswer {
+fn asked(arguments: &DetectArguments, depth: f64, samples: usize) -> DetectAnswer {
     let mut answer = DetectAnswer::default();
     answer.tell("schema", "palpate-detection");
-    answer.tell("schema_version", 2);
+    answer.tell("schema_version", 3);
     answer.tell("program_version", env!("CARGO_PKG_VERSION"));
     let path = |path: &Path| path.display().to_string();
     answer.tell("trace", path(&arguments.trace));
-    answer.tell("reference", path(&arguments.reference));
-    answer.tell("inclusion", path(&arguments.inclusion));
+    let files = [
+        ("reference", &arguments.reference),
+        ("inclusion", &arguments.inclusion),
+        ("bank", &arguments.bank),
+        ("prior", &arguments.prior),
+    ];
+    for (key, file) in files {
+        file.iter().for_each(|file| answer.tell(key, path(file)));
+    }
     answer.tell("samples", samples);
-    answer.tell("depth_m", arguments.depth_mm);
+    answer.tell("depth_m", depth);
     answer.tell("depth_tolerance_m", arguments.depth_tolerance_mm);
     let unknown = arguments.unknown.0.iter().map(|of| of.name());
     answer.tell("unknown", unknown.collect::<Vec<_>>());
@@ -247,44 +297,21 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
         .notes()
         .iter()
         .for_each(|text| note(arguments.trace.display(), text));
-    let mut record = trace.record(motion)?;
-    let (reference, inclusion) = (map(&arguments.reference)?, map(&arguments.inclusion)?);
-    if arguments.trim {
-        let left_out;
-        (record, left_out) = record.trimmed(reference.table())?;
-        left_out.iter().for_each(|text| note(record.file(), text));
-    }
+    let record = trace.record(motion)?;
     let mut warnings = Warnings::default();
-    if arguments.depth_tolerance_mm > 0.0
-        && !arguments.unknown.0.contains(&Unknown::Depth)
-        && reference.table().depths().len() == 1
-    {
-        let text = "a single depth: what another depth within its tolerance does is not counted";
-        warnings.tell("single_depth", arguments.reference.display(), text);
-    }
-    let question = Question {
-        hypotheses: hypotheses(arguments, &reference, &inclusion, &mut warnings)?,
-        depth: arguments.depth_mm,
-        depth_tolerance: arguments.depth_tolerance_mm,
-        unknown: &arguments.unknown.0,
-        noise: arguments.noise()?,
-        criterion: arguments.criterion()?,
-        prior_h1: arguments.prior_h1,
+    let found = match &arguments.bank {
+        Some(path) => by_bank(arguments, record, path, &mut warnings)?,
+        None => by_maps(arguments, record, &mut warnings)?,
     };
-    let mut answer = asked(arguments, record.positions().len());
-    let (decision, causes, fit) = if arguments.scan {
-        let found = question.locate(&record)?;
-        warnings.of_broad_signal(&found, &record);
-        warnings.of_other_place(&inclusion, &arguments.inclusion);
-        answer.located(&found);
-        (found.decision, found.causes, found.fit)
-    } else {
-        let found = question.judge(&record)?;
-        answer.judged(&found);
-        (found.decision, found.causes, found.fit)
-    };
+    let Found {
+        mut answer,
+        decision,
+        causes,
+        fit,
+        file,
+    } = found;
     answer.tell("warnings", warnings.0);
-    let last = conclusion(&question, decision, &causes, &fit);
+    let last = conclusion(&arguments.unknown.0, decision, &causes, &fit);
     print(&match arguments.format {
         Format::Table => format!("{}\n{last}\n", answer.table),
         Format::Json => answer.json(),
@@ -292,7 +319,7 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     match decision {
         Some(_) => Ok(()),
         None => {
-            let (file, why) = (record.file(), reasons(&causes));
+            let why = reasons(&causes);
             Err(CliError::Unjudged(format!(
                 "{file}: cannot be judged: {why}"
             )))
@@ -300,11 +327,127 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     }
 }
 
+/// What a record says.
+struct Found {
+    answer: DetectAnswer,
+    decision: Option<Decision>,
+    causes: Vec<Cause>,
+    fit: Fit,
+    /// The name of the record.
+    file: String,
+}
+
+/// The record without the samples outside `map`, if that was asked for.
+fn trimmed(
+    arguments: &DetectArguments,
+    record: Record,
+    map: &ForceTable,
+) -> Result<Record, CliError> {
+    if !arguments.trim {
+        return Ok(record);
+    }
+    let (record, left_out) = record.trimmed(map)?;
+    left_out.iter().for_each(|text| note(record.file(), text));
+    Ok(record)
+}
+
+/// What is asked of a sweep at `depth` over a gel whose forces `reference` has, read from `file`.
+fn question<'a>(
+    arguments: &'a DetectArguments,
+    depth: f64,
+    reference: &ForceTable,
+    file: &Path,
+    warnings: &mut Warnings,
+) -> Result<Question<'a>, CliError> {
+    if arguments.depth_tolerance_mm > 0.0
+        && !arguments.unknown.0.contains(&Unknown::Depth)
+        && reference.depths().len() == 1
+    {
+        let text = "a single depth: what another depth within its tolerance does is not counted";
+        warnings.tell("single_depth", file.display(), text);
+    }
+    Ok(Question {
+        depth,
+        depth_tolerance: arguments.depth_tolerance_mm,
+        unknown: &arguments.unknown.0,
+        noise: arguments.noise()?,
+        criterion: arguments.criterion()?,
+        prior_h1: arguments.prior_h1,
+    })
+}
+
+/// The record judged where two maps have the inclusion.
+fn by_maps(
+    arguments: &DetectArguments,
+    record: Record,
+    warnings: &mut Warnings,
+) -> Result<Found, CliError> {
+    // The parser has refused all but a bank or both maps with a depth.
+    let (none, path) = (PathBuf::new(), &arguments.inclusion);
+    let [reference_path, path] = [&arguments.reference, path].map(|p| p.as_ref().unwrap_or(&none));
+    let (reference, inclusion) = (map(reference_path)?, map(path)?);
+    let depth = arguments.depth_mm.unwrap_or(0.0);
+    let record = trimmed(arguments, record, reference.table())?;
+    let question = question(
+        arguments,
+        depth,
+        reference.table(),
+        reference_path,
+        warnings,
+    )?;
+    let hypotheses = hypotheses(arguments.any_maps, path, &reference, &inclusion, warnings)?;
+    let found = question.judge(hypotheses, &record)?;
+    let mut answer = asked(arguments, depth, record.positions().len());
+    answer.judged(&found);
+    Ok(Found {
+        answer,
+        decision: found.decision,
+        causes: found.causes,
+        fit: found.fit,
+        file: record.file().into(),
+    })
+}
+
+/// The record searched for any inclusion of a bank.
+///
+/// Implements: CLI-150, CLI-151, CLI-152, CLI-163.
+fn by_bank(
+    arguments: &DetectArguments,
+    record: Record,
+    path: &Path,
+    warnings: &mut Warnings,
+) -> Result<Found, CliError> {
+    let bank = Bank::read(path)?;
+    let depth = arguments.depth_mm.unwrap_or(bank.depth());
+    let record = trimmed(arguments, record, bank.reference().table())?;
+    let prior = arguments.prior.as_ref();
+    let prior = prior.map(|file| bank.read_prior(file)).transpose()?;
+    let search = BankSearch {
+        question: question(arguments, depth, bank.reference().table(), path, warnings)?,
+        bank: &bank,
+        prior: prior.as_deref(),
+        simulations: arguments.simulations.map(|number| (number, arguments.seed)),
+    };
+    let found = search.locate(&record)?;
+    if let Some(path) = &arguments.figure {
+        write(path, &place_figure(&bank, &found.place)?)?;
+    }
+    let mut answer = asked(arguments, depth, record.positions().len());
+    answer.located(&bank, &found)?;
+    Ok(Found {
+        answer,
+        decision: found.decision,
+        causes: found.causes,
+        fit: found.fit,
+        file: record.file().into(),
+    })
+}
+
 /// What was decided, whether the record fits, and what was assumed.
 ///
 /// Implements: CLI-144.
 fn conclusion(
-    question: &Question<'_>,
+    unknown: &[Unknown],
     decision: Option<Decision>,
     causes: &[Cause],
     fit: &Fit,
@@ -321,7 +464,7 @@ fn conclusion(
     let names = |is_known: bool| {
         let of = Unknown::ALL
             .into_iter()
-            .filter(|of| is_known != question.unknown.contains(of));
+            .filter(|of| is_known != unknown.contains(of));
         let names: Vec<_> = of.map(Unknown::name).collect();
         if names.is_empty() {
             "nothing".into()
@@ -348,35 +491,6 @@ impl Warnings {
         eprintln!("palpate: warning: {}", one_line(&format!("{file}: {text}")));
         self.0.push(code);
     }
-
-    /// Implements: TRC-042.
-    fn of_broad_signal(&mut self, found: &Location, record: &Record) {
-        if found.template_edge > DIED_AWAY {
-            let share = 100.0 * found.template_edge;
-            let text = format!(
-                "the signal at an end of the maps is still {share:.0} % of its largest: the position may be off by much more than its sd says"
-            );
-            self.tell("template_edge", record.file(), &text);
-        }
-    }
-
-    /// Implements: CLI-044.
-    fn of_other_place(&mut self, inclusion: &ForceMap, path: &Path) {
-        let inclusions = inclusion.phantom().into_iter();
-        let inclusions = inclusions.flat_map(|of| &of.inclusions);
-        let middles = inclusions.map(|inclusion| {
-            let [left, right, ..] = inclusion.extent();
-            text::millimetres(0.5 * (left + right))
-        });
-        let middles: Vec<String> = middles.collect();
-        if middles.iter().any(|x| x != "0") {
-            let middles = middles.join(", ");
-            let text = format!(
-                "the position is where x = 0 of this map lies; its phantom has inclusions at x = {middles} mm"
-            );
-            self.tell("off_axis", path.display(), &text);
-        }
-    }
 }
 
 fn map(path: &Path) -> Result<ForceMap, CliError> {
@@ -392,17 +506,18 @@ fn map(path: &Path) -> Result<ForceMap, CliError> {
 ///
 /// Implements: CLI-047.
 fn hypotheses<'a>(
-    arguments: &DetectArguments,
+    any_maps: bool,
+    file: &Path,
     reference: &'a ForceMap,
     inclusion: &'a ForceMap,
     warnings: &mut Warnings,
 ) -> Result<Hypotheses<'a>, CliError> {
-    let file = arguments.inclusion.display();
+    let file = file.display();
     let any = Hypotheses::of_tables(reference.table(), inclusion.table());
     let any = any.map_err(|error| error.in_file(file.to_string()))?;
     match Hypotheses::new(reference, inclusion) {
         Ok(hypotheses) => Ok(hypotheses),
-        Err(error) if arguments.any_maps => {
+        Err(error) if any_maps => {
             warnings.tell("any_maps", file, &error.to_string());
             Ok(any)
         }

@@ -1,11 +1,19 @@
 //! The answer of `palpate detect`, for programs and for people.
 
 use serde::Serializer as _;
-use serde_json::Value;
+use serde_json::{Value, json};
 
+use super::CliError;
+use crate::bank::{Bank, Location, Parameter};
 use crate::detect::Decision;
 use crate::detect::nuisance::{SubspaceTest, Threshold};
-use crate::trace::{Cause, Fit, Judgement, Location};
+use crate::force_map::SAME_POSITION;
+use crate::refusal::Refusal;
+use crate::stats::binomial::ConfidenceInterval;
+use crate::trace::{Cause, Fit, Judgement};
+
+/// The probability of the intervals of an inclusion's parameters.
+const CREDIBLE: f64 = 0.95;
 
 /// What was asked and what the record says, in the order in which it is printed.
 ///
@@ -31,11 +39,6 @@ impl DetectAnswer {
     fn number(&mut self, key: &'static str, label: &str, value: f64) {
         self.tell(key, value);
         self.line(label, &number(value));
-    }
-
-    fn length(&mut self, key: &'static str, label: &str, metres: f64) {
-        self.tell(key, metres);
-        self.line(label, &format!("{:.3}", metres * 1e3));
     }
 
     fn decision(&mut self, decision: Option<Decision>, causes: &[Cause]) {
@@ -72,30 +75,83 @@ impl DetectAnswer {
         self.fit(&found.fit);
     }
 
-    /// The record searched for the inclusion.
-    pub fn located(&mut self, found: &Location) {
-        let mixture = found.theta_mixture;
+    /// The record searched for any inclusion of `bank`.
+    ///
+    /// Implements: CLI-150, CLI-153.
+    pub fn located(&mut self, bank: &Bank, found: &Location) -> Result<(), CliError> {
         let decided_by = match found.by_mixture {
             true => "theta_mixture",
             false => "theta_max",
         };
-        let (false_alarm, miss) = (found.false_alarm_bound, found.miss_bound);
-        let sd_label = "its sd at least (Cramer-Rao), mm";
         self.decision(found.decision, &found.causes);
         self.tell("decided_by", decided_by);
         self.line("decided by", &format!("{decided_by} >= eta"));
-        self.number("theta_max", "theta_max", found.theta_max);
-        self.number("theta_mixture", "theta_mixture, any position", mixture);
+        self.number(
+            "theta_max",
+            "theta_max, the likeliest inclusion",
+            found.theta_max,
+        );
+        self.number(
+            "theta_mixture",
+            "theta_mixture, any inclusion",
+            found.theta_mixture,
+        );
         self.number("eta", "eta (threshold)", found.eta);
+        if let Some(calibrated) = found.calibrated {
+            let ConfidenceInterval { lower, upper } = calibrated.false_alarm;
+            let text = format!("{} to {}", number(lower), number(upper));
+            self.tell("calibrated_false_alarm", vec![lower, upper]);
+            self.tell("simulations", calibrated.simulations);
+            self.line("P(false alarm), simulated, 99 %", &text);
+        }
         self.test(&found.test, found.gamma_nominal);
         self.posterior(found.decision.map(|_| found.posterior));
-        self.number("false_alarm_bound", "P(false alarm) at most", false_alarm);
-        self.number("miss_bound", "P(miss) there at most", miss);
-        self.length("position_m", "position, mm", found.position);
-        self.length("position_sd_bound_m", sd_label, found.position_sd_bound);
-        self.tell("template_edge", found.template_edge);
-        self.tell("candidates", found.candidates);
+        self.number(
+            "false_alarm_bound",
+            "P(false alarm) at most",
+            found.false_alarm_bound,
+        );
+        self.number("miss_bound", "P(miss) there at most", found.miss_bound);
+        self.tell("hypotheses", bank.maps().len());
+        self.place(bank, found)?;
         self.fit(&found.fit);
+        Ok(())
+    }
+
+    /// Each parameter that the bank varies.
+    ///
+    /// Implements: CLI-153.
+    fn place(&mut self, bank: &Bank, found: &Location) -> Result<(), CliError> {
+        let mean = found.place.mean();
+        for (axis, parameter) in (0..).zip(Parameter::ALL) {
+            let points = &bank.axes()[axis];
+            let (&[first, .., last], sd) = (&points[..], found.bound.sd[axis]) else {
+                continue;
+            };
+            let interval = found.place.interval(axis, CREDIBLE);
+            let interval = interval.map_err(Refusal::from)?;
+            let (key, scale, name) = match parameter {
+                Parameter::Position => ("position", 1e3, "position, mm"),
+                Parameter::Depth => ("inclusion_depth", 1e3, "depth of the inclusion, mm"),
+                Parameter::Diameter => ("diameter", 1e3, "diameter, mm"),
+                Parameter::Modulus => ("youngs_modulus", 1e-3, "Young's modulus, kPa"),
+            };
+            let estimate = found.place.estimate[axis];
+            let ends = [interval.low, interval.high];
+            self.tell(key, json!({"estimate": estimate, "mean": mean[axis], "interval": ends, "sd_bound": sd, "unit": parameter.unit()}));
+            let shown = |x: f64| format!("{:.3}", scale * x);
+            let [low, high] = ends.map(shown);
+            let sd = sd.map_or("not known".into(), |sd| format!("at least {}", shown(sd)));
+            let text = format!("{}, {low} to {high} with 95 %, sd {sd}", shown(estimate));
+            self.line(name, &text);
+            if [first, last]
+                .iter()
+                .any(|end| (end - estimate).abs() <= SAME_POSITION)
+            {
+                self.line("", "(at an end of the bank: it may lie beyond)");
+            }
+        }
+        Ok(())
     }
 
     /// What was found at the place where it was found.

@@ -1,4 +1,4 @@
-//! Lists of positions on the command line: `a,b,c` or `from:to:step`, in mm.
+//! Lists on the command line: `a,b,c` or `from:to:step`, of positions in mm or of moduli in kPa.
 
 use crate::decimal::{format_scaled, parse_scaled};
 
@@ -6,41 +6,51 @@ use crate::decimal::{format_scaled, parse_scaled};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Positions(pub Vec<f64>);
 
-/// Most positions that a list may have.
-const MOST: usize = 10_000;
-/// Steps are counted in units of 10⁻⁹ mm, so that they add up without rounding.
-const UNITS_PER_MM: i32 = 9;
+/// Young's moduli, Pa.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Moduli(pub Vec<f64>);
 
-/// Reads a list in mm.
+/// What a list holds, and the unit in which it is written, SI times 10 to a power.
+struct Written {
+    of: &'static str,
+    unit: &'static str,
+    power: i32,
+}
+
+const IN_MM: Written = Written {
+    of: "positions",
+    unit: "mm",
+    power: -3,
+};
+const IN_KPA: Written = Written {
+    of: "moduli",
+    unit: "kPa",
+    power: 3,
+};
+
+/// Most entries that a list may have.
+const MOST: usize = 10_000;
+/// Steps are counted in units of 10⁻⁹ of what is written, so that they add up without rounding.
+const DECIMALS: i32 = 9;
+
+/// Reads a list of positions in mm.
 ///
 /// Implements: CLI-010, CLI-011, EVD-083.
 ///
 /// # Errors
 /// A message that names the entry and what would be right.
 pub fn positions(text: &str) -> Result<Positions, String> {
-    let parts: Vec<&str> = text.split(':').map(str::trim).collect();
-    let values = match parts[..] {
-        [list] => {
-            let entries = list.split(',').map(|entry| metres(entry.trim()));
-            entries.collect::<Result<Vec<_>, _>>()?
-        }
-        [from, to, step] => steps(from, to, step)?,
-        _ => {
-            let forms = "a,b,c or from:to:step in mm, such as 0:4:0.5";
-            return Err(format!("{text:?}: expected {forms}"));
-        }
-    };
-    let count = values.len();
-    if count > MOST {
-        return Err(format!("{count} positions, expected at most {MOST}"));
-    }
-    let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else {
-        return Ok(Positions(values));
-    };
-    let (before, after) = (format_scaled(pair[0], 3), format_scaled(pair[1], 3));
-    Err(format!(
-        "{after} mm after {before} mm: expected increasing positions"
-    ))
+    Ok(Positions(IN_MM.list(text)?))
+}
+
+/// Reads a list of moduli in kPa.
+///
+/// Implements: CLI-154.
+///
+/// # Errors
+/// As [`positions`].
+pub fn moduli(text: &str) -> Result<Moduli, String> {
+    Ok(Moduli(IN_KPA.list(text)?))
 }
 
 /// Reads one length above 0 in mm, m.
@@ -62,35 +72,75 @@ pub fn length(text: &str) -> Result<f64, String> {
 ///
 /// Implements: CON-001.
 fn metres(text: &str) -> Result<f64, String> {
-    parse_scaled(text, -3).ok_or_else(|| format!("{text:?} is no number: expected mm, such as 2.5"))
+    IN_MM.value(text)
 }
 
-fn steps(from: &str, to: &str, step: &str) -> Result<Vec<f64>, String> {
-    let units = |text: &str| -> Result<i64, String> {
-        metres(text)?;
-        let value = parse_scaled(text, UNITS_PER_MM).unwrap_or(f64::NAN);
-        if value.abs() < 1e15 && libm::round(value) == value {
-            Ok(value as i64) // whole and below 10¹⁵: exact
-        } else {
-            Err(format!(
-                "{text:?} mm: expected below 1e6 with at most 9 decimal places"
-            ))
+impl Written {
+    fn list(&self, text: &str) -> Result<Vec<f64>, String> {
+        let Written { of, unit, power } = self;
+        let parts: Vec<&str> = text.split(':').map(str::trim).collect();
+        let values = match parts[..] {
+            [list] => {
+                let entries = list.split(',').map(|entry| self.value(entry.trim()));
+                entries.collect::<Result<Vec<_>, _>>()?
+            }
+            [from, to, step] => self.steps(from, to, step)?,
+            _ => {
+                let forms = format!("a,b,c or from:to:step in {unit}, such as 0:4:0.5");
+                return Err(format!("{text:?}: expected {forms}"));
+            }
+        };
+        let count = values.len();
+        if count > MOST {
+            return Err(format!("{count} {of}, expected at most {MOST}"));
         }
-    };
-    let (first, last, step_units) = (units(from)?, units(to)?, units(step)?);
-    if step_units <= 0 || last < first {
-        return Err(format!(
-            "{from}:{to}:{step}: expected from ≤ to and a step above 0"
-        ));
+        let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else {
+            return Ok(values);
+        };
+        let [before, after] = [pair[0], pair[1]].map(|value| format_scaled(value, -power));
+        Err(format!(
+            "{after} {unit} after {before} {unit}: expected increasing {of}"
+        ))
     }
-    let count = (last - first) / step_units + 1;
-    if count > MOST as i64 {
-        return Err(format!(
-            "{from}:{to}:{step} has {count} positions, expected at most {MOST}"
-        ));
+
+    /// One entry in SI.
+    ///
+    /// Implements: CON-001.
+    fn value(&self, text: &str) -> Result<f64, String> {
+        let unit = self.unit;
+        parse_scaled(text, self.power)
+            .ok_or_else(|| format!("{text:?} is no number: expected {unit}, such as 2.5"))
     }
-    let position = |k: i64| metres(&format!("{}e-{UNITS_PER_MM}", first + k * step_units));
-    (0..count).map(position).collect()
+
+    fn steps(&self, from: &str, to: &str, step: &str) -> Result<Vec<f64>, String> {
+        let units = |text: &str| -> Result<i64, String> {
+            self.value(text)?;
+            let value = parse_scaled(text, DECIMALS).unwrap_or(f64::NAN);
+            if value.abs() < 1e15 && libm::round(value) == value {
+                Ok(value as i64) // whole and below 10¹⁵: exact
+            } else {
+                Err(format!(
+                    "{text:?} {}: expected below 1e6 with at most 9 decimal places",
+                    self.unit
+                ))
+            }
+        };
+        let (first, last, step_units) = (units(from)?, units(to)?, units(step)?);
+        if step_units <= 0 || last < first {
+            return Err(format!(
+                "{from}:{to}:{step}: expected from ≤ to and a step above 0"
+            ));
+        }
+        let count = (last - first) / step_units + 1;
+        if count > MOST as i64 {
+            return Err(format!(
+                "{from}:{to}:{step} has {count} {}, expected at most {MOST}",
+                self.of
+            ));
+        }
+        let value = |k: i64| self.value(&format!("{}e-{DECIMALS}", first + k * step_units));
+        (0..count).map(value).collect()
+    }
 }
 
 #[cfg(test)]
@@ -110,6 +160,18 @@ mod tests {
         assert_eq!(positions("0:0.6:0.1"), Ok(Positions(tenths)));
         assert_eq!(positions("-1:1:1"), Ok(Positions(vec![-0.001, 0.0, 0.001])));
         assert_eq!(positions("0:1:0.6"), Ok(Positions(vec![0.0, 0.0006])));
+    }
+
+    // Verifies: CLI-154.
+    #[test]
+    fn moduli_are_in_kpa_and_exact() {
+        assert_eq!(moduli("44.1,300"), Ok(Moduli(vec![44_100.0, 300_000.0])));
+        assert_eq!(moduli("0.1:0.3:0.1"), Ok(Moduli(vec![100.0, 200.0, 300.0])));
+        let error = moduli("300,44").unwrap_err();
+        assert_eq!(
+            error,
+            "44.0 kPa after 300.0 kPa: expected increasing moduli"
+        );
     }
 
     // Verifies: CLI-011.

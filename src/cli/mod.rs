@@ -1,6 +1,8 @@
 //! The command line (`spec/command-line.md`).
 
 pub mod arguments;
+mod bank;
+mod bank_part;
 mod comparison;
 pub mod config;
 mod demo;
@@ -17,6 +19,7 @@ mod play;
 mod playback;
 pub mod progress;
 mod psychophysics;
+mod reach;
 mod run;
 mod solve;
 mod timing;
@@ -49,7 +52,9 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Demo(arguments) => demo::demo(&arguments),
             Command::Solve(arguments) => solve::solve(&arguments),
             Command::ImportMap(arguments) => import::import(&arguments),
+            Command::Bank(arguments) => bank::bank(&arguments),
             Command::Detect(arguments) => detect::detect(&arguments),
+            Command::Reach(arguments) => reach::reach(&arguments),
             Command::Play(arguments) => play::play(&arguments),
             Command::Devices(arguments) => devices::devices(&arguments),
             Command::Experiment(arguments) => experiment::experiment(&arguments),

@@ -129,9 +129,14 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
 ///
 /// Implements: CLI-015.
 pub fn warn_of_large_strain(map: &ForceMap) {
+    let name = map.phantom().map_or("", |phantom| &phantom.name);
+    warn_of_large_strain_of(map, name);
+}
+
+/// The same, with the name of the phantom.
+pub fn warn_of_large_strain_of(map: &ForceMap, name: &str) {
     let smallest = map.certificate().map(|of| of.smallest_det);
     if let Some(smallest) = smallest.filter(|of| of.det < SMALL_STRAIN_LIMIT) {
-        let name = map.phantom().map_or("", |phantom| &phantom.name);
         let meaning = match smallest.det > 0.0 {
             true => "the small-strain model is at its limit there",
             false => "the gel is turned inside out there, and the forces mean nothing",

@@ -9,6 +9,7 @@
 //! | `paper.rs` | the numbers that the paper prints |
 //! | `maps.rs` | what each map says: signal, signal-to-noise ratios, thresholds |
 //! | `nuisances.rs` | what is left of γ where more is unknown than the noise |
+//! | `pressure.rs` | γ of the pressure under the probe, read by a tactile array |
 //! | `findings.rs` | what the study found, all together |
 //! | `people.rs` | the subjects of Table 1, and the bridge from forces to their answers |
 //! | `quality.rs` | certificates in short, warnings |
@@ -20,7 +21,7 @@
 //! ```
 //! use palpate::fem::{Contact, Model, Pose};
 //! use palpate::phantom::Phantom;
-//! use palpate::report::{DeformedMesh, Settings, Study, figures, findings, html, summary_json};
+//! use palpate::report::{ArraySweep, DeformedMesh, Settings, Study, figures, findings, html, summary_json};
 //!
 //! let model = |name| -> Result<Model, Box<dyn std::error::Error>> {
 //!     Ok(Model::new(&Phantom::builtin(name)?, 2e-3, Contact::default())?)
@@ -31,11 +32,17 @@
 //!     reference: gel.map(&depths, &laterals, &|_| ())?,
 //!     maps: vec![inclusion.map(&depths, &laterals, &|_| ())?],
 //!     measured: vec![],
+//!     arrays: vec![
+//!         ArraySweep::solve(&gel, 4e-3, &laterals)?,
+//!         ArraySweep::solve(&inclusion, 4e-3, &laterals)?,
+//!     ],
 //!     deformed: DeformedMesh::solve(&inclusion, Pose { depth: 4e-3, lateral: 0.0 })?,
 //!     settings: Settings::default(),
 //! };
 //! let findings = findings(&study)?;
-//! assert!(findings.maps[0].gamma.both > 1.0);
+//! let gamma = findings.maps[0].gamma.both;
+//! let arrays = &findings.maps[0].array.as_ref().ok_or("an array")?.arrays;
+//! assert!(gamma > 1.0 && arrays[5].sweep > gamma);
 //! let figures = figures(&study, &findings)?;
 //! let page = html(&study, &findings, &figures);
 //! assert!(page.contains("<svg") && summary_json(&findings, &study).contains("\"gamma\""));
@@ -50,6 +57,7 @@ mod maps;
 mod nuisances;
 pub mod paper;
 mod people;
+mod pressure;
 mod quality;
 mod summary;
 #[cfg(test)]
@@ -57,12 +65,13 @@ mod tests;
 pub mod text;
 
 pub use comparison::{Comparison, Value};
-pub use figures::figures;
-pub use findings::{Findings, findings};
+pub use figures::{figures, place_figure, reach_figure};
+pub use findings::{Findings, findings, probe_depth};
 pub use html::html;
 pub use maps::{GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold};
 pub use nuisances::{GammaBeside, GammaLeft};
 use people::normal_approximation;
+pub use pressure::{ArrayFindings, ArraySweep, GammaOfArray};
 pub use quality::{Quality, SMALL_STRAIN_LIMIT};
 pub use summary::summary_json;
 pub use text::FileNames;
@@ -88,6 +97,9 @@ pub struct Study {
     pub maps: Vec<ForceMap>,
     /// Measured maps, shown as Figure 7. Any number, any poses; nothing is computed from them.
     pub measured: Vec<ForceMap>,
+    /// What a tactile array reads at [`probe_depth`], over the laterals of the maps: for the reference and for each map whose
+    /// model is at hand, in any order; each belongs to the map of its phantom.
+    pub arrays: Vec<ArraySweep>,
     /// The deformed mesh of one pose (Figure 6).
     pub deformed: DeformedMesh,
     /// What the detector assumes.
@@ -170,6 +182,8 @@ pub enum Topic {
     Forces,
     /// The detector.
     Detection,
+    /// Pressure under the probe.
+    Pressure,
     /// The subjects of the paper.
     People,
 }

@@ -49,10 +49,15 @@ impl Panel {
     }
 }
 
-/// Draws panels below one another over one x axis, and gives an SVG document with its height, pixels.
+/// Draws panels below one another over one x axis, or over their own ones if `x_name` is empty, and gives an SVG document with
+/// its height, pixels.
 pub fn chart(panels: &[Panel], x_name: &str) -> DrawingResult<(String, i32)> {
-    let each = |panel: &Panel| HEADING + key_height(panel) + plot_height(panel) + NUMBERS;
-    let height = panels.iter().map(each).sum::<i32>() + FOOTING;
+    let footing = |name: &str| if name.is_empty() { 0 } else { FOOTING };
+    let each = |panel: &Panel| {
+        let below = NUMBERS + footing(&panel.x_name);
+        HEADING + key_height(panel) + plot_height(panel) + below
+    };
+    let height = panels.iter().map(each).sum::<i32>() + footing(x_name);
     let margins = panels.iter().map(|panel| right_margin(&panel.lines));
     let right = margins.max().unwrap_or(0);
     let (mut svg, mut paths) = (String::new(), String::new());
@@ -60,14 +65,18 @@ pub fn chart(panels: &[Panel], x_name: &str) -> DrawingResult<(String, i32)> {
     {
         let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         area.fill(&WHITE)?;
+        let middle = LEFT + (WIDTH - LEFT - right) / 2;
+        let name_axis = |name: &str, bottom: i32| match name {
+            "" => Ok(()),
+            name => write(&area, name, [middle, bottom - FOOTING / 2], HPos::Center),
+        };
         let mut top = 0;
         for panel in panels {
             paths += &draw_panel(&area, panel, top, right)?;
             top += each(panel);
+            name_axis(&panel.x_name, top)?;
         }
-        let middle = LEFT + (WIDTH - LEFT - right) / 2;
-        let at = [middle, height - FOOTING / 2];
-        write(&area, x_name, at, HPos::Center)?;
+        name_axis(x_name, height)?;
         area.present()?;
     }
     // The paths stand directly over the white ground, which is the first element that the library closes.
@@ -91,16 +100,16 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, top: i32, right: i32) -> DrawingRe
 }
 
 /// All cells of a colour as one path, which keeps the file small: the library would write one tag for each.
-fn path(chart: &Context<'_>, Cells { fill, areas }: &Cells) -> String {
+fn path(chart: &Context<'_>, Cells { fill, edge, areas }: &Cells) -> String {
     let outline = |corners: &Vec<(f64, f64)>| {
         let places = corners.iter().map(|corner| chart.backend_coord(corner));
         let places: Vec<_> = places.map(|(x, y)| format!("{x} {y}")).collect();
         format!("M{}Z", places.join("L"))
     };
     let outlines: String = areas.iter().map(outline).collect();
-    let RGBColor(r, g, b) = fill;
+    let [fill, edge] = [fill, edge].map(|RGBColor(r, g, b)| format!("#{r:02X}{g:02X}{b:02X}"));
     format!(
-        "<path d=\"{outlines}\" fill=\"#{r:02X}{g:02X}{b:02X}\" stroke=\"#5B6470\" stroke-width=\"4\" stroke-linejoin=\"round\"/>\n"
+        "<path d=\"{outlines}\" fill=\"{fill}\" stroke=\"{edge}\" stroke-width=\"4\" stroke-linejoin=\"round\"/>\n"
     )
 }
 
@@ -140,7 +149,12 @@ fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResu
         let end = (foot.0, foot.1 + place(5));
         area.draw(&PathElement::new(vec![foot, end], stroke(INK, 1.0)))?;
         let at = [foot.0 / UNIT, foot.1 / UNIT + 15];
-        write(area, &number(&tick), at, HPos::Center)?;
+        let shown = if panel.is_doubling {
+            libm::exp2(tick)
+        } else {
+            tick
+        };
+        write(area, &number(&shown), at, HPos::Center)?;
     }
     Ok(chart)
 }

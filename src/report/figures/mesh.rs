@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use askama::Template;
+use plotters::style::RGBColor;
 
 use super::chart::chart;
 use super::panel::{Cells, Line, Panel};
@@ -10,6 +11,9 @@ use super::setup::{PROBE, in_millimetres, inclusion_key, layer_key, probe, tint}
 use super::{Figures, Words};
 use crate::refusal::Refusal;
 use crate::report::{DeformedMesh, Topic, paper, text};
+
+/// The sides of elements.
+const EDGE: RGBColor = RGBColor(0x5B, 0x64, 0x70);
 
 #[derive(Template)]
 #[template(path = "report/words/figure-6.txt", blocks = ["title", "caption", "alt"])]
@@ -28,6 +32,7 @@ pub fn draw(figures: &mut Figures, mesh: &DeformedMesh) -> Result<(), Refusal> {
     // The uppermost layer last, so that a thin one is not covered by the lines of its neighbour.
     let cells = regions.into_iter().rev().map(|(region, areas)| Cells {
         fill: tint(region, phantom),
+        edge: EDGE,
         areas,
     });
     let lines = vec![probe(phantom, mesh.pose)];

@@ -1,4 +1,4 @@
-//! The pictures: every figure of the paper that is no photograph, the signals, what is left of γ, and the bridge to Table 1.
+//! The pictures: every figure of the paper that is no photograph, the signals, what is left of γ, γ of a tactile array, and the bridge to Table 1.
 //!
 //! Their words are in `templates/report/words/`.
 //!
@@ -9,9 +9,12 @@
 //! | `theory.rs` | Figures 3, 4, 9: the detector alone |
 //! | `forces.rs` | Figures 5 and 7, and the signals |
 //! | `gamma.rs` | γ of a sweep beside what may be unknown of it |
+//! | `pressure.rs` | γ of a tactile array against its elements |
 //! | `people.rs`, `bridge.rs` | Figures 10 to 13: Table 1; the forces against it |
+//! | `bank.rs`, `reach.rs` | where an inclusion lies by a bank, and how deep one can be found |
 //! | `panel.rs`, `chart.rs`, `names.rs`, `style.rs` | how charts are drawn and look |
 
+mod bank;
 mod bridge;
 mod chart;
 mod forces;
@@ -20,6 +23,8 @@ mod mesh;
 mod names;
 mod panel;
 mod people;
+mod pressure;
+mod reach;
 mod setup;
 pub(super) mod style;
 mod theory;
@@ -27,7 +32,9 @@ mod theory;
 use super::text::{FileNames, escape};
 use super::{Figure, Findings, Study, Topic, refused};
 use crate::refusal::Refusal;
+pub use bank::place_figure;
 use panel::DrawingResult;
+pub use reach::reach_figure;
 use std::fmt::Display;
 use style::{UNIT, WIDTH};
 
@@ -97,6 +104,7 @@ pub fn figures(study: &Study, findings: &Findings) -> Result<Vec<Figure>, Refusa
     figures.add_fixed("figure-2", Topic::Detection, Ok(fixed))?;
     theory::draw(&mut figures)?;
     gamma::draw(&mut figures, study, findings)?;
+    pressure::draw(&mut figures, study, findings)?;
     let fixed = (include_str!("figure-8.svg").into(), 436);
     figures.add_fixed("figure-8", Topic::People, Ok(fixed))?;
     people::draw(&mut figures, &findings.people)?;

@@ -114,6 +114,8 @@ impl Mark {
 pub struct Cells {
     /// What they are filled with.
     pub fill: RGBColor,
+    /// The colour of the thin lines around them.
+    pub edge: RGBColor,
     /// The corners of each.
     pub areas: Vec<Vec<(f64, f64)>>,
 }
@@ -123,12 +125,16 @@ pub struct Cells {
 pub struct Panel {
     /// What the y axis shows, with its unit.
     pub heading: String,
+    /// What the x axis shows, with its unit, where that is another one than other panels'.
+    pub x_name: String,
     /// Least and greatest x.
     pub x: [f64; 2],
     /// Least and greatest y.
     pub y: [f64; 2],
     /// Where the x axis has numbers; empty for round numbers.
     pub ticks: Vec<f64>,
+    /// Whether the x axis is of exponents, and has powers of two as its numbers.
+    pub is_doubling: bool,
     /// Whether it is a drawing to scale, and no chart: it has no grid.
     pub is_to_scale: bool,
     /// Height of the plot, pixels.

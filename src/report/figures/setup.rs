@@ -20,7 +20,7 @@ use crate::report::{Study, Topic, paper, text};
 /// Part of the well's width that walls and floor are drawn thick. Their real thickness is not known and plays no part.
 const WALL: f64 = 0.07;
 /// Chords that an ellipse is drawn with: a multiple of 4, so that a disc is drawn as high and wide as it is.
-const CHORDS: usize = 120;
+pub const CHORDS: usize = 120;
 /// Most inclusions of other phantoms that are drawn in one phantom.
 const MOST_OTHERS: usize = 100;
 /// Most layers in a key.

@@ -1,0 +1,277 @@
+//! `palpate reach`: how deep an inclusion may lie, and how small it may be, to be found (`spec/bank.md`).
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::detect::{Unknowns, newtons, probability, unknowns};
+use super::output::write;
+use super::{CliError, Format};
+use crate::bank::{Bank, Reach, Reached, smallest_diameters};
+use crate::decimal::format_scaled;
+use crate::force::Force;
+use crate::report::reach_figure;
+use crate::trace::Unknown;
+
+/// Arguments of `palpate reach`.
+#[derive(Debug, Args)]
+pub struct ReachArguments {
+    /// A bank of inclusions, as 'palpate bank' makes it
+    #[arg(long, value_name = "BANK")]
+    bank: PathBuf,
+    /// Standard deviation of the noise of one sample in N, both channels
+    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true,
+          conflicts_with_all = ["noise_sd_lateral_n", "noise_sd_normal_n"], required_unless_present = "noise_sd_lateral_n")]
+    noise_sd_n: Option<f64>,
+    /// Standard deviation of the noise of one lateral sample in N
+    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true, requires = "noise_sd_normal_n")]
+    noise_sd_lateral_n: Option<f64>,
+    /// Standard deviation of the noise of one normal sample in N
+    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true, requires = "noise_sd_lateral_n")]
+    noise_sd_normal_n: Option<f64>,
+    /// Largest rate of false alarms of a search over the whole bank
+    #[arg(long, value_name = "A", value_parser = probability, allow_hyphen_values = true, default_value = "0.01")]
+    max_false_alarm: f64,
+    /// Largest rate of misses
+    #[arg(long, value_name = "B", value_parser = probability, allow_hyphen_values = true, default_value = "0.05")]
+    max_miss: f64,
+    /// Samples of the sweep, evenly spaced [default: one at each lateral position of the bank]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    samples: Option<u64>,
+    /// What is known, and not fitted to the record: a list of offset, drift, gain and depth; all; none
+    #[arg(long = "known", value_name = "LIST", value_parser = unknowns, default_value = "depth")]
+    unknown: Unknowns,
+    /// How the answer is printed
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+    /// Writes a figure of the largest depths as SVG
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
+}
+
+/// The answer.
+#[derive(Debug, Serialize)]
+struct ReachAnswer {
+    schema: &'static str,
+    schema_version: u32,
+    program_version: &'static str,
+    bank: String,
+    probe_depth_m: f64,
+    noise_sd_lateral_n: f64,
+    noise_sd_normal_n: f64,
+    max_false_alarm: f64,
+    max_miss: f64,
+    samples: usize,
+    /// What is unknown for the second of each two answers.
+    unknown: Vec<&'static str>,
+    gamma_needed: f64,
+    depths_m: Vec<f64>,
+    diameters_m: Vec<f64>,
+    largest_depths: Vec<LargestDepth>,
+    smallest_diameters: Vec<SmallestDiameter>,
+}
+
+/// How deep an inclusion of one diameter and modulus may lie.
+#[derive(Debug, Serialize)]
+struct LargestDepth {
+    diameter_m: f64,
+    youngs_modulus_pa: f64,
+    nothing_unknown: DepthReached,
+    unknown: DepthReached,
+}
+
+#[derive(Debug, Serialize)]
+struct DepthReached {
+    /// None if it is not found at the least depth of the bank.
+    largest_depth_m: Option<f64>,
+    /// Whether it is found at the greatest depth of the bank, so that the largest one is greater.
+    is_beyond_bank: bool,
+    /// γ at each depth of the bank.
+    gamma: Vec<f64>,
+}
+
+/// How small an inclusion of one modulus may be at one depth; none if that of the largest diameter of the bank is not found.
+#[derive(Debug, Serialize)]
+struct SmallestDiameter {
+    depth_m: f64,
+    youngs_modulus_pa: f64,
+    nothing_unknown_m: Option<f64>,
+    unknown_m: Option<f64>,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-160, CLI-161, CLI-162, CLI-166.
+pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
+    let bank = Bank::read(&arguments.bank)?;
+    // The level of the noise is stated.
+    let unknown = arguments.unknown.0.iter().copied();
+    let unknown: Vec<Unknown> = unknown.filter(|&of| of != Unknown::Variance).collect();
+    // The parser has refused all but one for both, or one for each.
+    let both = arguments.noise_sd_n.unwrap_or(f64::NAN);
+    let noise_sd = Force {
+        lateral: arguments.noise_sd_lateral_n.unwrap_or(both),
+        normal: arguments.noise_sd_normal_n.unwrap_or(both),
+    };
+    let plain = Reach {
+        bank: &bank,
+        samples: arguments.samples.map(|samples| samples as usize),
+        noise_sd,
+        max_false_alarm: arguments.max_false_alarm,
+        max_miss: arguments.max_miss,
+        unknown: &[],
+    };
+    let beside = Reach {
+        unknown: &unknown,
+        ..plain
+    };
+    let in_bank =
+        |refusal: crate::refusal::Refusal| refusal.in_file(arguments.bank.display().to_string());
+    let needed = plain.gamma()?;
+    let reached = [plain.reached(), beside.reached()];
+    let [plain, beside] = reached.map(|reached| reached.map_err(in_bank));
+    let (plain, beside) = (plain?, beside?);
+    let names: Vec<&str> = unknown.iter().map(|of| of.name()).collect();
+    if let Some(path) = &arguments.figure {
+        let words = in_words(&names);
+        write(path, &reach_figure(&bank, &plain, &beside, &words)?)?;
+    }
+    let answer = ReachAnswer {
+        schema: "palpate-reach",
+        schema_version: 1,
+        program_version: env!("CARGO_PKG_VERSION"),
+        bank: arguments.bank.display().to_string(),
+        probe_depth_m: bank.depth(),
+        noise_sd_lateral_n: noise_sd.lateral,
+        noise_sd_normal_n: noise_sd.normal,
+        max_false_alarm: arguments.max_false_alarm,
+        max_miss: arguments.max_miss,
+        samples: arguments
+            .samples
+            .map_or(bank.reference().laterals().len(), |samples| {
+                samples as usize
+            }),
+        unknown: names,
+        gamma_needed: needed,
+        depths_m: bank.axes()[1].clone(),
+        diameters_m: bank.axes()[2].clone(),
+        smallest_diameters: smallest(&bank, [&plain, &beside], needed),
+        largest_depths: largest(&plain, &beside),
+    };
+    arguments.format.print(&answer, table)
+}
+
+/// Names with commas, or "nothing".
+fn in_words(names: &[&str]) -> String {
+    match names {
+        [] => "nothing".into(),
+        names => names.join(", "),
+    }
+}
+
+/// Implements: CLI-160.
+fn largest(plain: &[Reached], beside: &[Reached]) -> Vec<LargestDepth> {
+    let reached = |of: &Reached| DepthReached {
+        largest_depth_m: of.depth,
+        is_beyond_bank: of.is_beyond,
+        gamma: of.gamma.clone(),
+    };
+    let pairs = plain.iter().zip(beside);
+    let row = |(plain, beside): (&Reached, &Reached)| LargestDepth {
+        diameter_m: plain.diameter,
+        youngs_modulus_pa: plain.modulus,
+        nothing_unknown: reached(plain),
+        unknown: reached(beside),
+    };
+    pairs.map(row).collect()
+}
+
+/// Implements: CLI-161.
+fn smallest(bank: &Bank, reached: [&[Reached]; 2], needed: f64) -> Vec<SmallestDiameter> {
+    let [_, depths, diameters, moduli] = bank.axes();
+    let of_modulus = |(modulus, &youngs_modulus_pa): (usize, &f64)| {
+        let [plain, beside] = reached.map(|reached| {
+            let of_modulus = &reached[modulus * diameters.len()..][..diameters.len()];
+            smallest_diameters(bank, of_modulus, needed)
+        });
+        let rows = depths.iter().zip(plain.into_iter().zip(beside));
+        let row = rows.map(
+            |(&depth_m, (nothing_unknown_m, unknown_m))| SmallestDiameter {
+                depth_m,
+                youngs_modulus_pa,
+                nothing_unknown_m,
+                unknown_m,
+            },
+        );
+        row.collect::<Vec<_>>()
+    };
+    moduli.iter().enumerate().flat_map(of_modulus).collect()
+}
+
+/// The answer for people.
+///
+/// Implements: CLI-162.
+fn table(answer: &ReachAnswer) -> String {
+    let [false_alarm, miss] = [answer.max_false_alarm, answer.max_miss].map(|rate| 100.0 * rate);
+    let mut text = format!(
+        "An inclusion is found if gamma is at least {:.3}: at most {false_alarm} % false alarms of a search over the bank, {miss} % misses.\n\n",
+        answer.gamma_needed
+    );
+    let unknown = format!("unknown: {}", in_words(&answer.unknown));
+    let mut row = |label: &str, plain: &str, beside: &str| {
+        text += &format!("{label:<28} {plain:<34} {beside}\n");
+    };
+    row("largest depth, mm", "nothing unknown", &unknown);
+    for of in &answer.largest_depths {
+        let label = format!(
+            "{} mm wide, {} kPa",
+            in_mm(of.diameter_m),
+            format_scaled(of.youngs_modulus_pa, -3)
+        );
+        let [plain, beside] = [&of.nothing_unknown, &of.unknown].map(|of| depth(of, answer));
+        row(&label, &plain, &beside);
+    }
+    row("", "", "");
+    row("smallest diameter, mm", "nothing unknown", &unknown);
+    for of in &answer.smallest_diameters {
+        let label = format!(
+            "{} mm deep, {} kPa",
+            in_mm(of.depth_m),
+            format_scaled(of.youngs_modulus_pa, -3)
+        );
+        let [plain, beside] = [of.nothing_unknown_m, of.unknown_m].map(|of| width(of, answer));
+        row(&label, &plain, &beside);
+    }
+    let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
+    lines.join("\n") + "\n"
+}
+
+fn in_mm(length: f64) -> String {
+    format_scaled(length, 3)
+}
+
+fn depth(reached: &DepthReached, answer: &ReachAnswer) -> String {
+    match reached.largest_depth_m {
+        Some(depth) if reached.is_beyond_bank => format!("deeper than the bank ({})", in_mm(depth)),
+        Some(depth) => format!("{:.2}", 1e3 * depth),
+        None => {
+            let least = answer.depths_m.first().copied().unwrap_or(f64::NAN);
+            format!("not even at the least depth ({})", in_mm(least))
+        }
+    }
+}
+
+fn width(found: Option<f64>, answer: &ReachAnswer) -> String {
+    let ends = (answer.diameters_m.first(), answer.diameters_m.last());
+    match (found, ends) {
+        (Some(width), (Some(least), _)) if width <= *least => {
+            format!("smaller than the bank ({})", in_mm(width))
+        }
+        (Some(width), _) => format!("{:.2}", 1e3 * width),
+        (None, (_, most)) => format!(
+            "not even the largest ({})",
+            in_mm(*most.unwrap_or(&f64::NAN))
+        ),
+    }
+}

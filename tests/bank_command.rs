@@ -1,0 +1,286 @@
+//! `palpate bank`, end to end: the bank of a coarse mesh, stopped and resumed, and every refusal.
+#![cfg(all(feature = "cli", unix))]
+
+mod program;
+
+use std::fs::{self, File};
+use std::process::Output;
+use std::sync::OnceLock;
+
+use palpate::bank::{Bank, BankPlan};
+use palpate::phantom::Phantom;
+use program::{Place, text};
+
+/// Three positions at two depths. Those at −2 mm are mirror images: five computations with the reference.
+const SMALL: &str = "bank --phantom 6.6 --offsets-mm=-2,0,2 --depths-mm 4.6,6.6 --probe-depth-mm 3 --laterals-mm=-6:6:2 --mesh-mm 2";
+const COMPUTATIONS: usize = 5;
+
+/// What `SMALL` leaves behind where its bank cannot be written: all of its computations.
+fn part() -> &'static str {
+    static PART: OnceLock<String> = OnceLock::new();
+    PART.get_or_init(|| {
+        let place = Place::new("bank-part");
+        // A link that leads into no folder is no file that is there, and none can be written.
+        std::os::unix::fs::symlink("nowhere/bank.json", place.at("bank.json")).unwrap();
+        let output = place.run(&format!("{SMALL} --out bank.json"));
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let part = place.read("bank.json.part");
+        assert_eq!(part.lines().count(), 1 + COMPUTATIONS);
+        part
+    })
+}
+
+/// The bank of `SMALL` by the library, on one thread.
+fn expected() -> &'static Bank {
+    static BANK: OnceLock<Bank> = OnceLock::new();
+    BANK.get_or_init(|| {
+        let laterals = [-6e-3, -4e-3, -2e-3, 0.0, 2e-3, 4e-3, 6e-3];
+        let phantom = Phantom::builtin("6.6").unwrap();
+        let mut plan = BankPlan::new(phantom, 3e-3, &laterals).unwrap();
+        plan.positions = vec![-2e-3, 0.0, 2e-3];
+        plan.depths = vec![4.6e-3, 6.6e-3];
+        plan.mesh_size = 2e-3;
+        plan.bank().unwrap()
+    })
+}
+
+fn run(place: &Place, threads: usize, line: &str) -> Output {
+    let mut command = place.palpate(line);
+    command.env("RAYON_NUM_THREADS", threads.to_string());
+    command.output().unwrap()
+}
+
+// Verifies: CLI-154, CLI-159, CLI-007.
+#[test]
+fn the_bank_is_that_of_the_library_with_any_number_of_threads() {
+    let place = Place::new("bank-threads");
+    for threads in [1, 2] {
+        let file = format!("bank-{threads}.json");
+        let output = run(&place, threads, &format!("{SMALL} --out {file}"));
+        assert!(output.status.success(), "{output:?}");
+        assert_eq!(text(&output.stderr), "");
+        assert_eq!(place.read(&file), expected().to_json());
+        assert!(!place.at(&format!("{file}.part")).exists());
+    }
+    let [_, _, diameters, moduli] = expected().axes();
+    // Those of the paper's inclusion.
+    assert_eq!((&diameters[..], &moduli[..]), (&[6.4e-3][..], &[1.2e6][..]));
+}
+
+// Verifies: CLI-154.
+#[test]
+fn diameters_and_moduli_are_in_mm_and_kpa() {
+    let place = Place::new("bank-axes");
+    place.succeed(
+        "bank --phantom 6.6 --offsets-mm 0 --depths-mm 6.6 --diameters-mm 4,6 --stiffnesses-kpa 44.1:300.1:256 \
+         --probe-depth-mm 2 --laterals-mm 0,2 --mesh-mm 3 --contact vertical-gap --out bank.json",
+    );
+    let bank = Bank::read(&place.at("bank.json")).unwrap();
+    let expected = [
+        vec![0.0],
+        vec![6.6e-3],
+        vec![4e-3, 6e-3],
+        vec![44_100.0, 300_100.0],
+    ];
+    assert_eq!(bank.axes(), &expected);
+    assert_eq!(bank.depth(), 2e-3);
+    assert_eq!(bank.reference().laterals(), [0.0, 2e-3]);
+    let certificate = bank.maps()[0].certificate().unwrap();
+    assert_eq!(
+        (certificate.mesh_size, &*certificate.contact),
+        (3e-3, "vertical-gap")
+    );
+}
+
+/// The first `lines` of what was kept, and `more` bytes of the next.
+fn cut(lines: usize, more: usize) -> String {
+    let whole: String = part().split_inclusive('\n').take(lines).collect();
+    let rest = &part()[whole.len()..];
+    whole + &rest[..more]
+}
+
+// Verifies: CLI-156, CLI-159, CLI-167.
+#[test]
+fn a_bank_that_was_stopped_goes_on_and_is_the_same() {
+    let header = cut(1, 0);
+    for (kept, taken) in [
+        (part().to_string(), 5),
+        (cut(4, 0), 3),
+        // Killed in the middle of a line, at its end, and while the first was written.
+        (cut(3, 1000), 2),
+        (cut(3, 0).trim_end().to_string(), 1),
+        (header.clone(), 0),
+        (header[..300].to_string(), 0),
+        (String::new(), 0),
+    ] {
+        let place = Place::new("bank-resume");
+        place.write("bank.json.part", &kept);
+        let output = run(&place, 2, &format!("{SMALL} --out bank.json"));
+        assert!(output.status.success(), "{output:?}");
+        let note = match taken {
+            0 => String::new(),
+            _ => format!("palpate: note: bank.json.part: {taken} of 5 computations taken over\n"),
+        };
+        assert_eq!(text(&output.stderr), note);
+        assert_eq!(place.read("bank.json"), expected().to_json());
+        assert!(!place.at("bank.json.part").exists());
+    }
+    // Nothing is lost by beginning another one where none was finished.
+    let place = Place::new("bank-begun");
+    place.write("bank.json.part", header.replace("0.003", "0.002"));
+    assert_eq!(place.succeed(&format!("{SMALL} --out bank.json")), "");
+    assert_eq!(place.read("bank.json"), expected().to_json());
+}
+
+/// A computation with the next number, from 0 again after the last.
+fn renumbered(line: &str) -> String {
+    let (number, maps) = line.split_once(",\"maps\"").unwrap();
+    let number: usize = number.rsplit(':').next().unwrap().parse().unwrap();
+    format!(
+        "{{\"number\":{},\"maps\"{maps}",
+        (number + 1) % COMPUTATIONS
+    )
+}
+
+// Verifies: CLI-157, CLI-169.
+#[test]
+fn what_was_kept_of_another_bank_is_refused_and_stays() {
+    let place = Place::new("bank-other");
+    let other = "bank.json.part: of another request or version, expected this one: finish that one, or delete the file";
+    let version = env!("CARGO_PKG_VERSION");
+    let wrong = "no computation of this bank, expected one: delete the file";
+    let lines: Vec<&str> = part().lines().collect();
+    let with = |line: &str| format!("{}\n{line}\n{}\n", lines[0], lines[1]);
+    for (kept, expected) in [
+        (
+            part().replacen("\"mesh_size_m\":0.002", "\"mesh_size_m\":0.003", 1),
+            other.into(),
+        ),
+        (part().replacen(version, "9.9.9", 1), other.into()),
+        (
+            part().replacen("arithmetic\":\"", "arithmetic\":\"not ", 1),
+            other.into(),
+        ),
+        ("notes of mine".into(), other.into()),
+        ("notes\nof mine\n".into(), other.into()),
+        (
+            with("{}"),
+            "bank.json.part:2: column 2: missing field `number`".into(),
+        ),
+        (
+            with("{\"number\":9,\"maps\":[]}"),
+            format!("bank.json.part:2: {wrong}"),
+        ),
+        (
+            with("{\"number\":0,\"maps\":[]}"),
+            format!("bank.json.part:2: {wrong}"),
+        ),
+        // The maps of one computation under the number of another.
+        (
+            with(&renumbered(lines[1])),
+            format!("bank.json.part:2: {wrong}"),
+        ),
+    ] {
+        place.write("bank.json.part", &kept);
+        let found = place.refused(&format!("{SMALL} --out bank.json"));
+        assert!(found.contains(&expected), "{found}\nnot {expected}");
+        assert_eq!(place.read("bank.json.part"), kept);
+        assert!(!place.at("bank.json").exists());
+    }
+    place.write("bank.json.part", part());
+    let held = File::open(place.at("bank.json.part")).unwrap();
+    held.lock().unwrap();
+    let found = place.refused(&format!("{SMALL} --out bank.json"));
+    assert!(
+        found.contains("another 'palpate bank' is at work on it"),
+        "{found}"
+    );
+}
+
+/// Other arguments than those of `SMALL`, and words of the refusal.
+const REFUSED: &str = "
+--out there.json => there.json: there already, expected a new file
+--out no/such/bank.json => open no/such/bank.json.part
+--phantom none --out b.json => phantom none: 0 inclusions, expected one, of which the others are made, such as phantom 6.6
+--phantom two.toml --out b.json => 2 inclusions, expected one, of which the others are made, such as phantom 6.6
+--phantom 7.7 --out b.json => is neither built in
+--phantom ellipse.toml --diameters-mm 4 --out b.json => the inclusion is no disc, expected a disc where its diameter varies
+--offsets-mm 16 --out b.json => the inclusion at 16.000 mm, 4.600 mm deep, 6.400 mm wide, of 1200.0 kPa
+--offsets-mm 2,1 --out b.json => 1.0 mm after 2.0 mm: expected increasing positions
+--depths-mm 13 --out b.json => the inclusion at -2.000 mm, 13.000 mm deep
+--depths-mm 0 --out b.json => the inclusion at -2.000 mm, 0.000 mm deep
+--diameters-mm 0 --out b.json => 0.000 mm wide
+--stiffnesses-kpa 300,44 --out b.json => 44.0 kPa after 300.0 kPa: expected increasing moduli
+--stiffnesses-kpa -1 --out b.json => of -1.0 kPa
+--stiffnesses-kpa hard --out b.json => \"hard\" is no number: expected kPa
+--probe-depth-mm 0 --out b.json => expected mm above 0
+--probe-depth-mm 16 --out b.json => depth
+--laterals-mm 20 --out b.json => lateral
+--mesh-mm 0 --out b.json => expected mm above 0
+--mesh-mm 0.001 --out b.json => mesh
+--offsets-mm 0:5:0.001 --depths-mm 4.6:9.6:0.1 --out b.json => 255051 inclusions, expected at most 37037
+";
+
+// Verifies: CLI-155, CLI-158, CLI-171, BNK-020, BNK-021.
+#[test]
+fn what_makes_no_bank_is_refused_in_one_line() {
+    let place = Place::new("bank-refused");
+    place.write("there.json", "{}");
+    let two = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/phantoms/two.toml");
+    fs::copy(two, place.at("two.toml")).unwrap();
+    // Its first inclusion alone, as an ellipse.
+    let text = place.read("two.toml");
+    let parts: Vec<&str> = text.split("[[inclusion]]").collect();
+    let probe = parts[2].split_once("[probe]").unwrap().1;
+    let ellipse = parts[1].replace("diameter_mm = 5.0", "width_mm = 5.0\nheight_mm = 4.0");
+    let ellipse = format!("{}[[inclusion]]{ellipse}[probe]{probe}", parts[0]);
+    place.write("ellipse.toml", ellipse);
+    for case in REFUSED.trim().lines() {
+        let (arguments, expected) = case.split_once(" => ").unwrap();
+        let option = arguments.split_whitespace().step_by(2);
+        let option: Vec<&str> = option.collect();
+        // An option counts once: drop those of `SMALL` that the case has.
+        let mut usual = SMALL.replace('=', " ");
+        let words: Vec<String> = usual.split_whitespace().map(String::from).collect();
+        usual = words[0].clone();
+        for pair in words[1..].chunks(2) {
+            if !option.contains(&&*pair[0]) {
+                usual += &format!(" {} {}", pair[0], pair[1]);
+            }
+        }
+        let found = place.refused(&format!("{usual} {arguments}"));
+        assert!(found.contains(expected), "{arguments}: {found}");
+        assert!(
+            !place.at("b.json").exists() && !place.at("b.json.part").exists(),
+            "{arguments}"
+        );
+    }
+    assert_eq!(place.read("there.json"), "{}");
+}
+
+// Verifies: CLI-168.
+#[test]
+fn the_worst_strain_is_told_once_with_its_inclusion() {
+    let place = Place::new("bank-strain");
+    let output = place.run(
+        "bank --phantom 2.6 --offsets-mm 0 --depths-mm 2.6,3 --probe-depth-mm 4 --laterals-mm 0,2 --mesh-mm 1 --out bank.json",
+    );
+    assert!(output.status.success(), "{output:?}");
+    let bank = Bank::read(&place.at("bank.json")).unwrap();
+    let dets = bank
+        .maps()
+        .iter()
+        .map(|map| map.certificate().unwrap().smallest_det.det);
+    let dets: Vec<f64> = dets.collect();
+    // Both are strained too much, and the second more.
+    assert!(dets[1] < dets[0] && dets[0] < 0.2, "{dets:?}");
+    let words = format!(
+        "palpate: warning: phantom 2.6 with its inclusion at 0.0 mm, 3.0 mm deep, 6.4 mm wide, 1200.0 kPa: det(I + grad u) falls to {:.3} ",
+        dets[1]
+    );
+    let told = text(&output.stderr);
+    assert!(
+        told.starts_with(&words) && told.lines().count() == 1,
+        "{told}"
+    );
+}

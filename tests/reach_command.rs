@@ -1,0 +1,193 @@
+//! `palpate reach`, end to end, against plain sums over the maps of a coarse bank.
+#![cfg(feature = "cli")]
+
+mod program;
+
+use std::sync::OnceLock;
+
+use palpate::bank::Bank;
+use palpate::force_map::ForceMap;
+use program::Place;
+use serde_json::Value;
+
+/// The folder with a bank of two depths and two diameters, made once.
+fn place() -> &'static Place {
+    static PLACE: OnceLock<Place> = OnceLock::new();
+    PLACE.get_or_init(|| {
+        let place = Place::new("reach_command");
+        place.succeed(
+            "bank --phantom 6.6 --offsets-mm=-1,1 --depths-mm 3.6,6.6 --diameters-mm 4,6 --probe-depth-mm 3 \
+             --laterals-mm=-8:8:1 --mesh-mm 2 --out bank.json",
+        );
+        place
+    })
+}
+
+fn bank() -> Bank {
+    Bank::read(&place().at("bank.json")).unwrap()
+}
+
+/// Both channels of a map at the depth of the probe.
+fn channels(map: &ForceMap) -> [Vec<f64>; 2] {
+    let row = map.row(3e-3).unwrap();
+    [row.lateral.to_vec(), row.normal.to_vec()]
+}
+
+/// γ of a map in noise of 1 N: all of its signal, or what an offset of each channel leaves of it.
+fn gamma(bank: &Bank, map: usize, has_offset: bool) -> f64 {
+    let pairs = channels(&bank.maps()[map])
+        .into_iter()
+        .zip(channels(bank.reference()));
+    let energy = pairs.map(|(with, without)| {
+        let signal = with.iter().zip(&without).map(|(a, b)| a - b);
+        let signal: Vec<f64> = signal.collect();
+        let mean = match has_offset {
+            true => signal.iter().sum::<f64>() / signal.len() as f64,
+            false => 0.0,
+        };
+        signal.iter().map(|x| (x - mean).powi(2)).sum::<f64>()
+    });
+    energy.sum::<f64>().sqrt()
+}
+
+/// The γ that is needed: by Python's statistics.NormalDist, −Φ⁻¹(0.01/8) − Φ⁻¹(0.05), the bank having 8 maps.
+const NEEDED: f64 = 3.023341439739147 + 1.644853626951472;
+
+fn reach(more: &str) -> Value {
+    let answer = place().succeed(&format!("reach --bank bank.json --format json {more}"));
+    serde_json::from_str(&answer).unwrap()
+}
+
+#[track_caller]
+fn assert_near(found: &Value, expected: f64) {
+    let found = found.as_f64().unwrap();
+    // Both are sums of 34 squares, in other orders; then logarithms of ratios near 1.
+    assert!(
+        (found / expected - 1.0).abs() < 1e-9,
+        "found {found}, expected {expected}"
+    );
+}
+
+/// Where ln γ, linear between two points, is that needed.
+fn crossing([a, b]: [f64; 2], [gamma_a, gamma_b]: [f64; 2], needed: f64) -> f64 {
+    a + (b - a) * (gamma_a / needed).ln() / (gamma_a / gamma_b).ln()
+}
+
+// Verifies: CLI-160, CLI-161, BNK-070, BNK-071, BNK-072.
+#[test]
+fn depths_and_diameters_are_those_of_plain_sums() {
+    let bank = bank();
+    // Maps in the order of positions, depths, diameters: that at −1 mm is the nearest to 0, as is its mirror image.
+    let [shallow_small, deep_small, shallow, deep] = [0, 2, 4, 6];
+    for (known, has_offset) in [
+        ("offset,drift,gain,depth", false),
+        ("drift,gain,depth", true),
+    ] {
+        let of = |map| gamma(&bank, map, has_offset);
+        // The largest depth of the 6 mm lies between those of the bank, and so does the smallest diameter at 6.6 mm.
+        let sd = (of(deep) * of(shallow)).sqrt() / NEEDED;
+        let found = reach(&format!("--noise-sd-n {sd:e} --known {known}"));
+        assert_near(&found["gamma_needed"], NEEDED);
+        let row = &found["largest_depths"][1];
+        assert_eq!(row["diameter_m"], 6e-3);
+        assert_eq!(row["youngs_modulus_pa"], 1.2e6);
+        let key = if has_offset {
+            "unknown"
+        } else {
+            "nothing_unknown"
+        };
+        assert_near(&row[key]["gamma"][0], of(shallow) / sd);
+        assert_near(&row[key]["gamma"][1], of(deep) / sd);
+        let depth = crossing([3.6e-3, 6.6e-3], [of(shallow), of(deep)], NEEDED * sd);
+        assert_near(&row[key]["largest_depth_m"], depth);
+        assert_eq!(row[key]["is_beyond_bank"], false);
+        let sd = (of(deep_small) * of(deep)).sqrt() / NEEDED;
+        let found = reach(&format!("--noise-sd-n {sd:e} --known {known}"));
+        let row = &found["smallest_diameters"][1];
+        assert_eq!(row["depth_m"], 6.6e-3);
+        let width = crossing([4e-3, 6e-3], [of(deep_small), of(deep)], NEEDED * sd);
+        let key = if has_offset {
+            "unknown_m"
+        } else {
+            "nothing_unknown_m"
+        };
+        assert_near(&row[key], width);
+        assert!(of(shallow_small) > of(deep_small));
+    }
+    // What is unknown costs γ, by default offset, drift and gain.
+    let found = reach("--noise-sd-lateral-n 0.01 --noise-sd-normal-n 0.02");
+    assert_eq!(
+        found["unknown"],
+        serde_json::json!(["offset", "drift", "gain"])
+    );
+    let row = &found["largest_depths"][0];
+    let [plain, beside] = ["nothing_unknown", "unknown"].map(|key| row[key]["gamma"][0].as_f64());
+    assert!(beside < plain, "{row}");
+    // Four times the samples have about twice the γ.
+    let more = reach("--noise-sd-lateral-n 0.01 --noise-sd-normal-n 0.02 --samples 68");
+    let ratio = more["largest_depths"][0]["nothing_unknown"]["gamma"][0]
+        .as_f64()
+        .unwrap()
+        / plain.unwrap();
+    assert!((ratio - 2.0).abs() < 0.1, "{ratio}");
+}
+
+// Verifies: CLI-162.
+#[test]
+fn what_lies_beyond_the_bank_is_said() {
+    let table = place().succeed("reach --bank bank.json --noise-sd-n 1e-9");
+    for words in [
+        "deeper than the bank (6.6)",
+        "smaller than the bank (4.0)",
+        "unknown: offset, drift, gain",
+    ] {
+        assert!(table.contains(words), "{table}");
+    }
+    let table = place().succeed("reach --bank bank.json --noise-sd-n 1e3 --known all");
+    for words in [
+        "not even at the least depth (3.6)",
+        "not even the largest (6.0)",
+        "unknown: nothing",
+    ] {
+        assert!(table.contains(words), "{table}");
+    }
+    assert!(!table.contains("than the bank"), "{table}");
+}
+
+// Verifies: CLI-166.
+#[test]
+fn the_figure_shows_both_lines_and_says_them_in_words() {
+    place().succeed("reach --bank bank.json --noise-sd-n 0.005 --figure reach.svg");
+    let figure = place().read("reach.svg");
+    for words in [
+        "<svg ",
+        "Diameter of the inclusion (mm)",
+        "Largest depth at which it is found (mm)",
+        ">\nnothing unknown\n<",
+        ">\nunknown: offset, drift, gain\n<",
+        "4 mm wide, 1200 kPa: ",
+    ] {
+        assert!(figure.contains(words), "no {words:?} in {figure}");
+    }
+}
+
+/// Arguments, and words of the refusal.
+const REFUSED: &str = "
+--bank bank.json => --noise-sd-n
+--bank bank.json --noise-sd-lateral-n 1 => --noise-sd-normal-n
+--bank bank.json --noise-sd-n 0 => expected N above 0
+--bank bank.json --noise-sd-n 1 --max-miss 1 => strictly between 0 and 1
+--bank bank.json --noise-sd-n 1 --samples 0 => 0 is not in 1..=1000000
+--bank bank.json --noise-sd-n 1 --known ofset => \"ofset\" is none of
+--bank missing.json --noise-sd-n 1 => missing.json: cannot be read
+";
+
+// Verifies: CLI-160, CLI-002.
+#[test]
+fn bad_arguments_are_refused_in_one_line() {
+    for case in REFUSED.trim().lines() {
+        let (arguments, expected) = case.split_once(" => ").unwrap();
+        let error = place().refused(&format!("reach {arguments}"));
+        assert!(error.contains(expected), "{arguments}: {error}");
+    }
+}
