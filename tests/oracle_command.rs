@@ -331,7 +331,12 @@ fn work_beyond_the_limits_is_refused_before_it_begins() {
         json!({"residual": [1, 2, 0], "template": [0, 1, 0], "nuisances": vec![[1, 1, 1]; number], "level": "known",
                "bias": 0, "eta": 0})
     };
+    let bank = |number: usize| {
+        json!({"residual": [1, 2, 0], "templates": [[0, 1, 0]], "nuisances": vec![[1, 1, 1]; number], "level": "known",
+               "prior": [1], "prior_h1": 0.5})
+    };
     ok("theta_nuisances", beside(100));
+    ok("bank_posterior", bank(100));
     // 1000 products at each of the shifts of the whole template: 10,000 shifts are allowed.
     ok("scan", scan(10_999, 1000));
     for (op, args, words) in [
@@ -339,6 +344,7 @@ fn work_beyond_the_limits_is_refused_before_it_begins() {
         ("scan", scan(11_000, 1000), "10000000"),
         ("theta_colored", coloured, "at most 1000"),
         ("theta_nuisances", beside(101), "at most 100"),
+        ("bank_posterior", bank(101), "at most 100"),
     ] {
         let (code, message) = refused(op, args);
         assert_eq!(code, "out_of_range");
@@ -387,6 +393,14 @@ theta_nuisances {"residual": [1, 2], "template": [0, 1], "nuisances": [[1, 1]], 
 theta_nuisances {"residual": [0, 0, 0], "template": [0, 1, 0], "nuisances": [], "level": "unknown", "bias": 0, "eta": 0} => out_of_range: noise of the residual | greater than 0
 theta_nuisances {"residual": [1, 2, 3], "template": [0, 1, 0], "nuisances": [], "level": "guessed", "bias": 0, "eta": 0} => out_of_range: guessed | known or unknown
 theta_nuisances {"residual": [1, 2, 3], "template": [0, 1, 0], "nuisances": [], "level": "known", "bias": -1, "eta": 0} => out_of_range: bias | -1 | at least 0
+bank_posterior {"residual": [1, 2, 3], "templates": [[0, 1, 0]], "nuisances": [], "level": "known", "prior": [0.5, 0.5], "prior_h1": 0.5} => bad_argument: templates | 1 rows | 2
+bank_posterior {"residual": [1, 2, 3], "templates": [[0, 1, 0], [1, 0]], "nuisances": [], "level": "known", "prior": [0.5, 0.5], "prior_h1": 0.5} => bad_argument: templates[1] | 2 entries | 3
+bank_posterior {"residual": [], "templates": [[]], "nuisances": [], "level": "known", "prior": [1], "prior_h1": 0.5} => bad_argument: residual | at least one
+bank_posterior {"residual": [1, 2, 3], "templates": [], "nuisances": [], "level": "known", "prior": [], "prior_h1": 0.5} => bad_argument: prior | at least one
+bank_posterior {"residual": [1, 2, 3], "templates": [[0, 1, 0]], "nuisances": [], "level": "known", "prior": [0.9], "prior_h1": 0.5} => out_of_range: sum of prior | 0.9 | 1
+bank_posterior {"residual": [1, 2, 3], "templates": [[2, 2, 2]], "nuisances": [[1, 1, 1]], "level": "known", "prior": [1], "prior_h1": 0.5} => out_of_range: gamma is 0
+bank_posterior {"residual": [1, 2, 3], "templates": [[0, 1, 0]], "nuisances": [], "level": "known", "prior": [1], "prior_h1": 1} => out_of_range: prior_h1 | strictly between 0 and 1
+bank_posterior {"residual": [0, -1e154, 0], "templates": [[0, 1.3e154, 0]], "nuisances": [], "level": "known", "prior": [1], "prior_h1": 0.5} => overflow: theta
 proportion_interval {"successes": 2.5, "trials": 3, "confidence": 0.9, "method": "wilson"} => bad_argument: successes | whole
 proportion_interval {"successes": 4, "trials": 3, "confidence": 0.9, "method": "wilson"} => out_of_range: 4 successes | 3 trials
 chi_square_tail {"x": 1, "degrees": 0, "noncentrality": 0} => out_of_range: degrees | 0.1 to 2e6
@@ -424,7 +438,7 @@ count_analysis {"correct": [[5], [1]], "trials": 4} => out_of_range: correct[0][
     }
 }
 
-// Verifies: ORA-020, ORA-021, ORA-023, ORA-024, ORA-025, ORA-026, ORA-027. Cases that are exact in binary, by hand.
+// Verifies: ORA-020, ORA-021, ORA-023, ORA-024, ORA-025, ORA-026, ORA-027, ORA-028, ORA-029, ORA-030. Cases that are exact in binary, by hand.
 #[test]
 fn each_op_answers() {
     let ops = ok("capabilities", json!({}))["ops"].clone();
@@ -439,7 +453,8 @@ fn each_op_answers() {
         "{stiffness}"
     );
     // K = diag(4, 1) in theta_colored: 6·(1 − 3)/4 + 4·(3 − 2)/1, and 36/4 + 16/1 is 5². p = ½ in count_analysis:
-    // χ² = (1² + 1²)/(4·½·½). In theta_nuisances the offset 3 leaves (1, −1, 0, 0): T = 2/2, R = 2 − 1.
+    // χ² = (1² + 1²)/(4·½·½). In theta_nuisances the offset 3 leaves (1, −1, 0, 0): T = 2/2, R = 2 − 1;
+    // in bank_posterior too, and the first template is the offset: both have θ = 0.
     let cases = r#"
 probe_force {"phantom": "none", "depth_m": 0, "lateral_m": 0} => {"normal_force_n": 0.0, "lateral_force_n": 0.0}
 normal_cdf {"x": -50} => {"p": 0.0}
@@ -448,6 +463,7 @@ matched_filter {"template_x": [3, 4, 0, 0], "template_y": [0, 0, 0, 0], "noise_s
 theta {"observed_x": [4], "observed_y": [0], "f0_x": [1], "f0_y": [0], "f1_x": [3], "f1_y": [0], "noise_sd_x": 1, "noise_sd_y": 1} => {"theta": 4.0, "y_x": 3.0, "y_y": 0.0, "gamma": 2.0}
 theta_colored {"residual": [1, 3], "template": [6, 4], "covariance": [[4, 0], [0, 1]]} => {"theta": 1.0, "gamma": 5.0}
 theta_nuisances {"residual": [4, 2, 3, 3], "template": [1, -1, 1, -1], "nuisances": [[1, 1, 1, 1], [2, 2, 2, 2]], "level": "known", "bias": 0, "eta": 1e6} => {"t": 1.0, "gamma": 2.0, "gamma_nominal": 2.0, "rank": 1, "residual": 1.0, "degrees": 2, "theta": 0.0, "false_alarm": 0.0, "miss": 1.0}
+bank_posterior {"residual": [4, 2, 3, 3], "templates": [[1, 1, 1, 1], [1, -1, 1, -1]], "nuisances": [[1, 1, 1, 1]], "level": "known", "prior": [0.75, 0.25], "prior_h1": 0.5} => {"theta": [0.0, 0.0], "theta_mixture": 0.0, "theta_max": 0.0, "hypothesis": 1, "posterior_h1": 0.5, "posterior": [0.75, 0.25]}
 threshold {"criterion": "map", "prior_h1": 0.5} => {"eta": 0.0}
 error_rates {"gamma": 0, "eta": 1} => {"false_alarm": 0.0, "miss": 1.0}
 roc {"gamma": 0, "false_alarm": [0, 0.5, 1]} => {"miss": [1.0, 0.5, 0.0], "auc": 0.5}

@@ -158,13 +158,13 @@ def theta_colored(a):
     return {"theta": (square(r) - square(r - d)) / 2, "gamma": sqrt(square(d))}
 
 
-def theta_nuisances(a):
-    """By elimination in the signals' exact Gram matrix: what is left of its last corner are the squares of Pδ and Pz, and their
-    product. θ is the ratio of the two likelihoods; the threshold is where it passes η."""
-    columns = [[Fraction(v) for v in column] for column in (*a["nuisances"], a["template"], a["residual"])]
+def beside(nuisances, others):
+    """By elimination in the exact Gram matrix of all signals: that of what the nuisances leave of the others, the squares that each
+    other had, and how many nuisances count."""
+    columns = [[Fraction(v) for v in column] for column in (*nuisances, *others)]
     gram = [[sum(x * y for x, y in zip(p, q)) for q in columns] for p in columns]
-    squares, rank = [row[k] for k, row in enumerate(gram)], 0
-    for k in range(len(gram) - 2):
+    squares, rank, count = [row[k] for k, row in enumerate(gram)], 0, len(nuisances)
+    for k in range(count):
         pivot_row = gram[k]
         if pivot_row[k] == 0 or pivot_row[k] * 10**18 < squares[k]:
             continue
@@ -172,9 +172,18 @@ def theta_nuisances(a):
         for i in range(k + 1, len(gram)):
             factor = gram[i][k] / pivot_row[k]
             gram[i] = [x - factor * y for x, y in zip(gram[i], pivot_row)]
-    ratio = lambda v: mpf(v.numerator) / v.denominator
-    dd, dz, zz = ratio(gram[-2][-2]), ratio(gram[-2][-1]), ratio(gram[-1][-1])
-    residual, nu, eta = ratio(gram[-1][-1] - gram[-2][-1] ** 2 / gram[-2][-2]), len(a["residual"]) - rank - 1, real(a["eta"])
+    return [row[count:] for row in gram[count:]], squares[count:], rank
+
+
+def ratio(value):
+    return mpf(value.numerator) / value.denominator
+
+
+def theta_nuisances(a):
+    """θ is the ratio of the two likelihoods; the threshold is where it passes η."""
+    gram, squares, rank = beside(a["nuisances"], [a["template"], a["residual"]])
+    dd, dz, zz = ratio(gram[0][0]), ratio(gram[0][1]), ratio(gram[1][1])
+    residual, nu, eta = ratio(gram[1][1] - gram[0][1] ** 2 / gram[0][0]), len(a["residual"]) - rank - 1, real(a["eta"])
     level = sqrt(residual / nu) if a["level"] == "unknown" else mpf(1)
     g, bias = sqrt(dd) / level, real(a["bias"]) / level
     if a["level"] == "known":
@@ -193,13 +202,41 @@ def theta_nuisances(a):
     return {
         "t": dz / sqrt(dd) / level,
         "gamma": g,
-        "gamma_nominal": sqrt(ratio(squares[-2])),
+        "gamma_nominal": sqrt(ratio(squares[0])),
         "residual": residual,
         "theta": value,
         "false_alarm": above(tau - bias),
         "miss": above(g - bias - tau),
         "rank": rank,
         "degrees": nu,
+    }
+
+
+def bank_posterior(a):
+    """By Bayes' theorem for no inclusion and each hypothesis, with the ratios of likelihoods themselves."""
+    gram, squares, rank = beside(a["nuisances"], [*a["templates"], a["residual"]])
+    without, theta, distinct = gram[-1][-1], [], []
+    for k, prior in enumerate(a["prior"]):
+        given = without - 2 * gram[k][-1] + gram[k][k]
+        if gram[k][k] * 10**18 <= squares[k]:
+            theta.append(mpf(0))
+            continue
+        if a["level"] == "known":
+            theta.append(ratio((without - given) / 2))
+        else:
+            theta.append(log(ratio(without / given)) * (len(a["residual"]) - rank) / 2)
+        if prior > 0:
+            distinct.append(k)
+    joint = [real(a["prior_h1"]) * real(prior) * exp(value) for prior, value in zip(a["prior"], theta)]
+    inclusion, none = sum(joint), 1 - real(a["prior_h1"])
+    best = max(distinct, key=lambda k: (theta[k], -k))
+    return {
+        "theta": theta,
+        "theta_mixture": log(inclusion / real(a["prior_h1"])),
+        "theta_max": theta[best],
+        "hypothesis": best,
+        "posterior_h1": inclusion / (inclusion + none),
+        "posterior": [part / inclusion for part in joint],
     }
 
 

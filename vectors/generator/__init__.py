@@ -3,14 +3,14 @@
 Implements: VEC-008.
 """
 
-from . import coloured, decision, elements, filters, normal, nuisances, probe, proportions, quadratic, reports, requests
+from . import bank, coloured, decision, elements, filters, normal, nuisances, probe, proportions, quadratic, reports, requests
 from . import scan, servo, tables, threshold
 from .suite import VERSION
 
 __all__ = ["VERSION", "all_groups"]
 
 TOPICS = (
-    normal, decision, threshold, filters, coloured, nuisances, scan, proportions, quadratic, tables, servo, reports, elements, probe, requests
+    normal, decision, threshold, filters, coloured, nuisances, bank, scan, proportions, quadratic, tables, servo, reports, elements, probe, requests
 )
 
 

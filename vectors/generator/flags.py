@@ -77,6 +77,21 @@ BUGS = {
     ),
     "no_degrees": ("no sample is left for the noise, and there is an answer", "n ≥ p + 2"),
     "no_noise": ("a level that is unknown is estimated from nothing", "T/0"),
+    # Banks
+    "prior_ignored": ("all hypotheses are taken for equally probable", "the mixture is ln Σ π exp θ, the posterior π exp θ over the sum"),
+    "prior_unchecked": ("a prior that is negative, or does not add up to 1, is accepted", ""),
+    "largest_for_mixture": ("Θ_max for the mixture of all hypotheses", "Pr(H = 1) is of an inclusion that is any of them: ln Σ π exp θ"),
+    "logarithms_averaged": ("Σ π θ for ln Σ π exp θ", ""),
+    "given_record_alone": (
+        "the posterior of a hypothesis is not given an inclusion",
+        "all add up to 1; times Pr(H = 1) they are what the record alone gives",
+    ),
+    "explained_left_out": (
+        "a hypothesis whose template the nuisances explain does not count",
+        "its likelihood ratio is 1, and it keeps its prior",
+    ),
+    "impossible_counts": ("Θ_max of a hypothesis that cannot be, or that the nuisances explain", ""),
+    "posterior_for_theta": ("the hypothesis of the largest posterior for that of the largest θ", ""),
     # Detector
     "variance_for_sd": ("a variance where a standard deviation is meant, or the other way round", ""),
     "weight_missing": ("the weight 1/N of a sample is left out", "‖f‖ is the root mean square, σ = s/√N"),

@@ -28,7 +28,7 @@ class Space:
     """What signals span: an orthonormal basis, and e of ACC-014, a relative bound on the error of a projection."""
 
     def __init__(self, signals, samples):
-        self.basis, kept = [], []
+        self.basis, self.kept = [], []
         for whole in map(reals, signals):
             size = length(whole)
             rest = self.beside(whole)
@@ -36,10 +36,11 @@ class Space:
             assert not 1e-13 < share < 1e-6, "no case is near to the limit of NUI-002"
             if share >= 1e-9:
                 self.basis.append([value / (share * size) for value in rest])
-                kept.append([value / size for value in whole])
+                self.kept.append([value / size for value in whole])
+        kept, rank = self.kept, len(self.kept)
         inverse = matrix([[fdot(a, b) for b in kept] for a in kept]) ** -1 if kept else None
-        condition = sqrt(sum(inverse[k, k] for k in range(len(kept)))) if kept else 0
-        self.error = 2 * (len(kept) + 1) * (samples + 4) * (1 + condition) * U
+        condition = sqrt(sum(inverse[k, k] for k in range(rank))) if kept else 0
+        self.error = 2 * (rank + 1) * (samples + 4) * (1 + condition) * U
 
     def beside(self, v):
         for direction in self.basis:
@@ -175,8 +176,8 @@ REASONS = {
 }
 
 
-def tolerances(args, space, found):
-    """ACC-014, and what follows from it."""
+def errors(args, space, found):
+    """ACC-014: of T, γ and the bias, in the unit of the test, and of R."""
     test, count, z, nominal = found.test(args), len(args["residual"]), length(reals(args["residual"])), found.gamma_nominal
     e = space.error
     residual = 2 * e * z * sqrt(found.residual) + (e * z) ** 2 + (count + 4) * U * found.residual
@@ -186,6 +187,13 @@ def tolerances(args, space, found):
         scale, share = found.gamma / test.gamma, residual / found.residual + 4 * U
         assert share < 0.1
         off = {key: bound / scale + share * abs(getattr(test, key)) for key, bound in off.items()}
+    return off, residual
+
+
+def tolerances(args, space, found):
+    """ACC-014, and what follows from it."""
+    test, count, nominal = found.test(args), len(args["residual"]), found.gamma_nominal
+    off, residual = errors(args, space, found)
     bounds = {
         "t": off["t"],
         "gamma": off["gamma"],

@@ -53,6 +53,7 @@ const LAW: &str = "x degrees noncentrality";
 const LAW_OF_RATIO: &str = "x numerator denominator noncentrality";
 const COLOURED: &str = "residual template covariance";
 const BESIDE_NUISANCES: &str = "residual template nuisances level bias eta";
+const BANK: &str = "residual templates nuisances level prior prior_h1";
 
 /// All ops.
 ///
@@ -67,6 +68,7 @@ pub const OPS: &[Op] = &[
     op("theta", RECORD, filter::theta),
     op("theta_colored", COLOURED, filter::theta_colored),
     op("theta_nuisances", BESIDE_NUISANCES, nuisance::theta),
+    op("bank_posterior", BANK, nuisance::bank_posterior),
     op("threshold", CRITERIA, decision::threshold),
     op("error_rates", "gamma eta", decision::error_rates),
     op("roc", "gamma false_alarm", decision::roc),

@@ -10,6 +10,7 @@ macro_rules! files {
 ///
 /// Implements: ORA-040.
 pub(super) const FILES: &[(&str, &str)] = files![
+    "bank_posterior.json",
     "chi_square_tail.json",
     "count_analysis.json",
     "element_stiffness.json",

@@ -743,6 +743,17 @@ fn bugs_of_laws_and_nuisances_are_named() {
             "theta_nuisances",
             r#"s/"bias": [^,}]*/"bias": 0/"#,
         ),
+        (
+            "prior_ignored",
+            "bank_posterior",
+            r#"s/"prior": \[[^],]*, [^],]*\]/"prior": [0.5, 0.5]/"#,
+        ),
+        ("level_ignored", "bank_posterior", r#"s/"unknown"/"known"/"#),
+        (
+            "nuisances_ignored",
+            "bank_posterior",
+            r#"s/"nuisances": .*, "level"/"nuisances": [], "level"/"#,
+        ),
     ] {
         let program = format!("sed -u '{change}' | '{palpate}' oracle");
         let options = ["--format", "json", "--only", group];
