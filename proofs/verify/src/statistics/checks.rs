@@ -79,3 +79,10 @@ pub(super) fn count_rejects(count: u64, n: u64, p: f64, alpha: f64) -> Outcome<b
 pub(super) fn excess_rejects(count: u64, n: u64, p: f64, alpha: f64) -> Outcome<bool> {
     Ok(at_least(count, n, p)? < alpha)
 }
+
+/// Is the mean of the sample not 0? Each entry lies in an interval of length 1 that what came before it fixes: Hoeffding's bound
+/// Pr(|Σ| ≥ t) ≤ 2 exp(−2t²/n).
+pub(super) fn mean_of_bounded_rejects(sample: &[f64], alpha: f64) -> bool {
+    let (n, sum) = (sample.len() as f64, sample.iter().sum::<f64>());
+    sum.abs() > libm::sqrt(0.5 * n * libm::log(2.0 / alpha))
+}

@@ -18,6 +18,7 @@
 //! # Ok::<(), String>(())
 //! ```
 
+mod bank;
 mod bounds;
 mod checks;
 mod colour;
@@ -83,6 +84,7 @@ pub fn battery() -> impl Iterator<Item = &'static Check> {
         generator::CHECKS,
         bounds::CHECKS,
         nuisance::CHECKS,
+        bank::CHECKS,
     ]
     .into_iter()
     .flatten()

@@ -286,3 +286,55 @@ q = chi2.isf(0.05, 1)
 rate = autocorrelation_rate(q)  # RATE in nuisance.rs
 defects = [("degrees_off_by_one", chi2.isf(0.05, 2)), ("n_for_n_plus_2", q * 22 / 20)]
 line("ljung_box_at_5_percent", 50_000, [(name, count_power(rate, autocorrelation_rate(q), 50_000)) for name, q in defects])
+
+# A bank of two points, between which the normal channel is linear in the place, and the posterior a normal law cut to 0 ... 1.
+ALPHA, TRIALS = 1e-8, 20_000
+truth = (np.arange(2000) + 0.5) / 2000
+noise = norm.ppf((np.arange(2000) + 0.5) / 2000)
+truth, noise = np.meshgrid(truth, noise)
+distance = math.hypot(4, -4)
+
+
+def ranks(width, swapped):
+    """Of the truth where the posterior is so much wider than it should be, or lies where the other point's neighbour does."""
+    middle = truth + noise / distance
+    middle, scale = (1 - middle if swapped else middle), distance / width
+    low, high = norm.cdf(-scale * middle), norm.cdf(scale * (1 - middle))
+    return (norm.cdf(scale * (truth - middle)) - low) / np.maximum(high - low, 1e-300)
+
+
+def rank_power(found):
+    found = np.sort(found.ravel())
+    return distance_power(np.max(np.abs(found - (np.arange(found.size) + 0.5) / found.size)), TRIALS)
+
+
+wide, swapped = ranks(1.5, False), ranks(1, True)
+line("bank_ranks_kolmogorov", TRIALS, [
+    ("variance_of_one_channel", rank_power(wide)), ("template_of_the_neighbour", rank_power(swapped))])
+held = lambda found: np.mean((found >= 0.05) & (found <= 0.95))
+line("bank_intervals_at_90_percent", TRIALS, [
+    ("variance_of_one_channel", count_power(0.9, held(wide), TRIALS)),
+    ("template_of_the_neighbour", count_power(0.9, held(swapped), TRIALS))])
+
+# Two points, each in a channel of its own: the mean of h less its probability.
+gammas, shares, prior = (1.5, 2.0), (0.7, 0.3), 0.3
+x, y = np.meshgrid(*[np.linspace(-8, 12, 2001)] * 2)
+cell = (20 / 2000) ** 2
+density = lambda a, b: norm.pdf(x, a) * norm.pdf(y, b) * cell
+there = shares[0] * density(gammas[0], 0) + shares[1] * density(0, gammas[1])
+whole = (1 - prior) * density(0, 0) + prior * there
+
+
+def excess_power(presumed, half):
+    """Of the test of the mean, if the probability is computed with this prior and these halves of the squares."""
+    ratio = sum(share * np.exp(gamma * z - h) for share, gamma, z, h in zip(shares, gammas, (x, y), half))
+    probability = ratio * presumed / (ratio * presumed + 1 - presumed)
+    mean = prior - np.sum(whole * probability)
+    square = np.sum(prior * there * (1 - probability) ** 2 + (1 - prior) * density(0, 0) * probability**2)
+    least = math.sqrt(math.log(2 / ALPHA) / 2 / TRIALS)
+    return norm.sf((least - abs(mean)) / math.sqrt((square - mean**2) / TRIALS))
+
+
+halves = [gamma**2 / 2 for gamma in gammas]
+line("bank_posterior_of_inclusion", TRIALS, [
+    ("prior_left_out", excess_power(0.5, halves)), ("gamma_for_its_square", excess_power(prior, [gamma / 2 for gamma in gammas]))])

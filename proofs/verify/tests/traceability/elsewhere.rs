@@ -9,14 +9,16 @@ const CHROMIUM: &str = "PALPATE_REQUIRE_CHROMIUM=1 cargo test";
 const WORKSPACE: &str = "cargo test --workspace";
 const IGNORED: &str = "cargo test --release -p palpate-proofs -p palpate-verify -- --ignored";
 const RECORDS: &str = "cargo test --release --test real_records -- --ignored";
+const BANK: &str = "cargo test --release --test bank_of_the_paper -- --ignored";
 
 /// Evidence that `cargo test` does not run, or skips where a program is missing: by the beginning of its name, with what runs it.
-const ELSEWHERE: [(&str, &str); 17] = [
+const ELSEWHERE: [(&str, &str); 18] = [
     ("tests/hid-stack/", "tests/hid-stack/run"),
     ("tests/accuracy.rs", WITNESSES),
     ("tests/vectors_suite.rs", WITNESSES),
     ("tests/witness/", WITNESSES),
     ("tests/real_records.rs", RECORDS),
+    ("tests/bank_of_the_paper.rs", BANK),
     ("tests/report_page/", CHROMIUM),
     ("proofs/src/", WORKSPACE),
     ("proofs/fuzz/", WORKSPACE),
