@@ -131,16 +131,24 @@ impl BankDetector {
         let places = self.places();
         let (along, squares) = (&statistic.along, statistic.squares);
         let gain = |point: usize| along[point] - 0.5 * self.gamma()[point] * self.gamma()[point];
-        let top = |corners: &Vec<usize>| corners.iter().map(|&c| gain(c)).fold(f64::MIN, f64::max);
-        let tops: Vec<f64> = places.corners.iter().map(top).collect();
-        let highest = tops.iter().copied().fold(f64::MIN, f64::max);
+        // Where the prior of all corners is 0 it is so of the whole cell.
+        let top = |corners: &Vec<usize>| {
+            let can_be = corners.iter().any(|&corner| self.prior()[corner] > 0.0);
+            let gains = corners.iter().map(|&corner| gain(corner));
+            can_be.then(|| gains.fold(f64::MIN, f64::max))
+        };
+        let tops: Vec<Option<f64>> = places.corners.iter().map(top).collect();
+        let highest = tops.iter().flatten().copied().fold(f64::MIN, f64::max);
         let least = self.theta(highest, squares) - NEGLIGIBLE;
         let (mut nodes, mut spare) = (Vec::new(), Vec::new());
         let (mut cells, mut mass, mut prior) = (Vec::new(), Vec::new(), Vec::new());
         let mut best = (f64::MIN, [0.0; 4]);
         for (number, cell) in places.cells.iter().enumerate() {
+            let Some(top) = tops[number] else {
+                continue;
+            };
             // No signal explains more than the whole record.
-            let most = tops[number] + places.rise[number];
+            let most = top + places.rise[number];
             if self.theta(most.min(0.5 * squares), squares) < least {
                 continue;
             }
