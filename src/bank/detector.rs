@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use super::place::Places;
 use crate::detect::DetectError;
-use crate::detect::mixture::mixture_theta;
+use crate::detect::mixture::{likeliest, mixture_theta};
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceStatistic, SubspaceTest, dot};
 use crate::stats::error::{check_positive, check_samples, representable};
 
@@ -176,13 +176,8 @@ impl BankDetector {
 
     /// The first point of the largest θ.
     pub fn likeliest(&self, statistic: &BankStatistic) -> usize {
-        let better = |best: usize, next: usize| match statistic.theta[next] > statistic.theta[best]
-        {
-            true => next,
-            false => best,
-        };
         // `new` has seen that there is one.
-        self.points().reduce(better).unwrap_or(0)
+        likeliest(&statistic.theta, self.points()).unwrap_or(0)
     }
 
     /// ln of the likelihood ratio of an inclusion at any point, with their prior.

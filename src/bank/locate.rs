@@ -9,7 +9,7 @@ use super::rates::{CalibratedThreshold, false_alarm_bound, false_alarm_threshold
 use crate::detect::nuisance::{NoiseLevel, SubspaceTest};
 use crate::detect::{Decision, DetectError, map_threshold, posterior};
 use crate::force::Force;
-use crate::force_map::SAME_POSITION;
+use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
 use crate::trace::design::{Design, Series, blocked, difference, squares, stacked, whitened};
 use crate::trace::{Cause, Criterion, Fit, Question, Record, refused};
@@ -85,15 +85,26 @@ impl BankSearch<'_> {
     /// Implements: BNK-060, BNK-061, BNK-062.
     pub fn locate(&self, record: &Record) -> Result<Location, Refusal> {
         let located = || {
-            let (question, reference) = (&self.question, self.bank.reference().table());
-            let mut design = Design::new(question, reference, record)?;
+            let (question, depth) = (&self.question, self.bank.depth());
+            if (depth - question.depth).abs() > SAME_POSITION {
+                let found = format!("{} m", question.depth);
+                let expected = format!("{depth} m, for which the bank is");
+                return Err(Refusal::value("depth of the sweep", found, expected));
+            }
+            let mut design = Design::new(question, self.bank.reference().table(), record)?;
+            let signal = |map: &ForceMap| {
+                let f1 = record.expected(map.table(), depth)?;
+                Ok(difference(f1.as_deref(), design.reference.as_deref()))
+            };
+            let signals = self.bank.maps().iter().map(signal);
+            let signals = signals.collect::<Result<Vec<Series>, Refusal>>()?;
             // First where it probably lies, which does not depend on the level of the noise, so that its signal is not taken for noise.
             let noise_sd = question.noise.sd.unwrap_or(Force::new(1.0, 1.0));
             let white = design.whitened(noise_sd);
-            let detector = self.detector(&white, record, noise_sd, 1, NoiseLevel::Known)?;
+            let detector = self.detector(&white, &signals, noise_sd, 1, NoiseLevel::Known)?;
             let statistic = detector.statistic(&mut stacked(&white.residual));
             let place = detector.place(&statistic.map_err(refused)?);
-            design.template = self.signal(place.estimate, record)?;
+            design.template = self.between(&signals, place.estimate);
             let noise_sd = match question.noise.sd {
                 Some(sd) => sd,
                 None => design.noise_sd().map_err(refused)?,
@@ -102,62 +113,42 @@ impl BankSearch<'_> {
             let fit = Fit::new(question, &white, noise_sd).map_err(refused)?;
             let level = question.noise_level(&fit);
             let blocks = white.blocks(fit.block);
-            let detector = self.detector(&blocks, record, noise_sd, fit.block, level)?;
+            let detector = self.detector(&blocks, &signals, noise_sd, fit.block, level)?;
             let mut residual = stacked(&blocks.residual);
             self.judge(&detector, &mut residual, &white, fit)
         };
         located().map_err(|refusal: Refusal| refusal.in_file(record.file()))
     }
 
-    /// The signal at the parameters `at`, N.
-    fn signal(&self, at: [f64; 4], record: &Record) -> Result<Series, Refusal> {
-        let depth = self.bank.depth();
-        let f0 = record.expected(self.bank.reference().table(), depth)?;
-        let mut sum = f0.as_deref().map(|f0| vec![0.0; f0.len()]);
+    /// The signal at the parameters `at`, N, between those of the maps.
+    fn between(&self, signals: &[Series], at: [f64; 4]) -> Series {
+        let mut sum = signals[0].as_deref().map(|signal| vec![0.0; signal.len()]);
         for (map, weight) in weights(self.bank.axes(), at) {
-            let f1 = record.expected(self.bank.maps()[map].table(), depth)?;
-            let signal = difference(f1.as_deref(), f0.as_deref());
-            sum = sum.zip(signal).map(|(mut sum, signal)| {
-                let pairs = sum.iter_mut().zip(&signal);
+            sum = sum.zip(signals[map].as_deref()).map(|(mut sum, signal)| {
+                let pairs = sum.iter_mut().zip(signal);
                 pairs.for_each(|(sum, signal)| *sum += weight * signal);
                 sum
             });
         }
-        Ok(sum)
+        sum
     }
 
-    /// The detector for the positions of `record`, whose parts over `noise_sd` and in blocks are `white`.
-    ///
-    /// # Errors
-    /// As [`BankSearch::locate`].
-    ///
-    /// Implements: BNK-061.
+    /// The detector of the `signals` of all maps, N, beside the nuisances of a record whose parts over `noise_sd` and in blocks are
+    /// `white`.
     fn detector(
         &self,
         white: &Design,
-        record: &Record,
+        signals: &[Series],
         noise_sd: Force<f64>,
         block: usize,
         level: NoiseLevel,
     ) -> Result<BankDetector, Refusal> {
-        let (maps, depth) = (self.bank.maps(), self.bank.depth());
-        if (depth - self.question.depth).abs() > SAME_POSITION {
-            let found = format!("{} m", self.question.depth);
-            let expected = format!("{depth} m, for which the bank is");
-            return Err(Refusal::value("depth of the sweep", found, expected));
-        }
-        let f0 = record.expected(self.bank.reference().table(), depth)?;
-        let mut templates = Vec::with_capacity(maps.len() * 2 * white.samples());
-        for map in maps {
-            let f1 = record.expected(map.table(), depth)?;
-            let signal = whitened(&difference(f1.as_deref(), f0.as_deref()), noise_sd);
-            templates.extend(stacked(&blocked(&signal, block)));
-        }
-        let uniform = vec![1.0 / maps.len() as f64; maps.len()];
+        let template = |signal| stacked(&blocked(&whitened(signal, noise_sd), block));
+        let uniform = vec![1.0 / signals.len() as f64; signals.len()];
         let deviations: Vec<_> = white.depth_errors.iter().map(stacked).collect();
         let detector = BankDetector::new(
             self.bank.axes(),
-            templates,
+            signals.iter().flat_map(template).collect(),
             self.prior.unwrap_or(&uniform),
             white.signals(false),
             &deviations,

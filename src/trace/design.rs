@@ -55,7 +55,7 @@ pub(crate) type Series = Force<Vec<f64>>;
 #[derive(Debug, Clone)]
 pub(crate) struct Design {
     /// F_0.
-    reference: Series,
+    pub reference: Series,
     /// F_p − F_0.
     pub residual: Series,
     /// F_1 − F_0; nothing until it is set.

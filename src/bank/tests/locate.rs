@@ -122,12 +122,17 @@ fn what_cannot_be_judged_is_told() {
     let found = search(&bank, &[], Criterion::Map).locate(&high).unwrap();
     assert_eq!((found.decision, found.causes[0]), (None, Cause::Level));
     let mut asked = search(&bank, USUAL, Criterion::Map);
-    asked.question.depth = 3.9e-3;
-    let error = asked.locate(&without).unwrap_err().to_string();
-    assert_eq!(
-        error,
-        "t.csv: depth of the sweep = 0.0039 m, expected 0.004 m, for which the bank is"
-    );
+    // Between the depths of the reference, and beyond them.
+    for (depth, found) in [(3.9e-3, "0.0039"), (3e-3, "0.003")] {
+        asked.question.depth = depth;
+        let error = asked.locate(&without).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            format!(
+                "t.csv: depth of the sweep = {found} m, expected 0.004 m, for which the bank is"
+            )
+        );
+    }
     let wrong = BankSearch {
         prior: Some(&[1.0]),
         ..search(&bank, USUAL, Criterion::Map)

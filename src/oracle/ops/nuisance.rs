@@ -1,7 +1,7 @@
 //! Θ beside nuisances: of one template, and of each hypothesis of a bank.
 
 use super::{Answer, Arguments, Refused, check_rows};
-use crate::detect::mixture::mixture_theta;
+use crate::detect::mixture::{likeliest, mixture_theta};
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
 use crate::detect::{DetectError, posterior};
 use crate::stats::error::{check_samples, representable};
@@ -64,7 +64,7 @@ pub fn bank_posterior(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let theta: Vec<f64> = found.iter().map(|theta| theta.unwrap_or(0.0)).collect();
     let mixture = mixture_theta(&theta, &prior)?;
     let may_be = |&number: &usize| found[number].is_some() && prior[number] > 0.0;
-    let largest = first_largest(&theta, may_be);
+    let largest = likeliest(&theta, (0..theta.len()).filter(may_be));
     let largest = largest.ok_or(DetectError::NoSignal)?;
     let theta_max = theta[largest];
     let posterior_h1 = posterior(mixture, prior_h1)?;
@@ -92,20 +92,11 @@ fn theta_of(
     representable("theta", theta).map(Some)
 }
 
-/// The first of the hypotheses that count whose θ is largest.
-fn first_largest(theta: &[f64], counts: impl Fn(&usize) -> bool) -> Option<usize> {
-    let better = |best: usize, next: usize| match theta[next] > theta[best] {
-        true => next,
-        false => best,
-    };
-    (0..theta.len()).filter(counts).reduce(better)
-}
-
 /// The probability of each hypothesis if one is true: π_k exp(θ_k), over the sum of all.
 fn shares(theta: &[f64], prior: &[f64]) -> Vec<f64> {
-    let likeliest = first_largest(theta, |&number| prior[number] > 0.0);
+    let may_be = (0..theta.len()).filter(|&number| prior[number] > 0.0);
     // As in the mixture: no exponent of a hypothesis that may be true is above 0.
-    let largest = likeliest.map_or(0.0, |number| theta[number]);
+    let largest = likeliest(theta, may_be).map_or(0.0, |number| theta[number]);
     let weight = |(prior, theta): (&f64, &f64)| match *prior {
         0.0 => 0.0,
         prior => prior * libm::exp(theta - largest),
