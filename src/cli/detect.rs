@@ -81,19 +81,12 @@ pub struct DetectArguments {
     /// What is known, and not fitted to the record: a list of offset, drift, gain, depth and variance (of the noise); all; none
     #[arg(long = "known", value_name = "LIST", value_parser = unknowns, default_value = "depth")]
     unknown: Unknowns,
-    /// Which samples are independent: auto (the record tells), white (all), or a recorded sweep without contact that tells
+    /// Which samples are independent: auto (the record tells), white (all), or a recorded sweep without contact that tells; the
+    /// same tells the noise of a sample where it is not stated
     #[arg(long, value_name = "auto|white|FILE", default_value = "auto")]
     noise: String,
-    /// Standard deviation of the noise of one sample in N, both channels; without it the record tells
-    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true,
-          conflicts_with_all = ["noise_sd_lateral_n", "noise_sd_normal_n"])]
-    noise_sd_n: Option<f64>,
-    /// Standard deviation of the noise of one lateral sample in N
-    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true, requires = "noise_sd_normal_n")]
-    noise_sd_lateral_n: Option<f64>,
-    /// Standard deviation of the noise of one normal sample in N
-    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true, requires = "noise_sd_lateral_n")]
-    noise_sd_normal_n: Option<f64>,
+    #[command(flatten)]
+    noise_sd: NoiseSd,
     /// Probability of an inclusion before the sweep
     #[arg(long, value_name = "P", value_parser = probability, allow_hyphen_values = true, default_value = "0.5")]
     prior_h1: f64,
@@ -126,6 +119,30 @@ pub struct DetectArguments {
         conflicts_with = "reference"
     )]
     figure: Option<PathBuf>,
+}
+
+/// The standard deviation of the noise of a sample, of both channels or of each.
+#[derive(Debug, Args)]
+pub struct NoiseSd {
+    /// Standard deviation of the noise of one sample in N, both channels
+    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true,
+          conflicts_with_all = ["noise_sd_lateral_n", "noise_sd_normal_n"])]
+    noise_sd_n: Option<f64>,
+    /// Standard deviation of the noise of one lateral sample in N
+    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true, requires = "noise_sd_normal_n")]
+    noise_sd_lateral_n: Option<f64>,
+    /// Standard deviation of the noise of one normal sample in N
+    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true, requires = "noise_sd_lateral_n")]
+    noise_sd_normal_n: Option<f64>,
+}
+
+impl NoiseSd {
+    /// What was stated, N; none if nothing was. The parser has refused all but one for both, one for each, or none.
+    pub fn get(&self) -> Option<Force<f64>> {
+        let both = self.noise_sd_n.map(|sd| Force::new(sd, sd));
+        let each = self.noise_sd_lateral_n.zip(self.noise_sd_normal_n);
+        both.or(each.map(|(lateral, normal)| Force::new(lateral, normal)))
+    }
 }
 
 /// The criteria by name.
@@ -221,10 +238,7 @@ impl DetectArguments {
 
     /// Implements: CLI-041, CLI-141, CLI-142.
     fn noise(&self) -> Result<Noise, CliError> {
-        // The parser has refused all but one for both, one for each, or none.
-        let both = self.noise_sd_n.map(|sd| Force::new(sd, sd));
-        let each = self.noise_sd_lateral_n.zip(self.noise_sd_normal_n);
-        let sd = both.or(each.map(|(lateral, normal)| Force::new(lateral, normal)));
+        let sd = self.noise_sd.get();
         let noise = match &*self.noise {
             "auto" => Noise {
                 sd,

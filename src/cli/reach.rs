@@ -5,12 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::detect::{Unknowns, newtons, probability, unknowns};
+use super::detect::{NoiseSd, Unknowns, probability, unknowns};
 use super::output::write;
 use super::{CliError, Format};
 use crate::bank::{Bank, Reach, Reached, smallest_diameters};
 use crate::decimal::format_scaled;
-use crate::force::Force;
 use crate::report::reach_figure;
 use crate::trace::Unknown;
 
@@ -20,16 +19,8 @@ pub struct ReachArguments {
     /// A bank of inclusions, as 'palpate bank' makes it
     #[arg(long, value_name = "BANK")]
     bank: PathBuf,
-    /// Standard deviation of the noise of one sample in N, both channels
-    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true,
-          conflicts_with_all = ["noise_sd_lateral_n", "noise_sd_normal_n"], required_unless_present = "noise_sd_lateral_n")]
-    noise_sd_n: Option<f64>,
-    /// Standard deviation of the noise of one lateral sample in N
-    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true, requires = "noise_sd_normal_n")]
-    noise_sd_lateral_n: Option<f64>,
-    /// Standard deviation of the noise of one normal sample in N
-    #[arg(long, value_name = "S", value_parser = newtons, allow_hyphen_values = true, requires = "noise_sd_lateral_n")]
-    noise_sd_normal_n: Option<f64>,
+    #[command(flatten)]
+    noise_sd: NoiseSd,
     /// Largest rate of false alarms of a search over the whole bank
     #[arg(long, value_name = "A", value_parser = probability, allow_hyphen_values = true, default_value = "0.01")]
     max_false_alarm: f64,
@@ -108,12 +99,10 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     // The level of the noise is stated.
     let unknown = arguments.unknown.0.iter().copied();
     let unknown: Vec<Unknown> = unknown.filter(|&of| of != Unknown::Variance).collect();
-    // The parser has refused all but one for both, or one for each.
-    let both = arguments.noise_sd_n.unwrap_or(f64::NAN);
-    let noise_sd = Force {
-        lateral: arguments.noise_sd_lateral_n.unwrap_or(both),
-        normal: arguments.noise_sd_normal_n.unwrap_or(both),
-    };
+    let noise_sd = arguments.noise_sd.get().ok_or_else(|| {
+        let either = "expected --noise-sd-n, or --noise-sd-lateral-n and --noise-sd-normal-n";
+        CliError::Usage(format!("no noise is stated, {either}"))
+    })?;
     let plain = Reach {
         bank: &bank,
         samples: arguments.samples.map(|samples| samples as usize),
