@@ -13,6 +13,7 @@ use palpate::force::Force;
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
 use palpate::stats::binomial::clopper_pearson;
+use palpate::stats::normal::{quantile, upper_tail};
 use palpate::stats::random::Generator;
 use palpate::trace::{Correlation, Criterion, Noise, Question, Record, Trace, Unknown, nuisances};
 
@@ -231,6 +232,31 @@ fn a_calibrated_threshold_keeps_its_rate_on_fresh_seeds() {
                 interval.lower < rare.rate && rare.rate < interval.upper,
                 "{rare:?}"
             );
+        }
+    }
+}
+
+// Verifies: BNK-055.
+#[test]
+#[ignore = "slow: run it with --release"]
+fn the_power_of_a_search_is_near_that_of_a_known_place() {
+    let bank = bank();
+    let at = [1.75e-3, 4.1e-3, bank.axes()[2][0], bank.axes()[3][0]];
+    for unknown in [&[][..], USUAL] {
+        let of_one = detector(&bank, unknown, 1.0).template_at(at);
+        let gamma = of_one.iter().map(|s| s * s).sum::<f64>().sqrt();
+        for wanted in [2.0, 3.0, 4.0, 5.0, 6.0, 7.0] {
+            let detector = detector(&bank, unknown, gamma / wanted);
+            let eta = detector.calibrate(0.01, 20_000, 1).unwrap().eta;
+            let found = detector.power(eta, at, 4_000, 2).unwrap();
+            let known = upper_tail(-quantile(0.01).unwrap() - wanted).unwrap();
+            println!(
+                "{} unknown, gamma {wanted}: power {:.3} to {:.3} with 1 % false alarms; {known:.3} if the place were known",
+                unknown.len(),
+                found.lower,
+                found.upper
+            );
+            assert!(found.lower < known);
         }
     }
 }

@@ -142,6 +142,28 @@ impl BankDetector {
         })
     }
 
+    /// The share of so many simulated records with an inclusion of the parameters `at` whose Θ_max is at least η, between bounds of
+    /// [`CONFIDENCE`].
+    ///
+    /// # Errors
+    /// No simulations; as [`BankDetector::statistic`].
+    ///
+    /// Implements: BNK-055.
+    pub fn power(
+        &self,
+        eta: f64,
+        at: [f64; 4],
+        simulations: u64,
+        seed: u64,
+    ) -> Result<ConfidenceInterval, DetectError> {
+        let (signal, generator) = (self.template_at(at), Generator::new(seed, 0));
+        let mut found = 0;
+        for trial in 0..simulations {
+            found += u64::from(self.simulated_maximum(&signal, generator, trial)? >= eta);
+        }
+        clopper_pearson(found, simulations, CONFIDENCE)
+    }
+
     /// The rate of Θ_max ≥ η without inclusion, however small, where the level of the noise is known: records are drawn under the condition
     /// that one point exceeds η, and each counts for the share of that point among those that do (A. B. Owen, Y. Maximov, M. Chertkov,
     /// *Importance sampling the union of rare events*, Electron. J. Stat. 13, 2019).

@@ -98,6 +98,40 @@ fn a_calibrated_threshold_counts_deviations_to_both_sides() {
     assert!(found.lower < 0.0565 && 0.0441 < found.upper, "{found:?}");
 }
 
+// Verifies: BNK-055.
+#[test]
+fn the_power_is_that_of_one_point_and_more_with_its_neighbours() {
+    let points = [vec![0.0], vec![0.0], vec![0.0], vec![0.0]];
+    let one = BankDetector::new(
+        &points,
+        signal(0.0, 2.0),
+        &[1.0],
+        vec![],
+        &[],
+        NoiseLevel::Known,
+    );
+    let one = one.unwrap();
+    let gamma = one.gamma()[0];
+    for eta in [-1.0, 0.5, 2.0] {
+        let found = one.power(eta, [0.0; 4], 20_000, 1).unwrap();
+        let expected = normal::upper_tail(eta / gamma - 0.5 * gamma).unwrap();
+        assert!(
+            found.lower < expected && expected < found.upper,
+            "{eta}: {found:?} {expected}"
+        );
+        assert!(found.upper - found.lower < 0.02);
+    }
+    let many = detector(6.0, true, NoiseLevel::Known);
+    let at = [1.0, 3.0, 1.0, 1.0];
+    let own = many.gamma()[2 * 13 + 7];
+    let found = many.power(3.0, at, 20_000, 2).unwrap();
+    assert!(
+        found.lower > normal::upper_tail(3.0 / own - 0.5 * own).unwrap(),
+        "{found:?}"
+    );
+    assert!(many.power(3.0, at, 0, 2).is_err());
+}
+
 // Verifies: BNK-054.
 #[test]
 fn rare_rates_are_those_of_the_tails_and_of_plain_simulation() {
