@@ -118,7 +118,10 @@ fn session(
     let stop = stop_on_signals()?;
     let session = Session::begin(device, table, limits).map_err(failed)?;
     let stop = || stop.load(Ordering::Relaxed);
-    let played = supervised(session, &options, raise_priority, stop, live());
+    // A virtual clock stands still with the loop: nothing is held up, and no cycle takes time.
+    let is_simulated = arguments.device.is_simulated();
+    let look = live(!is_simulated);
+    let played = supervised(session, &options, raise_priority, stop, look);
     if std::io::stderr().is_terminal() {
         eprint!("\r\x1b[K"); // the summary begins on an empty line
     }
@@ -136,12 +139,14 @@ fn session(
     let summary = Summary {
         end: played.end.to_string(),
         counters: played.counters,
-        held_up_ms: played.held_up.map(|time| time.as_millis() as u64),
+        held_up_ms: played
+            .held_up
+            .filter(|_| !is_simulated)
+            .map(|time| time.as_millis() as u64),
         rounding_position_m: rounding.position_m,
         rounding_force_n: rounding.force_n,
         scale,
-        // A virtual clock does not see what the loop takes.
-        timing: played.timing.filter(|_| !arguments.device.is_simulated()),
+        timing: played.timing.filter(|_| !is_simulated),
     };
     // With its keys sorted; neither this nor writing to a String fails.
     let sorted = serde_json::to_value(&summary).unwrap_or_default();
@@ -189,13 +194,13 @@ fn raise_priority() {
     }
 }
 
-/// What the supervisor shows while it plays: the counters on one line of a terminal, and a loop that
-/// is held up.
-fn live() -> impl FnMut(&Counters, Duration) {
+/// What the supervisor shows while it plays: the counters on one line of a terminal and, of a loop on
+/// the `wall_clock`, that it is held up.
+fn live(wall_clock: bool) -> impl FnMut(&Counters, Duration) {
     let terminal = std::io::stderr().is_terminal();
     let mut told = false;
     move |counters, silent| {
-        if silent > HELD_UP && !told {
+        if wall_clock && silent > HELD_UP && !told {
             told = true;
             eprintln!(
                 "the servo thread is held up for {} ms: the device's own watchdog must drop the force",
