@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{self, Error, ErrorKind, Read};
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
+
 use crate::refusal::Refusal;
 
 /// The longest text that is read, bytes: more than an hour of playback, recorded.
@@ -42,4 +44,26 @@ pub fn parse<T>(
 /// The line of byte `at` of `text`, from 1.
 pub fn line_of(text: &str, at: usize) -> usize {
     1 + text.bytes().take(at).filter(|&byte| byte == b'\n').count()
+}
+
+/// What serde reads from `text`, TOML, the content of `file`.
+///
+/// # Errors
+/// What is wrong, with file, line and key.
+pub fn from_toml<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, Refusal> {
+    let refused = |key: &str, error: &toml::de::Error| {
+        // What the parser has no place for, such as too deep a nesting, it found up to the end.
+        let at = error.span().map_or(text.len(), |span| span.start);
+        let message = format!("{key}{}", error.message());
+        let line = line_of(text, at);
+        Refusal::state(message, "").at(line).in_file(file)
+    };
+    let document = toml::Deserializer::parse(text).map_err(|error| refused("", &error))?;
+    serde_path_to_error::deserialize(document).map_err(|error| {
+        let key = match error.path().to_string() {
+            path if path == "." => String::new(),
+            path => path + ": ",
+        };
+        refused(&key, error.inner())
+    })
 }

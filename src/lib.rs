@@ -14,6 +14,7 @@
 //! | §4 playback: from a table to a force | [`servo`] |
 //! | §4 playback: reports of the device | [`hid`] |
 //! | §4 pairs of samples, felt and judged; §5 what the answers say | [`psychophysics`] |
+//! | what uncertain inputs do to all that | [`study`] |
 //! | figures, tables | [`report`] |
 //! | why an input is refused | [`refusal`] |
 //! | other implementations: questions and answers | [`oracle`] |
@@ -93,5 +94,7 @@ pub mod refusal;
 pub mod report;
 pub mod servo;
 pub mod stats;
+#[cfg(feature = "cli")]
+pub mod study;
 #[cfg(feature = "std")]
 pub mod trace;

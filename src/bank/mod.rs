@@ -37,6 +37,8 @@ pub use plan::{BankPlan, BankSolve, MESH_SIZE};
 pub use rates::{
     CONFIDENCE, CalibratedThreshold, RareRate, false_alarm_bound, false_alarm_threshold,
 };
+#[cfg(feature = "cli")]
+pub(crate) use reach::deepest;
 pub use reach::{Reach, Reached, smallest_diameters};
 
 use crate::force_map::{ForceMap, SAME_POSITION, check_gel};

@@ -116,7 +116,7 @@ impl Reach<'_> {
 }
 
 /// The first of `depths` beyond which `gamma` is less than `enough`, ln γ being linear between them.
-fn deepest(depths: &[f64], gamma: &[f64], enough: f64) -> Option<f64> {
+pub(crate) fn deepest(depths: &[f64], gamma: &[f64], enough: f64) -> Option<f64> {
     let mut reached = None;
     for (k, (&depth, &found)) in depths.iter().zip(gamma).enumerate() {
         if found >= enough {

@@ -9,7 +9,7 @@ use super::error::CliError;
 use super::output::print;
 use super::{
     bank, demo, detect, devices, experiment, import, oracle, play, psychophysics, reach, run,
-    solve, timing,
+    solve, study, timing,
 };
 
 /// The version, and which build this is.
@@ -49,6 +49,8 @@ pub(super) enum Command {
     Detect(detect::DetectArguments),
     /// How deep an inclusion of a bank may lie, and how small it may be, to be found.
     Reach(reach::ReachArguments),
+    /// What uncertain inputs do to every number: samples, on one machine or many, and their analysis.
+    Study(study::StudyArguments),
     /// A force map to a hand, through a haptic device or a simulated one.
     Play(play::PlayArguments),
     /// The HID devices of this machine, and which of them can play a force map.

@@ -4,18 +4,20 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::CliError;
-use super::bank_part::{Part, PartRequest, Taken};
 use super::lists::{Moduli, Positions, length, moduli, positions};
-use super::output::write;
+use super::output::{note, write};
+use super::part::Part;
 use super::progress::{bar, tell_large_mesh};
 use super::solve::{millimetres, phantom, warn_of_large_strain_of};
 use crate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
 use crate::decimal::format_scaled;
-use crate::fem::{Contact, FemError};
-use crate::force_map::ForceMap;
+use crate::fem::{Contact, FemError, arithmetic};
+use crate::force_map::{ForceMap, parse};
 use crate::phantom::Phantom;
+use crate::refusal::Refusal;
 
 /// Most forces of a bank, over all inclusions and lateral positions: its file takes some 100 bytes for each, and is to be read again.
 const MOST_FORCES: usize = 1_000_000;
@@ -108,15 +110,7 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let plan = arguments.plan(&phantom)?;
     let solves = plan.solves()?;
     tell_large_mesh(&phantom, plan.mesh_size).map_err(CliError::fem(&phantom.name))?;
-    let request = PartRequest::new(
-        &phantom,
-        &plan,
-        arguments.probe_depth_mm,
-        &arguments.laterals_mm.0,
-    );
-    let (part, finished) = Part::open(out, &request, 1 + solves.len(), |number, maps| {
-        is_of(maps, number.checked_sub(1).map(|solve| &solves[solve]))
-    })?;
+    let (part, finished) = open_part(&plan, arguments, &phantom, &solves)?;
     let maps = compute(&plan, &phantom.name, &solves, &part, finished)?;
     let worst = maps
         .iter()
@@ -129,6 +123,86 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let reference = maps.remove(0);
     write(out, &Bank::new(reference, maps)?.to_json())?;
     part.remove()
+}
+
+/// How the first line of a file of finished computations begins.
+const BEGINNING: &str = "{\"schema\":\"palpate-bank-part\"";
+
+/// All that the maps of a bank depend on, lengths and moduli in SI.
+#[derive(Debug, Serialize)]
+struct Request<'a> {
+    schema: &'static str,
+    schema_version: u64,
+    program_version: &'static str,
+    arithmetic: &'static str,
+    phantom: &'a Phantom,
+    offsets_m: &'a [f64],
+    depths_m: &'a [f64],
+    diameters_m: &'a [f64],
+    youngs_moduli_pa: &'a [f64],
+    probe_depth_m: f64,
+    laterals_m: &'a [f64],
+    mesh_size_m: f64,
+    contact: Contact,
+}
+
+/// One computation: 0 for the reference, then one for each solve.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Finished<M> {
+    number: usize,
+    maps: M,
+}
+
+/// The maps of each computation that is finished.
+type Taken = Vec<Option<Vec<ForceMap>>>;
+
+/// The file of what is finished, and what that is.
+///
+/// Implements: CLI-156, CLI-157, CLI-167, CLI-169.
+fn open_part(
+    plan: &BankPlan,
+    arguments: &BankArguments,
+    phantom: &Phantom,
+    solves: &[BankSolve],
+) -> Result<(Part, Taken), CliError> {
+    let request = Request {
+        schema: "palpate-bank-part",
+        schema_version: 1,
+        program_version: env!("CARGO_PKG_VERSION"),
+        arithmetic: arithmetic(),
+        phantom,
+        offsets_m: &plan.positions,
+        depths_m: &plan.depths,
+        diameters_m: &plan.diameters,
+        youngs_moduli_pa: &plan.moduli,
+        probe_depth_m: arguments.probe_depth_mm,
+        laterals_m: &arguments.laterals_mm.0,
+        mesh_size_m: plan.mesh_size,
+        contact: plan.contact,
+    };
+    let mut name = arguments.out.as_os_str().to_owned();
+    name.push(".part");
+    let path = PathBuf::from(name);
+    let mut finished = vec![None; 1 + solves.len()];
+    let part = Part::open(path.clone(), &request, BEGINNING, "palpate bank", |text| {
+        let Finished { number, maps } = parse::<Finished<Vec<ForceMap>>>(text)?;
+        let solve = number.checked_sub(1).and_then(|solve| solves.get(solve));
+        match finished.get_mut(number) {
+            Some(place) if is_of(&maps, solve) => *place = Some(maps),
+            _ => {
+                let found = "no computation of this bank";
+                return Err(Refusal::state(found, "one: delete the file"));
+            }
+        }
+        Ok(())
+    })?;
+    let taken = finished.iter().flatten().count();
+    if taken > 0 {
+        let text = format!("{taken} of {} computations taken over", finished.len());
+        note(path.display(), &text);
+    }
+    Ok((part, finished))
 }
 
 /// Whether `maps` are those of a solve, or that of the reference.
@@ -169,7 +243,10 @@ fn compute(
             CliError::fem(&name(phantom, solve.map(|solve| &solve.phantom)))(error)
         };
         let maps = solved.map_err(failed)?;
-        part.append(number, &maps)?;
+        part.append(&Finished {
+            number,
+            maps: &maps,
+        })?;
         bar.inc(1);
         Ok(maps)
     };

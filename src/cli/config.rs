@@ -9,7 +9,7 @@ use super::CliError;
 use super::lists::{Positions, positions};
 use super::solve::phantom;
 use crate::fem::{Contact, MESH_SIZE};
-use crate::input::line_of;
+use crate::input::{from_toml, line_of};
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 use crate::refusal::Refusal;
 use crate::report::Settings;
@@ -106,23 +106,14 @@ impl Config {
     ///
     /// Implements: CLI-031.
     pub fn from_toml(text: &str, file: &str) -> Result<Config, Refusal> {
-        let refused = |key: &str, error: &toml::de::Error| {
-            // What the parser has no place for, such as too deep a nesting, it found up to the end.
-            let at = error.span().map_or(text.len(), |span| span.start);
-            let message = format!("{key}{}", error.message());
-            let line = line_of(text, at);
-            Refusal::state(message, "").at(line).in_file(file)
-        };
-        let document = toml::Deserializer::parse(text).map_err(|error| refused("", &error))?;
-        let config = serde_path_to_error::deserialize(document).map_err(|error| {
-            let key = match error.path().to_string() {
-                path if path == "." => String::new(),
-                path => path + ": ",
-            };
-            refused(&key, error.inner())
-        })?;
+        let config: Config = from_toml(text, file)?;
+        Ok(config.from_source(text, file))
+    }
+
+    /// The configuration as a part of `text`, the content of `file`.
+    pub fn from_source(self, text: &str, file: &str) -> Config {
         let source = [file.into(), text.into()];
-        Ok(Config { source, ..config })
+        Config { source, ..self }
     }
 
     /// The reference, then the phantoms that are compared with it.

@@ -2,7 +2,6 @@
 
 pub mod arguments;
 mod bank;
-mod bank_part;
 mod comparison;
 pub mod config;
 mod demo;
@@ -15,6 +14,7 @@ mod import;
 pub mod lists;
 mod oracle;
 pub mod output;
+mod part;
 mod play;
 mod playback;
 pub mod progress;
@@ -22,6 +22,7 @@ mod psychophysics;
 mod reach;
 mod run;
 mod solve;
+mod study;
 mod timing;
 
 use std::ffi::OsString;
@@ -55,6 +56,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Bank(arguments) => bank::bank(&arguments),
             Command::Detect(arguments) => detect::detect(&arguments),
             Command::Reach(arguments) => reach::reach(&arguments),
+            Command::Study(arguments) => study::study(&arguments),
             Command::Play(arguments) => play::play(&arguments),
             Command::Devices(arguments) => devices::devices(&arguments),
             Command::Experiment(arguments) => experiment::experiment(&arguments),

@@ -7,7 +7,7 @@ use crate::force_map::{Discretization, ForceMap, Matrix};
 /// Ratios of the sizes of the three meshes, middle over fine and coarse over middle.
 ///
 /// Implements: FEM-026.
-const RATIOS: [f64; 2] = [4.0 / 3.0, 1.5];
+pub(crate) const MESH_RATIOS: [f64; 2] = [4.0 / 3.0, 1.5];
 /// An observed order is trusted between these.
 const TRUSTED_ORDERS: core::ops::RangeInclusive<f64> = 1.0..=4.0;
 /// The order counted on, at most: that of a contact's edge between two nodes.
@@ -36,8 +36,8 @@ pub fn certified_map(
         let map = coarser.map(depths, laterals, solved)?;
         Ok((coarser.mesh().nodes.len(), map))
     };
-    let (middle_nodes, middle) = coarser(RATIOS[0])?;
-    let (coarse_nodes, coarse) = coarser(RATIOS[0] * RATIOS[1])?;
+    let (middle_nodes, middle) = coarser(MESH_RATIOS[0])?;
+    let (coarse_nodes, coarse) = coarser(MESH_RATIOS[0] * MESH_RATIOS[1])?;
     let [fine, middle, coarse] = [&finest, &middle, &coarse].map(|map| map.forces().as_ref());
     let bands = fine
         .zip(middle)
@@ -64,7 +64,7 @@ pub fn certified_map(
 pub(super) fn observed_order([fine, middle, coarse]: [f64; 3]) -> Option<f64> {
     let ratio = (coarse - middle) / (middle - fine);
     let of_order = |p: f64| {
-        let [r21, r32] = RATIOS.map(|ratio| libm::pow(ratio, p));
+        let [r21, r32] = MESH_RATIOS.map(|ratio| libm::pow(ratio, p));
         r21 * (r32 - 1.0) / (r21 - 1.0)
     };
     let (mut low, mut high) = (1e-3, 64.0);
@@ -86,9 +86,9 @@ pub(super) fn observed_order([fine, middle, coarse]: [f64; 3]) -> Option<f64> {
 /// The band around the finest of three forces, finest first, N.
 ///
 /// Implements: FEM-027.
-pub(super) fn band(forces: [f64; 3]) -> f64 {
+pub(crate) fn band(forces: [f64; 3]) -> f64 {
     let [fine, middle, coarse] = forces;
-    let error = |change: f64, order: f64| change / (libm::pow(RATIOS[0], order) - 1.0);
+    let error = |change: f64, order: f64| change / (libm::pow(MESH_RATIOS[0], order) - 1.0);
     let change = (middle - fine).abs();
     match observed_order(forces) {
         Some(order) if TRUSTED_ORDERS.contains(&order) => {

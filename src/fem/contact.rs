@@ -20,7 +20,7 @@ use crate::phantom::Probe;
 pub use state::ContactState;
 
 /// How the gap between a surface node and the probe is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Contact {

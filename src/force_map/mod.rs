@@ -52,7 +52,7 @@ pub use pair::Hypotheses;
 pub(crate) use pair::check_gel;
 #[cfg(feature = "fem")]
 pub use smoothing::Smoothed;
-pub use table::{ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE};
+pub use table::{ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE, peak};
 
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;

@@ -403,3 +403,15 @@ fn check_same_axis(key: &str, ours: &[f64], theirs: &[f64]) -> Result<(), Refusa
     }
     Ok(())
 }
+
+/// The force of largest magnitude along a sweep, N, with its sign, and its lateral position, m; of equals the one nearest to x = 0, then
+/// that at x > 0.
+pub fn peak(laterals: &[f64], forces: &[f64]) -> (f64, f64) {
+    let poses = forces.iter().copied().zip(laterals.iter().copied());
+    let peak = poses.max_by(|(force, at), (other, other_at)| {
+        let larger = force.abs().total_cmp(&other.abs());
+        let nearer = other_at.abs().total_cmp(&at.abs());
+        larger.then(nearer).then(at.total_cmp(other_at))
+    });
+    peak.unwrap_or_default()
+}

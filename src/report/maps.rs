@@ -12,7 +12,7 @@ use crate::detect::{
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, two_afc,
 };
 use crate::force::Force;
-use crate::force_map::{ForceMap, SAME_POSITION};
+use crate::force_map::{ForceMap, SAME_POSITION, peak};
 use crate::refusal::Refusal;
 
 /// What the reference map says.
@@ -72,6 +72,14 @@ pub struct Peak {
     /// The lateral position, m; of mirror images the one with x ≥ 0.
     #[serde(rename = "lateral_m")]
     pub lateral: f64,
+}
+
+impl Peak {
+    /// Implements: REP-011.
+    fn of(map: &ForceMap, signal: &[f64]) -> Peak {
+        let (force, lateral) = peak(map.laterals(), signal);
+        Peak { force, lateral }
+    }
 }
 
 /// γ with both channels and with each alone.
@@ -159,8 +167,8 @@ fn judged(
         name: name_of_map(map),
         paper_phantom: phantom.and_then(paper::name_of),
         inclusion_depth: depths.and_then(|depths| depths.reduce(f64::min)),
-        peak_normal: peak(map.laterals(), normal),
-        peak_lateral: peak(map.laterals(), lateral),
+        peak_normal: Peak::of(map, normal),
+        peak_lateral: Peak::of(map, lateral),
         gamma,
         gamma_left,
         array,
@@ -176,21 +184,6 @@ fn judged(
         warnings: warnings(quality.as_ref(), both),
         quality,
     })
-}
-
-/// The largest magnitude; of equals the one nearest to x = 0, then the one at x > 0.
-///
-/// Implements: REP-011.
-fn peak(laterals: &[f64], forces: &[f64]) -> Peak {
-    let poses = laterals.iter().zip(forces);
-    let peaks = poses.map(|(&lateral, &force)| Peak { force, lateral });
-    let peak = peaks.max_by(|a, b| {
-        let by_force = a.force.abs().total_cmp(&b.force.abs());
-        by_force
-            .then(b.lateral.abs().total_cmp(&a.lateral.abs()))
-            .then(a.lateral.total_cmp(&b.lateral))
-    });
-    peak.unwrap_or_default()
 }
 
 /// γ of lateral and normal forces in noise of the same standard deviation.

@@ -35,7 +35,7 @@ use super::dispersion::Overdispersion;
 use super::noise::InclusionNoise;
 use super::rates::pooled;
 use super::{AnswerTable, Condition, Result};
-use crate::force_map::{ForceMap, SAME_POSITION};
+use crate::force_map::{ForceMap, SAME_POSITION, peak};
 use crate::refusal::Refusal;
 use common::{Signals, common, common_with_lapse};
 use signals::{Signal, mean, sweep};
@@ -108,8 +108,8 @@ pub fn bridge(
     let conditions = conditions
         .map(|condition| of_condition(condition, &columns, &signals, (&half_sweeps, ranges)));
     let of_inclusion = |(&column, signal): (&usize, &Signal)| {
-        let (peak_normal, peak_normal_at) = signal.peak(&signal.forces.normal);
-        let (peak_lateral, peak_lateral_at) = signal.peak(&signal.forces.lateral);
+        let (peak_normal, peak_normal_at) = peak(&signal.laterals, &signal.forces.normal);
+        let (peak_lateral, peak_lateral_at) = peak(&signal.laterals, &signal.forces.lateral);
         BridgeInclusion {
             name: table.inclusions()[column].name.clone(),
             peak_normal_n: peak_normal,
@@ -130,6 +130,47 @@ pub fn bridge(
         inclusions: columns.iter().zip(&signals).map(of_inclusion).collect(),
         conditions: conditions.collect::<Result<_, _>>()?,
     })
+}
+
+/// The p-value of each convention, in the order of [`Convention::all`], for the counts of the condition with a number: as
+/// [`bridge`], without all that is said beside.
+///
+/// # Errors
+/// As [`bridge`]; a condition that the table does not have, and a convention whose signal is 0 at all inclusions.
+///
+/// Implements: STU-033.
+pub fn p_values(
+    table: &AnswerTable,
+    condition: usize,
+    reference: &ForceMap,
+    inclusions: &[(&str, &ForceMap)],
+) -> Result<Vec<f64>> {
+    let maps = columns(table, inclusions)?;
+    let (depth, _) = probe_depth(reference.depths());
+    let signal = |&(_, map): &(usize, &ForceMap)| Signal::new(reference, map, depth);
+    let signals = maps.iter().map(signal).collect::<Result<Vec<_>, _>>()?;
+    let columns: Vec<usize> = maps.into_iter().map(|(column, _)| column).collect();
+    let missing = || Refusal::state(format!("condition {condition} is not in the table"), "");
+    let condition = table.conditions().get(condition).ok_or_else(missing)?;
+    let observed = Observations::new(condition, &columns)?;
+    let p_value = |convention: Convention| {
+        let none = || Refusal::state(format!("no signal by the {}", convention.text()), "");
+        let signals = Signals::new(&signals, |signal| signal.strength(convention));
+        let (_, _, p_value) = by_subjects(&signals.ok_or_else(none)?, &observed)?;
+        Ok(p_value)
+    };
+    Convention::all().map(p_value).collect()
+}
+
+/// A noise level for each subject, without lapses and with, and the larger p-value of the two.
+fn by_subjects(
+    signals: &Signals,
+    observed: &Observations,
+) -> Result<(SubjectFit, SubjectFit, f64)> {
+    let plain = by_subject(signals, observed)?;
+    let with_lapse = by_subject_with_lapse(signals, observed, &plain)?;
+    let p_value = plain.p_value.max(with_lapse.p_value);
+    Ok((plain, with_lapse, p_value))
 }
 
 /// Each map with the column that it belongs to, in the order of the table.
@@ -183,7 +224,7 @@ fn of_condition(
     let (mut observed, mut noise_by_inclusion) = (Vec::new(), Vec::new());
     for (&column, signal) in columns.iter().zip(signals) {
         let (pooled, clustered) = pooled(condition, column)?;
-        let (peak, _) = signal.peak(&signal.forces.normal);
+        let (peak, _) = peak(&signal.laterals, &signal.forces.normal);
         noise_by_inclusion.push(InclusionNoise::new(peak.abs(), &pooled, clustered));
         observed.push(ObservedRate {
             rate: pooled.rate,
@@ -244,9 +285,7 @@ fn told_apart(one: &ConventionFit, other: &ConventionFit) -> Option<f64> {
 }
 
 fn fit(convention: Convention, signals: Signals, observed: &Observations) -> Result<ConventionFit> {
-    let by_subject = by_subject(&signals, observed)?;
-    let by_subject_with_lapse = by_subject_with_lapse(&signals, observed, &by_subject)?;
-    let p_value = by_subject.p_value.max(by_subject_with_lapse.p_value);
+    let (by_subject, by_subject_with_lapse, p_value) = by_subjects(&signals, observed)?;
     Ok(ConventionFit {
         convention,
         name: convention.text(),

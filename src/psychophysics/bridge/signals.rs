@@ -52,18 +52,6 @@ impl Signal {
         })
     }
 
-    /// The force of largest magnitude in a channel of this signal, N, with its sign, and its position, m; of equals the one nearest
-    /// to x = 0, then that at x > 0.
-    pub fn peak(&self, channel: &[f64]) -> (f64, f64) {
-        let poses = channel.iter().copied().zip(self.laterals.iter().copied());
-        let peak = poses.max_by(|(force, at), (other, other_at)| {
-            let larger = force.abs().total_cmp(&other.abs());
-            let nearer = other_at.abs().total_cmp(&at.abs());
-            larger.then(nearer).then(at.total_cmp(other_at))
-        });
-        peak.unwrap_or_default()
-    }
-
     /// The part within `half`, m, of x = 0.
     pub fn within(&self, half: f64) -> Signal {
         let inside = |channel: &[f64]| {

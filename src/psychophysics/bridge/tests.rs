@@ -70,7 +70,7 @@ fn each_convention_makes_its_own_signal() {
     let uniform = Convention::all().filter(|c| c.uses_uniform_part());
     assert_eq!(uniform.count(), 4);
     // Of equal magnitudes the one nearest to x = 0, then that at x > 0.
-    assert_eq!(signal.peak(&signal.forces.lateral), (3.0, 2e-3));
+    assert_eq!(peak(&signal.laterals, &signal.forces.lateral), (3.0, 2e-3));
     assert_eq!(mean(&signal.forces.normal), 2.0);
 }
 

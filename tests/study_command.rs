@@ -1,0 +1,313 @@
+//! `palpate study`, end to end: shards that are killed and go on give the bytes of an undisturbed run; every refusal.
+#![cfg(all(feature = "cli", unix))]
+
+mod program;
+
+use std::fs;
+use std::process::Stdio;
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use palpate::study::StudyResults;
+use program::{Place, text};
+
+/// Two phantoms on a coarse mesh, two inputs, one of which fails now and then: 3 + 4 + 8 × 4 = 39 samples.
+const STUDY: &str = r#"
+rows = 8
+[run]
+phantoms = ["4.6", "6.6"]
+depths_mm = "3"
+laterals_mm = "-4:4:2"
+mesh.size_mm = 2.0
+[[input]]
+name = "Poisson's ratio"
+key = "layer[1].poisson_ratio"
+distribution.normal = { mean = 0.49, sd = 0.008 }
+source = "a test"
+[[input]]
+name = "depth"
+key = "inclusion[0].depth_mm"
+change = "offset"
+distribution.empirical = { file = "depths.csv" }
+source = "a test"
+"#;
+const SAMPLES: usize = 39;
+
+/// A folder with the study.
+fn place(name: &str) -> Place {
+    let place = Place::new(&format!("study-{name}"));
+    place.write("study.toml", STUDY);
+    place.write("depths.csv", "value\n0.1\n-0.2\n0.2\n");
+    place
+}
+
+/// The samples and the results of a run that nothing disturbs, on one thread.
+fn expected() -> &'static [String; 2] {
+    static EXPECTED: OnceLock<[String; 2]> = OnceLock::new();
+    EXPECTED.get_or_init(|| {
+        let place = place("expected");
+        let run = place
+            .palpate("study run study.toml --out out")
+            .env("RAYON_NUM_THREADS", "1")
+            .output();
+        let run = run.unwrap();
+        let said = text(&run.stdout);
+        assert!(
+            said.starts_with("39 samples in out/samples-1-of-1.jsonl, of which "),
+            "{said}"
+        );
+        place.succeed("study merge out --out study.json");
+        [
+            place.read("out/samples-1-of-1.jsonl"),
+            place.read("study.json"),
+        ]
+    })
+}
+
+/// A place with the samples of [`expected`].
+fn finished(name: &str) -> Place {
+    let place = place(name);
+    fs::create_dir(place.at("out")).unwrap();
+    place.write("out/samples-1-of-1.jsonl", &expected()[0]);
+    place
+}
+
+// Verifies: STU-001, STU-006, STU-032, STU-050, STU-051.
+#[test]
+fn a_study_tells_bands_indices_and_failures() {
+    let place = finished("results");
+    let results: StudyResults = serde_json::from_str(&expected()[1]).unwrap();
+    assert_eq!(
+        (results.schema.as_str(), results.samples),
+        ("palpate-study", SAMPLES)
+    );
+    // Beyond 0.4995, at 1.19 standard deviations, lie 12 % of the draws.
+    assert!((1..=12).contains(&results.failed), "{}", results.failed);
+    assert_eq!(results.failures.len(), results.failed);
+    let reason = &results.failures[0].reason;
+    assert!(
+        reason.contains("layer[1].poisson_ratio = 0.") && reason.contains("expected"),
+        "{reason}"
+    );
+    assert_eq!(results.groups, [["Poisson's ratio"], ["depth"]]);
+    // The depths of the file, in order.
+    let plan = serde_json::to_value(&results.plan).unwrap();
+    assert_eq!(
+        plan["inputs"][1]["distribution"]["empirical"]["values"],
+        serde_json::json!([-0.2, 0.1, 0.2])
+    );
+    let said = place.succeed("study merge out --out study.json");
+    for line in [
+        "39 samples, ",
+        "6.6: γ ",
+        "detectable depth, m",
+        "6.6: γ ≥ 3.290: in ",
+        "p of the convention",
+    ] {
+        assert!(said.contains(line), "{line}: {said}");
+    }
+    let json = place.succeed("study merge out --out study.json --format json");
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let same: serde_json::Value = serde_json::from_str(&expected()[1]).unwrap();
+    assert_eq!(json, same);
+}
+
+// Verifies: STU-021, STU-024, STU-025, STU-026.
+#[test]
+fn killed_shards_go_on_and_give_the_same_bytes() {
+    let place = place("shards");
+    for shards in [3, 17] {
+        let mut folders = Vec::new();
+        for shard in (1..=shards).rev() {
+            // Two folders, as on two machines.
+            let folder = format!("of-{shards}-{}", shard % 2);
+            let line = format!("study run study.toml --out {folder} --shard {shard}/{shards}");
+            for wait in [150, 300] {
+                let mut child = place.palpate(&line).stdout(Stdio::null()).spawn().unwrap();
+                std::thread::sleep(Duration::from_millis(wait));
+                child.kill().unwrap();
+                child.wait().unwrap();
+            }
+            let file = format!("{folder}/samples-{shard}-of-{shards}.jsonl");
+            let before = place.read(&file);
+            let whole = &before[..before.rfind('\n').map_or(0, |end| end + 1)];
+            // What a kill in the middle of a write leaves.
+            place.write(&file, &format!("{whole}{{\"sample\":"));
+            place.succeed(&line);
+            assert!(
+                place.read(&file).starts_with(whole),
+                "nothing is computed again"
+            );
+            folders.push(folder);
+        }
+        folders.sort();
+        folders.dedup();
+        folders.reverse();
+        place.succeed(&format!(
+            "study merge {} --out study.json",
+            folders.join(" ")
+        ));
+        assert_eq!(place.read("study.json"), expected()[1], "{shards} shards");
+    }
+}
+
+// Verifies: STU-024.
+#[test]
+fn a_finished_study_computes_nothing() {
+    let place = finished("finished");
+    let output = place.run("study run study.toml --out out");
+    assert!(
+        text(&output.stderr).contains("39 of 39 samples taken over"),
+        "{output:?}"
+    );
+    assert_eq!(place.read("out/samples-1-of-1.jsonl"), expected()[0]);
+}
+
+// Verifies: STU-026, STU-027.
+#[test]
+fn samples_that_are_missing_twice_there_or_foreign_are_named() {
+    let place = finished("wrong");
+    let all = &expected()[0];
+    let lines: Vec<&str> = all.lines().collect();
+    let number = |line: &str| line.split([':', ',']).nth(1).unwrap().to_string();
+    let [first, last] = [lines[1], lines[SAMPLES]].map(number);
+    let refused = |text: &str, expected: &str| {
+        place.write("out/samples-1-of-1.jsonl", text);
+        let error = place.refused("study merge out --out study.json");
+        assert!(error.contains(expected), "{error}");
+    };
+    let without = |line: usize| {
+        let kept = lines.iter().enumerate().filter(|(at, _)| *at != line);
+        kept.map(|(_, line)| format!("{line}\n"))
+            .collect::<String>()
+    };
+    refused(
+        &without(1),
+        &format!("1 of 39 samples are missing, the first is {first}, expected all"),
+    );
+    // The last line was cut off.
+    refused(
+        all.trim_end(),
+        &format!("1 of 39 samples are missing, the first is {last}"),
+    );
+    refused(
+        &format!("{all}{}\n", lines[1]),
+        &format!(
+            "out/samples-1-of-1.jsonl:41: sample {first}, which out/samples-1-of-1.jsonl has too, expected each sample once"
+        ),
+    );
+    refused(&format!("{all}{{}}\n"), "out/samples-1-of-1.jsonl:41: ");
+    refused(
+        &format!("{all}{{\"sample\":39,\"failed\":\"x\"}}\n"),
+        "no sample of this study",
+    );
+    refused(
+        &format!("{all}{{\"sample\":1,\"values\":[1.0]}}\n"),
+        "no sample of this study",
+    );
+    refused(
+        "nonsense\n",
+        "out/samples-1-of-1.jsonl: no samples of a study",
+    );
+    place.write("out/samples-1-of-1.jsonl", all);
+    let other = all.replace("\"rows\":8", "\"rows\":9");
+    place.write("out/samples-2-of-2.jsonl", &other);
+    let error = place.refused("study merge out --out study.json");
+    assert!(error.ends_with("out/samples-2-of-2.jsonl: of another study than out/samples-1-of-1.jsonl: its plan.rows is another one"), "{error}");
+    let error = place.refused("study merge . --out study.json");
+    assert!(error.contains("no samples-K-of-N.jsonl"), "{error}");
+    let error = place.refused("study merge nowhere --out study.json");
+    assert!(error.contains("read nowhere"), "{error}");
+    // Samples of another study are not gone on with.
+    place.write("out/samples-1-of-1.jsonl", &other);
+    let error = place.refused("study run study.toml --out out");
+    assert!(error.contains("of another request or version"), "{error}");
+}
+
+// Verifies: STU-001, STU-004, STU-005, STU-006, STU-011, STU-025.
+#[test]
+fn a_file_that_is_no_study_is_refused_with_line_and_key() {
+    let place = place("refused");
+    place.write("empty.csv", "value\n1\n");
+    for (from, to, expected) in [
+        (
+            "rows = 8",
+            "rows = 1",
+            "other.toml: rows = 1, expected 2 to ",
+        ),
+        ("rows = 8", "row = 8", "other.toml:2: row: unknown field `row`"),
+        ("rows = 8", "rows = -8", "other.toml:2: rows: "),
+        (
+            "depths_mm = \"3\"",
+            "depths_mm = \"3,4\"",
+            "run.depths_mm = 2 depths, expected one",
+        ),
+        ("depths_mm = \"3\"", "depths_mm = \"9\"", "phantom"),
+        (
+            "[\"4.6\", \"6.6\"]",
+            "[\"4.6\", \"9.9\"]",
+            "other.toml:4: phantoms[1]: ",
+        ),
+        (
+            "[\"4.6\", \"6.6\"]",
+            "[\"4.6\", \"4.6\"]",
+            "phantoms = \"4.6\" twice",
+        ),
+        (
+            "phantoms =",
+            "measured = [\"x\"]\nphantoms =",
+            "run.measured is given",
+        ),
+        (
+            "\"layer[1].poisson_ratio\"",
+            "\"layer[7].poisson_ratio\"",
+            "input[0].key = \"layer[7].poisson_ratio\", expected the key",
+        ),
+        (
+            "change = \"offset\"",
+            "change = \"shift\"",
+            "other.toml:16: input[1].change: unknown variant `shift`",
+        ),
+        (
+            "sd = 0.008",
+            "sd = 0.0",
+            "input[0].distribution.normal.sd = 0.0, expected",
+        ),
+        (
+            "{ mean = 0.49, sd = 0.008 }",
+            "{ mean = 0.49 }",
+            "missing field `sd`",
+        ),
+        (
+            "distribution.normal",
+            "distribution.gauss",
+            "unknown variant `gauss`",
+        ),
+        ("depths.csv", "missing.csv", "missing.csv: cannot be read"),
+        (
+            "depths.csv",
+            "empty.csv",
+            "input[1].distribution.empirical.values = 1.0, expected at least 2",
+        ),
+        (
+            "file = \"depths.csv\"",
+            "file = \"depths.csv\", values = [1.0]",
+            "has values and a file",
+        ),
+        (
+            "name = \"depth\"",
+            "name = \"\"",
+            "input[1].name = \"\", expected a text",
+        ),
+    ] {
+        assert!(STUDY.contains(from), "{from}");
+        place.write("other.toml", &STUDY.replacen(from, to, 1));
+        let error = place.refused("study run other.toml --out out");
+        assert!(error.contains(expected), "{to}: {error}");
+    }
+    for shard in ["0/3", "4/3", "1", "a/b"] {
+        let error = place.refused(&format!("study run study.toml --out out --shard {shard}"));
+        assert!(error.contains("expected k/n with 1 ≤ k ≤ n"), "{error}");
+    }
+    assert!(!place.at("out").exists());
+}
