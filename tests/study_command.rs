@@ -242,7 +242,7 @@ fn a_file_that_is_no_study_is_refused_with_line_and_key() {
             "depths_mm = \"3,4\"",
             "run.depths_mm = 2 depths, expected one",
         ),
-        ("depths_mm = \"3\"", "depths_mm = \"9\"", "phantom"),
+        ("depths_mm = \"3\"", "depths_mm = \"19\"", "phantom"),
         (
             "[\"4.6\", \"6.6\"]",
             "[\"4.6\", \"9.9\"]",
