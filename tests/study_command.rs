@@ -235,7 +235,11 @@ fn a_file_that_is_no_study_is_refused_with_line_and_key() {
             "rows = 1",
             "other.toml: rows = 1, expected 2 to ",
         ),
-        ("rows = 8", "row = 8", "other.toml:2: row: unknown field `row`"),
+        (
+            "rows = 8",
+            "row = 8",
+            "other.toml:2: row: unknown field `row`",
+        ),
         ("rows = 8", "rows = -8", "other.toml:2: rows: "),
         (
             "depths_mm = \"3\"",

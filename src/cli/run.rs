@@ -18,7 +18,7 @@ use crate::input::parse;
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
 use crate::report::{
-    ArraySweep, DeformedMesh, FileNames, Study, figures, findings, html, probe_depth, summary_json,
+    ArraySweep, DeformedMesh, FileNames, Run, figures, findings, html, probe_depth, summary_json,
 };
 
 /// Arguments of `palpate run`.
@@ -46,11 +46,11 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let measured = measured.collect::<Result<Vec<_>, _>>()?;
     // The folder first: a run shall not fail at its end for want of a place.
     make_folder(&arguments.out)?;
-    let study = study(&config, &phantoms, measured)?;
-    for map in std::iter::once(&study.reference).chain(&study.maps) {
+    let run = solve_all(&config, &phantoms, measured)?;
+    for map in std::iter::once(&run.reference).chain(&run.maps) {
         warn_of_large_strain(map);
     }
-    write_study(&study, &arguments.out)
+    write_run(&run, &arguments.out)
 }
 
 /// Reads a map that must have been measured.
@@ -68,11 +68,11 @@ fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
 /// Solves all maps, the phantoms in parallel, and the field of one pose.
 ///
 /// Implements: CLI-007, CON-006.
-fn study(
+fn solve_all(
     config: &Config,
     phantoms: &[Phantom],
     measured: Vec<ForceMap>,
-) -> Result<Study, CliError> {
+) -> Result<Run, CliError> {
     let bar = bar(0, "force maps");
     // The figure shows the first inclusion, or the reference where there is none.
     let shown = usize::from(phantoms.len() > 1);
@@ -86,7 +86,7 @@ fn study(
     let deformed = deformed.into_iter().flatten().next();
     let none = || CliError::Usage("no phantom to run".into());
     let reference = maps.remove(0);
-    Ok(Study {
+    Ok(Run {
         reference,
         maps,
         measured,
@@ -133,14 +133,14 @@ fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError
 }
 
 /// Writes everything and says where.
-fn write_study(study: &Study, out: &Path) -> Result<(), CliError> {
+fn write_run(run: &Run, out: &Path) -> Result<(), CliError> {
     let failed = |refusal: Refusal| CliError::Check(format!("report: {refusal}"));
-    let findings = findings(study).map_err(failed)?;
-    let figures = figures(study, &findings).map_err(failed)?;
+    let findings = findings(run).map_err(failed)?;
+    let figures = figures(run, &findings).map_err(failed)?;
     make_folder(&out.join("maps"))?;
     make_folder(&out.join("figures"))?;
     let mut names = FileNames::default();
-    for map in std::iter::once(&study.reference).chain(&study.maps) {
+    for map in std::iter::once(&run.reference).chain(&run.maps) {
         let name = map.phantom().map_or("", |phantom| &phantom.name);
         let name = names.unique("map", name, "json");
         write(&out.join("maps").join(name), &map.to_json())?;
@@ -148,12 +148,12 @@ fn write_study(study: &Study, out: &Path) -> Result<(), CliError> {
     for figure in &figures {
         write(&out.join("figures").join(&figure.file_name), &figure.svg)?;
     }
-    write(&out.join("summary.json"), &summary_json(&findings, study))?;
+    write(&out.join("summary.json"), &summary_json(&findings, run))?;
     let report = out.join("report.html");
-    write(&report, &html(study, &findings, &figures))?;
+    write(&report, &html(run, &findings, &figures))?;
     print(&format!(
         "{} force maps, {} figures, summary.json and the report in {}\n",
-        1 + study.maps.len(),
+        1 + run.maps.len(),
         figures.len(),
         report.display()
     ))

@@ -76,7 +76,7 @@ struct Known<'a> {
     rates: Vec<(&'a BridgeInclusion, &'a ObservedRate, f64, f64)>,
 }
 
-/// All rows whose phantom the study holds. `people` are the answers of Table 1, `noise` the levels of §5, `bridge` sets them
+/// All rows whose phantom the run holds. `people` are the answers of Table 1, `noise` the levels of §5, `bridge` sets them
 /// against the signals. `level` is the normal force at x = 0 without inclusion, and `maps` is empty, unless they belong to the
 /// paper's phantoms at the paper's depth.
 ///
@@ -113,7 +113,7 @@ pub fn table(
         let each = each.zip(&common.predicted);
         Some(each.map(move |((inclusion, observed), share)| (inclusion, observed, noise, *share)))
     });
-    let study = Known {
+    let run = Known {
         nearest: peaks.iter().min_by(|a, b| {
             let distance = |peak: f64| (peak - paper::SIGNAL).abs();
             distance(a.1).total_cmp(&distance(b.1))
@@ -125,12 +125,12 @@ pub fn table(
         rates: rates.into_iter().flatten().collect(),
     };
     // Writing to a String does not fail.
-    let words = study.render().expect("lines of text and numbers");
-    let rows = words.lines().zip(study.values(level, noise)?);
+    let words = run.render().expect("lines of text and numbers");
+    let rows = words.lines().zip(run.values(level, noise)?);
     Ok(rows.filter_map(|(words, of)| row(words, of)).collect())
 }
 
-/// What the numbers of a row are, the paper's, and ours if the study has it.
+/// What the numbers of a row are, the paper's, and ours if the run has it.
 type Numbers = (fn(f64) -> Value, f64, Option<f64>);
 
 impl Known<'_> {
@@ -178,7 +178,7 @@ impl Known<'_> {
     }
 }
 
-/// A row from its line of words and its numbers, if the study has ours.
+/// A row from its line of words and its numbers, if the run has ours.
 fn row(words: &str, (kind, paper, here): Numbers) -> Option<Comparison> {
     let mut parts = words.splitn(4, " | ").map(String::from);
     Some(Comparison {

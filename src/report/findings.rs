@@ -1,4 +1,4 @@
-//! What a study found.
+//! What a run found.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use super::comparison::{self, Comparison};
 use super::maps::{MapFindings, ReferenceFindings, gamma, of_map, of_reference};
 use super::people::bridge_to;
 use super::text::{millimetres, name_of_map};
-use super::{Settings, Study, paper, refused};
+use super::{Run, Settings, paper, refused};
 use crate::detect::{DetectError, map_threshold, required_gamma};
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::psychophysics::bridge::Bridge;
@@ -15,7 +15,7 @@ use crate::psychophysics::{
 };
 use crate::refusal::Refusal;
 
-/// What a study found, in plain numbers.
+/// What a run found, in plain numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Findings {
     /// The depth of the probe, m, at which signals are taken.
@@ -29,7 +29,7 @@ pub struct Findings {
     pub required_gamma: f64,
     /// The phantom without inclusion.
     pub reference: ReferenceFindings,
-    /// One for each map of the study, in its order.
+    /// One for each map of the run, in its order.
     pub maps: Vec<MapFindings>,
     /// What Table 1 says by itself.
     pub people: Analysis,
@@ -45,7 +45,7 @@ fn is_paper_depth(depth: &f64) -> bool {
     (depth - paper::PROBE_DEPTH).abs() <= SAME_POSITION
 }
 
-/// Of the depths of a study's maps, m, the one at which signals are taken: the paper's, or else the deepest.
+/// Of the depths of a run's maps, m, the one at which signals are taken: the paper's, or else the deepest.
 ///
 /// Implements: REP-002.
 pub fn probe_depth(depths: &[f64]) -> f64 {
@@ -60,29 +60,29 @@ pub fn probe_depth(depths: &[f64]) -> f64 {
 /// computed.
 ///
 /// Implements: REP-002, REP-003, REP-004, REP-006, REP-070.
-pub fn findings(study: &Study) -> Result<Findings, Refusal> {
-    let depths = study.reference.depths();
+pub fn findings(run: &Run) -> Result<Findings, Refusal> {
+    let depths = run.reference.depths();
     let probe_depth = probe_depth(depths);
     let is_quoted = is_paper_depth(&probe_depth);
-    let required_gamma = check(&study.settings).map_err(refused("settings"))?;
+    let required_gamma = check(&run.settings).map_err(refused("settings"))?;
     let is_computed = |map: &&ForceMap| map.certificate().is_some();
-    if let Some(map) = study.measured.iter().find(is_computed) {
+    if let Some(map) = run.measured.iter().find(is_computed) {
         let name = name_of_map(map);
         let found = format!("map {name:?} is among the measured maps, but was computed");
         return Err(Refusal::state(found, ""));
     }
-    let maps = study.maps.iter();
-    let maps = maps.map(|map| of_map(study, map, probe_depth));
+    let maps = run.maps.iter();
+    let maps = maps.map(|map| of_map(run, map, probe_depth));
     let maps = maps.collect::<Result<Vec<_>, _>>()?;
-    let reference = of_reference(&study.reference, probe_depth)?;
-    let is_paper_reference = study.reference.phantom().and_then(paper::name_of) == Some("none");
+    let reference = of_reference(&run.reference, probe_depth)?;
+    let is_paper_reference = run.reference.phantom().and_then(paper::name_of) == Some("none");
     let is_comparable = is_quoted && is_paper_reference;
     // Only maps of the paper's phantoms, against the paper's reference, at the paper's depth are compared with it.
     let compared: &[MapFindings] = if is_comparable { &maps } else { &[] };
     let table = AnswerTable::paper()?;
     let people = analyse(&table).map_err(refused("Table 1"))?;
     let noise = paper_noise_levels().map_err(refused("Table 1"))?;
-    let bridge = bridge_to(&table, study, compared).map_err(refused("Table 1"))?;
+    let bridge = bridge_to(&table, run, compared).map_err(refused("Table 1"))?;
     let level = reference.normal_force_at_centre.filter(|_| is_comparable);
     let comparison = comparison::table(level, compared, &people, &noise, bridge.as_ref());
     Ok(Findings {
@@ -93,7 +93,7 @@ pub fn findings(study: &Study) -> Result<Findings, Refusal> {
                 millimetres(probe_depth)
             )
         }),
-        samples: study.reference.laterals().len(),
+        samples: run.reference.laterals().len(),
         required_gamma,
         comparison: comparison.map_err(refused("the paper's numbers"))?,
         reference,

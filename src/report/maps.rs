@@ -6,7 +6,7 @@ use super::nuisances::GammaLeft;
 use super::pressure::ArrayFindings;
 use super::quality::{Quality, warnings};
 use super::text::name_of_map;
-use super::{Settings, Study, paper, refused};
+use super::{Run, Settings, paper, refused};
 use crate::detect::{
     DetectError, ErrorRates, MatchedFilter, auc, error_rates, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, two_afc,
@@ -45,7 +45,7 @@ pub struct MapFindings {
     pub gamma: GammaByChannel,
     /// What is left of it if more is unknown.
     pub gamma_left: GammaLeft,
-    /// γ of tactile arrays under the probe; `None` where the study does not hold what they read.
+    /// γ of tactile arrays under the probe; `None` where the run does not hold what they read.
     pub array: Option<ArrayFindings>,
     /// The maximum a-posteriori rule.
     pub map_rule: Threshold,
@@ -124,13 +124,13 @@ pub(super) fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindin
     })
 }
 
-pub(super) fn of_map(study: &Study, map: &ForceMap, depth: f64) -> Result<MapFindings, Refusal> {
-    let signal = map.signal(&study.reference);
+pub(super) fn of_map(run: &Run, map: &ForceMap, depth: f64) -> Result<MapFindings, Refusal> {
+    let signal = map.signal(&run.reference);
     let signal = signal.map_err(incomparable(map))?;
     let signal = signal.row(depth).map_err(incomparable(map))?;
-    let left = GammaLeft::of(study, signal, depth).map_err(incomparable(map))?;
-    let found = ArrayFindings::of(study, map, signal, depth)
-        .and_then(|array| judged(&study.settings, map, signal, (left, array)));
+    let left = GammaLeft::of(run, signal, depth).map_err(incomparable(map))?;
+    let found = ArrayFindings::of(run, map, signal, depth)
+        .and_then(|array| judged(&run.settings, map, signal, (left, array)));
     found.map_err(refused(format!("map {:?}", name_of_map(map))))
 }
 

@@ -2,7 +2,7 @@
 //!
 //! [`findings`] turns force maps into plain numbers, [`figures`] into pictures, and [`mod@html`] and
 //! [`summary_json`] put them into files. Nothing here solves anything, and nothing depends on the date or the
-//! machine: the same [`Study`] gives the same bytes.
+//! machine: the same [`Run`] gives the same bytes.
 //!
 //! | file | content |
 //! |---|---|
@@ -10,7 +10,7 @@
 //! | `maps.rs` | what each map says: signal, signal-to-noise ratios, thresholds |
 //! | `nuisances.rs` | what is left of γ where more is unknown than the noise |
 //! | `pressure.rs` | γ of the pressure under the probe, read by a tactile array |
-//! | `findings.rs` | what the study found, all together |
+//! | `findings.rs` | what the run found, all together |
 //! | `people.rs` | the subjects of Table 1, and the bridge from forces to their answers |
 //! | `quality.rs` | certificates in short, warnings |
 //! | `comparison.rs` | "paper, here, why" |
@@ -21,14 +21,14 @@
 //! ```
 //! use palpate::fem::{Contact, Model, Pose};
 //! use palpate::phantom::Phantom;
-//! use palpate::report::{ArraySweep, DeformedMesh, Settings, Study, figures, findings, html, summary_json};
+//! use palpate::report::{ArraySweep, DeformedMesh, Settings, Run, figures, findings, html, summary_json};
 //!
 //! let model = |name| -> Result<Model, Box<dyn std::error::Error>> {
 //!     Ok(Model::new(&Phantom::builtin(name)?, 2e-3, Contact::default())?)
 //! };
 //! let (gel, inclusion) = (model("none")?, model("6.6")?);
 //! let (depths, laterals) = ([2e-3, 4e-3], [-5e-3, 0.0, 5e-3]);
-//! let study = Study {
+//! let run = Run {
 //!     reference: gel.map(&depths, &laterals, &|_| ())?,
 //!     maps: vec![inclusion.map(&depths, &laterals, &|_| ())?],
 //!     measured: vec![],
@@ -39,13 +39,13 @@
 //!     deformed: DeformedMesh::solve(&inclusion, Pose { depth: 4e-3, lateral: 0.0 })?,
 //!     settings: Settings::default(),
 //! };
-//! let findings = findings(&study)?;
+//! let findings = findings(&run)?;
 //! let gamma = findings.maps[0].gamma.both;
 //! let arrays = &findings.maps[0].array.as_ref().ok_or("an array")?.arrays;
 //! assert!(gamma > 1.0 && arrays[5].sweep > gamma);
-//! let figures = figures(&study, &findings)?;
-//! let page = html(&study, &findings, &figures);
-//! assert!(page.contains("<svg") && summary_json(&findings, &study).contains("\"gamma\""));
+//! let figures = figures(&run, &findings)?;
+//! let page = html(&run, &findings, &figures);
+//! assert!(page.contains("<svg") && summary_json(&findings, &run).contains("\"gamma\""));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -90,7 +90,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Everything that a run computed.
 #[derive(Debug, Clone)]
-pub struct Study {
+pub struct Run {
     /// Reference map F_0 of the phantom without inclusion.
     pub reference: ForceMap,
     /// Maps F_1 of the phantoms with inclusion, over the same poses as the reference. Any number, any names.
@@ -191,7 +191,7 @@ pub enum Topic {
 /// One picture with the words that go with it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// A name of ASCII letters, digits, `.`, `-` and `_`, unique in the study; ends in `.svg`.
+    /// A name of ASCII letters, digits, `.`, `-` and `_`, unique in the run; ends in `.svg`.
     pub file_name: String,
     /// Where on the page it stands.
     pub topic: Topic,

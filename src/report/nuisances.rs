@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{GammaByChannel, Study};
+use super::{GammaByChannel, Run};
 use crate::detect::nuisance::Nuisances;
 use crate::force::Force;
 use crate::refusal::Refusal;
@@ -58,15 +58,11 @@ impl GammaBeside {
 type Read = fn(Force<&[f64]>) -> Vec<f64>;
 
 impl GammaLeft {
-    /// What is left of γ of `signal`, which a map adds to the reference of `study` at `depth`, a row of both.
+    /// What is left of γ of `signal`, which a map adds to the reference of `run` at `depth`, a row of both.
     ///
     /// Implements: REP-016, REP-017.
-    pub(super) fn of(
-        study: &Study,
-        signal: Force<&[f64]>,
-        depth: f64,
-    ) -> Result<GammaLeft, Refusal> {
-        let reference = &study.reference;
+    pub(super) fn of(run: &Run, signal: Force<&[f64]>, depth: f64) -> Result<GammaLeft, Refusal> {
+        let reference = &run.reference;
         let expected = |depth| Ok(reference.row(depth)?.map(<[f64]>::to_vec));
         let gamma = |unknown: &[Unknown], read: Read| -> Result<f64, Refusal> {
             let nuisances = nuisances(unknown, reference.depths(), depth, expected)?;
@@ -74,7 +70,7 @@ impl GammaLeft {
             let (mut nuisances, mut signal) = (nuisances.collect::<Vec<_>>(), read(signal));
             let space = Nuisances::new(&mut nuisances, signal.len());
             let space = space.map_err(|error| Refusal::state(error.to_string(), ""))?;
-            Ok(space.project(&mut signal) / study.settings.noise_sd)
+            Ok(space.project(&mut signal) / run.settings.noise_sd)
         };
         let both: Read = |of| [of.lateral, of.normal].concat();
         let has_slope = |unknown: &&&[Unknown]| {

@@ -2,13 +2,13 @@
 
 use super::maps::MapFindings;
 use super::text::extremes;
-use super::{Study, paper};
+use super::{Run, paper};
 use crate::psychophysics::bridge::{Bridge, bridge};
 use crate::psychophysics::{Analysis, AnswerTable, Bounds};
 use crate::refusal::Refusal;
 use crate::stats::normal;
 
-/// The bridge from those maps of `study` whose findings are in `compared` to the answers of `table`; `None` with fewer than two.
+/// The bridge from those maps of `run` whose findings are in `compared` to the answers of `table`; `None` with fewer than two.
 ///
 /// # Errors
 /// If a map is not over the poses of the reference.
@@ -16,19 +16,19 @@ use crate::stats::normal;
 /// Implements: REP-071.
 pub(super) fn bridge_to(
     table: &AnswerTable,
-    study: &Study,
+    run: &Run,
     compared: &[MapFindings],
 ) -> Result<Option<Bridge>, Refusal> {
     let columns = paper::INCLUSIONS.into_iter().filter_map(|name| {
         let of_map = |map: &MapFindings| map.paper_phantom == Some(name);
         let index = compared.iter().position(of_map)?;
-        Some((name, study.maps.get(index)?))
+        Some((name, run.maps.get(index)?))
     });
     let columns: Vec<_> = columns.collect();
     // Fewer than two depths say nothing of how rates fall with depth.
     let has_depths = columns.len() >= 2;
     has_depths
-        .then(|| bridge(table, &study.reference, &columns, None))
+        .then(|| bridge(table, &run.reference, &columns, None))
         .transpose()
 }
 

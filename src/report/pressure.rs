@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::maps::gamma;
-use super::{Findings, MapFindings, Study, text};
+use super::{Findings, MapFindings, Run, text};
 use crate::detect::DetectError;
 use crate::fem::{FemError, Model};
 use crate::force::Force;
@@ -63,30 +63,30 @@ pub struct GammaOfArray {
 }
 
 impl ArrayFindings {
-    /// What arrays make of a map whose total force has the `signal` at `depth`, a row of the map. `None` where the study holds no
+    /// What arrays make of a map whose total force has the `signal` at `depth`, a row of the map. `None` where the run holds no
     /// sweep of an array over these poses with the same probe for the map and for the reference.
     ///
     /// Implements: REP-018, REP-019.
     pub(super) fn of(
-        study: &Study,
+        run: &Run,
         map: &ForceMap,
         signal: Force<&[f64]>,
         depth: f64,
     ) -> Result<Option<ArrayFindings>, DetectError> {
         let laterals = map.laterals();
         let sweep = |map: &ForceMap| {
-            study.arrays.iter().find(|of| {
+            run.arrays.iter().find(|of| {
                 Some(&of.phantom) == map.phantom() && of.depth == depth && of.laterals == laterals
             })
         };
-        let (Some(with), Some(without)) = (sweep(map), sweep(&study.reference)) else {
+        let (Some(with), Some(without)) = (sweep(map), sweep(&run.reference)) else {
             return Ok(None);
         };
         if with.phantom.probe != without.phantom.probe {
             return Ok(None);
         }
         let centre = laterals.iter().position(|x| x.abs() <= SAME_POSITION);
-        let noise_sd = study.settings.noise_sd;
+        let noise_sd = run.settings.noise_sd;
         let of_array = |elements: usize| {
             let differences = with.forces.iter().zip(&without.forces);
             let signals = differences.map(|(with, without)| merged(with, without, elements));

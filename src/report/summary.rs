@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Findings, Settings, Study, VERSION};
+use super::{Findings, Run, Settings, VERSION};
 
 /// Implements: REP-050.
 #[derive(Serialize)]
@@ -19,14 +19,14 @@ struct Summary<'a> {
 /// The findings as JSON, with every unit in its key; ends in a line feed.
 ///
 /// Implements: REP-050, REP-051, REP-005.
-pub fn summary_json(findings: &Findings, study: &Study) -> String {
+pub fn summary_json(findings: &Findings, run: &Run) -> String {
     let summary = Summary {
         schema: "palpate-summary",
         schema_version: 2,
         program_version: VERSION,
-        settings: &study.settings,
-        depths_m: study.reference.depths(),
-        laterals_m: study.reference.laterals(),
+        settings: &run.settings,
+        depths_m: run.reference.depths(),
+        laterals_m: run.reference.laterals(),
         findings,
     };
     // Only a map with keys other than strings, or a failing writer, could fail here; there is neither.

@@ -1,4 +1,4 @@
-//! A small study whose numbers follow in closed form, and hostile ones.
+//! A small run whose numbers follow in closed form, and hostile ones.
 
 // Expected values keep the digits that their source printed.
 #![allow(clippy::excessive_precision)]
@@ -8,13 +8,13 @@ mod outputs;
 mod page;
 mod pictures;
 mod pressure;
-mod study;
+mod run;
 pub mod table_1;
 mod xml;
 
 use super::*;
 use crate::phantom::Support;
-use study::*;
+use run::*;
 
 /// Expected values are from mpmath with 30 digits; the detector's own accuracy is tested elsewhere.
 fn assert_close(found: f64, expected: f64) {
@@ -40,7 +40,7 @@ fn settings_default_to_the_paper() {
 // Verifies: REP-011, REP-012, REP-013.
 #[test]
 fn numbers_of_a_triangular_signal() {
-    let found = findings(&paper_study()).unwrap();
+    let found = findings(&paper_run()).unwrap();
     let map = &found.maps[2];
     assert_eq!(map.name, "6.6");
     // ΣΔ² is 1.5 · 0.3² normal and 2 · 0.1² lateral, in noise of 0.1 N.
@@ -76,10 +76,10 @@ fn assert_threshold(found: Threshold, expected: [f64; 3]) {
 // Verifies: REP-013.
 #[test]
 fn each_bound_has_its_own_threshold() {
-    let mut study = paper_study();
-    study.settings.max_miss = 0.1;
-    study.settings.max_false_alarm = 0.02;
-    let map = &findings(&study).unwrap().maps[2];
+    let mut run = paper_run();
+    run.settings.max_miss = 0.1;
+    run.settings.max_false_alarm = 0.02;
+    let map = &findings(&run).unwrap().maps[2];
     let expected = [2.7045264409748262, 0.00396010585635342014, 0.1];
     assert_threshold(map.bounded_miss, expected);
     let expected = [0.335617546779076951, 0.02, 0.0298329075387685601];
@@ -94,13 +94,13 @@ fn of_equal_peaks_the_one_nearest_to_the_middle_counts() {
         false => 0.2 * x.abs() / 5e-3,
     };
     let pit = |x: f64| if x == 0.0 { -0.3 } else { 0.2 };
-    let mut study = paper_study();
+    let mut run = paper_run();
     // The first is −0.2 N at both ends, 0.2 N at ±5 mm.
-    study.maps = vec![
+    run.maps = vec![
         map_with("ties", ties, |_| 0.0),
         map_with("pit", pit, |_| 0.0),
     ];
-    let found = findings(&study).unwrap();
+    let found = findings(&run).unwrap();
     let [ties, pit] = [0, 1].map(|map| found.maps[map].peak_normal);
     assert!(ties.lateral == 5e-3 && ties.force > 0.0);
     assert_close(pit.force, -0.3);
@@ -126,7 +126,7 @@ fn number(value: Value) -> f64 {
 // Verifies: REP-020, REP-070, REP-072.
 #[test]
 fn every_number_of_the_paper_has_its_row() {
-    let found = findings(&paper_study()).unwrap();
+    let found = findings(&paper_run()).unwrap();
     for (quantity, paper, here) in [
         ("Force level", 1.6, 1.48),
         ("Signal F₁", 0.5, 0.45),
@@ -156,7 +156,7 @@ fn every_number_of_the_paper_has_its_row() {
 // Verifies: REP-020, REP-072.
 #[test]
 fn the_reasons_hold_the_numbers_that_they_name() {
-    let found = findings(&paper_study()).unwrap();
+    let found = findings(&paper_run()).unwrap();
     let display = &row(&found, "allowed to the display").why;
     for number in ["it is 0.1118 N", "it is 0.120 N"] {
         assert!(display.contains(number), "{number}: {display}");
@@ -168,7 +168,7 @@ fn the_reasons_hold_the_numbers_that_they_name() {
 // Verifies: REP-073.
 #[test]
 fn rates_are_predicted_with_one_noise_level_for_all_depths() {
-    let found = findings(&paper_study()).unwrap();
+    let found = findings(&paper_run()).unwrap();
     for (quantity, counted, expected) in [
         ("FEM playback, 2.6", 292.0, 0.970819401558362083),
         ("FEM playback, 4.6", 277.0, 0.922157029428948384),
@@ -202,7 +202,7 @@ fn the_normal_approximation_has_its_ends() {
 // Verifies: REP-070.
 #[test]
 fn table_1_gives_the_means_that_the_paper_prints() {
-    let found = findings(&paper_study()).unwrap();
+    let found = findings(&paper_run()).unwrap();
     for (condition, means) in found.people.conditions.iter().zip(paper::PRINTED_MEANS) {
         for (inclusion, mean) in condition.inclusions.iter().zip(means) {
             assert_eq!(inclusion.pooled.correct as f64, (10.0_f64 * mean).round());
@@ -213,24 +213,24 @@ fn table_1_gives_the_means_that_the_paper_prints() {
 // Verifies: REP-020, REP-070, REP-071.
 #[test]
 fn rows_without_their_phantom_are_left_out() {
-    let mut study = paper_study();
-    study.maps.remove(2);
-    let found = findings(&study).unwrap();
+    let mut run = paper_run();
+    run.maps.remove(2);
+    let found = findings(&run).unwrap();
     let bridge = found.bridge.as_ref().unwrap();
     assert_eq!(bridge.inclusions.len(), 3);
     assert!(!has_row(&found, "6.6"));
-    study.maps.truncate(1);
-    assert_eq!(findings(&study).unwrap().bridge, None);
+    run.maps.truncate(1);
+    assert_eq!(findings(&run).unwrap().bridge, None);
     row(&found, "Force level");
-    study.maps.clear();
-    let found = findings(&study).unwrap();
+    run.maps.clear();
+    let found = findings(&run).unwrap();
     assert!(!has_row(&found, "Signal F₁"));
     // Another reference: no number of the paper is about it.
     let mut softer = Phantom::builtin("none").unwrap();
     softer.layers[1].material.youngs_modulus = 4e3;
-    let mut study = paper_study();
-    study.reference = map(Some(softer), &DEPTHS, |_| 0.0, |_| 0.0);
-    let found = findings(&study).unwrap();
+    let mut run = paper_run();
+    run.reference = map(Some(softer), &DEPTHS, |_| 0.0, |_| 0.0);
+    let found = findings(&run).unwrap();
     assert!(!has_row(&found, "Force level"));
     assert_eq!(found.bridge, None);
     assert_eq!(found.people.conditions.len(), 3);
@@ -258,11 +258,11 @@ fn of_several_inclusions_the_highest_is_named() {
     let mut higher = phantom.inclusions[0].clone();
     (higher.centre_x, higher.depth) = (-9e-3, 2e-3);
     phantom.inclusions.push(higher);
-    let mut study = paper_study();
-    study.maps = vec![map(Some(phantom), &DEPTHS, |_| 0.1, |_| 0.0)];
-    let found = findings(&study).unwrap();
+    let mut run = paper_run();
+    run.maps = vec![map(Some(phantom), &DEPTHS, |_| 0.1, |_| 0.0)];
+    let found = findings(&run).unwrap();
     assert_eq!(found.maps[0].inclusion_depth, Some(2e-3));
-    let figures = figures(&study, &found).unwrap();
+    let figures = figures(&run, &found).unwrap();
     let title = |figure: &&Figure| figure.title == "Figure 5. Forces, phantom “6.6”: 2 inclusions";
     assert_eq!(figures.iter().filter(title).count(), 1);
 }
@@ -270,11 +270,11 @@ fn of_several_inclusions_the_highest_is_named() {
 // Verifies: REP-002.
 #[test]
 fn without_4_mm_the_deepest_depth_counts_and_is_named() {
-    let mut study = paper_study();
+    let mut run = paper_run();
     let depths = [0.0, 1e-3, 3e-3];
-    study.reference = map(Phantom::builtin("none").ok(), &depths, |_| 0.0, |_| 0.0);
-    study.maps = vec![map(Phantom::builtin("6.6").ok(), &depths, |_| 0.4, |_| 0.0)];
-    let found = findings(&study).unwrap();
+    run.reference = map(Phantom::builtin("none").ok(), &depths, |_| 0.0, |_| 0.0);
+    run.maps = vec![map(Phantom::builtin("6.6").ok(), &depths, |_| 0.4, |_| 0.0)];
+    let found = findings(&run).unwrap();
     assert_eq!(found.probe_depth, 3e-3);
     // The synthetic forces are proportional to the depth, and 0.4 N at 4 mm.
     assert_close(found.maps[0].peak_normal.force, 0.3);
@@ -282,7 +282,7 @@ fn without_4_mm_the_deepest_depth_counts_and_is_named() {
     assert!(note.contains("3 mm"), "{note}");
     assert_eq!(found.bridge, None);
     assert!(!has_row(&found, "Force level"));
-    let made = made(&study);
+    let made = made(&run);
     assert!(made.page.contains(&shown(&note)));
     assert!(made.figure("signals").title.contains("3 mm"));
 }
@@ -290,11 +290,11 @@ fn without_4_mm_the_deepest_depth_counts_and_is_named() {
 // Verifies: REP-002.
 #[test]
 fn at_4_mm_there_is_no_note_though_the_maps_go_deeper() {
-    let mut study = paper_study();
+    let mut run = paper_run();
     let depths = [0.0, 4e-3 + 1e-10, 5e-3];
-    study.reference = map(Phantom::builtin("none").ok(), &depths, |_| 0.0, |_| 0.0);
-    study.maps.clear();
-    let found = findings(&study).unwrap();
+    run.reference = map(Phantom::builtin("none").ok(), &depths, |_| 0.0, |_| 0.0);
+    run.maps.clear();
+    let found = findings(&run).unwrap();
     assert_eq!(found.probe_depth, depths[1]);
     assert_eq!(found.probe_depth_note, None);
 }
@@ -302,9 +302,9 @@ fn at_4_mm_there_is_no_note_though_the_maps_go_deeper() {
 // Verifies: REP-013, REP-014.
 #[test]
 fn a_map_like_the_reference_cannot_be_detected() {
-    let mut study = paper_study();
-    study.maps = vec![study.reference.clone()];
-    let found = findings(&study).unwrap();
+    let mut run = paper_run();
+    run.maps = vec![run.reference.clone()];
+    let found = findings(&run).unwrap();
     let map = &found.maps[0];
     assert_eq!(map.gamma.both, 0.0);
     assert_eq!(map.bounded_false_alarm, None);
@@ -315,10 +315,10 @@ fn a_map_like_the_reference_cannot_be_detected() {
 // Verifies: REP-015.
 #[test]
 fn a_squeezed_gel_is_warned_of() {
-    let mut study = paper_study();
+    let mut run = paper_run();
     for (smallest, warned) in [(0.2, 0), (0.19, 1)] {
-        study.maps = vec![computed_map("6.6", smallest)];
-        let found = findings(&study).unwrap();
+        run.maps = vec![computed_map("6.6", smallest)];
+        let found = findings(&run).unwrap();
         let warnings = &found.maps[0].warnings;
         assert_eq!(warnings.len(), warned, "{warnings:?}");
         let place = "0.190 at depth 4 mm, x = −5 mm";
@@ -331,12 +331,12 @@ fn a_squeezed_gel_is_warned_of() {
 fn what_does_not_fit_is_refused() {
     let refused = |settings, maps: &[ForceMap], words: &[&str]| {
         let maps = maps.to_vec();
-        let study = Study {
+        let run = Run {
             settings,
             maps,
-            ..paper_study()
+            ..paper_run()
         };
-        let error = findings(&study).unwrap_err().to_string();
+        let error = findings(&run).unwrap_err().to_string();
         assert!(words.iter().all(|word| error.contains(word)), "{error}");
     };
     let other = map(Phantom::builtin("4.6").ok(), &[0.0, 4e-3], |_| 0.0, |_| 0.0);
@@ -356,7 +356,7 @@ fn what_does_not_fit_is_refused() {
     for (setting, value, word) in damages {
         let mut settings = SETTINGS;
         *setting(&mut settings) = value;
-        for maps in [paper_study().maps, Vec::new()] {
+        for maps in [paper_run().maps, Vec::new()] {
             refused(settings, &maps, &[word]);
         }
     }

@@ -11,7 +11,7 @@ use crate::psychophysics::bridge::{Bridge, Channel, ConditionBridge, ConventionF
 use crate::refusal::Refusal;
 use crate::report::{Findings, Topic, paper, text};
 
-/// The figure, if the study holds the maps for it.
+/// The figure, if the run holds the maps for it.
 ///
 /// # Errors
 /// If drawing fails.

@@ -11,7 +11,7 @@ use crate::phantom::Inclusion;
 use crate::refusal::Refusal;
 use crate::report::maps::incomparable;
 use crate::report::text::{millimetres, shortened};
-use crate::report::{Findings, MapFindings, Study, Topic, paper, text};
+use crate::report::{Findings, MapFindings, Run, Topic, paper, text};
 
 /// The signals, if there are any, and the forces of every map: computed ones, then the measured ones.
 ///
@@ -19,22 +19,22 @@ use crate::report::{Findings, MapFindings, Study, Topic, paper, text};
 /// If a map does not fit the reference.
 ///
 /// Implements: REP-036.
-pub fn draw(figures: &mut Figures, study: &Study, found: &Findings) -> Result<(), Refusal> {
+pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Refusal> {
     let mut add = |file: (&str, &str), words: Words<'_>, panels: &[Panel]| {
         let drawn = chart(panels, "Lateral position of the probe x (mm)");
         figures.add(file, Topic::Forces, words, drawn)
     };
-    if !study.maps.is_empty() {
+    if !run.maps.is_empty() {
         let text = SignalText { found };
         let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
-        add(("signals", ""), words, &signals(study, found)?)?;
+        add(("signals", ""), words, &signals(run, found)?)?;
     }
-    for map in [&study.reference].into_iter().chain(&study.maps) {
+    for map in [&run.reference].into_iter().chain(&run.maps) {
         let (text, name) = (ForceText { map }, text::name_of_map(map));
         let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
         add(("figure-5", &name), words, &force_curves(map.table()))?;
     }
-    for map in &study.measured {
+    for map in &run.measured {
         let (text, name) = (MeasuredText { map }, text::name_of_map(map));
         let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
         add(("figure-7", &name), words, &force_curves(map.table()))?;
@@ -94,10 +94,10 @@ pub fn label(map: &MapFindings) -> String {
 ///
 /// # Errors
 /// If a map does not fit the reference.
-fn signals(study: &Study, found: &Findings) -> Result<[Panel; 2], Refusal> {
+fn signals(run: &Run, found: &Findings) -> Result<[Panel; 2], Refusal> {
     let (mut normal, mut lateral) = (Vec::new(), Vec::new());
-    for (k, (map, of_map)) in study.maps.iter().zip(&found.maps).enumerate() {
-        let table = map.signal(&study.reference);
+    for (k, (map, of_map)) in run.maps.iter().zip(&found.maps).enumerate() {
+        let table = map.signal(&run.reference);
         let table = table.map_err(incomparable(map))?;
         let curve = table.row(found.probe_depth);
         let curve = curve.map_err(incomparable(map))?;
@@ -109,7 +109,7 @@ fn signals(study: &Study, found: &Findings) -> Result<[Panel; 2], Refusal> {
         normal.push(line(curve.normal));
         lateral.push(line(curve.lateral));
     }
-    let laterals = study.reference.laterals();
+    let laterals = run.reference.laterals();
     Ok([
         panel("Normal signal F₁ − F₀ (N)", laterals, 230, normal),
         panel("Lateral signal F₁ − F₀ (N)", laterals, 200, lateral),

@@ -9,7 +9,7 @@ use super::style::{GREY, INK, PALETTE};
 use super::{Figures, Words};
 use crate::refusal::Refusal;
 use crate::report::text::extremes;
-use crate::report::{Findings, GammaBeside, MapFindings, Settings, Study, Topic, text};
+use crate::report::{Findings, GammaBeside, MapFindings, Run, Settings, Topic, text};
 
 /// The figure, if the top of an inclusion is known.
 ///
@@ -17,7 +17,7 @@ use crate::report::{Findings, GammaBeside, MapFindings, Settings, Study, Topic, 
 /// If drawing fails.
 ///
 /// Implements: REP-045.
-pub fn draw(figures: &mut Figures, study: &Study, found: &Findings) -> Result<(), Refusal> {
+pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Refusal> {
     let maps = found.maps.iter();
     let maps = maps.filter_map(|map| Some((1e3 * map.inclusion_depth?, map)));
     let mut maps: Vec<_> = maps.collect();
@@ -31,7 +31,7 @@ pub fn draw(figures: &mut Figures, study: &Study, found: &Findings) -> Result<()
         maps: &maps,
         beside,
         found,
-        settings: &study.settings,
+        settings: &run.settings,
     };
     let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
     let drawn = chart(&[panel], DEPTH);

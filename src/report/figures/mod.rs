@@ -4,7 +4,7 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `figure-2.svg`, `figure-8.svg` | the detection problem, the experiments: the same for every study |
+//! | `figure-2.svg`, `figure-8.svg` | the detection problem, the experiments: the same for every run |
 //! | `setup.rs`, `mesh.rs` | Figures 1 and 6: phantom and probe to scale, and as the probe deforms it |
 //! | `theory.rs` | Figures 3, 4, 9: the detector alone |
 //! | `forces.rs` | Figures 5 and 7, and the signals |
@@ -30,7 +30,7 @@ pub(super) mod style;
 mod theory;
 
 use super::text::{FileNames, escape};
-use super::{Figure, Findings, Study, Topic, refused};
+use super::{Figure, Findings, Run, Topic, refused};
 use crate::refusal::Refusal;
 pub use bank::place_figure;
 use panel::DrawingResult;
@@ -73,7 +73,7 @@ impl Figures {
         Ok(())
     }
 
-    /// Adds a figure that is the same for every study: its words are in a file, four paragraphs for each.
+    /// Adds a figure that is the same for every run: its words are in a file, four paragraphs for each.
     fn add_fixed(
         &mut self,
         prefix: &str,
@@ -89,22 +89,22 @@ impl Figures {
     }
 }
 
-/// All figures of a study, in the order of the page.
+/// All figures of a run, in the order of the page.
 ///
 /// # Errors
 /// If a map does not fit the reference, or if drawing fails.
 ///
 /// Implements: REP-030, REP-031.
-pub fn figures(study: &Study, findings: &Findings) -> Result<Vec<Figure>, Refusal> {
+pub fn figures(run: &Run, findings: &Findings) -> Result<Vec<Figure>, Refusal> {
     let mut figures = Figures::default();
-    setup::draw(&mut figures, study)?;
-    mesh::draw(&mut figures, &study.deformed)?;
-    forces::draw(&mut figures, study, findings)?;
+    setup::draw(&mut figures, run)?;
+    mesh::draw(&mut figures, &run.deformed)?;
+    forces::draw(&mut figures, run, findings)?;
     let fixed = (include_str!("figure-2.svg").into(), 560);
     figures.add_fixed("figure-2", Topic::Detection, Ok(fixed))?;
     theory::draw(&mut figures)?;
-    gamma::draw(&mut figures, study, findings)?;
-    pressure::draw(&mut figures, study, findings)?;
+    gamma::draw(&mut figures, run, findings)?;
+    pressure::draw(&mut figures, run, findings)?;
     let fixed = (include_str!("figure-8.svg").into(), 436);
     figures.add_fixed("figure-8", Topic::People, Ok(fixed))?;
     people::draw(&mut figures, &findings.people)?;

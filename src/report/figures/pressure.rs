@@ -10,16 +10,16 @@ use super::{Figures, Words};
 use crate::refusal::Refusal;
 use crate::report::pressure::times;
 use crate::report::{
-    ArrayFindings, Findings, GammaOfArray, MapFindings, Settings, Study, Topic, text,
+    ArrayFindings, Findings, GammaOfArray, MapFindings, Run, Settings, Topic, text,
 };
 
-/// The figure, if the study holds what an array reads.
+/// The figure, if the run holds what an array reads.
 ///
 /// # Errors
 /// If drawing fails.
 ///
 /// Implements: REP-046.
-pub fn draw(figures: &mut Figures, study: &Study, found: &Findings) -> Result<(), Refusal> {
+pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Refusal> {
     let maps: Vec<_> = found.arrays().collect();
     if maps.is_empty() {
         return Ok(());
@@ -52,7 +52,7 @@ pub fn draw(figures: &mut Figures, study: &Study, found: &Findings) -> Result<()
     let text = Text {
         maps: &maps,
         found,
-        settings: &study.settings,
+        settings: &run.settings,
     };
     let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
     let drawn = chart(&panels, "Elements of the array");

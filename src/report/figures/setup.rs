@@ -15,7 +15,7 @@ use crate::fem::mesh::Region;
 use crate::phantom::{Inclusion, Material, Phantom, Shape, Support};
 use crate::refusal::Refusal;
 use crate::report::text::{millimetres, shortened, trimmed};
-use crate::report::{Study, Topic, paper, text};
+use crate::report::{Run, Topic, paper, text};
 
 /// Part of the well's width that walls and floor are drawn thick. Their real thickness is not known and plays no part.
 const WALL: f64 = 0.07;
@@ -96,12 +96,12 @@ pub fn in_millimetres(corners: impl IntoIterator<Item = [f64; 2]>) -> Vec<(f64, 
 /// If drawing fails.
 ///
 /// Implements: REP-035.
-pub fn draw(figures: &mut Figures, study: &Study) -> Result<(), Refusal> {
-    let maps = once(&study.reference).chain(&study.maps);
+pub fn draw(figures: &mut Figures, run: &Run) -> Result<(), Refusal> {
+    let maps = once(&run.reference).chain(&run.maps);
     let all: Vec<&Phantom> = maps.filter_map(|map| map.phantom()).collect();
     let (full, plain): (Vec<_>, Vec<_>) = all.iter().partition(|p| !p.inclusions.is_empty());
     let mut drawn: Vec<&Phantom> = Vec::new();
-    for phantom in once(&study.deformed.phantom).chain(full).chain(plain) {
+    for phantom in once(&run.deformed.phantom).chain(full).chain(plain) {
         if drawn.iter().any(|other| alike(other, phantom)) {
             continue;
         }

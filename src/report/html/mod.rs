@@ -10,7 +10,7 @@ use askama::Template;
 use super::pressure::times;
 use super::text::printable;
 use super::{
-    Comparison, Figure, Findings, MapFindings, Quality, Settings, Study, Topic, Value, paper, text,
+    Comparison, Figure, Findings, MapFindings, Quality, Run, Settings, Topic, Value, paper, text,
 };
 use crate::psychophysics::bridge::WeightRange;
 
@@ -38,7 +38,7 @@ const CONTENTS: [(&str, &str); 9] = [
 #[derive(Template)]
 #[template(path = "report/page.html")]
 struct Page<'a> {
-    study: &'a Study,
+    run: &'a Run,
     settings: &'a Settings,
     found: &'a Findings,
     figures: &'a [Figure],
@@ -47,10 +47,10 @@ struct Page<'a> {
 /// One self-contained page: what was found, the figures and tables, the comparison, the certificates.
 ///
 /// Implements: REP-040, REP-041, REP-042, REP-043, REP-044, REP-060, REP-061, REP-062, REP-063, REP-065, REP-066, REP-069, REP-074.
-pub fn html(study: &Study, findings: &Findings, figures: &[Figure]) -> String {
+pub fn html(run: &Run, findings: &Findings, figures: &[Figure]) -> String {
     let page = Page {
-        study,
-        settings: &study.settings,
+        run,
+        settings: &run.settings,
         found: findings,
         figures,
     };

@@ -1,10 +1,10 @@
 //! What is left of γ where more is unknown than the noise.
 
-use super::study::*;
+use super::run::*;
 use crate::force::Force;
 use crate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use crate::phantom::Phantom;
-use crate::report::{GammaByChannel, Study};
+use crate::report::{GammaByChannel, Run};
 
 /// A measured map of the paper's phantom of this name from rows of its lateral and normal force, N, at 2 and 4 mm.
 fn rows<const N: usize>(name: &str, rows: [[[f64; N]; 2]; 2]) -> ForceMap {
@@ -15,16 +15,16 @@ fn rows<const N: usize>(name: &str, rows: [[[f64; N]; 2]; 2]) -> ForceMap {
     ForceMap::new(source, Phantom::builtin(name).ok(), table).unwrap()
 }
 
-fn study(reference: ForceMap, map: ForceMap) -> Study {
-    Study {
+fn run(reference: ForceMap, map: ForceMap) -> Run {
+    Run {
         reference,
         maps: vec![map],
-        ..paper_study()
+        ..paper_run()
     }
 }
 
 /// Forces of round numbers that no symmetry spares.
-fn crooked() -> Study {
+fn crooked() -> Run {
     let lateral = [0.010, 0.004, 0.0, -0.005, -0.011];
     let normal = [0.62, 0.60, 0.59, 0.60, 0.63];
     let shallow = [lateral, normal];
@@ -33,7 +33,7 @@ fn crooked() -> Study {
     let reference = rows("none", [shallow, [lateral, normal]]);
     let lateral = [0.03, -0.06, 0.002, 0.07, -0.02];
     let normal = [1.65, 1.70, 1.80, 1.68, 1.66];
-    study(reference, rows("6.6", [shallow, [lateral, normal]]))
+    run(reference, rows("6.6", [shallow, [lateral, normal]]))
 }
 
 fn assert_near(found: impl IntoIterator<Item = f64>, expected: &[f64]) {
@@ -95,7 +95,7 @@ fn what_is_unknown_takes_its_part_of_gamma() {
 // Verifies: REP-016, REP-017.
 #[test]
 fn gamma_beside_a_level_force_is_that_of_plain_arithmetic() {
-    let found = made(&paper_study()).found;
+    let found = made(&paper_run()).found;
     let left = &found.maps[2].gamma_left;
     let squares = left.beside.iter().map(|of| of.gamma * of.gamma);
     let [normal, lateral] = [13.5 - 7.2, 2.0 - 0.4];
@@ -108,16 +108,16 @@ fn gamma_beside_a_level_force_is_that_of_plain_arithmetic() {
 // Verifies: REP-003, REP-016, REP-017.
 #[test]
 fn what_the_unknown_explains_is_no_signal() {
-    let beside = |study: &Study| made(study).found.maps[0].gamma_left.clone();
+    let beside = |run: &Run| made(run).found.maps[0].gamma_left.clone();
     // A gel that is 10 % stiffer, and a sweep of a single position, which any offset explains.
     let [low, high] = [[0.1, 0.2, 0.4, 0.1, 0.3], [1.1, 1.2, 1.5, 1.3, 1.1]];
     let stiffer = |by: f64| rows("6.6", [[low.map(|f| by * f), high.map(|f| by * f)]; 2]);
-    let stiff = beside(&study(stiffer(1.0), stiffer(1.1)));
+    let stiff = beside(&run(stiffer(1.0), stiffer(1.1)));
     assert!(stiff.beside[2].gamma > 0.1);
     assert_near(stiff.beside[3..].iter().map(|of| of.gamma), &[0.0; 3]);
     assert_eq!(channels(stiff.by_default), [0.0; 3]);
     let one = |force: f64| rows("6.6", [[[0.1], [force]]; 2]);
-    let single = beside(&study(one(1.0), one(1.5)));
+    let single = beside(&run(one(1.0), one(1.5)));
     assert_near([single.beside[0].gamma], &[5.0]);
     assert_eq!(single.by_default.both, 0.0);
     // Maps of one depth do not tell what another adds.
@@ -129,9 +129,9 @@ fn what_the_unknown_explains_is_no_signal() {
             |_| 0.0,
         )
     };
-    let study = study(flat(0.0), flat(1.0));
-    assert_eq!(beside(&study).beside.len(), 5);
-    assert!(made(&study).page.contains("<td class=\"number\">"));
+    let run = run(flat(0.0), flat(1.0));
+    assert_eq!(beside(&run).beside.len(), 5);
+    assert!(made(&run).page.contains("<td class=\"number\">"));
 }
 
 // γ² is 15.5 of a peak of 0.3 N and 7.9 if more is unknown, and grows with the square of the peak: 7.87, 5.91, 3.94 and 1.97,
@@ -139,7 +139,7 @@ fn what_the_unknown_explains_is_no_signal() {
 // Verifies: REP-069.
 #[test]
 fn the_page_tells_what_is_left() {
-    let page = made(&paper_study()).page;
+    let page = made(&paper_run()).page;
     assert!(page.contains("inclusion of 3 of 4 phantoms"));
     assert!(page.contains(", and of 2 if it does not know the offset"));
     let table = |id: &str| between(&page, &format!("<div id=\"{id}\">"), "</table>");
@@ -158,7 +158,7 @@ fn the_page_tells_what_is_left() {
 // Verifies: REP-045.
 #[test]
 fn the_figure_shows_every_gamma() {
-    let made = made(&paper_study());
+    let made = made(&paper_run());
     let figure = made.figure("gamma");
     let dots = figure.svg.split("<circle ").skip(1);
     let dots = dots.map(|of| {

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::study::*;
+use super::run::*;
 use super::xml;
 use crate::force_map::Discretization;
 use crate::phantom::Phantom;
@@ -11,18 +11,18 @@ use crate::report::*;
 // Verifies: REP-044.
 #[test]
 fn page_and_summary_tell_the_bands() {
-    let mut study = paper_study();
+    let mut run = paper_run();
     let map = computed_map("8.6", 0.3);
-    study.maps.push(map.clone());
-    let Made { page, summary, .. } = made(&study);
+    run.maps.push(map.clone());
+    let Made { page, summary, .. } = made(&run);
     assert!(page.contains("not estimated") && summary.contains("\"largest_normal_band_n\": null"));
     let discretization = Discretization {
         nodes: [1234, 700, 300],
         normal_force_band: matrix_with((1, 2), 6.5e-3, 0.0),
         lateral_force_band: matrix_with((1, 2), 4.5e-4, 0.0),
     };
-    *study.maps.last_mut().unwrap() = map.with_discretization(discretization).unwrap();
-    let Made { page, summary, .. } = made(&study);
+    *run.maps.last_mut().unwrap() = map.with_discretization(discretization).unwrap();
+    let Made { page, summary, .. } = made(&run);
     assert!(page.contains(">6.5</td>") && page.contains(">0.45</td>"));
     assert!(!page.contains("not estimated"));
     assert!(summary.contains("\"largest_normal_band_n\": 0.0065"));
@@ -32,7 +32,7 @@ fn page_and_summary_tell_the_bands() {
 // Verifies: REP-030.
 #[test]
 fn every_figure_is_there() {
-    let made = made(&paper_study());
+    let made = made(&paper_run());
     let names = made.figures.iter().map(|figure| &*figure.file_name);
     let names: Vec<_> = names.map(|name| name.trim_end_matches(".svg")).collect();
     let expected = "figure-1 figure-6 signals figure-5-none figure-5-2.6 figure-5-4.6 figure-5-6.6 figure-5-8.6 \
@@ -43,9 +43,9 @@ fn every_figure_is_there() {
 // Verifies: REP-032, REP-033, REP-042.
 #[test]
 fn figures_are_well_formed_whatever_the_names() {
-    for figure in [paper_study(), hostile_study()]
+    for figure in [paper_run(), hostile_run()]
         .iter()
-        .flat_map(|study| made(study).figures)
+        .flat_map(|run| made(run).figures)
     {
         let name = &figure.file_name;
         let (elements, text) = xml::read(&figure.svg).unwrap_or_else(|e| panic!("{name}: {e}"));
@@ -72,9 +72,9 @@ fn nothing_is_drawn_outside() {
         let (x, y) = text.split_once(between).unwrap();
         [x, y].map(|number| number.parse().unwrap())
     };
-    for figure in [paper_study(), hostile_study()]
+    for figure in [paper_run(), hostile_run()]
         .iter()
-        .flat_map(|study| made(study).figures)
+        .flat_map(|run| made(run).figures)
     {
         let limit = pair(between(&figure.svg, "viewBox=\"0 0 ", "\""), " ");
         for points in figure.svg.split("points=\"").skip(1) {
@@ -95,7 +95,7 @@ fn file_names_are_safe_and_unique() {
     assert_eq!(unique("../6.6 mm"), "map-.._6.6_mm.json");
     assert_eq!(unique("../6.6_MM"), "map-.._6.6_MM-2.json");
     assert_eq!(unique(""), "map.json");
-    let drawn = made(&hostile_study()).figures;
+    let drawn = made(&hostile_run()).figures;
     let mut seen = HashSet::new();
     for Figure { file_name, .. } in &drawn {
         let safe = |c: char| c.is_ascii_alphanumeric() || ".-_".contains(c);
@@ -114,34 +114,34 @@ fn file_names_are_safe_and_unique() {
 // Verifies: REP-003.
 #[test]
 fn studies_of_any_size_have_a_report() {
-    let mut study = paper_study();
-    study.maps.clear();
+    let mut run = paper_run();
+    run.maps.clear();
     let Made {
         found,
         figures,
         page,
         ..
-    } = made(&study);
+    } = made(&run);
     assert!(found.maps.is_empty() && figures.len() == 12);
     assert!(page.contains("no signal"));
     // One depth, the surface itself: there is no force at all.
-    study.reference = map(Phantom::builtin("none").ok(), &[0.0], |_| 0.0, |_| 0.0);
-    study.maps = vec![study.reference.clone()];
-    assert_eq!(made(&study).figures.len(), 14);
+    run.reference = map(Phantom::builtin("none").ok(), &[0.0], |_| 0.0, |_| 0.0);
+    run.maps = vec![run.reference.clone()];
+    assert_eq!(made(&run).figures.len(), 14);
 }
 
 // Verifies: REP-005.
 #[test]
-fn the_same_study_gives_the_same_bytes() {
-    assert!(made(&hostile_study()) == made(&hostile_study()));
+fn the_same_run_gives_the_same_bytes() {
+    assert!(made(&hostile_run()) == made(&hostile_run()));
 }
 
 // Verifies: REP-040, REP-042.
 #[test]
 fn the_page_needs_nothing_else() {
     let forbidden = "http // <script <link <img <iframe src= url( @import \u{0}";
-    for study in [paper_study(), hostile_study()] {
-        let page = made(&study).page.to_ascii_lowercase();
+    for run in [paper_run(), hostile_run()] {
+        let page = made(&run).page.to_ascii_lowercase();
         for forbidden in forbidden.split(' ') {
             assert!(!page.contains(forbidden), "{forbidden}");
         }
@@ -157,14 +157,14 @@ fn the_page_needs_nothing_else() {
 // Verifies: REP-041.
 #[test]
 fn the_page_holds_everything() {
-    let mut study = paper_study();
-    study.maps.push(computed_map("8.6", 0.1));
+    let mut run = paper_run();
+    run.maps.push(computed_map("8.6", 0.1));
     let Made {
         found,
         figures,
         page,
         ..
-    } = made(&study);
+    } = made(&run);
     for figure in &figures {
         let id = figure.file_name.trim_end_matches(".svg");
         assert_eq!(
@@ -203,8 +203,8 @@ fn numbers_stay_with_their_units() {
 // Verifies: REP-050, REP-051.
 #[test]
 fn the_summary_is_json_with_units() {
-    for study in [hostile_study(), paper_study()] {
-        let value: serde_json::Value = serde_json::from_str(&made(&study).summary).unwrap();
+    for run in [hostile_run(), paper_run()] {
+        let value: serde_json::Value = serde_json::from_str(&made(&run).summary).unwrap();
         assert_eq!(value["schema"], "palpate-summary");
         assert_eq!(value["schema_version"], 2);
         assert_eq!(value["program_version"], VERSION);
@@ -214,7 +214,7 @@ fn the_summary_is_json_with_units() {
         let findings = &value["findings"];
         assert_eq!(findings["comparison"][0]["paper"]["force_n"], 1.6);
         let peak = &findings["maps"][2]["peak_lateral"]["lateral_m"];
-        assert_eq!(*peak, made(&study).found.maps[2].peak_lateral.lateral);
+        assert_eq!(*peak, made(&run).found.maps[2].peak_lateral.lateral);
     }
 }
 

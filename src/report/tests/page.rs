@@ -1,16 +1,16 @@
 //! The page as a document: headings, tables, contrast, print.
 
-use super::study::*;
+use super::run::*;
 use crate::phantom::Phantom;
-use crate::report::Study;
+use crate::report::Run;
 use crate::report::figures::style::{GREY, INK, PALETTE, ramp};
 use crate::report::html::STYLE;
 
 // Verifies: REP-060, REP-066.
 #[test]
 fn headings_go_down_by_one_and_contents_lead_to_sections() {
-    for study in [paper_study(), hostile_study()] {
-        let page = made(&study).page;
+    for run in [paper_run(), hostile_run()] {
+        let page = made(&run).page;
         assert!(page.contains("<html lang=\"en\">"));
         let digit = |tag: &str| tag.chars().next().and_then(|c| c.to_digit(10));
         let mut last = 0;
@@ -39,7 +39,7 @@ fn headings_go_down_by_one_and_contents_lead_to_sections() {
 // Verifies: REP-061.
 #[test]
 fn tables_have_captions_and_scopes() {
-    let page = made(&paper_study()).page;
+    let page = made(&paper_run()).page;
     let tables: Vec<_> = page.split("<table").skip(1).collect();
     assert!(tables.len() >= 8, "{}", tables.len());
     for table in tables {
@@ -57,7 +57,7 @@ fn tables_have_captions_and_scopes() {
 // Verifies: REP-036, REP-062, REP-063, REP-071.
 #[test]
 fn the_papers_tables_are_there() {
-    let page = made(&paper_study()).page;
+    let page = made(&paper_run()).page;
     let table = |id: &str| between(&page, &format!("<div id=\"{id}\">"), "</table>");
     let first = table("table-1");
     for (head, cells) in [
@@ -90,17 +90,13 @@ fn the_papers_tables_are_there() {
     }
     assert_eq!(page.matches("36 ranges counted, it is rejected").count(), 3);
     assert!(page.contains("Figure 7 is not made again"));
-    let mut study = paper_study();
-    study.measured = vec![map_with("mine", |_| 0.1, |_| 0.0)];
-    let page = made(&study).page;
+    let mut run = paper_run();
+    run.measured = vec![map_with("mine", |_| 0.1, |_| 0.0)];
+    let page = made(&run).page;
     assert!(page.contains("Figure 7. Measured forces, “mine”"));
     assert!(!page.contains("Figure 7 is not made again"));
-    study.maps.clear();
-    assert!(
-        made(&study)
-            .page
-            .contains("are not set against the answers")
-    );
+    run.maps.clear();
+    assert!(made(&run).page.contains("are not set against the answers"));
 }
 
 type Colour = [f64; 3];
@@ -202,10 +198,10 @@ fn print_breaks_no_figure() {
 // Verifies: REP-060, PSY-087.
 #[test]
 fn the_page_begins_with_no_more_than_holds_over_every_sweep() {
-    let mut study = paper_study();
-    let opening = |study: &Study| between(&made(study).page, "", "<nav").to_string();
+    let mut run = paper_run();
+    let opening = |run: &Run| between(&made(run).page, "", "<nav").to_string();
     // The force falls in proportion everywhere: whatever the subjects felt fits as well.
-    assert!(opening(&study).contains("do not tell whether subjects feel the level"));
+    assert!(opening(&run).contains("do not tell whether subjects feel the level"));
     // A level of 0.3 N over every inclusion, and a change that falls as right answers do.
     let changes = [("2.6", 0.6), ("4.6", 0.4), ("6.6", 0.25), ("8.6", 0.06)];
     let changed = |(name, change): (&str, f64)| {
@@ -213,8 +209,8 @@ fn the_page_begins_with_no_more_than_holds_over_every_sweep() {
         let phantom = Phantom::builtin(name).ok();
         map(phantom, &DEPTHS, normal, at_5_mm(change))
     };
-    study.maps = changes.map(changed).into();
-    let text = opening(&study);
+    run.maps = changes.map(changed).into();
+    let text = opening(&run);
     assert!(
         text.contains("are explained worst by the whole level"),
         "{text}"

@@ -1,11 +1,11 @@
 //! What the figures show, read back from their coordinates.
 
 use super::findings;
-use super::study::*;
+use super::run::*;
 use crate::fem::mesh::Region;
 use crate::phantom::Phantom;
 use crate::psychophysics::Bounds;
-use crate::report::{Study, normal_approximation, text};
+use crate::report::{Run, normal_approximation, text};
 
 fn svg(made: &Made, name: &str) -> String {
     made.figure(name).svg.clone()
@@ -67,12 +67,12 @@ fn assert_words(svg: &str, count: usize, words: &[&str]) {
 // Verifies: REP-035.
 #[test]
 fn figure_1_is_to_scale() {
-    let mut study = paper_study();
-    study.maps.push(map_with("shallow", |_| 0.1, |_| 0.0));
+    let mut run = paper_run();
+    run.maps.push(map_with("shallow", |_| 0.1, |_| 0.0));
     let mut wide = Phantom::builtin("8.6").unwrap();
     wide.well.width = 0.04;
-    study.maps.push(map(Some(wide), &DEPTHS, |_| 0.1, |_| 0.0));
-    let made = made(&study);
+    run.maps.push(map(Some(wide), &DEPTHS, |_| 0.1, |_| 0.0));
+    let made = made(&run);
     assert!(svg(&made, "figure-1-8.6").contains("the well is 40 mm wide"));
     let picture = svg(&made, "figure-1");
     let shape = |fill: &str| extent(&filled(&picture, fill)[0]);
@@ -120,19 +120,19 @@ fn own(name: &str, well: &str, layers: &[(&str, f64)], inclusions: &[&str]) -> P
     Phantom::from_toml(&text, name).unwrap()
 }
 
-/// A study of the first phantom as Figure 6, and of maps of all if there are several.
-fn study_of(phantoms: &[Phantom]) -> Study {
+/// A run of the first phantom as Figure 6, and of maps of all if there are several.
+fn run_of(phantoms: &[Phantom]) -> Run {
     let map = |phantom: &Phantom| map(Some(phantom.clone()), &DEPTHS, |_| 0.1, |_| 0.0);
-    let mut study = paper_study();
-    study.maps = phantoms[1..].iter().map(map).collect();
-    if !study.maps.is_empty() {
-        study.reference = map(&phantoms[0]);
+    let mut run = paper_run();
+    run.maps = phantoms[1..].iter().map(map).collect();
+    if !run.maps.is_empty() {
+        run.reference = map(&phantoms[0]);
     }
-    study.deformed.phantom = phantoms[0].clone();
-    for (region, _) in &mut study.deformed.elements {
+    run.deformed.phantom = phantoms[0].clone();
+    for (region, _) in &mut run.deformed.elements {
         *region = Region::Layer(0);
     }
-    study
+    run
 }
 
 /// Left, right, top and bottom of all words, pixels, by the report's own estimate of their width.
@@ -161,7 +161,7 @@ const DISC: &str = "depth_mm = 4\ndiameter_mm = 5";
 #[test]
 fn figure_1_shows_inclusions_of_any_shape_and_place() {
     let phantom = own("two", "", &TWO, &[ELLIPSE, TRIANGLE]);
-    let made = made(&study_of(&[phantom, own("one", "", &TWO, &[DISC])]));
+    let made = made(&run_of(&[phantom, own("one", "", &TWO, &[DISC])]));
     let picture = &svg(&made, "figure-1");
     let (gel, axis) = extent(&filled(picture, "#FAF3E0")[0]);
     let scale = gel[0] / 34.0;
@@ -204,7 +204,7 @@ fn figure_1_is_drawn_for_each_phantom_that_differs_in_more_than_inclusions() {
     softer.layers[1].material.youngs_modulus = 4e3;
     let mut renamed = own("renamed", "", &TWO, &[DISC]);
     renamed.layers[1].name = "agar".into();
-    let made = made(&study_of(&[own("plain", "", &TWO, &[]), softer, renamed]));
+    let made = made(&run_of(&[own("plain", "", &TWO, &[]), softer, renamed]));
     let names = made.figures.iter().map(|figure| &figure.file_name[..]);
     let others: Vec<_> = names.filter(|name| name.starts_with("figure-1-")).collect();
     assert_eq!(others, ["figure-1-softer.svg"]);
@@ -246,10 +246,7 @@ fn figure_1_shows_how_walls_and_floor_hold() {
             false,
         ),
     ] {
-        let picture = svg(
-            &made(&study_of(&[own("held", well, &TWO, &[])])),
-            "figure-1",
-        );
+        let picture = svg(&made(&run_of(&[own("held", well, &TWO, &[])])), "figure-1");
         let shape = |fill: &str| extent(&filled(&picture, fill)[0]).0;
         let scale = shape("#FAF3E0")[0] / 34.0;
         for (found, expected) in shape("#E2DDD4").into_iter().zip(block) {
@@ -304,7 +301,7 @@ fn no_words_of_the_phantoms_figures_lie_on_others() {
     ];
     for phantom in phantoms {
         let name = phantom.name.clone();
-        let made = made(&study_of(&[phantom]));
+        let made = made(&run_of(&[phantom]));
         for figure in ["figure-1", "figure-6"] {
             let picture = svg(&made, figure);
             let (height, words) = (attribute(&picture, "height"), words(&picture));
@@ -325,12 +322,12 @@ fn no_words_of_the_phantoms_figures_lie_on_others() {
 #[test]
 fn figure_6_tells_layers_and_inclusions_apart() {
     let layers = [("skin", 0.5), ("fat", 3.0), ("gel", 12.0)];
-    let mut study = study_of(&[own("mine", "", &layers, &[ELLIPSE, TRIANGLE])]);
-    let corners = study.deformed.elements[0].1.clone();
+    let mut run = run_of(&[own("mine", "", &layers, &[ELLIPSE, TRIANGLE])]);
+    let corners = run.deformed.elements[0].1.clone();
     let regions = [1, 2].map(Region::Layer).into_iter();
     let regions = regions.chain([0, 1].map(Region::Inclusion));
-    study.deformed.elements = regions.map(|region| (region, corners.clone())).collect();
-    let picture = svg(&made(&study), "figure-6");
+    run.deformed.elements = regions.map(|region| (region, corners.clone())).collect();
+    let picture = svg(&made(&run), "figure-6");
     assert_words(&picture, 1, &["skin", "fat", "gel", "inclusions"]);
     let paths = |fill: &str| {
         let paths = picture.split("<path ").skip(1);
@@ -345,7 +342,7 @@ fn figure_6_tells_layers_and_inclusions_apart() {
 // Verifies: REP-037.
 #[test]
 fn figures_10_to_12_show_every_subject() {
-    let made = made(&paper_study());
+    let made = made(&paper_run());
     for number in 10..13 {
         let picture = svg(&made, &format!("figure-{number}"));
         let subjects: Vec<_> = (1..=10)
@@ -373,7 +370,7 @@ fn bars(picture: &str) -> Vec<(f64, [f64; 2], [f64; 2])> {
 // Verifies: REP-038.
 #[test]
 fn figure_13_has_three_intervals_for_each_share() {
-    let made = made(&paper_study());
+    let made = made(&paper_run());
     let bars = bars(&made.figure("figure-13").svg);
     // The axis from 40 to 100 % is 330 pixels of ten units high; its foot is the lowest place of all.
     let ends = bars.iter().flat_map(|(_, from, to)| [from[1], to[1]]);
@@ -400,8 +397,8 @@ fn figure_13_has_three_intervals_for_each_share() {
 // Verifies: REP-039, REP-071.
 #[test]
 fn the_bridge_shows_every_convention_and_the_answers() {
-    let mut study = paper_study();
-    let found = made(&study);
+    let mut run = paper_run();
+    let found = made(&run);
     let picture = svg(&found, "bridge");
     let observed = &found.found.bridge.as_ref().unwrap().conditions[1].observed;
     // In both panels each share with its interval.
@@ -412,8 +409,8 @@ fn the_bridge_shows_every_convention_and_the_answers() {
         let names = ["normal", "lateral", "both"].map(|channel| format!("{statistic}, {channel}"));
         assert_words(&picture, 2, &names.each_ref().map(String::as_str));
     }
-    study.maps.truncate(1);
-    let found = made(&study);
+    run.maps.truncate(1);
+    let found = made(&run);
     assert_eq!(found.found.bridge, None);
     assert!(
         found
@@ -426,9 +423,9 @@ fn the_bridge_shows_every_convention_and_the_answers() {
 // Verifies: REP-006, REP-036.
 #[test]
 fn a_measured_map_is_figure_7_and_a_computed_one_is_refused() {
-    let mut study = paper_study();
-    study.measured = vec![map(None, &[0.0, 1e-3], |_| 0.1, |_| 0.0)];
-    let figures = made(&study).figures;
+    let mut run = paper_run();
+    run.measured = vec![map(None, &[0.0, 1e-3], |_| 0.1, |_| 0.0)];
+    let figures = made(&run).figures;
     let mut sevenths = figures
         .iter()
         .filter(|figure| figure.file_name.starts_with("figure-7"));
@@ -437,8 +434,8 @@ fn a_measured_map_is_figure_7_and_a_computed_one_is_refused() {
         caption.contains("those data are not available"),
         "{caption}"
     );
-    study.measured = vec![computed_map("8.6", 0.5)];
-    let error = findings(&study).unwrap_err().to_string();
+    run.measured = vec![computed_map("8.6", 0.5)];
+    let error = findings(&run).unwrap_err().to_string();
     assert!(
         error.contains("\"8.6\"") && error.contains("computed"),
         "{error}"

@@ -1,8 +1,8 @@
-//! What arrays under the probe make of a study.
+//! What arrays under the probe make of a run.
 
-use super::study::*;
+use super::run::*;
 use crate::phantom::Phantom;
-use crate::report::{ArraySweep, Study};
+use crate::report::{ArraySweep, Run};
 
 /// The sweep of an array over a phantom of the paper, with these forces on its elements over x, N.
 fn sweep(name: &str, force: impl Fn(f64, usize) -> f64) -> ArraySweep {
@@ -15,9 +15,9 @@ fn sweep(name: &str, force: impl Fn(f64, usize) -> f64) -> ArraySweep {
     }
 }
 
-/// The paper's study, with 6.6 mm and the reference as arrays feel them: at x = 0 the first quarter of the elements carries
+/// The paper's run, with 6.6 mm and the reference as arrays feel them: at x = 0 the first quarter of the elements carries
 /// 10 mN more on each and the last quarter 5 mN less, and at 5 mm the first two elements carry 80 mN more and less.
-fn felt() -> Study {
+fn felt() -> Run {
     let with = |x: f64, k: usize| match (x, k) {
         (0.0, 0..8) => 0.060,
         (0.0, 24..) => 0.045,
@@ -26,9 +26,9 @@ fn felt() -> Study {
         _ => 0.050,
     };
     let arrays = vec![sweep("6.6", with), sweep("none", |_, _| 0.050)];
-    Study {
+    Run {
         arrays,
-        ..paper_study()
+        ..paper_run()
     }
 }
 
@@ -79,9 +79,9 @@ fn a_finer_array_never_reads_less() {
     let generator = crate::stats::random::Generator::new(7, 0);
     let noise: Vec<f64> = (0..5 * 32).map(|k| generator.normal(0, k)).collect();
     let at = |x: f64| LATERALS.iter().position(|&of| of == x).unwrap();
-    let mut study = felt();
-    study.arrays[0] = sweep("6.6", |x, k| 0.05 + 0.01 * noise[32 * at(x) + k]);
-    let found = made(&study).found;
+    let mut run = felt();
+    run.arrays[0] = sweep("6.6", |x, k| 0.05 + 0.01 * noise[32 * at(x) + k]);
+    let found = made(&run).found;
     let arrays = &found.maps[2].array.as_ref().unwrap().arrays;
     assert!(arrays.is_sorted_by(|a, b| a.sweep <= b.sweep && a.press <= b.press));
     assert!(arrays[0].sweep > 0.0);
@@ -90,7 +90,7 @@ fn a_finer_array_never_reads_less() {
 // Verifies: REP-018.
 #[test]
 fn sweeps_of_arrays_that_do_not_fit_are_left_out() {
-    let is_there = |study: &Study| made(study).found.maps[2].array.is_some();
+    let is_there = |run: &Run| made(run).found.maps[2].array.is_some();
     assert!(is_there(&felt()));
     let damages: [fn(&mut ArraySweep); 4] = [
         |of| of.depth = 3e-3,
@@ -99,22 +99,22 @@ fn sweeps_of_arrays_that_do_not_fit_are_left_out() {
         |of| of.phantom.probe.radius = 6e-3,
     ];
     for damage in damages {
-        let mut study = felt();
-        damage(&mut study.arrays[0]);
-        assert!(!is_there(&study));
+        let mut run = felt();
+        damage(&mut run.arrays[0]);
+        assert!(!is_there(&run));
     }
     // Another probe than that of the reference presses with another width.
-    let mut study = felt();
-    let mut phantom = study.arrays[0].phantom.clone();
+    let mut run = felt();
+    let mut phantom = run.arrays[0].phantom.clone();
     phantom.probe.radius = 6e-3;
-    study.arrays[0].phantom = phantom.clone();
-    study.maps[2] = map(Some(phantom), &DEPTHS, |_| 0.1, |_| 0.0);
-    assert!(!is_there(&study));
-    study = felt();
-    study.arrays.truncate(1);
-    let made = made(&study);
+    run.arrays[0].phantom = phantom.clone();
+    run.maps[2] = map(Some(phantom), &DEPTHS, |_| 0.1, |_| 0.0);
+    assert!(!is_there(&run));
+    run = felt();
+    run.arrays.truncate(1);
+    let made = made(&run);
     assert!(made.found.maps[2].array.is_none());
-    assert!(made.page.contains("The study holds no sweep of an array"));
+    assert!(made.page.contains("The run holds no sweep of an array"));
     assert!(made.figures.iter().all(|of| of.file_name != "pressure.svg"));
 }
 
@@ -157,15 +157,15 @@ fn the_page_reads_what_the_numbers_say() {
 // Verifies: REP-003, REP-018.
 #[test]
 fn a_sweep_that_never_stands_at_the_middle_has_no_press() {
-    let mut study = felt();
+    let mut run = felt();
     let laterals = vec![1e-3, 2e-3, 3e-3, 5e-3, 6e-3];
-    for map in study.maps.iter_mut().chain([&mut study.reference]) {
+    for map in run.maps.iter_mut().chain([&mut run.reference]) {
         *map = moved(map, &laterals);
     }
-    for of in &mut study.arrays {
+    for of in &mut run.arrays {
         of.laterals = laterals.clone();
     }
-    let made = made(&study);
+    let made = made(&run);
     let array = made.found.maps[2].array.as_ref().unwrap();
     assert!(array.press_of_total_force.is_none() && array.arrays[0].press.is_none());
     let section = between(&made.page, "<section id=\"pressure\"", "</section>");

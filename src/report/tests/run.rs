@@ -1,4 +1,4 @@
-//! Synthetic studies: forces proportional to the depth, and signals that are given at 4 mm.
+//! Synthetic runs: forces proportional to the depth, and signals that are given at 4 mm.
 
 use crate::fem::Pose;
 use crate::fem::mesh::Region;
@@ -8,7 +8,7 @@ use crate::force_map::{
 };
 use crate::phantom::Phantom;
 use crate::report::{
-    DeformedMesh, Figure, Findings, Settings, Study, figures, findings, html, summary_json, text,
+    DeformedMesh, Figure, Findings, Run, Settings, figures, findings, html, summary_json, text,
 };
 
 pub const DEPTHS: [f64; 3] = [0.0, 2e-3, 4e-3];
@@ -118,7 +118,7 @@ pub fn deformed() -> DeformedMesh {
     }
 }
 
-/// All that a study gives.
+/// All that a run gives.
 #[derive(PartialEq)]
 pub struct Made {
     pub found: Findings,
@@ -127,12 +127,12 @@ pub struct Made {
     pub summary: String,
 }
 
-pub fn made(study: &Study) -> Made {
-    let found = findings(study).unwrap();
-    let figures = figures(study, &found).unwrap();
+pub fn made(run: &Run) -> Made {
+    let found = findings(run).unwrap();
+    let figures = figures(run, &found).unwrap();
     Made {
-        page: html(study, &found, &figures),
-        summary: summary_json(&found, study),
+        page: html(run, &found, &figures),
+        summary: summary_json(&found, run),
         found,
         figures,
     }
@@ -166,9 +166,9 @@ pub fn shown(words: &str) -> String {
 }
 
 /// The paper's phantoms with peaks of 0.6, 0.45, 0.3 and 0.15 N.
-pub fn paper_study() -> Study {
+pub fn paper_run() -> Run {
     let peaks = [("2.6", 0.6), ("4.6", 0.45), ("6.6", 0.3), ("8.6", 0.15)];
-    Study {
+    Run {
         reference: map(Phantom::builtin("none").ok(), &DEPTHS, |_| 0.0, |_| 0.0),
         maps: peaks.map(|(name, peak)| triangle(name, peak)).into(),
         measured: Vec::new(),
@@ -192,14 +192,13 @@ pub const HOSTILE: [&str; 10] = [
     " ",
 ];
 
-/// A study of hostile names, with a phantom without inclusion, and a map without any phantom.
-pub fn hostile_study() -> Study {
-    let mut study = paper_study();
-    study.maps = HOSTILE.map(|name| map_with(name, |_| 0.1, |_| 0.0)).into();
+/// A run of hostile names, with a phantom without inclusion, and a map without any phantom.
+pub fn hostile_run() -> Run {
+    let mut run = paper_run();
+    run.maps = HOSTILE.map(|name| map_with(name, |_| 0.1, |_| 0.0)).into();
     let others = [Phantom::builtin("none").ok(), None];
-    study
-        .maps
+    run.maps
         .extend(others.map(|phantom| map(phantom, &DEPTHS, |_| 0.1, |_| 0.0)));
-    study.deformed.phantom.name = "<b>\u{0}\u{8}".into();
-    study
+    run.deformed.phantom.name = "<b>\u{0}\u{8}".into();
+    run
 }
