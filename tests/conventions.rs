@@ -33,7 +33,7 @@ fn help(arguments: &[&str]) -> String {
 const UNITS: [&str; 6] = ["mm", "mm-s", "kpa", "us", "n", "s"];
 
 /// Options whose value is no quantity, has no unit, or is in SI.
-const NO_OTHER_UNIT: [&str; 40] = [
+const NO_OTHER_UNIT: [&str; 42] = [
     "bank",
     "condition",
     "config",
@@ -67,8 +67,10 @@ const NO_OTHER_UNIT: [&str; 40] = [
     "seconds",
     "seed",
     "serial",
+    "shard",
     "simulations",
     "soak",
+    "study",
     "subject",
     "trials",
     "vectors",

@@ -20,6 +20,7 @@ use crate::refusal::Refusal;
 use crate::report::{
     ArraySweep, DeformedMesh, FileNames, Run, figures, findings, html, probe_depth, summary_json,
 };
+use crate::study::StudyResults;
 
 /// Arguments of `palpate run`.
 #[derive(Debug, Args)]
@@ -27,6 +28,9 @@ pub struct RunArguments {
     /// What to run instead of the paper's phantoms: a TOML file
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
+    /// What the uncertainty of the inputs does, by 'palpate study merge' for the same phantoms
+    #[arg(long, value_name = "FILE")]
+    study: Option<PathBuf>,
     /// The folder for report.html, summary.json, maps/ and figures/
     #[arg(long, value_name = "DIR", default_value = "palpate-out")]
     out: PathBuf,
@@ -44,9 +48,12 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let measured = config.measured.iter();
     let measured = measured.map(|path| measured_map(&config.file(path)));
     let measured = measured.collect::<Result<Vec<_>, _>>()?;
+    let study = arguments.study.as_deref().map(StudyResults::read);
+    let study = study.transpose()?;
     // The folder first: a run shall not fail at its end for want of a place.
     make_folder(&arguments.out)?;
     let run = solve_all(&config, &phantoms, measured)?;
+    let run = Run { study, ..run };
     for map in std::iter::once(&run.reference).chain(&run.maps) {
         warn_of_large_strain(map);
     }
@@ -93,6 +100,7 @@ fn solve_all(
         arrays,
         deformed: deformed.ok_or_else(none)?,
         settings: config.detection,
+        study: None,
     })
 }
 

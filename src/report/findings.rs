@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::comparison::{self, Comparison};
+use super::inputs;
 use super::maps::{MapFindings, ReferenceFindings, gamma, of_map, of_reference};
 use super::people::bridge_to;
 use super::text::{millimetres, name_of_map};
@@ -56,15 +57,16 @@ pub fn probe_depth(depths: &[f64]) -> f64 {
 /// Everything that the report says in numbers.
 ///
 /// # Errors
-/// If a map is over other poses than the reference, a setting is outside its range, a signal overflows, or a measured map was
-/// computed.
+/// If a map is over other poses than the reference, a setting is outside its range, a signal overflows, a measured map was
+/// computed, or a study is of other phantoms or settings.
 ///
-/// Implements: REP-002, REP-003, REP-004, REP-006, REP-070.
+/// Implements: REP-002, REP-003, REP-004, REP-006, REP-070, REP-080.
 pub fn findings(run: &Run) -> Result<Findings, Refusal> {
     let depths = run.reference.depths();
     let probe_depth = probe_depth(depths);
     let is_quoted = is_paper_depth(&probe_depth);
     let required_gamma = check(&run.settings).map_err(refused("settings"))?;
+    inputs::check(run, probe_depth)?;
     let is_computed = |map: &&ForceMap| map.certificate().is_some();
     if let Some(map) = run.measured.iter().find(is_computed) {
         let name = name_of_map(map);

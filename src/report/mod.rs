@@ -11,6 +11,7 @@
 //! | `nuisances.rs` | what is left of γ where more is unknown than the noise |
 //! | `pressure.rs` | γ of the pressure under the probe, read by a tactile array |
 //! | `findings.rs` | what the run found, all together |
+//! | `inputs.rs` | what a study says of the inputs' uncertainty |
 //! | `people.rs` | the subjects of Table 1, and the bridge from forces to their answers |
 //! | `quality.rs` | certificates in short, warnings |
 //! | `comparison.rs` | "paper, here, why" |
@@ -38,6 +39,7 @@
 //!     ],
 //!     deformed: DeformedMesh::solve(&inclusion, Pose { depth: 4e-3, lateral: 0.0 })?,
 //!     settings: Settings::default(),
+//!     study: None,
 //! };
 //! let findings = findings(&run)?;
 //! let gamma = findings.maps[0].gamma.both;
@@ -53,6 +55,7 @@ mod comparison;
 mod figures;
 mod findings;
 pub mod html;
+mod inputs;
 mod maps;
 mod nuisances;
 pub mod paper;
@@ -84,6 +87,7 @@ use crate::fem::{FemError, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
+use crate::study::StudyResults;
 
 /// The version of the program.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -104,6 +108,8 @@ pub struct Run {
     pub deformed: DeformedMesh,
     /// What the detector assumes.
     pub settings: Settings,
+    /// A study of the same phantoms at [`probe_depth`]: what their inputs' uncertainty does to the numbers.
+    pub study: Option<StudyResults>,
 }
 
 /// The mesh of one phantom under the probe. It comes from a solution alone, so that its parts fit one another.
@@ -184,6 +190,8 @@ pub enum Topic {
     Detection,
     /// Pressure under the probe.
     Pressure,
+    /// What uncertain inputs do.
+    Inputs,
     /// The subjects of the paper.
     People,
 }

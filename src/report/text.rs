@@ -133,6 +133,23 @@ pub fn scientific(value: impl Borrow<f64>) -> String {
     with_minus(&format!("{:.1e}", value.borrow()))
 }
 
+/// Four digits, whatever the size.
+pub fn digits(value: impl Borrow<f64>) -> String {
+    let value = *value.borrow();
+    match value.abs() {
+        size if size == 0.0 || (1e-3..1e5).contains(&size) => {
+            let decimals = 3 - libm::floor(libm::log10(size.max(1e-3))) as i32;
+            fixed(value, decimals.max(0) as usize)
+        }
+        _ => format!("{value:.3e}"),
+    }
+}
+
+/// The same of a number that may be missing.
+pub fn digits_or_dash(value: &Option<f64>) -> String {
+    value.map_or("–".into(), digits)
+}
+
 /// A probability in per cent; what would round to 0 or 100 % is given as a bound.
 pub fn percent(probability: impl Borrow<f64>) -> String {
     let probability = *probability.borrow();

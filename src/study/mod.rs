@@ -20,7 +20,7 @@ mod indices;
 mod results;
 mod sample;
 #[cfg(test)]
-mod tests;
+pub mod tests;
 
 use serde::{Deserialize, Serialize};
 
@@ -55,6 +55,15 @@ pub enum Change {
 }
 
 impl Change {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Change::Value => "value",
+            Change::Offset => "offset",
+            Change::Factor => "factor",
+        }
+    }
+
     /// The number that `own` becomes.
     fn of(self, own: f64, value: f64) -> f64 {
         match self {

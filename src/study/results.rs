@@ -1,14 +1,16 @@
 //! What a study found.
 
 use std::ops::Range;
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::design::{BESIDE_MEDIAN, Role};
-use super::indices::{Rows, indices};
+use super::indices::{Estimate, Rows, indices};
 use super::{Band, Change, Index, Kind, Quantity, Sampler, StudyPlan, band};
 use crate::detect::required_gamma;
 use crate::fem::certify;
+use crate::force_map::{check_schema, parse};
 use crate::psychophysics::CONFIDENCE;
 use crate::refusal::Refusal;
 use crate::stats::binomial;
@@ -30,7 +32,9 @@ pub struct Failure {
 /// What one input by itself does to a quantity at the medians of all.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Slope {
-    /// The change of the quantity over that of the input, in the units of both.
+    /// The change of the quantity from the lower to the upper quartile of the input.
+    pub between_quartiles: f64,
+    /// That change over that of the input, in the units of both.
     pub per_unit: f64,
     /// The same in per cent per per cent; `None` for an input that is added to a number.
     pub elasticity: Option<f64>,
@@ -68,8 +72,10 @@ pub struct Conclusion {
     pub at_medians: Option<bool>,
     /// The share of the samples for which it holds.
     pub share: f64,
-    /// Clopper and Pearson's interval of 95 %.
-    pub bounds: [f64; 2],
+    /// The lower end of Clopper and Pearson's interval of 95 %.
+    pub lower: f64,
+    /// The upper end.
+    pub upper: f64,
 }
 
 /// What a study found.
@@ -104,6 +110,42 @@ pub struct StudyResults {
 }
 
 impl StudyResults {
+    /// Reads the results at `path`.
+    ///
+    /// # Errors
+    /// A file that cannot be read as UTF-8, and what is no document of this schema; with the file, and line and key where there are any.
+    ///
+    /// Implements: STU-050.
+    pub fn read(path: &Path) -> Result<StudyResults, Refusal> {
+        crate::input::parse(path, |text, file| {
+            let read = check_schema(text, Self::SCHEMA, Self::SCHEMA_VERSION);
+            let read = read.and_then(|()| parse(text));
+            read.map_err(|refusal| refusal.in_file(file))
+        })
+    }
+
+    /// What the study says of one quantity, if it has it.
+    pub fn of(&self, phantom: &str, kind: &Kind) -> Option<&QuantityResult> {
+        let mut quantities = self.quantities.iter();
+        quantities.find(|of| of.quantity.phantom == phantom && of.quantity.kind == *kind)
+    }
+
+    /// The quantities for people: all but the forces beside x = 0, and the p-values, which the conclusions are about.
+    pub fn listed(&self) -> impl Iterator<Item = &QuantityResult> {
+        self.quantities.iter().filter(|of| match of.quantity.kind {
+            Kind::NormalForceN { lateral_m } => lateral_m == 0.0,
+            Kind::LateralForceN { .. } | Kind::ConventionP { .. } => false,
+            _ => true,
+        })
+    }
+
+    /// The group of inputs with the largest total index of a quantity, and that.
+    pub fn largest<'a>(&self, of: &'a QuantityResult) -> Option<(String, &'a Estimate)> {
+        let groups = self.groups.iter().zip(&of.indices);
+        let largest = groups.max_by(|a, b| a.1.total.value.total_cmp(&b.1.total.value));
+        largest.map(|(names, index)| (names.join(" and "), &index.total))
+    }
+
     /// The schema's name.
     pub const SCHEMA: &str = "palpate-study";
     /// The schema's version.
@@ -236,6 +278,7 @@ impl Column<'_> {
         let relative = of.distribution.quantile(0.5) / self.at(Role::Median(0));
         let elasticity = (of.change != Change::Offset).then_some(per_unit * relative);
         per_unit.is_finite().then_some(Slope {
+            between_quartiles: above - below,
             per_unit,
             elasticity: elasticity.filter(|elasticity| elasticity.is_finite()),
         })
@@ -265,7 +308,8 @@ impl Column<'_> {
             at_least,
             at_medians: at_medians.as_ref().map(holds),
             share: held as f64 / sampled.len() as f64,
-            bounds: [found.lower, found.upper],
+            lower: found.lower,
+            upper: found.upper,
         }))
     }
 }

@@ -54,8 +54,10 @@ pub enum Kind {
     NeededNoiseSdN,
     /// Pr(e) of the maximum a-posteriori rule.
     ErrorRate,
-    /// The predicted share of right answers in pairs.
+    /// The predicted share of right answers in pairs, by the whole sweep.
     TwoAfc,
+    /// The same by the peak of the normal signal alone, which is what the paper predicts from.
+    TwoAfcByPeak,
     /// The depth of the inclusion, m, beyond which the error rates are not kept: 0 if they are kept for none of the phantoms, and the
     /// depth of the deepest one if for all.
     DetectableDepthM,
@@ -241,6 +243,10 @@ impl<'a> Sampler<'a> {
                 prior * rates.miss + (1.0 - prior) * rates.false_alarm
             }
             Kind::TwoAfc => two_afc(gamma()).map_err(refused)?,
+            Kind::TwoAfcByPeak => {
+                let peak = peak_of(|signal| signal.normal)?.abs();
+                two_afc(peak / computed.noise_sd).map_err(refused)?
+            }
             Kind::DetectableDepthM => {
                 let mut pairs: Vec<_> = computed.depths.iter().zip(&computed.gamma).collect();
                 pairs.sort_by(|a, b| a.0.total_cmp(b.0));
@@ -295,7 +301,8 @@ fn quantities(plan: &StudyPlan, answers: &AnswerTable) -> Vec<Quantity> {
             push(name, Kind::LateralForceN { lateral_m });
         }
         if at > 0 {
-            use Kind::{ErrorRate, Gamma, NeededNoiseSdN, PeakLateralN, PeakNormalN, TwoAfc};
+            use Kind::{ErrorRate, Gamma, NeededNoiseSdN, PeakLateralN, PeakNormalN};
+            use Kind::{TwoAfc, TwoAfcByPeak};
             for kind in [
                 PeakNormalN,
                 PeakLateralN,
@@ -303,6 +310,7 @@ fn quantities(plan: &StudyPlan, answers: &AnswerTable) -> Vec<Quantity> {
                 NeededNoiseSdN,
                 ErrorRate,
                 TwoAfc,
+                TwoAfcByPeak,
             ] {
                 push(name, kind);
             }
@@ -337,7 +345,8 @@ impl std::fmt::Display for Quantity {
             Kind::Gamma => "γ".into(),
             Kind::NeededNoiseSdN => "largest noise, N".into(),
             Kind::ErrorRate => "Pr(e)".into(),
-            Kind::TwoAfc => "share of right answers in pairs".into(),
+            Kind::TwoAfc => "right answers in pairs".into(),
+            Kind::TwoAfcByPeak => "right answers in pairs, by the peak".into(),
             Kind::DetectableDepthM => "detectable depth, m".into(),
             Kind::ConventionP { convention } => format!("p of the convention \"{convention}\"",),
         };

@@ -14,7 +14,8 @@ use super::arguments::Format;
 use super::output::{make_folder, note, print, write};
 use super::part::Part;
 use super::progress::bar;
-use crate::study::{Index, Kind, QuantityResult, Sampler, StudyResults};
+use crate::report::text;
+use crate::study::{Sampler, StudyResults};
 use file::read_plan;
 use records::{BEGINNING, Header, Outcome, Record, Records, Shard};
 
@@ -162,41 +163,4 @@ fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
 #[template(path = "cli/study.txt")]
 struct Table<'a> {
     results: &'a StudyResults,
-}
-
-impl Table<'_> {
-    /// All quantities but the forces beside x = 0 and the p-values, which the conclusions are about.
-    fn shown(&self) -> impl Iterator<Item = &QuantityResult> {
-        self.results
-            .quantities
-            .iter()
-            .filter(|result| match result.quantity.kind {
-                Kind::NormalForceN { lateral_m } => lateral_m == 0.0,
-                Kind::LateralForceN { .. } | Kind::ConventionP { .. } => false,
-                _ => true,
-            })
-    }
-
-    /// The group of inputs with the largest total index.
-    fn largest(&self, result: &QuantityResult) -> Option<(String, Index)> {
-        let groups = self.results.groups.iter().zip(&result.indices);
-        let largest = groups.max_by(|a, b| a.1.total.value.total_cmp(&b.1.total.value));
-        largest.map(|(names, index)| (names.join(" and "), *index))
-    }
-}
-
-/// Four digits, or a dash.
-fn number(number: &Option<f64>) -> String {
-    number.as_ref().map_or("–".into(), digits)
-}
-
-/// Four digits.
-fn digits(number: &f64) -> String {
-    match number.abs() {
-        size if size == 0.0 || (1e-3..1e5).contains(&size) => {
-            let decimals = 3 - libm::floor(libm::log10(size.max(1e-3))) as i32;
-            format!("{number:.0$}", decimals.max(0) as usize)
-        }
-        _ => format!("{number:.3e}"),
-    }
 }

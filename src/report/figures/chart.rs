@@ -133,7 +133,11 @@ fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResu
     chart
         .configure_mesh()
         .x_labels(if panel.ticks.is_empty() { 6 } else { 0 })
-        .y_labels((height / 40).max(2) as usize)
+        .y_labels(if panel.is_ranked {
+            0
+        } else {
+            (height / 40).max(2) as usize
+        })
         .x_label_formatter(&number)
         .y_label_formatter(&number)
         .label_style(text(INK, HPos::Center))

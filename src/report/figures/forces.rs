@@ -4,7 +4,7 @@ use askama::Template;
 
 use super::chart::{chart, round_range};
 use super::panel::{Line, Panel};
-use super::style::{PALETTE, ramp};
+use super::style::{PALETTE, VERMILION, ramp};
 use super::{Figures, Words};
 use crate::force_map::{ForceMap, ForceTable, Matrix, Source};
 use crate::phantom::Inclusion;
@@ -12,6 +12,7 @@ use crate::refusal::Refusal;
 use crate::report::maps::incomparable;
 use crate::report::text::{millimetres, shortened};
 use crate::report::{Findings, MapFindings, Run, Topic, paper, text};
+use crate::study::{Band, Kind};
 
 /// The signals, if there are any, and the forces of every map: computed ones, then the measured ones.
 ///
@@ -30,9 +31,19 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
         add(("signals", ""), words, &signals(run, found)?)?;
     }
     for map in [&run.reference].into_iter().chain(&run.maps) {
-        let (text, name) = (ForceText { map }, text::name_of_map(map));
+        let name = text::name_of_map(map);
+        let mut panels = force_curves(map.table());
+        let bands = bands(run, map);
+        for (panel, lines) in panels.iter_mut().zip(&bands) {
+            panel.lines.extend_from_slice(lines);
+            let points = panel.lines.iter().flat_map(|line| &line.points);
+            panel.y = round_range(points.map(|point| point.1));
+        }
+        let depth = run.study.as_ref().map(|study| study.plan.probe_depth);
+        let depth = depth.filter(|_| !bands[0].is_empty());
+        let text = ForceText { map, depth };
         let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
-        add(("figure-5", &name), words, &force_curves(map.table()))?;
+        add(("figure-5", &name), words, &panels)?;
     }
     for map in &run.measured {
         let (text, name) = (MeasuredText { map }, text::name_of_map(map));
@@ -82,6 +93,36 @@ fn force_curves(table: &ForceTable) -> [Panel; 2] {
     ]
 }
 
+/// The ends of the bands of the normal and of the lateral force that a study has for the phantom of a map.
+///
+/// Implements: REP-081.
+fn bands(run: &Run, map: &ForceMap) -> [Vec<Line>; 2] {
+    let Some((study, phantom)) = run.study.as_ref().zip(map.phantom()) else {
+        return Default::default();
+    };
+    let ends = |kind: fn(f64) -> Kind| {
+        let at = |&x: &f64| Some((1e3 * x, study.of(&phantom.name, &kind(x))?.band?));
+        let bands: Vec<_> = study.plan.laterals.iter().filter_map(at).collect();
+        let line = |words: &str, end: fn(&Band) -> f64| {
+            let points = bands.iter().map(|(x, band)| (*x, end(band)));
+            Line::new(VERMILION, points.collect())
+                .dashed(true)
+                .named(words)
+        };
+        match bands.is_empty() {
+            true => Vec::new(),
+            false => vec![
+                line("2.5 %", |band| band.lower.value),
+                line("97.5 %", |band| band.upper.value),
+            ],
+        }
+    };
+    [
+        ends(|lateral_m| Kind::NormalForceN { lateral_m }),
+        ends(|lateral_m| Kind::LateralForceN { lateral_m }),
+    ]
+}
+
 /// How a map is called in a figure: the inclusion's depth for the paper's phantoms, or else its name.
 pub fn label(map: &MapFindings) -> String {
     match map.paper_phantom {
@@ -126,6 +167,8 @@ struct SignalText<'a> {
 #[template(path = "report/words/figure-5.txt", blocks = ["title", "caption", "alt"])]
 struct ForceText<'a> {
     map: &'a ForceMap,
+    /// The depth of the bands, m, if there are any.
+    depth: Option<f64>,
 }
 
 impl ForceText<'_> {

@@ -5,11 +5,13 @@ use askama::Template;
 use super::chart::{chart, round_range};
 use super::panel::{Line, Panel};
 use super::people::DEPTH;
-use super::style::{GREY, INK, PALETTE};
+use super::style::{GREY, INK, PALETTE, VERMILION};
 use super::{Figures, Words};
 use crate::refusal::Refusal;
+use crate::report::inputs;
 use crate::report::text::extremes;
 use crate::report::{Findings, GammaBeside, MapFindings, Run, Settings, Topic, text};
+use crate::study::{Band, Kind};
 
 /// The figure, if the top of an inclusion is known.
 ///
@@ -26,16 +28,35 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
         return Ok(());
     };
     let beside = &first.gamma_left.beside;
-    let panel = panel(&maps, beside, found.required_gamma);
+    let mut panel = panel(&maps, beside, found.required_gamma);
+    let bars: Vec<_> = maps
+        .iter()
+        .filter_map(|(depth, map)| bar(run, *depth, map))
+        .collect();
+    let has_bands = !bars.is_empty();
+    panel.lines.extend(bars);
+    let values = panel.lines.iter().flat_map(|line| &line.points);
+    panel.y = round_range(values.map(|point| point.1));
     let text = Text {
         maps: &maps,
         beside,
         found,
         settings: &run.settings,
+        has_bands,
     };
     let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
     let drawn = chart(&[panel], DEPTH);
     figures.add(("gamma", ""), Topic::Detection, words, drawn)
+}
+
+/// The band of γ that a study has for a map, upright beside its depth, mm.
+///
+/// Implements: REP-081.
+fn bar(run: &Run, depth: f64, map: &MapFindings) -> Option<Line> {
+    let Band { lower, upper, .. } = inputs::band(run, &map.name, &Kind::Gamma)?;
+    let x = depth + 0.15;
+    let ends = vec![(x, lower.value), (x, upper.value)];
+    Some(Line::new(VERMILION, ends).wide(3.0))
 }
 
 /// The maps with the depth of their inclusion, mm.
@@ -76,6 +97,7 @@ struct Text<'a> {
     beside: &'a [GammaBeside],
     found: &'a Findings,
     settings: &'a Settings,
+    has_bands: bool,
 }
 
 impl Text<'_> {

@@ -9,6 +9,7 @@
 //! | `theory.rs` | Figures 3, 4, 9: the detector alone |
 //! | `forces.rs` | Figures 5 and 7, and the signals |
 //! | `gamma.rs` | γ of a sweep beside what may be unknown of it |
+//! | `inputs.rs` | which input counts, by a study |
 //! | `pressure.rs` | γ of a tactile array against its elements |
 //! | `people.rs`, `bridge.rs` | Figures 10 to 13: Table 1; the forces against it |
 //! | `bank.rs`, `reach.rs` | where an inclusion lies by a bank, and how deep one can be found |
@@ -19,6 +20,7 @@ mod bridge;
 mod chart;
 mod forces;
 mod gamma;
+mod inputs;
 mod mesh;
 mod names;
 mod panel;
@@ -105,9 +107,10 @@ pub fn figures(run: &Run, findings: &Findings) -> Result<Vec<Figure>, Refusal> {
     theory::draw(&mut figures)?;
     gamma::draw(&mut figures, run, findings)?;
     pressure::draw(&mut figures, run, findings)?;
+    inputs::draw(&mut figures, run)?;
     let fixed = (include_str!("figure-8.svg").into(), 436);
     figures.add_fixed("figure-8", Topic::People, Ok(fixed))?;
-    people::draw(&mut figures, &findings.people)?;
+    people::draw(&mut figures, run, &findings.people)?;
     bridge::draw(&mut figures, findings)?;
     Ok(figures.all)
 }

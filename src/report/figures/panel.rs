@@ -133,6 +133,8 @@ pub struct Panel {
     pub y: [f64; 2],
     /// Where the x axis has numbers; empty for round numbers.
     pub ticks: Vec<f64>,
+    /// Whether the y axis is of ranks, and has no numbers.
+    pub is_ranked: bool,
     /// Whether the x axis is of exponents, and has powers of two as its numbers.
     pub is_doubling: bool,
     /// Whether it is a drawing to scale, and no chart: it has no grid.

@@ -13,7 +13,8 @@ use crate::psychophysics::{
 use crate::refusal::Refusal;
 use crate::report::people::width_ratios;
 use crate::report::text::extremes;
-use crate::report::{Topic, normal_approximation, text};
+use crate::report::{Run, Topic, inputs, normal_approximation, paper, text};
+use crate::study::{Band, Kind};
 
 /// What the x axis of all charts over the inclusions shows.
 pub const DEPTH: &str = "Depth of the inclusion (mm)";
@@ -59,16 +60,24 @@ fn depths(condition: &ConditionAnalysis) -> Vec<f64> {
 /// If drawing fails.
 ///
 /// Implements: REP-037, REP-038.
-pub fn draw(figures: &mut Figures, people: &Analysis) -> Result<(), Refusal> {
-    for (of, number) in people.conditions.iter().zip(10..13) {
-        let text = SubjectText { number, of };
+pub fn draw(figures: &mut Figures, run: &Run, people: &Analysis) -> Result<(), Refusal> {
+    for (at, (of, number)) in people.conditions.iter().zip(10..13).enumerate() {
+        let predicted = match at {
+            paper::FEM_PLAYBACK => predicted(run, of),
+            _ => Vec::new(),
+        };
+        let text = SubjectText {
+            number,
+            of,
+            has_bands: !predicted.is_empty(),
+        };
         let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
         let file = format!("figure-{number}");
         figures.add(
             (&file, ""),
             Topic::People,
             words,
-            chart(&[subjects(of)], DEPTH),
+            chart(&[subjects(of, predicted)], DEPTH),
         )?;
     }
     let text = ComparisonText {
@@ -86,7 +95,7 @@ pub fn draw(figures: &mut Figures, people: &Analysis) -> Result<(), Refusal> {
 }
 
 /// Figures 10, 11 and 12: one condition, each subject and the mean.
-fn subjects(condition: &ConditionAnalysis) -> Panel {
+fn subjects(condition: &ConditionAnalysis, predicted: Vec<Line>) -> Panel {
     let depths = depths(condition);
     let colours = &PALETTE[..6];
     let of_subject = |colour, points| Line::new(colour, points).wide(1.1).dotted(3);
@@ -100,6 +109,7 @@ fn subjects(condition: &ConditionAnalysis) -> Panel {
     let mut lines: Vec<_> = condition.subjects.iter().enumerate().map(subject).collect();
     let pooled = condition.inclusions.iter().map(|of| of.pooled.rate);
     lines.push(of_mean(points(&depths, pooled)));
+    lines.extend(predicted);
     let mut panel = share_panel(SHARE, &depths, 300, lines);
     panel.key = vec![
         of_mean(Vec::new()),
@@ -107,6 +117,31 @@ fn subjects(condition: &ConditionAnalysis) -> Panel {
         Line::new(GREY, Vec::new()).dashed(true).named("chance"),
     ];
     panel
+}
+
+/// The ends of the bands that a study has for the share that the peak of the normal signal predicts.
+///
+/// Implements: REP-081.
+fn predicted(run: &Run, condition: &ConditionAnalysis) -> Vec<Line> {
+    let inclusions = condition.inclusions.iter();
+    let bands = inclusions.filter_map(|of| {
+        Some((
+            1e3 * of.depth_m,
+            inputs::band(run, &of.name, &Kind::TwoAfcByPeak)?,
+        ))
+    });
+    let (depths, bands): (Vec<_>, Vec<Band>) = bands.unzip();
+    let line = |words: &str, end: fn(&Band) -> f64| {
+        let points = points(&depths, bands.iter().map(end));
+        Line::new(VERMILION, points).dashed(true).named(words)
+    };
+    match bands.is_empty() {
+        true => Vec::new(),
+        false => vec![
+            line("predicted, 2.5 %", |band| band.lower.value),
+            line("predicted, 97.5 %", |band| band.upper.value),
+        ],
+    }
 }
 
 /// The colours of the conditions.
@@ -154,6 +189,8 @@ fn bars(inclusion: &InclusionAnalysis, x: f64, colour: RGBColor) -> Vec<Line> {
 struct SubjectText<'a> {
     number: u32,
     of: &'a ConditionAnalysis,
+    /// Whether predictions are drawn.
+    has_bands: bool,
 }
 
 impl SubjectText<'_> {

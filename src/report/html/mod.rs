@@ -7,12 +7,14 @@ use core::iter::once;
 
 use askama::Template;
 
+use super::inputs::{Survival, survival};
 use super::pressure::times;
 use super::text::printable;
 use super::{
     Comparison, Figure, Findings, MapFindings, Quality, Run, Settings, Topic, Value, paper, text,
 };
 use crate::psychophysics::bridge::WeightRange;
+use crate::study::{Band, Change, Conclusion, Kind, StudyResults};
 
 /// How the page looks.
 ///
@@ -22,11 +24,12 @@ pub const STYLE: &str = include_str!("style.css");
 const NAMESPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
 
 /// The sections below the opening: what the contents link to, and their headings.
-const CONTENTS: [(&str, &str); 9] = [
+const CONTENTS: [(&str, &str); 10] = [
     ("setup", "Set-up"),
     ("forces", "Forces and signals"),
     ("detection", "Detection"),
     ("pressure", "Pressure as a record"),
+    ("inputs", "Uncertain inputs"),
     ("people", "People"),
     ("noise", "Noise"),
     ("comparison", "Paper | here | why"),
@@ -46,7 +49,7 @@ struct Page<'a> {
 
 /// One self-contained page: what was found, the figures and tables, the comparison, the certificates.
 ///
-/// Implements: REP-040, REP-041, REP-042, REP-043, REP-044, REP-060, REP-061, REP-062, REP-063, REP-065, REP-066, REP-069, REP-074.
+/// Implements: REP-040, REP-041, REP-042, REP-043, REP-044, REP-060, REP-061, REP-062, REP-063, REP-065, REP-066, REP-069, REP-074, REP-081, REP-083.
 pub fn html(run: &Run, findings: &Findings, figures: &[Figure]) -> String {
     let page = Page {
         run,
@@ -107,6 +110,36 @@ impl Page<'_> {
         self.found.comparison.iter().find(|row| row.paper == paper)
     }
 
+    /// What a study says of the explanations of the answers: a sentence for each fate that some have.
+    ///
+    /// Implements: REP-083.
+    fn explanations(&self, study: &StudyResults) -> Vec<String> {
+        let fates = [
+            (Survival::Holds, "are rejected whatever the inputs"),
+            (Survival::Depends, "are rejected or not, as the inputs are"),
+            (Survival::Fails, "are rejected for hardly any inputs"),
+        ];
+        let sentence = |(fate, words): (Survival, &str)| {
+            let conclusions = study.conclusions.iter().filter(|of| survival(of) == fate);
+            let named = conclusions.filter_map(|of| match &of.quantity.kind {
+                Kind::ConventionP { convention } => {
+                    Some(format!("{convention} ({})", text::percent(of.share)))
+                }
+                _ => None,
+            });
+            let named: Vec<_> = named.collect();
+            let named = (!named.is_empty()).then(|| named.join("; "));
+            named.map(|named| format!("These explanations of the answers to FEM playback {words} (share of the draws): {named}."))
+        };
+        fates.into_iter().filter_map(sentence).collect()
+    }
+
+    /// The band of the force without inclusion at x = 0; only for the paper's reference.
+    fn level(&self, study: &StudyResults) -> Option<Band> {
+        let name = paper::name_of(&study.plan.reference)?;
+        study.of(name, &Kind::NormalForceN { lateral_m: 0.0 })?.band
+    }
+
     /// Name and certificate of the reference and of every map.
     fn certificates(&self) -> impl Iterator<Item = (&String, Option<&Quality>)> {
         let reference = &self.found.reference;
@@ -138,4 +171,13 @@ fn variance(sources: &[usize]) -> f64 {
 fn share(sources: &[usize], source: usize) -> Option<f64> {
     let belongs = sources.contains(&source);
     belongs.then(|| variance(&[source]) / variance(sources))
+}
+
+/// Whether a conclusion survives, in words.
+fn fate(of: &Conclusion) -> &'static str {
+    match survival(of) {
+        Survival::Holds => "this conclusion survives the uncertainty of the inputs",
+        Survival::Depends => "this conclusion depends on the inputs",
+        Survival::Fails => "this conclusion does not survive the uncertainty of the inputs",
+    }
 }

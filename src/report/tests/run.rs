@@ -175,6 +175,7 @@ pub fn paper_run() -> Run {
         arrays: Vec::new(),
         deformed: deformed(),
         settings: SETTINGS,
+        study: None,
     }
 }
 

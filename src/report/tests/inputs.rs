@@ -1,0 +1,172 @@
+//! A study beside a run: what the page and the figures show of it, and which studies are refused.
+
+use std::sync::OnceLock;
+
+use super::run::*;
+use crate::phantom::{BUILTIN_NAMES, Phantom};
+use crate::report::inputs::{Survival, survival};
+use crate::report::{Figure, Run, findings};
+use crate::study::tests::{near, plan, results};
+use crate::study::{Kind, StudyResults};
+
+/// The paper's run with a study of it, on a coarse mesh.
+fn with_study() -> Run {
+    static STUDY: OnceLock<StudyResults> = OnceLock::new();
+    let study = STUDY.get_or_init(|| {
+        let mut plan = plan(vec![
+            near("gel: <modulus>", "layer[1].youngs_modulus_kpa", 5.0),
+            near("gel: height", "layer[1].thickness_mm", 15.0),
+        ]);
+        let phantoms = BUILTIN_NAMES[1..].iter();
+        plan.phantoms = phantoms
+            .map(|name| Phantom::builtin(name).unwrap())
+            .collect();
+        plan.laterals = (-3..=3).map(|k| 2e-3 * f64::from(k)).collect();
+        (plan.mesh_size, plan.noise_sd) = (3e-3, SETTINGS.noise_sd);
+        results(&plan, usize::MAX)
+    });
+    Run {
+        study: Some(study.clone()),
+        ..paper_run()
+    }
+}
+
+// Verifies: REP-081, REP-082, REP-083.
+#[test]
+fn a_study_stands_beside_the_numbers_of_the_run() {
+    let run = with_study();
+    let study = run.study.as_ref().unwrap();
+    let made = made(&run);
+    let section = between(&made.page, "<section id=\"inputs\"", "</section>");
+    // Noise of 0.1 N: γ is twice what is needed and more.
+    for name in &BUILTIN_NAMES[1..] {
+        let line = format!("<li>The inclusion of phantom {name} is found");
+        let line = between(section, &line, "</li>");
+        assert!(
+            line.contains("in 100.0 % of the draws")
+                && line.ends_with("survives the uncertainty of the inputs."),
+            "{line}"
+        );
+    }
+    let text = super::super::text::fixed(
+        study
+            .of("none", &Kind::NormalForceN { lateral_m: 0.0 })
+            .unwrap()
+            .band
+            .unwrap()
+            .lower
+            .value,
+        2,
+    );
+    assert!(
+        section.contains(&format!("the normal force at x = 0 is between {text} and ")),
+        "{section}"
+    );
+    // 4 % in the modulus and the height of the gel are not 8 % in the force.
+    assert!(section.contains("outside, so that the inputs alone do not explain the difference"));
+    assert!(section.contains("These explanations of the answers to FEM playback are rejected whatever the inputs (share of the draws): peak, normal force (100.0 %)"), "{section}");
+    // Names are text.
+    assert!(
+        section.contains("gel: &#60;modulus&#62;") && !section.contains("<modulus>"),
+        "{section}"
+    );
+    let rows = between(section, "table-bands", "</table>")
+        .matches("<tr>")
+        .count();
+    assert_eq!(rows, 1 + study.listed().count());
+    let captions = |name: &str| {
+        let is_named = |figure: &&Figure| figure.file_name.starts_with(name);
+        let figures = made.figures.iter().filter(is_named);
+        figures
+            .map(|figure| figure.caption.clone())
+            .collect::<Vec<_>>()
+    };
+    for (name, count) in [("figure-5", 5), ("figure-11", 1), ("gamma", 1)] {
+        let captions = captions(name);
+        assert_eq!(captions.len(), count, "{name}");
+        assert!(
+            captions
+                .iter()
+                .all(|caption| caption.contains("the draws of the uncertain inputs")),
+            "{name}"
+        );
+    }
+    assert!(!captions("figure-10")[0].contains("draws"));
+    // Of the two inputs the modulus counts more in the force: 0.9 against 0.3 per cent per per cent.
+    let drawn = made
+        .figures
+        .iter()
+        .find(|figure| figure.file_name == "inputs.svg")
+        .unwrap();
+    assert!(
+        drawn
+            .alt
+            .contains("none: normal force at 0.0 mm, N: gel: <modulus> 3.6 %, gel: height −1."),
+        "{}",
+        drawn.alt
+    );
+}
+
+// Verifies: REP-081.
+#[test]
+fn without_a_study_the_page_says_so() {
+    let made = made(&paper_run());
+    assert!(
+        made.page
+            .contains("No study of the inputs belongs to this run")
+    );
+    assert!(
+        made.figures
+            .iter()
+            .all(|figure| figure.file_name != "inputs.svg")
+    );
+    assert!(
+        made.figures
+            .iter()
+            .all(|figure| !figure.caption.contains("draws"))
+    );
+}
+
+// Verifies: REP-080.
+#[test]
+fn a_study_of_something_else_is_refused() {
+    let refused = |change: &dyn Fn(&mut StudyResults)| {
+        let mut run = with_study();
+        change(run.study.as_mut().unwrap());
+        findings(&run).unwrap_err().to_string()
+    };
+    let changes: [(&dyn Fn(&mut StudyResults), &str); 6] = [
+        (&|study| study.plan.reference.well.width = 0.04, "reference"),
+        (
+            &|study| study.plan.phantoms[1].inclusions[0].depth = 5e-3,
+            "phantom \"4.6\"",
+        ),
+        (&|study| study.plan.probe_depth = 3e-3, "depth of the probe"),
+        (&|study| study.plan.noise_sd = 0.2, "noise, rate or prior"),
+        (&|study| study.plan.max_miss = 0.01, "noise, rate or prior"),
+        (&|study| study.plan.prior_h1 = 0.4, "noise, rate or prior"),
+    ];
+    for (change, what) in changes {
+        let expected =
+            format!("the study of the inputs has another {what} than the run, expected ");
+        let found = refused(change);
+        assert!(found.starts_with(&expected), "{found}");
+    }
+}
+
+// Verifies: REP-083.
+#[test]
+fn a_conclusion_survives_from_95_per_cent_on() {
+    let run = with_study();
+    let mut of = run.study.unwrap().conclusions.remove(0);
+    for (share, expected) in [
+        (1.0, Survival::Holds),
+        (0.95, Survival::Holds),
+        (0.94, Survival::Depends),
+        (0.06, Survival::Depends),
+        (0.05, Survival::Fails),
+    ] {
+        of.share = share;
+        assert_eq!(survival(&of), expected, "{share}");
+    }
+}
