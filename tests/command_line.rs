@@ -539,7 +539,7 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
 fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
     let here = Place::new("demo");
     let files = [
-        "study.toml",
+        "run.toml",
         "none.json",
         "inclusion.json",
         "sweep-without.csv",

@@ -25,7 +25,7 @@ const NOT_RUN: usize = 14;
 /// Parts of the commands in `README.md` that are not run, and why.
 ///
 /// Implements: DOC-006.
-const README_NOT_RUN: [(&str, &str); 4] = [
+const README_NOT_RUN: [(&str, &str); 5] = [
     (
         "vectors/conform/tests/toys/right.py",
         "needs Python: vectors/conform/tests/conform_command.rs runs it",
@@ -33,6 +33,10 @@ const README_NOT_RUN: [(&str, &str); 4] = [
     (
         "palpate run ",
         "docs/tutorial.md and docs/how-to/demo.md run it",
+    ),
+    (
+        "palpate study ",
+        "takes ten minutes; docs/how-to/study.md runs a smaller one",
     ),
     (
         "palpate-verify",

@@ -37,7 +37,7 @@ pub struct CommandLine {
 pub(super) enum Command {
     /// The whole paper: force maps of the phantoms, signals, detection, report.
     Run(run::RunArguments),
-    /// Files to try the other commands on: maps, recorded sweeps, a measured map, a study.
+    /// Files to try the other commands on: maps, recorded sweeps, a measured map, a configuration.
     Demo(demo::DemoArguments),
     /// Forces on the probe over depths and lateral positions of one phantom.
     Solve(solve::SolveArguments),

@@ -36,8 +36,8 @@ const NOISE: f64 = 0.1;
 /// Noise of a measured map, N.
 const MAP_NOISE: f64 = 0.01;
 
-const STUDY: &str = "\
-# For palpate run --config study.toml: the gel without and with one inclusion, against a measured map.
+const RUN: &str = "\
+# For palpate run --config run.toml: the gel without and with one inclusion, against a measured map.
 reference = \"none\"
 phantoms = [\"4.6\"]
 depths_mm = \"0,2,3.7,4,4.3\"
@@ -60,7 +60,7 @@ pub fn demo(arguments: &DemoArguments) -> Result<(), CliError> {
         gain: 1.1,
     };
     let files = [
-        ("study.toml", STUDY.into()),
+        ("run.toml", RUN.into()),
         ("none.json", none.to_json()),
         ("inclusion.json", inclusion.to_json()),
         ("sweep-without.csv", sweep(without, exact, 1)),
