@@ -354,6 +354,23 @@ fn slopes_are_those_of_another_program() {
     );
 }
 
+// Verifies: STU-023, STU-030.
+#[test]
+fn the_medians_are_solved_on_three_meshes() {
+    let mut plan = plan(vec![near("E", "layer[1].youngs_modulus_kpa", 4.0)]);
+    plan.mesh_size = 1.5e-3;
+    let mut phantom = plan.reference.clone();
+    phantom.layers[1].material.youngs_modulus = 4000.0;
+    let sampler = Sampler::new(&plan).unwrap();
+    for (sample, size) in [(0, 1.5e-3), (1, 2e-3), (2, 3e-3)] {
+        let model = crate::fem::Model::new(&phantom, size, plan.contact).unwrap();
+        let map = model.sweep(plan.probe_depth, &plan.laterals).unwrap();
+        let found = sampler.sample(sample).unwrap();
+        // 4/3 and 3/2 of a mesh size round.
+        assert!((found[0] - map.forces().normal.row(0)[0]).abs() < 1e-9);
+    }
+}
+
 // Verifies: STU-031, STU-032, STU-046, STU-047.
 #[test]
 fn failures_are_counted_and_conclusions_have_their_share() {

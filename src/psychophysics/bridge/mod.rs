@@ -146,8 +146,11 @@ pub fn p_values(
     inclusions: &[(&str, &ForceMap)],
 ) -> Result<Vec<f64>> {
     let maps = columns(table, inclusions)?;
+    let reference = sweep(reference, None)?;
     let (depth, _) = probe_depth(reference.depths());
-    let signal = |&(_, map): &(usize, &ForceMap)| Signal::new(reference, map, depth);
+    let signal = |&(_, map): &(usize, &ForceMap)| {
+        sweep(map, None).and_then(|map| Signal::new(&reference, &map, depth))
+    };
     let signals = maps.iter().map(signal).collect::<Result<Vec<_>, _>>()?;
     let columns: Vec<usize> = maps.into_iter().map(|(column, _)| column).collect();
     let missing = || Refusal::state(format!("condition {condition} is not in the table"), "");

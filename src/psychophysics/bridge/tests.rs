@@ -524,3 +524,23 @@ fn conventions_are_compared_with_their_lapses() {
         assert_near(1024.0 * p, exchanges, 4.0);
     }
 }
+
+// Verifies: STU-033.
+#[test]
+fn p_values_alone_are_those_of_the_bridge() {
+    let table = AnswerTable::paper().unwrap();
+    let (reference, maps) = computed_maps();
+    let named: Vec<_> = NAMES.into_iter().zip(&maps).collect();
+    let whole = bridge(&table, &reference, &named, None).unwrap();
+    for (number, condition) in whole.conditions.iter().enumerate() {
+        let found = p_values(&table, number, &reference, &named).unwrap();
+        let expected = condition.conventions.iter().map(|fit| fit.p_value);
+        assert_eq!(found, expected.collect::<Vec<_>>());
+    }
+    let missing = p_values(&table, 3, &reference, &named).unwrap_err();
+    assert_eq!(missing.to_string(), "condition 3 is not in the table");
+    let silent = [reference.clone(), reference.clone()];
+    let named: Vec<_> = NAMES.into_iter().zip(&silent).collect();
+    let refused = p_values(&table, 1, &reference, &named).unwrap_err();
+    assert_eq!(refused.to_string(), "no signal by the peak, normal force");
+}
