@@ -8,7 +8,7 @@ use std::path::Path;
 pub type Repository = BTreeMap<String, String>;
 
 /// Endings of the files in which annotations are looked for; scripts such as `tests/same_bits/run` have none.
-const ENDINGS: [&str; 8] = ["", "g", "js", "md", "py", "rs", "rules", "toml"];
+const ENDINGS: [&str; 9] = ["", "g", "js", "md", "py", "rs", "rules", "sbatch", "toml"];
 
 /// Reads the repository at `root`, without hidden folders and what was built.
 pub fn read(root: &Path) -> Repository {
