@@ -22,7 +22,7 @@ pub(super) fn check(run: &Run, depth: f64) -> Result<(), Refusal> {
         let found = format!("the study of the inputs has another {what} than the run");
         Err(Refusal::state(
             found,
-            "a study of the same phantoms, depth, noise and rates",
+            "a study of the same phantoms, poses, noise and rates",
         ))
     };
     let own = std::iter::once(&run.reference).chain(&run.maps);
@@ -35,6 +35,10 @@ pub(super) fn check(run: &Run, depth: f64) -> Result<(), Refusal> {
     }
     if (plan.probe_depth - depth).abs() > SAME_POSITION {
         return differs("depth of the probe");
+    }
+    // γ is of all samples of the sweep.
+    if plan.laterals != run.reference.laterals() {
+        return differs("list of lateral positions");
     }
     let settings = Settings {
         max_false_alarm: plan.max_false_alarm,

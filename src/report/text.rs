@@ -137,8 +137,9 @@ pub fn scientific(value: impl Borrow<f64>) -> String {
 pub fn digits(value: impl Borrow<f64>) -> String {
     let value = *value.borrow();
     match value.abs() {
-        size if size == 0.0 || (1e-3..1e5).contains(&size) => {
-            let decimals = 3 - libm::floor(libm::log10(size.max(1e-3))) as i32;
+        0.0 => "0".into(),
+        size if (1e-3..1e5).contains(&size) => {
+            let decimals = 3 - libm::floor(libm::log10(size)) as i32;
             fixed(value, decimals.max(0) as usize)
         }
         _ => format!("{value:.3e}"),

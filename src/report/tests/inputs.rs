@@ -21,7 +21,7 @@ fn with_study() -> Run {
         plan.phantoms = phantoms
             .map(|name| Phantom::builtin(name).unwrap())
             .collect();
-        plan.laterals = (-3..=3).map(|k| 2e-3 * f64::from(k)).collect();
+        plan.laterals = LATERALS.into();
         (plan.mesh_size, plan.noise_sd) = (3e-3, SETTINGS.noise_sd);
         results(&plan, usize::MAX)
     });
@@ -135,13 +135,17 @@ fn a_study_of_something_else_is_refused() {
         change(run.study.as_mut().unwrap());
         findings(&run).unwrap_err().to_string()
     };
-    let changes: [(&dyn Fn(&mut StudyResults), &str); 6] = [
+    let changes: [(&dyn Fn(&mut StudyResults), &str); 7] = [
         (&|study| study.plan.reference.well.width = 0.04, "reference"),
         (
             &|study| study.plan.phantoms[1].inclusions[0].depth = 5e-3,
             "phantom \"4.6\"",
         ),
         (&|study| study.plan.probe_depth = 3e-3, "depth of the probe"),
+        (
+            &|study| study.plan.laterals.truncate(4),
+            "list of lateral positions",
+        ),
         (&|study| study.plan.noise_sd = 0.2, "noise, rate or prior"),
         (&|study| study.plan.max_miss = 0.01, "noise, rate or prior"),
         (&|study| study.plan.prior_h1 = 0.4, "noise, rate or prior"),
