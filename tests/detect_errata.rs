@@ -112,7 +112,7 @@ fn err_005_noise_left_for_the_display() {
     assert!(error_rates(gamma_at_printed, 0.0).unwrap().miss < 0.05);
 }
 
-// Verifies: ERR-006, DET-059.
+// Verifies: ERR-006.
 #[test]
 fn err_006_false_alarms_of_theta_max() {
     // Twenty places a record that do not overlap, so that Θ_max is the largest of twenty

@@ -1,7 +1,7 @@
 //! Expected values: whole numbers by hand, and Φ by mpmath 1.4.1.
 
 use super::*;
-use crate::detect::theta_of_record;
+use crate::detect::{Force, theta_of_record};
 use crate::stats::tests::assert_ulps;
 
 const UNIT: Force<f64> = Force::new(1.0, 1.0);
@@ -38,25 +38,4 @@ fn what_is_refused_is_never_a_decision() {
         assert!(judged(bad, 0.0).is_err() && judged(0.5, bad).is_err());
     }
     assert!(theta_of_record(Force::new(&[1.0], &[1.0, 2.0]), F0, F1, UNIT).is_err());
-}
-
-// Verifies: DET-053, DET-057, DET-059.
-#[test]
-fn record_at_an_unknown_position() {
-    let template: Force<&[f64]> = Force::new(&[0.0], &[2.0]);
-    let scan = Scan::new(3, template, UNIT).unwrap();
-    let (mut gamma, mut angle) = ([0.0; 3], [0.0; 3]);
-    let law = MaximumLaw::new(&scan, 0, &mut gamma, &mut angle).unwrap();
-    let residual: Force<&[f64]> = Force::new(&[9.0, 9.0, 9.0], &[0.0, 3.0, 1.0]);
-    let found = assess_scan(&scan, &law, residual, 2.0).unwrap();
-    assert_eq!((found.maximum.shift, found.maximum.theta), (1, 4.0));
-    assert_eq!(found.decision, Decision::Inclusion);
-    // γ = 2, η = 2: a miss is Φ(0), and the bound is at most 3 Φ(−2).
-    assert_eq!(found.miss_bound, 0.5);
-    assert!(found.false_alarm_bound <= 3.0 * 0.022_750_131_948_179_2 * (1.0 + 2e-9));
-    let found = assess_scan(&scan, &law, residual, 4.1).unwrap();
-    assert_eq!(found.decision, Decision::NoInclusion);
-    let bad: Force<&[f64]> = Force::new(&[9.0, f64::NAN, 9.0], residual.normal);
-    assert!(assess_scan(&scan, &law, bad, 2.0).is_err());
-    assert!(assess_scan(&scan, &law, residual, f64::NAN).is_err());
 }
