@@ -15,30 +15,8 @@ pub struct NoiseBudget {
     pub remaining: f64,
 }
 
-/// What given sources of noise amount to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NoiseTotal {
-    /// (Σ s²)^½ of independent sources, N.
-    pub total: f64,
-    /// The first of the largest sources.
-    pub dominant: usize,
-    /// The share of the dominant source in the variance.
-    pub dominant_share: f64,
-}
-
 /// The budget for a signal of `signal` N at given error rates, when the independent `sources`
 /// (standard deviations, N) are there already.
-///
-/// ```
-/// use palpate::detect::noise_budget::noise_budget;
-///
-/// // The paper's 340 mN at 5 %/5 % allow 103 mN in all: with 20 mN of the sensor, 101 mN more.
-/// let budget = noise_budget(0.340, 0.05, 0.05, &[0.020])?;
-/// assert!((budget.gamma - 3.29).abs() < 1e-3);
-/// assert!((budget.total_allowed - 0.1034).abs() < 1e-4);
-/// assert!((budget.remaining - 0.1014).abs() < 1e-4);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 ///
 /// # Errors
 /// Rates not strictly between 0 and 1, or that add up to 1 or more, where any noise will do; a
@@ -70,23 +48,15 @@ pub fn noise_budget(
     })
 }
 
-/// The sum of independent sources (standard deviations, N) and the one that dominates.
+/// (Σ s²)^½ of independent sources (standard deviations, N).
 ///
 /// # Errors
 /// No source; a source negative or not finite; all of them 0; overflow.
 ///
 /// Implements: DET-102.
-pub fn noise_total(sources: &[f64]) -> Result<NoiseTotal, DetectError> {
+pub fn noise_total(sources: &[f64]) -> Result<f64, DetectError> {
     check_samples("sources", sources, sources.len())?;
-    let total = check_positive("total", root_sum_square(sources)?)?;
-    let larger = |best: (usize, f64), next: (usize, f64)| if next.1 > best.1 { next } else { best };
-    let (dominant, largest) = sources.iter().copied().enumerate().fold((0, 0.0), larger);
-    let ratio = largest / total;
-    Ok(NoiseTotal {
-        total,
-        dominant,
-        dominant_share: ratio * ratio,
-    })
+    check_positive("total", root_sum_square(sources)?)
 }
 
 /// (Σ s²)^½ without overflow or underflow of squares.
