@@ -7,6 +7,7 @@ use crate::stats::error::{
     check_finite, check_length, check_positive, check_probability, check_samples,
 };
 use crate::stats::normal::lower_tail;
+use crate::stats::tails::halved;
 use core::ops::RangeInclusive;
 
 /// What bounds the false alarms of Θ_max over K shifts in a row: γ at each, and the angle between
@@ -24,7 +25,6 @@ use core::ops::RangeInclusive;
 /// assert_eq!(law.shifts(), 0..=3);
 /// let eta = law.threshold(0.05)?;
 /// assert!(law.false_alarm_bound(eta)? <= 0.05);
-/// assert!(law.union_bound(eta)? > law.false_alarm_bound(eta)?);
 /// # Ok::<(), palpate::detect::DetectError>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
@@ -101,19 +101,6 @@ impl<'a> MaximumLaw<'a> {
         Ok((bound * (1.0 + 1e-9)).min(1.0))
     }
 
-    /// The union bound Σ Pr(Θ(k) ≥ η | H = 0), which is simpler and larger.
-    ///
-    /// # Errors
-    /// η not finite.
-    ///
-    /// Implements: DET-056.
-    pub fn union_bound(&self, eta: f64) -> Result<f64, DetectError> {
-        check_finite("eta", eta)?;
-        let tails = self.gamma.iter().map(|&gamma| exceedance(gamma, eta).0);
-        let sum = tails.fold(0.0, |sum, tail| sum + tail);
-        Ok((sum * (1.0 + 1e-9)).min(1.0))
-    }
-
     /// A threshold η for Θ_max at which the false-alarm rate is certainly at most
     /// `max_false_alarm`: where the bound is, to about 10 digits of η.
     ///
@@ -128,17 +115,10 @@ impl<'a> MaximumLaw<'a> {
             return Err(DetectError::NoSignal);
         }
         // η/γ = 40 is beyond every tail; below −γ²/2 − 40γ the largest term alone is certain.
-        let (mut low, mut high) = (-0.5 * gamma * gamma - 40.0 * gamma, 40.0 * gamma);
+        let (low, high) = (-0.5 * gamma * gamma - 40.0 * gamma, 40.0 * gamma);
         check_finite("gamma squared", low)?;
-        for _ in 0..100 {
-            let middle = 0.5 * (low + high);
-            if self.false_alarm_bound(middle)? <= max_false_alarm {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
-        Ok(high)
+        let is_above = |eta| Ok(self.false_alarm_bound(eta)? > max_false_alarm);
+        Ok(halved(100, [low, high], is_above)?[1])
     }
 }
 

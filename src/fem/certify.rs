@@ -1,8 +1,11 @@
 //! How far the forces of a map are from those of an infinitely fine mesh: Roache's grid convergence index on
 //! three meshes (ASME V&V 20).
 
+use std::convert::Infallible;
+
 use super::{FemError, Model};
 use crate::force_map::{Discretization, ForceMap, Matrix};
+use crate::stats::tails::halved;
 
 /// Ratios of the sizes of the three meshes, middle over fine and coarse over middle.
 ///
@@ -67,20 +70,14 @@ pub(super) fn observed_order([fine, middle, coarse]: [f64; 3]) -> Option<f64> {
         let [r21, r32] = MESH_RATIOS.map(|ratio| libm::pow(ratio, p));
         r21 * (r32 - 1.0) / (r21 - 1.0)
     };
-    let (mut low, mut high) = (1e-3, 64.0);
+    let ends = [1e-3, 64.0];
     // Written so that a NaN is no order.
-    if !(ratio >= of_order(low) && ratio.is_finite()) {
+    if !(ratio >= of_order(ends[0]) && ratio.is_finite()) {
         return None;
     }
-    for _ in 0..60 {
-        let p = 0.5 * (low + high);
-        if of_order(p) < ratio {
-            low = p;
-        } else {
-            high = p;
-        }
-    }
-    Some(low)
+    let is_above = |p| Ok::<_, Infallible>(of_order(p) < ratio);
+    let Ok([order, _]) = halved(60, ends, is_above);
+    Some(order)
 }
 
 /// The band around the finest of three forces, finest first, N.

@@ -1,6 +1,9 @@
 //! Maxima and crossings of functions of one number, in a fixed number of steps.
 
+use std::convert::Infallible;
+
 use super::rates::OpenBounds;
+use crate::stats::tails::halved;
 
 /// Steps of the golden section: the bracket shrinks by 0.618²⁶ = 4·10⁻⁶, and the value, flat at the
 /// top, is right to the square of that.
@@ -53,15 +56,8 @@ pub fn golden(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> (f64, f64
 
 /// Where `holds` changes from true, at `from`, to false, at `to`, to 10⁻¹³ of their distance.
 pub fn change(holds: impl Fn(f64) -> bool, from: f64, to: f64) -> f64 {
-    let (mut yes, mut no) = (from, to);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (yes + no);
-        if holds(middle) {
-            yes = middle;
-        } else {
-            no = middle;
-        }
-    }
+    let holds = |at| Ok::<_, Infallible>(holds(at));
+    let Ok([yes, _]) = halved(HALVINGS, [from, to], holds);
     yes
 }
 

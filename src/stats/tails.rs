@@ -120,18 +120,24 @@ pub(super) fn crossing(
     while high < BEYOND && holds(high)? {
         (low, high) = (high, 2.0 * high);
     }
+    Ok(halved(halvings, [low, high], holds)?[1])
+}
+
+/// The ends of an interval after so many halvings, at most: a condition holds at the first, as far as it was asked there, and fails
+/// at the second.
+pub(crate) fn halved<E>(
+    halvings: u32,
+    [mut yes, mut no]: [f64; 2],
+    holds: impl Fn(f64) -> Result<bool, E>,
+) -> Result<[f64; 2], E> {
     for _ in 0..halvings {
-        let middle = 0.5 * (low + high);
-        if middle == low || middle == high {
+        let middle = 0.5 * (yes + no);
+        if middle == yes || middle == no {
             break;
         }
-        if holds(middle)? {
-            low = middle;
-        } else {
-            high = middle;
-        }
+        *(if holds(middle)? { &mut yes } else { &mut no }) = middle;
     }
-    Ok(high)
+    Ok([yes, no])
 }
 
 /// I_x(a, b) with y = 1 − x given beside x.
