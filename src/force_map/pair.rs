@@ -68,14 +68,6 @@ impl<'a> Hypotheses<'a> {
     pub fn with(&self) -> &'a ForceTable {
         self.with
     }
-
-    /// F₁ − F₀.
-    ///
-    /// # Errors
-    /// A difference that is not finite.
-    pub fn signal(&self) -> Result<ForceTable, Refusal> {
-        self.with.minus(self.without)
-    }
 }
 
 /// Checks that `with` is the gel of `without` with an inclusion.
