@@ -8,27 +8,6 @@ use crate::stats::random::Generator;
 use core::ops::{Range, RangeInclusive};
 
 /// Records F_p = F + noise, and what the matched filter for F_0 against F_1 says about them.
-///
-/// ```
-/// use palpate::force::Force;
-/// use palpate::detect::simulate::Simulation;
-/// use palpate::stats::random::Generator;
-///
-/// let f0 = Force { lateral: &[0.0; 3][..], normal: &[1.0; 3] };
-/// let f1 = Force { lateral: &[0.0; 3][..], normal: &[1.125, 1.25, 1.25] };
-/// let template = Force { lateral: &[0.0; 3][..], normal: &[0.125, 0.25, 0.25] };
-/// let noise_sd = Force { lateral: 0.125, normal: 0.125 };
-/// let simulation = Simulation::new(f0, template, noise_sd, Generator::new(1999, 0))?;
-/// assert_eq!(simulation.filter().gamma(), 3.0);
-/// let mut residual = [0.0; 6];
-/// let mut sum = 0.0;
-/// for trial in 0..1000 {
-///     sum += simulation.trial(trial, f1, &mut residual)?.theta;
-/// }
-/// // Θ ~ N(γ²/2, γ²) with an inclusion: four standard errors of the mean.
-/// assert!((sum / 1e3 - 4.5).abs() < 4.0 * 3.0 / 1000.0_f64.sqrt());
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Simulation<'a> {
     filter: MatchedFilter<'a>,

@@ -27,19 +27,6 @@ impl WeberNoise {
 /// Θ = Σ_c Σ_i ½[(F_p − F_0)²/v_0 − (F_p − F_1)²/v_1 + ln(v_0/v_1)] with v_h = floor² + (fraction
 /// F_h)².
 ///
-/// ```
-/// use palpate::force::Force;
-/// use palpate::detect::weber::{WeberNoise, theta_weber};
-///
-/// // One sample, at F_0: θ = ½[0 − (Δ/s_1)²] + ln(s_0/s_1), s = 1 at no force and 5 at 2 N.
-/// let channels = |y| Force { lateral: &[0.0][..], normal: y };
-/// let noise = WeberNoise { floor: 1.0, fraction: 6.0_f64.sqrt() };
-/// let noise = Force { lateral: noise, normal: noise };
-/// let theta = theta_weber(channels(&[0.0]), channels(&[0.0]), channels(&[2.0]), noise)?;
-/// assert!((theta - (-0.5 * 0.16 - 5.0_f64.ln())).abs() < 1e-14);
-/// # Ok::<(), palpate::detect::DetectError>(())
-/// ```
-///
 /// # Errors
 /// Empty or unequal lengths; NaN or infinity; floor ≤ 0 or fraction < 0; overflow.
 ///

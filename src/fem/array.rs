@@ -9,20 +9,6 @@ impl Model {
     /// The force on an edge at the surface is spread evenly over the edge's deformed length: the forces of its two contact
     /// points swing against each other, their sum does not. What lies beyond an end of the array counts to its last element.
     ///
-    /// ```
-    /// use palpate::fem::{Contact, Model, Pose};
-    /// use palpate::phantom::Phantom;
-    ///
-    /// let model = Model::new(&Phantom::builtin("6.6")?, 2e-3, Contact::default())?;
-    /// let solution = model.solve(Pose { depth: 1e-3, lateral: 0.0 })?;
-    /// let forces = model.array(&solution, 5);
-    /// // So shallow, the probe touches with the middle three fifths of its width.
-    /// assert!(forces[0] == 0.0 && forces[2] > forces[1] && forces[1] > 0.0);
-    /// // The forces point to the middle of the probe: together they are more than their vertical part.
-    /// assert!(forces.iter().sum::<f64>() > solution.force.normal);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
     /// Implements: FEM-083, FEM-084.
     pub fn array(&self, solution: &PoseSolution, elements: usize) -> Vec<f64> {
         let (pose, state) = (solution.pose, &solution.state);

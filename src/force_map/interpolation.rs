@@ -60,18 +60,6 @@ impl ForceTable {
     /// The force on the probe at a pose (m), N, by the bilinear form of its cell; outside the table, by that of the
     /// nearest border cell, continued.
     ///
-    /// ```
-    /// use palpate::force::Force;
-    /// use palpate::force_map::{ForceTable, Matrix};
-    ///
-    /// // Bilinear forces, d·x in units of the cell, inside and beyond it.
-    /// let matrix = || Matrix::from_fn(2, 2, |row, column| (row * column) as f64);
-    /// let table = ForceTable::new(vec![0.0, 0.5], vec![0.0, 0.5], Force::new(matrix(), matrix()))?;
-    /// assert_eq!(table.force(0.25, 0.25)?.normal, 0.25);
-    /// assert_eq!(table.force(1.0, 1.0)?.normal, 4.0);
-    /// # Ok::<(), palpate::refusal::Refusal>(())
-    /// ```
-    ///
     /// # Errors
     /// A pose that is not finite; an axis with a single entry; a force beyond the range of f64.
     ///
@@ -105,18 +93,6 @@ impl ForceTable {
     /// The forces on the probe at `depth` (m) and each of `positions` (m, in any order), N: linear in the depth
     /// between two rows, then linear in the position between two columns. A row within
     /// [`SAME_POSITION`] of the depth, and a column within it of a position, count to the bit.
-    ///
-    /// ```
-    /// use palpate::force::Force;
-    /// use palpate::force_map::{ForceTable, Matrix};
-    ///
-    /// // Half-way in depth and half-way in position: the mean of the four.
-    /// let matrix = || Matrix::new(2, vec![0.0, 1.0, 2.0, 5.0]).ok_or("two rows of two");
-    /// let table = ForceTable::new(vec![0.0, 0.002], vec![0.0, 0.004], Force::new(matrix()?, matrix()?))?;
-    /// assert_eq!(table.sweep(0.001, &[0.002])?.normal, [2.0]);
-    /// assert!(table.sweep(0.003, &[0.002]).is_err());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     ///
     /// # Errors
     /// A depth or position outside the table: nothing is extrapolated.

@@ -76,21 +76,6 @@ impl Window {
 impl ForceTable {
     /// This table with each force replaced by that of the parabola which fits the forces of its row within `half_width` (m) best.
     ///
-    /// ```
-    /// use palpate::force::Force;
-    /// use palpate::force_map::{ForceTable, Matrix};
-    ///
-    /// // Five points: (−3, 12, 17, 12, −3)/35 in the middle.
-    /// let normal = Matrix::from_fn(1, 5, |_, column| [0.0, 0.0, 35.0, 0.0, 0.0][column]);
-    /// let lateral = Matrix::from_fn(1, 5, |_, _| 0.0);
-    /// let laterals = vec![-0.002, -0.001, 0.0, 0.001, 0.002];
-    /// let table = ForceTable::new(vec![0.004], laterals, Force::new(lateral, normal))?;
-    /// let smoothed = table.smoothed(0.002)?;
-    /// assert!((smoothed.table.forces().normal.values()[2] - 17.0).abs() < 1e-12);
-    /// assert!((smoothed.degrees_of_freedom - 2.0).abs() < 1e-12);
-    /// # Ok::<(), palpate::refusal::Refusal>(())
-    /// ```
-    ///
     /// # Errors
     /// A half-width that is not above 0, or with fewer than four positions in a window; forces that are not finite.
     ///

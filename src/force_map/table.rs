@@ -24,18 +24,6 @@ pub const SYMMETRY_TOLERANCE: f64 = 1e-9;
 
 /// A dense matrix, row-major. Rows belong to depths, columns to lateral positions.
 ///
-/// ```
-/// use palpate::force_map::Matrix;
-///
-/// let matrix = Matrix::from_fn(2, 3, |row, column| (10 * row + column) as f64);
-/// assert_eq!((matrix.row_count(), matrix.column_count()), (2, 3));
-/// assert_eq!(matrix.row(1), [10.0, 11.0, 12.0]);
-/// assert_eq!(matrix.rows().map(|row| row[0]).collect::<Vec<_>>(), [0.0, 10.0]);
-/// assert_eq!(matrix.entries().last(), Some((1, 2, 12.0)));
-/// assert_eq!(Matrix::new(3, matrix.values().to_vec()), Some(matrix));
-/// assert_eq!(Matrix::new(3, vec![1.0, 2.0]), None);
-/// ```
-///
 /// Implements: MAP-001.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(try_from = "Vec<Vec<f64>>")]
@@ -170,30 +158,6 @@ impl TryFrom<Vec<Vec<f64>>> for Matrix {
 ///
 /// Both axes increase, every number is finite, and both matrices have one row for each depth and one
 /// column for each lateral position.
-///
-/// ```
-/// use palpate::force::Force;
-/// use palpate::force_map::{ForceTable, Matrix};
-///
-/// // N = 1000 d, and no lateral force.
-/// let depths = vec![0.001, 0.004];
-/// let forces = Force {
-///     lateral: Matrix::from_fn(2, 3, |_, _| 0.0),
-///     normal: Matrix::from_fn(2, 3, |row, _| 1000.0 * [0.001, 0.004][row]),
-/// };
-/// let table = ForceTable::new(depths, vec![0.0, 0.002, 0.004], forces)?;
-/// assert_eq!((table.depths().len(), table.laterals().len()), (2, 3));
-/// assert_eq!(table.forces().normal.row(1), [4.0; 3]);
-/// assert_eq!(table.forces().lateral.values(), [0.0; 6]);
-/// // Of a depth that is there; against itself there is no signal.
-/// assert_eq!(table.row(0.004)?.normal, [4.0; 3]);
-/// assert!(table.row(0.003).is_err());
-/// assert_eq!(table.minus(&table)?.forces().normal.values(), [0.0; 6]);
-/// assert_eq!(table.mirrored()?.laterals(), [-0.004, -0.002, 0.0, 0.002, 0.004]);
-/// // What is written can be read.
-/// assert_eq!(ForceTable::from_csv(&table.to_csv(), "table.csv")?, table);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceTable {
     depths: Vec<f64>,

@@ -41,17 +41,6 @@ pub mod status {
 }
 
 /// Input report 1: where the handle is.
-///
-/// ```
-/// use palpate::hid::{PositionReport, button};
-///
-/// let bytes = [1, 0x18, 0xFC, 0xFE, 0xFF, button::DEADMAN, 0, 7, 0, 6, 0];
-/// let report = PositionReport::decode(&bytes)?;
-/// assert_eq!((report.lateral, report.normal), (-1000, -2));
-/// assert_eq!((report.sequence, report.force_sequence), (7, 6));
-/// assert_eq!(report.encode(), bytes);
-/// # Ok::<(), palpate::hid::InvalidReport>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]

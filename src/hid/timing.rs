@@ -206,16 +206,6 @@ impl Times {
 /// Measures `cycles` cycles of the shipped loop on `device`, against `budget`; at the pace of `period`
 /// or as fast as they go.
 ///
-/// ```
-#[doc = include_str!("simulated/probing.example")]
-/// use palpate::hid::timing::measure;
-///
-/// // Nothing keeps a budget of 0.
-/// let timing = measure(device, table, limits, 1000, Duration::ZERO, None)?;
-/// assert_eq!((timing.cycles, timing.misses, timing.passed), (1000, 1000, false));
-/// # Ok::<(), palpate::refusal::Refusal>(())
-/// ```
-///
 /// # Errors
 /// Why the session did not begin, or ended before the cycles were through; fewer cycles than a p99.9 needs.
 ///

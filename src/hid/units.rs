@@ -120,13 +120,6 @@ impl Units {
 /// are the whole number in two's complement: no conversion from floating point is needed, whose
 /// edge cases checkers model differently.
 ///
-/// ```
-/// use palpate::hid::count;
-///
-/// assert_eq!([count(2.5), count(3.5), count(-0.6)], [2, 4, -1]);
-/// assert_eq!([count(1e9), count(f32::NAN)], [32767, 0]);
-/// ```
-///
 /// Implements: HID-011, SRV-061.
 #[inline]
 pub fn count(value: f32) -> i16 {

@@ -21,15 +21,6 @@ impl Probe {
 impl Phantom {
     /// Whether the probe may stand at `depth` and `lateral` (m): above the floor, clear of the walls.
     ///
-    /// ```
-    /// use palpate::phantom::Phantom;
-    ///
-    /// let phantom = Phantom::builtin("none")?;
-    /// assert!(phantom.check_pose(0.004, -0.010).is_ok());
-    /// assert!(phantom.check_pose(0.004, -0.012).is_err());
-    /// # Ok::<(), palpate::refusal::Refusal>(())
-    /// ```
-    ///
     /// # Errors
     /// The coordinate in mm, its value and what is allowed.
     ///

@@ -26,15 +26,6 @@ pub struct Trial {
 /// All pairs of a subject in random order: `trials` pairs for each of `inclusions`, each with the inclusion first or second as a
 /// fair coin has it.
 ///
-/// ```
-/// use palpate::psychophysics::plan;
-///
-/// // The paper's: 30 pairs for each of four inclusions. The same seed gives the same plan.
-/// let pairs = plan(42, 4, 30);
-/// assert_eq!(pairs.iter().filter(|pair| pair.inclusion == 3).count(), 30);
-/// assert_eq!(pairs, plan(42, 4, 30));
-/// ```
-///
 /// Implements: PSY-001, PSY-002.
 pub fn plan(seed: u64, inclusions: usize, trials: usize) -> Vec<Trial> {
     let generator = Generator::new(seed, STREAM);

@@ -33,17 +33,6 @@ impl OpenBounds {
 }
 
 /// A share of right answers.
-///
-/// ```
-/// use palpate::psychophysics::Rate;
-///
-/// let rate = Rate::new(252, 300)?;
-/// assert_eq!(rate.rate, 0.84);
-/// assert!(rate.gamma.gamma.is_some_and(|gamma| (gamma - 1.406).abs() < 1e-3));
-/// // No γ is large enough for an answer that is always right.
-/// assert_eq!(Rate::new(30, 30)?.gamma.gamma, None);
-/// # Ok::<(), palpate::refusal::Refusal>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Rate {
     /// Right answers.

@@ -66,17 +66,6 @@ pub struct Condition {
 /// Right answers of subjects to inclusions under conditions. Every count fits its trials, and there
 /// is at least one of each.
 ///
-/// ```
-/// use palpate::psychophysics::AnswerTable;
-///
-/// let table = AnswerTable::from_csv("subject,condition,trials,2.6,8.6\nA,gel,20,19,12\n", "mine.csv")?;
-/// assert_eq!(table.inclusions()[1].depth, 0.0086);
-/// assert_eq!(table.conditions()[0].pooled(1), (12, 20));
-/// let refused = AnswerTable::from_csv("subject,condition,trials,2.6\nA,gel,20,21\n", "mine.csv");
-/// assert!(refused.unwrap_err().to_string().starts_with("mine.csv:2: 2.6 = \"21\", expected a whole"));
-/// # Ok::<(), palpate::refusal::Refusal>(())
-/// ```
-///
 /// Implements: PSY-020, PSY-021.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnswerTable {

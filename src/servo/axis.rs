@@ -21,17 +21,6 @@ const FAR: f32 = 4.0;
 
 /// Knots along one coordinate, m, increasing but not necessarily uniform, with the reciprocals of
 /// the widths of their cells, 1/m. Knot i and knot i + 1 enclose cell i.
-///
-/// ```
-/// use palpate::servo::{Axis, Cell};
-///
-/// let knots = [0.0, 0.25, 0.75];
-/// let widths = [Axis::reciprocal_width(0.0, 0.25), Axis::reciprocal_width(0.25, 0.75)];
-/// let axis = Axis::new(&knots, &widths)?;
-/// assert_eq!(axis.knots(), knots);
-/// assert_eq!(axis.locate(0.5), Cell { index: 1, fraction: 0.5 });
-/// # Ok::<(), palpate::servo::InvalidAxis>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axis<'a> {
     knots: &'a [f32],

@@ -69,16 +69,6 @@ pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError>
 /// The exact interval of Clopper and Pearson: it covers the true proportion with at least the
 /// stated confidence.
 ///
-/// ```
-/// use palpate::stats::binomial::clopper_pearson;
-///
-/// // No miss in 10 trials: (1 − upper)^10 = 0.025.
-/// let interval = clopper_pearson(0, 10, 0.95)?;
-/// assert_eq!(interval.lower, 0.0);
-/// assert!((interval.upper - (1.0 - 0.025_f64.powf(0.1))).abs() < 1e-14);
-/// # Ok::<(), palpate::stats::NumericError>(())
-/// ```
-///
 /// # Errors
 /// No trials; more successes than trials; a confidence not strictly between 0 and 1.
 ///
