@@ -5,46 +5,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// What readers stumble over.
-const TOKENS: &[&[u8]] = &[
-    b"\0",
-    b"\r",
-    b"\n",
-    b"\r\n",
-    b"\xEF\xBB\xBF",
-    b"\xFF",
-    b"\x1B[2J",
-    b",",
-    b";",
-    b"\t",
-    b":",
-    b"\"",
-    b"[",
-    b"]",
-    b"{",
-    b"}",
-    b"=",
-    b"#",
-    b" ",
-    b"-",
-    b"-0",
-    b"0",
-    b"1",
-    b"9",
-    b".5",
-    b"1e999999999",
-    b"1e-999999999",
-    b"1e308",
-    b"5e-324",
-    b"nan",
-    b"inf",
-    b"null",
-    b"18446744073709551616",
-    b"\xC2\x85",
-    b"\xE2\x80\xA8",
-    b"0:1e5:1e-9",
-    b"999999999999",
-];
+/// What readers stumble over, with bars between.
+const TOKENS: &[u8] =
+    b"\0|\r|\n|\r\n|\xEF\xBB\xBF|\xFF|\x1B[2J|,|;|\t|:|\"|[|]|{|}|=|#| |-|-0|0|1|9|.5|\
+    1e999999999|1e-999999999|1e308|5e-324|nan|inf|null|18446744073709551616|\xC2\x85|\
+    \xE2\x80\xA8|0:1e5:1e-9|999999999999";
 
 /// The inputs that are kept for a target, by their names in its archive: its `corpus`, and the `crashes` that once broke it.
 ///
@@ -105,7 +70,8 @@ pub fn changed(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
                 bytes.splice(to..to, again);
             }
             4 => {
-                let token = TOKENS[random.below(TOKENS.len())];
+                let tokens: Vec<_> = TOKENS.split(|byte| *byte == b'|').collect();
+                let token = tokens[random.below(tokens.len())];
                 bytes.splice(from..from, token.iter().copied());
             }
             _ => {

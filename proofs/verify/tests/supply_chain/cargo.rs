@@ -52,21 +52,10 @@ pub fn tree(features: &'static str, edges: &'static str) -> Crates {
 }
 
 fn asked(features: &str, edges: &str) -> Crates {
-    let text = cargo(&[
-        "tree",
-        "--locked",
-        "--package=palpate",
-        "--target",
-        TARGET,
-        "--no-default-features",
-        "--features",
-        features,
-        "--edges",
-        edges,
-        "--no-dedupe",
-        "--prefix=depth",
-        "--format=|{p}|{l}",
-    ]);
+    let tree = "tree --locked --package=palpate --no-default-features --no-dedupe --prefix=depth --format=|{p}|{l}";
+    let of = ["--target", TARGET, "--features", features, "--edges", edges];
+    let words: Vec<&str> = tree.split(' ').chain(of).collect();
+    let text = cargo(&words);
     let mut found = Crates::new();
     let mut above: Vec<String> = Vec::new();
     for line in text.lines() {
@@ -93,13 +82,8 @@ fn asked(features: &str, edges: &str) -> Crates {
 
 /// Every package of the workspace on this platform, as cargo describes it.
 pub fn packages() -> Vec<serde_json::Value> {
-    let text = cargo(&[
-        "metadata",
-        "--locked",
-        "--format-version=1",
-        "--filter-platform",
-        TARGET,
-    ]);
+    let metadata = "metadata --locked --format-version=1 --filter-platform";
+    let text = cargo(&metadata.split(' ').chain([TARGET]).collect::<Vec<_>>());
     let metadata: serde_json::Value = serde_json::from_str(&text).unwrap();
     metadata["packages"].as_array().unwrap().clone()
 }

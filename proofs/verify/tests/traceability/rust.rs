@@ -74,17 +74,7 @@ fn indent(line: &str) -> usize {
     line.len() - line.trim_start().len()
 }
 
-const KINDS: [&str; 9] = [
-    "fn",
-    "struct",
-    "enum",
-    "trait",
-    "type",
-    "const",
-    "static",
-    "mod",
-    "macro_rules!",
-];
+const KINDS: &str = "fn struct enum trait type const static mod macro_rules!";
 
 /// Kind and name of what is declared on a line.
 fn declaration(line: &str) -> Option<(&'static str, String)> {
@@ -99,7 +89,7 @@ fn declaration(line: &str) -> Option<(&'static str, String)> {
         return Some(("impl", implementor(rest)?));
     }
     let (word, after) = rest.split_once(' ').unwrap_or((rest, ""));
-    if let Some(kind) = KINDS.into_iter().find(|kind| *kind == word) {
+    if let Some(kind) = KINDS.split(' ').find(|kind| *kind == word) {
         return Some((kind, identifier(after)?));
     }
     let name = identifier(rest)?;
