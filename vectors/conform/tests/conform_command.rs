@@ -25,14 +25,32 @@ fn folder(test: &str) -> PathBuf {
     path
 }
 
-fn conform(options: &[&str], program: &[&str]) -> Output {
+/// With the words of `options`, and in a folder with other vectors than the program's own.
+fn conform_at(folder: &Path, options: &str, program: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-conform"));
-    command.args(options).arg("--").args(program);
+    command.current_dir(folder).args(options.split_whitespace());
+    command.arg("--").args(program);
     command.output().expect("the program starts")
+}
+
+fn conform(options: &str, program: &[&str]) -> Output {
+    conform_at(Path::new("."), options, program)
+}
+
+/// The rows of a table, one a line.
+fn rows<const N: usize>(table: &str) -> impl Iterator<Item = [&str; N]> {
+    table.trim().lines().map(|row| {
+        let cells: Vec<&str> = row.trim().split(" | ").collect();
+        cells.try_into().expect("as many cells as columns")
+    })
 }
 
 fn stdout(output: &Output) -> &str {
     std::str::from_utf8(&output.stdout).expect("UTF-8")
+}
+
+fn json_of(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {output:?}"))
 }
 
 /// The one line of an error.
@@ -41,6 +59,8 @@ fn error(output: &Output) -> &str {
     assert_eq!(text.lines().count(), 1, "{text}");
     text.trim_end()
 }
+
+const CASES: [&str; 4] = ["choice-001", "choice-002", "choice-003", "choice-004"];
 
 /// A file of four cases: ½, Φ(1), a refusal, and a whole line to be refused.
 fn vectors() -> Value {
@@ -66,9 +86,11 @@ fn vectors() -> Value {
     })
 }
 
-fn write(folder: &Path, vectors: &Value) -> String {
+/// A folder for a test with these vectors.
+fn write(test: &str, vectors: &Value) -> PathBuf {
+    let folder = folder(test);
     fs::write(folder.join("choice.json"), vectors.to_string()).expect("written");
-    folder.display().to_string()
+    folder
 }
 
 /// A shell that answers each line by the oracle, but for what `special` cases do: patterns of `case`.
@@ -87,18 +109,10 @@ struct Found {
 }
 
 fn run(test: &str, script: &str, timeout: &str) -> Found {
-    let vectors = write(&folder(test), &vectors());
-    let options = [
-        "--vectors",
-        &vectors,
-        "--format",
-        "json",
-        "--timeout-s",
-        timeout,
-    ];
-    let output = conform(&options, &["sh", "-c", script]);
-    let verdict: Value =
-        serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {output:?}"));
+    let options = format!("--vectors . --format json --timeout-s {timeout}");
+    let folder = write(test, &vectors());
+    let output = conform_at(&folder, &options, &["sh", "-c", script]);
+    let verdict = json_of(&output);
     let text = |failure: &Value, key: &str| failure[key].as_str().unwrap().to_string();
     let failures = verdict["failures"].as_array().unwrap();
     let reasons = failures
@@ -117,18 +131,12 @@ impl Found {
     /// Asserts that just these cases failed, each for a reason with this word.
     #[track_caller]
     fn expect(&self, failures: &[(&str, &str)]) {
-        assert_eq!(
-            self.code,
-            Some(i32::from(!failures.is_empty())),
-            "{}",
-            self.verdict
-        );
+        let code = i32::from(!failures.is_empty());
+        assert_eq!(self.code, Some(code), "{}", self.verdict);
         assert_eq!(self.reasons.len(), failures.len(), "{:?}", self.reasons);
         for ((case, reason), (wanted, word)) in self.reasons.iter().zip(failures) {
-            assert!(
-                case == wanted && reason.contains(word),
-                "{case}: {reason}, not {wanted}: {word}"
-            );
+            let is_so = case == wanted && reason.contains(word);
+            assert!(is_so, "{case}: {reason}, not {wanted}: {word}");
         }
     }
 }
@@ -136,38 +144,23 @@ impl Found {
 // Verifies: ORA-040, ORA-048, ORA-049, VEC-011.
 #[test]
 fn our_oracle_passes_all_the_vectors_that_the_program_carries() {
-    let output = conform(&[], &[&palpate(), "oracle"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
-    assert!(output.stderr.is_empty());
+    let ours = &palpate();
+    let output = conform("", &[ours, "oracle"]);
     let text = stdout(&output);
-    assert!(
-        !text.contains("failed\n ") && !text.contains("likely"),
-        "{text}"
-    );
-    let carried = conform(&["--format", "json"], &[&palpate(), "oracle"]);
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    let read = conform(
-        &["--format", "json", "--vectors", folder],
-        &[&palpate(), "oracle"],
-    );
-    assert_eq!(
-        stdout(&carried),
-        stdout(&read),
-        "the vectors of the folder are those of the program"
-    );
-    let verdict: Value = serde_json::from_slice(&carried.stdout).unwrap();
-    let manifest: Value =
-        serde_json::from_str(&fs::read_to_string(format!("{folder}/manifest.json")).unwrap())
-            .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert!(output.stderr.is_empty());
+    let is_short = !text.contains("failed\n ") && !text.contains("likely");
+    assert!(is_short, "{text}");
+    let carried = conform("--format json", &[ours, "oracle"]);
+    let read = conform("--format json --vectors ..", &[ours, "oracle"]);
+    let same = "the vectors of the folder are those of the program";
+    assert_eq!(stdout(&carried), stdout(&read), "{same}");
+    let verdict = json_of(&carried);
+    let manifest = fs::read_to_string("../manifest.json").unwrap();
+    let manifest: Value = serde_json::from_str(&manifest).unwrap();
     assert_eq!(verdict["suite_sha256"], manifest["suite_sha256"]);
-    let total = |key: &str| -> u64 {
-        verdict["groups"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|group| group[key].as_u64().unwrap())
-            .sum()
-    };
+    let groups = verdict["groups"].as_array().unwrap();
+    let total = |key: &str| -> u64 { groups.iter().map(|of| of[key].as_u64().unwrap()).sum() };
     assert_eq!(total("cases"), manifest["cases"].as_u64().unwrap());
     assert_eq!(total("refused"), manifest["refused"].as_u64().unwrap());
     assert_eq!(total("passed") + total("refused"), total("cases"));
@@ -194,19 +187,13 @@ fn wrong_answers_name_their_bug() {
                 "cases": 1, "first_case": "choice-002"}])
     );
     // A wrong answer that is no known bug's names none.
-    let found = run(
-        "odd",
-        &shell("*choice-002*) echo '{\"id\":\"choice-002\",\"ok\":{\"p_correct\":0.5}}';;"),
-        "20",
-    );
+    let answer = r#"echo '{"id":"choice-002","ok":{"p_correct":0.5}}';;"#;
+    let found = run("odd", &shell(&format!("*choice-002*) {answer}")), "20");
     found.expect(&[("choice-002", "p_correct is 0.5")]);
     assert_eq!(found.verdict["likely_bugs"], json!([]));
     // What is not refused names the flags of the case.
-    let found = run(
-        "accepts",
-        &shell("*choice-003*) echo '{\"id\":\"choice-003\",\"ok\":{\"p_correct\":0.2}}';;"),
-        "20",
-    );
+    let answer = r#"echo '{"id":"choice-003","ok":{"p_correct":0.2}}';;"#;
+    let found = run("accepts", &shell(&format!("*choice-003*) {answer}")), "20");
     found.expect(&[("choice-003", "must be refused")]);
     assert_eq!(found.verdict["likely_bugs"][0]["flag"], "negative");
 }
@@ -226,69 +213,27 @@ fn an_error_without_a_code_is_no_refusal() {
 // Verifies: ORA-043, ORA-046.
 #[test]
 fn answers_that_are_none_are_failures_of_their_case() {
-    for (test, answer, word) in [
-        ("empty", "echo", "no JSON"),
-        ("text", "echo hello", "no JSON: hello"),
-        (
-            "nan",
-            r#"echo '{"id":"choice-002","ok":{"p_correct":NaN}}'"#,
-            "no JSON",
-        ),
-        ("list", "echo '[]'", "id null"),
-        (
-            "no-id",
-            r#"echo '{"ok":{"p_correct":0.8413447460685429}}'"#,
-            "id null",
-        ),
-        (
-            "other-id",
-            r#"echo '{"id":2,"ok":{"p_correct":0.8413447460685429}}'"#,
-            "id 2",
-        ),
-        (
-            "neither",
-            r#"echo '{"id":"choice-002"}'"#,
-            "either ok or error",
-        ),
-        (
-            "both",
-            r#"echo '{"id":"choice-002","ok":{},"error":{}}'"#,
-            "either ok or error",
-        ),
-        (
-            "no-key",
-            r#"echo '{"id":"choice-002","ok":{"p":1}}'"#,
-            "p_correct is missing",
-        ),
-        (
-            "a-text",
-            r#"echo '{"id":"choice-002","ok":{"p_correct":"0.84"}}'"#,
-            "expected 0.8413447460685429",
-        ),
-        (
-            "a-list",
-            r#"echo '{"id":"choice-002","ok":{"p_correct":[0.8413447460685429]}}'"#,
-            "expected 0.8413447460685429",
-        ),
-        (
-            "refusal",
-            r#"echo '{"id":"choice-002","error":{"code":"x"}}'"#,
-            "refused",
-        ),
-        (
-            "no-error",
-            r#"echo '{"id":"choice-002","error":null}'"#,
-            "error is null",
-        ),
-        ("nothing", ":", "no answer: the next one was for choice-003"),
-        ("utf8", r"printf '\377\n'", "no JSON"),
-    ] {
-        let found = run(
-            &format!("none-{test}"),
-            &shell(&format!("*choice-002*) {answer};;")),
-            "20",
-        );
-        found.expect(&[("choice-002", word)]);
+    for [test, answer, word] in rows(
+        r#"
+        empty | echo | no JSON
+        text | echo hello | no JSON: hello
+        nan | echo '{"id":"choice-002","ok":{"p_correct":NaN}}' | no JSON
+        list | echo '[]' | id null
+        no-id | echo '{"ok":{"p_correct":0.8413447460685429}}' | id null
+        other-id | echo '{"id":2,"ok":{"p_correct":0.8413447460685429}}' | id 2
+        neither | echo '{"id":"choice-002"}' | either ok or error
+        both | echo '{"id":"choice-002","ok":{},"error":{}}' | either ok or error
+        no-key | echo '{"id":"choice-002","ok":{"p":1}}' | p_correct is missing
+        a-text | echo '{"id":"choice-002","ok":{"p_correct":"0.84"}}' | expected 0.8413447460685429
+        a-list | echo '{"id":"choice-002","ok":{"p_correct":[0.8413447460685429]}}' | expected 0.8413447460685429
+        refusal | echo '{"id":"choice-002","error":{"code":"x"}}' | refused
+        no-error | echo '{"id":"choice-002","error":null}' | error is null
+        nothing | : | no answer: the next one was for choice-003
+        utf8 | printf '\377\n' | no JSON
+        "#,
+    ) {
+        let script = shell(&format!("*choice-002*) {answer};;"));
+        run(&format!("none-{test}"), &script, "20").expect(&[("choice-002", word)]);
     }
     // A remark before the answer takes the answer's place; the answer itself then comes too late.
     let remark = shell("*choice-002*) echo remark; echo '{\"id\":\"choice-002\",\"ok\":{}}';;");
@@ -304,16 +249,12 @@ fn a_crash_is_blamed_on_its_case_and_the_others_are_asked() {
         "all=''; while IFS= read -r line; do case \"$line\" in *capabilities*) printf '%s\\n' \"$line\" | '{palpate}' oracle;;\n\
          *choice-002*) sleep 0.1; echo 'division by zero' >&2; exit 7;; *) printf '%s\\n' \"$line\" | '{palpate}' oracle;; esac; done"
     );
-    run("crash", &script, "20").expect(&[(
-        "choice-002",
-        "exit status: 7; standard error: division by zero",
-    )]);
+    let word = "exit status: 7; standard error: division by zero";
+    run("crash", &script, "20").expect(&[("choice-002", word)]);
     // A program that dies of everything but the first question.
     let script = format!("read -r line; printf '%s\\n' \"$line\" | '{palpate}' oracle");
     let found = run("dies", &script, "20");
-    let word = "ended without an answer";
-    found
-        .expect(&["choice-001", "choice-002", "choice-003", "choice-004"].map(|case| (case, word)));
+    found.expect(&CASES.map(|case| (case, "ended without an answer")));
 }
 
 // Verifies: ORA-044, ORA-045.
@@ -333,47 +274,34 @@ fn silence_is_blamed_on_its_case_and_the_others_are_asked() {
         })
         .collect();
     many["flags"] = json!({});
-    let vectors = write(&folder("silent"), &many);
-    let script = shell("*choice*) exec sleep 60;;");
-    let output = conform(
-        &["--vectors", &vectors, "--timeout-s", "0.5"],
-        &["sh", "-c", &script],
-    );
+    let (folder, script) = (write("silent", &many), shell("*choice*) exec sleep 60;;"));
+    let options = "--vectors . --timeout-s 0.5";
+    let output = conform_at(&folder, options, &["sh", "-c", &script]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(
-        error(&output).contains("9 of 9 cases failed"),
-        "{}",
-        error(&output)
-    );
-    assert!(
-        stdout(&output).contains("silent 6 times"),
-        "{}",
-        stdout(&output)
-    );
+    let (error, text) = (error(&output), stdout(&output));
+    assert!(error.contains("9 of 9 cases failed"), "{error}");
+    assert!(text.contains("silent 6 times"), "{text}");
 }
 
 // Verifies: ORA-042, ORA-049.
 #[test]
 fn a_program_that_does_not_answer_capabilities_is_refused() {
-    for (script, word) in [
-        ("exit 4", "exit status: 4"),
-        ("exec sleep 5", "no answer within 0.3 s"),
-        ("yes garbage", "answered \"garbage\""),
-        ("yes '{\"id\":\"capabilities\",\"ok\":{}}'", "answered"),
-        (
-            "echo '{\"id\":1,\"ok\":{\"version\":\"1\",\"ops\":[]}}'",
-            "answered",
-        ),
-        ("cat", "answered"),
-        ("cat </dev/zero", "the program"),
-    ] {
-        let output = conform(&["--timeout-s", "0.3"], &["sh", "-c", script]);
+    for [script, word] in rows(
+        r#"
+        exit 4 | exit status: 4
+        exec sleep 5 | no answer within 0.3 s
+        yes garbage | answered "garbage"
+        yes '{"id":"capabilities","ok":{}}' | answered
+        echo '{"id":1,"ok":{"version":"1","ops":[]}}' | answered
+        cat | answered
+        cat </dev/zero | the program
+        "#,
+    ) {
+        let output = conform("--timeout-s 0.3", &["sh", "-c", script]);
         assert_eq!(output.status.code(), Some(1), "{script}");
         let error = error(&output);
-        assert!(
-            error.contains(word) && error.contains("expected a line like"),
-            "{script}: {error}"
-        );
+        let is_told = error.contains(word) && error.contains("expected a line like");
+        assert!(is_told, "{script}: {error}");
         assert!(output.stdout.is_empty());
     }
 }
@@ -382,17 +310,13 @@ fn a_program_that_does_not_answer_capabilities_is_refused() {
 #[test]
 fn a_flood_ends() {
     let claims = r#"echo '{"id":"capabilities","ok":{"version":"1","ops":["two_afc"]}}'"#;
-    let every = ["choice-001", "choice-002", "choice-003", "choice-004"];
-    run("garbage", &format!("{claims}; exec yes garbage"), "20")
-        .expect(&every.map(|case| (case, "no JSON: garbage")));
+    let script = format!("{claims}; exec yes garbage");
+    run("garbage", &script, "20").expect(&CASES.map(|case| (case, "no JSON: garbage")));
     // Answers without end to what is judged already are no sign of life.
     let script =
         format!("{claims}; exec yes '{{\"id\":\"choice-001\",\"ok\":{{\"p_correct\":0.5}}}}'");
-    run("repeats", &script, "0.3").expect(&[
-        ("choice-002", "no answer within"),
-        ("choice-003", "no answer within"),
-        ("choice-004", "no answer within"),
-    ]);
+    let silent = [1, 2, 3].map(|case| (CASES[case], "no answer within"));
+    run("repeats", &script, "0.3").expect(&silent);
 }
 
 // Verifies: ORA-048, ORA-049.
@@ -408,182 +332,79 @@ fn what_is_not_claimed_is_skipped_and_nothing_is_no_verdict() {
     assert_eq!(found.verdict["groups"][0]["skipped"], 4);
     assert_eq!(found.verdict["passed"], false);
     let claim = claims("\"three_afc\"");
-    let output = conform(&["--timeout-s", "0.2"], &["sh", "-c", &claim]);
+    let output = conform("--timeout-s 0.2", &["sh", "-c", &claim]);
     // The lines that everybody must refuse are asked, and not answered here.
     assert_eq!(output.status.code(), Some(1));
-    let vectors = write(&folder("claims-other"), &vectors());
-    let output = conform(
-        &["--vectors", &vectors],
-        &["sh", "-c", &claims("\"three_afc\"")],
-    );
-    assert!(
-        error(&output).contains("nothing checked"),
-        "{}",
-        error(&output)
-    );
-    assert!(error(&output).contains("two_afc"));
+    let folder = write("claims-other", &vectors());
+    let output = conform_at(&folder, "--vectors .", &["sh", "-c", &claim]);
+    let error = error(&output);
+    let is_told = error.contains("nothing checked") && error.contains("two_afc");
+    assert!(is_told, "{error}");
 }
 
 // Verifies: ORA-040, ORA-049.
 #[test]
 fn wrong_command_lines_are_refused() {
-    let vectors = write(&folder("usage"), &vectors());
-    let nowhere = folder("empty").display().to_string();
-    for (options, program, word) in [
-        (&["--only", "choices"][..], &["true"][..], "\"choices\""),
-        (
-            &["--vectors", "/no/such/folder"],
-            &["true"],
-            "/no/such/folder",
-        ),
-        (&["--vectors", &nowhere], &["true"], "no vectors"),
-        (&["--timeout-s", "0"], &["true"], "0.01 to 86400"),
-        (&["--timeout-s", "nan"], &["true"], "0.01 to 86400"),
-        (
-            &["--vectors", &vectors],
-            &["/no/such/program"],
-            "cannot start /no/such/program",
-        ),
-        (&["--vectors", &vectors], &[], "CMD"),
-    ] {
-        let output = conform(options, program);
-        assert_eq!(output.status.code(), Some(2), "{options:?} {output:?}");
-        assert!(
-            error(&output).contains(word),
-            "{options:?}: {}",
-            error(&output)
-        );
+    let folder = write("usage", &vectors());
+    fs::create_dir(folder.join("empty")).expect("a folder");
+    for [options, program, word] in rows(
+        r#"
+        --only choices | true | "choices"
+        --vectors /no/such/folder | true | /no/such/folder
+        --vectors empty | true | no vectors
+        --timeout-s 0 | true | 0.01 to 86400
+        --timeout-s nan | true | 0.01 to 86400
+        --vectors . | /no/such/program | cannot start /no/such/program
+        --vectors . |  | CMD
+        "#,
+    ) {
+        let program: Vec<&str> = program.split_whitespace().collect();
+        let output = conform_at(&folder, options, &program);
+        assert_eq!(output.status.code(), Some(2), "{options} {output:?}");
+        let error = error(&output);
+        assert!(error.contains(word), "{options}: {error}");
     }
 }
 
 // Verifies: ORA-041, VEC-001, VEC-002, VEC-003, VEC-004, VEC-005, VEC-006.
 #[test]
 fn files_that_are_not_valid_are_refused_with_file_and_case() {
-    let set = |path: &str, value: Value| {
+    // What becomes the value at a place, which is there unless it is the last key, and words of the refusal.
+    for [place, value, words] in rows(
+        r#"
+        /schema | "other" | palpate-vectors
+        /schema_version | 2 | version 2, version 1
+        /extra | 1 | extra
+        /cases/1/extra | 1 | case choice-002, extra
+        /cases/1/line | "x" | case choice-002, either args or line
+        /cases/1/args | [] | case choice-002, args must be an object
+        /cases/3/line | "a\nb" | case choice-004, one line
+        /cases/1/error | "bad_json" | case choice-002, either ok or error
+        /cases/2/error | "wrong" | case choice-003, bad_argument
+        /cases/1/id | "choice-001" | choice-001, twice
+        /cases/1/flags | ["other"] | case choice-002, other
+        /flags/unused | {"bug": "a", "notes": ""} | unused
+        /cases/1/bits/p_correct | "0x3feaec4bd120d37e" | case choice-002, bits, p_correct
+        /cases/1/bits | {} | case choice-002, bits
+        /tolerance | {} | case choice-001, no tolerance
+        /tolerance/p_correct | {"ulp": 1, "relative": 1, "reason": "a"} | one of ulp
+        /tolerance/p_correct | {"ulp": 1, "reason": " "} | reason
+        /tolerance/p_correct | {"absolute": 1, "reason": "a"} | unit
+        /tolerance/p_correct | {"ulp": -1, "reason": "a"} | -1
+        /cases/1/wrong/0/ok/p_correct | 0.8413447460685439 | case choice-002, ten times
+        /cases/1/wrong/0/flag | "negative" | case choice-002, negative
+        /cases | [] | no cases
+        "#,
+    ) {
+        let (object, key) = place.rsplit_once('/').expect("a place");
         let mut vectors = vectors();
-        *vectors.pointer_mut(path).expect(path) = value;
-        vectors
-    };
-    let add = |path: &str, key: &str, value: Value| {
-        let mut vectors = vectors();
-        vectors.pointer_mut(path).expect(path)[key] = value;
-        vectors
-    };
-    let case = "case choice-002";
-    let cases: &[(&str, Value, &[&str])] = &[
-        (
-            "schema",
-            set("/schema", json!("other")),
-            &["palpate-vectors"],
-        ),
-        (
-            "version",
-            set("/schema_version", json!(2)),
-            &["version 2", "version 1"],
-        ),
-        ("key", add("", "extra", json!(1)), &["extra"]),
-        (
-            "case-key",
-            add("/cases/1", "extra", json!(1)),
-            &[case, "extra"],
-        ),
-        (
-            "args-and-line",
-            add("/cases/1", "line", json!("x")),
-            &[case, "either args or line"],
-        ),
-        (
-            "args-list",
-            set("/cases/1/args", json!([])),
-            &[case, "args must be an object"],
-        ),
-        (
-            "two-lines",
-            set("/cases/3/line", json!("a\nb")),
-            &["case choice-004", "one line"],
-        ),
-        (
-            "ok-and-error",
-            add("/cases/1", "error", json!("bad_json")),
-            &[case, "either ok or error"],
-        ),
-        (
-            "code",
-            set("/cases/2/error", json!("wrong")),
-            &["case choice-003", "bad_argument"],
-        ),
-        (
-            "same-id",
-            set("/cases/1/id", json!("choice-001")),
-            &["choice-001", "twice"],
-        ),
-        (
-            "no-flag",
-            set("/cases/1/flags", json!(["other"])),
-            &[case, "other"],
-        ),
-        (
-            "unused",
-            add("/flags", "unused", json!({"bug": "a", "notes": ""})),
-            &["unused"],
-        ),
-        (
-            "bits",
-            set("/cases/1/bits/p_correct", json!("0x3feaec4bd120d37e")),
-            &[case, "bits", "p_correct"],
-        ),
-        ("no-bits", set("/cases/1/bits", json!({})), &[case, "bits"]),
-        (
-            "no-tolerance",
-            set("/tolerance", json!({})),
-            &["case choice-001", "no tolerance"],
-        ),
-        (
-            "two-tolerances",
-            set(
-                "/tolerance/p_correct",
-                json!({"ulp": 1, "relative": 1, "reason": "a"}),
-            ),
-            &["one of ulp"],
-        ),
-        (
-            "no-reason",
-            set("/tolerance/p_correct", json!({"ulp": 1, "reason": " "})),
-            &["reason"],
-        ),
-        (
-            "no-unit",
-            set(
-                "/tolerance/p_correct",
-                json!({"absolute": 1, "reason": "a"}),
-            ),
-            &["unit"],
-        ),
-        (
-            "negative",
-            set("/tolerance/p_correct", json!({"ulp": -1, "reason": "a"})),
-            &["-1"],
-        ),
-        (
-            "near",
-            set("/cases/1/wrong/0/ok/p_correct", json!(0.8413447460685439)),
-            &[case, "ten times"],
-        ),
-        (
-            "wrong-flag",
-            set("/cases/1/wrong/0/flag", json!("negative")),
-            &[case, "negative"],
-        ),
-        ("no-cases", set("/cases", json!([])), &["no cases"]),
-    ];
-    for (name, vectors, words) in cases {
-        let folder = write(&folder(&format!("invalid-{name}")), vectors);
-        let output = conform(&["--vectors", &folder], &[&palpate(), "oracle"]);
-        assert_eq!(output.status.code(), Some(2), "{name}: {output:?}");
+        vectors.pointer_mut(object).expect(place)[key] = serde_json::from_str(value).expect(value);
+        let folder = write(&format!("invalid{}", place.replace('/', "-")), &vectors);
+        let output = conform_at(&folder, "--vectors .", &[&palpate(), "oracle"]);
+        assert_eq!(output.status.code(), Some(2), "{place}: {output:?}");
         let error = error(&output);
-        assert!(error.contains("choice.json"), "{name}: {error}");
-        for word in *words {
-            assert!(error.contains(word), "{name}: {error} lacks {word}");
+        for word in ["choice.json"].into_iter().chain(words.split(", ")) {
+            assert!(error.contains(word), "{place}: {error} lacks {word}");
         }
     }
 }
@@ -591,27 +412,19 @@ fn files_that_are_not_valid_are_refused_with_file_and_case() {
 // Verifies: ORA-041, VEC-007.
 #[test]
 fn files_that_are_not_those_of_the_manifest_are_refused() {
-    let here = folder("manifest");
-    let vectors = write(&here, &vectors());
+    let here = write("manifest", &vectors());
     let manifest = |file: &str, sum: &str, suite: &str| {
         let text = json!({"suite_sha256": suite, "files": [{"name": file, "sha256": sum}]});
         fs::write(here.join("manifest.json"), text.to_string()).unwrap();
-        let output = conform(&["--vectors", &vectors], &[&palpate(), "oracle"]);
+        let output = conform_at(&here, "--vectors .", &[&palpate(), "oracle"]);
         assert_eq!(output.status.code(), Some(2));
         error(&output).to_string()
     };
     let wrong = manifest("choice.json", "00", "00");
-    assert!(
-        wrong.contains("choice.json") && wrong.contains("expected 00"),
-        "{wrong}"
-    );
-    let sum = wrong
-        .split("SHA-256 ")
-        .nth(1)
-        .unwrap()
-        .split(',')
-        .next()
-        .unwrap();
+    let is_told = wrong.contains("choice.json") && wrong.contains("expected 00");
+    assert!(is_told, "{wrong}");
+    let sum = wrong.split("SHA-256 ").nth(1).unwrap();
+    let sum = sum.split(',').next().unwrap();
     assert!(manifest("choice.json", sum, "00").contains("suite_sha256 is 00"));
     assert!(manifest("other.json", sum, "00").contains("choice.json: is not in manifest.json"));
 }
@@ -619,12 +432,13 @@ fn files_that_are_not_those_of_the_manifest_are_refused() {
 // Verifies: ORA-050, ORA-051.
 #[test]
 fn the_verdict_for_ci_holds_every_case_and_is_the_same_each_time() {
-    let vectors = write(&folder("junit"), &vectors());
-    let script =
-        shell("*choice-003*) echo '{\"id\":\"choice-003\",\"ok\":{\"p_correct\":\"<&>\"}}';;");
+    let folder = write("junit", &vectors());
+    let answer = r#"echo '{"id":"choice-003","ok":{"p_correct":"<&>"}}';;"#;
+    let script = shell(&format!("*choice-003*) {answer}"));
     let run = || {
-        conform(
-            &["--vectors", &vectors, "--format", "junit"],
+        conform_at(
+            &folder,
+            "--vectors . --format junit",
             &["sh", "-c", &script],
         )
     };
@@ -632,12 +446,8 @@ fn the_verdict_for_ci_holds_every_case_and_is_the_same_each_time() {
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(1));
     assert!(text.starts_with("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites "));
-    assert!(
-        text.contains(
-            "<testsuite name=\"choice\" tests=\"4\" failures=\"1\" errors=\"0\" skipped=\"0\">"
-        ),
-        "{text}"
-    );
+    let suite = r#"<testsuite name="choice" tests="4" failures="1" errors="0" skipped="0">"#;
+    assert!(text.contains(suite), "{text}");
     assert_eq!(text.matches("<testcase ").count(), 4);
     assert_eq!(text.matches("<failure ").count(), 1);
     assert!(text.contains("name=\"choice-003: below 0 &lt;&amp;&gt;\"><failure message=\"answered {&quot;p_correct&quot;:&quot;&lt;&amp;&gt;&quot;}"), "{text}");
@@ -658,15 +468,14 @@ const TOYS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/toys");
 #[test]
 fn another_implementation_passes() {
     let Some(python) = python() else { return };
-    let output = conform(&[], &[&python, "-B", &format!("{TOYS}/right.py")]);
+    let output = conform("", &[&python, "-B", &format!("{TOYS}/right.py")]);
     assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
 }
 
 /// The groups with a case that can show a bug.
 fn groups_with(flag: &str) -> Vec<String> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
     let mut groups = Vec::new();
-    for entry in fs::read_dir(folder).expect("the vectors") {
+    for entry in fs::read_dir("..").expect("the vectors") {
         let path = entry.expect("a file").path();
         if path.extension().is_none_or(|extension| extension != "json") {
             continue;
@@ -684,32 +493,24 @@ fn groups_with(flag: &str) -> Vec<String> {
 fn the_bug_of_another_implementation_is_named() {
     let Some(python) = python() else { return };
     let wrong = format!("{TOYS}/wrong.py");
-    let list = Command::new(&python)
-        .args(["-B", &wrong])
-        .output()
-        .expect("Python starts");
+    let list = Command::new(&python).args(["-B", &wrong]).output();
+    let list = list.expect("Python starts");
     let said = String::from_utf8_lossy(&[list.stdout, list.stderr].concat()).into_owned();
-    let bugs: Vec<&str> = said
-        .split(": ")
-        .nth(1)
-        .expect("a list of bugs")
-        .split_whitespace()
-        .collect();
+    let bugs = said.split(": ").nth(1).expect("a list of bugs");
+    let bugs: Vec<&str> = bugs.split_whitespace().collect();
     assert!(bugs.len() >= 20, "{said}");
     for bug in bugs {
         let groups = groups_with(bug);
         assert!(!groups.is_empty(), "no case shows {bug}");
-        let mut options = vec!["--format", "json"];
-        options.extend(groups.iter().flat_map(|group| ["--only", group]));
+        let options = format!("--format json --only {}", groups.join(" --only "));
         let output = conform(&options, &[&python, "-B", &wrong, bug]);
         assert_eq!(output.status.code(), Some(1), "{bug} passes");
-        let verdict: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-        let named = verdict["likely_bugs"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .any(|likely| likely["flag"] == bug);
-        assert!(named, "{bug} is not named: {}", verdict["likely_bugs"]);
+        let likely = &json_of(&output)["likely_bugs"];
+        let mut flags = likely.as_array().unwrap().iter().map(|of| &of["flag"]);
+        assert!(
+            flags.any(|flag| flag == bug),
+            "{bug} is not named: {likely}"
+        );
     }
 }
 
@@ -717,48 +518,21 @@ fn the_bug_of_another_implementation_is_named() {
 #[test]
 fn bugs_of_laws_and_nuisances_are_named() {
     let palpate = palpate();
-    for (flag, group, change) in [
-        (
-            "noncentrality_ignored",
-            "f_tail",
-            r#"s/"noncentrality": [^,}]*/"noncentrality": 0/"#,
-        ),
-        (
-            "noncentrality_sign",
-            "student_tail",
-            r#"s/"noncentrality": -/"noncentrality": /"#,
-        ),
-        (
-            "nuisances_ignored",
-            "theta_nuisances",
-            r#"s/"nuisances": .*, "level"/"nuisances": [], "level"/"#,
-        ),
-        (
-            "level_ignored",
-            "theta_nuisances",
-            r#"s/"unknown"/"known"/"#,
-        ),
-        (
-            "bias_ignored",
-            "theta_nuisances",
-            r#"s/"bias": [^,}]*/"bias": 0/"#,
-        ),
-        (
-            "prior_ignored",
-            "bank_posterior",
-            r#"s/"prior": \[[^],]*, [^],]*\]/"prior": [0.5, 0.5]/"#,
-        ),
-        ("level_ignored", "bank_posterior", r#"s/"unknown"/"known"/"#),
-        (
-            "nuisances_ignored",
-            "bank_posterior",
-            r#"s/"nuisances": .*, "level"/"nuisances": [], "level"/"#,
-        ),
-    ] {
+    for [flag, group, change] in rows(
+        r#"
+        noncentrality_ignored | f_tail | s/"noncentrality": [^,}]*/"noncentrality": 0/
+        noncentrality_sign | student_tail | s/"noncentrality": -/"noncentrality": /
+        nuisances_ignored | theta_nuisances | s/"nuisances": .*, "level"/"nuisances": [], "level"/
+        level_ignored | theta_nuisances | s/"unknown"/"known"/
+        bias_ignored | theta_nuisances | s/"bias": [^,}]*/"bias": 0/
+        prior_ignored | bank_posterior | s/"prior": \[[^],]*, [^],]*\]/"prior": [0.5, 0.5]/
+        level_ignored | bank_posterior | s/"unknown"/"known"/
+        nuisances_ignored | bank_posterior | s/"nuisances": .*, "level"/"nuisances": [], "level"/
+        "#,
+    ) {
         let program = format!("sed -u '{change}' | '{palpate}' oracle");
-        let options = ["--format", "json", "--only", group];
-        let output = conform(&options, &["sh", "-c", &program]);
-        let verdict: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let options = format!("--format json --only {group}");
+        let verdict = json_of(&conform(&options, &["sh", "-c", &program]));
         let likely = &verdict["likely_bugs"];
         assert_eq!(likely[0]["flag"], flag, "{likely}");
     }
