@@ -71,12 +71,18 @@ fn is_valid(shapes: &[(f64, f64, Shape)]) -> bool {
     with_shapes(shapes).validate().is_ok()
 }
 
+fn refusal(phantom: &Phantom) -> String {
+    phantom.validate().unwrap_err().to_string()
+}
+
 fn shape_refusal(shapes: &[(f64, f64, Shape)]) -> String {
     refusal(&with_shapes(shapes))
 }
 
-fn refusal(phantom: &Phantom) -> String {
-    phantom.validate().unwrap_err().to_string()
+/// Asserts the refusal of some shapes, the key of an inclusion left out.
+#[track_caller]
+fn refuses(shapes: &[(f64, f64, Shape)], expected: &str) {
+    assert_eq!(shape_refusal(shapes), format!("inclusion{expected}"));
 }
 
 // Verifies: PHA-001, PHA-002, CON-001.
@@ -126,79 +132,58 @@ fn other_names_are_refused_with_the_list() {
     );
 }
 
-/// Every number of the paper's phantom, with its key in the file.
-fn numbers(phantom: &mut Phantom) -> Vec<(&'static str, &mut f64)> {
-    let [skin, gel] = &mut phantom.layers[..] else {
-        panic!()
-    };
-    let inclusion = &mut phantom.inclusions[0];
-    let Shape::Disc { diameter } = &mut inclusion.shape else {
-        panic!()
-    };
-    vec![
-        ("well.width_mm", &mut phantom.well.width),
-        ("layer[0].thickness_mm", &mut skin.thickness),
-        (
-            "layer[0].youngs_modulus_kpa",
-            &mut skin.material.youngs_modulus,
-        ),
-        ("layer[0].poisson_ratio", &mut skin.material.poisson_ratio),
-        ("layer[1].thickness_mm", &mut gel.thickness),
-        (
-            "layer[1].youngs_modulus_kpa",
-            &mut gel.material.youngs_modulus,
-        ),
-        ("layer[1].poisson_ratio", &mut gel.material.poisson_ratio),
-        ("inclusion[0].centre_x_mm", &mut inclusion.centre_x),
-        ("inclusion[0].diameter_mm", diameter),
-        ("inclusion[0].depth_mm", &mut inclusion.depth),
-        (
-            "inclusion[0].youngs_modulus_kpa",
-            &mut inclusion.material.youngs_modulus,
-        ),
-        (
-            "inclusion[0].poisson_ratio",
-            &mut inclusion.material.poisson_ratio,
-        ),
-        ("probe.radius_mm", &mut phantom.probe.radius),
-        ("probe.length_mm", &mut phantom.probe.length),
-    ]
-}
+type Number = fn(&mut Phantom) -> &mut f64;
 
-/// The refusal of the paper's phantom with number `index` set to `value`, and that number's key.
-fn refusal_with(index: usize, value: f64) -> (String, &'static str) {
-    let mut phantom = paper();
-    let key = {
-        let mut all = numbers(&mut phantom);
-        *all[index].1 = value;
-        all[index].0
-    };
-    let refused = phantom.validate().err();
-    (
-        refused.map_or(String::new(), |refusal| refusal.to_string()),
-        key,
-    )
-}
+/// Every number of the paper's phantom, with its key in the file.
+const NUMBERS: [(&str, Number); 14] = [
+    ("well.width_mm", |p| &mut p.well.width),
+    ("layer[0].thickness_mm", |p| &mut p.layers[0].thickness),
+    ("layer[0].youngs_modulus_kpa", |p| {
+        &mut p.layers[0].material.youngs_modulus
+    }),
+    ("layer[0].poisson_ratio", |p| {
+        &mut p.layers[0].material.poisson_ratio
+    }),
+    ("layer[1].thickness_mm", |p| &mut p.layers[1].thickness),
+    ("layer[1].youngs_modulus_kpa", |p| {
+        &mut p.layers[1].material.youngs_modulus
+    }),
+    ("layer[1].poisson_ratio", |p| {
+        &mut p.layers[1].material.poisson_ratio
+    }),
+    ("inclusion[0].centre_x_mm", |p| {
+        &mut p.inclusions[0].centre_x
+    }),
+    ("inclusion[0].diameter_mm", |p| {
+        match &mut p.inclusions[0].shape {
+            Shape::Disc { diameter } => diameter,
+            _ => panic!("a disc"),
+        }
+    }),
+    ("inclusion[0].depth_mm", |p| &mut p.inclusions[0].depth),
+    ("inclusion[0].youngs_modulus_kpa", |p| {
+        &mut p.inclusions[0].material.youngs_modulus
+    }),
+    ("inclusion[0].poisson_ratio", |p| {
+        &mut p.inclusions[0].material.poisson_ratio
+    }),
+    ("probe.radius_mm", |p| &mut p.probe.radius),
+    ("probe.length_mm", |p| &mut p.probe.length),
+];
 
 // Verifies: PHA-003, PHA-004, PHA-005, PHA-009, CON-007.
 #[test]
 fn numbers_that_are_not_finite_or_no_sizes_are_refused_by_key() {
-    for index in 0..numbers(&mut paper()).len() {
+    for (key, number) in NUMBERS {
         for value in [f64::NAN, f64::INFINITY, -f64::INFINITY, 0.0, -0.0, -1.5] {
-            let (message, key) = refusal_with(index, value);
             let may_be_0 = key.ends_with("ratio") || key.ends_with("centre_x_mm");
-            if value.is_finite() && may_be_0 {
-                continue;
-            }
-            let shown = if value.is_finite() {
-                String::new()
-            } else {
-                format!("{value}, ")
+            let shown = match value.is_finite() {
+                true if may_be_0 => continue,
+                true => format!("{key} = "),
+                false => format!("{key} = {value}, "),
             };
-            assert!(
-                message.starts_with(&format!("{key} = {shown}")),
-                "{message}"
-            );
+            let message = refusal(&changed(|p| *number(p) = value));
+            assert!(message.starts_with(&shown), "{message}");
         }
     }
 }
@@ -206,23 +191,33 @@ fn numbers_that_are_not_finite_or_no_sizes_are_refused_by_key() {
 // Verifies: PHA-004, PHA-005, PHA-007, PHA-009.
 #[test]
 fn messages_give_value_and_range_in_the_files_unit() {
-    assert_eq!(
-        refusal(&changed(|p| p.well.width = 34.0)),
-        "well.width_mm = 34000.0, expected at least 0.001 and at most 1000.0"
-    );
-    assert_eq!(
-        refusal(&changed(|p| p.layers[0].material.youngs_modulus = -180e3)),
-        "layer[0].youngs_modulus_kpa = -180.0, expected above 0.0"
-    );
-    assert_eq!(
-        refusal(&changed(|p| p.layers[1].material.poisson_ratio = 0.5)),
-        "layer[1].poisson_ratio = 0.5, expected above -1.0 and at most 0.4995"
-    );
-    assert_eq!(
-        refusal(&changed(|p| p.probe.radius = 0.017)),
-        "probe.radius_mm = 17.0, expected at least 0.001 and below 17.0 \
-         (the probe must be narrower than the well)"
-    );
+    let narrower = "(the probe must be narrower than the well)";
+    for (key, value, expected) in [
+        (
+            "well.width_mm",
+            34.0,
+            "34000.0, expected at least 0.001 and at most 1000.0",
+        ),
+        (
+            "layer[0].youngs_modulus_kpa",
+            -180e3,
+            "-180.0, expected above 0.0",
+        ),
+        (
+            "layer[1].poisson_ratio",
+            0.5,
+            "0.5, expected above -1.0 and at most 0.4995",
+        ),
+        (
+            "probe.radius_mm",
+            0.017,
+            &format!("17.0, expected at least 0.001 and below 17.0 {narrower}"),
+        ),
+    ] {
+        let (_, number) = NUMBERS.into_iter().find(|of| of.0 == key).unwrap();
+        let message = refusal(&changed(|p| *number(p) = value));
+        assert_eq!(message, format!("{key} = {expected}"));
+    }
 }
 
 // Verifies: PHA-004, PHA-005, PHA-007.
@@ -253,21 +248,13 @@ fn there_are_some_layers_and_not_too_many() {
     assert_eq!(layers(1).validate(), Ok(()));
     assert_eq!(layers(100).validate(), Ok(()));
     assert_eq!(refusal(&layers(0)), "layer = 0 of them, expected 1 to 100");
-    assert_eq!(
-        refusal(&layers(101)),
-        "layer = 101 of them, expected 1 to 100"
-    );
+    let message = "layer = 101 of them, expected 1 to 100";
+    assert_eq!(refusal(&layers(101)), message);
     // Discs of 0.2 mm, 0.4 mm apart.
-    let discs = |count: usize| -> Vec<_> {
-        (0..count)
-            .map(|at| (0.4 * at as f64 - 20.0, 3.0, disc(0.2)))
-            .collect()
-    };
-    assert!(is_valid(&discs(100)));
-    assert_eq!(
-        shape_refusal(&discs(101)),
-        "inclusion = 101 of them, expected 0 to 100"
-    );
+    let one = |at| (0.4 * f64::from(at) - 20.0, 3.0, disc(0.2));
+    assert!(is_valid(&(0..100).map(one).collect::<Vec<_>>()));
+    let discs: Vec<_> = (0..101).map(one).collect();
+    refuses(&discs, " = 101 of them, expected 0 to 100");
 }
 
 // Verifies: PHA-016, PHA-030.
@@ -285,20 +272,29 @@ fn supports_that_hold_nothing_are_refused() {
     ] {
         assert_eq!(held(walls, floor).validate(), Ok(()));
     }
-    assert_eq!(
-        refusal(&held(Sliding, Free)),
-        "well.floor = \"free\", expected \"fixed\" or \"sliding\" where walls = \"sliding\": \
-         nothing holds the layers up"
-    );
-    assert_eq!(
-        refusal(&held(Free, Free)),
-        "well.floor = \"free\", expected \"fixed\" where walls = \"free\": nothing holds the layers up"
-    );
-    assert_eq!(
-        refusal(&held(Free, Sliding)),
-        "well.floor = \"sliding\", expected \"fixed\" where walls = \"free\": \
-         nothing holds the layers from sliding sideways"
-    );
+    for (walls, floor, expected) in [
+        (
+            Sliding,
+            Free,
+            r#""free", expected "fixed" or "sliding" where walls = "sliding": up"#,
+        ),
+        (
+            Free,
+            Free,
+            r#""free", expected "fixed" where walls = "free": up"#,
+        ),
+        (
+            Free,
+            Sliding,
+            r#""sliding", expected "fixed" where walls = "free": from sliding sideways"#,
+        ),
+    ] {
+        let expected = expected.replace(": ", ": nothing holds the layers ");
+        assert_eq!(
+            refusal(&held(walls, floor)),
+            format!("well.floor = {expected}")
+        );
+    }
 }
 
 // Verifies: PHA-006, PHA-015.
@@ -334,35 +330,23 @@ fn an_inclusion_keeps_its_clearance_from_layers_and_walls() {
 // Verifies: PHA-006, PHA-009.
 #[test]
 fn the_clearance_is_in_the_message() {
-    let why = |height| {
-        format!("(0.1 mm of layer[1] must lie above and below the inclusion, {height} mm high)")
-    };
-    assert_eq!(
-        refusal(&with_disc(0.0064, 0.012)),
-        format!(
-            "inclusion[0].depth_mm = 12.0, expected at least 0.6 and at most 9.0 {}",
-            why("6.4")
-        )
-    );
-    // Half of it beyond the floor.
-    assert_eq!(
-        refusal(&with_disc(0.0064, 0.013)),
-        format!(
-            "inclusion[0].depth_mm = 13.0, expected at least 0.6 and at most 9.0 {}",
-            why("6.4")
-        )
-    );
-    assert_eq!(
-        refusal(&with_disc(0.015, 0.0026)),
-        format!(
-            "inclusion[0].depth_mm = 2.6, expected no number {}",
-            why("15.0")
-        )
-    );
-    assert_eq!(
-        shape_refusal(&[(27.0, 5.0, disc(6.0))]),
-        "inclusion[0].centre_x_mm = 27.0, expected at least -26.9 and at most 26.9 \
-         (0.1 mm must lie between the inclusion, 6.0 mm wide, and each wall)"
+    // The second disc is half beyond the floor.
+    for (diameter, depth, expected) in [
+        (0.0064, 0.012, "12.0, expected at least 0.6 and at most 9.0"),
+        (0.0064, 0.013, "13.0, expected at least 0.6 and at most 9.0"),
+        (0.015, 0.0026, "2.6, expected no number"),
+    ] {
+        let why = "(0.1 mm of layer[1] must lie above and below the inclusion,";
+        let expected = format!(
+            "inclusion[0].depth_mm = {expected} {why} {:.1} mm high)",
+            1e3 * diameter
+        );
+        assert_eq!(refusal(&with_disc(diameter, depth)), expected);
+    }
+    refuses(
+        &[(27.0, 5.0, disc(6.0))],
+        "[0].centre_x_mm = 27.0, expected at least -26.9 and at most 26.9 \
+         (0.1 mm must lie between the inclusion, 6.0 mm wide, and each wall)",
     );
 }
 
@@ -377,16 +361,13 @@ fn discs_that_overlap_or_touch_are_refused() {
         ]
     };
     assert!(is_valid(&two(5.0)));
-    assert_eq!(
-        shape_refusal(&two(5.2)),
-        "inclusion[1] = an outline 0.0 mm from that of inclusion[0], \
-         expected at least 0.1 mm between them"
-    );
-    assert_eq!(
-        shape_refusal(&two(5.1)),
-        "inclusion[1] = an outline 0.05 mm from that of inclusion[0], \
-         expected at least 0.1 mm between them"
-    );
+    for (diameter, gap) in [(5.2, "0.0"), (5.1, "0.05")] {
+        let outline = format!("[1] = an outline {gap} mm from that of inclusion[0]");
+        refuses(
+            &two(diameter),
+            &format!("{outline}, expected at least 0.1 mm between them"),
+        );
+    }
     assert!(is_valid(&[(-2.5, 4.0, disc(5.0)), (2.6, 4.0, disc(5.0))]));
     assert!(!is_valid(&[
         (-2.5, 4.0, disc(5.0)),
@@ -397,39 +378,24 @@ fn discs_that_overlap_or_touch_are_refused() {
 // Verifies: PHA-031.
 #[test]
 fn shapes_that_overlap_or_enclose_one_another_are_refused() {
-    let overlap = "inclusion[1] = an outline 0.0 mm from that of inclusion[0], \
-                   expected at least 0.1 mm between them";
+    let overlap =
+        "[1] = an outline 0.0 mm from that of inclusion[0], expected at least 0.1 mm between them";
     let shapes = [disc(8.0), ellipse(8.0, 7.9, 10.0), rectangle(8.0, 8.0)];
     let small = [disc(1.0), ellipse(1.0, 0.9, 10.0), rectangle(1.0, 1.0)];
     for (large, size) in shapes.iter().zip(0..) {
         for inner in &small {
             // Within, in either order, and half within.
-            assert_eq!(
-                shape_refusal(&[(0.0, 4.0, large.clone()), (0.0, 7.0, inner.clone())]),
-                overlap
-            );
-            assert_eq!(
-                shape_refusal(&[(0.0, 7.0, inner.clone()), (0.0, 4.0, large.clone())]),
-                overlap
-            );
-            assert_eq!(
-                shape_refusal(&[(0.0, 4.0, large.clone()), (4.0, 7.5, inner.clone())]),
-                overlap
-            );
+            let (outer, inner) = ((0.0, 4.0, large.clone()), |x, y| (x, y, inner.clone()));
+            refuses(&[outer.clone(), inner(0.0, 7.0)], overlap);
+            refuses(&[inner(0.0, 7.0), outer.clone()], overlap);
+            refuses(&[outer.clone(), inner(4.0, 7.5)], overlap);
             // 0.101 mm beside it, 0.098 mm beside it: 0.001 mm are for chords.
-            let half_width = [
-                4.0,
-                with_shapes(&[(0.0, 4.0, large.clone())]).inclusions[0].extent()[1] * 1e3,
-                4.0,
-            ][size];
-            let inner_half =
-                with_shapes(&[(0.0, 4.0, inner.clone())]).inclusions[0].extent()[1] * 1e3;
+            let half = |shape| with_shapes(&[shape]).inclusions[0].extent()[1] * 1e3;
+            let half_width = [4.0, half(outer.clone()), 4.0][size];
+            let inner_half = half(inner(0.0, 4.0));
             let beside = |gap: f64| {
                 let depth = 8.0 - inner_half; // about the middle of the large one
-                is_valid(&[
-                    (0.0, 4.0, large.clone()),
-                    (half_width + inner_half + gap, depth, inner.clone()),
-                ])
+                is_valid(&[outer.clone(), inner(half_width + inner_half + gap, depth)])
             };
             assert!(beside(0.3) && !beside(-0.1));
         }
@@ -438,58 +404,56 @@ fn shapes_that_overlap_or_enclose_one_another_are_refused() {
     let triangle = polygon(&[[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]]);
     let notch = |x: f64, depth| (x, depth, polygon(&[[4.0, 4.0], [0.0, 4.0], [4.0, 0.0]]));
     assert!(is_valid(&[(0.0, 4.0, triangle.clone()), notch(0.5, 4.0)]));
-    assert_eq!(
-        shape_refusal(&[(0.0, 4.0, triangle.clone()), notch(0.0, 4.0)]),
-        overlap
-    );
+    refuses(&[(0.0, 4.0, triangle.clone()), notch(0.0, 4.0)], overlap);
     // 0.1·√2/2 = 0.0707… mm.
     let message = shape_refusal(&[(0.0, 4.0, triangle), notch(0.1, 4.0)]);
-    assert!(
-        message.starts_with("inclusion[1] = an outline 0.0707106"),
-        "{message}"
-    );
+    let beginning = "inclusion[1] = an outline 0.0707106";
+    assert!(message.starts_with(beginning), "{message}");
 }
 
 // Verifies: PHA-032, PHA-009.
 #[test]
 fn ellipses_are_neither_slivers_nor_turned_too_far() {
-    let valid = |width, height, angle| is_valid(&[(0.0, 4.0, ellipse(width, height, angle))]);
-    assert!(
-        valid(0.1, 2.0, 0.0)
-            && valid(2.0, 0.1, 0.0)
-            && valid(2.0, 1.0, 360.0)
-            && valid(2.0, 1.0, -360.0)
-    );
-    let message =
-        |width, height, angle| shape_refusal(&[(0.0, 4.0, ellipse(width, height, angle))]);
+    let of = |[width, height, angle]: [f64; 3]| [(0.0, 4.0, ellipse(width, height, angle))];
+    for valid in [
+        [0.1, 2.0, 0.0],
+        [2.0, 0.1, 0.0],
+        [2.0, 1.0, 360.0],
+        [2.0, 1.0, -360.0],
+    ] {
+        assert!(is_valid(&of(valid)), "{valid:?}");
+    }
     let why = "(an ellipse is at most 20 times as long as wide)";
-    assert_eq!(
-        message(0.1, 2.001, 0.0),
-        format!("inclusion[0].height_mm = 2.001, expected at least 0.1 and at most 2.0 {why}")
-    );
-    assert_eq!(
-        message(4.0, 0.199, 0.0),
-        format!("inclusion[0].height_mm = 0.199, expected at least 0.2 and at most 80.0 {why}")
-    );
-    assert_eq!(
-        message(0.099, 1.0, 0.0),
-        "inclusion[0].width_mm = 0.099, expected at least 0.1 and at most 1000.0"
-    );
-    assert_eq!(
-        message(2.0, 1.0, 361.0),
-        "inclusion[0].angle_deg = 361.0, expected at least -360.0 and at most 360.0"
-    );
-    assert!(message(2.0, 1.0, f64::NAN).starts_with("inclusion[0].angle_deg = NaN, expected "));
+    for (sizes, expected) in [
+        (
+            [0.1, 2.001, 0.0],
+            format!("height_mm = 2.001, expected at least 0.1 and at most 2.0 {why}"),
+        ),
+        (
+            [4.0, 0.199, 0.0],
+            format!("height_mm = 0.199, expected at least 0.2 and at most 80.0 {why}"),
+        ),
+        (
+            [0.099, 1.0, 0.0],
+            "width_mm = 0.099, expected at least 0.1 and at most 1000.0".into(),
+        ),
+        (
+            [2.0, 1.0, 361.0],
+            "angle_deg = 361.0, expected at least -360.0 and at most 360.0".into(),
+        ),
+    ] {
+        refuses(&of(sizes), &format!("[0].{expected}"));
+    }
+    let message = shape_refusal(&of([2.0, 1.0, f64::NAN]));
+    assert!(message.starts_with("inclusion[0].angle_deg = NaN, expected "));
 }
 
 // Verifies: PHA-003, PHA-033.
 #[test]
 fn polygons_have_three_to_a_thousand_finite_corners() {
     let refusal = |points: &[[f64; 2]]| shape_refusal(&[(0.0, 4.0, polygon(points))]);
-    assert_eq!(
-        refusal(&[[0.0, 0.0], [1.0, 1.0]]),
-        "inclusion[0].points_mm = 2 of them, expected 3 to 1000"
-    );
+    let two = [(0.0, 4.0, polygon(&[[0.0, 0.0], [1.0, 1.0]]))];
+    refuses(&two, "[0].points_mm = 2 of them, expected 3 to 1000");
     let round = |count: usize| {
         let angle = |k| 2.0 * std::f64::consts::PI * k as f64 / count as f64;
         let point = |k| [9.0 * f64::cos(angle(k)), 9.0 * f64::sin(angle(k))];
@@ -594,15 +558,10 @@ fn outlines_lie_below_the_surface_by_their_depth() {
     assert!(same(end, [5.0 + 5.0 * cos, -4.0 - half_height + 5.0 * sin]));
     // Clockwise as written, the other way round in the outline.
     let points = phantom.inclusions[1].outline().chords(0);
-    assert!(
-        same(points[0], [-8.0, -6.0])
-            && same(points[1], [-8.0, -4.0])
-            && same(points[2], [-9.0, -6.0])
-    );
-    let extent = phantom.inclusions[1].extent();
-    assert!(
-        same([extent[0], extent[1]], [-9.0, -8.0]) && same([extent[2], extent[3]], [-6.0, -4.0])
-    );
+    let expected = [[-8.0, -6.0], [-8.0, -4.0], [-9.0, -6.0]];
+    assert!((0..3).all(|k| same(points[k], expected[k])));
+    let [left, right, bottom, top] = phantom.inclusions[1].extent();
+    assert!(same([left, right], [-9.0, -8.0]) && same([bottom, top], [-6.0, -4.0]));
 }
 
 // Verifies: PHA-019.
@@ -622,11 +581,11 @@ fn mirror_images_are_found_and_their_absence_too() {
     // On the axis: by itself.
     let alone = |shape| symmetric(&[(0.0, 4.0, shape)]);
     assert!(
-        alone(ellipse(5.0, 2.0, 0.0))
-            && alone(ellipse(5.0, 2.0, 90.0))
-            && alone(ellipse(5.0, 2.0, -90.0))
+        [0.0, 90.0, -90.0, 180.0]
+            .iter()
+            .all(|&angle| alone(ellipse(5.0, 2.0, angle)))
     );
-    assert!(alone(ellipse(5.0, 2.0, 180.0)) && !alone(ellipse(5.0, 2.0, 89.0)));
+    assert!(!alone(ellipse(5.0, 2.0, 89.0)));
     assert!(alone(rectangle(3.0, 2.0)) && alone(polygon(&[[0.0, 3.0], [-1.0, 0.0], [1.0, 0.0]])));
     assert!(!alone(triangle(1.0)));
     // Of one material.
@@ -675,13 +634,9 @@ fn a_probe_that_reaches_a_wall_is_refused() {
     assert!(message(0.0155, 0.0).starts_with("depth_mm = 15.5, expected "));
     assert!(message(-0.001, 0.0).starts_with("depth_mm = -1.0, expected "));
     for (lateral, shown) in [(-0.012, "-12.0"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
-        assert_eq!(
-            message(0.004, lateral),
-            format!(
-                "lateral_mm = {shown}, expected above -11.0 and below 11.0 \
-                 (the probe, 6.0 mm to each side when 4.0 mm deep, clears the walls)"
-            )
-        );
+        let range = format!("lateral_mm = {shown}, expected above -11.0 and below 11.0");
+        let why = "(the probe, 6.0 mm to each side when 4.0 mm deep, clears the walls)";
+        assert_eq!(message(0.004, lateral), format!("{range} {why}"));
     }
 }
 
@@ -707,26 +662,17 @@ fn in_json_a_phantom_has_si_units_in_its_keys() {
         })
     };
     let shapes = [
-        (
-            Shape::Disc { diameter: 0.0064 },
-            serde_json::json!({"disc": {"diameter_m": 0.0064}}),
-        ),
-        (
-            Shape::Ellipse {
-                width: 0.006,
-                height: 0.003,
-                angle_deg: 30.0,
-            },
-            serde_json::json!({"ellipse": {"width_m": 0.006, "height_m": 0.003, "angle_deg": 30.0}}),
-        ),
-        (
-            Shape::Polygon {
-                points: vec![[0.0, 0.0], [0.001, 0.0], [0.0, 0.001]],
-            },
-            serde_json::json!({"polygon": {"points_m": [[0.0, 0.0], [0.001, 0.0], [0.0, 0.001]]}}),
-        ),
+        serde_json::json!({"disc": {"diameter_m": 0.0064}}),
+        serde_json::json!({"ellipse": {"width_m": 0.006, "height_m": 0.003, "angle_deg": 30.0}}),
+        serde_json::json!({"polygon": {"points_m": [[0.0, 0.0], [0.001, 0.0], [0.0, 0.001]]}}),
     ];
-    for (shape, expected) in shapes {
+    let points = vec![[0.0, 0.0], [0.001, 0.0], [0.0, 0.001]];
+    let of = [
+        disc(6.4),
+        ellipse(6.0, 3.0, 30.0),
+        Shape::Polygon { points },
+    ];
+    for (shape, expected) in of.into_iter().zip(shapes) {
         let phantom = changed(|p| p.inclusions[0].shape = shape);
         let written = serde_json::to_value(&phantom).unwrap();
         let mut with_inclusion = json();
@@ -770,25 +716,9 @@ fn scaled_decimals_are_the_nearest_floats() {
 // Verifies: PHA-003, PHA-020, PHA-024.
 #[test]
 fn what_is_no_finite_decimal_is_no_number() {
-    for text in [
-        "",
-        " 1",
-        "nan",
-        "NaN",
-        "inf",
-        "-inf",
-        "infinity",
-        "1e400",
-        "1e99999999999",
-        "0x10",
-        "1,5",
-        "1_000",
-        "e5",
-        "1e",
-        ".",
-        "--1",
-        "1e2147483647",
-    ] {
+    let texts =
+        "| 1|nan|NaN|inf|-inf|infinity|1e400|1e99999999999|0x10|1,5|1_000|e5|1e|.|--1|1e2147483647";
+    for text in texts.split('|') {
         assert_eq!(parse_scaled(text, 3), None, "{text:?}");
     }
 }
