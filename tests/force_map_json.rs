@@ -115,13 +115,8 @@ fn computed() -> ForceMap {
             matrix(&[[0.25, 0.5, 1.0], [0.1 + 0.2, 5e-324, -0.0]]),
         ),
     );
-    let phantom = Phantom::builtin("none").unwrap();
-    ForceMap::new(
-        Source::FiniteElements { certificate },
-        Some(phantom),
-        forces.unwrap(),
-    )
-    .unwrap()
+    let source = Source::FiniteElements { certificate };
+    ForceMap::new(source, Phantom::builtin("none").ok(), forces.unwrap()).unwrap()
 }
 
 fn read(text: &str) -> Result<ForceMap, String> {
@@ -137,21 +132,24 @@ fn refusal(old: &str, new: &str) -> String {
     message
 }
 
+/// Checks refusals: each of `cases` is a line `old -> new`, as for [`refusal`], and under it a part of the refusal.
+fn check_refusals(cases: &str) {
+    let mut lines = cases.trim().lines().map(str::trim);
+    while let Some(change) = lines.next() {
+        let change = change.replace("\\n", "\n");
+        let (old, new) = change.split_once(" -> ").unwrap();
+        let (message, named) = (refusal(old, new), lines.next().unwrap());
+        assert!(message.contains(named), "{message}");
+    }
+}
+
 /// Maps are compared by their text too: `==` holds −0 and 0 for equal.
 fn assert_same(read: &ForceMap, written: &ForceMap) {
     assert_eq!(read, written);
-    let bits = |matrix: &Matrix| {
-        matrix
-            .values()
-            .iter()
-            .map(|v| v.to_bits())
-            .collect::<Vec<_>>()
-    };
-    assert_eq!(bits(&read.forces().normal), bits(&written.forces().normal));
-    assert_eq!(
-        bits(&read.forces().lateral),
-        bits(&written.forces().lateral)
-    );
+    let bits =
+        |matrix: &Matrix| -> Vec<_> { matrix.values().iter().map(|v| v.to_bits()).collect() };
+    let [read, written] = [read, written].map(|map| map.forces().as_ref().map(bits));
+    assert_eq!(read, written);
 }
 
 // Verifies: MAP-020, MAP-021, MAP-022, PHA-029.
@@ -208,59 +206,45 @@ fn the_version_that_made_a_map_stays_with_it() {
 // Verifies: MAP-023, MAP-026.
 #[test]
 fn other_schemas_and_newer_versions_are_refused_first() {
-    assert_eq!(
-        refusal("\"palpate-force-map\"", "\"palpate-summary\""),
-        "map.json: schema = \"palpate-summary\", expected \"palpate-force-map\""
-    );
-    for (version, found) in [("2", "2"), ("\"1\"", "\"1\""), ("0", "0"), ("1.5", "1.5")] {
+    let other = r#"map.json: schema = "palpate-summary", expected "palpate-force-map""#;
+    let found = refusal("\"palpate-force-map\"", "\"palpate-summary\"");
+    assert_eq!(found, other);
+    for version in ["2", "\"1\"", "0", "1.5"] {
         // A newer file has keys that we do not know, and lacks some that we do.
         let text =
             format!("{{\"schema_version\": {version}, \"new\": [], \"schema\": {SCHEMA:?}}}");
-        let expected = format!(
-            "map.json: schema_version = {found}, expected 1, which is what this program reads"
-        );
+        let expected = "expected 1, which is what this program reads";
+        let expected = format!("map.json: schema_version = {version}, {expected}");
         assert_eq!(read(&text), Err(expected));
     }
-    assert_eq!(
-        read("{}"),
-        Err("map.json: schema = null, expected \"palpate-force-map\"".into())
-    );
+    let none = r#"map.json: schema = null, expected "palpate-force-map""#;
+    assert_eq!(read("{}"), Err(none.into()));
 }
 
 // Verifies: MAP-024, MAP-026.
 #[test]
 fn every_required_key_is_missed_by_name() {
     let example = example();
-    let object: serde_json::Map<String, serde_json::Value> =
-        serde_json::from_str(&example).unwrap();
-    for key in [
-        "program_version",
-        "source",
-        "depths_m",
-        "laterals_m",
-        "normal_force_n",
-        "lateral_force_n",
-    ] {
+    let object: serde_json::Value = serde_json::from_str(&example).unwrap();
+    for key in
+        "program_version source depths_m laterals_m normal_force_n lateral_force_n".split(' ')
+    {
         let mut without = object.clone();
-        without.remove(key).unwrap();
-        let message = read(&serde_json::to_string(&without).unwrap()).unwrap_err();
+        without.as_object_mut().unwrap().remove(key).unwrap();
+        let message = read(&without.to_string()).unwrap_err();
         assert!(message.starts_with("map.json:1: "), "{message}");
-        assert!(
-            message.contains(&format!("missing field `{key}`")),
-            "{message}"
-        );
+        let missing = format!("missing field `{key}`");
+        assert!(message.contains(&missing), "{message}");
     }
 }
 
 // Verifies: MAP-024, MAP-026.
 #[test]
 fn what_is_no_number_is_named_by_key_and_row() {
-    assert_eq!(
-        refusal("[0.30000000000000004,5e-324,-0.0]", "[0.3,null,0.0]"),
-        "map.json:39: column 13: normal_force_n[1][1]: invalid type: null, expected f64, \
-         in \"[0.3,null,0.0]\""
-    );
-    let cases = r#"
+    check_refusals(
+        r#"
+        [0.30000000000000004,5e-324,-0.0] -> [0.3,null,0.0]
+        map.json:39: column 13: normal_force_n[1][1]: invalid type: null, expected f64, in "[0.3,null,0.0]"
         [0.001,0.002] -> [0.001,null]
         map.json:35: column 25: depths_m[1]: invalid type: null
         [0.0,-1e-9,1e+21] -> [0.0,NaN,1.0]
@@ -287,13 +271,8 @@ fn what_is_no_number_is_named_by_key_and_row() {
         certificate.element: invalid type: integer `6`, expected a string
         "finite_elements" -> "guess"
         source.kind: unknown variant `guess`
-    "#;
-    let mut lines = cases.trim().lines().map(str::trim);
-    while let Some(change) = lines.next() {
-        let (old, new) = change.split_once(" -> ").unwrap();
-        let (message, named) = (refusal(old, new), lines.next().unwrap());
-        assert!(message.contains(named), "{message}");
-    }
+        "#,
+    );
     let message = refusal("      \"width_m\": 0.034,\n", "");
     let named = "phantom.well: missing field `width_m`";
     assert!(message.contains(named), "{message}");
@@ -302,89 +281,69 @@ fn what_is_no_number_is_named_by_key_and_row() {
 // Verifies: MAP-024, MAP-026.
 #[test]
 fn unknown_and_repeated_keys_are_refused() {
-    let message = refusal("\"depths_m\": [", "\"depths_mm\": [");
-    let expected =
-        "map.json:35: column 13: depths_mm: unknown field `depths_mm`, expected one of `schema`, ";
-    assert!(message.starts_with(expected), "{message}");
-    let message = refusal("\"width_m\"", "\"a\\nb\"");
-    assert!(message.contains("unknown field `a b`"), "{message}");
-    let twice = "\"depths_m\": [0.0],\n  \"depths_m\": [";
-    let message = refusal("\"depths_m\": [", twice);
-    assert!(message.contains("duplicate field `depths_m`"), "{message}");
-    let message = refusal(
-        "\"radius_m\": 0.0065,",
-        "\"radius_m\": 0.0065, \"radius_m\": 0.0066,",
+    check_refusals(
+        r#"
+        "depths_m": [ -> "depths_mm": [
+        map.json:35: column 13: depths_mm: unknown field `depths_mm`, expected one of `schema`, 
+        "width_m" -> "a\u000ab"
+        unknown field `a b`
+        "depths_m": [ -> "depths_m": [0.0], "depths_m": [
+        duplicate field `depths_m`
+        "radius_m": 0.0065, -> "radius_m": 0.0065, "radius_m": 0.0066,
+        duplicate field `radius_m`
+        "#,
     );
-    assert!(message.contains("duplicate field `radius_m`"), "{message}");
 }
 
 // Verifies: MAP-025.
 #[test]
 fn a_certificate_comes_with_finite_elements_and_with_nothing_else() {
     let kind = "\"kind\": \"finite_elements\"";
-    assert_eq!(
-        refusal(
-            kind,
-            "\"kind\": \"measured\", \"file\": \"a.csv\", \"note\": \"\""
-        ),
-        "map.json: certificate is there, expected none for a measured map"
-    );
+    let measured = r#""kind": "measured", "file": "a.csv", "note": """#;
+    let expected = "map.json: certificate is there, expected none for a measured map";
+    assert_eq!(refusal(kind, measured), expected);
     let (before, _) = EXAMPLE.split_once(",\n  \"certificate\"").unwrap();
-    assert_eq!(
-        read(&format!("{before}}}")),
-        Err("map.json: certificate is missing, expected one for a map from finite elements".into())
-    );
+    let expected = "map.json: certificate is missing, expected one for a map from finite elements";
+    assert_eq!(read(&format!("{before}}}")), Err(expected.into()));
 }
 
 // Verifies: MAP-003, MAP-004, MAP-008, MAP-026.
 #[test]
 fn what_makes_no_map_is_refused_with_the_file() {
-    assert_eq!(
-        refusal("[0.0,0.005,0.01]", "[0.0,0.005]"),
-        "map.json: normal_force_n has 2 rows and 3 columns, \
-         expected 2 rows (one a depth) and 2 columns (one a lateral position)"
+    check_refusals(
+        r#"
+        [0.0,0.005,0.01] -> [0.0,0.005]
+        map.json: normal_force_n has 2 rows and 3 columns, expected 2 rows (one a depth) and 2 columns (one a lateral position)
+        [0.001,0.002] -> [0.002,0.001]
+        map.json: depths_m[1] = 0.001
+        5000.0,\n          "poisson_ratio": 0.49 -> 5000.0,\n          "poisson_ratio": 0.5
+        map.json: phantom: layer[1].poisson_ratio = 0.5, expected 
+        "det": 0.5 -> "det": 0.4
+        certificate.smallest_det = 0.4
+        "depths_m": [0.001, -> "depths_m": [0.001;
+        map.json:35: column 21: depths_m: expected `,` or `]`
+        "#,
     );
-    assert!(refusal("[0.001,0.002]", "[0.002,0.001]").starts_with("map.json: depths_m[1] = 0.001"));
-    assert!(
-        refusal(
-            "5000.0,\n          \"poisson_ratio\": 0.49",
-            "5000.0,\n          \"poisson_ratio\": 0.5"
-        )
-        .starts_with("map.json: phantom: layer[1].poisson_ratio = 0.5, expected ")
-    );
-    assert!(refusal("\"det\": 0.5", "\"det\": 0.4").contains("certificate.smallest_det = 0.4"));
 }
 
 // Verifies: MAP-026.
 #[test]
 fn what_is_no_json_is_refused_with_its_line() {
-    let message = refusal("\"depths_m\": [0.001,", "\"depths_m\": [0.001;");
-    assert!(
-        message.starts_with("map.json:35: column 21: depths_m: expected `,` or `]`"),
-        "{message}"
-    );
-    assert!(
-        read("")
-            .unwrap_err()
-            .starts_with("map.json:1: column 0: EOF while parsing")
-    );
+    let message = read("").unwrap_err();
+    let expected = "map.json:1: column 0: EOF while parsing";
+    assert!(message.starts_with(expected), "{message}");
     assert!(read("[1]").is_err() && read("null").is_err());
     let one_line = example().replace('\n', "");
     assert_eq!(read(&one_line).map(|_| ()), Ok(()));
     // Of one long line the message shows the place alone.
     let message = read(&one_line.replace("0.034", "null")).unwrap_err();
     let (_, excerpt) = message.split_once(", in ").unwrap();
-    assert!(
-        excerpt.contains("\\\"width_m\\\": null") && excerpt.len() < 80,
-        "{message}"
-    );
+    let is_short = excerpt.contains(r#"\"width_m\": null"#) && excerpt.len() < 80;
+    assert!(is_short, "{message}");
     let folder = std::env::temp_dir();
-    let message = ForceMap::read(&folder.join("palpate-no-such-map.json")).unwrap_err();
-    assert!(
-        message
-            .to_string()
-            .contains("palpate-no-such-map.json: cannot be read: ")
-    );
+    let error = ForceMap::read(&folder.join("palpate-no-such-map.json")).unwrap_err();
+    let expected = "palpate-no-such-map.json: cannot be read: ";
+    assert!(error.to_string().contains(expected), "{error}");
 }
 
 /// A finite number of any size.

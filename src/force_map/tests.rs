@@ -8,16 +8,17 @@ fn matrix<const N: usize>(rows: &[[f64; N]]) -> Matrix {
     Matrix::new(N, rows.concat()).unwrap()
 }
 
-/// Two depths and three lateral positions x ≥ 0, with forces that tell their place.
+/// A table over two depths and three lateral positions x ≥ 0.
+fn over_poses(normal: Matrix, lateral: Matrix) -> Result<ForceTable, Refusal> {
+    let axes = (vec![0.0, 0.001], vec![0.0, 0.002, 0.005]);
+    ForceTable::new(axes.0, axes.1, Force::new(lateral, normal))
+}
+
+/// Forces that tell their place.
 fn table() -> ForceTable {
     let normal = matrix(&[[0.0, 0.1, 0.2], [1.0, 1.1, 1.2]]);
     let lateral = matrix(&[[0.0, 0.01, 0.02], [0.0, -0.11, -0.12]]);
-    ForceTable::new(
-        vec![0.0, 0.001],
-        vec![0.0, 0.002, 0.005],
-        Force::new(lateral, normal),
-    )
-    .unwrap()
+    over_poses(normal, lateral).unwrap()
 }
 
 fn certificate(min_det: Matrix, det: f64, depth: f64, lateral: f64) -> Certificate {
@@ -47,12 +48,8 @@ fn computed(change: impl FnOnce(&mut Certificate)) -> Result<ForceMap, Refusal> 
     let min_det = matrix(&[[1.0, 1.0, 1.0], [0.9, 0.8, 0.85]]);
     let mut certificate = certificate(min_det, 0.8, 0.001, 0.002);
     change(&mut certificate);
-    let phantom = Phantom::builtin("2.6").unwrap();
-    ForceMap::new(
-        Source::FiniteElements { certificate },
-        Some(phantom),
-        table(),
-    )
+    let source = Source::FiniteElements { certificate };
+    ForceMap::new(source, Phantom::builtin("2.6").ok(), table())
 }
 
 fn measured() -> Source {
@@ -61,11 +58,8 @@ fn measured() -> Source {
 
 fn axes(depths: &[f64], laterals: &[f64]) -> Result<ForceTable, Refusal> {
     let zeros = Matrix::from_fn(depths.len(), laterals.len(), |_, _| 0.0);
-    ForceTable::new(
-        depths.to_vec(),
-        laterals.to_vec(),
-        Force::new(zeros.clone(), zeros),
-    )
+    let forces = Force::new(zeros.clone(), zeros);
+    ForceTable::new(depths.to_vec(), laterals.to_vec(), forces)
 }
 
 fn refusal<T>(result: Result<T, Refusal>) -> String {
@@ -78,10 +72,8 @@ fn rows_are_depths_and_columns_lateral_positions() {
     let normal = matrix(&[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     assert_eq!((normal.row_count(), normal.column_count()), (2, 3));
     assert_eq!(normal.row(1), [4.0, 5.0, 6.0]);
-    assert_eq!(
-        normal.rows().collect::<Vec<_>>(),
-        [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]
-    );
+    let rows = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
+    assert_eq!(normal.rows().collect::<Vec<_>>(), rows);
     assert!(normal.entries().any(|entry| entry == (1, 0, 4.0)));
     let place = |row, column| (row * 3 + column + 1) as f64;
     assert_eq!(Matrix::from_fn(2, 3, place), normal);
@@ -92,30 +84,42 @@ fn rows_are_depths_and_columns_lateral_positions() {
 // Verifies: MAP-002, MAP-004, MAP-013.
 #[test]
 fn bad_axes_are_refused() {
-    assert_eq!(
-        refusal(axes(&[], &[0.0])),
-        "depths_m is empty, expected at least one position"
-    );
-    assert_eq!(
-        refusal(axes(&[0.0], &[])),
-        "laterals_m is empty, expected at least one position"
-    );
-    assert_eq!(
-        refusal(axes(&[0.0], &[0.0, f64::NAN])),
-        "laterals_m[1] = NaN, expected a finite number"
-    );
-    assert_eq!(
-        refusal(axes(&[f64::INFINITY], &[0.0])),
-        "depths_m[0] = inf, expected a finite number"
-    );
-    assert_eq!(
-        refusal(axes(&[-0.001, 0.0], &[0.0])),
-        "depths_m[0] = -0.001, expected at least 0, the undeformed surface"
-    );
-    assert_eq!(
-        refusal(axes(&[0.0], &[0.0, 0.002, 0.001])),
-        "laterals_m[2] = 0.001, expected more than 1e-9 m above the entry before it, 0.002"
-    );
+    let above = "expected more than 1e-9 m above the entry before it, 0.002";
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    for (depths, laterals, expected) in [
+        (
+            &[][..],
+            &[0.0][..],
+            "depths_m is empty, expected at least one position",
+        ),
+        (
+            &[0.0],
+            &[],
+            "laterals_m is empty, expected at least one position",
+        ),
+        (
+            &[0.0],
+            &[0.0, nan],
+            "laterals_m[1] = NaN, expected a finite number",
+        ),
+        (
+            &[inf],
+            &[0.0],
+            "depths_m[0] = inf, expected a finite number",
+        ),
+        (
+            &[-0.001, 0.0],
+            &[0.0],
+            "depths_m[0] = -0.001, expected at least 0, the undeformed surface",
+        ),
+        (
+            &[0.0],
+            &[0.0, 0.002, 0.001],
+            &format!("laterals_m[2] = 0.001, {above}"),
+        ),
+    ] {
+        assert_eq!(refusal(axes(depths, laterals)), expected);
+    }
     assert!(axes(&[0.0, 0.0], &[0.0]).is_err());
     assert!(axes(&[0.0], &[1.0, 1.0 + 0.9e-9]).is_err());
     assert!(axes(&[0.0], &[1.0, 1.0 + 1.1e-9]).is_ok());
@@ -125,28 +129,22 @@ fn bad_axes_are_refused() {
 // Verifies: MAP-003, MAP-005, MAP-013, CON-007.
 #[test]
 fn bad_matrices_are_refused() {
-    let with = |normal: Matrix, lateral: Matrix| {
-        ForceTable::new(
-            vec![0.0, 0.001],
-            vec![0.0, 0.002, 0.005],
-            Force::new(lateral, normal),
-        )
-    };
     let good = Matrix::from_fn(2, 3, |_, _| 0.0);
     let transposed = Matrix::from_fn(3, 2, |_, _| 0.0);
     assert_eq!(
-        refusal(with(good.clone(), transposed.clone())),
+        refusal(over_poses(good.clone(), transposed.clone())),
         "lateral_force_n has 3 rows and 2 columns, \
          expected 2 rows (one a depth) and 3 columns (one a lateral position)"
     );
-    assert!(refusal(with(transposed, good.clone())).starts_with("normal_force_n has 3 rows"));
+    let message = refusal(over_poses(transposed, good.clone()));
+    assert!(message.starts_with("normal_force_n has 3 rows"));
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let spoilt = matrix(&[[0.0; 3], [0.0, 0.0, bad]]);
-        assert_eq!(
-            refusal(with(spoilt.clone(), good.clone())),
-            format!("normal_force_n[1][2] = {bad}, expected a finite number")
-        );
-        assert!(refusal(with(good.clone(), spoilt)).starts_with("lateral_force_n[1][2] = "));
+        let expected = format!("force_n[1][2] = {bad}, expected a finite number");
+        let message = refusal(over_poses(spoilt.clone(), good.clone()));
+        assert_eq!(message, format!("normal_{expected}"));
+        let message = refusal(over_poses(good.clone(), spoilt));
+        assert_eq!(message, format!("lateral_{expected}"));
     }
 }
 
@@ -154,25 +152,21 @@ fn bad_matrices_are_refused() {
 #[test]
 fn a_certificate_is_checked_number_by_number() {
     assert_eq!(computed(|_| ()).map(|_| ()), Ok(()));
+    type Number = fn(&mut Certificate) -> &mut f64;
     for bad in [f64::NAN, f64::INFINITY, -1e-30] {
-        let expect = |key: &str, map| {
-            let expected =
-                format!("certificate.{key} = {bad}, expected a finite number, at least 0");
-            assert_eq!(refusal(map), expected);
-        };
-        expect(
-            "worst_relative_residual",
-            computed(|c| c.worst_relative_residual = bad),
-        );
-        expect(
-            "worst_force_balance_n",
-            computed(|c| c.worst_force_balance = bad),
-        );
-        expect(
-            "largest_penetration_m",
-            computed(|c| c.largest_penetration = bad),
-        );
-        expect("mesh_size_m", computed(|c| c.mesh_size = bad));
+        let numbers: [(&str, Number); 4] = [
+            ("worst_relative_residual", |c| {
+                &mut c.worst_relative_residual
+            }),
+            ("worst_force_balance_n", |c| &mut c.worst_force_balance),
+            ("largest_penetration_m", |c| &mut c.largest_penetration),
+            ("mesh_size_m", |c| &mut c.mesh_size),
+        ];
+        for (key, number) in numbers {
+            let expected = "expected a finite number, at least 0";
+            let message = refusal(computed(|c| *number(c) = bad));
+            assert_eq!(message, format!("certificate.{key} = {bad}, {expected}"));
+        }
     }
     assert_eq!(
         refusal(computed(|c| c.min_det = matrix(&[[1.0, 1.0], [0.9, 0.8]]))),
@@ -180,8 +174,9 @@ fn a_certificate_is_checked_number_by_number() {
          expected 2 rows (one a depth) and 3 columns (one a lateral position)"
     );
     let spoilt = matrix(&[[1.0, 1.0, 1.0], [f64::NAN, 0.8, 0.85]]);
+    let message = refusal(computed(|c| c.min_det = spoilt));
     assert_eq!(
-        refusal(computed(|c| c.min_det = spoilt)),
+        message,
         "certificate.min_det[1][0] = NaN, expected a finite number"
     );
 }
@@ -205,10 +200,8 @@ fn the_smallest_determinant_is_the_matrixs_own() {
             lateral,
         })
     };
-    assert_eq!(
-        of(&[[3.0, 2.0, 1.0], [2.0, -1.0, 3.0]]),
-        smallest(-1.0, 0.001, 0.0)
-    );
+    let one = [[3.0, 2.0, 1.0], [2.0, -1.0, 3.0]];
+    assert_eq!(of(&one), smallest(-1.0, 0.001, 0.0));
     // Of equals, the one nearest to x = 0, then the first.
     assert_eq!(of(&[[1.0; 3], [1.0; 3]]), smallest(1.0, 0.0, 0.0));
     assert_eq!(of(&[[1.0, 2.0, 1.0], [2.0; 3]]), smallest(1.0, 0.0, -0.1));
@@ -257,24 +250,16 @@ fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
     let with = |force: f64| {
         let normal = matrix(&[[0.0, 0.0], [1.0, 1.0]]);
         let lateral = matrix(&[[0.0, 0.0], [force, 0.2]]);
-        ForceTable::new(
-            vec![0.0, 0.001],
-            vec![0.0, 0.002],
-            Force::new(lateral, normal),
-        )
-        .unwrap()
+        let forces = Force::new(lateral, normal);
+        ForceTable::new(vec![0.0, 0.001], vec![0.0, 0.002], forces).unwrap()
     };
     for force in [1e-9, -1e-9, -0.0] {
         let mirrored = with(force).mirrored().unwrap();
         assert_eq!(mirrored.forces().lateral.row(1), [-0.2, 0.0, 0.2]);
         // A force of +0 stays +0 on both sides: −0 would show in a diff.
-        let zeros = mirrored
-            .forces()
-            .lateral
-            .values()
-            .iter()
-            .filter(|&&force| force == 0.0);
-        assert!(zeros.clone().count() == 4 && zeros.clone().all(|zero| zero.is_sign_positive()));
+        let forces = mirrored.forces().lateral.values().iter();
+        let zeros: Vec<_> = forces.filter(|&&force| force == 0.0).collect();
+        assert!(zeros.len() == 4 && zeros.iter().all(|zero| zero.is_sign_positive()));
     }
     assert_eq!(
         refusal(with(-1.1e-9).mirrored()),
@@ -286,8 +271,9 @@ fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
 // Verifies: MAP-010.
 #[test]
 fn only_a_map_from_zero_on_is_extended() {
+    let message = refusal(axes(&[0.0], &[0.001, 0.002]).unwrap().mirrored());
     assert_eq!(
-        refusal(axes(&[0.0], &[0.001, 0.002]).unwrap().mirrored()),
+        message,
         "laterals_m[0] = 0.001, expected 0 in a map to be extended by symmetry"
     );
     assert!(table().mirrored().unwrap().mirrored().is_err());
@@ -315,10 +301,8 @@ fn a_signal_is_the_map_minus_its_reference() {
     let signal = map.signal(&reference).unwrap();
     assert_eq!(signal.laterals(), map.laterals());
     assert_eq!(signal.forces().normal.row(0), [0.0, 0.1, 0.2]);
-    assert_eq!(
-        signal.forces().normal.row(1),
-        [1.0 - 0.75, 1.1 - 0.5, 1.2 - 0.25]
-    );
+    let expected = [1.0 - 0.75, 1.1 - 0.5, 1.2 - 0.25];
+    assert_eq!(signal.forces().normal.row(1), expected);
     assert_eq!(signal.forces().lateral, map.forces().lateral);
 }
 
@@ -340,8 +324,9 @@ fn a_signal_needs_equal_axes() {
         let forces = Matrix::from_fn(1, 1, |_, _| sign * f64::MAX);
         ForceTable::new(vec![0.0], vec![0.0], Force::new(forces.clone(), forces)).unwrap()
     };
+    let message = refusal(huge(1.0).minus(&huge(-1.0)));
     assert_eq!(
-        refusal(huge(1.0).minus(&huge(-1.0))),
+        message,
         "normal_force_n[0][0] = inf, expected a finite number"
     );
 }
@@ -489,13 +474,11 @@ fn bands_follow_their_forces_and_survive_the_file() {
         .discretization
         .clone()
         .unwrap();
+    let right = discretization();
     // At x = 0 the lateral force is 0 by symmetry, but its band is not.
     for (mirrored, right) in [
-        (bands.normal_force_band, discretization().normal_force_band),
-        (
-            bands.lateral_force_band,
-            discretization().lateral_force_band,
-        ),
+        (bands.normal_force_band, right.normal_force_band),
+        (bands.lateral_force_band, right.lateral_force_band),
     ] {
         for row in 0..2 {
             let &[zero, near, far] = right.row(row) else {
@@ -505,12 +488,8 @@ fn bands_follow_their_forces_and_survive_the_file() {
         }
     }
     // A map without bands says nothing of them.
-    assert!(
-        !computed(|_| ())
-            .unwrap()
-            .to_json()
-            .contains("discretization")
-    );
+    let text = computed(|_| ()).unwrap().to_json();
+    assert!(!text.contains("discretization"));
 }
 
 // Verifies: MAP-053, MAP-054.
@@ -544,11 +523,10 @@ fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
         (&with, &unknown, ["1", "unknown"], one),
         (&unknown, &without, ["unknown", "0"], one),
     ] {
+        let counts = format!("number of inclusions is {of_inclusion}, and {n} in the reference");
         assert_eq!(
             refused(reference, inclusion),
-            format!(
-                "number of inclusions is {of_inclusion}, and {n} in the reference, expected {expected}"
-            )
+            format!("{counts}, expected {expected}")
         );
     }
     let differ = |reference: &ForceMap, inclusion: &ForceMap, key: &str| {
