@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 use palpate::bank::{Bank, BankPlan};
 use palpate::phantom::Phantom;
-use program::{Place, text};
+use program::{Place, has, text};
 
 /// Three positions at two depths. Those at −2 mm are mirror images: five computations with the reference.
 const SMALL: &str = "bank --phantom 6.6 --offsets-mm=-2,0,2 --depths-mm 4.6,6.6 --probe-depth-mm 3 --laterals-mm=-6:6:2 --mesh-mm 2";
@@ -191,10 +191,7 @@ fn what_was_kept_of_another_bank_is_refused_and_stays() {
     let held = File::open(place.at("bank.json.part")).unwrap();
     held.lock().unwrap();
     let found = place.refused(&format!("{SMALL} --out bank.json"));
-    assert!(
-        found.contains("another 'palpate bank' is at work on it"),
-        "{found}"
-    );
+    has(&found, ["another 'palpate bank' is at work on it"]);
 }
 
 /// Other arguments than those of `SMALL`, and words of the refusal.

@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 use palpate::fem::{Contact, Model};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
-use program::{Place, text};
+use program::{Place, has, text};
 
 // Verifies: CLI-001.
 #[test]
@@ -20,10 +20,8 @@ fn help_describes_every_argument() {
     let version = here.succeed("-V");
     assert_eq!(version, format!("palpate {}\n", env!("CARGO_PKG_VERSION")));
     let long = here.succeed("--version");
-    assert!(
-        long.starts_with(version.trim_end()) && long.contains("\nrustc "),
-        "{long}"
-    );
+    assert!(long.starts_with(version.trim_end()), "{long}");
+    has(&long, ["\nrustc "]);
     let mut help = here.succeed("--help");
     for command in ["run", "solve", "import-map"] {
         help += &here.succeed(&format!("{command} --help"));
@@ -37,12 +35,11 @@ fn bad_input_gets_one_line_that_says_what_would_be_right() {
     let here = Place::new("bad-input");
     let narrow = Phantom::builtin("none").unwrap().to_toml().unwrap();
     let narrow = narrow.replace("width_mm = 34.0", "width_mm = 16.0");
+    let stiff = "name = \"stiff\"\n[gel]\nwidth_mm = 34\nheight_mm = 15\nyoungs_modulus_kpa = -5\n";
+    let header = "depth_mm,lateral_mm,normal_force_n,lateral_force_n";
     for (file, text) in [
         ("narrow.toml", &*narrow),
-        (
-            "stiff.toml",
-            "name = \"stiff\"\n[gel]\nwidth_mm = 34\nheight_mm = 15\nyoungs_modulus_kpa = -5\n",
-        ),
+        ("stiff.toml", stiff),
         ("unknown.toml", "depths_mm = \"0:4:1\"\nlaterals = \"0\"\n"),
         ("list.toml", "depths_mm = \"4,1\"\n"),
         (
@@ -53,10 +50,7 @@ fn bad_input_gets_one_line_that_says_what_would_be_right() {
             "wall.toml",
             "laterals_mm = \"0,8\"\nreference = \"narrow.toml\"\n",
         ),
-        (
-            "short.csv",
-            "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n1,0,0.2\n",
-        ),
+        ("short.csv", &format!("{header}\n1,0,0.2\n")),
     ] {
         here.write(file, text);
     }
@@ -95,31 +89,18 @@ fn solve_prints_the_librarys_map() {
     let here = Place::new("solve");
     let arguments = "solve --phantom 4.6 --depths-mm 1:3:1 --laterals-mm=-2.6:2.6:2.6 --mesh-mm 2";
     let json = here.succeed(&format!("{arguments} --format json"));
-    let model = Model::new(
-        &Phantom::builtin("4.6").unwrap(),
-        2e-3,
-        Contact::DeformedNormal,
-    )
-    .unwrap();
-    let map = model
-        .map(&[1e-3, 2e-3, 3e-3], &[-2.6e-3, 0.0, 2.6e-3], &|_| ())
-        .unwrap();
+    let phantom = Phantom::builtin("4.6").unwrap();
+    let model = Model::new(&phantom, 2e-3, Contact::DeformedNormal).unwrap();
+    let (depths, laterals) = ([1e-3, 2e-3, 3e-3], [-2.6e-3, 0.0, 2.6e-3]);
+    let map = model.map(&depths, &laterals, &|_| ()).unwrap();
     assert_eq!(ForceMap::from_json(&json, "standard output").unwrap(), map);
     let csv = here.succeed(&format!("{arguments} --format csv"));
     assert_eq!(csv, map.table().to_csv());
     let table = here.succeed(arguments);
-    assert!(
-        table.contains(&format!("{:.5}", map.forces().normal.row(2)[1])),
-        "{table}"
-    );
-    assert!(
-        table.contains("normal force, N") && table.contains("lateral force, N"),
-        "{table}"
-    );
-    let row = table
-        .lines()
-        .find(|line| line.trim_start().starts_with("3.0"))
-        .expect("a row for 3 mm");
+    let force = format!("{:.5}", map.forces().normal.row(2)[1]);
+    has(&table, [&force, "normal force, N", "lateral force, N"]);
+    let mut rows = table.lines().map(str::trim_start);
+    let row = rows.find(|row| row.starts_with("3.0")).expect("3 mm");
     assert_eq!(row.split_whitespace().count(), 4, "{row}");
 }
 
@@ -149,14 +130,9 @@ fn the_statistics_battery_traverses_these_force_maps() {
     for name in ["none", "4.6"] {
         let arguments =
             format!("solve --phantom {name} --depths-mm 4 --laterals-mm -10:10:0.5 --format csv");
-        let kept = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join(format!("proofs/verify/src/statistics/traverse_{name}.csv"));
-        let said = here.succeed(&arguments);
-        assert!(
-            said == fs::read_to_string(&kept).unwrap(),
-            "{} is not what the solver prints",
-            kept.display()
-        );
+        let kept = format!("proofs/verify/src/statistics/traverse_{name}.csv");
+        let is_same = here.succeed(&arguments) == fs::read_to_string(&kept).unwrap();
+        assert!(is_same, "{kept} is not what the solver prints");
     }
 }
 
@@ -188,10 +164,7 @@ fn large_strain_is_warned_of() {
     };
     assert_eq!(solve("1"), "");
     let warning = solve("4.25");
-    assert!(
-        warning.contains("warning: phantom 2.6") && warning.contains("depth 4.25 mm"),
-        "{warning}"
-    );
+    has(&warning, ["warning: phantom 2.6", "depth 4.25 mm"]);
     assert!(!warning.contains("inside out"), "{warning}");
     let warning = solve("9");
     assert!(warning.contains("inside out"), "{warning}");
@@ -204,8 +177,8 @@ fn a_reader_that_goes_away_is_no_error() {
     // Far more than a pipe holds, so that the program meets the closed end.
     let arguments =
         "solve --phantom none --depths-mm 1:4:0.005 --laterals-mm -9:9:1 --mesh-mm 4 --format csv";
-    let mut child = here
-        .palpate(arguments)
+    let mut program = here.palpate(arguments);
+    let mut child = program
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -222,16 +195,13 @@ fn files_are_whole_and_progress_stays_off_a_pipe() {
     let here = Place::new("files");
     let arguments = "solve --phantom 6.6 --depths-mm 2 --laterals-mm 0 --mesh-mm 2 --vtu pose.vtu";
     let output = here.run(arguments);
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(text(&output.stderr), "");
+    let files = contents(&here.at(""));
     assert!(
-        output.status.success() && output.stderr.is_empty(),
-        "{}",
-        text(&output.stderr)
+        files.iter().all(|(name, _)| name == "pose.vtu"),
+        "{output:?}"
     );
-    let names: Vec<_> = fs::read_dir(here.at(""))
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name())
-        .collect();
-    assert_eq!(names, ["pose.vtu"]);
     assert!(here.read("pose.vtu").ends_with("</VTKFile>\n"));
 }
 
@@ -265,58 +235,48 @@ fn a_measured_map_is_told_beside_its_phantom() {
             let row = change([fields[0], fields[1], fields[2], fields[3]]);
             row.map(|field| field.to_string()).join(";") + ";x\n"
         });
-        "depth_mm;lateral_mm;normal_force_n;lateral_force_n;by\n".to_string()
-            + &rows.collect::<String>()
+        let header = "depth_mm;lateral_mm;normal_force_n;lateral_force_n;by\n";
+        header.to_string() + &rows.collect::<String>()
     };
     type Change = dyn Fn([f64; 4]) -> [f64; 4];
     let cases: &[(&Change, &str)] = &[
         // Its own forces times 1.01 are 1.01 of them, and 1 % off.
         (
             &|[d, x, n, t]| [d, x, 1.01 * n, t],
-            "the normal force is 1.0100 of that computed (median), and 0.0",
+            "normal force is 1.0100 of that computed (median), and 0.0",
         ),
         (
             &|[d, x, n, t]| [d, x, 1e3 * n, 1e3 * t],
-            "the forces look like mN in a column of N: the normal force is 1000.0000",
+            "forces look like mN in a column of N: the normal force is 1000.0000",
         ),
-        (
-            &|[d, x, n, t]| [d, x, -n, t],
-            "the normal force looks negated",
-        ),
-        (
-            &|[d, x, n, t]| [d, x, n, -t],
-            "the lateral force looks negated",
-        ),
+        (&|[d, x, n, t]| [d, x, -n, t], "normal force looks negated"),
+        (&|[d, x, n, t]| [d, x, n, -t], "lateral force looks negated"),
         (
             &|[d, x, n, t]| [d / 1e3, x, n, t],
-            "the depths look like metres in a column of mm",
+            "depths look like metres in a column of mm",
         ),
         (
             &|[d, x, n, t]| [d, x / 1e3, n, t],
-            "the lateral positions look like metres in a column of mm",
+            "lateral positions look like metres in a column of mm",
         ),
     ];
     for (change, expected) in cases {
         here.write("gel.csv", rows(*change));
         let output = here.run("import-map gel.csv --phantom 6.6 --out gel.json");
         let said = text(&output.stderr);
-        assert!(
-            output.status.success() && here.read("gel.json").contains("\"6.6\""),
-            "{said}"
-        );
-        let expected = format!("palpate: note: gel.csv: phantom 6.6: {expected}");
-        let unused = said.starts_with("palpate: note: gel.csv: column \"by\" is not used\n");
-        assert!(
-            unused && said.contains(&expected) && said.lines().count() == 2,
-            "{said}"
-        );
+        assert!(output.status.success(), "{said}");
+        has(&here.read("gel.json"), ["\"6.6\""]);
+        let notes = [
+            "column \"by\" is not used",
+            &format!("phantom 6.6: the {expected}"),
+        ];
+        let notes = notes.map(|note| format!("palpate: note: gel.csv: {note}"));
+        assert_eq!(said.lines().collect::<Vec<_>>(), notes);
     }
     // The probe cannot stand at metres but for 0, nor at 12 mm when 4 mm deep, but when 2 mm deep.
     for (factor, words) in [(1e3, "24 of 27 poses"), (1.5, "2 of 27 poses")] {
-        here.write(
-            "wide.csv",
-            rows(&|[d, x, n, t]| [d, factor * x, n, t]).replace("\n0;", "\n0.5;"),
-        );
+        let wide = rows(&|[d, x, n, t]| [d, factor * x, n, t]);
+        here.write("wide.csv", wide.replace("\n0;", "\n0.5;"));
         let output = here.run("import-map wide.csv --phantom 6.6");
         let said = text(&output.stderr);
         assert!(output.status.success() && said.contains(words), "{said}");
@@ -334,10 +294,8 @@ fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
             if path.is_dir() {
                 folders.push(path);
             } else {
-                files.push((
-                    path.strip_prefix(folder).unwrap().to_path_buf(),
-                    fs::read(&path).unwrap(),
-                ));
+                let name = path.strip_prefix(folder).unwrap().to_path_buf();
+                files.push((name, fs::read(&path).unwrap()));
             }
         }
     }
@@ -349,38 +307,27 @@ fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 #[test]
 fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
     let here = Place::new("threads");
-    let own = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/phantom.toml"))
-        .unwrap();
-    here.write("mine.toml", own);
+    here.write("mine.toml", include_str!("../docs/phantom.toml"));
     let config = "phantoms = [\"2.6\", \"mine.toml\"]\ndepths_mm = \"0:3:1\"\nlaterals_mm = \"-4:4:1\"\n[mesh]\nsize_mm = 2.0\n[detection]\nnoise_sd_n = 0.1\n";
     here.write("run.toml", config);
     for threads in ["1", "2", "5"] {
         let out = format!("out-{threads}");
-        let output = here
-            .palpate(&format!("run --config run.toml --out {out}"))
-            .env("RAYON_NUM_THREADS", threads)
-            .output()
-            .unwrap();
+        let mut run = here.palpate(&format!("run --config run.toml --out {out}"));
+        let output = run.env("RAYON_NUM_THREADS", threads).output().unwrap();
         assert!(output.status.success(), "{}", text(&output.stderr));
         assert!(text(&output.stdout).contains(&format!("{out}/report.html")));
     }
     let one = contents(&here.at("out-1"));
     assert!(one.iter().any(|(path, _)| path.ends_with("report.html")));
-    assert_eq!(
-        one.iter()
-            .filter(|(path, _)| path.starts_with("maps"))
-            .count(),
-        3
-    );
+    let maps = one.iter().filter(|(path, _)| path.starts_with("maps"));
+    assert_eq!(maps.count(), 3);
     for threads in ["2", "5"] {
         let other = contents(&here.at(&format!("out-{threads}")));
         assert_eq!(one.len(), other.len());
         for ((path, bytes), (other_path, other_bytes)) in one.iter().zip(&other) {
             assert_eq!(path, other_path);
-            assert!(
-                bytes == other_bytes,
-                "{path:?} differs between 1 and {threads} threads"
-            );
+            let is_same = bytes == other_bytes;
+            assert!(is_same, "{path:?} differs between 1 and {threads} threads");
         }
     }
 }
@@ -428,21 +375,13 @@ fn negative_laterals_of_an_asymmetric_phantom_are_solved_and_not_mirrored() {
         ForceMap::from_json(&here.succeed(&line), "").unwrap()
     };
     let [own, mirror] = ["own.toml", "mirrored.toml"].map(|phantom| map(phantom, "-4,0,4"));
-    let [left, middle, right] = own.forces().normal.row(1) else {
-        panic!("three laterals");
-    };
+    let row = |map: &ForceMap| -> [f64; 3] { map.forces().normal.row(1).try_into().unwrap() };
+    let [left, middle, right] = row(&own);
     // The stiff inclusion lies at the left.
-    assert!(*left > right + 0.05, "{left} {right}");
+    assert!(left > right + 0.05, "{left} {right}");
     assert!(own.forces().lateral.row(1)[1].abs() > 0.01);
-    let [other_left, other_middle, other_right] = mirror.forces().normal.row(1) else {
-        panic!("three laterals");
-    };
     // The meshes are no mirror images, so that this holds to their errors.
-    for (one, other) in [
-        (left, other_right),
-        (middle, other_middle),
-        (right, other_left),
-    ] {
+    for (one, other) in [right, middle, left].into_iter().zip(row(&mirror)) {
         assert!((one / other - 1.0).abs() < 0.01, "{one} {other}");
     }
     // A list without negative positions stays without them.
@@ -462,10 +401,7 @@ fn an_asymmetric_phantom_has_bands_and_a_file_for_paraview() {
     let (_, regions) = vtu.split_once("Name=\"region\"").unwrap();
     let (regions, _) = regions.split_once("</DataArray>").unwrap();
     let numbers: std::collections::BTreeSet<_> = regions.lines().skip(1).collect();
-    assert_eq!(
-        numbers.into_iter().collect::<Vec<_>>(),
-        ["0", "1", "2", "3", "4"]
-    );
+    assert!(numbers.into_iter().eq(["0", "1", "2", "3", "4"]));
 }
 
 // Verifies: CLI-031, CLI-032, REP-003.
@@ -528,41 +464,29 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
     assert!(page.contains("Figure 7. Measured forces, “gel.csv”"));
     here.write("run.toml", config("palpate-out/maps/map-none.json"));
     let message = here.refused("run --config run.toml");
-    assert!(
-        message.contains("map-none.json: a computed map"),
-        "{message}"
-    );
+    has(&message, ["map-none.json: a computed map"]);
 }
 
 // Verifies: CLI-130, CLI-131, CLI-132.
 #[test]
 fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
     let here = Place::new("demo");
-    let files = [
-        "run.toml",
-        "none.json",
-        "inclusion.json",
-        "sweep-without.csv",
-        "sweep-with.csv",
-        "sweep-disturbed.csv",
-        "blank.csv",
-        "measured.csv",
-    ];
+    let files = "run.toml none.json inclusion.json sweep-without.csv sweep-with.csv sweep-disturbed.csv blank.csv measured.csv";
     let printed = here.succeed("demo first");
-    let expected: String = files.map(|file| format!("first/{file}\n")).concat();
+    let expected: String = files
+        .split(' ')
+        .map(|file| format!("first/{file}\n"))
+        .collect();
     assert_eq!(printed, expected);
     here.succeed("demo second");
     let [first, second] = ["first", "second"].map(|folder| contents(&here.at(folder)));
     let bytes = |files: Vec<(PathBuf, Vec<u8>)>| files.into_iter().map(|(_, bytes)| bytes);
-    assert_eq!(first.len(), files.len());
+    assert_eq!(first.len(), files.split(' ').count());
     assert!(bytes(first).eq(bytes(second)));
     // The forces of the sensor without a gel are its offset and half its drift, within 5 standard deviations of a mean.
     let blank = here.read("first/blank.csv");
-    let rows = blank
-        .lines()
-        .skip(1)
-        .map(|row| row.split(',').map(|field| field.parse().unwrap()).collect());
-    let rows: Vec<Vec<f64>> = rows.collect();
+    let row = |row: &str| row.split(',').map(|field| field.parse().unwrap()).collect();
+    let rows: Vec<Vec<f64>> = blank.lines().skip(1).map(row).collect();
     assert_eq!((rows.len(), rows[0][0], rows[400][0]), (401, -8.0, 8.0));
     for (channel, mean) in [(1, 0.05 - 0.025), (2, 0.3 + 0.05)] {
         let found = rows.iter().map(|row| row[channel]).sum::<f64>() / 401.0;
@@ -587,25 +511,26 @@ fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
         let map = ForceMap::read(&out.join(format!("maps/map-{name}.json"))).unwrap();
         assert_eq!(map.phantom(), Some(&Phantom::builtin(name).unwrap()));
         assert_eq!((map.depths().len(), map.laterals().len()), (9, 41));
-        assert_eq!(
-            (map.depths()[8], map.laterals()[0], map.laterals()[40]),
-            (4e-3, -10e-3, 10e-3)
-        );
+        let ends = [map.depths()[8], map.laterals()[0], map.laterals()[40]];
+        assert_eq!(ends, [4e-3, -10e-3, 10e-3]);
         assert!(out.join(format!("figures/figure-5-{name}.svg")).exists());
     }
     for number in [1, 2, 3, 4, 6, 8, 9, 10, 11, 12, 13] {
         let name = format!("figures/figure-{number}.svg");
         assert!(out.join(&name).exists(), "{name}");
     }
-    let summary: serde_json::Value =
-        serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
-    assert!(summary.is_object());
+    let summary = here.read("palpate-out/summary.json");
+    assert!(
+        serde_json::from_str::<serde_json::Value>(&summary)
+            .unwrap()
+            .is_object()
+    );
     let page = fs::read(out.join("report.html")).unwrap();
     assert!(page.len() < 3_000_000, "{} bytes", page.len());
-    let figure = fs::read(out.join("figures/figure-5-2.6.svg")).unwrap();
-    let readme = fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figure-5.svg")).unwrap();
+    let is_same =
+        here.read("palpate-out/figures/figure-5-2.6.svg") == include_str!("../docs/figure-5.svg");
     assert!(
-        figure == readme,
+        is_same,
         "docs/figure-5.svg is not what the program draws: copy it from palpate-out/figures/figure-5-2.6.svg"
     );
 }
@@ -632,39 +557,27 @@ fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
     symlink("victim", at("far/real.vtu.partial")).unwrap();
     symlink("far/victim", at("link.vtu.partial")).unwrap();
     here.succeed(&quick_vtu("link.vtu"));
-    assert_eq!(
-        fs::read_link(at("link.vtu")).unwrap(),
-        Path::new("far/real.vtu")
-    );
-    assert!(
-        fs::read_to_string(at("far/real.vtu"))
-            .unwrap()
-            .starts_with("<?xml")
-    );
+    let leads_to = fs::read_link(at("link.vtu")).unwrap();
+    assert_eq!(leads_to, Path::new("far/real.vtu"));
+    assert!(here.read("far/real.vtu").starts_with("<?xml"));
     let mode = |name: &str| fs::metadata(at(name)).unwrap().permissions().mode() & 0o777;
     assert_eq!(mode("far/real.vtu"), 0o600);
-    assert_eq!(fs::read_to_string(at("far/victim")).unwrap(), "untouched");
+    assert_eq!(here.read("far/victim"), "untouched");
 
     // A link to what is not there yet, and one that leads nowhere at all.
     symlink("far/new.vtu", at("ahead.vtu")).unwrap();
     here.succeed(&quick_vtu("ahead.vtu"));
     assert!(fs::read_link(at("ahead.vtu")).is_ok() && at("far/new.vtu").is_file());
     fs::write(at("plain"), "").unwrap();
-    assert_eq!(
-        mode("far/new.vtu"),
-        mode("plain"),
-        "the mode of any new file"
-    );
+    let new = mode("far/new.vtu");
+    assert_eq!(new, mode("plain"), "the mode of any new file");
     symlink("loop.vtu", at("loop.vtu")).unwrap();
     let refused = here.refused(&quick_vtu("loop.vtu"));
     assert!(refused.starts_with("write loop.vtu: "), "{refused}");
 
-    let mut left: Vec<_> = fs::read_dir(at("far"))
-        .unwrap()
-        .map(|e| e.unwrap().file_name())
-        .collect();
-    left.sort();
-    assert_eq!(left, ["new.vtu", "real.vtu", "real.vtu.partial", "victim"]);
+    let left = contents(&at("far")).into_iter().map(|(name, _)| name);
+    let expected = ["new.vtu", "real.vtu", "real.vtu.partial", "victim"];
+    assert!(left.eq(expected.map(PathBuf::from)));
 }
 
 // Verifies: CLI-089.
@@ -675,13 +588,8 @@ fn a_pipe_as_output_is_written_into_and_stays() {
 
     let here = Place::new("pipes");
     let pipe = here.at("pipe");
-    assert!(
-        Command::new("mkfifo")
-            .arg(&pipe)
-            .status()
-            .unwrap()
-            .success()
-    );
+    let made = Command::new("mkfifo").arg(&pipe).status().unwrap();
+    assert!(made.success());
     let reader = std::thread::spawn({
         let pipe = pipe.clone();
         move || fs::read_to_string(pipe).unwrap()
@@ -699,12 +607,9 @@ fn a_large_mesh_is_told_before_it_is_made() {
     let wide = narrow.replace("width_mm = 34.0", "width_mm = 1000.0");
     assert_ne!(wide, narrow);
     here.write("wide.toml", wide);
-    let mut solve = here
-        .palpate("solve --depths-mm 1 --laterals-mm 0 --phantom wide.toml")
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut solve = here.palpate("solve --depths-mm 1 --laterals-mm 0 --phantom wide.toml");
+    solve.stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut solve = solve.spawn().unwrap();
     let mut told = String::new();
     let read = BufReader::new(solve.stderr.take().unwrap()).read_line(&mut told);
     // The rest takes minutes.
@@ -712,10 +617,7 @@ fn a_large_mesh_is_told_before_it_is_made() {
     solve.wait().unwrap();
     read.unwrap();
     // A mesh of 178,918 nodes was made once; the forecast is within 25 % (FEM-036).
-    let nodes = told
-        .split("about ")
-        .nth(1)
-        .and_then(|rest| rest.split(' ').next());
-    let nodes: f64 = nodes.expect(&told).parse().unwrap();
+    let (_, nodes) = told.split_once("about ").expect(&told);
+    let nodes: f64 = nodes.split(' ').next().unwrap().parse().unwrap();
     assert!((nodes / 178_918.0 - 1.0).abs() < 0.25, "{told}");
 }

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use palpate::bank::Bank;
 use palpate::force_map::ForceMap;
-use program::Place;
+use program::{Place, has};
 use serde_json::Value;
 
 /// The folder with a bank of two depths and two diameters, made once.
@@ -136,21 +136,12 @@ fn depths_and_diameters_are_those_of_plain_sums() {
 #[test]
 fn what_lies_beyond_the_bank_is_said() {
     let table = place().succeed("reach --bank bank.json --noise-sd-n 1e-9");
-    for words in [
-        "deeper than the bank (6.6)",
-        "smaller than the bank (4.0)",
-        "unknown: offset, drift, gain",
-    ] {
-        assert!(table.contains(words), "{table}");
-    }
+    let said =
+        "deeper than the bank (6.6) | smaller than the bank (4.0) | unknown: offset, drift, gain";
+    has(&table, said.split(" | "));
     let table = place().succeed("reach --bank bank.json --noise-sd-n 1e3 --known all");
-    for words in [
-        "not even at the least depth (3.6)",
-        "not even the largest (6.0)",
-        "unknown: nothing",
-    ] {
-        assert!(table.contains(words), "{table}");
-    }
+    let said = "not even at the least depth (3.6) | not even the largest (6.0) | unknown: nothing";
+    has(&table, said.split(" | "));
     assert!(!table.contains("than the bank"), "{table}");
 }
 
@@ -159,16 +150,9 @@ fn what_lies_beyond_the_bank_is_said() {
 fn the_figure_shows_both_lines_and_says_them_in_words() {
     place().succeed("reach --bank bank.json --noise-sd-n 0.005 --figure reach.svg");
     let figure = place().read("reach.svg");
-    for words in [
-        "<svg ",
-        "Diameter of the inclusion (mm)",
-        "Largest depth at which it is found (mm)",
-        ">\nnothing unknown\n<",
-        ">\nunknown: offset, drift, gain\n<",
-        "4 mm wide, 1200 kPa: ",
-    ] {
-        assert!(figure.contains(words), "no {words:?} in {figure}");
-    }
+    let words = "<svg | Diameter of the inclusion (mm) | Largest depth at which it is found (mm) | 4 mm wide, 1200 kPa: \
+                 | >\nnothing unknown\n< | >\nunknown: offset, drift, gain\n<";
+    has(&figure, words.split(" | "));
 }
 
 /// Arguments, and words of the refusal.
@@ -185,9 +169,5 @@ const REFUSED: &str = "
 // Verifies: CLI-160, CLI-002.
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
-    for case in REFUSED.trim().lines() {
-        let (arguments, expected) = case.split_once(" => ").unwrap();
-        let error = place().refused(&format!("reach {arguments}"));
-        assert!(error.contains(expected), "{arguments}: {error}");
-    }
+    place().refuses(REFUSED, |words| format!("reach {words}"));
 }

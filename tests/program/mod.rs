@@ -56,6 +56,23 @@ impl Place {
         assert_eq!(message.lines().count(), 1, "{line}: {message}");
         said.trim_end().into()
     }
+
+    /// Asserts that each line of `cases`, words and parts of the refusal, is refused with these.
+    pub fn refuses(&self, cases: &str, line: impl Fn(&str) -> String) {
+        for case in cases.trim().lines().map(str::trim) {
+            let (words, parts) = case.split_once(" => ").expect(case);
+            has(&self.refused(&line(words)), parts.split(" | "));
+        }
+    }
+}
+
+/// Asserts that a text has these parts.
+#[track_caller]
+pub fn has(text: &str, parts: impl IntoIterator<Item = impl AsRef<str>>) {
+    for part in parts {
+        let part = part.as_ref();
+        assert!(text.contains(part), "no {part:?} in {text}");
+    }
 }
 
 pub fn text(bytes: &[u8]) -> &str {

@@ -114,10 +114,8 @@ fn each_force_report_is_one_ahead_of_the_last() {
     let cycles = recorded(ideal(faults), 70_000);
     assert_eq!(cycles.len(), 70_000);
     for pair in cycles.windows(2) {
-        assert_eq!(
-            pair[1].force.sequence,
-            pair[0].force.sequence.wrapping_add(1)
-        );
+        let [before, after] = [0, 1].map(|k: usize| pair[k].force.sequence);
+        assert_eq!(after, before.wrapping_add(1));
     }
 }
 
@@ -246,6 +244,15 @@ fn a_session_begins_only_with_a_device_that_can_be_trusted() {
     // 2 N and not a step of an f32 more.
     assert_eq!(begins(weak, 2.0), Ok(()));
     assert!(begins(weak, 2f32.next_up()).is_err());
+    let drops = "the device drops its force after";
+    let none = format!(
+        "{drops} 0 ms without a report, expected more than its period of 1000 µs and at most 100 ms: \
+         a blocked write would leave the force on the hand"
+    );
+    let fine = "the device's force unit is 10 µN, so that no report holds its largest force of 8000 mN, \
+                expected a unit of at least 245 µN";
+    let weak = "a force limit of 2 N, expected at most 1.9 N, the device's largest force";
+    let coarse = "the device's force unit is 0.051 N, expected at most the slew limit of 0.05 N";
     type Change = fn(&mut Capabilities);
     let changes: [(Change, &str); 8] = [
         (
@@ -256,34 +263,17 @@ fn a_session_begins_only_with_a_device_that_can_be_trusted() {
             |c| c.period_us = 0,
             "the device reports every 0 µs, expected at least 1",
         ),
-        (
-            |c| c.watchdog_ms = 0,
-            "the device drops its force after 0 ms without a report, expected more than its period of 1000 µs \
-             and at most 100 ms: a blocked write would leave the force on the hand",
-        ),
-        (
-            |c| c.watchdog_ms = 101,
-            "the device drops its force after 101 ms",
-        ),
+        (|c| c.watchdog_ms = 0, &none),
+        (|c| c.watchdog_ms = 101, &format!("{drops} 101 ms")),
         // 10 ms of watchdog on a device that reports every 10 ms.
         (
             |c| (c.watchdog_ms, c.period_us) = (10, 10_000),
-            "the device drops its force after 10 ms",
+            &format!("{drops} 10 ms"),
         ),
-        (
-            |c| c.largest_force_mn = 1900,
-            "a force limit of 2 N, expected at most 1.9 N, the device's largest force",
-        ),
+        (|c| c.largest_force_mn = 1900, weak),
         // A device whose numbers do not reach its force, or cannot tell one step of it from two.
-        (
-            |c| c.force_unit_un = 10,
-            "the device's force unit is 10 µN, so that no report holds its largest force of 8000 mN, \
-             expected a unit of at least 245 µN",
-        ),
-        (
-            |c| c.force_unit_un = 51_000,
-            "the device's force unit is 0.051 N, expected at most the slew limit of 0.05 N",
-        ),
+        (|c| c.force_unit_un = 10, fine),
+        (|c| c.force_unit_un = 51_000, coarse),
     ];
     for (change, expected) in changes {
         let mut capabilities = PAPER;
