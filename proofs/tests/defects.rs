@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use list::{DEFECTS, Defect};
+use list::{Defect, defects};
 
 /// A copy of the package and its proofs, with a target folder of its own.
 struct Copy {
@@ -60,14 +60,11 @@ impl Copy {
     fn failing_with(&self, defect: &Defect) -> Vec<String> {
         let path = self.root.join(defect.file);
         let sound = fs::read_to_string(&path).unwrap();
-        let mut spoilt = sound.clone();
-        for (from, to) in defect.edits {
-            let found = spoilt.matches(from).count();
-            let Defect { name, file, .. } = defect;
-            assert_eq!(found, 1, "{name}: {file} must have once: {from}");
-            spoilt = spoilt.replace(from, to);
-        }
-        fs::write(&path, spoilt).unwrap();
+        let [from, to] = &defect.edit;
+        let found = sound.matches(from).count();
+        let Defect { name, file, .. } = defect;
+        assert_eq!(found, 1, "{name}: {file} must have once: {from}");
+        fs::write(&path, sound.replace(from, to)).unwrap();
         let failing = self.failing(defect.found_by);
         fs::write(&path, sound).unwrap();
         failing
@@ -114,8 +111,8 @@ fn each_planted_defect_is_found_by_its_harness() {
     let copy = Copy::new();
     assert_eq!(copy.failing(""), [""; 0], "without a defect nothing fails");
     let mut missed = Vec::new();
-    for defect in DEFECTS {
-        let failing = copy.failing_with(defect);
+    for defect in defects() {
+        let failing = copy.failing_with(&defect);
         println!("{}: {}", defect.name, failing.join(", "));
         if failing.is_empty() {
             missed.push(defect.name);
