@@ -46,11 +46,13 @@ fn locate_is_total_and_in_range() {
         if position >= knots[3] {
             assert!(found.index == 2 && found.fraction >= 1.0);
         }
-        reached!("in the first cell", inside && position < knots[1]);
-        reached!("in the last cell", inside && position >= knots[2]);
-        reached!("below the axis", position < knots[0]);
-        reached!("above the axis", position > knots[3]);
-        reached!("not finite", !position.is_finite());
+        reached! {
+            "in the first cell": inside && position < knots[1],
+            "in the last cell": inside && position >= knots[2],
+            "below the axis": position < knots[0],
+            "above the axis": position > knots[3],
+            "not finite": !position.is_finite(),
+        }
     });
 }
 
@@ -68,15 +70,11 @@ fn a_fraction_is_near_the_exact_one() {
         let exact = ((position - start) / (end - start)).clamp(-1.0, 2.0);
         let off = (f64::from(found.fraction) - exact).abs();
         assert!(case.position.is_nan() || off <= 4.01 / 16_777_216.0 * exact.abs());
-        reached!(
-            "within a cell",
-            found.fraction > 0.0 && found.fraction < 1.0
-        );
-        reached!(
-            "in a cell but the first",
-            found.index != 0 && found.fraction < 1.0
-        );
-        reached!("continued", found.fraction > -1.0 && found.fraction < 0.0);
+        reached! {
+            "within a cell": found.fraction > 0.0 && found.fraction < 1.0,
+            "in a cell but the first": found.index != 0 && found.fraction < 1.0,
+            "continued": found.fraction > -1.0 && found.fraction < 0.0,
+        }
     });
 }
 
@@ -95,8 +93,10 @@ fn knots_have_whole_fractions() {
     harness!(AtKnot, |case| {
         let found = case.axis.axis().locate(case.axis.knots[case.knot]);
         assert!(found.index == case.knot && found.fraction == 0.0);
-        reached!("the first knot", case.knot == 0);
-        reached!("a knot between two cells", case.knot == 1);
+        reached! {
+            "the first knot": case.knot == 0,
+            "a knot between two cells": case.knot == 1,
+        }
     });
 }
 
@@ -143,27 +143,20 @@ fn a_blend_is_between_its_ends() {
             assert!(value == b);
         }
         assert!(value.abs() <= 301.0);
-        reached!("between", inside && t != 0.0 && t != 1.0);
-        reached!("at an end", t == 0.0 || t == 1.0);
-        reached!("outside", !inside);
-        reached!("ends that are equal", a == b && a != 0.0);
+        reached! {
+            "between": inside && t != 0.0 && t != 1.0,
+            "at an end": t == 0.0 || t == 1.0,
+            "outside": !inside,
+            "ends that are equal": a == b && a != 0.0,
+        }
     });
 }
 
 /// Any number and the largest magnitude that it is limited to.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, bolero_generator::TypeGenerator)]
 struct Limited {
-    value: f32,
-    largest: f32,
-}
-
-impl TypeGenerator for Limited {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        Some(Limited {
-            value: driver.produce::<Newtons>()?.0,
-            largest: driver.produce::<Entry>()?.0.abs(),
-        })
-    }
+    value: Newtons,
+    largest: Entry,
 }
 
 // Verifies: SRV-020.
@@ -171,7 +164,7 @@ impl TypeGenerator for Limited {
 #[cfg_attr(kani, kani::proof, kani::solver(cadical))]
 fn a_limited_number_is_within_its_limit() {
     harness!(Limited, |case| {
-        let &Limited { value, largest } = case;
+        let (value, largest) = (case.value.0, case.largest.0.abs());
         let limited = limit(value, largest);
         if value.is_nan() {
             assert!(limited == 0.0);
@@ -180,9 +173,11 @@ fn a_limited_number_is_within_its_limit() {
         } else {
             assert!(limited == largest.copysign(value));
         }
-        reached!("a NaN", value.is_nan());
-        reached!("within", value.abs() <= largest);
-        reached!("above", value > largest);
-        reached!("below", value < -largest);
+        reached! {
+            "a NaN": value.is_nan(),
+            "within": value.abs() <= largest,
+            "above": value > largest,
+            "below": value < -largest,
+        }
     });
 }

@@ -184,7 +184,8 @@ impl TypeGenerator for Grid {
         let lateral = driver.gen_variant(LATERALS.len(), 0)?;
         let mut forces = [Force::ZERO; 12];
         for force in &mut forces {
-            *force = Force::new(driver.produce::<Entry>()?.0, driver.produce::<Entry>()?.0);
+            let (Entry(lateral), Entry(normal)) = driver.produce()?;
+            *force = Force { lateral, normal };
         }
         Some(Grid {
             depths: DEPTHS[depth],
@@ -276,11 +277,8 @@ fn limits<D: Driver>(
     let slew = if slew > force { force } else { slew };
     let least = larger(slew, share * force);
     // As small as it may be, or anything above.
-    let release = if driver.produce()? {
-        least
-    } else {
-        larger(least, least_release)
-    };
+    let above: bool = driver.produce()?;
+    let release = larger(least, if above { least_release } else { least });
     match Limits::new(force, slew, release, watchdog) {
         Ok(limits) => Some(ValidLimits(limits)),
         Err(_) => panic!("the limits are valid by construction"),
@@ -325,13 +323,16 @@ pub struct Cycle {
     pub input: Input,
 }
 
+impl Cycle {
+    pub fn parts(&self) -> (Limits, State, Input) {
+        (self.limits, self.state, self.input)
+    }
+}
+
 impl TypeGenerator for Cycle {
     fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
         let ValidLimits(limits) = driver.produce()?;
-        let any = Force::new(
-            driver.produce::<Newtons>()?.0,
-            driver.produce::<Newtons>()?.0,
-        );
+        let any = any_force(driver)?;
         let sound = sound_force(driver, &limits)?;
         let force = if driver.produce()? { any } else { sound };
         cycle(driver, limits, force)
@@ -350,17 +351,17 @@ impl TypeGenerator for SoundCycle {
     }
 }
 
+/// Any force.
+pub fn any_force<D: Driver>(driver: &mut D) -> Option<Force<f32>> {
+    let (Newtons(lateral), Newtons(normal)) = driver.produce()?;
+    Some(Force { lateral, normal })
+}
+
 /// A force within the limits, one time in two zero.
 pub fn sound_force<D: Driver>(driver: &mut D, limits: &Limits) -> Option<Force<f32>> {
-    let force = Force::new(
-        folded(driver.produce::<Newtons>()?.0, limits.force()),
-        folded(driver.produce::<Newtons>()?.0, limits.force()),
-    );
-    Some(if driver.produce()? {
-        force
-    } else {
-        Force::ZERO
-    })
+    let force = any_force(driver)?.map(|value| folded(value, limits.force()));
+    let zero: bool = driver.produce()?;
+    Some(if zero { Force::ZERO } else { force })
 }
 
 fn cycle<D: Driver>(driver: &mut D, limits: Limits, force: Force<f32>) -> Option<Cycle> {
@@ -388,11 +389,8 @@ fn cycle<D: Driver>(driver: &mut D, limits: Limits, force: Force<f32>) -> Option
         input,
     };
     let playing = playing(driver, any.clone(), last)?;
-    Some(if driver.gen_variant(3, 0)? == 1 {
-        playing
-    } else {
-        any
-    })
+    let plays = driver.gen_variant(3, 0)? == 1;
+    Some(if plays { playing } else { any })
 }
 
 /// The same cycle with everything there that playing needs, one time in four above the surface.

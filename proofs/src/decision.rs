@@ -40,10 +40,12 @@ fn no_inclusion_is_never_decided_without_finite_numbers() {
         } else {
             assert!(decision.is_err());
         }
-        reached!("a NaN for the statistic", theta.is_nan());
-        reached!("an infinite statistic", theta.is_infinite());
-        reached!("a threshold that is not finite", !eta.is_finite());
-        reached!("on the threshold", theta == eta);
-        reached!("below the threshold", theta < eta);
+        reached! {
+            "a NaN for the statistic": theta.is_nan(),
+            "an infinite statistic": theta.is_infinite(),
+            "a threshold that is not finite": !eta.is_finite(),
+            "on the threshold": theta == eta,
+            "below the threshold": theta < eta,
+        }
     });
 }

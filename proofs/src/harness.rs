@@ -18,15 +18,16 @@ macro_rules! harness {
     }};
 }
 
-/// A region of the inputs that a harness must reach: a cover property for Kani, elsewhere a
-/// counter. Each case must come by, whether it is in the region or not, so that no region can be
-/// overlooked.
+/// Regions of the inputs that a harness must reach: cover properties for Kani, elsewhere counters.
+/// Each case must come by, whether it is in the region or not, so that no region can be overlooked.
 macro_rules! reached {
-    ($name:literal, $condition:expr) => {{
-        #[cfg(kani)]
-        kani::cover!($condition, $name);
-        #[cfg(not(kani))]
-        $crate::harness::count($name, $condition);
+    ($($name:literal: $condition:expr),+ $(,)?) => {{
+        $(
+            #[cfg(kani)]
+            kani::cover!($condition, $name);
+            #[cfg(not(kani))]
+            $crate::harness::count($name, $condition);
+        )+
     }};
 }
 

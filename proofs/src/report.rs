@@ -10,7 +10,7 @@ use palpate::hid::{
 };
 use palpate::servo::Command;
 
-use crate::cases::{Count, Newtons};
+use crate::cases::{Count, any_force};
 
 /// Any bytes, 0 to 64 of them.
 #[derive(Debug, Clone)]
@@ -44,16 +44,17 @@ impl TypeGenerator for Bytes {
     }
 }
 
-/// Decoding is total, accepts what it should, names what is wrong, and is undone by encoding.
+/// Decoding is total, accepts what it should, with a first value of `largest` at the most, names what is
+/// wrong, and is undone by encoding.
 macro_rules! decoding {
-    ($name:ident, $report:ident, $valid:expr) => {
+    ($name:ident, $report:ident, $largest:expr) => {
         // Verifies: HID-002, HID-003, HID-004, HID-005, HID-006, HID-007.
         #[test]
         #[cfg_attr(kani, kani::proof, kani::unwind(66), kani::solver(cadical))]
         fn $name() {
             harness!(Bytes, |case| {
                 let bytes = &case.bytes[..case.length];
-                let valid: fn(u8) -> bool = $valid;
+                let valid = |value: u8| (0..=$largest).contains(&value);
                 let decoded = $report::decode(bytes);
                 let number = case.bytes[0];
                 let right_length = case.length == $report::LENGTH;
@@ -76,20 +77,20 @@ macro_rules! decoding {
                         assert!(right_length && right_number);
                     }
                 }
-                reached!("a report", decoded.is_ok());
-                reached!("another length", !right_length && right_number);
-                reached!("another number", right_length && !right_number);
+                reached! {
+                    "a report": decoded.is_ok(),
+                    "another length": !right_length && right_number,
+                    "another number": right_length && !right_number,
+                }
             });
         }
     };
 }
 
-decoding!(decoding_a_position_report_is_total, PositionReport, |_| {
-    true
-});
-decoding!(decoding_a_force_report_is_total, ForceReport, |_| true);
-decoding!(decoding_capabilities_is_total, Capabilities, |_| true);
-decoding!(decoding_control_is_total, Control, |value| value <= 2);
+decoding!(decoding_a_position_report_is_total, PositionReport, 255);
+decoding!(decoding_a_force_report_is_total, ForceReport, 255);
+decoding!(decoding_capabilities_is_total, Capabilities, 255);
+decoding!(decoding_control_is_total, Control, 2);
 
 /// The numbers of a report.
 #[derive(Debug, Clone, bolero_generator::TypeGenerator)]
@@ -126,11 +127,10 @@ fn reports_survive_encoding_and_decoding() {
         assert!(Capabilities::decode(&capabilities.encode()) == Ok(capabilities));
         let control = [Control::Stop, Control::Enable, Control::ClearFault][fields.control];
         assert!(Control::decode(&control.encode()) == Ok(control));
-        reached!(
-            "negative counts",
-            fields.signed[0] < 0 && fields.signed[1] < 0
-        );
-        reached!("the last control", fields.control == 2);
+        reached! {
+            "negative counts": fields.signed[0] < 0 && fields.signed[1] < 0,
+            "the last control": fields.control == 2,
+        }
     });
 }
 
@@ -168,11 +168,13 @@ fn a_count_is_the_nearest_whole_number() {
         } else {
             assert!(found == 0);
         }
-        reached!("within", within);
-        reached!("halfway", on_a_half);
-        reached!("above", value > 32767.0);
-        reached!("below", value < -32767.0);
-        reached!("a NaN", value.is_nan());
+        reached! {
+            "within": within,
+            "halfway": on_a_half,
+            "above": value > 32767.0,
+            "below": value < -32767.0,
+            "a NaN": value.is_nan(),
+        }
     });
 }
 
@@ -198,10 +200,7 @@ impl TypeGenerator for Exchange {
             words,
             report: driver.produce()?,
             bits: driver.produce()?,
-            force: Force::new(
-                driver.produce::<Newtons>()?.0,
-                driver.produce::<Newtons>()?.0,
-            ),
+            force: any_force(driver)?,
         })
     }
 }
@@ -244,18 +243,13 @@ fn a_device_gives_finite_samples_and_takes_any_force() {
             assert!(sent.sequence == case.words[5] && sent.flags == ForceReport::PLAY);
             assert!(sent.normal != i16::MIN && sent.lateral != i16::MIN);
             let up = case.force.normal > 0.0;
-            assert!(if up {
-                sent.normal >= 0
-            } else {
-                sent.normal <= 0
-            });
+            assert!(sent.normal == 0 || (sent.normal > 0) == up);
         }
-        reached!("a device that is known", known);
-        reached!("no unit of force", case.words[0] == 1 && case.words[2] == 0);
-        reached!("another version", case.words[0] != 1);
-        reached!(
-            "a force beyond the counts",
-            known && case.force.normal > 32767.0
-        );
+        reached! {
+            "a device that is known": known,
+            "no unit of force": case.words[0] == 1 && case.words[2] == 0,
+            "another version": case.words[0] != 1,
+            "a force beyond the counts": known && case.force.normal > 32767.0,
+        }
     });
 }

@@ -1,6 +1,7 @@
 //! One cycle of the kernel, and a few in a row. What is expected is written down again here, in the
 //! words of the specification.
 
+use bolero::generator::bolero_generator;
 use bolero::{Driver, TypeGenerator};
 use palpate::force::Force;
 use palpate::servo::{Command, Fault, Input, Limits, Mode, Request, Sample, State, step};
@@ -25,11 +26,11 @@ fn is_sound(state: &State, limits: &Limits) -> bool {
 
 /// What is wrong, the gravest first (SRV-035, SRV-042).
 fn expected_fault(case: &Cycle) -> Option<Fault> {
-    let Cycle { limits, state, .. } = case;
-    if !is_sound(state, limits) {
+    let (limits, state, input) = case.parts();
+    if !is_sound(&state, &limits) {
         return Some(Fault::State);
     }
-    if let Some(sample) = case.input.sample {
+    if let Some(sample) = input.sample {
         if !sample.depth.is_finite() || !sample.lateral.is_finite() {
             return Some(Fault::NotFinite);
         }
@@ -38,7 +39,7 @@ fn expected_fault(case: &Cycle) -> Option<Fault> {
         }
     }
     let missed = u32::from(state.missed) + 1;
-    let late = !is_fresh(state, case.input.sample) && missed > u32::from(limits.watchdog());
+    let late = !is_fresh(&state, input.sample) && missed > u32::from(limits.watchdog());
     (state.mode == Mode::Armed && late).then_some(Fault::Watchdog)
 }
 
@@ -57,24 +58,11 @@ fn play(case: &Cycle) -> (State, Command) {
     step(&plain_table(), &case.limits, case.state, case.input)
 }
 
-fn components(force: Force<f32>) -> [f32; 2] {
-    [force.lateral, force.normal]
-}
-
 /// A cycle with any table.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, bolero_generator::TypeGenerator)]
 struct OnGrid {
     grid: Grid,
     cycle: Cycle,
-}
-
-impl TypeGenerator for OnGrid {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        Some(OnGrid {
-            grid: driver.produce()?,
-            cycle: driver.produce()?,
-        })
-    }
 }
 
 // Verifies: SRV-001, SRV-013, SRV-020, SRV-070.
@@ -82,13 +70,9 @@ impl TypeGenerator for OnGrid {
 #[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(cadical))]
 fn force_is_bounded() {
     harness!(OnGrid, |case| {
-        let Cycle {
-            limits,
-            state,
-            input,
-        } = case.cycle;
+        let (limits, state, input) = case.cycle.parts();
         let (next, command) = step(&case.grid.table(), &limits, state, input);
-        for value in components(command.force) {
+        for value in command.force.into_array() {
             // False for NaN, too.
             assert!(value.abs() <= limits.force() && limits.force() <= 20.0);
         }
@@ -96,37 +80,22 @@ fn force_is_bounded() {
         if !is_sound(&state, &limits) {
             assert!(command.force == Force::ZERO);
         }
-        reached!(
-            "a force at its limit",
-            command.force.normal == limits.force()
-        );
-        reached!(
-            "a force within its limit",
-            command.force.normal != 0.0 && command.force.normal.abs() < limits.force()
-        );
-        reached!("playing", command.playing);
-        reached!("a state that no step left", !is_sound(&state, &limits));
-        reached!(
-            "a sample that is not finite",
-            input.sample.is_some_and(|s| !s.depth.is_finite())
-        );
+        reached! {
+            "a force at its limit": command.force.normal == limits.force(),
+            "a force within its limit":
+                command.force.normal != 0.0 && command.force.normal.abs() < limits.force(),
+            "playing": command.playing,
+            "a state that no step left": !is_sound(&state, &limits),
+            "a sample that is not finite": input.sample.is_some_and(|s| !s.depth.is_finite()),
+        }
     });
 }
 
 /// A sound state with any table.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, bolero_generator::TypeGenerator)]
 struct SoundOnGrid {
     grid: Grid,
-    cycle: Cycle,
-}
-
-impl TypeGenerator for SoundOnGrid {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        Some(SoundOnGrid {
-            grid: driver.produce()?,
-            cycle: driver.produce::<SoundCycle>()?.0,
-        })
-    }
+    cycle: SoundCycle,
 }
 
 // Verifies: SRV-021, SRV-034.
@@ -134,11 +103,7 @@ impl TypeGenerator for SoundOnGrid {
 #[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(cadical))]
 fn slew_is_limited() {
     harness!(SoundOnGrid, |case| {
-        let Cycle {
-            limits,
-            state,
-            input,
-        } = case.cycle;
+        let (limits, state, input) = case.cycle.0.parts();
         let (next, command) = step(&case.grid.table(), &limits, state, input);
         let let_go = input.sample.is_some_and(|sample| !sample.deadman);
         let released = next.mode != Mode::Armed || let_go;
@@ -148,10 +113,7 @@ fn slew_is_limited() {
             limits.slew()
         };
         let above = input.sample.is_some_and(|sample| sample.depth < 0.0);
-        for (value, last) in components(command.force)
-            .into_iter()
-            .zip(components(state.force))
-        {
+        for (value, last) in command.force.zip(state.force).into_array() {
             let grows = value.abs() > last.abs();
             let change = if grows { limits.slew() } else { fall };
             assert!(last - change <= value && value <= last + change);
@@ -162,23 +124,17 @@ fn slew_is_limited() {
             assert!(!(command.playing && above) || value == 0.0 || value.abs() <= rest);
         }
         let rising = command.force.normal > state.force.normal;
-        reached!(
-            "a rise by the slew limit",
-            rising && command.force.normal == state.force.normal + limits.slew()
-        );
-        reached!(
-            "a rise to the table's force",
-            command.playing && rising && command.force.normal < state.force.normal + limits.slew()
-        );
-        reached!("a release", released && state.force != Force::ZERO);
-        reached!(
-            "a force that would turn",
-            command.playing && !above && command.force.normal == 0.0 && state.force.normal < 0.0
-        );
-        reached!(
-            "a hand that left the gel",
-            command.playing && above && state.force.normal != 0.0
-        );
+        reached! {
+            "a rise by the slew limit":
+                rising && command.force.normal == state.force.normal + limits.slew(),
+            "a rise to the table's force":
+                command.playing && rising
+                    && command.force.normal < state.force.normal + limits.slew(),
+            "a release": released && state.force != Force::ZERO,
+            "a force that would turn":
+                command.playing && !above && command.force.normal == 0.0 && state.force.normal < 0.0,
+            "a hand that left the gel": command.playing && above && state.force.normal != 0.0,
+        }
     });
 }
 
@@ -187,47 +143,33 @@ fn slew_is_limited() {
 #[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(cadical))]
 fn no_force_unless_permitted() {
     harness!(SoundOnGrid, |case| {
-        let cycle = &case.cycle;
-        let Cycle {
-            limits,
-            state,
-            input,
-        } = *cycle;
+        let (limits, state, input) = case.cycle.0.parts();
         let (next, command) = step(&case.grid.table(), &limits, state, input);
         let permitted = next.mode == Mode::Armed
             && is_fresh(&state, input.sample)
-            && expected_fault(cycle).is_none()
+            && expected_fault(&case.cycle.0).is_none()
             && input.sample.is_some_and(|sample| sample.deadman);
         assert!(command.playing == permitted);
         let sample_says = |what: fn(Sample) -> bool| input.sample.is_some_and(what);
         // Nothing is touched there (SRV-014).
         let above = sample_says(|s| s.depth < 0.0);
-        for (value, last) in components(command.force)
-            .into_iter()
-            .zip(components(state.force))
-        {
+        for (value, last) in command.force.zip(state.force).into_array() {
             // Towards zero by a slew limit at least, and never through it.
             let nearer = value.abs() < last.abs() && (value < 0.0) == (last < 0.0);
             assert!(value == 0.0 || nearer || permitted && !above);
         }
         let moving = state.force != Force::ZERO;
         let armed = state.mode == Mode::Armed;
-        reached!("permitted", permitted);
-        reached!("above the surface", permitted && above && moving);
-        reached!(
-            "a deadman let go",
-            armed && moving && sample_says(|s| !s.deadman)
-        );
-        reached!("no sample", armed && moving && input.sample.is_none());
-        reached!(
-            "a stale sample",
-            armed && moving && input.sample.is_some() && !is_fresh(&state, input.sample)
-        );
-        reached!("not armed", !armed && moving && sample_says(|s| s.deadman));
-        reached!(
-            "a device fault",
-            armed && moving && sample_says(|s| s.device_fault)
-        );
+        reached! {
+            "permitted": permitted,
+            "above the surface": permitted && above && moving,
+            "a deadman let go": armed && moving && sample_says(|s| !s.deadman),
+            "no sample": armed && moving && input.sample.is_none(),
+            "a stale sample":
+                armed && moving && input.sample.is_some() && !is_fresh(&state, input.sample),
+            "not armed": !armed && moving && sample_says(|s| s.deadman),
+            "a device fault": armed && moving && sample_says(|s| s.device_fault),
+        }
     });
 }
 
@@ -243,26 +185,16 @@ fn arming_needs_every_condition() {
             assert!(command.force.lateral.abs() <= case.state.force.lateral.abs());
         }
         assert!(next.arming == (case.input.request == Request::Arm));
-        reached!(
-            "armed",
-            case.state.mode != Mode::Armed && next.mode == Mode::Armed
-        );
-        reached!(
-            "a request that sticks",
-            case.input.request == Request::Arm && case.state.arming
-        );
-        reached!(
-            "a force that has not come to zero",
-            case.input.request == Request::Arm && case.state.force != Force::ZERO
-        );
-        reached!(
-            "with the deadman held",
-            case.input.request == Request::Arm && case.input.sample.is_some_and(|s| s.deadman)
-        );
-        reached!(
-            "with a stale sample",
-            case.input.request == Request::Arm && !is_fresh(&case.state, case.input.sample)
-        );
+        reached! {
+            "armed": case.state.mode != Mode::Armed && next.mode == Mode::Armed,
+            "a request that sticks": case.input.request == Request::Arm && case.state.arming,
+            "a force that has not come to zero":
+                case.input.request == Request::Arm && case.state.force != Force::ZERO,
+            "with the deadman held":
+                case.input.request == Request::Arm && case.input.sample.is_some_and(|s| s.deadman),
+            "with a stale sample":
+                case.input.request == Request::Arm && !is_fresh(&case.state, case.input.sample),
+        }
     });
 }
 
@@ -302,21 +234,14 @@ fn fault_latches() {
             (mode, None) => mode,
         };
         assert!(next.mode == expected);
-        reached!(
-            "a state that no step left",
-            !was_faulted && fault == Some(Fault::State)
-        );
-        reached!(
-            "a position that is not finite",
-            !was_faulted && fault == Some(Fault::NotFinite)
-        );
-        reached!(
-            "a fault of the device",
-            !was_faulted && fault == Some(Fault::Device)
-        );
-        reached!("samples that are late", fault == Some(Fault::Watchdog));
-        reached!("a second fault", was_faulted && fault.is_some());
-        reached!("a fault that cleared", was_faulted && fault.is_none());
+        reached! {
+            "a state that no step left": !was_faulted && fault == Some(Fault::State),
+            "a position that is not finite": !was_faulted && fault == Some(Fault::NotFinite),
+            "a fault of the device": !was_faulted && fault == Some(Fault::Device),
+            "samples that are late": fault == Some(Fault::Watchdog),
+            "a second fault": was_faulted && fault.is_some(),
+            "a fault that cleared": was_faulted && fault.is_none(),
+        }
     });
 }
 
@@ -335,19 +260,12 @@ fn stale_samples_are_not_taken_over_while_armed() {
         assert!(next.sequence == expected);
         let missed = (u32::from(state.missed) + 1).min(65535);
         assert!(u32::from(next.missed) == if fresh { 0 } else { missed });
-        reached!("fresh", fresh);
-        reached!(
-            "stale while armed",
-            next.mode == Mode::Armed && sample.is_some() && !fresh
-        );
-        reached!(
-            "stale otherwise",
-            next.mode != Mode::Armed && sample.is_some() && !fresh
-        );
-        reached!(
-            "the first sample",
-            sample.is_some() && state.sequence.is_none()
-        );
+        reached! {
+            "fresh": fresh,
+            "stale while armed": next.mode == Mode::Armed && sample.is_some() && !fresh,
+            "stale otherwise": next.mode != Mode::Armed && sample.is_some() && !fresh,
+            "the first sample": sample.is_some() && state.sequence.is_none(),
+        }
     });
 }
 
@@ -413,9 +331,11 @@ fn watchdog_drops_the_force() {
                 assert!(state.force == Force::ZERO);
             }
         }
-        reached!("tripped by the watchdog", tripped);
-        reached!("from a force", case.state.force.normal != 0.0);
-        reached!("a watchdog of two cycles", allowed == 2);
+        reached! {
+            "tripped by the watchdog": tripped,
+            "from a force": case.state.force.normal != 0.0,
+            "a watchdog of two cycles": allowed == 2,
+        }
     });
 }
 
@@ -494,15 +414,11 @@ impl<L> Released<L> {
 fn a_released_force_is_zero_in_three_cycles_of_half_the_limit() {
     harness!(Released<QuickLimits>, |case| {
         assert!(case.force_after(&case.limits.0, 3) == Force::ZERO);
-        reached!(
-            "deadman let go",
-            case.let_go && case.state.force.normal != 0.0
-        );
-        reached!("faulted", !case.let_go && case.state.force.normal != 0.0);
-        reached!(
-            "from the limit",
-            case.state.force.normal.abs() == case.limits.0.force()
-        );
+        reached! {
+            "deadman let go": case.let_go && case.state.force.normal != 0.0,
+            "faulted": !case.let_go && case.state.force.normal != 0.0,
+            "from the limit": case.state.force.normal.abs() == case.limits.0.force(),
+        }
     });
 }
 
@@ -514,10 +430,9 @@ fn a_released_force_is_zero_in_seventeen_cycles() {
     harness!(Released<ValidLimits>, |case| {
         assert!(case.force_after(&case.limits.0, 17) == Force::ZERO);
         let limits = case.limits.0;
-        reached!(
-            "the slowest release",
-            limits.release() * 16.0 == limits.force()
-                && case.state.force.normal.abs() == limits.force()
-        );
+        reached! {
+            "the slowest release":
+                limits.release() * 16.0 == limits.force() && case.state.force.normal.abs() == limits.force(),
+        }
     });
 }

@@ -1,5 +1,6 @@
 //! The force of a table: in the hull, at the nodes, on the borders, beyond.
 
+use bolero::generator::bolero_generator;
 use bolero::{Driver, TypeGenerator};
 use palpate::force::Force;
 use palpate::servo::Cell;
@@ -16,20 +17,13 @@ struct Place {
 
 impl TypeGenerator for Place {
     fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        let (grid, depth, lateral) = (
-            driver.produce::<Grid>()?,
-            driver.produce::<Position>()?.0,
-            driver.produce::<Position>()?.0,
-        );
+        let grid = driver.produce()?;
+        let (Position(depth), Position(lateral)) = driver.produce()?;
         // As often below the surface as above.
-        let depth = if driver.produce()? {
-            depth.abs()
-        } else {
-            depth
-        };
+        let below = driver.produce()?;
         Some(Place {
             grid,
-            depth,
+            depth: if below { depth.abs() } else { depth },
             lateral,
         })
     }
@@ -72,28 +66,22 @@ fn force_is_in_the_hull() {
                 assert!(value <= a || value <= b || value <= c || value <= d);
             }
         }
-        reached!("within the table", inside);
-        reached!("in the last row", row == Some(1) && column.is_some());
-        reached!("in the last column", row.is_some() && column == Some(2));
+        reached! {
+            "within the table": inside,
+            "in the last row": row == Some(1) && column.is_some(),
+            "in the last column": row.is_some() && column == Some(2),
+        }
     });
 }
 
 /// A table and one of its nodes.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, bolero_generator::TypeGenerator)]
 struct Node {
     grid: Grid,
+    #[generator(0..3)]
     row: usize,
+    #[generator(0..4)]
     column: usize,
-}
-
-impl TypeGenerator for Node {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        Some(Node {
-            grid: driver.produce()?,
-            row: driver.gen_variant(3, 0)?,
-            column: driver.gen_variant(4, 0)?,
-        })
-    }
 }
 
 // Verifies: SRV-011.
@@ -105,26 +93,19 @@ fn nodes_are_exact() {
         let (depth, lateral) = (case.grid.depths[row], case.grid.laterals[column]);
         let force = case.grid.table().force(depth, lateral);
         assert!(force == case.grid.forces[row * 4 + column]);
-        reached!("the surface", row == 0);
-        reached!("the last corner", row == 2 && column == 3);
-        reached!("a node within", row == 1 && (column == 1 || column == 2));
+        reached! {
+            "the surface": row == 0,
+            "the last corner": row == 2 && column == 3,
+            "a node within": row == 1 && (column == 1 || column == 2),
+        }
     });
 }
 
 /// A table, and a fraction along its borders.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, bolero_generator::TypeGenerator)]
 struct Border {
     grid: Grid,
-    along: f32,
-}
-
-impl TypeGenerator for Border {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        Some(Border {
-            grid: driver.produce()?,
-            along: driver.produce::<Fraction>()?.0,
-        })
-    }
+    along: Fraction,
 }
 
 // Verifies: SRV-011.
@@ -134,7 +115,8 @@ fn adjoining_cells_agree_on_their_border() {
     harness!(Border, |case| {
         let table = case.grid.table();
         let cell = |index, fraction| Cell { index, fraction };
-        let along = |index| cell(index, case.along);
+        let Fraction(fraction) = case.along;
+        let along = |index| cell(index, fraction);
         // Every border has its own step, with indices that are constants to a solver.
         for column in 0..3 {
             let before = table.force_in(cell(0, 1.0), along(column));
@@ -146,8 +128,10 @@ fn adjoining_cells_agree_on_their_border() {
                 assert!(before == table.force_in(along(row), cell(border + 1, 0.0)));
             }
         }
-        reached!("within the table", (0.0..=1.0).contains(&case.along));
-        reached!("continued", case.along < 0.0 || case.along > 1.0);
+        reached! {
+            "within the table": (0.0..=1.0).contains(&fraction),
+            "continued": !(0.0..=1.0).contains(&fraction),
+        }
     });
 }
 
@@ -164,22 +148,18 @@ fn force_of_a_table_is_bounded() {
         if case.depth < 0.0 {
             assert!(force == Force::ZERO);
         }
-        reached!("above the surface", case.depth < 0.0);
-        reached!("below the table", case.depth > case.grid.depths[2]);
-        reached!(
-            "not finite",
-            !case.depth.is_finite() || !case.lateral.is_finite()
-        );
+        reached! {
+            "above the surface": case.depth < 0.0,
+            "below the table": case.depth > case.grid.depths[2],
+            "not finite": !case.depth.is_finite() || !case.lateral.is_finite(),
+        }
     });
 }
 
 /// The largest entry of a table by magnitude.
 fn largest(grid: &Grid) -> f32 {
-    let magnitudes = grid
-        .forces
-        .iter()
-        .map(|f| f.lateral.abs().max(f.normal.abs()));
-    magnitudes.fold(0.0, f32::max)
+    let forces = grid.forces.iter().flat_map(|force| force.into_array());
+    forces.map(f32::abs).fold(0.0, f32::max)
 }
 
 // No Kani proof: what relates products of the entries ends in no solver; Gappa has it.
@@ -206,8 +186,10 @@ fn beyond_one_cell_the_force_is_constant_and_nine_times_an_entry_at_most() {
             let side = if left { cell(0, -1.0) } else { cell(2, 2.0) };
             assert!(force == table.force_in(cell(1, 2.0), side));
         }
-        reached!("deep and to the right", deep && right);
-        reached!("deep and to the left", deep && left);
+        reached! {
+            "deep and to the right": deep && right,
+            "deep and to the left": deep && left,
+        }
     });
 }
 
@@ -237,7 +219,9 @@ fn force_is_near_the_bilinear_form() {
         let inside = |t: f64| 0.0 < t && t < 1.0;
         let beyond = |t: f64| -1.0 < t && t < 0.0 || 1.0 < t && t < 2.0;
         let below = case.depth > 0.0;
-        reached!("within a cell", below && inside(s) && inside(t));
-        reached!("continued", below && (beyond(s) || beyond(t)));
+        reached! {
+            "within a cell": below && inside(s) && inside(t),
+            "continued": below && (beyond(s) || beyond(t)),
+        }
     });
 }
