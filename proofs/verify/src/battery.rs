@@ -116,14 +116,12 @@ fn figures(check: &Check) -> Result<Vec<Figure>, String> {
     let row = check.row(FIXED_SEED)?;
     check.run(FIXED_SEED)?;
     check.run_negative_controls(FIXED_SEED)?;
-    Ok(vec![
-        Figure::told("probability of failing by chance", row.alpha),
-        Figure::told("trials", row.trials as f64),
-        Figure::told(
-            "defects planted and seen",
-            row.shown_defects().count() as f64,
-        ),
-    ])
+    let seen = row.shown_defects().count() as f64;
+    Ok(figures! {
+        "probability of failing by chance" => told(row.alpha);
+        "trials" => told(row.trials as f64);
+        "defects planted and seen" => told(seen);
+    })
 }
 
 #[cfg(test)]

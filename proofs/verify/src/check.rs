@@ -52,6 +52,13 @@ impl Check {
     }
 }
 
+/// Figures, each by what was measured, in the words of `format!`; its kind, its value and its bounds.
+macro_rules! figures {
+    ($($what:literal => $kind:ident($($number:expr),+);)+) => {
+        vec![$($crate::Figure::$kind(format_args!($what).to_string(), $($number),+)),+]
+    };
+}
+
 /// A number that a check measured, and the bounds it must keep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {

@@ -222,10 +222,8 @@ fn locate(knots: &[f32]) -> Result<Vec<Figure>, String> {
         // The rest are NaN.
         for bits in f32::INFINITY.to_bits() + 1..1 << 31 {
             let position = f32::from_bits(sign | bits);
-            tally.take(
-                sign | bits,
-                is_right(knots, position, axis.locate(position)),
-            );
+            let is_right = is_right(knots, position, axis.locate(position));
+            tally.take(sign | bits, is_right);
         }
         tally
     };
@@ -269,22 +267,13 @@ fn last_knot() -> Result<Vec<Figure>, String> {
     });
     let mut figures = product.figures("widths up to 2 m", size(&widths), float);
     let largest = f64::from(product.worst);
-    figures.push(Figure::at_most(
-        "largest width times reciprocal",
-        largest,
-        1.0,
-    ));
-    let ends = holds_for(
-        "axes of one cell up to 1 m",
-        between(MIN_WIDTH, 1.0),
-        |width| {
-            let (knots, reciprocals) = ([0.0, width], [Axis::reciprocal_width(0.0, width)]);
-            Axis::new(&knots, &reciprocals).is_ok_and(|axis| {
-                axis.locate(0.0).fraction == 0.0 && axis.locate(width).fraction == 1.0
-            })
-        },
-    );
-    figures.extend(ends);
+    figures.extend(figures! { "largest width times reciprocal" => at_most(largest, 1.0); });
+    let cells = between(MIN_WIDTH, 1.0);
+    figures.extend(holds_for("axes of one cell up to 1 m", cells, |width| {
+        let (knots, reciprocals) = ([0.0, width], [Axis::reciprocal_width(0.0, width)]);
+        let is_whole = |axis: Axis| [0.0, width].map(|x| axis.locate(x).fraction) == [0.0, 1.0];
+        Axis::new(&knots, &reciprocals).is_ok_and(is_whole)
+    }));
     Ok(figures)
 }
 
@@ -328,21 +317,12 @@ fn blends() -> Result<Vec<Figure>, String> {
         });
         let what = format!("{a} to {b}");
         figures.extend(tally.figures(&what, size(&ALL), float));
-        let allowed = 3.0 * high.abs().max(low.abs()) * 1.000_001;
-        figures.push(Figure::at_most(
-            format!("{what}: largest magnitude from −1 to 2"),
-            f64::from(tally.worst),
-            f64::from(allowed),
-        ));
-        let missed = [(0.0, a), (1.0, b)]
-            .iter()
-            .filter(|(t, end)| blend(a, b, *t) != *end)
-            .count();
-        figures.push(Figure::count(
-            format!("{what}: ends missed"),
-            missed as u64,
-            0,
-        ));
+        let allowed = f64::from(3.0 * high.abs().max(low.abs()) * 1.000_001);
+        let missed = u64::from(blend(a, b, 0.0) != a) + u64::from(blend(a, b, 1.0) != b);
+        figures.extend(figures! {
+            "{what}: largest magnitude from −1 to 2" => at_most(f64::from(tally.worst), allowed);
+            "{what}: ends missed" => count(missed, 0);
+        });
     }
     Ok(figures)
 }

@@ -12,9 +12,10 @@
 //! | `build.rs`, `supply.rs`, `traceability.rs` | what was built, from which components, for which requirements |
 //! | `evidence.rs`, `dossier/` | all of it for programs, and as a page |
 
+#[macro_use]
+mod check;
 mod battery;
 pub mod build;
-mod check;
 mod diagnosis;
 pub mod dossier;
 pub mod evidence;

@@ -129,18 +129,15 @@ fn cycles() -> Result<Vec<Figure>, String> {
     )
     .map_err(|error| error.to_string())?;
     let response = timing.response_us;
-    Ok(vec![
-        Figure::count("cycles", timing.cycles, CYCLES),
-        Figure::at_most("median response, µs", response.p50, timing.budget_us),
-        Figure::told("99 % of the responses are within, µs", response.p99),
-        Figure::told("99.9 % of the responses are within, µs", response.p99_9),
-        Figure::told("longest response, µs", response.max),
-        Figure::told("cycles longer than 1 ms", timing.misses as f64),
-        Figure::told(
-            "kernel's share of the response, %",
-            100.0 * timing.compute_share,
-        ),
-    ])
+    Ok(figures! {
+        "cycles" => count(timing.cycles, CYCLES);
+        "median response, µs" => at_most(response.p50, timing.budget_us);
+        "99 % of the responses are within, µs" => told(response.p99);
+        "99.9 % of the responses are within, µs" => told(response.p99_9);
+        "longest response, µs" => told(response.max);
+        "cycles longer than 1 ms" => told(timing.misses as f64);
+        "kernel's share of the response, %" => told(100.0 * timing.compute_share);
+    })
 }
 
 /// Processor time of this thread, s.

@@ -22,19 +22,11 @@ pub fn convergence<const MESHES: usize>(
         .zip(stored)
         .map(|(error, stored)| (error / stored - 1.0).abs());
     let [before, finest] = [2, 1].map(|back| errors[MESHES - back]);
-    vec![
-        Figure::told(format!("{what}: relative error on the finest mesh"), finest),
-        Figure::at_most(
-            format!("{what}: largest difference of an error from the stored one, over that"),
-            largest(off),
-            SHARE,
-        ),
-        Figure::at_least(
-            format!("{what}: last observed order"),
-            libm::log2(before / finest),
-            order,
-        ),
-    ]
+    figures! {
+        "{what}: relative error on the finest mesh" => told(finest);
+        "{what}: largest difference of an error from the stored one, over that" => at_most(largest(off), SHARE);
+        "{what}: last observed order" => at_least(libm::log2(before / finest), order);
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use palpate::fem::{Contact, Model, Pose, PoseSolution};
 use palpate::phantom::Phantom;
 
-use super::{Figure, Figures, largest, said};
+use super::{Figures, largest, said};
 
 /// Step h of the differences, m.
 const STEP: f64 = 2e-6;
@@ -65,26 +65,22 @@ fn map(name: &str, contact: Contact) -> Figures {
     }
     let what = format!("{name}, {}", contact.name());
     let laws = ["F_n = ∂U/∂d", "F_x = −∂U/∂x", "∂F_n/∂x = −∂F_x/∂d"];
-    let mut figures: Vec<Figure> = (0..3)
-        .map(|law| {
-            Figure::at_most(
-                format!("{what}: largest error of {} over its bound", laws[law]),
-                largest(shares.iter().map(|share| share[law])),
-                1.0,
-            )
-        })
-        .collect();
+    let mut figures = Vec::new();
+    for (k, law) in laws.iter().enumerate() {
+        let share = largest(shares.iter().map(|share| share[k]));
+        figures.extend(
+            figures! { "{what}: largest error of {law} over its bound" => at_most(share, 1.0); },
+        );
+    }
     // The probe moves by 8 µm along each axis, and the contact's two edges with it: as far in x, and in d at most √(R/2d),
     // 2.5 times as far (the circle's own half-width, at 0.5 mm). Among points a mean distance apart, they pass one in a share
     // 2 · 8 · 3.5 µm of it of the poses; three standard deviations more are allowed.
     let distance = phantom.well.width / model.surface().positions.len() as f64;
     let share = 2.0 * 4.0 * STEP * 3.5 / distance;
     let expected = 88.0 * share;
-    figures.push(Figure::at_most(
-        format!("{what}: poses of 88 at a kink"),
-        f64::from(kinks),
-        expected + 3.0 * (expected * (1.0 - share)).sqrt(),
-    ));
+    let most = expected + 3.0 * (expected * (1.0 - share)).sqrt();
+    figures
+        .extend(figures! { "{what}: poses of 88 at a kink" => at_most(f64::from(kinks), most); });
     Ok(figures)
 }
 

@@ -248,39 +248,19 @@ pub fn compare(name: &str, contact: Contact) -> Figures {
             .map(|displacements| difference(displacements, &right.surface));
         let what = format!("d = {} mm, x = {} mm", depth * 1e3, lateral * 1e3);
         let magnitude = |forces: [f64; 2]| largest(forces.map(f64::abs));
-        figures.extend([
-            Figure::at_least(
-                format!("{what}: lateral force to compare, N"),
-                condensed.force.lateral.abs(),
-                1e-3,
-            ),
-            Figure::at_most(
-                format!("{what}: largest difference of a force, N"),
-                magnitude(off),
-                1e-9,
-            ),
-            Figure::at_most(
-                format!("{what}: largest difference of a surface displacement, m"),
-                moved[0],
-                1e-12,
-            ),
-            Figure::at_most(
-                format!("{what}: largest difference of a force from −x's, N"),
-                magnitude(unlike),
-                1e-9,
-            ),
-            Figure::at_most(
-                format!("{what}: largest difference of a surface displacement from −x's, m"),
-                moved[1],
-                1e-12,
-            ),
-        ]);
+        figures.extend(figures! {
+            "{what}: lateral force to compare, N" => at_least(condensed.force.lateral.abs(), 1e-3);
+            "{what}: largest difference of a force, N" => at_most(magnitude(off), 1e-9);
+            "{what}: largest difference of a surface displacement, m" => at_most(moved[0], 1e-12);
+            "{what}: largest difference of a force from −x's, N" => at_most(magnitude(unlike), 1e-9);
+            "{what}: largest difference of a surface displacement from −x's, m" => at_most(moved[1], 1e-12);
+        });
     }
     Ok(figures)
 }
 
 /// Pairs of mirrored poses of a map whose lateral positions are their own mirror image.
-pub fn symmetry(what: &str, map: &ForceMap) -> [Figure; 3] {
+pub fn symmetry(what: &str, map: &ForceMap) -> Vec<Figure> {
     let (rows, columns) = (map.depths().len(), map.laterals().len());
     let (mut pairs, mut unlike, mut aside) = (0, 0, 0);
     for row in 0..rows {
@@ -296,23 +276,11 @@ pub fn symmetry(what: &str, map: &ForceMap) -> [Figure; 3] {
         aside += u64::from(lateral[columns / 2].to_bits() != 0.0f64.to_bits());
     }
     let expected = (rows * (columns / 2)) as u64;
-    [
-        Figure::count(
-            format!("{what}: pairs of poses at x and −x"),
-            pairs,
-            expected,
-        ),
-        Figure::count(
-            format!("{what}: pairs that differ in a bit, or have no force"),
-            unlike,
-            0,
-        ),
-        Figure::count(
-            format!("{what}: lateral forces at x = 0 that are not 0"),
-            aside,
-            0,
-        ),
-    ]
+    figures! {
+        "{what}: pairs of poses at x and −x" => count(pairs, expected);
+        "{what}: pairs that differ in a bit, or have no force" => count(unlike, 0);
+        "{what}: lateral forces at x = 0 that are not 0" => count(aside, 0);
+    }
 }
 
 pub fn mirror() -> Figures {
@@ -321,5 +289,5 @@ pub fn mirror() -> Figures {
     let depths: Vec<f64> = (1..=8).map(|k| 0.5e-3 * f64::from(k)).collect();
     let laterals: Vec<f64> = (-10..=10).map(|k| 1e-3 * f64::from(k)).collect();
     let map = model.map(&depths, &laterals, &|_| ()).map_err(said)?;
-    Ok(symmetry("2.6", &map).into())
+    Ok(symmetry("2.6", &map))
 }

@@ -133,22 +133,12 @@ pub fn line_contact() -> Figures {
             mean += ratio / f64::from(poses);
         }
         let contact = contact.name();
-        figures.push(Figure::at_most(
-            format!("{contact}, {poses} loads: largest error of a² over its bound"),
-            largest(shares),
-            1.0,
-        ));
-        figures.push(Figure::at_most(
-            format!("{contact}, {poses} loads: largest error of a pressure over its bound"),
-            largest(pressures),
-            1.0,
-        ));
-        // The edges fall on all parts of a spacing: what is left is less than half of the smallest contact's bound.
-        figures.push(Figure::at_most(
-            format!("{contact}: relative error of a² in the mean"),
-            (mean - 1.0).abs(),
-            5e-3,
-        ));
+        // The edges fall on all parts of a spacing: what is left in the mean is less than half of the smallest contact's bound.
+        figures.extend(figures! {
+            "{contact}, {poses} loads: largest error of a² over its bound" => at_most(largest(shares), 1.0);
+            "{contact}, {poses} loads: largest error of a pressure over its bound" => at_most(largest(pressures), 1.0);
+            "{contact}: relative error of a² in the mean" => at_most((mean - 1.0).abs(), 5e-3);
+        });
     }
     Ok(figures)
 }

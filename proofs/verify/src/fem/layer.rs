@@ -6,7 +6,7 @@ use palpate::phantom::Material;
 
 use super::convergence::convergence;
 use super::problem::{Errors, Exact, Problem, lame};
-use super::{Figure, Figures, largest};
+use super::{Figures, largest};
 
 /// A layer 0 ≤ y ≤ h, u = 0 at y = 0, under the traction σ_yy = −cos kx, σ_xy = 0 at y = h.
 ///
@@ -153,16 +153,11 @@ pub fn bonded() -> Figures {
         let g = layer.gradient([0.7, 1.0]);
         let pressure = -(lambda * (g[0][0] + g[1][1]) + 2.0 * mu * g[1][1]);
         let what = format!("kh = {number}, ν = {nu}");
-        figures.push(Figure::at_most(
-            format!("{what}: error of the closed form's pressure"),
-            (pressure - libm::cos(0.7 * number)).abs(),
-            1e-9,
-        ));
-        figures.push(Figure::at_most(
-            format!("{what}: shear strain of the closed form at the free surface"),
-            (g[0][1] + g[1][0]).abs(),
-            1e-12,
-        ));
+        let shear = (g[0][1] + g[1][0]).abs();
+        figures.extend(figures! {
+            "{what}: error of the closed form's pressure" => at_most((pressure - libm::cos(0.7 * number)).abs(), 1e-9);
+            "{what}: shear strain of the closed form at the free surface" => at_most(shear, 1e-12);
+        });
         let errors = errors(&layer, columns)?;
         figures.extend(convergence(
             &format!("{what}, displacement"),
@@ -229,20 +224,10 @@ pub fn thin() -> Figures {
     let extrapolated = (8.0 * long - 6.0 * medium + short) / 3.0;
     let off = [(short, 10.0), (medium, 20.0), (long, 40.0)]
         .map(|(found, slenderness)| (found - limit).abs() * slenderness);
-    Ok(vec![
-        Figure::told(
-            "force extrapolated to infinite slenderness, over a wide strip's",
-            extrapolated,
-        ),
-        Figure::at_most(
-            "difference of the extrapolated force from the limit",
-            (extrapolated - limit).abs(),
-            5e-4,
-        ),
-        Figure::at_most(
-            "largest difference of a strip's force from the limit, times its slenderness",
-            largest(off),
-            0.1,
-        ),
-    ])
+    let difference = (extrapolated - limit).abs();
+    Ok(figures! {
+        "force extrapolated to infinite slenderness, over a wide strip's" => told(extrapolated);
+        "difference of the extrapolated force from the limit" => at_most(difference, 5e-4);
+        "largest difference of a strip's force from the limit, times its slenderness" => at_most(largest(off), 0.1);
+    })
 }

@@ -4,7 +4,7 @@ use palpate::phantom::Material;
 
 use super::convergence::convergence;
 use super::problem::{Errors, Exact, Problem, lame};
-use super::{Figure, Figures, largest, least};
+use super::{Figures, largest, least};
 
 /// u = (A sin px sin qy, B cos px cos qy), with div u = (A p − B q) cos px sin qy, which vanishes for A = q, B = p.
 struct Wave {
@@ -131,25 +131,18 @@ pub fn locking() -> Figures {
         amplitude: [3.0, 2.0],
         number: [2.0, 3.0],
     };
-    let study = |nu| -> Result<(f64, f64), String> {
+    let study = |nu| -> Result<[f64; 2], String> {
         let [coarse, fine] = [16, 32].map(|cells| wave.errors(cells, nu));
         let [coarse, fine] = [coarse?.gradient, fine?.gradient];
-        Ok((fine, libm::log2(coarse / fine)))
+        Ok([fine, libm::log2(coarse / fine)])
     };
     let found = [0.3, 0.4, 0.49, 0.499, 0.4999].map(study);
     let found = found.into_iter().collect::<Result<Vec<_>, _>>()?;
     // Quadratic triangles lose one order of their two at most, however near ν comes to ½ (I. Babuška and M. Suri,
     // Numerische Mathematik 62, 1992, on straight ones).
-    Ok(vec![
-        Figure::at_least(
-            "any ν: least observed order of the gradient",
-            least(found.iter().map(|(_, order)| *order)),
-            1.0,
-        ),
-        Figure::at_most(
-            "any ν: largest relative error of the gradient",
-            largest(found.iter().map(|(error, _)| *error)),
-            0.03,
-        ),
-    ])
+    let [errors, orders] = [0, 1].map(|k| found.iter().map(move |found| found[k]));
+    Ok(figures! {
+        "any ν: least observed order of the gradient" => at_least(least(orders), 1.0);
+        "any ν: largest relative error of the gradient" => at_most(largest(errors), 0.03);
+    })
 }

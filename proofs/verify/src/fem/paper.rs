@@ -1,7 +1,7 @@
 //! Calculation verification: how good the forces of the paper's poses are on the default mesh.
 
 use super::full_contact::symmetry;
-use super::{Figure, Figures, largest, least, said};
+use super::{Figures, largest, least, said};
 use palpate::fem::certify::certified_map;
 use palpate::fem::{Contact, MESH_SIZE, Model, Pose};
 use palpate::phantom::{BUILTIN_NAMES, Phantom};
@@ -32,15 +32,10 @@ pub fn reference() -> Figures {
     };
     let none = force("none")?;
     let inclusion = force("6.6")?;
-    Ok(vec![
-        Figure::within("no inclusion: normal force, N", none, 1.475, 1.485),
-        Figure::within(
-            "6.6 mm: normal force above that without inclusion, N",
-            inclusion - none,
-            0.305,
-            0.315,
-        ),
-    ])
+    Ok(figures! {
+        "no inclusion: normal force, N" => within(none, 1.475, 1.485);
+        "6.6 mm: normal force above that without inclusion, N" => within(inclusion - none, 0.305, 0.315);
+    })
 }
 
 /// Implements: EVD-048.
@@ -55,39 +50,16 @@ pub fn certificates() -> Figures {
         let forces = map.forces().normal.values();
         let relative = bands.normal_force_band.values().iter().zip(forces);
         let lateral = bands.lateral_force_band.values();
-        let told = |what: &str, value| Figure::told(format!("{name}: {what}"), value);
-        figures.extend([
-            told(
-                "normal force at 4 mm, x = 0, N",
-                map.forces().normal.row(2)[2],
-            ),
-            told(
-                "largest half band of a normal force, %",
-                100.0 * largest(relative.map(|(band, force)| band / force)),
-            ),
-            told(
-                "largest half band of a lateral force, N",
-                largest(lateral.iter().copied()),
-            ),
-            Figure::at_most(
-                format!("{name}: largest relative residual"),
-                certificate.worst_relative_residual,
-                RESIDUAL,
-            ),
-            told(
-                "largest imbalance of forces, N",
-                certificate.worst_force_balance,
-            ),
-            Figure::at_most(
-                format!("{name}: largest penetration, m"),
-                certificate.largest_penetration,
-                PENETRATION,
-            ),
-            told(
-                "smallest det(I + ∇u)",
-                least(certificate.min_det.values().iter().copied()),
-            ),
-        ]);
+        let relative = 100.0 * largest(relative.map(|(band, force)| band / force));
+        figures.extend(figures! {
+            "{name}: normal force at 4 mm, x = 0, N" => told(map.forces().normal.row(2)[2]);
+            "{name}: largest half band of a normal force, %" => told(relative);
+            "{name}: largest half band of a lateral force, N" => told(largest(lateral.iter().copied()));
+            "{name}: largest relative residual" => at_most(certificate.worst_relative_residual, RESIDUAL);
+            "{name}: largest imbalance of forces, N" => told(certificate.worst_force_balance);
+            "{name}: largest penetration, m" => at_most(certificate.largest_penetration, PENETRATION);
+            "{name}: smallest det(I + ∇u)" => told(least(certificate.min_det.values().iter().copied()));
+        });
         figures.extend(symmetry(name, &map));
     }
     Ok(figures)

@@ -123,15 +123,11 @@ pub fn linear() -> Figures {
 
 pub fn quadratic() -> Figures {
     let [straight, curved] = CURVES.map(|curve| worst_error(&distorted(curve), &QUADRATIC_FIELD));
-    Ok(vec![
-        Figure::at_most("straight: largest relative error", straight?, ROUNDING),
-        // The check can see the difference.
-        Figure::at_least(
-            "curved: largest relative error, which must show",
-            curved?,
-            1e-3,
-        ),
-    ])
+    // The check can see the difference.
+    Ok(figures! {
+        "straight: largest relative error" => at_most(straight?, ROUNDING);
+        "curved: largest relative error, which must show" => at_least(curved?, 1e-3);
+    })
 }
 
 /// The share of the largest eigenvalue of a stiffness that the largest of the three least has by magnitude, and
@@ -150,19 +146,12 @@ fn shares(matrix: Mat<f64>) -> Result<[f64; 2], String> {
 }
 
 /// The figures of stiffnesses whose eigenvalues have these shares: three zeros, and no other one.
-fn three_zeros(what: &str, shares: &[[f64; 2]], allowed: f64) -> [Figure; 2] {
-    [
-        Figure::at_most(
-            format!("{what}: largest of the three least eigenvalues, over the largest"),
-            largest(shares.iter().map(|share| share[0])),
-            1e-14,
-        ),
-        Figure::at_least(
-            format!("{what}: least of the other eigenvalues, over the largest"),
-            least(shares.iter().map(|share| share[1])),
-            allowed,
-        ),
-    ]
+fn three_zeros(what: &str, shares: &[[f64; 2]], allowed: f64) -> Vec<Figure> {
+    let [zero, other] = [0, 1].map(|k| shares.iter().map(move |share| share[k]));
+    figures! {
+        "{what}: largest of the three least eigenvalues, over the largest" => at_most(largest(zero), 1e-14);
+        "{what}: least of the other eigenvalues, over the largest" => at_least(least(other), allowed);
+    }
 }
 
 pub fn rigid() -> Figures {
