@@ -141,6 +141,7 @@ pub(crate) fn interpolate(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stats::tests::assert_near;
 
     /// Bilinear forces on axes of uneven steps, all exact in binary.
     fn table() -> ForceTable {
@@ -169,15 +170,9 @@ mod tests {
             for lateral in [-32.0, -1.0, -0.375, 0.25, 0.625, 1.0, 4.0] {
                 let force = table.force(depth, lateral).unwrap();
                 let expected = 3.0 + 2.0 * depth - lateral + 4.0 * depth * lateral;
-                assert!(
-                    (force.normal - expected).abs() <= tolerance,
-                    "{depth} {lateral}"
-                );
+                assert_near(force.normal, expected, tolerance);
                 let expected = -(3.0 + 2.0 * lateral - depth + 4.0 * depth * lateral);
-                assert!(
-                    (force.lateral - expected).abs() <= tolerance,
-                    "{depth} {lateral}"
-                );
+                assert_near(force.lateral, expected, tolerance);
             }
         }
     }

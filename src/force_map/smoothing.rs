@@ -116,6 +116,7 @@ impl ForceTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stats::tests::assert_near;
 
     fn table(laterals: &[f64], normal: &[f64]) -> ForceTable {
         let matrix = |sign: f64| Matrix::from_fn(1, laterals.len(), |_, at| sign * normal[at]);
@@ -145,10 +146,7 @@ mod tests {
                 .into_array()
                 .map(|of| of.values()[at]);
             // Weights of a few units times forces below 10 N, each rounded some ten times.
-            assert!(
-                (normal - expected).abs() < 1e-13,
-                "{at}: {normal} {expected}"
-            );
+            assert_near(normal, expected, 1e-13);
             assert!((lateral + expected).abs() < 1e-13, "{at}: {lateral}");
         }
         // Of the windows at either end the weights are 31/35, 13/35, and 17/35 in each of the five middle ones.
@@ -191,10 +189,7 @@ mod tests {
         let found = table(&laterals, &forces).smoothed(0.5e-3).unwrap();
         // The variance of Σr²/ν for white noise is about 2σ⁴/ν: σ is found within 5 standard errors of √(1/2ν).
         let error = (0.5 / found.degrees_of_freedom).sqrt();
-        assert!(
-            (found.noise_sd.normal / 0.02 - 1.0).abs() < 5.0 * error,
-            "{found:?}"
-        );
+        assert_near(found.noise_sd.normal / 0.02, 1.0, 5.0 * error);
     }
 
     // Verifies: MAP-071.

@@ -98,9 +98,8 @@ const DESCRIPTOR_TEXT: &str = "06 00 FF 09 01 A1 01 85 01 09 10 09 11 16 01 80 2
 // Verifies: HID-001.
 #[test]
 fn the_descriptor_is_that_of_the_vendor_profile() {
-    let bytes = DESCRIPTOR_TEXT
-        .split_whitespace()
-        .map(|text| u8::from_str_radix(text, 16).unwrap());
+    let bytes = DESCRIPTOR_TEXT.split_whitespace();
+    let bytes = bytes.map(|text| u8::from_str_radix(text, 16).unwrap());
     assert!(bytes.eq(DESCRIPTOR));
 }
 
@@ -176,24 +175,16 @@ fn another_length_or_number_is_refused() {
 fn a_device_without_units_is_refused() {
     type Change = fn(&mut Capabilities);
     let changes: [(Change, &str); 3] = [
-        (
-            |c| c.version = 2,
-            " speaks version 2 of the profile, expected 1",
-        ),
-        (
-            |c| c.position_unit_nm = 0,
-            "'s position unit is 0 nm, expected at least 1",
-        ),
-        (
-            |c| c.force_unit_un = 0,
-            "'s force unit is 0 µN, expected at least 1",
-        ),
+        (|c| c.version = 2, " speaks version 2 of the profile"),
+        (|c| c.position_unit_nm = 0, "'s position unit is 0 nm"),
+        (|c| c.force_unit_un = 0, "'s force unit is 0 µN"),
     ];
-    for (change, expected) in changes {
+    for ((change, found), least) in changes.into_iter().zip(["", "at least ", "at least "]) {
         let mut device = DEVICE;
         change(&mut device);
-        let refused = Units::new(&device).unwrap_err();
-        assert_eq!(std::format!("{refused}"), ["the device", expected].concat());
+        let refused = std::format!("{}", Units::new(&device).unwrap_err());
+        let expected = std::format!("the device{found}, expected {least}1");
+        assert_eq!(refused, expected);
     }
 }
 
@@ -232,19 +223,9 @@ fn counts_are_micrometres_and_half_millinewtons_here() {
 // Verifies: HID-010, HID-011.
 #[test]
 fn a_count_is_the_nearest_whole_number_within_its_range() {
-    let cases = [
-        (0.5, 0),
-        (1.5, 2),
-        (-0.5, 0),
-        (-1.5, -2),
-        (2.4999998, 2),
-        (-32766.7, -32767),
-        (32767.4, 32767),
-        (1e9, 32767),
-        (f32::NEG_INFINITY, -32767),
-        (f32::NAN, 0),
-    ];
-    for (value, expected) in cases {
-        assert_eq!(count(value), expected, "{value}");
-    }
+    let (infinity, nan) = (f32::INFINITY, f32::NAN);
+    let halves = [0.5, 1.5, -0.5, -1.5, 2.4999998];
+    assert_eq!(halves.map(count), [0, 2, 0, -2, 2]);
+    let large = [-32766.7, 32767.4, 1e9, -infinity, nan];
+    assert_eq!(large.map(count), [-32767, 32767, 32767, -32767, 0]);
 }

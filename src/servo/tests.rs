@@ -23,11 +23,8 @@ fn bilinear(depth: f32, lateral: f32) -> Force<f32> {
 }
 
 fn with_table<R>(then: impl FnOnce(&Table) -> R) -> R {
-    let forces: Vec<Force<f32>> = DEPTHS
-        .0
-        .iter()
-        .flat_map(|&d| LATERALS.0.map(|x| bilinear(d, x)))
-        .collect();
+    let forces = DEPTHS.0.map(|d| LATERALS.0.map(|x| bilinear(d, x)));
+    let forces = forces.concat();
     let depths = Axis::new(&DEPTHS.0, &DEPTHS.1).unwrap();
     let laterals = Axis::new(&LATERALS.0, &LATERALS.1).unwrap();
     then(&Table::new(depths, laterals, &forces).unwrap())
@@ -62,11 +59,8 @@ fn a_bilinear_force_is_reproduced_in_the_table_and_one_cell_beyond() {
     with_table(|table| {
         for depth in [0.0, 0.125, 0.25, 0.5, 0.75, 1.0, 1.25] {
             for lateral in [-1.0, -0.75, -0.5, -0.25, 0.0, 0.125, 0.25, 0.5] {
-                assert_eq!(
-                    table.force(depth, lateral),
-                    bilinear(depth, lateral),
-                    "{depth} {lateral}"
-                );
+                let expected = bilinear(depth, lateral);
+                assert_eq!(table.force(depth, lateral), expected, "{depth} {lateral}");
             }
         }
         assert_eq!(table.force(9.0, 9.0), bilinear(1.25, 0.5));
@@ -102,27 +96,20 @@ fn a_blend_of_equals_is_the_same_to_the_bit() {
 #[test]
 fn an_axis_is_refused_with_its_place() {
     let many = vec![0.0; MAX_KNOTS + 1];
+    let (half, nan) = ([0.0, 0.5], f32::NAN);
     for (knots, reciprocals, expected) in [
         (&[0.0][..], &[][..], "Knots { found: 1 }"),
         (&many, &many[1..], "Knots { found: 1025 }"),
         (&[0.0, 1.0], &[], "Reciprocals { found: 0, expected: 1 }"),
         (&[0.0, 1.5], &[1.0], "Position { index: 1, value: 1.5 }"),
-        (
-            &[f32::NAN, 1.0],
-            &[1.0],
-            "Position { index: 0, value: NaN }",
-        ),
+        (&[nan, 1.0], &[1.0], "Position { index: 0, value: NaN }"),
         (
             &[0.0, 0.5, 0.5],
             &[2.0, 1.0],
             "Width { index: 2, width: 0.0 }",
         ),
-        (&[0.0, 0.5], &[2.5], "Reciprocal { index: 0, value: 2.5 }"),
-        (
-            &[0.0, 0.5],
-            &[f32::NAN],
-            "Reciprocal { index: 0, value: NaN }",
-        ),
+        (&half, &[2.5], "Reciprocal { index: 0, value: 2.5 }"),
+        (&half, &[nan], "Reciprocal { index: 0, value: NaN }"),
     ] {
         let refusal = Axis::new(knots, reciprocals).unwrap_err();
         assert_eq!(std::format!("{refusal:?}"), expected);
@@ -216,16 +203,25 @@ impl Session {
         command
     }
 
-    fn hold(&mut self, deadman: bool) -> Command {
+    /// A cycle with a fresh sample.
+    fn ask(&mut self, deadman: bool, request: Request) -> Command {
         let sample = self.sample(deadman);
-        self.cycle(Some(sample), Request::None)
+        self.cycle(Some(sample), request)
+    }
+
+    fn hold(&mut self, deadman: bool) -> Command {
+        self.ask(deadman, Request::None)
+    }
+
+    /// The mode after a cycle with a fresh sample.
+    fn mode_after(&mut self, deadman: bool, request: Request) -> Mode {
+        self.ask(deadman, request);
+        self.state.mode
     }
 
     fn arm(&mut self) {
         self.hold(false);
-        let sample = self.sample(false);
-        self.cycle(Some(sample), Request::Arm);
-        assert_eq!(self.state.mode, Mode::Armed);
+        assert_eq!(self.mode_after(false, Request::Arm), Mode::Armed);
     }
 
     /// Armed, deadman held, at the table's force.
@@ -288,19 +284,15 @@ fn a_force_comes_to_zero_before_it_turns() {
 #[test]
 fn arming_needs_a_fresh_sample_without_deadman_and_a_new_request() {
     let mut session = Session::new();
-    // The first sample has nothing to be ahead of.
-    let sample = session.sample(false);
-    session.cycle(Some(sample), Request::Arm);
-    assert_eq!(session.state.mode, Mode::Disarmed);
-    // The request sticks.
-    let sample = session.sample(false);
-    session.cycle(Some(sample), Request::Arm);
-    assert_eq!(session.state.mode, Mode::Disarmed);
+    // The first sample has nothing to be ahead of, then the request sticks.
+    for _ in 0..2 {
+        let mode = session.mode_after(false, Request::Arm);
+        assert_eq!(mode, Mode::Disarmed);
+    }
     // Deadman held.
     session.hold(false);
-    let sample = session.sample(true);
-    session.cycle(Some(sample), Request::Arm);
-    assert_eq!(session.state.mode, Mode::Disarmed);
+    let mode = session.mode_after(true, Request::Arm);
+    assert_eq!(mode, Mode::Disarmed);
     assert!(!session.hold(true).playing);
     // No sample.
     session.cycle(None, Request::Arm);
@@ -312,12 +304,9 @@ fn arming_needs_a_fresh_sample_without_deadman_and_a_new_request() {
 #[test]
 fn arming_waits_until_the_force_has_come_to_zero() {
     let mut session = Session::playing();
-    let sample = session.sample(false);
-    session.cycle(Some(sample), Request::Disarm);
-    assert_eq!(session.state.mode, Mode::Disarmed);
-    let sample = session.sample(false);
-    session.cycle(Some(sample), Request::Arm);
-    assert_eq!(session.state.mode, Mode::Disarmed);
+    for request in [Request::Disarm, Request::Arm] {
+        assert_eq!(session.mode_after(false, request), Mode::Disarmed);
+    }
     session.hold(false);
     session.hold(false);
     assert_eq!(session.state.force, Force::ZERO);
@@ -415,10 +404,8 @@ fn samples_that_repeat_or_go_back_are_stale_until_the_watchdog_trips() {
             let mut sample = session.sample(true);
             // In order among themselves, but none ahead of the last fresh one.
             sample.sequence = sample.sequence.wrapping_sub(missed).wrapping_sub(back);
-            assert!(
-                !session.cycle(Some(sample), Request::None).playing,
-                "{back}"
-            );
+            let command = session.cycle(Some(sample), Request::None);
+            assert!(!command.playing, "{back}");
         }
         assert_eq!(session.state.mode, Mode::Faulted(Fault::Watchdog));
     }

@@ -8,6 +8,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::detect::error_rates;
+use crate::stats::tests::assert_near;
 
 const SAMPLES: usize = 12;
 
@@ -34,10 +35,7 @@ fn statistic(record: &[f64]) -> SubspaceStatistic {
 }
 
 fn close(found: f64, expected: f64) {
-    assert!(
-        (found / expected - 1.0).abs() < 1e-12,
-        "{found}, not {expected}"
-    );
+    assert_near(found / expected, 1.0, 1e-12);
 }
 
 // Verifies: NUI-001, NUI-003, NUI-005, NUI-006, NUI-007, NUI-008, NUI-009.

@@ -1,5 +1,6 @@
 use crate::fem::{Contact, MESH_SIZE, Model};
 use crate::phantom::Phantom;
+use crate::stats::tests::assert_near;
 
 use super::{builtin, coarse, off_centre, pose};
 
@@ -13,13 +14,10 @@ fn array(model: &Model, lateral: f64, elements: usize) -> Vec<f64> {
     model.array(&model.solve(pose(DEPTH, lateral)).unwrap(), elements)
 }
 
-fn assert_near(found: &[f64], expected: &[f64], tolerance: f64) {
+fn assert_all_near(found: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(found.len(), expected.len());
     for (a, b) in found.iter().zip(expected) {
-        assert!(
-            (a - b).abs() <= tolerance,
-            "{found:?}, expected {expected:?}"
-        );
+        assert_near(*a, *b, tolerance);
     }
 }
 
@@ -36,11 +34,11 @@ fn the_elements_together_carry_the_whole_force() {
         for elements in [1, 2, 5, 32] {
             let forces = model.array(&solution, elements);
             assert!(forces.iter().all(|&force| force >= 0.0), "{forces:?}");
-            assert_near(&[forces.iter().sum()], &[total], 1e-13);
+            assert_all_near(&[forces.iter().sum()], &[total], 1e-13);
             // A finer array divides each element of a coarser one.
             let finer = model.array(&solution, 3 * elements);
             let merged: Vec<f64> = finer.chunks(3).map(|of| of.iter().sum()).collect();
-            assert_near(&merged, &forces, 1e-13);
+            assert_all_near(&merged, &forces, 1e-13);
         }
         assert_eq!(model.array(&solution, 0), [0.0; 0]);
     }
@@ -64,14 +62,8 @@ fn elements_stand_where_the_force_acts() {
             along += force * (1.0 - sine(k) * sine(k)).sqrt();
             total += force;
         }
-        assert!(
-            (across - solution.force.lateral).abs() < 0.025 * total,
-            "{lateral}"
-        );
-        assert!(
-            (along - solution.force.normal).abs() < 0.025 * total,
-            "{lateral}"
-        );
+        assert_near(across, solution.force.lateral, 0.025 * total);
+        assert_near(along, solution.force.normal, 0.025 * total);
     }
 }
 
@@ -84,12 +76,12 @@ fn an_array_under_a_symmetric_phantom_is_symmetric() {
     let found = forces.clone();
     forces.reverse();
     assert!(found[3] > 0.1);
-    assert_near(&found, &forces, 1e-12);
+    assert_all_near(&found, &forces, 1e-12);
     let laterals = [-3e-3, -1e-3, 0.0, 1e-3];
     let sweep = model.array_sweep(DEPTH, &laterals, 7).unwrap();
     assert_eq!(sweep.len(), laterals.len());
     for (of, &lateral) in sweep.iter().zip(&laterals) {
-        assert_near(of, &array(&model, lateral, 7), 1e-12);
+        assert_all_near(of, &array(&model, lateral, 7), 1e-12);
     }
     let mirrored: Vec<f64> = sweep[3].iter().rev().copied().collect();
     assert_eq!(sweep[1], mirrored);

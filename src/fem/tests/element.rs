@@ -3,6 +3,7 @@ use crate::fem::element::{Stiffness, StiffnessRule, gradients, parent_gradients,
 use crate::fem::field::determinant;
 use crate::fem::vtu::von_mises;
 use crate::phantom::Material;
+use crate::stats::tests::assert_near;
 
 use super::builtin;
 
@@ -17,10 +18,7 @@ fn assert_close(stiffness: &Stiffness, expected: impl Fn(usize, usize) -> f64, u
         for column in 0..unknowns {
             let (found, expected) = (stiffness[(row, column)], expected(row, column));
             // A few tens of rounded sums of numbers of size 3.
-            assert!(
-                (found - expected).abs() < 1e-14,
-                "[{row}][{column}] = {found}, expected {expected}"
-            );
+            assert_near(found, expected, 1e-14);
             assert_eq!(found, stiffness[(column, row)], "not symmetric to the bit");
         }
     }

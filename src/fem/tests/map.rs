@@ -1,4 +1,7 @@
-use crate::fem::{Contact, FemError, MESH_SIZE, Model, Pose};
+use crate::fem::field::determinant;
+use crate::fem::{Contact, FemError, MESH_SIZE, Model, Pose, PoseSolution};
+use crate::force::Force;
+use crate::stats::tests::assert_near;
 
 use super::{builtin, finest, off_centre, pose};
 
@@ -12,9 +15,8 @@ const MILLIMETRES: [f64; 3] = [1e-3, 2.5e-3, 4e-3];
 #[test]
 fn maps_are_mirror_symmetric_to_the_bit() {
     let model = coarse("4.6", Contact::DeformedNormal);
-    let map = model
-        .map(&MILLIMETRES, &[-5e-3, -2e-3, 0.0, 2e-3, 6e-3], &|_| ())
-        .unwrap();
+    let laterals = [-5e-3, -2e-3, 0.0, 2e-3, 6e-3];
+    let map = model.map(&MILLIMETRES, &laterals, &|_| ()).unwrap();
     for row in 0..3 {
         let (normal, lateral) = (map.forces().normal.row(row), map.forces().lateral.row(row));
         assert_eq!(normal[1].to_bits(), normal[3].to_bits());
@@ -22,18 +24,13 @@ fn maps_are_mirror_symmetric_to_the_bit() {
         assert_eq!(lateral[2].to_bits(), 0.0f64.to_bits());
         assert!(lateral[3] > 1e-4, "nothing to mirror");
     }
-    let right = pose(2.5e-3, 2e-3);
-    let left = Pose {
-        lateral: -2e-3,
-        ..right
+    let [right, left] = [2e-3, -2e-3].map(|x| model.solve(pose(2.5e-3, x)).unwrap());
+    let bits = |solution: &PoseSolution, sign: f64| {
+        let Force { lateral, normal } = solution.force;
+        [normal, sign * lateral].map(f64::to_bits)
     };
-    let (right, left) = (model.solve(right).unwrap(), model.solve(left).unwrap());
-    assert_eq!(right.force.normal.to_bits(), left.force.normal.to_bits());
-    assert_eq!(
-        right.force.lateral.to_bits(),
-        (-left.force.lateral).to_bits()
-    );
-    let fields = [model.field(&right).unwrap(), model.field(&left).unwrap()];
+    assert_eq!(bits(&right, 1.0), bits(&left, -1.0));
+    let fields = [&right, &left].map(|solution| model.field(solution).unwrap());
     let key = |[x, y]: [f64; 2]| [x + 0.0, y].map(f64::to_bits);
     let nodes = model.mesh().nodes.iter().enumerate();
     let at: std::collections::HashMap<_, _> = nodes.map(|(k, &at)| (key(at), k)).collect();
@@ -51,25 +48,16 @@ fn a_map_holds_the_forces_of_its_poses() {
     let model = coarse("2.6", Contact::DeformedNormal);
     let laterals = [-3e-3, 1e-3, 7e-3];
     let counted = std::cell::Cell::new(0);
-    let map = model
-        .map(&MILLIMETRES, &laterals, &|poses| {
-            counted.set(counted.get() + poses)
-        })
-        .unwrap();
+    let count = |poses| counted.set(counted.get() + poses);
+    let map = model.map(&MILLIMETRES, &laterals, &count).unwrap();
     for (row, &depth) in MILLIMETRES.iter().enumerate() {
         for (column, &lateral) in laterals.iter().enumerate() {
             let alone = model.solve(Pose { depth, lateral }).unwrap();
             let [normal, along] =
                 [&map.forces().normal, &map.forces().lateral].map(|m| m.row(row)[column]);
             // Reached by another path: equal within what Newton leaves, 1e-13 m at 10³ N/m.
-            assert!(
-                (normal - alone.force.normal).abs() < 1e-10,
-                "{normal} {alone:?}"
-            );
-            assert!(
-                (along - alone.force.lateral).abs() < 1e-10,
-                "{along} {alone:?}"
-            );
+            assert_near(normal, alone.force.normal, 1e-10);
+            assert_near(along, alone.force.lateral, 1e-10);
         }
     }
     // The axis is solved as well, for the mirror images.
@@ -114,33 +102,22 @@ fn the_certificate_tells_the_checks_of_every_pose() {
     let model = coarse("2.6", Contact::VerticalGap);
     let map = model.map(&MILLIMETRES, &[0.0, 3e-3], &|_| ()).unwrap();
     let certificate = map.certificate().unwrap();
-    assert!(
-        certificate.worst_relative_residual > 0.0 && certificate.worst_relative_residual < 1e-8
-    );
+    let residual = certificate.worst_relative_residual;
+    assert!(residual > 0.0 && residual < 1e-8);
     assert!(certificate.worst_force_balance > 0.0 && certificate.worst_force_balance < 1e-9);
     assert!(certificate.largest_penetration < 1e-12);
     assert_eq!(certificate.nodes, model.mesh().nodes.len());
     assert_eq!(certificate.elements, model.mesh().regions.len());
-    assert_eq!(
-        (certificate.element.as_str(), certificate.contact.as_str()),
-        ("t6", "vertical-gap")
-    );
+    assert_eq!(certificate.element, "t6");
+    assert_eq!(certificate.contact, "vertical-gap");
     assert_eq!(certificate.mesh_size, 2e-3);
     // Deeper presses squeeze more, and here most over the inclusion.
     assert!(certificate.min_det.row(0)[0] > certificate.min_det.row(2)[0]);
     assert_eq!(certificate.smallest_det.depth, 4e-3);
     let field = model.field(&model.solve(pose(4e-3, 0.0)).unwrap()).unwrap();
-    let least = field
-        .gradients
-        .iter()
-        .flatten()
-        .map(|&g| crate::fem::field::determinant(g))
-        .fold(1.0, f64::min);
-    assert!(
-        (least - certificate.min_det.row(2)[0]).abs() < 1e-9,
-        "{least} {:?}",
-        certificate.smallest_det
-    );
+    let gradients = field.gradients.iter().flatten().copied();
+    let least = gradients.map(determinant).fold(1.0, f64::min);
+    assert_near(least, certificate.min_det.row(2)[0], 1e-9);
 }
 
 // Verifies: FEM-038.
@@ -172,11 +149,7 @@ fn the_paper_s_poses_have_the_forces_of_an_independent_program() {
     };
     let (none, inclusion) = (force("none"), force("6.6"));
     assert!((none - 1.48).abs() < 0.005, "{none}");
-    assert!(
-        (inclusion - none - 0.31).abs() < 0.005,
-        "{}",
-        inclusion - none
-    );
+    assert_near(inclusion - none, 0.31, 0.005);
 }
 
 // Verifies: FEM-021, FEM-025, FEM-039.
@@ -217,13 +190,10 @@ fn the_vtu_file_holds_the_mesh_and_the_stresses() {
     let solution = model.solve(pose).unwrap();
     let text = model.vtu(&solution).unwrap();
     let array = |name: &str| -> Vec<f64> {
-        let (_, rest) = text
-            .split_once(&format!("Name=\"{name}\""))
-            .unwrap_or_else(|| panic!("no {name}"));
+        let (_, rest) = text.split_once(&format!("Name=\"{name}\"")).expect(name);
         let body = rest.split_once('>').unwrap().1.split_once('<').unwrap().0;
-        body.split_whitespace()
-            .map(|word| word.parse().unwrap())
-            .collect()
+        let numbers = body.split_whitespace().map(|word| word.parse().unwrap());
+        numbers.collect()
     };
     let (nodes, elements) = (model.mesh().nodes.len(), model.mesh().regions.len());
     assert_eq!(array("position_m").len(), 3 * nodes);
@@ -236,16 +206,8 @@ fn the_vtu_file_holds_the_mesh_and_the_stresses() {
     // The nodes under the probe went down with it: its circle runs between the Gauss points, near which a node is less
     // than a millimetre off the axis, so off the probe's lowest point by 1²/(2 · 6.5) mm at most.
     let (positions, displacements) = (array("position_m"), array("displacement_m"));
-    let lowest = positions
-        .chunks(3)
-        .map(|at| at[1])
-        .filter(|y| *y > -3e-3)
-        .fold(0.0, f64::min);
-    let middle = (0..nodes)
-        .filter(|&k| model.mesh().nodes[k] == [0.0, 0.0])
-        .collect::<Vec<_>>();
-    for k in middle {
-        assert!((positions[3 * k + 1] + 2e-3).abs() < 0.08e-3, "{lowest}");
+    for k in (0..nodes).filter(|&k| model.mesh().nodes[k] == [0.0, 0.0]) {
+        assert_near(positions[3 * k + 1], -2e-3, 0.08e-3);
         assert_eq!(positions[3 * k + 1], displacements[3 * k + 1]);
     }
     // Pressed gel: pressure under the probe is positive, and no stress is lost between the arrays.

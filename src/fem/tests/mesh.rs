@@ -6,6 +6,7 @@ use crate::fem::mesh::{Mesh, Region};
 use crate::fem::size::SizeField;
 use crate::fem::triangulate::Triangulation;
 use crate::phantom::{Ellipse, Outline, Phantom, Support};
+use crate::stats::tests::assert_near;
 
 use super::{builtin, disc, ellipse, hard, off_centre, polygon, with, zoo};
 
@@ -397,10 +398,7 @@ fn sizes_are_those_of_the_table() {
         (&near, 0.5, [0.0, -7.5], 0.05),
     ] {
         let found = size(phantom, scale, at);
-        assert!(
-            (found - expected).abs() < 1e-9,
-            "{scale}, {at:?}: {found}, not {expected}"
-        );
+        assert_near(found, expected, 1e-9);
     }
 }
 

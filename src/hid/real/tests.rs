@@ -60,13 +60,8 @@ fn the_only_device_of_the_profile_needs_no_name_and_another_is_explained() {
     others[1].vendor = Some(0x1208);
     others[2].product = Some(2);
     others[3].product = Some(3);
-    let names = [
-        "1209:0001, serial b",
-        "1208:0001, serial a",
-        "1209:0002, serial a",
-        "any:0003",
-    ];
-    for (other, name) in others.iter().zip(names) {
+    let names = "1209:0001, serial b|1208:0001, serial a|1209:0002, serial a|any:0003";
+    for (other, name) in others.iter().zip(names.split('|')) {
         let missing = format!("no HID device {name}; `palpate devices` lists those there are");
         assert_eq!(chosen("a", other), missing);
     }
@@ -95,10 +90,8 @@ fn a_force_feedback_device_is_told_by_its_usage_page() {
     let data = [0x27, 0x05, 0x0F, 0x05, 0x0F];
     let cut = [0x05, 0x01, 0x06, 0x0F];
     for other in [&data[..], &cut, &[], &[0xFE], &[0xFE, 9, 0]] {
-        assert!(
-            matches!(Profile::of(other), Profile::Other { .. }),
-            "{other:?}"
-        );
+        let found = Profile::of(other);
+        assert!(matches!(found, Profile::Other { .. }), "{other:?}");
     }
 }
 
@@ -137,26 +130,18 @@ fn a_write_in_part_is_a_failure() {
 fn an_unplug_is_told_from_a_refusal_by_what_the_library_says() {
     let code = |code| HidError::from(std::io::Error::from_raw_os_error(code)).to_string();
     let [no_device, shutdown, timed_out, input_output, pipe] = [19, 108, 110, 5, 32].map(code);
+    use DeviceState::{Gone, Stalled, There};
     for (problem, expected) in [
-        (&*no_device, DeviceState::Gone),
-        (&shutdown, DeviceState::Gone),
-        (
-            "unexpected poll error (device disconnected)",
-            DeviceState::Gone,
-        ),
-        (
-            "ioctl (GFEATURE): ENODEV: No such device",
-            DeviceState::Gone,
-        ),
-        (&timed_out, DeviceState::Stalled),
-        (
-            "ioctl (SFEATURE): ETIMEDOUT: Connection timed out",
-            DeviceState::Stalled,
-        ),
+        (&*no_device, Gone),
+        (&shutdown, Gone),
+        ("unexpected poll error (device disconnected)", Gone),
+        ("ioctl (GFEATURE): ENODEV: No such device", Gone),
+        (&timed_out, Stalled),
+        ("ioctl (SFEATURE): ETIMEDOUT: Connection timed out", Stalled),
         // A board that answers with an error is still there.
-        (&input_output, DeviceState::There),
-        (&pipe, DeviceState::There),
-        ("ioctl (GFEATURE): EPIPE: Broken pipe", DeviceState::There),
+        (&input_output, There),
+        (&pipe, There),
+        ("ioctl (GFEATURE): EPIPE: Broken pipe", There),
     ] {
         assert_eq!(state(problem), expected, "{problem}");
     }

@@ -25,10 +25,8 @@ fn a_recording_is_read_back_as_it_was() {
     let recording = recording();
     assert!(recording.cycles[600].playing && recording.cycles[600].force.normal > 1000);
     let again = |recording: &Recording| {
-        assert_eq!(
-            Recording::parse(&recording.to_text()).as_ref(),
-            Ok(recording)
-        );
+        let read = Recording::parse(&recording.to_text());
+        assert_eq!(read.as_ref(), Ok(recording));
     };
     again(&recording);
     let mut gap = recording;
@@ -86,10 +84,8 @@ fn a_recording_plays_again_to_the_bit_and_tells_where_it_differs() {
         let mut spoiled = recording.clone();
         spoil(&mut spoiled.cycles[at]);
         let differs = spoiled.replay(table(3.2)).unwrap_err();
-        assert!(
-            differs.found.starts_with(&format!("cycle {at}: ")),
-            "{differs}"
-        );
+        let place = format!("cycle {at}: ");
+        assert!(differs.found.starts_with(&place), "{differs}");
     }
 }
 
@@ -134,10 +130,8 @@ fn what_is_no_recording_is_refused_with_its_line() {
     };
     let refused = with(0, "palpate-session 2", "palpate-session 3");
     assert!(refused.starts_with("line 1: \"{\\\"format\\\":\\\"palpate-session 3"));
-    assert!(
-        refused.contains("unknown variant `palpate-session 3`"),
-        "{refused}"
-    );
+    let unknown = "unknown variant `palpate-session 3`";
+    assert!(refused.contains(unknown), "{refused}");
     let cycle = lines[4];
     let (cut, twice) = (&cycle[..cycle.len() - 1], cycle.repeat(2));
     for (at, from, to) in [

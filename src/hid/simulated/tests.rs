@@ -6,6 +6,7 @@ use super::*;
 use crate::hid::tests::{MS, Sent, Watched, begin, probing, recorded, table};
 use crate::hid::{Counters, End, Session};
 use crate::servo::{Fault as ServoFault, Limits, Mode, Request};
+use crate::stats::tests::assert_near;
 
 fn device(faults: Vec<(Duration, Defect)>) -> SimulatedDevice {
     probing(1500 * MS, faults)
@@ -43,11 +44,7 @@ fn the_handle_swings_as_a_damped_spring_does() {
         let expected = 0.01 * (1.0 - (-sigma * t).exp() * swing);
         // The spring acts half a step early on 0.01 m at 100/s, and the damping (σ = 56/s) up to a
         // step late: 0.01 · (100/2 + 56) · 1e-4.
-        assert!(
-            (handle.position - expected).abs() < 1.06e-4,
-            "{t}: {}",
-            handle.position
-        );
+        assert_near(handle.position, expected, 1.06e-4);
     }
 }
 

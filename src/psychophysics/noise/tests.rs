@@ -66,6 +66,7 @@ fn table_2_is_within_the_honest_interval_only() {
     assert_near(lower(answers.pooled_bounds_n), 0.2024, 5e-5);
     assert_near(lower(answers.clustered_bounds_n), 0.1503, 5e-5);
     // The words follow the numbers.
+    let by = |noise: f64| agreement(answers, noise);
     for (text, words) in [
         (
             &found.agreement,
@@ -75,14 +76,8 @@ fn table_2_is_within_the_honest_interval_only() {
             &found.agreement,
             "and inside the 95 % interval of the subjects",
         ),
-        (
-            &agreement(answers, 0.25),
-            "It lies inside the 95 % interval of all answers",
-        ),
-        (
-            &agreement(answers, 0.05),
-            "outside the 95 % interval of the subjects",
-        ),
+        (&by(0.25), "It lies inside the 95 % interval of all answers"),
+        (&by(0.05), "outside the 95 % interval of the subjects"),
     ] {
         assert!(text.contains(words), "{text}");
     }

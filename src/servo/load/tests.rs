@@ -6,19 +6,15 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::servo::EXTRAPOLATION_CELLS;
+use crate::stats::tests::assert_near;
 
 fn map(depths: &[f64], laterals: &[f64], force: impl Fn(f64, f64) -> [f64; 2]) -> ForceTable {
     let matrix = |component: usize| {
-        Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
-            force(depths[row], laterals[column])[component]
-        })
+        let at = |row: usize, column: usize| force(depths[row], laterals[column])[component];
+        Matrix::from_fn(depths.len(), laterals.len(), at)
     };
-    ForceTable::new(
-        depths.to_vec(),
-        laterals.to_vec(),
-        Force::new(matrix(0), matrix(1)),
-    )
-    .unwrap()
+    let forces = Force::new(matrix(0), matrix(1));
+    ForceTable::new(depths.into(), laterals.into(), forces).unwrap()
 }
 
 /// A device that plays everything.
@@ -35,6 +31,18 @@ fn open_limits() -> Limits {
     Limits::new(20.0, 20.0, 20.0, 20).unwrap()
 }
 
+fn scaled(map: &ForceTable, device: &Damping) -> Result<(LoadedTable, f64), Refusal> {
+    LoadedTable::scaled_to_be_passive(map, device, &open_limits())
+}
+
+/// A device for springs up to so many N/m.
+fn playing_up_to(stiffest: f64) -> Damping {
+    Damping {
+        damping_n_s_per_m: stiffest / 2000.0,
+        ..FREE
+    }
+}
+
 // Verifies: SRV-044, SRV-046.
 #[test]
 fn the_surface_is_put_in_front_and_rounding_is_reported() {
@@ -42,16 +50,9 @@ fn the_surface_is_put_in_front_and_rounding_is_reported() {
     let table = loaded.table().unwrap();
     assert_eq!(table.depths().knots(), [0.0, 0.1f32, 0.5]);
     assert_eq!(table.laterals().knots(), [-0.25, 0.5]);
-    let force = |lateral, normal| Force { lateral, normal };
-    let expected = [
-        force(0.0, 0.0),
-        force(0.0, 0.0),
-        force(-0.25, 1.0),
-        force(0.5, 1.0),
-        force(-0.25, 5.0),
-        force(0.5, 5.0),
-    ];
-    assert_eq!(table.forces(), expected);
+    let row = |normal| [-0.25, 0.5].map(|lateral| Force { lateral, normal });
+    let expected = [[Force::ZERO; 2], row(1.0), row(5.0)];
+    assert_eq!(table.forces(), expected.concat());
     // 0.1 is not a number of f32; the exact difference by hand: 0x3DCCCCCD − 0.1.
     assert_eq!(loaded.rounding().position_m, 1.490_116_113_833_650_5e-9);
     assert_eq!(loaded.rounding().force_n, 0.0);
@@ -76,34 +77,26 @@ fn a_map_is_refused_with_its_place() {
             .to_string()
     };
     let calm = |_, _| [0.0, 0.0];
-    for (text, beginning) in [
-        (refused(&[0.0], &[0.0, 0.1], calm), "depths_m has 1 entries"),
-        (refused(&[0.1], &[0.0], calm), "laterals_m has 1 entries"),
-        (
-            refused(&[0.1, 1.25], &[0.0, 0.1], calm),
-            "depths_m[1] = 1.25, expected at most ±1 m",
-        ),
-        (
-            refused(&[1e-7], &[0.0, 0.1], calm),
-            "depths_m[0] = 0.0000001, expected at least 1e-6 m",
-        ),
-        (
-            refused(&[0.1], &[0.0, 5e-7], calm),
-            "laterals_m[1] = 0.0000005, expected at least 1e-6 m above the one before, 0,",
-        ),
-        (
-            refused(&[0.1], &[0.0, 0.1], |_, x| [0.0, 2000.0 * x]),
-            "normal_force_n[0][1] = 200, expected at most ±100 N",
-        ),
-        (
-            refused(&[0.0, 0.1], &[0.0, 0.1], |_, x| [x, 0.0]),
-            "lateral_force_n[0][1] = 0.1 at depth 0, expected at most ±0.02 N",
-        ),
-        (
-            refused(&[0.1], &[0.0, 1.5], calm),
-            "laterals_m[1] = 1.5, expected at most ±1 m",
-        ),
-    ] {
+    let texts = [
+        refused(&[0.0], &[0.0, 0.1], calm),
+        refused(&[0.1], &[0.0], calm),
+        refused(&[0.1, 1.25], &[0.0, 0.1], calm),
+        refused(&[1e-7], &[0.0, 0.1], calm),
+        refused(&[0.1], &[0.0, 5e-7], calm),
+        refused(&[0.1], &[0.0, 0.1], |_, x| [0.0, 2000.0 * x]),
+        refused(&[0.0, 0.1], &[0.0, 0.1], |_, x| [x, 0.0]),
+        refused(&[0.1], &[0.0, 1.5], calm),
+    ];
+    let beginnings = "depths_m has 1 entries
+laterals_m has 1 entries
+depths_m[1] = 1.25, expected at most ±1 m
+depths_m[0] = 0.0000001, expected at least 1e-6 m
+laterals_m[1] = 0.0000005, expected at least 1e-6 m above the one before, 0,
+normal_force_n[0][1] = 200, expected at most ±100 N
+lateral_force_n[0][1] = 0.1 at depth 0, expected at most ±0.02 N
+laterals_m[1] = 1.5, expected at most ±1 m";
+    assert_eq!(beginnings.lines().count(), texts.len());
+    for (text, beginning) in texts.iter().zip(beginnings.lines()) {
         assert!(text.starts_with(beginning), "{text}");
     }
 }
@@ -133,10 +126,7 @@ fn the_stiffness_counts_the_cells_continued_at_the_border() {
     // F_n = 16 x d: ∂F_n/∂x = 16 d and ∂F_n/∂d = 16 x; continued to d = 1 and x = 1 and −0.5.
     let loaded = LoadedTable::new(&map(&[0.0, 0.5], &[0.0, 0.5], |d, x| [0.0, 16.0 * x * d]));
     let stiffness = stiffness(&loaded.unwrap().table().unwrap());
-    assert!(
-        (stiffness - 16.0 * 2f64.sqrt()).abs() < 1e-13,
-        "{stiffness}"
-    );
+    assert_near(stiffness, 16.0 * 2f64.sqrt(), 1e-13);
 }
 
 /// The largest singular value of [[a, b], [c, d]] from the eigenvalues of its square.
@@ -199,10 +189,7 @@ fn the_stiffness_is_the_steepest_slope_by_differences() {
                 let table = Table::new(depths, Axis::new(&laterals, &widths).unwrap(), &forces);
                 let table = table.unwrap();
                 let (found, expected) = (stiffness(&table), steepest(&table));
-                assert!(
-                    (found - expected).abs() < 1e-12 * expected,
-                    "{found} {expected} {place}"
-                );
+                assert_near(found, expected, 1e-12 * expected);
             }
         }
     }
@@ -310,49 +297,36 @@ fn the_stiffest_spring_is_that_whose_delay_the_damping_makes_up_for() {
 #[test]
 fn a_table_too_stiff_is_refused_or_scaled_on_request() {
     let map = map(&[0.0, 0.004], &[-0.01, 0.01], |d, _| [0.0, 400.0 * d]);
-    let device = Damping {
-        period_s: 1e-3,
-        damping_n_s_per_m: 0.1,
-        ..FREE
-    };
-    let text = LoadedTable::passive(&map, &device, &open_limits())
-        .unwrap_err()
-        .to_string();
-    assert!(
-        text.contains("400.0000 N/m") && text.contains("200.0000") && text.contains("0.5000"),
-        "{text}"
-    );
+    let device = playing_up_to(200.0);
+    let refused = LoadedTable::passive(&map, &device, &open_limits()).unwrap_err();
+    let text = refused.to_string();
+    for part in ["400.0000 N/m", "200.0000", "0.5000"] {
+        assert!(text.contains(part), "{text}");
+    }
 
-    let (loaded, scale) = LoadedTable::scaled_to_be_passive(&map, &device, &open_limits()).unwrap();
+    let (loaded, scale) = scaled(&map, &device).unwrap();
     let table = loaded.table().unwrap();
     assert!(stiffness(&table) <= 200.0);
     assert!((scale - 0.5).abs() < 1e-5, "{scale}");
     let (lateral, normal) = (0.0, (1.6 * scale) as f32);
     assert_eq!(table.forces()[2], Force { lateral, normal });
 
-    let found = LoadedTable::scaled_to_be_passive(&map, &FREE, &open_limits()).unwrap();
+    let found = scaled(&map, &FREE).unwrap();
     let unscaled = LoadedTable::passive(&map, &FREE, &open_limits()).unwrap();
     assert_eq!(found, (unscaled, 1.0));
     // 2^-10 N/m above what the device plays, to be met within the rounding of the forces.
     for stiffest in [100.0, 399.999, 333.333] {
-        let device = Damping {
-            damping_n_s_per_m: stiffest / 2000.0,
-            ..FREE
-        };
-        let (loaded, scale) =
-            LoadedTable::scaled_to_be_passive(&map, &device, &open_limits()).unwrap();
+        let (loaded, scale) = scaled(&map, &playing_up_to(stiffest)).unwrap();
         let found = stiffness(&loaded.table().unwrap());
-        assert!(
-            found <= stiffest && found > stiffest * (1.0 - 1e-6),
-            "{found}"
-        );
+        let near = found > stiffest * (1.0 - 1e-6);
+        assert!(found <= stiffest && near, "{found}");
         assert!((scale - stiffest / 400.0).abs() < 1e-6, "{scale}");
     }
     let undamped = Damping {
         friction_n: 0.0,
         ..FREE
     };
-    assert!(LoadedTable::scaled_to_be_passive(&map, &undamped, &open_limits()).is_err());
+    assert!(scaled(&map, &undamped).is_err());
 }
 
 // A slope between large forces is rounded by far more than a force: the scale must go down until it fits.
@@ -366,12 +340,7 @@ fn scaling_goes_on_until_the_rounded_slopes_fit() {
     let slack = 2.0 * 2.0 * 2f64.powi(-21) / 2e-6 / 6850.0;
     let mut lowered = 0;
     for stiffest in (1..40u8).map(|k| 100.0 * f64::from(k)) {
-        let device = Damping {
-            damping_n_s_per_m: stiffest / 2000.0,
-            ..FREE
-        };
-        let (loaded, scale) =
-            LoadedTable::scaled_to_be_passive(&map, &device, &open_limits()).unwrap();
+        let (loaded, scale) = scaled(&map, &playing_up_to(stiffest)).unwrap();
         assert!(stiffness(&loaded.table().unwrap()) <= stiffest);
         let fit = stiffest / steepest;
         assert!(scale < fit && scale > fit * (1.0 - slack), "{scale}");
@@ -401,14 +370,9 @@ fn any_map() -> impl Strategy<Value = (ForceTable, f64)> {
                 let round = |value: &(f64, f64)| f64::from((scale * component(value)) as f32);
                 Matrix::new(laterals.len(), values.iter().map(round).collect()).unwrap()
             };
-            let (normal, lateral) = (matrix(|v| v.0), matrix(|v| v.1));
-            let map = ForceTable::new(
-                depths.clone(),
-                laterals.clone(),
-                Force::new(lateral, normal),
-            )
-            .unwrap();
-            (map, scale)
+            let forces = Force::new(matrix(|v| v.1), matrix(|v| v.0));
+            let map = ForceTable::new(depths.clone(), laterals.clone(), forces);
+            (map.unwrap(), scale)
         })
     })
 }
@@ -431,22 +395,19 @@ fn distance(map: &ForceTable, depth_at: f32, lateral_at: f32, reach: f32) -> f64
     let depth = position(table.depths().knots(), reach, depth_at).max(0.0);
     let lateral = position(table.laterals().knots(), reach, lateral_at);
     let reference = {
-        let depths = table
-            .depths()
-            .knots()
-            .iter()
-            .map(|&knot| f64::from(knot))
-            .collect();
-        let columns = map.laterals().len();
+        let knots = table.depths().knots().iter();
+        let (laterals, forces) = (map.laterals().to_vec(), table.forces().iter());
         let matrix = |component: fn(&Force<f32>) -> f32| {
-            let values = table
-                .forces()
-                .iter()
-                .map(|force| f64::from(component(force)));
-            Matrix::new(columns, values.collect()).unwrap()
+            let values = forces.clone().map(|force| f64::from(component(force)));
+            Matrix::new(laterals.len(), values.collect()).unwrap()
         };
-        let (normal, lateral) = (matrix(|f| f.normal), matrix(|f| f.lateral));
-        ForceTable::new(depths, map.laterals().to_vec(), Force::new(lateral, normal)).unwrap()
+        let forces = Force::new(matrix(|f| f.lateral), matrix(|f| f.normal));
+        ForceTable::new(
+            knots.map(|&knot| f64::from(knot)).collect(),
+            laterals,
+            forces,
+        )
+        .unwrap()
     };
     let expected = reference
         .force(f64::from(depth), f64::from(lateral))

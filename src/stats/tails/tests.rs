@@ -1,15 +1,13 @@
 //! Expected values: mpmath at 40 digits (`src/psychophysics/reference.py`), and closed forms.
 
 use super::*;
+use crate::stats::tests::assert_near;
 
 /// Asserts |found/expected − 1| ≤ `tolerance`.
 #[track_caller]
 fn assert_relative(found: Result<f64, NumericError>, expected: f64, tolerance: f64) {
     let found = found.unwrap();
-    assert!(
-        (found / expected - 1.0).abs() <= tolerance,
-        "found {found:e}, expected {expected:e}"
-    );
+    assert_near(found / expected, 1.0, tolerance);
 }
 
 /// For parameters up to 20: the terms of the exponent are below 100, their rounding errors below

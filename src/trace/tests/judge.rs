@@ -61,22 +61,15 @@ fn maps_that_do_not_fit_are_refused() {
     };
     let record = read(EXAMPLE).unwrap();
     let far = read(&format!("{EXAMPLE}# far\n3.1,0,0\n")).unwrap();
-    for (found, expected) in [
-        (
-            judged(&record, &table(1.0), 0.001),
-            "t.csv: the maps do not differ at the samples, expected a signal to decide by",
-        ),
-        (
-            judged(&record, &table(0.0), 0.0035),
-            "t.csv: depth 0.0035 m is outside the map, expected 0.001 to 0.003 m",
-        ),
-        (
-            judged(&far, &table(0.0), 0.001),
-            "t.csv:5: position 3.1 mm is outside the maps, expected -3.0 to 3.0 mm (or use --trim)",
-        ),
-    ] {
-        assert_eq!(found, expected);
-    }
+    let found = [
+        judged(&record, &table(1.0), 0.001),
+        judged(&record, &table(0.0), 0.0035),
+        judged(&far, &table(0.0), 0.001),
+    ];
+    let expected = "t.csv: the maps do not differ at the samples, expected a signal to decide by
+t.csv: depth 0.0035 m is outside the map, expected 0.001 to 0.003 m
+t.csv:5: position 3.1 mm is outside the maps, expected -3.0 to 3.0 mm (or use --trim)";
+    assert_eq!(found.join("\n"), expected);
     let table = |depths: [f64; 2]| {
         let (laterals, forces) = (table(0.0).laterals().to_vec(), table(0.0).forces().clone());
         ForceTable::new(depths.to_vec(), laterals, forces).unwrap()
@@ -141,15 +134,14 @@ pub fn recorded(signal: impl Fn(f64) -> [f64; 2]) -> Record {
     record(positions.clone(), |i| {
         let line = 2.0 * i as f64 / 160.0 - 1.0;
         let noise = [(i * i * 7 + 3 * i) % 11, (i * i * 5 + 2 * i) % 13];
+        let noise = [
+            0.3 / 11.0 * (noise[0] as f64 - 5.0),
+            0.3 / 13.0 * (noise[1] as f64 - 6.0),
+        ];
         let [lateral, normal] = signal(positions[i]);
         [
-            1.1 * exact.lateral[i]
-                + lateral
-                + 0.25
-                + 0.1 * line
-                + 0.3 / 11.0 * (noise[0] as f64 - 5.0),
-            1.1 * exact.normal[i] + normal - 0.5 - 0.2 * line
-                + 0.3 / 13.0 * (noise[1] as f64 - 6.0),
+            1.1 * exact.lateral[i] + lateral + 0.25 + 0.1 * line + noise[0],
+            1.1 * exact.normal[i] + normal - 0.5 - 0.2 * line + noise[1],
         ]
     })
 }
@@ -196,28 +188,21 @@ fn what_is_unknown_is_fitted_by_least_squares() {
             "384.5330530254016 316 6.839988560372772 7.913838846268948 13.659872024495744 2.351795236466693 5.1279382140775336e-6"),
     ];
     for (unknown, depth_tolerance, noise, expected) in cases {
+        let max_false_alarm = 0.02;
         let question = Question {
             unknown,
             depth_tolerance,
             noise,
-            criterion: Criterion::NeymanPearsonFalseAlarm {
-                max_false_alarm: 0.02,
-            },
+            criterion: Criterion::NeymanPearsonFalseAlarm { max_false_alarm },
             ..question(4e-3)
         };
         let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
         let found = question.judge(hypotheses, &record).unwrap();
         let (test, fit) = (found.test, found.fit);
-        let threshold = at(found.threshold);
         let chi_square = [fit.chi_square, fit.degrees];
-        let of_t = [
-            test.t,
-            test.gamma,
-            test.theta(),
-            threshold,
-            found.rates.miss,
-        ];
-        let found_all = chi_square.into_iter().chain(of_t);
+        let of_t = [test.t, test.gamma, test.theta()];
+        let decided = [at(found.threshold), found.rates.miss];
+        let found_all = chi_square.into_iter().chain(of_t).chain(decided);
         for (found, expected) in found_all.zip(expected.split(' ')) {
             close(found, expected.parse().unwrap());
         }
@@ -328,12 +313,10 @@ fn the_limits_of_chi_square() {
 #[test]
 fn samples_that_depend_on_one_another_do_not_count_twice() {
     // 41 samples, and the 2001 that a line through them gives.
-    let few: Vec<usize> = (0..41).map(|i| 10 * i).collect();
     let whole = sweep(0.5, 3);
     let sample = |i: usize| whole.forces().map(|force| force[i]).into_array();
-    let few = record(few.iter().map(|&i| whole.positions[i]).collect(), |i| {
-        sample(10 * i)
-    });
+    let tenth = whole.positions.iter().copied().step_by(10);
+    let few = record(tenth.collect(), |i| sample(10 * i));
     let many: Vec<f64> = (0..2001).map(|i| 8e-6 * f64::from(i) - 8e-3).collect();
     let many = record(many, |i| {
         let (from, share) = ((i / 50).min(39), (i - (i / 50).min(39) * 50) as f64 / 50.0);
@@ -356,9 +339,8 @@ fn samples_that_depend_on_one_another_do_not_count_twice() {
         ..question(4e-3)
     };
     let mut design = Design::new(&question, &without, &record_of_many).unwrap();
-    design
-        .set_template(&question, &with, &record_of_many)
-        .unwrap();
+    let set = design.set_template(&question, &with, &record_of_many);
+    set.unwrap();
     let (left, explained) = design.whitened(many.fit.noise_sd).unexplained().unwrap();
     assert_eq!(explained, 6);
     let lengths = left.map(|left| {
@@ -387,14 +369,12 @@ fn a_blank_sweep_tells_its_noise() {
     // The least squares of a line, in the middle of the samples.
     let sd = |trace: &Trace, channel: usize| {
         let n = trace.samples.len() as f64;
-        let rows = || {
-            (0..)
-                .zip(&trace.samples)
-                .map(|(i, (_, row))| (f64::from(i) - 0.5 * (n - 1.0), row[channel]))
-        };
+        let rows = (0..).zip(&trace.samples);
+        let rows = rows.map(|(i, (_, row))| (f64::from(i) - 0.5 * (n - 1.0), row[channel]));
+        let rows = || rows.clone();
         let mean = rows().map(|(_, y)| y).sum::<f64>() / n;
-        let slope =
-            rows().map(|(x, y)| x * y).sum::<f64>() / rows().map(|(x, _)| x * x).sum::<f64>();
+        let (products, squares) = (rows().map(|(x, y)| x * y), rows().map(|(x, _)| x * x));
+        let slope = products.sum::<f64>() / squares.sum::<f64>();
         let left = rows().map(|(x, y)| y - mean - slope * x);
         (left.map(|left| left * left).sum::<f64>() / (n - 2.0)).sqrt()
     };
@@ -410,14 +390,13 @@ fn a_blank_sweep_tells_its_noise() {
     };
     // τ is 10; its estimate has a standard deviation of √(2 · 51/4000) of it.
     assert!((length / 10.0 - 1.0).abs() < 0.5, "{length}");
+    let few = "99 samples, expected at least 100";
     for (trace, expected) in [
-        (
-            blank(99, 1, 0.2),
-            "blank.csv: 99 samples, expected at least 100",
-        ),
-        (blank(100, 100, 0.2), "blank.csv: noise_sd_x"),
+        (blank(99, 1, 0.2), few),
+        (blank(100, 100, 0.2), "noise_sd_x"),
     ] {
         let error = Noise::of_blank(&trace).unwrap_err().to_string();
-        assert!(error.starts_with(expected), "{error}");
+        let expected = format!("blank.csv: {expected}");
+        assert!(error.starts_with(&expected), "{error}");
     }
 }
