@@ -3,10 +3,9 @@
 
 mod program;
 
-use std::process::Stdio;
 use std::sync::OnceLock;
 
-use program::{Place, has, text};
+use program::{Place, has};
 use serde_json::{Value, json};
 
 const INCLUSIONS: [&str; 4] = ["2.6", "4.6", "6.6", "8.6"];
@@ -149,19 +148,4 @@ missing.csv => missing.csv: cannot be read
 fn what_is_refused_is_named_in_one_line() {
     place().write("bad.csv", "subject,condition,trials,2.6\n1,gel,30,31\n");
     place().refuses(REFUSED, |words| format!("psychophysics {words}"));
-}
-
-// Verifies: CLI-004.
-#[test]
-fn a_reader_who_has_gone_away_is_no_error() {
-    let mut command = place().palpate("psychophysics");
-    let mut child = command
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    drop(child.stdout.take());
-    let output = child.wait_with_output().unwrap();
-    assert!(output.status.success());
-    assert_eq!(text(&output.stderr), "");
 }
