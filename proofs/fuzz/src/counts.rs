@@ -13,12 +13,9 @@ use crate::{FILE, Outcome, judged};
 ///
 /// Implements: EVD-081, EVD-082.
 pub fn counts_csv(text: &str) -> Outcome {
-    let read = AnswerTable::from_csv(text, FILE);
-    judged(
-        read,
-        |table| check_table(&table),
-        |error| check_file_message(&error, text),
-    )
+    let refused = |error| check_file_message(&error, text);
+    let accepted = |table| check_table(&table);
+    judged(AnswerTable::from_csv(text, FILE), accepted, refused)
 }
 
 fn check_table(table: &AnswerTable) {
@@ -104,14 +101,11 @@ pub fn journal(text: &str) -> Outcome {
 
 fn check_counts(journal: &Journal, written: &str) {
     let count = |answer| written.lines().filter(|&line| line == answer).count();
-    let (right, answers) = journal
-        .counts()
-        .iter()
-        .fold((0, 0), |(right, all), (k, n)| (right + k, all + n));
-    assert_eq!(
-        (right, answers),
-        (count("right"), count("right") + count("wrong"))
-    );
+    let counts = journal.counts();
+    let right: usize = counts.iter().map(|(right, _)| right).sum();
+    let answers: usize = counts.iter().map(|(_, all)| all).sum();
+    assert_eq!(right, count("right"));
+    assert_eq!(answers, right + count("wrong"));
     let setup = journal.setup();
     let inclusions = setup.inclusions.split(',').count();
     assert!((1..=1000).contains(&setup.trials));

@@ -15,35 +15,21 @@ use crate::{Outcome, judged};
 ///
 /// Implements: EVD-081, EVD-082.
 pub fn hid_report(bytes: &[u8]) -> Outcome {
-    let position = PositionReport::decode(bytes);
-    let capabilities = Capabilities::decode(bytes);
-    let encoded: [(u8, usize, Result<Vec<u8>, InvalidReport>); 3] = [
-        (
-            PositionReport::NUMBER,
-            PositionReport::LENGTH,
-            position.map(|report| report.encode().to_vec()),
-        ),
-        (
-            ForceReport::NUMBER,
-            ForceReport::LENGTH,
-            ForceReport::decode(bytes).map(|report| report.encode().to_vec()),
-        ),
-        (
-            Capabilities::NUMBER,
-            Capabilities::LENGTH,
-            capabilities.map(|report| report.encode().to_vec()),
-        ),
-    ];
     let mut outcome = Outcome::Refused;
-    for (number, length, encoded) in encoded {
-        match encoded {
-            Ok(encoded) => {
-                assert_eq!(encoded, bytes);
-                outcome = Outcome::Accepted;
+    macro_rules! check {
+        ($report:ident) => {
+            match $report::decode(bytes) {
+                Ok(report) => {
+                    assert_eq!(report.encode(), bytes);
+                    outcome = Outcome::Accepted;
+                }
+                Err(error) => check_invalid(error, $report::NUMBER, $report::LENGTH, bytes),
             }
-            Err(error) => check_invalid(error, number, length, bytes),
-        }
+        };
     }
+    check!(PositionReport);
+    check!(ForceReport);
+    check!(Capabilities);
     match Control::decode(bytes) {
         Ok(control) => {
             assert_eq!(control.encode(), bytes);
@@ -54,7 +40,7 @@ pub fn hid_report(bytes: &[u8]) -> Outcome {
         }
         Err(error) => check_invalid(error, Control::NUMBER, Control::LENGTH, bytes),
     }
-    if let Ok(capabilities) = capabilities {
+    if let Ok(capabilities) = Capabilities::decode(bytes) {
         check_units(&capabilities, bytes);
     }
     outcome
@@ -63,19 +49,17 @@ pub fn hid_report(bytes: &[u8]) -> Outcome {
 /// Checks that another length or number was the reason, and is told.
 fn check_invalid(error: InvalidReport, number: u8, length: usize, bytes: &[u8]) {
     check_message(&error.to_string());
-    let right = if bytes.len() == length {
-        InvalidReport::Number {
-            found: bytes[0],
-            expected: number,
+    match error {
+        InvalidReport::Length { found, expected } => {
+            assert_eq!((found, expected), (bytes.len(), length));
+            assert_ne!(found, length);
         }
-    } else {
-        InvalidReport::Length {
-            found: bytes.len(),
-            expected: length,
+        InvalidReport::Number { found, expected } => {
+            assert_eq!((found, expected, bytes.len()), (bytes[0], number, length));
+            assert_ne!(found, number);
         }
-    };
-    assert_eq!(error, right);
-    assert!(bytes.len() != length || bytes[0] != number);
+        InvalidReport::Value { .. } => panic!("{error}"),
+    }
 }
 
 /// Units are refused or make finite numbers of every report.
@@ -85,14 +69,12 @@ fn check_units(capabilities: &Capabilities, bytes: &[u8]) {
         && capabilities.force_unit_un != 0
         && u32::from(capabilities.force_unit_un) * 32_767
             >= u32::from(capabilities.largest_force_mn) * 1000;
-    let units = match Units::new(capabilities) {
+    let units = Units::new(capabilities);
+    assert_eq!(units.is_ok(), has_meaning);
+    let units = match units {
         Ok(units) => units,
-        Err(error) => {
-            assert!(!has_meaning);
-            return check_message(&error.to_string());
-        }
+        Err(error) => return check_message(&error.to_string()),
     };
-    assert!(has_meaning);
     let word = |at: usize| i16::from_le_bytes([bytes[at], bytes[at + 1]]);
     let sample = units.sample(&PositionReport {
         lateral: word(13),
@@ -125,10 +107,11 @@ pub fn recording(text: &str) -> Outcome {
 
 fn check_replay(recording: &Recording) {
     let matrix = |forces: [f64; 4]| Matrix::new(2, forces.to_vec()).expect("two columns");
+    let [lateral, normal] = [[0.0, 0.0, 0.1, -0.1], [0.0, 0.0, 1.5, 1.5]].map(matrix);
     let map = ForceTable::new(
         vec![0.0, 0.004],
         vec![-0.01, 0.01],
-        Force::new(matrix([0.0, 0.0, 0.1, -0.1]), matrix([0.0, 0.0, 1.5, 1.5])),
+        Force { lateral, normal },
     );
     let loaded = LoadedTable::new(&map.expect("a map")).expect("a table");
     match recording.replay(loaded.table().expect("loaded")) {

@@ -33,10 +33,8 @@ pub fn check_csv(refusal: &Refusal, text: &str) {
     let line = refusal.line.expect("a line");
     let content = text.split('\n').nth(line - 1).unwrap_or("");
     let quoted = quoted.strip_suffix('"').expect("a closing quote");
-    assert!(
-        format!("{content:?}").contains(quoted),
-        "{quoted:?} is not in line {line}, {content:?}"
-    );
+    let is_there = format!("{content:?}").contains(quoted);
+    assert!(is_there, "{quoted:?} is not in line {line}, {content:?}");
 }
 
 fn check_map(map: ForceMap) {
@@ -65,10 +63,8 @@ fn check_table(table: &ForceTable) {
     for axis in [table.depths(), table.laterals()] {
         assert!(!axis.is_empty());
         assert!(axis.iter().all(|x| x.is_finite() && x.to_bits() != 1 << 63));
-        assert!(
-            axis.windows(2)
-                .all(|pair| pair[1] - pair[0] > SAME_POSITION)
-        );
+        let mut steps = axis.windows(2).map(|pair| pair[1] - pair[0]);
+        assert!(steps.all(|step| step > SAME_POSITION));
     }
     assert!(table.depths()[0] >= 0.0);
     let shape = (table.depths().len(), table.laterals().len());

@@ -14,15 +14,7 @@ use crate::message::check_message;
 const KNOWN: &[u8] = b"{\"id\":7,\"op\":\"normal_cdf\",\"args\":{\"x\":0}}\n";
 const ITS_ANSWER: &[u8] = b"{\"id\":7,\"ok\":{\"p\":0.5}}\n";
 /// The codes of `spec/oracle.md`.
-const CODES: [&str; 7] = [
-    "bad_json",
-    "bad_request",
-    "unknown_op",
-    "bad_argument",
-    "out_of_range",
-    "overflow",
-    "failed",
-];
+const CODES: &str = "bad_json bad_request unknown_op bad_argument out_of_range overflow failed";
 
 /// Any bytes get one line of JSON for each line, either `ok` with finite numbers or an error with a
 /// known code and a message, with the id of the request byte for byte; the same bytes get the same
@@ -37,9 +29,8 @@ pub fn oracle_line(bytes: &[u8]) -> Outcome {
     let input = [bytes, b"\n", KNOWN].concat();
     let mut output = Vec::new();
     serve(&input[..], &mut output).expect("memory can be written");
-    let answers = output
-        .strip_suffix(ITS_ANSWER)
-        .expect("the next line has its answer");
+    let answers = output.strip_suffix(ITS_ANSWER);
+    let answers = answers.expect("the next line has its answer");
     let lines: Vec<&[u8]> = bytes.split(|&byte| byte == b'\n').collect();
     let answers: Vec<&[u8]> = answers.split_inclusive(|&byte| byte == b'\n').collect();
     assert_eq!(lines.len(), answers.len());
@@ -54,11 +45,12 @@ pub fn oracle_line(bytes: &[u8]) -> Outcome {
 
 /// Whether a line may ask for a solution.
 fn solves(bytes: &[u8]) -> bool {
-    palpate::phantom::BUILTIN_NAMES.iter().any(|name| {
+    let named = |name: &&str| {
         bytes
             .windows(name.len())
             .any(|part| part == name.as_bytes())
-    })
+    };
+    palpate::phantom::BUILTIN_NAMES.iter().any(named)
 }
 
 fn check_answer(line: &[u8], answer: &[u8]) -> Outcome {
@@ -84,7 +76,7 @@ fn check_answer(line: &[u8], answer: &[u8]) -> Outcome {
         (None, Some(error)) => {
             let error = value(error);
             let code = error["code"].as_str().expect("a code");
-            assert!(CODES.contains(&code), "{text}");
+            assert!(CODES.split(' ').any(|known| known == code), "{text}");
             check_message(error["message"].as_str().expect("a message"));
             Outcome::Refused
         }
@@ -136,7 +128,6 @@ fn count_members(text: &str) -> Option<usize> {
             Ok(count)
         }
     }
-    serde_json::Deserializer::from_str(text)
-        .deserialize_map(Count)
-        .ok()
+    let mut reader = serde_json::Deserializer::from_str(text);
+    reader.deserialize_map(Count).ok()
 }

@@ -30,9 +30,8 @@ fn forbidden(bans: &toml::Value, name: &str, version: &str) -> bool {
 fn allowed(expression: &str, allow: &[&str]) -> bool {
     let spaced = expression.replace('/', " OR ").replace(" or ", " OR ");
     let plain = spaced.trim();
-    let inner = plain
-        .strip_prefix('(')
-        .and_then(|inner| inner.strip_suffix(')'));
+    let inner = plain.strip_prefix('(');
+    let inner = inner.and_then(|inner| inner.strip_suffix(')'));
     match (parts(plain, " OR "), parts(plain, " AND "), inner) {
         (any, ..) if any.len() > 1 => any.iter().any(|part| allowed(part, allow)),
         (_, all, _) if all.len() > 1 => all.iter().all(|part| allowed(part, allow)),
@@ -87,10 +86,8 @@ fn every_licence_is_allowed_and_every_allowance_is_needed() {
     assert!(expressions.len() > 100, "{} packages", expressions.len());
     for licence in &allow {
         let others: Vec<&str> = allow.iter().filter(|l| *l != licence).copied().collect();
-        assert!(
-            expressions.iter().any(|text| !allowed(text, &others)),
-            "{licence} is allowed for nothing"
-        );
+        let is_needed = expressions.iter().any(|text| !allowed(text, &others));
+        assert!(is_needed, "{licence} is allowed for nothing");
     }
 }
 
@@ -112,10 +109,8 @@ fn no_crate_is_banned() {
 fn every_crate_comes_from_the_registry_with_a_checksum() {
     // Without `allow-registry`, cargo's own registry alone.
     let sources = &rules()["sources"];
-    assert!(
-        sources["allow-git"].as_array().unwrap().is_empty()
-            && sources.get("allow-registry").is_none()
-    );
+    assert!(sources["allow-git"].as_array().unwrap().is_empty());
+    assert!(sources.get("allow-registry").is_none());
     // One registry, whose address the lock file holds: `cargo deny` compares it with cargo's own.
     let registries: BTreeSet<String> = locked().into_iter().filter_map(|p| p.source).collect();
     assert_eq!(registries.len(), 1, "{registries:?}");
@@ -124,13 +119,9 @@ fn every_crate_comes_from_the_registry_with_a_checksum() {
         match package.source {
             None => members.push(package.name),
             Some(source) => {
-                assert!(
-                    source.starts_with("registry+https://"),
-                    "{}: {source}",
-                    package.name
-                );
-                let checksum = package.checksum.unwrap_or_default();
-                assert_eq!(checksum.len(), 64, "{}", package.name);
+                let name = package.name;
+                assert!(source.starts_with("registry+https://"), "{name}: {source}");
+                assert_eq!(package.checksum.unwrap_or_default().len(), 64, "{name}");
             }
         }
     }

@@ -50,14 +50,10 @@ impl Log {
                     self.note(what, End::Ok);
                 }
             }
-            self.left.extend(
-                line.strip_prefix("== left to .ci/run all: ")
-                    .map(String::from),
-            );
-            if let Some((passed, _)) = line
-                .strip_prefix("hid-stack: ok ")
-                .and_then(|name| name.split_once(':'))
-            {
+            let left = line.strip_prefix("== left to .ci/run all: ");
+            self.left.extend(left.map(String::from));
+            let passed = line.strip_prefix("hid-stack: ok ");
+            if let Some((passed, _)) = passed.and_then(|name| name.split_once(':')) {
                 self.note(format!("hid-stack: ok {}", passed.trim_start()), End::Ok);
             }
         }
@@ -111,10 +107,8 @@ fn test_program(running: &str) -> Option<String> {
 /// Name and end of `test a::b ... ok`; of `test a::b - should panic ... ok` as well. Where something else follows the dots,
 /// the name is `begun`, and the next line that is an end belongs to it.
 fn test_line<'a>(line: &'a str, begun: &mut Option<&'a str>) -> Option<(&'a str, End)> {
-    let Some((name, rest)) = line
-        .strip_prefix("test ")
-        .and_then(|test| test.split_once(" ... "))
-    else {
+    let test = line.strip_prefix("test ");
+    let Some((name, rest)) = test.and_then(|test| test.split_once(" ... ")) else {
         return begun.take_if(|_| end(line).is_some()).zip(end(line));
     };
     let name = name.split(" - ").next()?;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use palpate_verify::traceability::Requirement;
 
-use crate::repository::{Program, Repository, ending, program};
+use crate::repository::{Repository, ending, program};
 use crate::rust::{item_below, names_by_macro};
 use crate::spec::{Defined, is_id, requirements};
 
@@ -19,6 +19,14 @@ pub type Problems = BTreeSet<(String, usize, String)>;
 
 /// Three kinds of annotations: served by this code; checked by this test; shown for every input in a stated range.
 const WORDS: [&str; 3] = ["Implements", "Verifies", "Proves"];
+
+/// What may be wrong with a requirement.
+const WRONG: [&str; 4] = [
+    "has no code: no annotation \"Implements:\" names it",
+    "has neither test nor proof: no annotation \"Verifies:\" names it",
+    "is marked \"by inspection\", but there is a test or proof of it",
+    "does not say where it is inspected, and why",
+];
 
 /// All requirements with what serves and what checks them.
 #[derive(Debug, Default)]
@@ -42,23 +50,19 @@ impl Trace {
     pub fn of(repository: &Repository) -> Trace {
         let mut trace = Trace::default();
         let mut defined = requirements(repository, &mut trace.problems);
-        for (path, text) in repository
-            .iter()
-            .filter(|(path, _)| !path.starts_with("spec/"))
-        {
+        let outside = repository.iter();
+        for (path, text) in outside.filter(|(path, _)| !path.starts_with("spec/")) {
             let lines: Vec<&str> = text.lines().collect();
             for line in 0..lines.len() {
-                if let Err(message) = trace.annotation(repository, &mut defined, path, &lines, line)
-                {
+                let entered = trace.annotation(repository, &mut defined, path, &lines, line);
+                if let Err(message) = entered {
                     trace.problems.insert((path.clone(), line + 1, message));
                 }
             }
         }
         trace.judge(&defined);
-        trace.requirements = defined
-            .into_values()
-            .map(|defined| defined.requirement)
-            .collect();
+        let requirements = defined.into_values().map(|defined| defined.requirement);
+        trace.requirements = requirements.collect();
         trace
     }
 
@@ -128,34 +132,19 @@ impl Trace {
             let row = &defined.requirement;
             let tested = !row.tests.is_empty() || !row.proofs.is_empty();
             let inspected = row.inspection.as_deref();
-            for (wrong, message) in [
-                (
-                    row.code.is_empty(),
-                    "has no code: no annotation \"Implements:\" names it",
-                ),
-                (
-                    inspected.is_none() && !tested,
-                    "has neither test nor proof: no annotation \"Verifies:\" names it",
-                ),
-                (
-                    inspected.is_some() && tested,
-                    "is marked \"by inspection\", but there is a test or proof of it",
-                ),
-                (
-                    inspected == Some(""),
-                    "does not say where it is inspected, and why",
-                ),
-            ] {
-                if wrong {
-                    let message = format!("{id} {message}");
-                    self.problems
-                        .insert((defined.path.clone(), defined.line, message));
-                }
+            let wrong = [
+                row.code.is_empty(),
+                inspected.is_none() && !tested,
+                inspected.is_some() && tested,
+                inspected == Some(""),
+            ];
+            for (_, message) in wrong.iter().zip(WRONG).filter(|(wrong, _)| **wrong) {
+                let (path, message) = (defined.path.clone(), format!("{id} {message}"));
+                self.problems.insert((path, defined.line, message));
             }
         }
-        let inspected = defined
-            .iter()
-            .filter(|(_, defined)| defined.requirement.inspection.is_some());
+        let is_inspected = |defined: &Defined| defined.requirement.inspection.is_some();
+        let inspected = defined.iter().filter(|(_, defined)| is_inspected(defined));
         let inspected: Vec<&str> = inspected.map(|(id, _)| id.as_str()).collect();
         if inspected.len() > MOST_INSPECTED {
             let message = format!(
@@ -200,10 +189,8 @@ fn place(
     end: usize,
 ) -> Result<Place, String> {
     let text = &repository[path];
-    let (rust, below) = (
-        path.ends_with(".rs"),
-        text.lines().nth(end).unwrap_or_default(),
-    );
+    let rust = path.ends_with(".rs");
+    let below = text.lines().nth(end).unwrap_or_default();
     match word {
         "Proves" if !path.starts_with("proofs/") => {
             Err("\"Proves:\" stands in proofs/ alone".into())
@@ -217,9 +204,8 @@ fn place(
         "Implements" => Ok(Place::Code(path.into())),
         _ if rust && !path.starts_with("benches/") => test(repository, path, end),
         _ if path.starts_with("vectors/generator/") => {
-            let name = below
-                .strip_prefix("def ")
-                .and_then(|def| def.split_once('('));
+            let def = below.strip_prefix("def ");
+            let name = def.and_then(|def| def.split_once('('));
             let (name, _) = name.ok_or("it does not stand above a function that makes a group")?;
             let file = format!("vectors/{name}.json");
             match repository.contains_key(&file) {
@@ -228,13 +214,10 @@ fn place(
             }
         }
         _ if path == ".ci/run" => {
-            let command = below
-                .strip_prefix("step ")
-                .ok_or("it does not stand above a step")?;
-            let shown = format!("== ok: {command}");
-            Ok(Place::Evidence(
-                [(format!("{path} {command}"), vec![shown])].into(),
-            ))
+            let command = below.strip_prefix("step ");
+            let command = command.ok_or("it does not stand above a step")?;
+            let (name, shown) = (format!("{path} {command}"), format!("== ok: {command}"));
+            Ok(Place::Evidence([(name, vec![shown])].into()))
         }
         _ => Ok(Place::Evidence([(path.into(), vec![path.into()])].into())),
     }
@@ -244,22 +227,17 @@ fn place(
 fn test(repository: &Repository, path: &str, end: usize) -> Result<Place, String> {
     let item = item_below(&repository[path], end).filter(|item| item.kind == "fn");
     let item = item.ok_or("it does not stand above a test function")?;
-    let Program {
-        root,
-        shown,
-        modules,
-    } = program(repository, path).ok_or("the file belongs to no program")?;
+    let of = program(repository, path).ok_or("the file belongs to no program")?;
     let functions = match item.name.starts_with('$') {
         true => names_by_macro(&repository[path], end),
         false => vec![item.name],
     };
     let mut tests = BTreeMap::new();
     for function in functions {
-        let name = [&modules[..], &item.modules, std::slice::from_ref(&function)]
-            .concat()
-            .join("::");
+        let modules = of.modules.iter().chain(&item.modules).chain([&function]);
+        let name = modules.map(String::as_str).collect::<Vec<_>>().join("::");
         let passed = if item.is_test {
-            vec![format!("{shown} {name}")]
+            vec![format!("{} {name}", of.shown)]
         } else if path.starts_with("tests/hid-stack/") {
             scenarios(repository, &function)
         } else {
@@ -268,16 +246,15 @@ fn test(repository: &Repository, path: &str, end: usize) -> Result<Place, String
         if passed.is_empty() {
             return Err(format!("no list `ALL` of scenarios runs `{function}`"));
         }
-        tests.insert(format!("{root}::{name}"), passed);
+        tests.insert(format!("{}::{name}", of.root), passed);
     }
     Ok(Place::Evidence(tests))
 }
 
 /// The lines of the scenarios that call a function: the guest runs those in its lists `ALL`, each a name and a call.
 fn scenarios(repository: &Repository, function: &str) -> Vec<String> {
-    let sources = repository
-        .iter()
-        .filter(|(path, _)| path.starts_with("tests/hid-stack/src/"));
+    let in_guest = |path: &str| path.starts_with("tests/hid-stack/src/");
+    let sources = repository.iter().filter(|(path, _)| in_guest(path));
     let lists = sources.filter_map(|(_, text)| {
         let (_, list) = text.split_once("const ALL: ")?;
         list.split("];").next()
