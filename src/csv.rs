@@ -131,9 +131,8 @@ fn split(line: &str, separator: char) -> impl Iterator<Item = &str> {
         c == separator && !quoted
     });
     fields.map(str::trim).map(|field| {
-        let inner = field
-            .strip_prefix('"')
-            .and_then(|rest| rest.strip_suffix('"'));
+        let rest = field.strip_prefix('"');
+        let inner = rest.and_then(|rest| rest.strip_suffix('"'));
         inner.map_or(field, str::trim)
     })
 }

@@ -16,9 +16,8 @@ const LONGEST: u64 = 256 << 20;
 /// Implements: CLI-008.
 pub fn read(path: &Path) -> io::Result<String> {
     let mut text = String::new();
-    let length = File::open(path)?
-        .take(LONGEST + 1)
-        .read_to_string(&mut text)?;
+    let mut file = File::open(path)?.take(LONGEST + 1);
+    let length = file.read_to_string(&mut text)?;
     if length as u64 > LONGEST {
         let message = format!("it goes on after {} MiB, expected less", LONGEST >> 20);
         return Err(Error::new(ErrorKind::InvalidData, message));

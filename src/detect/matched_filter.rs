@@ -41,9 +41,8 @@ impl<'a> MatchedFilter<'a> {
     pub fn new(template: Force<&'a [f64]>, noise_sd: Force<f64>) -> Result<Self, DetectError> {
         template.check("template_x", "template_y", template.lateral.len())?;
         let noise = WhiteNoise::new(noise_sd)?;
-        let energy = template
-            .zip(noise)
-            .map(|(template, noise)| noise.dot(template, template));
+        let channels = template.zip(noise);
+        let energy = channels.map(|(template, noise)| noise.dot(template, template));
         let gamma = noise.gamma(energy)?;
         Ok(Self {
             template,

@@ -62,9 +62,8 @@ impl Force<WhiteNoise> {
         cross: Force<DoubleDouble>,
         energy: Force<DoubleDouble>,
     ) -> Result<f64, DetectError> {
-        let difference = cross
-            .zip(energy)
-            .map(|(cross, energy)| cross.plus(energy.scaled(-0.5)));
+        let channels = cross.zip(energy);
+        let difference = channels.map(|(cross, energy)| cross.plus(energy.scaled(-0.5)));
         representable("theta", self.total(difference))
     }
 }

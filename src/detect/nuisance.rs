@@ -90,9 +90,8 @@ impl<'a> Nuisances<'a> {
 
 /// Scales a vector to length 1, if it has one; the length.
 fn normalise(vector: &mut [f64]) -> f64 {
-    let largest = vector
-        .iter()
-        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let magnitudes = vector.iter().map(|value| value.abs());
+    let largest = magnitudes.fold(0.0, f64::max);
     if largest > 0.0 {
         // First near 1, where squares neither overflow nor underflow.
         vector.iter_mut().for_each(|value| *value /= largest);

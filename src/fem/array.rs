@@ -57,10 +57,8 @@ impl Model {
         let solved = solved.collect::<Result<Vec<_>, FemError>>()?;
         let at = |x: f64| solved.iter().find(|of| of.0 == x).map(|of| of.1.clone());
         let mirrored = |x: f64| at(-x).map(|forces| forces.into_iter().rev().collect());
-        let forces = laterals
-            .iter()
-            .filter_map(|&x| at(x).or_else(|| mirrored(x)));
-        Ok(forces.collect())
+        let forces = |&x: &f64| at(x).or_else(|| mirrored(x));
+        Ok(laterals.iter().filter_map(forces).collect())
     }
 }
 

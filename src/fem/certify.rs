@@ -42,14 +42,12 @@ pub fn certified_map(
     let (middle_nodes, middle) = coarser(MESH_RATIOS[0])?;
     let (coarse_nodes, coarse) = coarser(MESH_RATIOS[0] * MESH_RATIOS[1])?;
     let [fine, middle, coarse] = [&finest, &middle, &coarse].map(|map| map.forces().as_ref());
-    let bands = fine
-        .zip(middle)
-        .zip(coarse)
-        .map(|((fine, middle), coarse)| {
-            Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
-                band([fine, middle, coarse].map(|force| force.row(row)[column]))
-            })
-        });
+    let bands = fine.zip(middle).zip(coarse);
+    let bands = bands.map(|((fine, middle), coarse)| {
+        Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
+            band([fine, middle, coarse].map(|force| force.row(row)[column]))
+        })
+    });
     let discretization = Discretization {
         nodes: [model.mesh().nodes.len(), middle_nodes, coarse_nodes],
         normal_force_band: bands.normal,

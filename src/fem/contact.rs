@@ -395,10 +395,8 @@ impl Surface {
     }
 
     fn constraints(&self, state: &ContactState, pose: Pose) -> Option<Vec<Constraint>> {
-        let active = state.active.iter();
-        active
-            .map(|&i| self.constraint(i, state.displacements[i], pose))
-            .collect()
+        let constraint = |&i: &usize| self.constraint(i, state.displacements[i], pose);
+        state.active.iter().map(constraint).collect()
     }
 
     /// One Newton step on the points in contact, given the displacements of all points under the present forces; updates
@@ -461,10 +459,8 @@ impl Surface {
         };
         let violations: Vec<f64> = reach.clone().map(violation).collect();
         let worst = violations.iter().copied().fold(0.0, f64::min);
-        for (i, _) in reach
-            .zip(violations)
-            .filter(|&(_, v)| v < 0.0 && v <= least * worst)
-        {
+        let is_large = |&(_, v): &(usize, f64)| v < 0.0 && v <= least * worst;
+        for (i, _) in reach.zip(violations).filter(is_large) {
             match state.active.binary_search(&i) {
                 Ok(at) => {
                     state.active.remove(at);

@@ -51,11 +51,9 @@ pub struct Gradients {
 
 /// Maps parent gradients to space for an element with corners and midsides at `positions`.
 pub fn gradients(parent: &PerNode, positions: &[[f64; 2]]) -> Gradients {
-    let map: Matrix2<f64> = positions
-        .iter()
-        .zip(parent.column_iter())
-        .map(|(&at, gradient)| Vector2::from(at) * gradient.transpose())
-        .sum();
+    let nodes = positions.iter().zip(parent.column_iter());
+    let parts = nodes.map(|(&at, gradient)| Vector2::from(at) * gradient.transpose());
+    let map: Matrix2<f64> = parts.sum();
     let jacobian = map[(0, 0)] * map[(1, 1)] - map[(0, 1)] * map[(1, 0)];
     let cofactors = Matrix2::new(map[(1, 1)], -map[(1, 0)], -map[(0, 1)], map[(0, 0)]);
     Gradients {
@@ -67,10 +65,8 @@ pub fn gradients(parent: &PerNode, positions: &[[f64; 2]]) -> Gradients {
 /// Lamé's constants (λ, μ), Pa.
 pub(super) fn lame(material: &Material) -> (f64, f64) {
     let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
-    (
-        e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
-        e / (2.0 * (1.0 + nu)),
-    )
+    let lambda = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    (lambda, e / (2.0 * (1.0 + nu)))
 }
 
 /// Cauchy stress (σ_xx, σ_yy, σ_zz, σ_xy), Pa, in plane strain from a displacement gradient

@@ -128,12 +128,11 @@ impl Mesh {
                 self.connectivity.push(middle);
             }
             let centre = corners.map(|k| triangles.corners[k]).iter().sum::<Point>() / 3.0;
-            let inclusion = outlines
-                .iter()
-                .position(|outline| outline.encloses(centre.into()));
-            let layer = || levels[1..].partition_point(|&level| level > centre.y);
-            self.regions
-                .push(inclusion.map_or_else(|| Region::Layer(layer()), Region::Inclusion));
+            let encloses = |outline: &Outline| outline.encloses(centre.into());
+            let inclusion = outlines.iter().position(encloses);
+            let layer = levels[1..].partition_point(|&level| level > centre.y);
+            let region = inclusion.map_or(Region::Layer(layer), Region::Inclusion);
+            self.regions.push(region);
         }
     }
 
@@ -179,9 +178,8 @@ impl Mesh {
         };
         self.held = self.nodes.iter().map(held).collect();
         let x = |node: usize| self.nodes[node][0];
-        self.surface = (0..self.nodes.len())
-            .filter(|&node| self.nodes[node][1] == 0.0)
-            .collect();
+        let is_on_top = |&node: &usize| self.nodes[node][1] == 0.0;
+        self.surface = (0..self.nodes.len()).filter(is_on_top).collect();
         self.surface.sort_by(|&a, &b| x(a).total_cmp(&x(b)));
     }
 
@@ -197,9 +195,7 @@ impl Mesh {
 
     /// Undeformed positions of some nodes, m.
     pub fn positions(&self, nodes: &[u32]) -> Vec<[f64; 2]> {
-        nodes
-            .iter()
-            .map(|&node| self.nodes[node as usize])
-            .collect()
+        let position = |&node: &u32| self.nodes[node as usize];
+        nodes.iter().map(position).collect()
     }
 }

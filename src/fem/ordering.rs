@@ -88,13 +88,10 @@ impl Search<'_> {
                 *mark = self.stamp;
             }
         }
-        let behind = elements[middle..]
-            .iter()
-            .flat_map(nodes)
-            .map(|&node| node as usize);
-        let mut shared: Vec<usize> = behind
-            .filter(|&node| self.marks[node] == self.stamp)
-            .collect();
+        let behind = elements[middle..].iter().flat_map(nodes);
+        let behind = behind.map(|&node| node as usize);
+        let is_marked = |&node: &usize| self.marks[node] == self.stamp;
+        let mut shared: Vec<usize> = behind.filter(is_marked).collect();
         shared.sort_unstable();
         shared.dedup();
         shared

@@ -178,10 +178,8 @@ fn distance(outline: &Outline, point: Point) -> f64 {
         }
         Outline::Polygon(points) => {
             let to_edge = |[a, b]: [[f64; 2]; 2]| point_to_segment(point.into(), a, b);
-            edges(points)
-                .into_iter()
-                .map(to_edge)
-                .fold(f64::INFINITY, f64::min)
+            let distances = edges(points).into_iter().map(to_edge);
+            distances.fold(f64::INFINITY, f64::min)
         }
     }
 }

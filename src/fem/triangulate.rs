@@ -252,9 +252,8 @@ impl Triangulation<'_> {
     fn connect(&mut self) -> Result<(), FemError> {
         let delaunay = self.delaunay()?;
         let faces = delaunay.inner_faces();
-        self.triangles = faces
-            .map(|face| face.vertices().map(|v| v.index()))
-            .collect();
+        let faces = faces.map(|face| face.vertices().map(|v| v.index()));
+        self.triangles = faces.collect();
         Ok(())
     }
 
@@ -282,9 +281,8 @@ impl Triangulation<'_> {
                 refine.then_some((large.max(0.5 * flat), centre))
             };
             let faces = delaunay.inner_faces().map(|face| face.positions());
-            let mut wanted: Vec<(f64, Point)> = faces
-                .filter_map(|corners| refined(corners.map(|p| Point::new(p.x, p.y))))
-                .collect();
+            let triangles = faces.map(|corners| corners.map(|p| Point::new(p.x, p.y)));
+            let mut wanted: Vec<(f64, Point)> = triangles.filter_map(refined).collect();
             let place = |p: &Point| (p.x.to_bits(), p.y.to_bits());
             wanted.sort_by(|(a, p), (b, q)| b.total_cmp(a).then(place(p).cmp(&place(q))));
             let before = self.corners.len();
@@ -386,20 +384,16 @@ impl Triangulation<'_> {
     /// The smallest angle, degrees, of the triangles around a corner if it stood at `at`.
     fn smallest_around(&self, corner: usize, at: Point, around: &[[usize; 3]]) -> f64 {
         let moved = |k: usize| if k == corner { at } else { self.corners[k] };
-        let angles = around
-            .iter()
-            .map(|triangle| smallest_angle(triangle.map(moved)));
-        angles.fold(180.0, f64::min)
+        let angle = |triangle: &[usize; 3]| smallest_angle(triangle.map(moved));
+        around.iter().map(angle).fold(180.0, f64::min)
     }
 
     /// Pattern search: steps in eight directions, halved where none helps.
     fn best_place(&self, corner: usize, around: &[[usize; 3]]) -> Point {
         let mut at = self.corners[corner];
         let mut best = self.smallest_around(corner, at, around);
-        let edges = around
-            .iter()
-            .map(|triangle| shortest_edge(self.at(triangle)));
-        let mut step = 0.25 * edges.fold(f64::INFINITY, f64::min);
+        let edge = |triangle| shortest_edge(self.at(triangle));
+        let mut step = 0.25 * around.iter().map(edge).fold(f64::INFINITY, f64::min);
         for _ in 0..SEARCH_STEPS {
             let from = at;
             for direction in 0..8 {
@@ -438,11 +432,8 @@ fn cuts(at: &Line, size: &SizeField) -> Vec<f64> {
         let step = sums.partition_point(|&sum| sum < share) - 1;
         (step as f64 + (share - sums[step]) / (sums[step + 1] - sums[step])) / steps as f64
     };
-    [0.0]
-        .into_iter()
-        .chain((1..count).map(cut))
-        .chain([1.0])
-        .collect()
+    let cuts = (1..count).map(cut);
+    [0.0].into_iter().chain(cuts).chain([1.0]).collect()
 }
 
 /// The refusal of a triangle at `at` (m) that is too flat, or of lines that cross there (0°).

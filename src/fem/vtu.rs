@@ -31,9 +31,8 @@ impl Model {
         };
         let per_element_of = field.gradients.iter().zip(&mesh.regions);
         let stresses = per_element_of.map(|(points, region)| {
-            let stresses = points
-                .iter()
-                .map(|&g| stress(region.material(self.phantom()), g));
+            let material = region.material(self.phantom());
+            let stresses = points.iter().map(|&g| stress(material, g));
             let sum = stresses.fold([0.0; 4], |a, b| [0, 1, 2, 3].map(|k| a[k] + b[k]));
             sum.map(|component| component / points.len() as f64)
         });

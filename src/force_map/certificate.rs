@@ -114,44 +114,32 @@ impl Certificate {
     /// Implements: MAP-006, MAP-007, MAP-051.
     pub(super) fn check(&self, depths: &[f64], laterals: &[f64]) -> Result<(), Refusal> {
         for (key, value) in [
-            (
-                "certificate.worst_relative_residual",
-                self.worst_relative_residual,
-            ),
-            (
-                "certificate.worst_force_balance_n",
-                self.worst_force_balance,
-            ),
-            (
-                "certificate.largest_penetration_m",
-                self.largest_penetration,
-            ),
-            ("certificate.mesh_size_m", self.mesh_size),
+            ("worst_relative_residual", self.worst_relative_residual),
+            ("worst_force_balance_n", self.worst_force_balance),
+            ("largest_penetration_m", self.largest_penetration),
+            ("mesh_size_m", self.mesh_size),
         ] {
-            check_number(key, value, 0.0)?;
+            check_number(format_args!("certificate.{key}"), value, 0.0)?;
         }
         let shape = [depths.len(), laterals.len()];
-        self.min_det
-            .check("certificate.min_det", shape, f64::NEG_INFINITY)?;
+        let least = f64::NEG_INFINITY;
+        self.min_det.check("certificate.min_det", shape, least)?;
         if let Some(bands) = &self.discretization {
             let (normal, lateral) = (&bands.normal_force_band, &bands.lateral_force_band);
-            normal.check("certificate.discretization.normal_force_band_n", shape, 0.0)?;
-            lateral.check(
-                "certificate.discretization.lateral_force_band_n",
-                shape,
-                0.0,
-            )?;
+            for (channel, band) in [("normal", normal), ("lateral", lateral)] {
+                let key = format!("certificate.discretization.{channel}_force_band_n");
+                band.check(&key, shape, 0.0)?;
+            }
         }
         let stated = self.smallest_det;
         let dets = self.min_det.values().iter().copied();
         let least = dets.fold(f64::INFINITY, f64::min);
         let index = |axis: &[f64], value: f64| {
-            axis.iter()
-                .position(|position| (position - value).abs() <= SAME_POSITION)
+            let is_there = |position: &f64| (position - value).abs() <= SAME_POSITION;
+            axis.iter().position(is_there)
         };
-        let there = index(depths, stated.depth)
-            .zip(index(laterals, stated.lateral))
-            .map(|(row, column)| self.min_det.row(row)[column]);
+        let pose = index(depths, stated.depth).zip(index(laterals, stated.lateral));
+        let there = pose.map(|(row, column)| self.min_det.row(row)[column]);
         if stated.det == least && there == Some(least) {
             return Ok(());
         }

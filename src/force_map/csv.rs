@@ -45,15 +45,11 @@ impl ForceTable {
     pub fn to_csv(&self) -> String {
         let columns = COLUMNS.map(|names| names[0][0]);
         let mut text = columns.map(|(name, _)| name).join(",") + "\n";
-        let forces = self
-            .forces()
-            .normal
-            .entries()
-            .zip(self.forces().lateral.values());
-        for ((row, column, normal), &lateral) in forces {
+        let Force { lateral, normal } = self.forces();
+        for ((row, column, normal), &lateral) in normal.entries().zip(lateral.values()) {
             let fields = [self.depths()[row], self.laterals()[column], normal, lateral];
-            let written = std::iter::zip(fields, columns)
-                .map(|(value, (_, power))| format_scaled(value, -power));
+            let fields = std::iter::zip(fields, columns);
+            let written = fields.map(|(value, (_, power))| format_scaled(value, -power));
             text.push_str(&written.collect::<Vec<_>>().join(","));
             text.push('\n');
         }

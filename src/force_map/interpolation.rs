@@ -44,9 +44,8 @@ impl Place {
         let index = next.checked_sub(1)?;
         let (start, end) = (axis[index], axis[next]);
         let (entries, fraction) = ([index, next], (position - start) / (end - start));
-        (end - start)
-            .is_finite()
-            .then_some(Place { entries, fraction })
+        let place = Place { entries, fraction };
+        (end - start).is_finite().then_some(place)
     }
 
     /// (1 − t) a + t b of the values at the two entries: a at t = 0 and b at t = 1 to the bit.
@@ -107,10 +106,9 @@ impl ForceTable {
             })
         };
         let row = place("depth", self.depths(), depth)?;
-        let columns = positions
-            .iter()
-            .map(|&lateral| place("lateral position", self.laterals(), lateral))
-            .collect::<Result<Vec<_>, _>>()?;
+        let column = |&lateral: &f64| place("lateral position", self.laterals(), lateral);
+        let columns = positions.iter().map(column);
+        let columns = columns.collect::<Result<Vec<_>, _>>()?;
         let along = |matrix: &Matrix| {
             let force =
                 |column: &Place| column.blend(|column| row.blend(|row| matrix.row(row)[column]));

@@ -79,9 +79,8 @@ impl ForceMap {
 pub(crate) fn to_json(document: &impl Serialize) -> String {
     let mut text = Vec::new();
     let mut serializer = serde_json::Serializer::with_formatter(&mut text, RowPerLine::default());
-    document
-        .serialize(&mut serializer)
-        .expect("strings and finite numbers go into memory without an error");
+    let written = document.serialize(&mut serializer);
+    written.expect("strings and finite numbers go into memory without an error");
     text.push(b'\n');
     String::from_utf8(text).expect("serde_json writes UTF-8")
 }

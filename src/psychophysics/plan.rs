@@ -49,8 +49,7 @@ pub fn plan(seed: u64, inclusions: usize, trials: usize) -> Vec<Trial> {
 fn below(generator: &Generator, place: u64, bound: u64) -> u64 {
     let whole = u64::MAX - u64::MAX % bound;
     // Rejects what would favour small numbers: once in 2⁵⁰ draws.
-    (0..)
-        .map(|attempt| generator.words([place, attempt, 1, 0])[0])
-        .find(|&word| word < whole)
-        .map_or(0, |word| word % bound)
+    let mut words = (0..).map(|attempt| generator.words([place, attempt, 1, 0])[0]);
+    let word = words.find(|&word| word < whole);
+    word.map_or(0, |word| word % bound)
 }

@@ -217,20 +217,15 @@ impl LoadedTable {
             found,
             allowed,
         };
+        let held = damping.friction_n;
         let bounds = [
             ("N/m of stiffness", stiffness, stiffest),
             ("N of growth in a cycle", growth, slew),
-            (
-                "N of force without a potential",
-                friction,
-                damping.friction_n,
-            ),
+            ("N of force without a potential", friction, held),
             ("N of force", largest_component(&table), force),
         ];
-        let broken = bounds
-            .map(bound)
-            .into_iter()
-            .filter(|b| b.found > b.allowed);
+        let bounds = bounds.map(bound).into_iter();
+        let broken = bounds.filter(|b| b.found > b.allowed);
         Ok(broken.min_by(|a, b| a.scale().total_cmp(&b.scale())))
     }
 }
@@ -295,9 +290,8 @@ fn knots(
 
 /// The reciprocal width of each cell, 1/m.
 fn reciprocals(knots: &[f32]) -> Vec<f32> {
-    let ends = knots.iter().zip(knots.iter().skip(1));
-    ends.map(|(&start, &end)| Axis::reciprocal_width(start, end))
-        .collect()
+    let width = |ends: &[f32]| Axis::reciprocal_width(ends[0], ends[1]);
+    knots.windows(2).map(width).collect()
 }
 
 /// `value` in f32; its error counts towards the largest.

@@ -129,10 +129,8 @@ fn wichura(p: f64) -> f64 {
 
 /// factor · Σ aᵢ xⁱ / Σ bᵢ xⁱ by Horner's rule, for coefficients [aᵢ, bᵢ] from i = 0 on.
 fn rational(coefficients: &[[f64; 2]; 8], factor: f64, x: f64) -> f64 {
-    let [numerator, denominator] = coefficients
-        .iter()
-        .rev()
-        .fold([0.0; 2], |sums, ab| [0, 1].map(|k| sums[k] * x + ab[k]));
+    let horner = |sums: [f64; 2], ab: &[f64; 2]| [0, 1].map(|k| sums[k] * x + ab[k]);
+    let [numerator, denominator] = coefficients.iter().rev().fold([0.0; 2], horner);
     factor * numerator / denominator
 }
 

@@ -163,11 +163,8 @@ impl Design {
     /// The nuisances, and the template where it is `with_template`, one after the other.
     pub fn signals(&self, with_template: bool) -> Vec<f64> {
         let template = with_template.then_some(&self.template);
-        self.nuisances
-            .iter()
-            .chain(template)
-            .flat_map(stacked)
-            .collect()
+        let signals = self.nuisances.iter().chain(template);
+        signals.flat_map(stacked).collect()
     }
 
     /// What neither the nuisances nor the template explain of the record, and the number of amplitudes that did.
@@ -209,17 +206,15 @@ impl Design {
     pub fn level(&self) -> Option<f64> {
         let (reference, residual) = (stacked(&self.reference), stacked(&self.residual));
         let square = squares(&reference);
-        let cross: f64 = std::iter::zip(reference, residual)
-            .map(|(a, b)| a * b)
-            .sum();
+        let products = std::iter::zip(reference, residual).map(|(a, b)| a * b);
+        let cross: f64 = products.sum();
         (square >= 100.0).then(|| 1.0 + cross / square)
     }
 }
 
 pub(crate) fn blocked(series: &Series, length: usize) -> Series {
-    series
-        .as_deref()
-        .map(|series| block_sums(series, length).collect())
+    let sums = |series: &[f64]| block_sums(series, length).collect();
+    series.as_deref().map(sums)
 }
 
 /// The lateral samples and then the normal ones.
@@ -298,10 +293,8 @@ fn depth_slope(
     depth: f64,
     expected: impl Fn(f64) -> Result<Series, Refusal>,
 ) -> Result<Option<Series>, Refusal> {
-    let above = depths
-        .iter()
-        .rev()
-        .find(|&&row| row < depth - SAME_POSITION);
+    let mut upwards = depths.iter().rev();
+    let above = upwards.find(|&&row| row < depth - SAME_POSITION);
     let below = depths.iter().find(|&&row| row > depth + SAME_POSITION);
     let (from, to) = (*above.unwrap_or(&depth), *below.unwrap_or(&depth));
     if from == to {

@@ -176,23 +176,20 @@ impl Fit {
         let level = self.level.unwrap_or(1.0);
         let excess = libm::sqrt(self.chi_square / self.degrees);
         let is_small = self.limits.is_some_and(|[low, _]| self.chi_square < low);
+        let is_far = !(1.0 / UNIT..UNIT).contains(&excess);
+        let wrong = !self.noise_is_right();
         let checks = [
             (level < LEVEL[0], Cause::Sign),
             (level > UNIT, Cause::ForceUnit),
             (level > LEVEL[1], Cause::Level),
-            (
-                !self.noise_is_right() && !(1.0 / UNIT..UNIT).contains(&excess),
-                Cause::NoiseUnit,
-            ),
+            (wrong && is_far, Cause::NoiseUnit),
             (is_small, Cause::NoiseTooSmall),
-            (!self.noise_is_right() && !is_small, Cause::Misfit),
+            (wrong && !is_small, Cause::Misfit),
             (test.opposite()? < MISFIT_RATE, Cause::Opposite),
             (self.is_short, Cause::TooFewSamples),
         ];
-        Ok(checks
-            .into_iter()
-            .filter_map(|(is_so, cause)| is_so.then_some(cause))
-            .collect())
+        let causes = checks.into_iter().filter(|(is_so, _)| *is_so);
+        Ok(causes.map(|(_, cause)| cause).collect())
     }
 }
 
@@ -260,10 +257,6 @@ fn dependence(noise: &Series, lags: usize) -> Result<(f64, f64), DetectError> {
 fn limits(degrees: f64, within: f64) -> Result<[f64; 2], DetectError> {
     let degrees = degrees.max(1.0);
     let point = |tail| Ok(chi_square_point(tail, degrees)? / degrees);
-    let [low, high] = [
-        Tail::Lower(0.5 * MISFIT_RATE),
-        Tail::Upper(0.5 * MISFIT_RATE),
-    ]
-    .map(point);
+    let [low, high] = [Tail::Lower, Tail::Upper].map(|tail| point(tail(0.5 * MISFIT_RATE)));
     Ok([low? / within, high? * within])
 }

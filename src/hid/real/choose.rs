@@ -52,9 +52,8 @@ impl fmt::Display for Wanted {
 /// Implements: HID-030.
 pub(super) fn choose<'a>(listed: &'a [Listed], wanted: &Wanted) -> Result<&'a Listed, Refusal> {
     let named = || listed.iter().filter(|one| wanted.is(&one.identity));
-    let fitting: Vec<&Listed> = named()
-        .filter(|one| one.profile == Profile::Vendor)
-        .collect();
+    let fits = |one: &&Listed| one.profile == Profile::Vendor;
+    let fitting: Vec<&Listed> = named().filter(fits).collect();
     let wrong = match (&fitting[..], named().count(), named().next()) {
         (&[one], ..) => return Ok(one),
         // One that was asked for by name, and is something else, deserves an explanation.

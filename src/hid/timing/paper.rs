@@ -14,10 +14,9 @@ use crate::servo::LoadedTable;
 /// # Errors
 /// None, as long as a table may be as large.
 pub fn table() -> Result<LoadedTable, Refusal> {
-    let depths: Vec<f64> = (0..9).map(|row| f64::from(row) * 0.5e-3).collect();
-    let laterals: Vec<f64> = (-20..=20)
-        .map(|column| f64::from(column) * 0.5e-3)
-        .collect();
+    let position = |step| f64::from(step) * 0.5e-3;
+    let depths: Vec<f64> = (0..9).map(position).collect();
+    let laterals: Vec<f64> = (-20..=20).map(position).collect();
     let normal = Matrix::from_fn(9, 41, |row, _| 0.18 * row as f64);
     let lateral = Matrix::from_fn(9, 41, |row, column| {
         1e-3 * row as f64 * (column as f64 - 20.0)

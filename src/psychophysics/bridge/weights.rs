@@ -23,9 +23,7 @@ pub const STATISTICS: [Cue; 2] = [Cue::Peak, Cue::MatchedFilter];
 ///
 /// Implements: PSY-085.
 pub fn half_sweeps(laterals: &[f64]) -> Vec<f64> {
-    let widest = laterals
-        .iter()
-        .fold(0.0, |widest: f64, x| widest.max(x.abs()));
+    let widest = laterals.iter().map(|x| x.abs()).fold(0.0, f64::max);
     let fits = |half: &f64| {
         let inside = laterals.iter().filter(|&&x| is_within(x, *half));
         *half <= widest + SAME_POSITION && inside.count() > 1
