@@ -9,6 +9,22 @@ use crate::stats::error::representable;
 /// constant standard deviation s in each channel.
 ///
 /// It borrows the template and keeps its energy ΣΔ², so that each further record costs one pass.
+///
+/// ```
+/// use palpate::force::Force;
+/// use palpate::detect::MatchedFilter;
+///
+/// let template = Force { lateral: &[0.0; 3][..], normal: &[0.125, 0.25, 0.25] };
+/// let filter = MatchedFilter::new(template, Force { lateral: 0.5, normal: 0.125 })?;
+/// assert_eq!(filter.samples(), 3);
+/// // γ² = Σ (Δ/s)² = 1 + 4 + 4 = b²/σ².
+/// assert_eq!(filter.gamma(), 3.0);
+/// assert!((filter.b().normal / filter.sigma().normal - 3.0).abs() < 1e-15);
+/// // The middle between the hypotheses.
+/// let halfway = Force { lateral: &[0.0; 3][..], normal: &[0.0625, 0.125, 0.125] };
+/// assert_eq!(filter.statistic(halfway)?.theta, 0.0);
+/// # Ok::<(), palpate::detect::DetectError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct MatchedFilter<'a> {
     template: Force<&'a [f64]>,

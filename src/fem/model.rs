@@ -13,6 +13,21 @@ use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, S
 use crate::phantom::Phantom;
 
 /// A phantom, meshed and factorised.
+///
+/// ```
+/// use palpate::fem::{Contact, Model, Pose};
+/// use palpate::phantom::Phantom;
+///
+/// let phantom = Phantom::builtin("6.6")?;
+/// let model = Model::new(&phantom, 2e-3, Contact::default())?;
+/// assert_eq!((model.phantom(), model.mesh_size()), (&phantom, 2e-3));
+/// // Two contact points on each of the edges, which have three nodes each.
+/// assert_eq!(model.surface().positions.len(), model.mesh().surface.len() - 1);
+///
+/// let [left, right] = [-1e-3, 1e-3].map(|lateral| model.solve(Pose { depth: 2e-3, lateral }));
+/// assert_eq!(left?.force.lateral, -right?.force.lateral);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Model {
     phantom: Phantom,

@@ -21,6 +21,16 @@ impl ForceMap {
     /// The measured map in `text`, the content of `file`. The map records the file's name without
     /// its folder, `note`, and the `phantom` that was measured, if it is known.
     ///
+    /// ```
+    /// use palpate::force_map::ForceMap;
+    ///
+    /// let text = "lateral_mm,depth_mm,normal_force_mn,lateral_force_mn\n0,4,1500,0\n2,4,1250,-125\n";
+    /// let map = ForceMap::from_csv(text, "gel.csv", "third gel", None)?;
+    /// assert_eq!((map.depths(), map.laterals()), (&[0.004][..], &[0.0, 0.002][..]));
+    /// assert_eq!(map.forces().lateral.values(), [0.0, -0.125]);
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
+    ///
     /// # Errors
     /// The header does not name each of the four columns once, a row is malformed, a pose is missing or there twice, or the forces
     /// make no map (see [`ForceMap::new`]); with the file, and the line where there is one.
@@ -67,6 +77,16 @@ impl ForceTable {
     }
 
     /// As [`ForceTable::from_csv`], and what a person should know of how the text was read, such as the columns that are not used.
+    ///
+    /// ```
+    /// use palpate::force_map::ForceTable;
+    ///
+    /// let text = "\"\";depth_mm;lateral_mm;normal_force_n;lateral_force_n;volt\n1;4;0;1,5;0,0;2,25\n";
+    /// let (table, notes) = ForceTable::from_csv_with_notes(text, "gel.csv")?;
+    /// assert_eq!(table.forces().normal.values(), [1.5]);
+    /// assert_eq!(notes[0], "column \"volt\" is not used");
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
     ///
     /// # Errors
     /// As [`ForceMap::from_csv`].

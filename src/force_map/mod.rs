@@ -103,6 +103,32 @@ impl Measurement {
 
 /// The force on the probe at every pose of a grid, and where it comes from.
 ///
+/// ```
+/// use palpate::force::Force;
+/// use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
+/// use palpate::phantom::Phantom;
+///
+/// let matrix = |values: [f64; 4]| Matrix::from_fn(2, 2, |row, column| values[2 * row + column]);
+/// let (normal, lateral) = (matrix([0.25, 0.25, 1.5, 1.25]), matrix([0.0, 0.0, 0.0, -0.125]));
+/// let forces = ForceTable::new(vec![0.001, 0.004], vec![0.0, 0.005], Force::new(lateral, normal))?;
+/// let source = Source::Measured(Measurement::new("lab/gel.csv", ""));
+/// let map = ForceMap::new(source, Some(Phantom::builtin("6.6")?), forces)?;
+///
+/// assert_eq!((map.depths(), map.laterals()), (&[0.001, 0.004][..], &[0.0, 0.005][..]));
+/// assert_eq!(map.forces().normal.row(1), [1.5, 1.25]);
+/// assert_eq!(map.forces().lateral.values(), [0.0, 0.0, 0.0, -0.125]);
+/// assert_eq!(map.table().row(0.004)?, map.row(0.004)?);
+/// // Measured, by this version, on a phantom that is known.
+/// assert!(map.certificate().is_none() && matches!(map.source(), Source::Measured(_)));
+/// assert_eq!(map.program_version(), env!("CARGO_PKG_VERSION"));
+/// assert!(map.phantom().is_some_and(|phantom| phantom.name == "6.6"));
+/// // The normal force is even in x, the lateral force odd.
+/// let whole = map.mirrored()?;
+/// assert_eq!(whole.row(0.004)?.lateral, [0.125, 0.0, -0.125]);
+/// assert_eq!(whole.at_laterals(&[0.0, 0.005])?, map);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// Implements: MAP-001, MAP-008.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(into = "json::Document", try_from = "json::Document")]

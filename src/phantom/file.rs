@@ -31,6 +31,22 @@ impl Phantom {
 
     /// The phantom in `text`, the content of `file`, which is named in errors alone.
     ///
+    /// ```
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let text = r#"
+    /// name = "soft, without inclusion"
+    /// well = { width_mm = 34, walls = "sliding" }
+    /// layer = [{ thickness_mm = 15, youngs_modulus_kpa = 2.5, poisson_ratio = 0.49 }]
+    /// probe = { radius_mm = 6.5, length_mm = 30 }
+    /// "#;
+    /// let phantom = Phantom::from_toml(text, "soft.toml")?;
+    /// assert_eq!((phantom.well.width, phantom.layers[0].material.youngs_modulus), (0.034, 2500.0));
+    /// let error = Phantom::from_toml(&text.replace("6.5", "17.0"), "wide.toml").unwrap_err();
+    /// assert!(error.to_string().starts_with("wide.toml:5: probe.radius_mm = 17.0, expected "));
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
+    ///
     /// # Errors
     /// The text is not TOML, has an unknown key, lacks one, has a value of another type, or makes a phantom that
     /// [`Phantom::validate`] refuses; with the file, and the line where there is one.

@@ -42,6 +42,19 @@ impl Damping {
 ///
 /// ∂F/∂x is linear in d, and ∂F/∂d in x, so that the largest is at a corner of a cell.
 ///
+/// ```
+/// use palpate::force::Force;
+/// use palpate::servo::{Axis, Table, stiffness};
+///
+/// // 4 N at half a metre, wherever the probe stands.
+/// let force = |normal| Force { lateral: 0.0, normal };
+/// let forces = [force(0.0), force(0.0), force(4.0), force(4.0)];
+/// let axis = Axis::new(&[0.0, 0.5], &[2.0]).expect("an axis");
+/// let table = Table::new(axis, axis, &forces)?;
+/// assert_eq!(stiffness(&table), 8.0);
+/// # Ok::<(), palpate::servo::InvalidTable>(())
+/// ```
+///
 /// Implements: SRV-050.
 pub fn stiffness(table: &Table) -> f64 {
     let (depths, laterals) = (table.depths().knots(), table.laterals().knots());

@@ -104,6 +104,18 @@ pub struct Trace {
 type Sample = (usize, [f64; 3]);
 
 /// The motion of the probe while times were recorded.
+///
+/// ```
+/// use palpate::trace::{Motion, Trace};
+///
+/// // To the left from 3 mm, at 20 mm/s: the samples are turned round, so that positions increase.
+/// let text = "time_s,lateral_force_n,normal_force_n\n0,0,1.5\n0.1,0,1.75\n";
+/// let motion = Motion { velocity: -0.02, start: 0.003 };
+/// let record = Trace::from_csv(text, "sweep.csv")?.record(Some(motion))?;
+/// assert_eq!(record.positions(), [0.001, 0.003]);
+/// assert_eq!(record.forces().normal, [1.75, 1.5]);
+/// # Ok::<(), palpate::refusal::Refusal>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
     /// Velocity along +x, m/s; negative if the probe moved towards −x.
@@ -113,6 +125,22 @@ pub struct Motion {
 }
 
 /// A trace over positions, which increase but for jitter (see [`JITTER`]).
+///
+/// ```
+/// use palpate::force::Force;
+/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::trace::Trace;
+///
+/// let text = "position_mm,lateral_force_n,normal_force_n\n1,0,1.5\n3,0,1.75\n";
+/// let record = Trace::from_csv(text, "sweep.csv")?.record(None)?;
+/// assert_eq!(record.file(), "sweep.csv");
+/// assert_eq!((record.positions(), record.forces().normal), (&[0.001, 0.003][..], &[1.5, 1.75][..]));
+/// // What a map of 0, 1, 2 N at 0, 2, 4 mm expects there.
+/// let matrix = || Matrix::from_fn(1, 3, |_, column| column as f64);
+/// let map = ForceTable::new(vec![0.004], vec![0.0, 0.002, 0.004], Force::new(matrix(), matrix()))?;
+/// assert_eq!(record.expected(&map, 0.004)?.normal, [0.5, 1.5]);
+/// # Ok::<(), palpate::refusal::Refusal>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     file: String,
@@ -298,6 +326,19 @@ impl Record {
     }
 
     /// This record without the samples outside the lateral positions of `map`, and in words how many these are, if any.
+    ///
+    /// ```
+    /// use palpate::force_map::ForceTable;
+    /// use palpate::trace::Trace;
+    ///
+    /// let map = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n4,2,1.5,0\n";
+    /// let map = ForceTable::from_csv(map, "map.csv")?;
+    /// let text = "position_mm,lateral_force_n,normal_force_n\n-1,0,1.5\n1,0,1.75\n";
+    /// let (record, note) = Trace::from_csv(text, "sweep.csv")?.record(None)?.trimmed(&map)?;
+    /// assert_eq!(record.positions(), [0.001]);
+    /// assert_eq!(note.unwrap(), "1 of 2 samples left out, which are outside the maps, 0.0 to 2.0 mm");
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
     ///
     /// # Errors
     /// No sample is left.
