@@ -132,7 +132,7 @@ fn killed_shards_go_on_and_give_the_same_bytes() {
             let before = place.read(&file);
             let whole = &before[..before.rfind('\n').map_or(0, |end| end + 1)];
             // What a kill in the middle of a write leaves.
-            place.write(&file, &format!("{whole}{{\"sample\":"));
+            place.write(&file, format!("{whole}{{\"sample\":"));
             place.succeed(&line);
             assert!(
                 place.read(&file).starts_with(whole),
@@ -305,7 +305,7 @@ fn a_file_that_is_no_study_is_refused_with_line_and_key() {
         ),
     ] {
         assert!(STUDY.contains(from), "{from}");
-        place.write("other.toml", &STUDY.replacen(from, to, 1));
+        place.write("other.toml", STUDY.replacen(from, to, 1));
         let error = place.refused("study run other.toml --out out");
         assert!(error.contains(expected), "{to}: {error}");
     }

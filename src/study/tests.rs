@@ -60,7 +60,7 @@ fn the_indices_of_ishigamis_function_are_its_closed_form() {
     let variance = first + second + together;
     let expected = [[first, first + together], [second, second], [0.0, together]];
     for seed in 1..=4 {
-        let found = found(3, 1 << 14, seed, &ishigami);
+        let found = found(3, 1 << 14, seed, ishigami);
         assert_indices(&found, &expected.map(|of| of.map(|of| of / variance)));
     }
 }

@@ -130,12 +130,13 @@ fn without_a_study_the_page_says_so() {
 // Verifies: REP-080.
 #[test]
 fn a_study_of_something_else_is_refused() {
-    let refused = |change: &dyn Fn(&mut StudyResults)| {
+    type Edit = dyn Fn(&mut StudyResults);
+    let refused = |change: &Edit| {
         let mut run = with_study();
         change(run.study.as_mut().unwrap());
         findings(&run).unwrap_err().to_string()
     };
-    let changes: [(&dyn Fn(&mut StudyResults), &str); 7] = [
+    let changes: [(&Edit, &str); 7] = [
         (&|study| study.plan.reference.well.width = 0.04, "reference"),
         (
             &|study| study.plan.phantoms[1].inclusions[0].depth = 5e-3,
