@@ -34,7 +34,7 @@ pub struct Correlation {
 pub enum Role {
     /// All inputs at their medians, on a mesh of this number: 0 is that of the study, the others are coarser.
     Median(usize),
-    /// One input beside its median: at the first or the second of the probabilities [`BESIDE_MEDIAN`].
+    /// One input at its lower quartile, 0, or its upper one, 1.
     Slope(usize, usize),
     /// A row of the first sample.
     First(usize),
