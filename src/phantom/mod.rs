@@ -179,6 +179,12 @@ impl Phantom {
         self.layers.iter().map(|layer| layer.thickness).sum()
     }
 
+    /// The depth of the highest point of all inclusions, m; `None` without any.
+    pub fn inclusion_depth(&self) -> Option<f64> {
+        let depths = self.inclusions.iter().map(|inclusion| inclusion.depth);
+        depths.reduce(f64::min)
+    }
+
     /// y of the top of each layer and of the floor, m: 0 first, then negative.
     pub fn levels(&self) -> Vec<f64> {
         let mut levels = vec![0.0];

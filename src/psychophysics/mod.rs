@@ -59,7 +59,7 @@ pub use observer::{Felt, IdealObserver, present};
 pub use plan::{Interval, Trial, plan};
 pub use psychometric::{Parameter, Psychometric};
 pub use rates::{Bounds, CONFIDENCE, Clustered, GammaEstimate, OpenBounds, Rate};
-pub use table::{AnswerTable, Column, Condition, MOST_TRIALS, Subject};
+pub use table::{AnswerTable, Column, Condition, FEM_PLAYBACK, MOST_TRIALS, Subject};
 
 use crate::refusal::Refusal;
 

@@ -26,6 +26,9 @@ const EXPECTED_INCLUSION: &str =
 /// Most trials of a row, as many as an experiment may have; it keeps the work of an analysis small.
 pub const MOST_TRIALS: u32 = 1_000;
 
+/// Which condition of Table 1 is the playback of FEM data.
+pub const FEM_PLAYBACK: usize = 1;
+
 /// An inclusion: a column of the table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {

@@ -13,6 +13,7 @@ use crate::detect::{
 };
 use crate::force::Force;
 use crate::force_map::{ForceMap, SAME_POSITION, peak};
+use crate::phantom::Phantom;
 use crate::refusal::Refusal;
 
 /// What the reference map says.
@@ -162,11 +163,10 @@ fn judged(
     let bounded = neyman_pearson_false_alarm_threshold(both, settings.max_false_alarm);
     let quality = Quality::of(map);
     let phantom = map.phantom();
-    let depths = phantom.map(|of| of.inclusions.iter().map(|inclusion| inclusion.depth));
     Ok(MapFindings {
         name: name_of_map(map),
         paper_phantom: phantom.and_then(paper::name_of),
-        inclusion_depth: depths.and_then(|depths| depths.reduce(f64::min)),
+        inclusion_depth: phantom.and_then(Phantom::inclusion_depth),
         peak_normal: Peak::of(map, normal),
         peak_lateral: Peak::of(map, lateral),
         gamma,

@@ -2,6 +2,7 @@
 
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 
+pub use crate::psychophysics::FEM_PLAYBACK;
 // Table 2, and what §5 infers from it.
 pub use crate::psychophysics::noise::{
     BACKDRIVE_FRICTION, HUMAN_PERCEPTION, PEAK_SIGNAL as PEAK_SIGNAL_6_6,
@@ -58,8 +59,6 @@ pub const TRIALS: u32 = 30;
 /// The four phantoms with inclusion, by the names of [`BUILTIN_NAMES`]: the columns of Table 1.
 pub const INCLUSIONS: [&str; 4] = ["2.6", "4.6", "6.6", "8.6"];
 
-/// Which condition of Table 1 is the playback of FEM data.
-pub const FEM_PLAYBACK: usize = 1;
 /// The means that Table 1 prints below each condition, right answers in [`TRIALS`].
 pub const PRINTED_MEANS: [[f64; 4]; 3] = [
     [28.8, 27.5, 24.7, 20.0],

@@ -48,7 +48,7 @@ const PROBE_DEPTH: f64 = 4e-3;
 /// The level at which a convention is rejected.
 ///
 /// Implements: PSY-080.
-const LEVEL: f64 = 0.05;
+pub const LEVEL: f64 = 0.05;
 
 /// The counts of one condition at the inclusions that have a map.
 #[derive(Debug, Clone, PartialEq)]
