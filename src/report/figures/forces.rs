@@ -4,15 +4,15 @@ use askama::Template;
 
 use super::chart::{chart, round_range};
 use super::panel::{Line, Panel};
-use super::style::{PALETTE, VERMILION, ramp};
-use super::{Figures, Words};
+use super::style::{PALETTE, ramp};
+use super::{Figures, Words, band_ends};
 use crate::force_map::{ForceMap, ForceTable, Matrix, Source};
 use crate::phantom::Inclusion;
 use crate::refusal::Refusal;
 use crate::report::maps::incomparable;
 use crate::report::text::{millimetres, shortened};
 use crate::report::{Findings, MapFindings, Run, Topic, paper, text};
-use crate::study::{Band, Kind};
+use crate::study::Kind;
 
 /// The signals, if there are any, and the forces of every map: computed ones, then the measured ones.
 ///
@@ -32,23 +32,25 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
     }
     for map in [&run.reference].into_iter().chain(&run.maps) {
         let name = text::name_of_map(map);
-        let mut panels = force_curves(map.table());
         let bands = bands(run, map);
-        for (panel, lines) in panels.iter_mut().zip(&bands) {
-            panel.lines.extend_from_slice(lines);
-            let points = panel.lines.iter().flat_map(|line| &line.points);
-            panel.y = round_range(points.map(|point| point.1));
-        }
         let depth = run.study.as_ref().map(|study| study.plan.probe_depth);
         let depth = depth.filter(|_| !bands[0].is_empty());
         let text = ForceText { map, depth };
         let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
-        add(("figure-5", &name), words, &panels)?;
+        add(
+            ("figure-5", &name),
+            words,
+            &force_curves(map.table(), bands),
+        )?;
     }
     for map in &run.measured {
         let (text, name) = (MeasuredText { map }, text::name_of_map(map));
         let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
-        add(("figure-7", &name), words, &force_curves(map.table()))?;
+        add(
+            ("figure-7", &name),
+            words,
+            &force_curves(map.table(), Default::default()),
+        )?;
     }
     Ok(())
 }
@@ -76,20 +78,22 @@ fn points(laterals: &[f64], forces: &[f64]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Figure 5: both forces of a map, one curve for each depth of the probe.
-fn force_curves(table: &ForceTable) -> [Panel; 2] {
-    let panel = |heading: &str, matrix: &Matrix, height| {
+/// Figure 5: both forces of a map, one curve for each depth of the probe, and the ends of a band of the normal and of the lateral
+/// force.
+fn force_curves(table: &ForceTable, [normal, lateral]: [Vec<Line>; 2]) -> [Panel; 2] {
+    let panel = |heading: &str, matrix: &Matrix, height, band: Vec<Line>| {
         let count = table.depths().len();
         let lines = table.depths().iter().zip(matrix.rows()).enumerate();
         let lines = lines.map(|(row, (depth, forces))| {
             Line::new(ramp(row, count), points(table.laterals(), forces))
                 .named(format!("{} mm", millimetres(*depth)))
         });
-        panel(heading, table.laterals(), height, lines.collect())
+        let lines = lines.chain(band).collect();
+        panel(heading, table.laterals(), height, lines)
     };
     [
-        panel("Normal force (N)", &table.forces().normal, 230),
-        panel("Lateral force (N)", &table.forces().lateral, 200),
+        panel("Normal force (N)", &table.forces().normal, 230, normal),
+        panel("Lateral force (N)", &table.forces().lateral, 200, lateral),
     ]
 }
 
@@ -103,19 +107,7 @@ fn bands(run: &Run, map: &ForceMap) -> [Vec<Line>; 2] {
     let ends = |kind: fn(f64) -> Kind| {
         let at = |&x: &f64| Some((1e3 * x, study.of(&phantom.name, &kind(x))?.band?));
         let bands: Vec<_> = study.plan.laterals.iter().filter_map(at).collect();
-        let line = |words: &str, end: fn(&Band) -> f64| {
-            let points = bands.iter().map(|(x, band)| (*x, end(band)));
-            Line::new(VERMILION, points.collect())
-                .dashed(true)
-                .named(words)
-        };
-        match bands.is_empty() {
-            true => Vec::new(),
-            false => vec![
-                line("2.5 %", |band| band.lower.value),
-                line("97.5 %", |band| band.upper.value),
-            ],
-        }
+        band_ends("", &bands, 1.0)
     };
     [
         ends(|lateral_m| Kind::NormalForceN { lateral_m }),

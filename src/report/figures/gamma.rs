@@ -28,15 +28,10 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
         return Ok(());
     };
     let beside = &first.gamma_left.beside;
-    let mut panel = panel(&maps, beside, found.required_gamma);
-    let bars: Vec<_> = maps
-        .iter()
-        .filter_map(|(depth, map)| bar(run, *depth, map))
-        .collect();
+    let bars = maps.iter().filter_map(|(depth, map)| bar(run, *depth, map));
+    let bars: Vec<_> = bars.collect();
     let has_bands = !bars.is_empty();
-    panel.lines.extend(bars);
-    let values = panel.lines.iter().flat_map(|line| &line.points);
-    panel.y = round_range(values.map(|point| point.1));
+    let panel = panel(&maps, beside, found.required_gamma, bars);
     let text = Text {
         maps: &maps,
         beside,
@@ -62,8 +57,8 @@ fn bar(run: &Run, depth: f64, map: &MapFindings) -> Option<Line> {
 /// The maps with the depth of their inclusion, mm.
 type Maps<'a> = [(f64, &'a MapFindings)];
 
-/// A line for each list of what is unknown, which is that of every map; those that run close to another in dashes.
-fn panel(maps: &Maps<'_>, beside: &[GammaBeside], needed: f64) -> Panel {
+/// A line for each list of what is unknown, which is that of every map; those that run close to another in dashes; and `bars`.
+fn panel(maps: &Maps<'_>, beside: &[GammaBeside], needed: f64, bars: Vec<Line>) -> Panel {
     let mut ticks: Vec<_> = maps.iter().map(|of| of.0).collect();
     let [least, greatest] = extremes(ticks.iter().copied()).unwrap_or_default();
     let x = [least - 0.8, greatest + 0.8];
@@ -82,6 +77,7 @@ fn panel(maps: &Maps<'_>, beside: &[GammaBeside], needed: f64) -> Panel {
         let line = Line::new(colour, gammas.collect()).named(name);
         lines.push(line.dotted(4).dashed([3, 4].contains(&k)));
     }
+    lines.extend(bars);
     let values = lines.iter().flat_map(|line| &line.points);
     let y = round_range(values.map(|point| point.1));
     Panel {

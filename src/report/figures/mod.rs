@@ -34,11 +34,12 @@ mod theory;
 use super::text::{FileNames, escape};
 use super::{Figure, Findings, Run, Topic, refused};
 use crate::refusal::Refusal;
+use crate::study::Band;
 pub use bank::place_figure;
-use panel::DrawingResult;
+use panel::{DrawingResult, Line};
 pub use reach::reach_figure;
 use std::fmt::Display;
-use style::{UNIT, WIDTH};
+use style::{UNIT, VERMILION, WIDTH};
 
 /// The words around a picture: title, caption, and the picture in words.
 type Words<'a> = [&'a dyn Display; 3];
@@ -113,6 +114,22 @@ pub fn figures(run: &Run, findings: &Findings) -> Result<Vec<Figure>, Refusal> {
     people::draw(&mut figures, run, &findings.people)?;
     bridge::draw(&mut figures, findings)?;
     Ok(figures.all)
+}
+
+/// The ends of bands along x as two dashed lines, in units of 1/`scale`; none without bands.
+fn band_ends(of: &str, bands: &[(f64, Band)], scale: f64) -> Vec<Line> {
+    let line = |words: &str, end: fn(&Band) -> f64| {
+        let points = bands.iter().map(|(x, band)| (*x, scale * end(band)));
+        let line = Line::new(VERMILION, points.collect()).dashed(true);
+        line.named(format!("{of}{words}"))
+    };
+    match bands {
+        [] => Vec::new(),
+        _ => vec![
+            line("2.5 %", |band| band.lower.value),
+            line("97.5 %", |band| band.upper.value),
+        ],
+    }
 }
 
 /// The document with a head that scales and that a screen reader can read. The ids come from the file name, which

@@ -6,7 +6,7 @@ use plotters::style::RGBColor;
 use super::chart::chart;
 use super::panel::{Line, Panel};
 use super::style::{GREEN, GREY, INK, PALETTE, VERMILION};
-use super::{Figures, Words};
+use super::{Figures, Words, band_ends};
 use crate::psychophysics::{
     Analysis, Bounds, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis,
 };
@@ -14,7 +14,7 @@ use crate::refusal::Refusal;
 use crate::report::people::width_ratios;
 use crate::report::text::extremes;
 use crate::report::{Run, Topic, inputs, normal_approximation, paper, text};
-use crate::study::{Band, Kind};
+use crate::study::Kind;
 
 /// What the x axis of all charts over the inclusions shows.
 pub const DEPTH: &str = "Depth of the inclusion (mm)";
@@ -125,23 +125,10 @@ fn subjects(condition: &ConditionAnalysis, predicted: Vec<Line>) -> Panel {
 fn predicted(run: &Run, condition: &ConditionAnalysis) -> Vec<Line> {
     let inclusions = condition.inclusions.iter();
     let bands = inclusions.filter_map(|of| {
-        Some((
-            1e3 * of.depth_m,
-            inputs::band(run, &of.name, &Kind::TwoAfcByPeak)?,
-        ))
+        let band = inputs::band(run, &of.name, &Kind::TwoAfcByPeak)?;
+        Some((1e3 * of.depth_m, band))
     });
-    let (depths, bands): (Vec<_>, Vec<Band>) = bands.unzip();
-    let line = |words: &str, end: fn(&Band) -> f64| {
-        let points = points(&depths, bands.iter().map(end));
-        Line::new(VERMILION, points).dashed(true).named(words)
-    };
-    match bands.is_empty() {
-        true => Vec::new(),
-        false => vec![
-            line("predicted, 2.5 %", |band| band.lower.value),
-            line("predicted, 97.5 %", |band| band.upper.value),
-        ],
-    }
+    band_ends("predicted, ", &bands.collect::<Vec<_>>(), 100.0)
 }
 
 /// The colours of the conditions.
