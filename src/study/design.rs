@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
+use crate::fem::certify::MESH_RATIOS;
 use crate::refusal::Refusal;
 use crate::stats::normal;
 
@@ -10,10 +11,10 @@ use crate::stats::normal;
 const SEQUENCE: u32 = 1 << 16;
 /// Inputs at most: each takes two dimensions of the sequence.
 pub const MOST_INPUTS: usize = sobol_burley::NUM_DIMENSIONS as usize / 2;
-/// The ratios of the mesh sizes at the medians, finest first: those of the grid convergence index.
+/// Meshes on which the medians are solved.
 ///
 /// Implements: STU-023.
-const MESHES: usize = 3;
+const MESHES: usize = MESH_RATIOS.len() + 1;
 /// The probabilities between which the slope of a quantity is taken.
 ///
 /// Implements: STU-022.
@@ -144,13 +145,8 @@ impl Design {
     }
 
     /// The number of samples.
-    pub fn len(&self) -> usize {
+    pub fn samples(&self) -> usize {
         self.first_row() + self.rows * self.row_length()
-    }
-
-    /// Whether there is none: never.
-    pub fn is_empty(&self) -> bool {
-        false
     }
 
     fn first_row(&self) -> usize {

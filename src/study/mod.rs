@@ -136,6 +136,15 @@ impl StudyPlan {
         std::iter::once(&self.reference).chain(&self.phantoms)
     }
 
+    /// The γ that keeps both error rates.
+    ///
+    /// # Errors
+    /// Rates that no γ keeps.
+    pub fn required_gamma(&self) -> Result<f64, Refusal> {
+        let needed = required_gamma(self.max_false_alarm, self.max_miss);
+        needed.map_err(|error| Refusal::state(error, ""))
+    }
+
     /// The samples of this plan.
     ///
     /// # Errors
@@ -144,9 +153,8 @@ impl StudyPlan {
     ///
     /// Implements: STU-002, STU-004, STU-011.
     pub fn design(&self) -> Result<Design, Refusal> {
-        let unnamed = |refusal: crate::detect::DetectError| Refusal::state(refusal, "");
-        required_gamma(self.max_false_alarm, self.max_miss).map_err(unnamed)?;
-        map_threshold(self.prior_h1).map_err(unnamed)?;
+        self.required_gamma()?;
+        map_threshold(self.prior_h1).map_err(|error| Refusal::state(error, ""))?;
         let phantoms: Vec<&str> = self.all_phantoms().map(|phantom| &*phantom.name).collect();
         if let Some(twice) = first_repeated(&phantoms) {
             return Err(Refusal::value(

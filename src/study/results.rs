@@ -8,18 +8,15 @@ use serde::{Deserialize, Serialize};
 use super::design::{BESIDE_MEDIAN, Role};
 use super::indices::{Estimate, Rows, indices};
 use super::{Band, Change, Index, Kind, Quantity, Sampler, StudyPlan, band};
-use crate::detect::required_gamma;
 use crate::fem::certify;
 use crate::force_map::{check_schema, parse};
 use crate::psychophysics::CONFIDENCE;
+use crate::psychophysics::bridge::LEVEL;
 use crate::refusal::Refusal;
 use crate::stats::binomial;
 
 /// Numbers that are held at once, over all samples and some quantities: 32 MiB.
 const HELD: usize = 1 << 22;
-/// The level at which a convention is rejected.
-const LEVEL: f64 = 0.05;
-
 /// A sample that could not be computed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Failure {
@@ -162,12 +159,11 @@ impl StudyResults {
     /// Implements: STU-040, STU-043, STU-044, STU-045, STU-046, STU-047, STU-050.
     pub fn new<E: From<Refusal>>(
         sampler: &Sampler<'_>,
-        plan: &StudyPlan,
         failures: &[Failure],
         columns: impl Fn(Range<usize>) -> Result<Vec<Vec<f64>>, E>,
     ) -> Result<StudyResults, E> {
-        let design = sampler.design();
-        let samples = design.len();
+        let (plan, design) = (sampler.plan(), sampler.design());
+        let samples = design.samples();
         let quantities = sampler.quantities();
         let (mut results, mut conclusions) = (Vec::new(), Vec::new());
         let mut rows_used = 0;
@@ -177,7 +173,6 @@ impl StudyResults {
             for (quantity, column) in quantities[from..to].iter().zip(columns(from..to)?) {
                 let column = Column {
                     sampler,
-                    plan,
                     values: &column,
                 };
                 let (result, rows) = column.result(quantity)?;
@@ -211,7 +206,6 @@ impl StudyResults {
 /// One quantity in all samples.
 struct Column<'a> {
     sampler: &'a Sampler<'a>,
-    plan: &'a StudyPlan,
     values: &'a [f64],
 }
 
@@ -261,10 +255,10 @@ impl Column<'_> {
             at_medians: known(meshes[0]),
             numerical_band: known(certify::band(meshes)),
             band,
-            slopes: (0..self.plan.inputs.len())
+            slopes: (0..self.sampler.plan().inputs.len())
                 .map(|input| self.slope(input))
                 .collect(),
-            indices: indices(rows, self.plan.seed.into()).unwrap_or_default(),
+            indices: indices(rows, self.sampler.plan().seed.into()).unwrap_or_default(),
         };
         Ok((result, whole.len()))
     }
@@ -272,7 +266,7 @@ impl Column<'_> {
     /// Implements: STU-044.
     fn slope(&self, input: usize) -> Option<Slope> {
         let [below, above] = [0, 1].map(|side| self.at(Role::Slope(input, side)));
-        let of = &self.plan.inputs[input];
+        let of = &self.sampler.plan().inputs[input];
         let [from, to] = BESIDE_MEDIAN.map(|p| of.distribution.quantile(p));
         let per_unit = (above - below) / (to - from);
         let relative = of.distribution.quantile(0.5) / self.at(Role::Median(0));
@@ -287,10 +281,7 @@ impl Column<'_> {
     /// Implements: STU-046.
     fn conclusion(&self, quantity: &Quantity) -> Result<Option<Conclusion>, Refusal> {
         let (limit, at_least) = match quantity.kind {
-            Kind::Gamma => {
-                let needed = required_gamma(self.plan.max_false_alarm, self.plan.max_miss);
-                (needed.map_err(|error| Refusal::state(error, ""))?, true)
-            }
+            Kind::Gamma => (self.sampler.plan().required_gamma()?, true),
             Kind::ConventionP { .. } => (LEVEL, false),
             _ => return Ok(None),
         };

@@ -5,20 +5,15 @@ use serde::{Deserialize, Serialize};
 use super::design::{Design, Role};
 use super::{NOISE_SD, PROBE_DEPTH, StudyPlan, edit};
 use crate::bank::deepest;
-use crate::detect::{
-    DetectError, MatchedFilter, error_rates, map_threshold, required_gamma, two_afc,
-};
+use crate::detect::{DetectError, MatchedFilter, error_rates, map_threshold, two_afc};
 use crate::fem::Model;
 use crate::fem::certify::MESH_RATIOS;
 use crate::force::Force;
-use crate::force_map::{ForceMap, peak};
+use crate::force_map::{ForceMap, ForceTable, peak};
 use crate::phantom::Phantom;
-use crate::psychophysics::AnswerTable;
 use crate::psychophysics::bridge::{Convention, p_values};
+use crate::psychophysics::{AnswerTable, FEM_PLAYBACK};
 use crate::refusal::Refusal;
-
-/// The condition of the paper's Table 1 that the forces are compared with: FEM playback.
-const FEM_PLAYBACK: usize = 1;
 
 /// What is computed of each sample.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -79,11 +74,15 @@ pub struct Sampler<'a> {
     /// The phantoms as tables of a phantom file, the reference first.
     tables: Vec<toml::Table>,
     answers: AnswerTable,
+    /// The γ that both error rates need.
+    needed: f64,
 }
 
 /// What the phantoms of one sample give.
 struct Computed {
     maps: Vec<ForceMap>,
+    /// F_1 − F_0 of each map but the reference's.
+    signals: Vec<ForceTable>,
     noise_sd: f64,
     /// γ of each map but the reference's.
     gamma: Vec<f64>,
@@ -112,7 +111,13 @@ impl<'a> Sampler<'a> {
             quantities,
             tables,
             answers,
+            needed: plan.required_gamma()?,
         })
+    }
+
+    /// What is varied, and what is computed.
+    pub fn plan(&self) -> &StudyPlan {
+        self.plan
     }
 
     /// Which samples there are.
@@ -179,7 +184,7 @@ impl<'a> Sampler<'a> {
                 let phantom = edit::phantom(table, &self.plan.inputs, &values)?;
                 let model = Model::new(&phantom, mesh * self.plan.mesh_size, self.plan.contact)?;
                 let map = model.sweep(depth, &self.plan.laterals)?;
-                Ok((map, inclusion_depth(&phantom)))
+                Ok((map, phantom.inclusion_depth()))
             };
             let solved: Result<_, crate::fem::FemError> = solve();
             let part = format!("phantom {}", own.name);
@@ -188,13 +193,14 @@ impl<'a> Sampler<'a> {
             maps.push(map);
             depths.extend(inclusion);
         }
-        let mut gamma = Vec::new();
-        for map in &maps[1..] {
-            let signal = map.signal(&maps[0])?;
+        let signals = maps[1..].iter().map(|map| map.signal(&maps[0]));
+        let signals: Vec<ForceTable> = signals.collect::<Result<_, _>>()?;
+        let gamma = signals.iter().map(|signal| {
             let noise_sd = Force::new(noise_sd, noise_sd);
             let filter = MatchedFilter::new(signal.row(depth)?, noise_sd).map_err(refused)?;
-            gamma.push(filter.gamma());
-        }
+            Ok(filter.gamma())
+        });
+        let gamma = gamma.collect::<Result<_, Refusal>>()?;
         let compared = compared(self.plan, &self.answers);
         let p_values = match compared.len() {
             0 | 1 => Vec::new(),
@@ -206,6 +212,7 @@ impl<'a> Sampler<'a> {
         };
         Ok(Computed {
             maps,
+            signals,
             noise_sd,
             gamma,
             depths,
@@ -221,13 +228,11 @@ impl<'a> Sampler<'a> {
         let laterals = map.laterals();
         let place = |lateral: f64| laterals.iter().position(|&x| x == lateral).unwrap_or(0);
         let peak_of = |pick: fn(Force<&[f64]>) -> &[f64]| -> Result<f64, Refusal> {
-            let signal = map.signal(&computed.maps[0])?;
+            let signal = &computed.signals[at - 1];
             let (force, _) = peak(laterals, pick(signal.row(signal.depths()[0])?));
             Ok(force)
         };
         let gamma = || computed.gamma[at - 1];
-        let needed =
-            required_gamma(self.plan.max_false_alarm, self.plan.max_miss).map_err(refused)?;
         let row = map.row(map.depths()[0])?;
         Ok(match &quantity.kind {
             Kind::NormalForceN { lateral_m } => row.normal[place(*lateral_m)],
@@ -235,7 +240,7 @@ impl<'a> Sampler<'a> {
             Kind::PeakNormalN => peak_of(|signal| signal.normal)?,
             Kind::PeakLateralN => peak_of(|signal| signal.lateral)?,
             Kind::Gamma => gamma(),
-            Kind::NeededNoiseSdN => gamma() * computed.noise_sd / needed,
+            Kind::NeededNoiseSdN => gamma() * computed.noise_sd / self.needed,
             Kind::ErrorRate => {
                 let eta = map_threshold(self.plan.prior_h1).map_err(refused)?;
                 let rates = error_rates(gamma(), eta).map_err(refused)?;
@@ -251,7 +256,7 @@ impl<'a> Sampler<'a> {
                 let mut pairs: Vec<_> = computed.depths.iter().zip(&computed.gamma).collect();
                 pairs.sort_by(|a, b| a.0.total_cmp(b.0));
                 let (depths, gamma): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
-                deepest(&depths, &gamma, needed).unwrap_or(0.0)
+                deepest(&depths, &gamma, self.needed).unwrap_or(0.0)
             }
             Kind::ConventionP { convention } => {
                 let names = Convention::all().map(Convention::text);
@@ -267,15 +272,6 @@ impl<'a> Sampler<'a> {
 
 fn refused(error: DetectError) -> Refusal {
     Refusal::state(error, "")
-}
-
-/// The depth of the highest point of the inclusions, m; `None` without any.
-fn inclusion_depth(phantom: &Phantom) -> Option<f64> {
-    phantom
-        .inclusions
-        .iter()
-        .map(|inclusion| inclusion.depth)
-        .reduce(f64::min)
 }
 
 /// The phantoms whose names are columns of the paper's Table 1: their places and names.
@@ -316,7 +312,11 @@ fn quantities(plan: &StudyPlan, answers: &AnswerTable) -> Vec<Quantity> {
             }
         }
     }
-    let depths: Vec<_> = plan.phantoms.iter().filter_map(inclusion_depth).collect();
+    let depths: Vec<_> = plan
+        .phantoms
+        .iter()
+        .filter_map(Phantom::inclusion_depth)
+        .collect();
     let is_apart = |&depth: &f64| depths.iter().filter(|&&other| other == depth).count() == 1;
     if depths.len() == plan.phantoms.len() && depths.len() > 1 && depths.iter().all(is_apart) {
         push("", Kind::DetectableDepthM);

@@ -122,8 +122,8 @@ fn each_sample_has_one_role_and_the_points_fill_the_unit_cube_evenly() {
     };
     let design = Design::new(&NAMES[..4], &[correlated], 256, 5).unwrap();
     assert_eq!(design.groups(), [vec![0, 2], vec![1], vec![3]]);
-    assert_eq!(design.len(), 3 + 2 * 4 + 256 * 5);
-    for index in 0..design.len() {
+    assert_eq!(design.samples(), 3 + 2 * 4 + 256 * 5);
+    for index in 0..design.samples() {
         assert_eq!(design.index(design.role(index)), index);
     }
     // A scrambled Sobol' sequence is a (t, s)-sequence: 256 points have one in each 256th of every coordinate.
@@ -286,7 +286,7 @@ pub fn results(plan: &StudyPlan, count: usize) -> StudyResults {
     let mut failures = Vec::new();
     let mut sampled = Vec::new();
     let none = Err(Refusal::state("not computed", ""));
-    for sample in 0..sampler.design().len() {
+    for sample in 0..sampler.design().samples() {
         let found = match sample < count {
             true => sampler.sample(sample),
             false => none.clone(),
@@ -299,7 +299,7 @@ pub fn results(plan: &StudyPlan, count: usize) -> StudyResults {
     }
     let column = |quantity| sampled.iter().map(|of| of[quantity]).collect();
     let columns = |range: std::ops::Range<usize>| Ok::<_, Refusal>(range.map(column).collect());
-    StudyResults::new(&sampler, plan, &failures, columns).unwrap()
+    StudyResults::new(&sampler, &failures, columns).unwrap()
 }
 
 // Verifies: STU-003, STU-022, STU-030, STU-044, STU-045.

@@ -14,6 +14,7 @@ use super::arguments::Format;
 use super::output::{make_folder, note, print, write};
 use super::part::Part;
 use super::progress::bar;
+use crate::refusal::Refusal;
 use crate::report::text;
 use crate::study::{Sampler, StudyResults};
 use file::read_plan;
@@ -74,41 +75,19 @@ pub fn study(arguments: &StudyArguments) -> Result<(), CliError> {
 fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
     let plan = read_plan(&arguments.study)?;
     let sampler = Sampler::new(&plan)?;
-    let (samples, quantities) = (sampler.design().len(), sampler.quantities().len());
-    let shard = arguments.shard;
     make_folder(&arguments.out)?;
-    let path = shard.file(&arguments.out);
-    let mut pending: Vec<bool> = (0..samples).map(|sample| shard.has(sample)).collect();
-    let total = pending.iter().filter(|&&pending| pending).count();
-    let (mut done, mut failed) = (0, 0);
-    let header = Header::new(&plan, shard);
-    let part = Part::open(
-        path.clone(),
-        &header,
-        BEGINNING,
-        "palpate study run",
-        |text| {
-            let record = Record::parse(text, samples, quantities)?;
-            if !std::mem::take(&mut pending[record.sample]) {
-                let found = format!(
-                    "sample {}, which is there already or of another shard",
-                    record.sample
-                );
-                return Err(crate::refusal::Refusal::state(
-                    found,
-                    "each of this shard once",
-                ));
-            }
-            done += 1;
-            failed += usize::from(matches!(record.outcome, Outcome::Failed(_)));
-            Ok(())
-        },
-    )?;
+    let path = arguments.shard.file(&arguments.out);
+    let mut progress = Progress::new(&sampler, arguments.shard);
+    let total = progress.left();
+    let header = Header::new(&plan, arguments.shard);
+    let command = "palpate study run";
+    let part = Part::open(path.clone(), &header, BEGINNING, command, |text| {
+        progress.take_over(&sampler, text)
+    })?;
+    let done = total - progress.left();
     if done > 0 {
-        note(
-            path.display(),
-            &format!("{done} of {total} samples taken over"),
-        );
+        let text = format!("{done} of {total} samples taken over");
+        note(path.display(), &text);
     }
     let bar = bar(total, "samples");
     bar.inc(done as u64);
@@ -119,19 +98,15 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
             Ok(values) => Outcome::Values(values),
             Err(refusal) => Outcome::Failed(refusal.to_string()),
         };
-        let is_failed = matches!(outcome, Outcome::Failed(_));
-        part.append(&Record { sample, outcome })?;
+        let record = Record { sample, outcome };
+        part.append(&record)?;
         bar.inc(1);
-        Ok::<_, CliError>(usize::from(is_failed))
+        Ok::<_, CliError>(usize::from(record.is_failed()))
     };
-    let samples = pending
-        .par_iter()
-        .enumerate()
-        .filter(|(_, pending)| **pending);
-    let of_now = samples
-        .map(|(sample, _)| compute(sample))
-        .try_reduce(|| 0, |a, b| Ok(a + b));
-    failed += of_now?;
+    let pending = progress.pending.par_iter().enumerate();
+    let pending = pending.filter(|(_, pending)| **pending);
+    let failed = pending.map(|(sample, _)| compute(sample));
+    let failed = progress.failed + failed.try_reduce(|| 0, |a, b| Ok(a + b))?;
     bar.finish_and_clear();
     print(&format!(
         "{total} samples in {}, of which {failed} failed\n",
@@ -139,15 +114,50 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
     ))
 }
 
+/// What is left of a shard.
+struct Progress {
+    /// Whether each sample is to be computed.
+    pending: Vec<bool>,
+    /// Samples that are finished and have failed.
+    failed: usize,
+}
+
+impl Progress {
+    fn new(sampler: &Sampler<'_>, shard: Shard) -> Progress {
+        let samples = 0..sampler.design().samples();
+        Progress {
+            pending: samples.map(|sample| shard.has(sample)).collect(),
+            failed: 0,
+        }
+    }
+
+    fn left(&self) -> usize {
+        self.pending.iter().filter(|pending| **pending).count()
+    }
+
+    /// Takes a line of the file over.
+    fn take_over(&mut self, sampler: &Sampler<'_>, text: &str) -> Result<(), Refusal> {
+        let (samples, quantities) = (sampler.design().samples(), sampler.quantities().len());
+        let record = Record::parse(text, samples, quantities)?;
+        if !std::mem::take(&mut self.pending[record.sample]) {
+            let sample = record.sample;
+            let found = format!("sample {sample}, which is there already or of another shard");
+            return Err(Refusal::state(found, "each of this shard once"));
+        }
+        self.failed += usize::from(record.is_failed());
+        Ok(())
+    }
+}
+
 /// Implements: STU-026, STU-027, STU-050, STU-051.
 fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
     let records = Records::find(&arguments.folders)?;
     let plan = records.plan()?;
     let sampler = Sampler::new(&plan)?;
-    let (samples, quantities) = (sampler.design().len(), sampler.quantities().len());
+    let (samples, quantities) = (sampler.design().samples(), sampler.quantities().len());
     let failures = records.failures(samples, quantities)?;
     let columns = |range| records.columns(samples, quantities, range);
-    let results = StudyResults::new(&sampler, &plan, &failures, columns)?;
+    let results = StudyResults::new(&sampler, &failures, columns)?;
     // Keys are strings, and all numbers are finite.
     let text = serde_json::to_string(&results).unwrap_or_default() + "\n";
     write(&arguments.out, &text)?;

@@ -94,6 +94,10 @@ pub enum Outcome {
 }
 
 impl Record {
+    pub fn is_failed(&self) -> bool {
+        matches!(self.outcome, Outcome::Failed(_))
+    }
+
     /// The record in a line of a study with so many samples and quantities.
     ///
     /// # Errors
