@@ -1,0 +1,302 @@
+//! Whether a record holds an inclusion: the matched filter, Θ in white and coloured noise and beside nuisances, and the scan.
+//!
+//! Implements: CLB-003, CLB-010.
+
+use palpate::detect::coloured::{coloured_scratch, theta_coloured};
+use palpate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
+use palpate::detect::scan;
+use palpate::detect::{self, MatchedFilter, theta_of_record};
+use palpate::force::Force;
+
+use crate::memory::{bytes, check_apart, give, list, list_mut, read};
+use crate::{Error, ErrorRates};
+
+/// Samples of the force along a trajectory, N: as many lateral as normal ones.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Series {
+    /// The lateral force, N.
+    pub lateral: *const f64,
+    /// The normal force, N.
+    pub normal: *const f64,
+    /// The number of samples in each.
+    pub samples: usize,
+}
+
+impl Series {
+    unsafe fn force<'a>(self) -> Result<Force<&'a [f64]>, Error> {
+        let Series {
+            lateral,
+            normal,
+            samples,
+        } = self;
+        // SAFETY: as the crate says.
+        let component = |start| unsafe { list(start, samples) };
+        Ok(Force::new(component(lateral)?, component(normal)?))
+    }
+}
+
+/// A lateral and a normal number, such as the standard deviation of the noise of one sample, N.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Components {
+    /// Along +x.
+    pub lateral: f64,
+    /// Out of the gel.
+    pub normal: f64,
+}
+
+impl From<Components> for Force<f64> {
+    fn from(Components { lateral, normal }: Components) -> Force<f64> {
+        Force::new(lateral, normal)
+    }
+}
+
+impl From<Force<f64>> for Components {
+    fn from(Force { lateral, normal }: Force<f64>) -> Components {
+        Components { lateral, normal }
+    }
+}
+
+/// What a template and its noise give, before any record.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Filter {
+    /// b of each channel.
+    pub b: Components,
+    /// σ of each channel's output.
+    pub sigma: Components,
+    /// γ, the signal-to-noise ratio of both channels.
+    pub gamma: f64,
+}
+
+/// b, σ and γ of a template F_1 − F_0 in white noise.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_matched_filter(
+    template: *const Series,
+    noise_sd: *const Components,
+    filter: *mut Filter,
+) -> Error {
+    let found = || {
+        let (template, noise) = unsafe { (read(template)?.force()?, read(noise_sd)?) };
+        let found = MatchedFilter::new(template, noise.into())?;
+        Ok(Filter {
+            b: found.b().into(),
+            sigma: found.sigma().into(),
+            gamma: found.gamma(),
+        })
+    };
+    unsafe { give(filter, found) }
+}
+
+/// What a record says.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Statistic {
+    /// y(0) of each channel's filter.
+    pub y: Components,
+    /// θ, the log-likelihood ratio.
+    pub theta: f64,
+    /// γ, the signal-to-noise ratio of both channels.
+    pub gamma: f64,
+}
+
+/// θ, y(0) and γ of a record, from the forces without (`f0`) and with (`f1`) the inclusion, in white noise.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_theta(
+    observed: *const Series,
+    f0: *const Series,
+    f1: *const Series,
+    noise_sd: *const Components,
+    statistic: *mut Statistic,
+) -> Error {
+    let found = || {
+        let [observed, f0, f1] = [observed, f0, f1].map(|series| unsafe { read(series)?.force() });
+        let noise = unsafe { read(noise_sd) }?;
+        let found = theta_of_record(observed?, f0?, f1?, noise.into())?;
+        let detect::Statistic { y, theta, gamma } = found;
+        Ok(Statistic {
+            y: y.into(),
+            theta,
+            gamma,
+        })
+    };
+    unsafe { give(statistic, found) }
+}
+
+/// θ and γ, of a record in coloured noise or of one shift.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ThetaGamma {
+    /// θ, the log-likelihood ratio.
+    pub theta: f64,
+    /// γ, the signal-to-noise ratio.
+    pub gamma: f64,
+}
+
+/// The length of the scratch that `palpate_theta_coloured` needs: n² + 2n.
+#[unsafe(no_mangle)]
+pub extern "C" fn palpate_coloured_scratch(n: usize) -> usize {
+    coloured_scratch(n)
+}
+
+/// θ and γ in noise of any covariance over both channels. `residual` and `template` have n numbers, the lateral samples and then
+/// the normal ones; `covariance` has n rows of n (N²). `scratch` has n² + 2n, overlaps nothing, and is overwritten.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_theta_coloured(
+    residual: *const f64,
+    template: *const f64,
+    covariance: *const f64,
+    n: usize,
+    scratch: *mut f64,
+    scratch_length: usize,
+    found: *mut ThetaGamma,
+) -> Error {
+    let statistic = || {
+        let square = n.checked_mul(n).ok_or(Error::Length)?;
+        check_apart(
+            &[bytes(scratch, scratch_length)],
+            &[
+                bytes(residual, n),
+                bytes(template, n),
+                bytes(covariance, square),
+            ],
+        )?;
+        let (residual, template) = unsafe { (list(residual, n)?, list(template, n)?) };
+        let covariance = unsafe { list(covariance, square) }?;
+        let scratch = unsafe { list_mut(scratch, scratch_length) }?;
+        let found = theta_coloured(residual, template, covariance, scratch)?;
+        Ok(ThetaGamma {
+            theta: found.theta,
+            gamma: found.gamma,
+        })
+    };
+    unsafe { give(found, statistic) }
+}
+
+/// What a whitened record says beside nuisances.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct SubspaceStatistic {
+    /// T, over the estimate of the noise where its level is unknown.
+    pub t: f64,
+    /// γ in the same unit.
+    pub gamma: f64,
+    /// γ if every nuisance were known.
+    pub gamma_nominal: f64,
+    /// Σ of the squares that neither the nuisances nor the template explain.
+    pub residual: f64,
+    /// θ, the log-likelihood ratio.
+    pub theta: f64,
+    /// At most these rates of error at the threshold for `eta`.
+    pub rates: ErrorRates,
+    /// The number of independent nuisances.
+    pub rank: usize,
+    /// Degrees of freedom of `residual`.
+    pub degrees: usize,
+}
+
+/// T, γ, θ and rates of error of a whitened record of `samples` numbers beside `count` nuisances, one after the other.
+///
+/// Each sample is over the standard deviation of its noise. `residual`, `template` and `nuisances` are overwritten and must not
+/// overlap. `known_level` is 0 if the record itself tells the level of the noise. `bias` is what a nuisance within bounds may add
+/// to T, 0 for none; `eta` the threshold on θ.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_theta_nuisances(
+    residual: *mut f64,
+    template: *mut f64,
+    samples: usize,
+    nuisances: *mut f64,
+    count: usize,
+    known_level: u8,
+    bias: f64,
+    eta: f64,
+    found: *mut SubspaceStatistic,
+) -> Error {
+    let statistic = || {
+        let numbers = samples.checked_mul(count).ok_or(Error::Length)?;
+        let written = [
+            bytes(residual, samples),
+            bytes(template, samples),
+            bytes(nuisances, numbers),
+        ];
+        check_apart(&written, &[])?;
+        let (residual, template) =
+            unsafe { (list_mut(residual, samples)?, list_mut(template, samples)?) };
+        let nuisances = Nuisances::new(unsafe { list_mut(nuisances, numbers) }?, samples)?;
+        let detector = SubspaceDetector::new(nuisances, template)?;
+        let found = detector.statistic(residual)?;
+        let level = if known_level == 0 {
+            NoiseLevel::Unknown
+        } else {
+            NoiseLevel::Known
+        };
+        let test = found.test(level, bias)?;
+        let detect::ErrorRates { false_alarm, miss } = test.rates(test.bayes_threshold(eta)?)?;
+        Ok(SubspaceStatistic {
+            t: test.t,
+            gamma: test.gamma,
+            gamma_nominal: detector.gamma_nominal(),
+            residual: found.residual,
+            theta: test.theta(),
+            rates: ErrorRates { false_alarm, miss },
+            rank: nuisances.rank(),
+            degrees: samples - 1 - nuisances.rank(),
+        })
+    };
+    unsafe { give(found, statistic) }
+}
+
+/// The largest Θ of a scan.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ScanMaximum {
+    /// Θ_max.
+    pub theta: f64,
+    /// γ at that shift.
+    pub gamma: f64,
+    /// The shift with the top of the parabola through Θ there and at its neighbours.
+    pub refined_shift: f64,
+    /// The shift k̂, samples.
+    pub shift: isize,
+}
+
+/// Θ at every shift k = 0 … N − M at which the whole template of M samples lies in the record of N, into `theta`, and the
+/// largest. `theta` has `count` = N − M + 1 numbers and overlaps nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_scan(
+    residual: *const Series,
+    template: *const Series,
+    noise_sd: *const Components,
+    theta: *mut f64,
+    count: usize,
+    maximum: *mut ScanMaximum,
+) -> Error {
+    let found = || {
+        let (record, pattern) = unsafe { (read(residual)?, read(template)?) };
+        let read_too = [record, pattern].map(|series| {
+            [series.lateral, series.normal].map(|start| bytes(start, series.samples))
+        });
+        check_apart(&[bytes(theta, count)], read_too.as_flattened())?;
+        let (residual, template) = unsafe { (record.force()?, pattern.force()?) };
+        let noise = unsafe { read(noise_sd) }?;
+        let scan = scan::Scan::new(record.samples, template, noise.into())?;
+        if count != scan.full_shifts().count() {
+            return Err(Error::Length);
+        }
+        scan.theta(residual, 0, unsafe { list_mut(theta, count) }?)?;
+        let scan::ScanMaximum {
+            theta,
+            gamma,
+            shift,
+            refined_shift,
+        } = scan.maximum(residual, scan.full_shifts())?;
+        Ok(ScanMaximum {
+            theta,
+            gamma,
+            refined_shift,
+            shift,
+        })
+    };
+    unsafe { give(maximum, found) }
+}

@@ -1,0 +1,410 @@
+//! The servo kernel: a force table, and one cycle of the loop at 1 kHz.
+//!
+//! Implements: CLB-003, CLB-006, CLB-011, CLB-012.
+
+use core::mem::{MaybeUninit, offset_of};
+
+use palpate::force::Force as KernelForce;
+use palpate::servo::{self, Axis, Fault, Limits, Mode, Request, Table};
+
+use crate::memory::{bytes, check_apart, give, list, list_mut, read};
+use crate::{Error, memory};
+
+/// A force on the probe, N.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Force {
+    /// Along +x.
+    pub lateral: f32,
+    /// Out of the gel.
+    pub normal: f32,
+}
+
+// Rust does not promise the layout of the kernel's own force: with another one this does not compile.
+const _: () = assert!(
+    size_of::<KernelForce<f32>>() == size_of::<Force>()
+        && align_of::<KernelForce<f32>>() == align_of::<Force>()
+        && offset_of!(KernelForce<f32>, lateral) == offset_of!(Force, lateral)
+        && offset_of!(KernelForce<f32>, normal) == offset_of!(Force, normal)
+);
+
+impl From<KernelForce<f32>> for Force {
+    fn from(force: KernelForce<f32>) -> Force {
+        Force {
+            lateral: force.lateral,
+            normal: force.normal,
+        }
+    }
+}
+
+/// What `palpate_table_init` makes of knots and forces, to which it keeps pointers. Its content is the library's.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct PreparedTable {
+    /// Says that the words hold a table.
+    tag: usize,
+    /// A table of the kernel.
+    words: [MaybeUninit<usize>; 16],
+}
+
+/// What no memory holds by chance.
+const TAG: usize = 0x7ab1_e5e7;
+
+const _: () = assert!(
+    size_of::<Table>() <= size_of::<[usize; 16]>() && align_of::<Table>() <= align_of::<usize>()
+);
+
+impl PreparedTable {
+    fn new(table: Table) -> PreparedTable {
+        let mut words = [MaybeUninit::uninit(); 16];
+        // SAFETY: the words have room for a table, and its alignment. A table has nothing to drop.
+        unsafe { words.as_mut_ptr().cast::<Table>().write(table) };
+        PreparedTable { tag: TAG, words }
+    }
+}
+
+/// The table at an address.
+///
+/// # Safety
+/// As the crate says; knots, reciprocals and forces are where they were when the table was made.
+unsafe fn table<'a>(place: *const PreparedTable) -> Result<&'a Table<'a>, Error> {
+    let [prepared] = (unsafe { list(place, 1) })? else {
+        return Err(Error::NullPointer);
+    };
+    if prepared.tag != TAG {
+        return Err(Error::NotATable);
+    }
+    // SAFETY: by its tag, `palpate_table_init` wrote these words.
+    Ok(unsafe { &*prepared.words.as_ptr().cast::<Table>() })
+}
+
+/// An axis with the reciprocals of its cells, which are written into `reciprocals`.
+fn axis<'a>(knots: &'a [f32], reciprocals: &'a mut [f32]) -> Result<Axis<'a>, Error> {
+    for (reciprocal, ends) in reciprocals.iter_mut().zip(knots.windows(2)) {
+        *reciprocal = Axis::reciprocal_width(ends[0], ends[1]);
+    }
+    Ok(Axis::new(knots, reciprocals)?)
+}
+
+/// Makes a table of depths and lateral positions (m, increasing) and of the force at each pair (N): `depths` rows of `laterals`
+/// forces. `scratch` has depths + laterals − 2 numbers.
+///
+/// The table keeps pointers to all four lists: they must stay where they are, unchanged, as long as it is used.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_table_init(
+    depth_knots_m: *const f32,
+    depths: usize,
+    lateral_knots_m: *const f32,
+    laterals: usize,
+    forces_n: *const Force,
+    scratch: *mut f32,
+    scratch_length: usize,
+    table: *mut PreparedTable,
+) -> Error {
+    let make = || {
+        if !(2..=servo::MAX_KNOTS).contains(&depths) || !(2..=servo::MAX_KNOTS).contains(&laterals)
+        {
+            return Err(Error::Knots);
+        }
+        let nodes = depths * laterals;
+        if scratch_length != depths + laterals - 2 {
+            return Err(Error::Length);
+        }
+        check_apart(
+            &[bytes(scratch, scratch_length), bytes(table, 1)],
+            &[
+                bytes(depth_knots_m, depths),
+                bytes(lateral_knots_m, laterals),
+                bytes(forces_n, nodes),
+            ],
+        )?;
+        let depth_knots = unsafe { list(depth_knots_m, depths) }?;
+        let lateral_knots = unsafe { list(lateral_knots_m, laterals) }?;
+        // SAFETY: the layout of both is the same, as asserted above.
+        let forces = unsafe { list(forces_n.cast::<KernelForce<f32>>(), nodes) }?;
+        let scratch = unsafe { list_mut(scratch, scratch_length) }?;
+        let (depth_reciprocals, lateral_reciprocals) = scratch.split_at_mut(depths - 1);
+        let depths = axis(depth_knots, depth_reciprocals)?;
+        let laterals = axis(lateral_knots, lateral_reciprocals)?;
+        Ok(PreparedTable::new(Table::new(depths, laterals, forces)?))
+    };
+    unsafe { give(table, make) }
+}
+
+/// The force of a table at a depth and lateral position (m): bilinear, continued one cell beyond the border, zero above the
+/// surface. Total for every bit pattern of the position.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_table_force(
+    prepared: *const PreparedTable,
+    depth_m: f32,
+    lateral_m: f32,
+    force: *mut Force,
+) -> Error {
+    let found = || Ok(unsafe { table(prepared) }?.force(depth_m, lateral_m).into());
+    unsafe { give(force, found) }
+}
+
+/// Where a position lies on an axis.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Cell {
+    /// The cell, from 0.
+    pub index: usize,
+    /// 0 at the cell's first knot, 1 at its last; from −1 to 2 outside the axis.
+    pub fraction: f32,
+}
+
+/// Cell and fraction of a position on an axis of `count` knots (m). `scratch` has count − 1 numbers. To compare with another
+/// kernel: it checks the axis anew in each call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_axis_locate(
+    knots_m: *const f32,
+    count: usize,
+    scratch: *mut f32,
+    scratch_length: usize,
+    position_m: f32,
+    cell: *mut Cell,
+) -> Error {
+    let found = || {
+        if count != scratch_length.saturating_add(1) {
+            return Err(Error::Length);
+        }
+        check_apart(&[bytes(scratch, scratch_length)], &[bytes(knots_m, count)])?;
+        let knots = unsafe { list(knots_m, count) }?;
+        let found = axis(knots, unsafe { list_mut(scratch, scratch_length) }?)?.locate(position_m);
+        Ok(Cell {
+            index: found.index,
+            fraction: found.fraction,
+        })
+    };
+    unsafe { give(cell, found) }
+}
+
+/// What the commands must keep to, component by component (SRV-022).
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ServoLimits {
+    /// Largest magnitude of a force, N; at most 20.
+    pub force_n: f32,
+    /// Largest growth in one cycle, N; from 1e-4 to `force_n`.
+    pub slew_n: f32,
+    /// Largest fall in one cycle, N; at least `slew_n` and 1/16 of `force_n`.
+    pub release_n: f32,
+    /// Longest run of cycles without a fresh sample that is no fault, 1 to 100.
+    pub watchdog_cycles: u16,
+}
+
+/// Whether there may be a force.
+#[repr(u8)]
+#[derive(Debug, Clone, Copy)]
+pub enum ServoMode {
+    /// Not yet.
+    Disarmed,
+    /// Yes, while the deadman is held and samples are fresh.
+    Armed,
+    /// Not until it is armed again: a position is NaN or infinite.
+    FaultNotFinite,
+    /// Not until it is armed again: the device reported a fault.
+    FaultDevice,
+    /// Not until it is armed again: too many cycles without a fresh sample.
+    FaultWatchdog,
+    /// Not until it is armed again: the state was overwritten.
+    FaultState,
+}
+
+/// In the order of `ServoRequest`.
+const REQUESTS: [Request; 3] = [Request::None, Request::Arm, Request::Disarm];
+
+/// In the order of `ServoMode`.
+const MODES: [Mode; 6] = [
+    Mode::Disarmed,
+    Mode::Armed,
+    Mode::Faulted(Fault::NotFinite),
+    Mode::Faulted(Fault::Device),
+    Mode::Faulted(Fault::Watchdog),
+    Mode::Faulted(Fault::State),
+];
+
+/// What one cycle leaves to the next. All zero is the state to begin with.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ServoState {
+    /// The last command, N.
+    pub force: Force,
+    /// The number of the last sample taken over.
+    pub sequence: u16,
+    /// Cycles since the last fresh sample.
+    pub missed: u16,
+    /// A `PALPATE_SERVO_MODE_…`.
+    pub mode: u8,
+    /// 1 if `sequence` is the number of a sample.
+    pub has_sequence: u8,
+    /// 1 if the last cycle had a request to arm.
+    pub arming: u8,
+    /// 0.
+    pub reserved: u8,
+}
+
+impl From<ServoState> for servo::State {
+    fn from(state: ServoState) -> servo::State {
+        let mode = MODES.get(usize::from(state.mode));
+        servo::State {
+            mode: mode.copied().unwrap_or(Mode::Faulted(Fault::State)),
+            force: KernelForce::new(state.force.lateral, state.force.normal),
+            sequence: (state.has_sequence != 0).then_some(state.sequence),
+            missed: state.missed,
+            arming: state.arming != 0,
+        }
+    }
+}
+
+impl From<servo::State> for ServoState {
+    fn from(state: servo::State) -> ServoState {
+        ServoState {
+            force: state.force.into(),
+            sequence: state.sequence.unwrap_or(0),
+            missed: state.missed,
+            mode: match state.mode {
+                Mode::Disarmed => ServoMode::Disarmed as u8,
+                Mode::Armed => ServoMode::Armed as u8,
+                Mode::Faulted(Fault::NotFinite) => ServoMode::FaultNotFinite as u8,
+                Mode::Faulted(Fault::Device) => ServoMode::FaultDevice as u8,
+                Mode::Faulted(Fault::Watchdog) => ServoMode::FaultWatchdog as u8,
+                Mode::Faulted(Fault::State) => ServoMode::FaultState as u8,
+            },
+            has_sequence: state.sequence.is_some().into(),
+            arming: state.arming.into(),
+            reserved: 0,
+        }
+    }
+}
+
+/// One report of the device, in metres.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ServoSample {
+    /// Depth of the probe, m.
+    pub depth_m: f32,
+    /// Lateral position of the probe, m.
+    pub lateral_m: f32,
+    /// Its number, modulo 65536.
+    pub sequence: u16,
+    /// Not 0 while the deadman switch is held.
+    pub deadman: u8,
+    /// Not 0 if the device says that something is wrong with it.
+    pub device_fault: u8,
+}
+
+/// What the person at the controls asks for.
+#[repr(u8)]
+#[derive(Debug, Clone, Copy)]
+pub enum ServoRequest {
+    /// Nothing.
+    None,
+    /// To arm, also after a fault.
+    Arm,
+    /// To disarm.
+    Disarm,
+}
+
+/// What one cycle tells the device.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ServoCommand {
+    /// The force to play, N.
+    pub force: Force,
+    /// 1 while the force follows the table; otherwise it is on its way to zero.
+    pub playing: u8,
+    /// 0.
+    pub reserved: [u8; 3],
+}
+
+/// One cycle of the servo loop: from `state`, the newest sample (null if none came) and a `PALPATE_SERVO_REQUEST_…` to the next state and the
+/// command. A refused call commands no force, if there is a place for a command, and leaves the state.
+///
+/// Total and bounded for every bit pattern of state and sample: a mode that does not exist counts as memory overwritten, a request
+/// that does not exist disarms.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_step(
+    prepared: *const PreparedTable,
+    limits: *const ServoLimits,
+    sample: *const ServoSample,
+    request: u8,
+    state: *mut ServoState,
+    command: *mut ServoCommand,
+) -> Error {
+    const NONE: ServoCommand = ServoCommand {
+        force: Force {
+            lateral: 0.0,
+            normal: 0.0,
+        },
+        playing: 0,
+        reserved: [0; 3],
+    };
+    // First, so that a call that is refused below leaves no old force.
+    let given = unsafe { give(command, || Ok(NONE)) };
+    if given != Error::Ok {
+        return given;
+    }
+    let cycle = || {
+        let table = unsafe { table(prepared) }?;
+        let limits = unsafe { read(limits) }?;
+        let ServoLimits {
+            force_n,
+            slew_n,
+            release_n,
+            watchdog_cycles,
+        } = limits;
+        let limits = Limits::new(force_n, slew_n, release_n, watchdog_cycles)?;
+        let sample = match sample.is_null() {
+            true => None,
+            false => Some(unsafe { memory::read(sample) }?),
+        };
+        let input = servo::Input {
+            sample: sample.map(Into::into),
+            request: match REQUESTS.get(usize::from(request)) {
+                Some(&request) => request,
+                None => Request::Disarm,
+            },
+        };
+        let state = unsafe { read(state) }?;
+        Ok(servo::step(table, &limits, state.into(), input))
+    };
+    let (next, played) = match cycle() {
+        Ok(done) => done,
+        Err(error) => return error,
+    };
+    let played = ServoCommand {
+        force: played.force.into(),
+        playing: played.playing.into(),
+        reserved: [0; 3],
+    };
+    unsafe {
+        give(state, || Ok(next.into()));
+        give(command, || Ok(played))
+    }
+}
+
+impl From<ServoSample> for servo::Sample {
+    fn from(sample: ServoSample) -> servo::Sample {
+        servo::Sample {
+            sequence: sample.sequence,
+            deadman: sample.deadman != 0,
+            device_fault: sample.device_fault != 0,
+            depth: sample.depth_m,
+            lateral: sample.lateral_m,
+        }
+    }
+}
+
+impl From<servo::Sample> for ServoSample {
+    fn from(sample: servo::Sample) -> ServoSample {
+        ServoSample {
+            depth_m: sample.depth,
+            lateral_m: sample.lateral,
+            sequence: sample.sequence,
+            deadman: sample.deadman.into(),
+            device_fault: sample.device_fault.into(),
+        }
+    }
+}

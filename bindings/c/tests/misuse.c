@@ -1,0 +1,137 @@
+/* Calls that must be refused, each with its code, and leave their results as they were. */
+#include "palpate.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static int failures;
+
+static void expect(const char *what, PalpateError found, PalpateError expected) {
+    if (found == expected) return;
+    failures++;
+    printf("%s: %s, expected: %s\n", what, palpate_error_text(found), palpate_error_text(expected));
+}
+
+static void expect_true(const char *what, int is) {
+    if (is) return;
+    failures++;
+    printf("%s does not hold\n", what);
+}
+
+static const PalpateServoLimits limits = {8.0f, 0.05f, 0.5f, 10};
+static const float knots[2] = {0.0f, 0.5f};
+static const PalpateForce forces[4] = {{0, 0}, {0, 0}, {1, 4}, {1, 4}};
+
+static void numbers(void) {
+    double y = -7.0, aligned[2] = {0, 0};
+    expect("null", palpate_normal_cdf(0.0, NULL), PALPATE_ERROR_NULL_POINTER);
+    expect("unaligned", palpate_normal_cdf(0.0, (double *)((char *)aligned + 1)), PALPATE_ERROR_UNALIGNED);
+    expect("NaN", palpate_normal_cdf(NAN, &y), PALPATE_ERROR_OUT_OF_RANGE);
+    expect("probability", palpate_normal_quantile(1.0, &y), PALPATE_ERROR_OUT_OF_RANGE);
+    expect_true("a refused call leaves its result", y == -7.0);
+    expect_true("an unknown error has a text", strcmp(palpate_error_text(99), "an unknown error") == 0);
+    expect_true("the last error has a text", strstr(palpate_error_text(PALPATE_ERROR_DEVICE), "capabilities") != NULL);
+}
+
+static void records(void) {
+    double signal[4] = {0.1, 0.2, 0.2, 0.1}, zero[4] = {0, 0, 0, 0}, infinite[4] = {0, 0, INFINITY, 0};
+    const PalpateComponents noise = {0.1, 0.1}, no_noise = {0.0, 0.1};
+    const PalpateSeries right = {zero, signal, 4}, none = {zero, signal, 0}, shorter = {zero, signal, 3};
+    const PalpateSeries missing = {NULL, signal, 4}, wrong = {zero, infinite, 4}, endless = {zero, signal, (size_t)-1 / 8};
+    PalpateFilter filter;
+    PalpateStatistic found;
+    expect("no sample", palpate_matched_filter(&none, &noise, &filter), PALPATE_ERROR_EMPTY);
+    expect("null samples", palpate_matched_filter(&missing, &noise, &filter), PALPATE_ERROR_NULL_POINTER);
+    expect("infinite sample", palpate_matched_filter(&wrong, &noise, &filter), PALPATE_ERROR_NOT_FINITE);
+    expect("too many", palpate_matched_filter(&endless, &noise, &filter), PALPATE_ERROR_LENGTH);
+    expect("no noise", palpate_matched_filter(&right, &no_noise, &filter), PALPATE_ERROR_OUT_OF_RANGE);
+    expect("lengths", palpate_theta(&right, &shorter, &right, &noise, &found), PALPATE_ERROR_LENGTH);
+
+    PalpateScanMaximum maximum;
+    double theta[2];
+    expect("count", palpate_scan(&right, &shorter, &noise, theta, 1, &maximum), PALPATE_ERROR_LENGTH);
+    expect("scan over its input", palpate_scan(&right, &shorter, &noise, zero + 1, 2, &maximum), PALPATE_ERROR_OVERLAP);
+    expect("scan", palpate_scan(&right, &shorter, &noise, theta, 2, &maximum), PALPATE_ERROR_OK);
+
+    double covariance[4] = {1, 0.5, 0.4, 1}, scratch[8];
+    PalpateThetaGamma pair;
+    expect("symmetry", palpate_theta_coloured(zero, signal, covariance, 2, scratch, 8, &pair), PALPATE_ERROR_NOT_SYMMETRIC);
+    covariance[1] = covariance[2] = 2;
+    expect("definite", palpate_theta_coloured(zero, signal, covariance, 2, scratch, 8, &pair), PALPATE_ERROR_NOT_POSITIVE_DEFINITE);
+    expect("scratch", palpate_theta_coloured(zero, signal, covariance, 2, scratch, 7, &pair), PALPATE_ERROR_LENGTH);
+    expect("scratch over input", palpate_theta_coloured(zero, scratch, covariance, 2, scratch, 8, &pair), PALPATE_ERROR_OVERLAP);
+
+    PalpateSubspaceStatistic statistic;
+    double offset[4] = {1, 1, 1, 1}, flat[4] = {2, 2, 2, 2};
+    expect("same memory", palpate_theta_nuisances(signal, signal, 4, offset, 1, 1, 0, 0, &statistic), PALPATE_ERROR_OVERLAP);
+    expect("explained", palpate_theta_nuisances(zero, flat, 4, offset, 1, 1, 0, 0, &statistic), PALPATE_ERROR_NO_SIGNAL);
+}
+
+static void servo(void) {
+    float scratch[2], falling[2] = {0.5f, 0.0f};
+    PalpateForce strong[4] = {{0, 0}, {0, 0}, {0, 101}, {0, 0}}, force;
+    PalpatePreparedTable table, other;
+    memset(&other, 0x5a, sizeof other);
+    expect("knots", palpate_table_init(falling, 2, knots, 2, forces, scratch, 2, &table), PALPATE_ERROR_KNOTS);
+    expect("one knot", palpate_table_init(knots, 1, knots, 2, forces, scratch, 1, &table), PALPATE_ERROR_KNOTS);
+    expect("force", palpate_table_init(knots, 2, knots, 2, strong, scratch, 2, &table), PALPATE_ERROR_TABLE_FORCE);
+    expect("scratch", palpate_table_init(knots, 2, knots, 2, forces, scratch, 3, &table), PALPATE_ERROR_LENGTH);
+    expect("scratch over knots", palpate_table_init(falling, 2, knots, 2, forces, falling, 2, &table), PALPATE_ERROR_OVERLAP);
+    expect("table", palpate_table_init(knots, 2, knots, 2, forces, scratch, 2, &table), PALPATE_ERROR_OK);
+    expect("another table", palpate_table_force(&other, 0.1f, 0.0f, &force), PALPATE_ERROR_NOT_A_TABLE);
+
+    /* A force is played, then a call is refused: its command is none, and the state stays. */
+    PalpateServoState state = {0}, before;
+    PalpateServoCommand command;
+    PalpateServoSample sample = {0.1f, 0.1f, 1, 0, 0};
+    palpate_step(&table, &limits, &sample, PALPATE_SERVO_REQUEST_NONE, &state, &command);
+    sample.sequence = 2;
+    palpate_step(&table, &limits, &sample, PALPATE_SERVO_REQUEST_ARM, &state, &command);
+    sample.sequence = 3;
+    sample.deadman = 255;
+    palpate_step(&table, &limits, &sample, PALPATE_SERVO_REQUEST_NONE, &state, &command);
+    expect_true("a force is played", command.playing == 1 && command.force.normal == 0.05f);
+    before = state;
+    const PalpateServoLimits no_limits = {8.0f, NAN, 0.5f, 10};
+    expect("limits", palpate_step(&table, &no_limits, &sample, 0, &state, &command), PALPATE_ERROR_LIMITS);
+    expect_true("no force", command.playing == 0 && command.force.lateral == 0.0f && command.force.normal == 0.0f);
+    expect_true("the state stays", memcmp(&before, &state, sizeof state) == 0);
+    expect("no state", palpate_step(&table, &limits, &sample, 0, NULL, &command), PALPATE_ERROR_NULL_POINTER);
+    expect("no table", palpate_step(NULL, &limits, &sample, 0, &state, &command), PALPATE_ERROR_NULL_POINTER);
+    expect("no command", palpate_step(&table, &limits, &sample, 0, &state, NULL), PALPATE_ERROR_NULL_POINTER);
+
+    /* Bytes that are no mode count as memory overwritten, and no request as one to disarm. */
+    state.mode = 77;
+    expect("mode", palpate_step(&table, &limits, NULL, 0, &state, &command), PALPATE_ERROR_OK);
+    expect_true("a fault of the state", state.mode == PALPATE_SERVO_MODE_FAULT_STATE && command.playing == 0);
+    state = before;
+    sample.sequence = 4;
+    expect("request", palpate_step(&table, &limits, &sample, 200, &state, &command), PALPATE_ERROR_OK);
+    expect_true("disarmed", state.mode == PALPATE_SERVO_MODE_DISARMED && command.playing == 0);
+}
+
+static void reports(void) {
+    uint8_t bytes[PALPATE_LENGTH_CAPABILITIES];
+    PalpatePositionReport position = {-5, 6, 1, 0, 700, 800};
+    PalpateCapabilities device = {2, 1000, 1000, 8000, 1000, 15, 0, 0};
+    PalpateServoSample sample;
+    uint8_t control;
+    expect("length", palpate_position_report_encode(&position, bytes, 10), PALPATE_ERROR_LENGTH);
+    expect("encode", palpate_position_report_encode(&position, bytes, PALPATE_LENGTH_POSITION_REPORT), PALPATE_ERROR_OK);
+    expect("number", palpate_force_report_decode(bytes, PALPATE_LENGTH_FORCE_REPORT, NULL), PALPATE_ERROR_NULL_POINTER);
+    expect("control", palpate_control_encode(3, bytes, PALPATE_LENGTH_CONTROL), PALPATE_ERROR_REPORT);
+    expect("other report", palpate_control_decode(bytes, PALPATE_LENGTH_CONTROL, &control), PALPATE_ERROR_REPORT);
+    expect("device", palpate_sample_of_report(&device, &position, &sample), PALPATE_ERROR_DEVICE);
+    expect_true("the descriptor ends with the end of the collection",
+                palpate_report_descriptor()[PALPATE_LENGTH_DESCRIPTOR - 1] == 0xC0);
+}
+
+int main(void) {
+    numbers();
+    records();
+    servo();
+    reports();
+    printf("misuse: %d failures\n", failures);
+    return failures != 0;
+}
