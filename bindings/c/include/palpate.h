@@ -590,7 +590,7 @@ PalpateError palpate_axis_locate(const float *knots_m,
                                  PalpateCell *cell);
 
 // One cycle of the servo loop: from `state`, the newest sample (null if none came) and a `PALPATE_SERVO_REQUEST_…` to the next state and the
-// command. A refused call commands no force, if there is a place for a command, and leaves the state.
+// command. A refused call leaves the state and commands no force, unless `command` is null or overlaps something.
 //
 // Total and bounded for every bit pattern of state and sample: a mode that does not exist counts as memory overwritten, a request
 // that does not exist disarms.

@@ -5,7 +5,7 @@
 //! # Safety
 //! What holds for every entry: a pointer is null, or points to as many elements as the entry says, which no other thread writes
 //! meanwhile. Null, an address that is not a multiple of the type's alignment, and output that overlaps input of the same call
-//! are refused. That memory is there cannot be checked.
+//! are refused. That memory is there cannot be checked. An `unsafe` in an entry hands this promise of the caller's on.
 //!
 //! Implements: CLB-001, CLB-002.
 #![no_std]

@@ -56,8 +56,9 @@ pub unsafe fn list_mut<'a, T>(start: *mut T, length: usize) -> Result<&'a mut [T
     }
 }
 
-/// The addresses of a list.
+/// The addresses of a list; none of a null one.
 pub fn bytes<T>(start: *const T, length: usize) -> Range<usize> {
+    let length = if start.is_null() { 0 } else { length };
     let start = start.addr();
     start..start.saturating_add(length.saturating_mul(size_of::<T>()))
 }

@@ -320,7 +320,7 @@ pub struct ServoCommand {
 }
 
 /// One cycle of the servo loop: from `state`, the newest sample (null if none came) and a `PALPATE_SERVO_REQUEST_…` to the next state and the
-/// command. A refused call commands no force, if there is a place for a command, and leaves the state.
+/// command. A refused call leaves the state and commands no force, unless `command` is null or overlaps something.
 ///
 /// Total and bounded for every bit pattern of state and sample: a mode that does not exist counts as memory overwritten, a request
 /// that does not exist disarms.
@@ -341,6 +341,13 @@ pub unsafe extern "C" fn palpate_step(
         playing: 0,
         reserved: [0; 3],
     };
+    let apart = check_apart(
+        &[bytes(command, 1), bytes(state, 1)],
+        &[bytes(prepared, 1), bytes(limits, 1), bytes(sample, 1)],
+    );
+    if let Err(error) = apart {
+        return error;
+    }
     // First, so that a call that is refused below leaves no old force.
     let given = unsafe { give(command, || Ok(NONE)) };
     if given != Error::Ok {

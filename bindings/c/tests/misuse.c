@@ -98,6 +98,7 @@ static void servo(void) {
     expect_true("no force", command.playing == 0 && command.force.lateral == 0.0f && command.force.normal == 0.0f);
     expect_true("the state stays", memcmp(&before, &state, sizeof state) == 0);
     expect("no state", palpate_step(&table, &limits, &sample, 0, NULL, &command), PALPATE_ERROR_NULL_POINTER);
+    expect("state over command", palpate_step(&table, &limits, &sample, 0, &state, (PalpateServoCommand *)&state), PALPATE_ERROR_OVERLAP);
     expect("no table", palpate_step(NULL, &limits, &sample, 0, &state, &command), PALPATE_ERROR_NULL_POINTER);
     expect("no command", palpate_step(&table, &limits, &sample, 0, &state, NULL), PALPATE_ERROR_NULL_POINTER);
 
