@@ -34,10 +34,10 @@ const UNITS: [&str; 6] = ["mm", "mm-s", "kpa", "us", "n", "s"];
 
 /// Options whose value is no quantity, has no unit, or is in SI.
 const NO_OTHER_UNIT: &str = "\
-    bank condition config contact criterion cycles device figure format inclusion journal junit \
-    known map max-false-alarm max-force max-miss noise note observer only out phantom pid prior \
-    prior-h1 record reference replay samples seconds seed serial shard simulations soak study subject trials \
-    vectors vid vtu";
+    allowed-misses allowed-run bank condition confidence-percent config contact criterion cycles \
+    device figure format from inclusion journal junit known map max-false-alarm max-force max-miss \
+    noise note observer only out percentile phantom pid prior prior-h1 record reference replay \
+    samples seconds seed serial shard simulations soak study subject trials vectors vid vtu";
 
 // Verifies: CON-002.
 #[test]

@@ -5,12 +5,15 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use askama::Template;
-use clap::Args;
+use clap::{Args, ValueEnum};
+use serde::Serialize;
 
+use super::output::print;
 use super::playback::{limits, loaded_map};
 use super::{CliError, Format};
 use crate::hid::simulated::PAPER;
-use crate::hid::timing::{Timing, measure, paper};
+use crate::hid::timing::{Budget, BudgetOutcome, Judged, Timing, judge_log, measure, paper};
+use crate::input;
 
 /// Arguments of `palpate timing`.
 #[derive(Debug, Args)]
@@ -18,6 +21,21 @@ pub struct TimingArguments {
     /// The time that a cycle may take, in µs
     #[arg(long, value_name = "T", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
     budget_us: u64,
+    /// The percentile of the times that must be within the budget
+    #[arg(long, value_name = "P", default_value_t = 99.9)]
+    percentile: f64,
+    /// How sure the verdict must be
+    #[arg(long, value_name = "C", default_value_t = 95.0)]
+    confidence_percent: f64,
+    /// The most cycles that may take longer [default: as many as the percentile allows]
+    #[arg(long, value_name = "N")]
+    allowed_misses: Option<u64>,
+    /// The most cycles in a row that may take longer [default: any number]
+    #[arg(long, value_name = "N")]
+    allowed_run: Option<u64>,
+    /// Judges the cycles that another loop logged, CSV or lines of JSON, instead of measuring
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["cycles", "paced", "map"])]
+    from: Option<PathBuf>,
     /// How many cycles are measured
     #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u64).range(1000..=100_000_000))]
     cycles: u64,
@@ -28,33 +46,154 @@ pub struct TimingArguments {
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
     /// How the figures are printed
-    #[arg(long, value_enum, default_value_t = Format::Table)]
-    format: Format,
+    #[arg(long, value_enum, default_value_t = Printed::Table)]
+    format: Printed,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Printed {
+    /// For people.
+    Table,
+    /// For programs; each key ends with its unit.
+    Json,
+    /// For CI: JUnit's XML.
+    Junit,
 }
 
 /// Runs the command.
 ///
-/// Implements: CLI-060, CLI-061.
+/// Implements: CLI-060, CLI-061, CLI-172.
 pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
+    let cycle = Duration::from_micros(arguments.budget_us);
+    let mut budget = Budget::new(cycle, arguments.percentile, arguments.confidence_percent)?;
+    budget.allowed_misses = arguments.allowed_misses;
+    budget.allowed_run = arguments.allowed_run;
+    match &arguments.from {
+        Some(path) => {
+            let judged = input::parse(path, |text, file| {
+                judge_log(text, budget).map_err(|refusal| refusal.in_file(file))
+            })?;
+            let source = format!("of {}", path.display());
+            tell(arguments, &judged, &judged, None, &source)
+        }
+        None => {
+            let timing = measured(arguments, budget)?;
+            let source = match timing.paced {
+                true => "on the simulated device, at 1 kHz, with the system's wake-up",
+                false => "on the simulated device, as fast as they go",
+            };
+            tell(arguments, &timing, &timing.judged, Some(&timing), source)
+        }
+    }
+}
+
+/// The times of this machine.
+fn measured(arguments: &TimingArguments, budget: Budget) -> Result<Timing, CliError> {
     let loaded = match &arguments.map {
         Some(path) => loaded_map(path)?,
         None => paper::table()?,
     };
     let table = loaded.table().map_err(defect)?;
     let limits = limits(4.0)?;
-    let budget = Duration::from_micros(arguments.budget_us);
     let device = paper::device(arguments.cycles);
-    let paced = arguments.paced.then(|| PAPER.period());
-    let timing = measure(device, table, limits, arguments.cycles, budget, paced);
-    let timing = timing.map_err(defect)?;
-    arguments.format.print(&timing, describe)?;
-    if timing.passed {
-        return Ok(());
+    let period = arguments.paced.then(|| PAPER.period());
+    if let Some(period) = period {
+        let seconds = arguments.cycles as f64 * period.as_secs_f64();
+        eprintln!(
+            "palpate: measuring {} cycles takes {seconds:.0} s",
+            arguments.cycles
+        );
     }
-    Err(CliError::Check(format!(
-        "timing: {} of {} cycles took longer than {} µs, expected at most 1 in 1000",
-        timing.misses, timing.cycles, arguments.budget_us
-    )))
+    Ok(measure(
+        device,
+        table,
+        limits,
+        arguments.cycles,
+        budget,
+        period,
+    )?)
+}
+
+/// Prints the figures; the budget decides how the program ends.
+fn tell<A: Serialize>(
+    arguments: &TimingArguments,
+    figures: &A,
+    judged: &Judged,
+    timing: Option<&Timing>,
+    source: &str,
+) -> Result<(), CliError> {
+    let (outcome, reason) = match judged.outcome {
+        BudgetOutcome::Kept => ("kept", None),
+        BudgetOutcome::Broken => ("broken", Some(broken(arguments, judged))),
+        BudgetOutcome::Undecided => ("undecided", Some(undecided(judged))),
+    };
+    let table = Table {
+        judged,
+        timing,
+        source,
+        outcome,
+    };
+    // Writing to a String does not fail.
+    let text = table.render().unwrap_or_default();
+    match arguments.format {
+        Printed::Table => print(&text),
+        Printed::Json => Format::Json.print(figures, |_| String::new()),
+        Printed::Junit => {
+            let reason = reason.as_deref();
+            let junit = Junit {
+                judged,
+                outcome,
+                reason,
+                text: &text,
+            };
+            print(&junit.render().unwrap_or_default())
+        }
+    }?;
+    match (judged.outcome, reason) {
+        (BudgetOutcome::Broken, Some(reason)) => Err(CliError::Check(reason)),
+        (_, Some(reason)) => Err(CliError::Usage(reason)),
+        _ => Ok(()),
+    }
+}
+
+/// Why a budget is broken.
+fn broken(arguments: &TimingArguments, judged: &Judged) -> String {
+    let Judged {
+        misses,
+        longest_run,
+        budget_us,
+        at_least_us,
+        percentile,
+        ..
+    } = judged;
+    let missed = format!(
+        "timing: {misses} of {} cycles took longer than {budget_us} µs",
+        judged.cycles
+    );
+    match (arguments.allowed_misses, arguments.allowed_run) {
+        (Some(allowed), _) if *misses > allowed => format!("{missed}, expected at most {allowed}"),
+        (_, Some(allowed)) if *longest_run > allowed => {
+            format!("{missed}, {longest_run} of them in a row, expected at most {allowed}")
+        }
+        _ => format!(
+            "{missed}: p{percentile} is at least {at_least_us} µs, expected at most {budget_us} µs"
+        ),
+    }
+}
+
+/// Why a measurement does not decide.
+fn undecided(judged: &Judged) -> String {
+    let Judged {
+        cycles,
+        budget_us,
+        percentile,
+        ..
+    } = judged;
+    format!(
+        "timing: {cycles} cycles do not tell whether p{percentile} is within {budget_us} µs, {} of them took longer: \
+         expected more cycles",
+        judged.misses
+    )
 }
 
 fn defect(error: impl Display) -> CliError {
@@ -64,11 +203,19 @@ fn defect(error: impl Display) -> CliError {
 /// The figures for people.
 #[derive(Template)]
 #[template(path = "cli/timing.txt")]
-struct Text<'a> {
-    timing: &'a Timing,
+struct Table<'a> {
+    judged: &'a Judged,
+    timing: Option<&'a Timing>,
+    source: &'a str,
+    outcome: &'a str,
 }
 
-fn describe(timing: &Timing) -> String {
-    // Writing to a String does not fail.
-    Text { timing }.render().unwrap_or_default()
+/// The verdict for CI.
+#[derive(Template)]
+#[template(path = "cli/timing.xml")]
+struct Junit<'a> {
+    judged: &'a Judged,
+    outcome: &'a str,
+    reason: Option<&'a str>,
+    text: &'a str,
 }

@@ -4,7 +4,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use super::timing::{Times, Timing};
+use super::timing::{Budget, Times, Timing};
 use super::{Counters, DeviceState, End, HapticDevice, RecordedCycle, Session};
 
 /// How often the supervisor looks.
@@ -131,7 +131,8 @@ fn servo_loop<D: HapticDevice>(
 ) -> Played {
     let mut cycles = Vec::with_capacity(options.record);
     // A cycle's budget is its period.
-    let mut times = Times::new(session.capabilities().period());
+    let period = session.capabilities().period();
+    let mut times = Times::new(Budget::of(period), Some(period));
     let end = session.run(|cycle, counters| {
         board.show(counters);
         if let Some(times) = &mut times {
@@ -152,7 +153,7 @@ fn servo_loop<D: HapticDevice>(
             end => end,
         },
         counters: session.counters(),
-        timing: times.and_then(|times| times.timing(true)),
+        timing: times.and_then(|times| times.timing()),
         held_up: None,
         cycles,
     }

@@ -1,5 +1,7 @@
 //! How long the cycles of the loop take on this machine, against a budget.
 
+mod budget;
+mod log;
 pub mod paper;
 
 use std::cell::Cell;
@@ -12,6 +14,9 @@ use super::{
 };
 use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
+pub use budget::{Budget, BudgetOutcome, Judged};
+use budget::{Responses, histogram, nanoseconds};
+pub use log::judge_log;
 
 /// A device on the clock of the host instead of its own, and at the host's pace if it is asked to.
 struct HostClock<'a, D> {
@@ -96,16 +101,10 @@ impl Distribution {
 /// What was measured.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Timing {
-    /// Cycles measured.
-    pub cycles: u64,
-    /// The budget of a cycle, µs.
-    pub budget_us: f64,
-    /// Cycles that took longer than the budget.
-    pub misses: u64,
-    /// The input's age when it is answered: from the report at hand to the force written, and if the cycles were paced, from the time at
-    /// which the report was due, µs.
-    pub response_us: Distribution,
-    /// The servo kernel's share of it: from the drained queue to the force computed, µs.
+    /// The responses against the budget.
+    #[serde(flatten)]
+    pub judged: Judged,
+    /// The servo kernel's share of the response: from the drained queue to the force computed, µs.
     pub compute_us: Distribution,
     /// A force report's write: from the force computed to the write done, µs.
     pub write_us: Distribution,
@@ -116,65 +115,66 @@ pub struct Timing {
     pub compute_share: f64,
     /// The cycles came at the pace of the device, not as fast as they went.
     pub paced: bool,
-    /// At least 99.9 % of the cycles kept the budget.
-    pub passed: bool,
 }
 
 /// Times by quantity, recorded without allocation.
 pub(super) struct Times {
-    budget: Duration,
-    /// Of the response, the kernel, the write, the round trip.
-    histograms: [Histogram<u64>; 4],
+    responses: Responses,
+    /// Of the kernel, the write, the round trip.
+    histograms: [Histogram<u64>; 3],
     /// When the last force reports were written, by their number.
     sent: [Option<(u16, Duration)>; SENT],
+    /// In the response, and in the kernel.
     total: [Duration; 2],
-    misses: u64,
+    /// The time between two cycles, if they have one, and when the last one began.
+    period: Option<Duration>,
+    woke: Option<Duration>,
 }
 
 /// Force reports whose round trip may be under way at a time: more is no playback.
 const SENT: usize = 64;
 
 impl Times {
-    /// No times yet, of cycles that may each take as long as `budget`.
-    pub(super) fn new(budget: Duration) -> Option<Times> {
-        // 1 ns to 100 s within 0.1 %: everything that a cycle can take.
-        let histogram = Histogram::new_with_bounds(1, 100_000_000_000, 3).ok()?;
+    /// No times yet, of cycles that come every `period` if they are paced.
+    pub(super) fn new(budget: Budget, period: Option<Duration>) -> Option<Times> {
+        let histogram = histogram()?;
         Some(Times {
-            budget,
+            responses: Responses::new(budget)?,
             histograms: std::array::from_fn(|_| histogram.clone()),
             sent: [None; SENT],
             total: [Duration::ZERO; 2],
-            misses: 0,
+            period,
+            woke: None,
         })
-    }
-
-    /// The cycles so far.
-    fn cycles(&self) -> u64 {
-        self.histograms[0].len()
     }
 
     pub(super) fn record(&mut self, cycle: &Cycle, late: Duration) {
         let response = late + cycle.written.saturating_sub(cycle.woke);
         let compute = cycle.computed.saturating_sub(cycle.received);
         let write = cycle.written.saturating_sub(cycle.computed);
+        let interval = self.woke.map(|woke| cycle.woke.abs_diff(woke));
+        let jitter = self.period.zip(interval);
+        self.woke = Some(cycle.woke);
+        self.responses.record(
+            response,
+            jitter.map(|(period, interval)| interval.abs_diff(period)),
+        );
         // Each report that was sent is answered once.
         let answered = cycle.position.and_then(|position| {
             let number = position.force_sequence;
             self.slot(number).take_if(|(sent, _)| *sent == number)
         });
         let round_trip = answered.map(|(_, written)| cycle.woke.saturating_sub(written));
-        let times = [Some(response), Some(compute), Some(write), round_trip];
+        let times = [Some(compute), Some(write), round_trip];
         for (histogram, time) in self.histograms.iter_mut().zip(times) {
             if let Some(time) = time {
-                let time = u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
-                histogram.saturating_record(time);
+                histogram.saturating_record(nanoseconds(time));
             }
         }
         let sequence = cycle.force.sequence;
         *self.slot(sequence) = Some((sequence, cycle.written));
         self.total[0] += response;
         self.total[1] += compute;
-        self.misses += u64::from(response > self.budget);
     }
 
     /// Where the force report of this number is kept, or another one.
@@ -183,22 +183,17 @@ impl Times {
     }
 
     /// The figures of the cycles so far; `None` without one.
-    pub(super) fn timing(&self, paced: bool) -> Option<Timing> {
+    pub(super) fn timing(&self) -> Option<Timing> {
         let [response, compute] = self.total.map(|total| total.as_secs_f64());
-        let cycles = self.cycles();
-        let [response_us, compute_us, write_us, round_trip_us] =
+        let [compute_us, write_us, round_trip_us] =
             self.histograms.each_ref().map(Distribution::of);
         Some(Timing {
-            cycles,
-            budget_us: self.budget.as_secs_f64() * 1e6,
-            misses: self.misses,
-            response_us: response_us?,
+            judged: self.responses.judged()?,
             compute_us: compute_us?,
             write_us: write_us?,
             round_trip_us,
             compute_share: compute / response.max(f64::MIN_POSITIVE),
-            paced,
-            passed: self.misses <= cycles / 1000,
+            paced: self.period.is_some(),
         })
     }
 }
@@ -207,20 +202,23 @@ impl Times {
 /// or as fast as they go.
 ///
 /// # Errors
-/// Why the session did not begin, or ended before the cycles were through; fewer cycles than a p99.9 needs.
+/// Why the session did not begin, or ended before the cycles were through; fewer cycles than the budget needs.
 ///
-/// Implements: HID-060, HID-061, HID-062, HID-063, HID-084.
+/// Implements: HID-060, HID-061, HID-063, HID-064, HID-084.
 pub fn measure<D: HapticDevice>(
     device: D,
     table: Table,
     limits: Limits,
     cycles: u64,
-    budget: Duration,
+    budget: Budget,
     period: Option<Duration>,
 ) -> Result<Timing, Refusal> {
-    let too_few = || Refusal::state(format_args!("{cycles} cycles"), "at least 1000 for a p99.9");
-    let times = Times::new(budget).filter(|_| cycles >= 1000);
-    let mut times = times.ok_or_else(too_few)?;
+    let least = budget.least_cycles();
+    let times = Times::new(budget, period).filter(|_| cycles >= least);
+    let mut times = times.ok_or_else(|| {
+        let expected = format!("at least {least} for this percentile and confidence");
+        Refusal::state(format_args!("{cycles} cycles"), expected)
+    })?;
     let late = Cell::new(Duration::ZERO);
     let clock = HostClock {
         device,
@@ -231,13 +229,13 @@ pub fn measure<D: HapticDevice>(
     };
     let end = Session::begin(clock, table, limits)?.run(|cycle, _| {
         times.record(cycle, late.get());
-        times.cycles() < cycles
+        times.responses.cycles() < cycles
     });
-    let timing = times.timing(period.is_some());
+    let timing = times.timing();
     timing
-        .filter(|timing| timing.cycles == cycles)
+        .filter(|timing| timing.judged.cycles == cycles)
         .ok_or_else(|| {
-            let measured = times.cycles();
+            let measured = times.responses.cycles();
             Refusal::state(format_args!("after {measured} cycles: {end}"), "")
         })
 }

@@ -1,0 +1,236 @@
+//! When a loop keeps its budget: by a percentile of its times, with bounds that hold whatever their distribution is.
+
+use std::time::Duration;
+
+use hdrhistogram::Histogram;
+
+use super::Distribution;
+use crate::refusal::Refusal;
+use crate::stats::NumericError;
+use crate::stats::binomial::{at_least, at_most};
+
+/// What a loop may take, and how sure the verdict must be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Budget {
+    cycle: Duration,
+    percentile: f64,
+    confidence_percent: f64,
+    /// The most cycles of a measurement that may take longer; any number if `None`.
+    pub allowed_misses: Option<u64>,
+    /// The most of them in a row; any number if `None`.
+    pub allowed_run: Option<u64>,
+}
+
+/// What a measurement says of a budget.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BudgetOutcome {
+    /// The loop keeps it.
+    Kept,
+    /// It does not.
+    Broken,
+    /// There are too few cycles to tell.
+    Undecided,
+}
+
+impl Budget {
+    /// A cycle may take `cycle` at this percentile of the times, which the verdict is sure of by `confidence_percent`.
+    ///
+    /// # Errors
+    /// Percents that are not strictly between 0 and 100.
+    pub fn new(
+        cycle: Duration,
+        percentile: f64,
+        confidence_percent: f64,
+    ) -> Result<Budget, Refusal> {
+        for (key, percent) in [
+            ("percentile", percentile),
+            ("confidence-percent", confidence_percent),
+        ] {
+            if !(percent > 0.0 && percent < 100.0) {
+                return Err(Refusal::value(key, percent, "above 0 and below 100"));
+            }
+        }
+        Ok(Budget {
+            cycle,
+            percentile,
+            confidence_percent,
+            allowed_misses: None,
+            allowed_run: None,
+        })
+    }
+
+    /// 999 of 1000 cycles may take at most this long, with 95 % confidence.
+    pub const fn of(cycle: Duration) -> Budget {
+        Budget {
+            cycle,
+            percentile: 99.9,
+            confidence_percent: 95.0,
+            allowed_misses: None,
+            allowed_run: None,
+        }
+    }
+
+    /// The fewest cycles that can show that a budget is kept.
+    ///
+    /// Implements: HID-064.
+    pub fn least_cycles(&self) -> u64 {
+        // Fewer than this many are all below the percentile with a probability of more than 1 − confidence.
+        let unsure = libm::log(1.0 - self.confidence_percent / 100.0);
+        libm::ceil(unsure / libm::log(self.percentile / 100.0)) as u64
+    }
+
+    /// Which of `cycles` times in ascending order, from 1, are at most (0 for none) and at least the percentile (`None` for none),
+    /// each with the stated confidence.
+    fn ranks(&self, cycles: u64) -> Result<(u64, Option<u64>), NumericError> {
+        let (share, confidence) = (self.percentile / 100.0, self.confidence_percent / 100.0);
+        // So many times lie below the percentile as a binomial law says, whatever the law of the times.
+        let lower = first(1, cycles, |rank| {
+            Ok(at_least(rank, cycles, share)? < confidence)
+        })?;
+        let upper = first(1, cycles, |rank| {
+            Ok(at_most(rank - 1, cycles, share)? >= confidence)
+        })?;
+        Ok((lower - 1, Some(upper).filter(|&rank| rank <= cycles)))
+    }
+}
+
+/// The first number from `low` to `high` for which `holds`, which goes on holding above it; `high` + 1 if there is none.
+fn first(
+    mut low: u64,
+    high: u64,
+    holds: impl Fn(u64) -> Result<bool, NumericError>,
+) -> Result<u64, NumericError> {
+    let mut end = high + 1;
+    while low < end {
+        let middle = low + (end - low) / 2;
+        match holds(middle)? {
+            true => end = middle,
+            false => low = middle + 1,
+        }
+    }
+    Ok(low)
+}
+
+/// The times of a loop against its budget.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Judged {
+    /// Cycles measured.
+    pub cycles: u64,
+    /// What a cycle may take, µs.
+    pub budget_us: f64,
+    /// The percentile of the times that must be within the budget.
+    pub percentile: f64,
+    /// How sure the bounds are, each of them.
+    pub confidence_percent: f64,
+    /// The percentile is at least this, µs; 0 if there are too few cycles for a bound.
+    pub at_least_us: f64,
+    /// The percentile is at most this, µs; `None` if there are too few cycles for a bound.
+    pub at_most_us: Option<f64>,
+    /// Cycles that took longer than the budget.
+    pub misses: u64,
+    /// The most of them in a row.
+    pub longest_run: u64,
+    /// What that says.
+    pub outcome: BudgetOutcome,
+    /// The budget is kept.
+    pub passed: bool,
+    /// How long the cycles took, µs. In a loop that is measured here: the input's age when it is answered, from the report at hand to
+    /// the force written, and if the cycles were paced, from the time at which the report was due.
+    pub response_us: Distribution,
+    /// How far the time from the begin of one cycle to that of the next is from the loop's period, µs; `None` if it has none.
+    pub jitter_us: Option<Distribution>,
+}
+
+/// Times of cycles, recorded without allocation.
+pub(in crate::hid) struct Responses {
+    budget: Budget,
+    times: Histogram<u64>,
+    jitter: Histogram<u64>,
+    misses: u64,
+    /// Misses in a row up to now.
+    run: u64,
+    longest_run: u64,
+}
+
+impl Responses {
+    /// No times yet.
+    pub fn new(budget: Budget) -> Option<Responses> {
+        Some(Responses {
+            budget,
+            times: histogram()?,
+            jitter: histogram()?,
+            misses: 0,
+            run: 0,
+            longest_run: 0,
+        })
+    }
+
+    /// How many there are.
+    pub fn cycles(&self) -> u64 {
+        self.times.len()
+    }
+
+    /// The next cycle, and how far its begin was from the right time, if that is known.
+    pub fn record(&mut self, response: Duration, jitter: Option<Duration>) {
+        self.times.saturating_record(nanoseconds(response));
+        if let Some(jitter) = jitter {
+            self.jitter.saturating_record(nanoseconds(jitter));
+        }
+        let missed = response > self.budget.cycle;
+        self.run = if missed { self.run + 1 } else { 0 };
+        self.misses += u64::from(missed);
+        self.longest_run = self.longest_run.max(self.run);
+    }
+
+    /// What the cycles so far say; `None` without one.
+    ///
+    /// Implements: HID-062, HID-064, HID-065, HID-066.
+    pub fn judged(&self) -> Option<Judged> {
+        let (budget, cycles) = (&self.budget, self.cycles());
+        let response_us = Distribution::of(&self.times)?;
+        let (lower, upper) = budget.ranks(cycles).ok()?;
+        let time = |rank: u64| match rank {
+            0 => 0.0,
+            _ => self.times.value_at_quantile(rank as f64 / cycles as f64) as f64 / 1e3,
+        };
+        let within = cycles - self.misses;
+        let exceeds = |found, allowed: Option<u64>| allowed.is_some_and(|allowed| found > allowed);
+        let outcome = if exceeds(self.misses, budget.allowed_misses)
+            || exceeds(self.longest_run, budget.allowed_run)
+            || within < lower
+        {
+            BudgetOutcome::Broken
+        } else if upper.is_some_and(|upper| within >= upper) {
+            BudgetOutcome::Kept
+        } else {
+            BudgetOutcome::Undecided
+        };
+        Some(Judged {
+            cycles,
+            budget_us: budget.cycle.as_secs_f64() * 1e6,
+            percentile: budget.percentile,
+            confidence_percent: budget.confidence_percent,
+            at_least_us: time(lower),
+            at_most_us: upper.map(time),
+            misses: self.misses,
+            longest_run: self.longest_run,
+            outcome,
+            passed: outcome == BudgetOutcome::Kept,
+            response_us,
+            jitter_us: Distribution::of(&self.jitter),
+        })
+    }
+}
+
+/// From 1 ns to 100 s within 0.1 %: everything that a cycle can take.
+pub(super) fn histogram() -> Option<Histogram<u64>> {
+    Histogram::new_with_bounds(1, 100_000_000_000, 3).ok()
+}
+
+pub(super) fn nanoseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
+}
+
+#[cfg(test)]
+mod tests;

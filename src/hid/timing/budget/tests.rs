@@ -1,0 +1,114 @@
+//! Verdicts on counts whose binomial tails are known from elsewhere. No assertion is about the speed of this machine.
+
+use super::*;
+
+const MS: Duration = Duration::from_millis(1);
+
+/// The outcome of `cycles` of which the first `misses` take longer than the budget.
+fn outcome(budget: Budget, cycles: u64, misses: u64) -> BudgetOutcome {
+    let mut responses = Responses::new(budget).unwrap();
+    for cycle in 0..cycles {
+        let time = if cycle < misses { 2 * MS } else { MS / 2 };
+        responses.record(time, None);
+    }
+    let judged = responses.judged().unwrap();
+    assert_eq!((judged.cycles, judged.misses), (cycles, misses));
+    assert_eq!(judged.passed, judged.outcome == BudgetOutcome::Kept);
+    judged.outcome
+}
+
+/// The bounds are those of SciPy's `binom`: the largest number of misses m with cdf(m, n, 1 − q) ≤ 0.05, and the least with
+/// sf(m − 1, n, 1 − q) ≤ 0.05.
+// Verifies: HID-062, HID-064.
+#[test]
+fn outcomes_change_where_the_binomial_law_says() {
+    use BudgetOutcome::{Broken, Kept, Undecided};
+    let p99_9 = Budget::of(MS);
+    let p95 = Budget::new(MS, 95.0, 95.0).unwrap();
+    let cases = [
+        // 0.999^2995 = 0.04996: none may miss.
+        (p99_9, 2994, 0, Undecided),
+        (p99_9, 2995, 0, Kept),
+        (p99_9, 2995, 1, Undecided),
+        (p99_9, 2995, 6, Undecided),
+        (p99_9, 2995, 7, Broken),
+        (p99_9, 10_000, 4, Kept),
+        (p99_9, 10_000, 5, Undecided),
+        (p99_9, 10_000, 15, Undecided),
+        (p99_9, 10_000, 16, Broken),
+        // 0.95^59 = 0.0485.
+        (p95, 58, 0, Undecided),
+        (p95, 59, 0, Kept),
+        (p95, 100, 1, Kept),
+        (p95, 100, 2, Undecided),
+        (p95, 100, 9, Undecided),
+        (p95, 100, 10, Broken),
+    ];
+    for (budget, cycles, misses, expected) in cases {
+        let found = outcome(budget, cycles, misses);
+        assert_eq!(found, expected, "{misses} of {cycles}, {budget:?}");
+    }
+    assert_eq!(p99_9.least_cycles(), 2995);
+    assert_eq!(p95.least_cycles(), 59);
+}
+
+// Verifies: HID-065.
+#[test]
+fn misses_and_runs_that_are_not_allowed_break_a_budget() {
+    let with = |allowed_misses, allowed_run| Budget {
+        allowed_misses,
+        allowed_run,
+        ..Budget::of(MS)
+    };
+    assert_eq!(outcome(with(Some(4), None), 10_000, 4), BudgetOutcome::Kept);
+    for budget in [
+        with(Some(3), None),
+        with(None, Some(3)),
+        with(Some(9), Some(3)),
+    ] {
+        assert_eq!(outcome(budget, 10_000, 4), BudgetOutcome::Broken);
+    }
+    // Allowed, but the percentile is not kept.
+    let generous = with(Some(100), Some(100));
+    assert_eq!(outcome(generous, 10_000, 16), BudgetOutcome::Broken);
+}
+
+// Verifies: HID-065.
+#[test]
+fn a_run_ends_with_a_cycle_in_time() {
+    let mut responses = Responses::new(Budget::of(MS)).unwrap();
+    // A cycle that takes just the budget keeps it.
+    for time in [2, 2, 1, 2, 2, 2, 1, 2] {
+        responses.record(time * MS, None);
+    }
+    let judged = responses.judged().unwrap();
+    assert_eq!((judged.misses, judged.longest_run), (6, 3));
+}
+
+// Verifies: HID-062, HID-064.
+#[test]
+fn bounds_are_times_of_the_order() {
+    let mut responses = Responses::new(Budget::new(MS, 50.0, 95.0).unwrap()).unwrap();
+    for microseconds in (1..=20).rev() {
+        responses.record(Duration::from_micros(microseconds), None);
+    }
+    // Of 20 times the 6th and the 15th bound the median: SciPy's binom.cdf(5, 20, 0.5) = 0.0207 and that of 6 is 0.0577.
+    let judged = responses.judged().unwrap();
+    let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 2e-3;
+    assert!(near(judged.at_least_us, 6.0), "{judged:?}");
+    assert!(near(judged.at_most_us.unwrap(), 15.0), "{judged:?}");
+    assert!(near(judged.response_us.max, 20.0));
+}
+
+// Verifies: HID-064.
+#[test]
+fn percents_are_between_0_and_100() {
+    for wrong in [0.0, 100.0, -1.0, f64::NAN] {
+        assert!(Budget::new(MS, wrong, 95.0).is_err(), "{wrong}");
+        let refusal = Budget::new(MS, 99.9, wrong).unwrap_err().to_string();
+        assert!(
+            refusal.ends_with("expected above 0 and below 100"),
+            "{refusal}"
+        );
+    }
+}

@@ -1,0 +1,115 @@
+//! The cycles of another loop, as it logged them.
+
+use std::time::Duration;
+
+use serde_json::{Map, Value};
+
+use super::budget::{Budget, Judged, Responses};
+use crate::csv::{Column, Rows};
+use crate::refusal::{Refusal, shortened};
+
+/// The names of durations and then of time stamps, with the power of ten from their unit to seconds.
+const COLUMN: Column = &[
+    &[
+        ("duration_ns", -9),
+        ("duration_us", -6),
+        ("duration_ms", -3),
+        ("duration_s", 0),
+    ],
+    &[
+        ("time_ns", -9),
+        ("time_us", -6),
+        ("time_ms", -3),
+        ("time_s", 0),
+    ],
+];
+const EXPECTED: &str = "one of duration_ns, _us, _ms, _s (how long each cycle took) or time_ns, _us, _ms, _s (when each began)";
+
+/// The cycles in `text`: CSV with a header, or lines of JSON objects. Each has a column or key `duration_…` or `time_…`; of time stamps the
+/// intervals count. Against `budget`.
+///
+/// # Errors
+/// Text of neither form; numbers that are not finite, a duration below 0, a time stamp that is not above the one before; no cycle; with
+/// the line.
+///
+/// Implements: CLI-173.
+pub fn judge_log(text: &str, budget: Budget) -> Result<Judged, Refusal> {
+    let (name, numbers) = match text.trim_start().starts_with('{') {
+        true => of_json_lines(text)?,
+        false => {
+            let rows = Rows::<1>::parse(text, [COLUMN], EXPECTED)?;
+            let [name] = rows.names;
+            let numbers = rows.rows.into_iter().map(|(line, [number])| (line, number));
+            (name, numbers.collect())
+        }
+    };
+    let no_cycle = || Refusal::state("no cycle", "a row for each");
+    let mut responses = Responses::new(budget).ok_or_else(no_cycle)?;
+    if name.starts_with("duration") {
+        for (line, seconds) in numbers {
+            responses.record(duration(name, line, seconds)?, None);
+        }
+    } else {
+        let mut intervals = Vec::new();
+        for pair in numbers.windows(2) {
+            let [(_, begin), (line, end)] = [pair[0], pair[1]];
+            if end <= begin {
+                let late = "a time above the one before";
+                return Err(Refusal::value(name, end, late).at(line));
+            }
+            intervals.push(duration(name, line, end - begin)?);
+        }
+        let period = median(&intervals).ok_or_else(no_cycle)?;
+        for interval in intervals {
+            responses.record(interval, Some(interval.abs_diff(period)));
+        }
+    }
+    responses.judged().ok_or_else(no_cycle)
+}
+
+fn duration(name: &str, line: usize, seconds: f64) -> Result<Duration, Refusal> {
+    let expected = "at least 0 and less than a century";
+    let right = (0.0..3.2e9).contains(&seconds);
+    let wrong = || Refusal::value(name, format!("{seconds} s"), expected).at(line);
+    right
+        .then(|| Duration::from_secs_f64(seconds))
+        .ok_or_else(wrong)
+}
+
+/// What loops without a stated period run at: the middle of the intervals.
+fn median(intervals: &[Duration]) -> Option<Duration> {
+    let mut sorted = intervals.to_vec();
+    sorted.sort_unstable();
+    sorted.get(sorted.len() / 2).copied()
+}
+
+/// Numbers with the lines that they stand in, s.
+type Numbers = Vec<(usize, f64)>;
+
+/// The name, and the number in each line.
+fn of_json_lines(text: &str) -> Result<(&'static str, Numbers), Refusal> {
+    let mut found: Option<(&'static str, i32)> = None;
+    let mut numbers = Vec::new();
+    let lines = text.lines().enumerate();
+    for (line, text) in lines.filter(|(_, text)| !text.trim().is_empty()) {
+        let line = line + 1;
+        let object: Map<String, Value> = serde_json::from_str(text).map_err(|error| {
+            Refusal::state(format!("no JSON object: {error}"), EXPECTED).at(line)
+        })?;
+        let mut names = COLUMN.iter().copied().flatten();
+        let named = found.or_else(|| names.find(|(name, _)| object.contains_key(*name)).copied());
+        let (name, power) =
+            named.ok_or_else(|| Refusal::state(shortened(text), EXPECTED).at(line))?;
+        found = named;
+        let value = object.get(name).unwrap_or(&Value::Null);
+        let wrong = || Refusal::value(name, value, "a finite number").at(line);
+        let number = value.as_f64().ok_or_else(wrong)?;
+        // Divided by a power of ten that an f64 holds, so that the quotient is the nearest one.
+        numbers.push((line, number / libm::exp10(f64::from(-power))));
+    }
+    let (name, _) = found.ok_or_else(|| Refusal::state("no line", EXPECTED))?;
+    Ok((name, numbers))
+}
+
+#[cfg(test)]
+mod tests;
