@@ -88,6 +88,8 @@ pub struct Outcome {
 }
 
 /// Runs all cycles; `stepped` steps the kernel, and may measure.
+///
+/// Implements: FIR-003.
 pub fn run<'a>(
     device: &mut Device<'a>,
     mut stepped: impl FnMut(&mut Device<'a>, Input) -> Command,

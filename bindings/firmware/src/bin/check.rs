@@ -129,6 +129,8 @@ fn all_over_the_table(device: &mut Device) -> Range {
 }
 
 /// A hundred and one instructions are counted as such, and 256 bytes of stack are found.
+///
+/// Implements: FIR-011.
 fn measures_right() -> bool {
     let (counted, ()) = instructions(board::hundred_and_one);
     let stack = stack_of(&mut || {
