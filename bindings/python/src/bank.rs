@@ -9,10 +9,12 @@ use palpate::force_map::ForceMap as Map;
 use palpate::refusal::Refusal;
 use palpate::trace::{Correlation, Criterion, Noise, Question, Record, Trace, Unknown};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::PyList;
 use rayon::prelude::*;
+use serde::Serialize;
+use serde_json::{Value, json};
 
-use crate::convert::{Records, array, in_unit, list, pair, refused, si, tell};
+use crate::convert::{Records, array, in_unit, list, pair, python, refused, si, tell};
 use crate::map::ForceMap;
 use crate::phantom::Phantom;
 
@@ -28,13 +30,13 @@ const NAMES: [(&str, i32); 4] = [
 /// The probability of the intervals of an inclusion's parameters.
 const CREDIBLE: f64 = 0.95;
 
-/// Parameters of an inclusion by name, in mm and kPa.
-fn named<'py>(py: Python<'py>, at: [f64; 4]) -> PyResult<Bound<'py, PyDict>> {
-    let parameters = PyDict::new(py);
-    for ((name, power), value) in NAMES.into_iter().zip(at) {
-        parameters.set_item(name, in_unit(value, power))?;
-    }
-    Ok(parameters)
+/// What belongs to each parameter, by name and in its unit.
+fn named<T: Serialize>(of: impl Fn(usize, i32) -> T) -> Value {
+    let named = NAMES.into_iter().enumerate();
+    named
+        .map(|(axis, (name, power))| (name.to_string(), json!(of(axis, power))))
+        .collect::<serde_json::Map<String, Value>>()
+        .into()
 }
 
 /// The forces of one gel without an inclusion, and with each of those that may be there: a full grid of positions, depths, diameters
@@ -52,7 +54,11 @@ fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
         let found = few.par_iter().map(|solve| plan.solve(solve));
         let found: Vec<_> = found.collect::<Result<_, FemError>>().map_err(refused)?;
         maps.extend(found.into_iter().flatten());
-        tell(progress, 1 + number * rayon::current_num_threads() + few.len(), all)?;
+        tell(
+            progress,
+            1 + number * rayon::current_num_threads() + few.len(),
+            all,
+        )?;
     }
     Ok(maps)
 }
@@ -62,7 +68,11 @@ fn record(positions_mm: Any, forces_n: Any) -> PyResult<Record> {
     let positions = list("positions_mm", positions_mm, -3)?;
     let forces = Records::one("forces_n", forces_n)?;
     if positions.len() != forces.samples {
-        let found = format!("{} positions of {} samples", positions.len(), forces.samples);
+        let found = format!(
+            "{} positions of {} samples",
+            positions.len(),
+            forces.samples
+        );
         return Err(refused(Refusal::state(found, "one of each sample")));
     }
     let (lateral, normal) = forces.values()?.split_at(forces.samples);
@@ -90,46 +100,45 @@ fn criterion(max_miss: Option<f64>, max_false_alarm: Option<f64>) -> PyResult<Cr
         (None, None) => Ok(Criterion::Map),
         (Some(max_miss), None) => Ok(Criterion::NeymanPearsonMiss { max_miss }),
         (None, Some(max_false_alarm)) => Ok(Criterion::NeymanPearsonFalseAlarm { max_false_alarm }),
-        _ => Err(refused("max_miss and max_false_alarm, expected one of them")),
+        _ => Err(refused(
+            "max_miss and max_false_alarm, expected one of them",
+        )),
     }
 }
 
 /// What a search says, for Python.
-fn told<'py>(py: Python<'py>, found: &Location) -> PyResult<Bound<'py, PyDict>> {
-    let answer = PyDict::new(py);
-    let decision = found.decision.map(|decision| decision == Decision::Inclusion);
-    answer.set_item("inclusion", decision)?;
-    let causes: Vec<_> = found.causes.iter().map(|cause| cause.code()).collect();
-    answer.set_item("causes", causes)?;
-    answer.set_item("posterior_h1", found.posterior)?;
-    for (name, value) in [
-        ("theta_max", found.theta_max),
-        ("theta_mixture", found.theta_mixture),
-        ("eta", found.eta),
-        ("false_alarm_bound", found.false_alarm_bound),
-        ("miss_bound", found.miss_bound),
-        ("gamma", found.test.gamma),
-        ("gamma_nominal", found.gamma_nominal),
-    ] {
-        answer.set_item(name, value)?;
-    }
-    answer.set_item("noise_sd_n", found.fit.noise_sd.into_array())?;
-    answer.set_item("fits", found.fit.noise_is_right())?;
-    answer.set_item("likeliest", named(py, found.point)?)?;
-    answer.set_item("estimate", named(py, found.place.estimate)?)?;
-    answer.set_item("mean", named(py, found.place.mean())?)?;
-    let intervals = PyDict::new(py);
-    for (axis, (name, power)) in NAMES.into_iter().enumerate() {
-        let interval = found.place.interval(axis, CREDIBLE).map_err(refused)?;
-        let ends = [interval.low, interval.high].map(|end| in_unit(end, power));
-        intervals.set_item(name, ends)?;
-    }
-    answer.set_item("interval_95", intervals)?;
-    let nodes: Vec<_> = found.place.nodes().collect();
-    let places = nodes.iter().flat_map(|(at, _)| {
-        let units = NAMES.into_iter().zip(at);
-        units.map(|((_, power), value)| in_unit(*value, power))
+fn told<'py>(py: Python<'py>, found: &Location) -> PyResult<Bound<'py, PyAny>> {
+    let place = &found.place;
+    let at = |point: [f64; 4]| named(|axis, power| in_unit(point[axis], power));
+    let intervals = [0, 1, 2, 3].map(|axis| place.interval(axis, CREDIBLE));
+    let interval = |axis: usize, power| {
+        let ends = intervals[axis].as_ref().ok();
+        ends.map(|ends| [ends.low, ends.high].map(|end| in_unit(end, power)))
+    };
+    let answer = json!({
+        "inclusion": found.decision.map(|decision| decision == Decision::Inclusion),
+        "causes": found.causes.iter().map(|cause| cause.code()).collect::<Vec<_>>(),
+        "posterior_h1": found.posterior,
+        "theta_max": found.theta_max,
+        "theta_mixture": found.theta_mixture,
+        "eta": found.eta,
+        "false_alarm_bound": found.false_alarm_bound,
+        "miss_bound": found.miss_bound,
+        "gamma": found.test.gamma,
+        "gamma_nominal": found.gamma_nominal,
+        "noise_sd_n": found.fit.noise_sd.into_array(),
+        "likeliest": at(found.point),
+        "estimate": at(place.estimate),
+        "mean": at(place.mean()),
+        "interval_95": named(interval),
     });
+    let answer = python(py, &answer)?;
+    let nodes: Vec<_> = place.nodes().collect();
+    let powers = NAMES.map(|(_, power)| power);
+    let places = nodes
+        .iter()
+        .flat_map(|(at, _)| at.iter().zip(powers))
+        .map(|(&value, power)| in_unit(value, power));
     answer.set_item("places", array(py, &[nodes.len(), 4], places.collect())?)?;
     let mass = nodes.iter().map(|(_, mass)| *mass).collect();
     answer.set_item("probabilities", array(py, &[nodes.len()], mass)?)?;
@@ -148,8 +157,7 @@ impl Bank {
     /// The bank for the one inclusion of phantom, varied: x of its centre (offsets_mm), depth, diameter, all in mm, and Young's modulus in
     /// kPa, each an array, or None for that of the phantom. probe_depth_mm and laterals_mm, shape (n,), in mm: the sweep. mesh_mm
     /// and contact as of Phantom.solve; progress as of Phantom.map, with numbers of computations.
-    ///
-    /// Implements: PYT-010, PYT-011, PYT-022.
+    // Implements: PYT-010, PYT-011, PYT-022.
     #[staticmethod]
     #[pyo3(signature = (phantom, probe_depth_mm, laterals_mm, offsets_mm=None, depths_mm=None, diameters_mm=None, stiffnesses_kpa=None,
         mesh_mm=0.65, contact="deformed-normal", progress=None))]
@@ -217,15 +225,16 @@ impl Bank {
         PyList::new(py, self.0.maps().iter().cloned().map(ForceMap))
     }
 
-    /// The values of position_mm, depth_mm, diameter_mm and youngs_modulus_kpa, lists in a dictionary.
+    /// The values of position_mm, depth_mm, diameter_mm (mm) and youngs_modulus_kpa (kPa), lists in a dictionary.
     #[getter]
-    fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let axes = PyDict::new(py);
-        for ((name, power), values) in NAMES.into_iter().zip(self.0.axes()) {
-            let values: Vec<f64> = values.iter().map(|&v| in_unit(v, power)).collect();
-            axes.set_item(name, values)?;
-        }
-        Ok(axes)
+    fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let values = |axis: usize, power| {
+            let values = self.0.axes()[axis].iter();
+            values
+                .map(|&value| in_unit(value, power))
+                .collect::<Vec<_>>()
+        };
+        python(py, &named(values))
     }
 
     /// Is one of the bank's inclusions in a record, and where? A dictionary: inclusion (True, False, or None where the record cannot be
@@ -254,7 +263,7 @@ impl Bank {
         max_false_alarm: Option<f64>,
         prior: Option<Any<'_, 'py>>,
         prior_h1: f64,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let record = record(positions_mm, forces_n)?;
         let sd = noise_sd_n.map(|sd| pair("noise_sd_n", sd)).transpose()?;
         let correlation = match white {

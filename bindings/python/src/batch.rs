@@ -64,11 +64,12 @@ impl Sample {
     /// (F_p − F_0)(F_1 − F_0) of an observed force.
     #[inline(always)]
     fn product<S: Simd>(&self, simd: S, observed: S::f64s) -> Pair<S> {
-        let all = |value| simd.splat_f64s(value);
-        let (a, a_low) = sum(simd, observed, all(self.minus_f0));
-        let (b, b_low) = (all(self.template.0), all(self.template.1));
+        let (a, a_low) = sum(simd, observed, simd.splat_f64s(self.minus_f0));
+        let b = simd.splat_f64s(self.template.0);
+        let b_low = simd.splat_f64s(self.template.1);
         let (a1, a2) = split(simd, a);
-        let (b1, b2) = (all(self.halves.0), all(self.halves.1));
+        let b1 = simd.splat_f64s(self.halves.0);
+        let b2 = simd.splat_f64s(self.halves.1);
         let high = simd.mul_f64s(a, b);
         let mut rest = simd.sub_f64s(high, simd.mul_f64s(a1, b1));
         rest = simd.sub_f64s(rest, simd.mul_f64s(a2, b1));
@@ -115,9 +116,11 @@ impl Channel {
                 *part = (high, simd.add_f64s(part.1, simd.add_f64s(low, product.1)));
             }
         }
-        parts.iter().fold((zero, zero), |total, part| {
-            plus(simd, total, sum(simd, part.0, part.1))
-        })
+        let mut total = (zero, zero);
+        for (high, low) in parts {
+            total = plus(simd, total, sum(simd, high, low));
+        }
+        total
     }
 
     /// θ of observed forces.
@@ -151,7 +154,9 @@ impl WithSimd for Work<'_> {
             let lanes_of_block: &mut [f64] = pulp::bytemuck::cast_slice_mut(&mut block);
             for (lane, record) in records.chunks(length).enumerate() {
                 let places = lanes_of_block[lane..].iter_mut().step_by(lanes);
-                places.zip(record).for_each(|(place, &force)| *place = force);
+                for (place, &force) in places.zip(record) {
+                    *place = force;
+                }
             }
             let (lateral, normal) = block.split_at(samples);
             let lateral = self.channels[0].theta(simd, lateral);

@@ -49,7 +49,7 @@ pub fn in_unit(value: f64, power: i32) -> f64 {
 
 /// A list of numbers in a unit, in SI.
 pub fn list(name: &str, values: &Bound<PyAny>, power: i32) -> PyResult<Vec<f64>> {
-    let values = floats(name, values)?;
+    let values = vector(name, values)?;
     let named = |(index, &value): (usize, &f64)| si(&format!("{name}[{index}]"), value, power);
     values.as_slice()?.iter().enumerate().map(named).collect()
 }
@@ -93,7 +93,7 @@ pub fn floats<'py>(
         .call_method1("asarray", (values,))
         .and_then(|array| array.getattr("dtype")?.getattr("kind")?.extract())
         .unwrap_or_default();
-    if masked || kind.is_empty() || !"fiub".contains(&*kind) {
+    if masked || kind.is_empty() || !"fiu".contains(&*kind) {
         let found = values.get_type().name()?;
         let message = format!("{name} is a {found}, expected real numbers or an array of them");
         return Err(PyTypeError::new_err(message));
@@ -102,6 +102,24 @@ pub fn floats<'py>(
     let array = numpy.call_method1("require", (values, "f8", "CAE"))?;
     let array = array.cast_into::<PyArrayDyn<f64>>()?;
     array.try_readonly().map_err(refused)
+}
+
+/// The same of the shape (n,).
+pub fn vector<'py>(
+    name: &str,
+    values: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let values = floats(name, values)?;
+    match values.shape() {
+        [_] => Ok(values),
+        shape => Err(wrong_shape(name, shape, "[n]")),
+    }
+}
+
+/// The exception for an array of another shape than expected.
+pub fn wrong_shape(name: &str, shape: &[usize], expected: &str) -> PyErr {
+    let found = format!("{name} has the shape {shape:?}");
+    refused(Refusal::state(found, expected))
 }
 
 /// One record of shape (2, n), or k of them: (k, 2, n).
@@ -121,9 +139,8 @@ impl<'py> Records<'py> {
             [2, samples] => (None, samples),
             [count, 2, samples] => (Some(count), samples),
             ref shape => {
-                let found = format!("{name} has the shape {shape:?}");
                 let expected = "[2, n], lateral and normal samples, or [k, 2, n]";
-                return Err(refused(Refusal::state(found, expected)));
+                return Err(wrong_shape(name, shape, expected));
             }
         };
         Ok(Records {
@@ -184,11 +201,8 @@ pub fn pair(name: &str, values: &Bound<PyAny>) -> PyResult<Force<f64>> {
         [both] => Ok(Force::new(both, both)),
         [lateral, normal] => Ok(Force::new(lateral, normal)),
         _ => {
-            let found = format!("{name} has the shape {:?}", values.shape());
-            Err(refused(Refusal::state(
-                found,
-                "a number, or one of each channel",
-            )))
+            let expected = "a number, or one of each channel";
+            Err(wrong_shape(name, values.shape(), expected))
         }
     }
 }

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::batch;
 use crate::convert::{
-    Records, array, channels, floats, halves, json, of_record, pair, python, refused,
+    Records, array, floats, halves, json, of_record, pair, python, refused, vector, wrong_shape,
 };
 use crate::oracle::asked;
 
@@ -52,8 +52,7 @@ fn same_length(records: &Records, samples: usize) -> PyResult<()> {
 /// without and with the inclusion, in N, of shape (2, n). noise_sd_n: the standard deviation of a sample in N, one for both channels
 /// or (lateral, normal). A float, or an array of shape (k,). A C-ordered array of 64-bit floats is read where it is; do not change
 /// it in another thread meanwhile.
-///
-/// Implements: PYT-020, PYT-021.
+// Implements: PYT-020, PYT-021.
 #[pyfunction]
 pub fn theta<'py>(
     py: Python<'py>,
@@ -199,8 +198,8 @@ pub fn theta_coloured(
     let covariance = floats("covariance", covariance)?;
     let order = 2 * template.samples;
     if covariance.shape() != [order, order] {
-        let found = format!("covariance has the shape {:?}", covariance.shape());
-        return Err(refused(format!("{found}, expected [{order}, {order}]")));
+        let expected = format!("[{order}, {order}]");
+        return Err(wrong_shape("covariance", covariance.shape(), &expected));
     }
     let (residual, template) = (residual.values()?, template.values()?);
     let covariance = covariance.as_slice()?;
@@ -227,13 +226,13 @@ pub fn theta_nuisances<'py>(
     bias: f64,
     eta: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let mut residual = floats("residual", residual)?.as_slice()?.to_vec();
-    let mut template = floats("template", template)?.as_slice()?.to_vec();
+    let mut residual = vector("residual", residual)?.as_slice()?.to_vec();
+    let mut template = vector("template", template)?.as_slice()?.to_vec();
     let signals = floats("nuisances", nuisances)?;
     let samples = template.len();
-    if signals.len() > 0 && signals.shape().last() != Some(&samples) {
-        let found = format!("nuisances has the shape {:?}", signals.shape());
-        return Err(refused(format!("{found}, expected [p, {samples}]")));
+    if !matches!(*signals.shape(), [0] | [0, _]) && signals.shape().get(1..) != Some(&[samples]) {
+        let expected = format!("[p, {samples}]");
+        return Err(wrong_shape("nuisances", signals.shape(), &expected));
     }
     let level = match level {
         "known" => NoiseLevel::Known,
@@ -294,8 +293,7 @@ pub fn bank_posterior<'py>(
 /// for both channels or (lateral, normal). theta: shape (n - m + 1,), with the template's first sample on sample 0, 1, ... of the
 /// record; max_theta; gamma there; shift: that sample; refined_shift: the vertex of a parabola, in samples. For k records each
 /// has k as its first axis.
-///
-/// Implements: PYT-022.
+// Implements: PYT-022.
 #[pyfunction]
 pub fn scan<'py>(
     py: Python<'py>,
@@ -317,9 +315,8 @@ pub fn scan<'py>(
     };
     let found = py.detach(|| {
         let all = records.zip(theta.par_chunks_exact_mut(shifts)).enumerate();
-        let all = all.map(|(number, one)| {
-            of_one(one).map_err(|error| of_record(count, number, error))
-        });
+        let all =
+            all.map(|(number, one)| of_one(one).map_err(|error| of_record(count, number, error)));
         all.collect::<PyResult<Vec<ScanMaximum>>>()
     })?;
     let answer = PyDict::new(py);
@@ -344,8 +341,7 @@ pub fn scan<'py>(
 ///
 /// f0 and f1: forces in N, of shape (2, n); noise_sd_n: in N, one for both channels or (lateral, normal). An array of shape (trials,),
 /// the same for the same seed, whatever the number of threads.
-///
-/// Implements: PYT-022.
+// Implements: PYT-022.
 #[pyfunction]
 #[pyo3(signature = (f0, f1, noise_sd_n, inclusion, trials, seed=1999))]
 pub fn simulate_theta<'py>(
@@ -376,25 +372,4 @@ pub fn simulate_theta<'py>(
     });
     done.map_err(refused)?;
     array(py, &[trials], theta)
-}
-
-/// A record: the forces f of shape (2, n) in N with white noise of standard deviation noise_sd_n in N, one for both channels or
-/// (lateral, normal); the same for the same seed. An array of shape (2, n), N.
-#[pyfunction]
-#[pyo3(signature = (f, noise_sd_n, seed=1999))]
-pub fn noisy<'py>(
-    py: Python<'py>,
-    f: Any<'_, 'py>,
-    noise_sd_n: Any<'_, 'py>,
-    seed: u64,
-) -> PyResult<Bound<'py, PyAny>> {
-    let (force, noise_sd) = (Records::one("f", f)?, pair("noise_sd_n", noise_sd_n)?);
-    let mut noise = zeros(2 * force.samples)?;
-    Generator::new(seed, 2).normals(0, 0, &mut noise);
-    let both = force.force()?.zip(halves(&noise)).zip(noise_sd);
-    let noisy = both.map(|((force, noise), sd)| {
-        let samples = force.iter().zip(noise).map(|(force, noise)| force + sd * noise);
-        samples.collect::<Vec<f64>>()
-    });
-    channels(py, noisy)
 }

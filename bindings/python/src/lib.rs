@@ -39,13 +39,13 @@ mod palpate {
     use super::convert::Refused;
     #[pymodule_export]
     use super::decision::{
-        auc, bayes_threshold, decide, draw_theta, error_rates, gamma_from_two_afc, map_threshold,
+        auc, bayes_threshold, decide, error_rates, gamma_from_two_afc, map_threshold,
         neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, noise_budget,
         posterior, required_gamma, roc_miss, two_afc,
     };
     #[pymodule_export]
     use super::detector::{
-        MatchedFilter, Statistic, bank_posterior, noisy, scan, simulate_theta, statistic, theta,
+        MatchedFilter, Statistic, bank_posterior, scan, simulate_theta, statistic, theta,
         theta_coloured, theta_nuisances,
     };
     #[pymodule_export]
@@ -55,7 +55,7 @@ mod palpate {
     #[pymodule_export]
     use super::phantom::{Phantom, ProbeForce};
     #[pymodule_export]
-    use super::psychophysics::{analyse_answers, answers, count_analysis};
+    use super::psychophysics::{analyse_answers, count_analysis};
     #[pymodule_export]
     use super::servo::{Limits, Sample, ServoState, ServoTable, step};
 

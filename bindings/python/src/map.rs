@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 
 use crate::convert::{
     array, array_in_unit, channels, each, floats, in_unit, list, python, refused, scaled, si,
+    wrong_shape,
 };
 use crate::phantom::Phantom;
 
@@ -29,8 +30,7 @@ fn matrix(name: &str, values: Any) -> PyResult<Matrix> {
         [_, columns] => Matrix::new(columns, values.as_slice()?.to_vec()),
         _ => None,
     };
-    let found = || format!("{name} has the shape {:?}", values.shape());
-    matrix.ok_or_else(|| refused(format!("{}, expected [m, n]", found())))
+    matrix.ok_or_else(|| wrong_shape(name, values.shape(), "[m, n]"))
 }
 
 impl ForceMap {
@@ -84,7 +84,9 @@ impl ForceMap {
 
     /// Writes the map to a file: poses and forces alone (mm, N) if its name ends in .csv, else JSON, which keeps everything.
     fn write(&self, path: PathBuf) -> PyResult<()> {
-        let csv = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("csv"));
+        let csv = path
+            .extension()
+            .is_some_and(|end| end.eq_ignore_ascii_case("csv"));
         let text = match csv {
             true => self.0.table().to_csv(),
             false => self.0.to_json(),
@@ -126,7 +128,9 @@ impl ForceMap {
     #[getter]
     fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let certificate = self.0.certificate();
-        certificate.map(|certificate| python(py, certificate)).transpose()
+        certificate
+            .map(|certificate| python(py, certificate))
+            .transpose()
     }
 
     /// The forces at a depth of the map, in mm: shape (2, n), lateral and normal, N.
@@ -165,6 +169,8 @@ impl ForceMap {
         let phantom = self.0.phantom().map_or("unknown", |phantom| &phantom.name);
         let [from, to] = [laterals[0], laterals[laterals.len() - 1]].map(|x| in_unit(x, 3));
         let (rows, columns) = (depths.len(), laterals.len());
-        format!("<ForceMap of phantom {phantom:?}: {rows} depths, {columns} lateral positions from {from} to {to} mm>")
+        format!(
+            "<ForceMap of phantom {phantom:?}: {rows} depths, {columns} lateral positions from {from} to {to} mm>"
+        )
     }
 }

@@ -108,7 +108,7 @@ impl Phantom {
 #[pymethods]
 impl Phantom {
     #[new]
-    #[pyo3(signature = (name, **edits))]
+    #[pyo3(signature = (name, /, **edits))]
     fn new(name: &str, edits: Option<&Bound<PyDict>>) -> PyResult<Phantom> {
         Phantom(phantom::Phantom::builtin(name).map_err(refused)?).edited(edits)
     }
@@ -154,7 +154,7 @@ impl Phantom {
         python(py, &self.tables()?)
     }
 
-    /// The name.
+    /// The name of the phantom.
     #[getter]
     fn name(&self) -> &str {
         &self.0.name
@@ -174,8 +174,7 @@ impl Phantom {
 
     /// The force on the probe at one pose, in N; lengths in mm. mesh_mm=0.5 gives the element sizes of spec/fem.md; contact:
     /// "deformed-normal" or "vertical-gap".
-    ///
-    /// Implements: PYT-010.
+    // Implements: PYT-010.
     #[pyo3(signature = (depth_mm, lateral_mm=0.0, mesh_mm=0.5, contact="deformed-normal"))]
     fn solve(
         &self,
@@ -205,8 +204,7 @@ impl Phantom {
     ///
     /// progress is called with the numbers of poses that are solved, and of all; what it raises, such as KeyboardInterrupt, stops
     /// the solve and is raised here.
-    ///
-    /// Implements: PYT-010, PYT-011.
+    // Implements: PYT-010, PYT-011.
     #[pyo3(signature = (depths_mm, laterals_mm, mesh_mm=0.5, contact="deformed-normal", progress=None))]
     fn map(
         &self,

@@ -44,26 +44,3 @@ pub fn analyse_answers(py: Python<'_>, path: Option<PathBuf>) -> PyResult<Bound<
     }
     Ok(answer)
 }
-
-/// The counts of a table of answers as a list of dictionaries, one a subject and condition: subject, condition, trials and the right
-/// answers to each inclusion by its name (no units). path: as of analyse_answers; without it Table 1 of the paper.
-#[pyfunction]
-#[pyo3(signature = (path=None))]
-pub fn answers(py: Python<'_>, path: Option<PathBuf>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let table = path.map_or_else(AnswerTable::paper, |path| AnswerTable::read(&path));
-    let table = table.map_err(refused)?;
-    let mut rows = Vec::new();
-    for condition in table.conditions() {
-        for subject in &condition.subjects {
-            let row = PyDict::new(py);
-            row.set_item("subject", &subject.name)?;
-            row.set_item("condition", &condition.name)?;
-            row.set_item("trials", subject.trials)?;
-            for (inclusion, correct) in table.inclusions().iter().zip(&subject.correct) {
-                row.set_item(&inclusion.name, correct)?;
-            }
-            rows.push(row);
-        }
-    }
-    Ok(rows)
-}

@@ -141,10 +141,18 @@ pub fn step(
         "none" => Request::None,
         "arm" => Request::Arm,
         "disarm" => Request::Disarm,
-        _ => return Err(refused(format!("request is {request:?}, expected none, arm or disarm"))),
+        _ => {
+            return Err(refused(format!(
+                "request is {request:?}, expected none, arm or disarm"
+            )));
+        }
     };
     let sample = sample.map(|sample| sample.0);
     let table = table.0.table().map_err(refused)?;
     let (next, command) = servo::step(&table, &limits.0, state.0, Input { sample, request });
-    Ok((ServoState(next), command.force.into_array(), command.playing))
+    Ok((
+        ServoState(next),
+        command.force.into_array(),
+        command.playing,
+    ))
 }
