@@ -108,16 +108,18 @@ impl Channel {
     #[inline(always)]
     fn cross<S: Simd>(&self, simd: S, observed: &[S::f64s]) -> Pair<S> {
         let (zero, factor) = (simd.splat_f64s(0.0), simd.splat_f64s(self.factor));
-        let mut parts = [(zero, zero); PARTS];
-        for (observed, samples) in observed.chunks(PARTS).zip(self.samples.chunks(PARTS)) {
-            for ((&observed, sample), part) in observed.iter().zip(samples).zip(&mut parts) {
-                let product = sample.product(simd, simd.mul_f64s(observed, factor));
-                let (high, low) = sum(simd, part.0, product.0);
-                *part = (high, simd.add_f64s(part.1, simd.add_f64s(low, product.1)));
-            }
-        }
         let mut total = (zero, zero);
-        for (high, low) in parts {
+        for part in 0..PARTS {
+            let (mut high, mut low) = (zero, zero);
+            let mut index = part;
+            while index < observed.len() {
+                let factored = simd.mul_f64s(observed[index], factor);
+                let product = self.samples[index].product(simd, factored);
+                let added = sum(simd, high, product.0);
+                high = added.0;
+                low = simd.add_f64s(low, simd.add_f64s(added.1, product.1));
+                index += PARTS;
+            }
             total = plus(simd, total, sum(simd, high, low));
         }
         total
@@ -169,7 +171,7 @@ impl WithSimd for Work<'_> {
 /// θ of each of `records`, 2n numbers one after the other, as `theta_of_record` gives it; or the number of the first record that it
 /// refuses, and why.
 ///
-/// Implements: PYT-020, PYT-021, PYT-022.
+/// Implements: PYT-020, PYT-021, PYT-022, PYT-023.
 pub fn theta(
     records: &[f64],
     f0: Force<&[f64]>,

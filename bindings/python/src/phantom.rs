@@ -46,6 +46,7 @@ impl ProbeForce {
 ///
 /// Keywords change numbers of it, by the names of the phantom file (mm, kPa) behind that of their table: well_width_mm=40,
 /// inclusion_depth_mm=5, layer_1_youngs_modulus_kpa=8, where layers and inclusions count from 0 and the only one needs no number.
+// Implements: PYT-007.
 #[pyclass(frozen, eq, module = "palpate")]
 #[derive(PartialEq)]
 pub struct Phantom(pub phantom::Phantom);
@@ -204,7 +205,7 @@ impl Phantom {
     ///
     /// progress is called with the numbers of poses that are solved, and of all; what it raises, such as KeyboardInterrupt, stops
     /// the solve and is raised here.
-    // Implements: PYT-010, PYT-011.
+    // Implements: PYT-010, PYT-011, PYT-012.
     #[pyo3(signature = (depths_mm, laterals_mm, mesh_mm=0.5, contact="deformed-normal", progress=None))]
     fn map(
         &self,

@@ -15,7 +15,7 @@ fn single(name: &str, value: f64, power: i32) -> PyResult<f32> {
     }
 }
 
-/// The table that the servo kernel plays: the forces of a force map in single precision, with the surface in front.
+/// The table that the servo kernel plays: the forces of a force map (N over m) in single precision, with the surface in front.
 #[pyclass(frozen, module = "palpate")]
 pub struct ServoTable(LoadedTable);
 

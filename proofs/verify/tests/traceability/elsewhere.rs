@@ -12,7 +12,7 @@ const RECORDS: &str = "cargo test --release --test real_records -- --ignored";
 const BANK: &str = "cargo test --release --test bank_of_the_paper -- --ignored";
 
 /// Evidence that `cargo test` does not run, or skips where a program is missing: by the beginning of its name, with what runs it.
-const ELSEWHERE: [(&str, &str); 19] = [
+const ELSEWHERE: [(&str, &str); 20] = [
     ("tests/hid-stack/", "tests/hid-stack/run"),
     ("tests/accuracy.rs", WITNESSES),
     ("tests/vectors_suite.rs", WITNESSES),
@@ -32,6 +32,7 @@ const ELSEWHERE: [(&str, &str); 19] = [
     ("tests/same_bits/", "tests/same_bits/run"),
     ("tests/reproducible/", "tests/reproducible/run"),
     ("tests/slurm/", "tests/slurm/run"),
+    ("bindings/python/", "bindings/python/run"),
 ];
 
 /// What runs a test or proof that `cargo test` does not run, or skips where a program is missing.
