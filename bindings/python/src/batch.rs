@@ -13,6 +13,8 @@ use crate::convert::halves;
 const PARTS: usize = 4;
 /// Records that a thread takes at a time.
 const CHUNK: usize = 1024;
+/// Noise of a sample, N, below which y(0) is finite wherever θ is: a force of which it would not be is 2^996 times the noise.
+const MOST_NOISE: f64 = 1e8;
 /// 2^27 + 1.
 const VELTKAMP: f64 = 134_217_729.0;
 
@@ -168,8 +170,8 @@ impl WithSimd for Work<'_> {
     }
 }
 
-/// θ of each of `records`, 2n numbers one after the other, as `theta_of_record` gives it; or the number of the first record that it
-/// refuses, and why.
+/// θ of each of `records`, 2n numbers one after the other, as `theta_of_record` gives it; or why it refuses them, and the number of the
+/// record if that is to blame.
 ///
 /// Implements: PYT-020, PYT-021, PYT-022, PYT-023.
 pub fn theta(
@@ -177,30 +179,31 @@ pub fn theta(
     f0: Force<&[f64]>,
     f1: Force<&[f64]>,
     noise_sd: Force<f64>,
-) -> Result<Vec<f64>, (usize, DetectError)> {
+) -> Result<Vec<f64>, (Option<usize>, DetectError)> {
     // What it refuses of the rest, it refuses with any record.
-    theta_of_record(f0, f0, f1, noise_sd).map_err(|error| (0, error))?;
+    theta_of_record(f0, f0, f1, noise_sd).map_err(|error| (None, error))?;
     let channels = f0.zip(f1).zip(noise_sd);
     let channels = channels.map(|((f0, f1), noise_sd)| Channel::new(f0, f1, noise_sd));
     let channels = &channels.into_array();
     let length = 2 * f0.lateral.len();
-    let mut theta = vec![0.0; records.len() / length];
-    let chunks = records.par_chunks(CHUNK * length);
-    chunks
-        .zip(theta.par_chunks_mut(CHUNK))
-        .for_each(|(records, theta)| {
+    let mut theta = vec![f64::NAN; records.len() / length];
+    if noise_sd.lateral.max(noise_sd.normal) < MOST_NOISE {
+        let chunks = records.par_chunks(CHUNK * length);
+        let chunks = chunks.zip(theta.par_chunks_mut(CHUNK));
+        chunks.for_each(|(records, theta)| {
             Arch::new().dispatch(Work {
                 channels,
                 records,
                 theta,
             })
         });
-    // A NaN, an infinity or an overflow: the function itself says which.
+    }
+    // A NaN, an infinity, an overflow, or so much noise: the function itself says.
     for (number, theta) in theta.iter_mut().enumerate() {
         if !theta.is_finite() {
             let record = halves(&records[number * length..][..length]);
             let found = theta_of_record(record, f0, f1, noise_sd);
-            *theta = found.map_err(|error| (number, error))?.theta;
+            *theta = found.map_err(|error| (Some(number), error))?.theta;
         }
     }
     Ok(theta)

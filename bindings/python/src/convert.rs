@@ -186,11 +186,11 @@ pub fn halves(record: &[f64]) -> Force<&[f64]> {
     Force::new(lateral, normal)
 }
 
-/// What refuses the record with a number, which is told where there are several.
-pub fn of_record(count: Option<usize>, number: usize, error: NumericError) -> PyErr {
-    match count {
+/// The exception for what is refused of the record with a number, if it is one of several.
+pub fn of_record(number: Option<usize>, error: NumericError) -> PyErr {
+    match number {
         None => refused(error),
-        Some(_) => refused(format!("record {number}: {error}")),
+        Some(number) => refused(format!("record {number}: {error}")),
     }
 }
 

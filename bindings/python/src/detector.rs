@@ -69,10 +69,10 @@ pub fn theta<'py>(
     let found = match observed.count {
         None => theta_of_record(halves(values), f0, f1, noise_sd)
             .map(|found| vec![found.theta])
-            .map_err(|error| (0, error)),
+            .map_err(|error| (None, error)),
         Some(_) => py.detach(|| batch::theta(values, f0, f1, noise_sd)),
     };
-    let found = found.map_err(|(number, error)| of_record(observed.count, number, error))?;
+    let found = found.map_err(|(number, error)| of_record(number, error))?;
     observed.answer(py, &[], found)
 }
 
@@ -176,7 +176,7 @@ impl MatchedFilter {
         let (values, count) = (residual.values()?, residual.count);
         let theta = |(number, record)| match filter.statistic(halves(record)) {
             Ok(found) => Ok(found.theta),
-            Err(error) => Err(of_record(count, number, error)),
+            Err(error) => Err(of_record(count.map(|_| number), error)),
         };
         let records = values.par_chunks_exact(2 * filter.samples()).enumerate();
         let found: PyResult<Vec<f64>> = py.detach(|| records.map(theta).collect());
@@ -315,8 +315,9 @@ pub fn scan<'py>(
     };
     let found = py.detach(|| {
         let all = records.zip(theta.par_chunks_exact_mut(shifts)).enumerate();
-        let all =
-            all.map(|(number, one)| of_one(one).map_err(|error| of_record(count, number, error)));
+        let all = all.map(|(number, one)| {
+            of_one(one).map_err(|error| of_record(count.map(|_| number), error))
+        });
         all.collect::<PyResult<Vec<ScanMaximum>>>()
     })?;
     let answer = PyDict::new(py);

@@ -55,6 +55,17 @@ def test_a_batch_has_the_bits_of_single_records_at_every_scale(scale):
     assert batch.tolist() == [palpate.theta(record, f0, f1, 0.1 * scale) for record in observed]
 
 
+def test_a_batch_refuses_what_single_records_refuse():
+    f0, f1 = np.array([[-1.7e308], [0.0]]), np.array([[-1.6e308], [0.0]])
+    # y(0) would be 3.4e308 N, though theta is finite.
+    for observed in (-f0, [-f0]):
+        with pytest.raises(palpate.Refused, match="y_x is too large"):
+            palpate.theta(observed, f0, f1, 1e307)
+    for observed in (f0, [f0]):
+        with pytest.raises(palpate.Refused, match="^noise_sd_y is 0, but must be"):
+            palpate.theta(observed, f0, f1, (1.0, 0.0))
+
+
 def test_theta_is_within_4_ulp_of_the_exact_value():
     observed, f0, f1 = records(200, 41)
     sd = (0.1, 0.07)
