@@ -87,6 +87,8 @@ pub enum FemError {
     },
     /// Memory ran out.
     OutOfMemory,
+    /// The caller of [`Model::map_while`] did not want the rest.
+    Stopped,
 }
 
 impl fmt::Display for FemError {
@@ -108,6 +110,7 @@ impl fmt::Display for FemError {
                 )
             }
             FemError::OutOfMemory => f.write_str("out of memory"),
+            FemError::Stopped => f.write_str("stopped"),
         }
     }
 }

@@ -256,12 +256,33 @@ impl Model {
         laterals: &[f64],
         solved: &dyn Fn(usize),
     ) -> Result<ForceMap, FemError> {
+        let go_on = |poses| {
+            solved(poses);
+            true
+        };
+        self.map_while(depths, laterals, &go_on)
+    }
+
+    /// [`Model::map`], where `solved` says whether to go on.
+    ///
+    /// # Errors
+    /// As [`Model::map`]; [`FemError::Stopped`].
+    ///
+    /// Implements: PYT-011.
+    pub fn map_while(
+        &self,
+        depths: &[f64],
+        laterals: &[f64],
+        solved: &dyn Fn(usize) -> bool,
+    ) -> Result<ForceMap, FemError> {
         self.check_poses(depths, laterals)?;
         let right = self.solved_laterals(laterals);
         let mut solutions = Vec::with_capacity(right.len() * depths.len());
         for &lateral in &right {
             solutions.extend(self.column(depths, lateral)?);
-            solved(depths.len());
+            if !solved(depths.len()) {
+                return Err(FemError::Stopped);
+            }
         }
         self.map_of(&solutions, [depths, &right], laterals)
     }

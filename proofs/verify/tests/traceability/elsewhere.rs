@@ -12,7 +12,7 @@ const RECORDS: &str = "cargo test --release --test real_records -- --ignored";
 const BANK: &str = "cargo test --release --test bank_of_the_paper -- --ignored";
 
 /// Evidence that `cargo test` does not run, or skips where a program is missing: by the beginning of its name, with what runs it.
-const ELSEWHERE: [(&str, &str); 23] = [
+const ELSEWHERE: [(&str, &str); 24] = [
     ("tests/hid-stack/", "tests/hid-stack/run"),
     ("tests/accuracy.rs", WITNESSES),
     ("tests/vectors_suite.rs", WITNESSES),
@@ -36,6 +36,7 @@ const ELSEWHERE: [(&str, &str); 23] = [
     ("tests/slurm/", "tests/slurm/run"),
     ("bindings/c/", "bindings/c/run"),
     ("contrib/github/", "contrib/github/check"),
+    ("bindings/python/", "bindings/python/run"),
 ];
 
 /// What runs a test or proof that `cargo test` does not run, or skips where a program is missing.

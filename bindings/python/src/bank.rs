@@ -1,0 +1,295 @@
+//! Banks of inclusions, and records searched with them.
+
+use std::path::PathBuf;
+
+use palpate::bank::{self, BankPlan, BankSearch, Location};
+use palpate::detect::Decision;
+use palpate::fem::FemError;
+use palpate::force_map::ForceMap as Map;
+use palpate::refusal::Refusal;
+use palpate::trace::{Correlation, Criterion, Noise, Question, Record, Trace, Unknown};
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+use rayon::prelude::*;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::convert::{Records, array, in_unit, list, pair, python, refused, si, tell};
+use crate::map::ForceMap;
+use crate::phantom::Phantom;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Names of the parameters of an inclusion, and the power of ten from SI to their units.
+const NAMES: [(&str, i32); 4] = [
+    ("position_mm", 3),
+    ("depth_mm", 3),
+    ("diameter_mm", 3),
+    ("youngs_modulus_kpa", -3),
+];
+/// The probability of the intervals of an inclusion's parameters.
+const CREDIBLE: f64 = 0.95;
+
+/// What belongs to each parameter, by name and in its unit.
+fn named<T: Serialize>(of: impl Fn(usize, i32) -> T) -> Value {
+    let named = NAMES.into_iter().enumerate();
+    named
+        .map(|(axis, (name, power))| (name.to_string(), json!(of(axis, power))))
+        .collect::<serde_json::Map<String, Value>>()
+        .into()
+}
+
+/// The forces of one gel without an inclusion, and with each of those that may be there: a full grid of positions, depths, diameters
+/// and Young's moduli. Bank(reference, maps) is the bank of force maps.
+#[pyclass(frozen, module = "palpate")]
+pub struct Bank(bank::Bank);
+
+/// The maps of a plan, the reference first; on all processors, a few at a time, so that this thread hears of Ctrl-C.
+fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
+    let solves = plan.solves().map_err(refused)?;
+    let all = solves.len() + 1;
+    let mut maps = vec![plan.reference().map_err(refused)?];
+    tell(progress, 1, all)?;
+    for (number, few) in (0..).zip(solves.chunks(rayon::current_num_threads())) {
+        let found = few.par_iter().map(|solve| plan.solve(solve));
+        let found: Vec<_> = found.collect::<Result<_, FemError>>().map_err(refused)?;
+        maps.extend(found.into_iter().flatten());
+        tell(
+            progress,
+            1 + number * rayon::current_num_threads() + few.len(),
+            all,
+        )?;
+    }
+    Ok(maps)
+}
+
+/// The record of forces at positions, as if a file held it.
+fn record(positions_mm: Any, forces_n: Any) -> PyResult<Record> {
+    let positions = list("positions_mm", positions_mm, -3)?;
+    let forces = Records::one("forces_n", forces_n)?;
+    if positions.len() != forces.samples {
+        let found = format!(
+            "{} positions of {} samples",
+            positions.len(),
+            forces.samples
+        );
+        return Err(refused(Refusal::state(found, "one of each sample")));
+    }
+    let (lateral, normal) = forces.values()?.split_at(forces.samples);
+    let mut text = String::from("position_m,lateral_force_n,normal_force_n\n");
+    for ((position, lateral), normal) in positions.iter().zip(lateral).zip(normal) {
+        text += &format!("{position:e},{lateral:e},{normal:e}\n");
+    }
+    let record = Trace::from_csv(&text, "record");
+    record.and_then(|trace| trace.record(None)).map_err(refused)
+}
+
+/// What is unknown, by name.
+fn unknowns(names: Vec<String>) -> PyResult<Vec<Unknown>> {
+    let unknown = |name: String| {
+        let found = Unknown::ALL.into_iter().find(|of| of.name() == name);
+        let expected = Unknown::ALL.map(Unknown::name).join(", ");
+        found.ok_or_else(|| refused(Refusal::value("unknown", name, expected)))
+    };
+    names.into_iter().map(unknown).collect()
+}
+
+/// The criterion of at most one of two rates.
+fn criterion(max_miss: Option<f64>, max_false_alarm: Option<f64>) -> PyResult<Criterion> {
+    match (max_miss, max_false_alarm) {
+        (None, None) => Ok(Criterion::Map),
+        (Some(max_miss), None) => Ok(Criterion::NeymanPearsonMiss { max_miss }),
+        (None, Some(max_false_alarm)) => Ok(Criterion::NeymanPearsonFalseAlarm { max_false_alarm }),
+        _ => Err(refused(
+            "max_miss and max_false_alarm, expected one of them",
+        )),
+    }
+}
+
+/// What a search says, for Python.
+fn told<'py>(py: Python<'py>, found: &Location) -> PyResult<Bound<'py, PyAny>> {
+    let place = &found.place;
+    let at = |point: [f64; 4]| named(|axis, power| in_unit(point[axis], power));
+    let intervals = [0, 1, 2, 3].map(|axis| place.interval(axis, CREDIBLE));
+    let interval = |axis: usize, power| {
+        let ends = intervals[axis].as_ref().ok();
+        ends.map(|ends| [ends.low, ends.high].map(|end| in_unit(end, power)))
+    };
+    let answer = json!({
+        "inclusion": found.decision.map(|decision| decision == Decision::Inclusion),
+        "causes": found.causes.iter().map(|cause| cause.code()).collect::<Vec<_>>(),
+        "posterior_h1": found.posterior,
+        "theta_max": found.theta_max,
+        "theta_mixture": found.theta_mixture,
+        "eta": found.eta,
+        "false_alarm_bound": found.false_alarm_bound,
+        "miss_bound": found.miss_bound,
+        "gamma": found.test.gamma,
+        "gamma_nominal": found.gamma_nominal,
+        "noise_sd_n": found.fit.noise_sd.into_array(),
+        "likeliest": at(found.point),
+        "estimate": at(place.estimate),
+        "mean": at(place.mean()),
+        "interval_95": named(interval),
+    });
+    let answer = python(py, &answer)?;
+    let nodes: Vec<_> = place.nodes().collect();
+    let powers = NAMES.map(|(_, power)| power);
+    let places = nodes
+        .iter()
+        .flat_map(|(at, _)| at.iter().zip(powers))
+        .map(|(&value, power)| in_unit(value, power));
+    answer.set_item("places", array(py, &[nodes.len(), 4], places.collect())?)?;
+    let mass = nodes.iter().map(|(_, mass)| *mass).collect();
+    answer.set_item("probabilities", array(py, &[nodes.len()], mass)?)?;
+    Ok(answer)
+}
+
+#[pymethods]
+impl Bank {
+    #[new]
+    fn new(reference: &ForceMap, maps: Vec<PyRef<ForceMap>>) -> PyResult<Bank> {
+        let maps = maps.iter().map(|map| map.0.clone()).collect();
+        let bank = bank::Bank::new(reference.0.clone(), maps);
+        Ok(Bank(bank.map_err(refused)?))
+    }
+
+    /// The bank for the one inclusion of phantom, varied: x of its centre (offsets_mm), depth, diameter, all in mm, and Young's modulus in
+    /// kPa, each an array, or None for that of the phantom. probe_depth_mm and laterals_mm, shape (n,), in mm: the sweep. mesh_mm
+    /// and contact as of Phantom.solve; progress as of Phantom.map, with numbers of computations.
+    // Implements: PYT-010, PYT-011, PYT-022.
+    #[staticmethod]
+    #[pyo3(signature = (phantom, probe_depth_mm, laterals_mm, offsets_mm=None, depths_mm=None, diameters_mm=None, stiffnesses_kpa=None,
+        mesh_mm=0.65, contact="deformed-normal", progress=None))]
+    #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
+    fn build(
+        py: Python<'_>,
+        phantom: &Phantom,
+        probe_depth_mm: f64,
+        laterals_mm: Any,
+        offsets_mm: Option<Any>,
+        depths_mm: Option<Any>,
+        diameters_mm: Option<Any>,
+        stiffnesses_kpa: Option<Any>,
+        mesh_mm: f64,
+        contact: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bank> {
+        let depth = si("probe_depth_mm", probe_depth_mm, -3)?;
+        let laterals = list("laterals_mm", laterals_mm, -3)?;
+        let plan = BankPlan::new(phantom.0.clone(), depth, &laterals);
+        let mut plan = plan.map_err(refused)?;
+        plan.mesh_size = si("mesh_mm", mesh_mm, -3)?;
+        plan.contact = crate::phantom::contact(contact)?;
+        for (name, values, power, place) in [
+            ("offsets_mm", offsets_mm, -3, &mut plan.positions),
+            ("depths_mm", depths_mm, -3, &mut plan.depths),
+            ("diameters_mm", diameters_mm, -3, &mut plan.diameters),
+            ("stiffnesses_kpa", stiffnesses_kpa, 3, &mut plan.moduli),
+        ] {
+            if let Some(values) = values {
+                *place = list(name, values, power)?;
+            }
+        }
+        let mut maps = py.detach(|| solved(&plan, progress.as_ref()))?;
+        let reference = maps.remove(0);
+        Ok(Bank(bank::Bank::new(reference, maps).map_err(refused)?))
+    }
+
+    /// The bank in a file, as palpate bank writes it.
+    #[staticmethod]
+    fn read(path: PathBuf) -> PyResult<Bank> {
+        Ok(Bank(bank::Bank::read(&path).map_err(refused)?))
+    }
+
+    /// Writes the bank to a file, for palpate detect too.
+    fn write(&self, path: PathBuf) -> PyResult<()> {
+        Ok(std::fs::write(path, self.0.to_json())?)
+    }
+
+    /// The depth of the probe, mm.
+    #[getter]
+    fn probe_depth_mm(&self) -> f64 {
+        in_unit(self.0.depth(), 3)
+    }
+
+    /// The forces without an inclusion.
+    #[getter]
+    fn reference(&self) -> ForceMap {
+        ForceMap(self.0.reference().clone())
+    }
+
+    /// The forces with each inclusion: those of all positions, then those of the next depth, diameter, modulus.
+    #[getter]
+    fn maps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        PyList::new(py, self.0.maps().iter().cloned().map(ForceMap))
+    }
+
+    /// The values of position_mm, depth_mm, diameter_mm (mm) and youngs_modulus_kpa (kPa), lists in a dictionary.
+    #[getter]
+    fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let values = |axis: usize, power| {
+            let values = self.0.axes()[axis].iter();
+            values
+                .map(|&value| in_unit(value, power))
+                .collect::<Vec<_>>()
+        };
+        python(py, &named(values))
+    }
+
+    /// Is one of the bank's inclusions in a record, and where? A dictionary: inclusion (True, False, or None where the record cannot be
+    /// judged, for the causes), posterior_h1, theta_max, theta_mixture, eta, bounds on the rates of error, gamma; the likeliest of the
+    /// bank, and estimate, mean and interval_95 of each parameter in mm and kPa if there is one; places, shape (m, 4), in the order
+    /// of the bank's axes, and their probabilities, shape (m,).
+    ///
+    /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N. noise_sd_n: of a sample in N, one for both
+    /// channels or (lateral, normal), or None if the record tells. unknown: what is fitted, of offset, drift, gain, depth and variance.
+    /// white: whether all samples are independent; if not, the record tells. The decision is for the fewest errors, or keeps
+    /// max_miss or max_false_alarm. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion.
+    #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, unknown=vec!["offset".into(), "drift".into(), "gain".into(),
+        "variance".into()], white=false, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5),
+        text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, unknown=('offset', 'drift', 'gain', 'variance'), white=False, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5)")]
+    #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
+    fn locate<'py>(
+        &self,
+        py: Python<'py>,
+        positions_mm: Any<'_, 'py>,
+        forces_n: Any<'_, 'py>,
+        noise_sd_n: Option<Any<'_, 'py>>,
+        unknown: Vec<String>,
+        white: bool,
+        depth_tolerance_mm: f64,
+        max_miss: Option<f64>,
+        max_false_alarm: Option<f64>,
+        prior: Option<Any<'_, 'py>>,
+        prior_h1: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let record = record(positions_mm, forces_n)?;
+        let sd = noise_sd_n.map(|sd| pair("noise_sd_n", sd)).transpose()?;
+        let correlation = match white {
+            true => Correlation::None,
+            false => Correlation::OfRecord,
+        };
+        let prior = prior.map(|prior| list("prior", prior, 0)).transpose()?;
+        let search = BankSearch {
+            question: Question {
+                depth: self.0.depth(),
+                depth_tolerance: si("depth_tolerance_mm", depth_tolerance_mm, -3)?,
+                unknown: &unknowns(unknown)?,
+                noise: Noise { sd, correlation },
+                criterion: criterion(max_miss, max_false_alarm)?,
+                prior_h1,
+            },
+            bank: &self.0,
+            prior: prior.as_deref(),
+            simulations: None,
+        };
+        let found = py.detach(|| search.locate(&record));
+        told(py, &found.map_err(refused)?)
+    }
+
+    fn __repr__(&self) -> String {
+        let (maps, depth) = (self.0.maps().len(), self.probe_depth_mm());
+        format!("<Bank of {maps} inclusions, probe at {depth} mm>")
+    }
+}

@@ -1,0 +1,280 @@
+//! From Python to Rust and back: errors, units, arrays, tables.
+
+use std::fmt::Display;
+
+use numpy::ndarray::{ArrayD, IxDyn};
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use palpate::decimal::{format_scaled, parse_scaled};
+use palpate::force::Force;
+use palpate::refusal::{Refusal, one_line};
+use palpate::stats::NumericError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use serde::Serialize;
+
+pyo3::create_exception!(
+    palpate,
+    Refused,
+    PyValueError,
+    "An input that is not what it must be, or a computation that has no answer: one line that says what is wrong and what would be right."
+);
+
+/// The exception for a reason of the crate's, with its words.
+///
+/// Implements: PYT-005.
+pub fn refused(reason: impl Display) -> PyErr {
+    Refused::new_err(one_line(&reason.to_string()))
+}
+
+/// `value` times 10^`power`, as if its shortest decimal were read.
+///
+/// Implements: PYT-004, PYT-006.
+pub fn scaled(name: &str, value: f64, power: i32) -> Result<f64, Refusal> {
+    let scaled = parse_scaled(&format!("{value:e}"), power);
+    scaled.ok_or_else(|| Refusal::value(name, value, "a finite number"))
+}
+
+/// The same, or its exception.
+pub fn si(name: &str, value: f64, power: i32) -> PyResult<f64> {
+    scaled(name, value, power).map_err(refused)
+}
+
+/// An SI value in the unit that is 10^−`power` of it.
+///
+/// Implements: PYT-004.
+pub fn in_unit(value: f64, power: i32) -> f64 {
+    format_scaled(value, power).parse().unwrap_or(f64::NAN)
+}
+
+/// A list of numbers in a unit, in SI.
+pub fn list(name: &str, values: &Bound<PyAny>, power: i32) -> PyResult<Vec<f64>> {
+    let values = vector(name, values)?;
+    let named = |(index, &value): (usize, &f64)| si(&format!("{name}[{index}]"), value, power);
+    values.as_slice()?.iter().enumerate().map(named).collect()
+}
+
+/// SI values as an array in a unit.
+pub fn array_in_unit<'py>(py: Python<'py>, values: &[f64], power: i32) -> Bound<'py, PyAny> {
+    let values: Vec<f64> = values.iter().map(|&value| in_unit(value, power)).collect();
+    values.into_pyarray(py).into_any()
+}
+
+/// Numbers as an array of a shape, row by row.
+pub fn array<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    values: Vec<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let array = ArrayD::from_shape_vec(IxDyn(shape), values).map_err(refused)?;
+    Ok(array.into_pyarray(py).into_any())
+}
+
+/// Samples of both channels as an array of shape (2, n), the lateral ones first.
+pub fn channels<'py, S: AsRef<[f64]>>(
+    py: Python<'py>,
+    force: Force<S>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let force = force.as_ref().map(AsRef::as_ref);
+    let samples = force.lateral.len();
+    array(py, &[2, samples], force.into_array().concat())
+}
+
+/// What NumPy makes of `values` as 64-bit floats in C order: the array itself where it is that already.
+///
+/// Implements: PYT-003, PYT-006.
+pub fn floats<'py>(
+    name: &str,
+    values: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let numpy = values.py().import("numpy")?;
+    let masked = values.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)?;
+    let kind: String = numpy
+        .call_method1("asarray", (values,))
+        .and_then(|array| array.getattr("dtype")?.getattr("kind")?.extract())
+        .unwrap_or_default();
+    if masked || kind.is_empty() || !"fiu".contains(&*kind) {
+        let found = values.get_type().name()?;
+        let message = format!("{name} is a {found}, expected real numbers or an array of them");
+        return Err(PyTypeError::new_err(message));
+    }
+    // C order, aligned, and a plain array.
+    let array = numpy.call_method1("require", (values, "f8", "CAE"))?;
+    let array = array.cast_into::<PyArrayDyn<f64>>()?;
+    array.try_readonly().map_err(refused)
+}
+
+/// The same of the shape (n,).
+pub fn vector<'py>(
+    name: &str,
+    values: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let values = floats(name, values)?;
+    match values.shape() {
+        [_] => Ok(values),
+        shape => Err(wrong_shape(name, shape, "[n]")),
+    }
+}
+
+/// The exception for an array of another shape than expected.
+pub fn wrong_shape(name: &str, shape: &[usize], expected: &str) -> PyErr {
+    let found = format!("{name} has the shape {shape:?}");
+    refused(Refusal::state(found, expected))
+}
+
+/// One record of shape (2, n), or k of them: (k, 2, n).
+pub struct Records<'py> {
+    array: PyReadonlyArrayDyn<'py, f64>,
+    /// k; none for one record.
+    pub count: Option<usize>,
+    /// n.
+    pub samples: usize,
+}
+
+impl<'py> Records<'py> {
+    /// The records in `values`.
+    pub fn new(name: &str, values: &Bound<'py, PyAny>) -> PyResult<Records<'py>> {
+        let array = floats(name, values)?;
+        let (count, samples) = match *array.shape() {
+            [2, samples] => (None, samples),
+            [count, 2, samples] => (Some(count), samples),
+            ref shape => {
+                let expected = "[2, n], lateral and normal samples, or [k, 2, n]";
+                return Err(wrong_shape(name, shape, expected));
+            }
+        };
+        Ok(Records {
+            array,
+            count,
+            samples,
+        })
+    }
+
+    /// The one record in `values`.
+    pub fn one(name: &str, values: &Bound<'py, PyAny>) -> PyResult<Records<'py>> {
+        let records = Records::new(name, values)?;
+        if let Some(count) = records.count {
+            let found = format!("{name} has {count} records");
+            return Err(refused(Refusal::state(found, "one of the shape [2, n]")));
+        }
+        Ok(records)
+    }
+
+    /// All samples, record by record, lateral ones first.
+    pub fn values(&self) -> PyResult<&[f64]> {
+        Ok(self.array.as_slice()?)
+    }
+
+    /// The samples of the only record.
+    pub fn force(&self) -> PyResult<Force<&[f64]>> {
+        Ok(halves(self.values()?))
+    }
+
+    /// Numbers, `each` of every record, as Python gets them: a float, or an array without the axis of the records, for one record.
+    pub fn answer(&self, py: Python<'py>, each: &[usize], values: Vec<f64>) -> PyResult<Py<PyAny>> {
+        let shape: Vec<usize> = self.count.iter().chain(each).copied().collect();
+        Ok(match (&shape[..], &values[..]) {
+            ([], [value]) => value.into_pyobject(py)?.into_any().unbind(),
+            _ => array(py, &shape, values)?.unbind(),
+        })
+    }
+}
+
+/// The two channels of a record.
+pub fn halves(record: &[f64]) -> Force<&[f64]> {
+    let (lateral, normal) = record.split_at(record.len() / 2);
+    Force::new(lateral, normal)
+}
+
+/// The exception for what is refused of the record with a number, if it is one of several.
+pub fn of_record(number: Option<usize>, error: NumericError) -> PyErr {
+    match number {
+        None => refused(error),
+        Some(number) => refused(format!("record {number}: {error}")),
+    }
+}
+
+/// A standard deviation for both channels, or (lateral, normal), N.
+pub fn pair(name: &str, values: &Bound<PyAny>) -> PyResult<Force<f64>> {
+    let values = floats(name, values)?;
+    match *values.as_slice()? {
+        [both] => Ok(Force::new(both, both)),
+        [lateral, normal] => Ok(Force::new(lateral, normal)),
+        _ => {
+            let expected = "a number, or one of each channel";
+            Err(wrong_shape(name, values.shape(), expected))
+        }
+    }
+}
+
+/// A function of numbers, for numbers or for arrays that NumPy broadcasts.
+///
+/// Implements: PYT-003.
+pub fn each<'py, E: Display, const N: usize>(
+    names: [&str; N],
+    arguments: [&Bound<'py, PyAny>; N],
+    function: impl Fn([f64; N]) -> Result<f64, E>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = arguments[0].py();
+    for (name, argument) in names.iter().zip(arguments) {
+        floats(name, argument)?;
+    }
+    let list = PyList::new(py, arguments)?;
+    let broadcast = py.import("numpy")?.getattr("broadcast_arrays")?;
+    let broadcast = broadcast.call1(list.to_tuple()).map_err(refused)?;
+    let broadcast: Vec<Bound<PyAny>> = broadcast.extract()?;
+    let arrays = names.iter().zip(&broadcast);
+    let arrays = arrays.map(|(name, array)| floats(name, array));
+    let arrays = arrays.collect::<PyResult<Vec<_>>>()?;
+    let slices = arrays.iter().map(|array| array.as_slice());
+    let slices = slices.collect::<Result<Vec<_>, _>>()?;
+    let at = |index: usize| function(std::array::from_fn(|argument| slices[argument][index]));
+    let shape = arrays[0].shape();
+    if shape.is_empty() {
+        let value = at(0).map_err(refused)?;
+        return Ok(value.into_pyobject(py)?.into_any());
+    }
+    let named = |index| at(index).map_err(|error| refused(format!("element {index}: {error}")));
+    let values = (0..slices[0].len()).map(named);
+    array(py, shape, values.collect::<PyResult<_>>()?)
+}
+
+/// Anything that serde writes, as dictionaries, lists, numbers and texts.
+pub fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value).map_err(refused)?;
+    py.import("json")?.call_method1("loads", (text,))
+}
+
+/// The JSON of dictionaries, lists, arrays, numbers and texts.
+///
+/// Implements: PYT-006.
+pub fn json(value: &Bound<PyAny>) -> PyResult<String> {
+    let py = value.py();
+    let options = PyDict::new(py);
+    options.set_item("allow_nan", false)?;
+    let arrays = py
+        .import("operator")?
+        .call_method1("methodcaller", ("tolist",))?;
+    options.set_item("default", arrays)?;
+    let text = py
+        .import("json")?
+        .call_method("dumps", (value,), Some(&options));
+    text.map_err(|error| match error.is_instance_of::<PyValueError>(py) {
+        true => refused(error.value(py)),
+        false => error,
+    })?
+    .extract()
+}
+
+/// Calls `progress` with what is done and all there is, and looks for Ctrl-C; whatever is raised ends the work.
+///
+/// Implements: PYT-010, PYT-011.
+pub fn tell(progress: Option<&Py<PyAny>>, done: usize, all: usize) -> PyResult<()> {
+    Python::attach(|py| {
+        py.check_signals()?;
+        match progress {
+            Some(progress) => progress.call1(py, (done, all)).map(|_| ()),
+            None => Ok(()),
+        }
+    })
+}

@@ -1,0 +1,376 @@
+//! The matched filter, Θ of records in white and coloured noise and beside nuisances, the scan, and simulated records.
+
+use numpy::PyUntypedArrayMethods;
+use palpate::detect::coloured::{coloured_scratch, theta_coloured as coloured};
+use palpate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
+use palpate::detect::scan::{Scan, ScanMaximum};
+use palpate::detect::simulate::Simulation;
+use palpate::detect::{self, DetectError, theta_of_record};
+use palpate::force::Force;
+use palpate::stats::random::Generator;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+
+use crate::batch;
+use crate::convert::{
+    Records, array, floats, halves, json, of_record, pair, python, refused, vector, wrong_shape,
+};
+use crate::oracle::asked;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// The generator of a seed; records with and without an inclusion have streams of their own.
+pub fn generator(seed: u64, inclusion: bool) -> Generator {
+    Generator::new(seed, u64::from(inclusion))
+}
+
+/// Room for so many numbers, if there is memory for them.
+pub fn zeros(count: usize) -> PyResult<Vec<f64>> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(count).map_err(refused)?;
+    values.resize(count, 0.0);
+    Ok(values)
+}
+
+/// Both channels of records that are of the template's length.
+fn same_length(records: &Records, samples: usize) -> PyResult<()> {
+    let (what, expected, found) = ("records", samples, records.samples);
+    match expected == found {
+        true => Ok(()),
+        false => Err(refused(DetectError::LengthMismatch {
+            what,
+            expected,
+            found,
+        })),
+    }
+}
+
+/// theta, the log-likelihood ratio of an inclusion, of one record or many, in white noise.
+///
+/// observed: forces in N, of shape (2, n), lateral and normal samples, or (k, 2, n) for k records; f0 and f1: what is expected
+/// without and with the inclusion, in N, of shape (2, n). noise_sd_n: the standard deviation of a sample in N, one for both channels
+/// or (lateral, normal). A float, or an array of shape (k,). A C-ordered array of 64-bit floats is read where it is; do not change
+/// it in another thread meanwhile.
+// Implements: PYT-020, PYT-021.
+#[pyfunction]
+pub fn theta<'py>(
+    py: Python<'py>,
+    observed: Any<'_, 'py>,
+    f0: Any<'_, 'py>,
+    f1: Any<'_, 'py>,
+    noise_sd_n: Any<'_, 'py>,
+) -> PyResult<Py<PyAny>> {
+    let observed = Records::new("observed", observed)?;
+    let (f0, f1) = (Records::one("f0", f0)?, Records::one("f1", f1)?);
+    same_length(&observed, f0.samples)?;
+    let noise_sd = pair("noise_sd_n", noise_sd_n)?;
+    let (values, f0, f1) = (observed.values()?, f0.force()?, f1.force()?);
+    let found = match observed.count {
+        None => theta_of_record(halves(values), f0, f1, noise_sd)
+            .map(|found| vec![found.theta])
+            .map_err(|error| (None, error)),
+        Some(_) => py.detach(|| batch::theta(values, f0, f1, noise_sd)),
+    };
+    let found = found.map_err(|(number, error)| of_record(number, error))?;
+    observed.answer(py, &[], found)
+}
+
+/// What the matched filter says of one record.
+#[pyclass(frozen, get_all, module = "palpate")]
+pub struct Statistic {
+    /// The log-likelihood ratio.
+    theta: f64,
+    /// Y(0) of the paper's equation (5), (lateral, normal), N.
+    y_n: [f64; 2],
+    /// The signal-to-noise ratio.
+    gamma: f64,
+}
+
+impl From<detect::Statistic> for Statistic {
+    fn from(found: detect::Statistic) -> Statistic {
+        Statistic {
+            theta: found.theta,
+            y_n: found.y.into_array(),
+            gamma: found.gamma,
+        }
+    }
+}
+
+#[pymethods]
+impl Statistic {
+    fn __repr__(&self) -> String {
+        let Statistic { theta, y_n, gamma } = self;
+        format!("Statistic(theta={theta:?}, y_n={y_n:?}, gamma={gamma:?})")
+    }
+}
+
+/// theta, y_n and gamma of one record: as theta, all of shape (2, n) in N.
+#[pyfunction]
+pub fn statistic(
+    observed: Any<'_, '_>,
+    f0: Any<'_, '_>,
+    f1: Any<'_, '_>,
+    noise_sd_n: Any<'_, '_>,
+) -> PyResult<Statistic> {
+    let (observed, f0) = (Records::one("observed", observed)?, Records::one("f0", f0)?);
+    let (f1, noise_sd) = (Records::one("f1", f1)?, pair("noise_sd_n", noise_sd_n)?);
+    let found = theta_of_record(observed.force()?, f0.force()?, f1.force()?, noise_sd);
+    Ok(found.map_err(refused)?.into())
+}
+
+/// The matched filter of a template F_1 - F_0 of shape (2, n), lateral and normal samples in N, in white noise of standard
+/// deviation noise_sd_n a sample in N, one for both channels or (lateral, normal).
+#[pyclass(frozen, module = "palpate")]
+pub struct MatchedFilter {
+    template: Vec<f64>,
+    noise_sd: Force<f64>,
+}
+
+impl MatchedFilter {
+    fn filter(&self) -> PyResult<detect::MatchedFilter<'_>> {
+        detect::MatchedFilter::new(halves(&self.template), self.noise_sd).map_err(refused)
+    }
+}
+
+#[pymethods]
+impl MatchedFilter {
+    #[new]
+    fn new(template: Any<'_, '_>, noise_sd_n: Any<'_, '_>) -> PyResult<MatchedFilter> {
+        let template = Records::one("template", template)?.values()?.to_vec();
+        let noise_sd = pair("noise_sd_n", noise_sd_n)?;
+        let filter = MatchedFilter { template, noise_sd };
+        filter.filter()?;
+        Ok(filter)
+    }
+
+    /// The signal-to-noise ratio.
+    #[getter]
+    fn gamma(&self) -> PyResult<f64> {
+        Ok(self.filter()?.gamma())
+    }
+
+    /// The root mean square of the template, (lateral, normal), N.
+    #[getter]
+    fn b_n(&self) -> PyResult<[f64; 2]> {
+        Ok(self.filter()?.b().into_array())
+    }
+
+    /// The standard deviation of y_n, (lateral, normal), N.
+    #[getter]
+    fn sigma_n(&self) -> PyResult<[f64; 2]> {
+        Ok(self.filter()?.sigma().into_array())
+    }
+
+    /// theta, y_n and gamma of one residual F_p - F_0 of shape (2, n), N.
+    fn statistic(&self, residual: Any<'_, '_>) -> PyResult<Statistic> {
+        let residual = Records::one("residual", residual)?;
+        let found = self.filter()?.statistic(residual.force()?);
+        Ok(found.map_err(refused)?.into())
+    }
+
+    /// theta of residuals F_p - F_0 in N of shape (2, n) or (k, 2, n): a float, or an array of shape (k,).
+    fn theta<'py>(&self, py: Python<'py>, residual: Any<'_, 'py>) -> PyResult<Py<PyAny>> {
+        let (residual, filter) = (Records::new("residual", residual)?, self.filter()?);
+        same_length(&residual, filter.samples())?;
+        let (values, count) = (residual.values()?, residual.count);
+        let theta = |(number, record)| match filter.statistic(halves(record)) {
+            Ok(found) => Ok(found.theta),
+            Err(error) => Err(of_record(count.map(|_| number), error)),
+        };
+        let records = values.par_chunks_exact(2 * filter.samples()).enumerate();
+        let found: PyResult<Vec<f64>> = py.detach(|| records.map(theta).collect());
+        residual.answer(py, &[], found?)
+    }
+}
+
+/// (theta, gamma) of a residual F_p - F_0 and a template F_1 - F_0, both of shape (2, n) in N, in noise of any covariance, of shape
+/// (2 n, 2 n) in N**2: the n lateral samples first, then the normal ones.
+#[pyfunction]
+pub fn theta_coloured(
+    py: Python<'_>,
+    residual: Any<'_, '_>,
+    template: Any<'_, '_>,
+    covariance: Any<'_, '_>,
+) -> PyResult<(f64, f64)> {
+    let residual = Records::one("residual", residual)?;
+    let template = Records::one("template", template)?;
+    let covariance = floats("covariance", covariance)?;
+    let order = 2 * template.samples;
+    if covariance.shape() != [order, order] {
+        let expected = format!("[{order}, {order}]");
+        return Err(wrong_shape("covariance", covariance.shape(), &expected));
+    }
+    let (residual, template) = (residual.values()?, template.values()?);
+    let covariance = covariance.as_slice()?;
+    let mut scratch = zeros(coloured_scratch(order))?;
+    let found = py.detach(|| coloured(residual, template, covariance, &mut scratch));
+    let found = found.map_err(refused)?;
+    Ok((found.theta, found.gamma))
+}
+
+/// What a record says beside signals of unknown amplitude, as a dictionary: t, gamma, gamma_nominal, residual, theta, false_alarm,
+/// miss, rank, degrees.
+///
+/// residual and template: arrays of shape (m,), all samples of both channels over the standard deviation of their noise (no unit);
+/// nuisances: an array of shape (p, m). level: "known", or "unknown" for noise whose size the record tells. bias: what a nuisance
+/// that is known within bounds may add to t; eta: the threshold of theta, in its unit.
+#[pyfunction]
+#[pyo3(signature = (residual, template, nuisances, level="known", bias=0.0, eta=0.0))]
+pub fn theta_nuisances<'py>(
+    py: Python<'py>,
+    residual: Any<'_, 'py>,
+    template: Any<'_, 'py>,
+    nuisances: Any<'_, 'py>,
+    level: &str,
+    bias: f64,
+    eta: f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let mut residual = vector("residual", residual)?.as_slice()?.to_vec();
+    let mut template = vector("template", template)?.as_slice()?.to_vec();
+    let signals = floats("nuisances", nuisances)?;
+    let samples = template.len();
+    if !matches!(*signals.shape(), [0] | [0, _]) && signals.shape().get(1..) != Some(&[samples]) {
+        let expected = format!("[p, {samples}]");
+        return Err(wrong_shape("nuisances", signals.shape(), &expected));
+    }
+    let level = match level {
+        "known" => NoiseLevel::Known,
+        "unknown" => NoiseLevel::Unknown,
+        level => {
+            let message = format!("level is {level:?}, expected known or unknown");
+            return Err(refused(message));
+        }
+    };
+    let mut signals = signals.as_slice()?.to_vec();
+    let mut judge = || {
+        let nuisances = Nuisances::new(&mut signals, samples)?;
+        let detector = SubspaceDetector::new(nuisances, &mut template)?;
+        let found = detector.statistic(&mut residual)?;
+        let test = found.test(level, bias)?;
+        let rates = test.rates(test.bayes_threshold(eta)?)?;
+        let finite = detect::decide(test.theta(), 0.0);
+        finite.map(|_| {
+            serde_json::json!({
+                "t": test.t, "gamma": test.gamma, "gamma_nominal": detector.gamma_nominal(),
+                "residual": found.residual, "theta": test.theta(), "false_alarm": rates.false_alarm,
+                "miss": rates.miss, "rank": nuisances.rank(), "degrees": found.degrees,
+            })
+        })
+    };
+    python(py, &judge().map_err(refused)?)
+}
+
+/// theta of each of several signals beside nuisances, and what follows from them, as a dictionary: theta, posterior, theta_mixture,
+/// theta_max, hypothesis, posterior_h1.
+///
+/// residual: shape (m,); templates: (q, m); nuisances: (p, m), all over the standard deviation of their noise (no unit); level:
+/// "known" or "unknown"; prior: shape (q,), the probability of each signal given an inclusion; prior_h1: that of an inclusion.
+#[pyfunction]
+#[pyo3(signature = (residual, templates, nuisances, prior, level="known", prior_h1=0.5))]
+pub fn bank_posterior<'py>(
+    py: Python<'py>,
+    residual: Any<'_, 'py>,
+    templates: Any<'_, 'py>,
+    nuisances: Any<'_, 'py>,
+    prior: Any<'_, 'py>,
+    level: &str,
+    prior_h1: f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let arguments = PyDict::new(py);
+    arguments.set_item("residual", residual)?;
+    arguments.set_item("templates", templates)?;
+    arguments.set_item("nuisances", nuisances)?;
+    arguments.set_item("prior", prior)?;
+    arguments.set_item("level", level)?;
+    arguments.set_item("prior_h1", prior_h1)?;
+    asked(py, "bank_posterior", &json(&arguments)?)
+}
+
+/// theta at every place of a template within a record, and the largest, as a dictionary.
+///
+/// residual: F_p - F_0 in N, of shape (2, n) or (k, 2, n) for k records; template: of shape (2, m), m <= n, N; noise_sd_n: in N, one
+/// for both channels or (lateral, normal). theta: shape (n - m + 1,), with the template's first sample on sample 0, 1, ... of the
+/// record; max_theta; gamma there; shift: that sample; refined_shift: the vertex of a parabola, in samples. For k records each
+/// has k as its first axis.
+// Implements: PYT-022.
+#[pyfunction]
+pub fn scan<'py>(
+    py: Python<'py>,
+    residual: Any<'_, 'py>,
+    template: Any<'_, 'py>,
+    noise_sd_n: Any<'_, 'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let residual = Records::new("residual", residual)?;
+    let template = Records::one("template", template)?;
+    let noise_sd = pair("noise_sd_n", noise_sd_n)?;
+    let (samples, count) = (residual.samples, residual.count);
+    let scan = Scan::new(samples, template.force()?, noise_sd).map_err(refused)?;
+    let shifts = samples - template.samples + 1;
+    let mut theta = zeros(count.unwrap_or(1).saturating_mul(shifts))?;
+    let records = residual.values()?.par_chunks_exact(2 * samples);
+    let of_one = |(record, theta): (&[f64], &mut [f64])| {
+        scan.theta(halves(record), 0, theta)?;
+        scan.maximum(halves(record), scan.full_shifts())
+    };
+    let found = py.detach(|| {
+        let all = records.zip(theta.par_chunks_exact_mut(shifts)).enumerate();
+        let all = all.map(|(number, one)| {
+            of_one(one).map_err(|error| of_record(count.map(|_| number), error))
+        });
+        all.collect::<PyResult<Vec<ScanMaximum>>>()
+    })?;
+    let answer = PyDict::new(py);
+    let each = |of: fn(&ScanMaximum) -> f64| found.iter().map(of).collect::<Vec<f64>>();
+    answer.set_item("theta", residual.answer(py, &[shifts], theta)?)?;
+    let maximum = each(|found| found.theta);
+    answer.set_item("max_theta", residual.answer(py, &[], maximum)?)?;
+    let gamma = each(|found| found.gamma);
+    answer.set_item("gamma", residual.answer(py, &[], gamma)?)?;
+    let refined = each(|found| found.refined_shift);
+    answer.set_item("refined_shift", residual.answer(py, &[], refined)?)?;
+    let shift = array(py, &[found.len()], each(|found| found.shift as f64))?;
+    let shift = shift.call_method1("astype", ("int64",))?;
+    match count {
+        None => answer.set_item("shift", shift.get_item(0)?)?,
+        Some(_) => answer.set_item("shift", shift)?,
+    }
+    Ok(answer)
+}
+
+/// theta of simulated records: F_0 or F_1 and white noise, judged by the matched filter of F_1 - F_0.
+///
+/// f0 and f1: forces in N, of shape (2, n); noise_sd_n: in N, one for both channels or (lateral, normal). An array of shape (trials,),
+/// the same for the same seed, whatever the number of threads.
+// Implements: PYT-022.
+#[pyfunction]
+#[pyo3(signature = (f0, f1, noise_sd_n, inclusion, trials, seed=1999))]
+pub fn simulate_theta<'py>(
+    py: Python<'py>,
+    f0: Any<'_, 'py>,
+    f1: Any<'_, 'py>,
+    noise_sd_n: Any<'_, 'py>,
+    inclusion: bool,
+    trials: usize,
+    seed: u64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (f0, f1) = (Records::one("f0", f0)?, Records::one("f1", f1)?);
+    same_length(&f1, f0.samples)?;
+    let pairs = f1.values()?.iter().zip(f0.values()?);
+    let template: Vec<f64> = pairs.map(|(f1, f0)| f1 - f0).collect();
+    let (noise_sd, generator) = (pair("noise_sd_n", noise_sd_n)?, generator(seed, inclusion));
+    let force = if inclusion { f1.force()? } else { f0.force()? };
+    let simulation = Simulation::new(f0.force()?, halves(&template), noise_sd, generator);
+    let (simulation, length) = (simulation.map_err(refused)?, template.len());
+    let mut theta = zeros(trials)?;
+    let trial = |residual: &mut Vec<f64>, (trial, theta): (usize, &mut f64)| {
+        *theta = simulation.trial(trial as u64, force, residual)?.theta;
+        Ok(())
+    };
+    let done: Result<(), DetectError> = py.detach(|| {
+        let places = theta.par_iter_mut().enumerate();
+        places.try_for_each_init(|| vec![0.0; length], trial)
+    });
+    done.map_err(refused)?;
+    array(py, &[trials], theta)
+}

@@ -1,0 +1,244 @@
+//! Phantoms, and the forces on the probe over them.
+
+use std::cell::RefCell;
+use std::path::PathBuf;
+
+use palpate::fem::{Contact, FemError, Model, Pose};
+use palpate::phantom;
+use palpate::refusal::Refusal;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use toml::{Table, Value};
+
+use crate::convert::{in_unit, json, list, python, refused, si, tell};
+use crate::map::ForceMap;
+
+/// The contact law of a name.
+pub fn contact(name: &str) -> PyResult<Contact> {
+    let known = [Contact::DeformedNormal, Contact::VerticalGap];
+    let found = known.into_iter().find(|contact| contact.name() == name);
+    let expected = known.map(Contact::name).join(" or ");
+    found.ok_or_else(|| refused(Refusal::value("contact", format!("{name:?}"), expected)))
+}
+
+/// A force on the probe, N.
+#[pyclass(frozen, get_all, module = "palpate")]
+pub struct ProbeForce {
+    /// Along +x, N.
+    lateral_n: f64,
+    /// Out of the gel, N.
+    normal_n: f64,
+}
+
+#[pymethods]
+impl ProbeForce {
+    fn __repr__(&self) -> String {
+        let ProbeForce {
+            lateral_n,
+            normal_n,
+        } = self;
+        format!("ProbeForce(lateral_n={lateral_n:?}, normal_n={normal_n:?})")
+    }
+}
+
+/// A phantom: layers of gel in a well, inclusions in them or none, and the probe. Phantom(name) is one of the paper's five: "none",
+/// "2.6", "4.6", "6.6", "8.6", the depth of the inclusion in mm.
+///
+/// Keywords change numbers of it, by the names of the phantom file (mm, kPa) behind that of their table: well_width_mm=40,
+/// inclusion_depth_mm=5, layer_1_youngs_modulus_kpa=8, where layers and inclusions count from 0 and the only one needs no number.
+// Implements: PYT-007.
+#[pyclass(frozen, eq, module = "palpate")]
+#[derive(PartialEq)]
+pub struct Phantom(pub phantom::Phantom);
+
+/// The phantom of the tables of a phantom file.
+fn of_tables(tables: &Table) -> PyResult<Phantom> {
+    let text = toml::to_string(tables).map_err(refused)?;
+    // No line: nobody has the text.
+    let phantom = phantom::Phantom::from_toml(&text, "").map_err(|refusal| Refusal {
+        line: None,
+        ..refusal
+    });
+    Ok(Phantom(phantom.map_err(refused)?))
+}
+
+/// Sets the number or text that an edit names.
+fn edit(tables: &mut Table, name: &str, value: Value) -> PyResult<()> {
+    let (table, key) = name.split_once('_').unwrap_or((name, ""));
+    let place = match tables.get_mut(table) {
+        Some(Value::Table(place)) if !key.is_empty() => Some((place, key)),
+        Some(Value::Array(entries)) if !key.is_empty() => {
+            let numbered = key
+                .split_once('_')
+                .and_then(|(number, key)| Some((number.parse::<usize>().ok()?, key)));
+            let many = entries.len();
+            let (number, key) = match numbered {
+                None if many == 1 => (0, key),
+                Some((number, key)) if number < many => (number, key),
+                _ => {
+                    let found = format!("{name}: the phantom has {many} of these");
+                    let expected = format!("a number from 0, as in {table}_0_{key}");
+                    return Err(refused(Refusal::state(found, expected)));
+                }
+            };
+            let entry = entries[number].as_table_mut();
+            entry.map(|entry| (entry, key))
+        }
+        _ => None,
+    };
+    match place {
+        Some((place, key)) => place.insert(key.into(), value),
+        None => tables.insert(name.into(), value),
+    };
+    Ok(())
+}
+
+impl Phantom {
+    fn tables(&self) -> PyResult<Table> {
+        let text = self.0.to_toml().map_err(refused)?;
+        text.parse().map_err(refused)
+    }
+
+    /// Meshed and factorised; lengths in mm.
+    fn model(&self, mesh_mm: f64, contact_name: &str) -> PyResult<Model> {
+        let (size, contact) = (si("mesh_mm", mesh_mm, -3)?, contact(contact_name)?);
+        Model::new(&self.0, size, contact).map_err(refused)
+    }
+}
+
+#[pymethods]
+impl Phantom {
+    #[new]
+    #[pyo3(signature = (name, /, **edits))]
+    fn new(name: &str, edits: Option<&Bound<PyDict>>) -> PyResult<Phantom> {
+        Phantom(phantom::Phantom::builtin(name).map_err(refused)?).edited(edits)
+    }
+
+    /// The phantom in the TOML text or file (a str with a line break is a text, else a path), in mm and kPa.
+    #[staticmethod]
+    fn from_toml(text_or_path: &Bound<PyAny>) -> PyResult<Phantom> {
+        let text = text_or_path.extract::<String>().ok();
+        let phantom = match text.filter(|text| text.contains('\n')) {
+            Some(text) => phantom::Phantom::from_toml(&text, ""),
+            None => phantom::Phantom::read(&text_or_path.extract::<PathBuf>()?),
+        };
+        Ok(Phantom(phantom.map_err(refused)?))
+    }
+
+    /// The phantom of a dictionary with the keys of a phantom file, in mm and kPa.
+    #[staticmethod]
+    fn from_dict(tables: &Bound<PyDict>) -> PyResult<Phantom> {
+        of_tables(&serde_json::from_str(&json(tables)?).map_err(refused)?)
+    }
+
+    /// A copy with other numbers, named as in Phantom(name, ...), in mm and kPa.
+    #[pyo3(signature = (**edits))]
+    fn edited(&self, edits: Option<&Bound<PyDict>>) -> PyResult<Phantom> {
+        let Some(edits) = edits else {
+            return Ok(Phantom(self.0.clone()));
+        };
+        let mut tables = self.tables()?;
+        let edits: Table = serde_json::from_str(&json(edits)?).map_err(refused)?;
+        for (name, value) in edits {
+            edit(&mut tables, &name, value)?;
+        }
+        of_tables(&tables)
+    }
+
+    /// The text of a phantom file, in mm and kPa.
+    fn to_toml(&self) -> PyResult<String> {
+        self.0.to_toml().map_err(refused)
+    }
+
+    /// A dictionary with the keys of a phantom file, in mm and kPa.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        python(py, &self.tables()?)
+    }
+
+    /// The name of the phantom.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// The height of the outer surface above the floor, mm.
+    #[getter]
+    fn height_mm(&self) -> f64 {
+        in_unit(self.0.height(), 3)
+    }
+
+    /// The depth of the highest point of all inclusions, mm; None without any.
+    #[getter]
+    fn inclusion_depth_mm(&self) -> Option<f64> {
+        Some(in_unit(self.0.inclusion_depth()?, 3))
+    }
+
+    /// The force on the probe at one pose, in N; lengths in mm. mesh_mm=0.5 gives the element sizes of spec/fem.md; contact:
+    /// "deformed-normal" or "vertical-gap".
+    // Implements: PYT-010.
+    #[pyo3(signature = (depth_mm, lateral_mm=0.0, mesh_mm=0.5, contact="deformed-normal"))]
+    fn solve(
+        &self,
+        py: Python<'_>,
+        depth_mm: f64,
+        lateral_mm: f64,
+        mesh_mm: f64,
+        contact: &str,
+    ) -> PyResult<ProbeForce> {
+        let depth = si("depth_mm", depth_mm, -3)?;
+        let lateral = si("lateral_mm", lateral_mm, -3)?;
+        // Before the model is made: a pose that cannot be is cheap to refuse.
+        self.0.check_pose(depth, lateral).map_err(refused)?;
+        py.detach(|| {
+            let model = self.model(mesh_mm, contact)?;
+            let solution = model.solve(Pose { depth, lateral });
+            let force = solution.map_err(refused)?.force;
+            Ok(ProbeForce {
+                lateral_n: force.lateral,
+                normal_n: force.normal,
+            })
+        })
+    }
+
+    /// The force map over depths_mm, shape (m,), and laterals_mm, shape (n,), both increasing, in mm; mesh_mm and contact as of
+    /// solve.
+    ///
+    /// progress is called with the numbers of poses that are solved, and of all; what it raises, such as KeyboardInterrupt, stops
+    /// the solve and is raised here.
+    // Implements: PYT-010, PYT-011, PYT-012.
+    #[pyo3(signature = (depths_mm, laterals_mm, mesh_mm=0.5, contact="deformed-normal", progress=None))]
+    fn map(
+        &self,
+        py: Python<'_>,
+        depths_mm: &Bound<PyAny>,
+        laterals_mm: &Bound<PyAny>,
+        mesh_mm: f64,
+        contact: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<ForceMap> {
+        let depths = list("depths_mm", depths_mm, -3)?;
+        let laterals = list("laterals_mm", laterals_mm, -3)?;
+        py.detach(|| {
+            let model = self.model(mesh_mm, contact)?;
+            let all = depths.len() * model.solved_laterals(&laterals).len();
+            // Poses that are solved, and what was raised.
+            let state = RefCell::new((0, None));
+            let solved = |poses| {
+                let (done, raised) = &mut *state.borrow_mut();
+                *done += poses;
+                *raised = tell(progress.as_ref(), *done, all).err();
+                raised.is_none()
+            };
+            let map = model.map_while(&depths, &laterals, &solved);
+            map.map(ForceMap).map_err(|error| match error {
+                FemError::Stopped => state.into_inner().1.unwrap_or_else(|| refused(error)),
+                error => refused(error),
+            })
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let inclusions = self.0.inclusions.len();
+        format!("<Phantom {:?}, {inclusions} inclusions>", self.0.name)
+    }
+}

@@ -1,0 +1,110 @@
+"""Banks and counts of answers. Checks PYT-002, PYT-006, PYT-011."""
+
+import json
+import math
+
+import numpy as np
+import palpate
+import pytest
+
+
+@pytest.fixture(scope="module")
+def bank():
+    return palpate.Bank.build(
+        palpate.Phantom("6.6"), 4, np.arange(-8, 9.0), offsets_mm=[-4, -2, 0, 2, 4], depths_mm=[4.6, 5.6, 6.6], mesh_mm=1
+    )
+
+
+def noisy(forces):
+    return forces + 0.05 * np.random.default_rng(1).standard_normal(forces.shape)
+
+
+def test_a_bank_is_built_written_and_read(bank, tmp_path):
+    assert (bank.probe_depth_mm, len(bank.maps)) == (4, 15)
+    assert bank.axes == {
+        "position_mm": [-4, -2, 0, 2, 4],
+        "depth_mm": [4.6, 5.6, 6.6],
+        "diameter_mm": [6.4],
+        "youngs_modulus_kpa": [1200],
+    }
+    bank.write(tmp_path / "bank.json")
+    again = palpate.Bank.read(tmp_path / "bank.json")
+    assert again.maps == bank.maps and again.reference == bank.reference
+    assert palpate.Bank(bank.reference, bank.maps[::-1]).maps == bank.maps
+    with pytest.raises(palpate.Refused, match="maps"):
+        palpate.Bank(bank.reference, bank.maps[:-1])
+    with pytest.raises(palpate.Refused):
+        palpate.Bank.read(tmp_path / "nowhere.json")
+
+
+def test_an_inclusion_is_found_where_it_is(bank):
+    x = np.linspace(-8, 8, 161)
+    truth = palpate.Phantom("6.6", inclusion_centre_x_mm=1, inclusion_depth_mm=5.2)
+    forces = truth.map([4], np.arange(-8, 9.0), mesh_mm=1).sweep(4, x)
+    found = bank.locate(x, noisy(forces), noise_sd_n=0.05, unknown=["offset"], white=True)
+    assert found["inclusion"] is True and found["posterior_h1"] > 0.999 and not found["causes"]
+    for name, value in (("position_mm", 1), ("depth_mm", 5.2)):
+        low, high = found["interval_95"][name]
+        # A known seed; the interval holds the truth, and is narrower than the bank.
+        assert low < value < high and high - low < 1.5, (name, low, high)
+        assert low < found["mean"][name] < high
+    places, probabilities = found["places"], found["probabilities"]
+    assert places.shape == (len(probabilities), 4) and math.isclose(probabilities.sum(), 1, rel_tol=1e-9)
+    assert math.isclose(places[:, 0] @ probabilities, found["mean"]["position_mm"], rel_tol=1e-9)
+    nothing = bank.locate(x, noisy(bank.reference.sweep(4, x)), noise_sd_n=0.05, unknown=[], white=True)
+    assert nothing["inclusion"] is False and nothing["posterior_h1"] < 0.01
+    # Another unit: no decision, and the cause.
+    wrong = bank.locate(x, 1000 * forces, noise_sd_n=0.05, white=True)
+    assert wrong["inclusion"] is None and "force_unit" in wrong["causes"]
+
+
+def test_questions_that_make_no_sense_are_refused(bank):
+    x = bank.reference.laterals_mm
+    forces = bank.reference.row(4)
+    nan = forces.copy()
+    nan[1, 3] = math.nan
+    for arguments, options in (
+        ((x, nan), {}),
+        ((x[:-1], forces), {}),
+        ((x + 1, forces), {}),
+        ((x, forces), {"unknown": ["colour"]}),
+        ((x, forces), {"max_miss": 0.1, "max_false_alarm": 0.1}),
+        ((x, forces), {"max_miss": math.nan}),
+        ((x, forces), {"prior": [1.0]}),
+        ((x, forces), {"prior": [math.nan] * 15}),
+        ((x, forces), {"prior_h1": 1.5}),
+        ((x, forces), {"noise_sd_n": -1}),
+        ((x, forces), {"noise_sd_n": math.nan}),
+    ):
+        with pytest.raises(palpate.Refused):
+            bank.locate(*arguments, **options)
+    phantom = palpate.Phantom("6.6")
+    for options in ({"offsets_mm": [math.nan]}, {"depths_mm": [-1]}, {"diameters_mm": []}, {"mesh_mm": 0}):
+        with pytest.raises(palpate.Refused):
+            palpate.Bank.build(phantom, 4, [-4, 0, 4], **options)
+    with pytest.raises(palpate.Refused, match="0 inclusions"):
+        palpate.Bank.build(palpate.Phantom("none"), 4, [0])
+
+
+def test_table_1(tmp_path):
+    analysis = palpate.analyse_answers()
+    playback = analysis["conditions"][1]
+    # The paper: 84 % of the answers to the 6.6 mm inclusion are right.
+    pooled = playback["inclusions"][2]["pooled"]
+    assert (pooled["correct"], pooled["trials"]) == (253, 300)
+    assert pooled["gamma"]["gamma"] == palpate.gamma_from_two_afc(253 / 300)
+    correct = [[rate["correct"] for rate in subject["rates"]] for subject in playback["subjects"]]
+    counts = palpate.count_analysis(np.array(correct), 30)
+    assert counts["pooled"][2] == 253 and counts["df"] == 9
+    assert analysis["noise_levels"]["levels"]
+    path = tmp_path / "own.csv"
+    path.write_text("subject,condition,trials,6.6\na,mine,10,9\nb,mine,10,5\n")
+    own = palpate.analyse_answers(path)
+    assert "noise_levels" not in own and own["conditions"][0]["inclusions"][0]["pooled"]["rate"] == 0.7
+    path.write_text("subject,condition,trials,6.6\na,mine,10,11\n")
+    with pytest.raises(palpate.Refused, match="own.csv:2: 6.6"):
+        palpate.analyse_answers(path)
+    for wrong in ([[31]], [[1.5]], [[math.nan]], []):
+        with pytest.raises(palpate.Refused):
+            palpate.count_analysis(wrong, 30)
+    json.dumps(analysis)

@@ -1,0 +1,94 @@
+"""Names, signatures, docstrings, and what is in the wheel. Checks PYT-001, PYT-009, PYT-013."""
+
+import ast
+import importlib.metadata
+import inspect
+import re
+from pathlib import Path
+
+import palpate
+
+STUBS = Path(palpate.__file__).with_name("__init__.pyi")
+
+
+def public(owner):
+    return {name: getattr(owner, name) for name in dir(owner) if not name.startswith("_")}
+
+
+def parameters(function):
+    found = inspect.signature(function).parameters
+    return [(p.name, p.default is not p.empty) for p in found.values() if p.kind is not p.VAR_KEYWORD]
+
+
+def stubbed(node):
+    names = [argument.arg for argument in node.args.posonlyargs + node.args.args]
+    first = len(names) - len(node.args.defaults)
+    return [(name, at >= first) for at, name in enumerate(names)]
+
+
+def test_the_stubs_have_the_names_and_signatures_of_the_module():
+    tree = ast.parse(STUBS.read_text())
+    defined = {node.name: node for node in tree.body if hasattr(node, "name")}
+    module = {name: value for name, value in public(palpate).items() if not inspect.ismodule(value)}
+    assert set(defined) | {"build"} == set(module)
+    for name, node in defined.items():
+        if isinstance(node, ast.FunctionDef):
+            assert stubbed(node) == parameters(module[name]), name
+            continue
+        methods = {inner.name: inner for inner in node.body if isinstance(inner, ast.FunctionDef)}
+        plain = {inner for inner in methods if not inner.startswith("__")}
+        members = set(public(module[name])) - set(public(ValueError)) if name == "Refused" else set(public(module[name]))
+        assert plain == members, name
+        for inner in plain:
+            if not any(getattr(mark, "id", "") == "property" for mark in methods[inner].decorator_list):
+                assert stubbed(methods[inner]) == parameters(getattr(module[name], inner)), (name, inner)
+        if "__new__" in methods:
+            assert stubbed(methods["__new__"])[1:] == parameters(module[name]), name
+
+
+def documented():
+    for name, value in public(palpate).items():
+        if inspect.isclass(value) or callable(value):
+            yield name, value
+        if inspect.isclass(value) and value is not palpate.Refused:
+            for inner, member in public(value).items():
+                yield f"{name}.{inner}", member
+
+
+def test_every_name_says_what_it_is_with_shape_and_unit():
+    no_unit = {
+        # Texts, phantoms, maps and errors: no numbers.
+        "Refused", "Phantom.from_toml", "Phantom.name", "ForceMap.read", "ForceMap.phantom", "Bank", "Bank.read", "Bank.write",
+        "Bank.reference", "Bank.maps", "ServoState", "ServoState.mode", "ServoState.fault", "ServoState.missed",
+        # Ratios and probabilities.
+        "Statistic", "Statistic.theta", "Statistic.gamma", "MatchedFilter.gamma", "ask",
+    }
+    units = r"\b(mm|kPa|N|N/m|Pa|SI|m|unit|units|newtons)\b|no unit|\bPr\(|\brates?\b|share|whether|eta|area|gamma"
+    count = 0
+    for name, value in documented():
+        text = value.__doc__
+        assert text and len(text) > 10, name
+        assert name in no_unit or re.search(units, text, re.IGNORECASE), name
+        assert "Implements" not in text, name
+        count += 1
+    assert count > 70
+
+
+def test_every_function_of_arrays_says_their_shape():
+    count = 0
+    for owner in ast.walk(ast.parse(STUBS.read_text())):
+        for node in [inner for inner in getattr(owner, "body", []) if isinstance(inner, ast.FunctionDef)]:
+            takes_arrays = any(ast.unparse(a.annotation or a).startswith("ArrayLike") for a in node.args.args)
+            holder = palpate if isinstance(owner, ast.Module) else getattr(palpate, owner.name)
+            of = holder if node.name == "__new__" else getattr(holder, node.name)
+            if takes_arrays:
+                assert re.search(r"shape|arrays", of.__doc__, re.IGNORECASE), node.name
+                count += 1
+    assert count > 25
+
+
+def test_one_wheel_for_all_pythons():
+    wheel = importlib.metadata.distribution("palpate").read_text("WHEEL")
+    assert "Tag: cp310-abi3-" in wheel
+    assert importlib.metadata.version("palpate") == palpate.__version__ == palpate.build["version"]
+    assert STUBS.with_name("py.typed").exists()

@@ -1,0 +1,236 @@
+"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-008, PYT-010, PYT-011, PYT-012."""
+
+import _thread
+import json
+import math
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import palpate
+import pytest
+
+ROOT = Path(__file__).parents[3]
+COARSE = {"mesh_mm": 2}
+
+
+@pytest.fixture(scope="module")
+def phantom():
+    return palpate.Phantom("6.6")
+
+
+@pytest.fixture(scope="module")
+def force_map(phantom):
+    return phantom.map([1, 2, 4], [-6, -3, 0, 3, 6], **COARSE)
+
+
+def test_the_force_of_a_pose_is_that_of_the_oracle(phantom):
+    force = phantom.solve(depth_mm=4, lateral_mm=3)
+    answer = palpate.ask("probe_force", phantom="6.6", depth_m=0.004, lateral_m=0.003)
+    assert (force.normal_n, force.lateral_n) == (answer["normal_force_n"], answer["lateral_force_n"])
+    # Away from the disc, and out of the gel.
+    assert force.lateral_n > 0.01 and force.normal_n > 1
+
+
+def test_lengths_are_read_as_the_decimals_that_they_are(tmp_path):
+    # 1.1 mm times 0.001 is 0.0011000000000000001.
+    depths = [k / 10 for k in range(1, 100)]
+    forces = np.zeros((99, 1))
+    force_map = palpate.ForceMap(depths, [0.3], forces, forces)
+    force_map.write(tmp_path / "map.json")
+    written = json.loads((tmp_path / "map.json").read_text())["depths_m"]
+    assert written == [float(f"{k}e-4") for k in range(1, 100)] != [0.001 * depth for depth in depths]
+    assert force_map.depths_mm.tolist() == depths
+    assert palpate.Phantom("6.6", inclusion_depth_mm=5.3).inclusion_depth_mm == 5.3
+
+
+def test_phantoms_come_from_names_texts_files_and_dictionaries(phantom, tmp_path):
+    text = phantom.to_toml()
+    path = tmp_path / "a.toml"
+    path.write_text(text)
+    tables = phantom.to_dict()
+    for other in (
+        palpate.Phantom.from_toml(text),
+        palpate.Phantom.from_toml(path),
+        palpate.Phantom.from_toml(str(path)),
+        palpate.Phantom.from_dict(tables),
+    ):
+        assert other == phantom
+    assert tables["probe"] == {"radius_mm": 6.5, "length_mm": 30.0}
+    tables["inclusion"][0]["centre_x_mm"] = np.float64(2.5)
+    assert palpate.Phantom.from_dict(tables) == phantom.edited(inclusion_centre_x_mm=2.5) != phantom
+    layers = palpate.Phantom.from_toml(ROOT / "docs/phantoms/layers.toml")
+    assert palpate.Phantom.from_dict(layers.to_dict()) == layers
+
+
+def test_keywords_change_numbers(phantom):
+    other = palpate.Phantom("6.6", layer_1_youngs_modulus_kpa=8, probe_radius_mm=5, name="mine", inclusion_0_diameter_mm=4)
+    tables = other.to_dict()
+    assert (tables["layer"][1]["youngs_modulus_kpa"], tables["probe"]["radius_mm"]) == (8, 5)
+    assert (other.name, tables["inclusion"][0]["diameter_mm"]) == ("mine", 4)
+    for edits, message in [
+        ({"layer_thickness_mm": 3}, "layer_thickness_mm: the phantom has 2 of these, expected a number from 0, as in layer_0_thickness_mm"),
+        ({"layer_2_thickness_mm": 3}, "has 2 of these"),
+        ({"probe_radius_m": 3}, "probe.radius_m"),
+        ({"colour": "red"}, "colour"),
+        ({"probe_radius_mm": "5"}, "probe.radius_mm"),
+        ({"probe_radius_mm": -5}, "probe.radius_mm = -5"),
+        ({"probe_radius_mm": math.nan}, "not JSON compliant"),
+        ({"inclusion_depth_mm": None}, ""),
+        ({"inclusion_depth_mm": 30}, "inclusion[0].depth_mm = 30"),
+    ]:
+        with pytest.raises(palpate.Refused) as error:
+            phantom.edited(**edits)
+        assert message in str(error.value) and "\n" not in str(error.value)
+
+
+def test_refusals_have_the_words_of_the_program(phantom, tmp_path):
+    with pytest.raises(palpate.Refused, match='^no phantom named "7" is built in; built in are none, 2.6, 4.6, 6.6, 8.6$'):
+        palpate.Phantom("7")
+    for call in (
+        lambda: phantom.solve(depth_mm=-1),
+        lambda: phantom.solve(depth_mm=math.nan),
+        lambda: phantom.solve(depth_mm=math.inf),
+        lambda: phantom.solve(depth_mm=1e308),
+        lambda: phantom.solve(depth_mm=4, lateral_mm=15),
+        lambda: phantom.solve(depth_mm=4, mesh_mm=0),
+        lambda: phantom.solve(depth_mm=4, mesh_mm=math.nan),
+        lambda: phantom.solve(depth_mm=4, mesh_mm=1e-6),
+        lambda: phantom.solve(depth_mm=4, contact="glued"),
+        lambda: phantom.map([], [0], **COARSE),
+        lambda: phantom.map([1], [], **COARSE),
+        lambda: phantom.map([2, 1], [0], **COARSE),
+        lambda: phantom.map([1], [0, math.nan], **COARSE),
+        lambda: palpate.Phantom.from_toml("a = \n"),
+        lambda: palpate.Phantom.from_toml(tmp_path / "nowhere.toml"),
+        lambda: palpate.Phantom.from_dict({}),
+        lambda: palpate.Phantom.from_dict({"name": float("inf")}),
+        lambda: palpate.ForceMap.read(tmp_path / "nowhere.json"),
+        lambda: palpate.ForceMap([1], [0], [[math.nan]], [[1]]),
+        lambda: palpate.ForceMap([1], [0], [[1, 2]], [[1]]),
+        lambda: palpate.ForceMap([1], [0], [1], [1]),
+        lambda: palpate.ask("no such op"),
+        lambda: palpate.ask("two_afc", gamma=math.nan),
+    ):
+        with pytest.raises(palpate.Refused) as error:
+            call()
+        assert isinstance(error.value, ValueError)
+        text = str(error.value)
+        assert text and "\n" not in text
+
+
+def test_maps_are_written_and_read(force_map, phantom, tmp_path):
+    for name in ("map.json", "map.csv"):
+        force_map.write(tmp_path / name)
+        again = palpate.ForceMap.read(tmp_path / name)
+        assert (again == force_map) == (name == "map.json")
+        for of in ("depths_mm", "laterals_mm", "lateral_n", "normal_n"):
+            assert np.array_equal(getattr(again, of), getattr(force_map, of))
+    written = json.loads((tmp_path / "map.json").read_text())
+    assert written["normal_force_n"] == force_map.normal_n.tolist()
+    assert written["certificate"] == force_map.certificate
+    assert force_map.certificate["mesh_size_m"] == 0.002
+    assert force_map.phantom == phantom
+    measured = palpate.ForceMap(force_map.depths_mm, force_map.laterals_mm, force_map.lateral_n, force_map.normal_n)
+    assert measured.certificate is None and measured.phantom is None
+    assert np.array_equal(measured.normal_n, force_map.normal_n) and np.array_equal(measured.lateral_n, force_map.lateral_n)
+
+
+def test_forces_between_and_beyond_the_poses(force_map):
+    assert force_map.lateral_n.shape == (3, 5)
+    assert np.array_equal(force_map.row(2), [force_map.lateral_n[1], force_map.normal_n[1]])
+    assert np.array_equal(force_map.sweep(2, force_map.laterals_mm), force_map.row(2))
+    assert np.allclose(force_map.sweep(3, [1.5])[:, 0], np.mean([force_map.row(d)[:, c] for d in (2, 4) for c in (2, 3)], axis=0))
+    table = dict(depths_m=[0.001, 0.002, 0.004], laterals_m=[-0.006, -0.003, 0.0, 0.003, 0.006])
+    depth, lateral = np.array([[0.5], [1.7], [4.4]]), np.array([-7.0, -6.0, 1.25, 9.0])
+    found = force_map.force(depth, lateral)
+    for of, forces in zip(found, (force_map.lateral_n, force_map.normal_n)):
+        assert of.shape == (3, 4)
+        for row, d in enumerate(depth[:, 0]):
+            for column, x in enumerate(lateral):
+                asked = palpate.ask("interpolate", table_n=forces, depth_m=d / 1000, lateral_m=x / 1000, **table)
+                assert math.isclose(of[row, column], asked["force_n"], rel_tol=1e-12, abs_tol=1e-14)
+    assert isinstance(force_map.force(1, 0)[1], float)
+    for call in (
+        lambda: force_map.row(3),
+        lambda: force_map.sweep(5, [0]),
+        lambda: force_map.sweep(2, [0, 6.1]),
+        lambda: force_map.force(math.nan, 0),
+        lambda: force_map.force(1, [0, math.inf]),
+    ):
+        with pytest.raises(palpate.Refused):
+            call()
+
+
+def test_progress_counts_the_poses(phantom):
+    told = []
+    phantom.map([1, 2], [-3, 0, 3, 6], progress=lambda *numbers: told.append(numbers), **COARSE)
+    # The map at -3 mm is the mirror image of that at 3 mm.
+    assert told == [(2, 6), (4, 6), (6, 6)]
+
+
+@pytest.mark.parametrize("raised", [ZeroDivisionError, KeyboardInterrupt, SystemExit])
+def test_what_the_callback_raises_stops_the_solve(phantom, raised):
+    told = []
+
+    def progress(done, all):
+        told.append(done)
+        if done >= 4:
+            raise raised("enough")
+
+    with pytest.raises(raised, match="enough"):
+        phantom.map([1, 2], [0, 1, 2, 3, 4], progress=progress, **COARSE)
+    assert told == [2, 4]
+    told.clear()
+    with pytest.raises(raised, match="enough"):
+        palpate.Bank.build(phantom, 4, [-4, 0, 4], offsets_mm=np.arange(20) / 4, progress=progress, **COARSE)
+    assert told[-1] < 20
+
+
+def test_control_c_stops_a_solve_without_a_callback(phantom):
+    depths = np.linspace(0.1, 4, 100)
+    start = time.monotonic()
+    phantom.map(depths, np.linspace(0, 9, 20), **COARSE)
+    of_20 = time.monotonic() - start
+    timer = threading.Timer(of_20, _thread.interrupt_main)
+    timer.start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        phantom.map(depths, np.linspace(0, 9, 300), **COARSE)
+    # All of them would take fifteen times as long.
+    assert time.monotonic() - start < 7 * of_20
+
+
+def test_other_threads_run_during_a_solve(phantom):
+    ticks, stop = [], threading.Event()
+
+    def tick():
+        while not stop.wait(0.001):
+            ticks.append(time.monotonic())
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    start = time.monotonic()
+    phantom.solve(depth_mm=4, mesh_mm=0.3)
+    end = time.monotonic()
+    stop.set()
+    thread.join()
+    during = [t for t in ticks if start < t < end]
+    gaps = np.diff([start, *during, end])
+    # A call that keeps the interpreter's lock lets no other thread run for all of its time.
+    assert end - start > 0.05 and gaps.max() < 0.5 * (end - start), (end - start, gaps.max())
+
+
+def test_two_threads_solve_at_the_same_time(phantom):
+    found = {}
+
+    def solve(lateral):
+        found[lateral] = phantom.solve(depth_mm=3, lateral_mm=lateral, **COARSE).normal_n
+
+    threads = [threading.Thread(target=solve, args=(lateral,)) for lateral in (-2, 0, 2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found[-2] == found[2] < found[0]
