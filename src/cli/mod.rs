@@ -6,7 +6,6 @@ mod comparison;
 pub mod config;
 mod demo;
 mod detect;
-mod detection;
 mod devices;
 mod error;
 mod experiment;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use super::detect::{NoiseSd, Unknowns, probability, unknowns};
+use super::detect::arguments::{NoiseSd, Unknowns, probability, unknowns};
 use super::output::write;
 use super::{CliError, Format};
 use crate::bank::{Bank, Reach, Reached, smallest_diameters};

@@ -3,8 +3,8 @@
 use serde::Serializer as _;
 use serde_json::{Value, json};
 
-use super::CliError;
 use crate::bank::{Bank, Location, Parameter};
+use crate::cli::CliError;
 use crate::detect::Decision;
 use crate::detect::nuisance::{SubspaceTest, Threshold};
 use crate::force_map::SAME_POSITION;
