@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use askama::Template;
 use clap::{Args, ValueEnum};
-use serde::Serialize;
 
 use super::output::print;
 use super::playback::{limits, loaded_map};
@@ -74,7 +73,7 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
                 judge_log(text, budget).map_err(|refusal| refusal.in_file(file))
             })?;
             let source = format!("of {}", path.display());
-            tell(arguments, &judged, &judged, None, &source)
+            tell(arguments, &judged, None, &source)
         }
         None => {
             let timing = measured(arguments, budget)?;
@@ -82,7 +81,7 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
                 true => "on the simulated device, at 1 kHz, with the system's wake-up",
                 false => "on the simulated device, as fast as they go",
             };
-            tell(arguments, &timing, &timing.judged, Some(&timing), source)
+            tell(arguments, &timing.judged, Some(&timing), source)
         }
     }
 }
@@ -114,32 +113,33 @@ fn measured(arguments: &TimingArguments, budget: Budget) -> Result<Timing, CliEr
     )?)
 }
 
-/// Prints the figures; the budget decides how the program ends.
-fn tell<A: Serialize>(
+/// Prints the figures; the budget decides how the program ends. Of a loop that was measured here there is more than its `judged`
+/// responses: the whole `timing`.
+fn tell(
     arguments: &TimingArguments,
-    figures: &A,
     judged: &Judged,
     timing: Option<&Timing>,
     source: &str,
 ) -> Result<(), CliError> {
-    let (outcome, reason) = match judged.outcome {
+    let (outcome, failure) = match judged.outcome {
         BudgetOutcome::Kept => ("kept", None),
-        BudgetOutcome::Broken => ("broken", Some(broken(arguments, judged))),
-        BudgetOutcome::Undecided => ("undecided", Some(undecided(judged))),
+        BudgetOutcome::Broken => ("broken", Some(CliError::Check(broken(arguments, judged)))),
+        BudgetOutcome::Undecided => ("undecided", Some(CliError::Usage(undecided(judged)))),
     };
-    let table = Table {
+    let text = Text {
         judged,
         timing,
         source,
         outcome,
     };
     // Writing to a String does not fail.
-    let text = table.render().unwrap_or_default();
-    match arguments.format {
-        Printed::Table => print(&text),
-        Printed::Json => Format::Json.print(figures, |_| String::new()),
-        Printed::Junit => {
-            let reason = reason.as_deref();
+    let text = text.render().unwrap_or_default();
+    match (arguments.format, timing) {
+        (Printed::Table, _) => print(&text),
+        (Printed::Json, Some(timing)) => Format::Json.print(timing, |_| String::new()),
+        (Printed::Json, None) => Format::Json.print(judged, |_| String::new()),
+        (Printed::Junit, _) => {
+            let reason = failure.as_ref().map(CliError::to_string);
             let junit = Junit {
                 judged,
                 outcome,
@@ -149,11 +149,7 @@ fn tell<A: Serialize>(
             print(&junit.render().unwrap_or_default())
         }
     }?;
-    match (judged.outcome, reason) {
-        (BudgetOutcome::Broken, Some(reason)) => Err(CliError::Check(reason)),
-        (_, Some(reason)) => Err(CliError::Usage(reason)),
-        _ => Ok(()),
-    }
+    failure.map_or(Ok(()), Err)
 }
 
 /// Why a budget is broken.
@@ -203,7 +199,7 @@ fn defect(error: impl Display) -> CliError {
 /// The figures for people.
 #[derive(Template)]
 #[template(path = "cli/timing.txt")]
-struct Table<'a> {
+struct Text<'a> {
     judged: &'a Judged,
     timing: Option<&'a Timing>,
     source: &'a str,
@@ -216,6 +212,6 @@ struct Table<'a> {
 struct Junit<'a> {
     judged: &'a Judged,
     outcome: &'a str,
-    reason: Option<&'a str>,
+    reason: Option<String>,
     text: &'a str,
 }

@@ -52,11 +52,9 @@ impl Budget {
             }
         }
         Ok(Budget {
-            cycle,
             percentile,
             confidence_percent,
-            allowed_misses: None,
-            allowed_run: None,
+            ..Budget::of(cycle)
         })
     }
 

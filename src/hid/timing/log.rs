@@ -6,6 +6,7 @@ use serde_json::{Map, Value};
 
 use super::budget::{Budget, Judged, Responses};
 use crate::csv::{Column, Rows};
+use crate::decimal::parse_scaled;
 use crate::refusal::{Refusal, shortened};
 
 /// The names of durations and then of time stamps, with the power of ten from their unit to seconds.
@@ -103,9 +104,9 @@ fn of_json_lines(text: &str) -> Result<(&'static str, Numbers), Refusal> {
         found = named;
         let value = object.get(name).unwrap_or(&Value::Null);
         let wrong = || Refusal::value(name, value, "a finite number").at(line);
-        let number = value.as_f64().ok_or_else(wrong)?;
-        // Divided by a power of ten that an f64 holds, so that the quotient is the nearest one.
-        numbers.push((line, number / libm::exp10(f64::from(-power))));
+        let number = value.as_number().ok_or_else(wrong)?;
+        let seconds = parse_scaled(&number.to_string(), power).ok_or_else(wrong)?;
+        numbers.push((line, seconds));
     }
     let (name, _) = found.ok_or_else(|| Refusal::state("no line", EXPECTED))?;
     Ok((name, numbers))
