@@ -5,8 +5,8 @@
 use palpate::detect;
 use palpate::detect::noise_budget::noise_budget;
 
-use crate::memory::{give, list};
-use crate::{Error, memory};
+use crate::Error;
+use crate::memory::{give, list, read};
 
 /// 1 if θ ≥ η, an inclusion; 0 otherwise. Refuses NaN; a refusal is no answer.
 #[unsafe(no_mangle)]
@@ -49,7 +49,7 @@ pub unsafe extern "C" fn palpate_bayes_threshold(
     eta: *mut f64,
 ) -> Error {
     let threshold = || {
-        let Costs { c00, c01, c10, c11 } = unsafe { memory::read(costs) }?;
+        let Costs { c00, c01, c10, c11 } = unsafe { read(costs) }?;
         let costs = detect::Costs { c00, c01, c10, c11 };
         Ok(detect::bayes_threshold(prior_h1, costs)?)
     };

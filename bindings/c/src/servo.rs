@@ -7,8 +7,8 @@ use core::mem::{MaybeUninit, offset_of};
 use palpate::force::Force as KernelForce;
 use palpate::servo::{self, Axis, Fault, Limits, Mode, Request, Table};
 
+use crate::Error;
 use crate::memory::{bytes, check_apart, give, list, list_mut, read};
-use crate::{Error, memory};
 
 /// A force on the probe, N.
 #[repr(C)]
@@ -365,7 +365,7 @@ pub unsafe extern "C" fn palpate_step(
         let limits = Limits::new(force_n, slew_n, release_n, watchdog_cycles)?;
         let sample = match sample.is_null() {
             true => None,
-            false => Some(unsafe { memory::read(sample) }?),
+            false => Some(unsafe { read(sample) }?),
         };
         let input = servo::Input {
             sample: sample.map(Into::into),
