@@ -3,46 +3,50 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use serde_json::value::RawValue;
 use serde_json::{Map, Value};
 
-use super::tolerance::Tolerance;
+use super::tolerance::{Condition, Tolerance};
+use super::verdict::Class;
 
 /// What is asked.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Question {
-    /// The JSON text of the arguments.
-    Arguments(String),
+    /// The arguments.
+    Arguments(Map<String, Value>),
     /// A whole line, as it stands.
     Line(String),
 }
 
-impl Question {
-    /// Whether arguments are given, and not a line.
-    pub fn is_arguments(&self) -> bool {
-        matches!(self, Question::Arguments(_))
-    }
+/// A value of an answer, and how far it may be off.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wanted {
+    /// Its key.
+    pub key: String,
+    /// The value.
+    pub value: Value,
+    /// How far it may be off in exact work.
+    pub tolerance: Tolerance,
+    /// What each unit roundoff adds.
+    pub condition: Condition,
 }
 
 /// What the answer must be.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expected {
-    /// These values, each with how far it may be off.
-    Values(Vec<(String, Value, Tolerance)>),
-    /// A refusal, with the code that this project's oracle would give.
-    Refusal(String),
-}
-
-impl Expected {
-    /// Whether there is an answer, and no refusal.
-    pub fn is_values(&self) -> bool {
-        matches!(self, Expected::Values(_))
-    }
+    /// These values.
+    Values(Vec<Wanted>),
+    /// A refusal.
+    Refusal {
+        /// What a program does wrong that answers.
+        class: Class,
+        /// The answer of a program that reads the request as it is meant, where it can be.
+        lenient: Vec<Wanted>,
+    },
 }
 
 /// The answer that a known bug would give.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Wrong {
+pub struct BugAnswer {
     /// The flag of the bug.
     pub flag: String,
     /// Its answer.
@@ -60,23 +64,25 @@ pub struct Case {
     pub question: Question,
     /// What the answer must be.
     pub expected: Expected,
+    /// The largest unit roundoff of a precision that can answer it; of any, if there is none.
+    pub roundoff: Option<f64>,
     /// The bugs that this case can show.
     pub flags: Vec<String>,
     /// Answers of bugs.
-    pub wrong: Vec<Wrong>,
+    pub wrong: Vec<BugAnswer>,
 }
 
 impl Case {
-    /// The line of the request, with its end.
-    pub fn line(&self, op: &str) -> Vec<u8> {
-        let text = match &self.question {
+    /// The line of the request, with its end: no spaces, and the keys in the order of their names.
+    ///
+    /// Implements: ORA-057.
+    pub fn line(&self, op: &str) -> String {
+        match &self.question {
             Question::Line(line) => format!("{line}\n"),
-            Question::Arguments(arguments) => {
-                let (id, op) = (Value::from(&self.id[..]), Value::from(op));
-                format!("{{\"id\":{id},\"op\":{op},\"args\":{arguments}}}\n")
+            Question::Arguments(args) => {
+                serde_json::json!({"id": self.id, "op": op, "args": args}).to_string() + "\n"
             }
-        };
-        text.into_bytes()
+        }
     }
 }
 
@@ -86,13 +92,18 @@ impl Case {
 pub(super) struct CaseText {
     pub id: String,
     pub comment: String,
-    pub args: Option<Box<RawValue>>,
+    pub args: Option<Map<String, Value>>,
     pub line: Option<String>,
     pub ok: Option<Map<String, Value>>,
     pub bits: Option<Map<String, Value>>,
     pub error: Option<String>,
     #[serde(default)]
+    pub lenient: Map<String, Value>,
+    #[serde(default)]
     pub tolerance: BTreeMap<String, ToleranceText>,
+    #[serde(default)]
+    pub condition: BTreeMap<String, Condition>,
+    pub roundoff: Option<f64>,
     #[serde(default)]
     pub flags: Vec<String>,
     #[serde(default)]

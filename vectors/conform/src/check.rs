@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value};
 
-use super::case::{Case, CaseText, Expected, Question, ToleranceText, Wrong};
-use super::tolerance::{Tolerance, compare};
-use palpate::oracle::Code;
+use super::case::{
+    BugAnswer, Case, CaseText, Expected, Question, ToleranceText, Wanted, WrongText,
+};
+use super::tolerance::{Condition, Limit, compare};
+use super::verdict::Class;
 
 /// Checks a case and takes it over; `tolerances` and `flags` are those of its file.
 ///
@@ -19,12 +21,8 @@ pub fn case(
     tolerances: &BTreeMap<String, ToleranceText>,
     is_flag: impl Fn(&str) -> bool,
 ) -> Result<Case, String> {
-    let question = match (&text.args, &text.line) {
-        (Some(args), None) if args.get().starts_with('{') => {
-            // A line is a line: what the file spreads over several is put into one.
-            Question::Arguments(args.get().replace(['\n', '\r'], " "))
-        }
-        (Some(_), None) => return Err("args must be an object".into()),
+    let question = match (text.args.clone(), &text.line) {
+        (Some(args), None) => Question::Arguments(args),
         (None, Some(line)) if line.contains('\n') => {
             return Err("line must be one line".into());
         }
@@ -32,10 +30,17 @@ pub fn case(
         _ => return Err("expected either args or line".into()),
     };
     let expected = match (&text.ok, &text.error) {
+        (Some(ok), None) if ok.is_empty() => return Err("ok is empty".into()),
         (Some(ok), None) => Expected::Values(values(ok, &text, tolerances)?),
-        (None, Some(error)) => Expected::Refusal(code(error)?),
+        (None, Some(error)) => Expected::Refusal {
+            class: class_of(error)?,
+            lenient: values(&text.lenient, &text, tolerances)?,
+        },
         _ => return Err("expected either ok or error".into()),
     };
+    if let Some(roundoff) = text.roundoff.filter(|size| !(0.0..1.0).contains(size)) {
+        return Err(format!("roundoff = {roundoff}, expected 0 to 1"));
+    }
     if let Some(flag) = text.flags.iter().find(|flag| !is_flag(flag)) {
         return Err(format!("the flag {flag:?} is not explained in flags"));
     }
@@ -48,7 +53,7 @@ pub fn case(
         }
         check_wrong(&wrong.flag, &wrong.ok, &expected)?;
     }
-    let wrong = |wrong: super::case::WrongText| Wrong {
+    let wrong = |wrong: WrongText| BugAnswer {
         flag: wrong.flag,
         values: wrong.ok,
     };
@@ -57,39 +62,62 @@ pub fn case(
         comment: text.comment,
         question,
         expected,
+        roundoff: text.roundoff,
         flags: text.flags,
         wrong: text.wrong.into_iter().map(wrong).collect(),
     })
 }
 
-fn code(error: &str) -> Result<String, String> {
-    let code = serde_json::from_value::<Code>(error.into());
-    code.map_err(|unknown| format!("error: {unknown}"))?;
-    Ok(error.into())
+/// What a program does wrong that does not refuse for this reason.
+///
+/// Implements: VEC-006, ORA-058.
+fn class_of(code: &str) -> Result<Class, String> {
+    match code {
+        "bad_json" | "bad_request" | "unknown_op" | "bad_argument" => Ok(Class::Protocol),
+        "out_of_range" | "overflow" => Ok(Class::Range),
+        _ => Err(format!(
+            "error = {code:?}, expected one of bad_json, bad_request, unknown_op, bad_argument, out_of_range, overflow"
+        )),
+    }
 }
 
 fn values(
     ok: &Map<String, Value>,
     text: &CaseText,
     tolerances: &BTreeMap<String, ToleranceText>,
-) -> Result<Vec<(String, Value, Tolerance)>, String> {
-    if let Some(key) = text.tolerance.keys().find(|key| !ok.contains_key(*key)) {
-        return Err(format!("tolerance for {key:?}, which is no key of ok"));
+) -> Result<Vec<Wanted>, String> {
+    let mut of_keys = text.tolerance.keys().chain(text.condition.keys());
+    if let Some(key) = of_keys.find(|key| !ok.contains_key(*key)) {
+        return Err(format!(
+            "tolerance or condition for {key:?}, which is no key of the answer"
+        ));
     }
     let nothing = Map::new();
     let bits = text.bits.as_ref().unwrap_or(&nothing);
     let mut values = Vec::new();
     for (key, value) in ok {
-        check_bits(key, value, bits.get(key))?;
+        if text.ok.is_some() {
+            check_bits(key, value, bits.get(key))?;
+        }
         let stated = text.tolerance.get(key).or_else(|| tolerances.get(key));
         let tolerance = stated
             .ok_or_else(|| format!("no tolerance for {key:?}"))?
             .tolerance()
             .map_err(|error| format!("tolerance of {key:?}: {error}"))?;
-        values.push((key.clone(), value.clone(), tolerance));
-    }
-    if values.is_empty() {
-        return Err("ok is empty".into());
+        let condition = text.condition.get(key).cloned();
+        let condition = condition.unwrap_or(Condition::All(0.0));
+        if !condition.fits(value) {
+            return Err(format!(
+                "the condition of {key:?} has another shape than its value, or a number below 0"
+            ));
+        }
+        let (key, value) = (key.clone(), value.clone());
+        values.push(Wanted {
+            key,
+            value,
+            tolerance,
+            condition,
+        });
     }
     Ok(values)
 }
@@ -127,10 +155,16 @@ fn check_wrong(flag: &str, wrong: &Map<String, Value>, expected: &Expected) -> R
     let Expected::Values(values) = expected else {
         return Err("wrong answers to what must be refused: its flags say it".into());
     };
-    let near = |(key, value, tolerance): &(String, Value, Tolerance)| {
-        wrong
-            .get(key)
-            .is_some_and(|wrong| compare(key, value, wrong, *tolerance, 10.0).is_ok())
+    let near = |wanted: &Wanted| {
+        let condition = &Condition::All(0.0);
+        let limit = Limit {
+            tolerance: wanted.tolerance,
+            times: 10.0,
+            condition,
+            unit_roundoff: 0.0,
+        };
+        let found = wrong.get(&wanted.key);
+        found.is_some_and(|wrong| compare(&wanted.key, &wanted.value, wrong, limit).is_ok())
     };
     if values.iter().all(near) {
         return Err(format!(

@@ -2,77 +2,140 @@
 
 use serde_json::{Map, Value};
 
-use super::case::{Case, Expected};
-use super::tolerance::{compare, shortened};
-use super::verdict::Outcome;
+use super::case::{BugAnswer, Case, Expected, Wanted};
+use super::profile::Profile;
+use super::text::shortened;
+use super::tolerance::{Difference, Limit, compare};
+use super::verdict::{Class, Outcome, Traces, Wrong};
 
 /// Judges the answer to a case: a JSON value whose id was found to be right.
 ///
-/// Implements: ORA-046, ORA-047.
-pub fn judge(case: &Case, answer: &Value) -> Outcome {
+/// Implements: ORA-046, ORA-047, ORA-058.
+pub fn judge(case: &Case, answer: &Value, profile: &Profile) -> Outcome {
     match (answer.get("ok"), answer.get("error")) {
-        (Some(ok), None) => judge_values(case, ok),
+        (Some(ok), None) => judge_values(case, ok, profile),
         (None, Some(error)) => judge_refusal(case, error),
-        _ => Outcome::failed(format!(
-            "expected an answer with either ok or error, found {}",
-            shortened(answer)
-        )),
+        _ => Outcome::wrong(
+            Class::Protocol,
+            format!(
+                "expected an answer with either ok or error, found {}",
+                shortened(answer)
+            ),
+        ),
     }
 }
 
 /// Implements: ORA-052.
 fn judge_refusal(case: &Case, error: &Value) -> Outcome {
-    if !error["code"].is_string() {
-        let error = shortened(error);
-        return Outcome::failed(format!("error is {error}, expected an object with a code"));
+    let is_coded = error["code"].is_string();
+    if !is_coded && !error.is_string() && !error.is_object() {
+        let reason = format!(
+            "error is {}, expected an object with a code",
+            shortened(error)
+        );
+        return Outcome::wrong(Class::Protocol, reason);
     }
     match &case.expected {
-        Expected::Refusal(_) => Outcome::Refused,
-        Expected::Values(_) => Outcome::failed(format!("refused: {}", shortened(error))),
+        Expected::Values(_) => {
+            Outcome::wrong(Class::Range, format!("refused: {}", shortened(error)))
+        }
+        Expected::Refusal { .. } if is_coded => Outcome::Right,
+        Expected::Refusal { .. } => {
+            let error = shortened(error);
+            Outcome::Acceptable(format!(
+                "refused with {error}, expected an object with a code"
+            ))
+        }
     }
 }
 
-fn judge_values(case: &Case, ok: &Value) -> Outcome {
-    let Expected::Values(values) = &case.expected else {
-        return Outcome::Failed {
-            reason: format!("answered {}, but must be refused", shortened(ok)),
-            // What the case shows is what was not refused.
-            bugs: case.flags.clone(),
-        };
-    };
+fn judge_values(case: &Case, ok: &Value, profile: &Profile) -> Outcome {
     let Value::Object(found) = ok else {
-        return Outcome::failed(format!("ok is {}, expected an object", shortened(ok)));
+        let reason = format!("ok is {}, expected an object", shortened(ok));
+        return Outcome::wrong(Class::Protocol, reason);
     };
-    let difference = values
-        .iter()
-        .find_map(|(key, expected, tolerance)| match found.get(key) {
-            None => Some(format!("{key} is missing in {}", shortened(ok))),
-            Some(value) => compare(key, expected, value, *tolerance, 1.0)
-                .err()
-                .map(|difference| difference.to_string()),
-        });
-    match difference {
-        None => Outcome::Passed,
-        Some(reason) => Outcome::Failed {
-            reason,
-            bugs: bugs(case, found),
+    match &case.expected {
+        Expected::Values(values) => match values
+            .iter()
+            .find_map(|wanted| differs(wanted, found, profile))
+        {
+            None => Outcome::Right,
+            Some(Difference { class, place, text }) => Outcome::Wrong(Wrong {
+                class,
+                reason: format!("{place} {text}"),
+                traces: traces(&case.wrong, values, found, profile),
+            }),
         },
+        Expected::Refusal { class, lenient } => {
+            let is_as_meant = lenient
+                .iter()
+                .all(|wanted| differs(wanted, found, profile).is_none());
+            let reason = format!("answered {}, but must be refused", shortened(ok));
+            if is_as_meant && !lenient.is_empty() {
+                return Outcome::Acceptable(reason);
+            }
+            // What the case shows is what was not refused.
+            let traces = Traces::of_all(&case.flags);
+            Outcome::Wrong(Wrong {
+                class: *class,
+                reason,
+                traces,
+            })
+        }
     }
 }
 
-/// The flags of the bugs whose answer this is.
-fn bugs(case: &Case, found: &Map<String, Value>) -> Vec<String> {
-    let Expected::Values(values) = &case.expected else {
-        return Vec::new();
+/// The difference of an answer from one wanted value.
+fn differs(wanted: &Wanted, found: &Map<String, Value>, profile: &Profile) -> Option<Difference> {
+    let Some(value) = found.get(&wanted.key) else {
+        let (place, text) = (wanted.key.clone(), "is missing in the answer".into());
+        return Some(Difference {
+            place,
+            text,
+            class: Class::Protocol,
+        });
     };
-    let is_its = |wrong: &Map<String, Value>| {
-        values.iter().all(
-            |(key, _, tolerance)| match (wrong.get(key), found.get(key)) {
-                (Some(wrong), Some(found)) => compare(key, wrong, found, *tolerance, 1.0).is_ok(),
-                _ => false,
-            },
-        )
+    compare(&wanted.key, &wanted.value, value, limit(wanted, profile)).err()
+}
+
+fn limit<'a>(wanted: &'a Wanted, profile: &Profile) -> Limit<'a> {
+    let Wanted {
+        tolerance,
+        condition,
+        ..
+    } = wanted;
+    Limit {
+        tolerance: *tolerance,
+        times: 1.0,
+        condition,
+        unit_roundoff: profile.unit_roundoff,
+    }
+}
+
+/// Which keys of an answer are right, and which are those of each bug.
+fn traces(
+    bugs: &[BugAnswer],
+    values: &[Wanted],
+    found: &Map<String, Value>,
+    profile: &Profile,
+) -> Traces {
+    // No op has nearly 64 keys.
+    let keys = |is_its: &dyn Fn(&Wanted) -> bool| {
+        let set = |(index, wanted)| u64::from(is_its(wanted)) << index;
+        values.iter().enumerate().map(set).sum()
     };
-    let matching = case.wrong.iter().filter(|wrong| is_its(&wrong.values));
-    matching.map(|wrong| wrong.flag.clone()).collect()
+    let of_bug = |bug: &BugAnswer| {
+        let is_its = |wanted: &Wanted| match (bug.values.get(&wanted.key), found.get(&wanted.key)) {
+            (Some(wrong), Some(found)) => {
+                compare(&wanted.key, wrong, found, limit(wanted, profile)).is_ok()
+            }
+            _ => false,
+        };
+        (bug.flag.clone(), keys(&is_its))
+    };
+    Traces {
+        all: keys(&|_| true),
+        right: keys(&|wanted| differs(wanted, found, profile).is_none()),
+        bugs: bugs.iter().map(of_bug).collect(),
+    }
 }

@@ -3,54 +3,56 @@
 use std::fmt::Write;
 
 use super::suite::Suite;
-use super::verdict::{Count, Outcome, Verdict};
+use super::text::escaped;
+use super::verdict::{Class, Finding, Outcome, Verdict};
 
-/// The verdict as XML; `suite` holds the groups of the verdict, and may hold others.
+/// The verdict as XML; `suite` is the one that was judged. A finding that the program does not fail for is a skipped test.
 ///
 /// Implements: ORA-050.
 pub fn junit(verdict: &Verdict, suite: &Suite) -> String {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let total = |count: fn(&Count) -> usize| verdict.groups.iter().map(count).sum::<usize>();
+    let counted = |group: Option<&str>| {
+        let findings = || verdict.findings.iter();
+        let is_of = |finding: &&Finding| group.is_none_or(|group| finding.group == group);
+        let failures = findings()
+            .filter(is_of)
+            .filter(|finding| finding.counts)
+            .count();
+        let passed_over = findings()
+            .filter(is_of)
+            .filter(|finding| !finding.counts)
+            .count();
+        (failures, passed_over)
+    };
+    let (failures, passed_over) = counted(None);
     // Writing to a String cannot fail.
     let _ = writeln!(
         text,
-        "<testsuites name=\"palpate-conform, vectors {}\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">",
+        "<testsuites name=\"palpate-conform, vectors {}\" tests=\"{}\" failures=\"{failures}\" skipped=\"{}\">",
         verdict.suite_sha256,
-        total(|group| group.cases),
-        total(|group| group.failed),
-        total(|group| group.skipped),
+        verdict.total(|group| group.cases),
+        verdict.total(|group| group.skipped) + passed_over,
     );
-    for (count, outcomes) in verdict.groups.iter().zip(&verdict.outcomes) {
+    let mut findings = verdict.findings.iter().peekable();
+    for (index, (count, group)) in verdict.groups.iter().zip(&suite.groups).enumerate() {
+        let (failures, passed_over) = counted(Some(&group.name));
         let _ = writeln!(
             text,
-            "<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\">",
-            escaped(&count.group),
+            "<testsuite name=\"{}\" tests=\"{}\" failures=\"{failures}\" errors=\"0\" skipped=\"{}\">",
+            escaped(&group.name),
             count.cases,
-            count.failed,
-            count.skipped
+            count.skipped + passed_over,
         );
-        let cases = suite.groups.iter().find(|group| group.name == count.group);
-        for (case, outcome) in cases.iter().flat_map(|group| &group.cases).zip(outcomes) {
-            let head = format!(
-                "<testcase classname=\"palpate.{}\" name=\"{}: {}\"",
-                escaped(&count.group),
+        for (case, outcome) in group.cases.iter().zip(&verdict.outcomes[index]) {
+            let finding = findings.next_if(|finding| finding.case == case.id);
+            let _ = writeln!(
+                text,
+                "<testcase classname=\"palpate.{}\" name=\"{}: {}\"{}",
+                escaped(&group.name),
                 escaped(&case.id),
-                escaped(&case.comment)
+                escaped(&case.comment),
+                content(outcome, finding),
             );
-            let _ = match outcome {
-                Outcome::Passed | Outcome::Refused => writeln!(text, "{head}/>"),
-                Outcome::Skipped => writeln!(
-                    text,
-                    "{head}><skipped message=\"the program does not claim {}\"/></testcase>",
-                    escaped(&count.op)
-                ),
-                Outcome::Failed { reason, bugs } => writeln!(
-                    text,
-                    "{head}><failure message=\"{}\">{}</failure></testcase>",
-                    escaped(reason),
-                    escaped(&bugs.join(", "))
-                ),
-            };
         }
         text.push_str("</testsuite>\n");
     }
@@ -58,19 +60,20 @@ pub fn junit(verdict: &Verdict, suite: &Suite) -> String {
     text
 }
 
-/// Text between tags or quotes; characters that XML does not have become U+FFFD.
-pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\t' | '\n' | '\r' => out.push(' '),
-            '\0'..='\x1f' | '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
-            _ => out.push(character),
-        }
+/// What follows the attributes of a test.
+fn content(outcome: &Outcome, finding: Option<&Finding>) -> String {
+    let skipped = |why: &str| format!("><skipped message=\"{}\"/></testcase>", escaped(why));
+    match (outcome, finding) {
+        (Outcome::Skipped(why), _) => skipped(why),
+        (_, None) => "/>".into(),
+        (_, Some(finding)) if finding.counts => format!(
+            "><failure type=\"{}\" message=\"{}\"/></testcase>",
+            finding.class.map_or("acceptable", Class::name),
+            escaped(&finding.reason),
+        ),
+        (_, Some(finding)) => match &finding.accepted {
+            Some(why) => skipped(&format!("accepted, {why}: {}", finding.reason)),
+            None => skipped(&format!("does not count: {}", finding.reason)),
+        },
     }
-    out
 }

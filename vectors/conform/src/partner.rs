@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::tolerance::cut;
+use super::text::cut;
 
 /// The longest answer that is read, bytes.
 const LONGEST_ANSWER: u64 = 64 << 20;

@@ -1,8 +1,21 @@
-use serde_json::json;
+use serde_json::{Value, json};
 
-use super::junit::{escaped, junit};
-use super::tolerance::{Tolerance, compare, cut};
-use super::{Outcome, Suite, Verdict};
+use super::text::{cut, escaped};
+use super::tolerance::{Condition, Limit, Tolerance, compare};
+use super::{Choice, Class, Form, Measure, Outcome, Profile, Program, Require, Suite, Verdict};
+use super::{judge, junit, questions};
+
+const NO_CONDITION: Condition = Condition::All(0.0);
+
+/// A tolerance of exact work.
+fn limit(tolerance: Tolerance, times: f64) -> Limit<'static> {
+    Limit {
+        tolerance,
+        times,
+        condition: &NO_CONDITION,
+        unit_roundoff: 0.0,
+    }
+}
 
 // Verifies: VEC-004, ORA-046.
 #[test]
@@ -32,17 +45,17 @@ fn a_tolerance_ends_where_it_says() {
         (Tolerance::Exact, 0.0, -0.0, true),
         (Tolerance::Exact, 1.0, one_up, false),
     ] {
-        let accepts = tolerance.accepts(expected, found, 1.0);
+        let accepts = limit(tolerance, 1.0).accepts(expected, found);
         assert_eq!(accepts, accepted, "{tolerance:?} {expected} {found}");
     }
-    assert!(Tolerance::Ulp(1.0).accepts(1.0, one_up.next_up(), 10.0));
+    assert!(limit(Tolerance::Ulp(1.0), 10.0).accepts(1.0, one_up.next_up()));
 }
 
 // Verifies: ORA-046.
 #[test]
 fn a_difference_names_its_place() {
-    let tolerance = Tolerance::Exact;
-    let compare = |expected, found| compare("k", &expected, &found, tolerance, 1.0);
+    let exact = limit(Tolerance::Exact, 1.0);
+    let compare = |expected, found| compare("k", &expected, &found, exact);
     let same = compare(json!([[1, 2.0], [3]]), json!([[1.0, 2], [3]]));
     assert_eq!(same, Ok(()));
     let cases = r#"
@@ -63,49 +76,305 @@ fn a_difference_names_its_place() {
     }
 }
 
-/// Two groups of three questions that must be refused, each with two flags.
-fn two_groups() -> Suite {
-    let file = |group: &str| {
-        let case = |k: u32| {
-            let (id, flags) = (format!("{group}-{k}"), ["sign", "unit"]);
-            json!({"id": id, "comment": "", "args": {}, "error": "out_of_range", "flags": flags})
-        };
-        let bug = |what: &str| json!({"bug": format!("{what} of {group}"), "notes": ""});
-        json!({
-            "schema": "palpate-vectors", "schema_version": 1, "group": group, "op": "roc",
-            "source": "by hand", "generator_version": "1", "tolerance": {},
-            "flags": {"sign": bug("sign"), "unit": bug("unit")}, "cases": [case(0), case(1), case(2)],
-        })
+/// A condition adds so many unit roundoffs to the tolerance, entry by entry: the largest error of a product of
+/// two numbers of f32 is 2⁻²⁴ of it.
+// Verifies: ORA-054, VEC-016.
+#[test]
+fn a_condition_adds_roundoffs_to_the_tolerance() {
+    let condition: Condition = serde_json::from_value(json!([[1.0, 3.0], 2.0])).unwrap();
+    let expected = json!([[1.0, 1.0], [1.0, 1.0]]);
+    assert!(condition.fits(&expected) && !condition.fits(&json!([[1.0], 1.0])));
+    assert!(!Condition::All(f64::NAN).fits(&json!(1.0)) && !Condition::All(-1.0).fits(&json!(1.0)));
+    let u = 2.0_f64.powi(-24);
+    let limit = Limit {
+        condition: &condition,
+        unit_roundoff: u,
+        ..limit(Tolerance::Absolute(0.5), 1.0)
     };
-    let groups = ["a", "b"].map(|group| (format!("{group}.json"), file(group).to_string()));
-    Suite::of_files(groups.into()).unwrap()
-}
-
-fn failed(bugs: &[&str]) -> Outcome {
-    Outcome::Failed {
-        reason: String::new(),
-        bugs: bugs.iter().map(|bug| bug.to_string()).collect(),
+    for (row, column, most) in [(0, 0, 1.0), (0, 1, 3.0), (1, 0, 2.0), (1, 1, 2.0)] {
+        let with = |off: f64| {
+            let mut found = expected.clone();
+            found[row][column] = json!(1.5 + off * u);
+            compare("k", &expected, &found, limit).is_ok()
+        };
+        assert!(with(most) && !with(most + 0.5), "{row} {column}");
     }
 }
 
-// Verifies: ORA-053.
+/// A file of one group with these cases, each with the two flags; ids are added.
+fn group(name: &str, cases: Vec<Value>) -> (String, String) {
+    let bug = |what: &str| json!({"bug": format!("{what} of {name}"), "notes": ""});
+    let case = |(number, mut case): (usize, Value)| {
+        case["id"] = json!(format!("{name}-{number}"));
+        case["comment"] = json!("");
+        if case.get("flags").is_none() {
+            case["flags"] = json!(["sign", "unit"]);
+        }
+        if case.get("line").is_none() && case.get("args").is_none() {
+            case["args"] = json!({});
+        }
+        case
+    };
+    let cases: Vec<Value> = cases.into_iter().enumerate().map(case).collect();
+    let tolerance = json!({"absolute": 0, "unit": "1", "reason": "exact"});
+    let file = json!({
+        "schema": "palpate-vectors", "schema_version": 1, "group": name, "op": "roc",
+        "source": "by hand", "generator_version": "1", "tolerance": {"a": tolerance, "b": tolerance},
+        "flags": {"sign": bug("sign"), "unit": bug("unit")}, "cases": cases,
+    });
+    (format!("{name}.json"), file.to_string())
+}
+
+/// A question that must be refused.
+fn refusal() -> Value {
+    json!({"error": "out_of_range"})
+}
+
+/// Two groups of three questions that must be refused.
+fn two_groups() -> Suite {
+    let groups = ["a", "b"].map(|name| group(name, vec![refusal(), refusal(), refusal()]));
+    Suite::of_files(groups.into()).unwrap()
+}
+
+fn measure(profile: &str) -> Measure {
+    let profile = Profile::named(profile).unwrap();
+    Measure {
+        profile,
+        extreme: false,
+        require: Require::Right,
+        accepted: vec![],
+    }
+}
+
+fn verdict(suite: &Suite, outcomes: Vec<Vec<Outcome>>) -> Verdict {
+    Verdict::new(
+        suite,
+        &measure("exact"),
+        Program::default(),
+        outcomes,
+        vec![],
+    )
+}
+
+/// Cases with the answer a = 1, b = 2: the first bug makes both negative, the second one takes thousands.
+fn signs_and_units(cases: usize) -> Suite {
+    let bits = json!({"a": "0x3ff0000000000000", "b": "0x4000000000000000"});
+    let wrong = json!([{"flag": "sign", "ok": {"a": -1.0, "b": -2.0}}, {"flag": "unit", "ok": {"a": 1000.0, "b": 2.0}}]);
+    let case = json!({"ok": {"a": 1.0, "b": 2.0}, "bits": bits, "wrong": wrong});
+    Suite::of_files([group("a", vec![case; cases])].into()).unwrap()
+}
+
+/// The verdict on these answers for a and b.
+fn answered(answers: &[(f64, f64)]) -> Verdict {
+    let suite = signs_and_units(answers.len());
+    let cases = suite.groups[0].cases.iter().zip(answers);
+    let outcome = |(case, (a, b)): (_, &(f64, f64))| {
+        judge(case, &json!({"ok": {"a": a, "b": b}}), &Profile::exact())
+    };
+    verdict(&suite, vec![cases.map(outcome).collect()])
+}
+
+// Verifies: ORA-047, ORA-053, ORA-068.
 #[test]
-fn bugs_are_counted_by_group_and_the_most_frequent_comes_first() {
-    let [sign, unit, both] = [&["sign"][..], &["unit"], &["unit", "sign"]].map(failed);
+fn bugs_are_named_that_explain_half_of_a_group_and_pairs_that_explain_more() {
+    let (right, sign, unit, odd) = ((1.0, 2.0), (-1.0, -2.0), (1000.0, 2.0), (7.0, 7.0));
+    let told = |answers: &[(f64, f64)]| {
+        let verdict = answered(answers);
+        let of = |one: &super::Explanation| {
+            let flags: Vec<&str> = one.bugs.iter().map(|bug| &bug.flag[..]).collect();
+            format!(
+                "{} {}/{} against {} from {}",
+                flags.join("+"),
+                one.explains,
+                verdict.diagnosis[0].wrong,
+                one.against,
+                one.first_case
+            )
+        };
+        let found: Vec<String> = verdict.diagnosis[0].explanations.iter().map(of).collect();
+        found
+    };
+    assert_eq!(
+        told(&[right, sign, sign, odd]),
+        ["sign 2/3 against 1 from a-1"]
+    );
+    // Less than half is no name.
+    assert_eq!(told(&[sign, odd, odd]), Vec::<String>::new());
+    // What explains most comes first; a pair, only if it explains more than each alone.
+    assert_eq!(
+        told(&[sign, unit, sign]),
+        [
+            "sign+unit 3/3 against 0 from a-0",
+            "sign 2/3 against 0 from a-0"
+        ]
+    );
+    assert_eq!(told(&[sign, sign]), ["sign 2/2 against 0 from a-0"]);
+    // One key by one bug, one by the other; a key that is right by neither explains nothing alone.
+    assert_eq!(
+        told(&[(1000.0, -2.0), (1000.0, -2.0)]),
+        ["sign+unit 2/2 against 0 from a-0"]
+    );
+    assert_eq!(told(&[(1.0, -2.0)]), Vec::<String>::new());
+}
+
+// Verifies: ORA-047, ORA-053.
+#[test]
+fn classes_are_diagnosed_apart() {
+    let suite = two_groups();
+    let answered = |case| judge(case, &json!({"ok": {}}), &Profile::exact());
+    let cases = &suite.groups[0].cases;
+    let lost = Outcome::wrong(Class::Protocol, "no answer");
     let outcomes = vec![
-        vec![unit.clone(), sign, Outcome::Refused],
-        vec![unit.clone(), both, unit],
+        vec![answered(&cases[0]), lost.clone(), lost],
+        vec![Outcome::Right; 3],
     ];
-    let verdict = Verdict::new(&two_groups(), vec![], String::new(), outcomes, vec![]);
-    let likely = verdict.likely_bugs.iter();
-    let found = likely.map(|l| format!("{}: {}, {}", l.bug, l.cases, l.first_case));
-    let expected = [
-        "unit of b: 3, b-0",
-        "unit of a: 1, a-0",
-        "sign of a: 1, a-1",
-        "sign of b: 1, b-1",
+    let verdict = verdict(&suite, outcomes);
+    let told = verdict
+        .diagnosis
+        .iter()
+        .map(|one| (one.class, one.wrong, one.explanations.len()));
+    assert_eq!(
+        told.collect::<Vec<_>>(),
+        [(Class::Range, 1, 2), (Class::Protocol, 2, 0)]
+    );
+}
+
+/// Normal numbers of f32 are from 2⁻¹²⁶ to 2¹²⁸, whose roots are 2⁻⁶³ and 2⁶⁴.
+// Verifies: ORA-056, VEC-017.
+#[test]
+fn extreme_cases_are_those_beyond_the_precision() {
+    let power = |exponent| 2.0_f64.powi(exponent);
+    let cases = [
+        (json!({"args": {"x": power(-63)}}), false),
+        (json!({"args": {"x": [[1.0, 0.0], [power(-64), 1]]}}), true),
+        (json!({"args": {"x": power(63)}}), false),
+        (json!({"args": {"x": -power(65)}}), true),
+        (
+            json!({"args": {"x": 1, "name": "text"}, "roundoff": power(-24)}),
+            false,
+        ),
+        (json!({"args": {"x": 1}, "roundoff": power(-25)}), true),
+        (
+            json!({"ok": {"a": 1e-37}, "bits": {"a": format!("{:#018x}", 1e-37_f64.to_bits())}}),
+            false,
+        ),
+        (
+            json!({"ok": {"a": 1e-38}, "bits": {"a": format!("{:#018x}", 1e-38_f64.to_bits())}}),
+            true,
+        ),
     ];
-    assert_eq!(found.collect::<Vec<_>>(), expected);
+    let texts = cases.iter().map(|(case, _)| {
+        let mut case = case.clone();
+        if case.get("ok").is_none() {
+            case["error"] = json!("out_of_range");
+        }
+        case
+    });
+    let suite = Suite::of_files([group("a", texts.collect())].into()).unwrap();
+    let [single, exact] = ["f32", "exact"].map(|name| Profile::named(name).unwrap());
+    for (case, (text, extreme)) in suite.groups[0].cases.iter().zip(&cases) {
+        assert_eq!(single.is_extreme(case), *extreme, "{text}");
+        assert!(!exact.is_extreme(case));
+    }
+    // Wrong in mathematics and range, they do not count; in protocol they do.
+    let lost = Outcome::wrong(Class::Protocol, "");
+    let wrong = |class| vec![Outcome::wrong(class, ""); 8];
+    let failed = |measure: &Measure, outcomes: Vec<Outcome>| {
+        Verdict::new(&suite, measure, Program::default(), vec![outcomes], vec![]).failed()
+    };
+    let mut measure = measure("f32");
+    assert_eq!(failed(&measure, wrong(Class::Mathematics)), 4);
+    assert_eq!(failed(&measure, wrong(Class::Range)), 4);
+    assert_eq!(failed(&measure, vec![lost; 8]), 8);
+    measure.extreme = true;
+    assert_eq!(failed(&measure, wrong(Class::Mathematics)), 8);
+}
+
+// Verifies: ORA-067.
+#[test]
+fn what_is_required_decides_what_fails() {
+    let suite = two_groups();
+    let wrong = |class| Outcome::wrong(class, "");
+    let outcomes = vec![
+        vec![
+            Outcome::Acceptable("loose".into()),
+            wrong(Class::Protocol),
+            wrong(Class::Range),
+        ],
+        vec![
+            wrong(Class::Mathematics),
+            Outcome::Right,
+            Outcome::Skipped(String::new()),
+        ],
+    ];
+    for (require, failed) in [
+        (Require::Right, 4),
+        (Require::Acceptable, 3),
+        (Require::Range, 2),
+        (Require::Mathematics, 1),
+    ] {
+        let measure = Measure {
+            require,
+            ..measure("exact")
+        };
+        let verdict = Verdict::new(
+            &suite,
+            &measure,
+            Program::default(),
+            outcomes.clone(),
+            vec![],
+        );
+        assert_eq!(verdict.failed(), failed, "{require:?}");
+        assert!(
+            verdict
+                .failure()
+                .unwrap()
+                .starts_with(&format!("{failed} of 5 cases failed"))
+        );
+    }
+}
+
+// Verifies: ORA-058, ORA-052, ORA-066, VEC-018.
+#[test]
+fn a_wrong_answer_has_a_class() {
+    let one = json!({"a": 1.0, "b": 2.0});
+    let bits = json!({"a": "0x3ff0000000000000", "b": "0x4000000000000000"});
+    let cases = vec![
+        json!({"ok": one, "bits": bits}),
+        refusal(),
+        json!({"error": "bad_argument", "lenient": {"a": 1.0}}),
+        json!({"error": "bad_argument"}),
+        json!({"error": "overflow", "flags": []}),
+    ];
+    let suite = Suite::of_files([group("a", cases)].into()).unwrap();
+    for (case, answer, kind) in [
+        (0, json!({"ok": {"a": 1, "b": 2, "more": 3}}), "right"),
+        (0, json!({"ok": {"a": 1, "b": 3}}), "mathematics"),
+        (0, json!({"ok": {"a": 1}}), "protocol"),
+        (0, json!({"ok": {"a": "1", "b": 2}}), "protocol"),
+        (0, json!({"ok": {"a": null, "b": 2}}), "range"),
+        (0, json!({"ok": 1}), "protocol"),
+        (0, json!({"error": {"code": "x"}}), "range"),
+        (0, json!({"error": null}), "protocol"),
+        (0, json!({}), "protocol"),
+        (1, json!({"error": {"code": "x"}}), "right"),
+        (1, json!({"error": "x"}), "acceptable"),
+        (1, json!({"error": {}}), "acceptable"),
+        (1, json!({"error": 1}), "protocol"),
+        (1, json!({"ok": {"a": 1}}), "range"),
+        (2, json!({"ok": {"a": 1}}), "acceptable"),
+        (2, json!({"ok": {"a": 1.1}}), "protocol"),
+        (3, json!({"ok": {}}), "protocol"),
+        (4, json!({"ok": {}}), "range"),
+    ] {
+        let found = match judge(&suite.groups[0].cases[case], &answer, &Profile::exact()) {
+            Outcome::Right => "right",
+            Outcome::Acceptable(_) => "acceptable",
+            Outcome::Wrong(wrong) => wrong.class.name(),
+            Outcome::Skipped(_) => "skipped",
+        };
+        assert_eq!(found, kind, "{case} {answer}");
+    }
 }
 
 // Verifies: ORA-050.
@@ -113,13 +382,29 @@ fn bugs_are_counted_by_group_and_the_most_frequent_comes_first() {
 fn the_xml_counts_the_cases_that_it_holds() {
     let suite = two_groups();
     let outcomes = vec![
-        vec![Outcome::Skipped, Outcome::Skipped, Outcome::Skipped],
-        vec![failed(&["unit"]), Outcome::Refused, failed(&[])],
+        vec![
+            Outcome::Skipped(String::new()),
+            Outcome::Right,
+            Outcome::Acceptable("loose".into()),
+        ],
+        vec![
+            Outcome::wrong(Class::Range, ""),
+            Outcome::Right,
+            Outcome::wrong(Class::Protocol, ""),
+        ],
     ];
-    let verdict = Verdict::new(&suite, vec![], String::new(), outcomes, vec![]);
+    let mut measure = measure("exact");
+    measure.require = Require::Acceptable;
+    measure.accepted = vec![super::Accepted {
+        case: "b-2".into(),
+        reason: "known <&>".into(),
+    }];
+    let verdict = Verdict::new(&suite, &measure, Program::default(), outcomes, vec![]);
     let xml = junit(&verdict, &suite);
+    assert!(xml.contains("accepted, known &lt;&amp;&gt;"), "{xml}");
     let parts: Vec<&str> = xml.split("<testsuite ").collect();
     assert_eq!(parts.len(), 3);
+    assert_eq!(parts[2].matches("<failure").count(), 1);
     for part in [&xml[..], parts[1], parts[2]] {
         for (key, element) in [
             ("tests", "<testcase"),
@@ -150,4 +435,41 @@ fn what_a_program_says_is_quoted_short_and_plain() {
     assert_eq!(cut("a\u{1b}[2J\r\nγ"), "a\u{fffd}[2J\u{fffd}\u{fffd}γ");
     assert_eq!(cut(&"é".repeat(200)), "é".repeat(200));
     assert_eq!(cut(&"é".repeat(201)), "é".repeat(200) + "…");
+}
+
+// Verifies: ORA-057, ORA-064.
+#[test]
+fn requests_have_one_form_and_bounded_lines() {
+    let suite = Suite::embedded().unwrap();
+    for group in &suite.groups {
+        for case in &group.cases {
+            let line = case.line(&group.op);
+            assert!(
+                line.len() <= 65_536 && line.matches('\n').count() == 1,
+                "{}",
+                case.id
+            );
+            if matches!(case.question, super::Question::Arguments(_)) {
+                let value: Value = serde_json::from_str(&line).unwrap();
+                // A map of serde_json is sorted, and written without spaces.
+                assert_eq!(value.to_string() + "\n", line);
+            }
+        }
+    }
+    let one = suite
+        .select(&Choice {
+            case: vec!["theta_colored-004".into()],
+            ..Choice::default()
+        })
+        .unwrap();
+    let table = questions(&one, Form::Csv);
+    let cell = |place: &str| {
+        table
+            .lines()
+            .any(|row| row.starts_with(&format!("theta_colored-004,theta_colored,{place},")))
+    };
+    assert!(
+        cell("covariance,0,1") && cell("residual,0,") && !cell("residual,,"),
+        "{table}"
+    );
 }

@@ -2,9 +2,13 @@
 
 use std::fmt;
 
+use serde::Deserialize;
 use serde_json::Value;
 
-/// How far a number may be off.
+use super::text::shortened;
+use super::verdict::Class;
+
+/// How far a number may be off in exact work.
 ///
 /// Implements: VEC-004.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,19 +24,18 @@ pub enum Tolerance {
 }
 
 /// The distance of |value| to the next larger f64, 2⁻¹⁰⁷⁴ for zero.
-pub fn ulp(value: f64) -> f64 {
+fn ulp(value: f64) -> f64 {
     value.abs().next_up() - value.abs()
 }
 
 impl Tolerance {
-    /// Whether `found` is near enough to `expected`, with the tolerance taken `times`.
-    pub fn accepts(self, expected: f64, found: f64, times: f64) -> bool {
-        let distance = (found - expected).abs();
+    /// The largest distance from `expected` that passes.
+    pub fn allowed(self, expected: f64) -> f64 {
         match self {
-            Tolerance::Ulp(count) => distance <= times * count * ulp(expected),
-            Tolerance::Absolute(bound) => distance <= times * bound,
-            Tolerance::Relative(bound) => distance <= times * bound * expected.abs(),
-            Tolerance::Exact => found == expected,
+            Tolerance::Ulp(count) => count * ulp(expected),
+            Tolerance::Absolute(bound) => bound,
+            Tolerance::Relative(bound) => bound * expected.abs(),
+            Tolerance::Exact => 0.0,
         }
     }
 }
@@ -48,6 +51,69 @@ impl fmt::Display for Tolerance {
     }
 }
 
+/// What one unit roundoff of the working precision adds to the tolerance: one number for a whole value, or one for each entry of a list.
+///
+/// Implements: VEC-016.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum Condition {
+    /// For every number of the value.
+    All(f64),
+    /// For each entry.
+    Each(Vec<Condition>),
+}
+
+impl Condition {
+    /// The one of an entry; there is one, as [`Condition::fits`] found.
+    fn entry(&self, index: usize) -> &Condition {
+        match self {
+            Condition::All(_) => self,
+            Condition::Each(entries) => &entries[index],
+        }
+    }
+
+    /// Whether it has the shape of the value, and all its numbers can be.
+    pub fn fits(&self, value: &Value) -> bool {
+        match (self, value) {
+            (Condition::All(size), _) => (0.0..f64::INFINITY).contains(size),
+            (Condition::Each(entries), Value::Array(values)) => {
+                let mut pairs = entries.iter().zip(values);
+                entries.len() == values.len() && pairs.all(|(entry, value)| entry.fits(value))
+            }
+            _ => false,
+        }
+    }
+}
+
+/// How far a value may be off in a working precision.
+#[derive(Debug, Clone, Copy)]
+pub struct Limit<'a> {
+    /// In exact work.
+    pub tolerance: Tolerance,
+    /// So many times that is allowed.
+    pub times: f64,
+    /// What a unit roundoff adds.
+    pub condition: &'a Condition,
+    /// The unit roundoff.
+    pub unit_roundoff: f64,
+}
+
+impl Limit<'_> {
+    /// The largest distance from `expected` that passes.
+    fn allowed(&self, expected: f64) -> f64 {
+        let added = match self.condition {
+            Condition::All(condition) => self.unit_roundoff * condition,
+            Condition::Each(_) => 0.0,
+        };
+        self.times * self.tolerance.allowed(expected) + added
+    }
+
+    /// Whether `found` is near enough to `expected`.
+    pub fn accepts(&self, expected: f64, found: f64) -> bool {
+        found == expected || (found - expected).abs() <= self.allowed(expected)
+    }
+}
+
 /// Where and how an answer differs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
@@ -55,6 +121,8 @@ pub struct Difference {
     pub place: String,
     /// What is expected there and what was found.
     pub text: String,
+    /// Mathematics for a wrong value, protocol for one of another kind.
+    pub class: Class,
 }
 
 impl fmt::Display for Difference {
@@ -63,76 +131,76 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Whether the value at `place` is within `times` the tolerance of what is expected.
+/// Whether the value at `place` is within the limit of what is expected.
 ///
 /// # Errors
 /// The first difference.
 ///
-/// Implements: ORA-046.
+/// Implements: ORA-046, ORA-054.
 pub fn compare(
     place: &str,
     expected: &Value,
     found: &Value,
-    tolerance: Tolerance,
-    times: f64,
+    limit: Limit,
 ) -> Result<(), Difference> {
-    let differs = |text: String| {
+    let differs = |class, text: String| {
         let place = place.to_string();
-        Err(Difference { place, text })
+        Err(Difference { place, text, class })
     };
     match (expected, found) {
         (Value::Array(expected), Value::Array(found)) => {
             if expected.len() != found.len() {
-                return differs(format!(
-                    "has {} entries, expected {}",
-                    found.len(),
-                    expected.len()
-                ));
+                let (found, expected) = (found.len(), expected.len());
+                let text = format!("has {found} entries, expected {expected}");
+                return differs(Class::Mathematics, text);
             }
-            expected
-                .iter()
-                .zip(found)
-                .enumerate()
+            let pairs = expected.iter().zip(found).enumerate();
+            pairs
+                .into_iter()
                 .try_for_each(|(index, (expected, found))| {
-                    let place = format!("{place}[{index}]");
-                    compare(&place, expected, found, tolerance, times)
+                    let condition = limit.condition.entry(index);
+                    let limit = Limit { condition, ..limit };
+                    compare(&format!("{place}[{index}]"), expected, found, limit)
                 })
         }
         (Value::Number(expected), Value::Number(found)) => {
             // Without the feature for any precision every number has an f64.
             let (Some(e), Some(a)) = (expected.as_f64(), found.as_f64()) else {
-                return differs(format!("is {found}, expected {expected}"));
+                return differs(Class::Protocol, format!("is {found}, expected {expected}"));
             };
-            if tolerance.accepts(e, a, times) && a.is_finite() {
+            if limit.accepts(e, a) && a.is_finite() {
                 return Ok(());
             }
+            let within = match limit.allowed(e) {
+                allowed if limit.unit_roundoff > 0.0 => format!("{allowed:.2e}"),
+                _ => limit.tolerance.to_string(),
+            };
             let distance = (a - e).abs();
             let ulps = match distance / ulp(e) {
                 ulps if ulps < 1e6 => format!(", {ulps:.1} ulp"),
                 ulps if ulps.is_finite() => format!(", {ulps:.1e} ulp"),
                 _ => String::new(),
             };
-            differs(format!(
-                "is {found}, expected {expected} within {tolerance}: off by {distance:.2e}{ulps}"
-            ))
+            differs(
+                Class::Mathematics,
+                format!(
+                    "is {found}, expected {expected} within {within}: off by {distance:.2e}{ulps}"
+                ),
+            )
         }
         _ if expected == found => Ok(()),
-        _ => differs(format!("is {}, expected {expected}", shortened(found))),
+        _ => {
+            let class = match (expected, found) {
+                (Value::Number(_), Value::Null) => Class::Range,
+                (Value::String(_), Value::String(_)) | (Value::Bool(_), Value::Bool(_)) => {
+                    Class::Mathematics
+                }
+                _ => Class::Protocol,
+            };
+            differs(
+                class,
+                format!("is {}, expected {expected}", shortened(found)),
+            )
+        }
     }
-}
-
-/// A value as text, cut if it is long.
-pub fn shortened(value: &Value) -> String {
-    cut(&value.to_string())
-}
-
-/// A text of at most some 200 characters, without those that control a terminal.
-pub fn cut(text: &str) -> String {
-    const MOST: usize = 200;
-    let plain = |c: char| if c.is_control() { '\u{fffd}' } else { c };
-    let mut cut: String = text.chars().take(MOST).map(plain).collect();
-    if text.chars().nth(MOST).is_some() {
-        cut.push('…');
-    }
-    cut
 }
