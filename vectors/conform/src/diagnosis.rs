@@ -91,13 +91,16 @@ impl Found<'_> {
         flags.sort_by_cached_key(|flag| std::cmp::Reverse(alone(flag).map(|one| one.explains)));
         let mut found: Vec<Explanation> = flags.iter().filter_map(|flag| alone(flag)).collect();
         let best = found.first().map_or(0, |one| one.explains);
-        for (index, one) in flags.iter().enumerate() {
-            let pairs = flags[index + 1..]
-                .iter()
-                .filter_map(|other| self.explanation(&[one, other]));
-            // Two bugs are named only where they explain more than any one.
-            found.extend(pairs.filter(|pair| pair.explains > best));
-        }
+        let pairs = flags.iter().enumerate().flat_map(|(index, one)| {
+            let others = flags[index + 1..].iter();
+            others.filter_map(|other| self.explanation(&[one, other]))
+        });
+        // Two bugs are named only where they explain more than any one; of such pairs the best, of equals the first.
+        let pair = pairs.reduce(|best, pair| match pair.explains > best.explains {
+            true => pair,
+            false => best,
+        });
+        found.extend(pair.filter(|pair| pair.explains > best));
         found.retain(|one| 2 * one.explains >= self.wrong.len());
         // A stable sort: of equals, the first by name.
         found.sort_by_key(|one| (std::cmp::Reverse(one.explains), one.against));

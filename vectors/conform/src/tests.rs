@@ -140,9 +140,7 @@ fn measure(profile: &str) -> Measure {
     let profile = Profile::named(profile).unwrap();
     Measure {
         profile,
-        extreme: false,
-        require: Require::Right,
-        accepted: vec![],
+        ..Measure::exact()
     }
 }
 

@@ -121,6 +121,19 @@ pub struct Measure {
     pub accepted: Vec<Accepted>,
 }
 
+impl Measure {
+    /// The stated tolerances, and nothing but right answers.
+    pub fn exact() -> Measure {
+        let (profile, accepted) = (Profile::exact(), Vec::new());
+        Measure {
+            profile,
+            extreme: false,
+            require: Require::Right,
+            accepted,
+        }
+    }
+}
+
 /// The cases of one group, counted. Each stands in one of the columns after `cases`.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Count {

@@ -492,7 +492,7 @@ fn a_profile_widens_the_tolerance_by_the_condition() {
             .code()
     };
     for [profile, answer, code] in rows(
-        "exact | 0.8413447460685432 | 1\n f64 | 0.8413447460685432 | 0\n f64 | 0.8413447460685436 | 1
+        "exact | 0.8413447460685433 | 1\n f64 | 0.8413447460685433 | 0\n f64 | 0.8413447460685436 | 1
          f32 | 0.8413448 | 0\n f32 | 0.8413449 | 1\n coarse.json | 0.8433 | 0\n coarse.json | 0.8434 | 1",
     ) {
         assert_eq!(found(profile, answer, ""), Some(code.parse().unwrap()), "{profile} {answer}");
