@@ -8,14 +8,12 @@ rounding f64, reports by `struct`.
 import struct
 from fractions import Fraction
 
-from mpmath import besseli, exp, hyp1f1, isinf, log, loggamma, matrix, mp, mpf, pi, quad, sqrt
-
-mp.dps = 40
+from mpmath import besseli, exp, hyp1f1, isinf, log, loggamma, matrix, mpf, pi, quad, sqrt
 
 
 def real(value):
-    """An mpf of a float or a whole number, without loss."""
-    return mpf(value)
+    """An mpf of a float or a whole number without loss, of a fraction to all digits."""
+    return mpf(value.numerator) / value.denominator if isinstance(value, Fraction) else mpf(value)
 
 
 def lower(x):
