@@ -219,7 +219,8 @@ def of_case(op, case, tolerance):
     if "ok" in case:
         kappas = sensitivity(op, args)
         for key, values in numbers.items():
-            allow = lambda v: 2 * real(allowed(tolerance[key], v) / UNIT)
+            # Units in the last place of 0 are next to nothing.
+            allow = lambda v: 2 * real(allowed(tolerance[key], v) / UNIT) if v or "ulp" not in tolerance[key] else 0
             condition[key] = [bound(4 * k + 16 * abs(real(v)) + allow(v)) for v, k in zip(values, kappas[key])]
             size = SIZES.get(f"{op}.{key}", lambda a, ok: 0)(args, ok)
             limits += [max(abs(v), size) / (4 * c) for v, c in zip(values, condition[key]) if c and (v or size)]
