@@ -1,4 +1,5 @@
-"""The expected answers once more, by other ways than the generator's: for check.py.
+"""The expected answers once more, by other ways than the generator's: for check.py. The generator takes from here the
+formulas of conditions, and no expected value.
 
 Φ by its series and Mills' continued fraction, inverses by bisection, Θ as a difference of squared residuals, binomial
 tails by the continued fraction of the incomplete beta function, tails of quadratic statistics by integrals, f32 by

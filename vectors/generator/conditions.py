@@ -3,7 +3,7 @@
 The formulas are those of the second route, but where a function of the generator is faster: an expected value has its
 own source, of which two digits of a derivative are no part.
 
-Implements: VEC-017, VEC-018.
+Implements: VEC-016, VEC-017, VEC-018.
 """
 
 from fractions import Fraction
