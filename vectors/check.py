@@ -1,15 +1,16 @@
 """Checks the suite itself (VEC-014), with nothing of the generator: form, ids, flags, bits, wrong answers, manifest,
-counts, and each seventh expected answer by a second route.
+counts, conditions, and each seventh expected answer by a second route, once more with its arguments rounded to f32.
 
     python3 vectors/check.py [--all]
 
 With --all, every expected answer is computed again. Needs mpmath; jsonschema is used where it is installed.
 
-Implements: VEC-014.
+Implements: VEC-014, VEC-019.
 """
 
 import hashlib
 import json
+import math
 import re
 import struct
 import sys
@@ -19,13 +20,15 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 
 import second_route
-from mpmath import mpf
+from mpmath import mp, mpf
 
+mp.dps = 40
 HERE = Path(__file__).parent
 ERRORS = {"bad_json", "bad_request", "unknown_op", "bad_argument", "out_of_range", "overflow"}
 HEAD = {"schema", "schema_version", "group", "op", "source", "generator_version", "tolerance", "flags", "cases"}
-CASE = {"id", "comment", "args", "line", "ok", "bits", "error", "tolerance", "flags", "wrong"}
+CASE = {"id", "comment", "args", "line", "ok", "bits", "error", "tolerance", "condition", "roundoff", "flags", "wrong"}
 NOT_CASES = {"schema.json", "manifest.json"}
+F32, SMALLEST, LARGEST = 2.0**-24, 2.0**-126, (2 - 2.0**-23) * 2.0**127
 LEAST_CASES, LEAST_REFUSED, EACH = 1500, 250, 7
 
 problems = []
@@ -79,7 +82,7 @@ def check_form(name, data):
             complain(where, "either args or line, and either ok or error")
         if not re.fullmatch(data["group"] + r"-\d{3,}", where):
             complain(where, "id")
-        if "error" in case and (case["error"] not in ERRORS or {"bits", "wrong"} & set(case)):
+        if "error" in case and (case["error"] not in ERRORS or {"bits", "wrong", "condition"} & set(case)):
             complain(where, "error")
         if "\n" in case.get("line", ""):
             complain(where, "a line holds one line")
@@ -118,6 +121,39 @@ def check_numbers(data):
                 complain(case["id"], f"the wrong answer {item['flag']} is within ten tolerances")
 
 
+def check_conditions(data):
+    """Each has the shape of its value, or is one number, and is not below what size and tolerance alone ask for."""
+    for case in data["cases"]:
+        if not 0 < case.get("roundoff", 2.0**-12) < 2.0**-11:
+            complain(case["id"], "roundoff")
+        given = case.get("condition", {})
+        if not set(given) <= set(case.get("ok", {})) or given and data["op"] == "probe_force":
+            complain(case["id"], "keys of the condition")
+        for key, value in case.get("ok", {}).items() if data["op"] != "probe_force" else ():
+            expected, limit = list(leaves(value)), {**data["tolerance"], **case.get("tolerance", {})}[key]
+            if not any(isinstance(e, float) and e for e in expected):
+                continue
+            condition = conditions(given.get(key, []), value)
+            if len(condition) != len(expected):
+                complain(case["id"], f"shape of the condition of {key}")
+            for c, e in zip(condition, expected):
+                least = 16 * abs(rational(e)) + (bound(limit, e) * 2**54 if e else 0)
+                # What is far below the smallest normal number may be left out.
+                if not 0 <= c < math.inf or rational(c) * (1 + Fraction(1, 10**8)) < least > 2.0**-1000:
+                    complain(case["id"], f"the condition of {key} is {c!r}")
+
+
+def conditions(condition, value):
+    """Of each number of a value; a single one is that of all. None where they differ in shape."""
+    if not isinstance(value, list):
+        return [condition] if isinstance(condition, float) else []
+    if isinstance(condition, float):
+        return [condition] * len(list(leaves(value)))
+    if len(condition) != len(value):
+        return []
+    return [c for part, item in zip(condition, value) for c in conditions(part, item)]
+
+
 def far(wrong, right, limits):
     for key, expected in right.items():
         pairs = list(zip(leaves(wrong[key]), leaves(expected)))
@@ -153,6 +189,42 @@ def check_answer(case, answer, limits, printed):
             complain(case["id"], f"length of {key}")
 
 
+def numbers(value):
+    if isinstance(value, dict):
+        value = list(value.values())
+    return [v for v in leaves(value) if isinstance(v, (int, float)) and not isinstance(v, bool) and v]
+
+
+def is_extreme(case):
+    """Whether f32 cannot be asked: by its unit roundoff, or by its range."""
+    args, ok = map(numbers, (list(case["args"].values()), list(case["ok"].values())))
+    outside = not all(SMALLEST <= v * v <= LARGEST for v in args) or not all(SMALLEST <= abs(v) <= LARGEST for v in ok)
+    return outside or case.get("roundoff", 1) < F32
+
+
+def rounded(value):
+    """The f32 of each number."""
+    if isinstance(value, dict):
+        return {key: rounded(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [rounded(item) for item in value]
+    return second_route.f32(value) if isinstance(value, float) else value
+
+
+def check_rounded(case, route, answer):
+    """Arguments rounded to f32 move the answer by no more than 2⁻²⁴ of its condition, and decide nothing otherwise."""
+    try:
+        moved = route(rounded(case["args"]))
+    except (ArithmeticError, ValueError) as error:
+        complain(case["id"], f"with f32 arguments: {error!r}")
+        return
+    for key, value in case["ok"].items():
+        condition = conditions(case["condition"].get(key, 0.0), value)
+        for a, b, e, c in zip(leaves(answer[key]), leaves(moved[key]), leaves(value), condition):
+            if a != b if not isinstance(e, float) else abs(rational(a) - rational(b)) > rational(c * F32):
+                complain(case["id"], f"{key} with f32 arguments is {b}, not {a}")
+
+
 def check_second_route(data, every, count):
     route = getattr(second_route, data["op"], None)
     if route is None:
@@ -164,7 +236,10 @@ def check_second_route(data, every, count):
         if count % every == 0:
             limits = {**data["tolerance"], **case.get("tolerance", {})}
             printed = 2e-14 if data["op"] == "element_stiffness" else 0
-            check_answer(case, route(case["args"]), limits, printed)
+            answer = route(case["args"])
+            check_answer(case, answer, limits, printed)
+            if "condition" in case and not is_extreme(case):
+                check_rounded(case, route, answer)
     return count
 
 
@@ -243,6 +318,7 @@ def main():
         check_form(name, data)
         check_flags(name, data)
         check_numbers(data)
+        check_conditions(data)
         check_refusals(data)
         if data["op"] == "probe_force":
             check_probe(data)

@@ -57,4 +57,5 @@ def main():
     print(summary)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,4 +1,5 @@
-"""The expected answers once more, by other ways than the generator's: for check.py.
+"""The expected answers once more, by other ways than the generator's: for check.py. The generator takes from here the
+formulas of conditions, and no expected value.
 
 Φ by its series and Mills' continued fraction, inverses by bisection, Θ as a difference of squared residuals, binomial
 tails by the continued fraction of the incomplete beta function, tails of quadratic statistics by integrals, f32 by
@@ -8,14 +9,12 @@ rounding f64, reports by `struct`.
 import struct
 from fractions import Fraction
 
-from mpmath import besseli, exp, hyp1f1, isinf, log, loggamma, matrix, mp, mpf, pi, quad, sqrt
-
-mp.dps = 40
+from mpmath import besseli, exp, hyp1f1, isinf, log, loggamma, matrix, mpf, pi, quad, sqrt
 
 
 def real(value):
-    """An mpf of a float or a whole number, without loss."""
-    return mpf(value)
+    """An mpf of a float or a whole number without loss, of a fraction to all digits."""
+    return mpf(value.numerator) / value.denominator if isinstance(value, Fraction) else mpf(value)
 
 
 def lower(x):

@@ -3,7 +3,9 @@
 Implements: VEC-008.
 """
 
-from . import bank, coloured, decision, elements, filters, normal, nuisances, probe, proportions, quadratic, reports, requests
+from multiprocessing import Pool
+
+from . import bank, conditions, coloured, decision, elements, filters, normal, nuisances, probe, proportions, quadratic, reports, requests
 from . import scan, servo, tables, threshold
 from .suite import VERSION
 
@@ -14,5 +16,20 @@ TOPICS = (
 )
 
 
+def make(number):
+    return [make for topic in TOPICS for make in topic.GROUPS][number]()
+
+
+def found(question):
+    return conditions.of_case(*question)
+
+
 def all_groups():
-    return [make() for topic in TOPICS for make in topic.GROUPS]
+    """All groups with their conditions. Cases do not depend on each other, so that the number of processes changes nothing."""
+    with Pool() as pool:
+        groups = pool.map(make, range(sum(len(topic.GROUPS) for topic in TOPICS)), 1)
+        cases = [(group, case) for group in groups for case in group.cases]
+        questions = [(group.op, case, {**group.tolerance, **case.get("tolerance", {})}) for group, case in cases]
+        for (_, case), more in zip(cases, pool.map(found, questions, 8)):
+            conditions.add(case, more)
+    return groups

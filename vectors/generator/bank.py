@@ -85,6 +85,11 @@ class Hypotheses:
         }
 
 
+def hypotheses(args, space):
+    found = [None if is_explained(t, space) else theta_of(args, t, space) for t in args["templates"]]
+    return Hypotheses(found, reals(args["prior"]), real(args["prior_h1"]))
+
+
 REASONS = {
     "theta": "what T and γ of ACC-014 change, and ten roundings; the largest of the hypotheses",
     "theta_mixture": "as θ, and ten roundings",
@@ -184,9 +189,8 @@ def add(group, comment, residual, templates, nuisances, prior, level="known", pr
         "prior_h1": prior_h1,
     }
     space = Space(nuisances, len(residual))
-    found = [None if is_explained(t, space) else theta_of(args, t, space) for t in templates]
-    bounds, pairs = check(args, space, found)
-    right = Hypotheses(found, reals(prior), real(prior_h1))
+    right = hypotheses(args, space)
+    bounds, pairs = check(args, space, right.found)
     ok = right.answer()
     group.accept(comment, args, ok, wrong_answers(args, pairs, right, ok), tolerance=tolerances(bounds, right, ok))
 
