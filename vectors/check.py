@@ -26,7 +26,7 @@ mp.dps = 40
 HERE = Path(__file__).parent
 ERRORS = {"bad_json", "bad_request", "unknown_op", "bad_argument", "out_of_range", "overflow"}
 HEAD = {"schema", "schema_version", "group", "op", "source", "generator_version", "tolerance", "flags", "cases"}
-CASE = {"id", "comment", "args", "line", "ok", "bits", "error", "tolerance", "condition", "roundoff", "flags", "wrong"}
+CASE = {"id", "comment", "args", "line", "ok", "bits", "error", "lenient", "tolerance", "condition", "roundoff", "flags", "wrong"}
 NOT_CASES = {"schema.json", "manifest.json"}
 F32, SMALLEST, LARGEST = 2.0**-24, 2.0**-126, (2 - 2.0**-23) * 2.0**127
 LEAST_CASES, LEAST_REFUSED, EACH = 1500, 250, 7
@@ -84,6 +84,8 @@ def check_form(name, data):
             complain(where, "id")
         if "error" in case and (case["error"] not in ERRORS or {"bits", "wrong", "condition"} & set(case)):
             complain(where, "error")
+        if "lenient" in case and "error" not in case:
+            complain(where, "lenient is of what must be refused")
         if "\n" in case.get("line", ""):
             complain(where, "a line holds one line")
 

@@ -14,7 +14,7 @@ from mpmath import mpf, sqrt, workdps
 
 from . import bank, normal, nuisances, proportions, quadratic
 from .numbers import UNIT, Draws, exact, nearest, real, round_up
-from .suite import allowed, leaves
+from .suite import UNKNOWN, allowed, leaves, settle
 
 second_route.lower, second_route.inverse = normal.cdf, normal.quantile
 
@@ -209,8 +209,8 @@ def shaped(value, items):
 
 
 def of_case(op, case, tolerance):
-    """`condition` and `roundoff` of a case, as far as it has them."""
-    args, ok, limits = case.get("args"), case.get("ok", {}), [2.0]
+    """`condition`, `roundoff` and `lenient` of a case, as far as it has them."""
+    args, ok, limits, lenient = case.get("args"), case.get("ok", {}), [2.0], {}
     numbers = {key: list(leaves(value)) for key, value in ok.items()}
     numbers = {key: values for key, values in numbers.items() if isinstance(values[0], float)}
     condition = {}
@@ -227,12 +227,16 @@ def of_case(op, case, tolerance):
         limits += of_answer(op, args, ok, condition)
     else:
         limits += of_refusal(args or {}, case["flags"])
+        if UNKNOWN in (args or {}) and op != "probe_force":
+            meant = {key: value for key, value in args.items() if key != UNKNOWN}
+            lenient = {"lenient": settle(formula(op)(meant))}
     limits += next_to_one(args or {})
     found = {key: shaped(ok[key], iter(values)) for key, values in condition.items() if any(values)}
     if op == "element_stiffness" and found:
         found = {"stiffness": max(condition["stiffness"])}
     least = min(limits)
     return {
+        **lenient,
         **({"condition": found} if found else {}),
         **({"roundoff": 2.0 ** (frexp(nearest(least))[1] - 1)} if least < COARSEST else {}),
     }

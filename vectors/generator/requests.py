@@ -1,6 +1,21 @@
 """Lines that no op owns: all must be answered by an error, and the program goes on (spec/oracle.md)."""
 
+from mpmath import sqrt
+
+from .normal import cdf
 from .suite import Group
+
+ONE, HALF = ({"p_correct": cdf(gamma / sqrt(2))} for gamma in (1, 0.5))
+MEANT = {
+    "a comma too many": ONE,
+    "a comment": ONE,
+    "a leading plus": ONE,
+    "a hexadecimal number": ONE,
+    "a number that ends with its point": ONE,
+    "a number that begins with its point": HALF,
+    "another key": ONE,
+}
+"""What two_afc answers to lines that are right in a looser JSON, or but for a key."""
 
 
 # Verifies: ORA-005, ORA-006, ORA-009.
@@ -34,7 +49,7 @@ def requests():
         "a form": "op=two_afc&gamma=1",
     }
     for comment, line in no_json.items():
-        group.raw(comment, line, "bad_json", ["no_request"])
+        group.raw(comment, line, "bad_json", ["no_request"], MEANT.get(comment))
     not_finite = {
         "NaN": '{"id":"ID","op":"two_afc","args":{"gamma":NaN}}',
         "−NaN": '{"id":"ID","op":"two_afc","args":{"gamma":-NaN}}',
@@ -69,7 +84,7 @@ def requests():
         "op a list": '{"id":"ID","op":["two_afc"],"args":{"gamma":1}}',
     }
     for comment, line in no_request.items():
-        group.raw(comment, line, "bad_request", ["no_request"])
+        group.raw(comment, line, "bad_request", ["no_request"], MEANT.get(comment))
     unknown = {
         "no such op": '{"id":"ID","op":"three_afc","args":{"gamma":1}}',
         "an empty op": '{"id":"ID","op":"","args":{}}',

@@ -127,10 +127,11 @@ class Group:
         line = f'{{"id":"{name}","op":"{self.op}","args":{args_text}}}'
         self._add({"comment": comment, "line": line, "error": error, "flags": list(flags)})
 
-    def raw(self, comment, line, error, flags):
-        """A whole line that must be refused; `ID` in it stands for the case's id."""
+    def raw(self, comment, line, error, flags, lenient=None):
+        """A whole line that must be refused; `ID` in it stands for the case's id. `lenient` is the answer to what it means."""
         name = f"{self.name}-{len(self.cases) + 1:03}"
-        self._add({"comment": comment, "line": line.replace("ID", name), "error": error, "flags": list(flags)})
+        meant = {"lenient": settle(lenient)} if lenient else {}
+        self._add({"comment": comment, "line": line.replace("ID", name), "error": error, **meant, "flags": list(flags)})
 
     def text(self):
         """The file: a case a line, so that a change of one case is a change of one line."""
@@ -153,6 +154,9 @@ class Group:
 def dumps(value):
     return json.dumps(value, ensure_ascii=True, allow_nan=False, separators=(", ", ": "))
 
+
+UNKNOWN = "gama"
+"""A name that no op has for an argument."""
 
 COMMON = ("not_finite", "wrong_type", "missing_argument", "unknown_argument")
 
@@ -182,4 +186,4 @@ def refuse_common(group, args, numbers, lists=()):
         group.refuse(
             f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"]
         )
-    group.refuse("an argument that the op does not have", {**args, "gama": 1}, "bad_argument", ["unknown_argument"])
+    group.refuse("an argument that the op does not have", {**args, UNKNOWN: 1}, "bad_argument", ["unknown_argument"])

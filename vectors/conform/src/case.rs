@@ -40,7 +40,7 @@ pub enum Expected {
         /// What a program does wrong that answers.
         class: Class,
         /// The answer of a program that reads the request as it is meant, where it can be.
-        lenient: Vec<Wanted>,
+        lenient: Map<String, Value>,
     },
 }
 

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use super::case::{BugAnswer, Case, Expected, Wanted};
 use super::profile::Profile;
 use super::text::shortened;
-use super::tolerance::{Difference, Limit, compare};
+use super::tolerance::{Condition, Difference, Limit, Tolerance, compare};
 use super::verdict::{Class, Outcome, Traces, Wrong};
 
 /// Judges the answer to a case: a JSON value whose id was found to be right.
@@ -67,11 +67,8 @@ fn judge_values(case: &Case, ok: &Value, profile: &Profile) -> Outcome {
             }),
         },
         Expected::Refusal { class, lenient } => {
-            let is_as_meant = lenient
-                .iter()
-                .all(|wanted| differs(wanted, found, profile).is_none());
             let reason = format!("answered {}, but must be refused", shortened(ok));
-            if is_as_meant && !lenient.is_empty() {
+            if is_as_meant(lenient, found) {
                 return Outcome::Acceptable(reason);
             }
             // What the case shows is what was not refused.
@@ -83,6 +80,24 @@ fn judge_values(case: &Case, ok: &Value, profile: &Profile) -> Outcome {
             })
         }
     }
+}
+
+/// Whether a request that must be refused was answered as it was meant; the tolerance tells that from other readings.
+///
+/// Implements: ORA-066.
+fn is_as_meant(lenient: &Map<String, Value>, found: &Map<String, Value>) -> bool {
+    let limit = Limit {
+        tolerance: Tolerance::Relative(1e-6),
+        times: 1.0,
+        condition: &Condition::All(0.0),
+        unit_roundoff: 0.0,
+    };
+    let is_near = |(key, value): (&String, &Value)| {
+        found
+            .get(key)
+            .is_some_and(|found| compare(key, value, found, limit).is_ok())
+    };
+    !lenient.is_empty() && lenient.iter().all(is_near)
 }
 
 /// The difference of an answer from one wanted value.

@@ -238,7 +238,7 @@ fn classes_are_diagnosed_apart() {
 }
 
 /// Normal numbers of f32 are from 2⁻¹²⁶ to 2¹²⁸, whose roots are 2⁻⁶³ and 2⁶⁴.
-// Verifies: ORA-056, VEC-017.
+// Verifies: ORA-056, VEC-018.
 #[test]
 fn extreme_cases_are_those_beyond_the_precision() {
     let power = |exponent| 2.0_f64.powi(exponent);
@@ -332,7 +332,7 @@ fn what_is_required_decides_what_fails() {
     }
 }
 
-// Verifies: ORA-058, ORA-052, ORA-066, VEC-018.
+// Verifies: ORA-058, ORA-052, ORA-066, VEC-020.
 #[test]
 fn a_wrong_answer_has_a_class() {
     let one = json!({"a": 1.0, "b": 2.0});

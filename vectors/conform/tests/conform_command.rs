@@ -420,7 +420,6 @@ fn files_that_are_not_valid_are_refused_with_file_and_case() {
         /cases/1/condition | {"p_correct": [1]} | case choice-002, another shape
         /cases/1/condition | {"p_correct": -1} | case choice-002, another shape
         /cases/1/roundoff | 1 | case choice-002, roundoff = 1
-        /cases/2/lenient | {"p": 1} | case choice-003, no tolerance
         /cases/1/wrong/0/flag | "negative" | case choice-002, negative
         /cases | [] | no cases
         "#,
