@@ -4,6 +4,7 @@ An op is a function. Each of its arguments is annotated with the function of thi
 """
 
 import json
+import struct
 import sys
 from inspect import get_annotations
 
@@ -82,7 +83,7 @@ def same_length(*lists):
 def single(value):
     """An f32 by its bits."""
     refuse_if(len(text(value)) != 10 or value[:2] != "0x" or not value[2:].isalnum(), "bad_argument", "expected 0x and 8 digits")
-    return np.frombuffer(bytes.fromhex(value[2:]), ">f4")[0].astype(np.float32)
+    return np.float32(struct.unpack(">f", bytes.fromhex(value[2:]))[0])
 
 
 def knots(value):
@@ -93,7 +94,7 @@ def knots(value):
 
 
 def bits(number):
-    return "0x" + np.float32(number).astype(">f4").tobytes().hex()
+    return "0x" + struct.pack(">f", number).hex()
 
 
 # Requests and answers
