@@ -12,6 +12,7 @@
 #include "oracle_lines.h"
 
 #include <float.h>
+#include <stdint.h>
 #include <tgmath.h>
 
 #define EPSILON (sizeof(REAL) == sizeof(float) ? (REAL)FLT_EPSILON : (REAL)DBL_EPSILON)
@@ -221,6 +222,67 @@ static void interpolate(void) {
     give("force_n", (1 - s) * ((1 - t) * above[0] + t * above[1]) + s * ((1 - t) * below[0] + t * below[1]));
 }
 
+/* ---- The servo kernel's table: floats to the bit, in this order of operations (VEC-011) ---- */
+
+static float single_of(const json_t *value) {
+    const char *digits = json_is_string(value) ? json_string_value(value) : "";
+    if (strlen(digits) != 10 || strncmp(digits, "0x", 2) != 0 || strspn(digits + 2, "0123456789abcdef") != 8)
+        refuse("bad_argument", "expected 0x and eight hexadecimal digits");
+    union { uint32_t bits; float number; } both = {(uint32_t)strtoul(digits, NULL, 16)};
+    return both.number;
+}
+
+static void give_bits(const char *name, float value) {
+    union { float number; uint32_t bits; } both = {value};
+    json_object_set_new(call.ok, name, json_sprintf("0x%08lx", (unsigned long)both.bits));
+}
+
+static List servo_knots(const char *name) {
+    List knots = list(name);
+    int fits = 2 <= knots.n && knots.n <= 1024;
+    for (size_t i = 0; i < knots.n; i++)
+        fits = fits && fabs(knots.at[i]) <= 1 && (i == 0 || (float)knots.at[i] - (float)knots.at[i - 1] >= 1e-6f);
+    if (!fits) refuse("out_of_range", "expected 2 to 1024 knots within 1 m, each at least 1 um above the one before");
+    return knots;
+}
+
+/* One cell beyond the axis at most. */
+static size_t servo_locate(List knots, float x, float *fraction) {
+    size_t cell = 0;
+    while (cell + 2 < knots.n && (float)knots.at[cell + 1] <= x) cell++;
+    float start = (float)knots.at[cell], end = (float)knots.at[cell + 1];
+    float low = x < (float)knots.at[0] ? -1 : x >= (float)knots.at[knots.n - 1] ? 1 : 0;
+    *fraction = fminf(fmaxf((x - start) * (1 / (end - start)), low), low + 1);
+    return cell;
+}
+
+static float blend(float a, float b, float t) {
+    float value = (1 - t) * a + t * b;
+    return t < 0 || t > 1 ? value : fminf(fmaxf(value, fminf(a, b)), fmaxf(a, b));
+}
+
+static void servo_axis(void) {
+    float fraction;
+    give_whole("cell", servo_locate(servo_knots("knots"), single_of(argument("coordinate_bits")), &fraction));
+    give_bits("fraction_bits", fraction);
+}
+
+static void servo_interpolate(void) {
+    List depths = servo_knots("depth_knots"), laterals = servo_knots("lateral_knots");
+    const json_t *table = argument("table_bits"), *row;
+    float depth = single_of(argument("depth_bits")), lateral = single_of(argument("lateral_bits")), s, t, edge[2] = {0, 0};
+    size_t i = servo_locate(depths, depth, &s), j = servo_locate(laterals, lateral, &t);
+    if (json_array_size(table) != depths.n) refuse("bad_argument", "expected a row of forces for each depth");
+    for (size_t k = 0; k < depths.n; k++) {
+        row = json_array_get(table, k);
+        if (json_array_size(row) != laterals.n) refuse("bad_argument", "expected a force for each lateral position");
+        for (size_t c = 0; c < laterals.n; c++)
+            if (!(fabsf(single_of(json_array_get(row, c))) <= 100)) refuse("out_of_range", "a force is beyond 100 N");
+        if (k == i || k == i + 1) edge[k - i] = blend(single_of(json_array_get(row, j)), single_of(json_array_get(row, j + 1)), t);
+    }
+    give_bits("force_bits", depth < 0 ? 0 : blend(edge[0], edge[1], s));
+}
+
 /* ---- All of them ---- */
 
 #define OP(name) {#name, name}
@@ -228,6 +290,6 @@ static void interpolate(void) {
 int main(void) {
     static const Op ops[] = {OP(normal_cdf), OP(normal_quantile), OP(two_afc), OP(gamma_from_two_afc), OP(error_rates), OP(roc),
                              OP(threshold), OP(required_gamma), OP(noise_budget), OP(matched_filter), OP(theta), OP(theta_colored),
-                             OP(scan), OP(interpolate)};
+                             OP(scan), OP(interpolate), OP(servo_axis), OP(servo_interpolate)};
     answer_lines(ops, COUNT(ops));
 }

@@ -141,7 +141,7 @@ end
 function ok = theta_nuisances(a)
   n = numel(a.residual); known = strcmp(a.level, "known");
   refuse_if(!known && !strcmp(a.level, "unknown"), "out_of_range", "level is known or unknown");
-  refuse_if(numel(a.template) != n || !any(size(a.nuisances, 2) == [0, n]), "bad_argument", "lengths differ");
+  refuse_if(numel(a.template) != n || !isempty(a.nuisances) && columns(a.nuisances) != n, "bad_argument", "lengths differ");
   basis = zeros(n, 0);
   for signal = a.nuisances'
     left = beside(basis, signal / max(norm(signal), realmin));

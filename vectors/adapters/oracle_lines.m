@@ -1,5 +1,5 @@
-% The oracle's lines (spec/oracle.md) for an implementation in Octave. jsondecode keeps the last of two equal keys, and numbers only to
-% some last places: so they are made texts before, "#0.1" for 0.1, which also tells [1] from 1. Two equal keys are not refused.
+% The oracle's lines (spec/oracle.md) for an implementation in Octave. jsondecode gets the last place of numbers wrong, and
+% cannot tell [1] from 1: so numbers are made texts before, "#0.1" for 0.1. It also keeps the last of two equal keys.
 1;
 
 function refuse_if(condition, code, message)
@@ -69,7 +69,7 @@ function ok = answer(op, args)
     ok = struct("version", ["Octave " version()], "ops", {fieldnames(ops)});
     return
   end
-  refuse_if(!ischar(op) || !isfield(ops, op), "unknown_op", "no such op");
+  refuse_if(!any(strcmp(op, fieldnames(ops))), "unknown_op", "no such op");
   refuse_if(!isstruct(args) || !isscalar(args), "bad_argument", "args is expected to be an object");
   readers = ops.(op);
   if strcmp(op, "threshold")
@@ -100,6 +100,8 @@ function s = reply(line)
   try
     depth = max(cumsum((line == "[" | line == "{") - (line == "]" | line == "}")));
     refuse_if(depth > 100 || !strncmp(line, "{", 1), "bad_json", "no object, or nested too deeply");
+    keys = regexp(line, '"(\w*)"\s*:', "tokens");
+    refuse_if(numel(unique([keys{:}])) < numel(keys) || !isempty(strfind(line, '\u0000')), "bad_request", "a key twice, or a zero in a text");
     tagged = '([\[,:]\s*)(-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][-+]?[0-9]+)?)(?=\s*[\],}])';
     request = jsondecode(regexprep(line, tagged, '$1"#$2"'));
     refuse_if(!all(isfield(request, {"id", "op"})) || !ischar(request.id), "bad_request", "expected an object with id and op");
