@@ -1,10 +1,10 @@
 /* The oracle's ops (spec/oracle.md) in plain C11, as firmware would compute them: libm, no palpate, and no double unless asked for.
 
-       gcc -std=c11 -O2 -DREAL=float adapter.c -o adapter -ljansson -lm
+       gcc -std=c11 -O2 -ffp-contract=off -DREAL=float adapter.c -o adapter -ljansson -lm
        palpate-conform --profile f32 -- ./adapter
 
    REAL, double (profile f64) or float (profile f32), is the precision of every number, sum and function: <tgmath.h> takes erfcf for
-   erfc where the argument is a float. */
+   erfc where the argument is a float. The servo kernel needs -ffp-contract=off: fused operations give other bits. */
 #define _POSIX_C_SOURCE 200809L
 #ifndef REAL
 #define REAL double

@@ -107,7 +107,8 @@ end
 
 function ok = theta_colored(a)
   n = numel(a.residual); k = a.covariance;
-  refuse_if(mod(n, 2) || numel(a.template) != n || any(size(k) != n), "bad_argument", "expected an even number of samples, and a row for each");
+  refuse_if(mod(n, 2), "bad_argument", "two channels have an even number of samples");
+  refuse_if(numel(a.template) != n || any(size(k) != n), "bad_argument", "lengths differ");
   variances = diag(k);
   refuse_if(any(variances <= 0), "out_of_range", "a variance is not above 0");
   sd = sqrt(variances);
@@ -191,7 +192,8 @@ function ops = all_ops()
   noise = "positive noise_sd_x positive noise_sd_y"; rates = "probability max_false_alarm probability max_miss";
   series = @(varargin) [sprintf("samples %s_x samples %s_y ", [varargin; varargin]{:}) noise];
   ops = struct("normal_cdf", "number x", "normal_quantile", "probability p", "two_afc", "not_negative gamma",
-    "gamma_from_two_afc", "probability p_correct", "error_rates", "not_negative gamma number eta", "roc", "not_negative gamma samples false_alarm",
+    "gamma_from_two_afc", "probability p_correct", "error_rates", "not_negative gamma number eta",
+    "roc", "not_negative gamma samples false_alarm",
     "required_gamma", rates, "noise_budget", ["positive signal_n numbers sources_n " rates], "threshold", "",
     "matched_filter", series("template"), "theta", series("observed", "f0", "f1"), "scan", series("residual", "template"),
     "theta_colored", "samples residual samples template matrix covariance", "interpolate",
@@ -201,7 +203,8 @@ end
 
 function readers = threshold_arguments(criterion)
   all = struct("map", "probability prior_h1", "bayes", "probability prior_h1 number c00 number c01 number c10 number c11",
-    "neyman_pearson_miss", "not_negative gamma probability max_miss", "neyman_pearson_false_alarm", "positive gamma probability max_false_alarm");
+    "neyman_pearson_miss", "not_negative gamma probability max_miss",
+    "neyman_pearson_false_alarm", "positive gamma probability max_false_alarm");
   refuse_if(!ischar(criterion) || !isfield(all, criterion), "out_of_range", "no such criterion");
   readers = ["word criterion " all.(criterion)];
 end

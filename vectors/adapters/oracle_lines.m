@@ -88,7 +88,7 @@ function s = encode(value)
   elseif iscell(value)
     s = ["[" strjoin(cellfun(@encode, value(:)', "UniformOutput", false), ",") "]"];
   elseif ischar(value)
-    s = ['"' regexprep(value, '[\\"]', '\\$0') '"'];
+    s = jsonencode(value); % of numbers it would write five digits
   else
     refuse_if(!isfinite(value), "overflow", "the answer is no finite number");
     s = sprintf("%.17g", value);
@@ -101,7 +101,8 @@ function s = reply(line)
     depth = max(cumsum((line == "[" | line == "{") - (line == "]" | line == "}")));
     refuse_if(depth > 100 || !strncmp(line, "{", 1), "bad_json", "no object, or nested too deeply");
     keys = regexp(line, '"(\w*)"\s*:', "tokens");
-    refuse_if(numel(unique([keys{:}])) < numel(keys) || !isempty(strfind(line, '\u0000')), "bad_request", "a key twice, or a zero in a text");
+    refuse_if(numel(unique([keys{:}])) < numel(keys), "bad_request", "a key stands twice");
+    refuse_if(!isempty(strfind(line, '\u0000')), "bad_json", "a text with a zero");
     tagged = '([\[,:]\s*)(-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][-+]?[0-9]+)?)(?=\s*[\],}])';
     request = jsondecode(regexprep(line, tagged, '$1"#$2"'));
     refuse_if(!all(isfield(request, {"id", "op"})) || !ischar(request.id), "bad_request", "expected an object with id and op");

@@ -140,7 +140,7 @@ def answer(line, ops):
         return {"id": name, "ok": {key: plain(value) for key, value in call(ops[request["op"]], args).items()}}
     except Refused as refused:
         code, message = refused.args
-    except (ValueError, RecursionError) as error:
+    except (ValueError, RecursionError, struct.error) as error:
         code, message = "bad_json" if name is None else "out_of_range", str(error)
     except Exception as error:
         code, message = "failed", repr(error)

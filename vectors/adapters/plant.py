@@ -1,4 +1,4 @@
-"""`plant.py CONFORM FOLDER`: does profile f32 still find bugs? Plants each in the C adapter in float, and asks it the vectors: each must fail."""
+"""`plant.py CONFORM FOLDER`: plants bugs in the C adapter, in float, and asks it the vectors in profile f32: with each it must fail."""
 
 import subprocess
 import sys

@@ -3,7 +3,8 @@
 import numpy as np
 import scipy
 import scipy_tables
-from oracle_lines import answer_lines, call, limited, listed, not_negative, positive, probability, real, refuse_if, rows, same_length, series, text, whole
+from oracle_lines import (answer_lines, call, limited, listed, not_negative, positive, probability, real, refuse_if, rows, same_length,
+                          series, text, whole)  # fmt: skip
 from scipy import linalg, special, stats
 
 share, size, degrees_of_freedom, centre = limited(0, 1), limited(0, 1e152), limited(0.1, 2e6), limited(0, 1e8)

@@ -11,7 +11,8 @@ from oracle_lines import bits, knots, limited, listed, positive, real, refuse_if
 
 
 def interpolate(depths_m: series, laterals_m: series, table_n: rows, depth_m: real, lateral_m: real):
-    refuse_if(table_n.shape != (len(depths_m), len(laterals_m)) or min(table_n.shape) < 2, "bad_argument", "the table does not fit its axes")
+    fits = table_n.shape == (len(depths_m), len(laterals_m)) and min(table_n.shape) >= 2
+    refuse_if(not fits, "bad_argument", "the table does not fit its axes")
     for axis in (depths_m, laterals_m):
         refuse_if(np.any(np.diff(axis) <= 0), "out_of_range", "the axis does not increase")
     law = RegularGridInterpolator((depths_m, laterals_m), table_n, bounds_error=False, fill_value=None)
