@@ -166,6 +166,23 @@ def not_symmetric():
     right.theta_colored = lower_triangle
 
 
+def sign_exchanged():
+    for op in ("theta", "theta_colored"):
+        changed(op, lambda ok, _: {**ok, "theta": -ok["theta"]})
+
+
+def total_for_remaining():
+    changed("noise_budget", lambda ok, _: {**ok, "remaining_n": ok["total_allowed_n"]})
+
+
+def shift_reversed():
+    changed("scan", lambda ok, _: {**ok, "theta": ok["theta"][::-1], "argmax": ok["theta"][::-1].index(ok["max_theta"])})
+
+
+def chi2_one_cell():
+    changed("count_analysis", lambda ok, _: {**ok, "chi2": [x * (1 - p) for x, p in zip(ok["chi2"], ok["rate"])]})
+
+
 BUGS = {
     bug.__name__: bug
     for bug in (
@@ -195,11 +212,20 @@ BUGS = {
         sign_ignored,
         axes_not_increasing,
         not_symmetric,
+        sign_exchanged,
+        total_for_remaining,
+        shift_reversed,
+        chi2_one_cell,
     )
 }
 
-if __name__ == "__main__":
-    if len(sys.argv) != 2 or sys.argv[1] not in BUGS:
-        sys.exit("wrong.py BUG, one of: " + " ".join(BUGS))
-    BUGS[sys.argv[1]]()
+
+def main(name, bugs):
+    if len(sys.argv) != 2 or sys.argv[1] not in bugs:
+        sys.exit(f"{name} BUG, one of: " + " ".join(bugs))
+    bugs[sys.argv[1]]()
     right.main()
+
+
+if __name__ == "__main__":
+    main("wrong.py", BUGS)
