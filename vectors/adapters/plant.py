@@ -1,4 +1,7 @@
-"""`plant.py CONFORM FOLDER`: plants bugs in the C adapter, in float, and asks it the vectors in profile f32: with each it must fail."""
+"""`plant.py CONFORM FOLDER`: plants bugs in the C adapter, in float, and asks it the vectors in profile f32: with each it must fail.
+
+Implements: ORA-072.
+"""
 
 import subprocess
 import sys

@@ -1,4 +1,7 @@
-"""The oracle's ops (spec/oracle.md) with the mathematics of SciPy and NumPy: `palpate-conform --profile f64 -- python scipy_adapter.py`."""
+"""The oracle's ops (spec/oracle.md) with the mathematics of SciPy and NumPy: `palpate-conform --profile f64 -- python scipy_adapter.py`.
+
+Implements: ORA-071.
+"""
 
 import numpy as np
 import scipy

@@ -15,7 +15,10 @@ MEANT = {
     "a number that begins with its point": HALF,
     "another key": ONE,
 }
-"""What two_afc answers to lines that are right in a looser JSON, or but for a key."""
+"""What two_afc answers to lines that are right in a looser JSON, or but for a key.
+
+Implements: VEC-020.
+"""
 
 
 # Verifies: ORA-005, ORA-006, ORA-009.

@@ -1,4 +1,7 @@
-//! `palpate-conform`: another program against the vectors (`spec/oracle.md`).
+//! `palpate-conform`: another program against the vectors (`spec/oracle.md`). It shares no code with the implementation in this
+//! repository, whose oracle it asks as it asks others.
+//!
+//! Implements: ORA-070.
 
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -170,7 +173,7 @@ fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Implements: ORA-040, ORA-049, ORA-050, ORA-051, ORA-059, ORA-063.
+/// Implements: ORA-040, ORA-049, ORA-050, ORA-051, ORA-063, ORA-074.
 fn work(arguments: Arguments) -> Result<(), Failure> {
     match arguments.work {
         None => conform(&arguments),

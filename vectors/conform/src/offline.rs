@@ -41,7 +41,7 @@ pub fn questions(suite: &Suite, form: Form) -> String {
 /// # Errors
 /// A file that cannot be read, questions that are not of this suite, and rows of a table that are none.
 ///
-/// Implements: ORA-063, ORA-064.
+/// Implements: ORA-075, ORA-076.
 pub fn judge_files(
     suite: &Suite,
     skip: &[String],

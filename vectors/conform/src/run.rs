@@ -59,7 +59,7 @@ pub enum ConformError {
 /// # Errors
 /// [`ConformError`]; a program that answers wrongly, or ends, has a verdict.
 ///
-/// Implements: ORA-042, ORA-043, ORA-044, ORA-045.
+/// Implements: ORA-042, ORA-043, ORA-044, ORA-045, ORA-069.
 pub fn run(
     suite: &Suite,
     settings: &Settings,

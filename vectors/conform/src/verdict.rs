@@ -98,6 +98,8 @@ pub enum Require {
 
 impl Require {
     /// Whether an answer may be wrong in this class, or acceptable, which is no class.
+    ///
+    /// Implements: ORA-067.
     fn allows(self, class: Option<Class>) -> bool {
         match class {
             None => self != Require::Right,

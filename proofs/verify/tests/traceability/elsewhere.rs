@@ -12,7 +12,7 @@ const RECORDS: &str = "cargo test --release --test real_records -- --ignored";
 const BANK: &str = "cargo test --release --test bank_of_the_paper -- --ignored";
 
 /// Evidence that `cargo test` does not run, or skips where a program is missing: by the beginning of its name, with what runs it.
-const ELSEWHERE: [(&str, &str); 24] = [
+const ELSEWHERE: [(&str, &str); 25] = [
     ("tests/hid-stack/", "tests/hid-stack/run"),
     ("tests/accuracy.rs", WITNESSES),
     ("tests/vectors_suite.rs", WITNESSES),
@@ -37,6 +37,7 @@ const ELSEWHERE: [(&str, &str); 24] = [
     ("bindings/c/", "bindings/c/run"),
     ("contrib/github/", "contrib/github/check"),
     ("bindings/python/", "bindings/python/run"),
+    ("vectors/adapters/", "vectors/adapters/run"),
 ];
 
 /// What runs a test or proof that `cargo test` does not run, or skips where a program is missing.
