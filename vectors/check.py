@@ -28,7 +28,7 @@ ERRORS = {"bad_json", "bad_request", "unknown_op", "bad_argument", "out_of_range
 HEAD = {"schema", "schema_version", "group", "op", "source", "generator_version", "tolerance", "flags", "cases"}
 CASE = {"id", "comment", "args", "line", "ok", "bits", "error", "lenient", "tolerance", "condition", "roundoff", "flags", "wrong"}
 NOT_CASES = {"schema.json", "manifest.json"}
-F32, SMALLEST, LARGEST = 2.0**-24, 2.0**-126, (2 - 2.0**-23) * 2.0**127
+F32, LEAST, SMALLEST, LARGEST = 2.0**-24, 2.0**-149, 2.0**-126, (2 - 2.0**-23) * 2.0**127
 LEAST_CASES, LEAST_REFUSED, EACH = 1500, 250, 7
 
 problems = []
@@ -223,7 +223,7 @@ def check_rounded(case, route, answer):
     for key, value in case["ok"].items():
         condition = conditions(case["condition"].get(key, 0.0), value)
         for a, b, e, c in zip(leaves(answer[key]), leaves(moved[key]), leaves(value), condition):
-            if a != b if not isinstance(e, float) else abs(rational(a) - rational(b)) > rational(c * F32):
+            if a != b if not isinstance(e, float) else abs(rational(a) - rational(b)) > rational(c * F32 + LEAST):
                 complain(case["id"], f"{key} with f32 arguments is {b}, not {a}")
 
 

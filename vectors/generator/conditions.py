@@ -1,7 +1,6 @@
-"""How far rounding in a coarser precision may move each answer, and the coarsest in which there is one.
+"""How far rounding may move each answer, and the coarsest precision in which there is one.
 
-The formulas are those of the second route, but where a function of the generator is faster: an expected value has its
-own source, of which two digits of a derivative are no part.
+The formulas are those of the second route, or of the generator where they are faster.
 
 Implements: VEC-016, VEC-017, VEC-018.
 """
@@ -34,7 +33,13 @@ DEPENDENT = 2.0**-36
 
 
 def law(function):
-    return lambda args: quadratic.tails(function(**args))
+    """With fewer digits where no tail is lost by it."""
+
+    def answer(args):
+        pair = function(**args, digits=80)
+        return quadratic.tails(pair if min(pair) > mpf(10) ** -30 else function(**args))
+
+    return answer
 
 
 def interval(args):
@@ -125,10 +130,9 @@ def mean_and_deviation(args, ok):
     return ok["gamma"] ** 2 / 2 + ok["gamma"] if ok["gamma"] < 1e150 else ok["gamma"]
 
 
+RATES = ["normal_quantile.x", "gamma_from_two_afc.gamma", "required_gamma.gamma", "noise_budget.gamma", "count_analysis.gamma"]
 SIZES = {
-    **dict.fromkeys(["normal_quantile.x", "gamma_from_two_afc.gamma", "threshold.eta"], lambda a, ok: 1),
-    **dict.fromkeys(["required_gamma.gamma", "noise_budget.gamma", "theta_nuisances.t"], lambda a, ok: 1),
-    **dict.fromkeys(["count_analysis.gamma"], lambda a, ok: 1),
+    **dict.fromkeys([*RATES, "threshold.eta", "theta_nuisances.t"], lambda a, ok: 1),
     **dict.fromkeys(["theta.theta", "theta_colored.theta", "theta_nuisances.theta"], mean_and_deviation),
     **dict.fromkeys(["scan.theta", "scan.max_theta"], lambda a, ok: largest(ok["theta"])),
     **{f"bank_posterior.theta{part}": lambda a, ok: max(1, largest(ok["theta"])) for part in ("", "_mixture", "_max")},
@@ -148,12 +152,6 @@ def of_decision(theta, condition, may_be):
     for k in may_be:
         if theta[k] != theta[best]:
             yield (theta[best] - theta[k]) / (2 * (condition[best] + condition[k]))
-
-
-def of_dependent(signals, explained):
-    """A signal that is not 0 and that others explain to rounding."""
-    if any(is_explained and any(signal) for signal, is_explained in zip(signals, explained)):
-        yield DEPENDENT
 
 
 def of_squares(op, args, ok):
@@ -176,11 +174,10 @@ def of_answer(op, args, ok, condition):
     """The u from which on a decision may fall otherwise."""
     if op == "scan":
         yield from of_decision(ok["theta"], condition["theta"], range(len(ok["theta"])))
-    if op == "theta_nuisances" and ok["rank"] < sum(map(any, args["nuisances"])):
+    if "nuisances" in args and len(space(args).basis) < sum(map(any, args["nuisances"])):
         yield DEPENDENT
     if op == "bank_posterior":
-        yield from of_dependent(args["templates"], [theta == 0 for theta in ok["theta"]])
-        if len(space(args).basis) < sum(map(any, args["nuisances"])):
+        if any(theta == 0 and any(template) for theta, template in zip(ok["theta"], args["templates"])):
             yield DEPENDENT
         may_be = [k for k, theta in enumerate(ok["theta"]) if theta != 0 and args["prior"][k] > 0]
         yield from of_decision(ok["theta"], condition["theta"], may_be)

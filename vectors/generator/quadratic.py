@@ -83,9 +83,9 @@ def mixture(law, shape, h, offset=0, sign=1):
     return sign * total
 
 
-def chi_square(x, degrees, noncentrality):
+def chi_square(x, degrees, noncentrality, digits=DIGITS):
     """Pr(X < x) and Pr(X ≥ x)."""
-    with mp.workdps(DIGITS):
+    with mp.workdps(digits):
         if x > 10**12:
             # Nothing is left there, and the series would take as many terms.
             return mpf(1), mpf(0)
@@ -93,8 +93,8 @@ def chi_square(x, degrees, noncentrality):
         return both(mixture(Gamma(x / 2), degrees / 2, noncentrality / 2) if x else mpf(0))
 
 
-def f_ratio(x, numerator, denominator, noncentrality):
-    with mp.workdps(DIGITS):
+def f_ratio(x, numerator, denominator, noncentrality, digits=DIGITS):
+    with mp.workdps(digits):
         x, m, n, noncentrality = real(x), real(numerator), real(denominator), real(noncentrality)
         return both(mixture(Beta(m * x / 2, n / 2), m / 2, noncentrality / 2) if x else mpf(0))
 
