@@ -99,9 +99,12 @@ pub fn table(verdict: &Verdict) -> String {
 
 /// The last line.
 fn summary(verdict: &Verdict) -> String {
+    let version = match &verdict.program.version[..] {
+        "" => String::new(),
+        version => format!("version {version}: "),
+    };
     format!(
-        "version {}: {} of {} cases as they should be, {} skipped; profile {}; vectors {}",
-        verdict.program.version,
+        "{version}{} of {} cases as they should be, {} skipped; profile {}; vectors {}",
         verdict.checked() - verdict.failed(),
         verdict.checked(),
         verdict.total(|group| group.skipped),
