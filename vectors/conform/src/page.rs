@@ -8,7 +8,7 @@ use super::verdict::{Count, Require, Verdict};
 
 const STYLE: &str = "body{font:14px/1.4 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}\
 table{border-collapse:collapse;margin:1em 0}th,td{border:1px solid #999;padding:.15em .6em;text-align:left;vertical-align:top}\
-td.n{text-align:right}code{font-size:12px;word-break:break-all}.sign td{height:2.5em;width:15em}";
+td.n{text-align:right}td:first-child{min-width:10em}code{font-size:12px;word-break:break-all}.sign td{height:2.5em;width:15em}";
 
 /// The verdict as one page of HTML.
 ///
@@ -83,7 +83,7 @@ fn facts(verdict: &Verdict) -> Vec<Vec<String>> {
     let precision = match profile.unit_roundoff {
         0.0 => format!("{}: the stated tolerances", profile.name),
         u => format!(
-            "{}: unit roundoff {u:e}, numbers from {:e} to {:e}",
+            "{}: unit roundoff {u:.3e}, numbers from {:.3e} to {:.3e}",
             profile.name, profile.smallest, profile.largest
         ),
     };
