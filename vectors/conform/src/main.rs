@@ -138,11 +138,12 @@ fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Clap's own text is several lines for a mistake; the first says what it is.
+            // Clap's own text is several lines for a mistake; the usage is left out.
             let text = error.to_string();
             let is_asked_for = !error.use_stderr();
-            let first = text.lines().take_while(|line| !line.is_empty());
-            let line: Vec<&str> = first.map(str::trim).collect();
+            let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+            let lines = lines.take_while(|line| !line.starts_with("Usage:"));
+            let line: Vec<&str> = lines.collect();
             return match is_asked_for {
                 true => exit(print(&text)),
                 false => exit(Err(usage(line.join(" ").trim_start_matches("error: ")))),
