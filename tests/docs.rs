@@ -28,7 +28,7 @@ const NOT_RUN: usize = 33;
 const README_NOT_RUN: [(&str, &str); 5] = [
     (
         "vectors/conform/tests/toys/right.py",
-        "needs Python: vectors/conform/tests/conform_command.rs runs it",
+        "needs Python: vectors/conform/tests/conform_command/diagnosis.rs runs it",
     ),
     (
         "palpate run ",

@@ -1,0 +1,235 @@
+//! All cases are asked, through crashes and silence.
+
+use std::fs;
+use std::process::Command;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use crate::program::*;
+
+// Verifies: ORA-040, ORA-048, ORA-049, ORA-069, VEC-011.
+#[test]
+fn our_oracle_passes_all_the_vectors_that_the_program_carries() {
+    let ours = &palpate();
+    let output = conform("", &[ours, "oracle"]);
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    assert!(output.stderr.is_empty());
+    let is_short = !text.contains("not right") && !text.contains("likely");
+    assert!(is_short, "{text}");
+    let started = Instant::now();
+    let carried = conform("--format json", &[ours, "oracle"]);
+    let seconds = started.elapsed().as_secs_f64();
+    // Of a release build; a debug build on a loaded machine is some ten times slower.
+    assert!(
+        seconds < if cfg!(debug_assertions) { 60.0 } else { 2.0 },
+        "{seconds} s"
+    );
+    let read = conform("--format json --vectors ..", &[ours, "oracle"]);
+    let same = "the vectors of the folder are those of the program";
+    assert_eq!(stdout(&carried), stdout(&read), "{same}");
+    let verdict = json_of(&carried);
+    let manifest = fs::read_to_string("../manifest.json").unwrap();
+    let manifest: Value = serde_json::from_str(&manifest).unwrap();
+    assert_eq!(verdict["suite_sha256"], manifest["suite_sha256"]);
+    let groups = verdict["groups"].as_array().unwrap();
+    let total = |key: &str| -> u64 { groups.iter().map(|of| of[key].as_u64().unwrap()).sum() };
+    assert_eq!(total("cases"), manifest["cases"].as_u64().unwrap());
+    assert_eq!(total("right"), total("cases"));
+    assert!(total("cases") >= 1500 && manifest["refused"].as_u64().unwrap() >= 250);
+}
+
+// Verifies: ORA-046, ORA-049.
+#[test]
+fn a_right_program_passes() {
+    let palpate = palpate();
+    run("right", &format!("exec '{palpate}' oracle"), "20").expect(&[]);
+    run("right-by-line", &shell(""), "20").expect(&[]);
+}
+
+// Verifies: ORA-043, ORA-046.
+#[test]
+fn answers_that_are_none_are_failures_of_their_case() {
+    for [test, answer, word] in rows(
+        r#"
+        empty | echo | no JSON
+        text | echo hello | no JSON: hello
+        nan | echo '{"id":"choice-002","ok":{"p_correct":NaN}}' | no JSON
+        list | echo '[]' | id null
+        no-id | echo '{"ok":{"p_correct":0.8413447460685429}}' | the id null
+        other-id | echo '{"id":2,"ok":{"p_correct":0.8413447460685429}}' | id 2
+        neither | echo '{"id":"choice-002"}' | either ok or error
+        both | echo '{"id":"choice-002","ok":{},"error":{}}' | either ok or error
+        no-key | echo '{"id":"choice-002","ok":{"p":1}}' | p_correct is missing
+        a-text | echo '{"id":"choice-002","ok":{"p_correct":"0.84"}}' | expected 0.8413447460685429
+        a-list | echo '{"id":"choice-002","ok":{"p_correct":[0.8413447460685429]}}' | expected 0.8413447460685429
+        refusal | echo '{"id":"choice-002","error":{"code":"x"}}' | refused
+        no-error | echo '{"id":"choice-002","error":null}' | error is null
+        nothing | : | no answer: the next one was for choice-003
+        utf8 | printf '\377\n' | no JSON
+        "#,
+    ) {
+        let script = shell(&format!("*choice-002*) {answer};;"));
+        run(&format!("none-{test}"), &script, "20").expect(&[("choice-002", word)]);
+    }
+    // A remark before the answer takes the answer's place; the answer itself then comes too late.
+    let remark = shell("*choice-002*) echo remark; echo '{\"id\":\"choice-002\",\"ok\":{}}';;");
+    run("remark", &remark, "20").expect(&[("choice-002", "no JSON: remark")]);
+}
+
+// Verifies: ORA-044, ORA-045.
+#[test]
+fn a_crash_is_blamed_on_its_case_and_the_others_are_asked() {
+    // It reads ahead, so that the answers before are not out yet when it dies.
+    let palpate = palpate();
+    let script = format!(
+        "all=''; while IFS= read -r line; do case \"$line\" in *capabilities*) printf '%s\\n' \"$line\" | '{palpate}' oracle;;\n\
+         *choice-002*) sleep 0.1; echo 'division by zero' >&2; exit 7;; *) printf '%s\\n' \"$line\" | '{palpate}' oracle;; esac; done"
+    );
+    let word = "exit status: 7; standard error: division by zero";
+    run("crash", &script, "20").expect(&[("choice-002", word)]);
+    // A program that dies of everything but the first question.
+    let script = format!("read -r line; printf '%s\\n' \"$line\" | '{palpate}' oracle");
+    let found = run("dies", &script, "20");
+    found.expect(&CASES.map(|case| (case, "ended without an answer")));
+}
+
+// Verifies: ORA-044, ORA-045.
+#[test]
+fn silence_is_blamed_on_its_case_and_the_others_are_asked() {
+    // In this time a loaded machine starts the oracle, which the shell does for each line.
+    run("silence", &shell("*choice-003*) exec sleep 60;;"), "2")
+        .expect(&[("choice-003", "no answer within 2 s")]);
+    // After six silences the rest is not asked.
+    let mut many = vectors();
+    let case = many["cases"][0].clone();
+    many["cases"] = (0..9)
+        .map(|index| {
+            let mut case = case.clone();
+            case["id"] = json!(format!("choice-1{index:02}"));
+            case
+        })
+        .collect();
+    many["flags"] = json!({});
+    let (folder, script) = (write("silent", &many), shell("*choice*) exec sleep 60;;"));
+    let options = "--vectors . --timeout-s 0.5";
+    let output = conform_at(&folder, options, &["sh", "-c", &script]);
+    assert_eq!(output.status.code(), Some(1));
+    let (error, text) = (error(&output), stdout(&output));
+    assert!(error.contains("9 of 9 cases failed"), "{error}");
+    assert!(text.contains("silent 6 times"), "{text}");
+}
+
+// Verifies: ORA-042, ORA-049.
+#[test]
+fn a_program_that_does_not_answer_capabilities_is_refused() {
+    for [script, word] in rows(
+        r#"
+        exit 4 | exit status: 4
+        exec sleep 5 | no answer within 0.3 s
+        yes garbage | answered "garbage"
+        yes '{"id":"capabilities","ok":{}}' | answered
+        echo '{"id":1,"ok":{"version":"1","ops":[]}}' | answered
+        cat | answered
+        cat </dev/zero | the program
+        "#,
+    ) {
+        let output = conform("--timeout-s 0.3", &["sh", "-c", script]);
+        assert_eq!(output.status.code(), Some(1), "{script}");
+        let error = error(&output);
+        let is_told = error.contains(word) && error.contains("expected a line like");
+        assert!(is_told, "{script}: {error}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
+// Verifies: ORA-043, ORA-044.
+#[test]
+fn a_flood_ends() {
+    let claims = r#"echo '{"id":"capabilities","ok":{"version":"1","ops":["two_afc"]}}'"#;
+    let script = format!("{claims}; exec yes garbage");
+    run("garbage", &script, "20").expect(&CASES.map(|case| (case, "no JSON: garbage")));
+    // Answers without end to what is judged already are no sign of life.
+    let script =
+        format!("{claims}; exec yes '{{\"id\":\"choice-001\",\"ok\":{{\"p_correct\":0.5}}}}'");
+    let silent = [1, 2, 3].map(|case| (CASES[case], "no answer within"));
+    run("repeats", &script, "0.3").expect(&silent);
+}
+
+// Verifies: ORA-048, ORA-049.
+#[test]
+fn what_is_not_claimed_is_skipped_and_nothing_is_no_verdict() {
+    let claims = |ops: &str| {
+        format!(
+            "echo '{{\"id\":\"capabilities\",\"ok\":{{\"version\":\"1\",\"ops\":[{ops}]}}}}'; cat >/dev/null"
+        )
+    };
+    let found = run("claims-nothing", &claims(""), "20");
+    assert_eq!(found.code, Some(1));
+    assert_eq!(found.verdict["groups"][0]["skipped"], 4);
+    assert_eq!(found.verdict["passed"], false);
+    let claim = claims("\"three_afc\"");
+    let output = conform("--timeout-s 0.2", &["sh", "-c", &claim]);
+    // The lines that everybody must refuse are asked, and not answered here.
+    assert_eq!(output.status.code(), Some(1));
+    let folder = write("claims-other", &vectors());
+    let output = conform_at(&folder, "--vectors .", &["sh", "-c", &claim]);
+    let error = error(&output);
+    let is_told = error.contains("nothing checked") && error.contains("two_afc");
+    assert!(is_told, "{error}");
+}
+
+// Verifies: ORA-040, ORA-049.
+#[test]
+fn wrong_command_lines_are_refused() {
+    let folder = write("usage", &vectors());
+    fs::create_dir(folder.join("empty")).expect("a folder");
+    for [options, program, word] in rows(
+        r#"
+        --only choices | true | "choices"
+        --vectors /no/such/folder | true | /no/such/folder
+        --vectors empty | true | no vectors
+        --timeout-s 0 | true | 0.01 to 86400
+        --timeout-s nan | true | 0.01 to 86400
+        --vectors . | /no/such/program | cannot start /no/such/program
+        --vectors . |  | CMD
+        "#,
+    ) {
+        let program: Vec<&str> = program.split_whitespace().collect();
+        let output = conform_at(&folder, options, &program);
+        assert_eq!(output.status.code(), Some(2), "{options} {output:?}");
+        let error = error(&output);
+        assert!(error.contains(word), "{options}: {error}");
+    }
+}
+
+/// Few enough crates, none of them of the solver, the device or the plots.
+// Verifies: ORA-070.
+#[test]
+fn the_program_stands_on_few_crates() {
+    let words = [
+        "tree",
+        "--offline",
+        "-p",
+        "palpate-conform",
+        "-e",
+        "normal,build",
+        "--prefix",
+        "none",
+    ];
+    let tree = Command::new(env!("CARGO")).args(words).output();
+    let tree = tree.expect("cargo starts");
+    let tree = stdout(&tree);
+    let mut crates: Vec<&str> = tree
+        .lines()
+        .filter_map(|line| line.split(' ').next())
+        .collect();
+    crates.sort();
+    crates.dedup();
+    assert!(
+        crates.contains(&"serde_json") && crates.len() <= 30,
+        "{crates:?}"
+    );
+    assert!(!crates.contains(&"palpate"), "{crates:?}");
+}

@@ -1,0 +1,146 @@
+//! Questions and answers in files.
+
+use std::fs;
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::program::*;
+
+// Verifies: ORA-057, ORA-063, ORA-075.
+#[test]
+fn answers_from_a_file_are_judged_as_those_from_a_pipe() {
+    let folder = folder("offline");
+    let written = plain(&folder, "questions --out q.jsonl");
+    assert_eq!(written.status.code(), Some(0), "{written:?}");
+    let palpate = palpate();
+    let script = format!("'{palpate}' oracle <q.jsonl >a.jsonl");
+    let mut shell = Command::new("sh");
+    let answered = shell.current_dir(&folder).args(["-c", &script]).status();
+    assert!(answered.expect("a shell").success());
+    let judged = plain(&folder, "judge q.jsonl a.jsonl --format json");
+    assert_eq!(judged.status.code(), Some(0), "{}", stdout(&judged));
+    let piped = conform("--format json", &[&palpate, "oracle"]);
+    let [mut judged, mut piped] = [json_of(&judged), json_of(&piped)];
+    let sum = judged["program"]["files"][0]["sha256"].take();
+    assert_eq!(sum.as_str().map(str::len), Some(64));
+    judged["program"] = Value::Null;
+    piped["program"] = Value::Null;
+    assert_eq!(judged, piped);
+    // Without the claims, the ops with an answer count; a lost line is a wrong answer; a banner is told.
+    let script = format!(
+        "'{palpate}' oracle <q2.jsonl | grep -v 'capabilities\\|two_afc-003' >a2.jsonl; sed -i 1iMATLAB a2.jsonl"
+    );
+    assert!(
+        plain(&folder, "questions --only two_afc --out q2.jsonl")
+            .status
+            .success()
+    );
+    let answered = Command::new("sh")
+        .current_dir(&folder)
+        .args(["-c", &script])
+        .status();
+    assert!(answered.expect("a shell").success());
+    let judged = plain(&folder, "judge q2.jsonl a2.jsonl --lenient --format json");
+    let verdict = json_of(&judged);
+    assert_eq!(
+        verdict["findings"].as_array().map(Vec::len),
+        Some(1),
+        "{verdict}"
+    );
+    assert_eq!(verdict["findings"][0]["case"], "two_afc-003");
+    let notes = verdict["notes"].to_string();
+    assert!(
+        notes.contains("MATLAB") && notes.contains("no answer to capabilities"),
+        "{notes}"
+    );
+    // Other questions.
+    fs::write(folder.join("q.jsonl"), "{\"id\":\"two_afc-001\"}\n").unwrap();
+    let output = plain(&folder, "judge q.jsonl a.jsonl");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        error(&output),
+        "palpate-conform: q.jsonl: line 1 is no question of these vectors"
+    );
+    let output = plain(&folder, "judge none a.jsonl");
+    assert!(error(&output).contains("none: No such file"), "{output:?}");
+}
+
+/// A program between the oracle and a table of answers: each question of the table becomes a request, each answer rows.
+const TABLE: &str = r#"
+import csv, json, subprocess, sys
+def value(text):
+    try: return json.loads(text)
+    except ValueError: return text
+ops, cases = {}, {}
+for row in csv.DictReader(open(sys.argv[1])):
+    ops[row["id"]] = row["op"]
+    args = cases.setdefault(row["id"], {})
+    is_text = row["argument"] in ("bytes", "criterion", "method", "level", "phantom")
+    v = row["value"] if is_text else value(row["value"])
+    if row["row"] == "": args[row["argument"]] = v
+    elif row["column"] == "": args.setdefault(row["argument"], []).append(v)
+    else:
+        rows = args.setdefault(row["argument"], [])
+        if len(rows) <= int(row["row"]): rows.append([])
+        rows[-1].append(v)
+lines = "".join(json.dumps({"id": i, "op": ops[i], "args": a}) + "\n" for i, a in cases.items())
+said = subprocess.run([sys.argv[2], "oracle"], input=lines, capture_output=True, text=True).stdout
+out = ["id,key,row,column,value"]
+for line in said.splitlines():
+    a = json.loads(line)
+    if "error" in a: out.append(f"{a['id']},error,,,{a['error']['code']}")
+    for k, v in a.get("ok", {}).items():
+        if not isinstance(v, list): out.append(f"{a['id']},{k},,,{v!r}".replace("'", ""))
+        elif not v: out.append(f"{a['id']},{k},,,[]")
+        for i, e in enumerate(v if isinstance(v, list) else []):
+            if isinstance(e, list): out += [f"{a['id']},{k},{i},{j},{x!r}" for j, x in enumerate(e)]
+            else: out.append(f"{a['id']},{k},{i},,{e!r}")
+out[1:] = sorted(out[1:], reverse=True)
+print("\n".join(out))
+"#;
+
+// Verifies: ORA-064, ORA-076.
+#[test]
+fn a_table_holds_questions_and_answers() {
+    let Some(python) = python() else { return };
+    let folder = folder("table");
+    assert!(
+        plain(&folder, "questions --form csv --out q.csv")
+            .status
+            .success()
+    );
+    fs::write(folder.join("table.py"), TABLE).unwrap();
+    let answers = Command::new(&python)
+        .current_dir(&folder)
+        .args(["table.py", "q.csv", &palpate()])
+        .output();
+    let answers = answers.expect("Python starts").stdout;
+    fs::write(folder.join("a.csv"), &answers).unwrap();
+    let judged = plain(&folder, "judge q.csv a.csv --format json");
+    assert_eq!(judged.status.code(), Some(0), "{}", stdout(&judged));
+    let verdict = json_of(&judged);
+    let groups = verdict["groups"].as_array().unwrap();
+    let cases: u64 = groups
+        .iter()
+        .map(|group| group["right"].as_u64().unwrap())
+        .sum();
+    // All that have an answer, and the refusals for a range.
+    assert!(
+        cases > 2143 && groups.len() == 27,
+        "{cases} {}",
+        groups.len()
+    );
+    // A digit, a row too few, a row that is none.
+    let text = String::from_utf8(answers).unwrap();
+    let row = text
+        .lines()
+        .find(|row| row.starts_with("theta-004,theta,"))
+        .expect("a row");
+    for (new, code) in [("theta-004,theta,,,1", 1), ("", 1), ("theta-004 theta", 2)] {
+        fs::write(folder.join("a.csv"), text.replace(row, new)).unwrap();
+        let judged = plain(&folder, "judge q.csv a.csv");
+        assert_eq!(judged.status.code(), Some(code), "{new} {judged:?}");
+        assert!(code == 2 || stdout(&judged).contains("theta-004"));
+    }
+}

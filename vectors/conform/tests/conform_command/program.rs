@@ -1,0 +1,166 @@
+//! Runs `palpate-conform`, on vectors and programs made for a test.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::{Value, json};
+
+use crate::present::present;
+
+/// The program itself, which stands beside this package's; `cargo test --workspace` builds both.
+pub fn palpate() -> String {
+    let program = Path::new(env!("CARGO_BIN_EXE_palpate-conform")).with_file_name("palpate");
+    assert!(program.exists(), "first: cargo build -p palpate");
+    program.into_os_string().into_string().expect("UTF-8")
+}
+
+/// A folder of its own for each test, emptied at the start.
+pub fn folder(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("conform-{test}"));
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).expect("a folder for the test");
+    path
+}
+
+/// With the words of `options`, and in a folder with other vectors than the program's own.
+pub fn conform_at(folder: &Path, options: &str, program: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-conform"));
+    command.current_dir(folder).args(options.split_whitespace());
+    command.arg("--").args(program);
+    command.output().expect("the program starts")
+}
+
+pub fn conform(options: &str, program: &[&str]) -> Output {
+    conform_at(Path::new("."), options, program)
+}
+
+/// The rows of a table, one a line.
+pub fn rows<const N: usize>(table: &str) -> impl Iterator<Item = [&str; N]> {
+    table.trim().lines().map(|row| {
+        let cells: Vec<&str> = row.trim().split(" | ").collect();
+        cells.try_into().expect("as many cells as columns")
+    })
+}
+
+pub fn stdout(output: &Output) -> &str {
+    std::str::from_utf8(&output.stdout).expect("UTF-8")
+}
+
+pub fn json_of(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {output:?}"))
+}
+
+/// The one line of an error.
+pub fn error(output: &Output) -> &str {
+    let text = std::str::from_utf8(&output.stderr).expect("UTF-8");
+    assert_eq!(text.lines().count(), 1, "{text}");
+    text.trim_end()
+}
+
+pub const CASES: [&str; 4] = ["choice-001", "choice-002", "choice-003", "choice-004"];
+
+/// A file of four cases: ½, Φ(1), a refusal, and a whole line to be refused.
+pub fn vectors() -> Value {
+    // Φ(√2/√2), by mpmath.
+    let one = 0.8413447460685429_f64;
+    json!({
+        "schema": "palpate-vectors", "schema_version": 1, "group": "choice", "op": "two_afc", "source": "by hand",
+        "generator_version": "1.0.0", "tolerance": {"p_correct": {"ulp": 2, "reason": "a test"}},
+        "flags": {
+            "complement": {"bug": "the rate of wrong answers", "notes": "p for 1 - p"},
+            "negative": {"bug": "a negative gamma is accepted", "notes": ""},
+            "no_json": {"bug": "a line that is no JSON is answered", "notes": ""},
+        },
+        "cases": [
+            {"id": "choice-001", "comment": "no signal", "args": {"gamma": 0}, "ok": {"p_correct": 0.5},
+             "bits": {"p_correct": "0x3fe0000000000000"}, "flags": []},
+            {"id": "choice-002", "comment": "root 2", "args": {"gamma": std::f64::consts::SQRT_2}, "ok": {"p_correct": one},
+             "bits": {"p_correct": format!("{:#018x}", one.to_bits())}, "flags": ["complement"],
+             "wrong": [{"flag": "complement", "ok": {"p_correct": 1.0 - one}}]},
+            {"id": "choice-003", "comment": "below 0 <&>", "args": {"gamma": -1}, "error": "out_of_range", "flags": ["negative"]},
+            {"id": "choice-004", "comment": "no JSON", "line": "{\"id\":\"choice-004\",\"op\":", "error": "bad_json", "flags": ["no_json"]},
+        ],
+    })
+}
+
+/// A folder for a test with these vectors.
+pub fn write(test: &str, vectors: &Value) -> PathBuf {
+    let folder = folder(test);
+    fs::write(folder.join("choice.json"), vectors.to_string()).expect("written");
+    folder
+}
+
+/// A shell that answers each line by the oracle, but for what `special` cases do: patterns of `case`.
+pub fn shell(special: &str) -> String {
+    let palpate = palpate();
+    format!(
+        "while IFS= read -r line; do case \"$line\" in\n{special}\n*) printf '%s\\n' \"$line\" | '{palpate}' oracle;;\nesac; done"
+    )
+}
+
+/// The verdict on a shell program, its exit code, and the reason of each failed case.
+pub struct Found {
+    pub code: Option<i32>,
+    pub verdict: Value,
+    pub reasons: Vec<(String, String)>,
+}
+
+pub fn run(test: &str, script: &str, timeout: &str) -> Found {
+    let options = format!("--vectors . --format json --timeout-s {timeout}");
+    let folder = write(test, &vectors());
+    let output = conform_at(&folder, &options, &["sh", "-c", script]);
+    let verdict = json_of(&output);
+    let text = |failure: &Value, key: &str| failure[key].as_str().unwrap().to_string();
+    let failures = verdict["findings"].as_array().unwrap();
+    let reasons = failures
+        .iter()
+        .map(|f| (text(f, "case"), text(f, "reason")))
+        .collect();
+    let code = output.status.code();
+    Found {
+        code,
+        verdict,
+        reasons,
+    }
+}
+
+impl Found {
+    /// Asserts that just these cases failed, each for a reason with this word.
+    #[track_caller]
+    pub fn expect(&self, failures: &[(&str, &str)]) {
+        let code = i32::from(!failures.is_empty());
+        assert_eq!(self.code, Some(code), "{}", self.verdict);
+        assert_eq!(self.reasons.len(), failures.len(), "{:?}", self.reasons);
+        for ((case, reason), (wanted, word)) in self.reasons.iter().zip(failures) {
+            let is_so = case == wanted && reason.contains(word);
+            assert!(is_so, "{case}: {reason}, not {wanted}: {word}");
+        }
+    }
+}
+
+/// The flag of the bug that a verdict names first.
+pub fn first_bug(verdict: &Value) -> &str {
+    let bugs = &verdict["diagnosis"][0]["explanations"][0]["bugs"];
+    bugs[0]["flag"].as_str().unwrap_or("none")
+}
+
+/// Runs `palpate-conform` with these words.
+pub fn plain(folder: &Path, words: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-conform"));
+    let words = words.split_whitespace();
+    command
+        .current_dir(folder)
+        .args(words)
+        .output()
+        .expect("it starts")
+}
+
+/// Python: the one of the environment, or the system's. It must be there, if `PALPATE_REQUIRE_WITNESSES=1`.
+pub fn python() -> Option<String> {
+    let python = std::env::var("PALPATE_PYTHON").unwrap_or_else(|_| "python3".into());
+    let missing = Command::new(&python).arg("--version").output().is_err();
+    present(missing.then_some(&python)).then_some(python)
+}
+
+pub const TOYS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/toys");
