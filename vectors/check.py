@@ -222,6 +222,8 @@ def check_rounded(case, route, answer):
         return
     for key, value in case["ok"].items():
         condition = conditions(case["condition"].get(key, 0.0), value)
+        if max(condition) * F32 > max([1, *map(abs, numbers(value))]):
+            complain(case["id"], f"f32 says nothing of {key}, and there is no roundoff")
         for a, b, e, c in zip(leaves(answer[key]), leaves(moved[key]), leaves(value), condition):
             if a != b if not isinstance(e, float) else abs(rational(a) - rational(b)) > rational(c * F32 + LEAST):
                 complain(case["id"], f"{key} with f32 arguments is {b}, not {a}")
