@@ -9,12 +9,14 @@ const CHROMIUM: &str = "PALPATE_REQUIRE_CHROMIUM=1 cargo test";
 const WORKSPACE: &str = "cargo test --workspace";
 const IGNORED: &str = "cargo test --release -p palpate-proofs -p palpate-verify -- --ignored";
 const RECORDS: &str = "cargo test --release --test real_records -- --ignored";
+const GENERATED: &str = "cargo test --test vectors_suite -- --ignored";
 const BANK: &str = "cargo test --release --test bank_of_the_paper -- --ignored";
 
 /// Evidence that `cargo test` does not run, or skips where a program is missing: by the beginning of its name, with what runs it.
-const ELSEWHERE: [(&str, &str); 25] = [
+const ELSEWHERE: [(&str, &str); 26] = [
     ("tests/hid-stack/", "tests/hid-stack/run"),
     ("tests/accuracy.rs", WITNESSES),
+    ("tests/vectors_suite.rs::the_files_are", GENERATED),
     ("tests/vectors_suite.rs", WITNESSES),
     ("tests/witness/", WITNESSES),
     ("tests/real_records.rs", RECORDS),
