@@ -4,7 +4,7 @@ Implements: VEC-009, VEC-010.
 """
 
 from .numbers import Draws
-from .suite import Group, is_exact
+from .suite import UNKNOWN, Group, is_exact
 
 SOURCE = "the byte layout of spec/hid.md, packed by hand"
 
@@ -128,7 +128,7 @@ def report_decode():
     group.refuse("null", {"bytes": None}, "bad_argument", ["wrong_type"])
     group.refuse("missing", {}, "bad_argument", ["missing_argument"])
     group.refuse(
-        "an argument that the op does not have", {"bytes": "0401", "length": 2}, "bad_argument", ["unknown_argument"]
+        "an argument that the op does not have", {"bytes": "0401", UNKNOWN: 2}, "bad_argument", ["unknown_argument"]
     )
     group.refuse("a thousand bytes", {"bytes": "01" + "00" * 999}, "bad_argument", ["length_not_checked"])
     return group
@@ -162,7 +162,7 @@ def report_encode():
         group.refuse(f"report {report}: {name} is 0.5", {**args, name: 0.5}, "bad_argument", ["wrong_type"])
         group.refuse(f"report {report}: {name} is 2⁶⁴", {**args, name: 2**64}, "out_of_range", ["wrapped"])
         group.refuse(
-            f"report {report}: a field of no report", {**args, "force": 1}, "bad_argument", ["unknown_argument"]
+            f"report {report}: a field of no report", {**args, UNKNOWN: 1}, "bad_argument", ["unknown_argument"]
         )
     fields = {"lateral": 1, "normal": 1, "sequence": 1, "flags": 1}
     for report in (0, 5, 256 + 2, -1):
