@@ -169,7 +169,7 @@ fn a_limited_number_is_within_its_limit() {
         if value.is_nan() {
             assert!(limited == 0.0);
         } else if value.abs() <= largest {
-            assert!(limited.to_bits() == value.to_bits());
+            assert!(limited == value);
         } else {
             assert!(limited == largest.copysign(value));
         }
