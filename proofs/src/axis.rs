@@ -2,9 +2,9 @@
 
 use bolero::generator::bolero_generator;
 use bolero::{Driver, TypeGenerator};
-use palpate::servo::{blend, limit};
+use palpate::servo::{Axis, FORCE_CEILING, approach, blend, limit};
 
-use crate::cases::{AnyAxis, Entry, Fraction, Newtons, Position};
+use crate::cases::{AnyAxis, Entry, Fraction, Grid, Newtons, Position, folded, near};
 
 /// An axis of three cells and any position.
 #[derive(Debug, Clone)]
@@ -25,35 +25,68 @@ impl TypeGenerator for OnAxis {
     }
 }
 
+/// Cell and fraction are in range, and the cell encloses a position within the axis.
+fn is_in_range(knots: &[f32; 4], axis: &Axis, position: f32) {
+    let found = axis.locate(position);
+    assert!(found.index < 3);
+    assert!((-1.0..=2.0).contains(&found.fraction));
+    let inside = knots[0] <= position && position < knots[3];
+    if inside {
+        assert!(knots[found.index] <= position && position <= knots[found.index + 1]);
+        assert!((0.0..=1.0).contains(&found.fraction));
+    }
+    // At the last knot the fraction is 1: `exhaustive.rs` has that for each width.
+    if position < knots[0] {
+        assert!(found.index == 0 && found.fraction <= 0.0);
+    }
+    if position >= knots[3] {
+        assert!(found.index == 2 && found.fraction >= 1.0);
+    }
+    reached! {
+        "in the first cell": inside && position < knots[1],
+        "in the last cell": inside && position >= knots[2],
+        "below the axis": position < knots[0],
+        "above the axis": position > knots[3],
+        "not finite": !position.is_finite(),
+    }
+}
+
+// No Kani proof on any axis: three symbolic divisions end in no solver.
 // Verifies: SRV-004, SRV-005, SRV-012.
+#[cfg(not(kani))]
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
 fn locate_is_total_and_in_range() {
     harness!(OnAxis, |case| {
-        let (knots, position) = (&case.axis.knots, case.position);
-        let found = case.axis.axis().locate(position);
-        assert!(found.index < 3);
-        assert!((-1.0..=2.0).contains(&found.fraction));
-        let inside = knots[0] <= position && position < knots[3];
-        if inside {
-            assert!(knots[found.index] <= position && position <= knots[found.index + 1]);
-            assert!((0.0..=1.0).contains(&found.fraction));
-        }
-        // At the last knot the fraction is 1: `exhaustive.rs` has that for each width.
-        if position < knots[0] {
-            assert!(found.index == 0 && found.fraction <= 0.0);
-        }
-        if position >= knots[3] {
-            assert!(found.index == 2 && found.fraction >= 1.0);
-        }
-        reached! {
-            "in the first cell": inside && position < knots[1],
-            "in the last cell": inside && position >= knots[2],
-            "below the axis": position < knots[0],
-            "above the axis": position > knots[3],
-            "not finite": !position.is_finite(),
-        }
+        is_in_range(&case.axis.knots, &case.axis.axis(), case.position);
     });
+}
+
+/// The same on one of the axes of the tables.
+macro_rules! located {
+    ($name:ident, $axes:literal) => {
+        // Verifies: SRV-004, SRV-005, SRV-012.
+        #[test]
+        #[cfg_attr(kani, kani::proof, kani::unwind(6))]
+        fn $name() {
+            harness!(Near<$axes>, |case| {
+                let (_, laterals) = Grid::<$axes, true>::axes();
+                is_in_range(&Grid::<$axes, true>::LATERALS, &laterals, case.0);
+            });
+        }
+    };
+}
+located!(locate_on_the_axis_of_a_map, 0);
+located!(locate_on_an_axis_of_narrow_cells, 1);
+located!(locate_on_an_axis_of_exact_knots, 2);
+
+/// Any position, two in three about the lateral axis of number AXES.
+#[derive(Debug, Clone, Copy)]
+struct Near<const AXES: usize>(f32);
+
+impl<const AXES: usize> TypeGenerator for Near<AXES> {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        near(driver, Grid::<AXES, true>::LATERALS).map(Near)
+    }
 }
 
 // No Kani proof: it relates a product to a quotient.
@@ -86,9 +119,10 @@ struct AtKnot {
     knot: usize,
 }
 
+// No Kani proof on any axis, likewise.
 // Verifies: SRV-006.
+#[cfg(not(kani))]
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(5), kani::solver(cadical))]
 fn knots_have_whole_fractions() {
     harness!(AtKnot, |case| {
         let found = case.axis.axis().locate(case.axis.knots[case.knot]);
@@ -181,3 +215,47 @@ fn a_limited_number_is_within_its_limit() {
         }
     });
 }
+
+/// A force and where it goes.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    last: f32,
+    target: f32,
+}
+
+impl TypeGenerator for Step {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        let (Newtons(last), Newtons(target)) = driver.produce()?;
+        let (last, target) = (folded(last, FORCE_CEILING), folded(target, FORCE_CEILING));
+        Some(Step { last, target })
+    }
+}
+
+/// A force grows by `$rise` and falls by `$fall` at most, never beyond its target, nor through zero.
+macro_rules! approach {
+    ($name:ident, $rise:literal, $fall:literal) => {
+        // Verifies: SRV-021.
+        #[test]
+        #[cfg_attr(kani, kani::proof)]
+        fn $name() {
+            harness!(Step, |case| {
+                let &Step { last, target } = case;
+                let value = approach(last, target, $rise, $fall);
+                let grows = value.abs() > last.abs();
+                let change = if grows { $rise } else { $fall };
+                assert!(last - change <= value && value <= last + change);
+                assert!(value == 0.0 || last == 0.0 || (value < 0.0) == (last < 0.0));
+                assert!(value <= last || value <= target);
+                assert!(value >= last || value >= target);
+                reached! {
+                    "the target": value == target,
+                    "a rise": grows && value != target,
+                    "a fall": !grows && value != target && value != 0.0,
+                    "a force that would turn": value == 0.0 && target != 0.0,
+                }
+            });
+        }
+    };
+}
+approach!(a_force_approaches_slowly, 0.25, 1.5);
+approach!(a_force_approaches_with_the_same_rise_and_fall, 0.3, 0.3);

@@ -38,7 +38,7 @@ fn signed<D: Driver>(driver: &mut D, low: f32, high: f32) -> Option<f32> {
 }
 
 /// `value` if its magnitude is at most `most`, else ±`most`: all of [−most, most], each from itself.
-fn folded(value: f32, most: f32) -> f32 {
+pub fn folded(value: f32, most: f32) -> f32 {
     if value.abs() <= most {
         value
     } else {
@@ -168,46 +168,84 @@ const LATERAL_RECIPROCALS: [[f32; 3]; 3] = [
     reciprocals(LATERALS[2]),
 ];
 
-/// A table of 3 depths and 4 lateral positions, each axis one of three, with any forces.
+/// A table of 3 depths and 4 lateral positions, the axes of number AXES, with any forces in one component and none in the
+/// other: a solver does not get through a choice among axes, nor through both components at once.
 #[derive(Debug, Clone)]
-pub struct Grid {
-    pub depths: [f32; 3],
-    pub laterals: [f32; 4],
-    depth_reciprocals: [f32; 2],
-    lateral_reciprocals: [f32; 3],
-    pub forces: [Force<f32>; 12],
+pub struct Grid<const AXES: usize, const NORMAL: bool> {
+    pub values: [f32; 12],
+    forces: [Force<f32>; 12],
 }
 
-impl TypeGenerator for Grid {
+impl<const AXES: usize, const NORMAL: bool> TypeGenerator for Grid<AXES, NORMAL> {
     fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        let depth = driver.gen_variant(DEPTHS.len(), 0)?;
-        let lateral = driver.gen_variant(LATERALS.len(), 0)?;
-        let mut forces = [Force::ZERO; 12];
-        for force in &mut forces {
-            let (Entry(lateral), Entry(normal)) = driver.produce()?;
-            *force = Force { lateral, normal };
+        let mut grid = Grid {
+            values: [0.0; 12],
+            forces: [Force::ZERO; 12],
+        };
+        for (value, force) in grid.values.iter_mut().zip(&mut grid.forces) {
+            Entry(*value) = driver.produce()?;
+            *force = match NORMAL {
+                true => Force {
+                    lateral: 0.0,
+                    normal: *value,
+                },
+                false => Force {
+                    lateral: *value,
+                    normal: 0.0,
+                },
+            };
         }
-        Some(Grid {
-            depths: DEPTHS[depth],
-            laterals: LATERALS[lateral],
-            depth_reciprocals: DEPTH_RECIPROCALS[depth],
-            lateral_reciprocals: LATERAL_RECIPROCALS[lateral],
-            forces,
-        })
+        Some(grid)
     }
 }
 
-impl Grid {
+impl<const AXES: usize, const NORMAL: bool> Grid<AXES, NORMAL> {
+    pub const DEPTHS: [f32; 3] = DEPTHS[AXES];
+    pub const LATERALS: [f32; 4] = LATERALS[AXES];
+
+    /// The axis of depths and that of lateral positions.
+    pub fn axes() -> (Axis<'static>, Axis<'static>) {
+        let depths = Axis::new(&DEPTHS[AXES], &DEPTH_RECIPROCALS[AXES]);
+        let laterals = Axis::new(&LATERALS[AXES], &LATERAL_RECIPROCALS[AXES]);
+        match (depths, laterals) {
+            (Ok(depths), Ok(laterals)) => (depths, laterals),
+            _ => panic!("the axes are valid"),
+        }
+    }
+
     pub fn table(&self) -> Table<'_> {
-        let depths = Axis::new(&self.depths, &self.depth_reciprocals);
-        let laterals = Axis::new(&self.laterals, &self.lateral_reciprocals);
-        let (Ok(depths), Ok(laterals)) = (depths, laterals) else {
-            panic!("the axes are valid");
-        };
+        let (depths, laterals) = Self::axes();
         match Table::new(depths, laterals, &self.forces) {
             Ok(table) => table,
             Err(_) => panic!("the table is valid by construction"),
         }
+    }
+
+    /// The component that the table has, and the other one, which is 0.
+    pub fn component(force: Force<f32>) -> f32 {
+        let [value, other] = if NORMAL {
+            [force.normal, force.lateral]
+        } else {
+            [force.lateral, force.normal]
+        };
+        assert!(other == 0.0);
+        value
+    }
+}
+
+/// Any position; two in three a knot, the middle of a cell, half a cell beyond the axis, or far from it.
+pub fn near<D: Driver, const N: usize>(driver: &mut D, knots: [f32; N]) -> Option<f32> {
+    let last = N - 1;
+    let middles: [f32; N] = core::array::from_fn(|k| match k {
+        0 => 1.5 * knots[0] - 0.5 * knots[1],
+        k => 0.5 * (knots[k - 1] + knots[k]),
+    });
+    match driver.gen_variant(6, 0)? {
+        0 => Some(knots[driver.gen_variant(N, 0)?]),
+        1 => Some(middles[driver.gen_variant(N, 0)?]),
+        2 => Some(1.5 * knots[last] - 0.5 * knots[last - 1]),
+        3 => Some([4.0, -4.0][driver.gen_variant(2, 0)?]),
+        _ => driver.produce::<Position>().map(|any| any.0),
     }
 }
 

@@ -1,14 +1,11 @@
 //! One cycle of the kernel, and a few in a row. What is expected is written down again here, in the
 //! words of the specification.
 
-use bolero::generator::bolero_generator;
 use bolero::{Driver, TypeGenerator};
 use palpate::force::Force;
 use palpate::servo::{Command, Fault, Input, Limits, Mode, Request, Sample, State, step};
 
-use crate::cases::{
-    Cycle, Grid, QuickLimits, SoundCycle, ValidLimits, plain_table, sound_force, stale,
-};
+use crate::cases::{Cycle, QuickLimits, SoundCycle, ValidLimits, plain_table, sound_force, stale};
 
 /// Ahead of the last one by 1 to 32767, modulo 65536 (SRV-040).
 fn is_fresh(state: &State, sample: Option<Sample>) -> bool {
@@ -58,20 +55,13 @@ fn play(case: &Cycle) -> (State, Command) {
     step(&plain_table(), &case.limits, case.state, case.input)
 }
 
-/// A cycle with any table.
-#[derive(Debug, Clone, bolero_generator::TypeGenerator)]
-struct OnGrid {
-    grid: Grid,
-    cycle: Cycle,
-}
-
 // Verifies: SRV-001, SRV-013, SRV-020, SRV-070.
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(cadical))]
+#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
 fn force_is_bounded() {
-    harness!(OnGrid, |case| {
-        let (limits, state, input) = case.cycle.parts();
-        let (next, command) = step(&case.grid.table(), &limits, state, input);
+    harness!(Cycle, |case| {
+        let (limits, state, input) = case.parts();
+        let (next, command) = play(case);
         for value in command.force.into_array() {
             // False for NaN, too.
             assert!(value.abs() <= limits.force() && limits.force() <= 20.0);
@@ -91,20 +81,15 @@ fn force_is_bounded() {
     });
 }
 
-/// A sound state with any table.
-#[derive(Debug, Clone, bolero_generator::TypeGenerator)]
-struct SoundOnGrid {
-    grid: Grid,
-    cycle: SoundCycle,
-}
-
+// No Kani proof with any limits: `approach`, which keeps them, has its own.
 // Verifies: SRV-021, SRV-034.
+#[cfg(not(kani))]
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(cadical))]
 fn slew_is_limited() {
-    harness!(SoundOnGrid, |case| {
-        let (limits, state, input) = case.cycle.0.parts();
-        let (next, command) = step(&case.grid.table(), &limits, state, input);
+    harness!(SoundCycle, |case| {
+        let SoundCycle(case) = case;
+        let (limits, state, input) = case.parts();
+        let (next, command) = play(case);
         let let_go = input.sample.is_some_and(|sample| !sample.deadman);
         let released = next.mode != Mode::Armed || let_go;
         let fall = if released || command.playing {
@@ -140,14 +125,15 @@ fn slew_is_limited() {
 
 // Verifies: SRV-014, SRV-030.
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(cadical))]
+#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
 fn no_force_unless_permitted() {
-    harness!(SoundOnGrid, |case| {
-        let (limits, state, input) = case.cycle.0.parts();
-        let (next, command) = step(&case.grid.table(), &limits, state, input);
+    harness!(SoundCycle, |case| {
+        let SoundCycle(case) = case;
+        let (_, state, input) = case.parts();
+        let (next, command) = play(case);
         let permitted = next.mode == Mode::Armed
             && is_fresh(&state, input.sample)
-            && expected_fault(&case.cycle.0).is_none()
+            && expected_fault(case).is_none()
             && input.sample.is_some_and(|sample| sample.deadman);
         assert!(command.playing == permitted);
         let sample_says = |what: fn(Sample) -> bool| input.sample.is_some_and(what);
