@@ -7,7 +7,7 @@
 //! ```
 
 use palpate::detect::nuisance::{Nuisances, SubspaceDetector};
-use palpate::detect::simulate::{Simulation, draw_theta};
+use palpate::detect::simulate::Simulation;
 use palpate::detect::{DetectError, MatchedFilter};
 use palpate::force::Force;
 use palpate::stats::random::Generator;
@@ -17,8 +17,6 @@ use std::time::Instant;
 const SAMPLES: usize = 401;
 /// Full records in one run.
 const RECORDS: u64 = 100_000;
-/// Statistics in one direct run.
-const STATISTICS: usize = 20_000_000;
 
 /// A force that rises over the inclusion, N: a bump of `height` and its slope sideways.
 fn force(height: f64) -> [Vec<f64>; 2] {
@@ -63,22 +61,6 @@ fn main() -> Result<(), DetectError> {
         Ok(sum)
     })?;
     println!("full records (2 x {SAMPLES} samples): {records:.4e} trials/s");
-    let mut theta = vec![0.0; 10_000];
-    let direct = rate(STATISTICS as f64, || {
-        let mut sum = 0.0;
-        for block in 0..STATISTICS / theta.len() {
-            draw_theta(
-                &generator,
-                2.0,
-                true,
-                (block * theta.len()) as u64,
-                &mut theta,
-            )?;
-            sum += theta[0];
-        }
-        Ok(sum)
-    })?;
-    println!("theta drawn directly: {direct:.4e} /s");
     beside_nuisances(channels(f0), channels(template), noise_sd)
 }
 

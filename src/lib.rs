@@ -27,7 +27,7 @@
 //! # #[cfg(feature = "fem")]
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use palpate::force::Force;
-//! use palpate::detect::{Decision, assessment::assess, theta_of_record};
+//! use palpate::detect::{Decision, decide, theta_of_record};
 //! use palpate::fem::{Contact, Model};
 //! use palpate::phantom::Phantom;
 //! use palpate::servo::LoadedTable;
@@ -42,9 +42,9 @@
 //!
 //! // A sweep at 4 mm, as it would come without noise over the inclusion. Samples in noise of 0.1 N.
 //! let (f0, f1) = (without.row(4e-3)?, with.row(4e-3)?);
-//! let found = assess(theta_of_record(f1, f0, f1, Force { lateral: 0.1, normal: 0.1 })?, 0.5, 0.0)?;
-//! assert_eq!(found.decision, Decision::Inclusion);
-//! assert!((found.statistic.theta - found.statistic.gamma.powi(2) / 2.0).abs() < 1e-9);
+//! let found = theta_of_record(f1, f0, f1, Force { lateral: 0.1, normal: 0.1 })?;
+//! assert_eq!(decide(found.theta, 0.0)?, Decision::Inclusion);
+//! assert!((found.theta - found.gamma.powi(2) / 2.0).abs() < 1e-9);
 //!
 //! // The force on a hand that probes there, 3 mm deep: between the forces at 2 and at 4 mm.
 //! let loaded = LoadedTable::new(with.table())?;

@@ -135,7 +135,7 @@ fn err_006_false_alarms_of_theta_max() {
         false_alarms += u32::from(maximum(&noise) >= eta);
         let mut with_inclusion = noise;
         with_inclusion[7] += gamma;
-        let there = scan.at(Force::new(&with_inclusion, &zeros), 7);
+        let there = scan.maximum(Force::new(&with_inclusion, &zeros), 7..=7);
         let there = there.unwrap().theta;
         assert!(maximum(&with_inclusion) >= there);
         misses += u32::from(maximum(&with_inclusion) < eta);

@@ -3,7 +3,7 @@
 use palpate::detect::coloured::{coloured_scratch, theta_coloured};
 use palpate::detect::scan::Scan;
 use palpate::detect::{
-    Costs, Decision, MatchedFilter, auc, bayes_threshold, decide, error_rates, gamma_from_two_afc,
+    Costs, Decision, MatchedFilter, bayes_threshold, decide, error_rates, gamma_from_two_afc,
     map_threshold, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, posterior,
     required_gamma, roc_miss, theta_of_record, two_afc,
 };
@@ -186,7 +186,7 @@ proptest! {
         let area: f64 = (0..2000)
             .map(|i| 1.0 - roc_miss(gamma, (f64::from(i) + 0.5) / 2000.0).unwrap())
             .sum::<f64>() / 2000.0;
-        prop_assert!((auc(gamma).unwrap() - area).abs() < 1e-3);
+        prop_assert!((two_afc(gamma).unwrap() - area).abs() < 1e-3);
     }
 
     // Verifies: DET-001, DET-002, DET-003.
@@ -263,7 +263,7 @@ proptest! {
         let residual = channels(&s[2], &s[3]);
         let scan = Scan::new(s[0].len(), template, sd).unwrap();
         let filter = MatchedFilter::new(template, sd).unwrap();
-        let point = scan.at(residual, 0).unwrap();
+        let point = scan.maximum(residual, 0..=0).unwrap();
         prop_assert_eq!(point.gamma, filter.gamma());
         prop_assert_eq!(point.theta, filter.statistic(residual).unwrap().theta);
     }

@@ -1,8 +1,7 @@
 //! Simulations give the same for any split of the work.
 
 use palpate::detect::DetectError;
-use palpate::detect::scan::Scan;
-use palpate::detect::simulate::{Simulation, count_false_alarms, draw_theta};
+use palpate::detect::simulate::Simulation;
 use palpate::force::Force;
 use palpate::stats::random::Generator;
 
@@ -57,42 +56,6 @@ fn a_record_is_the_force_and_the_deviates_of_its_trial() {
     assert_eq!(judged, Ok(found));
 }
 
-// Verifies: DET-111, DET-115.
-#[test]
-fn false_alarms_add_up_over_any_split() {
-    let scan = Scan::new(12, TEMPLATE, NOISE_SD).unwrap();
-    let generator = Generator::new(8, 9);
-    let count = |trials| {
-        let scratch = &mut [0.0; 24];
-        count_false_alarms(&scan, scan.shifts(), 1.0, &generator, trials, scratch).unwrap()
-    };
-    let all = count(0..3000);
-    assert!(all > 100 && all < 2900, "{all}");
-    assert_eq!(count(0..1) + count(1..1234) + count(1234..3000), all);
-    assert_eq!(count(5..5), 0);
-    // Each by hand.
-    let by_hand = (0..200).filter(|&trial| {
-        let x: Vec<f64> = (0..12).map(|i| 0.2 * generator.normal(trial, i)).collect();
-        let y: Vec<f64> = (12..24).map(|i| 0.3 * generator.normal(trial, i)).collect();
-        let found = scan.maximum(Force::new(&x, &y), scan.shifts());
-        found.unwrap().theta >= 1.0
-    });
-    assert_eq!(count(0..200), by_hand.count() as u64);
-}
-
-// Verifies: DET-114.
-#[test]
-fn theta_is_drawn_by_the_number_of_its_trial() {
-    let generator = Generator::new(1, 2);
-    let mut theta = [0.0; 50];
-    draw_theta(&generator, 2.0, true, 100, &mut theta).unwrap();
-    for (trial, theta) in (100..).zip(theta) {
-        assert_eq!(theta, 2.0 + 2.0 * generator.normal(0, trial));
-    }
-    draw_theta(&generator, 2.0, false, 149, &mut theta[..1]).unwrap();
-    assert_eq!(theta[0], theta[49] - 4.0);
-}
-
 // Verifies: DET-005, DET-006, DET-007.
 #[test]
 fn simulations_that_cannot_be_are_refused() {
@@ -106,12 +69,4 @@ fn simulations_that_cannot_be_are_refused() {
     assert!(simulation().trial(0, short, &mut [0.0; 6]).is_err());
     assert!(simulation().trial(0, bad, &mut [0.0; 6]).is_err());
     assert!(simulation().trial(0, F0, &mut [0.0; 5]).is_err());
-    for gamma in [-1.0, f64::NAN, 1e200] {
-        assert!(draw_theta(&generator, gamma, true, 0, &mut [0.0]).is_err());
-    }
-    let scan = Scan::new(12, TEMPLATE, NOISE_SD).unwrap();
-    for eta in [f64::NAN, f64::INFINITY] {
-        assert!(count_false_alarms(&scan, 0..=1, eta, &generator, 0..1, &mut [0.0; 24]).is_err());
-    }
-    assert!(count_false_alarms(&scan, 0..=1, 0.0, &generator, 0..1, &mut [0.0; 23]).is_err());
 }

@@ -2,7 +2,7 @@
 //! of §2).
 
 use super::DetectError;
-use crate::stats::compensated::{self, Accumulator, DoubleDouble};
+use crate::stats::compensated::{self, DoubleDouble};
 use crate::stats::error::{check_length, check_samples, representable};
 
 /// What a record in coloured noise says.
@@ -57,11 +57,12 @@ pub fn theta_coloured(
     let (white_template, white_residual) = vectors.split_at_mut(order);
     whiten(factor, template, white_template);
     whiten(factor, residual, white_residual);
-    let mut innovations = Innovations::default();
-    for (&template, &residual) in white_template.iter().zip(white_residual.iter()) {
-        innovations.add(template, residual);
-    }
-    innovations.statistic()
+    let energy = compensated::dot(white_template, white_template, 1.0);
+    let cross = compensated::dot(white_residual, white_template, 1.0);
+    Ok(ColouredStatistic {
+        theta: representable("theta", cross.plus(energy.scaled(-0.5)).value())?,
+        gamma: representable("gamma", libm::sqrt(energy.value()))?,
+    })
 }
 
 /// The Cholesky factor L of a covariance K = LLᵀ of `order` rows, row by row; what lies above the diagonal is not used.
@@ -99,12 +100,7 @@ fn whiten(factor: &[f64], vector: &[f64], white: &mut [f64]) {
 ///
 /// Rounding alone can turn a singular matrix into one with pivots of about order·u of the diagonal,
 /// so a pivot that small is no evidence of a positive one.
-pub(super) fn pivot(
-    diagonal: f64,
-    sum: DoubleDouble,
-    order: usize,
-    row: usize,
-) -> Result<f64, DetectError> {
+fn pivot(diagonal: f64, sum: DoubleDouble, order: usize, row: usize) -> Result<f64, DetectError> {
     let pivot = DoubleDouble::new(diagonal, 0.0)
         .plus(sum.scaled(-1.0))
         .value();
@@ -131,32 +127,6 @@ fn check_symmetric(covariance: &[f64], order: usize) -> Result<(), DetectError> 
         }
     }
     Ok(())
-}
-
-/// Sums over whitened samples.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Innovations {
-    energy: Accumulator,
-    cross: Accumulator,
-    samples: usize,
-}
-
-impl Innovations {
-    pub(super) fn add(&mut self, template: f64, residual: f64) {
-        let term = |factor| DoubleDouble::product(template, factor);
-        self.energy.add(self.samples, term(template));
-        self.cross.add(self.samples, term(residual));
-        self.samples += 1;
-    }
-
-    pub(super) fn statistic(self) -> Result<ColouredStatistic, DetectError> {
-        let energy = self.energy.total();
-        let theta = self.cross.total().plus(energy.scaled(-0.5)).value();
-        Ok(ColouredStatistic {
-            theta: representable("theta", theta)?,
-            gamma: representable("gamma", libm::sqrt(energy.value()))?,
-        })
-    }
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ pub struct ErrorRates {
 /// # Errors
 /// θ or η NaN or infinite.
 ///
-/// Implements: DET-005, DET-020.
+/// Implements: DET-005, DET-009, DET-020.
 pub fn decide(theta: f64, eta: f64) -> Result<Decision, DetectError> {
     check_finite("theta", theta)?;
     check_finite("eta", eta)?;
@@ -189,16 +189,6 @@ pub fn roc_miss(gamma: f64, false_alarm: f64) -> Result<f64, DetectError> {
     Ok(lower_tail(-quantile("false_alarm", false_alarm)? - gamma))
 }
 
-/// The area under the curve of hits against false alarms, Φ(γ/√2).
-///
-/// # Errors
-/// γ not finite or < 0.
-///
-/// Implements: DET-028, ACC-008.
-pub fn auc(gamma: f64) -> Result<f64, DetectError> {
-    two_afc(gamma)
-}
-
 /// The least γ with a false-alarm rate ≤ α and a miss rate ≤ β, Φ⁻¹(1−α) + Φ⁻¹(1−β), or 0 if blind
 /// guessing does.
 ///
@@ -211,7 +201,8 @@ pub fn required_gamma(max_false_alarm: f64, max_miss: f64) -> Result<f64, Detect
     Ok(if sum < 0.0 { -sum } else { 0.0 })
 }
 
-/// The probability of the right answer in a two-alternative forced choice (figure 9), Φ(γ/√2).
+/// The probability of the right answer in a two-alternative forced choice (figure 9), Φ(γ/√2), which is also the area under
+/// the curve of hits against false alarms.
 ///
 /// # Errors
 /// γ not finite or < 0.

@@ -32,7 +32,6 @@
 //! # Ok::<(), palpate::detect::DetectError>(())
 //! ```
 
-pub mod assessment;
 pub mod coloured;
 pub mod correlation;
 pub mod decision;
@@ -41,14 +40,12 @@ pub mod mixture;
 mod noise;
 pub mod noise_budget;
 pub mod nuisance;
-pub mod position;
 pub mod scan;
 pub mod simulate;
-pub mod stationary;
 pub mod weber;
 
 pub use decision::{
-    Costs, Decision, ErrorRates, auc, bayes_threshold, decide, error_rates, gamma_from_two_afc,
+    Costs, Decision, ErrorRates, bayes_threshold, decide, error_rates, gamma_from_two_afc,
     map_threshold, neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, posterior,
     required_gamma, roc_miss, two_afc,
 };

@@ -2,8 +2,7 @@
 
 use super::noise::WhiteNoise;
 use super::{DetectError, Force};
-use crate::stats::compensated::DoubleDouble;
-use crate::stats::error::{check_length, in_range, representable};
+use crate::stats::error::{check_length, in_range};
 use core::ops::{Range, RangeInclusive};
 
 /// A template of M samples a channel that may begin at any sample of a record of N.
@@ -16,15 +15,6 @@ pub struct Scan<'a> {
     template: Force<&'a [f64]>,
     noise: Force<WhiteNoise>,
     samples: usize,
-}
-
-/// Θ at one shift.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ScanPoint {
-    /// θ(k).
-    pub theta: f64,
-    /// γ(k) of the part of the template that overlaps the record.
-    pub gamma: f64,
 }
 
 /// The largest Θ of a scan.
@@ -66,16 +56,6 @@ impl<'a> Scan<'a> {
         })
     }
 
-    /// N, the number of samples of a record in each channel.
-    pub fn samples(&self) -> usize {
-        self.samples
-    }
-
-    /// The standard deviation of a sample's noise, N.
-    pub fn noise_sd(&self) -> Force<f64> {
-        self.noise.map(|noise| noise.sd)
-    }
-
     /// The shifts at which at least one sample overlaps, −(M−1) … N−1.
     ///
     /// Implements: DET-051.
@@ -90,41 +70,12 @@ impl<'a> Scan<'a> {
         0..=(self.samples - self.template.lateral.len()) as isize
     }
 
-    /// γ(k), with the energy of the overlap alone; 0 where nothing overlaps.
-    ///
-    /// # Errors
-    /// Overflow.
-    ///
-    /// Implements: DET-052.
-    pub fn gamma(&self, shift: isize) -> Result<f64, DetectError> {
-        self.noise.gamma(self.template_product(shift, shift))
-    }
-
-    /// The covariance of Θ at two shifts, Σ_c Σ_i Δ_{i−k} Δ_{i−l}/s² over the record.
-    ///
-    /// Implements: DET-055.
-    pub fn covariance(&self, shift: isize, other: isize) -> Result<f64, DetectError> {
-        let product = self.noise.total(self.template_product(shift, other));
-        representable("covariance", product)
-    }
-
-    /// Θ(k) and γ(k) of a residual (N samples a channel, N).
-    ///
-    /// # Errors
-    /// Lengths other than N; NaN or infinity; overflow.
-    ///
-    /// Implements: DET-005, DET-050, DET-052, ERR-002, ERR-003.
-    pub fn at(&self, residual: Force<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
-        residual.check("residual_x", "residual_y", self.samples)?;
-        self.point(residual, shift)
-    }
-
     /// Θ(k) for the shifts `first`, `first` + 1, …, as many as `theta` holds.
     ///
     /// # Errors
-    /// As [`Scan::at`]; a shift without overlap.
+    /// Lengths other than N; NaN or infinity; overflow; a shift without overlap.
     ///
-    /// Implements: DET-050, DET-052.
+    /// Implements: DET-005, DET-050, DET-052, ERR-002, ERR-003.
     pub fn theta(
         &self,
         residual: Force<&[f64]>,
@@ -134,7 +85,7 @@ impl<'a> Scan<'a> {
         residual.check("residual_x", "residual_y", self.samples)?;
         self.check_shifts(first, theta.len())?;
         for (shift, theta) in (first..).zip(theta) {
-            *theta = self.point(residual, shift)?.theta;
+            [*theta, _] = self.point(residual, shift)?;
         }
         Ok(())
     }
@@ -158,7 +109,7 @@ impl<'a> Scan<'a> {
     /// ```
     ///
     /// # Errors
-    /// As [`Scan::at`]; a shift without overlap; a range that is empty.
+    /// As [`Scan::theta`]; a range that is empty.
     ///
     /// Implements: DET-053, DET-054.
     pub fn maximum(
@@ -170,19 +121,18 @@ impl<'a> Scan<'a> {
         let (first, last) = (*shifts.start(), *shifts.end());
         self.check_shifts(first, 1)?;
         self.check_shifts(last, 1)?;
-        let mut best: Option<(isize, ScanPoint)> = None;
+        let mut best = None;
         for shift in shifts {
-            let point = self.point(residual, shift)?;
-            if best.is_none_or(|(_, best)| point.theta > best.theta) {
-                best = Some((shift, point));
+            let [theta, gamma] = self.point(residual, shift)?;
+            if best.is_none_or(|(_, best, _)| theta > best) {
+                best = Some((shift, theta, gamma));
             }
         }
-        let (shift, point) = best.ok_or(DetectError::Empty { what: "shifts" })?;
-        let ScanPoint { theta, gamma } = point;
+        let (shift, theta, gamma) = best.ok_or(DetectError::Empty { what: "shifts" })?;
         let mut refined_shift = shift as f64;
         if shift != first && shift != last {
-            let before = self.point(residual, shift - 1)?.theta;
-            let after = self.point(residual, shift + 1)?.theta;
+            let [before, _] = self.point(residual, shift - 1)?;
+            let [after, _] = self.point(residual, shift + 1)?;
             refined_shift += vertex(before, theta, after);
         }
         Ok(ScanMaximum {
@@ -195,7 +145,7 @@ impl<'a> Scan<'a> {
 
     /// Checks that `count` shifts from `first` on all overlap the record: others say nothing, and
     /// could be without end.
-    pub(super) fn check_shifts(&self, first: isize, count: usize) -> Result<(), DetectError> {
+    fn check_shifts(&self, first: isize, count: usize) -> Result<(), DetectError> {
         let shifts = self.shifts();
         let last = first.saturating_add_unsigned(count.saturating_sub(1));
         let wrong = if shifts.contains(&first) { last } else { first };
@@ -204,33 +154,15 @@ impl<'a> Scan<'a> {
         Ok(())
     }
 
-    fn point(&self, residual: Force<&[f64]>, shift: isize) -> Result<ScanPoint, DetectError> {
+    /// Θ(k) and γ(k).
+    fn point(&self, residual: Force<&[f64]>, shift: isize) -> Result<[f64; 2], DetectError> {
         let (record, template) = overlap(self.samples, self.template.lateral.len(), shift);
         let template = self.template.map(|samples| &samples[template.clone()]);
         let residual = residual.map(|samples| &samples[record.clone()]);
         let pairs = template.zip(residual).zip(self.noise);
         let energy = pairs.map(|((template, _), noise)| noise.dot(template, template));
         let cross = pairs.map(|((template, residual), noise)| noise.dot(residual, template));
-        Ok(ScanPoint {
-            theta: self.noise.theta(cross, energy)?,
-            gamma: self.noise.gamma(energy)?,
-        })
-    }
-
-    /// Σ_i Δ_{i−k} Δ_{i−l} over 0 ≤ i < N of each channel, in units of its scaled force squared.
-    fn template_product(&self, shift: isize, other: isize) -> Force<DoubleDouble> {
-        let overlap = |shift| overlap(self.samples, self.template.lateral.len(), shift);
-        let [(one, from_one), (two, from_two)] = [shift, other].map(overlap);
-        let start = one.start.max(two.start);
-        let count = one.end.min(two.end).saturating_sub(start);
-        self.template.zip(self.noise).map(|(template, noise)| {
-            // Where the shifts do not meet there may be nothing to begin with.
-            let part = |record: &Range<usize>, from: &Range<usize>| match count {
-                0 => &[],
-                _ => &template[from.start + start - record.start..][..count],
-            };
-            noise.dot(part(&one, &from_one), part(&two, &from_two))
-        })
+        Ok([self.noise.theta(cross, energy)?, self.noise.gamma(energy)?])
     }
 }
 

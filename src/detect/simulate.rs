@@ -1,11 +1,8 @@
-//! Simulated records and statistics. Every trial is a function of the generator and its number
-//! alone.
+//! Simulated records. Every trial is a function of the generator and its number alone.
 
-use super::scan::Scan;
 use super::{DetectError, Force, MatchedFilter, Statistic};
-use crate::stats::error::{check_finite, check_length, check_not_negative};
+use crate::stats::error::check_length;
 use crate::stats::random::Generator;
-use core::ops::{Range, RangeInclusive};
 
 /// Records F_p = F + noise, and what the matched filter for F_0 against F_1 says about them.
 #[derive(Debug, Clone, Copy)]
@@ -60,81 +57,16 @@ impl<'a> Simulation<'a> {
         check_length("force_x", samples, force.lateral.len())?;
         check_length("force_y", samples, force.normal.len())?;
         check_length("residual", 2 * samples, residual.len())?;
-        let noise = noise(&self.generator, trial, self.noise_sd, residual);
-        let forces = force.zip(self.f0).zip(noise).into_array();
-        for ((force, f0), samples) in forces {
+        self.generator.normals(trial, 0, residual);
+        let (x, y) = residual.split_at_mut(samples);
+        let forces = force.zip(self.f0).zip(self.noise_sd);
+        for (((force, f0), sd), samples) in forces.zip(Force::new(x, y)).into_array() {
             for ((sample, force), f0) in samples.iter_mut().zip(force).zip(f0) {
-                let observed = force + *sample;
+                let observed = force + *sample * sd;
                 *sample = observed - f0;
             }
         }
         let (x, y) = residual.split_at(samples);
         self.filter.statistic(Force::new(x, y))
     }
-}
-
-/// Fills `samples` with the noise of a trial of N samples a channel: lateral ones, then normal ones.
-fn noise<'a>(
-    generator: &Generator,
-    trial: u64,
-    sd: Force<f64>,
-    samples: &'a mut [f64],
-) -> Force<&'a mut [f64]> {
-    generator.normals(trial, 0, samples);
-    let (x, y) = samples.split_at_mut(samples.len() / 2);
-    Force::new(x, y).zip(sd).map(|(samples, sd)| {
-        samples.iter_mut().for_each(|sample| *sample *= sd);
-        samples
-    })
-}
-
-/// θ drawn from its own law (8), N(±γ²/2, γ²), for the trials `first`, `first` + 1, …
-///
-/// # Errors
-/// γ not finite or < 0, or γ² not representable.
-///
-/// Implements: DET-114.
-pub fn draw_theta(
-    generator: &Generator,
-    gamma: f64,
-    inclusion: bool,
-    first: u64,
-    theta: &mut [f64],
-) -> Result<(), DetectError> {
-    check_not_negative("gamma", gamma)?;
-    let half = check_finite("gamma squared", 0.5 * gamma * gamma)?;
-    let mean = if inclusion { half } else { -half };
-    generator.normals(0, first, theta);
-    for theta in theta {
-        *theta = mean + gamma * *theta;
-    }
-    Ok(())
-}
-
-/// How many of the given trials of pure noise have Θ_max ≥ η over the candidate shifts: with
-/// [`crate::stats::binomial::clopper_pearson`] the Monte Carlo value of the false-alarm rate and
-/// its interval, beside the bound of [`super::position::MaximumLaw`]. `residual` is scratch of 2N
-/// numbers.
-///
-/// # Errors
-/// η not finite; no shifts; scratch of another length.
-///
-/// Implements: DET-115.
-pub fn count_false_alarms(
-    scan: &Scan<'_>,
-    shifts: RangeInclusive<isize>,
-    eta: f64,
-    generator: &Generator,
-    trials: Range<u64>,
-    residual: &mut [f64],
-) -> Result<u64, DetectError> {
-    check_finite("eta", eta)?;
-    check_length("residual", scan.samples().saturating_mul(2), residual.len())?;
-    let mut alarms = 0;
-    for trial in trials {
-        let noise = noise(generator, trial, scan.noise_sd(), residual);
-        let maximum = scan.maximum(noise.as_deref(), shifts.clone())?;
-        alarms += u64::from(maximum.theta >= eta);
-    }
-    Ok(alarms)
 }

@@ -351,7 +351,6 @@ fn operating_characteristic() {
         (3.0, 0.9830525732376554),
         (8.0, 0.999999992291371),
     ] {
-        assert_ulps(auc(gamma).unwrap(), expected, 2.0);
         assert_ulps(two_afc(gamma).unwrap(), expected, 2.0);
     }
 }
@@ -411,7 +410,7 @@ fn questions_without_a_finite_answer_are_refused() {
     }
     for gamma in [-1.0, f64::NAN, f64::INFINITY] {
         assert!(error_rates(gamma, 0.0).is_err() && roc_miss(gamma, 0.5).is_err());
-        assert!(auc(gamma).is_err() && two_afc(gamma).is_err());
+        assert!(two_afc(gamma).is_err());
         assert!(neyman_pearson_miss_threshold(gamma, 0.1).is_err());
         assert!(neyman_pearson_false_alarm_threshold(gamma, 0.1).is_err());
     }
@@ -423,6 +422,21 @@ fn questions_without_a_finite_answer_are_refused() {
     let (inf, nan) = (f64::INFINITY, f64::NAN);
     for (c01, c10) in [(0.0, 1.0), (1.0, 0.0), (-1.0, 1.0), (inf, 1.0), (1.0, nan)] {
         assert!(bayes_threshold(0.5, costs(0.0, c01, c10, 0.0)).is_err());
+    }
+}
+
+// Verifies: DET-009.
+#[test]
+fn what_is_refused_is_never_a_decision() {
+    let decided = |sd, eta| {
+        decide(
+            theta_of_record(RESIDUAL, RESIDUAL, TEMPLATE, sd)?.theta,
+            eta,
+        )
+    };
+    assert!(decided(NOISE_SD, 0.0).is_ok());
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(decided(Force::new(bad, 1.0), 0.0).is_err() && decided(NOISE_SD, bad).is_err());
     }
 }
 

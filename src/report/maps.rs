@@ -8,7 +8,7 @@ use super::quality::{Quality, warnings};
 use super::text::name_of_map;
 use super::{Run, Settings, paper, refused};
 use crate::detect::{
-    DetectError, ErrorRates, MatchedFilter, auc, error_rates, map_threshold,
+    DetectError, ErrorRates, MatchedFilter, error_rates, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, two_afc,
 };
 use crate::force::Force;
@@ -179,7 +179,7 @@ fn judged(
             Err(DetectError::NoSignal) => None,
             other => Some(other?),
         },
-        auc: auc(both)?,
+        auc: two_afc(both)?,
         two_afc: two_afc(both)?,
         warnings: warnings(quality.as_ref(), both),
         quality,

@@ -40,7 +40,7 @@ functions! {
     /// The rate of misses at a rate of false alarms: the receiver operating characteristic. Numbers or arrays.
     roc_miss(gamma, false_alarm) = detect::roc_miss(gamma, false_alarm);
     /// The area under the curve of hits against false alarms, for numbers or arrays gamma.
-    auc(gamma) = detect::auc(gamma);
+    auc(gamma) = detect::two_afc(gamma);
     /// The share of right answers in a two-alternative forced choice, for numbers or arrays gamma.
     two_afc(gamma) = detect::two_afc(gamma);
     /// The gamma with which a share p_correct of forced choices is right; negative below one half. Numbers or arrays.

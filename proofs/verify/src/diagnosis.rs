@@ -2,7 +2,7 @@
 
 use super::{Check, Figure};
 use palpate::detect::simulate::Simulation;
-use palpate::detect::{auc, error_rates, neyman_pearson_false_alarm_threshold};
+use palpate::detect::{error_rates, neyman_pearson_false_alarm_threshold, two_afc};
 use palpate::fem::{Contact, MESH_SIZE, Model};
 use palpate::force::Force;
 use palpate::phantom::Phantom;
@@ -71,7 +71,7 @@ fn diagnosis(inclusion: &str, noise: f64) -> Result<Vec<Figure>, String> {
         neyman_pearson_false_alarm_threshold(gamma, FALSE_ALARM).map_err(|error| told(&error))?;
     let counts = count(&simulation, &f0, &f1, eta).map_err(|error| told(&error))?;
     let rates = error_rates(gamma, eta).map_err(|error| told(&error))?;
-    let area = auc(gamma).map_err(|error| told(&error))?;
+    let area = two_afc(gamma).map_err(|error| told(&error))?;
     Ok(vec![
         Figure::told("γ", gamma),
         Figure::told("threshold η", eta),

@@ -1,7 +1,6 @@
 //! Expected values: mpmath 1.4.1 at 50 digits, γ² = ΔᵀK⁻¹Δ and θ = ΔᵀK⁻¹(r − Δ/2) by LU, for the
 //! exact binary64 arguments; or closed forms, where named.
 
-use super::super::stationary::{banded_scratch, theta_banded, theta_stationary};
 use super::super::{Force, MatchedFilter};
 use super::*;
 use crate::stats::random::Generator;
@@ -108,27 +107,6 @@ fn arguments_that_do_not_fit_are_refused() {
     let (what, index) = ("residual", 3);
     let expected = DetectError::NotFinite { what, index };
     assert_eq!(dense(&bad, &TEMPLATE, covariance), Err(expected));
-    fn both(v: &[f64]) -> Force<&[f64]> {
-        Force::new(v, v)
-    }
-    let (two, one) = ([1.0, 0.5], [1.0]);
-    let two = both(&two[..]);
-    assert!(theta_stationary(two, two, both(&one), &mut [0.0; 4]).is_err());
-    assert!(theta_stationary(two, two, two, &mut [0.0; 3]).is_err());
-    assert!(theta_banded(two, two, both(&[]), &mut []).is_err());
-    assert!(theta_banded(two, two, both(&[1.0, 0.1, 0.0]), &mut [0.0; 18]).is_err());
-    let uneven = Force::new(&one[..], &[1.0, 0.5]);
-    for (residual, template) in [(both(&one), two), (uneven, two), (two, uneven)] {
-        let stationary = theta_stationary(residual, template, two, &mut [0.0; 4]);
-        let banded = theta_banded(residual, template, two, &mut [0.0; 10]);
-        for found in [stationary, banded] {
-            assert!(matches!(found, Err(DetectError::LengthMismatch { .. })));
-        }
-    }
-    for bad in [[-1.0, 0.0], [1.0, 1.0], [1.0, f64::NAN]] {
-        assert!(theta_stationary(two, two, both(&bad), &mut [0.0; 4]).is_err());
-        assert!(theta_banded(two, two, both(&bad), &mut [0.0; 10]).is_err());
-    }
 }
 
 const LONG_TEMPLATE: Force<&[f64]> = Force::new(
@@ -140,27 +118,6 @@ const LONG_RESIDUAL: Force<&[f64]> = Force::new(
     &[0.1, 0.1, 0.4, 0.2, 0.3, -0.1, 0.05],
 );
 
-// Verifies: DET-044, DET-045.
-#[test]
-fn stationary_noise_by_either_method() {
-    let lags: Force<&[f64]> = Force::new(&[0.05, 0.02, -0.005], &[0.08, -0.03, 0.01]);
-    // What was in the scratch has no say.
-    let scratch = &mut vec![f64::NAN; banded_scratch(3)];
-    let banded = theta_banded(LONG_RESIDUAL, LONG_TEMPLATE, lags, scratch).unwrap();
-    let padded = lags.map(|lags| {
-        let mut padded = [0.0; 7];
-        padded[..3].copy_from_slice(lags);
-        padded
-    });
-    let padded = Force::new(&padded.lateral[..], &padded.normal[..]);
-    let levinson =
-        theta_stationary(LONG_RESIDUAL, LONG_TEMPLATE, padded, &mut [f64::NAN; 14]).unwrap();
-    for found in [banded, levinson] {
-        assert_near(found.gamma, 5.233014428250506, 2e-14);
-        assert_near(found.theta, 13.81510961793283, 5e-14);
-    }
-}
-
 /// Deviates for a record: any numbers will do.
 fn numbers(stream: u64, count: usize) -> Vec<f64> {
     let mut numbers = vec![0.0; count];
@@ -168,41 +125,39 @@ fn numbers(stream: u64, count: usize) -> Vec<f64> {
     numbers
 }
 
-// Verifies: DET-044.
+// Verifies: DET-040.
 #[test]
 fn exponential_autocovariance_has_a_closed_form() {
     // ρ(k) = v aᵏ is a first-order autoregression: white are n₀/√v and (nᵢ − a nᵢ₋₁)/√(v(1−a²)).
     const SAMPLES: usize = 200;
     let (template, residual) = (numbers(0, 2 * SAMPLES), numbers(1, 2 * SAMPLES));
-    let (variance, memory) = (Force::new(0.3, 2.0), Force::new(0.8, -0.5));
-    let lags = variance.zip(memory).map(|(v, a): (f64, f64)| {
-        let lags = (0..SAMPLES as i32).map(|lag| v * a.powi(lag));
-        lags.collect::<Vec<_>>()
-    });
-    let split = |v: &'static [f64]| Force::new(&v[..SAMPLES], &v[SAMPLES..]);
-    let (template, residual) = (split(Vec::leak(template)), split(Vec::leak(residual)));
+    let (variance, memory) = ([0.3, 2.0], [0.8_f64, -0.5]);
+    let mut covariance = vec![0.0; 4 * SAMPLES * SAMPLES];
     let mut expected = (0.0, 0.0);
-    let noise = variance.zip(memory);
-    for ((t, r), (v, a)) in template.zip(residual).zip(noise).into_array() {
-        for i in 0..SAMPLES {
-            let white = |n: &[f64]| match i {
-                0 => n[0] / v.sqrt(),
-                _ => (n[i] - a * n[i - 1]) / (v * (1.0 - a * a)).sqrt(),
+    for channel in 0..2 {
+        let (v, a, first) = (variance[channel], memory[channel], channel * SAMPLES);
+        for i in first..first + SAMPLES {
+            for j in first..first + SAMPLES {
+                covariance[i * 2 * SAMPLES + j] = v * a.powi(i.abs_diff(j) as i32);
+            }
+            let white = |n: &[f64]| match i == first {
+                true => n[i] / v.sqrt(),
+                false => (n[i] - a * n[i - 1]) / (v * (1.0 - a * a)).sqrt(),
             };
-            expected.0 += white(t) * white(t);
-            expected.1 += white(t) * (white(r) - 0.5 * white(t));
+            let (t, r) = (white(&template), white(&residual));
+            expected.0 += t * t;
+            expected.1 += t * (r - 0.5 * t);
         }
     }
-    let lags = Force::new(&lags.lateral[..], &lags.normal[..]);
-    let found = theta_stationary(residual, template, lags, &mut [0.0; 2 * SAMPLES]).unwrap();
+    let found = dense(&residual, &template, &covariance).unwrap();
     let gamma = expected.0.sqrt();
     assert_near(found.gamma, gamma, TOLERANCE * gamma);
     assert_near(found.theta, expected.1, TOLERANCE * expected.0);
 }
 
-// Verifies: DET-041, DET-044, DET-045.
+// Verifies: DET-041.
 #[test]
-fn white_noise_is_a_special_case_of_every_colour() {
+fn white_noise_is_a_special_case() {
     let sd = Force::new(0.3, 0.2);
     let filter = MatchedFilter::new(LONG_TEMPLATE, sd).unwrap();
     let expected = filter.statistic(LONG_RESIDUAL).unwrap();
@@ -213,43 +168,11 @@ fn white_noise_is_a_special_case_of_every_colour() {
     }
     let join = |c: Force<&[f64]>| [c.lateral, c.normal].concat();
     let (residual, template) = (join(LONG_RESIDUAL), join(LONG_TEMPLATE));
-    let mut found = vec![dense(&residual, &template, covariance.as_flattened()).unwrap()];
-    let variance = sd.map(|sd| [sd * sd]);
-    let lags = Force::new(&variance.lateral[..], &variance.normal[..]);
-    found.push(theta_banded(LONG_RESIDUAL, LONG_TEMPLATE, lags, &mut [0.0; 4]).unwrap());
-    let padded = variance.map(|v| [v[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    let lags = Force::new(&padded.lateral[..], &padded.normal[..]);
-    found.push(theta_stationary(LONG_RESIDUAL, LONG_TEMPLATE, lags, &mut [0.0; 14]).unwrap());
-    for found in found {
-        // s² and a division round where white noise does not.
-        let gamma = expected.gamma;
-        assert_near(found.gamma, gamma, 8.0 * f64::EPSILON * gamma);
-        let tolerance = 8.0 * f64::EPSILON * gamma * gamma;
-        assert_near(found.theta, expected.theta, tolerance);
-    }
-}
-
-// Verifies: DET-045.
-#[test]
-fn a_long_record_in_banded_noise_agrees_with_its_dense_covariance() {
-    const SAMPLES: usize = 100;
-    let (template, residual) = (numbers(2, 2 * SAMPLES), numbers(3, 2 * SAMPLES));
-    let lags = [1.0, 0.5, 0.2, -0.1];
-    let mut covariance = vec![0.0; 4 * SAMPLES * SAMPLES];
-    for i in 0..2 * SAMPLES {
-        for j in 0..2 * SAMPLES {
-            if (i < SAMPLES) == (j < SAMPLES) && i.abs_diff(j) < 4 {
-                covariance[i * 2 * SAMPLES + j] = lags[i.abs_diff(j)];
-            }
-        }
-    }
-    let expected = dense(&residual, &template, &covariance).unwrap();
-    let channels = |v: &'static [f64]| Force::new(&v[..SAMPLES], &v[SAMPLES..]);
-    let (residual, template) = (channels(Vec::leak(residual)), channels(Vec::leak(template)));
-    let lags = Force::new(&lags[..], &lags[..]);
-    let found = theta_banded(residual, template, lags, &mut vec![0.0; banded_scratch(4)]).unwrap();
-    assert_near(found.gamma, expected.gamma, TOLERANCE * expected.gamma);
-    let tolerance = TOLERANCE * expected.gamma * expected.gamma;
+    let found = dense(&residual, &template, covariance.as_flattened()).unwrap();
+    // s² and a division round where white noise does not.
+    let gamma = expected.gamma;
+    assert_near(found.gamma, gamma, 8.0 * f64::EPSILON * gamma);
+    let tolerance = 8.0 * f64::EPSILON * gamma * gamma;
     assert_near(found.theta, expected.theta, tolerance);
 }
 
@@ -277,16 +200,6 @@ fn a_pivot_counts_as_positive_beyond_what_rounding_explains() {
         assert!(dense(14.0 * E).is_ok(), "28 ε, beyond 4 (4 + 2) ε");
         let refused = Err(DetectError::NotPositiveDefinite { pivot: 1 });
         assert_eq!(dense(11.0 * E), refused);
-        // Three samples, so 4 (3 + 2) ε; an autoregression, whose third pivot equals the second.
-        let stationary = |delta: f64| {
-            let lags = [power, power * (1.0 - delta), power * (1.0 - delta).powi(2)];
-            let white = [power, 0.0, 0.0];
-            let channels = Force::new(&lags[..], &white);
-            let nothing = Force::new(&[0.0; 3][..], &[0.0; 3]);
-            theta_stationary(nothing, nothing, channels, &mut [0.0; 6])
-        };
-        assert!(stationary(11.0 * E).is_ok(), "22 ε, beyond 20 ε");
-        assert_eq!(stationary(9.0 * E), refused);
     }
 }
 
@@ -312,14 +225,4 @@ fn asymmetry_counts_beyond_what_rounding_explains() {
             }
         }
     }
-}
-
-// Verifies: DET-045.
-#[test]
-fn as_many_lags_as_samples_are_a_band() {
-    let lags = Force::new(&[1.0, 0.5][..], &[1.0, 0.5]);
-    let ones = Force::new(&[1.0, 1.0][..], &[1.0, 1.0]);
-    let found = theta_banded(ones, ones, lags, &mut [0.0; banded_scratch(2)]).unwrap();
-    // Each channel: 1ᵀK⁻¹1 = 2/1.5; γ² twice that, and θ half of it.
-    assert_near(found.theta, 4.0 / 3.0, 16.0 * f64::EPSILON);
 }

@@ -51,7 +51,7 @@ pub fn roc(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let miss = false_alarm.iter();
     let miss = miss.map(|&rate| detect::roc_miss(gamma, rate));
     let miss: Vec<f64> = miss.collect::<Result<_, _>>()?;
-    Ok(Answer::of([("miss", miss)]).with("auc", detect::auc(gamma)?))
+    Ok(Answer::of([("miss", miss)]).with("auc", detect::two_afc(gamma)?))
 }
 
 /// The least γ for two rates.

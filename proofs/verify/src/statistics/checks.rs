@@ -75,11 +75,6 @@ pub(super) fn count_rejects(count: u64, n: u64, p: f64, alpha: f64) -> Outcome<b
     Ok(at_least(count, n, p)? < 0.5 * alpha || at_most(count, n, p)? < 0.5 * alpha)
 }
 
-/// Is a count too large for a probability of at most `p`? Exact, one-sided.
-pub(super) fn excess_rejects(count: u64, n: u64, p: f64, alpha: f64) -> Outcome<bool> {
-    Ok(at_least(count, n, p)? < alpha)
-}
-
 /// Is the mean of the sample not 0? Each entry lies in an interval of length 1 that what came before it fixes: Hoeffding's bound
 /// Pr(|Σ| ≥ t) ≤ 2 exp(−2t²/n).
 pub(super) fn mean_of_bounded_rejects(sample: &[f64], alpha: f64) -> bool {

@@ -4,11 +4,10 @@
 use super::checks::{Law, mean_rejects, variance_rejects};
 use super::{Check, Draw, Outcome};
 use palpate::detect::coloured::{ColouredStatistic, coloured_scratch, theta_coloured};
-use palpate::detect::stationary::{banded_scratch, theta_banded, theta_stationary};
 use palpate::detect::{DetectError, MatchedFilter};
 use palpate::force::Force;
 
-/// DET-040, DET-041; DET-044; DET-045.
+/// DET-040, DET-041.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("shared_noise_mean_h1", |draw| mean(draw, &SHARED)),
     Check::new("shared_noise_variance_h0", |draw| variance(draw, &SHARED)),
@@ -25,29 +24,36 @@ pub(super) const CHECKS: &[Check] = &[
 /// One kind of noise.
 struct Colour {
     noise: Noise,
-    /// Variance of a sample, N².
-    variance: f64,
-    detector: Detector,
+    /// The covariance of two samples, N².
+    covariance: fn(usize, usize) -> f64,
     /// The first stream.
     stream: u64,
 }
 
 const SHARED: Colour = Colour {
     noise: shared,
-    variance: 0.13,
-    detector: shared_detector,
+    covariance: |i, j| match (i.abs_diff(j), i.abs_diff(j) % SAMPLES) {
+        (0, _) => 0.04 + 0.09,
+        (_, 0) => 0.09,
+        _ => 0.0,
+    },
     stream: 400,
 };
 const FEEDBACK: Colour = Colour {
     noise: feedback,
-    variance: 0.04 / 0.36,
-    detector: feedback_detector,
+    covariance: |i, j| match i / SAMPLES == j / SAMPLES {
+        true => 0.04 / 0.36 * libm::pow(0.8, i.abs_diff(j) as f64),
+        false => 0.0,
+    },
     stream: 430,
 };
 const MOVING_AVERAGE: Colour = Colour {
     noise: moving_average,
-    variance: 0.0656,
-    detector: moving_average_detector,
+    covariance: |i, j| match (i / SAMPLES == j / SAMPLES, i.abs_diff(j)) {
+        (_, 0) => 0.04 + 0.0256,
+        (true, 1) => 0.032,
+        _ => 0.0,
+    },
     stream: 460,
 };
 
@@ -57,8 +63,6 @@ const TEMPLATE: [f64; 2 * SAMPLES] = [
     0.1, 0.3, 0.2, -0.2, -0.3, -0.1, 0.05, 0.15, 0.3, 0.34, 0.2, 0.1,
 ];
 
-/// A detector of coloured noise: residual → statistic.
-type Detector = fn(&[f64]) -> Result<ColouredStatistic, DetectError>;
 /// A source of noise: 40 independent deviates → 12 samples.
 type Noise = fn(&[f64]) -> [f64; 2 * SAMPLES];
 
@@ -70,21 +74,6 @@ fn channels(values: &[f64]) -> Force<&[f64]> {
 /// common to x and y.
 fn shared(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
     std::array::from_fn(|i| 0.2 * deviates[i] + 0.3 * deviates[20 + i % SAMPLES])
-}
-
-fn shared_detector(residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
-    let order = 2 * SAMPLES;
-    let mut covariance = vec![0.0; order * order];
-    for i in 0..order {
-        covariance[i * order + i] = 0.04 + 0.09;
-        covariance[i * order + (i + SAMPLES) % order] = 0.09;
-    }
-    theta_coloured(
-        residual,
-        &TEMPLATE,
-        &covariance,
-        &mut vec![0.0; coloured_scratch(order)],
-    )
 }
 
 /// Feedback, nᵢ = 0.8 nᵢ₋₁ + 0.2 eᵢ, in each channel, started in its stationary law.
@@ -100,17 +89,6 @@ fn feedback(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
     noise
 }
 
-fn feedback_detector(residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
-    let lags: [f64; SAMPLES] = std::array::from_fn(|lag| 0.04 / 0.36 * libm::pow(0.8, lag as f64));
-    let lags = Force::new(&lags[..], &lags[..]);
-    theta_stationary(
-        channels(residual),
-        channels(&TEMPLATE),
-        lags,
-        &mut [0.0; 2 * SAMPLES],
-    )
-}
-
 /// A moving average, nᵢ = 0.2 eᵢ + 0.16 eᵢ₋₁.
 fn moving_average(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
     std::array::from_fn(|i| {
@@ -119,11 +97,13 @@ fn moving_average(deviates: &[f64]) -> [f64; 2 * SAMPLES] {
     })
 }
 
-fn moving_average_detector(residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
-    let lags = [0.04 + 0.0256, 0.032];
-    let lags = Force::new(&lags[..], &lags[..]);
-    let mut scratch = [0.0; banded_scratch(2)];
-    theta_banded(channels(residual), channels(&TEMPLATE), lags, &mut scratch)
+/// What a residual says beside this noise.
+fn judged(colour: &Colour, residual: &[f64]) -> Result<ColouredStatistic, DetectError> {
+    const ORDER: usize = 2 * SAMPLES;
+    let entry = |at: usize| (colour.covariance)(at / ORDER, at % ORDER);
+    let covariance: [f64; ORDER * ORDER] = std::array::from_fn(entry);
+    let mut scratch = [0.0; coloured_scratch(ORDER)];
+    theta_coloured(residual, &TEMPLATE, &covariance, &mut scratch)
 }
 
 /// θ of a detector that takes each noise for white with its own variance.
@@ -148,12 +128,12 @@ fn sample(
             residual.iter_mut().zip(TEMPLATE).for_each(|(r, t)| *r += t);
         }
         match draw.defect {
-            "whitening_left_out" => without_whitening(&residual, colour.variance),
-            _ => Ok((colour.detector)(&residual)?.theta),
+            "whitening_left_out" => without_whitening(&residual, (colour.covariance)(0, 0)),
+            _ => Ok(judged(colour, &residual)?.theta),
         }
     });
     let theta = theta.collect::<Result<_, _>>()?;
-    let gamma = (colour.detector)(&TEMPLATE)?.gamma;
+    let gamma = judged(colour, &TEMPLATE)?.gamma;
     Ok((Law::of_theta(gamma, inclusion), theta))
 }
 

@@ -4,11 +4,11 @@ use super::checks::{
     Law, count_rejects, kolmogorov_rejects, mean_rejects, tail_rejects, variance_rejects,
 };
 use super::{Check, Draw, Outcome};
-use palpate::detect::simulate::{Simulation, draw_theta};
+use palpate::detect::simulate::Simulation;
 use palpate::detect::{neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold};
 use palpate::force::Force;
 
-/// DET-012, DET-013, DET-015, DET-024, DET-025, DET-026, DET-113; the last one DET-114.
+/// DET-012, DET-013, DET-015, DET-024, DET-025, DET-026, DET-113.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("coarse_mean_h0", |draw| mean(draw, COARSE, false, 0)),
     Check::new("coarse_mean_h1", |draw| mean(draw, COARSE, true, 1)),
@@ -30,7 +30,6 @@ pub(super) const CHECKS: &[Check] = &[
         variance(draw, TRAVERSE, false, 210)
     }),
     Check::new("traverse_false_alarms_at_5_percent", traverse_false_alarms),
-    Check::new("direct_kolmogorov", drawn_directly),
 ];
 
 /// A setting, and the distance of the streams of two replicates.
@@ -254,14 +253,6 @@ fn traverse_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
     let (law, theta) = sample(draw, TRAVERSE, false, 220)?;
     let eta = neyman_pearson_false_alarm_threshold(law.sd, 0.05)?;
     tail_rejects(&theta, law, eta, draw.row.alpha)
-}
-
-/// θ drawn from its law.
-fn drawn_directly(draw: &Draw<'_>) -> Outcome<bool> {
-    let mut theta = vec![0.0; draw.row.trials];
-    let generator = draw.generator(300 + draw.replicate);
-    draw_theta(&generator, 3.0, draw.defect.is_empty(), 5, &mut theta)?;
-    kolmogorov_rejects(&theta, Law::of_theta(3.0, true), draw.row.alpha)
 }
 
 #[cfg(test)]

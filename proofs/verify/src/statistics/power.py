@@ -122,7 +122,6 @@ gaussian("single_variance_h0", single, False, 200_000, variance_power, one_chann
 gaussian("traverse_mean_h1", traverse, True, 20_000, mean_power)
 gaussian("traverse_variance_h0", traverse, False, 20_000, variance_power)
 gaussian("traverse_false_alarms_at_5_percent", traverse, False, 20_000, false_alarm_power(0.05))
-line("direct_kolmogorov", 200_000, [("other_hypothesis", kolmogorov_power((4.5, 3), (-4.5, 3), 200_000))])
 
 # Coloured noise of covariance K, judged as white noise of the same variance.
 template = np.array([0.1, 0.3, 0.2, -0.2, -0.3, -0.1, 0.05, 0.15, 0.3, 0.34, 0.2, 0.1])
@@ -146,8 +145,6 @@ line("generator_tails_beyond_4", 2_000_000, [("tail_left_out", count_power(2 * n
 for name in ("generator_signs_of_neighbours", "generator_signs_of_trials"):
     line(name, 200_000, [("same_address", count_power(0.5, 1, 200_000))])
 
-# At least as many alarms as four places that do not overlap: 1 - 0.95^3 at the very least.
-line("theta_max_false_alarms", 20_000, [("threshold_of_one_position", binom.sf(binom.isf(ALPHA, 20_000, 0.05), 20_000, 1 - 0.95**3))])
 # A shift by one sample adds 1 to a mean square of 0.07. Below the threshold effect (gamma = 2.5, 100 candidate shifts, one in three errors
 # spread over the record) the mean square is some 200 against a bound of 7.
 line("position_error", 3_000, [("template_shifted", 1), ("signal_below_the_threshold_effect", 1)])
