@@ -1,6 +1,7 @@
 //! The laws of `palpate::stats` beside those of statrs, which is written by others.
 
-use palpate::stats::tails::{chi_square_tail, f_tail, gamma_tail, student_quantile};
+use palpate::stats::noncentral::{f_ratio, student_point};
+use palpate::stats::tails::{chi_square_tail, gamma_tail};
 use palpate::stats::{binomial, normal};
 use statrs::distribution::{
     Binomial, ChiSquared, ContinuousCDF, DiscreteCDF, FisherSnedecor, Gamma, Normal, StudentsT,
@@ -48,15 +49,12 @@ fn continuous_laws_are_those_of_statrs() {
             for denominator in [1.0, 4.0, 60.0] {
                 let law = FisherSnedecor::new(degrees, denominator).unwrap();
                 let (ratio, what) = (x / degrees, format_args!("F({degrees}, {denominator})"));
-                assert_near(
-                    f_tail(ratio, degrees, denominator).unwrap(),
-                    law.sf(ratio),
-                    what,
-                );
+                let found = f_ratio(ratio, degrees, denominator, 0.0).unwrap();
+                assert_near(found.upper, law.sf(ratio), what);
             }
         }
         for confidence in [0.5, 0.9, 0.99] {
-            let quantile = student_quantile(confidence, degrees).unwrap();
+            let quantile = student_point(0.5 * (1.0 - confidence), degrees).unwrap();
             let what = format_args!("t for {confidence} with {degrees} degrees");
             assert_near(student.sf(quantile), 0.5 * (1.0 - confidence), what);
         }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::rates::{Bounds, CONFIDENCE};
 use super::{AnswerTable, Column, Condition, Result};
-use crate::stats::tails::student_quantile;
+use crate::stats::noncentral::student_point;
 
 /// Most subjects whose exchanges of signs are all tried: a million.
 const MOST_SUBJECTS: usize = 20;
@@ -119,7 +119,7 @@ fn difference(differences: &[f64]) -> Result<Difference> {
     let mut bounds = None;
     if differences.len() > 1 && spread > 0.0 {
         let error = libm::sqrt(spread / (count - 1.0) / count);
-        let reach = student_quantile(CONFIDENCE, count - 1.0)? * error;
+        let reach = student_point(0.5 * (1.0 - CONFIDENCE), count - 1.0)? * error;
         let (lower, upper) = (mean - reach, mean + reach);
         bounds = Some(Bounds { lower, upper });
     }

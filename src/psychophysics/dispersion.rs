@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::{Condition, Result};
-use crate::stats::tails::{chi_square_tail, f_tail};
+use crate::stats::noncentral::f_ratio;
+use crate::stats::tails::chi_square_tail;
 
 /// Expected counts below this make the chi-square law rough (Cochran's rule).
 const ROUGH_BELOW: f64 = 5.0;
@@ -100,7 +101,7 @@ impl Overdispersion {
             return Ok(None);
         }
         let ratio = deviance / f64::from(degrees) / self.factor();
-        let p_value = f_tail(ratio, f64::from(degrees), f64::from(self.degrees))?;
-        Ok(Some(p_value))
+        let p_value = f_ratio(ratio, f64::from(degrees), f64::from(self.degrees), 0.0)?;
+        Ok(Some(p_value.upper))
     }
 }

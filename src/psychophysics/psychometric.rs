@@ -7,8 +7,9 @@ use super::dispersion::Overdispersion;
 use super::rates::{CONFIDENCE, OpenBounds};
 use super::search::{interval, maximum};
 use super::{Column, Condition, Result};
+use crate::stats::noncentral::student_point;
 use crate::stats::normal::{self, lower_tail};
-use crate::stats::tails::{chi_square_tail, student_quantile};
+use crate::stats::tails::chi_square_tail;
 
 /// The midpoint is searched this many spans of the depths beyond them.
 const SPANS: f64 = 3.0;
@@ -131,7 +132,7 @@ impl Model {
         let perceived = self.perceived(midpoint, log_spread);
         let lapse = best_lapse(&self.counts, &perceived);
         let z = normal::quantile(0.5 + 0.5 * CONFIDENCE)?;
-        let t = student_quantile(CONFIDENCE, f64::from(dispersion.degrees))?;
+        let t = student_point(0.5 * (1.0 - CONFIDENCE), f64::from(dispersion.degrees))?;
         // Where the profile falls below these, a value is outside its interval.
         let floors = [top - 0.5 * z * z, top - 0.5 * dispersion.factor() * t * t];
         let parameter = |value: f64, profile: &dyn Fn(f64) -> f64, ends: [f64; 2]| {

@@ -6,7 +6,7 @@ use super::{Condition, Result};
 use crate::detect::gamma_from_two_afc;
 pub use crate::stats::binomial::ConfidenceInterval as Bounds;
 use crate::stats::binomial::{clopper_pearson, wilson};
-use crate::stats::tails::student_quantile;
+use crate::stats::noncentral::student_point;
 
 /// The confidence of every interval in an analysis.
 ///
@@ -143,7 +143,7 @@ pub fn clustered(counts: &[(u32, u32)], pooled: &Rate) -> Result<Option<Clustere
         return Ok(None);
     }
     let standard_error = libm::sqrt(subjects / (subjects - 1.0) * spread) / pooled.trials as f64;
-    let reach = student_quantile(CONFIDENCE, subjects - 1.0)? * standard_error;
+    let reach = student_point(0.5 * (1.0 - CONFIDENCE), subjects - 1.0)? * standard_error;
     let bounds = Bounds {
         lower: (pooled.rate - reach).max(0.0),
         upper: (pooled.rate + reach).min(1.0),

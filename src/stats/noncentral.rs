@@ -71,7 +71,7 @@ pub fn chi_square(x: f64, degrees: f64, noncentrality: f64) -> Result<Tails, Num
 /// # Errors
 /// As [`chi_square`].
 ///
-/// Implements: DET-131, DET-133, DET-134, DET-135, DET-138.
+/// Implements: DET-131, DET-133, DET-134, DET-135, DET-138, PSY-030.
 pub fn f_ratio(
     x: f64,
     numerator: f64,
@@ -136,7 +136,7 @@ pub fn chi_square_point(tail: Tail, degrees: f64) -> Result<f64, NumericError> {
 /// # Errors
 /// A probability not strictly between 0 and 1; degrees of freedom as in [`student`]; an x beyond 10¹⁵⁰.
 ///
-/// Implements: DET-137, DET-138.
+/// Implements: DET-137, DET-138, PSY-030.
 pub fn student_point(upper: f64, degrees: f64) -> Result<f64, NumericError> {
     check_probability("upper", upper)?;
     let size = crossing(ALL_BITS, |x| {

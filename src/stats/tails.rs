@@ -1,9 +1,8 @@
-//! Tails of the gamma, chi-square, F and Student laws, through the incomplete gamma and beta
-//! functions: series where they converge fast, Lentz's evaluation of the continued fractions
-//! elsewhere.
+//! Tails of the gamma and chi-square laws, through the incomplete gamma function: a series where it converges fast, Lentz's
+//! evaluation of a continued fraction elsewhere. [`super::noncentral`] has the laws with all digits, and those of ratios.
 
 use super::NumericError;
-use super::error::{check_not_negative, check_probability, in_range};
+use super::error::{check_not_negative, in_range};
 
 /// Parameters up to which the tails are tested.
 const LARGEST: f64 = 1e6;
@@ -25,7 +24,8 @@ const TINY: f64 = 1e-300;
 ///
 /// Implements: PSY-030.
 pub fn gamma_tail(shape: f64, x: f64) -> Result<f64, NumericError> {
-    check_parameter("shape", shape)?;
+    let is_right = shape > 0.0 && shape <= LARGEST;
+    in_range(is_right, "shape", shape, "above 0 and at most 1e6")?;
     check_not_negative("x", x)?;
     if x == 0.0 {
         return Ok(1.0);
@@ -71,46 +71,6 @@ pub fn chi_square_tail(x: f64, degrees: f64) -> Result<f64, NumericError> {
     gamma_tail(0.5 * degrees, 0.5 * x)
 }
 
-/// Pr(X ≥ x) for the F law.
-///
-/// # Errors
-/// Degrees of freedom not in (0, 2·10⁶], x negative or not finite.
-///
-/// Implements: PSY-030.
-pub fn f_tail(x: f64, numerator: f64, denominator: f64) -> Result<f64, NumericError> {
-    check_not_negative("x", x)?;
-    let sum = denominator + numerator * x;
-    // Both shares from their own quotients: a difference from 1 would lose the small one.
-    incomplete_beta(
-        0.5 * denominator,
-        0.5 * numerator,
-        denominator / sum,
-        numerator * x / sum,
-    )
-}
-
-/// Pr(|T| ≥ |t|) for Student's law.
-///
-/// # Errors
-/// Degrees of freedom not in (0, 2·10⁶], t not finite.
-///
-/// Implements: PSY-030.
-pub fn student_two_sided(t: f64, degrees: f64) -> Result<f64, NumericError> {
-    f_tail(t * t, 1.0, degrees)
-}
-
-/// The t that |T| stays below with probability `confidence`.
-///
-/// # Errors
-/// A confidence not strictly between 0 and 1; as [`student_two_sided`].
-///
-/// Implements: PSY-030.
-pub fn student_quantile(confidence: f64, degrees: f64) -> Result<f64, NumericError> {
-    let outside = 1.0 - check_probability("confidence", confidence)?;
-    // Enough for all the bits of a t above 2⁻¹¹.
-    crossing(64, |t| Ok(student_two_sided(t, degrees)? > outside))
-}
-
 /// The least number ≥ 0 for which a condition fails that holds for all smaller ones: to the last bit, if the halvings suffice.
 pub(super) fn crossing(
     halvings: u32,
@@ -138,24 +98,6 @@ pub(crate) fn halved<E>(
         *(if holds(middle)? { &mut yes } else { &mut no }) = middle;
     }
     Ok([yes, no])
-}
-
-/// I_x(a, b) with y = 1 − x given beside x.
-fn incomplete_beta(a: f64, b: f64, x: f64, y: f64) -> Result<f64, NumericError> {
-    check_parameter("half the degrees of freedom", a)?;
-    check_parameter("half the degrees of freedom", b)?;
-    if x <= 0.0 || y <= 0.0 {
-        return Ok(if x <= 0.0 { 0.0 } else { 1.0 });
-    }
-    let logarithm = a * libm::log(x) + b * libm::log(y) + libm::lgamma(a + b)
-        - libm::lgamma(a)
-        - libm::lgamma(b);
-    let front = libm::exp(logarithm);
-    Ok(if x < (a + 1.0) / (a + b + 2.0) {
-        front * beta_fraction(a, b, x) / a
-    } else {
-        1.0 - front * beta_fraction(b, a, y) / b
-    })
 }
 
 /// The continued fraction of the incomplete beta function: I_x(a, b) = front · fraction/a.
@@ -189,11 +131,6 @@ pub(super) fn fraction(b0: f64, coefficients: impl Fn(u32) -> (f64, f64)) -> f64
         }
     }
     value
-}
-
-fn check_parameter(what: &'static str, value: f64) -> Result<f64, NumericError> {
-    let is_right = value > 0.0 && value <= LARGEST;
-    in_range(is_right, what, value, "above 0 and at most 1e6")
 }
 
 #[cfg(test)]

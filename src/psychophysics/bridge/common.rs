@@ -7,7 +7,7 @@ use crate::psychophysics::choice::{Count, Perceived, best_lapse, deviance, log_l
 use crate::psychophysics::dispersion::Overdispersion;
 use crate::psychophysics::rates::{Bounds, CONFIDENCE};
 use crate::psychophysics::search::maximum;
-use crate::stats::tails::{f_tail, student_quantile};
+use crate::stats::noncentral::{f_ratio, student_point};
 
 /// Cells of the search for ln(1/σ).
 const CELLS: u32 = 24;
@@ -153,7 +153,7 @@ fn noise_bounds(signals: &Signals, observed: &Observations, log: f64) -> Result<
         squares += score * score;
     }
     let error = libm::sqrt(subjects / (subjects - 1.0) * squares) / information;
-    let reach = libm::exp(student_quantile(CONFIDENCE, subjects - 1.0)? * error);
+    let reach = libm::exp(student_point(0.5 * (1.0 - CONFIDENCE), subjects - 1.0)? * error);
     let noise = libm::exp(-log);
     let (lower, upper) = (noise / reach, noise * reach);
     Ok((upper.is_finite() && lower > 0.0).then_some(Bounds { lower, upper }))
@@ -191,7 +191,7 @@ fn hotelling(signals: &Signals, observed: &Observations) -> Result<Option<f64>> 
     let [low, high] = signals.range();
     let t_squared = -maximum(less_t_squared, low, high, CELLS).1;
     let ratio = (m - q) / (q * (m - 1.0)) * t_squared;
-    Ok(Some(f_tail(ratio, q, m - q)?))
+    Ok(Some(f_ratio(ratio, q, m - q, 0.0)?.upper))
 }
 
 /// The rows of L in S = LLᵀ; `None` if S is singular.
