@@ -141,8 +141,7 @@ impl StudyPlan {
     /// # Errors
     /// Rates that no γ keeps.
     pub fn required_gamma(&self) -> Result<f64, Refusal> {
-        let needed = required_gamma(self.max_false_alarm, self.max_miss);
-        needed.map_err(|error| Refusal::state(error, ""))
+        Ok(required_gamma(self.max_false_alarm, self.max_miss)?)
     }
 
     /// The samples of this plan.
@@ -154,22 +153,14 @@ impl StudyPlan {
     /// Implements: STU-002, STU-004, STU-011.
     pub fn design(&self) -> Result<Design, Refusal> {
         self.required_gamma()?;
-        map_threshold(self.prior_h1).map_err(|error| Refusal::state(error, ""))?;
+        map_threshold(self.prior_h1)?;
         let phantoms: Vec<&str> = self.all_phantoms().map(|phantom| &*phantom.name).collect();
-        if let Some(twice) = first_repeated(&phantoms) {
-            return Err(Refusal::value(
-                "phantoms",
-                format!("{twice:?} twice"),
-                "a name for each",
-            ));
-        }
         let names: Vec<&str> = self.inputs.iter().map(|input| &*input.name).collect();
-        if let Some(twice) = first_repeated(&names) {
-            return Err(Refusal::value(
-                "input.name",
-                format!("{twice:?} twice"),
-                "a name for each",
-            ));
+        for (key, names) in [("phantoms", &phantoms), ("input.name", &names)] {
+            if let Some(twice) = first_repeated(names) {
+                let found = format!("{twice:?} twice");
+                return Err(Refusal::value(key, found, "a name for each"));
+            }
         }
         for (at, input) in self.inputs.iter().enumerate() {
             let of_input = |refusal: Refusal| refusal.under(&format!("input[{at}]"));

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::design::{Design, Role};
 use super::{NOISE_SD, PROBE_DEPTH, StudyPlan, edit};
 use crate::bank::deepest;
-use crate::detect::{DetectError, MatchedFilter, error_rates, map_threshold, two_afc};
+use crate::detect::{MatchedFilter, error_rates, map_threshold, two_afc};
 use crate::fem::Model;
 use crate::fem::certify::MESH_RATIOS;
 use crate::force::Force;
@@ -197,7 +197,7 @@ impl<'a> Sampler<'a> {
         let signals: Vec<ForceTable> = signals.collect::<Result<_, _>>()?;
         let gamma = signals.iter().map(|signal| {
             let noise_sd = Force::new(noise_sd, noise_sd);
-            let filter = MatchedFilter::new(signal.row(depth)?, noise_sd).map_err(refused)?;
+            let filter = MatchedFilter::new(signal.row(depth)?, noise_sd)?;
             Ok(filter.gamma())
         });
         let gamma = gamma.collect::<Result<_, Refusal>>()?;
@@ -242,15 +242,15 @@ impl<'a> Sampler<'a> {
             Kind::Gamma => gamma(),
             Kind::NeededNoiseSdN => gamma() * computed.noise_sd / self.needed,
             Kind::ErrorRate => {
-                let eta = map_threshold(self.plan.prior_h1).map_err(refused)?;
-                let rates = error_rates(gamma(), eta).map_err(refused)?;
+                let eta = map_threshold(self.plan.prior_h1)?;
+                let rates = error_rates(gamma(), eta)?;
                 let prior = self.plan.prior_h1;
                 prior * rates.miss + (1.0 - prior) * rates.false_alarm
             }
-            Kind::TwoAfc => two_afc(gamma()).map_err(refused)?,
+            Kind::TwoAfc => two_afc(gamma())?,
             Kind::TwoAfcByPeak => {
                 let peak = peak_of(|signal| signal.normal)?.abs();
-                two_afc(peak / computed.noise_sd).map_err(refused)?
+                two_afc(peak / computed.noise_sd)?
             }
             Kind::DetectableDepthM => {
                 let mut pairs: Vec<_> = computed.depths.iter().zip(&computed.gamma).collect();
@@ -268,10 +268,6 @@ impl<'a> Sampler<'a> {
             }
         })
     }
-}
-
-fn refused(error: DetectError) -> Refusal {
-    Refusal::state(error, "")
 }
 
 /// The phantoms whose names are columns of the paper's Table 1: their places and names.
