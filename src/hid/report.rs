@@ -41,6 +41,8 @@ pub mod status {
 }
 
 /// Input report 1: where the handle is.
+///
+/// Implements: HID-002, HID-006, HID-007.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
@@ -60,6 +62,8 @@ pub struct PositionReport {
 }
 
 /// Output report 2: what to play.
+///
+/// Implements: HID-003, HID-006, HID-007.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
@@ -75,6 +79,8 @@ pub struct ForceReport {
 }
 
 /// Feature report 3: what the device is.
+///
+/// Implements: HID-004, HID-006, HID-007.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
@@ -167,7 +173,7 @@ pub(super) fn payload<const LENGTH: usize>(
 
 /// The bytes of a report after its number: each field, its type and the names of its bytes, least first.
 macro_rules! report {
-    ($report:ident, $number:literal, $(#[$implements:meta])* $($field:ident: $type:ty = $($byte:ident)+;)+) => {
+    ($report:ident, $number:literal, $($field:ident: $type:ty = $($byte:ident)+;)+) => {
         impl $report {
             /// The number of the report.
             pub const NUMBER: u8 = $number;
@@ -178,16 +184,12 @@ macro_rules! report {
             ///
             /// # Errors
             /// [`InvalidReport`] for another length or number.
-            ///
-            $(#[$implements])*
             pub fn decode(bytes: &[u8]) -> Result<$report, InvalidReport> {
                 let &[$($($byte),+),+] = payload(bytes, $report::NUMBER)?;
                 Ok($report { $($field: <$type>::from_le_bytes([$($byte),+])),+ })
             }
 
             /// The bytes of the report.
-            ///
-            $(#[$implements])*
             pub fn encode(&self) -> [u8; $report::LENGTH] {
                 $(let [$($byte),+] = self.$field.to_le_bytes();)+
                 [$report::NUMBER, $($($byte),+),+]
@@ -198,7 +200,6 @@ macro_rules! report {
 
 report! {
     PositionReport, 1,
-    /// Implements: HID-002, HID-006, HID-007.
     lateral: i16 = a b;
     normal: i16 = c d;
     buttons: u8 = e;
@@ -209,7 +210,6 @@ report! {
 
 report! {
     ForceReport, 2,
-    /// Implements: HID-003, HID-006, HID-007.
     lateral: i16 = a b;
     normal: i16 = c d;
     sequence: u16 = e f;
@@ -218,7 +218,6 @@ report! {
 
 report! {
     Capabilities, 3,
-    /// Implements: HID-004, HID-006, HID-007.
     version: u16 = a b;
     position_unit_nm: u16 = c d;
     force_unit_un: u16 = e f;

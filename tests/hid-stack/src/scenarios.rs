@@ -5,7 +5,7 @@ use std::process::Command;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use palpate::hid::real::{Listed, Profile, RealDevice, Wanted, list, udev_rule};
+use palpate::hid::real::{Listed, Profile, RealDevice, list, udev_rule};
 use palpate::hid::timing::{Budget, measure};
 use palpate::hid::{
     Control, End, ForceReport, HapticDevice, InvalidReport, PositionReport, Received,
