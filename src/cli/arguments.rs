@@ -89,27 +89,19 @@ impl Format {
     }
 }
 
-/// What a command line asks for.
-#[derive(Debug)]
-pub enum Asked<A> {
-    /// To do what these arguments say.
-    Command(Box<A>),
-    /// To print a text: help, or the version.
-    Text(String),
-}
-
-impl<A: Parser> Asked<A> {
-    /// Reads a command line, the first entry of which is the program's name; runs nothing.
-    ///
-    /// # Errors
-    /// [`CliError::Usage`].
-    ///
-    /// Implements: CLI-001, CLI-002.
-    pub fn read(arguments: impl IntoIterator<Item = OsString>) -> Result<Asked<A>, CliError> {
-        match A::try_parse_from(arguments) {
-            Ok(arguments) => Ok(Asked::Command(Box::new(arguments))),
-            Err(error) if !error.use_stderr() => Ok(Asked::Text(error.to_string())),
-            Err(error) => Err(CliError::usage(&error)),
-        }
+/// Reads a command line, the first entry of which is the program's name; runs nothing. A text to print, help or the version, may
+/// take the place of arguments.
+///
+/// # Errors
+/// [`CliError::Usage`].
+///
+/// Implements: CLI-001, CLI-002.
+pub fn read<A: Parser>(
+    arguments: impl IntoIterator<Item = OsString>,
+) -> Result<Result<A, String>, CliError> {
+    match A::try_parse_from(arguments) {
+        Ok(arguments) => Ok(Ok(arguments)),
+        Err(error) if !error.use_stderr() => Ok(Err(error.to_string())),
+        Err(error) => Err(CliError::usage(&error)),
     }
 }

@@ -7,11 +7,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::CliError;
-use super::lists::{Moduli, Positions, length, moduli, positions};
+use super::numbers::{List, length, moduli, positions};
 use super::output::{note, write};
 use super::part::Part;
 use super::progress::{bar, tell_large_mesh};
-use super::solve::{millimetres, phantom, warn_of_large_strain_of};
+use super::solve::{phantom, warn_of_large_strain_of};
 use crate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
 use crate::decimal::format_scaled;
 use crate::fem::{Contact, FemError, arithmetic};
@@ -32,27 +32,27 @@ pub struct BankArguments {
     phantom: String,
     /// x of the centre of the inclusions in mm: a,b,c or from:to:step
     #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    offsets_mm: Positions,
+    offsets_mm: List,
     /// Depths of their highest point in mm: a,b,c or from:to:step
     #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    depths_mm: Positions,
+    depths_mm: List,
     /// Their diameters in mm [default: that of the phantom]
     #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    diameters_mm: Option<Positions>,
+    diameters_mm: Option<List>,
     /// Their Young's moduli in kPa [default: that of the phantom]
     #[arg(long, value_parser = moduli, allow_hyphen_values = true, value_name = "LIST")]
-    stiffnesses_kpa: Option<Moduli>,
+    stiffnesses_kpa: Option<List>,
     /// The depth of the probe in mm
     #[arg(long, value_parser = length, allow_hyphen_values = true, value_name = "D")]
     probe_depth_mm: f64,
     /// Lateral positions of the probe in mm: a,b,c or from:to:step
     #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    laterals_mm: Positions,
+    laterals_mm: List,
     /// How the gap to the probe is measured
     #[arg(long, value_enum, default_value_t = Contact::DeformedNormal)]
     contact: Contact,
     /// Mesh size, mm, as of 'palpate solve' [default: 0.65]
-    #[arg(long, value_parser = millimetres, value_name = "H")]
+    #[arg(long, value_parser = length, value_name = "H")]
     mesh_mm: Option<f64>,
     /// The file of the bank, which must be new; what is finished is kept in FILE.part until all is
     #[arg(long, value_name = "FILE")]
@@ -74,10 +74,10 @@ impl BankArguments {
         let mut plan = BankPlan::new(phantom.clone(), self.probe_depth_mm, &self.laterals_mm.0)?;
         plan.positions = self.offsets_mm.0.clone();
         plan.depths = self.depths_mm.0.clone();
-        if let Some(Positions(diameters)) = &self.diameters_mm {
+        if let Some(List(diameters)) = &self.diameters_mm {
             plan.diameters = diameters.clone();
         }
-        if let Some(Moduli(moduli)) = &self.stiffnesses_kpa {
+        if let Some(List(moduli)) = &self.stiffnesses_kpa {
             plan.moduli = moduli.clone();
         }
         plan.mesh_size = self.mesh_mm.unwrap_or(MESH_SIZE);

@@ -112,29 +112,24 @@ fn odd_lengths(measured: &ForceTable, phantom: &Phantom) -> Vec<String> {
 ///
 /// Implements: CLI-022, CLI-023.
 fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
-    let pairs_of = |part: fn(Force<f64>) -> f64| {
-        let both = pairs
-            .iter()
-            .map(|&(found, expected)| (part(found), part(expected)));
-        both.collect::<Vec<(f64, f64)>>()
-    };
-    let (normal, lateral) = (
-        pairs_of(|force| force.normal),
-        pairs_of(|force| force.lateral),
-    );
+    let parts: [fn(Force<f64>) -> f64; 2] = [|force| force.normal, |force| force.lateral];
+    let [normal, lateral] = parts.map(|part| {
+        let pairs = pairs.iter().map(|&(found, of)| (part(found), part(of)));
+        pairs.collect::<Vec<(f64, f64)>>()
+    });
     let ratio = median_ratio(&normal);
     let times = format!("{ratio:.4} of that computed (median)");
     let mut odd = Vec::new();
     let [low, high] = THOUSAND;
-    if (low..=high).contains(&ratio.abs()) {
-        odd.push(format!(
-            "the forces look like mN in a column of N: the normal force is {times}"
-        ));
-    }
-    if (low..=high).contains(&ratio.abs().recip()) {
-        odd.push(format!(
-            "the forces look like N in a column of mN: the normal force is {times}"
-        ));
+    for (ratio, like) in [
+        (ratio, "mN in a column of N"),
+        (ratio.recip(), "N in a column of mN"),
+    ] {
+        if (low..=high).contains(&ratio.abs()) {
+            odd.push(format!(
+                "the forces look like {like}: the normal force is {times}"
+            ));
+        }
     }
     if cosine(&normal) < OPPOSITE {
         odd.push(

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::CliError;
-use super::lists::{Positions, positions};
+use super::numbers::{List, positions};
 use super::solve::phantom;
 use crate::fem::{Contact, MESH_SIZE};
 use crate::input::{from_toml, line_of};
@@ -28,10 +28,10 @@ pub struct Config {
     pub measured: Vec<PathBuf>,
     /// Depths of the probe.
     #[serde(deserialize_with = "list")]
-    pub depths_mm: Positions,
+    pub depths_mm: List,
     /// Lateral positions of the probe.
     #[serde(deserialize_with = "list")]
-    pub laterals_mm: Positions,
+    pub laterals_mm: List,
     /// How the forces are computed.
     pub mesh: MeshConfig,
     /// What the detector assumes.
@@ -61,8 +61,8 @@ pub struct MeshConfig {
     default = "Settings::default"
 )]
 struct Detection {
-    #[serde(rename = "noise_sd_n", deserialize_with = "positive")]
-    noise_sd: f64,
+    #[serde(deserialize_with = "positive")]
+    noise_sd_n: f64,
     #[serde(deserialize_with = "probability")]
     max_false_alarm: f64,
     #[serde(deserialize_with = "probability")]
@@ -166,7 +166,7 @@ impl Config {
     }
 }
 
-fn list<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Positions, D::Error> {
+fn list<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<List, D::Error> {
     let text = String::deserialize(deserializer)?;
     positions(&text).map_err(serde::de::Error::custom)
 }

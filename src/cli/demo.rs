@@ -53,11 +53,19 @@ pub fn demo(arguments: &DemoArguments) -> Result<(), CliError> {
     make_folder(folder)?;
     let (none, inclusion) = (map("none")?, map("4.6")?);
     let (without, with) = (none.row(SWEPT)?, inclusion.row(SWEPT)?);
-    let exact = Disturbance::default();
+    let exact = Disturbance {
+        offset: Force::new(0.0, 0.0),
+        drift: Force::new(0.0, 0.0),
+        gain: 1.0,
+    };
     let disturbed = Disturbance {
         offset: Force::new(0.05, 0.3),
         drift: Force::new(-0.05, 0.1),
         gain: 1.1,
+    };
+    let blank = Disturbance {
+        gain: 0.0,
+        ..disturbed
     };
     let files = [
         ("run.toml", RUN.into()),
@@ -66,17 +74,7 @@ pub fn demo(arguments: &DemoArguments) -> Result<(), CliError> {
         ("sweep-without.csv", sweep(without, exact, 1)),
         ("sweep-with.csv", sweep(with, exact, 2)),
         ("sweep-disturbed.csv", sweep(with, disturbed, 3)),
-        (
-            "blank.csv",
-            sweep(
-                without,
-                Disturbance {
-                    gain: 0.0,
-                    ..disturbed
-                },
-                4,
-            ),
-        ),
+        ("blank.csv", sweep(without, blank, 4)),
         ("measured.csv", measured(inclusion.table())),
     ];
     for (name, text) in files {
@@ -105,17 +103,6 @@ struct Disturbance {
     /// From the first to the last sample, N.
     drift: Force<f64>,
     gain: f64,
-}
-
-impl Default for Disturbance {
-    fn default() -> Disturbance {
-        let none = Force::new(0.0, 0.0);
-        Disturbance {
-            offset: none,
-            drift: none,
-            gain: 1.0,
-        }
-    }
 }
 
 /// A record of the forces over the positions of the maps, with noise.

@@ -8,6 +8,7 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 
 use super::CliError;
+use super::numbers::newtons;
 use super::output::{print, read, write};
 use super::playback::{DeviceArguments, limits};
 use super::progress::bar;
@@ -53,7 +54,7 @@ pub struct ExperimentArguments {
     #[arg(long, value_enum, default_value_t = Observer::Person)]
     observer: Observer,
     /// The ideal observer's noise on each sample of each channel, in N
-    #[arg(long, value_name = "N", required_if_eq("observer", "ideal"), value_parser = noise)]
+    #[arg(long, value_name = "N", required_if_eq("observer", "ideal"), value_parser = newtons)]
     noise: Option<f64>,
 }
 
@@ -81,12 +82,6 @@ fn plain_name(text: &str) -> Result<String, String> {
         ));
     }
     Ok(text.to_string())
-}
-
-fn noise(text: &str) -> Result<f64, String> {
-    let value = text.parse().ok();
-    let value = value.filter(|&value: &f64| value > 0.0 && value.is_finite());
-    value.ok_or_else(|| format!("{text:?}: expected N above 0, such as 6"))
 }
 
 /// Runs the command.

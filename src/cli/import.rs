@@ -6,8 +6,9 @@ use clap::Args;
 
 use super::CliError;
 use super::comparison::{compare, left_out};
+use super::numbers::length;
 use super::output::{note, print, read, write};
-use super::solve::{millimetres, phantom};
+use super::solve::phantom;
 use crate::force_map::{ForceMap, ForceTable, Measurement, Smoothed, Source};
 use crate::phantom::Phantom;
 
@@ -24,7 +25,7 @@ pub struct ImportArguments {
     #[arg(long, value_name = "NAME|FILE")]
     phantom: Option<String>,
     /// Smooths the forces over W mm to either side by parabolas along the lateral positions, and tells the noise
-    #[arg(long, value_name = "W", value_parser = millimetres, allow_hyphen_values = true)]
+    #[arg(long, value_name = "W", value_parser = length, allow_hyphen_values = true)]
     smooth_mm: Option<f64>,
     /// Writes the map there instead of to standard output
     #[arg(long, value_name = "FILE")]

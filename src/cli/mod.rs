@@ -10,7 +10,7 @@ mod devices;
 mod error;
 mod experiment;
 mod import;
-pub mod lists;
+pub mod numbers;
 mod oracle;
 pub mod output;
 mod part;
@@ -29,7 +29,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use arguments::{Asked, Command, CommandLine, Format};
+use arguments::{Command, CommandLine, Format};
 pub use error::CliError;
 
 /// Runs the program with the given arguments, the first of which is its name.
@@ -74,11 +74,10 @@ pub fn program<A: Parser>(
     arguments: impl IntoIterator<Item = OsString>,
     act: impl FnOnce(A) -> Result<(), CliError>,
 ) -> ExitCode {
-    let result = match Asked::read(arguments) {
-        Ok(Asked::Command(arguments)) => act(*arguments),
-        Ok(Asked::Text(text)) => output::print(&text),
-        Err(error) => Err(error),
-    };
+    let result = arguments::read(arguments).and_then(|asked| match asked {
+        Ok(arguments) => act(arguments),
+        Err(text) => output::print(&text),
+    });
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -215,7 +215,7 @@ fn live(wall_clock: bool) -> impl FnMut(&Counters, Duration) {
 }
 
 fn counted(counters: &Counters) -> String {
-    let refused = match counters.refused {
+    let refused = match counters.stops_refused {
         0 => String::new(),
         refused => format!(", {refused} stops refused"),
     };
@@ -225,7 +225,7 @@ fn counted(counters: &Counters) -> String {
         counters.played,
         counters.missed,
         counters.skipped,
-        counters.drained,
+        counters.passed_over,
         counters.garbage
     )
 }

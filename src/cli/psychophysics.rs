@@ -8,7 +8,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::experiment::named_file;
-use super::lists::length;
+use super::numbers::length;
 use super::{CliError, Format};
 use crate::force_map::{ForceMap, Hypotheses};
 use crate::psychophysics::bridge::{Bridge, bridge};

@@ -1,11 +1,14 @@
 //! `palpate reach`: how deep an inclusion may lie, and how small it may be, to be found (`spec/bank.md`).
 
+use std::borrow::Borrow;
 use std::path::PathBuf;
 
+use askama::Template;
 use clap::Args;
 use serde::Serialize;
 
-use super::detect::arguments::{NoiseSd, Unknowns, probability, unknowns};
+use super::detect::arguments::{NoiseSd, Unknowns, unknowns};
+use super::numbers::probability;
 use super::output::write;
 use super::{CliError, Format};
 use crate::bank::{Bank, Reach, Reached, smallest_diameters};
@@ -41,8 +44,9 @@ pub struct ReachArguments {
     figure: Option<PathBuf>,
 }
 
-/// The answer.
-#[derive(Debug, Serialize)]
+/// The answer; for people, lengths in mm.
+#[derive(Debug, Serialize, Template)]
+#[template(path = "cli/reach.txt")]
 struct ReachAnswer {
     schema: &'static str,
     schema_version: u32,
@@ -148,6 +152,8 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
         smallest_diameters: smallest(&bank, [&plain, &beside], needed),
         largest_depths: largest(&plain, &beside),
     };
+    // Writing to a String does not fail.
+    let table = |answer: &ReachAnswer| answer.render().unwrap_or_default();
     arguments.format.print(&answer, table)
 }
 
@@ -198,69 +204,35 @@ fn smallest(bank: &Bank, reached: [&[Reached]; 2], needed: f64) -> Vec<SmallestD
     moduli.iter().enumerate().flat_map(of_modulus).collect()
 }
 
-/// The answer for people.
-///
-/// Implements: CLI-162.
-fn table(answer: &ReachAnswer) -> String {
-    let [false_alarm, miss] = [answer.max_false_alarm, answer.max_miss].map(|rate| 100.0 * rate);
-    let mut text = format!(
-        "An inclusion is found if gamma is at least {:.3}: at most {false_alarm} % false alarms of a search over the bank, {miss} % misses.\n\n",
-        answer.gamma_needed
-    );
-    let unknown = format!("unknown: {}", in_words(&answer.unknown));
-    let mut row = |label: &str, plain: &str, beside: &str| {
-        text += &format!("{label:<28} {plain:<34} {beside}\n");
-    };
-    row("largest depth, mm", "nothing unknown", &unknown);
-    for of in &answer.largest_depths {
-        let label = format!(
-            "{} mm wide, {} kPa",
-            in_mm(of.diameter_m),
-            format_scaled(of.youngs_modulus_pa, -3)
-        );
-        let [plain, beside] = [&of.nothing_unknown, &of.unknown].map(|of| depth(of, answer));
-        row(&label, &plain, &beside);
+impl ReachAnswer {
+    fn depth(&self, reached: &DepthReached) -> String {
+        match reached.largest_depth_m {
+            Some(depth) if reached.is_beyond_bank => {
+                format!("deeper than the bank ({})", in_mm(depth))
+            }
+            Some(depth) => format!("{:.2}", 1e3 * depth),
+            None => {
+                let least = self.depths_m.first().copied().unwrap_or(f64::NAN);
+                format!("not even at the least depth ({})", in_mm(least))
+            }
+        }
     }
-    row("", "", "");
-    row("smallest diameter, mm", "nothing unknown", &unknown);
-    for of in &answer.smallest_diameters {
-        let label = format!(
-            "{} mm deep, {} kPa",
-            in_mm(of.depth_m),
-            format_scaled(of.youngs_modulus_pa, -3)
-        );
-        let [plain, beside] = [of.nothing_unknown_m, of.unknown_m].map(|of| width(of, answer));
-        row(&label, &plain, &beside);
-    }
-    let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
-    lines.join("\n") + "\n"
-}
 
-fn in_mm(length: f64) -> String {
-    format_scaled(length, 3)
-}
-
-fn depth(reached: &DepthReached, answer: &ReachAnswer) -> String {
-    match reached.largest_depth_m {
-        Some(depth) if reached.is_beyond_bank => format!("deeper than the bank ({})", in_mm(depth)),
-        Some(depth) => format!("{:.2}", 1e3 * depth),
-        None => {
-            let least = answer.depths_m.first().copied().unwrap_or(f64::NAN);
-            format!("not even at the least depth ({})", in_mm(least))
+    fn width(&self, found: &Option<f64>) -> String {
+        let ends = (self.diameters_m.first(), self.diameters_m.last());
+        match (found, ends) {
+            (Some(width), (Some(least), _)) if width <= least => {
+                format!("smaller than the bank ({})", in_mm(width))
+            }
+            (Some(width), _) => format!("{:.2}", 1e3 * width),
+            (None, (_, most)) => {
+                let most = most.unwrap_or(&f64::NAN);
+                format!("not even the largest ({})", in_mm(most))
+            }
         }
     }
 }
 
-fn width(found: Option<f64>, answer: &ReachAnswer) -> String {
-    let ends = (answer.diameters_m.first(), answer.diameters_m.last());
-    match (found, ends) {
-        (Some(width), (Some(least), _)) if width <= *least => {
-            format!("smaller than the bank ({})", in_mm(width))
-        }
-        (Some(width), _) => format!("{:.2}", 1e3 * width),
-        (None, (_, most)) => format!(
-            "not even the largest ({})",
-            in_mm(*most.unwrap_or(&f64::NAN))
-        ),
-    }
+fn in_mm(length: impl Borrow<f64>) -> String {
+    format_scaled(*length.borrow(), 3)
 }

@@ -16,9 +16,10 @@ use crate::fem::{FemError, Model, Pose};
 use crate::force_map::ForceMap;
 use crate::input::parse;
 use crate::phantom::Phantom;
+use crate::psychophysics::bridge::probe_depth;
 use crate::refusal::Refusal;
 use crate::report::{
-    ArraySweep, DeformedMesh, FileNames, Run, figures, findings, html, probe_depth, summary_json,
+    ArraySweep, DeformedMesh, FileNames, Run, figures, findings, html, summary_json,
 };
 use crate::study::StudyResults;
 
@@ -118,7 +119,8 @@ fn solve_phantom(
     bar.inc_length((3 * depths.len() * model.solved_laterals(laterals).len()) as u64);
     let map = certified_map(&model, depths, laterals, &|poses| bar.inc(poses as u64))?;
     let deformed = shown.then(|| deformed_mesh(&model, &map)).transpose()?;
-    let array = ArraySweep::solve(&model, probe_depth(depths), laterals)?;
+    let (depth, _) = probe_depth(depths);
+    let array = ArraySweep::solve(&model, depth, laterals)?;
     Ok((map, array, deformed))
 }
 

@@ -6,10 +6,10 @@ use askama::Template;
 use clap::{Args, ValueEnum};
 
 use super::CliError;
-use super::lists::{Positions, positions};
+use super::numbers::{List, length, positions};
 use super::output::{print, write};
 use super::progress::{bar, tell_large_mesh};
-use crate::decimal::{format_scaled, parse_scaled};
+use crate::decimal::format_scaled;
 use crate::fem::certify::certified_map;
 use crate::fem::{Contact, MESH_SIZE, Model, Pose};
 use crate::force_map::ForceMap;
@@ -24,15 +24,15 @@ pub struct SolveArguments {
     phantom: String,
     /// Depths of the probe in mm: a,b,c or from:to:step
     #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    depths_mm: Positions,
+    depths_mm: List,
     /// Lateral positions of the probe in mm: a,b,c or from:to:step
     #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    laterals_mm: Positions,
+    laterals_mm: List,
     /// How the gap to the probe is measured
     #[arg(long, value_enum, default_value_t = Contact::DeformedNormal)]
     contact: Contact,
     /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them [default: 0.5]
-    #[arg(long, value_parser = millimetres, value_name = "H")]
+    #[arg(long, value_parser = length, value_name = "H")]
     mesh_mm: Option<f64>,
     /// Solves two coarser meshes as well, and tells how far each force may be from that of an infinitely fine one
     #[arg(long)]
@@ -53,13 +53,6 @@ enum MapFormat {
     Json,
     /// One row a pose.
     Csv,
-}
-
-/// A length above 0, m.
-pub fn millimetres(text: &str) -> Result<f64, String> {
-    parse_scaled(text, -3)
-        .filter(|&size| size > 0.0)
-        .ok_or_else(|| format!("{text:?}: expected mm above 0, such as 0.75"))
 }
 
 /// The built-in phantom of that name, or the one in the file.
@@ -84,8 +77,8 @@ pub fn phantom(name: &str) -> Result<Phantom, CliError> {
 /// Implements: CLI-012, CLI-013, CLI-014, CLI-016.
 pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     let SolveArguments {
-        depths_mm: Positions(depths),
-        laterals_mm: Positions(laterals),
+        depths_mm: List(depths),
+        laterals_mm: List(laterals),
         ..
     } = arguments;
     let pose = match (&arguments.vtu, &depths[..], &laterals[..]) {

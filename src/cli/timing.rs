@@ -121,10 +121,18 @@ fn tell(
     timing: Option<&Timing>,
     source: &str,
 ) -> Result<(), CliError> {
+    // Writing to a String does not fail.
+    let exceeded = |allowed: Option<u64>, found| allowed.filter(|&allowed| found > allowed);
+    let reason = Reason {
+        judged,
+        allowed_misses: exceeded(arguments.allowed_misses, judged.misses),
+        allowed_run: exceeded(arguments.allowed_run, judged.longest_run),
+    };
+    let reason = reason.render().unwrap_or_default();
     let (outcome, failure) = match judged.outcome {
         BudgetOutcome::Kept => ("kept", None),
-        BudgetOutcome::Broken => ("broken", Some(CliError::Check(broken(arguments, judged)))),
-        BudgetOutcome::Undecided => ("undecided", Some(CliError::Usage(undecided(judged)))),
+        BudgetOutcome::Broken => ("broken", Some(CliError::Check(reason))),
+        BudgetOutcome::Undecided => ("undecided", Some(CliError::Usage(reason))),
     };
     let text = Text {
         judged,
@@ -132,7 +140,6 @@ fn tell(
         source,
         outcome,
     };
-    // Writing to a String does not fail.
     let text = text.render().unwrap_or_default();
     match (arguments.format, timing) {
         (Printed::Table, _) => print(&text),
@@ -152,48 +159,18 @@ fn tell(
     failure.map_or(Ok(()), Err)
 }
 
-/// Why a budget is broken.
-fn broken(arguments: &TimingArguments, judged: &Judged) -> String {
-    let Judged {
-        misses,
-        longest_run,
-        budget_us,
-        at_least_us,
-        percentile,
-        ..
-    } = judged;
-    let missed = format!(
-        "timing: {misses} of {} cycles took longer than {budget_us} µs",
-        judged.cycles
-    );
-    match (arguments.allowed_misses, arguments.allowed_run) {
-        (Some(allowed), _) if *misses > allowed => format!("{missed}, expected at most {allowed}"),
-        (_, Some(allowed)) if *longest_run > allowed => {
-            format!("{missed}, {longest_run} of them in a row, expected at most {allowed}")
-        }
-        _ => format!(
-            "{missed}: p{percentile} is at least {at_least_us} µs, expected at most {budget_us} µs"
-        ),
-    }
-}
-
-/// Why a measurement does not decide.
-fn undecided(judged: &Judged) -> String {
-    let Judged {
-        cycles,
-        budget_us,
-        percentile,
-        ..
-    } = judged;
-    format!(
-        "timing: {cycles} cycles do not tell whether p{percentile} is within {budget_us} µs, {} of them took longer: \
-         expected more cycles",
-        judged.misses
-    )
-}
-
 fn defect(error: impl Display) -> CliError {
     CliError::Check(format!("timing: {error}"))
+}
+
+/// Why a budget is not kept.
+#[derive(Template)]
+#[template(path = "cli/timing-reason.txt")]
+struct Reason<'a> {
+    judged: &'a Judged,
+    /// How many were allowed, if there were more.
+    allowed_misses: Option<u64>,
+    allowed_run: Option<u64>,
 }
 
 /// The figures for people.

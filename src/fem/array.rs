@@ -21,18 +21,13 @@ impl Model {
         let mut forces = vec![0.0; elements];
         for &point in &state.active {
             let edge = [corners[point / 2], corners[point / 2 + 1]];
+            let before = |k: usize| match k {
+                0 => 0.0,
+                k if k == elements => 1.0,
+                k => part_before(border(k), edge),
+            };
             for (k, force) in forces.iter_mut().enumerate() {
-                let from = if k == 0 {
-                    0.0
-                } else {
-                    part_before(border(k), edge)
-                };
-                let to = if k + 1 == elements {
-                    1.0
-                } else {
-                    part_before(border(k + 1), edge)
-                };
-                *force += state.pressures[point] * (to - from);
+                *force += state.pressures[point] * (before(k + 1) - before(k));
             }
         }
         forces

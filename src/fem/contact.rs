@@ -366,10 +366,7 @@ impl Surface {
     fn tangent(&self, state: &ContactState, pose: Pose) -> Option<Tangent> {
         let m = state.active.len();
         let constraints = self.constraints(state, pose)?;
-        let (normal, tangent) = (
-            Constraint::normal as Direction,
-            Constraint::tangent as Direction,
-        );
+        let [normal, tangent]: [Direction; 2] = [Constraint::normal, Constraint::tangent];
         let between = |of, by| self.between(state, &constraints, [of, by]);
         let pushed = between(normal, normal).llt(Side::Lower).ok()?;
         let across = between(tangent, normal);

@@ -162,10 +162,8 @@ impl Mesh {
 
     /// Implements: FEM-035.
     fn find_borders(&mut self, phantom: &Phantom) {
-        let (wall, floor) = (
-            0.5 * phantom.well.width,
-            phantom.levels()[phantom.layers.len()],
-        );
+        let wall = 0.5 * phantom.well.width;
+        let floor = phantom.levels()[phantom.layers.len()];
         // A support across x or y.
         let holds = |support: Support, at: bool, direction: usize, across: usize| {
             at && (support == Support::Fixed || support == Support::Sliding && direction == across)

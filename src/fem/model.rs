@@ -256,11 +256,10 @@ impl Model {
         laterals: &[f64],
         solved: &dyn Fn(usize),
     ) -> Result<ForceMap, FemError> {
-        let go_on = |poses| {
+        self.map_while(depths, laterals, &|poses| {
             solved(poses);
             true
-        };
-        self.map_while(depths, laterals, &go_on)
+        })
     }
 
     /// [`Model::map`], where `solved` says whether to go on.

@@ -128,11 +128,8 @@ impl Triangulation<'_> {
     /// The smallest angle of all, degrees, and its place.
     fn flattest(&self) -> (f64, Point) {
         let angle = |t: &[usize; 3]| (smallest_angle(self.at(t)), self.corners[t[0]]);
-        let flattest = self
-            .triangles
-            .iter()
-            .map(angle)
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let angles = self.triangles.iter().map(angle);
+        let flattest = angles.min_by(|a, b| a.0.total_cmp(&b.0));
         flattest.unwrap_or((180.0, Point::zeros()))
     }
 

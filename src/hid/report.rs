@@ -41,6 +41,8 @@ pub mod status {
 }
 
 /// Input report 1: where the handle is.
+///
+/// Implements: HID-002, HID-006, HID-007.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
@@ -60,6 +62,8 @@ pub struct PositionReport {
 }
 
 /// Output report 2: what to play.
+///
+/// Implements: HID-003, HID-006, HID-007.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
@@ -75,6 +79,8 @@ pub struct ForceReport {
 }
 
 /// Feature report 3: what the device is.
+///
+/// Implements: HID-004, HID-006, HID-007.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
@@ -101,11 +107,11 @@ pub struct Capabilities {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Control {
     /// Play no force until enabled.
-    Stop,
+    Stop = 0,
     /// Play the force reports.
-    Enable,
+    Enable = 1,
     /// Clear the device's own fault.
-    ClearFault,
+    ClearFault = 2,
 }
 
 /// Why bytes are no report.
@@ -165,84 +171,69 @@ pub(super) fn payload<const LENGTH: usize>(
     Ok(rest)
 }
 
-impl PositionReport {
-    /// The number of the report.
-    pub const NUMBER: u8 = 1;
-    /// Its length with the number, bytes.
-    pub const LENGTH: usize = 11;
+/// The bytes of a report after its number: each field, its type and the names of its bytes, least first.
+macro_rules! report {
+    ($report:ident, $number:literal, $($field:ident: $type:ty = $($byte:ident)+;)+) => {
+        impl $report {
+            /// The number of the report.
+            pub const NUMBER: u8 = $number;
+            /// Its length with the number, bytes.
+            pub const LENGTH: usize = 1 $(+ size_of::<$type>())+;
 
-    /// The report in `bytes`, which begin with the report's number.
-    ///
-    /// # Errors
-    /// [`InvalidReport`] for another length or number.
-    ///
-    /// Implements: HID-002, HID-006.
-    pub fn decode(bytes: &[u8]) -> Result<PositionReport, InvalidReport> {
-        let &[a, b, c, d, buttons, status, e, f, g, h] = payload(bytes, PositionReport::NUMBER)?;
-        Ok(PositionReport {
-            lateral: i16::from_le_bytes([a, b]),
-            normal: i16::from_le_bytes([c, d]),
-            buttons,
-            status,
-            sequence: u16::from_le_bytes([e, f]),
-            force_sequence: u16::from_le_bytes([g, h]),
-        })
-    }
+            /// The report in `bytes`, which begin with the report's number.
+            ///
+            /// # Errors
+            /// [`InvalidReport`] for another length or number.
+            pub fn decode(bytes: &[u8]) -> Result<$report, InvalidReport> {
+                let &[$($($byte),+),+] = payload(bytes, $report::NUMBER)?;
+                Ok($report { $($field: <$type>::from_le_bytes([$($byte),+])),+ })
+            }
 
-    /// The bytes of the report.
-    ///
-    /// Implements: HID-002, HID-007.
-    pub fn encode(&self) -> [u8; PositionReport::LENGTH] {
-        let [a, b] = self.lateral.to_le_bytes();
-        let [c, d] = self.normal.to_le_bytes();
-        let [e, f] = self.sequence.to_le_bytes();
-        let [g, h] = self.force_sequence.to_le_bytes();
-        let number = PositionReport::NUMBER;
-        [number, a, b, c, d, self.buttons, self.status, e, f, g, h]
-    }
+            /// The bytes of the report.
+            pub fn encode(&self) -> [u8; $report::LENGTH] {
+                $(let [$($byte),+] = self.$field.to_le_bytes();)+
+                [$report::NUMBER, $($($byte),+),+]
+            }
+        }
+    };
+}
+
+report! {
+    PositionReport, 1,
+    lateral: i16 = a b;
+    normal: i16 = c d;
+    buttons: u8 = e;
+    status: u8 = f;
+    sequence: u16 = g h;
+    force_sequence: u16 = i j;
+}
+
+report! {
+    ForceReport, 2,
+    lateral: i16 = a b;
+    normal: i16 = c d;
+    sequence: u16 = e f;
+    flags: u8 = g;
+}
+
+report! {
+    Capabilities, 3,
+    version: u16 = a b;
+    position_unit_nm: u16 = c d;
+    force_unit_un: u16 = e f;
+    largest_force_mn: u16 = g h;
+    period_us: u16 = i j;
+    watchdog_ms: u16 = k l;
+    damping_mn_s_per_m: u16 = m n;
+    friction_mn: u16 = o p;
 }
 
 impl ForceReport {
-    /// The number of the report.
-    pub const NUMBER: u8 = 2;
-    /// Its length with the number, bytes.
-    pub const LENGTH: usize = 8;
     /// The bit of [`ForceReport::flags`] that lets the device play the force.
     pub const PLAY: u8 = 1;
-
-    /// The report in `bytes`, which begin with the report's number.
-    ///
-    /// # Errors
-    /// [`InvalidReport`] for another length or number.
-    ///
-    /// Implements: HID-003, HID-006.
-    pub fn decode(bytes: &[u8]) -> Result<ForceReport, InvalidReport> {
-        let &[a, b, c, d, e, f, flags] = payload(bytes, ForceReport::NUMBER)?;
-        Ok(ForceReport {
-            lateral: i16::from_le_bytes([a, b]),
-            normal: i16::from_le_bytes([c, d]),
-            sequence: u16::from_le_bytes([e, f]),
-            flags,
-        })
-    }
-
-    /// The bytes of the report.
-    ///
-    /// Implements: HID-003, HID-007.
-    pub fn encode(&self) -> [u8; ForceReport::LENGTH] {
-        let [a, b] = self.lateral.to_le_bytes();
-        let [c, d] = self.normal.to_le_bytes();
-        let [e, f] = self.sequence.to_le_bytes();
-        [ForceReport::NUMBER, a, b, c, d, e, f, self.flags]
-    }
 }
 
 impl Capabilities {
-    /// The number of the report.
-    pub const NUMBER: u8 = 3;
-    /// Its length with the number, bytes.
-    pub const LENGTH: usize = 17;
-
     /// Time between two position reports.
     pub fn period(&self) -> Duration {
         Duration::from_micros(self.period_us.into())
@@ -251,43 +242,6 @@ impl Capabilities {
     /// Time without a force report after which the device drops the force.
     pub fn watchdog(&self) -> Duration {
         Duration::from_millis(self.watchdog_ms.into())
-    }
-
-    /// The report in `bytes`, which begin with the report's number.
-    ///
-    /// # Errors
-    /// [`InvalidReport`] for another length or number.
-    ///
-    /// Implements: HID-004, HID-006.
-    pub fn decode(bytes: &[u8]) -> Result<Capabilities, InvalidReport> {
-        let &[a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] =
-            payload(bytes, Capabilities::NUMBER)?;
-        Ok(Capabilities {
-            version: u16::from_le_bytes([a, b]),
-            position_unit_nm: u16::from_le_bytes([c, d]),
-            force_unit_un: u16::from_le_bytes([e, f]),
-            largest_force_mn: u16::from_le_bytes([g, h]),
-            period_us: u16::from_le_bytes([i, j]),
-            watchdog_ms: u16::from_le_bytes([k, l]),
-            damping_mn_s_per_m: u16::from_le_bytes([m, n]),
-            friction_mn: u16::from_le_bytes([o, p]),
-        })
-    }
-
-    /// The bytes of the report.
-    ///
-    /// Implements: HID-004, HID-007.
-    pub fn encode(&self) -> [u8; Capabilities::LENGTH] {
-        let [a, b] = self.version.to_le_bytes();
-        let [c, d] = self.position_unit_nm.to_le_bytes();
-        let [e, f] = self.force_unit_un.to_le_bytes();
-        let [g, h] = self.largest_force_mn.to_le_bytes();
-        let [i, j] = self.period_us.to_le_bytes();
-        let [k, l] = self.watchdog_ms.to_le_bytes();
-        let [m, n] = self.damping_mn_s_per_m.to_le_bytes();
-        let [o, p] = self.friction_mn.to_le_bytes();
-        let number = Capabilities::NUMBER;
-        [number, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p]
     }
 }
 
@@ -304,12 +258,11 @@ impl Control {
     ///
     /// Implements: HID-005, HID-006.
     pub fn decode(bytes: &[u8]) -> Result<Control, InvalidReport> {
-        let &[value] = payload(bytes, Control::NUMBER)?;
-        match value {
-            0 => Ok(Control::Stop),
-            1 => Ok(Control::Enable),
-            2 => Ok(Control::ClearFault),
-            found => Err(InvalidReport::Value { found }),
+        match *payload(bytes, Control::NUMBER)? {
+            [0] => Ok(Control::Stop),
+            [1] => Ok(Control::Enable),
+            [2] => Ok(Control::ClearFault),
+            [found] => Err(InvalidReport::Value { found }),
         }
     }
 
@@ -317,11 +270,6 @@ impl Control {
     ///
     /// Implements: HID-005, HID-007.
     pub fn encode(&self) -> [u8; Control::LENGTH] {
-        let value = match self {
-            Control::Stop => 0,
-            Control::Enable => 1,
-            Control::ClearFault => 2,
-        };
-        [Control::NUMBER, value]
+        [Control::NUMBER, *self as u8]
     }
 }

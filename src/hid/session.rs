@@ -76,13 +76,11 @@ pub struct Counters {
     /// Reports that never came, by the gaps between sequence numbers.
     pub skipped: u64,
     /// Reports that had come with a newer one, and were passed over.
-    #[serde(rename = "passed_over")]
-    pub drained: u64,
+    pub passed_over: u64,
     /// Reports that did not decode.
     pub garbage: u64,
     /// Stops, and reports of zero that go with them, that the device refused.
-    #[serde(rename = "stops_refused")]
-    pub refused: u64,
+    pub stops_refused: u64,
 }
 
 /// What one cycle did.
@@ -295,7 +293,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
             received = self.device.read(Duration::ZERO)?;
         }
         self.counters.cycles += 1;
-        self.counters.drained += passed_over;
+        self.counters.passed_over += passed_over;
         if let (Some(report), Some(last)) = (newest, self.state.sequence) {
             let ahead = report.sequence.wrapping_sub(last);
             if (1..=MOST_AHEAD).contains(&ahead) {
@@ -375,7 +373,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
         for _ in 0..tries {
             last = send(&mut self.device);
             let Err(error) = &last else { break };
-            self.counters.refused += 1;
+            self.counters.stops_refused += 1;
             if matches!(error.state, DeviceState::Gone | DeviceState::Stalled) {
                 break;
             }

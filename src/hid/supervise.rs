@@ -1,7 +1,8 @@
 //! One servo thread that plays, and a supervisor that watches it: the heartbeat, the wish to stop, and
 //! what is shown to a person.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::timing::{Budget, Times, Timing};
@@ -14,41 +15,16 @@ const LOOK: Duration = Duration::from_millis(20);
 /// device should have, so that its force is gone by then.
 pub const HELD_UP: Duration = Duration::from_millis(100);
 
-/// What the servo thread and its supervisor show each other while it runs, without locks.
+/// What the servo thread and its supervisor show each other while it runs; neither waits for the other.
 #[derive(Default)]
 struct Board {
     /// Set to end the session.
     stop: AtomicBool,
-    counters: [AtomicU64; 7],
+    /// As last shown.
+    counters: Mutex<Counters>,
 }
 
 impl Board {
-    fn show(&self, counters: &Counters) {
-        let c = counters;
-        let values = [
-            c.cycles, c.played, c.missed, c.skipped, c.drained, c.garbage, c.refused,
-        ];
-        for (cell, value) in self.counters.iter().zip(values) {
-            cell.store(value, Ordering::Relaxed);
-        }
-    }
-
-    /// The counters as last shown.
-    fn counters(&self) -> Counters {
-        let get = |cell: &AtomicU64| cell.load(Ordering::Relaxed);
-        let [cycles, played, missed, skipped, drained, garbage, refused] =
-            self.counters.each_ref().map(get);
-        Counters {
-            cycles,
-            played,
-            missed,
-            skipped,
-            drained,
-            garbage,
-            refused,
-        }
-    }
-
     fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
@@ -102,12 +78,14 @@ pub fn play<D: HapticDevice + Send>(
             servo_loop(session, options, board)
         });
         let mut heartbeat = (0, Instant::now());
-        let mut held_up = None;
+        let (mut counters, mut held_up) = (Counters::default(), None);
         while !servo.is_finished() {
             if stop() {
                 board.stop.store(true, Ordering::Relaxed);
             }
-            let counters = board.counters();
+            if let Ok(shown) = board.counters.try_lock() {
+                counters = *shown;
+            }
             if counters.cycles != heartbeat.0 {
                 heartbeat = (counters.cycles, Instant::now());
             }
@@ -134,7 +112,9 @@ fn servo_loop<D: HapticDevice>(
     let period = session.capabilities().period();
     let mut times = Times::new(Budget::of(period), Some(period));
     let end = session.run(|cycle, counters| {
-        board.show(counters);
+        if let Ok(mut shown) = board.counters.try_lock() {
+            *shown = *counters;
+        }
         if let Some(times) = &mut times {
             times.record(cycle, Duration::ZERO);
         }

@@ -9,8 +9,8 @@ use super::text::{fixed, percent};
 use super::{paper, text};
 use crate::detect::{DetectError, gamma_from_two_afc, required_gamma};
 use crate::psychophysics::bridge::{
-    Bridge, BridgeInclusion, Channel, ConditionBridge, Convention, ConventionFit, Cue,
-    ObservedRate, Offset,
+    Bridge, BridgeInclusion, Channel, ConditionBridge, Convention, ConventionFit, ObservedRate,
+    Offset, Statistic,
 };
 use crate::psychophysics::{Analysis, NoiseDecomposition, OpenBounds, Rate};
 
@@ -94,7 +94,7 @@ pub fn table(
     // The peaks of the paper's phantoms in the order of Table 1, each of its first map.
     let peaks = paper::INCLUSIONS.into_iter().filter_map(|name| {
         let map = maps.iter().find(|map| map.paper_phantom == Some(name))?;
-        Some((name, map.peak_normal.force.abs()))
+        Some((name, map.peak_normal.force_n.abs()))
     });
     let peaks: Vec<_> = peaks.collect();
     let counted = people.conditions.get(paper::FEM_PLAYBACK);
@@ -195,7 +195,7 @@ fn row(words: &str, (kind, paper, here): Numbers) -> Option<Comparison> {
 fn of_paper(bridge: &Bridge) -> Option<(&ConditionBridge, &ConventionFit)> {
     let condition = bridge.conditions.get(paper::FEM_PLAYBACK)?;
     let convention = Convention {
-        statistic: Cue::Peak,
+        statistic: Statistic::Peak,
         channel: Channel::Normal,
         offset: Offset::Kept,
     };

@@ -9,8 +9,8 @@ use super::people::bridge_to;
 use super::text::{millimetres, name_of_map};
 use super::{Run, Settings, paper, refused};
 use crate::detect::{DetectError, map_threshold, required_gamma};
-use crate::force_map::{ForceMap, SAME_POSITION};
-use crate::psychophysics::bridge::Bridge;
+use crate::force_map::ForceMap;
+use crate::psychophysics::bridge::{Bridge, probe_depth};
 use crate::psychophysics::{
     Analysis, AnswerTable, NoiseDecomposition, analyse, paper_noise_levels,
 };
@@ -20,8 +20,7 @@ use crate::refusal::Refusal;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Findings {
     /// The depth of the probe, m, at which signals are taken.
-    #[serde(rename = "probe_depth_m")]
-    pub probe_depth: f64,
+    pub probe_depth_m: f64,
     /// Why this is not the paper's 4 mm.
     pub probe_depth_note: Option<String>,
     /// The number of lateral positions, and so of samples in each channel.
@@ -42,18 +41,6 @@ pub struct Findings {
     pub comparison: Vec<Comparison>,
 }
 
-fn is_paper_depth(depth: &f64) -> bool {
-    (depth - paper::PROBE_DEPTH).abs() <= SAME_POSITION
-}
-
-/// Of the depths of a run's maps, m, the one at which signals are taken: the paper's, or else the deepest.
-///
-/// Implements: REP-002.
-pub fn probe_depth(depths: &[f64]) -> f64 {
-    let quoted = depths.iter().find(|depth| is_paper_depth(depth));
-    quoted.or(depths.last()).copied().unwrap_or(0.0)
-}
-
 /// Everything that the report says in numbers.
 ///
 /// # Errors
@@ -63,8 +50,7 @@ pub fn probe_depth(depths: &[f64]) -> f64 {
 /// Implements: REP-002, REP-003, REP-004, REP-006, REP-070, REP-080.
 pub fn findings(run: &Run) -> Result<Findings, Refusal> {
     let depths = run.reference.depths();
-    let probe_depth = probe_depth(depths);
-    let is_quoted = is_paper_depth(&probe_depth);
+    let (probe_depth, is_quoted) = probe_depth(depths);
     let required_gamma = check(&run.settings).map_err(refused("settings"))?;
     inputs::check(run, probe_depth)?;
     let is_computed = |map: &&ForceMap| map.certificate().is_some();
@@ -85,10 +71,10 @@ pub fn findings(run: &Run) -> Result<Findings, Refusal> {
     let people = analyse(&table).map_err(refused("Table 1"))?;
     let noise = paper_noise_levels().map_err(refused("Table 1"))?;
     let bridge = bridge_to(&table, run, compared).map_err(refused("Table 1"))?;
-    let level = reference.normal_force_at_centre.filter(|_| is_comparable);
+    let level = reference.normal_force_at_centre_n.filter(|_| is_comparable);
     let comparison = comparison::table(level, compared, &people, &noise, bridge.as_ref());
     Ok(Findings {
-        probe_depth,
+        probe_depth_m: probe_depth,
         probe_depth_note: (!is_quoted).then(|| {
             format!(
                 "The maps hold no depth of 4 mm, at which the paper quotes its forces: signals are taken at their deepest depth, {} mm, and are not compared with the paper.",
@@ -110,7 +96,7 @@ pub fn findings(run: &Run) -> Result<Findings, Refusal> {
 ///
 /// Implements: REP-004.
 fn check(settings: &Settings) -> Result<f64, DetectError> {
-    gamma(&[0.0], &[0.0], settings.noise_sd)?;
+    gamma(&[0.0], &[0.0], settings.noise_sd_n)?;
     map_threshold(settings.prior_h1)?;
     required_gamma(settings.max_false_alarm, settings.max_miss)
 }

@@ -44,7 +44,7 @@ pub(super) fn check(run: &Run, depth: f64) -> Result<(), Refusal> {
         max_false_alarm: plan.max_false_alarm,
         max_miss: plan.max_miss,
         prior_h1: plan.prior_h1,
-        noise_sd: plan.noise_sd,
+        noise_sd_n: plan.noise_sd,
     };
     match settings == run.settings {
         true => Ok(()),

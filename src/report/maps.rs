@@ -22,8 +22,7 @@ pub struct ReferenceFindings {
     /// The name of its phantom: untrusted text.
     pub name: String,
     /// The normal force at x = 0, N, if x = 0 is on the axis.
-    #[serde(rename = "normal_force_at_centre_n")]
-    pub normal_force_at_centre: Option<f64>,
+    pub normal_force_at_centre_n: Option<f64>,
     /// How good the computation was; `None` for measured forces.
     pub quality: Option<Quality>,
 }
@@ -36,8 +35,7 @@ pub struct MapFindings {
     /// Which of the paper's phantoms it is, if any.
     pub paper_phantom: Option<&'static str>,
     /// The depth of the highest point of all inclusions, m; `None` without any.
-    #[serde(rename = "inclusion_depth_m")]
-    pub inclusion_depth: Option<f64>,
+    pub inclusion_depth_m: Option<f64>,
     /// Where F_1 − F_0 of the normal force is largest in magnitude.
     pub peak_normal: Peak,
     /// Where F_1 − F_0 of the lateral force is largest in magnitude.
@@ -68,18 +66,16 @@ pub struct MapFindings {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Peak {
     /// The signed force, N.
-    #[serde(rename = "force_n")]
-    pub force: f64,
+    pub force_n: f64,
     /// The lateral position, m; of mirror images the one with x ≥ 0.
-    #[serde(rename = "lateral_m")]
-    pub lateral: f64,
+    pub lateral_m: f64,
 }
 
 impl Peak {
     /// Implements: REP-011.
     fn of(map: &ForceMap, signal: &[f64]) -> Peak {
-        let (force, lateral) = peak(map.laterals(), signal);
-        Peak { force, lateral }
+        let (force_n, lateral_m) = peak(map.laterals(), signal);
+        Peak { force_n, lateral_m }
     }
 }
 
@@ -120,7 +116,7 @@ pub(super) fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindin
     let centre = map.laterals().iter().position(|x| x.abs() <= SAME_POSITION);
     Ok(ReferenceFindings {
         name: name_of_map(map),
-        normal_force_at_centre: centre.map(|column| row.normal[column]),
+        normal_force_at_centre_n: centre.map(|column| row.normal[column]),
         quality: Quality::of(map),
     })
 }
@@ -147,9 +143,9 @@ fn judged(
     let Force { lateral, normal } = signal;
     let zeros = vec![0.0; normal.len()];
     let gamma = GammaByChannel {
-        both: gamma(lateral, normal, settings.noise_sd)?,
-        normal: gamma(&zeros, normal, settings.noise_sd)?,
-        lateral: gamma(lateral, &zeros, settings.noise_sd)?,
+        both: gamma(lateral, normal, settings.noise_sd_n)?,
+        normal: gamma(&zeros, normal, settings.noise_sd_n)?,
+        lateral: gamma(lateral, &zeros, settings.noise_sd_n)?,
     };
     let both = gamma.both;
     let at = |eta: f64| {
@@ -166,7 +162,7 @@ fn judged(
     Ok(MapFindings {
         name: name_of_map(map),
         paper_phantom: phantom.and_then(paper::name_of),
-        inclusion_depth: phantom.and_then(Phantom::inclusion_depth),
+        inclusion_depth_m: phantom.and_then(Phantom::inclusion_depth),
         peak_normal: Peak::of(map, normal),
         peak_lateral: Peak::of(map, lateral),
         gamma,

@@ -69,7 +69,7 @@ pub mod text;
 
 pub use comparison::{Comparison, Value};
 pub use figures::{figures, place_figure, reach_figure};
-pub use findings::{Findings, findings, probe_depth};
+pub use findings::{Findings, findings};
 pub use html::html;
 pub use maps::{GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold};
 pub use nuisances::{GammaBeside, GammaLeft};
@@ -164,8 +164,7 @@ pub struct Settings {
     /// The prior Pr(H = 1).
     pub prior_h1: f64,
     /// Standard deviation of the noise of one sample, the same in both channels, N.
-    #[serde(rename = "noise_sd_n")]
-    pub noise_sd: f64,
+    pub noise_sd_n: f64,
 }
 
 impl Default for Settings {
@@ -174,7 +173,7 @@ impl Default for Settings {
             max_false_alarm: paper::MAX_FALSE_ALARM,
             max_miss: paper::MAX_MISS,
             prior_h1: 0.5,
-            noise_sd: paper::SUBJECTS_NOISE,
+            noise_sd_n: paper::SUBJECTS_NOISE,
         }
     }
 }

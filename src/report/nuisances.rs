@@ -70,7 +70,7 @@ impl GammaLeft {
             let (mut nuisances, mut signal) = (nuisances.collect::<Vec<_>>(), read(signal));
             let space = Nuisances::new(&mut nuisances, signal.len());
             let space = space.map_err(|error| Refusal::state(error.to_string(), ""))?;
-            Ok(space.project(&mut signal) / run.settings.noise_sd)
+            Ok(space.project(&mut signal) / run.settings.noise_sd_n)
         };
         let both: Read = |of| [of.lateral, of.normal].concat();
         let has_slope = |unknown: &&&[Unknown]| {

@@ -9,8 +9,6 @@ pub use crate::psychophysics::noise::{
     PRINTED_GAMMA as GAMMA_OF_ACCURACY, QUANTIZATION, SENSOR, UNMODELLED_CONTACT,
 };
 
-/// The depth of the probe at which the paper quotes its forces, m: "more than 4mm" is prevented (§4.1).
-pub const PROBE_DEPTH: f64 = 4e-3;
 /// "a nominal absolute force level of 1.6N" (§2), N.
 pub const FORCE_LEVEL: f64 = 1.6;
 /// "the force signal difference is roughly 0.5N" (§2), N.

@@ -86,7 +86,7 @@ impl ArrayFindings {
             return Ok(None);
         }
         let centre = laterals.iter().position(|x| x.abs() <= SAME_POSITION);
-        let noise_sd = run.settings.noise_sd;
+        let noise_sd = run.settings.noise_sd_n;
         let of_array = |elements: usize| {
             let differences = with.forces.iter().zip(&without.forces);
             let signals = differences.map(|(with, without)| merged(with, without, elements));

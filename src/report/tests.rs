@@ -32,7 +32,7 @@ fn settings_default_to_the_paper() {
     assert_eq!(
         Settings::default(),
         Settings {
-            noise_sd,
+            noise_sd_n: noise_sd,
             ..SETTINGS
         }
     );
@@ -46,10 +46,10 @@ fn numbers_of_a_triangular_signal() {
     assert_eq!(map.name, "6.6");
     // ΣΔ² is 1.5 · 0.3² normal and 2 · 0.1² lateral, in noise of 0.1 N.
     for (found, expected) in [
-        (map.peak_normal.force, 0.3),
-        (map.peak_normal.lateral, 0.0),
-        (map.peak_lateral.force, 0.1),
-        (map.peak_lateral.lateral, 5e-3),
+        (map.peak_normal.force_n, 0.3),
+        (map.peak_normal.lateral_m, 0.0),
+        (map.peak_lateral.force_n, 0.1),
+        (map.peak_lateral.lateral_m, 5e-3),
         (map.gamma.normal, libm::sqrt(13.5)),
         (map.gamma.lateral, libm::sqrt(2.0)),
         (map.gamma.both, libm::sqrt(15.5)),
@@ -103,8 +103,8 @@ fn of_equal_peaks_the_one_nearest_to_the_middle_counts() {
     ];
     let found = findings(&run).unwrap();
     let [ties, pit] = [0, 1].map(|map| found.maps[map].peak_normal);
-    assert!(ties.lateral == 5e-3 && ties.force > 0.0);
-    assert_close(pit.force, -0.3);
+    assert!(ties.lateral_m == 5e-3 && ties.force_n > 0.0);
+    assert_close(pit.force_n, -0.3);
 }
 
 fn row<'a>(found: &'a Findings, quantity: &str) -> &'a Comparison {
@@ -262,7 +262,7 @@ fn of_several_inclusions_the_highest_is_named() {
     let mut run = paper_run();
     run.maps = vec![map(Some(phantom), &DEPTHS, |_| 0.1, |_| 0.0)];
     let found = findings(&run).unwrap();
-    assert_eq!(found.maps[0].inclusion_depth, Some(2e-3));
+    assert_eq!(found.maps[0].inclusion_depth_m, Some(2e-3));
     let figures = figures(&run, &found).unwrap();
     let title = |figure: &&Figure| figure.title == "Figure 5. Forces, phantom “6.6”: 2 inclusions";
     assert_eq!(figures.iter().filter(title).count(), 1);
@@ -276,9 +276,9 @@ fn without_4_mm_the_deepest_depth_counts_and_is_named() {
     run.reference = map(Phantom::builtin("none").ok(), &depths, |_| 0.0, |_| 0.0);
     run.maps = vec![map(Phantom::builtin("6.6").ok(), &depths, |_| 0.4, |_| 0.0)];
     let found = findings(&run).unwrap();
-    assert_eq!(found.probe_depth, 3e-3);
+    assert_eq!(found.probe_depth_m, 3e-3);
     // The synthetic forces are proportional to the depth, and 0.4 N at 4 mm.
-    assert_close(found.maps[0].peak_normal.force, 0.3);
+    assert_close(found.maps[0].peak_normal.force_n, 0.3);
     let note = found.probe_depth_note.clone().unwrap();
     assert!(note.contains("3 mm"), "{note}");
     assert_eq!(found.bridge, None);
@@ -296,7 +296,7 @@ fn at_4_mm_there_is_no_note_though_the_maps_go_deeper() {
     run.reference = map(Phantom::builtin("none").ok(), &depths, |_| 0.0, |_| 0.0);
     run.maps.clear();
     let found = findings(&run).unwrap();
-    assert_eq!(found.probe_depth, depths[1]);
+    assert_eq!(found.probe_depth_m, depths[1]);
     assert_eq!(found.probe_depth_note, None);
 }
 
@@ -344,8 +344,8 @@ fn what_does_not_fit_is_refused() {
     refused(SETTINGS, &[other], &["\"4.6\"", "depths_m"]);
     type Damage = fn(&mut Settings) -> &mut f64;
     let damages: [(Damage, f64, &str); 5] = [
-        (|settings| &mut settings.noise_sd, 0.0, "noise_sd"),
-        (|settings| &mut settings.noise_sd, f64::NAN, "noise_sd"),
+        (|settings| &mut settings.noise_sd_n, 0.0, "noise_sd"),
+        (|settings| &mut settings.noise_sd_n, f64::NAN, "noise_sd"),
         (|settings| &mut settings.max_miss, 1.0, "max_miss"),
         (
             |settings| &mut settings.max_false_alarm,

@@ -73,11 +73,7 @@ impl Excess {
     }
 
     fn refusal(&self) -> Refusal {
-        let Excess {
-            what,
-            found,
-            allowed,
-        } = self;
+        let (what, found, allowed) = (self.what, self.found, self.allowed);
         let scale = self.scale();
         let found = format!(
             "the table has {found:.4} {what}, and the device plays at most {allowed:.4} passively: scale the forces by {scale:.4}"

@@ -2,8 +2,8 @@
 
 use std::ffi::OsString;
 
-use palpate::cli::arguments::{Asked, CommandLine};
-use palpate::cli::lists::{Positions, length, positions};
+use palpate::cli::arguments::{CommandLine, read};
+use palpate::cli::numbers::{List, length, positions};
 use palpate::decimal::{format_scaled, parse_scaled};
 
 use crate::message::check_message;
@@ -21,14 +21,14 @@ pub fn list(text: &str) -> Outcome {
         Ok(length) => assert!(length.is_finite() && length > 0.0),
         Err(error) => check_message(&error),
     }
-    let accepted = |positions: Positions| check_list(&positions.0, text);
+    let accepted = |positions: List| check_list(&positions.0, text);
     judged(positions(text), accepted, |error| check_message(&error))
 }
 
 fn check_list(positions: &[f64], text: &str) {
     check_positions(positions);
     let written: Vec<String> = positions.iter().map(|&x| format_scaled(x, 3)).collect();
-    let again = palpate::cli::lists::positions(&written.join(","))
+    let again = palpate::cli::numbers::positions(&written.join(","))
         .expect("it was written")
         .0;
     let bits = |positions: &[f64]| positions.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
@@ -99,10 +99,10 @@ pub fn decimal(bytes: &[u8]) -> Outcome {
 /// Implements: EVD-082.
 pub fn command_line(text: &str) -> Outcome {
     let arguments = text.split('\0').map(OsString::from);
-    let asked = Asked::<CommandLine>::read(std::iter::once("palpate".into()).chain(arguments));
+    let asked = read::<CommandLine>(std::iter::once("palpate".into()).chain(arguments));
     let accepted = |asked| match asked {
-        Asked::Command(arguments) => assert!(!format!("{arguments:?}").is_empty()),
-        Asked::Text(text) => assert!(!text.is_empty()),
+        Ok(arguments) => assert!(!format!("{arguments:?}").is_empty()),
+        Err(text) => assert!(!String::is_empty(&text)),
     };
     judged(asked, accepted, |error| {
         check_message(&error.to_string());

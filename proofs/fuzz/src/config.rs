@@ -32,7 +32,7 @@ pub fn config_toml(text: &str) -> Outcome {
 fn check_config(config: &Config) {
     check_positions(&config.depths_mm.0);
     check_positions(&config.laterals_mm.0);
-    for number in [config.mesh.size_mm, config.detection.noise_sd] {
+    for number in [config.mesh.size_mm, config.detection.noise_sd_n] {
         assert!(number.is_finite() && number > 0.0, "{number}");
     }
     let detection = &config.detection;
@@ -61,7 +61,7 @@ fn written(config: &Config) -> String {
         "laterals_mm": list(&config.laterals_mm.0),
         "mesh": {"size_mm": config.mesh.size_mm, "contact": contact},
         "detection": {
-            "noise_sd_n": detection.noise_sd,
+            "noise_sd_n": detection.noise_sd_n,
             "max_false_alarm": detection.max_false_alarm,
             "max_miss": detection.max_miss,
             "prior_h1": detection.prior_h1,

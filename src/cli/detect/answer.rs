@@ -1,5 +1,8 @@
 //! The answer of `palpate detect`, for programs and for people.
 
+use std::borrow::Borrow;
+
+use askama::Template;
 use serde::Serializer as _;
 use serde_json::{Value, json};
 
@@ -9,7 +12,6 @@ use crate::detect::Decision;
 use crate::detect::nuisance::{SubspaceTest, Threshold};
 use crate::force_map::SAME_POSITION;
 use crate::refusal::Refusal;
-use crate::stats::binomial::ConfidenceInterval;
 use crate::trace::{Cause, Fit, Judgement};
 
 /// The probability of the intervals of an inclusion's parameters.
@@ -26,53 +28,56 @@ pub struct DetectAnswer {
     pub table: String,
 }
 
+/// What people are told of a record judged with the inclusion at x = 0.
+#[derive(Template)]
+#[template(path = "cli/detect/maps.txt")]
+struct Judged<'a> {
+    found: &'a Judgement,
+}
+
+/// What they are told of one searched for any inclusion of a bank.
+#[derive(Template)]
+#[template(path = "cli/detect/bank.txt")]
+struct Located<'a> {
+    found: &'a Location,
+    decided_by: &'a str,
+    place: String,
+}
+
 impl DetectAnswer {
-    /// What programs alone are told.
+    /// What programs are told.
     pub fn tell(&mut self, key: &'static str, value: impl Into<Value>) {
         self.entries.push((key, value.into()));
     }
 
-    fn line(&mut self, label: &str, text: &str) {
-        self.table += &format!("{label:<34} {text}\n");
-    }
-
-    fn number(&mut self, key: &'static str, label: &str, value: f64) {
-        self.tell(key, value);
-        self.line(label, &number(value));
-    }
-
     fn decision(&mut self, decision: Option<Decision>, causes: &[Cause]) {
-        let (key, text) = match decision {
-            Some(Decision::Inclusion) => ("inclusion", "inclusion"),
-            Some(Decision::NoInclusion) => ("no_inclusion", "no inclusion"),
-            None => ("cannot_be_judged", "cannot be judged"),
+        let key = match decision {
+            Some(Decision::Inclusion) => "inclusion",
+            Some(Decision::NoInclusion) => "no_inclusion",
+            None => "cannot_be_judged",
         };
+        let causes = causes.iter().map(|cause| cause.code());
         self.tell("decision", key);
-        self.line("decision", text);
-        self.tell(
-            "causes",
-            causes.iter().map(|cause| cause.code()).collect::<Vec<_>>(),
-        );
+        self.tell("causes", causes.collect::<Vec<_>>());
     }
 
     /// The record judged with the inclusion at x = 0.
     pub fn judged(&mut self, found: &Judgement) {
-        let (test, rates) = (&found.test, found.rates);
         self.decision(found.decision, &found.causes);
-        self.number("t", "T (signal over noise)", test.t);
-        let (least, text) = match found.threshold {
-            Threshold::Always => (None, "any T is enough".into()),
-            Threshold::At(threshold) => (Some(threshold), number(threshold)),
-            Threshold::Never => (None, "no T is enough".into()),
+        self.tell("t", found.test.t);
+        let least = match found.threshold {
+            Threshold::At(threshold) => Some(threshold),
+            Threshold::Always | Threshold::Never => None,
         };
         self.tell("t_threshold", least);
-        self.line("T of an inclusion, at least", &text);
-        self.number("theta", "theta (log-likelihood ratio)", test.theta());
-        self.test(test, found.gamma_nominal);
-        self.posterior(found.decision.map(|_| found.posterior));
-        self.number("false_alarm", "P(false alarm) at most", rates.false_alarm);
-        self.number("miss", "P(miss) at most", rates.miss);
+        self.tell("theta", found.test.theta());
+        self.test(&found.test, found.gamma_nominal);
+        self.tell("posterior_h1", found.decision.map(|_| found.posterior));
+        self.tell("false_alarm", found.rates.false_alarm);
+        self.tell("miss", found.rates.miss);
         self.fit(&found.fit);
+        // Writing to a String does not fail.
+        self.table = Judged { found }.render().unwrap_or_default();
     }
 
     /// The record searched for any inclusion of `bank`.
@@ -85,44 +90,37 @@ impl DetectAnswer {
         };
         self.decision(found.decision, &found.causes);
         self.tell("decided_by", decided_by);
-        self.line("decided by", &format!("{decided_by} >= eta"));
-        self.number(
-            "theta_max",
-            "theta_max, the likeliest inclusion",
-            found.theta_max,
-        );
-        self.number(
-            "theta_mixture",
-            "theta_mixture, any inclusion",
-            found.theta_mixture,
-        );
-        self.number("eta", "eta (threshold)", found.eta);
+        self.tell("theta_max", found.theta_max);
+        self.tell("theta_mixture", found.theta_mixture);
+        self.tell("eta", found.eta);
         if let Some(calibrated) = found.calibrated {
-            let ConfidenceInterval { lower, upper } = calibrated.false_alarm;
-            let text = format!("{} to {}", number(lower), number(upper));
-            self.tell("calibrated_false_alarm", vec![lower, upper]);
+            let rate = calibrated.false_alarm;
+            self.tell("calibrated_false_alarm", vec![rate.lower, rate.upper]);
             self.tell("simulations", calibrated.simulations);
-            self.line("P(false alarm), simulated, 99 %", &text);
         }
         self.test(&found.test, found.gamma_nominal);
-        self.posterior(found.decision.map(|_| found.posterior));
-        self.number(
-            "false_alarm_bound",
-            "P(false alarm) at most",
-            found.false_alarm_bound,
-        );
-        self.number("miss_bound", "P(miss) there at most", found.miss_bound);
+        self.tell("posterior_h1", found.decision.map(|_| found.posterior));
+        self.tell("false_alarm_bound", found.false_alarm_bound);
+        self.tell("miss_bound", found.miss_bound);
         self.tell("hypotheses", bank.maps().len());
-        self.place(bank, found)?;
+        let place = self.place(bank, found)?;
         self.fit(&found.fit);
+        let table = Located {
+            found,
+            decided_by,
+            place,
+        };
+        self.table = table.render().unwrap_or_default();
         Ok(())
     }
 
-    /// Each parameter that the bank varies.
+    /// Each parameter that the bank varies: what people are told of it.
     ///
     /// Implements: CLI-153.
-    fn place(&mut self, bank: &Bank, found: &Location) -> Result<(), CliError> {
+    fn place(&mut self, bank: &Bank, found: &Location) -> Result<String, CliError> {
         let mean = found.place.mean();
+        let mut lines = String::new();
+        let mut line = |label: &str, text: &str| lines += &format!("{label:<34} {text}\n");
         for (axis, parameter) in (0..).zip(Parameter::ALL) {
             let points = &bank.axes()[axis];
             let (&[first, .., last], sd) = (&points[..], found.bound.sd[axis]) else {
@@ -143,71 +141,35 @@ impl DetectAnswer {
             let [low, high] = ends.map(shown);
             let sd = sd.map_or("not known".into(), |sd| format!("at least {}", shown(sd)));
             let text = format!("{}, {low} to {high} with 95 %, sd {sd}", shown(estimate));
-            self.line(name, &text);
-            if [first, last]
-                .iter()
-                .any(|end| (end - estimate).abs() <= SAME_POSITION)
-            {
-                self.line("", "(at an end of the bank: it may lie beyond)");
+            line(name, &text);
+            let is_end = |end: &f64| (end - estimate).abs() <= SAME_POSITION;
+            if [first, last].iter().any(is_end) {
+                line("", "(at an end of the bank: it may lie beyond)");
             }
         }
-        Ok(())
+        Ok(lines)
     }
 
     /// What was found at the place where it was found.
     fn test(&mut self, test: &SubspaceTest, gamma_nominal: f64) {
-        self.number("gamma", "gamma (signal to noise)", test.gamma);
-        self.number(
-            "gamma_nominal",
-            "gamma if nothing were unknown",
-            gamma_nominal,
-        );
-        self.number(
-            "amplitude",
-            "signal found over expected",
-            test.t / test.gamma,
-        );
-        self.number("amplitude_sd", "its standard deviation", 1.0 / test.gamma);
-    }
-
-    fn posterior(&mut self, posterior: Option<f64>) {
-        self.tell("posterior_h1", posterior);
-        if let Some(posterior) = posterior {
-            self.line("posterior of an inclusion", &number(posterior));
-        }
+        self.tell("gamma", test.gamma);
+        self.tell("gamma_nominal", gamma_nominal);
+        self.tell("amplitude", test.t / test.gamma);
+        self.tell("amplitude_sd", 1.0 / test.gamma);
     }
 
     /// How well the record fits.
     fn fit(&mut self, fit: &Fit) {
-        let sd = fit.noise_sd;
         self.tell("fits", fit.noise_is_right());
-        self.number(
-            "noise_sd_lateral_n",
-            "noise of a sample, lateral, N",
-            sd.lateral,
-        );
-        self.number(
-            "noise_sd_normal_n",
-            "noise of a sample, normal, N",
-            sd.normal,
-        );
+        self.tell("noise_sd_lateral_n", fit.noise_sd.lateral);
+        self.tell("noise_sd_normal_n", fit.noise_sd.normal);
         self.tell("chi_square", fit.chi_square);
         self.tell("chi_square_limits", fit.limits.map(Vec::from));
-        if let Some([low, high]) = fit.limits {
-            let [chi_square, low, high] = [fit.chi_square, low, high].map(number);
-            let text = format!("{chi_square}, {low} to {high} if it fits");
-            self.line("chi-square of what is left", &text);
-        }
         self.tell("degrees", fit.degrees);
         self.tell("whiteness", fit.whiteness);
         self.tell("block", fit.block);
-        let samples = format!("{:.0}", fit.effective_samples);
         self.tell("effective_samples", fit.effective_samples);
-        self.line("independent samples, both channels", &samples);
         self.tell("level", fit.level);
-        if let Some(level) = fit.level {
-            self.line("forces over the reference's", &number(level));
-        }
     }
 
     /// The answer as JSON.
@@ -221,7 +183,8 @@ impl DetectAnswer {
 }
 
 /// Six digits.
-fn number(value: f64) -> String {
+fn number(value: impl Borrow<f64>) -> String {
+    let value = *value.borrow();
     if value != 0.0 && !(1e-4..1e6).contains(&value.abs()) {
         format!("{value:.5e}")
     } else {

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use crate::cli::numbers::{millimetres, newtons, probability, tolerance};
 use crate::cli::{CliError, Format};
-use crate::decimal::parse_scaled;
 use crate::force::Force;
 use crate::trace::{Correlation, Criterion, Noise, Trace, Unknown};
 
@@ -16,40 +16,20 @@ pub struct DetectArguments {
     #[arg(value_name = "TRACE.csv")]
     pub(super) trace: PathBuf,
     /// The force map without inclusion: JSON as 'palpate solve --phantom none --format json' prints it, or measured CSV
-    #[arg(
-        long,
-        value_name = "MAP",
-        requires = "inclusion",
-        required_unless_present = "bank"
-    )]
+    #[arg(long, value_name = "MAP", required_unless_present = "bank")]
     pub(super) reference: Option<PathBuf>,
     /// The force map with the inclusion, where that map has it
-    #[arg(
-        long,
-        value_name = "MAP",
-        requires = "reference",
-        required_unless_present = "bank"
-    )]
+    #[arg(long, value_name = "MAP", required_unless_present = "bank")]
     pub(super) inclusion: Option<PathBuf>,
     /// A bank of inclusions, as 'palpate bank' makes it: says whether one of them is there, and where it lies
     #[arg(long, value_name = "BANK", conflicts_with_all = ["reference", "inclusion", "any_maps"])]
     pub(super) bank: Option<PathBuf>,
     /// The probability of each inclusion of the bank given that there is one: a CSV file with position_mm, depth_mm, diameter_mm,
     /// youngs_modulus_kpa and weight [default: all the same]
-    #[arg(
-        long,
-        value_name = "FILE",
-        requires = "bank",
-        conflicts_with = "reference"
-    )]
+    #[arg(long, value_name = "FILE", conflicts_with = "reference")]
     pub(super) prior: Option<PathBuf>,
     /// Sets the threshold for neyman-pearson-false-alarm with a bank by so many simulated records, and not by a bound
-    #[arg(
-        long,
-        value_name = "N",
-        requires = "bank",
-        conflicts_with = "reference"
-    )]
+    #[arg(long, value_name = "N", conflicts_with = "reference")]
     pub(super) simulations: Option<u64>,
     /// The seed of these simulations
     #[arg(
@@ -66,7 +46,7 @@ pub struct DetectArguments {
     #[arg(long, value_name = "D", value_parser = millimetres, allow_hyphen_values = true, required_unless_present = "bank")]
     pub(super) depth_mm: Option<f64>,
     /// The true depth is within so many mm of that
-    #[arg(long, value_name = "T", value_parser = at_least_0, allow_hyphen_values = true, default_value = "0.3")]
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true, default_value = "0.3")]
     pub(super) depth_tolerance_mm: f64,
     /// What is known, and not fitted to the record: a list of offset, drift, gain, depth and variance (of the noise); all; none
     #[arg(long = "known", value_name = "LIST", value_parser = unknowns, default_value = "depth")]
@@ -102,12 +82,7 @@ pub struct DetectArguments {
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub(super) format: Format,
     /// Writes a figure of where the inclusion lies, if there is one, as SVG
-    #[arg(
-        long,
-        value_name = "FILE",
-        requires = "bank",
-        conflicts_with = "reference"
-    )]
+    #[arg(long, value_name = "FILE", conflicts_with = "reference")]
     pub(super) figure: Option<PathBuf>,
 }
 
@@ -159,43 +134,14 @@ pub fn unknowns(text: &str) -> Result<Unknowns, String> {
         "all" => Unknown::ALL.map(Unknown::name).into(),
         list => list.split(',').map(str::trim).collect(),
     };
-    match known
-        .iter()
-        .find(|name| Unknown::ALL.iter().all(|of| of.name() != **name))
-    {
-        Some(name) => Err(format!(
-            "{name:?} is none of {}, all and none",
-            Unknown::ALL.map(Unknown::name).join(", ")
-        )),
-        None => Ok(Unknowns(
-            Unknown::ALL
-                .into_iter()
-                .filter(|of| !known.contains(&of.name()))
-                .collect(),
-        )),
+    let names = Unknown::ALL.map(Unknown::name);
+    if let Some(name) = known.iter().find(|name| !names.contains(name)) {
+        let names = names.join(", ");
+        return Err(format!("{name:?} is none of {names}, all and none"));
     }
-}
-
-fn at_least_0(text: &str) -> Result<f64, String> {
-    parse_scaled(text, -3)
-        .filter(|&length| length >= 0.0)
-        .ok_or_else(|| "expected mm, at least 0, such as 0.3".into())
-}
-
-fn millimetres(text: &str) -> Result<f64, String> {
-    parse_scaled(text, -3).ok_or_else(|| "expected a finite number, such as 2.5".into())
-}
-
-pub fn newtons(text: &str) -> Result<f64, String> {
-    parse_scaled(text, 0)
-        .filter(|&noise| noise > 0.0)
-        .ok_or_else(|| "expected N above 0, such as 0.1".into())
-}
-
-pub fn probability(text: &str) -> Result<f64, String> {
-    parse_scaled(text, 0)
-        .filter(|&probability| probability > 0.0 && probability < 1.0)
-        .ok_or_else(|| "expected a probability strictly between 0 and 1".into())
+    let unknown = Unknown::ALL.into_iter();
+    let unknown = unknown.filter(|of| !known.contains(&of.name()));
+    Ok(Unknowns(unknown.collect()))
 }
 
 impl DetectArguments {

@@ -65,30 +65,25 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
         .for_each(|text| note(arguments.trace.display(), text));
     let record = trace.record(motion)?;
     let mut warnings = Warnings::default();
-    let found = match &arguments.bank {
+    let mut found = match &arguments.bank {
         Some(path) => by_bank(arguments, record, path, &mut warnings)?,
         None => by_maps(arguments, record, &mut warnings)?,
     };
-    let Found {
-        mut answer,
-        decision,
-        causes,
-        fit,
-        file,
-    } = found;
-    answer.tell("warnings", warnings.0);
-    let last = conclusion(&arguments.unknown.0, decision, &causes, &fit);
+    found.answer.tell("warnings", warnings.0);
     print(&match arguments.format {
-        Format::Table => format!("{}\n{last}\n", answer.table),
-        Format::Json => answer.json(),
+        Format::Table => format!(
+            "{}\n{}\n",
+            found.answer.table,
+            conclusion(&arguments.unknown.0, &found)
+        ),
+        Format::Json => found.answer.json(),
     })?;
-    match decision {
+    match found.decision {
         Some(_) => Ok(()),
         None => {
-            let why = reasons(&causes);
-            Err(CliError::Unjudged(format!(
-                "{file}: cannot be judged: {why}"
-            )))
+            let (file, why) = (arguments.trace.display(), reasons(&found.causes));
+            let why = format!("{file}: cannot be judged: {why}");
+            Err(CliError::Unjudged(why))
         }
     }
 }
@@ -99,8 +94,6 @@ struct Found {
     decision: Option<Decision>,
     causes: Vec<Cause>,
     fit: Fit,
-    /// The name of the record.
-    file: String,
 }
 
 /// The record without the samples outside `map`, if that was asked for.
@@ -170,7 +163,6 @@ fn by_maps(
         decision: found.decision,
         causes: found.causes,
         fit: found.fit,
-        file: record.file().into(),
     })
 }
 
@@ -205,27 +197,21 @@ fn by_bank(
         decision: found.decision,
         causes: found.causes,
         fit: found.fit,
-        file: record.file().into(),
     })
 }
 
 /// What was decided, whether the record fits, and what was assumed.
 ///
 /// Implements: CLI-144.
-fn conclusion(
-    unknown: &[Unknown],
-    decision: Option<Decision>,
-    causes: &[Cause],
-    fit: &Fit,
-) -> String {
-    let fits = match fit.limits {
+fn conclusion(unknown: &[Unknown], found: &Found) -> String {
+    let fits = match found.fit.limits {
         None => "in the noise that the record itself shows",
         Some(_) => "in a record that fits the noise stated",
     };
-    let decided = match decision {
+    let decided = match found.decision {
         Some(Decision::Inclusion) => format!("An inclusion was found, {fits}"),
         Some(Decision::NoInclusion) => format!("No inclusion was found, {fits}"),
-        None => format!("The record cannot be judged: {}", reasons(causes)),
+        None => format!("The record cannot be judged: {}", reasons(&found.causes)),
     };
     let names = |is_known: bool| {
         let of = Unknown::ALL

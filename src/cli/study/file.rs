@@ -81,7 +81,7 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
         laterals: run.laterals_mm.0.clone(),
         mesh_size: run.mesh.size_mm / 1e3,
         contact: run.mesh.contact,
-        noise_sd: run.detection.noise_sd,
+        noise_sd: run.detection.noise_sd_n,
         max_false_alarm: run.detection.max_false_alarm,
         max_miss: run.detection.max_miss,
         prior_h1: run.detection.prior_h1,

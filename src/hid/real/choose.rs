@@ -17,15 +17,6 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// The same device, at whatever node.
-    pub fn again(identity: &Identity) -> Wanted {
-        Wanted {
-            vendor: Some(identity.vendor),
-            product: Some(identity.product),
-            serial: Some(identity.serial.clone()),
-        }
-    }
-
     fn is(&self, identity: &Identity) -> bool {
         fn fits<T: PartialEq>(wanted: &Option<T>, found: &T) -> bool {
             wanted.as_ref().is_none_or(|wanted| wanted == found)

@@ -196,7 +196,7 @@ fn reports_passed_over_and_reports_that_never_came_are_counted_apart() {
         (Defect::Garbage(garbage), [0, 1, 1]),
     ] {
         let counters = run_with(defect).3;
-        let found = [counters.drained, counters.skipped, counters.garbage];
+        let found = [counters.passed_over, counters.skipped, counters.garbage];
         assert_eq!(found, counted, "{defect:?}");
     }
 }
@@ -335,7 +335,7 @@ fn a_stop_is_sent_again_until_the_device_takes_it_and_nothing_arms_after_it() {
         let first = session.stop();
         assert_eq!(first.is_ok(), refusals < 5, "{refusals}");
         let refused = u64::from(refusals.min(10));
-        assert_eq!(session.counters().refused, refused);
+        assert_eq!(session.counters().stops_refused, refused);
         let moved = session.device().0.motor_force() != [0.0, 0.0];
         assert_eq!(moved, refusals >= 10, "{refusals}");
         for _ in 0..20 {
@@ -390,7 +390,7 @@ fn a_stop_that_the_device_does_not_take_is_told_beside_the_end() {
             ending.set(counters.cycles == 50);
             counters.cycles < 50
         });
-        assert_eq!((found, session.counters().refused), (end, refusals));
+        assert_eq!((found, session.counters().stops_refused), (end, refusals));
     }
     assert_eq!(
         unstopped(There).to_string(),

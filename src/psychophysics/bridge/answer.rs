@@ -8,19 +8,19 @@ use crate::psychophysics::rates::Bounds;
 /// What of the sweep counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Cue {
+pub enum Statistic {
     /// The largest difference of force at one position, as in the paper's §5.
     Peak,
     /// The root mean square over the sweep, ‖F₁ − F₀‖ of equation (2).
     MatchedFilter,
 }
 
-impl Cue {
+impl Statistic {
     /// In words.
     pub fn text(self) -> &'static str {
         match self {
-            Cue::Peak => "peak",
-            Cue::MatchedFilter => "matched filter",
+            Statistic::Peak => "peak",
+            Statistic::MatchedFilter => "matched filter",
         }
     }
 }
@@ -51,7 +51,7 @@ pub enum Offset {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Convention {
     /// What of the sweep counts.
-    pub statistic: Cue,
+    pub statistic: Statistic,
     /// Which force counts.
     pub channel: Channel,
     /// Whether its mean counts.
@@ -62,7 +62,7 @@ impl Convention {
     /// All twelve.
     pub fn all() -> impl Iterator<Item = Convention> {
         (0..12).map(|k| Convention {
-            statistic: [Cue::Peak, Cue::MatchedFilter][k / 6],
+            statistic: [Statistic::Peak, Statistic::MatchedFilter][k / 6],
             channel: [Channel::Normal, Channel::Lateral, Channel::Both][k / 2 % 3],
             offset: [Offset::Kept, Offset::Removed][k % 2],
         })
@@ -188,7 +188,7 @@ pub struct ConventionFit {
 
 impl ConventionFit {
     /// The fit by subject with the larger p-value.
-    pub(super) fn better_by_subject(&self) -> &SubjectFit {
+    pub fn better_by_subject(&self) -> &SubjectFit {
         match self.by_subject_with_lapse.p_value > self.by_subject.p_value {
             true => &self.by_subject_with_lapse,
             false => &self.by_subject,
@@ -269,7 +269,7 @@ pub struct WeightRange {
     /// Half of the sweep, m.
     pub half_sweep_m: f64,
     /// What of the sweep counts.
-    pub statistic: Cue,
+    pub statistic: Statistic,
     /// The smallest and the largest weight, on a grid of 0.05, that the corrected level does not reject.
     pub left: Bounds,
     /// φ: the deviance at the best weight over the one expected there, at least 1.

@@ -25,8 +25,9 @@ mod verdict;
 mod weights;
 
 pub use answer::{
-    Bridge, BridgeInclusion, Channel, CommonFit, ConditionBridge, Convention, ConventionFit, Cue,
-    Favoured, LapseFit, ObservedRate, Offset, SubjectFit, Verdict, WeightFit, WeightRange,
+    Bridge, BridgeInclusion, Channel, CommonFit, ConditionBridge, Convention, ConventionFit,
+    Favoured, LapseFit, ObservedRate, Offset, Statistic, SubjectFit, Verdict, WeightFit,
+    WeightRange,
 };
 
 use super::choice::Count;
@@ -92,7 +93,7 @@ pub fn bridge(
 ) -> Result<Bridge> {
     let maps = columns(table, inclusions)?;
     let reference = sweep(reference, half_sweep).map_err(|error| error.in_file("reference"))?;
-    let (probe_depth, probe_depth_note) = probe_depth(reference.depths());
+    let (probe_depth, is_paper_depth) = probe_depth(reference.depths());
     let (mut columns, mut signals) = (Vec::new(), Vec::new());
     for (column, map) in maps {
         let map = sweep(map, half_sweep);
@@ -121,7 +122,12 @@ pub fn bridge(
     };
     Ok(Bridge {
         probe_depth_m: probe_depth,
-        probe_depth_note,
+        probe_depth_note: (!is_paper_depth).then(|| {
+            format!(
+                "the maps hold no depth of 4 mm, which the subjects could reach: forces are taken at their deepest, {} mm",
+                probe_depth * 1e3
+            )
+        }),
         positions: laterals.len(),
         from_m: laterals[0],
         to_m: laterals[laterals.len() - 1],
@@ -203,18 +209,15 @@ fn columns<'a>(
     Ok(columns)
 }
 
-/// The paper's depth if the maps hold it, or else the deepest with a note.
-fn probe_depth(depths: &[f64]) -> (f64, Option<String>) {
+/// The depth of the probe, m, at which forces are taken, and whether it is the paper's 4 mm; else the deepest.
+///
+/// Implements: REP-002.
+pub fn probe_depth(depths: &[f64]) -> (f64, bool) {
     let paper = |depth: &&f64| (**depth - PROBE_DEPTH).abs() <= SAME_POSITION;
-    if let Some(&depth) = depths.iter().find(paper) {
-        return (depth, None);
+    match depths.iter().find(paper) {
+        Some(&depth) => (depth, true),
+        None => (depths.iter().copied().fold(0.0, f64::max), false),
     }
-    let deepest = depths.iter().copied().fold(0.0, f64::max);
-    let note = format!(
-        "the maps hold no depth of 4 mm, which the subjects could reach: forces are taken at their deepest, {} mm",
-        deepest * 1e3
-    );
-    (deepest, Some(note))
 }
 
 fn of_condition(

@@ -1,6 +1,6 @@
 //! What each convention makes of the difference of two force maps along a sweep.
 
-use super::{Channel, Convention, Cue, Offset};
+use super::{Channel, Convention, Offset, Statistic};
 use crate::force::Force;
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
@@ -79,7 +79,7 @@ impl Signal {
     /// The same where the mean over the sweep counts `weight` times, channel by channel.
     ///
     /// Implements: PSY-084.
-    pub fn weighted(&self, statistic: Cue, channel: Channel, weight: f64) -> f64 {
+    pub fn weighted(&self, statistic: Statistic, channel: Channel, weight: f64) -> f64 {
         let counted = Force::new(channel != Channel::Normal, channel != Channel::Lateral);
         let felt = self.forces.as_deref().zip(counted).map(|(forces, counts)| {
             let offset = (1.0 - weight) * mean(forces);
@@ -88,8 +88,8 @@ impl Signal {
         });
         let energies = felt.normal.zip(felt.lateral).map(|(n, l)| n * n + l * l);
         let energy = match statistic {
-            Cue::Peak => energies.fold(0.0, f64::max),
-            Cue::MatchedFilter => energies.sum::<f64>() / self.laterals.len() as f64,
+            Statistic::Peak => energies.fold(0.0, f64::max),
+            Statistic::MatchedFilter => energies.sum::<f64>() / self.laterals.len() as f64,
         };
         libm::sqrt(energy)
     }

@@ -33,7 +33,7 @@ fn map_over(depths: &[f64], laterals: &[f64], forces: impl Fn(usize) -> [f64; 2]
     ForceMap::new(source, None, table).unwrap()
 }
 
-fn convention(statistic: Cue, channel: Channel, offset: Offset) -> Convention {
+fn convention(statistic: Statistic, channel: Channel, offset: Offset) -> Convention {
     Convention {
         statistic,
         channel,
@@ -48,7 +48,7 @@ fn each_convention_makes_its_own_signal() {
     // The differences are −1, 2, 4, 2, 3 (mean 2) and 0, −3, 0, 3, 0 (mean 0), all exact.
     let with = map([0.0, 3.5, 6.0, 3.5, 4.0], [0.5, -2.5, 0.0, 2.5, -0.5]);
     let signal = Signal::new(&reference, &with, 4e-3).unwrap();
-    use {Channel::*, Cue::*, Offset::*};
+    use {Channel::*, Offset::*, Statistic::*};
     for (statistic, channel, offset, square) in [
         (Peak, Normal, Kept, 16.0),
         (Peak, Normal, Removed, 9.0), // at the end: −1 − 2
@@ -344,9 +344,9 @@ fn part_of_the_level_counts_in_part() {
     };
     // w² 3² + (4 + 1 + 0 + 9)/4, and 3 + 3w.
     for weight in [0.0, 0.25, 0.5, 1.0] {
-        let all = signal.weighted(Cue::MatchedFilter, Channel::Normal, weight);
+        let all = signal.weighted(Statistic::MatchedFilter, Channel::Normal, weight);
         assert_near(all * all, 9.0 * weight * weight + 3.5, 1e-14);
-        let peak = signal.weighted(Cue::Peak, Channel::Normal, weight);
+        let peak = signal.weighted(Statistic::Peak, Channel::Normal, weight);
         assert_near(peak, 3.0 + 3.0 * weight, 1e-14);
     }
     let within = signal.within(1e-3);
@@ -501,7 +501,7 @@ fn with_many_answers_each_fitted_number_takes_a_degree_of_freedom() {
 #[test]
 fn the_larger_p_value_of_the_two_fits_by_subject_counts() {
     let signals = computed_signals();
-    let less_its_mean = convention(Cue::Peak, Channel::Normal, Offset::Removed);
+    let less_its_mean = convention(Statistic::Peak, Channel::Normal, Offset::Removed);
     let strengths = Signals::new(&signals, |s| s.within(3e-3).strength(less_its_mean));
     let found = fit(less_its_mean, strengths.unwrap(), &observations(2)).unwrap();
     assert_near(found.by_subject_with_lapse.p_value, 0.067, 3e-3);
@@ -516,7 +516,7 @@ fn conventions_are_compared_with_their_lapses() {
     let signals = computed_signals();
     for (condition, half, exchanges) in [(1, 10e-3, 4.0), (1, 5e-3, 54.0), (2, 10e-3, 16.0)] {
         let [normal, lateral] = [Channel::Normal, Channel::Lateral].map(|channel| {
-            let of = convention(Cue::MatchedFilter, channel, Offset::Removed);
+            let of = convention(Statistic::MatchedFilter, channel, Offset::Removed);
             let strengths = Signals::new(&signals, |s| s.within(half).strength(of));
             fit(of, strengths.unwrap(), &observations(condition)).unwrap()
         });

@@ -3,8 +3,8 @@
 use askama::Template;
 
 use super::{
-    Channel, CommonFit, Convention, ConventionFit, Cue, Favoured, LEVEL, Verdict, WeightRange,
-    told_apart,
+    Channel, CommonFit, Convention, ConventionFit, Favoured, LEVEL, Statistic, Verdict,
+    WeightRange, told_apart,
 };
 use crate::psychophysics::noise::{BACKDRIVE_FRICTION, HUMAN_PERCEPTION, QUANTIZATION};
 
@@ -91,7 +91,7 @@ impl Words<'_> {
         let aic = |fit: &&ConventionFit| fit.by_subject.aic;
         let least = fits.iter().min_by(|a, b| aic(a).total_cmp(&aic(b)));
         let of_moment =
-            |of: Convention, is_rejected: bool| of.statistic == Cue::Peak && !is_rejected;
+            |of: Convention, is_rejected: bool| of.statistic == Statistic::Peak && !is_rejected;
         let squares = [QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION].map(|n| n * n);
         Words {
             support,

@@ -6,7 +6,7 @@
 use super::common::Signals;
 use super::signals::{Signal, is_within};
 use super::subjects::by_subject;
-use super::{Channel, Convention, Cue, Observations, Offset, WeightFit, WeightRange};
+use super::{Channel, Convention, Observations, Offset, Statistic, WeightFit, WeightRange};
 use crate::force_map::SAME_POSITION;
 use crate::psychophysics::Result;
 use crate::psychophysics::dispersion::Overdispersion;
@@ -17,7 +17,7 @@ const HALF_SWEEPS_MM: core::ops::RangeInclusive<u32> = 3..=10;
 /// Steps of the weight from 0 to 1.
 const STEPS: u32 = 20;
 /// What of the sweep counts.
-pub const STATISTICS: [Cue; 2] = [Cue::Peak, Cue::MatchedFilter];
+pub const STATISTICS: [Statistic; 2] = [Statistic::Peak, Statistic::MatchedFilter];
 
 /// The half sweeps, m, that lie on these positions, two of them at the least.
 ///
@@ -55,7 +55,7 @@ pub fn weight_ranges(
 fn weight_range(
     signals: &[Signal],
     observed: &Observations,
-    (half_sweep, statistic): (f64, Cue),
+    (half_sweep, statistic): (f64, Statistic),
     level: f64,
 ) -> Result<Option<WeightRange>> {
     let at = |channel, weight| weigh(signals, observed, (statistic, channel), weight);
@@ -105,7 +105,7 @@ fn weight_range(
 fn weigh(
     signals: &[Signal],
     observed: &Observations,
-    (statistic, channel): (Cue, Channel),
+    (statistic, channel): (Statistic, Channel),
     weight: f64,
 ) -> Result<Option<WeightFit>> {
     let strength = |signal: &Signal| signal.weighted(statistic, channel, weight);
@@ -128,7 +128,7 @@ fn by_deviance(a: &&WeightFit, b: &&WeightFit) -> core::cmp::Ordering {
 }
 
 /// Which of the normal force, the same less its mean and the lateral force has the largest deviance.
-fn worst(statistic: Cue, fits: [Option<WeightFit>; 3]) -> Option<Convention> {
+fn worst(statistic: Statistic, fits: [Option<WeightFit>; 3]) -> Option<Convention> {
     let conventions = [
         (Channel::Normal, Offset::Kept),
         (Channel::Normal, Offset::Removed),

@@ -6,8 +6,10 @@ use super::chart::chart;
 use super::panel::Line;
 use super::people::{DEPTH, SHARE, bar, points, share_panel};
 use super::style::{INK, PALETTE};
-use super::{Figures, Words};
-use crate::psychophysics::bridge::{Bridge, Channel, ConditionBridge, ConventionFit, Cue, Offset};
+use super::{Figures, words};
+use crate::psychophysics::bridge::{
+    Bridge, Channel, ConditionBridge, ConventionFit, Offset, Statistic,
+};
 use crate::refusal::Refusal;
 use crate::report::{Findings, Topic, paper, text};
 
@@ -44,17 +46,8 @@ pub fn draw(figures: &mut Figures, found: &Findings) -> Result<(), Refusal> {
         sample(PALETTE[0], "rejected").dashed(true),
     ];
     let text = Text { bridge, condition };
-    let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
-    figures.add(("bridge", ""), Topic::People, words, chart(&panels, DEPTH))
-}
-
-/// The fit by subject that explains the answers better.
-fn predicted(fit: &ConventionFit) -> &[f64] {
-    let (plain, lapse) = (&fit.by_subject, &fit.by_subject_with_lapse);
-    match lapse.p_value > plain.p_value {
-        true => &lapse.predicted,
-        false => &plain.predicted,
-    }
+    let drawn = chart(&panels, DEPTH);
+    figures.add(("bridge", ""), Topic::People, words!(text), drawn)
 }
 
 /// Predictions of the conventions with one treatment of the mean, and what was observed.
@@ -62,7 +55,8 @@ fn lines(condition: &ConditionBridge, depths: &[f64], offset: Offset) -> Vec<Lin
     let fits = condition.conventions.iter();
     let fits = fits.filter(|fit| fit.convention.offset == offset);
     let line = |(fit, colour): (&ConventionFit, _)| {
-        let line = Line::new(colour, points(depths, predicted(fit).iter().copied()));
+        let predicted = &fit.better_by_subject().predicted;
+        let line = Line::new(colour, points(depths, predicted.iter().copied()));
         line.dashed(fit.is_rejected).named(short_name(fit))
     };
     let mut lines: Vec<_> = fits.zip(PALETTE).map(line).collect();
@@ -78,8 +72,8 @@ fn lines(condition: &ConditionBridge, depths: &[f64], offset: Offset) -> Vec<Lin
 /// What the heading of the panel does not say: "peak, normal".
 fn short_name(fit: &ConventionFit) -> String {
     let statistic = match fit.convention.statistic {
-        Cue::Peak => "peak",
-        Cue::MatchedFilter => "filter",
+        Statistic::Peak => "peak",
+        Statistic::MatchedFilter => "filter",
     };
     let channel = match fit.convention.channel {
         Channel::Normal => "normal",

@@ -5,7 +5,7 @@ use askama::Template;
 use super::chart::{chart, round_range};
 use super::panel::{Line, Panel};
 use super::style::{PALETTE, ramp};
-use super::{Figures, Words, band_ends};
+use super::{Figures, Words, band_ends, words};
 use crate::force_map::{ForceMap, ForceTable, Matrix, Source};
 use crate::phantom::Inclusion;
 use crate::refusal::Refusal;
@@ -27,8 +27,7 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
     };
     if !run.maps.is_empty() {
         let text = SignalText { found };
-        let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
-        add(("signals", ""), words, &signals(run, found)?)?;
+        add(("signals", ""), words!(text), &signals(run, found)?)?;
     }
     for map in [&run.reference].into_iter().chain(&run.maps) {
         let name = text::name_of_map(map);
@@ -36,19 +35,17 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
         let depth = run.study.as_ref().map(|study| study.plan.probe_depth);
         let depth = depth.filter(|_| !bands[0].is_empty());
         let text = ForceText { map, depth };
-        let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
         add(
             ("figure-5", &name),
-            words,
+            words!(text),
             &force_curves(map.table(), bands),
         )?;
     }
     for map in &run.measured {
         let (text, name) = (MeasuredText { map }, text::name_of_map(map));
-        let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
         add(
             ("figure-7", &name),
-            words,
+            words!(text),
             &force_curves(map.table(), Default::default()),
         )?;
     }
@@ -132,7 +129,7 @@ fn signals(run: &Run, found: &Findings) -> Result<[Panel; 2], Refusal> {
     for (k, (map, of_map)) in run.maps.iter().zip(&found.maps).enumerate() {
         let table = map.signal(&run.reference);
         let table = table.map_err(incomparable(map))?;
-        let curve = table.row(found.probe_depth);
+        let curve = table.row(found.probe_depth_m);
         let curve = curve.map_err(incomparable(map))?;
         let line = |forces| {
             Line::new(PALETTE[k % PALETTE.len()], points(table.laterals(), forces))

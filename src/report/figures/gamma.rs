@@ -6,7 +6,7 @@ use super::chart::{chart, round_range};
 use super::panel::{Line, Panel};
 use super::people::DEPTH;
 use super::style::{GREY, INK, PALETTE, VERMILION};
-use super::{Figures, Words};
+use super::{Figures, words};
 use crate::refusal::Refusal;
 use crate::report::inputs;
 use crate::report::text::extremes;
@@ -21,7 +21,7 @@ use crate::study::{Band, Kind};
 /// Implements: REP-045.
 pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Refusal> {
     let maps = found.maps.iter();
-    let maps = maps.filter_map(|map| Some((1e3 * map.inclusion_depth?, map)));
+    let maps = maps.filter_map(|map| Some((1e3 * map.inclusion_depth_m?, map)));
     let mut maps: Vec<_> = maps.collect();
     maps.sort_by(|a, b| a.0.total_cmp(&b.0));
     let Some((_, first)) = maps.first() else {
@@ -39,9 +39,8 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
         settings: &run.settings,
         has_bands,
     };
-    let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
     let drawn = chart(&[panel], DEPTH);
-    figures.add(("gamma", ""), Topic::Detection, words, drawn)
+    figures.add(("gamma", ""), Topic::Detection, words!(text), drawn)
 }
 
 /// The band of γ that a study has for a map, upright beside its depth, mm.

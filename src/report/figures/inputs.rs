@@ -5,7 +5,7 @@ use askama::Template;
 use super::chart::{chart, round_range};
 use super::panel::{Line, Panel};
 use super::style::{BLUE, VERMILION};
-use super::{Figures, Words};
+use super::{Figures, words};
 use crate::refusal::Refusal;
 use crate::report::text::shortened;
 use crate::report::{Run, Topic, text};
@@ -39,9 +39,13 @@ pub fn draw(figures: &mut Figures, run: &Run) -> Result<(), Refusal> {
         drawn: &drawn,
         bars: &bars,
     };
-    let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
     let panels: Vec<_> = panels.collect();
-    figures.add(("inputs", ""), Topic::Inputs, words, chart(&panels, CHANGE))
+    figures.add(
+        ("inputs", ""),
+        Topic::Inputs,
+        words!(text),
+        chart(&panels, CHANGE),
+    )
 }
 
 /// The inputs with the change that each makes to a quantity, %, the smallest first.

@@ -8,7 +8,7 @@ use plotters::style::RGBColor;
 use super::chart::chart;
 use super::panel::{Cells, Line, Panel};
 use super::setup::{PROBE, in_millimetres, inclusion_key, layer_key, probe, tint};
-use super::{Figures, Words};
+use super::{Figures, words};
 use crate::refusal::Refusal;
 use crate::report::{DeformedMesh, Topic, paper, text};
 
@@ -45,7 +45,6 @@ pub fn draw(figures: &mut Figures, mesh: &DeformedMesh) -> Result<(), Refusal> {
         _ => Some(inclusion_key("inclusions")),
     });
     let text = Text { mesh };
-    let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
     let drawn = chart(&[panel], "Lateral position x (mm)");
-    figures.add(("figure-6", ""), Topic::Setup, words, drawn)
+    figures.add(("figure-6", ""), Topic::Setup, words!(text), drawn)
 }

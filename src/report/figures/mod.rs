@@ -44,6 +44,14 @@ use style::{UNIT, VERMILION, WIDTH};
 /// The words around a picture: title, caption, and the picture in words.
 type Words<'a> = [&'a dyn Display; 3];
 
+/// The words of a figure from a template with a block for each.
+macro_rules! words {
+    ($text:expr) => {
+        [&$text.as_title(), &$text.as_caption(), &$text.as_alt()]
+    };
+}
+use words;
+
 /// The figures so far.
 #[derive(Default)]
 struct Figures {

@@ -6,7 +6,7 @@ use plotters::style::RGBColor;
 use super::chart::chart;
 use super::panel::{Line, Panel};
 use super::style::{GREEN, GREY, INK, PALETTE, VERMILION};
-use super::{Figures, Words, band_ends};
+use super::{Figures, band_ends, words};
 use crate::psychophysics::{
     Analysis, Bounds, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis,
 };
@@ -71,12 +71,11 @@ pub fn draw(figures: &mut Figures, run: &Run, people: &Analysis) -> Result<(), R
             of,
             has_bands: !predicted.is_empty(),
         };
-        let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
         let file = format!("figure-{number}");
         figures.add(
             (&file, ""),
             Topic::People,
-            words,
+            words!(text),
             chart(&[subjects(of, predicted)], DEPTH),
         )?;
     }
@@ -84,12 +83,11 @@ pub fn draw(figures: &mut Figures, run: &Run, people: &Analysis) -> Result<(), R
         conditions: &people.conditions,
         width_ratios: width_ratios(people),
     };
-    let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
     let panel = comparison(&people.conditions);
     figures.add(
         ("figure-13", ""),
         Topic::People,
-        words,
+        words!(text),
         chart(&[panel], DEPTH),
     )
 }

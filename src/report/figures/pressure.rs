@@ -6,7 +6,7 @@ use super::chart::{chart, round_range};
 use super::forces::label;
 use super::panel::{Line, Panel};
 use super::style::{GREY, INK, PALETTE};
-use super::{Figures, Words};
+use super::{Figures, words};
 use crate::refusal::Refusal;
 use crate::report::pressure::times;
 use crate::report::{
@@ -54,9 +54,8 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
         found,
         settings: &run.settings,
     };
-    let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
     let drawn = chart(&panels, "Elements of the array");
-    figures.add(("pressure", ""), Topic::Pressure, words, drawn)
+    figures.add(("pressure", ""), Topic::Pressure, words!(text), drawn)
 }
 
 /// For each map a line of its γ, a dashed one at that of the total force, and one for all at the γ that the rates need.

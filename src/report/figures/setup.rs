@@ -9,7 +9,7 @@ use plotters::style::{RGBColor, WHITE};
 use super::chart::chart;
 use super::panel::{Line, Mark, Panel};
 use super::style::{GREY, INK, text_width};
-use super::{Figures, Words};
+use super::{Figures, words};
 use crate::fem::Pose;
 use crate::fem::mesh::Region;
 use crate::phantom::{Inclusion, Material, Phantom, Shape, Support};
@@ -110,12 +110,11 @@ pub fn draw(figures: &mut Figures, run: &Run) -> Result<(), Refusal> {
             others: others(phantom, &all),
             is_named: !drawn.is_empty(),
         };
-        let words: Words<'_> = [&text.as_title(), &text.as_caption(), &text.as_alt()];
         let name = if text.is_named { &*phantom.name } else { "" };
         let width = millimetres(phantom.well.width);
         let x_name = format!("Lateral position x (mm); the well is {width} mm wide");
         let picture = chart(&[panel(phantom, &text.others)], &x_name);
-        figures.add(("figure-1", name), Topic::Setup, words, picture)?;
+        figures.add(("figure-1", name), Topic::Setup, words!(text), picture)?;
         drawn.push(phantom);
     }
     Ok(())

@@ -91,7 +91,7 @@ impl Page<'_> {
     /// The least and the largest peak of the normal signals, N.
     fn peaks(&self) -> Option<[f64; 2]> {
         let maps = self.found.maps.iter();
-        text::extremes(maps.map(|map| map.peak_normal.force.abs()))
+        text::extremes(maps.map(|map| map.peak_normal.force_n.abs()))
     }
 
     /// Whether the whole level of the normal force explains the answers to FEM playback worst over every sweep, and whether they

@@ -22,7 +22,7 @@ fn with_study() -> Run {
             .map(|name| Phantom::builtin(name).unwrap())
             .collect();
         plan.laterals = LATERALS.into();
-        (plan.mesh_size, plan.noise_sd) = (3e-3, SETTINGS.noise_sd);
+        (plan.mesh_size, plan.noise_sd) = (3e-3, SETTINGS.noise_sd_n);
         results(&plan, usize::MAX)
     });
     Run {

@@ -214,7 +214,7 @@ fn the_summary_is_json_with_units() {
         let findings = &value["findings"];
         assert_eq!(findings["comparison"][0]["paper"]["force_n"], 1.6);
         let peak = &findings["maps"][2]["peak_lateral"]["lateral_m"];
-        assert_eq!(*peak, made(&run).found.maps[2].peak_lateral.lateral);
+        assert_eq!(*peak, made(&run).found.maps[2].peak_lateral.lateral_m);
     }
 }
 

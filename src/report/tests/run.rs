@@ -17,7 +17,7 @@ pub const SETTINGS: Settings = Settings {
     max_false_alarm: 0.05,
     max_miss: 0.05,
     prior_h1: 0.5,
-    noise_sd: 0.1,
+    noise_sd_n: 0.1,
 };
 
 fn forces(depths: &[f64], normal: impl Fn(f64) -> f64, lateral: impl Fn(f64) -> f64) -> ForceTable {

@@ -5,7 +5,7 @@ use std::process::Command;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use palpate::hid::real::{Listed, Profile, RealDevice, Wanted, list, udev_rule};
+use palpate::hid::real::{Listed, Profile, RealDevice, list, udev_rule};
 use palpate::hid::timing::{Budget, measure};
 use palpate::hid::{
     Control, End, ForceReport, HapticDevice, InvalidReport, PositionReport, Received,
@@ -120,9 +120,14 @@ pub fn cycles(kind: Kind) -> String {
     let (settled, counters) = (run.settled, run.counters);
     assert_eq!(counters.cycles - settled.cycles, 2000);
     assert_eq!(counters.played - settled.played, 2000);
-    let lost =
-        |counters: palpate::hid::Counters| [counters.missed, counters.skipped, counters.drained];
-    assert_eq!(lost(counters), lost(settled), "missed, skipped, drained");
+    let lost = |counters: palpate::hid::Counters| {
+        [counters.missed, counters.skipped, counters.passed_over]
+    };
+    assert_eq!(
+        lost(counters),
+        lost(settled),
+        "missed, skipped, passed over"
+    );
     assert_eq!((counters.garbage, record.unanswered), (0, 0));
     assert_eq!(record.dropped_after, None);
     assert_eq!(record.largest_force, COUNTS_AT_2_MM);
@@ -189,7 +194,7 @@ pub fn unplug(kind: Kind) -> String {
     let other = Board::good(kind, "another", REPORTS);
     assert_eq!(open("another").identity().node, first.node);
     let board = Board::good(kind, "unplug", REPORTS);
-    let again = RealDevice::open_within(&Wanted::again(&first), Duration::from_secs(2));
+    let again = RealDevice::open_within(&wanted("unplug"), Duration::from_secs(2));
     let second = again.expect("the board again").identity().node.clone();
     assert_ne!(second, first.node);
     plays("unplug");

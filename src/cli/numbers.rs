@@ -1,14 +1,10 @@
-//! Lists on the command line: `a,b,c` or `from:to:step`, of positions in mm or of moduli in kPa.
+//! Numbers on the command line, and lists of them: `a,b,c` or `from:to:step`, of positions in mm or of moduli in kPa.
 
 use crate::decimal::{format_scaled, parse_scaled};
 
-/// Positions, m.
+/// What a list holds, in SI.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Positions(pub Vec<f64>);
-
-/// Young's moduli, Pa.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Moduli(pub Vec<f64>);
+pub struct List(pub Vec<f64>);
 
 /// What a list holds, and the unit in which it is written, SI times 10 to a power.
 struct Written {
@@ -39,8 +35,8 @@ const DECIMALS: i32 = 9;
 ///
 /// # Errors
 /// A message that names the entry and what would be right.
-pub fn positions(text: &str) -> Result<Positions, String> {
-    Ok(Positions(IN_MM.list(text)?))
+pub fn positions(text: &str) -> Result<List, String> {
+    IN_MM.list(text).map(List)
 }
 
 /// Reads a list of moduli in kPa.
@@ -49,30 +45,50 @@ pub fn positions(text: &str) -> Result<Positions, String> {
 ///
 /// # Errors
 /// As [`positions`].
-pub fn moduli(text: &str) -> Result<Moduli, String> {
-    Ok(Moduli(IN_KPA.list(text)?))
+pub fn moduli(text: &str) -> Result<List, String> {
+    IN_KPA.list(text).map(List)
 }
 
-/// Reads one length above 0 in mm, m.
+/// Reads one number, and multiplies it by 10^`power`; `is_right` says whether it is as `expected`.
+///
+/// Implements: CON-001.
+fn number(
+    text: &str,
+    power: i32,
+    is_right: fn(f64) -> bool,
+    expected: &str,
+) -> Result<f64, String> {
+    let number = parse_scaled(text, power).filter(|&number| is_right(number));
+    number.ok_or_else(|| format!("expected {expected}"))
+}
+
+/// Reads a length above 0 in mm, m.
 ///
 /// # Errors
-/// A message that names the entry and what would be right.
-///
-/// Implements: CON-001.
+/// As the functions below, a message that says what would be right.
 pub fn length(text: &str) -> Result<f64, String> {
-    let found = metres(text.trim())?;
-    if found > 0.0 {
-        Ok(found)
-    } else {
-        Err(format!("{text:?}: expected mm above 0, such as 2.5"))
-    }
+    number(text.trim(), -3, |mm| mm > 0.0, "mm above 0, such as 2.5")
 }
 
-/// A length written in mm, in m.
-///
-/// Implements: CON-001.
-fn metres(text: &str) -> Result<f64, String> {
-    IN_MM.value(text)
+/// Reads a length of at least 0 in mm, m.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    number(text, -3, |mm| mm >= 0.0, "mm, at least 0, such as 0.3")
+}
+
+/// Reads a position in mm, m, or a velocity in mm/s, m/s.
+pub fn millimetres(text: &str) -> Result<f64, String> {
+    number(text, -3, |_| true, "a finite number, such as 2.5")
+}
+
+/// Reads a force above 0, N.
+pub fn newtons(text: &str) -> Result<f64, String> {
+    number(text, 0, |force| force > 0.0, "N above 0, such as 0.1")
+}
+
+/// Reads a probability strictly between 0 and 1.
+pub fn probability(text: &str) -> Result<f64, String> {
+    let is_right = |share| share > 0.0 && share < 1.0;
+    number(text, 0, is_right, "a probability strictly between 0 and 1")
 }
 
 impl Written {
@@ -150,23 +166,20 @@ mod tests {
     // Verifies: CLI-010.
     #[test]
     fn lists_are_in_mm_and_exact() {
-        assert_eq!(
-            positions("1, 2.6,4"),
-            Ok(Positions(vec![0.001, 0.0026, 0.004]))
-        );
-        assert_eq!(positions("-0.5"), Ok(Positions(vec![-0.0005])));
+        assert_eq!(positions("1, 2.6,4"), Ok(List(vec![0.001, 0.0026, 0.004])));
+        assert_eq!(positions("-0.5"), Ok(List(vec![-0.0005])));
         // Sums of the step in binary would miss 0.0003 and 0.0006 by a bit.
         let tenths = vec![0.0, 0.0001, 0.0002, 0.0003, 0.0004, 0.0005, 0.0006];
-        assert_eq!(positions("0:0.6:0.1"), Ok(Positions(tenths)));
-        assert_eq!(positions("-1:1:1"), Ok(Positions(vec![-0.001, 0.0, 0.001])));
-        assert_eq!(positions("0:1:0.6"), Ok(Positions(vec![0.0, 0.0006])));
+        assert_eq!(positions("0:0.6:0.1"), Ok(List(tenths)));
+        assert_eq!(positions("-1:1:1"), Ok(List(vec![-0.001, 0.0, 0.001])));
+        assert_eq!(positions("0:1:0.6"), Ok(List(vec![0.0, 0.0006])));
     }
 
     // Verifies: CLI-154.
     #[test]
     fn moduli_are_in_kpa_and_exact() {
-        assert_eq!(moduli("44.1,300"), Ok(Moduli(vec![44_100.0, 300_000.0])));
-        assert_eq!(moduli("0.1:0.3:0.1"), Ok(Moduli(vec![100.0, 200.0, 300.0])));
+        assert_eq!(moduli("44.1,300"), Ok(List(vec![44_100.0, 300_000.0])));
+        assert_eq!(moduli("0.1:0.3:0.1"), Ok(List(vec![100.0, 200.0, 300.0])));
         let error = moduli("300,44").unwrap_err();
         assert_eq!(
             error,
