@@ -44,7 +44,7 @@ pub struct RareRate {
 /// # Errors
 /// η not finite.
 ///
-/// Implements: BNK-051.
+/// Implements: BNK-051, ERR-006.
 pub fn false_alarm_bound(tests: &[SubspaceTest], eta: f64) -> Result<f64, DetectError> {
     let sum = tests.iter().try_fold(0.0, |sum, test| {
         let rates = test.rates(test.bayes_threshold(eta)?)?;
