@@ -101,14 +101,14 @@ pub struct Run {
     pub maps: Vec<ForceMap>,
     /// Measured maps, shown as Figure 7. Any number, any poses; nothing is computed from them.
     pub measured: Vec<ForceMap>,
-    /// What a tactile array reads at [`probe_depth`](crate::psychophysics::bridge::probe_depth), over the laterals of the maps: for the reference and for each map whose
+    /// What a tactile array reads at the depth of the bridge, over the laterals of the maps: for the reference and for each map whose
     /// model is at hand, in any order; each belongs to the map of its phantom.
     pub arrays: Vec<ArraySweep>,
     /// The deformed mesh of one pose (Figure 6).
     pub deformed: DeformedMesh,
     /// What the detector assumes.
     pub settings: Settings,
-    /// A study of the same phantoms at [`probe_depth`](crate::psychophysics::bridge::probe_depth): what their inputs' uncertainty does to the numbers.
+    /// A study of the same phantoms at the depth of the bridge: what their inputs' uncertainty does to the numbers.
     pub study: Option<StudyResults>,
 }
 
