@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::case::{Case, Question};
 use super::judge::judge;
+use super::plan::Plan;
 use super::profile::Profile;
 use super::suite::Suite;
 use super::text::{cut, shortened};
@@ -39,18 +40,6 @@ impl<'a> Answers<'a> {
             lenient,
             judged: HashSet::new(),
             cases,
-        }
-    }
-
-    /// All cases are asked at once.
-    pub fn ask_all(&mut self) {
-        self.waiting = (0..self.cases.len()).collect();
-    }
-
-    /// Nothing more comes: what is open has no answer.
-    pub fn end(&mut self) {
-        while !self.waiting.is_empty() {
-            self.fail("no answer".into());
         }
     }
 
@@ -130,19 +119,23 @@ impl<'a> Answers<'a> {
 ///
 /// Implements: ORA-043.
 pub fn judge_lines(suite: &Suite, lines: &[u8], profile: &Profile) -> Vec<Vec<Outcome>> {
-    let cases: Vec<&Case> = suite.groups.iter().flat_map(|group| &group.cases).collect();
-    let mut answers = Answers::new(cases, profile, false);
-    answers.ask_all();
-    lines.split(|&byte| byte == b'\n').for_each(|line| {
+    let plan = Plan::new(suite, &[], |_| true);
+    let lines = lines.split(|&byte| byte == b'\n');
+    judge_planned(suite, plan, lines, profile, false).0
+}
+
+/// The outcomes of all cases, and notes, by lines of answers to those that the plan asks.
+pub fn judge_planned<'a>(
+    suite: &Suite,
+    plan: Plan,
+    lines: impl IntoIterator<Item = &'a [u8]>,
+    profile: &Profile,
+    lenient: bool,
+) -> (Vec<Vec<Outcome>>, Vec<String>) {
+    let mut answers = Answers::new(plan.cases(suite), profile, lenient);
+    answers.waiting = (0..answers.cases.len()).collect();
+    for line in lines {
         answers.take(line);
-    });
-    answers.end();
-    let mut outcomes = answers.outcomes.into_iter().flatten();
-    let of_group = |cases: usize| outcomes.by_ref().take(cases).collect();
-    suite
-        .groups
-        .iter()
-        .map(|group| group.cases.len())
-        .map(of_group)
-        .collect()
+    }
+    (plan.outcomes(answers.outcomes, "no answer"), answers.notes)
 }

@@ -154,13 +154,7 @@ fn check_wrong(flag: &str, wrong: &Map<String, Value>, expected: &Expected) -> R
         return Err("wrong answers to what must be refused: its flags say it".into());
     };
     let near = |wanted: &Wanted| {
-        let condition = &Condition::All(0.0);
-        let limit = Limit {
-            tolerance: wanted.tolerance,
-            times: 10.0,
-            condition,
-            unit_roundoff: 0.0,
-        };
+        let limit = Limit::stated(wanted.tolerance, 10.0);
         let found = wrong.get(&wanted.key);
         found.is_some_and(|wrong| compare(&wanted.key, &wanted.value, wrong, limit).is_ok())
     };

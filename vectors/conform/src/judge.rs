@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use super::case::{BugAnswer, Case, Expected, Wanted};
 use super::profile::Profile;
 use super::text::shortened;
-use super::tolerance::{Condition, Difference, Limit, Tolerance, compare};
+use super::tolerance::{Difference, Limit, Tolerance, compare};
 use super::verdict::{Class, Outcome, Traces, Wrong};
 
 /// Judges the answer to a case: a JSON value whose id was found to be right.
@@ -86,12 +86,7 @@ fn judge_values(case: &Case, ok: &Value, profile: &Profile) -> Outcome {
 ///
 /// Implements: ORA-066.
 fn is_as_meant(lenient: &Map<String, Value>, found: &Map<String, Value>) -> bool {
-    let limit = Limit {
-        tolerance: Tolerance::Relative(1e-6),
-        times: 1.0,
-        condition: &Condition::All(0.0),
-        unit_roundoff: 0.0,
-    };
+    let limit = Limit::stated(Tolerance::Relative(1e-6), 1.0);
     let is_near = |(key, value): (&String, &Value)| {
         found
             .get(key)

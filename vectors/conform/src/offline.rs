@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::answers::Answers;
+use super::answers::judge_planned;
 use super::case::{Case, Expected, Wanted};
 use super::plan::{CAPABILITIES, Capabilities, Plan};
 use super::profile::Profile;
@@ -78,30 +78,19 @@ pub fn judge_files(
     }
     // What follows the end of the last line is no line.
     lines.pop_if(|last| last.is_empty());
-    let ids = ids(&lines);
-    let is_answered = |group: usize| {
-        suite.groups[group]
-            .cases
-            .iter()
-            .any(|case| ids.contains(&case.id))
-    };
-    let plan = Plan::new(&suite, skip, |op| match &claims {
-        Some(claims) => claims.ops.iter().any(|claimed| claimed == op),
+    let plan = match &claims {
+        Some(claims) => Plan::new(&suite, skip, |op| {
+            claims.ops.iter().any(|claimed| claimed == op)
+        }),
         None => {
-            (0..suite.groups.len()).any(|group| suite.groups[group].op == op && is_answered(group))
+            let ids = ids(&lines);
+            Plan::of_answered(&suite, skip, |id| ids.contains(id))
         }
-    });
-    let mut found = Answers::new(plan.cases(&suite), &measure.profile, lenient);
-    found.ask_all();
-    for line in lines {
-        found.take(line);
-    }
-    found.end();
-    let mut notes = found.notes;
+    };
+    let (outcomes, mut notes) = judge_planned(&suite, plan, lines, &measure.profile, lenient);
     if claims.is_none() {
         notes.push("no answer to capabilities: the ops with an answer are taken for those that the program claims".into());
     }
-    let outcomes = plan.outcomes(found.outcomes, "no answer");
     let version = claims.map_or_else(String::new, |claims| claims.version);
     let verdict = Verdict::new(&suite, measure, program(version), outcomes, notes);
     Ok((verdict, suite))
@@ -159,11 +148,7 @@ fn judge_table(
     found: &HashMap<String, Value>,
     profile: &Profile,
 ) -> Vec<Vec<Outcome>> {
-    let claimed = |op: &str| {
-        let mut groups = suite.groups.iter().filter(|group| group.op == op);
-        groups.any(|group| group.cases.iter().any(|case| found.contains_key(&case.id)))
-    };
-    let plan = Plan::new(suite, skip, claimed);
+    let plan = Plan::of_answered(suite, skip, |id| found.contains_key(id));
     let outcome = |case: &Case| {
         let Some(mut answer) = found.get(&case.id).cloned() else {
             return Outcome::wrong(Class::Protocol, "no answer");

@@ -73,6 +73,14 @@ impl Plan {
         Plan { asked, outcomes }
     }
 
+    /// Of a program that does not say what it claims: the ops with an answer.
+    pub fn of_answered(suite: &Suite, skip: &[String], is_answered: impl Fn(&str) -> bool) -> Plan {
+        Plan::new(suite, skip, |op| {
+            let mut groups = suite.groups.iter().filter(|group| group.op == op);
+            groups.any(|group| group.cases.iter().any(|case| is_answered(&case.id)))
+        })
+    }
+
     /// The cases that are asked.
     pub fn cases<'a>(&self, suite: &'a Suite) -> Vec<&'a Case> {
         self.asked

@@ -5,18 +5,6 @@ use super::tolerance::{Condition, Limit, Tolerance, compare};
 use super::{Choice, Class, Form, Measure, Outcome, Profile, Program, Require, Suite, Verdict};
 use super::{judge, junit, questions};
 
-const NO_CONDITION: Condition = Condition::All(0.0);
-
-/// A tolerance of exact work.
-fn limit(tolerance: Tolerance, times: f64) -> Limit<'static> {
-    Limit {
-        tolerance,
-        times,
-        condition: &NO_CONDITION,
-        unit_roundoff: 0.0,
-    }
-}
-
 // Verifies: VEC-004, ORA-046.
 #[test]
 fn a_tolerance_ends_where_it_says() {
@@ -45,16 +33,16 @@ fn a_tolerance_ends_where_it_says() {
         (Tolerance::Exact, 0.0, -0.0, true),
         (Tolerance::Exact, 1.0, one_up, false),
     ] {
-        let accepts = limit(tolerance, 1.0).accepts(expected, found);
+        let accepts = Limit::stated(tolerance, 1.0).accepts(expected, found);
         assert_eq!(accepts, accepted, "{tolerance:?} {expected} {found}");
     }
-    assert!(limit(Tolerance::Ulp(1.0), 10.0).accepts(1.0, one_up.next_up()));
+    assert!(Limit::stated(Tolerance::Ulp(1.0), 10.0).accepts(1.0, one_up.next_up()));
 }
 
 // Verifies: ORA-046.
 #[test]
 fn a_difference_names_its_place() {
-    let exact = limit(Tolerance::Exact, 1.0);
+    let exact = Limit::stated(Tolerance::Exact, 1.0);
     let compare = |expected, found| compare("k", &expected, &found, exact);
     let same = compare(json!([[1, 2.0], [3]]), json!([[1.0, 2], [3]]));
     assert_eq!(same, Ok(()));
@@ -89,7 +77,7 @@ fn a_condition_adds_roundoffs_to_the_tolerance() {
     let limit = Limit {
         condition: &condition,
         unit_roundoff: u,
-        ..limit(Tolerance::Absolute(0.5), 1.0)
+        ..Limit::stated(Tolerance::Absolute(0.5), 1.0)
     };
     for (row, column, most) in [(0, 0, 1.0), (0, 1, 3.0), (1, 0, 2.0), (1, 1, 2.0)] {
         let with = |off: f64| {

@@ -99,6 +99,16 @@ pub struct Limit<'a> {
 }
 
 impl Limit<'_> {
+    /// The tolerance as it is stated, so many times.
+    pub fn stated(tolerance: Tolerance, times: f64) -> Limit<'static> {
+        Limit {
+            tolerance,
+            times,
+            condition: &Condition::All(0.0),
+            unit_roundoff: 0.0,
+        }
+    }
+
     /// The largest distance from `expected` that passes.
     fn allowed(&self, expected: f64) -> f64 {
         let added = match self.condition {
