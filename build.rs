@@ -1,9 +1,7 @@
 //! Records from which sources, by which compiler and how the library is built, for `palpate::build`.
 //!
-//! Nothing of it is a time or a folder of the machine, so that the same sources give the same program (EVD-070). A
+//! Nothing of it is a time or a folder of the machine, so that the same sources give the same program. A
 //! development build records no commit: it would have to be built again after each one.
-//!
-//! Implements: EVD-070.
 
 use std::env;
 use std::path::Path;

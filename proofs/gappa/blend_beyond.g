@@ -1,6 +1,6 @@
 # (1 - t) a + t b (src/servo/table.rs) up to one cell beyond the border, each operation rounded to f32, against the real
 # value at the real fraction, for forces up to 1.
-# Proves: SRV-015. It is bound 3 of spec/interpolation.md.
+# Proves: SRV-015. It is bound 3 of spec/servo.md.
 
 @rounded = float<ieee_32, ne>;
 

@@ -1,6 +1,6 @@
 # (1 - t) a + t b (src/servo/table.rs) within a cell, each operation rounded to f32, against the real
 # value at the real fraction, for forces up to 1.
-# Proves: SRV-015. It is bound 2 of spec/interpolation.md.
+# Proves: SRV-015. It is bound 2 of spec/servo.md.
 
 @rounded = float<ieee_32, ne>;
 

@@ -1,7 +1,7 @@
 # The fraction of a cell (src/servo/axis.rs): (x - start) * (1 / (end - start)), each operation rounded to
 # f32, against the real quotient, for widths from 2^-20 m (below 1 µm) to 2 m. Nearer than 2^-100 m to the
 # start, the two are below 2^-79 and differ by less. For x below the start both change sign.
-# Proves: SRV-015. It is bound 1 of spec/interpolation.md.
+# Proves: SRV-015. It is bound 1 of spec/servo.md.
 
 @rounded = float<ieee_32, ne>;
 

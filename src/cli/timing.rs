@@ -1,4 +1,4 @@
-//! `palpate timing`: the budget of the servo loop on this machine (`spec/playback-command.md`).
+//! `palpate timing`: the budget of the servo loop on this machine (`spec/command-line.md`).
 
 use std::fmt::Display;
 use std::path::PathBuf;
@@ -61,7 +61,7 @@ enum Printed {
 
 /// Runs the command.
 ///
-/// Implements: CLI-060, CLI-061, CLI-172.
+/// Implements: CLI-060, CLI-003, CLI-017.
 pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
     let cycle = Duration::from_micros(arguments.budget_us);
     let mut budget = Budget::new(cycle, arguments.percentile, arguments.confidence_percent)?;

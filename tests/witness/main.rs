@@ -1,4 +1,4 @@
-//! Other programs' answers to our own models (`spec/verification.md`): CalculiX for the forces on the
+//! Other programs' answers to our own models (`spec/fem.md`): CalculiX for the forces on the
 //! probe, scikit-fem for the stiffness matrix. A program that is not installed is skipped with a notice,
 //! unless `PALPATE_REQUIRE_WITNESSES=1` asks for all of them.
 #![cfg(feature = "fem")]

@@ -13,7 +13,7 @@ def cell(axis, position):
 
 
 def bilinear(depths, laterals, table, depth, lateral, clamp=False, exchange=False):
-    """F of spec/interpolation.md and the four corners' largest magnitude times the weights' sum."""
+    """F of spec/force-map.md and the four corners' largest magnitude times the weights' sum."""
     d, x = exact(depth), exact(lateral)
     i, j = cell(depths, depth), cell(laterals, lateral)
     s = (d - exact(depths[i])) / (exact(depths[i + 1]) - exact(depths[i]))

@@ -10,7 +10,7 @@ use std::time::Instant;
 /// ```
 /// use palpate_verify::{Check, Figure, Outcome};
 ///
-/// let check = Check::new("arithmetic.third", "Three thirds are one.", &["CON-006"], || {
+/// let check = Check::new("arithmetic.third", "Three thirds are one.", &["CON-006"], "Rounding. Fixed in 0.1.0.", || {
 ///     Ok(vec![Figure::at_most("error", (1.0f64 / 3.0 * 3.0 - 1.0).abs(), 1e-15)])
 /// });
 /// assert!(Outcome::of(&check).passed());
@@ -25,9 +25,9 @@ pub struct Check {
     pub claim: &'static str,
     /// The requirements whose evidence it is.
     pub requirements: &'static [&'static str],
+    /// How the limits of its figures were derived, and in which version of the program they were fixed: `… Fixed in 0.1.0.`
+    pub limits: &'static str,
     /// Whether the same build gives the same figures to the bit in each run: all but times.
-    ///
-    /// Implements: EVD-042.
     pub repeatable: bool,
     /// Measures. An error is a check that could not be carried out, or whose claim does not hold for a reason
     /// that is no number.
@@ -40,12 +40,14 @@ impl Check {
         name: &'static str,
         claim: &'static str,
         requirements: &'static [&'static str],
+        limits: &'static str,
         run: fn() -> Result<Vec<Figure>, String>,
     ) -> Check {
         Check {
             name,
             claim,
             requirements,
+            limits,
             repeatable: true,
             run,
         }
@@ -104,8 +106,6 @@ impl Figure {
     }
 
     /// Whether the value is finite and keeps its bounds.
-    ///
-    /// Implements: EVD-041.
     pub fn passes(&self) -> bool {
         self.value.is_finite() && self.at_least <= self.value && self.value <= self.at_most
     }
@@ -139,6 +139,8 @@ pub struct Outcome {
     pub claim: &'static str,
     /// The requirements whose evidence it is.
     pub requirements: &'static [&'static str],
+    /// How the limits of its figures were derived, and when they were fixed.
+    pub limits: &'static str,
     /// What it measured; none if it could not be carried out.
     pub figures: Vec<Figure>,
     /// Why it failed beside its figures, or that it could not be carried out.
@@ -151,25 +153,14 @@ pub struct Outcome {
 
 impl Outcome {
     /// Carries a check out. A panic in it is a failure of this check, not of the run.
-    ///
-    /// Implements: EVD-002, EVD-003.
     pub fn of(check: &Check) -> Outcome {
-        Outcome {
-            repeatable: check.repeatable,
-            ..Outcome::measured(
-                check.name.into(),
-                check.claim,
-                check.requirements,
-                check.run,
-            )
-        }
+        Outcome::measured(check, check.name.into(), check.run)
     }
 
-    /// As [`Outcome::of`], for what is no [`Check`].
+    /// As [`Outcome::of`], with a name and measurements that are found at run time.
     pub(crate) fn measured(
+        check: &Check,
         name: String,
-        claim: &'static str,
-        requirements: &'static [&'static str],
         run: impl FnOnce() -> Result<Vec<Figure>, String>,
     ) -> Outcome {
         let start = Instant::now();
@@ -183,11 +174,12 @@ impl Outcome {
         };
         Outcome {
             name,
-            claim,
-            requirements,
+            claim: check.claim,
+            requirements: check.requirements,
+            limits: check.limits,
             figures,
             failure,
-            repeatable: true,
+            repeatable: check.repeatable,
             seconds: start.elapsed().as_secs_f64(),
         }
     }
@@ -198,15 +190,11 @@ impl Outcome {
     }
 
     /// Whether it was carried out and every figure keeps its bounds.
-    ///
-    /// Implements: EVD-002.
     pub fn passed(&self) -> bool {
         self.failure.is_none() && self.figures.iter().all(Figure::passes)
     }
 
     /// Of a check that did not pass its name, with why it could not be carried out or with the figures that break their bounds.
-    ///
-    /// Implements: EVD-043.
     pub fn complaint(&self) -> Option<String> {
         let broken = self
             .figures
@@ -231,7 +219,6 @@ mod tests {
 
     const NONE: f64 = f64::INFINITY;
 
-    // Verifies: EVD-041.
     #[test]
     fn a_figure_passes_within_its_bounds_and_if_it_is_a_number() {
         for (value, at_least, at_most, passes) in [
@@ -254,7 +241,6 @@ mod tests {
         }
     }
 
-    // Verifies: EVD-041.
     #[test]
     fn bounds_are_where_they_are_said_to_be() {
         for (figure, passes) in [
@@ -273,10 +259,15 @@ mod tests {
     }
 
     fn outcome(run: fn() -> Result<Vec<Figure>, String>) -> Outcome {
-        Outcome::of(&Check::new("part.what", "It holds.", &["EVD-002"], run))
+        Outcome::of(&Check::new(
+            "part.what",
+            "It holds.",
+            &[],
+            "Fixed in 0.1.0.",
+            run,
+        ))
     }
 
-    // Verifies: EVD-002, EVD-043.
     #[test]
     fn a_check_passes_if_all_its_figures_do_and_names_those_that_break_their_bounds() {
         let good = outcome(|| {
@@ -313,7 +304,6 @@ mod tests {
         );
     }
 
-    // Verifies: EVD-002, EVD-003, EVD-043.
     #[test]
     fn a_check_that_cannot_run_or_panics_or_measures_nothing_fails_and_says_why() {
         for (run, why) in [

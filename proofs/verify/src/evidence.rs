@@ -6,25 +6,26 @@ use serde_json::{Value, json};
 use palpate::build::Build;
 
 use super::build::lock_sha256;
+use super::record::{self, Record};
 use super::supply::Component;
-use super::traceability::{Requirement, Summary, summary};
+use super::system::System;
+use super::traceability::Requirement;
 use super::{Figure, Outcome};
 
 /// The value of the key `schema`.
 const SCHEMA: &str = "palpate-evidence";
 /// The value of the key `schema_version`.
-const SCHEMA_VERSION: u32 = 1;
+const SCHEMA_VERSION: u32 = 2;
 
 /// The parts of the verification, in the order in which they are told.
-///
-/// Implements: EVD-001.
-pub const PARTS: [&str; 6] = [
+pub const PARTS: [&str; 7] = [
     "statistics",
-    "diagnosis",
-    "vectors",
+    "rates",
+    "program",
     "fem",
     "kernel",
     "timing",
+    "record",
 ];
 
 /// What a run found.
@@ -32,8 +33,12 @@ pub const PARTS: [&str; 6] = [
 pub struct Evidence {
     /// What was built.
     pub build: Build,
-    /// The processor that ran it.
-    pub processor: String,
+    /// Where and when the checks were made, and by whom.
+    pub system: System,
+    /// The executables that were judged: path and SHA-256.
+    pub executables: Vec<(String, String)>,
+    /// The records of test runs that were given.
+    pub records: Vec<Record>,
     /// Parts that were not asked for.
     pub left_out: Vec<&'static str>,
     /// Every check that was carried out, in the order of [`PARTS`].
@@ -73,8 +78,6 @@ pub enum Verdict {
 
 impl Evidence {
     /// The verdict.
-    ///
-    /// Implements: EVD-003, EVD-004.
     pub fn verdict(&self) -> Verdict {
         let soaked = self.soak.iter().all(|soak| soak.failure.is_none());
         match self.failed().next() {
@@ -98,9 +101,27 @@ impl Evidence {
             .filter(move |outcome| outcome.part() == part)
     }
 
+    /// The evidence of each requirement, in their order.
+    pub fn joined(&self) -> Vec<record::Evidence> {
+        record::join(&self.requirements, &self.outcomes, &self.records)
+    }
+
+    /// How many requirements have evidence, by its kind.
+    pub fn counts(&self) -> Counts {
+        let joined = self.joined();
+        let count =
+            |has: fn(&record::Evidence) -> bool| joined.iter().filter(|row| has(row)).count();
+        Counts {
+            requirements: joined.len(),
+            checks: count(|row| !row.checks.is_empty()),
+            tests: count(|row| !row.tests.is_empty()),
+            proofs: count(|row| !row.proofs.is_empty()),
+            inspection: count(|row| row.inspection.is_some()),
+            none: count(|row| !row.is_there()),
+        }
+    }
+
     /// What is unusual about the build itself.
-    ///
-    /// Implements: EVD-009.
     pub fn anomalies(&self) -> Vec<String> {
         let build = &self.build;
         let mut anomalies = Vec::new();
@@ -123,8 +144,6 @@ impl Evidence {
     }
 
     /// The file for programs; ends in a line feed. Times, and what else belongs to this one run, are in `measured_here`.
-    ///
-    /// Implements: EVD-001, EVD-005.
     pub fn to_json(&self) -> String {
         let (checks, others): (Vec<&Outcome>, Vec<&Outcome>) =
             self.outcomes.iter().partition(|outcome| outcome.repeatable);
@@ -141,9 +160,15 @@ impl Evidence {
             "anomalies": self.anomalies(),
             "checks": all(checks),
             "soak": self.soak,
-            "traceability": Trace { summary: summary(&self.requirements), rows: &self.requirements },
+            "requirements": self.counts(),
             "components": self.components,
-            "measured_here": {"processor": self.processor, "checks": all(others), "seconds": seconds},
+            "measured_here": {
+                "system": self.system,
+                "executables": self.executables,
+                "records": self.records.iter().map(head).collect::<Vec<_>>(),
+                "checks": all(others),
+                "seconds": seconds,
+            },
         });
         format!("{evidence:#}\n")
     }
@@ -154,6 +179,7 @@ fn check(outcome: &Outcome) -> Value {
         "name": outcome.name,
         "claim": outcome.claim,
         "requirements": outcome.requirements,
+        "limits": outcome.limits,
         "passed": outcome.passed(),
         "failure": outcome.failure,
         "figures": outcome.figures.iter().map(figure).collect::<Vec<_>>(),
@@ -171,10 +197,32 @@ fn figure(figure: &Figure) -> Value {
     })
 }
 
-/// How many requirements there are, and each of them.
-#[derive(Serialize)]
-struct Trace<'a> {
-    #[serde(flatten)]
-    summary: Summary,
-    rows: &'a [Requirement],
+/// What is told of a record beside its entries, which stand in a file of their own.
+fn head(record: &Record) -> Value {
+    let Record {
+        commit,
+        began,
+        ended,
+        system,
+        log_sha256,
+        ..
+    } = record;
+    json!({"commit": commit, "began": began, "ended": ended, "system": system, "log_sha256": log_sha256, "entries": record.entries.len()})
+}
+
+/// How many requirements have evidence in a dossier, by its kind. One may have several kinds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// All requirements.
+    pub requirements: usize,
+    /// Those that a check of this run serves.
+    pub checks: usize,
+    /// Those with a test that passed in the records.
+    pub tests: usize,
+    /// Those with a proof that passed in the records.
+    pub proofs: usize,
+    /// Those that a person inspects.
+    pub inspection: usize,
+    /// Those with none of these.
+    pub none: usize,
 }

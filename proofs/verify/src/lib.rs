@@ -4,50 +4,46 @@
 //! |---|---|
 //! | `check.rs` | what a check is, when its figures pass, and what became of it |
 //! | `statistics/`, `battery.rs` | Monte Carlo of the detector, with the probability of failing by chance |
-//! | `diagnosis.rs` | sensitivity and specificity on the paper's inclusions |
+//! | `rates.rs` | error rates on the paper's inclusions, in simulated records |
 //! | `kernel.rs` | functions of one f32 on all 2³² of them |
 //! | `fem/` | the solver against exact solutions, and the forces of the paper's poses |
-//! | `vectors.rs` | the oracle against the vectors for other implementations |
-//! | `timing.rs` | the time that a step, a cycle and a force map take here |
+//! | `program.rs` | the shipped program, judged from outside: vectors through a pipe, forces against other programs' |
+//! | `timing.rs` | the time that a step and a cycle take here |
 //! | `build.rs`, `supply.rs`, `traceability.rs` | what was built, from which components, for which requirements |
+//! | `record.rs` | the record of a test run, joined to the trace |
 //! | `evidence.rs`, `dossier/` | all of it for programs, and as a page |
 
 #[macro_use]
 mod check;
 mod battery;
 pub mod build;
-mod diagnosis;
 pub mod dossier;
 pub mod evidence;
 pub mod fem;
 pub mod kernel;
+pub mod program;
+mod rates;
+pub mod record;
+pub mod sbom;
 pub mod statistics;
 pub mod supply;
+pub mod system;
 pub mod timing;
 pub mod traceability;
-pub mod vectors;
 
 pub use battery::outcome as battery_outcome;
 pub use check::{Check, Figure, Outcome};
 
-/// All checks of this build but the statistics battery, in a fixed order.
+/// All checks of this build but the statistics battery and those of [`program`], in a fixed order.
 ///
 /// ```
 /// let mut kernel = palpate_verify::checks().filter(|check| check.name.starts_with("kernel."));
 /// assert!(kernel.any(|check| check.requirements.contains(&"SRV-020")));
 /// ```
-///
-/// Implements: EVD-040.
 pub fn checks() -> impl Iterator<Item = &'static Check> {
-    [
-        diagnosis::CHECKS,
-        vectors::CHECKS,
-        fem::CHECKS,
-        kernel::CHECKS,
-        timing::CHECKS,
-    ]
-    .into_iter()
-    .flatten()
+    [rates::CHECKS, fem::CHECKS, kernel::CHECKS, timing::CHECKS]
+        .into_iter()
+        .flatten()
 }
 
 /// The check of a name, if there is one in this build.

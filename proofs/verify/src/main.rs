@@ -1,7 +1,7 @@
-//! `palpate-verify`: the evidence of this build, on this machine (`spec/evidence.md`).
+//! `palpate-verify`: the evidence of this build, on this machine (`spec/verification-plan.md`).
 
 use std::hash::{BuildHasher, RandomState};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
@@ -10,23 +10,35 @@ use rayon::prelude::*;
 use palpate::build::Build;
 use palpate::cli::output::{make_folder, print, write};
 use palpate::cli::progress::bar;
-use palpate::cli::{CliError, program};
+use palpate::cli::{CliError, program as command};
 use palpate_verify::evidence::{Evidence, PARTS, Soak, Verdict};
+use palpate_verify::record::{self, Record};
+use palpate_verify::sbom::sbom;
 use palpate_verify::statistics::{battery, total_alpha};
+use palpate_verify::system::System;
 use palpate_verify::{
-    Check, Outcome, battery_outcome, build, checks, dossier, supply, traceability,
+    Check, Outcome, battery_outcome, checks, dossier, program, supply, traceability,
 };
 
 /// The evidence for this build, found out on this machine: evidence.json and a dossier.
 #[derive(Debug, Parser)]
 #[command(version, about)]
 struct Arguments {
-    /// The folder for evidence.json and dossier.html
+    /// The folder for the dossier and the files beside it
     #[arg(long, value_name = "DIR", default_value = "palpate-evidence")]
     out: PathBuf,
     /// Only these parts; the dossier is then no verdict on the build
     #[arg(long, value_name = "PART,…", value_enum, value_delimiter = ',')]
     only: Option<Vec<Part>>,
+    /// The program palpate that is judged, instead of the one beside palpate-verify
+    #[arg(long, value_name = "FILE")]
+    program: Option<PathBuf>,
+    /// A record of a test run, as .ci/run writes it to target/record.json; may be given several times
+    #[arg(long, value_name = "FILE")]
+    record: Vec<PathBuf>,
+    /// Who runs it, for the dossier
+    #[arg(long, value_name = "NAME")]
+    operator: Option<String>,
     /// N batteries of the statistics with fresh seeds, besides the parts
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     soak: Option<u32>,
@@ -39,11 +51,12 @@ struct Arguments {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Part {
     Statistics,
-    Diagnosis,
-    Vectors,
+    Rates,
+    Program,
     Fem,
     Kernel,
     Timing,
+    Record,
     Soak,
 }
 
@@ -57,14 +70,12 @@ impl Part {
 }
 
 fn main() -> ExitCode {
-    program(std::env::args_os(), |arguments: Arguments| {
+    command(std::env::args_os(), |arguments: Arguments| {
         verify(&arguments)
     })
 }
 
 /// Carries out the checks, and writes what came out.
-///
-/// Implements: EVD-001, EVD-003, EVD-010, EVD-011, EVD-013.
 fn verify(arguments: &Arguments) -> Result<(), CliError> {
     let asked = |part: &str| match &arguments.only {
         None => true,
@@ -72,6 +83,10 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
     };
     if arguments.only.is_some() && asked("soak") && arguments.soak.is_none() {
         let message = "--only soak: expected --soak N, the number of batteries";
+        return Err(CliError::Usage(message.into()));
+    }
+    if arguments.only.is_some() && asked("record") && arguments.record.is_empty() {
+        let message = "--only record: expected --record FILE, which .ci/run writes";
         return Err(CliError::Usage(message.into()));
     }
     // What can fail at once comes first: minutes of work shall not end for want of a place.
@@ -88,16 +103,37 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
             "soak: {batteries} times {checks} checks, seed {seed}\n"
         ))?;
     }
+    let records = arguments.record.iter().map(|path| Record::read(path));
+    let records = records
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(CliError::Usage)?;
+    let system = System::here(arguments.operator.clone());
+    let judged = arguments.program.clone().unwrap_or_else(program::beside);
+    let executable = |path: PathBuf| Some((path.display().to_string(), program::sha256(&path)?));
+    let own = std::env::current_exe().ok();
+    let mut outcomes = carry_out(&asked, &judged);
+    if !records.is_empty() && asked("record") {
+        outcomes.push(record::outcome(&requirements, &records, Build::THIS.commit));
+    }
     let evidence = Evidence {
         build: Build::THIS,
-        processor: build::processor().unwrap_or_else(|| "not known".into()),
-        left_out: PARTS.into_iter().filter(|part| !asked(part)).collect(),
-        outcomes: carry_out(&asked),
+        system,
+        executables: [own, Some(judged)]
+            .into_iter()
+            .flatten()
+            .filter_map(executable)
+            .collect(),
+        left_out: PARTS
+            .into_iter()
+            .filter(|&part| !asked(part) && part != "record")
+            .collect(),
+        outcomes,
         soak: soak
             .map(|(batteries, seed)| soak_battery(batteries, seed))
             .transpose()?,
         requirements,
         components,
+        records,
     };
     write_evidence(&evidence, arguments)
 }
@@ -108,29 +144,33 @@ fn fresh_seed() -> u64 {
 }
 
 /// Carries out every check of the parts that were asked for. Those of time come last, and alone.
-fn carry_out(asked: &dyn Fn(&str) -> bool) -> Vec<Outcome> {
+fn carry_out(asked: &dyn Fn(&str) -> bool, judged: &Path) -> Vec<Outcome> {
+    let part = |name: &str| asked(name.split('.').next().unwrap_or_default());
+    let checks = checks()
+        .chain(program::CHECKS)
+        .filter(|check| part(check.name));
+    let (timed, checks): (Vec<&Check>, Vec<&Check>) = checks.partition(|check| !check.repeatable);
     let battery: Vec<_> = battery().filter(|_| asked("statistics")).collect();
-    let part = |check: &&Check| asked(check.name.split('.').next().unwrap_or_default());
-    let checks: Vec<_> = checks().filter(part).collect();
-    let (timed, checks): (Vec<_>, Vec<_>) = checks.into_iter().partition(|check| !check.repeatable);
     let bar = bar(battery.len() + checks.len() + timed.len(), "checks");
     let counted = |outcome: Outcome| {
         bar.inc(1);
         outcome
     };
+    let carried_out = |check: &&Check| match check.name.starts_with("program.") {
+        true => counted(program::outcome(check, judged)),
+        false => counted(Outcome::of(check)),
+    };
     let mut outcomes: Vec<Outcome> = battery
         .par_iter()
         .map(|check| counted(battery_outcome(check)))
         .collect();
-    outcomes.par_extend(checks.par_iter().map(|check| counted(Outcome::of(check))));
-    outcomes.extend(timed.iter().map(|check| counted(Outcome::of(check))));
+    outcomes.par_extend(checks.par_iter().map(carried_out));
+    outcomes.extend(timed.iter().map(carried_out));
     bar.finish_and_clear();
     outcomes
 }
 
 /// Runs the battery with fresh seeds.
-///
-/// Implements: CLI-051, CLI-052, CLI-053, CLI-054.
 fn soak_battery(batteries: u32, seed: u64) -> Result<Soak, CliError> {
     let total_alpha = total_alpha().map_err(CliError::Check)?;
     let checks: Vec<_> = battery().collect();
@@ -156,14 +196,21 @@ fn soak_battery(batteries: u32, seed: u64) -> Result<Soak, CliError> {
     })
 }
 
-/// Writes the two files, says what was found and where it is told.
+/// Writes the files, says what was found and where it is told.
 fn write_evidence(evidence: &Evidence, arguments: &Arguments) -> Result<(), CliError> {
     let page = arguments.out.join("dossier.html");
-    write(&arguments.out.join("evidence.json"), &evidence.to_json())?;
+    let file = |name: &str, text: &str| write(&arguments.out.join(name), text);
+    file("evidence.json", &evidence.to_json())?;
+    file("trace.csv", &dossier::trace(evidence))?;
+    file("record.csv", &dossier::record(evidence))?;
+    file(
+        "sbom.cdx.json",
+        &sbom(&evidence.components, &evidence.system.began),
+    )?;
     write(&page, &dossier::dossier(evidence))?;
     print(&summary(evidence))?;
     print(&format!(
-        "evidence.json and dossier.html in {}\n",
+        "dossier.html, evidence.json, trace.csv, record.csv and sbom.cdx.json in {}\n",
         arguments.out.display()
     ))?;
     match evidence.verdict() {
@@ -177,8 +224,6 @@ fn write_evidence(evidence: &Evidence, arguments: &Arguments) -> Result<(), CliE
 }
 
 /// A line for each part.
-///
-/// Implements: EVD-010, CLI-052.
 fn summary(evidence: &Evidence) -> String {
     let mut lines = String::new();
     for part in PARTS {
@@ -188,6 +233,7 @@ fn summary(evidence: &Evidence) -> String {
             .filter(|outcome| outcome.passed())
             .count();
         lines += &match all {
+            0 if part == "record" => "record: not given\n".into(),
             0 => format!("{part}: not run\n"),
             _ => format!("{part}: {passed} of {all} checks passed\n"),
         };
@@ -207,8 +253,6 @@ fn summary(evidence: &Evidence) -> String {
 }
 
 /// What failed, in one line.
-///
-/// Implements: EVD-003, CLI-053.
 fn complaint(evidence: &Evidence) -> String {
     let names: Vec<&str> = evidence
         .failed()

@@ -1,25 +1,20 @@
-//! The time that a step, a cycle and a force map take on this machine. A busy machine is slower, so that a time is only
+//! The time that a step and a cycle take on this machine. A busy machine is slower, so that a time is only
 //! judged where it has a hundredfold margin at least.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use rustix::time::{ClockId, clock_gettime};
-
 use super::{Check, Figure};
-use palpate::fem::{Contact, MESH_SIZE, Model};
 use palpate::hid::timing::{Budget, measure, paper};
-use palpate::phantom::Phantom;
 use palpate::servo::{Input, Limits, Mode, Request, Sample, State, Table, step};
 
 /// The checks of this part.
-///
-/// Implements: EVD-051, EVD-052.
 pub const CHECKS: &[Check] = &[
     Check {
         name: "timing.step",
         claim: "The median time of one step of the servo kernel, on a table of 9 × 41 poses, is within the 1 ms of a cycle.",
-        requirements: &["EVD-051"],
+        requirements: &["SRV-060"],
+        limits: "One cycle at 1 kHz. Fixed in 0.1.0.",
         repeatable: false,
         run: steps,
     },
@@ -27,16 +22,10 @@ pub const CHECKS: &[Check] = &[
         name: "timing.loop",
         claim: "The 99.9th percentile of the response of the loop on the simulated device, from a report at hand to its force \
                 written, is within the 1 ms of a cycle, with 95 % confidence.",
-        requirements: &["EVD-051", "HID-060", "HID-062"],
+        requirements: &["HID-060", "HID-062"],
+        limits: "One cycle at 1 kHz, for the upper 95 % confidence limit of the percentile. Fixed in 0.1.0.",
         repeatable: false,
         run: cycles,
-    },
-    Check {
-        name: "timing.force_map",
-        claim: "What one force map of 9 × 21 poses costs on this machine, in processor time.",
-        requirements: &["EVD-052"],
-        repeatable: false,
-        run: force_map,
     },
 ];
 
@@ -84,8 +73,6 @@ fn steps() -> Result<Vec<Figure>, String> {
 }
 
 /// What is told of the mean times of a step in each batch, µs.
-///
-/// Implements: EVD-051, EVD-052.
 fn step_times(mut times: Vec<f64>) -> [Figure; 2] {
     times.sort_by(f64::total_cmp);
     let budget = BUDGET.as_secs_f64() * 1e6;
@@ -143,35 +130,10 @@ fn cycles() -> Result<Vec<Figure>, String> {
     })
 }
 
-/// Processor time of this thread, s.
-fn processor_time() -> f64 {
-    let time = clock_gettime(ClockId::ThreadCPUTime);
-    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
-}
-
-fn force_map() -> Result<Vec<Figure>, String> {
-    let phantom = Phantom::builtin("6.6").map_err(|error| error.to_string())?;
-    let depths: Vec<f64> = (0..=8).map(|k| f64::from(k) * 0.5e-3).collect();
-    let laterals: Vec<f64> = (0..=20).map(|k| f64::from(k) * 0.5e-3).collect();
-    let before = processor_time();
-    let model =
-        Model::new(&phantom, MESH_SIZE, Contact::default()).map_err(|error| error.to_string())?;
-    let map = model
-        .map(&depths, &laterals, &|_| ())
-        .map_err(|error| error.to_string())?;
-    let time = processor_time() - before;
-    Ok(vec![
-        Figure::count("poses", map.forces().normal.values().len() as u64, 189),
-        Figure::told("nodes", model.mesh().nodes.len() as f64),
-        Figure::told("processor time, s", time),
-    ])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    // Verifies: EVD-051, EVD-052.
     #[test]
     fn the_median_step_is_judged_and_the_slowest_told() {
         // 0 to 200 ms in another order: 77 and 201 have no common factor.

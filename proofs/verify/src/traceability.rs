@@ -1,5 +1,5 @@
 //! The trace from each requirement to its code, tests, proofs and vectors, as `proofs/verify/tests/traceability` found it in the
-//! annotations of the sources (`spec/traceability.md`).
+//! annotations of the sources (`spec/verification-plan.md`).
 
 /// `spec/traceability.csv`.
 const TABLE: &str = include_str!("../../../spec/traceability.csv");
@@ -7,7 +7,7 @@ const TABLE: &str = include_str!("../../../spec/traceability.csv");
 const HEADER: &str = "requirement,chapter,text,code,tests,proofs,vectors,inspection";
 
 /// Between the names in a cell.
-const SEPARATOR: &str = "; ";
+pub const SEPARATOR: &str = "; ";
 
 /// A requirement and what the annotations name for it.
 ///
@@ -41,51 +41,12 @@ pub struct Requirement {
     pub inspection: Option<String>,
 }
 
-/// How many requirements have what.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-pub struct Summary {
-    /// All of them.
-    pub requirements: usize,
-    /// Those with code.
-    #[serde(rename = "with_code")]
-    pub code: usize,
-    /// Those with a test.
-    #[serde(rename = "with_tests")]
-    pub tests: usize,
-    /// Those with a proof.
-    #[serde(rename = "with_proofs")]
-    pub proofs: usize,
-    /// Those with vectors.
-    #[serde(rename = "with_vectors")]
-    pub vectors: usize,
-    /// Those that a person inspects.
-    #[serde(rename = "by_inspection")]
-    pub inspection: usize,
-}
-
 /// All requirements with their evidence, in the order of their ids.
 ///
 /// # Errors
 /// The line of the table, from 1, that is not as it should be.
-///
-/// Implements: EVD-032.
 pub fn requirements() -> Result<Vec<Requirement>, String> {
     parse(TABLE)
-}
-
-/// Counts them.
-///
-/// Implements: EVD-033.
-pub fn summary(requirements: &[Requirement]) -> Summary {
-    let count = |has: fn(&Requirement) -> bool| requirements.iter().filter(|r| has(r)).count();
-    Summary {
-        requirements: requirements.len(),
-        code: count(|r| !r.code.is_empty()),
-        tests: count(|r| !r.tests.is_empty()),
-        proofs: count(|r| !r.proofs.is_empty()),
-        vectors: count(|r| !r.vectors.is_empty()),
-        inspection: count(|r| r.inspection.is_some()),
-    }
 }
 
 fn parse(table: &str) -> Result<Vec<Requirement>, String> {
@@ -119,11 +80,9 @@ fn requirement(cells: [String; 8]) -> Requirement {
 }
 
 /// The table of these requirements.
-///
-/// Implements: EVD-030.
 pub fn csv(requirements: &[Requirement]) -> String {
     let lines = requirements.iter().map(|row| {
-        let cells = [
+        csv_line([
             row.id.clone(),
             row.chapter.clone(),
             row.text.clone(),
@@ -132,14 +91,20 @@ pub fn csv(requirements: &[Requirement]) -> String {
             row.proofs.join(SEPARATOR),
             row.vectors.join(SEPARATOR),
             row.inspection.clone().unwrap_or_default(),
-        ];
-        let quoted = cells.map(|cell| match cell.contains([',', '"']) {
+        ])
+    });
+    format!("{HEADER}\n{}", lines.collect::<String>())
+}
+
+/// A line of CSV.
+pub fn csv_line(cells: impl IntoIterator<Item = String>) -> String {
+    let quoted = cells
+        .into_iter()
+        .map(|cell| match cell.contains([',', '"']) {
             true => format!("\"{}\"", cell.replace('"', "\"\"")),
             false => cell,
         });
-        quoted.join(",") + "\n"
-    });
-    format!("{HEADER}\n{}", lines.collect::<String>())
+    quoted.collect::<Vec<_>>().join(",") + "\n"
 }
 
 fn several(cell: &str) -> Vec<String> {
@@ -186,7 +151,6 @@ fn quoted_cell(mut rest: &str) -> Option<(String, &str)> {
 mod tests {
     use super::*;
 
-    // Verifies: EVD-030, EVD-032.
     #[test]
     fn a_cell_may_hold_commas_and_quotes() {
         let table =
@@ -199,7 +163,6 @@ mod tests {
         assert_eq!(csv(&read), table);
     }
 
-    // Verifies: EVD-032.
     #[test]
     fn a_malformed_line_is_named() {
         for line in [
@@ -211,20 +174,5 @@ mod tests {
             assert!(error.starts_with("line 2: "), "{error}");
         }
         assert!(parse("id,text\n").unwrap_err().starts_with("line 1: "));
-    }
-
-    // Verifies: EVD-033.
-    #[test]
-    fn the_summary_counts_each_kind() {
-        let table = format!("{HEADER}\nA,m,t,c,a; b,,,\nB,m,t,c,,p,v,\nC,m,t,c,,,,why\n");
-        let expected = Summary {
-            requirements: 3,
-            code: 3,
-            tests: 1,
-            proofs: 1,
-            vectors: 1,
-            inspection: 1,
-        };
-        assert_eq!(summary(&parse(&table).unwrap()), expected);
     }
 }

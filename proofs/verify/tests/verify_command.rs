@@ -24,23 +24,19 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-// Verifies: CLI-051, CLI-052, CLI-054, EVD-011, EVD-013.
 #[test]
 fn a_soak_says_its_seed_and_the_probability_of_a_false_failure() {
     // The last of its seeds is beyond the largest number and begins again at 0.
     let seed = u64::MAX.to_string();
-    let (output, folder) = verify(
-        "soak",
-        &["--only", "vectors", "--soak", "2", "--seed", &seed],
-    );
+    let (output, folder) = verify("soak", &["--only", "rates", "--soak", "2", "--seed", &seed]);
     assert!(output.status.success(), "{output:?}");
     assert_eq!(
         text(&output.stdout),
         format!(
             "soak: 2 times 39 checks, seed {seed}\n\
-             statistics: not run\ndiagnosis: not run\nvectors: 1 of 1 checks passed\nfem: not run\nkernel: not run\n\
-             timing: not run\nsoak: all passed; a detector without defect fails such a run with probability 1.86e-6 at most\n\
-             evidence.json and dossier.html in {}\n",
+             statistics: not run\nrates: 8 of 8 checks passed\nprogram: not run\nfem: not run\nkernel: not run\n\
+             timing: not run\nrecord: not given\nsoak: all passed; a detector without defect fails such a run with probability 1.86e-6 at most\n\
+             dossier.html, evidence.json, trace.csv, record.csv and sbom.cdx.json in {}\n",
             folder.display()
         )
     );
@@ -53,24 +49,23 @@ fn a_soak_says_its_seed_and_the_probability_of_a_false_failure() {
     assert_eq!(evidence["soak"]["failure"], serde_json::Value::Null);
 }
 
-// Verifies: EVD-001, EVD-004, EVD-010, CLI-050.
 #[test]
-fn the_statistics_give_two_files() {
+fn the_statistics_give_all_files() {
     let (output, folder) = verify("statistics", &["--only", "statistics"]);
     assert!(output.status.success(), "{output:?}");
     assert!(
-        text(&output.stdout)
-            .starts_with("statistics: 39 of 39 checks passed\ndiagnosis: not run\n")
+        text(&output.stdout).starts_with("statistics: 39 of 39 checks passed\nrates: not run\n")
     );
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
     let evidence: serde_json::Value = serde_json::from_str(&read("evidence.json")).unwrap();
     assert_eq!(evidence["checks"].as_array().unwrap().len(), 39);
     assert_eq!(evidence["verdict"], "partial");
     assert_eq!(evidence["parts_left_out"].as_array().unwrap().len(), 5);
-    assert!(read("dossier.html").contains("not run: diagnosis, vectors, fem, kernel, timing"));
+    assert!(read("trace.csv").lines().count() > 300 && read("record.csv").lines().count() == 1);
+    assert!(read("sbom.cdx.json").contains("CycloneDX"));
+    assert!(read("dossier.html").contains("not run: rates, program, fem, kernel, timing"));
 }
 
-// Verifies: EVD-005.
 #[test]
 fn the_same_build_gives_the_same_evidence_with_any_number_of_threads() {
     let evidence = |threads: &str| {
@@ -79,7 +74,7 @@ fn the_same_build_gives_the_same_evidence_with_any_number_of_threads() {
             .join(threads);
         let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-verify"));
         command
-            .args(["--only", "diagnosis", "--out"])
+            .args(["--only", "rates", "--out"])
             .arg(&folder)
             .env("RAYON_NUM_THREADS", threads);
         assert!(command.output().unwrap().status.success());
@@ -95,7 +90,6 @@ fn the_same_build_gives_the_same_evidence_with_any_number_of_threads() {
     assert_eq!(evidence("1"), evidence("3"));
 }
 
-// Verifies: CLI-052, EVD-011.
 #[test]
 fn bad_arguments_are_refused() {
     for arguments in [
@@ -105,6 +99,9 @@ fn bad_arguments_are_refused() {
         &["--seed", "1"],
         &["--soak", "1", "--seed", "-1"],
         &["--only", "soak"],
+        &["--only", "record"],
+        &["--record", "Cargo.lock"],
+        &["--record", "nowhere.json"],
         &["--only", "statistics,physics"],
         &["--only", ""],
     ] {
@@ -116,7 +113,6 @@ fn bad_arguments_are_refused() {
     }
 }
 
-// Verifies: EVD-001.
 #[test]
 fn a_folder_that_cannot_be_made_is_told_before_the_work() {
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("verify-file");

@@ -15,7 +15,8 @@ use askama::Template;
 use super::build::lock_sha256;
 use super::evidence::{Evidence, PARTS, Verdict};
 use super::statistics::{self, Row};
-use super::traceability::Requirement;
+use super::system::System;
+use super::traceability::{SEPARATOR, csv_line};
 use palpate::report::html::STYLE;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -23,34 +24,50 @@ const OWN_STYLE: &str = include_str!("style.css");
 const CONTEXT: &str = include_str!("../../../../spec/context-of-use.md");
 const CREDIBILITY: &str = include_str!("../../../../spec/credibility.md");
 const SOFTWARE: &str = include_str!("../../../../spec/software.md");
-const SERVO: &str = include_str!("../../../../spec/servo.md");
 const PROOFS: &str = include_str!("../../../../spec/proof-scope.md");
+const RISK: &str = include_str!("../../../../spec/risk.md");
+const KANI: &str = include_str!("../../../kani-results.md");
+const PLAN: &str = include_str!("../../../../spec/verification-plan.md");
 const LIMITS: &str = include_str!("../../../../spec/limits.md");
 
 /// The sections in their order: what the contents link to, and their headings.
-const SECTIONS: [(&str, &str); 11] = [
+const SECTIONS: [(&str, &str); 14] = [
     ("context", "Context of use and claims"),
-    ("build", "Build"),
-    ("results", "Results"),
-    ("ledger", "Ledger of the statistics battery"),
-    ("accuracy", "Diagnostic accuracy of the detector"),
+    ("evidence", "Evidence by requirement"),
+    ("results", "Results of the checks"),
+    ("risk", "Risk management"),
     ("model", "Computational model: credibility"),
-    ("software", "Detector: software life cycle"),
-    ("components", "Components (SOUP)"),
+    ("rates", "Error rates in simulated records"),
+    ("ledger", "Ledger of the statistics battery"),
     ("proofs", "Scope of the proofs"),
-    ("limits", "Known limits and anomalies"),
-    ("trace", "Trace of the requirements"),
+    ("kani", "Results of Kani"),
+    ("plan", "Verification plan"),
+    ("software", "Software life cycle"),
+    ("build", "Build and machine"),
+    ("components", "Components (SOUP)"),
+    ("limits", "Known limits"),
 ];
 
-/// What each of [`PARTS`] is about.
-const TITLES: [&str; 6] = [
-    "Statistics of the detector",
-    "Diagnostic accuracy",
-    "Vectors of other programs",
-    "Finite elements",
-    "Servo kernel, every input",
-    "Time, on this machine",
+/// What each of [`PARTS`] is about, and who judges it.
+const TITLES: [(&str, &str); 7] = [
+    ("Statistics of the detector", CALLS),
+    ("Error rates in simulated records", CALLS),
+    (
+        "The shipped program, from outside",
+        "palpate-verify runs the program palpate; the expected values are other programs'",
+    ),
+    ("Finite elements", CALLS),
+    ("Servo kernel, every input", CALLS),
+    ("Time, on this machine", CALLS),
+    (
+        "Record of the test run",
+        "cargo test, Gappa and the scripts of .ci/run, by their exit codes; palpate-verify reads the record",
+    ),
 ];
+
+/// Who judges the checks that use the library.
+const CALLS: &str =
+    "palpate-verify, a program apart that calls the public interface of the library";
 
 /// What the page is made of.
 #[derive(Template)]
@@ -60,14 +77,59 @@ struct Page<'a> {
 }
 
 /// The page.
-///
-/// Implements: EVD-002, EVD-003, EVD-004, EVD-006, EVD-008, EVD-009, EVD-012, EVD-013.
 pub fn dossier(evidence: &Evidence) -> String {
     // Neither writing to a String nor any of our formats fails.
     let page = Page { found: evidence }
         .render()
         .expect("a page of text and numbers");
     page.replace(|c: char| c.is_control() && c != '\n', "\u{fffd}")
+}
+
+/// The file `trace.csv`: each requirement with its code, what checks it and which of that passed.
+pub fn trace(found: &Evidence) -> String {
+    let heads = "requirement,chapter,text,code,tests,proofs,vectors,checks_passed_here,tests_passed,proofs_passed,left_to_another_run,not_passed\n";
+    let joined = found.joined();
+    let rows = found
+        .requirements
+        .iter()
+        .zip(&joined)
+        .map(|(row, evidence)| {
+            let lists = [
+                &row.code,
+                &row.tests,
+                &row.proofs,
+                &row.vectors,
+                &evidence.checks,
+                &evidence.tests,
+                &evidence.proofs,
+                &evidence.left,
+                &evidence.missing,
+            ];
+            let texts = [&row.id, &row.chapter, &row.text].into_iter().cloned();
+            csv_line(texts.chain(lists.map(|list| list.join(SEPARATOR))))
+        });
+    [heads.to_string()].into_iter().chain(rows).collect()
+}
+
+/// The file `record.csv`: each test, proof and step of the records, its result and how long it took.
+pub fn record(found: &Evidence) -> String {
+    let heads = "commit,log_sha256,name,result,seconds\n";
+    let rows = found.records.iter().flat_map(|record| {
+        record.entries.iter().map(|entry| {
+            let seconds = entry
+                .seconds
+                .map(|seconds| seconds.to_string())
+                .unwrap_or_default();
+            csv_line([
+                record.commit.clone(),
+                record.log_sha256.clone(),
+                entry.name.clone(),
+                entry.result.to_string(),
+                seconds,
+            ])
+        })
+    });
+    [heads.to_string()].into_iter().chain(rows).collect()
 }
 
 impl Page<'_> {
@@ -91,7 +153,7 @@ impl Page<'_> {
     }
 
     /// What was built, from what, by what.
-    fn build(&self) -> [(&'static str, String); 12] {
+    fn build(&self) -> [(&'static str, String); 11] {
         let build = &self.found.build;
         let flags = if build.flags.is_empty() {
             "none"
@@ -114,8 +176,49 @@ impl Page<'_> {
                 build.processor_features.into(),
             ),
             ("SHA-256 of Cargo.lock", lock_sha256()),
-            ("Processor", self.found.processor.clone()),
         ]
+    }
+
+    /// When, by whom and where the checks were made, and what was judged.
+    fn run(&self) -> Vec<(&'static str, String)> {
+        let System {
+            began,
+            operator,
+            operating_system,
+            c_library,
+            processor,
+        } = &self.found.system;
+        let mut run = vec![
+            ("Date and time (UTC)", began.clone()),
+            (
+                "Operator",
+                operator
+                    .clone()
+                    .unwrap_or_else(|| "not named (--operator)".into()),
+            ),
+            ("Commit", self.found.build.commit.into()),
+            ("Operating system", operating_system.clone()),
+            ("C library", c_library.clone()),
+            ("Processor", processor.clone()),
+        ];
+        let executables = self.found.executables.iter();
+        run.extend(executables.map(|(path, sha256)| {
+            let name = path.rsplit('/').next().unwrap_or_default();
+            ("SHA-256 of an executable", format!("{name}: {sha256}"))
+        }));
+        let logs = self.found.records.iter();
+        run.extend(logs.map(|record| {
+            (
+                "SHA-256 of a test log",
+                format!(
+                    "{} ({}, {} entries)",
+                    record.log_sha256,
+                    record.ended,
+                    record.entries.len()
+                ),
+            )
+        }));
+        run
     }
 
     /// Each check of the battery with its α and its power against named defects.
@@ -131,10 +234,30 @@ impl Page<'_> {
         )
     }
 
-    /// The requirements of each chapter.
-    fn chapters(&self) -> impl Iterator<Item = &[Requirement]> {
-        let rows = &self.found.requirements;
-        rows.chunk_by(|one, next| one.chapter == next.chapter)
+    /// The requirements of each chapter: its name, how many there are, and how many have a check here, tests, proofs and none of these.
+    fn chapters(&self) -> Vec<(&str, [usize; 5])> {
+        let joined = self.found.joined();
+        let mut chapters: Vec<(&str, [usize; 5])> = Vec::new();
+        for (row, evidence) in self.found.requirements.iter().zip(&joined) {
+            let has = [
+                true,
+                !evidence.checks.is_empty(),
+                !evidence.tests.is_empty(),
+                !evidence.proofs.is_empty(),
+                !evidence.is_there(),
+            ];
+            let place = chapters
+                .iter()
+                .position(|(chapter, _)| *chapter == row.chapter);
+            let place = place.unwrap_or_else(|| {
+                chapters.push((&row.chapter, [0; 5]));
+                chapters.len() - 1
+            });
+            for (count, has) in chapters[place].1.iter_mut().zip(has) {
+                *count += usize::from(has);
+            }
+        }
+        chapters
     }
 }
 

@@ -12,12 +12,6 @@ pub fn breakable(name: &str) -> String {
         .replace("::", "::<wbr>")
 }
 
-/// Markup of names, one a line.
-pub fn places(names: impl AsRef<[String]>) -> String {
-    let names: Vec<String> = names.as_ref().iter().map(|name| breakable(name)).collect();
-    names.join("<br>")
-}
-
 /// A figure with its bounds.
 pub fn told(figure: &Figure) -> String {
     format!(
@@ -89,7 +83,6 @@ fn grouped(value: f64) -> String {
 mod tests {
     use super::*;
 
-    // Verifies: EVD-002.
     #[test]
     fn numbers_are_short_and_keep_what_counts() {
         for (value, text) in [

@@ -118,7 +118,8 @@ pub fn line_contact() -> Figures {
         let places = &model.surface().positions;
         let near = places.windows(2).filter(|pair| pair[0][0].abs() < 1e-2);
         let spacing = largest(near.map(|pair| pair[1][0] - pair[0][0]));
-        let (mut mean, mut shares, mut pressures) = (0.0, Vec::new(), Vec::new());
+        let (mut mean, mut left_out) = (0.0, 0.0);
+        let (mut shares, mut pressures) = (Vec::new(), Vec::new());
         let poses = 16;
         for k in 0..poses {
             let [a, ratio, pressure] = compare(&model, 6e-5 * 1.12f64.powi(k), curvature)?;
@@ -131,13 +132,14 @@ pub fn line_contact() -> Figures {
             // The pressure within a spacing of the edge may go to the wrong side of it: √(2 s/a) of the highest at most.
             pressures.push(pressure / (2.0 * spacing / a).sqrt());
             mean += ratio / f64::from(poses);
+            left_out += rest / f64::from(poses);
         }
         let contact = contact.name();
-        // The edges fall on all parts of a spacing: what is left in the mean is less than half of the smallest contact's bound.
+        // Forces are to be within 0.3 % (FEM-021), and a² goes with the force; the closed form leaves out the rest.
         figures.extend(figures! {
             "{contact}, {poses} loads: largest error of a² over its bound" => at_most(largest(shares), 1.0);
             "{contact}, {poses} loads: largest error of a pressure over its bound" => at_most(largest(pressures), 1.0);
-            "{contact}: relative error of a² in the mean" => at_most((mean - 1.0).abs(), 5e-3);
+            "{contact}: relative error of a² in the mean" => at_most((mean - 1.0).abs(), 3e-3 + left_out);
         });
     }
     Ok(figures)

@@ -6,7 +6,7 @@ use num_complex::Complex;
 use palpate::phantom::Material;
 
 use super::Figures;
-use super::convergence::convergence;
+use super::convergence::{ORDERS, ORDERS_OF_ANY_NU, convergence};
 use super::problem::{Errors, Exact, Problem, lame};
 
 /// A disc of radius 1 under the far stresses σ_xx = P + Q and σ_yy = P − Q.
@@ -151,21 +151,21 @@ pub fn disc() -> Figures {
         "displacement",
         solved.map(|[all, _]| all.displacement),
         [1.684859e-2, 3.272239e-3, 4.082207e-4, 3.923043e-5],
-        2.9,
+        ORDERS[0],
     );
     // The pressure λ div u is on its way to order 2.
     figures.extend(convergence(
         "stress",
         solved.map(|[all, _]| all.stress),
         [5.648983e-1, 2.535486e-1, 9.362615e-2, 2.826855e-2],
-        1.7,
+        ORDERS_OF_ANY_NU[1],
     ));
     // The uniform strain and stress inside, point by point in the mean square.
     figures.extend(convergence(
         "stress in the disc",
         solved.map(|[_, inside]| inside.stress),
         [5.113417e-1, 1.898850e-1, 5.975485e-2, 1.515631e-2],
-        1.7,
+        ORDERS_OF_ANY_NU[1],
     ));
     Ok(figures)
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use palpate::phantom::Material;
 
-use super::convergence::convergence;
+use super::convergence::{ORDERS, ORDERS_OF_ANY_NU, convergence};
 use super::problem::{Errors, Exact, Problem, lame};
 use super::{Figures, largest};
 
@@ -107,7 +107,7 @@ fn errors(layer: &BondedLayer, columns: usize) -> Result<[Errors; 4], String> {
 
 pub fn bonded() -> Figures {
     let mut figures = Vec::new();
-    // Orders 3 and 2 at the end (a tenth less is let pass); the nearer to incompressible, the longer they stay near 2 and 1, which hold for all ν.
+    // The pressure is the last to reach its order; at ν = 0.4999 the displacement is on its way too.
     for (number, columns, nu, stored, orders) in [
         (
             2.0,
@@ -117,7 +117,7 @@ pub fn bonded() -> Figures {
                 [1.127161e-2, 1.286235e-3, 1.282166e-4, 1.241168e-5],
                 [2.393160e-1, 9.083377e-2, 2.860989e-2, 8.066989e-3],
             ],
-            [2.9, 1.8],
+            [ORDERS[0], ORDERS_OF_ANY_NU[1]],
         ),
         (
             0.3,
@@ -127,7 +127,7 @@ pub fn bonded() -> Figures {
                 [1.583937e-3, 2.119906e-4, 2.384953e-5, 2.520786e-6],
                 [1.419327e-2, 4.239383e-3, 1.233276e-3, 3.366325e-4],
             ],
-            [2.9, 1.8],
+            [ORDERS[0], ORDERS_OF_ANY_NU[1]],
         ),
         (
             0.3,
@@ -137,7 +137,7 @@ pub fn bonded() -> Figures {
                 [5.665095e-3, 9.418422e-4, 1.404146e-4, 2.078253e-5],
                 [3.628944e-1, 1.323208e-1, 5.547951e-2, 1.910465e-2],
             ],
-            [2.7, 1.5],
+            ORDERS_OF_ANY_NU,
         ),
     ] {
         let layer = BondedLayer {

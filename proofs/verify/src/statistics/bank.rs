@@ -1,12 +1,13 @@
 //! Records whose inclusion lies anywhere, against the posterior of a bank: simulation-based calibration.
 
-use super::checks::{count_rejects, mean_of_bounded_rejects, uniform_rejects};
+use super::checks::{count_test, mean_of_bounded_test, uniform_test};
 use super::{Check, Draw, Outcome};
+use crate::Figure;
 use palpate::bank::{BankDetector, PlacePosterior};
 use palpate::detect::nuisance::NoiseLevel;
 use palpate::detect::posterior;
 
-/// BNK-040, BNK-041, BNK-044; BNK-031, BNK-032, BNK-034, BNK-062.
+/// BNK-040, BNK-042; BNK-031, BNK-034.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("bank_ranks_kolmogorov", ranks),
     Check::new("bank_intervals_at_90_percent", intervals),
@@ -47,24 +48,24 @@ fn places(draw: &Draw<'_>, stream: u64) -> Outcome<Vec<(f64, PlacePosterior)>> {
 }
 
 /// Are the ranks of the truth in the posterior uniform?
-fn ranks(draw: &Draw<'_>) -> Outcome<bool> {
+fn ranks(draw: &Draw<'_>) -> Outcome<Figure> {
     let places = places(draw, 800)?.into_iter();
     let ranks = places.map(|(truth, place)| place.at_most(0, truth));
-    Ok(uniform_rejects(ranks.collect(), draw.row.alpha))
+    Ok(uniform_test(ranks.collect(), draw.row.alpha))
 }
 
 /// Do intervals of 90 % hold the truth as often?
-fn intervals(draw: &Draw<'_>) -> Outcome<bool> {
+fn intervals(draw: &Draw<'_>) -> Outcome<Figure> {
     let held = places(draw, 810)?.into_iter().map(|(truth, place)| {
         let interval = place.interval(0, 0.9)?;
         Ok(u64::from(interval.low <= truth && truth <= interval.high))
     });
     let held = held.sum::<Outcome<u64>>()?;
-    count_rejects(held, draw.trials(), 0.9, draw.row.alpha)
+    count_test(held, draw.trials(), 0.9, draw.row.alpha)
 }
 
 /// Is there an inclusion as often as its probabilities say?
-fn reliability(draw: &Draw<'_>) -> Outcome<bool> {
+fn reliability(draw: &Draw<'_>) -> Outcome<Figure> {
     /// Each point has a channel to itself.
     const GAMMA: [f64; 2] = [1.5, 2.0];
     const PRIOR: [f64; 2] = [0.7, 0.3];
@@ -98,5 +99,5 @@ fn reliability(draw: &Draw<'_>) -> Outcome<bool> {
         Ok(f64::from(u8::from(is_there)) - probability)
     });
     let excess = excess.collect::<Outcome<Vec<f64>>>()?;
-    Ok(mean_of_bounded_rejects(&excess, draw.row.alpha))
+    Ok(mean_of_bounded_test(&excess, draw.row.alpha))
 }

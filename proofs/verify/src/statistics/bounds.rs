@@ -1,7 +1,8 @@
 //! The position, several depths, and noise in proportion to force.
 
-use super::checks::{Law, count_rejects, variance_rejects};
+use super::checks::{Law, count_test, variance_test};
 use super::{Check, Draw, Outcome};
+use crate::Figure;
 use palpate::detect::mixture::mixture_theta;
 use palpate::detect::scan::Scan;
 use palpate::detect::weber::{WeberNoise, theta_weber};
@@ -9,7 +10,7 @@ use palpate::detect::{neyman_pearson_false_alarm_threshold, theta_of_record};
 use palpate::force::Force;
 use palpate::stats::normal::{cdf, upper_tail};
 
-/// DET-053, DET-054; DET-070; DET-080, DET-081.
+/// DET-053, DET-054; DET-070; DET-080.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("position_error", position_error),
     Check::new("position_error_of_a_cut_signal", cut_position_error),
@@ -63,7 +64,7 @@ fn position_errors(draw: &Draw<'_>, template: &Force<Vec<f64>>, place: usize) ->
 }
 
 /// Errors of the position meet the bound of Cramér and Rao, until the signal is too weak.
-fn position_error(draw: &Draw<'_>) -> Outcome<bool> {
+fn position_error(draw: &Draw<'_>) -> Outcome<Figure> {
     let gamma = match draw.defect {
         "signal_below_the_threshold_effect" => 2.5,
         _ => 25.0,
@@ -79,7 +80,7 @@ fn position_error(draw: &Draw<'_>) -> Outcome<bool> {
         _ => 60,
     };
     let errors = position_errors(draw, &template, place)?;
-    variance_rejects(&errors, Law { mean: 0.0, sd }, draw.row.alpha)
+    variance_test(&errors, Law { mean: 0.0, sd }, draw.row.alpha)
 }
 
 /// Samples of a record and of its template, which is cut off where the signal has not died away.
@@ -107,7 +108,7 @@ fn plain_place(template: &Force<Vec<f64>>, record: &[f64], overlap_forgotten: bo
 
 /// Where the signal leaves the record before it has died away, the position is drawn back: an inclusion at 6 is found at 4.36, with
 /// the error that the noise has to first order.
-fn cut_position_error(draw: &Draw<'_>) -> Outcome<bool> {
+fn cut_position_error(draw: &Draw<'_>) -> Outcome<Figure> {
     const PLACE: usize = 6;
     const STEP: f64 = 1e-3;
     let whole = template(CUT + 2 * PLACE, 20.0, 1000.0);
@@ -136,12 +137,12 @@ fn cut_position_error(draw: &Draw<'_>) -> Outcome<bool> {
         Ok(scan.maximum(Force::new(x, y), 0..=14)?.refined_shift)
     });
     let places = places.collect::<Outcome<Vec<f64>>>()?;
-    variance_rejects(&places, Law { mean, sd }, draw.row.alpha)
+    variance_test(&places, Law { mean, sd }, draw.row.alpha)
 }
 
 /// Two depths that look the same are one. Both have the template 2 N in noise of 1 N, so Λ = θ and
 /// its law is (8) with γ = 2.
-fn mixture_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
+fn mixture_false_alarms(draw: &Draw<'_>) -> Outcome<Figure> {
     let generator = draw.generator(620 + draw.replicate);
     let eta = neyman_pearson_false_alarm_threshold(2.0, 0.05)?;
     let prior_left_out = match draw.defect {
@@ -154,7 +155,7 @@ fn mixture_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
         let mixture = mixture_theta(&[theta, theta], &[0.3, 0.7])?;
         alarms += u64::from(mixture + prior_left_out >= eta);
     }
-    count_rejects(alarms, draw.trials(), 0.05, draw.row.alpha)
+    count_test(alarms, draw.trials(), 0.05, draw.row.alpha)
 }
 
 /// Forces and noise of one normal sample, where Θ is a quadratic in the noise and its law is known
@@ -202,7 +203,7 @@ fn weber_theta(observed: f64, defect: &str) -> Outcome<f64> {
 }
 
 /// Θ in proportional noise has its tails.
-fn weber(draw: &Draw<'_>, inclusion: bool, stream: u64) -> Outcome<bool> {
+fn weber(draw: &Draw<'_>, inclusion: bool, stream: u64) -> Outcome<Figure> {
     const ETA: f64 = 0.25;
     let generator = draw.generator(stream + draw.replicate);
     let force = FORCE[usize::from(inclusion)];
@@ -211,7 +212,7 @@ fn weber(draw: &Draw<'_>, inclusion: bool, stream: u64) -> Outcome<bool> {
         let observed = force + WEBER.sd(force) * generator.normal(trial, 0);
         alarms += u64::from(weber_theta(observed, draw.defect)? >= ETA);
     }
-    count_rejects(
+    count_test(
         alarms,
         draw.trials(),
         weber_tail(inclusion, ETA)?,

@@ -1,6 +1,8 @@
 //! Tests of significance whose size is at most α for every n: no asymptotics.
 
 use super::Outcome;
+use crate::Figure;
+use palpate::report::text::trimmed;
 use palpate::stats::binomial::{at_least, at_most};
 use palpate::stats::normal::{cdf, quantile, upper_tail};
 
@@ -24,60 +26,93 @@ impl Law {
     }
 }
 
-/// Is the mean of the sample not that of the law? The standardised mean is N(0, 1) exactly.
-pub(super) fn mean_rejects(sample: &[f64], law: Law, alpha: f64) -> Outcome<bool> {
+/// Is the mean of the sample that of the law? The standardised mean is N(0, 1) exactly.
+pub(super) fn mean_test(sample: &[f64], law: Law, alpha: f64) -> Outcome<Figure> {
     let n = sample.len() as f64;
     let mean = sample.iter().map(|x| x - law.mean).sum::<f64>() / n;
-    Ok((mean / law.sd * n.sqrt()).abs() > -quantile(0.5 * alpha)?)
+    let limit = -quantile(0.5 * alpha)?;
+    let what = format!("mean of {n} less the law's, in standard errors (limits: normal quantiles)");
+    Ok(Figure::within(
+        what,
+        mean / law.sd * n.sqrt(),
+        -limit,
+        limit,
+    ))
 }
 
-/// Is the variance about the law's mean not that of the law? Σ((x−μ)/σ)² is χ² with n degrees of
+/// Is the variance about the law's mean that of the law? Σ((x−μ)/σ)² is χ² with n degrees of
 /// freedom; its tails are bounded after Laurent and Massart (Ann. Statist. 28, 2000): Pr(χ² ≥ n +
 /// 2√(nt) + 2t) ≤ e^−t and Pr(χ² ≤ n − 2√(nt)) ≤ e^−t.
-pub(super) fn variance_rejects(sample: &[f64], law: Law, alpha: f64) -> Outcome<bool> {
+pub(super) fn variance_test(sample: &[f64], law: Law, alpha: f64) -> Outcome<Figure> {
     let n = sample.len() as f64;
-    let excess = sample
-        .iter()
-        .map(|x| ((x - law.mean) / law.sd).powi(2))
-        .sum::<f64>()
-        - n;
-    let t = libm::log(2.0 / alpha);
-    Ok(excess > 2.0 * (n * t).sqrt() + 2.0 * t || excess < -2.0 * (n * t).sqrt())
+    let squares = sample.iter().map(|x| ((x - law.mean) / law.sd).powi(2));
+    let t = libm::log(2.0 / alpha) / n;
+    let what = format!("variance of {n} over the law's (limits: Laurent and Massart)");
+    let (low, high) = (1.0 - 2.0 * t.sqrt(), 1.0 + 2.0 * t.sqrt() + 2.0 * t);
+    Ok(Figure::within(what, squares.sum::<f64>() / n, low, high))
 }
 
-/// Is the sample not from the law?
-pub(super) fn kolmogorov_rejects(sample: &[f64], law: Law, alpha: f64) -> Outcome<bool> {
+/// Is the sample from the law?
+pub(super) fn kolmogorov_test(sample: &[f64], law: Law, alpha: f64) -> Outcome<Figure> {
     let below = sample.iter().map(|x| cdf((x - law.mean) / law.sd));
-    Ok(uniform_rejects(below.collect::<Result<_, _>>()?, alpha))
+    Ok(uniform_test(below.collect::<Result<_, _>>()?, alpha))
 }
 
-/// Is the sample not uniform between 0 and 1? Kolmogorov's distance D with Massart's bound Pr(√n D > λ) ≤ 2 exp(−2λ²) (Ann. Probab.
+/// Is the sample uniform between 0 and 1? Kolmogorov's distance D with Massart's bound Pr(√n D > λ) ≤ 2 exp(−2λ²) (Ann. Probab.
 /// 18, 1990).
-pub(super) fn uniform_rejects(mut sample: Vec<f64>, alpha: f64) -> bool {
+pub(super) fn uniform_test(mut sample: Vec<f64>, alpha: f64) -> Figure {
     sample.sort_unstable_by(f64::total_cmp);
     let n = sample.len() as f64;
     let mut distance = 0.0_f64;
     for (i, x) in sample.iter().enumerate() {
         distance = distance.max(x - i as f64 / n).max((i + 1) as f64 / n - x);
     }
-    distance * n.sqrt() > libm::sqrt(0.5 * libm::log(2.0 / alpha))
+    let what = format!("Kolmogorov's distance of {n} from the law (limit: Massart)");
+    Figure::at_most(what, distance, libm::sqrt(0.5 * libm::log(2.0 / alpha) / n))
 }
 
-/// Is the share of the sample at or beyond `threshold` not that of the law? An exact binomial test.
-pub(super) fn tail_rejects(sample: &[f64], law: Law, threshold: f64, alpha: f64) -> Outcome<bool> {
+/// Is the share of the sample at or beyond `threshold` that of the law? An exact binomial test.
+pub(super) fn tail_test(sample: &[f64], law: Law, threshold: f64, alpha: f64) -> Outcome<Figure> {
     let count = sample.iter().filter(|&&x| x >= threshold).count() as u64;
     let p = upper_tail((threshold - law.mean) / law.sd)?;
-    count_rejects(count, sample.len() as u64, p, alpha)
+    count_test(count, sample.len() as u64, p, alpha)
 }
 
-/// Is a count not Binomial(n, p)? Exact, two-sided.
-pub(super) fn count_rejects(count: u64, n: u64, p: f64, alpha: f64) -> Outcome<bool> {
-    Ok(at_least(count, n, p)? < 0.5 * alpha || at_most(count, n, p)? < 0.5 * alpha)
+/// Is a count Binomial(n, p)? Exact, two-sided: the limits are the counts whose tails hold α/2 or more.
+pub(super) fn count_test(count: u64, n: u64, p: f64, alpha: f64) -> Outcome<Figure> {
+    let least = first(n, |count| Ok(at_most(count, n, p)? >= 0.5 * alpha))?;
+    let beyond = first(n, |count| Ok(at_least(count, n, p)? < 0.5 * alpha))?;
+    let what = format!(
+        "share of {n}, {} by the law (limits: binomial)",
+        trimmed(p, 6)
+    );
+    let share = |count: u64| count as f64 / n as f64;
+    Ok(Figure::within(
+        what,
+        share(count),
+        share(least),
+        share(beyond - 1),
+    ))
 }
 
-/// Is the mean of the sample not 0? Each entry lies in an interval of length 1 that what came before it fixes: Hoeffding's bound
+/// The least count up to `n` for which `holds`, which does so from some count on; `n + 1` if there is none.
+fn first(n: u64, holds: impl Fn(u64) -> Outcome<bool>) -> Outcome<u64> {
+    let (mut low, mut high) = (0, n + 1);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        match holds(middle)? {
+            true => high = middle,
+            false => low = middle + 1,
+        }
+    }
+    Ok(low)
+}
+
+/// Is the mean of the sample 0? Each entry lies in an interval of length 1 that what came before it fixes: Hoeffding's bound
 /// Pr(|Σ| ≥ t) ≤ 2 exp(−2t²/n).
-pub(super) fn mean_of_bounded_rejects(sample: &[f64], alpha: f64) -> bool {
+pub(super) fn mean_of_bounded_test(sample: &[f64], alpha: f64) -> Figure {
     let (n, sum) = (sample.len() as f64, sample.iter().sum::<f64>());
-    sum.abs() > libm::sqrt(0.5 * n * libm::log(2.0 / alpha))
+    let limit = libm::sqrt(0.5 * libm::log(2.0 / alpha) / n);
+    let what = format!("mean of {n} differences (limits: Hoeffding)");
+    Figure::within(what, sum / n, -limit, limit)
 }

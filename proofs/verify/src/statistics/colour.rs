@@ -1,8 +1,9 @@
 //! Coloured noise, made as nature makes it (mixing, feedback, moving averages), never from the
 //! factor that is under test.
 
-use super::checks::{Law, mean_rejects, variance_rejects};
+use super::checks::{Law, mean_test, variance_test};
 use super::{Check, Draw, Outcome};
+use crate::Figure;
 use palpate::detect::coloured::{ColouredStatistic, coloured_scratch, theta_coloured};
 use palpate::detect::{DetectError, MatchedFilter};
 use palpate::force::Force;
@@ -138,13 +139,13 @@ fn sample(
 }
 
 /// Mean under H = 1.
-fn mean(draw: &Draw<'_>, colour: &Colour) -> Outcome<bool> {
+fn mean(draw: &Draw<'_>, colour: &Colour) -> Outcome<Figure> {
     let (law, theta) = sample(draw, colour, true, colour.stream)?;
-    mean_rejects(&theta, law, draw.row.alpha)
+    mean_test(&theta, law, draw.row.alpha)
 }
 
 /// Variance under H = 0.
-fn variance(draw: &Draw<'_>, colour: &Colour) -> Outcome<bool> {
+fn variance(draw: &Draw<'_>, colour: &Colour) -> Outcome<Figure> {
     let (law, theta) = sample(draw, colour, false, colour.stream + 10)?;
-    variance_rejects(&theta, law, draw.row.alpha)
+    variance_test(&theta, law, draw.row.alpha)
 }

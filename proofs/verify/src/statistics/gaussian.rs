@@ -1,14 +1,13 @@
 //! Records in white noise, from the two forces to θ, against N(±γ²/2, γ²).
 
-use super::checks::{
-    Law, count_rejects, kolmogorov_rejects, mean_rejects, tail_rejects, variance_rejects,
-};
+use super::checks::{Law, count_test, kolmogorov_test, mean_test, tail_test, variance_test};
 use super::{Check, Draw, Outcome};
+use crate::Figure;
 use palpate::detect::simulate::Simulation;
 use palpate::detect::{neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold};
 use palpate::force::Force;
 
-/// DET-012, DET-013, DET-015, DET-024, DET-025, DET-026, DET-113.
+/// DET-015, DET-013, DET-015, DET-022, DET-025, DET-026, DET-113.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("coarse_mean_h0", |draw| mean(draw, COARSE, false, 0)),
     Check::new("coarse_mean_h1", |draw| mean(draw, COARSE, true, 1)),
@@ -198,23 +197,23 @@ fn with_defect(setting: &Setting, inclusion: bool, residual: &[f64], defect: &st
     theta
 }
 
-fn mean(draw: &Draw<'_>, series: Series, inclusion: bool, stream: u64) -> Outcome<bool> {
+fn mean(draw: &Draw<'_>, series: Series, inclusion: bool, stream: u64) -> Outcome<Figure> {
     let (law, theta) = sample(draw, series, inclusion, stream)?;
-    mean_rejects(&theta, law, draw.row.alpha)
+    mean_test(&theta, law, draw.row.alpha)
 }
 
-fn variance(draw: &Draw<'_>, series: Series, inclusion: bool, stream: u64) -> Outcome<bool> {
+fn variance(draw: &Draw<'_>, series: Series, inclusion: bool, stream: u64) -> Outcome<Figure> {
     let (law, theta) = sample(draw, series, inclusion, stream)?;
-    variance_rejects(&theta, law, draw.row.alpha)
+    variance_test(&theta, law, draw.row.alpha)
 }
 
-fn kolmogorov(draw: &Draw<'_>, inclusion: bool, stream: u64) -> Outcome<bool> {
+fn kolmogorov(draw: &Draw<'_>, inclusion: bool, stream: u64) -> Outcome<Figure> {
     let (law, theta) = sample(draw, COARSE, inclusion, stream)?;
-    kolmogorov_rejects(&theta, law, draw.row.alpha)
+    kolmogorov_test(&theta, law, draw.row.alpha)
 }
 
 /// The noise of each of a record's 16 samples, which tells of its variance what θ, one number a record, tells with 16 times the trials.
-fn coarse_noise_variance(draw: &Draw<'_>) -> Outcome<bool> {
+fn coarse_noise_variance(draw: &Draw<'_>) -> Outcome<Figure> {
     let setting = coarse()?;
     let f0 = setting.f0.as_deref();
     let generator = draw.generator(8 + 10 * draw.replicate);
@@ -232,27 +231,27 @@ fn coarse_noise_variance(draw: &Draw<'_>) -> Outcome<bool> {
         noise.extend(y.iter().map(|y| excess * y / setting.noise_sd.normal));
     }
     let law = Law { mean: 0.0, sd: 1.0 };
-    variance_rejects(&noise, law, draw.row.alpha)
+    variance_test(&noise, law, draw.row.alpha)
 }
 
-fn coarse_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
+fn coarse_false_alarms(draw: &Draw<'_>) -> Outcome<Figure> {
     let (law, theta) = sample(draw, COARSE, false, 6)?;
     let eta = neyman_pearson_false_alarm_threshold(law.sd, 0.01)?;
     let alarms = theta.iter().filter(|&&theta| theta >= eta).count();
-    count_rejects(alarms as u64, draw.trials(), 0.01, draw.row.alpha)
+    count_test(alarms as u64, draw.trials(), 0.01, draw.row.alpha)
 }
 
-fn coarse_misses(draw: &Draw<'_>) -> Outcome<bool> {
+fn coarse_misses(draw: &Draw<'_>) -> Outcome<Figure> {
     let (law, theta) = sample(draw, COARSE, true, 7)?;
     let eta = neyman_pearson_miss_threshold(law.sd, 0.05)?;
     let misses = theta.iter().filter(|&&theta| theta < eta).count();
-    count_rejects(misses as u64, draw.trials(), 0.05, draw.row.alpha)
+    count_test(misses as u64, draw.trials(), 0.05, draw.row.alpha)
 }
 
-fn traverse_false_alarms(draw: &Draw<'_>) -> Outcome<bool> {
+fn traverse_false_alarms(draw: &Draw<'_>) -> Outcome<Figure> {
     let (law, theta) = sample(draw, TRAVERSE, false, 220)?;
     let eta = neyman_pearson_false_alarm_threshold(law.sd, 0.05)?;
-    tail_rejects(&theta, law, eta, draw.row.alpha)
+    tail_test(&theta, law, eta, draw.row.alpha)
 }
 
 #[cfg(test)]

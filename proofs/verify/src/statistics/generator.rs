@@ -1,10 +1,11 @@
 //! The deviates themselves.
 
-use super::checks::{Law, count_rejects, kolmogorov_rejects};
+use super::checks::{Law, count_test, kolmogorov_test};
 use super::{Check, Draw, Outcome};
+use crate::Figure;
 use palpate::stats::normal::upper_tail;
 
-/// DET-111, DET-112.
+/// DET-111, DET-110.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("generator_kolmogorov", standard_normal),
     Check::new("generator_tails_beyond_4", tails),
@@ -22,15 +23,15 @@ fn deviates(draw: &Draw<'_>, stream: u64) -> Vec<f64> {
     deviates
 }
 
-fn standard_normal(draw: &Draw<'_>) -> Outcome<bool> {
+fn standard_normal(draw: &Draw<'_>) -> Outcome<Figure> {
     let mut deviates = deviates(draw, 500);
     if draw.defect == "shifted_by_1_percent" {
         deviates.iter_mut().for_each(|x| *x += 0.01);
     }
-    kolmogorov_rejects(&deviates, Law { mean: 0.0, sd: 1.0 }, draw.row.alpha)
+    kolmogorov_test(&deviates, Law { mean: 0.0, sd: 1.0 }, draw.row.alpha)
 }
 
-fn tails(draw: &Draw<'_>) -> Outcome<bool> {
+fn tails(draw: &Draw<'_>) -> Outcome<Figure> {
     // Without the ziggurat's tail there is nothing beyond 3.852.
     let largest = if draw.defect == "tail_left_out" {
         3.852
@@ -40,12 +41,12 @@ fn tails(draw: &Draw<'_>) -> Outcome<bool> {
     let deviates = deviates(draw, 510);
     let tail = deviates.iter().filter(|x| x.abs().min(largest) > 4.0);
     let count = tail.count() as u64;
-    count_rejects(count, draw.trials(), 2.0 * upper_tail(4.0)?, draw.row.alpha)
+    count_test(count, draw.trials(), 2.0 * upper_tail(4.0)?, draw.row.alpha)
 }
 
 /// Equal signs of two independent deviates have probability ½; `step` leads from the trial and
 /// index of one to those of the other.
-fn signs(draw: &Draw<'_>, stream: u64, step: (u64, u64)) -> Outcome<bool> {
+fn signs(draw: &Draw<'_>, stream: u64, step: (u64, u64)) -> Outcome<Figure> {
     let generator = draw.generator(stream + draw.replicate);
     let (step_trial, step_index) = if draw.defect == "same_address" {
         (0, 0)
@@ -57,5 +58,5 @@ fn signs(draw: &Draw<'_>, stream: u64, step: (u64, u64)) -> Outcome<bool> {
         let other = generator.normal(2 * i + step_trial, 6 + step_index);
         (one < 0.0) == (other < 0.0)
     });
-    count_rejects(equal.count() as u64, draw.trials(), 0.5, draw.row.alpha)
+    count_test(equal.count() as u64, draw.trials(), 0.5, draw.row.alpha)
 }

@@ -29,6 +29,7 @@ mod nuisance;
 
 use std::error::Error;
 
+use crate::Figure;
 pub use ledger::Row;
 use palpate::stats::random::Generator;
 
@@ -51,8 +52,8 @@ type Outcome<T> = Result<T, Box<dyn Error + Send + Sync>>;
 pub struct Check {
     /// Its name in the ledger.
     pub name: &'static str,
-    /// Draws a sample and tests it: is it rejected?
-    rejects: fn(&Draw<'_>) -> Outcome<bool>,
+    /// Draws a sample, and measures on it what the test judges, with the limits at the row's α.
+    measure: fn(&Draw<'_>) -> Outcome<Figure>,
 }
 
 /// How a check shall draw its sample.
@@ -100,22 +101,29 @@ pub fn total_alpha() -> Result<f64, String> {
 }
 
 impl Check {
-    const fn new(name: &'static str, rejects: fn(&Draw<'_>) -> Outcome<bool>) -> Check {
-        Check { name, rejects }
+    const fn new(name: &'static str, measure: fn(&Draw<'_>) -> Outcome<Figure>) -> Check {
+        Check { name, measure }
+    }
+
+    /// What the check observes on the detector, with its limits.
+    ///
+    /// # Errors
+    /// That it cannot run.
+    pub fn observe(&self, seed: u64) -> Result<Figure, String> {
+        self.draw(seed, "", 0, &self.row(seed)?)
     }
 
     /// Runs the check on the detector.
     ///
     /// # Errors
     /// That it rejects the detector, which it does to one without defect with probability α at most; or that it cannot run.
-    ///
-    /// Implements: CLI-051.
     pub fn run(&self, seed: u64) -> Result<(), String> {
         let (name, row) = (self.name, self.row(seed)?);
-        match self.draw(seed, "", 0, &row)? {
-            false => Ok(()),
-            true => Err(format!(
-                "check {name} rejects the detector at alpha = {:e}, seed {seed}",
+        let observed = self.draw(seed, "", 0, &row)?;
+        match observed.passes() {
+            true => Ok(()),
+            false => Err(format!(
+                "check {name} rejects the detector at alpha = {:e}, seed {seed}: {observed}",
                 row.alpha
             )),
         }
@@ -125,13 +133,11 @@ impl Check {
     ///
     /// # Errors
     /// That it does not see one: with probability 0.003 a defect at most, for seeds other than [`FIXED_SEED`]; or that it cannot run.
-    ///
-    /// Implements: CLI-050.
     pub fn run_negative_controls(&self, seed: u64) -> Result<(), String> {
         let (name, row) = (self.name, self.row(seed)?);
         for defect in row.shown_defects() {
             for replicate in 1..=REPLICATES {
-                if !self.draw(seed, defect, replicate, &row)? {
+                if self.draw(seed, defect, replicate, &row)?.passes() {
                     return Err(format!(
                         "check {name} does not see the defect {defect}, seed {seed}"
                     ));
@@ -141,14 +147,14 @@ impl Check {
         Ok(())
     }
 
-    fn draw(&self, seed: u64, defect: &str, replicate: u64, row: &Row) -> Result<bool, String> {
+    fn draw(&self, seed: u64, defect: &str, replicate: u64, row: &Row) -> Result<Figure, String> {
         let draw = Draw {
             seed,
             defect,
             replicate,
             row,
         };
-        (self.rejects)(&draw).map_err(|error| self.cannot_run(seed, &*error))
+        (self.measure)(&draw).map_err(|error| self.cannot_run(seed, &*error))
     }
 
     /// Its row in the ledger.

@@ -1,9 +1,10 @@
 //! Records with offsets, drifts and a gain of any size, against the laws of what is left beside those; and the test for white
 //! noise.
 
-use super::checks::{count_rejects, uniform_rejects};
+use super::checks::{count_test, uniform_test};
 use super::gaussian::traverse;
 use super::{Check, Draw, Outcome};
+use crate::Figure;
 use palpate::detect::correlation::ljung_box;
 use palpate::detect::nuisance::{
     NoiseLevel, Nuisances, SubspaceDetector, SubspaceStatistic, Threshold,
@@ -12,8 +13,8 @@ use palpate::force::Force;
 use palpate::stats::noncentral::{Tail, chi_square, chi_square_point, f_ratio, student};
 use palpate::stats::normal::cdf;
 
-/// NUI-016; NUI-017, DET-130; NUI-018, DET-131, DET-132; NUI-011, NUI-013, NUI-014; NUI-020. All but the last also NUI-001, NUI-003, NUI-005,
-/// NUI-006, NUI-008.
+/// NUI-016; NUI-016, DET-130; NUI-016, DET-130; NUI-014, NUI-013, NUI-014; NUI-020. All but the last also NUI-001, NUI-003,
+/// NUI-003, NUI-008.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("nuisance_t_kolmogorov", |draw| law(draw, LONG, t, 700)),
     Check::new("nuisance_residual_kolmogorov", |draw| {
@@ -129,14 +130,14 @@ fn with_defect(
 type Below = fn(&str, f64, SubspaceStatistic) -> Outcome<f64>;
 
 /// Has a value its law, with and without an inclusion?
-fn law(draw: &Draw<'_>, step: usize, below: Below, stream: u64) -> Outcome<bool> {
+fn law(draw: &Draw<'_>, step: usize, below: Below, stream: u64) -> Outcome<Figure> {
     let statistics = statistics(draw, step, 0.0, stream)?.into_iter();
     let below = statistics.map(|(is_there, found)| {
         let centre = if is_there { found.gamma } else { 0.0 };
         below(draw.defect, centre, found)
     });
     let below = below.collect::<Outcome<_>>()?;
-    Ok(uniform_rejects(below, draw.row.alpha))
+    Ok(uniform_test(below, draw.row.alpha))
 }
 
 fn t(_: &str, centre: f64, found: SubspaceStatistic) -> Outcome<f64> {
@@ -169,7 +170,7 @@ fn squared(defect: &str, centre: f64, found: SubspaceStatistic) -> Outcome<f64> 
 }
 
 /// Have false alarms and misses at their thresholds the rate that was asked for, in records that deviate by the bias?
-fn errors(draw: &Draw<'_>, level: NoiseLevel, stream: u64) -> Outcome<bool> {
+fn errors(draw: &Draw<'_>, level: NoiseLevel, stream: u64) -> Outcome<Figure> {
     const RATE: f64 = 0.01;
     const BIAS: f64 = 0.5;
     let presumed = if draw.defect == "bias_left_out" {
@@ -193,12 +194,12 @@ fn errors(draw: &Draw<'_>, level: NoiseLevel, stream: u64) -> Outcome<bool> {
         Ok(u64::from(rate < RATE))
     });
     let wrong = wrong.sum::<Outcome<u64>>()?;
-    count_rejects(wrong, draw.trials(), RATE, draw.row.alpha)
+    count_test(wrong, draw.trials(), RATE, draw.row.alpha)
 }
 
 /// How often is the autocorrelation of white noise less probable than 5 %? With so few samples a little less often than that, but
 /// how often is known exactly.
-fn ljung_box_rate(draw: &Draw<'_>) -> Outcome<bool> {
+fn ljung_box_rate(draw: &Draw<'_>) -> Outcome<Figure> {
     const SAMPLES: usize = 20;
     /// By Imhof's integral, `autocorrelation_rate` in `power.py`.
     const RATE: f64 = 0.047_389_859_56;
@@ -217,5 +218,5 @@ fn ljung_box_rate(draw: &Draw<'_>) -> Outcome<bool> {
         Ok(u64::from(ljung_box(&noise, 1)? <= level))
     });
     let improbable = improbable.sum::<Outcome<u64>>()?;
-    count_rejects(improbable, draw.trials(), RATE, draw.row.alpha)
+    count_test(improbable, draw.trials(), RATE, draw.row.alpha)
 }

@@ -39,26 +39,27 @@ fn every_check_sees_a_defect_and_every_named_defect_is_seen() {
     }
 }
 
-// Verifies: CLI-053.
 #[test]
 fn a_check_that_rejects_fails_and_so_does_one_that_sees_nothing_or_cannot_run() {
     let name = "single_mean_h1";
-    let failed = |rejects| Check::new(name, rejects).run(7).unwrap_err();
+    let failed = |measure| Check::new(name, measure).run(7).unwrap_err();
     assert_eq!(
-        failed(|_| Ok(true)),
-        "check single_mean_h1 rejects the detector at alpha = 2.5e-8, seed 7"
+        failed(|_| Ok(Figure::at_most("share", 0.5, 0.25))),
+        "check single_mean_h1 rejects the detector at alpha = 2.5e-8, seed 7: share: 0.5, expected at most 0.25"
     );
     assert_eq!(
         failed(|_| Err("no".into())),
         "check single_mean_h1 cannot run, seed 7: no"
     );
-    let blind = Check::new(name, |_| Ok(false));
+    let blind = Check::new(name, |_| Ok(Figure::told("share", 0.5)));
     assert_eq!(blind.run(7), Ok(()));
     assert_eq!(
         blind.run_negative_controls(7).unwrap_err(),
         "check single_mean_h1 does not see the defect half_left_out, seed 7"
     );
-    let unknown = Check::new("nothing", |_| Ok(false)).run(7).unwrap_err();
+    let unknown = Check::new("nothing", |_| Ok(Figure::told("share", 0.5)))
+        .run(7)
+        .unwrap_err();
     assert!(unknown.starts_with("check nothing cannot run, seed 7: "));
 }
 
@@ -76,4 +77,25 @@ fn draws_depend_on_the_seed() {
     };
     assert_eq!(check(1), check(1));
     assert_ne!(check(1), check(2));
+}
+
+#[test]
+fn the_limits_of_a_count_are_the_last_counts_that_the_exact_test_accepts() {
+    use palpate::stats::binomial::{at_least, at_most};
+    for (n, p, alpha) in [(40, 0.5, 1e-3), (1000, 0.01, 1e-6), (12, 0.9, 0.05)] {
+        let accepted: Vec<u64> = (0..=n)
+            .filter(|&k| {
+                let tails = [at_least(k, n, p), at_most(k, n, p)];
+                tails
+                    .iter()
+                    .all(|tail| tail.as_ref().unwrap() >= &(0.5 * alpha))
+            })
+            .collect();
+        let figure = checks::count_test(3, n, p, alpha).unwrap();
+        assert_eq!(figure.at_least, accepted[0] as f64 / n as f64);
+        assert_eq!(
+            figure.at_most,
+            accepted[accepted.len() - 1] as f64 / n as f64
+        );
+    }
 }

@@ -1,8 +1,9 @@
-//! From every requirement to its code, tests, proofs and vectors (`spec/traceability.md`), from the annotations in the
+//! From every requirement to its code, tests, proofs and vectors (`spec/verification-plan.md`), from the annotations in the
 //! sources.
 //!
 //! `PALPATE_WRITE_TRACEABILITY=1 cargo test -p palpate-verify --test traceability` renews `spec/traceability.csv`; with
-//! `PALPATE_TEST_LOG=FILE[:FILE…]` the tests of the trace are looked for in the output of test runs.
+//! `PALPATE_TEST_LOG=FILE[:FILE…]` the tests of the trace are looked for in the output of test runs, and with
+//! `PALPATE_TEST_RECORD=FILE` what became of them is written there.
 
 mod elsewhere;
 mod log;
@@ -44,13 +45,12 @@ fn listed(problems: &Problems) -> String {
     lines.collect()
 }
 
-// Verifies: EVD-020, EVD-021, EVD-022, EVD-023, EVD-024, EVD-029, EVD-034.
 #[test]
 fn every_requirement_has_code_and_a_test_or_proof() {
     let trace = trace();
     let (all, problems) = (trace.requirements.len(), trace.problems.len());
     println!("{all} requirements");
-    assert!(all > 500, "{all} requirements: are the chapters read?");
+    assert!(all > 400, "{all} requirements: are the chapters read?");
     // Straight to standard error, since what a passing test prints is not shown.
     let unchecked = elsewhere::unchecked(&trace, set);
     std::io::stderr()
@@ -58,12 +58,11 @@ fn every_requirement_has_code_and_a_test_or_proof() {
         .expect("standard error");
     assert!(
         problems == 0,
-        "{problems} problems (spec/traceability.md says what an annotation is):{}",
+        "{problems} problems (spec/verification-plan.md says what an annotation is):{}",
         listed(&trace.problems)
     );
 }
 
-// Verifies: EVD-030.
 #[test]
 fn the_committed_table_is_that_of_the_sources() {
     let path = Path::new(ROOT).join("spec/traceability.csv");
@@ -83,7 +82,6 @@ fn the_committed_table_is_that_of_the_sources() {
     );
 }
 
-// Verifies: EVD-031.
 #[test]
 fn every_test_of_the_trace_ran() {
     let Some(paths) = std::env::var_os("PALPATE_TEST_LOG") else {
@@ -97,6 +95,11 @@ fn every_test_of_the_trace_ran() {
     }
     let trace = trace();
     let (missing, all) = (log.missing(&trace), trace.evidence.len());
+    if let Some(path) = std::env::var_os("PALPATE_TEST_RECORD") {
+        let record = serde_json::to_string_pretty(&log.record(&trace))
+            .expect("a record of text and numbers");
+        fs::write(path, record).expect("the record can be written");
+    }
     println!("{all} tests and proofs of the trace");
     assert!(
         missing.is_empty(),
@@ -106,7 +109,6 @@ fn every_test_of_the_trace_ran() {
     );
 }
 
-// Verifies: EVD-032.
 #[test]
 fn the_built_in_table_says_what_the_sources_say() {
     if writes() {

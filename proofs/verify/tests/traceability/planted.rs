@@ -1,6 +1,8 @@
 //! Faults planted into a small repository: each must be found, with its place.
 
 use crate::listed;
+use palpate_verify::record::End;
+
 use crate::log::Log;
 use crate::repository::Repository;
 use crate::trace::Trace;
@@ -120,7 +122,6 @@ fn sound() -> Trace {
     changed("Cargo.toml", "small", "small")
 }
 
-// Verifies: EVD-020, EVD-030.
 #[test]
 fn a_sound_repository_has_its_trace() {
     let trace = sound();
@@ -167,7 +168,6 @@ spec/a.md ¦ \n|  ¦ - **AAA-009** It MUST. (by inspection: )\n\n|  ¦ spec/a.md
 spec/a.md ¦ \n|  ¦ - **AAA-009** It MUST. (by inspection: here)\n\n|  ¦ spec/a.md:6: AAA-009 has no code
 "#;
 
-// Verifies: EVD-020, EVD-021, EVD-022, EVD-023, EVD-024, EVD-025, EVD-029.
 #[test]
 fn a_planted_fault_is_named_with_its_place() {
     for line in FAULTS.trim().lines() {
@@ -233,7 +233,6 @@ ok lost ¦ FAILED lost ¦ tests/hid-stack/src/main.rs::lost did not run: the log
 == ok: cargo doc ¦ == cargo doc ¦ .ci/run cargo doc did not run: the log has no "== ok: cargo doc" (AAA-003)
 "#;
 
-// Verifies: EVD-031.
 #[test]
 fn what_is_left_to_the_night_is_not_missed_by_day() {
     // The slow test and the bound where what runs them is known.
@@ -273,7 +272,6 @@ fn what_is_left_to_the_night_is_not_missed_by_day() {
     assert_eq!(missing(&unlisted, &trace).len(), 1);
 }
 
-// Verifies: EVD-031.
 #[test]
 fn a_test_that_did_not_pass_is_named_with_its_requirements() {
     let missing = |from: &str, to: &str| {
@@ -290,4 +288,41 @@ fn a_test_that_did_not_pass_is_named_with_its_requirements() {
         };
         assert_eq!(missing(from, to), found, "{from}");
     }
+}
+
+#[test]
+fn the_record_has_what_became_of_each_test_and_who_ran_it() {
+    let mut log = Log::default();
+    let timed = PASSED.replace(
+        "waits ... ok",
+        "waits ... ok\ntest result: ok. 1 passed; 0 failed; finished in 2.50s",
+    );
+    let step = "== 7 s\n== ok: gappa proofs/bound.g";
+    log.read(&timed.replace("== ok: gappa proofs/bound.g", step));
+    log.read("== commit: 0123\n== system: Debian\n== left to .ci/run all: tests/same_bits/run\n");
+    let mut trace = sound();
+    trace.evidence.insert(
+        "tests/same_bits/run".into(),
+        vec!["tests/same_bits/run".into()],
+    );
+    trace.evidence.insert(
+        "src/lib.rs::never".into(),
+        vec!["small src/lib.rs never".into()],
+    );
+    let record = log.record(&trace);
+    assert_eq!(
+        (&*record.commit, &*record.system, &*record.ended),
+        ("0123", "Debian", "not known")
+    );
+    assert_eq!(record.log_sha256.len(), 64);
+    let entry = |name: &str| {
+        let entry = record.entries.iter().find(|entry| entry.name == name);
+        entry
+            .map(|entry| (entry.result, entry.seconds))
+            .unwrap_or_else(|| panic!("{name}"))
+    };
+    assert_eq!(entry("tests/slow/main.rs::waits"), (End::Passed, Some(2.5)));
+    assert_eq!(entry("proofs/bound.g"), (End::Passed, Some(7.0)));
+    assert_eq!(entry("tests/same_bits/run"), (End::Left, None));
+    assert_eq!(entry("src/lib.rs::never"), (End::Missing, None));
 }

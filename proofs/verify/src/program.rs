@@ -1,0 +1,298 @@
+//! The shipped program `palpate`, judged from outside: it is run, and what it prints is held against other programs' results.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use palpate::build::Build;
+use palpate_conform::{Measure, Program, Settings, Suite, Verdict, run};
+
+use super::fem::largest;
+use super::{Check, Figure, Outcome};
+
+/// The checks of this part, whose figures [`outcome`] finds.
+pub const CHECKS: &[Check] = &[
+    Check::new(
+        "program.identity",
+        "The program says that it is of the same version and commit as palpate-verify.",
+        &["EVD-067", "EVD-068"],
+        "None: equal or not. Fixed in 0.2.0.",
+        not_alone,
+    ),
+    Check::new(
+        "program.vectors",
+        "The program answers every vector, asked through a pipe, within its tolerance, and refuses what it must refuse.",
+        &["ORA-001", "ORA-046", "VEC-002", "EVD-050"],
+        "Each case states its tolerance, derived in the file of its group from the program that computed it. Fixed in 0.1.0.",
+        not_alone,
+    ),
+    Check::new(
+        "program.scikit_fem",
+        "The forces that the program prints are those of scikit-fem on meshes of its own.",
+        &["FEM-021", "FEM-025", "CLI-013"],
+        "The band of scikit-fem's extrapolation and the errors that FEM-021 and FEM-025 allow. Fixed in 0.1.0.",
+        not_alone,
+    ),
+    Check::new(
+        "program.calculix",
+        "The forces that the program prints are those of CalculiX on the same meshes.",
+        &["FEM-080", "CLI-013"],
+        "Penalty overlap of CalculiX and contact at nodes in place of Gauss points: FEM-080. Fixed in 0.1.0.",
+        not_alone,
+    ),
+];
+
+/// Forces by other programs.
+const OUTSIDE: &str = include_str!("outside.csv");
+
+fn not_alone() -> Result<Vec<Figure>, String> {
+    Err("it needs the path of a program".into())
+}
+
+/// The program beside the one that runs.
+pub fn beside() -> PathBuf {
+    let own = std::env::current_exe().unwrap_or_default();
+    own.with_file_name(format!("palpate{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// Carries out one of [`CHECKS`] on a program.
+pub fn outcome(check: &Check, program: &Path) -> Outcome {
+    Outcome::measured(check, check.name.into(), || match check.name {
+        "program.identity" => identity(program),
+        "program.vectors" => vectors(program),
+        "program.scikit_fem" => forces(program, "scikit-fem"),
+        _ => forces(program, "CalculiX"),
+    })
+}
+
+/// The SHA-256 of a program's file, in hexadecimal.
+pub fn sha256(program: &Path) -> Option<String> {
+    let identity = Program::of_command(&[program.into()], String::new());
+    Some(identity.files.first()?.sha256.clone())
+}
+
+/// What the program prints.
+fn printed(program: &Path, arguments: &[&str]) -> Result<String, String> {
+    let shown = program.display();
+    let output = Command::new(program)
+        .args(arguments)
+        .output()
+        .map_err(|error| {
+            format!("cannot start {shown}: {error}; expected the program palpate there, or --program FILE")
+        })?;
+    match output.status.success() {
+        true => String::from_utf8(output.stdout).map_err(|error| format!("{shown}: {error}")),
+        false => Err(format!(
+            "{shown} {}: {}",
+            arguments.join(" "),
+            String::from_utf8_lossy(&output.stderr).trim_end()
+        )),
+    }
+}
+
+fn identity(program: &Path) -> Result<Vec<Figure>, String> {
+    let said = printed(program, &["--version"])?;
+    let Build {
+        version, commit, ..
+    } = Build::THIS;
+    let own = [format!("palpate {version}"), format!("commit {commit}")];
+    let differ = own
+        .iter()
+        .filter(|own| !said.lines().any(|said| said == *own));
+    Ok(
+        figures! { "of version and commit, different from palpate-verify's" => count(differ.count() as u64, 0); },
+    )
+}
+
+fn vectors(program: &Path) -> Result<Vec<Figure>, String> {
+    let suite = Suite::embedded().map_err(|error| error.to_string())?;
+    let settings = Settings {
+        command: vec![program.into(), "oracle".into()],
+        skip: Vec::new(),
+        lenient: false,
+        timeout: Duration::from_secs(60),
+    };
+    let verdict =
+        run(&suite, &settings, &Measure::exact(), |_| ()).map_err(|error| error.to_string())?;
+    Ok(judged(&suite, &verdict))
+}
+
+fn judged(suite: &Suite, verdict: &Verdict) -> Vec<Figure> {
+    let failed = match verdict.findings.first() {
+        None => "cases that are not right".into(),
+        Some(first) => format!(
+            "cases that are not right, the first {} of {}: {}",
+            first.case, first.group, first.reason
+        ),
+    };
+    vec![
+        Figure::told("groups of cases", verdict.groups.len() as f64),
+        Figure::count(
+            "cases right",
+            verdict.total(|group| group.right) as u64,
+            suite.cases() as u64,
+        ),
+        Figure::count(failed, verdict.findings.len() as u64, 0),
+    ]
+}
+
+/// One row of the table of forces: what was solved, and the normal and the lateral force with their limits, N.
+struct Row<'a> {
+    mesh: &'a str,
+    phantom: &'a str,
+    pose: [&'a str; 2],
+    forces: [f64; 2],
+    limits: [f64; 2],
+}
+
+impl Row<'_> {
+    /// The rows of a program.
+    fn of(by: &str) -> Result<Vec<Row<'static>>, String> {
+        let rows = OUTSIDE
+            .lines()
+            .filter(|line| line.split(',').next() == Some(by));
+        let row = |line: &'static str| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let [_, mesh, phantom, depth, lateral, numbers @ ..] = &cells[..] else {
+                return None;
+            };
+            let numbers: Result<Vec<f64>, _> = numbers.iter().map(|text| text.parse()).collect();
+            let [normal, lateral_force, normal_limit, lateral_limit] =
+                numbers.ok()?.try_into().ok()?;
+            Some(Row {
+                mesh,
+                phantom,
+                pose: [depth, lateral],
+                forces: [normal, lateral_force],
+                limits: [normal_limit, lateral_limit],
+            })
+        };
+        rows.map(|line| row(line).ok_or_else(|| format!("outside.csv: {line:?}, expected 9 cells")))
+            .collect()
+    }
+
+    /// The normal and the lateral force that the program prints at the pose, N.
+    fn solved(&self, program: &Path) -> Result<[f64; 2], String> {
+        let [depth, lateral] = self.pose;
+        let arguments = [
+            "solve",
+            "--phantom",
+            self.phantom,
+            "--depths-mm",
+            depth,
+            "--laterals-mm",
+            lateral,
+            "--mesh-mm",
+            self.mesh,
+            "--format",
+            "csv",
+        ];
+        let table = printed(program, &arguments)?;
+        let cells: Option<Vec<f64>> = (table.lines().nth(1))
+            .and_then(|line| line.split(',').map(|cell| cell.parse().ok()).collect());
+        match cells.as_deref() {
+            Some(&[_, _, normal, lateral]) => Ok([normal, lateral]),
+            _ => Err(format!(
+                "{} solve printed {table:?}, expected one pose",
+                program.display()
+            )),
+        }
+    }
+}
+
+/// The forces that the program prints against those by another one.
+fn forces(program: &Path, by: &str) -> Result<Vec<Figure>, String> {
+    use rayon::prelude::*;
+    let rows = Row::of(by)?;
+    let solved: Vec<[f64; 2]> = rows
+        .par_iter()
+        .map(|row| row.solved(program))
+        .collect::<Result<_, _>>()?;
+    let mut figures = vec![Figure::told("poses", rows.len() as f64)];
+    for (k, component) in ["normal", "lateral"].into_iter().enumerate() {
+        let off = |(row, found): (&Row<'_>, &[f64; 2])| (found[k] - row.forces[k]).abs();
+        let pairs = || rows.iter().zip(&solved);
+        figures.extend(figures! {
+            "largest difference of a {component} force, N" => told(largest(pairs().map(off)));
+            "largest difference of a {component} force over its limit" => at_most(largest(pairs().map(|pair| off(pair) / pair.0.limits[k])), 1.0);
+        });
+    }
+    Ok(figures)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A program that is a shell script, whose `solve` prints a pose of these forces.
+    fn script(name: &str, forces: &str) -> PathBuf {
+        use std::os::unix::fs::PermissionsExt;
+        let path = std::env::temp_dir().join(format!("palpate-{}-{name}", std::process::id()));
+        let Build {
+            version, commit, ..
+        } = Build::THIS;
+        let text = format!(
+            "#!/bin/sh\ncase $1 in\n--version) echo 'palpate {version}'; echo 'commit {commit}';;\n\
+             solve) echo head; echo 4.0,0.0,{forces};;\n*) echo no >&2; exit 3;;\nesac\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+        path
+    }
+
+    fn judged_by(name: &str, program: &Path) -> Outcome {
+        let check = CHECKS.iter().find(|check| check.name == name).unwrap();
+        let outcome = outcome(check, program);
+        std::fs::remove_file(program).ok();
+        outcome
+    }
+
+    #[test]
+    fn a_program_that_prints_other_forces_or_none_fails() {
+        // Right at one pose of scikit-fem's, and so wrong at the others.
+        for (forces, why) in [
+            ("1.4826,0.0", "over its limit"),
+            ("NaN,0.0", "over its limit"),
+            ("1.4826", "expected one pose"),
+        ] {
+            let outcome = judged_by("program.scikit_fem", &script("forces", forces));
+            assert!(!outcome.passed());
+            assert!(outcome.complaint().unwrap().contains(why), "{outcome:?}");
+        }
+    }
+
+    #[test]
+    fn a_program_of_another_version_or_none_fails() {
+        assert!(judged_by("program.identity", &script("identity", "")).passed());
+        assert!(!judged_by("program.identity", Path::new("/bin/echo")).passed());
+        let missing = judged_by("program.identity", Path::new("/nowhere/palpate"));
+        let complaint = missing.complaint().unwrap();
+        assert!(
+            complaint.contains("cannot start /nowhere/palpate")
+                && complaint.contains("--program FILE")
+        );
+    }
+
+    #[test]
+    fn a_program_without_an_oracle_fails() {
+        let silent = judged_by("program.vectors", &script("silent", ""));
+        assert!(silent.failure.is_some(), "{silent:?}");
+    }
+
+    #[test]
+    fn every_row_of_the_table_is_of_a_program_and_has_a_limit() {
+        let rows = OUTSIDE
+            .lines()
+            .filter(|line| !line.starts_with('#'))
+            .count()
+            - 1;
+        let [scikit_fem, calculix] = ["scikit-fem", "CalculiX"].map(|by| Row::of(by).unwrap());
+        assert_eq!((scikit_fem.len(), calculix.len()), (20, 9));
+        assert_eq!(rows, 29);
+        let limits = scikit_fem
+            .iter()
+            .chain(&calculix)
+            .flat_map(|row| row.limits);
+        assert!(limits.clone().all(|limit| limit > 0.0 && limit < 0.02));
+    }
+}
