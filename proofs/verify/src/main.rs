@@ -89,6 +89,10 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
         let message = "--only record: expected --record FILE, which .ci/run writes";
         return Err(CliError::Usage(message.into()));
     }
+    let records = arguments.record.iter().map(|path| Record::read(path));
+    let records = records
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(CliError::Usage)?;
     // What can fail at once comes first: minutes of work shall not end for want of a place.
     make_folder(&arguments.out)?;
     let requirements = traceability::requirements().map_err(CliError::Check)?;
@@ -103,10 +107,6 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
             "soak: {batteries} times {checks} checks, seed {seed}\n"
         ))?;
     }
-    let records = arguments.record.iter().map(|path| Record::read(path));
-    let records = records
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(CliError::Usage)?;
     let system = System::here(arguments.operator.clone());
     let judged = arguments.program.clone().unwrap_or_else(program::beside);
     let executable = |path: PathBuf| Some((path.display().to_string(), program::sha256(&path)?));
