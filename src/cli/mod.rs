@@ -66,6 +66,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     })
 }
 
+/// The commands and arguments of `palpate`, for completions and manual pages.
+pub fn command() -> clap::Command {
+    <CommandLine as clap::CommandFactory>::command()
+}
+
 /// Runs a program that takes arguments `A`: prints help and version, says on standard error in one line why it failed, and
 /// gives the exit code. The companions of `palpate` use it too.
 ///
