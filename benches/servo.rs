@@ -28,7 +28,7 @@ fn main() -> ExitCode {
     let mut criterion = Criterion::default().configure_from_args();
     let loaded = paper_table();
     let table = loaded.table().expect("the table is valid");
-    let limits = Limits::new(4.0, 0.05, 0.5, 20).expect("the limits are valid");
+    let limits = Limits::for_playback(4.0).expect("the limits are valid");
 
     let state: State = armed();
     let input = Input {

@@ -19,7 +19,7 @@ use servo_cases::{armed, paper_table, sample};
 type Case = (LoadedTable, Limits, State, Input);
 
 fn case(state: State, sample: Option<Sample>, request: Request) -> Case {
-    let limits = Limits::new(4.0, 0.05, 0.5, 20).expect("the limits are valid");
+    let limits = Limits::for_playback(4.0).expect("the limits are valid");
     (paper_table(), limits, state, Input { sample, request })
 }
 

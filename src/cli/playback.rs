@@ -13,13 +13,6 @@ use crate::hid::{Capabilities, HapticDevice};
 use crate::refusal::Refusal;
 use crate::servo::{Damping, Limits, LoadedTable};
 
-/// Largest growth of the force in one cycle of 1 ms, N: 250 N/s. The stiffest spring of the paper's display, 1200 N/m, grows so
-/// fast under a hand of 0.2 m/s.
-const SLEW: f32 = 0.25;
-
-/// Cycles without a fresh sample that are no fault.
-const WATCHDOG: u16 = 20;
-
 /// How long a device that was just plugged in may take until it can be opened.
 const PLUG_IN: Duration = Duration::from_millis(500);
 
@@ -96,13 +89,8 @@ impl DeviceArguments {
 }
 
 /// Limits for a force of at most `force` (N).
-///
-/// Implements: CLI-064.
 pub fn limits(force: f32) -> Result<Limits, CliError> {
-    let release = force / 8.0;
-    let slew = if SLEW < release { SLEW } else { release };
-    Limits::new(force, slew, release, WATCHDOG)
-        .map_err(CliError::refused(format_args!("--max-force {force}")))
+    Limits::for_playback(force).map_err(CliError::refused(format_args!("--max-force {force}")))
 }
 
 /// What a device says of its damping. Its force comes `delay_periods` after the sample.

@@ -95,6 +95,20 @@ impl Limits {
         })
     }
 
+    /// The limits with which `palpate play` plays at 1 kHz: `force` (N); a growth of 0.25 N in a cycle, 250 N/s, at most an eighth of
+    /// `force`; a release in 8 cycles; 20 cycles without a fresh sample. The stiffest spring of the paper's display, 1200 N/m, grows
+    /// by 240 N/s under a hand of 0.2 m/s.
+    ///
+    /// # Errors
+    /// [`InvalidLimits`].
+    ///
+    /// Implements: CLI-064.
+    pub fn for_playback(force: f32) -> Result<Limits, InvalidLimits> {
+        let release = force / 8.0;
+        let slew = if release < 0.25 { release } else { 0.25 };
+        Limits::new(force, slew, release, 20)
+    }
+
     /// Largest magnitude of a component of the force, N.
     pub fn force(&self) -> f32 {
         self.force

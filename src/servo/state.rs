@@ -19,7 +19,7 @@ pub struct Sample {
     pub lateral: f32,
 }
 
-/// What the person at the controls asks for.
+/// What the program that runs the loop asks of the kernel in a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Request {
     /// Nothing.

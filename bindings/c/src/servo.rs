@@ -247,10 +247,15 @@ pub struct ServoState {
 
 impl From<ServoState> for servo::State {
     fn from(state: ServoState) -> servo::State {
-        let mode = MODES.get(usize::from(state.mode));
+        let mode = MODES.get(usize::from(state.mode)).copied();
+        // No step leaves a NaN: of a mode that does not exist the kernel takes over nothing.
+        let [lateral, normal] = match mode {
+            Some(_) => [state.force.lateral, state.force.normal],
+            None => [f32::NAN; 2],
+        };
         servo::State {
-            mode: mode.copied().unwrap_or(Mode::Faulted(Fault::State)),
-            force: KernelForce::new(state.force.lateral, state.force.normal),
+            mode: mode.unwrap_or(Mode::Faulted(Fault::State)),
+            force: KernelForce::new(lateral, normal),
             sequence: (state.has_sequence != 0).then_some(state.sequence),
             missed: state.missed,
             arming: state.arming != 0,

@@ -104,8 +104,10 @@ static void servo(void) {
 
     /* Bytes that are no mode count as memory overwritten, and no request as one to disarm. */
     state.mode = 77;
+    state.force.lateral = state.force.normal = 1.0f;
     expect("mode", palpate_step(&table, &limits, NULL, 0, &state, &command), PALPATE_ERROR_OK);
     expect_true("a fault of the state", state.mode == PALPATE_SERVO_MODE_FAULT_STATE && command.playing == 0);
+    expect_true("at once", command.force.lateral == 0.0f && command.force.normal == 0.0f);
     state = before;
     sample.sequence = 4;
     expect("request", palpate_step(&table, &limits, &sample, 200, &state, &command), PALPATE_ERROR_OK);

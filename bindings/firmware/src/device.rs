@@ -36,7 +36,7 @@ impl<'a> Device<'a> {
         Some(Device {
             table,
             // 4 N at most, growing by 0.05 N a cycle and falling by 0.5 N; more than 20 cycles without a fresh report are a fault.
-            limits: Limits::new(4.0, 0.05, 0.5, 20).ok()?,
+            limits: Limits::for_playback(4.0).ok()?,
             units: Units::new(capabilities).ok()?,
             state: State::default(),
             sequence: 0,

@@ -39,15 +39,10 @@ const BATCH: u16 = 1000;
 /// Cycles of the loop that are timed.
 const CYCLES: u64 = 100_000;
 
-/// As `palpate timing` has them.
-fn limits() -> Result<Limits, String> {
-    Limits::new(4.0, 0.05, 0.5, 20).map_err(|error| error.to_string())
-}
-
 fn steps() -> Result<Vec<Figure>, String> {
     let loaded = paper::table().map_err(|error| error.to_string())?;
     let table = loaded.table().map_err(|error| format!("{error:?}"))?;
-    let limits = limits()?;
+    let limits = Limits::for_playback(4.0).map_err(|error| error.to_string())?;
     let mut state = State {
         mode: Mode::Armed,
         sequence: Some(0),
@@ -109,7 +104,7 @@ fn cycles() -> Result<Vec<Figure>, String> {
     let timing = measure(
         paper::device(CYCLES),
         table,
-        limits()?,
+        Limits::for_playback(4.0).map_err(|error| error.to_string())?,
         CYCLES,
         Budget::of(BUDGET),
         None,
