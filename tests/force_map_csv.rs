@@ -2,12 +2,13 @@
 #![cfg(feature = "std")]
 
 mod changes;
+mod random;
 
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use palpate::phantom::Phantom;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+use random::{axis, finite, seeded};
 
 const EXAMPLE: &str = "\
 depth_mm,lateral_mm,normal_force_n,lateral_force_n
@@ -167,35 +168,22 @@ fn a_diagonal_of_poses_is_refused_without_its_square() {
 }
 
 fn any_table() -> impl Strategy<Value = ForceTable> {
-    let finite = any::<u64>()
-        .prop_map(f64::from_bits)
-        .prop_filter("finite", |value| value.is_finite());
     let steps = || prop::collection::vec(1e-8..1e-2, 1..5);
-    let axis = |steps: &[f64], from: f64| {
-        let mut position = from;
-        let next = |step: &f64| {
-            position += step;
-            position
-        };
-        steps.iter().map(next).collect::<Vec<f64>>()
-    };
-    (steps(), steps(), prop::collection::vec(finite, 32)).prop_map(move |(down, across, forces)| {
-        let matrix = |skip: usize| {
-            Matrix::from_fn(down.len(), across.len(), |row, column| {
-                forces[skip + 4 * row + column]
-            })
-        };
-        let (depths, laterals) = (axis(&down, 0.0), axis(&across, -0.01));
-        ForceTable::new(depths, laterals, Force::new(matrix(16), matrix(0))).unwrap()
-    })
+    (steps(), steps(), prop::collection::vec(finite(), 32)).prop_map(
+        move |(down, across, forces)| {
+            let matrix = |skip: usize| {
+                Matrix::from_fn(down.len(), across.len(), |row, column| {
+                    forces[skip + 4 * row + column]
+                })
+            };
+            let (depths, laterals) = (axis(0.0, &down), axis(-0.01, &across));
+            ForceTable::new(depths, laterals, Force::new(matrix(16), matrix(0))).unwrap()
+        },
+    )
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        rng_seed: RngSeed::Fixed(5),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(seeded(5))]
 
     // Verifies: MAP-031, MAP-036, MAP-038.
     #[test]

@@ -2,6 +2,7 @@
 #![cfg(feature = "std")]
 
 mod changes;
+mod random;
 
 use palpate::force::Force;
 use palpate::force_map::{
@@ -10,7 +11,7 @@ use palpate::force_map::{
 };
 use palpate::phantom::Phantom;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+use random::{axis, finite, seeded};
 
 /// The file of [`computed`], written by hand from the spec.
 const EXAMPLE: &str = r#"{
@@ -289,31 +290,15 @@ fn what_is_no_json_is_refused_with_its_line() {
     assert!(error.to_string().contains(expected), "{error}");
 }
 
-/// A finite number of any size.
-fn finite() -> impl Strategy<Value = f64> {
-    any::<u64>()
-        .prop_map(f64::from_bits)
-        .prop_filter("finite", |value| value.is_finite())
-}
-
-/// An axis of the given length, in m.
-fn axis(length: usize) -> impl Strategy<Value = Vec<f64>> {
-    let steps = prop::collection::vec(1e-4..2e-3, length);
-    steps.prop_map(|steps| {
-        let mut position = 0.0;
-        let next = |step: &f64| {
-            position += step;
-            position
-        };
-        steps.iter().map(next).collect()
-    })
-}
-
 fn any_map() -> impl Strategy<Value = ForceMap> {
     (1usize..5, 1usize..5).prop_flat_map(|(rows, columns)| {
         let values = || prop::collection::vec(finite(), rows * columns);
         let matrix = || values().prop_map(move |values| Matrix::new(columns, values).unwrap());
         let numbers = (0.0..1.0, 0.0..1e-3, 0.0..1e-6, any::<u32>(), 1e-6..1e-3);
+        let axis = |length| {
+            let steps = prop::collection::vec(1e-4..2e-3, length);
+            steps.prop_map(|steps| axis(0.0, &steps))
+        };
         let axes = (axis(rows), axis(columns));
         let matrices = (matrix(), matrix(), matrix());
         (axes, matrices, numbers, ".*").prop_map(map_of)
@@ -344,11 +329,7 @@ fn map_of((axes, matrices, numbers, element): (Axes, Matrices, Numbers, String))
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        rng_seed: RngSeed::Fixed(4),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(seeded(4))]
 
     // Verifies: MAP-022.
     #[test]

@@ -4,6 +4,8 @@
 #[path = "phantom_file/any.rs"]
 mod any;
 mod changes;
+#[allow(dead_code)] // the seed alone
+mod random;
 
 use palpate::phantom::{BUILTIN_NAMES, Phantom, Shape, Support};
 

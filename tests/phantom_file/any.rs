@@ -3,8 +3,8 @@
 use palpate::phantom::{Inclusion, Layer, Material, Phantom, Probe, Shape, Support, Well};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
+use super::random::seeded;
 use super::{EXAMPLE, read};
 
 fn material() -> impl Strategy<Value = Material> {
@@ -96,11 +96,7 @@ fn phantom() -> impl Strategy<Value = Phantom> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        rng_seed: RngSeed::Fixed(1),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(seeded(1))]
 
     // Verifies: PHA-006, PHA-027, PHA-029.
     #[test]

@@ -94,8 +94,12 @@ fn faults_are_seen() {
     let cut = "<div style=\"overflow: hidden; width: 9rem; white-space: nowrap\">a line that is too long for it</div>";
     let beyond = "<svg viewBox=\"0 0 9 9\"><text x=\"0\" y=\"5\">long text</text></svg>";
     let two = "<svg viewBox=\"0 0 900 99\"><text x=\"9\" y=\"50\">one</text><text x=\"14\" y=\"52\">two</text></svg>";
-    let cut_off = [(wide, "outside"), (cut, "cut off")];
-    let planted = [cut_off, [(beyond, "outside its figure"), (two, "overlap")]].concat();
+    let planted = [
+        (wide, "outside"),
+        (cut, "cut off"),
+        (beyond, "outside its figure"),
+        (two, "overlap"),
+    ];
     let page = here.at("page.html");
     let write = |markup: &str| {
         let text = format!("<!DOCTYPE html><title>t</title><body>{markup}</body>");
