@@ -1,7 +1,7 @@
 //! Expected values: mpmath at 40 digits (`src/psychophysics/reference.py`), and closed forms.
 
 use super::*;
-use crate::stats::noncentral::{f_ratio, student};
+use crate::stats::noncentral::{f_ratio, student, student_point};
 use crate::stats::tests::assert_near;
 
 /// Asserts |found/expected − 1| ≤ `tolerance`.
@@ -59,6 +59,36 @@ fn closed_forms() {
         let cauchy = core::f64::consts::FRAC_2_PI * (1.0 / x).atan();
         let upper = student(x, 1.0, 0.0).map(|tails| tails.upper);
         assert_relative(upper, 0.5 * cauchy, SMALL);
+    }
+}
+
+// Verifies: PSY-030, DET-133.
+#[test]
+fn tails_of_the_f_law() {
+    for (x, numerator, denominator, expected, tolerance) in [
+        (0.7, 3.0, 7.0, 0.5812496789055869, SMALL),
+        (12.5, 3.0, 36.0, 9.41270061958105e-06, SMALL),
+        (1e-6, 1.0, 9.0, 0.9992239303259732, SMALL),
+        (2.2, 9.0, 2.0, 0.3514564642148253, SMALL),
+        (1.05, 1000.0, 1000.0, 0.22029148252593375, 1e-11),
+    ] {
+        assert_relative(f_tail(x, numerator, denominator), expected, tolerance);
+    }
+}
+
+// Verifies: PSY-030.
+#[test]
+fn quantiles_of_students_law() {
+    for (confidence, degrees, expected, tolerance) in [
+        (0.95, 1.0, 12.706204736174692, 1e-12),
+        (0.95, 9.0, 2.262157162798205, 1e-12),
+        (0.95, 36.0, 2.0280940009804507, 1e-12),
+        // 1 − confidence has 10 digits only.
+        (0.999999, 3.0, 130.1545895571102, 1e-10),
+        (0.5, 1e6, 0.6744899955310873, LARGE),
+    ] {
+        let found = student_point(0.5 * (1.0 - confidence), degrees);
+        assert_relative(found, expected, tolerance);
     }
 }
 
