@@ -29,7 +29,7 @@ fn help_describes_every_argument() {
     insta::assert_snapshot!(help);
 }
 
-// Verifies: CLI-002, CLI-003, CLI-011, CLI-012, CLI-014, CLI-031, PHA-013, FEM-018.
+// Verifies: CLI-002, CLI-003, CLI-010, CLI-012, CLI-013, CLI-031, PHA-009, FEM-017.
 #[test]
 fn bad_input_gets_one_line_that_says_what_would_be_right() {
     let here = Place::new("bad-input");
@@ -106,7 +106,7 @@ fn solve_prints_the_librarys_map_by_either_contact_law() {
     }
 }
 
-// Verifies: CLI-016.
+// Verifies: CLI-013.
 #[test]
 fn certify_adds_bands_and_changes_no_force() {
     let here = Place::new("certify");
@@ -154,7 +154,7 @@ fn large_strain_is_warned_of() {
     assert!(warning.contains("inside out"), "{warning}");
 }
 
-// Verifies: CLI-004.
+// Verifies: CLI-003.
 #[test]
 fn a_reader_that_goes_away_is_no_error() {
     let here = Place::new("pipe");
@@ -202,7 +202,7 @@ fn a_measured_map_becomes_a_json_map() {
     assert!(printed.contains("silicone"));
 }
 
-// Verifies: CLI-021, CLI-022, CLI-023, CLI-024, CLI-025.
+// Verifies: CLI-017, CLI-022, CLI-020.
 #[test]
 fn a_measured_map_is_told_beside_its_phantom() {
     let here = Place::new("import-compared");
@@ -283,7 +283,7 @@ fn negative_laterals_of_an_asymmetric_phantom_are_solved_and_not_mirrored() {
     assert_eq!(right.laterals(), [0.0, 4e-3]);
 }
 
-// Verifies: CLI-014, CLI-016, FEM-016.
+// Verifies: CLI-013, FEM-016.
 #[test]
 fn an_asymmetric_phantom_has_bands_and_a_file_for_paraview() {
     let here = Place::new("asymmetric-vtu");
@@ -298,7 +298,7 @@ fn an_asymmetric_phantom_has_bands_and_a_file_for_paraview() {
     assert!(numbers.into_iter().eq(["0", "1", "2", "3", "4"]));
 }
 
-// Verifies: PSY-072, CLI-083.
+// Verifies: PSY-070, CLI-081.
 #[test]
 fn half_a_map_of_an_asymmetric_phantom_is_not_completed() {
     let here = Place::new("half");
@@ -323,7 +323,7 @@ fn quick_vtu(name: &str) -> String {
     format!("solve --phantom none --depths-mm 1 --laterals-mm 0 --mesh-mm 3 --vtu {name}")
 }
 
-// Verifies: CLI-005, CLI-086, CLI-087, CLI-088.
+// Verifies: CLI-005.
 #[cfg(unix)]
 #[test]
 fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
@@ -363,7 +363,7 @@ fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
     assert!(left.eq(expected.map(PathBuf::from)));
 }
 
-// Verifies: CLI-089.
+// Verifies: CLI-005.
 #[cfg(unix)]
 #[test]
 fn a_pipe_as_output_is_written_into_and_stays() {

@@ -142,7 +142,7 @@ fn assert_near(found: f64, expected: f64) {
     assert!(error < 1e-11, "found {found}, expected {expected}");
 }
 
-// Verifies: CLI-040, CLI-041, CLI-043, CLI-045, CLI-046, CLI-140, TRC-021.
+// Verifies: CLI-040, CLI-041, CLI-043, CLI-045, CLI-003, CLI-140, TRC-021.
 #[test]
 fn where_all_is_known_theta_is_that_of_the_library_and_of_a_plain_sum() {
     let [none, inclusion] = maps(place());
@@ -179,7 +179,7 @@ fn where_all_is_known_theta_is_that_of_the_library_and_of_a_plain_sum() {
     }
 }
 
-// Verifies: CLI-140, CLI-141, CLI-041.
+// Verifies: CLI-140, CLI-041.
 #[test]
 fn unless_told_otherwise_the_record_tells_what_is_unknown() {
     let unknown = |more: &str| answer("with.csv", more)["unknown"].clone();
@@ -203,7 +203,7 @@ fn unless_told_otherwise_the_record_tells_what_is_unknown() {
     assert_eq!(found["decision"], "inclusion");
 }
 
-// Verifies: CLI-141, CLI-142, TRC-076.
+// Verifies: CLI-041, TRC-076.
 #[test]
 fn a_blank_sweep_tells_the_noise() {
     let generator = Generator::new(20_261_123, 1);
@@ -242,7 +242,7 @@ fn criteria_set_the_threshold_and_keep_their_rate() {
     }
 }
 
-// Verifies: CLI-046, CLI-055, CLI-143, CLI-144, TRC-070, TRC-071.
+// Verifies: CLI-003, CLI-055, CLI-143, CLI-043, TRC-070.
 #[test]
 fn a_record_that_cannot_be_judged_is_neither_and_says_why() {
     let [none, _] = maps(place());
@@ -286,7 +286,7 @@ fn a_record_that_cannot_be_judged_is_neither_and_says_why() {
     }
 }
 
-// Verifies: CLI-144.
+// Verifies: CLI-043.
 #[test]
 fn the_last_line_is_a_sentence() {
     let usual = "taken as known: depth; fitted: offset, drift, gain, variance.";
@@ -306,7 +306,7 @@ fn the_last_line_is_a_sentence() {
     }
 }
 
-// Verifies: CLI-145, CLI-146.
+// Verifies: CLI-146.
 #[test]
 fn a_tolerance_that_no_map_can_count_is_told() {
     for map in ["none", "inclusion"] {
@@ -328,7 +328,7 @@ fn a_tolerance_that_no_map_can_count_is_told() {
     assert_eq!(found["warnings"], json!(["single_depth"]));
 }
 
-// Verifies: TRC-010, TRC-012.
+// Verifies: TRC-010.
 #[test]
 fn a_trace_over_time_is_the_same_trace() {
     let text = place().read("with.csv");
@@ -346,7 +346,7 @@ fn a_trace_over_time_is_the_same_trace() {
     assert_near(number(&found, "theta"), number(&expected, "theta"));
 }
 
-// Verifies: CLI-046.
+// Verifies: CLI-003.
 #[test]
 fn people_get_a_table_and_no_decision_is_a_failure() {
     let table = place().succeed("detect with.csv --bank bank.json --noise-sd-n 0.1");
@@ -363,7 +363,7 @@ fn answer_and_notes(trace: &str, more: &str) -> (Value, String) {
     (answer, said)
 }
 
-// Verifies: CLI-056, MAP-040, MAP-041, MAP-044, TRC-001.
+// Verifies: CLI-017, MAP-040, MAP-041, MAP-044, TRC-001.
 #[test]
 fn a_record_of_a_logger_is_the_same_record() {
     let rows = place().read("with.csv");
@@ -383,7 +383,7 @@ fn a_record_of_a_logger_is_the_same_record() {
     assert_eq!((found, String::new()), answer_and_notes("with.csv", ""));
 }
 
-// Verifies: CLI-057, TRC-025.
+// Verifies: CLI-140, TRC-025.
 #[test]
 fn samples_beyond_the_maps_are_trimmed_and_counted() {
     let rows = place().read("with.csv");

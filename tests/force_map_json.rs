@@ -144,7 +144,7 @@ fn assert_same(read: &ForceMap, written: &ForceMap) {
     assert_eq!(read, written);
 }
 
-// Verifies: MAP-020, MAP-021, MAP-022, PHA-029.
+// Verifies: MAP-020, MAP-022, PHA-029.
 #[test]
 fn a_computed_map_is_written_as_the_spec_says_and_read_back() {
     assert_eq!((SCHEMA, SCHEMA_VERSION), ("palpate-force-map", 1));
@@ -152,7 +152,7 @@ fn a_computed_map_is_written_as_the_spec_says_and_read_back() {
     assert_same(&read(&example()).unwrap(), &computed());
 }
 
-// Verifies: MAP-020, MAP-022, MAP-025, MAP-074.
+// Verifies: MAP-020, MAP-022, MAP-002, MAP-074.
 #[test]
 fn a_measured_map_is_written_and_read_back() {
     let source = Measurement::new("gel \"1\".csv", "ATI\nsensor");
@@ -195,7 +195,7 @@ fn the_version_that_made_a_map_stays_with_it() {
     assert_eq!(map.mirrored().unwrap().program_version(), "0.0.7");
 }
 
-// Verifies: MAP-023, MAP-026.
+// Verifies: MAP-024, MAP-026.
 #[test]
 fn other_schemas_and_newer_versions_are_refused_first() {
     for version in ["2", "\"1\"", "0", "1.5"] {
@@ -227,7 +227,7 @@ fn every_required_key_is_missed_by_name() {
     }
 }
 
-// Verifies: MAP-003, MAP-004, MAP-008, MAP-023, MAP-024, MAP-026.
+// Verifies: MAP-002, MAP-024, MAP-026.
 #[test]
 fn what_is_wrong_is_named_by_key_and_row() {
     let told = refusals(
@@ -262,7 +262,7 @@ fn what_is_wrong_is_named_by_key_and_row() {
     insta::assert_snapshot!(told);
 }
 
-// Verifies: MAP-025.
+// Verifies: MAP-002.
 #[test]
 fn a_certificate_comes_with_finite_elements() {
     let (before, _) = EXAMPLE.split_once(",\n  \"certificate\"").unwrap();

@@ -60,7 +60,7 @@ fn a_run_of_own_asymmetric_phantoms_shows_them() {
     assert!(page.contains("walls sliding, floor fixed"));
 }
 
-// Verifies: CLI-033.
+// Verifies: CLI-031.
 #[test]
 fn a_measured_map_is_shown_and_a_computed_one_refused() {
     let here = Place::new("measured");
@@ -79,7 +79,7 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
     has(&message, ["map-none.json: a computed map"]);
 }
 
-// Verifies: CLI-130, CLI-131, CLI-132.
+// Verifies: CLI-130, CLI-031.
 #[test]
 fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
     let here = Place::new("demo");
@@ -109,7 +109,7 @@ fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
     assert!(here.at("out/figures/figure-7-measured.csv.svg").exists());
 }
 
-// Verifies: CLI-030, CLI-032, REP-030, REP-043.
+// Verifies: CLI-030, CLI-032, REP-030, REP-040.
 #[test]
 fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
     let here = Place::new("paper");

@@ -104,7 +104,7 @@ fn rows_are_depths_and_columns_lateral_positions() {
     assert_eq!(Matrix::new(0, vec![0.0; 3]), None);
 }
 
-// Verifies: MAP-002, MAP-004, MAP-013.
+// Verifies: MAP-002, MAP-026.
 #[test]
 fn bad_axes_are_refused() {
     let cases = "
@@ -129,7 +129,7 @@ fn bad_axes_are_refused() {
     assert!(axes(&[0.0], &[-f64::MAX, f64::MAX]).is_ok());
 }
 
-// Verifies: MAP-003, MAP-005, MAP-013, CON-007.
+// Verifies: MAP-002, MAP-026, CON-007.
 #[test]
 fn bad_matrices_are_refused() {
     let good = Matrix::from_fn(2, 3, |_, _| 0.0);
@@ -151,7 +151,7 @@ fn bad_matrices_are_refused() {
     }
 }
 
-// Verifies: MAP-006, MAP-007, MAP-013.
+// Verifies: MAP-006, MAP-026.
 #[test]
 fn a_certificate_is_checked_number_by_number() {
     assert_eq!(computed(|_| ()).map(|_| ()), Ok(()));
@@ -179,7 +179,7 @@ fn a_certificate_is_checked_number_by_number() {
     assert_eq!(message, expected);
 }
 
-// Verifies: MAP-007.
+// Verifies: MAP-006.
 #[test]
 fn the_smallest_determinant_is_the_matrixs_own() {
     assert_eq!(
@@ -200,7 +200,7 @@ fn the_smallest_determinant_is_the_matrixs_own() {
     assert_eq!(of(&[[1.0, f64::NAN, 1.0], [2.0; 3]]), None);
 }
 
-// Verifies: MAP-008.
+// Verifies: MAP-002.
 #[test]
 fn a_map_fits_its_phantom() {
     let certificate = computed(|_| ()).unwrap().certificate().unwrap().clone();
@@ -232,7 +232,7 @@ fn symmetry_extends_a_map_to_negative_positions() {
     assert_eq!(map.phantom().unwrap().name, "2.6");
 }
 
-// Verifies: MAP-009, MAP-010.
+// Verifies: MAP-009.
 #[test]
 fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
     let with = |force: f64| {
@@ -256,7 +256,7 @@ fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
     );
 }
 
-// Verifies: MAP-010.
+// Verifies: MAP-009.
 #[test]
 fn only_a_map_from_zero_on_is_extended() {
     let message = refusal(axes(&[0.0], &[0.001, 0.002]).unwrap().mirrored());
@@ -267,14 +267,14 @@ fn only_a_map_from_zero_on_is_extended() {
     assert_eq!(alone.laterals(), [0.0]);
 }
 
-// Verifies: MAP-004, MAP-036.
+// Verifies: MAP-002, MAP-022.
 #[test]
 fn minus_zero_is_no_position_of_its_own() {
     let table = axes(&[-0.0], &[-0.0, 0.001]).unwrap();
     assert!(table.depths()[0].is_sign_positive() && table.laterals()[0].is_sign_positive());
 }
 
-// Verifies: MAP-011, MAP-014.
+// Verifies: MAP-011.
 #[test]
 fn a_signal_is_the_map_minus_its_reference() {
     let map = computed(|_| ()).unwrap();
@@ -292,7 +292,7 @@ fn a_signal_is_the_map_minus_its_reference() {
     assert_eq!(signal.forces().lateral, map.forces().lateral);
 }
 
-// Verifies: MAP-005, MAP-013, MAP-014.
+// Verifies: MAP-002, MAP-026, MAP-011.
 #[test]
 fn a_signal_needs_equal_axes() {
     let shifted = axes(&[0.0, 0.001], &[0.0, 0.002, 0.005 + 1.1e-9]).unwrap();
@@ -315,7 +315,7 @@ fn a_signal_needs_equal_axes() {
     assert_eq!(message, expected);
 }
 
-// Verifies: MAP-012, MAP-015.
+// Verifies: MAP-012.
 #[test]
 fn forces_at_a_stored_depth() {
     let table = table();
@@ -377,7 +377,7 @@ proptest! {
     }
 }
 
-// Verifies: MAP-016.
+// Verifies: MAP-012.
 #[test]
 fn a_map_cut_to_some_positions_keeps_their_columns() {
     let map = computed(|_| ()).unwrap();

@@ -85,7 +85,7 @@ fn refuses(shapes: &[(f64, f64, Shape)], expected: &str) {
     assert_eq!(shape_refusal(shapes), format!("inclusion{expected}"));
 }
 
-// Verifies: PHA-001, PHA-014.
+// Verifies: PHA-001.
 #[test]
 fn other_names_are_refused_with_the_list() {
     assert_eq!(BUILTIN_NAMES, ["none", "2.6", "4.6", "6.6", "8.6"]);
@@ -124,7 +124,7 @@ fn number<'a>(phantom: &'a mut Phantom, key: &str) -> &'a mut f64 {
     }
 }
 
-// Verifies: PHA-003, PHA-004, PHA-005, PHA-009, CON-007.
+// Verifies: PHA-004, PHA-009, CON-007.
 #[test]
 fn numbers_that_are_not_finite_or_no_sizes_are_refused_by_key() {
     for key in KEYS.split(' ') {
@@ -141,7 +141,7 @@ fn numbers_that_are_not_finite_or_no_sizes_are_refused_by_key() {
     }
 }
 
-// Verifies: PHA-004, PHA-005, PHA-007.
+// Verifies: PHA-004.
 #[test]
 fn the_ends_of_the_ranges_are_where_the_spec_says() {
     let valid = |change: &dyn Fn(&mut Phantom)| changed(change).validate().is_ok();
@@ -156,7 +156,7 @@ fn the_ends_of_the_ranges_are_where_the_spec_says() {
     assert!(length(1.0) && !length(1.000_001));
 }
 
-// Verifies: PHA-018, PHA-009.
+// Verifies: PHA-004, PHA-009.
 #[test]
 fn there_are_some_layers_and_not_too_many() {
     let layers = |count| {
@@ -208,7 +208,7 @@ fn an_inclusion_keeps_its_clearance_from_layers_and_walls() {
     assert!(turned(x - 1e-6, depth - 1e-6) && !turned(x + 1e-6, 5.0) && !turned(0.0, depth + 1e-6));
 }
 
-// Verifies: PHA-015, PHA-031.
+// Verifies: PHA-015, PHA-006.
 #[test]
 fn discs_that_overlap_or_touch_are_refused() {
     // 3-4-5: centres 5 mm apart, and 4.9 mm are 2.4 + 2.5.
@@ -233,7 +233,7 @@ fn discs_that_overlap_or_touch_are_refused() {
     ]));
 }
 
-// Verifies: PHA-031.
+// Verifies: PHA-006.
 #[test]
 fn shapes_that_overlap_or_enclose_one_another_are_refused() {
     let overlap =
@@ -269,7 +269,7 @@ fn shapes_that_overlap_or_enclose_one_another_are_refused() {
     assert!(message.starts_with(beginning), "{message}");
 }
 
-// Verifies: PHA-032.
+// Verifies: PHA-004.
 #[test]
 fn ellipses_are_neither_slivers_nor_turned_too_far() {
     let of = |[width, height, angle]: [f64; 3]| [(0.0, 4.0, ellipse(width, height, angle))];
@@ -279,7 +279,7 @@ fn ellipses_are_neither_slivers_nor_turned_too_far() {
     assert!(message.starts_with("inclusion[0].angle_deg = NaN, expected "));
 }
 
-// Verifies: PHA-003, PHA-033.
+// Verifies: PHA-004.
 #[test]
 fn polygons_have_three_to_a_thousand_finite_corners() {
     let refusal = |points: &[[f64; 2]]| shape_refusal(&[(0.0, 4.0, polygon(points))]);
@@ -297,7 +297,7 @@ fn polygons_have_three_to_a_thousand_finite_corners() {
     );
 }
 
-// Verifies: PHA-010.
+// Verifies: PHA-004.
 #[test]
 fn names_that_break_a_table_are_refused() {
     let named = |name: &str| changed(|p| p.name = name.into()).validate().is_ok();
@@ -372,7 +372,7 @@ fn mirror_images_are_found_and_their_absence_too() {
     assert!(!phantom.is_symmetric());
 }
 
-// Verifies: PHA-011, PHA-012, PHA-013.
+// Verifies: PHA-011, PHA-009.
 #[test]
 fn a_probe_outside_the_gel_or_at_a_wall_is_refused() {
     let phantom = paper();

@@ -24,7 +24,7 @@ fn mixture(weighted: impl Iterator<Item = (f64, f64)>) -> f64 {
     weighted.map(|(p, theta)| p * theta.exp()).sum::<f64>().ln()
 }
 
-// Verifies: CLI-044, CLI-150, CLI-153.
+// Verifies: CLI-043, CLI-140, CLI-153.
 #[test]
 fn the_bank_finds_an_inclusion_that_was_moved() {
     let bound = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.001";
@@ -64,7 +64,7 @@ fn the_bank_finds_an_inclusion_that_was_moved() {
     assert!((estimate - 1.5e-3).abs() < 4.0 * sd, "{found}");
 }
 
-// Verifies: CLI-151, BNK-012.
+// Verifies: CLI-040, BNK-012.
 #[test]
 fn a_prior_weighs_the_inclusions_of_the_bank() {
     let head = "position_mm,depth_mm,diameter_mm,youngs_modulus_kpa,weight\n";
@@ -89,7 +89,7 @@ fn a_prior_weighs_the_inclusions_of_the_bank() {
     );
 }
 
-// Verifies: CLI-152.
+// Verifies: CLI-140.
 #[test]
 fn simulated_records_set_the_threshold() {
     let alarms = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.05";
@@ -108,7 +108,7 @@ fn simulated_records_set_the_threshold() {
     assert_eq!(located("moved.csv", &seeded), found);
 }
 
-// Verifies: CLI-163, CLI-164, CLI-165.
+// Verifies: CLI-163.
 #[test]
 fn a_figure_shows_where_the_inclusion_lies() {
     located("moved.csv", "--figure place.svg");

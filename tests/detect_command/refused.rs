@@ -32,7 +32,7 @@ const REFUSED: &str = "
 --depth-mm 3 --depth-tolerance-mm -1 => expected mm, at least 0
 ";
 
-// Verifies: CLI-041, CLI-042, CLI-046, CLI-048, CLI-140, CLI-141, CLI-142.
+// Verifies: CLI-041, CLI-042, CLI-003, CLI-048, CLI-140.
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
     place().refuses(REFUSED, |words| format!("detect with.csv {MAPS} {words}"));
@@ -59,7 +59,7 @@ with.csv --reference with.csv --inclusion inclusion.json => with.csv:2: no colum
 with.csv --bank missing.json => missing.json: cannot be read
 ";
 
-// Verifies: TRC-004, TRC-008, TRC-009, TRC-024, TRC-025, CLI-047, CLI-058, MAP-045.
+// Verifies: TRC-004, TRC-008, TRC-024, TRC-025, CLI-047, CLI-140, MAP-033.
 #[test]
 fn bad_files_are_refused_with_file_and_line() {
     let head = "position_mm,lateral_force_n,normal_force_n\n";

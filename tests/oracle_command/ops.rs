@@ -2,7 +2,7 @@
 
 use super::*;
 
-// Verifies: ORA-008, ORA-022.
+// Verifies: ORA-008.
 #[test]
 fn a_refusal_names_the_argument_and_what_would_be_right() {
     // Op and arguments, and then the code of the refusal and words of its message.
@@ -82,7 +82,7 @@ count_analysis {"correct": [[5], [1]], "trials": 4} => out_of_range: correct[0][
     }
 }
 
-// Verifies: ORA-020, ORA-021, ORA-023, ORA-024, ORA-025, ORA-026, ORA-027, ORA-028, ORA-029, ORA-030. Cases that are exact in binary, by hand.
+// Verifies: ORA-020, ORA-009. Cases that are exact in binary, by hand.
 #[test]
 fn each_op_answers() {
     let ops = ok("capabilities", json!({}))["ops"].clone();

@@ -110,7 +110,7 @@ proptest! {
         prop_assert_eq!(serde_json::from_str::<Phantom>(&json).unwrap(), phantom);
     }
 
-    // Verifies: PHA-026, PHA-028.
+    // Verifies: PHA-026.
     #[test]
     fn mutated_files_never_panic(at in 0..EXAMPLE.len(), removed in 0usize..20, added: String) {
         let end = (at + removed).min(EXAMPLE.len());
@@ -121,7 +121,7 @@ proptest! {
         }
     }
 
-    // Verifies: PHA-028.
+    // Verifies: PHA-026.
     #[test]
     fn mutated_tokens_never_panic(
         line in 0..29usize,

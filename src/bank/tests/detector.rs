@@ -77,7 +77,7 @@ fn polynomials_of_the_degree_of_the_points_are_exact_between_them() {
     assert_near(nodes[0], 0.9 * (5.0 / 6.0) * 0.75, 1e-15);
 }
 
-// Verifies: BNK-031, BNK-032, BNK-034.
+// Verifies: BNK-031, BNK-034.
 #[test]
 fn each_point_is_tested_as_alone() {
     let [positions, depths, ..] = axes();

@@ -15,7 +15,7 @@ use super::{builtin, disc, ellipse, hard, off_centre, polygon, with, zoo};
 /// Mesh sizes, m: those of a default map and its certificate, and the coarsest and finest in common use.
 const SIZES: [f64; 5] = [0.25e-3, 0.5e-3, 2e-3 / 3.0, 1e-3, 2e-3];
 
-// Verifies: FEM-001, FEM-002, FEM-003, FEM-030, FEM-031, FEM-033, FEM-036.
+// Verifies: FEM-014, FEM-002, FEM-031, FEM-017, FEM-036.
 #[test]
 fn phantoms_of_all_kinds_have_sound_meshes() {
     let mut wrong = Vec::new();
@@ -64,7 +64,7 @@ fn phantoms_of_all_kinds_have_sound_meshes() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-// Verifies: FEM-001, FEM-030.
+// Verifies: FEM-014, FEM-002.
 #[test]
 fn two_calls_make_the_same_mesh() {
     for phantom in [builtin("2.6"), off_centre(2.6, 3.0)] {
@@ -134,7 +134,7 @@ fn sizes_are_those_of_the_table() {
     }
 }
 
-// Verifies: FEM-003, FEM-031.
+// Verifies: FEM-002, FEM-031.
 #[test]
 fn a_thin_layer_has_two_rows() {
     let mut thin = builtin("6.6");
@@ -150,7 +150,7 @@ fn a_thin_layer_has_two_rows() {
     }
 }
 
-// Verifies: FEM-004, FEM-035.
+// Verifies: FEM-004.
 #[test]
 fn walls_and_floor_hold_their_nodes_and_nothing_else() {
     use Support::{Fixed, Sliding};
@@ -173,7 +173,7 @@ fn walls_and_floor_hold_their_nodes_and_nothing_else() {
     }
 }
 
-// Verifies: FEM-018, FEM-036.
+// Verifies: FEM-017, FEM-036.
 #[test]
 fn sizes_without_a_mesh_are_refused() {
     let phantom = builtin("none");
@@ -192,7 +192,7 @@ fn sizes_without_a_mesh_are_refused() {
     }
 }
 
-// Verifies: FEM-033.
+// Verifies: FEM-017.
 #[test]
 fn a_phantom_that_no_sound_triangle_follows_is_refused_with_the_place() {
     // The axis halves a corner of 40°.

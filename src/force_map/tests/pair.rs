@@ -11,7 +11,7 @@ fn discretization() -> Discretization {
     }
 }
 
-// Verifies: MAP-050, MAP-051.
+// Verifies: MAP-006, MAP-002.
 #[test]
 fn bands_belong_to_the_poses_and_are_finite() {
     let map = computed(|_| ()).unwrap();
@@ -73,7 +73,7 @@ fn bands_follow_their_forces_and_survive_the_file() {
     assert!(!text.contains("discretization"));
 }
 
-// Verifies: MAP-053, MAP-054.
+// Verifies: MAP-053.
 #[test]
 fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
     let map = |change: &dyn Fn(&mut Phantom)| {

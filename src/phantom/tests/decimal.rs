@@ -27,7 +27,7 @@ fn scaled_decimals_are_the_nearest_floats() {
     }
 }
 
-// Verifies: PHA-003, PHA-020, PHA-024.
+// Verifies: PHA-004, PHA-020, PHA-026.
 #[test]
 fn what_is_no_finite_decimal_is_no_number() {
     let texts =

@@ -43,7 +43,7 @@ fn convention(statistic: Statistic, channel: Channel, offset: Offset) -> Convent
     }
 }
 
-// Verifies: PSY-070, PSY-071.
+// Verifies: PSY-070.
 #[test]
 fn each_convention_makes_its_own_signal() {
     let reference = map([1.0, 1.5, 2.0, 1.5, 1.0], [0.5, 0.5, 0.0, -0.5, -0.5]);
@@ -76,7 +76,7 @@ fn each_convention_makes_its_own_signal() {
     assert_eq!(mean(&signal.forces.normal), 2.0);
 }
 
-// Verifies: PSY-072.
+// Verifies: PSY-070.
 #[test]
 fn half_a_sweep_is_completed_by_symmetry() {
     let half = map_over(&[4e-3], &[0.0, 2e-3, 4e-3], |column| {
@@ -123,7 +123,7 @@ fn of_row(condition: f64, signals: f64) -> (Signals, Observations) {
 /// The search leaves ln σ within 2 · 0.37 · 4·10⁻⁶.
 const OF_NOISE: f64 = 1e-5;
 
-// Verifies: PSY-073, PSY-074, PSY-075, PSY-076.
+// Verifies: PSY-073, PSY-076.
 #[test]
 fn one_noise_level_for_all() {
     for [condition, row, one @ .., noise_lapsed, share, rest] in numbers::<10>(COMMON) {
@@ -151,7 +151,7 @@ fn one_noise_level_for_all() {
 
 // The moments are to first order in the fit: within 2 % of those of 10 000 simulated tables, whose own errors are 0.07 and
 // 0.05; with the degrees of freedom (30) for the mean FEM data, falling, would be off by 5.
-// Verifies: PSY-077, PSY-078.
+// Verifies: PSY-073, PSY-076.
 #[test]
 fn a_noise_level_for_each_subject() {
     for [condition, row, deviance, mean, sd, p, noise @ ..] in numbers::<9>(BY_SUBJECT) {
@@ -169,7 +169,7 @@ fn a_noise_level_for_each_subject() {
     }
 }
 
-// Verifies: PSY-073, PSY-077.
+// Verifies: PSY-073.
 #[test]
 fn who_is_never_wrong_or_only_guesses_has_no_noise_level() {
     let observed = |right: [f64; 2]| Observations {
@@ -247,7 +247,7 @@ fn the_verdict_follows_the_answers() {
     assert!(found.compatible.is_empty() && found.text.starts_with("No convention fits"));
 }
 
-// Verifies: PSY-079, PSY-082, PSY-083.
+// Verifies: PSY-079, PSY-081.
 #[test]
 fn the_verdict_says_what_it_rests_on() {
     let change = [0.3, 0.15, 0.05, 0.01];
@@ -321,7 +321,7 @@ fn noise_at_one_inclusion_has_the_subjects_as_the_sample() {
 
 /// Shares of right answers within half an answer of the model's with 5 % lapses: a deviance near 0, whose law is nearly that of chi-square.
 /// Its expected deviance is above the degrees of freedom by about Σ (1 − p(1−p))/(6np(1−p)) < 0.01 here.
-// Verifies: PSY-078.
+// Verifies: PSY-076.
 #[test]
 fn with_many_answers_each_fitted_number_takes_a_degree_of_freedom() {
     let signals = Signals(vec![0.3, 0.2, 0.12, 0.06]);

@@ -32,7 +32,7 @@ fn with_study() -> Run {
     }
 }
 
-// Verifies: REP-081, REP-082, REP-083.
+// Verifies: REP-081, REP-083.
 #[test]
 fn a_study_stands_beside_the_numbers_of_the_run() {
     let run = with_study();
@@ -97,7 +97,7 @@ fn without_a_study_the_page_says_so() {
     }
 }
 
-// Verifies: REP-080.
+// Verifies: REP-004.
 #[test]
 fn a_study_of_something_else_is_refused() {
     let refused = |what: &str, change: fn(&mut StudyPlan)| {

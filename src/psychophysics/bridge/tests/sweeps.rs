@@ -33,7 +33,7 @@ fn computed_signals() -> [Signal; 4] {
 }
 
 // A force of 1, 2, 3, 6 (mean 3), whose change is −2, −1, 0, 3.
-// Verifies: PSY-084.
+// Verifies: PSY-070.
 #[test]
 fn part_of_the_level_counts_in_part() {
     let signal = Signal {
@@ -53,9 +53,9 @@ fn part_of_the_level_counts_in_part() {
 }
 
 /// `../reference.py`, `sweeps`: each subject's noise by Brent's method, the expected deviance and the p of weight 0 from 10 000
-/// tables of new answers to the fit, each fitted anew. φ is as right as the expected deviance of PSY-078, 2 %; the p of new answers has a
+/// tables of new answers to the fit, each fitted anew. φ is as right as the expected deviance of PSY-076, 2 %; the p of new answers has a
 /// standard error of 0.003 at the most. Without a range: its end is within those 2 % of the next weight's.
-// Verifies: PSY-085, PSY-086, PSY-087.
+// Verifies: PSY-085.
 #[test]
 fn how_much_of_the_level_may_count_over_which_sweep() {
     let signals = computed_signals();
@@ -125,7 +125,7 @@ fn computed_maps() -> (ForceMap, [ForceMap; 4]) {
 }
 
 /// The numbers of rejections are from `../reference.py`, `sweeps`, over all sweeps.
-// Verifies: PSY-086, PSY-087.
+// Verifies: PSY-085.
 #[test]
 fn the_number_of_ranges_is_counted_in_each() {
     let maps = computed_maps();
@@ -180,7 +180,7 @@ fn conventions_are_compared_with_their_lapses() {
     }
 }
 
-// Verifies: STU-033.
+// Verifies: STU-031.
 #[test]
 fn p_values_alone_are_those_of_the_bridge() {
     let table = AnswerTable::paper().unwrap();
