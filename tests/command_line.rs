@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 use palpate::fem::{Contact, Model};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
-use program::{Place, has, text};
+use program::{ASYMMETRIC, Place, contents, has, text};
 
 // Verifies: CLI-001.
 #[test]
@@ -81,23 +81,29 @@ fn bad_input_gets_one_line_that_says_what_would_be_right() {
 
 // Verifies: CLI-007, CLI-010, CLI-013.
 #[test]
-fn solve_prints_the_librarys_map() {
+fn solve_prints_the_librarys_map_by_either_contact_law() {
     let here = Place::new("solve");
     let arguments = "solve --phantom 4.6 --depths-mm 1:3:1 --laterals-mm=-2.6:2.6:2.6 --mesh-mm 2";
-    let json = here.succeed(&format!("{arguments} --format json"));
     let phantom = Phantom::builtin("4.6").unwrap();
-    let model = Model::new(&phantom, 2e-3, Contact::DeformedNormal).unwrap();
     let (depths, laterals) = ([1e-3, 2e-3, 3e-3], [-2.6e-3, 0.0, 2.6e-3]);
-    let map = model.map(&depths, &laterals, &|_| ()).unwrap();
-    assert_eq!(ForceMap::from_json(&json, "standard output").unwrap(), map);
-    let csv = here.succeed(&format!("{arguments} --format csv"));
-    assert_eq!(csv, map.table().to_csv());
-    let table = here.succeed(arguments);
-    let force = format!("{:.5}", map.forces().normal.row(2)[1]);
-    has(&table, [&force, "normal force, N", "lateral force, N"]);
-    let mut rows = table.lines().map(str::trim_start);
-    let row = rows.find(|row| row.starts_with("3.0")).expect("3 mm");
-    assert_eq!(row.split_whitespace().count(), 4, "{row}");
+    let vertical = "--contact vertical-gap";
+    for (option, contact) in [
+        ("", Contact::DeformedNormal),
+        (vertical, Contact::VerticalGap),
+    ] {
+        let model = Model::new(&phantom, 2e-3, contact).unwrap();
+        let map = model.map(&depths, &laterals, &|_| ()).unwrap();
+        let printed = |format: &str| here.succeed(&format!("{arguments} {option} {format}"));
+        let json = printed("--format json");
+        assert_eq!(ForceMap::from_json(&json, "standard output").unwrap(), map);
+        assert_eq!(printed("--format csv"), map.table().to_csv());
+        let table = printed("");
+        let force = format!("{:.5}", map.forces().normal.row(2)[1]);
+        has(&table, [&force, "normal force, N", "lateral force, N"]);
+        let mut rows = table.lines().map(str::trim_start);
+        let row = rows.find(|row| row.starts_with("3.0")).expect("3 mm");
+        assert_eq!(row.split_whitespace().count(), 4, "{row}");
+    }
 }
 
 // Verifies: CLI-013.
@@ -130,24 +136,6 @@ fn the_statistics_battery_traverses_these_force_maps() {
         let is_same = here.succeed(&arguments) == fs::read_to_string(&kept).unwrap();
         assert!(is_same, "{kept} is not what the solver prints");
     }
-}
-
-// Verifies: CLI-013.
-#[test]
-fn the_contact_law_reaches_the_solver() {
-    let here = Place::new("options");
-    let arguments = "solve --phantom none --depths-mm 3 --laterals-mm 0 --mesh-mm 2 --format json";
-    let force = |rest: &str| {
-        let json = here.succeed(&format!("{arguments} {rest}"));
-        let map = ForceMap::from_json(&json, "").unwrap();
-        let certificate = map.certificate().unwrap();
-        (map.forces().normal.row(0)[0], certificate.contact.clone())
-    };
-    let (plain, contact) = force("");
-    assert_eq!(contact, "deformed-normal");
-    let (vertical, contact) = force("--contact vertical-gap");
-    assert_eq!(contact, "vertical-gap");
-    assert!((vertical / plain - 1.0).abs() > 0.005, "{plain} {vertical}");
 }
 
 // Verifies: CLI-015.
@@ -264,80 +252,6 @@ fn a_measured_map_is_told_beside_its_phantom() {
     }
 }
 
-/// Everything below a folder, by its relative path.
-fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut files = Vec::new();
-    let mut folders = vec![folder.to_path_buf()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(folder).unwrap().to_path_buf();
-                files.push((name, fs::read(&path).unwrap()));
-            }
-        }
-    }
-    files.sort();
-    files
-}
-
-// Verifies: CLI-007, CLI-031, CLI-032, CON-006.
-#[test]
-fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
-    let here = Place::new("threads");
-    here.write("mine.toml", include_str!("../docs/phantom.toml"));
-    let config = "phantoms = [\"2.6\", \"mine.toml\"]\ndepths_mm = \"0:3:1\"\nlaterals_mm = \"-4:4:1\"\n[mesh]\nsize_mm = 2.0\n[detection]\nnoise_sd_n = 0.1\n";
-    here.write("run.toml", config);
-    for threads in ["1", "2", "5"] {
-        let out = format!("out-{threads}");
-        let mut run = here.palpate(&format!("run --config run.toml --out {out}"));
-        let output = run.env("RAYON_NUM_THREADS", threads).output().unwrap();
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        assert!(text(&output.stdout).contains(&format!("{out}/report.html")));
-    }
-    let one = contents(&here.at("out-1"));
-    assert!(one.iter().any(|(path, _)| path.ends_with("report.html")));
-    let maps = one.iter().filter(|(path, _)| path.starts_with("maps"));
-    assert_eq!(maps.count(), 3);
-    for threads in ["2", "5"] {
-        let other = contents(&here.at(&format!("out-{threads}")));
-        assert_eq!(one.len(), other.len());
-        for ((path, bytes), (other_path, other_bytes)) in one.iter().zip(&other) {
-            assert_eq!(path, other_path);
-            let is_same = bytes == other_bytes;
-            assert!(is_same, "{path:?} differs between 1 and {threads} threads");
-        }
-    }
-}
-
-/// An ellipse at the left and a polygon at the right, under three layers, with sliding walls.
-const ASYMMETRIC: &str = r#"
-name = "asymmetric"
-well = { width_mm = 34, walls = "sliding" }
-layer = [
-  { name = "skin", thickness_mm = 0.5, youngs_modulus_kpa = 180, poisson_ratio = 0.49 },
-  { name = "fat", thickness_mm = 3, youngs_modulus_kpa = 3, poisson_ratio = 0.49 },
-  { name = "gel", thickness_mm = 12, youngs_modulus_kpa = 5, poisson_ratio = 0.49 },
-]
-probe = { radius_mm = 6.5, length_mm = 30 }
-[[inclusion]]
-centre_x_mm = -5
-depth_mm = 4
-width_mm = 6
-height_mm = 4
-angle_deg = 30
-youngs_modulus_kpa = 1200
-poisson_ratio = 0.49
-[[inclusion]]
-centre_x_mm = 8
-depth_mm = 7
-points_mm = [[-2, 0], [2, 0], [2, 3], [-2, 3]]
-youngs_modulus_kpa = 50
-poisson_ratio = 0.45
-"#;
-
 // Verifies: CLI-012, CLI-013, FEM-014.
 #[test]
 fn negative_laterals_of_an_asymmetric_phantom_are_solved_and_not_mirrored() {
@@ -384,27 +298,6 @@ fn an_asymmetric_phantom_has_bands_and_a_file_for_paraview() {
     assert!(numbers.into_iter().eq(["0", "1", "2", "3", "4"]));
 }
 
-// Verifies: CLI-031, CLI-032, REP-003.
-#[test]
-fn a_run_of_own_asymmetric_phantoms_shows_them() {
-    let here = Place::new("own-run");
-    here.write("own.toml", ASYMMETRIC);
-    let (plain, _) = ASYMMETRIC.split_once("[[inclusion]]").unwrap();
-    here.write("plain.toml", plain.replace("asymmetric", "plain"));
-    let config = "reference = \"plain.toml\"\nphantoms = [\"own.toml\"]\ndepths_mm = \"1,2\"\nlaterals_mm = \"-4:4:2\"\n[mesh]\nsize_mm = 1.5\n";
-    here.write("run.toml", config);
-    here.succeed("run --config run.toml");
-    let out = here.at("palpate-out");
-    let map = ForceMap::read(&out.join("maps/map-asymmetric.json")).unwrap();
-    let forces = map.forces().normal.row(1);
-    assert!(forces[0] > forces[4] + 0.02, "{forces:?}");
-    // The mesh under the probe where it is nearest to the first inclusion.
-    let page = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(page.contains("probe at depth 2 mm, x = −4 mm"));
-    assert!(page.contains("Figure 5. Forces, phantom “asymmetric”: 2 inclusions"));
-    assert!(page.contains("walls sliding, floor fixed"));
-}
-
 // Verifies: PSY-070, CLI-081.
 #[test]
 fn half_a_map_of_an_asymmetric_phantom_is_not_completed() {
@@ -423,87 +316,6 @@ fn half_a_map_of_an_asymmetric_phantom_is_not_completed() {
     let told = "inclusion 2.6: phantom \"asymmetric\" is not its own mirror image";
     let said = here.refused(&line);
     assert!(said.starts_with(told), "{said}");
-}
-
-// Verifies: CLI-031.
-#[test]
-fn a_measured_map_is_shown_and_a_computed_one_refused() {
-    let here = Place::new("measured");
-    let csv = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n0,0,0,0\n0,3,0,0\n2,0,0.6,0\n2,3,0.5,-0.1\n";
-    here.write("gel.csv", csv);
-    here.succeed("import-map gel.csv --out gel.json");
-    let config = "phantoms = []\nmeasured = [\"MAP\"]\ndepths_mm = \"1\"\nlaterals_mm = \"0\"\n[mesh]\nsize_mm = 3.0\n";
-    let config = |measured: &str| config.replace("MAP", measured);
-    here.write("run.toml", config("gel.json"));
-    here.succeed("run --config run.toml");
-    assert!(here.at("palpate-out/figures/figure-7-gel.csv.svg").exists());
-    let page = here.read("palpate-out/report.html");
-    assert!(page.contains("Figure 7. Measured forces, “gel.csv”"));
-    here.write("run.toml", config("palpate-out/maps/map-none.json"));
-    let message = here.refused("run --config run.toml");
-    has(&message, ["map-none.json: a computed map"]);
-}
-
-// Verifies: CLI-130, CLI-031.
-#[test]
-fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
-    let here = Place::new("demo");
-    let files = "run.toml none.json inclusion.json sweep-without.csv sweep-with.csv sweep-disturbed.csv blank.csv measured.csv";
-    let printed = here.succeed("demo first");
-    let expected = files.split(' ').map(|file| format!("first/{file}\n"));
-    assert_eq!(printed, expected.collect::<String>());
-    here.succeed("demo second");
-    let [first, second] = ["first", "second"].map(|folder| contents(&here.at(folder)));
-    let bytes = |files: Vec<(PathBuf, Vec<u8>)>| files.into_iter().map(|(_, bytes)| bytes);
-    assert_eq!(first.len(), files.split(' ').count());
-    assert!(bytes(first).eq(bytes(second)));
-    // The forces of the sensor without a gel are its offset and half its drift, within 5 standard deviations of a mean.
-    let blank = here.read("first/blank.csv");
-    let row = |row: &str| row.split(',').map(|field| field.parse().unwrap()).collect();
-    let rows: Vec<Vec<f64>> = blank.lines().skip(1).map(row).collect();
-    assert_eq!((rows.len(), rows[0][0], rows[400][0]), (401, -8.0, 8.0));
-    for (channel, mean) in [(1, 0.05 - 0.025), (2, 0.3 + 0.05)] {
-        let found = rows.iter().map(|row| row[channel]).sum::<f64>() / 401.0;
-        assert!((found - mean).abs() < 0.5 / 401_f64.sqrt(), "{found}");
-    }
-    // A configuration in another folder, with its files beside it.
-    let own = "phantoms = [\"gel.toml\"]\nmeasured = [\"measured.csv\"]\ndepths_mm = \"1\"\nlaterals_mm = \"0\"\n[mesh]\nsize_mm = 3.0\n";
-    here.write("first/own.toml", own);
-    here.write("first/gel.toml", include_str!("../docs/phantom.toml"));
-    here.succeed("run --config first/own.toml --out out");
-    assert!(here.at("out/figures/figure-7-measured.csv.svg").exists());
-}
-
-// Verifies: CLI-030, CLI-032, REP-030, REP-040.
-#[test]
-fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
-    let here = Place::new("paper");
-    let said = here.succeed("run");
-    assert!(said.contains("palpate-out/report.html"), "{said}");
-    let out = here.at("palpate-out");
-    for name in ["none", "2.6", "4.6", "6.6", "8.6"] {
-        let map = ForceMap::read(&out.join(format!("maps/map-{name}.json"))).unwrap();
-        assert_eq!(map.phantom(), Some(&Phantom::builtin(name).unwrap()));
-        assert_eq!((map.depths().len(), map.laterals().len()), (9, 41));
-        let ends = [map.depths()[8], map.laterals()[0], map.laterals()[40]];
-        assert_eq!(ends, [4e-3, -10e-3, 10e-3]);
-        assert!(out.join(format!("figures/figure-5-{name}.svg")).exists());
-    }
-    for number in [1, 2, 3, 4, 6, 8, 9, 10, 11, 12, 13] {
-        let name = format!("figures/figure-{number}.svg");
-        assert!(out.join(&name).exists(), "{name}");
-    }
-    let summary = here.read("palpate-out/summary.json");
-    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
-    assert!(summary.is_object());
-    let page = fs::read(out.join("report.html")).unwrap();
-    assert!(page.len() < 3_000_000, "{} bytes", page.len());
-    let drawn = "palpate-out/figures/figure-5-2.6.svg";
-    let is_same = here.read(drawn) == include_str!("../docs/figure-5.svg");
-    assert!(
-        is_same,
-        "docs/figure-5.svg is not what the program draws: copy it from {drawn}"
-    );
 }
 
 /// A quick solve with its VTU output in `name`.

@@ -2,9 +2,12 @@
 //! against the library's and against plain sums.
 #![cfg(feature = "cli")]
 
+#[path = "detect_command/bank.rs"]
+mod bank;
 mod program;
+#[path = "detect_command/refused.rs"]
+mod refused;
 
-use std::process::Output;
 use std::sync::OnceLock;
 
 use palpate::bank::Bank;
@@ -96,17 +99,19 @@ const KNOWN: &str = "--known all --noise white --depth-tolerance-mm 0";
 /// The two maps.
 const MAPS: &str = "--reference none.json --inclusion inclusion.json";
 
-fn detect(trace: &str, more: &str) -> Output {
-    place().run(&format!("detect {trace} {MAPS} {more}"))
+/// The answer in JSON, what was said, and the code of the end.
+fn asked(arguments: &str) -> (Value, String, Option<i32>) {
+    let output = place().run(&format!("detect {arguments} --format json"));
+    let said = text(&output.stderr).to_string();
+    let answer = serde_json::from_slice(&output.stdout);
+    (answer.expect(&said), said, output.status.code())
 }
 
+/// The answer by the two maps in the usual noise, beside which nothing is said.
 fn answer(trace: &str, more: &str) -> Value {
-    let output = detect(trace, &format!("{USUAL} --format json {more}"));
-    assert!(
-        output.status.success() && output.stderr.is_empty(),
-        "{output:?}"
-    );
-    serde_json::from_slice(&output.stdout).unwrap()
+    let (answer, said, code) = asked(&format!("{trace} {MAPS} {USUAL} {more}"));
+    assert_eq!((&*said, code), ("", Some(0)));
+    answer
 }
 
 fn number(answer: &Value, key: &str) -> f64 {
@@ -151,14 +156,12 @@ fn where_all_is_known_theta_is_that_of_the_library_and_of_a_plain_sum() {
         let [f0, f1] = [&none, &inclusion].map(|map| map.row(0.003).unwrap());
         let statistic = theta_of_record(observed.as_deref(), f0, f1, NOISE).unwrap();
         let rates = error_rates(statistic.gamma, 4.0_f64.ln()).unwrap();
+        let threshold = 4.0_f64.ln() / energy.sqrt() + 0.5 * energy.sqrt();
         for (key, expected) in [
             ("theta", theta),
             ("gamma", energy.sqrt()),
             ("gamma_nominal", energy.sqrt()),
-            (
-                "t_threshold",
-                4.0_f64.ln() / energy.sqrt() + 0.5 * energy.sqrt(),
-            ),
+            ("t_threshold", threshold),
             ("posterior_h1", 1.0 / (1.0 + 4.0 * (-theta).exp())),
             ("theta", statistic.theta),
             ("false_alarm", rates.false_alarm),
@@ -194,8 +197,7 @@ fn unless_told_otherwise_the_record_tells_what_is_unknown() {
     assert_near(number(&found, "t"), number(&same, "t"));
     assert!(number(&same, "gamma") < number(&same, "gamma_nominal"));
     // The noise is not stated: by 66 samples it is known to a tenth.
-    let output = detect("with.csv", "--depth-mm 3 --format json");
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (found, ..) = asked(&format!("with.csv {MAPS} --depth-mm 3"));
     assert!((number(&found, "noise_sd_normal_n") / NOISE.normal - 1.0).abs() < 0.4);
     assert_eq!(found["chi_square_limits"], Value::Null);
     assert_eq!(found["decision"], "inclusion");
@@ -212,21 +214,14 @@ fn a_blank_sweep_tells_the_noise() {
     });
     let head = "time_ms,lateral_force_n,normal_force_n\n".to_string();
     place().write("blank.csv", head + &rows.collect::<String>());
-    let output = detect(
-        "with.csv",
-        "--depth-mm 3 --noise blank.csv --known depth,variance --format json",
-    );
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let blank = "--depth-mm 3 --noise blank.csv --known depth,variance";
+    let (found, _, code) = asked(&format!("with.csv {MAPS} {blank}"));
+    assert_eq!(code, Some(0), "{found}");
     // The standard deviation of 300 samples is known to 1/√600.
-    for (key, sd) in [
-        ("noise_sd_lateral_n", NOISE.lateral),
-        ("noise_sd_normal_n", NOISE.normal),
-    ] {
-        assert!(
-            (number(&found, key) / sd - 1.0).abs() < 5.0 / 600_f64.sqrt(),
-            "{found}"
-        );
+    let keys = Force::new("noise_sd_lateral_n", "noise_sd_normal_n");
+    for (key, sd) in keys.zip(NOISE).into_array() {
+        let ratio = number(&found, key) / sd;
+        assert!((ratio - 1.0).abs() < 5.0 / 600_f64.sqrt(), "{found}");
     }
     assert_eq!(found["noise"], "blank.csv");
     assert!(found["chi_square_limits"].is_array());
@@ -283,9 +278,8 @@ fn a_record_that_cannot_be_judged_is_neither_and_says_why() {
         assert!(!table.contains("posterior"), "{table}");
         let last = table.lines().last().unwrap();
         assert!(last.starts_with("The record cannot be judged: "));
-        let output = place().run(&format!("detect with.csv {arguments} --format json"));
-        assert_eq!(output.status.code(), Some(3));
-        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let (found, _, code) = asked(&format!("with.csv {arguments}"));
+        assert_eq!(code, Some(3));
         let of = ["decision", "causes", "fits", "posterior_h1"].map(|key| found[key].clone());
         let expected = json!(["cannot_be_judged", ["misfit"], false, null]);
         assert_eq!(json!(of), expected);
@@ -312,134 +306,6 @@ fn the_last_line_is_a_sentence() {
     }
 }
 
-/// The usual noise, with the bank.
-const BY_BANK: &str =
-    "--bank bank.json --noise-sd-lateral-n 0.05 --noise-sd-normal-n 0.12 --format json";
-
-/// The answer by the bank.
-fn located(trace: &str, more: &str) -> Value {
-    let answer = place().succeed(&format!("detect {trace} {BY_BANK} {more}"));
-    serde_json::from_str(&answer).unwrap()
-}
-
-/// θ of each map of the bank, in plain arithmetic.
-fn thetas(trace: &str) -> Vec<f64> {
-    let bank = Bank::read(&place().at("bank.json")).unwrap();
-    let theta = |map: &ForceMap| plain(trace, [bank.reference().table(), map.table()]).0;
-    bank.maps().iter().map(theta).collect()
-}
-
-/// ln Σ pₖ exp θₖ.
-fn mixture(weighted: impl Iterator<Item = (f64, f64)>) -> f64 {
-    weighted.map(|(p, theta)| p * theta.exp()).sum::<f64>().ln()
-}
-
-// Verifies: CLI-043, CLI-140, CLI-153.
-#[test]
-fn the_bank_finds_an_inclusion_that_was_moved() {
-    let bound = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.001";
-    let found = located("moved.csv", &format!("{KNOWN} {bound}"));
-    let thetas = thetas("moved.csv");
-    let best = thetas.iter().copied().fold(f64::MIN, f64::max);
-    assert_eq!(best, thetas[MOVED]);
-    assert_near(number(&found, "theta_max"), best);
-    let of_any = mixture(thetas.iter().map(|&theta| (0.1, theta)));
-    assert_near(number(&found, "theta_mixture"), of_any);
-    assert_eq!(found["decision"], "inclusion");
-    assert_eq!(found["decided_by"], "theta_max");
-    assert!(number(&found, "false_alarm_bound") <= 0.001);
-    assert_eq!(number(&found, "hypotheses"), 10.0);
-    assert_eq!(number(&found, "depth_m"), 0.003);
-    for (key, truth) in [("position", 1.5e-3), ("inclusion_depth", 2.6e-3)] {
-        let of = &found[key];
-        let [estimate, sd] = ["estimate", "sd_bound"].map(|key| number(of, key));
-        assert!((estimate - truth).abs() < 4.0 * sd, "{key}: {of}");
-        assert!(sd > 1e-6 && sd < 1e-3, "{key}: {of}");
-        let [low, high] = [0, 1].map(|end: usize| of["interval"][end].as_f64().unwrap());
-        assert!(
-            low < high && low - sd < truth && truth < high + sd,
-            "{key}: {of}"
-        );
-        assert_eq!(of["unit"], "m");
-    }
-    // The bank has one diameter and one modulus.
-    assert!(found.get("diameter").is_none() && found.get("youngs_modulus").is_none());
-    let without = located("without.csv", &format!("{KNOWN} {bound}"));
-    assert_eq!(without["decision"], "no_inclusion");
-    let error = place().refused(&format!("detect moved.csv {BY_BANK} --depth-mm 3.1"));
-    assert!(error.contains("0.003 m, for which the bank is"), "{error}");
-    // Beside what is unknown by default, the same place.
-    let found = located("moved.csv", "");
-    assert_eq!(found["decision"], "inclusion");
-    assert_eq!(found["decided_by"], "theta_mixture");
-    let [estimate, sd] = ["estimate", "sd_bound"].map(|key| number(&found["position"], key));
-    assert!((estimate - 1.5e-3).abs() < 4.0 * sd, "{found}");
-}
-
-// Verifies: CLI-040, BNK-012.
-#[test]
-fn a_prior_weighs_the_inclusions_of_the_bank() {
-    let head = "position_mm,depth_mm,diameter_mm,youngs_modulus_kpa,weight\n";
-    place().write(
-        "prior.csv",
-        format!("{head}1.5,2.6,6.4,1200,1\n-1.5,3.6,6.4,1200,3\n"),
-    );
-    let found = located("moved.csv", &format!("{KNOWN} --prior prior.csv"));
-    let thetas = thetas("moved.csv");
-    // Five positions, then those of the next depth: −1.5 mm is the second.
-    let weighted = [(0.25, thetas[MOVED]), (0.75, thetas[5 + 1])];
-    assert_near(
-        number(&found, "theta_mixture"),
-        mixture(weighted.into_iter()),
-    );
-    assert_eq!(found["prior"], "prior.csv");
-    place().write("elsewhere.csv", format!("{head}1,2.6,6.4,1200,1\n"));
-    let error = place().refused(&format!("detect moved.csv {BY_BANK} --prior elsewhere.csv"));
-    has(
-        &error,
-        ["elsewhere.csv:2: an inclusion that is not in the bank"],
-    );
-}
-
-// Verifies: CLI-140.
-#[test]
-fn simulated_records_set_the_threshold() {
-    let alarms = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.05";
-    let bound = located("moved.csv", &format!("{KNOWN} {alarms}"));
-    let found = located("moved.csv", &format!("{KNOWN} {alarms} --simulations 2000"));
-    // A sum of ten dependent tails is more than their union.
-    assert!(number(&found, "eta") < number(&bound, "eta"), "{found}");
-    assert_eq!(number(&found, "simulations"), 2000.0);
-    let interval = &found["calibrated_false_alarm"];
-    let [low, high] = [0, 1].map(|end: usize| interval[end].as_f64().unwrap());
-    // Clopper-Pearson at 99 % of 100 of 2000: SciPy's beta.ppf gives 0.0382 and 0.0640.
-    assert!(
-        (low - 0.0382).abs() < 1e-4 && (high - 0.0640).abs() < 1e-4,
-        "{interval}"
-    );
-    assert!(bound.get("simulations").is_none());
-    let seeded = format!("{KNOWN} {alarms} --simulations 2000 --seed 1999");
-    assert_eq!(located("moved.csv", &seeded), found);
-}
-
-// Verifies: CLI-163.
-#[test]
-fn a_figure_shows_where_the_inclusion_lies() {
-    located("moved.csv", "--figure place.svg");
-    let figure = place().read("place.svg");
-    let words = "likeliest inclusion|Depth below the surface (mm)|Position x (mm)|Position x of the inclusion (mm)\
-                 |Depth of the inclusion (mm)|Probability density (1/mm)";
-    has(&figure, ["<svg "]);
-    has(
-        &figure,
-        words.split('|').map(|words| format!(">\n{words}\n<")),
-    );
-    assert!(
-        !figure.contains("iameter") && !figure.contains("odulus"),
-        "{figure}"
-    );
-}
-
 // Verifies: CLI-146.
 #[test]
 fn a_tolerance_that_no_map_can_count_is_told() {
@@ -458,8 +324,7 @@ fn a_tolerance_that_no_map_can_count_is_told() {
     let expected = "palpate: warning: none-3.json: a single depth: what another depth within its tolerance does is not counted\n";
     assert_eq!(told(""), expected);
     assert_eq!(told("--depth-tolerance-mm 0"), "");
-    let output = place().run(&format!("detect with.csv {maps} {USUAL} --format json"));
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (found, ..) = asked(&format!("with.csv {maps} {USUAL}"));
     assert_eq!(found["warnings"], json!(["single_depth"]));
 }
 
@@ -487,16 +352,15 @@ fn people_get_a_table_and_no_decision_is_a_failure() {
     let table = place().succeed("detect with.csv --bank bank.json --noise-sd-n 0.1");
     assert!(table.starts_with("decision  "), "{table}");
     assert!(table.contains("position, mm"), "{table}");
-    assert_eq!(detect("without.csv", USUAL).status.code(), Some(0));
+    place().succeed(&format!("detect without.csv {MAPS} {USUAL}"));
 }
 
-/// The answer to `trace` in JSON but for its name, and what was said.
+/// The answer to `trace` but for its name, and what was said.
 fn answer_and_notes(trace: &str, more: &str) -> (Value, String) {
-    let output = detect(trace, &format!("{USUAL} --format json {more}"));
-    assert!(output.status.success(), "{output:?}");
-    let mut answer: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (mut answer, said, code) = asked(&format!("{trace} {MAPS} {USUAL} {more}"));
+    assert_eq!(code, Some(0), "{said}");
     answer["trace"] = Value::Null;
-    (answer, text(&output.stderr).into())
+    (answer, said)
 }
 
 // Verifies: CLI-017, MAP-040, MAP-041, MAP-044, TRC-001.
@@ -532,89 +396,6 @@ fn samples_beyond_the_maps_are_trimmed_and_counted() {
     // Nothing to trim, nothing to tell.
     let untrimmed = answer_and_notes("with.csv", "--trim");
     assert_eq!(untrimmed, (found, String::new()));
-}
-
-/// Arguments, and words of the refusal.
-const REFUSED: &str = "
---noise-sd-n 0.1 => --depth-mm
---depth-mm 3 --noise-sd-lateral-n 1 => --noise-sd-normal-n
---depth-mm 3 --noise-sd-n 0.1 --noise-sd-lateral-n 1 --noise-sd-normal-n 1 => cannot be used with
---depth-mm 3 --noise-sd-n 0 => expected N above 0
---depth-mm 3 --noise-sd-n -1 => expected N above 0
---depth-mm 3 --noise-sd-n nan => expected N above 0
---depth-mm inf --noise-sd-n 1 => expected a finite number
---depth-mm -1 --noise-sd-n 1 => depth -0.001 m is outside the map
---depth-mm 3.5 --noise-sd-n 1 => expected 0.002 to 0.003 m
---depth-mm 3 --noise-sd-n 0.1 --prior-h1 1 => strictly between 0 and 1
---depth-mm 3 --noise-sd-n 0.1 --max-miss 0.1 => --criterion map: expected no --max-miss and no --max-false-alarm
---depth-mm 3 --noise-sd-n 0.1 --criterion neyman-pearson-miss => expected a --max-miss and no --max-false-alarm
---depth-mm 3 --noise-sd-n 0.1 --criterion neyman-pearson => neyman-pearson-miss
---depth-mm 3 --noise-sd-n 0.1 --velocity-mm-s 1 => --start-mm
---depth-mm 3 --noise-sd-n 0.1 --velocity-mm-s 1 --start-mm 0 => expected neither velocity nor start
---depth-mm 3 --noise-sd-n 0.1 --tirm => --trim
---depth-mm 3 --noise-sd-n 0.1 --bank bank.json => cannot be used with
---depth-mm 3 --noise-sd-n 0.1 --figure place.svg => cannot be used with '--figure
---depth-mm 3 --noise-sd-n 0.1 --simulations 1000 => cannot be used with '--simulations
---depth-mm 3 --noise-sd-n 0.1 --prior prior.csv => cannot be used with '--prior
---depth-mm 3 --known ofset => \"ofset\" is none of offset, drift, gain, depth, variance, all and none
---depth-mm 3 --known variance => --known variance: expected --noise-sd-n, or --noise FILE
---depth-mm 3 --known all => --known variance: expected --noise-sd-n, or --noise FILE
---depth-mm 3 --noise pink => pink: cannot be read
---depth-mm 3 --noise with.csv => with.csv: 33 samples, expected at least 100
---depth-mm 3 --depth-tolerance-mm -1 => expected mm, at least 0
-";
-
-// Verifies: CLI-041, CLI-042, CLI-003, CLI-048, CLI-140.
-#[test]
-fn bad_arguments_are_refused_in_one_line() {
-    place().refuses(REFUSED, |words| format!("detect with.csv {MAPS} {words}"));
-}
-
-/// Files and other arguments, and words of the refusal.
-const REFUSED_FILES: &str = "
-word.csv --reference none.json --inclusion inclusion.json => word.csv:3: lateral_force_n = \"zero\"
-nan.csv --reference none.json --inclusion inclusion.json => nan.csv:2: normal_force_n = \"NaN\"
-unsorted.csv --reference none.json --inclusion inclusion.json => unsorted.csv:4: position 0.5 mm after 1.0 mm
-far.csv --reference none.json --inclusion inclusion.json => far.csv:3: position 9.0 mm is outside the maps, expected -8.0 to 8.0 mm (or use --trim)
-away.csv --trim --reference none.json --inclusion inclusion.json => away.csv: all of 2 samples are outside the maps, expected -8.0 to 8.0 mm
-twice.csv --reference none.json --inclusion inclusion.json => twice.csv:1: columns position_m and position_mm in the header
-empty.csv --reference none.json --inclusion inclusion.json => empty.csv:1: no samples
-latin1.csv --reference none.json --inclusion inclusion.json => latin1.csv: cannot be read
-missing.csv --reference none.json --inclusion inclusion.json => missing.csv: cannot be read
-with.csv --reference missing.json --inclusion inclusion.json => palpate solve
-with.csv --reference inclusion.json --inclusion none.json => the other way round
-with.csv --reference none.json --inclusion none.json => none.json: number of inclusions is 0, and 0
-with.csv --reference inclusion.json --inclusion inclusion.json => number of inclusions is 1, and 1
-with.csv --reference other-gel.json --inclusion inclusion.json => phantom.layer[0].material.youngs_modulus_pa is
-with.csv --reference coarse.json --inclusion inclusion.json => mesh_size_m is
-with.csv --reference with.csv --inclusion inclusion.json => with.csv:2: no column depth_mm or depth_m in the header
-with.csv --bank missing.json => missing.json: cannot be read
-";
-
-// Verifies: TRC-004, TRC-008, TRC-024, TRC-025, CLI-047, CLI-140, MAP-033.
-#[test]
-fn bad_files_are_refused_with_file_and_line() {
-    let head = "position_mm,lateral_force_n,normal_force_n\n";
-    for (name, rows) in [
-        ("word.csv", "0,0,1\n1,zero,1\n"),
-        ("nan.csv", "0,0,NaN\n"),
-        ("unsorted.csv", "0,0,1\n1,0,1\n0.5,0,1\n2,0,1\n"),
-        ("far.csv", "0,0,1\n9,0,1\n"),
-        ("away.csv", "9,0,1\n9.5,0,1\n"),
-        ("empty.csv", ""),
-    ] {
-        place().write(name, format!("{head}{rows}"));
-    }
-    place().write("latin1.csv", b"position_mm\xff");
-    place().write("twice.csv", format!("position_m,{head}0,0,0,1\n"));
-    let mut other: Value = serde_json::from_str(&place().read("none.json")).unwrap();
-    let mesh_size = other["certificate"]["mesh_size_m"].clone();
-    other["certificate"]["mesh_size_m"] = 0.003.into();
-    place().write("coarse.json", other.to_string());
-    other["certificate"]["mesh_size_m"] = mesh_size;
-    other["phantom"]["layer"][0]["material"]["youngs_modulus_pa"] = 7.5e4.into();
-    place().write("other-gel.json", other.to_string());
-    place().refuses(REFUSED_FILES, |words| format!("detect {words} {USUAL}"));
 }
 
 // Verifies: CLI-047.

@@ -14,10 +14,8 @@ use palpate::stats::random::Generator;
 /// Asserts that `value` is `printed` when it is rounded to `unit`.
 #[track_caller]
 fn assert_prints_as(value: f64, printed: f64, unit: f64) {
-    assert!(
-        (value - printed).abs() <= 0.5 * unit,
-        "{value} does not round to {printed}"
-    );
+    let holds = (value - printed).abs() <= 0.5 * unit;
+    assert!(holds, "{value} does not round to {printed}");
 }
 
 // Verifies: ERR-001.

@@ -73,20 +73,16 @@ fn a_noisy_map_that_is_refused_is_played_when_smoothed() {
     let output = here.run("import-map noisy.csv --smooth-mm 5 --out smooth.json");
     let said = text(&output.stderr);
     let expected = "palpate: note: noisy.csv: smoothing leaves a residual of 0.0";
-    assert!(
-        output.status.success() && said.starts_with(expected),
-        "{said}"
-    );
+    let holds = output.status.success() && said.starts_with(expected);
+    assert!(holds, "{said}");
     assert!(
         here.read("smooth.json")
             .contains("\"smoothed_half_width_m\": 0.005")
     );
     here.succeed("play --map smooth.json --seconds 1");
     let refused = here.refused("import-map noisy.csv --smooth-mm 0.5");
-    assert!(
-        refused.starts_with("noisy.csv: 3 lateral positions are within 0.0005 m"),
-        "{refused}"
-    );
+    let holds = refused.starts_with("noisy.csv: 3 lateral positions are within 0.0005 m");
+    assert!(holds, "{refused}");
     let refused = here.refused("import-map noisy.csv --smooth-mm -1");
     assert!(refused.contains("expected mm above 0"), "{refused}");
 }
@@ -157,20 +153,17 @@ fn cycles_of_another_loop_are_judged() {
     );
     assert_eq!(figures["outcome"], "kept");
     let missed = "timing: 21 of 4000 cycles took longer than 1000 µs";
-    for (options, reason) in [
-        ("", ": p99.9 is at least 1200"),
-        (
-            "--percentile 99 --allowed-misses 20",
-            ", expected at most 20",
-        ),
-        (
-            "--percentile 99 --allowed-run 1",
-            ", 2 of them in a row, expected at most 1",
-        ),
-    ] {
+    let told = |options: &str, reason: &str| {
         let error = failed(&here, &format!("timing --from many {options}"));
         assert!(error.starts_with(&format!("{missed}{reason}")), "{error}");
-    }
+    };
+    told("", ": p99.9 is at least 1200");
+    told(
+        "--percentile 99 --allowed-misses 20",
+        ", expected at most 20",
+    );
+    let in_a_row = ", 2 of them in a row, expected at most 1";
+    told("--percentile 99 --allowed-run 1", in_a_row);
     let junit = here.run("timing --from many --format junit");
     has(
         text(&junit.stdout),

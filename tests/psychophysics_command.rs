@@ -28,10 +28,8 @@ fn place() -> &'static Place {
 
 fn answer(arguments: &str) -> Value {
     let output = place().run(&format!("psychophysics --format json {arguments}"));
-    assert!(
-        output.status.success() && output.stderr.is_empty(),
-        "{output:?}"
-    );
+    let holds = output.status.success() && output.stderr.is_empty();
+    assert!(holds, "{output:?}");
     serde_json::from_slice(&output.stdout).unwrap()
 }
 

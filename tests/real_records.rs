@@ -49,61 +49,32 @@ const MODEL: Case = Case {
     unjudged: false,
 };
 
-const CASES: [Case; 11] = [
-    MODEL,
-    Case {
-        name: "gel 20 % softer",
-        gain: 0.8,
-        ..MODEL
-    },
-    Case {
-        name: "gel 20 % stiffer",
-        gain: 1.2,
-        ..MODEL
-    },
-    Case {
-        name: "0.3 mm too shallow",
-        depth: 3.7e-3,
-        ..MODEL
-    },
-    Case {
-        name: "0.3 mm too deep",
-        depth: 4.3e-3,
-        ..MODEL
-    },
-    Case {
-        name: "offset of -0.3 N",
-        offset: -0.3,
-        ..MODEL
-    },
-    Case {
-        name: "offset of 0.3 N",
-        offset: 0.3,
-        ..MODEL
-    },
-    Case {
-        name: "drift of -0.1 N",
-        drift: -0.1,
-        ..MODEL
-    },
-    Case {
-        name: "drift of 0.1 N",
-        drift: 0.1,
-        ..MODEL
-    },
-    Case {
-        name: "low pass of 15 Hz",
-        samples: 1001,
-        memory: 0.910_059,
-        ..MODEL
-    },
-    Case {
-        name: "mN typed as N",
-        stated: 1e3 * NOISE,
-        unjudged: true,
-        ..MODEL
-    },
-];
+/// The model's record after `change`.
+fn case(name: &'static str, change: impl Fn(&mut Case)) -> Case {
+    let mut case = Case { name, ..MODEL };
+    change(&mut case);
+    case
+}
+
+fn cases() -> [Case; 11] {
+    [
+        MODEL,
+        case("gel 20 % softer", |case| case.gain = 0.8),
+        case("gel 20 % stiffer", |case| case.gain = 1.2),
+        case("0.3 mm too shallow", |case| case.depth = 3.7e-3),
+        case("0.3 mm too deep", |case| case.depth = 4.3e-3),
+        case("offset of -0.3 N", |case| case.offset = -0.3),
+        case("offset of 0.3 N", |case| case.offset = 0.3),
+        case("drift of -0.1 N", |case| case.drift = -0.1),
+        case("drift of 0.1 N", |case| case.drift = 0.1),
+        case("low pass of 15 Hz", |case| {
+            (case.samples, case.memory) = (1001, 0.910_059);
+        }),
+        case("mN typed as N", |case| {
+            (case.stated, case.unjudged) = (1e3 * NOISE, true);
+        }),
+    ]
+}
 
 fn map(name: &str) -> ForceMap {
     let laterals: Vec<f64> = (-20..=20).map(|k| 0.4e-3 * f64::from(k)).collect();
@@ -211,7 +182,7 @@ fn judged_safely(records: u64) {
     for name in ["4.6", "6.6"] {
         let inclusion = map(name);
         let hypotheses = Hypotheses::new(&none, &inclusion).unwrap();
-        for case in CASES {
+        for case in cases() {
             let without = case.judge(hypotheses, &none, records);
             let with = case.judge(hypotheses, &inclusion, records);
             let share = |count: u64| count as f64 / records as f64;

@@ -16,10 +16,8 @@ const SMALLEST: f64 = 1e-5;
 #[track_caller]
 fn assert_near(ours: f64, theirs: f64, what: std::fmt::Arguments) {
     let error = (ours - theirs).abs();
-    assert!(
-        error <= TOLERANCE * theirs.abs().max(SMALLEST),
-        "{what}: {ours:e}, statrs {theirs:e}"
-    );
+    let holds = error <= TOLERANCE * theirs.abs().max(SMALLEST);
+    assert!(holds, "{what}: {ours:e}, statrs {theirs:e}");
 }
 
 // Verifies: DET-001, PSY-030.

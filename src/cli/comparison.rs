@@ -183,6 +183,7 @@ fn cosine(pairs: &[(f64, f64)]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stats::tests::numbers;
 
     /// Computed forces over a gel, (normal, lateral).
     const COMPUTED: [(f64, f64); 4] = [(1.0, -0.2), (2.0, 0.0), (1.0, 0.2), (0.05, 0.0)];
@@ -198,43 +199,36 @@ mod tests {
         odd_forces(&pairs)
     }
 
-    // Verifies: CLI-022.
-    #[test]
-    fn units_and_signs_that_look_wrong_are_told() {
-        for (factors, expected) in [
-            (
-                (1e3, 1e3),
-                &["the forces look like mN in a column of N: the normal force is 1000.0000"][..],
-            ),
-            (
-                (1e-3, 1e-3),
-                &["the forces look like N in a column of mN: the normal force is 0.0010"],
-            ),
-            ((-1.0, 1.0), &["the normal force looks negated"]),
-            ((1.0, -1.0), &["the lateral force looks negated"]),
-            (
-                (-1e3, -1e3),
-                &[
-                    "the forces look like mN",
-                    "the normal force looks",
-                    "the lateral force looks",
-                ],
-            ),
-            // Ratios of 1.3, 0.85 and 1 (0.05 N is too little to count); √(0.1816/4) of √(6.0025/4).
-            (
-                (1.0, 1.0),
-                &[
-                    "the normal force is 1.0000 of that computed (median), and 0.2131 N or 17.4 % off (rms), at 4 poses",
-                ],
-            ),
-            ((250.0, 1.0), &["the normal force is 250.0000"]),
-        ] {
-            let said = said(factors);
+    /// Asserts of each of `cases`, two numbers, what is said: notes with these beginnings.
+    fn assert_said(cases: &str, said: impl Fn([f64; 2]) -> Vec<String>) {
+        for case in cases.trim().lines() {
+            let (of, expected) = case.split_once(" => ").unwrap();
+            let expected: Vec<_> = expected
+                .split(" | ")
+                .filter(|&words| words != "nothing")
+                .collect();
+            let said = said(numbers(of)[0]);
             assert_eq!(said.len(), expected.len(), "{said:?}");
             for (said, expected) in std::iter::zip(&said, expected) {
                 assert!(said.starts_with(expected), "{said}");
             }
         }
+    }
+
+    // Verifies: CLI-022.
+    #[test]
+    fn units_and_signs_that_look_wrong_are_told() {
+        // Factors, and the beginnings of what is said. Ratios of 1.3, 0.85 and 1 (0.05 N is too little to count); √(0.1816/4) of
+        // √(6.0025/4).
+        let cases = "
+            1e3 1e3 => the forces look like mN in a column of N: the normal force is 1000.0000
+            1e-3 1e-3 => the forces look like N in a column of mN: the normal force is 0.0010
+            -1 1 => the normal force looks negated
+            1 -1 => the lateral force looks negated
+            -1e3 -1e3 => the forces look like mN | the normal force looks | the lateral force looks
+            1 1 => the normal force is 1.0000 of that computed (median), and 0.2131 N or 17.4 % off (rms), at 4 poses
+            250 1 => the normal force is 250.0000";
+        assert_said(cases, |[normal, lateral]| said((normal, lateral)));
         // A lateral force of 0.03 N beside 2 N tells nothing of its sign.
         let pairs = [(-0.03, 0.03), (0.03, -0.03)]
             .map(|(found, expected)| (Force::new(found, 2.0), Force::new(expected, 2.0)));
@@ -254,48 +248,16 @@ mod tests {
             let head = "depth_m,lateral_m,normal_force_n,lateral_force_n\n";
             ForceTable::from_csv(&format!("{head}{}", rows.concat()), "gel.csv").unwrap()
         };
-        for (depth, lateral, expected) in [
-            (
-                4.0,
-                8e-3,
-                &[
-                    "the depths look like mm in a column of metres: they go to 4000.0 mm, and the phantom to 15.5 mm",
-                ][..],
-            ),
-            (
-                4e-6,
-                8e-3,
-                &["the depths look like metres in a column of mm"],
-            ),
-            (
-                4e-3,
-                8.0,
-                &["the lateral positions look like mm in a column of metres"],
-            ),
-            (
-                4.0,
-                8.0,
-                &[
-                    "the depths look like mm",
-                    "the lateral positions look like mm",
-                ],
-            ),
-            (
-                4e-6,
-                8e-6,
-                &[
-                    "the depths look like metres",
-                    "the lateral positions look like metres",
-                ],
-            ),
-            (16e-3, 12e-3, &[]),
-        ] {
-            let found = odd_lengths(&table(depth, lateral), &phantom);
-            assert_eq!(found.len(), expected.len(), "{found:?}");
-            for (found, expected) in std::iter::zip(&found, expected) {
-                assert!(found.starts_with(expected), "{found}");
-            }
-        }
+        let cases = "
+            4 8e-3 => the depths look like mm in a column of metres: they go to 4000.0 mm, and the phantom to 15.5 mm
+            4e-6 8e-3 => the depths look like metres in a column of mm
+            4e-3 8 => the lateral positions look like mm in a column of metres
+            4 8 => the depths look like mm | the lateral positions look like mm
+            4e-6 8e-6 => the depths look like metres | the lateral positions look like metres
+            16e-3 12e-3 => nothing";
+        assert_said(cases, |[depth, lateral]| {
+            odd_lengths(&table(depth, lateral), &phantom)
+        });
         assert_eq!(left_out(&table(16e-3, 5e-3), &phantom), 2);
         assert_eq!(left_out(&table(4e-3, 5e-3), &phantom), 0);
     }

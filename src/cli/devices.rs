@@ -94,10 +94,8 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[0], "Display (1209:00ab, serial 7) at /nowhere");
         assert_eq!(lines[1], "    vendor profile");
-        assert!(
-            lines[2].starts_with("    cannot be opened: No such file"),
-            "{text}"
-        );
+        let holds = lines[2].starts_with("    cannot be opened: No such file");
+        assert!(holds, "{text}");
     }
 
     // Verifies: CLI-078.

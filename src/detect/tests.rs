@@ -194,7 +194,7 @@ fn channel_without_signal_contributes_nothing() {
     assert_eq!(filter.gamma(), 5.0);
 }
 
-// Verifies: DET-005.
+// Verifies: DET-005, CON-007.
 #[test]
 fn records_that_cannot_be_judged_are_refused() {
     let samples = [1.0, 2.0];

@@ -139,23 +139,14 @@ pub(crate) fn interpolate(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::force_map::tests::table_of;
     use crate::stats::tests::assert_near;
 
     /// Bilinear forces on axes of uneven steps, all exact in binary.
     fn table() -> ForceTable {
-        let (depths, laterals) = (vec![0.0, 0.5, 2.0], vec![-1.0, 0.25, 1.0]);
         let normal = |d: f64, x: f64| 3.0 + 2.0 * d - x + 4.0 * d * x;
-        let lateral = |d: f64, x: f64| -normal(x, d);
-        let matrix = |force: &dyn Fn(f64, f64) -> f64| {
-            Matrix::from_fn(3, 3, |row, column| force(depths[row], laterals[column]))
-        };
-        let (normal, lateral) = (matrix(&normal), matrix(&lateral));
-        ForceTable::new(
-            depths.clone(),
-            laterals.clone(),
-            Force::new(lateral, normal),
-        )
-        .unwrap()
+        let force = |d, x| [-normal(x, d), normal(d, x)];
+        table_of(&[0.0, 0.5, 2.0], &[-1.0, 0.25, 1.0], force)
     }
 
     // Verifies: MAP-060.
@@ -178,9 +169,9 @@ mod tests {
     // Verifies: MAP-060.
     #[test]
     fn outside_the_border_cell_is_continued_not_the_whole_table() {
-        let matrix = || Matrix::new(3, vec![0.0, 1.0, 5.0, 0.0, 1.0, 5.0]).unwrap();
-        let axes = (vec![0.0, 1.0], vec![0.0, 1.0, 2.0]);
-        let table = ForceTable::new(axes.0, axes.1, Force::new(matrix(), matrix())).unwrap();
+        // 0, 1 and 5 N.
+        let force = |_, x: f64| [0.0, x + 1.5 * x * (x - 1.0)];
+        let table = table_of(&[0.0, 1.0], &[0.0, 1.0, 2.0], force);
         for (lateral, expected) in [(-1.0, -1.0), (0.5, 0.5), (1.5, 3.0), (2.0, 5.0), (3.0, 9.0)] {
             assert_eq!(table.force(0.5, lateral).unwrap().normal, expected);
         }
@@ -195,32 +186,25 @@ mod tests {
         assert!(refused(0.0, f64::INFINITY).starts_with("lateral position = inf"));
         assert!(refused(1e200, 1e200).contains("beyond"));
         // A cell whose width is infinite would make every fraction 0.
-        let matrix = || Matrix::new(2, vec![1.0, 2.0, 3.0, 4.0]).unwrap();
-        let wide = vec![-1e308, 1e308];
-        let wide = ForceTable::new(vec![0.0, 1.0], wide, Force::new(matrix(), matrix())).unwrap();
+        let table = |depths: &[f64], laterals: &[f64]| table_of(depths, laterals, |d, _| [d, 1.0]);
+        let wide = table(&[0.0, 1.0], &[-1e308, 1e308]);
         assert!(wide.force(0.0, 1e307).is_err());
-        let one = || Matrix::new(2, vec![1.0, 2.0]).unwrap();
-        let single = ForceTable::new(vec![0.0], vec![0.0, 1.0], Force::new(one(), one())).unwrap();
-        let error = single.force(0.0, 0.0).unwrap_err().to_string();
-        assert!(error.starts_with("depths_m has a single entry"), "{error}");
-        let column = || Matrix::new(1, vec![1.0, 2.0]).unwrap();
-        let single =
-            ForceTable::new(vec![0.0, 1.0], vec![0.0], Force::new(column(), column())).unwrap();
-        let error = single.force(0.0, 0.0).unwrap_err().to_string();
-        assert!(
-            error.starts_with("laterals_m has a single entry"),
-            "{error}"
-        );
+        for (single, axis) in [
+            (table(&[0.0], &[0.0, 1.0]), "depths_m"),
+            (table(&[0.0, 1.0], &[0.0]), "laterals_m"),
+        ] {
+            let error = single.force(0.0, 0.0).unwrap_err().to_string();
+            let expected = format!("{axis} has a single entry");
+            assert!(error.starts_with(&expected), "{error}");
+        }
     }
 
     /// Forces bilinear in depth and position, so that interpolation must reproduce them.
     fn poses() -> ForceTable {
-        let (depths, laterals) = (vec![0.0, 0.001, 0.004], vec![-0.002, 0.0, 0.0005, 0.003]);
-        let matrix = |force: fn(f64, f64) -> f64| {
-            Matrix::from_fn(3, 4, |row, column| force(depths[row], laterals[column]))
-        };
-        let (normal, lateral) = (matrix(normal), matrix(lateral));
-        ForceTable::new(depths, laterals, Force::new(lateral, normal)).unwrap()
+        let laterals = [-0.002, 0.0, 0.0005, 0.003];
+        table_of(&[0.0, 0.001, 0.004], &laterals, |d, x| {
+            [lateral(d, x), normal(d, x)]
+        })
     }
 
     fn normal(depth: f64, x: f64) -> f64 {

@@ -36,7 +36,7 @@ mod pair;
 mod smoothing;
 mod table;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use std::ops::Deref;
 use std::path::Path;

@@ -4,6 +4,27 @@ use proptest::test_runner::RngSeed;
 
 use super::*;
 
+mod pair;
+
+/// A table of the forces, lateral and normal, that `force` gives for a depth and a lateral position.
+pub(crate) fn table_of(
+    depths: &[f64],
+    laterals: &[f64],
+    force: impl Fn(f64, f64) -> [f64; 2],
+) -> ForceTable {
+    let matrix = |channel: usize| {
+        let at = |row: usize, column: usize| force(depths[row], laterals[column])[channel];
+        Matrix::from_fn(depths.len(), laterals.len(), at)
+    };
+    let forces = Force::new(matrix(0), matrix(1));
+    ForceTable::new(depths.into(), laterals.into(), forces).unwrap()
+}
+
+/// A measured map, of a phantom if it is known.
+pub(crate) fn measured(phantom: Option<Phantom>, table: ForceTable) -> ForceMap {
+    ForceMap::new(source(), phantom, table).unwrap()
+}
+
 fn matrix<const N: usize>(rows: &[[f64; N]]) -> Matrix {
     Matrix::new(N, rows.concat()).unwrap()
 }
@@ -21,7 +42,7 @@ fn table() -> ForceTable {
     over_poses(normal, lateral).unwrap()
 }
 
-fn certificate(min_det: Matrix, det: f64, depth: f64, lateral: f64) -> Certificate {
+pub(crate) fn certificate(min_det: Matrix, smallest_det: SmallestDet) -> Certificate {
     Certificate {
         worst_relative_residual: 1e-13,
         worst_force_balance: 2e-10,
@@ -33,11 +54,7 @@ fn certificate(min_det: Matrix, det: f64, depth: f64, lateral: f64) -> Certifica
         element: "t6".into(),
         contact: "deformed-normal".into(),
         arithmetic: "other".into(),
-        smallest_det: SmallestDet {
-            det,
-            depth,
-            lateral,
-        },
+        smallest_det,
         min_det,
         discretization: None,
     }
@@ -46,13 +63,19 @@ fn certificate(min_det: Matrix, det: f64, depth: f64, lateral: f64) -> Certifica
 /// A computed map over [`table`], with `change` made to its certificate.
 fn computed(change: impl FnOnce(&mut Certificate)) -> Result<ForceMap, Refusal> {
     let min_det = matrix(&[[1.0, 1.0, 1.0], [0.9, 0.8, 0.85]]);
-    let mut certificate = certificate(min_det, 0.8, 0.001, 0.002);
+    let (det, depth, lateral) = (0.8, 0.001, 0.002);
+    let smallest = SmallestDet {
+        det,
+        depth,
+        lateral,
+    };
+    let mut certificate = certificate(min_det, smallest);
     change(&mut certificate);
     let source = Source::FiniteElements { certificate };
     ForceMap::new(source, Phantom::builtin("2.6").ok(), table())
 }
 
-fn measured() -> Source {
+fn source() -> Source {
     Source::Measured(Measurement::new("gel.csv", ""))
 }
 
@@ -132,21 +155,18 @@ fn bad_matrices_are_refused() {
 #[test]
 fn a_certificate_is_checked_number_by_number() {
     assert_eq!(computed(|_| ()).map(|_| ()), Ok(()));
-    type Number = fn(&mut Certificate) -> &mut f64;
     for bad in [f64::NAN, f64::INFINITY, -1e-30] {
-        let numbers: [(&str, Number); 4] = [
-            ("worst_relative_residual", |c| {
-                &mut c.worst_relative_residual
-            }),
-            ("worst_force_balance_n", |c| &mut c.worst_force_balance),
-            ("largest_penetration_m", |c| &mut c.largest_penetration),
-            ("mesh_size_m", |c| &mut c.mesh_size),
-        ];
-        for (key, number) in numbers {
+        let refuses = |key: &str, spoil: &dyn Fn(&mut Certificate)| {
             let expected = "expected a finite number, at least 0";
-            let message = refusal(computed(|c| *number(c) = bad));
+            let message = refusal(computed(spoil));
             assert_eq!(message, format!("certificate.{key} = {bad}, {expected}"));
-        }
+        };
+        refuses("worst_relative_residual", &|c| {
+            c.worst_relative_residual = bad
+        });
+        refuses("worst_force_balance_n", &|c| c.worst_force_balance = bad);
+        refuses("largest_penetration_m", &|c| c.largest_penetration = bad);
+        refuses("mesh_size_m", &|c| c.mesh_size = bad);
     }
     assert_eq!(
         refusal(computed(|c| c.min_det = matrix(&[[1.0, 1.0], [0.9, 0.8]]))),
@@ -189,14 +209,14 @@ fn a_map_fits_its_phantom() {
         refusal(ForceMap::new(finite_elements, None, table())),
         "phantom is missing, expected the phantom that the finite elements computed"
     );
-    assert!(ForceMap::new(measured(), None, table()).is_ok());
+    assert!(ForceMap::new(source(), None, table()).is_ok());
     let mut phantom = Phantom::builtin("none").unwrap();
-    assert!(ForceMap::new(measured(), Some(phantom.clone()), table()).is_ok());
+    assert!(ForceMap::new(source(), Some(phantom.clone()), table()).is_ok());
     let too_wide = axes(&[0.0, 0.004], &[0.0, 0.0111]).unwrap();
-    let message = refusal(ForceMap::new(measured(), Some(phantom.clone()), too_wide));
+    let message = refusal(ForceMap::new(source(), Some(phantom.clone()), too_wide));
     assert!(message.starts_with("phantom: lateral_mm = 11.1, expected "));
     phantom.well.width = -1.0;
-    let message = refusal(ForceMap::new(measured(), Some(phantom), table()));
+    let message = refusal(ForceMap::new(source(), Some(phantom), table()));
     assert!(message.starts_with("phantom: well.width_mm = -1000.0, expected "));
 }
 
@@ -206,10 +226,6 @@ fn symmetry_extends_a_map_to_negative_positions() {
     let map = computed(|_| ()).unwrap().mirrored().unwrap();
     assert_eq!(map.depths(), [0.0, 0.001]);
     assert_eq!(map.laterals(), [-0.005, -0.002, 0.0, 0.002, 0.005]);
-    assert_eq!(map.forces().normal.row(0), [0.2, 0.1, 0.0, 0.1, 0.2]);
-    assert_eq!(map.forces().normal.row(1), [1.2, 1.1, 1.0, 1.1, 1.2]);
-    assert_eq!(map.forces().lateral.row(0), [-0.02, -0.01, 0.0, 0.01, 0.02]);
-    assert_eq!(map.forces().lateral.row(1), [0.12, 0.11, 0.0, -0.11, -0.12]);
     let certificate = map.certificate().unwrap();
     assert_eq!(certificate.min_det.row(1), [0.85, 0.8, 0.9, 0.8, 0.85]);
     assert_eq!(certificate.smallest_det.lateral, 0.002);
@@ -267,7 +283,7 @@ fn a_signal_is_the_map_minus_its_reference() {
     // The same positions but for the last bits, as a sum of steps gives them.
     let laterals = vec![0.0, 0.002 + 1e-17, 0.005 - 0.9e-9];
     let table = ForceTable::new(vec![0.0, 0.001], laterals, Force::new(still, reference)).unwrap();
-    let reference = ForceMap::new(measured(), None, table).unwrap();
+    let reference = measured(None, table);
     let signal = map.signal(&reference).unwrap();
     assert_eq!(signal.laterals(), map.laterals());
     assert_eq!(signal.forces().normal.row(0), [0.0, 0.1, 0.2]);
@@ -361,42 +377,6 @@ proptest! {
     }
 }
 
-/// A band for each force of [`table`].
-fn discretization() -> Discretization {
-    Discretization {
-        nodes: [6000, 3400, 1600],
-        normal_force_band: matrix(&[[1e-6, 1e-4, 2e-4], [3e-4, 4e-4, 5e-4]]),
-        lateral_force_band: matrix(&[[2e-6, 1e-5, 2e-5], [3e-6, 4e-5, 7e-5]]),
-    }
-}
-
-// Verifies: MAP-006, MAP-002.
-#[test]
-fn bands_belong_to_the_poses_and_are_finite() {
-    let map = computed(|_| ()).unwrap();
-    let with = |change: &dyn Fn(&mut Discretization)| {
-        let mut bands = discretization();
-        change(&mut bands);
-        map.clone().with_discretization(bands)
-    };
-    let good = with(&|_| ()).unwrap();
-    let bands = good.certificate().unwrap().discretization.as_ref().unwrap();
-    assert_eq!(bands.largest(), [5e-4, 7e-5]);
-    for wrong in [-1e-9, f64::NAN, f64::INFINITY] {
-        let error = with(&|bands| {
-            bands.lateral_force_band = matrix(&[[0.0, 1e-5, 2e-5], [0.0, wrong, 7e-5]]);
-        });
-        let error = error.unwrap_err().to_string();
-        let place = "certificate.discretization.lateral_force_band_n[1][1] = ";
-        assert!(error.starts_with(place), "{error}");
-    }
-    let error = refusal(with(&|bands| {
-        bands.normal_force_band = matrix(&[[0.0, 1e-4, 2e-4]])
-    }));
-    let expected = "certificate.discretization.normal_force_band_n has 1 rows and 3 columns, ";
-    assert!(error.starts_with(expected), "{error}");
-}
-
 // Verifies: MAP-012.
 #[test]
 fn a_map_cut_to_some_positions_keeps_their_columns() {
@@ -419,111 +399,4 @@ fn a_map_cut_to_some_positions_keeps_their_columns() {
     assert_eq!(certificate.smallest_det.det, 0.85);
     let error = refusal(map.at_laterals(&[0.0, 0.003]));
     assert!(error.contains("0.003"), "{error}");
-}
-
-// Verifies: MAP-052.
-#[test]
-fn bands_follow_their_forces_and_survive_the_file() {
-    let map = computed(|_| ()).unwrap();
-    let map = map.with_discretization(discretization()).unwrap();
-    let text = map.to_json();
-    assert!(text.contains("\"normal_force_band_n\""), "{text}");
-    assert_eq!(ForceMap::from_json(&text, "map.json").unwrap(), map);
-    let unknown = text.replacen("\"normal_force_band_n\"", "\"band\"", 1);
-    let error = ForceMap::from_json(&unknown, "map.json").unwrap_err();
-    assert!(error.to_string().contains("band"), "{error}");
-    let cut = map.at_laterals(&[0.0, 0.005]).unwrap();
-    let bands = cut.certificate().unwrap().discretization.clone().unwrap();
-    assert_eq!(bands.normal_force_band.row(1), [3e-4, 5e-4]);
-    let mirrored = map.mirrored().unwrap();
-    let certificate = mirrored.certificate().unwrap();
-    let bands = certificate.discretization.clone().unwrap();
-    let right = discretization();
-    // At x = 0 the lateral force is 0 by symmetry, but its band is not.
-    for (mirrored, right) in [
-        (bands.normal_force_band, right.normal_force_band),
-        (bands.lateral_force_band, right.lateral_force_band),
-    ] {
-        for row in 0..2 {
-            let &[zero, near, far] = right.row(row) else {
-                panic!("three columns")
-            };
-            assert_eq!(mirrored.row(row), [far, near, zero, near, far]);
-        }
-    }
-    // A map without bands says nothing of them.
-    let text = computed(|_| ()).unwrap().to_json();
-    assert!(!text.contains("discretization"));
-}
-
-// Verifies: MAP-053.
-#[test]
-fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
-    let map = |change: &dyn Fn(&mut Phantom)| {
-        let mut phantom = Phantom::builtin("6.6").unwrap();
-        change(&mut phantom);
-        ForceMap::new(measured(), Some(phantom), table()).unwrap()
-    };
-    let with = map(&|_| ());
-    let without = map(&|phantom| (phantom.inclusions.clear(), phantom.name = "plain".into()).0);
-    assert!(Hypotheses::new(&without, &with).is_ok());
-    // What is not known may be anything.
-    let unknown = ForceMap::new(measured(), None, table()).unwrap();
-    for reference in [&unknown, &without] {
-        assert!(Hypotheses::new(reference, &unknown).is_ok());
-    }
-    assert!(Hypotheses::new(&unknown, &with).is_ok());
-    let refused = |reference: &ForceMap, inclusion: &ForceMap| {
-        refusal(Hypotheses::new(reference, inclusion).map(|_| ()))
-    };
-    let one = "one at least, and none in the reference";
-    for (reference, inclusion, [n, of_inclusion], expected) in [
-        (&with, &without, ["1", "0"], "the maps the other way round"),
-        (&with, &with, ["1", "1"], one),
-        (&without, &without, ["0", "0"], one),
-        (&with, &unknown, ["1", "unknown"], one),
-        (&unknown, &without, ["unknown", "0"], one),
-    ] {
-        let counts = format!("number of inclusions is {of_inclusion}, and {n} in the reference");
-        let expected = format!("{counts}, expected {expected}");
-        assert_eq!(refused(reference, inclusion), expected);
-    }
-    let differ = |reference: &ForceMap, inclusion: &ForceMap, key: &str| {
-        let message = refused(reference, inclusion);
-        assert!(message.starts_with(&format!("{key} is ")), "{message}");
-        assert!(message.ends_with("expected maps that differ in their inclusions alone"));
-    };
-    type Change<T> = fn(&mut T);
-    let changes: [(&str, Change<Phantom>); 4] = [
-        ("well.width_m", |p| p.well.width *= 2.0),
-        ("layer[0].material.poisson_ratio", |p| {
-            p.layers[0].material.poisson_ratio = 0.4
-        }),
-        ("layer", |p| p.layers.push(p.layers[0].clone())),
-        ("probe.radius_m", |p| p.probe.radius *= 0.9),
-    ];
-    for (key, change) in changes {
-        let other = map(&|phantom| {
-            phantom.inclusions.clear();
-            change(phantom);
-        });
-        differ(&other, &with, &format!("phantom.{key}"));
-    }
-    let solved = |name: &str, change: fn(&mut Certificate)| {
-        let ForceMap { source, .. } = computed(change).unwrap();
-        ForceMap::new(source, Phantom::builtin(name).ok(), table()).unwrap()
-    };
-    let (with, without) = (solved("6.6", |_| ()), solved("none", |_| ()));
-    assert!(Hypotheses::new(&without, &with).is_ok());
-    let changes: [(&str, Change<Certificate>); 3] = [
-        ("mesh_size_m", |c| c.mesh_size = 0.001),
-        ("contact", |c| c.contact = "vertical-gap".into()),
-        ("element", |c| c.element = "q4".into()),
-    ];
-    for (key, change) in changes {
-        differ(&solved("none", change), &with, key);
-    }
-    let mut older = without;
-    older.program_version = "0.0.1".into();
-    differ(&older, &with, "program_version");
 }

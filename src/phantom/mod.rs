@@ -28,7 +28,7 @@ mod limits;
 mod pose;
 mod shape;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use crate::decimal::parse_scaled;
 use serde::{Deserialize, Serialize};

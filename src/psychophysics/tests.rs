@@ -42,10 +42,8 @@ fn every_order_and_every_side_comes_as_often_as_it_should() {
         .iter()
         .map(|&n| (n, 6.0))
         .chain(sides.map(|n| (n, 8.0)));
-    assert!(
-        counts.all(|(count, of)| near(count, 1.0 / of)),
-        "{orders:?} {sides:?}"
-    );
+    let holds = counts.all(|(count, of)| near(count, 1.0 / of));
+    assert!(holds, "{orders:?} {sides:?}");
 }
 
 #[cfg(feature = "hid")]
@@ -54,25 +52,21 @@ mod observer {
 
     use super::super::*;
     use crate::detect::two_afc;
-    use crate::force::Force;
-    use crate::force_map::{ForceTable, Hypotheses, Matrix};
+    use crate::force_map::tests::table_of;
+    use crate::force_map::{ForceTable, Hypotheses};
     use crate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
     use crate::servo::{Limits, LoadedTable};
     use crate::stats::binomial::clopper_pearson;
 
     /// A gel of 300 N/m, with a bump of the normal force of `bump` (N/m of depth) about x = 0.
     fn map(bump: f64) -> ForceTable {
-        let depths: Vec<f64> = (0..9).map(|row| f64::from(row) * 0.5e-3).collect();
-        let laterals = (-20..=20).map(|column| f64::from(column) * 0.5e-3);
-        let laterals: Vec<f64> = laterals.collect();
+        let steps = |from: i32, to| (from..=to).map(|step| f64::from(step) * 0.5e-3);
+        let [depths, laterals]: [Vec<f64>; 2] =
+            [(0, 8), (-20, 20)].map(|(from, to)| steps(from, to).collect());
         let shape = |x: f64| (-(x / 3e-3) * (x / 3e-3)).exp();
-        let matrix = |force: &dyn Fn(f64, f64) -> f64| {
-            Matrix::from_fn(9, 41, |row, column| force(depths[row], laterals[column]))
-        };
-        let normal = matrix(&|d, x| d * (300.0 + bump * shape(x)));
-        let lateral = matrix(&|d, x| d * bump * 60.0 * x * shape(x));
-        let forces = Force::new(lateral, normal);
-        ForceTable::new(depths.clone(), laterals.clone(), forces).unwrap()
+        let lateral = |d, x| d * bump * 60.0 * x * shape(x);
+        let normal = |d: f64, x| d * (300.0 + bump * shape(x));
+        table_of(&depths, &laterals, |d, x| [lateral(d, x), normal(d, x)])
     }
 
     /// One sample of half a second, felt through the shipped loop.
@@ -121,10 +115,8 @@ mod observer {
             // θ_with − θ_without is N((γ_w² + γ_o²)/2, γ_w² + γ_o²).
             let mean_square = 0.5 * (gamma_with * gamma_with + gamma_without * gamma_without);
             let expected = two_afc(mean_square.sqrt()).unwrap();
-            assert!(
-                (interval.lower..=interval.upper).contains(&expected),
-                "γ = {target}: {interval:?}, expected {expected}"
-            );
+            let holds = (interval.lower..=interval.upper).contains(&expected);
+            assert!(holds, "γ = {target}: {interval:?}, expected {expected}");
         }
     }
 }

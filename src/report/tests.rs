@@ -15,14 +15,12 @@ mod xml;
 
 use super::*;
 use crate::phantom::Support;
+use crate::stats::tests::assert_near;
 use run::*;
 
 /// Expected values are from mpmath with 30 digits; the detector's own accuracy is tested elsewhere.
 fn assert_close(found: f64, expected: f64) {
-    assert!(
-        (found - expected).abs() <= 1e-13 * expected.abs(),
-        "found {found}, expected {expected}"
-    );
+    assert_near(found, expected, 1e-13 * expected.abs());
 }
 
 // Verifies: REP-001.
@@ -183,10 +181,8 @@ fn rates_are_predicted_with_one_noise_level_for_all_depths() {
         assert!(row.why.contains("0.224 N"), "{}", row.why);
     }
     let noise = &row(&found, "of the subjects").why;
-    assert!(
-        noise.contains("0.300 N over 1.426") && noise.contains("95 %"),
-        "{noise}"
-    );
+    let holds = noise.contains("0.300 N over 1.426") && noise.contains("95 %");
+    assert!(holds, "{noise}");
 }
 
 /// The expected ends are from mpmath.
@@ -342,23 +338,18 @@ fn what_does_not_fit_is_refused() {
     };
     let other = map(Phantom::builtin("4.6").ok(), &[0.0, 4e-3], |_| 0.0, |_| 0.0);
     refused(SETTINGS, &[other], &["\"4.6\"", "depths_m"]);
-    type Damage = fn(&mut Settings) -> &mut f64;
-    let damages: [(Damage, f64, &str); 5] = [
-        (|settings| &mut settings.noise_sd_n, 0.0, "noise_sd"),
-        (|settings| &mut settings.noise_sd_n, f64::NAN, "noise_sd"),
-        (|settings| &mut settings.max_miss, 1.0, "max_miss"),
-        (
-            |settings| &mut settings.max_false_alarm,
-            f64::NAN,
-            "max_false_alarm",
-        ),
-        (|settings| &mut settings.prior_h1, -0.1, "prior_h1"),
-    ];
-    for (setting, value, word) in damages {
+    let damaged = |word: &str, damage: fn(&mut Settings)| {
         let mut settings = SETTINGS;
-        *setting(&mut settings) = value;
+        damage(&mut settings);
         for maps in [paper_run().maps, Vec::new()] {
             refused(settings, &maps, &[word]);
         }
-    }
+    };
+    damaged("noise_sd", |settings| settings.noise_sd_n = 0.0);
+    damaged("noise_sd", |settings| settings.noise_sd_n = f64::NAN);
+    damaged("max_miss", |settings| settings.max_miss = 1.0);
+    damaged("max_false_alarm", |settings| {
+        settings.max_false_alarm = f64::NAN
+    });
+    damaged("prior_h1", |settings| settings.prior_h1 = -0.1);
 }

@@ -12,6 +12,14 @@ pub(crate) fn numbers<const N: usize>(table: &str) -> Vec<[f64; N]> {
     table.trim().lines().map(row).collect()
 }
 
+/// Asserts that a text has these parts, parted by `|`.
+#[track_caller]
+pub(crate) fn assert_has(text: &str, parts: &str) {
+    for part in parts.split('|') {
+        assert!(text.contains(part), "no {part:?} in {text}");
+    }
+}
+
 /// Asserts |found − expected| ≤ `ulps` units in the last place of `expected`.
 #[track_caller]
 pub(crate) fn assert_ulps(found: f64, expected: f64, ulps: f64) {

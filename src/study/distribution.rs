@@ -147,6 +147,26 @@ mod tests {
     use statrs::distribution::{ContinuousCDF, LogNormal, Normal, Triangular, Uniform};
 
     use super::*;
+    use crate::stats::tests::assert_near;
+
+    fn uniform(from: f64, to: f64) -> Distribution {
+        Distribution::Uniform { from, to }
+    }
+
+    fn normal(mean: f64, sd: f64) -> Distribution {
+        Distribution::Normal { mean, sd }
+    }
+
+    fn lognormal(median: f64, geometric_sd: f64) -> Distribution {
+        Distribution::Lognormal {
+            median,
+            geometric_sd,
+        }
+    }
+
+    fn triangular(from: f64, mode: f64, to: f64) -> Distribution {
+        Distribution::Triangular { from, mode, to }
+    }
 
     // Verifies: STU-010.
     #[test]
@@ -167,39 +187,18 @@ mod tests {
             Distribution::Empirical { .. } => unreachable!(),
         };
         for distribution in [
-            Distribution::Uniform {
-                from: -2.0,
-                to: 3.0,
-            },
-            Distribution::Normal { mean: 4.0, sd: 0.5 },
-            Distribution::Lognormal {
-                median: 5.0,
-                geometric_sd: 1.3,
-            },
-            Distribution::Triangular {
-                from: 1.0,
-                mode: 1.5,
-                to: 4.0,
-            },
-            Distribution::Triangular {
-                from: 1.0,
-                mode: 1.0,
-                to: 4.0,
-            },
-            Distribution::Triangular {
-                from: 1.0,
-                mode: 4.0,
-                to: 4.0,
-            },
+            uniform(-2.0, 3.0),
+            normal(4.0, 0.5),
+            lognormal(5.0, 1.3),
+            triangular(1.0, 1.5, 4.0),
+            triangular(1.0, 1.0, 4.0),
+            triangular(1.0, 4.0, 4.0),
         ] {
             assert_eq!(distribution.check(), Ok(()));
             for p in [1e-6, 0.025, 0.1, 1.0 / 6.0, 0.3, 0.5, 0.9, 0.975, 0.999] {
                 let (found, other) = (distribution.quantile(p), of(&distribution, p));
                 // Theirs is found by an erf with some eleven right digits, or by bisection.
-                assert!(
-                    (found - other).abs() < 1e-8 * (1.0 + other.abs()),
-                    "{distribution:?} {p}: {found} {other}"
-                );
+                assert_near(found, other, 1e-8 * (1.0 + other.abs()));
             }
         }
     }
@@ -222,50 +221,17 @@ mod tests {
     // Verifies: STU-011.
     #[test]
     fn distributions_that_do_not_exist_are_refused_with_the_parameter() {
-        use Distribution::{Lognormal, Normal, Triangular, Uniform};
         let nan = f64::NAN;
         for (distribution, key) in [
-            (Uniform { from: 1.0, to: 1.0 }, "uniform.to = 1.0"),
-            (Uniform { from: nan, to: 1.0 }, "uniform.to"),
-            (
-                Uniform {
-                    from: -f64::MAX,
-                    to: f64::MAX,
-                },
-                "uniform.to",
-            ),
-            (Normal { mean: nan, sd: 1.0 }, "normal.mean = NaN"),
-            (Normal { mean: 0.0, sd: 0.0 }, "normal.sd = 0.0"),
-            (
-                Lognormal {
-                    median: 0.0,
-                    geometric_sd: 2.0,
-                },
-                "lognormal.median",
-            ),
-            (
-                Lognormal {
-                    median: 1.0,
-                    geometric_sd: 1.0,
-                },
-                "lognormal.geometric_sd",
-            ),
-            (
-                Triangular {
-                    from: 0.0,
-                    mode: 2.0,
-                    to: 1.0,
-                },
-                "triangular.mode = 2.0",
-            ),
-            (
-                Triangular {
-                    from: 1.0,
-                    mode: 1.0,
-                    to: 1.0,
-                },
-                "triangular.mode",
-            ),
+            (uniform(1.0, 1.0), "uniform.to = 1.0"),
+            (uniform(nan, 1.0), "uniform.to"),
+            (uniform(-f64::MAX, f64::MAX), "uniform.to"),
+            (normal(nan, 1.0), "normal.mean = NaN"),
+            (normal(0.0, 0.0), "normal.sd = 0.0"),
+            (lognormal(0.0, 2.0), "lognormal.median"),
+            (lognormal(1.0, 1.0), "lognormal.geometric_sd"),
+            (triangular(0.0, 2.0, 1.0), "triangular.mode = 2.0"),
+            (triangular(1.0, 1.0, 1.0), "triangular.mode"),
             (empirical(&[1.0]), "empirical.values = 1.0"),
             (empirical(&[2.0, 1.0]), "empirical.values"),
             (empirical(&[1.0, nan]), "empirical.values"),

@@ -4,6 +4,8 @@ use std::f64::consts::PI;
 
 use super::*;
 use crate::phantom::BUILTIN_NAMES;
+use crate::stats::tests::assert_near;
+use crate::stats::tests::numbers;
 
 const NAMES: [&str; 6] = ["a", "b", "c", "d", "e", "f"];
 
@@ -17,30 +19,27 @@ fn found(inputs: usize, rows: usize, seed: u32, of: impl Fn(&[f64]) -> f64) -> V
         .map(|group| all(&|row| Role::Mixed(row, group)))
         .collect();
     let (first, second) = (all(&Role::First), all(&Role::Second));
-    indices(
-        Rows {
-            first: &first,
-            second: &second,
-            mixed: &mixed,
-        },
-        7,
-    )
-    .unwrap()
+    of_rows(&first, &second, &mixed, 7).unwrap()
+}
+
+fn of_rows(first: &[f64], second: &[f64], mixed: &[Vec<f64>], seed: u64) -> Option<Vec<Index>> {
+    let rows = Rows {
+        first,
+        second,
+        mixed,
+    };
+    indices(rows, seed)
 }
 
 fn assert_indices(found: &[Index], expected: &[[f64; 2]]) {
     for (number, (found, [first_order, total])) in found.iter().zip(expected).enumerate() {
         for (found, expected) in [(found.first_order, first_order), (found.total, total)] {
             let error = (found.value - expected).abs();
-            assert!(
-                error < 0.01,
-                "input {number}: {found:?}, expected {expected}"
-            );
+            let holds = error < 0.01;
+            assert!(holds, "input {number}: {found:?}, expected {expected}");
             // A bootstrap knows nothing of how even the points are: its interval is wide, but not several times 0.01.
-            assert!(
-                found.lower <= found.value && found.value <= found.upper,
-                "{found:?}"
-            );
+            let holds = found.lower <= found.value && found.value <= found.upper;
+            assert!(holds, "{found:?}");
             assert!(found.upper - found.lower < 0.15, "{found:?}");
         }
     }
@@ -87,40 +86,22 @@ fn the_indices_of_the_g_function_are_its_closed_form() {
 // Verifies: STU-040.
 #[test]
 fn a_quantity_that_does_not_vary_has_no_indices() {
-    let (same, mixed) = ([3.0; 5], vec![vec![3.0; 5]]);
-    assert_eq!(
-        indices(
-            Rows {
-                first: &same,
-                second: &same,
-                mixed: &mixed
-            },
-            1
-        ),
-        None
-    );
-    let mixed = vec![vec![2.0]];
-    assert_eq!(
-        indices(
-            Rows {
-                first: &[1.0],
-                second: &[2.0],
-                mixed: &mixed
-            },
-            1
-        ),
-        None
-    );
+    let same = [3.0; 5];
+    assert_eq!(of_rows(&same, &same, &[vec![3.0; 5]], 1), None);
+    assert_eq!(of_rows(&[1.0], &[2.0], &[vec![2.0]], 1), None);
+}
+
+fn correlation(one: &str, other: &str, coefficient: f64) -> Correlation {
+    Correlation {
+        inputs: [one, other].map(String::from),
+        coefficient,
+    }
 }
 
 // Verifies: STU-020, STU-021.
 #[test]
 fn each_sample_has_one_role_and_the_points_fill_the_unit_cube_evenly() {
-    let correlated = Correlation {
-        inputs: ["a", "c"].map(String::from),
-        coefficient: 0.8,
-    };
-    let design = Design::new(&NAMES[..4], &[correlated], 256, 5).unwrap();
+    let design = Design::new(&NAMES[..4], &[correlation("a", "c", 0.8)], 256, 5).unwrap();
     assert_eq!(design.groups(), [vec![0, 2], vec![1], vec![3]]);
     assert_eq!(design.samples(), 3 + 2 * 4 + 256 * 5);
     for index in 0..design.samples() {
@@ -149,84 +130,48 @@ fn each_sample_has_one_role_and_the_points_fill_the_unit_cube_evenly() {
 // Verifies: STU-012.
 #[test]
 fn correlated_inputs_have_normal_scores_of_that_correlation() {
-    let pairs = [("a", "b", 0.8), ("b", "c", -0.5)];
-    let correlations = pairs.map(|(one, other, coefficient)| Correlation {
-        inputs: [one, other].map(String::from),
-        coefficient,
-    });
+    let correlations = [correlation("a", "b", 0.8), correlation("b", "c", -0.5)];
     let rows = 4096;
     let design = Design::new(&NAMES[..3], &correlations, rows, 1).unwrap();
+    let score = |p| crate::stats::normal::quantile(p).unwrap();
+    let row = |row| design.probabilities(design.index(Role::First(row)));
     let scores: Vec<Vec<f64>> = (0..rows)
-        .map(|row| design.probabilities(design.index(Role::First(row))))
-        .map(|p| {
-            p.into_iter()
-                .map(|p| crate::stats::normal::quantile(p).unwrap())
-                .collect()
-        })
+        .map(|at| row(at).into_iter().map(score).collect())
         .collect();
-    for (one, other, expected) in [
-        (0, 1, 0.8),
-        (1, 2, -0.5),
-        (0, 2, 0.0),
-        (0, 0, 1.0),
-        (2, 2, 1.0),
-    ] {
+    let expected = "0 1 0.8\n1 2 -0.5\n0 2 0\n0 0 1\n2 2 1";
+    for [one, other, expected] in numbers(expected) {
+        let [one, other] = [one, other].map(|input| input as usize);
         let product: f64 = scores.iter().map(|of| of[one] * of[other]).sum();
         // Independent draws would have a standard deviation of at most √2/√4096 = 0.022; these are more even.
-        assert!(
-            (product / rows as f64 - expected).abs() < 0.02,
-            "{one} {other}: {product}"
-        );
+        assert_near(product / rows as f64, expected, 0.02);
     }
 }
 
 // Verifies: STU-012.
 #[test]
 fn correlations_that_cannot_be_are_refused() {
-    let refused = |pairs: &[(&str, &str, f64)]| {
-        let correlation = |&(one, other, coefficient): &(&str, &str, f64)| Correlation {
-            inputs: [one, other].map(String::from),
-            coefficient,
+    // Two inputs and their coefficient, or several such, and the beginning of the refusal.
+    let cases = "
+        a x 0.5 => correlation[0].inputs = a, x, expected two of a, b, c
+        a a 0.5 => correlation[0].inputs = a, a, expected two inputs
+        a b 0.5; b a 0.5 => correlation[1].inputs = b, a, expected
+        a b 1.0 => correlation[0].coefficient = 1, expected
+        a b NaN => correlation[0].coefficient = NaN, expected
+        a b 0.9; b c 0.9; a c -0.9 => the correlations of a, b, c, expected
+    ";
+    for case in cases.trim().lines().map(str::trim) {
+        let (pairs, expected) = case.split_once(" => ").unwrap();
+        let correlation = |pair: &str| {
+            let words: Vec<&str> = pair.split_whitespace().collect();
+            correlation(words[0], words[1], words[2].parse().unwrap())
         };
-        let correlations: Vec<_> = pairs.iter().map(correlation).collect();
-        Design::new(&NAMES[..3], &correlations, 8, 1)
-            .unwrap_err()
-            .to_string()
-    };
-    for (pairs, expected) in [
-        (
-            &[("a", "x", 0.5)][..],
-            "correlation[0].inputs = a, x, expected two of a, b, c",
-        ),
-        (
-            &[("a", "a", 0.5)],
-            "correlation[0].inputs = a, a, expected two inputs",
-        ),
-        (
-            &[("a", "b", 0.5), ("b", "a", 0.5)],
-            "correlation[1].inputs = b, a, expected",
-        ),
-        (
-            &[("a", "b", 1.0)],
-            "correlation[0].coefficient = 1, expected",
-        ),
-        (
-            &[("a", "b", f64::NAN)],
-            "correlation[0].coefficient = NaN, expected",
-        ),
-        (
-            &[("a", "b", 0.9), ("b", "c", 0.9), ("a", "c", -0.9)],
-            "the correlations of a, b, c, expected",
-        ),
-    ] {
-        let found = refused(pairs);
-        assert!(found.starts_with(expected), "{found}");
+        let correlations: Vec<_> = pairs.split(';').map(correlation).collect();
+        let found = Design::new(&NAMES[..3], &correlations, 8, 1).unwrap_err();
+        assert!(found.to_string().starts_with(expected), "{found}");
     }
     for (inputs, rows, expected) in [(0, 8, "0 inputs"), (2, 1, "rows = 1")] {
-        let found = Design::new(&NAMES[..inputs], &[], rows, 1)
-            .unwrap_err()
-            .to_string();
-        assert!(found.starts_with(expected), "{found}");
+        let found = Design::new(&NAMES[..inputs], &[], rows, 1).unwrap_err();
+        assert!(found.to_string().starts_with(expected), "{found}");
     }
 }
 
@@ -251,12 +196,13 @@ pub fn near(name: &str, key: &str, number: f64) -> Input {
         name: name.into(),
         key: key.into(),
         change: Change::Value,
-        distribution: Distribution::Uniform {
-            from: 0.96 * number,
-            to: 1.04 * number,
-        },
+        distribution: uniform(0.96 * number, 1.04 * number),
         source: "a test".into(),
     }
+}
+
+fn uniform(from: f64, to: f64) -> Distribution {
+    Distribution::Uniform { from, to }
 }
 
 /// A study of the reference and the phantom 6.6, on two positions.
@@ -307,10 +253,7 @@ pub fn results(plan: &StudyPlan, count: usize) -> StudyResults {
 fn slopes_are_those_of_another_program() {
     // Narrower, since forces rise steeply to 0.5.
     let mut ratio = near("ν", "layer[1].poisson_ratio", 0.49);
-    ratio.distribution = Distribution::Uniform {
-        from: 0.486,
-        to: 0.495,
-    };
+    ratio.distribution = uniform(0.486, 0.495);
     let plan = plan(vec![
         ratio,
         near("width", "well.width_mm", 34.0),
@@ -327,20 +270,11 @@ fn slopes_are_those_of_another_program() {
     let force = of("none", Kind::NormalForceN { lateral_m: 0.0 });
     let signal = of("6.6", Kind::PeakNormalN);
     // In per cent per per cent, at small strain, as printed: with one decimal. 2 % are for the steps and the meshes of both.
-    for (quantity, input, expected) in [
-        (force, 0, 7.3),
-        (force, 1, -1.1),
-        (force, 2, 0.9),
-        (force, 3, 0.8),
-        (force, 4, -0.3),
-        (force, 5, 0.2),
-        (signal, 0, 3.4),
-        (signal, 6, 2.0),
-        (signal, 4, -1.8),
-        (signal, 7, -1.3),
-        (signal, 2, 0.75),
-    ] {
-        let found = quantity.slopes[input].unwrap().elasticity.unwrap();
+    let of_force = "0 7.3\n1 -1.1\n2 0.9\n3 0.8\n4 -0.3\n5 0.2";
+    let of_signal = "0 3.4\n6 2.0\n4 -1.8\n7 -1.3\n2 0.75";
+    let of = |quantity, table| numbers(table).into_iter().map(move |row| (quantity, row));
+    for (quantity, [input, expected]) in of(force, of_force).chain(of(signal, of_signal)) {
+        let found = quantity.slopes[input as usize].unwrap().elasticity.unwrap();
         println!("{} {input}: {found:.3}, {expected}", quantity.quantity);
         let tolerance = 0.05 + 0.02 * f64::abs(expected);
         assert!((found - expected).abs() < tolerance, "{input}");
@@ -348,10 +282,8 @@ fn slopes_are_those_of_another_program() {
     // An inclusion does nothing to the gel without one.
     assert_eq!(force.slopes[6].unwrap().per_unit, 0.0);
     let band = force.numerical_band.unwrap();
-    assert!(
-        band > 0.0 && band < 0.02 * force.at_medians.unwrap(),
-        "{band}"
-    );
+    let holds = band > 0.0 && band < 0.02 * force.at_medians.unwrap();
+    assert!(holds, "{band}");
 }
 
 // Verifies: STU-021, STU-030.
@@ -376,20 +308,15 @@ fn the_medians_are_solved_on_three_meshes() {
 fn failures_are_counted_and_conclusions_have_their_share() {
     // Above 0.4995 there is no phantom: a quarter of the draws.
     let mut ratio = near("ν", "layer[1].poisson_ratio", 0.49);
-    ratio.distribution = Distribution::Uniform {
-        from: 0.49,
-        to: 0.502_6,
-    };
+    ratio.distribution = uniform(0.49, 0.502_6);
     let mut plan = plan(vec![ratio]);
     (plan.rows, plan.mesh_size, plan.noise_sd) = (4, 2e-3, 0.02);
     let results = results(&plan, 17);
     // Four rows have one point in each quarter, in both samples; the mixed one is the second with one input.
     assert_eq!((results.samples, results.failed), (3 + 2 + 4 * 3, 3));
     let reason = &results.failures[0].reason;
-    assert!(
-        reason.starts_with("phantom none: layer[1].poisson_ratio = 0.50"),
-        "{reason}"
-    );
+    let holds = reason.starts_with("phantom none: layer[1].poisson_ratio = 0.50");
+    assert!(holds, "{reason}");
     let conclusion = &results.conclusions[0];
     assert_eq!(conclusion.quantity.kind, Kind::Gamma);
     // 2 × 1.645 for 5 % of both errors.
@@ -416,48 +343,22 @@ fn inputs_that_make_no_study_are_refused_with_their_key() {
         let plan = plan(vec![near("skin", "layer[0].thickness_mm", 0.5), input]);
         plan.design().unwrap_err().to_string()
     };
-    for (change, expected) in [
-        (
-            &(|input: &mut Input| input.name = "skin".into()) as &dyn Fn(&mut Input),
-            "input.name = \"skin\" twice",
-        ),
-        (
-            &|input| input.name = " ".into(),
-            "input[1].name = \" \", expected a text",
-        ),
-        (
-            &|input| input.source.clear(),
-            "input[1].source = \"\", expected a text",
-        ),
-        (
-            &|input| input.key = "layer[2].poisson_ratio".into(),
-            "input[1].key = \"layer[2].poisson_ratio\", expected the key",
-        ),
-        (
-            &|input| input.key = "layer[0].name".into(),
-            "input[1].key = \"layer[0].name\", expected the key",
-        ),
-        (
-            &|input| input.key = "layer[x".into(),
-            "input[1].key = \"layer[x\", expected the key",
-        ),
-        (
-            &|input| input.key = "probe.radius_mm.x".into(),
-            "input[1].key = ",
-        ),
-        (
-            &|input| {
-                input.distribution = Distribution::Normal {
-                    mean: 1.0,
-                    sd: -1.0,
-                }
-            },
-            "input[1].distribution.normal.sd = -1.0, expected",
-        ),
+    let begins = |found: String, expected: &str| assert!(found.starts_with(expected), "{found}");
+    for (name, expected) in [
+        ("skin", "input.name = \"skin\" twice"),
+        (" ", "input[1].name = \" \", expected a text"),
     ] {
-        let found = refused(change);
-        assert!(found.starts_with(expected), "{found}");
+        begins(refused(&|input| input.name = name.into()), expected);
     }
+    for key in "layer[2].poisson_ratio layer[0].name layer[x probe.radius_mm.x".split(' ') {
+        let expected = format!("input[1].key = {key:?}, expected the key");
+        begins(refused(&|input| input.key = key.into()), &expected);
+    }
+    let nowhere = refused(&|input| input.source.clear());
+    begins(nowhere, "input[1].source = \"\", expected a text");
+    let (mean, sd) = (1.0, -1.0);
+    let normal = refused(&|input| input.distribution = Distribution::Normal { mean, sd });
+    begins(normal, "input[1].distribution.normal.sd = -1.0, expected");
 }
 
 // Verifies: STU-001.
@@ -473,9 +374,6 @@ fn a_value_replaces_is_added_or_multiplies() {
         input.change = change;
         let phantom = edit::phantom(&table, &[input], &[value]).unwrap();
         // One rounding in mm.
-        assert!(
-            (phantom.inclusions[0].depth - depth).abs() < 1e-17,
-            "{change:?}"
-        );
+        assert_near(phantom.inclusions[0].depth, depth, 1e-17);
     }
 }

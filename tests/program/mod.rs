@@ -78,3 +78,48 @@ pub fn has(text: &str, parts: impl IntoIterator<Item = impl AsRef<str>>) {
 pub fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).expect("UTF-8")
 }
+
+/// Everything below a folder, by its relative path.
+pub fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut files = Vec::new();
+    let mut folders = vec![folder.to_path_buf()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_path_buf();
+                files.push((name, fs::read(&path).unwrap()));
+            }
+        }
+    }
+    files.sort();
+    files
+}
+
+/// An ellipse at the left and a polygon at the right, under three layers, with sliding walls.
+pub const ASYMMETRIC: &str = r#"
+name = "asymmetric"
+well = { width_mm = 34, walls = "sliding" }
+layer = [
+  { name = "skin", thickness_mm = 0.5, youngs_modulus_kpa = 180, poisson_ratio = 0.49 },
+  { name = "fat", thickness_mm = 3, youngs_modulus_kpa = 3, poisson_ratio = 0.49 },
+  { name = "gel", thickness_mm = 12, youngs_modulus_kpa = 5, poisson_ratio = 0.49 },
+]
+probe = { radius_mm = 6.5, length_mm = 30 }
+[[inclusion]]
+centre_x_mm = -5
+depth_mm = 4
+width_mm = 6
+height_mm = 4
+angle_deg = 30
+youngs_modulus_kpa = 1200
+poisson_ratio = 0.49
+[[inclusion]]
+centre_x_mm = 8
+depth_mm = 7
+points_mm = [[-2, 0], [2, 0], [2, 3], [-2, 3]]
+youngs_modulus_kpa = 50
+poisson_ratio = 0.45
+"#;

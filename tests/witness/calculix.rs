@@ -27,11 +27,8 @@ fn run(directory: &Path, deck: &str) -> Vec<[f64; 2]> {
         .output()
         .unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        output.status.success() && said.contains("Job finished"),
-        "ccx failed in {}: {said}",
-        directory.display()
-    );
+    let holds = output.status.success() && said.contains("Job finished");
+    assert!(holds, "ccx failed in {}: {said}", directory.display());
     steps(&std::fs::read_to_string(results).unwrap())
 }
 
@@ -92,10 +89,8 @@ fn compare(name: &str, centre_x: f64, lateral: f64) {
             ours.force.normal, ours.force.lateral
         );
         assert!(off.abs() < 0.5, "{name} at {depth}, {lateral}: {off} %");
-        assert!(
-            aside.abs() < 0.2,
-            "{name} at {depth}, {lateral}: {aside} % of F_n"
-        );
+        let holds = aside.abs() < 0.2;
+        assert!(holds, "{name} at {depth}, {lateral}: {aside} % of F_n");
     }
 }
 

@@ -9,8 +9,9 @@ use std::io::Write;
 pub fn present(missing: Option<&str>) -> bool {
     let Some(program) = missing else { return true };
     let required = std::env::var_os("PALPATE_REQUIRE_WITNESSES").is_some_and(|value| value == "1");
+    let holds = !required;
     assert!(
-        !required,
+        holds,
         "{program} is not installed, but PALPATE_REQUIRE_WITNESSES=1 asks for it"
     );
     #[allow(clippy::explicit_write)]

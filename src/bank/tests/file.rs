@@ -29,58 +29,32 @@ fn maps_in_any_order_make_a_grid_that_survives_its_file() {
 // Verifies: BNK-001, BNK-003.
 #[test]
 fn what_is_no_bank_is_refused() {
-    let refused = |reference: ForceMap, change: &dyn Fn(&mut Vec<ForceMap>)| {
+    type Change<'a> = &'a dyn Fn(&mut Vec<ForceMap>);
+    let refused = |change: Change<'_>, expected: &str| {
         let mut maps = maps();
         change(&mut maps);
-        Bank::new(reference, maps).unwrap_err().to_string()
-    };
-    type Change<'a> = &'a dyn Fn(&mut Vec<ForceMap>);
-    let cases: [(ForceMap, Change<'_>, &str); 8] = [
-        (
-            reference(),
-            &|maps| maps.clear(),
-            "a bank without maps, expected one at least",
-        ),
-        (
-            reference(),
-            &|maps| maps.truncate(39),
-            "39 maps, expected one for each of 5 positions × 4 depths × 2 diameters × 1 moduli of their inclusions",
-        ),
-        (
-            reference(),
-            &|maps| maps[7] = maps[2].clone(),
-            "maps[2] and maps[7] have the same inclusion, expected each inclusion once",
-        ),
-        (
-            reference(),
-            &|maps| maps[3] = map(None, &[4e-3]),
-            "maps[3]: number of inclusions is 0, and 0 in the reference, expected",
-        ),
-        (
-            reference(),
-            &|maps| maps[3] = map(Some((1.0, 6.0, 8.0)), &[3.9e-3]),
-            "maps[3]: depths_m[0] = 0.0039, expected 0.004 as in maps[0]",
-        ),
-        (
-            reference(),
-            &|maps| maps[3] = map(Some((1.0, 6.0, 8.0)), &[3.9e-3, 4e-3]),
-            "maps[3]: 2 depths of the probe, expected one",
-        ),
-        (
-            reference(),
-            &|maps| maps[1] = maps[1].at_laterals(&[0.0, 5e-4]).unwrap(),
-            "maps[1]: its lateral positions are not those of the reference, expected the same",
-        ),
-        (
-            map(None, &[3e-3]),
-            &|_| (),
-            "depth 0.004 m is not in the map, expected one of [0.003] m",
-        ),
-    ];
-    for (reference, change, expected) in cases {
-        let error = refused(reference, change);
+        let error = Bank::new(reference(), maps).unwrap_err().to_string();
         assert!(error.starts_with(expected), "{error}");
-    }
+    };
+    let none = "a bank without maps, expected one at least";
+    refused(&|maps| maps.clear(), none);
+    let grid = "39 maps, expected one for each of 5 positions × 4 depths × 2 diameters × 1 moduli of their inclusions";
+    refused(&|maps| maps.truncate(39), grid);
+    let same = "maps[2] and maps[7] have the same inclusion, expected each inclusion once";
+    refused(&|maps| maps[7] = maps[2].clone(), same);
+    let plain = "maps[3]: number of inclusions is 0, and 0 in the reference, expected";
+    refused(&|maps| maps[3] = map(None, &[4e-3]), plain);
+    let of_depths = |depths| map(Some((1.0, 6.0, 8.0)), depths);
+    let other = "maps[3]: depths_m[0] = 0.0039, expected 0.004 as in maps[0]";
+    refused(&|maps| maps[3] = of_depths(&[3.9e-3]), other);
+    let two = "maps[3]: 2 depths of the probe, expected one";
+    refused(&|maps| maps[3] = of_depths(&[3.9e-3, 4e-3]), two);
+    let cut = |map: &ForceMap| map.at_laterals(&[0.0, 5e-4]).unwrap();
+    let narrow = "maps[1]: its lateral positions are not those of the reference, expected the same";
+    refused(&|maps| maps[1] = cut(&maps[1]), narrow);
+    let error = Bank::new(map(None, &[3e-3]), maps()).unwrap_err();
+    let shallow = "depth 0.004 m is not in the map, expected one of [0.003] m";
+    assert!(error.to_string().starts_with(shallow), "{error}");
 }
 
 // Verifies: BNK-010.
@@ -88,21 +62,15 @@ fn what_is_no_bank_is_refused() {
 fn a_damaged_file_is_refused_with_its_place() {
     let text = Bank::new(reference(), maps()).unwrap().to_json();
     let refused = |text: &str| Bank::from_json(text, "bank.json").unwrap_err().to_string();
-    let error = refused(&text.replacen("palpate-bank", "palpate-force-map", 1));
-    assert_eq!(
-        error,
-        "bank.json: schema = \"palpate-force-map\", expected \"palpate-bank\""
-    );
-    let error = refused(&text.replacen("\"laterals_m\"", "\"laterals\"", 1));
-    assert!(
-        error.starts_with("bank.json:") && error.contains("reference.laterals: unknown field"),
-        "{error}"
-    );
-    let error = refused(&text[..text.len() / 2]);
-    assert!(
-        error.starts_with("bank.json:") && error.contains("EOF"),
-        "{error}"
-    );
+    let schema = refused(&text.replacen("palpate-bank", "palpate-force-map", 1));
+    let expected = "bank.json: schema = \"palpate-force-map\", expected \"palpate-bank\"";
+    assert_eq!(schema, expected);
+    let key = refused(&text.replacen("\"laterals_m\"", "\"laterals\"", 1));
+    let end = refused(&text[..text.len() / 2]);
+    for (error, words) in [(key, "reference.laterals: unknown field"), (end, "EOF")] {
+        let is_placed = error.starts_with("bank.json:");
+        assert!(is_placed && error.contains(words), "{error}");
+    }
 }
 
 // Verifies: BNK-012.
@@ -119,22 +87,15 @@ fn a_prior_names_each_inclusion() {
         (prior[..3].to_vec(), prior.len()),
         (vec![0.75, 0.25, 0.0], 40)
     );
-    for (rows, expected) in [
-        (
-            "1,3,-2,4,E\n1,3,-2,4,E\n",
-            "line 3: an inclusion for the second time, expected each once",
-        ),
-        (
-            "1,3.5,-2,4,E\n",
-            "line 2: an inclusion that is not in the bank, expected one of its",
-        ),
-        ("-1,3,-2,4,E\n", "line 2: weight = -1, expected at least 0"),
-        (
-            "0,3,-2,4,E\n",
-            "weights that add up to 0, expected above 0 and finite",
-        ),
-    ] {
-        assert_eq!(read(rows).unwrap_err().to_string(), expected);
+    let refused = "
+        1,3,-2,4,E|1,3,-2,4,E => line 3: an inclusion for the second time, expected each once
+        1,3.5,-2,4,E => line 2: an inclusion that is not in the bank, expected one of its
+        -1,3,-2,4,E => line 2: weight = -1, expected at least 0
+        0,3,-2,4,E => weights that add up to 0, expected above 0 and finite";
+    for case in refused.trim().lines() {
+        let (rows, expected) = case.trim().split_once(" => ").unwrap();
+        let error = read(&format!("{}\n", rows.replace('|', "\n"))).unwrap_err();
+        assert_eq!(error.to_string(), expected);
     }
 }
 
@@ -157,8 +118,7 @@ fn a_mirror_image_has_the_other_sign_across() {
         );
         let laterals = turned(laterals, sign).map(|x| 0.0 + sign * x).to_vec();
         let table = ForceTable::new(vec![0.004], laterals, forces).unwrap();
-        let source = Source::Measured(Measurement::new("gel.csv", ""));
-        ForceMap::new(source, Some(phantom), table).unwrap()
+        measured(Some(phantom), table)
     };
     assert_eq!(of(0.002).mirror_image().unwrap(), of(-0.002));
     assert_eq!(of(-0.002).mirror_image().unwrap(), of(0.002));
@@ -179,12 +139,8 @@ fn plan() -> BankPlan {
 #[test]
 fn a_bank_has_the_forces_of_each_gel() {
     use crate::fem::{Contact, Model};
-    assert_eq!(
-        BankPlan::new(Phantom::builtin("6.6").unwrap(), 4e-3, &[0.0])
-            .unwrap()
-            .mesh_size,
-        MESH_SIZE
-    );
+    let usual = BankPlan::new(Phantom::builtin("6.6").unwrap(), 4e-3, &[0.0]);
+    assert_eq!(usual.unwrap().mesh_size, MESH_SIZE);
     let plan = plan();
     let solves = plan.solves().unwrap();
     let images: Vec<bool> = solves.iter().map(|solve| solve.image).collect();
@@ -202,10 +158,8 @@ fn a_bank_has_the_forces_of_each_gel() {
         // Meshes of mirror images are none of each other but where the gel is symmetric: their forces differ as those of two meshes do.
         let most = if *position < 0.0 { 2e-2 } else { 1e-10 };
         for force in difference.forces().as_ref().into_array() {
-            assert!(
-                force.values().iter().all(|f| f.abs() < most),
-                "{position}: {difference:?}"
-            );
+            let is_small = force.values().iter().all(|f| f.abs() < most);
+            assert!(is_small, "{position}: {difference:?}");
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::detect::{Decision, map_threshold, posterior};
 use crate::stats::random::Generator;
+use crate::stats::tests::assert_near;
 use crate::trace::{Cause, Correlation, Criterion, Noise, Question, Record, Trace, Unknown};
 
 const SD: f64 = 0.05;
@@ -17,18 +18,12 @@ fn record(map: &ForceMap, seed: Option<u64>, offset: f64, gain: f64) -> Record {
             let deviate = |seed| Generator::new(seed, channel).normal(0, k as u64);
             SD * seed.map_or(0.0, deviate)
         };
-        let [lateral, normal] = [exact.lateral[k], exact.normal[k]];
-        text += &format!(
-            "{},{},{}\n",
-            1e3 * position,
-            gain * lateral + noise(0),
-            gain * normal + offset + noise(1)
-        );
+        let lateral = gain * exact.lateral[k] + noise(0);
+        let normal = gain * exact.normal[k] + offset + noise(1);
+        text += &format!("{},{lateral},{normal}\n", 1e3 * position);
     }
-    Trace::from_csv(&text, "t.csv")
-        .unwrap()
-        .record(None)
-        .unwrap()
+    let trace = Trace::from_csv(&text, "t.csv").unwrap();
+    trace.record(None).unwrap()
 }
 
 const USUAL: &[Unknown] = &[Unknown::Offset, Unknown::Drift, Unknown::Gain];
@@ -56,44 +51,40 @@ fn search<'a>(bank: &'a Bank, unknown: &'a [Unknown], criterion: Criterion) -> B
     }
 }
 
+fn by_map(bank: &Bank) -> BankSearch<'_> {
+    search(bank, USUAL, Criterion::Map)
+}
+
+fn all() -> Bank {
+    Bank::new(reference(), maps()).unwrap()
+}
+
 // Verifies: BNK-060, BNK-034, BNK-063, BNK-064.
 #[test]
 fn a_record_is_judged_at_the_likeliest_point() {
-    let bank = Bank::new(reference(), maps()).unwrap();
+    let bank = all();
     let with = map(Some((1.3, 3.5, 8.0)), &[4e-3]);
     let record = record(&with, Some(1), 0.3, 1.1);
-    let found = search(&bank, USUAL, Criterion::Map)
-        .locate(&record)
-        .unwrap();
+    let found = by_map(&bank).locate(&record).unwrap();
     assert_eq!(found.decision, Some(Decision::Inclusion));
     assert!([1e-3, 2e-3].contains(&found.point[0]), "{:?}", found.point);
     // As by the map of that point alone.
-    let number = (0..40)
-        .find(|&number| bank.point(number) == found.point)
-        .unwrap();
+    let number = (0..40).find(|&number| bank.point(number) == found.point);
+    let number = number.unwrap();
     let one_depth = map(None, &[4e-3]);
     let hypotheses = crate::force_map::Hypotheses::new(&one_depth, &bank.maps()[number]).unwrap();
-    let alone = question(USUAL, Criterion::Map)
-        .judge(hypotheses, &record)
-        .unwrap();
+    let question = question(USUAL, Criterion::Map);
+    let alone = question.judge(hypotheses, &record).unwrap();
     assert!((found.theta_max - alone.test.theta()).abs() < 1e-9 || alone.fit.block > 1);
     // The record fits between the points, and not as well at the nearest.
-    assert!(
-        found.fit.noise_is_right() && found.fit.block == 1,
-        "{:?}",
-        found.fit
-    );
+    let fits = found.fit.noise_is_right() && found.fit.block == 1;
+    assert!(fits, "{:?}", found.fit);
     assert!(alone.fit.chi_square > found.fit.chi_square);
     // At most the largest, and at least its part.
-    assert!(
-        found.theta_mixture <= found.theta_max
-            && found.theta_mixture >= found.theta_max - 40f64.ln()
-    );
-    assert_eq!(
-        found.posterior,
-        posterior(found.theta_mixture, 0.25).unwrap()
-    );
-    assert_eq!(found.eta, map_threshold(0.25).unwrap());
+    let below = found.theta_max - found.theta_mixture;
+    assert!(below >= 0.0 && below <= 40f64.ln(), "{below}");
+    assert_eq!(posterior(found.theta_mixture, 0.25), Ok(found.posterior));
+    assert_eq!(map_threshold(0.25), Ok(found.eta));
     // Of an inclusion there whatever else is: θ ≥ η + ln 40.
     let gamma = found.test.gamma;
     let miss = crate::stats::normal::lower_tail((found.eta + 40f64.ln()) / gamma - 0.5 * gamma);
@@ -101,10 +92,7 @@ fn a_record_is_judged_at_the_likeliest_point() {
     // Where it lies, within four standard deviations.
     for (axis, truth) in [(0, 1.3e-3), (1, 3.5e-3), (2, 8e-3)] {
         let (estimate, sd) = (found.place.estimate[axis], found.bound.sd[axis].unwrap());
-        assert!(
-            (estimate - truth).abs() < 4.0 * sd,
-            "{axis}: {estimate} {sd}"
-        );
+        assert_near(estimate, truth, 4.0 * sd);
     }
     assert_eq!(found.bound.sd[3], None);
 }
@@ -112,30 +100,27 @@ fn a_record_is_judged_at_the_likeliest_point() {
 // Verifies: BNK-060, BNK-033.
 #[test]
 fn what_cannot_be_judged_is_told() {
-    let bank = Bank::new(reference(), maps()).unwrap();
+    let bank = all();
     let without = record(&reference(), Some(2), 0.0, 1.0);
-    let found = search(&bank, USUAL, Criterion::Map)
-        .locate(&without)
-        .unwrap();
+    let found = by_map(&bank).locate(&without).unwrap();
     assert_eq!(found.decision, Some(Decision::NoInclusion));
     let high = record(&reference(), Some(2), 5.0, 1.0);
     let found = search(&bank, &[], Criterion::Map).locate(&high).unwrap();
     assert_eq!((found.decision, found.causes[0]), (None, Cause::Level));
-    let mut asked = search(&bank, USUAL, Criterion::Map);
+    let mut asked = by_map(&bank);
     // Between the depths of the reference, and beyond them.
     for (depth, found) in [(3.9e-3, "0.0039"), (3e-3, "0.003")] {
         asked.question.depth = depth;
         let error = asked.locate(&without).unwrap_err().to_string();
+        let expected = "expected 0.004 m, for which the bank is";
         assert_eq!(
             error,
-            format!(
-                "t.csv: depth of the sweep = {found} m, expected 0.004 m, for which the bank is"
-            )
+            format!("t.csv: depth of the sweep = {found} m, {expected}")
         );
     }
     let wrong = BankSearch {
         prior: Some(&[1.0]),
-        ..search(&bank, USUAL, Criterion::Map)
+        ..by_map(&bank)
     };
     assert!(wrong.locate(&without).is_err());
 }
@@ -143,10 +128,9 @@ fn what_cannot_be_judged_is_told() {
 // Verifies: BNK-051, BNK-053, BNK-063.
 #[test]
 fn thresholds_keep_what_they_promise() {
-    let bank = Bank::new(reference(), maps()).unwrap();
-    let alarm = Criterion::NeymanPearsonFalseAlarm {
-        max_false_alarm: 0.05,
-    };
+    let bank = all();
+    let max_false_alarm = 0.05;
+    let alarm = Criterion::NeymanPearsonFalseAlarm { max_false_alarm };
     let miss = Criterion::NeymanPearsonMiss { max_miss: 0.05 };
     let with = map(Some((1.0, 5.0, 4.0)), &[4e-3]);
     let (mut alarms, mut misses) = (0, 0);
@@ -178,21 +162,14 @@ fn thresholds_keep_what_they_promise() {
 // Verifies: BNK-034.
 #[test]
 fn a_prior_excludes_what_it_gives_no_weight() {
-    let bank = Bank::new(reference(), maps()).unwrap();
+    let bank = all();
     let with = map(Some((1.0, 3.0, 8.0)), &[4e-3]);
     let record = record(&with, Some(3), 0.0, 1.0);
-    let prior: Vec<f64> = (0..40)
-        .map(|number| {
-            if bank.point(number)[0] < 0.0 {
-                1.0 / 16.0
-            } else {
-                0.0
-            }
-        })
-        .collect();
+    let is_left = |number| f64::from(u8::from(bank.point(number)[0] < 0.0));
+    let prior: Vec<f64> = (0..40).map(|number| is_left(number) / 16.0).collect();
     let asked = BankSearch {
         prior: Some(&prior),
-        ..search(&bank, USUAL, Criterion::Map)
+        ..by_map(&bank)
     };
     let found = asked.locate(&record).unwrap();
     assert!(found.point[0] < 0.0, "{:?}", found.point);
@@ -200,9 +177,7 @@ fn a_prior_excludes_what_it_gives_no_weight() {
     let interval = found.place.interval(0, 0.99).unwrap();
     assert!(-2e-3 <= interval.low && interval.low < interval.high && interval.high <= 0.0);
     assert!(found.place.nodes().all(|(_, mass)| mass.is_finite()));
-    let all = search(&bank, USUAL, Criterion::Map)
-        .locate(&record)
-        .unwrap();
+    let all = by_map(&bank).locate(&record).unwrap();
     assert_eq!(all.point[..3], [1e-3, 3e-3, 8e-3]);
     assert!(found.theta_mixture < all.theta_mixture);
 }
@@ -211,7 +186,7 @@ fn a_prior_excludes_what_it_gives_no_weight() {
 #[test]
 fn reach_is_where_gamma_is_enough() {
     use crate::stats::normal::quantile;
-    let bank = Bank::new(reference(), maps()).unwrap();
+    let bank = all();
     let reach = |sd: f64, unknown: &'static [Unknown]| Reach {
         bank: &bank,
         samples: None,
@@ -226,21 +201,11 @@ fn reach_is_where_gamma_is_enough() {
         let of = map(Some((0.0, depth, diameter)), &[4e-3]);
         let one_depth = map(None, &[4e-3]);
         let signal = of.minus(&one_depth).unwrap();
-        signal
-            .forces()
-            .normal
-            .values()
-            .iter()
-            .map(|f| f * f)
-            .sum::<f64>()
-            .sqrt()
-            / sd
+        let squares = signal.forces().normal.values().iter().map(|f| f * f);
+        squares.sum::<f64>().sqrt() / sd
     };
     let found = reach(0.1, &[]).reached().unwrap();
-    assert_eq!(
-        found.iter().map(|of| of.diameter).collect::<Vec<_>>(),
-        [4e-3, 8e-3]
-    );
+    assert!(found.iter().map(|of| of.diameter).eq([4e-3, 8e-3]));
     for of in &found {
         for (depth, of_depth) in [3.0, 4.0, 5.0, 6.0].iter().zip(&of.gamma) {
             assert!((of_depth - gamma(*depth, 1e3 * of.diameter, 0.1)).abs() < 1e-9);
@@ -249,42 +214,30 @@ fn reach_is_where_gamma_is_enough() {
     // A noise at which 4 mm are found between 4 and 5 mm, and 8 mm everywhere.
     let sd = 0.1 * gamma(4.4, 4.0, 0.1) / enough;
     let found = reach(sd, &[]).reached().unwrap();
-    let share =
-        (gamma(4.0, 4.0, sd) / enough).ln() / (gamma(4.0, 4.0, sd) / gamma(5.0, 4.0, sd)).ln();
-    assert!((found[0].depth.unwrap() - 1e-3 * (4.0 + share)).abs() < 1e-12 && !found[0].is_beyond);
+    // Where ln γ, linear from one to the other, is enough.
+    let share = |from: f64, to: f64| (from / enough).ln() / (from / to).ln();
+    let between = share(gamma(4.0, 4.0, sd), gamma(5.0, 4.0, sd));
+    assert!(
+        (found[0].depth.unwrap() - 1e-3 * (4.0 + between)).abs() < 1e-12 && !found[0].is_beyond
+    );
     assert_eq!((found[1].depth, found[1].is_beyond), (Some(6e-3), true));
     let smallest = smallest_diameters(&bank, &found, enough);
     assert_eq!(smallest[0], Some(4e-3));
-    let share =
-        (enough / gamma(6.0, 4.0, sd)).ln() / (gamma(6.0, 8.0, sd) / gamma(6.0, 4.0, sd)).ln();
-    assert!((smallest[3].unwrap() - 1e-3 * (4.0 + 4.0 * share)).abs() < 1e-12);
+    let between = share(gamma(6.0, 4.0, sd), gamma(6.0, 8.0, sd));
+    assert_near(smallest[3].unwrap(), 1e-3 * (4.0 + 4.0 * between), 1e-12);
     // Twice as many samples per length in the middle of the same: γ grows, and nuisances take of it.
-    let beside = reach(sd, &[Unknown::Offset, Unknown::Gain])
-        .reached()
-        .unwrap();
-    assert!(
-        beside[0]
-            .gamma
-            .iter()
-            .zip(&found[0].gamma)
-            .all(|(less, all)| less < all)
-    );
-    let many = Reach {
-        samples: Some(49),
-        ..reach(sd, &[])
-    }
-    .reached()
-    .unwrap();
+    let beside = reach(sd, &[Unknown::Offset, Unknown::Gain]);
+    let beside = beside.reached().unwrap();
+    let mut pairs = beside[0].gamma.iter().zip(&found[0].gamma);
+    assert!(pairs.all(|(less, all)| less < all));
+    let mut many = reach(sd, &[]);
+    many.samples = Some(49);
+    let many = many.reached().unwrap();
     assert!((many[1].gamma[3] / found[1].gamma[3] - 2.0).abs() < 0.1);
     let noisy = reach(1e3, &[]).reached().unwrap();
     assert_eq!((noisy[0].depth, noisy[0].is_beyond), (None, false));
     assert_eq!(smallest_diameters(&bank, &noisy, enough), [None; 4]);
-    assert!(
-        Reach {
-            max_miss: 0.0,
-            ..reach(0.1, &[])
-        }
-        .reached()
-        .is_err()
-    );
+    let mut never = reach(0.1, &[]);
+    never.max_miss = 0.0;
+    assert!(never.reached().is_err());
 }

@@ -3,8 +3,10 @@
 use super::*;
 use crate::detect::nuisance::NoiseLevel;
 use crate::force::Force;
-use crate::force_map::{ForceTable, Matrix, Measurement, Source};
+use crate::force_map::tests::{measured, table_of};
+use crate::force_map::{ForceTable, Matrix};
 use crate::phantom::Phantom;
+use crate::stats::random::Generator;
 
 mod detector;
 mod file;
@@ -22,6 +24,24 @@ pub fn signal(x: f64, d: f64) -> Vec<f64> {
     (0..SAMPLES).map(shape).collect()
 }
 
+pub fn times(factor: f64, values: &[f64]) -> Vec<f64> {
+    values.iter().map(|value| factor * value).collect()
+}
+
+/// A record of white noise about `mean`.
+pub fn noisy(seed: u64, trial: u64, mean: &[f64]) -> Vec<f64> {
+    let mut record = vec![0.0; mean.len()];
+    Generator::new(seed, 0).normals(trial, 0, &mut record);
+    record.iter_mut().zip(mean).for_each(|(r, mean)| *r += mean);
+    record
+}
+
+/// The detector of templates at these positions in known noise, beside nothing.
+pub fn at_positions(positions: &[f64], templates: Vec<f64>, prior: &[f64]) -> BankDetector {
+    let points = [positions.to_vec(), vec![0.0], vec![0.0], vec![0.0]];
+    BankDetector::new(&points, templates, prior, vec![], &[], NoiseLevel::Known).unwrap()
+}
+
 /// Positions by 1 mm and depths by 0.5 mm.
 pub fn axes() -> [Vec<f64>; 4] {
     let positions = (-6..=6).map(f64::from).collect();
@@ -35,13 +55,9 @@ pub fn detector(scale: f64, has_offset: bool, level: NoiseLevel) -> BankDetector
     let points = depths
         .iter()
         .flat_map(|d| positions.iter().map(move |x| (*x, *d)));
-    let scaled = |(x, d)| {
-        signal(x, d)
-            .into_iter()
-            .map(|value| scale * value)
-            .collect::<Vec<_>>()
-    };
-    let templates: Vec<f64> = points.flat_map(scaled).collect();
+    let templates: Vec<f64> = points
+        .flat_map(|(x, d)| times(scale, &signal(x, d)))
+        .collect();
     let number = templates.len() / SAMPLES;
     let offset = vec![1.0; if has_offset { SAMPLES } else { 0 }];
     let prior = vec![1.0 / number as f64; number];
@@ -58,12 +74,6 @@ pub fn map(inclusion: Option<(f64, f64, f64)>, depths: &[f64]) -> ForceMap {
         let from = (1e3 * lateral - x) / (0.5 + 0.1 * depth);
         Some(diameter / 10.0 * (2.0 / depth) * (-0.5 * from * from).exp())
     };
-    let normal =
-        |row: usize, column: usize| 250.0 * depths[row] + bump(laterals[column]).unwrap_or(0.0);
-    let forces = Force {
-        lateral: Matrix::from_fn(depths.len(), laterals.len(), |_, _| 0.0),
-        normal: Matrix::from_fn(depths.len(), laterals.len(), normal),
-    };
     match inclusion {
         None => phantom.inclusions.clear(),
         Some((x, depth, diameter)) => {
@@ -74,9 +84,9 @@ pub fn map(inclusion: Option<(f64, f64, f64)>, depths: &[f64]) -> ForceMap {
             };
         }
     }
-    let table = ForceTable::new(depths.to_vec(), laterals, forces).unwrap();
-    let source = Source::Measured(Measurement::new("gel.csv", ""));
-    ForceMap::new(source, Some(phantom), table).unwrap()
+    let normal = |depth, lateral| 250.0 * depth + bump(lateral).unwrap_or(0.0);
+    let table = table_of(depths, &laterals, |depth, x| [0.0, normal(depth, x)]);
+    measured(Some(phantom), table)
 }
 
 /// Inclusions at −2 … 2 mm, 3, 4, 5 and 6 mm deep, of 4 and 8 mm, the last first.

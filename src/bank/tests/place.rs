@@ -1,33 +1,20 @@
 //! Where it lies: against brute force, and against the bounds.
 
 use super::*;
-use crate::stats::random::Generator;
+use crate::stats::tests::{assert_near, numbers};
 
 fn record(seed: u64, trial: u64, scale: f64, at: [f64; 2]) -> Vec<f64> {
-    let mut record = vec![0.0; SAMPLES];
-    Generator::new(seed, 0).normals(trial, 0, &mut record);
-    let signal = signal(at[0], at[1]);
-    record
-        .iter_mut()
-        .zip(signal)
-        .for_each(|(r, signal)| *r += scale * signal);
-    record
+    noisy(seed, trial, &times(scale, &signal(at[0], at[1])))
 }
 
 /// ln of the likelihood ratio at a place with an unknown offset, from the samples themselves.
 fn theta(record: &[f64], scale: f64, x: f64, d: f64, level: NoiseLevel) -> f64 {
-    let left = |values: &[f64]| {
+    let left = |values: &[f64]| -> f64 {
         let mean = values.iter().sum::<f64>() / SAMPLES as f64;
-        values
-            .iter()
-            .map(|value| (value - mean).powi(2))
-            .sum::<f64>()
+        values.iter().map(|value| (value - mean).powi(2)).sum()
     };
-    let without: Vec<f64> = signal(x, d)
-        .iter()
-        .zip(record)
-        .map(|(s, r)| r - scale * s)
-        .collect();
+    let pairs = signal(x, d).into_iter().zip(record);
+    let without: Vec<f64> = pairs.map(|(s, r)| r - scale * s).collect();
     let (all, rest) = (left(record), left(&without));
     match level {
         NoiseLevel::Known => 0.5 * (all - rest),
@@ -53,10 +40,8 @@ fn the_posterior_is_that_of_brute_force() {
         let (mut sum, mut means, mut below) = (0.0, [0.0; 2], 0.0);
         for i in 0..480 {
             for j in 0..120 {
-                let (x, d) = (
-                    -6.0 + (i as f64 + 0.5) / 40.0,
-                    2.0 + (j as f64 + 0.5) / 60.0,
-                );
+                let x = -6.0 + (i as f64 + 0.5) / 40.0;
+                let d = 2.0 + (j as f64 + 0.5) / 60.0;
                 let weight = theta(&record, scale, x, d, level).exp();
                 sum += weight;
                 means[0] += weight * x;
@@ -66,22 +51,13 @@ fn the_posterior_is_that_of_brute_force() {
         }
         let mean = |axis: usize| place.mean()[axis];
         let sd = |axis: usize| {
-            let mean = mean(axis);
-            place
-                .nodes()
-                .map(|(at, mass)| (at[axis] - mean).powi(2) * mass)
-                .sum::<f64>()
-                .sqrt()
+            let square = |(at, mass): ([f64; 4], f64)| (at[axis] - mean(axis)).powi(2) * mass;
+            place.nodes().map(square).sum::<f64>().sqrt()
         };
         // Lagrange's error is (1 mm)⁴ · 3/128 of the fourth derivative, 3/(2 mm)⁴ of a signal: 0.4 % of its values, which moves a mean by less
         // than 3 % of the standard deviation at γ up to 40. The prior's cut ends take as much.
         for axis in [0, 1] {
-            let expected = means[axis] / sum;
-            assert!(
-                (mean(axis) - expected).abs() < 0.03 * sd(axis) + 0.002,
-                "{axis}: {} {expected}",
-                mean(axis)
-            );
+            assert_near(mean(axis), means[axis] / sum, 0.03 * sd(axis) + 0.002);
         }
         assert!((place.at_most(0, 1.0) - below / sum).abs() < 0.02);
         let interval = place.interval(0, 0.9).unwrap();
@@ -98,26 +74,12 @@ fn the_posterior_is_that_of_brute_force() {
 // Verifies: BNK-040.
 #[test]
 fn a_prior_counts_between_its_points_too() {
-    let points = [vec![0.0, 1.0, 2.0], vec![0.0], vec![0.0], vec![0.0]];
     // Signals that are all the same say nothing of the place: the posterior is the prior, a triangle over 0 … 2.
-    let templates = vec![1.0; 9];
-    let detector = BankDetector::new(
-        &points,
-        templates,
-        &[0.0, 1.0, 0.0],
-        vec![],
-        &[],
-        NoiseLevel::Known,
-    )
-    .unwrap();
+    let detector = at_positions(&[0.0, 1.0, 2.0], vec![1.0; 9], &[0.0, 1.0, 0.0]);
     let place = detector.place(&detector.statistic(&mut [0.3, -1.0, 2.0]).unwrap());
     // The middles of fifths of 0 … 1 and of 1 … 2.
     for (x, expected) in [(0.4, 0.08), (1.0, 0.5), (1.6, 0.92)] {
-        assert!(
-            (place.at_most(0, x) - expected).abs() < 1e-12,
-            "{x}: {}",
-            place.at_most(0, x)
-        );
+        assert_near(place.at_most(0, x), expected, 1e-12);
     }
 }
 
@@ -125,22 +87,13 @@ fn a_prior_counts_between_its_points_too() {
 #[test]
 fn a_record_without_noise_is_found_where_it_lies() {
     let detector = detector(8.0, true, NoiseLevel::Known);
-    for (x, d) in [
-        (0.5, 2.25),
-        (-3.27, 2.81),
-        (5.4, 3.6),
-        (-5.9, 2.04),
-        (0.0, 4.0),
-    ] {
-        let mut record: Vec<f64> = signal(x, d).iter().map(|value| 8.0 * value).collect();
+    let places = "0.5 2.25\n-3.27 2.81\n5.4 3.6\n-5.9 2.04\n0 4";
+    for [x, d] in numbers(places) {
+        let mut record = times(8.0, &signal(x, d));
         let place = detector.place(&detector.statistic(&mut record).unwrap());
         // The interpolated signal is off by 0.4 % at most, a hundredth of the distance between the points.
-        let [found_x, found_d, ..] = place.estimate;
-        assert!(
-            (found_x - x).abs() < 0.01 && (found_d - d).abs() < 0.01,
-            "{x} {d}: {:?}",
-            place.estimate
-        );
+        assert_near(place.estimate[0], x, 0.01);
+        assert_near(place.estimate[1], d, 0.01);
     }
 }
 
@@ -153,9 +106,8 @@ fn estimates_spread_as_the_bound_says() {
     let bound = detector.bound([at[0], at[1], 1.0, 1.0]);
     let mut sums = [[0.0; 2]; 2];
     for trial in 0..RECORDS {
-        let statistic = detector
-            .statistic(&mut record(99, trial, scale, at))
-            .unwrap();
+        let mut record = record(99, trial, scale, at);
+        let statistic = detector.statistic(&mut record).unwrap();
         let estimate = detector.place(&statistic).estimate;
         for axis in 0..2 {
             let off = estimate[axis] - at[axis];
@@ -179,7 +131,7 @@ fn the_bound_is_the_inverse_of_fishers_matrix() {
     for (has_offset, at) in [(false, [0.4, 2.7]), (true, [-2.6, 3.3])] {
         let detector = detector(scale, has_offset, NoiseLevel::Known);
         let bound = detector.bound([at[0], at[1], 1.0, 1.0]);
-        let slope = |axis: usize| {
+        let slope = |axis: usize| -> Vec<f64> {
             let beside = |by: f64| {
                 let mut beside = at;
                 beside[axis] += by;
@@ -189,10 +141,7 @@ fn the_bound_is_the_inverse_of_fishers_matrix() {
             let slope: Vec<f64> = pairs.map(|(a, b)| scale * (a - b) / 2e-4).collect();
             let mean = slope.iter().sum::<f64>() / SAMPLES as f64;
             let taken = if has_offset { mean } else { 0.0 };
-            slope
-                .into_iter()
-                .map(move |value| value - taken)
-                .collect::<Vec<_>>()
+            slope.into_iter().map(move |value| value - taken).collect()
         };
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (a, b) = (slope(0), slope(1));

@@ -4,8 +4,9 @@ use crate::fem::Mesh;
 use crate::fem::assembly::StiffnessMatrix;
 use crate::fem::element::StiffnessRule;
 use crate::fem::ordering::dissection;
-use crate::phantom::{Phantom, Support};
+use crate::phantom::Phantom;
 
+use super::supports::{SUPPORTS, held_by};
 use super::{builtin, off_centre, small};
 
 fn mesh(phantom: &Phantom) -> Mesh {
@@ -46,14 +47,8 @@ fn every_node_below_the_surface_is_eliminated_once() {
 // Verifies: FEM-006, FEM-004, CON-004.
 #[test]
 fn the_matrix_is_the_sum_of_the_elements() {
-    for (walls, floor) in [
-        (Support::Fixed, Support::Fixed),
-        (Support::Sliding, Support::Sliding),
-        (Support::Free, Support::Fixed),
-        (Support::Fixed, Support::Free),
-    ] {
-        let mut phantom = small(0.4);
-        (phantom.well.walls, phantom.well.floor) = (walls, floor);
+    for supports in SUPPORTS {
+        let phantom = held_by(small(0.4), supports);
         let mesh = mesh(&phantom);
         let matrix = StiffnessMatrix::assemble(&mesh, &phantom).unwrap();
         let all = everything(&mesh, &phantom);
@@ -112,8 +107,6 @@ fn an_element_turned_inside_out_is_an_error_that_says_where() {
     mesh.nodes[node][1] += 0.01;
     let error = StiffnessMatrix::assemble(&mesh, &phantom).unwrap_err();
     let said = error.to_string();
-    assert!(
-        said.contains("near x = ") && said.contains("has the Jacobian -"),
-        "{said}"
-    );
+    let holds = said.contains("near x = ") && said.contains("has the Jacobian -");
+    assert!(holds, "{said}");
 }

@@ -1,6 +1,7 @@
 use crate::fem::field::determinant;
 use crate::fem::{Contact, FemError, MESH_SIZE, Model, Pose, PoseSolution};
 use crate::force::Force;
+use crate::force_map::ForceMap;
 use crate::stats::tests::assert_near;
 
 use super::{builtin, finest, off_centre, pose};
@@ -42,6 +43,20 @@ fn maps_are_mirror_symmetric_to_the_bit() {
     }
 }
 
+/// Asserts that a map has the forces of its poses.
+fn assert_of_its_poses(map: &ForceMap, model: &Model) {
+    for (row, &depth) in map.depths().iter().enumerate() {
+        for (column, &lateral) in map.laterals().iter().enumerate() {
+            let alone = model.solve(Pose { depth, lateral }).unwrap();
+            let pairs = map.forces().as_ref().zip(alone.force).into_array();
+            for (forces, alone) in pairs {
+                // Reached by another path: equal within what Newton leaves, 1e-13 m at 10³ N/m.
+                assert_near(forces.row(row)[column], alone, 1e-10);
+            }
+        }
+    }
+}
+
 // Verifies: FEM-014.
 #[test]
 fn a_map_holds_the_forces_of_its_poses() {
@@ -50,16 +65,7 @@ fn a_map_holds_the_forces_of_its_poses() {
     let counted = std::cell::Cell::new(0);
     let count = |poses| counted.set(counted.get() + poses);
     let map = model.map(&MILLIMETRES, &laterals, &count).unwrap();
-    for (row, &depth) in MILLIMETRES.iter().enumerate() {
-        for (column, &lateral) in laterals.iter().enumerate() {
-            let alone = model.solve(Pose { depth, lateral }).unwrap();
-            let [normal, along] =
-                [&map.forces().normal, &map.forces().lateral].map(|m| m.row(row)[column]);
-            // Reached by another path: equal within what Newton leaves, 1e-13 m at 10³ N/m.
-            assert_near(normal, alone.force.normal, 1e-10);
-            assert_near(along, alone.force.lateral, 1e-10);
-        }
-    }
+    assert_of_its_poses(&map, &model);
     // The axis is solved as well, for the mirror images.
     assert_eq!(counted.get(), 12);
     assert_eq!(model.solved_laterals(&laterals), [0.0, 1e-3, 3e-3, 7e-3]);
@@ -75,14 +81,9 @@ fn a_map_of_an_asymmetric_phantom_solves_each_side_by_itself() {
     let map = model.map(&MILLIMETRES, &laterals, &count).unwrap();
     assert_eq!(counted.get(), 9);
     assert_eq!(model.solved_laterals(&laterals), laterals);
-    for (row, &depth) in MILLIMETRES.iter().enumerate() {
+    assert_of_its_poses(&map, &model);
+    for row in 0..3 {
         let (normal, along) = (map.forces().normal.row(row), map.forces().lateral.row(row));
-        for (column, &lateral) in laterals.iter().enumerate() {
-            let alone = model.solve(Pose { depth, lateral }).unwrap();
-            // As above.
-            assert!((normal[column] - alone.force.normal).abs() < 1e-10);
-            assert!((along[column] - alone.force.lateral).abs() < 1e-10);
-        }
         // The disc is under the right side, pushes harder there, and to the left at x = 0.
         assert!(normal[2] > 1.01 * normal[0], "{normal:?}");
         assert!(along[1] < -1e-4, "{along:?}");

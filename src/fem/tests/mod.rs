@@ -11,7 +11,9 @@ mod mesh;
 mod supports;
 
 use super::{Contact, MESH_SIZE, Model, Pose};
+use crate::phantom::tests::{disc, ellipse, polygon};
 use crate::phantom::{Inclusion, Layer, Material, Phantom, Shape};
+use crate::stats::tests::numbers;
 
 /// A built-in phantom.
 fn builtin(name: &str) -> Phantom {
@@ -65,26 +67,6 @@ fn with(inclusions: Vec<Inclusion>) -> Phantom {
     }
 }
 
-fn disc(diameter_mm: f64) -> Shape {
-    Shape::Disc {
-        diameter: diameter_mm * 1e-3,
-    }
-}
-
-fn ellipse(width_mm: f64, height_mm: f64, angle_deg: f64) -> Shape {
-    Shape::Ellipse {
-        width: width_mm * 1e-3,
-        height: height_mm * 1e-3,
-        angle_deg,
-    }
-}
-
-fn polygon(points_mm: &[[f64; 2]]) -> Shape {
-    Shape::Polygon {
-        points: points_mm.iter().map(|p| p.map(|x| x * 1e-3)).collect(),
-    }
-}
-
 /// The paper's disc, this far off the axis, mm.
 fn off_centre(depth_mm: f64, centre_x_mm: f64) -> Phantom {
     with(vec![hard(centre_x_mm, depth_mm, disc(6.4))])
@@ -112,22 +94,9 @@ fn zoo() -> Vec<(String, Phantom)> {
     let square = polygon(&[[-2.0, 0.0], [2.0, 0.0], [2.0, 4.0], [-2.0, 4.0]]);
     let triangle = polygon(&[[-3.0, 0.0], [3.0, 0.0], [0.0, 5.0]]);
     let sharp = polygon(&[[0.0, 0.0], [6.0, 0.0], [0.0, 3.5]]);
-    let hexagon = polygon(&[
-        [3.0, 0.0],
-        [1.5, 2.6],
-        [-1.5, 2.6],
-        [-3.0, 0.0],
-        [-1.5, -2.6],
-        [1.5, -2.6],
-    ]);
-    let angled = polygon(&[
-        [0.0, 0.0],
-        [5.0, 0.0],
-        [5.0, 1.5],
-        [1.5, 1.5],
-        [1.5, 5.0],
-        [0.0, 5.0],
-    ]);
+    let hexagon = "3 0\n1.5 2.6\n-1.5 2.6\n-3 0\n-1.5 -2.6\n1.5 -2.6";
+    let angled = "0 0\n5 0\n5 1.5\n1.5 1.5\n1.5 5\n0 5";
+    let [hexagon, angled] = [hexagon, angled].map(|corners| polygon(&numbers(corners)));
     for (what, shape) in [
         ("square", &square),
         ("triangle", &triangle),

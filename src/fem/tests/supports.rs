@@ -9,7 +9,7 @@ use crate::phantom::{Material, Phantom, Support};
 use super::{builtin, coarse, off_centre, pose, small};
 
 /// The supports that hold a phantom in place.
-const SUPPORTS: [(Support, Support); 6] = [
+pub const SUPPORTS: [(Support, Support); 6] = [
     (Support::Fixed, Support::Fixed),
     (Support::Fixed, Support::Sliding),
     (Support::Fixed, Support::Free),
@@ -18,7 +18,7 @@ const SUPPORTS: [(Support, Support); 6] = [
     (Support::Free, Support::Fixed),
 ];
 
-fn held_by(phantom: Phantom, (walls, floor): (Support, Support)) -> Phantom {
+pub fn held_by(phantom: Phantom, (walls, floor): (Support, Support)) -> Phantom {
     let mut phantom = phantom;
     (phantom.well.walls, phantom.well.floor) = (walls, floor);
     phantom.validate().expect("supports that hold");
@@ -47,10 +47,8 @@ fn a_shift_of_everything_costs_nothing() {
             let diagonal = (0..n).map(|k| matrix.upper.val_of_col(k).last().copied().unwrap());
             // Rows of some thirty entries of at most the largest diagonal.
             let largest = diagonal.fold(0.0, f64::max);
-            assert!(
-                left < 1e-14 * largest,
-                "{supports:?}, {direction}: {left:e}"
-            );
+            let holds = left < 1e-14 * largest;
+            assert!(holds, "{supports:?}, {direction}: {left:e}");
         }
     }
 }

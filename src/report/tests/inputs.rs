@@ -6,8 +6,9 @@ use super::run::*;
 use crate::phantom::{BUILTIN_NAMES, Phantom};
 use crate::report::inputs::{Survival, survival};
 use crate::report::{Figure, Run, findings};
+use crate::stats::tests::assert_has;
 use crate::study::tests::{near, plan, results};
-use crate::study::{Kind, StudyResults};
+use crate::study::{Kind, StudyPlan, StudyResults};
 
 /// The paper's run with a study of it, on a coarse mesh.
 fn with_study() -> Run {
@@ -42,38 +43,29 @@ fn a_study_stands_beside_the_numbers_of_the_run() {
     for name in &BUILTIN_NAMES[1..] {
         let line = format!("<li>The inclusion of phantom {name} is found");
         let line = between(section, &line, "</li>");
-        assert!(
-            line.contains("in 100.0 % of the draws")
-                && line.ends_with("survives the uncertainty of the inputs."),
-            "{line}"
-        );
+        assert_has(line, "in 100.0 % of the draws");
+        assert!(line.ends_with("survives the uncertainty of the inputs."));
     }
-    let text = super::super::text::fixed(
-        study
-            .of("none", &Kind::NormalForceN { lateral_m: 0.0 })
-            .unwrap()
-            .band
-            .unwrap()
-            .lower
-            .value,
-        2,
-    );
-    assert!(
-        section.contains(&format!("the normal force at x = 0 is between {text} and ")),
-        "{section}"
+    let force = study.of("none", &Kind::NormalForceN { lateral_m: 0.0 });
+    let lower = force.unwrap().band.unwrap().lower.value;
+    let lower = super::super::text::fixed(lower, 2);
+    assert_has(
+        section,
+        &format!("the normal force at x = 0 is between {lower} and "),
     );
     // 4 % in the modulus and the height of the gel are not 8 % in the force.
-    assert!(section.contains("outside, so that the inputs alone do not explain the difference"));
-    assert!(section.contains("These explanations of the answers to FEM playback are rejected whatever the inputs (share of the draws): peak, normal force (100.0 %)"), "{section}");
-    // Names are text.
-    assert!(
-        section.contains("gel: &#60;modulus&#62;") && !section.contains("<modulus>"),
-        "{section}"
+    assert_has(
+        section,
+        "outside, so that the inputs alone do not explain the difference",
     );
-    let rows = between(section, "table-bands", "</table>")
-        .matches("<tr>")
-        .count();
-    assert_eq!(rows, 1 + study.listed().count());
+    let rejected = "These explanations of the answers to FEM playback are rejected whatever the inputs \
+                    (share of the draws): peak, normal force (100.0 %)";
+    assert_has(section, rejected);
+    // Names are text.
+    assert_has(section, "gel: &#60;modulus&#62;");
+    assert!(!section.contains("<modulus>"), "{section}");
+    let table = between(section, "table-bands", "</table>");
+    assert_eq!(table.matches("<tr>").count(), 1 + study.listed().count());
     let captions = |name: &str| {
         let is_named = |figure: &&Figure| figure.file_name.starts_with(name);
         let figures = made.figures.iter().filter(is_named);
@@ -84,79 +76,48 @@ fn a_study_stands_beside_the_numbers_of_the_run() {
     for (name, count) in [("figure-5", 5), ("figure-11", 1), ("gamma", 1)] {
         let captions = captions(name);
         assert_eq!(captions.len(), count, "{name}");
-        assert!(
-            captions
-                .iter()
-                .all(|caption| caption.contains("the draws of the uncertain inputs")),
-            "{name}"
-        );
+        let words = "the draws of the uncertain inputs";
+        captions
+            .iter()
+            .for_each(|caption| assert_has(caption, words));
     }
     assert!(!captions("figure-10")[0].contains("draws"));
     // Of the two inputs the modulus counts more in the force: 0.9 against 0.3 per cent per per cent.
-    let drawn = made
-        .figures
-        .iter()
-        .find(|figure| figure.file_name == "inputs.svg")
-        .unwrap();
-    assert!(
-        drawn
-            .alt
-            .contains("none: normal force at 0.0 mm, N: gel: <modulus> 3.6 %, gel: height −1."),
-        "{}",
-        drawn.alt
-    );
+    let drawn = "none: normal force at 0.0 mm, N: gel: <modulus> 3.6 %, gel: height −1.";
+    assert_has(&made.figure("inputs").alt, drawn);
 }
 
 // Verifies: REP-081.
 #[test]
 fn without_a_study_the_page_says_so() {
     let made = made(&paper_run());
-    assert!(
-        made.page
-            .contains("No study of the inputs belongs to this run")
-    );
-    assert!(
-        made.figures
-            .iter()
-            .all(|figure| figure.file_name != "inputs.svg")
-    );
-    assert!(
-        made.figures
-            .iter()
-            .all(|figure| !figure.caption.contains("draws"))
-    );
+    assert_has(&made.page, "No study of the inputs belongs to this run");
+    for figure in &made.figures {
+        assert!(figure.file_name != "inputs.svg" && !figure.caption.contains("draws"));
+    }
 }
 
 // Verifies: REP-004.
 #[test]
 fn a_study_of_something_else_is_refused() {
-    type Edit = dyn Fn(&mut StudyResults);
-    let refused = |change: &Edit| {
+    let refused = |what: &str, change: fn(&mut StudyPlan)| {
         let mut run = with_study();
-        change(run.study.as_mut().unwrap());
-        findings(&run).unwrap_err().to_string()
-    };
-    let changes: [(&Edit, &str); 7] = [
-        (&|study| study.plan.reference.well.width = 0.04, "reference"),
-        (
-            &|study| study.plan.phantoms[1].inclusions[0].depth = 5e-3,
-            "phantom \"4.6\"",
-        ),
-        (&|study| study.plan.probe_depth = 3e-3, "depth of the probe"),
-        (
-            &|study| study.plan.laterals.truncate(4),
-            "list of lateral positions",
-        ),
-        (&|study| study.plan.noise_sd = 0.2, "noise, rate or prior"),
-        (&|study| study.plan.max_miss = 0.01, "noise, rate or prior"),
-        (&|study| study.plan.prior_h1 = 0.4, "noise, rate or prior"),
-    ];
-    for (change, what) in changes {
+        change(&mut run.study.as_mut().unwrap().plan);
+        let found = findings(&run).unwrap_err().to_string();
         let expected =
             format!("the study of the inputs has another {what} than the run, expected ");
-        let found = refused(change);
         assert!(found.starts_with(&expected), "{found}");
-    }
+    };
+    refused("reference", |plan| plan.reference.well.width = 0.04);
+    let deeper = |plan: &mut StudyPlan| plan.phantoms[1].inclusions[0].depth = 5e-3;
+    refused("phantom \"4.6\"", deeper);
+    refused("depth of the probe", |plan| plan.probe_depth = 3e-3);
+    refused("list of lateral positions", |plan| {
+        plan.laterals.truncate(4)
+    });
+    refused("noise, rate or prior", |plan| plan.noise_sd = 0.2);
+    refused("noise, rate or prior", |plan| plan.max_miss = 0.01);
+    refused("noise, rate or prior", |plan| plan.prior_h1 = 0.4);
 }
 
 // Verifies: REP-083.

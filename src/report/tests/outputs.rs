@@ -7,6 +7,7 @@ use super::xml;
 use crate::force_map::Discretization;
 use crate::phantom::Phantom;
 use crate::report::*;
+use crate::stats::tests::assert_has;
 
 // Verifies: REP-041.
 #[test]
@@ -102,10 +103,8 @@ fn file_names_are_safe_and_unique() {
         let is_svg = file_name.ends_with(".svg") && !file_name.starts_with('.');
         let is_safe = is_svg && file_name.chars().all(safe) && file_name.len() < 80;
         assert!(is_safe, "{file_name}");
-        assert!(
-            seen.insert(file_name.to_ascii_lowercase()),
-            "{file_name} twice"
-        );
+        let is_new = seen.insert(file_name.to_ascii_lowercase());
+        assert!(is_new, "{file_name} twice");
     }
     // Signals, one figure for each map, Figures 1, 6; 2, 3, 4, 9; γ; 8 and 10 to 13.
     assert_eq!(drawn.len(), 1 + 1 + HOSTILE.len() + 2 + 2 + 4 + 1 + 5);
@@ -167,11 +166,8 @@ fn the_page_holds_everything() {
     } = made(&run);
     for figure in &figures {
         let id = figure.file_name.trim_end_matches(".svg");
-        assert_eq!(
-            page.matches(&format!("id=\"{id}-title\"")).count(),
-            1,
-            "{id}"
-        );
+        let titles = page.matches(&format!("id=\"{id}-title\"")).count();
+        assert_eq!(titles, 1, "{id}");
         assert!(page.contains(&shown(&figure.caption)), "{id}");
     }
     for row in &found.comparison {
@@ -179,18 +175,9 @@ fn the_page_holds_everything() {
             assert!(page.contains(&shown(words)), "{words}");
         }
     }
-    for words in [
-        "1234",
-        "1.5e−13",
-        "2.5e−12",
-        "3.5e−14",
-        "0.100",
-        "Small strain is at its limit",
-        "cargo run --release -- run",
-        &format!("palpate {VERSION}"),
-    ] {
-        assert!(page.contains(words), "{words}");
-    }
+    let numbers = "1234|1.5e−13|2.5e−12|3.5e−14|0.100";
+    let words = "Small strain is at its limit|cargo run --release -- run";
+    assert_has(&page, &format!("{numbers}|{words}|palpate {VERSION}"));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::fem::Pose;
 use crate::fem::mesh::Region;
-use crate::force::Force;
+use crate::force_map::tests::{certificate, table_of};
 use crate::force_map::{
     Certificate, ForceMap, ForceTable, Matrix, Measurement, SmallestDet, Source,
 };
@@ -21,18 +21,9 @@ pub const SETTINGS: Settings = Settings {
 };
 
 fn forces(depths: &[f64], normal: impl Fn(f64) -> f64, lateral: impl Fn(f64) -> f64) -> ForceTable {
-    let matrix = |at_4_mm: &dyn Fn(f64) -> f64| {
-        Matrix::from_fn(depths.len(), LATERALS.len(), |row, column| {
-            at_4_mm(LATERALS[column]) * depths[row] / 4e-3
-        })
-    };
-    let normal = matrix(&|x| 1.48 + normal(x));
-    ForceTable::new(
-        depths.into(),
-        LATERALS.into(),
-        Force::new(matrix(&lateral), normal),
-    )
-    .unwrap()
+    table_of(depths, &LATERALS, |depth, x| {
+        [lateral(x), 1.48 + normal(x)].map(|at_4_mm| at_4_mm * depth / 4e-3)
+    })
 }
 
 /// A measured map of 1.48 N and the signal given, both at 4 mm.
@@ -78,6 +69,7 @@ pub fn matrix_with(pose: (usize, usize), one: f64, others: f64) -> Matrix {
 /// A computed map whose smallest det(I + ∇u) stands at x = −5 mm.
 pub fn computed_map(name: &str, smallest: f64) -> ForceMap {
     let min_det = matrix_with((2, 1), smallest, 0.9);
+    let smallest = SmallestDet::of(&min_det, &DEPTHS, &LATERALS).unwrap();
     let certificate = Certificate {
         worst_relative_residual: 1.5e-13,
         worst_force_balance: 2.5e-12,
@@ -86,12 +78,7 @@ pub fn computed_map(name: &str, smallest: f64) -> ForceMap {
         mesh_size: 0.7e-3,
         nodes: 1234,
         elements: 567,
-        element: "t6".into(),
-        contact: "deformed-normal".into(),
-        arithmetic: "other".into(),
-        smallest_det: SmallestDet::of(&min_det, &DEPTHS, &LATERALS).unwrap(),
-        min_det,
-        discretization: None,
+        ..certificate(min_det, smallest)
     };
     let forces = forces(&DEPTHS, |_| 0.2, |_| 0.0);
     let source = Source::FiniteElements { certificate };

@@ -5,17 +5,9 @@ mod energy;
 use proptest::prelude::*;
 
 use super::*;
+use crate::force_map::tests::table_of as map;
 use crate::servo::EXTRAPOLATION_CELLS;
 use crate::stats::tests::assert_near;
-
-fn map(depths: &[f64], laterals: &[f64], force: impl Fn(f64, f64) -> [f64; 2]) -> ForceTable {
-    let matrix = |component: usize| {
-        let at = |row: usize, column: usize| force(depths[row], laterals[column])[component];
-        Matrix::from_fn(depths.len(), laterals.len(), at)
-    };
-    let forces = Force::new(matrix(0), matrix(1));
-    ForceTable::new(depths.into(), laterals.into(), forces).unwrap()
-}
 
 /// A device that plays everything.
 const FREE: Damping = Damping {

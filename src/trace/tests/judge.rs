@@ -5,6 +5,7 @@ use super::*;
 use crate::detect::Decision;
 use crate::detect::correlation::correlation_length;
 use crate::detect::nuisance::Threshold;
+use crate::force_map::tests::table_of;
 use crate::stats::random::Generator;
 
 fn at(threshold: Threshold) -> f64 {
@@ -78,9 +79,8 @@ t.csv:5: position 3.1 mm is outside the maps, expected -3.0 to 3.0 mm (or use --
     let error = Hypotheses::of_tables(&b, &a).unwrap_err().to_string();
     assert!(error.starts_with("depths_m[1] is 0.003"), "{error}");
     let single = |signal| {
-        let normal = Matrix::from_fn(1, 2, |_, column| 1.0 + signal * column as f64);
-        let forces = Force::new(Matrix::from_fn(1, 2, |_, _| 0.0), normal);
-        ForceTable::new(vec![0.001], vec![-0.001, 0.001], forces).unwrap()
+        let normal = |x| 1.0 + if x > 0.0 { signal } else { 0.0 };
+        table_of(&[0.001], &[-0.001, 0.001], |_, x| [0.0, normal(x)])
     };
     let (without, with) = (single(0.0), single(1.0));
     let question = Question {
@@ -95,20 +95,16 @@ t.csv:5: position 3.1 mm is outside the maps, expected -3.0 to 3.0 mm (or use --
 
 /// Maps at 3.7, 4 and 4.3 mm over −8 … 8 mm by ½ mm, with an inclusion of so much signal (N).
 pub fn gel(signal: f64) -> ForceTable {
-    let x = |column: usize| column as f64 / 2.0 - 8.0;
     let bump = |x: f64| signal / ((1.0 + x * x / 4.0) * (1.0 + x * x / 4.0));
-    let depths = [3.7, 4.0, 4.3];
-    let lateral = Matrix::from_fn(3, 33, |row, column| {
-        let x = x(column);
-        0.25 * depths[row] * (0.02 * x - 0.5 * x * bump(x))
-    });
-    let normal = Matrix::from_fn(3, 33, |row, column| {
-        let (d, x) = (depths[row], x(column));
-        1.5 * d * d / 16.0 + 0.004 * x * x + 0.25 * d * bump(x)
-    });
-    let laterals = (0..33).map(|column| 1e-3 * x(column)).collect();
-    let depths = depths.iter().map(|depth| 1e-3 * depth).collect();
-    ForceTable::new(depths, laterals, Force::new(lateral, normal)).unwrap()
+    let millimetres = |column: u8| f64::from(column) / 2.0 - 8.0;
+    let laterals: Vec<f64> = (0..33).map(|column| 1e-3 * millimetres(column)).collect();
+    table_of(&[3.7, 4.0, 4.3].map(|d| 1e-3 * d), &laterals, |d, x| {
+        // The forces are of round numbers of mm.
+        let [d, x] = [d, x].map(|metres| (1e4 * metres).round() / 10.0);
+        let lateral = 0.25 * d * (0.02 * x - 0.5 * x * bump(x));
+        let normal = 1.5 * d * d / 16.0 + 0.004 * x * x + 0.25 * d * bump(x);
+        [lateral, normal]
+    })
 }
 
 /// A record over these positions (m), of the force that `of` gives for a sample, N.

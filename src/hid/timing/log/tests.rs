@@ -27,10 +27,8 @@ fn durations_and_time_stamps_are_read_in_every_unit() {
         assert_eq!((judged.cycles, judged.misses), (3, 1), "{text}");
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-3;
         let response = judged.response_us;
-        assert!(
-            near(response.p50, 500.0) && near(response.max, 1500.0),
-            "{text}"
-        );
+        let holds = near(response.p50, 500.0) && near(response.max, 1500.0);
+        assert!(holds, "{text}");
         assert_eq!(judged.jitter_us.is_some(), text.contains("12"), "{text}");
         // From the period, 0.5 ms.
         let largest = judged.jitter_us.map_or(1000.0, |jitter| jitter.max);
@@ -41,39 +39,26 @@ fn durations_and_time_stamps_are_read_in_every_unit() {
 // Verifies: CLI-173.
 #[test]
 fn what_is_no_log_is_refused_with_its_line() {
-    let cases = [
-        (
-            "duration_us\n1\n-1\n",
-            "3: duration_us = -0.000001 s, expected at least 0",
-        ),
-        ("duration_us\n1\nNaN\n", "3: duration_us = \"NaN\""),
-        (
-            "time_s\n1\n2\n2\n",
-            "4: time_s = 2, expected a time above the one before",
-        ),
-        ("period\n1\n", "1: no column duration_ns or"),
-        ("duration_us\n", "no cycle"),
-        ("time_us\n1\n", "no cycle"),
-        ("", "no column"),
-        (
-            "{\"duration_us\": 1}\n{\"time_us\": 1}\n",
-            "2: duration_us = null",
-        ),
-        (
-            "{\"duration_us\": \"1\"}\n",
-            "1: duration_us = \"1\", expected a finite number",
-        ),
-        ("{\"duration_us\": 1}\nstarted\n", "2: no JSON object"),
-        (
-            "{\"period\": 1}\n",
-            "1: {\"period\": 1}, expected one of duration_ns",
-        ),
-        ("{\"duration_s\": 1e300}\n", "1: duration_s"),
-    ];
-    for (text, expected) in cases {
-        let refusal = judge_log(text, Budget::of(MS)).unwrap_err().to_string();
-        assert!(refusal.contains(expected), "{text:?}: {refusal}");
+    // Lines of the log, and a part of the refusal.
+    let cases = r#"
+        duration_us|1|-1 => 3: duration_us = -0.000001 s, expected at least 0
+        duration_us|1|NaN => 3: duration_us = "NaN"
+        time_s|1|2|2 => 4: time_s = 2, expected a time above the one before
+        period|1 => 1: no column duration_ns or
+        duration_us => no cycle
+        time_us|1 => no cycle
+        {"duration_us": 1}|{"time_us": 1} => 2: duration_us = null
+        {"duration_us": "1"} => 1: duration_us = "1", expected a finite number
+        {"duration_us": 1}|started => 2: no JSON object
+        {"period": 1} => 1: {"period": 1}, expected one of duration_ns
+        {"duration_s": 1e300} => 1: duration_s"#;
+    let refused = |text: &str| judge_log(text, Budget::of(MS)).unwrap_err().to_string();
+    for case in cases.trim().lines() {
+        let (lines, expected) = case.trim().split_once(" => ").unwrap();
+        let refusal = refused(&format!("{}\n", lines.replace('|', "\n")));
+        assert!(refusal.contains(expected), "{case}: {refusal}");
     }
+    assert!(refused("").contains("no column"));
 }
 
 // Verifies: HID-064, CLI-173.

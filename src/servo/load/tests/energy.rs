@@ -200,18 +200,14 @@ fn pressed(map: &ForceTable, damping: &Damping, limits: &Limits, speed: f64, tim
 fn assert_refused(map: &ForceTable, damping: &Damping, limits: &Limits, what: &str) {
     let refusal = LoadedTable::passive(map, damping, limits).unwrap_err();
     let found = refusal.to_string();
-    assert!(
-        found.contains(&format!(" {what}, and the device")),
-        "{found}"
-    );
+    let holds = found.contains(&format!(" {what}, and the device"));
+    assert!(holds, "{found}");
 }
 
 /// A spring along the depth of so many N/m.
 fn spring(stiffness: f64) -> ForceTable {
-    let depths = vec![0.0, 4e-3, 4.5e-3];
-    let normal = Matrix::from_fn(3, 2, |row, _| depths[row] * stiffness);
-    let lateral = Matrix::from_fn(3, 2, |_, _| 0.0);
-    ForceTable::new(depths, vec![-0.01, 0.01], Force::new(lateral, normal)).unwrap()
+    let depths = [0.0, 4e-3, 4.5e-3];
+    super::map(&depths, &[-0.01, 0.01], |d, _| [0.0, d * stiffness])
 }
 
 // What is refused does give energy out, each by the bound that refuses it: the observer can see it.
@@ -241,10 +237,10 @@ fn what_is_refused_gives_energy_out() {
 
     // A normal force that is larger on the right, without a lateral force that says so: down on the left, up on the right.
     let twisted = |twist: f64| {
-        let normal = Matrix::from_fn(2, 3, |row, column| row as f64 * twist * column as f64);
-        let lateral = Matrix::from_fn(2, 3, |_, _| 0.0);
-        let laterals = vec![-0.01, 0.0, 0.01];
-        ForceTable::new(vec![0.0, 4.5e-3], laterals, Force::new(lateral, normal)).unwrap()
+        let normal = |d: f64, x: f64| d / 4.5e-3 * twist * (x + 0.01) / 0.01;
+        super::map(&[0.0, 4.5e-3], &[-0.01, 0.0, 0.01], |d, x| {
+            [0.0, normal(d, x)]
+        })
     };
     let round = |twist: f64| {
         let loaded = LoadedTable::new(&twisted(twist)).unwrap();

@@ -1,0 +1,125 @@
+//! Sweeps whose inclusion is looked for by a bank.
+
+use super::*;
+
+/// The usual noise, with the bank.
+const BY_BANK: &str = "--bank bank.json --noise-sd-lateral-n 0.05 --noise-sd-normal-n 0.12";
+
+/// The answer by the bank.
+fn located(trace: &str, more: &str) -> Value {
+    let (answer, said, code) = asked(&format!("{trace} {BY_BANK} {more}"));
+    assert_eq!(code, Some(0), "{said}");
+    answer
+}
+
+/// θ of each map of the bank, in plain arithmetic.
+fn thetas(trace: &str) -> Vec<f64> {
+    let bank = Bank::read(&place().at("bank.json")).unwrap();
+    let theta = |map: &ForceMap| plain(trace, [bank.reference().table(), map.table()]).0;
+    bank.maps().iter().map(theta).collect()
+}
+
+/// ln Σ pₖ exp θₖ.
+fn mixture(weighted: impl Iterator<Item = (f64, f64)>) -> f64 {
+    weighted.map(|(p, theta)| p * theta.exp()).sum::<f64>().ln()
+}
+
+// Verifies: CLI-043, CLI-140, CLI-153.
+#[test]
+fn the_bank_finds_an_inclusion_that_was_moved() {
+    let bound = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.001";
+    let found = located("moved.csv", &format!("{KNOWN} {bound}"));
+    let thetas = thetas("moved.csv");
+    let best = thetas.iter().copied().fold(f64::MIN, f64::max);
+    assert_eq!(best, thetas[MOVED]);
+    assert_near(number(&found, "theta_max"), best);
+    let of_any = mixture(thetas.iter().map(|&theta| (0.1, theta)));
+    assert_near(number(&found, "theta_mixture"), of_any);
+    assert_eq!(found["decision"], "inclusion");
+    assert_eq!(found["decided_by"], "theta_max");
+    assert!(number(&found, "false_alarm_bound") <= 0.001);
+    assert_eq!(number(&found, "hypotheses"), 10.0);
+    assert_eq!(number(&found, "depth_m"), 0.003);
+    for (key, truth) in [("position", 1.5e-3), ("inclusion_depth", 2.6e-3)] {
+        let of = &found[key];
+        let [estimate, sd] = ["estimate", "sd_bound"].map(|key| number(of, key));
+        assert!((estimate - truth).abs() < 4.0 * sd, "{key}: {of}");
+        assert!(sd > 1e-6 && sd < 1e-3, "{key}: {of}");
+        let [low, high] = [0, 1].map(|end: usize| of["interval"][end].as_f64().unwrap());
+        let holds = low < high && low - sd < truth && truth < high + sd;
+        assert!(holds, "{key}: {of}");
+        assert_eq!(of["unit"], "m");
+    }
+    // The bank has one diameter and one modulus.
+    assert!(found.get("diameter").is_none() && found.get("youngs_modulus").is_none());
+    let without = located("without.csv", &format!("{KNOWN} {bound}"));
+    assert_eq!(without["decision"], "no_inclusion");
+    let error = place().refused(&format!("detect moved.csv {BY_BANK} --depth-mm 3.1"));
+    assert!(error.contains("0.003 m, for which the bank is"), "{error}");
+    // Beside what is unknown by default, the same place.
+    let found = located("moved.csv", "");
+    assert_eq!(found["decision"], "inclusion");
+    assert_eq!(found["decided_by"], "theta_mixture");
+    let [estimate, sd] = ["estimate", "sd_bound"].map(|key| number(&found["position"], key));
+    assert!((estimate - 1.5e-3).abs() < 4.0 * sd, "{found}");
+}
+
+// Verifies: CLI-040, BNK-012.
+#[test]
+fn a_prior_weighs_the_inclusions_of_the_bank() {
+    let head = "position_mm,depth_mm,diameter_mm,youngs_modulus_kpa,weight\n";
+    place().write(
+        "prior.csv",
+        format!("{head}1.5,2.6,6.4,1200,1\n-1.5,3.6,6.4,1200,3\n"),
+    );
+    let found = located("moved.csv", &format!("{KNOWN} --prior prior.csv"));
+    let thetas = thetas("moved.csv");
+    // Five positions, then those of the next depth: −1.5 mm is the second.
+    let weighted = [(0.25, thetas[MOVED]), (0.75, thetas[5 + 1])];
+    assert_near(
+        number(&found, "theta_mixture"),
+        mixture(weighted.into_iter()),
+    );
+    assert_eq!(found["prior"], "prior.csv");
+    place().write("elsewhere.csv", format!("{head}1,2.6,6.4,1200,1\n"));
+    let error = place().refused(&format!("detect moved.csv {BY_BANK} --prior elsewhere.csv"));
+    has(
+        &error,
+        ["elsewhere.csv:2: an inclusion that is not in the bank"],
+    );
+}
+
+// Verifies: CLI-140.
+#[test]
+fn simulated_records_set_the_threshold() {
+    let alarms = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.05";
+    let bound = located("moved.csv", &format!("{KNOWN} {alarms}"));
+    let found = located("moved.csv", &format!("{KNOWN} {alarms} --simulations 2000"));
+    // A sum of ten dependent tails is more than their union.
+    assert!(number(&found, "eta") < number(&bound, "eta"), "{found}");
+    assert_eq!(number(&found, "simulations"), 2000.0);
+    let interval = &found["calibrated_false_alarm"];
+    let [low, high] = [0, 1].map(|end: usize| interval[end].as_f64().unwrap());
+    // Clopper-Pearson at 99 % of 100 of 2000: SciPy's beta.ppf gives 0.0382 and 0.0640.
+    let holds = (low - 0.0382).abs() < 1e-4 && (high - 0.0640).abs() < 1e-4;
+    assert!(holds, "{interval}");
+    assert!(bound.get("simulations").is_none());
+    let seeded = format!("{KNOWN} {alarms} --simulations 2000 --seed 1999");
+    assert_eq!(located("moved.csv", &seeded), found);
+}
+
+// Verifies: CLI-163.
+#[test]
+fn a_figure_shows_where_the_inclusion_lies() {
+    located("moved.csv", "--figure place.svg");
+    let figure = place().read("place.svg");
+    let words = "likeliest inclusion|Depth below the surface (mm)|Position x (mm)|Position x of the inclusion (mm)\
+                 |Depth of the inclusion (mm)|Probability density (1/mm)";
+    has(&figure, ["<svg "]);
+    has(
+        &figure,
+        words.split('|').map(|words| format!(">\n{words}\n<")),
+    );
+    let holds = !figure.contains("iameter") && !figure.contains("odulus");
+    assert!(holds, "{figure}");
+}

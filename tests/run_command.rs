@@ -1,0 +1,143 @@
+//! `palpate run` and `palpate demo`, end to end: their files, and the report.
+#![cfg(feature = "cli")]
+
+mod program;
+
+use std::fs;
+use std::path::PathBuf;
+
+use palpate::force_map::ForceMap;
+use palpate::phantom::Phantom;
+use program::{ASYMMETRIC, Place, contents, has, text};
+
+// Verifies: CLI-007, CLI-031, CLI-032, CON-006.
+#[test]
+fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
+    let here = Place::new("threads");
+    here.write("mine.toml", include_str!("../docs/phantom.toml"));
+    let config = "phantoms = [\"2.6\", \"mine.toml\"]\ndepths_mm = \"0:3:1\"\nlaterals_mm = \"-4:4:1\"\n[mesh]\nsize_mm = 2.0\n[detection]\nnoise_sd_n = 0.1\n";
+    here.write("run.toml", config);
+    for threads in ["1", "2", "5"] {
+        let out = format!("out-{threads}");
+        let mut run = here.palpate(&format!("run --config run.toml --out {out}"));
+        let output = run.env("RAYON_NUM_THREADS", threads).output().unwrap();
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(text(&output.stdout).contains(&format!("{out}/report.html")));
+    }
+    let one = contents(&here.at("out-1"));
+    assert!(one.iter().any(|(path, _)| path.ends_with("report.html")));
+    let maps = one.iter().filter(|(path, _)| path.starts_with("maps"));
+    assert_eq!(maps.count(), 3);
+    for threads in ["2", "5"] {
+        let other = contents(&here.at(&format!("out-{threads}")));
+        assert_eq!(one.len(), other.len());
+        for ((path, bytes), (other_path, other_bytes)) in one.iter().zip(&other) {
+            assert_eq!(path, other_path);
+            let is_same = bytes == other_bytes;
+            assert!(is_same, "{path:?} differs between 1 and {threads} threads");
+        }
+    }
+}
+
+// Verifies: CLI-031, CLI-032, REP-003.
+#[test]
+fn a_run_of_own_asymmetric_phantoms_shows_them() {
+    let here = Place::new("own-run");
+    here.write("own.toml", ASYMMETRIC);
+    let (plain, _) = ASYMMETRIC.split_once("[[inclusion]]").unwrap();
+    here.write("plain.toml", plain.replace("asymmetric", "plain"));
+    let config = "reference = \"plain.toml\"\nphantoms = [\"own.toml\"]\ndepths_mm = \"1,2\"\nlaterals_mm = \"-4:4:2\"\n[mesh]\nsize_mm = 1.5\n";
+    here.write("run.toml", config);
+    here.succeed("run --config run.toml");
+    let out = here.at("palpate-out");
+    let map = ForceMap::read(&out.join("maps/map-asymmetric.json")).unwrap();
+    let forces = map.forces().normal.row(1);
+    assert!(forces[0] > forces[4] + 0.02, "{forces:?}");
+    // The mesh under the probe where it is nearest to the first inclusion.
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("probe at depth 2 mm, x = −4 mm"));
+    assert!(page.contains("Figure 5. Forces, phantom “asymmetric”: 2 inclusions"));
+    assert!(page.contains("walls sliding, floor fixed"));
+}
+
+// Verifies: CLI-031.
+#[test]
+fn a_measured_map_is_shown_and_a_computed_one_refused() {
+    let here = Place::new("measured");
+    let csv = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n0,0,0,0\n0,3,0,0\n2,0,0.6,0\n2,3,0.5,-0.1\n";
+    here.write("gel.csv", csv);
+    here.succeed("import-map gel.csv --out gel.json");
+    let config = "phantoms = []\nmeasured = [\"MAP\"]\ndepths_mm = \"1\"\nlaterals_mm = \"0\"\n[mesh]\nsize_mm = 3.0\n";
+    let config = |measured: &str| config.replace("MAP", measured);
+    here.write("run.toml", config("gel.json"));
+    here.succeed("run --config run.toml");
+    assert!(here.at("palpate-out/figures/figure-7-gel.csv.svg").exists());
+    let page = here.read("palpate-out/report.html");
+    assert!(page.contains("Figure 7. Measured forces, “gel.csv”"));
+    here.write("run.toml", config("palpate-out/maps/map-none.json"));
+    let message = here.refused("run --config run.toml");
+    has(&message, ["map-none.json: a computed map"]);
+}
+
+// Verifies: CLI-130, CLI-031.
+#[test]
+fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
+    let here = Place::new("demo");
+    let files = "run.toml none.json inclusion.json sweep-without.csv sweep-with.csv sweep-disturbed.csv blank.csv measured.csv";
+    let printed = here.succeed("demo first");
+    let expected = files.split(' ').map(|file| format!("first/{file}\n"));
+    assert_eq!(printed, expected.collect::<String>());
+    here.succeed("demo second");
+    let [first, second] = ["first", "second"].map(|folder| contents(&here.at(folder)));
+    let bytes = |files: Vec<(PathBuf, Vec<u8>)>| files.into_iter().map(|(_, bytes)| bytes);
+    assert_eq!(first.len(), files.split(' ').count());
+    assert!(bytes(first).eq(bytes(second)));
+    // The forces of the sensor without a gel are its offset and half its drift, within 5 standard deviations of a mean.
+    let blank = here.read("first/blank.csv");
+    let row = |row: &str| row.split(',').map(|field| field.parse().unwrap()).collect();
+    let rows: Vec<Vec<f64>> = blank.lines().skip(1).map(row).collect();
+    assert_eq!((rows.len(), rows[0][0], rows[400][0]), (401, -8.0, 8.0));
+    for (channel, mean) in [(1, 0.05 - 0.025), (2, 0.3 + 0.05)] {
+        let found = rows.iter().map(|row| row[channel]).sum::<f64>() / 401.0;
+        assert!((found - mean).abs() < 0.5 / 401_f64.sqrt(), "{found}");
+    }
+    // A configuration in another folder, with its files beside it.
+    let own = "phantoms = [\"gel.toml\"]\nmeasured = [\"measured.csv\"]\ndepths_mm = \"1\"\nlaterals_mm = \"0\"\n[mesh]\nsize_mm = 3.0\n";
+    here.write("first/own.toml", own);
+    here.write("first/gel.toml", include_str!("../docs/phantom.toml"));
+    here.succeed("run --config first/own.toml --out out");
+    assert!(here.at("out/figures/figure-7-measured.csv.svg").exists());
+}
+
+// Verifies: CLI-030, CLI-032, REP-030, REP-040.
+#[test]
+fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
+    let here = Place::new("paper");
+    let said = here.succeed("run");
+    assert!(said.contains("palpate-out/report.html"), "{said}");
+    let out = here.at("palpate-out");
+    for name in ["none", "2.6", "4.6", "6.6", "8.6"] {
+        let map = ForceMap::read(&out.join(format!("maps/map-{name}.json"))).unwrap();
+        assert_eq!(map.phantom(), Some(&Phantom::builtin(name).unwrap()));
+        assert_eq!((map.depths().len(), map.laterals().len()), (9, 41));
+        let ends = [map.depths()[8], map.laterals()[0], map.laterals()[40]];
+        assert_eq!(ends, [4e-3, -10e-3, 10e-3]);
+        assert!(out.join(format!("figures/figure-5-{name}.svg")).exists());
+    }
+    for number in [1, 2, 3, 4, 6, 8, 9, 10, 11, 12, 13] {
+        let name = format!("figures/figure-{number}.svg");
+        assert!(out.join(&name).exists(), "{name}");
+    }
+    let summary = here.read("palpate-out/summary.json");
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert!(summary.is_object());
+    let page = fs::read(out.join("report.html")).unwrap();
+    assert!(page.len() < 3_000_000, "{} bytes", page.len());
+    let drawn = "palpate-out/figures/figure-5-2.6.svg";
+    let is_same = here.read(drawn) == include_str!("../docs/figure-5.svg");
+    let holds = is_same;
+    assert!(
+        holds,
+        "docs/figure-5.svg is not what the program draws: copy it from {drawn}"
+    );
+}
