@@ -46,7 +46,7 @@ pub struct ReachArguments {
 
 /// The answer; for people, lengths in mm.
 #[derive(Debug, Serialize, Template)]
-#[template(path = "cli/reach.txt")]
+#[template(path = "cli.txt", block = "reach")]
 struct ReachAnswer {
     schema: &'static str,
     schema_version: u32,

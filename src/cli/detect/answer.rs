@@ -30,14 +30,14 @@ pub struct DetectAnswer {
 
 /// What people are told of a record judged with the inclusion at x = 0.
 #[derive(Template)]
-#[template(path = "cli/detect/maps.txt")]
+#[template(path = "cli.txt", block = "detect_maps")]
 struct Judged<'a> {
     found: &'a Judgement,
 }
 
 /// What they are told of one searched for any inclusion of a bank.
 #[derive(Template)]
-#[template(path = "cli/detect/bank.txt")]
+#[template(path = "cli.txt", block = "detect_bank")]
 struct Located<'a> {
     found: &'a Location,
     decided_by: &'a str,
