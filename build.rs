@@ -2,8 +2,6 @@
 //!
 //! Nothing of it is a time or a folder of the machine, so that the same sources give the same program (EVD-070). A
 //! development build records no commit: it would have to be built again after each one.
-//!
-//! Implements: EVD-070.
 
 use std::env;
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! How far the default mesh's forces are from those of a mesh without end (requirements FEM-021, FEM-025, FEM-028,
-//! FEM-039): `cargo bench -p palpate-benches --bench convergence`. Takes a quarter of an hour and 1 GB on one core.
+//! How far the default mesh's forces are from those of a mesh without end (requirements FEM-021, FEM-028,
+//! FEM-021): `cargo bench -p palpate-benches --bench convergence`. Takes a quarter of an hour and 1 GB on one core.
 //!
 //! The reference is a mesh of 0.125 mm, a quarter of the default, corners at the walls included. No force is extrapolated:
 //! what is left of the error swings with the pose, as the contact's edge moves from node to node, and an

@@ -1,6 +1,6 @@
 //! The servo kernel and the whole loop on the simulated device, for people: `cargo bench -p palpate-benches --bench servo`.
 //! Ends with 1 if the upper bound of the confidence interval of the loop's mean time exceeds the budget
-//! of 1 ms (SRV-062). The instruction ceiling of `benches/servo_instructions.rs` is the gate that does
+//! of 1 ms (SRV-060). The instruction ceiling of `benches/servo_instructions.rs` is the gate that does
 //! not depend on the machine's load.
 
 use std::hint::black_box;
@@ -18,10 +18,10 @@ use servo_cases::{armed, paper_table, sample};
 
 /// The time of a cycle at 1 kHz, ns.
 ///
-/// Implements: SRV-062.
+/// Implements: SRV-060.
 const BUDGET: f64 = 1e6;
 
-// Verifies: SRV-062.
+// Verifies: SRV-060.
 fn main() -> ExitCode {
     // An estimate of an earlier run is none of this one.
     let _ = std::fs::remove_file(estimates());

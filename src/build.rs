@@ -36,8 +36,6 @@ pub struct Build {
 
 impl Build {
     /// This build.
-    ///
-    /// Implements: EVD-067, EVD-068.
     pub const THIS: Build = Build {
         version: env!("CARGO_PKG_VERSION"),
         commit: env!("PALPATE_BUILD_COMMIT"),
@@ -63,7 +61,6 @@ impl Build {
 mod tests {
     use super::*;
 
-    // Verifies: EVD-068.
     #[test]
     fn only_a_bare_commit_is_known() {
         let id = "0123456789abcdef0123456789abcdef01234567";
@@ -82,7 +79,6 @@ mod tests {
         }
     }
 
-    // Verifies: EVD-067.
     #[test]
     fn this_build_is_told() {
         let build = Build::THIS;

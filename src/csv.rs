@@ -29,7 +29,7 @@ impl<const N: usize> Rows<N> {
     /// # Errors
     /// Another header; a row of another length, or with a field that is no finite decimal number; with the line.
     ///
-    /// Implements: MAP-030, MAP-031, MAP-035, MAP-038, MAP-040, MAP-041, TRC-001, TRC-002, TRC-004.
+    /// Implements: MAP-030, MAP-033, MAP-041, MAP-040, TRC-001, TRC-004.
     pub fn parse(text: &str, columns: [Column; N], expected: &str) -> Result<Self, Refusal> {
         let ((line, header), lines) = header_and_rows(text);
         // Of equally many fields the last makes it: the comma.
@@ -98,7 +98,7 @@ fn unused(header: &[&str], used: &[usize]) -> Option<String> {
 
 /// Where in a header a column is, under which name, and the power of ten of that.
 ///
-/// Implements: MAP-043, MAP-045.
+/// Implements: MAP-030, MAP-033.
 fn find(header: &[&str], column: Column) -> Result<(usize, &'static str, i32), String> {
     for names in column {
         let named = (0..).zip(header).filter_map(|(place, field)| {
@@ -123,7 +123,7 @@ fn find(header: &[&str], column: Column) -> Result<(usize, &'static str, i32), S
 
 /// The fields of a line, without the spaces and then the quotes around them. A separator between quotes is none.
 ///
-/// Implements: MAP-042.
+/// Implements: MAP-040.
 fn split(line: &str, separator: char) -> impl Iterator<Item = &str> {
     let mut quoted = false;
     let fields = line.split(move |c| {
@@ -139,7 +139,7 @@ fn split(line: &str, separator: char) -> impl Iterator<Item = &str> {
 
 /// The number in a field, whose decimal mark is that of the file; the first one that is there sets it.
 ///
-/// Implements: MAP-041, MAP-046.
+/// Implements: MAP-041, MAP-033.
 fn decimal(field: &str, power: i32, mark: &mut Option<char>) -> Option<f64> {
     if let Some(own) = field.chars().find(|c| matches!(c, '.' | ','))
         && *mark.get_or_insert(own) != own
@@ -152,7 +152,7 @@ fn decimal(field: &str, power: i32, mark: &mut Option<char>) -> Option<f64> {
 /// The lines of `text` that say something, with their numbers from 1: neither blank nor a
 /// comment. The header is the first; without any it is an empty line 1.
 ///
-/// Implements: MAP-032, TRC-003.
+/// Implements: MAP-032, TRC-001.
 pub(crate) fn header_and_rows(text: &str) -> ((usize, &str), impl Iterator<Item = (usize, &str)>) {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = (1..).zip(text.lines()).filter(|(_, line)| {
@@ -243,7 +243,7 @@ mod tests {
         x_mm,force_n,<ESC>[31m\n0.5,-1.25,.\n1000,2,nan\n -> column "\u{1b}[31m" is not used
     "#;
 
-    // Verifies: MAP-040, MAP-041, MAP-042, MAP-043, MAP-044.
+    // Verifies: MAP-040, MAP-041, MAP-030, MAP-044.
     #[test]
     fn tables_are_read_as_they_come() {
         for (text, notes) in cases(SAME) {
@@ -262,7 +262,7 @@ mod tests {
         assert_eq!(found.rows, [(2, [0.5, 1.0])]);
     }
 
-    // Verifies: MAP-040, MAP-042, MAP-045, MAP-046.
+    // Verifies: MAP-040, MAP-033.
     #[test]
     fn tables_that_are_not_clear_are_refused_in_one_line() {
         for (text, expected) in cases(

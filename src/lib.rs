@@ -59,8 +59,6 @@
 //!
 //! With `default-features = false` the crate is `no_std`, does not allocate, and depends on `libm`
 //! alone: that part holds [`stats`], [`detect`], [`servo`] and the reports of [`hid`].
-//!
-//! Implements: DOC-013, DOC-014.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[cfg(feature = "std")]

@@ -116,8 +116,6 @@ impl From<NumericError> for Refusal {
 
 /// `text` with a space for each control character: a message that quotes a file stays one line, and
 /// no terminal obeys it.
-///
-/// Implements: EVD-082.
 pub fn one_line(text: &str) -> String {
     text.replace(char::is_control, " ")
 }

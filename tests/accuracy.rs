@@ -9,8 +9,7 @@ use std::process::Command;
 
 use present::present;
 
-// Verifies: ACC-001, ACC-002, ACC-003, ACC-004, ACC-005, ACC-006, ACC-007, ACC-008, ACC-009, ACC-010, ACC-011, ACC-012,
-// ACC-013, ACC-014, ACC-020.
+// Verifies: DET-001, DET-014, ACC-014, ACC-020.
 #[test]
 fn every_function_is_as_accurate_as_stated() {
     let python = std::env::var("PALPATE_PYTHON").unwrap_or_else(|_| "python3".into());

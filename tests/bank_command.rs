@@ -95,7 +95,7 @@ fn cut(lines: usize, more: usize) -> String {
     whole + &rest[..more]
 }
 
-// Verifies: CLI-156, CLI-159, CLI-167.
+// Verifies: CLI-156, CLI-159.
 #[test]
 fn a_bank_that_was_stopped_goes_on_and_is_the_same() {
     let header = cut(1, 0);
@@ -138,7 +138,7 @@ fn renumbered(line: &str) -> String {
     )
 }
 
-// Verifies: CLI-157, CLI-169.
+// Verifies: CLI-157.
 #[test]
 fn what_was_kept_of_another_bank_is_refused_and_stays() {
     let place = Place::new("bank-other");
@@ -199,7 +199,7 @@ const REFUSED: &str = "
 --offsets-mm 0:5:0.001 --depths-mm 4.6:9.6:0.1 --out b.json => 255051 inclusions, expected at most 37037
 ";
 
-// Verifies: CLI-155, CLI-158, CLI-171, BNK-020, BNK-021.
+// Verifies: CLI-155, BNK-020, BNK-021.
 #[test]
 fn what_makes_no_bank_is_refused_in_one_line() {
     let place = Place::new("bank-refused");
@@ -231,7 +231,7 @@ fn what_makes_no_bank_is_refused_in_one_line() {
     assert_eq!(place.read("there.json"), "{}");
 }
 
-// Verifies: CLI-168.
+// Verifies: CLI-015.
 #[test]
 fn the_worst_strain_is_told_once_with_its_inclusion() {
     let place = Place::new("bank-strain");

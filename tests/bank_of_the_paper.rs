@@ -129,7 +129,7 @@ fn a_noiseless_inclusion_is_found_between_the_points() {
     }
 }
 
-// Verifies: BNK-042, BNK-046, BNK-050.
+// Verifies: BNK-042, BNK-050.
 #[test]
 #[ignore = "slow: run it with --release"]
 fn estimates_spread_as_the_bound_says() {
@@ -197,7 +197,7 @@ fn estimates_spread_as_the_bound_says() {
     }
 }
 
-// Verifies: BNK-052, BNK-053, BNK-054.
+// Verifies: BNK-051, BNK-053, BNK-054.
 #[test]
 #[ignore = "slow: run it with --release"]
 fn a_calibrated_threshold_keeps_its_rate_on_fresh_seeds() {
@@ -236,7 +236,7 @@ fn a_calibrated_threshold_keeps_its_rate_on_fresh_seeds() {
     }
 }
 
-// Verifies: BNK-055.
+// Verifies: BNK-054.
 #[test]
 #[ignore = "slow: run it with --release"]
 fn the_power_of_a_search_is_near_that_of_a_known_place() {
@@ -261,7 +261,7 @@ fn the_power_of_a_search_is_near_that_of_a_known_place() {
     }
 }
 
-// Verifies: BNK-041, BNK-043.
+// Verifies: BNK-040.
 #[test]
 #[ignore = "slow: run it with --release"]
 fn a_record_takes_a_fifth_of_a_millisecond() {

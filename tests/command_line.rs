@@ -29,7 +29,7 @@ fn help_describes_every_argument() {
     insta::assert_snapshot!(help);
 }
 
-// Verifies: CLI-002, CLI-003, CLI-011, CLI-012, CLI-014, CLI-031, PHA-013, FEM-018.
+// Verifies: CLI-002, CLI-003, CLI-010, CLI-012, CLI-013, CLI-031, PHA-009, FEM-017.
 #[test]
 fn bad_input_gets_one_line_that_says_what_would_be_right() {
     let here = Place::new("bad-input");
@@ -100,7 +100,7 @@ fn solve_prints_the_librarys_map() {
     assert_eq!(row.split_whitespace().count(), 4, "{row}");
 }
 
-// Verifies: CLI-016.
+// Verifies: CLI-013.
 #[test]
 fn certify_adds_bands_and_changes_no_force() {
     let here = Place::new("certify");
@@ -166,7 +166,7 @@ fn large_strain_is_warned_of() {
     assert!(warning.contains("inside out"), "{warning}");
 }
 
-// Verifies: CLI-004.
+// Verifies: CLI-003.
 #[test]
 fn a_reader_that_goes_away_is_no_error() {
     let here = Place::new("pipe");
@@ -214,7 +214,7 @@ fn a_measured_map_becomes_a_json_map() {
     assert!(printed.contains("silicone"));
 }
 
-// Verifies: CLI-021, CLI-022, CLI-023, CLI-024, CLI-025.
+// Verifies: CLI-017, CLI-022, CLI-020.
 #[test]
 fn a_measured_map_is_told_beside_its_phantom() {
     let here = Place::new("import-compared");
@@ -369,7 +369,7 @@ fn negative_laterals_of_an_asymmetric_phantom_are_solved_and_not_mirrored() {
     assert_eq!(right.laterals(), [0.0, 4e-3]);
 }
 
-// Verifies: CLI-014, CLI-016, FEM-016.
+// Verifies: CLI-013, FEM-016.
 #[test]
 fn an_asymmetric_phantom_has_bands_and_a_file_for_paraview() {
     let here = Place::new("asymmetric-vtu");
@@ -405,7 +405,7 @@ fn a_run_of_own_asymmetric_phantoms_shows_them() {
     assert!(page.contains("walls sliding, floor fixed"));
 }
 
-// Verifies: PSY-072, CLI-083.
+// Verifies: PSY-070, CLI-081.
 #[test]
 fn half_a_map_of_an_asymmetric_phantom_is_not_completed() {
     let here = Place::new("half");
@@ -425,7 +425,7 @@ fn half_a_map_of_an_asymmetric_phantom_is_not_completed() {
     assert!(said.starts_with(told), "{said}");
 }
 
-// Verifies: CLI-033.
+// Verifies: CLI-031.
 #[test]
 fn a_measured_map_is_shown_and_a_computed_one_refused() {
     let here = Place::new("measured");
@@ -444,7 +444,7 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
     has(&message, ["map-none.json: a computed map"]);
 }
 
-// Verifies: CLI-130, CLI-131, CLI-132.
+// Verifies: CLI-130, CLI-031.
 #[test]
 fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
     let here = Place::new("demo");
@@ -474,7 +474,7 @@ fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
     assert!(here.at("out/figures/figure-7-measured.csv.svg").exists());
 }
 
-// Verifies: CLI-030, CLI-032, REP-030, REP-043.
+// Verifies: CLI-030, CLI-032, REP-030, REP-040.
 #[test]
 fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
     let here = Place::new("paper");
@@ -511,7 +511,7 @@ fn quick_vtu(name: &str) -> String {
     format!("solve --phantom none --depths-mm 1 --laterals-mm 0 --mesh-mm 3 --vtu {name}")
 }
 
-// Verifies: CLI-005, CLI-086, CLI-087, CLI-088.
+// Verifies: CLI-005.
 #[cfg(unix)]
 #[test]
 fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
@@ -551,7 +551,7 @@ fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
     assert!(left.eq(expected.map(PathBuf::from)));
 }
 
-// Verifies: CLI-089.
+// Verifies: CLI-005.
 #[cfg(unix)]
 #[test]
 fn a_pipe_as_output_is_written_into_and_stays() {

@@ -132,7 +132,7 @@ fn forces_on_the_probe_point_out_of_the_gel_and_away_from_the_inclusion() {
     }
 }
 
-// Verifies: CON-005.
+// Verifies: CON-004.
 #[test]
 fn a_probe_twice_as_long_has_twice_the_force() {
     let force = |length: f64| {

@@ -137,7 +137,7 @@ fn assert_near(found: f64, expected: f64) {
     assert!(error < 1e-11, "found {found}, expected {expected}");
 }
 
-// Verifies: CLI-040, CLI-041, CLI-043, CLI-045, CLI-046, CLI-140, TRC-021.
+// Verifies: CLI-040, CLI-041, CLI-043, CLI-045, CLI-003, CLI-140, TRC-021.
 #[test]
 fn where_all_is_known_theta_is_that_of_the_library_and_of_a_plain_sum() {
     let [none, inclusion] = maps(place());
@@ -176,7 +176,7 @@ fn where_all_is_known_theta_is_that_of_the_library_and_of_a_plain_sum() {
     }
 }
 
-// Verifies: CLI-140, CLI-141, CLI-041.
+// Verifies: CLI-140, CLI-041.
 #[test]
 fn unless_told_otherwise_the_record_tells_what_is_unknown() {
     let unknown = |more: &str| answer("with.csv", more)["unknown"].clone();
@@ -201,7 +201,7 @@ fn unless_told_otherwise_the_record_tells_what_is_unknown() {
     assert_eq!(found["decision"], "inclusion");
 }
 
-// Verifies: CLI-141, CLI-142, TRC-076.
+// Verifies: CLI-041, TRC-076.
 #[test]
 fn a_blank_sweep_tells_the_noise() {
     let generator = Generator::new(20_261_123, 1);
@@ -247,7 +247,7 @@ fn criteria_set_the_threshold_and_keep_their_rate() {
     }
 }
 
-// Verifies: CLI-046, CLI-055, CLI-143, CLI-144, TRC-070, TRC-071.
+// Verifies: CLI-003, CLI-055, CLI-143, CLI-043, TRC-070.
 #[test]
 fn a_record_that_cannot_be_judged_is_neither_and_says_why() {
     let [none, _] = maps(place());
@@ -292,7 +292,7 @@ fn a_record_that_cannot_be_judged_is_neither_and_says_why() {
     }
 }
 
-// Verifies: CLI-144.
+// Verifies: CLI-043.
 #[test]
 fn the_last_line_is_a_sentence() {
     let usual = "taken as known: depth; fitted: offset, drift, gain, variance.";
@@ -334,7 +334,7 @@ fn mixture(weighted: impl Iterator<Item = (f64, f64)>) -> f64 {
     weighted.map(|(p, theta)| p * theta.exp()).sum::<f64>().ln()
 }
 
-// Verifies: CLI-044, CLI-150, CLI-153.
+// Verifies: CLI-043, CLI-140, CLI-153.
 #[test]
 fn the_bank_finds_an_inclusion_that_was_moved() {
     let bound = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.001";
@@ -376,7 +376,7 @@ fn the_bank_finds_an_inclusion_that_was_moved() {
     assert!((estimate - 1.5e-3).abs() < 4.0 * sd, "{found}");
 }
 
-// Verifies: CLI-151, BNK-012.
+// Verifies: CLI-040, BNK-012.
 #[test]
 fn a_prior_weighs_the_inclusions_of_the_bank() {
     let head = "position_mm,depth_mm,diameter_mm,youngs_modulus_kpa,weight\n";
@@ -401,7 +401,7 @@ fn a_prior_weighs_the_inclusions_of_the_bank() {
     );
 }
 
-// Verifies: CLI-152.
+// Verifies: CLI-140.
 #[test]
 fn simulated_records_set_the_threshold() {
     let alarms = "--criterion neyman-pearson-false-alarm --max-false-alarm 0.05";
@@ -422,7 +422,7 @@ fn simulated_records_set_the_threshold() {
     assert_eq!(located("moved.csv", &seeded), found);
 }
 
-// Verifies: CLI-163, CLI-164, CLI-165.
+// Verifies: CLI-163.
 #[test]
 fn a_figure_shows_where_the_inclusion_lies() {
     located("moved.csv", "--figure place.svg");
@@ -440,7 +440,7 @@ fn a_figure_shows_where_the_inclusion_lies() {
     );
 }
 
-// Verifies: CLI-145, CLI-146.
+// Verifies: CLI-146.
 #[test]
 fn a_tolerance_that_no_map_can_count_is_told() {
     for map in ["none", "inclusion"] {
@@ -463,7 +463,7 @@ fn a_tolerance_that_no_map_can_count_is_told() {
     assert_eq!(found["warnings"], json!(["single_depth"]));
 }
 
-// Verifies: TRC-010, TRC-012.
+// Verifies: TRC-010.
 #[test]
 fn a_trace_over_time_is_the_same_trace() {
     let text = place().read("with.csv");
@@ -481,7 +481,7 @@ fn a_trace_over_time_is_the_same_trace() {
     assert_near(number(&found, "theta"), number(&expected, "theta"));
 }
 
-// Verifies: CLI-046.
+// Verifies: CLI-003.
 #[test]
 fn people_get_a_table_and_no_decision_is_a_failure() {
     let table = place().succeed("detect with.csv --bank bank.json --noise-sd-n 0.1");
@@ -499,7 +499,7 @@ fn answer_and_notes(trace: &str, more: &str) -> (Value, String) {
     (answer, text(&output.stderr).into())
 }
 
-// Verifies: CLI-056, MAP-040, MAP-041, MAP-044, TRC-001.
+// Verifies: CLI-017, MAP-040, MAP-041, MAP-044, TRC-001.
 #[test]
 fn a_record_of_a_logger_is_the_same_record() {
     let rows = place().read("with.csv");
@@ -519,7 +519,7 @@ fn a_record_of_a_logger_is_the_same_record() {
     assert_eq!((found, String::new()), answer_and_notes("with.csv", ""));
 }
 
-// Verifies: CLI-057, TRC-025.
+// Verifies: CLI-140, TRC-025.
 #[test]
 fn samples_beyond_the_maps_are_trimmed_and_counted() {
     let rows = place().read("with.csv");
@@ -564,7 +564,7 @@ const REFUSED: &str = "
 --depth-mm 3 --depth-tolerance-mm -1 => expected mm, at least 0
 ";
 
-// Verifies: CLI-041, CLI-042, CLI-046, CLI-048, CLI-140, CLI-141, CLI-142.
+// Verifies: CLI-041, CLI-042, CLI-003, CLI-048, CLI-140.
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
     place().refuses(REFUSED, |words| format!("detect with.csv {MAPS} {words}"));
@@ -591,7 +591,7 @@ with.csv --reference with.csv --inclusion inclusion.json => with.csv:2: no colum
 with.csv --bank missing.json => missing.json: cannot be read
 ";
 
-// Verifies: TRC-004, TRC-008, TRC-009, TRC-024, TRC-025, CLI-047, CLI-058, MAP-045.
+// Verifies: TRC-004, TRC-008, TRC-024, TRC-025, CLI-047, CLI-140, MAP-033.
 #[test]
 fn bad_files_are_refused_with_file_and_line() {
     let head = "position_mm,lateral_force_n,normal_force_n\n";

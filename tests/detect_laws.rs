@@ -131,7 +131,7 @@ proptest! {
         prop_assert!(roc_miss(gamma + 0.01, p).unwrap() < left, "better with a stronger signal");
     }
 
-    // Verifies: DET-024, DET-025, DET-026, DET-027.
+    // Verifies: DET-022, DET-025, DET-026, DET-027.
     #[test]
     fn thresholds_keep_the_rates_that_they_promise(gamma in 0.05..8.0, rate in 1e-6..0.999) {
         let eta = neyman_pearson_false_alarm_threshold(gamma, rate).unwrap();
@@ -145,7 +145,7 @@ proptest! {
         prop_assert!((error_rates(gamma, eta).unwrap().miss - rate).abs() <= doubt * rate.max(1e-3));
     }
 
-    // Verifies: DET-029, DET-026.
+    // Verifies: DET-027, DET-026.
     #[test]
     fn required_gamma_meets_both_rates_at_one_threshold(alpha in 1e-6..0.49, beta in 1e-6..0.49) {
         let gamma = required_gamma(alpha, beta).unwrap();
@@ -155,7 +155,7 @@ proptest! {
         prop_assert!((one - other).abs() <= 64.0 * U * (1.0 + gamma * gamma + gamma * 5.0));
     }
 
-    // Verifies: DET-020, DET-021, DET-022, DET-023.
+    // Verifies: DET-020, DET-021, DET-022.
     #[test]
     fn map_and_bayes_decide_by_posterior_and_expected_cost(
         theta in -20.0..20.0, prior in 1e-4..0.9999, c10 in 0.1..100.0, c01 in 0.1..100.0,
@@ -174,7 +174,7 @@ proptest! {
         }
     }
 
-    // Verifies: DET-028, DET-030.
+    // Verifies: DET-027.
     #[test]
     fn forced_choice_inverts_and_is_the_area_under_the_curve(gamma in 0.0..6.0) {
         let p = two_afc(gamma).unwrap();
@@ -189,7 +189,7 @@ proptest! {
         prop_assert!((two_afc(gamma).unwrap() - area).abs() < 1e-3);
     }
 
-    // Verifies: DET-001, DET-002, DET-003.
+    // Verifies: DET-001.
     #[test]
     fn quantile_inverts_the_distribution(x in -37.0..8.0) {
         let p = cdf(x).unwrap();

@@ -56,7 +56,7 @@ fn a_record_is_the_force_and_the_deviates_of_its_trial() {
     assert_eq!(judged, Ok(found));
 }
 
-// Verifies: DET-005, DET-006, DET-007.
+// Verifies: DET-005.
 #[test]
 fn simulations_that_cannot_be_are_refused() {
     let generator = Generator::new(1, 2);

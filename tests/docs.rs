@@ -18,13 +18,9 @@ use page::{Page, matches};
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// How many commands of `docs/` the test does not run, each with its reason on the page.
-///
-/// Implements: DOC-002.
 const NOT_RUN: usize = 33;
 
 /// Parts of the commands in `README.md` that are not run, and why.
-///
-/// Implements: DOC-006.
 const README_NOT_RUN: [(&str, &str); 5] = [
     (
         "vectors/conform/tests/toys/right.py",
@@ -95,8 +91,6 @@ fn palpate(arguments: &str) -> String {
 }
 
 /// Runs a page; what differs from it, one text each.
-///
-/// Implements: DOC-001.
 fn differences(page: &Page) -> Vec<String> {
     let folder = folder(&page.name.replace('/', "-"));
     let (mut differences, mut code) = (Vec::new(), 0);
@@ -123,7 +117,6 @@ fn differences(page: &Page) -> Vec<String> {
     differences
 }
 
-// Verifies: DOC-001, DOC-002.
 #[test]
 fn commands_do_what_the_pages_show() {
     let pages = pages();
@@ -153,7 +146,6 @@ fn commands_do_what_the_pages_show() {
     assert_eq!(not_run.len(), NOT_RUN, "commands that are not run");
 }
 
-// Verifies: DOC-008.
 #[test]
 fn files_on_the_pages_are_those_of_the_sources() {
     let pages = pages();
@@ -172,7 +164,6 @@ fn files_on_the_pages_are_those_of_the_sources() {
     assert!(same >= 3, "{same} files: are the pages read?");
 }
 
-// Verifies: DOC-003, DOC-004.
 #[test]
 fn commands_and_options_exist() {
     let help = palpate("--help");
@@ -234,7 +225,6 @@ fn commands_and_options_exist() {
     assert!(seen > 100, "{seen} options seen: are the pages read?");
 }
 
-// Verifies: DOC-005, DOC-007.
 #[test]
 fn links_and_requirements_lead_somewhere() {
     let spec = fs::read_dir(Path::new(ROOT).join("spec")).unwrap();
@@ -285,7 +275,6 @@ fn links_and_requirements_lead_somewhere() {
     }
 }
 
-// Verifies: DOC-006.
 #[test]
 fn the_commands_of_the_readme_succeed() {
     let folder = folder("README");

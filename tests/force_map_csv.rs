@@ -42,14 +42,14 @@ fn refusal(old: &str, new: &str) -> String {
     message
 }
 
-// Verifies: MAP-030, MAP-031, MAP-036, MAP-038.
+// Verifies: MAP-030, MAP-022, MAP-041.
 #[test]
 fn a_table_is_read_and_written() {
     assert_eq!(read(EXAMPLE), Ok(table()));
     assert_eq!(table().to_csv(), EXAMPLE);
 }
 
-// Verifies: MAP-030, MAP-031.
+// Verifies: MAP-030.
 #[test]
 fn columns_are_found_by_name_and_units_by_header() {
     let text = "\
@@ -59,7 +59,7 @@ fn columns_are_found_by_name_and_units_by_header() {
     assert_eq!(read(text), Ok(table()));
 }
 
-// Verifies: MAP-040, MAP-041, MAP-042, MAP-043, MAP-044.
+// Verifies: MAP-040, MAP-041, MAP-030, MAP-044.
 #[test]
 fn tables_of_spreadsheets_are_read() {
     let header = "\"\";Depth_mm;lateral_mm;T/°C;\"normal_force_N\";lateral_force_n";
@@ -79,7 +79,7 @@ fn tables_of_spreadsheets_are_read() {
     assert_eq!((found, notes.len()), (table(), 0));
 }
 
-// Verifies: MAP-030, MAP-045.
+// Verifies: MAP-030, MAP-033.
 #[test]
 fn bad_headers_are_refused() {
     let right = EXAMPLE.lines().next().unwrap();
@@ -147,7 +147,7 @@ fn every_missing_pose_is_named() {
     }
 }
 
-// Verifies: MAP-026, MAP-034.
+// Verifies: MAP-026, MAP-033.
 #[test]
 fn a_second_row_for_a_pose_is_refused_with_both_lines() {
     let row = "1.5,0.0,0.25,0.0\n";
@@ -159,7 +159,7 @@ fn a_second_row_for_a_pose_is_refused_with_both_lines() {
     );
 }
 
-// Verifies: MAP-026, MAP-035.
+// Verifies: MAP-026, MAP-033.
 #[test]
 fn malformed_rows_are_refused_with_line_column_and_value() {
     for (row, found) in [
@@ -190,7 +190,7 @@ fn malformed_rows_are_refused_with_line_column_and_value() {
     }
 }
 
-// Verifies: MAP-002, MAP-004, MAP-026.
+// Verifies: MAP-002, MAP-026.
 #[test]
 fn what_makes_no_table_is_refused_with_the_file() {
     let negative = EXAMPLE.replace("\n1.5,", "\n-1.5,");
@@ -201,7 +201,7 @@ fn what_makes_no_table_is_refused_with_the_file() {
     assert!(message.starts_with("gel.csv: laterals_m[2] = 0.0000000005, "));
 }
 
-// Verifies: MAP-008, MAP-026.
+// Verifies: MAP-002, MAP-026.
 #[test]
 fn a_measured_map_keeps_the_files_name_without_its_folder() {
     let phantom = Phantom::builtin("2.6").unwrap();
@@ -255,7 +255,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    // Verifies: MAP-031, MAP-036, MAP-038.
+    // Verifies: MAP-030, MAP-022, MAP-041.
     #[test]
     fn any_table_survives_the_file_to_the_bit(table in any_table()) {
         let back = read(&table.to_csv()).unwrap();

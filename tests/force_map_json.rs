@@ -152,7 +152,7 @@ fn assert_same(read: &ForceMap, written: &ForceMap) {
     assert_eq!(read, written);
 }
 
-// Verifies: MAP-020, MAP-021, MAP-022, PHA-029.
+// Verifies: MAP-020, MAP-022, PHA-029.
 #[test]
 fn a_computed_map_is_written_as_the_spec_says_and_read_back() {
     assert_eq!((SCHEMA, SCHEMA_VERSION), ("palpate-force-map", 1));
@@ -160,7 +160,7 @@ fn a_computed_map_is_written_as_the_spec_says_and_read_back() {
     assert_same(&read(&example()).unwrap(), &computed());
 }
 
-// Verifies: MAP-020, MAP-022, MAP-025, MAP-074.
+// Verifies: MAP-020, MAP-022, MAP-002, MAP-074.
 #[test]
 fn a_measured_map_is_written_and_read_back() {
     let source = Measurement::new("gel \"1\".csv", "ATI\nsensor");
@@ -203,7 +203,7 @@ fn the_version_that_made_a_map_stays_with_it() {
     assert_eq!(map.mirrored().unwrap().program_version(), "0.0.7");
 }
 
-// Verifies: MAP-023, MAP-026.
+// Verifies: MAP-024, MAP-026.
 #[test]
 fn other_schemas_and_newer_versions_are_refused_first() {
     let other = r#"map.json: schema = "palpate-summary", expected "palpate-force-map""#;
@@ -295,7 +295,7 @@ fn unknown_and_repeated_keys_are_refused() {
     );
 }
 
-// Verifies: MAP-025.
+// Verifies: MAP-002.
 #[test]
 fn a_certificate_comes_with_finite_elements_and_with_nothing_else() {
     let kind = "\"kind\": \"finite_elements\"";
@@ -307,7 +307,7 @@ fn a_certificate_comes_with_finite_elements_and_with_nothing_else() {
     assert_eq!(read(&format!("{before}}}")), Err(expected.into()));
 }
 
-// Verifies: MAP-003, MAP-004, MAP-008, MAP-026.
+// Verifies: MAP-002, MAP-026.
 #[test]
 fn what_makes_no_map_is_refused_with_the_file() {
     check_refusals(

@@ -210,7 +210,7 @@ fn errors_about_the_first_edition_name_its_keys() {
     );
 }
 
-// Verifies: PHA-038.
+// Verifies: PHA-037.
 #[test]
 fn the_layers_are_given_in_one_way() {
     let layer = "[[layer]]\nthickness_mm = 1\nyoungs_modulus_kpa = 1\npoisson_ratio = 0\n";
@@ -229,7 +229,7 @@ fn the_layers_are_given_in_one_way() {
     assert!(read(&FIRST_EDITION.replace("[gel]", "[gel]\nname = 'a'")).is_err());
 }
 
-// Verifies: PHA-039.
+// Verifies: PHA-026.
 #[test]
 fn a_shape_has_the_keys_of_one() {
     let expected = "expected one of `disc`, `ellipse`, `polygon`";
@@ -260,7 +260,7 @@ fn a_shape_has_the_keys_of_one() {
     }
 }
 
-// Verifies: PHA-022, PHA-026.
+// Verifies: PHA-026.
 #[test]
 fn unknown_keys_are_named_with_the_allowed_ones() {
     check_refusals(
@@ -287,7 +287,7 @@ fn unknown_keys_are_named_with_the_allowed_ones() {
     }
 }
 
-// Verifies: PHA-023, PHA-026.
+// Verifies: PHA-026.
 #[test]
 fn every_missing_key_is_named() {
     for text in [EXAMPLE, FIRST_EDITION] {
@@ -330,7 +330,7 @@ fn every_missing_key_is_named() {
     );
 }
 
-// Verifies: PHA-024, PHA-026.
+// Verifies: PHA-026.
 #[test]
 fn wrong_types_are_named_with_their_value() {
     let values = "nan, +inf, 0x22, 0b1, 0o17, 0xE5, 1e400, \"34\", true, [34.0], {mm = 34.0}, 1999-11-14, 07:32:00";
@@ -370,7 +370,7 @@ fn wrong_types_are_named_with_their_value() {
     }
 }
 
-// Verifies: PHA-025, PHA-026.
+// Verifies: PHA-026.
 #[test]
 fn what_is_no_toml_is_refused_with_line_and_column() {
     for (new, place) in [
@@ -556,7 +556,7 @@ proptest! {
         prop_assert_eq!(serde_json::from_str::<Phantom>(&json).unwrap(), phantom);
     }
 
-    // Verifies: PHA-026, PHA-028.
+    // Verifies: PHA-026.
     #[test]
     fn mutated_files_never_panic(at in 0..EXAMPLE.len(), removed in 0usize..20, added: String) {
         let end = (at + removed).min(EXAMPLE.len());
@@ -567,7 +567,7 @@ proptest! {
         }
     }
 
-    // Verifies: PHA-028.
+    // Verifies: PHA-026.
     #[test]
     fn mutated_tokens_never_panic(
         line in 0..29usize,

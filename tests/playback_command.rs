@@ -47,7 +47,7 @@ fn failed(here: &Place, line: &str) -> String {
     said.strip_prefix("palpate: ").expect(said).into()
 }
 
-// Verifies: CLI-025, MAP-070, MAP-073.
+// Verifies: CLI-020, MAP-070, MAP-073.
 #[test]
 fn a_noisy_map_that_is_refused_is_played_when_smoothed() {
     let here = place("smoothed", &[("clean.json", 300.0, 20.0)]);
@@ -118,7 +118,7 @@ fn timing_prints_its_figures_as_json() {
     );
 }
 
-// Verifies: CLI-061, CLI-172.
+// Verifies: CLI-003, CLI-017.
 #[test]
 fn a_budget_that_is_broken_is_a_failed_check() {
     // No machine is too quick for this: cycles that come at a pace begin with a sleep, and no wake-up by the system
@@ -132,7 +132,7 @@ fn a_budget_that_is_broken_is_a_failed_check() {
     assert!(said[1].ends_with("µs, expected at most 1 µs"), "{said:?}");
 }
 
-// Verifies: CLI-061, CLI-173.
+// Verifies: CLI-003, CLI-173.
 #[test]
 fn cycles_of_another_loop_are_judged() {
     let here = place("log", &[]);
@@ -183,7 +183,7 @@ fn cycles_of_another_loop_are_judged() {
     assert_eq!(text(&undecided.stderr), reason);
 }
 
-// Verifies: CLI-002, CLI-062, CLI-063, CLI-064.
+// Verifies: CLI-002, CLI-063, CLI-064.
 #[test]
 fn what_cannot_be_played_is_refused_in_one_line() {
     let maps = [("hard", 30_000.0, 0.0), ("stiff", 2400.0, 0.0)];
@@ -255,7 +255,7 @@ fn signals_end_a_session_as_asked() {
     }
 }
 
-// Verifies: CLI-070, CLI-071, CLI-072, CLI-073.
+// Verifies: CLI-070, CLI-071, CLI-072.
 #[test]
 fn an_experiment_goes_on_after_an_abort() {
     let here = place("experiment", &[("none", 300.0, 0.0), ("bump", 300.0, 60.0)]);

@@ -64,7 +64,7 @@ fn without_a_file_it_analyses_table_1() {
     assert!(text.contains("253/300") && text.contains("p is rough") && text.contains("235"));
 }
 
-// Verifies: CLI-081, CLI-082, CLI-083.
+// Verifies: CLI-081, CLI-082.
 #[test]
 fn maps_add_noise_and_predicted_shares() {
     let arguments = maps("--inclusion");
@@ -110,7 +110,7 @@ fn maps_add_noise_and_predicted_shares() {
     has(&text, words.split(" | "));
 }
 
-// Verifies: CLI-080, CLI-084, CLI-085.
+// Verifies: CLI-080, CLI-082, CLI-003.
 #[test]
 fn a_file_of_counts_is_analysed_alone() {
     let counts = "subject,condition,trials,soft 3,soft 5\nme,gel,20,20,10\n";
@@ -143,7 +143,7 @@ missing.csv => missing.csv: cannot be read
 ";
 
 // A file without an end is refused too.
-// Verifies: CLI-008, CLI-081, CLI-083, CLI-085.
+// Verifies: CLI-008, CLI-081, CLI-003.
 #[test]
 fn what_is_refused_is_named_in_one_line() {
     place().write("bad.csv", "subject,condition,trials,2.6\n1,gel,30,31\n");

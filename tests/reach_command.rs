@@ -73,7 +73,7 @@ fn crossing([a, b]: [f64; 2], [gamma_a, gamma_b]: [f64; 2], needed: f64) -> f64 
     a + (b - a) * (gamma_a / needed).ln() / (gamma_a / gamma_b).ln()
 }
 
-// Verifies: CLI-160, CLI-161, BNK-070, BNK-071, BNK-072.
+// Verifies: CLI-160, BNK-070, BNK-071.
 #[test]
 fn depths_and_diameters_are_those_of_plain_sums() {
     let bank = bank();
@@ -132,7 +132,7 @@ fn depths_and_diameters_are_those_of_plain_sums() {
     assert!((ratio - 2.0).abs() < 0.1, "{ratio}");
 }
 
-// Verifies: CLI-162.
+// Verifies: CLI-160.
 #[test]
 fn what_lies_beyond_the_bank_is_said() {
     let table = place().succeed("reach --bank bank.json --noise-sd-n 1e-9");
@@ -145,7 +145,7 @@ fn what_lies_beyond_the_bank_is_said() {
     assert!(!table.contains("than the bank"), "{table}");
 }
 
-// Verifies: CLI-166.
+// Verifies: CLI-163.
 #[test]
 fn the_figure_shows_both_lines_and_says_them_in_words() {
     place().succeed("reach --bank bank.json --noise-sd-n 0.005 --figure reach.svg");

@@ -72,7 +72,7 @@ fn finished(name: &str) -> Place {
     place
 }
 
-// Verifies: STU-001, STU-006, STU-032, STU-050, STU-051.
+// Verifies: STU-001, STU-010, STU-032, STU-050, STU-051.
 #[test]
 fn a_study_tells_bands_indices_and_failures() {
     let place = finished("results");
@@ -112,7 +112,7 @@ fn a_study_tells_bands_indices_and_failures() {
     assert_eq!(json, same);
 }
 
-// Verifies: STU-021, STU-024, STU-025, STU-026.
+// Verifies: STU-021, STU-024, STU-026.
 #[test]
 fn killed_shards_go_on_and_give_the_same_bytes() {
     let place = place("shards");
@@ -224,7 +224,7 @@ fn samples_that_are_missing_twice_there_or_foreign_are_named() {
     assert!(error.contains("of another request or version"), "{error}");
 }
 
-// Verifies: STU-001, STU-004, STU-005, STU-006, STU-011, STU-025.
+// Verifies: STU-001, STU-011, STU-010, STU-024.
 #[test]
 fn a_file_that_is_no_study_is_refused_with_line_and_key() {
     let place = place("refused");

@@ -57,8 +57,8 @@ fn the_files_are_as_the_generator_writes_them() {
     }
 }
 
-// Verifies: VEC-001, VEC-002, VEC-003, VEC-004, VEC-005, VEC-008, VEC-011, VEC-012, VEC-014, VEC-015, VEC-016, VEC-017, VEC-018,
-// VEC-019. The second route has the order of operations of VEC-011, Cowper's points as tables print them, and θ by projection.
+// Verifies: VEC-001, VEC-003, VEC-004, VEC-005, VEC-008, VEC-011, VEC-014, VEC-016,
+// VEC-018. The second route has the order of operations of VEC-011, Cowper's points as tables print them, and θ by projection.
 #[test]
 fn the_suite_is_sound() {
     if let Some(text) = run("check.py", &[]) {
@@ -98,7 +98,7 @@ fn check_bits(value: &Value, key: &str) -> usize {
     }
 }
 
-// Verifies: VEC-009. The cases that must be refused have other bits and bytes on purpose.
+// Verifies: VEC-010. The cases that must be refused have other bits and bytes on purpose.
 #[test]
 fn bits_and_bytes_are_written_in_lower_case_hexadecimal() {
     for group in ["servo_axis", "servo_interpolate"] {
@@ -154,7 +154,7 @@ fn reports_have_their_number_and_the_fields_of_the_table() {
     }
 }
 
-// Verifies: VEC-013.
+// Verifies: VEC-011.
 #[test]
 fn forces_come_from_another_program_with_its_band_and_ours() {
     for source in ["probe_force.py", "mesh.py"] {
@@ -195,7 +195,7 @@ fn forces_come_from_another_program_with_its_band_and_ours() {
         let normal = newtons("normal_force_mn");
         let lateral = side * newtons("lateral_force_mn");
         let expected = [
-            // VEC-013: 0.3 % of the normal force, 1.5 mN of the lateral.
+            // VEC-011: 0.3 % of the normal force, 1.5 mN of the lateral.
             (
                 "normal_force_n",
                 normal,

@@ -5,7 +5,7 @@ counts, conditions, and each seventh expected answer by a second route, once mor
 
 With --all, every expected answer is computed again. Needs mpmath; jsonschema is used where it is installed.
 
-Implements: VEC-014, VEC-019.
+Implements: VEC-014.
 """
 
 import hashlib

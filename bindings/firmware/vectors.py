@@ -8,7 +8,7 @@ answer, to the bit, is what the command ORACLE answers on this machine: the file
 Little-endian words of 32 bits: the magic number, the number of cases, then for each case the op, its number in the group, the
 number of lists, each list as its length and its words, and the answer as one more list; empty if the case must be refused.
 
-Implements: FIR-001, FIR-002, FIR-004.
+Implements: FIR-001, FIR-004.
 """
 
 import ctypes

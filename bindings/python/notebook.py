@@ -1,6 +1,6 @@
 """Executes a notebook; its pictures are left in a folder. `python notebook.py NOTEBOOK FOLDER`"""
 
-# Implements: PYT-031.
+# Implements: PYT-030.
 
 import base64
 import sys

@@ -1,6 +1,5 @@
 """Runs the steps of action.yml as a runner does, for right and for wrong inputs.
 
-Implements: DOC-015.
 """
 
 import os

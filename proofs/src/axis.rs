@@ -52,7 +52,7 @@ fn is_in_range(knots: &[f32; 4], axis: &Axis, position: f32) {
 }
 
 // No Kani proof on any axis: three symbolic divisions end in no solver.
-// Verifies: SRV-004, SRV-005, SRV-012.
+// Verifies: SRV-004, SRV-012.
 #[cfg(not(kani))]
 #[test]
 fn locate_is_total_and_in_range() {
@@ -64,7 +64,7 @@ fn locate_is_total_and_in_range() {
 /// The same on one of the axes of the tables.
 macro_rules! located {
     ($name:ident, $axes:literal) => {
-        // Verifies: SRV-004, SRV-005, SRV-012.
+        // Verifies: SRV-004, SRV-012.
         #[test]
         #[cfg_attr(kani, kani::proof, kani::unwind(6))]
         fn $name() {
@@ -90,7 +90,7 @@ impl<const AXES: usize> TypeGenerator for Near<AXES> {
 }
 
 // No Kani proof: it relates a product to a quotient.
-// Verifies: SRV-005, SRV-012.
+// Verifies: SRV-004, SRV-012.
 #[cfg(not(kani))]
 #[test]
 fn a_fraction_is_near_the_exact_one() {
@@ -120,7 +120,7 @@ struct AtKnot {
 }
 
 // No Kani proof on any axis, likewise.
-// Verifies: SRV-006.
+// Verifies: SRV-004.
 #[cfg(not(kani))]
 #[test]
 fn knots_have_whole_fractions() {

@@ -82,7 +82,7 @@ fn force_is_bounded() {
 }
 
 // No Kani proof with any limits: `approach`, which keeps them, has its own.
-// Verifies: SRV-021, SRV-034.
+// Verifies: SRV-021.
 #[cfg(not(kani))]
 #[test]
 fn slew_is_limited() {
@@ -231,7 +231,7 @@ fn fault_latches() {
     });
 }
 
-// Verifies: SRV-040, SRV-041.
+// Verifies: SRV-040.
 #[test]
 #[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
 fn stale_samples_are_not_taken_over_while_armed() {

@@ -22,7 +22,7 @@ fn build(flags: &[&str]) -> Output {
         .unwrap()
 }
 
-// Proves: SRV-001, SRV-061, HID-006.
+// Proves: SRV-001, HID-006.
 #[test]
 #[ignore = "builds in a profile of its own"]
 fn no_path_to_a_panic_is_left() {

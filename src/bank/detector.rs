@@ -10,13 +10,13 @@ use crate::stats::error::{check_positive, check_samples, representable};
 
 /// Of a record whose level of noise is unknown at least this share of its squares is taken for noise: less is rounding.
 ///
-/// Implements: BNK-032.
+/// Implements: BNK-031.
 const LEAST_NOISE: f64 = 1e-12;
 
 /// Templates of all points of a bank, less what nuisances explain of them, ready for records over the same positions. Records and
 /// templates are whitened: both channels one after the other, each sample over the standard deviation of its noise.
 ///
-/// Implements: BNK-031, BNK-032.
+/// Implements: BNK-031.
 #[derive(Debug, Clone)]
 pub struct BankDetector {
     /// An orthonormal basis of what the nuisances add.
@@ -56,7 +56,7 @@ impl BankDetector {
     /// Lengths that do not fit; NaN or infinity; a prior that does not add up to 1; fewer samples than nuisances and two; no point of which
     /// the nuisances leave something.
     ///
-    /// Implements: BNK-031, BNK-032, BNK-033.
+    /// Implements: BNK-031, BNK-033.
     pub fn new(
         axes: &[Vec<f64>; 4],
         mut templates: Vec<f64>,
@@ -111,7 +111,7 @@ impl BankDetector {
     /// # Errors
     /// Another length than the templates'; NaN or infinity; overflow.
     ///
-    /// Implements: BNK-032, BNK-033.
+    /// Implements: BNK-031, BNK-033.
     pub fn statistic(&self, residual: &mut [f64]) -> Result<BankStatistic, DetectError> {
         check_samples("residual", residual, self.samples)?;
         let length = Nuisances::of_basis(&self.basis, self.samples).project(residual);
@@ -137,7 +137,7 @@ impl BankDetector {
 
     /// θ of a signal Δ from (Pδ)ᵀz − |Pδ|²/2 and |Pz|².
     ///
-    /// Implements: NUI-007, NUI-009.
+    /// Implements: NUI-007.
     pub(super) fn theta(&self, gain: f64, squares: f64) -> f64 {
         match self.level {
             NoiseLevel::Known => gain,

@@ -58,7 +58,7 @@ impl Bank {
     /// # Errors
     /// As [`ForceMap::from_json`] for the document and each of its maps, and as [`Bank::new`].
     ///
-    /// Implements: BNK-010, BNK-011.
+    /// Implements: BNK-010.
     pub fn from_json(text: &str, file: &str) -> Result<Bank, Refusal> {
         let read = || {
             check_schema(text, SCHEMA, SCHEMA_VERSION)?;
@@ -73,7 +73,7 @@ impl Bank {
     /// # Errors
     /// As [`Bank::from_json`]; a file that cannot be read as UTF-8.
     ///
-    /// Implements: BNK-011.
+    /// Implements: BNK-010.
     pub fn read(path: &Path) -> Result<Bank, Refusal> {
         crate::input::parse(path, Bank::from_json)
     }

@@ -82,7 +82,7 @@ impl BankSearch<'_> {
     /// A depth other than the bank's; positions outside it; a prior of another length; maps that differ by what is unknown alone;
     /// whatever the detector refuses.
     ///
-    /// Implements: BNK-060, BNK-061, BNK-062.
+    /// Implements: BNK-060, BNK-033, BNK-034.
     pub fn locate(&self, record: &Record) -> Result<Location, Refusal> {
         let located = || {
             let (question, depth) = (&self.question, self.bank.depth());
@@ -151,7 +151,7 @@ impl BankSearch<'_> {
         detector.map_err(refused)
     }
 
-    /// Implements: BNK-062, BNK-063, BNK-064.
+    /// Implements: BNK-034, BNK-063, BNK-064.
     fn judge(
         &self,
         detector: &BankDetector,

@@ -92,7 +92,7 @@ impl Parameter {
 
 /// The forces of one gel without inclusion, and with each of the inclusions that may be there.
 ///
-/// Implements: BNK-001, BNK-002.
+/// Implements: BNK-001.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bank {
     reference: ForceMap,
@@ -109,7 +109,7 @@ impl Bank {
     /// No maps; a map that is not the reference's gel with one inclusion, at other lateral positions or another depth; maps that are
     /// no full grid of positions, depths, diameters and moduli; with the number of the map, from 0.
     ///
-    /// Implements: BNK-001, BNK-002, BNK-003.
+    /// Implements: BNK-001, BNK-003.
     pub fn new(reference: ForceMap, maps: Vec<ForceMap>) -> Result<Bank, Refusal> {
         let Some(first) = maps.first() else {
             return Err(Refusal::state("a bank without maps", "one at least"));

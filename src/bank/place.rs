@@ -43,7 +43,7 @@ struct Nodes {
 /// The posterior of an inclusion's parameters, given that there is one: uniform before the record between the first and the last point of
 /// each axis, or linear between the prior's points.
 ///
-/// Implements: BNK-040, BNK-041.
+/// Implements: BNK-040.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlacePosterior {
     /// The most likely parameters, in the order of [`super::Parameter::ALL`], m and Pa.
@@ -118,7 +118,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 impl BankDetector {
     /// Where the inclusion of a record lies, if it has one.
     ///
-    /// Implements: BNK-040, BNK-041, BNK-042, BNK-043.
+    /// Implements: BNK-040, BNK-042.
     pub fn place(&self, statistic: &BankStatistic) -> PlacePosterior {
         let places = self.places();
         let (along, squares) = (&statistic.along, statistic.squares);
@@ -189,7 +189,7 @@ impl BankDetector {
 
     /// Makes probabilities of θ.
     ///
-    /// Implements: BNK-040, BNK-041.
+    /// Implements: BNK-040.
     fn weigh(&self, place: &mut PlacePosterior, prior: Vec<f64>) {
         let highest = place.mass.iter().copied().fold(f64::MIN, f64::max);
         for (mass, prior) in place.mass.iter_mut().zip(prior) {
@@ -314,7 +314,7 @@ impl PlacePosterior {
 
     /// The parameters of each node that counts, and its probability.
     ///
-    /// Implements: BNK-041.
+    /// Implements: BNK-040.
     pub fn nodes(&self) -> impl Iterator<Item = ([f64; 4], f64)> {
         let cells = self
             .cells
@@ -328,7 +328,7 @@ impl PlacePosterior {
 
     /// The mean of the posterior: of all estimates that with the least mean square error over what the prior says.
     ///
-    /// Implements: BNK-046.
+    /// Implements: BNK-042.
     pub fn mean(&self) -> [f64; 4] {
         let mut mean = [0.0; 4];
         for (at, mass) in self.nodes() {
@@ -366,7 +366,7 @@ impl PlacePosterior {
 
     /// The probability that the parameter of one axis is at most `x`.
     ///
-    /// Implements: BNK-044.
+    /// Implements: BNK-042.
     pub fn at_most(&self, axis: usize, x: f64) -> f64 {
         let mut before = [self.axes[axis].points[0], 0.0];
         for part in self.cumulated(axis) {
@@ -384,7 +384,7 @@ impl PlacePosterior {
     /// # Errors
     /// A level that is not strictly between 0 and 1.
     ///
-    /// Implements: BNK-044.
+    /// Implements: BNK-042.
     pub fn interval(&self, axis: usize, level: f64) -> Result<Bounds, DetectError> {
         check_probability("level", level)?;
         let parts = self.cumulated(axis);
@@ -406,7 +406,7 @@ impl PlacePosterior {
 
     /// The probability of the places that are more likely than `at`: `at` is in the credible region of a level if this is less.
     ///
-    /// Implements: BNK-045.
+    /// Implements: BNK-042.
     pub fn more_likely(&self, at: [f64; 4]) -> f64 {
         let cell = [0, 1, 2, 3].map(|axis: usize| self.axes[axis].cell(at[axis]));
         let mut stride = 1;

@@ -9,13 +9,13 @@ use crate::refusal::Refusal;
 /// The mesh size of a bank unless another is asked for, m: a third longer than that of a single map, which takes half
 /// the time. `spec/bank.md` has what it does to estimates.
 ///
-/// Implements: BNK-024.
+/// Implements: BNK-020.
 pub const MESH_SIZE: f64 = 0.65e-3;
 
 /// How far from the depth of the probe the reference has further depths, m: for a depth that is known within a tolerance or
 /// unknown.
 ///
-/// Implements: BNK-022.
+/// Implements: BNK-020.
 const BESIDE: f64 = 0.3e-3;
 
 /// The maps that make a bank.
@@ -106,7 +106,7 @@ impl BankPlan {
     /// A diameter for a shape that has none; a hypothesis that does not fit into the gel, with its parameters; a pose that the
     /// probe cannot take.
     ///
-    /// Implements: BNK-021, BNK-023.
+    /// Implements: BNK-021, BNK-020.
     pub fn solves(&self) -> Result<Vec<BankSolve>, Refusal> {
         for &lateral in &self.laterals {
             self.phantom.check_pose(self.depth, lateral)?;
@@ -167,7 +167,7 @@ impl BankPlan {
     /// # Errors
     /// As [`Model::map`].
     ///
-    /// Implements: BNK-022.
+    /// Implements: BNK-020.
     pub fn reference(&self) -> Result<ForceMap, FemError> {
         let mut phantom = self.phantom.clone();
         phantom.inclusions.clear();
@@ -187,7 +187,7 @@ impl BankPlan {
     /// # Errors
     /// As [`Model::sweep`].
     ///
-    /// Implements: BNK-023.
+    /// Implements: BNK-020.
     pub fn solve(&self, solve: &BankSolve) -> Result<Vec<ForceMap>, FemError> {
         let model = Model::new(&solve.phantom, self.mesh_size, self.contact)?;
         let map = model.sweep(self.depth, &self.laterals)?;

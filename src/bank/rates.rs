@@ -59,7 +59,7 @@ pub fn false_alarm_bound(tests: &[SubspaceTest], eta: f64) -> Result<f64, Detect
 /// # Errors
 /// A rate that is not strictly between 0 and 1.
 ///
-/// Implements: BNK-052.
+/// Implements: BNK-051.
 pub fn false_alarm_threshold(
     tests: &[SubspaceTest],
     max_false_alarm: f64,
@@ -149,7 +149,7 @@ impl BankDetector {
     /// # Errors
     /// No simulations; as [`BankDetector::statistic`].
     ///
-    /// Implements: BNK-055.
+    /// Implements: BNK-054.
     pub fn power(
         &self,
         eta: f64,

@@ -138,7 +138,7 @@ pub(crate) fn deepest(depths: &[f64], gamma: &[f64], enough: f64) -> Option<f64>
 /// The smallest diameter that is enough at each depth, as [`Reached::depth`] is the largest depth: for `reached` of one modulus, in the
 /// order of their diameters.
 ///
-/// Implements: BNK-072.
+/// Implements: BNK-071.
 pub fn smallest_diameters(bank: &Bank, reached: &[Reached], enough: f64) -> Vec<Option<f64>> {
     let depths = 0..bank.axes()[1].len();
     let smallest = |depth: usize| {

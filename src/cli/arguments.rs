@@ -13,8 +13,6 @@ use super::{
 };
 
 /// The version, and which build this is.
-///
-/// Implements: EVD-068.
 const LONG_VERSION: &str = concat!(
     env!("CARGO_PKG_VERSION"),
     "\ncommit ",

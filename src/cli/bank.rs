@@ -62,7 +62,7 @@ pub struct BankArguments {
 impl BankArguments {
     /// The maps that are asked for.
     ///
-    /// Implements: CLI-154, CLI-155, CLI-171.
+    /// Implements: CLI-154, CLI-155.
     fn plan(&self, phantom: &Phantom) -> Result<BankPlan, CliError> {
         let number = phantom.inclusions.len();
         if number != 1 {
@@ -98,7 +98,7 @@ impl BankArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-154, CLI-158, CLI-159, CLI-168.
+/// Implements: CLI-154, CLI-155, CLI-159, CLI-015.
 pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let out = &arguments.out;
     if out.exists() {
@@ -159,7 +159,7 @@ type Taken = Vec<Option<Vec<ForceMap>>>;
 
 /// The file of what is finished, and what that is.
 ///
-/// Implements: CLI-156, CLI-157, CLI-167, CLI-169.
+/// Implements: CLI-156, CLI-157.
 fn open_part(
     plan: &BankPlan,
     arguments: &BankArguments,

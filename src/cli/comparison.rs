@@ -23,7 +23,7 @@ const LARGE: f64 = 0.02;
 /// # Errors
 /// The solver failed.
 ///
-/// Implements: CLI-022, CLI-023.
+/// Implements: CLI-022.
 pub fn compare(measured: &ForceTable, phantom: &Phantom) -> Result<Vec<String>, FemError> {
     let odd = odd_lengths(measured, phantom);
     if !odd.is_empty() {
@@ -54,7 +54,7 @@ pub fn compare(measured: &ForceTable, phantom: &Phantom) -> Result<Vec<String>, 
 
 /// How many poses of a map the probe of `phantom` cannot take.
 ///
-/// Implements: CLI-024.
+/// Implements: CLI-022.
 pub fn left_out(measured: &ForceTable, phantom: &Phantom) -> usize {
     let poses = measured.forces().normal.entries();
     poses
@@ -83,7 +83,7 @@ fn spread(all: std::ops::Range<usize>, most: usize) -> impl Iterator<Item = usiz
 
 /// The axes of a map that do not look like lengths in the phantom.
 ///
-/// Implements: CLI-023.
+/// Implements: CLI-022.
 fn odd_lengths(measured: &ForceTable, phantom: &Phantom) -> Vec<String> {
     let largest = |axis: &[f64]| axis.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let axes = [
@@ -110,7 +110,7 @@ fn odd_lengths(measured: &ForceTable, phantom: &Phantom) -> Vec<String> {
 
 /// What stands out in measured and computed forces (N) at some poses in the gel, or else how far apart they are.
 ///
-/// Implements: CLI-022, CLI-023.
+/// Implements: CLI-022.
 fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
     let parts: [fn(Force<f64>) -> f64; 2] = [|force| force.normal, |force| force.lateral];
     let [normal, lateral] = parts.map(|part| {
@@ -198,7 +198,7 @@ mod tests {
         odd_forces(&pairs)
     }
 
-    // Verifies: CLI-022, CLI-023.
+    // Verifies: CLI-022.
     #[test]
     fn units_and_signs_that_look_wrong_are_told() {
         for (factors, expected) in [
@@ -241,7 +241,7 @@ mod tests {
         assert!(odd_forces(&pairs)[0].starts_with("the normal force is 1.0000"));
     }
 
-    // Verifies: CLI-023.
+    // Verifies: CLI-022.
     #[test]
     fn lengths_in_the_wrong_unit_are_told_before_anything_is_solved() {
         let phantom = Phantom::builtin("none").unwrap();

@@ -142,7 +142,7 @@ impl Config {
 
     /// A file that the configuration names, seen from where the program runs.
     ///
-    /// Implements: CLI-132.
+    /// Implements: CLI-031.
     pub fn file(&self, name: &Path) -> PathBuf {
         let [source, _] = &self.source;
         Path::new(source)

@@ -47,7 +47,7 @@ measured = [\"measured.csv\"]
 
 /// Runs the command.
 ///
-/// Implements: CLI-130, CLI-131.
+/// Implements: CLI-130.
 pub fn demo(arguments: &DemoArguments) -> Result<(), CliError> {
     let folder = &arguments.folder;
     make_folder(folder)?;

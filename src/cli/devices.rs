@@ -19,7 +19,7 @@ pub struct DevicesArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-078, HID-093.
+/// Implements: CLI-078, HID-094.
 pub fn devices(arguments: &DevicesArguments) -> Result<(), CliError> {
     let listed = list()?;
     print(&match arguments.format {

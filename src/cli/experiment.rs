@@ -86,7 +86,7 @@ fn plain_name(text: &str) -> Result<String, String> {
 
 /// Runs the command.
 ///
-/// Implements: CLI-070, CLI-071, CLI-072, CLI-073.
+/// Implements: CLI-070, CLI-071, CLI-072.
 pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
     arguments.device.check()?;
     if arguments.observer == Observer::Ideal && !arguments.device.is_simulated() {

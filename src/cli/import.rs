@@ -34,7 +34,7 @@ pub struct ImportArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-020, CLI-021, CLI-025.
+/// Implements: CLI-020, CLI-017.
 pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
     let phantom = arguments.phantom.as_deref().map(phantom).transpose()?;
     let text = read(&arguments.csv)?;
@@ -58,7 +58,7 @@ pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
     }
 }
 
-/// Implements: CLI-025.
+/// Implements: CLI-020.
 fn noise(smoothed: &Smoothed) -> String {
     let (sd, freedom) = (smoothed.noise_sd, smoothed.degrees_of_freedom);
     format!(
@@ -69,7 +69,7 @@ fn noise(smoothed: &Smoothed) -> String {
 
 /// The phantom, if its probe can stand at each pose; tells what stands out in its forces.
 ///
-/// Implements: CLI-022, CLI-024.
+/// Implements: CLI-022.
 fn compared(file: &str, forces: &ForceTable, phantom: Phantom) -> Option<Phantom> {
     let name = &phantom.name;
     match compare(forces, &phantom) {

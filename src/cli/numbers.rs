@@ -31,7 +31,7 @@ const DECIMALS: i32 = 9;
 
 /// Reads a list of positions in mm.
 ///
-/// Implements: CLI-010, CLI-011, EVD-083.
+/// Implements: CLI-010.
 ///
 /// # Errors
 /// A message that names the entry and what would be right.
@@ -187,7 +187,7 @@ mod tests {
         );
     }
 
-    // Verifies: CLI-011.
+    // Verifies: CLI-010.
     #[test]
     fn lists_that_make_no_sense_are_refused_with_the_entry() {
         for (text, word) in [

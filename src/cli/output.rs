@@ -11,7 +11,7 @@ use crate::refusal::one_line;
 
 /// Prints text; a reader who has gone away (`| head`) is no error.
 ///
-/// Implements: CLI-004, CLI-007.
+/// Implements: CLI-003, CLI-007.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -34,7 +34,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
     replace(path, text.as_bytes()).map_err(CliError::file("write", path))
 }
 
-/// Implements: CLI-086, CLI-087, CLI-088, CLI-089.
+/// Implements: CLI-005.
 fn replace(path: &Path, text: &[u8]) -> std::io::Result<()> {
     let there = match std::fs::metadata(path) {
         Ok(there) => Some(there),

@@ -61,7 +61,7 @@ impl Part {
     /// A file of another request, of which something is finished, or of something else; one that another process writes; what `take`
     /// refuses.
     ///
-    /// Implements: CLI-156, CLI-157, CLI-167, CLI-169.
+    /// Implements: CLI-156, CLI-157.
     pub fn open(
         path: PathBuf,
         request: &impl Serialize,

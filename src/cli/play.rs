@@ -54,7 +54,7 @@ pub struct PlayArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, HID-094, HID-095.
+/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, HID-094.
 pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
     if let Some(file) = &arguments.replay {
         return replay(arguments, file);

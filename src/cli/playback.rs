@@ -118,7 +118,7 @@ fn damping(capabilities: &Capabilities, delay_periods: u16) -> Damping {
 
 /// The table of a map's file.
 ///
-/// Implements: CLI-062.
+/// Implements: CLI-063.
 pub fn loaded_map(path: &Path) -> Result<LoadedTable, CliError> {
     let map = ForceMap::read(path)?;
     LoadedTable::new(map.table()).map_err(CliError::refused(path.display()))

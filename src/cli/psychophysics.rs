@@ -55,7 +55,7 @@ struct PsychophysicsAnswer {
 
 /// Runs the command.
 ///
-/// Implements: CLI-080, CLI-081, CLI-082, CLI-083, CLI-084, CLI-085.
+/// Implements: CLI-080, CLI-081, CLI-082, CLI-003.
 pub fn psychophysics(arguments: &PsychophysicsArguments) -> Result<(), CliError> {
     let path = arguments.counts.as_ref();
     let table = path.map_or_else(AnswerTable::paper, |path| AnswerTable::read(path))?;
@@ -93,7 +93,7 @@ fn against_maps(
 
 /// The answer for people. Its words are in `templates/psychophysics.txt`.
 ///
-/// Implements: CLI-084.
+/// Implements: CLI-082.
 fn text(answer: &PsychophysicsAnswer) -> String {
     let (counts, confidence) = (&answer.counts, 100.0 * answer.analysis.confidence);
     let words = Text { answer }.render();

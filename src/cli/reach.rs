@@ -97,7 +97,7 @@ struct SmallestDiameter {
 
 /// Runs the command.
 ///
-/// Implements: CLI-160, CLI-161, CLI-162, CLI-166.
+/// Implements: CLI-160, CLI-163.
 pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     let bank = Bank::read(&arguments.bank)?;
     // The level of the noise is stated.
@@ -173,7 +173,7 @@ fn largest(plain: &[Reached], beside: &[Reached]) -> Vec<LargestDepth> {
     pairs.map(row).collect()
 }
 
-/// Implements: CLI-161.
+/// Implements: CLI-160.
 fn smallest(bank: &Bank, reached: [&[Reached]; 2], needed: f64) -> Vec<SmallestDiameter> {
     let [_, depths, diameters, moduli] = bank.axes();
     let of_modulus = |(modulus, &youngs_modulus_pa): (usize, &f64)| {

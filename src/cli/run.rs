@@ -63,7 +63,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
 
 /// Reads a map that must have been measured.
 ///
-/// Implements: CLI-033.
+/// Implements: CLI-031.
 fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
     let map = ForceMap::read(path)?;
     if map.certificate().is_some() {

@@ -74,7 +74,7 @@ pub fn phantom(name: &str) -> Result<Phantom, CliError> {
 
 /// Runs the command.
 ///
-/// Implements: CLI-012, CLI-013, CLI-014, CLI-016.
+/// Implements: CLI-012, CLI-013.
 pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     let SolveArguments {
         depths_mm: List(depths),

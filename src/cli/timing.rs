@@ -61,7 +61,7 @@ enum Printed {
 
 /// Runs the command.
 ///
-/// Implements: CLI-060, CLI-061, CLI-172.
+/// Implements: CLI-060, CLI-003, CLI-017.
 pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
     let cycle = Duration::from_micros(arguments.budget_us);
     let mut budget = Budget::new(cycle, arguments.percentile, arguments.confidence_percent)?;

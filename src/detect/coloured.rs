@@ -41,7 +41,7 @@ pub const fn coloured_scratch(order: usize) -> usize {
 /// Lengths that do not fit; NaN or infinity; a covariance that is not symmetric, or not positive
 /// definite to working precision; overflow.
 ///
-/// Implements: DET-005, DET-007, DET-040, DET-041, DET-042, DET-043, DET-046.
+/// Implements: DET-005, DET-040, DET-041, DET-043, DET-046.
 pub fn theta_coloured(
     residual: &[f64],
     template: &[f64],
@@ -67,7 +67,7 @@ pub fn theta_coloured(
 
 /// The Cholesky factor L of a covariance K = LLᵀ of `order` rows, row by row; what lies above the diagonal is not used.
 ///
-/// Implements: DET-041, DET-042, DET-043.
+/// Implements: DET-041, DET-043.
 fn factorise(covariance: &[f64], order: usize, factor: &mut [f64]) -> Result<(), DetectError> {
     check_samples("covariance", covariance, factor.len())?;
     check_symmetric(covariance, order)?;

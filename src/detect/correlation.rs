@@ -61,7 +61,7 @@ pub fn correlation_length(series: &[f64]) -> f64 {
 /// The sums over blocks of `length` samples, over √length, so that white noise keeps its standard deviation. What is left behind the
 /// last whole block is not used.
 ///
-/// Implements: NUI-022.
+/// Implements: NUI-021.
 pub fn block_sums(series: &[f64], length: usize) -> impl Iterator<Item = f64> {
     let scale = 1.0 / libm::sqrt(length.max(1) as f64);
     let blocks = series.chunks_exact(length.max(1));

@@ -76,7 +76,7 @@ pub fn posterior(theta: f64, prior_h1: f64) -> Result<f64, DetectError> {
 /// # Errors
 /// The prior not strictly between 0 and 1.
 ///
-/// Implements: DET-022, ACC-010.
+/// Implements: DET-022, DET-001.
 pub fn map_threshold(prior_h1: f64) -> Result<f64, DetectError> {
     let p = check_probability("prior_h1", prior_h1)?;
     // Near p = ½ the quotient is near 1, where ln keeps no relative accuracy; 1 − 2p is exact
@@ -97,7 +97,7 @@ pub fn map_threshold(prior_h1: f64) -> Result<f64, DetectError> {
 /// The prior not strictly between 0 and 1; a cost not finite; an error that costs no more than the
 /// right decision.
 ///
-/// Implements: DET-023, ACC-011.
+/// Implements: DET-022, DET-001.
 pub fn bayes_threshold(prior_h1: f64, costs: Costs) -> Result<f64, DetectError> {
     let Costs { c00, c01, c10, c11 } = costs;
     for (what, cost) in [("c00", c00), ("c01", c01), ("c10", c10), ("c11", c11)] {
@@ -120,7 +120,7 @@ pub fn bayes_threshold(prior_h1: f64, costs: Costs) -> Result<f64, DetectError> 
 /// # Errors
 /// γ not finite or < 0; β not strictly between 0 and 1; overflow.
 ///
-/// Implements: DET-024, ACC-012.
+/// Implements: DET-022, DET-001.
 pub fn neyman_pearson_miss_threshold(gamma: f64, max_miss: f64) -> Result<f64, DetectError> {
     check_not_negative("gamma", gamma)?;
     let quantile = quantile("max_miss", max_miss)?;
@@ -134,7 +134,7 @@ pub fn neyman_pearson_miss_threshold(gamma: f64, max_miss: f64) -> Result<f64, D
 /// γ not finite or < 0; γ = 0, where Θ ≡ 0 and η = 0 would always alarm; α not strictly between 0
 /// and 1; overflow.
 ///
-/// Implements: DET-025, ACC-012.
+/// Implements: DET-025, DET-001.
 pub fn neyman_pearson_false_alarm_threshold(
     gamma: f64,
     max_false_alarm: f64,
@@ -153,7 +153,7 @@ pub fn neyman_pearson_false_alarm_threshold(
 /// # Errors
 /// γ not finite or < 0; η not finite.
 ///
-/// Implements: DET-026, ACC-005.
+/// Implements: DET-026, DET-001.
 pub fn error_rates(gamma: f64, eta: f64) -> Result<ErrorRates, DetectError> {
     check_not_negative("gamma", gamma)?;
     check_finite("eta", eta)?;
@@ -176,7 +176,7 @@ pub fn error_rates(gamma: f64, eta: f64) -> Result<ErrorRates, DetectError> {
 /// # Errors
 /// γ not finite or < 0; the false-alarm rate not in [0, 1].
 ///
-/// Implements: DET-027, ACC-006.
+/// Implements: DET-027, DET-001.
 pub fn roc_miss(gamma: f64, false_alarm: f64) -> Result<f64, DetectError> {
     check_not_negative("gamma", gamma)?;
     let is_right = (0.0..=1.0).contains(&false_alarm);
@@ -193,7 +193,7 @@ pub fn roc_miss(gamma: f64, false_alarm: f64) -> Result<f64, DetectError> {
 /// # Errors
 /// α or β not strictly between 0 and 1.
 ///
-/// Implements: DET-029, ACC-007.
+/// Implements: DET-027, DET-001.
 pub fn required_gamma(max_false_alarm: f64, max_miss: f64) -> Result<f64, DetectError> {
     let sum = quantile("max_false_alarm", max_false_alarm)? + quantile("max_miss", max_miss)?;
     Ok(if sum < 0.0 { -sum } else { 0.0 })
@@ -205,7 +205,7 @@ pub fn required_gamma(max_false_alarm: f64, max_miss: f64) -> Result<f64, Detect
 /// # Errors
 /// γ not finite or < 0.
 ///
-/// Implements: DET-028, ACC-008.
+/// Implements: DET-027, DET-001.
 pub fn two_afc(gamma: f64) -> Result<f64, DetectError> {
     check_not_negative("gamma", gamma)?;
     // Φ(γ/√2) = ½ erfc(−γ/2), whose argument is exact.
@@ -218,7 +218,7 @@ pub fn two_afc(gamma: f64) -> Result<f64, DetectError> {
 /// # Errors
 /// The share not strictly between 0 and 1.
 ///
-/// Implements: DET-030, ACC-009, ERR-004.
+/// Implements: DET-027, DET-001, ERR-004.
 pub fn gamma_from_two_afc(p_correct: f64) -> Result<f64, DetectError> {
     Ok(core::f64::consts::SQRT_2 * quantile("p_correct", p_correct)?)
 }

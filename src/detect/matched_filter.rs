@@ -53,7 +53,7 @@ impl<'a> MatchedFilter<'a> {
     /// Empty, unequal or non-finite templates; `noise_sd` not positive and finite; γ² beyond the
     /// largest number.
     ///
-    /// Implements: DET-005, DET-006, DET-007, DET-010, DET-013.
+    /// Implements: DET-005, DET-013.
     pub fn new(template: Force<&'a [f64]>, noise_sd: Force<f64>) -> Result<Self, DetectError> {
         template.check("template_x", "template_y", template.lateral.len())?;
         let noise = WhiteNoise::new(noise_sd)?;
@@ -75,7 +75,7 @@ impl<'a> MatchedFilter<'a> {
 
     /// b_c = (Σ Δ_c²/N)^½, the root mean square of the template, N.
     ///
-    /// Implements: DET-010.
+    /// Implements: DET-013.
     pub fn b(&self) -> Force<f64> {
         let samples = self.samples() as f64;
         let energies = self.energy.zip(self.noise);
@@ -84,7 +84,7 @@ impl<'a> MatchedFilter<'a> {
 
     /// σ_c = s_c/√N, the standard deviation of Y_c(0), N.
     ///
-    /// Implements: DET-011.
+    /// Implements: DET-013.
     pub fn sigma(&self) -> Force<f64> {
         let root = libm::sqrt(self.samples() as f64);
         self.noise
@@ -93,7 +93,7 @@ impl<'a> MatchedFilter<'a> {
 
     /// γ = (Σ_c Σ_i Δ²/s²)^½, the signal-to-noise ratio.
     ///
-    /// Implements: DET-013, ACC-003.
+    /// Implements: DET-013, DET-001.
     pub fn gamma(&self) -> f64 {
         self.gamma
     }
@@ -103,7 +103,7 @@ impl<'a> MatchedFilter<'a> {
     /// # Errors
     /// Lengths other than the template's; NaN or infinity in the residual; overflow.
     ///
-    /// Implements: DET-005, DET-012, DET-014, DET-015, ACC-003, ACC-004, CON-007.
+    /// Implements: DET-005, DET-015, DET-014, DET-001, CON-007.
     pub fn statistic(&self, residual: Force<&[f64]>) -> Result<Statistic, DetectError> {
         residual.check("residual_x", "residual_y", self.samples())?;
         let pairs = residual.zip(self.template).zip(self.noise);
@@ -132,7 +132,7 @@ impl<'a> MatchedFilter<'a> {
 /// # Errors
 /// Empty or unequal lengths; NaN or infinity; `noise_sd` not positive and finite; overflow.
 ///
-/// Implements: DET-005, DET-006, DET-007, DET-012, DET-014, DET-015, ERR-001.
+/// Implements: DET-005, DET-015, DET-014, ERR-001.
 pub fn theta_of_record(
     observed: Force<&[f64]>,
     f0: Force<&[f64]>,

@@ -22,7 +22,7 @@ pub struct NoiseBudget {
 /// Rates not strictly between 0 and 1, or that add up to 1 or more, where any noise will do; a
 /// signal not positive and finite; a source negative or not finite; overflow.
 ///
-/// Implements: DET-100, DET-101, ERR-005.
+/// Implements: DET-100, ERR-005.
 pub fn noise_budget(
     signal: f64,
     max_false_alarm: f64,
@@ -53,7 +53,7 @@ pub fn noise_budget(
 /// # Errors
 /// No source; a source negative or not finite; all of them 0; overflow.
 ///
-/// Implements: DET-102.
+/// Implements: DET-100.
 pub fn noise_total(sources: &[f64]) -> Result<f64, DetectError> {
     check_samples("sources", sources, sources.len())?;
     check_positive("total", root_sum_square(sources)?)

@@ -13,7 +13,7 @@ use crate::stats::{noncentral, normal};
 
 /// A signal of which less than this share is left beside the others is one of them.
 ///
-/// Implements: NUI-002.
+/// Implements: NUI-001.
 pub const DEPENDENT: f64 = 1e-9;
 
 /// An orthonormal basis of signals that may be in any record.
@@ -30,7 +30,7 @@ impl<'a> Nuisances<'a> {
     /// # Errors
     /// No samples; a length that is no multiple of them; NaN or infinity.
     ///
-    /// Implements: NUI-001, NUI-002, NUI-010.
+    /// Implements: NUI-001, NUI-010.
     pub fn new(signals: &'a mut [f64], samples: usize) -> Result<Nuisances<'a>, DetectError> {
         if samples == 0 {
             return Err(DetectError::Empty { what: "nuisance" });
@@ -205,7 +205,7 @@ impl<'a> SubspaceDetector<'a> {
     /// # Errors
     /// Another length than the template's; NaN or infinity; overflow.
     ///
-    /// Implements: NUI-005, NUI-006, NUI-007, NUI-010, NUI-016, NUI-017.
+    /// Implements: NUI-003, NUI-007, NUI-010, NUI-016.
     pub fn statistic(&self, residual: &mut [f64]) -> Result<SubspaceStatistic, DetectError> {
         let samples = self.nuisances.samples;
         check_samples("residual", residual, samples)?;
@@ -273,7 +273,7 @@ impl SubspaceStatistic {
     /// # Errors
     /// A bias below 0, or that is not finite; an unknown level of noise where nothing is left to tell it.
     ///
-    /// Implements: NUI-008, NUI-009, NUI-011, NUI-018.
+    /// Implements: NUI-008, NUI-007, NUI-014, NUI-016.
     pub fn test(self, level: NoiseLevel, bias: f64) -> Result<SubspaceTest, DetectError> {
         check_not_negative("bias", bias)?;
         let (scale, degrees) = match level {
@@ -294,7 +294,7 @@ impl SubspaceTest {
     /// ln of the likelihood ratio. Where the level is unknown, each likelihood is its mean over all levels, ln s uniform:
     /// θ = (ν + 1)/2 ln [(ν + T²)/(ν + (T − γ)²)].
     ///
-    /// Implements: NUI-007, NUI-009.
+    /// Implements: NUI-007.
     pub fn theta(&self) -> f64 {
         let SubspaceTest { t, gamma, .. } = *self;
         match self.degrees {
@@ -370,7 +370,7 @@ impl SubspaceTest {
     /// # Errors
     /// A threshold that is not finite.
     ///
-    /// Implements: NUI-011, NUI-014.
+    /// Implements: NUI-014.
     pub fn rates(&self, threshold: Threshold) -> Result<ErrorRates, DetectError> {
         let [false_alarm, miss] = match threshold {
             Threshold::Never => [0.0, 1.0],
@@ -391,7 +391,7 @@ impl SubspaceTest {
     /// # Errors
     /// None but for a T or bias of no law.
     ///
-    /// Implements: NUI-015.
+    /// Implements: NUI-014.
     pub fn opposite(&self) -> Result<f64, DetectError> {
         self.noise_above(-self.t - self.bias)
     }

@@ -39,7 +39,7 @@ impl<'a> Scan<'a> {
     /// An empty or non-finite template, one that is longer than the record, or whose channels
     /// differ in length; `noise_sd` not positive and finite.
     ///
-    /// Implements: DET-005, DET-006, DET-007, DET-050.
+    /// Implements: DET-005, DET-050.
     pub fn new(
         samples: usize,
         template: Force<&'a [f64]>,
@@ -58,14 +58,14 @@ impl<'a> Scan<'a> {
 
     /// The shifts at which at least one sample overlaps, −(M−1) … N−1.
     ///
-    /// Implements: DET-051.
+    /// Implements: DET-050.
     pub fn shifts(&self) -> RangeInclusive<isize> {
         1 - self.template.lateral.len() as isize..=self.samples as isize - 1
     }
 
     /// The shifts at which the whole template lies in the record, 0 … N−M.
     ///
-    /// Implements: DET-051.
+    /// Implements: DET-050.
     pub fn full_shifts(&self) -> RangeInclusive<isize> {
         0..=(self.samples - self.template.lateral.len()) as isize
     }

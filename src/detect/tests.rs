@@ -15,7 +15,7 @@ fn filter() -> MatchedFilter<'static> {
     MatchedFilter::new(TEMPLATE, NOISE_SD).unwrap()
 }
 
-// Verifies: DET-010, DET-011, DET-013.
+// Verifies: DET-013.
 #[test]
 fn filter_has_the_expected_signal_and_noise() {
     let filter = filter();
@@ -26,7 +26,7 @@ fn filter_has_the_expected_signal_and_noise() {
     assert_ulps(filter.gamma(), 6.824045193444496, 4.0);
 }
 
-// Verifies: DET-012, DET-015.
+// Verifies: DET-015.
 #[test]
 fn statistic_of_a_residual() {
     let statistic = filter().statistic(RESIDUAL).unwrap();
@@ -35,7 +35,7 @@ fn statistic_of_a_residual() {
     assert_ulps(statistic.theta, 13.890037913082843, 8.0);
 }
 
-// Verifies: DET-012, DET-013, DET-015.
+// Verifies: DET-015, DET-013.
 #[test]
 fn statistic_of_a_record() {
     let found = theta_of_record(
@@ -182,7 +182,7 @@ fn units_of_any_size_give_the_same_gamma_and_theta() {
     assert_eq!(filter.gamma(), 2.0);
 }
 
-// Verifies: DET-012.
+// Verifies: DET-015.
 #[test]
 fn channel_without_signal_contributes_nothing() {
     let filter = MatchedFilter::new(Force::new(&[0.0, 0.0], &[3.0, 4.0]), Force::new(1e-9, 1.0));
@@ -194,7 +194,7 @@ fn channel_without_signal_contributes_nothing() {
     assert_eq!(filter.gamma(), 5.0);
 }
 
-// Verifies: DET-005, DET-006, DET-007.
+// Verifies: DET-005.
 #[test]
 fn records_that_cannot_be_judged_are_refused() {
     let samples = [1.0, 2.0];
@@ -270,7 +270,7 @@ fn threshold_of_largest_posterior() {
     }
 }
 
-// Verifies: DET-023.
+// Verifies: DET-022.
 #[test]
 fn threshold_of_least_cost() {
     let costs = costs(1.0, 500.0, 20.0, 5.0);
@@ -280,7 +280,7 @@ fn threshold_of_least_cost() {
     assert_eq!(bayes_threshold(0.02, ZERO_ONE), map_threshold(0.02));
 }
 
-// Verifies: DET-023.
+// Verifies: DET-022.
 #[test]
 fn a_bayes_threshold_is_accurate_for_costs_almost_equal_and_far_apart() {
     let threshold =
@@ -294,7 +294,7 @@ fn a_bayes_threshold_is_accurate_for_costs_almost_equal_and_far_apart() {
     assert_near(threshold(1e-310, 1.0), -713.8013788281543, 1e-12);
 }
 
-// Verifies: DET-024, DET-025.
+// Verifies: DET-022, DET-025.
 #[test]
 fn thresholds_of_neyman_and_pearson() {
     let by_miss = neyman_pearson_miss_threshold(2.5, 0.05).unwrap();
@@ -332,7 +332,7 @@ fn rates_of_error_at_a_threshold() {
     }
 }
 
-// Verifies: DET-027, DET-028.
+// Verifies: DET-027.
 #[test]
 fn operating_characteristic() {
     for (gamma, false_alarm, miss) in [
@@ -355,7 +355,7 @@ fn operating_characteristic() {
     }
 }
 
-// Verifies: DET-029, DET-030.
+// Verifies: DET-027.
 #[test]
 fn signal_to_noise_ratio_for_given_rates() {
     for (rate, gamma) in [(0.05, 3.2897072539029453), (0.001, 4.7350859331192865)] {
@@ -394,7 +394,7 @@ fn the_threshold_itself_decides_for_an_inclusion() {
     }
 }
 
-// Verifies: DET-005, DET-006, DET-008.
+// Verifies: DET-005, DET-008.
 #[test]
 fn questions_without_a_finite_answer_are_refused() {
     for p in [0.0, 1.0, -0.1, 1.5, f64::NAN] {

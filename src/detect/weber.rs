@@ -30,7 +30,7 @@ impl WeberNoise {
 /// # Errors
 /// Empty or unequal lengths; NaN or infinity; floor ≤ 0 or fraction < 0; overflow.
 ///
-/// Implements: DET-005, DET-007, DET-080, DET-081.
+/// Implements: DET-005, DET-080.
 pub fn theta_weber(
     observed: Force<&[f64]>,
     f0: Force<&[f64]>,

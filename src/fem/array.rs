@@ -9,7 +9,7 @@ impl Model {
     /// The force on an edge at the surface is spread evenly over the edge's deformed length: the forces of its two contact
     /// points swing against each other, their sum does not. What lies beyond an end of the array counts to its last element.
     ///
-    /// Implements: FEM-083, FEM-084.
+    /// Implements: FEM-083.
     pub fn array(&self, solution: &PoseSolution, elements: usize) -> Vec<f64> {
         let (pose, state) = (solution.pose, &solution.state);
         let (mesh, radius) = (self.mesh(), self.phantom().probe.radius);
@@ -38,7 +38,7 @@ impl Model {
     /// # Errors
     /// As [`Model::solve`].
     ///
-    /// Implements: FEM-085.
+    /// Implements: FEM-014.
     pub fn array_sweep(
         &self,
         depth: f64,

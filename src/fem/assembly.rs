@@ -37,7 +37,7 @@ impl StiffnessMatrix {
     /// # Errors
     /// [`FemError::Refused`] if an element is turned inside out; [`FemError::OutOfMemory`].
     ///
-    /// Implements: FEM-081, CON-005.
+    /// Implements: FEM-080, CON-004.
     pub fn assemble(mesh: &Mesh, phantom: &Phantom) -> Result<StiffnessMatrix, FemError> {
         let mut unknown = vec![[HELD; 2]; mesh.nodes.len()];
         let mut unknowns = 0;

@@ -61,7 +61,7 @@ pub fn certified_map(
 ///
 /// ε₃₂/ε₂₁ = r₂₁ᵖ (r₃₂ᵖ − 1)/(r₂₁ᵖ − 1), which grows with p, by bisection.
 ///
-/// Implements: FEM-027.
+/// Implements: FEM-026.
 pub(super) fn observed_order([fine, middle, coarse]: [f64; 3]) -> Option<f64> {
     let ratio = (coarse - middle) / (middle - fine);
     let of_order = |p: f64| {
@@ -80,7 +80,7 @@ pub(super) fn observed_order([fine, middle, coarse]: [f64; 3]) -> Option<f64> {
 
 /// The band around the finest of three forces, finest first, N.
 ///
-/// Implements: FEM-027.
+/// Implements: FEM-026.
 pub(crate) fn band(forces: [f64; 3]) -> f64 {
     let [fine, middle, coarse] = forces;
     let error = |change: f64, order: f64| change / (libm::pow(MESH_RATIOS[0], order) - 1.0);

@@ -39,7 +39,7 @@ fn scratch(request: faer::dyn_stack::StackReq) -> Result<MemBuffer, FemError> {
 impl Factor {
     /// Factorises the stiffness matrix.
     ///
-    /// Implements: FEM-006, FEM-037.
+    /// Implements: FEM-006, FEM-017.
     ///
     /// # Errors
     /// [`FemError::Refused`] if it is not positive definite in double precision, [`FemError::OutOfMemory`].

@@ -85,7 +85,7 @@ type Direction = fn(&Constraint) -> Vector2<f64>;
 
 /// The surface of a phantom, ready for contact.
 ///
-/// Implements: FEM-009, FEM-023, FEM-032.
+/// Implements: FEM-009, FEM-014.
 #[derive(Debug, Clone)]
 pub struct Surface {
     /// Undeformed position of each contact point from left to right, m.
@@ -262,7 +262,7 @@ impl Surface {
     /// # Errors
     /// [`FemError::NoConvergence`], which names the pose.
     ///
-    /// Implements: FEM-009, FEM-010, FEM-011, FEM-060.
+    /// Implements: FEM-009, FEM-011, FEM-060.
     pub fn solve(&self, pose: Pose, start: &ContactState) -> Result<ContactState, FemError> {
         let failed = |iterations| FemError::NoConvergence { pose, iterations };
         let mut state = start.clone();
@@ -481,7 +481,7 @@ impl Surface {
     /// Force on the probe, N: that on the gel reversed, or, for the vertical gap, the
     /// pressure on the circle's slope, so that F = −∂U/∂(x, y) of the probe in both cases.
     ///
-    /// Implements: FEM-012, FEM-057, FEM-059, CON-004.
+    /// Implements: FEM-012, FEM-050, FEM-059, CON-004.
     pub(super) fn probe_force(&self, state: &ContactState, pose: Pose) -> Force<f64> {
         let mut total = Force::default();
         for (i, [x, y]) in self.forces(state, pose) {

@@ -15,7 +15,7 @@ pub type PerNode = SMatrix<f64, 2, NODES>;
 /// Stiffness of one element per metre of thickness, Pa: `[(2a + i, 2b + j)]` couples direction i of node a with
 /// direction j of node b. Exactly symmetric.
 ///
-/// Implements: FEM-005, FEM-050, FEM-051, FEM-052, FEM-053, FEM-058.
+/// Implements: FEM-005, FEM-050.
 pub type Stiffness = SMatrix<f64, { 2 * NODES }, { 2 * NODES }>;
 
 /// The points at which strains and stresses are sampled, in parent coordinates: where they are most accurate.
@@ -70,7 +70,7 @@ pub(super) fn lame(material: &Material) -> (f64, f64) {
 /// Cauchy stress (σ_xx, σ_yy, σ_zz, σ_xy), Pa, in plane strain from a displacement gradient
 /// `gradient[i][j] = ∂u_i/∂x_j`.
 ///
-/// Implements: FEM-050, FEM-054, FEM-055, FEM-056.
+/// Implements: FEM-050.
 pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
     let (lambda, mu) = lame(material);
     let pressure = lambda * (gradient[0][0] + gradient[1][1]);

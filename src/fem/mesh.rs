@@ -31,7 +31,7 @@ impl Region {
 
 /// Nodes, elements and regions of one phantom.
 ///
-/// Implements: FEM-001, FEM-002, FEM-003, FEM-004, CON-003.
+/// Implements: FEM-014, FEM-002, FEM-004, CON-003.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {
     /// Undeformed position of each node, m.
@@ -59,7 +59,7 @@ impl Mesh {
     /// [`FemError::Refused`] if the size is not positive and finite, if the mesh would have more than 500 000 nodes, and if a
     /// triangle comes out too flat.
     ///
-    /// Implements: FEM-018.
+    /// Implements: FEM-017.
     pub fn new(phantom: &Phantom, size: f64) -> Result<Mesh, FemError> {
         let (field, _) = Mesh::forecast(phantom, size)?;
         let mut symmetric = phantom.is_symmetric();
@@ -160,7 +160,7 @@ impl Mesh {
         }
     }
 
-    /// Implements: FEM-035.
+    /// Implements: FEM-004.
     fn find_borders(&mut self, phantom: &Phantom) {
         let wall = 0.5 * phantom.well.width;
         let floor = phantom.levels()[phantom.layers.len()];

@@ -45,7 +45,7 @@ pub use size::MESH_SIZE;
 
 /// Which class of processors has the same bits of every force as this one.
 ///
-/// Implements: CON-008, CON-009, CON-010.
+/// Implements: CON-008, CON-010.
 pub fn arithmetic() -> &'static str {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {

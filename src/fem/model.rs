@@ -114,7 +114,7 @@ impl Model {
     /// # Errors
     /// [`FemError::Pose`] where the probe cannot stand, [`FemError::NoConvergence`].
     ///
-    /// Implements: FEM-019, FEM-020, FEM-021, FEM-025, FEM-039, FEM-080.
+    /// Implements: PHA-011, FEM-020, FEM-021, FEM-080.
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
         self.check_pose(pose)?;
         // Where the phantom is symmetric the right half stands for both, so that mirrored poses have mirrored forces to the bit.
@@ -242,7 +242,7 @@ impl Model {
     /// positions are the mirror images of positive ones. `solved` is told after each lateral position how
     /// many poses that were.
     ///
-    /// Implements: FEM-014, FEM-015, FEM-038, FEM-061.
+    /// Implements: FEM-014, FEM-013, FEM-038, FEM-060.
     ///
     /// # Errors
     /// As [`Model::solve`], and [`FemError::Residual`], [`FemError::Refused`].
@@ -263,7 +263,7 @@ impl Model {
     /// # Errors
     /// As [`Model::map`]; [`FemError::Stopped`].
     ///
-    /// Implements: PYT-011.
+    /// Implements: PYT-010.
     pub fn map_while(
         &self,
         depths: &[f64],

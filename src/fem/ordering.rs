@@ -15,7 +15,7 @@ const ORDERED: u32 = u32::MAX;
 
 /// The nodes below the surface in the order of elimination.
 ///
-/// Implements: FEM-006, FEM-034.
+/// Implements: FEM-006.
 pub fn dissection(mesh: &Mesh) -> Vec<usize> {
     let centre = |nodes: &[u32]| {
         let corners = mesh.positions(&nodes[..CORNERS]);

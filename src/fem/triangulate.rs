@@ -40,7 +40,7 @@ const STEPS: [usize; 2] = [16, 256];
 
 /// The smallest angle that a triangle's corners may make, degrees.
 ///
-/// Implements: FEM-033.
+/// Implements: FEM-017.
 pub const SMALLEST_ANGLE: f64 = 25.0;
 
 /// A piece of a line: the numbers of its ends, the line, and where on it they stand.
@@ -75,7 +75,7 @@ pub struct Triangulation<'a> {
 impl Triangulation<'_> {
     /// Triangulates a valid phantom.
     ///
-    /// Implements: FEM-030, FEM-033.
+    /// Implements: FEM-002, FEM-017.
     pub fn new<'a>(
         phantom: &Phantom,
         size: &'a SizeField,

@@ -45,7 +45,7 @@ pub struct Certificate {
     pub min_det: Matrix,
     /// How far each force may be from that of an infinitely fine mesh; `None` where it was not estimated.
     ///
-    /// Implements: MAP-050.
+    /// Implements: MAP-006.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub discretization: Option<Discretization>,
 }
@@ -111,7 +111,7 @@ impl SmallestDet {
 impl Certificate {
     /// Whether every number is finite and possible, and the matrices belong to these axes (m).
     ///
-    /// Implements: MAP-006, MAP-007, MAP-051.
+    /// Implements: MAP-006, MAP-002.
     pub(super) fn check(&self, depths: &[f64], laterals: &[f64]) -> Result<(), Refusal> {
         for (key, value) in [
             ("worst_relative_residual", self.worst_relative_residual),

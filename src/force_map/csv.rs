@@ -35,7 +35,7 @@ impl ForceMap {
     /// The header does not name each of the four columns once, a row is malformed, a pose is missing or there twice, or the forces
     /// make no map (see [`ForceMap::new`]); with the file, and the line where there is one.
     ///
-    /// Implements: MAP-026, MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-037, MAP-038.
+    /// Implements: MAP-026, MAP-030, MAP-032, MAP-033, MAP-037, MAP-041.
     pub fn from_csv(
         text: &str,
         file: &str,
@@ -51,7 +51,7 @@ impl ForceMap {
 impl ForceTable {
     /// This table as CSV, row by row, lengths in mm and forces in N.
     ///
-    /// Implements: MAP-030, MAP-036.
+    /// Implements: MAP-030, MAP-022.
     pub fn to_csv(&self) -> String {
         let columns = COLUMNS.map(|names| names[0][0]);
         let mut text = columns.map(|(name, _)| name).join(",") + "\n";
@@ -71,7 +71,7 @@ impl ForceTable {
     /// # Errors
     /// As [`ForceMap::from_csv`].
     ///
-    /// Implements: MAP-030, MAP-031, MAP-032, MAP-033, MAP-034, MAP-035, MAP-038.
+    /// Implements: MAP-030, MAP-032, MAP-033, MAP-041.
     pub fn from_csv(text: &str, file: &str) -> Result<ForceTable, Refusal> {
         Ok(ForceTable::from_csv_with_notes(text, file)?.0)
     }
@@ -108,7 +108,7 @@ impl ForceTable {
 ///
 /// The poses are compared one by one, never laid out: n rows can span n² of them.
 ///
-/// Implements: MAP-033, MAP-034, MAP-037.
+/// Implements: MAP-033, MAP-037.
 fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>) -> Result<ForceTable, Refusal> {
     for (_, [depth, lateral, ..]) in &mut rows {
         // Adding 0 makes −0 the same position as 0.

@@ -60,7 +60,7 @@ impl ForceTable {
     /// # Errors
     /// A pose that is not finite; an axis with a single entry; a force beyond the range of f64.
     ///
-    /// Implements: MAP-060, MAP-061, MAP-062.
+    /// Implements: MAP-060, MAP-061.
     pub fn force(&self, depth: f64, lateral: f64) -> Result<Force<f64>, Refusal> {
         for (key, value) in [("depth", depth), ("lateral position", lateral)] {
             if !value.is_finite() {
@@ -92,7 +92,7 @@ impl ForceTable {
     /// # Errors
     /// A depth or position outside the table: nothing is extrapolated.
     ///
-    /// Implements: TRC-021, TRC-022, TRC-023, TRC-024.
+    /// Implements: TRC-021, TRC-024.
     pub fn sweep(&self, depth: f64, positions: &[f64]) -> Result<Force<Vec<f64>>, Refusal> {
         let place = |name: &str, axis: &[f64], position: f64| {
             let place = Place::locate(axis, position, Beyond::Nothing);
@@ -118,7 +118,7 @@ impl ForceTable {
 /// least two entries each, increasing; as many as the matrix has rows and columns), by that of the
 /// nearest border cell, continued. `None` if it is beyond the range of f64.
 ///
-/// Implements: MAP-060, MAP-062.
+/// Implements: MAP-060, MAP-061.
 pub(crate) fn interpolate(
     depths: &[f64],
     laterals: &[f64],
@@ -182,7 +182,7 @@ mod tests {
         }
     }
 
-    // Verifies: MAP-061, MAP-062.
+    // Verifies: MAP-061.
     #[test]
     fn poses_and_tables_without_an_answer_are_refused() {
         let table = table();
@@ -227,7 +227,7 @@ mod tests {
         -40.0 * x + 7e4 * depth * x
     }
 
-    // Verifies: TRC-022, TRC-023.
+    // Verifies: TRC-021.
     #[test]
     fn between_poses_forces_are_bilinear() {
         let positions = [0.0021, -0.0013, 0.0002, 0.0, 0.003];
@@ -240,7 +240,7 @@ mod tests {
         }
     }
 
-    // Verifies: TRC-021, TRC-023.
+    // Verifies: TRC-021.
     #[test]
     fn at_poses_forces_are_those_of_the_map_to_the_bit() {
         let table = poses();

@@ -57,7 +57,7 @@ struct Header {
 impl ForceMap {
     /// This map as JSON, each row of a matrix on one line.
     ///
-    /// Implements: MAP-020, MAP-021, MAP-022.
+    /// Implements: MAP-020, MAP-022.
     pub fn to_json(&self) -> String {
         to_json(self)
     }
@@ -69,7 +69,7 @@ impl ForceMap {
     /// in a number's place, or makes a map that [`ForceMap::new`] or [`ForceTable::new`] refuses; with the file, and the line
     /// where there is one.
     ///
-    /// Implements: MAP-020, MAP-023, MAP-024, MAP-025, MAP-026, MAP-037.
+    /// Implements: MAP-020, MAP-024, MAP-002, MAP-026, MAP-037.
     pub fn from_json(text: &str, file: &str) -> Result<ForceMap, Refusal> {
         read(text).map_err(|refusal| refusal.in_file(file))
     }
@@ -195,7 +195,7 @@ pub(crate) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Refusal> {
 
 /// Lays JSON out with one key a line, and one matrix row a line.
 ///
-/// Implements: MAP-021.
+/// Implements: MAP-020.
 #[derive(Default)]
 struct RowPerLine {
     /// Open objects and outer arrays, two spaces each.

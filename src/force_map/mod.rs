@@ -129,7 +129,7 @@ impl Measurement {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Implements: MAP-001, MAP-008.
+/// Implements: MAP-001, MAP-002.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(into = "json::Document", try_from = "json::Document")]
 pub struct ForceMap {
@@ -154,7 +154,7 @@ impl ForceMap {
     /// The phantom is missing for a computed map, is not valid, or does not let the probe stand at one of the poses; the
     /// certificate does not fit the forces; the half-width of a smoothing is not above 0.
     ///
-    /// Implements: MAP-006, MAP-007, MAP-008, MAP-074.
+    /// Implements: MAP-006, MAP-002, MAP-074.
     pub fn new(
         source: Source,
         phantom: Option<Phantom>,
@@ -205,7 +205,7 @@ impl ForceMap {
     /// # Errors
     /// Bands of another shape than the forces, not finite or negative.
     ///
-    /// Implements: MAP-050, MAP-051.
+    /// Implements: MAP-006, MAP-002.
     pub fn with_discretization(
         mut self,
         discretization: Discretization,
@@ -291,7 +291,7 @@ impl ForceMap {
     /// # Errors
     /// No phantom; one with an inclusion that is not the mirror image of itself but for its place.
     ///
-    /// Implements: MAP-017.
+    /// Implements: MAP-009.
     pub fn mirror_image(&self) -> Result<ForceMap, Refusal> {
         let phantom = self.phantom.as_ref().and_then(Phantom::mirror_image);
         let phantom = phantom.ok_or_else(|| {
@@ -317,7 +317,7 @@ impl ForceMap {
     /// # Errors
     /// A position that the map does not hold.
     ///
-    /// Implements: MAP-016.
+    /// Implements: MAP-012.
     pub fn at_laterals(&self, laterals: &[f64]) -> Result<ForceMap, Refusal> {
         if laterals == self.laterals() {
             return Ok(self.clone());

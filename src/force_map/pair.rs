@@ -39,7 +39,7 @@ impl<'a> Hypotheses<'a> {
     /// # Errors
     /// The first key whose values differ, with both; maps over other poses.
     ///
-    /// Implements: MAP-053, MAP-054.
+    /// Implements: MAP-053.
     pub fn new(without: &'a ForceMap, with: &'a ForceMap) -> Result<Hypotheses<'a>, Refusal> {
         check_gel(without, with)?;
         Hypotheses::of_tables(without.table(), with.table())

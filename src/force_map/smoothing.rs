@@ -79,7 +79,7 @@ impl ForceTable {
     /// # Errors
     /// A half-width that is not above 0, or with fewer than four positions in a window; forces that are not finite.
     ///
-    /// Implements: MAP-070, MAP-071, MAP-072, MAP-073.
+    /// Implements: MAP-070, MAP-071, MAP-073.
     pub fn smoothed(&self, half_width: f64) -> Result<Smoothed, Refusal> {
         if !(half_width > 0.0 && half_width.is_finite()) {
             let expected = "a finite number of metres above 0";
@@ -129,7 +129,7 @@ mod tests {
         (0..count).map(|at| at as f64 * 0.5e-3 - 2e-3).collect()
     }
 
-    // Verifies: MAP-070, MAP-072.
+    // Verifies: MAP-070.
     #[test]
     fn with_equal_steps_it_is_the_filter_of_savitzky_and_golay() {
         // By the tables of Savitzky and Golay (1964) and, at the ends, of Gorry (1990): (−3, 12, 17, 12, −3), (31, 9, −3, −5, 3) and

@@ -13,13 +13,13 @@ use crate::refusal::Refusal;
 /// Axes come from decimal text and from sums of steps, which differ in the last bits; no stage of a
 /// probe resolves a nanometre.
 ///
-/// Implements: MAP-004.
+/// Implements: MAP-002.
 pub const SAME_POSITION: f64 = 1e-9;
 
 /// The largest lateral force at x = 0, N, that counts as the zero that symmetry demands: what
 /// rounding leaves of a force of some newtons.
 ///
-/// Implements: MAP-010.
+/// Implements: MAP-009.
 pub const SYMMETRY_TOLERANCE: f64 = 1e-9;
 
 /// A dense matrix, row-major. Rows belong to depths, columns to lateral positions.
@@ -133,7 +133,7 @@ impl TryFrom<Vec<Vec<f64>>> for Matrix {
 
     /// From rows of one length.
     ///
-    /// Implements: MAP-003, MAP-024.
+    /// Implements: MAP-002, MAP-024.
     fn try_from(rows: Vec<Vec<f64>>) -> Result<Matrix, String> {
         let columns = rows.first().map_or(0, Vec::len);
         if let Some(row) = rows.iter().position(|row| row.len() != columns) {
@@ -163,7 +163,7 @@ impl ForceTable {
     /// [`Refusal`] if an axis is empty, not finite or does not increase, a depth is negative, a matrix has another shape than the
     /// axes, or a force is not finite. Keys are those of the JSON file; rows and columns count from 0.
     ///
-    /// Implements: MAP-001, MAP-002, MAP-003, MAP-004, MAP-005, MAP-013, CON-007.
+    /// Implements: MAP-001, MAP-002, MAP-026, CON-007.
     pub fn new(
         mut depths: Vec<f64>,
         mut laterals: Vec<f64>,
@@ -209,7 +209,7 @@ impl ForceTable {
     /// # Errors
     /// No stored depth lies within [`SAME_POSITION`] of `depth`.
     ///
-    /// Implements: MAP-012, MAP-015.
+    /// Implements: MAP-012.
     pub fn row(&self, depth: f64) -> Result<Force<&[f64]>, Refusal> {
         let row = place_of("depth", &self.depths, depth)?;
         Ok(self.forces.as_ref().map(|force| force.row(row)))
@@ -221,7 +221,7 @@ impl ForceTable {
     /// # Errors
     /// The two are not over the same poses; a difference is not finite.
     ///
-    /// Implements: MAP-011, MAP-014.
+    /// Implements: MAP-011.
     pub fn minus(&self, reference: &ForceTable) -> Result<ForceTable, Refusal> {
         check_same_poses(self, reference)?;
         let forces = self.forces.as_ref().zip(reference.forces.as_ref());
@@ -239,7 +239,7 @@ impl ForceTable {
     /// The first lateral position is not 0; a lateral force at x = 0, which symmetry makes zero, is
     /// more than [`SYMMETRY_TOLERANCE`].
     ///
-    /// Implements: MAP-009, MAP-010.
+    /// Implements: MAP-009.
     pub fn mirrored(&self) -> Result<ForceTable, Refusal> {
         if self.laterals[0] != 0.0 {
             let expected = "0 in a map to be extended by symmetry";

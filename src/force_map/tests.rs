@@ -81,7 +81,7 @@ fn rows_are_depths_and_columns_lateral_positions() {
     assert_eq!(Matrix::new(0, vec![0.0; 3]), None);
 }
 
-// Verifies: MAP-002, MAP-004, MAP-013.
+// Verifies: MAP-002, MAP-026.
 #[test]
 fn bad_axes_are_refused() {
     let cases = "
@@ -106,7 +106,7 @@ fn bad_axes_are_refused() {
     assert!(axes(&[0.0], &[-f64::MAX, f64::MAX]).is_ok());
 }
 
-// Verifies: MAP-003, MAP-005, MAP-013, CON-007.
+// Verifies: MAP-002, MAP-026, CON-007.
 #[test]
 fn bad_matrices_are_refused() {
     let good = Matrix::from_fn(2, 3, |_, _| 0.0);
@@ -128,7 +128,7 @@ fn bad_matrices_are_refused() {
     }
 }
 
-// Verifies: MAP-006, MAP-007, MAP-013.
+// Verifies: MAP-006, MAP-026.
 #[test]
 fn a_certificate_is_checked_number_by_number() {
     assert_eq!(computed(|_| ()).map(|_| ()), Ok(()));
@@ -159,7 +159,7 @@ fn a_certificate_is_checked_number_by_number() {
     assert_eq!(message, expected);
 }
 
-// Verifies: MAP-007.
+// Verifies: MAP-006.
 #[test]
 fn the_smallest_determinant_is_the_matrixs_own() {
     assert_eq!(
@@ -180,7 +180,7 @@ fn the_smallest_determinant_is_the_matrixs_own() {
     assert_eq!(of(&[[1.0, f64::NAN, 1.0], [2.0; 3]]), None);
 }
 
-// Verifies: MAP-008.
+// Verifies: MAP-002.
 #[test]
 fn a_map_fits_its_phantom() {
     let certificate = computed(|_| ()).unwrap().certificate().unwrap().clone();
@@ -216,7 +216,7 @@ fn symmetry_extends_a_map_to_negative_positions() {
     assert_eq!(map.phantom().unwrap().name, "2.6");
 }
 
-// Verifies: MAP-009, MAP-010.
+// Verifies: MAP-009.
 #[test]
 fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
     let with = |force: f64| {
@@ -240,7 +240,7 @@ fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
     );
 }
 
-// Verifies: MAP-010.
+// Verifies: MAP-009.
 #[test]
 fn only_a_map_from_zero_on_is_extended() {
     let message = refusal(axes(&[0.0], &[0.001, 0.002]).unwrap().mirrored());
@@ -251,14 +251,14 @@ fn only_a_map_from_zero_on_is_extended() {
     assert_eq!(alone.laterals(), [0.0]);
 }
 
-// Verifies: MAP-004, MAP-036.
+// Verifies: MAP-002, MAP-022.
 #[test]
 fn minus_zero_is_no_position_of_its_own() {
     let table = axes(&[-0.0], &[-0.0, 0.001]).unwrap();
     assert!(table.depths()[0].is_sign_positive() && table.laterals()[0].is_sign_positive());
 }
 
-// Verifies: MAP-011, MAP-014.
+// Verifies: MAP-011.
 #[test]
 fn a_signal_is_the_map_minus_its_reference() {
     let map = computed(|_| ()).unwrap();
@@ -276,7 +276,7 @@ fn a_signal_is_the_map_minus_its_reference() {
     assert_eq!(signal.forces().lateral, map.forces().lateral);
 }
 
-// Verifies: MAP-005, MAP-013, MAP-014.
+// Verifies: MAP-002, MAP-026, MAP-011.
 #[test]
 fn a_signal_needs_equal_axes() {
     let shifted = axes(&[0.0, 0.001], &[0.0, 0.002, 0.005 + 1.1e-9]).unwrap();
@@ -299,7 +299,7 @@ fn a_signal_needs_equal_axes() {
     assert_eq!(message, expected);
 }
 
-// Verifies: MAP-012, MAP-015.
+// Verifies: MAP-012.
 #[test]
 fn forces_at_a_stored_depth() {
     let table = table();
@@ -370,7 +370,7 @@ fn discretization() -> Discretization {
     }
 }
 
-// Verifies: MAP-050, MAP-051.
+// Verifies: MAP-006, MAP-002.
 #[test]
 fn bands_belong_to_the_poses_and_are_finite() {
     let map = computed(|_| ()).unwrap();
@@ -397,7 +397,7 @@ fn bands_belong_to_the_poses_and_are_finite() {
     assert!(error.starts_with(expected), "{error}");
 }
 
-// Verifies: MAP-016.
+// Verifies: MAP-012.
 #[test]
 fn a_map_cut_to_some_positions_keeps_their_columns() {
     let map = computed(|_| ()).unwrap();
@@ -456,7 +456,7 @@ fn bands_follow_their_forces_and_survive_the_file() {
     assert!(!text.contains("discretization"));
 }
 
-// Verifies: MAP-053, MAP-054.
+// Verifies: MAP-053.
 #[test]
 fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
     let map = |change: &dyn Fn(&mut Phantom)| {

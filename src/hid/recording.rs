@@ -132,7 +132,7 @@ impl Recording {
     /// # Errors
     /// The line that cannot be read, what stands there, and what would be right.
     ///
-    /// Implements: HID-050, HID-051.
+    /// Implements: HID-050.
     pub fn parse(text: &str) -> Result<Recording, Refusal> {
         let mut lines = (1..).zip(text.lines());
         let (at, first) = lines.next().unwrap_or((1, ""));
@@ -156,7 +156,7 @@ impl Recording {
     /// The first cycle with another force report; cycles after those that end the session; a device
     /// that [`Session::begin`] refuses.
     ///
-    /// Implements: HID-052, HID-056.
+    /// Implements: HID-052.
     pub fn replay(&self, table: Table) -> Result<usize, Refusal> {
         let mut session = Session::begin(Recorded::new(self), table, self.limits)?;
         let recorded = self.cycles.len();

@@ -42,7 +42,7 @@ pub mod status {
 
 /// Input report 1: where the handle is.
 ///
-/// Implements: HID-002, HID-006, HID-007.
+/// Implements: HID-002, HID-006.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
@@ -63,7 +63,7 @@ pub struct PositionReport {
 
 /// Output report 2: what to play.
 ///
-/// Implements: HID-003, HID-006, HID-007.
+/// Implements: HID-002, HID-006.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
@@ -80,7 +80,7 @@ pub struct ForceReport {
 
 /// Feature report 3: what the device is.
 ///
-/// Implements: HID-004, HID-006, HID-007.
+/// Implements: HID-002, HID-006.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "std", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "std", serde(deny_unknown_fields))]
@@ -256,7 +256,7 @@ impl Control {
     /// # Errors
     /// [`InvalidReport`] for another length, number or value.
     ///
-    /// Implements: HID-005, HID-006.
+    /// Implements: HID-002, HID-006.
     pub fn decode(bytes: &[u8]) -> Result<Control, InvalidReport> {
         match *payload(bytes, Control::NUMBER)? {
             [0] => Ok(Control::Stop),
@@ -268,7 +268,7 @@ impl Control {
 
     /// The bytes of the report.
     ///
-    /// Implements: HID-005, HID-007.
+    /// Implements: HID-002, HID-006.
     pub fn encode(&self) -> [u8; Control::LENGTH] {
         [Control::NUMBER, *self as u8]
     }

@@ -246,7 +246,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
 
     /// Reads, steps the kernel, writes.
     ///
-    /// Implements: HID-013, HID-015.
+    /// Implements: HID-013.
     fn play(&mut self, request: Request) -> Result<Cycle, DeviceError> {
         let (position, woke) = self.newest()?;
         let received = self.device.now();
@@ -277,7 +277,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     /// was over. Garbage ends the wait, since a cycle must not last. Counts the cycle, the reports that it
     /// passed over, and those that never came.
     ///
-    /// Implements: HID-013, HID-014.
+    /// Implements: HID-013.
     fn newest(&mut self) -> Result<(Option<PositionReport>, Duration), DeviceError> {
         let (mut newest, mut passed_over) = (None, 0);
         let mut received = self.device.read(2 * self.capabilities.period())?;
@@ -306,7 +306,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     /// Cycles until `each` says that it is enough (`false`), a fault has released the force, or the
     /// device fails; then stops the device. Arms once, as soon as the kernel allows.
     ///
-    /// Implements: HID-016, HID-019, HID-024, HID-026, HID-085, HID-087, HID-088, HID-092.
+    /// Implements: HID-016, HID-019, HID-024, HID-025, HID-085, HID-089.
     pub fn run(&mut self, mut each: impl FnMut(&Cycle, &Counters) -> bool) -> End {
         let mut ask = false;
         let end = loop {
@@ -339,7 +339,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
     /// # Errors
     /// The first [`DeviceError`].
     ///
-    /// Implements: HID-016, HID-025, HID-029, HID-090.
+    /// Implements: HID-016, HID-025, HID-085.
     pub fn stop(&mut self) -> Result<(), DeviceError> {
         if self.stage == Stage::Stopped {
             return Ok(());
@@ -385,7 +385,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
 impl<D: HapticDevice> Drop for Session<'_, D> {
     /// Stops the device, also when a panic unwinds the loop.
     ///
-    /// Implements: HID-090.
+    /// Implements: HID-085.
     fn drop(&mut self) {
         // Nobody is left to be told.
         let _ = self.stop();

@@ -103,7 +103,7 @@ fn the_descriptor_is_that_of_the_vendor_profile() {
     assert!(bytes.eq(DESCRIPTOR));
 }
 
-// Verifies: HID-002, HID-003, HID-004, HID-007.
+// Verifies: HID-002, HID-006.
 #[test]
 fn a_report_has_its_bytes_in_order() {
     let position = PositionReport {
@@ -143,7 +143,7 @@ const DEVICE: Capabilities = Capabilities {
     friction_mn: 140,
 };
 
-// Verifies: HID-005, HID-006.
+// Verifies: HID-002, HID-006.
 #[test]
 fn control_has_three_values() {
     let controls = [Control::Stop, Control::Enable, Control::ClearFault];
@@ -188,7 +188,7 @@ fn a_device_without_units_is_refused() {
     }
 }
 
-// Verifies: HID-009, HID-010.
+// Verifies: HID-010.
 #[test]
 fn counts_are_micrometres_and_half_millinewtons_here() {
     let units = Units::new(&DEVICE).unwrap();

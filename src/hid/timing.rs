@@ -202,7 +202,7 @@ impl Times {
 /// # Errors
 /// Why the session did not begin, or ended before the cycles were through; fewer cycles than the budget needs.
 ///
-/// Implements: HID-060, HID-061, HID-063, HID-064, HID-084.
+/// Implements: HID-060, HID-064, HID-083.
 pub fn measure<D: HapticDevice>(
     device: D,
     table: Table,

@@ -69,7 +69,7 @@ impl Units {
     /// # Errors
     /// [`InvalidCapabilities`].
     ///
-    /// Implements: HID-008, HID-028.
+    /// Implements: HID-008.
     pub fn new(capabilities: &Capabilities) -> Result<Units, InvalidCapabilities> {
         let units = [capabilities.position_unit_nm, capabilities.force_unit_un];
         let [reach, largest] = [
@@ -87,7 +87,7 @@ impl Units {
 
     /// What a position report says, in metres: the depth is the normal position turned over.
     ///
-    /// Implements: HID-009.
+    /// Implements: HID-010.
     pub fn sample(&self, report: &PositionReport) -> Sample {
         Sample {
             sequence: report.sequence,
@@ -117,7 +117,7 @@ impl Units {
 /// are the whole number in two's complement: no conversion from floating point is needed, whose
 /// edge cases checkers model differently.
 ///
-/// Implements: HID-011, SRV-061.
+/// Implements: HID-011, SRV-001.
 #[inline]
 pub fn count(value: f32) -> i16 {
     const ROUND: f32 = 12_582_912.0;

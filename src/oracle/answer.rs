@@ -27,7 +27,7 @@ impl Answer {
 
     /// This answer, if all its numbers are finite.
     ///
-    /// Implements: ORA-010, ORA-022.
+    /// Implements: ORA-009, ORA-008.
     pub fn finite(self) -> Result<Answer, Refused> {
         fn is_finite(value: &Value) -> bool {
             match value {

@@ -42,7 +42,7 @@ impl<'a> Arguments<'a> {
 
     /// Whether the op knows all the arguments: `known` are their names, with a space between them.
     ///
-    /// Implements: ORA-005.
+    /// Implements: ORA-008.
     pub fn check_known(&self, op: &str, known: &str) -> Result<(), Refused> {
         let knows = |name: &str| known.split(' ').any(|known| known == name);
         self.check(knows, || match known {
@@ -124,7 +124,7 @@ impl<'a> Arguments<'a> {
 
     /// The f32 whose bits are given, NaN and infinities included.
     ///
-    /// Implements: ORA-023.
+    /// Implements: ORA-009.
     pub fn bits(&mut self, name: &'static str) -> Result<f32, Refused> {
         let Bits(value) = read(name, self.text_of(name, "a text", "a text")?)?;
         Ok(value)

@@ -47,7 +47,7 @@ pub struct Oracle {
 impl Oracle {
     /// Answers one line, without its end, and appends the answer's line to `out`.
     ///
-    /// Implements: ORA-001, ORA-004, ORA-006, ORA-012, ACC-030.
+    /// Implements: ORA-001, ORA-004, ORA-012, ACC-030.
     pub fn answer(&mut self, line: &[u8], out: &mut Vec<u8>) {
         match Query::parse(line) {
             Ok(request) => answer::write(request.id, &self.perform(&request), out),

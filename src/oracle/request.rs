@@ -91,7 +91,7 @@ impl<'a> Query<'a> {
     /// # Errors
     /// The id, if there is one, and what is wrong.
     ///
-    /// Implements: ORA-004, ORA-005, ORA-008.
+    /// Implements: ORA-004, ORA-008.
     pub fn parse(line: &'a [u8]) -> Result<Query<'a>, (Option<&'a str>, Refused)> {
         let bad_json = |message: fmt::Arguments| (None, Refused::new(Code::BadJson, message));
         let text = str::from_utf8(line)

@@ -18,7 +18,7 @@ const CHUNK: usize = 64 << 10;
 /// # Errors
 /// What the system said of input or output, a reader who is gone (`BrokenPipe`) included.
 ///
-/// Implements: ORA-001, ORA-003, ORA-007.
+/// Implements: ORA-001, ORA-007.
 pub fn serve(input: impl Read, mut output: impl Write) -> io::Result<()> {
     let mut oracle = Oracle::default();
     let mut input = BufReader::with_capacity(CHUNK, input);

@@ -40,7 +40,7 @@ impl Write for Shared<'_> {
     }
 }
 
-// Verifies: ORA-001, ORA-003.
+// Verifies: ORA-001.
 #[test]
 fn lines_are_found_however_the_input_is_cut() {
     let mut input = String::new();
@@ -64,7 +64,7 @@ fn lines_are_found_however_the_input_is_cut() {
     }
 }
 
-// Verifies: ORA-005.
+// Verifies: ORA-008.
 #[test]
 fn the_registry_names_the_arguments_that_the_ops_ask_for() {
     for op in ops::OPS {
@@ -83,7 +83,7 @@ fn the_registry_names_the_arguments_that_the_ops_ask_for() {
     }
 }
 
-// Verifies: ORA-006. A walk through what a line may be: cut, doubled, with bytes changed.
+// Verifies: ORA-001. A walk through what a line may be: cut, doubled, with bytes changed.
 #[test]
 fn damaged_lines_have_one_answer_each() {
     let line = br#"{"id":"a\u00e9","op":"theta_colored","args":{"residual":[1,-2e-3],"template":[1,1],"covariance":[[1,0.5],[0.5,2]]}}"#;

@@ -51,7 +51,7 @@ impl Phantom {
     /// The text is not TOML, has an unknown key, lacks one, has a value of another type, or makes a phantom that
     /// [`Phantom::validate`] refuses; with the file, and the line where there is one.
     ///
-    /// Implements: PHA-020, PHA-021, PHA-022, PHA-023, PHA-024, PHA-025, PHA-026, PHA-028, PHA-037, PHA-038, PHA-039.
+    /// Implements: PHA-020, PHA-021, PHA-026, PHA-037.
     pub fn from_toml(text: &str, file: &str) -> Result<Phantom, Refusal> {
         let document = DeTable::parse(text).map_err(|error| {
             let at = error.span().map_or(text.len(), |span| span.start);

@@ -11,7 +11,7 @@ use crate::refusal::Refusal;
 /// The least distance, m, between the outline of an inclusion and its layer's top and bottom, the walls, other outlines, and
 /// parts of the same outline: no mesh of sound elements fits in less.
 ///
-/// Implements: PHA-006, PHA-031, PHA-034, PHA-035.
+/// Implements: PHA-006.
 pub const CLEARANCE: f64 = 1e-4;
 
 /// Allowed lengths, m. The upper end catches a length in the wrong unit, the lower one a layer that no mesh resolves.
@@ -38,8 +38,7 @@ impl Phantom {
     /// # Errors
     /// The first offending key of the phantom file, its value and what is allowed, both in the unit of the file.
     ///
-    /// Implements: PHA-003, PHA-004, PHA-005, PHA-006, PHA-007, PHA-009, PHA-010, PHA-015, PHA-018, PHA-030, PHA-031, PHA-032,
-    /// PHA-033, PHA-034, PHA-035, PHA-036, CON-007.
+    /// Implements: PHA-004, PHA-006, PHA-009, PHA-015, PHA-030, CON-007.
     pub fn validate(&self) -> Check {
         check_name("name", &self.name)?;
         within("well.width_mm", self.well.width, LENGTHS, "")?;

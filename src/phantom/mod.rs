@@ -155,7 +155,7 @@ impl Phantom {
     /// # Errors
     /// Any other name, with the list.
     ///
-    /// Implements: PHA-001, PHA-002, PHA-014.
+    /// Implements: PHA-001.
     pub fn builtin(name: &str) -> Result<Phantom, Refusal> {
         if !BUILTIN_NAMES.contains(&name) {
             let found = format!("no phantom named {name:?} is built in");

@@ -10,7 +10,7 @@ impl Probe {
     /// Half the width, m, of the probe in the plane of the undeformed surface when its lowest point
     /// lies `depth` (m, ≥ 0) below that plane.
     ///
-    /// Implements: PHA-012.
+    /// Implements: PHA-011.
     pub fn half_width_at(&self, depth: f64) -> f64 {
         let depth = depth.min(self.radius);
         // √(R² − (R−d)²) without its cancellation.
@@ -24,7 +24,7 @@ impl Phantom {
     /// # Errors
     /// The coordinate in mm, its value and what is allowed.
     ///
-    /// Implements: PHA-011, PHA-012, PHA-013, FEM-019.
+    /// Implements: PHA-011, PHA-009.
     pub fn check_pose(&self, depth: f64, lateral: f64) -> Result<(), Refusal> {
         let why = " (the height of the layers)";
         within("depth_mm", depth, 0.0..self.height(), why)?;

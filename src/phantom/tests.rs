@@ -85,7 +85,7 @@ fn refuses(shapes: &[(f64, f64, Shape)], expected: &str) {
     assert_eq!(shape_refusal(shapes), format!("inclusion{expected}"));
 }
 
-// Verifies: PHA-001, PHA-002, CON-001.
+// Verifies: PHA-001, CON-001.
 #[test]
 fn built_in_phantoms_are_the_papers() {
     assert_eq!(BUILTIN_NAMES, ["none", "2.6", "4.6", "6.6", "8.6"]);
@@ -122,7 +122,7 @@ fn built_in_phantoms_are_the_papers() {
     }
 }
 
-// Verifies: PHA-014.
+// Verifies: PHA-001.
 #[test]
 fn other_names_are_refused_with_the_list() {
     let message = Phantom::builtin("2.60").unwrap_err().to_string();
@@ -171,7 +171,7 @@ const NUMBERS: [(&str, Number); 14] = [
     ("probe.length_mm", |p| &mut p.probe.length),
 ];
 
-// Verifies: PHA-003, PHA-004, PHA-005, PHA-009, CON-007.
+// Verifies: PHA-004, PHA-009, CON-007.
 #[test]
 fn numbers_that_are_not_finite_or_no_sizes_are_refused_by_key() {
     for (key, number) in NUMBERS {
@@ -188,7 +188,7 @@ fn numbers_that_are_not_finite_or_no_sizes_are_refused_by_key() {
     }
 }
 
-// Verifies: PHA-004, PHA-005, PHA-007, PHA-009.
+// Verifies: PHA-004, PHA-009.
 #[test]
 fn messages_give_value_and_range_in_the_files_unit() {
     let narrower = "(the probe must be narrower than the well)";
@@ -220,7 +220,7 @@ fn messages_give_value_and_range_in_the_files_unit() {
     }
 }
 
-// Verifies: PHA-004, PHA-005, PHA-007.
+// Verifies: PHA-004.
 #[test]
 fn the_ends_of_the_ranges_are_where_the_spec_says() {
     let valid = |change: &dyn Fn(&mut Phantom)| changed(change).validate().is_ok();
@@ -235,7 +235,7 @@ fn the_ends_of_the_ranges_are_where_the_spec_says() {
     assert!(length(1.0) && !length(1.000_001));
 }
 
-// Verifies: PHA-018, PHA-009.
+// Verifies: PHA-004, PHA-009.
 #[test]
 fn there_are_some_layers_and_not_too_many() {
     let layers = |count| {
@@ -350,7 +350,7 @@ fn the_clearance_is_in_the_message() {
     );
 }
 
-// Verifies: PHA-015, PHA-031.
+// Verifies: PHA-015, PHA-006.
 #[test]
 fn discs_that_overlap_or_touch_are_refused() {
     // 3-4-5: centres 5 mm apart, and 4.9 mm are 2.4 + 2.5.
@@ -375,7 +375,7 @@ fn discs_that_overlap_or_touch_are_refused() {
     ]));
 }
 
-// Verifies: PHA-031.
+// Verifies: PHA-006.
 #[test]
 fn shapes_that_overlap_or_enclose_one_another_are_refused() {
     let overlap =
@@ -411,7 +411,7 @@ fn shapes_that_overlap_or_enclose_one_another_are_refused() {
     assert!(message.starts_with(beginning), "{message}");
 }
 
-// Verifies: PHA-032, PHA-009.
+// Verifies: PHA-004, PHA-009.
 #[test]
 fn ellipses_are_neither_slivers_nor_turned_too_far() {
     let of = |[width, height, angle]: [f64; 3]| [(0.0, 4.0, ellipse(width, height, angle))];
@@ -448,7 +448,7 @@ fn ellipses_are_neither_slivers_nor_turned_too_far() {
     assert!(message.starts_with("inclusion[0].angle_deg = NaN, expected "));
 }
 
-// Verifies: PHA-003, PHA-033.
+// Verifies: PHA-004.
 #[test]
 fn polygons_have_three_to_a_thousand_finite_corners() {
     let refusal = |points: &[[f64; 2]]| shape_refusal(&[(0.0, 4.0, polygon(points))]);
@@ -468,7 +468,7 @@ fn polygons_have_three_to_a_thousand_finite_corners() {
     );
 }
 
-// Verifies: PHA-015, PHA-034, PHA-035, PHA-036.
+// Verifies: PHA-015, PHA-006.
 #[test]
 fn polygons_that_no_mesh_follows_are_refused() {
     // Corners, and under them what follows `points_mm` in the refusal, or its beginning.
@@ -523,7 +523,7 @@ fn polygons_that_no_mesh_follows_are_refused() {
     }
 }
 
-// Verifies: PHA-010.
+// Verifies: PHA-004.
 #[test]
 fn names_that_break_a_table_are_refused() {
     let named = |name: &str| changed(|p| p.name = name.into()).validate().is_ok();
@@ -598,7 +598,7 @@ fn mirror_images_are_found_and_their_absence_too() {
     assert!(!phantom.is_symmetric());
 }
 
-// Verifies: PHA-011, PHA-013.
+// Verifies: PHA-011, PHA-009.
 #[test]
 fn depths_outside_the_gel_are_refused() {
     let phantom = paper();
@@ -618,7 +618,7 @@ fn depths_outside_the_gel_are_refused() {
     }
 }
 
-// Verifies: PHA-012, PHA-013.
+// Verifies: PHA-011, PHA-009.
 #[test]
 fn a_probe_that_reaches_a_wall_is_refused() {
     let phantom = paper();
@@ -713,7 +713,7 @@ fn scaled_decimals_are_the_nearest_floats() {
     }
 }
 
-// Verifies: PHA-003, PHA-020, PHA-024.
+// Verifies: PHA-004, PHA-020, PHA-026.
 #[test]
 fn what_is_no_finite_decimal_is_no_number() {
     let texts =

@@ -46,7 +46,7 @@ pub struct BetaBinomial {
 /// # Errors
 /// Never for counts that fit their trials.
 ///
-/// Implements: PSY-032, PSY-033.
+/// Implements: PSY-032.
 pub fn beta_binomial(counts: &[(u32, u32)]) -> Result<Option<BetaBinomial>> {
     let likelihood = Likelihood::new(counts);
     if counts.len() < 2 || likelihood.right.is_empty() || likelihood.wrong.is_empty() {

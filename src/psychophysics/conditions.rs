@@ -55,7 +55,7 @@ pub struct Difference {
 /// # Errors
 /// Never for counts that fit their trials.
 ///
-/// Implements: PSY-050, PSY-051, PSY-052.
+/// Implements: PSY-050.
 pub fn comparisons(table: &AnswerTable) -> Result<Vec<ConditionComparison>> {
     let conditions = table.conditions();
     let mut found = Vec::new();
@@ -110,7 +110,7 @@ fn compare(
     }))
 }
 
-/// Implements: PSY-051.
+/// Implements: PSY-050.
 fn difference(differences: &[f64]) -> Result<Difference> {
     let count = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / count;
@@ -155,7 +155,7 @@ pub fn sign_flip(differences: &[f64]) -> Option<f64> {
 
 /// Holm's correction: the k-th smallest of n p-values times n − k + 1, made increasing, at most 1.
 ///
-/// Implements: PSY-052.
+/// Implements: PSY-050.
 fn holm(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
     let known = p_values.iter().enumerate();
     let mut order: Vec<(usize, f64)> = known.filter_map(|(at, p)| Some((at, (*p)?))).collect();

@@ -95,7 +95,7 @@ impl Overdispersion {
 
     /// The p-value of a deviance by the F law; `None` without degrees of freedom.
     ///
-    /// Implements: PSY-043.
+    /// Implements: PSY-042.
     pub fn p_value(self, deviance: f64, degrees: u32) -> Result<Option<f64>> {
         if degrees == 0 {
             return Ok(None);

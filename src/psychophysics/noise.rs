@@ -123,7 +123,7 @@ const SUMS: [(&str, Option<f64>, &[f64], &str); 3] = [
 /// # Errors
 /// Never for the paper's own numbers.
 ///
-/// Implements: PSY-061, PSY-062, ERR-008, ERR-009.
+/// Implements: PSY-061, ERR-008, ERR-009.
 pub fn paper_noise_levels() -> Result<NoiseDecomposition> {
     let printed = NoiseLevel {
         name: "answers to FEM playback at 6.6 mm, as printed",
@@ -175,7 +175,7 @@ fn millinewtons(force: f64) -> f64 {
     libm::round(force * 1e4) / 10.0
 }
 
-/// Implements: PSY-062.
+/// Implements: PSY-061.
 fn agreement(answers: &NoiseLevel, explained: f64) -> String {
     let said = |name: &str, bounds: Option<OpenBounds>| {
         let Some(OpenBounds { lower, upper }) = bounds else {

@@ -150,7 +150,7 @@ impl IdealObserver<'_> {
     /// # Errors
     /// As [`IdealObserver::theta`].
     ///
-    /// Implements: PSY-012, PSY-013.
+    /// Implements: PSY-011, PSY-013.
     pub fn choose(&self, first: &Felt, second: &Felt, pair: u64) -> Result<Interval, Refusal> {
         let (of_first, _) = self.theta(first, 2 * pair)?;
         let (of_second, _) = self.theta(second, 2 * pair + 1)?;

@@ -26,7 +26,7 @@ pub struct Trial {
 /// All pairs of a subject in random order: `trials` pairs for each of `inclusions`, each with the inclusion first or second as a
 /// fair coin has it.
 ///
-/// Implements: PSY-001, PSY-002.
+/// Implements: PSY-001.
 pub fn plan(seed: u64, inclusions: usize, trials: usize) -> Vec<Trial> {
     let generator = Generator::new(seed, STREAM);
     let trial = |number: usize| Trial {

@@ -57,7 +57,7 @@ pub struct Parameter {
 /// # Errors
 /// Never for counts that fit their trials.
 ///
-/// Implements: PSY-040, PSY-041, PSY-042, PSY-043.
+/// Implements: PSY-040, PSY-042.
 pub fn psychometric(
     inclusions: &[Column],
     condition: &Condition,

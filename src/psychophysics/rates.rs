@@ -62,7 +62,7 @@ pub struct GammaEstimate {
 impl GammaEstimate {
     /// The image of a share and of an interval for it: 0 below one half, `None` for 1.
     ///
-    /// Implements: PSY-024.
+    /// Implements: PSY-023.
     pub fn of(share: f64, bounds: Bounds) -> Result<GammaEstimate> {
         let gamma = |share: f64| match share {
             ..=0.5 => Ok(Some(0.0)),
@@ -85,7 +85,7 @@ impl Rate {
     /// # Errors
     /// No trials, or more right answers than trials.
     ///
-    /// Implements: PSY-023, PSY-024.
+    /// Implements: PSY-023.
     pub fn new(correct: u64, trials: u64) -> Result<Rate> {
         let exact = clopper_pearson(correct, trials, CONFIDENCE)?;
         let rate = correct as f64 / trials as f64;
@@ -131,7 +131,7 @@ pub struct Clustered {
 /// # Errors
 /// Never for counts that fit their trials.
 ///
-/// Implements: PSY-025.
+/// Implements: PSY-023.
 pub fn clustered(counts: &[(u32, u32)], pooled: &Rate) -> Result<Option<Clustered>> {
     let subjects = counts.len() as f64;
     let squares = counts.iter().map(|&(k, n)| {

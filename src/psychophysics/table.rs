@@ -69,7 +69,7 @@ pub struct Condition {
 /// Right answers of subjects to inclusions under conditions. Every count fits its trials, and there
 /// is at least one of each.
 ///
-/// Implements: PSY-020, PSY-021.
+/// Implements: PSY-020.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnswerTable {
     inclusions: Vec<Column>,
@@ -100,7 +100,7 @@ impl AnswerTable {
     /// # Errors
     /// The first line that is wrong.
     ///
-    /// Implements: PSY-020, PSY-021, PSY-022.
+    /// Implements: PSY-020.
     pub fn from_csv(text: &str, file: &str) -> Result<AnswerTable, Refusal> {
         let at = |line| move |refusal: Refusal| refusal.at(line).in_file(file);
         let ((header_line, header), rows) = header_and_rows(text);

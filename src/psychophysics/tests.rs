@@ -2,7 +2,7 @@
 
 use super::*;
 
-// Verifies: PSY-001, PSY-002.
+// Verifies: PSY-001.
 #[test]
 fn a_plan_is_balanced_mixed_and_drawn_from_its_seed() {
     let pairs = plan(7, 4, 30);
@@ -15,7 +15,7 @@ fn a_plan_is_balanced_mixed_and_drawn_from_its_seed() {
     assert!((0..8).any(|at| pairs[at].inclusion != at % 4));
 }
 
-// Verifies: PSY-001, PSY-002.
+// Verifies: PSY-001.
 #[test]
 fn every_order_and_every_side_comes_as_often_as_it_should() {
     // Three pairs of as many inclusions have 6 orders, and 8 patterns of sides.
@@ -88,7 +88,7 @@ mod observer {
     // as often as Figure 9 has it. Power: a rate of Φ(γ/2), as of a decision on one sample, is 7 to
     // 8 % lower at these γ, which an interval of ±4.9 standard deviations of at most 1.5 % sees in 4
     // cases of 5 or more, for each γ.
-    // Verifies: PSY-010, PSY-011, PSY-012, PSY-013.
+    // Verifies: PSY-010, PSY-011, PSY-013.
     #[test]
     fn the_ideal_observer_is_right_as_often_as_the_theory_says() {
         let (reference, inclusion) = (map(0.0), map(40.0));

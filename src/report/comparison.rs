@@ -83,7 +83,7 @@ struct Known<'a> {
 /// # Errors
 /// The detector's refusal, which the paper's own numbers never meet.
 ///
-/// Implements: REP-020, REP-072, REP-073.
+/// Implements: REP-020.
 pub fn table(
     level: Option<f64>,
     maps: &[MapFindings],

@@ -47,7 +47,7 @@ pub struct Findings {
 /// If a map is over other poses than the reference, a setting is outside its range, a signal overflows, a measured map was
 /// computed, or a study is of other phantoms or settings.
 ///
-/// Implements: REP-002, REP-003, REP-004, REP-006, REP-070, REP-080.
+/// Implements: REP-002, REP-003, REP-004, REP-070.
 pub fn findings(run: &Run) -> Result<Findings, Refusal> {
     let depths = run.reference.depths();
     let (probe_depth, is_quoted) = probe_depth(depths);

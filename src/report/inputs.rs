@@ -13,7 +13,7 @@ const NEARLY_ALL: f64 = 0.95;
 
 /// Refuses a study of other phantoms, poses or settings than those of the run.
 ///
-/// Implements: REP-080.
+/// Implements: REP-004.
 pub(super) fn check(run: &Run, depth: f64) -> Result<(), Refusal> {
     let Some(StudyResults { plan, .. }) = &run.study else {
         return Ok(());

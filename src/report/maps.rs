@@ -72,7 +72,7 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// Implements: REP-011.
+    /// Implements: REP-012.
     fn of(map: &ForceMap, signal: &[f64]) -> Peak {
         let (force_n, lateral_m) = peak(map.laterals(), signal);
         Peak { force_n, lateral_m }
@@ -133,7 +133,7 @@ pub(super) fn of_map(run: &Run, map: &ForceMap, depth: f64) -> Result<MapFinding
 
 /// What the detector makes of a map's signal.
 ///
-/// Implements: REP-012, REP-013.
+/// Implements: REP-012.
 fn judged(
     settings: &Settings,
     map: &ForceMap,

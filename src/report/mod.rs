@@ -216,7 +216,7 @@ pub struct Figure {
 
 /// The refusal of `what` for a reason.
 ///
-/// Implements: REP-004, REP-006.
+/// Implements: REP-004.
 fn refused<E: Display>(what: impl Display) -> impl FnOnce(E) -> Refusal {
     move |reason| Refusal::state(format!("{what}: {reason}"), "")
 }

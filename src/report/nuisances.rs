@@ -65,7 +65,7 @@ type Read = fn(Force<&[f64]>) -> Vec<f64>;
 impl GammaLeft {
     /// What is left of γ of `signal`, which a map adds to the reference of `run` at `depth`, a row of both.
     ///
-    /// Implements: REP-016, REP-017.
+    /// Implements: REP-016.
     pub(super) fn of(run: &Run, signal: Force<&[f64]>, depth: f64) -> Result<GammaLeft, Refusal> {
         let reference = &run.reference;
         let expected = |depth| Ok(reference.row(depth)?.map(<[f64]>::to_vec));

@@ -13,7 +13,7 @@ use crate::stats::normal;
 /// # Errors
 /// If a map is not over the poses of the reference.
 ///
-/// Implements: REP-071.
+/// Implements: REP-070.
 pub(super) fn bridge_to(
     table: &AnswerTable,
     run: &Run,
@@ -41,7 +41,7 @@ pub(super) fn width_ratios(people: &Analysis) -> Option<[f64; 2]> {
 /// The normal approximation to a 95 % interval of a share of `trials` answers, cut off at 0 and 1: what the paper's
 /// error bars come nearest to.
 ///
-/// Implements: REP-038.
+/// Implements: REP-030.
 pub(super) fn normal_approximation(share: f64, trials: u64) -> Bounds {
     // The quantile is defined at this probability.
     let quantile = normal::quantile(0.975).unwrap_or(f64::NAN);

@@ -66,7 +66,7 @@ impl ArrayFindings {
     /// What arrays make of a map whose total force has the `signal` at `depth`, a row of the map. `None` where the run holds no
     /// sweep of an array over these poses with the same probe for the map and for the reference.
     ///
-    /// Implements: REP-018, REP-019.
+    /// Implements: REP-018.
     pub(super) fn of(
         run: &Run,
         map: &ForceMap,

@@ -14,7 +14,7 @@ pub const SMALL_STRAIN_LIMIT: f64 = 0.2;
 
 /// The certificate of a computed map; in JSON without what it says of every pose.
 ///
-/// Implements: REP-044.
+/// Implements: REP-041.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quality {
     /// How good the computation was.
@@ -61,7 +61,7 @@ impl Serialize for Quality {
     }
 }
 
-/// Implements: REP-014, REP-015.
+/// Implements: REP-015.
 pub(super) fn warnings(quality: Option<&Quality>, gamma: f64) -> Vec<String> {
     let mut warnings = Vec::new();
     let smallest = quality.map(|quality| quality.certificate.smallest_det);

@@ -18,7 +18,7 @@ struct Summary<'a> {
 
 /// The findings as JSON, with every unit in its key; ends in a line feed.
 ///
-/// Implements: REP-050, REP-051, REP-005.
+/// Implements: REP-050, REP-005.
 pub fn summary_json(findings: &Findings, run: &Run) -> String {
     let summary = Summary {
         schema: "palpate-summary",

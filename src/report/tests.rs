@@ -38,7 +38,7 @@ fn settings_default_to_the_paper() {
     );
 }
 
-// Verifies: REP-011, REP-012, REP-013.
+// Verifies: REP-012.
 #[test]
 fn numbers_of_a_triangular_signal() {
     let found = findings(&paper_run()).unwrap();
@@ -74,7 +74,7 @@ fn assert_threshold(found: Threshold, expected: [f64; 3]) {
 }
 
 // Either threshold keeps its own bound: with γ² = 15.5, η = γ²/2 − γΦ⁻¹(0.9) and −γ²/2 + γΦ⁻¹(0.98).
-// Verifies: REP-013.
+// Verifies: REP-012.
 #[test]
 fn each_bound_has_its_own_threshold() {
     let mut run = paper_run();
@@ -87,7 +87,7 @@ fn each_bound_has_its_own_threshold() {
     assert_threshold(map.bounded_false_alarm.unwrap(), expected);
 }
 
-// Verifies: REP-011.
+// Verifies: REP-012.
 #[test]
 fn of_equal_peaks_the_one_nearest_to_the_middle_counts() {
     let ties = |x: f64| match x.abs() > 7e-3 {
@@ -124,7 +124,7 @@ fn number(value: Value) -> f64 {
     number
 }
 
-// Verifies: REP-020, REP-070, REP-072.
+// Verifies: REP-020, REP-070.
 #[test]
 fn every_number_of_the_paper_has_its_row() {
     let found = findings(&paper_run()).unwrap();
@@ -154,7 +154,7 @@ fn every_number_of_the_paper_has_its_row() {
 /// than a double at the least.
 // √(0.15² − 0.1²) and, with 0.5 N/3.28971 = 0.151989 N, √(0.151989² − 0.093²) N. The interval is 0.3 N over √2 Φ⁻¹ of 0.7415 and of 0.9452,
 // the ends with the subjects as the sample (scipy); of all answers pooled it would be 0.179 to 0.255 N.
-// Verifies: REP-020, REP-072.
+// Verifies: REP-020.
 #[test]
 fn the_reasons_hold_the_numbers_that_they_name() {
     let found = findings(&paper_run()).unwrap();
@@ -166,7 +166,7 @@ fn the_reasons_hold_the_numbers_that_they_name() {
     assert!(noise.contains("interval is 0.133 to 0.327 N"), "{noise}");
 }
 
-// Verifies: REP-073.
+// Verifies: REP-020.
 #[test]
 fn rates_are_predicted_with_one_noise_level_for_all_depths() {
     let found = findings(&paper_run()).unwrap();
@@ -190,7 +190,7 @@ fn rates_are_predicted_with_one_noise_level_for_all_depths() {
 }
 
 /// The expected ends are from mpmath.
-// Verifies: REP-038.
+// Verifies: REP-030.
 #[test]
 fn the_normal_approximation_has_its_ends() {
     let bounds = normal_approximation(253.0 / 300.0, 300);
@@ -211,7 +211,7 @@ fn table_1_gives_the_means_that_the_paper_prints() {
     }
 }
 
-// Verifies: REP-020, REP-070, REP-071.
+// Verifies: REP-020, REP-070.
 #[test]
 fn rows_without_their_phantom_are_left_out() {
     let mut run = paper_run();
@@ -300,7 +300,7 @@ fn at_4_mm_there_is_no_note_though_the_maps_go_deeper() {
     assert_eq!(found.probe_depth_note, None);
 }
 
-// Verifies: REP-013, REP-014.
+// Verifies: REP-012, REP-015.
 #[test]
 fn a_map_like_the_reference_cannot_be_detected() {
     let mut run = paper_run();

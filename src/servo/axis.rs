@@ -146,7 +146,7 @@ impl<'a> Axis<'a> {
     ///
     /// The index is found bit by bit, the highest first: as many comparisons for every position.
     ///
-    /// Implements: SRV-004, SRV-005, SRV-006, SRV-015.
+    /// Implements: SRV-004, SRV-015.
     #[inline]
     pub fn locate(&self, position: f32) -> Cell {
         let position = between(position, -FAR, FAR);

@@ -89,7 +89,7 @@ impl LoadedTable {
     /// # Errors
     /// Positions or forces that the kernel cannot hold, with row and column of the map, from 0; a force at the surface.
     ///
-    /// Implements: SRV-044, SRV-045, SRV-046, SRV-047.
+    /// Implements: SRV-044, SRV-047.
     pub fn new(map: &ForceTable) -> Result<LoadedTable, Refusal> {
         check_forces("lateral_force_n", &map.forces().lateral, map.depths())?;
         check_forces("normal_force_n", &map.forces().normal, map.depths())?;
@@ -193,7 +193,7 @@ impl LoadedTable {
 
     /// The worst of the bounds that the table breaks, beyond which the device would give energy out.
     ///
-    /// Implements: SRV-054, SRV-055, SRV-056.
+    /// Implements: SRV-051.
     fn excess(&self, damping: &Damping, limits: &Limits) -> Result<Option<Excess>, Refusal> {
         let expected = "period and resolution above 0, damping and friction at least 0, all finite";
         let no_device = || Refusal::state(format!("{damping:?}: expected {expected}"), "");

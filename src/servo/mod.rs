@@ -14,7 +14,7 @@
 //! What runs in a cycle is f32 without division, without allocation, without a conversion from floating point
 //! to integer and without a path to a panic; `proofs/` holds the evidence.
 //!
-//! Implements: SRV-001, SRV-061.
+//! Implements: SRV-001.
 
 mod axis;
 mod limit;

@@ -45,8 +45,7 @@ const NO_SAMPLE: Sample = Sample {
 /// # Ok::<(), palpate::servo::InvalidLimits>(())
 /// ```
 ///
-/// Implements: SRV-001, SRV-020, SRV-021, SRV-030, SRV-031, SRV-034, SRV-060, SRV-070, HID-024,
-/// SRV-041, SRV-062.
+/// Implements: SRV-001, SRV-020, SRV-021, SRV-030, SRV-031, SRV-060, SRV-070, HID-024, SRV-040.
 #[inline]
 pub fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (State, Command) {
     let sample = input.sample.unwrap_or(NO_SAMPLE);

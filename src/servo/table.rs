@@ -3,7 +3,7 @@
 use super::limit::between;
 use super::{Axis, Cell, Force};
 
-/// Largest magnitude of a component in a table, N (SRV-003).
+/// Largest magnitude of a component in a table, N (SRV-002).
 pub const TABLE_FORCE_LIMIT: f32 = 100.0;
 
 /// The force on the probe over depth and lateral position, at 1 kHz.
@@ -56,7 +56,7 @@ impl<'a> Table<'a> {
     /// # Errors
     /// [`InvalidTable`].
     ///
-    /// Implements: SRV-003, CON-007.
+    /// Implements: SRV-002, CON-007.
     pub fn new(
         depths: Axis<'a>,
         laterals: Axis<'a>,

@@ -30,7 +30,7 @@ fn with_table<R>(then: impl FnOnce(&Table) -> R) -> R {
     then(&Table::new(depths, laterals, &forces).unwrap())
 }
 
-// Verifies: SRV-005, SRV-006.
+// Verifies: SRV-004.
 #[test]
 fn a_position_lies_in_the_cell_that_encloses_it() {
     let axis = Axis::new(&LATERALS.0, &LATERALS.1).unwrap();
@@ -116,7 +116,7 @@ fn an_axis_is_refused_with_its_place() {
     }
 }
 
-// Verifies: SRV-003.
+// Verifies: SRV-002.
 #[test]
 fn a_table_is_refused_with_its_place() {
     let axis = Axis::new(&[0.0, 0.5], &[2.0]).unwrap();
@@ -236,7 +236,7 @@ impl Session {
     }
 }
 
-// Verifies: SRV-021, SRV-030, SRV-034.
+// Verifies: SRV-021, SRV-030.
 #[test]
 fn the_force_rises_by_the_slew_limit_and_falls_by_the_release_limit() {
     let mut session = Session::new();
@@ -395,7 +395,7 @@ fn cycles_without_a_sample_lower_the_force_and_trip_the_watchdog() {
     session.arm();
 }
 
-// Verifies: SRV-040, SRV-041.
+// Verifies: SRV-040.
 #[test]
 fn samples_that_repeat_or_go_back_are_stale_until_the_watchdog_trips() {
     for back in [0, 1, 5000, 32768] {
@@ -414,7 +414,7 @@ fn samples_that_repeat_or_go_back_are_stale_until_the_watchdog_trips() {
     assert!(session.hold(true).playing);
 }
 
-// Verifies: SRV-041.
+// Verifies: SRV-040.
 #[test]
 fn a_device_that_restarts_its_count_can_be_armed_again() {
     let mut session = Session::playing();

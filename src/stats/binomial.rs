@@ -62,7 +62,7 @@ pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError>
 /// # Errors
 /// No trials; more successes than trials; a confidence not strictly between 0 and 1.
 ///
-/// Implements: DET-121, ACC-013.
+/// Implements: DET-121, DET-001.
 pub fn clopper_pearson(
     successes: u64,
     trials: u64,
@@ -89,7 +89,7 @@ pub fn clopper_pearson(
 /// # Errors
 /// As [`clopper_pearson`].
 ///
-/// Implements: DET-122, ACC-013.
+/// Implements: DET-121, DET-001.
 pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Bounds, NumericError> {
     check(successes, trials)?;
     let tail = 0.5 * (1.0 - check_probability("confidence", confidence)?);

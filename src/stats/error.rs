@@ -4,7 +4,7 @@ use core::fmt;
 
 /// Why a numerical question is refused. A refusal is never an answer: no error of the detector means "no inclusion".
 ///
-/// Implements: DET-005, DET-006, DET-007, DET-123.
+/// Implements: DET-005.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum NumericError {

@@ -56,7 +56,7 @@ pub enum Tail {
 /// # Errors
 /// x outside 0 … 10¹⁵², degrees of freedom (any real number) outside 0.1 … 2·10⁶, a noncentrality outside 0 … 10⁸.
 ///
-/// Implements: DET-130, DET-133, DET-134, DET-135, DET-138.
+/// Implements: DET-130, DET-134, DET-005.
 pub fn chi_square(x: f64, degrees: f64, noncentrality: f64) -> Result<Tails, NumericError> {
     check_not_negative(x)?;
     check_degrees("degrees", degrees)?;
@@ -71,7 +71,7 @@ pub fn chi_square(x: f64, degrees: f64, noncentrality: f64) -> Result<Tails, Num
 /// # Errors
 /// As [`chi_square`].
 ///
-/// Implements: DET-131, DET-133, DET-134, DET-135, DET-138, PSY-030.
+/// Implements: DET-130, DET-134, DET-005, PSY-030.
 pub fn f_ratio(
     x: f64,
     numerator: f64,
@@ -92,7 +92,7 @@ pub fn f_ratio(
 /// # Errors
 /// x outside ±10¹⁵², degrees of freedom outside 0.1 … 2·10⁶, a noncentrality outside ±10⁴.
 ///
-/// Implements: DET-132, DET-133, DET-134, DET-135, DET-138.
+/// Implements: DET-130, DET-134, DET-005.
 pub fn student(x: f64, degrees: f64, noncentrality: f64) -> Result<Tails, NumericError> {
     within(-1e152..=1e152, "x", x, "from -1e152 to 1e152")?;
     check_degrees("degrees", degrees)?;
@@ -114,7 +114,7 @@ pub fn student(x: f64, degrees: f64, noncentrality: f64) -> Result<Tails, Numeri
 /// # Errors
 /// A probability not strictly between 0 and 1; degrees of freedom as in [`chi_square`].
 ///
-/// Implements: DET-136, DET-138.
+/// Implements: DET-136, DET-005.
 pub fn chi_square_point(tail: Tail, degrees: f64) -> Result<f64, NumericError> {
     let (Tail::Lower(probability) | Tail::Upper(probability)) = tail;
     check_probability("probability", probability)?;
@@ -132,7 +132,7 @@ pub fn chi_square_point(tail: Tail, degrees: f64) -> Result<f64, NumericError> {
 /// # Errors
 /// A probability not strictly between 0 and 1; degrees of freedom as in [`student`]; an x beyond 10¹⁵⁰.
 ///
-/// Implements: DET-137, DET-138, PSY-030.
+/// Implements: DET-136, DET-005, PSY-030.
 pub fn student_point(upper: f64, degrees: f64) -> Result<f64, NumericError> {
     check_probability("upper", upper)?;
     let size = crossing(ALL_BITS, |x| {

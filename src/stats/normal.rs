@@ -29,7 +29,7 @@ pub fn density(x: f64) -> Result<f64, NumericError> {
 /// # Errors
 /// x NaN or infinite.
 ///
-/// Implements: DET-001, DET-002, ACC-001.
+/// Implements: DET-001.
 pub fn cdf(x: f64) -> Result<f64, NumericError> {
     check_finite("x", x).map(lower_tail)
 }
@@ -39,7 +39,7 @@ pub fn cdf(x: f64) -> Result<f64, NumericError> {
 /// # Errors
 /// x NaN or infinite.
 ///
-/// Implements: DET-001, DET-002, ACC-001.
+/// Implements: DET-001.
 pub fn upper_tail(x: f64) -> Result<f64, NumericError> {
     check_finite("x", x).map(|x| lower_tail(-x))
 }
@@ -52,7 +52,7 @@ pub fn upper_tail(x: f64) -> Result<f64, NumericError> {
 /// # Errors
 /// p not strictly between 0 and 1.
 ///
-/// Implements: DET-003, DET-004, ACC-002.
+/// Implements: DET-001, DET-005.
 pub fn quantile(p: f64) -> Result<f64, NumericError> {
     quantile_of("p", p)
 }

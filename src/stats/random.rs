@@ -23,7 +23,7 @@ const BATCH: usize = 64;
 /// assert!(deviates.iter().all(|deviate| deviate.abs() < 5.0));
 /// ```
 ///
-/// Implements: DET-110, DET-111, DET-112.
+/// Implements: DET-110, DET-111.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Generator {
     key: [u64; 2],

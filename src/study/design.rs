@@ -13,11 +13,11 @@ const SEQUENCE: u32 = 1 << 16;
 pub const MOST_INPUTS: usize = sobol_burley::NUM_DIMENSIONS as usize / 2;
 /// Meshes on which the medians are solved.
 ///
-/// Implements: STU-023.
+/// Implements: STU-021.
 const MESHES: usize = MESH_RATIOS.len() + 1;
 /// The probabilities between which the slope of a quantity is taken.
 ///
-/// Implements: STU-022.
+/// Implements: STU-021.
 pub const BESIDE_MEDIAN: [f64; 2] = [0.25, 0.75];
 
 /// How two inputs go together: the correlation of their normal scores, which is that of the inputs where both are normal.
@@ -193,7 +193,7 @@ impl Design {
 
     /// The probability of each input in the sample with a number: its value is the quantile.
     ///
-    /// Implements: STU-012, STU-020, STU-022.
+    /// Implements: STU-012, STU-020, STU-021.
     pub fn probabilities(&self, index: usize) -> Vec<f64> {
         let mut point = vec![0.5; self.inputs];
         match self.role(index) {

@@ -42,7 +42,7 @@ fn entry<'a>(table: &'a mut Table, key: &str) -> Option<&'a mut Value> {
 /// # Errors
 /// A phantom that [`Phantom::validate`] refuses.
 ///
-/// Implements: STU-002, STU-003.
+/// Implements: STU-001.
 pub fn phantom(table: &Table, inputs: &[Input], values: &[f64]) -> Result<Phantom, Refusal> {
     let mut table = table.clone();
     for (input, &value) in inputs.iter().zip(values) {

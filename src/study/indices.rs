@@ -7,7 +7,7 @@ use crate::stats::random::Generator;
 
 /// Resamples of the rows, for the intervals.
 ///
-/// Implements: STU-042.
+/// Implements: STU-040.
 const RESAMPLES: u64 = 400;
 /// The resamples left out at each end of an interval of 95 %.
 const LEFT_OUT: usize = 10;
@@ -62,7 +62,7 @@ pub struct Rows<'a> {
 /// # Ok::<(), &str>(())
 /// ```
 ///
-/// Implements: STU-040, STU-041, STU-042.
+/// Implements: STU-040.
 pub fn indices(rows: Rows<'_>, seed: u64) -> Option<Vec<Index>> {
     let count = rows.first.len();
     let found = estimates(rows, 0..count)?;

@@ -76,7 +76,7 @@ impl Change {
 
 /// An input that is not known exactly.
 ///
-/// Implements: STU-001, STU-002.
+/// Implements: STU-001.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Input {
@@ -150,7 +150,7 @@ impl StudyPlan {
     /// Phantoms of which two have the same name; an input without a name of its own, a source, or a key that the study or one of the
     /// phantoms has; a distribution that does not exist; rates that cannot be kept; as [`Design::new`].
     ///
-    /// Implements: STU-002, STU-004, STU-011.
+    /// Implements: STU-001, STU-011.
     pub fn design(&self) -> Result<Design, Refusal> {
         self.required_gamma()?;
         map_threshold(self.prior_h1)?;

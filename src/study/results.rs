@@ -156,7 +156,7 @@ impl StudyResults {
     /// # Errors
     /// Those of `columns`.
     ///
-    /// Implements: STU-040, STU-043, STU-044, STU-045, STU-046, STU-047, STU-050.
+    /// Implements: STU-040, STU-043, STU-032, STU-050.
     pub fn new<E: From<Refusal>>(
         sampler: &Sampler<'_>,
         failures: &[Failure],
@@ -263,7 +263,7 @@ impl Column<'_> {
         Ok((result, whole.len()))
     }
 
-    /// Implements: STU-044.
+    /// Implements: STU-043.
     fn slope(&self, input: usize) -> Option<Slope> {
         let [below, above] = [0, 1].map(|side| self.at(Role::Slope(input, side)));
         let of = &self.sampler.plan().inputs[input];
@@ -278,7 +278,7 @@ impl Column<'_> {
         })
     }
 
-    /// Implements: STU-046.
+    /// Implements: STU-043.
     fn conclusion(&self, quantity: &Quantity) -> Result<Option<Conclusion>, Refusal> {
         let (limit, at_least) = match quantity.kind {
             Kind::Gamma => (self.sampler.plan().required_gamma()?, true),

@@ -272,7 +272,7 @@ impl<'a> Sampler<'a> {
 
 /// The phantoms whose names are columns of the paper's Table 1: their places and names.
 ///
-/// Implements: STU-033.
+/// Implements: STU-031.
 fn compared<'a>(plan: &'a StudyPlan, answers: &AnswerTable) -> Vec<(usize, &'a str)> {
     let phantoms = plan.phantoms.iter().enumerate();
     let is_column = |name: &str| answers.inclusions().iter().any(|of| of.name == name);
@@ -280,7 +280,7 @@ fn compared<'a>(plan: &'a StudyPlan, answers: &AnswerTable) -> Vec<(usize, &'a s
     compared.map(|(at, phantom)| (at, &*phantom.name)).collect()
 }
 
-/// Implements: STU-031, STU-033.
+/// Implements: STU-031.
 fn quantities(plan: &StudyPlan, answers: &AnswerTable) -> Vec<Quantity> {
     let mut quantities = Vec::new();
     let mut push = |phantom: &str, kind: Kind| {

@@ -46,7 +46,7 @@ fn assert_indices(found: &[Index], expected: &[[f64; 2]]) {
     }
 }
 
-// Verifies: STU-020, STU-040, STU-041, STU-042.
+// Verifies: STU-020, STU-040.
 #[test]
 fn the_indices_of_ishigamis_function_are_its_closed_form() {
     let (a, b) = (7.0, 0.1);
@@ -65,7 +65,7 @@ fn the_indices_of_ishigamis_function_are_its_closed_form() {
     }
 }
 
-// Verifies: STU-040, STU-041.
+// Verifies: STU-040.
 #[test]
 fn the_indices_of_the_g_function_are_its_closed_form() {
     let a = [0.0, 1.0, 4.5, 9.0, 99.0, 99.0];
@@ -84,7 +84,7 @@ fn the_indices_of_the_g_function_are_its_closed_form() {
     }
 }
 
-// Verifies: STU-042.
+// Verifies: STU-040.
 #[test]
 fn a_quantity_that_does_not_vary_has_no_indices() {
     let (same, mixed) = ([3.0; 5], vec![vec![3.0; 5]]);
@@ -302,7 +302,7 @@ pub fn results(plan: &StudyPlan, count: usize) -> StudyResults {
     StudyResults::new(&sampler, &failures, columns).unwrap()
 }
 
-// Verifies: STU-003, STU-022, STU-030, STU-044, STU-045.
+// Verifies: STU-001, STU-021, STU-030, STU-043.
 #[test]
 fn slopes_are_those_of_another_program() {
     // Narrower, since forces rise steeply to 0.5.
@@ -354,7 +354,7 @@ fn slopes_are_those_of_another_program() {
     );
 }
 
-// Verifies: STU-023, STU-030.
+// Verifies: STU-021, STU-030.
 #[test]
 fn the_medians_are_solved_on_three_meshes() {
     let mut plan = plan(vec![near("E", "layer[1].youngs_modulus_kpa", 4.0)]);
@@ -371,7 +371,7 @@ fn the_medians_are_solved_on_three_meshes() {
     }
 }
 
-// Verifies: STU-031, STU-032, STU-046, STU-047.
+// Verifies: STU-031, STU-032, STU-043.
 #[test]
 fn failures_are_counted_and_conclusions_have_their_share() {
     // Above 0.4995 there is no phantom: a quarter of the draws.
@@ -407,7 +407,7 @@ fn failures_are_counted_and_conclusions_have_their_share() {
     assert!((noise.at_medians.unwrap() - at * 0.02 / conclusion.limit).abs() < 1e-12);
 }
 
-// Verifies: STU-002, STU-004, STU-011.
+// Verifies: STU-001, STU-011.
 #[test]
 fn inputs_that_make_no_study_are_refused_with_their_key() {
     let refused = |change: &dyn Fn(&mut Input)| {
@@ -460,7 +460,7 @@ fn inputs_that_make_no_study_are_refused_with_their_key() {
     }
 }
 
-// Verifies: STU-003.
+// Verifies: STU-001.
 #[test]
 fn a_value_replaces_is_added_or_multiplies() {
     let table = edit::table(&Phantom::builtin("6.6").unwrap()).unwrap();

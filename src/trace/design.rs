@@ -197,7 +197,7 @@ impl Design {
 
     /// Σ F_p F_0 / Σ F_0² of whitened parts; none if its standard deviation is above 0.1.
     ///
-    /// Implements: TRC-074.
+    /// Implements: TRC-070.
     pub fn level(&self) -> Option<f64> {
         let (reference, residual) = (stacked(&self.reference), stacked(&self.residual));
         let square = squares(&reference);
@@ -243,7 +243,7 @@ pub(crate) fn difference(a: Force<&[f64]>, b: Force<&[f64]>) -> Series {
 /// # Errors
 /// A map of one depth where the depth is unknown; a depth that `expected` refuses.
 ///
-/// Implements: TRC-061, TRC-062, TRC-063.
+/// Implements: TRC-060.
 pub fn nuisances(
     unknown: &[Unknown],
     depths: &[f64],
@@ -280,7 +280,7 @@ pub fn nuisances(
 
 /// ∂F/∂d at the samples, N/m, between the `depths` on either side of `depth`; none if there is no other.
 ///
-/// Implements: TRC-063.
+/// Implements: TRC-060.
 fn depth_slope(
     depths: &[f64],
     depth: f64,

@@ -98,7 +98,7 @@ impl fmt::Display for Cause {
 impl Fit {
     /// How well `white`, the parts of `record` over the standard deviations `noise_sd`, fits.
     ///
-    /// Implements: TRC-070, TRC-071, TRC-072, TRC-073.
+    /// Implements: TRC-070, TRC-072.
     pub(crate) fn new(
         question: &Question<'_>,
         white: &Design,
@@ -155,7 +155,7 @@ impl Fit {
 
     /// Why the record cannot be judged, the likeliest cause first; none if it can.
     ///
-    /// Implements: TRC-074, TRC-075.
+    /// Implements: TRC-070, TRC-075.
     pub(crate) fn causes(&self, test: &SubspaceTest) -> Result<Vec<Cause>, DetectError> {
         let level = self.level.unwrap_or(1.0);
         let excess = libm::sqrt(self.chi_square / self.degrees);

@@ -116,7 +116,7 @@ impl Question<'_> {
     /// Positions or a depth outside the maps; maps that do not differ at the samples but by what is unknown; whatever the
     /// detector refuses.
     ///
-    /// Implements: TRC-008, TRC-065, TRC-066, TRC-067, TRC-077, CLI-043, CLI-049.
+    /// Implements: TRC-008, TRC-065, TRC-060, TRC-077, CLI-043, CLI-049.
     pub fn judge(&self, hypotheses: Hypotheses<'_>, record: &Record) -> Result<Judgement, Refusal> {
         let mut design = Design::new(self, hypotheses.without(), record)?;
         design.set_template(self, hypotheses.with(), record)?;
@@ -151,7 +151,7 @@ impl Question<'_> {
 
     /// The T from which on the record is of an inclusion.
     ///
-    /// Implements: TRC-067.
+    /// Implements: TRC-065.
     fn threshold(&self, test: &SubspaceTest) -> Result<Threshold, DetectError> {
         Ok(match self.criterion {
             Criterion::Map => test.bayes_threshold(map_threshold(self.prior_h1)?)?,

@@ -79,7 +79,7 @@ const EXPECTED_HEADER: &str = "position_mm,lateral_force_n,normal_force_n, in an
 
 /// The share of the range of its positions by which a sample may lie behind one before it: the jitter of an encoder.
 ///
-/// Implements: TRC-009.
+/// Implements: TRC-004.
 pub const JITTER: f64 = 0.05;
 
 /// What the samples of a trace are over.
@@ -165,7 +165,7 @@ impl Trace {
     /// The header does not name each of the three columns once, a row is malformed, times do not increase, positions do not go one
     /// way, or there is no row; with file and line.
     ///
-    /// Implements: TRC-001, TRC-002, TRC-003, TRC-004, TRC-005, TRC-006, TRC-007, TRC-008, TRC-009.
+    /// Implements: TRC-001, TRC-004, TRC-007, TRC-008.
     pub fn from_csv(text: &str, file: &str) -> Result<Trace, Refusal> {
         let read = || {
             let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER)?;
@@ -208,7 +208,7 @@ impl Trace {
     /// # Errors
     /// The motion is missing, or there for a trace over positions; the probe does not move; times make no finite positions.
     ///
-    /// Implements: TRC-008, TRC-010, TRC-011, TRC-012, TRC-013.
+    /// Implements: TRC-008, TRC-010, TRC-004.
     pub fn record(self, motion: Option<Motion>) -> Result<Record, Refusal> {
         let (file, mut samples) = (self.file, self.samples);
         let placed = match (self.abscissa, motion) {
@@ -257,7 +257,7 @@ fn move_along(samples: &mut [Sample], motion: Motion) -> Result<(), Refusal> {
 
 /// Checks that times increase.
 ///
-/// Implements: TRC-006.
+/// Implements: TRC-004.
 fn check_times(samples: &[Sample]) -> Result<(), Refusal> {
     let next = samples.iter().skip(1);
     for ((_, [before, ..]), (line, [found, ..])) in samples.iter().zip(next) {
@@ -276,7 +276,7 @@ fn backwards(samples: &[Sample]) -> bool {
 
 /// Checks that positions go one way, but for jitter.
 ///
-/// Implements: TRC-009.
+/// Implements: TRC-004.
 fn check_pass(samples: &[Sample]) -> Result<(), Refusal> {
     let sign = if backwards(samples) { -1.0 } else { 1.0 };
     let ways = || samples.iter().map(|(line, [x, ..])| (line, sign * x));
@@ -363,7 +363,7 @@ impl Record {
     /// # Errors
     /// The first sample outside the map's lateral positions, with its line; a depth outside its depths.
     ///
-    /// Implements: TRC-008, TRC-024, CLI-058.
+    /// Implements: TRC-008, TRC-024, CLI-140.
     pub fn expected(&self, map: &ForceTable, depth: f64) -> Result<Force<Vec<f64>>, Refusal> {
         let outside = |&position: &f64| !is_over(map, position);
         let expected = match self.positions.iter().position(outside) {

@@ -24,7 +24,7 @@ fn table(signal: f64) -> ForceTable {
     ForceTable::new(vec![0.001, 0.003], laterals, forces).unwrap()
 }
 
-// Verifies: TRC-001, TRC-002, TRC-003.
+// Verifies: TRC-001.
 #[test]
 fn columns_units_and_lines() {
     let expected = read(EXAMPLE).unwrap();
@@ -42,7 +42,7 @@ fn columns_units_and_lines() {
     }
 }
 
-// Verifies: TRC-001, TRC-004, TRC-005, TRC-006, TRC-008.
+// Verifies: TRC-001, TRC-004, TRC-008.
 #[test]
 fn malformed_traces_are_refused_with_their_line() {
     // A text, where HEAD is a header and \n a line break, and under it the beginning of the refusal.
@@ -99,7 +99,7 @@ fn malformed_traces_are_refused_with_their_line() {
     }
 }
 
-// Verifies: TRC-001, TRC-009, TRC-012.
+// Verifies: TRC-001, TRC-004, TRC-010.
 #[test]
 fn positions_of_an_encoder_are_taken() {
     let positions = |rows: &str| {
@@ -146,7 +146,7 @@ fn samples_outside_the_maps_are_left_out_on_request() {
     assert_eq!(error.to_string(), expected);
 }
 
-// Verifies: TRC-010, TRC-011, TRC-012, TRC-013.
+// Verifies: TRC-010, TRC-004.
 #[test]
 fn times_become_positions_by_the_motion() {
     let trace = || {

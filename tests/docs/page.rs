@@ -233,7 +233,7 @@ pub fn options(command: &str) -> Vec<&str> {
         .collect()
 }
 
-/// The ids of requirements in a text, such as `DET-012`.
+/// The ids of requirements in a text, such as `DET-015`.
 pub fn requirements(text: &str) -> Vec<&str> {
     let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'));
     let is_id = |word: &&str| {

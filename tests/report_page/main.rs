@@ -72,7 +72,7 @@ fn looks(browser: &Browser, page: &Path) -> Vec<Seen> {
     looks.map(look).collect()
 }
 
-// Verifies: REP-064, REP-065.
+// Verifies: REP-064.
 #[test]
 fn the_page_fits_phones_and_screens() {
     let Some(browser) = Browser::find() else {
@@ -87,7 +87,6 @@ fn the_page_fits_phones_and_screens() {
     }
 }
 
-// Verifies: EVD-006.
 #[test]
 fn the_dossier_fits_phones_and_screens() {
     let Some(browser) = Browser::find() else {
@@ -104,7 +103,7 @@ fn the_dossier_fits_phones_and_screens() {
 }
 
 /// The same look at pages with planted faults: it must see them.
-// Verifies: REP-064, REP-065.
+// Verifies: REP-064.
 #[test]
 fn faults_are_seen() {
     let Some(browser) = Browser::find() else {

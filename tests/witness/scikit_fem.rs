@@ -75,7 +75,7 @@ fn witness(problem: &str) -> HashMap<(usize, usize), f64> {
 ///
 /// The mesh has curved edges, on which the integrand is rational and each rule gives another matrix; scikit-fem's rule of
 /// degree 4 has the same 6 points as ours.
-// Verifies: FEM-081, FEM-082.
+// Verifies: FEM-080, FEM-082.
 #[test]
 fn scikit_fem_assembles_our_stiffness() {
     if !present(missing()) {

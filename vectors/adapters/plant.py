@@ -1,6 +1,6 @@
 """`plant.py CONFORM FOLDER`: plants bugs in the C adapter, in float, and asks it the vectors in profile f32: with each it must fail.
 
-Implements: ORA-072.
+Implements: ORA-071.
 """
 
 import subprocess

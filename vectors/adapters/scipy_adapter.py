@@ -170,7 +170,7 @@ def scan(residual_x: series, residual_y: series, template_x: series, template_y:
 
 
 class Subspace:
-    """What the nuisances span (NUI-001, NUI-002)."""
+    """What the nuisances span (NUI-001)."""
 
     def __init__(self, signals, samples):
         refuse_if(len(signals) > 100 or any(len(s) != samples for s in signals), "bad_argument", "nuisances of another length, or over 100")

@@ -1,7 +1,7 @@
-"""θ of each hypothesis of a bank, and their posterior (NUI-007, NUI-009, DET-021, DET-070): squares that least squares leave with
+"""θ of each hypothesis of a bank, and their posterior (NUI-007, DET-021, DET-070): squares that least squares leave with
 and without each template, at 250 digits.
 
-Implements: VEC-015.
+Implements: VEC-011.
 """
 
 from dataclasses import dataclass, replace
@@ -217,7 +217,7 @@ def drawn_record(draws, template, nuisances, amplitude, present):
     return [round(a + present * b, 5) for a, b in zip(z, template)]
 
 
-# Verifies: ORA-028, ORA-029, ORA-030, NUI-007, NUI-009, DET-021, DET-070.
+# Verifies: ORA-020, NUI-007, DET-021, DET-070.
 def bank_posterior():
     keys = [*REASONS, "hypothesis"]
     tolerance = {key: absolute(0, "1", "cases state their own") for key in keys}

@@ -72,7 +72,7 @@ def covariance(draws, count, kind):
     return matrix
 
 
-# Verifies: DET-040, DET-041, DET-042, DET-043.
+# Verifies: DET-040, DET-041, DET-043.
 def theta_colored():
     group = Group(
         "theta_colored",

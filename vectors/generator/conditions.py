@@ -2,7 +2,7 @@
 
 The formulas are those of the second route, or of the generator where they are faster.
 
-Implements: VEC-016, VEC-017, VEC-018.
+Implements: VEC-016, VEC-018.
 """
 
 from fractions import Fraction
@@ -26,7 +26,7 @@ COUNTS = {"successes", "trials", "correct", "degrees", "numerator", "denominator
 COARSEST = 2.0**-11
 """Unit roundoff of half precision: what only coarser ones cannot answer needs no `roundoff`."""
 DEPENDENT = 2.0**-36
-"""The share of 10⁻⁹ of NUI-002 and NUI-004 over some 64 roundings: a coarser precision leaves more of a dependent signal."""
+"""The share of 10⁻⁹ of NUI-001 and NUI-004 over some 64 roundings: a coarser precision leaves more of a dependent signal."""
 
 
 # Formulas: arguments to answer

@@ -109,7 +109,7 @@ def error_rates():
     return group
 
 
-# Verifies: DET-027, DET-028.
+# Verifies: DET-027.
 def roc():
     group = Group(
         "roc",
@@ -192,7 +192,7 @@ def roc():
 
 
 def needed(alpha, beta):
-    """γ of DET-029 and its bound: two quantiles and a sum."""
+    """γ of DET-027 and its bound: two quantiles and a sum."""
     a, b = -quantile(alpha), -quantile(beta)
     gamma = max(a + b, mpf(0))
     bound = QUANTILE_ROUNDINGS * (abs(exact(a)) + abs(exact(b))) + exact(gamma)
@@ -200,7 +200,7 @@ def needed(alpha, beta):
     return gamma, UNIT * (bound + 2 * [alpha, beta].count(0.5))
 
 
-# Verifies: DET-029.
+# Verifies: DET-027.
 def required_gamma():
     group = Group(
         "required_gamma", "required_gamma", SOURCE, {"gamma": absolute(64 * UNIT, "1", "cases state their own")}
@@ -265,7 +265,7 @@ def required_gamma():
     return group
 
 
-# Verifies: DET-100, DET-101.
+# Verifies: DET-100.
 def noise_budget():
     reasons = {
         key: absolute(64 * UNIT, unit, "cases state their own")

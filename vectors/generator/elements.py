@@ -1,9 +1,9 @@
-"""Stiffness of 6-node triangles in plane strain (FEM-005, VEC-012).
+"""Stiffness of 6-node triangles in plane strain (FEM-005, VEC-011).
 
 Straight sides: the integrand is quadratic, the rule of the sides' middles is exact, and all is in exact fractions.
 Curved sides: the integrand is rational, and the answer is that of Cowper's six points, in 50 digits.
 
-Implements: VEC-012.
+Implements: VEC-011.
 """
 
 from fractions import Fraction

@@ -1,4 +1,4 @@
-"""Matched filter and Θ in white noise (DET-010 … 016).
+"""Matched filter and Θ in white noise (DET-013 … 016).
 
 Sums of products are exact fractions; only square roots are taken in 50 digits.
 """
@@ -33,7 +33,7 @@ def sum_ulps(count):
 SUM = "(N + 2)·2⁻⁵³ for a plain sum of squares, halved by the root, and 8 for differences, scaling, quotient and root"
 
 
-# Verifies: DET-010, DET-011, DET-013.
+# Verifies: DET-013.
 def matched_filter():
     group = Group(
         "matched_filter",
@@ -142,7 +142,7 @@ def correlate(residual, template, deviation):
     )
 
 
-# Verifies: DET-012, DET-013, DET-014, DET-015.
+# Verifies: DET-015, DET-013, DET-014.
 def theta():
     group = Group(
         "theta",

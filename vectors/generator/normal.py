@@ -54,7 +54,7 @@ CENTRE = [0.0, 0.1, 0.25, 0.5, 1.0, 1.5, 1.959963984540054, 2.0, 2.5, 3.0, 4.0, 
 TAILS = [12.0, 15.0, 18.5, 20.0, 25.0, 30.0, 33.3, 35.0, 36.9, 37.0, 37.5, 37.6, 38.0, 38.4]
 
 
-# Verifies: DET-001, DET-002, DET-004.
+# Verifies: DET-001, DET-005.
 def normal_cdf():
     group = Group(
         "normal_cdf",
@@ -118,14 +118,14 @@ PROBABILITIES = [
 
 
 def quantile_tolerance(p):
-    """DET-003: 6 ULP below 10⁻³⁰⁶; at the median, the rounding of a number near 1 may be left."""
+    """DET-001: 6 ULP below 10⁻³⁰⁶; at the median, the rounding of a number near 1 may be left."""
     if p == 0.5:
         return {
             "absolute": 2e-16,
             "unit": "1",
             "reason": "the exact 0 may come out as a rounding of the half: 2⁻⁵³ times 1/φ(0) is less",
         }
-    return in_ulp(6, "DET-003, below 10⁻³⁰⁶") if p < 1e-306 else None
+    return in_ulp(6, "DET-001, below 10⁻³⁰⁶") if p < 1e-306 else None
 
 
 def quantile_arguments(draws, count):
@@ -140,13 +140,13 @@ def quantile_arguments(draws, count):
     return values
 
 
-# Verifies: DET-003, DET-004.
+# Verifies: DET-001, DET-005.
 def normal_quantile():
     group = Group(
         "normal_quantile",
         "normal_quantile",
         SOURCE,
-        {"x": in_ulp(4, "DET-003: the argument is exact; a correction by Newton's method leaves its last roundings")},
+        {"x": in_ulp(4, "DET-001: the argument is exact; a correction by Newton's method leaves its last roundings")},
     )
     for p, kind in quantile_arguments(Draws(2), 38):
         x = quantile(p)
@@ -169,7 +169,7 @@ def normal_quantile():
     return group
 
 
-# Verifies: DET-028.
+# Verifies: DET-027.
 def two_afc():
     group = Group(
         "two_afc",
@@ -218,7 +218,7 @@ def two_afc():
     return group
 
 
-# Verifies: DET-030.
+# Verifies: DET-027.
 def gamma_from_two_afc():
     group = Group(
         "gamma_from_two_afc",

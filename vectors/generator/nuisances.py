@@ -33,7 +33,7 @@ class Space:
             size = length(whole)
             rest = self.beside(whole)
             share = length(rest) / size if size else mpf(0)
-            assert not 1e-13 < share < 1e-6, "no case is near to the limit of NUI-002"
+            assert not 1e-13 < share < 1e-6, "no case is near to the limit of NUI-001"
             if share >= 1e-9:
                 self.basis.append([value / (share * size) for value in rest])
                 self.kept.append([value / size for value in whole])
@@ -256,7 +256,7 @@ def record(draws, template, nuisances, amplitude, present):
     return [round(a + present * b, 5) for a, b in zip(z, template)]
 
 
-# Verifies: ORA-027, NUI-001, NUI-002, NUI-003, NUI-005, NUI-006, NUI-007, NUI-008, NUI-009, NUI-011, NUI-012, NUI-014.
+# Verifies: ORA-020, NUI-001, NUI-003, NUI-007, NUI-008, NUI-014, NUI-012.
 def theta_nuisances():
     keys = [*REASONS, "rank", "degrees"]
     tolerance = {key: EXACT if key in ("rank", "degrees") else absolute(0, "1", "cases state their own") for key in keys}

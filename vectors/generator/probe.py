@@ -1,6 +1,6 @@
-"""Forces on the probe (VEC-013): from probe_force/forces.json, which probe_force.py there computes with scikit-fem.
+"""Forces on the probe (VEC-011): from probe_force/forces.json, which probe_force.py there computes with scikit-fem.
 
-Implements: VEC-013.
+Implements: VEC-011.
 """
 
 import json
@@ -34,7 +34,7 @@ def milli(value):
     return Fraction(str(value)) / 1000
 
 
-# Verifies: FEM-012, FEM-019, FEM-021, FEM-025.
+# Verifies: FEM-012, PHA-011, FEM-021.
 def probe_force():
     data = json.loads(DATA.read_text())
     keys = ("normal_force_n", "lateral_force_n")
@@ -94,7 +94,7 @@ def pose_case(group, poses, name, depth, lateral, sign):
         "lateral_force_n": absolute(
             milli(pose["lateral_band_mn"]) + Fraction(15, 10000),
             "N",
-            "band of the expected value, and 1.5 mN of the default mesh (FEM-025)",
+            "band of the expected value, and 1.5 mN of the default mesh (FEM-021)",
         ),
     }
     args = {"phantom": name, "depth_m": depth / 1000, "lateral_m": sign * lateral / 1000}

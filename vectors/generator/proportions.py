@@ -115,7 +115,7 @@ def clopper_pearson_bounds(k, n, tail, pair):
     return bounds
 
 
-# Verifies: DET-121, DET-122, DET-123.
+# Verifies: DET-121, DET-005.
 def proportion_interval():
     group = Group(
         "proportion_interval",
@@ -264,7 +264,7 @@ TABLE_1 = {
 }
 
 
-# Verifies: ORA-026, PSY-031.
+# Verifies: ORA-020, PSY-031.
 def count_analysis():
     group = Group(
         "count_analysis",

@@ -183,7 +183,7 @@ def noncentrality_of(draws):
     return draws.choice([0, draws.decimal(0.01, 9), draws.decimal(10, 90, 1), draws.integer(100, 3000)])
 
 
-# Verifies: DET-130, DET-134, DET-135, DET-138.
+# Verifies: DET-130, DET-134, DET-005.
 def chi_square_tail():
     group = law_group("chi_square_tail")
     draws = Draws(60)
@@ -231,7 +231,7 @@ def chi_square_tail():
     return group
 
 
-# Verifies: DET-131, DET-134, DET-135, DET-138.
+# Verifies: DET-130, DET-134, DET-005.
 def f_tail():
     group = law_group("f_tail")
     draws = Draws(61)
@@ -279,7 +279,7 @@ def f_tail():
     return group
 
 
-# Verifies: DET-132, DET-134, DET-135, DET-138.
+# Verifies: DET-130, DET-134, DET-005.
 def student_tail():
     group = law_group("student_tail")
     draws = Draws(62)

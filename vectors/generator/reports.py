@@ -1,6 +1,6 @@
-"""Bytes of the vendor profile's reports (HID-002 … 007, VEC-009, VEC-010).
+"""Bytes of the vendor profile's reports (HID-002 … 007, VEC-010).
 
-Implements: VEC-009, VEC-010.
+Implements: VEC-010.
 """
 
 from .numbers import Draws
@@ -91,7 +91,7 @@ def usable(report, fields):
     }
 
 
-# Verifies: HID-002, HID-003, HID-004, HID-005, HID-006.
+# Verifies: HID-002, HID-006.
 def report_decode():
     group = Group(
         "report_decode",
@@ -134,7 +134,7 @@ def report_decode():
     return group
 
 
-# Verifies: HID-002, HID-003, HID-004, HID-005, HID-007.
+# Verifies: HID-002, HID-006.
 def report_encode():
     group = Group("report_encode", "report_encode", SOURCE, {"bytes": is_exact("bytes")})
     for report, fields, kind in samples(Draws(71)):

@@ -17,11 +17,11 @@ MEANT = {
 }
 """What two_afc answers to lines that are right in a looser JSON, or but for a key.
 
-Implements: VEC-020.
+Implements: VEC-006.
 """
 
 
-# Verifies: ORA-005, ORA-006, ORA-009.
+# Verifies: ORA-008, ORA-001, ORA-009.
 def requests():
     group = Group("requests", "", "spec/oracle.md", {})
     good = '"op":"two_afc","args":{"gamma":1}'

@@ -83,7 +83,7 @@ def neighbour(x, steps):
     return of_bits(pattern + steps)
 
 
-# Verifies: SRV-002, SRV-004, SRV-005, SRV-006.
+# Verifies: SRV-002, SRV-004.
 def servo_axis():
     group = Group("servo_axis", "servo_axis", SOURCE, {"cell": is_exact("an index"), "fraction_bits": BITS})
     draws = Draws(60)

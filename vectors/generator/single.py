@@ -1,6 +1,6 @@
 """f32 in exact fractions: one operation is exact, then rounded to the nearest, ties to even.
 
-Implements: VEC-009.
+Implements: VEC-010.
 """
 
 import struct

@@ -93,7 +93,7 @@ def neyman_pearson(group, which, gamma, rate, kind):
     )
 
 
-# Verifies: DET-022, DET-023, DET-024, DET-025.
+# Verifies: DET-022, DET-025.
 def threshold():
     group = Group("threshold", "threshold", SOURCE, {"eta": absolute(16 * UNIT, "1", "cases state their own")})
     draws = Draws(12)

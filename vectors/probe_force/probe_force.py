@@ -7,7 +7,7 @@ The model is that of spec/phantom.md and spec/fem.md: plane strain, small strain
 whose normal is taken at the deformed node. Assembly is scikit-fem's, the factorisation SuperLU's; mesh and contact are this
 file's and mesh.py's. Each force is computed on three meshes and extrapolated; the band says how far that may be off.
 
-Implements: VEC-013.
+Implements: VEC-011.
 """
 
 import json

@@ -1,6 +1,6 @@
 //! Where the fields of the structures lie, for the C compiler to assert the same (`tests/layout.c`).
 //!
-//! Implements: CLB-008.
+//! Implements: CLB-007.
 
 use core::mem::offset_of;
 

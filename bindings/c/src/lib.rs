@@ -7,7 +7,7 @@
 //! meanwhile. Null, an address that is not a multiple of the type's alignment, and output that overlaps input of the same call
 //! are refused. That memory is there cannot be checked. An `unsafe` in an entry hands this promise of the caller's on.
 //!
-//! Implements: CLB-001, CLB-002.
+//! Implements: CLB-001.
 #![no_std]
 // Said once, above.
 #![allow(clippy::missing_safety_doc)]

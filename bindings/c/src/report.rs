@@ -1,6 +1,6 @@
 //! The reports of the vendor profile, and between counts and metres, newtons.
 //!
-//! Implements: CLB-013.
+//! Implements: CLB-010.
 
 use palpate::force;
 use palpate::hid::{self, DESCRIPTOR, Units};

@@ -1,6 +1,6 @@
 //! The servo kernel: a force table, and one cycle of the loop at 1 kHz.
 //!
-//! Implements: CLB-003, CLB-006, CLB-011, CLB-012.
+//! Implements: CLB-003, CLB-010, CLB-012.
 
 use core::mem::{MaybeUninit, offset_of};
 

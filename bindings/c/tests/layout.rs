@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// For 64 bits, where the offsets of all fields are known.
-// Verifies: CLB-008.
+// Verifies: CLB-007.
 #[test]
 fn the_c_compiler_is_given_the_offsets_of_rust() {
     let mut text = String::from(

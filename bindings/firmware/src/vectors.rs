@@ -157,7 +157,7 @@ fn case(words: &mut Words, text: &mut impl Write) -> Result<(usize, bool, bool),
 /// Asks all cases of the table in `bytes` and tells how many of each group were answered and refused, as they must be. False if
 /// one was not, or the table is broken.
 ///
-/// Implements: FIR-001, FIR-002, FIR-004.
+/// Implements: FIR-001, FIR-004.
 pub fn all(bytes: &[u8], text: &mut impl Write) -> bool {
     let mut words = Words(bytes);
     let mut counts = [[0_u32; 2]; GROUPS.len()];

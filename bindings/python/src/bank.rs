@@ -157,7 +157,7 @@ impl Bank {
     /// The bank for the one inclusion of phantom, varied: x of its centre (offsets_mm), depth, diameter, all in mm, and Young's modulus in
     /// kPa, each an array, or None for that of the phantom. probe_depth_mm and laterals_mm, shape (n,), in mm: the sweep. mesh_mm
     /// and contact as of Phantom.solve; progress as of Phantom.map, with numbers of computations.
-    // Implements: PYT-010, PYT-011, PYT-022.
+    // Implements: PYT-010, PYT-020.
     #[staticmethod]
     #[pyo3(signature = (phantom, probe_depth_mm, laterals_mm, offsets_mm=None, depths_mm=None, diameters_mm=None, stiffnesses_kpa=None,
         mesh_mm=0.65, contact="deformed-normal", progress=None))]

@@ -173,7 +173,7 @@ impl WithSimd for Work<'_> {
 /// θ of each of `records`, 2n numbers one after the other, as `theta_of_record` gives it; or why it refuses them, and the number of the
 /// record if that is to blame.
 ///
-/// Implements: PYT-020, PYT-021, PYT-022, PYT-023.
+/// Implements: PYT-020, PYT-023.
 pub fn theta(
     records: &[f64],
     f0: Force<&[f64]>,

@@ -29,7 +29,7 @@ pub fn refused(reason: impl Display) -> PyErr {
 
 /// `value` times 10^`power`, as if its shortest decimal were read.
 ///
-/// Implements: PYT-004, PYT-006.
+/// Implements: PYT-004, PYT-005.
 pub fn scaled(name: &str, value: f64, power: i32) -> Result<f64, Refusal> {
     let scaled = parse_scaled(&format!("{value:e}"), power);
     scaled.ok_or_else(|| Refusal::value(name, value, "a finite number"))
@@ -82,7 +82,7 @@ pub fn channels<'py, S: AsRef<[f64]>>(
 
 /// What NumPy makes of `values` as 64-bit floats in C order: the array itself where it is that already.
 ///
-/// Implements: PYT-003, PYT-006.
+/// Implements: PYT-003, PYT-005.
 pub fn floats<'py>(
     name: &str,
     values: &Bound<'py, PyAny>,
@@ -247,7 +247,7 @@ pub fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'p
 
 /// The JSON of dictionaries, lists, arrays, numbers and texts.
 ///
-/// Implements: PYT-006.
+/// Implements: PYT-005.
 pub fn json(value: &Bound<PyAny>) -> PyResult<String> {
     let py = value.py();
     let options = PyDict::new(py);
@@ -268,7 +268,7 @@ pub fn json(value: &Bound<PyAny>) -> PyResult<String> {
 
 /// Calls `progress` with what is done and all there is, and looks for Ctrl-C; whatever is raised ends the work.
 ///
-/// Implements: PYT-010, PYT-011.
+/// Implements: PYT-010.
 pub fn tell(progress: Option<&Py<PyAny>>, done: usize, all: usize) -> PyResult<()> {
     Python::attach(|py| {
         py.check_signals()?;

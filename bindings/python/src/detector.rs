@@ -52,7 +52,7 @@ fn same_length(records: &Records, samples: usize) -> PyResult<()> {
 /// without and with the inclusion, in N, of shape (2, n). noise_sd_n: the standard deviation of a sample in N, one for both channels
 /// or (lateral, normal). A float, or an array of shape (k,). A C-ordered array of 64-bit floats is read where it is; do not change
 /// it in another thread meanwhile.
-// Implements: PYT-020, PYT-021.
+// Implements: PYT-020.
 #[pyfunction]
 pub fn theta<'py>(
     py: Python<'py>,
@@ -293,7 +293,7 @@ pub fn bank_posterior<'py>(
 /// for both channels or (lateral, normal). theta: shape (n - m + 1,), with the template's first sample on sample 0, 1, ... of the
 /// record; max_theta; gamma there; shift: that sample; refined_shift: the vertex of a parabola, in samples. For k records each
 /// has k as its first axis.
-// Implements: PYT-022.
+// Implements: PYT-020.
 #[pyfunction]
 pub fn scan<'py>(
     py: Python<'py>,
@@ -342,7 +342,7 @@ pub fn scan<'py>(
 ///
 /// f0 and f1: forces in N, of shape (2, n); noise_sd_n: in N, one for both channels or (lateral, normal). An array of shape (trials,),
 /// the same for the same seed, whatever the number of threads.
-// Implements: PYT-022.
+// Implements: PYT-020.
 #[pyfunction]
 #[pyo3(signature = (f0, f1, noise_sd_n, inclusion, trials, seed=1999))]
 pub fn simulate_theta<'py>(

@@ -11,7 +11,7 @@
 //! | `servo.rs` | the servo kernel |
 //! | `oracle.rs` | every operation of the oracle by name |
 //!
-//! Implements: PYT-002, PYT-009, PYT-013.
+//! Implements: PYT-002, PYT-009.
 
 mod bank;
 mod batch;

@@ -205,7 +205,7 @@ impl Phantom {
     ///
     /// progress is called with the numbers of poses that are solved, and of all; what it raises, such as KeyboardInterrupt, stops
     /// the solve and is raised here.
-    // Implements: PYT-010, PYT-011, PYT-012.
+    // Implements: PYT-010.
     #[pyo3(signature = (depths_mm, laterals_mm, mesh_mm=0.5, contact="deformed-normal", progress=None))]
     fn map(
         &self,

@@ -1,4 +1,4 @@
-"""Banks and counts of answers. Checks PYT-002, PYT-006, PYT-011."""
+"""Banks and counts of answers. Checks PYT-002, PYT-005, PYT-010."""
 
 import json
 import math

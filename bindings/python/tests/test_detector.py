@@ -1,4 +1,4 @@
-"""Records: shapes, bits, batches, noise. Checks PYT-003, PYT-006, PYT-020, PYT-021, PYT-022."""
+"""Records: shapes, bits, batches, noise. Checks PYT-003, PYT-005, PYT-020."""
 
 import math
 import subprocess

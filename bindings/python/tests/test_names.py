@@ -1,4 +1,4 @@
-"""Names, signatures, docstrings, and what is in the wheel. Checks PYT-001, PYT-009, PYT-013."""
+"""Names, signatures, docstrings, and what is in the wheel. Checks PYT-001, PYT-009."""
 
 import ast
 import importlib.metadata

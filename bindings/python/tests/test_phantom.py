@@ -1,4 +1,4 @@
-"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-008, PYT-010, PYT-011, PYT-012."""
+"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-002, PYT-010."""
 
 import _thread
 import json

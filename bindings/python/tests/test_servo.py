@@ -1,4 +1,4 @@
-"""The servo kernel. Checks PYT-002, PYT-006."""
+"""The servo kernel. Checks PYT-002, PYT-005."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The cases of vectors/ through the Python API. Checks PYT-002, PYT-003, PYT-005, PYT-006, PYT-020."""
+"""The cases of vectors/ through the Python API. Checks PYT-002, PYT-003, PYT-005, PYT-020."""
 
 import json
 import math

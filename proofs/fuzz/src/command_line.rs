@@ -9,13 +9,11 @@ use palpate::decimal::{format_scaled, parse_scaled};
 use crate::message::check_message;
 use crate::{Outcome, judged};
 
-/// Most positions of a list (CLI-011).
+/// Most positions of a list (CLI-010).
 const MOST: usize = 10_000;
 
 /// An accepted list has at most 10 000 finite, increasing positions, is the same when it is written
 /// and read again, and has its ends where the text says.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn list(text: &str) -> Outcome {
     match length(text) {
         Ok(length) => assert!(length.is_finite() && length > 0.0),
@@ -55,8 +53,6 @@ pub fn check_positions(positions: &[f64]) {
 /// and is written such that it reads back to the bit.
 ///
 /// The first byte is the power of ten, from −12 to 12; the rest is the text.
-///
-/// Implements: EVD-081.
 pub fn decimal(bytes: &[u8]) -> Outcome {
     let Some((&first, rest)) = bytes.split_first() else {
         return Outcome::Refused;
@@ -95,8 +91,6 @@ pub fn decimal(bytes: &[u8]) -> Outcome {
 /// A command line that is refused has a message of one line and the exit code 2. Nothing is run.
 ///
 /// The bytes are the arguments, with a NUL between.
-///
-/// Implements: EVD-082.
 pub fn command_line(text: &str) -> Outcome {
     let arguments = text.split('\0').map(OsString::from);
     let asked = read::<CommandLine>(std::iter::once("palpate".into()).chain(arguments));

@@ -10,8 +10,6 @@ use crate::{FILE, Outcome, judged};
 
 /// An accepted configuration has every number in its range, and is the same when it is written and
 /// read again; a refusal names file and line.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn config_toml(text: &str) -> Outcome {
     let accepted = |config: Config| {
         check_config(&config);

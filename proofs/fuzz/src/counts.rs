@@ -10,8 +10,6 @@ use crate::{FILE, Outcome, judged};
 
 /// An accepted table has counts that fit their trials and names that can be printed, is the same
 /// when it is written and read again, and can be analysed; a refusal names file and line.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn counts_csv(text: &str) -> Outcome {
     let refused = |error| check_file_message(&error, text);
     let accepted = |table| check_table(&table);
@@ -79,8 +77,6 @@ fn written(table: &AnswerTable) -> String {
 
 /// An accepted journal is the same when it is written and read again, its counts are those of its
 /// answers, and a line that an abort left unfinished does not count; a refusal names the line.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn journal(text: &str) -> Outcome {
     let accepted = |journal: Journal| {
         let written = journal.to_text();

@@ -12,8 +12,6 @@ use crate::{Outcome, judged};
 
 /// Bytes are a report if, and only if, length and number are its own; what is decoded encodes to
 /// the same bytes, and a refusal tells what was found.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn hid_report(bytes: &[u8]) -> Outcome {
     let mut outcome = Outcome::Refused;
     macro_rules! check {
@@ -91,8 +89,6 @@ fn check_units(capabilities: &Capabilities, bytes: &[u8]) {
 
 /// An accepted recording is the same when it is written and read again, and plays again or tells
 /// which cycle differs; a refusal names the line and quotes its beginning.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn recording(text: &str) -> Outcome {
     let accepted = |recording: Recording| {
         let written = recording.to_text();

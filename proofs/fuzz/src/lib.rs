@@ -59,8 +59,6 @@ enum Property {
 use Property::{OfBytes, OfText};
 
 /// All targets.
-///
-/// Implements: EVD-080.
 pub const TARGETS: &[Target] = &[
     Target::new("phantom_toml", OfText(phantom::phantom_toml)),
     Target::new("config_toml", OfText(config::config_toml)),

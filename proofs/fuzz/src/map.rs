@@ -9,16 +9,12 @@ use crate::{FILE, Outcome, judged};
 
 /// An accepted map has increasing axes and finite forces, and is the same to the bit when it is
 /// written and read again; a refusal names file and line, or the key.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn map_json(text: &str) -> Outcome {
     let read = ForceMap::from_json(text, FILE);
     judged(read, check_map, |error| check_file_message(&error, text))
 }
 
 /// As [`map_json`] for CSV; what a refusal quotes stands in the line that it names.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn map_csv(text: &str) -> Outcome {
     let read = ForceMap::from_csv(text, FILE, "a note", None);
     judged(read, check_map, |error| check_csv(&error, text))

@@ -3,8 +3,6 @@
 use palpate::refusal::Refusal;
 
 /// Checks that a message is one line without control characters, which a terminal would obey.
-///
-/// Implements: EVD-082.
 pub fn check_message(message: &str) {
     assert!(!message.is_empty(), "an empty message");
     assert!(
@@ -15,8 +13,6 @@ pub fn check_message(message: &str) {
 
 /// Checks a message about a file: it begins with the file and, if there is one, the line, which is
 /// a line of the text.
-///
-/// Implements: EVD-082.
 pub fn check_file_message(refusal: &Refusal, text: &str) {
     let message = refusal.to_string();
     check_message(&message);

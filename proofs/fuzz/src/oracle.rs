@@ -19,8 +19,6 @@ const CODES: &str = "bad_json bad_request unknown_op bad_argument out_of_range o
 /// Any bytes get one line of JSON for each line, either `ok` with finite numbers or an error with a
 /// known code and a message, with the id of the request byte for byte; the same bytes get the same
 /// lines, and the next line its own answer.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn oracle_line(bytes: &[u8]) -> Outcome {
     // A pose that the solver would answer takes seconds, and is no matter of reading.
     if bytes.windows(11).any(|part| part == b"probe_force") && solves(bytes) {

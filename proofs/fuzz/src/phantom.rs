@@ -7,8 +7,6 @@ use crate::{FILE, Outcome, judged};
 
 /// An accepted phantom is valid, and the same when it is written and read again, as TOML and as
 /// JSON; a refusal names file, line and key.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn phantom_toml(text: &str) -> Outcome {
     judged(Phantom::from_toml(text, FILE), check_phantom, |error| {
         check_file_message(&error, text);

@@ -51,8 +51,6 @@ impl Random {
 }
 
 /// One of `seeds` with one to three changes, mostly one.
-///
-/// Implements: EVD-085.
 pub fn changed(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
     let mut bytes = seeds[random.below(seeds.len())].clone();
     for _ in 0..=random.below(2) * random.below(3) {

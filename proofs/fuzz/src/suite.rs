@@ -18,8 +18,6 @@ const SEPARATOR: char = '\u{1e}';
 /// questions is one line with one answer; a refusal names the file.
 ///
 /// The bytes are the file, and after a record separator (1E) a manifest.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn vectors(text: &str) -> Outcome {
     let (group, manifest) = match text.split_once(SEPARATOR) {
         Some((group, manifest)) => (group, Some(manifest)),

@@ -9,8 +9,6 @@ use crate::{FILE, Outcome, judged};
 
 /// An accepted trace has finite forces at positions that go one way but for jitter, and is the same when these are
 /// written and read again; a refusal names file and line, and quotes what stands there.
-///
-/// Implements: EVD-081, EVD-082.
 pub fn trace_csv(text: &str) -> Outcome {
     let refused = |error: Refusal| {
         assert!(error.line.is_some(), "{error}");

@@ -49,7 +49,6 @@ fn grid(rows: usize) -> String {
     (0..rows).fold(header, |text, row| text + &format!("{row},{row},0,0\n"))
 }
 
-// Verifies: EVD-083.
 #[test]
 fn memory_is_in_proportion_to_the_input() {
     for target in TARGETS {

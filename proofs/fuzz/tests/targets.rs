@@ -7,7 +7,6 @@ use palpate_fuzz::{TARGETS, Target};
 macro_rules! targets {
     ($($name:ident: $cases:literal),* $(,)?) => {
         $(
-            // Verifies: EVD-080, EVD-081, EVD-082, EVD-085.
             #[test]
             fn $name() {
                 let target = target(stringify!($name));
@@ -20,7 +19,6 @@ macro_rules! targets {
             }
         )*
 
-        // Verifies: EVD-080.
         #[test]
         fn every_target_has_a_test() {
             let names: Vec<_> = TARGETS.iter().map(|target| target.name).collect();
@@ -46,7 +44,6 @@ targets!(
     command_line: 2_000,
 );
 
-// Verifies: EVD-087.
 #[test]
 fn the_corpora_stay_small() {
     let kept = TARGETS
@@ -65,7 +62,6 @@ fn rows(name: &str) -> impl Iterator<Item = Vec<&'static str>> {
     lines.map(|line| line.split('|').map(str::trim).collect())
 }
 
-// Verifies: EVD-084.
 #[test]
 fn each_run_of_a_fuzzer_is_on_record() {
     for target in TARGETS {
@@ -81,7 +77,6 @@ fn each_run_of_a_fuzzer_is_on_record() {
     }
 }
 
-// Verifies: EVD-086.
 #[test]
 fn each_input_that_broke_a_property_is_kept() {
     let mut named = 0;

@@ -6,8 +6,6 @@
 /// let sum = palpate_verify::build::lock_sha256();
 /// assert!(sum.len() == 64 && sum.chars().all(|digit| digit.is_ascii_hexdigit()));
 /// ```
-///
-/// Implements: EVD-069.
 pub fn lock_sha256() -> String {
     use sha2::Digest;
     let digest = sha2::Sha256::digest(super::supply::LOCK);
@@ -20,8 +18,6 @@ pub fn lock_sha256() -> String {
 /// let model = palpate_verify::build::processor();
 /// assert!(model.is_none_or(|model| !model.is_empty()));
 /// ```
-///
-/// Implements: EVD-069.
 pub fn processor() -> Option<String> {
     model(&std::fs::read_to_string("/proc/cpuinfo").ok()?)
 }
@@ -38,7 +34,6 @@ fn model(text: &str) -> Option<String> {
 mod tests {
     use super::*;
 
-    // Verifies: EVD-069.
     #[test]
     fn the_processor_is_the_first_model_that_the_system_names() {
         let text = "processor\t: 0\nmodel\t\t: 85\nmodel name\t: Intel(R) Xeon(R): 2.5 GHz\n\nmodel name\t: other\n";
@@ -47,7 +42,6 @@ mod tests {
         assert_eq!(model(""), None);
     }
 
-    // Verifies: EVD-069.
     #[test]
     fn the_hash_is_that_of_the_file_which_holds_the_checksums() {
         let output = std::process::Command::new("sha256sum")

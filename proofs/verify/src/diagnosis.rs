@@ -26,7 +26,7 @@ const SEED: u64 = 19_990_101;
 
 const CLAIM: &str =
     "Sensitivity, specificity and area under the curve are those of the closed form.";
-const REQUIREMENTS: &[&str] = &["EVD-012", "DET-013", "DET-025", "DET-026", "DET-028"];
+const REQUIREMENTS: &[&str] = &["DET-013", "DET-025", "DET-026", "DET-027"];
 
 /// Two checks for each of the paper's inclusions: with its noise, and with more.
 pub(super) const CHECKS: &[Check] = &[
@@ -45,8 +45,6 @@ const fn check(name: &'static str, run: fn() -> Result<Vec<Figure>, String>) -> 
 }
 
 /// Simulates records over the inclusion and over none, and counts.
-///
-/// Implements: EVD-012.
 fn diagnosis(inclusion: &str, noise: f64) -> Result<Vec<Figure>, String> {
     let told = |error: &dyn std::fmt::Display| error.to_string();
     let f0 = forces("none")?;
@@ -148,7 +146,6 @@ fn forces(name: &str) -> Result<Force<Vec<f64>>, String> {
 mod tests {
     use super::*;
 
-    // Verifies: EVD-012.
     #[test]
     fn counts_agree_with_the_closed_form_and_a_wrong_rate_does_not() {
         let figures = (CHECKS[7].run)().unwrap();

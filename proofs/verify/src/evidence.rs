@@ -16,8 +16,6 @@ const SCHEMA: &str = "palpate-evidence";
 const SCHEMA_VERSION: u32 = 1;
 
 /// The parts of the verification, in the order in which they are told.
-///
-/// Implements: EVD-001.
 pub const PARTS: [&str; 6] = [
     "statistics",
     "diagnosis",
@@ -73,8 +71,6 @@ pub enum Verdict {
 
 impl Evidence {
     /// The verdict.
-    ///
-    /// Implements: EVD-003, EVD-004.
     pub fn verdict(&self) -> Verdict {
         let soaked = self.soak.iter().all(|soak| soak.failure.is_none());
         match self.failed().next() {
@@ -99,8 +95,6 @@ impl Evidence {
     }
 
     /// What is unusual about the build itself.
-    ///
-    /// Implements: EVD-009.
     pub fn anomalies(&self) -> Vec<String> {
         let build = &self.build;
         let mut anomalies = Vec::new();
@@ -123,8 +117,6 @@ impl Evidence {
     }
 
     /// The file for programs; ends in a line feed. Times, and what else belongs to this one run, are in `measured_here`.
-    ///
-    /// Implements: EVD-001, EVD-005.
     pub fn to_json(&self) -> String {
         let (checks, others): (Vec<&Outcome>, Vec<&Outcome>) =
             self.outcomes.iter().partition(|outcome| outcome.repeatable);

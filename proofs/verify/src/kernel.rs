@@ -19,19 +19,19 @@ pub const CHECKS: &[Check] = &[
         "On an axis with cells from 1 µm to 1 m, every f32 gets a cell of the axis and a fraction in range, \
          a position on the axis one whose ends enclose it, a knot 0 or 1, and neither ever falls as the \
          position rises.",
-        &["SRV-002", "SRV-004", "SRV-005", "SRV-006"],
+        &["SRV-002", "SRV-004"],
         locate_uneven,
     ),
     Check::new(
         "kernel.locate_even",
         "The same on a uniform axis of 41 knots 0.5 mm apart, as a force map's.",
-        &["SRV-004", "SRV-005", "SRV-006"],
+        &["SRV-004"],
         locate_even,
     ),
     Check::new(
         "kernel.last_knot",
         "No width of a cell times its stored reciprocal is above 1, and the last knot has the fraction 1.",
-        &["SRV-005", "SRV-006"],
+        &["SRV-004"],
         last_knot,
     ),
     Check::new(
@@ -120,8 +120,6 @@ impl Tally {
 
     /// Inputs tried, of which there must be `expected`, and broken, of which there must be none; `named` is the
     /// name of an input.
-    ///
-    /// Implements: EVD-044.
     fn figures(&self, what: &str, expected: u64, named: impl Fn(u32) -> String) -> Vec<Figure> {
         let broken = match self.first {
             None => format!("{what}: inputs that break it"),
@@ -171,8 +169,6 @@ fn for_bits(bits: &RangeInclusive<u32>, check: impl Fn(u32, &mut Tally) + Sync) 
 }
 
 /// Whether `holds` is true of every f32 with bits in a range.
-///
-/// Implements: EVD-044.
 fn holds_for(
     what: &str,
     bits: RangeInclusive<u32>,
@@ -380,7 +376,6 @@ mod tests {
     use crate::Outcome;
 
     // That a violation is counted, and the first of all threads named.
-    // Verifies: EVD-044.
     #[test]
     fn the_first_input_that_breaks_a_property_is_named() {
         let bits = between(1.0, 2.0);
@@ -400,7 +395,6 @@ mod tests {
         }
     }
 
-    // Verifies: EVD-044.
     #[test]
     fn the_worst_of_all_threads_is_kept_and_so_is_a_nan() {
         let worst = |of: fn(f32) -> f32| {
@@ -413,7 +407,6 @@ mod tests {
         assert!(worst(|x| if x == 2.0 { f32::NAN } else { x }).is_nan());
     }
 
-    // Verifies: EVD-044.
     #[test]
     fn a_thread_that_panics_fails_the_check() {
         let check = Check::new("kernel.planted", "It panics.", &[], || {

@@ -36,8 +36,6 @@ pub use check::{Check, Figure, Outcome};
 /// let mut kernel = palpate_verify::checks().filter(|check| check.name.starts_with("kernel."));
 /// assert!(kernel.any(|check| check.requirements.contains(&"SRV-020")));
 /// ```
-///
-/// Implements: EVD-040.
 pub fn checks() -> impl Iterator<Item = &'static Check> {
     [
         diagnosis::CHECKS,

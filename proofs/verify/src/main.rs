@@ -63,8 +63,6 @@ fn main() -> ExitCode {
 }
 
 /// Carries out the checks, and writes what came out.
-///
-/// Implements: EVD-001, EVD-003, EVD-010, EVD-011, EVD-013.
 fn verify(arguments: &Arguments) -> Result<(), CliError> {
     let asked = |part: &str| match &arguments.only {
         None => true,
@@ -129,8 +127,6 @@ fn carry_out(asked: &dyn Fn(&str) -> bool) -> Vec<Outcome> {
 }
 
 /// Runs the battery with fresh seeds.
-///
-/// Implements: CLI-051, CLI-052, CLI-053, CLI-054.
 fn soak_battery(batteries: u32, seed: u64) -> Result<Soak, CliError> {
     let total_alpha = total_alpha().map_err(CliError::Check)?;
     let checks: Vec<_> = battery().collect();
@@ -177,8 +173,6 @@ fn write_evidence(evidence: &Evidence, arguments: &Arguments) -> Result<(), CliE
 }
 
 /// A line for each part.
-///
-/// Implements: EVD-010, CLI-052.
 fn summary(evidence: &Evidence) -> String {
     let mut lines = String::new();
     for part in PARTS {
@@ -207,8 +201,6 @@ fn summary(evidence: &Evidence) -> String {
 }
 
 /// What failed, in one line.
-///
-/// Implements: EVD-003, CLI-053.
 fn complaint(evidence: &Evidence) -> String {
     let names: Vec<&str> = evidence
         .failed()

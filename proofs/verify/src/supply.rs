@@ -71,8 +71,6 @@ struct Package {
 ///
 /// # Errors
 /// The row of the table that is none, or that the lock file has not one package of the registry for.
-///
-/// Implements: EVD-060, EVD-061.
 pub fn components() -> Result<Vec<Component>, String> {
     let lock: Lock = toml::from_str(LOCK).map_err(|error| format!("Cargo.lock: {error}"))?;
     let names: BTreeSet<&str> = TABLE.lines().map(name).collect();

@@ -13,13 +13,11 @@ use palpate::phantom::Phantom;
 use palpate::servo::{Input, Limits, Mode, Request, Sample, State, Table, step};
 
 /// The checks of this part.
-///
-/// Implements: EVD-051, EVD-052.
 pub const CHECKS: &[Check] = &[
     Check {
         name: "timing.step",
         claim: "The median time of one step of the servo kernel, on a table of 9 × 41 poses, is within the 1 ms of a cycle.",
-        requirements: &["EVD-051"],
+        requirements: &[],
         repeatable: false,
         run: steps,
     },
@@ -27,14 +25,14 @@ pub const CHECKS: &[Check] = &[
         name: "timing.loop",
         claim: "The 99.9th percentile of the response of the loop on the simulated device, from a report at hand to its force \
                 written, is within the 1 ms of a cycle, with 95 % confidence.",
-        requirements: &["EVD-051", "HID-060", "HID-062"],
+        requirements: &["HID-060", "HID-062"],
         repeatable: false,
         run: cycles,
     },
     Check {
         name: "timing.force_map",
         claim: "What one force map of 9 × 21 poses costs on this machine, in processor time.",
-        requirements: &["EVD-052"],
+        requirements: &[],
         repeatable: false,
         run: force_map,
     },
@@ -84,8 +82,6 @@ fn steps() -> Result<Vec<Figure>, String> {
 }
 
 /// What is told of the mean times of a step in each batch, µs.
-///
-/// Implements: EVD-051, EVD-052.
 fn step_times(mut times: Vec<f64>) -> [Figure; 2] {
     times.sort_by(f64::total_cmp);
     let budget = BUDGET.as_secs_f64() * 1e6;
@@ -171,7 +167,6 @@ fn force_map() -> Result<Vec<Figure>, String> {
 mod tests {
     use super::*;
 
-    // Verifies: EVD-051, EVD-052.
     #[test]
     fn the_median_step_is_judged_and_the_slowest_told() {
         // 0 to 200 ms in another order: 77 and 201 have no common factor.

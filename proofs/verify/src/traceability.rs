@@ -67,15 +67,11 @@ pub struct Summary {
 ///
 /// # Errors
 /// The line of the table, from 1, that is not as it should be.
-///
-/// Implements: EVD-032.
 pub fn requirements() -> Result<Vec<Requirement>, String> {
     parse(TABLE)
 }
 
 /// Counts them.
-///
-/// Implements: EVD-033.
 pub fn summary(requirements: &[Requirement]) -> Summary {
     let count = |has: fn(&Requirement) -> bool| requirements.iter().filter(|r| has(r)).count();
     Summary {
@@ -119,8 +115,6 @@ fn requirement(cells: [String; 8]) -> Requirement {
 }
 
 /// The table of these requirements.
-///
-/// Implements: EVD-030.
 pub fn csv(requirements: &[Requirement]) -> String {
     let lines = requirements.iter().map(|row| {
         let cells = [
@@ -186,7 +180,6 @@ fn quoted_cell(mut rest: &str) -> Option<(String, &str)> {
 mod tests {
     use super::*;
 
-    // Verifies: EVD-030, EVD-032.
     #[test]
     fn a_cell_may_hold_commas_and_quotes() {
         let table =
@@ -199,7 +192,6 @@ mod tests {
         assert_eq!(csv(&read), table);
     }
 
-    // Verifies: EVD-032.
     #[test]
     fn a_malformed_line_is_named() {
         for line in [
@@ -213,7 +205,6 @@ mod tests {
         assert!(parse("id,text\n").unwrap_err().starts_with("line 1: "));
     }
 
-    // Verifies: EVD-033.
     #[test]
     fn the_summary_counts_each_kind() {
         let table = format!("{HEADER}\nA,m,t,c,a; b,,,\nB,m,t,c,,p,v,\nC,m,t,c,,,,why\n");

@@ -13,14 +13,14 @@ fn run(picked: fn(&str) -> bool) {
     assert!(broken.is_empty(), "{}", broken.join("\n"));
 }
 
-// Proves: HID-010, HID-011, SRV-002, SRV-004, SRV-005, SRV-006, SRV-010, SRV-011, SRV-013, SRV-020, SRV-031.
+// Proves: HID-010, HID-011, SRV-002, SRV-004, SRV-010, SRV-011, SRV-013, SRV-020, SRV-031.
 #[test]
 #[ignore = "all 2³² inputs"]
 fn functions_of_one_number_are_right_everywhere() {
     run(|name| name != "kernel.freshness");
 }
 
-// Verifies: EVD-043, SRV-040.
+// Verifies: SRV-040.
 #[test]
 #[ignore = "16 million cycles"]
 fn freshness_depends_on_the_distance_alone() {

@@ -24,7 +24,6 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-// Verifies: CLI-051, CLI-052, CLI-054, EVD-011, EVD-013.
 #[test]
 fn a_soak_says_its_seed_and_the_probability_of_a_false_failure() {
     // The last of its seeds is beyond the largest number and begins again at 0.
@@ -53,7 +52,6 @@ fn a_soak_says_its_seed_and_the_probability_of_a_false_failure() {
     assert_eq!(evidence["soak"]["failure"], serde_json::Value::Null);
 }
 
-// Verifies: EVD-001, EVD-004, EVD-010, CLI-050.
 #[test]
 fn the_statistics_give_two_files() {
     let (output, folder) = verify("statistics", &["--only", "statistics"]);
@@ -70,7 +68,6 @@ fn the_statistics_give_two_files() {
     assert!(read("dossier.html").contains("not run: diagnosis, vectors, fem, kernel, timing"));
 }
 
-// Verifies: EVD-005.
 #[test]
 fn the_same_build_gives_the_same_evidence_with_any_number_of_threads() {
     let evidence = |threads: &str| {
@@ -95,7 +92,6 @@ fn the_same_build_gives_the_same_evidence_with_any_number_of_threads() {
     assert_eq!(evidence("1"), evidence("3"));
 }
 
-// Verifies: CLI-052, EVD-011.
 #[test]
 fn bad_arguments_are_refused() {
     for arguments in [
@@ -116,7 +112,6 @@ fn bad_arguments_are_refused() {
     }
 }
 
-// Verifies: EVD-001.
 #[test]
 fn a_folder_that_cannot_be_made_is_told_before_the_work() {
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("verify-file");

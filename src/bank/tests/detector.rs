@@ -106,7 +106,7 @@ fn record(trial: u64, mean: &[f64]) -> Vec<f64> {
     record
 }
 
-// Verifies: BNK-031, BNK-032, BNK-034.
+// Verifies: BNK-031, BNK-034.
 #[test]
 fn each_point_is_tested_as_alone() {
     let [positions, depths, ..] = axes();

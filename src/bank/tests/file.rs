@@ -26,7 +26,7 @@ fn maps_in_any_order_make_a_grid_that_survives_its_file() {
     assert_eq!(Bank::from_json(&text, "bank.json").unwrap(), bank);
 }
 
-// Verifies: BNK-002, BNK-003.
+// Verifies: BNK-001, BNK-003.
 #[test]
 fn what_is_no_bank_is_refused() {
     let refused = |reference: ForceMap, change: &dyn Fn(&mut Vec<ForceMap>)| {
@@ -83,7 +83,7 @@ fn what_is_no_bank_is_refused() {
     }
 }
 
-// Verifies: BNK-011.
+// Verifies: BNK-010.
 #[test]
 fn a_damaged_file_is_refused_with_its_place() {
     let text = Bank::new(reference(), maps()).unwrap().to_json();
@@ -138,7 +138,7 @@ fn a_prior_names_each_inclusion() {
     }
 }
 
-// Verifies: MAP-017.
+// Verifies: MAP-009.
 #[test]
 fn a_mirror_image_has_the_other_sign_across() {
     let of = |x: f64| {
@@ -174,7 +174,7 @@ fn plan() -> BankPlan {
     plan
 }
 
-// Verifies: BNK-020, BNK-022, BNK-023, BNK-024, FEM-040.
+// Verifies: BNK-020, FEM-040.
 #[cfg(feature = "fem")]
 #[test]
 fn a_bank_has_the_forces_of_each_gel() {

@@ -56,7 +56,7 @@ fn search<'a>(bank: &'a Bank, unknown: &'a [Unknown], criterion: Criterion) -> B
     }
 }
 
-// Verifies: BNK-060, BNK-062, BNK-063, BNK-064.
+// Verifies: BNK-060, BNK-034, BNK-063, BNK-064.
 #[test]
 fn a_record_is_judged_at_the_likeliest_point() {
     let bank = Bank::new(reference(), maps()).unwrap();
@@ -109,7 +109,7 @@ fn a_record_is_judged_at_the_likeliest_point() {
     assert_eq!(found.bound.sd[3], None);
 }
 
-// Verifies: BNK-060, BNK-061.
+// Verifies: BNK-060, BNK-033.
 #[test]
 fn what_cannot_be_judged_is_told() {
     let bank = Bank::new(reference(), maps()).unwrap();
@@ -140,7 +140,7 @@ fn what_cannot_be_judged_is_told() {
     assert!(wrong.locate(&without).is_err());
 }
 
-// Verifies: BNK-051, BNK-052, BNK-053, BNK-063.
+// Verifies: BNK-051, BNK-053, BNK-063.
 #[test]
 fn thresholds_keep_what_they_promise() {
     let bank = Bank::new(reference(), maps()).unwrap();
@@ -175,7 +175,7 @@ fn thresholds_keep_what_they_promise() {
     assert!(calibrated.false_alarm.lower < 0.05 && 0.05 < calibrated.false_alarm.upper);
 }
 
-// Verifies: BNK-034, BNK-062.
+// Verifies: BNK-034.
 #[test]
 fn a_prior_excludes_what_it_gives_no_weight() {
     let bank = Bank::new(reference(), maps()).unwrap();
@@ -207,7 +207,7 @@ fn a_prior_excludes_what_it_gives_no_weight() {
     assert!(found.theta_mixture < all.theta_mixture);
 }
 
-// Verifies: BNK-070, BNK-071, BNK-072.
+// Verifies: BNK-070, BNK-071.
 #[test]
 fn reach_is_where_gamma_is_enough() {
     use crate::stats::normal::quantile;

@@ -35,7 +35,7 @@ fn theta(record: &[f64], scale: f64, x: f64, d: f64, level: NoiseLevel) -> f64 {
     }
 }
 
-// Verifies: BNK-040, BNK-041, BNK-043, BNK-044, BNK-045, BNK-046.
+// Verifies: BNK-040, BNK-042.
 #[test]
 fn the_posterior_is_that_of_brute_force() {
     for (scale, level) in [

@@ -23,7 +23,7 @@ fn tests(detector: &BankDetector) -> Vec<SubspaceTest> {
     tests.map(Result::unwrap).collect()
 }
 
-// Verifies: BNK-051, BNK-052.
+// Verifies: BNK-051.
 #[test]
 fn the_bound_is_the_sum_of_the_tails_and_keeps_the_rate() {
     let detector = detector(6.0, false, NoiseLevel::Known);
@@ -98,7 +98,7 @@ fn a_calibrated_threshold_counts_deviations_to_both_sides() {
     assert!(found.lower < 0.0565 && 0.0441 < found.upper, "{found:?}");
 }
 
-// Verifies: BNK-055.
+// Verifies: BNK-054.
 #[test]
 fn the_power_is_that_of_one_point_and_more_with_its_neighbours() {
     let points = [vec![0.0], vec![0.0], vec![0.0], vec![0.0]];

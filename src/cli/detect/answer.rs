@@ -81,7 +81,7 @@ impl DetectAnswer {
 
     /// The record searched for any inclusion of `bank`.
     ///
-    /// Implements: CLI-150, CLI-153.
+    /// Implements: CLI-140, CLI-153.
     pub fn located(&mut self, bank: &Bank, found: &Location) -> Result<(), CliError> {
         let decided_by = match found.by_mixture {
             true => "theta_mixture",

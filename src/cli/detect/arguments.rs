@@ -172,7 +172,7 @@ impl DetectArguments {
         }
     }
 
-    /// Implements: CLI-041, CLI-141, CLI-142.
+    /// Implements: CLI-041.
     pub fn noise(&self) -> Result<Noise, CliError> {
         let sd = self.noise_sd.get();
         let noise = match &*self.noise {

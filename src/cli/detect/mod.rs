@@ -55,7 +55,7 @@ fn asked(arguments: &DetectArguments, depth: f64, samples: usize) -> DetectAnswe
 
 /// Runs the command.
 ///
-/// Implements: CLI-040, CLI-043, CLI-044, CLI-046, CLI-048, CLI-055, CLI-056, CLI-057, CLI-143, CLI-145.
+/// Implements: CLI-040, CLI-043, CLI-003, CLI-048, CLI-055, CLI-017, CLI-140, CLI-143, CLI-146.
 pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     let motion = arguments.velocity_mm_s.zip(arguments.start_mm);
     let motion = motion.map(|(velocity, start)| Motion { velocity, start });
@@ -169,7 +169,7 @@ fn by_maps(
 
 /// The record searched for any inclusion of a bank.
 ///
-/// Implements: CLI-150, CLI-151, CLI-152, CLI-163.
+/// Implements: CLI-140, CLI-040, CLI-163.
 fn by_bank(
     arguments: &DetectArguments,
     record: Record,
@@ -203,7 +203,7 @@ fn by_bank(
 
 /// What was decided, whether the record fits, and what was assumed.
 ///
-/// Implements: CLI-144.
+/// Implements: CLI-043.
 fn conclusion(unknown: &[Unknown], found: &Found) -> String {
     let fits = match found.fit.limits {
         None => "in the noise that the record itself shows",

@@ -38,7 +38,7 @@ fn first_seed() -> u32 {
 /// # Errors
 /// A file that cannot be read, is not TOML or lacks a key; phantoms that are refused; several depths; a plan that is refused.
 ///
-/// Implements: STU-001, STU-005, STU-006.
+/// Implements: STU-001, STU-011, STU-010.
 pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
     let name = path.display().to_string();
     let file = parse(path, |text, name| {

@@ -71,7 +71,7 @@ pub fn study(arguments: &StudyArguments) -> Result<(), CliError> {
     }
 }
 
-/// Implements: STU-024, STU-025, STU-032.
+/// Implements: STU-024, STU-032.
 fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
     let plan = read_plan(&arguments.study)?;
     let sampler = Sampler::new(&plan)?;

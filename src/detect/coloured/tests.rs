@@ -52,7 +52,7 @@ fn forces_in_other_units_give_the_same_statistic() {
     }
 }
 
-// Verifies: DET-042, DET-043.
+// Verifies: DET-043.
 #[test]
 fn covariances_that_are_none_are_refused() {
     let change = |changes: &[(usize, usize, f64)]| {
@@ -82,7 +82,7 @@ fn covariances_that_are_none_are_refused() {
     assert_eq!(found, NotPositiveDefinite { pivot: 1 });
 }
 
-// Verifies: DET-005, DET-007, DET-046.
+// Verifies: DET-005, DET-046.
 #[test]
 fn arguments_that_do_not_fit_are_refused() {
     let covariance = COVARIANCE.as_flattened();
@@ -203,7 +203,7 @@ fn a_pivot_counts_as_positive_beyond_what_rounding_explains() {
     }
 }
 
-// Verifies: DET-042.
+// Verifies: DET-043.
 #[test]
 fn asymmetry_counts_beyond_what_rounding_explains() {
     // Three unlike variances, so that each has its own tolerance 1e-12 of the two deviations.

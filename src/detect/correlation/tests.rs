@@ -51,7 +51,7 @@ fn the_length_of_a_correlation() {
     assert_eq!(correlation_length(&[]), 1.0);
 }
 
-// Verifies: NUI-022.
+// Verifies: NUI-021.
 #[test]
 fn sums_over_blocks() {
     let sums = block_sums(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 100.0], 4);

@@ -32,7 +32,7 @@ fn priors_add_up_to_one_within_a_billionth() {
     }
 }
 
-// Verifies: DET-005, DET-007, DET-070.
+// Verifies: DET-005, DET-070.
 #[test]
 fn banks_that_do_not_fit_are_refused() {
     assert!(mixture_theta(&[], &[]).is_err());

@@ -3,7 +3,7 @@
 use super::*;
 use crate::stats::tests::{assert_near, assert_ulps};
 
-// Verifies: DET-100, DET-101.
+// Verifies: DET-100.
 #[test]
 fn budget_of_the_papers_example() {
     let budget = noise_budget(0.5, 0.05, 0.05, &[0.1]).unwrap();
@@ -17,7 +17,7 @@ fn budget_of_the_papers_example() {
     assert_ulps(untouched.remaining, untouched.total_allowed, 2.0);
 }
 
-// Verifies: DET-102.
+// Verifies: DET-100.
 #[test]
 fn sources_of_table_2() {
     let total = |sources: &[f64]| noise_total(sources).unwrap();
@@ -33,7 +33,7 @@ fn sources_of_table_2() {
     assert_ulps(total(&[3e-200, 4e-200]), 5e-200, 2.0);
 }
 
-// Verifies: DET-005, DET-006, DET-008.
+// Verifies: DET-005, DET-008.
 #[test]
 fn budgets_without_an_answer_are_refused() {
     for p in [0.0, 1.0, f64::NAN, -0.1] {

@@ -25,7 +25,7 @@ const BY_HAND: [(isize, f64, f64); 7] = [
     (4, 2.5, 1.0),
 ];
 
-// Verifies: DET-050, DET-051, DET-052.
+// Verifies: DET-050, DET-052.
 #[test]
 fn every_shift_counts_what_overlaps_and_nothing_else() {
     let scan = scan();
@@ -68,7 +68,7 @@ fn maximum_is_the_first_of_the_largest() {
     assert_eq!(found, DetectError::Empty { what: "shifts" });
 }
 
-// Verifies: DET-005, DET-006, DET-007.
+// Verifies: DET-005.
 #[test]
 fn scans_that_cannot_be_are_refused() {
     let template: Force<&[f64]> = Force::new(&TEMPLATE, &TEMPLATE);

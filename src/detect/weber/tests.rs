@@ -13,7 +13,7 @@ const fn weber(floor: f64, fraction: f64) -> WeberNoise {
     WeberNoise { floor, fraction }
 }
 
-// Verifies: DET-080, DET-081.
+// Verifies: DET-080.
 #[test]
 fn likelihood_ratio_of_forces_with_noise_in_proportion() {
     // Six terms of up to 20 with about six roundings each.
@@ -21,7 +21,7 @@ fn likelihood_ratio_of_forces_with_noise_in_proportion() {
     assert_near(theta, -25.296744225015495, 1e-13);
 }
 
-// Verifies: DET-081.
+// Verifies: DET-080.
 #[test]
 fn constant_noise_is_the_special_case_of_fraction_zero() {
     let noise = NOISE.map(|noise| weber(noise.floor, 0.0));
@@ -30,7 +30,7 @@ fn constant_noise_is_the_special_case_of_fraction_zero() {
     assert_near(theta, expected.theta, 1e-12);
 }
 
-// Verifies: DET-081.
+// Verifies: DET-080.
 #[test]
 fn exchanging_the_hypotheses_changes_the_sign() {
     let forth = theta_weber(OBSERVED, F0, F1, NOISE).unwrap();
@@ -38,7 +38,7 @@ fn exchanging_the_hypotheses_changes_the_sign() {
     assert_near(forth, -back, 1e-13);
 }
 
-// Verifies: DET-005, DET-006, DET-007, DET-008.
+// Verifies: DET-005, DET-008.
 #[test]
 fn what_cannot_be_judged_is_refused() {
     let names = ["observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y"];

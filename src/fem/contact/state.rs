@@ -2,7 +2,7 @@
 
 /// Surface displacements and contact forces at one pose.
 ///
-/// Implements: FEM-010.
+/// Implements: FEM-009.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactState {
     /// Displacement of each contact point, m.

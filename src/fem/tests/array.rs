@@ -22,7 +22,7 @@ fn assert_all_near(found: &[f64], expected: &[f64], tolerance: f64) {
 }
 
 // The parts of each force add up to 1 within an ulp for each element: 1e-14 of 2 N for 32 elements and some 50 points.
-// Verifies: FEM-083, FEM-084.
+// Verifies: FEM-083.
 #[test]
 fn the_elements_together_carry_the_whole_force() {
     for contact in [Contact::DeformedNormal, Contact::VerticalGap] {
@@ -47,7 +47,7 @@ fn the_elements_together_carry_the_whole_force() {
 /// Frictionless: the force on an element points to the middle of the circle, from where the element stands. Within half an
 /// element, 1/64 of R, and what an even spread moves a force on an edge of 0.2 mm, 0.06 mm or 0.009 of R, the forces on all elements
 /// add up to the force on the probe.
-// Verifies: FEM-083, FEM-084.
+// Verifies: FEM-083.
 #[test]
 fn elements_stand_where_the_force_acts() {
     let elements = 64;
@@ -68,7 +68,7 @@ fn elements_stand_where_the_force_acts() {
 }
 
 // 1e-12: mirrored poses agree to rounding alone, and the sums of an array come in another order.
-// Verifies: FEM-083, FEM-085.
+// Verifies: FEM-083, FEM-014.
 #[test]
 fn an_array_under_a_symmetric_phantom_is_symmetric() {
     let model = model(&builtin("4.6"));
@@ -87,7 +87,7 @@ fn an_array_under_a_symmetric_phantom_is_symmetric() {
     assert_eq!(sweep[1], mirrored);
 }
 
-// Verifies: FEM-085.
+// Verifies: FEM-014.
 #[test]
 fn a_sweep_over_what_is_not_symmetric_is_solved_on_both_sides() {
     let model = model(&off_centre(2.6, 3.0));
@@ -102,7 +102,7 @@ fn a_sweep_over_what_is_not_symmetric_is_solved_on_both_sides() {
 
 /// A contact's edge that moves over the borders of elements must not make a force jump: within 0.02 mm it changes by a force of
 /// the size of pressure times 0.02 mm, some 0.5 N/mm × 0.02 mm = 10 mN, where a point that hops carries some 100 mN here.
-// Verifies: FEM-084.
+// Verifies: FEM-083.
 #[test]
 fn forces_change_smoothly_with_the_pose() {
     let model = model(&builtin("2.6"));

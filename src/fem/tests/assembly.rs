@@ -30,7 +30,7 @@ fn everything(mesh: &Mesh, phantom: &Phantom) -> DMatrix<f64> {
     all
 }
 
-// Verifies: FEM-006, FEM-034.
+// Verifies: FEM-006.
 #[test]
 fn every_node_below_the_surface_is_eliminated_once() {
     for phantom in [builtin("none"), builtin("2.6"), off_centre(4.6, -2.0)] {
@@ -43,7 +43,7 @@ fn every_node_below_the_surface_is_eliminated_once() {
     }
 }
 
-// Verifies: FEM-006, FEM-035, CON-005.
+// Verifies: FEM-006, FEM-004, CON-004.
 #[test]
 fn the_matrix_is_the_sum_of_the_elements() {
     for (walls, floor) in [

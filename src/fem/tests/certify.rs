@@ -9,7 +9,7 @@ fn forces(limit: f64, factor: f64, order: f64) -> [f64; 3] {
     [1.0, 4.0 / 3.0, 2.0].map(|h: f64| limit + factor * h.powf(order))
 }
 
-// Verifies: FEM-027.
+// Verifies: FEM-026.
 #[test]
 fn the_observed_order_is_that_of_the_error() {
     for order in [0.5, 1.0, 1.7, 2.0, 3.0, 4.0] {
@@ -24,7 +24,7 @@ fn the_observed_order_is_that_of_the_error() {
     }
 }
 
-// Verifies: FEM-027.
+// Verifies: FEM-026.
 #[test]
 fn bands_are_the_error_times_the_safety_factor() {
     // Up to the second order the extrapolated error is exact, and the safety factor 1.25.
@@ -43,7 +43,7 @@ fn bands_are_the_error_times_the_safety_factor() {
     assert_eq!(band([0.0; 3]), 0.0);
 }
 
-// Verifies: FEM-026, FEM-028, MAP-050.
+// Verifies: FEM-026, FEM-028, MAP-006.
 #[test]
 fn a_certified_map_has_the_published_forces_and_bands_that_hold_the_error() {
     let model = Model::new(&builtin("2.6"), MESH_SIZE, Contact::default()).unwrap();

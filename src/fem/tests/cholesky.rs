@@ -114,7 +114,7 @@ fn fields_are_filled_in_from_the_surface() {
     }
 }
 
-// Verifies: FEM-023.
+// Verifies: FEM-014.
 #[test]
 fn the_surface_compliance_is_mirror_symmetric_to_the_bit() {
     for (phantom, symmetric) in [(builtin("2.6"), true), (off_centre(2.6, 2.0), false)] {
@@ -137,7 +137,7 @@ fn the_surface_compliance_is_mirror_symmetric_to_the_bit() {
     }
 }
 
-// Verifies: FEM-037.
+// Verifies: FEM-017.
 #[test]
 fn a_matrix_that_is_not_positive_definite_is_an_error() {
     for spoil in [|x: f64| -x, |_: f64| f64::NAN] {

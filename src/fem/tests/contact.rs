@@ -26,7 +26,7 @@ fn at_contact_points(values: &[f64]) -> Vec<f64> {
     values.windows(3).step_by(2).flat_map(at_points).collect()
 }
 
-// Verifies: FEM-032.
+// Verifies: FEM-009.
 #[test]
 fn contact_points_are_the_gauss_points_of_the_edges() {
     let model = super::coarse(&builtin("2.6"), Contact::default());
@@ -47,7 +47,7 @@ fn contact_points_are_the_gauss_points_of_the_edges() {
     assert!((integral(2) / (width.powi(3) / 12.0) - 1.0).abs() < 1e-14);
 }
 
-// Verifies: FEM-009, FEM-010, FEM-032.
+// Verifies: FEM-009.
 #[test]
 fn nothing_is_inside_the_probe_and_nothing_is_pulled() {
     for phantom in [builtin("2.6"), off_centre(2.6, 3.0)] {
@@ -82,7 +82,7 @@ fn nothing_is_inside_the_probe_and_nothing_is_pulled() {
     }
 }
 
-// Verifies: FEM-009, FEM-010, FEM-012.
+// Verifies: FEM-009, FEM-012.
 #[test]
 fn the_vertical_gap_is_the_height_of_the_circle_above_the_undeformed_place() {
     let model = coarse("6.6", Contact::VerticalGap);
@@ -113,7 +113,7 @@ fn the_vertical_gap_is_the_height_of_the_circle_above_the_undeformed_place() {
     assert!(solution.force.lateral.abs() > 1e-3);
 }
 
-// Verifies: FEM-007, FEM-008, FEM-013, FEM-032.
+// Verifies: FEM-007, FEM-008, FEM-013, FEM-009.
 #[test]
 fn condensed_contact_is_the_full_solve() {
     for (phantom, contact) in [
@@ -159,7 +159,7 @@ fn a_force_that_nothing_answers_is_an_imbalance_in_either_direction() {
     }
 }
 
-// Verifies: FEM-015.
+// Verifies: FEM-013.
 #[test]
 fn the_penetration_is_the_depth_of_the_deepest_point_inside_the_probe() {
     for contact in CONTACTS {
@@ -274,7 +274,7 @@ fn a_pose_that_does_not_converge_is_an_error_that_names_it() {
     }
 }
 
-// Verifies: FEM-019.
+// Verifies: PHA-011.
 #[test]
 fn poses_where_the_probe_cannot_stand_are_refused() {
     let model = coarse("none", Contact::DeformedNormal);

@@ -96,7 +96,7 @@ fn a_map_of_an_asymmetric_phantom_solves_each_side_by_itself() {
     }
 }
 
-// Verifies: FEM-015, MAP-006, MAP-007.
+// Verifies: FEM-013, MAP-006.
 #[test]
 fn the_certificate_tells_the_checks_of_every_pose() {
     let model = coarse("2.6", Contact::VerticalGap);
@@ -152,7 +152,7 @@ fn the_paper_s_poses_have_the_forces_of_an_independent_program() {
     assert_near(inclusion - none, 0.31, 0.005);
 }
 
-// Verifies: FEM-021, FEM-025, FEM-039.
+// Verifies: FEM-021.
 #[test]
 fn forces_of_the_default_mesh_are_converged() {
     // Against a mesh of a quarter of the size, whose own errors are some 1/16 of the default's, where the study in

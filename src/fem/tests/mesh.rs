@@ -283,7 +283,7 @@ fn lengths(mesh: &Mesh, field: &SizeField) -> [f64; 3] {
     [0.1, 0.5, 0.9].map(|share| lengths[(share * lengths.len() as f64) as usize])
 }
 
-// Verifies: FEM-001, FEM-002, FEM-003, FEM-030, FEM-031, FEM-033, FEM-036.
+// Verifies: FEM-014, FEM-002, FEM-031, FEM-017, FEM-036.
 #[test]
 fn phantoms_of_all_kinds_have_sound_meshes() {
     let mut wrong = Vec::new();
@@ -332,7 +332,7 @@ fn phantoms_of_all_kinds_have_sound_meshes() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-// Verifies: FEM-001, FEM-030.
+// Verifies: FEM-014, FEM-002.
 #[test]
 fn two_calls_make_the_same_mesh() {
     for phantom in [builtin("2.6"), off_centre(2.6, 3.0)] {
@@ -402,7 +402,7 @@ fn sizes_are_those_of_the_table() {
     }
 }
 
-// Verifies: FEM-003, FEM-031.
+// Verifies: FEM-002, FEM-031.
 #[test]
 fn a_thin_layer_has_two_rows() {
     let mut thin = builtin("6.6");
@@ -418,7 +418,7 @@ fn a_thin_layer_has_two_rows() {
     }
 }
 
-// Verifies: FEM-004, FEM-035.
+// Verifies: FEM-004.
 #[test]
 fn walls_and_floor_hold_their_nodes_and_nothing_else() {
     use Support::{Fixed, Free, Sliding};
@@ -446,7 +446,7 @@ fn walls_and_floor_hold_their_nodes_and_nothing_else() {
     }
 }
 
-// Verifies: FEM-018, FEM-036.
+// Verifies: FEM-017, FEM-036.
 #[test]
 fn sizes_without_a_mesh_are_refused() {
     let phantom = builtin("none");
@@ -467,7 +467,7 @@ fn sizes_without_a_mesh_are_refused() {
     }
 }
 
-// Verifies: FEM-033.
+// Verifies: FEM-017.
 #[test]
 fn a_phantom_that_no_sound_triangle_follows_is_refused_with_the_place() {
     // The axis halves a corner of 40°.

@@ -25,7 +25,7 @@ fn held_by(phantom: Phantom, (walls, floor): (Support, Support)) -> Phantom {
     phantom
 }
 
-// Verifies: FEM-035.
+// Verifies: FEM-004.
 #[test]
 fn a_shift_of_everything_costs_nothing() {
     for supports in SUPPORTS {
@@ -55,7 +55,7 @@ fn a_shift_of_everything_costs_nothing() {
     }
 }
 
-// Verifies: FEM-035.
+// Verifies: FEM-004.
 #[test]
 fn a_slab_between_lubricated_walls_is_squeezed_as_a_column() {
     // Under a uniform pressure p each layer yields by p t/M with M = λ + 2μ, and nothing moves sideways.
@@ -99,7 +99,7 @@ fn a_slab_between_lubricated_walls_is_squeezed_as_a_column() {
     }
 }
 
-// Verifies: FEM-035.
+// Verifies: FEM-004.
 #[test]
 fn what_holds_less_pushes_back_less() {
     let pose = pose(3e-3, 8e-3);
@@ -124,7 +124,7 @@ fn what_holds_less_pushes_back_less() {
     }
 }
 
-// Verifies: FEM-035.
+// Verifies: FEM-004.
 #[test]
 fn the_surface_s_ends_move_where_no_wall_holds_them() {
     for supports in SUPPORTS {

@@ -123,7 +123,7 @@ impl Listed {
     /// # Errors
     /// What the system says; `PermissionDenied` where a udev rule is missing.
     ///
-    /// Implements: HID-032.
+    /// Implements: HID-031.
     pub fn access(&self) -> std::io::Result<()> {
         let node = &self.identity.node;
         let opened = OpenOptions::new().read(true).write(true).open(node);
@@ -138,7 +138,7 @@ impl Listed {
 /// # Errors
 /// What the system says.
 ///
-/// Implements: HID-031, HID-032.
+/// Implements: HID-031.
 pub fn list() -> Result<Vec<Listed>, Refusal> {
     Ok(look(&api()?))
 }
@@ -187,7 +187,7 @@ fn descriptor(node: &str) -> std::io::Result<Vec<u8>> {
 /// It matches the `hidraw` node by the name of the HID device above it, which holds bus, vendor and
 /// product on every bus; a rule for `SUBSYSTEM=="usb"` does not cover the node.
 ///
-/// Implements: HID-032.
+/// Implements: HID-031.
 pub fn udev_rule(identity: &Identity) -> String {
     format!(
         r#"KERNEL=="hidraw*", KERNELS=="*:{:04X}:{:04X}.*", TAG+="uaccess""#,

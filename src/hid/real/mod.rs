@@ -52,7 +52,7 @@ const LOOK_AGAIN: Duration = Duration::from_millis(20);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Implements: HID-033, HID-034, HID-035, HID-080, HID-081.
+/// Implements: HID-033, HID-080.
 #[derive(Debug)]
 pub struct RealDevice {
     device: hidapi::HidDevice,
@@ -98,7 +98,7 @@ impl RealDevice {
     /// # Errors
     /// The last one of [`RealDevice::open`].
     ///
-    /// Implements: HID-036, HID-086.
+    /// Implements: HID-036, HID-085.
     pub fn open_within(wanted: &Wanted, patience: Duration) -> Result<RealDevice, Refusal> {
         let began = Instant::now();
         loop {
@@ -118,7 +118,7 @@ impl RealDevice {
     /// Throws away the reports of some time: those that were made before the device was enabled may
     /// tell of a fault that is cleared.
     ///
-    /// Implements: HID-042.
+    /// Implements: HID-033.
     fn pass_over(&mut self, time: Duration) -> Result<(), DeviceError> {
         let began = Instant::now();
         while let Some(left) = time.checked_sub(began.elapsed()) {
@@ -164,7 +164,7 @@ fn milliseconds(timeout: Duration) -> i32 {
 
 /// Refuses a write of which the system took fewer bytes than a force report has.
 ///
-/// Implements: HID-037.
+/// Implements: HID-033.
 fn all_sent(sent: usize) -> Result<(), HidError> {
     let all = ForceReport::LENGTH;
     match sent == all {
@@ -179,7 +179,7 @@ fn is_interrupted(error: &HidError) -> bool {
 }
 
 impl HapticDevice for RealDevice {
-    /// Implements: HID-080, HID-082.
+    /// Implements: HID-080, HID-085.
     fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
         let mut bytes = [0; LONGEST];
         bytes[0] = Capabilities::NUMBER;
@@ -210,7 +210,7 @@ impl HapticDevice for RealDevice {
         }
     }
 
-    /// Implements: HID-081, HID-091, HID-037.
+    /// Implements: HID-080, HID-091, HID-033.
     fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
         let sent = self.device.write(&report.encode());
         sent.and_then(all_sent)

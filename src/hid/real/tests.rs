@@ -95,7 +95,7 @@ fn a_force_feedback_device_is_told_by_its_usage_page() {
     }
 }
 
-// Verifies: HID-032.
+// Verifies: HID-031.
 #[test]
 fn the_rule_matches_the_node_by_the_device_above_it() {
     let rule = udev_rule(&listed("a", Profile::Vendor).identity);
@@ -114,7 +114,7 @@ fn a_timeout_is_never_shorter_than_asked_for() {
     assert_eq!(milliseconds(Duration::MAX), i32::MAX);
 }
 
-// Verifies: HID-037.
+// Verifies: HID-033.
 #[test]
 fn a_write_in_part_is_a_failure() {
     let all = ForceReport::LENGTH;

@@ -89,7 +89,7 @@ fn a_recording_plays_again_to_the_bit_and_tells_where_it_differs() {
     }
 }
 
-// Verifies: HID-056.
+// Verifies: HID-052.
 #[test]
 fn cycles_that_a_session_would_not_have_played_are_not_the_same() {
     let mut forged = recording();
@@ -114,7 +114,7 @@ fn cycles_that_a_session_would_not_have_played_are_not_the_same() {
     assert_eq!(after.replay(table(3.2)), Ok(ends));
 }
 
-// Verifies: HID-051.
+// Verifies: HID-050.
 #[test]
 fn what_is_no_recording_is_refused_with_its_line() {
     let good = recording().to_text();

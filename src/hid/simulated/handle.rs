@@ -57,7 +57,7 @@ impl Handle {
 
     /// Moves for `time` (s) under the motor's `force` (N), with the hand drawn to `target` (m).
     ///
-    /// Implements: HID-022.
+    /// Implements: HID-020.
     pub fn advance(&mut self, time: f64, target: f64, force: f64) {
         if self.mechanics.hand_n_per_m.is_infinite() {
             self.position = target;

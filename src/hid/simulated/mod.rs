@@ -63,7 +63,7 @@ pub const PAPER: Capabilities = Capabilities {
 /// # Ok::<(), palpate::hid::DeviceError>(())
 /// ```
 ///
-/// Implements: HID-020, HID-021, HID-022, HID-023.
+/// Implements: HID-020.
 #[derive(Debug, Clone)]
 pub struct SimulatedDevice {
     capabilities: Capabilities,

@@ -23,7 +23,7 @@ fn ideal(faults: Vec<(Duration, Defect)>) -> SimulatedDevice {
     SimulatedDevice::new(PAPER, mechanics, trajectory, faults)
 }
 
-// Verifies: HID-022.
+// Verifies: HID-020.
 #[test]
 fn the_handle_swings_as_a_damped_spring_does() {
     let mechanics = Mechanics {
@@ -48,7 +48,7 @@ fn the_handle_swings_as_a_damped_spring_does() {
     }
 }
 
-// Verifies: HID-022.
+// Verifies: HID-020.
 #[test]
 fn friction_holds_the_handle_and_backlash_hides_a_small_motion() {
     let mut handle = Handle::at(Mechanics::PAPER, 0.0);
@@ -100,7 +100,7 @@ fn the_force_of_the_table_reaches_the_motors() {
     assert_eq!((found.missed, found.skipped, found.garbage), (missed, 0, 0));
 }
 
-// Verifies: HID-015.
+// Verifies: HID-013.
 #[test]
 fn each_force_report_is_one_ahead_of_the_last() {
     // Repeated numbers, silence and a long session change nothing: 70 000 cycles go round the 65 536 numbers.
@@ -138,7 +138,7 @@ fn run_with(defect: Defect) -> (End, Mode, [f64; 2], Counters) {
     (end, session.mode(), force, session.counters())
 }
 
-// Verifies: HID-016, HID-019, HID-023.
+// Verifies: HID-016, HID-019, HID-020.
 #[test]
 fn every_fault_that_ends_a_session_is_named_and_leaves_the_motors_without_force() {
     let second = Duration::from_secs(1);
@@ -185,7 +185,7 @@ fn every_fault_that_ends_a_session_is_named_and_leaves_the_motors_without_force(
     }
 }
 
-// Verifies: HID-014.
+// Verifies: HID-013.
 #[test]
 fn reports_passed_over_and_reports_that_never_came_are_counted_apart() {
     let (found, expected) = (9, 1);
@@ -201,7 +201,7 @@ fn reports_passed_over_and_reports_that_never_came_are_counted_apart() {
     }
 }
 
-// Verifies: HID-021.
+// Verifies: HID-020.
 #[test]
 fn the_device_drops_its_force_by_itself_and_keeps_the_oldest_reports() {
     let mut device = ideal(vec![]);
@@ -225,7 +225,7 @@ fn the_device_drops_its_force_by_itself_and_keeps_the_oldest_reports() {
     assert!(sequences.into_iter().eq(1..=63));
 }
 
-// Verifies: HID-017, HID-028.
+// Verifies: HID-017, HID-008.
 #[test]
 fn a_session_begins_only_with_a_device_that_can_be_trusted() {
     let begins = |capabilities: Capabilities, force: f32| {
@@ -361,7 +361,7 @@ fn a_stop_is_sent_again_until_the_device_takes_it_and_nothing_arms_after_it() {
     }
 }
 
-// Verifies: HID-025, HID-026, HID-029.
+// Verifies: HID-025.
 #[test]
 fn a_stop_that_the_device_does_not_take_is_told_beside_the_end() {
     use DeviceState::{Gone, Stalled, There};

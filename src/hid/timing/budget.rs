@@ -182,7 +182,7 @@ impl Responses {
 
     /// What the cycles so far say; `None` without one.
     ///
-    /// Implements: HID-062, HID-064, HID-065, HID-066.
+    /// Implements: HID-062, HID-064, HID-060.
     pub fn judged(&self) -> Option<Judged> {
         let (budget, cycles) = (&self.budget, self.cycles());
         let response_us = Distribution::of(&self.times)?;

@@ -34,7 +34,7 @@ fn a_budget_that_nothing_keeps_is_broken_and_one_that_all_keep_is_not() {
     assert!(kept.judged.response_us.p50 >= kept.compute_us.p50);
 }
 
-// Verifies: HID-061.
+// Verifies: HID-060.
 #[test]
 fn a_paced_device_counts_how_late_it_was() {
     let late = Cell::default();
@@ -64,7 +64,7 @@ fn a_timing_that_ends_early_is_an_error() {
     assert_eq!(ended, "after 299 cycles: stopped: the device is gone");
 }
 
-// Verifies: HID-063, HID-066.
+// Verifies: HID-060.
 #[test]
 fn the_round_trip_ends_with_the_report_that_says_played() {
     let budget = Duration::from_micros(9);

@@ -8,7 +8,7 @@ use crate::psychophysics::dispersion;
 /// The pooled rates of right answers, γ from them, and how far the subjects differ from one
 /// binomial.
 ///
-/// Implements: ORA-026.
+/// Implements: ORA-020.
 pub fn analysis(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let counts = arguments.rows("correct")?;
     let trials = arguments.whole("trials", 1, MOST_TRIALS)? as f64;

@@ -122,7 +122,7 @@ fn number(
     Ok(Answer::of([(result, function(arguments.number(name)?)?)]))
 }
 
-/// Implements: ORA-021.
+/// Implements: ORA-020.
 fn capabilities(_: &mut Arguments) -> Result<Answer, Refused> {
     let names: Vec<&str> = OPS.iter().map(|op| op.name).collect();
     let version = env!("CARGO_PKG_VERSION");

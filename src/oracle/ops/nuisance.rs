@@ -11,7 +11,7 @@ const MOST_NUISANCES: usize = 100;
 
 /// T, γ, the residual, θ and rates of a whitened record beside nuisances.
 ///
-/// Implements: ORA-011, ORA-027, ACC-014.
+/// Implements: ORA-011, ORA-020, ACC-014.
 pub fn theta(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let mut residual = arguments.numbers("residual")?;
     let mut template = arguments.numbers("template")?;
@@ -42,7 +42,7 @@ pub fn theta(arguments: &mut Arguments) -> Result<Answer, Refused> {
 
 /// θ of each hypothesis beside nuisances, the largest, that of all together, and the probabilities that follow.
 ///
-/// Implements: ORA-011, ORA-028, ORA-029, ORA-030.
+/// Implements: ORA-011, ORA-020.
 pub fn bank_posterior(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let residual = arguments.numbers("residual")?;
     let templates = arguments.rows("templates")?;

@@ -7,7 +7,7 @@ use crate::hid::{Capabilities, Control, ForceReport, PositionReport};
 
 /// The number of a report, and the fields of all reports.
 ///
-/// Implements: ORA-025.
+/// Implements: ORA-009.
 pub const FIELDS: &str = "report lateral normal buttons status sequence force_sequence flags version \
     position_unit_nm force_unit_un largest_force_mn period_us watchdog_ms damping_mn_s_per_m friction_mn control";
 
@@ -40,7 +40,7 @@ fn range(field: &str) -> (i64, i64) {
 
 /// The fields of a report.
 ///
-/// Implements: ORA-023, ORA-025, VEC-010.
+/// Implements: ORA-009, VEC-010.
 pub fn decode(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let bytes = bytes(&arguments.text("bytes")?)
         .ok_or_else(|| Refused::argument("bytes is expected to be pairs of hexadecimal digits"))?;
@@ -67,7 +67,7 @@ pub fn decode(arguments: &mut Arguments) -> Result<Answer, Refused> {
 
 /// The bytes of a report.
 ///
-/// Implements: ORA-023, ORA-025, VEC-010.
+/// Implements: ORA-009, VEC-010.
 pub fn encode(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let number = arguments.whole("report", 0, 255)?;
     let mut report = Map::new();

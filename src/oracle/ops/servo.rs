@@ -8,7 +8,7 @@ use crate::servo::{Axis, Table};
 
 /// Knots as the kernel stores them, with the reciprocals of the widths.
 ///
-/// Implements: ORA-024.
+/// Implements: ORA-009.
 fn knots(arguments: &mut Arguments, name: &'static str) -> Result<(Vec<f32>, Vec<f32>), Refused> {
     let knots = arguments.numbers(name)?;
     let knots: Vec<f32> = knots.into_iter().map(|knot| knot as f32).collect();

@@ -16,7 +16,7 @@ const EXPECTED: &str = "
 0 3 0.666931299883 0.574452831637 0.747410687533 0.043149488507 0.002130736476 0.153434864593 4.559789469857
 ";
 
-// Verifies: PSY-032, PSY-033.
+// Verifies: PSY-032.
 #[test]
 fn fits_of_table_1() {
     let table = AnswerTable::paper().unwrap();
@@ -44,7 +44,7 @@ fn fits_of_table_1() {
     }
 }
 
-// Verifies: PSY-033.
+// Verifies: PSY-032.
 #[test]
 fn counts_that_vary_no_more_than_a_binomial_have_no_correlation() {
     let measured = &AnswerTable::paper().unwrap().conditions()[2].counts(3);

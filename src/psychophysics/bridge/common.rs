@@ -77,7 +77,7 @@ pub fn is_inside([low, high]: [f64; 2], log: f64) -> bool {
 
 /// The noise level that fits the pooled counts best; `None` if there is none.
 ///
-/// Implements: PSY-073, PSY-075, PSY-076.
+/// Implements: PSY-073, PSY-076.
 pub fn common(signals: &Signals, observed: &Observations) -> Result<Option<CommonFit>> {
     let Some((log, fit)) = fit(signals, observed, Some(0.0))? else {
         return Ok(None);
@@ -96,7 +96,7 @@ pub fn common(signals: &Signals, observed: &Observations) -> Result<Option<Commo
 
 /// The noise level and share of lapses that fit the pooled counts best; `None` as for [`common`].
 ///
-/// Implements: PSY-074.
+/// Implements: PSY-073.
 pub fn common_with_lapse(signals: &Signals, observed: &Observations) -> Result<Option<LapseFit>> {
     Ok(fit(signals, observed, None)?.map(|(_, fit)| fit))
 }
@@ -132,7 +132,7 @@ fn fit(
 /// Student's interval of ln σ by the subjects' scores, σ: with U_i the derivative of the log-likelihood of
 /// subject i and I the information, the variance is m/(m−1) Σ U_i²/I².
 ///
-/// Implements: PSY-075.
+/// Implements: PSY-073.
 fn noise_bounds(signals: &Signals, observed: &Observations, log: f64) -> Result<Option<Bounds>> {
     let subjects = observed.subjects.len() as f64;
     if observed.subjects.len() < 2 {

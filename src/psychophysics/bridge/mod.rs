@@ -84,7 +84,7 @@ impl Observations {
 /// A name that is no column or comes twice, fewer than two maps or positions within the sweep, and a map over other poses than the
 /// reference.
 ///
-/// Implements: PSY-070, PSY-071, PSY-072, PSY-079, PSY-085, CLI-083.
+/// Implements: PSY-070, PSY-079, PSY-085, CLI-081.
 pub fn bridge(
     table: &AnswerTable,
     reference: &ForceMap,
@@ -144,7 +144,7 @@ pub fn bridge(
 /// # Errors
 /// As [`bridge`]; a condition that the table does not have, and a convention whose signal is 0 at all inclusions.
 ///
-/// Implements: STU-033.
+/// Implements: STU-031.
 pub fn p_values(
     table: &AnswerTable,
     condition: usize,

@@ -20,7 +20,7 @@ pub struct Signal {
 /// # Errors
 /// As [`ForceMap::mirrored`], and for fewer than two positions.
 ///
-/// Implements: PSY-072, CLI-083.
+/// Implements: PSY-070, CLI-081.
 pub fn sweep(map: &ForceMap, half: Option<f64>) -> Result<ForceMap, Refusal> {
     let begins_at_centre = map.laterals().len() > 1 && map.laterals()[0].abs() <= SAME_POSITION;
     let whole = match begins_at_centre {
@@ -67,7 +67,7 @@ impl Signal {
 
     /// The signal in N that a convention makes of the difference.
     ///
-    /// Implements: PSY-070, PSY-071.
+    /// Implements: PSY-070.
     pub fn strength(&self, convention: Convention) -> f64 {
         let weight = match convention.offset {
             Offset::Kept => 1.0,
@@ -78,7 +78,7 @@ impl Signal {
 
     /// The same where the mean over the sweep counts `weight` times, channel by channel.
     ///
-    /// Implements: PSY-084.
+    /// Implements: PSY-070.
     pub fn weighted(&self, statistic: Statistic, channel: Channel, weight: f64) -> f64 {
         let counted = Force::new(channel != Channel::Normal, channel != Channel::Lateral);
         let felt = self.forces.as_deref().zip(counted).map(|(forces, counts)| {

@@ -23,14 +23,14 @@ const SURE: f64 = 1e6;
 
 /// The noise of each subject that fits best without lapses.
 ///
-/// Implements: PSY-077, PSY-078.
+/// Implements: PSY-073, PSY-076.
 pub fn by_subject(signals: &Signals, observed: &Observations) -> Result<SubjectFit> {
     assemble(signals, observed, 0.0, 0)
 }
 
 /// The same with the share of lapses, one for all, that fits best; `without` is the fit without.
 ///
-/// Implements: PSY-077, PSY-078.
+/// Implements: PSY-073, PSY-076.
 pub fn by_subject_with_lapse(
     signals: &Signals,
     observed: &Observations,
@@ -123,7 +123,7 @@ impl Moments {
     /// of ln(1/σ) with information I, the fitted noise lowers D by Q = U²/I to first order; D and U are sums over
     /// independent counts, so that Var Q = 2 + Σ κ₄(u)/I² and Cov(D, Q) = Σ Cov(d, u²)/I.
     ///
-    /// Implements: PSY-078.
+    /// Implements: PSY-076.
     fn add(
         &mut self,
         counts: &[Count],

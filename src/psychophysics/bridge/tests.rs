@@ -41,7 +41,7 @@ fn convention(statistic: Statistic, channel: Channel, offset: Offset) -> Convent
     }
 }
 
-// Verifies: PSY-070, PSY-071.
+// Verifies: PSY-070.
 #[test]
 fn each_convention_makes_its_own_signal() {
     let reference = map([1.0, 1.5, 2.0, 1.5, 1.0], [0.5, 0.5, 0.0, -0.5, -0.5]);
@@ -74,7 +74,7 @@ fn each_convention_makes_its_own_signal() {
     assert_eq!(mean(&signal.forces.normal), 2.0);
 }
 
-// Verifies: PSY-072.
+// Verifies: PSY-070.
 #[test]
 fn half_a_sweep_is_completed_by_symmetry() {
     let half = map_over(&[4e-3], &[0.0, 2e-3, 4e-3], |column| {
@@ -137,7 +137,7 @@ fn of_row(condition: f64, signals: f64) -> (Signals, Observations) {
 /// The search leaves ln σ within 2 · 0.37 · 4·10⁻⁶.
 const OF_NOISE: f64 = 1e-5;
 
-// Verifies: PSY-073, PSY-074, PSY-075, PSY-076.
+// Verifies: PSY-073, PSY-076.
 #[test]
 fn one_noise_level_for_all() {
     for [condition, row, one @ .., noise_lapsed, share, rest] in numbers::<10>(COMMON) {
@@ -165,7 +165,7 @@ fn one_noise_level_for_all() {
 
 // The moments are to first order in the fit: within 2 % of those of 10 000 simulated tables, whose own errors are 0.07 and
 // 0.05; with the degrees of freedom (30) for the mean FEM data, falling, would be off by 5.
-// Verifies: PSY-077, PSY-078.
+// Verifies: PSY-073, PSY-076.
 #[test]
 fn a_noise_level_for_each_subject() {
     for [condition, row, deviance, mean, sd, p, noise @ ..] in numbers::<9>(BY_SUBJECT) {
@@ -183,7 +183,7 @@ fn a_noise_level_for_each_subject() {
     }
 }
 
-// Verifies: PSY-073, PSY-077.
+// Verifies: PSY-073.
 #[test]
 fn who_is_never_wrong_or_only_guesses_has_no_noise_level() {
     let observed = |right: [f64; 2]| Observations {
@@ -266,7 +266,7 @@ fn the_verdict_follows_the_answers() {
     assert!(found.compatible.is_empty() && found.text.starts_with("No convention fits"));
 }
 
-// Verifies: PSY-079, PSY-082, PSY-083.
+// Verifies: PSY-079, PSY-081.
 #[test]
 fn the_verdict_says_what_it_rests_on() {
     let change = [0.3, 0.15, 0.05, 0.01];
@@ -335,7 +335,7 @@ fn computed_signals() -> [Signal; 4] {
 }
 
 // A force of 1, 2, 3, 6 (mean 3), whose change is −2, −1, 0, 3.
-// Verifies: PSY-084.
+// Verifies: PSY-070.
 #[test]
 fn part_of_the_level_counts_in_part() {
     let signal = Signal {
@@ -355,9 +355,9 @@ fn part_of_the_level_counts_in_part() {
 }
 
 /// `../reference.py`, `sweeps`: each subject's noise by Brent's method, the expected deviance and the p of weight 0 from 10 000
-/// tables of new answers to the fit, each fitted anew. φ is as right as the expected deviance of PSY-078, 2 %; the p of new answers has a
+/// tables of new answers to the fit, each fitted anew. φ is as right as the expected deviance of PSY-076, 2 %; the p of new answers has a
 /// standard error of 0.003 at the most. Without a range: its end is within those 2 % of the next weight's.
-// Verifies: PSY-085, PSY-086, PSY-087.
+// Verifies: PSY-085.
 #[test]
 fn how_much_of_the_level_may_count_over_which_sweep() {
     let signals = computed_signals();
@@ -427,7 +427,7 @@ fn computed_maps() -> (ForceMap, [ForceMap; 4]) {
 }
 
 /// The numbers of rejections are from `../reference.py`, `sweeps`, over all sweeps.
-// Verifies: PSY-086, PSY-087.
+// Verifies: PSY-085.
 #[test]
 fn the_number_of_ranges_is_counted_in_each() {
     let maps = computed_maps();
@@ -471,7 +471,7 @@ fn noise_at_one_inclusion_has_the_subjects_as_the_sample() {
 
 /// Shares of right answers within half an answer of the model's with 5 % lapses: a deviance near 0, whose law is nearly that of chi-square.
 /// Its expected deviance is above the degrees of freedom by about Σ (1 − p(1−p))/(6np(1−p)) < 0.01 here.
-// Verifies: PSY-078.
+// Verifies: PSY-076.
 #[test]
 fn with_many_answers_each_fitted_number_takes_a_degree_of_freedom() {
     let signals = Signals(vec![0.3, 0.2, 0.12, 0.06]);
@@ -525,7 +525,7 @@ fn conventions_are_compared_with_their_lapses() {
     }
 }
 
-// Verifies: STU-033.
+// Verifies: STU-031.
 #[test]
 fn p_values_alone_are_those_of_the_bridge() {
     let table = AnswerTable::paper().unwrap();

@@ -10,7 +10,7 @@ use crate::psychophysics::noise::{BACKDRIVE_FRICTION, HUMAN_PERCEPTION, QUANTIZA
 
 /// The verdict on all conventions of one condition, and on the weights of the level, `ranges` of them over all conditions.
 ///
-/// Implements: PSY-080, PSY-081, PSY-082, PSY-087.
+/// Implements: PSY-080, PSY-081, PSY-085.
 pub fn verdict(fits: &[ConventionFit], weights: &[WeightRange], ranges: usize) -> Verdict {
     let names = |rejected: bool| {
         let chosen = fits.iter().filter(|fit| fit.is_rejected == rejected);
@@ -38,7 +38,7 @@ pub fn verdict(fits: &[ConventionFit], weights: &[WeightRange], ranges: usize) -
 
 /// What holds over all sweeps, with the number of ranges and the dispersion counted.
 ///
-/// Implements: PSY-087.
+/// Implements: PSY-085.
 fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
     let (first, last) = (weights.first()?, weights.last()?);
     let all = weights.len();
@@ -63,7 +63,7 @@ fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
 
 /// The verdict in sentences: the words are in the template.
 ///
-/// Implements: PSY-081, PSY-082, PSY-083.
+/// Implements: PSY-081.
 #[derive(Template)]
 #[template(path = "psychophysics.txt", block = "verdict")]
 struct Words<'a> {

@@ -34,7 +34,7 @@ pub fn half_sweeps(laterals: &[f64]) -> Vec<f64> {
 
 /// The range of weights for each sweep and statistic, each rejected below `level`.
 ///
-/// Implements: PSY-085, PSY-086.
+/// Implements: PSY-085.
 pub fn weight_ranges(
     signals: &[Signal],
     observed: &Observations,
@@ -101,7 +101,7 @@ fn weight_range(
 
 /// One convention at one weight of the level; `None` without a signal.
 ///
-/// Implements: PSY-084.
+/// Implements: PSY-070.
 fn weigh(
     signals: &[Signal],
     observed: &Observations,

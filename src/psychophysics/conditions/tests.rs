@@ -22,7 +22,7 @@ fn exchanges_of_signs_are_all_counted() {
     assert_eq!(sign_flip(&[1.0; 21]), None);
 }
 
-// Verifies: PSY-050, PSY-051.
+// Verifies: PSY-050.
 #[test]
 fn subjects_are_their_own_blocks() {
     // Subjects 1 to 3 lose 3, 6 and 6 of 30; subject 4 took part once. The order in the file does not matter.
@@ -49,7 +49,7 @@ fn subjects_are_their_own_blocks() {
     }
 }
 
-// Verifies: PSY-050, PSY-052.
+// Verifies: PSY-050.
 #[test]
 fn conditions_of_table_1() {
     let found = comparisons(&AnswerTable::paper().unwrap()).unwrap();
@@ -64,7 +64,7 @@ fn conditions_of_table_1() {
     assert_eq!(holm, [1.0, 3.0 * 2.0 / 1024.0, 2.0 * 4.0 / 1024.0]);
 }
 
-// Verifies: PSY-052.
+// Verifies: PSY-050.
 #[test]
 fn holm_orders_multiplies_and_never_decreases() {
     let corrected = holm(&[Some(0.04), None, Some(0.01), Some(0.03), Some(0.9)]);
@@ -74,7 +74,7 @@ fn holm_orders_multiplies_and_never_decreases() {
     assert_eq!(holm(&[Some(0.8), Some(0.7)]), [Some(1.0), Some(1.0)]);
 }
 
-// Verifies: PSY-051.
+// Verifies: PSY-050.
 #[test]
 fn conditions_without_a_common_subject_are_not_compared() {
     let compared = |rows: &str| {

@@ -57,7 +57,7 @@ fn the_levels_of_section_5() {
 
 // Table 2's 168 mN against 0.34 N/γ at the ends of 253/300: scipy gives shares of 0.7972 to 0.8826 pooled, so γ = 1.176
 // to 1.680 and 202 to 289 mN; 0.7415 to 0.9452 with the subjects as the sample, so 150 to 371 mN.
-// Verifies: PSY-062.
+// Verifies: PSY-061.
 #[test]
 fn table_2_is_within_the_honest_interval_only() {
     let found = paper_noise_levels().unwrap();

@@ -30,7 +30,7 @@ const EXPECTED: &str = "
 /// Those of the three fits.
 const DEVIANCES: [f64; 3] = [0.1524763348, 2.4262896179, 10.1608743260];
 
-// Verifies: PSY-040, PSY-041, PSY-042.
+// Verifies: PSY-040, PSY-042.
 #[test]
 fn fits_of_table_1() {
     let table = AnswerTable::paper().unwrap();
@@ -61,7 +61,7 @@ fn fits_of_table_1() {
 }
 
 // φ of direct contact is (41.3194 + 47.3455 + 43.1060 + 22.2)/36 = 4.2770; scipy: f.sf(0.1524763/4.2769680, 1, 36).
-// Verifies: PSY-034, PSY-043.
+// Verifies: PSY-034, PSY-042.
 #[test]
 fn dispersion_makes_deviances_smaller() {
     let table = AnswerTable::paper().unwrap();
@@ -76,7 +76,7 @@ fn dispersion_makes_deviances_smaller() {
     assert_eq!(found.factor(), 1.0);
 }
 
-// Verifies: PSY-040, PSY-041.
+// Verifies: PSY-040.
 #[test]
 fn without_three_depths_or_wrong_answers_there_is_no_function() {
     let table = |header: &str, rows: &str| {

@@ -7,7 +7,7 @@ use crate::psychophysics::AnswerTable;
 use crate::psychophysics::dispersion::dispersion;
 use crate::stats::tests::{assert_near, numbers};
 
-// Verifies: PSY-023, PSY-024.
+// Verifies: PSY-023.
 #[test]
 fn gamma_is_the_image_of_the_share_and_of_its_interval() {
     let rate = Rate::new(253, 300).unwrap();
@@ -26,7 +26,7 @@ fn gamma_is_the_image_of_the_share_and_of_its_interval() {
     assert!(rate.wilson.lower > rate.clopper_pearson.lower);
 }
 
-// Verifies: PSY-024.
+// Verifies: PSY-023.
 #[test]
 fn nothing_is_infinite_and_nothing_negative() {
     let all = Rate::new(30, 30).unwrap().gamma;
@@ -56,7 +56,7 @@ const EXPECTED: &str = "
 0.5192583355609178 0.6407416644390821 7.991242474001094  0.5350290076823754
 ";
 
-// Verifies: PSY-025, PSY-031.
+// Verifies: PSY-023, PSY-031.
 #[test]
 fn subjects_as_the_sample_and_chi_square_of_table_1() {
     let table = AnswerTable::paper().unwrap();
@@ -83,7 +83,7 @@ fn subjects_as_the_sample_and_chi_square_of_table_1() {
     }
 }
 
-// Verifies: PSY-025, PSY-031.
+// Verifies: PSY-023, PSY-031.
 #[test]
 fn trials_may_differ_between_subjects() {
     let counts = [(27, 30), (50, 60), (5, 10), (9, 20)];
@@ -104,7 +104,7 @@ fn where_few_answers_are_right_they_make_the_law_rough() {
     assert!(found.is_rough);
 }
 
-// Verifies: PSY-025, PSY-031.
+// Verifies: PSY-023, PSY-031.
 #[test]
 fn one_subject_or_equal_ones_say_nothing_of_the_next() {
     let same = Rate::new(50, 60).unwrap();

@@ -3,7 +3,7 @@
 use super::*;
 use crate::stats::tests::assert_near;
 
-// Verifies: PSY-041.
+// Verifies: PSY-040.
 #[test]
 fn maxima_inside_and_at_the_ends() {
     // The bracket of two cells shrinks by 4·10⁻⁶.
@@ -17,7 +17,7 @@ fn maxima_inside_and_at_the_ends() {
     assert_near(maximum(hills, 0.0, 10.0, 10).0, 7.0, 1e-5);
 }
 
-// Verifies: PSY-041.
+// Verifies: PSY-040.
 #[test]
 fn crossings_in_either_direction_and_from_infinity() {
     let root = std::f64::consts::LN_2;

@@ -36,7 +36,7 @@ fn the_report_has_the_same_table() {
     }
 }
 
-// Verifies: PSY-020, PSY-021.
+// Verifies: PSY-020.
 #[test]
 fn names_and_trials_are_free() {
     let text = "\u{feff}# mine\nsubject, condition, trials, soft 6.6, stiff 6.6\n a b , x , 7 , 0 , 7 \n\nc,x,1000,999,1\na b,y,1,1,0\n";
@@ -68,7 +68,7 @@ subject, => sbjct, => t.csv:1: header \"sbjct,condition,trials,2.6,8.6\", expect
 2,gel => 1,gel => t.csv:3: subject \"1\" again under condition \"gel\", expected once; first in line 2
 ";
 
-// Verifies: PSY-021, PSY-022.
+// Verifies: PSY-020.
 #[test]
 fn what_is_no_table_is_refused_with_line_column_and_value() {
     let good = "subject,condition,trials,2.6,8.6\n1,gel,30,28,20\n2,gel,30,30,21\n";

@@ -41,7 +41,7 @@ fn words(parameter: Parameter) -> (&'static str, &'static str, f64) {
 /// # Errors
 /// If drawing fails.
 ///
-/// Implements: CLI-164, CLI-165.
+/// Implements: CLI-163.
 pub fn place_figure(bank: &Bank, place: &PlacePosterior) -> Result<String, Refusal> {
     let draw = || -> DrawingResult<String> {
         let mut panels = Vec::new();
@@ -299,7 +299,7 @@ fn region(cells: &[Rectangle], level: f64) -> Vec<Vec<(f64, f64)>> {
 mod tests {
     use super::*;
 
-    // Verifies: CLI-164.
+    // Verifies: CLI-163.
     #[test]
     fn the_nodes_of_a_cell_share_it_evenly() {
         // Two nodes in the first cell, none in the second, three in the last.
@@ -308,7 +308,7 @@ mod tests {
         assert_eq!(found, expected);
     }
 
-    // Verifies: CLI-164.
+    // Verifies: CLI-163.
     #[test]
     fn a_curve_is_0_where_no_cell_counts() {
         let curve = [(2.5, 1.0), (3.5, 3.0)];
@@ -320,7 +320,7 @@ mod tests {
         }
     }
 
-    // Verifies: CLI-165.
+    // Verifies: CLI-163.
     #[test]
     fn a_region_has_the_densest_cells_and_joins_neighbours() {
         let cell = |x: f64, y: f64, mass: f64, density: f64| {

@@ -18,7 +18,7 @@ use crate::report::{Findings, Topic, paper, text};
 /// # Errors
 /// If drawing fails.
 ///
-/// Implements: REP-039.
+/// Implements: REP-030.
 pub fn draw(figures: &mut Figures, found: &Findings) -> Result<(), Refusal> {
     let bridge = found.bridge.as_ref();
     let played = bridge.and_then(|bridge| bridge.conditions.get(paper::FEM_PLAYBACK));

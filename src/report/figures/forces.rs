@@ -19,7 +19,7 @@ use crate::study::Kind;
 /// # Errors
 /// If a map does not fit the reference.
 ///
-/// Implements: REP-036.
+/// Implements: REP-031.
 pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Refusal> {
     let mut add = |file: (&str, &str), words: Words<'_>, panels: &[Panel]| {
         let drawn = chart(panels, "Lateral position of the probe x (mm)");

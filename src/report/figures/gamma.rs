@@ -18,7 +18,7 @@ use crate::study::{Band, Kind};
 /// # Errors
 /// If drawing fails.
 ///
-/// Implements: REP-045.
+/// Implements: REP-030.
 pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Refusal> {
     let maps = found.maps.iter();
     let maps = maps.filter_map(|map| Some((1e3 * map.inclusion_depth_m?, map)));

@@ -23,7 +23,7 @@ const LETTERS: usize = 21;
 /// # Errors
 /// If drawing fails.
 ///
-/// Implements: REP-082.
+/// Implements: REP-081.
 pub fn draw(figures: &mut Figures, run: &Run) -> Result<(), Refusal> {
     let Some(study) = &run.study else {
         return Ok(());

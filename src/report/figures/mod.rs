@@ -149,7 +149,7 @@ fn band_ends(of: &str, bands: &[(f64, Band)], scale: f64) -> Vec<Line> {
 /// The document with a head that scales and that a screen reader can read. The ids come from the file name, which
 /// is unique, since all figures share one page.
 ///
-/// Implements: REP-032, REP-033.
+/// Implements: REP-031.
 fn with_head(
     (svg, height): (String, i32),
     file_name: &str,

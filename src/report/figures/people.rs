@@ -59,7 +59,7 @@ fn depths(condition: &ConditionAnalysis) -> Vec<f64> {
 /// # Errors
 /// If drawing fails.
 ///
-/// Implements: REP-037, REP-038.
+/// Implements: REP-030.
 pub fn draw(figures: &mut Figures, run: &Run, people: &Analysis) -> Result<(), Refusal> {
     for (at, (of, number)) in people.conditions.iter().zip(10..13).enumerate() {
         let predicted = match at {

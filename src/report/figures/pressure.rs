@@ -18,7 +18,7 @@ use crate::report::{
 /// # Errors
 /// If drawing fails.
 ///
-/// Implements: REP-046.
+/// Implements: REP-030.
 pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Refusal> {
     let maps: Vec<_> = found.arrays().collect();
     if maps.is_empty() {

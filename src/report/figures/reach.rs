@@ -15,7 +15,7 @@ use crate::report::text::{extremes, trimmed};
 /// # Errors
 /// If drawing fails.
 ///
-/// Implements: CLI-166.
+/// Implements: CLI-163.
 pub fn reach_figure(
     bank: &Bank,
     plain: &[Reached],

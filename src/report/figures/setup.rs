@@ -95,7 +95,7 @@ pub fn in_millimetres(corners: impl IntoIterator<Item = [f64; 2]>) -> Vec<(f64, 
 /// # Errors
 /// If drawing fails.
 ///
-/// Implements: REP-035.
+/// Implements: REP-030.
 pub fn draw(figures: &mut Figures, run: &Run) -> Result<(), Refusal> {
     let maps = once(&run.reference).chain(&run.maps);
     let all: Vec<&Phantom> = maps.filter_map(|map| map.phantom()).collect();

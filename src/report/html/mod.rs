@@ -18,7 +18,7 @@ use crate::study::{Band, Change, Conclusion, Kind, StudyResults};
 
 /// How the page looks.
 ///
-/// Implements: REP-034, REP-064, REP-067, REP-068.
+/// Implements: REP-034, REP-064.
 pub const STYLE: &str = include_str!("style.css");
 /// What the name of the SVG namespace is called inside HTML: nothing, since HTML knows `<svg>` by itself.
 const NAMESPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
@@ -49,7 +49,7 @@ struct Page<'a> {
 
 /// One self-contained page: what was found, the figures and tables, the comparison, the certificates.
 ///
-/// Implements: REP-040, REP-041, REP-042, REP-043, REP-044, REP-060, REP-061, REP-062, REP-063, REP-065, REP-066, REP-069, REP-074, REP-081, REP-083.
+/// Implements: REP-040, REP-041, REP-042, REP-060, REP-061, REP-064, REP-081, REP-083.
 pub fn html(run: &Run, findings: &Findings, figures: &[Figure]) -> String {
     let page = Page {
         run,

@@ -31,7 +31,7 @@ fn with_study() -> Run {
     }
 }
 
-// Verifies: REP-081, REP-082, REP-083.
+// Verifies: REP-081, REP-083.
 #[test]
 fn a_study_stands_beside_the_numbers_of_the_run() {
     let run = with_study();
@@ -127,7 +127,7 @@ fn without_a_study_the_page_says_so() {
     );
 }
 
-// Verifies: REP-080.
+// Verifies: REP-004.
 #[test]
 fn a_study_of_something_else_is_refused() {
     type Edit = dyn Fn(&mut StudyResults);

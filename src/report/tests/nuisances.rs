@@ -52,7 +52,7 @@ fn channels(of: GammaByChannel) -> [f64; 3] {
 
 /// Expected values are the lengths of the residuals of numpy.linalg.lstsq over the noise of 0.1 N. The columns are 1 and −1, −½,
 /// 0, ½, 1 in each channel, the reference at 4 mm, and its difference to 2 mm; for a channel alone, their rows of that channel.
-// Verifies: REP-016, REP-017.
+// Verifies: REP-016.
 #[test]
 fn what_is_unknown_takes_its_part_of_gamma() {
     let Made { found, summary, .. } = made(&crooked());
@@ -92,7 +92,7 @@ fn what_is_unknown_takes_its_part_of_gamma() {
 
 // Five samples of 0, 1.5, 3, 1.5, 0 normal and 0, −1, 0, 1, 0 lateral, in units of the noise, over forces of 1.48 N throughout: an
 // offset, or the gain, takes 6²/5 from 13.5, a drift (2·½)²/2.5 from 2, and the gain and the depth nothing more than the offset.
-// Verifies: REP-016, REP-017.
+// Verifies: REP-016.
 #[test]
 fn gamma_beside_a_level_force_is_that_of_plain_arithmetic() {
     let found = made(&paper_run()).found;
@@ -105,7 +105,7 @@ fn gamma_beside_a_level_force_is_that_of_plain_arithmetic() {
     assert_near(squares, &[all, normal, lateral]);
 }
 
-// Verifies: REP-003, REP-016, REP-017.
+// Verifies: REP-003, REP-016.
 #[test]
 fn what_the_unknown_explains_is_no_signal() {
     let beside = |run: &Run| made(run).found.maps[0].gamma_left.clone();
@@ -136,7 +136,7 @@ fn what_the_unknown_explains_is_no_signal() {
 
 // γ² is 15.5 of a peak of 0.3 N and 7.9 if more is unknown, and grows with the square of the peak: 7.87, 5.91, 3.94 and 1.97,
 // of which 5.62, 4.22, 2.81 and 1.41 are left; the rates need 3.29.
-// Verifies: REP-069.
+// Verifies: REP-041.
 #[test]
 fn the_page_tells_what_is_left() {
     let page = made(&paper_run()).page;
@@ -155,7 +155,7 @@ fn the_page_tells_what_is_left() {
 }
 
 /// The axis from 0 to 8 is 330 pixels of ten units high; places are rounded to whole units.
-// Verifies: REP-045.
+// Verifies: REP-030.
 #[test]
 fn the_figure_shows_every_gamma() {
     let made = made(&paper_run());

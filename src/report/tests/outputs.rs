@@ -8,7 +8,7 @@ use crate::force_map::Discretization;
 use crate::phantom::Phantom;
 use crate::report::*;
 
-// Verifies: REP-044.
+// Verifies: REP-041.
 #[test]
 fn page_and_summary_tell_the_bands() {
     let mut run = paper_run();
@@ -40,7 +40,7 @@ fn every_figure_is_there() {
     assert_eq!(names.join(" "), expected);
 }
 
-// Verifies: REP-032, REP-033, REP-042.
+// Verifies: REP-031, REP-042.
 #[test]
 fn figures_are_well_formed_whatever_the_names() {
     for figure in [paper_run(), hostile_run()]
@@ -200,7 +200,7 @@ fn numbers_stay_with_their_units() {
     assert_eq!(prose, expected.replace('_', "\u{a0}"));
 }
 
-// Verifies: REP-050, REP-051.
+// Verifies: REP-050.
 #[test]
 fn the_summary_is_json_with_units() {
     for run in [hostile_run(), paper_run()] {

@@ -6,7 +6,7 @@ use crate::report::Run;
 use crate::report::figures::style::{GREY, INK, PALETTE, ramp};
 use crate::report::html::STYLE;
 
-// Verifies: REP-060, REP-066.
+// Verifies: REP-060, REP-061.
 #[test]
 fn headings_go_down_by_one_and_contents_lead_to_sections() {
     for run in [paper_run(), hostile_run()] {
@@ -54,7 +54,7 @@ fn tables_have_captions_and_scopes() {
 }
 
 /// The counts are those of the paper's Table 1, the sums those of its §5 to a millinewton.
-// Verifies: REP-036, REP-062, REP-063, REP-071.
+// Verifies: REP-031, REP-041, REP-070.
 #[test]
 fn the_papers_tables_are_there() {
     let page = made(&paper_run()).page;
@@ -130,7 +130,7 @@ fn property(start: &str, name: &str) -> Colour {
     colour(between(start, &format!("--{name}: "), ";"))
 }
 
-// Verifies: REP-067.
+// Verifies: REP-034.
 #[test]
 fn words_stand_out_from_their_ground() {
     let dark = STYLE.find("prefers-color-scheme: dark").unwrap();
@@ -180,7 +180,7 @@ fn charts_stand_out_in_light_and_dark() {
     }
 }
 
-// Verifies: REP-068.
+// Verifies: REP-064.
 #[test]
 fn print_breaks_no_figure() {
     let (_, print) = STYLE.split_once("@media print").unwrap();
@@ -195,7 +195,7 @@ fn print_breaks_no_figure() {
     assert_eq!(count(dark), count(&format!("screen and {dark}")));
 }
 
-// Verifies: REP-060, PSY-087.
+// Verifies: REP-060, PSY-085.
 #[test]
 fn the_page_begins_with_no_more_than_holds_over_every_sweep() {
     let mut run = paper_run();

@@ -64,7 +64,7 @@ fn assert_words(svg: &str, count: usize, words: &[&str]) {
 }
 
 /// A drawing unit is 1/91 mm of the paper's phantom, and every place is rounded to a whole one.
-// Verifies: REP-035.
+// Verifies: REP-030.
 #[test]
 fn figure_1_is_to_scale() {
     let mut run = paper_run();
@@ -157,7 +157,7 @@ const ELLIPSE: &str = "centre_x_mm = -6\ndepth_mm = 4\nwidth_mm = 5\nheight_mm =
 const TRIANGLE: &str = "centre_x_mm = 5\ndepth_mm = 6\npoints_mm = [[-3, 0], [3, 0], [0, 5]]";
 const DISC: &str = "depth_mm = 4\ndiameter_mm = 5";
 
-// Verifies: REP-035.
+// Verifies: REP-030.
 #[test]
 fn figure_1_shows_inclusions_of_any_shape_and_place() {
     let phantom = own("two", "", &TWO, &[ELLIPSE, TRIANGLE]);
@@ -197,7 +197,7 @@ fn figure_1_shows_inclusions_of_any_shape_and_place() {
     assert!(names.all(|name| !name.starts_with("figure-1-")));
 }
 
-// Verifies: REP-035.
+// Verifies: REP-030.
 #[test]
 fn figure_1_is_drawn_for_each_phantom_that_differs_in_more_than_inclusions() {
     let mut softer = own("softer", "", &TWO, &[DISC]);
@@ -221,7 +221,7 @@ fn figure_1_is_drawn_for_each_phantom_that_differs_in_more_than_inclusions() {
     );
 }
 
-// Verifies: REP-035.
+// Verifies: REP-030.
 #[test]
 fn figure_1_shows_how_walls_and_floor_hold() {
     // The layers are 34 mm wide and 15.5 mm high; what holds them is drawn 2.38 mm thick.
@@ -266,7 +266,7 @@ fn figure_1_shows_how_walls_and_floor_hold() {
     }
 }
 
-// Verifies: REP-003, REP-035, REP-064.
+// Verifies: REP-003, REP-030, REP-064.
 #[test]
 fn no_words_of_the_phantoms_figures_lie_on_others() {
     let many: Vec<_> = (0..9)
@@ -339,7 +339,7 @@ fn figure_6_tells_layers_and_inclusions_apart() {
     assert_eq!(found, [0, 1, 1, 2]);
 }
 
-// Verifies: REP-037.
+// Verifies: REP-030.
 #[test]
 fn figures_10_to_12_show_every_subject() {
     let made = made(&paper_run());
@@ -367,7 +367,7 @@ fn bars(picture: &str) -> Vec<(f64, [f64; 2], [f64; 2])> {
     lines.filter_map(upright).collect()
 }
 
-// Verifies: REP-038.
+// Verifies: REP-030.
 #[test]
 fn figure_13_has_three_intervals_for_each_share() {
     let made = made(&paper_run());
@@ -394,7 +394,7 @@ fn figure_13_has_three_intervals_for_each_share() {
     }
 }
 
-// Verifies: REP-039, REP-071.
+// Verifies: REP-030, REP-070.
 #[test]
 fn the_bridge_shows_every_convention_and_the_answers() {
     let mut run = paper_run();
@@ -420,7 +420,7 @@ fn the_bridge_shows_every_convention_and_the_answers() {
     );
 }
 
-// Verifies: REP-006, REP-036.
+// Verifies: REP-004, REP-031.
 #[test]
 fn a_measured_map_is_figure_7_and_a_computed_one_is_refused() {
     let mut run = paper_run();

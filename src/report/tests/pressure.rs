@@ -34,7 +34,7 @@ fn felt() -> Run {
 
 // In units of the noise of 0.1 N, with n elements of noise 0.1/√n: at x = 0 halves differ by 0.8 and −0.4, quarters and what is finer
 // by 8/m of 0.1·m and of −0.05·m for m of the 32 elements in one; at 5 mm only the finest of all tells 0.8 from −0.8.
-// Verifies: REP-018, REP-019.
+// Verifies: REP-018.
 #[test]
 fn gamma_of_arrays_is_that_of_plain_arithmetic() {
     let Made { found, summary, .. } = made(&felt());
@@ -73,7 +73,7 @@ fn gamma_of_arrays_is_that_of_plain_arithmetic() {
 }
 
 // Σ of the squares of n parts is at least the square of their sum over n (Cauchy and Schwarz), which the noise s/√n undoes.
-// Verifies: REP-019.
+// Verifies: REP-018.
 #[test]
 fn a_finer_array_never_reads_less() {
     let generator = crate::stats::random::Generator::new(7, 0);
@@ -119,7 +119,7 @@ fn sweeps_of_arrays_that_do_not_fit_are_left_out() {
 }
 
 // γ of the press is 3 for the total force and √3.2 for the array, of the sweep √15.5 and √44.16; 3.29 is needed.
-// Verifies: REP-046, REP-074.
+// Verifies: REP-030, REP-041.
 #[test]
 fn the_page_reads_what_the_numbers_say() {
     let made = made(&felt());

@@ -43,7 +43,7 @@ fn playing_up_to(stiffest: f64) -> Damping {
     }
 }
 
-// Verifies: SRV-044, SRV-046.
+// Verifies: SRV-044.
 #[test]
 fn the_surface_is_put_in_front_and_rounding_is_reported() {
     let loaded = LoadedTable::new(&map(&[0.1, 0.5], &[-0.25, 0.5], |d, x| [x, 10.0 * d])).unwrap();
@@ -58,7 +58,7 @@ fn the_surface_is_put_in_front_and_rounding_is_reported() {
     assert_eq!(loaded.rounding().force_n, 0.0);
 }
 
-// Verifies: SRV-044, SRV-046.
+// Verifies: SRV-044.
 #[test]
 fn a_map_from_the_surface_on_is_taken_as_it_is() {
     let loaded =
@@ -68,7 +68,7 @@ fn a_map_from_the_surface_on_is_taken_as_it_is() {
     assert_eq!(loaded.rounding().force_n, (f64::from(0.05f32) - 0.05).abs());
 }
 
-// Verifies: SRV-045, SRV-047.
+// Verifies: SRV-047.
 #[test]
 fn a_map_is_refused_with_its_place() {
     let refused = |depths: &[f64], laterals: &[f64], force: fn(f64, f64) -> [f64; 2]| {
@@ -101,7 +101,7 @@ laterals_m[1] = 1.5, expected at most ±1 m";
     }
 }
 
-// Verifies: SRV-045, SRV-047.
+// Verifies: SRV-047.
 #[test]
 fn a_map_at_the_limits_is_taken() {
     let at_limits = map(&[1e-6, 1.0], &[-1.0, 1.0], |d, x| [100.0 * d * x, 100.0]);

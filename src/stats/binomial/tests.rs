@@ -38,7 +38,7 @@ const INTERVALS: &str = "
 1 1 0.5 0.25 1.0 0.6873152559174167 1.0
 ";
 
-// Verifies: DET-121, DET-122.
+// Verifies: DET-121.
 #[test]
 fn intervals_of_clopper_and_pearson_and_of_wilson() {
     for [k, n, confidence, expected @ ..] in numbers::<7>(INTERVALS) {
@@ -53,7 +53,7 @@ fn intervals_of_clopper_and_pearson_and_of_wilson() {
     }
 }
 
-// Verifies: DET-123.
+// Verifies: DET-005.
 #[test]
 fn impossible_counts_are_refused() {
     let (what, range) = ("trials", "at least 1 and at most 2^53");

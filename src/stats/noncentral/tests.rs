@@ -52,7 +52,7 @@ fn chi_square_tails() {
     }
 }
 
-// Verifies: DET-131, DET-134.
+// Verifies: DET-130, DET-134.
 #[test]
 fn f_tails() {
     // x, numerator, denominator, noncentrality, lower and upper tail.
@@ -85,7 +85,7 @@ fn f_tails() {
     }
 }
 
-// Verifies: DET-132, DET-134.
+// Verifies: DET-130, DET-134.
 #[test]
 fn student_tails() {
     // x, degrees, noncentrality, lower and upper tail.
@@ -122,7 +122,7 @@ fn student_tails() {
     }
 }
 
-// Verifies: DET-133. The older function goes through another series, with less accuracy.
+// Verifies: DET-130. The older function goes through another series, with less accuracy.
 #[test]
 fn without_noncentrality_the_chi_square_law_is_central() {
     for degrees in [0.3, 1.0, 4.0, 9.5, 20.0] {
@@ -187,7 +187,7 @@ fn points_of_the_chi_square_law() {
     assert!(least > 0.0 && least < f64::MIN_POSITIVE);
 }
 
-// Verifies: DET-137.
+// Verifies: DET-136.
 #[test]
 fn points_of_students_law() {
     for [degrees, upper, expected] in numbers(
@@ -210,7 +210,7 @@ fn points_of_students_law() {
     assert_eq!(beyond, Err(NumericError::Overflow { what: "the point" }));
 }
 
-// Verifies: DET-138.
+// Verifies: DET-005.
 #[test]
 fn what_has_no_answer_is_refused() {
     let nan = f64::NAN;
@@ -264,7 +264,7 @@ fn squares() -> impl Strategy<Value = f64> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    // Verifies: DET-135. Slack for monotony: twice DET-134.
+    // Verifies: DET-134. Slack for monotony: twice DET-134.
     #[test]
     fn tails_add_up_and_are_monotone(
         degrees in sizes(-1.0, 4.0),
@@ -301,7 +301,7 @@ proptest! {
         }
     }
 
-    // Verifies: DET-131, DET-132. T² is F with 1 numerator degree; the signs of δ and t are one route through mixtures and one
+    // Verifies: DET-130. T² is F with 1 numerator degree; the signs of δ and t are one route through mixtures and one
     // through an integral.
     #[test]
     fn the_square_of_t_is_f(

@@ -4,7 +4,7 @@
 use super::*;
 use crate::stats::tests::assert_ulps;
 
-// Verifies: DET-001, DET-002.
+// Verifies: DET-001.
 #[test]
 fn distribution_is_within_four_ulps_from_the_far_tail_to_one() {
     for (x, expected) in [
@@ -28,7 +28,7 @@ fn distribution_is_within_four_ulps_from_the_far_tail_to_one() {
     }
 }
 
-// Verifies: DET-002.
+// Verifies: DET-001.
 #[test]
 fn distribution_reaches_its_limits_without_nan() {
     for x in [-f64::MAX, -1e3, -40.1, -39.0] {
@@ -61,7 +61,7 @@ fn density_is_within_four_ulps() {
     assert_eq!(density(1e200), Ok(0.0));
 }
 
-// Verifies: DET-003.
+// Verifies: DET-001.
 #[test]
 fn quantile_is_within_four_ulps_for_every_kind_of_probability() {
     for (p, expected) in [
@@ -92,7 +92,7 @@ fn quantile_is_within_four_ulps_for_every_kind_of_probability() {
     }
 }
 
-// Verifies: DET-003.
+// Verifies: DET-001.
 #[test]
 fn quantile_is_within_six_ulps_for_the_smallest_probabilities() {
     for (p, expected) in [
@@ -108,7 +108,7 @@ fn quantile_is_within_six_ulps_for_the_smallest_probabilities() {
     }
 }
 
-// Verifies: DET-003.
+// Verifies: DET-001.
 #[test]
 fn quantile_never_decreases_between_neighbours_at_its_seams() {
     for seam in [
@@ -136,7 +136,7 @@ fn quantile_never_decreases_between_neighbours_at_its_seams() {
     }
 }
 
-// Verifies: DET-004.
+// Verifies: DET-005.
 #[test]
 fn values_outside_the_domain_are_refused() {
     let refused = |what, value, range| Err(NumericError::OutOfRange { what, value, range });

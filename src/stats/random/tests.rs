@@ -48,7 +48,7 @@ fn a_deviate_is_a_function_of_its_address() {
     assert_ne!(Generator::new(8, 3).normal(11, 0), all[0]);
 }
 
-// Verifies: DET-112.
+// Verifies: DET-110.
 #[test]
 fn ziggurat_has_layers_of_equal_area_under_the_curve() {
     let area = EDGES[0] * height(TAIL);
@@ -65,7 +65,7 @@ fn ziggurat_has_layers_of_equal_area_under_the_curve() {
     }
 }
 
-// Verifies: DET-112.
+// Verifies: DET-110.
 #[test]
 fn deviates_reach_every_part_of_the_ziggurat() {
     // The words that must end in the base's tail, at either sign, and in the top layer's wedge.

@@ -38,7 +38,7 @@ fn tails_of_the_gamma_law() {
     assert_eq!(gamma_tail(3.0, 0.0), Ok(1.0));
 }
 
-// Verifies: PSY-030, DET-133.
+// Verifies: PSY-030, DET-130.
 #[test]
 fn closed_forms() {
     for x in [0.1, 1.0, 5.0, 40.0] {
@@ -62,7 +62,7 @@ fn closed_forms() {
     }
 }
 
-// Verifies: PSY-030, DET-133.
+// Verifies: PSY-030, DET-130.
 #[test]
 fn tails_of_the_f_law() {
     for (x, numerator, denominator, expected, tolerance) in [

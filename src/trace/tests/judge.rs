@@ -29,7 +29,7 @@ pub fn question<'a>(depth: f64) -> Question<'a> {
     }
 }
 
-// Verifies: TRC-020, TRC-022, TRC-023, TRC-065, TRC-066, TRC-067, CLI-043.
+// Verifies: TRC-020, TRC-021, TRC-065, TRC-060, CLI-043.
 #[test]
 fn a_record_at_a_known_position_by_hand() {
     // At 2 mm, half-way, the bump is 1.5 times that of the first row; at −0.5 mm, half-way, it is
@@ -50,7 +50,7 @@ fn a_record_at_a_known_position_by_hand() {
     assert_eq!(found.decision, Some(Decision::Inclusion));
 }
 
-// Verifies: TRC-020, TRC-024, TRC-063, CLI-049.
+// Verifies: TRC-020, TRC-024, TRC-060, CLI-049.
 #[test]
 fn maps_that_do_not_fit_are_refused() {
     let judged = |record: &Record, reference: &ForceTable, depth: f64| {
@@ -155,7 +155,7 @@ pub fn close(found: f64, expected: f64) {
     assert!(error < 1e-9, "{found}, not {expected}");
 }
 
-// Verifies: TRC-060, TRC-061, TRC-062, TRC-063, TRC-064, TRC-065, TRC-066, TRC-067, TRC-068, TRC-070, TRC-074.
+// Verifies: TRC-060, TRC-064, TRC-065, TRC-068, TRC-070.
 #[test]
 fn what_is_unknown_is_fitted_by_least_squares() {
     use Unknown::{Depth, Drift, Gain, Offset, Variance};
@@ -248,7 +248,7 @@ const USUAL: &[Unknown] = {
     &[Offset, Drift, Gain, Variance]
 };
 
-// Verifies: TRC-072, TRC-074, TRC-075.
+// Verifies: TRC-072, TRC-070, TRC-075.
 #[test]
 fn a_record_that_cannot_be_judged_has_a_cause() {
     let held = {
@@ -290,7 +290,7 @@ fn a_record_that_cannot_be_judged_has_a_cause() {
     }
 }
 
-// Verifies: TRC-071.
+// Verifies: TRC-070.
 #[test]
 fn the_limits_of_chi_square() {
     let record = sweep(0.5, 2);
@@ -309,7 +309,7 @@ fn the_limits_of_chi_square() {
     assert_eq!(limits(USUAL, None), None);
 }
 
-// Verifies: TRC-072, TRC-073.
+// Verifies: TRC-072.
 #[test]
 fn samples_that_depend_on_one_another_do_not_count_twice() {
     // 41 samples, and the 2001 that a line through them gives.

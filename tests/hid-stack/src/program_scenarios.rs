@@ -56,7 +56,7 @@ fn has_fifo_thread(id: u32) -> bool {
     threads.map(|thread| thread.expect("a thread")).any(is_fifo)
 }
 
-/// Verifies: HID-093, HID-032.
+/// Verifies: HID-094, HID-031.
 fn devices() -> String {
     let board = Board::good(Kind::Uhid, "devices", REPORTS);
     open("devices");
@@ -112,7 +112,7 @@ fn signalled(signal: &str) -> String {
     format!("exit code 0, a thread by SCHED_FIFO, {forces} force reports, stopped")
 }
 
-/// Verifies: HID-095, HID-054.
+/// Verifies: HID-094, HID-054.
 pub fn held_up() -> String {
     let board = Board::good(Kind::Usb, "heldup", &[(300, Act::Refuse)]);
     // A USB device is there only a while after it was plugged in.

@@ -33,7 +33,7 @@ pub const ALL: &[Scenario] = &[
     ("killed", killed),
 ];
 
-/// Verifies: HID-080, HID-081, HID-030, HID-031, HID-032.
+/// Verifies: HID-080, HID-030, HID-031.
 pub fn protocol(kind: Kind) -> String {
     let board = Board::good(kind, "protocol", REPORTS);
     let mut device = open("protocol");
@@ -82,7 +82,7 @@ pub fn protocol(kind: Kind) -> String {
     measured
 }
 
-/// Verifies: HID-082, HID-034.
+/// Verifies: HID-085, HID-033.
 fn answers() -> String {
     let short = Answer::Report(CAPABILITIES.encode()[..9].to_vec());
     let measured = [
@@ -109,7 +109,7 @@ fn answers() -> String {
     measured.join("; ")
 }
 
-/// Verifies: HID-083, HID-035.
+/// Verifies: HID-083, HID-033.
 pub fn cycles(kind: Kind) -> String {
     let board = Board::good(kind, "cycles", REPORTS);
     let allocations = assert_no_alloc::violation_count();
@@ -140,7 +140,7 @@ pub fn cycles(kind: Kind) -> String {
     )
 }
 
-/// Verifies: HID-084, HID-062.
+/// Verifies: HID-083, HID-062.
 fn burn() -> String {
     schedule::fifo(Fifo::Loop);
     // By default Linux takes the processor from a thread of SCHED_FIFO for 50 ms once it has had it for 0.95 s, and the board's
@@ -174,7 +174,7 @@ fn plays(serial: &str) {
     assert!(counters.played > 200, "{counters:?}");
 }
 
-/// Verifies: HID-085, HID-086, HID-036.
+/// Verifies: HID-085, HID-036.
 pub fn unplug(kind: Kind) -> String {
     let board = Board::good(kind, "unplug", &[(500, Act::Unplug)]);
     let first = open("unplug").identity().clone();
@@ -226,7 +226,7 @@ const MALFORMED: Script = &[
     (400, Act::Bytes(LONG)),
 ];
 
-/// Verifies: HID-087, HID-002, HID-006.
+/// Verifies: HID-085, HID-002, HID-006.
 fn malformed_reports() -> String {
     let board = Board::good(Kind::Uhid, "malformed", MALFORMED);
     let mut device = open("malformed");
@@ -248,7 +248,7 @@ fn malformed_reports() -> String {
     format!("of one too short, one too long, one of another number and an empty one came {found:?}")
 }
 
-/// Verifies: HID-087.
+/// Verifies: HID-085.
 fn garbage() -> String {
     let board = Board::good(Kind::Uhid, "garbage", MALFORMED);
     let run = run("garbage", 10_000);
@@ -267,7 +267,7 @@ fn garbage() -> String {
     format!("{garbage} garbage, {missed} cycles without a fresh sample; {end}")
 }
 
-/// Verifies: HID-090, HID-016.
+/// Verifies: HID-085, HID-016.
 fn panics() -> String {
     let board = Board::good(Kind::Uhid, "panics", REPORTS);
     let mut session = begin(open("panics"));
@@ -286,7 +286,7 @@ fn panics() -> String {
     format!("a panic with force on: zero and stop after {forces} force reports")
 }
 
-/// Verifies: HID-088.
+/// Verifies: HID-085.
 fn silence() -> String {
     let board = Board::good(Kind::Uhid, "silence", &[(300, Act::Silence)]);
     let Run { end, counters, .. } = run("silence", 10_000);
@@ -297,7 +297,7 @@ fn silence() -> String {
     end.to_string()
 }
 
-/// Verifies: HID-089, HID-042.
+/// Verifies: HID-089, HID-033.
 fn killed() -> String {
     let board = Board::good(Kind::Uhid, "killed", REPORTS);
     let mut player = Command::new("/proc/self/exe");

@@ -41,7 +41,7 @@ fn blocking_write() -> String {
     )
 }
 
-/// Verifies: HID-092.
+/// Verifies: HID-089.
 fn refusal() -> String {
     let board = Board::good(Kind::Usb, "refusal", &[(300, Act::Refuse)]);
     let Run { end, .. } = run("refusal", 10_000);

@@ -18,7 +18,7 @@ pub struct Accepted {
 /// # Errors
 /// A file that cannot be read; a line without a reason, of a case that does not exist, or of one that stands there twice.
 ///
-/// Implements: ORA-061.
+/// Implements: ORA-067.
 pub fn read_accepted(path: &Path, suite: &Suite) -> Result<Vec<Accepted>, Invalid> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| Invalid::new(path.display(), error.to_string()))?;

@@ -46,7 +46,7 @@ impl<'a> Answers<'a> {
     /// Finds out which case a line answers, and judges it. False for a line that answers nothing
     /// that is still open.
     ///
-    /// Implements: ORA-043, ORA-060.
+    /// Implements: ORA-043.
     pub fn take(&mut self, line: &[u8]) -> bool {
         let answer = serde_json::from_slice::<Value>(line);
         let Some(&oldest) = self.waiting.front() else {

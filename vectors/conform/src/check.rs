@@ -15,7 +15,7 @@ use super::verdict::Class;
 /// # Errors
 /// What is wrong with it.
 ///
-/// Implements: VEC-001, VEC-002, VEC-003, VEC-004, VEC-005, VEC-006, ORA-041.
+/// Implements: VEC-001, VEC-003, VEC-004, VEC-005, VEC-006, ORA-041.
 pub fn case(
     text: CaseText,
     tolerances: &BTreeMap<String, ToleranceText>,

@@ -47,7 +47,7 @@ const MOST: usize = 3;
 
 /// The diagnosis of each class with wrong answers in a group. `is_counted` tells which cases count.
 ///
-/// Implements: ORA-047, ORA-053, ORA-068, ORA-077.
+/// Implements: ORA-047, ORA-048.
 pub fn diagnose(
     group: &Group,
     outcomes: &[Outcome],

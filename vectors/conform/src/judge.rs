@@ -25,7 +25,7 @@ pub fn judge(case: &Case, answer: &Value, profile: &Profile) -> Outcome {
     }
 }
 
-/// Implements: ORA-052.
+/// Implements: ORA-058.
 fn judge_refusal(case: &Case, error: &Value) -> Outcome {
     let is_coded = error["code"].is_string();
     if !is_coded && !error.is_string() && !error.is_object() {
@@ -84,7 +84,7 @@ fn judge_values(case: &Case, ok: &Value, profile: &Profile) -> Outcome {
 
 /// Whether a request that must be refused was answered as it was meant; the tolerance tells that from other readings.
 ///
-/// Implements: ORA-066.
+/// Implements: ORA-058.
 fn is_as_meant(lenient: &Map<String, Value>, found: &Map<String, Value>) -> bool {
     let limit = Limit::stated(Tolerance::Relative(1e-6), 1.0);
     let is_near = |(key, value): (&String, &Value)| {

@@ -174,7 +174,7 @@ fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Implements: ORA-040, ORA-049, ORA-050, ORA-051, ORA-063, ORA-074.
+/// Implements: ORA-040, ORA-049, ORA-050, ORA-057.
 fn work(arguments: Arguments) -> Result<(), Failure> {
     match arguments.work {
         None => conform(&arguments),

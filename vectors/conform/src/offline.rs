@@ -24,7 +24,7 @@ pub enum Form {
 
 /// The questions of a suite as a file.
 ///
-/// Implements: ORA-057, ORA-063, ORA-064.
+/// Implements: ORA-057, ORA-064.
 pub fn questions(suite: &Suite, form: Form) -> String {
     if form == Form::Csv {
         return columns::questions(suite);
@@ -41,7 +41,7 @@ pub fn questions(suite: &Suite, form: Form) -> String {
 /// # Errors
 /// A file that cannot be read, questions that are not of this suite, and rows of a table that are none.
 ///
-/// Implements: ORA-075, ORA-076.
+/// Implements: ORA-075, ORA-064.
 pub fn judge_files(
     suite: &Suite,
     skip: &[String],

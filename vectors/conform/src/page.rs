@@ -12,7 +12,7 @@ td.n{text-align:right}td:first-child{min-width:10em}code{font-size:12px;word-bre
 
 /// The verdict as one page of HTML.
 ///
-/// Implements: ORA-065.
+/// Implements: ORA-050.
 pub fn page(verdict: &Verdict) -> String {
     let mut page = String::new();
     let outcome = if verdict.passed { "passed" } else { "failed" };

@@ -51,7 +51,7 @@ pub struct Plan {
 impl Plan {
     /// Skips groups and cases by name, and the groups whose op is not claimed. Lines of no op are for every program.
     ///
-    /// Implements: ORA-048, ORA-073.
+    /// Implements: ORA-048, ORA-040.
     pub fn new(suite: &Suite, skip: &[String], is_claimed: impl Fn(&str) -> bool) -> Plan {
         let mut asked = Vec::new();
         let mut outcomes = Vec::new();

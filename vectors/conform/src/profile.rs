@@ -52,7 +52,7 @@ impl Profile {
     /// # Errors
     /// A file that cannot be read, or holds no profile that can be.
     ///
-    /// Implements: ORA-055.
+    /// Implements: ORA-046.
     pub fn named(name: &str) -> Result<Profile, Invalid> {
         let single = (f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX));
         match name {
@@ -101,7 +101,7 @@ impl Profile {
     /// Whether a case is beyond what a careful program of this precision can answer: an argument whose square leaves the range, an
     /// answer outside it, or a case that says itself that so coarse a precision cannot see what it asks.
     ///
-    /// Implements: VEC-018, ORA-056.
+    /// Implements: VEC-018, ORA-067.
     pub fn is_extreme(&self, case: &Case) -> bool {
         if self.unit_roundoff == 0.0 {
             return false;

@@ -9,7 +9,7 @@ use super::verdict::{Program, ProgramFile};
 impl Program {
     /// A command that was run: its program, wherever the search path finds it, and those of its arguments that are files.
     ///
-    /// Implements: ORA-062.
+    /// Implements: ORA-048.
     pub fn of_command(command: &[OsString], version: String) -> Program {
         let files = command.iter().enumerate().filter_map(|(index, word)| {
             let path = if index == 0 {

@@ -168,7 +168,7 @@ impl Suite {
     /// # Errors
     /// As [`Suite::read`].
     ///
-    /// Implements: VEC-002, VEC-007.
+    /// Implements: VEC-001, VEC-007.
     pub fn of_files(mut files: BTreeMap<String, String>) -> Result<Suite, Invalid> {
         let manifest = files.remove(MANIFEST);
         let mut lines = String::new();
@@ -213,7 +213,7 @@ impl Suite {
     /// # Errors
     /// A group or case that does not exist.
     ///
-    /// Implements: ORA-040, ORA-059.
+    /// Implements: ORA-040.
     pub fn select(&self, choice: &Choice) -> Result<Suite, Unknown> {
         let is_group = |name: &str| self.groups.iter().any(|group| group.name == name);
         if let Some(name) = choice.only.iter().find(|name| !is_group(name)) {
@@ -309,7 +309,7 @@ fn check_manifest(text: &str, sums: &BTreeMap<&str, String>, sha256: &str) -> Re
 
 /// Reads one file.
 ///
-/// Implements: VEC-001, VEC-002.
+/// Implements: VEC-001.
 fn group(file: &str, text: &str) -> Result<Group, Invalid> {
     let read: GroupText =
         serde_json::from_str(text).map_err(|cause| Invalid::new(file, cause.to_string()))?;

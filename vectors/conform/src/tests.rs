@@ -66,7 +66,7 @@ fn a_difference_names_its_place() {
 
 /// A condition adds so many unit roundoffs to the tolerance, entry by entry: the largest error of a product of
 /// two numbers of f32 is 2⁻²⁴ of it.
-// Verifies: ORA-054, VEC-016.
+// Verifies: ORA-046, VEC-016.
 #[test]
 fn a_condition_adds_roundoffs_to_the_tolerance() {
     let condition: Condition = serde_json::from_value(json!([[1.0, 3.0], 2.0])).unwrap();
@@ -160,7 +160,7 @@ fn answered(answers: &[(f64, f64)]) -> Verdict {
     verdict(&suite, vec![cases.map(outcome).collect()])
 }
 
-// Verifies: ORA-047, ORA-053, ORA-068.
+// Verifies: ORA-047.
 #[test]
 fn bugs_are_named_that_explain_half_of_a_group_and_pairs_that_explain_more() {
     let (right, sign, unit, odd) = ((1.0, 2.0), (-1.0, -2.0), (1000.0, 2.0), (7.0, 7.0));
@@ -203,7 +203,7 @@ fn bugs_are_named_that_explain_half_of_a_group_and_pairs_that_explain_more() {
     assert_eq!(told(&[(1.0, -2.0)]), Vec::<String>::new());
 }
 
-// Verifies: ORA-047, ORA-053.
+// Verifies: ORA-047.
 #[test]
 fn classes_are_diagnosed_apart() {
     let suite = two_groups();
@@ -226,7 +226,7 @@ fn classes_are_diagnosed_apart() {
 }
 
 /// Normal numbers of f32 are from 2⁻¹²⁶ to 2¹²⁸, whose roots are 2⁻⁶³ and 2⁶⁴.
-// Verifies: ORA-056, VEC-018.
+// Verifies: ORA-067, VEC-018.
 #[test]
 fn extreme_cases_are_those_beyond_the_precision() {
     let power = |exponent| 2.0_f64.powi(exponent);
@@ -320,7 +320,7 @@ fn what_is_required_decides_what_fails() {
     }
 }
 
-// Verifies: ORA-058, ORA-052, ORA-066, VEC-020.
+// Verifies: ORA-058, VEC-006.
 #[test]
 fn a_wrong_answer_has_a_class() {
     let one = json!({"a": 1.0, "b": 2.0});

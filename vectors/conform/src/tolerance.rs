@@ -146,7 +146,7 @@ impl fmt::Display for Difference {
 /// # Errors
 /// The first difference.
 ///
-/// Implements: ORA-046, ORA-054.
+/// Implements: ORA-046.
 pub fn compare(
     place: &str,
     expected: &Value,

@@ -239,7 +239,7 @@ pub struct Verdict {
 impl Verdict {
     /// Counts the outcomes, which are in the order of the groups and their cases.
     ///
-    /// Implements: ORA-047, ORA-048, ORA-056, ORA-061.
+    /// Implements: ORA-047, ORA-048, ORA-067.
     pub fn new(
         suite: &Suite,
         measure: &Measure,

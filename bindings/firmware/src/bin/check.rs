@@ -12,7 +12,7 @@ use palpate_firmware::device::{CAPABILITIES, Device, Frame};
 use palpate_firmware::table::PAPER;
 use palpate_firmware::{scenario, told};
 
-/// The most that a step may take (FIR-005, FIR-006).
+/// The most that a step may take (FIR-005).
 const MOST_INSTRUCTIONS: u32 = 1200;
 const MOST_STACK: usize = 1024;
 
@@ -65,7 +65,7 @@ impl Range {
 
 /// What a step and a cycle take in the scenario and all over the table.
 ///
-/// Implements: FIR-005, FIR-006.
+/// Implements: FIR-005.
 fn measured(mut device: Device) -> bool {
     let (mut steps, mut stack) = (Range::NOTHING, 0);
     scenario::run(&mut device, |device, input| {

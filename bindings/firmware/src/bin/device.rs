@@ -1,7 +1,7 @@
 //! The small image: what a product would have. It is given the device's capabilities and then a frame a cycle by the serial line,
 //! and sends a force report for each.
 //!
-//! Implements: FIR-007, FIR-008, FIR-009, FIR-010.
+//! Implements: FIR-005, FIR-008, FIR-003.
 #![no_std]
 #![no_main]
 

@@ -7,8 +7,6 @@ const EMPTY_HEAD: &str = "<thead><tr><th></th><th></th></tr></thead>";
 
 /// A chapter without its title, its headings two levels down, its tables in boxes that scroll. Links are left out: they
 /// lead to other files of the source.
-///
-/// Implements: EVD-006, EVD-007.
 pub fn chapter(markdown: &str) -> String {
     let events = Parser::new_ext(markdown, Options::ENABLE_TABLES);
     let mut in_title = false;
@@ -56,7 +54,6 @@ pub fn part(markdown: &str, heading: &str) -> String {
 mod tests {
     use super::*;
 
-    // Verifies: EVD-006.
     #[test]
     fn a_chapter_becomes_a_part_of_a_page() {
         let page = chapter(
@@ -70,7 +67,6 @@ mod tests {
         );
     }
 
-    // Verifies: EVD-006.
     #[test]
     fn a_table_of_names_and_values_has_no_empty_head_and_a_part_ends_where_the_next_begins() {
         let text = "# T\n\n## One\n\n| | |\n|---|---|\n| a | b |\n\n## Two\n\nend\n";

@@ -60,8 +60,6 @@ struct Page<'a> {
 }
 
 /// The page.
-///
-/// Implements: EVD-002, EVD-003, EVD-004, EVD-006, EVD-008, EVD-009, EVD-012, EVD-013.
 pub fn dossier(evidence: &Evidence) -> String {
     // Neither writing to a String nor any of our formats fails.
     let page = Page { found: evidence }

@@ -89,7 +89,6 @@ fn grouped(value: f64) -> String {
 mod tests {
     use super::*;
 
-    // Verifies: EVD-002.
     #[test]
     fn numbers_are_short_and_keep_what_counts() {
         for (value, text) in [

@@ -20,7 +20,6 @@ fn model(name: &str) -> Result<Model, String> {
     Model::new(&phantom, MESH_SIZE, Contact::default()).map_err(said)
 }
 
-/// Implements: EVD-048.
 pub fn reference() -> Figures {
     let force = |name| -> Result<f64, String> {
         let pose = Pose {
@@ -38,7 +37,6 @@ pub fn reference() -> Figures {
     })
 }
 
-/// Implements: EVD-048.
 pub fn certificates() -> Figures {
     let mut figures = Vec::new();
     for name in BUILTIN_NAMES {

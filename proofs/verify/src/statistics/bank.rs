@@ -6,7 +6,7 @@ use palpate::bank::{BankDetector, PlacePosterior};
 use palpate::detect::nuisance::NoiseLevel;
 use palpate::detect::posterior;
 
-/// BNK-040, BNK-041, BNK-044; BNK-031, BNK-032, BNK-034, BNK-062.
+/// BNK-040, BNK-042; BNK-031, BNK-034.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("bank_ranks_kolmogorov", ranks),
     Check::new("bank_intervals_at_90_percent", intervals),

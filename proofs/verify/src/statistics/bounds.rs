@@ -9,7 +9,7 @@ use palpate::detect::{neyman_pearson_false_alarm_threshold, theta_of_record};
 use palpate::force::Force;
 use palpate::stats::normal::{cdf, upper_tail};
 
-/// DET-053, DET-054; DET-070; DET-080, DET-081.
+/// DET-053, DET-054; DET-070; DET-080.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("position_error", position_error),
     Check::new("position_error_of_a_cut_signal", cut_position_error),

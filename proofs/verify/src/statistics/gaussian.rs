@@ -8,7 +8,7 @@ use palpate::detect::simulate::Simulation;
 use palpate::detect::{neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold};
 use palpate::force::Force;
 
-/// DET-012, DET-013, DET-015, DET-024, DET-025, DET-026, DET-113.
+/// DET-015, DET-013, DET-015, DET-022, DET-025, DET-026, DET-113.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("coarse_mean_h0", |draw| mean(draw, COARSE, false, 0)),
     Check::new("coarse_mean_h1", |draw| mean(draw, COARSE, true, 1)),

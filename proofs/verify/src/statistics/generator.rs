@@ -4,7 +4,7 @@ use super::checks::{Law, count_rejects, kolmogorov_rejects};
 use super::{Check, Draw, Outcome};
 use palpate::stats::normal::upper_tail;
 
-/// DET-111, DET-112.
+/// DET-111, DET-110.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("generator_kolmogorov", standard_normal),
     Check::new("generator_tails_beyond_4", tails),

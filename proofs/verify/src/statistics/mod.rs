@@ -108,8 +108,6 @@ impl Check {
     ///
     /// # Errors
     /// That it rejects the detector, which it does to one without defect with probability α at most; or that it cannot run.
-    ///
-    /// Implements: CLI-051.
     pub fn run(&self, seed: u64) -> Result<(), String> {
         let (name, row) = (self.name, self.row(seed)?);
         match self.draw(seed, "", 0, &row)? {
@@ -125,8 +123,6 @@ impl Check {
     ///
     /// # Errors
     /// That it does not see one: with probability 0.003 a defect at most, for seeds other than [`FIXED_SEED`]; or that it cannot run.
-    ///
-    /// Implements: CLI-050.
     pub fn run_negative_controls(&self, seed: u64) -> Result<(), String> {
         let (name, row) = (self.name, self.row(seed)?);
         for defect in row.shown_defects() {

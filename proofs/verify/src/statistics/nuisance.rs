@@ -12,8 +12,8 @@ use palpate::force::Force;
 use palpate::stats::noncentral::{Tail, chi_square, chi_square_point, f_ratio, student};
 use palpate::stats::normal::cdf;
 
-/// NUI-016; NUI-017, DET-130; NUI-018, DET-131, DET-132; NUI-011, NUI-013, NUI-014; NUI-020. All but the last also NUI-001, NUI-003, NUI-005,
-/// NUI-006, NUI-008.
+/// NUI-016; NUI-016, DET-130; NUI-016, DET-130; NUI-014, NUI-013, NUI-014; NUI-020. All but the last also NUI-001, NUI-003,
+/// NUI-003, NUI-008.
 pub(super) const CHECKS: &[Check] = &[
     Check::new("nuisance_t_kolmogorov", |draw| law(draw, LONG, t, 700)),
     Check::new("nuisance_residual_kolmogorov", |draw| {

@@ -39,7 +39,6 @@ fn every_check_sees_a_defect_and_every_named_defect_is_seen() {
     }
 }
 
-// Verifies: CLI-053.
 #[test]
 fn a_check_that_rejects_fails_and_so_does_one_that_sees_nothing_or_cannot_run() {
     let name = "single_mean_h1";

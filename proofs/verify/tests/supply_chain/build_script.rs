@@ -85,7 +85,6 @@ fn commit(folder: &Path) -> String {
     recorded(folder, "release", "")["COMMIT"].clone()
 }
 
-// Verifies: EVD-067, EVD-068.
 #[test]
 fn a_release_build_records_the_commit_and_whether_sources_differ() {
     let (folder, id) = repository("release");
@@ -110,7 +109,6 @@ fn a_release_build_records_the_commit_and_whether_sources_differ() {
     }
 }
 
-// Verifies: EVD-068.
 #[test]
 fn a_development_build_records_no_commit_and_does_not_watch_for_one() {
     let (folder, _) = repository("development");
@@ -120,7 +118,6 @@ fn a_development_build_records_no_commit_and_does_not_watch_for_one() {
     assert!(!told.contains(".git"), "{told}");
 }
 
-// Verifies: EVD-068.
 #[test]
 fn a_package_names_the_commit_that_it_was_made_from() {
     // It lies within the repository of another.
@@ -146,7 +143,6 @@ fn a_package_names_the_commit_that_it_was_made_from() {
     assert_eq!(commit(&empty), "unknown");
 }
 
-// Verifies: EVD-067, EVD-070.
 #[test]
 fn flags_that_rename_folders_are_left_out() {
     let folder = folder("flags");

@@ -27,7 +27,6 @@ fn name(component: &Component) -> String {
     format!("{} {}", component.name, component.version)
 }
 
-// Verifies: EVD-060.
 #[test]
 fn the_table_has_what_the_program_is_made_from_and_nothing_else() {
     let built = tree("default", ALL);
@@ -49,7 +48,6 @@ fn the_table_has_what_the_program_is_made_from_and_nothing_else() {
     }
 }
 
-// Verifies: EVD-060.
 #[test]
 fn a_component_stands_in_the_first_layer_that_has_it() {
     let layers = LAYERS.map(|(layer, features)| (layer, names(features, ALL)));
@@ -61,7 +59,6 @@ fn a_component_stands_in_the_first_layer_that_has_it() {
     }
 }
 
-// Verifies: EVD-061.
 #[test]
 fn versions_and_checksums_are_those_that_are_built() {
     let (built, locked) = (tree("default", ALL), locked());
@@ -83,7 +80,6 @@ fn versions_and_checksums_are_those_that_are_built() {
     }
 }
 
-// Verifies: EVD-061.
 #[test]
 fn a_crate_has_several_versions_only_where_specification_and_rules_say_so() {
     let mut versions: BTreeMap<&str, Vec<String>> = BTreeMap::new();
@@ -115,7 +111,6 @@ fn a_crate_has_several_versions_only_where_specification_and_rules_say_so() {
     );
 }
 
-// Verifies: EVD-062.
 #[test]
 fn the_layers_have_as_many_crates_as_the_specification_says() {
     let spec = std::fs::read_to_string(format!("{ROOT}/spec/supply-chain.md")).unwrap();

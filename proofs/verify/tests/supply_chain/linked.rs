@@ -41,7 +41,6 @@ fn said(program: &str, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-// Verifies: EVD-072.
 #[test]
 fn the_program_needs_the_c_library_and_the_unwinder_alone() {
     let told = said("readelf", &["--dynamic", "--wide"]);
@@ -56,7 +55,6 @@ fn the_program_needs_the_c_library_and_the_unwinder_alone() {
     assert!(needed.is_subset(&known), "{needed:?}");
 }
 
-// Verifies: EVD-073.
 #[test]
 fn no_rounded_function_of_the_system_is_taken_but_for_figures_and_progress() {
     let told = said("nm", &["--dynamic", "--undefined-only"]);
@@ -74,7 +72,6 @@ fn no_rounded_function_of_the_system_is_taken_but_for_figures_and_progress() {
     assert!(taken.is_subset(&OF_OTHERS.into()), "{taken:?}");
 }
 
-// Verifies: EVD-073.
 #[test]
 fn our_sources_call_none() {
     let mut files = Vec::new();

@@ -18,7 +18,6 @@ pub fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-// Verifies: EVD-071.
 #[test]
 fn the_package_has_every_file_that_its_sources_include() {
     let listed = cargo(&["package", "--list", "--allow-dirty"]);

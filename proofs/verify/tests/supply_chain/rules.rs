@@ -71,7 +71,6 @@ fn alternatives_need_one_licence_and_sums_all() {
     }
 }
 
-// Verifies: EVD-063.
 #[test]
 fn every_licence_is_allowed_and_every_allowance_is_needed() {
     let rules = rules();
@@ -91,7 +90,6 @@ fn every_licence_is_allowed_and_every_allowance_is_needed() {
     }
 }
 
-// Verifies: EVD-063.
 #[test]
 fn no_crate_is_banned() {
     let bans = &rules()["bans"];
@@ -104,7 +102,6 @@ fn no_crate_is_banned() {
     }
 }
 
-// Verifies: EVD-063.
 #[test]
 fn every_crate_comes_from_the_registry_with_a_checksum() {
     // Without `allow-registry`, cargo's own registry alone.
@@ -141,7 +138,6 @@ fn every_crate_comes_from_the_registry_with_a_checksum() {
     assert!(members.contains(&"palpate".to_string()));
 }
 
-// Verifies: EVD-064.
 #[test]
 fn no_crate_asks_for_a_newer_rust_than_we_do() {
     let ours = numbers(env!("CARGO_PKG_RUST_VERSION"));

@@ -65,8 +65,6 @@ fn command<'a>(
 }
 
 /// The requirements that `cargo test` does not check, or not where a program is missing, with what checks them.
-///
-/// Implements: EVD-034.
 pub fn unchecked(trace: &Trace, asked: impl Fn(&str) -> bool) -> String {
     let mut by_command: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for row in &trace.requirements {
@@ -83,7 +81,6 @@ pub fn unchecked(trace: &Trace, asked: impl Fn(&str) -> bool) -> String {
     text
 }
 
-// Verifies: EVD-034.
 #[test]
 fn what_runs_elsewhere_alone_is_told_with_its_command() {
     let found = |names: &[&str], variable: &str| {

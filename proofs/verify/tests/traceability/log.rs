@@ -70,8 +70,6 @@ impl Log {
     }
 
     /// The tests and proofs of the trace that did not run or did not pass, each with how and for which requirements.
-    ///
-    /// Implements: EVD-031.
     pub fn missing(&self, trace: &Trace) -> Vec<String> {
         let mut missing = Vec::new();
         for (name, lines) in &trace.evidence {

@@ -44,7 +44,6 @@ fn listed(problems: &Problems) -> String {
     lines.collect()
 }
 
-// Verifies: EVD-020, EVD-021, EVD-022, EVD-023, EVD-024, EVD-029, EVD-034.
 #[test]
 fn every_requirement_has_code_and_a_test_or_proof() {
     let trace = trace();
@@ -63,7 +62,6 @@ fn every_requirement_has_code_and_a_test_or_proof() {
     );
 }
 
-// Verifies: EVD-030.
 #[test]
 fn the_committed_table_is_that_of_the_sources() {
     let path = Path::new(ROOT).join("spec/traceability.csv");
@@ -83,7 +81,6 @@ fn the_committed_table_is_that_of_the_sources() {
     );
 }
 
-// Verifies: EVD-031.
 #[test]
 fn every_test_of_the_trace_ran() {
     let Some(paths) = std::env::var_os("PALPATE_TEST_LOG") else {
@@ -106,7 +103,6 @@ fn every_test_of_the_trace_ran() {
     );
 }
 
-// Verifies: EVD-032.
 #[test]
 fn the_built_in_table_says_what_the_sources_say() {
     if writes() {

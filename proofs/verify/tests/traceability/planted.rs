@@ -120,7 +120,6 @@ fn sound() -> Trace {
     changed("Cargo.toml", "small", "small")
 }
 
-// Verifies: EVD-020, EVD-030.
 #[test]
 fn a_sound_repository_has_its_trace() {
     let trace = sound();
@@ -167,7 +166,6 @@ spec/a.md ¦ \n|  ¦ - **AAA-009** It MUST. (by inspection: )\n\n|  ¦ spec/a.md
 spec/a.md ¦ \n|  ¦ - **AAA-009** It MUST. (by inspection: here)\n\n|  ¦ spec/a.md:6: AAA-009 has no code
 "#;
 
-// Verifies: EVD-020, EVD-021, EVD-022, EVD-023, EVD-024, EVD-025, EVD-029.
 #[test]
 fn a_planted_fault_is_named_with_its_place() {
     for line in FAULTS.trim().lines() {
@@ -233,7 +231,6 @@ ok lost ¦ FAILED lost ¦ tests/hid-stack/src/main.rs::lost did not run: the log
 == ok: cargo doc ¦ == cargo doc ¦ .ci/run cargo doc did not run: the log has no "== ok: cargo doc" (AAA-003)
 "#;
 
-// Verifies: EVD-031.
 #[test]
 fn what_is_left_to_the_night_is_not_missed_by_day() {
     // The slow test and the bound where what runs them is known.
@@ -273,7 +270,6 @@ fn what_is_left_to_the_night_is_not_missed_by_day() {
     assert_eq!(missing(&unlisted, &trace).len(), 1);
 }
 
-// Verifies: EVD-031.
 #[test]
 fn a_test_that_did_not_pass_is_named_with_its_requirements() {
     let missing = |from: &str, to: &str| {

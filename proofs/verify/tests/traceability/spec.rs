@@ -19,8 +19,6 @@ pub struct Defined {
 }
 
 /// The requirements of all chapters, by their ids.
-///
-/// Implements: EVD-022.
 pub fn requirements(repository: &Repository, problems: &mut Problems) -> BTreeMap<String, Defined> {
     let mut found: BTreeMap<String, Defined> = BTreeMap::new();
     let chapters = repository.iter();
@@ -61,7 +59,6 @@ pub fn requirements(repository: &Repository, problems: &mut Problems) -> BTreeMa
     found
 }
 
-/// Implements: EVD-029.
 fn requirement(id: &str, path: &str, sentence: &str) -> Requirement {
     let marked = sentence
         .rsplit_once(INSPECTION)

@@ -13,8 +13,6 @@ use crate::spec::{Defined, is_id, requirements};
 const MOST_INSPECTED: usize = 10;
 
 /// What is wrong: file, line from 1 and message.
-///
-/// Implements: EVD-025.
 pub type Problems = BTreeSet<(String, usize, String)>;
 
 /// Three kinds of annotations: served by this code; checked by this test; shown for every input in a stated range.
@@ -67,8 +65,6 @@ impl Trace {
     }
 
     /// Enters the annotation that begins on a line, if one does.
-    ///
-    /// Implements: EVD-021, EVD-023.
     fn annotation(
         &mut self,
         repository: &Repository,
@@ -125,8 +121,6 @@ impl Trace {
     }
 
     /// Every requirement has code, and a test or proof.
-    ///
-    /// Implements: EVD-020, EVD-029.
     fn judge(&mut self, defined: &BTreeMap<String, Defined>) {
         for (id, defined) in defined {
             let row = &defined.requirement;
@@ -179,8 +173,6 @@ fn names_an_id(line: &str) -> bool {
 }
 
 /// What an annotation of this word, which ends before line `end`, is about.
-///
-/// Implements: EVD-024.
 fn place(
     repository: &Repository,
     path: &str,

@@ -52,7 +52,7 @@ fn outcomes_change_where_the_binomial_law_says() {
     assert_eq!(p95.least_cycles(), 59);
 }
 
-// Verifies: HID-065.
+// Verifies: HID-062.
 #[test]
 fn misses_and_runs_that_are_not_allowed_break_a_budget() {
     let with = |allowed_misses, allowed_run| Budget {
@@ -73,7 +73,7 @@ fn misses_and_runs_that_are_not_allowed_break_a_budget() {
     assert_eq!(outcome(generous, 10_000, 16), BudgetOutcome::Broken);
 }
 
-// Verifies: HID-065.
+// Verifies: HID-062.
 #[test]
 fn a_run_ends_with_a_cycle_in_time() {
     let mut responses = Responses::new(Budget::of(MS)).unwrap();

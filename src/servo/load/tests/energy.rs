@@ -166,7 +166,7 @@ fn path(generator: &Generator, number: u64, damping: &Damping) -> Path {
     }
 }
 
-// Verifies: SRV-051, SRV-054.
+// Verifies: SRV-051.
 #[test]
 fn no_accepted_table_gives_out_energy_on_a_closed_path() {
     let generator = Generator::new(20_261_122, 7);
@@ -215,7 +215,7 @@ fn spring(stiffness: f64) -> ForceTable {
 }
 
 // What is refused does give energy out, each by the bound that refuses it: the observer can see it.
-// Verifies: SRV-051, SRV-052, SRV-054, SRV-055, SRV-056.
+// Verifies: SRV-051, SRV-052.
 #[test]
 fn what_is_refused_gives_energy_out() {
     let (near, frictionless) = (display(0), |damping| Damping {

@@ -48,7 +48,7 @@ fn diagnosis(python: &str, toy: &str, bug: &str, groups: &[String]) -> Vec<Value
     json_of(&output)["diagnosis"].as_array().unwrap().clone()
 }
 
-// Verifies: ORA-047, ORA-049, ORA-053.
+// Verifies: ORA-047, ORA-049.
 #[test]
 fn the_bugs_of_another_implementation_are_named_first() {
     let Some(python) = python() else { return };
@@ -74,7 +74,7 @@ fn the_bugs_of_another_implementation_are_named_first() {
     );
 }
 
-// Verifies: ORA-053, ORA-068.
+// Verifies: ORA-047.
 #[test]
 fn bugs_that_the_vectors_do_not_foresee_get_no_name_that_explains_less_than_half() {
     let Some(python) = python() else { return };

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::program::*;
 
-// Verifies: ORA-057, ORA-063, ORA-075.
+// Verifies: ORA-057, ORA-075.
 #[test]
 fn answers_from_a_file_are_judged_as_those_from_a_pipe() {
     let folder = folder("offline");
@@ -100,7 +100,7 @@ out[1:] = sorted(out[1:], reverse=True)
 print("\n".join(out))
 "#;
 
-// Verifies: ORA-064, ORA-076.
+// Verifies: ORA-064.
 #[test]
 fn a_table_holds_questions_and_answers() {
     let Some(python) = python() else { return };

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::program::*;
 
-// Verifies: ORA-047, ORA-053, ORA-068, ORA-077.
+// Verifies: ORA-047, ORA-048.
 #[test]
 fn wrong_answers_name_their_bug() {
     let answer = r#"echo '{"id":"choice-002","ok":{"p_correct":0.15865525393145707,"more":1}}';;"#;
@@ -31,7 +31,7 @@ fn wrong_answers_name_their_bug() {
     assert_eq!(first_bug(&found.verdict), "negative");
 }
 
-// Verifies: ORA-052.
+// Verifies: ORA-058.
 #[test]
 fn an_error_without_a_code_is_no_refusal() {
     for (error, class) in [
@@ -52,7 +52,7 @@ fn an_error_without_a_code_is_no_refusal() {
     run("refusal-of-its-own", &shell(answer), "20").expect(&[]);
 }
 
-// Verifies: ORA-054, ORA-055, ORA-056.
+// Verifies: ORA-046, ORA-067.
 #[test]
 fn a_profile_widens_the_tolerance_by_the_condition() {
     let mut file = vectors();
@@ -108,7 +108,7 @@ fn a_profile_widens_the_tolerance_by_the_condition() {
     );
 }
 
-// Verifies: ORA-061.
+// Verifies: ORA-067.
 #[test]
 fn known_mistakes_are_accepted_with_their_reason_and_told_when_they_are_mended() {
     let folder = write("accept", &vectors());
@@ -139,7 +139,7 @@ fn known_mistakes_are_accepted_with_their_reason_and_told_when_they_are_mended()
     }
 }
 
-// Verifies: ORA-059, ORA-073, ORA-074.
+// Verifies: ORA-040.
 #[test]
 fn cases_are_chosen_left_out_and_shown() {
     let folder = write("choice", &vectors());
@@ -170,7 +170,7 @@ fn cases_are_chosen_left_out_and_shown() {
     }
 }
 
-// Verifies: ORA-060, ORA-066.
+// Verifies: ORA-043, ORA-058.
 #[test]
 fn loose_answers_are_told() {
     let folder = write("loose", &vectors());
@@ -197,7 +197,7 @@ fn loose_answers_are_told() {
     }
 }
 
-// Verifies: ORA-062, ORA-065.
+// Verifies: ORA-048, ORA-050.
 #[test]
 fn the_page_says_what_was_judged_and_stands_alone() {
     let folder = write("page", &vectors());
@@ -233,7 +233,7 @@ fn the_page_says_what_was_judged_and_stands_alone() {
     assert!(!text.contains("<b>") && !text.contains("src=") && !text.contains("href="));
 }
 
-// Verifies: ORA-050, ORA-051.
+// Verifies: ORA-050.
 #[test]
 fn the_verdict_for_ci_holds_every_case_and_is_the_same_each_time() {
     let folder = write("junit", &vectors());

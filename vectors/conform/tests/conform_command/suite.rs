@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::program::*;
 
-// Verifies: ORA-041, VEC-001, VEC-002, VEC-003, VEC-004, VEC-005, VEC-006.
+// Verifies: ORA-041, VEC-001, VEC-003, VEC-004, VEC-005, VEC-006.
 #[test]
 fn files_that_are_not_valid_are_refused_with_file_and_case() {
     // What becomes the value at a place, which is there unless it is the last key, and words of the refusal.
