@@ -105,15 +105,9 @@ impl BankSearch<'_> {
             let statistic = detector.statistic(&mut stacked(&white.residual));
             let place = detector.place(&statistic.map_err(refused)?);
             design.template = self.between(&signals, place.estimate);
-            let noise_sd = match question.noise.sd {
-                Some(sd) => sd,
-                None => design.noise_sd().map_err(refused)?,
-            };
-            let white = design.whitened(noise_sd);
-            let fit = Fit::new(question, &white, noise_sd).map_err(refused)?;
+            let (white, fit, blocks) = question.fitted(&design).map_err(refused)?;
             let level = question.noise_level(&fit);
-            let blocks = white.blocks(fit.block);
-            let detector = self.detector(&blocks, &signals, noise_sd, fit.block, level)?;
+            let detector = self.detector(&blocks, &signals, fit.noise_sd, fit.block, level)?;
             let mut residual = stacked(&blocks.residual);
             self.judge(&detector, &mut residual, &white, fit)
         };

@@ -31,7 +31,7 @@ pub use detector::{BankDetector, BankStatistic};
 pub use file::{SCHEMA, SCHEMA_VERSION};
 pub use information::PlaceBound;
 pub use locate::{BankSearch, Location};
-pub use place::{CredibleInterval, PlacePosterior};
+pub use place::PlacePosterior;
 #[cfg(feature = "fem")]
 pub use plan::{BankPlan, BankSolve, MESH_SIZE};
 pub use rates::{

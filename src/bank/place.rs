@@ -6,6 +6,7 @@ use super::axis::{BankAxis, BankCell, PRIOR, SIGNAL};
 use super::detector::{BankDetector, BankStatistic};
 use crate::detect::DetectError;
 use crate::detect::nuisance::dot;
+use crate::stats::Bounds;
 use crate::stats::error::check_probability;
 
 /// The fewest nodes of a cell along an axis, and the most.
@@ -37,15 +38,6 @@ struct Nodes {
     energy: Vec<f64>,
     /// The prior.
     prior: Vec<f64>,
-}
-
-/// Bounds on one parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CredibleInterval {
-    /// The lower bound.
-    pub low: f64,
-    /// The upper bound.
-    pub high: f64,
 }
 
 /// The posterior of an inclusion's parameters, given that there is one: uniform before the record between the first and the last point of
@@ -393,7 +385,7 @@ impl PlacePosterior {
     /// A level that is not strictly between 0 and 1.
     ///
     /// Implements: BNK-042.
-    pub fn interval(&self, axis: usize, level: f64) -> Result<CredibleInterval, DetectError> {
+    pub fn interval(&self, axis: usize, level: f64) -> Result<Bounds, DetectError> {
         check_probability("level", level)?;
         let parts = self.cumulated(axis);
         let point = |p: f64| {
@@ -408,10 +400,8 @@ impl PlacePosterior {
             before[0]
         };
         let tail = 0.5 * (1.0 - level);
-        Ok(CredibleInterval {
-            low: point(tail),
-            high: point(1.0 - tail),
-        })
+        let [lower, upper] = [tail, 1.0 - tail].map(point);
+        Ok(Bounds { lower, upper })
     }
 
     /// The probability of the places that are more likely than `at`: `at` is in the credible region of a level if this is less.

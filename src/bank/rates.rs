@@ -3,7 +3,8 @@
 use super::detector::BankDetector;
 use crate::detect::DetectError;
 use crate::detect::nuisance::{NoiseLevel, SubspaceTest, dot};
-use crate::stats::binomial::{ConfidenceInterval, clopper_pearson};
+use crate::stats::Bounds;
+use crate::stats::binomial::clopper_pearson;
 use crate::stats::error::{check_finite, check_probability, check_samples, in_range};
 use crate::stats::normal;
 use crate::stats::random::{Generator, uniform};
@@ -21,7 +22,7 @@ pub struct CalibratedThreshold {
     /// The threshold η.
     pub eta: f64,
     /// The rate of false alarms at η lies in it with [`CONFIDENCE`].
-    pub false_alarm: ConfidenceInterval,
+    pub false_alarm: Bounds,
     /// Records that were simulated for each sign of each deviation, and without.
     pub simulations: u64,
 }
@@ -155,7 +156,7 @@ impl BankDetector {
         at: [f64; 4],
         simulations: u64,
         seed: u64,
-    ) -> Result<ConfidenceInterval, DetectError> {
+    ) -> Result<Bounds, DetectError> {
         let (signal, generator) = (self.template_at(at), Generator::new(seed, 0));
         let mut found = 0;
         for trial in 0..simulations {

@@ -232,7 +232,7 @@ fn counted(counters: &Counters) -> String {
 
 /// The summary.
 #[derive(Template, Serialize)]
-#[template(path = "cli/play.txt")]
+#[template(path = "cli.txt", block = "play")]
 struct Summary {
     end: String,
     #[serde(flatten)]

@@ -91,7 +91,7 @@ fn against_maps(
     Ok(bridge(table, &reference, &named, arguments.sweep_mm)?)
 }
 
-/// The answer for people. Its words are in `templates/cli/psychophysics.txt`.
+/// The answer for people. Its words are in `templates/psychophysics.txt`.
 ///
 /// Implements: CLI-082.
 fn text(answer: &PsychophysicsAnswer) -> String {
@@ -128,7 +128,7 @@ fn columns(lines: &[&str]) -> String {
 }
 
 #[derive(Template)]
-#[template(path = "cli/psychophysics.txt")]
+#[template(path = "psychophysics.txt", block = "answer")]
 struct Text<'a> {
     answer: &'a PsychophysicsAnswer,
 }

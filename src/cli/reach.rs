@@ -13,7 +13,7 @@ use super::output::write;
 use super::{CliError, Format};
 use crate::bank::{Bank, Reach, Reached, smallest_diameters};
 use crate::decimal::format_scaled;
-use crate::report::reach_figure;
+use crate::report::{in_words, reach_figure};
 use crate::trace::Unknown;
 
 /// Arguments of `palpate reach`.
@@ -46,7 +46,7 @@ pub struct ReachArguments {
 
 /// The answer; for people, lengths in mm.
 #[derive(Debug, Serialize, Template)]
-#[template(path = "cli/reach.txt")]
+#[template(path = "cli.txt", block = "reach")]
 struct ReachAnswer {
     schema: &'static str,
     schema_version: u32,
@@ -59,7 +59,7 @@ struct ReachAnswer {
     max_miss: f64,
     samples: usize,
     /// What is unknown for the second of each two answers.
-    unknown: Vec<&'static str>,
+    unknown: Vec<Unknown>,
     gamma_needed: f64,
     depths_m: Vec<f64>,
     diameters_m: Vec<f64>,
@@ -125,9 +125,8 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     let reached = [plain.reached(), beside.reached()];
     let [plain, beside] = reached.map(|reached| reached.map_err(in_bank));
     let (plain, beside) = (plain?, beside?);
-    let names: Vec<&str> = unknown.iter().map(|of| of.name()).collect();
     if let Some(path) = &arguments.figure {
-        let words = in_words(&names);
+        let words = in_words(&unknown);
         write(path, &reach_figure(&bank, &plain, &beside, &words)?)?;
     }
     let answer = ReachAnswer {
@@ -145,7 +144,7 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
             .map_or(bank.reference().laterals().len(), |samples| {
                 samples as usize
             }),
-        unknown: names,
+        unknown,
         gamma_needed: needed,
         depths_m: bank.axes()[1].clone(),
         diameters_m: bank.axes()[2].clone(),
@@ -155,14 +154,6 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     // Writing to a String does not fail.
     let table = |answer: &ReachAnswer| answer.render().unwrap_or_default();
     arguments.format.print(&answer, table)
-}
-
-/// Names with commas, or "nothing".
-fn in_words(names: &[&str]) -> String {
-    match names {
-        [] => "nothing".into(),
-        names => names.join(", "),
-    }
 }
 
 /// Implements: CLI-160.

@@ -145,7 +145,7 @@ pub fn warn_of_large_strain_of(map: &ForceMap, name: &str) {
 
 /// The map for people.
 #[derive(Template)]
-#[template(path = "cli/solve.txt")]
+#[template(path = "cli.txt", block = "solve")]
 struct Table<'a> {
     map: &'a ForceMap,
 }

@@ -165,7 +165,7 @@ fn defect(error: impl Display) -> CliError {
 
 /// Why a budget is not kept.
 #[derive(Template)]
-#[template(path = "cli/timing-reason.txt")]
+#[template(path = "cli.txt", block = "timing_reason")]
 struct Reason<'a> {
     judged: &'a Judged,
     /// How many were allowed, if there were more.
@@ -175,7 +175,7 @@ struct Reason<'a> {
 
 /// The figures for people.
 #[derive(Template)]
-#[template(path = "cli/timing.txt")]
+#[template(path = "cli.txt", block = "timing")]
 struct Text<'a> {
     judged: &'a Judged,
     timing: Option<&'a Timing>,
@@ -185,7 +185,7 @@ struct Text<'a> {
 
 /// The verdict for CI.
 #[derive(Template)]
-#[template(path = "cli/timing.xml")]
+#[template(path = "cli.txt", block = "junit", escape = "xml")]
 struct Junit<'a> {
     judged: &'a Judged,
     outcome: &'a str,

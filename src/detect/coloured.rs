@@ -101,15 +101,12 @@ fn whiten(factor: &[f64], vector: &[f64], white: &mut [f64]) {
 /// Rounding alone can turn a singular matrix into one with pivots of about order·u of the diagonal,
 /// so a pivot that small is no evidence of a positive one.
 fn pivot(diagonal: f64, sum: DoubleDouble, order: usize, row: usize) -> Result<f64, DetectError> {
-    let pivot = DoubleDouble::new(diagonal, 0.0)
-        .plus(sum.scaled(-1.0))
-        .value();
+    let pivot = DoubleDouble::new(diagonal, 0.0).plus(sum.scaled(-1.0));
+    let pivot = pivot.value();
     let doubt = 4.0 * (order as f64 + 2.0) * f64::EPSILON * diagonal;
-    if pivot > doubt && pivot.is_finite() {
-        Ok(libm::sqrt(pivot))
-    } else {
-        Err(DetectError::NotPositiveDefinite { pivot: row })
-    }
+    let is_sound = pivot > doubt && pivot.is_finite();
+    let error = DetectError::NotPositiveDefinite { pivot: row };
+    is_sound.then(|| libm::sqrt(pivot)).ok_or(error)
 }
 
 fn check_symmetric(covariance: &[f64], order: usize) -> Result<(), DetectError> {

@@ -159,10 +159,8 @@ pub fn error_rates(gamma: f64, eta: f64) -> Result<ErrorRates, DetectError> {
     check_finite("eta", eta)?;
     if gamma == 0.0 {
         let miss = f64::from(eta > 0.0);
-        return Ok(ErrorRates {
-            false_alarm: 1.0 - miss,
-            miss,
-        });
+        let false_alarm = 1.0 - miss;
+        return Ok(ErrorRates { false_alarm, miss });
     }
     // η/γ ± γ/2 instead of (η ± γ²/2)/γ: γ² may overflow. An infinite η/γ has the right limit.
     let criterion = eta / gamma;

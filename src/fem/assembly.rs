@@ -82,12 +82,9 @@ impl StiffnessMatrix {
             }
         }
         let free = |unknown: u32| (unknown != HELD).then_some(unknown as usize);
-        let surface = mesh
-            .surface
-            .iter()
-            .flat_map(|&node| unknown[node].map(free));
+        let nodes = mesh.surface.iter();
         Ok(StiffnessMatrix {
-            surface: surface.collect(),
+            surface: nodes.flat_map(|&node| unknown[node].map(free)).collect(),
             upper: SparseColMat::try_new_from_triplets(unknowns, unknowns, &triplets)
                 .map_err(|_| FemError::OutOfMemory)?,
             unknown,

@@ -56,10 +56,8 @@ pub fn gradients(parent: &PerNode, positions: &[[f64; 2]]) -> Gradients {
     let map: Matrix2<f64> = parts.sum();
     let jacobian = map[(0, 0)] * map[(1, 1)] - map[(0, 1)] * map[(1, 0)];
     let cofactors = Matrix2::new(map[(1, 1)], -map[(1, 0)], -map[(0, 1)], map[(0, 0)]);
-    Gradients {
-        of_node: cofactors * parent / jacobian,
-        jacobian,
-    }
+    let of_node = cofactors * parent / jacobian;
+    Gradients { of_node, jacobian }
 }
 
 /// Lamé's constants (λ, μ), Pa.

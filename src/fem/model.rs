@@ -135,19 +135,15 @@ impl Model {
         let whole = pose.depth - from.depth;
         let longest = DEPTH_STEP * self.phantom.probe.radius;
         let shortest = longest.min(whole) / f64::from(1u32 << HALVINGS);
-        let (mut state, mut depth, mut step) = (start.clone(), from.depth, longest);
+        let (mut state, mut reached, mut step) = (start.clone(), from.depth, longest);
         let mut iterations = 0;
         loop {
-            let last = pose.depth - depth <= step;
-            let next = if last { pose.depth } else { depth + step };
-            let at = Pose {
-                depth: next,
-                ..pose
-            };
-            match self.surface.solve(at, &state) {
+            let last = pose.depth - reached <= step;
+            let depth = if last { pose.depth } else { reached + step };
+            match self.surface.solve(Pose { depth, ..pose }, &state) {
                 Ok(solved) => {
                     iterations += solved.iterations;
-                    (state, depth) = (solved, next);
+                    (state, reached) = (solved, depth);
                     if last {
                         state.iterations = iterations;
                         return Ok(state);
@@ -156,7 +152,7 @@ impl Model {
                 Err(FemError::NoConvergence { iterations, .. }) if step <= shortest => {
                     return Err(FemError::NoConvergence { pose, iterations });
                 }
-                Err(_) => step = 0.5 * step.min(pose.depth - depth),
+                Err(_) => step = 0.5 * step.min(pose.depth - reached),
             }
         }
     }

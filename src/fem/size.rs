@@ -165,10 +165,8 @@ impl SizeField {
 fn distance(outline: &Outline, point: Point) -> f64 {
     match outline {
         Outline::Ellipse(ellipse) => {
-            let (p, radii) = (
-                Point::from(ellipse.on_unit_circle(point.into())),
-                ellipse.radii,
-            );
+            let p = Point::from(ellipse.on_unit_circle(point.into()));
+            let radii = ellipse.radii;
             let slope = Point::new(p.x / radii[0], p.y / radii[1]).norm();
             if slope == 0.0 {
                 radii[0].min(radii[1])

@@ -143,16 +143,10 @@ impl Certificate {
         if stated.det == least && there == Some(least) {
             return Ok(());
         }
-        let SmallestDet {
-            det,
-            depth,
-            lateral,
-        } = stated;
-        Err(Refusal::value(
-            "certificate.smallest_det",
-            format!("{det} at depth {depth} m, lateral {lateral} m"),
-            format!("the smallest entry of min_det, {least}, and its pose"),
-        ))
+        let (det, depth, lateral) = (stated.det, stated.depth, stated.lateral);
+        let found = format!("{det} at depth {depth} m, lateral {lateral} m");
+        let expected = format!("the smallest entry of min_det, {least}, and its pose");
+        Err(Refusal::value("certificate.smallest_det", found, expected))
     }
 
     /// This certificate with some of the columns of its matrices, in any order.

@@ -121,10 +121,8 @@ fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>) -> Result<ForceTable, Refusal> {
         let [depth, lateral] = [depth, lateral].map(|length| format_scaled(length, 3));
         format!("row for depth {depth} mm, lateral {lateral} mm")
     };
-    for pair in rows.windows(2) {
-        let [(first, before), (line, [depth, lateral, ..])] = pair else {
-            continue;
-        };
+    let next = rows.iter().skip(1);
+    for ((first, before), (line, [depth, lateral, ..])) in rows.iter().zip(next) {
         if before[..2] == [*depth, *lateral] {
             let found = format!("second {}", named(*depth, *lateral));
             let expected = format!("one; the first is line {first}");

@@ -33,10 +33,8 @@ impl Place {
                 // The first entry that is the position or lies beyond it.
                 let next = axis.partition_point(|&entry| entry < position - SAME_POSITION);
                 if *axis.get(next)? <= position + SAME_POSITION {
-                    return Some(Place {
-                        entries: [next; 2],
-                        fraction: 0.0,
-                    });
+                    let (entries, fraction) = ([next; 2], 0.0);
+                    return Some(Place { entries, fraction });
                 }
                 next
             }
@@ -79,10 +77,8 @@ impl ForceTable {
             let value = interpolate(self.depths(), self.laterals(), matrix, depth, lateral);
             value.ok_or_else(|| {
                 let pose = format!("the depth {depth} m, {lateral} m lateral");
-                Refusal::state(
-                    format!("the force at {pose}, is beyond the range of numbers"),
-                    "",
-                )
+                let found = format!("the force at {pose}, is beyond the range of numbers");
+                Refusal::state(found, "")
             })
         };
         let Force { lateral, normal } = self.forces().as_ref().map(value);

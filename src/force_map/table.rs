@@ -95,18 +95,13 @@ impl Matrix {
 
     /// Refuses this matrix under `key` if it has not the `shape` of the axes, or an entry that is not finite or below `least`.
     pub(super) fn check(&self, key: &str, shape: [usize; 2], least: f64) -> Result<(), Refusal> {
-        if shape != [self.row_count(), self.column_count()] {
-            let [depths, laterals] = shape;
-            return Err(Refusal::state(
-                format!(
-                    "{key} has {} rows and {} columns",
-                    self.row_count(),
-                    self.columns
-                ),
-                format!(
-                    "{depths} rows (one a depth) and {laterals} columns (one a lateral position)"
-                ),
-            ));
+        let [rows, columns] = [self.row_count(), self.column_count()];
+        if shape != [rows, columns] {
+            let found = format!("{key} has {rows} rows and {columns} columns");
+            let [rows, columns] = shape;
+            let expected = format!("{rows} rows (one a depth)");
+            let expected = format!("{expected} and {columns} columns (one a lateral position)");
+            return Err(Refusal::state(found, expected));
         }
         self.entries().try_for_each(|(row, column, value)| {
             check_number(format_args!("{key}[{row}][{column}]"), value, least)
@@ -141,16 +136,12 @@ impl TryFrom<Vec<Vec<f64>>> for Matrix {
     /// Implements: MAP-002, MAP-024.
     fn try_from(rows: Vec<Vec<f64>>) -> Result<Matrix, String> {
         let columns = rows.first().map_or(0, Vec::len);
-        match rows.iter().position(|row| row.len() != columns) {
-            None => Ok(Matrix {
-                columns,
-                values: rows.concat(),
-            }),
-            Some(row) => Err(format!(
-                "row {row} has {} numbers, expected {columns} as in row 0",
-                rows[row].len()
-            )),
+        if let Some(row) = rows.iter().position(|row| row.len() != columns) {
+            let found = format!("row {row} has {} numbers", rows[row].len());
+            return Err(format!("{found}, expected {columns} as in row 0"));
         }
+        let values = rows.concat();
+        Ok(Matrix { columns, values })
     }
 }
 
@@ -311,8 +302,7 @@ impl ForceTable {
     /// This table with some of its columns.
     pub(super) fn at_columns(&self, columns: &[usize]) -> Result<ForceTable, Refusal> {
         let laterals = columns.iter().map(|&column| self.laterals[column]);
-        let forces = self.forces.as_ref();
-        let forces = forces.map(|force| force.at_columns(columns));
+        let forces = self.forces.as_ref().map(|force| force.at_columns(columns));
         ForceTable::new(self.depths.clone(), laterals.collect(), forces)
     }
 }

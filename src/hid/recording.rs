@@ -138,13 +138,8 @@ impl Recording {
         let (at, first) = lines.next().unwrap_or((1, ""));
         let what = "a recording that begins with format, capabilities and limits";
         let header: Header = read(at, first, what)?;
-        let Within {
-            force_n,
-            slew_n,
-            release_n,
-            watchdog_cycles,
-        } = header.limits;
-        let limits = Limits::new(force_n, slew_n, release_n, watchdog_cycles);
+        let of = &header.limits;
+        let limits = Limits::new(of.force_n, of.slew_n, of.release_n, of.watchdog_cycles);
         let what = "the times, position, force and playing of a cycle";
         let cycles = lines.map(|(at, line)| read(at, line, what));
         Ok(Recording {

@@ -154,11 +154,9 @@ impl Times {
         let write = cycle.written.saturating_sub(cycle.computed);
         let interval = self.woke.map(|woke| cycle.woke.abs_diff(woke));
         let jitter = self.period.zip(interval);
+        let jitter = jitter.map(|(period, interval)| interval.abs_diff(period));
         self.woke = Some(cycle.woke);
-        self.responses.record(
-            response,
-            jitter.map(|(period, interval)| interval.abs_diff(period)),
-        );
+        self.responses.record(response, jitter);
         // Each report that was sent is answered once.
         let answered = cycle.position.and_then(|position| {
             let number = position.force_sequence;

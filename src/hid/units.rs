@@ -44,11 +44,8 @@ impl fmt::Display for InvalidCapabilities {
         let (unit, largest) = (device.force_unit_un, device.largest_force_mn);
         write!(f, "the device")?;
         if device.version != 1 {
-            write!(
-                f,
-                " speaks version {} of the profile, expected 1",
-                device.version
-            )
+            let version = device.version;
+            write!(f, " speaks version {version} of the profile, expected 1")
         } else if device.position_unit_nm == 0 {
             write!(f, "'s position unit is 0 nm, expected at least 1")
         } else if unit == 0 {

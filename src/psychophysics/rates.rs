@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Condition, Result};
 use crate::detect::gamma_from_two_afc;
-pub use crate::stats::binomial::ConfidenceInterval as Bounds;
+pub use crate::stats::Bounds;
 use crate::stats::binomial::{clopper_pearson, wilson};
 use crate::stats::noncentral::student_point;
 

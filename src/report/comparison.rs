@@ -1,5 +1,5 @@
 //! The table "paper, here, why": each number that the paper prints, ours, and the reason for the difference. Its words are in
-//! `templates/report/words/comparison.txt`.
+//! the block `comparison` of `templates/report/words.txt`.
 
 use askama::Template;
 use serde::Serialize;
@@ -61,7 +61,7 @@ const PRINTED: &str = "6.6";
 
 /// What the rows name; as text a line for each row with its words.
 #[derive(Template)]
-#[template(path = "report/words/comparison.txt")]
+#[template(path = "report/words.txt", block = "comparison")]
 struct Known<'a> {
     /// The peak normal signals at 4 mm by inclusion, N, and the one nearest to the paper's "roughly 0.5N".
     peaks: &'a [(&'static str, f64)],

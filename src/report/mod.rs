@@ -72,6 +72,7 @@ pub use figures::{figures, place_figure, reach_figure};
 pub use findings::{Findings, findings};
 pub use html::html;
 pub use maps::{GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold};
+pub(crate) use nuisances::in_words;
 pub use nuisances::{GammaBeside, GammaLeft};
 use people::normal_approximation;
 pub use pressure::{ArrayFindings, ArraySweep, GammaOfArray};

@@ -46,11 +46,16 @@ pub struct GammaBeside {
 impl GammaBeside {
     /// What is unknown, in words.
     pub(super) fn words(&self) -> String {
-        let names: Vec<_> = self.unknown.iter().map(|of| of.name()).collect();
-        match names[..] {
-            [] => "nothing".into(),
-            _ => names.join(", "),
-        }
+        in_words(self.unknown)
+    }
+}
+
+/// Names with commas, or "nothing".
+pub fn in_words(unknown: &[Unknown]) -> String {
+    let names: Vec<_> = unknown.iter().map(Unknown::to_string).collect();
+    match names[..] {
+        [] => "nothing".into(),
+        _ => names.join(", "),
     }
 }
 

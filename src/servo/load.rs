@@ -102,10 +102,8 @@ impl LoadedTable {
         let mut forces = vec![Force::ZERO; rows_in_front];
         let normal = map.forces().normal.values();
         for (&lateral, &normal) in map.forces().lateral.values().iter().zip(normal) {
-            forces.push(Force::new(
-                rounded(lateral, &mut rounding.force_n),
-                rounded(normal, &mut rounding.force_n),
-            ));
+            let force = Force::new(lateral, normal);
+            forces.push(force.map(|force| rounded(force, &mut rounding.force_n)));
         }
         let loaded = LoadedTable {
             reciprocal_heights: reciprocals(&depths),
@@ -188,8 +186,7 @@ impl LoadedTable {
         let product = |force: f32| (f64::from(force) * factor) as f32;
         let mut scaled = self.clone();
         for force in &mut scaled.forces {
-            force.lateral = product(force.lateral);
-            force.normal = product(force.normal);
+            *force = force.map(product);
         }
         scaled
     }

@@ -61,10 +61,8 @@ pub fn stiffness(table: &Table) -> f64 {
     let columns = laterals.len();
     let forces = table.forces();
     let node = |row, column| {
-        forces
-            .get(row * columns + column)
-            .copied()
-            .unwrap_or_default()
+        let force = forces.get(row * columns + column);
+        force.copied().unwrap_or_default()
     };
     let mut largest = 0.0;
     for (row, depth) in depths.windows(2).enumerate() {

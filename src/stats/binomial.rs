@@ -5,19 +5,9 @@
 //! probabilities*, 2000), whose terms do not cancel; tails by summing ratios from the point
 //! outwards.
 
-use super::NumericError;
 use super::error::{check_probability, in_range};
 use super::normal;
-
-/// An interval for a proportion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "std", derive(serde::Serialize))]
-pub struct ConfidenceInterval {
-    /// Lower end, ≥ 0.
-    pub lower: f64,
-    /// Upper end, ≤ 1.
-    pub upper: f64,
-}
+use super::{Bounds, NumericError};
 
 /// Pr(X = successes) for X ~ Binomial(trials, p).
 ///
@@ -77,7 +67,7 @@ pub fn clopper_pearson(
     successes: u64,
     trials: u64,
     confidence: f64,
-) -> Result<ConfidenceInterval, NumericError> {
+) -> Result<Bounds, NumericError> {
     check(successes, trials)?;
     check_probability("confidence", confidence)?;
     let tail = 0.5 * (1.0 - confidence);
@@ -91,7 +81,7 @@ pub fn clopper_pearson(
     } else {
         least_p(|p| at_most(successes, trials, p).map(|tail| -tail), -tail)
     };
-    Ok(ConfidenceInterval { lower, upper })
+    Ok(Bounds { lower, upper })
 }
 
 /// The score interval of Wilson.
@@ -100,11 +90,7 @@ pub fn clopper_pearson(
 /// As [`clopper_pearson`].
 ///
 /// Implements: DET-121, DET-001.
-pub fn wilson(
-    successes: u64,
-    trials: u64,
-    confidence: f64,
-) -> Result<ConfidenceInterval, NumericError> {
+pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Bounds, NumericError> {
     check(successes, trials)?;
     let tail = 0.5 * (1.0 - check_probability("confidence", confidence)?);
     let z = -normal::quantile_of("confidence", tail)?;
@@ -116,7 +102,7 @@ pub fn wilson(
     // z²)), for it would cancel.
     let upper = (sum + half_width) / (n + square);
     let lower = k * (k / n) / (sum + half_width);
-    Ok(ConfidenceInterval {
+    Ok(Bounds {
         lower,
         upper: if successes == trials { 1.0 } else { upper },
     })

@@ -14,5 +14,15 @@ mod ziggurat;
 
 pub use error::NumericError;
 
+/// The ends of an interval that holds a number with a stated probability.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "std", derive(serde::Serialize))]
+pub struct Bounds {
+    /// Lower end.
+    pub lower: f64,
+    /// Upper end.
+    pub upper: f64,
+}
+
 #[cfg(test)]
 pub(crate) mod tests;

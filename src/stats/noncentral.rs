@@ -96,12 +96,8 @@ pub fn f_ratio(
 pub fn student(x: f64, degrees: f64, noncentrality: f64) -> Result<Tails, NumericError> {
     within(-1e152..=1e152, "x", x, "from -1e152 to 1e152")?;
     check_degrees("degrees", degrees)?;
-    within(
-        -1e4..=1e4,
-        "noncentrality",
-        noncentrality,
-        "from -1e4 to 1e4",
-    )?;
+    let range = "from -1e4 to 1e4";
+    within(-1e4..=1e4, "noncentrality", noncentrality, range)?;
     if x >= 0.0 {
         return Ok(student_above(x, 0.5 * degrees, noncentrality));
     }

@@ -59,13 +59,8 @@ impl Generator {
 
     /// The standard normal deviate with number `index` of a trial.
     pub fn normal(&self, trial: u64, index: u64) -> f64 {
-        let block = index / 4;
-        let lane = index % 4;
-        self.deviate(
-            self.words([block, trial, 0, 0])[lane as usize],
-            trial,
-            index,
-        )
+        let word = self.words([index / 4, trial, 0, 0])[(index % 4) as usize];
+        self.deviate(word, trial, index)
     }
 
     /// Fills `deviates` with the standard normal deviates `first`, `first` + 1, … of a trial; 0
@@ -132,11 +127,7 @@ impl Generator {
                 // Marsaglia's tail: an exponential beyond TAIL, taken with probability exp(−e²/2).
                 let excess = -libm::log(uniform(first)) / TAIL;
                 if -2.0 * libm::log(uniform(second)) > excess * excess {
-                    return if x < 0.0 {
-                        -TAIL - excess
-                    } else {
-                        TAIL + excess
-                    };
+                    return libm::copysign(TAIL + excess, x);
                 }
             } else {
                 let (floor, ceiling) = (height(EDGES[layer]), height(EDGES[layer + 1]));

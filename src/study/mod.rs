@@ -22,6 +22,8 @@ mod sample;
 #[cfg(test)]
 pub mod tests;
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 pub use bands::{Band, band};
@@ -54,16 +56,14 @@ pub enum Change {
     Factor,
 }
 
-impl Change {
-    /// In a word.
-    pub fn name(self) -> &'static str {
-        match self {
-            Change::Value => "value",
-            Change::Offset => "offset",
-            Change::Factor => "factor",
-        }
+/// In a word.
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
     }
+}
 
+impl Change {
     /// The number that `own` becomes.
     fn of(self, own: f64, value: f64) -> f64 {
         match self {

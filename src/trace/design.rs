@@ -1,5 +1,7 @@
 //! What a record may hold beside noise, sample by sample: the signal of the inclusion, and nuisances of unknown amplitude.
 
+use std::fmt;
+
 use serde::Serialize;
 
 use super::{Question, Record};
@@ -35,16 +37,12 @@ impl Unknown {
         use Unknown::{Depth, Drift, Gain, Offset, Variance};
         [Offset, Drift, Gain, Depth, Variance]
     };
+}
 
-    /// Its name on the command line and in JSON.
-    pub fn name(self) -> &'static str {
-        match self {
-            Unknown::Offset => "offset",
-            Unknown::Drift => "drift",
-            Unknown::Gain => "gain",
-            Unknown::Depth => "depth",
-            Unknown::Variance => "variance",
-        }
+/// Its name on the command line and in JSON.
+impl fmt::Display for Unknown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
     }
 }
 
@@ -148,11 +146,8 @@ impl Design {
     ///
     /// Implements: TRC-064.
     pub fn bias(&self, detector: &SubspaceDetector<'_>) -> f64 {
-        let errors = self
-            .depth_errors
-            .iter()
-            .map(|error| detector.along(&stacked(error)).abs());
-        errors.fold(0.0, f64::max)
+        let along = |error: &Series| detector.along(&stacked(error)).abs();
+        self.depth_errors.iter().map(along).fold(0.0, f64::max)
     }
 
     /// Samples of a channel.
@@ -260,10 +255,8 @@ pub fn nuisances(
     let alone = |series: &dyn Fn(usize) -> f64| {
         let series: Vec<f64> = (0..samples).map(series).collect();
         let none = vec![0.0; samples];
-        [
-            Force::new(series.clone(), none.clone()),
-            Force::new(none, series),
-        ]
+        let lateral = Force::new(series.clone(), none.clone());
+        [lateral, Force::new(none, series)]
     };
     let mut nuisances = Vec::new();
     if unknown.contains(&Unknown::Offset) {

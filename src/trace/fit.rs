@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::Serialize;
+
 use super::design::{Design, Series, Unknown, squares, stacked};
 use super::judge::{Correlation, Noise, Question};
 use super::{Trace, refused};
@@ -57,7 +59,8 @@ pub struct Fit {
 }
 
 /// Why a record cannot be judged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Cause {
     /// The forces have the other sign.
     Sign,
@@ -75,22 +78,6 @@ pub enum Cause {
     TooFewSamples,
     /// The signal is there with the other sign.
     Opposite,
-}
-
-impl Cause {
-    /// Its name in JSON.
-    pub fn code(self) -> &'static str {
-        match self {
-            Cause::Sign => "sign",
-            Cause::ForceUnit => "force_unit",
-            Cause::Level => "level",
-            Cause::NoiseUnit => "noise_unit",
-            Cause::Misfit => "misfit",
-            Cause::NoiseTooSmall => "noise_too_small",
-            Cause::TooFewSamples => "too_few_samples",
-            Cause::Opposite => "opposite",
-        }
-    }
 }
 
 impl fmt::Display for Cause {
@@ -140,15 +127,12 @@ impl Fit {
         let most = libm::floor(2.0 * samples / (explained as f64 + LEAST_DEGREES)).max(1.0);
         let effective_samples = 2.0 * samples / length;
         let exact = !question.is_unknown(Unknown::Variance) && wanted == 1.0;
-        let within = if exact {
-            1.0
-        } else {
-            STATED_WITHIN * STATED_WITHIN
+        let within = match exact {
+            true => 1.0,
+            false => STATED_WITHIN * STATED_WITHIN,
         };
-        let limits = question
-            .noise
-            .sd
-            .map(|_| limits(effective_samples - explained as f64, within));
+        let free = effective_samples - explained as f64;
+        let limits = question.noise.sd.map(|_| limits(free, within));
         let limits = limits.transpose()?;
         Ok(Fit {
             noise_sd,

@@ -97,6 +97,19 @@ impl Question<'_> {
         }
     }
 
+    /// The parts of a design over the noise of a sample, how well they fit, and their sums over blocks of samples that depend on
+    /// one another.
+    pub(crate) fn fitted(&self, design: &Design) -> Result<(Design, Fit, Design), DetectError> {
+        let noise_sd = match self.noise.sd {
+            Some(sd) => sd,
+            None => design.noise_sd()?,
+        };
+        let white = design.whitened(noise_sd);
+        let fit = Fit::new(self, &white, noise_sd)?;
+        let blocks = white.blocks(fit.block);
+        Ok((white, fit, blocks))
+    }
+
     /// Judges `record` for the inclusion of one map, where that map has it.
     ///
     /// # Errors
@@ -109,13 +122,7 @@ impl Question<'_> {
         design.set_template(self, hypotheses.with(), record)?;
         design.add_depth_error(self, hypotheses.with(), record)?;
         let judged = || {
-            let noise_sd = match self.noise.sd {
-                Some(sd) => sd,
-                None => design.noise_sd()?,
-            };
-            let white = design.whitened(noise_sd);
-            let fit = Fit::new(self, &white, noise_sd)?;
-            let blocks = white.blocks(fit.block);
+            let (white, fit, blocks) = self.fitted(&design)?;
             let (mut signals, mut template) = (blocks.signals(false), stacked(&blocks.template));
             let nuisances = Nuisances::new(&mut signals, template.len())?;
             let detector = SubspaceDetector::new(nuisances, &mut template)?;

@@ -210,13 +210,8 @@ impl Trace {
     ///
     /// Implements: TRC-008, TRC-010, TRC-004.
     pub fn record(self, motion: Option<Motion>) -> Result<Record, Refusal> {
-        let Trace {
-            file,
-            mut samples,
-            abscissa,
-            ..
-        } = self;
-        let placed = match (abscissa, motion) {
+        let (file, mut samples) = (self.file, self.samples);
+        let placed = match (self.abscissa, motion) {
             (Abscissa::Position, None) => Ok(()),
             (Abscissa::Time, Some(motion)) => move_along(&mut samples, motion),
             (Abscissa::Time, None) => Err(Refusal::state(
@@ -264,10 +259,8 @@ fn move_along(samples: &mut [Sample], motion: Motion) -> Result<(), Refusal> {
 ///
 /// Implements: TRC-004.
 fn check_times(samples: &[Sample]) -> Result<(), Refusal> {
-    for pair in samples.windows(2) {
-        let [(_, [before, ..]), (line, [found, ..])] = pair else {
-            continue;
-        };
+    let next = samples.iter().skip(1);
+    for ((_, [before, ..]), (line, [found, ..])) in samples.iter().zip(next) {
         if found <= before {
             let found = format!("time {found:?} s after {before:?} s");
             return Err(Refusal::state(found, "it to increase").at(*line));

@@ -1,6 +1,6 @@
 """Forces on the probe by a second program: writes forces.json beside it.
 
-    pip install -r vectors/probe_force/requirements.txt
+    pip install -r vectors/requirements.txt
     python vectors/probe_force/probe_force.py
 
 The model is that of spec/phantom.md and spec/fem.md: plane strain, small strain, ν = 0.49, a rigid frictionless circle

@@ -2,7 +2,7 @@
 //!
 //! Implements: CLB-010.
 
-use palpate::stats::{binomial, noncentral, normal};
+use palpate::stats::{Bounds, binomial, noncentral, normal};
 
 use crate::Error;
 use crate::memory::give;
@@ -85,8 +85,8 @@ pub struct Interval {
     pub upper: f64,
 }
 
-impl From<binomial::ConfidenceInterval> for Interval {
-    fn from(interval: binomial::ConfidenceInterval) -> Interval {
+impl From<Bounds> for Interval {
+    fn from(interval: Bounds) -> Interval {
         Interval {
             lower: interval.lower,
             upper: interval.upper,

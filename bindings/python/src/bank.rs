@@ -87,8 +87,8 @@ fn record(positions_mm: Any, forces_n: Any) -> PyResult<Record> {
 /// What is unknown, by name.
 fn unknowns(names: Vec<String>) -> PyResult<Vec<Unknown>> {
     let unknown = |name: String| {
-        let found = Unknown::ALL.into_iter().find(|of| of.name() == name);
-        let expected = Unknown::ALL.map(Unknown::name).join(", ");
+        let found = Unknown::ALL.into_iter().find(|of| of.to_string() == name);
+        let expected = Unknown::ALL.map(|of| of.to_string()).join(", ");
         found.ok_or_else(|| refused(Refusal::value("unknown", name, expected)))
     };
     names.into_iter().map(unknown).collect()
@@ -113,11 +113,11 @@ fn told<'py>(py: Python<'py>, found: &Location) -> PyResult<Bound<'py, PyAny>> {
     let intervals = [0, 1, 2, 3].map(|axis| place.interval(axis, CREDIBLE));
     let interval = |axis: usize, power| {
         let ends = intervals[axis].as_ref().ok();
-        ends.map(|ends| [ends.low, ends.high].map(|end| in_unit(end, power)))
+        ends.map(|ends| [ends.lower, ends.upper].map(|end| in_unit(end, power)))
     };
     let answer = json!({
         "inclusion": found.decision.map(|decision| decision == Decision::Inclusion),
-        "causes": found.causes.iter().map(|cause| cause.code()).collect::<Vec<_>>(),
+        "causes": found.causes,
         "posterior_h1": found.posterior,
         "theta_max": found.theta_max,
         "theta_mixture": found.theta_mixture,

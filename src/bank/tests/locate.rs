@@ -175,7 +175,7 @@ fn a_prior_excludes_what_it_gives_no_weight() {
     assert!(found.point[0] < 0.0, "{:?}", found.point);
     // Nothing of what is likeliest by far may be: the rest has all the probability, up to the next point.
     let interval = found.place.interval(0, 0.99).unwrap();
-    assert!(-2e-3 <= interval.low && interval.low < interval.high && interval.high <= 0.0);
+    assert!(-2e-3 <= interval.lower && interval.lower < interval.upper && interval.upper <= 0.0);
     assert!(found.place.nodes().all(|(_, mass)| mass.is_finite()));
     let all = by_map(&bank).locate(&record).unwrap();
     assert_eq!(all.point[..3], [1e-3, 3e-3, 8e-3]);

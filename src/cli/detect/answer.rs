@@ -30,14 +30,14 @@ pub struct DetectAnswer {
 
 /// What people are told of a record judged with the inclusion at x = 0.
 #[derive(Template)]
-#[template(path = "cli/detect/maps.txt")]
+#[template(path = "cli.txt", block = "detect_maps")]
 struct Judged<'a> {
     found: &'a Judgement,
 }
 
 /// What they are told of one searched for any inclusion of a bank.
 #[derive(Template)]
-#[template(path = "cli/detect/bank.txt")]
+#[template(path = "cli.txt", block = "detect_bank")]
 struct Located<'a> {
     found: &'a Location,
     decided_by: &'a str,
@@ -56,9 +56,8 @@ impl DetectAnswer {
             Some(Decision::NoInclusion) => "no_inclusion",
             None => "cannot_be_judged",
         };
-        let causes = causes.iter().map(|cause| cause.code());
         self.tell("decision", key);
-        self.tell("causes", causes.collect::<Vec<_>>());
+        self.tell("causes", json!(causes));
     }
 
     /// The record judged with the inclusion at x = 0.
@@ -135,7 +134,7 @@ impl DetectAnswer {
                 Parameter::Modulus => ("youngs_modulus", 1e-3, "Young's modulus, kPa"),
             };
             let estimate = found.place.estimate[axis];
-            let ends = [interval.low, interval.high];
+            let ends = [interval.lower, interval.upper];
             self.tell(key, json!({"estimate": estimate, "mean": mean[axis], "interval": ends, "sd_bound": sd, "unit": parameter.unit()}));
             let shown = |x: f64| format!("{:.3}", scale * x);
             let [low, high] = ends.map(shown);

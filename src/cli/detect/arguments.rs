@@ -129,18 +129,18 @@ pub struct Unknowns(pub Vec<Unknown>);
 ///
 /// Implements: CLI-140.
 pub fn unknowns(text: &str) -> Result<Unknowns, String> {
-    let known: Vec<&str> = match text {
+    let names = Unknown::ALL.map(|of| of.to_string());
+    let known: Vec<String> = match text {
         "none" => Vec::new(),
-        "all" => Unknown::ALL.map(Unknown::name).into(),
-        list => list.split(',').map(str::trim).collect(),
+        "all" => names.clone().into(),
+        list => list.split(',').map(|name| name.trim().into()).collect(),
     };
-    let names = Unknown::ALL.map(Unknown::name);
     if let Some(name) = known.iter().find(|name| !names.contains(name)) {
         let names = names.join(", ");
         return Err(format!("{name:?} is none of {names}, all and none"));
     }
     let unknown = Unknown::ALL.into_iter();
-    let unknown = unknown.filter(|of| !known.contains(&of.name()));
+    let unknown = unknown.filter(|of| !known.contains(&of.to_string()));
     Ok(Unknowns(unknown.collect()))
 }
 

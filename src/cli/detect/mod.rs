@@ -6,13 +6,15 @@ pub mod arguments;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
+
 use super::output::{note, print, write};
 use super::{CliError, Format};
 use crate::bank::{Bank, BankSearch};
 use crate::detect::Decision;
 use crate::force_map::{ForceMap, ForceTable, Hypotheses};
 use crate::refusal::one_line;
-use crate::report::place_figure;
+use crate::report::{in_words, place_figure};
 use crate::trace::{Cause, Fit, Motion, Question, Record, Trace, Unknown};
 use answer::DetectAnswer;
 pub use arguments::DetectArguments;
@@ -37,8 +39,7 @@ fn asked(arguments: &DetectArguments, depth: f64, samples: usize) -> DetectAnswe
     answer.tell("samples", samples);
     answer.tell("depth_m", depth);
     answer.tell("depth_tolerance_m", arguments.depth_tolerance_mm);
-    let unknown = arguments.unknown.0.iter().map(|of| of.name());
-    answer.tell("unknown", unknown.collect::<Vec<_>>());
+    answer.tell("unknown", json!(arguments.unknown.0));
     answer.tell("noise", &*arguments.noise);
     answer.tell("prior_h1", arguments.prior_h1);
     answer.tell("criterion", arguments.criterion_name());
@@ -214,15 +215,9 @@ fn conclusion(unknown: &[Unknown], found: &Found) -> String {
         None => format!("The record cannot be judged: {}", reasons(&found.causes)),
     };
     let names = |is_known: bool| {
-        let of = Unknown::ALL
-            .into_iter()
-            .filter(|of| is_known != unknown.contains(of));
-        let names: Vec<_> = of.map(Unknown::name).collect();
-        if names.is_empty() {
-            "nothing".into()
-        } else {
-            names.join(", ")
-        }
+        let of = Unknown::ALL.into_iter();
+        let of = of.filter(|of| is_known != unknown.contains(of));
+        in_words(&of.collect::<Vec<_>>())
     };
     let (known, fitted) = (names(true), names(false));
     format!("{decided}; taken as known: {known}; fitted: {fitted}.")

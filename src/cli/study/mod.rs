@@ -170,7 +170,7 @@ fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
 ///
 /// Implements: STU-051.
 #[derive(Template)]
-#[template(path = "cli/study.txt")]
+#[template(path = "cli.txt", block = "study")]
 struct Table<'a> {
     results: &'a StudyResults,
 }

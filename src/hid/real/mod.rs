@@ -167,10 +167,9 @@ fn milliseconds(timeout: Duration) -> i32 {
 /// Implements: HID-033.
 fn all_sent(sent: usize) -> Result<(), HidError> {
     let all = ForceReport::LENGTH;
-    if sent == all {
-        Ok(())
-    } else {
-        Err(HidError::IncompleteSendError { sent, all })
+    match sent == all {
+        true => Ok(()),
+        false => Err(HidError::IncompleteSendError { sent, all }),
     }
 }
 

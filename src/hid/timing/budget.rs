@@ -83,23 +83,22 @@ impl Budget {
     fn ranks(&self, cycles: u64) -> Result<(u64, Option<u64>), NumericError> {
         let (share, confidence) = (self.percentile / 100.0, self.confidence_percent / 100.0);
         // So many times lie below the percentile as a binomial law says, whatever the law of the times.
-        let lower = first(1, cycles, |rank| {
+        let lower = first(cycles, |rank| {
             Ok(at_least(rank, cycles, share)? < confidence)
         })?;
-        let upper = first(1, cycles, |rank| {
+        let upper = first(cycles, |rank| {
             Ok(at_most(rank - 1, cycles, share)? >= confidence)
         })?;
         Ok((lower - 1, Some(upper).filter(|&rank| rank <= cycles)))
     }
 }
 
-/// The first number from `low` to `high` for which `holds`, which goes on holding above it; `high` + 1 if there is none.
+/// The first number from 1 to `high` for which `holds`, which goes on holding above it; `high` + 1 if there is none.
 fn first(
-    mut low: u64,
     high: u64,
     holds: impl Fn(u64) -> Result<bool, NumericError>,
 ) -> Result<u64, NumericError> {
-    let mut end = high + 1;
+    let (mut low, mut end) = (1, high + 1);
     while low < end {
         let middle = low + (end - low) / 2;
         match holds(middle)? {

@@ -65,7 +65,7 @@ fn survives(weights: &[WeightRange], ranges: usize) -> Option<String> {
 ///
 /// Implements: PSY-081.
 #[derive(Template)]
-#[template(path = "psychophysics/verdict.txt")]
+#[template(path = "psychophysics.txt", block = "verdict")]
 struct Words<'a> {
     support: Favoured,
     /// The level, %.

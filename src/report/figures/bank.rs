@@ -108,7 +108,7 @@ fn marginal(
     };
     let curve = density(points, place, axis, of_si);
     let interval = place.interval(axis, LEVEL)?;
-    let (low, high, estimate) = (interval.low, interval.high, place.estimate[axis]);
+    let (low, high, estimate) = (interval.lower, interval.upper, place.estimate[axis]);
     let (first, last) = (points[0], points[points.len() - 1]);
     let aside = (high - low).max(0.02 * (last - first));
     let range = [

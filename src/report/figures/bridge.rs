@@ -47,7 +47,12 @@ pub fn draw(figures: &mut Figures, found: &Findings) -> Result<(), Refusal> {
     ];
     let text = Text { bridge, condition };
     let drawn = chart(&panels, DEPTH);
-    figures.add(("bridge", ""), Topic::People, words!(text), drawn)
+    figures.add(
+        ("bridge", ""),
+        Topic::People,
+        words!(text, as_bridge_caption, as_bridge_alt),
+        drawn,
+    )
 }
 
 /// Predictions of the conventions with one treatment of the mean, and what was observed.
@@ -84,7 +89,7 @@ fn short_name(fit: &ConventionFit) -> String {
 }
 
 #[derive(Template)]
-#[template(path = "report/words/bridge.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "bridge_title", blocks = ["bridge_caption", "bridge_alt"])]
 struct Text<'a> {
     bridge: &'a Bridge,
     condition: &'a ConditionBridge,

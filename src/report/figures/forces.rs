@@ -27,7 +27,11 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
     };
     if !run.maps.is_empty() {
         let text = SignalText { found };
-        add(("signals", ""), words!(text), &signals(run, found)?)?;
+        add(
+            ("signals", ""),
+            words!(text, as_signals_caption, as_signals_alt),
+            &signals(run, found)?,
+        )?;
     }
     for map in [&run.reference].into_iter().chain(&run.maps) {
         let name = text::name_of_map(map);
@@ -37,7 +41,7 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
         let text = ForceText { map, depth };
         add(
             ("figure-5", &name),
-            words!(text),
+            words!(text, as_figure_5_caption, as_figure_5_alt),
             &force_curves(map.table(), bands),
         )?;
     }
@@ -45,7 +49,7 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
         let (text, name) = (MeasuredText { map }, text::name_of_map(map));
         add(
             ("figure-7", &name),
-            words!(text),
+            words!(text, as_figure_7_caption, as_figure_7_alt),
             &force_curves(map.table(), Default::default()),
         )?;
     }
@@ -147,13 +151,13 @@ fn signals(run: &Run, found: &Findings) -> Result<[Panel; 2], Refusal> {
 }
 
 #[derive(Template)]
-#[template(path = "report/words/signals.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "signals_title", blocks = ["signals_caption", "signals_alt"])]
 struct SignalText<'a> {
     found: &'a Findings,
 }
 
 #[derive(Template)]
-#[template(path = "report/words/figure-5.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "figure_5_title", blocks = ["figure_5_caption", "figure_5_alt"])]
 struct ForceText<'a> {
     map: &'a ForceMap,
     /// The depth of the bands, m, if there are any.
@@ -177,7 +181,7 @@ impl ForceText<'_> {
 }
 
 #[derive(Template)]
-#[template(path = "report/words/figure-7.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "figure_7_title", blocks = ["figure_7_caption", "figure_7_alt"])]
 struct MeasuredText<'a> {
     map: &'a ForceMap,
 }

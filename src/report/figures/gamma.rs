@@ -40,7 +40,12 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
         has_bands,
     };
     let drawn = chart(&[panel], DEPTH);
-    figures.add(("gamma", ""), Topic::Detection, words!(text), drawn)
+    figures.add(
+        ("gamma", ""),
+        Topic::Detection,
+        words!(text, as_gamma_caption, as_gamma_alt),
+        drawn,
+    )
 }
 
 /// The band of γ that a study has for a map, upright beside its depth, mm.
@@ -86,7 +91,7 @@ fn panel(maps: &Maps<'_>, beside: &[GammaBeside], needed: f64, bars: Vec<Line>) 
 }
 
 #[derive(Template)]
-#[template(path = "report/words/gamma.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "gamma_title", blocks = ["gamma_caption", "gamma_alt"])]
 struct Text<'a> {
     maps: &'a Maps<'a>,
     beside: &'a [GammaBeside],

@@ -43,7 +43,7 @@ pub fn draw(figures: &mut Figures, run: &Run) -> Result<(), Refusal> {
     figures.add(
         ("inputs", ""),
         Topic::Inputs,
-        words!(text),
+        words!(text, as_inputs_caption, as_inputs_alt),
         chart(&panels, CHANGE),
     )
 }
@@ -86,7 +86,7 @@ fn panel(of: &QuantityResult, bars: &[(&str, f64)]) -> Panel {
 }
 
 #[derive(Template)]
-#[template(path = "report/words/inputs.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "inputs_title", blocks = ["inputs_caption", "inputs_alt"])]
 struct Text<'a> {
     drawn: &'a [&'a QuantityResult],
     bars: &'a [Vec<(&'a str, f64)>],

@@ -16,7 +16,7 @@ use crate::report::{DeformedMesh, Topic, paper, text};
 const EDGE: RGBColor = RGBColor(0x5B, 0x64, 0x70);
 
 #[derive(Template)]
-#[template(path = "report/words/figure-6.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "figure_6_title", blocks = ["figure_6_caption", "figure_6_alt"])]
 struct Text<'a> {
     mesh: &'a DeformedMesh,
 }
@@ -46,5 +46,10 @@ pub fn draw(figures: &mut Figures, mesh: &DeformedMesh) -> Result<(), Refusal> {
     });
     let text = Text { mesh };
     let drawn = chart(&[panel], "Lateral position x (mm)");
-    figures.add(("figure-6", ""), Topic::Setup, words!(text), drawn)
+    figures.add(
+        ("figure-6", ""),
+        Topic::Setup,
+        words!(text, as_figure_6_caption, as_figure_6_alt),
+        drawn,
+    )
 }

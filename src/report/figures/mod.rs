@@ -1,6 +1,6 @@
 //! The pictures: every figure of the paper that is no photograph, the signals, what is left of γ, γ of a tactile array, and the bridge to Table 1.
 //!
-//! Their words are in `templates/report/words/`.
+//! Their words are in `templates/report/words.txt`.
 //!
 //! | file | content |
 //! |---|---|
@@ -35,6 +35,7 @@ use super::text::{FileNames, escape};
 use super::{Figure, Findings, Run, Topic, refused};
 use crate::refusal::Refusal;
 use crate::study::Band;
+use askama::Template;
 pub use bank::place_figure;
 use panel::{DrawingResult, Line};
 pub use reach::reach_figure;
@@ -44,13 +45,18 @@ use style::{UNIT, VERMILION, WIDTH};
 /// The words around a picture: title, caption, and the picture in words.
 type Words<'a> = [&'a dyn Display; 3];
 
-/// The words of a figure from a template with a block for each.
+/// The words of a figure from a template that is its title, with a block each for the others.
 macro_rules! words {
-    ($text:expr) => {
-        [&$text.as_title(), &$text.as_caption(), &$text.as_alt()]
+    ($title:expr, $caption:ident, $alt:ident) => {
+        [&$title, &$title.$caption(), &$title.$alt()]
     };
 }
 use words;
+
+/// The words of the figures that are the same for every run: four paragraphs for each, the first its name.
+#[derive(Template)]
+#[template(path = "report/words.txt", block = "fixed")]
+struct FixedWords;
 
 /// The figures so far.
 #[derive(Default)]
@@ -84,15 +90,15 @@ impl Figures {
         Ok(())
     }
 
-    /// Adds a figure that is the same for every run: its words are in a file, four paragraphs for each.
+    /// Adds a figure that is the same for every run.
     fn add_fixed(
         &mut self,
         prefix: &str,
         topic: Topic,
         drawn: DrawingResult<(String, i32)>,
     ) -> Result<(), Refusal> {
-        let file = include_str!("../../../templates/report/words/fixed.txt");
-        let mut words = file.trim_end().split("\n\n");
+        let all = FixedWords.to_string();
+        let mut words = all.split("\n\n");
         words.find(|paragraph| *paragraph == prefix);
         let words = [(); 3].map(|()| words.next().unwrap_or_default());
         let [title, caption, alt] = &words;

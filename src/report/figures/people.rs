@@ -75,7 +75,7 @@ pub fn draw(figures: &mut Figures, run: &Run, people: &Analysis) -> Result<(), R
         figures.add(
             (&file, ""),
             Topic::People,
-            words!(text),
+            words!(text, as_subjects_caption, as_subjects_alt),
             chart(&[subjects(of, predicted)], DEPTH),
         )?;
     }
@@ -87,7 +87,7 @@ pub fn draw(figures: &mut Figures, run: &Run, people: &Analysis) -> Result<(), R
     figures.add(
         ("figure-13", ""),
         Topic::People,
-        words!(text),
+        words!(text, as_figure_13_caption, as_figure_13_alt),
         chart(&[panel], DEPTH),
     )
 }
@@ -170,7 +170,7 @@ fn bars(inclusion: &InclusionAnalysis, x: f64, colour: RGBColor) -> Vec<Line> {
 }
 
 #[derive(Template)]
-#[template(path = "report/words/subjects.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "subjects_title", blocks = ["subjects_caption", "subjects_alt"])]
 struct SubjectText<'a> {
     number: u32,
     of: &'a ConditionAnalysis,
@@ -187,7 +187,7 @@ impl SubjectText<'_> {
 }
 
 #[derive(Template)]
-#[template(path = "report/words/figure-13.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "figure_13_title", blocks = ["figure_13_caption", "figure_13_alt"])]
 struct ComparisonText<'a> {
     conditions: &'a [ConditionAnalysis],
     width_ratios: Option<[f64; 2]>,

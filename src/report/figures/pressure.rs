@@ -55,7 +55,12 @@ pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Re
         settings: &run.settings,
     };
     let drawn = chart(&panels, "Elements of the array");
-    figures.add(("pressure", ""), Topic::Pressure, words!(text), drawn)
+    figures.add(
+        ("pressure", ""),
+        Topic::Pressure,
+        words!(text, as_pressure_caption, as_pressure_alt),
+        drawn,
+    )
 }
 
 /// For each map a line of its γ, a dashed one at that of the total force, and one for all at the γ that the rates need.
@@ -95,7 +100,7 @@ fn panel(
 }
 
 #[derive(Template)]
-#[template(path = "report/words/pressure.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "pressure_title", blocks = ["pressure_caption", "pressure_alt"])]
 struct Text<'a> {
     maps: &'a [(&'a MapFindings, &'a ArrayFindings)],
     found: &'a Findings,

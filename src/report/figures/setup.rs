@@ -114,7 +114,12 @@ pub fn draw(figures: &mut Figures, run: &Run) -> Result<(), Refusal> {
         let width = millimetres(phantom.well.width);
         let x_name = format!("Lateral position x (mm); the well is {width} mm wide");
         let picture = chart(&[panel(phantom, &text.others)], &x_name);
-        figures.add(("figure-1", name), Topic::Setup, words!(text), picture)?;
+        figures.add(
+            ("figure-1", name),
+            Topic::Setup,
+            words!(text, as_figure_1_caption, as_figure_1_alt),
+            picture,
+        )?;
         drawn.push(phantom);
     }
     Ok(())
@@ -324,7 +329,7 @@ fn first(mut items: Vec<String>) -> Vec<String> {
 }
 
 #[derive(Template)]
-#[template(path = "report/words/figure-1.txt", blocks = ["title", "caption", "alt"])]
+#[template(path = "report/words.txt", block = "figure_1_title", blocks = ["figure_1_caption", "figure_1_alt"])]
 struct Text<'a> {
     phantom: &'a Phantom,
     others: Vec<&'a Inclusion>,

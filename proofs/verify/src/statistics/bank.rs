@@ -58,7 +58,9 @@ fn ranks(draw: &Draw<'_>) -> Outcome<Figure> {
 fn intervals(draw: &Draw<'_>) -> Outcome<Figure> {
     let held = places(draw, 810)?.into_iter().map(|(truth, place)| {
         let interval = place.interval(0, 0.9)?;
-        Ok(u64::from(interval.low <= truth && truth <= interval.high))
+        Ok(u64::from(
+            interval.lower <= truth && truth <= interval.upper,
+        ))
     });
     let held = held.sum::<Outcome<u64>>()?;
     count_test(held, draw.trials(), 0.9, draw.row.alpha)
