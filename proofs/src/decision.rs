@@ -26,7 +26,7 @@ impl TypeGenerator for Compared {
     }
 }
 
-// Verifies: DET-005, DET-020.
+// Verifies: DET-005, DET-009, DET-020.
 #[test]
 #[cfg_attr(kani, kani::proof, kani::solver(cadical))]
 fn no_inclusion_is_never_decided_without_finite_numbers() {

@@ -8,6 +8,7 @@ use std::vec;
 use std::vec::Vec;
 
 use super::*;
+use crate::stats::random::Generator;
 
 /// Two cells of different widths, and their reciprocals.
 const DEPTHS: ([f32; 3], [f32; 2]) = ([0.0, 0.25, 0.75], [4.0, 2.0]);
@@ -163,6 +164,31 @@ fn limits_are_refused_by_name() {
     ] {
         assert!(limit.to_string().starts_with(name), "{limit}");
     }
+}
+
+// Verifies: SRV-022.
+#[test]
+fn limits_are_accepted_if_and_only_if_they_keep_the_four_rules() {
+    let generator = Generator::new(22, 0);
+    let mut accepted = 0;
+    for trial in 0..200_000 {
+        let [force, slew, release, watchdog] = generator.words([0, trial, 0, 0]);
+        // From 10⁻⁶ to 10², or any bits.
+        let number = |word: u64| match word % 8 {
+            0 => f32::from_bits((word >> 32) as u32),
+            _ => libm::powf(10.0, (word >> 40) as f32 / (1 << 21) as f32 - 6.0),
+        };
+        let [force, slew, release] = [force, slew, release].map(number);
+        let watchdog = (watchdog % 128) as u16;
+        let [f, s, r] = [force, slew, release].map(f64::from);
+        let rules = f > 0.0 && f <= 20.0 && s >= f64::from(1e-4_f32) && s <= f;
+        let rules = rules && r >= s && 16.0 * r >= f && r.is_finite();
+        let rules = rules && (1..=100).contains(&watchdog);
+        let limits = Limits::new(force, slew, release, watchdog);
+        assert_eq!(limits.is_ok(), rules, "{force} {slew} {release} {watchdog}");
+        accepted += u32::from(rules);
+    }
+    assert!(accepted > 2_000, "{accepted}");
 }
 
 /// A person at the device: feeds the kernel sample after sample.

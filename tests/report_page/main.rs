@@ -75,7 +75,7 @@ fn the_dossier_fits_phones_and_screens() {
     let program = Path::new(env!("CARGO_BIN_EXE_palpate")).with_file_name("palpate-verify");
     assert!(program.exists(), "first: cargo build -p palpate-verify");
     let mut command = Command::new(program);
-    command.args(["--only", "vectors,timing", "--out"]);
+    command.args(["--only", "rates,timing", "--out"]);
     let output = command.arg(here.at("")).output().unwrap();
     assert!(output.status.success(), "{output:?}");
     looks(&browser, &here.at("dossier.html"));

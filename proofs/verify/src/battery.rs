@@ -4,7 +4,7 @@ use super::statistics::{Check, FIXED_SEED};
 use super::{Figure, Outcome};
 
 /// Checks of the battery by the beginning of their names, with their claim and requirements.
-const GROUPS: [(&str, &str, &[&str]); 17] = [
+const GROUPS: [(&str, &str, &[&str]); 18] = [
     (
         "coarse_mean",
         "Θ of full records has the mean ∓γ²/2.",
@@ -19,6 +19,11 @@ const GROUPS: [(&str, &str, &[&str]); 17] = [
         "coarse_kolmogorov",
         "Θ of full records is normal.",
         &["DET-015", "DET-113"],
+    ),
+    (
+        "coarse_noise_variance",
+        "The noise of simulated records has the variance that was asked for.",
+        &["DET-113"],
     ),
     (
         "coarse_",
