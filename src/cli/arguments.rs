@@ -33,33 +33,33 @@ pub struct CommandLine {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// The whole paper: force maps of the phantoms, signals, detection, report.
+    /// Computes the whole paper: force maps of the phantoms, signals, detection and a report.
     Run(run::RunArguments),
-    /// Files to try the other commands on: maps, recorded sweeps, a measured map, a configuration.
+    /// Writes example files for the other commands: maps, recorded sweeps, a measured map, a configuration.
     Demo(demo::DemoArguments),
-    /// Forces on the probe over depths and lateral positions of one phantom.
+    /// Computes the forces on the probe over depths and lateral positions of one phantom.
     Solve(solve::SolveArguments),
-    /// A measured force map in CSV, checked and written as JSON.
+    /// Checks a measured force map in CSV and writes it as JSON.
     ImportMap(import::ImportArguments),
-    /// The forces for every inclusion that may be there: a bank, for 'palpate detect' and 'palpate reach'.
+    /// Computes a bank: the forces for every inclusion that may be there, for 'palpate detect' and 'palpate reach'.
     Bank(bank::BankArguments),
-    /// A recorded sweep against two force maps or a bank: is there an inclusion, and where.
+    /// Decides whether a recorded sweep shows an inclusion, and where, by two force maps or a bank.
     Detect(detect::DetectArguments),
-    /// How deep an inclusion of a bank may lie, and how small it may be, to be found.
+    /// Computes how deep and how small an inclusion of a bank may be and still be found.
     Reach(reach::ReachArguments),
-    /// What uncertain inputs do to every number: samples, on one machine or many, and their analysis.
+    /// Carries uncertain inputs through to every number: samples, on one machine or many, and their analysis.
     Study(study::StudyArguments),
-    /// A force map to a hand, through a haptic device or a simulated one.
+    /// Plays a force map to a hand, through a haptic device or a simulated one.
     Play(play::PlayArguments),
-    /// The HID devices of this machine, and which of them can play a force map.
+    /// Lists the HID devices of this machine, and which of them can play a force map.
     Devices(devices::DevicesArguments),
-    /// The paper's experiment: pairs of samples, of which a subject says where the inclusion is.
+    /// Runs the paper's experiment: a subject feels pairs of samples and says which has the inclusion.
     Experiment(experiment::ExperimentArguments),
-    /// Right answers of subjects: shares, differences, noise, and what of the force they used.
+    /// Analyses the right answers of subjects: shares, differences, noise, and which part of the force they used.
     Psychophysics(psychophysics::PsychophysicsArguments),
-    /// The time budget of the servo loop, on the simulated device.
+    /// Measures the servo loop on the simulated device against its time budget.
     Timing(timing::TimingArguments),
-    /// Answers questions in lines of JSON, for other implementations to compare with.
+    /// Answers questions in lines of JSON, so that other implementations can be compared.
     Oracle(oracle::OracleArguments),
 }
 
@@ -68,7 +68,7 @@ pub(super) enum Command {
 pub enum Format {
     /// For people.
     Table,
-    /// For programs; each key ends with its unit.
+    /// For programs; keys carry the unit.
     Json,
 }
 

@@ -27,19 +27,19 @@ const PER_MAP: usize = 20;
 /// Arguments of `palpate bank`.
 #[derive(Debug, Args)]
 pub struct BankArguments {
-    /// A built-in phantom (2.6, 4.6, 6.6, 8.6) or a phantom file, of whose one inclusion the others are made
+    /// A built-in phantom (2.6, 4.6, 6.6, 8.6) or a phantom file with one inclusion, which is varied
     #[arg(long, value_name = "NAME|FILE")]
     phantom: String,
-    /// x of the centre of the inclusions in mm: a,b,c or from:to:step
+    /// Lateral positions of the inclusion's centre in mm: a,b,c or from:to:step
     #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
     offsets_mm: List,
-    /// Depths of their highest point in mm: a,b,c or from:to:step
+    /// Depths of the inclusion's highest point in mm: a,b,c or from:to:step
     #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
     depths_mm: List,
-    /// Their diameters in mm [default: that of the phantom]
+    /// Diameters of the inclusion in mm [default: that of the phantom]
     #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
     diameters_mm: Option<List>,
-    /// Their Young's moduli in kPa [default: that of the phantom]
+    /// Young's moduli of the inclusion in kPa [default: that of the phantom]
     #[arg(long, value_parser = moduli, allow_hyphen_values = true, value_name = "LIST")]
     stiffnesses_kpa: Option<List>,
     /// The depth of the probe in mm
@@ -51,10 +51,10 @@ pub struct BankArguments {
     /// How the gap to the probe is measured
     #[arg(long, value_enum, default_value_t = Contact::DeformedNormal)]
     contact: Contact,
-    /// Mesh size, mm, as of 'palpate solve' [default: 0.65]
+    /// Mesh size in mm; all element sizes scale with it [default: 0.65]
     #[arg(long, value_parser = length, value_name = "H")]
     mesh_mm: Option<f64>,
-    /// The file of the bank, which must be new; what is finished is kept in FILE.part until all is
+    /// The file of the bank, which must not exist; FILE.part keeps what is finished, so that an aborted run can continue
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }

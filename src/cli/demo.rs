@@ -16,7 +16,7 @@ use crate::stats::random::Generator;
 /// Arguments of `palpate demo`.
 #[derive(Debug, Args)]
 pub struct DemoArguments {
-    /// The folder for the files
+    /// The folder to write to
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }

@@ -30,22 +30,22 @@ pub struct ExperimentArguments {
     /// A force map with an inclusion, and its name in the results: 6.6=map.json; once for each
     #[arg(long, value_name = "NAME=FILE", required = true, value_parser = named_file)]
     inclusion: Vec<(String, PathBuf)>,
-    /// Keeps the answers; an experiment that was aborted goes on
+    /// The file of the answers; an aborted experiment continues from it
     #[arg(long, value_name = "FILE")]
     journal: PathBuf,
-    /// Who answers
+    /// Name of the subject
     #[arg(long, value_name = "NAME", default_value = "1", value_parser = plain_name)]
     subject: String,
-    /// What is played, as the results call it
+    /// Name of the condition in the results
     #[arg(long, value_name = "NAME", default_value = "FEM data", value_parser = plain_name)]
     condition: String,
-    /// Pairs for each inclusion
+    /// Number of pairs for each inclusion
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=1000))]
     trials: u64,
     /// The seed of the order of the pairs and of the ideal observer's noise
     #[arg(long, value_name = "S")]
     seed: u64,
-    /// How long each sample is felt, in s
+    /// How long each sample is played, in s
     #[arg(long, value_name = "S", default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=60))]
     seconds: u64,
     #[command(flatten)]

@@ -18,13 +18,13 @@ pub struct ImportArguments {
     /// The forces: a header with depth_mm, lateral_mm, normal_force_n, lateral_force_n, and a row for each pose
     #[arg(value_name = "FILE")]
     csv: PathBuf,
-    /// What was measured, kept in the map
+    /// A note on what was measured, stored in the map
     #[arg(long, default_value = "")]
     note: String,
-    /// The phantom that was measured: built in or a file; its computed forces are compared
+    /// The phantom that was measured, built in or a file: its computed forces are compared with the measured ones
     #[arg(long, value_name = "NAME|FILE")]
     phantom: Option<String>,
-    /// Smooths the forces over W mm to either side by parabolas along the lateral positions, and tells the noise
+    /// Smooths the forces by parabolas over W mm to either side along the lateral positions, and reports the noise
     #[arg(long, value_name = "W", value_parser = length, allow_hyphen_values = true)]
     smooth_mm: Option<f64>,
     /// Writes the map there instead of to standard output

@@ -32,19 +32,19 @@ pub struct PlayArguments {
     map: PathBuf,
     #[command(flatten)]
     device: DeviceArguments,
-    /// Ends after S seconds of the device's time [default: one probing on the simulated device]
+    /// Ends after S seconds of the device's time [default: one indentation on the simulated device]
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=86_400))]
     seconds: Option<u64>,
     /// Largest force of each component, in N
     #[arg(long, value_name = "N", default_value_t = 4.0)]
     max_force: f32,
-    /// Scales a map down that is too stiff for the device, instead of refusing it
+    /// Scales down a map that is too stiff for the device instead of refusing it
     #[arg(long)]
     scale: bool,
-    /// Records the session
+    /// Records the session to a file
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Plays a session that --device recorded again and compares every force
+    /// Replays a recorded session and compares every force with the recording
     #[arg(long, value_name = "FILE", conflicts_with_all = ["seconds", "record", "max_force"])]
     replay: Option<PathBuf>,
     /// How the summary is printed

@@ -35,9 +35,9 @@ pub struct DeviceArguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum DeviceName {
-    /// The paper's display in a hand that probes the gel, on a virtual clock.
+    /// A simulation of the paper's display in a hand that probes the gel, on a virtual clock.
     Sim,
-    /// A device of this machine, by its numbers if there are several.
+    /// A device of this machine; --vid, --pid or --serial choose among several.
     Hid,
 }
 

@@ -26,10 +26,10 @@ pub struct PsychophysicsArguments {
     /// The force map without inclusion, for the noise in newtons and the predicted shares
     #[arg(long, value_name = "FILE", requires = "inclusion")]
     reference: Option<PathBuf>,
-    /// The force map of an inclusion, by the name of its column: 6.6=map.json; two or more
+    /// The force map of an inclusion, with the name of its column: 6.6=map.json; two or more
     #[arg(long, visible_alias = "map", value_name = "NAME=FILE", requires = "reference", value_parser = named_file)]
     inclusion: Vec<(String, PathBuf)>,
-    /// Half of the sweep that the subjects are taken to use, in mm; without it all of the maps
+    /// Half the width of the sweep that the subjects are assumed to make, in mm [default: that of the maps]
     #[arg(long, value_name = "W", requires = "reference", value_parser = length)]
     sweep_mm: Option<f64>,
     /// How the answer is printed

@@ -19,21 +19,21 @@ use crate::trace::Unknown;
 /// Arguments of `palpate reach`.
 #[derive(Debug, Args)]
 pub struct ReachArguments {
-    /// A bank of inclusions, as 'palpate bank' makes it
+    /// A bank of inclusions, as 'palpate bank' writes it
     #[arg(long, value_name = "BANK")]
     bank: PathBuf,
     #[command(flatten)]
     noise_sd: NoiseSd,
-    /// Largest rate of false alarms of a search over the whole bank
+    /// The false-alarm rate of a search over the whole bank
     #[arg(long, value_name = "A", value_parser = probability, allow_hyphen_values = true, default_value = "0.01")]
     max_false_alarm: f64,
-    /// Largest rate of misses
+    /// The miss rate
     #[arg(long, value_name = "B", value_parser = probability, allow_hyphen_values = true, default_value = "0.05")]
     max_miss: f64,
-    /// Samples of the sweep, evenly spaced [default: one at each lateral position of the bank]
+    /// Number of evenly spaced samples of the sweep [default: one at each lateral position of the bank]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     samples: Option<u64>,
-    /// What is known, and not fitted to the record: a list of offset, drift, gain and depth; all; none
+    /// What is known and therefore not fitted: a list of offset, drift, gain and depth; all; none
     #[arg(long = "known", value_name = "LIST", value_parser = unknowns, default_value = "depth")]
     unknown: Unknowns,
     /// How the answer is printed

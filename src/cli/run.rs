@@ -26,10 +26,10 @@ use crate::study::StudyResults;
 /// Arguments of `palpate run`.
 #[derive(Debug, Args)]
 pub struct RunArguments {
-    /// What to run instead of the paper's phantoms: a TOML file
+    /// A TOML file with phantoms, poses and noise to use instead of the paper's
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// What the uncertainty of the inputs does, by 'palpate study merge' for the same phantoms
+    /// The results of 'palpate study merge' for the same phantoms, to show in the report
     #[arg(long, value_name = "FILE")]
     study: Option<PathBuf>,
     /// The folder for report.html, summary.json, maps/ and figures/

@@ -31,13 +31,13 @@ pub struct SolveArguments {
     /// How the gap to the probe is measured
     #[arg(long, value_enum, default_value_t = Contact::DeformedNormal)]
     contact: Contact,
-    /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them [default: 0.5]
+    /// Mesh size in mm; all element sizes scale with it [default: 0.5]
     #[arg(long, value_parser = length, value_name = "H")]
     mesh_mm: Option<f64>,
-    /// Solves two coarser meshes as well, and tells how far each force may be from that of an infinitely fine one
+    /// Also solves two coarser meshes and gives each force its discretisation error band
     #[arg(long)]
     certify: bool,
-    /// Writes the deformed mesh with stresses, of the only pose asked for, for ParaView
+    /// Writes the deformed mesh with stresses for ParaView; for a single pose only
     #[arg(long, value_name = "FILE")]
     vtu: Option<PathBuf>,
     /// How the forces are printed
@@ -49,9 +49,9 @@ pub struct SolveArguments {
 enum MapFormat {
     /// For people.
     Table,
-    /// The force map with its certificate.
+    /// The force map, with mesh, residuals and error bands.
     Json,
-    /// One row a pose.
+    /// One row for each pose.
     Csv,
 }
 

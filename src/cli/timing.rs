@@ -23,22 +23,22 @@ pub struct TimingArguments {
     /// The percentile of the times that must be within the budget
     #[arg(long, value_name = "P", default_value_t = 99.9)]
     percentile: f64,
-    /// How sure the verdict must be
+    /// The confidence of the verdict, in percent
     #[arg(long, value_name = "C", default_value_t = 95.0)]
     confidence_percent: f64,
-    /// The most cycles that may take longer [default: as many as the percentile allows]
+    /// How many cycles may take longer [default: as many as the percentile allows]
     #[arg(long, value_name = "N")]
     allowed_misses: Option<u64>,
-    /// The most cycles in a row that may take longer [default: any number]
+    /// How many cycles in a row may take longer [default: any number]
     #[arg(long, value_name = "N")]
     allowed_run: Option<u64>,
     /// Judges the cycles that another loop logged, CSV or lines of JSON, instead of measuring
     #[arg(long, value_name = "FILE", conflicts_with_all = ["cycles", "paced", "map"])]
     from: Option<PathBuf>,
-    /// How many cycles are measured
+    /// Number of cycles to measure
     #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u64).range(1000..=100_000_000))]
     cycles: u64,
-    /// Lets the cycles come at 1 kHz, so that the wake-up by the system counts too
+    /// Runs the cycles at 1 kHz, so that the time until the system wakes the loop counts too
     #[arg(long)]
     paced: bool,
     /// A force map to play [default: a table of 9 × 41 poses]
@@ -53,7 +53,7 @@ pub struct TimingArguments {
 enum Printed {
     /// For people.
     Table,
-    /// For programs; each key ends with its unit.
+    /// For programs; keys carry the unit.
     Json,
     /// For CI: JUnit's XML.
     Junit,

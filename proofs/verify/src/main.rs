@@ -20,29 +20,29 @@ use palpate_verify::{
     Check, Outcome, battery_outcome, checks, dossier, program, supply, traceability,
 };
 
-/// The evidence for this build, found out on this machine: evidence.json and a dossier.
+/// Collects the evidence for this build on this machine: checks, records of test runs, a dossier for a reviewer.
 #[derive(Debug, Parser)]
 #[command(version, about)]
 struct Arguments {
     /// The folder for the dossier and the files beside it
     #[arg(long, value_name = "DIR", default_value = "palpate-evidence")]
     out: PathBuf,
-    /// Only these parts; the dossier is then no verdict on the build
+    /// Runs only these parts; the dossier is then no verdict on the build
     #[arg(long, value_name = "PART,…", value_enum, value_delimiter = ',')]
     only: Option<Vec<Part>>,
-    /// The program palpate that is judged, instead of the one beside palpate-verify
+    /// The program palpate to judge [default: the one beside palpate-verify]
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
     /// A record of a test run, as .ci/run writes it to target/record.json; may be given several times
     #[arg(long, value_name = "FILE")]
     record: Vec<PathBuf>,
-    /// Who runs it, for the dossier
+    /// Name of the operator, for the dossier
     #[arg(long, value_name = "NAME")]
     operator: Option<String>,
-    /// N batteries of the statistics with fresh seeds, besides the parts
+    /// Also runs N statistics batteries with fresh seeds
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     soak: Option<u32>,
-    /// The seed of the first battery of the soak; the next ones count on from it
+    /// The seed of the first of them; the next ones count up from it
     #[arg(long, value_name = "S", requires = "soak")]
     seed: Option<u64>,
 }

@@ -18,20 +18,20 @@ pub struct DetectArguments {
     /// The force map without inclusion: JSON as 'palpate solve --phantom none --format json' prints it, or measured CSV
     #[arg(long, value_name = "MAP", required_unless_present = "bank")]
     pub(super) reference: Option<PathBuf>,
-    /// The force map with the inclusion, where that map has it
+    /// The force map with the inclusion at the position that is tested
     #[arg(long, value_name = "MAP", required_unless_present = "bank")]
     pub(super) inclusion: Option<PathBuf>,
-    /// A bank of inclusions, as 'palpate bank' makes it: says whether one of them is there, and where it lies
+    /// A bank of inclusions, as 'palpate bank' writes it: decides whether one of them is there, and estimates where
     #[arg(long, value_name = "BANK", conflicts_with_all = ["reference", "inclusion", "any_maps"])]
     pub(super) bank: Option<PathBuf>,
     /// The probability of each inclusion of the bank given that there is one: a CSV file with position_mm, depth_mm, diameter_mm,
     /// youngs_modulus_kpa and weight [default: all the same]
     #[arg(long, value_name = "FILE", conflicts_with = "reference")]
     pub(super) prior: Option<PathBuf>,
-    /// Sets the threshold for neyman-pearson-false-alarm with a bank by so many simulated records, and not by a bound
+    /// With a bank, sets the threshold for neyman-pearson-false-alarm by N simulated records instead of a bound
     #[arg(long, value_name = "N", conflicts_with = "reference")]
     pub(super) simulations: Option<u64>,
-    /// The seed of these simulations
+    /// The seed of the simulated records
     #[arg(
         long,
         value_name = "SEED",
@@ -39,20 +39,20 @@ pub struct DetectArguments {
         default_value = "1999"
     )]
     pub(super) seed: u64,
-    /// Takes maps of different gels, meshes or versions of the program, and of any inclusions, and says so
+    /// Accepts maps of different gels, meshes, program versions or inclusions, with a warning
     #[arg(long)]
     pub(super) any_maps: bool,
-    /// The constant depth of the sweep in mm [default with a bank: that of the bank]
+    /// The indentation depth of the sweep in mm [default with a bank: that of the bank]
     #[arg(long, value_name = "D", value_parser = millimetres, allow_hyphen_values = true, required_unless_present = "bank")]
     pub(super) depth_mm: Option<f64>,
-    /// The true depth is within so many mm of that
+    /// How far the true depth may be from that, in mm
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true, default_value = "0.3")]
     pub(super) depth_tolerance_mm: f64,
-    /// What is known, and not fitted to the record: a list of offset, drift, gain, depth and variance (of the noise); all; none
+    /// What is known and therefore not fitted: a list of offset, drift, gain, depth and variance (of the noise); all; none
     #[arg(long = "known", value_name = "LIST", value_parser = unknowns, default_value = "depth")]
     pub(super) unknown: Unknowns,
-    /// Which samples are independent: auto (the record tells), white (all), or a recorded sweep without contact that tells; the
-    /// same tells the noise of a sample where it is not stated
+    /// How the noise of the samples is correlated: auto (estimated from the record), white (independent), or a file with a
+    /// sweep without contact, from which correlation and standard deviation are estimated
     #[arg(long, value_name = "auto|white|FILE", default_value = "auto")]
     pub(super) noise: String,
     #[command(flatten)]
@@ -60,16 +60,16 @@ pub struct DetectArguments {
     /// Probability of an inclusion before the sweep
     #[arg(long, value_name = "P", value_parser = probability, allow_hyphen_values = true, default_value = "0.5")]
     pub(super) prior_h1: f64,
-    /// What the threshold shall achieve
+    /// How the threshold is chosen
     #[arg(long, value_enum, default_value_t = CriterionName::Map)]
     criterion: CriterionName,
-    /// Largest rate of misses, for neyman-pearson-miss
+    /// The miss rate for neyman-pearson-miss
     #[arg(long, value_name = "B", value_parser = probability, allow_hyphen_values = true)]
     pub(super) max_miss: Option<f64>,
-    /// Largest rate of false alarms, for neyman-pearson-false-alarm
+    /// The false-alarm rate for neyman-pearson-false-alarm
     #[arg(long, value_name = "A", value_parser = probability, allow_hyphen_values = true)]
     pub(super) max_false_alarm: Option<f64>,
-    /// Leaves out the samples outside the lateral positions of the maps, and says how many
+    /// Leaves out samples outside the lateral positions of the maps, and reports how many
     #[arg(long)]
     pub(super) trim: bool,
     /// Velocity of the probe in mm/s, for a trace over time
@@ -81,7 +81,7 @@ pub struct DetectArguments {
     /// How the answer is printed
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub(super) format: Format,
-    /// Writes a figure of where the inclusion lies, if there is one, as SVG
+    /// Writes a figure of the inclusion's position as SVG; with a bank
     #[arg(long, value_name = "FILE", conflicts_with = "reference")]
     pub(super) figure: Option<PathBuf>,
 }
@@ -115,9 +115,9 @@ impl NoiseSd {
 enum CriterionName {
     /// The most probable hypothesis for the prior.
     Map,
-    /// A bound on misses.
+    /// A given miss rate.
     NeymanPearsonMiss,
-    /// A bound on false alarms.
+    /// A given false-alarm rate.
     NeymanPearsonFalseAlarm,
 }
 

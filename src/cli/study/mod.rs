@@ -29,22 +29,22 @@ pub struct StudyArguments {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// Computes samples, all or those of one shard; goes on where it was stopped
+    /// Computes the samples, all or those of one shard; continues an aborted run
     Run(StudyRunArguments),
-    /// Puts the samples of all shards together, and says what they show
+    /// Merges the samples of all shards and analyses them
     Merge(MergeArguments),
 }
 
 /// Arguments of `palpate study run`.
 #[derive(Debug, Args)]
 pub struct StudyRunArguments {
-    /// What is varied, how, and what is computed: a TOML file
+    /// A TOML file that says what is varied, how, and what is computed
     #[arg(value_name = "STUDY")]
     study: PathBuf,
     /// The folder for the samples
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Computes the samples of shard K of N alone
+    /// Computes only the samples of shard K of N
     #[arg(long, value_name = "K/N", value_parser = Shard::parse, default_value = "1/1")]
     shard: Shard,
 }
@@ -52,7 +52,7 @@ pub struct StudyRunArguments {
 /// Arguments of `palpate study merge`.
 #[derive(Debug, Args)]
 pub struct MergeArguments {
-    /// The folders of 'palpate study run'
+    /// The folders that 'palpate study run' wrote
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
     /// The file for the results
