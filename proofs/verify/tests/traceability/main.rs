@@ -64,6 +64,29 @@ fn every_requirement_has_code_and_a_test_or_proof() {
 }
 
 #[test]
+fn every_requirement_that_the_specification_names_is_defined() {
+    let (repository, trace) = (repository::read(Path::new(ROOT)), trace());
+    let ids: BTreeSet<&str> = trace
+        .requirements
+        .iter()
+        .map(|row| row.id.as_str())
+        .collect();
+    let topics: BTreeSet<&str> = ids.iter().map(|id| &id[..3]).collect();
+    let mut named = 0;
+    for (path, text) in repository
+        .iter()
+        .filter(|(path, _)| path.starts_with("spec/"))
+    {
+        let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'));
+        for id in words.filter(|word| spec::is_id(word) && topics.contains(&word[..3])) {
+            named += 1;
+            assert!(ids.contains(id), "{path}: {id} is no requirement");
+        }
+    }
+    assert!(named > 800, "{named}: are the chapters read?");
+}
+
+#[test]
 fn the_committed_table_is_that_of_the_sources() {
     let path = Path::new(ROOT).join("spec/traceability.csv");
     let current = traceability::csv(&trace().requirements);
