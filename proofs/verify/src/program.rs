@@ -171,30 +171,44 @@ impl Row<'_> {
             .collect()
     }
 
-    /// The normal and the lateral force that the program prints at the pose, N.
-    fn solved(&self, program: &Path) -> Result<[f64; 2], String> {
-        let [depth, lateral] = self.pose;
-        let arguments = [
+    /// The normal and the lateral force that the program prints, N, for rows that are all poses of a phantom's depths and lateral positions.
+    fn solved(rows: &[Row<'_>], program: &Path) -> Result<Vec<[f64; 2]>, String> {
+        let [depths, laterals] = [0, 1].map(|k| {
+            let mut list: Vec<&str> = rows.iter().map(|row| row.pose[k]).collect();
+            list.dedup();
+            list.join(",")
+        });
+        let (mesh, phantom) = (rows[0].mesh, rows[0].phantom);
+        let poses = ["--depths-mm", &depths, "--laterals-mm", &laterals];
+        let model = [
             "solve",
             "--phantom",
-            self.phantom,
-            "--depths-mm",
-            depth,
-            "--laterals-mm",
-            lateral,
+            phantom,
             "--mesh-mm",
-            self.mesh,
+            mesh,
             "--format",
             "csv",
         ];
-        let table = printed(program, &arguments)?;
-        let cells: Option<Vec<f64>> = (table.lines().nth(1))
-            .and_then(|line| line.split(',').map(|cell| cell.parse().ok()).collect());
-        match cells.as_deref() {
-            Some(&[_, _, normal, lateral]) => Ok([normal, lateral]),
-            _ => Err(format!(
-                "{} solve printed {table:?}, expected one pose",
-                program.display()
+        let table = printed(program, &[&model[..], &poses].concat())?;
+        let numbers = |line: &str| -> Option<[f64; 4]> {
+            let cells: Option<Vec<f64>> = line.split(',').map(|cell| cell.parse().ok()).collect();
+            cells?.try_into().ok()
+        };
+        let forces = rows
+            .iter()
+            .zip(table.lines().skip(1))
+            .map_while(|(row, line)| {
+                let [depth, lateral, forces @ ..] = numbers(line)?;
+                let asked = row.pose.map(|text| text.parse().ok());
+                (asked == [Some(depth), Some(lateral)]).then_some(forces)
+            });
+        let forces: Vec<[f64; 2]> = forces.collect();
+        match forces.len() == rows.len() {
+            true => Ok(forces),
+            false => Err(format!(
+                "{} solve printed {table:?}, expected {} poses",
+                program.display(),
+                rows.len()
             )),
         }
     }
@@ -204,10 +218,11 @@ impl Row<'_> {
 fn forces(program: &Path, by: &str) -> Result<Vec<Figure>, String> {
     use rayon::prelude::*;
     let rows = Row::of(by)?;
-    let solved: Vec<[f64; 2]> = rows
-        .par_iter()
-        .map(|row| row.solved(program))
-        .collect::<Result<_, _>>()?;
+    let phantoms: Vec<&[Row<'_>]> = rows
+        .chunk_by(|one, next| one.phantom == next.phantom)
+        .collect();
+    let solved = phantoms.par_iter().map(|rows| Row::solved(rows, program));
+    let solved = solved.collect::<Result<Vec<_>, _>>()?.concat();
     let mut figures = vec![Figure::told("poses", rows.len() as f64)];
     for (k, component) in ["normal", "lateral"].into_iter().enumerate() {
         let off = |(row, found): (&Row<'_>, &[f64; 2])| (found[k] - row.forces[k]).abs();
@@ -224,7 +239,7 @@ fn forces(program: &Path, by: &str) -> Result<Vec<Figure>, String> {
 mod tests {
     use super::*;
 
-    /// A program that is a shell script, whose `solve` prints a pose of these forces.
+    /// A program that is a shell script, whose `solve` prints four poses with these forces.
     fn script(name: &str, forces: &str) -> PathBuf {
         use std::os::unix::fs::PermissionsExt;
         let path = std::env::temp_dir().join(format!("palpate-{}-{name}", std::process::id()));
@@ -233,7 +248,7 @@ mod tests {
         } = Build::THIS;
         let text = format!(
             "#!/bin/sh\ncase $1 in\n--version) echo 'palpate {version}'; echo 'commit {commit}';;\n\
-             solve) echo head; echo 4.0,0.0,{forces};;\n*) echo no >&2; exit 3;;\nesac\n"
+             solve) echo head; for x in 0.0 2.5 6.0 10.0; do echo 4.0,$x,{forces}; done;;\n*) echo no >&2; exit 3;;\nesac\n"
         );
         std::fs::write(&path, text).unwrap();
         std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
@@ -253,7 +268,7 @@ mod tests {
         for (forces, why) in [
             ("1.4826,0.0", "over its limit"),
             ("NaN,0.0", "over its limit"),
-            ("1.4826", "expected one pose"),
+            ("1.4826", "expected 4 poses"),
         ] {
             let outcome = judged_by("program.scikit_fem", &script("forces", forces));
             assert!(!outcome.passed());
