@@ -351,7 +351,17 @@ fn supports_that_hold_nothing_are_refused() {
             told += &format!("walls {walls}, floor {floor}: {found}\n");
         }
     }
-    insta::assert_snapshot!(told);
+    insta::assert_snapshot!(told, @r#"
+    walls fixed, floor fixed: holds
+    walls fixed, floor sliding: holds
+    walls fixed, floor free: holds
+    walls sliding, floor fixed: holds
+    walls sliding, floor sliding: holds
+    walls sliding, floor free: gel.toml:6: well.floor = "free", expected "fixed" or "sliding" where walls = "sliding": nothing holds the layers up
+    walls free, floor fixed: holds
+    walls free, floor sliding: gel.toml:6: well.floor = "sliding", expected "fixed" where walls = "free": nothing holds the layers from sliding sideways
+    walls free, floor free: gel.toml:6: well.floor = "free", expected "fixed" where walls = "free": nothing holds the layers up
+    "#);
 }
 
 // Verifies: PHA-015, PHA-006.
