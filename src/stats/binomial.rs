@@ -56,6 +56,26 @@ pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError>
     })
 }
 
+/// The least number from `low` to `high` for which `holds`, which goes on holding above it; `high` + 1 if there is none.
+///
+/// # Errors
+/// That of `holds`.
+pub fn first(
+    low: u64,
+    high: u64,
+    holds: impl Fn(u64) -> Result<bool, NumericError>,
+) -> Result<u64, NumericError> {
+    let (mut low, mut end) = (low, high + 1);
+    while low < end {
+        let middle = low + (end - low) / 2;
+        match holds(middle)? {
+            true => end = middle,
+            false => low = middle + 1,
+        }
+    }
+    Ok(low)
+}
+
 /// The exact interval of Clopper and Pearson: it covers the true proportion with at least the
 /// stated confidence.
 ///

@@ -7,7 +7,7 @@ use hdrhistogram::Histogram;
 use super::Distribution;
 use crate::refusal::Refusal;
 use crate::stats::NumericError;
-use crate::stats::binomial::{at_least, at_most};
+use crate::stats::binomial::{at_least, at_most, first};
 
 /// What a loop may take, and how sure the verdict must be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,30 +83,14 @@ impl Budget {
     fn ranks(&self, cycles: u64) -> Result<(u64, Option<u64>), NumericError> {
         let (share, confidence) = (self.percentile / 100.0, self.confidence_percent / 100.0);
         // So many times lie below the percentile as a binomial law says, whatever the law of the times.
-        let lower = first(cycles, |rank| {
+        let lower = first(1, cycles, |rank| {
             Ok(at_least(rank, cycles, share)? < confidence)
         })?;
-        let upper = first(cycles, |rank| {
+        let upper = first(1, cycles, |rank| {
             Ok(at_most(rank - 1, cycles, share)? >= confidence)
         })?;
         Ok((lower - 1, Some(upper).filter(|&rank| rank <= cycles)))
     }
-}
-
-/// The first number from 1 to `high` for which `holds`, which goes on holding above it; `high` + 1 if there is none.
-fn first(
-    high: u64,
-    holds: impl Fn(u64) -> Result<bool, NumericError>,
-) -> Result<u64, NumericError> {
-    let (mut low, mut end) = (1, high + 1);
-    while low < end {
-        let middle = low + (end - low) / 2;
-        match holds(middle)? {
-            true => end = middle,
-            false => low = middle + 1,
-        }
-    }
-    Ok(low)
 }
 
 /// The times of a loop against its budget.

@@ -3,7 +3,7 @@
 use super::Outcome;
 use crate::Figure;
 use palpate::report::text::trimmed;
-use palpate::stats::binomial::{at_least, at_most};
+use palpate::stats::binomial::{at_least, at_most, first};
 use palpate::stats::normal::{cdf, quantile, upper_tail};
 
 /// A normal law.
@@ -80,8 +80,8 @@ pub(super) fn tail_test(sample: &[f64], law: Law, threshold: f64, alpha: f64) ->
 
 /// Is a count Binomial(n, p)? Exact, two-sided: the limits are the counts whose tails hold α/2 or more.
 pub(super) fn count_test(count: u64, n: u64, p: f64, alpha: f64) -> Outcome<Figure> {
-    let least = first(n, |count| Ok(at_most(count, n, p)? >= 0.5 * alpha))?;
-    let beyond = first(n, |count| Ok(at_least(count, n, p)? < 0.5 * alpha))?;
+    let least = first(0, n, |count| Ok(at_most(count, n, p)? >= 0.5 * alpha))?;
+    let beyond = first(0, n, |count| Ok(at_least(count, n, p)? < 0.5 * alpha))?;
     let what = format!(
         "share of {n}, {} by the law (limits: binomial)",
         trimmed(p, 6)
@@ -93,19 +93,6 @@ pub(super) fn count_test(count: u64, n: u64, p: f64, alpha: f64) -> Outcome<Figu
         share(least),
         share(beyond - 1),
     ))
-}
-
-/// The least count up to `n` for which `holds`, which does so from some count on; `n + 1` if there is none.
-fn first(n: u64, holds: impl Fn(u64) -> Outcome<bool>) -> Outcome<u64> {
-    let (mut low, mut high) = (0, n + 1);
-    while low < high {
-        let middle = low + (high - low) / 2;
-        match holds(middle)? {
-            true => high = middle,
-            false => low = middle + 1,
-        }
-    }
-    Ok(low)
 }
 
 /// Is the mean of the sample 0? Each entry lies in an interval of length 1 that what came before it fixes: Hoeffding's bound
