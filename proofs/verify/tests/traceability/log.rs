@@ -2,11 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use palpate_verify::record::{End, Entry, Record, SCHEMA};
-use sha2::Digest;
-
 use crate::elsewhere::runner;
 use crate::trace::Trace;
+use palpate_conform::sha256;
+use palpate_verify::record::{End, Entry, Record, SCHEMA};
 
 /// The output of one or more runs.
 #[derive(Debug, Default)]
@@ -18,8 +17,8 @@ pub struct Log {
     left: Vec<String>,
     /// What the run says of itself, in lines `== KEY: VALUE`.
     said: BTreeMap<String, String>,
-    /// The SHA-256 of what was read.
-    digest: sha2::Sha256,
+    /// What was read.
+    output: Vec<u8>,
 }
 
 /// How a test or step ended, and how long it took: of a test, all tests of its program.
@@ -32,14 +31,15 @@ struct Ended {
 impl Log {
     /// Adds the output of a run, standard output and standard error in one, so that the lines in which cargo names a
     /// test program stand above those of its tests.
-    pub fn read(&mut self, output: &str) {
-        self.digest.update(output);
+    pub fn read(&mut self, output: impl AsRef<[u8]>) {
+        self.output.extend(output.as_ref());
+        let output = String::from_utf8_lossy(output.as_ref());
         let mut program = None;
         // The tests of the program that runs, and how long the step took that ends next.
         let (mut of_program, mut of_step) = (Vec::new(), None);
         // A test whose end stands in another line, since something was printed in between.
         let mut begun: Option<&str> = None;
-        for line in without_colours(output).lines() {
+        for line in without_colours(&output).lines() {
             if let Some(running) = line.trim_start().strip_prefix("Running ") {
                 program = test_program(running);
                 of_program.clear();
@@ -113,26 +113,19 @@ impl Log {
     pub fn missing(&self, trace: &Trace) -> Vec<String> {
         let mut missing = Vec::new();
         for (name, lines) in &trace.evidence {
-            let left = self.left_to(name);
-            let missed =
-                lines
-                    .iter()
-                    .find_map(|line| match self.ends.get(line).map(|ended| ended.end) {
-                        Some(End::Passed) => None,
-                        Some(End::Ignored) if left.is_some() => None,
-                        Some(End::Ignored) => Some("was ignored in every run".into()),
-                        Some(End::Failed) => Some("failed".into()),
-                        // Of a script nothing is in the output; a test that cargo leaves out is there as ignored.
-                        None if left.is_some_and(|command| !command.starts_with("cargo")) => None,
-                        Some(_) => Some("did not run".into()),
-                        None => Some(format!("did not run: the log has no \"{line}\"")),
-                    });
-            if let Some(how) = missed {
-                let rows = trace.requirements.iter();
-                let ids = rows.filter(|row| row.tests.contains(name) || row.proofs.contains(name));
-                let ids: Vec<&str> = ids.map(|row| row.id.as_str()).collect();
-                missing.push(format!("{name} {how} ({})", ids.join(", ")));
-            }
+            let how = match self.entry(name, lines).result {
+                End::Passed | End::Left => continue,
+                End::Failed => "failed".into(),
+                End::Ignored => "was ignored in every run".into(),
+                End::Missing => {
+                    let absent = lines.iter().find(|&line| !self.ends.contains_key(line));
+                    format!("did not run: the log has no {:?}", absent.unwrap_or(name))
+                }
+            };
+            let rows = trace.requirements.iter();
+            let ids = rows.filter(|row| row.tests.contains(name) || row.proofs.contains(name));
+            let ids: Vec<&str> = ids.map(|row| row.id.as_str()).collect();
+            missing.push(format!("{name} {how} ({})", ids.join(", ")));
         }
         missing
     }
@@ -167,42 +160,29 @@ impl Log {
             ended: said("ended"),
             system: said("system"),
             entries,
-            log_sha256: self
-                .digest
-                .finalize()
-                .iter()
-                .map(|byte| format!("{byte:02x}"))
-                .collect(),
+            log_sha256: sha256(self.output),
         }
     }
 
     /// A test or proof of the trace, whose end is the worst of its lines.
     fn entry(&self, name: &str, lines: &[String]) -> Entry {
-        let found = |line: &String| {
-            self.ends.get(line).copied().unwrap_or(Ended {
-                end: End::Missing,
-                seconds: None,
-            })
-        };
-        let ended: Vec<Ended> = lines.iter().map(found).collect();
-        let failed = ended.iter().any(|ended| ended.end == End::Failed);
-        let worst = ended
-            .iter()
-            .map(|ended| ended.end)
-            .min()
-            .unwrap_or(End::Missing);
-        let result = match worst {
-            _ if failed => End::Failed,
-            End::Missing | End::Ignored if self.left_to(name).is_some() => End::Left,
-            worst => worst,
-        };
+        let left = self.left_to(name);
+        let found: Vec<Option<&Ended>> = lines.iter().map(|line| self.ends.get(line)).collect();
+        let ends = found.iter().map(|found| match (found, left) {
+            (Some(ended), Some(_)) if ended.end == End::Ignored => End::Left,
+            (Some(ended), _) => ended.end,
+            // Of a script nothing is in the output; a test that cargo leaves out is there as ignored.
+            (None, Some(command)) if !command.starts_with("cargo") => End::Left,
+            (None, _) => End::Missing,
+        });
+        let ends: Vec<End> = ends.collect();
+        let failed = ends.contains(&End::Failed).then_some(End::Failed);
+        let worst = failed.or(ends.into_iter().min());
+        let seconds = found.iter().filter_map(|found| found.as_ref()?.seconds);
         Entry {
             name: name.into(),
-            result,
-            seconds: ended
-                .iter()
-                .filter_map(|ended| ended.seconds)
-                .reduce(f64::max),
+            result: worst.unwrap_or(End::Missing),
+            seconds: seconds.reduce(f64::max),
         }
     }
 }
