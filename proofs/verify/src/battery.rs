@@ -1,10 +1,10 @@
 //! The statistics battery as outcomes: what each of its checks claims, and for which requirements.
 
 use super::statistics::{Check, FIXED_SEED};
-use super::{Figure, Outcome};
+use super::{Claim, Measured, Outcome};
 
 /// Checks of the battery by the beginning of their names, with their claim and requirements.
-const GROUPS: [(&str, &str, &[&str]); 18] = [
+pub(crate) const GROUPS: [(&str, &str, &[&str]); 19] = [
     (
         "coarse_mean",
         "Θ of full records has the mean ∓γ²/2.",
@@ -68,7 +68,7 @@ const GROUPS: [(&str, &str, &[&str]); 18] = [
     (
         "nuisance_t_",
         "T beside offsets, drifts and a gain of any size is normal with standard deviation 1.",
-        &["NUI-001", "NUI-003", "NUI-016"],
+        &["NUI-001", "NUI-003", "NUI-016", "TRC-077"],
     ),
     (
         "nuisance_residual_",
@@ -91,6 +91,11 @@ const GROUPS: [(&str, &str, &[&str]); 18] = [
         &["NUI-020"],
     ),
     (
+        "bank_",
+        "The posterior of a bank is calibrated: ranks and intervals of the place, and the probability of an inclusion.",
+        &["BNK-031", "BNK-034", "BNK-040", "BNK-042", "CLI-153"],
+    ),
+    (
         "",
         "Mixtures of depths, and noise in proportion to the force, have their false alarms and tails.",
         &["DET-070", "DET-080"],
@@ -105,18 +110,19 @@ fn group(name: &str) -> (&'static str, &'static [&'static str]) {
 /// Runs a check of the battery with the seed of the tests, and with each defect that it must see.
 pub fn outcome(check: &Check) -> Outcome {
     let (claim, requirements) = group(check.name);
-    let described = crate::Check::new(
+    let claim = Claim::new(
         check.name,
         claim,
         requirements,
         "The theorem that the figure names, at the α of the ledger. Fixed in 0.1.0.",
-        || Ok(Vec::new()),
     );
-    let name = format!("statistics.{}", check.name);
-    Outcome::measured(&described, name, || figures(check))
+    Outcome {
+        name: format!("statistics.{}", check.name),
+        ..Outcome::measured(&claim, || figures(check))
+    }
 }
 
-fn figures(check: &Check) -> Result<Vec<Figure>, String> {
+fn figures(check: &Check) -> Measured {
     let row = check.row(FIXED_SEED)?;
     let observed = check.observe(FIXED_SEED)?;
     check.run_negative_controls(FIXED_SEED)?;

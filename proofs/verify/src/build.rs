@@ -7,9 +7,7 @@
 /// assert!(sum.len() == 64 && sum.chars().all(|digit| digit.is_ascii_hexdigit()));
 /// ```
 pub fn lock_sha256() -> String {
-    use sha2::Digest;
-    let digest = sha2::Sha256::digest(super::supply::LOCK);
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+    palpate_conform::sha256(super::supply::LOCK)
 }
 
 /// The model of the processor that this runs on, as Linux names it; `None` where it does not.

@@ -5,7 +5,43 @@ use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
-/// A check: what it claims, which requirements it serves, and how it finds out.
+/// What a check claims, and for which requirements.
+#[derive(Debug, Clone, Copy)]
+pub struct Claim {
+    /// The name of the check, `part.what`, as in `fem.patch`.
+    pub name: &'static str,
+    /// What holds if it passes, in one sentence for a reader who does not know the code.
+    pub text: &'static str,
+    /// The requirements whose evidence it is.
+    pub requirements: &'static [&'static str],
+    /// How the limits of its figures were derived, and in which version of the program they were fixed: `… Fixed in 0.1.0.`
+    pub limits: &'static str,
+    /// Whether the same build gives the same figures to the bit in each run: all but times.
+    pub repeatable: bool,
+}
+
+impl Claim {
+    /// A claim whose figures are the same in every run.
+    pub const fn new(
+        name: &'static str,
+        text: &'static str,
+        requirements: &'static [&'static str],
+        limits: &'static str,
+    ) -> Claim {
+        Claim {
+            name,
+            text,
+            requirements,
+            limits,
+            repeatable: true,
+        }
+    }
+}
+
+/// What measuring gives. An error says why it could not be done, or why the claim does not hold for a reason that is no number.
+pub type Measured = Result<Vec<Figure>, String>;
+
+/// A check: what it claims, and how it finds out.
 ///
 /// ```
 /// use palpate_verify::{Check, Figure, Outcome};
@@ -19,36 +55,23 @@ use std::time::Instant;
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Check {
-    /// Its name, `part.what`, as in `fem.patch`.
-    pub name: &'static str,
-    /// What holds if it passes, in one sentence for a reader who does not know the code.
-    pub claim: &'static str,
-    /// The requirements whose evidence it is.
-    pub requirements: &'static [&'static str],
-    /// How the limits of its figures were derived, and in which version of the program they were fixed: `… Fixed in 0.1.0.`
-    pub limits: &'static str,
-    /// Whether the same build gives the same figures to the bit in each run: all but times.
-    pub repeatable: bool,
-    /// Measures. An error is a check that could not be carried out, or whose claim does not hold for a reason
-    /// that is no number.
-    pub run: fn() -> Result<Vec<Figure>, String>,
+    /// What it claims.
+    pub claim: Claim,
+    /// Measures.
+    pub run: fn() -> Measured,
 }
 
 impl Check {
     /// A check with the same figures in every run.
     pub const fn new(
         name: &'static str,
-        claim: &'static str,
+        text: &'static str,
         requirements: &'static [&'static str],
         limits: &'static str,
-        run: fn() -> Result<Vec<Figure>, String>,
+        run: fn() -> Measured,
     ) -> Check {
         Check {
-            name,
-            claim,
-            requirements,
-            limits,
-            repeatable: true,
+            claim: Claim::new(name, text, requirements, limits),
             run,
         }
     }
@@ -154,15 +177,11 @@ pub struct Outcome {
 impl Outcome {
     /// Carries a check out. A panic in it is a failure of this check, not of the run.
     pub fn of(check: &Check) -> Outcome {
-        Outcome::measured(check, check.name.into(), check.run)
+        Outcome::measured(&check.claim, check.run)
     }
 
-    /// As [`Outcome::of`], with a name and measurements that are found at run time.
-    pub(crate) fn measured(
-        check: &Check,
-        name: String,
-        run: impl FnOnce() -> Result<Vec<Figure>, String>,
-    ) -> Outcome {
+    /// As [`Outcome::of`], for a claim whose measurements need something from outside.
+    pub fn measured(claim: &Claim, run: impl FnOnce() -> Measured) -> Outcome {
         let start = Instant::now();
         // What a check leaves behind is thrown away with it.
         let result = catch_unwind(AssertUnwindSafe(run))
@@ -173,13 +192,13 @@ impl Outcome {
             Err(failure) => (Vec::new(), Some(failure)),
         };
         Outcome {
-            name,
-            claim: check.claim,
-            requirements: check.requirements,
-            limits: check.limits,
+            name: claim.name.into(),
+            claim: claim.text,
+            requirements: claim.requirements,
+            limits: claim.limits,
             figures,
             failure,
-            repeatable: check.repeatable,
+            repeatable: claim.repeatable,
             seconds: start.elapsed().as_secs_f64(),
         }
     }
@@ -258,7 +277,7 @@ mod tests {
         }
     }
 
-    fn outcome(run: fn() -> Result<Vec<Figure>, String>) -> Outcome {
+    fn outcome(run: fn() -> Measured) -> Outcome {
         Outcome::of(&Check::new(
             "part.what",
             "It holds.",
@@ -307,10 +326,7 @@ mod tests {
     #[test]
     fn a_check_that_cannot_run_or_panics_or_measures_nothing_fails_and_says_why() {
         for (run, why) in [
-            (
-                (|| Err("no mesh".into())) as fn() -> Result<Vec<Figure>, String>,
-                "no mesh",
-            ),
+            ((|| Err("no mesh".into())) as fn() -> Measured, "no mesh"),
             (|| panic!("index {}", 7), "panicked: index 7"),
             (|| Ok(Vec::new()), "measured nothing"),
         ] {

@@ -102,15 +102,14 @@ impl Evidence {
     }
 
     /// The evidence of each requirement, in their order.
-    pub fn joined(&self) -> Vec<record::Evidence> {
+    pub fn joined(&self) -> Vec<record::Joined> {
         record::join(&self.requirements, &self.outcomes, &self.records)
     }
 
     /// How many requirements have evidence, by its kind.
     pub fn counts(&self) -> Counts {
         let joined = self.joined();
-        let count =
-            |has: fn(&record::Evidence) -> bool| joined.iter().filter(|row| has(row)).count();
+        let count = |has: fn(&record::Joined) -> bool| joined.iter().filter(|row| has(row)).count();
         Counts {
             requirements: joined.len(),
             checks: count(|row| !row.checks.is_empty()),

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use rayon::prelude::*;
 
-use super::{Check, Figure};
+use super::{Check, Figure, Measured};
 use palpate::force::Force;
 use palpate::hid::count;
 use palpate::servo::{
@@ -188,20 +188,20 @@ fn holds_for(
     tally.figures(what, size(&bits), float)
 }
 
-fn locate_uneven() -> Result<Vec<Figure>, String> {
+fn locate_uneven() -> Measured {
     // With the widest of cells and the narrowest.
     locate(&[
         -1.0, 0.0, MIN_WIDTH, 0.000_5, 0.001, 0.002, 0.004, 0.008, 1.0,
     ])
 }
 
-fn locate_even() -> Result<Vec<Figure>, String> {
+fn locate_even() -> Measured {
     let knots: Vec<f32> = (-20i16..=20).map(|k| f32::from(k) * 0.000_5).collect();
     locate(&knots)
 }
 
 /// Index and fraction in range; enclosure; 0 and 1 at the knots; never falling from one position to the next.
-fn locate(knots: &[f32]) -> Result<Vec<Figure>, String> {
+fn locate(knots: &[f32]) -> Measured {
     let reciprocals: Vec<f32> = knots
         .windows(2)
         .map(|ends| Axis::reciprocal_width(ends[0], ends[1]))
@@ -261,7 +261,7 @@ fn is_right(knots: &[f32], position: f32, Cell { index, fraction }: Cell) -> boo
 
 /// The last knot's fraction is the width times its reciprocal, which may not be rounded beyond 1. The fraction
 /// depends on the width alone, so that axes from 0 stand for all.
-fn last_knot() -> Result<Vec<Figure>, String> {
+fn last_knot() -> Measured {
     let widths = between(MIN_WIDTH, 2.0);
     let product = for_bits(&widths, |bits, tally| {
         let width = f32::from_bits(bits);
@@ -281,7 +281,7 @@ fn last_knot() -> Result<Vec<Figure>, String> {
     Ok(figures)
 }
 
-fn limits() -> Result<Vec<Figure>, String> {
+fn limits() -> Measured {
     let mut figures = Vec::new();
     for largest in [FORCE_CEILING, 32767.0] {
         figures.extend(holds_for(&format!("limit {largest}"), ALL, |value| {
@@ -298,7 +298,7 @@ fn limits() -> Result<Vec<Figure>, String> {
     Ok(figures)
 }
 
-fn counts() -> Result<Vec<Figure>, String> {
+fn counts() -> Measured {
     Ok(holds_for("forces in counts", ALL, |value| {
         // The conversion of a NaN gives 0.
         let expected = f64::from(value).round_ties_even().clamp(-32767.0, 32767.0) as i16;
@@ -306,7 +306,7 @@ fn counts() -> Result<Vec<Figure>, String> {
     }))
 }
 
-fn blends() -> Result<Vec<Figure>, String> {
+fn blends() -> Measured {
     let mut figures = Vec::new();
     for (a, b) in [(-100.0, 100.0), (0.1, 0.1)] {
         let (low, high) = (f32::min(a, b), f32::max(a, b));
@@ -333,7 +333,7 @@ fn blends() -> Result<Vec<Figure>, String> {
 
 /// The slowest release from the largest force. A smaller force and a quicker release are never later: rounding
 /// keeps the order of differences.
-fn release() -> Result<Vec<Figure>, String> {
+fn release() -> Measured {
     let limits = between(MIN_SLEW, FORCE_CEILING);
     Ok(holds_for("force limits", limits, |force| {
         let release = force / f32::from(RELEASE_CYCLES);
@@ -346,7 +346,7 @@ fn release() -> Result<Vec<Figure>, String> {
 }
 
 /// Every distance of two sequence numbers, from every 257th number.
-fn freshness() -> Result<Vec<Figure>, String> {
+fn freshness() -> Measured {
     let axis = Axis::new(&[0.0, 0.5], &[2.0]).map_err(refused)?;
     let table = Table::new(axis, axis, &[Force::ZERO; 4]).map_err(refused)?;
     let limits = Limits::new(2.0, 0.01, 0.2, 5).map_err(refused)?;

@@ -32,13 +32,13 @@ pub mod timing;
 pub mod traceability;
 
 pub use battery::outcome as battery_outcome;
-pub use check::{Check, Figure, Outcome};
+pub use check::{Check, Claim, Figure, Measured, Outcome};
 
 /// All checks of this build but the statistics battery and those of [`program`], in a fixed order.
 ///
 /// ```
-/// let mut kernel = palpate_verify::checks().filter(|check| check.name.starts_with("kernel."));
-/// assert!(kernel.any(|check| check.requirements.contains(&"SRV-020")));
+/// let mut kernel = palpate_verify::checks().filter(|check| check.claim.name.starts_with("kernel."));
+/// assert!(kernel.any(|check| check.claim.requirements.contains(&"SRV-020")));
 /// ```
 pub fn checks() -> impl Iterator<Item = &'static Check> {
     [rates::CHECKS, fem::CHECKS, kernel::CHECKS, timing::CHECKS]
@@ -46,7 +46,16 @@ pub fn checks() -> impl Iterator<Item = &'static Check> {
         .flatten()
 }
 
+/// What all checks claim, but those of the statistics battery.
+pub fn claims() -> impl Iterator<Item = &'static Claim> {
+    let outside = program::CHECKS.iter().map(|(claim, _)| claim);
+    checks()
+        .map(|check| &check.claim)
+        .chain(outside)
+        .chain([&record::CLAIM])
+}
+
 /// The check of a name, if there is one in this build.
 pub fn find(name: &str) -> Option<&'static Check> {
-    checks().find(|check| check.name == name)
+    checks().find(|check| check.claim.name == name)
 }

@@ -146,24 +146,28 @@ fn fresh_seed() -> u64 {
 /// Carries out every check of the parts that were asked for. Those of time come last, and alone.
 fn carry_out(asked: &dyn Fn(&str) -> bool, judged: &Path) -> Vec<Outcome> {
     let part = |name: &str| asked(name.split('.').next().unwrap_or_default());
-    let checks = checks()
-        .chain(program::CHECKS)
-        .filter(|check| part(check.name));
-    let (timed, checks): (Vec<&Check>, Vec<&Check>) = checks.partition(|check| !check.repeatable);
+    let checks = checks().filter(|check| part(check.claim.name));
+    let (checks, timed): (Vec<&Check>, Vec<&Check>) =
+        checks.partition(|check| check.claim.repeatable);
+    let judgements = program::CHECKS.iter().filter(|(claim, _)| part(claim.name));
+    let judgements: Vec<_> = judgements.collect();
     let battery: Vec<_> = battery().filter(|_| asked("statistics")).collect();
-    let bar = bar(battery.len() + checks.len() + timed.len(), "checks");
+    let all = battery.len() + judgements.len() + checks.len() + timed.len();
+    let bar = bar(all, "checks");
     let counted = |outcome: Outcome| {
         bar.inc(1);
         outcome
     };
-    let carried_out = |check: &&Check| match check.name.starts_with("program.") {
-        true => counted(program::outcome(check, judged)),
-        false => counted(Outcome::of(check)),
-    };
+    let carried_out = |check: &&Check| counted(Outcome::of(check));
     let mut outcomes: Vec<Outcome> = battery
         .par_iter()
         .map(|check| counted(battery_outcome(check)))
         .collect();
+    outcomes.par_extend(
+        judgements
+            .par_iter()
+            .map(|(claim, judge)| counted(Outcome::measured(claim, || judge(judged)))),
+    );
     outcomes.par_extend(checks.par_iter().map(carried_out));
     outcomes.extend(timed.iter().map(carried_out));
     bar.finish_and_clear();

@@ -1,5 +1,7 @@
 //! The shipped program `palpate`, judged from outside: it is run, and what it prints is held against other programs' results.
 
+mod decisions;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -8,61 +10,79 @@ use palpate::build::Build;
 use palpate_conform::{Measure, Program, Settings, Suite, Verdict, run};
 
 use super::fem::largest;
-use super::{Check, Figure, Outcome};
+use super::{Claim, Figure, Measured};
 
-/// The checks of this part, whose figures [`outcome`] finds.
-pub const CHECKS: &[Check] = &[
-    Check::new(
-        "program.identity",
-        "The program says that it is of the same version and commit as palpate-verify.",
-        &["CLI-001"],
-        "None: equal or not. Fixed in 0.2.0.",
-        not_alone,
+/// Judges a program by its path.
+pub type Judge = fn(&Path) -> Measured;
+
+/// The claims of this part, each with what judges a program by it.
+pub const CHECKS: [(Claim, Judge); 6] = [
+    (
+        Claim::new(
+            "program.identity",
+            "The program says that it is of the same version and commit as palpate-verify.",
+            &["CLI-001"],
+            "None: equal or not. Fixed in 0.2.0.",
+        ),
+        identity,
     ),
-    Check::new(
-        "program.vectors",
-        "The program answers every vector, asked through a pipe, within its tolerance, and refuses what it must refuse.",
-        &["ORA-001", "ORA-046", "VEC-001"],
-        "Each case states its tolerance, derived in the file of its group from the program that computed it. Fixed in 0.1.0.",
-        not_alone,
+    (
+        Claim::new(
+            "program.vectors",
+            "The program answers every vector, asked through a pipe, within its tolerance, and refuses what it must refuse.",
+            &["ORA-001", "ORA-046", "VEC-001"],
+            "Each case states its tolerance, derived in the file of its group from the program that computed it. Fixed in 0.1.0.",
+        ),
+        vectors,
     ),
-    Check::new(
-        "program.scikit_fem",
-        "The forces that the program prints are those of scikit-fem on meshes of its own.",
-        &["FEM-021", "CLI-013"],
-        "The band of scikit-fem's extrapolation and the error of the default mesh that the vectors state. Fixed in 0.1.0.",
-        not_alone,
+    (
+        Claim::new(
+            "program.scikit_fem",
+            "The forces that the program prints are those of scikit-fem on meshes of its own.",
+            &["FEM-021", "CLI-013"],
+            "The band of scikit-fem's extrapolation and the error of the default mesh that the vectors state. Fixed in 0.1.0.",
+        ),
+        |program| forces(program, "scikit-fem"),
     ),
-    Check::new(
-        "program.calculix",
-        "The forces that the program prints are those of CalculiX on the same meshes.",
-        &["FEM-080", "CLI-013"],
-        "Penalty overlap of CalculiX and contact at nodes in place of Gauss points: FEM-080. Fixed in 0.1.0.",
-        not_alone,
+    (
+        Claim::new(
+            "program.calculix",
+            "The forces that the program prints are those of CalculiX on the same meshes.",
+            &["FEM-080", "CLI-013"],
+            "Penalty overlap of CalculiX and contact at nodes in place of Gauss points: FEM-080. Fixed in 0.1.0.",
+        ),
+        |program| forces(program, "CalculiX"),
+    ),
+    (
+        Claim::new(
+            "program.decisions",
+            "T, Θ, χ² with its limits and the false-alarm rate with its tolerance of depth that palpate detect prints are those of plain \
+             sums, on made-up maps.",
+            &["CLI-055", "TRC-064"],
+            "Sums: rounding of 82 terms. Probabilities: rounding of their arguments, 10⁻¹², times the slope of their logarithm, below \
+             10, and beyond the limits of χ² the step at which the program ends its search for them. Fixed in 0.2.0.",
+        ),
+        decisions::decisions,
+    ),
+    (
+        Claim::new(
+            "program.refusals",
+            "Of a record that cannot be judged, of maps that do not differ and of a gel that nothing holds, palpate says so and \
+             prints no decision and no number.",
+            &["CLI-048", "CLI-049", "PHA-030", "TRC-075"],
+            "None: each case is refused or not. Fixed in 0.2.0.",
+        ),
+        decisions::refusals,
     ),
 ];
 
 /// Forces by other programs.
 const OUTSIDE: &str = include_str!("outside.csv");
 
-fn not_alone() -> Result<Vec<Figure>, String> {
-    Err("it needs the path of a program".into())
-}
-
 /// The program beside the one that runs.
 pub fn beside() -> PathBuf {
     let own = std::env::current_exe().unwrap_or_default();
     own.with_file_name(format!("palpate{}", std::env::consts::EXE_SUFFIX))
-}
-
-/// Carries out one of [`CHECKS`] on a program.
-pub fn outcome(check: &Check, program: &Path) -> Outcome {
-    Outcome::measured(check, check.name.into(), || match check.name {
-        "program.identity" => identity(program),
-        "program.vectors" => vectors(program),
-        "program.scikit_fem" => forces(program, "scikit-fem"),
-        _ => forces(program, "CalculiX"),
-    })
 }
 
 /// The SHA-256 of a program's file, in hexadecimal.
@@ -90,7 +110,7 @@ fn printed(program: &Path, arguments: &[&str]) -> Result<String, String> {
     }
 }
 
-fn identity(program: &Path) -> Result<Vec<Figure>, String> {
+fn identity(program: &Path) -> Measured {
     let said = printed(program, &["--version"])?;
     let Build {
         version, commit, ..
@@ -104,7 +124,7 @@ fn identity(program: &Path) -> Result<Vec<Figure>, String> {
     )
 }
 
-fn vectors(program: &Path) -> Result<Vec<Figure>, String> {
+fn vectors(program: &Path) -> Measured {
     let suite = Suite::embedded().map_err(|error| error.to_string())?;
     let settings = Settings {
         command: vec![program.into(), "oracle".into()],
@@ -215,7 +235,7 @@ impl Row<'_> {
 }
 
 /// The forces that the program prints against those by another one.
-fn forces(program: &Path, by: &str) -> Result<Vec<Figure>, String> {
+fn forces(program: &Path, by: &str) -> Measured {
     use rayon::prelude::*;
     let rows = Row::of(by)?;
     let phantoms: Vec<&[Row<'_>]> = rows
@@ -236,28 +256,35 @@ fn forces(program: &Path, by: &str) -> Result<Vec<Figure>, String> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+    use crate::Outcome;
 
-    /// A program that is a shell script, whose `solve` prints four poses with these forces.
-    fn script(name: &str, forces: &str) -> PathBuf {
+    /// A program that is a shell script.
+    pub fn script(name: &str, text: &str) -> PathBuf {
         use std::os::unix::fs::PermissionsExt;
         let path = std::env::temp_dir().join(format!("palpate-{}-{name}", std::process::id()));
-        let Build {
-            version, commit, ..
-        } = Build::THIS;
-        let text = format!(
-            "#!/bin/sh\ncase $1 in\n--version) echo 'palpate {version}'; echo 'commit {commit}';;\n\
-             solve) echo head; for x in 0.0 2.5 6.0 10.0; do echo 4.0,$x,{forces}; done;;\n*) echo no >&2; exit 3;;\nesac\n"
-        );
-        std::fs::write(&path, text).unwrap();
+        std::fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
         std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
         path
     }
 
+    /// One of the right version whose `solve` prints four poses with these forces.
+    fn solver(name: &str, forces: &str) -> PathBuf {
+        let Build {
+            version, commit, ..
+        } = Build::THIS;
+        let text = format!(
+            "case $1 in\n--version) echo 'palpate {version}'; echo 'commit {commit}';;\n\
+             solve) echo head; for x in 0.0 2.5 6.0 10.0; do echo 4.0,$x,{forces}; done;;\n*) echo no >&2; exit 3;;\nesac"
+        );
+        script(name, &text)
+    }
+
     fn judged_by(name: &str, program: &Path) -> Outcome {
-        let check = CHECKS.iter().find(|check| check.name == name).unwrap();
-        let outcome = outcome(check, program);
+        let found = CHECKS.iter().find(|(claim, _)| claim.name == name);
+        let (claim, judge) = found.unwrap();
+        let outcome = Outcome::measured(claim, || judge(program));
         std::fs::remove_file(program).ok();
         outcome
     }
@@ -270,7 +297,7 @@ mod tests {
             ("NaN,0.0", "over its limit"),
             ("1.4826", "expected 4 poses"),
         ] {
-            let outcome = judged_by("program.scikit_fem", &script("forces", forces));
+            let outcome = judged_by("program.scikit_fem", &solver("forces", forces));
             assert!(!outcome.passed());
             assert!(outcome.complaint().unwrap().contains(why), "{outcome:?}");
         }
@@ -278,7 +305,7 @@ mod tests {
 
     #[test]
     fn a_program_of_another_version_or_none_fails() {
-        assert!(judged_by("program.identity", &script("identity", "")).passed());
+        assert!(judged_by("program.identity", &solver("identity", "")).passed());
         assert!(!judged_by("program.identity", Path::new("/bin/echo")).passed());
         let missing = judged_by("program.identity", Path::new("/nowhere/palpate"));
         let complaint = missing.complaint().unwrap();
@@ -290,7 +317,7 @@ mod tests {
 
     #[test]
     fn a_program_without_an_oracle_fails() {
-        let silent = judged_by("program.vectors", &script("silent", ""));
+        let silent = judged_by("program.vectors", &solver("silent", ""));
         assert!(silent.failure.is_some(), "{silent:?}");
     }
 

@@ -1,6 +1,6 @@
 //! The detector's error rates on the paper's inclusions: by the closed form, and counted in simulated records.
 
-use super::{Check, Figure};
+use super::{Check, Figure, Measured};
 use palpate::detect::simulate::Simulation;
 use palpate::detect::{error_rates, neyman_pearson_false_alarm_threshold, two_afc};
 use palpate::fem::{Contact, MESH_SIZE, Model};
@@ -40,12 +40,12 @@ pub(super) const CHECKS: &[Check] = &[
     check("rates.8.6_mm_loud", || rates("8.6", LOUD)),
 ];
 
-const fn check(name: &'static str, run: fn() -> Result<Vec<Figure>, String>) -> Check {
+const fn check(name: &'static str, run: fn() -> Measured) -> Check {
     Check::new(name, CLAIM, REQUIREMENTS, LIMITS, run)
 }
 
 /// Simulates records over the inclusion and over none, and counts.
-fn rates(inclusion: &str, noise: f64) -> Result<Vec<Figure>, String> {
+fn rates(inclusion: &str, noise: f64) -> Measured {
     let told = |error: &dyn std::fmt::Display| error.to_string();
     let f0 = forces("none")?;
     let f1 = forces(inclusion)?;

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::traceability::Requirement;
-use super::{Check, Outcome};
+use super::{Claim, Outcome};
 
 /// The value of the key `schema`.
 pub const SCHEMA: &str = "palpate-test-record";
@@ -59,18 +59,6 @@ pub enum End {
     Failed,
 }
 
-impl std::fmt::Display for End {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            End::Missing => "missing",
-            End::Left => "left",
-            End::Ignored => "ignored",
-            End::Passed => "passed",
-            End::Failed => "failed",
-        })
-    }
-}
-
 impl Record {
     /// Reads a record.
     ///
@@ -93,7 +81,7 @@ impl Record {
 
 /// The evidence that a dossier has of one requirement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Evidence {
+pub struct Joined {
     /// Its id.
     pub requirement: String,
     /// Checks of this run of `palpate-verify` that passed.
@@ -110,7 +98,7 @@ pub struct Evidence {
     pub inspection: Option<String>,
 }
 
-impl Evidence {
+impl Joined {
     /// Whether anything shows the requirement in this run or in the records.
     pub fn is_there(&self) -> bool {
         !(self.checks.is_empty() && self.tests.is_empty() && self.proofs.is_empty())
@@ -119,11 +107,7 @@ impl Evidence {
 }
 
 /// Joins checks and records to the requirements.
-pub fn join(
-    requirements: &[Requirement],
-    outcomes: &[Outcome],
-    records: &[Record],
-) -> Vec<Evidence> {
+pub fn join(requirements: &[Requirement], outcomes: &[Outcome], records: &[Record]) -> Vec<Joined> {
     let mut ends: BTreeMap<&str, End> = BTreeMap::new();
     for entry in records.iter().flat_map(|record| &record.entries) {
         let end = ends.entry(&entry.name).or_insert(entry.result);
@@ -138,7 +122,7 @@ pub fn join(
         let serves = |outcome: &&Outcome| {
             outcome.passed() && outcome.requirements.contains(&row.id.as_str())
         };
-        Evidence {
+        Joined {
             requirement: row.id.clone(),
             checks: outcomes
                 .iter()
@@ -155,21 +139,20 @@ pub fn join(
     requirements.iter().map(join).collect()
 }
 
-/// The check of the records that a run was given.
-pub const CHECK: Check = Check::new(
+/// What a run of `palpate-verify` that was given records claims of them.
+pub const CLAIM: Claim = Claim::new(
     "record.complete",
     "Every requirement has a test or proof that passed in the records of the test runs, no test of the records failed, and the \
      records are of the commit of this build.",
     &[],
     "None: every requirement counts. Fixed in 0.2.0.",
-    || Err("it needs a record".into()),
 );
 
-/// Carries out [`CHECK`].
+/// Whether [`CLAIM`] holds.
 pub fn outcome(requirements: &[Requirement], records: &[Record], commit: &str) -> Outcome {
-    Outcome::measured(&CHECK, CHECK.name.into(), || {
+    Outcome::measured(&CLAIM, || {
         let joined = join(requirements, &[], records);
-        let without: Vec<&Evidence> = joined.iter().filter(|row| !row.is_there()).collect();
+        let without: Vec<&Joined> = joined.iter().filter(|row| !row.is_there()).collect();
         let left = without.iter().filter(|row| !row.left.is_empty()).count();
         let nothing = without.iter().find(|row| row.left.is_empty());
         let first = nothing.map_or(String::new(), |row| {
@@ -192,7 +175,7 @@ pub fn outcome(requirements: &[Requirement], records: &[Record], commit: &str) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Figure;
+    use crate::{Check, Figure};
 
     fn requirement(id: &str, tests: &[&str], proofs: &[&str]) -> Requirement {
         let names = |names: &[&str]| names.iter().map(|name| name.to_string()).collect();

@@ -1,9 +1,8 @@
 //! The bill of materials: the components of the shipped program in CycloneDX 1.5, with the minimum elements of the NTIA.
 
-use serde_json::{Value, json};
-use sha2::Digest;
-
 use palpate::build::Build;
+use palpate_conform::sha256;
+use serde_json::{Value, json};
 
 use super::supply::{Component, LOCK, Role};
 
@@ -78,14 +77,7 @@ fn found<'a>(components: &'a [Component], asked: &str) -> Option<&'a Component> 
 
 /// A UUID of version 8 from the commit and the lock file.
 fn serial_number(commit: &str) -> String {
-    let mut digest = sha2::Sha256::new();
-    digest.update(commit);
-    digest.update(LOCK);
-    let mut hex: String = digest
-        .finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
+    let mut hex = sha256([commit, LOCK].concat());
     hex.replace_range(12..13, "8");
     hex.replace_range(16..17, "8");
     format!(

@@ -4,27 +4,35 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use super::{Check, Figure};
+use super::{Check, Claim, Figure, Measured};
 use palpate::hid::timing::{Budget, measure, paper};
 use palpate::servo::{Input, Limits, Mode, Request, Sample, State, Table, step};
 
 /// The checks of this part.
 pub const CHECKS: &[Check] = &[
     Check {
-        name: "timing.step",
-        claim: "The median time of one step of the servo kernel, on a table of 9 × 41 poses, is within the 1 ms of a cycle.",
-        requirements: &["SRV-060"],
-        limits: "One cycle at 1 kHz. Fixed in 0.1.0.",
-        repeatable: false,
+        claim: Claim {
+            repeatable: false,
+            ..Claim::new(
+                "timing.step",
+                "The median time of one step of the servo kernel, on a table of 9 × 41 poses, is within the 1 ms of a cycle.",
+                &["SRV-060"],
+                "One cycle at 1 kHz. Fixed in 0.1.0.",
+            )
+        },
         run: steps,
     },
     Check {
-        name: "timing.loop",
-        claim: "The 99.9th percentile of the response of the loop on the simulated device, from a report at hand to its force \
-                written, is within the 1 ms of a cycle, with 95 % confidence.",
-        requirements: &["HID-060", "HID-062"],
-        limits: "One cycle at 1 kHz, for the upper 95 % confidence limit of the percentile. Fixed in 0.1.0.",
-        repeatable: false,
+        claim: Claim {
+            repeatable: false,
+            ..Claim::new(
+                "timing.loop",
+                "The 99.9th percentile of the response of the loop on the simulated device, from a report at hand to its force \
+                 written, is within the 1 ms of a cycle, with 95 % confidence.",
+                &["HID-060", "HID-062"],
+                "One cycle at 1 kHz, for the upper 95 % confidence limit of the percentile. Fixed in 0.1.0.",
+            )
+        },
         run: cycles,
     },
 ];
@@ -39,7 +47,7 @@ const BATCH: u16 = 1000;
 /// Cycles of the loop that are timed.
 const CYCLES: u64 = 100_000;
 
-fn steps() -> Result<Vec<Figure>, String> {
+fn steps() -> Measured {
     let loaded = paper::table().map_err(|error| error.to_string())?;
     let table = loaded.table().map_err(|error| format!("{error:?}"))?;
     let limits = Limits::for_playback(4.0).map_err(|error| error.to_string())?;
@@ -98,7 +106,7 @@ fn one_step(table: &Table, limits: &Limits, state: State, cycle: u16) -> (State,
     (next, black_box(command).playing)
 }
 
-fn cycles() -> Result<Vec<Figure>, String> {
+fn cycles() -> Measured {
     let loaded = paper::table().map_err(|error| error.to_string())?;
     let table = loaded.table().map_err(|error| format!("{error:?}"))?;
     let timing = measure(

@@ -7,7 +7,7 @@ use palpate_verify::{self as verify, Outcome};
 fn run(picked: fn(&str) -> bool) {
     let broken: Vec<String> = verify::kernel::CHECKS
         .iter()
-        .filter(|check| picked(check.name))
+        .filter(|check| picked(check.claim.name))
         .filter_map(|check| Outcome::of(check).complaint())
         .collect();
     assert!(broken.is_empty(), "{}", broken.join("\n"));

@@ -23,7 +23,7 @@ fn tests(detector: &BankDetector) -> Vec<SubspaceTest> {
     tests.map(Result::unwrap).collect()
 }
 
-// Verifies: BNK-051.
+// Verifies: BNK-051, ERR-006.
 #[test]
 fn the_bound_is_the_sum_of_the_tails_and_keeps_the_rate() {
     let detector = detector(6.0, false, NoiseLevel::Known);

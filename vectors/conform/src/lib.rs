@@ -55,7 +55,7 @@ pub use offline::{Form, judge_files, questions};
 pub use page::page;
 pub use profile::Profile;
 pub use run::{ConformError, Settings, run};
-pub use suite::{Bug, Choice, Group, Invalid, Suite, Unknown};
+pub use suite::{Bug, Choice, Group, Invalid, Suite, Unknown, sha256};
 pub use table::table;
 pub use tolerance::{Condition, Tolerance};
 pub use verdict::{

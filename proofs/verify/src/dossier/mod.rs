@@ -124,7 +124,7 @@ pub fn record(found: &Evidence) -> String {
                 record.commit.clone(),
                 record.log_sha256.clone(),
                 entry.name.clone(),
-                entry.result.to_string(),
+                format!("{:?}", entry.result).to_lowercase(),
                 seconds,
             ])
         })

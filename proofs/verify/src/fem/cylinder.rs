@@ -6,7 +6,7 @@ use palpate::phantom::Material;
 
 use super::convergence::{ORDERS, ORDERS_OF_ANY_NU, convergence};
 use super::problem::{Errors, Exact, Problem};
-use super::{Figures, largest};
+use super::{Measured, largest};
 
 /// Inner radius a and outer radius b under the pressure 1 inside:
 ///
@@ -87,7 +87,7 @@ fn material(poisson_ratio: f64) -> Material {
     }
 }
 
-pub fn pressed() -> Figures {
+pub fn pressed() -> Measured {
     let cylinder = Cylinder {
         radii: [1.0, 2.0],
         material: material(0.49),
@@ -146,7 +146,7 @@ fn standard_ratio(nu: f64) -> Result<f64, String> {
     Ok(u[2 * inside] / cylinder.displacement([3.0, 0.0])[0])
 }
 
-pub fn locking() -> Figures {
+pub fn locking() -> Measured {
     let worst = |ratios: &[f64]| -> Result<f64, String> {
         let off = ratios
             .iter()

@@ -3,7 +3,7 @@
 use palpate::fem::{Contact, Model, Pose, PoseSolution};
 use palpate::phantom::Phantom;
 
-use super::{Figures, largest, said};
+use super::{Measured, largest, said};
 
 /// Step h of the differences, m.
 const STEP: f64 = 2e-6;
@@ -49,7 +49,7 @@ fn at_pose(model: &Model, depth: f64, lateral: f64) -> Result<Option<[f64; 3]>, 
 }
 
 /// The laws at every pose of a map of 8 depths and 11 lateral positions.
-fn map(name: &str, contact: Contact) -> Figures {
+fn map(name: &str, contact: Contact) -> Measured {
     let phantom = Phantom::builtin(name).map_err(said)?;
     let model = Model::new(&phantom, 1.5e-3, contact).map_err(said)?;
     let (mut kinks, mut shares) = (0, Vec::new());
@@ -84,7 +84,7 @@ fn map(name: &str, contact: Contact) -> Figures {
     Ok(figures)
 }
 
-pub fn slopes() -> Figures {
+pub fn slopes() -> Measured {
     let mut figures = map("none", Contact::DeformedNormal)?;
     figures.extend(map("2.6", Contact::DeformedNormal)?);
     figures.extend(map("2.6", Contact::VerticalGap)?);

@@ -6,7 +6,7 @@ use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
 
 use super::problem::{Problem, solved};
-use super::{Figure, Figures, largest, said};
+use super::{Figure, Measured, largest, said};
 
 /// A contact point: its position, and the nodes of its edge with their weights.
 type Point = ([f64; 2], [(f64, usize); 3]);
@@ -224,7 +224,7 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 
 /// Both sides stop Newton's method at steps of 1e-13 m, which are worth 1e-10 N at the surface's stiffness of some
 /// 10³ N/m, and round the stiffness's sums in different orders. 1e-9 N is what FEM-060 allows.
-pub fn compare(name: &str, contact: Contact) -> Figures {
+pub fn compare(name: &str, contact: Contact) -> Measured {
     let size = 6e-3;
     let phantom = Phantom::builtin(name).map_err(said)?;
     let model = Model::new(&phantom, size, contact).map_err(said)?;
@@ -283,7 +283,7 @@ pub fn symmetry(what: &str, map: &ForceMap) -> Vec<Figure> {
     }
 }
 
-pub fn mirror() -> Figures {
+pub fn mirror() -> Measured {
     let phantom = Phantom::builtin("2.6").map_err(said)?;
     let model = Model::new(&phantom, 2e-3, Contact::DeformedNormal).map_err(said)?;
     let depths: Vec<f64> = (1..=8).map(|k| 0.5e-3 * f64::from(k)).collect();

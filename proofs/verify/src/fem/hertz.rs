@@ -7,7 +7,7 @@ use palpate::phantom::{Layer, Material, Phantom, Probe, Well};
 
 use super::layer::BondedLayer;
 use super::problem::{Exact, lame};
-use super::{Figure, Figures, largest, said};
+use super::{Figure, Measured, largest, said};
 
 const MATERIAL: Material = Material {
     youngs_modulus: 5e3,
@@ -108,7 +108,7 @@ fn block() -> Phantom {
     }
 }
 
-pub fn line_contact() -> Figures {
+pub fn line_contact() -> Measured {
     let curvature = curvature_of_the_base();
     // SciPy's quad of the kernel L(m) = (2κ sinh 2m − 4m)/(2κ cosh 2m + 1 + κ² + 4m²), κ = 3 − 4ν.
     let off = (curvature - 0.998_093_74).abs();

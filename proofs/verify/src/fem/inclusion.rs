@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_4;
 use num_complex::Complex;
 use palpate::phantom::Material;
 
-use super::Figures;
+use super::Measured;
 use super::convergence::{ORDERS, ORDERS_OF_ANY_NU, convergence};
 use super::problem::{Errors, Exact, Problem, lame};
 
@@ -107,7 +107,7 @@ fn bend([s, t]: [f64; 2]) -> [f64; 2] {
     })
 }
 
-pub fn disc() -> Figures {
+pub fn disc() -> Measured {
     // The moduli of gel and inclusion; pull along x and half as much push along y.
     let material = |youngs_modulus| Material {
         youngs_modulus,

@@ -6,7 +6,7 @@ use palpate::phantom::Material;
 
 use super::convergence::{ORDERS, ORDERS_OF_ANY_NU, convergence};
 use super::problem::{Errors, Exact, Problem, lame};
-use super::{Figures, largest};
+use super::{Measured, largest};
 
 /// A layer 0 ≤ y ≤ h, u = 0 at y = 0, under the traction σ_yy = −cos kx, σ_xy = 0 at y = h.
 ///
@@ -105,7 +105,7 @@ fn errors(layer: &BondedLayer, columns: usize) -> Result<[Errors; 4], String> {
     Ok([solve(4)?, solve(8)?, solve(16)?, solve(32)?])
 }
 
-pub fn bonded() -> Figures {
+pub fn bonded() -> Measured {
     let mut figures = Vec::new();
     // The pressure is the last to reach its order; at ν = 0.4999 the displacement is on its way too.
     for (number, columns, nu, stored, orders) in [
@@ -213,7 +213,7 @@ fn strip(slenderness: usize) -> Result<f64, String> {
     Ok(2.0 * down / (2.0 * b * (lambda + 2.0 * mu)))
 }
 
-pub fn thin() -> Figures {
+pub fn thin() -> Measured {
     // In a thin strip the pressure p(x) does not vary through the thickness. Between bonded plates it drives the flux
     // q = −t³ p'/(12 μ), and what the plates displace either flows or is compressed, δ/t = p/M + q'/t, where M stands for
     // the bulk modulus to the order of μ/M. So p'' = β² (p − M δ/t), p(±b) = 0, β² = 12 μ/(M t²), and

@@ -4,7 +4,7 @@ use palpate::phantom::Material;
 
 use super::convergence::{ORDERS, ORDERS_OF_ANY_NU, convergence};
 use super::problem::{Errors, Exact, Problem, lame};
-use super::{Figures, largest, least};
+use super::{Measured, largest, least};
 
 /// u = (A sin px sin qy, B cos px cos qy), with div u = (A p − B q) cos px sin qy, which vanishes for A = q, B = p.
 struct Wave {
@@ -82,7 +82,7 @@ impl Wave {
 const CELLS: [usize; 4] = [4, 8, 16, 32];
 
 /// A convergence study with the stored errors of displacement and gradient.
-fn study(poisson_ratio: f64, stored: [[f64; 4]; 2]) -> Figures {
+fn study(poisson_ratio: f64, stored: [[f64; 4]; 2]) -> Measured {
     let wave = Wave {
         amplitude: [1.0, -0.5],
         number: [2.0, 3.0],
@@ -106,7 +106,7 @@ fn study(poisson_ratio: f64, stored: [[f64; 4]; 2]) -> Figures {
     Ok(figures)
 }
 
-pub fn triangles() -> Figures {
+pub fn triangles() -> Measured {
     let mut figures = study(
         0.3,
         [
@@ -124,7 +124,7 @@ pub fn triangles() -> Figures {
     Ok(figures)
 }
 
-pub fn locking() -> Figures {
+pub fn locking() -> Measured {
     let wave = Wave {
         amplitude: [3.0, 2.0],
         number: [2.0, 3.0],

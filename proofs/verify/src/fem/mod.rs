@@ -27,11 +27,8 @@ mod paper;
 mod patch;
 mod problem;
 
-use super::{Check, Figure};
+use super::{Check, Figure, Measured};
 use palpate::fem::Contact;
-
-/// What a check gives: its figures, or why it cannot be carried out.
-type Figures = Result<Vec<Figure>, String>;
 
 /// The checks of this part. Sines and the like are `libm`'s in all of them.
 pub const CHECKS: &[Check] = &[

@@ -1,7 +1,7 @@
 //! Calculation verification: how good the forces of the paper's poses are on the default mesh.
 
 use super::full_contact::symmetry;
-use super::{Figures, largest, least, said};
+use super::{Measured, largest, least, said};
 use palpate::fem::certify::certified_map;
 use palpate::fem::{Contact, MESH_SIZE, Model, Pose};
 use palpate::phantom::{BUILTIN_NAMES, Phantom};
@@ -20,7 +20,7 @@ fn model(name: &str) -> Result<Model, String> {
     Model::new(&phantom, MESH_SIZE, Contact::default()).map_err(said)
 }
 
-pub fn reference() -> Figures {
+pub fn reference() -> Measured {
     let force = |name| -> Result<f64, String> {
         let pose = Pose {
             depth: 4e-3,
@@ -37,7 +37,7 @@ pub fn reference() -> Figures {
     })
 }
 
-pub fn certificates() -> Figures {
+pub fn certificates() -> Measured {
     let mut figures = Vec::new();
     for name in BUILTIN_NAMES {
         let model = model(name)?;

@@ -6,7 +6,7 @@ use palpate::fem::element::{NODES, StiffnessRule};
 use palpate::phantom::Material;
 
 use super::problem::{Exact, Problem, inside_out, lame};
-use super::{Figure, Figures, largest, least};
+use super::{Figure, Measured, largest, least};
 
 /// How far edges are bent: not at all, or so far that elements lose what straight ones can do.
 const CURVES: [f64; 2] = [0.0, 0.08];
@@ -110,7 +110,7 @@ fn worst_error(problem: &Problem, exact: &Polynomial) -> Result<f64, String> {
 /// ν = 0.49, so 10³, times 1.1e-16; stresses multiply the strains' errors by λ/μ = 49 once more.
 const ROUNDING: f64 = 1e-11;
 
-pub fn linear() -> Figures {
+pub fn linear() -> Measured {
     // On curved edges too: J⁻¹ det J ∇N is a polynomial of degree 2, which the rule integrates exactly, so that the internal
     // forces of a constant stress are in balance.
     let figure = |curve| {
@@ -121,7 +121,7 @@ pub fn linear() -> Figures {
     CURVES.into_iter().map(figure).collect()
 }
 
-pub fn quadratic() -> Figures {
+pub fn quadratic() -> Measured {
     let [straight, curved] = CURVES.map(|curve| worst_error(&distorted(curve), &QUADRATIC_FIELD));
     // The check can see the difference.
     Ok(figures! {
@@ -154,7 +154,7 @@ fn three_zeros(what: &str, shares: &[[f64; 2]], allowed: f64) -> Vec<Figure> {
     }
 }
 
-pub fn rigid() -> Figures {
+pub fn rigid() -> Measured {
     let mut figures = Vec::new();
     let rule = StiffnessRule::default();
     for curve in CURVES {
