@@ -218,3 +218,17 @@ fn the_vtu_file_holds_the_mesh_and_the_stresses() {
     }
     assert!(pressure.iter().copied().fold(0.0, f64::max) > 100.0);
 }
+
+// Verifies: CON-010.
+#[test]
+#[cfg(target_os = "linux")]
+fn the_class_of_the_processor_is_that_of_its_flags() {
+    let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap();
+    let flags = processor.lines().find(|line| line.starts_with("flags"));
+    let has = |flag: &str| flags.is_some_and(|flags| flags.split(' ').any(|word| word == flag));
+    let expected = match has("avx2") && has("fma") {
+        true => "x86-64 with AVX2 and FMA",
+        false => "other",
+    };
+    assert_eq!(crate::fem::arithmetic(), expected);
+}

@@ -89,7 +89,9 @@ fn a_force_feedback_device_is_told_by_its_usage_page() {
     // The same bytes as the data of an item, and cut off in the middle of one.
     let data = [0x27, 0x05, 0x0F, 0x05, 0x0F];
     let cut = [0x05, 0x01, 0x06, 0x0F];
-    for other in [&data[..], &cut, &[], &[0xFE], &[0xFE, 9, 0]] {
+    // As data of a long item, which has its length in the second byte.
+    let long = [0xFE, 2, 0, 0x05, 0x0F];
+    for other in [&data[..], &cut, &long, &[], &[0xFE], &[0xFE, 9, 0]] {
         let found = Profile::of(other);
         assert!(matches!(found, Profile::Other { .. }), "{other:?}");
     }

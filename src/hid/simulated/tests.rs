@@ -236,6 +236,11 @@ fn a_session_begins_only_with_a_device_that_can_be_trusted() {
     // 2 N and not a step of an f32 more.
     assert_eq!(begins(weak, 2.0), Ok(()));
     assert!(begins(weak, 2f32.next_up()).is_err());
+    let patient = Capabilities {
+        watchdog_ms: 100,
+        ..PAPER
+    };
+    assert_eq!(begins(patient, 2.0), Ok(()));
     let drops = "the device drops its force after";
     let none = format!(
         "{drops} 0 ms without a report, expected more than its period of 1000 µs and at most 100 ms: \

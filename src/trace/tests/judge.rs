@@ -212,6 +212,48 @@ fn what_is_unknown_is_fitted_by_least_squares() {
     }
 }
 
+// Verifies: TRC-060, TRC-064.
+#[test]
+fn a_tolerance_of_depth_shifts_t_by_the_slope_between_the_rows_beside_it() {
+    // The positions in mm, and the force of the signal and its slope over depth in N/mm, without and with the inclusion: d² has
+    // the slope 2d between rows as far above as below.
+    let x: Vec<f64> = (0..33).map(|i| 0.5 * f64::from(i) - 8.0).collect();
+    let bump = |x: f64| 0.2 / ((1.0 + x * x / 4.0) * (1.0 + x * x / 4.0));
+    let (mut gamma2, mut along) = (0.0, [0.0; 2]);
+    for &x in &x {
+        let [lateral, normal] = [-0.125 * x * bump(x), 0.25 * bump(x)];
+        let weights = [
+            1.0 / (STATED.lateral * STATED.lateral),
+            1.0 / (STATED.normal * STATED.normal),
+        ];
+        let signal = [4.0 * lateral * weights[0], 4.0 * normal * weights[1]];
+        gamma2 += 4.0 * (lateral * signal[0] + normal * signal[1]);
+        let without = [0.005 * x, 0.75];
+        for (along, signals) in along.iter_mut().zip([0.0, 1.0]) {
+            *along += (without[0] + signals * lateral) * signal[0]
+                + (without[1] + signals * normal) * signal[1];
+        }
+    }
+    let slope = f64::max(along[0].abs(), along[1].abs()) / f64::sqrt(gamma2);
+    let question = Question {
+        depth_tolerance: 1e-4,
+        noise: Noise {
+            sd: Some(STATED),
+            correlation: Correlation::None,
+        },
+        criterion: Criterion::NeymanPearsonFalseAlarm {
+            max_false_alarm: 0.02,
+        },
+        ..question(4e-3)
+    };
+    let (without, with) = (gel(0.0), gel(0.2));
+    let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+    let record = record(x.iter().map(|x| 1e-3 * x).collect(), |_| [0.0, 1.5]);
+    let found = question.judge(hypotheses, &record).unwrap();
+    // Φ⁻¹(0.98) by tables.
+    close(at(found.threshold), 2.053_748_910_631_823 + 0.1 * slope);
+}
+
 /// A sweep of 401 samples at 4 mm over the gel with an inclusion of so much signal (N), in noise of 0.1 N.
 fn sweep(signal: f64, stream: u64) -> Record {
     let positions: Vec<f64> = (0..401).map(|i| 4e-5 * f64::from(i) - 8e-3).collect();
