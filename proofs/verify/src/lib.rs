@@ -7,7 +7,7 @@
 //! | `rates.rs` | error rates on the paper's inclusions, in simulated records |
 //! | `kernel.rs` | functions of one f32 on all 2³² of them |
 //! | `fem/` | the solver against exact solutions, and the forces of the paper's poses |
-//! | `program.rs` | the shipped program, judged from outside: vectors through a pipe, forces against other programs' |
+//! | `program.rs`, `program/` | the shipped program, judged from outside: vectors through a pipe, forces against other programs', decisions and refusals |
 //! | `timing.rs` | the time that a step and a cycle take here |
 //! | `build.rs`, `supply.rs`, `traceability.rs` | what was built, from which components, for which requirements |
 //! | `record.rs` | the record of a test run, joined to the trace |

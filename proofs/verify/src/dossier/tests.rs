@@ -184,11 +184,11 @@ fn ids(text: &str) -> impl Iterator<Item = &str> {
         })
 }
 
-/// Controls of hazards that one kind of evidence shows, and why.
+/// Controls of hazards that only one test shows, and why.
 const ALONE: [(&str, &str); 1] = [("FIR-001", "only the microcontroller can show it")];
 
 #[test]
-fn a_control_of_a_hazard_has_a_second_kind_of_evidence() {
+fn a_control_of_a_hazard_has_two_tests_proofs_or_checks() {
     let controls: BTreeSet<&str> = ids(RISK).collect();
     assert!(controls.len() > 40, "{controls:?}");
     let battery = crate::battery::GROUPS.iter().map(|(.., ids)| *ids);

@@ -17,12 +17,12 @@ const NOISE: f64 = 0.05;
 /// Indentation of the sweep, and how far it may be off, mm.
 const DEPTH: f64 = 3.0;
 const TOLERANCE: f64 = 0.1;
-/// The size of the inclusion's force over that of `signal`: γ is about 5.
+/// The size of the inclusion's force, so that γ is about 5.
 const SIZE: f64 = 0.125;
 
 /// Rounding of sums of 82 numbers of up to 30 standard deviations of the noise each: 82 · 30 · 2⁻⁵³, and as much again for the program's.
 const SUMS: f64 = 1e-12;
-/// The probability beyond either limit of χ² (TRC-072).
+/// The probability beyond either limit of χ² (TRC-070).
 const BEYOND: f64 = 5e-7;
 
 fn position(sample: usize) -> f64 {
