@@ -58,6 +58,10 @@ interpolate {"depths_m": [0], "laterals_m": [0, 1], "table_n": [[1, 2]], "depth_
 scan {"residual_x": [1], "residual_y": [1], "template_x": [1, 1], "template_y": [1, 1], "noise_sd_x": 1, "noise_sd_y": 1} => bad_argument: template_x
 element_stiffness {"nodes_m": [[0, 0], [0, 1], [1, 0], [0, 0.5], [0.5, 0.5], [0.5, 0]], "youngs_modulus_pa": 1, "poissons_ratio": 0.3} => out_of_range: nodes_m | counter-clockwise
 element_stiffness {"nodes_m": [[0, 0]], "youngs_modulus_pa": 1, "poissons_ratio": 0.3} => bad_argument: six pairs
+element_stiffness {"nodes_m": [0], "youngs_modulus_pa": 1, "poissons_ratio": 0.3} => bad_argument: nodes_m[0] | a list
+element_stiffness {"nodes_m": [[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]], "youngs_modulus_pa": 1, "poissons_ratio": -1} => out_of_range: poissons_ratio | above -1 and below 0.5
+element_stiffness {"nodes_m": [[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]], "youngs_modulus_pa": 1, "poissons_ratio": 0.5} => out_of_range: poissons_ratio | above -1 and below 0.5
+element_stiffness {"nodes_m": [[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]], "youngs_modulus_pa": 0, "poissons_ratio": 0.3} => out_of_range: youngs_modulus_pa | above 0
 probe_force {"phantom": "5.0", "depth_m": 0, "lateral_m": 0} => out_of_range: 5.0 | 6.6
 probe_force {"phantom": "none", "depth_m": -0.001, "lateral_m": 0} => out_of_range: depth
 servo_axis {"knots": [0, 1], "coordinate_bits": "3f800000"} => bad_argument: coordinate_bits | 0x3f800000
