@@ -5,9 +5,9 @@ use palpate::detect::{Decision, decide};
 
 /// Any statistic and threshold.
 #[derive(Debug, Clone)]
-struct Compared {
-    theta: f64,
-    eta: f64,
+pub struct Compared {
+    pub theta: f64,
+    pub eta: f64,
 }
 
 impl TypeGenerator for Compared {

@@ -6,7 +6,7 @@ use bolero::generator::bolero_generator;
 use bolero::{Driver, TypeGenerator};
 use palpate::force::Force;
 use palpate::hid::{
-    Capabilities, Control, ForceReport, InvalidReport, PositionReport, Units, count,
+    Capabilities, Control, ForceReport, InvalidReport, PositionReport, Units, count, uses_page,
 };
 use palpate::servo::Command;
 
@@ -14,9 +14,9 @@ use crate::cases::{Count, any_force};
 
 /// Any bytes, 0 to 64 of them.
 #[derive(Debug, Clone)]
-struct Bytes {
-    bytes: [u8; 64],
-    length: usize,
+pub struct Bytes {
+    pub bytes: [u8; 64],
+    pub length: usize,
 }
 
 impl TypeGenerator for Bytes {
@@ -250,6 +250,82 @@ fn a_device_gives_finite_samples_and_takes_any_force() {
             "no unit of force": case.words[0] == 1 && case.words[2] == 0,
             "another version": case.words[0] != 1,
             "a force beyond the counts": known && case.force.normal > 32767.0,
+        }
+    });
+}
+
+/// An item before a descriptor.
+#[derive(Debug, Clone)]
+struct Item {
+    /// Its first byte: type and length of a short item.
+    prefix: u8,
+    /// Data of a short item; length, tag and data of a long one.
+    data: [u8; 4],
+    /// Bytes after the item, of which `length` count.
+    rest: [u8; 6],
+    length: usize,
+}
+
+impl TypeGenerator for Item {
+    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
+        const PREFIXES: [u8; 4] = [0x05, 0x06, 0x07, 0xFE];
+        let mut item = Item {
+            prefix: driver.produce()?,
+            data: driver.produce()?,
+            rest: driver.produce()?,
+            length: driver.gen_usize(Included(&0), Included(&6))?,
+        };
+        // Items that select a page, or long ones; the page 0x0F; the end of a long item.
+        if driver.gen_variant(2, 0)? == 0 {
+            item.prefix = PREFIXES[driver.gen_variant(4, 0)?];
+            item.data[0] = [0x0F, 2, 1, 0][driver.gen_variant(4, 0)?];
+            item.data[1] %= 2;
+            item.data[2] %= 2;
+            item.data[3] %= 2;
+        }
+        if driver.gen_variant(2, 0)? == 0 {
+            item.rest[0] = 0x05;
+            item.rest[1] = 0x0F;
+        }
+        Some(item)
+    }
+}
+
+// Verifies: HID-031. One item more decides, or the rest does: so does every item of every descriptor, by induction.
+#[test]
+#[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(cadical))]
+fn the_first_item_of_a_descriptor_decides_or_the_rest_does() {
+    harness!(Item, |item| {
+        let mut bytes = [0; 11];
+        bytes[0] = item.prefix;
+        bytes[1..5].copy_from_slice(&item.data);
+        let long = item.prefix == 0xFE;
+        let short = [0, 1, 2, 4][usize::from(item.prefix % 4)];
+        // A long item has its length in the second byte; here at most two bytes of data.
+        let size = if long {
+            2 + usize::from(item.data[0] % 3)
+        } else {
+            short
+        };
+        if long {
+            bytes[1] %= 3;
+        }
+        bytes[1 + size..7 + size].copy_from_slice(&item.rest);
+        let end = 1 + size + item.length;
+        // Of a short item's data, the first byte is the least.
+        let page = (0..size).fold(0, |page, byte| {
+            page | u32::from(bytes[1 + byte]) << (8 * byte)
+        });
+        let selects = !long && size > 0 && item.prefix / 4 == 1 && page == 0x0F;
+        let rest = uses_page(&item.rest[..item.length], 0x0F);
+        assert!(uses_page(&bytes[..end], 0x0F) == (selects || rest));
+        // An item that is cut off selects nothing.
+        assert!(!uses_page(&bytes[..size], 0x0F));
+        reached! {
+            "the page": selects && !rest,
+            "the page in the rest": rest && !selects,
+            "a long item": long,
+            "a selected page of another number": !selects && !long && item.prefix / 4 == 1 && size > 0,
         }
     });
 }

@@ -37,6 +37,7 @@ pub use device::{DeviceError, DeviceState, HapticDevice, Received};
 pub use recording::{RecordedCycle, Recording};
 pub use report::{
     Capabilities, Control, DESCRIPTOR, ForceReport, InvalidReport, PositionReport, button, status,
+    uses_page,
 };
 #[cfg(feature = "std")]
 pub use session::{Counters, Cycle, End, Session};

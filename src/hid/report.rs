@@ -26,6 +26,31 @@ pub const DESCRIPTOR: [u8; 136] = [
     0xC0,
 ];
 
+/// Whether any device's report descriptor has an item that selects the usage page `page`.
+///
+/// Implements: HID-031.
+pub fn uses_page(descriptor: &[u8], page: u8) -> bool {
+    const LONG_ITEM: u8 = 0xFE;
+    const USAGE_PAGE: u8 = 0x04;
+    let mut rest = descriptor;
+    while let Some((&prefix, after)) = rest.split_first() {
+        let size = match (prefix, after.first()) {
+            (LONG_ITEM, Some(&length)) => usize::from(length) + 2,
+            _ => [0, 1, 2, 4][usize::from(prefix & 3)],
+        };
+        // An item that is cut off ends the descriptor.
+        let Some(data) = after.get(..size) else {
+            return false;
+        };
+        let (low, high) = data.split_at(data.len().min(1));
+        if prefix & !3 == USAGE_PAGE && low == [page] && high.iter().all(|&byte| byte == 0) {
+            return true;
+        }
+        rest = &after[size..];
+    }
+    false
+}
+
 /// Bits of [`PositionReport::buttons`].
 pub mod button {
     /// The deadman switch is held.

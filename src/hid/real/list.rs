@@ -6,7 +6,7 @@ use std::path::Path;
 
 use hidapi::{DeviceInfo, HidApi};
 
-use crate::hid::DESCRIPTOR;
+use crate::hid::{DESCRIPTOR, uses_page};
 use crate::refusal::Refusal;
 
 /// What a device is called, and where it is.
@@ -83,29 +83,6 @@ impl fmt::Display for Profile {
             Profile::Unknown(error) => write!(f, "unknown: report descriptor: {error}"),
         }
     }
-}
-
-/// Whether a report descriptor has an item that selects the usage page `page`.
-fn uses_page(descriptor: &[u8], page: u8) -> bool {
-    const LONG_ITEM: u8 = 0xFE;
-    const USAGE_PAGE: u8 = 0x04;
-    let mut rest = descriptor;
-    while let Some((&prefix, after)) = rest.split_first() {
-        let size = match (prefix, after.first()) {
-            (LONG_ITEM, Some(&length)) => usize::from(length) + 2,
-            _ => [0, 1, 2, 4][usize::from(prefix & 3)],
-        };
-        // An item that is cut off ends the descriptor.
-        let Some(data) = after.get(..size) else {
-            return false;
-        };
-        let (low, high) = data.split_at(data.len().min(1));
-        if prefix & !3 == USAGE_PAGE && low == [page] && high.iter().all(|&byte| byte == 0) {
-            return true;
-        }
-        rest = &after[size..];
-    }
-    false
 }
 
 /// A device and what it is.
