@@ -459,3 +459,25 @@ fn requests_have_one_form_and_bounded_lines() {
         "{table}"
     );
 }
+
+// Verifies: ORA-064.
+#[test]
+fn a_table_leaves_out_what_needs_quotes() {
+    let values = [
+        json!("a_1"),
+        json!(1.5),
+        json!("a,b"),
+        json!("a b"),
+        json!("\""),
+        json!([["a", 2]]),
+        json!([["a b"]]),
+        json!(null),
+    ];
+    let case = |value: &Value| json!({"error": "out_of_range", "args": {"x": value}});
+    let cases = values.iter().map(case).collect();
+    let suite = Suite::of_files([group("a", cases)].into()).unwrap();
+    let table = super::columns::questions(&suite);
+    let rows: Vec<&str> = table.lines().skip(1).collect();
+    let right = "a-0,roc,x,,,a_1 a-1,roc,x,,,1.5 a-5,roc,x,0,0,a a-5,roc,x,0,1,2";
+    assert_eq!(rows.join(" "), right);
+}
