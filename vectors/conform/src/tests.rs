@@ -205,6 +205,53 @@ fn bugs_are_named_that_explain_half_of_a_group_and_pairs_that_explain_more() {
 
 // Verifies: ORA-047.
 #[test]
+fn of_pairs_of_bugs_the_one_that_explains_most_is_named() {
+    let ok = |[a, b, c]: [f64; 3]| json!({"a": a, "b": b, "c": c});
+    // One bug of a and two of b; c is right with each of them.
+    let bugs = json!({
+        "f": ok([-1.0, 2.0, 3.0]), "g": ok([1.0, -2.0, 3.0]), "h": ok([1.0, 20.0, 3.0]),
+        // Two that are right in b, and wrong elsewhere.
+        "i": ok([-5.0, 2.0, 9.0]), "j": ok([8.0, 2.0, 7.0]),
+    });
+    let wrong = bugs.as_object().unwrap().iter();
+    let wrong: Vec<Value> = wrong
+        .map(|(flag, ok)| json!({"flag": flag, "ok": ok}))
+        .collect();
+    let bits =
+        json!({"a": "0x3ff0000000000000", "b": "0x4000000000000000", "c": "0x4008000000000000"});
+    let flags = ["f", "g", "h", "i", "j"];
+    let case = json!({"ok": ok([1.0, 2.0, 3.0]), "bits": bits, "wrong": wrong, "flags": flags});
+    let told = |answers: &[[f64; 3]]| {
+        let (name, text) = group("a", vec![case.clone(); answers.len()]);
+        let mut file: Value = serde_json::from_str(&text).unwrap();
+        file["flags"] = flags
+            .map(|flag| (flag, json!({"bug": flag, "notes": ""})))
+            .into_iter()
+            .collect();
+        file["tolerance"]["c"] = file["tolerance"]["a"].clone();
+        let suite = Suite::of_files([(name, file.to_string())].into()).unwrap();
+        let cases = suite.groups[0].cases.iter().zip(answers);
+        let judged =
+            cases.map(|(case, &found)| judge(case, &json!({"ok": ok(found)}), &Profile::exact()));
+        let verdict = verdict(&suite, vec![judged.collect()]);
+        let of = |one: &super::Explanation| {
+            let flags: Vec<&str> = one.bugs.iter().map(|bug| &bug.flag[..]).collect();
+            format!("{} {}", flags.join("+"), one.explains)
+        };
+        let found: Vec<String> = verdict.diagnosis[0].explanations.iter().map(of).collect();
+        found
+    };
+    let (with_g, with_h) = ([-1.0, -2.0, 3.0], [-1.0, 20.0, 3.0]);
+    assert_eq!(told(&[with_g, with_h, with_h]), ["f+h 2"]);
+    assert_eq!(told(&[with_h, with_g, with_g]), ["f+g 2"]);
+    // Of equals the first.
+    assert_eq!(told(&[with_h, with_g]), ["f+g 1"]);
+    // Only a is wrong, as i has it: no other bug has anything to explain.
+    assert_eq!(told(&[[-5.0, 2.0, 3.0]]), Vec::<String>::new());
+}
+
+// Verifies: ORA-047.
+#[test]
 fn classes_are_diagnosed_apart() {
     let suite = two_groups();
     let answered = |case| judge(case, &json!({"ok": {}}), &Profile::exact());
