@@ -7,6 +7,29 @@ use serde_json::Value;
 
 use crate::program::*;
 
+// Verifies: ORA-049.
+#[test]
+fn output_that_cannot_be_written_is_an_error_unless_its_reader_has_gone() {
+    let run = |end: &str| {
+        let script = format!(
+            "set -o pipefail; '{}' questions {end}",
+            env!("CARGO_BIN_EXE_palpate-conform")
+        );
+        Command::new("bash")
+            .args(["-c", &script])
+            .output()
+            .expect("a shell")
+    };
+    let gone = run("| head -n 1");
+    assert!(gone.status.success() && gone.stderr.is_empty(), "{gone:?}");
+    let full = run("> /dev/full");
+    assert_eq!(full.status.code(), Some(1));
+    assert!(
+        error(&full).starts_with("palpate-conform: standard output: "),
+        "{full:?}"
+    );
+}
+
 // Verifies: ORA-057, ORA-075.
 #[test]
 fn answers_from_a_file_are_judged_as_those_from_a_pipe() {
