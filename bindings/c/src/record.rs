@@ -284,13 +284,15 @@ pub unsafe extern "C" fn palpate_scan(
         if count != scan.full_shifts().count() {
             return Err(Error::Length);
         }
-        scan.theta(residual, 0, unsafe { list_mut(theta, count) }?)?;
+        let thetas = unsafe { list_mut(theta, count) }?;
+        // What overflows at any shift is refused here, before Θ is written.
         let scan::ScanMaximum {
             theta,
             gamma,
             shift,
             refined_shift,
         } = scan.maximum(residual, scan.full_shifts())?;
+        scan.theta(residual, 0, thetas)?;
         Ok(ScanMaximum {
             theta,
             gamma,

@@ -52,6 +52,11 @@ static void records(void) {
     double theta[2];
     expect("count", palpate_scan(&right, &shorter, &noise, theta, 1, &maximum), PALPATE_ERROR_LENGTH);
     expect("scan over its input", palpate_scan(&right, &shorter, &noise, zero + 1, 2, &maximum), PALPATE_ERROR_OVERLAP);
+    double huge[4] = {0, 0, 0, 1e308};
+    const PalpateSeries overflowing = {zero, huge, 4};
+    theta[0] = theta[1] = -7.0;
+    expect("overflow", palpate_scan(&overflowing, &shorter, &noise, theta, 2, &maximum), PALPATE_ERROR_OVERFLOW);
+    expect_true("a refused scan leaves its list", theta[0] == -7.0 && theta[1] == -7.0);
     expect("scan", palpate_scan(&right, &shorter, &noise, theta, 2, &maximum), PALPATE_ERROR_OK);
 
     double covariance[4] = {1, 0.5, 0.4, 1}, scratch[8];
