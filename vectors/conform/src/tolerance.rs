@@ -46,7 +46,7 @@ impl fmt::Display for Tolerance {
             Tolerance::Ulp(count) => write!(f, "{count} ulp"),
             Tolerance::Absolute(bound) => write!(f, "{bound:e}"),
             Tolerance::Relative(bound) => write!(f, "{bound:e} of it"),
-            Tolerance::Exact => f.write_str("exactly"),
+            Tolerance::Exact => f.write_str("0"),
         }
     }
 }

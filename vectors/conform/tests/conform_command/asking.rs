@@ -97,6 +97,21 @@ fn a_crash_is_blamed_on_its_case_and_the_others_are_asked() {
 
 // Verifies: ORA-044, ORA-045.
 #[test]
+fn cases_that_were_open_together_are_asked_again_alone() {
+    // It dies of two lines at a time, so that it must be started again, once.
+    let palpate = palpate();
+    let script = format!(
+        "echo start >>starts; while :; do sleep 0.1; lines=$(dd bs=65536 count=1 2>/dev/null)\n\
+         case \"$lines\" in '') exit 0;; *'\n'*) exit 7;; esac; printf '%s\\n' \"$lines\" | '{palpate}' oracle; done"
+    );
+    run("alone", &script, "20").expect(&[]);
+    let starts = folder_of("alone").join("starts");
+    let starts = fs::read_to_string(starts).expect("the program was started");
+    assert!(starts.lines().count() <= 2, "{starts}");
+}
+
+// Verifies: ORA-044, ORA-045.
+#[test]
 fn silence_is_blamed_on_its_case_and_the_others_are_asked() {
     // In this time a loaded machine starts the oracle, which the shell does for each line.
     run("silence", &shell("*choice-003*) exec sleep 60;;"), "2")
@@ -173,6 +188,7 @@ fn what_is_not_claimed_is_skipped_and_nothing_is_no_verdict() {
     let output = conform("--timeout-s 0.2", &["sh", "-c", &claim]);
     // The lines that everybody must refuse are asked, and not answered here.
     assert_eq!(output.status.code(), Some(1));
+    assert!(error(&output).contains("nothing checked"), "{output:?}");
     let folder = write("claims-other", &vectors());
     let output = conform_at(&folder, "--vectors .", &["sh", "-c", &claim]);
     let error = error(&output);

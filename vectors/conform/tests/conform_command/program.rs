@@ -15,9 +15,14 @@ pub fn palpate() -> String {
     program.into_os_string().into_string().expect("UTF-8")
 }
 
+/// The folder of a test.
+pub fn folder_of(test: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("conform-{test}"))
+}
+
 /// A folder of its own for each test, emptied at the start.
 pub fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("conform-{test}"));
+    let path = folder_of(test);
     let _ = fs::remove_dir_all(&path);
     fs::create_dir_all(&path).expect("a folder for the test");
     path
