@@ -141,7 +141,10 @@ fn one_noise_level_for_all() {
         for (predicted, signal) in found.predicted.iter().zip(&signals.0) {
             assert_near(*predicted, two_afc(signal / noise).unwrap(), 1e-5);
         }
+        let without_lapse = found.aic;
         let found = common_with_lapse(&signals, &observed).unwrap().unwrap();
+        // The deviances of the pooled counts and of the subjects' own differ by what no fit changes.
+        assert_near(found.aic - without_lapse, rest - deviance + 2.0, 1e-6);
         assert_near(found.noise_n / noise_lapsed, 1.0, OF_NOISE);
         assert_near(found.lapse, share, 1e-5);
         assert_near(found.deviance, rest, 1e-7);
@@ -164,6 +167,8 @@ fn a_noise_level_for_each_subject() {
         assert_near(found.expected_deviance / mean, 1.0, 0.02);
         assert_near(found.deviance_sd / sd, 1.0, 0.03);
         assert_near(found.p_value, p, 0.01);
+        let fitted = observed.subjects.len() as f64;
+        assert_near(found.aic, deviance + 2.0 * fitted, 1e-6);
         let sum: f64 = found.deviance_by_subject.iter().sum();
         assert_near(sum, found.deviance, 1e-12);
     }
@@ -233,12 +238,15 @@ fn the_verdict_follows_the_answers() {
     assert_eq!(found.support, Favoured::ChangeAlongSweep, "{}", found.text);
     assert!(found.compatible.contains(&"peak, lateral force".into()));
     assert!(found.rejected.contains(&"peak, normal force".into()));
+    assert_says(&found.text, "lateral force fits the better of these two");
     let found = verdict_on(&table(change), &maps(change, change));
     assert_eq!(found.support, Favoured::Undecided, "{}", found.text);
+    assert_says(&found.text, "cannot be told apart");
     // The normal force less its mean falls with depth as its level does: only the lateral force is apart.
     let found = verdict_on(&table(level), &apart);
     assert!(found.compatible.contains(&"peak, normal force".into()));
     assert!(found.rejected.contains(&"peak, lateral force".into()));
+    assert_says(&found.survives.unwrap(), "than the lateral force in 0 of ");
     // Answers that rise with depth fit nothing.
     let mut rising = change;
     rising.reverse();
@@ -337,6 +345,14 @@ fn with_many_answers_each_fitted_number_takes_a_degree_of_freedom() {
     };
     let alone = by_subject(&signals, &observed).unwrap();
     let with_lapse = by_subject_with_lapse(&signals, &observed, &alone).unwrap();
+    let gained = alone.deviance - with_lapse.deviance;
+    assert_near(with_lapse.aic, alone.aic + 2.0 - gained, 1e-9);
+    // The unit of force says nothing of lapses.
+    let scaled = Signals(signals.0.iter().map(|signal| 100.0 * signal).collect());
+    let of_scaled = by_subject(&scaled, &observed).unwrap();
+    let scaled = by_subject_with_lapse(&scaled, &observed, &of_scaled).unwrap();
+    assert_near(scaled.lapse, with_lapse.lapse, 1e-6);
+    assert_near(with_lapse.lapse, 0.05, 0.01);
     for (fit, degrees) in [(alone, 6.0), (with_lapse, 5.0)] {
         assert_near(fit.expected_deviance / degrees, 1.0, 0.01);
         let variance = fit.deviance_sd * fit.deviance_sd;
