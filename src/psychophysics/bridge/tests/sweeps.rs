@@ -115,6 +115,20 @@ fn only_sweeps_that_the_maps_have_are_judged() {
     assert_eq!(half_sweeps(&laterals)[0], 5e-3);
 }
 
+/// All answers right: no deviance, and none expected.
+// Verifies: PSY-085.
+#[test]
+fn without_a_wrong_answer_no_weight_is_rejected() {
+    let table =
+        "subject,condition,trials,2.6,4.6,6.6,8.6\n1,x,50,50,50,50,50\n2,x,50,50,50,50,50\n";
+    let table = AnswerTable::from_csv(table, "t").unwrap();
+    let weights = &bridged(&table, &computed_maps()).conditions[0].weights;
+    assert_eq!(weights.len(), 16);
+    for range in weights {
+        assert_eq!((range.dispersion, range.left.upper), (1.0, 1.0));
+    }
+}
+
 /// The computed signals as maps.
 fn computed_maps() -> (ForceMap, [ForceMap; 4]) {
     let signals = computed_signals();
