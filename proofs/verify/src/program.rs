@@ -260,17 +260,32 @@ pub(crate) mod tests {
     use super::*;
     use crate::Outcome;
 
-    /// A program that is a shell script.
-    pub fn script(name: &str, text: &str) -> PathBuf {
+    /// A program that is a shell script; its file goes with it.
+    pub struct Script(PathBuf);
+
+    impl std::ops::Deref for Script {
+        type Target = Path;
+        fn deref(&self) -> &Path {
+            &self.0
+        }
+    }
+
+    impl Drop for Script {
+        fn drop(&mut self) {
+            std::fs::remove_file(&self.0).ok();
+        }
+    }
+
+    pub fn script(name: &str, text: &str) -> Script {
         use std::os::unix::fs::PermissionsExt;
         let path = std::env::temp_dir().join(format!("palpate-{}-{name}", std::process::id()));
         std::fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
         std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
-        path
+        Script(path)
     }
 
     /// One of the right version whose `solve` prints four poses with these forces.
-    fn solver(name: &str, forces: &str) -> PathBuf {
+    fn solver(name: &str, forces: &str) -> Script {
         let Build {
             version, commit, ..
         } = Build::THIS;
@@ -284,9 +299,7 @@ pub(crate) mod tests {
     fn judged_by(name: &str, program: &Path) -> Outcome {
         let found = CHECKS.iter().find(|(claim, _)| claim.name == name);
         let (claim, judge) = found.unwrap();
-        let outcome = Outcome::measured(claim, || judge(program));
-        std::fs::remove_file(program).ok();
-        outcome
+        Outcome::measured(claim, || judge(program))
     }
 
     #[test]
@@ -306,7 +319,8 @@ pub(crate) mod tests {
     #[test]
     fn a_program_of_another_version_or_none_fails() {
         assert!(judged_by("program.identity", &solver("identity", "")).passed());
-        assert!(!judged_by("program.identity", Path::new("/bin/echo")).passed());
+        let echo = Path::new("/bin/echo");
+        assert!(!judged_by("program.identity", echo).passed() && echo.exists());
         let missing = judged_by("program.identity", Path::new("/nowhere/palpate"));
         let complaint = missing.complaint().unwrap();
         assert!(

@@ -340,7 +340,6 @@ mod tests {
                     "{measured:?}"
                 );
             }
-            std::fs::remove_file(program).unwrap();
         }
     }
 }
