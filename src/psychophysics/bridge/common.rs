@@ -156,7 +156,7 @@ fn noise_bounds(signals: &Signals, observed: &Observations, log: f64) -> Result<
     let reach = libm::exp(student_point(0.5 * (1.0 - CONFIDENCE), subjects - 1.0)? * error);
     let noise = libm::exp(-log);
     let (lower, upper) = (noise / reach, noise * reach);
-    Ok(upper.is_finite().then_some(Bounds { lower, upper }))
+    Ok((upper.is_finite() && lower > 0.0).then_some(Bounds { lower, upper }))
 }
 
 /// The p-value of the smallest T² = m (p̄ − p(σ))ᵀS⁻¹(p̄ − p(σ)) over σ, p̄ and S the mean and covariance of the

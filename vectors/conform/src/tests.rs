@@ -127,6 +127,23 @@ fn two_groups() -> Suite {
     Suite::of_files(groups.into()).unwrap()
 }
 
+/// For these groups, an outcome of each kind.
+fn one_of_each() -> Vec<Vec<Outcome>> {
+    let wrong = |class| Outcome::wrong(class, "");
+    vec![
+        vec![
+            Outcome::Acceptable("loose".into()),
+            wrong(Class::Protocol),
+            wrong(Class::Range),
+        ],
+        vec![
+            wrong(Class::Mathematics),
+            Outcome::Right,
+            Outcome::Skipped(String::new()),
+        ],
+    ]
+}
+
 fn measure(profile: &str) -> Measure {
     let profile = Profile::named(profile).unwrap();
     Measure {
@@ -330,19 +347,6 @@ fn extreme_cases_are_those_beyond_the_precision() {
 #[test]
 fn what_is_required_decides_what_fails() {
     let suite = two_groups();
-    let wrong = |class| Outcome::wrong(class, "");
-    let outcomes = vec![
-        vec![
-            Outcome::Acceptable("loose".into()),
-            wrong(Class::Protocol),
-            wrong(Class::Range),
-        ],
-        vec![
-            wrong(Class::Mathematics),
-            Outcome::Right,
-            Outcome::Skipped(String::new()),
-        ],
-    ];
     for (require, failed) in [
         (Require::Right, 4),
         (Require::Acceptable, 3),
@@ -353,13 +357,7 @@ fn what_is_required_decides_what_fails() {
             require,
             ..measure("exact")
         };
-        let verdict = Verdict::new(
-            &suite,
-            &measure,
-            Program::default(),
-            outcomes.clone(),
-            vec![],
-        );
+        let verdict = Verdict::new(&suite, &measure, Program::default(), one_of_each(), vec![]);
         assert_eq!(verdict.failed(), failed, "{require:?}");
         assert!(
             verdict
@@ -374,20 +372,7 @@ fn what_is_required_decides_what_fails() {
 #[test]
 fn the_table_has_a_column_for_each_kind_of_answer_that_came() {
     let suite = two_groups();
-    let wrong = |class| Outcome::wrong(class, "not so");
-    let outcomes = vec![
-        vec![
-            Outcome::Acceptable("loose".into()),
-            wrong(Class::Protocol),
-            wrong(Class::Range),
-        ],
-        vec![
-            wrong(Class::Mathematics),
-            Outcome::Right,
-            Outcome::Skipped(String::new()),
-        ],
-    ];
-    let mut verdict = verdict(&suite, outcomes);
+    let mut verdict = verdict(&suite, one_of_each());
     verdict.program.version = "7".into();
     let expected = "\
 group  cases  right  acceptable  mathematics  range  protocol  skipped
