@@ -75,7 +75,7 @@ fn one_at_a_time() -> f64 {
 fn main() -> ExitCode {
     // Started by itself it is the program.
     if std::env::args().nth(1).as_deref() == Some("oracle") {
-        return palpate::cli::main(["palpate", "oracle"].map(OsString::from));
+        return palpate_program::main(["palpate", "oracle"].map(OsString::from));
     }
     let best = (0..3).map(|_| stream()).fold(0.0, f64::max);
     println!("error_rates in a stream: {best:.0} answers a second (best of 3 × {REQUESTS})");

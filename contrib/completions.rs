@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn write(folder: &Path) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
-    let mut command = palpate::cli::command();
+    let mut command = palpate_program::command();
     for shell in [
         Shell::Bash,
         Shell::Elvish,
@@ -34,7 +34,7 @@ fn every_command_has_a_page_and_a_completion() {
     let folder = std::env::temp_dir().join(format!("palpate-completions-{}", std::process::id()));
     write(&folder).unwrap();
     let bash = std::fs::read_to_string(folder.join("palpate.bash")).unwrap();
-    for command in palpate::cli::command().get_subcommands() {
+    for command in palpate_program::command().get_subcommands() {
         let name = command.get_name();
         let page = std::fs::read_to_string(folder.join(format!("palpate-{name}.1"))).unwrap();
         assert!(

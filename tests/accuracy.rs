@@ -1,13 +1,9 @@
 //! The stated accuracy of the oracle, by dense sweeps against mpmath (`spec/detector.md`, `tests/accuracy/sweep.py`). Skipped
 //! with a notice where Python or mpmath is missing, unless `PALPATE_REQUIRE_WITNESSES=1` asks for it.
-#![cfg(feature = "cli")]
-
-#[path = "witness/present.rs"]
-mod present;
 
 use std::process::Command;
 
-use present::present;
+use crate::witness::present::present;
 
 // Verifies: DET-001, DET-014, ACC-014, ACC-020.
 #[test]
@@ -18,9 +14,9 @@ fn every_function_is_as_accurate_as_stated() {
     if !present(missing.then_some("mpmath")) {
         return;
     }
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/accuracy/sweep.py");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/accuracy/sweep.py");
     let output = Command::new(&python)
-        .args([script, env!("CARGO_BIN_EXE_palpate"), "oracle"])
+        .args([script, crate::program::PROGRAM, "oracle"])
         .output()
         .expect("Python starts");
     let said = String::from_utf8_lossy(&output.stdout);

@@ -1,16 +1,13 @@
 //! `palpate bank`, end to end: the bank of a coarse mesh, stopped and resumed, and every refusal.
-#![cfg(all(feature = "cli", unix))]
-
-mod program;
 
 use std::fs::{self, File};
 use std::process::Output;
 use std::sync::OnceLock;
 
+use crate::program::{Place, has, text};
 use palpate::bank::{Bank, BankPlan};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
-use program::{Place, has, text};
 
 /// Three positions at two depths. Those at −2 mm are mirror images: five computations with the reference.
 const SMALL: &str = "bank --phantom 6.6 --offsets-mm=-2,0,2 --depths-mm 4.6,6.6 --probe-depth-mm 3 --laterals-mm=-6:6:2 --mesh-mm 2";
@@ -204,7 +201,7 @@ const REFUSED: &str = "
 fn what_makes_no_bank_is_refused_in_one_line() {
     let place = Place::new("bank-refused");
     place.write("there.json", "{}");
-    let two = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/phantoms/two.toml");
+    let two = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/phantoms/two.toml");
     fs::copy(two, place.at("two.toml")).unwrap();
     // Its first inclusion alone, as an ellipse.
     let text = place.read("two.toml");

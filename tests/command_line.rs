@@ -1,17 +1,14 @@
 //! The program as its users meet it: `spec/command-line.md`.
-#![cfg(feature = "cli")]
-
-mod program;
 
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use crate::program::{ASYMMETRIC, Place, contents, has, text};
 use palpate::fem::{Contact, Model};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
-use program::{ASYMMETRIC, Place, contents, has, text};
 
 // Verifies: CLI-001.
 #[test]

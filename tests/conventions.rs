@@ -1,5 +1,4 @@
 //! The conventions of `spec/README.md`: units, axes and signs.
-#![cfg(feature = "cli")]
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -24,7 +23,7 @@ fn builtin(name: &str) -> Phantom {
 }
 
 fn help(arguments: &[&str]) -> String {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+    let mut command = Command::new(crate::program::PROGRAM);
     let output = command.args(arguments).arg("--help").output().unwrap();
     String::from_utf8(output.stdout).unwrap()
 }

@@ -1,21 +1,17 @@
 //! `palpate detect`, end to end: two solved maps or a small bank, a simulated sweep, the program, and its answer
 //! against the library's and against plain sums.
-#![cfg(feature = "cli")]
 
-#[path = "detect_command/bank.rs"]
 mod bank;
-mod program;
-#[path = "detect_command/refused.rs"]
 mod refused;
 
 use std::sync::OnceLock;
 
+use crate::program::{Place, has, text};
 use palpate::bank::Bank;
 use palpate::detect::{Decision, decide, error_rates, theta_of_record};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable};
 use palpate::stats::random::Generator;
-use program::{Place, has, text};
 use serde_json::{Value, json};
 
 /// Standard deviation of the noise in the sweeps, N.

@@ -1,5 +1,4 @@
 //! The errata of the paper (`spec/errata.md`): each test asserts what is printed and what is true.
-#![cfg(feature = "std")]
 
 use palpate::detect::scan::Scan;
 use palpate::detect::{
@@ -7,9 +6,9 @@ use palpate::detect::{
     required_gamma, two_afc,
 };
 use palpate::force::Force;
-use palpate::psychophysics::AnswerTable;
 use palpate::stats::binomial::clopper_pearson;
 use palpate::stats::random::Generator;
+use palpate_paper::psychophysics::AnswerTable;
 
 /// Asserts that `value` is `printed` when it is rounded to `unit`.
 #[track_caller]

@@ -2,20 +2,21 @@
 //!
 //! A runner of our own, since trycmd splits a command into words and starts it without a shell, so that it has no pipe,
 //! no redirection and no `$?`, which the pages need; it would also bring twelve crates.
-#![cfg(all(feature = "cli", unix))]
 
-#[path = "docs/page.rs"]
 mod page;
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 
 use page::{Page, matches};
 
 /// The root of the package, from which pages are named.
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+use crate::ROOT;
+use crate::program::PROGRAM;
 
 /// How many commands of `docs/` the test does not run, each with its reason on the page.
 const NOT_RUN: usize = 34;
@@ -67,14 +68,27 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
+/// A folder with the program under test as `palpate`.
+fn bin() -> &'static Path {
+    static BIN: OnceLock<PathBuf> = OnceLock::new();
+    BIN.get_or_init(|| {
+        let bin = folder("bin");
+        symlink(PROGRAM, bin.join("palpate")).unwrap();
+        bin
+    })
+}
+
 /// Output, both streams as they come, and exit code of a command after one that left the code `before`; the program
-/// under test comes first on the path.
+/// under test comes first on the path, then its companions.
 fn shell(folder: &Path, command: &str, before: i32) -> (String, i32) {
-    let program = Path::new(env!("CARGO_BIN_EXE_palpate")).parent().unwrap();
+    let companions = Path::new(PROGRAM).parent().unwrap();
     let path = std::env::var("PATH").unwrap();
     let output = Command::new("sh")
         .args(["-c", &format!("exec 2>&1\n(exit {before})\n{command}")])
-        .env("PATH", format!("{}:{path}", program.display()))
+        .env(
+            "PATH",
+            format!("{}:{}:{path}", bin().display(), companions.display()),
+        )
         .current_dir(folder)
         .output()
         .unwrap();

@@ -1,14 +1,10 @@
 //! Measured force maps as CSV through the public interface.
-#![cfg(feature = "std")]
 
-mod changes;
-mod random;
-
+use crate::random::{axis, finite, seeded};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use palpate::phantom::Phantom;
 use proptest::prelude::*;
-use random::{axis, finite, seeded};
 
 const EXAMPLE: &str = "\
 depth_mm,lateral_mm,normal_force_n,lateral_force_n
@@ -39,7 +35,7 @@ fn read(text: &str) -> Result<ForceTable, String> {
 
 /// The refusals of the example, each under its change.
 fn refusals(changes: &str) -> String {
-    changes::said(EXAMPLE, changes, |text| read(text).unwrap_err())
+    crate::changes::said(EXAMPLE, changes, |text| read(text).unwrap_err())
 }
 
 // Verifies: MAP-030, MAP-022, MAP-041.

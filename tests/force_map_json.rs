@@ -1,9 +1,6 @@
 //! Force maps as JSON through the public interface.
-#![cfg(feature = "std")]
 
-mod changes;
-mod random;
-
+use crate::random::{axis, finite, seeded};
 use palpate::force::Force;
 use palpate::force_map::{
     Certificate, ForceMap, ForceTable, Matrix, Measurement, SCHEMA, SCHEMA_VERSION, SmallestDet,
@@ -11,7 +8,6 @@ use palpate::force_map::{
 };
 use palpate::phantom::Phantom;
 use proptest::prelude::*;
-use random::{axis, finite, seeded};
 
 /// The file of [`computed`], written by hand from the spec.
 const EXAMPLE: &str = r#"{
@@ -132,7 +128,7 @@ fn read(text: &str) -> Result<ForceMap, String> {
 
 /// The refusals of the example, each under its change.
 fn refusals(changes: &str) -> String {
-    changes::said(&example(), changes, |text| read(text).unwrap_err())
+    crate::changes::said(&example(), changes, |text| read(text).unwrap_err())
 }
 
 /// Maps are compared by their text too: `==` holds −0 and 0 for equal.

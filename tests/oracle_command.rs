@@ -1,15 +1,12 @@
 //! `palpate oracle` as another program meets it: `spec/oracle.md`.
-#![cfg(feature = "cli")]
 
-#[path = "oracle_command/ops.rs"]
 mod ops;
-mod program;
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
 use std::thread;
 
-use program::text;
+use crate::program::text;
 use serde_json::{Value, json};
 
 fn start(command: &mut Command) -> Child {
@@ -19,7 +16,7 @@ fn start(command: &mut Command) -> Child {
 }
 
 fn oracle() -> Child {
-    start(Command::new(env!("CARGO_BIN_EXE_palpate")).arg("oracle"))
+    start(Command::new(crate::program::PROGRAM).arg("oracle"))
 }
 
 /// The lines of answer to an input, written by a thread of its own so that no pipe fills up.
@@ -303,7 +300,7 @@ fn memory_is_bounded_for_lines_of_any_length() {
         (filled(r#"{"id":1,"op":""#, "\u{80}", "\"}"), "unknown_op"),
         (filled(names, ",\"b\":0", "}}"), "bad_argument"),
     ];
-    let program = env!("CARGO_BIN_EXE_palpate");
+    let program = crate::program::PROGRAM;
     let limited = format!("ulimit -v 400000 && exec {program} oracle");
     assert_codes(start(Command::new("sh").args(["-c", &limited])), &cases);
 }

@@ -1,12 +1,7 @@
 //! Phantom files through the public interface.
-#![cfg(feature = "std")]
 
-#[path = "phantom_file/any.rs"]
 mod any;
-mod changes;
 #[allow(dead_code)] // the seed alone
-mod random;
-
 use palpate::phantom::{BUILTIN_NAMES, Phantom, Shape, Support};
 
 /// The example of `spec/phantom.md`, which is the built-in phantom `2.6`.
@@ -79,7 +74,7 @@ fn refusal(old: &str, new: &str) -> String {
 
 /// The refusals of `text`, each under its change.
 fn refusals(text: &str, changes: &str) -> String {
-    changes::said(text, changes, |text| read(text).unwrap_err())
+    crate::changes::said(text, changes, |text| read(text).unwrap_err())
 }
 
 // Verifies: PHA-021.

@@ -1,17 +1,14 @@
 //! `palpate timing`, `play` and `experiment` as a person runs them: `spec/command-line.md`.
-#![cfg(feature = "cli")]
-
-mod program;
 
 use std::fs::File;
 use std::io::Write;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use crate::program::{Place, has, text};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use palpate::stats::random::Generator;
-use program::{Place, has, text};
 use serde_json::Value;
 
 /// A folder with maps of these names, each with a stiffness (N/m) along the depth and a bump of it at x = 0.

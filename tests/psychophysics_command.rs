@@ -1,11 +1,8 @@
 //! `palpate psychophysics`, end to end.
-#![cfg(feature = "cli")]
-
-mod program;
 
 use std::sync::OnceLock;
 
-use program::{Place, has};
+use crate::program::{Place, has};
 use serde_json::{Value, json};
 
 const INCLUSIONS: [&str; 4] = ["2.6", "4.6", "6.6", "8.6"];

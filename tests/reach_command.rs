@@ -1,13 +1,10 @@
 //! `palpate reach`, end to end, against plain sums over the maps of a coarse bank.
-#![cfg(feature = "cli")]
-
-mod program;
 
 use std::sync::OnceLock;
 
+use crate::program::{Place, has};
 use palpate::bank::Bank;
 use palpate::force_map::ForceMap;
-use program::{Place, has};
 use serde_json::Value;
 
 /// The folder with a bank of two depths and two diameters, made once.

@@ -1,6 +1,5 @@
 //! Records whose sensor, gel or noise is not the model's: `palpate detect` with its defaults must neither call an inclusion more often than
 //! it says, nor miss one. Each case is 10,000 simulated records without an inclusion and as many with one, 4.6 mm deep.
-#![cfg(feature = "cli")]
 
 use std::fmt::Write as _;
 

@@ -1,14 +1,11 @@
 //! `palpate run` and `palpate demo`, end to end: their files, and the report.
-#![cfg(feature = "cli")]
-
-mod program;
 
 use std::fs;
 use std::path::PathBuf;
 
+use crate::program::{ASYMMETRIC, Place, contents, has, text};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
-use program::{ASYMMETRIC, Place, contents, has, text};
 
 // Verifies: CLI-007, CLI-031, CLI-032, CON-006.
 #[test]

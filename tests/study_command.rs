@@ -1,16 +1,12 @@
 //! `palpate study`, end to end: shards that are killed and go on give the bytes of an undisturbed run; every refusal.
-#![cfg(all(feature = "cli", unix))]
-
-mod changes;
-mod program;
 
 use std::fs;
 use std::process::Stdio;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use palpate::study::StudyResults;
-use program::{Place, has, text};
+use crate::program::{Place, has, text};
+use palpate_paper::study::StudyResults;
 
 /// Two phantoms on a coarse mesh, two inputs, one of which fails now and then: 3 + 4 + 8 × 4 = 39 samples.
 const STUDY: &str = r#"
@@ -223,7 +219,7 @@ fn a_file_that_is_no_study_is_refused_with_line_and_key() {
         file = "depths.csv" -> file = "depths.csv", values = [1.0]
         name = "depth" -> name = ""
         "#;
-    let told = changes::said(STUDY, changes, |study| {
+    let told = crate::changes::said(STUDY, changes, |study| {
         place.write("other.toml", study);
         place.refused("study run other.toml --out out")
     });

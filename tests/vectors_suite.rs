@@ -1,15 +1,11 @@
 //! The vectors are as their generator writes them, and the suite is sound, by the Python programs that come with it.
 //! Where Python or mpmath is missing, a notice is given, unless `PALPATE_REQUIRE_WITNESSES=1` asks for them.
-#![cfg(feature = "std")]
-
-#[path = "witness/present.rs"]
-mod present;
 
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::process::Command;
 
-use present::present;
+use crate::witness::present::present;
 use serde_json::{Value, json as value};
 
 /// Python with mpmath: the one of the environment, or the system's.
@@ -33,7 +29,7 @@ fn run(script: &str, arguments: &[&str]) -> Option<String> {
     if !present(missing()) {
         return None;
     }
-    let path = format!("{}/vectors/{script}", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/vectors/{script}", crate::ROOT);
     let output = python()
         .args(["-B", &path])
         .args(arguments)
@@ -120,7 +116,7 @@ fn a_suite_with_a_fault_is_not_sound() {
     if !present(missing()) {
         return;
     }
-    let folder = format!("{}/vectors", env!("CARGO_MANIFEST_DIR"));
+    let folder = format!("{}/vectors", crate::ROOT);
     let output = python().args(["-B", "-c", FAULTS, &folder]).output();
     let output = output.unwrap();
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -152,7 +148,7 @@ fn a_suite_with_a_fault_is_not_sound() {
 }
 
 fn json(path: &str) -> Value {
-    let path = format!("{}/{path}", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/{path}", crate::ROOT);
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
@@ -243,10 +239,7 @@ fn reports_have_their_number_and_the_fields_of_the_table() {
 #[test]
 fn forces_come_from_another_program_with_its_band_and_ours() {
     for source in ["probe_force.py", "mesh.py"] {
-        let path = format!(
-            "{}/vectors/probe_force/{source}",
-            env!("CARGO_MANIFEST_DIR")
-        );
+        let path = format!("{}/vectors/probe_force/{source}", crate::ROOT);
         let text = std::fs::read_to_string(path).unwrap();
         // It computes in its own process: it starts no other program, and reads nothing of ours.
         for ours in [

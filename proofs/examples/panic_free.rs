@@ -4,17 +4,17 @@
 use std::hint::black_box;
 
 use no_panic::no_panic;
-use palpate::force::Force;
-use palpate::hid::{
+use palpate_core::force::Force;
+use palpate_core::hid::{
     Capabilities, Control, ForceReport, InvalidReport, PositionReport, Units, count,
 };
-use palpate::servo::{Axis, Cell, Command, Input, Limits, Request, Sample, State, Table, limit};
+use palpate_core::servo::{Axis, Cell, Command, Input, Limits, Request, Sample, State, Table, limit};
 
 #[no_panic]
 fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (State, Command) {
     #[cfg(planted_panic)]
     assert!(state.missed != 12345, "planted");
-    palpate::servo::step(table, limits, state, input)
+    palpate_core::servo::step(table, limits, state, input)
 }
 
 #[no_panic]

@@ -2,7 +2,7 @@
 
 use bolero::generator::bolero_generator;
 use bolero::{Driver, TypeGenerator};
-use palpate::servo::{Axis, FORCE_CEILING, approach, blend, limit};
+use palpate_core::servo::{Axis, FORCE_CEILING, approach, blend, limit};
 
 use crate::cases::{AnyAxis, Entry, Fraction, Grid, Newtons, Position, folded, near};
 

@@ -5,8 +5,8 @@
 use core::ops::Bound::Included;
 
 use bolero::{Driver, TypeGenerator};
-use palpate::force::Force;
-use palpate::servo::{
+use palpate_core::force::Force;
+use palpate_core::servo::{
     Axis, FORCE_CEILING, Fault, Input, Limits, MIN_SLEW, Mode, Request, Sample, State,
     TABLE_FORCE_LIMIT, Table,
 };

@@ -1,7 +1,7 @@
 //! The detector's decision.
 
 use bolero::{Driver, TypeGenerator};
-use palpate::detect::{Decision, decide};
+use palpate_core::detect::{Decision, decide};
 
 /// Any statistic and threshold.
 #[derive(Debug, Clone)]

@@ -1,8 +1,8 @@
 //! The detector beside a nuisance: which templates it refuses.
 
 use bolero::{Driver, TypeGenerator};
-use palpate::detect::DetectError;
-use palpate::detect::nuisance::{Nuisances, SubspaceDetector};
+use palpate_core::detect::DetectError;
+use palpate_core::detect::nuisance::{Nuisances, SubspaceDetector};
 
 /// A nuisance and a template of three samples each, whole numbers from −2 to 2.
 #[derive(Debug, Clone)]

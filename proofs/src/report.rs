@@ -4,11 +4,11 @@ use core::ops::Bound::Included;
 
 use bolero::generator::bolero_generator;
 use bolero::{Driver, TypeGenerator};
-use palpate::force::Force;
-use palpate::hid::{
+use palpate_core::force::Force;
+use palpate_core::hid::{
     Capabilities, Control, ForceReport, InvalidReport, PositionReport, Units, count, uses_page,
 };
-use palpate::servo::Command;
+use palpate_core::servo::Command;
 
 use crate::cases::{Count, any_force};
 

@@ -2,8 +2,8 @@
 //! words of the specification.
 
 use bolero::{Driver, TypeGenerator};
-use palpate::force::Force;
-use palpate::servo::{Command, Fault, Input, Limits, Mode, Request, Sample, State, step};
+use palpate_core::force::Force;
+use palpate_core::servo::{Command, Fault, Input, Limits, Mode, Request, Sample, State, step};
 
 use crate::cases::{Cycle, QuickLimits, SoundCycle, ValidLimits, plain_table, sound_force, stale};
 

@@ -1,7 +1,7 @@
 //! The force of a table: in the hull, at the nodes, on the borders, beyond.
 
 use bolero::{Driver, TypeGenerator};
-use palpate::servo::Cell;
+use palpate_core::servo::Cell;
 
 use crate::cases::{Fraction, Grid, near};
 

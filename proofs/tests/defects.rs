@@ -11,7 +11,10 @@ use std::process::Command;
 
 use list::{Defect, defects};
 
-/// A copy of the package and its proofs, with a target folder of its own.
+/// The packages that the harnesses see.
+const PACKAGES: [&str; 3] = ["src/core", "bindings/c", "proofs"];
+
+/// A copy of the core and its proofs, with a target folder of its own.
 struct Copy {
     root: PathBuf,
 }
@@ -20,15 +23,16 @@ impl Copy {
     fn new() -> Copy {
         let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("defects");
         let from = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-        for folder in ["src", "proofs/src"] {
-            let _ = fs::remove_dir_all(root.join(folder));
-            copy_folder(&from.join(folder), &root.join(folder));
+        for package in PACKAGES {
+            let _ = fs::remove_dir_all(root.join(package));
+            copy_folder(&from.join(package), &root.join(package));
         }
         fs::copy(from.join("Cargo.lock"), root.join("Cargo.lock")).unwrap();
         let manifest = fs::read_to_string(from.join("Cargo.toml")).unwrap();
-        fs::write(root.join("Cargo.toml"), without_targets(&manifest)).unwrap();
-        let manifest = fs::read_to_string(from.join("proofs/Cargo.toml")).unwrap();
-        fs::write(root.join("proofs/Cargo.toml"), without_targets(&manifest)).unwrap();
+        let (_, shared) = manifest.split_once("[workspace.package]").unwrap();
+        let workspace = format!("[workspace]\nresolver = \"3\"\nmembers = {PACKAGES:?}\n");
+        let manifest = format!("{workspace}[workspace.package]{shared}");
+        fs::write(root.join("Cargo.toml"), manifest).unwrap();
         Copy { root }
     }
 
@@ -82,27 +86,6 @@ fn copy_folder(from: &Path, to: &Path) {
             fs::copy(entry.path(), to).unwrap();
         }
     }
-}
-
-/// The manifest without its tests, benches, examples, programs and further members, which are not
-/// copied.
-fn without_targets(manifest: &str) -> String {
-    let mut kept = String::new();
-    let mut keep = true;
-    for line in manifest.lines() {
-        let line = match line.starts_with("members = ") {
-            true => r#"members = [".", "proofs"]"#,
-            false => line,
-        };
-        if line.starts_with('[') {
-            keep = !line.starts_with("[[");
-        }
-        if keep && !line.starts_with("default-run") {
-            kept.push_str(line);
-            kept.push('\n');
-        }
-    }
-    kept
 }
 
 #[test]

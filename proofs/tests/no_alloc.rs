@@ -2,9 +2,9 @@
 #![cfg(not(any(kani, fuzzing)))]
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
-use palpate::force::Force;
-use palpate::hid::{Capabilities, ForceReport, PositionReport, Units};
-use palpate::servo::{Axis, Input, Limits, Mode, Request, State, Table, step};
+use palpate_core::force::Force;
+use palpate_core::hid::{Capabilities, ForceReport, PositionReport, Units};
+use palpate_core::servo::{Axis, Input, Limits, Mode, Request, State, Table, step};
 
 /// Counts the allocations within `assert_no_alloc`, for each thread by itself.
 #[global_allocator]

@@ -31,7 +31,7 @@ impl Page {
     /// Reads the page; a block of commands in another language than `console` must say why it is not run.
     pub fn read(path: &Path) -> Page {
         let text = fs::read_to_string(path).unwrap();
-        let name = path.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap();
+        let name = path.strip_prefix(crate::ROOT).unwrap();
         let mut page = Page {
             name: name.display().to_string(),
             text: text.clone(),

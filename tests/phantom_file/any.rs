@@ -4,8 +4,8 @@ use palpate::phantom::{Inclusion, Layer, Material, Phantom, Probe, Shape, Suppor
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-use super::random::seeded;
 use super::{EXAMPLE, read};
+use crate::random::seeded;
 
 fn material() -> impl Strategy<Value = Material> {
     (1e-3..1e12, -0.999..0.4995).prop_map(|(youngs_modulus, poisson_ratio)| Material {

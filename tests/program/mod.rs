@@ -1,9 +1,11 @@
 //! The program `palpate` in a folder of its own, as its users run it.
-#![allow(dead_code)] // each test program uses a part
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+/// The program.
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_palpate-under-test");
 
 /// A folder for one test, empty at the start.
 pub struct Place(PathBuf);
@@ -30,7 +32,7 @@ impl Place {
 
     /// The program with the words of `line`.
     pub fn palpate(&self, line: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_palpate"));
+        let mut command = Command::new(PROGRAM);
         command.current_dir(&self.0).args(line.split_whitespace());
         command
     }

@@ -47,7 +47,7 @@ fn problem(mesh: &Mesh, phantom: &Phantom) -> String {
 
 /// scikit-fem's matrix: its upper triangle by row and column over all nodes, N/m per metre.
 fn witness(problem: &str) -> HashMap<(usize, usize), f64> {
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/witness/stiffness.py");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/witness/stiffness.py");
     let mut child = python()
         .arg(script)
         .stdin(Stdio::piped())

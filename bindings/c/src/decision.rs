@@ -2,8 +2,8 @@
 //!
 //! Implements: CLB-010.
 
-use palpate::detect;
-use palpate::detect::noise_budget::noise_budget;
+use palpate_core::detect;
+use palpate_core::detect::noise_budget::noise_budget;
 
 use crate::Error;
 use crate::memory::{give, list, read};

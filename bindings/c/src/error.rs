@@ -4,9 +4,9 @@
 
 use core::ffi::{CStr, c_char};
 
-use palpate::hid::{InvalidCapabilities, InvalidReport};
-use palpate::servo::{InvalidAxis, InvalidLimits, InvalidTable};
-use palpate::stats::NumericError;
+use palpate_core::hid::{InvalidCapabilities, InvalidReport};
+use palpate_core::servo::{InvalidAxis, InvalidLimits, InvalidTable};
+use palpate_core::stats::NumericError;
 
 /// What a call answers: 0, or why it was refused. A refused call writes no result.
 #[repr(u32)]

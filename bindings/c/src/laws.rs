@@ -2,7 +2,7 @@
 //!
 //! Implements: CLB-010.
 
-use palpate::stats::{Bounds, binomial, noncentral, normal};
+use palpate_core::stats::{Bounds, binomial, noncentral, normal};
 
 use crate::Error;
 use crate::memory::give;

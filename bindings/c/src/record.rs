@@ -2,11 +2,11 @@
 //!
 //! Implements: CLB-003, CLB-010.
 
-use palpate::detect::coloured::{coloured_scratch, theta_coloured};
-use palpate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
-use palpate::detect::scan;
-use palpate::detect::{self, MatchedFilter, theta_of_record};
-use palpate::force::Force;
+use palpate_core::detect::coloured::{coloured_scratch, theta_coloured};
+use palpate_core::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
+use palpate_core::detect::scan;
+use palpate_core::detect::{self, MatchedFilter, theta_of_record};
+use palpate_core::force::Force;
 
 use crate::memory::{bytes, check_apart, give, list, list_mut, read};
 use crate::{Error, ErrorRates};

@@ -2,9 +2,9 @@
 //!
 //! Implements: CLB-010.
 
-use palpate::force;
-use palpate::hid::{self, DESCRIPTOR, Units};
-use palpate::servo;
+use palpate_core::force;
+use palpate_core::hid::{self, DESCRIPTOR, Units};
+use palpate_core::servo;
 
 use crate::memory::{bytes, check_apart, give, list, list_mut, read};
 use crate::{Error, ServoCommand, ServoSample};

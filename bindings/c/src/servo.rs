@@ -4,8 +4,8 @@
 
 use core::mem::{MaybeUninit, offset_of};
 
-use palpate::force::Force as KernelForce;
-use palpate::servo::{self, Axis, Fault, Limits, Mode, Request, Table};
+use palpate_core::force::Force as KernelForce;
+use palpate_core::servo::{self, Axis, Fault, Limits, Mode, Request, Table};
 
 use crate::Error;
 use crate::memory::{bytes, check_apart, give, list, list_mut, read};

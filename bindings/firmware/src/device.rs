@@ -1,7 +1,7 @@
 //! One cycle: from the bytes of a position report to those of a force report.
 
-use palpate::hid::{Capabilities, Control, ForceReport, PositionReport, Units};
-use palpate::servo::{Command, Input, Limits, Request, State, Table, step};
+use palpate_core::hid::{Capabilities, Control, ForceReport, PositionReport, Units};
+use palpate_core::servo::{Command, Input, Limits, Request, State, Table, step};
 
 /// What a cycle is given: a control report, of which `enable` asks to arm and `stop` to disarm, and a position report. Bytes that
 /// are no report stand for none.

@@ -1,10 +1,10 @@
 //! 10,000 cycles of a hand that probes, a switch that is let go, reports that are lost and repeated, faults and overwritten
 //! memory, the same on every machine.
 
-use palpate::force::Force;
-use palpate::hid::{Control, PositionReport, button, status};
-use palpate::servo::{Command, Input, Mode, State};
-use palpate::stats::random::Generator;
+use palpate_core::force::Force;
+use palpate_core::hid::{Control, PositionReport, button, status};
+use palpate_core::servo::{Command, Input, Mode, State};
+use palpate_core::stats::random::Generator;
 
 use crate::device::{Device, Frame};
 

@@ -1,7 +1,7 @@
 //! A force table of the paper's size, in flash.
 
-use palpate::force::Force;
-use palpate::servo::{Axis, Table};
+use palpate_core::force::Force;
+use palpate_core::servo::{Axis, Table};
 
 const DEPTHS: usize = 9;
 const LATERALS: usize = 41;

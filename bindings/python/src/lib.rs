@@ -61,7 +61,7 @@ mod palpate {
 
     #[pymodule_init]
     fn init(module: &Bound<PyModule>) -> PyResult<()> {
-        let build = ::palpate::build::Build::THIS;
+        let build = ::palpate::version::Build::THIS;
         module.add("__version__", build.version)?;
         module.add("build", python(module.py(), &build)?)
     }

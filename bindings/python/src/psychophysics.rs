@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use palpate::psychophysics::{self, AnswerTable, paper_noise_levels};
+use palpate_paper::psychophysics::{self, AnswerTable, paper_noise_levels};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -2,8 +2,8 @@
 
 use std::ffi::OsString;
 
-use palpate::cli::arguments::{CommandLine, read};
-use palpate::cli::numbers::{List, length, positions};
+use palpate_program::arguments::{CommandLine, read};
+use palpate_program::numbers::{List, length, positions};
 use palpate::decimal::{format_scaled, parse_scaled};
 
 use crate::message::check_message;
@@ -26,7 +26,7 @@ pub fn list(text: &str) -> Outcome {
 fn check_list(positions: &[f64], text: &str) {
     check_positions(positions);
     let written: Vec<String> = positions.iter().map(|&x| format_scaled(x, 3)).collect();
-    let again = palpate::cli::numbers::positions(&written.join(","))
+    let again = palpate_program::numbers::positions(&written.join(","))
         .expect("it was written")
         .0;
     let bits = |positions: &[f64]| positions.iter().map(|x| x.to_bits()).collect::<Vec<_>>();

@@ -1,6 +1,6 @@
 //! The configuration of `palpate run`.
 
-use palpate::cli::config::Config;
+use palpate_program::config::Config;
 use palpate::decimal::format_scaled;
 use serde_json::json;
 

@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use palpate::psychophysics::Journal;
-use palpate::psychophysics::{AnswerTable, MOST_TRIALS, analyse};
+use palpate_paper::psychophysics::Journal;
+use palpate_paper::psychophysics::{AnswerTable, MOST_TRIALS, analyse};
 
 use crate::message::{check_file_message, check_message, check_quoting};
 use crate::{FILE, Outcome, judged};

@@ -14,17 +14,17 @@ pub struct Defect {
 
 /// All, by the files that they are in: what each is, and the harness; below it the words. `\n` is a line's end.
 const DEFECTS: &str = r#"
-=== src/servo/axis.rs
+=== src/core/servo/axis.rs
 the cell is one too far: locate_is_total_and_in_range
 `index = ahead;` becomes `index = ahead.wrapping_add(1);`
 the reciprocal of the wrong cell: a_fraction_is_near_the_exact_one
 `self.reciprocal_widths.get(index)` becomes `self.reciprocal_widths.get(0)`
 extrapolation without a bound: locate_is_total_and_in_range
 `between(fraction, -EXTRAPOLATION_CELLS, 1.0)` becomes `fraction`
-=== src/servo/limit.rs
+=== src/core/servo/limit.rs
 a NaN let through: a_limited_number_is_within_its_limit
 `if value.is_nan() { 0.0 } else { value }` becomes `value`
-=== src/servo/table.rs
+=== src/core/servo/table.rs
 the clamp to the hull left out: a_blend_is_between_its_ends
 `(0.0..=1.0).contains(&t)` becomes `t.is_nan()`
 the table transposed: nodes_are_exact
@@ -33,23 +33,23 @@ the upper row twice: adjoining_cells_agree_on_their_border
 `self.forces.get(second..)` becomes `self.forces.get(first..)`
 a force above the surface: force_of_a_table_is_bounded
 `if depth < 0.0 { Force::ZERO } else { force }` becomes `force`
-=== src/servo/step.rs
+=== src/core/servo/step.rs
 a force above the surface that the step plays: no_force_unless_permitted
 `playing && sample.depth >= 0.0` becomes `playing`
-=== src/servo/table.rs
+=== src/core/servo/table.rs
 a weight squared: force_is_near_the_bilinear_form
 `(1.0 - t) * a + t * b` becomes `(1.0 - t) * a + t * t * b`
-=== src/servo/step.rs
+=== src/core/servo/step.rs
 the limit of the force left out: force_is_bounded
 `let target = limit(target, limits.force());` becomes ``
-=== src/servo/limit.rs
+=== src/core/servo/limit.rs
 a rise without a limit: slew_is_limited
 `size + rise` becomes `sign * target`
 a fall with the wrong sign: a_released_force_is_zero_in_three_cycles_of_half_the_limit
 `size - fall\n` becomes `size + fall\n`
 a force that turns in one cycle: slew_is_limited
 `if size > fall` becomes `if size > 0.0`
-=== src/servo/step.rs
+=== src/core/servo/step.rs
 a played force that falls as slowly as it rises: slew_is_limited
 `if held && !fresh` becomes `if held`
 a rise as fast as a release: slew_is_limited
@@ -82,13 +82,13 @@ only the depth must be finite: fault_latches
 ` && sample.lateral.is_finite()` becomes ``
 a state from nowhere trusted: force_is_bounded
 `if sound { state.force } else { Force::ZERO }` becomes `state.force`
-=== src/hid/report.rs
+=== src/core/hid/report.rs
 the number of a report not checked: decoding_a_force_report_is_total
 `if found != expected` becomes `if found == 0`
-=== src/hid/units.rs
+=== src/core/hid/units.rs
 a count cut off instead of rounded: a_count_is_the_nearest_whole_number
 `(limited + ROUND)` becomes `(limited - 0.5 + ROUND)`
-=== src/detect/decision.rs
+=== src/core/detect/decision.rs
 no inclusion for a NaN: no_inclusion_is_never_decided_without_finite_numbers
 `    check_finite("theta", theta)?;\n    check_finite("eta", eta)?;\n` becomes `    check_finite("eta", eta)?;\n`
 "#;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use palpate::build::Build;
+use palpate::version::Build;
 
 use super::build::lock_sha256;
 use super::record::{self, Record};

@@ -7,10 +7,10 @@ use std::process::ExitCode;
 use clap::{Parser, ValueEnum};
 use rayon::prelude::*;
 
-use palpate::build::Build;
-use palpate::cli::output::{make_folder, print, write};
-use palpate::cli::progress::bar;
-use palpate::cli::{CliError, program as command};
+use palpate::version::Build;
+use palpate_program::output::{make_folder, print, write};
+use palpate_program::progress::bar;
+use palpate_program::{CliError, program as command};
 use palpate_verify::evidence::{Evidence, PARTS, Soak, Verdict};
 use palpate_verify::record::{self, Record};
 use palpate_verify::sbom::sbom;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use palpate::build::Build;
+use palpate::version::Build;
 use palpate_conform::{Measure, Program, Settings, Suite, Verdict, run};
 
 use super::fem::largest;

@@ -1,6 +1,6 @@
 //! The bill of materials: the components of the shipped program in CycloneDX 1.5, with the minimum elements of the NTIA.
 
-use palpate::build::Build;
+use palpate::version::Build;
 use palpate_conform::sha256;
 use serde_json::{Value, json};
 

@@ -5,8 +5,8 @@
 use core::fmt::Write;
 use core::hint::black_box;
 
-use palpate::force::Force;
-use palpate::servo::{Command, Input, Mode, Request, Sample, State};
+use palpate_core::force::Force;
+use palpate_core::servo::{Command, Input, Mode, Request, Sample, State};
 use palpate_firmware::board::{self, Text, instructions, stack_of};
 use palpate_firmware::device::{CAPABILITIES, Device, Frame};
 use palpate_firmware::table::PAPER;

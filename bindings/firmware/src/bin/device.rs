@@ -7,7 +7,7 @@
 
 use core::hint::black_box;
 
-use palpate::hid::{Capabilities, ForceReport, InvalidReport, PositionReport};
+use palpate_core::hid::{Capabilities, ForceReport, InvalidReport, PositionReport};
 use palpate_firmware::board;
 use palpate_firmware::device::{Device, Frame};
 use palpate_firmware::table::PAPER;

@@ -1,10 +1,10 @@
 //! The ops of the table: the functions of `palpate` that answer them.
 
-use palpate::detect::{self, Costs};
-use palpate::force::Force;
-use palpate::hid::{Capabilities, Control, ForceReport, PositionReport};
-use palpate::servo::{Axis, Table};
-use palpate::stats::{noncentral, normal};
+use palpate_core::detect::{self, Costs};
+use palpate_core::force::Force;
+use palpate_core::hid::{Capabilities, Control, ForceReport, PositionReport};
+use palpate_core::servo::{Axis, Table};
+use palpate_core::stats::{noncentral, normal};
 
 use super::{Answer, Failure, MOST, Room, Words, double, refused, single};
 

@@ -17,7 +17,7 @@ use super::evidence::{Evidence, PARTS, Verdict};
 use super::statistics::{self, Row};
 use super::system::System;
 use super::traceability::{SEPARATOR, csv_line};
-use palpate::report::html::STYLE;
+use palpate_paper::report::html::STYLE;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 const OWN_STYLE: &str = include_str!("style.css");
@@ -170,7 +170,6 @@ impl Page<'_> {
             ("Optimisation", build.optimisation.into()),
             ("Debug assertions", assertions.into()),
             ("Flags beside the profile's", flags.into()),
-            ("Features of the package", build.features.into()),
             (
                 "Instructions taken for granted",
                 build.processor_features.into(),

@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 use super::*;
 use crate::evidence::{Soak, Verdict};
 use crate::{Figure, Outcome, claims, supply, traceability};
-use palpate::build::Build;
+use palpate::version::Build;
 
 fn outcome(name: &str, value: f64) -> Outcome {
     Outcome {

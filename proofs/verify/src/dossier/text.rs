@@ -1,8 +1,8 @@
 //! Names and numbers as the page shows them.
 
 use crate::Figure;
-pub use palpate::report::text::scientific;
-use palpate::report::text::{escape, trimmed};
+pub use palpate::text::scientific;
+use palpate::text::{escape, trimmed};
 
 /// Markup of a name of several words, which may be broken between them.
 pub fn breakable(name: &str) -> String {

@@ -2,7 +2,7 @@
 
 use super::Outcome;
 use crate::Figure;
-use palpate::report::text::trimmed;
+use palpate::text::trimmed;
 use palpate::stats::binomial::{at_least, at_most, first};
 use palpate::stats::normal::{cdf, quantile, upper_tail};
 

@@ -1,0 +1,108 @@
+//! Expected values: mpmath at 40 digits (`src/psychophysics/reference.py`), and closed forms.
+
+use super::*;
+use crate::stats::noncentral::{f_ratio, student, student_point};
+use palpate_asserts::assert_near;
+
+/// Asserts |found/expected − 1| ≤ `tolerance`.
+#[track_caller]
+fn assert_relative(found: Result<f64, NumericError>, expected: f64, tolerance: f64) {
+    let found = found.unwrap();
+    assert_near(found / expected, 1.0, tolerance);
+}
+
+/// For parameters up to 20: the terms of the exponent are below 100, their rounding errors below
+/// 5 · 100 · 2⁻⁵³ = 6·10⁻¹⁴, and the series and fractions add less than 100 roundings.
+const SMALL: f64 = 2e-13;
+/// For parameters up to 10⁶: terms of up to 1.4·10⁷, each with an error of half a unit in its last place.
+const LARGE: f64 = 1e-8;
+
+fn f_tail(x: f64, numerator: f64, denominator: f64) -> Result<f64, NumericError> {
+    f_ratio(x, numerator, denominator, 0.0).map(|tails| tails.upper)
+}
+
+// Verifies: PSY-030.
+#[test]
+fn tails_of_the_gamma_law() {
+    for (shape, x, expected, tolerance) in [
+        (0.5, 0.3, 0.4385780260809999, SMALL),
+        (0.5, 20.0, 2.539628589470865e-10, SMALL),
+        (4.5, 2.0, 0.9114125268316792, SMALL),
+        (4.5, 22.0, 1.4114325240295106e-06, SMALL),
+        (18.0, 60.0, 5.7646522304558794e-11, SMALL),
+        (1000.0, 1010.0, 0.3723210552630053, 1e-11),
+        (1e6, 1.001e6, 0.15865521363165971, LARGE),
+    ] {
+        assert_relative(gamma_tail(shape, x), expected, tolerance);
+    }
+    assert_eq!(gamma_tail(3.0, 0.0), Ok(1.0));
+}
+
+// Verifies: PSY-030, DET-130.
+#[test]
+fn closed_forms() {
+    for x in [0.1, 1.0, 5.0, 40.0] {
+        // Chi-square with 2 degrees of freedom is exponential; with 4 it is (1 + x/2) exp(−x/2).
+        assert_relative(chi_square_tail(x, 2.0), (-0.5 * x).exp(), SMALL);
+        assert_relative(
+            chi_square_tail(x, 4.0),
+            (1.0 + 0.5 * x) * (-0.5 * x).exp(),
+            SMALL,
+        );
+        // F with 2 and n degrees of freedom: (1 + 2x/n)^(−n/2).
+        assert_relative(
+            f_tail(x, 2.0, 7.0),
+            (1.0 + 2.0 * x / 7.0_f64).powf(-3.5),
+            SMALL,
+        );
+        // Student's law with 1 degree of freedom is Cauchy's.
+        let cauchy = core::f64::consts::FRAC_2_PI * (1.0 / x).atan();
+        let upper = student(x, 1.0, 0.0).map(|tails| tails.upper);
+        assert_relative(upper, 0.5 * cauchy, SMALL);
+    }
+}
+
+// Verifies: PSY-030, DET-130.
+#[test]
+fn tails_of_the_f_law() {
+    for (x, numerator, denominator, expected, tolerance) in [
+        (0.7, 3.0, 7.0, 0.5812496789055869, SMALL),
+        (12.5, 3.0, 36.0, 9.41270061958105e-06, SMALL),
+        (1e-6, 1.0, 9.0, 0.9992239303259732, SMALL),
+        (2.2, 9.0, 2.0, 0.3514564642148253, SMALL),
+        (1.05, 1000.0, 1000.0, 0.22029148252593375, 1e-11),
+    ] {
+        assert_relative(f_tail(x, numerator, denominator), expected, tolerance);
+    }
+}
+
+// Verifies: PSY-030.
+#[test]
+fn quantiles_of_students_law() {
+    for (confidence, degrees, expected, tolerance) in [
+        (0.95, 1.0, 12.706204736174692, 1e-12),
+        (0.95, 9.0, 2.262157162798205, 1e-12),
+        (0.95, 36.0, 2.0280940009804507, 1e-12),
+        // 1 − confidence has 10 digits only.
+        (0.999999, 3.0, 130.1545895571102, 1e-10),
+        (0.5, 1e6, 0.6744899955310873, LARGE),
+    ] {
+        let found = student_point(0.5 * (1.0 - confidence), degrees);
+        assert_relative(found, expected, tolerance);
+    }
+}
+
+// Verifies: PSY-030.
+#[test]
+fn what_has_no_answer_is_refused() {
+    let refused = |found: Result<f64, NumericError>, name: &str| {
+        let named = |error| matches!(error, NumericError::OutOfRange { what, .. } if what == name);
+        assert!(found.is_err_and(named), "{name}: {found:?}");
+    };
+    for (shape, x) in [(0.0, 1.0), (-1.0, 1.0), (2e6, 1.0), (f64::NAN, 1.0)] {
+        refused(gamma_tail(shape, x), "shape");
+    }
+    for x in [-1.0, f64::NAN, f64::INFINITY] {
+        refused(gamma_tail(1.0, x), "x");
+    }
+}

@@ -1,0 +1,213 @@
+//! A bank of signals: the force on the probe for every inclusion that may be there, over its position, depth, diameter and
+//! stiffness, and what a record says of each (`spec/bank.md`; the last paragraphs of the paper's §5).
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | the bank: hypotheses on a full grid, with their maps |
+//! | `file.rs` | banks as JSON |
+//! | `plan.rs` | which maps a bank needs, and their computation |
+//! | `axis.rs` | signals between the points of the grid |
+//! | `detector.rs` | the likelihood ratio of each point, beside nuisances |
+//! | `place.rs` | the posterior of position, depth, diameter and stiffness |
+//! | `rates.rs` | rates of error of the largest of many |
+//! | `information.rs` | how well a place can be known |
+//! | `locate.rs` | a recorded sweep against a bank |
+//! | `reach.rs` | how deep, and how small |
+
+mod axis;
+mod detector;
+mod file;
+mod information;
+mod locate;
+mod place;
+mod plan;
+mod rates;
+mod reach;
+#[cfg(test)]
+mod tests;
+
+pub use detector::{BankDetector, BankStatistic};
+pub use file::{SCHEMA, SCHEMA_VERSION};
+pub use information::PlaceBound;
+pub use locate::{BankSearch, Location};
+pub use place::PlacePosterior;
+pub use plan::{BankPlan, BankSolve, MESH_SIZE};
+pub use rates::{
+    CONFIDENCE, CalibratedThreshold, RareRate, false_alarm_bound, false_alarm_threshold,
+};
+pub use reach::deepest;
+pub use reach::{Reach, Reached, smallest_diameters};
+
+use crate::force_map::{ForceMap, SAME_POSITION, check_gel};
+use crate::phantom::{Inclusion, Shape};
+use crate::refusal::Refusal;
+
+/// What the hypotheses of a bank differ in.
+///
+/// Implements: BNK-001.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parameter {
+    /// x of the inclusion's centre.
+    Position,
+    /// Depth of its highest point.
+    Depth,
+    /// Its diameter, or the width of another shape than a disc.
+    Diameter,
+    /// Its Young's modulus.
+    Modulus,
+}
+
+impl Parameter {
+    /// All of them, in the order of the axes.
+    pub const ALL: [Parameter; 4] = {
+        use Parameter::{Depth, Diameter, Modulus, Position};
+        [Position, Depth, Diameter, Modulus]
+    };
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Parameter::Modulus => "Pa",
+            _ => "m",
+        }
+    }
+
+    /// That of `inclusion`, m or Pa.
+    pub fn of(self, inclusion: &Inclusion) -> f64 {
+        match (self, &inclusion.shape) {
+            (Parameter::Position, _) => inclusion.centre_x,
+            (Parameter::Depth, _) => inclusion.depth,
+            (Parameter::Diameter, Shape::Disc { diameter }) => *diameter,
+            (Parameter::Diameter, _) => {
+                let [left, right, ..] = inclusion.extent();
+                right - left
+            }
+            (Parameter::Modulus, _) => inclusion.material.youngs_modulus,
+        }
+    }
+}
+
+/// The forces of one gel without inclusion, and with each of the inclusions that may be there.
+///
+/// Implements: BNK-001.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bank {
+    reference: ForceMap,
+    depth: f64,
+    axes: [Vec<f64>; 4],
+    maps: Vec<ForceMap>,
+}
+
+impl Bank {
+    /// The bank of `maps`, in any order, and of `reference`, the gel without inclusion. Each of the maps holds one depth of the
+    /// probe, the same in all, and a phantom with one inclusion; the reference holds that depth, and may hold others.
+    ///
+    /// # Errors
+    /// No maps; a map that is not the reference's gel with one inclusion, at other lateral positions or another depth; maps that are
+    /// no full grid of positions, depths, diameters and moduli; with the number of the map, from 0.
+    ///
+    /// Implements: BNK-001, BNK-003.
+    pub fn new(reference: ForceMap, maps: Vec<ForceMap>) -> Result<Bank, Refusal> {
+        let Some(first) = maps.first() else {
+            return Err(Refusal::state("a bank without maps", "one at least"));
+        };
+        let depth = first.depths()[0];
+        reference.row(depth)?;
+        let mut points = Vec::with_capacity(maps.len());
+        for (number, map) in maps.iter().enumerate() {
+            let of_map = |refusal: Refusal| refusal.of_part(&format!("maps[{number}]"));
+            points.push(check_map(&reference, map, depth).map_err(of_map)?);
+        }
+        let axes = [0, 1, 2, 3].map(|axis| {
+            let mut values: Vec<f64> = points.iter().map(|point| point[axis]).collect();
+            values.sort_by(f64::total_cmp);
+            values.dedup();
+            values
+        });
+        // The last axis first: the bank's order.
+        let rank = |point: &[f64; 4]| {
+            let at = |axis: usize| axes[axis].partition_point(|&value| value < point[axis]);
+            [at(3), at(2), at(1), at(0)]
+        };
+        let mut order: Vec<_> = (0..).zip(points.iter().map(rank)).collect();
+        order.sort_by_key(|&(number, rank)| (rank, number));
+        let same = order.windows(2).find(|pair| pair[0].1 == pair[1].1);
+        if let Some([(a, _), (b, _)]) = same {
+            let found = format!("maps[{a}] and maps[{b}] have the same inclusion");
+            return Err(Refusal::state(found, "each inclusion once"));
+        }
+        let numbers = axes.each_ref().map(Vec::len);
+        if numbers.iter().product::<usize>() != maps.len() {
+            let [positions, depths, diameters, moduli] = numbers;
+            return Err(Refusal::state(
+                format!("{} maps", maps.len()),
+                format!(
+                    "one for each of {positions} positions × {depths} depths × {diameters} diameters × {moduli} moduli of their inclusions"
+                ),
+            ));
+        }
+        let maps = order
+            .into_iter()
+            .map(|(map, _): (usize, _)| maps[map].clone());
+        Ok(Bank {
+            maps: maps.collect(),
+            reference,
+            depth,
+            axes,
+        })
+    }
+
+    /// The forces without inclusion.
+    pub fn reference(&self) -> &ForceMap {
+        &self.reference
+    }
+
+    /// The depth of the probe, m.
+    pub fn depth(&self) -> f64 {
+        self.depth
+    }
+
+    /// The values of each of [`Parameter::ALL`], increasing, m or Pa.
+    pub fn axes(&self) -> &[Vec<f64>; 4] {
+        &self.axes
+    }
+
+    /// The forces with each inclusion, N: those of all positions, then those of the next depth, diameter, modulus.
+    pub fn maps(&self) -> &[ForceMap] {
+        &self.maps
+    }
+
+    /// The parameters of the inclusion of the map with that number, in the order of [`Parameter::ALL`].
+    pub fn point(&self, map: usize) -> [f64; 4] {
+        let mut rest = map;
+        self.axes.each_ref().map(|values| {
+            let value = values[rest % values.len()];
+            rest /= values.len();
+            value
+        })
+    }
+}
+
+/// The parameters of the one inclusion of `map`.
+fn check_map(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<[f64; 4], Refusal> {
+    check_gel(reference, map)?;
+    let Some([inclusion]) = map.phantom().map(|phantom| &phantom.inclusions[..]) else {
+        let found = "its phantom has not one inclusion";
+        return Err(Refusal::state(found, "one, which says what the map is for"));
+    };
+    let [only] = map.depths() else {
+        let found = format!("{} depths of the probe", map.depths().len());
+        return Err(Refusal::state(found, "one"));
+    };
+    if (only - depth).abs() > SAME_POSITION {
+        let expected = format!("{depth} as in maps[0]");
+        return Err(Refusal::value("depths_m[0]", only, expected));
+    }
+    let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_POSITION;
+    let (ours, theirs) = (map.laterals(), reference.laterals());
+    if ours.len() != theirs.len() || !ours.iter().zip(theirs).all(same) {
+        let found = "its lateral positions are not those of the reference";
+        return Err(Refusal::state(found, "the same"));
+    }
+    Ok(Parameter::ALL.map(|parameter| parameter.of(inclusion)))
+}

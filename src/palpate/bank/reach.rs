@@ -1,0 +1,162 @@
+//! How deep an inclusion may lie, and how small it may be, to be found (the paper's question at the end of its §5).
+
+use super::Bank;
+use crate::detect::nuisance::Nuisances;
+use crate::force::Force;
+use crate::refusal::Refusal;
+use crate::stats::normal;
+use crate::trace::design::{Series, difference, stacked, whitened};
+use crate::trace::{Unknown, nuisances, refused};
+
+/// What an inclusion must be found with.
+///
+/// Implements: BNK-070.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach<'a> {
+    /// What may be there.
+    pub bank: &'a Bank,
+    /// Samples of the sweep, evenly spaced over the lateral positions of the bank; none for one at each of these.
+    pub samples: Option<usize>,
+    /// Standard deviation of a sample's noise, N.
+    pub noise_sd: Force<f64>,
+    /// Most false alarms of a search over all positions of the bank.
+    pub max_false_alarm: f64,
+    /// Most misses.
+    pub max_miss: f64,
+    /// What is not known of the sweep.
+    pub unknown: &'a [Unknown],
+}
+
+/// What is reached with one diameter and one modulus.
+///
+/// Implements: BNK-071.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reached {
+    /// The diameter, m.
+    pub diameter: f64,
+    /// The Young's modulus, Pa.
+    pub modulus: f64,
+    /// γ at each depth of the bank, at the position of the bank that is nearest to 0.
+    pub gamma: Vec<f64>,
+    /// The largest depth with enough γ, m: none if it is not enough at the least depth of the bank.
+    pub depth: Option<f64>,
+    /// Whether it is enough at the greatest depth of the bank too, and the true one is greater.
+    pub is_beyond: bool,
+}
+
+impl Reach<'_> {
+    /// The γ that is enough: of a search whose false alarms are bounded by the sum over all points of the bank, in noise of a known
+    /// level.
+    ///
+    /// # Errors
+    /// Rates that are not strictly between 0 and 1.
+    ///
+    /// Implements: BNK-070.
+    pub fn gamma(&self) -> Result<f64, Refusal> {
+        let each = self.max_false_alarm / self.bank.maps().len() as f64;
+        let point = |p| normal::quantile(p).map_err(Refusal::from);
+        Ok((-point(each)? - point(self.max_miss)?).max(0.0))
+    }
+
+    /// What is reached with each diameter and modulus, the diameters first.
+    ///
+    /// # Errors
+    /// As [`Reach::gamma`]; an unknown depth of a bank whose reference has one depth.
+    ///
+    /// Implements: BNK-071.
+    pub fn reached(&self) -> Result<Vec<Reached>, Refusal> {
+        let enough = self.gamma()?;
+        let reference = self.bank.reference();
+        let ends = (
+            reference.laterals()[0],
+            *reference.laterals().last().unwrap_or(&0.0),
+        );
+        let positions = match self.samples {
+            None => reference.laterals().to_vec(),
+            Some(1) => vec![0.5 * (ends.0 + ends.1)],
+            Some(samples) => {
+                let share = |k: usize| k as f64 / (samples - 1) as f64;
+                (0..samples)
+                    .map(|k| (ends.0 + share(k) * (ends.1 - ends.0)).min(ends.1))
+                    .collect()
+            }
+        };
+        let f0 = reference.sweep(self.bank.depth(), &positions)?;
+        let expected = |depth| reference.sweep(depth, &positions);
+        let depths = reference.depths();
+        let signals = nuisances(self.unknown, depths, self.bank.depth(), expected)?;
+        let white = |series: &Series| stacked(&whitened(series, self.noise_sd));
+        let mut signals: Vec<f64> = signals.iter().flat_map(white).collect();
+        let space = Nuisances::new(&mut signals, 2 * positions.len()).map_err(refused)?;
+        let axes = self.bank.axes();
+        let middle =
+            (0..axes[0].len()).min_by(|&a, &b| axes[0][a].abs().total_cmp(&axes[0][b].abs()));
+        let gamma = |map: usize| -> Result<f64, Refusal> {
+            let f1 = self.bank.maps()[map].sweep(self.bank.depth(), &positions)?;
+            let signal = difference(f1.as_deref(), f0.as_deref());
+            Ok(space.project(&mut white(&signal)))
+        };
+        let [positions, depths, ..] = axes.each_ref().map(Vec::len);
+        let rows = (0..self.bank.maps().len()).step_by(positions * depths);
+        let row = |first: usize| {
+            let at = |depth| gamma(first + depth * positions + middle.unwrap_or(0));
+            let gamma = (0..depths).map(at).collect::<Result<Vec<_>, _>>()?;
+            let [_, _, diameter, modulus] = self.bank.point(first);
+            let depth = deepest(&axes[1], &gamma, enough);
+            Ok(Reached {
+                diameter,
+                modulus,
+                is_beyond: depth == axes[1].last().copied(),
+                depth,
+                gamma,
+            })
+        };
+        rows.map(row).collect()
+    }
+}
+
+/// The first of `depths` beyond which `gamma` is less than `enough`, ln γ being linear between them.
+pub fn deepest(depths: &[f64], gamma: &[f64], enough: f64) -> Option<f64> {
+    let mut reached = None;
+    for (k, (&depth, &found)) in depths.iter().zip(gamma).enumerate() {
+        if found >= enough {
+            reached = Some(depth);
+            continue;
+        }
+        let before = k.checked_sub(1)?;
+        let [above, below, at] = [gamma[before], found, enough].map(libm::log);
+        let share = if below.is_finite() {
+            (above - at) / (above - below)
+        } else {
+            0.0
+        };
+        return Some(depths[before] + share * (depth - depths[before]));
+    }
+    reached
+}
+
+/// The smallest diameter that is enough at each depth, as [`Reached::depth`] is the largest depth: for `reached` of one modulus, in the
+/// order of their diameters.
+///
+/// Implements: BNK-071.
+pub fn smallest_diameters(bank: &Bank, reached: &[Reached], enough: f64) -> Vec<Option<f64>> {
+    let depths = 0..bank.axes()[1].len();
+    let smallest = |depth: usize| {
+        let mut before: Option<(f64, f64)> = None;
+        for of in reached {
+            let gamma = of.gamma[depth];
+            if gamma >= enough {
+                return Some(match before {
+                    Some((diameter, less)) if less > 0.0 => {
+                        let [less, more, at] = [less, gamma, enough].map(libm::log);
+                        diameter + (at - less) / (more - less) * (of.diameter - diameter)
+                    }
+                    _ => of.diameter,
+                });
+            }
+            before = Some((of.diameter, gamma));
+        }
+        None
+    };
+    depths.map(smallest).collect()
+}

@@ -1,0 +1,243 @@
+//! Recorded sweeps against a bank.
+
+use super::*;
+use crate::detect::{Decision, map_threshold, posterior};
+use crate::stats::random::Generator;
+use crate::trace::{Cause, Correlation, Criterion, Noise, Question, Record, Trace, Unknown};
+use palpate_asserts::assert_near;
+
+const SD: f64 = 0.05;
+
+/// A sweep of 61 samples over −3 … 3 mm of the gel of `map`, with noise unless there is no seed, and what a sensor adds.
+fn record(map: &ForceMap, seed: Option<u64>, offset: f64, gain: f64) -> Record {
+    let positions: Vec<f64> = (0..61).map(|k| 1e-4 * f64::from(k) - 3e-3).collect();
+    let exact = map.sweep(4e-3, &positions).unwrap();
+    let mut text = String::from("position_mm,lateral_force_n,normal_force_n\n");
+    for (k, position) in positions.iter().enumerate() {
+        let noise = |channel: u64| {
+            let deviate = |seed| Generator::new(seed, channel).normal(0, k as u64);
+            SD * seed.map_or(0.0, deviate)
+        };
+        let lateral = gain * exact.lateral[k] + noise(0);
+        let normal = gain * exact.normal[k] + offset + noise(1);
+        text += &format!("{},{lateral},{normal}\n", 1e3 * position);
+    }
+    let trace = Trace::from_csv(&text, "t.csv").unwrap();
+    trace.record(None).unwrap()
+}
+
+const USUAL: &[Unknown] = &[Unknown::Offset, Unknown::Drift, Unknown::Gain];
+
+fn question<'a>(unknown: &'a [Unknown], criterion: Criterion) -> Question<'a> {
+    Question {
+        depth: 4e-3,
+        depth_tolerance: 0.0,
+        unknown,
+        noise: Noise {
+            sd: Some(Force::new(SD, SD)),
+            correlation: Correlation::OfRecord,
+        },
+        criterion,
+        prior_h1: 0.25,
+    }
+}
+
+fn search<'a>(bank: &'a Bank, unknown: &'a [Unknown], criterion: Criterion) -> BankSearch<'a> {
+    BankSearch {
+        question: question(unknown, criterion),
+        bank,
+        prior: None,
+        simulations: None,
+    }
+}
+
+fn by_map(bank: &Bank) -> BankSearch<'_> {
+    search(bank, USUAL, Criterion::Map)
+}
+
+fn all() -> Bank {
+    Bank::new(reference(), maps()).unwrap()
+}
+
+// Verifies: BNK-060, BNK-034, BNK-063, BNK-064.
+#[test]
+fn a_record_is_judged_at_the_likeliest_point() {
+    let bank = all();
+    let with = map(Some((1.3, 3.5, 8.0)), &[4e-3]);
+    let record = record(&with, Some(1), 0.3, 1.1);
+    let found = by_map(&bank).locate(&record).unwrap();
+    assert_eq!(found.decision, Some(Decision::Inclusion));
+    assert!([1e-3, 2e-3].contains(&found.point[0]), "{:?}", found.point);
+    // As by the map of that point alone.
+    let number = (0..40).find(|&number| bank.point(number) == found.point);
+    let number = number.unwrap();
+    let one_depth = map(None, &[4e-3]);
+    let hypotheses = crate::force_map::Hypotheses::new(&one_depth, &bank.maps()[number]).unwrap();
+    let question = question(USUAL, Criterion::Map);
+    let alone = question.judge(hypotheses, &record).unwrap();
+    assert!((found.theta_max - alone.test.theta()).abs() < 1e-9 || alone.fit.block > 1);
+    // The record fits between the points, and not as well at the nearest.
+    let fits = found.fit.noise_is_right() && found.fit.block == 1;
+    assert!(fits, "{:?}", found.fit);
+    assert!(alone.fit.chi_square > found.fit.chi_square);
+    // At most the largest, and at least its part.
+    let below = found.theta_max - found.theta_mixture;
+    assert!(below >= 0.0 && below <= 40f64.ln(), "{below}");
+    assert_eq!(posterior(found.theta_mixture, 0.25), Ok(found.posterior));
+    assert_eq!(map_threshold(0.25), Ok(found.eta));
+    // Of an inclusion there whatever else is: θ ≥ η + ln 40.
+    let gamma = found.test.gamma;
+    let miss = crate::stats::normal::lower_tail((found.eta + 40f64.ln()) / gamma - 0.5 * gamma);
+    assert!((found.miss_bound - miss).abs() < 1e-9);
+    // Where it lies, within four standard deviations.
+    for (axis, truth) in [(0, 1.3e-3), (1, 3.5e-3), (2, 8e-3)] {
+        let (estimate, sd) = (found.place.estimate[axis], found.bound.sd[axis].unwrap());
+        assert_near(estimate, truth, 4.0 * sd);
+    }
+    assert_eq!(found.bound.sd[3], None);
+}
+
+// Verifies: BNK-060, BNK-033.
+#[test]
+fn what_cannot_be_judged_is_told() {
+    let bank = all();
+    let without = record(&reference(), Some(2), 0.0, 1.0);
+    let found = by_map(&bank).locate(&without).unwrap();
+    assert_eq!(found.decision, Some(Decision::NoInclusion));
+    let high = record(&reference(), Some(2), 5.0, 1.0);
+    let found = search(&bank, &[], Criterion::Map).locate(&high).unwrap();
+    assert_eq!((found.decision, found.causes[0]), (None, Cause::Level));
+    let mut asked = by_map(&bank);
+    // Between the depths of the reference, and beyond them.
+    for (depth, found) in [(3.9e-3, "0.0039"), (3e-3, "0.003")] {
+        asked.question.depth = depth;
+        let error = asked.locate(&without).unwrap_err().to_string();
+        let expected = "expected 0.004 m, for which the bank is";
+        assert_eq!(
+            error,
+            format!("t.csv: depth of the sweep = {found} m, {expected}")
+        );
+    }
+    let wrong = BankSearch {
+        prior: Some(&[1.0]),
+        ..by_map(&bank)
+    };
+    assert!(wrong.locate(&without).is_err());
+}
+
+// Verifies: BNK-051, BNK-053, BNK-063.
+#[test]
+fn thresholds_keep_what_they_promise() {
+    let bank = all();
+    let max_false_alarm = 0.05;
+    let alarm = Criterion::NeymanPearsonFalseAlarm { max_false_alarm };
+    let miss = Criterion::NeymanPearsonMiss { max_miss: 0.05 };
+    let with = map(Some((1.0, 5.0, 4.0)), &[4e-3]);
+    let (mut alarms, mut misses) = (0, 0);
+    for seed in 0..200 {
+        let bare = record(&reference(), Some(seed), 0.3, 0.9);
+        let found = search(&bank, USUAL, alarm).locate(&bare).unwrap();
+        assert!((found.false_alarm_bound - 0.05).abs() < 1e-6);
+        assert!(!found.by_mixture);
+        alarms += u32::from(found.decision == Some(Decision::Inclusion));
+        let there = record(&with, Some(1000 + seed), 0.3, 0.9);
+        let found = search(&bank, USUAL, miss).locate(&there).unwrap();
+        misses += u32::from(found.decision == Some(Decision::NoInclusion));
+    }
+    // Of 200 at 5 % more than 28 happen with the probability 10⁻⁶.
+    assert!(alarms <= 28 && misses <= 28, "{alarms} {misses}");
+    let simulated = BankSearch {
+        simulations: Some((4000, 1)),
+        ..search(&bank, USUAL, alarm)
+    };
+    let bare = record(&reference(), Some(1), 0.0, 1.0);
+    let [by_bound, by_simulation] =
+        [search(&bank, USUAL, alarm), simulated].map(|s| s.locate(&bare).unwrap());
+    assert!(by_simulation.eta < by_bound.eta);
+    let calibrated = by_simulation.calibrated.unwrap();
+    assert!((calibrated.eta, calibrated.simulations) == (by_simulation.eta, 4000));
+    assert!(calibrated.false_alarm.lower < 0.05 && 0.05 < calibrated.false_alarm.upper);
+}
+
+// Verifies: BNK-034.
+#[test]
+fn a_prior_excludes_what_it_gives_no_weight() {
+    let bank = all();
+    let with = map(Some((1.0, 3.0, 8.0)), &[4e-3]);
+    let record = record(&with, Some(3), 0.0, 1.0);
+    let is_left = |number| f64::from(u8::from(bank.point(number)[0] < 0.0));
+    let prior: Vec<f64> = (0..40).map(|number| is_left(number) / 16.0).collect();
+    let asked = BankSearch {
+        prior: Some(&prior),
+        ..by_map(&bank)
+    };
+    let found = asked.locate(&record).unwrap();
+    assert!(found.point[0] < 0.0, "{:?}", found.point);
+    // Nothing of what is likeliest by far may be: the rest has all the probability, up to the next point.
+    let interval = found.place.interval(0, 0.99).unwrap();
+    assert!(-2e-3 <= interval.lower && interval.lower < interval.upper && interval.upper <= 0.0);
+    assert!(found.place.nodes().all(|(_, mass)| mass.is_finite()));
+    let all = by_map(&bank).locate(&record).unwrap();
+    assert_eq!(all.point[..3], [1e-3, 3e-3, 8e-3]);
+    assert!(found.theta_mixture < all.theta_mixture);
+}
+
+// Verifies: BNK-070, BNK-071.
+#[test]
+fn reach_is_where_gamma_is_enough() {
+    use crate::stats::normal::quantile;
+    let bank = all();
+    let reach = |sd: f64, unknown: &'static [Unknown]| Reach {
+        bank: &bank,
+        samples: None,
+        noise_sd: Force::new(sd, sd),
+        max_false_alarm: 0.01,
+        max_miss: 0.05,
+        unknown,
+    };
+    let enough = reach(0.1, &[]).gamma().unwrap();
+    assert!((enough + quantile(0.01 / 40.0).unwrap() + quantile(0.05).unwrap()).abs() < 1e-12);
+    let gamma = |depth: f64, diameter: f64, sd: f64| -> f64 {
+        let of = map(Some((0.0, depth, diameter)), &[4e-3]);
+        let one_depth = map(None, &[4e-3]);
+        let signal = of.minus(&one_depth).unwrap();
+        let squares = signal.forces().normal.values().iter().map(|f| f * f);
+        squares.sum::<f64>().sqrt() / sd
+    };
+    let found = reach(0.1, &[]).reached().unwrap();
+    assert!(found.iter().map(|of| of.diameter).eq([4e-3, 8e-3]));
+    for of in &found {
+        for (depth, of_depth) in [3.0, 4.0, 5.0, 6.0].iter().zip(&of.gamma) {
+            assert!((of_depth - gamma(*depth, 1e3 * of.diameter, 0.1)).abs() < 1e-9);
+        }
+    }
+    // A noise at which 4 mm are found between 4 and 5 mm, and 8 mm everywhere.
+    let sd = 0.1 * gamma(4.4, 4.0, 0.1) / enough;
+    let found = reach(sd, &[]).reached().unwrap();
+    // Where ln γ, linear from one to the other, is enough.
+    let share = |from: f64, to: f64| (from / enough).ln() / (from / to).ln();
+    let between = share(gamma(4.0, 4.0, sd), gamma(5.0, 4.0, sd));
+    assert!(
+        (found[0].depth.unwrap() - 1e-3 * (4.0 + between)).abs() < 1e-12 && !found[0].is_beyond
+    );
+    assert_eq!((found[1].depth, found[1].is_beyond), (Some(6e-3), true));
+    let smallest = smallest_diameters(&bank, &found, enough);
+    assert_eq!(smallest[0], Some(4e-3));
+    let between = share(gamma(6.0, 4.0, sd), gamma(6.0, 8.0, sd));
+    assert_near(smallest[3].unwrap(), 1e-3 * (4.0 + 4.0 * between), 1e-12);
+    // Twice as many samples per length in the middle of the same: γ grows, and nuisances take of it.
+    let beside = reach(sd, &[Unknown::Offset, Unknown::Gain]);
+    let beside = beside.reached().unwrap();
+    let mut pairs = beside[0].gamma.iter().zip(&found[0].gamma);
+    assert!(pairs.all(|(less, all)| less < all));
+    let mut many = reach(sd, &[]);
+    many.samples = Some(49);
+    let many = many.reached().unwrap();
+    assert!((many[1].gamma[3] / found[1].gamma[3] - 2.0).abs() < 0.1);
+    let noisy = reach(1e3, &[]).reached().unwrap();
+    assert_eq!((noisy[0].depth, noisy[0].is_beyond), (None, false));
+    assert_eq!(smallest_diameters(&bank, &noisy, enough), [None; 4]);
+    let mut never = reach(0.1, &[]);
+    never.max_miss = 0.0;
+    assert!(never.reached().is_err());
+}

@@ -1,0 +1,215 @@
+//! Line charts: panels below one another, each line named at its right end.
+
+use plotters::chart::{ChartBuilder, LabelAreaPosition};
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::names::{draw_key, draw_names, key_height, plot_height, right_margin};
+use super::panel::{Area, Cells, Context, DrawingResult, LEFT, Line, Mark, Panel, write};
+use super::style::{GRID, INK, UNIT, WIDTH, stroke, text};
+use crate::text::{extremes, trimmed};
+
+/// Pixels above a plot for its heading.
+const HEADING: i32 = 40;
+/// Pixels below a plot for the numbers of its x axis.
+const NUMBERS: i32 = 28;
+/// Pixels at the bottom of the figure for the name of the x axis.
+const FOOTING: i32 = 34;
+
+impl Panel {
+    /// A drawing with equal scales on both axes that holds all of its areas and has some room above them. What is very
+    /// flat or very tall gets more room around it.
+    pub fn to_scale(cells: Vec<Cells>, lines: Vec<Line>) -> Panel {
+        let areas = lines.iter().filter(|line| line.is_area);
+        let areas = areas.flat_map(|line| &line.points);
+        let corners = cells.iter().flat_map(|of| of.areas.iter().flatten());
+        let corners = corners.chain(areas);
+        let mut x = extremes(corners.clone().map(|corner| corner.0)).unwrap_or([-1.0, 1.0]);
+        let mut y = extremes(corners.map(|corner| corner.1)).unwrap_or([-1.0, 1.0]);
+        y[1] += 0.02 * (y[1] - y[0]);
+        let width = f64::from(WIDTH - LEFT - right_margin(&lines));
+        let lack = |wanted: f64, [from, to]: [f64; 2]| (wanted - (to - from)).max(0.0);
+        y[1] += lack(60.0 / width * (x[1] - x[0]), y);
+        let aside = 0.5 * lack(width / 600.0 * (y[1] - y[0]), x);
+        x = [x[0] - aside, x[1] + aside];
+        let scale = width / (x[1] - x[0]);
+        let height = (scale * (y[1] - y[0])).ceil();
+        // Whole pixels hold a little more than was asked for.
+        y[1] = y[0] + height / scale;
+        Panel {
+            heading: "Height y (mm)".into(),
+            x,
+            y,
+            is_to_scale: true,
+            height: height as i32,
+            cells,
+            lines,
+            ..Panel::default()
+        }
+    }
+}
+
+/// Draws panels below one another over one x axis, or over their own ones if `x_name` is empty, and gives an SVG document with
+/// its height, pixels.
+pub fn chart(panels: &[Panel], x_name: &str) -> DrawingResult<(String, i32)> {
+    let footing = |name: &str| if name.is_empty() { 0 } else { FOOTING };
+    let each = |panel: &Panel| {
+        let below = NUMBERS + footing(&panel.x_name);
+        HEADING + key_height(panel) + plot_height(panel) + below
+    };
+    let height = panels.iter().map(each).sum::<i32>() + footing(x_name);
+    let margins = panels.iter().map(|panel| right_margin(&panel.lines));
+    let right = margins.max().unwrap_or(0);
+    let (mut svg, mut paths) = (String::new(), String::new());
+    let size = ((WIDTH * UNIT) as u32, (height * UNIT) as u32);
+    {
+        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        area.fill(&WHITE)?;
+        let middle = LEFT + (WIDTH - LEFT - right) / 2;
+        let name_axis = |name: &str, bottom: i32| match name {
+            "" => Ok(()),
+            name => write(&area, name, [middle, bottom - FOOTING / 2], HPos::Center),
+        };
+        let mut top = 0;
+        for panel in panels {
+            paths += &draw_panel(&area, panel, top, right)?;
+            top += each(panel);
+            name_axis(&panel.x_name, top)?;
+        }
+        name_axis(x_name, height)?;
+        area.present()?;
+    }
+    // The paths stand directly over the white ground, which is the first element that the library closes.
+    Ok((svg.replacen("/>\n", &format!("/>\n{paths}"), 1), height))
+}
+
+/// Draws a panel but for its cells, and gives those as paths.
+fn draw_panel(area: &Area<'_>, panel: &Panel, top: i32, right: i32) -> DrawingResult<String> {
+    write(area, &panel.heading, [8, top + 22], HPos::Left)?;
+    draw_key(area, panel, top + HEADING - 4)?;
+    let top = top + HEADING + key_height(panel);
+    let mut chart = axes(area, panel, top, right)?;
+    for line in &panel.lines {
+        draw_line(&mut chart, line)?;
+    }
+    for mark in &panel.marks {
+        draw_mark(area, &chart, mark)?;
+    }
+    draw_names(area, &chart, panel, top, right)?;
+    Ok(panel.cells.iter().map(|of| path(&chart, of)).collect())
+}
+
+/// All cells of a colour as one path, which keeps the file small: the library would write one tag for each.
+fn path(chart: &Context<'_>, Cells { fill, edge, areas }: &Cells) -> String {
+    let outline = |corners: &Vec<(f64, f64)>| {
+        let places = corners.iter().map(|corner| chart.backend_coord(corner));
+        let places: Vec<_> = places.map(|(x, y)| format!("{x} {y}")).collect();
+        format!("M{}Z", places.join("L"))
+    };
+    let outlines: String = areas.iter().map(outline).collect();
+    let [fill, edge] = [fill, edge].map(|RGBColor(r, g, b)| format!("#{r:02X}{g:02X}{b:02X}"));
+    format!(
+        "<path d=\"{outlines}\" fill=\"{fill}\" stroke=\"{edge}\" stroke-width=\"4\" stroke-linejoin=\"round\"/>\n"
+    )
+}
+
+/// Axes with numbers around a plot that begins at `top` and ends `right` before the edge (pixels).
+fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResult<Context<'a>> {
+    let place = |pixels: i32| pixels * UNIT;
+    let (x, y, height) = (panel.x, panel.y, plot_height(panel));
+    let sub = area.clone().shrink(
+        (0, place(top)),
+        (place(WIDTH - right), place(height + NUMBERS)),
+    );
+    let mut chart = ChartBuilder::on(&sub)
+        .set_label_area_size(LabelAreaPosition::Left, place(LEFT))
+        .set_label_area_size(LabelAreaPosition::Bottom, place(NUMBERS))
+        .build_cartesian_2d(x[0]..x[1], y[0]..y[1])?;
+    let grid = match panel.is_to_scale {
+        true => TRANSPARENT.stroke_width(0),
+        false => stroke(GRID, 1.0),
+    };
+    let number = |value: &f64| trimmed(*value, 6);
+    chart
+        .configure_mesh()
+        .x_labels(if panel.ticks.is_empty() { 6 } else { 0 })
+        .y_labels(if panel.is_ranked {
+            0
+        } else {
+            (height / 40).max(2) as usize
+        })
+        .x_label_formatter(&number)
+        .y_label_formatter(&number)
+        .label_style(text(INK, HPos::Center))
+        .axis_style(stroke(INK, 1.0))
+        .bold_line_style(grid)
+        .light_line_style(TRANSPARENT)
+        .set_all_tick_mark_size(place(5))
+        .draw()?;
+    for &tick in &panel.ticks {
+        let foot = chart.backend_coord(&(tick, y[0]));
+        let top = chart.backend_coord(&(tick, y[1]));
+        area.draw(&PathElement::new(vec![top, foot], grid))?;
+        let end = (foot.0, foot.1 + place(5));
+        area.draw(&PathElement::new(vec![foot, end], stroke(INK, 1.0)))?;
+        let at = [foot.0 / UNIT, foot.1 / UNIT + 15];
+        let shown = if panel.is_doubling {
+            libm::exp2(tick)
+        } else {
+            tick
+        };
+        write(area, &number(&shown), at, HPos::Center)?;
+    }
+    Ok(chart)
+}
+
+fn draw_line(chart: &mut Context<'_>, line: &Line) -> DrawingResult<()> {
+    let style = stroke(line.colour, line.width);
+    let points = line.points.iter().copied();
+    if line.is_area {
+        let outline = points.clone().chain(points.clone().take(1)).collect();
+        chart.draw_series([Polygon::new(line.points.clone(), line.colour.filled())])?;
+        chart.draw_series([PathElement::new::<Vec<_>, _>(outline, stroke(INK, 1.2))])?;
+        return Ok(());
+    }
+    if line.dot > 0 {
+        let dots = points.clone();
+        let filled = line.colour.filled();
+        chart.draw_series(dots.map(|at| Circle::new(at, line.dot * UNIT, filled)))?;
+    }
+    if line.width > 0.0 && line.is_dashed {
+        chart.draw_series(DashedLineSeries::new(points, 6 * UNIT, 4 * UNIT, style))?;
+    } else if line.width > 0.0 {
+        chart.draw_series(LineSeries::new(points, style))?;
+    }
+    Ok(())
+}
+
+fn draw_mark(area: &Area<'_>, chart: &Context<'_>, mark: &Mark) -> DrawingResult<()> {
+    let (x, y) = chart.backend_coord(&mark.at);
+    if mark.has_dot {
+        area.draw(&Circle::new((x, y), 5 * UNIT, INK.filled()))?;
+    }
+    let at = [x / UNIT + mark.shift.0, y / UNIT + mark.shift.1];
+    write(area, &mark.words, at, mark.side)
+}
+
+/// The least range of round numbers that holds all `values`, and 0, and is not empty.
+pub fn round_range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let [least, greatest] = extremes(values.chain([0.0])).unwrap_or_default();
+    let span = greatest - least;
+    // Less than a piconewton is rounding, and an overflow has no scale.
+    if span < 1e-12 || !span.is_finite() {
+        return [-1.0, 1.0];
+    }
+    // The step is 1, 2 or 5 times a power of ten, a tenth of the span or a little more.
+    let power = libm::pow(10.0, libm::floor(libm::log10(span / 10.0)));
+    let factor = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .find(|factor| factor * power * 10.0 >= span);
+    let step = factor.unwrap_or(10.0) * power;
+    [
+        libm::floor(least / step) * step,
+        libm::ceil(greatest / step) * step,
+    ]
+}

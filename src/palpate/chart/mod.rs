@@ -1,0 +1,57 @@
+//! Line charts as SVG, and the two that `palpate detect` and `palpate reach` draw.
+//!
+//! | file | content |
+//! |---|---|
+//! | `bank.rs`, `reach.rs` | where an inclusion lies by a bank, and how deep one can be found |
+//! | `panel.rs` | what a chart is made of |
+//! | `lines.rs` | how panels are drawn |
+//! | `names.rs`, `style.rs` | names and key around a plot; sizes and colours |
+
+mod bank;
+mod lines;
+mod names;
+mod panel;
+mod reach;
+pub mod style;
+
+pub use bank::place_figure;
+pub use lines::{chart, round_range};
+pub use panel::{Cells, DrawingResult, Line, Mark, Panel};
+pub use reach::reach_figure;
+
+use style::{UNIT, WIDTH};
+
+use crate::text::escape;
+
+/// Chords that an ellipse is drawn with: a multiple of 4, so that a disc is drawn as high and wide as it is.
+pub const CHORDS: usize = 120;
+
+/// Corners (m) in the data coordinates of a drawing to scale, mm.
+pub fn to_mm(corners: impl IntoIterator<Item = [f64; 2]>) -> Vec<(f64, f64)> {
+    let corners = corners.into_iter();
+    corners.map(|[x, y]| (1e3 * x, 1e3 * y)).collect()
+}
+
+/// The SVG document and the height (pixels) of a drawing, with a head that scales and that a screen reader can read. The ids come from
+/// the file name, which is unique, since all figures of a report share one page.
+///
+/// # Errors
+/// A document without a head.
+///
+/// Implements: REP-031.
+pub fn with_head(
+    (svg, height): (String, i32),
+    file_name: &str,
+    title: &str,
+    alt: &str,
+) -> DrawingResult<String> {
+    let (_, body) = svg.split_once('>').ok_or("the library wrote no SVG")?;
+    let id = file_name.trim_end_matches(".svg");
+    let (wide, high) = (WIDTH * UNIT, height * UNIT);
+    let (title, alt) = (escape(title), escape(alt));
+    Ok(format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {wide} {high}\" width=\"{WIDTH}\" height=\"{height}\" \
+         role=\"img\" aria-labelledby=\"{id}-title {id}-desc\">\n\
+         <title id=\"{id}-title\">{title}</title>\n<desc id=\"{id}-desc\">{alt}</desc>{body}"
+    ))
+}

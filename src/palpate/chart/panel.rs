@@ -1,0 +1,177 @@
+//! What a chart is made of: panels, lines, and words in them.
+
+use plotters::chart::ChartContext;
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::style::{INK, UNIT, text};
+use crate::text::printable;
+
+/// What drawing gives, or what the drawing library refused.
+pub type DrawingResult<T> = Result<T, Box<dyn std::error::Error>>;
+/// Where a chart is drawn.
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// A chart with plain axes.
+pub type Context<'a> =
+    ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Pixels left of a plot for the numbers of its y axis.
+pub const LEFT: i32 = 58;
+
+/// One curve.
+#[derive(Debug, Clone, Default)]
+pub struct Line {
+    /// Its name at the right end of the curve; empty for none.
+    pub name: String,
+    /// Its colour.
+    pub colour: RGBColor,
+    /// Whether it is drawn in dashes.
+    pub is_dashed: bool,
+    /// Whether it is the outline of an area that is filled with its colour.
+    pub is_area: bool,
+    /// Its width, pixels; 0 for dots alone.
+    pub width: f64,
+    /// Radius of the dot on each point, pixels; 0 for none.
+    pub dot: i32,
+    /// Its points in data coordinates.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Line {
+    /// A solid curve two pixels wide, without a name and without dots.
+    pub fn new(colour: RGBColor, points: Vec<(f64, f64)>) -> Line {
+        Line {
+            colour,
+            width: 2.0,
+            points,
+            ..Line::default()
+        }
+    }
+
+    /// An area with a thin outline.
+    pub fn area(colour: RGBColor, points: Vec<(f64, f64)>) -> Line {
+        Line {
+            is_area: true,
+            ..Line::new(colour, points)
+        }
+    }
+
+    /// This curve with a name at its right end.
+    pub fn named(mut self, name: impl Into<String>) -> Line {
+        self.name = name.into();
+        self
+    }
+
+    /// This curve in dashes, if it is to have them.
+    pub fn dashed(mut self, is_dashed: bool) -> Line {
+        self.is_dashed = is_dashed;
+        self
+    }
+
+    /// This curve `width` pixels wide.
+    pub fn wide(mut self, width: f64) -> Line {
+        self.width = width;
+        self
+    }
+
+    /// This curve with a dot of `radius` pixels on each point.
+    pub fn dotted(mut self, radius: i32) -> Line {
+        self.dot = radius;
+        self
+    }
+}
+
+/// Words or a dot at a place in the plot. The words are in ink: a pale colour would be hard to read.
+pub struct Mark {
+    /// The place in data coordinates.
+    pub at: (f64, f64),
+    /// Whether a dot is drawn there.
+    pub has_dot: bool,
+    /// The words.
+    pub words: String,
+    /// The side of the words that is at the place.
+    pub side: HPos,
+    /// Shift of the words from the place, pixels, right and down.
+    pub shift: (i32, i32),
+}
+
+impl Mark {
+    /// Words at a place, without a dot.
+    pub fn new(at: (f64, f64), words: impl Into<String>, side: HPos, shift: (i32, i32)) -> Mark {
+        Mark {
+            at,
+            has_dot: false,
+            words: words.into(),
+            side,
+            shift,
+        }
+    }
+}
+
+/// Many small areas of one colour, each given by its corners in data coordinates.
+pub struct Cells {
+    /// What they are filled with.
+    pub fill: RGBColor,
+    /// The colour of the thin lines around them.
+    pub edge: RGBColor,
+    /// The corners of each.
+    pub areas: Vec<Vec<(f64, f64)>>,
+}
+
+/// One plot.
+#[derive(Default)]
+pub struct Panel {
+    /// What the y axis shows, with its unit.
+    pub heading: String,
+    /// What the x axis shows, with its unit, where that is another one than other panels'.
+    pub x_name: String,
+    /// Least and greatest x.
+    pub x: [f64; 2],
+    /// Least and greatest y.
+    pub y: [f64; 2],
+    /// Where the x axis has numbers; empty for round numbers.
+    pub ticks: Vec<f64>,
+    /// Whether the y axis is of ranks, and has no numbers.
+    pub is_ranked: bool,
+    /// Whether the x axis is of exponents, and has powers of two as its numbers.
+    pub is_doubling: bool,
+    /// Whether it is a drawing to scale, and no chart: it has no grid.
+    pub is_to_scale: bool,
+    /// Height of the plot, pixels.
+    pub height: i32,
+    /// What the kinds of lines mean: each is shown by a sample above the plot with its name.
+    pub key: Vec<Line>,
+    /// Small areas under everything.
+    pub cells: Vec<Cells>,
+    /// Curves, the later over the earlier.
+    pub lines: Vec<Line>,
+    /// Words and dots.
+    pub marks: Vec<Mark>,
+}
+
+impl Panel {
+    /// A chart of curves.
+    pub fn new(
+        heading: impl Into<String>,
+        [x, y]: [[f64; 2]; 2],
+        height: i32,
+        lines: Vec<Line>,
+    ) -> Panel {
+        Panel {
+            heading: heading.into(),
+            x,
+            y,
+            height,
+            lines,
+            ..Panel::default()
+        }
+    }
+}
+
+/// Writes `words` with its `side` at a place in pixels.
+pub fn write(area: &Area<'_>, words: &str, at: [i32; 2], side: HPos) -> DrawingResult<()> {
+    let at = (at[0] * UNIT, at[1] * UNIT);
+    Ok(area.draw(&Text::new(printable(words), at, text(INK, side)))?)
+}

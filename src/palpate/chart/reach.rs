@@ -1,0 +1,95 @@
+//! How deep an inclusion may lie to be found.
+
+use super::panel::{Line, Panel};
+use super::style::{BLUE, GREY, INK, PALETTE};
+use super::with_head;
+use super::{chart, round_range};
+use crate::bank::{Bank, Reached};
+use crate::refusal::Refusal;
+use crate::text::{extremes, trimmed};
+
+/// How deep an inclusion may lie to be found, against its diameter, as an SVG document: with nothing unknown, and beside what is
+/// `unknown` in words.
+///
+/// # Errors
+/// If drawing fails.
+///
+/// Implements: CLI-163.
+pub fn reach_figure(
+    bank: &Bank,
+    plain: &[Reached],
+    beside: &[Reached],
+    unknown: &str,
+) -> Result<String, Refusal> {
+    let [_, depths, diameters, moduli] = bank.axes();
+    let mut lines = Vec::new();
+    let ends = extremes(diameters.iter().map(|diameter| 1e3 * diameter)).unwrap_or_default();
+    let room = (0.05 * (ends[1] - ends[0])).max(0.5);
+    let x = [ends[0] - room, ends[1] + room];
+    let deepest = 1e3 * depths.last().copied().unwrap_or_default();
+    let limit = Line::new(GREY, vec![(x[0], deepest), (x[1], deepest)]);
+    lines.push(limit.wide(1.2).named("bank's end"));
+    let colours = [BLUE].into_iter().chain(PALETTE.into_iter().skip(1));
+    for (&modulus, colour) in moduli.iter().zip(colours.cycle()) {
+        for (reached, is_dashed) in [(plain, false), (beside, true)] {
+            let of_modulus = reached.iter().filter(|of| of.modulus == modulus);
+            let points = of_modulus.filter_map(|of| Some((1e3 * of.diameter, 1e3 * of.depth?)));
+            let line = Line::new(colour, points.collect()).dotted(4);
+            let name = match moduli.len() {
+                1 => String::new(),
+                _ => format!("{} kPa", trimmed(1e-3 * modulus, 3)),
+            };
+            let name = if is_dashed { String::new() } else { name };
+            lines.push(line.dashed(is_dashed).named(name));
+        }
+    }
+    let panel = Panel {
+        key: vec![
+            Line::new(INK, Vec::new())
+                .dotted(4)
+                .named("nothing unknown"),
+            Line::new(INK, Vec::new())
+                .dotted(4)
+                .dashed(true)
+                .named(format!("unknown: {unknown}")),
+        ],
+        ticks: match diameters.len() {
+            1..=8 => diameters.iter().map(|diameter| 1e3 * diameter).collect(),
+            _ => Vec::new(),
+        },
+        ..Panel::new(
+            "Largest depth at which it is found (mm)",
+            [x, round_range([deepest].into_iter())],
+            300,
+            lines,
+        )
+    };
+    let alt = reach_in_words(plain, beside, unknown);
+    let title = "How deep an inclusion may lie to be found";
+    let drawn = chart(&[panel], "Diameter of the inclusion (mm)");
+    let svg = drawn.and_then(|drawn| with_head(drawn, "reach", title, &alt));
+    svg.map_err(Refusal::because("figure of the reach"))
+}
+
+/// The figure in words.
+fn reach_in_words(plain: &[Reached], beside: &[Reached], unknown: &str) -> String {
+    let depth = |of: &Reached| match of.depth {
+        None => "not at all".into(),
+        Some(depth) if of.is_beyond => format!("beyond {} mm", trimmed(1e3 * depth, 2)),
+        Some(depth) => format!("{} mm", trimmed(1e3 * depth, 2)),
+    };
+    let line = |(plain, beside): (&Reached, &Reached)| {
+        format!(
+            "{} mm wide, {} kPa: {} with nothing unknown, {} beside {unknown}",
+            trimmed(1e3 * plain.diameter, 3),
+            trimmed(1e-3 * plain.modulus, 3),
+            depth(plain),
+            depth(beside)
+        )
+    };
+    let all: Vec<_> = plain.iter().zip(beside).map(line).collect();
+    format!(
+        "Largest depth at which an inclusion is found. {}.",
+        all.join("; ")
+    )
+}

@@ -1,0 +1,98 @@
+//! How far the forces of a map are from those of an infinitely fine mesh: Roache's grid convergence index on
+//! three meshes (ASME V&V 20).
+
+use std::convert::Infallible;
+
+use super::{FemError, Model};
+use crate::force_map::{Discretization, ForceMap, Matrix};
+use crate::stats::tails::halved;
+
+/// Ratios of the sizes of the three meshes, middle over fine and coarse over middle.
+///
+/// Implements: FEM-026.
+pub const MESH_RATIOS: [f64; 2] = [4.0 / 3.0, 1.5];
+/// An observed order is trusted between these.
+const TRUSTED_ORDERS: core::ops::RangeInclusive<f64> = 1.0..=4.0;
+/// The order counted on, at most: that of a contact's edge between two nodes.
+const HIGHEST_ORDER: f64 = 2.0;
+/// Safety factors where the order is trusted, and where it is not.
+const SAFETY: f64 = 1.25;
+const SAFETY_UNTRUSTED: f64 = 3.0;
+
+/// The force map of [`Model::map`] with the discretisation's band around each force. `solved` is told of each pose
+/// of all three meshes.
+///
+/// Implements: FEM-026, FEM-028.
+///
+/// # Errors
+/// As [`Model::new`] and [`Model::map`].
+pub fn certified_map(
+    model: &Model,
+    depths: &[f64],
+    laterals: &[f64],
+    solved: &dyn Fn(usize),
+) -> Result<ForceMap, FemError> {
+    let finest = model.map(depths, laterals, solved)?;
+    let coarser = |ratio: f64| -> Result<(usize, ForceMap), FemError> {
+        let size = ratio * model.mesh_size();
+        let coarser = Model::new(model.phantom(), size, model.surface().contact)?;
+        let map = coarser.map(depths, laterals, solved)?;
+        Ok((coarser.mesh().nodes.len(), map))
+    };
+    let (middle_nodes, middle) = coarser(MESH_RATIOS[0])?;
+    let (coarse_nodes, coarse) = coarser(MESH_RATIOS[0] * MESH_RATIOS[1])?;
+    let [fine, middle, coarse] = [&finest, &middle, &coarse].map(|map| map.forces().as_ref());
+    let bands = fine.zip(middle).zip(coarse);
+    let bands = bands.map(|((fine, middle), coarse)| {
+        Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
+            band([fine, middle, coarse].map(|force| force.row(row)[column]))
+        })
+    });
+    let discretization = Discretization {
+        nodes: [model.mesh().nodes.len(), middle_nodes, coarse_nodes],
+        normal_force_band: bands.normal,
+        lateral_force_band: bands.lateral,
+    };
+    Ok(finest.with_discretization(discretization)?)
+}
+
+/// The observed order p of f(h) = f₀ + c hᵖ through three values that change in one direction, finest first; `None`
+/// for values that swing or do not change, or without such an order above 0.
+///
+/// ε₃₂/ε₂₁ = r₂₁ᵖ (r₃₂ᵖ − 1)/(r₂₁ᵖ − 1), which grows with p, by bisection.
+///
+/// Implements: FEM-026.
+pub(super) fn observed_order([fine, middle, coarse]: [f64; 3]) -> Option<f64> {
+    let ratio = (coarse - middle) / (middle - fine);
+    let of_order = |p: f64| {
+        let [r21, r32] = MESH_RATIOS.map(|ratio| libm::pow(ratio, p));
+        r21 * (r32 - 1.0) / (r21 - 1.0)
+    };
+    let ends = [1e-3, 64.0];
+    // Written so that a NaN is no order.
+    if !(ratio >= of_order(ends[0]) && ratio.is_finite()) {
+        return None;
+    }
+    let is_above = |p| Ok::<_, Infallible>(of_order(p) < ratio);
+    let Ok([order, _]) = halved(60, ends, is_above);
+    Some(order)
+}
+
+/// The band around the finest of three forces, finest first, N.
+///
+/// Implements: FEM-026.
+pub fn band(forces: [f64; 3]) -> f64 {
+    let [fine, middle, coarse] = forces;
+    let error = |change: f64, order: f64| change / (libm::pow(MESH_RATIOS[0], order) - 1.0);
+    let change = (middle - fine).abs();
+    match observed_order(forces) {
+        Some(order) if TRUSTED_ORDERS.contains(&order) => {
+            SAFETY * error(change, order.min(HIGHEST_ORDER))
+        }
+        // Swings, or a change so small by chance that the order comes out too high: the largest change counts.
+        _ => {
+            let largest = change.max((coarse - fine).abs());
+            SAFETY_UNTRUSTED * largest
+        }
+    }
+}

@@ -1,0 +1,248 @@
+mod checks;
+
+use checks::*;
+
+use crate::fem::MESH_SIZE;
+use crate::fem::mesh::Mesh;
+use crate::fem::size::SizeField;
+use crate::fem::triangulate::Triangulation;
+use crate::phantom::{Outline, Phantom, Support};
+use palpate_asserts::assert_near;
+
+use super::supports::{SUPPORTS, held_by};
+use super::{builtin, disc, ellipse, hard, off_centre, polygon, with, zoo};
+
+/// Mesh sizes, m: those of a default map and its certificate, and the coarsest and finest in common use.
+const SIZES: [f64; 5] = [0.25e-3, 0.5e-3, 2e-3 / 3.0, 1e-3, 2e-3];
+
+// Verifies: FEM-014, FEM-002, FEM-031, FEM-017, FEM-036.
+#[test]
+fn phantoms_of_all_kinds_have_sound_meshes() {
+    let mut wrong = Vec::new();
+    for (number, (what, phantom)) in zoo().into_iter().enumerate() {
+        phantom
+            .validate()
+            .unwrap_or_else(|error| panic!("{what}: {error}"));
+        // The finest takes as long as all others.
+        for &size in &SIZES[usize::from(number % 5 > 0)..] {
+            let what = format!("{what}, {} mm", size * 1e3);
+            println!("{what}");
+            let mesh = match Mesh::new(&phantom, size) {
+                Ok(mesh) => mesh,
+                Err(error) => {
+                    wrong.push(format!("{what}: {error}"));
+                    continue;
+                }
+            };
+            check_edges(&phantom, &mesh);
+            check_outlines(&phantom, &mesh);
+            check_regions(&phantom, &mesh);
+            check_surface(&phantom, &mesh);
+            assert_eq!(mesh.symmetric, phantom.is_symmetric());
+            if mesh.symmetric {
+                check_mirror(&phantom, &mesh);
+            }
+            let angle = check_angles(&mesh);
+            if angle < 25.0 {
+                wrong.push(format!("{what}: an angle of {angle:.1}°"));
+            }
+            // Triangles are refined above 1.35 times the wanted size, which makes edges of twice the radius of
+            // their circle, 1.56, and new points keep 0.6 from others; pieces of lines are rounded to whole numbers of them.
+            let field = SizeField::new(&phantom, size);
+            let [short, middle, long] = lengths(&mesh, &field);
+            if short < 0.6 || !(0.9..1.1).contains(&middle) || long > 1.56 {
+                wrong.push(format!(
+                    "{what}: edges of {short:.2}, {middle:.2}, {long:.2} sizes"
+                ));
+            }
+            let expected = field.expected_nodes() / mesh.nodes.len() as f64;
+            if (expected - 1.0).abs() > 0.25 {
+                wrong.push(format!("{what}: {expected:.3} of the nodes expected"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+// Verifies: FEM-014, FEM-002.
+#[test]
+fn two_calls_make_the_same_mesh() {
+    for phantom in [builtin("2.6"), off_centre(2.6, 3.0)] {
+        let [a, b] = [(); 2].map(|()| Mesh::new(&phantom, MESH_SIZE).unwrap());
+        let bits = |mesh: &Mesh| -> Vec<u64> {
+            mesh.nodes.iter().flatten().map(|x| x.to_bits()).collect()
+        };
+        assert_eq!(bits(&a), bits(&b));
+        assert_eq!((a.connectivity, a.regions), (b.connectivity, b.regions));
+    }
+}
+
+// Verifies: FEM-031.
+#[test]
+fn sizes_are_those_of_the_table() {
+    let corners = [[-2.0, 0.0], [2.0, 0.0], [2.0, 4.0], [-2.0, 4.0]];
+    let shapes = with(vec![
+        hard(-7.0, 5.0, disc(5.0)),
+        hard(6.0, 9.0, polygon(&corners)),
+        hard(5.0, 3.0, ellipse(3.0, 1.0, 0.0)),
+    ]);
+    let mut other = builtin("none");
+    other.layers[0].thickness = 0.2e-3;
+    let mut sliding = other.clone();
+    sliding.well.walls = Support::Sliding;
+    let near = with([-2.6, 2.6].map(|x| hard(x, 5.0, disc(5.0))).into());
+    let size = |phantom: &Phantom, scale: f64, at: [f64; 2]| {
+        let field = SizeField::new(phantom, scale * 0.5e-3);
+        1e3 * field.at(at.map(|x| x * 1e-3).into())
+    };
+    // Phantom, H, place and size, mm.
+    for (phantom, scale, at, expected) in [
+        // The surface, and below it; the largest.
+        (&shapes, 1.0, [0.0, 0.0], 0.20),
+        (&shapes, 0.5, [0.0, 0.0], 0.10),
+        (&shapes, 2.0, [0.0, 0.0], 0.40),
+        (&shapes, 1.0, [0.0, -0.3], 0.20 + 0.16 * 0.3),
+        (&other, 1.0, [0.0, -14.0], 1.5),
+        (&other, 2.0, [0.0, -14.0], 3.0),
+        // The strip at a wall, and beside it.
+        (&shapes, 1.0, [13.5, 0.0], 0.10),
+        (&shapes, 1.0, [-12.8, 0.0], 0.10 + 0.16 * 0.2),
+        // A disc's edge from inside and outside, in any direction.
+        (&shapes, 1.0, [-7.0, -10.0], 0.20),
+        (&shapes, 1.0, [-7.0, -9.5], 0.20 + 0.40 * 0.5),
+        (&shapes, 0.5, [-7.0, -10.3], 0.5 * (0.20 + 0.40 * 0.3)),
+        // Corners of walls, polygons and ellipses: the radius at this end is 0.5²/1.5.
+        (&shapes, 1.0, [17.0, -0.5], 0.015),
+        (&shapes, 1.0, [-17.0, -0.6], 0.015 + 0.22 * 0.1),
+        (&shapes, 1.0, [8.0, -13.0], 0.05),
+        (&shapes, 1.0, [8.0, -13.1], 0.05 + 0.30 * 0.1),
+        (&shapes, 1.0, [6.5, -3.5], 0.5 * 0.25 / 1.5),
+        (&shapes, 2.0, [6.5, -3.5], 0.5 * 0.25 / 1.5),
+        (&shapes, 0.5, [6.5, -3.5], 0.25 * 0.25 / 1.5),
+        (&sliding, 1.0, [17.0, 0.0], 0.10),
+        // A layer of 0.2 mm, and below it.
+        (&other, 1.0, [0.0, -0.1], 0.10),
+        (&other, 4.0, [0.0, -0.1], 0.20),
+        (&other, 1.0, [0.0, -0.3], 0.10 + 0.16 * 0.1),
+        // 0.2 mm between two discs.
+        (&near, 1.0, [0.0, -7.5], 0.10),
+        (&near, 2.0, [0.0, -7.5], 0.10),
+        (&near, 0.5, [0.0, -7.5], 0.05),
+    ] {
+        let found = size(phantom, scale, at);
+        assert_near(found, expected, 1e-9);
+    }
+}
+
+// Verifies: FEM-002, FEM-031.
+#[test]
+fn a_thin_layer_has_two_rows() {
+    let mut thin = builtin("6.6");
+    thin.layers[0].thickness = 1.5e-4;
+    for phantom in [builtin("2.6"), thin] {
+        let mesh = Mesh::new(&phantom, MESH_SIZE).unwrap();
+        let bottom = phantom.levels()[1];
+        let across = edges(&mesh).into_keys().filter(|ends| {
+            let [a, b] = ends.map(|node| mesh.nodes[node as usize][1]);
+            a.max(b) == 0.0 && a.min(b) == bottom
+        });
+        assert_eq!(across.count(), 0, "edges from the surface through the skin");
+    }
+}
+
+// Verifies: FEM-004.
+#[test]
+fn walls_and_floor_hold_their_nodes_and_nothing_else() {
+    use Support::{Fixed, Sliding};
+    for (walls, floor) in SUPPORTS {
+        let phantom = held_by(builtin("6.6"), (walls, floor));
+        let (wall, bottom) = (phantom.well.width / 2.0, -phantom.height());
+        let mesh = Mesh::new(&phantom, 1e-3).unwrap();
+        let mut held = [0; 2];
+        for (&[x, y], &found) in mesh.nodes.iter().zip(&mesh.held) {
+            let by = |support, across: usize, there: bool| {
+                [0, 1].map(|k| there && (support == Fixed || support == Sliding && k == across))
+            };
+            let by_wall = by(walls, 0, (x.abs() - wall).abs() < 1e-12);
+            let by_floor = by(floor, 1, (y - bottom).abs() < 1e-12);
+            let expected = [0, 1].map(|k| by_wall[k] || by_floor[k]);
+            assert_eq!(found, expected, "{walls:?}, {floor:?}: {x}, {y}");
+            held = [0, 1].map(|k| held[k] + usize::from(found[k]));
+        }
+        assert!(held.iter().sum::<usize>() > 30, "{held:?}");
+    }
+}
+
+// Verifies: FEM-017, FEM-036.
+#[test]
+fn sizes_without_a_mesh_are_refused() {
+    let phantom = builtin("none");
+    for size in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
+        let error = Mesh::new(&phantom, size).unwrap_err();
+        let said = error.to_string();
+        let holds = said.ends_with("mm, expected a finite number above 0");
+        assert!(holds, "{said}");
+    }
+    // Only what counts nodes before it makes them comes back from the smaller ones.
+    for (size, least) in [(0.06e-3, 5e5), (1e-6, 1e9), (1e-12, 1e20)] {
+        let said = Mesh::new(&phantom, size).unwrap_err().to_string();
+        let (_, about) = said.split_once(" makes about ").expect("a forecast");
+        let (nodes, _) = about.split_once(" nodes").expect("a number");
+        assert!(nodes.parse::<f64>().unwrap() > least, "{said}");
+    }
+}
+
+// Verifies: FEM-017.
+#[test]
+fn a_phantom_that_no_sound_triangle_follows_is_refused_with_the_place() {
+    // The axis halves a corner of 40°.
+    let spike = polygon(&[[0.0, 0.0], [1.5, -4.1], [-1.5, -4.1]]);
+    let phantom = with(vec![hard(0.0, 3.0, spike)]);
+    phantom.validate().unwrap();
+    let size = SizeField::new(&phantom, MESH_SIZE);
+    let error = Triangulation::new(&phantom, &size, true).err().unwrap();
+    // Within half a millimetre of the corner at (0, −3) mm.
+    let said = error.to_string();
+    let number = |before: &str| -> f64 {
+        let (_, after) = said.split_once(before).expect("a number");
+        let end = after.find([' ', '°']).expect("a unit");
+        after[..end].parse().expect("a number")
+    };
+    let at = [number("near x = "), number(", y = ")];
+    assert!(distance(at, [0.0, -3.0]) < 0.5, "{said}");
+    let holds = number("an angle of ") < 25.0 && said.contains("at least 25°");
+    assert!(holds, "{said}");
+    // Meshed as a whole, it has none so sharp.
+    let mesh = Mesh::new(&phantom, MESH_SIZE).unwrap();
+    assert!(phantom.is_symmetric() && !mesh.symmetric);
+    assert!(check_angles(&mesh) >= 25.0);
+}
+
+// Verifies: FEM-013.
+#[test]
+fn strains_near_sharp_corners_do_not_count() {
+    let square = polygon(&[[-2.0, 0.0], [2.0, 0.0], [2.0, 4.0], [-2.0, 4.0]]);
+    let mut phantom = with(vec![hard(0.0, 3.0, square), hard(9.0, 4.0, disc(4.0))]);
+    let width = 1e3 * phantom.well.width;
+    let skin = 1e3 * phantom.layers[0].thickness;
+    // A point so far to the right of a place, mm.
+    let sharp = |phantom: &Phantom, [x, y]: [f64; 2], distance: f64| {
+        let at = [x + distance, y].map(|x| x * 1e-3);
+        SizeField::new(phantom, MESH_SIZE).singular(at.into())
+    };
+    let walls = [[-0.5 * width, 0.0], [-0.5 * width, -skin]];
+    let Outline::Polygon(square) = phantom.inclusions[0].outline() else {
+        panic!("a polygon")
+    };
+    let square = square.iter().map(|corner| corner.map(|x| x * 1e3));
+    for corner in walls.into_iter().chain(square) {
+        assert!(sharp(&phantom, corner, 0.99), "{corner:?}");
+        assert!(!sharp(&phantom, corner, 1.01), "{corner:?}");
+    }
+    // Neither the end of a disc's axis nor the middle of a side is sharp, nor a wall that does not hold.
+    for smooth in [[9.0, -4.0], [0.0, -3.0]] {
+        assert!(!sharp(&phantom, smooth, 0.0), "{smooth:?}");
+    }
+    phantom.well.walls = Support::Sliding;
+    assert!(!sharp(&phantom, walls[0], 0.0));
+}

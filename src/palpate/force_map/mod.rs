@@ -1,0 +1,344 @@
+//! Force maps: the force on the probe over a grid of depths and lateral positions, where it comes
+//! from, and the files that keep it (paper §3, §4).
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | the map: forces and their source |
+//! | `table.rs` | axes and matrices; symmetry, difference, one depth |
+//! | `interpolation.rs` | forces between and beyond the poses |
+//! | `pair.rs` | whether two maps are one gel without and with an inclusion |
+//! | `certificate.rs` | the quality of a computed map |
+//! | `smoothing.rs` | measured forces with less of their noise |
+//! | `json.rs`, `csv.rs` | files |
+//!
+//! ```
+//! use palpate::force_map::ForceMap;
+//!
+//! // Two measured maps over one depth and x = 0, 2, 4 mm, and the signal of the paper's §2.
+//! let map = |normal: [f64; 3]| {
+//!     let mut text = String::from("depth_mm,lateral_mm,normal_force_n,lateral_force_n\n");
+//!     for (column, normal) in normal.iter().enumerate() {
+//!         text += &format!("4,{},{normal},0\n", 2 * column);
+//!     }
+//!     ForceMap::from_csv(&text, "sweep.csv", "", None)
+//! };
+//! let signal = map([1.75, 1.5, 1.5])?.signal(&map([1.5, 1.5, 1.5])?)?;
+//! assert_eq!(signal.row(0.004)?.normal, [0.25, 0.0, 0.0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod certificate;
+mod csv;
+mod interpolation;
+mod json;
+mod pair;
+mod smoothing;
+mod table;
+#[cfg(test)]
+pub(crate) mod tests;
+
+use std::ops::Deref;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+pub use certificate::{Certificate, Discretization, SmallestDet};
+pub use interpolation::interpolate;
+pub use json::{SCHEMA, SCHEMA_VERSION};
+pub use json::{check_schema, parse, to_json};
+pub use pair::Hypotheses;
+pub use pair::check_gel;
+pub use smoothing::Smoothed;
+pub use table::{ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE, peak};
+
+use crate::phantom::Phantom;
+use crate::refusal::Refusal;
+
+/// Where the forces of a map come from.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "a map has one")]
+pub enum Source {
+    /// Computed by this program's finite elements.
+    FiniteElements {
+        /// How good the computation was.
+        certificate: Certificate,
+    },
+    /// Measured on a gel, as the paper's §3.2.
+    Measured(Measurement),
+}
+
+/// Where measured forces come from.
+///
+/// Implements: MAP-020, MAP-074.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Measurement {
+    /// The file that they came in.
+    pub file: String,
+    /// Whatever else is known of them.
+    pub note: String,
+    /// Half-width, m, of the parabolas that smoothed them, above 0; `None` if nothing was smoothed.
+    #[serde(
+        rename = "smoothed_half_width_m",
+        default,
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub smoothed_half_width: Option<f64>,
+}
+
+impl Measurement {
+    /// Forces that came in `file`, of which the name without its folder counts, as they are.
+    pub fn new(file: &str, note: &str) -> Measurement {
+        let name = Path::new(file).file_name().unwrap_or_default();
+        Measurement {
+            file: name.to_string_lossy().into_owned(),
+            note: note.into(),
+            smoothed_half_width: None,
+        }
+    }
+}
+
+/// The force on the probe at every pose of a grid, and where it comes from.
+///
+/// ```
+/// use palpate::force::Force;
+/// use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
+/// use palpate::phantom::Phantom;
+///
+/// let matrix = |values: [f64; 4]| Matrix::from_fn(2, 2, |row, column| values[2 * row + column]);
+/// let (normal, lateral) = (matrix([0.25, 0.25, 1.5, 1.25]), matrix([0.0, 0.0, 0.0, -0.125]));
+/// let forces = ForceTable::new(vec![0.001, 0.004], vec![0.0, 0.005], Force::new(lateral, normal))?;
+/// let source = Source::Measured(Measurement::new("lab/gel.csv", ""));
+/// let map = ForceMap::new(source, Some(Phantom::builtin("6.6")?), forces)?;
+///
+/// assert_eq!((map.depths(), map.laterals()), (&[0.001, 0.004][..], &[0.0, 0.005][..]));
+/// assert_eq!(map.forces().normal.row(1), [1.5, 1.25]);
+/// assert_eq!(map.forces().lateral.values(), [0.0, 0.0, 0.0, -0.125]);
+/// assert_eq!(map.table().row(0.004)?, map.row(0.004)?);
+/// // Measured, by this version, on a phantom that is known.
+/// assert!(map.certificate().is_none() && matches!(map.source(), Source::Measured(_)));
+/// assert_eq!(map.program_version(), env!("CARGO_PKG_VERSION"));
+/// assert!(map.phantom().is_some_and(|phantom| phantom.name == "6.6"));
+/// // The normal force is even in x, the lateral force odd.
+/// let whole = map.mirrored()?;
+/// assert_eq!(whole.row(0.004)?.lateral, [0.125, 0.0, -0.125]);
+/// assert_eq!(whole.at_laterals(&[0.0, 0.005])?, map);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Implements: MAP-001, MAP-002.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "json::Document", try_from = "json::Document")]
+pub struct ForceMap {
+    program_version: String,
+    source: Source,
+    phantom: Option<Phantom>,
+    table: ForceTable,
+}
+
+impl Deref for ForceMap {
+    type Target = ForceTable;
+
+    fn deref(&self) -> &ForceTable {
+        &self.table
+    }
+}
+
+impl ForceMap {
+    /// A map of `table`, made by this version of the program.
+    ///
+    /// # Errors
+    /// The phantom is missing for a computed map, is not valid, or does not let the probe stand at one of the poses; the
+    /// certificate does not fit the forces; the half-width of a smoothing is not above 0.
+    ///
+    /// Implements: MAP-006, MAP-002, MAP-074.
+    pub fn new(
+        source: Source,
+        phantom: Option<Phantom>,
+        table: ForceTable,
+    ) -> Result<ForceMap, Refusal> {
+        let map = ForceMap {
+            program_version: env!("CARGO_PKG_VERSION").into(),
+            source,
+            phantom,
+            table,
+        };
+        map.checked()
+    }
+
+    fn checked(self) -> Result<ForceMap, Refusal> {
+        if let Source::Measured(of) = &self.source
+            && let Some(width) = of.smoothed_half_width
+            && !(width > 0.0 && width.is_finite())
+        {
+            let key = "source.smoothed_half_width_m";
+            return Err(Refusal::value(key, width, "a finite number above 0"));
+        }
+        if let Some(certificate) = self.certificate() {
+            certificate.check(self.depths(), self.laterals())?;
+            if self.phantom.is_none() {
+                let expected = "the phantom that the finite elements computed";
+                return Err(Refusal::state("phantom is missing", expected));
+            }
+        }
+        if let Some(phantom) = &self.phantom {
+            let of_phantom = |refusal: Refusal| Refusal {
+                key: format!("phantom: {}", refusal.key),
+                ..refusal
+            };
+            phantom.validate().map_err(of_phantom)?;
+            for &depth in self.depths() {
+                for &lateral in self.laterals() {
+                    phantom.check_pose(depth, lateral).map_err(of_phantom)?;
+                }
+            }
+        }
+        Ok(self)
+    }
+
+    /// This computed map with bands of the discretisation in its certificate; a measured map as it is, for bands of a mesh say
+    /// nothing of it.
+    ///
+    /// # Errors
+    /// Bands of another shape than the forces, not finite or negative.
+    ///
+    /// Implements: MAP-006, MAP-002.
+    pub fn with_discretization(
+        mut self,
+        discretization: Discretization,
+    ) -> Result<ForceMap, Refusal> {
+        if let Source::FiniteElements { certificate } = &mut self.source {
+            certificate.discretization = Some(discretization);
+        }
+        self.checked()
+    }
+
+    /// Reads the map at `path`: measured forces if its name ends in `.csv`, else JSON.
+    ///
+    /// # Errors
+    /// As [`ForceMap::from_csv`] and [`ForceMap::from_json`]; a file that cannot be read as UTF-8.
+    ///
+    /// Implements: MAP-026.
+    pub fn read(path: &Path) -> Result<ForceMap, Refusal> {
+        let is_csv = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("csv");
+        let is_csv = path.extension().is_some_and(is_csv);
+        crate::input::parse(path, |text, file| match is_csv {
+            true => ForceMap::from_csv(text, file, "", None),
+            false => ForceMap::from_json(text, file),
+        })
+    }
+
+    /// The version of the program that made the map.
+    pub fn program_version(&self) -> &str {
+        &self.program_version
+    }
+
+    /// Where the forces come from.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// The evidence for a computed map; `None` for a measured one.
+    pub fn certificate(&self) -> Option<&Certificate> {
+        match &self.source {
+            Source::FiniteElements { certificate } => Some(certificate),
+            Source::Measured(_) => None,
+        }
+    }
+
+    /// The phantom under the probe; a measured map may not know it.
+    pub fn phantom(&self) -> Option<&Phantom> {
+        self.phantom.as_ref()
+    }
+
+    /// Axes and forces.
+    pub fn table(&self) -> &ForceTable {
+        &self.table
+    }
+
+    /// The forces of this map minus those of `reference`: see [`ForceTable::minus`].
+    ///
+    /// # Errors
+    /// Other axes, or a difference that is not finite.
+    pub fn signal(&self, reference: &ForceMap) -> Result<ForceTable, Refusal> {
+        self.table.minus(&reference.table)
+    }
+
+    /// This map over x ≥ 0, extended to x < 0 by symmetry: see [`ForceTable::mirrored`].
+    ///
+    /// # Errors
+    /// A phantom that is not its own mirror image; as [`ForceTable::mirrored`].
+    pub fn mirrored(&self) -> Result<ForceMap, Refusal> {
+        if let Some(phantom) = self.phantom.as_ref().filter(|p| !p.is_symmetric()) {
+            return Err(Refusal::state(
+                format!("phantom {:?} is not its own mirror image", phantom.name),
+                "a map over negative lateral positions too: it cannot be extended by symmetry",
+            ));
+        }
+        let map = ForceMap {
+            table: self.table.mirrored()?,
+            source: self.source_at(&self.table.mirror_columns()),
+            ..self.clone()
+        };
+        map.checked()
+    }
+
+    /// The map of the mirror image of this map's phantom, over the negatives of its lateral positions.
+    ///
+    /// # Errors
+    /// No phantom; one with an inclusion that is not the mirror image of itself but for its place.
+    ///
+    /// Implements: MAP-009.
+    pub fn mirror_image(&self) -> Result<ForceMap, Refusal> {
+        let phantom = self.phantom.as_ref().and_then(Phantom::mirror_image);
+        let phantom = phantom.ok_or_else(|| {
+            let found = "no phantom, or an inclusion that is not symmetric";
+            Refusal::state(found, "a phantom to take the mirror image of")
+        })?;
+        let mut map = ForceMap {
+            phantom: Some(phantom),
+            ..self.clone()
+        };
+        let columns: Vec<usize> = (0..self.table.laterals().len()).rev().collect();
+        map.table = self.table.mirror_image(&columns)?;
+        map.source = self.source_at(&columns);
+        if let Source::FiniteElements { certificate } = &mut map.source {
+            let smallest = &mut certificate.smallest_det;
+            smallest.lateral = 0.0 - smallest.lateral;
+        }
+        map.checked()
+    }
+
+    /// The columns of this map at some of its lateral positions (m).
+    ///
+    /// # Errors
+    /// A position that the map does not hold.
+    ///
+    /// Implements: MAP-012.
+    pub fn at_laterals(&self, laterals: &[f64]) -> Result<ForceMap, Refusal> {
+        if laterals == self.laterals() {
+            return Ok(self.clone());
+        }
+        let columns = self.table.columns_at(laterals)?;
+        let mut map = ForceMap {
+            table: self.table.at_columns(&columns)?,
+            source: self.source_at(&columns),
+            ..self.clone()
+        };
+        if let Source::FiniteElements { certificate } = &mut map.source {
+            let smallest = SmallestDet::of(&certificate.min_det, self.depths(), laterals);
+            certificate.smallest_det = smallest.unwrap_or(certificate.smallest_det);
+        }
+        map.checked()
+    }
+
+    /// The source with some of the columns of its certificate.
+    fn source_at(&self, columns: &[usize]) -> Source {
+        match &self.source {
+            Source::FiniteElements { certificate } => Source::FiniteElements {
+                certificate: certificate.at_columns(columns),
+            },
+            measured => measured.clone(),
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Inclusion probing after Yan, Scott and Fearing (1999): the force on a rigid probe that presses
+//! into a gel, the decision whether a hard inclusion lies in it, and its playback to a hand.
+//!
+//! The modules follow the paper:
+//!
+//! | paper | module |
+//! |---|---|
+//! | §2 signal detection | [`detect`], on the normal law in [`stats`] |
+//! | §3 phantoms | [`phantom`] |
+//! | §3.1 finite elements | [`fem`] |
+//! | §3, §4 force tables | [`force_map`] |
+//! | a recorded sweep against two of them | [`trace`] |
+//! | §5 inclusions of any place and size | [`bank`] |
+//! | §4 playback: from a table to a force | [`servo`] |
+//! | §4 playback: reports of the device | [`hid`] |
+//! | §4 pairs of samples, felt and judged; §5 what the answers say | [`psychophysics`] |
+//! | what uncertain inputs do to all that | [`study`] |
+//! | figures, tables | [`report`] |
+//! | why an input is refused | [`refusal`] |
+//! | other implementations: questions and answers | [`oracle`] |
+//!
+//! Lengths are metres, forces newtons, moduli pascals throughout; `spec/README.md` has the signs.
+//!
+//! From a phantom to forces, from forces to a decision and to what a hand would feel:
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use palpate::force::Force;
+//! use palpate::detect::{Decision, decide, theta_of_record};
+//! use palpate::fem::{Contact, Model};
+//! use palpate::phantom::Phantom;
+//! use palpate::servo::LoadedTable;
+//!
+//! // Force maps of the gel alone, and with an inclusion under 6.6 mm of it.
+//! let laterals: Vec<f64> = (-5..=5).map(|k| 2e-3 * f64::from(k)).collect();
+//! let map = |name| -> Result<_, Box<dyn std::error::Error>> {
+//!     let model = Model::new(&Phantom::builtin(name)?, 2e-3, Contact::default())?;
+//!     Ok(model.map(&[2e-3, 4e-3], &laterals, &|_| ())?)
+//! };
+//! let (without, with) = (map("none")?, map("6.6")?);
+//!
+//! // A sweep at 4 mm, as it would come without noise over the inclusion. Samples in noise of 0.1 N.
+//! let (f0, f1) = (without.row(4e-3)?, with.row(4e-3)?);
+//! let found = theta_of_record(f1, f0, f1, Force { lateral: 0.1, normal: 0.1 })?;
+//! assert_eq!(decide(found.theta, 0.0)?, Decision::Inclusion);
+//! assert!((found.theta - found.gamma.powi(2) / 2.0).abs() < 1e-9);
+//!
+//! // The force on a hand that probes there, 3 mm deep: between the forces at 2 and at 4 mm.
+//! let loaded = LoadedTable::new(with.table())?;
+//! let force = loaded.table()?.force(3e-3, 0.0);
+//! let [shallow, deep] = [0, 1].map(|row| with.forces().normal.row(row)[5] as f32);
+//! assert!(shallow < force.normal && force.normal < deep);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! The modules `detect`, `force`, `servo` and `stats`, and the reports of `hid`, are those of [`palpate_core`], which is `no_std`, does not
+//! allocate, and depends on `libm` alone.
+
+pub use palpate_core::{detect, force, stats};
+
+pub mod bank;
+pub mod chart;
+pub mod csv;
+pub mod decimal;
+pub mod fem;
+pub mod force_map;
+pub mod hid;
+pub mod input;
+pub mod oracle;
+pub mod phantom;
+pub mod refusal;
+pub mod servo;
+pub mod text;
+pub mod trace;
+pub mod version;

@@ -1,0 +1,230 @@
+//! The phantom: layers of gel and rubber in a well, hard inclusions in them or none, and the probe that presses on
+//! them (paper §3). All lengths are metres, moduli pascals, angles degrees.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | the data, the paper's five phantoms, derived lengths |
+//! | `paper.toml` | one of the five as a phantom file |
+//! | `shape.rs` | outlines of inclusions |
+//! | `limits.rs` | which phantoms are physical and can be meshed |
+//! | `pose.rs` | where the probe may stand |
+//! | `file.rs` | phantom files in TOML |
+//!
+//! ```
+//! use palpate::phantom::Phantom;
+//!
+//! // The paper's phantom with the disc 6.6 mm deep, and a harder disc, 3 mm off the middle.
+//! let mut phantom = Phantom::builtin("6.6")?;
+//! phantom.inclusions[0].material.youngs_modulus = 2.4e6;
+//! phantom.inclusions[0].centre_x = 3e-3;
+//! phantom.validate()?;
+//! assert!(!phantom.is_symmetric());
+//! assert!(phantom.to_toml()?.contains("youngs_modulus_kpa = 2400.0"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod file;
+mod limits;
+mod pose;
+mod shape;
+#[cfg(test)]
+pub(crate) mod tests;
+
+use crate::decimal::parse_scaled;
+use serde::{Deserialize, Serialize};
+
+pub use limits::CLEARANCE;
+pub use shape::{Ellipse, Outline, Shape};
+pub use shape::{edges, point_to_segment};
+
+use crate::refusal::Refusal;
+
+/// A linear isotropic elastic material.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct Material {
+    /// Young's modulus E, Pa.
+    #[serde(rename = "youngs_modulus_pa")]
+    pub youngs_modulus: f64,
+    /// Poisson's ratio ν.
+    pub poisson_ratio: f64,
+}
+
+/// How a wall or the floor of the well holds the layers.
+///
+/// Implements: PHA-016.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Support {
+    /// Bonded: no displacement.
+    #[default]
+    Fixed,
+    /// Lubricated: no displacement across the wall or floor, no friction along it.
+    Sliding,
+    /// Not there: no force.
+    Free,
+}
+
+/// The well that holds the layers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct Well {
+    /// Width between the walls, m.
+    #[serde(rename = "width_m")]
+    pub width: f64,
+    /// Both walls.
+    #[serde(default)]
+    pub walls: Support,
+    /// The floor.
+    #[serde(default)]
+    pub floor: Support,
+}
+
+/// A layer from wall to wall, bonded to its neighbours.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct Layer {
+    /// A name for tables and figures.
+    pub name: String,
+    /// Thickness, m.
+    #[serde(rename = "thickness_m")]
+    pub thickness: f64,
+    /// What the layer is made of.
+    pub material: Material,
+}
+
+/// A solid cylinder along the probe, bonded to the layer in which it lies.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct Inclusion {
+    /// x of the shape's centre, m; of a polygon, where its points have x = 0.
+    #[serde(rename = "centre_x_m", default)]
+    pub centre_x: f64,
+    /// Depth of the shape's highest point below the outer surface, m.
+    #[serde(rename = "depth_m")]
+    pub depth: f64,
+    /// The outline.
+    pub shape: Shape,
+    /// What the inclusion is made of.
+    pub material: Material,
+}
+
+/// The rigid, frictionless, semicylindrical probe.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+pub struct Probe {
+    /// Radius, m.
+    #[serde(rename = "radius_m")]
+    pub radius: f64,
+    /// Length along the cylinder, m: forces are totals over it.
+    #[serde(rename = "length_m")]
+    pub length: f64,
+}
+
+/// Everything that fixes the force on the probe, but for the probe's position.
+///
+/// Reading one with serde checks the types alone: call [`Phantom::validate`] on the result.
+///
+/// Implements: PHA-029.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a phantom")]
+pub struct Phantom {
+    /// A name for tables and figures.
+    pub name: String,
+    /// The well.
+    pub well: Well,
+    /// The layers, top to bottom; the first one's top is the outer surface.
+    #[serde(rename = "layer")]
+    pub layers: Vec<Layer>,
+    /// The inclusions; none for a plain gel.
+    #[serde(rename = "inclusion", default, skip_serializing_if = "Vec::is_empty")]
+    pub inclusions: Vec<Inclusion>,
+    /// The probe.
+    pub probe: Probe,
+}
+
+/// The names of the paper's five phantoms: without an inclusion, then by its depth in mm.
+///
+/// Implements: PHA-001.
+pub const BUILTIN_NAMES: [&str; 5] = ["none", "2.6", "4.6", "6.6", "8.6"];
+
+impl Phantom {
+    /// One of the paper's five phantoms (§3, §3.1), by its name in [`BUILTIN_NAMES`].
+    ///
+    /// # Errors
+    /// Any other name, with the list.
+    ///
+    /// Implements: PHA-001.
+    pub fn builtin(name: &str) -> Result<Phantom, Refusal> {
+        if !BUILTIN_NAMES.contains(&name) {
+            let found = format!("no phantom named {name:?} is built in");
+            let known = format!("{found}; built in are {}", BUILTIN_NAMES.join(", "));
+            return Err(Refusal::state(known, ""));
+        }
+        let paper = Phantom::from_toml(include_str!("paper.toml"), "paper.toml");
+        let mut phantom = paper.expect("a test reads this very text");
+        phantom.name = name.into();
+        match parse_scaled(name, -3) {
+            Some(depth) => phantom.inclusions[0].depth = depth,
+            None => phantom.inclusions.clear(),
+        }
+        Ok(phantom)
+    }
+
+    /// Height of the outer surface above the floor, m.
+    ///
+    /// Implements: PHA-008.
+    pub fn height(&self) -> f64 {
+        self.layers.iter().map(|layer| layer.thickness).sum()
+    }
+
+    /// The depth of the highest point of all inclusions, m; `None` without any.
+    pub fn inclusion_depth(&self) -> Option<f64> {
+        let depths = self.inclusions.iter().map(|inclusion| inclusion.depth);
+        depths.reduce(f64::min)
+    }
+
+    /// y of the top of each layer and of the floor, m: 0 first, then negative.
+    pub fn levels(&self) -> Vec<f64> {
+        let mut levels = vec![0.0];
+        for layer in &self.layers {
+            levels.push(levels[levels.len() - 1] - layer.thickness);
+        }
+        levels
+    }
+
+    /// Whether the phantom is its own mirror image in x, to the bit: each inclusion is on the axis and symmetric, or has a
+    /// mirror image of the same material.
+    ///
+    /// Implements: PHA-019.
+    pub fn is_symmetric(&self) -> bool {
+        self.mirror_images().len() == self.inclusions.len()
+    }
+
+    /// The number of each inclusion's mirror image; fewer numbers than inclusions where one has none.
+    pub fn mirror_images(&self) -> Vec<usize> {
+        let image = |inclusion: &Inclusion| {
+            let mirrored = inclusion.outline().mirrored();
+            self.inclusions.iter().position(|other| {
+                other.material == inclusion.material && mirrored.is_same(&other.outline())
+            })
+        };
+        self.inclusions.iter().filter_map(image).collect()
+    }
+
+    /// The phantom seen from behind: its mirror image in x. `None` where an inclusion is no mirror image of itself but for its
+    /// place.
+    pub fn mirror_image(&self) -> Option<Phantom> {
+        let mut image = self.clone();
+        for inclusion in &mut image.inclusions {
+            let place = std::mem::take(&mut inclusion.centre_x);
+            let outline = inclusion.outline();
+            if !outline.clone().mirrored().is_same(&outline) {
+                return None;
+            }
+            // Subtracted from zero, since the negative of +0 would be −0.
+            inclusion.centre_x = 0.0 - place;
+        }
+        Some(image)
+    }
+}

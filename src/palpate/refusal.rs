@@ -1,0 +1,133 @@
+//! Why an input is refused, in one line.
+
+use std::fmt;
+
+use crate::stats::NumericError;
+
+/// Why an input is refused: where it stands, what it is, and what would be right. The message is one line, whatever it quotes.
+///
+/// Where nothing but the message is of use, this is the error. A reason that a caller branches on has an enum of its own.
+///
+/// ```
+/// use palpate::refusal::Refusal;
+///
+/// let refusal = Refusal::value("depths_m[0]", -0.001, "at least 0");
+/// assert_eq!(refusal.to_string(), "depths_m[0] = -0.001, expected at least 0");
+/// let refusal = Refusal::state("the map is empty", "at least one row").at(3).in_file("map.csv");
+/// assert_eq!(refusal.to_string(), "map.csv:3: the map is empty, expected at least one row");
+/// ```
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Refusal {
+    /// The file, as its reader named it; empty without a file.
+    pub file: String,
+    /// The line in it, from 1.
+    pub line: Option<usize>,
+    /// The key, option or argument; empty where `found` is a sentence.
+    pub key: String,
+    /// What is there.
+    pub found: String,
+    /// What would be right; empty where `found` says all.
+    pub expected: String,
+}
+
+impl Refusal {
+    /// `key` has the value `found`, and should have an `expected` one.
+    pub fn value(
+        key: impl Into<String>,
+        found: impl fmt::Display,
+        expected: impl Into<String>,
+    ) -> Refusal {
+        Refusal {
+            key: key.into(),
+            found: found.to_string(),
+            expected: expected.into(),
+            ..Refusal::default()
+        }
+    }
+
+    /// Something other than a value is wrong, as the sentence `found` says.
+    pub fn state(found: impl fmt::Display, expected: impl Into<String>) -> Refusal {
+        Refusal::value("", found, expected)
+    }
+
+    /// The refusal of `what` for a reason, as an argument for `map_err`.
+    ///
+    /// Implements: REP-004.
+    pub fn because<E: fmt::Display>(what: impl fmt::Display) -> impl FnOnce(E) -> Refusal {
+        move |reason| Refusal::state(format!("{what}: {reason}"), "")
+    }
+
+    /// The same in a line, from 1.
+    pub fn at(self, line: usize) -> Refusal {
+        let line = Some(line);
+        Refusal { line, ..self }
+    }
+
+    /// The same in a file.
+    pub fn in_file(self, file: impl Into<String>) -> Refusal {
+        let file = file.into();
+        Refusal { file, ..self }
+    }
+
+    /// The same for the part `prefix` of a larger whole: its key comes first.
+    pub fn under(self, prefix: &str) -> Refusal {
+        let key = match &*self.key {
+            "" => prefix.into(),
+            key => format!("{prefix}.{key}"),
+        };
+        Refusal { key, ..self }
+    }
+
+    /// The same of one of many parts, whose name comes before the message.
+    pub fn of_part(self, part: &str) -> Refusal {
+        match &*self.key {
+            "" => Refusal {
+                found: format!("{part}: {}", self.found),
+                ..self
+            },
+            key => Refusal {
+                key: format!("{part}: {key}"),
+                ..self
+            },
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&*self.file, self.line) {
+            ("", None) => {}
+            ("", Some(line)) => write!(f, "line {line}: ")?,
+            (file, None) => write!(f, "{file}: ")?,
+            (file, Some(line)) => write!(f, "{file}:{line}: ")?,
+        }
+        let equals = if self.key.is_empty() { "" } else { " = " };
+        let comma = if self.expected.is_empty() {
+            ""
+        } else {
+            ", expected "
+        };
+        let parts = [&*self.key, equals, &self.found, comma, &self.expected];
+        f.write_str(&one_line(&parts.concat()))
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+/// A number that the input holds, or that follows from it, is refused.
+impl From<NumericError> for Refusal {
+    fn from(error: NumericError) -> Refusal {
+        Refusal::state(error, "")
+    }
+}
+
+/// `text` with a space for each control character: a message that quotes a file stays one line, and
+/// no terminal obeys it.
+pub fn one_line(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}
+
+/// The beginning of `text`, enough to recognise it in a message.
+pub fn shortened(text: &str) -> String {
+    text.chars().take(80).collect()
+}

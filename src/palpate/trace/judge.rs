@@ -1,0 +1,166 @@
+//! The record judged at the position that the maps are for.
+
+use super::design::{Design, Unknown, squares, stacked};
+use super::fit::{Cause, Fit};
+use super::{Record, refused};
+use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector, SubspaceTest, Threshold};
+use crate::detect::{Decision, DetectError, ErrorRates, map_threshold, posterior};
+use crate::force::Force;
+use crate::force_map::Hypotheses;
+use crate::refusal::Refusal;
+
+/// What the threshold shall achieve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Criterion {
+    /// The fewest errors for the prior.
+    Map,
+    /// At most this rate of misses, with the fewest false alarms.
+    NeymanPearsonMiss {
+        /// The largest rate of misses.
+        max_miss: f64,
+    },
+    /// At most this rate of false alarms, with the fewest misses.
+    NeymanPearsonFalseAlarm {
+        /// The largest rate of false alarms.
+        max_false_alarm: f64,
+    },
+}
+
+/// What is known of a record, and what is asked: does the gel under its sweep hold an inclusion?
+#[derive(Debug, Clone, Copy)]
+pub struct Question<'a> {
+    /// Depth of the sweep, m.
+    pub depth: f64,
+    /// The true depth is within so much of it, m, unless it is unknown; 0 if it is exact.
+    pub depth_tolerance: f64,
+    /// What is not known of the sweep.
+    pub unknown: &'a [Unknown],
+    /// The noise on its forces.
+    pub noise: Noise,
+    /// What the threshold shall achieve.
+    pub criterion: Criterion,
+    /// Pr(H = 1) before the sweep.
+    pub prior_h1: f64,
+}
+
+/// What is known of the noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Standard deviation of a sample of either force, N; none if the record is to tell it.
+    pub sd: Option<Force<f64>>,
+    /// Which samples are independent.
+    pub correlation: Correlation,
+}
+
+/// How far apart two samples are whose noise is independent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Correlation {
+    /// The noise is white: any two.
+    None,
+    /// The record is to tell it.
+    OfRecord,
+    /// So many samples count as one, as a blank record has told.
+    Known(f64),
+}
+
+/// The answer at the position that the maps are for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judgement {
+    /// Ĥ; none if the record cannot be judged.
+    pub decision: Option<Decision>,
+    /// Why not, the likeliest cause first.
+    pub causes: Vec<Cause>,
+    /// T with its law, where there is one.
+    pub test: SubspaceTest,
+    /// The T that are of an inclusion.
+    pub threshold: Threshold,
+    /// Pr(H = 1 | record).
+    pub posterior: f64,
+    /// The rates of error are at most these.
+    pub rates: ErrorRates,
+    /// γ of all samples if nothing were unknown and the noise white.
+    pub gamma_nominal: f64,
+    /// How well the record fits.
+    pub fit: Fit,
+}
+
+impl Question<'_> {
+    pub(crate) fn is_unknown(&self, what: Unknown) -> bool {
+        self.unknown.contains(&what)
+    }
+
+    /// Sums over blocks have a noise of their own, whatever a sample has.
+    pub fn noise_level(&self, fit: &Fit) -> NoiseLevel {
+        match self.is_unknown(Unknown::Variance) || fit.block > 1 {
+            true => NoiseLevel::Unknown,
+            false => NoiseLevel::Known,
+        }
+    }
+
+    /// The parts of a design over the noise of a sample, how well they fit, and their sums over blocks of samples that depend on
+    /// one another.
+    pub fn fitted(&self, design: &Design) -> Result<(Design, Fit, Design), DetectError> {
+        let noise_sd = match self.noise.sd {
+            Some(sd) => sd,
+            None => design.noise_sd()?,
+        };
+        let white = design.whitened(noise_sd);
+        let fit = Fit::new(self, &white, noise_sd)?;
+        let blocks = white.blocks(fit.block);
+        Ok((white, fit, blocks))
+    }
+
+    /// Judges `record` for the inclusion of one map, where that map has it.
+    ///
+    /// # Errors
+    /// Positions or a depth outside the maps; maps that do not differ at the samples but by what is unknown; whatever the
+    /// detector refuses.
+    ///
+    /// Implements: TRC-008, TRC-065, TRC-060, TRC-077, CLI-043, CLI-049.
+    pub fn judge(&self, hypotheses: Hypotheses<'_>, record: &Record) -> Result<Judgement, Refusal> {
+        let mut design = Design::new(self, hypotheses.without(), record)?;
+        design.set_template(self, hypotheses.with(), record)?;
+        design.add_depth_error(self, hypotheses.with(), record)?;
+        let judged = || {
+            let (white, fit, blocks) = self.fitted(&design)?;
+            let (mut signals, mut template) = (blocks.signals(false), stacked(&blocks.template));
+            let nuisances = Nuisances::new(&mut signals, template.len())?;
+            let detector = SubspaceDetector::new(nuisances, &mut template)?;
+            let statistic = detector.statistic(&mut stacked(&blocks.residual))?;
+            let test = statistic.test(self.noise_level(&fit), blocks.bias(&detector))?;
+            let threshold = self.threshold(&test)?;
+            let causes = fit.causes(&test)?;
+            let decision = if threshold.is_met(test.t) {
+                Decision::Inclusion
+            } else {
+                Decision::NoInclusion
+            };
+            Ok(Judgement {
+                decision: causes.is_empty().then_some(decision),
+                causes,
+                test,
+                threshold,
+                posterior: posterior(test.theta(), self.prior_h1)?,
+                rates: test.rates(threshold)?,
+                gamma_nominal: libm::sqrt(squares(&stacked(&white.template))),
+                fit,
+            })
+        };
+        judged().map_err(|error| refused(error).in_file(record.file()))
+    }
+
+    /// The T from which on the record is of an inclusion.
+    ///
+    /// Implements: TRC-065.
+    fn threshold(&self, test: &SubspaceTest) -> Result<Threshold, DetectError> {
+        Ok(match self.criterion {
+            Criterion::Map => test.bayes_threshold(map_threshold(self.prior_h1)?)?,
+            Criterion::NeymanPearsonMiss { max_miss } => {
+                Threshold::At(test.miss_threshold(max_miss)?)
+            }
+            Criterion::NeymanPearsonFalseAlarm { max_false_alarm } => {
+                Threshold::At(test.false_alarm_threshold(max_false_alarm)?)
+            }
+        })
+    }
+}

@@ -1,0 +1,413 @@
+//! A recorded sweep of the probe, judged against two force maps (`spec/trace.md`).
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | the trace, its positions, and the forces that a map expects there |
+//! | `design.rs` | what the record may hold: signal, nuisances |
+//! | `fit.rs` | whether it fits, and the likeliest cause if not |
+//! | `judge.rs` | criterion, and the record at a known position |
+//!
+//! Where the position is not known, [`crate::bank`] judges the record.
+//!
+//! ```
+//! use palpate::detect::Decision;
+//! use palpate::force::Force;
+//! use palpate::force_map::{ForceTable, Hypotheses, Matrix};
+//! use palpate::trace::{Correlation, Criterion, Noise, Question, Trace, Unknown};
+//!
+//! // Maps at 4 mm over −3 … 3 mm: 1.5 N, and with the inclusion a bump.
+//! let map = |bump: [f64; 7]| {
+//!     let laterals = (-3..=3).map(|x| f64::from(x) * 1e-3).collect();
+//!     let matrix = |force: [f64; 7]| Matrix::from_fn(1, 7, |_, column| force[column]);
+//!     ForceTable::new(vec![0.004], laterals, Force::new(matrix([0.0; 7]), matrix(bump.map(|b| 1.5 + b))))
+//! };
+//! let reference = map([0.0; 7])?;
+//! let inclusion = map([0.0, 0.0, 0.25, 0.5, 0.25, 0.0, 0.0])?;
+//!
+//! // A sweep over the inclusion, by a sensor with an offset of 0.3 N.
+//! let mut text = String::from("position_mm,lateral_force_n,normal_force_n\n");
+//! for (i, force) in [1.81, 1.78, 2.04, 2.32, 2.03, 1.81, 1.79].iter().enumerate() {
+//!     let lateral = [0.02, -0.02, 0.01, -0.01, -0.02, 0.01, 0.01][i];
+//!     text += &format!("{},{lateral},{force}\n", i as i32 - 3);
+//! }
+//! let record = Trace::from_csv(&text, "sweep.csv")?.record(None)?;
+//! let question = Question {
+//!     depth: 0.004,
+//!     depth_tolerance: 0.0,
+//!     unknown: &[Unknown::Offset],
+//!     noise: Noise { sd: Some(Force::new(0.02, 0.02)), correlation: Correlation::None },
+//!     criterion: Criterion::Map,
+//!     prior_h1: 0.5,
+//! };
+//! let found = question.judge(Hypotheses::of_tables(&reference, &inclusion)?, &record)?;
+//! assert_eq!(found.decision, Some(Decision::Inclusion));
+//! // The signal is there as it should be: T is near γ.
+//! assert!((found.test.t - found.test.gamma).abs() < 4.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod design;
+mod fit;
+mod judge;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+pub use design::{Unknown, in_words, nuisances};
+pub use fit::{Cause, Fit, MISFIT_RATE, WHITENESS};
+pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
+
+use crate::csv::{Column, Rows};
+use crate::decimal::format_scaled;
+use crate::detect::DetectError;
+use crate::force::Force;
+use crate::force_map::{ForceTable, SAME_POSITION};
+use crate::refusal::Refusal;
+
+/// Position, or time where there is no position; lateral force, normal force.
+const COLUMNS: [Column; 3] = [
+    &[
+        &[("position_mm", -3), ("position_m", 0)],
+        &[("time_s", 0), ("time_ms", -3)],
+    ],
+    &[&[("lateral_force_n", 0), ("lateral_force_mn", -3)]],
+    &[&[("normal_force_n", 0), ("normal_force_mn", -3)]],
+];
+/// The headers that are right, for a person.
+const EXPECTED_HEADER: &str = "position_mm,lateral_force_n,normal_force_n, in any order, or time_s for the position, also position_m, time_ms and forces as _mn";
+
+/// The share of the range of its positions by which a sample may lie behind one before it: the jitter of an encoder.
+///
+/// Implements: TRC-004.
+pub const JITTER: f64 = 0.05;
+
+/// What the samples of a trace are over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Abscissa {
+    /// Seconds since some start.
+    Time,
+    /// Lateral position of the probe, m.
+    Position,
+}
+
+/// Forces on the probe as they were recorded, at least one sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trace {
+    file: String,
+    abscissa: Abscissa,
+    samples: Vec<Sample>,
+    notes: Vec<String>,
+}
+
+/// The line of a sample, and its abscissa (s or m), lateral and normal force (N).
+type Sample = (usize, [f64; 3]);
+
+/// The motion of the probe while times were recorded.
+///
+/// ```
+/// use palpate::trace::{Motion, Trace};
+///
+/// // To the left from 3 mm, at 20 mm/s: the samples are turned round, so that positions increase.
+/// let text = "time_s,lateral_force_n,normal_force_n\n0,0,1.5\n0.1,0,1.75\n";
+/// let motion = Motion { velocity: -0.02, start: 0.003 };
+/// let record = Trace::from_csv(text, "sweep.csv")?.record(Some(motion))?;
+/// assert_eq!(record.positions(), [0.001, 0.003]);
+/// assert_eq!(record.forces().normal, [1.75, 1.5]);
+/// # Ok::<(), palpate::refusal::Refusal>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion {
+    /// Velocity along +x, m/s; negative if the probe moved towards −x.
+    pub velocity: f64,
+    /// Lateral position at time 0, m.
+    pub start: f64,
+}
+
+/// A trace over positions, which increase but for jitter (see [`JITTER`]).
+///
+/// ```
+/// use palpate::force::Force;
+/// use palpate::force_map::{ForceTable, Matrix};
+/// use palpate::trace::Trace;
+///
+/// let text = "position_mm,lateral_force_n,normal_force_n\n1,0,1.5\n3,0,1.75\n";
+/// let record = Trace::from_csv(text, "sweep.csv")?.record(None)?;
+/// assert_eq!(record.file(), "sweep.csv");
+/// assert_eq!((record.positions(), record.forces().normal), (&[0.001, 0.003][..], &[1.5, 1.75][..]));
+/// // What a map of 0, 1, 2 N at 0, 2, 4 mm expects there.
+/// let matrix = || Matrix::from_fn(1, 3, |_, column| column as f64);
+/// let map = ForceTable::new(vec![0.004], vec![0.0, 0.002, 0.004], Force::new(matrix(), matrix()))?;
+/// assert_eq!(record.expected(&map, 0.004)?.normal, [0.5, 1.5]);
+/// # Ok::<(), palpate::refusal::Refusal>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    file: String,
+    /// The line of each sample.
+    lines: Vec<usize>,
+    positions: Vec<f64>,
+    forces: Force<Vec<f64>>,
+}
+
+impl Trace {
+    /// Reads the trace at `path`.
+    ///
+    /// # Errors
+    /// As [`Trace::from_csv`]; a file that cannot be read as UTF-8.
+    pub fn read(path: &Path) -> Result<Trace, Refusal> {
+        crate::input::parse(path, Trace::from_csv)
+    }
+
+    /// The trace in `text`, the content of `file`.
+    ///
+    /// # Errors
+    /// The header does not name each of the three columns once, a row is malformed, times do not increase, positions do not go one
+    /// way, or there is no row; with file and line.
+    ///
+    /// Implements: TRC-001, TRC-004, TRC-007, TRC-008.
+    pub fn from_csv(text: &str, file: &str) -> Result<Trace, Refusal> {
+        let read = || {
+            let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER)?;
+            let samples = table.rows;
+            if samples.is_empty() {
+                let found = "no samples under the header";
+                return Err(Refusal::state(found, "at least one row").at(table.line));
+            }
+            let abscissa = if table.names[0].starts_with("time") {
+                check_times(&samples)?;
+                Abscissa::Time
+            } else {
+                check_pass(&samples)?;
+                Abscissa::Position
+            };
+            Ok(Trace {
+                file: file.into(),
+                abscissa,
+                samples,
+                notes: table.notes,
+            })
+        };
+        read().map_err(|refusal: Refusal| refusal.in_file(file))
+    }
+
+    /// What a person should know of how the file was read, such as the columns that are not used.
+    ///
+    /// Implements: MAP-041, MAP-044.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// What the trace is over.
+    pub fn abscissa(&self) -> Abscissa {
+        self.abscissa
+    }
+
+    /// The record over positions, towards +x; a trace over times needs the motion, and only it.
+    ///
+    /// # Errors
+    /// The motion is missing, or there for a trace over positions; the probe does not move; times make no finite positions.
+    ///
+    /// Implements: TRC-008, TRC-010, TRC-004.
+    pub fn record(self, motion: Option<Motion>) -> Result<Record, Refusal> {
+        let (file, mut samples) = (self.file, self.samples);
+        let placed = match (self.abscissa, motion) {
+            (Abscissa::Position, None) => Ok(()),
+            (Abscissa::Time, Some(motion)) => move_along(&mut samples, motion),
+            (Abscissa::Time, None) => Err(Refusal::state(
+                "the samples have times",
+                "a velocity and a start to make positions of them (--velocity-mm-s, --start-mm)",
+            )),
+            (Abscissa::Position, Some(_)) => Err(Refusal::state(
+                "the samples have positions",
+                "neither velocity nor start (--velocity-mm-s, --start-mm)",
+            )),
+        };
+        placed.map_err(|refusal| refusal.in_file(&*file))?;
+        if backwards(&samples) {
+            samples.reverse();
+        }
+        let column = |of: usize| samples.iter().map(|(_, sample)| sample[of]).collect();
+        Ok(Record {
+            lines: samples.iter().map(|(line, _)| *line).collect(),
+            positions: column(0),
+            forces: Force::new(column(1), column(2)),
+            file,
+        })
+    }
+}
+
+/// Makes positions of times.
+fn move_along(samples: &mut [Sample], motion: Motion) -> Result<(), Refusal> {
+    let Motion { velocity, start } = motion;
+    if !velocity.is_finite() || velocity == 0.0 {
+        let found = format!("{velocity} m/s");
+        let expected = "a finite number other than 0";
+        return Err(Refusal::value("velocity", found, expected));
+    }
+    for (line, [abscissa, ..]) in samples {
+        *abscissa = start + velocity * *abscissa;
+        if !abscissa.is_finite() {
+            let found = format!("{abscissa} m from this time");
+            return Err(Refusal::value("position", found, "a finite number").at(*line));
+        }
+    }
+    Ok(())
+}
+
+/// Checks that times increase.
+///
+/// Implements: TRC-004.
+fn check_times(samples: &[Sample]) -> Result<(), Refusal> {
+    let next = samples.iter().skip(1);
+    for ((_, [before, ..]), (line, [found, ..])) in samples.iter().zip(next) {
+        if found <= before {
+            let found = format!("time {found:?} s after {before:?} s");
+            return Err(Refusal::state(found, "it to increase").at(*line));
+        }
+    }
+    Ok(())
+}
+
+/// Did the probe go towards −x?
+fn backwards(samples: &[Sample]) -> bool {
+    matches!(samples, [(_, first), .., (_, last)] if last[0] < first[0])
+}
+
+/// Checks that positions go one way, but for jitter.
+///
+/// Implements: TRC-004.
+fn check_pass(samples: &[Sample]) -> Result<(), Refusal> {
+    let sign = if backwards(samples) { -1.0 } else { 1.0 };
+    let ways = || samples.iter().map(|(line, [x, ..])| (line, sign * x));
+    let least = ways().fold(f64::INFINITY, |least, (_, way)| least.min(way));
+    let most = ways().fold(f64::NEG_INFINITY, |most, (_, way)| most.max(way));
+    let jitter = JITTER * (most - least) + SAME_POSITION;
+    let mut furthest = f64::NEG_INFINITY;
+    for (&line, way) in ways() {
+        if furthest - way > jitter {
+            let [found, furthest] = [way, furthest].map(|way| mm(sign * way));
+            return Err(Refusal::state(
+                format!("position {found} mm after {furthest} mm"),
+                format!(
+                    "at most {:.3} mm back, {} % of the range: one pass of the probe, in the order of time",
+                    1e3 * jitter,
+                    100.0 * JITTER
+                ),
+            )
+            .at(line));
+        }
+        furthest = furthest.max(way);
+    }
+    Ok(())
+}
+
+impl Record {
+    /// The file that the record comes from, as its reader named it.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Lateral positions of the samples, m, increasing but for jitter.
+    pub fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+
+    /// The recorded force on the probe, N, one sample for each position.
+    pub fn forces(&self) -> Force<&[f64]> {
+        self.forces.as_deref()
+    }
+
+    /// This record without the samples outside the lateral positions of `map`, and in words how many these are, if any.
+    ///
+    /// ```
+    /// use palpate::force_map::ForceTable;
+    /// use palpate::trace::Trace;
+    ///
+    /// let map = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n4,0,1.5,0\n4,2,1.5,0\n";
+    /// let map = ForceTable::from_csv(map, "map.csv")?;
+    /// let text = "position_mm,lateral_force_n,normal_force_n\n-1,0,1.5\n1,0,1.75\n";
+    /// let (record, note) = Trace::from_csv(text, "sweep.csv")?.record(None)?.trimmed(&map)?;
+    /// assert_eq!(record.positions(), [0.001]);
+    /// assert_eq!(note.unwrap(), "1 of 2 samples left out, which are outside the maps, 0.0 to 2.0 mm");
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
+    ///
+    /// # Errors
+    /// No sample is left.
+    ///
+    /// Implements: TRC-025.
+    pub fn trimmed(self, map: &ForceTable) -> Result<(Record, Option<String>), Refusal> {
+        let all = self.positions.len();
+        let kept = (0..all).filter(|&sample| is_over(map, self.positions[sample]));
+        let kept: Vec<usize> = kept.collect();
+        let (left_out, range) = (all - kept.len(), range(map));
+        if kept.is_empty() {
+            let found = format!("all of {all} samples are outside the maps");
+            return Err(Refusal::state(found, range).in_file(self.file));
+        }
+        let note =
+            format!("{left_out} of {all} samples left out, which are outside the maps, {range}");
+        let column = |values: Vec<f64>| kept.iter().map(|&sample| values[sample]).collect();
+        let record = Record {
+            lines: kept.iter().map(|&sample| self.lines[sample]).collect(),
+            positions: column(self.positions),
+            forces: self.forces.map(column),
+            file: self.file,
+        };
+        Ok((record, (left_out > 0).then_some(note)))
+    }
+
+    /// The forces that `map` expects at `depth` (m) at the samples, N.
+    ///
+    /// # Errors
+    /// The first sample outside the map's lateral positions, with its line; a depth outside its depths.
+    ///
+    /// Implements: TRC-008, TRC-024, CLI-140.
+    pub fn expected(&self, map: &ForceTable, depth: f64) -> Result<Force<Vec<f64>>, Refusal> {
+        let outside = |&position: &f64| !is_over(map, position);
+        let expected = match self.positions.iter().position(outside) {
+            Some(sample) => {
+                let position = mm(self.positions[sample]);
+                let found = format!("position {position} mm is outside the maps");
+                let expected = format!("{} (or use --trim)", range(map));
+                Err(Refusal::state(found, expected).at(self.lines[sample]))
+            }
+            None => map.sweep(depth, &self.positions),
+        };
+        expected.map_err(|refusal| refusal.in_file(&self.file))
+    }
+}
+
+/// Whether a position (m) is within the lateral positions of `map`.
+fn is_over(map: &ForceTable, position: f64) -> bool {
+    let laterals = map.laterals();
+    let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
+    (first - SAME_POSITION..=last + SAME_POSITION).contains(&position)
+}
+
+/// The lateral positions of `map` in words.
+fn range(map: &ForceTable) -> String {
+    let laterals = map.laterals();
+    format!(
+        "{} to {} mm",
+        mm(laterals[0]),
+        mm(laterals[laterals.len() - 1])
+    )
+}
+
+/// A position in mm, exactly.
+fn mm(position: f64) -> String {
+    format_scaled(position, 3)
+}
+
+/// What the detector refuses, in the words of a trace.
+pub fn refused(error: DetectError) -> Refusal {
+    match error {
+        DetectError::NoSignal => {
+            let found = "the maps do not differ at the samples";
+            Refusal::state(found, "a signal to decide by")
+        }
+        error => Refusal::state(error, ""),
+    }
+}

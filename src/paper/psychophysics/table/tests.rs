@@ -1,0 +1,89 @@
+//! Table 1, and files of its form.
+
+use super::*;
+
+// Verifies: PSY-020.
+#[test]
+fn table_1_is_built_in() {
+    let table = AnswerTable::paper().unwrap();
+    let depths: Vec<f64> = table.inclusions().iter().map(|i| i.depth).collect();
+    assert_eq!(depths, [2.6e-3, 4.6e-3, 6.6e-3, 8.6e-3]);
+    // The means that the paper prints below each experiment, with one decimal.
+    for (condition, printed) in table.conditions().iter().zip([
+        [28.8, 27.5, 24.7, 20.0],
+        [29.2, 27.7, 25.3, 18.9],
+        [26.8, 22.8, 22.9, 17.4],
+    ]) {
+        assert_eq!(condition.subjects.len(), 10);
+        for (column, printed) in printed.into_iter().enumerate() {
+            let (correct, trials) = condition.pooled(column);
+            assert_eq!((correct as f64, trials), (10.0 * printed, 300));
+        }
+    }
+}
+
+// The report keeps the same table: a slip of the pen in one of them shows.
+// Verifies: PSY-020.
+#[test]
+fn the_report_has_the_same_table() {
+    use crate::report::paper::EXPERIMENTS;
+    let table = AnswerTable::paper().unwrap();
+    for (condition, experiment) in table.conditions().iter().zip(&EXPERIMENTS) {
+        assert_eq!(condition.name, experiment.name);
+        let subjects: Vec<&[u32]> = condition.subjects.iter().map(|s| &s.correct[..]).collect();
+        assert_eq!(subjects, experiment.correct);
+    }
+}
+
+// Verifies: PSY-020.
+#[test]
+fn names_and_trials_are_free() {
+    let text = "\u{feff}# mine\nsubject, condition, trials, soft 6.6, stiff 6.6\n a b , x , 7 , 0 , 7 \n\nc,x,1000,999,1\na b,y,1,1,0\n";
+    let table = AnswerTable::from_csv(text, "file").unwrap();
+    let names = table.inclusions().iter().map(|i| (&i.name[..], i.depth));
+    assert!(names.eq([("soft 6.6", 6.6e-3), ("stiff 6.6", 6.6e-3)]));
+    let [x, y] = table.conditions() else { panic!() };
+    assert_eq!((x.name.as_str(), x.subjects.len()), ("x", 2));
+    assert_eq!(x.counts(0), [(0, 7), (999, 1000)]);
+    assert_eq!(y.pooled(0), (1, 1));
+}
+
+/// What stands in a good table, what stands there instead, and words of the refusal.
+const REFUSED: &str = "
+subject, => sbjct, => t.csv:1: header \"sbjct,condition,trials,2.6,8.6\", expected subject,condition,trials
+,2.6,8.6 =>  => t.csv:1: header
+8.6 => deep => t.csv:1: header, column 5 = \"deep\", expected the name of an inclusion that ends in its depth in mm
+8.6 => -8.6 => \"-8.6\", expected the name
+8.6 => inf => \"inf\", expected the name
+8.6 => 2.6 => column 5 = \"2.6\", expected each inclusion once
+2,gel,30,30,21 => 2,gel,30,30 => t.csv:3: 4 fields, expected 5
+30,21 => 31,21 => t.csv:3: 2.6 = \"31\", expected a whole number from 0 to the 30 trials of the row
+30,21 => 30,-1 => t.csv:3: 8.6 = \"-1\", expected a whole number from 0
+30,21 => 30,21.0 => t.csv:3: 8.6 = \"21.0\", expected a whole number
+2,gel,30 => 2,gel,0 => t.csv:3: trials = \"0\", expected a whole number from 1 to 1000
+2,gel,30 => 2,gel,1001 => t.csv:3: trials = \"1001\", expected
+2,gel => 2, => t.csv:3: condition = \"\", expected a name
+2,gel => \u{1b}[2m,gel => t.csv:3: subject = \"\\u{1b}[2m\", expected a name of printable
+2,gel => 1,gel => t.csv:3: subject \"1\" again under condition \"gel\", expected once; first in line 2
+";
+
+// Verifies: PSY-020.
+#[test]
+fn what_is_no_table_is_refused_with_line_column_and_value() {
+    let good = "subject,condition,trials,2.6,8.6\n1,gel,30,28,20\n2,gel,30,30,21\n";
+    assert!(AnswerTable::from_csv(good, "t.csv").is_ok());
+    for case in REFUSED.trim().lines() {
+        let [from, to, message] = case.split(" => ").collect::<Vec<_>>()[..] else {
+            panic!("{case}");
+        };
+        let text = good.replacen(from, to, 1);
+        let error = AnswerTable::from_csv(&text, "t.csv")
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(message) && !error.contains('\n'), "{error}");
+    }
+    let empty = AnswerTable::from_csv("subject,condition,trials,2.6\n", "t").unwrap_err();
+    let words = "t:1: no rows under the header, expected at least one";
+    assert_eq!(empty.to_string(), words);
+    assert!(AnswerTable::from_csv("", "t").is_err());
+}

@@ -1,0 +1,190 @@
+//! What one force map says: its signal, signal-to-noise ratios, thresholds and error rates.
+
+use serde::Serialize;
+
+use super::nuisances::GammaLeft;
+use super::pressure::ArrayFindings;
+use super::quality::{Quality, warnings};
+use super::text::name_of_map;
+use super::{Run, Settings, paper};
+use palpate::detect::{
+    DetectError, ErrorRates, MatchedFilter, error_rates, map_threshold,
+    neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, two_afc,
+};
+use palpate::force::Force;
+use palpate::force_map::{ForceMap, SAME_POSITION, peak};
+use palpate::phantom::Phantom;
+use palpate::refusal::Refusal;
+
+/// What the reference map says.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReferenceFindings {
+    /// The name of its phantom: untrusted text.
+    pub name: String,
+    /// The normal force at x = 0, N, if x = 0 is on the axis.
+    pub normal_force_at_centre_n: Option<f64>,
+    /// How good the computation was; `None` for measured forces.
+    pub quality: Option<Quality>,
+}
+
+/// What the map of one phantom says.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MapFindings {
+    /// The name of its phantom: untrusted text.
+    pub name: String,
+    /// Which of the paper's phantoms it is, if any.
+    pub paper_phantom: Option<&'static str>,
+    /// The depth of the highest point of all inclusions, m; `None` without any.
+    pub inclusion_depth_m: Option<f64>,
+    /// Where F_1 − F_0 of the normal force is largest in magnitude.
+    pub peak_normal: Peak,
+    /// Where F_1 − F_0 of the lateral force is largest in magnitude.
+    pub peak_lateral: Peak,
+    /// γ of the matched filter over the whole lateral sweep, if all but the noise is known; the thresholds are for it.
+    pub gamma: GammaByChannel,
+    /// What is left of it if more is unknown.
+    pub gamma_left: GammaLeft,
+    /// γ of tactile arrays under the probe; `None` where the run does not hold what they read.
+    pub array: Option<ArrayFindings>,
+    /// The maximum a-posteriori rule.
+    pub map_rule: Threshold,
+    /// Neyman–Pearson with the miss rate bounded; the fewest false alarms.
+    pub bounded_miss: Threshold,
+    /// Neyman–Pearson with the false-alarm rate bounded; the fewest misses. `None` if γ = 0.
+    pub bounded_false_alarm: Option<Threshold>,
+    /// The area under the curve of hits against false alarms.
+    pub auc: f64,
+    /// The share of right answers in pairs.
+    pub two_afc: f64,
+    /// How good the computation was; `None` for measured forces.
+    pub quality: Option<Quality>,
+    /// What a reader must know before using these numbers.
+    pub warnings: Vec<String>,
+}
+
+/// An extreme of a signal along the lateral sweep.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Peak {
+    /// The signed force, N.
+    pub force_n: f64,
+    /// The lateral position, m; of mirror images the one with x ≥ 0.
+    pub lateral_m: f64,
+}
+
+impl Peak {
+    /// Implements: REP-012.
+    fn of(map: &ForceMap, signal: &[f64]) -> Peak {
+        let (force_n, lateral_m) = peak(map.laterals(), signal);
+        Peak { force_n, lateral_m }
+    }
+}
+
+/// γ with both channels and with each alone.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct GammaByChannel {
+    /// Both.
+    pub both: f64,
+    /// The normal force alone.
+    pub normal: f64,
+    /// The lateral force alone.
+    pub lateral: f64,
+}
+
+/// A threshold with its error rates.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Threshold {
+    /// η of equation (9).
+    pub eta: f64,
+    /// Pr(Ĥ = 1 | H = 0).
+    pub false_alarm: f64,
+    /// Pr(Ĥ = 0 | H = 1).
+    pub miss: f64,
+}
+
+/// The refusal of a map.
+///
+/// Implements: REP-004.
+pub(super) fn incomparable(map: &ForceMap) -> impl FnOnce(Refusal) -> Refusal {
+    let name = name_of_map(map);
+    Refusal::because(format!(
+        "map {name:?} cannot be compared with the reference"
+    ))
+}
+
+pub(super) fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindings, Refusal> {
+    let row = map.row(depth).map_err(incomparable(map))?;
+    let centre = map.laterals().iter().position(|x| x.abs() <= SAME_POSITION);
+    Ok(ReferenceFindings {
+        name: name_of_map(map),
+        normal_force_at_centre_n: centre.map(|column| row.normal[column]),
+        quality: Quality::of(map),
+    })
+}
+
+pub(super) fn of_map(run: &Run, map: &ForceMap, depth: f64) -> Result<MapFindings, Refusal> {
+    let signal = map.signal(&run.reference);
+    let signal = signal.map_err(incomparable(map))?;
+    let signal = signal.row(depth).map_err(incomparable(map))?;
+    let left = GammaLeft::of(run, signal, depth).map_err(incomparable(map))?;
+    let found = ArrayFindings::of(run, map, signal, depth)
+        .and_then(|array| judged(&run.settings, map, signal, (left, array)));
+    found.map_err(Refusal::because(format!("map {:?}", name_of_map(map))))
+}
+
+/// What the detector makes of a map's signal.
+///
+/// Implements: REP-012.
+fn judged(
+    settings: &Settings,
+    map: &ForceMap,
+    signal: Force<&[f64]>,
+    (gamma_left, array): (GammaLeft, Option<ArrayFindings>),
+) -> Result<MapFindings, DetectError> {
+    let Force { lateral, normal } = signal;
+    let zeros = vec![0.0; normal.len()];
+    let gamma = GammaByChannel {
+        both: gamma(lateral, normal, settings.noise_sd_n)?,
+        normal: gamma(&zeros, normal, settings.noise_sd_n)?,
+        lateral: gamma(lateral, &zeros, settings.noise_sd_n)?,
+    };
+    let both = gamma.both;
+    let at = |eta: f64| {
+        let ErrorRates { false_alarm, miss } = error_rates(both, eta)?;
+        Ok(Threshold {
+            eta,
+            false_alarm,
+            miss,
+        })
+    };
+    let bounded = neyman_pearson_false_alarm_threshold(both, settings.max_false_alarm);
+    let quality = Quality::of(map);
+    let phantom = map.phantom();
+    Ok(MapFindings {
+        name: name_of_map(map),
+        paper_phantom: phantom.and_then(paper::name_of),
+        inclusion_depth_m: phantom.and_then(Phantom::inclusion_depth),
+        peak_normal: Peak::of(map, normal),
+        peak_lateral: Peak::of(map, lateral),
+        gamma,
+        gamma_left,
+        array,
+        map_rule: at(map_threshold(settings.prior_h1)?)?,
+        bounded_miss: at(neyman_pearson_miss_threshold(both, settings.max_miss)?)?,
+        bounded_false_alarm: match bounded.and_then(at) {
+            // Two phantoms that feel the same: there is no threshold to state.
+            Err(DetectError::NoSignal) => None,
+            other => Some(other?),
+        },
+        auc: two_afc(both)?,
+        two_afc: two_afc(both)?,
+        warnings: warnings(quality.as_ref(), both),
+        quality,
+    })
+}
+
+/// γ of lateral and normal forces in noise of the same standard deviation.
+pub(super) fn gamma(lateral: &[f64], normal: &[f64], noise_sd: f64) -> Result<f64, DetectError> {
+    let template = Force { lateral, normal };
+    let noise_sd = Force::new(noise_sd, noise_sd);
+    MatchedFilter::new(template, noise_sd).map(|filter| filter.gamma())
+}

@@ -1,0 +1,88 @@
+//! γ of a sweep of which more is unknown than the noise (`spec/nuisance.md`).
+
+use serde::Serialize;
+
+use super::{GammaByChannel, Run};
+use palpate::detect::nuisance::Nuisances;
+use palpate::force::Force;
+use palpate::refusal::Refusal;
+use palpate::trace::{Unknown, in_words, nuisances};
+
+/// What may be unknown, from nothing on. The level of the noise, which may be unknown too, takes nothing from γ.
+const UNKNOWN: [&[Unknown]; 6] = {
+    use Unknown::{Depth, Drift, Gain, Offset};
+    [
+        &[],
+        &[Offset],
+        &[Offset, Drift],
+        &[Gain],
+        BY_DEFAULT,
+        &[Offset, Drift, Gain, Depth],
+    ]
+};
+
+/// What `palpate detect` takes as unknown, but for the level of the noise, unless it is told more.
+const BY_DEFAULT: &[Unknown] = &[Unknown::Offset, Unknown::Drift, Unknown::Gain];
+
+/// What is left of γ where more is unknown than the noise.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GammaLeft {
+    /// With what is unknown unless `palpate detect` is told more: offset and drift of each channel, and the gain.
+    #[serde(flatten)]
+    pub by_default: GammaByChannel,
+    /// γ of both channels with more and more unknown.
+    pub beside: Vec<GammaBeside>,
+}
+
+/// γ of both channels beside something unknown.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct GammaBeside {
+    /// What is unknown but the noise.
+    pub unknown: &'static [Unknown],
+    /// What is left of γ.
+    pub gamma: f64,
+}
+
+impl GammaBeside {
+    /// What is unknown, in words.
+    pub(super) fn words(&self) -> String {
+        in_words(self.unknown)
+    }
+}
+
+/// The samples that are read.
+type Read = fn(Force<&[f64]>) -> Vec<f64>;
+
+impl GammaLeft {
+    /// What is left of γ of `signal`, which a map adds to the reference of `run` at `depth`, a row of both.
+    ///
+    /// Implements: REP-016.
+    pub(super) fn of(run: &Run, signal: Force<&[f64]>, depth: f64) -> Result<GammaLeft, Refusal> {
+        let reference = &run.reference;
+        let expected = |depth| Ok(reference.row(depth)?.map(<[f64]>::to_vec));
+        let gamma = |unknown: &[Unknown], read: Read| -> Result<f64, Refusal> {
+            let nuisances = nuisances(unknown, reference.depths(), depth, expected)?;
+            let nuisances = nuisances.iter().flat_map(|of| read(of.as_deref()));
+            let (mut nuisances, mut signal) = (nuisances.collect::<Vec<_>>(), read(signal));
+            let space = Nuisances::new(&mut nuisances, signal.len());
+            let space = space.map_err(|error| Refusal::state(error.to_string(), ""))?;
+            Ok(space.project(&mut signal) / run.settings.noise_sd_n)
+        };
+        let both: Read = |of| [of.lateral, of.normal].concat();
+        let has_slope = |unknown: &&&[Unknown]| {
+            reference.depths().len() > 1 || !unknown.contains(&Unknown::Depth)
+        };
+        let beside = UNKNOWN.iter().filter(has_slope).map(|unknown| {
+            let gamma = gamma(unknown, both)?;
+            Ok(GammaBeside { unknown, gamma })
+        });
+        Ok(GammaLeft {
+            beside: beside.collect::<Result<_, Refusal>>()?,
+            by_default: GammaByChannel {
+                both: gamma(BY_DEFAULT, both)?,
+                normal: gamma(BY_DEFAULT, |of| of.normal.to_vec())?,
+                lateral: gamma(BY_DEFAULT, |of| of.lateral.to_vec())?,
+            },
+        })
+    }
+}

@@ -1,0 +1,77 @@
+//! The certificates of the maps in short, and what a reader must be warned of.
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use super::text::millimetres;
+use palpate::fem::SMALL_STRAIN_LIMIT;
+use palpate::force_map::{Certificate, Discretization, ForceMap};
+
+/// The certificate of a computed map; in JSON without what it says of every pose.
+///
+/// Implements: REP-041.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quality {
+    /// How good the computation was.
+    pub certificate: Certificate,
+    /// The version of the program that computed the map.
+    pub program_version: String,
+}
+
+impl Quality {
+    /// What is known of a map; `None` for measured forces.
+    pub(super) fn of(map: &ForceMap) -> Option<Quality> {
+        Some(Quality {
+            certificate: map.certificate()?.clone(),
+            program_version: map.program_version().into(),
+        })
+    }
+
+    /// The largest half bands of the discretisation around a normal and a lateral force, N, where they were estimated.
+    pub fn bands(&self) -> [Option<f64>; 2] {
+        let bands = self.certificate.discretization.as_ref();
+        let bands = bands.map(Discretization::largest);
+        [0, 1].map(|channel| bands.map(|bands| bands[channel]))
+    }
+}
+
+impl Serialize for Quality {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (of, [normal, lateral]) = (&self.certificate, self.bands());
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("worst_relative_residual", &of.worst_relative_residual)?;
+        map.serialize_entry("worst_force_balance_n", &of.worst_force_balance)?;
+        map.serialize_entry("largest_normal_band_n", &normal)?;
+        map.serialize_entry("largest_lateral_band_n", &lateral)?;
+        map.serialize_entry("largest_penetration_m", &of.largest_penetration)?;
+        map.serialize_entry("smallest_det", &of.smallest_det.det)?;
+        map.serialize_entry("smallest_det_depth_m", &of.smallest_det.depth)?;
+        map.serialize_entry("smallest_det_lateral_m", &of.smallest_det.lateral)?;
+        map.serialize_entry("mesh_size_m", &of.mesh_size)?;
+        map.serialize_entry("nodes", &of.nodes)?;
+        map.serialize_entry("element", &of.element)?;
+        map.serialize_entry("contact", &of.contact)?;
+        map.serialize_entry("program_version", &self.program_version)?;
+        map.end()
+    }
+}
+
+/// Implements: REP-015.
+pub(super) fn warnings(quality: Option<&Quality>, gamma: f64) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let smallest = quality.map(|quality| quality.certificate.smallest_det);
+    if let Some(smallest) = smallest.filter(|of| of.det < SMALL_STRAIN_LIMIT) {
+        warnings.push(format!(
+            "Small strain is at its limit: det(I + ∇u) falls to {:.3} at depth {} mm, x = {} mm (below {SMALL_STRAIN_LIMIT}); forces near that pose are the linear model's, not a real gel's.",
+            smallest.det,
+            millimetres(smallest.depth),
+            millimetres(smallest.lateral),
+        ));
+    }
+    if gamma == 0.0 {
+        warnings.push(
+            "No signal: the forces equal the reference's, so nothing can be detected.".into(),
+        );
+    }
+    warnings
+}

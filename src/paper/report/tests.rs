@@ -1,0 +1,355 @@
+//! A small run whose numbers follow in closed form, and hostile ones.
+
+// Expected values keep the digits that their source printed.
+#![allow(clippy::excessive_precision)]
+
+mod inputs;
+mod nuisances;
+mod outputs;
+mod page;
+mod pictures;
+mod pressure;
+mod run;
+pub mod table_1;
+mod xml;
+
+use super::*;
+use palpate::phantom::Support;
+use palpate_asserts::assert_near;
+use run::*;
+
+/// Expected values are from mpmath with 30 digits; the detector's own accuracy is tested elsewhere.
+fn assert_close(found: f64, expected: f64) {
+    assert_near(found, expected, 1e-13 * expected.abs());
+}
+
+// Verifies: REP-001.
+#[test]
+fn settings_default_to_the_paper() {
+    let noise_sd = 0.235;
+    assert_eq!(
+        Settings::default(),
+        Settings {
+            noise_sd_n: noise_sd,
+            ..SETTINGS
+        }
+    );
+}
+
+// Verifies: REP-012.
+#[test]
+fn numbers_of_a_triangular_signal() {
+    let found = findings(&paper_run()).unwrap();
+    let map = &found.maps[2];
+    assert_eq!(map.name, "6.6");
+    // ΣΔ² is 1.5 · 0.3² normal and 2 · 0.1² lateral, in noise of 0.1 N.
+    for (found, expected) in [
+        (map.peak_normal.force_n, 0.3),
+        (map.peak_normal.lateral_m, 0.0),
+        (map.peak_lateral.force_n, 0.1),
+        (map.peak_lateral.lateral_m, 5e-3),
+        (map.gamma.normal, libm::sqrt(13.5)),
+        (map.gamma.lateral, libm::sqrt(2.0)),
+        (map.gamma.both, libm::sqrt(15.5)),
+        (map.auc, 0.997314372939209941),
+        (map.two_afc, 0.997314372939209941),
+    ] {
+        assert_close(found, expected);
+    }
+    let even = 0.0245051549198494117;
+    assert_threshold(map.map_rule, [0.0, even, even]);
+    let (eta, rare) = (1.27420479489360891, 0.0109484855667236183);
+    assert_threshold(map.bounded_miss, [eta, rare, 0.05]);
+    assert_threshold(map.bounded_false_alarm.unwrap(), [-eta, 0.05, rare]);
+}
+
+/// η, false alarms, misses.
+fn assert_threshold(found: Threshold, expected: [f64; 3]) {
+    let found = [found.eta, found.false_alarm, found.miss];
+    for (found, expected) in found.into_iter().zip(expected) {
+        assert_close(found, expected);
+    }
+}
+
+// Either threshold keeps its own bound: with γ² = 15.5, η = γ²/2 − γΦ⁻¹(0.9) and −γ²/2 + γΦ⁻¹(0.98).
+// Verifies: REP-012.
+#[test]
+fn each_bound_has_its_own_threshold() {
+    let mut run = paper_run();
+    run.settings.max_miss = 0.1;
+    run.settings.max_false_alarm = 0.02;
+    let map = &findings(&run).unwrap().maps[2];
+    let expected = [2.7045264409748262, 0.00396010585635342014, 0.1];
+    assert_threshold(map.bounded_miss, expected);
+    let expected = [0.335617546779076951, 0.02, 0.0298329075387685601];
+    assert_threshold(map.bounded_false_alarm.unwrap(), expected);
+}
+
+// Verifies: REP-012.
+#[test]
+fn of_equal_peaks_the_one_nearest_to_the_middle_counts() {
+    let ties = |x: f64| match x.abs() > 7e-3 {
+        true => -0.2,
+        false => 0.2 * x.abs() / 5e-3,
+    };
+    let pit = |x: f64| if x == 0.0 { -0.3 } else { 0.2 };
+    let mut run = paper_run();
+    // The first is −0.2 N at both ends, 0.2 N at ±5 mm.
+    run.maps = vec![
+        map_with("ties", ties, |_| 0.0),
+        map_with("pit", pit, |_| 0.0),
+    ];
+    let found = findings(&run).unwrap();
+    let [ties, pit] = [0, 1].map(|map| found.maps[map].peak_normal);
+    assert!(ties.lateral_m == 5e-3 && ties.force_n > 0.0);
+    assert_close(pit.force_n, -0.3);
+}
+
+fn row<'a>(found: &'a Findings, quantity: &str) -> &'a Comparison {
+    let rows = found.comparison.iter();
+    let rows: Vec<_> = rows.filter(|row| row.quantity.contains(quantity)).collect();
+    assert_eq!(rows.len(), 1, "rows {quantity:?}");
+    rows[0]
+}
+
+fn has_row(found: &Findings, quantity: &str) -> bool {
+    let mut rows = found.comparison.iter();
+    rows.any(|row| row.quantity.contains(quantity))
+}
+
+fn number(value: Value) -> f64 {
+    let (Value::ForceN(number) | Value::Gamma(number) | Value::Probability(number)) = value;
+    number
+}
+
+// Verifies: REP-020, REP-070.
+#[test]
+fn every_number_of_the_paper_has_its_row() {
+    let found = findings(&paper_run()).unwrap();
+    for (quantity, paper, here) in [
+        ("Force level", 1.6, 1.48),
+        ("Signal F₁", 0.5, 0.45),
+        ("Peak signal", 0.34, 0.3),
+        ("at most 5 %", 3.3, 3.28970725390294543),
+        ("allowed in all", 0.15, 0.151989207977942236),
+        ("allowed to the display", 0.11, 0.114458373838536514),
+        ("playback of FEM data, from", 0.17, 0.168075132009467718),
+        ("direct contact, from", 0.22, 0.220565183109211505),
+        ("84 %", 1.45, 1.40637582564407233),
+        ("of the subjects", 0.235, 0.210395775374330952688),
+    ] {
+        let row = row(&found, quantity);
+        assert_eq!(number(row.paper), paper, "{quantity}");
+        assert_close(number(row.here), here);
+        assert!(row.why.len() > 10, "{quantity}");
+    }
+    assert_eq!(found.comparison.len(), 14);
+    assert_eq!(found.people.conditions.len(), 3);
+}
+
+/// Expected values are from mpmath: the noise with the largest likelihood of the four counts solves one equation.
+/// The search for it stops where the likelihood is flat to 1e-9, so that the noise and the shares keep 4 digits fewer
+/// than a double at the least.
+// √(0.15² − 0.1²) and, with 0.5 N/3.28971 = 0.151989 N, √(0.151989² − 0.093²) N. The interval is 0.3 N over √2 Φ⁻¹ of 0.7415 and of 0.9452,
+// the ends with the subjects as the sample (scipy); of all answers pooled it would be 0.179 to 0.255 N.
+// Verifies: REP-020.
+#[test]
+fn the_reasons_hold_the_numbers_that_they_name() {
+    let found = findings(&paper_run()).unwrap();
+    let display = &row(&found, "allowed to the display").why;
+    for number in ["it is 0.1118 N", "it is 0.120 N"] {
+        assert!(display.contains(number), "{number}: {display}");
+    }
+    let noise = &row(&found, "of the subjects").why;
+    assert!(noise.contains("interval is 0.133 to 0.327 N"), "{noise}");
+}
+
+// Verifies: REP-020.
+#[test]
+fn rates_are_predicted_with_one_noise_level_for_all_depths() {
+    let found = findings(&paper_run()).unwrap();
+    for (quantity, counted, expected) in [
+        ("FEM playback, 2.6", 292.0, 0.970819401558362083),
+        ("FEM playback, 4.6", 277.0, 0.922157029428948384),
+        ("FEM playback, 6.6", 253.0, 0.828049999963410114),
+        ("FEM playback, 8.6", 189.0, 0.681980354179924793),
+    ] {
+        let row = row(&found, quantity);
+        assert_eq!(number(row.paper), counted / 300.0);
+        let here = number(row.here);
+        assert!((here - expected).abs() < 1e-5, "{quantity}: {here}");
+        assert!(row.why.contains("0.224 N"), "{}", row.why);
+    }
+    let noise = &row(&found, "of the subjects").why;
+    let holds = noise.contains("0.300 N over 1.426") && noise.contains("95 %");
+    assert!(holds, "{noise}");
+}
+
+/// The expected ends are from mpmath.
+// Verifies: REP-030.
+#[test]
+fn the_normal_approximation_has_its_ends() {
+    let bounds = normal_approximation(253.0 / 300.0, 300);
+    assert_close(bounds.lower, 0.802201752767006725);
+    assert_close(bounds.upper, 0.884464913899659942);
+    assert_eq!(normal_approximation(0.99, 30).upper, 1.0);
+}
+
+/// The expected values are the means that the paper prints below each block of Table 1.
+// Verifies: REP-070.
+#[test]
+fn table_1_gives_the_means_that_the_paper_prints() {
+    let found = findings(&paper_run()).unwrap();
+    for (condition, means) in found.people.conditions.iter().zip(paper::PRINTED_MEANS) {
+        for (inclusion, mean) in condition.inclusions.iter().zip(means) {
+            assert_eq!(inclusion.pooled.correct as f64, (10.0_f64 * mean).round());
+        }
+    }
+}
+
+// Verifies: REP-020, REP-070.
+#[test]
+fn rows_without_their_phantom_are_left_out() {
+    let mut run = paper_run();
+    run.maps.remove(2);
+    let found = findings(&run).unwrap();
+    let bridge = found.bridge.as_ref().unwrap();
+    assert_eq!(bridge.inclusions.len(), 3);
+    assert!(!has_row(&found, "6.6"));
+    run.maps.truncate(1);
+    assert_eq!(findings(&run).unwrap().bridge, None);
+    row(&found, "Force level");
+    run.maps.clear();
+    let found = findings(&run).unwrap();
+    assert!(!has_row(&found, "Signal F₁"));
+    // Another reference: no number of the paper is about it.
+    let mut softer = Phantom::builtin("none").unwrap();
+    softer.layers[1].material.youngs_modulus = 4e3;
+    let mut run = paper_run();
+    run.reference = map(Some(softer), &DEPTHS, |_| 0.0, |_| 0.0);
+    let found = findings(&run).unwrap();
+    assert!(!has_row(&found, "Force level"));
+    assert_eq!(found.bridge, None);
+    assert_eq!(found.people.conditions.len(), 3);
+}
+
+// Verifies: REP-010.
+#[test]
+fn a_phantom_is_the_papers_by_its_data_and_not_by_its_name() {
+    let mut phantom = Phantom::builtin("6.6").unwrap();
+    phantom.name = "mine".into();
+    phantom.layers[1].name = "agar".into();
+    assert_eq!(paper::name_of(&phantom), Some("6.6"));
+    phantom.well.walls = Support::Sliding;
+    assert_eq!(paper::name_of(&phantom), None);
+    phantom.well.walls = Support::Fixed;
+    phantom.name = "6.6".into();
+    phantom.probe.radius = 6e-3;
+    assert_eq!(paper::name_of(&phantom), None);
+}
+
+// Verifies: REP-003.
+#[test]
+fn of_several_inclusions_the_highest_is_named() {
+    let mut phantom = Phantom::builtin("6.6").unwrap();
+    let mut higher = phantom.inclusions[0].clone();
+    (higher.centre_x, higher.depth) = (-9e-3, 2e-3);
+    phantom.inclusions.push(higher);
+    let mut run = paper_run();
+    run.maps = vec![map(Some(phantom), &DEPTHS, |_| 0.1, |_| 0.0)];
+    let found = findings(&run).unwrap();
+    assert_eq!(found.maps[0].inclusion_depth_m, Some(2e-3));
+    let figures = figures(&run, &found).unwrap();
+    let title = |figure: &&Figure| figure.title == "Figure 5. Forces, phantom “6.6”: 2 inclusions";
+    assert_eq!(figures.iter().filter(title).count(), 1);
+}
+
+// Verifies: REP-002.
+#[test]
+fn without_4_mm_the_deepest_depth_counts_and_is_named() {
+    let mut run = paper_run();
+    let depths = [0.0, 1e-3, 3e-3];
+    run.reference = map(Phantom::builtin("none").ok(), &depths, |_| 0.0, |_| 0.0);
+    run.maps = vec![map(Phantom::builtin("6.6").ok(), &depths, |_| 0.4, |_| 0.0)];
+    let found = findings(&run).unwrap();
+    assert_eq!(found.probe_depth_m, 3e-3);
+    // The synthetic forces are proportional to the depth, and 0.4 N at 4 mm.
+    assert_close(found.maps[0].peak_normal.force_n, 0.3);
+    let note = found.probe_depth_note.clone().unwrap();
+    assert!(note.contains("3 mm"), "{note}");
+    assert_eq!(found.bridge, None);
+    assert!(!has_row(&found, "Force level"));
+    let made = made(&run);
+    assert!(made.page.contains(&shown(&note)));
+    assert!(made.figure("signals").title.contains("3 mm"));
+}
+
+// Verifies: REP-002.
+#[test]
+fn at_4_mm_there_is_no_note_though_the_maps_go_deeper() {
+    let mut run = paper_run();
+    let depths = [0.0, 4e-3 + 1e-10, 5e-3];
+    run.reference = map(Phantom::builtin("none").ok(), &depths, |_| 0.0, |_| 0.0);
+    run.maps.clear();
+    let found = findings(&run).unwrap();
+    assert_eq!(found.probe_depth_m, depths[1]);
+    assert_eq!(found.probe_depth_note, None);
+}
+
+// Verifies: REP-012, REP-015.
+#[test]
+fn a_map_like_the_reference_cannot_be_detected() {
+    let mut run = paper_run();
+    run.maps = vec![run.reference.clone()];
+    let found = findings(&run).unwrap();
+    let map = &found.maps[0];
+    assert_eq!(map.gamma.both, 0.0);
+    assert_eq!(map.bounded_false_alarm, None);
+    assert_eq!(map.auc, 0.5);
+    assert!(map.warnings.concat().contains("nothing can be detected"));
+}
+
+// Verifies: REP-015.
+#[test]
+fn a_squeezed_gel_is_warned_of() {
+    let mut run = paper_run();
+    for (smallest, warned) in [(0.2, 0), (0.19, 1)] {
+        run.maps = vec![computed_map("6.6", smallest)];
+        let found = findings(&run).unwrap();
+        let warnings = &found.maps[0].warnings;
+        assert_eq!(warnings.len(), warned, "{warnings:?}");
+        let place = "0.190 at depth 4 mm, x = −5 mm";
+        assert!(warnings.iter().all(|warning| warning.contains(place)));
+    }
+}
+
+// Verifies: REP-004.
+#[test]
+fn what_does_not_fit_is_refused() {
+    let refused = |settings, maps: &[ForceMap], words: &[&str]| {
+        let maps = maps.to_vec();
+        let run = Run {
+            settings,
+            maps,
+            ..paper_run()
+        };
+        let error = findings(&run).unwrap_err().to_string();
+        assert!(words.iter().all(|word| error.contains(word)), "{error}");
+    };
+    let other = map(Phantom::builtin("4.6").ok(), &[0.0, 4e-3], |_| 0.0, |_| 0.0);
+    refused(SETTINGS, &[other], &["\"4.6\"", "depths_m"]);
+    let damaged = |word: &str, damage: fn(&mut Settings)| {
+        let mut settings = SETTINGS;
+        damage(&mut settings);
+        for maps in [paper_run().maps, Vec::new()] {
+            refused(settings, &maps, &[word]);
+        }
+    };
+    damaged("noise_sd", |settings| settings.noise_sd_n = 0.0);
+    damaged("noise_sd", |settings| settings.noise_sd_n = f64::NAN);
+    damaged("max_miss", |settings| settings.max_miss = 1.0);
+    damaged("max_false_alarm", |settings| {
+        settings.max_false_alarm = f64::NAN
+    });
+    damaged("prior_h1", |settings| settings.prior_h1 = -0.1);
+}

@@ -1,0 +1,138 @@
+//! A study beside a run: what the page and the figures show of it, and which studies are refused.
+
+use std::sync::OnceLock;
+
+use super::run::*;
+use crate::report::inputs::{Survival, survival};
+use crate::report::{Figure, Run, findings};
+use crate::study::tests::{near, plan, results};
+use crate::study::{Kind, StudyPlan, StudyResults};
+use palpate::phantom::{BUILTIN_NAMES, Phantom};
+use palpate_asserts::assert_has;
+
+/// The paper's run with a study of it, on a coarse mesh.
+fn with_study() -> Run {
+    static STUDY: OnceLock<StudyResults> = OnceLock::new();
+    let study = STUDY.get_or_init(|| {
+        let mut plan = plan(vec![
+            near("gel: <modulus>", "layer[1].youngs_modulus_kpa", 5.0),
+            near("gel: height", "layer[1].thickness_mm", 15.0),
+        ]);
+        let phantoms = BUILTIN_NAMES[1..].iter();
+        plan.phantoms = phantoms
+            .map(|name| Phantom::builtin(name).unwrap())
+            .collect();
+        plan.laterals = LATERALS.into();
+        (plan.mesh_size, plan.noise_sd) = (3e-3, SETTINGS.noise_sd_n);
+        results(&plan, usize::MAX)
+    });
+    Run {
+        study: Some(study.clone()),
+        ..paper_run()
+    }
+}
+
+// Verifies: REP-081, REP-083.
+#[test]
+fn a_study_stands_beside_the_numbers_of_the_run() {
+    let run = with_study();
+    let study = run.study.as_ref().unwrap();
+    let made = made(&run);
+    let section = between(&made.page, "<section id=\"inputs\"", "</section>");
+    // Noise of 0.1 N: γ is twice what is needed and more.
+    for name in &BUILTIN_NAMES[1..] {
+        let line = format!("<li>The inclusion of phantom {name} is found");
+        let line = between(section, &line, "</li>");
+        assert_has(line, "in 100.0 % of the draws");
+        assert!(line.ends_with("survives the uncertainty of the inputs."));
+    }
+    let force = study.of("none", &Kind::NormalForceN { lateral_m: 0.0 });
+    let lower = force.unwrap().band.unwrap().lower.value;
+    let lower = super::super::text::fixed(lower, 2);
+    assert_has(
+        section,
+        &format!("the normal force at x = 0 is between {lower} and "),
+    );
+    // 4 % in the modulus and the height of the gel are not 8 % in the force.
+    assert_has(
+        section,
+        "outside, so that the inputs alone do not explain the difference",
+    );
+    let rejected = "These explanations of the answers to FEM playback are rejected whatever the inputs \
+                    (share of the draws): peak, normal force (100.0 %)";
+    assert_has(section, rejected);
+    // Names are text.
+    assert_has(section, "gel: &#60;modulus&#62;");
+    assert!(!section.contains("<modulus>"), "{section}");
+    let table = between(section, "table-bands", "</table>");
+    assert_eq!(table.matches("<tr>").count(), 1 + study.listed().count());
+    let captions = |name: &str| {
+        let is_named = |figure: &&Figure| figure.file_name.starts_with(name);
+        let figures = made.figures.iter().filter(is_named);
+        figures
+            .map(|figure| figure.caption.clone())
+            .collect::<Vec<_>>()
+    };
+    for (name, count) in [("figure-5", 5), ("figure-11", 1), ("gamma", 1)] {
+        let captions = captions(name);
+        assert_eq!(captions.len(), count, "{name}");
+        let words = "the draws of the uncertain inputs";
+        captions
+            .iter()
+            .for_each(|caption| assert_has(caption, words));
+    }
+    assert!(!captions("figure-10")[0].contains("draws"));
+    // Of the two inputs the modulus counts more in the force: 0.9 against 0.3 per cent per per cent.
+    let drawn = "none: normal force at 0.0 mm, N: gel: <modulus> 3.6 %, gel: height −1.";
+    assert_has(&made.figure("inputs").alt, drawn);
+}
+
+// Verifies: REP-081.
+#[test]
+fn without_a_study_the_page_says_so() {
+    let made = made(&paper_run());
+    assert_has(&made.page, "No study of the inputs belongs to this run");
+    for figure in &made.figures {
+        assert!(figure.file_name != "inputs.svg" && !figure.caption.contains("draws"));
+    }
+}
+
+// Verifies: REP-004.
+#[test]
+fn a_study_of_something_else_is_refused() {
+    let refused = |what: &str, change: fn(&mut StudyPlan)| {
+        let mut run = with_study();
+        change(&mut run.study.as_mut().unwrap().plan);
+        let found = findings(&run).unwrap_err().to_string();
+        let expected =
+            format!("the study of the inputs has another {what} than the run, expected ");
+        assert!(found.starts_with(&expected), "{found}");
+    };
+    refused("reference", |plan| plan.reference.well.width = 0.04);
+    let deeper = |plan: &mut StudyPlan| plan.phantoms[1].inclusions[0].depth = 5e-3;
+    refused("phantom \"4.6\"", deeper);
+    refused("depth of the probe", |plan| plan.probe_depth = 3e-3);
+    refused("list of lateral positions", |plan| {
+        plan.laterals.truncate(4)
+    });
+    refused("noise, rate or prior", |plan| plan.noise_sd = 0.2);
+    refused("noise, rate or prior", |plan| plan.max_miss = 0.01);
+    refused("noise, rate or prior", |plan| plan.prior_h1 = 0.4);
+}
+
+// Verifies: REP-083.
+#[test]
+fn a_conclusion_survives_from_95_per_cent_on() {
+    let run = with_study();
+    let mut of = run.study.unwrap().conclusions.remove(0);
+    for (share, expected) in [
+        (1.0, Survival::Holds),
+        (0.95, Survival::Holds),
+        (0.94, Survival::Depends),
+        (0.06, Survival::Depends),
+        (0.05, Survival::Fails),
+    ] {
+        of.share = share;
+        assert_eq!(survival(&of), expected, "{share}");
+    }
+}

@@ -1,0 +1,355 @@
+//! One sample of a study: the phantoms with the sample's inputs, their forces, and what follows from them.
+
+use serde::{Deserialize, Serialize};
+
+use super::design::{Design, Role};
+use super::{NOISE_SD, PROBE_DEPTH, StudyPlan, edit};
+use crate::psychophysics::bridge::{Convention, p_values};
+use crate::psychophysics::{AnswerTable, FEM_PLAYBACK};
+use palpate::bank::deepest;
+use palpate::detect::{MatchedFilter, error_rates, map_threshold, two_afc};
+use palpate::fem::Model;
+use palpate::fem::certify::MESH_RATIOS;
+use palpate::force::Force;
+use palpate::force_map::{ForceMap, ForceTable, peak};
+use palpate::phantom::Phantom;
+use palpate::refusal::Refusal;
+
+/// What is computed of each sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Quantity {
+    /// The name of its phantom; empty for one that comes of several.
+    pub phantom: String,
+    /// What it is.
+    #[serde(flatten)]
+    pub kind: Kind,
+}
+
+/// A kind of quantity, named with its unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "quantity")]
+pub enum Kind {
+    /// The normal force at a lateral position, N.
+    NormalForceN {
+        /// The position, m.
+        lateral_m: f64,
+    },
+    /// The lateral force at a lateral position, N.
+    LateralForceN {
+        /// The position, m.
+        lateral_m: f64,
+    },
+    /// F_1 − F_0 of the normal force where it is largest in magnitude, N.
+    PeakNormalN,
+    /// F_1 − F_0 of the lateral force where it is largest in magnitude, N.
+    PeakLateralN,
+    /// γ of the sweep.
+    Gamma,
+    /// The standard deviation of the noise of a sample at which both error rates are just kept, N.
+    NeededNoiseSdN,
+    /// Pr(e) of the maximum a-posteriori rule.
+    ErrorRate,
+    /// The predicted share of right answers in pairs, by the whole sweep.
+    TwoAfc,
+    /// The same by the peak of the normal signal alone, which is what the paper predicts from.
+    TwoAfcByPeak,
+    /// The depth of the inclusion, m, beyond which the error rates are not kept: 0 if they are kept for none of the phantoms, and the
+    /// depth of the deepest one if for all.
+    DetectableDepthM,
+    /// The p-value of a convention: that what it takes of the force explains the answers of the paper's Table 1, FEM playback.
+    ConventionP {
+        /// The convention in words.
+        convention: String,
+    },
+}
+
+/// Computes the samples of a study.
+///
+/// Implements: STU-030.
+#[derive(Debug)]
+pub struct Sampler<'a> {
+    plan: &'a StudyPlan,
+    design: Design,
+    quantities: Vec<Quantity>,
+    /// The phantoms as tables of a phantom file, the reference first.
+    tables: Vec<toml::Table>,
+    answers: AnswerTable,
+    /// The γ that both error rates need.
+    needed: f64,
+}
+
+/// What the phantoms of one sample give.
+struct Computed {
+    maps: Vec<ForceMap>,
+    /// F_1 − F_0 of each map but the reference's.
+    signals: Vec<ForceTable>,
+    noise_sd: f64,
+    /// γ of each map but the reference's.
+    gamma: Vec<f64>,
+    /// The depth of the inclusions of each of them, m.
+    depths: Vec<f64>,
+    /// The p-value of each convention.
+    p_values: Vec<f64>,
+}
+
+impl<'a> Sampler<'a> {
+    /// The samples of a plan.
+    ///
+    /// # Errors
+    /// As [`StudyPlan::design`].
+    pub fn new(plan: &'a StudyPlan) -> Result<Sampler<'a>, Refusal> {
+        let answers = AnswerTable::paper()?;
+        let tables = plan
+            .all_phantoms()
+            .map(edit::table)
+            .collect::<Result<_, _>>()?;
+        let design = plan.design()?;
+        let quantities = quantities(plan, &answers);
+        Ok(Sampler {
+            plan,
+            design,
+            quantities,
+            tables,
+            answers,
+            needed: plan.required_gamma()?,
+        })
+    }
+
+    /// What is varied, and what is computed.
+    pub fn plan(&self) -> &StudyPlan {
+        self.plan
+    }
+
+    /// Which samples there are.
+    pub fn design(&self) -> &Design {
+        &self.design
+    }
+
+    /// What is computed of each sample, in this order.
+    pub fn quantities(&self) -> &[Quantity] {
+        &self.quantities
+    }
+
+    /// The values of the inputs in the sample with a number.
+    ///
+    /// Implements: STU-012.
+    pub fn inputs(&self, index: usize) -> Vec<f64> {
+        let inputs = self.plan.inputs.iter();
+        let probabilities = self.design.probabilities(index);
+        inputs
+            .zip(probabilities)
+            .map(|(input, p)| input.distribution.quantile(p))
+            .collect()
+    }
+
+    /// The quantities of the sample with a number.
+    ///
+    /// # Errors
+    /// What could not be computed, and why: inputs that make no phantom, a pose that the probe cannot take, a solver that failed, a number
+    /// that is not finite. The study counts it.
+    ///
+    /// Implements: STU-030, STU-031, STU-032.
+    pub fn sample(&self, index: usize) -> Result<Vec<f64>, Refusal> {
+        let computed = self.computed(index)?;
+        let value = |quantity: &Quantity| {
+            let value = self.value(quantity, &computed)?;
+            match value.is_finite() {
+                true => Ok(value),
+                false => Err(Refusal::value(
+                    quantity.to_string(),
+                    value,
+                    "a finite number",
+                )),
+            }
+        };
+        self.quantities.iter().map(value).collect()
+    }
+
+    fn computed(&self, index: usize) -> Result<Computed, Refusal> {
+        let mesh = match self.design.role(index) {
+            Role::Median(mesh) => MESH_RATIOS[..mesh].iter().product(),
+            _ => 1.0,
+        };
+        let values = self.inputs(index);
+        let of_study = |key: &str, own: f64| {
+            let inputs = self.plan.inputs.iter().zip(&values);
+            let of_key = inputs.filter(|(input, _)| input.key == key);
+            of_key.fold(own, |own, (input, &value)| input.change.of(own, value))
+        };
+        let depth = 1e-3 * of_study(PROBE_DEPTH, 1e3 * self.plan.probe_depth);
+        let noise_sd = of_study(NOISE_SD, self.plan.noise_sd);
+        let (mut maps, mut depths) = (Vec::new(), Vec::new());
+        for (table, own) in self.tables.iter().zip(self.plan.all_phantoms()) {
+            let solve = || {
+                let phantom = edit::phantom(table, &self.plan.inputs, &values)?;
+                let model = Model::new(&phantom, mesh * self.plan.mesh_size, self.plan.contact)?;
+                let map = model.sweep(depth, &self.plan.laterals)?;
+                Ok((map, phantom.inclusion_depth()))
+            };
+            let solved: Result<_, palpate::fem::FemError> = solve();
+            let part = format!("phantom {}", own.name);
+            let (map, inclusion) =
+                solved.map_err(|error| Refusal::state(error, "").of_part(&part))?;
+            maps.push(map);
+            depths.extend(inclusion);
+        }
+        let signals = maps[1..].iter().map(|map| map.signal(&maps[0]));
+        let signals: Vec<ForceTable> = signals.collect::<Result<_, _>>()?;
+        let gamma = signals.iter().map(|signal| {
+            let noise_sd = Force::new(noise_sd, noise_sd);
+            let filter = MatchedFilter::new(signal.row(depth)?, noise_sd)?;
+            Ok(filter.gamma())
+        });
+        let gamma = gamma.collect::<Result<_, Refusal>>()?;
+        let compared = compared(self.plan, &self.answers);
+        let p_values = match compared.len() {
+            0 | 1 => Vec::new(),
+            _ => {
+                let compared = compared.iter().map(|&(at, name)| (name, &maps[1 + at]));
+                let compared: Vec<_> = compared.collect();
+                p_values(&self.answers, FEM_PLAYBACK, &maps[0], &compared)?
+            }
+        };
+        Ok(Computed {
+            maps,
+            signals,
+            noise_sd,
+            gamma,
+            depths,
+            p_values,
+        })
+    }
+
+    /// Implements: STU-031.
+    fn value(&self, quantity: &Quantity, computed: &Computed) -> Result<f64, Refusal> {
+        let named = |phantom: &Phantom| phantom.name == quantity.phantom;
+        let at = self.plan.all_phantoms().position(named).unwrap_or(0);
+        let map = &computed.maps[at];
+        let laterals = map.laterals();
+        let place = |lateral: f64| laterals.iter().position(|&x| x == lateral).unwrap_or(0);
+        let peak_of = |pick: fn(Force<&[f64]>) -> &[f64]| -> Result<f64, Refusal> {
+            let signal = &computed.signals[at - 1];
+            let (force, _) = peak(laterals, pick(signal.row(signal.depths()[0])?));
+            Ok(force)
+        };
+        let gamma = || computed.gamma[at - 1];
+        let row = map.row(map.depths()[0])?;
+        Ok(match &quantity.kind {
+            Kind::NormalForceN { lateral_m } => row.normal[place(*lateral_m)],
+            Kind::LateralForceN { lateral_m } => row.lateral[place(*lateral_m)],
+            Kind::PeakNormalN => peak_of(|signal| signal.normal)?,
+            Kind::PeakLateralN => peak_of(|signal| signal.lateral)?,
+            Kind::Gamma => gamma(),
+            Kind::NeededNoiseSdN => gamma() * computed.noise_sd / self.needed,
+            Kind::ErrorRate => {
+                let eta = map_threshold(self.plan.prior_h1)?;
+                let rates = error_rates(gamma(), eta)?;
+                let prior = self.plan.prior_h1;
+                prior * rates.miss + (1.0 - prior) * rates.false_alarm
+            }
+            Kind::TwoAfc => two_afc(gamma())?,
+            Kind::TwoAfcByPeak => {
+                let peak = peak_of(|signal| signal.normal)?.abs();
+                two_afc(peak / computed.noise_sd)?
+            }
+            Kind::DetectableDepthM => {
+                let mut pairs: Vec<_> = computed.depths.iter().zip(&computed.gamma).collect();
+                pairs.sort_by(|a, b| a.0.total_cmp(b.0));
+                let (depths, gamma): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
+                deepest(&depths, &gamma, self.needed).unwrap_or(0.0)
+            }
+            Kind::ConventionP { convention } => {
+                let names = Convention::all().map(Convention::text);
+                let place = names.into_iter().position(|name| name == *convention);
+                place
+                    .and_then(|place| computed.p_values.get(place))
+                    .copied()
+                    .unwrap_or(f64::NAN)
+            }
+        })
+    }
+}
+
+/// The phantoms whose names are columns of the paper's Table 1: their places and names.
+///
+/// Implements: STU-031.
+fn compared<'a>(plan: &'a StudyPlan, answers: &AnswerTable) -> Vec<(usize, &'a str)> {
+    let phantoms = plan.phantoms.iter().enumerate();
+    let is_column = |name: &str| answers.inclusions().iter().any(|of| of.name == name);
+    let compared = phantoms.filter(|(_, phantom)| is_column(&phantom.name));
+    compared.map(|(at, phantom)| (at, &*phantom.name)).collect()
+}
+
+/// Implements: STU-031.
+fn quantities(plan: &StudyPlan, answers: &AnswerTable) -> Vec<Quantity> {
+    let mut quantities = Vec::new();
+    let mut push = |phantom: &str, kind: Kind| {
+        let phantom = phantom.into();
+        quantities.push(Quantity { phantom, kind });
+    };
+    for (at, Phantom { name, .. }) in plan.all_phantoms().enumerate() {
+        for &lateral_m in &plan.laterals {
+            push(name, Kind::NormalForceN { lateral_m });
+            push(name, Kind::LateralForceN { lateral_m });
+        }
+        if at > 0 {
+            use Kind::{ErrorRate, Gamma, NeededNoiseSdN, PeakLateralN, PeakNormalN};
+            use Kind::{TwoAfc, TwoAfcByPeak};
+            for kind in [
+                PeakNormalN,
+                PeakLateralN,
+                Gamma,
+                NeededNoiseSdN,
+                ErrorRate,
+                TwoAfc,
+                TwoAfcByPeak,
+            ] {
+                push(name, kind);
+            }
+        }
+    }
+    let depths: Vec<_> = plan
+        .phantoms
+        .iter()
+        .filter_map(Phantom::inclusion_depth)
+        .collect();
+    let is_apart = |&depth: &f64| depths.iter().filter(|&&other| other == depth).count() == 1;
+    if depths.len() == plan.phantoms.len() && depths.len() > 1 && depths.iter().all(is_apart) {
+        push("", Kind::DetectableDepthM);
+    }
+    if compared(plan, answers).len() > 1 {
+        for convention in Convention::all().map(Convention::text) {
+            push("", Kind::ConventionP { convention });
+        }
+    }
+    quantities
+}
+
+impl std::fmt::Display for Quantity {
+    /// In words, with the unit.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mm = |metres: &f64| palpate::decimal::format_scaled(*metres, 3);
+        let what = match &self.kind {
+            Kind::NormalForceN { lateral_m } => {
+                format!("normal force at {} mm, N", mm(lateral_m))
+            }
+            Kind::LateralForceN { lateral_m } => {
+                format!("lateral force at {} mm, N", mm(lateral_m))
+            }
+            Kind::PeakNormalN => "peak of the normal signal, N".into(),
+            Kind::PeakLateralN => "peak of the lateral signal, N".into(),
+            Kind::Gamma => "γ".into(),
+            Kind::NeededNoiseSdN => "largest noise, N".into(),
+            Kind::ErrorRate => "Pr(e)".into(),
+            Kind::TwoAfc => "right answers in pairs".into(),
+            Kind::TwoAfcByPeak => "right answers in pairs, by the peak".into(),
+            Kind::DetectableDepthM => "detectable depth, m".into(),
+            Kind::ConventionP { convention } => format!("p of the convention \"{convention}\"",),
+        };
+        let of = match &*self.phantom {
+            "" => what,
+            phantom => format!("{phantom}: {what}"),
+        };
+        f.pad(&of)
+    }
+}

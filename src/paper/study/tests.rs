@@ -1,0 +1,379 @@
+//! The design and the indices against closed forms, and a small study against slopes that another program found.
+
+use std::f64::consts::PI;
+
+use super::*;
+use palpate::phantom::BUILTIN_NAMES;
+use palpate_asserts::assert_near;
+use palpate_asserts::numbers;
+
+const NAMES: [&str; 6] = ["a", "b", "c", "d", "e", "f"];
+
+/// The indices of a function of independent uniform inputs.
+fn found(inputs: usize, rows: usize, seed: u32, of: impl Fn(&[f64]) -> f64) -> Vec<Index> {
+    let design = Design::new(&NAMES[..inputs], &[], rows, seed).unwrap();
+    let value = |role| of(&design.probabilities(design.index(role)));
+    let all =
+        |role: &dyn Fn(usize) -> Role| (0..rows).map(|row| value(role(row))).collect::<Vec<_>>();
+    let mixed: Vec<_> = (0..inputs)
+        .map(|group| all(&|row| Role::Mixed(row, group)))
+        .collect();
+    let (first, second) = (all(&Role::First), all(&Role::Second));
+    of_rows(&first, &second, &mixed, 7).unwrap()
+}
+
+fn of_rows(first: &[f64], second: &[f64], mixed: &[Vec<f64>], seed: u64) -> Option<Vec<Index>> {
+    let rows = Rows {
+        first,
+        second,
+        mixed,
+    };
+    indices(rows, seed)
+}
+
+fn assert_indices(found: &[Index], expected: &[[f64; 2]]) {
+    for (number, (found, [first_order, total])) in found.iter().zip(expected).enumerate() {
+        for (found, expected) in [(found.first_order, first_order), (found.total, total)] {
+            let error = (found.value - expected).abs();
+            let holds = error < 0.01;
+            assert!(holds, "input {number}: {found:?}, expected {expected}");
+            // A bootstrap knows nothing of how even the points are: its interval is wide, but not several times 0.01.
+            let holds = found.lower <= found.value && found.value <= found.upper;
+            assert!(holds, "{found:?}");
+            assert!(found.upper - found.lower < 0.15, "{found:?}");
+        }
+    }
+}
+
+// Verifies: STU-020, STU-040.
+#[test]
+fn the_indices_of_ishigamis_function_are_its_closed_form() {
+    let (a, b) = (7.0, 0.1);
+    let ishigami = |p: &[f64]| {
+        let [x, y, z] = [p[0], p[1], p[2]].map(|p| PI * (2.0 * p - 1.0));
+        x.sin() + a * y.sin().powi(2) + b * z.powi(4) * x.sin()
+    };
+    let first = 0.5 * (1.0 + b * PI.powi(4) / 5.0).powi(2);
+    let second = a * a / 8.0;
+    let together = b * b * PI.powi(8) * 8.0 / 225.0;
+    let variance = first + second + together;
+    let expected = [[first, first + together], [second, second], [0.0, together]];
+    for seed in 1..=4 {
+        let found = found(3, 1 << 14, seed, ishigami);
+        assert_indices(&found, &expected.map(|of| of.map(|of| of / variance)));
+    }
+}
+
+// Verifies: STU-040.
+#[test]
+fn the_indices_of_the_g_function_are_its_closed_form() {
+    let a = [0.0, 1.0, 4.5, 9.0, 99.0, 99.0];
+    let g = |p: &[f64]| {
+        let factors = p
+            .iter()
+            .zip(a)
+            .map(|(p, a)| ((4.0 * p - 2.0).abs() + a) / (1.0 + a));
+        factors.product()
+    };
+    let of = a.map(|a: f64| 1.0 / (3.0 * (1.0 + a).powi(2)));
+    let all: f64 = of.iter().map(|of| 1.0 + of).product();
+    let expected = of.map(|of| [of, of * all / (1.0 + of)].map(|of| of / (all - 1.0)));
+    for seed in 1..=4 {
+        assert_indices(&found(6, 1 << 12, seed, g), &expected);
+    }
+}
+
+// Verifies: STU-040.
+#[test]
+fn a_quantity_that_does_not_vary_has_no_indices() {
+    let same = [3.0; 5];
+    assert_eq!(of_rows(&same, &same, &[vec![3.0; 5]], 1), None);
+    assert_eq!(of_rows(&[1.0], &[2.0], &[vec![2.0]], 1), None);
+}
+
+fn correlation(one: &str, other: &str, coefficient: f64) -> Correlation {
+    Correlation {
+        inputs: [one, other].map(String::from),
+        coefficient,
+    }
+}
+
+// Verifies: STU-020, STU-021.
+#[test]
+fn each_sample_has_one_role_and_the_points_fill_the_unit_cube_evenly() {
+    let design = Design::new(&NAMES[..4], &[correlation("a", "c", 0.8)], 256, 5).unwrap();
+    assert_eq!(design.groups(), [vec![0, 2], vec![1], vec![3]]);
+    assert_eq!(design.samples(), 3 + 2 * 4 + 256 * 5);
+    for index in 0..design.samples() {
+        assert_eq!(design.index(design.role(index)), index);
+    }
+    // A scrambled Sobol' sequence is a (t, s)-sequence: 256 points have one in each 256th of every coordinate.
+    for role in [Role::First, Role::Second] {
+        for input in [1, 3] {
+            let mut cells = [0; 256];
+            for row in 0..256 {
+                let p = design.probabilities(design.index(role(row)))[input];
+                assert!(p > 0.0 && p < 1.0);
+                cells[(p * 256.0) as usize] += 1;
+            }
+            assert_eq!(cells, [1; 256], "{input}");
+        }
+    }
+    // A mixed sample has one group of the second, and all else of the first.
+    let at = |role| design.probabilities(design.index(role));
+    let [first, second, mixed] = [Role::First(9), Role::Second(9), Role::Mixed(9, 0)].map(at);
+    assert_eq!(mixed, [second[0], first[1], second[2], first[3]]);
+    assert_eq!(at(Role::Median(2)), [0.5; 4]);
+    assert_eq!(at(Role::Slope(1, 0)), [0.5, 0.25, 0.5, 0.5]);
+}
+
+// Verifies: STU-012.
+#[test]
+fn correlated_inputs_have_normal_scores_of_that_correlation() {
+    let correlations = [correlation("a", "b", 0.8), correlation("b", "c", -0.5)];
+    let rows = 4096;
+    let design = Design::new(&NAMES[..3], &correlations, rows, 1).unwrap();
+    let score = |p| palpate::stats::normal::quantile(p).unwrap();
+    let row = |row| design.probabilities(design.index(Role::First(row)));
+    let scores: Vec<Vec<f64>> = (0..rows)
+        .map(|at| row(at).into_iter().map(score).collect())
+        .collect();
+    let expected = "0 1 0.8\n1 2 -0.5\n0 2 0\n0 0 1\n2 2 1";
+    for [one, other, expected] in numbers(expected) {
+        let [one, other] = [one, other].map(|input| input as usize);
+        let product: f64 = scores.iter().map(|of| of[one] * of[other]).sum();
+        // Independent draws would have a standard deviation of at most √2/√4096 = 0.022; these are more even.
+        assert_near(product / rows as f64, expected, 0.02);
+    }
+}
+
+// Verifies: STU-012.
+#[test]
+fn correlations_that_cannot_be_are_refused() {
+    // Two inputs and their coefficient, or several such, and the beginning of the refusal.
+    let cases = "
+        a x 0.5 => correlation[0].inputs = a, x, expected two of a, b, c
+        a a 0.5 => correlation[0].inputs = a, a, expected two inputs
+        a b 0.5; b a 0.5 => correlation[1].inputs = b, a, expected
+        a b 1.0 => correlation[0].coefficient = 1, expected
+        a b NaN => correlation[0].coefficient = NaN, expected
+        a b 0.9; b c 0.9; a c -0.9 => the correlations of a, b, c, expected
+    ";
+    for case in cases.trim().lines().map(str::trim) {
+        let (pairs, expected) = case.split_once(" => ").unwrap();
+        let correlation = |pair: &str| {
+            let words: Vec<&str> = pair.split_whitespace().collect();
+            correlation(words[0], words[1], words[2].parse().unwrap())
+        };
+        let correlations: Vec<_> = pairs.split(';').map(correlation).collect();
+        let found = Design::new(&NAMES[..3], &correlations, 8, 1).unwrap_err();
+        assert!(found.to_string().starts_with(expected), "{found}");
+    }
+    for (inputs, rows, expected) in [(0, 8, "0 inputs"), (2, 1, "rows = 1")] {
+        let found = Design::new(&NAMES[..inputs], &[], rows, 1).unwrap_err();
+        assert!(found.to_string().starts_with(expected), "{found}");
+    }
+}
+
+// Verifies: STU-043.
+#[test]
+fn the_intervals_of_quantiles_are_those_of_the_tables() {
+    // For the median of 10 values the tables give x₂ to x₉ (97.9 %), of 100 x₄₀ to x₆₁ (96.5 %).
+    for (count, lower, upper) in [(10, 2.0, 9.0), (100, 40.0, 61.0)] {
+        let values = (1..=count).rev().map(f64::from).collect();
+        let median = band(values).unwrap().unwrap().median;
+        assert_eq!((median.lower, median.upper), (lower, upper));
+        assert_eq!(median.value, 0.5 * f64::from(count + 1));
+    }
+    assert_eq!(band(vec![]), Ok(None));
+    let one = band(vec![3.0]).unwrap().unwrap();
+    assert_eq!((one.lower.value, one.upper.upper), (3.0, 3.0));
+}
+
+/// An input that is uniform within 4 % of a number.
+pub fn near(name: &str, key: &str, number: f64) -> Input {
+    Input {
+        name: name.into(),
+        key: key.into(),
+        change: Change::Value,
+        distribution: uniform(0.96 * number, 1.04 * number),
+        source: "a test".into(),
+    }
+}
+
+fn uniform(from: f64, to: f64) -> Distribution {
+    Distribution::Uniform { from, to }
+}
+
+/// A study of the reference and the phantom 6.6, on two positions.
+pub fn plan(inputs: Vec<Input>) -> StudyPlan {
+    let [reference, .., inclusion, _] = BUILTIN_NAMES.map(|name| Phantom::builtin(name).unwrap());
+    StudyPlan {
+        reference,
+        phantoms: vec![inclusion],
+        probe_depth: 4e-3,
+        laterals: vec![0.0, 1e-3],
+        mesh_size: 0.5e-3,
+        contact: Contact::default(),
+        noise_sd: 0.2,
+        max_false_alarm: 0.05,
+        max_miss: 0.05,
+        prior_h1: 0.5,
+        inputs,
+        correlations: vec![],
+        rows: 2,
+        seed: 1,
+    }
+}
+
+/// The results of the first samples, computed here; the others count as failed.
+pub fn results(plan: &StudyPlan, count: usize) -> StudyResults {
+    let sampler = Sampler::new(plan).unwrap();
+    let mut failures = Vec::new();
+    let mut sampled = Vec::new();
+    let none = Err(Refusal::state("not computed", ""));
+    for sample in 0..sampler.design().samples() {
+        let found = match sample < count {
+            true => sampler.sample(sample),
+            false => none.clone(),
+        };
+        sampled.push(found.unwrap_or_else(|reason| {
+            let reason = reason.to_string();
+            failures.push(Failure { sample, reason });
+            vec![f64::NAN; sampler.quantities().len()]
+        }));
+    }
+    let column = |quantity| sampled.iter().map(|of| of[quantity]).collect();
+    let columns = |range: std::ops::Range<usize>| Ok::<_, Refusal>(range.map(column).collect());
+    StudyResults::new(&sampler, &failures, columns).unwrap()
+}
+
+// Verifies: STU-001, STU-021, STU-030, STU-043.
+#[test]
+fn slopes_are_those_of_another_program() {
+    // Narrower, since forces rise steeply to 0.5.
+    let mut ratio = near("ν", "layer[1].poisson_ratio", 0.49);
+    ratio.distribution = uniform(0.486, 0.495);
+    let plan = plan(vec![
+        ratio,
+        near("width", "well.width_mm", 34.0),
+        near("E", "layer[1].youngs_modulus_kpa", 5.0),
+        near("radius", "probe.radius_mm", 6.5),
+        near("height", "layer[1].thickness_mm", 15.0),
+        near("skin", "layer[0].thickness_mm", 0.5),
+        near("diameter", "inclusion[0].diameter_mm", 6.4),
+        near("depth", "inclusion[0].depth_mm", 6.6),
+    ]);
+    // All but the rows.
+    let results = results(&plan, 3 + 2 * 8);
+    let of = |phantom, kind| results.of(phantom, &kind).unwrap();
+    let force = of("none", Kind::NormalForceN { lateral_m: 0.0 });
+    let signal = of("6.6", Kind::PeakNormalN);
+    // In per cent per per cent, at small strain, as printed: with one decimal. 2 % are for the steps and the meshes of both.
+    let of_force = "0 7.3\n1 -1.1\n2 0.9\n3 0.8\n4 -0.3\n5 0.2";
+    let of_signal = "0 3.4\n6 2.0\n4 -1.8\n7 -1.3\n2 0.75";
+    let of = |quantity, table| numbers(table).into_iter().map(move |row| (quantity, row));
+    for (quantity, [input, expected]) in of(force, of_force).chain(of(signal, of_signal)) {
+        let found = quantity.slopes[input as usize].unwrap().elasticity.unwrap();
+        println!("{} {input}: {found:.3}, {expected}", quantity.quantity);
+        let tolerance = 0.05 + 0.02 * f64::abs(expected);
+        assert!((found - expected).abs() < tolerance, "{input}");
+    }
+    // An inclusion does nothing to the gel without one.
+    assert_eq!(force.slopes[6].unwrap().per_unit, 0.0);
+    let band = force.numerical_band.unwrap();
+    let holds = band > 0.0 && band < 0.02 * force.at_medians.unwrap();
+    assert!(holds, "{band}");
+}
+
+// Verifies: STU-021, STU-030.
+#[test]
+fn the_medians_are_solved_on_three_meshes() {
+    let mut plan = plan(vec![near("E", "layer[1].youngs_modulus_kpa", 4.0)]);
+    plan.mesh_size = 1.5e-3;
+    let mut phantom = plan.reference.clone();
+    phantom.layers[1].material.youngs_modulus = 4000.0;
+    let sampler = Sampler::new(&plan).unwrap();
+    for (sample, size) in [(0, 1.5e-3), (1, 2e-3), (2, 3e-3)] {
+        let model = palpate::fem::Model::new(&phantom, size, plan.contact).unwrap();
+        let map = model.sweep(plan.probe_depth, &plan.laterals).unwrap();
+        let found = sampler.sample(sample).unwrap();
+        // 4/3 and 3/2 of a mesh size round.
+        assert!((found[0] - map.forces().normal.row(0)[0]).abs() < 1e-9);
+    }
+}
+
+// Verifies: STU-031, STU-032, STU-043.
+#[test]
+fn failures_are_counted_and_conclusions_have_their_share() {
+    // Above 0.4995 there is no phantom: a quarter of the draws.
+    let mut ratio = near("ν", "layer[1].poisson_ratio", 0.49);
+    ratio.distribution = uniform(0.49, 0.502_6);
+    let mut plan = plan(vec![ratio]);
+    (plan.rows, plan.mesh_size, plan.noise_sd) = (4, 2e-3, 0.02);
+    let results = results(&plan, 17);
+    // Four rows have one point in each quarter, in both samples; the mixed one is the second with one input.
+    assert_eq!((results.samples, results.failed), (3 + 2 + 4 * 3, 3));
+    let reason = &results.failures[0].reason;
+    let holds = reason.starts_with("phantom none: layer[1].poisson_ratio = 0.50");
+    assert!(holds, "{reason}");
+    let conclusion = &results.conclusions[0];
+    assert_eq!(conclusion.quantity.kind, Kind::Gamma);
+    // 2 × 1.645 for 5 % of both errors.
+    assert!((conclusion.limit - 3.290).abs() < 5e-4);
+    // γ is far above it in each of the six points that are left: 0.025^(1/6) of their probability.
+    assert_eq!((conclusion.at_medians, conclusion.share), (Some(true), 1.0));
+    assert!((conclusion.lower - 0.025f64.powf(1.0 / 6.0)).abs() < 1e-12);
+    assert!((2..=3).contains(&results.rows_used));
+    let gamma = results.of("6.6", &Kind::Gamma).unwrap();
+    // The largest noise is that at which γ is what is needed.
+    let (noise, at) = (
+        results.of("6.6", &Kind::NeededNoiseSdN).unwrap(),
+        gamma.at_medians.unwrap(),
+    );
+    assert!((noise.at_medians.unwrap() - at * 0.02 / conclusion.limit).abs() < 1e-12);
+}
+
+// Verifies: STU-001, STU-011.
+#[test]
+fn inputs_that_make_no_study_are_refused_with_their_key() {
+    let refused = |change: &dyn Fn(&mut Input)| {
+        let mut input = near("ν", "layer[1].poisson_ratio", 0.49);
+        change(&mut input);
+        let plan = plan(vec![near("skin", "layer[0].thickness_mm", 0.5), input]);
+        plan.design().unwrap_err().to_string()
+    };
+    let begins = |found: String, expected: &str| assert!(found.starts_with(expected), "{found}");
+    for (name, expected) in [
+        ("skin", "input.name = \"skin\" twice"),
+        (" ", "input[1].name = \" \", expected a text"),
+    ] {
+        begins(refused(&|input| input.name = name.into()), expected);
+    }
+    for key in "layer[2].poisson_ratio layer[0].name layer[x probe.radius_mm.x".split(' ') {
+        let expected = format!("input[1].key = {key:?}, expected the key");
+        begins(refused(&|input| input.key = key.into()), &expected);
+    }
+    let nowhere = refused(&|input| input.source.clear());
+    begins(nowhere, "input[1].source = \"\", expected a text");
+    let (mean, sd) = (1.0, -1.0);
+    let normal = refused(&|input| input.distribution = Distribution::Normal { mean, sd });
+    begins(normal, "input[1].distribution.normal.sd = -1.0, expected");
+}
+
+// Verifies: STU-001.
+#[test]
+fn a_value_replaces_is_added_or_multiplies() {
+    let table = edit::table(&Phantom::builtin("6.6").unwrap()).unwrap();
+    for (change, value, depth) in [
+        (Change::Value, 4.5, 4.5e-3),
+        (Change::Offset, 0.25, 6.85e-3),
+        (Change::Factor, 0.5, 3.3e-3),
+    ] {
+        let mut input = near("depth", "inclusion[0].depth_mm", 6.6);
+        input.change = change;
+        let phantom = edit::phantom(&table, &[input], &[value]).unwrap();
+        // One rounding in mm.
+        assert_near(phantom.inclusions[0].depth, depth, 1e-17);
+    }
+}

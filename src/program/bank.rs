@@ -1,0 +1,271 @@
+//! `palpate bank`: the forces for every inclusion that may be there (`spec/bank.md`).
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::CliError;
+use super::numbers::{List, contact, length, moduli, positions};
+use super::output::{note, write};
+use super::part::Part;
+use super::progress::{bar, tell_large_mesh};
+use super::solve::{phantom, warn_of_large_strain_of};
+use palpate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
+use palpate::decimal::format_scaled;
+use palpate::fem::{Contact, FemError, arithmetic};
+use palpate::force_map::{ForceMap, parse};
+use palpate::phantom::Phantom;
+use palpate::refusal::Refusal;
+
+/// Most forces of a bank, over all inclusions and lateral positions: its file takes some 100 bytes for each, and is to be read again.
+const MOST_FORCES: usize = 1_000_000;
+/// A map takes as much of the file as so many more lateral positions would.
+const PER_MAP: usize = 20;
+
+/// Arguments of `palpate bank`.
+#[derive(Debug, Args)]
+pub struct BankArguments {
+    /// A built-in phantom (2.6, 4.6, 6.6, 8.6) or a phantom file with one inclusion, which is varied
+    #[arg(long, value_name = "NAME|FILE")]
+    phantom: String,
+    /// Lateral positions of the inclusion's centre in mm: a,b,c or from:to:step
+    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    offsets_mm: List,
+    /// Depths of the inclusion's highest point in mm: a,b,c or from:to:step
+    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    depths_mm: List,
+    /// Diameters of the inclusion in mm [default: that of the phantom]
+    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    diameters_mm: Option<List>,
+    /// Young's moduli of the inclusion in kPa [default: that of the phantom]
+    #[arg(long, value_parser = moduli, allow_hyphen_values = true, value_name = "LIST")]
+    stiffnesses_kpa: Option<List>,
+    /// The depth of the probe in mm
+    #[arg(long, value_parser = length, allow_hyphen_values = true, value_name = "D")]
+    probe_depth_mm: f64,
+    /// Lateral positions of the probe in mm: a,b,c or from:to:step
+    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    laterals_mm: List,
+    /// How the gap to the probe is measured
+    #[arg(long, value_parser = contact(), default_value = Contact::default().name())]
+    contact: Contact,
+    /// Mesh size in mm; all element sizes scale with it [default: 0.65]
+    #[arg(long, value_parser = length, value_name = "H")]
+    mesh_mm: Option<f64>,
+    /// The file of the bank, which must not exist; FILE.part keeps what is finished, so that an aborted run can continue
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+impl BankArguments {
+    /// The maps that are asked for.
+    ///
+    /// Implements: CLI-154, CLI-155.
+    fn plan(&self, phantom: &Phantom) -> Result<BankPlan, CliError> {
+        let number = phantom.inclusions.len();
+        if number != 1 {
+            return Err(CliError::Usage(format!(
+                "phantom {}: {number} inclusions, expected one, of which the others are made, such as phantom 6.6",
+                phantom.name
+            )));
+        }
+        let mut plan = BankPlan::new(phantom.clone(), self.probe_depth_mm, &self.laterals_mm.0)?;
+        plan.positions = self.offsets_mm.0.clone();
+        plan.depths = self.depths_mm.0.clone();
+        if let Some(List(diameters)) = &self.diameters_mm {
+            plan.diameters = diameters.clone();
+        }
+        if let Some(List(moduli)) = &self.stiffnesses_kpa {
+            plan.moduli = moduli.clone();
+        }
+        plan.mesh_size = self.mesh_mm.unwrap_or(MESH_SIZE);
+        plan.contact = self.contact;
+        let lists = [&plan.positions, &plan.depths, &plan.diameters, &plan.moduli];
+        // Lists have 10⁴ entries at most: no overflow.
+        let inclusions = lists.map(|list| list.len() as f64).iter().product::<f64>();
+        let forces = inclusions * (self.laterals_mm.0.len() + PER_MAP) as f64;
+        if forces > MOST_FORCES as f64 {
+            let most = MOST_FORCES / (self.laterals_mm.0.len() + PER_MAP);
+            return Err(CliError::Usage(format!(
+                "{inclusions} inclusions, expected at most {most} with so many lateral positions"
+            )));
+        }
+        Ok(plan)
+    }
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-154, CLI-155, CLI-159, CLI-015.
+pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
+    let out = &arguments.out;
+    if out.exists() {
+        return Err(CliError::refused(out.display())(
+            "there already, expected a new file",
+        ));
+    }
+    let phantom = phantom(&arguments.phantom)?;
+    let plan = arguments.plan(&phantom)?;
+    let solves = plan.solves()?;
+    tell_large_mesh(&phantom, plan.mesh_size).map_err(CliError::fem(&phantom.name))?;
+    let (part, finished) = open_part(&plan, arguments, &phantom, &solves)?;
+    let maps = compute(&plan, &phantom.name, &solves, &part, finished)?;
+    let worst = maps
+        .iter()
+        .filter_map(|map| Some((map, map.certificate()?)));
+    let worst = worst.min_by(|a, b| a.1.smallest_det.det.total_cmp(&b.1.smallest_det.det));
+    if let Some((map, _)) = worst {
+        warn_of_large_strain_of(map, &name(&phantom.name, map.phantom()));
+    }
+    let mut maps = maps;
+    let reference = maps.remove(0);
+    write(out, &Bank::new(reference, maps)?.to_json())?;
+    part.remove()
+}
+
+/// How the first line of a file of finished computations begins.
+const BEGINNING: &str = "{\"schema\":\"palpate-bank-part\"";
+
+/// All that the maps of a bank depend on, lengths and moduli in SI.
+#[derive(Debug, Serialize)]
+struct Request<'a> {
+    schema: &'static str,
+    schema_version: u64,
+    program_version: &'static str,
+    arithmetic: &'static str,
+    phantom: &'a Phantom,
+    offsets_m: &'a [f64],
+    depths_m: &'a [f64],
+    diameters_m: &'a [f64],
+    youngs_moduli_pa: &'a [f64],
+    probe_depth_m: f64,
+    laterals_m: &'a [f64],
+    mesh_size_m: f64,
+    contact: Contact,
+}
+
+/// One computation: 0 for the reference, then one for each solve.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Finished<M> {
+    number: usize,
+    maps: M,
+}
+
+/// The maps of each computation that is finished.
+type Taken = Vec<Option<Vec<ForceMap>>>;
+
+/// The file of what is finished, and what that is.
+///
+/// Implements: CLI-156, CLI-157.
+fn open_part(
+    plan: &BankPlan,
+    arguments: &BankArguments,
+    phantom: &Phantom,
+    solves: &[BankSolve],
+) -> Result<(Part, Taken), CliError> {
+    let request = Request {
+        schema: "palpate-bank-part",
+        schema_version: 1,
+        program_version: env!("CARGO_PKG_VERSION"),
+        arithmetic: arithmetic(),
+        phantom,
+        offsets_m: &plan.positions,
+        depths_m: &plan.depths,
+        diameters_m: &plan.diameters,
+        youngs_moduli_pa: &plan.moduli,
+        probe_depth_m: arguments.probe_depth_mm,
+        laterals_m: &arguments.laterals_mm.0,
+        mesh_size_m: plan.mesh_size,
+        contact: plan.contact,
+    };
+    let mut name = arguments.out.as_os_str().to_owned();
+    name.push(".part");
+    let path = PathBuf::from(name);
+    let mut finished = vec![None; 1 + solves.len()];
+    let part = Part::open(path.clone(), &request, BEGINNING, "palpate bank", |text| {
+        let Finished { number, maps } = parse::<Finished<Vec<ForceMap>>>(text)?;
+        let solve = number.checked_sub(1).and_then(|solve| solves.get(solve));
+        match finished.get_mut(number) {
+            Some(place) if is_of(&maps, solve) => *place = Some(maps),
+            _ => {
+                let found = "no computation of this bank";
+                return Err(Refusal::state(found, "one: delete the file"));
+            }
+        }
+        Ok(())
+    })?;
+    let taken = finished.iter().flatten().count();
+    if taken > 0 {
+        let text = format!("{taken} of {} computations taken over", finished.len());
+        note(path.display(), &text);
+    }
+    Ok((part, finished))
+}
+
+/// Whether `maps` are those of a solve, or that of the reference.
+fn is_of(maps: &[ForceMap], solve: Option<&BankSolve>) -> bool {
+    let phantom = maps.first().and_then(ForceMap::phantom);
+    match solve {
+        Some(solve) => {
+            phantom == Some(&solve.phantom) && maps.len() == 1 + usize::from(solve.image)
+        }
+        None => phantom.is_some_and(|of| of.inclusions.is_empty()) && maps.len() == 1,
+    }
+}
+
+/// The reference and the maps of all solves, in their order, but for those that are `finished`.
+///
+/// Implements: CLI-007, CLI-156.
+fn compute(
+    plan: &BankPlan,
+    phantom: &str,
+    solves: &[BankSolve],
+    part: &Part,
+    finished: Taken,
+) -> Result<Vec<ForceMap>, CliError> {
+    let bar = bar(finished.len(), phantom);
+    bar.inc(finished.iter().flatten().count() as u64);
+    // What others took is no measure of the time left.
+    bar.reset_eta();
+    let maps = |(number, finished): (usize, Option<Vec<ForceMap>>)| {
+        if let Some(maps) = finished {
+            return Ok(maps);
+        }
+        let solve = number.checked_sub(1).map(|solve| &solves[solve]);
+        let solved = match solve {
+            Some(solve) => plan.solve(solve),
+            None => plan.reference().map(|map| vec![map]),
+        };
+        let failed = |error: FemError| {
+            CliError::fem(&name(phantom, solve.map(|solve| &solve.phantom)))(error)
+        };
+        let maps = solved.map_err(failed)?;
+        part.append(&Finished {
+            number,
+            maps: &maps,
+        })?;
+        bar.inc(1);
+        Ok(maps)
+    };
+    let maps = finished.into_par_iter().enumerate().map(maps);
+    let maps = maps.collect::<Result<Vec<_>, CliError>>()?;
+    bar.finish_and_clear();
+    Ok(maps.into_iter().flatten().collect())
+}
+
+/// What to call one of the phantoms made of that with a name.
+fn name(name: &str, phantom: Option<&Phantom>) -> String {
+    let inclusion = phantom.and_then(|phantom| phantom.inclusions.first());
+    inclusion.map_or(name.into(), |inclusion| {
+        let [x, depth, diameter, modulus] = Parameter::ALL.map(|parameter| {
+            let power = if parameter == Parameter::Modulus { -3 } else { 3 };
+            format_scaled(parameter.of(inclusion), power)
+        });
+        format!(
+            "{name} with its inclusion at {x} mm, {depth} mm deep, {diameter} mm wide, {modulus} kPa"
+        )
+    })
+}

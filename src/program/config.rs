@@ -1,0 +1,226 @@
+//! The configuration of `palpate run`: which phantoms, where the probe goes, what the detector assumes.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::CliError;
+use super::numbers::{List, positions};
+use super::solve::phantom;
+use palpate::fem::{Contact, MESH_SIZE};
+use palpate::input::{from_toml, line_of};
+use palpate::phantom::{BUILTIN_NAMES, Phantom};
+use palpate::refusal::Refusal;
+use palpate_paper::report::Settings;
+
+/// The paper's run, or what a file says instead.
+///
+/// Implements: CLI-031.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Config {
+    /// The phantom without inclusion: built in or a file.
+    pub reference: Spanned<String>,
+    /// The phantoms that are compared with it.
+    pub phantoms: Vec<Spanned<String>>,
+    /// Files of measured force maps, shown beside the computed ones.
+    pub measured: Vec<PathBuf>,
+    /// Depths of the probe.
+    #[serde(deserialize_with = "list")]
+    pub depths_mm: List,
+    /// Lateral positions of the probe.
+    #[serde(deserialize_with = "list")]
+    pub laterals_mm: List,
+    /// How the forces are computed.
+    pub mesh: MeshConfig,
+    /// What the detector assumes.
+    #[serde(with = "Detection")]
+    pub detection: Settings,
+    /// The file and its text; empty for the paper's run.
+    #[serde(skip)]
+    source: [String; 2],
+}
+
+/// How the forces are computed.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct MeshConfig {
+    /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them.
+    #[serde(deserialize_with = "positive")]
+    pub size_mm: f64,
+    /// How the gap to the probe is measured.
+    pub contact: Contact,
+}
+
+/// [`Settings`] in the keys of the file.
+#[derive(Deserialize)]
+#[serde(
+    remote = "Settings",
+    deny_unknown_fields,
+    default = "Settings::default"
+)]
+struct Detection {
+    #[serde(deserialize_with = "positive")]
+    noise_sd_n: f64,
+    #[serde(deserialize_with = "probability")]
+    max_false_alarm: f64,
+    #[serde(deserialize_with = "probability")]
+    max_miss: f64,
+    #[serde(deserialize_with = "probability")]
+    prior_h1: f64,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        // As a file would give them.
+        let list = |text| positions(text).expect("a list of positions");
+        let name = |name: &str| Spanned::new(0..0, name.into());
+        Config {
+            reference: name(BUILTIN_NAMES[0]),
+            phantoms: BUILTIN_NAMES[1..].iter().copied().map(name).collect(),
+            measured: Vec::new(),
+            depths_mm: list("0:4:0.5"),
+            laterals_mm: list("-10:10:0.5"),
+            mesh: MeshConfig::default(),
+            detection: Settings::default(),
+            source: Default::default(),
+        }
+    }
+}
+
+impl Default for MeshConfig {
+    fn default() -> Self {
+        MeshConfig {
+            size_mm: MESH_SIZE * 1e3,
+            contact: Contact::DeformedNormal,
+        }
+    }
+}
+
+impl Config {
+    /// The configuration in `text`, the content of `file`; keys that it leaves out are the paper's.
+    ///
+    /// # Errors
+    /// What is wrong, with file, line and key.
+    ///
+    /// Implements: CLI-031.
+    pub fn from_toml(text: &str, file: &str) -> Result<Config, Refusal> {
+        let config: Config = from_toml(text, file)?;
+        Ok(config.from_source(text, file))
+    }
+
+    /// The configuration as a part of `text`, the content of `file`.
+    pub fn from_source(self, text: &str, file: &str) -> Config {
+        let source = [file.into(), text.into()];
+        Config { source, ..self }
+    }
+
+    /// The reference, then the phantoms that are compared with it.
+    ///
+    /// # Errors
+    /// A phantom that is refused, or whose probe cannot stand at one of the poses; with file, line and key.
+    pub fn read_phantoms(&self) -> Result<Vec<Phantom>, CliError> {
+        let names = std::iter::once(&self.reference).chain(&self.phantoms);
+        let read = |(index, name): (usize, &Spanned<String>)| {
+            self.read_phantom(name.as_ref())
+                .map_err(|error| match error {
+                    CliError::Usage(message) if !name.span().is_empty() => {
+                        let key = match index {
+                            0 => "reference".into(),
+                            after => format!("phantoms[{}]", after - 1),
+                        };
+                        let [file, text] = &self.source;
+                        let line = line_of(text, name.span().start);
+                        CliError::Usage(format!("{file}:{line}: {key}: {message}"))
+                    }
+                    other => other,
+                })
+        };
+        names.enumerate().map(read).collect()
+    }
+
+    /// A file that the configuration names, seen from where the program runs.
+    ///
+    /// Implements: CLI-031.
+    pub fn file(&self, name: &Path) -> PathBuf {
+        let [source, _] = &self.source;
+        Path::new(source)
+            .parent()
+            .unwrap_or(Path::new(""))
+            .join(name)
+    }
+
+    fn read_phantom(&self, name: &str) -> Result<Phantom, CliError> {
+        let phantom = match BUILTIN_NAMES.contains(&name) {
+            true => phantom(name)?,
+            false => phantom(&self.file(Path::new(name)).to_string_lossy())?,
+        };
+        for &depth in &self.depths_mm.0 {
+            for &lateral in &self.laterals_mm.0 {
+                let pose = phantom.check_pose(depth, lateral);
+                pose.map_err(|error| CliError::Usage(format!("phantom {name:?}: {error}")))?;
+            }
+        }
+        Ok(phantom)
+    }
+}
+
+fn list<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<List, D::Error> {
+    let text = String::deserialize(deserializer)?;
+    positions(&text).map_err(serde::de::Error::custom)
+}
+
+/// Refused here, with its line, rather than after all maps are solved.
+fn positive<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    number(deserializer, f64::MAX, "a number above 0")
+}
+
+fn probability<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let below_1 = 1f64.next_down();
+    number(
+        deserializer,
+        below_1,
+        "a probability strictly between 0 and 1",
+    )
+}
+
+/// A number above 0 and at most `most`.
+fn number<'de, D: serde::Deserializer<'de>>(
+    deserializer: D,
+    most: f64,
+    expected: &str,
+) -> Result<f64, D::Error> {
+    let number = f64::deserialize(deserializer)?;
+    if number > 0.0 && number <= most {
+        return Ok(number);
+    }
+    let message = format!("{number}, expected {expected}");
+    Err(serde::de::Error::custom(message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Verifies: CLI-031.
+    #[test]
+    fn a_number_out_of_its_range_is_refused_with_its_line() {
+        let (above, rate) = ("a number above 0", "a probability strictly between 0 and 1");
+        for (table, key, value, expected) in [
+            ("mesh", "size_mm", -1.0, above),
+            ("mesh", "size_mm", f64::INFINITY, above),
+            ("detection", "noise_sd_n", 0.0, above),
+            ("detection", "noise_sd_n", f64::NAN, above),
+            ("detection", "max_false_alarm", 1.0, rate),
+            ("detection", "max_miss", 0.0, rate),
+            ("detection", "prior_h1", 1.5, rate),
+        ] {
+            let text = format!("[{table}]\n{key} = {value:?}\n").replace("NaN", "nan");
+            let error = Config::from_toml(&text, "run.toml").unwrap_err();
+            let expected = format!("run.toml:2: {table}.{key}: {value}, expected {expected}");
+            assert_eq!(error.to_string(), expected);
+            assert_eq!(CliError::from(error).exit_code(), 2);
+        }
+    }
+}

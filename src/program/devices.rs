@@ -1,0 +1,110 @@
+//! `palpate devices`: the HID devices of this machine (`spec/command-line.md`).
+
+use std::io::ErrorKind;
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::output::print;
+use super::{CliError, Format};
+use palpate::hid::real::{Listed, Profile, list, no_permission, udev_rule};
+
+/// Arguments of `palpate devices`.
+#[derive(Debug, Args)]
+pub struct DevicesArguments {
+    /// How the devices are printed
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-078, HID-094.
+pub fn devices(arguments: &DevicesArguments) -> Result<(), CliError> {
+    let listed = list()?;
+    print(&match arguments.format {
+        Format::Table => describe(&listed),
+        Format::Json => format!("{:#}\n", listed.iter().map(as_json).collect::<Value>()),
+    })
+}
+
+fn describe(listed: &[Listed]) -> String {
+    if listed.is_empty() {
+        return "no HID device\n".into();
+    }
+    let mut text = String::new();
+    for one in listed {
+        text += &format!("{}\n    {}\n", one.identity, one.profile);
+        text += &match one.access() {
+            Ok(()) => String::new(),
+            Err(error) if error.kind() == ErrorKind::PermissionDenied => {
+                format!("    {}\n", no_permission(&one.identity))
+            }
+            Err(error) => format!("    cannot be opened: {error}\n"),
+        };
+    }
+    text
+}
+
+fn as_json(one: &Listed) -> Value {
+    let identity = &one.identity;
+    let refused = one.access().err();
+    let denied = |error: &std::io::Error| error.kind() == ErrorKind::PermissionDenied;
+    let is_denied = refused.as_ref().is_some_and(denied);
+    json!({
+        "vendor": format!("{:04x}", identity.vendor),
+        "product": format!("{:04x}", identity.product),
+        "serial": identity.serial,
+        "name": identity.name,
+        "node": identity.node,
+        "fits": one.profile == Profile::Vendor,
+        "profile": one.profile.to_string(),
+        "access": match &refused {
+            None => "granted".into(),
+            Some(_) if is_denied => "no permission".into(),
+            Some(error) => error.to_string(),
+        },
+        "udev_rule": is_denied.then(|| udev_rule(identity)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use palpate::hid::real::Identity;
+
+    fn nowhere(profile: Profile) -> Listed {
+        Listed {
+            identity: Identity {
+                vendor: 0x1209,
+                product: 0x00AB,
+                serial: "7".into(),
+                name: "Display".into(),
+                node: "/nowhere".into(),
+            },
+            profile,
+        }
+    }
+
+    // Verifies: CLI-078.
+    #[test]
+    fn a_device_is_described_with_its_profile_and_why_it_can_not_be_opened() {
+        assert_eq!(describe(&[]), "no HID device\n");
+        let text = describe(&[nowhere(Profile::Vendor)]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "Display (1209:00ab, serial 7) at /nowhere");
+        assert_eq!(lines[1], "    vendor profile");
+        let holds = lines[2].starts_with("    cannot be opened: No such file");
+        assert!(holds, "{text}");
+    }
+
+    // Verifies: CLI-078.
+    #[test]
+    fn a_program_reads_numbers_as_they_are_given() {
+        let device = as_json(&nowhere(Profile::Pid));
+        assert_eq!(device["vendor"], "1209");
+        assert_eq!(device["product"], "00ab");
+        assert_eq!(device["fits"], false);
+        assert_eq!(device["udev_rule"], Value::Null);
+    }
+}

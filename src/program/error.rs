@@ -1,0 +1,91 @@
+//! What the program says when it cannot do what it was asked to, and with which exit code.
+
+use std::fmt::{self, Display};
+use std::io;
+use std::path::Path;
+
+use palpate::fem::FemError;
+use palpate::refusal::{Refusal, one_line};
+
+/// Why a command failed. Its message is one line.
+///
+/// Implements: CLI-002, CLI-003.
+#[derive(Debug)]
+pub enum CliError {
+    /// The command line, a file or a device is to blame.
+    Usage(String),
+    /// A phantom, a force map, a trace or a table of answers is not valid, or they do not fit one another.
+    Refused(Refusal),
+    /// A computation or a check failed.
+    Check(String),
+    /// A record cannot be judged.
+    Unjudged(String),
+}
+
+impl Display for CliError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            CliError::Usage(message) | CliError::Check(message) | CliError::Unjudged(message) => {
+                f.write_str(message)
+            }
+            CliError::Refused(refusal) => refusal.fmt(f),
+        }
+    }
+}
+
+impl From<Refusal> for CliError {
+    fn from(refusal: Refusal) -> CliError {
+        CliError::Refused(refusal)
+    }
+}
+
+impl CliError {
+    /// `what` is to blame, for a reason.
+    pub(super) fn refused<E: Display>(what: impl Display) -> impl FnOnce(E) -> CliError {
+        move |reason| CliError::Usage(format!("{what}: {reason}"))
+    }
+
+    /// The system did not let a file be read, written or made.
+    pub(super) fn file(action: &str, path: &Path) -> impl FnOnce(io::Error) -> CliError {
+        CliError::refused(format!("{action} {}", path.display()))
+    }
+
+    /// The solver refused a phantom, the mesh or a pose, or failed.
+    pub(super) fn fem(phantom: &str) -> impl Fn(FemError) -> CliError {
+        use FemError::{NoConvergence, OutOfMemory, Residual};
+        move |error| {
+            let message = format!("phantom {phantom}: {error}");
+            match error {
+                NoConvergence { .. } | Residual { .. } | OutOfMemory => CliError::Check(message),
+                _ => CliError::Usage(message),
+            }
+        }
+    }
+
+    /// The first line of what the argument parser has to say.
+    pub(crate) fn usage(error: &clap::Error) -> CliError {
+        let text = error.to_string();
+        // The parser spreads its message over several lines; usage and hints follow an empty one.
+        let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let mut parts = text.split("\n\n").map(line);
+        let message = parts.next().unwrap_or_default();
+        // What was probably meant, in the words of the parser.
+        let tip = parts.find(|part| part.starts_with("tip: a similar"));
+        let tip = tip.map_or(String::new(), |tip| format!(" ({tip})"));
+        let message = message.strip_prefix("error: ").unwrap_or(&message);
+        if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+            return CliError::Usage("no command; try 'palpate run' or 'palpate --help'".into());
+        }
+        // The parser quotes the arguments, without their escape sequences but not without the rest.
+        CliError::Usage(one_line(&format!("{message}{tip}; see --help")))
+    }
+
+    /// 1 where a computation failed, 2 where the input is to blame, 3 where a record cannot be judged.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            CliError::Check(_) => 1,
+            CliError::Usage(_) | CliError::Refused(_) => 2,
+            CliError::Unjudged(_) => 3,
+        }
+    }
+}

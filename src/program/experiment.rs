@@ -1,0 +1,274 @@
+//! `palpate experiment`: two-alternative forced choice (`spec/command-line.md`).
+
+use std::fs::File;
+use std::io::{BufRead, Read, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+
+use super::CliError;
+use super::numbers::newtons;
+use super::output::{print, read, write};
+use super::playback::{DeviceArguments, limits};
+use super::progress::bar;
+use palpate::force_map::{ForceMap, Hypotheses};
+use palpate::hid::HapticDevice;
+use palpate::hid::simulated::Trajectory;
+use palpate::servo::{Limits, LoadedTable};
+use palpate_paper::psychophysics::{Felt, IdealObserver, Interval, Journal, Setup, Trial, present};
+
+/// How long a person may take to press the deadman.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Arguments of `palpate experiment`.
+#[derive(Debug, Args)]
+pub struct ExperimentArguments {
+    /// The force map without inclusion
+    #[arg(long, value_name = "FILE")]
+    reference: PathBuf,
+    /// A force map with an inclusion, and its name in the results: 6.6=map.json; once for each
+    #[arg(long, value_name = "NAME=FILE", required = true, value_parser = named_file)]
+    inclusion: Vec<(String, PathBuf)>,
+    /// The file of the answers; an aborted experiment continues from it
+    #[arg(long, value_name = "FILE")]
+    journal: PathBuf,
+    /// Name of the subject
+    #[arg(long, value_name = "NAME", default_value = "1", value_parser = plain_name)]
+    subject: String,
+    /// Name of the condition in the results
+    #[arg(long, value_name = "NAME", default_value = "FEM data", value_parser = plain_name)]
+    condition: String,
+    /// Number of pairs for each inclusion
+    #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    trials: u64,
+    /// The seed of the order of the pairs and of the ideal observer's noise
+    #[arg(long, value_name = "S")]
+    seed: u64,
+    /// How long each sample is played, in s
+    #[arg(long, value_name = "S", default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=60))]
+    seconds: u64,
+    #[command(flatten)]
+    device: DeviceArguments,
+    /// Who answers: a person at the keyboard, or the ideal observer on the simulated device
+    #[arg(long, value_enum, default_value_t = Observer::Person)]
+    observer: Observer,
+    /// The ideal observer's noise on each sample of each channel, in N
+    #[arg(long, value_name = "N", required_if_eq("observer", "ideal"), value_parser = newtons)]
+    noise: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Observer {
+    /// Answers by key.
+    Person,
+    /// Answers by Θ.
+    Ideal,
+}
+
+pub(super) fn named_file(text: &str) -> Result<(String, PathBuf), String> {
+    let (name, file) = text
+        .split_once('=')
+        .ok_or_else(|| format!("{text:?}: expected NAME=FILE, such as 6.6=map.json"))?;
+    Ok((plain_name(name)?, file.into()))
+}
+
+/// A name that a row of the results can hold.
+fn plain_name(text: &str) -> Result<String, String> {
+    let plain = |c: char| c.is_alphanumeric() || " .-_".contains(c);
+    if text.is_empty() || !text.chars().all(plain) {
+        return Err(format!(
+            "{text:?}: expected letters, digits, spaces, points, - and _ alone"
+        ));
+    }
+    Ok(text.to_string())
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-070, CLI-071, CLI-072.
+pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
+    arguments.device.check()?;
+    if arguments.observer == Observer::Ideal && !arguments.device.is_simulated() {
+        let message = "--observer ideal has no hand: expected --device sim";
+        return Err(CliError::Usage(message.into()));
+    }
+    let pairs = Pairs::read(arguments)?;
+    let mut journal = open_journal(arguments)?;
+    let total = arguments.inclusion.len() * arguments.trials as usize;
+    let bar = match arguments.observer {
+        Observer::Ideal => bar(total, "pairs"),
+        Observer::Person => indicatif::ProgressBar::hidden(),
+    };
+    while let Some((number, trial)) = journal.next() {
+        let Some(answer) = pairs.judge(number, total, trial)? else {
+            return print(&format!(
+                "{number} of {total} pairs answered; the same command goes on with the next\n"
+            ));
+        };
+        let line = journal.answer(answer == trial.with_inclusion);
+        append(&arguments.journal, line)?;
+        bar.set_position(number as u64 + 1);
+    }
+    bar.finish_and_clear();
+    print(&journal.table_row().unwrap_or_default())
+}
+
+/// The journal so far.
+fn open_journal(arguments: &ExperimentArguments) -> Result<Journal, CliError> {
+    let names = arguments.inclusion.iter().map(|(name, _)| &name[..]);
+    let names: Vec<&str> = names.collect();
+    let mut journal = Journal::new(Setup {
+        seed: arguments.seed,
+        trials: arguments.trials as usize,
+        subject: arguments.subject.clone(),
+        condition: arguments.condition.clone(),
+        inclusions: names.join(","),
+    });
+    let path = &arguments.journal;
+    if path.exists() {
+        let found = Journal::parse(&read(path)?).map_err(CliError::refused(path.display()))?;
+        let (of, asked) = (found.setup(), journal.setup());
+        if of != asked {
+            let message = format!("another experiment ({of}) than asked for ({asked})");
+            return Err(CliError::refused(path.display())(message));
+        }
+        journal = found;
+    }
+    // Written anew, since an abort may have left part of a line.
+    write(path, &journal.to_text())?;
+    Ok(journal)
+}
+
+/// Appends a line to the journal.
+fn append(path: &Path, line: &str) -> Result<(), CliError> {
+    let file = File::options().append(true).open(path);
+    let written = file.and_then(|mut file| file.write_all(line.as_bytes()));
+    written.map_err(CliError::file("write", path))
+}
+
+/// A map, and the table that plays it.
+type Sample = (ForceMap, LoadedTable);
+
+/// The pairs and who judges them.
+struct Pairs<'a> {
+    arguments: &'a ExperimentArguments,
+    limits: Limits,
+    reference: Sample,
+    inclusions: Vec<Sample>,
+}
+
+impl<'a> Pairs<'a> {
+    /// The samples without an inclusion and with each one, of the same gel, checked against the device.
+    fn read(arguments: &'a ExperimentArguments) -> Result<Pairs<'a>, CliError> {
+        let limits = limits(4.0)?;
+        let capabilities = open(arguments)?.capabilities();
+        let capabilities = capabilities.map_err(CliError::refused("device"))?;
+        let damping = arguments.device.damping(&capabilities);
+        let sample = |path: &Path| {
+            let map = ForceMap::read(path)?;
+            let table = LoadedTable::passive(map.table(), &damping, &limits);
+            let table = table.map_err(CliError::refused(path.display()))?;
+            Ok::<Sample, CliError>((map, table))
+        };
+        let reference = sample(&arguments.reference)?;
+        let inclusions = arguments.inclusion.iter().map(|(_, path)| sample(path));
+        let pairs = Pairs {
+            arguments,
+            limits,
+            reference,
+            inclusions: inclusions.collect::<Result<_, _>>()?,
+        };
+        for number in 0..pairs.inclusions.len() {
+            pairs.hypotheses(number)?;
+        }
+        Ok(pairs)
+    }
+
+    /// The forces without the inclusion of this number, and with it.
+    fn hypotheses(&self, number: usize) -> Result<Hypotheses<'_>, CliError> {
+        let path = &self.arguments.inclusion[number].1;
+        let hypotheses = Hypotheses::new(&self.reference.0, &self.inclusions[number].0);
+        hypotheses.map_err(CliError::refused(path.display()))
+    }
+
+    /// The answer to a pair; `None` if the person stops.
+    fn judge(
+        &self,
+        number: usize,
+        total: usize,
+        trial: Trial,
+    ) -> Result<Option<Interval>, CliError> {
+        let [without, with] = [&self.reference.1, &self.inclusions[trial.inclusion].1];
+        let samples = match trial.with_inclusion {
+            Interval::First => [with, without],
+            Interval::Second => [without, with],
+        };
+        let is_ideal = self.arguments.observer == Observer::Ideal;
+        let Some(noise_sd) = self.arguments.noise.filter(|_| is_ideal) else {
+            return self.ask(&format!("pair {} of {total}", number + 1), samples);
+        };
+        let observer = IdealObserver {
+            hypotheses: self.hypotheses(trial.inclusion)?,
+            noise_sd,
+            seed: self.arguments.seed,
+        };
+        let [first, second] = samples.map(|sample| self.felt(sample));
+        let answer = observer.choose(&first?, &second?, number as u64);
+        answer
+            .map(Some)
+            .map_err(CliError::refused("the ideal observer"))
+    }
+
+    /// A sample as it is felt.
+    fn felt(&self, table: &LoadedTable) -> Result<Felt, CliError> {
+        let table = table.table().map_err(CliError::refused("servo"))?;
+        let duration = Duration::from_secs(self.arguments.seconds);
+        let device = open(self.arguments)?;
+        present(device, table, self.limits, duration, PATIENCE)
+            .map_err(|error| CliError::Check(error.to_string()))
+    }
+
+    /// Lets a person feel both samples, and answer.
+    fn ask(&self, pair: &str, samples: [&LoadedTable; 2]) -> Result<Option<Interval>, CliError> {
+        for (name, sample) in ["first", "second"].into_iter().zip(samples) {
+            let prompt = format!(
+                "{pair}, {name} sample: let go of the deadman, press Enter (q ends), then hold it "
+            );
+            match line(&prompt).as_deref() {
+                None | Some("q") => return Ok(None),
+                Some(_) => self.felt(sample)?,
+            };
+        }
+        loop {
+            match line("which sample had the inclusion? 1 or 2 (q ends) ").as_deref() {
+                Some("1") => return Ok(Some(Interval::First)),
+                Some("2") => return Ok(Some(Interval::Second)),
+                Some("q") | None => return Ok(None),
+                Some(_) => eprintln!("expected 1, 2 or q"),
+            }
+        }
+    }
+}
+
+/// The device; the simulated one is in a hand that presses for as long as a sample lasts.
+fn open(arguments: &ExperimentArguments) -> Result<Box<dyn HapticDevice + Send>, CliError> {
+    let sweep = Duration::from_secs(arguments.seconds) / 2;
+    let hand = Trajectory::probing(4e-3, 9e-3, sweep);
+    let device = arguments.device.open(hand);
+    device.map_err(CliError::refused("device"))
+}
+
+/// The longest line that is read from the keyboard, bytes.
+const LONGEST_LINE: u64 = 1024;
+
+/// A line from the keyboard; `None` at its end.
+fn line(prompt: &str) -> Option<String> {
+    eprint!("{prompt}");
+    let mut text = String::new();
+    let mut keyboard = std::io::stdin().lock().take(LONGEST_LINE);
+    // More than a line is no person.
+    let is_line = |length: usize| (1..LONGEST_LINE).contains(&(length as u64));
+    let length = keyboard.read_line(&mut text).ok()?;
+    is_line(length).then(|| text.trim().to_string())
+}

@@ -1,0 +1,93 @@
+//! `palpate import-map`: a measured force map in CSV, checked and written as JSON.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::CliError;
+use super::comparison::{compare, left_out};
+use super::numbers::length;
+use super::output::{note, print, read, write};
+use super::solve::phantom;
+use palpate::force_map::{ForceMap, ForceTable, Measurement, Smoothed, Source};
+use palpate::phantom::Phantom;
+
+/// Arguments of `palpate import-map`.
+#[derive(Debug, Args)]
+pub struct ImportArguments {
+    /// The forces: a header with depth_mm, lateral_mm, normal_force_n, lateral_force_n, and a row for each pose
+    #[arg(value_name = "FILE")]
+    csv: PathBuf,
+    /// A note on what was measured, stored in the map
+    #[arg(long, default_value = "")]
+    note: String,
+    /// The phantom that was measured, built in or a file: its computed forces are compared with the measured ones
+    #[arg(long, value_name = "NAME|FILE")]
+    phantom: Option<String>,
+    /// Smooths the forces by parabolas over W mm to either side along the lateral positions, and reports the noise
+    #[arg(long, value_name = "W", value_parser = length, allow_hyphen_values = true)]
+    smooth_mm: Option<f64>,
+    /// Writes the map there instead of to standard output
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-020, CLI-017.
+pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
+    let phantom = arguments.phantom.as_deref().map(phantom).transpose()?;
+    let text = read(&arguments.csv)?;
+    let file = arguments.csv.display().to_string();
+    let (mut forces, notes) = ForceTable::from_csv_with_notes(&text, &file)?;
+    notes.iter().for_each(|text| note(&file, text));
+    let mut measurement = Measurement::new(&file, &arguments.note);
+    if let Some(half_width) = arguments.smooth_mm {
+        let smoothed = forces.smoothed(half_width);
+        let smoothed = smoothed.map_err(|refusal| refusal.in_file(&*file))?;
+        note(&file, &noise(&smoothed));
+        forces = smoothed.table;
+        measurement.smoothed_half_width = Some(half_width);
+    }
+    let phantom = phantom.and_then(|phantom| compared(&file, &forces, phantom));
+    let map = ForceMap::new(Source::Measured(measurement), phantom, forces);
+    let map = map.map_err(|refusal| refusal.in_file(file))?;
+    match &arguments.out {
+        Some(path) => write(path, &map.to_json()),
+        None => print(&map.to_json()),
+    }
+}
+
+/// Implements: CLI-020.
+fn noise(smoothed: &Smoothed) -> String {
+    let (sd, freedom) = (smoothed.noise_sd, smoothed.degrees_of_freedom);
+    format!(
+        "smoothing leaves a residual of {:.4} N (normal) and {:.4} N (lateral), of {freedom:.1} degrees of freedom each: the noise of a sample",
+        sd.normal, sd.lateral
+    )
+}
+
+/// The phantom, if its probe can stand at each pose; tells what stands out in its forces.
+///
+/// Implements: CLI-022.
+fn compared(file: &str, forces: &ForceTable, phantom: Phantom) -> Option<Phantom> {
+    let name = &phantom.name;
+    match compare(forces, &phantom) {
+        Ok(said) => said
+            .iter()
+            .for_each(|text| note(file, &format!("phantom {name}: {text}"))),
+        Err(error) => note(file, &format!("phantom {name}: not compared: {error}")),
+    }
+    let left_out = left_out(forces, &phantom);
+    if left_out == 0 {
+        return Some(phantom);
+    }
+    let all = forces.forces().normal.values().len();
+    note(
+        file,
+        &format!(
+            "phantom {name}: its probe cannot stand at {left_out} of {all} poses: the map is kept without a phantom"
+        ),
+    );
+    None
+}

@@ -1,0 +1,95 @@
+//! The program `palpate`: what people type, and what they are told (`spec/command-line.md`). Each command has a file of its name.
+//!
+//! Only the project's own programs and tests use this crate as a library.
+
+pub mod arguments;
+mod bank;
+mod comparison;
+pub mod config;
+mod demo;
+mod detect;
+mod devices;
+mod error;
+mod experiment;
+mod import;
+pub mod numbers;
+mod oracle;
+pub mod output;
+mod part;
+mod play;
+mod playback;
+pub mod progress;
+mod psychophysics;
+mod reach;
+mod run;
+mod solve;
+mod study;
+mod timing;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Command, CommandLine, Format};
+pub use error::CliError;
+
+/// Runs the program with the given arguments, the first of which is its name.
+///
+/// ```
+/// use std::ffi::OsString;
+/// use std::process::ExitCode;
+///
+/// // Prints the version.
+/// let code = palpate_program::main(["palpate", "--version"].map(OsString::from));
+/// assert_eq!(code, ExitCode::SUCCESS);
+/// // Says on the standard error what would be right.
+/// let code = palpate_program::main(["palpate", "--deth"].map(OsString::from));
+/// assert_ne!(code, ExitCode::SUCCESS);
+/// ```
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    program(arguments, |arguments: CommandLine| {
+        match arguments.command {
+            Command::Run(arguments) => run::run(&arguments),
+            Command::Demo(arguments) => demo::demo(&arguments),
+            Command::Solve(arguments) => solve::solve(&arguments),
+            Command::ImportMap(arguments) => import::import(&arguments),
+            Command::Bank(arguments) => bank::bank(&arguments),
+            Command::Detect(arguments) => detect::detect(&arguments),
+            Command::Reach(arguments) => reach::reach(&arguments),
+            Command::Study(arguments) => study::study(&arguments),
+            Command::Play(arguments) => play::play(&arguments),
+            Command::Devices(arguments) => devices::devices(&arguments),
+            Command::Experiment(arguments) => experiment::experiment(&arguments),
+            Command::Psychophysics(arguments) => psychophysics::psychophysics(&arguments),
+            Command::Timing(arguments) => timing::timing(&arguments),
+            Command::Oracle(arguments) => oracle::oracle(&arguments),
+        }
+    })
+}
+
+/// The commands and arguments of `palpate`, for completions and manual pages.
+pub fn command() -> clap::Command {
+    <CommandLine as clap::CommandFactory>::command()
+}
+
+/// Runs a program that takes arguments `A`: prints help and version, says on standard error in one line why it failed, and
+/// gives the exit code. The companions of `palpate` use it too.
+///
+/// Implements: CLI-001, CLI-002, CLI-003.
+pub fn program<A: Parser>(
+    arguments: impl IntoIterator<Item = OsString>,
+    act: impl FnOnce(A) -> Result<(), CliError>,
+) -> ExitCode {
+    let result = arguments::read(arguments).and_then(|asked| match asked {
+        Ok(arguments) => act(arguments),
+        Err(text) => output::print(&text),
+    });
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{}: {error}", A::command().get_name());
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Numbers on the command line, and lists of them: `a,b,c` or `from:to:step`, of positions in mm or of moduli in kPa.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+use palpate::decimal::{format_scaled, parse_scaled};
+use palpate::fem::Contact;
+
+/// How the gap to the probe is measured, by its name.
+pub fn contact() -> impl TypedValueParser<Value = Contact> {
+    const NAMES: [(Contact, &str); 2] = [
+        (
+            Contact::DeformedNormal,
+            "Distance of the deformed surface from the circle; force along its normal",
+        ),
+        (
+            Contact::VerticalGap,
+            "Height of the circle over the undeformed point; vertical force on the gel",
+        ),
+    ];
+    let values = NAMES.map(|(contact, help)| PossibleValue::new(contact.name()).help(help));
+    PossibleValuesParser::new(values).map(|name| {
+        let named = NAMES
+            .into_iter()
+            .find(|(contact, _)| contact.name() == name);
+        named.map_or_else(Contact::default, |(contact, _)| contact)
+    })
+}
+
+/// What a list holds, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct List(pub Vec<f64>);
+
+/// What a list holds, and the unit in which it is written, SI times 10 to a power.
+struct Written {
+    of: &'static str,
+    unit: &'static str,
+    power: i32,
+}
+
+const IN_MM: Written = Written {
+    of: "positions",
+    unit: "mm",
+    power: -3,
+};
+const IN_KPA: Written = Written {
+    of: "moduli",
+    unit: "kPa",
+    power: 3,
+};
+
+/// Most entries that a list may have.
+const MOST: usize = 10_000;
+/// Steps are counted in units of 10⁻⁹ of what is written, so that they add up without rounding.
+const DECIMALS: i32 = 9;
+
+/// Reads a list of positions in mm.
+///
+/// Implements: CLI-010.
+///
+/// # Errors
+/// A message that names the entry and what would be right.
+pub fn positions(text: &str) -> Result<List, String> {
+    IN_MM.list(text).map(List)
+}
+
+/// Reads a list of moduli in kPa.
+///
+/// Implements: CLI-154.
+///
+/// # Errors
+/// As [`positions`].
+pub fn moduli(text: &str) -> Result<List, String> {
+    IN_KPA.list(text).map(List)
+}
+
+/// Reads one number, and multiplies it by 10^`power`; `is_right` says whether it is as `expected`.
+///
+/// Implements: CON-001.
+fn number(
+    text: &str,
+    power: i32,
+    is_right: fn(f64) -> bool,
+    expected: &str,
+) -> Result<f64, String> {
+    let number = parse_scaled(text, power).filter(|&number| is_right(number));
+    number.ok_or_else(|| format!("expected {expected}"))
+}
+
+/// Reads a length above 0 in mm, m.
+///
+/// # Errors
+/// As the functions below, a message that says what would be right.
+pub fn length(text: &str) -> Result<f64, String> {
+    number(text.trim(), -3, |mm| mm > 0.0, "mm above 0, such as 2.5")
+}
+
+/// Reads a length of at least 0 in mm, m.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    number(text, -3, |mm| mm >= 0.0, "mm, at least 0, such as 0.3")
+}
+
+/// Reads a position in mm, m, or a velocity in mm/s, m/s.
+pub fn millimetres(text: &str) -> Result<f64, String> {
+    number(text, -3, |_| true, "a finite number, such as 2.5")
+}
+
+/// Reads a force above 0, N.
+pub fn newtons(text: &str) -> Result<f64, String> {
+    number(text, 0, |force| force > 0.0, "N above 0, such as 0.1")
+}
+
+/// Reads a probability strictly between 0 and 1.
+pub fn probability(text: &str) -> Result<f64, String> {
+    let is_right = |share| share > 0.0 && share < 1.0;
+    number(text, 0, is_right, "a probability strictly between 0 and 1")
+}
+
+impl Written {
+    fn list(&self, text: &str) -> Result<Vec<f64>, String> {
+        let Written { of, unit, power } = self;
+        let parts: Vec<&str> = text.split(':').map(str::trim).collect();
+        let values = match parts[..] {
+            [list] => {
+                let entries = list.split(',').map(|entry| self.value(entry.trim()));
+                entries.collect::<Result<Vec<_>, _>>()?
+            }
+            [from, to, step] => self.steps(from, to, step)?,
+            _ => {
+                let forms = format!("a,b,c or from:to:step in {unit}, such as 0:4:0.5");
+                return Err(format!("{text:?}: expected {forms}"));
+            }
+        };
+        let count = values.len();
+        if count > MOST {
+            return Err(format!("{count} {of}, expected at most {MOST}"));
+        }
+        let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else {
+            return Ok(values);
+        };
+        let [before, after] = [pair[0], pair[1]].map(|value| format_scaled(value, -power));
+        Err(format!(
+            "{after} {unit} after {before} {unit}: expected increasing {of}"
+        ))
+    }
+
+    /// One entry in SI.
+    ///
+    /// Implements: CON-001.
+    fn value(&self, text: &str) -> Result<f64, String> {
+        let unit = self.unit;
+        parse_scaled(text, self.power)
+            .ok_or_else(|| format!("{text:?} is no number: expected {unit}, such as 2.5"))
+    }
+
+    fn steps(&self, from: &str, to: &str, step: &str) -> Result<Vec<f64>, String> {
+        let units = |text: &str| -> Result<i64, String> {
+            self.value(text)?;
+            let value = parse_scaled(text, DECIMALS).unwrap_or(f64::NAN);
+            if value.abs() < 1e15 && value.fract() == 0.0 {
+                Ok(value as i64) // whole and below 10¹⁵: exact
+            } else {
+                Err(format!(
+                    "{text:?} {}: expected below 1e6 with at most 9 decimal places",
+                    self.unit
+                ))
+            }
+        };
+        let (first, last, step_units) = (units(from)?, units(to)?, units(step)?);
+        if step_units <= 0 || last < first {
+            return Err(format!(
+                "{from}:{to}:{step}: expected from ≤ to and a step above 0"
+            ));
+        }
+        let count = (last - first) / step_units + 1;
+        if count > MOST as i64 {
+            return Err(format!(
+                "{from}:{to}:{step} has {count} {}, expected at most {MOST}",
+                self.of
+            ));
+        }
+        let value = |k: i64| self.value(&format!("{}e-{DECIMALS}", first + k * step_units));
+        (0..count).map(value).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Verifies: CLI-010.
+    #[test]
+    fn lists_are_in_mm_and_exact() {
+        assert_eq!(positions("1, 2.6,4"), Ok(List(vec![0.001, 0.0026, 0.004])));
+        assert_eq!(positions("-0.5"), Ok(List(vec![-0.0005])));
+        // Sums of the step in binary would miss 0.0003 and 0.0006 by a bit.
+        let tenths = vec![0.0, 0.0001, 0.0002, 0.0003, 0.0004, 0.0005, 0.0006];
+        assert_eq!(positions("0:0.6:0.1"), Ok(List(tenths)));
+        assert_eq!(positions("-1:1:1"), Ok(List(vec![-0.001, 0.0, 0.001])));
+        assert_eq!(positions("0:1:0.6"), Ok(List(vec![0.0, 0.0006])));
+    }
+
+    // Verifies: CLI-154.
+    #[test]
+    fn moduli_are_in_kpa_and_exact() {
+        assert_eq!(moduli("44.1,300"), Ok(List(vec![44_100.0, 300_000.0])));
+        assert_eq!(moduli("0.1:0.3:0.1"), Ok(List(vec![100.0, 200.0, 300.0])));
+        let error = moduli("300,44").unwrap_err();
+        assert_eq!(
+            error,
+            "44.0 kPa after 300.0 kPa: expected increasing moduli"
+        );
+    }
+
+    // Verifies: CLI-010.
+    #[test]
+    fn lists_that_make_no_sense_are_refused_with_the_entry() {
+        for (text, word) in [
+            ("", "\"\""),
+            ("1,,2", "\"\""),
+            ("1,x", "\"x\""),
+            ("nan", "\"nan\""),
+            ("2,1", "1.0 mm after 2.0 mm"),
+            ("1,1", "increasing"),
+            ("0:1", "from:to:step"),
+            ("0:1:0", "step above 0"),
+            ("1:0:0.5", "from ≤ to"),
+            ("0:1:-0.5", "step above 0"),
+            ("0:1:0.00001", "at most 10000"),
+            ("0:1e9:1", "below 1e6"),
+            ("0:1:0.12345678901", "9 decimal places"),
+        ] {
+            let error = positions(text).unwrap_err();
+            assert!(error.contains(word), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! `palpate play`: a force map to a hand (`spec/command-line.md`).
+
+use std::fmt::Display;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use askama::Template;
+use clap::Args;
+use serde::Serialize;
+
+use super::output::{print, read, write};
+use super::playback::{DeviceArguments, limits, loaded_map};
+use super::{CliError, Format};
+use palpate::force_map::ForceMap;
+use palpate::hid::simulated::Trajectory;
+use palpate::hid::supervise::{HELD_UP, PlayOptions, play as supervised};
+use palpate::hid::timing::Timing;
+use palpate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session};
+use palpate::servo::{Limits, LoadedTable};
+
+/// Most seconds that can be recorded: an hour at 1 kHz.
+const MOST_RECORDED: u64 = 3600;
+
+/// Arguments of `palpate play`.
+#[derive(Debug, Args)]
+pub struct PlayArguments {
+    /// The force map
+    #[arg(long, value_name = "FILE")]
+    map: PathBuf,
+    #[command(flatten)]
+    device: DeviceArguments,
+    /// Ends after S seconds of the device's time [default: one indentation on the simulated device]
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    seconds: Option<u64>,
+    /// Largest force of each component, in N
+    #[arg(long, value_name = "N", default_value_t = 4.0)]
+    max_force: f32,
+    /// Scales down a map that is too stiff for the device instead of refusing it
+    #[arg(long)]
+    scale: bool,
+    /// Records the session to a file
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Replays a recorded session and compares every force with the recording
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["seconds", "record", "max_force"])]
+    replay: Option<PathBuf>,
+    /// How the summary is printed
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, HID-094.
+pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
+    if let Some(file) = &arguments.replay {
+        return replay(arguments, file);
+    }
+    let limits = limits(arguments.max_force)?;
+    arguments.device.check()?;
+    let probing = Trajectory::probing(4e-3, 9e-3, Duration::from_millis(1500));
+    let seconds = arguments.seconds.map(Duration::from_secs);
+    let is_simulated = arguments.device.is_simulated();
+    let duration = seconds.or(is_simulated.then_some(probing.duration()));
+    let hand = probing.repeated(duration.unwrap_or_default());
+    let device = arguments.device.open(hand).map_err(failed)?;
+    session(arguments, device, limits, duration)
+}
+
+fn failed(error: impl Display) -> CliError {
+    CliError::Usage(error.to_string())
+}
+
+/// The table for this device, and the factor on its forces.
+fn table(
+    arguments: &PlayArguments,
+    capabilities: &Capabilities,
+    limits: &Limits,
+) -> Result<(LoadedTable, f64), CliError> {
+    let path = &arguments.map;
+    let map = ForceMap::read(path)?;
+    let damping = arguments.device.damping(capabilities);
+    let file = path.display();
+    if arguments.scale {
+        let scaled = LoadedTable::scaled_to_be_passive(map.table(), &damping, limits);
+        return scaled.map_err(CliError::refused(file));
+    }
+    let refused = |error| failed(format_args!("{file}: {error} (or use --scale)"));
+    let loaded = LoadedTable::passive(map.table(), &damping, limits);
+    Ok((loaded.map_err(refused)?, 1.0))
+}
+
+/// Plays on `device` and tells what happened.
+fn session(
+    arguments: &PlayArguments,
+    mut device: Box<dyn HapticDevice + Send>,
+    limits: Limits,
+    duration: Option<Duration>,
+) -> Result<(), CliError> {
+    let capabilities = device.capabilities().map_err(failed)?;
+    let (loaded, scale) = table(arguments, &capabilities, &limits)?;
+    let table = loaded.table().map_err(failed)?;
+    let record = match (&arguments.record, duration) {
+        (None, _) => 0,
+        (Some(_), Some(time)) if time.as_secs() <= MOST_RECORDED => {
+            time.as_micros() as usize / usize::from(capabilities.period_us.max(1)) + 64
+        }
+        (Some(_), _) => {
+            return Err(CliError::Usage(format!(
+                "--record needs --seconds of at most {MOST_RECORDED}"
+            )));
+        }
+    };
+    let options = PlayOptions { duration, record };
+    let stop = stop_on_signals()?;
+    let session = Session::begin(device, table, limits).map_err(failed)?;
+    let stop = || stop.load(Ordering::Relaxed);
+    // A virtual clock stands still with the loop: nothing is held up, and no cycle takes time.
+    let is_simulated = arguments.device.is_simulated();
+    let look = live(!is_simulated);
+    let played = supervised(session, &options, raise_priority, stop, look);
+    if std::io::stderr().is_terminal() {
+        eprint!("\r\x1b[K"); // the summary begins on an empty line
+    }
+    let panicked = "the servo thread panicked; the device was told to stop";
+    let played = played.ok_or(CliError::Check(panicked.into()))?;
+    if let Some(path) = &arguments.record {
+        let recording = Recording {
+            capabilities,
+            limits,
+            cycles: played.cycles,
+        };
+        write(path, &recording.to_text())?;
+    }
+    let rounding = loaded.rounding();
+    let summary = Summary {
+        end: played.end.to_string(),
+        counters: played.counters,
+        held_up_ms: played
+            .held_up
+            .filter(|_| !is_simulated)
+            .map(|time| time.as_millis() as u64),
+        rounding_position_m: rounding.position_m,
+        rounding_force_n: rounding.force_n,
+        scale,
+        timing: played.timing.filter(|_| !is_simulated),
+    };
+    // With its keys sorted; neither this nor writing to a String fails.
+    let sorted = serde_json::to_value(&summary).unwrap_or_default();
+    let text = |_: &_| summary.render().unwrap_or_default();
+    arguments.format.print(&sorted, text)?;
+    match played.end {
+        End::Asked => Ok(()),
+        _ => Err(CliError::Check(summary.end)),
+    }
+}
+
+/// Set by ctrl-C, by SIGTERM and by SIGHUP; a second one ends the program at once, and leaves the
+/// force to the device's watchdog.
+fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
+        let hook = signal_hook::flag::register_conditional_shutdown(signal, 130, stop.clone())
+            .and_then(|_| signal_hook::flag::register(signal, stop.clone()));
+        hook.map_err(|error| failed(format_args!("signal {signal}: {error}")))?;
+    }
+    Ok(stop)
+}
+
+/// Asks for the real-time priority and for memory that is not paged out; says so where it may not.
+///
+/// Implements: HID-055.
+fn raise_priority() {
+    use rustix::mm::{MlockAllFlags, mlockall};
+    use thread_priority::{
+        RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
+        set_thread_priority_and_policy, thread_native_id,
+    };
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    let priority = 80u8.try_into().map(ThreadPriority::Crossplatform);
+    let raised = priority.is_ok_and(|priority| {
+        set_thread_priority_and_policy(thread_native_id(), priority, policy).is_ok()
+    });
+    let locked = mlockall(MlockAllFlags::CURRENT | MlockAllFlags::FUTURE).is_ok();
+    if !raised {
+        eprintln!("note: no real-time priority (SCHED_FIFO): the system may wake the loop late");
+    }
+    if !locked {
+        eprintln!("note: memory not locked: a page fault may delay a cycle");
+    }
+}
+
+/// What the supervisor shows while it plays: the counters on one line of a terminal and, of a loop on
+/// the `wall_clock`, that it is held up.
+fn live(wall_clock: bool) -> impl FnMut(&Counters, Duration) {
+    let terminal = std::io::stderr().is_terminal();
+    let mut told = false;
+    move |counters, silent| {
+        if wall_clock && silent > HELD_UP && !told {
+            told = true;
+            eprintln!(
+                "the servo thread is held up for {} ms: the device's own watchdog must drop the force",
+                silent.as_millis()
+            );
+        }
+        told &= silent > HELD_UP;
+        if terminal {
+            eprint!("\r{}\x1b[K", counted(counters));
+        }
+    }
+}
+
+fn counted(counters: &Counters) -> String {
+    let refused = match counters.stops_refused {
+        0 => String::new(),
+        refused => format!(", {refused} stops refused"),
+    };
+    format!(
+        "{} cycles, {} played, {} missed, {} skipped, {} passed over, {} garbage{refused}",
+        counters.cycles,
+        counters.played,
+        counters.missed,
+        counters.skipped,
+        counters.passed_over,
+        counters.garbage
+    )
+}
+
+/// The summary.
+#[derive(Template, Serialize)]
+#[template(path = "cli.txt", block = "play")]
+struct Summary {
+    end: String,
+    #[serde(flatten)]
+    counters: Counters,
+    held_up_ms: Option<u64>,
+    rounding_position_m: f64,
+    rounding_force_n: f64,
+    scale: f64,
+    timing: Option<Timing>,
+}
+
+/// Plays a recording again.
+fn replay(arguments: &PlayArguments, file: &Path) -> Result<(), CliError> {
+    let text = read(file)?;
+    let recording = Recording::parse(&text).map_err(CliError::refused(file.display()))?;
+    let loaded = match arguments.scale {
+        true => table(arguments, &recording.capabilities, &recording.limits)?.0,
+        false => loaded_map(&arguments.map)?,
+    };
+    let table = loaded.table().map_err(CliError::refused(file.display()))?;
+    let cycles = recording.replay(table);
+    let failed = |error| CliError::Check(format!("{}: {error}", file.display()));
+    let cycles = cycles.map_err(failed)?;
+    print(&format!(
+        "{cycles} cycles, all forces the same to the bit\n"
+    ))
+}

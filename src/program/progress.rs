@@ -1,0 +1,47 @@
+//! What is told of long work.
+
+use std::io::IsTerminal;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use palpate::fem::{FemError, Mesh};
+use palpate::phantom::Phantom;
+
+/// A mesh of so many nodes takes a while: five times those of the paper's phantoms.
+const MANY_NODES: f64 = 50_000.0;
+
+/// Says on standard error, before it is made, that a mesh will be large.
+///
+/// Implements: CLI-017.
+pub fn tell_large_mesh(phantom: &Phantom, size: f64) -> Result<(), FemError> {
+    let nodes = Mesh::expected_nodes(phantom, size)?;
+    if nodes > MANY_NODES {
+        eprintln!(
+            "palpate: note: phantom {}: a mesh of about {nodes:.0} nodes, where the paper's phantoms have 10000: a pose may take minutes",
+            phantom.name
+        );
+    }
+    Ok(())
+}
+
+/// A bar on standard error that counts `total` pieces of `what`; hidden where standard error is no
+/// terminal.
+///
+/// Implements: CLI-006.
+pub fn bar(total: usize, what: &str) -> ProgressBar {
+    let target = if std::io::stderr().is_terminal() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
+    };
+    let bar = ProgressBar::with_draw_target(Some(total as u64), target);
+    // The template is a constant: a mistake in it would show in every run.
+    let style = ProgressStyle::with_template("{msg} [{bar:30}] {pos}/{len} {eta}");
+    bar.set_style(
+        style
+            .unwrap_or_else(|_| ProgressStyle::default_bar())
+            .progress_chars("=> "),
+    );
+    bar.set_message(what.to_string());
+    bar
+}

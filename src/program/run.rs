@@ -1,0 +1,170 @@
+//! `palpate run`: from the phantoms to the report.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+
+use super::CliError;
+use super::config::Config;
+use super::output::{make_folder, print, write};
+use super::progress::{bar, tell_large_mesh};
+use super::solve::warn_of_large_strain;
+use palpate::fem::certify::certified_map;
+use palpate::fem::{FemError, Model, Pose};
+use palpate::force_map::ForceMap;
+use palpate::input::parse;
+use palpate::phantom::Phantom;
+use palpate::refusal::Refusal;
+use palpate_paper::psychophysics::bridge::probe_depth;
+use palpate_paper::report::{
+    ArraySweep, DeformedMesh, FileNames, Run, figures, findings, html, summary_json,
+};
+use palpate_paper::study::StudyResults;
+
+/// Arguments of `palpate run`.
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    /// A TOML file with phantoms, poses and noise to use instead of the paper's
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// The results of 'palpate study merge' for the same phantoms, to show in the report
+    #[arg(long, value_name = "FILE")]
+    study: Option<PathBuf>,
+    /// The folder for report.html, summary.json, maps/ and figures/
+    #[arg(long, value_name = "DIR", default_value = "palpate-out")]
+    out: PathBuf,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-030, CLI-031, CLI-032.
+pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
+    let config = match &arguments.config {
+        Some(path) => parse(path, Config::from_toml)?,
+        None => Config::default(),
+    };
+    let phantoms = config.read_phantoms()?;
+    let measured = config.measured.iter();
+    let measured = measured.map(|path| measured_map(&config.file(path)));
+    let measured = measured.collect::<Result<Vec<_>, _>>()?;
+    let study = arguments.study.as_deref().map(StudyResults::read);
+    let study = study.transpose()?;
+    // The folder first: a run shall not fail at its end for want of a place.
+    make_folder(&arguments.out)?;
+    let run = solve_all(&config, &phantoms, measured)?;
+    let run = Run { study, ..run };
+    for map in std::iter::once(&run.reference).chain(&run.maps) {
+        warn_of_large_strain(map);
+    }
+    write_run(&run, &arguments.out)
+}
+
+/// Reads a map that must have been measured.
+///
+/// Implements: CLI-031.
+fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
+    let map = ForceMap::read(path)?;
+    if map.certificate().is_some() {
+        let reason = "a computed map; 'measured' takes maps that palpate import-map wrote";
+        return Err(CliError::refused(path.display())(reason));
+    }
+    Ok(map)
+}
+
+/// Solves all maps, the phantoms in parallel, and the field of one pose.
+///
+/// Implements: CLI-007, CON-006.
+fn solve_all(
+    config: &Config,
+    phantoms: &[Phantom],
+    measured: Vec<ForceMap>,
+) -> Result<Run, CliError> {
+    let bar = bar(0, "force maps");
+    // The figure shows the first inclusion, or the reference where there is none.
+    let shown = usize::from(phantoms.len() > 1);
+    let solve = |(index, phantom): (usize, &Phantom)| {
+        solve_phantom(config, phantom, index == shown, &bar).map_err(CliError::fem(&phantom.name))
+    };
+    let solved = phantoms.par_iter().enumerate().map(solve);
+    let solved: Vec<_> = solved.collect::<Result<_, _>>()?;
+    bar.finish_and_clear();
+    let (mut maps, arrays, deformed): (Vec<_>, _, Vec<_>) = solved.into_iter().collect();
+    let deformed = deformed.into_iter().flatten().next();
+    let none = || CliError::Usage("no phantom to run".into());
+    let reference = maps.remove(0);
+    Ok(Run {
+        reference,
+        maps,
+        measured,
+        arrays,
+        deformed: deformed.ok_or_else(none)?,
+        settings: config.detection,
+        study: None,
+    })
+}
+
+fn solve_phantom(
+    config: &Config,
+    phantom: &Phantom,
+    shown: bool,
+    bar: &ProgressBar,
+) -> Result<(ForceMap, ArraySweep, Option<DeformedMesh>), FemError> {
+    let mesh = &config.mesh;
+    tell_large_mesh(phantom, mesh.size_mm / 1e3)?;
+    let model = Model::new(phantom, mesh.size_mm / 1e3, mesh.contact)?;
+    let (depths, laterals) = (&config.depths_mm.0, &config.laterals_mm.0);
+    // Each map on three meshes.
+    bar.inc_length((3 * depths.len() * model.solved_laterals(laterals).len()) as u64);
+    let map = certified_map(&model, depths, laterals, &|poses| bar.inc(poses as u64))?;
+    let deformed = shown.then(|| deformed_mesh(&model, &map)).transpose()?;
+    let (depth, _) = probe_depth(depths);
+    let array = ArraySweep::solve(&model, depth, laterals)?;
+    Ok((map, array, deformed))
+}
+
+/// The mesh at the deepest pose, as near as possible to above the middle of the first inclusion, or else to x = 0.
+fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
+    let deepest = map.depths().iter().fold(0.0, |a: f64, &b| a.max(b));
+    let first = model.phantom().inclusions.first();
+    let middle = first.map_or(0.0, |inclusion| {
+        let [left, right, ..] = inclusion.extent();
+        0.5 * (left + right)
+    });
+    let distance = |x: f64| (x - middle).abs();
+    let laterals = map.laterals().iter().copied();
+    let nearest = laterals.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+    let pose = Pose {
+        depth: deepest,
+        lateral: nearest.unwrap_or(0.0),
+    };
+    DeformedMesh::solve(model, pose)
+}
+
+/// Writes everything and says where.
+fn write_run(run: &Run, out: &Path) -> Result<(), CliError> {
+    let failed = |refusal: Refusal| CliError::Check(format!("report: {refusal}"));
+    let findings = findings(run).map_err(failed)?;
+    let figures = figures(run, &findings).map_err(failed)?;
+    make_folder(&out.join("maps"))?;
+    make_folder(&out.join("figures"))?;
+    let mut names = FileNames::default();
+    for map in std::iter::once(&run.reference).chain(&run.maps) {
+        let name = map.phantom().map_or("", |phantom| &phantom.name);
+        let name = names.unique("map", name, "json");
+        write(&out.join("maps").join(name), &map.to_json())?;
+    }
+    for figure in &figures {
+        write(&out.join("figures").join(&figure.file_name), &figure.svg)?;
+    }
+    write(&out.join("summary.json"), &summary_json(&findings, run))?;
+    let report = out.join("report.html");
+    write(&report, &html(run, &findings, &figures))?;
+    print(&format!(
+        "{} force maps, {} figures, summary.json and the report in {}\n",
+        1 + run.maps.len(),
+        figures.len(),
+        report.display()
+    ))
+}

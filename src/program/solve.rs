@@ -1,0 +1,154 @@
+//! `palpate solve`: the forces over depths and lateral positions of one phantom.
+
+use std::path::{Path, PathBuf};
+
+use askama::Template;
+use clap::{Args, ValueEnum};
+
+use super::CliError;
+use super::numbers::{List, contact, length, positions};
+use super::output::{print, write};
+use super::progress::{bar, tell_large_mesh};
+use palpate::decimal::format_scaled;
+use palpate::fem::certify::certified_map;
+use palpate::fem::{Contact, MESH_SIZE, Model, Pose, SMALL_STRAIN_LIMIT};
+use palpate::force_map::ForceMap;
+use palpate::phantom::{BUILTIN_NAMES, Phantom};
+
+/// Arguments of `palpate solve`.
+#[derive(Debug, Args)]
+pub struct SolveArguments {
+    /// A built-in phantom (none, 2.6, 4.6, 6.6, 8.6: the inclusion's depth in mm) or a phantom file
+    #[arg(long, value_name = "NAME|FILE")]
+    phantom: String,
+    /// Depths of the probe in mm: a,b,c or from:to:step
+    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    depths_mm: List,
+    /// Lateral positions of the probe in mm: a,b,c or from:to:step
+    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    laterals_mm: List,
+    /// How the gap to the probe is measured
+    #[arg(long, value_parser = contact(), default_value = Contact::default().name())]
+    contact: Contact,
+    /// Mesh size in mm; all element sizes scale with it [default: 0.5]
+    #[arg(long, value_parser = length, value_name = "H")]
+    mesh_mm: Option<f64>,
+    /// Also solves two coarser meshes and gives each force its discretisation error band
+    #[arg(long)]
+    certify: bool,
+    /// Writes the deformed mesh with stresses for ParaView; for a single pose only
+    #[arg(long, value_name = "FILE")]
+    vtu: Option<PathBuf>,
+    /// How the forces are printed
+    #[arg(long, value_enum, default_value_t = MapFormat::Table)]
+    format: MapFormat,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MapFormat {
+    /// For people.
+    Table,
+    /// The force map, with mesh, residuals and error bands.
+    Json,
+    /// One row for each pose.
+    Csv,
+}
+
+/// The built-in phantom of that name, or the one in the file.
+///
+/// Implements: CLI-012.
+pub fn phantom(name: &str) -> Result<Phantom, CliError> {
+    if let Ok(phantom) = Phantom::builtin(name) {
+        return Ok(phantom);
+    }
+    let path = Path::new(name);
+    if !path.exists() {
+        let known = BUILTIN_NAMES.join(", ");
+        return Err(CliError::Usage(format!(
+            "phantom {name:?} is neither built in ({known}) nor a file"
+        )));
+    }
+    Ok(Phantom::read(path)?)
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-012, CLI-013.
+pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
+    let SolveArguments {
+        depths_mm: List(depths),
+        laterals_mm: List(laterals),
+        ..
+    } = arguments;
+    let pose = match (&arguments.vtu, &depths[..], &laterals[..]) {
+        (None, ..) => None,
+        (Some(path), &[depth], &[lateral]) => Some((path, Pose { depth, lateral })),
+        (Some(_), ..) => {
+            return Err(CliError::Usage(
+                "--vtu shows one pose: expected one depth and one lateral position".into(),
+            ));
+        }
+    };
+    let phantom = phantom(&arguments.phantom)?;
+    let failed = CliError::fem(&phantom.name);
+    let size = arguments.mesh_mm.unwrap_or(MESH_SIZE);
+    tell_large_mesh(&phantom, size).map_err(&failed)?;
+    let model = Model::new(&phantom, size, arguments.contact).map_err(&failed)?;
+    let meshes = if arguments.certify { 3 } else { 1 };
+    let columns = model.solved_laterals(laterals).len();
+    let bar = bar(meshes * depths.len() * columns, &phantom.name);
+    let solved = |poses| bar.inc(poses as u64);
+    let map = match arguments.certify {
+        true => certified_map(&model, depths, laterals, &solved),
+        false => model.map(depths, laterals, &solved),
+    };
+    let map = map.map_err(&failed)?;
+    bar.finish_and_clear();
+    if let Some((path, pose)) = pose {
+        let solution = model.solve(pose).map_err(&failed)?;
+        write(path, &model.vtu(&solution).map_err(&failed)?)?;
+    }
+    warn_of_large_strain(&map);
+    print(&match arguments.format {
+        // Writing to a String does not fail.
+        MapFormat::Table => Table { map: &map }.render().unwrap_or_default(),
+        MapFormat::Json => map.to_json(),
+        MapFormat::Csv => map.table().to_csv(),
+    })
+}
+
+/// Says on standard error where the gel is squeezed to little.
+///
+/// Implements: CLI-015.
+pub fn warn_of_large_strain(map: &ForceMap) {
+    let name = map.phantom().map_or("", |phantom| &phantom.name);
+    warn_of_large_strain_of(map, name);
+}
+
+/// The same, with the name of the phantom.
+pub fn warn_of_large_strain_of(map: &ForceMap, name: &str) {
+    let smallest = map.certificate().map(|of| of.smallest_det);
+    if let Some(smallest) = smallest.filter(|of| of.det < SMALL_STRAIN_LIMIT) {
+        let meaning = match smallest.det > 0.0 {
+            true => "the small-strain model is at its limit there",
+            false => "the gel is turned inside out there, and the forces mean nothing",
+        };
+        eprintln!(
+            "palpate: warning: phantom {name}: det(I + grad u) falls to {:.3} at depth {} mm, lateral {} mm: {meaning}",
+            smallest.det,
+            in_millimetres(&smallest.depth),
+            in_millimetres(&smallest.lateral)
+        );
+    }
+}
+
+/// The map for people.
+#[derive(Template)]
+#[template(path = "cli.txt", block = "solve")]
+struct Table<'a> {
+    map: &'a ForceMap,
+}
+
+fn in_millimetres(metres: &f64) -> String {
+    format_scaled(*metres, 3)
+}

@@ -1,0 +1,104 @@
+//! The file of a study: TOML.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::CliError;
+use crate::config::Config;
+use palpate::csv::Rows;
+use palpate::input::{from_toml, parse};
+use palpate::refusal::Refusal;
+use palpate_paper::study::{Correlation, Distribution, Input, StudyPlan};
+
+/// The study in the keys of the file.
+///
+/// Implements: STU-001.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StudyFile {
+    rows: usize,
+    #[serde(default = "first_seed")]
+    seed: u32,
+    /// As of 'palpate run --config', with one depth.
+    #[serde(default)]
+    run: Config,
+    #[serde(rename = "input")]
+    inputs: Vec<Input>,
+    #[serde(default, rename = "correlation")]
+    correlations: Vec<Correlation>,
+}
+
+fn first_seed() -> u32 {
+    1
+}
+
+/// The plan in the file at `path`.
+///
+/// # Errors
+/// A file that cannot be read, is not TOML or lacks a key; phantoms that are refused; several depths; a plan that is refused.
+///
+/// Implements: STU-001, STU-011, STU-010.
+pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
+    let name = path.display().to_string();
+    let file = parse(path, |text, name| {
+        let file: StudyFile = from_toml(text, name)?;
+        let run = file.run.from_source(text, name);
+        Ok(StudyFile { run, ..file })
+    })?;
+    let run = file.run;
+    let of_file = |refusal: Refusal| refusal.in_file(&*name);
+    let [probe_depth] = run.depths_mm.0[..] else {
+        let found = format!("{} depths", run.depths_mm.0.len());
+        return Err(of_file(Refusal::value("run.depths_mm", found, "one, such as \"4\"")).into());
+    };
+    if !run.measured.is_empty() {
+        let refusal = Refusal::state("run.measured is given", "none: nothing is computed from it");
+        return Err(of_file(refusal).into());
+    }
+    let mut phantoms = run.read_phantoms()?;
+    let mut inputs = file.inputs;
+    for (at, input) in inputs.iter_mut().enumerate() {
+        if let Distribution::Empirical { values, file } = &mut input.distribution
+            && let Some(table) = file.take()
+        {
+            let key = format!("input[{at}].distribution.empirical");
+            if !values.is_empty() {
+                return Err(of_file(Refusal::state(
+                    key + " has values and a file",
+                    "one of them",
+                ))
+                .into());
+            }
+            *values = parse(&run.file(&table), column)?;
+        }
+    }
+    let reference = phantoms.remove(0);
+    let plan = StudyPlan {
+        reference,
+        phantoms,
+        probe_depth,
+        laterals: run.laterals_mm.0.clone(),
+        mesh_size: run.mesh.size_mm / 1e3,
+        contact: run.mesh.contact,
+        noise_sd: run.detection.noise_sd_n,
+        max_false_alarm: run.detection.max_false_alarm,
+        max_miss: run.detection.max_miss,
+        prior_h1: run.detection.prior_h1,
+        inputs,
+        correlations: file.correlations,
+        rows: file.rows,
+        seed: file.seed,
+    };
+    plan.design().map_err(of_file)?;
+    Ok(plan)
+}
+
+/// The values of a CSV table, in increasing order.
+fn column(text: &str, file: &str) -> Result<Vec<f64>, Refusal> {
+    let table = Rows::parse(text, [&[&[("value", 0)]]], "value");
+    let table = table.map_err(|refusal| refusal.in_file(file))?;
+    let mut values: Vec<f64> = table.rows.into_iter().map(|(_, [value])| value).collect();
+    values.sort_by(f64::total_cmp);
+    Ok(values)
+}

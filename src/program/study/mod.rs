@@ -1,0 +1,176 @@
+//! `palpate study`: what uncertain inputs do to every number (`spec/study.md`).
+
+mod file;
+mod records;
+
+use std::path::PathBuf;
+
+use askama::Template;
+use clap::{Args, Subcommand};
+use rayon::prelude::*;
+
+use super::CliError;
+use super::arguments::Format;
+use super::output::{make_folder, note, print, write};
+use super::part::Part;
+use super::progress::bar;
+use file::read_plan;
+use palpate::refusal::Refusal;
+use palpate_paper::report::text;
+use palpate_paper::study::{Sampler, StudyResults};
+use records::{BEGINNING, Header, Outcome, Record, Records, Shard};
+
+/// Arguments of `palpate study`.
+#[derive(Debug, Args)]
+pub struct StudyArguments {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Computes the samples, all or those of one shard; continues an aborted run
+    Run(StudyRunArguments),
+    /// Merges the samples of all shards and analyses them
+    Merge(MergeArguments),
+}
+
+/// Arguments of `palpate study run`.
+#[derive(Debug, Args)]
+pub struct StudyRunArguments {
+    /// A TOML file that says what is varied, how, and what is computed
+    #[arg(value_name = "STUDY")]
+    study: PathBuf,
+    /// The folder for the samples
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Computes only the samples of shard K of N
+    #[arg(long, value_name = "K/N", value_parser = Shard::parse, default_value = "1/1")]
+    shard: Shard,
+}
+
+/// Arguments of `palpate study merge`.
+#[derive(Debug, Args)]
+pub struct MergeArguments {
+    /// The folders that 'palpate study run' wrote
+    #[arg(required = true, value_name = "DIR")]
+    folders: Vec<PathBuf>,
+    /// The file for the results
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// How the answer is printed
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+}
+
+/// Runs the command.
+pub fn study(arguments: &StudyArguments) -> Result<(), CliError> {
+    match &arguments.action {
+        Action::Run(arguments) => run(arguments),
+        Action::Merge(arguments) => merge(arguments),
+    }
+}
+
+/// Implements: STU-024, STU-032.
+fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
+    let plan = read_plan(&arguments.study)?;
+    let sampler = Sampler::new(&plan)?;
+    make_folder(&arguments.out)?;
+    let path = arguments.shard.file(&arguments.out);
+    let mut progress = Progress::new(&sampler, arguments.shard);
+    let total = progress.left();
+    let header = Header::new(&plan, arguments.shard);
+    let command = "palpate study run";
+    let part = Part::open(path.clone(), &header, BEGINNING, command, |text| {
+        progress.take_over(&sampler, text)
+    })?;
+    let done = total - progress.left();
+    if done > 0 {
+        let text = format!("{done} of {total} samples taken over");
+        note(path.display(), &text);
+    }
+    let bar = bar(total, "samples");
+    bar.inc(done as u64);
+    // What others took is no measure of the time left.
+    bar.reset_eta();
+    let compute = |sample: usize| {
+        let outcome = match sampler.sample(sample) {
+            Ok(values) => Outcome::Values(values),
+            Err(refusal) => Outcome::Failed(refusal.to_string()),
+        };
+        let record = Record { sample, outcome };
+        part.append(&record)?;
+        bar.inc(1);
+        Ok::<_, CliError>(usize::from(record.is_failed()))
+    };
+    let pending = progress.pending.par_iter().enumerate();
+    let pending = pending.filter(|(_, pending)| **pending);
+    let failed = pending.map(|(sample, _)| compute(sample));
+    let failed = progress.failed + failed.try_reduce(|| 0, |a, b| Ok(a + b))?;
+    bar.finish_and_clear();
+    print(&format!(
+        "{total} samples in {}, of which {failed} failed\n",
+        path.display()
+    ))
+}
+
+/// What is left of a shard.
+struct Progress {
+    /// Whether each sample is to be computed.
+    pending: Vec<bool>,
+    /// Samples that are finished and have failed.
+    failed: usize,
+}
+
+impl Progress {
+    fn new(sampler: &Sampler<'_>, shard: Shard) -> Progress {
+        let samples = 0..sampler.design().samples();
+        Progress {
+            pending: samples.map(|sample| shard.has(sample)).collect(),
+            failed: 0,
+        }
+    }
+
+    fn left(&self) -> usize {
+        self.pending.iter().filter(|pending| **pending).count()
+    }
+
+    /// Takes a line of the file over.
+    fn take_over(&mut self, sampler: &Sampler<'_>, text: &str) -> Result<(), Refusal> {
+        let (samples, quantities) = (sampler.design().samples(), sampler.quantities().len());
+        let record = Record::parse(text, samples, quantities)?;
+        if !std::mem::take(&mut self.pending[record.sample]) {
+            let sample = record.sample;
+            let found = format!("sample {sample}, which is there already or of another shard");
+            return Err(Refusal::state(found, "each of this shard once"));
+        }
+        self.failed += usize::from(record.is_failed());
+        Ok(())
+    }
+}
+
+/// Implements: STU-026, STU-027, STU-050, STU-051.
+fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
+    let records = Records::find(&arguments.folders)?;
+    let plan = records.plan()?;
+    let sampler = Sampler::new(&plan)?;
+    let (samples, quantities) = (sampler.design().samples(), sampler.quantities().len());
+    let failures = records.failures(samples, quantities)?;
+    let columns = |range| records.columns(samples, quantities, range);
+    let results = StudyResults::new(&sampler, &failures, columns)?;
+    // Keys are strings, and all numbers are finite.
+    let text = serde_json::to_string(&results).unwrap_or_default() + "\n";
+    write(&arguments.out, &text)?;
+    arguments.format.print(&results, |results| {
+        Table { results }.render().unwrap_or_default()
+    })
+}
+
+/// The results for people.
+///
+/// Implements: STU-051.
+#[derive(Template)]
+#[template(path = "cli.txt", block = "study")]
+struct Table<'a> {
+    results: &'a StudyResults,
+}

@@ -1,0 +1,303 @@
+//! The samples of a study in files: one for each shard, a line for each sample.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::CliError;
+use crate::part::take_lines;
+use palpate::fem::arithmetic;
+use palpate::force_map::parse;
+use palpate::refusal::Refusal;
+use palpate_paper::study::{Failure, StudyPlan};
+
+/// How the first line of each file begins.
+pub const BEGINNING: &str = "{\"schema\":\"palpate-study-samples\"";
+
+/// The first line: all that the samples depend on.
+#[derive(Serialize)]
+pub struct Header<'a> {
+    schema: &'static str,
+    schema_version: u64,
+    program_version: &'static str,
+    arithmetic: &'static str,
+    shard: Shard,
+    plan: &'a StudyPlan,
+}
+
+impl<'a> Header<'a> {
+    pub fn new(plan: &'a StudyPlan, shard: Shard) -> Header<'a> {
+        Header {
+            schema: "palpate-study-samples",
+            schema_version: 1,
+            program_version: env!("CARGO_PKG_VERSION"),
+            arithmetic: arithmetic(),
+            shard,
+            plan,
+        }
+    }
+}
+
+/// Which samples one process computes: those whose number leaves the remainder `number` − 1 over `of`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shard {
+    /// From 1.
+    pub number: usize,
+    /// How many there are.
+    pub of: usize,
+}
+
+impl Shard {
+    /// Reads `k/n`.
+    ///
+    /// # Errors
+    /// A message that says what would be right.
+    pub fn parse(text: &str) -> Result<Shard, String> {
+        let parts = text.split_once('/');
+        let numbers = parts.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        match numbers {
+            Some((number, of)) if number >= 1 && number <= of => Ok(Shard { number, of }),
+            _ => Err(format!(
+                "{text:?}: expected k/n with 1 ≤ k ≤ n, such as 3/17"
+            )),
+        }
+    }
+
+    pub fn has(self, sample: usize) -> bool {
+        sample % self.of == self.number - 1
+    }
+
+    /// The file of its samples.
+    pub fn file(self, folder: &Path) -> PathBuf {
+        folder.join(format!("samples-{}-of-{}.jsonl", self.number, self.of))
+    }
+}
+
+/// One sample.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Record {
+    pub sample: usize,
+    #[serde(flatten)]
+    pub outcome: Outcome,
+}
+
+/// What came of it: a value for each quantity, or why it failed.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    Values(Vec<f64>),
+    Failed(String),
+}
+
+impl Record {
+    pub fn is_failed(&self) -> bool {
+        matches!(self.outcome, Outcome::Failed(_))
+    }
+
+    /// The record in a line of a study with so many samples and quantities.
+    ///
+    /// # Errors
+    /// Anything else.
+    pub fn parse(text: &str, samples: usize, quantities: usize) -> Result<Record, Refusal> {
+        let record: Record = parse(text)?;
+        let fits = match &record.outcome {
+            Outcome::Values(values) => values.len() == quantities,
+            Outcome::Failed(_) => true,
+        };
+        match record.sample < samples && fits {
+            true => Ok(record),
+            false => Err(Refusal::state(
+                "no sample of this study",
+                "one: delete the file",
+            )),
+        }
+    }
+}
+
+/// The files of a study.
+pub struct Records {
+    /// What their first lines say, but for the shard.
+    header: Value,
+    files: Vec<PathBuf>,
+}
+
+impl Records {
+    /// The files in `folders`, all of one study.
+    ///
+    /// # Errors
+    /// A folder without samples; a file of another study, with what is different.
+    ///
+    /// Implements: STU-027.
+    pub fn find(folders: &[PathBuf]) -> Result<Records, CliError> {
+        let mut records: Option<Records> = None;
+        for folder in folders {
+            let listed = folder.read_dir().and_then(|entries| {
+                let paths = entries.map(|entry| entry.map(|entry| entry.path()));
+                paths.collect::<Result<Vec<_>, _>>()
+            });
+            let is_ours = |path: &PathBuf| {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                name.starts_with("samples-") && name.ends_with(".jsonl")
+            };
+            let mut files = listed.map_err(CliError::file("read", folder))?;
+            files.retain(is_ours);
+            files.sort();
+            if files.is_empty() {
+                let reason = "no samples-K-of-N.jsonl, expected a folder of 'palpate study run'";
+                return Err(CliError::refused(folder.display())(reason));
+            }
+            for file in files {
+                let header = header(&file)?;
+                let records = records.get_or_insert_with(|| Records {
+                    header: header.clone(),
+                    files: Vec::new(),
+                });
+                if let Some(key) = difference(&records.header, &header) {
+                    let first = records.files[0].display();
+                    let reason = format!("of another study than {first}: its {key} is another one");
+                    return Err(CliError::refused(file.display())(reason));
+                }
+                records.files.push(file);
+            }
+        }
+        records.ok_or_else(|| CliError::Usage("no folder".into()))
+    }
+
+    /// What was varied.
+    ///
+    /// # Errors
+    /// A first line that holds no plan.
+    pub fn plan(&self) -> Result<StudyPlan, CliError> {
+        let plan = StudyPlan::deserialize(&self.header["plan"]);
+        plan.map_err(CliError::refused(self.files[0].display()))
+    }
+
+    /// Hands each record to `take`, with the number of its file.
+    fn each(
+        &self,
+        samples: usize,
+        quantities: usize,
+        mut take: impl FnMut(Record, usize) -> Result<(), Refusal>,
+    ) -> Result<(), CliError> {
+        for (number, path) in self.files.iter().enumerate() {
+            let mut reader = open(path)?;
+            let skipped = reader.skip_until(b'\n');
+            skipped.map_err(CliError::file("read", path))?;
+            take_lines(reader, path, 2, |text| {
+                take(Record::parse(text, samples, quantities)?, number)
+            })?;
+        }
+        Ok(())
+    }
+
+    /// The samples that failed, in their order.
+    ///
+    /// # Errors
+    /// A sample that is missing or is there twice; a line that is none.
+    ///
+    /// Implements: STU-026, STU-027.
+    pub fn failures(&self, samples: usize, quantities: usize) -> Result<Vec<Failure>, CliError> {
+        const NONE: u32 = u32::MAX;
+        let mut file_of = vec![NONE; samples];
+        let mut failures = Vec::new();
+        self.each(samples, quantities, |record, file| {
+            let place = &mut file_of[record.sample];
+            if let Some(other) = self.files.get(*place as usize) {
+                let found = format!(
+                    "sample {}, which {} has too",
+                    record.sample,
+                    other.display()
+                );
+                return Err(Refusal::state(found, "each sample once"));
+            }
+            *place = file as u32;
+            if let Outcome::Failed(reason) = record.outcome {
+                failures.push(Failure {
+                    sample: record.sample,
+                    reason,
+                });
+            }
+            Ok(())
+        })?;
+        let missing = file_of
+            .iter()
+            .enumerate()
+            .filter(|(_, file)| **file == NONE);
+        let missing: Vec<usize> = missing.map(|(sample, _)| sample).collect();
+        if let [first, ..] = missing[..] {
+            return Err(CliError::Usage(format!(
+                "{} of {samples} samples are missing, the first is {first}, expected all: run 'palpate study run' again for their shards",
+                missing.len()
+            )));
+        }
+        failures.sort_by_key(|failure| failure.sample);
+        Ok(failures)
+    }
+
+    /// The values of some quantities in all samples, a NaN for those that failed.
+    ///
+    /// # Errors
+    /// As [`Records::failures`].
+    pub fn columns(
+        &self,
+        samples: usize,
+        quantities: usize,
+        range: Range<usize>,
+    ) -> Result<Vec<Vec<f64>>, CliError> {
+        let mut columns = vec![vec![f64::NAN; samples]; range.len()];
+        self.each(samples, quantities, |record, _| {
+            if let Outcome::Values(values) = record.outcome {
+                for (column, value) in columns.iter_mut().zip(&values[range.clone()]) {
+                    column[record.sample] = *value;
+                }
+            }
+            Ok(())
+        })?;
+        Ok(columns)
+    }
+}
+
+fn open(path: &Path) -> Result<BufReader<File>, CliError> {
+    Ok(BufReader::new(
+        File::open(path).map_err(CliError::file("open", path))?,
+    ))
+}
+
+/// What the first line of a file says, but for the shard.
+fn header(path: &Path) -> Result<Value, CliError> {
+    let mut line = String::new();
+    let read = open(path)?.read_line(&mut line);
+    read.map_err(CliError::file("read", path))?;
+    let header: Option<Value> = serde_json::from_str(&line).ok();
+    match header {
+        Some(Value::Object(mut header)) if line.starts_with(BEGINNING) => {
+            header.remove("shard");
+            Ok(header.into())
+        }
+        _ => Err(CliError::refused(path.display())("no samples of a study")),
+    }
+}
+
+/// The first key whose value differs, with those around it.
+fn difference(one: &Value, other: &Value) -> Option<String> {
+    if one == other {
+        return None;
+    }
+    let keys = one.as_object().into_iter().flatten().map(|(key, _)| key);
+    let inner = keys.filter_map(|key| {
+        let inner = difference(&one[key], &other[key])?;
+        Some(format!("{key}.{inner}"))
+    });
+    Some(
+        inner
+            .into_iter()
+            .next()
+            .unwrap_or_default()
+            .trim_end_matches('.')
+            .into(),
+    )
+}

@@ -1,0 +1,194 @@
+//! `palpate timing`: the budget of the servo loop on this machine (`spec/command-line.md`).
+
+use std::fmt::Display;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use askama::Template;
+use clap::{Args, ValueEnum};
+
+use super::output::print;
+use super::playback::{limits, loaded_map};
+use super::{CliError, Format};
+use palpate::hid::simulated::PAPER;
+use palpate::hid::timing::{Budget, BudgetOutcome, Judged, Timing, judge_log, measure, paper};
+use palpate::input;
+
+/// Arguments of `palpate timing`.
+#[derive(Debug, Args)]
+pub struct TimingArguments {
+    /// The time that a cycle may take, in µs
+    #[arg(long, value_name = "T", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
+    budget_us: u64,
+    /// The percentile of the times that must be within the budget
+    #[arg(long, value_name = "P", default_value_t = 99.9)]
+    percentile: f64,
+    /// The confidence of the verdict, in percent
+    #[arg(long, value_name = "C", default_value_t = 95.0)]
+    confidence_percent: f64,
+    /// How many cycles may take longer [default: as many as the percentile allows]
+    #[arg(long, value_name = "N")]
+    allowed_misses: Option<u64>,
+    /// How many cycles in a row may take longer [default: any number]
+    #[arg(long, value_name = "N")]
+    allowed_run: Option<u64>,
+    /// Judges the cycles that another loop logged, CSV or lines of JSON, instead of measuring
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["cycles", "paced", "map"])]
+    from: Option<PathBuf>,
+    /// Number of cycles to measure
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u64).range(1000..=100_000_000))]
+    cycles: u64,
+    /// Runs the cycles at 1 kHz, so that the time until the system wakes the loop counts too
+    #[arg(long)]
+    paced: bool,
+    /// A force map to play [default: a table of 9 × 41 poses]
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+    /// How the figures are printed
+    #[arg(long, value_enum, default_value_t = Printed::Table)]
+    format: Printed,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Printed {
+    /// For people.
+    Table,
+    /// For programs; keys carry the unit.
+    Json,
+    /// For CI: JUnit's XML.
+    Junit,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-060, CLI-003, CLI-017.
+pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
+    let cycle = Duration::from_micros(arguments.budget_us);
+    let mut budget = Budget::new(cycle, arguments.percentile, arguments.confidence_percent)?;
+    budget.allowed_misses = arguments.allowed_misses;
+    budget.allowed_run = arguments.allowed_run;
+    match &arguments.from {
+        Some(path) => {
+            let judged = input::parse(path, |text, file| {
+                judge_log(text, budget).map_err(|refusal| refusal.in_file(file))
+            })?;
+            let source = format!("of {}", path.display());
+            tell(arguments, &judged, None, &source)
+        }
+        None => {
+            let timing = measured(arguments, budget)?;
+            let source = match timing.paced {
+                true => "on the simulated device, at 1 kHz, with the system's wake-up",
+                false => "on the simulated device, as fast as they go",
+            };
+            tell(arguments, &timing.judged, Some(&timing), source)
+        }
+    }
+}
+
+/// The times of this machine.
+fn measured(arguments: &TimingArguments, budget: Budget) -> Result<Timing, CliError> {
+    let loaded = match &arguments.map {
+        Some(path) => loaded_map(path)?,
+        None => paper::table()?,
+    };
+    let table = loaded.table().map_err(defect)?;
+    let limits = limits(4.0)?;
+    let device = paper::device(arguments.cycles);
+    let period = arguments.paced.then(|| PAPER.period());
+    if let Some(period) = period {
+        let seconds = arguments.cycles as f64 * period.as_secs_f64();
+        eprintln!(
+            "palpate: measuring {} cycles takes {seconds:.0} s",
+            arguments.cycles
+        );
+    }
+    Ok(measure(
+        device,
+        table,
+        limits,
+        arguments.cycles,
+        budget,
+        period,
+    )?)
+}
+
+/// Prints the figures; the budget decides how the program ends. Of a loop that was measured here there is more than its `judged`
+/// responses: the whole `timing`.
+fn tell(
+    arguments: &TimingArguments,
+    judged: &Judged,
+    timing: Option<&Timing>,
+    source: &str,
+) -> Result<(), CliError> {
+    // Writing to a String does not fail.
+    let exceeded = |allowed: Option<u64>, found| allowed.filter(|&allowed| found > allowed);
+    let reason = Reason {
+        judged,
+        allowed_misses: exceeded(arguments.allowed_misses, judged.misses),
+        allowed_run: exceeded(arguments.allowed_run, judged.longest_run),
+    };
+    let reason = reason.render().unwrap_or_default();
+    let (outcome, failure) = match judged.outcome {
+        BudgetOutcome::Kept => ("kept", None),
+        BudgetOutcome::Broken => ("broken", Some(CliError::Check(reason))),
+        BudgetOutcome::Undecided => ("undecided", Some(CliError::Usage(reason))),
+    };
+    let text = Text {
+        judged,
+        timing,
+        source,
+        outcome,
+    };
+    let text = text.render().unwrap_or_default();
+    match (arguments.format, timing) {
+        (Printed::Table, _) => print(&text),
+        (Printed::Json, Some(timing)) => Format::Json.print(timing, |_| String::new()),
+        (Printed::Json, None) => Format::Json.print(judged, |_| String::new()),
+        (Printed::Junit, _) => {
+            let reason = failure.as_ref().map(CliError::to_string);
+            let junit = Junit {
+                judged,
+                outcome,
+                reason,
+                text: &text,
+            };
+            print(&junit.render().unwrap_or_default())
+        }
+    }?;
+    failure.map_or(Ok(()), Err)
+}
+
+fn defect(error: impl Display) -> CliError {
+    CliError::Check(format!("timing: {error}"))
+}
+
+/// Why a budget is not kept.
+#[derive(Template)]
+#[template(path = "cli.txt", block = "timing_reason")]
+struct Reason<'a> {
+    judged: &'a Judged,
+    /// How many were allowed, if there were more.
+    allowed_misses: Option<u64>,
+    allowed_run: Option<u64>,
+}
+
+/// The figures for people.
+#[derive(Template)]
+#[template(path = "cli.txt", block = "timing")]
+struct Text<'a> {
+    judged: &'a Judged,
+    timing: Option<&'a Timing>,
+    source: &'a str,
+    outcome: &'a str,
+}
+
+/// The verdict for CI.
+#[derive(Template)]
+#[template(path = "cli.txt", block = "junit", escape = "xml")]
+struct Junit<'a> {
+    judged: &'a Judged,
+    outcome: &'a str,
+    reason: Option<String>,
+    text: &'a str,
+}

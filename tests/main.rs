@@ -1,0 +1,35 @@
+//! What the program and the library must do, seen from outside: a file a subject.
+//!
+//! `NAME_command.rs` runs the program; the others use the library. What needs another program, such as CalculiX or a browser, is skipped
+//! with a notice where that is not installed, and fails with `PALPATE_REQUIRE_WITNESSES=1`.
+
+mod accuracy;
+mod bank_command;
+mod bank_of_the_paper;
+mod changes;
+mod command_line;
+mod conventions;
+mod detect_command;
+mod detect_errata;
+mod detect_laws;
+mod detect_simulation;
+mod docs;
+mod force_map_csv;
+mod force_map_json;
+mod oracle_command;
+mod phantom_file;
+mod playback_command;
+mod program;
+mod psychophysics_command;
+mod random;
+mod reach_command;
+mod real_records;
+mod report_page;
+mod run_command;
+mod second_opinion;
+mod study_command;
+mod vectors_suite;
+mod witness;
+
+/// The folder of the checkout.
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");

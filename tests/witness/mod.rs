@@ -1,0 +1,19 @@
+//! Other programs' answers to our own models (`spec/fem.md`): CalculiX for the forces on the
+//! probe, scikit-fem for the stiffness matrix. A program that is not installed is skipped with a notice,
+//! unless `PALPATE_REQUIRE_WITNESSES=1` asks for all of them.
+
+mod calculix;
+mod deck;
+pub mod present;
+mod scikit_fem;
+
+use palpate::fem::mesh::Region;
+use palpate::phantom::{Material, Phantom};
+
+/// What a region is made of, by the phantom alone: the library's own choice is among the things that are checked.
+fn material(phantom: &Phantom, region: Region) -> Material {
+    match region {
+        Region::Layer(k) => phantom.layers[k].material,
+        Region::Inclusion(k) => phantom.inclusions[k].material,
+    }
+}
