@@ -38,7 +38,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 def palpate(folder):
     """palpate's mesh, load, result and times."""
     path = folder / "palpate.json"
-    command = ["cargo", "bench", "--quiet", "--no-default-features", "--features", "fem", "--bench", "fem_others", "--", str(path)]
+    command = ["cargo", "bench", "--quiet", "-p", "palpate-benches", "--bench", "fem_others", "--", str(path)]
     subprocess.run(command, cwd=ROOT, check=True)
     return {name: np.array(values) for name, values in json.loads(path.read_text()).items()}
 

@@ -1,6 +1,6 @@
 //! The servo kernel and the whole loop on the simulated device, for people: `cargo bench -p palpate-benches --bench servo`.
 //! Ends with 1 if the upper bound of the confidence interval of the loop's mean time exceeds the budget
-//! of 1 ms (SRV-060). The instruction ceiling of `benches/servo_instructions.rs` is the gate that does
+//! of 1 ms (SRV-060). The instruction ceiling of `benches/kernel/` is the gate that does
 //! not depend on the machine's load.
 
 use std::hint::black_box;
@@ -12,9 +12,7 @@ use criterion::Criterion;
 use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
 use palpate::hid::{HapticDevice, Session};
 use palpate::servo::{Input, Limits, Request, State, step};
-
-mod servo_cases;
-use servo_cases::{armed, paper_table, sample};
+use palpate_kernel_bench::{PaperTable, armed, sample};
 
 /// The time of a cycle at 1 kHz, ns.
 ///
@@ -26,8 +24,8 @@ fn main() -> ExitCode {
     // An estimate of an earlier run is none of this one.
     let _ = std::fs::remove_file(estimates());
     let mut criterion = Criterion::default().configure_from_args();
-    let loaded = paper_table();
-    let table = loaded.table().expect("the table is valid");
+    let paper = PaperTable::default();
+    let table = paper.table().expect("the table is valid");
     let limits = Limits::for_playback(4.0).expect("the limits are valid");
 
     let state: State = armed();

@@ -1,7 +1,7 @@
 //! What a bank of the paper's gel reaches: 33 positions × 7 depths, swept at 41 positions, the probe 4 mm deep. Slow; run it by
 //!
 //! ```sh
-//! cargo test --release --test bank_of_the_paper -- --ignored --nocapture
+//! cargo test --release -p palpate-tests bank_of_the_paper -- --ignored --nocapture
 //! ```
 
 use std::time::Instant;

@@ -8,7 +8,9 @@ use palpate_core::force::Force;
 use palpate_core::hid::{
     Capabilities, Control, ForceReport, InvalidReport, PositionReport, Units, count,
 };
-use palpate_core::servo::{Axis, Cell, Command, Input, Limits, Request, Sample, State, Table, limit};
+use palpate_core::servo::{
+    Axis, Cell, Command, Input, Limits, Request, Sample, State, Table, limit,
+};
 
 #[no_panic]
 fn step(table: &Table, limits: &Limits, state: State, input: Input) -> (State, Command) {

@@ -6,9 +6,9 @@
 use core::ptr;
 
 use bolero::{Driver, TypeGenerator};
+use palpate_c::{Error, PositionReport, palpate_decide, palpate_position_report_decode};
 use palpate_core::detect;
 use palpate_core::hid;
-use palpate_c::{Error, PositionReport, palpate_decide, palpate_position_report_decode};
 
 use crate::decision::Compared;
 use crate::report::Bytes;

@@ -8,7 +8,15 @@ use std::path::Path;
 use std::process::Command;
 
 /// What the program is made from.
-const SOURCES: [&str; 7] = ["Cargo.toml", "Cargo.lock", "src", "proofs", "spec", "supply", "vectors"];
+const SOURCES: [&str; 7] = [
+    "Cargo.toml",
+    "Cargo.lock",
+    "src",
+    "proofs",
+    "spec",
+    "supply",
+    "vectors",
+];
 
 /// The folder of the checkout.
 const ROOT: &str = "../..";

@@ -2,9 +2,9 @@
 
 use std::ffi::OsString;
 
+use palpate::decimal::{format_scaled, parse_scaled};
 use palpate_program::arguments::{CommandLine, read};
 use palpate_program::numbers::{List, length, positions};
-use palpate::decimal::{format_scaled, parse_scaled};
 
 use crate::message::check_message;
 use crate::{Outcome, judged};

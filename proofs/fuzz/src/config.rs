@@ -1,7 +1,7 @@
 //! The configuration of `palpate run`.
 
-use palpate_program::config::Config;
 use palpate::decimal::format_scaled;
+use palpate_program::config::Config;
 use serde_json::json;
 
 use crate::command_line::check_positions;

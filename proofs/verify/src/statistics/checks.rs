@@ -2,9 +2,9 @@
 
 use super::Outcome;
 use crate::Figure;
-use palpate::text::trimmed;
 use palpate::stats::binomial::{at_least, at_most, first};
 use palpate::stats::normal::{cdf, quantile, upper_tail};
+use palpate::text::trimmed;
 
 /// A normal law.
 #[derive(Clone, Copy)]

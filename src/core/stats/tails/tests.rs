@@ -1,4 +1,4 @@
-//! Expected values: mpmath at 40 digits (`src/psychophysics/reference.py`), and closed forms.
+//! Expected values: mpmath at 40 digits (`src/paper/psychophysics/reference.py`), and closed forms.
 
 use super::*;
 use crate::stats::noncentral::{f_ratio, student, student_point};

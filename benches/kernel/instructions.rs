@@ -1,5 +1,5 @@
 //! Instructions of one step of the servo kernel on a 9 × 41 table, counted by callgrind on every kind of
-//! path, with a hard ceiling: `cargo bench -p palpate-benches --bench servo_instructions` (needs valgrind and the runner
+//! path, with a hard ceiling: `cargo bench -p palpate-kernel-bench` (needs valgrind and the runner
 //! `gungraun-runner`). Ends with an error above it (SRV-060).
 
 #![allow(missing_docs)] // of what its macros make
@@ -8,19 +8,19 @@ use std::hint::black_box;
 
 use gungraun::prelude::*;
 use gungraun::{Callgrind, EventKind, LibraryBenchmarkConfig};
-use palpate::servo::{
-    Command, Fault, Input, Limits, LoadedTable, Mode, Request, Sample, State, step,
-};
+use palpate_core::servo::{Command, Fault, Input, Limits, Mode, Request, Sample, State, step};
+use palpate_kernel_bench::{PaperTable, armed, sample};
 
-#[allow(dead_code)] // the other bench uses the rest
-mod servo_cases;
-use servo_cases::{armed, paper_table, sample};
-
-type Case = (LoadedTable, Limits, State, Input);
+type Case = (PaperTable, Limits, State, Input);
 
 fn case(state: State, sample: Option<Sample>, request: Request) -> Case {
     let limits = Limits::for_playback(4.0).expect("the limits are valid");
-    (paper_table(), limits, state, Input { sample, request })
+    (
+        PaperTable::default(),
+        limits,
+        state,
+        Input { sample, request },
+    )
 }
 
 fn playing(change: impl FnOnce(&mut Sample)) -> Case {
@@ -44,16 +44,16 @@ fn playing(change: impl FnOnce(&mut Sample)) -> Case {
 #[bench::disarmed(case(State::default(), Some(sample()), Request::Arm))]
 #[bench::late(case(State { missed: 20, ..armed() }, None, Request::None))]
 #[bench::faulted(case(State { mode: Mode::Faulted(Fault::Device), ..armed() }, Some(sample()), Request::Arm))]
-#[bench::overwritten(case(State { missed: 9, sequence: None, force: palpate::force::Force { lateral: f32::NAN, normal: 0.0 }, ..armed() }, Some(sample()), Request::None))]
-fn servo_step((loaded, limits, state, input): Case) -> (State, Command) {
-    let table = loaded.table().expect("the servo takes it");
+#[bench::overwritten(case(State { missed: 9, sequence: None, force: palpate_core::force::Force { lateral: f32::NAN, normal: 0.0 }, ..armed() }, Some(sample()), Request::None))]
+fn servo_step((paper, limits, state, input): Case) -> (State, Command) {
+    let table = paper.table().expect("the servo takes it");
     black_box(measured(&table, &limits, state, input))
 }
 
 /// What is counted: the step alone.
 #[inline(never)]
 fn measured(
-    table: &palpate::servo::Table,
+    table: &palpate_core::servo::Table,
     limits: &Limits,
     state: State,
     input: Input,

@@ -1,4 +1,4 @@
-"""The spread of the instruction counts that `cargo bench -p palpate-benches --bench servo_instructions` has left behind: one step of the
+"""The spread of the instruction counts that `cargo bench -p palpate-kernel-bench` has left behind: one step of the
 servo kernel must take the same on every path, within 10 % of the middle. Ends with 1 otherwise.
 
 Verifies: SRV-060.
@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 
-folder = pathlib.Path("target/gungraun/palpate-benches/servo_instructions")
+folder = pathlib.Path("target/gungraun/palpate-kernel-bench/instructions")
 counts = {}
 for file in folder.glob("kernel/*/callgrind.*.out"):
     counts[file.parent.name] = int(re.search(r"^summary: (\d+)", file.read_text(), re.MULTILINE).group(1))
