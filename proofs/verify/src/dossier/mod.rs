@@ -153,7 +153,7 @@ impl Page<'_> {
     }
 
     /// What was built, from what, by what.
-    fn build(&self) -> [(&'static str, String); 11] {
+    fn build(&self) -> [(&'static str, String); 10] {
         let build = &self.found.build;
         let flags = if build.flags.is_empty() {
             "none"
