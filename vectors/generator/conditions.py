@@ -1,6 +1,6 @@
 """How far rounding may move each answer, and the coarsest precision in which there is one.
 
-The formulas are those of the second route, or of the generator where they are faster.
+The formulas are those of the second route, or of the generator where those are faster.
 
 Implements: VEC-016, VEC-018.
 """
@@ -14,8 +14,6 @@ from mpmath import mpf, sqrt, workdps
 from . import bank, normal, nuisances, proportions, quadratic
 from .numbers import UNIT, Draws, exact, nearest, real, round_up
 from .suite import UNKNOWN, allowed, leaves, settle
-
-second_route.lower, second_route.inverse = normal.cdf, normal.quantile
 
 STEP = Fraction(1, 2**66)
 """A relative change of an argument: a power of two, so that fractions stay short."""
@@ -69,7 +67,7 @@ FORMULAS = {
 
 
 def formula(op):
-    return FORMULAS.get(op) or getattr(second_route, op)
+    return FORMULAS.get(op) or second_route.route(op)
 
 
 # κ: what changes of the arguments do to the answer

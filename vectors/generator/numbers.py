@@ -1,6 +1,7 @@
 """Exact numbers to floats and back, and a generator of numbers that is the same on every machine."""
 
 import struct
+from decimal import Decimal
 from fractions import Fraction
 
 from mpmath import mp, mpf
@@ -35,7 +36,9 @@ def bits(value):
 
 
 def real(value):
-    """The mpf of a float, an integer or a fraction, correct to 50 digits."""
+    """The mpf of a float, an integer, a fraction or a decimal, correct to 50 digits."""
+    if isinstance(value, Decimal):
+        value = Fraction(value)
     if isinstance(value, Fraction):
         return mpf(value.numerator) / value.denominator
     return mpf(value)

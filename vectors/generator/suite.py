@@ -1,6 +1,7 @@
 """A group of cases and how it is written."""
 
 import json
+from decimal import Decimal
 from fractions import Fraction
 
 from mpmath import mpf
@@ -33,7 +34,7 @@ def settle(value):
         return {key: settle(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [settle(item) for item in value]
-    if isinstance(value, (mpf, Fraction)):
+    if isinstance(value, (mpf, Fraction, Decimal)):
         # A zero has no sign in an exact number.
         return nearest(value)
     return value

@@ -1,7 +1,8 @@
 """A second implementation of the ops, from the specification alone: Python's standard library, fractions and decimals.
 
 Reads requests as JSON lines on stdin and answers them on stdout: `palpate-conform -- python3 vectors/conform/tests/toys/right.py`.
-Slow and plain: sums are exact fractions, and what is no fraction has 50 digits.
+Slow and plain: sums are exact fractions, and what is no fraction has 50 digits. vectors/check.py compares the expected answers
+with these, unrounded.
 """
 
 import json
@@ -28,10 +29,10 @@ class Refused(Exception):
 
 
 def number(value, name):
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
+    if isinstance(value, bool) or not isinstance(value, (int, float, Fraction)):
         raise Refused("bad_argument", f"{name} is no number")
     try:
-        value = float(value)
+        value = value if isinstance(value, Fraction) else float(value)
     except OverflowError:
         value = math.inf
     if not math.isfinite(value):
@@ -181,7 +182,9 @@ def correlation(residual, template):
 
 
 def theta_of(residual, template, deviation):
-    return (correlation(residual, template) - dot(template, template) / 2) / deviation**2
+    """½ Σ [r² − (r − Δ)²]/s²: the difference of the squares without and with the inclusion."""
+    rest = [r - d for r, d in zip(residual, template)]
+    return (dot(residual, residual) - dot(rest, rest)) / (2 * deviation**2)
 
 
 def theta(observed_x, observed_y, f0_x, f0_y, f1_x, f1_y, noise_sd_x, noise_sd_y):
@@ -225,8 +228,9 @@ def theta_colored(residual, template, covariance):
         for j in range(i):
             if (covariance[i][j] - covariance[j][i]) ** 2 > abs(covariance[i][i] * covariance[j][j]) / 10**24:
                 raise Refused("out_of_range", f"covariance is not symmetric at {i}, {j}")
-    x = solve(covariance, template)
-    return {"theta": dot(x, residual) - dot(x, template) / 2, "gamma": root(dot(x, template))}
+    square = lambda v: dot(v, solve(covariance, v))
+    rest = [r - d for r, d in zip(residual, template)]
+    return {"theta": (square(residual) - square(rest)) / 2, "gamma": root(square(template))}
 
 
 def scan(residual_x, residual_y, template_x, template_y, noise_sd_x, noise_sd_y):
@@ -365,12 +369,13 @@ def count_analysis(correct, trials):
     rate = [Fraction(k, subjects * trials) for k in pooled]
     if any(p in (0, 1) for p in rate):
         raise Refused("overflow", "γ of a rate of 0 or 1 is infinite")
-    chi2 = [sum((k - trials * p) ** 2 for k in c) / (trials * p * (1 - p)) for c, p in zip(columns, rate)]
+    # Pearson's, of right and wrong answers.
+    cells = lambda k, p: (k - trials * p) ** 2 / (trials * p) + (k - trials * p) ** 2 / (trials * (1 - p))
     return {
         "pooled": pooled,
         "rate": rate,
         "gamma": [gamma_from_two_afc(p)["gamma"] for p in rate],
-        "chi2": chi2,
+        "chi2": [sum(cells(k, p) for k in c) for c, p in zip(columns, rate)],
         "df": degrees_of_freedom(subjects),
     }
 
@@ -448,8 +453,8 @@ ARGUMENTS = dict(OPS)
 OPS = sorted(set(OPS) - set(THRESHOLDS) | {"threshold", "report_encode"})
 
 
-def answer(op, args):
-    """What an op answers to its arguments."""
+def compute(op, args):
+    """The answer of an op to its arguments, not yet rounded: fractions, and decimals with 50 digits."""
     if not isinstance(op, str) or op not in OPS:
         raise Refused("unknown_op" if isinstance(op, str) else "bad_request", "no such op")
     if op == "capabilities" and args is None:
@@ -466,7 +471,7 @@ def answer(op, args):
     readers = ARGUMENTS[op]
     if set(args) != set(readers):
         raise Refused("bad_argument", f"missing or unknown: {sorted(set(args) ^ set(readers))}")
-    return finite(globals()[op](**{name: readers[name](args[name], name) for name in readers}))
+    return globals()[op](**{name: readers[name](args[name], name) for name in readers})
 
 
 def refuse_constant(name):
@@ -495,7 +500,7 @@ def reply(line):
         if isinstance(request["id"], float) and not math.isfinite(request["id"]):
             raise Refused("bad_json", "the id is beyond the range of numbers")
         name = request["id"]
-        return {"id": name, "ok": answer(request["op"], request.get("args"))}
+        return {"id": name, "ok": finite(compute(request["op"], request.get("args")))}
     except Refused as refused:
         return {"id": name, "error": {"code": refused.code, "message": str(refused)}}
     except ArithmeticError as error:

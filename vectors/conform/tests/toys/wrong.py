@@ -35,7 +35,9 @@ def half_left_out():
 
 
 def time_not_reversed():
+    correct = right.theta_of
     right.correlation = lambda r, d: right.dot(r, d[::-1])
+    right.theta_of = lambda r, d, s: correct(r, d[::-1], s)
 
 
 def weight_missing():
