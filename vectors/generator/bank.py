@@ -11,7 +11,7 @@ from mpmath import exp, expm1, fdot, fsum, log, lu_solve, matrix, mpf, workdps
 from .numbers import Draws, real
 from .nuisances import U, Space, Statistic, errors, length, reals, shapes
 from .series import noise, signal
-from .suite import Group, absolute, is_exact, refuse_common, relative
+from .suite import Group, absolute, case_by_case, is_exact, refuse_common, relative, without
 
 SOURCE = "least squares by normal equations, mpmath 1.3.0 at 250 digits"
 DIGITS = 250
@@ -220,8 +220,8 @@ def drawn_record(draws, template, nuisances, amplitude, present):
 # Verifies: ORA-020, NUI-007, DET-021, DET-070.
 def bank_posterior():
     keys = [*REASONS, "hypothesis"]
-    tolerance = {key: absolute(0, "1", "cases state their own") for key in keys}
-    group = Group("bank_posterior", "bank_posterior", SOURCE, {**tolerance, "hypothesis": is_exact("a whole number")})
+    tolerance = case_by_case(keys, bound=0)
+    group = Group("bank_posterior", SOURCE, {**tolerance, "hypothesis": is_exact("a whole number")})
     with workdps(DIGITS):
         by_hand(group)
         drawn(group)
@@ -320,52 +320,50 @@ def refuse(group):
         "level": "known", "prior": [0.25, 0.75], "prior_h1": 0.5,
     }
     refuse_common(group, args, ["prior_h1"], ["residual", "templates", "nuisances", "prior"])
-    nameless = {key: value for key, value in args.items() if key != "level"}
-    group.refuse("level is missing", nameless, "bad_argument", ["missing_argument"])
+    group.refuse("level is missing", without(args, "level"), "missing_argument")
     up, line = [0.0, 1.0, 0.0], [0.0, 1.0, 2.0]
-    for comment, changes, error, flag in [
-        ("the residual is shorter", {"residual": [1.0, 2.0]}, "bad_argument", "lengths_differ"),
-        ("the residual is longer", {"residual": [1.0, 2.0, 0.5, 0.0]}, "bad_argument", "lengths_differ"),
-        ("a template is shorter", {"templates": [up, [1.0, 0.0]]}, "bad_argument", "lengths_differ"),
-        ("a template is longer", {"templates": [up, [1.0, 0.0, 0.0, 0.0]]}, "bad_argument", "lengths_differ"),
-        ("a template is empty", {"templates": [up, []]}, "bad_argument", "lengths_differ"),
-        ("a template that is no list", {"templates": [up, 1.0]}, "bad_argument", "wrong_type"),
-        ("a template without a prior", {"templates": [up, line, offset]}, "bad_argument", "lengths_differ"),
-        ("a prior without a template", {"templates": [up]}, "bad_argument", "lengths_differ"),
-        ("a nuisance is shorter", {"nuisances": [[1.0, 1.0]]}, "bad_argument", "lengths_differ"),
-        ("a nuisance is longer", {"nuisances": [[1.0, 1.0, 1.0, 1.0]]}, "bad_argument", "lengths_differ"),
-        ("no hypotheses", {"templates": [], "prior": []}, "bad_argument", "empty"),
-        ("no samples", {"residual": [], "templates": [[], []], "nuisances": []}, "bad_argument", "empty"),
-        ("level is a truth value", {"level": True}, "bad_argument", "wrong_type"),
-        ("level is another word", {"level": "estimated"}, "out_of_range", "out_of_range"),
-        ("a prior below 0", {"prior": [-0.25, 1.25]}, "out_of_range", "prior_unchecked"),
-        ("priors add up to more than 1", {"prior": [0.5, 0.75]}, "out_of_range", "prior_unchecked"),
-        ("priors add up to 1 − 10⁻⁸", {"prior": [0.5, 0.49999999]}, "out_of_range", "prior_unchecked"),
-        ("no hypothesis can be", {"prior": [0.0, 0.0]}, "out_of_range", "prior_unchecked"),
-        ("prior_h1 is 0", {"prior_h1": 0.0}, "out_of_range", "out_of_range"),
-        ("prior_h1 is 1", {"prior_h1": 1.0}, "out_of_range", "out_of_range"),
-        ("prior_h1 is below 0", {"prior_h1": -0.5}, "out_of_range", "out_of_range"),
-        ("no signal", {"templates": [[0.0] * 3, [0.0] * 3]}, "out_of_range", "zero_gamma"),
-        ("no signal and no nuisances", {"templates": [[0.0] * 3, [0.0] * 3], "nuisances": []}, "out_of_range", "zero_gamma"),
-        ("every template is explained", {"templates": [[2.0] * 3, [-3.0] * 3]}, "out_of_range", "template_explained"),
-        ("the same, to rounding", {"templates": [[0.1, 0.1, 0.3 - 0.2], offset]}, "out_of_range", "template_explained"),
-        ("every template that can be is explained", {"templates": [offset, up], "prior": [1.0, 0.0]}, "out_of_range",
-         "template_explained"),
-        ("no sample for the noise", {"nuisances": [offset, line]}, "out_of_range", "no_degrees"),
-        ("the same, unknown level", {"nuisances": [offset, line], "level": "unknown"}, "out_of_range", "no_degrees"),
-        ("one sample alone", {"residual": [1.0], "templates": [[1.0], [2.0]], "nuisances": []}, "out_of_range", "no_degrees"),
-        ("a record of nothing, unknown level", {"residual": [0.0] * 3, "level": "unknown"}, "out_of_range", "no_noise"),
-        ("γ beyond the largest number", {"templates": [up, [1e200, 0.0, 0.0]]}, "overflow", "infinite_answer"),
-        ("θ beyond the largest number", {"residual": [0.0, 1e160, 0.0], "templates": [[0.0, 1e150, 0.0], up]}, "overflow",
-         "infinite_answer"),
+    for comment, changes, flag in [
+        ("the residual is shorter", {"residual": [1.0, 2.0]}, "lengths_differ"),
+        ("the residual is longer", {"residual": [1.0, 2.0, 0.5, 0.0]}, "lengths_differ"),
+        ("a template is shorter", {"templates": [up, [1.0, 0.0]]}, "lengths_differ"),
+        ("a template is longer", {"templates": [up, [1.0, 0.0, 0.0, 0.0]]}, "lengths_differ"),
+        ("a template is empty", {"templates": [up, []]}, "lengths_differ"),
+        ("a template that is no list", {"templates": [up, 1.0]}, "wrong_type"),
+        ("a template without a prior", {"templates": [up, line, offset]}, "lengths_differ"),
+        ("a prior without a template", {"templates": [up]}, "lengths_differ"),
+        ("a nuisance is shorter", {"nuisances": [[1.0, 1.0]]}, "lengths_differ"),
+        ("a nuisance is longer", {"nuisances": [[1.0, 1.0, 1.0, 1.0]]}, "lengths_differ"),
+        ("no hypotheses", {"templates": [], "prior": []}, "empty"),
+        ("no samples", {"residual": [], "templates": [[], []], "nuisances": []}, "empty"),
+        ("level is a truth value", {"level": True}, "wrong_type"),
+        ("level is another word", {"level": "estimated"}, "out_of_range"),
+        ("a prior below 0", {"prior": [-0.25, 1.25]}, "prior_unchecked"),
+        ("priors add up to more than 1", {"prior": [0.5, 0.75]}, "prior_unchecked"),
+        ("priors add up to 1 − 10⁻⁸", {"prior": [0.5, 0.49999999]}, "prior_unchecked"),
+        ("no hypothesis can be", {"prior": [0.0, 0.0]}, "prior_unchecked"),
+        ("prior_h1 is 0", {"prior_h1": 0.0}, "out_of_range"),
+        ("prior_h1 is 1", {"prior_h1": 1.0}, "out_of_range"),
+        ("prior_h1 is below 0", {"prior_h1": -0.5}, "out_of_range"),
+        ("no signal", {"templates": [[0.0] * 3, [0.0] * 3]}, "zero_gamma"),
+        ("no signal and no nuisances", {"templates": [[0.0] * 3, [0.0] * 3], "nuisances": []}, "zero_gamma"),
+        ("every template is explained", {"templates": [[2.0] * 3, [-3.0] * 3]}, "template_explained"),
+        ("the same, to rounding", {"templates": [[0.1, 0.1, 0.3 - 0.2], offset]}, "template_explained"),
+        ("every template that can be is explained", {"templates": [offset, up], "prior": [1.0, 0.0]}, "template_explained"),
+        ("no sample for the noise", {"nuisances": [offset, line]}, "no_degrees"),
+        ("the same, unknown level", {"nuisances": [offset, line], "level": "unknown"}, "no_degrees"),
+        ("one sample alone", {"residual": [1.0], "templates": [[1.0], [2.0]], "nuisances": []}, "no_degrees"),
+        ("a record of nothing, unknown level", {"residual": [0.0] * 3, "level": "unknown"}, "no_noise"),
     ]:
-        group.refuse(comment, {**args, **changes}, error, [flag])
+        group.refuse(comment, args, flag, **changes)
+    huge = {"residual": [0.0, 1e160, 0.0], "templates": [[0.0, 1e150, 0.0], up]}
+    for comment, changes in [("γ", {"templates": [up, [1e200, 0.0, 0.0]]}), ("θ", huge)]:
+        group.refuse(f"{comment} beyond the largest number", args, "infinite_answer", error="overflow", **changes)
     for token in ("NaN", "1e999"):
         text = (
             f'{{"residual":[1,2,0.5],"templates":[[0,1,0],[1,{token},0]],"nuisances":[],"level":"known","prior":[0.5,0.5],'
             '"prior_h1":0.5}'
         )
-        group.refuse_line(f"a template holds {token}", text, ["not_finite"])
+        group.refuse_line(f"a template holds {token}", text)
 
 
 GROUPS = [bank_posterior]

@@ -7,7 +7,7 @@ from mpmath import exp, mpf, sqrt
 from .filters import root
 from .numbers import UNIT, Draws, exact, nearest, real
 from .series import dot, exacts, noise, signal
-from .suite import Group, absolute, refuse_common
+from .suite import Group, absolute, case_by_case, refuse_common
 
 
 def solve(matrix, right):
@@ -76,9 +76,8 @@ def covariance(draws, count, kind):
 def theta_colored():
     group = Group(
         "theta_colored",
-        "theta_colored",
         "exact fractions; roots by mpmath 1.3.0 at 50 digits",
-        {key: absolute(UNIT, "1", "cases state their own") for key in ("theta", "gamma")},
+        case_by_case(["theta", "gamma"]),
     )
     draws = Draws(40)
     kinds = [
@@ -179,7 +178,7 @@ def refuse_covariances(group):
         "only the lower triangle": [[1.0, 0.0], [0.25, 1.0]],
     }
     for kind, matrix in bad.items():
-        group.refuse(kind, {**args, "covariance": matrix}, "out_of_range", ["not_symmetric"])
+        group.refuse(kind, args, "not_symmetric", covariance=matrix)
     bad = {
         "singular": [[1.0, 1.0], [1.0, 1.0]],
         "singular, anticorrelated": [[4.0, -2.0], [-2.0, 1.0]],
@@ -190,44 +189,28 @@ def refuse_covariances(group):
         "zero": [[0.0, 0.0], [0.0, 0.0]],
     }
     for kind, matrix in bad.items():
-        group.refuse(kind, {**args, "covariance": matrix}, "out_of_range", ["not_positive_definite"])
+        group.refuse(kind, args, "not_positive_definite", covariance=matrix)
     four = {"residual": [0.1] * 4, "template": [0.2] * 4}
     singular = [[1.0, 0.5, 0.0, 0.5], [0.5, 1.0, 0.5, 0.0], [0.0, 0.5, 1.0, 0.5], [0.5, 0.0, 0.5, 1.0]]
-    group.refuse(
-        "singular of order 4: rows 1 + 3 = rows 2 + 4",
-        {**four, "covariance": singular},
-        "out_of_range",
-        ["not_positive_definite"],
-    )
+    group.refuse("singular of order 4: rows 1 + 3 = rows 2 + 4", four, "not_positive_definite", covariance=singular)
     group.refuse(
         "two equal samples of order 4",
-        {
-            **four,
-            "covariance": [[1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
-        },
-        "out_of_range",
-        ["not_positive_definite"],
+        four,
+        "not_positive_definite",
+        covariance=[[1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
     )
-    group.refuse("a row is shorter", {**args, "covariance": [[1.0, 0.25], [0.25]]}, "bad_argument", ["lengths_differ"])
-    group.refuse(
-        "the covariance is of another order", {**args, "covariance": [[1.0]]}, "bad_argument", ["lengths_differ"]
-    )
-    group.refuse(
-        "the template is longer", {**args, "template": [0.3, 0.1, 0.2, 0.4]}, "bad_argument", ["lengths_differ"]
-    )
+    group.refuse("a row is shorter", args, "lengths_differ", covariance=[[1.0, 0.25], [0.25]])
+    group.refuse("the covariance is of another order", args, "lengths_differ", covariance=[[1.0]])
+    group.refuse("the template is longer", args, "lengths_differ", template=[0.3, 0.1, 0.2, 0.4])
     group.refuse(
         "an odd number: no two channels",
         {"residual": [0.1], "template": [0.1], "covariance": [[1.0]]},
-        "bad_argument",
-        ["lengths_differ"],
+        "lengths_differ",
     )
-    group.refuse("empty", {"residual": [], "template": [], "covariance": []}, "bad_argument", ["empty"])
+    group.refuse("empty", {"residual": [], "template": [], "covariance": []}, "empty")
     for token in ("NaN", "1e999"):
-        group.refuse_line(
-            f"a covariance of {token}",
-            '{"residual":[0.1,0.2],"template":[0.3,0.1],"covariance":[[1,%s],[0.25,1]]}' % token,
-            ["not_finite"],
-        )
+        text = '{"residual":[0.1,0.2],"template":[0.3,0.1],"covariance":[[1,%s],[0.25,1]]}' % token
+        group.refuse_line(f"a covariance of {token}", text)
 
 
 GROUPS = [theta_colored]

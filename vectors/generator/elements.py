@@ -11,7 +11,7 @@ from fractions import Fraction
 from mpmath import cos, mpf, pi, sin, sqrt
 
 from .numbers import UNIT, Draws, exact, nearest, real
-from .suite import Group, absolute, refuse_common
+from .suite import Group, absolute, case_by_case, refuse_common
 
 
 def three_points(number):
@@ -92,31 +92,24 @@ def spread(nodes):
 def element_stiffness():
     group = Group(
         "element_stiffness",
-        "element_stiffness",
         "straight sides: exact fractions; curved sides: Cowper's rule, mpmath 1.3.0 at 50 digits",
-        {"stiffness": absolute(UNIT, "N/m²", "cases state their own")},
+        case_by_case(["stiffness"], "N/m²"),
     )
     draws = Draws(80)
     grid = 2.0**-14
-    element_case(group, "unit triangle", middles([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), 1.0, 0.25)
-    element_case(group, "unit triangle, ν = 0", middles([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), 1.0, 0.0)
-    element_case(group, "unit triangle, ν < 0", middles([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), 1.0, -0.5)
-    element_case(group, "the gel", middles([[0.0, 0.0], [8 * grid, 0.0], [0.0, 8 * grid]]), 5000.0, 0.49)
-    element_case(group, "the skin", middles([[0.0, -4 * grid], [8 * grid, -4 * grid], [8 * grid, 0.0]]), 180000.0, 0.49)
-    element_case(
-        group, "the disc", middles([[2 * grid, 2 * grid], [9 * grid, 4 * grid], [3 * grid, 11 * grid]]), 1.2e6, 0.49
-    )
-    element_case(group, "a sliver", middles([[0.0, 0.0], [64 * grid, 0.0], [32 * grid, 2 * grid]]), 5000.0, 0.49)
-    element_case(
-        group, "far from the origin", middles([[1.0, 1.0], [1.0 + 8 * grid, 1.0], [1.0, 1.0 + 8 * grid]]), 5000.0, 0.3
-    )
-    element_case(
-        group,
-        "nearly incompressible",
-        middles([[0.0, 0.0], [16 * grid, 4 * grid], [2 * grid, 16 * grid]]),
-        5000.0,
-        0.4995,
-    )
+    unit = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
+    for kind, corners, modulus, ratio in (
+        ("unit triangle", unit, 1.0, 0.25),
+        ("unit triangle, ν = 0", unit, 1.0, 0.0),
+        ("unit triangle, ν < 0", unit, 1.0, -0.5),
+        ("the gel", [[0.0, 0.0], [8 * grid, 0.0], [0.0, 8 * grid]], 5000.0, 0.49),
+        ("the skin", [[0.0, -4 * grid], [8 * grid, -4 * grid], [8 * grid, 0.0]], 180000.0, 0.49),
+        ("the disc", [[2 * grid, 2 * grid], [9 * grid, 4 * grid], [3 * grid, 11 * grid]], 1.2e6, 0.49),
+        ("a sliver", [[0.0, 0.0], [64 * grid, 0.0], [32 * grid, 2 * grid]], 5000.0, 0.49),
+        ("far from the origin", [[1.0, 1.0], [1.0 + 8 * grid, 1.0], [1.0, 1.0 + 8 * grid]], 5000.0, 0.3),
+        ("nearly incompressible", [[0.0, 0.0], [16 * grid, 4 * grid], [2 * grid, 16 * grid]], 5000.0, 0.4995),
+    ):
+        element_case(group, kind, middles(corners), modulus, ratio)
     for number in range(12):
         corners = [[draws.integer(-40, 40) * 2 * grid, draws.integer(-100, 0) * 2 * grid] for _ in range(3)]
         (x1, y1), (x2, y2), (x3, y3) = corners
@@ -125,58 +118,36 @@ def element_stiffness():
             corners = [[0.0, 0.0], [10 * grid, 2 * grid * number], [-4 * grid, 30 * grid]]
         elif area < 0:
             corners = [corners[0], corners[2], corners[1]]
-        element_case(
-            group,
-            "drawn, straight",
-            middles(corners),
-            draws.choice([5000.0, 180000.0, 1.2e6]),
-            draws.choice([0.3, 0.45, 0.49]),
-        )
+        modulus, ratio = draws.choice([5000.0, 180000.0, 1.2e6]), draws.choice([0.3, 0.45, 0.49])
+        element_case(group, "drawn, straight", middles(corners), modulus, ratio)
     for number in range(12):
         angle, radius = draws.integer(0, 11), 0.0032
         arc = rim(radius, angle)
         outer = [arc[2][0] * 1.25, arc[2][1] * 1.25]
-        nodes = [arc[0], [arc[0][0] * 1.2, arc[0][1] * 1.2], arc[1], None, None, arc[2]]
-        nodes[3] = [(nodes[0][k] + nodes[1][k]) / 2 for k in (0, 1)]
-        nodes[4] = [
-            (nodes[1][k] + nodes[2][k]) / 2 + (0.01 * (outer[k] - arc[2][k]) if number % 2 else 0.0) for k in (0, 1)
-        ]
+        nodes = middles([arc[0], [arc[0][0] * 1.2, arc[0][1] * 1.2], arc[1]])
+        nodes[5] = arc[2]
+        if number % 2:
+            nodes[4] = [nodes[4][k] + 0.01 * (outer[k] - arc[2][k]) for k in (0, 1)]
         element_case(group, "a side on the disc's rim", nodes, 5000.0 if number % 3 else 1.2e6, 0.49)
-    nodes = middles([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    nodes = middles(unit)
     args = {"nodes_m": nodes, "youngs_modulus_pa": 5000.0, "poissons_ratio": 0.3}
     refuse_common(group, args, ["youngs_modulus_pa", "poissons_ratio"], ["nodes_m"])
-    group.refuse(
-        "corners clockwise",
-        {**args, "nodes_m": [nodes[k] for k in (0, 2, 1, 5, 4, 3)]},
-        "out_of_range",
-        ["inverted_element"],
-    )
-    group.refuse(
-        "no area",
-        {**args, "nodes_m": middles([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]])},
-        "out_of_range",
-        ["inverted_element"],
-    )
-    group.refuse(
-        "a middle pulled beyond a corner",
-        {**args, "nodes_m": [*nodes[:3], [1.5, 0.9], *nodes[4:]]},
-        "out_of_range",
-        ["inverted_element"],
-    )
-    group.refuse("all nodes at one place", {**args, "nodes_m": [[0.5, 0.5]] * 6}, "out_of_range", ["inverted_element"])
-    group.refuse("five nodes", {**args, "nodes_m": nodes[:5]}, "bad_argument", ["lengths_differ"])
-    group.refuse("seven nodes", {**args, "nodes_m": [*nodes, [0.0, 0.0]]}, "bad_argument", ["lengths_differ"])
-    group.refuse(
-        "a node in space", {**args, "nodes_m": [*nodes[:5], [0.0, 0.5, 0.0]]}, "bad_argument", ["lengths_differ"]
-    )
+    group.refuse("corners clockwise", args, "inverted_element", nodes_m=[nodes[k] for k in (0, 2, 1, 5, 4, 3)])
+    group.refuse("no area", args, "inverted_element", nodes_m=middles([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]))
+    pulled = [*nodes[:3], [1.5, 0.9], *nodes[4:]]
+    group.refuse("a middle pulled beyond a corner", args, "inverted_element", nodes_m=pulled)
+    group.refuse("all nodes at one place", args, "inverted_element", nodes_m=[[0.5, 0.5]] * 6)
+    group.refuse("five nodes", args, "lengths_differ", nodes_m=nodes[:5])
+    group.refuse("seven nodes", args, "lengths_differ", nodes_m=[*nodes, [0.0, 0.0]])
+    group.refuse("a node in space", args, "lengths_differ", nodes_m=[*nodes[:5], [0.0, 0.5, 0.0]])
     for modulus in (0, -5000.0):
-        group.refuse(f"modulus {modulus!r}", {**args, "youngs_modulus_pa": modulus}, "out_of_range", ["out_of_range"])
+        group.refuse(f"modulus {modulus!r}", args, "out_of_range", youngs_modulus_pa=modulus)
     for ratio in (0.5, -1, 0.75, -2):
         group.refuse(
             f"Poisson's ratio {ratio!r}",
-            {**args, "poissons_ratio": ratio},
-            "out_of_range",
-            ["infinite_answer" if ratio in (0.5, -1) else "out_of_range"],
+            args,
+            "infinite_answer" if ratio in (0.5, -1) else "out_of_range",
+            poissons_ratio=ratio,
         )
     return group
 
@@ -202,43 +173,24 @@ def element_case(group, kind, nodes, modulus, ratio):
         wrong.append(("area_twice", [[2 * v for v in row] for row in k]))
         wrong.append(("shear_strain_halved", stiffness(p, points, law, shear=number(Fraction(1, 2)))))
     else:
-        wrong.append(
-            (
-                "straightened",
-                stiffness(
-                    [[number(v) for v in node] for node in middles([list(map(exact, n)) for n in nodes[:3]])],
-                    points,
-                    law,
-                ),
-            )
-        )
+        corners = middles([list(map(exact, node)) for node in nodes[:3]])
+        wrong.append(("straightened", stiffness([[number(v) for v in node] for node in corners], points, law)))
         wrong.append(("rule_of_degree_2", stiffness(p, three_points(number), law)))
-    turned = [k[i] for i in (0, 1, 2, 3, 4, 5, 8, 9, 10, 11, 6, 7)]
-    wrong.append(("midside_order", [[row[j] for j in (0, 1, 2, 3, 4, 5, 8, 9, 10, 11, 6, 7)] for row in turned]))
+    order = (0, 1, 2, 3, 4, 5, 8, 9, 10, 11, 6, 7)
+    wrong.append(("midside_order", [[k[i][j] for j in order] for i in order]))
     # Two of the bugs for each case, in turn: a matrix is long.
     turn = len(group.cases)
     wrong = [wrong[(turn + i) % len(wrong)] for i in range(2)]
     largest = max(abs(exact(v)) for row in k for v in row)
-    bound = (64 + 64 * spread(nodes)) * UNIT * largest
-    limit = absolute(
-        bound,
-        "N/m²",
+    reason = (
         "2⁻⁵³ max|K| (64 for the sums and the rule's points, 64 (largest coordinate)/(height) for the Jacobian, "
-        "whose differences cancel)",
+        "whose differences cancel)"
     )
+    limits = {"stiffness": absolute((64 + 64 * spread(nodes)) * UNIT * largest, "N/m²", reason)}
     args = {"nodes_m": nodes, "youngs_modulus_pa": modulus, "poissons_ratio": ratio}
-    group.accept(
-        kind,
-        args,
-        {"stiffness": as_fractions(k)},
-        [(flag, {"stiffness": as_fractions(m)}) for flag, m in wrong],
-        tolerance={"stiffness": limit},
-    )
-
-
-def as_fractions(matrix):
-    """Entries that are exactly 0 stay real numbers."""
-    return [[exact(v) for v in row] for row in matrix]
+    # Entries that are exactly 0 stay real numbers.
+    answer = lambda matrix: {"stiffness": [[exact(v) for v in row] for row in matrix]}
+    group.accept(kind, args, answer(k), [(flag, answer(other)) for flag, other in wrong], tolerance=limits)
 
 
 GROUPS = [element_stiffness]

@@ -9,7 +9,7 @@ from mpmath import mpf, sqrt
 
 from .numbers import UNIT, Draws, exact, real
 from .series import dot, exacts, magnitude, noise, signal
-from .suite import Group, absolute, in_ulp, refuse_common
+from .suite import Group, absolute, case_by_case, in_ulp, refuse_common
 
 SOURCE = "exact fractions; square roots by mpmath 1.3.0 at 50 digits"
 
@@ -35,18 +35,9 @@ SUM = "(N + 2)·2⁻⁵³ for a plain sum of squares, halved by the root, and 8 
 
 # Verifies: DET-013.
 def matched_filter():
-    group = Group(
-        "matched_filter",
-        "matched_filter",
-        SOURCE,
-        {
-            "b_x": in_ulp(16, SUM),
-            "b_y": in_ulp(16, SUM),
-            "sigma_x": in_ulp(4, "√N and a quotient, or the root of the weight"),
-            "sigma_y": in_ulp(4, "as sigma_x"),
-            "gamma": in_ulp(16, SUM),
-        },
-    )
+    sigma = {"sigma_x": in_ulp(4, "√N and a quotient, or the root of the weight"), "sigma_y": in_ulp(4, "as sigma_x")}
+    sums = {key: in_ulp(16, SUM) for key in ("b_x", "b_y", "gamma")}
+    group = Group("matched_filter", SOURCE, {key: {**sums, **sigma}[key] for key in ("b_x", "b_y", *sigma, "gamma")})
     draws = Draws(20)
     cases = []
     for count in (1, 2, 3, 5, 9, 21, 41):
@@ -64,10 +55,8 @@ def matched_filter():
         (-1000, "near the least normal number"),
         (1000, "near the largest number"),
     ):
-        scale = 2.0**power
-        cases.append(
-            ([v * scale for v in x], [v * scale for v in y], 0.1 * scale, 0.15 * scale, f"unit of 2^{-power} N: {kind}")
-        )
+        u = 2.0**power
+        cases.append(([v * u for v in x], [v * u for v in y], 0.1 * u, 0.15 * u, f"unit of 2^{-power} N: {kind}"))
     cases += [
         (x, y, 1e-100, 2e-100, "tiny noise: γ of 10⁹⁹"),
         (x, y, 1e100, 1e100, "huge noise: tiny γ"),
@@ -85,7 +74,7 @@ def matched_filter():
         (bx, nx, gx), (by, ny, gy) = filtered(x, sx), filtered(y, sy)
         count = len(x)
         ok = {"b_x": bx, "b_y": by, "sigma_x": nx, "sigma_y": ny, "gamma": root(gx + gy)}
-        n = mpf(count)
+        n, ratio = mpf(count), exact(sx) ** 2 / exact(sy) ** 2
         wrong = [
             ("weight_missing", {"b_x": bx * sqrt(n), "b_y": by * sqrt(n), "sigma_x": mpf(sx), "sigma_y": mpf(sy)}),
             ("weight_missing", {"gamma": root((gx + gy) / count)}),
@@ -93,10 +82,7 @@ def matched_filter():
             ("gamma_squared", {"gamma": real(gx + gy)}),
             ("variance_for_sd", {"sigma_x": nx * nx, "sigma_y": ny * ny}),
             ("variance_for_sd", {"gamma": root(gx * exact(sx) + gy * exact(sy))}),
-            (
-                "channels_exchanged",
-                {"gamma": root(gx * exact(sx) ** 2 / exact(sy) ** 2 + gy * exact(sy) ** 2 / exact(sx) ** 2)},
-            ),
+            ("channels_exchanged", {"gamma": root(gx * ratio + gy / ratio)}),
             ("channel_missing", {"gamma": root(gy)}),
         ]
         if abs(x[0]) > 1e150 or 0 < abs(x[0]) < 1e-150:
@@ -104,32 +90,24 @@ def matched_filter():
         limits = None
         if sum_ulps(count) > 16:
             limits = {key: in_ulp(sum_ulps(count), SUM) for key in ("b_x", "b_y", "gamma")}
-        group.accept(
-            kind, {"template_x": x, "template_y": y, "noise_sd_x": sx, "noise_sd_y": sy}, ok, wrong, tolerance=limits
-        )
+        args = {"template_x": x, "template_y": y, "noise_sd_x": sx, "noise_sd_y": sy}
+        group.accept(kind, args, ok, wrong, tolerance=limits)
     args = {"template_x": [0.1, 0.2], "template_y": [0.3, 0.4], "noise_sd_x": 0.1, "noise_sd_y": 0.2}
     refuse_common(group, args, ["noise_sd_x", "noise_sd_y"], ["template_x", "template_y"])
     refuse_deviations(group, args)
-    group.refuse("lengths differ", {**args, "template_x": [0.1]}, "bad_argument", ["lengths_differ"])
-    group.refuse("empty", {**args, "template_x": [], "template_y": []}, "bad_argument", ["empty"])
-    group.refuse(
-        "γ would be infinite",
-        {**args, "template_x": [1e300, 1e300], "noise_sd_x": 1e-300},
-        "overflow",
-        ["infinite_answer"],
-    )
-    group.refuse_line(
-        "a sample is 1e999",
-        '{"template_x":[1e999,0.2],"template_y":[0.3,0.4],"noise_sd_x":0.1,"noise_sd_y":0.2}',
-        ["not_finite"],
-    )
+    group.refuse("lengths differ", args, "lengths_differ", template_x=[0.1])
+    group.refuse("empty", args, "empty", template_x=[], template_y=[])
+    huge = {"template_x": [1e300, 1e300], "noise_sd_x": 1e-300}
+    group.refuse("γ would be infinite", args, "infinite_answer", error="overflow", **huge)
+    text = '{"template_x":[1e999,0.2],"template_y":[0.3,0.4],"noise_sd_x":0.1,"noise_sd_y":0.2}'
+    group.refuse_line("a sample is 1e999", text)
     return group
 
 
 def refuse_deviations(group, args):
     for key in ("noise_sd_x", "noise_sd_y"):
         for value in (0, -0.1):
-            group.refuse(f"{key} = {value!r}", {**args, key: value}, "out_of_range", ["out_of_range"])
+            group.refuse(f"{key} = {value!r}", args, "out_of_range", **{key: value})
 
 
 def correlate(residual, template, deviation):
@@ -144,24 +122,13 @@ def correlate(residual, template, deviation):
 
 # Verifies: DET-015, DET-013, DET-014.
 def theta():
-    group = Group(
-        "theta",
-        "theta",
-        SOURCE,
-        {
-            "theta": absolute(UNIT, "1", "cases state their own"),
-            "y_x": absolute(UNIT, "N", "cases state their own"),
-            "y_y": absolute(UNIT, "N", "cases state their own"),
-            "gamma": in_ulp(16, SUM),
-        },
-    )
+    tolerance = {**case_by_case(["theta"]), **case_by_case(["y_x", "y_y"], "N"), "gamma": in_ulp(16, SUM)}
+    group = Group("theta", SOURCE, tolerance)
     draws = Draws(21)
     for number in range(84):
         count = [1, 2, 3, 5, 9, 15, 21][number] if number < 7 else 120 if number in (7, 8) else draws.integer(2, 8)
         dx, dy = signal(count, draws, draws.decimal(0.05, 0.6))
-        f0x, f0y = [draws.decimal(-0.3, 0.3, 4) for _ in range(count)], [
-            draws.decimal(0.8, 1.6, 4) for _ in range(count)
-        ]
+        f0x, f0y = ([draws.decimal(*ends, 4) for _ in range(count)] for ends in ((-0.3, 0.3), (0.8, 1.6)))
         sx, sy = draws.decimal(0.02, 0.4), draws.decimal(0.02, 0.4)
         kind, present, scale = ("inclusion", 1, 1.0) if number % 2 else ("no inclusion", 0, 1.0)
         if number in (10, 11):
@@ -179,11 +146,8 @@ def theta():
         if number in (18, 19):
             px, py, kind = [a for a in f1x], [a for a in f1y], "the record is F_1: Θ = γ²/2"
         if number in (20, 21, 22):
-            px, py, kind = (
-                [(a + b) / 2 for a, b in zip(f0x, f1x)],
-                [(a + b) / 2 for a, b in zip(f0y, f1y)],
-                "half way: Θ cancels to rounding errors of the record",
-            )
+            px, py = ([(a + b) / 2 for a, b in zip(*ends)] for ends in ((f0x, f1x), (f0y, f1y)))
+            kind = "half way: Θ cancels to rounding errors of the record"
         if number in (23, 24, 25, 26):
             scale = 2.0 ** (-660, 660, -900, 900)[number - 23]
             kind += f", forces in units of 2^{(660, -660, 900, -900)[number - 23]} N"
@@ -210,92 +174,63 @@ def theta():
     refuse_common(group, args, ["noise_sd_x", "noise_sd_y"], lists)
     refuse_deviations(group, args)
     for key in lists:
-        group.refuse(f"{key} is shorter", {**args, key: args[key][:1]}, "bad_argument", ["lengths_differ"])
-    group.refuse("empty", {**args, **{key: [] for key in lists}}, "bad_argument", ["empty"])
-    group.refuse_line(
-        "a sample is -1e999",
-        '{"observed_x":[-1e999],"observed_y":[1],"f0_x":[0],"f0_y":[1],"f1_x":[0.2],"f1_y":[1.2],"noise_sd_x":0.1,"noise_sd_y":0.2}',
-        ["not_finite"],
-    )
+        group.refuse(f"{key} is shorter", args, "lengths_differ", **{key: args[key][:1]})
+    group.refuse("empty", args, "empty", **{key: [] for key in lists})
+    text = '"observed_x":[-1e999],"observed_y":[1],"f0_x":[0],"f0_y":[1],"f1_x":[0.2],"f1_y":[1.2]'
+    group.refuse_line("a sample is -1e999", "{" + text + ',"noise_sd_x":0.1,"noise_sd_y":0.2}')
     return group
+
+
+def outputs(channels, change=lambda r, d: (r, d)):
+    """y(0) of each channel, of the record and the template as `change` leaves them."""
+    found = {}
+    for key, (r, d, _) in zip(("y_x", "y_y"), channels):
+        energy, (record, template) = dot(d, d), change(r, d)
+        found[key] = real(dot(record, template) / len(d)) / root(energy / len(d)) if energy else mpf(0)
+    return found
 
 
 def theta_case(group, kind, series, sx, sy):
     px, py, f0x, f0y, f1x, f1y = (exacts(f) for f in series)
-    count = len(px)
-    channels, sums = [], []
+    count, channels = len(px), []
     for p, f0, f1, s in ((px, f0x, f1x, sx), (py, f0y, f1y, sy)):
-        r, d = [a - b for a, b in zip(p, f0)], [a - b for a, b in zip(f1, f0)]
-        channels.append((r, d, s))
-        sums.append(correlate(r, d, s))
-    y, y_bounds = [], []
-    for r, d, s in channels:
+        channels.append(([a - b for a, b in zip(p, f0)], [a - b for a, b in zip(f1, f0)], s))
+    raw = [(p, d, s) for p, (_, d, s) in zip((px, py), channels)]
+    sums, y, y_bounds = [correlate(*channel) for channel in channels], outputs(channels), []
+    for r, d, _ in channels:
         energy = dot(d, d)
-        b = root(energy / count)
-        y.append(real(dot(r, d) / count) / b if energy else mpf(0))
-        y_bounds.append(
-            (count * 3 // 2 + 10) * UNIT * exact(real(magnitude(r, d) / count) / b) if energy else Fraction(0)
-        )
+        size = exact(real(magnitude(r, d) / count) / root(energy / count)) if energy else Fraction(0)
+        y_bounds.append((count * 3 // 2 + 10) * UNIT * size)
     value = sum(rd - half for rd, half, _ in sums)
     gamma2 = 2 * sum(half for _, half, _ in sums)
     bound = (count + 8) * UNIT * sum(size for _, _, size in sums)
-    ok = {"theta": value, "y_x": y[0], "y_y": y[1], "gamma": root(gamma2)}
+    ratio = exact(sx) ** 2 / exact(sy) ** 2
 
-    def other(change):
-        """Θ by a changed rule for each channel."""
-        return sum((rd - half for rd, half, _ in (change(*channel) for channel in channels)), Fraction(0))
+    def total(channels):
+        return sum((rd - half for rd, half, _ in (correlate(*channel) for channel in channels)), Fraction(0))
 
+    def weighted(weights):
+        """θ and γ² where the squares of each channel have another weight."""
+        pairs = list(zip(sums, weights))
+        return sum((rd - half) * w for (rd, half, _), w in pairs), 2 * sum(half * w for (_, half, _), w in pairs)
+
+    reversed_theta = total((r, d[::-1], s) for r, d, s in channels)
+    by_sd, by_sd2 = weighted((exact(sx), exact(sy)))
+    exchanged, exchanged2 = weighted((ratio, 1 / ratio))
     wrong = [
         ("half_left_out", {"theta": sum(rd - 2 * half for rd, half, _ in sums)}),
         ("half_left_out", {"theta": sum(rd for rd, _, _ in sums)}),
         ("sign_exchanged", {"theta": -value}),
         ("gamma_squared", {"gamma": real(gamma2)}),
+        ("time_not_reversed", {"theta": reversed_theta, **outputs(channels, lambda r, d: (r, d[::-1]))}),
+        ("time_not_reversed", {"theta": reversed_theta}),
+        ("variance_for_sd", {"theta": by_sd, "gamma": root(by_sd2)}),
+        ("variance_for_sd", {"theta": by_sd}),
+        ("weight_missing", {"theta": value / count, "gamma": root(gamma2 / count)}),
+        ("weight_missing", {key: output * count for key, output in y.items()}),
+        ("f0_not_subtracted", {"theta": total(raw), **outputs(raw)}),
+        ("channels_exchanged", {"theta": exchanged, "gamma": root(exchanged2)}),
     ]
-    wrong.append(
-        (
-            "time_not_reversed",
-            {
-                "theta": other(lambda r, d, s: correlate(r, d[::-1], s)),
-                "y_x": turned(channels[0]),
-                "y_y": turned(channels[1]),
-            },
-        )
-    )
-    wrong.append(("time_not_reversed", {"theta": other(lambda r, d, s: correlate(r, d[::-1], s))}))
-    wrong.append(
-        (
-            "variance_for_sd",
-            {
-                "theta": sum((rd - half) * exact(s) for (rd, half, _), (_, _, s) in zip(sums, channels)),
-                "gamma": root(2 * sum(half * exact(s) for (_, half, _), (_, _, s) in zip(sums, channels))),
-            },
-        )
-    )
-    wrong.append(
-        ("variance_for_sd", {"theta": sum((rd - half) * exact(s) for (rd, half, _), (_, _, s) in zip(sums, channels))})
-    )
-    wrong.append(("weight_missing", {"theta": value / count, "gamma": root(gamma2 / count)}))
-    wrong.append(("weight_missing", {"y_x": y[0] * count, "y_y": y[1] * count}))
-    wrong.append(
-        (
-            "f0_not_subtracted",
-            {
-                "theta": other_observed(channels, (f0x, f0y)),
-                "y_x": unsubtracted(channels[0], f0x),
-                "y_y": unsubtracted(channels[1], f0y),
-            },
-        )
-    )
-    ratio = exact(sx) ** 2 / exact(sy) ** 2
-    wrong.append(
-        (
-            "channels_exchanged",
-            {
-                "theta": (sums[0][0] - sums[0][1]) * ratio + (sums[1][0] - sums[1][1]) / ratio,
-                "gamma": root(2 * (sums[0][1] * ratio + sums[1][1] / ratio)),
-            },
-        )
-    )
     limits = {
         "theta": absolute(bound, "1", "(N + 8) 2⁻⁵³ Σ (|rΔ| + Δ²/2)/s²: plain sums of rounded differences"),
         "y_x": absolute(y_bounds[0], "N", "(3N/2 + 10) 2⁻⁵³ w Σ|rΔ|/b"),
@@ -304,27 +239,8 @@ def theta_case(group, kind, series, sx, sy):
     if sum_ulps(count) > 16:
         limits["gamma"] = in_ulp(sum_ulps(count), SUM)
     names = ("observed_x", "observed_y", "f0_x", "f0_y", "f1_x", "f1_y")
-    group.accept(kind, {**dict(zip(names, series)), "noise_sd_x": sx, "noise_sd_y": sy}, ok, wrong, tolerance=limits)
-
-
-def turned(channel):
-    r, d, _ = channel
-    energy = dot(d, d)
-    return real(dot(r, d[::-1]) / len(d)) / root(energy / len(d)) if energy else mpf(0)
-
-
-def unsubtracted(channel, f0):
-    r, d, _ = channel
-    energy = dot(d, d)
-    return real(dot([a + b for a, b in zip(r, f0)], d) / len(d)) / root(energy / len(d)) if energy else mpf(0)
-
-
-def other_observed(channels, references):
-    total = Fraction(0)
-    for (r, d, s), f0 in zip(channels, references):
-        rd, half, _ = correlate([a + b for a, b in zip(r, f0)], d, s)
-        total += rd - half
-    return total
+    args = {**dict(zip(names, series)), "noise_sd_x": sx, "noise_sd_y": sy}
+    group.accept(kind, args, {"theta": value, **y, "gamma": root(gamma2)}, wrong, tolerance=limits)
 
 
 GROUPS = [matched_filter, theta]

@@ -8,7 +8,7 @@ from .normal import cdf
 from .numbers import UNIT, Draws, real
 from .quadratic import limits, student
 from .series import bump, noise, signal
-from .suite import Group, absolute, is_exact, refuse_common
+from .suite import Group, absolute, case_by_case, is_exact, refuse_common, without
 
 SOURCE = "Gram–Schmidt, mpmath 1.3.0 at 50 digits; tails of t as in student_tail"
 U = real(UNIT)
@@ -258,9 +258,8 @@ def record(draws, template, nuisances, amplitude, present):
 
 # Verifies: ORA-020, NUI-001, NUI-003, NUI-007, NUI-008, NUI-014, NUI-012.
 def theta_nuisances():
-    keys = [*REASONS, "rank", "degrees"]
-    tolerance = {key: EXACT if key in ("rank", "degrees") else absolute(0, "1", "cases state their own") for key in keys}
-    group = Group("theta_nuisances", "theta_nuisances", SOURCE, tolerance)
+    tolerance = {**case_by_case(REASONS, bound=0), "rank": EXACT, "degrees": EXACT}
+    group = Group("theta_nuisances", SOURCE, tolerance)
     draws = Draws(70)
     one, line = [1.0] * 4, [0.0, 1.0, 2.0, 3.0]
     four = ([4.0, 2.0, 3.0, 3.5], [1.0, -1.0, 1.0, -1.0])
@@ -337,33 +336,31 @@ def refuse(group):
         "bias": 0.1, "eta": 0.5,
     }
     refuse_common(group, args, ["bias", "eta"], ["residual", "template", "nuisances"])
-    nameless = {key: value for key, value in args.items() if key != "level"}
-    group.refuse("level is missing", nameless, "bad_argument", ["missing_argument"])
-    for comment, changed, error, flag in [
-        ("the residual is shorter", {"residual": [1.0, 2.0]}, "bad_argument", "lengths_differ"),
-        ("the template is longer", {"template": [0.0, 1.0, 0.0, 0.0]}, "bad_argument", "lengths_differ"),
-        ("a nuisance is shorter", {"nuisances": [[1.0, 1.0]]}, "bad_argument", "lengths_differ"),
-        ("a nuisance is longer", {"nuisances": [[1.0, 1.0, 1.0, 1.0]]}, "bad_argument", "lengths_differ"),
-        ("one of two is empty", {"nuisances": [[1.0, 1.0, 1.0], []]}, "bad_argument", "lengths_differ"),
-        ("a nuisance that is no list", {"nuisances": [1.0, 1.0, 1.0]}, "bad_argument", "wrong_type"),
-        ("no samples", {"residual": [], "template": [], "nuisances": []}, "bad_argument", "empty"),
-        ("level is a truth value", {"level": True}, "bad_argument", "wrong_type"),
-        ("level is another word", {"level": "estimated"}, "out_of_range", "out_of_range"),
-        ("bias below 0", {"bias": -0.1}, "out_of_range", "out_of_range"),
-        ("no signal", {"template": [0.0, 0.0, 0.0]}, "out_of_range", "zero_gamma"),
-        ("no signal and no nuisances", {"template": [0.0, 0.0, 0.0], "nuisances": []}, "out_of_range", "zero_gamma"),
-        ("the template is a nuisance", {"template": [2.0, 2.0, 2.0]}, "out_of_range", "template_explained"),
-        ("the same, to rounding", {"template": [0.1, 0.1, 0.3 - 0.2]}, "out_of_range", "template_explained"),
-        ("one sample alone", {"residual": [1.0], "template": [1.0], "nuisances": []}, "out_of_range", "no_degrees"),
-        ("no sample for the noise", {"nuisances": [[1.0, 1.0, 1.0], [0.0, 1.0, 2.0]]}, "out_of_range", "no_degrees"),
-        ("the same, unknown level", {"nuisances": [[1.0, 1.0, 1.0], [0.0, 1.0, 2.0]], "level": "unknown"},
-         "out_of_range", "no_degrees"),
-        ("a record of nothing, unknown level", {"residual": [0.0, 0.0, 0.0], "level": "unknown"}, "out_of_range", "no_noise"),
+    group.refuse("level is missing", without(args, "level"), "missing_argument")
+    for comment, changes, flag in [
+        ("the residual is shorter", {"residual": [1.0, 2.0]}, "lengths_differ"),
+        ("the template is longer", {"template": [0.0, 1.0, 0.0, 0.0]}, "lengths_differ"),
+        ("a nuisance is shorter", {"nuisances": [[1.0, 1.0]]}, "lengths_differ"),
+        ("a nuisance is longer", {"nuisances": [[1.0, 1.0, 1.0, 1.0]]}, "lengths_differ"),
+        ("one of two is empty", {"nuisances": [[1.0, 1.0, 1.0], []]}, "lengths_differ"),
+        ("a nuisance that is no list", {"nuisances": [1.0, 1.0, 1.0]}, "wrong_type"),
+        ("no samples", {"residual": [], "template": [], "nuisances": []}, "empty"),
+        ("level is a truth value", {"level": True}, "wrong_type"),
+        ("level is another word", {"level": "estimated"}, "out_of_range"),
+        ("bias below 0", {"bias": -0.1}, "out_of_range"),
+        ("no signal", {"template": [0.0, 0.0, 0.0]}, "zero_gamma"),
+        ("no signal and no nuisances", {"template": [0.0, 0.0, 0.0], "nuisances": []}, "zero_gamma"),
+        ("the template is a nuisance", {"template": [2.0, 2.0, 2.0]}, "template_explained"),
+        ("the same, to rounding", {"template": [0.1, 0.1, 0.3 - 0.2]}, "template_explained"),
+        ("one sample alone", {"residual": [1.0], "template": [1.0], "nuisances": []}, "no_degrees"),
+        ("no sample for the noise", {"nuisances": [[1.0, 1.0, 1.0], [0.0, 1.0, 2.0]]}, "no_degrees"),
+        ("the same, unknown level", {"nuisances": [[1.0, 1.0, 1.0], [0.0, 1.0, 2.0]], "level": "unknown"}, "no_degrees"),
+        ("a record of nothing, unknown level", {"residual": [0.0, 0.0, 0.0], "level": "unknown"}, "no_noise"),
     ]:
-        group.refuse(comment, {**args, **changed}, error, [flag])
+        group.refuse(comment, args, flag, **changes)
     for token in ("NaN", "1e999"):
         text = f'{{"residual":[1,2,0.5],"template":[0,1,0],"nuisances":[[1,1,{token}]],"level":"known","bias":0,"eta":0}}'
-        group.refuse_line(f"a nuisance holds {token}", text, ["not_finite"])
+        group.refuse_line(f"a nuisance holds {token}", text)
 
 
 GROUPS = [theta_nuisances]

@@ -7,7 +7,7 @@ import json
 from fractions import Fraction
 from pathlib import Path
 
-from .suite import Group, absolute, refuse_common
+from .suite import Group, absolute, case_by_case, refuse_common, without
 
 DATA = Path(__file__).parent.parent / "probe_force" / "forces.json"
 LENGTH = Fraction(30, 1000)
@@ -40,9 +40,8 @@ def probe_force():
     keys = ("normal_force_n", "lateral_force_n")
     group = Group(
         "probe_force",
-        "probe_force",
         data["program"] + ", three meshes of its own",
-        {key: absolute(Fraction(1, 1000), "N", "cases state their own") for key in keys},
+        case_by_case(keys, "N", Fraction(1, 1000)),
     )
     poses = {(p["phantom"], p["depth_mm"], p["lateral_mm"]): p for p in data["poses"]}
     for name in ("none", "2.6", "4.6", "6.6", "8.6"):
@@ -53,9 +52,9 @@ def probe_force():
     args = {"phantom": "2.6", "depth_m": 0.002, "lateral_m": 0.001}
     refuse_common(group, args, ["depth_m", "lateral_m"])
     for phantom in ("5.0", "", "None", "2,6"):
-        group.refuse(f"phantom {phantom!r}", {**args, "phantom": phantom}, "out_of_range", ["out_of_range"])
-    group.refuse("a phantom by number", {**args, "phantom": 2.6}, "bad_argument", ["wrong_type"])
-    group.refuse("no phantom", {k: v for k, v in args.items() if k != "phantom"}, "bad_argument", ["missing_argument"])
+        group.refuse(f"phantom {phantom!r}", args, "out_of_range", phantom=phantom)
+    group.refuse("a phantom by number", args, "wrong_type", phantom=2.6)
+    group.refuse("no phantom", without(args, "phantom"), "missing_argument")
     for depth, lateral, kind in (
         (-0.001, 0.0, "above the surface"),
         (0.0155, 0.0, "on the floor"),
@@ -64,7 +63,7 @@ def probe_force():
         (0.001, -0.0169, "through the left wall"),
         (0.004, 2.5, "lateral in mm"),
     ):
-        group.refuse(kind, {**args, "depth_m": depth, "lateral_m": lateral}, "out_of_range", ["out_of_range"])
+        group.refuse(kind, args, "out_of_range", depth_m=depth, lateral_m=lateral)
     return group
 
 

@@ -6,7 +6,7 @@ from mpmath import exp, log, loggamma, mpf, sqrt
 
 from .normal import SOURCE, density, quantile
 from .numbers import UNIT, Draws, exact, real
-from .suite import Group, absolute, in_ulp, is_exact, refuse_common
+from .suite import Group, absolute, at_limit, case_by_case, in_ulp, is_exact, refuse_common, without
 
 
 def mass(k, n, p):
@@ -117,12 +117,7 @@ def clopper_pearson_bounds(k, n, tail, pair):
 
 # Verifies: DET-121, DET-005.
 def proportion_interval():
-    group = Group(
-        "proportion_interval",
-        "proportion_interval",
-        SOURCE + "; tails summed term by term",
-        {key: absolute(UNIT, "1", "cases state their own") for key in ("lower", "upper")},
-    )
+    group = Group("proportion_interval", SOURCE + "; tails summed term by term", case_by_case(["lower", "upper"]))
     draws = Draws(50)
     counts = [
         (253, 300),
@@ -206,21 +201,14 @@ def proportion_interval():
     refuse_common(group, args, ["successes", "trials", "confidence"])
     for method in ("wilson", "clopper_pearson"):
         args = {**args, "method": method}
-        group.refuse(
-            f"{method}: more successes than trials", {**args, "successes": 31}, "out_of_range", ["out_of_range"]
-        )
-        group.refuse(f"{method}: no trials", {**args, "successes": 0, "trials": 0}, "out_of_range", ["out_of_range"])
+        group.refuse(f"{method}: more successes than trials", args, "out_of_range", successes=31)
+        group.refuse(f"{method}: no trials", args, "out_of_range", successes=0, trials=0)
         for confidence in (0, 1, -0.95, 95):
-            group.refuse(
-                f"{method}: confidence {confidence}",
-                {**args, "confidence": confidence},
-                "out_of_range",
-                ["infinite_answer" if confidence in (0, 1) else "out_of_range"],
-            )
-        group.refuse(f"{method}: successes below 0", {**args, "successes": -1}, "out_of_range", ["out_of_range"])
-        group.refuse(f"{method}: half a success", {**args, "successes": 12.5}, "bad_argument", ["wrong_type"])
-    group.refuse("a method that does not exist", {**args, "method": "jeffreys"}, "out_of_range", ["out_of_range"])
-    group.refuse("no method", {k: v for k, v in args.items() if k != "method"}, "bad_argument", ["missing_argument"])
+            group.refuse(f"{method}: confidence {confidence}", args, at_limit(confidence), confidence=confidence)
+        group.refuse(f"{method}: successes below 0", args, "out_of_range", successes=-1)
+        group.refuse(f"{method}: half a success", args, "wrong_type", successes=12.5)
+    group.refuse("a method that does not exist", args, "out_of_range", method="jeffreys")
+    group.refuse("no method", without(args, "method"), "missing_argument")
     return group
 
 
@@ -268,13 +256,11 @@ TABLE_1 = {
 def count_analysis():
     group = Group(
         "count_analysis",
-        "count_analysis",
         "exact fractions; Φ⁻¹ by mpmath 1.3.0 at 50 digits",
         {
             "pooled": is_exact("a sum of whole numbers"),
             "rate": in_ulp(1, "one quotient"),
-            "gamma": absolute(UNIT, "1", "cases state their own"),
-            "chi2": absolute(UNIT, "1", "cases state their own"),
+            **case_by_case(["gamma", "chi2"]),
             "df": is_exact("a whole number"),
         },
     )
@@ -292,20 +278,18 @@ def count_analysis():
         analysis_case(group, "drawn", counts, trials)
     args = {"correct": [[20, 15], [22, 17]], "trials": 30}
     refuse_common(group, args, ["trials"], ["correct"])
+    group.refuse("more right answers than trials", args, "out_of_range", correct=[[31, 15], [22, 17]])
+    group.refuse("right answers below 0", args, "out_of_range", correct=[[-1, 15], [22, 17]])
+    group.refuse("half an answer", args, "wrong_type", correct=[[20.5, 15], [22, 17]])
+    group.refuse("no trials", args, "out_of_range", correct=[[0, 0], [0, 0]], trials=0)
+    group.refuse("a row is shorter", args, "lengths_differ", correct=[[20, 15], [22]])
+    group.refuse("no subjects", args, "empty", correct=[])
+    group.refuse("no conditions", args, "empty", correct=[[], []])
     group.refuse(
-        "more right answers than trials", {**args, "correct": [[31, 15], [22, 17]]}, "out_of_range", ["out_of_range"]
-    )
-    group.refuse("right answers below 0", {**args, "correct": [[-1, 15], [22, 17]]}, "out_of_range", ["out_of_range"])
-    group.refuse("half an answer", {**args, "correct": [[20.5, 15], [22, 17]]}, "bad_argument", ["wrong_type"])
-    group.refuse("no trials", {**args, "correct": [[0, 0], [0, 0]], "trials": 0}, "out_of_range", ["out_of_range"])
-    group.refuse("a row is shorter", {**args, "correct": [[20, 15], [22]]}, "bad_argument", ["lengths_differ"])
-    group.refuse("no subjects", {**args, "correct": []}, "bad_argument", ["empty"])
-    group.refuse("no conditions", {**args, "correct": [[], []]}, "bad_argument", ["empty"])
-    group.refuse(
-        "all right: γ would be infinite", {**args, "correct": [[30, 15], [30, 17]]}, "overflow", ["infinite_answer"]
+        "all right: γ would be infinite", args, "infinite_answer", error="overflow", correct=[[30, 15], [30, 17]]
     )
     group.refuse(
-        "all wrong: γ would be infinite", {**args, "correct": [[0, 15], [0, 17]]}, "overflow", ["infinite_answer"]
+        "all wrong: γ would be infinite", args, "infinite_answer", error="overflow", correct=[[0, 15], [0, 17]]
     )
     return group
 

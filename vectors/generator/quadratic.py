@@ -161,7 +161,7 @@ def off_by_one(key, degrees):
 
 def law_group(name):
     reason = "DET-134; cases state their own"
-    return Group(name, name, SOURCE, {key: relative(Fraction(1, 10**12), reason) for key in ("lower", "upper")})
+    return Group(name, SOURCE, {key: relative(Fraction(1, 10**12), reason) for key in ("lower", "upper")})
 
 
 def refuse_law(group, args, degrees, noncentralities, arguments):
@@ -171,7 +171,7 @@ def refuse_law(group, args, degrees, noncentralities, arguments):
     outside += [(key, value) for key in degrees for value in (0, -1, 0.09, 2000001, 1e300)]
     outside += [("noncentrality", value) for value in noncentralities]
     for key, value in outside:
-        group.refuse(f"{key} = {value!r}", {**args, key: value}, "out_of_range", ["out_of_range"])
+        group.refuse(f"{key} = {value!r}", args, "out_of_range", **{key: value})
 
 
 def around(draws, mean, deviation, count):

@@ -23,7 +23,7 @@ Implements: VEC-006.
 
 # Verifies: ORA-008, ORA-001, ORA-009.
 def requests():
-    group = Group("requests", "", "spec/oracle.md", {})
+    group = Group("requests", "spec/oracle.md", {}, op="")
     good = '"op":"two_afc","args":{"gamma":1}'
     no_json = {
         "an open object": '{"id":"ID",' + good,
@@ -52,7 +52,7 @@ def requests():
         "a form": "op=two_afc&gamma=1",
     }
     for comment, line in no_json.items():
-        group.raw(comment, line, "bad_json", ["no_request"], MEANT.get(comment))
+        group.raw(comment, line, "bad_json", "no_request", MEANT.get(comment))
     not_finite = {
         "NaN": '{"id":"ID","op":"two_afc","args":{"gamma":NaN}}',
         "−NaN": '{"id":"ID","op":"two_afc","args":{"gamma":-NaN}}',
@@ -61,7 +61,7 @@ def requests():
         "NaN as id": '{"id":NaN,' + good + "}",
     }
     for comment, line in not_finite.items():
-        group.raw(comment, line, "bad_json", ["not_finite"])
+        group.raw(comment, line, "bad_json", "not_finite")
     no_request = {
         "null": "null",
         "a number": "1",
@@ -87,7 +87,7 @@ def requests():
         "op a list": '{"id":"ID","op":["two_afc"],"args":{"gamma":1}}',
     }
     for comment, line in no_request.items():
-        group.raw(comment, line, "bad_request", ["no_request"], MEANT.get(comment))
+        group.raw(comment, line, "bad_request", "no_request", MEANT.get(comment))
     unknown = {
         "no such op": '{"id":"ID","op":"three_afc","args":{"gamma":1}}',
         "an empty op": '{"id":"ID","op":"","args":{}}',
@@ -99,7 +99,7 @@ def requests():
         "a zero character": '{"id":"ID","op":"two_afc\\u0000","args":{"gamma":1}}',
     }
     for comment, line in unknown.items():
-        group.raw(comment, line, "unknown_op", ["unknown_op"])
+        group.raw(comment, line, "unknown_op", "unknown_op")
     arguments = {
         "args a list": '{"id":"ID","op":"two_afc","args":[1]}',
         "args a number": '{"id":"ID","op":"two_afc","args":1}',
@@ -112,7 +112,7 @@ def requests():
         "an argument of another case": '{"id":"ID","op":"two_afc","args":{"Gamma":1}}',
     }
     for comment, line in arguments.items():
-        group.raw(comment, line, "bad_argument", ["wrong_type"])
+        group.raw(comment, line, "bad_argument", "wrong_type")
     too_large = {
         "1e400": "1e400",
         "a number of 400 digits": "9" * 400,
@@ -120,21 +120,21 @@ def requests():
     }
     for comment, number in too_large.items():
         line = '{"id":"ID","op":"two_afc","args":{"gamma":' + number + "}}"
-        group.raw(comment, line, "bad_argument", ["not_finite"])
+        group.raw(comment, line, "bad_argument", "not_finite")
     for depth in (200, 1000, 20000):
-        group.raw(f"{depth} lists in each other", "[" * depth + "]" * depth, "bad_request", ["deep_nesting"])
-        group.raw(f"{depth} lists left open", "[" * depth, "bad_json", ["deep_nesting"])
+        group.raw(f"{depth} lists in each other", "[" * depth + "]" * depth, "bad_request", "deep_nesting")
+        group.raw(f"{depth} lists left open", "[" * depth, "bad_json", "deep_nesting")
     group.raw(
         "300 objects in each other",
         '{"id":"ID","op":"two_afc","args":' + '{"a":' * 300 + "1" + "}" * 300 + "}",
         "bad_argument",
-        ["deep_nesting"],
+        "deep_nesting",
     )
     group.raw(
         "300 lists as an argument",
         '{"id":"ID","op":"two_afc","args":{"gamma":' + "[" * 300 + "]" * 300 + "}}",
         "bad_argument",
-        ["deep_nesting"],
+        "deep_nesting",
     )
     return group
 

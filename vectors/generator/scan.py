@@ -5,7 +5,7 @@ from fractions import Fraction
 from .filters import SOURCE, correlate, refuse_deviations
 from .numbers import UNIT, Draws, exact
 from .series import exacts, noise, signal
-from .suite import Group, absolute, is_exact, refuse_common
+from .suite import Group, absolute, case_by_case, is_exact, refuse_common
 
 
 def scan_sums(residual, template, deviation, shift):
@@ -17,11 +17,9 @@ def scan_sums(residual, template, deviation, shift):
 def scan():
     group = Group(
         "scan",
-        "scan",
         SOURCE,
         {
-            "theta": absolute(UNIT, "1", "cases state their own"),
-            "max_theta": absolute(UNIT, "1", "cases state their own"),
+            **case_by_case(["theta", "max_theta"]),
             "argmax": is_exact(
                 "the runner-up is farther off than both errors, or equal to the bit with short binary fractions"
             ),
@@ -79,15 +77,10 @@ def scan():
     refuse_common(group, args, ["noise_sd_x", "noise_sd_y"], lists)
     refuse_deviations(group, args)
     for key in lists:
-        group.refuse(f"{key} is shorter", {**args, key: args[key][:-1]}, "bad_argument", ["lengths_differ"])
-    group.refuse(
-        "template longer than the record",
-        {**args, "template_x": [0.1] * 4, "template_y": [0.1] * 4},
-        "bad_argument",
-        ["lengths_differ"],
-    )
-    group.refuse("no template", {**args, "template_x": [], "template_y": []}, "bad_argument", ["empty"])
-    group.refuse("nothing", {**args, **{key: [] for key in lists}}, "bad_argument", ["empty"])
+        group.refuse(f"{key} is shorter", args, "lengths_differ", **{key: args[key][:-1]})
+    group.refuse("template longer than the record", args, "lengths_differ", template_x=[0.1] * 4, template_y=[0.1] * 4)
+    group.refuse("no template", args, "empty", template_x=[], template_y=[])
+    group.refuse("nothing", args, "empty", **{key: [] for key in lists})
     return group
 
 

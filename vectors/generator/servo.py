@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from .numbers import Draws
 from .single import bits, of_bits, rounded, single
-from .suite import Group, is_exact, refuse_common
+from .suite import Group, is_exact, refuse_common, without
 
 SOURCE = "exact fractions, rounded to f32 after each operation"
 INFINITY = float("inf")
@@ -85,7 +85,7 @@ def neighbour(x, steps):
 
 # Verifies: SRV-002, SRV-004.
 def servo_axis():
-    group = Group("servo_axis", "servo_axis", SOURCE, {"cell": is_exact("an index"), "fraction_bits": BITS})
+    group = Group("servo_axis", SOURCE, {"cell": is_exact("an index"), "fraction_bits": BITS})
     draws = Draws(60)
     for number, count in enumerate((2, 3, 4, 5, 9, 17, 41)):
         knots = axis(draws, count, number % 2 == 0)
@@ -161,7 +161,7 @@ def refuse_axes(group):
     )
     for knots, kind in bad:
         flag = "axes_not_increasing" if len(knots) < 9 and len(knots) > 1 else "out_of_range"
-        group.refuse(kind, {**args, "knots": knots}, "out_of_range", [flag])
+        group.refuse(kind, args, flag, knots=knots)
     for text, kind in (
         ("0x3e8", "three digits"),
         ("0x3e8000000", "nine digits"),
@@ -170,13 +170,13 @@ def refuse_axes(group):
         ("", "no text"),
         (None, "null"),
     ):
-        group.refuse(f"coordinate_bits: {kind}", {**args, "coordinate_bits": text}, "bad_argument", ["wrong_type"])
-    group.refuse("coordinate_bits is missing", {"knots": [0.0, 0.5]}, "bad_argument", ["missing_argument"])
+        group.refuse(f"coordinate_bits: {kind}", args, "wrong_type", coordinate_bits=text)
+    group.refuse("coordinate_bits is missing", {"knots": [0.0, 0.5]}, "missing_argument")
 
 
 # Verifies: SRV-010, SRV-011, SRV-012, SRV-014.
 def servo_interpolate():
-    group = Group("servo_interpolate", "servo_interpolate", SOURCE, {"force_bits": BITS})
+    group = Group("servo_interpolate", SOURCE, {"force_bits": BITS})
     draws = Draws(61)
     for rows, columns in ((2, 2), (3, 4), (4, 3), (5, 5), (2, 7), (9, 5)):
         depths = [0.0] + [v for v in (single(0.0005 * (k + 1) + draws.decimal(0, 0.0002, 5)) for k in range(rows - 1))]
@@ -277,27 +277,21 @@ def refuse_tables(group):
     }
     refuse_common(group, args, [], ["depth_knots", "lateral_knots"])
     for key in ("depth_knots", "lateral_knots"):
-        group.refuse(f"{key} decreases", {**args, key: [0.5, 0.0]}, "out_of_range", ["axes_not_increasing"])
-        group.refuse(f"{key} has one knot", {**args, key: [0.5]}, "out_of_range", ["out_of_range"])
-        group.refuse(
-            f"{key} has more knots than the table", {**args, key: [0.0, 0.25, 0.5]}, "bad_argument", ["lengths_differ"]
-        )
+        group.refuse(f"{key} decreases", args, "axes_not_increasing", **{key: [0.5, 0.0]})
+        group.refuse(f"{key} has one knot", args, "out_of_range", **{key: [0.5]})
+        group.refuse(f"{key} has more knots than the table", args, "lengths_differ", **{key: [0.0, 0.25, 0.5]})
     for pattern, kind, flag in (
         ("0x7fc00000", "NaN", "not_finite"),
         ("0x7f800000", "+∞", "not_finite"),
         (bits(100.00001), "beyond 100 N", "out_of_range"),
         (bits(-1e30), "beyond −100 N", "out_of_range"),
     ):
-        group.refuse(f"a force is {kind}", {**args, "table_bits": [[one, one], [pattern, one]]}, "out_of_range", [flag])
-    group.refuse(
-        "a force is a number", {**args, "table_bits": [[one, one], [1.0, one]]}, "bad_argument", ["wrong_type"]
-    )
-    group.refuse("a row is shorter", {**args, "table_bits": [[one, one], [one]]}, "bad_argument", ["lengths_differ"])
-    group.refuse("a row too few", {**args, "table_bits": [[one, one]]}, "bad_argument", ["lengths_differ"])
+        group.refuse(f"a force is {kind}", args, flag, table_bits=[[one, one], [pattern, one]])
+    group.refuse("a force is a number", args, "wrong_type", table_bits=[[one, one], [1.0, one]])
+    group.refuse("a row is shorter", args, "lengths_differ", table_bits=[[one, one], [one]])
+    group.refuse("a row too few", args, "lengths_differ", table_bits=[[one, one]])
     for key in ("table_bits", "depth_bits", "lateral_bits"):
-        group.refuse(
-            f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"]
-        )
+        group.refuse(f"{key} is missing", without(args, key), "missing_argument")
 
 
 GROUPS = [servo_axis, servo_interpolate]

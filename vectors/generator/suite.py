@@ -7,7 +7,7 @@ from fractions import Fraction
 from mpmath import mpf
 
 from .flags import BUGS
-from .numbers import bits, exact, nearest, round_up, ulp
+from .numbers import UNIT, bits, exact, nearest, round_up, ulp
 
 VERSION = "1.0.0"
 
@@ -84,12 +84,15 @@ def differs(answer, expected, tolerance):
 class Group:
     """The cases of one op. `tolerance` maps each key of the answer to how far it may be off, and why."""
 
-    def __init__(self, name, op, source, tolerance):
-        self.name, self.op, self.source, self.tolerance = name, op, source, tolerance
-        self.cases = []
+    def __init__(self, name, source, tolerance, op=None):
+        self.name, self.source, self.tolerance, self.cases = name, source, tolerance, []
+        self.op = name if op is None else op
+
+    def next_id(self):
+        return f"{self.name}-{len(self.cases) + 1:03}"
 
     def _add(self, case):
-        self.cases.append({"id": f"{self.name}-{len(self.cases) + 1:03}", **case})
+        self.cases.append({"id": self.next_id(), **case})
 
     def accept(self, comment, args, ok, wrong=(), flags=(), tolerance=None):
         """A case with an answer. `wrong` are pairs of a flag and the answer of that bug; those that the bug leaves right,
@@ -116,23 +119,22 @@ class Group:
             case["wrong"] = shown
         self._add(case)
 
-    def refuse(self, comment, args, error, flags):
-        """A case that must be refused."""
-        self._add({"comment": comment, "args": args, "error": error, "flags": list(flags)})
+    def refuse(self, comment, args, flag, error=None, **changes):
+        """A case that must be refused: `args` with `changes`. Without `error`, the code is that of the flag."""
+        error = error or ("bad_argument" if flag in BAD_ARGUMENT else "out_of_range")
+        self._add({"comment": comment, "args": {**args, **changes}, "error": error, "flags": [flag]})
 
-    def refuse_line(self, comment, args_text, flags):
+    def refuse_line(self, comment, args_text):
         """A case that must be refused, whose arguments Python's JSON cannot write: NaN, which is no JSON, or 1e999, which is
         a number of JSON but none of f64."""
         error = "bad_json" if "NaN" in args_text or "Infinity" in args_text else "bad_argument"
-        name = f"{self.name}-{len(self.cases) + 1:03}"
-        line = f'{{"id":"{name}","op":"{self.op}","args":{args_text}}}'
-        self._add({"comment": comment, "line": line, "error": error, "flags": list(flags)})
+        line = f'{{"id":"ID","op":"{self.op}","args":{args_text}}}'
+        self.raw(comment, line, error, "not_finite")
 
-    def raw(self, comment, line, error, flags, lenient=None):
+    def raw(self, comment, line, error, flag, lenient=None):
         """A whole line that must be refused; `ID` in it stands for the case's id. `lenient` is the answer to what it means."""
-        name = f"{self.name}-{len(self.cases) + 1:03}"
-        meant = {"lenient": settle(lenient)} if lenient else {}
-        self._add({"comment": comment, "line": line.replace("ID", name), "error": error, **meant, "flags": list(flags)})
+        line, meant = line.replace("ID", self.next_id()), {"lenient": settle(lenient)} if lenient else {}
+        self._add({"comment": comment, "line": line, "error": error, **meant, "flags": [flag]})
 
     def text(self):
         """The file: a case a line, so that a change of one case is a change of one line."""
@@ -159,7 +161,22 @@ def dumps(value):
 UNKNOWN = "gama"
 """A name that no op has for an argument."""
 
-COMMON = ("not_finite", "wrong_type", "missing_argument", "unknown_argument")
+BAD_ARGUMENT = {"wrong_type", "missing_argument", "unknown_argument", "lengths_differ", "empty", "length_not_checked"}
+"""The flags of cases to be refused as `bad_argument`; others are `out_of_range`, if the case does not say otherwise."""
+
+
+def without(args, name):
+    return {key: value for key, value in args.items() if key != name}
+
+
+def at_limit(probability):
+    """The flag of what is no probability, or has an infinite quantile."""
+    return "infinite_answer" if probability in (0, 1) else "out_of_range"
+
+
+def case_by_case(keys, unit="1", bound=UNIT):
+    """The tolerances of keys for which every case states its own."""
+    return {key: absolute(bound, unit, "cases state their own") for key in keys}
 
 
 def refuse_common(group, args, numbers, lists=()):
@@ -167,24 +184,17 @@ def refuse_common(group, args, numbers, lists=()):
     arguments that are numbers or lists of numbers."""
     for key in numbers:
         for token in ("NaN", "Infinity", "-1e999"):
-            text = dumps({**args, key: "@"}).replace('"@"', token)
-            group.refuse_line(f"{key} is {token}", text, ["not_finite"])
+            group.refuse_line(f"{key} is {token}", dumps({**args, key: "@"}).replace('"@"', token))
             if len(numbers) > 3:
                 break
-        group.refuse(f"{key} is null", {**args, key: None}, "bad_argument", ["wrong_type"])
-        group.refuse(f"{key} is text", {**args, key: "1"}, "bad_argument", ["wrong_type"])
-        group.refuse(
-            f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"]
-        )
+        group.refuse(f"{key} is null", args, "wrong_type", **{key: None})
+        group.refuse(f"{key} is text", args, "wrong_type", **{key: "1"})
+        group.refuse(f"{key} is missing", without(args, key), "missing_argument")
     for key in lists:
         if not isinstance(args[key][0], list):
             text = dumps({**args, key: ["@", *args[key][1:]]}).replace('"@"', "NaN")
-            group.refuse_line(f"the first of {key} is NaN", text, ["not_finite"])
-        group.refuse(
-            f"the last of {key} is null", {**args, key: [*args[key][:-1], None]}, "bad_argument", ["wrong_type"]
-        )
-        group.refuse(f"{key} is a number", {**args, key: 1}, "bad_argument", ["wrong_type"])
-        group.refuse(
-            f"{key} is missing", {k: v for k, v in args.items() if k != key}, "bad_argument", ["missing_argument"]
-        )
-    group.refuse("an argument that the op does not have", {**args, UNKNOWN: 1}, "bad_argument", ["unknown_argument"])
+            group.refuse_line(f"the first of {key} is NaN", text)
+        group.refuse(f"the last of {key} is null", args, "wrong_type", **{key: [*args[key][:-1], None]})
+        group.refuse(f"{key} is a number", args, "wrong_type", **{key: 1})
+        group.refuse(f"{key} is missing", without(args, key), "missing_argument")
+    group.refuse("an argument that the op does not have", args, "unknown_argument", **{UNKNOWN: 1})

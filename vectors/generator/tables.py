@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from .numbers import UNIT, Draws, exact
-from .suite import Group, absolute, is_exact, refuse_common
+from .suite import Group, absolute, case_by_case, is_exact, refuse_common
 
 
 def cell(axis, position):
@@ -63,9 +63,7 @@ def poses(depths, laterals, draws):
 
 # Verifies: MAP-060, MAP-061.
 def interpolate():
-    group = Group(
-        "interpolate", "interpolate", "exact fractions", {"force_n": absolute(UNIT, "N", "cases state their own")}
-    )
+    group = Group("interpolate", "exact fractions", case_by_case(["force_n"], "N"))
     draws = Draws(30)
     for rows, columns, kind in (
         (2, 2, "2 × 2"),
@@ -115,41 +113,31 @@ def interpolate():
     }
     refuse_common(group, args, ["depth_m", "lateral_m"], ["depths_m", "laterals_m", "table_n"])
     for key in ("depths_m", "laterals_m"):
-        group.refuse(f"{key} decreases", {**args, key: [0.002, 0.001]}, "out_of_range", ["axes_not_increasing"])
-        group.refuse(f"{key} with two equal", {**args, key: [0.001, 0.001]}, "out_of_range", ["axes_not_increasing"])
-        group.refuse(
-            f"{key} is longer than the table", {**args, key: [0.001, 0.002, 0.003]}, "bad_argument", ["lengths_differ"]
-        )
-        group.refuse(f"{key} is empty", {**args, key: []}, "bad_argument", ["empty"])
+        group.refuse(f"{key} decreases", args, "axes_not_increasing", **{key: [0.002, 0.001]})
+        group.refuse(f"{key} with two equal", args, "axes_not_increasing", **{key: [0.001, 0.001]})
+        group.refuse(f"{key} is longer than the table", args, "lengths_differ", **{key: [0.001, 0.002, 0.003]})
+        group.refuse(f"{key} is empty", args, "empty", **{key: []})
     group.refuse(
         "the last knots are out of order",
-        {**args, "depths_m": [0.001, 0.003, 0.002], "table_n": [[1, 2], [3, 5], [4, 4]]},
-        "out_of_range",
-        ["axes_not_increasing"],
+        args,
+        "axes_not_increasing",
+        depths_m=[0.001, 0.003, 0.002],
+        table_n=[[1, 2], [3, 5], [4, 4]],
     )
-    group.refuse(
-        "a single depth", {**args, "depths_m": [0.001], "table_n": [[1.0, 2.0]]}, "bad_argument", ["out_of_range"]
-    )
-    group.refuse(
-        "a single position", {**args, "laterals_m": [0.0], "table_n": [[1.0], [2.0]]}, "bad_argument", ["out_of_range"]
-    )
-    group.refuse("a row is shorter", {**args, "table_n": [[1.0, 2.0], [3.0]]}, "bad_argument", ["lengths_differ"])
-    group.refuse("a row is missing", {**args, "table_n": [[1.0, 2.0]]}, "bad_argument", ["lengths_differ"])
-    group.refuse("the table is flat", {**args, "table_n": [1.0, 2.0, 3.0, 4.0]}, "bad_argument", ["wrong_type"])
-    group.refuse("a force is null", {**args, "table_n": [[1.0, None], [3.0, 5.0]]}, "bad_argument", ["wrong_type"])
+    for comment, changes in [
+        ("depth", {"depths_m": [0.001], "table_n": [[1.0, 2.0]]}),
+        ("position", {"laterals_m": [0.0], "table_n": [[1.0], [2.0]]}),
+    ]:
+        group.refuse(f"a single {comment}", args, "out_of_range", error="bad_argument", **changes)
+    group.refuse("a row is shorter", args, "lengths_differ", table_n=[[1.0, 2.0], [3.0]])
+    group.refuse("a row is missing", args, "lengths_differ", table_n=[[1.0, 2.0]])
+    group.refuse("the table is flat", args, "wrong_type", table_n=[1.0, 2.0, 3.0, 4.0])
+    group.refuse("a force is null", args, "wrong_type", table_n=[[1.0, None], [3.0, 5.0]])
     for token in ("NaN", "1e999"):
-        group.refuse_line(
-            f"a force is {token}",
-            '{"depths_m":[0.001,0.002],"laterals_m":[0,0.001],"table_n":[[1,2],[3,%s]],"depth_m":0.0015,"lateral_m":0.0005}'
-            % token,
-            ["not_finite"],
-        )
-    group.refuse(
-        "so far outside that the force is no f64",
-        {**args, "table_n": [[1e10, 2e10], [3e10, 5e10]], "depth_m": 1e200, "lateral_m": 1e200},
-        "overflow",
-        ["infinite_answer"],
-    )
+        text = f'"depths_m":[0.001,0.002],"laterals_m":[0,0.001],"table_n":[[1,2],[3,{token}]],"depth_m":0.0015,"lateral_m":0.0005'
+        group.refuse_line(f"a force is {token}", "{" + text + "}")
+    far = {"table_n": [[1e10, 2e10], [3e10, 5e10]], "depth_m": 1e200, "lateral_m": 1e200}
+    group.refuse("so far outside that the force is no f64", args, "infinite_answer", error="overflow", **far)
     return group
 
 

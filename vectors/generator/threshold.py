@@ -5,7 +5,7 @@ from mpmath import log, log10, mpf, sqrt
 from .decision import QUANTILE_ROUNDINGS
 from .normal import SOURCE, quantile
 from .numbers import UNIT, Draws, exact, real
-from .suite import Group, absolute, refuse_common
+from .suite import Group, absolute, at_limit, case_by_case, refuse_common
 
 
 def map_case(group, prior, kind):
@@ -17,13 +17,9 @@ def map_case(group, prior, kind):
         ("ratio_for_logarithm", {"eta": (1 - p) / p}),
     ]
     bound = UNIT * (3 + 3 * abs(exact(eta)))
-    group.accept(
-        f"MAP, {kind}: P1 = {prior!r}",
-        {"criterion": "map", "prior_h1": prior},
-        {"eta": eta},
-        wrong,
-        tolerance={"eta": absolute(bound, "1", "(3 + 3|η|) 2⁻⁵³: 1 − p, the ratio and the logarithm")},
-    )
+    limits = {"eta": absolute(bound, "1", "(3 + 3|η|) 2⁻⁵³: 1 − p, the ratio and the logarithm")}
+    args = {"criterion": "map", "prior_h1": prior}
+    group.accept(f"MAP, {kind}: P1 = {prior!r}", args, {"eta": eta}, wrong, tolerance=limits)
 
 
 def bayes_case(group, prior, c00, c01, c10, c11, kind):
@@ -31,71 +27,44 @@ def bayes_case(group, prior, c00, c01, c10, c11, kind):
     gain0, gain1 = real(c10) - real(c00), real(c01) - real(c11)
     eta = log((1 - p) * gain0 / (p * gain1))
     wrong = [
-        (
-            "costs_exchanged",
-            (
-                {"eta": log((1 - p) * (real(c01) - real(c00)) / (p * (real(c10) - real(c11))))}
-                if c01 > c00 and c10 > c11
-                else {}
-            ),
-        ),
         ("prior_inverted", {"eta": log(p * gain0 / ((1 - p) * gain1))}),
         ("log10", {"eta": log10((1 - p) * gain0 / (p * gain1))}),
+        ("sign_exchanged", {"eta": -eta}),
     ]
-    wrong.append(("sign_exchanged", {"eta": -eta}))
+    if c01 > c00 and c10 > c11:
+        exchanged = log((1 - p) * (real(c01) - real(c00)) / (p * (real(c10) - real(c11))))
+        wrong.insert(0, ("costs_exchanged", {"eta": exchanged}))
     if c10 > 0 and c01 > 0:
         wrong.append(("right_costs_ignored", {"eta": log((1 - p) * real(c10) / (p * real(c01)))}))
     bound = UNIT * (8 + 3 * abs(exact(eta)))
+    reason = "(8 + 3|η|) 2⁻⁵³: 3 differences, 2 products, the ratio and the logarithm"
     args = {"criterion": "bayes", "prior_h1": prior, "c00": c00, "c01": c01, "c10": c10, "c11": c11}
-    group.accept(
-        f"Bayes, {kind}",
-        args,
-        {"eta": eta},
-        wrong,
-        tolerance={
-            "eta": absolute(bound, "1", "(8 + 3|η|) 2⁻⁵³: 3 differences, 2 products, the ratio and the logarithm")
-        },
-    )
+    group.accept(f"Bayes, {kind}", args, {"eta": eta}, wrong, tolerance={"eta": absolute(bound, "1", reason)})
 
 
 def neyman_pearson(group, which, gamma, rate, kind):
-    g, q = real(gamma), quantile(rate)
-    if which == "miss":
-        eta, key = g * g / 2 + g * q, "max_miss"
-        wrong = [
-            ("rates_swapped", {"eta": -g * g / 2 - g * q}),
-            ("half_left_out", {"eta": g * g + g * q}),
-            ("quantile_sign", {"eta": g * g / 2 - g * q}),
-            ("gamma_squared", {"eta": g / 2 + sqrt(g) * q}),
-            ("variance_for_sd", {"eta": g * g / 2 + g * g * q}),
-        ]
-    else:
-        eta, key = -g * g / 2 - g * q, "max_false_alarm"
-        wrong = [
-            ("rates_swapped", {"eta": g * g / 2 + g * q}),
-            ("half_left_out", {"eta": -g * g - g * q}),
-            ("quantile_sign", {"eta": -g * g / 2 + g * q}),
-            ("gamma_squared", {"eta": -g / 2 - sqrt(g) * q}),
-            ("variance_for_sd", {"eta": -g * g / 2 - g * g * q}),
-        ]
-        if 1e-17 < rate and 1.0 - rate < 1.0:
-            wrong.append(("complement_rounded", {"eta": -g * g / 2 + g * quantile(1.0 - rate)}))
+    """η is γ²/2 + γ Φ⁻¹(β) for a rate β of misses, and −γ²/2 − γ Φ⁻¹(α) for a rate α of false alarms."""
+    g, q, sign, key = real(gamma), quantile(rate), 1 if which == "miss" else -1, f"max_{which}"
+    eta = sign * (g * g / 2 + g * q)
+    wrong = [
+        ("rates_swapped", {"eta": -eta}),
+        ("half_left_out", {"eta": sign * (g * g + g * q)}),
+        ("quantile_sign", {"eta": sign * (g * g / 2 - g * q)}),
+        ("gamma_squared", {"eta": sign * (g / 2 + sqrt(g) * q)}),
+        ("variance_for_sd", {"eta": sign * (g * g / 2 + g * g * q)}),
+    ]
+    if which == "false_alarm" and 1e-17 < rate and 1.0 - rate < 1.0:
+        wrong.append(("complement_rounded", {"eta": -g * g / 2 + g * quantile(1.0 - rate)}))
     bound = UNIT * (exact(g * g / 2) + (QUANTILE_ROUNDINGS + 2) * abs(exact(g * q)) + abs(exact(eta)))
-    tolerance = {
-        "eta": absolute(bound, "1", "2⁻⁵³ (γ²/2 + 10 |γ Φ⁻¹| + |η|): square, quantile within 4 ULP, product, sum")
-    }
-    group.accept(
-        f"Neyman–Pearson, {kind}: γ = {gamma!r}, rate {rate!r}",
-        {"criterion": f"neyman_pearson_{which}", "gamma": gamma, key: rate},
-        {"eta": eta},
-        wrong,
-        tolerance=tolerance,
-    )
+    reason = "2⁻⁵³ (γ²/2 + 10 |γ Φ⁻¹| + |η|): square, quantile within 4 ULP, product, sum"
+    comment = f"Neyman–Pearson, {kind}: γ = {gamma!r}, rate {rate!r}"
+    args = {"criterion": f"neyman_pearson_{which}", "gamma": gamma, key: rate}
+    group.accept(comment, args, {"eta": eta}, wrong, tolerance={"eta": absolute(bound, "1", reason)})
 
 
 # Verifies: DET-022, DET-025.
 def threshold():
-    group = Group("threshold", "threshold", SOURCE, {"eta": absolute(16 * UNIT, "1", "cases state their own")})
+    group = Group("threshold", SOURCE, case_by_case(["eta"], bound=16 * UNIT))
     draws = Draws(12)
 
     for prior in (
@@ -153,36 +122,27 @@ def threshold():
     refuse_common(group, bayes, ["prior_h1", "c00", "c01", "c10", "c11"])
     for criterion, key in (("neyman_pearson_miss", "max_miss"), ("neyman_pearson_false_alarm", "max_false_alarm")):
         refuse_common(group, {"criterion": criterion, "gamma": 2.0, key: 0.05}, ["gamma", key])
-        group.refuse("γ < 0", {"criterion": criterion, "gamma": -1, key: 0.05}, "out_of_range", ["out_of_range"])
+        group.refuse("γ < 0", {"criterion": criterion, "gamma": -1, key: 0.05}, "out_of_range")
         for rate in (0, 1, -0.5, 1.5):
-            group.refuse(
-                f"a rate of {rate!r}",
-                {"criterion": criterion, "gamma": 2.0, key: rate},
-                "out_of_range",
-                ["infinite_answer" if rate in (0, 1) else "out_of_range"],
-            )
+            group.refuse(f"a rate of {rate!r}", {"criterion": criterion, "gamma": 2.0, key: rate}, at_limit(rate))
     group.refuse(
         "Neyman–Pearson, false alarm: γ = 0",
         {"criterion": "neyman_pearson_false_alarm", "gamma": 0, "max_false_alarm": 0.05},
-        "out_of_range",
-        ["zero_gamma"],
+        "zero_gamma",
     )
     for prior in (0, 1, -0.1, 1.1):
-        flag = ["infinite_answer" if prior in (0, 1) else "out_of_range"]
-        group.refuse(f"MAP, prior {prior!r}", {"criterion": "map", "prior_h1": prior}, "out_of_range", flag)
-        group.refuse(f"Bayes, prior {prior!r}", {**bayes, "prior_h1": prior}, "out_of_range", flag)
+        group.refuse(f"MAP, prior {prior!r}", {"criterion": "map"}, at_limit(prior), prior_h1=prior)
+        group.refuse(f"Bayes, prior {prior!r}", bayes, at_limit(prior), prior_h1=prior)
     for comment, costs in (
         ("c10 = c00", {"c10": 0}),
         ("c10 < c00", {"c00": 2}),
         ("c01 = c11", {"c11": 1}),
         ("c01 < c11", {"c01": -1}),
     ):
-        group.refuse(f"Bayes, {comment}", {**bayes, **costs}, "out_of_range", ["infinite_answer"])
-    group.refuse("no criterion", {"prior_h1": 0.5}, "bad_argument", ["missing_argument"])
-    group.refuse(
-        "a criterion that does not exist", {"criterion": "minimax", "prior_h1": 0.5}, "out_of_range", ["out_of_range"]
-    )
-    group.refuse("a criterion that is a number", {"criterion": 1, "prior_h1": 0.5}, "bad_argument", ["wrong_type"])
+        group.refuse(f"Bayes, {comment}", bayes, "infinite_answer", **costs)
+    group.refuse("no criterion", {"prior_h1": 0.5}, "missing_argument")
+    group.refuse("a criterion that does not exist", {"criterion": "minimax", "prior_h1": 0.5}, "out_of_range")
+    group.refuse("a criterion that is a number", {"criterion": 1, "prior_h1": 0.5}, "wrong_type")
     return group
 
 
