@@ -280,13 +280,7 @@ def element_stiffness(a):
 ROUTES = {
     route.__name__: route
     for route in (
-        chi_square_tail,
-        f_tail,
-        student_tail,
-        theta_nuisances,
-        bank_posterior,
-        servo_axis,
-        servo_interpolate,
+        chi_square_tail, f_tail, student_tail, theta_nuisances, bank_posterior, servo_axis, servo_interpolate,
         element_stiffness,
     )
 }

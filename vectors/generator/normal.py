@@ -56,22 +56,14 @@ TAILS = [12.0, 15.0, 18.5, 20.0, 25.0, 30.0, 33.3, 35.0, 36.9, 37.0, 37.5, 37.6,
 
 # Verifies: DET-001, DET-005.
 def normal_cdf():
-    group = Group(
-        "normal_cdf",
-        SOURCE,
-        {"p": in_ulp(4, "DET-001: the argument is exact, so that only erfc's and the scaling's roundings remain")},
-    )
+    reason = "DET-001: the argument is exact, so that only erfc's and the scaling's roundings remain"
+    group = Group("normal_cdf", SOURCE, {"p": in_ulp(4, reason)})
     draws = Draws(1)
     arguments = [(x, "table") for x in CENTRE] + [(-x, "lower tail") for x in CENTRE[1:] + TAILS]
     arguments += [(x, "upper tail, near 1") for x in (7.0, 8.2, 8.3, 9.0, 38.0)]
     arguments += [(x, "tiny argument") for x in (5e-324, -5e-324, 2.2250738585072014e-308, 1e-20, -1e-17, 1e-8)]
-    arguments += [
-        (-38.5, "below the smallest number"),
-        (-39.9, "underflows"),
-        (-1e300, "underflows"),
-        (1e300, "is 1"),
-        (-40.0, "underflows"),
-    ]
+    arguments += [(-38.5, "below the smallest number"), (-39.9, "underflows"), (-1e300, "underflows"), (1e300, "is 1")]
+    arguments += [(-40.0, "underflows")]
     arguments += [(draws.between(-4, 4), "drawn, centre") for _ in range(25)]
     arguments += [(-draws.between(4, 37.5), "drawn, lower tail") for _ in range(35)]
     for x, kind in arguments:
@@ -83,8 +75,8 @@ def normal_cdf():
             ("density_for_cdf", {"p": density(a)}),
         ]
         if abs(x) < 1e10:
-            wrong.append(("argument_rounded", {"p": erfc(real(nearest(-a / sqrt(mpf(2))))) / 2}))
-            wrong.append(("tail_cancelled", {"p": 1.0 - nearest(cdf(-a))}))
+            rounded = erfc(real(nearest(-a / sqrt(mpf(2))))) / 2
+            wrong += [("argument_rounded", {"p": rounded}), ("tail_cancelled", {"p": 1.0 - nearest(cdf(-a))})]
         group.accept(f"{kind}: Φ({x!r})", {"x": x}, {"p": cdf(a)}, wrong)
     refuse_common(group, {"x": 1.0}, ["x"])
     group.refuse("a list", {"x": [1.0]}, "wrong_type")
@@ -93,37 +85,16 @@ def normal_cdf():
 
 
 PROBABILITIES = [
-    0.5,
-    0.25,
-    0.75,
-    0.05,
-    0.95,
-    0.01,
-    0.99,
-    0.001,
-    0.025,
-    0.975,
-    0.84,
-    0.1,
-    0.9,
-    1e-6,
-    1e-10,
-    1e-20,
-    1e-50,
-    1e-100,
-    1e-200,
-    1e-300,
+    0.5, 0.25, 0.75, 0.05, 0.95, 0.01, 0.99, 0.001, 0.025, 0.975, 0.84, 0.1, 0.9, 1e-6, 1e-10, 1e-20, 1e-50, 1e-100,
+    1e-200, 1e-300,
 ]
 
 
 def quantile_tolerance(p):
     """DET-001: 6 ULP below 10⁻³⁰⁶; at the median, the rounding of a number near 1 may be left."""
     if p == 0.5:
-        return {
-            "absolute": 2e-16,
-            "unit": "1",
-            "reason": "the exact 0 may come out as a rounding of the half: 2⁻⁵³ times 1/φ(0) is less",
-        }
+        reason = "the exact 0 may come out as a rounding of the half: 2⁻⁵³ times 1/φ(0) is less"
+        return {"absolute": 2e-16, "unit": "1", "reason": reason}
     return in_ulp(6, "DET-001, below 10⁻³⁰⁶") if p < 1e-306 else None
 
 
@@ -141,11 +112,8 @@ def quantile_arguments(draws, count):
 
 # Verifies: DET-001, DET-005.
 def normal_quantile():
-    group = Group(
-        "normal_quantile",
-        SOURCE,
-        {"x": in_ulp(4, "DET-001: the argument is exact; a correction by Newton's method leaves its last roundings")},
-    )
+    reason = "DET-001: the argument is exact; a correction by Newton's method leaves its last roundings"
+    group = Group("normal_quantile", SOURCE, {"x": in_ulp(4, reason)})
     for p, kind in quantile_arguments(Draws(2), 38):
         x = quantile(p)
         wrong = [
@@ -153,14 +121,10 @@ def normal_quantile():
             ("root_two_missing", {"x": x / sqrt(mpf(2))}),
             ("root_two_twice", {"x": x * sqrt(mpf(2))}),
         ]
-        if 1e-17 < p < 0.4:
-            rounded = 1.0 - p
-            if rounded < 1.0:
-                wrong.append(("complement_rounded", {"x": -quantile(rounded)}))
-        tolerance = quantile_tolerance(p)
-        group.accept(
-            f"{kind}: Φ⁻¹({p!r})", {"p": p}, {"x": x}, wrong, tolerance={"x": tolerance} if tolerance else None
-        )
+        if 1e-17 < p < 0.4 and 1.0 - p < 1.0:
+            wrong.append(("complement_rounded", {"x": -quantile(1.0 - p)}))
+        own = quantile_tolerance(p)
+        group.accept(f"{kind}: Φ⁻¹({p!r})", {"p": p}, {"x": x}, wrong, tolerance={"x": own} if own else None)
     refuse_common(group, {"p": 0.5}, ["p"])
     for p in (0, 1, -0.0, -0.1, 1.0000000000000002, 2, -5e-324):
         group.refuse(f"p = {p!r}", {"p": p}, at_limit(p))
@@ -169,33 +133,12 @@ def normal_quantile():
 
 # Verifies: DET-027.
 def two_afc():
-    group = Group(
-        "two_afc",
-        SOURCE,
-        {"p_correct": in_ulp(8, "Φ's 4, and at most 0.3 · 3 · 2⁻⁵³ for the quotient: (φ(a)/Φ(a))·a < 0.3 for a ≥ 0")},
-    )
+    reason = "Φ's 4, and at most 0.3 · 3 · 2⁻⁵³ for the quotient: (φ(a)/Φ(a))·a < 0.3 for a ≥ 0"
+    group = Group("two_afc", SOURCE, {"p_correct": in_ulp(8, reason)})
     draws = Draws(3)
     gammas = [
-        0.0,
-        1.0,
-        1.406,
-        1.426,
-        1.45,
-        2.0,
-        3.0,
-        3.29,
-        5.0,
-        8.0,
-        11.0,
-        12.0,
-        40.0,
-        1e5,
-        1e300,
-        5e-324,
-        1e-300,
-        1e-16,
-        1e-8,
-        1e-3,
+        0.0, 1.0, 1.406, 1.426, 1.45, 2.0, 3.0, 3.29, 5.0, 8.0, 11.0, 12.0, 40.0, 1e5, 1e300, 5e-324, 1e-300, 1e-16,
+        1e-8, 1e-3,
     ]
     gammas += [draws.between(0, 6) for _ in range(30)] + [draws.decimal(0, 12, 2) for _ in range(15)]
     for gamma in gammas:
@@ -217,17 +160,11 @@ def two_afc():
 
 # Verifies: DET-027.
 def gamma_from_two_afc():
-    group = Group(
-        "gamma_from_two_afc",
-        SOURCE,
-        {"gamma": in_ulp(8, "Φ⁻¹'s 4 (6 below 10⁻³⁰⁶), √2 and the product")},
-    )
+    reason = "Φ⁻¹'s 4 (6 below 10⁻³⁰⁶), √2 and the product"
+    group = Group("gamma_from_two_afc", SOURCE, {"gamma": in_ulp(8, reason)})
     draws = Draws(4)
-    values = [
-        (0.84, "the paper's 84 %: not 1.45"),
-        (nearest(Fraction(253, 300)), "Table 1, FEM data, 6.6 mm"),
-    ] + quantile_arguments(draws, 17)
-    for p, kind in values:
+    values = [(0.84, "the paper's 84 %: not 1.45"), (nearest(Fraction(253, 300)), "Table 1, FEM data, 6.6 mm")]
+    for p, kind in values + quantile_arguments(draws, 17):
         x = quantile(p)
         root = sqrt(mpf(2))
         wrong = [

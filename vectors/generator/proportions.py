@@ -43,10 +43,7 @@ def limit(k, n, tail):
         p = mpf(k) / (n + 1)
     for _ in range(200):
         value = upper_tail(k, n, p)
-        if value > tail:
-            high = p
-        else:
-            low = p
+        low, high = (low, p) if value > tail else (p, high)
         slope = k * mass(k, n, p) / p
         step = value / slope * log(value / tail)
         new = p - step
@@ -80,17 +77,9 @@ def wald(k, n, z):
 def corrected(k, n, z):
     """Newcombe's continuity correction of Wilson's interval."""
     p, z2 = mpf(k) / n, z * z
-    low = (
-        (2 * n * p + z2 - 1 - z * sqrt(z2 - 2 - mpf(1) / n + 4 * p * (n * (1 - p) + 1))) / (2 * (n + z2))
-        if k
-        else mpf(0)
-    )
-    high = (
-        (2 * n * p + z2 + 1 + z * sqrt(z2 + 2 - mpf(1) / n + 4 * p * (n * (1 - p) - 1))) / (2 * (n + z2))
-        if k < n
-        else mpf(1)
-    )
-    return low, high
+    root = lambda sign: sqrt(z2 + sign * 2 - mpf(1) / n + 4 * p * (n * (1 - p) - sign))
+    end = lambda sign: (2 * n * p + z2 + sign + sign * z * root(sign)) / (2 * (n + z2))
+    return end(-1) if k else mpf(0), end(1) if k < n else mpf(1)
 
 
 def ends(pair):
@@ -120,28 +109,11 @@ def proportion_interval():
     group = Group("proportion_interval", SOURCE + "; tails summed term by term", case_by_case(["lower", "upper"]))
     draws = Draws(50)
     counts = [
-        (253, 300),
-        (288, 300),
-        (0, 30),
-        (30, 30),
-        (1, 30),
-        (29, 30),
-        (15, 30),
-        (0, 1),
-        (1, 1),
-        (1, 2),
-        (0, 1000000),
-        (1000000, 1000000),
-        (1, 1000000),
-        (500000, 1000000),
-        (999999, 1000000),
-        (50, 100000),
+        (253, 300), (288, 300), (0, 30), (30, 30), (1, 30), (29, 30), (15, 30), (0, 1), (1, 1), (1, 2), (0, 1000000),
+        (1000000, 1000000), (1, 1000000), (500000, 1000000), (999999, 1000000), (50, 100000),
     ]
-    cases = (
-        [(k, n, 0.95) for k, n in counts]
-        + [(25, 30, c) for c in (0.5, 0.9, 0.99, 0.999999, 1e-6)]
-        + [(0, 30, 1e-6), (30, 30, 0.999999), (3, 10, 0.9999999999)]
-    )
+    cases = [(k, n, 0.95) for k, n in counts] + [(25, 30, c) for c in (0.5, 0.9, 0.99, 0.999999, 1e-6)]
+    cases += [(0, 30, 1e-6), (30, 30, 0.999999), (3, 10, 0.9999999999)]
     while len(cases) < 60:
         n = draws.integer(2, 400)
         cases.append((draws.integer(0, n), n, draws.choice([0.8, 0.9, 0.95, 0.99])))
@@ -160,19 +132,10 @@ def proportion_interval():
         ]
         if 0 < k < n:
             wrong.append(("clopper_pearson_off_by_one", ends((exact_pair[0], 1 - limit(n - k + 1, n, tail)))))
-        limits = {
-            key: absolute(
-                bound, "1", "10⁻¹² of the tail (DET-120) over its slope in p, and 8 roundings; 0 and 1 are exact"
-            )
-            for key, bound in zip(("lower", "upper"), bounds)
-        }
-        group.accept(
-            "Clopper–Pearson: " + comment,
-            {**args, "method": "clopper_pearson"},
-            ends(exact_pair),
-            wrong,
-            tolerance=limits,
-        )
+        reason = "10⁻¹² of the tail (DET-120) over its slope in p, and 8 roundings; 0 and 1 are exact"
+        limits = ends([absolute(bound, "1", reason) for bound in bounds])
+        args["method"] = "clopper_pearson"
+        group.accept("Clopper–Pearson: " + comment, args, ends(exact_pair), wrong, tolerance=limits)
 
         wrong = shared + [
             ("one_sided_interval", ends(wilson(k, n, -quantile(2 * tail)))),
@@ -180,23 +143,17 @@ def proportion_interval():
         ]
         if n <= 1000 and z * z > 3:
             wrong.append(("continuity_corrected", ends(corrected(k, n, z))))
-        n_, z2 = mpf(n), z * z
-        size = (mpf(k) / n + z2 / (2 * n_) + z * sqrt(mpf(k) / n * (1 - mpf(k) / n) / n_ + z2 / (4 * n_ * n_))) / (
-            1 + z2 / n_
-        )
+        n_, p, z2 = mpf(n), mpf(k) / n, z * z
+        size = (p + z2 / (2 * n_) + z * sqrt(p * (1 - p) / n_ + z2 / (4 * n_ * n_))) / (1 + z2 / n_)
         # Below ½, 1 − confidence is rounded, and z moves by that over its density.
         rounded = exact(tail / density(z)) * UNIT if confidence < 0.5 else 0
         bound = 24 * UNIT * exact(size) + 2 * rounded * exact(sqrt(mpf(k) * (n - k) / n_**3) + z / n_)
-        wilson_limits = {
-            key: absolute(
-                bound,
-                "1",
-                "24 · 2⁻⁵³ of the sum of the terms' magnitudes: z within 4 ULP enters squared, some 8 operations; "
-                "for a confidence below ½ also the rounding of 1 − confidence",
-            )
-            for key in ("lower", "upper")
-        }
-        group.accept("Wilson: " + comment, {**args, "method": "wilson"}, ends(score), wrong, tolerance=wilson_limits)
+        reason = (
+            "24 · 2⁻⁵³ of the sum of the terms' magnitudes: z within 4 ULP enters squared, some 8 operations; "
+            "for a confidence below ½ also the rounding of 1 − confidence"
+        )
+        limits = ends([absolute(bound, "1", reason)] * 2)
+        group.accept("Wilson: " + comment, {**args, "method": "wilson"}, ends(score), wrong, tolerance=limits)
     args = {"successes": 25, "trials": 30, "confidence": 0.95, "method": "wilson"}
     refuse_common(group, args, ["successes", "trials", "confidence"])
     for method in ("wilson", "clopper_pearson"):
@@ -214,40 +171,16 @@ def proportion_interval():
 
 TABLE_1 = {
     "direct contact": [
-        [30, 28, 27, 27],
-        [30, 30, 28, 23],
-        [30, 29, 20, 21],
-        [28, 25, 18, 16],
-        [27, 26, 23, 19],
-        [30, 30, 27, 17],
-        [23, 19, 18, 13],
-        [30, 30, 30, 19],
-        [30, 30, 29, 23],
-        [30, 28, 27, 22],
+        [30, 28, 27, 27], [30, 30, 28, 23], [30, 29, 20, 21], [28, 25, 18, 16], [27, 26, 23, 19], [30, 30, 27, 17],
+        [23, 19, 18, 13], [30, 30, 30, 19], [30, 30, 29, 23], [30, 28, 27, 22],
     ],
     "FEM data": [
-        [30, 30, 30, 21],
-        [30, 30, 29, 25],
-        [30, 29, 28, 16],
-        [28, 29, 24, 20],
-        [29, 25, 20, 17],
-        [29, 29, 27, 15],
-        [27, 23, 18, 15],
-        [30, 30, 27, 20],
-        [29, 24, 21, 16],
-        [30, 28, 29, 24],
+        [30, 30, 30, 21], [30, 30, 29, 25], [30, 29, 28, 16], [28, 29, 24, 20], [29, 25, 20, 17], [29, 29, 27, 15],
+        [27, 23, 18, 15], [30, 30, 27, 20], [29, 24, 21, 16], [30, 28, 29, 24],
     ],
     "measured data": [
-        [30, 22, 24, 18],
-        [30, 28, 28, 21],
-        [28, 27, 19, 15],
-        [25, 19, 19, 21],
-        [29, 24, 23, 18],
-        [26, 21, 23, 17],
-        [17, 15, 19, 18],
-        [29, 26, 26, 13],
-        [26, 21, 22, 15],
-        [28, 25, 26, 18],
+        [30, 22, 24, 18], [30, 28, 28, 21], [28, 27, 19, 15], [25, 19, 19, 21], [29, 24, 23, 18], [26, 21, 23, 17],
+        [17, 15, 19, 18], [29, 26, 26, 13], [26, 21, 22, 15], [28, 25, 26, 18],
     ],
 }
 
@@ -285,12 +218,9 @@ def count_analysis():
     group.refuse("a row is shorter", args, "lengths_differ", correct=[[20, 15], [22]])
     group.refuse("no subjects", args, "empty", correct=[])
     group.refuse("no conditions", args, "empty", correct=[[], []])
-    group.refuse(
-        "all right: γ would be infinite", args, "infinite_answer", error="overflow", correct=[[30, 15], [30, 17]]
-    )
-    group.refuse(
-        "all wrong: γ would be infinite", args, "infinite_answer", error="overflow", correct=[[0, 15], [0, 17]]
-    )
+    for kind, k in (("right", 30), ("wrong", 0)):
+        comment, correct = f"all {kind}: γ would be infinite", [[k, 15], [k, 17]]
+        group.refuse(comment, args, "infinite_answer", error="overflow", correct=correct)
     return group
 
 
@@ -318,12 +248,11 @@ def analysis_case(group, kind, counts, trials):
     )
     # Where all are alike, k − tp is a rounding error and its square no more than that.
     chi2_bound += subjects * (4 * UNIT * trials) ** 2
-    complement = [x * (1 - p) for x, p in zip(chi2, rates)]
     wrong = [
         ("df_not_reduced", {"df": subjects}),
         ("root_two_missing", {"gamma": [g / sqrt(mpf(2)) for g in gamma]}),
         ("gamma_squared", {"gamma": [g * g for g in gamma]}),
-        ("chi2_one_cell", {"chi2": complement}),
+        ("chi2_one_cell", {"chi2": [x * (1 - p) for x, p in zip(chi2, rates)]}),
         ("weight_missing", {"chi2": [x / trials for x in chi2]}),
         ("rates_swapped", {"gamma": [-g for g in gamma]}),
     ]
@@ -335,13 +264,8 @@ def analysis_case(group, kind, counts, trials):
         "gamma": absolute(gamma_bound, "1", "√2 (2⁻⁵³ p/φ for the rate's rounding, 12 · 2⁻⁵³ |Φ⁻¹| for the rest)"),
         "chi2": absolute(chi2_bound, "1", "2⁻⁵³ (8 Σ |k − tp| tp/(tp(1−p)) + (n + 12) χ²): the difference cancels"),
     }
-    group.accept(
-        kind,
-        {"correct": [list(row) for row in counts], "trials": trials},
-        ok,
-        wrong,
-        tolerance=limits,
-    )
+    args = {"correct": [list(row) for row in counts], "trials": trials}
+    group.accept(kind, args, ok, wrong, tolerance=limits)
 
 
 def slope(p):

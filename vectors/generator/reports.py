@@ -8,29 +8,14 @@ from .suite import UNKNOWN, Group, is_exact, without
 
 SOURCE = "the byte layout of spec/hid.md, packed by hand"
 
+SETTINGS = """
+version position_unit_nm force_unit_un largest_force_mn period_us watchdog_ms damping_mn_s_per_m friction_mn
+"""
+FORCES, SEQUENCES = [("lateral", "i16"), ("normal", "i16")], [("sequence", "u16"), ("force_sequence", "u16")]
 LAYOUT = {
-    1: [
-        ("lateral", "i16"),
-        ("normal", "i16"),
-        ("buttons", "u8"),
-        ("status", "u8"),
-        ("sequence", "u16"),
-        ("force_sequence", "u16"),
-    ],
-    2: [("lateral", "i16"), ("normal", "i16"), ("sequence", "u16"), ("flags", "u8")],
-    3: [
-        (name, "u16")
-        for name in (
-            "version",
-            "position_unit_nm",
-            "force_unit_un",
-            "largest_force_mn",
-            "period_us",
-            "watchdog_ms",
-            "damping_mn_s_per_m",
-            "friction_mn",
-        )
-    ],
+    1: [*FORCES, ("buttons", "u8"), ("status", "u8"), *SEQUENCES],
+    2: [*FORCES, ("sequence", "u16"), ("flags", "u8")],
+    3: [(name, "u16") for name in SETTINGS.split()],
     4: [("control", "u8")],
 }
 RANGES = {"i16": (-32768, 32767), "u16": (0, 65535), "u8": (0, 255)}
@@ -105,9 +90,8 @@ def report_decode():
         fields = usable(report, fields)
         wrong = [(how, misread(report, fields, how)) for how in ("big_endian", "sign_ignored", "fields_exchanged")]
         group.accept(f"report {report}, {kind}", {"bytes": encode(report, fields)}, {"report": report, **fields}, wrong)
-    sample = {
-        report: encode(report, usable(report, {name: 1 for name, _ in layout})) for report, layout in LAYOUT.items()
-    }
+    ones = {report: usable(report, {name: 1 for name, _ in layout}) for report, layout in LAYOUT.items()}
+    sample = {report: encode(report, fields) for report, fields in ones.items()}
     for report, text in sample.items():
         group.refuse(f"report {report}, a byte short", {"bytes": text[:-2]}, "length_not_checked")
         group.refuse(f"report {report}, a byte more", {"bytes": text + "00"}, "length_not_checked")

@@ -11,6 +11,7 @@ import struct
 import sys
 from decimal import Decimal
 from fractions import Fraction
+from inspect import isfunction
 
 from special import cdf, quantile, tail_inverse
 
@@ -88,6 +89,10 @@ def counts(value, name):
     return [whole(item, name) for item in value]
 
 
+def count_rows(value, name):
+    return rows(value, name, counts)
+
+
 def text(value, name):
     if not isinstance(value, str):
         raise Refused("bad_argument", f"{name} is no text")
@@ -146,23 +151,23 @@ def capabilities():
     return {"version": "toy 1", "ops": sorted(OPS)}
 
 
-def normal_cdf(x):
+def normal_cdf(x: number):
     return {"p": cdf(decimal(x))}
 
 
-def normal_quantile(p):
+def normal_quantile(p: probability):
     return {"x": quantile(decimal(p))}
 
 
-def two_afc(gamma):
+def two_afc(gamma: not_negative):
     return {"p_correct": cdf(decimal(gamma) / ROOT_2)}
 
 
-def gamma_from_two_afc(p_correct):
+def gamma_from_two_afc(p_correct: probability):
     return {"gamma": ROOT_2 * quantile(decimal(p_correct))}
 
 
-def matched_filter(template_x, template_y, noise_sd_x, noise_sd_y):
+def matched_filter(template_x: series, template_y: series, noise_sd_x: positive, noise_sd_y: positive):
     same_length(template_x, template_y)
     weight = Fraction(1, len(template_x))
     energy = [dot(d, d) for d in (template_x, template_y)]
@@ -187,7 +192,10 @@ def theta_of(residual, template, deviation):
     return (dot(residual, residual) - dot(rest, rest)) / (2 * deviation**2)
 
 
-def theta(observed_x, observed_y, f0_x, f0_y, f1_x, f1_y, noise_sd_x, noise_sd_y):
+def theta(
+    observed_x: series, observed_y: series, f0_x: series, f0_y: series, f1_x: series, f1_y: series,
+    noise_sd_x: positive, noise_sd_y: positive,
+):
     same_length(observed_x, observed_y, f0_x, f0_y, f1_x, f1_y)
     answer, total, gamma2 = {}, Fraction(0), Fraction(0)
     for name, p, f0, f1, s in (
@@ -219,7 +227,7 @@ def solve(matrix, right):
     return x
 
 
-def theta_colored(residual, template, covariance):
+def theta_colored(residual: series, template: series, covariance: rows):
     same_length(residual, template, covariance, covariance[0])
     n = len(residual)
     if n % 2:
@@ -233,7 +241,10 @@ def theta_colored(residual, template, covariance):
     return {"theta": (square(residual) - square(rest)) / 2, "gamma": root(square(template))}
 
 
-def scan(residual_x, residual_y, template_x, template_y, noise_sd_x, noise_sd_y):
+def scan(
+    residual_x: series, residual_y: series, template_x: series, template_y: series, noise_sd_x: positive,
+    noise_sd_y: positive,
+):
     same_length(residual_x, residual_y)
     same_length(template_x, template_y)
     m = len(template_x)
@@ -256,36 +267,36 @@ def logarithm(ratio):
     return decimal(ratio).ln()
 
 
-def threshold_map(prior_h1):
+def threshold_map(prior_h1: probability):
     return {"eta": logarithm(odds(prior_h1))}
 
 
-def threshold_bayes(prior_h1, c00, c01, c10, c11):
+def threshold_bayes(prior_h1: probability, c00: number, c01: number, c10: number, c11: number):
     if c10 <= c00 or c01 <= c11:
         raise Refused("out_of_range", "a wrong decision must cost more than a right one")
     return {"eta": logarithm(odds(prior_h1) * (c10 - c00) / (c01 - c11))}
 
 
-def threshold_neyman_pearson_miss(gamma, max_miss):
+def threshold_neyman_pearson_miss(gamma: not_negative, max_miss: probability):
     g = decimal(gamma)
     return {"eta": g * g / 2 + g * quantile(decimal(max_miss))}
 
 
-def threshold_neyman_pearson_false_alarm(gamma, max_false_alarm):
+def threshold_neyman_pearson_false_alarm(gamma: not_negative, max_false_alarm: probability):
     if gamma == 0:
         raise Refused("out_of_range", "γ = 0 keeps no promise about false alarms")
     g = decimal(gamma)
     return {"eta": -g * g / 2 - g * quantile(decimal(max_false_alarm))}
 
 
-def error_rates(gamma, eta):
+def error_rates(gamma: not_negative, eta: number):
     if gamma == 0:
         return {"false_alarm": Fraction(eta <= 0), "miss": Fraction(eta > 0)}
     g, e = decimal(gamma), decimal(eta)
     return {"false_alarm": cdf(-(e + g * g / 2) / g), "miss": cdf((e - g * g / 2) / g)}
 
 
-def roc(gamma, false_alarm):
+def roc(gamma: not_negative, false_alarm: series):
     if not all(0 <= p <= 1 for p in false_alarm):
         raise Refused("out_of_range", "false_alarm is not between 0 and 1")
     g = decimal(gamma)
@@ -297,11 +308,11 @@ def needed(max_false_alarm, max_miss):
     return max(Decimal(0), -quantile(decimal(max_false_alarm)) - quantile(decimal(max_miss)))
 
 
-def required_gamma(max_false_alarm, max_miss):
+def required_gamma(max_false_alarm: probability, max_miss: probability):
     return {"gamma": needed(max_false_alarm, max_miss)}
 
 
-def noise_budget(signal_n, max_false_alarm, max_miss, sources_n):
+def noise_budget(signal_n: number, max_false_alarm: probability, max_miss: probability, sources_n: series):
     gamma = needed(max_false_alarm, max_miss)
     if gamma == 0:
         raise Refused("out_of_range", "γ = 0 allows any noise")
@@ -328,7 +339,7 @@ def clopper_pearson(k, n, tail):
     return lower, Decimal(1) if k == n else 1 - tail_inverse(n - k, n, tail)
 
 
-def proportion_interval(successes, trials, confidence, method):
+def proportion_interval(successes: whole, trials: whole, confidence: probability, method: text):
     if trials < 1 or not 0 <= successes <= trials:
         raise Refused("out_of_range", "0 ≤ successes ≤ trials, and at least one trial")
     if method == "wilson":
@@ -348,7 +359,7 @@ def weight(knots, k, position):
     return (position - knots[k]) / (knots[k + 1] - knots[k])
 
 
-def interpolate(depths_m, laterals_m, table_n, depth_m, lateral_m):
+def interpolate(depths_m: axis, laterals_m: axis, table_n: rows, depth_m: number, lateral_m: number):
     if len(table_n) != len(depths_m) or len(table_n[0]) != len(laterals_m):
         raise Refused("bad_argument", "the table has not a row for each depth and a column for each position")
     i, j = cell(depths_m, depth_m), cell(laterals_m, lateral_m)
@@ -361,7 +372,7 @@ def degrees_of_freedom(subjects):
     return subjects - 1
 
 
-def count_analysis(correct, trials):
+def count_analysis(correct: count_rows, trials: whole):
     if trials < 1 or not all(0 <= k <= trials for row in correct for k in row):
         raise Refused("out_of_range", "0 ≤ correct ≤ trials, and at least one trial")
     subjects, columns = len(correct), list(zip(*correct))
@@ -382,23 +393,15 @@ def count_analysis(correct, trials):
 
 FORMATS = {1: "<Bhh2B2H", 2: "<BhhHB", 3: "<B8H", 4: "<BB"}
 FIELDS = {
-    1: ("lateral", "normal", "buttons", "status", "sequence", "force_sequence"),
-    2: ("lateral", "normal", "sequence", "flags"),
-    3: (
-        "version",
-        "position_unit_nm",
-        "force_unit_un",
-        "largest_force_mn",
-        "period_us",
-        "watchdog_ms",
-        "damping_mn_s_per_m",
-        "friction_mn",
-    ),
-    4: ("control",),
+    1: "lateral normal buttons status sequence force_sequence",
+    2: "lateral normal sequence flags",
+    3: "version position_unit_nm force_unit_un largest_force_mn period_us watchdog_ms damping_mn_s_per_m friction_mn",
+    4: "control",
 }
+FIELDS = {report: names.split() for report, names in FIELDS.items()}
 
 
-def report_decode(bytes):
+def report_decode(bytes: text):
     if not all(c in "0123456789abcdef" for c in bytes) or len(bytes) % 2 or not bytes:
         raise Refused("bad_argument", "no bytes in hexadecimal")
     data = bytearray.fromhex(bytes)
@@ -424,33 +427,11 @@ def report_encode(report, **fields):
         raise Refused("out_of_range", str(error))
 
 
-NOISE = {"noise_sd_x": positive, "noise_sd_y": positive}
-OPS = {
-    "capabilities": {},
-    "normal_cdf": {"x": number},
-    "normal_quantile": {"p": probability},
-    "two_afc": {"gamma": not_negative},
-    "gamma_from_two_afc": {"p_correct": probability},
-    "matched_filter": {"template_x": series, "template_y": series, **NOISE},
-    "theta": {**{f"{name}_{c}": series for name in ("observed", "f0", "f1") for c in "xy"}, **NOISE},
-    "theta_colored": {"residual": series, "template": series, "covariance": rows},
-    "scan": {**{f"{name}_{c}": series for name in ("residual", "template") for c in "xy"}, **NOISE},
-    "threshold_map": {"prior_h1": probability},
-    "threshold_bayes": {"prior_h1": probability, "c00": number, "c01": number, "c10": number, "c11": number},
-    "threshold_neyman_pearson_miss": {"gamma": not_negative, "max_miss": probability},
-    "threshold_neyman_pearson_false_alarm": {"gamma": not_negative, "max_false_alarm": probability},
-    "error_rates": {"gamma": not_negative, "eta": number},
-    "roc": {"gamma": not_negative, "false_alarm": series},
-    "required_gamma": {"max_false_alarm": probability, "max_miss": probability},
-    "noise_budget": {"signal_n": number, "max_false_alarm": probability, "max_miss": probability, "sources_n": series},
-    "proportion_interval": {"successes": whole, "trials": whole, "confidence": probability, "method": text},
-    "interpolate": {"depths_m": axis, "laterals_m": axis, "table_n": rows, "depth_m": number, "lateral_m": number},
-    "count_analysis": {"correct": lambda v, n: rows(v, n, counts), "trials": whole},
-    "report_decode": {"bytes": text},
-}
-THRESHOLDS = [op for op in OPS if op.startswith("threshold_")]
-ARGUMENTS = dict(OPS)
-OPS = sorted(set(OPS) - set(THRESHOLDS) | {"threshold", "report_encode"})
+# An op is a function. Each of its arguments is annotated with the function that reads it.
+ARGUMENTS = {name: op.__annotations__ for name, op in dict(globals()).items() if isfunction(op) and op.__annotations__}
+ARGUMENTS["capabilities"] = {}
+THRESHOLDS = {op for op in ARGUMENTS if op.startswith("threshold_")}
+OPS = sorted(set(ARGUMENTS) - THRESHOLDS | {"threshold", "report_encode"})
 
 
 def compute(op, args):

@@ -4,6 +4,7 @@ tells what is wrong; without a name, they are listed."""
 import sys
 from decimal import Decimal
 from fractions import Fraction
+from inspect import isfunction
 
 import right
 
@@ -185,41 +186,9 @@ def chi2_one_cell():
     changed("count_analysis", lambda ok, _: {**ok, "chi2": [x * (1 - p) for x, p in zip(ok["chi2"], ok["rate"])]})
 
 
-BUGS = {
-    bug.__name__: bug
-    for bug in (
-        rates_swapped,
-        hits_for_misses,
-        variance_for_sd,
-        half_left_out,
-        time_not_reversed,
-        weight_missing,
-        gamma_squared,
-        channels_exchanged,
-        argmax_off_by_one,
-        last_of_equals,
-        correlation_ignored,
-        prior_inverted,
-        log10,
-        costs_exchanged,
-        root_two_missing,
-        one_sided_interval,
-        wald_interval,
-        wilson_for_clopper_pearson,
-        noise_added_linearly,
-        clamped_outside,
-        transposed,
-        df_not_reduced,
-        big_endian,
-        sign_ignored,
-        axes_not_increasing,
-        not_symmetric,
-        sign_exchanged,
-        total_for_remaining,
-        shift_reversed,
-        chi2_one_cell,
-    )
-}
+def bugs_of(names):
+    """The bugs among the names of a module: its functions without parameters."""
+    return {name: bug for name, bug in names.items() if isfunction(bug) and not bug.__code__.co_argcount}
 
 
 def main(name, bugs):
@@ -230,4 +199,4 @@ def main(name, bugs):
 
 
 if __name__ == "__main__":
-    main("wrong.py", BUGS)
+    main("wrong.py", bugs_of(globals()))
