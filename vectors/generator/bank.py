@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from mpmath import exp, expm1, fdot, fsum, log, lu_solve, matrix, mpf, workdps
 
 from .numbers import Draws, real
-from .nuisances import U, Space, Statistic, errors, length, reals, shapes
-from .series import noise, signal
+from .nuisances import U, Space, Statistic, errors, length, reals, record, shapes
+from .series import signal
 from .suite import Group, absolute, case_by_case, is_exact, refuse_common, relative, without
 
 SOURCE = "least squares by normal equations, mpmath 1.3.0 at 250 digits"
@@ -209,14 +209,6 @@ def drawn_templates(draws, count, number, size):
     return [sum(signal(count, draws, round(size * (1 + k / 4), 6)), []) for k in range(number)]
 
 
-def drawn_record(draws, template, nuisances, amplitude, present):
-    z = noise(len(template), draws, 1)
-    for nuisance in nuisances:
-        size = draws.choice([-1, 1]) * amplitude / max(map(abs, nuisance))
-        z = [a + size * b for a, b in zip(z, nuisance)]
-    return [round(a + present * b, 5) for a, b in zip(z, template)]
-
-
 # Verifies: ORA-020, NUI-007, DET-021, DET-070.
 def bank_posterior():
     keys = [*REASONS, "hypothesis"]
@@ -231,21 +223,21 @@ def bank_posterior():
 
 
 def by_hand(group):
-    record, one, two = [4.0, 2.0, 3.0, 3.5], [1.0, -1.0, 1.0, -1.0], [1.0, 1.0, -1.0, -1.0]
+    given, one, two = [4.0, 2.0, 3.0, 3.5], [1.0, -1.0, 1.0, -1.0], [1.0, 1.0, -1.0, -1.0]
     offset, half = [1.0] * 4, [0.5, 0.5]
     for level in ("known", "unknown"):
-        add(group, f"by hand, {level} level, one hypothesis", record, [one], [], [1.0], level)
-        add(group, f"by hand, {level} level, two, no nuisances", record, [one, two], [], half, level)
-        add(group, f"by hand, {level} level, two, an offset", record, [one, two], [offset], [0.25, 0.75], level, 0.25)
-        add(group, f"by hand, {level} level, one degree of freedom", record, [one, two], [offset, [0.0, 1.0, 2.0, 3.0]], half, level)
-        add(group, f"{level} level, equal templates: the first counts", record, [two, one, one], [offset], [0.2, 0.3, 0.5], level)
-        add(group, f"{level} level, eight equal templates", record, [one] * 8, [], [0.125] * 8, level, 0.1)
-        add(group, f"{level} level, the template of the largest θ cannot be", record, [two, one], [], [1.0, 0.0], level)
-        add(group, f"{level} level, one that the nuisances explain", record, [one, offset, two], [offset], [0.5, 0.3, 0.2], level)
-        add(group, f"{level} level, one that is nothing", record, [[0.0] * 4, two], [offset], [0.6, 0.4], level, 0.01)
-        add(group, f"{level} level, θ = 0 of what is explained is above all others", record, [two, offset], [offset], half, level)
-        add(group, f"{level} level, one that is explained cannot be", record, [offset, one, two], [offset], [0.0, 0.5, 0.5], level)
-        add(group, f"{level} level, a prior that is 7·10⁻¹⁰ short counts as it stands", record, [one, two], [], [0.5, 0.4999999993], level)
+        add(group, f"by hand, {level} level, one hypothesis", given, [one], [], [1.0], level)
+        add(group, f"by hand, {level} level, two, no nuisances", given, [one, two], [], half, level)
+        add(group, f"by hand, {level} level, two, an offset", given, [one, two], [offset], [0.25, 0.75], level, 0.25)
+        add(group, f"by hand, {level} level, one degree of freedom", given, [one, two], [offset, [0.0, 1.0, 2.0, 3.0]], half, level)
+        add(group, f"{level} level, equal templates: the first counts", given, [two, one, one], [offset], [0.2, 0.3, 0.5], level)
+        add(group, f"{level} level, eight equal templates", given, [one] * 8, [], [0.125] * 8, level, 0.1)
+        add(group, f"{level} level, the template of the largest θ cannot be", given, [two, one], [], [1.0, 0.0], level)
+        add(group, f"{level} level, one that the nuisances explain", given, [one, offset, two], [offset], [0.5, 0.3, 0.2], level)
+        add(group, f"{level} level, one that is nothing", given, [[0.0] * 4, two], [offset], [0.6, 0.4], level, 0.01)
+        add(group, f"{level} level, θ = 0 of what is explained is above all others", given, [two, offset], [offset], half, level)
+        add(group, f"{level} level, one that is explained cannot be", given, [offset, one, two], [offset], [0.0, 0.5, 0.5], level)
+        add(group, f"{level} level, a prior that is 7·10⁻¹⁰ short counts as it stands", given, [one, two], [], [0.5, 0.4999999993], level)
     add(group, "a record of nothing: θ = −γ²/2", [0.0] * 4, [one, [2 * v for v in two]], [offset], half)
     add(group, "the record is a template on an offset", [1e3 + v for v in one], [one, two], [offset], half)
     add(group, "the record is a template turned round", [-v for v in one], [one, two], [], half, "known", 0.9)
@@ -259,7 +251,7 @@ def drawn(group):
         name, hypotheses = draws.choice(list(all_shapes)), draws.integer(1, 8)
         nuisances, present = all_shapes[name], number // 2 % 2
         templates = drawn_templates(draws, count, hypotheses, draws.decimal(0.4, 3))
-        residual = drawn_record(draws, draws.choice(templates), nuisances, draws.integer(1, 50), present)
+        residual = record(draws, draws.choice(templates), nuisances, draws.integer(1, 50), present)
         prior = drawn_prior(draws, hypotheses, number % 3 if hypotheses > 3 else 0)
         prior_h1 = draws.decimal(0.05, 0.95, 2)
         add(group, f"drawn, {level} level, {name}, {hypotheses} hypotheses", residual, templates, nuisances, prior, level, prior_h1)
@@ -272,11 +264,11 @@ def special(group):
         for level in ("known", "unknown") if size > 1e-100 else ("known",):
             nuisances = shapes(7, draws)["offset and drift"]
             templates = [[v * size for v in t] for t in drawn_templates(draws, 7, 4, 1)]
-            residual = drawn_record(draws, templates[2], nuisances, 20, 1)
+            residual = record(draws, templates[2], nuisances, 20, 1)
             add(group, f"{level} level, {kind}", residual, templates, nuisances, [0.1, 0.2, 0.3, 0.4], level, 0.3)
     templates = drawn_templates(draws, 7, 3, 2)
     nuisances = shapes(7, draws)["offset, drift and gain"]
-    residual = drawn_record(draws, templates[0], nuisances, 30, 1)
+    residual = record(draws, templates[0], nuisances, 30, 1)
     third = [0.2, 0.3, 0.5]
     for prior, prior_h1, kind in [
         ([1e-200, 0.0, 1.0], 0.5, "a prior of 10⁻²⁰⁰"),
@@ -309,7 +301,7 @@ def special(group):
     ]:
         for level in ("known", "unknown"):
             nuisances, templates = shapes(count, draws)[name], drawn_templates(draws, count, 5, 1)
-            residual = drawn_record(draws, templates[3], nuisances, amplitude, 1)
+            residual = record(draws, templates[3], nuisances, amplitude, 1)
             add(group, f"{level} level, {kind}", residual, templates, nuisances, [0.2] * 5, level, 0.5)
 
 

@@ -40,12 +40,12 @@ def sensitivity(matrix, a, b):
     """|K⁻¹a|ᵀ |L| |Lᵀ| |K⁻¹b|: how much a change of |L||Lᵀ| by a relative 1 can change aᵀK⁻¹b."""
     lower = cholesky(matrix)
     n = len(matrix)
-    left = [abs(real(v)) for v in solve(matrix, a)]
-    right = [abs(real(v)) for v in solve(matrix, b)]
-    columns = range(n)
-    first = [sum(abs(lower[i][k]) * left[i] for i in range(k, n)) for k in columns]
-    second = [sum(abs(lower[i][k]) * right[i] for i in range(k, n)) for k in columns]
-    return exact(sum(x * y for x, y in zip(first, second)))
+
+    def reach(vector):
+        sizes = [abs(real(v)) for v in solve(matrix, vector)]
+        return [sum(abs(lower[i][k]) * sizes[i] for i in range(k, n)) for k in range(n)]
+
+    return exact(sum(x * y for x, y in zip(reach(a), reach(b))))
 
 
 def covariance(draws, count, kind):
@@ -74,21 +74,10 @@ def covariance(draws, count, kind):
 
 # Verifies: DET-040, DET-041, DET-043.
 def theta_colored():
-    group = Group(
-        "theta_colored",
-        "exact fractions; roots by mpmath 1.3.0 at 50 digits",
-        case_by_case(["theta", "gamma"]),
-    )
+    source = "exact fractions; roots by mpmath 1.3.0 at 50 digits"
+    group = Group("theta_colored", source, case_by_case(["theta", "gamma"]))
     draws = Draws(40)
-    kinds = [
-        "white",
-        "independent channels",
-        "channels alike",
-        "slow",
-        "correlated channels",
-        "correlated channels",
-        "correlated channels",
-    ]
+    kinds = ["white", "independent channels", "channels alike", "slow", *["correlated channels"] * 3]
     for number in range(64):
         count = 1 if number < 3 else 10 if number in (3, 4) else draws.integer(2, 4)
         kind = kinds[number % len(kinds)]
@@ -154,9 +143,8 @@ def coloured_case(group, kind, residual, template, matrix):
         return y
 
     wd, wc = whitened(d), whitened(centred)
-    wrong.append(
-        ("cholesky_transposed", {"theta": sum(a * b for a, b in zip(wd, wc)), "gamma": sqrt(sum(a * a for a in wd))})
-    )
+    transposed = {"theta": sum(a * b for a, b in zip(wd, wc)), "gamma": sqrt(sum(a * a for a in wd))}
+    wrong.append(("cholesky_transposed", transposed))
     swapped = [[k[(i + count) % n][(j + count) % n] for j in range(n)] for i in range(n)]
     wrong.append(("channels_exchanged", by(swapped)))
     steps = (4 * n + 12) * UNIT

@@ -78,14 +78,8 @@ def usable(report, fields):
 
 # Verifies: HID-002, HID-006.
 def report_decode():
-    group = Group(
-        "report_decode",
-        SOURCE,
-        {
-            name: is_exact("a whole number")
-            for name in sorted({"report", *(n for layout in LAYOUT.values() for n, _ in layout)})
-        },
-    )
+    names = sorted({"report", *(name for layout in LAYOUT.values() for name, _ in layout)})
+    group = Group("report_decode", SOURCE, {name: is_exact("a whole number") for name in names})
     for report, fields, kind in samples(Draws(70)):
         fields = usable(report, fields)
         wrong = [(how, misread(report, fields, how)) for how in ("big_endian", "sign_ignored", "fields_exchanged")]

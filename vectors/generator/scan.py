@@ -8,23 +8,10 @@ from .series import exacts, noise, signal
 from .suite import Group, absolute, case_by_case, is_exact, refuse_common
 
 
-def scan_sums(residual, template, deviation, shift):
-    part = residual[shift : shift + len(template)]
-    return correlate(part, template, deviation)
-
-
 # Verifies: DET-050, DET-053.
 def scan():
-    group = Group(
-        "scan",
-        SOURCE,
-        {
-            **case_by_case(["theta", "max_theta"]),
-            "argmax": is_exact(
-                "the runner-up is farther off than both errors, or equal to the bit with short binary fractions"
-            ),
-        },
-    )
+    reason = "the runner-up is farther off than both errors, or equal to the bit with short binary fractions"
+    group = Group("scan", SOURCE, {**case_by_case(["theta", "max_theta"]), "argmax": is_exact(reason)})
     draws = Draws(22)
     for number in range(66):
         count = draws.integer(4, 14)
@@ -56,15 +43,12 @@ def scan():
             kind = "drawn, no inclusion"
         scan_case(group, kind, rx, ry, tx, ty, sx, sy)
     ramp, flat = [0.5, 1.0, -0.25], [0.25, 0.5, 0.75]
-    for period, kind in (
-        (3, "period of the template: equal maxima, the first counts"),
-        (4, "two equal maxima, the first counts"),
+    for kind, rx, ry in (
+        ("period of the template: equal maxima, the first counts", ramp * 3, flat * 3),
+        ("two equal maxima, the first counts", (ramp + [0.0]) * 3, (flat + [0.0]) * 3),
+        ("record of zeros: all equal, the first counts", [0.0] * 6, [0.0] * 6),
     ):
-        pause = [0.0] * (period - 3)
-        scan_case(group, kind, (ramp + pause) * 3, (flat + pause) * 3, ramp, flat, 0.5, 0.25, tie=True)
-    scan_case(
-        group, "record of zeros: all equal, the first counts", [0.0] * 6, [0.0] * 6, ramp, flat, 0.5, 0.25, tie=True
-    )
+        scan_case(group, kind, rx, ry, ramp, flat, 0.5, 0.25, tie=True)
     args = {
         "residual_x": [0.1, 0.2, 0.3],
         "residual_y": [0.3, 0.2, 0.1],
@@ -89,7 +73,8 @@ def scan_case(group, kind, rx, ry, tx, ty, sx, sy, tie=False):
         rx, ry, tx, ty = (exacts(f) for f in (rx, ry, tx, ty))
         values, bound = [], Fraction(0)
         for shift in range(len(rx) - len(tx) + 1):
-            (a, b, m), (c, d, n) = scan_sums(rx, tx, sx, shift), scan_sums(ry, ty, sy, shift)
+            part = slice(shift, shift + len(tx))
+            (a, b, m), (c, d, n) = correlate(rx[part], tx, sx), correlate(ry[part], ty, sy)
             values.append(a + c - half * (b + d))
             bound = max(bound, (len(tx) + 8) * UNIT * (m + n))
         return values, bound

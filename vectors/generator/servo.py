@@ -194,8 +194,6 @@ def servo_interpolate():
             (depths[0], laterals[-1], "corner node"),
             (depths[1], inside()[1], "on a line of depth"),
             (inside()[0], laterals[1], "on a line of position"),
-        ]
-        places += [
             (inside()[0], single(left - 0.0001), "before the least position"),
             (inside()[0], single(right + 0.0001), "after the largest position"),
             (single(deep + 0.0002), inside()[1], "below the largest depth"),
@@ -216,16 +214,9 @@ def servo_interpolate():
         (2.0**-140, 0.001, "subnormal depth"),
     ):
         force_case(group, kind, depths, laterals, table, single(d), single(x))
-    for bit in range(14):
-        force_case(
-            group,
-            "drawn, three cells",
-            depths,
-            laterals,
-            table,
-            single(draws.between(0.0005, 0.004)),
-            single(draws.between(-0.004, 0.008)),
-        )
+    for _ in range(14):
+        d, x = single(draws.between(0.0005, 0.004)), single(draws.between(-0.004, 0.008))
+        force_case(group, "drawn, three cells", depths, laterals, table, d, x)
     refuse_tables(group)
     return group
 

@@ -29,13 +29,8 @@ def bilinear(depths, laterals, table, depth, lateral, clamp=False, exchange=Fals
 
 
 def table_of(draws, rows, columns):
-    return [
-        [
-            round(0.4 * (i + draws.decimal(0.2, 0.9)) * (1 + draws.decimal(-0.3, 0.3)) - 0.1 * j, 4)
-            for j in range(columns)
-        ]
-        for i in range(rows)
-    ]
+    force = lambda i, j: 0.4 * (i + draws.decimal(0.2, 0.9)) * (1 + draws.decimal(-0.3, 0.3)) - 0.1 * j
+    return [[round(force(i, j), 4) for j in range(columns)] for i in range(rows)]
 
 
 def poses(depths, laterals, draws):
@@ -65,16 +60,8 @@ def poses(depths, laterals, draws):
 def interpolate():
     group = Group("interpolate", "exact fractions", case_by_case(["force_n"], "N"))
     draws = Draws(30)
-    for rows, columns, kind in (
-        (2, 2, "2 × 2"),
-        (3, 4, "3 × 4"),
-        (4, 3, "4 × 3"),
-        (3, 3, "3 × 3"),
-        (5, 2, "5 × 2"),
-        (2, 6, "2 × 6"),
-        (4, 4, "4 × 4, axes not uniform"),
-        (8, 9, "8 × 9"),
-    ):
+    for rows, columns in ((2, 2), (3, 4), (4, 3), (3, 3), (5, 2), (2, 6), (4, 4), (8, 9)):
+        kind = f"{rows} × {columns}" + (", axes not uniform" if rows == columns == 4 else "")
         depths = [round(0.0005 * (i + 1), 4) for i in range(rows)]
         laterals = [round(0.001 * (j - columns // 2), 4) for j in range(columns)]
         if "uniform" in kind:
@@ -86,24 +73,10 @@ def interpolate():
     pose_case(group, "tiny forces", depths, laterals, table, 0.0015, 0.0003, subnormal=True)
     pose_case(group, "huge forces", depths, laterals, [[1e300, -1e300], [2e300, 1e290]], 0.0015, 0.0003)
     pose_case(group, "forces that cancel", depths, laterals, [[1.0, -1.0], [-1.0, 1.0]], 0.0015, 1e-19)
-    pose_case(
-        group,
-        "a cell of one step of the last place",
-        [0.001, 0.001 + 2.0**-62],
-        laterals,
-        [[1.0, 2.0], [3.0, 4.0]],
-        0.001,
-        0.0005,
-    )
-    pose_case(
-        group,
-        "just below a knot",
-        [0.001, 0.002, 0.003],
-        laterals,
-        [[1.0, 2.0], [3.0, 5.0], [-4.0, 7.0]],
-        0.002 - 2.0**-61,
-        0.0005,
-    )
+    depths, table = [0.001, 0.001 + 2.0**-62], [[1.0, 2.0], [3.0, 4.0]]
+    pose_case(group, "a cell of one step of the last place", depths, laterals, table, 0.001, 0.0005)
+    depths, table = [0.001, 0.002, 0.003], [[1.0, 2.0], [3.0, 5.0], [-4.0, 7.0]]
+    pose_case(group, "just below a knot", depths, laterals, table, 0.002 - 2.0**-61, 0.0005)
     args = {
         "depths_m": [0.001, 0.002],
         "laterals_m": [0.0, 0.001],
