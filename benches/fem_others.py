@@ -4,16 +4,16 @@
     python3 benches/fem_others.py
 
 Needs NumPy, SciPy with its SuperLU and scikit-fem; takes CHOLMOD (scikit-sparse), PARDISO (pypardiso) and CalculiX
-(`ccx`) where they are installed. Each program gets the default mesh of the 2.6 mm phantom, with
-its own assembly. What is timed, from the mesh on:
+(`ccx`) where they are installed. Each program assembles the default mesh of the 2.6 mm phantom by itself. The times begin
+with the mesh and cover:
 
 * palpate: stiffness matrix, factor, compliance of the surface;
 * scikit-fem: assembly, factor, and the solves that make the same compliance (one for each surface unknown);
 * CalculiX: one linear step under one load, from the input file to the result.
 
-All are one thread. The displacements of the surface under the load must agree: with scikit-fem, which integrates with
-the same rule, to 1e-8 of the largest; with CalculiX, whose CPE6 takes 3 points where palpate takes 6, to 1e-2. Exit code
-1 where they do not.
+Every program has one thread. The displacements of the surface under the load must agree: with scikit-fem, which integrates
+with the same rule, to 1e-8 of the largest; with CalculiX, whose CPE6 takes 3 points where palpate takes 6, to 1e-2. The
+exit code is 1 where they do not.
 """
 import os
 
@@ -121,10 +121,8 @@ def calculix(data, folder):
     program = shutil.which("ccx")
     if program is None:
         return None
-    def number(value):
-        # A field of its input holds 20 characters.
-        return f"{value:.12e}"
-
+    # A field of its input holds 20 characters.
+    number = "{:.12e}".format
     deck = ["*NODE, NSET=ALL"]
     deck += [f"{k + 1}, {number(x)}, {number(y)}, 0." for k, (x, y) in enumerate(data["nodes_m"].tolist())]
     cells = data["connectivity"].reshape(-1, 6) + 1

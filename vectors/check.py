@@ -1,9 +1,9 @@
-"""Checks the suite itself (VEC-014), with nothing of the generator: form, ids, flags, bits, wrong answers, manifest,
-counts, conditions, and each seventh expected answer by a second route, once more with its arguments rounded to f32.
+"""Checks the suite itself (VEC-014) without the generator: form, ids, flags, bits, wrong answers, manifest, counts,
+conditions, and each seventh expected answer by a second route, also with its arguments rounded to f32.
 
     python3 vectors/check.py [--all]
 
-With --all, every expected answer is computed again. Needs mpmath; jsonschema is used where it is installed.
+With --all, it computes every expected answer again. It needs mpmath, and uses jsonschema where that is installed.
 
 Implements: VEC-014.
 """
@@ -102,7 +102,7 @@ def check_numbers(data):
         for key, value in case["ok"].items():
             if key not in limits:
                 complain(case["id"], f"no tolerance for {key}")
-            decimals = [v for v in leaves(value)]
+            decimals = list(leaves(value))
             if any(isinstance(v, float) for v in decimals):
                 patterns = list(leaves(case.get("bits", {}).get(key, [])))
                 if patterns != ["0x" + struct.pack(">d", v).hex() for v in decimals]:
@@ -162,7 +162,7 @@ def far(wrong, right, limits):
 
 
 def check_answer(case, answer, limits, printed):
-    """The second route's answer is the expected one: to half a unit in the last place, or a hundredth of the tolerance.
+    """The second route's answer is the expected one to half a unit in the last place and a hundredth of the tolerance.
     `printed` is the relative accuracy of a rule that is known to 15 digits only."""
     if set(answer) != set(case["ok"]):
         complain(case["id"], "keys of the second route")
@@ -171,12 +171,11 @@ def check_answer(case, answer, limits, printed):
         got, wanted = list(leaves(answer[key])), list(leaves(expected))
         largest = max([abs(rational(v)) for v in wanted if isinstance(v, float)], default=0)
         for g, w in zip(got, wanted):
+            is_off = g != w
             if isinstance(w, float):
-                off = abs(rational(g) - rational(w))
                 slack = ulp(w) / 2 + bound(limits[key], w) / 100 + rational(printed) * largest
-                if off > slack:
-                    complain(case["id"], f"{key} by the second route is {g}, not {w!r}")
-            elif g != w:
+                is_off = abs(rational(g) - rational(w)) > slack
+            if is_off:
                 complain(case["id"], f"{key} by the second route is {g}, not {w!r}")
         if len(got) != len(wanted):
             complain(case["id"], f"length of {key}")
@@ -259,7 +258,7 @@ def check_probe(data):
 
 
 def check_refusals(data):
-    """A line that is said to be no JSON is none, by Python's reader, and the other way round."""
+    """A line is to be refused as bad_json exactly if Python's reader refuses it."""
     for case in data["cases"]:
         if "line" not in case:
             continue

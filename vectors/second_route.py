@@ -1,6 +1,7 @@
-"""The expected answers once more, by other ways than the generator's: for check.py, and for their formulas for the
-conditions. The toy right.py computes the ops that it has, with fractions and decimals. The others are here: tails of
-quadratic statistics by integrals, θ as a ratio of likelihoods, f32 by rounding f64, and Cowper's points as printed.
+"""A second route to the expected answers, without the generator: check.py compares the answers, and the conditions of the
+cases are derivatives of the formulas. The toy right.py computes the ops that it has, with fractions and decimals. The others
+are here: tails of quadratic statistics by integrals, θ as a ratio of likelihoods, f32 by rounding f64, and Cowper's points
+with printed digits.
 """
 
 import struct
@@ -47,8 +48,8 @@ def bisect(function, low, high):
 
 
 def beside(nuisances, others):
-    """By elimination in the exact Gram matrix of all signals: that of what the nuisances leave of the others, the squares that each
-    other had, and how many nuisances count."""
+    """Eliminates the nuisances from the exact Gram matrix of all signals. Returns the Gram matrix of what they leave of the
+    others, the squares of the others before, and the rank of the nuisances."""
     columns = [[Fraction(v) for v in column] for column in (*nuisances, *others)]
     gram = [[sum(x * y for x, y in zip(p, q)) for q in columns] for p in columns]
     squares, rank, count = [row[k] for k, row in enumerate(gram)], 0, len(nuisances)

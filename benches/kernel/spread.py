@@ -13,7 +13,7 @@ counts = {}
 for file in folder.glob("kernel/*/callgrind.*.out"):
     counts[file.parent.name] = int(re.search(r"^summary: (\d+)", file.read_text(), re.MULTILINE).group(1))
 if len(counts) < 15:
-    sys.exit(f"{len(counts)} paths in {folder}, expected at least 15: run the bench first")
+    sys.exit(f"only {len(counts)} paths in {folder}, but at least 15 are needed: run the bench first")
 least, most = min(counts, key=counts.get), max(counts, key=counts.get)
 low, high = counts[least], counts[most]
 spread = (high - low) / (high + low)

@@ -1,6 +1,4 @@
-"""Runs the steps of action.yml as a runner does, for right and for wrong inputs.
-
-"""
+"""Runs the steps of action.yml as a runner does, for right and for wrong inputs."""
 
 import os
 import pathlib
@@ -43,7 +41,7 @@ def run(**given):
 def expect(code, **inputs):
     """Runs the action, which must end with this exit code."""
     found = run(**inputs)
-    assert found == code, f"{inputs}: exit code {found}, expected {code}"
+    assert found == code, f"{inputs}: the exit code is {found}, not {code}"
     print(f"exit code {code} as expected: {inputs}", flush=True)
 
 

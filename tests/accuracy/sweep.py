@@ -1,6 +1,6 @@
 """Dense sweeps of an oracle against mpmath and exact fractions: `python3 tests/accuracy/sweep.py CMD ARGS…`.
 
-Each function of spec/detector.md is asked at 10⁴ arguments or more; printed is the worst error in units of the stated bound
+It asks each function of spec/detector.md at 10⁴ arguments or more, and prints the worst error in units of the stated bound
 and in ULP of the exact result. The exit code is 1 if a bound is broken. Needs mpmath. Nothing here is taken from the Rust code:
 Φ⁻¹ is judged by the residual Φ(x̂) − p, the exact interval by a continued fraction of the incomplete beta function.
 

@@ -24,12 +24,12 @@ def refuse_if(condition, code, message):
 
 
 def real(value):
-    refuse_if(isinstance(value, bool) or not isinstance(value, (int, float)), "bad_argument", "expected a number")
+    refuse_if(isinstance(value, bool) or not isinstance(value, (int, float)), "bad_argument", "must be a number")
     try:
         value = float(value)
     except OverflowError:
         value = np.inf
-    refuse_if(not np.isfinite(value), "bad_argument", "expected a finite number")
+    refuse_if(not np.isfinite(value), "bad_argument", "must be finite")
     return value
 
 
@@ -37,7 +37,7 @@ def limited(low, high, open_ends=False):
     def read(value):
         value = real(value)
         inside = low < value < high if open_ends else low <= value <= high
-        refuse_if(not inside, "out_of_range", f"expected a number in {low} … {high}")
+        refuse_if(not inside, "out_of_range", f"must be in {low} … {high}")
         return value
 
     return read
@@ -49,23 +49,23 @@ probability = limited(0, 1, open_ends=True)
 
 def whole(value):
     value = real(value)
-    refuse_if(value % 1 != 0, "bad_argument", "expected a whole number")
+    refuse_if(value % 1 != 0, "bad_argument", "must be a whole number")
     return int(value)
 
 
 def text(value):
-    refuse_if(not isinstance(value, str), "bad_argument", "expected a text")
+    refuse_if(not isinstance(value, str), "bad_argument", "must be a text")
     return value
 
 
 def listed(value, read):
-    refuse_if(not isinstance(value, list), "bad_argument", "expected a list")
+    refuse_if(not isinstance(value, list), "bad_argument", "must be a list")
     return [read(item) for item in value]
 
 
 def series(value):
     numbers = np.array(listed(value, real))
-    refuse_if(len(numbers) == 0, "bad_argument", "expected numbers")
+    refuse_if(len(numbers) == 0, "bad_argument", "must hold numbers")
     return numbers
 
 
@@ -82,14 +82,14 @@ def same_length(*lists):
 
 def single(value):
     """An f32 by its bits."""
-    refuse_if(len(text(value)) != 10 or value[:2] != "0x" or not value[2:].isalnum(), "bad_argument", "expected 0x and 8 digits")
+    refuse_if(len(text(value)) != 10 or value[:2] != "0x" or not value[2:].isalnum(), "bad_argument", "must be 0x and 8 digits")
     return np.float32(struct.unpack(">f", bytes.fromhex(value[2:]))[0])
 
 
 def knots(value):
     numbers = series(value).astype(np.float32) if value else []
     fits = 2 <= len(numbers) <= 1024 and np.all(np.abs(numbers) <= 1) and np.all(np.diff(numbers) >= np.float32(1e-6))
-    refuse_if(not fits, "out_of_range", "expected 2 to 1024 increasing knots")
+    refuse_if(not fits, "out_of_range", "must be 2 to 1024 increasing knots")
     return numbers
 
 
@@ -133,7 +133,7 @@ def answer(line, ops):
     try:
         request = json.loads(line.decode(), parse_constant=no_json, object_pairs_hook=without_twins)
         fits = isinstance(request, dict) and {"id", "op"} <= set(request) <= {"id", "op", "args"}
-        refuse_if(not fits or type(request["id"]) not in (str, int, float), "bad_request", "expected an object with id, op and args")
+        refuse_if(not fits or type(request["id"]) not in (str, int, float), "bad_request", "must be an object with id, op and args")
         name, args = request["id"], request.get("args", {})
         refuse_if(not isinstance(request["op"], str) or request["op"] not in ops, "unknown_op", "no such op")
         refuse_if(not isinstance(args, dict), "bad_argument", "args is no object")

@@ -39,7 +39,7 @@ def error_rates(gamma: not_negative, eta: real):
 
 
 def roc(gamma: not_negative, false_alarm: lambda value: listed(value, share)):
-    refuse_if(not false_alarm, "bad_argument", "expected rates")
+    refuse_if(not false_alarm, "bad_argument", "false_alarm holds no rates")
     inner = special.ndtr(-special.ndtri(false_alarm) - gamma)
     return {"miss": [1.0 - p if p in (0, 1) else miss for p, miss in zip(false_alarm, inner)], "auc": two_afc(gamma)["p_correct"]}
 
@@ -96,8 +96,8 @@ def proportion_interval(successes: whole, trials: whole, confidence: probability
 
 
 def count_analysis(correct: rows, trials: whole):
-    refuse_if(correct.size == 0 or np.any(correct % 1), "bad_argument", "expected counts")
-    refuse_if(trials < 1 or np.any(correct < 0) or np.any(correct > trials), "out_of_range", "expected 0 ≤ correct ≤ trials")
+    refuse_if(correct.size == 0 or np.any(correct % 1), "bad_argument", "correct must hold counts")
+    refuse_if(trials < 1 or np.any(correct < 0) or np.any(correct > trials), "out_of_range", "correct must be in 0 … trials")
     subjects, pooled = len(correct), correct.sum(axis=0)
     rate = pooled / (subjects * trials)
     refuse_if(np.any((rate == 0) | (rate == 1)), "overflow", "γ of a rate of 0 or 1 is infinite")
@@ -146,7 +146,7 @@ def theta(observed_x: series, observed_y: series, f0_x: series, f0_y: series, f1
 
 def theta_colored(residual: series, template: series, covariance: rows):
     n, k = len(residual), covariance
-    refuse_if(n % 2 or k.shape != (n, n) or len(template) != n, "bad_argument", "expected an even number of samples, and a row for each")
+    refuse_if(n % 2 or k.shape != (n, n) or len(template) != n, "bad_argument", "the samples must be even in number, each with a row")
     variances = k.diagonal()
     refuse_if(np.any(variances <= 0), "out_of_range", "a variance is not above 0")
     sd = np.sqrt(variances)
@@ -180,7 +180,7 @@ class Subspace:
             if len(r) > len(kept) and abs(r[-1, -1]) >= 1e-9:
                 self.basis, kept = q, [*kept, signal]
         self.degrees = samples - len(kept) - 1
-        refuse_if(self.degrees < 1, "out_of_range", "expected p + 2 samples")
+        refuse_if(self.degrees < 1, "out_of_range", "p nuisances need p + 2 samples")
 
     def beside(self, v):
         for _ in range(2):

@@ -20,7 +20,7 @@ def interpolate(depths_m: series, laterals_m: series, table_n: rows, depth_m: re
 
 
 def nodes(value):
-    refuse_if(rows(value).shape != (6, 2), "bad_argument", "expected six nodes")
+    refuse_if(rows(value).shape != (6, 2), "bad_argument", "must be six nodes")
     return rows(value)
 
 
@@ -92,7 +92,7 @@ REPORTS = {
 
 
 def report_decode(bytes: text):
-    refuse_if(len(bytes) % 2 or not bytes.isalnum(), "bad_argument", "expected pairs of hexadecimal digits")
+    refuse_if(len(bytes) % 2 or not bytes.isalnum(), "bad_argument", "must be pairs of hexadecimal digits")
     data = bytearray.fromhex(bytes)
     layout, names = REPORTS.get(data[0], ("", ()))
     refuse_if(struct.calcsize(layout) != len(data) or data[0] == 4 and data[1] > 2, "out_of_range", "no such report")
@@ -100,9 +100,9 @@ def report_decode(bytes: text):
 
 
 def report_encode(report=None, **fields):
-    refuse_if(whole(report) not in REPORTS, "out_of_range", "expected a report 1 to 4")
+    refuse_if(whole(report) not in REPORTS, "out_of_range", "report must be 1 to 4")
     layout, names = REPORTS[whole(report)]
-    refuse_if(set(fields) != set(names), "bad_argument", f"expected {names}")
+    refuse_if(set(fields) != set(names), "bad_argument", f"the fields must be {names}")
     values = [whole(fields[name]) for name in names]
     refuse_if(fields.get("control", 0) > 2, "out_of_range", "control is 0, 1 or 2")
     return {"bytes": struct.pack(layout, whole(report), *values).hex()}

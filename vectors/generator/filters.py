@@ -142,9 +142,9 @@ def theta():
         px = [round(a + b, 6) for a, b in zip(mean_x, noise(count, draws, sx))]
         py = [round(a + b, 6) for a, b in zip(mean_y, noise(count, draws, sy))]
         if number in (16, 17):
-            px, py, kind = [a for a in f0x], [a for a in f0y], "the record is F_0: Θ = −γ²/2"
+            px, py, kind = list(f0x), list(f0y), "the record is F_0: Θ = −γ²/2"
         if number in (18, 19):
-            px, py, kind = [a for a in f1x], [a for a in f1y], "the record is F_1: Θ = γ²/2"
+            px, py, kind = list(f1x), list(f1y), "the record is F_1: Θ = γ²/2"
         if number in (20, 21, 22):
             px, py = ([(a + b) / 2 for a, b in zip(*ends)] for ends in ((f0x, f1x), (f0y, f1y)))
             kind = "half way: Θ cancels to rounding errors of the record"

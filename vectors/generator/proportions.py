@@ -1,5 +1,6 @@
 """Intervals of a proportion, and the counts of a forced choice (DET-121 … 123, spec/errata.md ERR-004, ERR-007)."""
 
+from contextlib import suppress
 from fractions import Fraction
 
 from mpmath import exp, log, loggamma, mpf, sqrt
@@ -256,10 +257,8 @@ def analysis_case(group, kind, counts, trials):
         ("weight_missing", {"chi2": [x / trials for x in chi2]}),
         ("rates_swapped", {"gamma": [-g for g in gamma]}),
     ]
-    try:
+    with suppress(ZeroDivisionError, ValueError):
         wrong.append(("subjects_for_conditions", analysis(columns, trials)))
-    except (ZeroDivisionError, ValueError):
-        pass
     limits = {
         "gamma": absolute(gamma_bound, "1", "√2 (2⁻⁵³ p/φ for the rate's rounding, 12 · 2⁻⁵³ |Φ⁻¹| for the rest)"),
         "chi2": absolute(chi2_bound, "1", "2⁻⁵³ (8 Σ |k − tp| tp/(tp(1−p)) + (n + 12) χ²): the difference cancels"),

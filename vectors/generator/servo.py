@@ -3,6 +3,7 @@
 Implements: VEC-011.
 """
 
+from contextlib import suppress
 from fractions import Fraction
 
 from .numbers import Draws
@@ -71,7 +72,7 @@ def force(depths, laterals, table, d, x, rule="kernel", of_fraction="kernel"):
 
 def axis(draws, count, uniform):
     start, knots = draws.decimal(-0.01, 0.0, 4), []
-    for k in range(count):
+    for _ in range(count):
         knots.append(single(start))
         start += 0.001 if uniform else draws.decimal(0.0002, 0.003, 5)
     return knots
@@ -134,10 +135,8 @@ def axis_case(group, kind, knots, x):
         ("division", "division"),
         ("f64_arithmetic", "f64"),
     ):
-        try:
+        with suppress(OverflowError):
             wrong.append((flag, {"fraction_bits": bits(fraction(knots, x, rule)[1])}))
-        except OverflowError:
-            pass
     other = j + 1 if j + 2 < len(knots) else j - 1
     if 0 <= other and x not in (INFINITY, -INFINITY):
         wrong.append(("cell_off_by_one", {"cell": other}))
@@ -179,7 +178,7 @@ def servo_interpolate():
     group = Group("servo_interpolate", SOURCE, {"force_bits": BITS})
     draws = Draws(61)
     for rows, columns in ((2, 2), (3, 4), (4, 3), (5, 5), (2, 7), (9, 5)):
-        depths = [0.0] + [v for v in (single(0.0005 * (k + 1) + draws.decimal(0, 0.0002, 5)) for k in range(rows - 1))]
+        depths = [0.0] + [single(0.0005 * (k + 1) + draws.decimal(0, 0.0002, 5)) for k in range(rows - 1)]
         laterals = axis(draws, columns, False)
         table = [
             [single(draws.decimal(-2, 2, 3) if i else draws.decimal(-0.01, 0.01, 4)) for _ in range(columns)]
@@ -239,10 +238,8 @@ def force_case(group, kind, depths, laterals, table, d, x):
             ("division", "kernel", "division"),
             ("hull_left_out", "unbound", "kernel"),
         ):
-            try:
+            with suppress(OverflowError):
                 wrong.append((flag, {"force_bits": bits(force(depths, laterals, table, d, x, rule, of_fraction))}))
-            except OverflowError:
-                pass
         rows, columns = len(depths), len(laterals)
         flat = [f for row in table for f in row]
         turned = [[flat[b * rows + a] for b in range(columns)] for a in range(rows)]
