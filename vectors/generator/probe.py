@@ -73,17 +73,12 @@ def pose_case(group, poses, name, depth, lateral, sign):
         ),
     ]
     wrong.append(("mirror_ignored" if sign < 0 else "lateral_sign", {"lateral_force_n": -side}))
+    reason = "band of the expected value, and {} of the default mesh (FEM-021)"
+    normal_bound = milli(pose["normal_band_mn"]) + normal * Fraction(3, 1000)
+    lateral_bound = milli(pose["lateral_band_mn"]) + Fraction(15, 10000)
     limits = {
-        "normal_force_n": absolute(
-            milli(pose["normal_band_mn"]) + normal * Fraction(3, 1000),
-            "N",
-            "band of the expected value, and 0.3 % of the default mesh (FEM-021)",
-        ),
-        "lateral_force_n": absolute(
-            milli(pose["lateral_band_mn"]) + Fraction(15, 10000),
-            "N",
-            "band of the expected value, and 1.5 mN of the default mesh (FEM-021)",
-        ),
+        "normal_force_n": absolute(normal_bound, "N", reason.format("0.3 %")),
+        "lateral_force_n": absolute(lateral_bound, "N", reason.format("1.5 mN")),
     }
     args = {"phantom": name, "depth_m": depth / 1000, "lateral_m": sign * lateral / 1000}
     group.accept(f"phantom {name}, depth {depth} mm, lateral {sign * lateral} mm", args, ok, wrong, tolerance=limits)
