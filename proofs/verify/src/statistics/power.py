@@ -42,10 +42,10 @@ def laws(setting, inclusion, defect):
     if defect == "template_shifted":
         used = [np.concatenate([[0], t[:-1]]) for t in used]
     mean = variance = square = 0
-    for t, true, s in zip(used, truth, sds):
-        weight = t / (s if defect == "sd_for_variance" else s * s)
+    for template, true, s in zip(used, truth, sds):
+        weight = template / (s if defect == "sd_for_variance" else s * s)
         half = 1 if defect == "half_left_out" else 0.5
-        mean += np.sum(weight * ((true if inclusion else 0) - half * t))
+        mean += np.sum(weight * ((true if inclusion else 0) - half * template))
         variance += np.sum(weight**2) * s * s * (1.01 if defect == "variance_off_1_percent" else 1)
         square += np.sum(true**2) / s**2
     return (square / 2 * (1 if inclusion else -1), math.sqrt(square)), (mean, math.sqrt(variance))
@@ -82,27 +82,21 @@ def count_power(p, bad, n):
     return binom.sf(high, n, bad) + binom.cdf(low - 1, n, bad)
 
 
-def line(name, n, powers):
+def line(name, n, **powers):
     down = lambda p: math.floor(min(p, 1) * 1e4) / 1e4
-    print(f"{name},{ALPHA},{n}," + ";".join(f"{defect}={down(power)}" for defect, power in powers))
+    print(f"{name},{ALPHA},{n}," + ";".join(f"{defect}={down(power)}" for defect, power in powers.items()))
 
 
 def gaussian(name, setting, inclusion, n, power, defects=DEFECTS):
-    line(name, n, [(d, power(*laws(setting(), inclusion, d), n)) for d in defects])
+    line(name, n, **{d: power(*laws(setting(), inclusion, d), n) for d in defects})
 
 
 def false_alarm_power(alpha):
-    def power(good, bad, n):
-        eta = good[0] + good[1] * norm.isf(alpha)
-        return count_power(alpha, norm.sf(eta, *bad), n)
-    return power
+    return lambda good, bad, n: count_power(alpha, norm.sf(norm.isf(alpha, *good), *bad), n)
 
 
 def miss_power(beta):
-    def power(good, bad, n):
-        eta = good[0] + good[1] * norm.ppf(beta)
-        return count_power(beta, norm.cdf(eta, *bad), n)
-    return power
+    return lambda good, bad, n: count_power(beta, norm.cdf(norm.ppf(beta, *good), *bad), n)
 
 
 print("check,alpha,trials,powers")
@@ -115,8 +109,8 @@ gaussian("coarse_kolmogorov_h1", coarse, True, 200_000, kolmogorov_power)
 gaussian("coarse_false_alarms_at_1_percent", coarse, False, 200_000, false_alarm_power(0.01))
 gaussian("coarse_misses_at_5_percent", coarse, True, 200_000, miss_power(0.05))
 one_channel = ["variance_off_1_percent", "half_left_out", "sd_for_variance"]
-off = [("variance_off_1_percent", variance_power((0, 1), (0, math.sqrt(1.01)), 16 * 200_000))]  # 16 samples a record
-line("coarse_noise_variance", 200_000, off)
+# 16 samples a record.
+line("coarse_noise_variance", 200_000, variance_off_1_percent=variance_power((0, 1), (0, math.sqrt(1.01)), 16 * 200_000))
 gaussian("single_mean_h1", single, True, 200_000, mean_power, one_channel)
 gaussian("single_variance_h0", single, False, 200_000, variance_power, one_channel)
 gaussian("traverse_mean_h1", traverse, True, 20_000, mean_power)
@@ -138,17 +132,16 @@ for name, K in [
     for suffix, inclusion, power in [("mean_h1", True, mean_power), ("variance_h0", False, variance_power)]:
         sign = 1 if inclusion else -1
         good, bad = (sign * gamma2 / 2, math.sqrt(gamma2)), (sign * white @ template / 2, sd)
-        line(f"{name}_{suffix}", 200_000, [("whitening_left_out", power(good, bad, 200_000))])
+        line(f"{name}_{suffix}", 200_000, whitening_left_out=power(good, bad, 200_000))
 
-line("generator_kolmogorov", 2_000_000, [("shifted_by_1_percent", kolmogorov_power((0, 1), (0.01, 1), 2_000_000))])
-line("generator_tails_beyond_4", 2_000_000, [("tail_left_out", count_power(2 * norm.sf(4), 0, 2_000_000))])
+line("generator_kolmogorov", 2_000_000, shifted_by_1_percent=kolmogorov_power((0, 1), (0.01, 1), 2_000_000))
+line("generator_tails_beyond_4", 2_000_000, tail_left_out=count_power(2 * norm.sf(4), 0, 2_000_000))
 for name in ("generator_signs_of_neighbours", "generator_signs_of_trials"):
-    line(name, 200_000, [("same_address", count_power(0.5, 1, 200_000))])
+    line(name, 200_000, same_address=count_power(0.5, 1, 200_000))
 
 # A shift by one sample adds 1 to a mean square of 0.07. Below the threshold effect (gamma = 2.5, 100 candidate shifts, one in three errors
 # spread over the record) the mean square is some 200 against a bound of 7.
-line("position_error", 3_000, [("template_shifted", 1), ("signal_below_the_threshold_effect", 1)])
-
+line("position_error", 3_000, template_shifted=1, signal_below_the_threshold_effect=1)
 
 
 def cut_position(overlap_forgotten):
@@ -165,11 +158,12 @@ def cut_position(overlap_forgotten):
     return k + rise / (2 * bend), np.linalg.norm(slope)
 
 
-line("position_error_of_a_cut_signal", 3_000, [("overlap_forgotten", variance_power(cut_position(False), cut_position(True), 3_000))])
+overlap = variance_power(cut_position(False), cut_position(True), 3_000)
+line("position_error_of_a_cut_signal", 3_000, overlap_forgotten=overlap)
 
 # theta + ln 2 instead of theta.
 rate = norm.sf(norm.isf(0.05) - math.log(2) / 2)
-line("mixture_false_alarms_at_5_percent", 100_000, [("prior_left_out", count_power(0.05, rate, 100_000))])
+line("mixture_false_alarms_at_5_percent", 100_000, prior_left_out=count_power(0.05, rate, 100_000))
 
 force, eta, floor, fraction = (1.5, 1.9), 0.25, 0.05, 0.2
 v = [floor**2 + (fraction * f) ** 2 for f in force]
@@ -179,11 +173,9 @@ constant = (force[1] - force[0]) / v[0] * (observed - (force[0] + force[1]) / 2)
 for h in (0, 1):
     density = norm.pdf(observed, force[h], v[h] ** 0.5) * (observed[1] - observed[0])
     rate = lambda statistic: float(np.sum(density[statistic >= eta]))
-    powers = [
-        ("constant_noise_presumed", count_power(rate(log_ratio), rate(constant), 200_000)),
-        ("logarithm_left_out", count_power(rate(log_ratio), rate(log_ratio - 0.5 * math.log(v[0] / v[1])), 200_000)),
-    ]
-    line(f"weber_tail_h{h}", 200_000, powers)
+    power = lambda statistic: count_power(rate(log_ratio), rate(statistic), 200_000)
+    without_logarithm = log_ratio - 0.5 * math.log(v[0] / v[1])
+    line(f"weber_tail_h{h}", 200_000, constant_noise_presumed=power(constant), logarithm_left_out=power(without_logarithm))
 
 # Offsets and drifts of both channels and a gain beside the template, whitened; the inclusion is in every second record.
 AMPLITUDE, NUISANCES = 100, ["lateral_offset", "normal_offset", "lateral_drift", "normal_drift", "gain"]
@@ -211,40 +203,39 @@ def share_power(presumed, true, x, n):
 
 
 nominal, gamma, _, _ = beside(10)
-good, line_of_t = (0, 1), np.linspace(-40, 40, 400_001)
-powers = []
-for nuisance in ("lateral_drift", "gain"):
-    powers.append((f"{nuisance}_left_out", kolmogorov_power(good, (0, math.sqrt(1 + beside(10, nuisance)[3])), 20_000)))
+left_out = lambda nuisance: kolmogorov_power((0, 1), (0, math.sqrt(1 + beside(10, nuisance)[3])), 20_000)
+powers = {f"{nuisance}_left_out": left_out(nuisance) for nuisance in ("lateral_drift", "gain")}
 presumed = [norm(0, 1).cdf, norm(nominal, 1).cdf]
 true = [norm(0, gamma / nominal).cdf, norm(gamma**2 / nominal, gamma / nominal).cdf]
-line("nuisance_t_kolmogorov", 20_000, powers + [("nominal_gamma", share_power(presumed, true, line_of_t, 20_000))])
+powers["nominal_gamma"] = share_power(presumed, true, np.linspace(-40, 40, 400_001), 20_000)
+line("nuisance_t_kolmogorov", 20_000, **powers)
 
 nominal, gamma, nu, _ = beside(100)
 squares = np.geomspace(1e-8, 1e8, 4001)
 roots = np.concatenate([-np.sqrt(squares[::-1]), np.sqrt(squares)])
 presumed, both = [chi2(nu).cdf] * 2, [chi2(nu + 1).cdf, ncx2(nu + 1, gamma**2).cdf]
-powers = [
-    ("degrees_off_by_one", share_power([chi2(nu + 1).cdf] * 2, presumed, squares, 20_000)),
-    ("template_left_in", share_power(presumed, both, squares, 20_000)),
-]
-line("nuisance_residual_kolmogorov", 20_000, powers)
+line(
+    "nuisance_residual_kolmogorov", 20_000,
+    degrees_off_by_one=share_power([chi2(nu + 1).cdf] * 2, presumed, squares, 20_000),
+    template_left_in=share_power(presumed, both, squares, 20_000),
+)
 
 # With a degree too many the noise is taken for smaller, too.
 scale = math.sqrt((nu + 1) / nu)
 student, off = [t(nu), nct(nu, gamma)], [t(nu + 1), nct(nu + 1, gamma)]
 true = [law.cdf for law in student]
-powers = [
-    ("central_law", share_power([t(nu).cdf] * 2, true, roots, 20_000)),
-    ("normal_law", share_power([norm(0, 1).cdf, norm(gamma, 1).cdf], true, roots, 20_000)),
-    ("degrees_off_by_one", share_power([lambda x, law=law: law.cdf(scale * x) for law in off], true, roots, 20_000)),
-]
-line("nuisance_student_kolmogorov", 20_000, powers)
+line(
+    "nuisance_student_kolmogorov", 20_000,
+    central_law=share_power([t(nu).cdf] * 2, true, roots, 20_000),
+    normal_law=share_power([norm(0, 1).cdf, norm(gamma, 1).cdf], true, roots, 20_000),
+    degrees_off_by_one=share_power([lambda x, law=law: law.cdf(scale * x) for law in off], true, roots, 20_000),
+)
 true = [f(1, nu).cdf, ncf(1, nu, gamma**2).cdf]
-powers = [
-    ("central_law", share_power([f(1, nu).cdf] * 2, true, squares, 20_000)),
-    ("chi_square_law", share_power([chi2(1).cdf, ncx2(1, gamma**2).cdf], true, squares, 20_000)),
-]
-line("nuisance_f_kolmogorov", 20_000, powers)
+line(
+    "nuisance_f_kolmogorov", 20_000,
+    central_law=share_power([f(1, nu).cdf] * 2, true, squares, 20_000),
+    chi_square_law=share_power([chi2(1).cdf, ncx2(1, gamma**2).cdf], true, squares, 20_000),
+)
 
 
 def errors_power(without, inclusion, alarm, miss, n):
@@ -254,19 +245,20 @@ def errors_power(without, inclusion, alarm, miss, n):
 
 point, bias = norm.isf(0.01), 0.5
 scaled = gamma / nominal
-powers = [
-    ("bias_left_out", errors_power(norm(bias, 1), norm(gamma - bias, 1), point, gamma - point, 50_000)),
-    ("nominal_gamma", errors_power(
-        norm(scaled * bias, scaled), norm(scaled * (gamma - bias), scaled), bias + point, nominal - bias - point, 50_000)),
-]
-line("nuisance_errors_of_known_level", 50_000, powers)
+pair = norm(scaled * bias, scaled), norm(scaled * (gamma - bias), scaled)
+line(
+    "nuisance_errors_of_known_level", 50_000,
+    bias_left_out=errors_power(norm(bias, 1), norm(gamma - bias, 1), point, gamma - point, 50_000),
+    nominal_gamma=errors_power(*pair, bias + point, nominal - bias - point, 50_000),
+)
 # A record's own estimate of the noise is in its thresholds, too: T less its centre has a central law.
-powers = [
-    ("bias_left_out", errors_power(nct(nu, bias), nct(nu, -bias), t(nu).isf(0.01), -t(nu).isf(0.01), 100_000)),
-    ("normal_law", errors_power(t(nu), t(nu), point, -point, 100_000)),
-    ("degrees_off_by_one", errors_power(t(nu), t(nu), t(nu + 1).isf(0.01) / scale, -t(nu + 1).isf(0.01) / scale, 100_000)),
-]
-line("nuisance_errors_of_unknown_level", 100_000, powers)
+right, off = t(nu).isf(0.01), t(nu + 1).isf(0.01) / scale
+line(
+    "nuisance_errors_of_unknown_level", 100_000,
+    bias_left_out=errors_power(nct(nu, bias), nct(nu, -bias), right, -right, 100_000),
+    normal_law=errors_power(t(nu), t(nu), point, -point, 100_000),
+    degrees_off_by_one=errors_power(t(nu), t(nu), off, -off, 100_000),
+)
 
 
 def autocorrelation_rate(q):
@@ -281,14 +273,13 @@ def autocorrelation_rate(q):
 
 q = chi2.isf(0.05, 1)
 rate = autocorrelation_rate(q)  # RATE in nuisance.rs
-defects = [("degrees_off_by_one", chi2.isf(0.05, 2)), ("n_for_n_plus_2", q * 22 / 20)]
-line("ljung_box_at_5_percent", 50_000, [(name, count_power(rate, autocorrelation_rate(q), 50_000)) for name, q in defects])
+power = lambda limit: count_power(rate, autocorrelation_rate(limit), 50_000)
+line("ljung_box_at_5_percent", 50_000, degrees_off_by_one=power(chi2.isf(0.05, 2)), n_for_n_plus_2=power(q * 22 / 20))
 
 # A bank of two points, between which the normal channel is linear in the place, and the posterior a normal law cut to 0 ... 1.
 ALPHA, TRIALS = 1e-8, 20_000
-truth = (np.arange(2000) + 0.5) / 2000
-noise = norm.ppf((np.arange(2000) + 0.5) / 2000)
-truth, noise = np.meshgrid(truth, noise)
+middles = (np.arange(2000) + 0.5) / 2000
+truth, noise = np.meshgrid(middles, norm.ppf(middles))
 distance = math.hypot(4, -4)
 
 
@@ -306,12 +297,9 @@ def rank_power(found):
 
 
 wide, swapped = ranks(1.5, False), ranks(1, True)
-line("bank_ranks_kolmogorov", TRIALS, [
-    ("variance_of_one_channel", rank_power(wide)), ("template_of_the_neighbour", rank_power(swapped))])
-held = lambda found: np.mean((found >= 0.05) & (found <= 0.95))
-line("bank_intervals_at_90_percent", TRIALS, [
-    ("variance_of_one_channel", count_power(0.9, held(wide), TRIALS)),
-    ("template_of_the_neighbour", count_power(0.9, held(swapped), TRIALS))])
+held_power = lambda found: count_power(0.9, np.mean((found >= 0.05) & (found <= 0.95)), TRIALS)
+for name, power in [("bank_ranks_kolmogorov", rank_power), ("bank_intervals_at_90_percent", held_power)]:
+    line(name, TRIALS, variance_of_one_channel=power(wide), template_of_the_neighbour=power(swapped))
 
 # Two points, each in a channel of its own: the mean of h less its probability.
 gammas, shares, prior = (1.5, 2.0), (0.7, 0.3), 0.3
@@ -332,6 +320,6 @@ def excess_power(presumed, half):
     return norm.sf((least - abs(mean)) / math.sqrt((square - mean**2) / TRIALS))
 
 
-halves = [gamma**2 / 2 for gamma in gammas]
-line("bank_posterior_of_inclusion", TRIALS, [
-    ("prior_left_out", excess_power(0.5, halves)), ("gamma_for_its_square", excess_power(prior, [gamma / 2 for gamma in gammas]))])
+halves, unsquared = [gamma**2 / 2 for gamma in gammas], [gamma / 2 for gamma in gammas]
+powers = {"prior_left_out": excess_power(0.5, halves), "gamma_for_its_square": excess_power(prior, unsquared)}
+line("bank_posterior_of_inclusion", TRIALS, **powers)
