@@ -52,9 +52,7 @@ def main():
     basis = Basis(mesh, ElementVector(ElementTriP2()), intorder=4)
     assert basis.X.shape == (2, 6), basis.X
     constant = Basis(mesh, ElementTriP0(), intorder=4)
-    matrix = elasticity.assemble(
-        basis, lam=constant.interpolate(lam), mu=constant.interpolate(mu)
-    ).tocoo()
+    matrix = elasticity.assemble(basis, lam=constant.interpolate(lam), mu=constant.interpolate(mu)).tocoo()
 
     # Our number of each of scikit-fem's unknowns.
     unknown = np.empty(basis.N, dtype=int)

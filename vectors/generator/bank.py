@@ -306,14 +306,13 @@ def special(group):
 
 
 def refuse(group):
-    offset = [1.0, 1.0, 1.0]
+    offset, up, line = [1.0, 1.0, 1.0], [0.0, 1.0, 0.0], [0.0, 1.0, 2.0]
     args = {
         "residual": [1.0, 2.0, 0.5], "templates": [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]], "nuisances": [offset],
         "level": "known", "prior": [0.25, 0.75], "prior_h1": 0.5,
     }
     refuse_common(group, args, ["prior_h1"], ["residual", "templates", "nuisances", "prior"])
     group.refuse("level is missing", without(args, "level"), "missing_argument")
-    up, line = [0.0, 1.0, 0.0], [0.0, 1.0, 2.0]
     for comment, changes, flag in [
         ("the residual is shorter", {"residual": [1.0, 2.0]}, "lengths_differ"),
         ("the residual is longer", {"residual": [1.0, 2.0, 0.5, 0.0]}, "lengths_differ"),

@@ -35,6 +35,27 @@ def rates_tolerance(gamma, eta):
     return limits or None
 
 
+def rates_case(group, gamma, eta, kind):
+    pair = lambda false_alarm, miss: {"false_alarm": false_alarm, "miss": miss}
+    false_alarm, miss = rates(gamma, eta)
+    wrong = [
+        ("rates_swapped", pair(miss, false_alarm)),
+        ("hits_for_misses", {"miss": 1 - miss}),
+        ("tail_cancelled", pair(1.0 - nearest(1 - false_alarm), 1.0 - nearest(1 - miss))),
+    ]
+    if gamma:
+        g, e = real(gamma), real(eta)
+        wrong += [
+            ("half_left_out", pair(cdf(-(e + g * g) / g), cdf((e - g * g) / g))),
+            ("variance_for_sd", pair(cdf(-(e + g * g / 2) / (g * g)), cdf((e - g * g / 2) / (g * g)))),
+            ("gamma_squared", pair(*rates(nearest(sqrt(g)), eta))),
+        ]
+    else:
+        wrong.append(("zero_gamma", pair(mpf(1) / 2, mpf(1) / 2)))
+    args, comment = {"gamma": gamma, "eta": eta}, f"{kind}: γ = {gamma!r}, η = {eta!r}"
+    group.accept(comment, args, pair(false_alarm, miss), wrong, tolerance=rates_tolerance(gamma, eta))
+
+
 # Verifies: DET-026.
 def error_rates():
     reason = "Φ's 4 ULP and 3 roundings of its argument where |argument| < 1; cases farther out state their own"
@@ -71,25 +92,8 @@ def error_rates():
     ]
     cases += [(draws.decimal(0.2, 6), draws.decimal(-4, 4), "drawn") for _ in range(45)]
     cases += [(draws.between(0.01, 12), draws.between(-60, 60), "drawn, tails") for _ in range(30)]
-    pair = lambda false_alarm, miss: {"false_alarm": false_alarm, "miss": miss}
     for gamma, eta, kind in cases:
-        false_alarm, miss = rates(gamma, eta)
-        wrong = [
-            ("rates_swapped", pair(miss, false_alarm)),
-            ("hits_for_misses", {"miss": 1 - miss}),
-            ("tail_cancelled", pair(1.0 - nearest(1 - false_alarm), 1.0 - nearest(1 - miss))),
-        ]
-        if gamma:
-            g, e = real(gamma), real(eta)
-            wrong += [
-                ("half_left_out", pair(cdf(-(e + g * g) / g), cdf((e - g * g) / g))),
-                ("variance_for_sd", pair(cdf(-(e + g * g / 2) / (g * g)), cdf((e - g * g / 2) / (g * g)))),
-                ("gamma_squared", pair(*rates(nearest(sqrt(g)), eta))),
-            ]
-        else:
-            wrong.append(("zero_gamma", pair(mpf(1) / 2, mpf(1) / 2)))
-        args, comment = {"gamma": gamma, "eta": eta}, f"{kind}: γ = {gamma!r}, η = {eta!r}"
-        group.accept(comment, args, pair(false_alarm, miss), wrong, tolerance=rates_tolerance(gamma, eta))
+        rates_case(group, gamma, eta, kind)
     refuse_common(group, {"gamma": 2, "eta": 0.5}, ["gamma", "eta"])
     for gamma in (-1, -1e-300):
         group.refuse(f"γ = {gamma!r}", {"gamma": gamma, "eta": 0}, "out_of_range")
@@ -113,14 +117,10 @@ def roc():
         (1e300, [0.05], "huge γ"),
         (5e-324, [0.25], "subnormal γ"),
     ]
-    curves += [
-        (draws.decimal(0, 7), [draws.decimal(0.001, 0.999) for _ in range(draws.integer(1, 5))], "drawn")
-        for _ in range(34)
-    ]
+    some = lambda: [draws.decimal(0.001, 0.999) for _ in range(draws.integer(1, 5))]
+    curves += [(draws.decimal(0, 7), some(), "drawn") for _ in range(34)]
     small = lambda: nearest(mpf(10) ** -draws.integer(2, 250) * real(draws.between(1, 9)))
-    curves += [
-        (draws.between(0, 12), [small() for _ in range(3)], "drawn, small false alarms") for _ in range(10)
-    ]
+    curves += [(draws.between(0, 12), [small() for _ in range(3)], "drawn, small false alarms") for _ in range(10)]
     for gamma, alarms, kind in curves:
         g = real(gamma)
         miss, count = [], Fraction(0)
@@ -215,7 +215,7 @@ def required_gamma():
 def noise_budget():
     forces = case_by_case(["total_allowed_n", "remaining_n"], "N", 64 * UNIT)
     group = Group("noise_budget", SOURCE, {**case_by_case(["gamma"], bound=64 * UNIT), **forces})
-    draws = Draws(14)
+    draws, rate = Draws(14), lambda: draws.decimal(0.01, 0.3)
     budgets = [
         (0.5, 0.05, 0.05, [0.1], "the paper's example: 0.1145, not 0.11"),
         (0.34, 0.05, 0.05, [0.02, 0.0005, 0.14, 0.093], "Table 2, playback: exhausted"),
@@ -231,18 +231,16 @@ def noise_budget():
         (0.5, 0.05, 0.05, [0.02] * 20, "20 equal sources"),
     ]
     sources = lambda: [draws.decimal(0.001, 0.2) for _ in range(draws.integer(1, 4))]
-    rate = lambda: draws.decimal(0.01, 0.3)
     budgets += [(draws.decimal(0.1, 1), rate(), rate(), sources(), "drawn") for _ in range(46)]
     for signal, alpha, beta, sources, kind in budgets:
         gamma, gamma_bound = needed(alpha, beta)
         s = [real(x) for x in sources]
-        total = real(signal) / gamma
-        left = total**2 - sum(x * x for x in s)
+        total, used = real(signal) / gamma, sum(x * x for x in s)
+        left = total**2 - used
         remaining, remaining_bound = sqrt(left) if left > 0 else mpf(0), 0
         relative = gamma_bound / exact(gamma) + UNIT
-        total_bound = exact(total) * relative
         if left > 0:
-            squares = exact(total**2) * (2 * relative + 2 * UNIT) + exact(sum(x * x for x in s)) * (len(s) + 2) * UNIT
+            squares = exact(total**2) * (2 * relative + 2 * UNIT) + exact(used) * (len(s) + 2) * UNIT
             remaining_bound = squares / (2 * exact(remaining)) + 2 * UNIT * exact(remaining)
         wrong = [
             ("noise_added_linearly", {"remaining_n": max(total - sum(s), mpf(0))}),
@@ -256,12 +254,17 @@ def noise_budget():
         reason = "(δ(total²) + (n + 2) 2⁻⁵³ Σs²)/(2 remaining) + 2 roundings; 0 where the sources exhaust it"
         tolerance = {
             "gamma": absolute(gamma_bound, "1", "as of required_gamma"),
-            "total_allowed_n": absolute(total_bound, "N", "the relative one of γ and a quotient"),
+            "total_allowed_n": absolute(exact(total) * relative, "N", "the relative one of γ and a quotient"),
             "remaining_n": absolute(remaining_bound, "N", reason),
         }
         args = {"signal_n": signal, "max_false_alarm": alpha, "max_miss": beta, "sources_n": sources}
         ok = {"gamma": gamma, "total_allowed_n": total, "remaining_n": remaining}
         group.accept(kind, args, ok, wrong, tolerance=tolerance)
+    refuse_budgets(group)
+    return group
+
+
+def refuse_budgets(group):
     args = {"signal_n": 0.5, "max_false_alarm": 0.05, "max_miss": 0.05, "sources_n": [0.1, 0.02]}
     refuse_common(group, args, ["signal_n", "max_false_alarm", "max_miss"], ["sources_n"])
     for key in ("max_false_alarm", "max_miss"):
@@ -270,7 +273,6 @@ def noise_budget():
     group.refuse("γ = 0: any noise would do", args, "zero_gamma", error="overflow", max_false_alarm=0.5, max_miss=0.5)
     group.refuse("γ floored at 0", args, "zero_gamma", error="overflow", max_false_alarm=0.8, max_miss=0.7)
     group.refuse("a source below 0", args, "out_of_range", sources_n=[0.1, -0.02])
-    return group
 
 
 GROUPS = [error_rates, roc, required_gamma, noise_budget]

@@ -33,12 +33,8 @@ def sum_ulps(count):
 SUM = "(N + 2)·2⁻⁵³ for a plain sum of squares, halved by the root, and 8 for differences, scaling, quotient and root"
 
 
-# Verifies: DET-013.
-def matched_filter():
-    sigma = {"sigma_x": in_ulp(4, "√N and a quotient, or the root of the weight"), "sigma_y": in_ulp(4, "as sigma_x")}
-    sums = {key: in_ulp(16, SUM) for key in ("b_x", "b_y", "gamma")}
-    group = Group("matched_filter", SOURCE, {key: {**sums, **sigma}[key] for key in ("b_x", "b_y", *sigma, "gamma")})
-    draws = Draws(20)
+def templates(draws):
+    """Templates and noise of both channels, and what they are."""
     cases = []
     for count in (1, 2, 3, 5, 9, 21, 41):
         x, y = signal(count, draws)
@@ -70,7 +66,15 @@ def matched_filter():
         count = draws.integer(2, 12)
         x, y = signal(count, draws, draws.decimal(0.05, 1))
         cases.append((x, y, draws.decimal(0.01, 0.5), draws.decimal(0.01, 0.5), "drawn"))
-    for x, y, sx, sy, kind in cases:
+    return cases
+
+
+# Verifies: DET-013.
+def matched_filter():
+    sigma = {"sigma_x": in_ulp(4, "√N and a quotient, or the root of the weight"), "sigma_y": in_ulp(4, "as sigma_x")}
+    sums = {key: in_ulp(16, SUM) for key in ("b_x", "b_y", "gamma")}
+    group = Group("matched_filter", SOURCE, {key: {**sums, **sigma}[key] for key in ("b_x", "b_y", *sigma, "gamma")})
+    for x, y, sx, sy, kind in templates(Draws(20)):
         (bx, nx, gx), (by, ny, gy) = filtered(x, sx), filtered(y, sy)
         count = len(x)
         ok = {"b_x": bx, "b_y": by, "sigma_x": nx, "sigma_y": ny, "gamma": root(gx + gy)}
@@ -92,6 +96,11 @@ def matched_filter():
             limits = {key: in_ulp(sum_ulps(count), SUM) for key in ("b_x", "b_y", "gamma")}
         args = {"template_x": x, "template_y": y, "noise_sd_x": sx, "noise_sd_y": sy}
         group.accept(kind, args, ok, wrong, tolerance=limits)
+    refuse_filters(group)
+    return group
+
+
+def refuse_filters(group):
     args = {"template_x": [0.1, 0.2], "template_y": [0.3, 0.4], "noise_sd_x": 0.1, "noise_sd_y": 0.2}
     refuse_common(group, args, ["noise_sd_x", "noise_sd_y"], ["template_x", "template_y"])
     refuse_deviations(group, args)
@@ -101,7 +110,6 @@ def matched_filter():
     group.refuse("γ would be infinite", args, "infinite_answer", error="overflow", **huge)
     text = '{"template_x":[1e999,0.2],"template_y":[0.3,0.4],"noise_sd_x":0.1,"noise_sd_y":0.2}'
     group.refuse_line("a sample is 1e999", text)
-    return group
 
 
 def refuse_deviations(group, args):
@@ -160,6 +168,11 @@ def theta():
             kind += ", on top of 1 MN: the differences cancel"
         series = [[v * scale for v in f] for f in (px, py, f0x, f0y, f1x, f1y)]
         theta_case(group, kind, series, sx * scale, sy * scale)
+    refuse_records(group)
+    return group
+
+
+def refuse_records(group):
     args = {
         "observed_x": [0.1, 0.2],
         "observed_y": [1.0, 1.1],
@@ -178,16 +191,20 @@ def theta():
     group.refuse("empty", args, "empty", **{key: [] for key in lists})
     text = '"observed_x":[-1e999],"observed_y":[1],"f0_x":[0],"f0_y":[1],"f1_x":[0.2],"f1_y":[1.2]'
     group.refuse_line("a sample is -1e999", "{" + text + ',"noise_sd_x":0.1,"noise_sd_y":0.2}')
-    return group
 
 
-def outputs(channels, change=lambda r, d: (r, d)):
-    """y(0) of each channel, of the record and the template as `change` leaves them."""
+def outputs(channels):
+    """y(0) of each channel."""
     found = {}
     for key, (r, d, _) in zip(("y_x", "y_y"), channels):
-        energy, (record, template) = dot(d, d), change(r, d)
-        found[key] = real(dot(record, template) / len(d)) / root(energy / len(d)) if energy else mpf(0)
+        energy = dot(d, d)
+        found[key] = real(dot(r, d) / len(d)) / root(energy / len(d)) if energy else mpf(0)
     return found
+
+
+def total(channels):
+    """Θ of both channels."""
+    return sum((rd - half for rd, half, _ in (correlate(*channel) for channel in channels)), Fraction(0))
 
 
 def theta_case(group, kind, series, sx, sy):
@@ -196,6 +213,7 @@ def theta_case(group, kind, series, sx, sy):
     for p, f0, f1, s in ((px, f0x, f1x, sx), (py, f0y, f1y, sy)):
         channels.append(([a - b for a, b in zip(p, f0)], [a - b for a, b in zip(f1, f0)], s))
     raw = [(p, d, s) for p, (_, d, s) in zip((px, py), channels)]
+    turned = [(r, d[::-1], s) for r, d, s in channels]
     sums, y, y_bounds = [correlate(*channel) for channel in channels], outputs(channels), []
     for r, d, _ in channels:
         energy = dot(d, d)
@@ -206,15 +224,11 @@ def theta_case(group, kind, series, sx, sy):
     bound = (count + 8) * UNIT * sum(size for _, _, size in sums)
     ratio = exact(sx) ** 2 / exact(sy) ** 2
 
-    def total(channels):
-        return sum((rd - half for rd, half, _ in (correlate(*channel) for channel in channels)), Fraction(0))
-
     def weighted(weights):
         """θ and γ² where the squares of each channel have another weight."""
         pairs = list(zip(sums, weights))
         return sum((rd - half) * w for (rd, half, _), w in pairs), 2 * sum(half * w for (_, half, _), w in pairs)
 
-    reversed_theta = total((r, d[::-1], s) for r, d, s in channels)
     by_sd, by_sd2 = weighted((exact(sx), exact(sy)))
     exchanged, exchanged2 = weighted((ratio, 1 / ratio))
     wrong = [
@@ -222,8 +236,8 @@ def theta_case(group, kind, series, sx, sy):
         ("half_left_out", {"theta": sum(rd for rd, _, _ in sums)}),
         ("sign_exchanged", {"theta": -value}),
         ("gamma_squared", {"gamma": real(gamma2)}),
-        ("time_not_reversed", {"theta": reversed_theta, **outputs(channels, lambda r, d: (r, d[::-1]))}),
-        ("time_not_reversed", {"theta": reversed_theta}),
+        ("time_not_reversed", {"theta": total(turned), **outputs(turned)}),
+        ("time_not_reversed", {"theta": total(turned)}),
         ("variance_for_sd", {"theta": by_sd, "gamma": root(by_sd2)}),
         ("variance_for_sd", {"theta": by_sd}),
         ("weight_missing", {"theta": value / count, "gamma": root(gamma2 / count)}),

@@ -259,8 +259,16 @@ def record(draws, template, nuisances, amplitude, present):
 # Verifies: ORA-020, NUI-001, NUI-003, NUI-007, NUI-008, NUI-014, NUI-012.
 def theta_nuisances():
     tolerance = {**case_by_case(REASONS, bound=0), "rank": EXACT, "degrees": EXACT}
-    group = Group("theta_nuisances", SOURCE, tolerance)
-    draws = Draws(70)
+    group, draws = Group("theta_nuisances", SOURCE, tolerance), Draws(70)
+    by_hand(group)
+    of_sizes(group, draws)
+    of_several(group, draws)
+    drawn(group, draws)
+    refuse(group)
+    return group
+
+
+def by_hand(group):
     one, line = [1.0] * 4, [0.0, 1.0, 2.0, 3.0]
     four = ([4.0, 2.0, 3.0, 3.5], [1.0, -1.0, 1.0, -1.0])
     for level in ("known", "unknown"):
@@ -269,6 +277,9 @@ def theta_nuisances():
         add(group, f"by hand, {level} level, one degree of freedom left", *four, [one, line], level)
     add(group, "a record of nothing: θ = −γ²/2", [0.0] * 4, four[1], [one])
     add(group, "the record is the template on an offset: θ = γ²/2", [1e3 + v for v in four[1]], four[1], [one])
+
+
+def of_sizes(group, draws):
     for count, name, amplitude, kind in [
         (7, "none", 0, ""),
         (7, "offset", 20, ""),
@@ -284,6 +295,9 @@ def theta_nuisances():
             present = draws.integer(0, 1)
             residual = record(draws, template, nuisances, amplitude, present)
             add(group, f"2 × {count} samples, {level} level, {name}{kind}", residual, template, nuisances, level)
+
+
+def of_several(group, draws):
     several = shapes(7, draws)["offset, drift and gain"]
     template = sum(signal(7, draws, 3), [])
     residual = record(draws, template, several, 30, 1)
@@ -302,20 +316,16 @@ def theta_nuisances():
     ]:
         for level in ("known", "unknown"):
             add(group, f"nuisances {kind}, {level} level", residual, template, nuisances, level)
-    for level, bias, eta in [
-        ("known", 0.4, 0),
-        ("known", 9, 1),
-        ("known", 0, 12.5),
-        ("known", 0.1, -30),
-        ("unknown", 0.4, 0),
-        ("unknown", 9, 1),
-        ("unknown", 0, 3.5),
-        ("unknown", 0.1, -3.5),
-        ("unknown", 0.1, 40),
-        ("unknown", 0.1, -40),
-    ]:
+    pairs = {
+        "known": [(0.4, 0), (9, 1), (0, 12.5), (0.1, -30)],
+        "unknown": [(0.4, 0), (9, 1), (0, 3.5), (0.1, -3.5), (0.1, 40), (0.1, -40)],
+    }
+    for level, bias, eta in [(level, *pair) for level in pairs for pair in pairs[level]]:
         kind = {40: ": no T is enough", -40: ": any T is enough"}.get(eta, "")
         add(group, f"{level} level, bias {bias}, η = {eta}{kind}", residual, template, several, level, bias, eta)
+
+
+def drawn(group, draws):
     for number in range(36):
         count, level = draws.integer(4, 9), ("known", "unknown")[number % 2]
         all_shapes = shapes(count, draws)
@@ -326,8 +336,6 @@ def theta_nuisances():
         bias = draws.choice([0, 0, draws.decimal(0.01, 0.9, 2)])
         eta = draws.decimal(-1 if level == "known" else -0.2, 1, 2)
         add(group, f"drawn, {level} level, {name}", residual, template, nuisances, level, bias, eta)
-    refuse(group)
-    return group
 
 
 def refuse(group):

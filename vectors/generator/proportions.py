@@ -122,11 +122,10 @@ def proportion_interval():
         tail = (1 - real(confidence)) / 2
         z = -quantile(tail)
         exact_pair, score = clopper_pearson(k, n, tail), wilson(k, n, z)
+        bounds = clopper_pearson_bounds(k, n, tail, exact_pair)
         comment = f"{k} of {n}, confidence {confidence!r}"
         args = {"successes": k, "trials": n, "confidence": confidence}
         shared = [("wald_interval", ends(wald(k, n, z)))]
-
-        bounds = clopper_pearson_bounds(k, n, tail, exact_pair)
         wrong = shared + [
             ("one_sided_interval", ends(clopper_pearson(k, n, 2 * tail))),
             ("wilson_for_clopper_pearson", ends(score)),
@@ -155,6 +154,11 @@ def proportion_interval():
         )
         limits = ends([absolute(bound, "1", reason)] * 2)
         group.accept("Wilson: " + comment, {**args, "method": "wilson"}, ends(score), wrong, tolerance=limits)
+    refuse_proportions(group)
+    return group
+
+
+def refuse_proportions(group):
     args = {"successes": 25, "trials": 30, "confidence": 0.95, "method": "wilson"}
     refuse_common(group, args, ["successes", "trials", "confidence"])
     for method in ("wilson", "clopper_pearson"):
@@ -167,7 +171,6 @@ def proportion_interval():
         group.refuse(f"{method}: half a success", args, "wrong_type", successes=12.5)
     group.refuse("a method that does not exist", args, "out_of_range", method="jeffreys")
     group.refuse("no method", without(args, "method"), "missing_argument")
-    return group
 
 
 TABLE_1 = {

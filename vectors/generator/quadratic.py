@@ -316,8 +316,7 @@ def student_tail():
         for x in around(draws, delta, nearest(sqrt(1 + real(delta) ** 2 / (2 * n))), 1):
             cases.append(("drawn", round(x, 4), n, delta))
     for comment, x, n, delta in cases:
-        more = []
-        pair = student(x, n, delta)
+        more, pair = [], student(x, n, delta)
         if delta:
             more = [("noncentrality_sign", {"noncentrality": -delta})] if delta < 0 else []
             more.append(("noncentrality_scale", {"noncentrality": delta * abs(delta) if abs(delta) < 6 else delta / 2}))

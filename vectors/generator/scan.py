@@ -49,6 +49,11 @@ def scan():
         ("record of zeros: all equal, the first counts", [0.0] * 6, [0.0] * 6),
     ):
         scan_case(group, kind, rx, ry, ramp, flat, 0.5, 0.25, tie=True)
+    refuse_scans(group)
+    return group
+
+
+def refuse_scans(group):
     args = {
         "residual_x": [0.1, 0.2, 0.3],
         "residual_y": [0.3, 0.2, 0.1],
@@ -65,7 +70,6 @@ def scan():
     group.refuse("template longer than the record", args, "lengths_differ", template_x=[0.1] * 4, template_y=[0.1] * 4)
     group.refuse("no template", args, "empty", template_x=[], template_y=[])
     group.refuse("nothing", args, "empty", **{key: [] for key in lists})
-    return group
 
 
 def scan_case(group, kind, rx, ry, tx, ty, sx, sy, tie=False):

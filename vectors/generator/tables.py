@@ -77,6 +77,11 @@ def interpolate():
     pose_case(group, "a cell of one step of the last place", depths, laterals, table, 0.001, 0.0005)
     depths, table = [0.001, 0.002, 0.003], [[1.0, 2.0], [3.0, 5.0], [-4.0, 7.0]]
     pose_case(group, "just below a knot", depths, laterals, table, 0.002 - 2.0**-61, 0.0005)
+    refuse_tables(group)
+    return group
+
+
+def refuse_tables(group):
     args = {
         "depths_m": [0.001, 0.002],
         "laterals_m": [0.0, 0.001],
@@ -111,7 +116,6 @@ def interpolate():
         group.refuse_line(f"a force is {token}", "{" + text + "}")
     far = {"table_n": [[1e10, 2e10], [3e10, 5e10]], "depth_m": 1e200, "lateral_m": 1e200}
     group.refuse("so far outside that the force is no f64", args, "infinite_answer", error="overflow", **far)
-    return group
 
 
 def pose_case(group, kind, depths, laterals, table, depth, lateral, subnormal=False):

@@ -74,7 +74,13 @@ def threshold():
         map_case(group, prior, "table")
     for _ in range(18):
         map_case(group, draws.decimal(0.001, 0.999), "drawn")
+    bayes_cases(group, draws)
+    neyman_pearson_cases(group, draws)
+    refuse_thresholds(group)
+    return group
 
+
+def bayes_cases(group, draws):
     bayes_case(group, 0.5, 0, 1, 1, 0, "equal costs: η = 0")
     bayes_case(group, 0.1, 0, 1, 1, 0, "equal costs: the MAP rule")
     bayes_case(group, 0.01, 0, 100, 1, 0, "a miss costs 100 false alarms")
@@ -93,6 +99,8 @@ def threshold():
         miss, alarm = c11 + draws.decimal(0.1, 9, 2), c00 + draws.decimal(0.1, 9, 2)
         bayes_case(group, draws.decimal(0.01, 0.99), c00, miss, alarm, c11, "drawn")
 
+
+def neyman_pearson_cases(group, draws):
     for which in ("miss", "false_alarm"):
         for gamma, rate, kind in (
             (3.3, 0.05, "the paper's example"),
@@ -109,14 +117,12 @@ def threshold():
             neyman_pearson(group, which, gamma, rate, kind)
         for _ in range(14):
             neyman_pearson(group, which, draws.decimal(0.1, 8), draws.decimal(0.001, 0.6), "drawn")
-    group.accept(
-        "Neyman–Pearson, miss: γ = 0",
-        {"criterion": "neyman_pearson_miss", "gamma": 0, "max_miss": 0.05},
-        {"eta": mpf(0)},
-        flags=["zero_gamma"],
-        tolerance={"eta": absolute(0, "1", "both terms are 0")},
-    )
+    args = {"criterion": "neyman_pearson_miss", "gamma": 0, "max_miss": 0.05}
+    zero = {"eta": absolute(0, "1", "both terms are 0")}
+    group.accept("Neyman–Pearson, miss: γ = 0", args, {"eta": mpf(0)}, flags=["zero_gamma"], tolerance=zero)
 
+
+def refuse_thresholds(group):
     bayes = {"criterion": "bayes", "prior_h1": 0.5, "c00": 0, "c01": 1, "c10": 1, "c11": 0}
     refuse_common(group, {"criterion": "map", "prior_h1": 0.5}, ["prior_h1"])
     refuse_common(group, bayes, ["prior_h1", "c00", "c01", "c10", "c11"])
@@ -143,7 +149,6 @@ def threshold():
     group.refuse("no criterion", {"prior_h1": 0.5}, "missing_argument")
     group.refuse("a criterion that does not exist", {"criterion": "minimax", "prior_h1": 0.5}, "out_of_range")
     group.refuse("a criterion that is a number", {"criterion": 1, "prior_h1": 0.5}, "wrong_type")
-    return group
 
 
 GROUPS = [threshold]

@@ -95,9 +95,7 @@ TYPED = {
     "count_analysis": palpate.count_analysis,
 }
 # What only the oracle has is asked by its name; "requests" are about its lines.
-FILES = sorted(
-    path for path in VECTORS.glob("*.json") if path.stem not in ("manifest", "schema", "requests")
-)
+FILES = sorted(path for path in VECTORS.glob("*.json") if path.stem not in ("manifest", "schema", "requests"))
 # A keyword that has a default in Python, so that a question without it has an answer.
 DEFAULTS = {"theta_nuisances": {"level", "bias", "eta"}, "bank_posterior": {"level", "prior_h1"}}
 
