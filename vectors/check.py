@@ -49,8 +49,7 @@ def leaves(value):
 
 
 def ulp(value):
-    pattern = struct.unpack(">Q", struct.pack(">d", abs(value)))[0]
-    return rational(struct.unpack(">d", struct.pack(">Q", pattern + 1))[0]) - rational(abs(value))
+    return rational(math.ulp(value))
 
 
 def bound(tolerance, expected):

@@ -1,5 +1,6 @@
 """Exact numbers to floats and back, and a generator of numbers that is the same on every machine."""
 
+import math
 import struct
 from decimal import Decimal
 from fractions import Fraction
@@ -46,9 +47,7 @@ def real(value):
 
 def ulp(value):
     """Distance from |value| to the next larger f64, as a fraction."""
-    magnitude = abs(nearest(value))
-    pattern = struct.unpack(">Q", struct.pack(">d", magnitude))[0]
-    return exact(struct.unpack(">d", struct.pack(">Q", pattern + 1))[0]) - exact(magnitude)
+    return exact(math.ulp(nearest(value)))
 
 
 def round_up(value):

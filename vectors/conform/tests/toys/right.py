@@ -41,25 +41,19 @@ def number(value, name):
     return Fraction(value)
 
 
-def positive(value, name):
-    value = number(value, name)
-    if value <= 0:
-        raise Refused("out_of_range", f"{name} is not above 0")
-    return value
+def limited(is_within, fault):
+    def read(value, name):
+        value = number(value, name)
+        if not is_within(value):
+            raise Refused("out_of_range", f"{name} is {fault}")
+        return value
+
+    return read
 
 
-def not_negative(value, name):
-    value = number(value, name)
-    if value < 0:
-        raise Refused("out_of_range", f"{name} is below 0")
-    return value
-
-
-def probability(value, name):
-    value = number(value, name)
-    if not 0 < value < 1:
-        raise Refused("out_of_range", f"{name} is not between 0 and 1")
-    return value
+positive = limited(lambda value: value > 0, "not above 0")
+not_negative = limited(lambda value: value >= 0, "below 0")
+probability = limited(lambda value: 0 < value < 1, "not between 0 and 1")
 
 
 def whole(value, name):
@@ -68,29 +62,21 @@ def whole(value, name):
     return value
 
 
-def series(value, name):
+def series(value, name, read=number):
     if not isinstance(value, list) or not value:
-        raise Refused("bad_argument", f"{name} is no list of numbers")
-    return [number(item, f"{name}[{i}]") for i, item in enumerate(value)]
+        raise Refused("bad_argument", f"{name} is no list, or an empty one")
+    return [read(item, f"{name}[{i}]") for i, item in enumerate(value)]
 
 
-def rows(value, name, read=series):
-    if not isinstance(value, list) or not value:
-        raise Refused("bad_argument", f"{name} is no list of lists")
-    table = [read(row, f"{name}[{i}]") for i, row in enumerate(value)]
+def rows(value, name, read=number):
+    table = series(value, name, lambda row, name: series(row, name, read))
     if len({len(row) for row in table}) != 1:
         raise Refused("bad_argument", f"the rows of {name} differ in length")
     return table
 
 
-def counts(value, name):
-    if not isinstance(value, list) or not value:
-        raise Refused("bad_argument", f"{name} is no list of counts")
-    return [whole(item, name) for item in value]
-
-
 def count_rows(value, name):
-    return rows(value, name, counts)
+    return rows(value, name, whole)
 
 
 def text(value, name):
