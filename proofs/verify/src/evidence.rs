@@ -5,17 +5,15 @@ use serde_json::{Value, json};
 
 use palpate::version::Build;
 
-use super::build::lock_sha256;
-use super::record::{self, Record};
-use super::supply::Component;
+use super::components::{Component, lock_sha256};
 use super::system::System;
-use super::traceability::Requirement;
+use super::test_run::{Evidenced, TestRun};
 use super::{Figure, Outcome};
 
 /// The value of the key `schema`.
 const SCHEMA: &str = "palpate-evidence";
 /// The value of the key `schema_version`.
-const SCHEMA_VERSION: u32 = 2;
+const SCHEMA_VERSION: u32 = 3;
 
 /// The parts of the verification, in the order in which they are told.
 pub const PARTS: [&str; 7] = [
@@ -25,7 +23,7 @@ pub const PARTS: [&str; 7] = [
     "fem",
     "kernel",
     "timing",
-    "record",
+    "tests",
 ];
 
 /// What a run found.
@@ -37,18 +35,20 @@ pub struct Evidence {
     pub system: System,
     /// The executables that were judged: path and SHA-256.
     pub executables: Vec<(String, String)>,
-    /// The records of test runs that were given.
-    pub records: Vec<Record>,
+    /// The test runs that were given.
+    pub test_runs: Vec<TestRun>,
     /// Parts that were not asked for.
     pub left_out: Vec<&'static str>,
     /// Every check that was carried out, in the order of [`PARTS`].
     pub outcomes: Vec<Outcome>,
     /// Batteries with fresh seeds, where they were asked for.
     pub soak: Option<Soak>,
-    /// The trace.
-    pub requirements: Vec<Requirement>,
-    /// The crates in the program.
+    /// The requirements of the test runs with their evidence; none without a test run.
+    pub requirements: Vec<Evidenced>,
+    /// The components of the program, or all packages of the lock file.
     pub components: Vec<Component>,
+    /// SHA-256 of the bill of materials that lists these components, if one was given.
+    pub bill_of_materials: Option<String>,
 }
 
 /// Batteries with fresh seeds.
@@ -101,23 +101,11 @@ impl Evidence {
             .filter(move |outcome| outcome.part() == part)
     }
 
-    /// The evidence of each requirement, in their order.
-    pub fn joined(&self) -> Vec<record::Joined> {
-        record::join(&self.requirements, &self.outcomes, &self.records)
-    }
-
-    /// How many requirements have evidence, by its kind.
-    pub fn counts(&self) -> Counts {
-        let joined = self.joined();
-        let count = |has: fn(&record::Joined) -> bool| joined.iter().filter(|row| has(row)).count();
-        Counts {
-            requirements: joined.len(),
-            checks: count(|row| !row.checks.is_empty()),
-            tests: count(|row| !row.tests.is_empty()),
-            proofs: count(|row| !row.proofs.is_empty()),
-            inspection: count(|row| row.inspection.is_some()),
-            none: count(|row| !row.is_there()),
-        }
+    /// How many requirements have evidence, by its kind; `None` without a test run, which lists the requirements.
+    pub fn counts(&self) -> Option<Counts> {
+        let mut counts = Counts::default();
+        self.requirements.iter().for_each(|row| counts.add(row));
+        (!self.test_runs.is_empty()).then_some(counts)
     }
 
     /// What is unusual about the build itself.
@@ -160,11 +148,12 @@ impl Evidence {
             "checks": all(checks),
             "soak": self.soak,
             "requirements": self.counts(),
+            "bill_of_materials_sha256": self.bill_of_materials,
             "components": self.components,
             "measured_here": {
                 "system": self.system,
                 "executables": self.executables,
-                "records": self.records.iter().map(head).collect::<Vec<_>>(),
+                "test_runs": self.test_runs.iter().map(head).collect::<Vec<_>>(),
                 "checks": all(others),
                 "seconds": seconds,
             },
@@ -196,32 +185,40 @@ fn figure(figure: &Figure) -> Value {
     })
 }
 
-/// What is told of a record beside its entries, which stand in a file of their own.
-fn head(record: &Record) -> Value {
-    let Record {
-        commit,
-        began,
-        ended,
-        system,
-        log_sha256,
-        ..
-    } = record;
-    json!({"commit": commit, "began": began, "ended": ended, "system": system, "log_sha256": log_sha256, "entries": record.entries.len()})
+/// A test run without its requirements and entries, which have files of their own.
+fn head(run: &TestRun) -> Value {
+    json!({
+        "commit": run.commit,
+        "began": run.began,
+        "ended": run.ended,
+        "system": run.system,
+        "results_sha256": run.results_sha256,
+        "entries": run.entries.len(),
+    })
 }
 
 /// How many requirements have evidence in a dossier, by its kind. One may have several kinds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Counts {
     /// All requirements.
     pub requirements: usize,
     /// Those that a check of this run serves.
     pub checks: usize,
-    /// Those with a test that passed in the records.
+    /// Those with a test that passed in the test runs.
     pub tests: usize,
-    /// Those with a proof that passed in the records.
+    /// Those with a proof that passed in the test runs.
     pub proofs: usize,
-    /// Those that a person inspects.
-    pub inspection: usize,
     /// Those with none of these.
     pub none: usize,
+}
+
+impl Counts {
+    /// Counts one more requirement.
+    pub fn add(&mut self, row: &Evidenced) {
+        self.requirements += 1;
+        self.checks += usize::from(!row.checks.is_empty());
+        self.tests += usize::from(!row.tests.is_empty());
+        self.proofs += usize::from(!row.proofs.is_empty());
+        self.none += usize::from(!row.is_shown());
+    }
 }

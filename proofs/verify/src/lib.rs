@@ -9,27 +9,24 @@
 //! | `fem/` | the solver against exact solutions, and the forces of the paper's poses |
 //! | `program.rs`, `program/` | the shipped program, judged from outside: vectors through a pipe, forces against other programs', decisions and refusals |
 //! | `timing.rs` | the time that a step and a cycle take here |
-//! | `build.rs`, `supply.rs`, `traceability.rs` | what was built, from which components, for which requirements |
-//! | `record.rs` | the record of a test run, joined to the trace |
+//! | `system.rs`, `components.rs` | the machine of this run, and the components of the program |
+//! | `test_run.rs` | test runs, and the evidence of each requirement |
 //! | `evidence.rs`, `dossier/` | all of it for programs, and as a page |
 
 #[macro_use]
 mod check;
 mod battery;
-pub mod build;
+pub mod components;
 pub mod dossier;
 pub mod evidence;
 pub mod fem;
 pub mod kernel;
 pub mod program;
 mod rates;
-pub mod record;
-pub mod sbom;
 pub mod statistics;
-pub mod supply;
 pub mod system;
+pub mod test_run;
 pub mod timing;
-pub mod traceability;
 
 pub use battery::outcome as battery_outcome;
 pub use check::{Check, Claim, Figure, Measured, Outcome};
@@ -52,7 +49,14 @@ pub fn claims() -> impl Iterator<Item = &'static Claim> {
     checks()
         .map(|check| &check.claim)
         .chain(outside)
-        .chain([&record::CLAIM])
+        .chain([&test_run::CLAIM])
+}
+
+/// The ids of all requirements that a check names, those of the statistics battery too; one may come several times.
+pub fn served_requirements() -> impl Iterator<Item = &'static str> {
+    let battery = battery::GROUPS.iter().map(|(.., ids)| *ids);
+    let all = claims().map(|claim| claim.requirements).chain(battery);
+    all.flatten().copied()
 }
 
 /// The check of a name, if there is one in this build.

@@ -11,16 +11,14 @@ use palpate::version::Build;
 use palpate_program::output::{make_folder, print, write};
 use palpate_program::progress::bar;
 use palpate_program::{CliError, program as command};
+use palpate_verify::components::Component;
 use palpate_verify::evidence::{Evidence, PARTS, Soak, Verdict};
-use palpate_verify::record::{self, Record};
-use palpate_verify::sbom::sbom;
 use palpate_verify::statistics::{battery, total_alpha};
 use palpate_verify::system::System;
-use palpate_verify::{
-    Check, Outcome, battery_outcome, checks, dossier, program, supply, traceability,
-};
+use palpate_verify::test_run::{self, TestRun, evidence_by_requirement};
+use palpate_verify::{Check, Outcome, battery_outcome, checks, components, dossier, program};
 
-/// Collects the evidence for this build on this machine: checks, records of test runs, a dossier for a reviewer.
+/// Collects the evidence for this build on this machine: checks, test runs, a dossier for a reviewer.
 #[derive(Debug, Parser)]
 #[command(version, about)]
 struct Arguments {
@@ -33,9 +31,12 @@ struct Arguments {
     /// The program palpate to judge [default: the one beside palpate-verify]
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
-    /// A record of a test run, as .ci/run writes it to target/record.json; may be given several times
+    /// A test run, as .ci/run writes it to target/results/test-run.json; may be given several times
     #[arg(long, value_name = "FILE")]
-    record: Vec<PathBuf>,
+    test_run: Vec<PathBuf>,
+    /// The bill of materials of the program, as `cargo cyclonedx --format json` writes it
+    #[arg(long, value_name = "FILE")]
+    sbom: Option<PathBuf>,
     /// Name of the operator, for the dossier
     #[arg(long, value_name = "NAME")]
     operator: Option<String>,
@@ -56,7 +57,7 @@ enum Part {
     Fem,
     Kernel,
     Timing,
-    Record,
+    Tests,
     Soak,
 }
 
@@ -81,22 +82,9 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
         None => true,
         Some(only) => only.iter().any(|asked| asked.name() == part),
     };
-    if arguments.only.is_some() && asked("soak") && arguments.soak.is_none() {
-        let message = "--only soak: expected --soak N, the number of batteries";
-        return Err(CliError::Usage(message.into()));
-    }
-    if arguments.only.is_some() && asked("record") && arguments.record.is_empty() {
-        let message = "--only record: expected --record FILE, which .ci/run writes";
-        return Err(CliError::Usage(message.into()));
-    }
-    let records = arguments.record.iter().map(|path| Record::read(path));
-    let records = records
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(CliError::Usage)?;
+    let inputs = Inputs::read(arguments)?;
     // What can fail at once comes first: minutes of work shall not end for want of a place.
     make_folder(&arguments.out)?;
-    let requirements = traceability::requirements().map_err(CliError::Check)?;
-    let components = supply::components().map_err(CliError::Check)?;
     let soak = arguments
         .soak
         .map(|batteries| (batteries, arguments.seed.unwrap_or_else(fresh_seed)));
@@ -112,30 +100,61 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
     let executable = |path: PathBuf| Some((path.display().to_string(), program::sha256(&path)?));
     let own = std::env::current_exe().ok();
     let mut outcomes = carry_out(&asked, &judged);
-    if !records.is_empty() && asked("record") {
-        outcomes.push(record::outcome(&requirements, &records, Build::THIS.commit));
+    if !inputs.test_runs.is_empty() && asked("tests") {
+        outcomes.push(test_run::outcome(&inputs.test_runs, Build::THIS.commit));
     }
+    let soak = soak.map(|(batteries, seed)| soak_battery(batteries, seed));
+    let executables = own.into_iter().chain([judged]).filter_map(executable);
+    let left_out = PARTS
+        .into_iter()
+        .filter(|&part| !asked(part) && part != "tests");
     let evidence = Evidence {
         build: Build::THIS,
         system,
-        executables: [own, Some(judged)]
-            .into_iter()
-            .flatten()
-            .filter_map(executable)
-            .collect(),
-        left_out: PARTS
-            .into_iter()
-            .filter(|&part| !asked(part) && part != "record")
-            .collect(),
+        executables: executables.collect(),
+        left_out: left_out.collect(),
+        soak: soak.transpose()?,
+        requirements: evidence_by_requirement(&inputs.test_runs, &outcomes),
         outcomes,
-        soak: soak
-            .map(|(batteries, seed)| soak_battery(batteries, seed))
-            .transpose()?,
-        requirements,
-        components,
-        records,
+        components: inputs.components,
+        bill_of_materials: inputs.bill_of_materials,
+        test_runs: inputs.test_runs,
     };
     write_evidence(&evidence, arguments)
+}
+
+/// The files that were given.
+struct Inputs {
+    test_runs: Vec<TestRun>,
+    components: Vec<Component>,
+    bill_of_materials: Option<String>,
+}
+
+impl Inputs {
+    /// Reads them, and refuses a part that lacks what it needs.
+    fn read(arguments: &Arguments) -> Result<Inputs, CliError> {
+        let only = arguments.only.as_deref().unwrap_or_default();
+        if only.contains(&Part::Soak) && arguments.soak.is_none() {
+            let message = "--only soak needs --soak N, the number of batteries";
+            return Err(CliError::Usage(message.into()));
+        }
+        if only.contains(&Part::Tests) && arguments.test_run.is_empty() {
+            let message = "--only tests needs --test-run FILE, which .ci/run writes";
+            return Err(CliError::Usage(message.into()));
+        }
+        let test_runs = arguments.test_run.iter().map(|path| TestRun::read(path));
+        let components = match &arguments.sbom {
+            Some(path) => components::bill_of_materials(path),
+            None => components::locked(),
+        };
+        Ok(Inputs {
+            test_runs: test_runs
+                .collect::<Result<_, _>>()
+                .map_err(CliError::Usage)?,
+            components: components.map_err(CliError::Usage)?,
+            bill_of_materials: arguments.sbom.as_deref().and_then(program::sha256),
+        })
+    }
 }
 
 /// A seed from the system's randomness.
@@ -205,16 +224,12 @@ fn write_evidence(evidence: &Evidence, arguments: &Arguments) -> Result<(), CliE
     let page = arguments.out.join("dossier.html");
     let file = |name: &str, text: &str| write(&arguments.out.join(name), text);
     file("evidence.json", &evidence.to_json())?;
-    file("trace.csv", &dossier::trace(evidence))?;
-    file("record.csv", &dossier::record(evidence))?;
-    file(
-        "sbom.cdx.json",
-        &sbom(&evidence.components, &evidence.system.began),
-    )?;
+    file("requirements.csv", &dossier::requirements(evidence))?;
+    file("test-runs.csv", &dossier::test_runs(evidence))?;
     write(&page, &dossier::dossier(evidence))?;
     print(&summary(evidence))?;
     print(&format!(
-        "dossier.html, evidence.json, trace.csv, record.csv and sbom.cdx.json in {}\n",
+        "dossier.html, evidence.json, requirements.csv and test-runs.csv in {}\n",
         arguments.out.display()
     ))?;
     match evidence.verdict() {
@@ -237,7 +252,7 @@ fn summary(evidence: &Evidence) -> String {
             .filter(|outcome| outcome.passed())
             .count();
         lines += &match all {
-            0 if part == "record" => "record: not given\n".into(),
+            0 if part == "tests" => "tests: no test run given\n".into(),
             0 => format!("{part}: not run\n"),
             _ => format!("{part}: {passed} of {all} checks passed\n"),
         };

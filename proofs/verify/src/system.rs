@@ -33,7 +33,7 @@ impl System {
                 name(&release).map(|name| format!("{name}, Linux {}", kernel.trim())),
             ),
             c_library: known(c_library()),
-            processor: known(super::build::processor()),
+            processor: known(processor()),
         }
     }
 }
@@ -55,6 +55,19 @@ fn c_library() -> Option<String> {
     (output.status.success() && !said.trim().is_empty()).then(|| said.trim().into())
 }
 
+/// The model of the processor, as Linux names it.
+fn processor() -> Option<String> {
+    model(&std::fs::read_to_string("/proc/cpuinfo").ok()?)
+}
+
+/// The first model in the text of `/proc/cpuinfo`.
+fn model(text: &str) -> Option<String> {
+    let fields = text.lines().filter_map(|line| line.split_once(':'));
+    let mut models = fields.filter(|(name, _)| name.trim() == "model name");
+    let model = models.next()?.1.trim();
+    (!model.is_empty()).then(|| model.to_string())
+}
+
 /// A time in UTC, by the Gregorian calendar: days are counted from 1 March, so that leap days end a year.
 fn utc(time: SystemTime) -> String {
     let seconds = time
@@ -66,9 +79,10 @@ fn utc(time: SystemTime) -> String {
     let of_year = of_era - (365 * year + year / 4 - year / 100);
     let month = (5 * of_year + 2) / 153;
     let day = of_year - (153 * month + 2) / 5 + 1;
-    let (year, month) = match month < 10 {
-        true => (era * 400 + year, month + 3),
-        false => (era * 400 + year + 1, month - 9),
+    let (year, month) = if month < 10 {
+        (era * 400 + year, month + 3)
+    } else {
+        (era * 400 + year + 1, month - 9)
     };
     let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
@@ -93,6 +107,14 @@ mod tests {
         ] {
             assert_eq!(utc(UNIX_EPOCH + Duration::from_secs(seconds)), expected);
         }
+    }
+
+    #[test]
+    fn the_processor_is_the_first_model_that_the_system_names() {
+        let text = "processor\t: 0\nmodel\t\t: 85\nmodel name\t: Intel(R) Xeon(R): 2.5 GHz\n\nmodel name\t: other\n";
+        assert_eq!(model(text).as_deref(), Some("Intel(R) Xeon(R): 2.5 GHz"));
+        assert_eq!(model("processor\t: 0\nmodel name\t: \n"), None);
+        assert_eq!(model(""), None);
     }
 
     #[test]

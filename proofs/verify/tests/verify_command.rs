@@ -35,8 +35,8 @@ fn a_soak_says_its_seed_and_the_probability_of_a_false_failure() {
         format!(
             "soak: 2 times 39 checks, seed {seed}\n\
              statistics: not run\nrates: not run\nprogram: not run\nfem: not run\nkernel: not run\n\
-             timing: not run\nrecord: not given\nsoak: all passed; a detector without defect fails such a run with probability 1.86e-6 at most\n\
-             dossier.html, evidence.json, trace.csv, record.csv and sbom.cdx.json in {}\n",
+             timing: not run\ntests: no test run given\nsoak: all passed; a detector without defect fails such a run with probability 1.86e-6 at most\n\
+             dossier.html, evidence.json, requirements.csv and test-runs.csv in {}\n",
             folder.display()
         )
     );
@@ -61,9 +61,48 @@ fn the_statistics_give_all_files() {
     assert_eq!(evidence["checks"].as_array().unwrap().len(), 39);
     assert_eq!(evidence["verdict"], "partial");
     assert_eq!(evidence["parts_left_out"].as_array().unwrap().len(), 5);
-    assert!(read("trace.csv").lines().count() > 300 && read("record.csv").lines().count() == 1);
-    assert!(read("sbom.cdx.json").contains("CycloneDX"));
+    // The heads alone: no test run was given.
+    assert!(
+        ["requirements.csv", "test-runs.csv"]
+            .iter()
+            .all(|name| read(name).lines().count() == 1)
+    );
+    assert_eq!(evidence["requirements"], serde_json::Value::Null);
     assert!(read("dossier.html").contains("not run: rates, program, fem, kernel, timing"));
+}
+
+#[test]
+fn a_test_run_is_joined_to_the_requirements() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    let path = folder.join("test-run.json");
+    let run = serde_json::json!({
+        "schema": "palpate-test-run",
+        "commit": "another",
+        "began": "",
+        "ended": "",
+        "system": "",
+        "results_sha256": "",
+        "requirements": [{
+            "id": "AAA-001",
+            "chapter": "a.md",
+            "text": "It MUST.",
+            "code": ["a.rs"],
+            "tests": ["program test"],
+            "proofs": [],
+            "vectors": [],
+        }],
+        "entries": [{"name": "program test", "result": "passed", "seconds": 0.5}],
+    });
+    fs::write(&path, run.to_string()).unwrap();
+    let arguments = ["--only", "tests", "--test-run", path.to_str().unwrap()];
+    let (output, folder) = verify("tests", &arguments);
+    // It is of another commit.
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(text(&output.stderr).contains("1 of 1 checks failed: tests.complete"));
+    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    let row = "AAA-001,a.md,It MUST.,a.rs,program test,,,,program test,,,";
+    assert_eq!(read("requirements.csv").lines().nth(1), Some(row));
+    assert!(read("evidence.json").contains("\"test runs of another commit than this build's\""));
 }
 
 #[test]
@@ -99,9 +138,10 @@ fn bad_arguments_are_refused() {
         &["--seed", "1"],
         &["--soak", "1", "--seed", "-1"],
         &["--only", "soak"],
-        &["--only", "record"],
-        &["--record", "Cargo.lock"],
-        &["--record", "nowhere.json"],
+        &["--only", "tests"],
+        &["--test-run", "Cargo.toml"],
+        &["--test-run", "nowhere.json"],
+        &["--sbom", "Cargo.toml"],
         &["--only", "statistics,physics"],
         &["--only", ""],
     ] {

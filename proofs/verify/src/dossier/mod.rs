@@ -10,13 +10,14 @@
 mod chapter;
 mod text;
 
+use std::collections::BTreeMap;
+
 use askama::Template;
 
-use super::build::lock_sha256;
-use super::evidence::{Evidence, PARTS, Verdict};
+use super::components::lock_sha256;
+use super::evidence::{Counts, Evidence, PARTS, Verdict};
 use super::statistics::{self, Row};
 use super::system::System;
-use super::traceability::{SEPARATOR, csv_line};
 use palpate_paper::report::html::STYLE;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -29,6 +30,7 @@ const RISK: &str = include_str!("../../../../spec/risk.md");
 const KANI: &str = include_str!("../../../kani-results.md");
 const PLAN: &str = include_str!("../../../../spec/verification-plan.md");
 const LIMITS: &str = include_str!("../../../../spec/limits.md");
+const SUPPLY_CHAIN: &str = include_str!("../../../../spec/supply-chain.md");
 
 /// The sections in their order: what the contents link to, and their headings.
 const SECTIONS: [(&str, &str); 14] = [
@@ -60,8 +62,8 @@ const TITLES: [(&str, &str); 7] = [
     ("Servo kernel, every input", CALLS),
     ("Time, on this machine", CALLS),
     (
-        "Record of the test run",
-        "cargo test, Gappa and the scripts of .ci/run, by their exit codes; palpate-verify reads the record",
+        "Test runs",
+        "cargo-nextest, Gappa and the scripts of .ci/run, by their exit codes; palpate-verify reads what they found",
     ),
 ];
 
@@ -85,51 +87,57 @@ pub fn dossier(evidence: &Evidence) -> String {
     page.replace(|c: char| c.is_control() && c != '\n', "\u{fffd}")
 }
 
-/// The file `trace.csv`: each requirement with its code, what checks it and which of that passed.
-pub fn trace(found: &Evidence) -> String {
+/// The file `requirements.csv`: each requirement with its code, what checks it and which of that passed.
+pub fn requirements(found: &Evidence) -> String {
     let heads = "requirement,chapter,text,code,tests,proofs,vectors,checks_passed_here,tests_passed,proofs_passed,left_to_another_run,not_passed\n";
-    let joined = found.joined();
-    let rows = found
-        .requirements
-        .iter()
-        .zip(&joined)
-        .map(|(row, evidence)| {
-            let lists = [
-                &row.code,
-                &row.tests,
-                &row.proofs,
-                &row.vectors,
-                &evidence.checks,
-                &evidence.tests,
-                &evidence.proofs,
-                &evidence.left,
-                &evidence.missing,
-            ];
-            let texts = [&row.id, &row.chapter, &row.text].into_iter().cloned();
-            csv_line(texts.chain(lists.map(|list| list.join(SEPARATOR))))
-        });
+    let rows = found.requirements.iter().map(|row| {
+        let requirement = &row.requirement;
+        let lists = [
+            &requirement.code,
+            &requirement.tests,
+            &requirement.proofs,
+            &requirement.vectors,
+            &row.checks,
+            &row.tests,
+            &row.proofs,
+            &row.left,
+            &row.missing,
+        ];
+        let texts = [&requirement.id, &requirement.chapter, &requirement.text];
+        let lists = lists.map(|list| list.join("; "));
+        csv_line(texts.into_iter().cloned().chain(lists))
+    });
     [heads.to_string()].into_iter().chain(rows).collect()
 }
 
-/// The file `record.csv`: each test, proof and step of the records, its result and how long it took.
-pub fn record(found: &Evidence) -> String {
-    let heads = "commit,log_sha256,name,result,seconds\n";
-    let rows = found.records.iter().flat_map(|record| {
-        record.entries.iter().map(|entry| {
-            let seconds = entry
-                .seconds
-                .map(|seconds| seconds.to_string())
-                .unwrap_or_default();
+/// The file `test-runs.csv`: each test, proof and step of the test runs, its result and how long it took.
+pub fn test_runs(found: &Evidence) -> String {
+    let heads = "commit,results_sha256,name,result,seconds\n";
+    let rows = found.test_runs.iter().flat_map(|run| {
+        run.entries.iter().map(|entry| {
+            let seconds = entry.seconds.map(|seconds| seconds.to_string());
             csv_line([
-                record.commit.clone(),
-                record.log_sha256.clone(),
+                run.commit.clone(),
+                run.results_sha256.clone(),
                 entry.name.clone(),
                 format!("{:?}", entry.result).to_lowercase(),
-                seconds,
+                seconds.unwrap_or_default(),
             ])
         })
     });
     [heads.to_string()].into_iter().chain(rows).collect()
+}
+
+/// A line of CSV.
+fn csv_line(cells: impl IntoIterator<Item = String>) -> String {
+    let quoted = cells.into_iter().map(|cell| {
+        if cell.contains([',', '"']) {
+            format!("\"{}\"", cell.replace('"', "\"\""))
+        } else {
+            cell
+        }
+    });
+    quoted.collect::<Vec<_>>().join(",") + "\n"
 }
 
 impl Page<'_> {
@@ -205,16 +213,13 @@ impl Page<'_> {
             let name = path.rsplit('/').next().unwrap_or_default();
             ("SHA-256 of an executable", format!("{name}: {sha256}"))
         }));
-        let logs = self.found.records.iter();
-        run.extend(logs.map(|record| {
+        let bill = self.found.bill_of_materials.iter();
+        run.extend(bill.map(|sha256| ("SHA-256 of the bill of materials", sha256.clone())));
+        run.extend(self.found.test_runs.iter().map(|run| {
+            let (sha256, entries) = (&run.results_sha256, run.entries.len());
             (
-                "SHA-256 of a test log",
-                format!(
-                    "{} ({}, {} entries)",
-                    record.log_sha256,
-                    record.ended,
-                    record.entries.len()
-                ),
+                "SHA-256 of a test run's results",
+                format!("{sha256} ({}, {entries} entries)", run.ended),
             )
         }));
         run
@@ -233,30 +238,29 @@ impl Page<'_> {
         )
     }
 
-    /// The requirements of each chapter: its name, how many there are, and how many have a check here, tests, proofs and none of these.
-    fn chapters(&self) -> Vec<(&str, [usize; 5])> {
-        let joined = self.found.joined();
-        let mut chapters: Vec<(&str, [usize; 5])> = Vec::new();
-        for (row, evidence) in self.found.requirements.iter().zip(&joined) {
-            let has = [
-                true,
-                !evidence.checks.is_empty(),
-                !evidence.tests.is_empty(),
-                !evidence.proofs.is_empty(),
-                !evidence.is_there(),
-            ];
-            let place = chapters
-                .iter()
-                .position(|(chapter, _)| *chapter == row.chapter);
-            let place = place.unwrap_or_else(|| {
-                chapters.push((&row.chapter, [0; 5]));
-                chapters.len() - 1
-            });
-            for (count, has) in chapters[place].1.iter_mut().zip(has) {
-                *count += usize::from(has);
-            }
+    /// The chapters by their names: how many requirements each has, and how many of them have a check here, tests, proofs and none
+    /// of these.
+    fn chapters(&self) -> BTreeMap<&str, [usize; 5]> {
+        let mut chapters: BTreeMap<&str, Counts> = BTreeMap::new();
+        for row in &self.found.requirements {
+            chapters
+                .entry(&row.requirement.chapter)
+                .or_default()
+                .add(row);
         }
+        let numbers = |counts: Counts| {
+            [
+                counts.requirements,
+                counts.checks,
+                counts.tests,
+                counts.proofs,
+                counts.none,
+            ]
+        };
         chapters
+            .into_iter()
+            .map(|(name, counts)| (name, numbers(counts)))
+            .collect()
     }
 }
 

@@ -1,8 +1,7 @@
-use std::collections::BTreeSet;
-
 use super::*;
 use crate::evidence::{Soak, Verdict};
-use crate::{Figure, Outcome, claims, supply, traceability};
+use crate::test_run::{End, Entry, Requirement, SCHEMA, TestRun, evidence_by_requirement};
+use crate::{Figure, Outcome, claims, components};
 use palpate::version::Build;
 
 fn outcome(name: &str, value: f64) -> Outcome {
@@ -29,12 +28,13 @@ fn evidence(outcomes: Vec<Outcome>, left_out: Vec<&'static str>) -> Evidence {
             processor: "a <processor>".into(),
         },
         executables: vec![("/bin/palpate".into(), "0123abcd".into())],
-        records: Vec::new(),
+        test_runs: Vec::new(),
         left_out,
         outcomes,
         soak: None,
-        requirements: traceability::requirements().unwrap(),
-        components: supply::components().unwrap(),
+        requirements: Vec::new(),
+        components: components::locked().unwrap(),
+        bill_of_materials: None,
     }
 }
 
@@ -172,83 +172,26 @@ fn the_page_holds_every_section_and_needs_nothing_else() {
     }
 }
 
-/// The words of a text that look like ids of requirements.
-fn ids(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '-')
-        .filter(|word| {
-            word.len() == 7
-                && *word != "SHA-256"
-                && word.as_bytes()[3] == b'-'
-                && word[..3].chars().all(|c| c.is_ascii_uppercase())
-                && word[4..].chars().all(|c| c.is_ascii_digit())
-        })
-}
-
-/// Controls of hazards that only one test shows, and why.
-const ALONE: [(&str, &str); 1] = [("FIR-001", "only the microcontroller can show it")];
-
 #[test]
-fn a_control_of_a_hazard_has_two_tests_proofs_or_checks() {
-    let controls: BTreeSet<&str> = ids(RISK).collect();
-    assert!(controls.len() > 40, "{controls:?}");
-    let battery = crate::battery::GROUPS.iter().map(|(.., ids)| *ids);
-    let served: Vec<&str> = claims()
-        .map(|claim| claim.requirements)
-        .chain(battery)
-        .flatten()
-        .copied()
-        .collect();
-    for row in traceability::requirements().unwrap() {
-        let pieces = row.tests.len() + row.proofs.len() + usize::from(served.contains(&&*row.id));
-        let alone = ALONE.iter().any(|(id, _)| *id == row.id);
-        if controls.contains(&*row.id) {
-            assert_eq!(pieces < 2, alone, "{}: {:?}", row.id, row.tests);
-        }
-    }
-}
-
-#[test]
-fn every_requirement_and_check_that_the_chapters_name_exists() {
-    let known: Vec<String> = traceability::requirements()
-        .unwrap()
-        .into_iter()
-        .map(|row| row.id)
-        .collect();
+fn every_check_that_the_chapters_name_exists() {
     let names: Vec<&str> = claims().map(|claim| claim.name).collect();
     let chapters = [CONTEXT, CREDIBILITY, SOFTWARE, RISK, PROOFS, LIMITS, PLAN];
-    let cited: Vec<&str> = chapters.iter().flat_map(|chapter| ids(chapter)).collect();
-    assert!(cited.len() > 40, "{cited:?}");
-    for id in cited {
-        assert!(
-            known.iter().any(|known| known == id),
-            "{id} is no requirement"
-        );
-    }
-    for claim in claims() {
-        for id in claim.requirements {
-            assert!(
-                known.iter().any(|known| known == id),
-                "{}: {id} is no requirement",
-                claim.name
-            );
-        }
-    }
     let quoted = chapters
         .iter()
         .flat_map(|chapter| chapter.split('`').skip(1).step_by(2));
-    let parts = crate::evidence::PARTS;
+    let mut named = 0;
     for name in quoted {
         let Some((part, what)) = name.split_once('.') else {
             continue;
         };
-        if parts.contains(&part)
-            && part != "statistics"
-            && what != "*"
-            && !["md", "csv"].contains(&what)
-        {
+        let exists =
+            PARTS.contains(&part) && part != "statistics" && !["*", "md", "csv"].contains(&what);
+        if exists {
+            named += 1;
             assert!(names.contains(&name), "{name} is no check");
         }
     }
+    assert!(named > 0, "are the chapters read?");
 }
 
 #[test]
@@ -278,52 +221,82 @@ fn the_file_for_programs_keeps_times_apart() {
     assert_eq!(one, other);
 }
 
+/// The rows of a table.
+fn without_head(table: &str) -> &str {
+    table.split_once('\n').map_or("", |(_, rows)| rows)
+}
+
 #[test]
-fn a_record_is_counted_and_written_beside_the_page() {
-    use crate::record::{End, Entry, Record, SCHEMA};
+fn a_test_run_is_counted_and_written_beside_the_page() {
     let mut found = evidence(vec![outcome("fem.good", 0.0)], Vec::new());
-    let without = found.counts();
-    assert_eq!((without.checks, without.tests, without.proofs), (1, 0, 0));
-    assert_eq!(without.none, without.requirements - 1);
-    assert!(dossier(&found).contains("No record of a test run is attached"));
-    let row = found
-        .requirements
-        .iter()
-        .find(|row| !row.tests.is_empty() && row.id != "FEM-050");
-    let row = row.unwrap().clone();
+    assert_eq!(found.counts(), None);
+    assert!(dossier(&found).contains("No test run is attached"));
+    let requirement = |id: &str, tests: &[&str]| Requirement {
+        id: id.into(),
+        chapter: "fem.md".into(),
+        text: "It MUST, \"always\".".into(),
+        code: vec!["a.rs".into(), "b.rs f".into()],
+        tests: tests.iter().map(|name| name.to_string()).collect(),
+        ..Requirement::default()
+    };
     let entry = |name: &str, result| Entry {
         name: name.into(),
         result,
         seconds: Some(1.5),
     };
-    found.records = vec![Record {
+    found.test_runs = vec![TestRun {
         schema: SCHEMA.into(),
         commit: "c".into(),
         began: "b".into(),
         ended: "e".into(),
         system: "s".into(),
-        log_sha256: "l".into(),
-        entries: vec![
-            entry(&row.tests[0], End::Passed),
-            entry("other, with a comma", End::Failed),
+        results_sha256: "h".into(),
+        requirements: vec![
+            requirement("FEM-001", &["one t"]),
+            requirement("FEM-002", &["other, t"]),
+            requirement("FEM-050", &[]),
         ],
+        entries: vec![entry("one t", End::Passed), entry("other, t", End::Failed)],
     }];
-    assert!(found.counts().tests >= 1 && found.counts().none < without.none);
-    assert!(!dossier(&found).contains("No record of a test run is attached"));
-    let lines = record(&found);
-    assert!(
-        lines.contains(&format!("c,l,{},passed,1.5\n", row.tests[0])),
-        "{lines}"
-    );
-    assert!(lines.contains("c,l,\"other, with a comma\",failed,1.5\n"));
-    let trace = trace(&found);
-    let line = trace
-        .lines()
-        .find(|line| line.starts_with(&row.id))
-        .unwrap();
-    let passed = line.matches(row.tests[0].as_str()).count();
+    found.requirements = evidence_by_requirement(&found.test_runs, &found.outcomes);
+    let counts = found.counts().unwrap();
+    assert_eq!((counts.requirements, counts.checks), (3, 1));
+    assert_eq!((counts.tests, counts.proofs, counts.none), (1, 0, 1));
+    let page = dossier(&found);
+    assert!(!page.contains("No test run is attached"));
+    let row = [3, 1, 1, 0, 1].map(|count| format!("<td class=\"number\">{count}</td>"));
+    let row = format!("<tr><th scope=\"row\">fem.md</th>{}</tr>", row.concat());
+    assert!(page.contains(&row));
+    let runs = test_runs(&found);
     assert_eq!(
-        passed, 2,
-        "among its tests, and among those that passed: {line}"
+        without_head(&runs),
+        "c,h,one t,passed,1.5\nc,h,\"other, t\",failed,1.5\n"
     );
+    let rows = requirements(&found);
+    let text = "fem.md,\"It MUST, \"\"always\"\".\",a.rs; b.rs f";
+    assert_eq!(
+        without_head(&rows),
+        format!(
+            "FEM-001,{text},one t,,,,one t,,,\nFEM-002,{text},\"other, t\",,,,,,,\"other, t\"\nFEM-050,{text},,,,fem.good,,,,\n"
+        )
+    );
+}
+
+#[test]
+fn the_components_are_those_of_the_bill_of_materials_or_of_the_lock_file() {
+    let mut found = evidence(vec![outcome("fem.good", 0.0)], Vec::new());
+    let page = dossier(&found);
+    assert!(page.contains("No bill of materials is attached"));
+    found
+        .components
+        .retain(|component| component.name == "libm");
+    found.components[0].licence = Some("MIT".into());
+    found.bill_of_materials = Some("0123abcd".into());
+    let page = dossier(&found);
+    assert!(page.contains("as the bill of materials lists them") && page.contains("0123abcd"));
+    assert!(
+        page.contains("<tr><th scope=\"row\">libm</th><td>0.2.")
+            && page.contains("<td>MIT</td></tr>")
+    );
+    assert!(!page.contains("No bill of materials"));
 }

@@ -3,8 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::ROOT;
-use super::cargo::cargo;
+use super::{ROOT, cargo};
 
 /// All Rust files below a folder.
 pub fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -1,126 +1,213 @@
-//! What stands below an annotation in Rust, read line by line: `cargo fmt` puts every item, attribute and closing brace
-//! on a line that begins with it.
+//! What stands below a comment in Rust, by the syntax tree.
 
-/// What an annotation stands above.
-#[derive(Debug, PartialEq)]
+use std::ops::RangeInclusive;
+
+use proc_macro2::TokenTree;
+use syn::parse::{ParseStream, Parser};
+use syn::visit::{self, Visit};
+use syn::{Attribute, Ident, Token, Type};
+
+/// An item, field or variant that stands below a comment.
+#[derive(Debug, Clone)]
 pub struct Item {
-    /// `fn`, `struct`, …; empty for fields and variants.
-    pub kind: &'static str,
     pub name: String,
-    pub is_test: bool,
     /// The type or trait around it, if it is in one.
     pub owner: Option<String>,
     /// The modules around it that are in the same file.
     pub modules: Vec<String>,
+    pub is_test: bool,
+    pub is_ignored: bool,
+    /// From its first attribute or docstring to its name, from 1.
+    lines: RangeInclusive<usize>,
 }
 
-/// The item at line `at`, from 0, or below it: comments and attributes may lie between, an empty line may not.
-pub fn item_below(text: &str, mut at: usize) -> Option<Item> {
-    let lines: Vec<&str> = text.lines().collect();
-    let mut is_test = false;
-    loop {
-        let here = lines.get(at)?.trim();
-        if here.starts_with("#[") {
-            is_test |= here == "#[test]";
-            while !lines.get(at)?.ends_with(']') {
-                at += 1;
+/// A macro that the file defines.
+struct Macro {
+    name: String,
+    lines: RangeInclusive<usize>,
+    makes_tests: bool,
+}
+
+/// The items of a file, and its macros with what they are called with first.
+#[derive(Default)]
+pub struct Items {
+    items: Vec<Item>,
+    macros: Vec<Macro>,
+    calls: Vec<(Ident, Item)>,
+    owner: Option<String>,
+    modules: Vec<String>,
+}
+
+impl Items {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// Line, from 1, and message of a syntax error.
+    pub fn of(text: &str) -> Result<Items, (usize, String)> {
+        let file = syn::parse_file(text)
+            .map_err(|error| (error.span().start().line, format!("not Rust: {error}")))?;
+        let mut items = Items::default();
+        items.visit_file(&file);
+        Ok(items)
+    }
+
+    /// The item whose name or attributes begin on this line, from 1; in a macro that makes tests, all tests that it makes.
+    pub fn at(&self, line: usize) -> Vec<Item> {
+        if let Some(around) = self.macros.iter().find(|known| known.lines.contains(&line)) {
+            let calls = self.calls.iter().filter(|(name, _)| *name == around.name);
+            let made = calls.map(|(_, item)| Item {
+                is_test: around.makes_tests,
+                ..item.clone()
+            });
+            return made.collect();
+        }
+        let at = self.items.iter().filter(|item| item.lines.contains(&line));
+        at.min_by_key(|item| *item.lines.end())
+            .cloned()
+            .into_iter()
+            .collect()
+    }
+
+    fn item(&self, attributes: &[Attribute], name: String, line: usize) -> Item {
+        let has = |name: &str| {
+            attributes
+                .iter()
+                .any(|attribute| attribute.path().is_ident(name))
+        };
+        let first = attributes
+            .iter()
+            .map(|attribute| attribute.pound_token.span.start().line);
+        Item {
+            name,
+            owner: self.owner.clone(),
+            modules: self.modules.clone(),
+            is_test: has("test"),
+            is_ignored: has("ignore"),
+            lines: first.min().unwrap_or(line)..=line,
+        }
+    }
+
+    fn add(&mut self, attributes: &[Attribute], name: &Ident) {
+        let item = self.item(attributes, name.to_string(), name.span().start().line);
+        self.items.push(item);
+    }
+
+    /// Adds the functions that a macro such as `proptest!` is called with.
+    fn functions(&mut self, input: ParseStream<'_>) -> syn::Result<()> {
+        while !input.is_empty() {
+            let is_inner = input.peek(Token![#]) && input.peek2(Token![!]);
+            let attributes = if is_inner {
+                Vec::new()
+            } else {
+                Attribute::parse_outer(input)?
+            };
+            let is_function = input.peek(Token![fn]);
+            input.parse::<TokenTree>()?;
+            if is_function {
+                self.add(&attributes, &input.parse()?);
             }
-        } else if !here.starts_with("//") {
-            break;
         }
-        at += 1;
+        Ok(())
     }
-    let (kind, name) = declaration(lines[at])?;
-    let (mut owner, mut modules) = (None, Vec::new());
-    let mut inner = indent(lines[at]);
-    for line in lines[..at].iter().rev() {
-        // The end of a header that began on a line above.
-        let continued =
-            line.is_empty() || line.trim_start().starts_with(['{', ')']) || line.trim() == "where";
-        if continued || indent(line) >= inner {
-            continue;
+
+    fn within(&mut self, owner: String, visit: impl FnOnce(&mut Items)) {
+        let outer = self.owner.replace(owner);
+        visit(self);
+        self.owner = outer;
+    }
+}
+
+/// Visits a node that is an item with a name.
+macro_rules! named {
+    ($($visit:ident $node:ident $($signature:ident)?;)*) => {$(
+        fn $visit(&mut self, node: &'a syn::$node) {
+            self.add(&node.attrs, &node.$($signature.)?ident);
+            visit::$visit(self, node);
         }
-        inner = indent(line);
-        match declaration(line) {
-            Some(("mod", name)) => modules.insert(0, name),
-            Some(("struct" | "enum" | "trait" | "impl", name)) if owner.is_none() => {
-                owner = Some(name)
-            }
-            _ => {}
+    )*};
+}
+
+/// Visits a type or trait, to which its parts belong.
+macro_rules! owners {
+    ($($visit:ident $node:ident;)*) => {$(
+        fn $visit(&mut self, node: &'a syn::$node) {
+            self.add(&node.attrs, &node.ident);
+            self.within(node.ident.to_string(), |items| visit::$visit(items, node));
+        }
+    )*};
+}
+
+impl<'a> Visit<'a> for Items {
+    named! {
+        visit_item_fn ItemFn sig;
+        visit_impl_item_fn ImplItemFn sig;
+        visit_trait_item_fn TraitItemFn sig;
+        visit_item_const ItemConst;
+        visit_item_static ItemStatic;
+        visit_item_type ItemType;
+        visit_impl_item_const ImplItemConst;
+        visit_variant Variant;
+    }
+
+    owners! {
+        visit_item_struct ItemStruct;
+        visit_item_enum ItemEnum;
+        visit_item_trait ItemTrait;
+    }
+
+    fn visit_field(&mut self, node: &'a syn::Field) {
+        if let Some(name) = &node.ident {
+            self.add(&node.attrs, name);
+        }
+        visit::visit_field(self, node);
+    }
+
+    fn visit_item_impl(&mut self, node: &'a syn::ItemImpl) {
+        let name = implementor(&node.self_ty);
+        let item = self.item(&node.attrs, name.clone(), node.impl_token.span.start().line);
+        self.items.push(item);
+        self.within(name, |items| visit::visit_item_impl(items, node));
+    }
+
+    fn visit_item_mod(&mut self, node: &'a syn::ItemMod) {
+        self.add(&node.attrs, &node.ident);
+        self.modules.push(node.ident.to_string());
+        visit::visit_item_mod(self, node);
+        self.modules.pop();
+    }
+
+    fn visit_item_macro(&mut self, node: &'a syn::ItemMacro) {
+        let tokens = &node.mac.tokens;
+        let first = tokens.clone().into_iter().next();
+        if let Some(name) = &node.ident {
+            self.add(&node.attrs, name);
+            let lines = node.mac.delimiter.span();
+            self.macros.push(Macro {
+                name: name.to_string(),
+                lines: lines.open().start().line + 1..=lines.close().end().line,
+                makes_tests: tokens.to_string().replace(' ', "").contains("#[test]"),
+            });
+        } else if let (Some(called), Some(TokenTree::Ident(first))) =
+            (node.mac.path.get_ident(), first)
+        {
+            let item = self.item(&[], first.to_string(), first.span().start().line);
+            self.calls.push((called.clone(), item));
+        }
+        if node.ident.is_none() {
+            // What is between them follows no rule.
+            let _ = (|input: ParseStream<'_>| self.functions(input)).parse2(tokens.clone());
         }
     }
-    Some(Item {
-        kind,
-        name,
-        is_test,
-        owner,
-        modules,
-    })
 }
 
-/// What a function `$name` is called: the first argument of each call of the macro that defines it above line `end`.
-pub fn names_by_macro(text: &str, end: usize) -> Vec<String> {
-    let above = text.lines().take(end);
-    let defined = above.filter_map(|line| line.strip_prefix("macro_rules! "));
-    let call = defined.last().and_then(identifier).unwrap_or_default();
-    let call = format!("\n{call}!(");
-    let calls = text.split(&call).skip(1);
-    calls
-        .filter_map(|call| identifier(call.trim_start()))
-        .collect()
-}
-
-fn indent(line: &str) -> usize {
-    line.len() - line.trim_start().len()
-}
-
-const KINDS: &str = "fn struct enum trait type const static mod macro_rules!";
-
-/// Kind and name of what is declared on a line.
-fn declaration(line: &str) -> Option<(&'static str, String)> {
-    let mut rest = line.trim();
-    for modifier in ["pub(crate) ", "pub(super) ", "pub ", "async ", "unsafe "] {
-        rest = rest.strip_prefix(modifier).unwrap_or(rest);
+/// The name of the type that an `impl` is of.
+fn implementor(of: &Type) -> String {
+    match of {
+        Type::Path(path) => path.path.segments.last().map(|last| last.ident.to_string()),
+        Type::Reference(reference) => Some(implementor(&reference.elem)),
+        Type::Array(array) => Some(implementor(&array.elem)),
+        Type::Slice(slice) => Some(implementor(&slice.elem)),
+        _ => None,
     }
-    if rest.starts_with("const fn ") {
-        rest = &rest["const ".len()..];
-    }
-    if rest.starts_with("impl<") || rest.starts_with("impl ") {
-        return Some(("impl", implementor(rest)?));
-    }
-    let (word, after) = rest.split_once(' ').unwrap_or((rest, ""));
-    if let Some(kind) = KINDS.split(' ').find(|kind| *kind == word) {
-        return Some((kind, identifier(after)?));
-    }
-    let name = identifier(rest)?;
-    let after = &rest[name.len()..];
-    let variant = name.starts_with(|first: char| first.is_ascii_uppercase())
-        && (matches!(after, "" | "," | " {") || after.starts_with('(') || after.starts_with(" = "));
-    (variant || after.starts_with(": ")).then_some(("", name))
-}
-
-/// A name; `$name` in a macro.
-fn identifier(text: &str) -> Option<String> {
-    let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '$'));
-    let name = &text[..end.unwrap_or(text.len())];
-    (!name.is_empty()).then(|| name.into())
-}
-
-/// The type of `impl<…> Trait<…> for path::Type<…> {`.
-fn implementor(header: &str) -> Option<String> {
-    let mut depth = 0;
-    // What is in angle brackets, and these, is left out.
-    let outside = header.chars().filter(|&c| {
-        depth += i32::from(c == '<');
-        let keep = depth == 0;
-        depth -= i32::from(c == '>');
-        keep
-    });
-    let outside: String = outside.collect();
-    let (_, of) = outside
-        .split_once(" for ")
-        .or(outside.split_once("impl "))?;
-    let of = of.trim_start_matches(['&', '[']).trim_start_matches("mut ");
-    let path = of.split([' ', '{', ']', ';']).next()?;
-    path.rsplit("::").next().map(String::from)
+    .unwrap_or_default()
 }

@@ -2,14 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use palpate_verify::traceability::Requirement;
+use palpate_verify::test_run::Requirement;
 use pulldown_cmark::{Event, Parser};
 
+use crate::annotations::Problems;
 use crate::repository::Repository;
-use crate::trace::Problems;
-
-/// What marks a requirement that a person inspects, up to the parenthesis that closes it.
-const INSPECTION: &str = "(by inspection:";
 
 /// A requirement that nothing is traced to yet, and where it is defined.
 pub struct Defined {
@@ -21,7 +18,7 @@ pub struct Defined {
 /// The requirements of all chapters, by their ids.
 pub fn requirements(repository: &Repository, problems: &mut Problems) -> BTreeMap<String, Defined> {
     let mut found: BTreeMap<String, Defined> = BTreeMap::new();
-    let chapters = repository.iter();
+    let chapters = repository.files.iter();
     for (path, text) in
         chapters.filter(|(path, _)| path.starts_with("spec/") && path.ends_with(".md"))
     {
@@ -49,7 +46,12 @@ pub fn requirements(repository: &Repository, problems: &mut Problems) -> BTreeMa
                 continue;
             }
             let defined = Defined {
-                requirement: requirement(&id, path, &sentence),
+                requirement: Requirement {
+                    id: id.clone(),
+                    chapter: path.trim_start_matches("spec/").into(),
+                    text: without_markdown(&sentence),
+                    ..Requirement::default()
+                },
                 path: path.clone(),
                 line: index + 1,
             };
@@ -57,23 +59,6 @@ pub fn requirements(repository: &Repository, problems: &mut Problems) -> BTreeMa
         }
     }
     found
-}
-
-fn requirement(id: &str, path: &str, sentence: &str) -> Requirement {
-    let marked = sentence
-        .rsplit_once(INSPECTION)
-        .and_then(|(before, after)| {
-            let reason = after.trim_end_matches('.').strip_suffix(')')?;
-            Some((before, Some(without_markdown(reason))))
-        });
-    let (sentence, inspection) = marked.unwrap_or((sentence, None));
-    Requirement {
-        id: id.into(),
-        chapter: path.trim_start_matches("spec/").into(),
-        text: without_markdown(sentence),
-        inspection,
-        ..Requirement::default()
-    }
 }
 
 /// Id and sentence of the requirement that begins on the first of these lines: an item of a list, with the lines
