@@ -144,10 +144,10 @@ impl fmt::Display for Figure {
         } = self;
         write!(f, "{what}: {value:?}")?;
         match (at_least.is_finite(), at_most.is_finite()) {
-            (true, true) if at_least == at_most => write!(f, ", expected {at_least:?}"),
-            (true, true) => write!(f, ", expected {at_least:?} to {at_most:?}"),
-            (true, false) => write!(f, ", expected at least {at_least:?}"),
-            (false, true) => write!(f, ", expected at most {at_most:?}"),
+            (true, true) if at_least == at_most => write!(f, " (must be {at_least:?})"),
+            (true, true) => write!(f, " (must be from {at_least:?} to {at_most:?})"),
+            (true, false) => write!(f, " (must be at least {at_least:?})"),
+            (false, true) => write!(f, " (must be at most {at_most:?})"),
             (false, false) => Ok(()),
         }
     }
@@ -318,8 +318,8 @@ mod tests {
         });
         assert_eq!(
             broken.complaint().unwrap(),
-            "check part.what: error, m: 2e-9, expected at most 1e-9; order: NaN, expected at least 2.9; \
-             cases: 3.0, expected 4.0"
+            "check part.what: error, m: 2e-9 (must be at most 1e-9); order: NaN (must be at least 2.9); \
+             cases: 3.0 (must be 4.0)"
         );
     }
 

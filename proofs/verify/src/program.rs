@@ -3,7 +3,7 @@
 mod decisions;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 use std::time::Duration;
 
 use palpate::version::Build;
@@ -91,23 +91,32 @@ pub fn sha256(program: &Path) -> Option<String> {
     Some(identity.files.first()?.sha256.clone())
 }
 
+/// What the program does in a folder.
+fn run_in(folder: &Path, program: &Path, arguments: &[&str]) -> Result<Output, String> {
+    let program = std::path::absolute(program).map_err(|error| error.to_string())?;
+    let command = Command::new(&program)
+        .args(arguments)
+        .current_dir(folder)
+        .output();
+    command.map_err(|error| {
+        let shown = program.display();
+        format!("cannot start {shown}: {error}; name the program palpate with --program FILE")
+    })
+}
+
 /// What the program prints.
 fn printed(program: &Path, arguments: &[&str]) -> Result<String, String> {
     let shown = program.display();
-    let output = Command::new(program)
-        .args(arguments)
-        .output()
-        .map_err(|error| {
-            format!("cannot start {shown}: {error}; expected the program palpate there, or --program FILE")
-        })?;
-    match output.status.success() {
-        true => String::from_utf8(output.stdout).map_err(|error| format!("{shown}: {error}")),
-        false => Err(format!(
+    let output = run_in(Path::new("."), program, arguments)?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        return Err(format!(
             "{shown} {}: {}",
             arguments.join(" "),
-            String::from_utf8_lossy(&output.stderr).trim_end()
-        )),
+            said.trim_end()
+        ));
     }
+    String::from_utf8(output.stdout).map_err(|error| format!("{shown}: {error}"))
 }
 
 fn identity(program: &Path) -> Measured {
@@ -187,7 +196,7 @@ impl Row<'_> {
                 limits: [normal_limit, lateral_limit],
             })
         };
-        rows.map(|line| row(line).ok_or_else(|| format!("outside.csv: {line:?}, expected 9 cells")))
+        rows.map(|line| row(line).ok_or_else(|| format!("outside.csv: {line:?} must have 9 cells")))
             .collect()
     }
 
@@ -223,14 +232,13 @@ impl Row<'_> {
                 (asked == [Some(depth), Some(lateral)]).then_some(forces)
             });
         let forces: Vec<[f64; 2]> = forces.collect();
-        match forces.len() == rows.len() {
-            true => Ok(forces),
-            false => Err(format!(
-                "{} solve printed {table:?}, expected {} poses",
-                program.display(),
-                rows.len()
-            )),
+        if forces.len() != rows.len() {
+            let (shown, poses) = (program.display(), rows.len());
+            return Err(format!(
+                "{shown} solve printed {table:?}; it must print {poses} poses"
+            ));
         }
+        Ok(forces)
     }
 }
 
@@ -308,7 +316,7 @@ pub(crate) mod tests {
         for (forces, why) in [
             ("1.4826,0.0", "over its limit"),
             ("NaN,0.0", "over its limit"),
-            ("1.4826", "expected 4 poses"),
+            ("1.4826", "must print 4 poses"),
         ] {
             let outcome = judged_by("program.scikit_fem", &solver("forces", forces));
             assert!(!outcome.passed());

@@ -144,35 +144,11 @@ impl Full {
         active: &[usize],
         pose: Pose,
     ) -> Result<(), String> {
-        let n = self.free.len();
         for point in (0..pressure.len()).filter(|point| !active.contains(point)) {
             pressure[point] = 0.0;
         }
         for _ in 0..30 {
-            let mut entries = self.entries.clone();
-            let mut rest = vec![0.0; n + active.len()];
-            for &Triplet { row, col, val } in &self.entries {
-                rest[row] -= val * u[col];
-            }
-            for (k, &active) in active.iter().enumerate() {
-                let point = &self.surface[active];
-                let (gap, normal, turn) = self.gap(point.0, Full::moved(point, u), pose);
-                rest[n + k] = gap;
-                // Each free displacement with its weight and direction.
-                let unknowns = point
-                    .1
-                    .iter()
-                    .flat_map(|&(w, node)| [0, 1].map(|i| (2 * node + i, w, i)));
-                let unknowns: Vec<_> = unknowns.filter(|(a, ..)| self.free[*a]).collect();
-                for &(a, w, i) in &unknowns {
-                    rest[a] += pressure[active] * w * normal[i];
-                    entries.push(Triplet::new(n + k, a, -w * normal[i]));
-                    entries.push(Triplet::new(a, n + k, -w * normal[i]));
-                    for &(b, v, j) in &unknowns {
-                        entries.push(Triplet::new(a, b, -pressure[active] * w * v * turn[i][j]));
-                    }
-                }
-            }
+            let (entries, rest) = self.equations(u, pressure, active, pose);
             let step = solved(&entries, &rest)?;
             let mut largest = 0.0f64;
             for (u, step) in u.iter_mut().zip(&step) {
@@ -180,13 +156,49 @@ impl Full {
                 largest = largest.max(step.abs());
             }
             for (k, &point) in active.iter().enumerate() {
-                pressure[point] += step[n + k];
+                pressure[point] += step[self.free.len() + k];
             }
             if largest < 1e-13 {
                 return Ok(());
             }
         }
         Err("Newton's method on all unknowns does not converge".into())
+    }
+
+    /// The entries of the matrix of one step of Newton's method, and its right-hand side.
+    fn equations(
+        &self,
+        u: &[f64],
+        pressure: &[f64],
+        active: &[usize],
+        pose: Pose,
+    ) -> (Vec<Triplet<usize, usize, f64>>, Vec<f64>) {
+        let n = self.free.len();
+        let mut entries = self.entries.clone();
+        let mut rest = vec![0.0; n + active.len()];
+        for &Triplet { row, col, val } in &self.entries {
+            rest[row] -= val * u[col];
+        }
+        for (k, &active) in active.iter().enumerate() {
+            let point = &self.surface[active];
+            let (gap, normal, turn) = self.gap(point.0, Full::moved(point, u), pose);
+            rest[n + k] = gap;
+            // Each free displacement with its weight and direction.
+            let unknowns = point
+                .1
+                .iter()
+                .flat_map(|&(w, node)| [0, 1].map(|i| (2 * node + i, w, i)));
+            let unknowns: Vec<_> = unknowns.filter(|(a, ..)| self.free[*a]).collect();
+            for &(a, w, i) in &unknowns {
+                rest[a] += pressure[active] * w * normal[i];
+                entries.push(Triplet::new(n + k, a, -w * normal[i]));
+                entries.push(Triplet::new(a, n + k, -w * normal[i]));
+                for &(b, v, j) in &unknowns {
+                    entries.push(Triplet::new(a, b, -pressure[active] * w * v * turn[i][j]));
+                }
+            }
+        }
+        (entries, rest)
     }
 
     fn solved(&self, u: &[f64], pressure: &[f64], active: &[usize], pose: Pose) -> Solved {

@@ -107,6 +107,30 @@ fn bend([s, t]: [f64; 2]) -> [f64; 2] {
     })
 }
 
+/// Errors everywhere and inside the disc, on a lattice of 2n × 2n cells.
+fn errors(disc: &Disc, n: usize) -> Result<[Errors; 2], String> {
+    let material = |[s, t]: [f64; 2]| {
+        if s.max(t) < 0.5 {
+            disc.inside
+        } else {
+            disc.outside
+        }
+    };
+    // Diagonals point to the disc's centre, so that no corner of its bent square is flat.
+    let problem = Problem::lattice([2 * n, 2 * n], bend, |_| true, material);
+    // Symmetry on the axes; the exact displacement, so no truncation, on the outer sides.
+    let (u, _) = problem.solve(vec![0.0; 2 * problem.nodes.len()], |node, direction| {
+        let at = problem.nodes[node];
+        if at.contains(&3.0) {
+            Some(disc.displacement(at)[direction])
+        } else {
+            (at[direction] == 0.0).then_some(0.0)
+        }
+    })?;
+    let inside = problem.errors_in(&u, disc, |material| *material == disc.inside);
+    Ok([problem.errors(&u, disc), inside])
+}
+
 pub fn disc() -> Measured {
     // The moduli of gel and inclusion; pull along x and half as much push along y.
     let material = |youngs_modulus| Material {
@@ -118,34 +142,7 @@ pub fn disc() -> Measured {
         inside: material(1.2e6),
         far: [250.0, 750.0],
     };
-    let solve = |n: usize| -> Result<[Errors; 2], String> {
-        let cells = [2 * n, 2 * n];
-        let inside = |[s, t]: [f64; 2]| s.max(t) < 0.5;
-        let problem = Problem::lattice(
-            cells,
-            bend,
-            // Diagonals point to the disc's centre, so that no corner of its bent square is flat.
-            |_| true,
-            |at| {
-                if inside(at) {
-                    disc.inside
-                } else {
-                    disc.outside
-                }
-            },
-        );
-        // Symmetry on the axes; the exact displacement, so no truncation, on the outer sides.
-        let (u, _) = problem.solve(vec![0.0; 2 * problem.nodes.len()], |node, direction| {
-            let at = problem.nodes[node];
-            if at.contains(&3.0) {
-                Some(disc.displacement(at)[direction])
-            } else {
-                (at[direction] == 0.0).then_some(0.0)
-            }
-        })?;
-        let inside = problem.errors_in(&u, &disc, |material| *material == disc.inside);
-        Ok([problem.errors(&u, &disc), inside])
-    };
+    let solve = |n| errors(&disc, n);
     let solved = [solve(4)?, solve(8)?, solve(16)?, solve(32)?];
     let mut figures = convergence(
         "displacement",

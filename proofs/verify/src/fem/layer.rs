@@ -105,41 +105,60 @@ fn errors(layer: &BondedLayer, columns: usize) -> Result<[Errors; 4], String> {
     Ok([solve(4)?, solve(8)?, solve(16)?, solve(32)?])
 }
 
+/// A layer to solve for, with the errors of displacement and stress that are stored for four meshes, and their orders.
+struct Case {
+    /// Wave number times thickness, kh.
+    number: f64,
+    columns: usize,
+    nu: f64,
+    stored: [[f64; 4]; 2],
+    orders: [f64; 2],
+}
+
+/// The pressure is the last to reach its order; at ν = 0.4999 the displacement is on its way too.
+const CASES: [Case; 3] = [
+    Case {
+        number: 2.0,
+        columns: 2,
+        nu: 0.49,
+        stored: [
+            [1.127161e-2, 1.286235e-3, 1.282166e-4, 1.241168e-5],
+            [2.393160e-1, 9.083377e-2, 2.860989e-2, 8.066989e-3],
+        ],
+        orders: [ORDERS[0], ORDERS_OF_ANY_NU[1]],
+    },
+    Case {
+        number: 0.3,
+        columns: 3,
+        nu: 0.49,
+        stored: [
+            [1.583937e-3, 2.119906e-4, 2.384953e-5, 2.520786e-6],
+            [1.419327e-2, 4.239383e-3, 1.233276e-3, 3.366325e-4],
+        ],
+        orders: [ORDERS[0], ORDERS_OF_ANY_NU[1]],
+    },
+    Case {
+        number: 0.3,
+        columns: 3,
+        nu: 0.4999,
+        stored: [
+            [5.665095e-3, 9.418422e-4, 1.404146e-4, 2.078253e-5],
+            [3.628944e-1, 1.323208e-1, 5.547951e-2, 1.910465e-2],
+        ],
+        orders: ORDERS_OF_ANY_NU,
+    },
+];
+
 pub fn bonded() -> Measured {
     let mut figures = Vec::new();
-    // The pressure is the last to reach its order; at ν = 0.4999 the displacement is on its way too.
-    for (number, columns, nu, stored, orders) in [
-        (
-            2.0,
-            2,
-            0.49,
-            [
-                [1.127161e-2, 1.286235e-3, 1.282166e-4, 1.241168e-5],
-                [2.393160e-1, 9.083377e-2, 2.860989e-2, 8.066989e-3],
-            ],
-            [ORDERS[0], ORDERS_OF_ANY_NU[1]],
-        ),
-        (
-            0.3,
-            3,
-            0.49,
-            [
-                [1.583937e-3, 2.119906e-4, 2.384953e-5, 2.520786e-6],
-                [1.419327e-2, 4.239383e-3, 1.233276e-3, 3.366325e-4],
-            ],
-            [ORDERS[0], ORDERS_OF_ANY_NU[1]],
-        ),
-        (
-            0.3,
-            3,
-            0.4999,
-            [
-                [5.665095e-3, 9.418422e-4, 1.404146e-4, 2.078253e-5],
-                [3.628944e-1, 1.323208e-1, 5.547951e-2, 1.910465e-2],
-            ],
-            ORDERS_OF_ANY_NU,
-        ),
-    ] {
+    for Case {
+        number,
+        columns,
+        nu,
+        stored,
+        orders,
+    } in CASES
+    {
         let layer = BondedLayer {
             number,
             thickness: 1.0,

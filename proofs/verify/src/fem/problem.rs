@@ -317,7 +317,7 @@ pub fn solved(entries: &[Triplet<usize, usize, f64>], b: &[f64]) -> Result<Vec<f
 
 /// What is said of an element whose Jacobian is not positive.
 pub fn inside_out(jacobian: f64) -> String {
-    format!("an element has the Jacobian {jacobian:e}, expected one above 0")
+    format!("an element has the Jacobian {jacobian:e}, which must be above 0")
 }
 
 /// The triangle with these corners of a cell and the points half-way between them.

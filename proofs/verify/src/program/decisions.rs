@@ -1,11 +1,12 @@
 //! What `palpate detect` decides on made-up maps, against plain sums, and what it must not decide.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use serde_json::Value;
 
+use super::run_in;
 use crate::Measured;
 use palpate::phantom::Phantom;
 use palpate::stats::normal::upper_tail;
@@ -101,14 +102,9 @@ impl Folder {
         self.write(name, &[head.into(), rows.collect::<String>()].concat())
     }
 
-    /// What the program does with arguments, which words separate.
+    /// What the program does with arguments, which spaces separate.
     fn run(&self, program: &Path, arguments: &str) -> Result<Output, String> {
-        let program = std::path::absolute(program).map_err(|error| error.to_string())?;
-        Command::new(&program)
-            .args(arguments.split(' '))
-            .current_dir(&self.0)
-            .output()
-            .map_err(|error| format!("cannot start {}: {error}", program.display()))
+        run_in(&self.0, program, &arguments.split(' ').collect::<Vec<_>>())
     }
 }
 
@@ -121,6 +117,34 @@ impl Drop for Folder {
 
 const MAPS: &str = "--reference without.csv --inclusion with.csv";
 const KNOWN: &str = "--depth-mm 3 --noise white --known all --format json";
+
+/// What plain sums say of a record.
+struct Sums {
+    gamma: f64,
+    t: f64,
+    chi_square: f64,
+    /// The largest change of T's mean by a depth that is off by its tolerance.
+    bias: f64,
+}
+
+impl Sums {
+    fn of(record: &[[f64; 2]; SAMPLES]) -> Sums {
+        let [without, with] = [false, true].map(|inclusion| scaled(DEPTH, inclusion));
+        let signal = difference(&with, &without);
+        let gamma = dot(&signal, &signal).sqrt();
+        let scaled_record: Vec<f64> = record.iter().flatten().map(|force| force / NOISE).collect();
+        let rest = difference(&scaled_record, &without);
+        let t = dot(&rest, &signal) / gamma;
+        // Forces in proportion to the depth: a depth off by 0.1 mm of 3 mm changes them by this share.
+        let slope = |map: &[f64]| TOLERANCE / DEPTH * dot(map, &signal).abs() / gamma;
+        Sums {
+            gamma,
+            t,
+            chi_square: dot(&rest, &rest) - t * t,
+            bias: slope(&without).max(slope(&with)),
+        }
+    }
+}
 
 pub(super) fn decisions(program: &Path) -> Measured {
     let folder = Folder::new()?;
@@ -136,16 +160,12 @@ pub(super) fn decisions(program: &Path) -> Measured {
     })?;
     let number = |key: &str| answer[key].as_f64().unwrap_or(f64::NAN);
 
-    let [without, with] = [false, true].map(|inclusion| scaled(DEPTH, inclusion));
-    let signal = difference(&with, &without);
-    let gamma = dot(&signal, &signal).sqrt();
-    let scaled_record: Vec<f64> = record.iter().flatten().map(|force| force / NOISE).collect();
-    let rest = difference(&scaled_record, &without);
-    let t = dot(&rest, &signal) / gamma;
-    let chi_square = dot(&rest, &rest) - t * t;
-    // Forces in proportion to the depth: a depth off by 0.1 mm of 3 mm changes them by this share.
-    let slope = |map: &[f64]| TOLERANCE / DEPTH * dot(map, &signal).abs() / gamma;
-    let bias = slope(&without).max(slope(&with));
+    let Sums {
+        gamma,
+        t,
+        chi_square,
+        bias,
+    } = Sums::of(&record);
     let (all, degrees) = (2 * SAMPLES as u64, 2 * SAMPLES as u64 - 1);
     let whole = |key: &str| answer[key].as_f64().unwrap_or(f64::NAN) as u64;
     let limit = |end: usize| {

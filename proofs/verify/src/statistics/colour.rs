@@ -42,9 +42,12 @@ const SHARED: Colour = Colour {
 };
 const FEEDBACK: Colour = Colour {
     noise: feedback,
-    covariance: |i, j| match i / SAMPLES == j / SAMPLES {
-        true => 0.04 / 0.36 * libm::pow(0.8, i.abs_diff(j) as f64),
-        false => 0.0,
+    covariance: |i, j| {
+        if i / SAMPLES == j / SAMPLES {
+            0.04 / 0.36 * libm::pow(0.8, i.abs_diff(j) as f64)
+        } else {
+            0.0
+        }
     },
     stream: 430,
 };

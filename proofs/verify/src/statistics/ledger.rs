@@ -28,12 +28,12 @@ impl Row {
     fn parse(line: &'static str) -> Outcome<Row> {
         let fields: Vec<&str> = line.split(',').collect();
         let [name, alpha, trials, powers] = fields[..] else {
-            return Err(format!("ledger: {line:?}, expected four fields").into());
+            return Err(format!("ledger: {line:?} must have four fields").into());
         };
         let power = |text: &'static str| -> Outcome<_> {
             let (defect, power) = text
                 .split_once('=')
-                .ok_or_else(|| format!("ledger: {text:?}, expected defect=power"))?;
+                .ok_or_else(|| format!("ledger: {text:?} must be defect=power"))?;
             Ok((defect, power.parse()?))
         };
         Ok(Row {

@@ -120,13 +120,13 @@ impl Check {
     pub fn run(&self, seed: u64) -> Result<(), String> {
         let (name, row) = (self.name, self.row(seed)?);
         let observed = self.draw(seed, "", 0, &row)?;
-        match observed.passes() {
-            true => Ok(()),
-            false => Err(format!(
-                "check {name} rejects the detector at alpha = {:e}, seed {seed}: {observed}",
-                row.alpha
-            )),
-        }
+        let rejects = || {
+            let alpha = row.alpha;
+            format!(
+                "check {name} rejects the detector at alpha = {alpha:e}, seed {seed}: {observed}"
+            )
+        };
+        observed.passes().then_some(()).ok_or_else(rejects)
     }
 
     /// Runs the check on a detector with each of the defects that the ledger says it sees.

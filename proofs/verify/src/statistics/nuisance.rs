@@ -47,9 +47,12 @@ fn nuisances(f0: Vec<f64>) -> [(&'static str, Vec<f64>); 5] {
     let samples = f0.len() / 2;
     let line = |sample: usize| 2.0 * sample as f64 / (samples - 1) as f64 - 1.0;
     let alone = |channel: usize, of: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        let sample = |i| match i / samples == channel {
-            true => of(i % samples),
-            false => 0.0,
+        let sample = |i| {
+            if i / samples == channel {
+                of(i % samples)
+            } else {
+                0.0
+            }
         };
         (0..2 * samples).map(sample).collect()
     };
@@ -92,9 +95,10 @@ fn statistics(
         generator.normals(trial, 0, &mut deviates);
         let (record, amplitudes) = deviates.split_at_mut(template.len());
         let is_there = trial % 2 == 1;
-        let inclusion = match is_there {
-            true => 1.0 - towards_other,
-            false => towards_other,
+        let inclusion = if is_there {
+            1.0 - towards_other
+        } else {
+            towards_other
         };
         let signals = nuisances.iter().map(|(_, signal)| signal);
         let amplitudes = amplitudes.iter().map(|amplitude| AMPLITUDE * amplitude);

@@ -45,7 +45,7 @@ fn a_check_that_rejects_fails_and_so_does_one_that_sees_nothing_or_cannot_run() 
     let failed = |measure| Check::new(name, measure).run(7).unwrap_err();
     assert_eq!(
         failed(|_| Ok(Figure::at_most("share", 0.5, 0.25))),
-        "check single_mean_h1 rejects the detector at alpha = 2.5e-8, seed 7: share: 0.5, expected at most 0.25"
+        "check single_mean_h1 rejects the detector at alpha = 2.5e-8, seed 7: share: 0.5 (must be at most 0.25)"
     );
     assert_eq!(
         failed(|_| Err("no".into())),
