@@ -12,14 +12,18 @@ use super::ROOT;
 fn script() -> &'static Path {
     static SCRIPT: OnceLock<PathBuf> = OnceLock::new();
     SCRIPT.get_or_init(|| {
-        let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("build-script");
+        // Other processes may compile it at the same time: each under its own name.
+        let name = format!("build-script-{}", std::process::id());
+        let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         let status = Command::new("rustc")
             .args(["--edition=2024", "-o"])
             .arg(&program)
             .arg(format!("{ROOT}/build.rs"))
             .status();
         assert!(status.unwrap().success());
-        program
+        let common = program.with_file_name("build-script");
+        fs::rename(&program, &common).unwrap();
+        common
     })
 }
 
