@@ -182,7 +182,7 @@ fn runs(command: &str, path: &str) -> bool {
         || words.any(|word| word == "--bench")
             && words
                 .next()
-                .is_some_and(|bench| path == format!("benches/{bench}.rs"))
+                .is_some_and(|bench| path.starts_with("benches/") && path.ends_with(&format!("/{bench}.rs")))
 }
 
 /// Whether a command of cargo-nextest runs the ignored tests of the program of this test: it names the test program
