@@ -1,93 +1,148 @@
-//! Which case a line answers.
+//! The cases that are asked, and which case a line answers.
 
 use std::collections::{HashSet, VecDeque};
 
+use serde::Deserialize;
 use serde_json::Value;
 
 use super::case::{Case, Question};
 use super::judge::judge;
-use super::plan::Plan;
+use super::outcome::{Class, Outcome};
 use super::profile::Profile;
 use super::suite::Suite;
 use super::text::{cut, shortened};
-use super::verdict::{Class, Outcome};
 
-/// Cases that were asked, and what became of them.
+/// The first request.
+pub const CAPABILITIES: &str = r#"{"args":{},"id":"capabilities","op":"capabilities"}"#;
+
+/// What a program claims to be able to do.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub struct Capabilities {
+    version: Value,
+    /// The ops that it claims.
+    pub ops: Vec<String>,
+}
+
+impl Capabilities {
+    /// Those of a line, if it is the answer to [`CAPABILITIES`].
+    pub fn read(line: &[u8]) -> Option<Capabilities> {
+        #[derive(Deserialize)]
+        struct Answer {
+            id: String,
+            ok: Capabilities,
+        }
+        let answer: Answer = serde_json::from_slice(line).ok()?;
+        (answer.id == "capabilities").then_some(answer.ok)
+    }
+
+    /// What the program calls its version.
+    pub fn version(&self) -> String {
+        let text = self.version.as_str().map(str::to_string);
+        text.unwrap_or_else(|| self.version.to_string())
+    }
+}
+
+/// The cases of a suite, the questions that are open, and the outcomes.
 pub struct Answers<'a> {
-    /// The cases.
-    pub cases: Vec<&'a Case>,
-    /// What became of each.
-    pub outcomes: Vec<Option<Outcome>>,
-    /// Cases that were asked and have no answer yet, the oldest first.
-    pub waiting: VecDeque<usize>,
-    /// What else there is to say.
+    cases: Vec<&'a Case>,
+    /// What became of each case.
+    outcomes: Vec<Option<Outcome>>,
+    /// Cases that were asked and have no answer yet, by their index, the oldest first.
+    pub open: VecDeque<usize>,
+    /// What else the verdict should say.
     pub notes: Vec<String>,
     profile: &'a Profile,
-    /// Whether a line that is no answer is passed over.
+    /// Whether a line that is no answer is ignored.
     lenient: bool,
     /// The ids of cases that are judged.
     judged: HashSet<&'a str>,
 }
 
 impl<'a> Answers<'a> {
-    /// Of these cases, none of which is asked yet.
-    pub fn new(cases: Vec<&'a Case>, profile: &'a Profile, lenient: bool) -> Answers<'a> {
+    /// No answers yet. Groups and cases are skipped by name, and groups whose op is not claimed; lines of no op are for every program.
+    ///
+    /// Implements: ORA-048, ORA-040.
+    pub fn new(
+        suite: &'a Suite,
+        skip: &[String],
+        claimed: &[String],
+        profile: &'a Profile,
+        lenient: bool,
+    ) -> Answers<'a> {
+        let (mut cases, mut outcomes) = (Vec::new(), Vec::new());
+        for group in &suite.groups {
+            let is_claimed = group.op.is_empty() || claimed.contains(&group.op);
+            for case in &group.cases {
+                let is_left_out = skip.contains(&case.id) || skip.contains(&group.name);
+                let why = if is_left_out {
+                    Some("left out by --skip".into())
+                } else if !is_claimed {
+                    Some(format!("the program does not claim {}", group.op))
+                } else {
+                    None
+                };
+                cases.push(case);
+                outcomes.push(why.map(Outcome::Skipped));
+            }
+        }
         Answers {
-            outcomes: vec![None; cases.len()],
-            waiting: VecDeque::new(),
+            cases,
+            outcomes,
+            open: VecDeque::new(),
             notes: Vec::new(),
             profile,
             lenient,
             judged: HashSet::new(),
-            cases,
         }
     }
 
-    /// Finds out which case a line answers, and judges it. False for a line that answers nothing
-    /// that is still open.
+    /// The cases without an outcome, by their index.
+    pub fn remaining(&self) -> VecDeque<usize> {
+        let all = 0..self.cases.len();
+        all.filter(|&index| self.outcomes[index].is_none())
+            .collect()
+    }
+
+    /// Finds out which case a line answers, and judges it. False for a line that answers no open case.
     ///
     /// Implements: ORA-043.
     pub fn take(&mut self, line: &[u8]) -> bool {
-        let answer = serde_json::from_slice::<Value>(line);
-        let Some(&oldest) = self.waiting.front() else {
+        let Some(&oldest) = self.open.front() else {
             return false;
         };
-        let answer = match answer {
+        let answer = match serde_json::from_slice::<Value>(line) {
             Ok(answer) if answer.is_object() || !self.lenient => answer,
             _ => {
-                let text = cut(&String::from_utf8_lossy(line));
+                let line = String::from_utf8_lossy(line);
                 if self.lenient {
-                    self.notes
-                        .push(format!("passed over, since it is no answer: {text}"));
-                    return false;
+                    self.notes.push(ignored(&line));
+                } else {
+                    self.fail(format!("answered with no JSON: {}", cut(&line)));
                 }
-                self.fail(format!("answered with no JSON: {text}"));
-                return true;
+                return !self.lenient;
             }
         };
         let id = answer.get("id").unwrap_or(&Value::Null);
         let name = id.as_str().unwrap_or_default();
-        if let Some(place) = self
-            .waiting
-            .iter()
-            .position(|&index| self.cases[index].id == name)
-        {
+        let mut open = self.open.iter();
+        if let Some(place) = open.position(|&index| self.cases[index].id == name) {
             for _ in 0..place {
                 self.fail(format!("no answer: the next one was for {name}"));
             }
-            self.settle(judge(self.cases[self.waiting[0]], &answer, self.profile));
+            self.settle(|case, profile| judge(case, &answer, profile));
             return true;
         }
         if self.judged.contains(name) {
-            return false; // a late answer, whose case has failed already
+            return false; // A late answer, whose case has failed already.
         }
         let case = self.cases[oldest];
-        let (found, wanted) = (shortened(id), Value::from(&case.id[..]));
         let reason = format!(
-            "answered with the id {found}, expected {wanted}: {}",
+            "answered with the id {} instead of {:?}: {}",
+            shortened(id),
+            case.id,
             shortened(&answer)
         );
-        self.settle(match judge(case, &answer, self.profile) {
+        self.settle(|case, profile| match judge(case, &answer, profile) {
             // Without an id the order says what was answered.
             outcome if id.is_null() && matches!(case.question, Question::Line(_)) => outcome,
             Outcome::Right if id.is_null() => Outcome::Acceptable(reason),
@@ -96,46 +151,35 @@ impl<'a> Answers<'a> {
         true
     }
 
-    /// The oldest open case has no answer that is one.
-    pub fn fail(&mut self, reason: String) {
-        self.settle(Outcome::wrong(Class::Protocol, reason));
+    /// The oldest open case has no valid answer.
+    pub fn fail(&mut self, reason: impl Into<String>) {
+        self.settle(|_, _| Outcome::wrong(Class::Protocol, reason));
     }
 
-    /// The oldest open case has this outcome.
-    fn settle(&mut self, outcome: Outcome) {
-        if let Some(index) = self.waiting.pop_front() {
-            self.judged.insert(&self.cases[index].id);
-            self.outcomes[index] = Some(outcome);
+    /// Judges the oldest open case.
+    pub fn settle(&mut self, judge: impl FnOnce(&Case, &Profile) -> Outcome) {
+        if let Some(index) = self.open.pop_front() {
+            let case = self.cases[index];
+            self.judged.insert(&case.id);
+            self.outcomes[index] = Some(judge(case, self.profile));
         }
     }
 
-    /// How many cases are judged.
+    /// The number of cases that are judged.
     pub fn settled(&self) -> usize {
         self.judged.len()
     }
-}
 
-/// What all cases of a suite are judged to be by lines of answers in their order; a case without an answer is wrong.
-///
-/// Implements: ORA-043.
-pub fn judge_lines(suite: &Suite, lines: &[u8], profile: &Profile) -> Vec<Vec<Outcome>> {
-    let plan = Plan::new(suite, &[], |_| true);
-    let lines = lines.split(|&byte| byte == b'\n');
-    judge_planned(suite, plan, lines, profile, false).0
-}
-
-/// The outcomes of all cases, and notes, by lines of answers to those that the plan asks.
-pub fn judge_planned<'a>(
-    suite: &Suite,
-    plan: Plan,
-    lines: impl IntoIterator<Item = &'a [u8]>,
-    profile: &Profile,
-    lenient: bool,
-) -> (Vec<Vec<Outcome>>, Vec<String>) {
-    let mut answers = Answers::new(plan.cases(suite), profile, lenient);
-    answers.waiting = (0..answers.cases.len()).collect();
-    for line in lines {
-        answers.take(line);
+    /// The outcomes of all cases, and the notes; a case without an outcome is wrong for the reason `never`.
+    pub fn outcomes(self, never: &str) -> (Vec<Outcome>, Vec<String>) {
+        let never = || Outcome::wrong(Class::Protocol, never);
+        let outcomes = self.outcomes.into_iter();
+        let outcomes = outcomes.map(|outcome| outcome.unwrap_or_else(never));
+        (outcomes.collect(), self.notes)
     }
-    (plan.outcomes(answers.outcomes, "no answer"), answers.notes)
+}
+
+/// The note on a line that is ignored.
+pub fn ignored(line: &str) -> String {
+    format!("ignored, since it is no answer: {}", cut(line))
 }

@@ -5,29 +5,57 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-use super::tolerance::{Condition, Tolerance};
-use super::verdict::Class;
+use super::outcome::Class;
+use super::tolerance::{Condition, Difference, Limit, Tolerance, compare};
 
 /// What is asked.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Question {
-    /// The arguments.
+    /// The arguments of the op.
     Arguments(Map<String, Value>),
-    /// A whole line, as it stands.
+    /// A whole line, sent as it stands.
     Line(String),
 }
 
-/// A value of an answer, and how far it may be off.
+/// An expected value, and how far the answer may be off.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {
     /// Its key.
     pub key: String,
     /// The value.
     pub value: Value,
-    /// How far it may be off in exact work.
+    /// How far the answer may be off in exact arithmetic.
     pub tolerance: Tolerance,
     /// What each unit roundoff adds.
     pub condition: Condition,
+}
+
+impl Wanted {
+    /// Compares an answer with the wanted value, or with another one in its place, in a working precision.
+    ///
+    /// # Errors
+    /// The first difference; a key that the answer does not have is one.
+    pub(super) fn compare(
+        &self,
+        value: &Value,
+        answer: &Map<String, Value>,
+        unit_roundoff: f64,
+    ) -> Result<(), Difference> {
+        let limit = Limit {
+            tolerance: self.tolerance,
+            times: 1.0,
+            condition: &self.condition,
+            unit_roundoff,
+        };
+        match answer.get(&self.key) {
+            Some(found) => compare(&self.key, value, found, limit),
+            None => Err(Difference {
+                place: self.key.clone(),
+                text: "is missing in the answer".into(),
+                class: Class::Protocol,
+            }),
+        }
+    }
 }
 
 /// What the answer must be.
@@ -37,20 +65,32 @@ pub enum Expected {
     Values(Vec<Wanted>),
     /// A refusal.
     Refusal {
-        /// What a program does wrong that answers.
+        /// The class of an answer that is no refusal.
         class: Class,
-        /// The answer of a program that reads the request as it is meant, where it can be.
+        /// The answer of a program that understands a malformed request, where that is possible.
         lenient: Map<String, Value>,
     },
 }
 
-/// The answer that a known bug would give.
-#[derive(Debug, Clone, PartialEq)]
+/// The answer that a known bug gives.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct BugAnswer {
     /// The flag of the bug.
     pub flag: String,
     /// Its answer.
+    #[serde(rename = "ok")]
     pub values: Map<String, Value>,
+}
+
+/// A bug that cases can show.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bug {
+    /// What is wrong.
+    pub bug: String,
+    /// Where to look.
+    pub notes: String,
 }
 
 /// A case.
@@ -64,16 +104,16 @@ pub struct Case {
     pub question: Question,
     /// What the answer must be.
     pub expected: Expected,
-    /// The largest unit roundoff of a precision that can answer it; of any, if there is none.
+    /// The largest unit roundoff of a precision that can answer it; none if every precision can.
     pub roundoff: Option<f64>,
     /// The bugs that this case can show.
     pub flags: Vec<String>,
-    /// Answers of bugs.
+    /// The answers that bugs give.
     pub wrong: Vec<BugAnswer>,
 }
 
 impl Case {
-    /// The line of the request, with its end: no spaces, and the keys in the order of their names.
+    /// The line of the request, with its end: no spaces, and the keys in alphabetical order.
     ///
     /// Implements: ORA-057.
     pub fn line(&self, op: &str) -> String {
@@ -86,76 +126,15 @@ impl Case {
     }
 }
 
-/// A case as it stands in a file.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct CaseText {
-    pub id: String,
-    pub comment: String,
-    pub args: Option<Map<String, Value>>,
-    pub line: Option<String>,
-    pub ok: Option<Map<String, Value>>,
-    pub bits: Option<Map<String, Value>>,
-    pub error: Option<String>,
-    #[serde(default)]
-    pub lenient: Map<String, Value>,
-    #[serde(default)]
-    pub tolerance: BTreeMap<String, ToleranceText>,
-    #[serde(default)]
-    pub condition: BTreeMap<String, Condition>,
-    pub roundoff: Option<f64>,
-    #[serde(default)]
-    pub flags: Vec<String>,
-    #[serde(default)]
-    pub wrong: Vec<WrongText>,
-}
-
-/// The answer of a bug as it stands in a file.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct WrongText {
-    pub flag: String,
-    pub ok: Map<String, Value>,
-}
-
-/// A tolerance as it stands in a file.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ToleranceText {
-    pub ulp: Option<f64>,
-    pub absolute: Option<f64>,
-    pub unit: Option<String>,
-    pub relative: Option<f64>,
-    pub exact: Option<bool>,
-    pub reason: String,
-}
-
-impl ToleranceText {
-    /// The tolerance, if there is just one, of a size that can be.
-    pub fn tolerance(&self) -> Result<Tolerance, String> {
-        let given = [
-            self.ulp.map(Tolerance::Ulp),
-            self.absolute.map(Tolerance::Absolute),
-            self.relative.map(Tolerance::Relative),
-            self.exact
-                .and_then(|exact| exact.then_some(Tolerance::Exact)),
-        ];
-        let &[tolerance] = &given.into_iter().flatten().collect::<Vec<_>>()[..] else {
-            return Err("expected one of ulp, absolute, relative, exact: true".into());
-        };
-        let size = match tolerance {
-            Tolerance::Ulp(size) | Tolerance::Absolute(size) | Tolerance::Relative(size) => size,
-            Tolerance::Exact => 0.0,
-        };
-        if !(0.0..f64::INFINITY).contains(&size) {
-            return Err(format!("{size} is no tolerance, expected at least 0"));
-        }
-        if self.unit.is_none() && matches!(tolerance, Tolerance::Absolute(_)) {
-            return Err("expected the unit of the absolute tolerance".into());
-        }
-        if self.reason.trim().is_empty() {
-            return Err("expected a reason".into());
-        }
-        Ok(tolerance)
-    }
+/// The cases of one file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// Its name.
+    pub name: String,
+    /// The op that is asked; empty for whole lines that every program must refuse.
+    pub op: String,
+    /// The bugs that its cases can show, by their flags.
+    pub flags: BTreeMap<String, Bug>,
+    /// The cases.
+    pub cases: Vec<Case>,
 }

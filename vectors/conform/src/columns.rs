@@ -1,15 +1,17 @@
-//! Questions and answers as a table, a number a row, for programs that read no JSON.
+//! Questions and answers as a table with one number per row, for programs that read no JSON.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Number, Value, json};
 
-use super::case::{Case, Expected, Question};
-use super::offline::part;
+use super::answers::{Answers, ignored};
+use super::case::{Case, Expected, Question, Wanted};
+use super::judge::judge;
+use super::outcome::{Class, Outcome};
+use super::profile::Profile;
 use super::suite::Suite;
 use super::text::cut;
-use super::verdict::Class;
 
 /// The first line of the questions.
 pub const HEAD: &str = "id,op,argument,row,column,value";
@@ -29,47 +31,51 @@ pub fn questions(suite: &Suite) -> String {
     text
 }
 
-/// The rows of a case; none, if an argument is neither number nor word nor a list of them.
+/// The rows of a case; none if an argument is neither a number nor a word nor a list of them, or if the case is about the form of its
+/// request: a table does not tell a text from a number, nor a misspelt name from a right one.
 fn rows(case: &Case, op: &str) -> Option<String> {
-    let Question::Arguments(arguments) = &case.question else {
+    let (Question::Arguments(arguments), id) = (&case.question, &case.id) else {
         return None;
     };
-    // A table does not tell a text from a number, nor a misspelt name from a right one.
-    if matches!(
-        case.expected,
-        Expected::Refusal {
-            class: Class::Protocol,
-            ..
-        }
-    ) {
+    let class = match case.expected {
+        Expected::Values(_) => None,
+        Expected::Refusal { class, .. } => Some(class),
+    };
+    if class == Some(Class::Protocol) || arguments.is_empty() {
         return None;
     }
     let mut text = String::new();
-    let id = &case.id;
-    let mut row = |name: &str, place: &str, value: &str| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{id},{op},{name},{place},{value}");
-    };
     for (name, value) in arguments {
-        match value {
-            Value::Array(entries) if entries.is_empty() => row(name, ",", "[]"),
-            Value::Array(entries) => {
-                for (index, entry) in entries.iter().enumerate() {
-                    match entry {
-                        Value::Array(numbers) if numbers.is_empty() => return None,
-                        Value::Array(numbers) => {
-                            for (column, number) in numbers.iter().enumerate() {
-                                row(name, &format!("{index},{column}"), &word(number)?);
-                            }
-                        }
-                        number => row(name, &format!("{index},"), &word(number)?),
-                    }
-                }
-            }
-            value => row(name, ",", &word(value)?),
+        for (place, value) in cells(value)? {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{id},{op},{name},{place},{value}");
         }
     }
-    (!arguments.is_empty()).then_some(text)
+    Some(text)
+}
+
+/// Row and column, and the text, of each number or word of a value.
+fn cells(value: &Value) -> Option<Vec<(String, String)>> {
+    let entries = match value {
+        Value::Array(entries) if entries.is_empty() => {
+            return Some(vec![(",".into(), "[]".into())]);
+        }
+        Value::Array(entries) => entries,
+        value => return Some(vec![(",".into(), word(value)?)]),
+    };
+    let mut cells = Vec::new();
+    for (row, entry) in entries.iter().enumerate() {
+        match entry {
+            Value::Array(numbers) if numbers.is_empty() => return None,
+            Value::Array(numbers) => {
+                for (column, number) in numbers.iter().enumerate() {
+                    cells.push((format!("{row},{column}"), word(number)?));
+                }
+            }
+            number => cells.push((format!("{row},"), word(number)?)),
+        }
+    }
+    Some(cells)
 }
 
 /// A number, or a text that needs no quotes.
@@ -85,10 +91,10 @@ fn word(value: &Value) -> Option<String> {
 }
 
 /// The part of the suite whose questions a table holds.
-pub fn asked(suite: &Suite, text: &str) -> Result<Suite, String> {
+pub fn asked(suite: Suite, text: &str) -> Result<Suite, String> {
     let rows = text.lines().skip(1);
     let ids: HashSet<&str> = rows.filter_map(|row| row.split(',').next()).collect();
-    let suite = part(suite, |case| ids.contains(&case.id[..]));
+    let suite = suite.part(|case| ids.contains(&case.id[..]));
     // An editor may have written its own ends of lines.
     if questions(&suite) != text.replace("\r\n", "\n") {
         return Err("is not the table of questions of these vectors".into());
@@ -96,55 +102,56 @@ pub fn asked(suite: &Suite, text: &str) -> Result<Suite, String> {
     Ok(suite)
 }
 
-/// The answers of a table by id, in the form of the lines' answers, but all of text; and what was passed over.
+/// Judges the answers of a table. A group without an answer is not claimed.
 ///
 /// # Errors
-/// A row that is none, unless they are passed over.
-pub fn read_answers(
+/// A row that is no answer, unless such rows are ignored.
+pub fn judge_table<'a>(
+    suite: &'a Suite,
+    skip: &[String],
     text: &str,
+    profile: &'a Profile,
     lenient: bool,
-) -> Result<(HashMap<String, Value>, Vec<String>), String> {
-    let mut cells: BTreeMap<(&str, &str), Cells> = BTreeMap::new();
+) -> Result<Answers<'a>, String> {
+    let mut found: BTreeMap<&str, BTreeMap<&str, Cells>> = BTreeMap::new();
     let mut notes = Vec::new();
-    for (number, line) in (1..).zip(text.lines()) {
-        let line = line.trim();
+    for (number, line) in (1..).zip(text.lines().map(str::trim)) {
         if line.is_empty() || (number == 1 && line == ANSWER_HEAD) {
             continue;
         }
-        let added = cell(line).and_then(|(id, key, place, value)| {
-            cells.entry((id, key)).or_default().add(place, value)
-        });
-        match added {
-            Some(()) => {}
-            None if lenient => {
-                notes.push(format!("passed over, since it is no answer: {}", cut(line)))
-            }
-            None => {
+        let mut add = || {
+            let (id, key, place, value) = cell(line)?;
+            let cells = found.entry(id).or_default().entry(key).or_default();
+            cells.insert(place, value).is_none().then_some(())
+        };
+        if add().is_none() {
+            if !lenient {
+                let line = cut(line);
                 return Err(format!(
-                    "line {number} is {:?}, expected a new {ANSWER_HEAD}",
-                    cut(line)
+                    "line {number} is {line:?}, but must be a new {ANSWER_HEAD}"
                 ));
             }
+            notes.push(ignored(line));
         }
     }
-    let mut answers: HashMap<String, Map<String, Value>> = HashMap::new();
-    for ((id, key), cells) in cells {
-        answers
-            .entry(id.into())
-            .or_default()
-            .insert(key.into(), cells.value());
+    let ops = suite.ops_of(|id| found.contains_key(id));
+    let mut answers = Answers::new(suite, skip, &ops, profile, lenient);
+    answers.notes = notes;
+    answers.open = answers.remaining();
+    while !answers.open.is_empty() {
+        answers.settle(|case, profile| match found.get(&case.id[..]) {
+            Some(found) => judge(case, &answer(found, case), profile),
+            None => Outcome::wrong(Class::Protocol, "no answer"),
+        });
     }
-    let answer = |(id, mut ok): (String, Map<String, Value>)| {
-        let answer = match ok.remove("error") {
-            Some(code) => json!({"error": {"code": code}}),
-            None => json!({"ok": ok}),
-        };
-        (id, answer)
-    };
-    Ok((answers.into_iter().map(answer).collect(), notes))
+    Ok(answers)
 }
 
+/// Row and column, where there are any.
 type Place = (Option<usize>, Option<usize>);
+
+/// The texts of one key.
+type Cells = BTreeMap<Place, Value>;
 
 /// The cells of a row of answers.
 fn cell(line: &str) -> Option<(&str, &str, Place, Value)> {
@@ -161,48 +168,55 @@ fn cell(line: &str) -> Option<(&str, &str, Place, Value)> {
     (is_place && !id.is_empty() && !key.is_empty()).then_some((id, key, place, value.into()))
 }
 
+/// The answer to a case in the form of the lines' answers.
+fn answer(found: &BTreeMap<&str, Cells>, case: &Case) -> Value {
+    if let Some(code) = found.get("error") {
+        return json!({"error": {"code": value(code)}});
+    }
+    let values = match &case.expected {
+        Expected::Values(values) => &values[..],
+        Expected::Refusal { .. } => &[],
+    };
+    let entry = |(key, cells): (&&str, &Cells)| {
+        let wanted = values.iter().find(|wanted| wanted.key == **key);
+        let expected = wanted.map_or(&Value::Null, |Wanted { value, .. }| value);
+        (key.to_string(), typed(&value(cells), expected))
+    };
+    let ok: Map<String, Value> = found.iter().map(entry).collect();
+    json!({"ok": ok})
+}
+
+/// A value, a list, or a list of lists; gaps are closed, so that the lengths differ.
+fn value(cells: &Cells) -> Value {
+    let mut rows: BTreeMap<usize, Vec<Value>> = BTreeMap::new();
+    let mut list = Vec::new();
+    for (&place, value) in cells {
+        let value = value.clone();
+        match place {
+            (Some(row), Some(_)) => rows.entry(row).or_default().push(value),
+            (Some(_), None) => list.push(value),
+            _ if value == "[]" => return json!([]),
+            _ => return value,
+        }
+    }
+    list.extend(rows.into_values().map(Value::from));
+    Value::from(list)
+}
+
 /// A text of a table as what is expected in its place: a text, or a number if it is one.
-pub fn typed(found: &Value, expected: &Value) -> Value {
+fn typed(found: &Value, expected: &Value) -> Value {
     match (found, expected) {
         (Value::Array(found), Value::Array(expected)) => {
             let first = expected.first().unwrap_or(&Value::Null);
             found.iter().map(|found| typed(found, first)).collect()
         }
         (Value::String(text), Value::Number(_)) => {
-            let number: Option<Value> = serde_json::from_str(text).ok().filter(Value::is_number);
+            let number = serde_json::from_str(text).ok();
             // What JSON has no number for, such as .5 and +1, may still be one; NaN stays a text.
-            let loose = || text.parse().ok().and_then(serde_json::Number::from_f64);
-            number
-                .or_else(|| loose().map(Value::Number))
-                .unwrap_or_else(|| found.clone())
+            let loose = || text.parse().ok().and_then(Number::from_f64);
+            let number = number.or_else(loose).map(Value::Number);
+            number.unwrap_or_else(|| found.clone())
         }
         _ => found.clone(),
-    }
-}
-
-/// The texts of one key, by their place.
-#[derive(Default)]
-struct Cells(BTreeMap<Place, Value>);
-
-impl Cells {
-    /// None, if the place has a value.
-    fn add(&mut self, place: Place, value: Value) -> Option<()> {
-        self.0.insert(place, value).is_none().then_some(())
-    }
-
-    /// A value, a list, or a list of lists; places that are left out are closed up, so that the lengths differ.
-    fn value(self) -> Value {
-        let mut rows: BTreeMap<usize, Vec<Value>> = BTreeMap::new();
-        let mut list = Vec::new();
-        for ((row, column), value) in self.0 {
-            match (row, column) {
-                (Some(row), Some(_)) => rows.entry(row).or_default().push(value),
-                (Some(_), None) => list.push(value),
-                _ if value == "[]" => return json!([]),
-                _ => return value,
-            }
-        }
-        list.extend(rows.into_values().map(Value::from));
-        Value::from(list)
     }
 }

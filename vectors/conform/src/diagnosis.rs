@@ -1,9 +1,11 @@
-//! Which bugs explain the wrong answers of a group.
+//! The bugs that explain the wrong answers of a group.
+
+use std::cmp::Reverse;
 
 use serde::Serialize;
 
-use super::suite::Group;
-use super::verdict::{Class, Outcome, Traces, Wrong};
+use super::case::{Bug, Case, Group};
+use super::outcome::{Class, Outcome, Wrong};
 
 /// What the wrong answers of one class in one group point at.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -12,9 +14,9 @@ pub struct Diagnosis {
     pub group: String,
     /// The class.
     pub class: Class,
-    /// How many answers of this class are wrong.
+    /// The number of wrong answers of this class.
     pub wrong: usize,
-    /// What explains at least half of them, what explains most first; if there is none, they are unexplained.
+    /// What explains at least half of them, what explains most first; if empty, they are unexplained.
     pub explanations: Vec<Explanation>,
 }
 
@@ -23,15 +25,15 @@ pub struct Diagnosis {
 pub struct Explanation {
     /// The bugs, one or two.
     pub bugs: Vec<NamedBug>,
-    /// How many of the wrong answers they explain.
+    /// The number of wrong answers that they explain.
     pub explains: usize,
-    /// How many answers are right that would be wrong with them.
+    /// The number of right answers that would be wrong with them.
     pub against: usize,
     /// The first case that they explain.
     pub first_case: String,
 }
 
-/// A bug by its flag.
+/// A bug with its flag.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct NamedBug {
     /// Its flag.
@@ -42,33 +44,37 @@ pub struct NamedBug {
     pub notes: String,
 }
 
-/// Most explanations that are given of a group.
+/// The largest number of explanations for a group and class.
 const MOST: usize = 3;
 
-/// The diagnosis of each class with wrong answers in a group. `is_counted` tells which cases count.
+/// The diagnosis of each class with wrong answers in a group, whose outcomes are given in the order of its cases. `is_counted` tells
+/// which cases count.
 ///
 /// Implements: ORA-047, ORA-048.
-pub fn diagnose(
+pub fn diagnose<'a>(
     group: &Group,
-    outcomes: &[Outcome],
+    outcomes: &'a [Outcome],
     is_counted: impl Fn(usize) -> bool,
 ) -> Vec<Diagnosis> {
     let of_class = |class: Class| {
-        let wrong = outcomes
-            .iter()
-            .enumerate()
-            .filter_map(|(index, outcome)| match outcome {
-                Outcome::Wrong(wrong) if wrong.class == class && is_counted(index) => {
-                    Some((index, wrong))
-                }
-                _ => None,
-            });
-        Found {
-            group,
-            outcomes,
-            wrong: wrong.collect(),
-        }
-        .diagnosis(class)
+        let wrong = |(index, outcome): (usize, &'a Outcome)| match outcome {
+            Outcome::Wrong(wrong) if wrong.class == class && is_counted(index) => {
+                Some((index, wrong))
+            }
+            _ => None,
+        };
+        let wrong: Vec<_> = outcomes.iter().enumerate().filter_map(wrong).collect();
+        (!wrong.is_empty()).then(|| Diagnosis {
+            group: group.name.clone(),
+            class,
+            wrong: wrong.len(),
+            explanations: Found {
+                group,
+                outcomes,
+                wrong,
+            }
+            .explanations(),
+        })
     };
     Class::ALL.into_iter().filter_map(of_class).collect()
 }
@@ -81,84 +87,55 @@ struct Found<'a> {
 }
 
 impl Found<'_> {
-    fn diagnosis(&self, class: Class) -> Option<Diagnosis> {
-        if self.wrong.is_empty() {
-            return None;
+    /// What explains at least half of the wrong answers. Two bugs are named only if they explain more than any one; of such pairs the
+    /// best, of equal pairs the first.
+    fn explanations(&self) -> Vec<Explanation> {
+        let flags = self.group.flags.keys();
+        let mut alone: Vec<_> = flags
+            .map(|flag| (&flag[..], self.explanation(&[flag])))
+            .collect();
+        let explains = |one: &Option<Explanation>| one.as_ref().map_or(0, |one| one.explains);
+        // The sort is stable: of equals, the first by name comes first, here and below.
+        alone.sort_by_key(|(_, one)| Reverse(explains(one)));
+        let mut best: Option<Explanation> = None;
+        for (index, (one, _)) in alone.iter().enumerate() {
+            for (other, _) in &alone[index + 1..] {
+                let pair = self.explanation(&[one, other]);
+                let most = explains(&best).max(explains(&alone[0].1));
+                best = pair.filter(|pair| pair.explains > most).or(best);
+            }
         }
-        let mut flags: Vec<&str> = self.group.flags.keys().map(|flag| &flag[..]).collect();
-        let alone = |flag: &str| self.explanation(&[flag]);
-        // Of two bugs the one that explains more comes first.
-        flags.sort_by_cached_key(|flag| std::cmp::Reverse(alone(flag).map(|one| one.explains)));
-        let mut found: Vec<Explanation> = flags.iter().filter_map(|flag| alone(flag)).collect();
-        let best = found.first().map_or(0, |one| one.explains);
-        let pairs = flags.iter().enumerate().flat_map(|(index, one)| {
-            let others = flags[index + 1..].iter();
-            others.filter_map(|other| self.explanation(&[one, other]))
-        });
-        // Two bugs are named only where they explain more than any one; of such pairs the best, of equals the first.
-        let pair = pairs.reduce(|best, pair| match pair.explains > best.explains {
-            true => pair,
-            false => best,
-        });
-        found.extend(pair.filter(|pair| pair.explains > best));
+        let mut found: Vec<_> = alone
+            .into_iter()
+            .filter_map(|(_, one)| one)
+            .chain(best)
+            .collect();
         found.retain(|one| 2 * one.explains >= self.wrong.len());
-        // A stable sort: of equals, the first by name.
-        found.sort_by_key(|one| (std::cmp::Reverse(one.explains), one.against));
+        found.sort_by_key(|one| (Reverse(one.explains), one.against));
         found.truncate(MOST);
-        let (group, wrong) = (self.group.name.clone(), self.wrong.len());
-        Some(Diagnosis {
-            group,
-            class,
-            wrong,
-            explanations: found,
-        })
+        found
     }
 
+    /// What these bugs explain, if they explain anything.
     fn explanation(&self, flags: &[&str]) -> Option<Explanation> {
-        let mut explained = self
-            .wrong
-            .iter()
-            .filter(|(_, wrong)| wrong.traces.are_of(flags));
+        let wrong = self.wrong.iter();
+        let mut explained = wrong.filter(|(_, wrong)| wrong.traces.are_of(flags));
         let (first, _) = explained.next()?;
         let named = |flag: &&str| {
-            let bug = self.group.flags.get(*flag)?;
-            let (flag, bug, notes) = (flag.to_string(), bug.bug.clone(), bug.notes.clone());
+            let Bug { bug, notes } = self.group.flags.get(*flag)?.clone();
+            let flag = flag.to_string();
             Some(NamedBug { flag, bug, notes })
         };
-        let shows = |index: &usize| {
-            let case = &self.group.cases[*index];
-            flags
-                .iter()
-                .any(|flag| case.flags.iter().any(|shown| shown == flag))
+        let is_against = |(case, outcome): &(&Case, &Outcome)| {
+            let mut shown = case.flags.iter();
+            **outcome == Outcome::Right && shown.any(|flag| flags.contains(&&flag[..]))
         };
-        let is_right = |index: &usize| self.outcomes[*index] == Outcome::Right;
+        let cases = self.group.cases.iter().zip(self.outcomes);
         Some(Explanation {
             bugs: flags.iter().filter_map(named).collect(),
             explains: 1 + explained.count(),
-            against: (0..self.outcomes.len())
-                .filter(shows)
-                .filter(is_right)
-                .count(),
+            against: cases.filter(is_against).count(),
             first_case: self.group.cases[*first].id.clone(),
         })
-    }
-}
-
-impl Traces {
-    /// Whether the answer is that of these bugs: of one with every key; of two, if each key is right or that of one of them.
-    fn are_of<'a>(&'a self, flags: &[&'a str]) -> bool {
-        let named = |flag: &'a str| self.bugs.iter().filter(move |bug| bug.0 == flag);
-        let of = |flag: &'a str| named(flag).map(|bug| bug.1);
-        flags
-            .iter()
-            .any(|flag| of(flag).any(|keys| keys == self.all))
-            || match flags {
-                [one, other] => of(one).any(|a| of(other).any(|b| self.needs_both(a, b))),
-                _ => false,
-            }
-    }
-    /// Whether neither set of keys leaves the other without a key to explain, and both leave none that is wrong.
-    fn needs_both(&self, a: u64, b: u64) -> bool {
-        self.right | a != self.all && self.right | b != self.all && self.right | a | b == self.all
     }
 }

@@ -1,151 +1,100 @@
-//! One answer against what was expected.
+//! One answer, judged against what is expected.
 
 use serde_json::{Map, Value};
 
-use super::case::{BugAnswer, Case, Expected, Wanted};
+use super::case::{Case, Expected, Wanted};
+use super::outcome::{Class, Outcome, Traces, Wrong};
 use super::profile::Profile;
 use super::text::shortened;
-use super::tolerance::{Difference, Limit, Tolerance, compare};
-use super::verdict::{Class, Outcome, Traces, Wrong};
+use super::tolerance::{Limit, Tolerance, compare};
 
-/// Judges the answer to a case: a JSON value whose id was found to be right.
+/// Judges the answer to a case; its id is not looked at.
 ///
 /// Implements: ORA-046, ORA-047, ORA-058.
 pub fn judge(case: &Case, answer: &Value, profile: &Profile) -> Outcome {
+    let malformed = |what: &str, value| {
+        Outcome::wrong(Class::Protocol, format!("{what}, not {}", shortened(value)))
+    };
     match (answer.get("ok"), answer.get("error")) {
-        (Some(ok), None) => judge_values(case, ok, profile),
-        (None, Some(error)) => judge_refusal(case, error),
-        _ => Outcome::wrong(
-            Class::Protocol,
-            format!(
-                "expected an answer with either ok or error, found {}",
-                shortened(answer)
-            ),
-        ),
-    }
-}
-
-/// Implements: ORA-058.
-fn judge_refusal(case: &Case, error: &Value) -> Outcome {
-    let is_coded = error["code"].is_string();
-    if !is_coded && !error.is_string() && !error.is_object() {
-        let reason = format!(
-            "error is {}, expected an object with a code",
-            shortened(error)
-        );
-        return Outcome::wrong(Class::Protocol, reason);
-    }
-    match &case.expected {
-        Expected::Values(_) => {
-            Outcome::wrong(Class::Range, format!("refused: {}", shortened(error)))
-        }
-        Expected::Refusal { .. } if is_coded => Outcome::Right,
-        Expected::Refusal { .. } => {
-            let error = shortened(error);
-            Outcome::Acceptable(format!(
-                "refused with {error}, expected an object with a code"
-            ))
-        }
-    }
-}
-
-fn judge_values(case: &Case, ok: &Value, profile: &Profile) -> Outcome {
-    let Value::Object(found) = ok else {
-        let reason = format!("ok is {}, expected an object", shortened(ok));
-        return Outcome::wrong(Class::Protocol, reason);
-    };
-    match &case.expected {
-        Expected::Values(values) => match values
-            .iter()
-            .find_map(|wanted| differs(wanted, found, profile))
-        {
-            None => Outcome::Right,
-            Some(Difference { class, place, text }) => Outcome::Wrong(Wrong {
-                class,
-                reason: format!("{place} {text}"),
-                traces: traces(&case.wrong, values, found, profile),
-            }),
+        (Some(Value::Object(found)), None) => match &case.expected {
+            Expected::Values(values) => judge_values(case, values, found, profile.unit_roundoff),
+            Expected::Refusal { class, lenient } => judge_unrefused(case, *class, lenient, found),
         },
-        Expected::Refusal { class, lenient } => {
-            let reason = format!("answered {}, but must be refused", shortened(ok));
-            if is_as_meant(lenient, found) {
-                return Outcome::Acceptable(reason);
+        (Some(ok), None) => malformed("ok must be an object", ok),
+        (None, Some(error)) => {
+            let is_coded = error["code"].is_string();
+            if !is_coded && !error.is_string() && !error.is_object() {
+                return malformed("error must be an object with a code", error);
             }
-            // What the case shows is what was not refused.
-            let traces = Traces::of_all(&case.flags);
-            Outcome::Wrong(Wrong {
-                class: *class,
-                reason,
-                traces,
-            })
+            let refused = format!("refused with {}", shortened(error));
+            match &case.expected {
+                Expected::Values(_) => Outcome::wrong(Class::Range, refused),
+                Expected::Refusal { .. } if is_coded => Outcome::Right,
+                Expected::Refusal { .. } => {
+                    Outcome::Acceptable(refused + ", not with an object with a code")
+                }
+            }
         }
+        _ => malformed("an answer must have either ok or error", answer),
     }
 }
 
-/// Whether a request that must be refused was answered as it was meant; the tolerance tells that from other readings.
-///
-/// Implements: ORA-058.
-fn is_as_meant(lenient: &Map<String, Value>, found: &Map<String, Value>) -> bool {
-    let limit = Limit::stated(Tolerance::Relative(1e-6), 1.0);
-    let is_near = |(key, value): (&String, &Value)| {
-        found
-            .get(key)
-            .is_some_and(|found| compare(key, value, found, limit).is_ok())
-    };
-    !lenient.is_empty() && lenient.iter().all(is_near)
-}
-
-/// The difference of an answer from one wanted value.
-fn differs(wanted: &Wanted, found: &Map<String, Value>, profile: &Profile) -> Option<Difference> {
-    let Some(value) = found.get(&wanted.key) else {
-        let (place, text) = (wanted.key.clone(), "is missing in the answer".into());
-        return Some(Difference {
-            place,
-            text,
-            class: Class::Protocol,
-        });
-    };
-    compare(&wanted.key, &wanted.value, value, limit(wanted, profile)).err()
-}
-
-fn limit<'a>(wanted: &'a Wanted, profile: &Profile) -> Limit<'a> {
-    let Wanted {
-        tolerance,
-        condition,
-        ..
-    } = wanted;
-    Limit {
-        tolerance: *tolerance,
-        times: 1.0,
-        condition,
-        unit_roundoff: profile.unit_roundoff,
-    }
-}
-
-/// Which keys of an answer are right, and which are those of each bug.
-fn traces(
-    bugs: &[BugAnswer],
+fn judge_values(
+    case: &Case,
     values: &[Wanted],
     found: &Map<String, Value>,
-    profile: &Profile,
-) -> Traces {
-    // No op has nearly 64 keys.
-    let keys = |is_its: &dyn Fn(&Wanted) -> bool| {
-        let set = |(index, wanted)| u64::from(is_its(wanted)) << index;
-        values.iter().enumerate().map(set).sum()
+    unit_roundoff: f64,
+) -> Outcome {
+    let difference = |wanted: &Wanted| wanted.compare(&wanted.value, found, unit_roundoff).err();
+    let Some(first) = values.iter().find_map(difference) else {
+        return Outcome::Right;
     };
-    let of_bug = |bug: &BugAnswer| {
-        let is_its = |wanted: &Wanted| match (bug.values.get(&wanted.key), found.get(&wanted.key)) {
-            (Some(wrong), Some(found)) => {
-                compare(&wanted.key, wrong, found, limit(wanted, profile)).is_ok()
-            }
-            _ => false,
+    // One bit for each key; no op has nearly 64 keys.
+    let keys = |is_in: &dyn Fn(&Wanted) -> bool| {
+        let bit = |(index, wanted)| u64::from(is_in(wanted)) << index;
+        values.iter().enumerate().map(bit).sum()
+    };
+    let bugs = case.wrong.iter().map(|bug| {
+        let is_its = |wanted: &Wanted| {
+            let value = bug.values.get(&wanted.key);
+            value.is_some_and(|value| wanted.compare(value, found, unit_roundoff).is_ok())
         };
         (bug.flag.clone(), keys(&is_its))
+    });
+    Outcome::Wrong(Wrong {
+        class: first.class,
+        reason: first.to_string(),
+        traces: Traces {
+            all: keys(&|_| true),
+            right: keys(&|wanted| difference(wanted).is_none()),
+            bugs: bugs.collect(),
+        },
+    })
+}
+
+/// Judges an answer to a question that must be refused. The tolerance of 10⁻⁶ tells the intended reading from others.
+///
+/// Implements: ORA-058.
+fn judge_unrefused(
+    case: &Case,
+    class: Class,
+    lenient: &Map<String, Value>,
+    found: &Map<String, Value>,
+) -> Outcome {
+    let limit = Limit::stated(Tolerance::Relative(1e-6), 1.0);
+    let is_near = |(key, value): (&String, &Value)| {
+        let found = found.get(key);
+        found.is_some_and(|found| compare(key, value, found, limit).is_ok())
     };
-    Traces {
-        all: keys(&|_| true),
-        right: keys(&|wanted| differs(wanted, found, profile).is_none()),
-        bugs: bugs.iter().map(of_bug).collect(),
+    let answer = shortened(&Value::Object(found.clone()));
+    let reason = format!("answered {answer}, but must be refused");
+    if !lenient.is_empty() && lenient.iter().all(is_near) {
+        return Outcome::Acceptable(reason);
     }
+    Outcome::Wrong(Wrong {
+        class,
+        reason,
+        // The flags of the case are the bugs that keep a program from refusing it.
+        traces: Traces::of_all(&case.flags),
+    })
 }

@@ -1,39 +1,38 @@
-//! Another program against the vectors (`spec/oracle.md`, `spec/vectors.md`).
+//! Judges another program against the vectors (`spec/oracle.md`, `spec/vectors.md`).
 //!
 //! | file | content |
 //! |---|---|
-//! | `embedded.rs` | the vectors that are part of this program |
-//! | `suite.rs` | files of vectors, read and hashed |
-//! | `case.rs` | one case, as it stands in a file |
-//! | `check.rs` | whether a file is what it should be |
-//! | `profile.rs` | the working precision in which a program is judged |
+//! | `text.rs` | messages: the error of a file, and text that is quoted |
+//! | `outcome.rs` | the outcome of one case, and the classes of wrong answers |
 //! | `tolerance.rs` | how far an answer may be off |
-//! | `plan.rs` | which cases are asked |
-//! | `partner.rs` | the program that is asked |
-//! | `run.rs` | all cases asked, in a pipeline, through crashes and silence |
-//! | `offline.rs`, `columns.rs` | questions and answers in files: lines of JSON, or a table |
-//! | `answers.rs` | which case a line answers |
-//! | `judge.rs` | one answer against what was expected |
-//! | `accepted.rs` | the list of known mistakes |
-//! | `diagnosis.rs` | which bugs explain wrong answers |
-//! | `program.rs` | which program it is |
-//! | `verdict.rs` | what came out |
-//! | `table.rs`, `junit.rs`, `page.rs` | the verdict for people, for CI and to be signed |
-//! | `text.rs` | text that is quoted |
+//! | `case.rs` | one case, and the cases of one file |
+//! | `file.rs` | a file of vectors, read and checked |
+//! | `embedded.rs`, `suite.rs` | the vectors that are part of this program; all files, hashed |
+//! | `profile.rs` | the working precision in which a program is judged |
+//! | `measure.rs` | what is required of a program, and the list of its known mistakes |
+//! | `judge.rs` | one answer, judged against what is expected |
+//! | `answers.rs` | the cases that are asked, and which case a line answers |
+//! | `partner.rs`, `run.rs` | the program that is asked; all cases asked through a pipe, despite crashes and silence |
+//! | `columns.rs`, `offline.rs` | questions and answers in files: a table, or lines of JSON |
+//! | `program.rs` | the identity of the program |
+//! | `diagnosis.rs` | the bugs that explain wrong answers |
+//! | `counts.rs`, `verdict.rs` | the answers that are not right and the columns of counts; the verdict |
+//! | `table.rs`, `junit.rs`, `page.rs` | the verdict for people, for CI, and to be signed |
 
-mod accepted;
 mod answers;
 mod case;
-mod check;
 mod columns;
+mod counts;
 mod diagnosis;
 mod embedded;
+mod file;
 mod judge;
 mod junit;
+mod measure;
 mod offline;
+mod outcome;
 mod page;
 mod partner;
-mod plan;
 mod profile;
 mod program;
 mod run;
@@ -45,19 +44,20 @@ mod text;
 mod tolerance;
 mod verdict;
 
-pub use accepted::{Accepted, read_accepted};
-pub use answers::judge_lines;
-pub use case::{BugAnswer, Case, Expected, Question, Wanted};
+pub use case::{Bug, BugAnswer, Case, Expected, Group, Question, Wanted};
+pub use counts::{Counts, Finding};
 pub use diagnosis::{Diagnosis, Explanation, NamedBug};
 pub use judge::judge;
 pub use junit::junit;
+pub use measure::{Measure, Require, read_accepted};
 pub use offline::{Form, judge_files, questions};
+pub use outcome::{Class, Outcome, Traces, Wrong};
 pub use page::page;
 pub use profile::Profile;
+pub use program::{Program, ProgramFile};
 pub use run::{ConformError, Settings, run};
-pub use suite::{Bug, Choice, Group, Invalid, Suite, Unknown, sha256};
+pub use suite::{Choice, Suite, sha256};
 pub use table::table;
+pub use text::Invalid;
 pub use tolerance::{Condition, Tolerance};
-pub use verdict::{
-    Class, Count, Finding, Measure, Outcome, Program, ProgramFile, Require, Traces, Verdict, Wrong,
-};
+pub use verdict::{GroupCounts, Verdict};

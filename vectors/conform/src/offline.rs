@@ -5,20 +5,21 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::answers::judge_planned;
-use super::case::{Case, Expected, Wanted};
-use super::plan::{CAPABILITIES, Capabilities, Plan};
+use super::answers::{Answers, CAPABILITIES, Capabilities};
+use super::columns;
+use super::measure::Measure;
 use super::profile::Profile;
-use super::suite::{Invalid, Suite};
-use super::verdict::{Measure, Outcome, Program, Verdict};
-use super::{columns, verdict::Class};
+use super::program::Program;
+use super::suite::Suite;
+use super::text::Invalid;
+use super::verdict::Verdict;
 
 /// How questions are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Form {
-    /// The requests of the pipe, a line each
+    /// The requests of the pipe, one per line
     Jsonl,
-    /// A number a row; without the questions that only a reader of JSON can get wrong
+    /// A table with one number per row, without the questions about the form of requests
     Csv,
 }
 
@@ -29,48 +30,76 @@ pub fn questions(suite: &Suite, form: Form) -> String {
     if form == Form::Csv {
         return columns::questions(suite);
     }
-    let mut text = format!("{CAPABILITIES}\n");
-    for group in &suite.groups {
-        text.extend(group.cases.iter().map(|case| case.line(&group.op)));
-    }
-    text
+    let requests = suite.requests().map(|(_, line)| line);
+    let first = format!("{CAPABILITIES}\n");
+    std::iter::once(first).chain(requests).collect()
 }
 
-/// Judges answers from a file to questions from a file; the suite is the part that was asked.
+/// Judges answers from a file to questions from a file, and returns the part of the suite that was asked.
 ///
 /// # Errors
-/// A file that cannot be read, questions that are not of this suite, and rows of a table that are none.
+/// A file that cannot be read, questions that are not of this suite, and rows that are not of a table of answers.
 ///
 /// Implements: ORA-075, ORA-064.
 pub fn judge_files(
-    suite: &Suite,
+    suite: Suite,
     skip: &[String],
     questions: &Path,
     answers: &Path,
     measure: &Measure,
     lenient: bool,
 ) -> Result<(Verdict, Suite), Invalid> {
-    let text = read(questions)?;
-    let text = String::from_utf8_lossy(&text);
-    let is_table = text.starts_with(columns::HEAD);
-    let suite = if is_table {
-        columns::asked(suite, &text)
+    let read =
+        |path: &Path| std::fs::read(path).map_err(|error| Invalid::new(path.display(), error));
+    let (asked, answered) = (read(questions)?, read(answers)?);
+    let (asked, table) = (
+        String::from_utf8_lossy(&asked),
+        String::from_utf8_lossy(&answered),
+    );
+    let is_table = asked.starts_with(columns::HEAD);
+    let part = if is_table { columns::asked } else { part_asked };
+    let suite =
+        part(suite, &asked).map_err(|message| Invalid::new(questions.display(), message))?;
+    let profile = &measure.profile;
+    let (judged, version) = if is_table {
+        let judged = columns::judge_table(&suite, skip, &table, profile, lenient);
+        let judged = judged.map_err(|message| Invalid::new(answers.display(), message))?;
+        (judged, String::new())
     } else {
-        asked(suite, &text)
+        judge_lines(&suite, skip, &answered, profile, lenient)
+    };
+    let (outcomes, notes) = judged.outcomes("no answer");
+    let program = Program::of_answers(answers, version);
+    let verdict = Verdict::new(&suite, measure, program, outcomes, notes);
+    Ok((verdict, suite))
+}
+
+/// The part of the suite whose requests these lines are.
+fn part_asked(suite: Suite, text: &str) -> Result<Suite, String> {
+    let requests = suite.requests();
+    let known: HashMap<String, String> = requests
+        .map(|(case, line)| (line, case.id.clone()))
+        .collect();
+    let mut ids = HashSet::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        if line != CAPABILITIES {
+            let id = known.get(&format!("{line}\n"));
+            ids.insert(id.ok_or_else(|| format!("line {number} is no question of these vectors"))?);
+        }
     }
-    .map_err(|message| Invalid::new(questions.display(), message))?;
-    let answered = read(answers)?;
-    let program = |version| Program::of_answers(answers, version);
-    if is_table {
-        let profile = &measure.profile;
-        let read = columns::read_answers(&String::from_utf8_lossy(&answered), lenient);
-        let (found, notes) = read.map_err(|message| Invalid::new(answers.display(), message))?;
-        let outcomes = judge_table(&suite, skip, &found, profile);
-        let verdict = Verdict::new(&suite, measure, program(String::new()), outcomes, notes);
-        return Ok((verdict, suite));
-    }
+    Ok(suite.part(|case| ids.contains(&case.id)))
+}
+
+/// Judges lines of answers. Also returns the version of the program, if it answered that.
+fn judge_lines<'a>(
+    suite: &'a Suite,
+    skip: &[String],
+    text: &[u8],
+    profile: &'a Profile,
+    lenient: bool,
+) -> (Answers<'a>, String) {
     let (mut lines, mut claims) = (Vec::new(), None);
-    for line in answered.split(|&byte| byte == b'\n') {
+    for line in text.split(|&byte| byte == b'\n') {
         match Capabilities::read(line) {
             Some(found) => claims = Some(found),
             None => lines.push(line),
@@ -78,95 +107,30 @@ pub fn judge_files(
     }
     // What follows the end of the last line is no line.
     lines.pop_if(|last| last.is_empty());
-    let plan = match &claims {
-        Some(claims) => Plan::new(&suite, skip, |op| {
-            claims.ops.iter().any(|claimed| claimed == op)
-        }),
-        None => {
-            let ids = ids(&lines);
-            Plan::of_answered(&suite, skip, |id| ids.contains(id))
-        }
-    };
-    let (outcomes, mut notes) = judge_planned(&suite, plan, lines, &measure.profile, lenient);
-    if claims.is_none() {
-        notes.push("no answer to capabilities: the ops with an answer are taken for those that the program claims".into());
-    }
-    let version = claims.map_or_else(String::new, |claims| claims.version);
-    let verdict = Verdict::new(&suite, measure, program(version), outcomes, notes);
-    Ok((verdict, suite))
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, Invalid> {
-    std::fs::read(path).map_err(|error| Invalid::new(path.display(), error.to_string()))
-}
-
-/// The part of the suite whose requests these lines are.
-fn asked(suite: &Suite, text: &str) -> Result<Suite, String> {
-    let mut known = HashMap::new();
-    for group in &suite.groups {
-        known.extend(
-            group
-                .cases
-                .iter()
-                .map(|case| (case.line(&group.op), &case.id[..])),
-        );
-    }
-    let mut ids = HashSet::new();
-    for (number, line) in (1..)
-        .zip(text.lines())
-        .filter(|(_, line)| *line != CAPABILITIES)
-    {
-        let id = known.get(&format!("{line}\n"));
-        ids.insert(*id.ok_or_else(|| format!("line {number} is no question of these vectors"))?);
-    }
-    Ok(part(suite, |case| ids.contains(&case.id[..])))
-}
-
-/// The part of the suite with these cases.
-pub fn part(suite: &Suite, is_asked: impl Fn(&Case) -> bool) -> Suite {
-    let mut suite = suite.clone();
-    for group in &mut suite.groups {
-        group.cases.retain(&is_asked);
-    }
-    suite.groups.retain(|group| !group.cases.is_empty());
-    suite
-}
-
-/// The ids of lines that are answers.
-fn ids(lines: &[&[u8]]) -> HashSet<String> {
     let id = |line: &&[u8]| {
         let answer: Value = serde_json::from_slice(line).ok()?;
-        answer.get("id")?.as_str().map(str::to_string)
+        Some(answer["id"].as_str()?.to_string())
     };
-    lines.iter().filter_map(id).collect()
-}
-
-/// Judges the answers of a table: a group without an answer is not claimed.
-fn judge_table(
-    suite: &Suite,
-    skip: &[String],
-    found: &HashMap<String, Value>,
-    profile: &Profile,
-) -> Vec<Vec<Outcome>> {
-    let plan = Plan::of_answered(suite, skip, |id| found.contains_key(id));
-    let outcome = |case: &Case| {
-        let Some(mut answer) = found.get(&case.id).cloned() else {
-            return Outcome::wrong(Class::Protocol, "no answer");
-        };
-        if let Expected::Values(values) = &case.expected {
-            for Wanted { key, value, .. } in values {
-                if let Some(found) = answer.pointer_mut("/ok").and_then(|ok| ok.get_mut(key)) {
-                    *found = columns::typed(found, value);
-                }
-            }
-        }
-        super::judge(case, &answer, profile)
+    let answered = || {
+        let ids: HashSet<String> = lines.iter().filter_map(id).collect();
+        suite.ops_of(|id| ids.contains(id))
     };
-    let outcomes = plan
-        .cases(suite)
-        .into_iter()
-        .map(outcome)
-        .map(Some)
-        .collect();
-    plan.outcomes(outcomes, "no answer")
+    let ops = claims
+        .as_ref()
+        .map_or_else(answered, |claims| claims.ops.clone());
+    let mut answers = Answers::new(suite, skip, &ops, profile, lenient);
+    answers.open = answers.remaining();
+    for line in lines {
+        answers.take(line);
+    }
+    if claims.is_none() {
+        answers.notes.push(
+            "no answer to capabilities: the program is taken to claim the ops with an answer"
+                .into(),
+        );
+    }
+    (
+        answers,
+        claims.map_or_else(String::new, |claims| claims.version()),
+    )
 }

@@ -132,14 +132,10 @@ impl Drop for Partner {
     }
 }
 
-/// Writes what it is given until the program reads no more; closes the input when nothing follows.
+/// Writes the requests until the program reads no more; closes the input when nothing follows.
 fn write_requests(mut input: ChildStdin, requests: &Receiver<Vec<u8>>) {
-    while let Ok(mut line) = requests.recv() {
-        // What is waiting already goes out with it.
-        while let Ok(more) = requests.try_recv() {
-            line.extend_from_slice(&more);
-        }
-        if input.write_all(&line).and_then(|()| input.flush()).is_err() {
+    for line in requests {
+        if input.write_all(&line).is_err() {
             return;
         }
     }
@@ -147,23 +143,16 @@ fn write_requests(mut input: ChildStdin, requests: &Receiver<Vec<u8>>) {
 
 fn read_lines(output: ChildStdout, lines: &SyncSender<Vec<u8>>) {
     let mut output = BufReader::new(output);
-    loop {
+    let mut next = || {
         let mut line = Vec::new();
-        match output
-            .by_ref()
-            .take(LONGEST_ANSWER)
-            .read_until(b'\n', &mut line)
-        {
-            Ok(0) | Err(_) => return,
-            Ok(_) => {}
-        }
-        if line.last() == Some(&b'\n') {
-            line.pop();
-        }
-        if lines.send(line).is_err() {
-            return;
-        }
-    }
+        let mut answer = output.by_ref().take(LONGEST_ANSWER);
+        let length = answer.read_until(b'\n', &mut line).ok()?;
+        line.pop_if(|last| *last == b'\n');
+        (length > 0).then_some(line)
+    };
+    while let Some(line) = next()
+        && lines.send(line).is_ok()
+    {}
 }
 
 fn keep_last(mut errors: ChildStderr, kept: &Mutex<VecDeque<u8>>) {

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::case::{Case, Expected, Question};
-use super::suite::Invalid;
+use super::text::{Invalid, ensure};
 
-/// A working precision: what one rounding costs, and the range of its normal numbers.
+/// A working precision: its unit roundoff, and the range of its normal numbers.
 ///
 /// ```
 /// use palpate_conform::Profile;
@@ -21,7 +21,7 @@ use super::suite::Invalid;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Profile {
-    /// What a verdict calls it.
+    /// Its name in a verdict.
     pub name: String,
     /// Half the distance from 1 to the next larger number; 0 for the tolerances as they are stated.
     pub unit_roundoff: f64,
@@ -32,101 +32,91 @@ pub struct Profile {
 }
 
 impl Profile {
-    fn new(name: &str, unit_roundoff: f64, smallest: f64, largest: f64) -> Profile {
-        let name = name.into();
+    /// A profile with the range of f64.
+    fn wide(name: &str, unit_roundoff: f64) -> Profile {
         Profile {
-            name,
+            name: name.into(),
             unit_roundoff,
-            smallest,
-            largest,
+            smallest: f64::MIN_POSITIVE,
+            largest: f64::MAX,
         }
     }
 
-    /// The stated tolerances: no case is extreme.
+    /// The stated tolerances; no case is extreme.
     pub fn exact() -> Profile {
-        Profile::new("exact", 0.0, f64::MIN_POSITIVE, f64::MAX)
+        Profile::wide("exact", 0.0)
     }
 
-    /// `exact`, `f64`, `f32`, or a file of JSON with the fields of this type.
+    /// `exact`, `f64`, `f32`, or a JSON file with the fields of this type.
     ///
     /// # Errors
-    /// A file that cannot be read, or holds no profile that can be.
+    /// A file that cannot be read or does not hold a valid profile.
     ///
     /// Implements: ORA-046.
     pub fn named(name: &str) -> Result<Profile, Invalid> {
-        let single = (f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX));
         match name {
             "exact" => Ok(Profile::exact()),
-            "f64" => Ok(Profile::new(
-                "f64",
-                f64::EPSILON / 2.0,
-                f64::MIN_POSITIVE,
-                f64::MAX,
-            )),
-            "f32" => Ok(Profile::new(
-                "f32",
-                f64::from(f32::EPSILON) / 2.0,
-                single.0,
-                single.1,
-            )),
-            file => Profile::read(Path::new(file)),
+            "f64" => Ok(Profile::wide("f64", f64::EPSILON / 2.0)),
+            "f32" => Ok(Profile {
+                name: "f32".into(),
+                unit_roundoff: (f32::EPSILON / 2.0).into(),
+                smallest: f32::MIN_POSITIVE.into(),
+                largest: f32::MAX.into(),
+            }),
+            file => Profile::read(Path::new(file)).map_err(|message| Invalid::new(file, message)),
         }
     }
 
-    fn read(path: &Path) -> Result<Profile, Invalid> {
-        let wrong = |message: String| Invalid::new(path.display(), message);
+    fn read(path: &Path) -> Result<Profile, String> {
         let text = std::fs::read_to_string(path)
-            .map_err(|error| wrong(format!("{error}; expected exact, f64, f32 or a file")))?;
-        let profile: Profile =
-            serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-        let Profile {
-            unit_roundoff,
-            smallest,
-            largest,
-            ..
-        } = profile;
-        if !(0.0..=0.25).contains(&unit_roundoff) {
-            return Err(wrong(format!(
-                "unit_roundoff = {unit_roundoff}, expected 0 to 0.25"
-            )));
-        }
-        if !(0.0 < smallest && smallest < 1.0 && 1.0 < largest) {
-            return Err(wrong(format!(
-                "smallest = {smallest} and largest = {largest}, expected 0 < smallest < 1 < largest"
-            )));
-        }
+            .map_err(|error| format!("{error}; a profile is exact, f64, f32 or a JSON file"))?;
+        let profile: Profile = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+        let (u, smallest, largest) = (profile.unit_roundoff, profile.smallest, profile.largest);
+        ensure!(
+            (0.0..=0.25).contains(&u),
+            "unit_roundoff = {u} is not from 0 to 0.25"
+        );
+        ensure!(
+            0.0 < smallest && smallest < 1.0 && 1.0 < largest,
+            "smallest = {smallest} and largest = {largest}, but 0 < smallest < 1 < largest must hold"
+        );
         Ok(profile)
     }
 
     /// Whether a case is beyond what a careful program of this precision can answer: an argument whose square leaves the range, an
-    /// answer outside it, or a case that says itself that so coarse a precision cannot see what it asks.
+    /// answer outside it, or a case that needs a finer precision.
     ///
     /// Implements: VEC-018, ORA-067.
     pub fn is_extreme(&self, case: &Case) -> bool {
         if self.unit_roundoff == 0.0 {
             return false;
         }
-        let outside = |least: f64, most: f64| {
-            move |value: f64| value != 0.0 && !(least..=most).contains(&value.abs())
+        let leaves = |value: &Value, smallest: f64, largest: f64| {
+            any(value, &|number| {
+                number != 0.0 && !(smallest..=largest).contains(&number.abs())
+            })
         };
-        let beyond = outside(self.smallest.sqrt(), self.largest.sqrt());
+        let (smallest, largest) = (self.smallest, self.largest);
+        let is_large = |value| leaves(value, smallest.sqrt(), largest.sqrt());
         let arguments = match &case.question {
-            Question::Arguments(arguments) => arguments.values().any(|value| any(value, &beyond)),
+            Question::Arguments(arguments) => arguments.values().any(is_large),
             Question::Line(_) => false,
         };
-        let beyond = outside(self.smallest, self.largest);
         let answers = match &case.expected {
-            Expected::Values(values) => values.iter().any(|wanted| any(&wanted.value, &beyond)),
+            Expected::Values(values) => {
+                let mut values = values.iter();
+                values.any(|wanted| leaves(&wanted.value, smallest, largest))
+            }
             Expected::Refusal { .. } => false,
         };
         arguments || answers || case.roundoff.is_some_and(|most| self.unit_roundoff > most)
     }
 }
 
-/// Whether a number of the value, or of its lists, is one that `wanted` finds.
-fn any(value: &Value, wanted: &impl Fn(f64) -> bool) -> bool {
+/// Whether the condition holds for a number of the value, or of its lists.
+fn any(value: &Value, condition: &impl Fn(f64) -> bool) -> bool {
     match value {
-        Value::Array(values) => values.iter().any(|value| any(value, wanted)),
-        value => value.as_f64().is_some_and(wanted),
+        Value::Array(values) => values.iter().any(|value| any(value, condition)),
+        value => value.as_f64().is_some_and(condition),
     }
 }

@@ -1,45 +1,59 @@
-//! Which program it is that is judged.
+//! The identity of the program that is judged.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 use super::suite::sha256;
-use super::verdict::{Program, ProgramFile};
+
+/// A file of the program.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ProgramFile {
+    /// Its name, as it was given.
+    pub name: String,
+    /// The SHA-256 of its contents.
+    pub sha256: String,
+}
+
+/// The program that gave the answers.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Program {
+    /// The program and its arguments; empty if the answers were read from a file.
+    pub command: Vec<String>,
+    /// What it calls its version.
+    pub version: String,
+    /// The files of the command, or the file of answers.
+    pub files: Vec<ProgramFile>,
+}
 
 impl Program {
     /// A command that was run: its program, wherever the search path finds it, and those of its arguments that are files.
     ///
     /// Implements: ORA-048.
     pub fn of_command(command: &[OsString], version: String) -> Program {
-        let files = command.iter().enumerate().filter_map(|(index, word)| {
-            let path = if index == 0 {
-                found(Path::new(word))
-            } else {
-                word.into()
-            };
-            Some(ProgramFile {
-                name: word.to_string_lossy().into_owned(),
-                sha256: sum(&path)?,
-            })
-        });
+        let text = |word: &OsString| word.to_string_lossy().into_owned();
+        let (program, arguments) = command.split_at(command.len().min(1));
+        let program = program
+            .iter()
+            .map(|word| file(text(word), &found(Path::new(word))));
+        let arguments = arguments
+            .iter()
+            .map(|word| file(text(word), Path::new(word)));
         Program {
-            files: files.collect(),
-            command: command
-                .iter()
-                .map(|word| word.to_string_lossy().into_owned())
-                .collect(),
+            command: command.iter().map(text).collect(),
             version,
+            files: program.chain(arguments).flatten().collect(),
         }
     }
 
     /// Answers that were read from a file.
-    pub fn of_answers(answers: &Path, version: String) -> Program {
-        let name = answers.display().to_string();
-        let file = sum(answers).map(|sha256| ProgramFile { name, sha256 });
+    pub(super) fn of_answers(answers: &Path, version: String) -> Program {
+        let files = file(answers.display().to_string(), answers);
         Program {
             command: Vec::new(),
             version,
-            files: file.into_iter().collect(),
+            files: files.into_iter().collect(),
         }
     }
 }
@@ -55,10 +69,10 @@ fn found(program: &Path) -> PathBuf {
         .unwrap_or_else(|| program.into())
 }
 
-/// The SHA-256 of a file, if it is one that can be read.
-fn sum(path: &Path) -> Option<String> {
-    if !path.is_file() {
-        return None;
-    }
-    std::fs::read(path).ok().map(sha256)
+/// A file with its SHA-256, if it can be read.
+fn file(name: String, path: &Path) -> Option<ProgramFile> {
+    // Not a device, which may have no end.
+    let bytes = path.is_file().then(|| std::fs::read(path).ok())??;
+    let sha256 = sha256(bytes);
+    Some(ProgramFile { name, sha256 })
 }

@@ -1,23 +1,24 @@
-//! All cases asked, in a pipeline, through crashes and silence.
+//! All cases asked through a pipe, despite crashes and silence.
 
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::time::{Duration, Instant};
 
-use super::answers::Answers;
+use super::answers::{Answers, CAPABILITIES, Capabilities};
+use super::measure::Measure;
 use super::partner::{Event, Partner};
-use super::plan::{CAPABILITIES, Capabilities, Plan};
+use super::program::Program;
 use super::suite::Suite;
 use super::text::cut;
-use super::verdict::{Measure, Program, Verdict};
+use super::verdict::Verdict;
 
-/// How many requests may be without an answer at a time.
+/// How many requests may be open at a time.
 const WINDOW: usize = 64;
-/// How often the program is started, at most: one that dies of every bad request needs many.
+/// How often the program is started, at most: one that dies of every bad request needs many starts.
 const MOST_STARTS: usize = 200;
 /// How often it may be silent until the timeout.
 const MOST_SILENCES: usize = 6;
-/// How long a program may take to end, once its input has.
+/// How long a program may take to end once its input has ended.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// What is run, and how.
@@ -27,7 +28,7 @@ pub struct Settings {
     pub command: Vec<OsString>,
     /// Groups and cases that are not asked.
     pub skip: Vec<String>,
-    /// Whether a line that is no answer is passed over.
+    /// Whether a line that is no answer is ignored.
     pub lenient: bool,
     /// How long the program may take for one answer.
     pub timeout: Duration,
@@ -41,12 +42,12 @@ pub enum ConformError {
     Start {
         /// The program.
         program: String,
-        /// What the system says.
+        /// The system's error.
         error: std::io::Error,
     },
     /// The program does not speak the protocol.
     #[error(
-        "{found}; expected a line like {{\"id\":\"capabilities\",\"ok\":{{\"version\":\"1.0\",\"ops\":[\"normal_cdf\"]}}}} as the answer to {{\"args\":{{}},\"id\":\"capabilities\",\"op\":\"capabilities\"}}, written out at once"
+        "{found}; it must answer {CAPABILITIES} at once with a line such as {{\"id\":\"capabilities\",\"ok\":{{\"version\":\"1.0\",\"ops\":[\"normal_cdf\"]}}}}"
     )]
     Capabilities {
         /// What came instead.
@@ -54,7 +55,7 @@ pub enum ConformError {
     },
 }
 
-/// Runs the vectors against a program; `progress` is called for each case that is done.
+/// Asks a program all cases; `progress` is called with the number of cases judged so far.
 ///
 /// # Errors
 /// [`ConformError`]; a program that answers wrongly, or ends, has a verdict.
@@ -66,44 +67,36 @@ pub fn run(
     measure: &Measure,
     progress: impl FnMut(usize),
 ) -> Result<Verdict, ConformError> {
-    let (partner, capabilities) = start_and_ask(settings)?;
-    let plan = Plan::new(suite, &settings.skip, |op| {
-        capabilities.ops.iter().any(|known| known == op)
-    });
-    let answers = Answers::new(plan.cases(suite), &measure.profile, settings.lenient);
-    let lines = plan.asked.iter().map(|&(group, case)| {
-        let group = &suite.groups[group];
-        group.cases[case].line(&group.op).into_bytes()
-    });
-    let mut run = Run::new(settings, answers, lines.collect(), progress);
+    let (partner, claims) = start_and_ask(settings)?;
+    let (skip, profile) = (&settings.skip, &measure.profile);
+    let answers = Answers::new(suite, skip, &claims.ops, profile, settings.lenient);
+    let mut run = Run {
+        settings,
+        lines: suite.requests().map(|(_, line)| line.into()).collect(),
+        queue: answers.remaining(),
+        answers,
+        alone: 0,
+        starts: 1,
+        silences: 0,
+        progress,
+    };
     run.ask_all(partner)?;
     let never = "not asked: the program had ended or was silent too often";
-    let answers = run.answers;
-    let outcomes = plan.outcomes(answers.outcomes, never);
-    let program = Program::of_command(&settings.command, capabilities.version);
-    Ok(Verdict::new(
-        suite,
-        measure,
-        program,
-        outcomes,
-        answers.notes,
-    ))
+    let (outcomes, notes) = run.answers.outcomes(never);
+    let program = Program::of_command(&settings.command, claims.version());
+    Ok(Verdict::new(suite, measure, program, outcomes, notes))
 }
 
-fn start(settings: &Settings) -> Result<Partner, ConformError> {
-    Partner::start(&settings.command).map_err(|error| ConformError::Start {
-        program: settings
-            .command
-            .first()
-            .map_or_else(String::new, |p| p.to_string_lossy().into_owned()),
-        error,
-    })
-}
-
+/// Starts the program and asks what it can do.
+///
 /// Implements: ORA-042.
 fn start_and_ask(settings: &Settings) -> Result<(Partner, Capabilities), ConformError> {
-    let partner = start(settings)?;
-    partner.ask(format!("{CAPABILITIES}\n").into_bytes());
+    let partner = Partner::start(&settings.command).map_err(|error| {
+        let program = settings.command.first().cloned().unwrap_or_default();
+        let program = program.to_string_lossy().into_owned();
+        ConformError::Start { program, error }
+    })?;
+    partner.ask(format!("{CAPABILITIES}\n").into());
     let deadline = Instant::now() + settings.timeout;
     let found = loop {
         match partner.next(deadline) {
@@ -111,27 +104,28 @@ fn start_and_ask(settings: &Settings) -> Result<(Partner, Capabilities), Conform
                 Some(capabilities) => return Ok((partner, capabilities)),
                 None if settings.lenient => {}
                 None => {
-                    break format!(
-                        "the program answered {:?}",
-                        cut(&String::from_utf8_lossy(&line))
-                    );
+                    let text = cut(&String::from_utf8_lossy(&line));
+                    break format!("the program answered {text:?}");
                 }
             },
-            Event::Silence => {
-                let seconds = settings.timeout.as_secs_f64();
-                let end = partner.end(Duration::ZERO);
-                break format!("the program gave no answer within {seconds} s ({end})");
-            }
-            Event::End => {
-                let end = partner.end(PATIENCE);
-                break format!("the program ended without an answer ({end})");
-            }
+            end => break format!("the program {}", farewell(partner, &end, settings.timeout)),
         }
     };
     Err(ConformError::Capabilities { found })
 }
 
-/// The cases that are asked and what became of them.
+/// Ends a program that is silent or gone, and says so.
+fn farewell(partner: Partner, event: &Event, timeout: Duration) -> String {
+    match event {
+        Event::Silence => {
+            let end = partner.end(Duration::ZERO);
+            format!("gave no answer within {} s ({end})", timeout.as_secs_f64())
+        }
+        _ => format!("ended without an answer ({})", partner.end(PATIENCE)),
+    }
+}
+
+/// The cases that are asked, and their outcomes.
 struct Run<'a, P> {
     settings: &'a Settings,
     answers: Answers<'a>,
@@ -139,86 +133,64 @@ struct Run<'a, P> {
     lines: Vec<Vec<u8>>,
     /// Cases to be asked, by their index, the next one first.
     queue: VecDeque<usize>,
-    /// So many more cases are asked one at a time: among them is one that the program died of.
+    /// How many more cases are asked one at a time, because the program died of one of them.
     alone: usize,
     starts: usize,
     silences: usize,
     progress: P,
 }
 
-impl<'a, P: FnMut(usize)> Run<'a, P> {
-    fn new(settings: &'a Settings, answers: Answers<'a>, lines: Vec<Vec<u8>>, progress: P) -> Self {
-        Run {
-            settings,
-            queue: (0..lines.len()).collect(),
-            answers,
-            lines,
-            alone: 0,
-            starts: 1,
-            silences: 0,
-            progress,
-        }
-    }
-
+impl<P: FnMut(usize)> Run<'_, P> {
     /// Asks until every case is judged or the program has ended too often.
-    fn ask_all(&mut self, partner: Partner) -> Result<(), ConformError> {
-        let mut running = Some(partner);
-        while !self.queue.is_empty() || !self.answers.waiting.is_empty() {
-            let partner = match running.take() {
-                Some(partner) => partner,
-                None if self.starts == MOST_STARTS || self.silences == MOST_SILENCES => {
-                    self.answers.notes.push(format!(
-                        "{} cases were not asked: the program was started {} times and silent {} times",
-                        self.queue.len(),
-                        self.starts,
-                        self.silences
-                    ));
+    fn ask_all(&mut self, mut partner: Partner) -> Result<(), ConformError> {
+        while let Some(event) = self.converse(&partner) {
+            self.bury(partner, &event);
+            if self.queue.is_empty() {
+                return Ok(());
+            }
+            if self.starts == MOST_STARTS || self.silences == MOST_SILENCES {
+                self.answers.notes.push(format!(
+                    "{} cases were not asked: the program was started {} times and silent {} times",
+                    self.queue.len(),
+                    self.starts,
+                    self.silences
+                ));
+                return Ok(());
+            }
+            self.starts += 1;
+            // Its capabilities are asked again, so that its start does not take the time of the next case.
+            partner = match start_and_ask(self.settings) {
+                Ok((partner, _)) => partner,
+                Err(error @ ConformError::Capabilities { .. }) => {
+                    self.answers.notes.push(format!("started again, {error}"));
                     return Ok(());
                 }
-                None => {
-                    self.starts += 1;
-                    // Asked again, so that the time it takes to start is not the next case's.
-                    match start_and_ask(self.settings) {
-                        Ok((partner, _)) => partner,
-                        Err(error @ ConformError::Capabilities { .. }) => {
-                            self.answers.notes.push(format!("started again, {error}"));
-                            return Ok(());
-                        }
-                        Err(error) => return Err(error),
-                    }
-                }
+                Err(error) => return Err(error),
             };
-            match self.converse(&partner) {
-                None => running = Some(partner),
-                Some(end) => self.bury(partner, end),
-            }
         }
-        if let Some(partner) = running {
-            let end = partner.end(PATIENCE);
-            if !end.starts_with("exit status: 0") {
-                self.answers
-                    .notes
-                    .push(format!("at the end of its input: {end}"));
-            }
+        let end = partner.end(PATIENCE);
+        if !end.starts_with("exit status: 0") {
+            let note = format!("at the end of its input: {end}");
+            self.answers.notes.push(note);
         }
         Ok(())
     }
 
-    /// Asks and listens until there is nothing left or the program is gone or silent.
+    /// Asks and listens until nothing is left, or the program is gone or silent.
     fn converse(&mut self, partner: &Partner) -> Option<Event> {
         let mut deadline = Instant::now() + self.settings.timeout;
         loop {
             let window = if self.alone > 0 { 1 } else { WINDOW };
-            if self.answers.waiting.is_empty() {
+            if self.answers.open.is_empty() {
                 deadline = Instant::now() + self.settings.timeout;
             }
-            while self.answers.waiting.len() < window
+            while self.answers.open.len() < window
                 && let Some(next) = self.queue.pop_front()
             {
                 partner.ask(self.lines[next].clone());
-                self.answers.waiting.push_back(next);
+                self.answers.open.push_back(next);
             }
-            if self.answers.waiting.is_empty() {
+            if self.answers.open.is_empty() {
                 return None;
             }
             match partner.next(deadline) {
@@ -228,7 +200,7 @@ impl<'a, P: FnMut(usize)> Run<'a, P> {
                         let settled = self.answers.settled();
                         self.alone = self.alone.saturating_sub(settled - before);
                         (self.progress)(settled);
-                        // The clock of the next one starts with the answer of the one before.
+                        // The time for the next case starts with the answer to the one before.
                         deadline = Instant::now() + self.settings.timeout;
                     }
                 }
@@ -237,29 +209,20 @@ impl<'a, P: FnMut(usize)> Run<'a, P> {
         }
     }
 
-    /// The program is gone or silent. If it was asked one thing, that was it; of several, each is
-    /// asked again alone.
+    /// The program is gone or silent. If one case was open, that is to blame; of several, each is asked again alone.
     ///
     /// Implements: ORA-044, ORA-045.
-    fn bury(&mut self, partner: Partner, event: Event) {
-        let (what, patience) = match event {
-            Event::Silence => {
-                self.silences += 1;
-                let seconds = self.settings.timeout.as_secs_f64();
-                (format!("no answer within {seconds} s"), Duration::ZERO)
-            }
-            _ => ("the program ended without an answer".into(), PATIENCE),
-        };
-        let end = partner.end(patience);
-        if self.answers.waiting.len() == 1 {
-            self.answers.fail(format!("{what} ({end})"));
+    fn bury(&mut self, partner: Partner, event: &Event) {
+        self.silences += usize::from(matches!(event, Event::Silence));
+        let why = farewell(partner, event, self.settings.timeout);
+        if self.answers.open.len() == 1 {
+            self.answers.fail(why);
             self.alone = self.alone.saturating_sub(1);
             (self.progress)(self.answers.settled());
-            return;
-        }
-        self.alone = self.answers.waiting.len();
-        while let Some(last) = self.answers.waiting.pop_back() {
-            self.queue.push_front(last);
+        } else {
+            self.alone = self.answers.open.len();
+            self.queue.extend(self.answers.open.drain(..));
+            self.queue.rotate_right(self.alone);
         }
     }
 }

@@ -1,107 +1,40 @@
 //! Files of vectors, read and hashed.
 
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
 use serde::Deserialize;
-use serde_json::Value;
-use serde_json::value::RawValue;
 use sha2::Digest;
 
-use super::case::{Case, CaseText, Expected, Question, ToleranceText};
-use super::text::plain;
-use super::{check, embedded};
+use super::case::{Case, Group};
+use super::embedded;
+use super::file;
+use super::text::{Invalid, ensure};
 
-/// A file that is not what it should be.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{file}: {message}")]
-pub struct Invalid {
-    /// Its name.
-    pub file: String,
-    /// What is wrong, in one line.
-    pub message: String,
-}
-
-impl Invalid {
-    /// The error of a file.
-    pub fn new(file: impl std::fmt::Display, message: impl AsRef<str>) -> Invalid {
-        Invalid {
-            file: file.to_string(),
-            message: message.as_ref().chars().map(plain).collect(),
-        }
-    }
-}
-
-/// What a bug is.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Bug {
-    /// What is wrong.
-    pub bug: String,
-    /// Where to look.
-    pub notes: String,
-}
-
-/// The cases of one file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Group {
-    /// Its name.
-    pub name: String,
-    /// The op that is asked; empty for whole lines that every program must refuse.
-    pub op: String,
-    /// The bugs that its cases can show, by their flags.
-    pub flags: BTreeMap<String, Bug>,
-    /// The cases.
-    pub cases: Vec<Case>,
-}
-
-/// Which cases are asked; all, if nothing is chosen.
+/// Which cases are asked; all if nothing is chosen.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct Choice {
-    /// Asks the cases of this group alone; may be given several times
+    /// Ask only this group; may be given several times
     #[arg(long, value_name = "GROUP")]
     pub only: Vec<String>,
-    /// Asks this case alone; may be given several times
+    /// Ask only this case; may be given several times
     #[arg(long, value_name = "ID")]
     pub case: Vec<String>,
-    /// Leaves out this group or case; may be given several times
+    /// Leave out this group or case; may be given several times
     #[arg(long, value_name = "NAME")]
     pub skip: Vec<String>,
 }
 
-/// A group or case that these vectors do not have.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("no {what} {name:?} in these vectors, expected {known}")]
-pub struct Unknown {
-    what: &'static str,
-    name: String,
-    known: String,
-}
-
-/// All the files.
+/// All groups of vectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suite {
-    /// One a file, in the order of the file names.
+    /// One group for each file, in the order of the file names.
     pub groups: Vec<Group>,
-    /// The SHA-256 of the whole, as VEC-007 says.
+    /// The SHA-256 of the whole, as VEC-007 defines it.
     pub sha256: String,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct GroupText {
-    schema: String,
-    schema_version: u64,
-    group: String,
-    op: String,
-    source: String,
-    generator_version: String,
-    tolerance: BTreeMap<String, ToleranceText>,
-    flags: BTreeMap<String, Bug>,
-    cases: Vec<Box<RawValue>>,
-}
-
-/// The manifest, of which only the sums are read.
+/// The manifest, of which only the hashes are read.
 #[derive(Deserialize)]
 struct Manifest {
     suite_sha256: String,
@@ -131,34 +64,27 @@ impl Suite {
         Suite::of_files(files.collect())
     }
 
-    /// The vectors in a folder: every `.json` there but the manifest and what ends in `.data.json`.
+    /// The vectors in a folder: every `.json` file except the manifest and files that end in `.data.json`.
     ///
     /// # Errors
-    /// A file that cannot be read or is not valid; no file at all.
+    /// A file that cannot be read or is not valid; a folder without vectors.
     ///
     /// Implements: ORA-040, ORA-041.
     pub fn read(folder: &Path) -> Result<Suite, Invalid> {
-        let failed =
-            |path: &Path, cause: std::io::Error| Invalid::new(path.display(), cause.to_string());
-        let entries = std::fs::read_dir(folder).map_err(|cause| failed(folder, cause))?;
+        let failed = |cause| Invalid::new(folder.display(), cause);
         let mut files = BTreeMap::new();
-        for entry in entries {
-            let path = entry.map_err(|cause| failed(folder, cause))?.path();
-            let name = path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned();
+        for entry in std::fs::read_dir(folder).map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
             if name.ends_with(".json") && !name.ends_with(".data.json") {
-                let text = std::fs::read_to_string(&path).map_err(|cause| failed(&path, cause))?;
-                files.insert(name, text);
+                let text = std::fs::read_to_string(&path)
+                    .map_err(|cause| Invalid::new(path.display(), cause))?;
+                files.insert(name.into_owned(), text);
             }
         }
         if !files.keys().any(|name| name != MANIFEST && name != SCHEMA) {
-            return Err(Invalid::new(
-                folder.display(),
-                "no vectors (*.json) in this folder",
-            ));
+            let message = "no vectors (*.json) in this folder";
+            return Err(Invalid::new(folder.display(), message));
         }
         Suite::of_files(files)
     }
@@ -171,87 +97,92 @@ impl Suite {
     /// Implements: VEC-001, VEC-007.
     pub fn of_files(mut files: BTreeMap<String, String>) -> Result<Suite, Invalid> {
         let manifest = files.remove(MANIFEST);
-        let mut lines = String::new();
-        let mut sums = BTreeMap::new();
-        for (name, text) in &files {
-            let sum = sha256(text);
-            lines.push_str(&format!("{sum}  {name}\n"));
-            sums.insert(&name[..], sum);
-        }
-        let sha256_of_all = sha256(&lines);
+        let sums: BTreeMap<&str, String> = files
+            .iter()
+            .map(|(name, text)| (&name[..], sha256(text)))
+            .collect();
+        let lines = sums.iter().map(|(name, sum)| format!("{sum}  {name}\n"));
+        let suite_sha256 = sha256(lines.collect::<String>());
         if let Some(text) = manifest {
-            check_manifest(&text, &sums, &sha256_of_all)?;
+            check_manifest(&text, &sums, &suite_sha256)?;
         }
-        let mut groups: Vec<Group> = Vec::new();
-        let mut ids = HashSet::new();
+        let (mut groups, mut names, mut ids) = (Vec::new(), HashSet::new(), HashSet::new());
         for (name, text) in files.iter().filter(|(name, _)| *name != SCHEMA) {
-            let group = group(name, text)?;
-            if groups.iter().any(|other| other.name == group.name) {
-                return Err(Invalid::new(
-                    name,
-                    format!("the group {:?} is in another file too", group.name),
-                ));
-            }
-            for case in &group.cases {
-                if !ids.insert(case.id.clone()) {
-                    return Err(Invalid::new(
-                        name,
-                        format!("the id {:?} is used twice", case.id),
-                    ));
+            let mut read = || {
+                let group = file::group(text)?;
+                let is_new = names.insert(group.name.clone());
+                ensure!(is_new, "the group {:?} is in another file too", group.name);
+                for Case { id, .. } in &group.cases {
+                    ensure!(ids.insert(id.clone()), "the id {id:?} is used twice");
                 }
-            }
-            groups.push(group);
+                Ok(group)
+            };
+            groups.push(read().map_err(|message| Invalid::new(name, message))?);
         }
         Ok(Suite {
             groups,
-            sha256: sha256_of_all,
+            sha256: suite_sha256,
         })
     }
 
-    /// What is chosen. The hash stays that of the whole.
+    /// What is chosen. The hash remains that of the whole.
     ///
     /// # Errors
     /// A group or case that does not exist.
     ///
     /// Implements: ORA-040.
-    pub fn select(&self, choice: &Choice) -> Result<Suite, Unknown> {
-        let is_group = |name: &str| self.groups.iter().any(|group| group.name == name);
-        if let Some(name) = choice.only.iter().find(|name| !is_group(name)) {
-            let known: Vec<&str> = self.groups.iter().map(|group| &group.name[..]).collect();
-            let known = known.join(", ");
-            return Err(Unknown {
-                what: "group",
-                name: name.clone(),
-                known,
-            });
+    pub fn select(mut self, choice: &Choice) -> Result<Suite, String> {
+        let names: Vec<&str> = self.groups.iter().map(|group| &group.name[..]).collect();
+        for name in &choice.only {
+            ensure!(
+                names.contains(&&name[..]),
+                "no group {name:?} in these vectors; choose one of {}",
+                names.join(", ")
+            );
         }
-        let missing = |name: &&String| !is_group(name) && !self.has(name);
-        let cases = choice.case.iter().find(|name| !self.has(name));
-        if let Some(name) = cases.or_else(|| choice.skip.iter().find(missing)) {
-            let known = "one such as two_afc-001".into();
-            return Err(Unknown {
-                what: "case",
-                name: name.clone(),
-                known,
-            });
+        let skipped_groups = |name: &&String| !names.contains(&&name[..]);
+        let mut cases = choice
+            .case
+            .iter()
+            .chain(choice.skip.iter().filter(skipped_groups));
+        if let Some(name) = cases.find(|name| !self.has(name)) {
+            return Err(format!(
+                "no case {name:?} in these vectors; the cases have names such as two_afc-001"
+            ));
         }
-        let mut suite = self.clone();
-        let wanted = |group: &Group| choice.only.is_empty() || choice.only.contains(&group.name);
-        suite.groups.retain(wanted);
-        if !choice.case.is_empty() {
-            for group in &mut suite.groups {
-                group.cases.retain(|case| choice.case.contains(&case.id));
-            }
-            suite.groups.retain(|group| !group.cases.is_empty());
+        self.groups
+            .retain(|group| choice.only.is_empty() || choice.only.contains(&group.name));
+        Ok(self.part(|case| choice.case.is_empty() || choice.case.contains(&case.id)))
+    }
+
+    /// The part with these cases.
+    pub(super) fn part(mut self, is_in: impl Fn(&Case) -> bool) -> Suite {
+        for group in &mut self.groups {
+            group.cases.retain(&is_in);
         }
-        Ok(suite)
+        self.groups.retain(|group| !group.cases.is_empty());
+        self
+    }
+
+    /// Each case in order, with the line of its request.
+    pub fn requests(&self) -> impl Iterator<Item = (&Case, String)> {
+        self.groups.iter().flat_map(|group| {
+            let cases = group.cases.iter();
+            cases.map(|case| (case, case.line(&group.op)))
+        })
+    }
+
+    /// The ops of the cases with these ids.
+    pub(super) fn ops_of(&self, is_in: impl Fn(&str) -> bool) -> Vec<String> {
+        let has_one = |group: &&Group| group.cases.iter().any(|case| is_in(&case.id));
+        let groups = self.groups.iter().filter(has_one);
+        groups.map(|group| group.op.clone()).collect()
     }
 
     /// Whether there is a case of this name.
     pub fn has(&self, id: &str) -> bool {
-        self.groups
-            .iter()
-            .any(|group| group.cases.iter().any(|case| case.id == id))
+        let mut groups = self.groups.iter();
+        groups.any(|group| group.cases.iter().any(|case| case.id == id))
     }
 
     /// The number of cases.
@@ -266,119 +197,38 @@ pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// Checks the hashes of all files and of the suite.
+///
 /// Implements: VEC-007.
-fn check_manifest(text: &str, sums: &BTreeMap<&str, String>, sha256: &str) -> Result<(), Invalid> {
+fn check_manifest(
+    text: &str,
+    sums: &BTreeMap<&str, String>,
+    suite_sha256: &str,
+) -> Result<(), Invalid> {
     let manifest: Manifest =
-        serde_json::from_str(text).map_err(|cause| Invalid::new(MANIFEST, cause.to_string()))?;
+        serde_json::from_str(text).map_err(|cause| Invalid::new(MANIFEST, cause))?;
+    let listed = manifest.files.iter();
+    let listed: BTreeMap<&str, &str> = listed
+        .map(|file| (&file.name[..], &file.sha256[..]))
+        .collect();
     for (name, sum) in sums {
-        match manifest.files.iter().find(|file| file.name == **name) {
-            None => return Err(Invalid::new(name, "is not in manifest.json")),
-            Some(file) if file.sha256 != *sum => {
-                return Err(Invalid::new(
-                    name,
-                    format!(
-                        "has the SHA-256 {sum}, expected {} as in manifest.json",
-                        file.sha256
-                    ),
-                ));
+        match listed.get(name) {
+            Some(listed) if listed == sum => {}
+            Some(listed) => {
+                let message = format!("has the SHA-256 {sum}, but {MANIFEST} states {listed}");
+                return Err(Invalid::new(name, message));
             }
-            Some(_) => {}
+            None => return Err(Invalid::new(name, format!("is not in {MANIFEST}"))),
         }
     }
-    if let Some(file) = manifest
-        .files
-        .iter()
-        .find(|file| !sums.contains_key(&file.name[..]))
-    {
-        return Err(Invalid::new(
-            &file.name,
-            "is in manifest.json, but not there",
-        ));
+    if let Some(name) = listed.keys().find(|name| !sums.contains_key(**name)) {
+        let message = format!("is in {MANIFEST}, but does not exist");
+        return Err(Invalid::new(name, message));
     }
-    if manifest.suite_sha256 != sha256 {
-        return Err(Invalid::new(
-            MANIFEST,
-            format!(
-                "suite_sha256 is {}, expected {sha256}",
-                manifest.suite_sha256
-            ),
-        ));
+    let stated = manifest.suite_sha256;
+    if stated != suite_sha256 {
+        let message = format!("suite_sha256 is {stated}, but should be {suite_sha256}");
+        return Err(Invalid::new(MANIFEST, message));
     }
     Ok(())
-}
-
-/// Reads one file.
-///
-/// Implements: VEC-001.
-fn group(file: &str, text: &str) -> Result<Group, Invalid> {
-    let read: GroupText =
-        serde_json::from_str(text).map_err(|cause| Invalid::new(file, cause.to_string()))?;
-    if read.schema != "palpate-vectors" || read.schema_version != 1 {
-        return Err(Invalid::new(
-            file,
-            format!(
-                "schema {:?} version {}, expected \"palpate-vectors\" version 1",
-                read.schema, read.schema_version
-            ),
-        ));
-    }
-    for (key, value) in [
-        ("group", &read.group),
-        ("source", &read.source),
-        ("generator_version", &read.generator_version),
-    ] {
-        if value.is_empty() {
-            return Err(Invalid::new(file, format!("{key} is empty")));
-        }
-    }
-    let mut cases = Vec::with_capacity(read.cases.len());
-    let mut used = BTreeSet::new();
-    for (index, text) in read.cases.iter().enumerate() {
-        let named = |message: String| {
-            Invalid::new(
-                file,
-                format!("case {}: {message}", name_of_case(index, text)),
-            )
-        };
-        let case: CaseText =
-            serde_json::from_str(text.get()).map_err(|cause| named(cause.to_string()))?;
-        let case = check::case(case, &read.tolerance, |flag| read.flags.contains_key(flag))
-            .map_err(named)?;
-        let is_refused_line = matches!(
-            (&case.question, &case.expected),
-            (Question::Line(_), Expected::Refusal { .. })
-        );
-        if read.op.is_empty() && !is_refused_line {
-            return Err(named(
-                "expected a line that must be refused, since the group has no op".into(),
-            ));
-        }
-        used.extend(case.flags.iter().cloned());
-        cases.push(case);
-    }
-    if cases.is_empty() {
-        return Err(Invalid::new(file, "no cases"));
-    }
-    if let Some(flag) = read.flags.keys().find(|flag| !used.contains(*flag)) {
-        return Err(Invalid::new(
-            file,
-            format!("the flag {flag:?} is explained, but no case has it"),
-        ));
-    }
-    Ok(Group {
-        name: read.group,
-        op: read.op,
-        flags: read.flags,
-        cases,
-    })
-}
-
-/// The id of a case, or its number if it has none.
-fn name_of_case(index: usize, text: &RawValue) -> String {
-    let value: Option<Value> = serde_json::from_str(text.get()).ok();
-    let id = value
-        .as_ref()
-        .and_then(|value| value.get("id"))
-        .and_then(Value::as_str);
-    id.map_or_else(|| format!("number {}", index + 1), str::to_string)
 }

@@ -1,6 +1,38 @@
-//! Text that is quoted in messages and pages.
+//! Messages: the error of a file, and text that is quoted.
+
+use std::fmt::Display;
 
 use serde_json::Value;
+
+/// A file that is not valid.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{file}: {message}")]
+pub struct Invalid {
+    /// Its name.
+    pub file: String,
+    /// What is wrong, in one line.
+    pub message: String,
+}
+
+impl Invalid {
+    /// The error of a file.
+    pub fn new(file: impl Display, message: impl Display) -> Invalid {
+        Invalid {
+            file: file.to_string(),
+            message: message.to_string().chars().map(plain).collect(),
+        }
+    }
+}
+
+/// Returns the formatted message as an error unless the condition holds.
+macro_rules! ensure {
+    ($condition:expr, $($message:tt)+) => {
+        if !$condition {
+            return Err(format!($($message)+));
+        }
+    };
+}
+pub(crate) use ensure;
 
 /// A value as text, cut if it is long.
 pub fn shortened(value: &Value) -> String {

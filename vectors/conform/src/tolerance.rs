@@ -5,13 +5,14 @@ use std::fmt;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::text::shortened;
-use super::verdict::Class;
+use super::outcome::Class;
+use super::text::{ensure, shortened};
 
-/// How far a number may be off in exact work.
+/// How far a number may be off in exact arithmetic.
 ///
 /// Implements: VEC-004.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(try_from = "ToleranceText")]
 pub enum Tolerance {
     /// Units in the last place of the expected value.
     Ulp(f64),
@@ -23,6 +24,48 @@ pub enum Tolerance {
     Exact,
 }
 
+/// A tolerance as a file of vectors has it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ToleranceText {
+    ulp: Option<f64>,
+    absolute: Option<f64>,
+    unit: Option<String>,
+    relative: Option<f64>,
+    exact: Option<bool>,
+    reason: String,
+}
+
+impl TryFrom<ToleranceText> for Tolerance {
+    type Error = String;
+
+    fn try_from(text: ToleranceText) -> Result<Tolerance, String> {
+        let exact = text.exact == Some(true);
+        let given = [
+            text.ulp.map(Tolerance::Ulp),
+            text.absolute.map(Tolerance::Absolute),
+            text.relative.map(Tolerance::Relative),
+            exact.then_some(Tolerance::Exact),
+        ];
+        let &[tolerance] = &given.into_iter().flatten().collect::<Vec<_>>()[..] else {
+            return Err("a tolerance needs one of ulp, absolute, relative, exact: true".into());
+        };
+        let size = text.ulp.or(text.absolute).or(text.relative);
+        let size = size.unwrap_or(0.0);
+        ensure!(is_size(size), "the tolerance {size} is below 0");
+        ensure!(
+            text.absolute.is_none() || text.unit.is_some(),
+            "an absolute tolerance needs a unit"
+        );
+        ensure!(!text.reason.trim().is_empty(), "a tolerance needs a reason");
+        Ok(tolerance)
+    }
+}
+
+fn is_size(size: f64) -> bool {
+    (0.0..f64::INFINITY).contains(&size)
+}
+
 /// The distance of |value| to the next larger f64, 2⁻¹⁰⁷⁴ for zero.
 fn ulp(value: f64) -> f64 {
     value.abs().next_up() - value.abs()
@@ -30,7 +73,7 @@ fn ulp(value: f64) -> f64 {
 
 impl Tolerance {
     /// The largest distance from `expected` that passes.
-    pub fn allowed(self, expected: f64) -> f64 {
+    fn allowed(self, expected: f64) -> f64 {
         match self {
             Tolerance::Ulp(count) => count * ulp(expected),
             Tolerance::Absolute(bound) => bound,
@@ -64,7 +107,7 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// The one of an entry; there is one, as [`Condition::fits`] found.
+    /// The condition of an entry, which exists if the condition [fits](Condition::fits) the value.
     fn entry(&self, index: usize) -> &Condition {
         match self {
             Condition::All(_) => self,
@@ -72,10 +115,10 @@ impl Condition {
         }
     }
 
-    /// Whether it has the shape of the value, and all its numbers can be.
+    /// Whether it has the shape of the value and all its numbers are finite and at least 0.
     pub fn fits(&self, value: &Value) -> bool {
         match (self, value) {
-            (Condition::All(size), _) => (0.0..f64::INFINITY).contains(size),
+            (Condition::All(size), _) => is_size(*size),
             (Condition::Each(entries), Value::Array(values)) => {
                 let mut pairs = entries.iter().zip(values);
                 entries.len() == values.len() && pairs.all(|(entry, value)| entry.fits(value))
@@ -88,18 +131,18 @@ impl Condition {
 /// How far a value may be off in a working precision.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit<'a> {
-    /// In exact work.
+    /// In exact arithmetic.
     pub tolerance: Tolerance,
-    /// So many times that is allowed.
+    /// The factor by which that is multiplied.
     pub times: f64,
-    /// What a unit roundoff adds.
+    /// What one unit roundoff adds.
     pub condition: &'a Condition,
     /// The unit roundoff.
     pub unit_roundoff: f64,
 }
 
 impl Limit<'_> {
-    /// The tolerance as it is stated, so many times.
+    /// A multiple of the stated tolerance, without roundoff.
     pub fn stated(tolerance: Tolerance, times: f64) -> Limit<'static> {
         Limit {
             tolerance,
@@ -120,31 +163,43 @@ impl Limit<'_> {
 
     /// Whether `found` is near enough to `expected`.
     pub fn accepts(&self, expected: f64, found: f64) -> bool {
-        found == expected || (found - expected).abs() <= self.allowed(expected)
+        let is_near = found == expected || (found - expected).abs() <= self.allowed(expected);
+        is_near && found.is_finite()
+    }
+
+    /// The limit, and by how much `found` is off.
+    fn excess(&self, expected: f64, found: f64) -> String {
+        let within = if self.unit_roundoff > 0.0 {
+            format!("{:.2e}", self.allowed(expected))
+        } else {
+            self.tolerance.to_string()
+        };
+        let distance = (found - expected).abs();
+        let ulps = match distance / ulp(expected) {
+            ulps if ulps < 1e6 => format!(", {ulps:.1} ulp"),
+            ulps if ulps.is_finite() => format!(", {ulps:.1e} ulp"),
+            _ => String::new(),
+        };
+        format!("within {within}: off by {distance:.2e}{ulps}")
     }
 }
 
 /// Where and how an answer differs.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{place} {text}")]
 pub struct Difference {
-    /// The key, with the place in lists.
+    /// The key, with the indices in lists.
     pub place: String,
-    /// What is expected there and what was found.
+    /// What was found there, and what should be there.
     pub text: String,
-    /// Mathematics for a wrong value, protocol for one of another kind.
+    /// Mathematics for a wrong value, protocol for one of another type.
     pub class: Class,
 }
 
-impl fmt::Display for Difference {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{} {}", self.place, self.text)
-    }
-}
-
-/// Whether the value at `place` is within the limit of what is expected.
+/// Compares the value at `place` with the expected one.
 ///
 /// # Errors
-/// The first difference.
+/// The first difference that exceeds the limit.
 ///
 /// Implements: ORA-046.
 pub fn compare(
@@ -153,52 +208,31 @@ pub fn compare(
     found: &Value,
     limit: Limit,
 ) -> Result<(), Difference> {
-    let differs = |class, text: String| {
-        let place = place.to_string();
-        Err(Difference { place, text, class })
-    };
-    match (expected, found) {
+    let (class, text) = match (expected, found) {
+        (Value::Array(expected), Value::Array(found)) if expected.len() == found.len() => {
+            let mut pairs = expected.iter().zip(found).enumerate();
+            return pairs.try_for_each(|(index, (expected, found))| {
+                let condition = limit.condition.entry(index);
+                let limit = Limit { condition, ..limit };
+                compare(&format!("{place}[{index}]"), expected, found, limit)
+            });
+        }
         (Value::Array(expected), Value::Array(found)) => {
-            if expected.len() != found.len() {
-                let (found, expected) = (found.len(), expected.len());
-                let text = format!("has {found} entries, expected {expected}");
-                return differs(Class::Mathematics, text);
-            }
-            let pairs = expected.iter().zip(found).enumerate();
-            pairs
-                .into_iter()
-                .try_for_each(|(index, (expected, found))| {
-                    let condition = limit.condition.entry(index);
-                    let limit = Limit { condition, ..limit };
-                    compare(&format!("{place}[{index}]"), expected, found, limit)
-                })
+            let (found, expected) = (found.len(), expected.len());
+            let text = format!("has {found} entries instead of {expected}");
+            (Class::Mathematics, text)
         }
         (Value::Number(expected), Value::Number(found)) => {
-            // Without the feature for any precision every number has an f64.
-            let (Some(e), Some(a)) = (expected.as_f64(), found.as_f64()) else {
-                return differs(Class::Protocol, format!("is {found}, expected {expected}"));
-            };
-            if limit.accepts(e, a) && a.is_finite() {
+            // Every number has an f64, unless serde_json reads any precision.
+            let [e, f] = [expected, found].map(|number| number.as_f64().unwrap_or(f64::NAN));
+            if limit.accepts(e, f) {
                 return Ok(());
             }
-            let within = match limit.allowed(e) {
-                allowed if limit.unit_roundoff > 0.0 => format!("{allowed:.2e}"),
-                _ => limit.tolerance.to_string(),
-            };
-            let distance = (a - e).abs();
-            let ulps = match distance / ulp(e) {
-                ulps if ulps < 1e6 => format!(", {ulps:.1} ulp"),
-                ulps if ulps.is_finite() => format!(", {ulps:.1e} ulp"),
-                _ => String::new(),
-            };
-            differs(
-                Class::Mathematics,
-                format!(
-                    "is {found}, expected {expected} within {within}: off by {distance:.2e}{ulps}"
-                ),
-            )
+            let excess = limit.excess(e, f);
+            let text = format!("is {found}, but should be {expected} {excess}");
+            (Class::Mathematics, text)
         }
-        _ if expected == found => Ok(()),
+        _ if expected == found => return Ok(()),
         _ => {
             let class = match (expected, found) {
                 (Value::Number(_), Value::Null) => Class::Range,
@@ -207,10 +241,10 @@ pub fn compare(
                 }
                 _ => Class::Protocol,
             };
-            differs(
-                class,
-                format!("is {}, expected {expected}", shortened(found)),
-            )
+            let text = format!("is {}, but should be {expected}", shortened(found));
+            (class, text)
         }
-    }
+    };
+    let place = place.to_string();
+    Err(Difference { place, text, class })
 }

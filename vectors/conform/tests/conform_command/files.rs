@@ -11,38 +11,24 @@ use crate::program::*;
 #[test]
 fn output_that_cannot_be_written_is_an_error_unless_its_reader_has_gone() {
     let run = |end: &str| {
-        let script = format!(
-            "set -o pipefail; '{}' questions {end}",
-            env!("CARGO_BIN_EXE_palpate-conform")
-        );
-        Command::new("bash")
-            .args(["-c", &script])
-            .output()
-            .expect("a shell")
+        let script = format!("set -o pipefail; '{CONFORM}' questions {end}");
+        let mut shell = Command::new("bash");
+        shell.args(["-c", &script]).output().expect("a shell")
     };
     let gone = run("| head -n 1");
     assert!(gone.status.success() && gone.stderr.is_empty(), "{gone:?}");
-    let full = run("> /dev/full");
-    assert_eq!(full.status.code(), Some(1));
-    assert!(
-        error(&full).starts_with("palpate-conform: standard output: "),
-        "{full:?}"
-    );
+    fails(&run("> /dev/full"), 1, "palpate-conform: standard output: ");
 }
 
 // Verifies: ORA-057, ORA-075.
 #[test]
 fn answers_from_a_file_are_judged_as_those_from_a_pipe() {
-    let folder = folder("offline");
-    let written = plain(&folder, "questions --out q.jsonl");
-    assert_eq!(written.status.code(), Some(0), "{written:?}");
-    let palpate = palpate();
-    let script = format!("'{palpate}' oracle <q.jsonl >a.jsonl");
-    let mut shell = Command::new("sh");
-    let answered = shell.current_dir(&folder).args(["-c", &script]).status();
-    assert!(answered.expect("a shell").success());
-    let judged = plain(&folder, "judge q.jsonl a.jsonl --format json");
-    assert_eq!(judged.status.code(), Some(0), "{}", stdout(&judged));
+    let (folder, palpate) = (folder("offline"), palpate());
+    let at = |words: &str| conform_at(&folder, words, &[]);
+    passes(&at("questions --out q.jsonl"));
+    sh(&folder, &format!("'{palpate}' oracle <q.jsonl >a.jsonl"));
+    let judged = at("judge q.jsonl a.jsonl --format json");
+    passes(&judged);
     let piped = conform("--format json", &[&palpate, "oracle"]);
     let [mut judged, mut piped] = [json_of(&judged), json_of(&piped)];
     let sum = judged["program"]["files"][0]["sha256"].take();
@@ -51,42 +37,26 @@ fn answers_from_a_file_are_judged_as_those_from_a_pipe() {
     piped["program"] = Value::Null;
     assert_eq!(judged, piped);
     // Without the claims, the ops with an answer count; a lost line is a wrong answer; a banner is told.
+    passes(&at("questions --only two_afc --out q2.jsonl"));
     let script = format!(
         "'{palpate}' oracle <q2.jsonl | grep -v 'capabilities\\|two_afc-003' >a2.jsonl; sed -i 1iMATLAB a2.jsonl"
     );
-    assert!(
-        plain(&folder, "questions --only two_afc --out q2.jsonl")
-            .status
-            .success()
-    );
-    let answered = Command::new("sh")
-        .current_dir(&folder)
-        .args(["-c", &script])
-        .status();
-    assert!(answered.expect("a shell").success());
-    let judged = plain(&folder, "judge q2.jsonl a2.jsonl --lenient --format json");
-    let verdict = json_of(&judged);
+    sh(&folder, &script);
+    let verdict = json_of(&at("judge q2.jsonl a2.jsonl --lenient --format json"));
     assert_eq!(
-        verdict["findings"].as_array().map(Vec::len),
-        Some(1),
+        verdict["findings"].as_array().unwrap().len(),
+        1,
         "{verdict}"
     );
     assert_eq!(verdict["findings"][0]["case"], "two_afc-003");
     let notes = verdict["notes"].to_string();
-    assert!(
-        notes.contains("MATLAB") && notes.contains("no answer to capabilities"),
-        "{notes}"
-    );
+    let is_told = notes.contains("MATLAB") && notes.contains("no answer to capabilities");
+    assert!(is_told, "{notes}");
     // Other questions.
     fs::write(folder.join("q.jsonl"), "{\"id\":\"two_afc-001\"}\n").unwrap();
-    let output = plain(&folder, "judge q.jsonl a.jsonl");
-    assert_eq!(output.status.code(), Some(2));
-    assert_eq!(
-        error(&output),
-        "palpate-conform: q.jsonl: line 1 is no question of these vectors"
-    );
-    let output = plain(&folder, "judge none a.jsonl");
-    assert!(error(&output).contains("none: No such file"), "{output:?}");
+    let words = "palpate-conform: q.jsonl: line 1 is no question of these vectors";
+    fails(&at("judge q.jsonl a.jsonl"), 2, words);
+    fails(&at("judge none a.jsonl"), 2, "none: No such file");
 }
 
 /// A program between the oracle and a table of answers: each question of the table becomes a request, each answer rows.
@@ -128,41 +98,27 @@ print("\n".join(out))
 fn a_table_holds_questions_and_answers() {
     let Some(python) = python() else { return };
     let folder = folder("table");
-    assert!(
-        plain(&folder, "questions --form csv --out q.csv")
-            .status
-            .success()
-    );
+    let at = |words: &str| conform_at(&folder, words, &[]);
+    passes(&at("questions --form csv --out q.csv"));
     fs::write(folder.join("table.py"), TABLE).unwrap();
-    let answers = Command::new(&python)
-        .current_dir(&folder)
-        .args(["table.py", "q.csv", &palpate()])
-        .output();
-    let answers = answers.expect("Python starts").stdout;
-    fs::write(folder.join("a.csv"), &answers).unwrap();
-    let judged = plain(&folder, "judge q.csv a.csv --format json");
-    assert_eq!(judged.status.code(), Some(0), "{}", stdout(&judged));
+    let script = format!("'{python}' table.py q.csv '{}' >a.csv", palpate());
+    sh(&folder, &script);
+    let judged = at("judge q.csv a.csv --format json");
+    passes(&judged);
     let verdict = json_of(&judged);
-    let groups = verdict["groups"].as_array().unwrap();
-    let cases: u64 = groups
-        .iter()
-        .map(|group| group["right"].as_u64().unwrap())
-        .sum();
     // All that have an answer, and the refusals for a range.
-    assert!(
-        cases > 2143 && groups.len() == 27,
-        "{cases} {}",
-        groups.len()
-    );
+    let (right, groups) = (total(&verdict, "right"), verdict["groups"].as_array());
+    let groups = groups.unwrap().len();
+    assert!(right > 2143 && groups == 27, "{right} {groups}");
     // A digit, a row too few, a row that is none.
-    let text = String::from_utf8(answers).unwrap();
-    let row = text
-        .lines()
+    let text = fs::read_to_string(folder.join("a.csv")).unwrap();
+    let mut rows = text.lines();
+    let row = rows
         .find(|row| row.starts_with("theta-004,theta,"))
         .expect("a row");
     for (new, code) in [("theta-004,theta,,,1", 1), ("", 1), ("theta-004 theta", 2)] {
         fs::write(folder.join("a.csv"), text.replace(row, new)).unwrap();
-        let judged = plain(&folder, "judge q.csv a.csv");
+        let judged = at("judge q.csv a.csv");
         assert_eq!(judged.status.code(), Some(code), "{new} {judged:?}");
         assert!(code == 2 || stdout(&judged).contains("theta-004"));
     }

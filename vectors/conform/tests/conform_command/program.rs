@@ -8,9 +8,12 @@ use serde_json::{Value, json};
 
 use crate::present::present;
 
+pub const CONFORM: &str = env!("CARGO_BIN_EXE_palpate-conform");
+pub const TOYS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/toys");
+
 /// The program itself, which stands beside this package's; `cargo test --workspace` builds both.
 pub fn palpate() -> String {
-    let program = Path::new(env!("CARGO_BIN_EXE_palpate-conform")).with_file_name("palpate");
+    let program = Path::new(CONFORM).with_file_name("palpate");
     assert!(program.exists(), "first: cargo build -p palpate");
     program.into_os_string().into_string().expect("UTF-8")
 }
@@ -28,16 +31,27 @@ pub fn folder(test: &str) -> PathBuf {
     path
 }
 
-/// With the words of `options`, and in a folder with other vectors than the program's own.
+/// Runs `palpate-conform` in a folder with the words of `options`, and after `--` those of a program, if there is one.
 pub fn conform_at(folder: &Path, options: &str, program: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-conform"));
-    command.current_dir(folder).args(options.split_whitespace());
-    command.arg("--").args(program);
-    command.output().expect("the program starts")
+    let separator = (!program.is_empty()).then_some("--");
+    Command::new(CONFORM)
+        .current_dir(folder)
+        .args(options.split_whitespace())
+        .args(separator)
+        .args(program)
+        .output()
+        .expect("the program starts")
 }
 
 pub fn conform(options: &str, program: &[&str]) -> Output {
     conform_at(Path::new("."), options, program)
+}
+
+/// Runs a script, which must end well, in a folder.
+pub fn sh(folder: &Path, script: &str) {
+    let mut shell = Command::new("sh");
+    let status = shell.current_dir(folder).args(["-c", script]).status();
+    assert!(status.expect("a shell").success(), "{script}");
 }
 
 /// The rows of a table, one a line.
@@ -61,6 +75,21 @@ pub fn error(output: &Output) -> &str {
     let text = std::str::from_utf8(&output.stderr).expect("UTF-8");
     assert_eq!(text.lines().count(), 1, "{text}");
     text.trim_end()
+}
+
+/// Asserts the exit code and, for each of these words with commas between them, that the one line of the error has it.
+#[track_caller]
+pub fn fails(output: &Output, code: i32, words: &str) {
+    assert_eq!(output.status.code(), Some(code), "{words}: {output:?}");
+    let error = error(output);
+    for word in words.split(", ") {
+        assert!(error.contains(word), "{error} lacks {word}");
+    }
+}
+
+#[track_caller]
+pub fn passes(output: &Output) {
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
 }
 
 pub const CASES: [&str; 4] = ["choice-001", "choice-002", "choice-003", "choice-004"];
@@ -104,6 +133,13 @@ pub fn shell(special: &str) -> String {
     )
 }
 
+/// Such a shell that gives this answer, without its id, to a case.
+pub fn answering(case: &str, answer: &str) -> String {
+    shell(&format!(
+        "*{case}*) echo '{{\"id\":\"{case}\",{answer}}}';;"
+    ))
+}
+
 /// The verdict on a shell program, its exit code, and the reason of each failed case.
 pub struct Found {
     pub code: Option<i32>,
@@ -116,17 +152,14 @@ pub fn run(test: &str, script: &str, timeout: &str) -> Found {
     let folder = write(test, &vectors());
     let output = conform_at(&folder, &options, &["sh", "-c", script]);
     let verdict = json_of(&output);
-    let text = |failure: &Value, key: &str| failure[key].as_str().unwrap().to_string();
-    let failures = verdict["findings"].as_array().unwrap();
-    let reasons = failures
-        .iter()
-        .map(|f| (text(f, "case"), text(f, "reason")))
-        .collect();
-    let code = output.status.code();
+    let text = |finding: &Value, key: &str| finding[key].as_str().unwrap().to_string();
+    let findings = verdict["findings"].as_array().unwrap().iter();
     Found {
-        code,
+        code: output.status.code(),
+        reasons: findings
+            .map(|finding| (text(finding, "case"), text(finding, "reason")))
+            .collect(),
         verdict,
-        reasons,
     }
 }
 
@@ -150,15 +183,10 @@ pub fn first_bug(verdict: &Value) -> &str {
     bugs[0]["flag"].as_str().unwrap_or("none")
 }
 
-/// Runs `palpate-conform` with these words.
-pub fn plain(folder: &Path, words: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-conform"));
-    let words = words.split_whitespace();
-    command
-        .current_dir(folder)
-        .args(words)
-        .output()
-        .expect("it starts")
+/// The sum of one count over the groups of a verdict.
+pub fn total(verdict: &Value, count: &str) -> u64 {
+    let groups = verdict["groups"].as_array().unwrap().iter();
+    groups.map(|group| group[count].as_u64().unwrap()).sum()
 }
 
 /// Python: the one of the environment, or the system's. It must be there, if `PALPATE_REQUIRE_WITNESSES=1`.
@@ -167,5 +195,3 @@ pub fn python() -> Option<String> {
     let missing = Command::new(&python).arg("--version").output().is_err();
     present(missing.then_some(&python)).then_some(python)
 }
-
-pub const TOYS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/toys");

@@ -1,0 +1,231 @@
+//! A file of vectors, read and checked.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Deserialize;
+use serde_json::value::RawValue;
+use serde_json::{Map, Value};
+
+use super::case::{Bug, BugAnswer, Case, Expected, Group, Question, Wanted};
+use super::outcome::Class;
+use super::text::{ensure, shortened};
+use super::tolerance::{Condition, Limit, Tolerance, compare};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GroupText {
+    schema: String,
+    schema_version: u64,
+    group: String,
+    op: String,
+    source: String,
+    generator_version: String,
+    tolerance: BTreeMap<String, Tolerance>,
+    flags: BTreeMap<String, Bug>,
+    cases: Vec<Box<RawValue>>,
+}
+
+/// A case as a file has it. Of its 13 keys no two can be one type, since serde refuses no unknown keys of a flattened one.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CaseText {
+    id: String,
+    comment: String,
+    args: Option<Map<String, Value>>,
+    line: Option<String>,
+    ok: Option<Map<String, Value>>,
+    #[serde(default)]
+    bits: Map<String, Value>,
+    error: Option<String>,
+    #[serde(default)]
+    lenient: Map<String, Value>,
+    #[serde(default)]
+    tolerance: BTreeMap<String, Tolerance>,
+    #[serde(default)]
+    condition: BTreeMap<String, Condition>,
+    roundoff: Option<f64>,
+    #[serde(default)]
+    flags: Vec<String>,
+    #[serde(default)]
+    wrong: Vec<BugAnswer>,
+}
+
+/// Reads one file.
+///
+/// Implements: VEC-001.
+pub fn group(text: &str) -> Result<Group, String> {
+    let read: GroupText = serde_json::from_str(text).map_err(|cause| cause.to_string())?;
+    ensure!(
+        read.schema == "palpate-vectors" && read.schema_version == 1,
+        "schema {:?} version {} instead of \"palpate-vectors\" version 1",
+        read.schema,
+        read.schema_version
+    );
+    ensure!(!read.group.is_empty(), "group is empty");
+    ensure!(!read.source.is_empty(), "source is empty");
+    ensure!(
+        !read.generator_version.is_empty(),
+        "generator_version is empty"
+    );
+    let mut cases = Vec::with_capacity(read.cases.len());
+    for (index, text) in read.cases.iter().enumerate() {
+        let case = case(text.get(), &read).map_err(|message| {
+            let value: Value = serde_json::from_str(text.get()).unwrap_or_default();
+            let number = || format!("number {}", index + 1);
+            let id = value["id"].as_str().map_or_else(number, str::to_string);
+            format!("case {id}: {message}")
+        })?;
+        cases.push(case);
+    }
+    ensure!(!cases.is_empty(), "no cases");
+    let used: BTreeSet<&String> = cases.iter().flat_map(|case| &case.flags).collect();
+    if let Some(flag) = read.flags.keys().find(|flag| !used.contains(flag)) {
+        return Err(format!(
+            "the flag {flag:?} is explained, but no case has it"
+        ));
+    }
+    Ok(Group {
+        name: read.group,
+        op: read.op,
+        flags: read.flags,
+        cases,
+    })
+}
+
+/// Reads a case of a file.
+///
+/// Implements: VEC-001, VEC-003, VEC-004, VEC-005, VEC-006, ORA-041.
+fn case(text: &str, file: &GroupText) -> Result<Case, String> {
+    let mut text: CaseText = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let question = match (text.args.take(), text.line.take()) {
+        (Some(args), None) => Question::Arguments(args),
+        (None, Some(line)) => {
+            ensure!(!line.contains('\n'), "line must be one line");
+            Question::Line(line)
+        }
+        _ => return Err("a case needs either args or line".into()),
+    };
+    let is_line = matches!(question, Question::Line(_));
+    ensure!(
+        !file.op.is_empty() || (is_line && text.error.is_some()),
+        "the group has no op, so that every case must be a line with an error"
+    );
+    let expected = match (text.ok.take(), text.error.take()) {
+        (Some(ok), None) => Expected::Values(values(ok, &text, &file.tolerance)?),
+        (None, Some(error)) => Expected::Refusal {
+            class: class_of(&error)?,
+            lenient: text.lenient,
+        },
+        _ => return Err("a case needs either ok or error".into()),
+    };
+    if let Some(u) = text.roundoff {
+        ensure!((0.0..1.0).contains(&u), "roundoff = {u} is not from 0 to 1");
+    }
+    for flag in &text.flags {
+        let is_known = file.flags.contains_key(flag);
+        ensure!(is_known, "the flag {flag:?} is not explained in flags");
+    }
+    for wrong in &text.wrong {
+        let flag = &wrong.flag;
+        ensure!(
+            text.flags.contains(flag),
+            "wrong names {flag:?}, which is not in its flags"
+        );
+        check_wrong(wrong, &expected)?;
+    }
+    Ok(Case {
+        id: text.id,
+        comment: text.comment,
+        question,
+        expected,
+        roundoff: text.roundoff,
+        flags: text.flags,
+        wrong: text.wrong,
+    })
+}
+
+/// The class of an answer to a question that must be refused with this code.
+///
+/// Implements: VEC-006, ORA-058.
+fn class_of(code: &str) -> Result<Class, String> {
+    match code {
+        "bad_json" | "bad_request" | "unknown_op" | "bad_argument" => Ok(Class::Protocol),
+        "out_of_range" | "overflow" => Ok(Class::Range),
+        _ => Err(format!(
+            "error = {code:?} is none of bad_json, bad_request, unknown_op, bad_argument, out_of_range, overflow"
+        )),
+    }
+}
+
+fn values(
+    ok: Map<String, Value>,
+    text: &CaseText,
+    tolerances: &BTreeMap<String, Tolerance>,
+) -> Result<Vec<Wanted>, String> {
+    ensure!(!ok.is_empty(), "ok is empty");
+    for key in text.tolerance.keys().chain(text.condition.keys()) {
+        ensure!(
+            ok.contains_key(key),
+            "tolerance or condition for {key:?}, which is no key of the answer"
+        );
+    }
+    let wanted = |(key, value): (String, Value)| {
+        let bits = bits_of(&value);
+        ensure!(
+            *text.bits.get(&key).unwrap_or(&Value::Null) == bits,
+            "the bits of {key:?} must be {}",
+            shortened(&bits)
+        );
+        let tolerance = text.tolerance.get(&key).or_else(|| tolerances.get(&key));
+        let tolerance = *tolerance.ok_or_else(|| format!("no tolerance for {key:?}"))?;
+        let condition = text.condition.get(&key).cloned();
+        let condition = condition.unwrap_or(Condition::All(0.0));
+        ensure!(
+            condition.fits(&value),
+            "the condition of {key:?} has another shape than its value, or a number below 0"
+        );
+        Ok(Wanted {
+            key,
+            value,
+            tolerance,
+            condition,
+        })
+    };
+    ok.into_iter().map(wanted).collect()
+}
+
+/// The bits of every number with a point or exponent, in the shape of the value; null if there is no such number.
+fn bits_of(value: &Value) -> Value {
+    match value {
+        Value::Array(values) => {
+            let bits: Vec<Value> = values.iter().map(bits_of).collect();
+            if bits.iter().all(Value::is_null) {
+                Value::Null
+            } else {
+                bits.into()
+            }
+        }
+        Value::Number(number) if number.is_f64() => {
+            format!("{:#018x}", number.as_f64().unwrap_or_default().to_bits()).into()
+        }
+        _ => Value::Null,
+    }
+}
+
+/// Checks that the answer of a bug is far enough from the right one to tell them apart.
+fn check_wrong(wrong: &BugAnswer, expected: &Expected) -> Result<(), String> {
+    let Expected::Values(values) = expected else {
+        return Err("a case that must be refused has flags, but no wrong answers".into());
+    };
+    let is_near = |wanted: &Wanted| {
+        let limit = Limit::stated(wanted.tolerance, 10.0);
+        let found = wrong.values.get(&wanted.key);
+        found.is_some_and(|found| compare(&wanted.key, &wanted.value, found, limit).is_ok())
+    };
+    ensure!(
+        !values.iter().all(is_near),
+        "the wrong answer of {:?} is within ten times the tolerance of the right one",
+        wrong.flag
+    );
+    Ok(())
+}
