@@ -58,22 +58,21 @@ pub fn diagnose<'a>(
 ) -> Vec<Diagnosis> {
     let of_class = |class: Class| {
         let wrong = |(index, outcome): (usize, &'a Outcome)| match outcome {
-            Outcome::Wrong(wrong) if wrong.class == class && is_counted(index) => {
-                Some((index, wrong))
-            }
+            Outcome::Wrong(wrong) if wrong.class == class => Some((index, wrong)),
             _ => None,
         };
-        let wrong: Vec<_> = outcomes.iter().enumerate().filter_map(wrong).collect();
-        (!wrong.is_empty()).then(|| Diagnosis {
+        let wrong = outcomes.iter().enumerate().filter_map(wrong);
+        let wrong = wrong.filter(|(index, _)| is_counted(*index)).collect();
+        let found = Found {
+            group,
+            outcomes,
+            wrong,
+        };
+        (!found.wrong.is_empty()).then(|| Diagnosis {
             group: group.name.clone(),
             class,
-            wrong: wrong.len(),
-            explanations: Found {
-                group,
-                outcomes,
-                wrong,
-            }
-            .explanations(),
+            wrong: found.wrong.len(),
+            explanations: found.explanations(),
         })
     };
     Class::ALL.into_iter().filter_map(of_class).collect()
@@ -105,11 +104,8 @@ impl Found<'_> {
                 best = pair.filter(|pair| pair.explains > most).or(best);
             }
         }
-        let mut found: Vec<_> = alone
-            .into_iter()
-            .filter_map(|(_, one)| one)
-            .chain(best)
-            .collect();
+        let alone = alone.into_iter().filter_map(|(_, one)| one);
+        let mut found: Vec<_> = alone.chain(best).collect();
         found.retain(|one| 2 * one.explains >= self.wrong.len());
         found.sort_by_key(|one| (Reverse(one.explains), one.against));
         found.truncate(MOST);

@@ -61,28 +61,26 @@ pub fn group(text: &str) -> Result<Group, String> {
         read.schema,
         read.schema_version
     );
-    ensure!(!read.group.is_empty(), "group is empty");
-    ensure!(!read.source.is_empty(), "source is empty");
-    ensure!(
-        !read.generator_version.is_empty(),
-        "generator_version is empty"
-    );
-    let mut cases = Vec::with_capacity(read.cases.len());
-    for (index, text) in read.cases.iter().enumerate() {
-        let case = case(text.get(), &read).map_err(|message| {
+    let stated = [&read.group, &read.source, &read.generator_version];
+    let is_stated = !stated.contains(&&String::new());
+    ensure!(is_stated, "group, source or generator_version is empty");
+    let cases = (1..).zip(&read.cases).map(|(number, text)| {
+        case(text.get(), &read).map_err(|message| {
             let value: Value = serde_json::from_str(text.get()).unwrap_or_default();
-            let number = || format!("number {}", index + 1);
+            let number = || format!("number {number}");
             let id = value["id"].as_str().map_or_else(number, str::to_string);
             format!("case {id}: {message}")
-        })?;
-        cases.push(case);
-    }
+        })
+    });
+    let cases = cases.collect::<Result<Vec<Case>, String>>()?;
     ensure!(!cases.is_empty(), "no cases");
     let used: BTreeSet<&String> = cases.iter().flat_map(|case| &case.flags).collect();
-    if let Some(flag) = read.flags.keys().find(|flag| !used.contains(flag)) {
-        return Err(format!(
+    for flag in read.flags.keys() {
+        let is_used = used.contains(flag);
+        ensure!(
+            is_used,
             "the flag {flag:?} is explained, but no case has it"
-        ));
+        );
     }
     Ok(Group {
         name: read.group,
@@ -199,11 +197,8 @@ fn bits_of(value: &Value) -> Value {
     match value {
         Value::Array(values) => {
             let bits: Vec<Value> = values.iter().map(bits_of).collect();
-            if bits.iter().all(Value::is_null) {
-                Value::Null
-            } else {
-                bits.into()
-            }
+            let is_none = bits.iter().all(Value::is_null);
+            if is_none { Value::Null } else { bits.into() }
         }
         Value::Number(number) if number.is_f64() => {
             format!("{:#018x}", number.as_f64().unwrap_or_default().to_bits()).into()

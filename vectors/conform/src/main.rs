@@ -115,26 +115,28 @@ fn seconds(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "give seconds from 0.01 to 86400, such as 10".into())
 }
 
-/// Why the exit code is not 0.
-enum Failure {
-    /// The program is not as required: 1.
-    Check(String),
-    /// There is no verdict, because the command line or a file is wrong: 2.
-    Usage(String),
+/// The exit code, if it is not 0, and why.
+struct Failure(u8, String);
+
+/// There is no verdict, because the command line or a file is wrong.
+fn usage(error: impl Display) -> Failure {
+    Failure(2, error.to_string())
 }
 
-fn usage(error: impl Display) -> Failure {
-    Failure::Usage(error.to_string())
+/// The program is not as required.
+fn unmet(error: impl Display) -> Failure {
+    Failure(1, error.to_string())
 }
 
 fn main() -> ExitCode {
-    let (code, message) = match read_arguments().and_then(|it| it.map_or(Ok(()), work)) {
-        Ok(()) => return ExitCode::SUCCESS,
-        Err(Failure::Check(message)) => (1, message),
-        Err(Failure::Usage(message)) => (2, message),
-    };
-    eprintln!("palpate-conform: {message}");
-    ExitCode::from(code)
+    let done = read_arguments().and_then(|arguments| arguments.map_or(Ok(()), work));
+    done.map_or_else(
+        |Failure(code, message)| {
+            eprintln!("palpate-conform: {message}");
+            code.into()
+        },
+        |()| ExitCode::SUCCESS,
+    )
 }
 
 /// The arguments, or none if --help or --version has been printed.
@@ -162,7 +164,7 @@ fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::Check(format!("standard output: {error}")))
+            Err(unmet(format!("standard output: {error}")))
         }
         _ => Ok(()),
     }
@@ -221,7 +223,7 @@ fn conform(arguments: Arguments) -> Result<(), Failure> {
         eprint!("\r\x1b[K");
     }
     let verdict = verdict.map_err(|error| match error {
-        ConformError::Capabilities { .. } => Failure::Check(error.to_string()),
+        ConformError::Capabilities { .. } => unmet(error),
         ConformError::Start { .. } => usage(error),
     })?;
     judged.report(&verdict, &suite)
@@ -280,8 +282,6 @@ impl Judged {
             Format::Junit => junit(verdict, suite),
             Format::Html => page(verdict),
         })?;
-        verdict
-            .failure()
-            .map_or(Ok(()), |failure| Err(Failure::Check(failure)))
+        verdict.failure().map_or(Ok(()), |why| Err(unmet(why)))
     }
 }

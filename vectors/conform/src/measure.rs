@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::outcome::Class;
 use super::profile::Profile;
 use super::suite::Suite;
-use super::text::{Invalid, ensure};
+use super::text::{Invalid, ensure, read};
 
 /// The condition for a program to pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, clap::ValueEnum)]
@@ -76,8 +76,7 @@ impl Measure {
 ///
 /// Implements: ORA-067.
 pub fn read_accepted(path: &Path, suite: &Suite) -> Result<BTreeMap<String, String>, Invalid> {
-    let text =
-        std::fs::read_to_string(path).map_err(|error| Invalid::new(path.display(), error))?;
+    let text = read(path)?;
     let mut list = BTreeMap::new();
     let mut add = |line: &str| {
         let (case, reason) = line.split_once(char::is_whitespace).unwrap_or((line, ""));

@@ -38,19 +38,14 @@ pub fn page(verdict: &Verdict) -> String {
             None => not_right.push(row(finding.kind())),
         }
     }
-    let explanations = verdict.diagnosis.iter().flat_map(lines);
+    let one_cell = |line| vec![line];
+    let explanations = verdict.diagnosis.iter().flat_map(lines).map(one_cell);
+    let notes = verdict.notes.iter().cloned().map(one_cell);
     let sections = [
         section("Accepted", accepted),
         section("Not right", not_right),
-        section("Likely bugs", explanations.map(|line| vec![line]).collect()),
-        section(
-            "Notes",
-            verdict
-                .notes
-                .iter()
-                .map(|note| vec![note.clone()])
-                .collect(),
-        ),
+        section("Likely bugs", explanations.collect()),
+        section("Notes", notes.collect()),
     ];
     format!(
         "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Certificate of conformance</title>\n<style>{STYLE}</style>\n\
@@ -81,11 +76,8 @@ fn facts(verdict: &Verdict) -> Vec<Row> {
     let required = measure.require.to_possible_value();
     let required = required.as_ref().and_then(|value| value.get_help());
     let required = required.map(|help| help.to_string()).unwrap_or_default();
-    let extreme = if measure.extreme {
-        "count"
-    } else {
-        "do not count"
-    };
+    let extreme = if measure.extreme { "" } else { " do not" };
+    let judge = format!("palpate-conform {}", verdict.conform_version);
     let fact = |name: &str, value: &str| vec![name.to_string(), value.to_string()];
     let mut rows = vec![
         fact("Program", &program.command.join(" ")),
@@ -96,12 +88,12 @@ fn facts(verdict: &Verdict) -> Vec<Row> {
     rows.extend([
         fact("SHA-256 of the vectors", &verdict.suite_sha256),
         fact("Profile", &precision),
-        fact("Required", &format!("{required}; extreme cases {extreme}")),
-        fact("Result", &verdict.failure().unwrap_or("as required".into())),
         fact(
-            "Judged by",
-            &format!("palpate-conform {}", verdict.conform_version),
+            "Required",
+            &format!("{required}; extreme cases{extreme} count"),
         ),
+        fact("Result", &verdict.failure().unwrap_or("as required".into())),
+        fact("Judged by", &judge),
     ]);
     rows
 }

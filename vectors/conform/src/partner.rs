@@ -1,20 +1,17 @@
 //! The program that is asked.
 
-use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use super::text::cut;
 
-/// The longest answer that is read, bytes.
-const LONGEST_ANSWER: u64 = 64 << 20;
-/// How much of standard error is kept, bytes.
-const STDERR_KEPT: usize = 4096;
+/// The longest line that is read, bytes.
+const LONGEST_LINE: u64 = 64 << 20;
 
 /// What came from the program.
 #[derive(Debug)]
@@ -33,7 +30,8 @@ pub struct Partner {
     /// Requests for the thread that writes them; its end closes the program's input.
     requests: Option<Sender<Vec<u8>>>,
     lines: Receiver<Vec<u8>>,
-    stderr: Arc<Mutex<VecDeque<u8>>>,
+    /// The last line of standard error that is not blank.
+    last_words: Arc<Mutex<String>>,
 }
 
 impl Partner {
@@ -50,26 +48,32 @@ impl Partner {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()?;
-        let (requests, to_write) = channel();
+        let (requests, to_write) = channel::<Vec<u8>>();
         // A program that floods its output waits, instead of filling the memory.
         let (found, lines) = sync_channel(1024);
-        let stderr = Arc::new(Mutex::new(VecDeque::new()));
-        if let Some(input) = child.stdin.take() {
-            thread::spawn(move || write_requests(input, &to_write));
+        let last_words = Arc::new(Mutex::new(String::new()));
+        if let Some(mut input) = child.stdin.take() {
+            thread::spawn(move || to_write.iter().try_for_each(|line| input.write_all(&line)));
         }
         if let Some(output) = child.stdout.take() {
-            thread::spawn(move || read_lines(output, &found));
+            thread::spawn(move || lines_of(output).try_for_each(|line| found.send(line)));
         }
         if let Some(errors) = child.stderr.take() {
-            let kept = stderr.clone();
-            thread::spawn(move || keep_last(errors, &kept));
+            let last_words = last_words.clone();
+            thread::spawn(move || {
+                for line in lines_of(errors) {
+                    let line = String::from_utf8_lossy(&line);
+                    if let (false, Ok(mut last)) = (line.trim().is_empty(), last_words.lock()) {
+                        *last = cut(line.trim());
+                    }
+                }
+            });
         }
-        let requests = Some(requests);
         Ok(Partner {
             child,
-            requests,
+            requests: Some(requests),
             lines,
-            stderr,
+            last_words,
         })
     }
 
@@ -107,21 +111,12 @@ impl Partner {
                 }
             }
         };
-        match self.last_words() {
-            Some(words) => format!("{status}; standard error: {words}"),
-            None => status,
-        }
-    }
-
-    /// The last line of standard error.
-    fn last_words(&self) -> Option<String> {
         // What the program said just before its end is still on the way.
         thread::sleep(Duration::from_millis(10));
-        let kept = self.stderr.lock().ok()?;
-        let bytes: Vec<u8> = kept.iter().copied().collect();
-        let text = String::from_utf8_lossy(&bytes).into_owned();
-        let line = text.lines().rev().find(|line| !line.trim().is_empty())?;
-        Some(cut(line.trim()))
+        match self.last_words.lock() {
+            Ok(words) if !words.is_empty() => format!("{status}; standard error: {words}"),
+            _ => status,
+        }
     }
 }
 
@@ -132,35 +127,14 @@ impl Drop for Partner {
     }
 }
 
-/// Writes the requests until the program reads no more; closes the input when nothing follows.
-fn write_requests(mut input: ChildStdin, requests: &Receiver<Vec<u8>>) {
-    for line in requests {
-        if input.write_all(&line).is_err() {
-            return;
-        }
-    }
-}
-
-fn read_lines(output: ChildStdout, lines: &SyncSender<Vec<u8>>) {
-    let mut output = BufReader::new(output);
-    let mut next = || {
+/// The lines of a stream, without their ends.
+fn lines_of(stream: impl Read) -> impl Iterator<Item = Vec<u8>> {
+    let mut stream = BufReader::new(stream);
+    std::iter::from_fn(move || {
         let mut line = Vec::new();
-        let mut answer = output.by_ref().take(LONGEST_ANSWER);
-        let length = answer.read_until(b'\n', &mut line).ok()?;
+        let mut rest = stream.by_ref().take(LONGEST_LINE);
+        let length = rest.read_until(b'\n', &mut line).ok()?;
         line.pop_if(|last| *last == b'\n');
         (length > 0).then_some(line)
-    };
-    while let Some(line) = next()
-        && lines.send(line).is_ok()
-    {}
-}
-
-fn keep_last(mut errors: ChildStderr, kept: &Mutex<VecDeque<u8>>) {
-    let mut buffer = [0; 1024];
-    while let Ok(read @ 1..) = errors.read(&mut buffer) {
-        let Ok(mut kept) = kept.lock() else { return };
-        kept.extend(&buffer[..read]);
-        let excess = kept.len().saturating_sub(STDERR_KEPT);
-        kept.drain(..excess);
-    }
+    })
 }

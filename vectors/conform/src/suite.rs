@@ -9,7 +9,7 @@ use sha2::Digest;
 use super::case::{Case, Group};
 use super::embedded;
 use super::file;
-use super::text::{Invalid, ensure};
+use super::text::{Invalid, ensure, read};
 
 /// Which cases are asked; all if nothing is chosen.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
@@ -77,9 +77,7 @@ impl Suite {
             let path = entry.map_err(failed)?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             if name.ends_with(".json") && !name.ends_with(".data.json") {
-                let text = std::fs::read_to_string(&path)
-                    .map_err(|cause| Invalid::new(path.display(), cause))?;
-                files.insert(name.into_owned(), text);
+                files.insert(name.into_owned(), read(&path)?);
             }
         }
         if !files.keys().any(|name| name != MANIFEST && name != SCHEMA) {
@@ -140,15 +138,13 @@ impl Suite {
                 names.join(", ")
             );
         }
-        let skipped_groups = |name: &&String| !names.contains(&&name[..]);
-        let mut cases = choice
-            .case
-            .iter()
-            .chain(choice.skip.iter().filter(skipped_groups));
-        if let Some(name) = cases.find(|name| !self.has(name)) {
-            return Err(format!(
+        let skipped = choice.skip.iter();
+        let skipped_cases = skipped.filter(|name| !names.contains(&&name[..]));
+        for name in choice.case.iter().chain(skipped_cases) {
+            ensure!(
+                self.has(name),
                 "no case {name:?} in these vectors; the cases have names such as two_afc-001"
-            ));
+            );
         }
         self.groups
             .retain(|group| choice.only.is_empty() || choice.only.contains(&group.name));
@@ -207,22 +203,17 @@ fn check_manifest(
 ) -> Result<(), Invalid> {
     let manifest: Manifest =
         serde_json::from_str(text).map_err(|cause| Invalid::new(MANIFEST, cause))?;
-    let listed = manifest.files.iter();
-    let listed: BTreeMap<&str, &str> = listed
-        .map(|file| (&file.name[..], &file.sha256[..]))
-        .collect();
-    for (name, sum) in sums {
-        match listed.get(name) {
-            Some(listed) if listed == sum => {}
-            Some(listed) => {
-                let message = format!("has the SHA-256 {sum}, but {MANIFEST} states {listed}");
-                return Err(Invalid::new(name, message));
+    let files = manifest.files.iter();
+    let listed: BTreeMap<_, _> = files.map(|file| (&file.name[..], &file.sha256)).collect();
+    for &name in sums.keys().chain(listed.keys()) {
+        let message = match (sums.get(name), listed.get(name)) {
+            (Some(sum), Some(listed)) if sum == *listed => continue,
+            (Some(sum), Some(listed)) => {
+                format!("has the SHA-256 {sum}, but {MANIFEST} states {listed}")
             }
-            None => return Err(Invalid::new(name, format!("is not in {MANIFEST}"))),
-        }
-    }
-    if let Some(name) = listed.keys().find(|name| !sums.contains_key(**name)) {
-        let message = format!("is in {MANIFEST}, but does not exist");
+            (Some(_), None) => format!("is not in {MANIFEST}"),
+            (None, _) => format!("is in {MANIFEST}, but does not exist"),
+        };
         return Err(Invalid::new(name, message));
     }
     let stated = manifest.suite_sha256;

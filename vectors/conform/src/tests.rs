@@ -171,51 +171,38 @@ fn answered(bugs: &[(&str, [f64; 3])], answers: &[[f64; 3]]) -> Verdict {
     verdict(&suite, &Measure::exact(), outcomes)
 }
 
-/// The bugs that a verdict names, with what it says of them.
-fn named(verdict: &Verdict) -> Vec<String> {
+/// The bugs that the verdict names, with what it says of them.
+fn named(bugs: &[(&str, [f64; 3])], answers: &[[f64; 3]]) -> Vec<String> {
+    let found = &answered(bugs, answers).diagnosis[0];
     let of = |one: &Explanation| {
         let flags: Vec<&str> = one.bugs.iter().map(|bug| &bug.flag[..]).collect();
-        let (wrong, flags) = (verdict.diagnosis[0].wrong, flags.join("+"));
-        let Explanation {
-            explains,
-            against,
-            first_case,
-            ..
-        } = one;
-        format!("{flags} {explains}/{wrong} against {against} from {first_case}")
+        let (flags, share) = (flags.join("+"), format!("{}/{}", one.explains, found.wrong));
+        format!(
+            "{flags} {share} against {} from {}",
+            one.against, one.first_case
+        )
     };
-    verdict.diagnosis[0].explanations.iter().map(of).collect()
+    found.explanations.iter().map(of).collect()
 }
 
 const SIGN: [f64; 3] = [-1.0, -2.0, 3.0];
-const UNIT: [f64; 3] = [1000.0, 2.0, 3.0];
 
 // Verifies: ORA-047.
 #[test]
 fn bugs_are_named_that_explain_half_of_a_group_and_pairs_that_explain_more() {
-    let bugs = [("sign", SIGN), ("unit", UNIT)];
-    let odd = [7.0, 7.0, 7.0];
-    let both = [1000.0, -2.0, 3.0];
-    let cases: [(&[_], &[&str]); 6] = [
-        (&[RIGHT, SIGN, SIGN, odd], &["sign 2/3 against 1 from a-1"]),
-        // Less than half is no name.
-        (&[SIGN, odd, odd], &[]),
-        // What explains most comes first; a pair, only if it explains more than each alone.
-        (
-            &[SIGN, UNIT, SIGN],
-            &[
-                "sign+unit 3/3 against 0 from a-0",
-                "sign 2/3 against 0 from a-0",
-            ],
-        ),
-        (&[SIGN, SIGN], &["sign 2/2 against 0 from a-0"]),
-        // One key by one bug, one by the other; a key that is right by neither explains nothing alone.
-        (&[both, both], &["sign+unit 2/2 against 0 from a-0"]),
-        (&[[1.0, -2.0, 3.0]], &[]),
-    ];
-    for (answers, expected) in cases {
-        assert_eq!(named(&answered(&bugs, answers)), expected, "{answers:?}");
-    }
+    let (unit, both, odd) = ([1000.0, 2.0, 3.0], [1000.0, -2.0, 3.0], [7.0; 3]);
+    let named = |answers: &[_]| named(&[("sign", SIGN), ("unit", unit)], answers).join("; ");
+    let of_right = named(&[RIGHT, SIGN, SIGN, odd]);
+    assert_eq!(of_right, "sign 2/3 against 1 from a-1");
+    // Less than half is no name.
+    assert_eq!(named(&[SIGN, odd, odd]), "");
+    // What explains most comes first; a pair, only if it explains more than each alone.
+    let pair = "sign+unit 3/3 against 0 from a-0; sign 2/3 against 0 from a-0";
+    assert_eq!(named(&[SIGN, unit, SIGN]), pair);
+    assert_eq!(named(&[SIGN, SIGN]), "sign 2/2 against 0 from a-0");
+    // One key by one bug, one by the other; a key that is right by neither explains nothing alone.
+    assert_eq!(named(&[both, both]), "sign+unit 2/2 against 0 from a-0");
+    assert_eq!(named(&[[1.0, -2.0, 3.0]]), "");
 }
 
 // Verifies: ORA-047.
@@ -230,18 +217,20 @@ fn of_pairs_of_bugs_the_one_that_explains_most_is_named() {
         ("i", [-5.0, 2.0, 9.0]),
         ("j", [8.0, 2.0, 7.0]),
     ];
+    let named = |answers: &[_]| named(&bugs, answers).join("; ");
     let (with_g, with_h) = ([-1.0, -2.0, 3.0], [-1.0, 20.0, 3.0]);
-    let cases: [(&[_], &[&str]); 4] = [
-        (&[with_g, with_h, with_h], &["f+h 2/3 against 0 from a-1"]),
-        (&[with_h, with_g, with_g], &["f+g 2/3 against 0 from a-1"]),
-        // Of equals the first.
-        (&[with_h, with_g], &["f+g 1/2 against 0 from a-1"]),
-        // Only a is wrong, as i has it: no other bug has anything to explain.
-        (&[[-5.0, 2.0, 3.0]], &[]),
-    ];
-    for (answers, expected) in cases {
-        assert_eq!(named(&answered(&bugs, answers)), expected, "{answers:?}");
-    }
+    assert_eq!(
+        named(&[with_g, with_h, with_h]),
+        "f+h 2/3 against 0 from a-1"
+    );
+    assert_eq!(
+        named(&[with_h, with_g, with_g]),
+        "f+g 2/3 against 0 from a-1"
+    );
+    // Of equals the first.
+    assert_eq!(named(&[with_h, with_g]), "f+g 1/2 against 0 from a-1");
+    // Only a is wrong, as i has it: no other bug has anything to explain.
+    assert_eq!(named(&[[-5.0, 2.0, 3.0]]), "");
 }
 
 // Verifies: ORA-047.
@@ -253,9 +242,8 @@ fn classes_are_diagnosed_apart() {
         &json!({"ok": {}}),
         &Profile::exact(),
     );
-    let mut outcomes = vec![Outcome::wrong(Class::Protocol, "no answer"); 3];
-    outcomes[0] = answered;
-    outcomes.extend(vec![Outcome::Right; 3]);
+    let lost = Outcome::wrong(Class::Protocol, "no answer");
+    let outcomes = [vec![answered, lost.clone(), lost], vec![Outcome::Right; 3]].concat();
     let found = verdict(&suite, &Measure::exact(), outcomes).diagnosis;
     let told = |one: &Diagnosis| (one.class, one.wrong, one.explanations.len());
     let told: Vec<_> = found.iter().map(told).collect();
@@ -292,12 +280,8 @@ fn extreme_cases_are_those_beyond_the_precision() {
         (Class::Protocol, false, 8),
         (Class::Mathematics, true, 8),
     ] {
-        let profile = single.clone();
-        let measure = Measure {
-            profile,
-            extreme,
-            ..Measure::exact()
-        };
+        let mut measure = Measure::exact();
+        (measure.profile, measure.extreme) = (single.clone(), extreme);
         let verdict = verdict(&suite, &measure, vec![Outcome::wrong(class, ""); 8]);
         assert_eq!(verdict.totals.failed, failed, "{class:?} {extreme}");
     }
@@ -312,10 +296,8 @@ fn what_is_required_decides_what_fails() {
         (Require::Range, 2),
         (Require::Mathematics, 1),
     ] {
-        let measure = Measure {
-            require,
-            ..Measure::exact()
-        };
+        let mut measure = Measure::exact();
+        measure.require = require;
         let failure = verdict(&two_groups(), &measure, one_of_each()).failure();
         assert_eq!(failure.unwrap(), format!("{failed} of 5 cases failed"));
     }
@@ -368,7 +350,11 @@ fn a_wrong_answer_has_a_class() {
         (1, json!({"error": {"code": "x"}}), "right"),
         (1, json!({"error": "x"}), "acceptable"),
         (1, json!({"error": {}}), "acceptable"),
+        (1, json!({"error": {"code": null}}), "acceptable"),
         (1, json!({"error": 1}), "protocol"),
+        (1, json!({"error": null}), "protocol"),
+        (1, json!({"error": false}), "protocol"),
+        (1, json!({"error": []}), "protocol"),
         (1, json!({"ok": {"a": 1}}), "range"),
         (2, json!({"ok": {"a": 1}}), "acceptable"),
         (2, json!({"ok": {"a": 1.1}}), "protocol"),

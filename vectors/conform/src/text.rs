@@ -1,6 +1,7 @@
 //! Messages: the error of a file, and text that is quoted.
 
 use std::fmt::Display;
+use std::path::Path;
 
 use serde_json::Value;
 
@@ -22,6 +23,11 @@ impl Invalid {
             message: message.to_string().chars().map(plain).collect(),
         }
     }
+}
+
+/// The text of a file.
+pub fn read(path: &Path) -> Result<String, Invalid> {
+    std::fs::read_to_string(path).map_err(|error| Invalid::new(path.display(), error))
 }
 
 /// Returns the formatted message as an error unless the condition holds.

@@ -16,44 +16,18 @@ fn wrong_answers_name_their_bug() {
         choice-003 | {"p_correct":0.2} | must be refused | negative
         "#,
     ) {
-        let found = run("bug", &answering(case, &format!("\"ok\":{ok}")), "20");
-        found.expect(&[(case, word)]);
-        assert_eq!(first_bug(&found.verdict), bug);
+        let script = answering(case, &format!("\"ok\":{ok}"));
+        let verdict = run("bug", &script, "20", &[(case, word)]);
+        assert_eq!(first_bug(&verdict), bug);
         if bug == "complement" {
             let bug =
                 json!({"flag": bug, "bug": "the rate of wrong answers", "notes": "p for 1 - p"});
             let explanation =
                 json!({"bugs": [bug], "explains": 1, "against": 0, "first_case": case});
             let diagnosis = json!([{"group": "choice", "class": "mathematics", "wrong": 1, "explanations": [explanation]}]);
-            assert_eq!(found.verdict["diagnosis"], diagnosis);
+            assert_eq!(verdict["diagnosis"], diagnosis);
         }
     }
-}
-
-// Verifies: ORA-058.
-#[test]
-fn an_error_without_a_code_is_no_refusal() {
-    for [error, class] in rows(
-        r#"
-        null | "protocol"
-        false | "protocol"
-        [] | "protocol"
-        "no" | null
-        {} | null
-        {"code":null} | null
-        "#,
-    ) {
-        let script = answering("choice-003", &format!("\"error\":{error}"));
-        let found = run("no-refusal", &script, "20");
-        found.expect(&[("choice-003", "an object with a code")]);
-        assert_eq!(
-            found.verdict["findings"][0]["class"].to_string(),
-            class,
-            "{error}"
-        );
-    }
-    let script = answering("choice-003", r#""error":{"code":"own"}"#);
-    run("refusal-of-its-own", &script, "20").expect(&[]);
 }
 
 // Verifies: ORA-046, ORA-067.

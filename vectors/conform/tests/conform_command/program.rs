@@ -140,41 +140,23 @@ pub fn answering(case: &str, answer: &str) -> String {
     ))
 }
 
-/// The verdict on a shell program, its exit code, and the reason of each failed case.
-pub struct Found {
-    pub code: Option<i32>,
-    pub verdict: Value,
-    pub reasons: Vec<(String, String)>,
-}
-
-pub fn run(test: &str, script: &str, timeout: &str) -> Found {
+/// The verdict on a shell program. Just these cases must fail, each for a reason with this word.
+#[track_caller]
+pub fn run(test: &str, script: &str, timeout: &str, failures: &[(&str, &str)]) -> Value {
     let options = format!("--vectors . --format json --timeout-s {timeout}");
     let folder = write(test, &vectors());
     let output = conform_at(&folder, &options, &["sh", "-c", script]);
     let verdict = json_of(&output);
-    let text = |finding: &Value, key: &str| finding[key].as_str().unwrap().to_string();
-    let findings = verdict["findings"].as_array().unwrap().iter();
-    Found {
-        code: output.status.code(),
-        reasons: findings
-            .map(|finding| (text(finding, "case"), text(finding, "reason")))
-            .collect(),
-        verdict,
+    let code = i32::from(!failures.is_empty());
+    assert_eq!(output.status.code(), Some(code), "{verdict}");
+    let findings = verdict["findings"].as_array().unwrap();
+    assert_eq!(findings.len(), failures.len(), "{findings:?}");
+    for (finding, (case, word)) in findings.iter().zip(failures) {
+        let reason = finding["reason"].as_str().unwrap();
+        let is_so = finding["case"] == *case && reason.contains(word);
+        assert!(is_so, "{finding}, not {case}: {word}");
     }
-}
-
-impl Found {
-    /// Asserts that just these cases failed, each for a reason with this word.
-    #[track_caller]
-    pub fn expect(&self, failures: &[(&str, &str)]) {
-        let code = i32::from(!failures.is_empty());
-        assert_eq!(self.code, Some(code), "{}", self.verdict);
-        assert_eq!(self.reasons.len(), failures.len(), "{:?}", self.reasons);
-        for ((case, reason), (wanted, word)) in self.reasons.iter().zip(failures) {
-            let is_so = case == wanted && reason.contains(word);
-            assert!(is_so, "{case}: {reason}, not {wanted}: {word}");
-        }
-    }
+    verdict
 }
 
 /// The flag of the bug that a verdict names first.
