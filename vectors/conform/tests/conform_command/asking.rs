@@ -41,8 +41,8 @@ fn our_oracle_passes_all_the_vectors_that_the_program_carries() {
 #[test]
 fn a_right_program_passes() {
     let palpate = palpate();
-    run("right", &format!("exec '{palpate}' oracle"), "20", &[]);
-    run("right-by-line", &shell(""), "20", &[]);
+    run("right", &format!("exec '{palpate}' oracle"), &[]);
+    run("right-by-line", &shell(""), &[]);
 }
 
 // Verifies: ORA-043, ORA-046.
@@ -66,24 +66,13 @@ fn answers_that_are_none_are_failures_of_their_case() {
         no-error | echo '{"id":"choice-002","error":null}' | error must be an object with a code, not null
         nothing | : | no answer: the next one was for choice-003
         utf8 | printf '\377\n' | no JSON
+        remark | echo remark; echo '{"id":"choice-002","ok":{}}' | no JSON: remark
         "#,
     ) {
+        // A remark takes the place of the answer after it, which comes too late.
         let script = shell(&format!("*choice-002*) {answer};;"));
-        run(
-            &format!("none-{test}"),
-            &script,
-            "20",
-            &[("choice-002", word)],
-        );
+        run(&format!("none-{test}"), &script, &[("choice-002", word)]);
     }
-    // A remark before the answer takes the answer's place; the answer itself then comes too late.
-    let remark = shell("*choice-002*) echo remark; echo '{\"id\":\"choice-002\",\"ok\":{}}';;");
-    run(
-        "remark",
-        &remark,
-        "20",
-        &[("choice-002", "no JSON: remark")],
-    );
 }
 
 // Verifies: ORA-044, ORA-045.
@@ -96,11 +85,11 @@ fn a_crash_is_blamed_on_its_case_and_the_others_are_asked() {
          *choice-002*) sleep 0.1; echo 'division by zero' >&2; exit 7;; *) printf '%s\\n' \"$line\" | '{palpate}' oracle;; esac; done"
     );
     let word = "exit status: 7; standard error: division by zero";
-    run("crash", &script, "20", &[("choice-002", word)]);
+    run("crash", &script, &[("choice-002", word)]);
     // A program that dies of everything but the first question.
     let script = format!("read -r line; printf '%s\\n' \"$line\" | '{palpate}' oracle");
     let failures = CASES.map(|case| (case, "ended without an answer"));
-    run("dies", &script, "20", &failures);
+    run("dies", &script, &failures);
 }
 
 // Verifies: ORA-044, ORA-045.
@@ -112,7 +101,7 @@ fn cases_that_were_open_together_are_asked_again_alone() {
         "echo start >>starts; while :; do sleep 0.1; lines=$(dd bs=65536 count=1 2>/dev/null)\n\
          case \"$lines\" in '') exit 0;; *'\n'*) exit 7;; esac; printf '%s\\n' \"$lines\" | '{palpate}' oracle; done"
     );
-    run("alone", &script, "20", &[]);
+    run("alone", &script, &[]);
     let starts = folder_of("alone").join("starts");
     let starts = fs::read_to_string(starts).expect("the program was started");
     assert!(starts.lines().count() <= 2, "{starts}");
@@ -123,12 +112,8 @@ fn cases_that_were_open_together_are_asked_again_alone() {
 fn silence_is_blamed_on_its_case_and_the_others_are_asked() {
     // In this time a loaded machine starts the oracle, which the shell does for each line.
     let script = shell("*choice-003*) exec sleep 60;;");
-    run(
-        "silence",
-        &script,
-        "2",
-        &[("choice-003", "no answer within 2 s")],
-    );
+    let failures = [("choice-003", "no answer within 2 s")];
+    run_within("2", "silence", &script, &failures);
     // After six silences the rest is not asked.
     let mut many = vectors();
     let case = many["cases"][0].clone();
@@ -140,8 +125,7 @@ fn silence_is_blamed_on_its_case_and_the_others_are_asked() {
     many["cases"] = cases.collect();
     many["flags"] = json!({});
     let (folder, script) = (write("silent", &many), shell("*choice*) exec sleep 60;;"));
-    let options = "--vectors . --timeout-s 0.5";
-    let output = conform_at(&folder, options, &["sh", "-c", &script]);
+    let output = ask(&folder, "--timeout-s 0.5", &script);
     fails(&output, 1, "9 of 9 cases failed");
     assert!(stdout(&output).contains("silent 6 times"), "{output:?}");
 }
@@ -172,12 +156,12 @@ fn a_flood_ends() {
     let claims = r#"echo '{"id":"capabilities","ok":{"version":"1","ops":["two_afc"]}}'"#;
     let script = format!("{claims}; exec yes garbage");
     let failures = CASES.map(|case| (case, "no JSON: garbage"));
-    run("garbage", &script, "20", &failures);
+    run("garbage", &script, &failures);
     // Answers without end to what is judged already are no sign of life.
     let script =
         format!("{claims}; exec yes '{{\"id\":\"choice-001\",\"ok\":{{\"p_correct\":0.5}}}}'");
     let silent = [1, 2, 3].map(|case| (CASES[case], "no answer within"));
-    run("repeats", &script, "0.3", &silent);
+    run_within("0.3", "repeats", &script, &silent);
 }
 
 // Verifies: ORA-048, ORA-049.
@@ -189,18 +173,16 @@ fn what_is_not_claimed_is_skipped_and_nothing_is_no_verdict() {
         )
     };
     let folder = write("claims-nothing", &vectors());
-    let options = "--vectors . --format json";
-    let output = conform_at(&folder, options, &["sh", "-c", &claims("")]);
+    let output = ask(&folder, "--format json", &claims(""));
     fails(&output, 1, "nothing checked");
     let verdict = json_of(&output);
     assert_eq!(total(&verdict, "skipped"), 4);
     assert_eq!(verdict["passed"], false);
     let program = claims("\"three_afc\"");
-    let program = ["sh", "-c", &program];
+    fails(&ask(&folder, "", &program), 1, "nothing checked, two_afc");
     // The lines that everybody must refuse are asked, and not answered here.
-    fails(&conform("--timeout-s 0.2", &program), 1, "nothing checked");
-    let output = conform_at(&folder, "--vectors .", &program);
-    fails(&output, 1, "nothing checked, two_afc");
+    let output = conform("--timeout-s 0.2", &["sh", "-c", &program]);
+    fails(&output, 1, "nothing checked");
 }
 
 // Verifies: ORA-040, ORA-049.

@@ -17,7 +17,7 @@ fn wrong_answers_name_their_bug() {
         "#,
     ) {
         let script = answering(case, &format!("\"ok\":{ok}"));
-        let verdict = run("bug", &script, "20", &[(case, word)]);
+        let verdict = run("bug", &script, &[(case, word)]);
         assert_eq!(first_bug(&verdict), bug);
         if bug == "complement" {
             let bug =
@@ -75,8 +75,7 @@ fn known_mistakes_are_accepted_with_their_reason_and_told_when_they_are_mended()
     let script = answering("choice-002", r#""ok":{"p_correct":0.5}"#);
     let accept = |list: &str| {
         fs::write(folder.join("known"), list).unwrap();
-        let options = "--vectors . --accept known --format json";
-        conform_at(&folder, options, &["sh", "-c", &script])
+        ask(&folder, "--accept known --format json", &script)
     };
     let output =
         accept("# of version 1\n\nchoice-002   a table of five digits\nchoice-001 once wrong\n");
@@ -147,8 +146,7 @@ fn loose_answers_are_told() {
         ("--require right", &no_id, 1, ""),
         ("--require acceptable", &no_id, 0, "choice-002"),
     ] {
-        let options = format!("--vectors . {options}");
-        let output = conform_at(&folder, &options, &["sh", "-c", script]);
+        let output = ask(&folder, options, script);
         assert_eq!(output.status.code(), Some(code), "{output:?}");
         assert!(stdout(&output).contains(note), "{}", stdout(&output));
     }
@@ -191,8 +189,7 @@ fn the_page_says_what_was_judged_and_stands_alone() {
 fn the_verdict_for_ci_holds_every_case_and_is_the_same_each_time() {
     let folder = write("junit", &vectors());
     let script = answering("choice-003", r#""ok":{"p_correct":"<&>"}"#);
-    let options = "--vectors . --format junit";
-    let [output, again] = [0; 2].map(|_| conform_at(&folder, options, &["sh", "-c", &script]));
+    let [output, again] = [0; 2].map(|_| ask(&folder, "--format junit", &script));
     assert_eq!(output.status.code(), Some(1));
     let text = stdout(&output);
     assert_eq!(text, stdout(&again));

@@ -140,12 +140,23 @@ pub fn answering(case: &str, answer: &str) -> String {
     ))
 }
 
+/// Asks a shell program the vectors of a folder.
+pub fn ask(folder: &Path, options: &str, script: &str) -> Output {
+    let options = format!("--vectors . {options}");
+    conform_at(folder, &options, &["sh", "-c", script])
+}
+
 /// The verdict on a shell program. Just these cases must fail, each for a reason with this word.
 #[track_caller]
-pub fn run(test: &str, script: &str, timeout: &str, failures: &[(&str, &str)]) -> Value {
-    let options = format!("--vectors . --format json --timeout-s {timeout}");
-    let folder = write(test, &vectors());
-    let output = conform_at(&folder, &options, &["sh", "-c", script]);
+pub fn run(test: &str, script: &str, failures: &[(&str, &str)]) -> Value {
+    run_within("20", test, script, failures)
+}
+
+/// The same with another timeout, s.
+#[track_caller]
+pub fn run_within(timeout: &str, test: &str, script: &str, failures: &[(&str, &str)]) -> Value {
+    let options = format!("--format json --timeout-s {timeout}");
+    let output = ask(&write(test, &vectors()), &options, script);
     let verdict = json_of(&output);
     let code = i32::from(!failures.is_empty());
     assert_eq!(output.status.code(), Some(code), "{verdict}");
