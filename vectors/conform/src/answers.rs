@@ -5,7 +5,7 @@ use std::collections::{HashSet, VecDeque};
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::case::{Case, Question};
+use super::case::{Case, Group, Question};
 use super::judge::judge;
 use super::outcome::{Class, Outcome};
 use super::profile::Profile;
@@ -42,52 +42,39 @@ impl Capabilities {
     }
 }
 
-/// The cases of a suite, the questions that are open, and the outcomes.
+/// The cases of a suite: those to ask, those that are open, and the outcomes.
 pub struct Answers<'a> {
-    cases: Vec<&'a Case>,
-    /// What became of each case.
+    cases: Vec<(&'a Group, &'a Case)>,
+    /// The outcome of each case.
     outcomes: Vec<Option<Outcome>>,
+    /// Cases to be asked, by their index, the next one first.
+    queue: VecDeque<usize>,
     /// Cases that were asked and have no answer yet, by their index, the oldest first.
-    pub open: VecDeque<usize>,
+    open: VecDeque<usize>,
     /// What else the verdict should say.
     pub notes: Vec<String>,
     profile: &'a Profile,
     /// Whether a line that is no answer is ignored.
-    lenient: bool,
+    pub lenient: bool,
     /// The ids of cases that are judged.
     judged: HashSet<&'a str>,
 }
 
 impl<'a> Answers<'a> {
-    /// No answers yet. Groups and cases are skipped by name, and groups whose op is not claimed; lines of no op are for every program.
+    /// No answers yet; groups and cases are skipped by name.
     ///
-    /// Implements: ORA-048, ORA-040.
-    pub fn new(
-        suite: &'a Suite,
-        skip: &[String],
-        claimed: &[String],
-        profile: &'a Profile,
-        lenient: bool,
-    ) -> Answers<'a> {
-        let (mut cases, mut outcomes) = (Vec::new(), Vec::new());
-        for group in &suite.groups {
-            let is_claimed = group.op.is_empty() || claimed.contains(&group.op);
-            for case in &group.cases {
-                let is_left_out = skip.contains(&case.id) || skip.contains(&group.name);
-                let why = if is_left_out {
-                    Some("left out by --skip".into())
-                } else if !is_claimed {
-                    Some(format!("the program does not claim {}", group.op))
-                } else {
-                    None
-                };
-                cases.push(case);
-                outcomes.push(why.map(Outcome::Skipped));
-            }
-        }
+    /// Implements: ORA-040.
+    pub fn new(suite: &'a Suite, skip: &[String], profile: &'a Profile, lenient: bool) -> Self {
+        let of_group = |group: &'a Group| group.cases.iter().map(move |case| (group, case));
+        let cases: Vec<_> = suite.groups.iter().flat_map(of_group).collect();
+        let left_out = |(group, case): &(&Group, &Case)| {
+            let is_left_out = skip.contains(&case.id) || skip.contains(&group.name);
+            is_left_out.then(|| Outcome::Skipped("left out by --skip".into()))
+        };
         Answers {
+            outcomes: cases.iter().map(left_out).collect(),
             cases,
-            outcomes,
+            queue: VecDeque::new(),
             open: VecDeque::new(),
             notes: Vec::new(),
             profile,
@@ -96,11 +83,54 @@ impl<'a> Answers<'a> {
         }
     }
 
-    /// The cases without an outcome, by their index.
-    pub fn remaining(&self) -> VecDeque<usize> {
-        let all = 0..self.cases.len();
-        all.filter(|&index| self.outcomes[index].is_none())
-            .collect()
+    /// Skips the groups whose op the program does not claim, and queues the rest. Lines of no op are for every program.
+    ///
+    /// Implements: ORA-048.
+    pub fn claim(&mut self, ops: &[String]) {
+        for (index, (group, _)) in self.cases.iter().enumerate() {
+            let is_claimed = group.op.is_empty() || ops.contains(&group.op);
+            match &mut self.outcomes[index] {
+                Some(_) => {}
+                None if is_claimed => self.queue.push_back(index),
+                outcome => {
+                    let why = format!("the program does not claim {}", group.op);
+                    *outcome = Some(Outcome::Skipped(why));
+                }
+            }
+        }
+    }
+
+    /// Takes the ops with an answer for those that the program claims, and queues their cases.
+    pub fn claim_answered(&mut self, is_answered: impl Fn(&str) -> bool) {
+        let answered = self.cases.iter().filter(|(_, case)| is_answered(&case.id));
+        let mut ops: Vec<String> = answered.map(|(group, _)| group.op.clone()).collect();
+        ops.dedup();
+        self.claim(&ops);
+    }
+
+    /// Opens the next case and returns its request.
+    pub fn ask(&mut self) -> Option<String> {
+        let index = self.queue.pop_front()?;
+        self.open.push_back(index);
+        let (group, case) = self.cases[index];
+        Some(case.line(&group.op))
+    }
+
+    /// Puts the open cases back, to be asked again.
+    pub fn take_back(&mut self) {
+        while let Some(last) = self.open.pop_back() {
+            self.queue.push_front(last);
+        }
+    }
+
+    /// The number of cases that are to be asked.
+    pub fn queued(&self) -> usize {
+        self.queue.len()
+    }
+
+    /// The number of cases that were asked and have no answer yet.
+    pub fn open(&self) -> usize {
+        self.open.len()
     }
 
     /// Finds out which case a line answers, and judges it. False for a line that answers no open case.
@@ -125,7 +155,7 @@ impl<'a> Answers<'a> {
         let id = answer.get("id").unwrap_or(&Value::Null);
         let name = id.as_str().unwrap_or_default();
         let mut open = self.open.iter();
-        if let Some(place) = open.position(|&index| self.cases[index].id == name) {
+        if let Some(place) = open.position(|&index| self.cases[index].1.id == name) {
             for _ in 0..place {
                 self.fail(format!("no answer: the next one was for {name}"));
             }
@@ -135,7 +165,7 @@ impl<'a> Answers<'a> {
         if self.judged.contains(name) {
             return false; // A late answer, whose case has failed already.
         }
-        let case = self.cases[oldest];
+        let (_, case) = self.cases[oldest];
         let reason = format!(
             "answered with the id {} instead of {:?}: {}",
             shortened(id),
@@ -159,7 +189,7 @@ impl<'a> Answers<'a> {
     /// Judges the oldest open case.
     pub fn settle(&mut self, judge: impl FnOnce(&Case, &Profile) -> Outcome) {
         if let Some(index) = self.open.pop_front() {
-            let case = self.cases[index];
+            let (_, case) = self.cases[index];
             self.judged.insert(&case.id);
             self.outcomes[index] = Some(judge(case, self.profile));
         }

@@ -9,7 +9,6 @@ use super::answers::{Answers, ignored};
 use super::case::{Case, Expected, Question, Wanted};
 use super::judge::judge;
 use super::outcome::{Class, Outcome};
-use super::profile::Profile;
 use super::suite::Suite;
 use super::text::cut;
 
@@ -106,15 +105,8 @@ pub fn asked(suite: Suite, text: &str) -> Result<Suite, String> {
 ///
 /// # Errors
 /// A row that is no answer, unless such rows are ignored.
-pub fn judge_table<'a>(
-    suite: &'a Suite,
-    skip: &[String],
-    text: &str,
-    profile: &'a Profile,
-    lenient: bool,
-) -> Result<Answers<'a>, String> {
+pub fn judge_table(answers: &mut Answers, text: &str) -> Result<(), String> {
     let mut found: BTreeMap<&str, BTreeMap<&str, Cells>> = BTreeMap::new();
-    let mut notes = Vec::new();
     for (number, line) in (1..).zip(text.lines().map(str::trim)) {
         if line.is_empty() || (number == 1 && line == ANSWER_HEAD) {
             continue;
@@ -125,26 +117,23 @@ pub fn judge_table<'a>(
             cells.insert(place, value).is_none().then_some(())
         };
         if add().is_none() {
-            if !lenient {
+            if !answers.lenient {
                 let line = cut(line);
                 return Err(format!(
                     "line {number} is {line:?}, but must be a new {ANSWER_HEAD}"
                 ));
             }
-            notes.push(ignored(line));
+            answers.notes.push(ignored(line));
         }
     }
-    let ops = suite.ops_of(|id| found.contains_key(id));
-    let mut answers = Answers::new(suite, skip, &ops, profile, lenient);
-    answers.notes = notes;
-    answers.open = answers.remaining();
-    while !answers.open.is_empty() {
+    answers.claim_answered(|id| found.contains_key(id));
+    while answers.ask().is_some() {
         answers.settle(|case, profile| match found.get(&case.id[..]) {
             Some(found) => judge(case, &answer(found, case), profile),
             None => Outcome::wrong(Class::Protocol, "no answer"),
         });
     }
-    Ok(answers)
+    Ok(())
 }
 
 /// Row and column, where there are any.

@@ -8,7 +8,7 @@ use super::profile::Profile;
 use super::text::shortened;
 use super::tolerance::{Limit, Tolerance, compare};
 
-/// Judges the answer to a case; its id is not looked at.
+/// Judges the answer to a case, apart from its id.
 ///
 /// Implements: ORA-046, ORA-047, ORA-058.
 pub fn judge(case: &Case, answer: &Value, profile: &Profile) -> Outcome {

@@ -188,9 +188,8 @@ fn work(arguments: Arguments) -> Result<(), Failure> {
             questions,
             answers,
         }) => {
-            let suite = chosen.suite()?;
-            let measure = judged.measure(&suite)?;
-            let (suite, skip) = (chosen.part(suite)?, &chosen.choice.skip);
+            let (suite, measure) = judged.prepare(&chosen)?;
+            let skip = &chosen.choice.skip;
             let verdict = judge_files(suite, skip, &questions, &answers, &measure, judged.lenient);
             let (verdict, suite) = verdict.map_err(usage)?;
             judged.report(&verdict, &suite)
@@ -201,9 +200,7 @@ fn work(arguments: Arguments) -> Result<(), Failure> {
 /// Asks, and prints the verdict.
 fn conform(arguments: Arguments) -> Result<(), Failure> {
     let Arguments { chosen, judged, .. } = arguments;
-    let suite = chosen.suite()?;
-    let measure = judged.measure(&suite)?;
-    let suite = chosen.part(suite)?;
+    let (suite, measure) = judged.prepare(&chosen)?;
     if arguments.show {
         return print(&shown(&suite));
     }
@@ -264,13 +261,13 @@ impl Chosen {
 }
 
 impl Judged {
-    /// The measure, with the list of known mistakes.
-    fn measure(&self, suite: &Suite) -> Result<Measure, Failure> {
-        let mut measure = self.measure.clone();
+    /// The cases that are asked, and the measure with the list of known mistakes.
+    fn prepare(&self, chosen: &Chosen) -> Result<(Suite, Measure), Failure> {
+        let (suite, mut measure) = (chosen.suite()?, self.measure.clone());
         if let Some(file) = &self.accept {
-            measure.accepted = read_accepted(file, suite).map_err(usage)?;
+            measure.accepted = read_accepted(file, &suite).map_err(usage)?;
         }
-        Ok(measure)
+        Ok((chosen.part(suite)?, measure))
     }
 
     /// Prints the verdict.

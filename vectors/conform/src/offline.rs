@@ -8,7 +8,6 @@ use serde_json::Value;
 use super::answers::{Answers, CAPABILITIES, Capabilities};
 use super::columns;
 use super::measure::Measure;
-use super::profile::Profile;
 use super::program::Program;
 use super::suite::Suite;
 use super::text::Invalid;
@@ -49,24 +48,23 @@ pub fn judge_files(
     measure: &Measure,
     lenient: bool,
 ) -> Result<(Verdict, Suite), Invalid> {
-    let read =
-        |path: &Path| std::fs::read(path).map_err(|error| Invalid::new(path.display(), error));
+    let read = |path: &Path| {
+        let bytes = std::fs::read(path);
+        bytes.map_err(|error| Invalid::new(path.display(), error))
+    };
     let (asked, answered) = (read(questions)?, read(answers)?);
-    let (asked, table) = (
-        String::from_utf8_lossy(&asked),
-        String::from_utf8_lossy(&answered),
-    );
+    let asked = String::from_utf8_lossy(&asked);
     let is_table = asked.starts_with(columns::HEAD);
     let part = if is_table { columns::asked } else { part_asked };
     let suite =
         part(suite, &asked).map_err(|message| Invalid::new(questions.display(), message))?;
-    let profile = &measure.profile;
-    let (judged, version) = if is_table {
-        let judged = columns::judge_table(&suite, skip, &table, profile, lenient);
-        let judged = judged.map_err(|message| Invalid::new(answers.display(), message))?;
-        (judged, String::new())
+    let mut judged = Answers::new(&suite, skip, &measure.profile, lenient);
+    let version = if is_table {
+        columns::judge_table(&mut judged, &String::from_utf8_lossy(&answered))
+            .map_err(|message| Invalid::new(answers.display(), message))?;
+        String::new()
     } else {
-        judge_lines(&suite, skip, &answered, profile, lenient)
+        judge_lines(&mut judged, &answered)
     };
     let (outcomes, notes) = judged.outcomes("no answer");
     let program = Program::of_answers(answers, version);
@@ -90,14 +88,8 @@ fn part_asked(suite: Suite, text: &str) -> Result<Suite, String> {
     Ok(suite.part(|case| ids.contains(&case.id)))
 }
 
-/// Judges lines of answers. Also returns the version of the program, if it answered that.
-fn judge_lines<'a>(
-    suite: &'a Suite,
-    skip: &[String],
-    text: &[u8],
-    profile: &'a Profile,
-    lenient: bool,
-) -> (Answers<'a>, String) {
+/// Judges lines of answers. Returns the version of the program, if there is one.
+fn judge_lines(answers: &mut Answers, text: &[u8]) -> String {
     let (mut lines, mut claims) = (Vec::new(), None);
     for line in text.split(|&byte| byte == b'\n') {
         match Capabilities::read(line) {
@@ -107,30 +99,22 @@ fn judge_lines<'a>(
     }
     // What follows the end of the last line is no line.
     lines.pop_if(|last| last.is_empty());
-    let id = |line: &&[u8]| {
-        let answer: Value = serde_json::from_slice(line).ok()?;
-        Some(answer["id"].as_str()?.to_string())
-    };
-    let answered = || {
+    if let Some(claims) = &claims {
+        answers.claim(&claims.ops);
+    } else {
+        let id = |line: &&[u8]| {
+            let answer: Value = serde_json::from_slice(line).ok()?;
+            Some(answer["id"].as_str()?.to_string())
+        };
         let ids: HashSet<String> = lines.iter().filter_map(id).collect();
-        suite.ops_of(|id| ids.contains(id))
-    };
-    let ops = claims
-        .as_ref()
-        .map_or_else(answered, |claims| claims.ops.clone());
-    let mut answers = Answers::new(suite, skip, &ops, profile, lenient);
-    answers.open = answers.remaining();
+        answers.claim_answered(|id| ids.contains(id));
+        let note =
+            "no answer to capabilities: the program is taken to claim the ops with an answer";
+        answers.notes.push(note.into());
+    }
+    while answers.ask().is_some() {}
     for line in lines {
         answers.take(line);
     }
-    if claims.is_none() {
-        answers.notes.push(
-            "no answer to capabilities: the program is taken to claim the ops with an answer"
-                .into(),
-        );
-    }
-    (
-        answers,
-        claims.map_or_else(String::new, |claims| claims.version()),
-    )
+    claims.map_or_else(String::new, |claims| claims.version())
 }

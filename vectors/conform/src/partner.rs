@@ -10,8 +10,10 @@ use std::time::{Duration, Instant};
 
 use super::text::cut;
 
-/// The longest line that is read, bytes.
-const LONGEST_LINE: u64 = 64 << 20;
+/// The longest answer that is read, bytes.
+const LONGEST_ANSWER: u64 = 64 << 20;
+/// The longest line of standard error that is kept, bytes; a longer one is split.
+const LONGEST_WORDS: u64 = 4096;
 
 /// What came from the program.
 #[derive(Debug)]
@@ -24,22 +26,21 @@ pub enum Event {
     Silence,
 }
 
-/// A program that runs.
+/// A running program.
 pub struct Partner {
     child: Child,
     /// Requests for the thread that writes them; its end closes the program's input.
-    requests: Option<Sender<Vec<u8>>>,
+    requests: Option<Sender<String>>,
     lines: Receiver<Vec<u8>>,
     /// The last line of standard error that is not blank.
     last_words: Arc<Mutex<String>>,
 }
 
 impl Partner {
-    /// Starts a program. Its input is written and its output read by threads of their own, so that
-    /// neither side waits for a full pipe.
+    /// Starts a program. Threads write its input and read its output, so that neither side waits for a full pipe.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     pub fn start(command: &[OsString]) -> io::Result<Partner> {
         let (program, arguments) = command.split_first().ok_or(io::ErrorKind::NotFound)?;
         let mut child = Command::new(program)
@@ -48,20 +49,26 @@ impl Partner {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()?;
-        let (requests, to_write) = channel::<Vec<u8>>();
+        let (requests, to_write) = channel::<String>();
         // A program that floods its output waits, instead of filling the memory.
         let (found, lines) = sync_channel(1024);
         let last_words = Arc::new(Mutex::new(String::new()));
         if let Some(mut input) = child.stdin.take() {
-            thread::spawn(move || to_write.iter().try_for_each(|line| input.write_all(&line)));
+            thread::spawn(move || {
+                to_write
+                    .iter()
+                    .try_for_each(|line| input.write_all(line.as_bytes()))
+            });
         }
         if let Some(output) = child.stdout.take() {
-            thread::spawn(move || lines_of(output).try_for_each(|line| found.send(line)));
+            thread::spawn(move || {
+                lines_of(output, LONGEST_ANSWER).try_for_each(|line| found.send(line))
+            });
         }
         if let Some(errors) = child.stderr.take() {
             let last_words = last_words.clone();
             thread::spawn(move || {
-                for line in lines_of(errors) {
+                for line in lines_of(errors, LONGEST_WORDS) {
                     let line = String::from_utf8_lossy(&line);
                     if let (false, Ok(mut last)) = (line.trim().is_empty(), last_words.lock()) {
                         *last = cut(line.trim());
@@ -77,9 +84,8 @@ impl Partner {
         })
     }
 
-    /// Hands over a request line. One that the program does not read is no error here: its answer
-    /// will be missing.
-    pub fn ask(&self, line: Vec<u8>) {
+    /// Sends a request. If the program does not read it, that is no error here: its answer will be missing.
+    pub fn ask(&self, line: String) {
         if let Some(requests) = &self.requests {
             let _ = requests.send(line);
         }
@@ -95,8 +101,8 @@ impl Partner {
         }
     }
 
-    /// Ends the program's input, waits for it, and ends it by force if it takes too long. Says how
-    /// it ended, with the end of what it said on standard error.
+    /// Ends the program's input, waits for the program, and kills it if it takes too long. Returns how it ended, with the last line of
+    /// its standard error.
     pub fn end(mut self, patience: Duration) -> String {
         self.requests = None;
         let deadline = Instant::now() + patience;
@@ -128,11 +134,11 @@ impl Drop for Partner {
 }
 
 /// The lines of a stream, without their ends.
-fn lines_of(stream: impl Read) -> impl Iterator<Item = Vec<u8>> {
+fn lines_of(stream: impl Read, longest: u64) -> impl Iterator<Item = Vec<u8>> {
     let mut stream = BufReader::new(stream);
     std::iter::from_fn(move || {
         let mut line = Vec::new();
-        let mut rest = stream.by_ref().take(LONGEST_LINE);
+        let mut rest = stream.by_ref().take(longest);
         let length = rest.read_until(b'\n', &mut line).ok()?;
         line.pop_if(|last| *last == b'\n');
         (length > 0).then_some(line)

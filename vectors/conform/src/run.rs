@@ -1,6 +1,5 @@
 //! All cases asked through a pipe, despite crashes and silence.
 
-use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::time::{Duration, Instant};
 
@@ -69,11 +68,10 @@ pub fn run(
 ) -> Result<Verdict, ConformError> {
     let (partner, claims) = start_and_ask(settings)?;
     let (skip, profile) = (&settings.skip, &measure.profile);
-    let answers = Answers::new(suite, skip, &claims.ops, profile, settings.lenient);
+    let mut answers = Answers::new(suite, skip, profile, settings.lenient);
+    answers.claim(&claims.ops);
     let mut run = Run {
         settings,
-        lines: suite.requests().map(|(_, line)| line.into()).collect(),
-        queue: answers.remaining(),
         answers,
         alone: 0,
         starts: 1,
@@ -96,7 +94,7 @@ fn start_and_ask(settings: &Settings) -> Result<(Partner, Capabilities), Conform
         let program = program.to_string_lossy().into_owned();
         ConformError::Start { program, error }
     })?;
-    partner.ask(format!("{CAPABILITIES}\n").into());
+    partner.ask(format!("{CAPABILITIES}\n"));
     let deadline = Instant::now() + settings.timeout;
     let found = loop {
         match partner.next(deadline) {
@@ -129,10 +127,6 @@ fn farewell(partner: Partner, event: &Event, timeout: Duration) -> String {
 struct Run<'a, P> {
     settings: &'a Settings,
     answers: Answers<'a>,
-    /// The request of each case.
-    lines: Vec<Vec<u8>>,
-    /// Cases to be asked, by their index, the next one first.
-    queue: VecDeque<usize>,
     /// How many more cases are asked one at a time, because the program died of one of them.
     alone: usize,
     starts: usize,
@@ -145,13 +139,13 @@ impl<P: FnMut(usize)> Run<'_, P> {
     fn ask_all(&mut self, mut partner: Partner) -> Result<(), ConformError> {
         while let Some(event) = self.converse(&partner) {
             self.bury(partner, &event);
-            if self.queue.is_empty() {
+            if self.answers.queued() == 0 {
                 return Ok(());
             }
             if self.starts == MOST_STARTS || self.silences == MOST_SILENCES {
                 self.answers.notes.push(format!(
                     "{} cases were not asked: the program was started {} times and silent {} times",
-                    self.queue.len(),
+                    self.answers.queued(),
                     self.starts,
                     self.silences
                 ));
@@ -181,16 +175,15 @@ impl<P: FnMut(usize)> Run<'_, P> {
         let mut deadline = Instant::now() + self.settings.timeout;
         loop {
             let window = if self.alone > 0 { 1 } else { WINDOW };
-            if self.answers.open.is_empty() {
+            if self.answers.open() == 0 {
                 deadline = Instant::now() + self.settings.timeout;
             }
-            while self.answers.open.len() < window
-                && let Some(next) = self.queue.pop_front()
+            while self.answers.open() < window
+                && let Some(line) = self.answers.ask()
             {
-                partner.ask(self.lines[next].clone());
-                self.answers.open.push_back(next);
+                partner.ask(line);
             }
-            if self.answers.open.is_empty() {
+            if self.answers.open() == 0 {
                 return None;
             }
             match partner.next(deadline) {
@@ -215,14 +208,13 @@ impl<P: FnMut(usize)> Run<'_, P> {
     fn bury(&mut self, partner: Partner, event: &Event) {
         self.silences += usize::from(matches!(event, Event::Silence));
         let why = farewell(partner, event, self.settings.timeout);
-        if self.answers.open.len() == 1 {
+        if self.answers.open() == 1 {
             self.answers.fail(why);
             self.alone = self.alone.saturating_sub(1);
             (self.progress)(self.answers.settled());
         } else {
-            self.alone = self.answers.open.len();
-            self.queue.extend(self.answers.open.drain(..));
-            self.queue.rotate_right(self.alone);
+            self.alone = self.answers.open();
+            self.answers.take_back();
         }
     }
 }

@@ -168,13 +168,6 @@ impl Suite {
         })
     }
 
-    /// The ops of the cases with these ids.
-    pub(super) fn ops_of(&self, is_in: impl Fn(&str) -> bool) -> Vec<String> {
-        let has_one = |group: &&Group| group.cases.iter().any(|case| is_in(&case.id));
-        let groups = self.groups.iter().filter(has_one);
-        groups.map(|group| group.op.clone()).collect()
-    }
-
     /// Whether there is a case of this name.
     pub fn has(&self, id: &str) -> bool {
         let mut groups = self.groups.iter();

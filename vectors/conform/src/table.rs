@@ -1,8 +1,6 @@
 //! The verdict for people.
 
-use std::fmt::Write;
-
-use super::counts::Counts;
+use super::counts::{Counts, Finding};
 use super::diagnosis::{Diagnosis, Explanation, NamedBug};
 use super::verdict::Verdict;
 
@@ -13,39 +11,26 @@ const MOST_FINDINGS: usize = 20;
 ///
 /// Implements: ORA-048.
 pub fn table(verdict: &Verdict) -> String {
-    let mut text = counts(verdict);
-    // Writing to a String cannot fail.
-    if !verdict.diagnosis.is_empty() {
-        text.push_str("\nlikely bugs\n");
-    }
-    for line in verdict.diagnosis.iter().flat_map(lines) {
-        let _ = writeln!(text, "  {line}");
-    }
     // What the program fails for comes first.
     let mut findings: Vec<_> = verdict.findings.iter().collect();
     findings.sort_by_key(|finding| !finding.counts);
-    if !findings.is_empty() {
-        text.push_str("\nnot right\n");
-    }
-    for finding in findings.iter().take(MOST_FINDINGS) {
+    let line = |finding: &&Finding| {
         let (case, comment) = (&finding.case, &finding.comment);
-        let (kind, reason) = (finding.kind(), &finding.reason);
-        let _ = writeln!(text, "  {case} ({comment}), {kind}: {reason}");
-    }
+        format!("{case} ({comment}), {}: {}", finding.kind(), finding.reason)
+    };
+    let mut listed: Vec<String> = findings.iter().take(MOST_FINDINGS).map(line).collect();
     if findings.len() > MOST_FINDINGS {
         let more = findings.len() - MOST_FINDINGS;
-        let _ = writeln!(text, "  and {more} more, which --format json lists");
+        listed.push(format!("and {more} more, which --format json lists"));
     }
-    if !verdict.mended.is_empty() {
-        let cases = verdict.mended.join(", ");
-        let _ = writeln!(
-            text,
-            "\nright now, so that it can leave the list of accepted mistakes: {cases}"
-        );
-    }
-    for note in &verdict.notes {
-        let _ = writeln!(text, "\nnote: {note}");
-    }
+    let bugs = verdict.diagnosis.iter().flat_map(lines).collect();
+    let mended = match verdict.mended.join(", ") {
+        cases if cases.is_empty() => cases,
+        cases => {
+            format!("\nright now, so that it can leave the list of accepted mistakes: {cases}\n")
+        }
+    };
+    let notes = verdict.notes.iter().map(|note| format!("\nnote: {note}\n"));
     let version = match &verdict.program.version[..] {
         "" => String::new(),
         version => format!("version {version}: "),
@@ -54,14 +39,24 @@ pub fn table(verdict: &Verdict) -> String {
         failed, skipped, ..
     } = verdict.totals;
     let checked = verdict.totals.checked();
-    let _ = writeln!(
-        text,
-        "\n{version}{} of {checked} cases as they should be, {skipped} skipped; profile {}; vectors {}",
+    format!(
+        "{}{}{}{mended}{}\n{version}{} of {checked} cases as they should be, {skipped} skipped; profile {}; vectors {}\n",
+        counts(verdict),
+        section("likely bugs", bugs),
+        section("not right", listed),
+        notes.collect::<String>(),
         checked - failed,
         verdict.measure.profile.name,
         verdict.suite_sha256
-    );
-    text
+    )
+}
+
+/// Lines under a title, if there are any.
+fn section(title: &str, lines: Vec<String>) -> String {
+    if lines.is_empty() {
+        return String::new();
+    }
+    format!("\n{title}\n  {}\n", lines.join("\n  "))
 }
 
 /// The counts of each group, without columns of zeros.
