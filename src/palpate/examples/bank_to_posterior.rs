@@ -11,13 +11,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Five positions and three depths of the inclusion of a built-in phantom, under a probe 4 mm deep.
     let in_mm = |values: &[f64]| -> Vec<f64> { values.iter().map(|value| 1e-3 * value).collect() };
     let laterals: Vec<f64> = (-8..=8).map(|step| 1e-3 * f64::from(step)).collect();
-    let bank = BankPlan {
-        positions: in_mm(&[-4.0, -2.0, 0.0, 2.0, 4.0]),
-        depths: in_mm(&[3.6, 4.6, 5.6]),
-        mesh_size: 1e-3,
-        ..BankPlan::new(Phantom::builtin("4.6")?, 4e-3, &laterals)?
-    }
-    .bank()?;
+    let mut plan = BankPlan::new(Phantom::builtin("4.6")?, 4e-3, &laterals)?;
+    plan.positions = in_mm(&[-4.0, -2.0, 0.0, 2.0, 4.0]);
+    plan.depths = in_mm(&[3.6, 4.6, 5.6]);
+    plan.mesh_size = 1e-3;
+    let bank = plan.bank()?;
 
     // A sweep over the inclusion at x = 2 mm, 4.6 mm deep, in noise of 0.05 N.
     let truth = (0..bank.maps().len()).find(|&map| bank.point(map)[..2] == [2e-3, 4.6e-3]);

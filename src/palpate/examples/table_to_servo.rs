@@ -25,9 +25,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let hand = Trajectory::probing(3e-3, 10e-3, Duration::from_millis(500));
     let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Vec::new());
     let mut session = Session::begin(device, loaded.table()?, Limits::for_playback(4.0)?)?;
-    let mut strongest = 0.0f32;
+    let unit = 1e-6 * f64::from(session.capabilities().force_unit_un);
+    let mut strongest = 0.0f64;
     let end = session.run(|cycle, _| {
-        strongest = strongest.max(cycle.command.force.normal);
+        strongest = strongest.max(unit * f64::from(cycle.force.normal));
         true
     });
     println!("{end:?} after {:?}", session.device().now());

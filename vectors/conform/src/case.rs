@@ -72,6 +72,16 @@ pub enum Expected {
     },
 }
 
+impl Expected {
+    /// The expected values; none if a refusal is expected.
+    pub fn values(&self) -> &[Wanted] {
+        match self {
+            Expected::Values(values) => values,
+            Expected::Refusal { .. } => &[],
+        }
+    }
+}
+
 /// The answer that a known bug gives.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]

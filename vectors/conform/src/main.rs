@@ -4,7 +4,7 @@
 //! Implements: ORA-070.
 
 use std::ffi::OsString;
-use std::fmt::{Display, Write as _};
+use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -17,7 +17,7 @@ use palpate_conform::{
     page, questions, read_accepted, run, table,
 };
 
-/// Asks another program the questions of the test vectors, and reports which answers are wrong.
+/// The command line.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -32,7 +32,7 @@ struct Arguments {
     chosen: Chosen,
     #[command(flatten)]
     judged: Judged,
-    /// Print the cases of --case and the expected answers instead of asking them
+    /// Prints the cases of --case and the expected answers instead of asking them
     #[arg(long, requires = "case")]
     show: bool,
     /// Longest time for one answer, in seconds
@@ -45,7 +45,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Work {
-    /// Write the questions to a file, for a program that cannot serve a pipe
+    /// Writes the questions to a file, for a program that cannot serve a pipe
     Questions {
         #[command(flatten)]
         chosen: Chosen,
@@ -56,7 +56,7 @@ enum Work {
         #[arg(long, value_enum, default_value_t = Form::Jsonl)]
         form: Form,
     },
-    /// Judge a file of answers to a file of questions
+    /// Judges a file of answers to a file of questions
     Judge {
         #[command(flatten)]
         chosen: Chosen,
@@ -87,7 +87,7 @@ struct Judged {
     /// List of known mistakes: a case and its reason per line
     #[arg(long, value_name = "FILE")]
     accept: Option<PathBuf>,
-    /// Ignore lines that are not answers, such as a banner, and report them
+    /// Ignores lines that are not answers, such as a banner, and reports them
     #[arg(long)]
     lenient: bool,
     /// Form of the verdict
@@ -231,15 +231,12 @@ fn shown(suite: &Suite) -> String {
     let mut text = String::new();
     for (case, request) in suite.requests() {
         text += &format!("{}: {}\n{request}", case.id, case.comment);
-        match &case.expected {
-            Expected::Refusal { .. } => text += "must be refused\n",
-            Expected::Values(values) => {
-                for wanted in values {
-                    let (key, value, tolerance) = (&wanted.key, &wanted.value, wanted.tolerance);
-                    // Writing to a String cannot fail.
-                    let _ = writeln!(text, "{key} = {value} within {tolerance}");
-                }
-            }
+        if matches!(case.expected, Expected::Refusal { .. }) {
+            text += "must be refused\n";
+        }
+        for wanted in case.expected.values() {
+            let (key, value, tolerance) = (&wanted.key, &wanted.value, wanted.tolerance);
+            text += &format!("{key} = {value} within {tolerance}\n");
         }
     }
     text

@@ -44,7 +44,7 @@ pub struct Measure {
     /// Working precision: exact, f64, f32, or a JSON file
     #[arg(long, value_name = "NAME", value_parser = Profile::named, default_value = "exact")]
     pub profile: Profile,
-    /// Also count the cases at the limit of the precision
+    /// Also counts the cases at the limit of the precision
     #[arg(long)]
     #[serde(rename = "extreme_counts")]
     pub extreme: bool,

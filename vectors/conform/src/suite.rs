@@ -14,13 +14,13 @@ use super::text::{Invalid, ensure, read};
 /// Which cases are asked; all if nothing is chosen.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct Choice {
-    /// Ask only this group; may be given several times
+    /// Asks only this group; may be given several times
     #[arg(long, value_name = "GROUP")]
     pub only: Vec<String>,
-    /// Ask only this case; may be given several times
+    /// Asks only this case; may be given several times
     #[arg(long, value_name = "ID")]
     pub case: Vec<String>,
-    /// Leave out this group or case; may be given several times
+    /// Leaves out this group or case; may be given several times
     #[arg(long, value_name = "NAME")]
     pub skip: Vec<String>,
 }
