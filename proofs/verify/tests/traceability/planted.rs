@@ -43,6 +43,14 @@ mod tests {
     fn holds() {
     }
 }
+proptest! {
+    #![proptest_config(many())]
+
+    // {V}: AAA-002.
+    #[test]
+    fn any(x in 0..3) {
+    }
+}
 === tests/slow/main.rs
 mod cases;
 
@@ -66,13 +74,6 @@ macro_rules! made {
 
 made!(by_macro);
 === tests/hid-stack/src/main.rs
-pub const ALL: &[(&str, Scenario)] = &[
-    ("held up", || held_up("a", 1)),
-    (
-        "lost",
-        crate::lost,
-    ),
-];
 /// {V}: AAA-001.
 fn held_up() {
 }
@@ -156,7 +157,7 @@ fn a_sound_repository_has_its_evidence() {
             "AAA-002",
             "So MUST that.",
             "src/lib.rs One::it",
-            "small-one::slow cases::named; small-one::slow waits; tests/hid-stack/run lost",
+            "small-one deep::any; small-one::slow cases::named; small-one::slow waits; tests/hid-stack/run lost",
             "",
             "",
         ],
@@ -176,8 +177,9 @@ fn a_sound_repository_has_its_evidence() {
 const FAULTS: &str = r#"
 spec/a.md ¦ \n|  ¦ - **AAA-009** It MUST.\n\n|  ¦ spec/a.md:6: AAA-009 has no code
 spec/a.md ¦ \n|  ¦ - **AAA-009** It MUST.\n\n|  ¦ spec/a.md:6: AAA-009 has neither test nor proof
-tests/hid-stack/src/main.rs ¦ AAA-001 ¦ AAA-004 ¦ tests/hid-stack/src/main.rs:8: no chapter in spec/ has a requirement AAA-004
+tests/hid-stack/src/main.rs ¦ AAA-001 ¦ AAA-004 ¦ tests/hid-stack/src/main.rs:1: no chapter in spec/ has a requirement AAA-004
 spec/a.md ¦ \n|  ¦ - **AAA-001** It MUST again.\n\n|  ¦ spec/a.md:6: AAA-001 is defined a second time; first in spec/a.md:3
+src/deep/mod.rs ¦ #[test]\n    fn any ¦ fn any ¦ src/deep/mod.rs:10: `any` below it has no #[test]
 spec/a.md ¦ So [MUST](b.md) ¦ So should ¦ spec/a.md:5: AAA-002 has no MUST
 spec/a.md ¦ # A\n ¦ # A, with **AAA-008** in it\n ¦ spec/a.md:1: **AAA-008** begins neither an item of a list
 tests/slow/cases.rs ¦ AAA-002. ¦ AAA-002 ¦ tests/slow/cases.rs:1: "{V}: AAA-002" is no annotation; it must be like
@@ -199,7 +201,6 @@ programs ¦ tests/slow/ ¦ tests/fast/ ¦ tests/slow/cases.rs:1: the file belong
 src/lib.rs ¦ /// {I}: AAA-001,\n    /// AAA-002.\n ¦ // {I}: AAA-001,\n    // AAA-002.\n\n ¦ src/lib.rs:8: below it stands no item
 vectors/generator/kinds.py ¦ def kind( ¦ def sort( ¦ vectors/generator/kinds.py:1: there is no vectors/sort.json
 tests/slow/cases.rs ¦ {V} ¦ {P} ¦ tests/slow/cases.rs:1: "Proves:" stands in proofs/ alone
-tests/hid-stack/src/main.rs ¦ crate::lost, ¦ found, ¦ tests/hid-stack/src/main.rs:11: no list `ALL` of scenarios runs `lost`
 "#;
 
 #[test]
@@ -230,6 +231,7 @@ const TESTS: [&str; 2] = [
     r#"<?xml version="1.0" encoding="UTF-8"?>
 <testsuites name="nextest-run" tests="3" failures="0" errors="0">
     <testsuite name="small-one" tests="1" disabled="0" errors="0" failures="0">
+        <testcase name="deep::any" classname="small-one" time="0.75"/>
         <testcase name="deep::tests::holds" classname="small-one" time="0.25"/>
     </testsuite>
     <testsuite name="small-one::slow" tests="2" disabled="0" errors="0" failures="0">
@@ -266,7 +268,7 @@ time="0.25"/> ¦ ><failure/></testcase> ¦ small-one deep::tests::holds failed (
 time="0.25"/> ¦ ><error/></testcase> ¦ small-one deep::tests::holds failed (AAA-001)
 time="0.25"/> ¦ ><skipped/></testcase> ¦ small-one deep::tests::holds did not run (AAA-001)
 tests::holds ¦ tests::renamed ¦ small-one deep::tests::holds did not run (AAA-001)
-testsuite name="small-one" ¦ testsuite name="another" ¦ small-one deep::tests::holds did not run (AAA-001)
+testsuite name="small-one" ¦ testsuite name="another" ¦ small-one deep::any did not run (AAA-002), small-one deep::tests::holds did not run (AAA-001)
 name="waits" ¦ name="waits_no_more" ¦ small-one::slow waits has the attribute #[ignore], and no step ran it (AAA-002)
 time="2.5"/> ¦ ><failure/></testcase> ¦ small-one::slow waits failed (AAA-002)
 tests/hid-stack/run ¦ tests/hid-stack/ran ¦ tests/hid-stack/run held_up did not run (AAA-001), tests/hid-stack/run lost did not run (AAA-002)
