@@ -12,7 +12,11 @@ pub struct Place(PathBuf);
 
 impl Place {
     pub fn new(test: &str) -> Place {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+        // Under cargo-nextest each test is a process, and several may ask for the same folder.
+        let process = std::env::var("NEXTEST_TEST_NAME").unwrap_or_default();
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
+            .join(test)
+            .join(process.replace(':', "-"));
         let _ = fs::remove_dir_all(&path);
         fs::create_dir_all(&path).expect("a folder for the test");
         Place(path)
