@@ -8,13 +8,12 @@ use std::path::Path;
 use std::process::Command;
 
 /// What the program is made from.
-const SOURCES: [&str; 7] = [
+const SOURCES: [&str; 6] = [
     "Cargo.toml",
     "Cargo.lock",
     "src",
     "proofs",
     "spec",
-    "supply",
     "vectors",
 ];
 
@@ -56,7 +55,8 @@ fn commit() -> String {
         let packed = package.split_whitespace().collect::<String>();
         return described(id, packed.contains("\"dirty\":true"));
     }
-    if !Path::new(ROOT).join(".git").exists() {
+    let is_checkout = env::current_dir().is_ok_and(|folder| folder.ends_with("src/palpate"));
+    if !is_checkout || !Path::new(ROOT).join(".git").exists() {
         return described(None, false);
     }
     let watched = ["HEAD", "logs/HEAD"].map(|file| git(&["rev-parse", "--git-path", file]));

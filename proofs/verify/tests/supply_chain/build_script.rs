@@ -1,4 +1,4 @@
-//! `build.rs`, compiled by itself and run in folders of several kinds.
+//! `src/palpate/build.rs`, compiled by itself and run in folders of several kinds.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,7 +18,7 @@ fn script() -> &'static Path {
         let status = Command::new("rustc")
             .args(["--edition=2024", "-o"])
             .arg(&program)
-            .arg(format!("{ROOT}/build.rs"))
+            .arg(format!("{ROOT}/src/palpate/build.rs"))
             .status();
         assert!(status.unwrap().success());
         let common = program.with_file_name("build-script");
@@ -27,14 +27,17 @@ fn script() -> &'static Path {
     })
 }
 
+/// Where the package of the build script lies in the checkout.
+const PACKAGE: &str = "src/palpate";
+
 /// An empty folder with a source file and a lock file.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("build-identity")
         .join(name);
     let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(folder.join("src")).unwrap();
-    fs::write(folder.join("src/lib.rs"), "").unwrap();
+    fs::create_dir_all(folder.join(PACKAGE)).unwrap();
+    fs::write(folder.join(PACKAGE).join("lib.rs"), "").unwrap();
     fs::write(folder.join("Cargo.lock"), "").unwrap();
     folder
 }
@@ -60,14 +63,13 @@ fn repository(name: &str) -> (PathBuf, String) {
     (folder, id)
 }
 
-/// All that the build script prints.
-fn output(folder: &Path, profile: &str, flags: &str) -> String {
+/// All that the build script of a package prints.
+fn output(package: &Path, profile: &str, flags: &str) -> String {
     let output = Command::new(script())
-        .current_dir(folder)
+        .current_dir(package)
         .env("PROFILE", profile)
         .env("TARGET", "some-target")
         .env("CARGO_ENCODED_RUSTFLAGS", flags)
-        .env("CARGO_CFG_FEATURE", "std,report")
         .output()
         .unwrap();
     assert!(output.status.success(), "{output:?}");
@@ -75,8 +77,8 @@ fn output(folder: &Path, profile: &str, flags: &str) -> String {
 }
 
 /// What it records.
-fn recorded(folder: &Path, profile: &str, flags: &str) -> BTreeMap<String, String> {
-    let output = output(folder, profile, flags);
+fn recorded(package: &Path, profile: &str, flags: &str) -> BTreeMap<String, String> {
+    let output = output(package, profile, flags);
     let pairs = output.lines().filter_map(|line| {
         let pair = line.strip_prefix("cargo::rustc-env=PALPATE_BUILD_")?;
         let (name, value) = pair.split_once('=')?;
@@ -85,29 +87,30 @@ fn recorded(folder: &Path, profile: &str, flags: &str) -> BTreeMap<String, Strin
     pairs.collect()
 }
 
-fn commit(folder: &Path) -> String {
-    recorded(folder, "release", "")["COMMIT"].clone()
+fn commit(package: &Path) -> String {
+    recorded(package, "release", "")["COMMIT"].clone()
 }
 
 #[test]
 fn a_release_build_records_the_commit_and_whether_sources_differ() {
     let (folder, id) = repository("release");
-    assert_eq!(commit(&folder), id);
+    let package = folder.join(PACKAGE);
+    assert_eq!(commit(&package), id);
     // Not a source of the program.
     fs::write(folder.join("notes.txt"), "").unwrap();
-    assert_eq!(commit(&folder), id);
+    assert_eq!(commit(&package), id);
     // A new file, a changed one, and one that was only put up for the next commit.
     fs::write(folder.join("src/new.rs"), "").unwrap();
-    assert_eq!(commit(&folder), format!("{id} with changes"));
+    assert_eq!(commit(&package), format!("{id} with changes"));
     fs::remove_file(folder.join("src/new.rs")).unwrap();
-    assert_eq!(commit(&folder), id);
+    assert_eq!(commit(&package), id);
     fs::write(folder.join("Cargo.lock"), "changed").unwrap();
-    assert_eq!(commit(&folder), format!("{id} with changes"));
+    assert_eq!(commit(&package), format!("{id} with changes"));
     git(&folder, &["add", "Cargo.lock"]);
-    assert_eq!(commit(&folder), format!("{id} with changes"));
+    assert_eq!(commit(&package), format!("{id} with changes"));
     // Cargo runs it again after a commit.
-    let watched = output(&folder, "release", "");
-    for path in [".git/logs/HEAD", "src"] {
+    let watched = output(&package, "release", "");
+    for path in ["../../.git/logs/HEAD", "../../src"] {
         let line = format!("cargo::rerun-if-changed={path}\n");
         assert!(watched.contains(&line), "{watched}");
     }
@@ -116,7 +119,7 @@ fn a_release_build_records_the_commit_and_whether_sources_differ() {
 #[test]
 fn a_development_build_records_no_commit_and_does_not_watch_for_one() {
     let (folder, _) = repository("development");
-    let told = output(&folder, "debug", "");
+    let told = output(&folder.join(PACKAGE), "debug", "");
     let development = "PALPATE_BUILD_COMMIT=not recorded: development build\n";
     assert!(told.contains(development), "{told}");
     assert!(!told.contains(".git"), "{told}");
@@ -126,8 +129,8 @@ fn a_development_build_records_no_commit_and_does_not_watch_for_one() {
 fn a_package_names_the_commit_that_it_was_made_from() {
     // It lies within the repository of another.
     let (outer, _) = repository("packages");
-    let folder = outer.join("package");
-    fs::create_dir(&folder).unwrap();
+    let folder = outer.join("vendor/palpate");
+    fs::create_dir_all(&folder).unwrap();
     let id = "0123456789abcdef0123456789abcdef01234567";
     let info = folder.join(".cargo_vcs_info.json");
     let clean = "{\n  \"git\": {\n    \"sha1\": \"ID\"\n  },\n  \"path_in_vcs\": \"\"\n}";
@@ -144,12 +147,13 @@ fn a_package_names_the_commit_that_it_was_made_from() {
     // One without a commit yet.
     let empty = self::folder("empty");
     git(&empty, &["init", "--quiet"]);
-    assert_eq!(commit(&empty), "unknown");
+    assert_eq!(commit(&empty.join(PACKAGE)), "unknown");
 }
 
 #[test]
 fn flags_that_rename_folders_are_left_out() {
     let folder = folder("flags");
+    let folder = folder.join(PACKAGE);
     let flags = |encoded: &str| recorded(&folder, "release", encoded)["FLAGS"].clone();
     assert_eq!(flags(""), "");
     let given =
@@ -161,7 +165,6 @@ fn flags_that_rename_folders_are_left_out() {
     let all = recorded(&folder, "release", "");
     assert!(all["COMPILER"].starts_with("rustc 1."), "{all:?}");
     assert_eq!(all["TARGET"], "some-target");
-    assert_eq!(all["FEATURES"], "std,report");
     for (name, value) in &all {
         assert!(!value.contains('/'), "{name} = {value}");
     }

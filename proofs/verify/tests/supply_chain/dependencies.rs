@@ -60,9 +60,10 @@ fn the_specification_has_the_reason_for_each_direct_dependency_of_the_program() 
 
 #[test]
 fn the_core_depends_on_libm_alone() {
-    let tree = "tree --locked --package=palpate --no-default-features --edges=normal,build --prefix=none --format={lib}";
+    let tree =
+        "tree --locked --package=palpate-core --edges=normal,build --prefix=none --format={lib}";
     let tree = cargo(&tree.split(' ').collect::<Vec<_>>());
-    assert_eq!(tree.lines().collect::<Vec<_>>(), ["palpate", "libm"]);
+    assert_eq!(tree.lines().collect::<Vec<_>>(), ["palpate_core", "libm"]);
 }
 
 #[test]

@@ -180,9 +180,9 @@ fn runs(command: &str, path: &str) -> bool {
     let mut words = command.split_whitespace();
     words.clone().any(|word| word == path)
         || words.any(|word| word == "--bench")
-            && words
-                .next()
-                .is_some_and(|bench| path.starts_with("benches/") && path.ends_with(&format!("/{bench}.rs")))
+            && words.next().is_some_and(|bench| {
+                path.starts_with("benches/") && path.ends_with(&format!("/{bench}.rs"))
+            })
 }
 
 /// Whether a command of cargo-nextest runs the ignored tests of the program of this test: it names the test program
