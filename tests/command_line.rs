@@ -5,6 +5,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use crate::ROOT;
 use crate::program::{ASYMMETRIC, Place, contents, has, text};
 use palpate::fem::{Contact, Model};
 use palpate::force_map::ForceMap;
@@ -129,7 +130,7 @@ fn the_statistics_battery_traverses_these_force_maps() {
     for name in ["none", "4.6"] {
         let arguments =
             format!("solve --phantom {name} --depths-mm 4 --laterals-mm -10:10:0.5 --format csv");
-        let kept = format!("proofs/verify/src/statistics/traverse_{name}.csv");
+        let kept = format!("{ROOT}/proofs/verify/src/statistics/traverse_{name}.csv");
         let is_same = here.succeed(&arguments) == fs::read_to_string(&kept).unwrap();
         assert!(is_same, "{kept} is not what the solver prints");
     }
