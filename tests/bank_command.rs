@@ -112,7 +112,7 @@ fn a_bank_that_was_stopped_goes_on_and_is_the_same() {
         assert!(output.status.success(), "{output:?}");
         let note = match taken {
             0 => String::new(),
-            _ => format!("palpate: note: bank.json.part: {taken} of 5 computations taken over\n"),
+            _ => format!("palpate: note: bank.json.part: {taken} of 5 maps already computed\n"),
         };
         assert_eq!(text(&output.stderr), note);
         assert_eq!(place.read("bank.json"), expected().to_json());
@@ -142,7 +142,8 @@ fn what_was_kept_of_another_bank_is_refused_and_stays() {
     let other = "bank.json.part: of another request or version, expected this one: finish that one, or delete the file";
     let version = env!("CARGO_PKG_VERSION");
     let missing = "bank.json.part:2: column 2: missing field `number`";
-    let wrong = "bank.json.part:2: no computation of this bank, expected one: delete the file";
+    let wrong =
+        "bank.json.part:2: this line is not a map of this bank; delete the file and run again";
     let replaced = |from: &str, to: &str| part().replacen(from, to, 1);
     let (mesh, arithmetic) = ("\"mesh_size_m\":0.002", "arithmetic\":\"");
     let lines: Vec<&str> = part().lines().collect();
@@ -174,26 +175,26 @@ fn what_was_kept_of_another_bank_is_refused_and_stays() {
 
 /// Other arguments than those of `SMALL`, and words of the refusal.
 const REFUSED: &str = "
---out there.json => there.json: there already, expected a new file
+--out there.json => there.json: already exists; choose another --out or delete it
 --out no/such/bank.json => open no/such/bank.json.part
---phantom none --out b.json => phantom none: 0 inclusions, expected one, of which the others are made, such as phantom 6.6
---phantom two.toml --out b.json => 2 inclusions, expected one, of which the others are made, such as phantom 6.6
+--phantom none --out b.json => phantom none has 0 inclusions, but a bank varies exactly one; try --phantom 6.6
+--phantom two.toml --out b.json => has 2 inclusions, but a bank varies exactly one; try --phantom 6.6
 --phantom 7.7 --out b.json => is neither built in
 --phantom ellipse.toml --diameters-mm 4 --out b.json => the inclusion is no disc, expected a disc where its diameter varies
 --offsets-mm 16 --out b.json => the inclusion at 16.000 mm, 4.600 mm deep, 6.400 mm wide, of 1200.0 kPa
---offsets-mm 2,1 --out b.json => 1.0 mm after 2.0 mm: expected increasing positions
+--offsets-mm 2,1 --out b.json => 1.0 mm after 2.0 mm: positions must increase
 --depths-mm 13 --out b.json => the inclusion at -2.000 mm, 13.000 mm deep
 --depths-mm 0 --out b.json => the inclusion at -2.000 mm, 0.000 mm deep
 --diameters-mm 0 --out b.json => 0.000 mm wide
---stiffnesses-kpa 300,44 --out b.json => 44.0 kPa after 300.0 kPa: expected increasing moduli
+--stiffnesses-kpa 300,44 --out b.json => 44.0 kPa after 300.0 kPa: moduli must increase
 --stiffnesses-kpa -1 --out b.json => of -1.0 kPa
---stiffnesses-kpa hard --out b.json => \"hard\" is no number: expected kPa
---probe-depth-mm 0 --out b.json => expected mm above 0
+--stiffnesses-kpa hard --out b.json => \"hard\" is not a number in kPa
+--probe-depth-mm 0 --out b.json => must be a length above 0 in mm
 --probe-depth-mm 16 --out b.json => depth
 --laterals-mm 20 --out b.json => lateral
---mesh-mm 0 --out b.json => expected mm above 0
+--mesh-mm 0 --out b.json => must be a length above 0 in mm
 --mesh-mm 0.001 --out b.json => mesh
---offsets-mm 0:5:0.001 --depths-mm 4.6:9.6:0.1 --out b.json => 255051 inclusions, expected at most 37037
+--offsets-mm 0:5:0.001 --depths-mm 4.6:9.6:0.1 --out b.json => 255051 inclusions are too many; at most 37037 are possible with 7
 ";
 
 // Verifies: CLI-155, BNK-020, BNK-021.

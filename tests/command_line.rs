@@ -218,7 +218,7 @@ fn a_measured_map_is_told_beside_its_phantom() {
     };
     // Its own forces times 1.01 are 1.01 of them, and 1 % off.
     let cases = "
-        1 1 1.01 1 => normal force is 1.0100 of that computed (median), and 0.0
+        1 1 1.01 1 => normal force is 1.0100 times the computed one (median), with an rms difference of 0.0
         1 1 1e3 1e3 => forces look like mN in a column of N: the normal force is 1000.0000
         1 1 -1 1 => normal force looks negated
         1 1 1 -1 => lateral force looks negated

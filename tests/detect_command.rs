@@ -284,20 +284,20 @@ fn a_record_that_cannot_be_judged_is_neither_and_says_why() {
 
 // Verifies: CLI-043.
 #[test]
-fn the_last_line_is_a_sentence() {
-    let usual = "taken as known: depth; fitted: offset, drift, gain, variance.";
-    let known = "taken as known: offset, drift, gain, depth, variance; fitted: nothing.";
-    let fits = "in a record that fits the noise stated";
-    let shown = "in the noise that the record itself shows";
+fn the_last_line_says_what_was_decided_known_and_fitted() {
+    let usual = "Known: depth. Fitted: offset, drift, gain, variance.";
+    let known = "Known: offset, drift, gain, depth, variance. Fitted: nothing.";
+    let stated = "and the record fits the stated noise";
+    let estimated = "with the noise estimated from the record";
     let white = format!("{USUAL} {KNOWN}");
     for (trace, more, found, noise, taken) in [
-        ("with.csv", USUAL, "An inclusion", fits, usual),
-        ("without.csv", USUAL, "No inclusion", fits, usual),
-        ("with.csv", "--depth-mm 3", "An inclusion", shown, usual),
-        ("with.csv", &white, "An inclusion", fits, known),
+        ("with.csv", USUAL, "Inclusion", stated, usual),
+        ("without.csv", USUAL, "No inclusion", stated, usual),
+        ("with.csv", "--depth-mm 3", "Inclusion", estimated, usual),
+        ("with.csv", &white, "Inclusion", stated, known),
     ] {
         let table = place().succeed(&format!("detect {trace} {MAPS} {more}"));
-        let expected = format!("{found} was found, {noise}; {taken}");
+        let expected = format!("{found} detected, {noise}. {taken}");
         assert_eq!(table.lines().last(), Some(&*expected));
     }
 }
@@ -317,7 +317,7 @@ fn a_tolerance_that_no_map_can_count_is_told() {
         assert_eq!(output.status.code(), Some(0));
         text(&output.stderr).to_string()
     };
-    let expected = "palpate: warning: none-3.json: a single depth: what another depth within its tolerance does is not counted\n";
+    let expected = "palpate: warning: none-3.json: the map has a single depth: the depth tolerance has no effect\n";
     assert_eq!(told(""), expected);
     assert_eq!(told("--depth-tolerance-mm 0"), "");
     let (found, ..) = asked(&format!("with.csv {maps} {USUAL}"));
@@ -347,7 +347,7 @@ fn a_trace_over_time_is_the_same_trace() {
 fn people_get_a_table_and_no_decision_is_a_failure() {
     let table = place().succeed("detect with.csv --bank bank.json --noise-sd-n 0.1");
     assert!(table.starts_with("decision  "), "{table}");
-    assert!(table.contains("position, mm"), "{table}");
+    has(&table, ["position, mm", "95 % interval"]);
     place().succeed(&format!("detect without.csv {MAPS} {USUAL}"));
 }
 

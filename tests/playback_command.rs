@@ -69,7 +69,8 @@ fn a_noisy_map_that_is_refused_is_played_when_smoothed() {
     assert!(refused.contains("passively"), "{refused}");
     let output = here.run("import-map noisy.csv --smooth-mm 5 --out smooth.json");
     let said = text(&output.stderr);
-    let expected = "palpate: note: noisy.csv: smoothing leaves a residual of 0.0";
+    let expected =
+        "palpate: note: noisy.csv: noise sd of a sample, from the residuals of smoothing: 0.0";
     let holds = output.status.success() && said.starts_with(expected);
     assert!(holds, "{said}");
     assert!(
@@ -81,7 +82,10 @@ fn a_noisy_map_that_is_refused_is_played_when_smoothed() {
     let holds = refused.starts_with("noisy.csv: 3 lateral positions are within 0.0005 m");
     assert!(holds, "{refused}");
     let refused = here.refused("import-map noisy.csv --smooth-mm -1");
-    assert!(refused.contains("expected mm above 0"), "{refused}");
+    assert!(
+        refused.contains("must be a length above 0 in mm"),
+        "{refused}"
+    );
 }
 
 // Verifies: CLI-060.
@@ -122,7 +126,7 @@ fn a_budget_that_is_broken_is_a_failed_check() {
     let said: Vec<&str> = text(&output.stderr).lines().collect();
     assert_eq!(said[0], "palpate: measuring 3000 cycles takes 3 s");
     assert!(said[1].starts_with("palpate: timing: "), "{said:?}");
-    assert!(said[1].ends_with("µs, expected at most 1 µs"), "{said:?}");
+    assert!(said[1].ends_with("µs; the budget is 1 µs"), "{said:?}");
 }
 
 // Verifies: CLI-003, CLI-173.
@@ -149,7 +153,7 @@ fn cycles_of_another_loop_are_judged() {
         (&21.into(), &2.into())
     );
     assert_eq!(figures["outcome"], "kept");
-    let missed = "timing: 21 of 4000 cycles took longer than 1000 µs";
+    let missed = "timing: 21 of 4000 cycles were slower than 1000 µs";
     let told = |options: &str, reason: &str| {
         let error = failed(&here, &format!("timing --from many {options}"));
         assert!(error.starts_with(&format!("{missed}{reason}")), "{error}");
@@ -157,9 +161,9 @@ fn cycles_of_another_loop_are_judged() {
     told("", ": p99.9 is at least 1200");
     told(
         "--percentile 99 --allowed-misses 20",
-        ", expected at most 20",
+        "; at most 20 are allowed",
     );
-    let in_a_row = ", 2 of them in a row, expected at most 1";
+    let in_a_row = ", 2 of them in a row; at most 1 are allowed";
     told("--percentile 99 --allowed-run 1", in_a_row);
     let junit = here.run("timing --from many --format junit");
     has(
@@ -168,8 +172,7 @@ fn cycles_of_another_loop_are_judged() {
     );
     let undecided = here.run("timing --from few --percentile 98");
     assert_eq!(undecided.status.code(), Some(2));
-    let reason = "palpate: timing: 100 cycles do not tell whether p98 is within 1000 µs, 2 of them took longer: \
-                  expected more cycles\n";
+    let reason = "palpate: timing: 100 cycles are too few to decide whether p98 ≤ 1000 µs (2 were slower); measure more\n";
     assert_eq!(text(&undecided.stderr), reason);
 }
 

@@ -154,7 +154,7 @@ fn the_figure_shows_both_lines_and_says_them_in_words() {
 const REFUSED: &str = "
 --bank bank.json => --noise-sd-n
 --bank bank.json --noise-sd-lateral-n 1 => --noise-sd-normal-n
---bank bank.json --noise-sd-n 0 => expected N above 0
+--bank bank.json --noise-sd-n 0 => must be a force above 0 in N
 --bank bank.json --noise-sd-n 1 --max-miss 1 => strictly between 0 and 1
 --bank bank.json --noise-sd-n 1 --samples 0 => 0 is not in 1..=1000000
 --bank bank.json --noise-sd-n 1 --known ofset => \"ofset\" is none of

@@ -140,7 +140,7 @@ fn killed_shards_go_on_and_give_the_same_bytes() {
 fn a_finished_study_computes_nothing() {
     let place = finished("finished");
     let output = place.run("study run study.toml --out out");
-    let holds = text(&output.stderr).contains("39 of 39 samples taken over");
+    let holds = text(&output.stderr).contains("39 of 39 samples already computed");
     assert!(holds, "{output:?}");
     assert_eq!(place.read("out/samples-1-of-1.jsonl"), expected()[0]);
 }
@@ -164,27 +164,29 @@ fn samples_that_are_missing_twice_there_or_foreign_are_named() {
             .collect::<String>()
     };
     let missing = "1 of 39 samples are missing, the first is";
-    refused(&without(1), &format!("{missing} {first}, expected all"));
+    refused(&without(1), &format!("{missing} {first}; run"));
     // The last line was cut off.
     refused(all.trim_end(), &format!("{missing} {last}"));
     let file = "out/samples-1-of-1.jsonl";
-    let twice =
-        format!("{file}:41: sample {first}, which {file} has too, expected each sample once");
+    let twice = format!("{file}:41: sample {first} is also in {file}; delete one of them");
     refused(&format!("{all}{}\n", lines[1]), &twice);
     refused(&format!("{all}{{}}\n"), &format!("{file}:41: "));
     for foreign in ["39,\"failed\":\"x\"", "1,\"values\":[1.0]"] {
         let text = format!("{all}{{\"sample\":{foreign}}}\n");
-        refused(&text, "no sample of this study");
+        refused(&text, "this line is not a sample of this study");
     }
-    refused("nonsense\n", &format!("{file}: no samples of a study"));
+    refused(
+        "nonsense\n",
+        &format!("{file}: the first line is not that of a file of study samples"),
+    );
     place.write("out/samples-1-of-1.jsonl", all);
     let other = all.replace("\"rows\":8", "\"rows\":9");
     place.write("out/samples-2-of-2.jsonl", &other);
-    let another = "of another study than out/samples-1-of-1.jsonl: its plan.rows is another one";
+    let another = "belongs to a different study than out/samples-1-of-1.jsonl: plan.rows differs";
     place.refuses(
         &format!(
             "merge out --out study.json => out/samples-2-of-2.jsonl: {another}
-             merge . --out study.json => no samples-K-of-N.jsonl
+             merge . --out study.json => the folder has no samples-K-of-N.jsonl
              merge nowhere --out study.json => read nowhere"
         ),
         |line| format!("study {line}"),
@@ -226,7 +228,7 @@ fn a_file_that_is_no_study_is_refused_with_line_and_key() {
     insta::assert_snapshot!(told);
     for shard in ["0/3", "4/3", "1", "a/b"] {
         let error = place.refused(&format!("study run study.toml --out out --shard {shard}"));
-        assert!(error.contains("expected k/n with 1 ≤ k ≤ n"), "{error}");
+        assert!(error.contains("must be k/n with 1 ≤ k ≤ n"), "{error}");
     }
     assert!(!place.at("out").exists());
 }

@@ -16,6 +16,7 @@
 //! | §4 pairs of samples, felt and judged; §5 what the answers say | [`psychophysics`] |
 //! | what uncertain inputs do to all that | [`study`] |
 //! | figures, tables | [`report`] |
+//! | the answer to a record, for programs and for people | [`rows`] |
 //! | why an input is refused | [`refusal`] |
 //! | other implementations: questions and answers | [`oracle`] |
 //!
@@ -70,6 +71,7 @@ pub mod input;
 pub mod oracle;
 pub mod phantom;
 pub mod refusal;
+pub mod rows;
 pub mod servo;
 pub mod text;
 pub mod trace;

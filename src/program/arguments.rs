@@ -1,22 +1,20 @@
-//! What a command line may say.
+//! The command line.
 
 use std::ffi::OsString;
 
-use clap::{Parser, Subcommand, ValueEnum};
-use serde::Serialize;
+use clap::{Parser, Subcommand};
 
 use palpate::version::LONG_VERSION;
 
 use super::error::CliError;
-use super::output::print;
 use super::{
     bank, demo, detect, devices, experiment, import, oracle, play, psychophysics, reach, run,
     solve, study, timing,
 };
 
-/// Inclusion probing after Yan, Scott and Fearing (1999): forces on a probe, detection of an inclusion.
+/// Inclusion probing after Yan, Scott and Fearing (1999): contact forces by finite elements, detection of an inclusion, haptic playback
 #[derive(Debug, Parser)]
-#[command(name = "palpate", bin_name = "palpate", version, long_version = LONG_VERSION, about, disable_help_subcommand = true)]
+#[command(name = "palpate", bin_name = "palpate", version, long_version = LONG_VERSION, disable_help_subcommand = true)]
 pub struct CommandLine {
     #[command(subcommand)]
     pub(super) command: Command,
@@ -24,58 +22,34 @@ pub struct CommandLine {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Computes the whole paper: force maps of the phantoms, signals, detection and a report.
+    /// Reproduces the paper: force maps of its phantoms, signals, detection, and a report
     Run(run::RunArguments),
-    /// Writes example files for the other commands: maps, recorded sweeps, a measured map, a configuration.
+    /// Writes example files for the other commands: force maps, recorded sweeps, a measured map, a configuration
     Demo(demo::DemoArguments),
-    /// Computes the forces on the probe over depths and lateral positions of one phantom.
+    /// Computes the force map of a phantom: the forces on the probe over depth and lateral position
     Solve(solve::SolveArguments),
-    /// Checks a measured force map in CSV and writes it as JSON.
+    /// Checks a measured force map in CSV and converts it to JSON
     ImportMap(import::ImportArguments),
-    /// Computes a bank: the forces for every inclusion that may be there, for 'palpate detect' and 'palpate reach'.
+    /// Computes a bank of force maps, one for each candidate inclusion, for 'palpate detect' and 'palpate reach'
     Bank(bank::BankArguments),
-    /// Decides whether a recorded sweep shows an inclusion, and where, by two force maps or a bank.
+    /// Decides whether a recorded sweep shows an inclusion, using two force maps or a bank; a bank also locates it
     Detect(detect::DetectArguments),
-    /// Computes how deep and how small an inclusion of a bank may be and still be found.
+    /// Computes the greatest depth and the smallest size that can still be detected
     Reach(reach::ReachArguments),
-    /// Carries uncertain inputs through to every number: samples, on one machine or many, and their analysis.
+    /// Propagates input uncertainty to every result, on one machine or a cluster
     Study(study::StudyArguments),
-    /// Plays a force map to a hand, through a haptic device or a simulated one.
+    /// Renders a force map on a real or simulated haptic device
     Play(play::PlayArguments),
-    /// Lists the HID devices of this machine, and which of them can play a force map.
+    /// Lists the HID devices of this machine and whether they can render a force map
     Devices(devices::DevicesArguments),
-    /// Runs the paper's experiment: a subject feels pairs of samples and says which has the inclusion.
+    /// Runs the paper's two-alternative forced-choice experiment: which of two samples has the inclusion?
     Experiment(experiment::ExperimentArguments),
-    /// Analyses the right answers of subjects: shares, differences, noise, and which part of the force they used.
+    /// Analyses the answers of such an experiment: proportions correct, differences, noise, and which force explains them
     Psychophysics(psychophysics::PsychophysicsArguments),
-    /// Measures the servo loop on the simulated device against its time budget.
+    /// Measures the servo loop on the simulated device against a time budget
     Timing(timing::TimingArguments),
-    /// Answers questions in lines of JSON, so that other implementations can be compared.
+    /// Answers questions in JSON lines, to check other implementations
     Oracle(oracle::OracleArguments),
-}
-
-/// How an answer is printed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// For people.
-    Table,
-    /// For programs; keys carry the unit.
-    Json,
-}
-
-impl Format {
-    /// Prints an answer.
-    pub(super) fn print<A: Serialize>(
-        self,
-        answer: &A,
-        table: impl FnOnce(&A) -> String,
-    ) -> Result<(), CliError> {
-        print(&match self {
-            Format::Table => table(answer),
-            // Keys are strings, and nothing else could fail.
-            Format::Json => serde_json::to_string_pretty(answer).unwrap_or_default() + "\n",
-        })
-    }
 }
 
 /// Reads a command line, the first entry of which is the program's name; runs nothing. A text to print, help or the version, may

@@ -1,4 +1,4 @@
-//! `palpate bank`: the forces for every inclusion that may be there (`spec/bank.md`).
+//! `palpate bank`: force maps of many candidate inclusions (`spec/bank.md`).
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::CliError;
 use super::numbers::{List, contact, length, moduli, positions};
-use super::output::{note, write};
+use super::output::{Envelope, note, write};
 use super::part::Part;
 use super::progress::{bar, tell_large_mesh};
 use super::solve::{phantom, warn_of_large_strain_of};
@@ -19,7 +19,7 @@ use palpate::force_map::{ForceMap, parse};
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 
-/// Most forces of a bank, over all inclusions and lateral positions: its file takes some 100 bytes for each, and is to be read again.
+/// Most forces of a bank, over all inclusions and lateral positions: its file takes some 100 bytes for each, and must be readable.
 const MOST_FORCES: usize = 1_000_000;
 /// A map takes as much of the file as so many more lateral positions would.
 const PER_MAP: usize = 20;
@@ -27,69 +27,69 @@ const PER_MAP: usize = 20;
 /// Arguments of `palpate bank`.
 #[derive(Debug, Args)]
 pub struct BankArguments {
-    /// A built-in phantom (2.6, 4.6, 6.6, 8.6) or a phantom file with one inclusion, which is varied
+    /// Built-in phantom (2.6, 4.6, 6.6, 8.6) or phantom file; its one inclusion is varied
     #[arg(long, value_name = "NAME|FILE")]
     phantom: String,
     /// Lateral positions of the inclusion's centre in mm: a,b,c or from:to:step
-    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    offsets_mm: List,
+    #[arg(long = "offsets-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    positions: List,
     /// Depths of the inclusion's highest point in mm: a,b,c or from:to:step
-    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    depths_mm: List,
+    #[arg(long = "depths-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    depths: List,
     /// Diameters of the inclusion in mm [default: that of the phantom]
-    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    diameters_mm: Option<List>,
+    #[arg(long = "diameters-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    diameters: Option<List>,
     /// Young's moduli of the inclusion in kPa [default: that of the phantom]
-    #[arg(long, value_parser = moduli, allow_hyphen_values = true, value_name = "LIST")]
-    stiffnesses_kpa: Option<List>,
-    /// The depth of the probe in mm
-    #[arg(long, value_parser = length, allow_hyphen_values = true, value_name = "D")]
-    probe_depth_mm: f64,
+    #[arg(long = "stiffnesses-kpa", value_parser = moduli, allow_hyphen_values = true, value_name = "LIST")]
+    moduli: Option<List>,
+    /// Depth of the probe in mm
+    #[arg(long = "probe-depth-mm", value_parser = length, allow_hyphen_values = true, value_name = "D")]
+    probe_depth: f64,
     /// Lateral positions of the probe in mm: a,b,c or from:to:step
-    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    laterals_mm: List,
-    /// How the gap to the probe is measured
+    #[arg(long = "laterals-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    laterals: List,
+    /// Contact law
     #[arg(long, value_parser = contact(), default_value = Contact::default().name())]
     contact: Contact,
     /// Mesh size in mm; all element sizes scale with it [default: 0.65]
-    #[arg(long, value_parser = length, value_name = "H")]
-    mesh_mm: Option<f64>,
-    /// The file of the bank, which must not exist; FILE.part keeps what is finished, so that an aborted run can continue
+    #[arg(long = "mesh-mm", value_parser = length, value_name = "H")]
+    mesh_size: Option<f64>,
+    /// Output file, which must not exist; FILE.part keeps finished maps, so that an aborted run can continue
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
 
 impl BankArguments {
-    /// The maps that are asked for.
+    /// The maps to compute.
     ///
     /// Implements: CLI-154, CLI-155.
     fn plan(&self, phantom: &Phantom) -> Result<BankPlan, CliError> {
         let number = phantom.inclusions.len();
         if number != 1 {
             return Err(CliError::Usage(format!(
-                "phantom {}: {number} inclusions, expected one, of which the others are made, such as phantom 6.6",
+                "phantom {} has {number} inclusions, but a bank varies exactly one; try --phantom 6.6",
                 phantom.name
             )));
         }
-        let mut plan = BankPlan::new(phantom.clone(), self.probe_depth_mm, &self.laterals_mm.0)?;
-        plan.positions = self.offsets_mm.0.clone();
-        plan.depths = self.depths_mm.0.clone();
-        if let Some(List(diameters)) = &self.diameters_mm {
+        let mut plan = BankPlan::new(phantom.clone(), self.probe_depth, &self.laterals.0)?;
+        plan.positions = self.positions.0.clone();
+        plan.depths = self.depths.0.clone();
+        if let Some(List(diameters)) = &self.diameters {
             plan.diameters = diameters.clone();
         }
-        if let Some(List(moduli)) = &self.stiffnesses_kpa {
+        if let Some(List(moduli)) = &self.moduli {
             plan.moduli = moduli.clone();
         }
-        plan.mesh_size = self.mesh_mm.unwrap_or(MESH_SIZE);
+        plan.mesh_size = self.mesh_size.unwrap_or(MESH_SIZE);
         plan.contact = self.contact;
         let lists = [&plan.positions, &plan.depths, &plan.diameters, &plan.moduli];
         // Lists have 10⁴ entries at most: no overflow.
         let inclusions = lists.map(|list| list.len() as f64).iter().product::<f64>();
-        let forces = inclusions * (self.laterals_mm.0.len() + PER_MAP) as f64;
-        if forces > MOST_FORCES as f64 {
-            let most = MOST_FORCES / (self.laterals_mm.0.len() + PER_MAP);
+        let laterals = self.laterals.0.len();
+        let most = MOST_FORCES / (laterals + PER_MAP);
+        if inclusions > most as f64 {
             return Err(CliError::Usage(format!(
-                "{inclusions} inclusions, expected at most {most} with so many lateral positions"
+                "{inclusions} inclusions are too many; at most {most} are possible with {laterals} lateral positions"
             )));
         }
         Ok(plan)
@@ -103,7 +103,7 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let out = &arguments.out;
     if out.exists() {
         return Err(CliError::refused(out.display())(
-            "there already, expected a new file",
+            "already exists; choose another --out or delete it",
         ));
     }
     let phantom = phantom(&arguments.phantom)?;
@@ -111,29 +111,23 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let solves = plan.solves()?;
     tell_large_mesh(&phantom, plan.mesh_size).map_err(CliError::fem(&phantom.name))?;
     let (part, finished) = open_part(&plan, arguments, &phantom, &solves)?;
-    let maps = compute(&plan, &phantom.name, &solves, &part, finished)?;
-    let worst = maps
-        .iter()
-        .filter_map(|map| Some((map, map.certificate()?)));
-    let worst = worst.min_by(|a, b| a.1.smallest_det.det.total_cmp(&b.1.smallest_det.det));
-    if let Some((map, _)) = worst {
+    let mut maps = compute(&plan, &phantom.name, &solves, &part, finished)?;
+    let det = |map: &ForceMap| map.certificate().map_or(1.0, |of| of.smallest_det.det);
+    let worst = maps.iter().min_by(|a, b| det(a).total_cmp(&det(b)));
+    if let Some(map) = worst {
         warn_of_large_strain_of(map, &name(&phantom.name, map.phantom()));
     }
-    let mut maps = maps;
     let reference = maps.remove(0);
     write(out, &Bank::new(reference, maps)?.to_json())?;
     part.remove()
 }
 
-/// How the first line of a file of finished computations begins.
+/// How the first line of a FILE.part begins.
 const BEGINNING: &str = "{\"schema\":\"palpate-bank-part\"";
 
-/// All that the maps of a bank depend on, lengths and moduli in SI.
+/// All that the maps of a bank depend on.
 #[derive(Debug, Serialize)]
 struct Request<'a> {
-    schema: &'static str,
-    schema_version: u64,
-    program_version: &'static str,
     arithmetic: &'static str,
     phantom: &'a Phantom,
     offsets_m: &'a [f64],
@@ -167,20 +161,18 @@ fn open_part(
     solves: &[BankSolve],
 ) -> Result<(Part, Taken), CliError> {
     let request = Request {
-        schema: "palpate-bank-part",
-        schema_version: 1,
-        program_version: env!("CARGO_PKG_VERSION"),
         arithmetic: arithmetic(),
         phantom,
         offsets_m: &plan.positions,
         depths_m: &plan.depths,
         diameters_m: &plan.diameters,
         youngs_moduli_pa: &plan.moduli,
-        probe_depth_m: arguments.probe_depth_mm,
-        laterals_m: &arguments.laterals_mm.0,
+        probe_depth_m: arguments.probe_depth,
+        laterals_m: &arguments.laterals.0,
         mesh_size_m: plan.mesh_size,
         contact: plan.contact,
     };
+    let request = Envelope::new("palpate-bank-part", 1, request);
     let mut name = arguments.out.as_os_str().to_owned();
     name.push(".part");
     let path = PathBuf::from(name);
@@ -191,15 +183,15 @@ fn open_part(
         match finished.get_mut(number) {
             Some(place) if is_of(&maps, solve) => *place = Some(maps),
             _ => {
-                let found = "no computation of this bank";
-                return Err(Refusal::state(found, "one: delete the file"));
+                let found = "this line is not a map of this bank; delete the file and run again";
+                return Err(Refusal::state(found, ""));
             }
         }
         Ok(())
     })?;
     let taken = finished.iter().flatten().count();
     if taken > 0 {
-        let text = format!("{taken} of {} computations taken over", finished.len());
+        let text = format!("{taken} of {} maps already computed", finished.len());
         note(path.display(), &text);
     }
     Ok((part, finished))
@@ -228,7 +220,7 @@ fn compute(
 ) -> Result<Vec<ForceMap>, CliError> {
     let bar = bar(finished.len(), phantom);
     bar.inc(finished.iter().flatten().count() as u64);
-    // What others took is no measure of the time left.
+    // The estimate of the time left counts this run alone.
     bar.reset_eta();
     let maps = |(number, finished): (usize, Option<Vec<ForceMap>>)| {
         if let Some(maps) = finished {
@@ -256,7 +248,7 @@ fn compute(
     Ok(maps.into_iter().flatten().collect())
 }
 
-/// What to call one of the phantoms made of that with a name.
+/// The name of a phantom with its inclusion varied.
 fn name(name: &str, phantom: Option<&Phantom>) -> String {
     let inclusion = phantom.and_then(|phantom| phantom.inclusions.first());
     inclusion.map_or(name.into(), |inclusion| {

@@ -1,4 +1,4 @@
-//! A measured map beside the forces that finite elements compute for its phantom: advice on units and signs.
+//! A measured map compared with the computed forces of its phantom: advice on units and signs.
 
 use super::progress::{bar, tell_large_mesh};
 use palpate::decimal::format_scaled;
@@ -35,7 +35,9 @@ pub fn compare(measured: &ForceTable, phantom: &Phantom) -> Result<Vec<String>, 
     let poses = rows.flat_map(|row| columns.clone().map(move |column| (row, column)));
     let poses: Vec<_> = poses.filter(|&at| stands(measured, phantom, at)).collect();
     if poses.is_empty() {
-        return Ok(vec!["no pose in the gel to compare".into()]);
+        return Ok(vec![
+            "no pose with the probe in the gel, so nothing was compared".into(),
+        ]);
     }
     tell_large_mesh(phantom, MESH_SIZE)?;
     let model = Model::new(phantom, MESH_SIZE, Contact::default())?;
@@ -102,7 +104,7 @@ fn odd_lengths(measured: &ForceTable, phantom: &Phantom) -> Vec<String> {
         };
         let [found, fits] = [found, fits].map(|length| format_scaled(length, 3));
         Some(format!(
-            "the {name} look like {like}: they go to {found} mm, and the phantom to {fits} mm"
+            "the {name} look like {like}: they reach {found} mm, the phantom {fits} mm"
         ))
     };
     axes.into_iter().filter_map(odd).collect()
@@ -114,11 +116,11 @@ fn odd_lengths(measured: &ForceTable, phantom: &Phantom) -> Vec<String> {
 fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
     let parts: [fn(Force<f64>) -> f64; 2] = [|force| force.normal, |force| force.lateral];
     let [normal, lateral] = parts.map(|part| {
-        let pairs = pairs.iter().map(|&(found, of)| (part(found), part(of)));
-        pairs.collect::<Vec<(f64, f64)>>()
+        let parts = pairs.iter().map(|&(found, of)| (part(found), part(of)));
+        parts.collect::<Vec<(f64, f64)>>()
     });
     let ratio = median_ratio(&normal);
-    let times = format!("{ratio:.4} of that computed (median)");
+    let times = format!("{ratio:.4} times the computed one (median)");
     let mut odd = Vec::new();
     let [low, high] = THOUSAND;
     for (ratio, like) in [
@@ -133,12 +135,12 @@ fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
     }
     if cosine(&normal) < OPPOSITE {
         odd.push(
-            "the normal force looks negated: it is positive where the gel pushes the probe up"
+            "the normal force looks negated: it must be positive where the gel pushes the probe up"
                 .into(),
         );
     }
     if largest(&lateral) > LARGE * largest(&normal) && cosine(&lateral) < OPPOSITE {
-        odd.push("the lateral force looks negated: it is positive where the gel pushes the probe along +x".into());
+        odd.push("the lateral force looks negated: it must be positive where the gel pushes the probe along +x".into());
     }
     if odd.is_empty() {
         let rms = |squares: &dyn Fn(&(f64, f64)) -> f64| {
@@ -147,7 +149,7 @@ fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
         let off = rms(&|(found, expected)| (found - expected) * (found - expected));
         let share = 100.0 * off / rms(&|(_, expected)| expected * expected);
         odd.push(format!(
-            "the normal force is {times}, and {off:.4} N or {share:.1} % off (rms), at {} poses",
+            "the normal force is {times}, with an rms difference of {off:.4} N ({share:.1} %) over {} poses",
             normal.len()
         ));
     }
@@ -226,7 +228,7 @@ mod tests {
             -1 1 => the normal force looks negated
             1 -1 => the lateral force looks negated
             -1e3 -1e3 => the forces look like mN | the normal force looks | the lateral force looks
-            1 1 => the normal force is 1.0000 of that computed (median), and 0.2131 N or 17.4 % off (rms), at 4 poses
+            1 1 => the normal force is 1.0000 times the computed one (median), with an rms difference of 0.2131 N (17.4 %) over 4 poses
             250 1 => the normal force is 250.0000";
         assert_said(cases, |[normal, lateral]| said((normal, lateral)));
         // A lateral force of 0.03 N beside 2 N tells nothing of its sign.
@@ -249,7 +251,7 @@ mod tests {
             ForceTable::from_csv(&format!("{head}{}", rows.concat()), "gel.csv").unwrap()
         };
         let cases = "
-            4 8e-3 => the depths look like mm in a column of metres: they go to 4000.0 mm, and the phantom to 15.5 mm
+            4 8e-3 => the depths look like mm in a column of metres: they reach 4000.0 mm, the phantom 15.5 mm
             4e-6 8e-3 => the depths look like metres in a column of mm
             4e-3 8 => the lateral positions look like mm in a column of metres
             4 8 => the depths look like mm | the lateral positions look like mm

@@ -1,4 +1,4 @@
-//! The configuration of `palpate run`: which phantoms, where the probe goes, what the detector assumes.
+//! The configuration of `palpate run`: phantoms, poses of the probe, assumptions of the detector.
 
 use std::path::{Path, PathBuf};
 
@@ -26,12 +26,12 @@ pub struct Config {
     pub phantoms: Vec<Spanned<String>>,
     /// Files of measured force maps, shown beside the computed ones.
     pub measured: Vec<PathBuf>,
-    /// Depths of the probe.
-    #[serde(deserialize_with = "list")]
-    pub depths_mm: List,
-    /// Lateral positions of the probe.
-    #[serde(deserialize_with = "list")]
-    pub laterals_mm: List,
+    /// Depths of the probe, m.
+    #[serde(rename = "depths_mm", deserialize_with = "list")]
+    pub depths: List,
+    /// Lateral positions of the probe, m.
+    #[serde(rename = "laterals_mm", deserialize_with = "list")]
+    pub laterals: List,
     /// How the forces are computed.
     pub mesh: MeshConfig,
     /// What the detector assumes.
@@ -80,8 +80,8 @@ impl Default for Config {
             reference: name(BUILTIN_NAMES[0]),
             phantoms: BUILTIN_NAMES[1..].iter().copied().map(name).collect(),
             measured: Vec::new(),
-            depths_mm: list("0:4:0.5"),
-            laterals_mm: list("-10:10:0.5"),
+            depths: list("0:4:0.5"),
+            laterals: list("-10:10:0.5"),
             mesh: MeshConfig::default(),
             detection: Settings::default(),
             source: Default::default(),
@@ -145,19 +145,18 @@ impl Config {
     /// Implements: CLI-031.
     pub fn file(&self, name: &Path) -> PathBuf {
         let [source, _] = &self.source;
-        Path::new(source)
-            .parent()
-            .unwrap_or(Path::new(""))
-            .join(name)
+        let folder = Path::new(source).parent();
+        folder.unwrap_or(Path::new("")).join(name)
     }
 
     fn read_phantom(&self, name: &str) -> Result<Phantom, CliError> {
-        let phantom = match BUILTIN_NAMES.contains(&name) {
-            true => phantom(name)?,
-            false => phantom(&self.file(Path::new(name)).to_string_lossy())?,
+        let phantom = if BUILTIN_NAMES.contains(&name) {
+            phantom(name)?
+        } else {
+            phantom(&self.file(Path::new(name)).to_string_lossy())?
         };
-        for &depth in &self.depths_mm.0 {
-            for &lateral in &self.laterals_mm.0 {
+        for &depth in &self.depths.0 {
+            for &lateral in &self.laterals.0 {
                 let pose = phantom.check_pose(depth, lateral);
                 pose.map_err(|error| CliError::Usage(format!("phantom {name:?}: {error}")))?;
             }
@@ -177,25 +176,21 @@ fn positive<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D:
 }
 
 fn probability<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    let below_1 = 1f64.next_down();
-    number(
-        deserializer,
-        below_1,
-        "a probability strictly between 0 and 1",
-    )
+    let must_be = "a probability strictly between 0 and 1";
+    number(deserializer, 1f64.next_down(), must_be)
 }
 
 /// A number above 0 and at most `most`.
 fn number<'de, D: serde::Deserializer<'de>>(
     deserializer: D,
     most: f64,
-    expected: &str,
+    must_be: &str,
 ) -> Result<f64, D::Error> {
     let number = f64::deserialize(deserializer)?;
     if number > 0.0 && number <= most {
         return Ok(number);
     }
-    let message = format!("{number}, expected {expected}");
+    let message = format!("{number} must be {must_be}");
     Err(serde::de::Error::custom(message))
 }
 
@@ -218,7 +213,7 @@ mod tests {
         ] {
             let text = format!("[{table}]\n{key} = {value:?}\n").replace("NaN", "nan");
             let error = Config::from_toml(&text, "run.toml").unwrap_err();
-            let expected = format!("run.toml:2: {table}.{key}: {value}, expected {expected}");
+            let expected = format!("run.toml:2: {table}.{key}: {value} must be {expected}");
             assert_eq!(error.to_string(), expected);
             assert_eq!(CliError::from(error).exit_code(), 2);
         }

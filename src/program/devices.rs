@@ -5,14 +5,13 @@ use std::io::ErrorKind;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::output::print;
 use super::{CliError, Format};
 use palpate::hid::real::{Listed, Profile, list, no_permission, udev_rule};
 
 /// Arguments of `palpate devices`.
 #[derive(Debug, Args)]
 pub struct DevicesArguments {
-    /// How the devices are printed
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
 }
@@ -22,10 +21,8 @@ pub struct DevicesArguments {
 /// Implements: CLI-078, HID-094.
 pub fn devices(arguments: &DevicesArguments) -> Result<(), CliError> {
     let listed = list()?;
-    print(&match arguments.format {
-        Format::Table => describe(&listed),
-        Format::Json => format!("{:#}\n", listed.iter().map(as_json).collect::<Value>()),
-    })
+    let answer: Value = listed.iter().map(as_json).collect();
+    arguments.format.print(&answer, || describe(&listed))
 }
 
 fn describe(listed: &[Listed]) -> String {

@@ -1,4 +1,4 @@
-//! What the program says when it cannot do what it was asked to, and with which exit code.
+//! The errors of the program and their exit codes.
 
 use std::fmt::{self, Display};
 use std::io;

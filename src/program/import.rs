@@ -15,19 +15,19 @@ use palpate::phantom::Phantom;
 /// Arguments of `palpate import-map`.
 #[derive(Debug, Args)]
 pub struct ImportArguments {
-    /// The forces: a header with depth_mm, lateral_mm, normal_force_n, lateral_force_n, and a row for each pose
+    /// Measured forces: a CSV file with depth_mm, lateral_mm, normal_force_n and lateral_force_n, one row per pose
     #[arg(value_name = "FILE")]
     csv: PathBuf,
-    /// A note on what was measured, stored in the map
+    /// Note on the measurement, stored in the map
     #[arg(long, default_value = "")]
     note: String,
-    /// The phantom that was measured, built in or a file: its computed forces are compared with the measured ones
+    /// The phantom that was measured (built-in or file): compares the measured forces with the computed ones
     #[arg(long, value_name = "NAME|FILE")]
     phantom: Option<String>,
-    /// Smooths the forces by parabolas over W mm to either side along the lateral positions, and reports the noise
-    #[arg(long, value_name = "W", value_parser = length, allow_hyphen_values = true)]
-    smooth_mm: Option<f64>,
-    /// Writes the map there instead of to standard output
+    /// Smooths the forces along the lateral axis by local parabolas of half-width W mm, and reports the noise
+    #[arg(long = "smooth-mm", value_name = "W", value_parser = length, allow_hyphen_values = true)]
+    half_width: Option<f64>,
+    /// Output file [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -42,7 +42,7 @@ pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
     let (mut forces, notes) = ForceTable::from_csv_with_notes(&text, &file)?;
     notes.iter().for_each(|text| note(&file, text));
     let mut measurement = Measurement::new(&file, &arguments.note);
-    if let Some(half_width) = arguments.smooth_mm {
+    if let Some(half_width) = arguments.half_width {
         let smoothed = forces.smoothed(half_width);
         let smoothed = smoothed.map_err(|refusal| refusal.in_file(&*file))?;
         note(&file, &noise(&smoothed));
@@ -62,32 +62,28 @@ pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
 fn noise(smoothed: &Smoothed) -> String {
     let (sd, freedom) = (smoothed.noise_sd, smoothed.degrees_of_freedom);
     format!(
-        "smoothing leaves a residual of {:.4} N (normal) and {:.4} N (lateral), of {freedom:.1} degrees of freedom each: the noise of a sample",
+        "noise sd of a sample, from the residuals of smoothing: {:.4} N (normal) and {:.4} N (lateral), with {freedom:.1} degrees of freedom each",
         sd.normal, sd.lateral
     )
 }
 
-/// The phantom, if its probe can stand at each pose; tells what stands out in its forces.
+/// The phantom, if its probe can reach each pose; notes what stands out in the forces.
 ///
 /// Implements: CLI-022.
 fn compared(file: &str, forces: &ForceTable, phantom: Phantom) -> Option<Phantom> {
     let name = &phantom.name;
+    let note = |text: &str| note(file, &format!("phantom {name}: {text}"));
     match compare(forces, &phantom) {
-        Ok(said) => said
-            .iter()
-            .for_each(|text| note(file, &format!("phantom {name}: {text}"))),
-        Err(error) => note(file, &format!("phantom {name}: not compared: {error}")),
+        Ok(findings) => findings.iter().for_each(|text| note(text)),
+        Err(error) => note(&format!("not compared: {error}")),
     }
     let left_out = left_out(forces, &phantom);
     if left_out == 0 {
         return Some(phantom);
     }
     let all = forces.forces().normal.values().len();
-    note(
-        file,
-        &format!(
-            "phantom {name}: its probe cannot stand at {left_out} of {all} poses: the map is kept without a phantom"
-        ),
-    );
+    note(&format!(
+        "the probe cannot reach {left_out} of {all} poses; the map is stored without its phantom"
+    ));
     None
 }

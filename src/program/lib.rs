@@ -1,4 +1,4 @@
-//! The program `palpate`: what people type, and what they are told (`spec/command-line.md`). Each command has a file of its name.
+//! The program `palpate` (`spec/command-line.md`). Each command has a file or a folder of its name; `arguments.rs` lists them.
 //!
 //! Only the project's own programs and tests use this crate as a library.
 
@@ -31,8 +31,9 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use arguments::{Command, CommandLine, Format};
+use arguments::{Command, CommandLine};
 pub use error::CliError;
+use output::Format;
 
 /// Runs the program with the given arguments, the first of which is its name.
 ///
@@ -43,7 +44,7 @@ pub use error::CliError;
 /// // Prints the version.
 /// let code = palpate_program::main(["palpate", "--version"].map(OsString::from));
 /// assert_eq!(code, ExitCode::SUCCESS);
-/// // Says on the standard error what would be right.
+/// // Says on standard error what is wrong.
 /// let code = palpate_program::main(["palpate", "--deth"].map(OsString::from));
 /// assert_ne!(code, ExitCode::SUCCESS);
 /// ```
@@ -73,8 +74,8 @@ pub fn command() -> clap::Command {
     <CommandLine as clap::CommandFactory>::command()
 }
 
-/// Runs a program that takes arguments `A`: prints help and version, says on standard error in one line why it failed, and
-/// gives the exit code. The companions of `palpate` use it too.
+/// Runs a program that takes arguments `A`: prints help or version, reports a failure in one line on standard error, and returns the exit
+/// code. The companions of `palpate` use it too.
 ///
 /// Implements: CLI-001, CLI-002, CLI-003.
 pub fn program<A: Parser>(

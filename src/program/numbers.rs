@@ -5,16 +5,16 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use palpate::decimal::{format_scaled, parse_scaled};
 use palpate::fem::Contact;
 
-/// How the gap to the probe is measured, by its name.
+/// A contact law by its name.
 pub fn contact() -> impl TypedValueParser<Value = Contact> {
     const NAMES: [(Contact, &str); 2] = [
         (
             Contact::DeformedNormal,
-            "Distance of the deformed surface from the circle; force along its normal",
+            "Gap between the deformed surface and the probe; force along its normal",
         ),
         (
             Contact::VerticalGap,
-            "Height of the circle over the undeformed point; vertical force on the gel",
+            "Height of the probe above the undeformed point; vertical force on the gel",
         ),
     ];
     let values = NAMES.map(|(contact, help)| PossibleValue::new(contact.name()).help(help));
@@ -26,11 +26,11 @@ pub fn contact() -> impl TypedValueParser<Value = Contact> {
     })
 }
 
-/// What a list holds, in SI.
+/// The entries of a list, in SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct List(pub Vec<f64>);
 
-/// What a list holds, and the unit in which it is written, SI times 10 to a power.
+/// What a list holds, and the unit in which it is written: SI times 10 to a power.
 struct Written {
     of: &'static str,
     unit: &'static str,
@@ -53,7 +53,7 @@ const MOST: usize = 10_000;
 /// Steps are counted in units of 10⁻⁹ of what is written, so that they add up without rounding.
 const DECIMALS: i32 = 9;
 
-/// Reads a list of positions in mm.
+/// Reads a list of positions in mm; gives metres.
 ///
 /// Implements: CLI-010.
 ///
@@ -63,7 +63,7 @@ pub fn positions(text: &str) -> Result<List, String> {
     IN_MM.list(text).map(List)
 }
 
-/// Reads a list of moduli in kPa.
+/// Reads a list of moduli in kPa; gives pascals.
 ///
 /// Implements: CLI-154.
 ///
@@ -73,40 +73,43 @@ pub fn moduli(text: &str) -> Result<List, String> {
     IN_KPA.list(text).map(List)
 }
 
-/// Reads one number, and multiplies it by 10^`power`; `is_right` says whether it is as `expected`.
+/// Reads one number and multiplies it by 10^`power`; it must be as `is_right` says, and `must_be` in words.
 ///
 /// Implements: CON-001.
-fn number(
-    text: &str,
-    power: i32,
-    is_right: fn(f64) -> bool,
-    expected: &str,
-) -> Result<f64, String> {
+fn number(text: &str, power: i32, is_right: fn(f64) -> bool, must_be: &str) -> Result<f64, String> {
     let number = parse_scaled(text, power).filter(|&number| is_right(number));
-    number.ok_or_else(|| format!("expected {expected}"))
+    number.ok_or_else(|| format!("must be {must_be}"))
 }
 
-/// Reads a length above 0 in mm, m.
+/// Reads a length above 0 in mm; gives metres.
 ///
 /// # Errors
-/// As the functions below, a message that says what would be right.
+/// As the functions below, a message that says what the number must be.
 pub fn length(text: &str) -> Result<f64, String> {
-    number(text.trim(), -3, |mm| mm > 0.0, "mm above 0, such as 2.5")
+    let must_be = "a length above 0 in mm, such as 2.5";
+    number(text.trim(), -3, |length| length > 0.0, must_be)
 }
 
-/// Reads a length of at least 0 in mm, m.
-pub fn tolerance(text: &str) -> Result<f64, String> {
-    number(text, -3, |mm| mm >= 0.0, "mm, at least 0, such as 0.3")
+/// Reads a length of at least 0 in mm; gives metres.
+pub fn length_or_zero(text: &str) -> Result<f64, String> {
+    let must_be = "a length of at least 0 in mm, such as 0.3";
+    number(text, -3, |length| length >= 0.0, must_be)
 }
 
-/// Reads a position in mm, m, or a velocity in mm/s, m/s.
-pub fn millimetres(text: &str) -> Result<f64, String> {
-    number(text, -3, |_| true, "a finite number, such as 2.5")
+/// Reads a position in mm; gives metres.
+pub fn position(text: &str) -> Result<f64, String> {
+    number(text, -3, |_| true, "a position in mm, such as 2.5")
 }
 
-/// Reads a force above 0, N.
+/// Reads a velocity in mm/s; gives m/s.
+pub fn velocity(text: &str) -> Result<f64, String> {
+    number(text, -3, |_| true, "a velocity in mm/s, such as -20")
+}
+
+/// Reads a force above 0 in N.
 pub fn newtons(text: &str) -> Result<f64, String> {
-    number(text, 0, |force| force > 0.0, "N above 0, such as 0.1")
+    let must_be = "a force above 0 in N, such as 0.1";
+    number(text, 0, |force| force > 0.0, must_be)
 }
 
 /// Reads a probability strictly between 0 and 1.
@@ -126,20 +129,23 @@ impl Written {
             }
             [from, to, step] => self.steps(from, to, step)?,
             _ => {
-                let forms = format!("a,b,c or from:to:step in {unit}, such as 0:4:0.5");
-                return Err(format!("{text:?}: expected {forms}"));
+                return Err(format!(
+                    "{text:?} must have the form a,b,c or from:to:step in {unit}, such as 0:4:0.5"
+                ));
             }
         };
         let count = values.len();
         if count > MOST {
-            return Err(format!("{count} {of}, expected at most {MOST}"));
+            return Err(format!(
+                "{count} {of} are too many; at most {MOST} are allowed"
+            ));
         }
         let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else {
             return Ok(values);
         };
         let [before, after] = [pair[0], pair[1]].map(|value| format_scaled(value, -power));
         Err(format!(
-            "{after} {unit} after {before} {unit}: expected increasing {of}"
+            "{after} {unit} after {before} {unit}: {of} must increase"
         ))
     }
 
@@ -149,7 +155,7 @@ impl Written {
     fn value(&self, text: &str) -> Result<f64, String> {
         let unit = self.unit;
         parse_scaled(text, self.power)
-            .ok_or_else(|| format!("{text:?} is no number: expected {unit}, such as 2.5"))
+            .ok_or_else(|| format!("{text:?} is not a number in {unit}, such as 2.5"))
     }
 
     fn steps(&self, from: &str, to: &str, step: &str) -> Result<Vec<f64>, String> {
@@ -160,7 +166,7 @@ impl Written {
                 Ok(value as i64) // whole and below 10¹⁵: exact
             } else {
                 Err(format!(
-                    "{text:?} {}: expected below 1e6 with at most 9 decimal places",
+                    "{text:?} must be below 1e6 {} and have at most 9 decimal places",
                     self.unit
                 ))
             }
@@ -168,13 +174,13 @@ impl Written {
         let (first, last, step_units) = (units(from)?, units(to)?, units(step)?);
         if step_units <= 0 || last < first {
             return Err(format!(
-                "{from}:{to}:{step}: expected from ≤ to and a step above 0"
+                "{from}:{to}:{step} must have from ≤ to and a step above 0"
             ));
         }
         let count = (last - first) / step_units + 1;
         if count > MOST as i64 {
             return Err(format!(
-                "{from}:{to}:{step} has {count} {}, expected at most {MOST}",
+                "{from}:{to}:{step} has {count} {}; at most {MOST} are allowed",
                 self.of
             ));
         }
@@ -187,28 +193,23 @@ impl Written {
 mod tests {
     use super::*;
 
-    // Verifies: CLI-010.
+    // Verifies: CLI-010, CLI-154.
     #[test]
-    fn lists_are_in_mm_and_exact() {
-        assert_eq!(positions("1, 2.6,4"), Ok(List(vec![0.001, 0.0026, 0.004])));
-        assert_eq!(positions("-0.5"), Ok(List(vec![-0.0005])));
-        // Sums of the step in binary would miss 0.0003 and 0.0006 by a bit.
-        let tenths = vec![0.0, 0.0001, 0.0002, 0.0003, 0.0004, 0.0005, 0.0006];
-        assert_eq!(positions("0:0.6:0.1"), Ok(List(tenths)));
-        assert_eq!(positions("-1:1:1"), Ok(List(vec![-0.001, 0.0, 0.001])));
-        assert_eq!(positions("0:1:0.6"), Ok(List(vec![0.0, 0.0006])));
-    }
-
-    // Verifies: CLI-154.
-    #[test]
-    fn moduli_are_in_kpa_and_exact() {
+    fn lists_are_exact_in_mm_and_kpa() {
+        for (text, metres) in [
+            ("1, 2.6,4", &[0.001, 0.0026, 0.004][..]),
+            ("-0.5", &[-0.0005]),
+            // Sums of the step in binary would miss 0.0003 and 0.0006 by a bit.
+            ("0:0.6:0.1", &[0.0, 1e-4, 2e-4, 3e-4, 4e-4, 5e-4, 6e-4]),
+            ("-1:1:1", &[-0.001, 0.0, 0.001]),
+            ("0:1:0.6", &[0.0, 0.0006]),
+        ] {
+            assert_eq!(positions(text), Ok(List(metres.into())));
+        }
         assert_eq!(moduli("44.1,300"), Ok(List(vec![44_100.0, 300_000.0])));
         assert_eq!(moduli("0.1:0.3:0.1"), Ok(List(vec![100.0, 200.0, 300.0])));
         let error = moduli("300,44").unwrap_err();
-        assert_eq!(
-            error,
-            "44.0 kPa after 300.0 kPa: expected increasing moduli"
-        );
+        assert_eq!(error, "44.0 kPa after 300.0 kPa: moduli must increase");
     }
 
     // Verifies: CLI-010.
@@ -220,7 +221,7 @@ mod tests {
             ("1,x", "\"x\""),
             ("nan", "\"nan\""),
             ("2,1", "1.0 mm after 2.0 mm"),
-            ("1,1", "increasing"),
+            ("1,1", "must increase"),
             ("0:1", "from:to:step"),
             ("0:1:0", "step above 0"),
             ("1:0:0.5", "from ≤ to"),

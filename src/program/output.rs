@@ -6,8 +6,58 @@ use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
+use serde::Serialize;
+
 use super::CliError;
 use palpate::refusal::one_line;
+
+/// The format of an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    Table,
+    /// For programs; keys carry the unit.
+    Json,
+}
+
+impl Format {
+    /// Prints an answer; `table` makes the text for people.
+    pub(super) fn print(
+        self,
+        answer: &impl Serialize,
+        table: impl FnOnce() -> String,
+    ) -> Result<(), CliError> {
+        print(&match self {
+            Format::Table => table(),
+            // Keys are strings, and nothing else could fail.
+            Format::Json => serde_json::to_string_pretty(answer).unwrap_or_default() + "\n",
+        })
+    }
+}
+
+/// An answer or a request in JSON, with the name and version of its keys before it.
+#[derive(Debug, Serialize)]
+pub struct Envelope<A> {
+    schema: &'static str,
+    schema_version: u32,
+    program_version: &'static str,
+    #[serde(flatten)]
+    answer: A,
+}
+
+impl<A> Envelope<A> {
+    /// This version's `answer`, an object.
+    pub fn new(schema: &'static str, schema_version: u32, answer: A) -> Envelope<A> {
+        let program_version = env!("CARGO_PKG_VERSION");
+        Envelope {
+            schema,
+            schema_version,
+            program_version,
+            answer,
+        }
+    }
+}
 
 /// Prints text; a reader who has gone away (`| head`) is no error.
 ///
@@ -22,12 +72,12 @@ pub fn print(text: &str) -> Result<(), CliError> {
     }
 }
 
-/// Says something about a file on standard error that is no error.
+/// Prints a note about a file to standard error.
 pub fn note(file: impl Display, text: &str) {
     eprintln!("palpate: note: {}", one_line(&format!("{file}: {text}")));
 }
 
-/// Writes a file so that it is there whole or, if the program is stopped, as it was.
+/// Writes a file atomically: if the program is stopped, the file is either new and whole or as it was.
 ///
 /// Implements: CLI-005, CLI-007.
 pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
@@ -48,7 +98,7 @@ fn replace(path: &Path, text: &[u8]) -> std::io::Result<()> {
     };
     let folder = target.parent().filter(|folder| *folder != "");
     let folder = folder.unwrap_or(Path::new("."));
-    // A folder that is not there is told without the name of the temporary file.
+    // The error about a missing folder shall not name the temporary file.
     std::fs::metadata(folder)?;
     let (name, mut partial) = partial_file(folder)?;
     let mut written = partial.write_all(text);
@@ -57,7 +107,7 @@ fn replace(path: &Path, text: &[u8]) -> std::io::Result<()> {
     }
     let moved = written.and_then(|()| std::fs::rename(&name, target));
     moved.inspect_err(|_| {
-        // What failed is told; a file that stays behind is not worth a second message.
+        // The error is reported; a file that stays behind is not worth a second message.
         let _ = std::fs::remove_file(&name);
     })
 }

@@ -1,4 +1,4 @@
-//! `palpate play`: a force map to a hand (`spec/command-line.md`).
+//! `palpate play`: a force map rendered on a haptic device (`spec/command-line.md`).
 
 use std::fmt::Display;
 use std::io::IsTerminal;
@@ -27,15 +27,15 @@ const MOST_RECORDED: u64 = 3600;
 /// Arguments of `palpate play`.
 #[derive(Debug, Args)]
 pub struct PlayArguments {
-    /// The force map
+    /// Force map to render
     #[arg(long, value_name = "FILE")]
     map: PathBuf,
     #[command(flatten)]
     device: DeviceArguments,
-    /// Ends after S seconds of the device's time [default: one indentation on the simulated device]
+    /// Ends after S seconds on the device's clock [default: one indentation on the simulated device]
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=86_400))]
     seconds: Option<u64>,
-    /// Largest force of each component, in N
+    /// Force limit of each component, in N
     #[arg(long, value_name = "N", default_value_t = 4.0)]
     max_force: f32,
     /// Scales down a map that is too stiff for the device instead of refusing it
@@ -47,7 +47,7 @@ pub struct PlayArguments {
     /// Replays a recorded session and compares every force with the recording
     #[arg(long, value_name = "FILE", conflicts_with_all = ["seconds", "record", "max_force"])]
     replay: Option<PathBuf>,
-    /// How the summary is printed
+    /// Output format of the summary
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
 }
@@ -93,7 +93,7 @@ fn table(
     Ok((loaded.map_err(refused)?, 1.0))
 }
 
-/// Plays on `device` and tells what happened.
+/// Plays on `device` and prints the summary.
 fn session(
     arguments: &PlayArguments,
     mut device: Box<dyn HapticDevice + Send>,
@@ -103,18 +103,10 @@ fn session(
     let capabilities = device.capabilities().map_err(failed)?;
     let (loaded, scale) = table(arguments, &capabilities, &limits)?;
     let table = loaded.table().map_err(failed)?;
-    let record = match (&arguments.record, duration) {
-        (None, _) => 0,
-        (Some(_), Some(time)) if time.as_secs() <= MOST_RECORDED => {
-            time.as_micros() as usize / usize::from(capabilities.period_us.max(1)) + 64
-        }
-        (Some(_), _) => {
-            return Err(CliError::Usage(format!(
-                "--record needs --seconds of at most {MOST_RECORDED}"
-            )));
-        }
+    let options = PlayOptions {
+        duration,
+        record: recorded_cycles(arguments, &capabilities, duration)?,
     };
-    let options = PlayOptions { duration, record };
     let stop = stop_on_signals()?;
     let session = Session::begin(device, table, limits).map_err(failed)?;
     let stop = || stop.load(Ordering::Relaxed);
@@ -136,13 +128,11 @@ fn session(
         write(path, &recording.to_text())?;
     }
     let rounding = loaded.rounding();
+    let held_up = played.held_up.filter(|_| !is_simulated);
     let summary = Summary {
         end: played.end.to_string(),
         counters: played.counters,
-        held_up_ms: played
-            .held_up
-            .filter(|_| !is_simulated)
-            .map(|time| time.as_millis() as u64),
+        held_up_ms: held_up.map(|time| time.as_millis() as u64),
         rounding_position_m: rounding.position_m,
         rounding_force_n: rounding.force_n,
         scale,
@@ -150,11 +140,29 @@ fn session(
     };
     // With its keys sorted; neither this nor writing to a String fails.
     let sorted = serde_json::to_value(&summary).unwrap_or_default();
-    let text = |_: &_| summary.render().unwrap_or_default();
+    let text = || summary.render().unwrap_or_default();
     arguments.format.print(&sorted, text)?;
     match played.end {
         End::Asked => Ok(()),
         _ => Err(CliError::Check(summary.end)),
+    }
+}
+
+/// How many cycles to record at most.
+fn recorded_cycles(
+    arguments: &PlayArguments,
+    capabilities: &Capabilities,
+    duration: Option<Duration>,
+) -> Result<usize, CliError> {
+    let seconds = duration.filter(|time| time.as_secs() <= MOST_RECORDED);
+    match (&arguments.record, seconds) {
+        (None, _) => Ok(0),
+        (Some(_), Some(time)) => {
+            Ok(time.as_micros() as usize / usize::from(capabilities.period_us.max(1)) + 64)
+        }
+        (Some(_), None) => Err(CliError::Usage(format!(
+            "--record needs --seconds of at most {MOST_RECORDED}"
+        ))),
     }
 }
 
@@ -171,7 +179,7 @@ fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
     Ok(stop)
 }
 
-/// Asks for the real-time priority and for memory that is not paged out; says so where it may not.
+/// Requests real-time priority and locked memory; prints a note where the system refuses.
 ///
 /// Implements: HID-055.
 fn raise_priority() {
@@ -187,15 +195,16 @@ fn raise_priority() {
     });
     let locked = mlockall(MlockAllFlags::CURRENT | MlockAllFlags::FUTURE).is_ok();
     if !raised {
-        eprintln!("note: no real-time priority (SCHED_FIFO): the system may wake the loop late");
+        eprintln!(
+            "palpate: note: no real-time priority (SCHED_FIFO): the system may wake the loop late"
+        );
     }
     if !locked {
-        eprintln!("note: memory not locked: a page fault may delay a cycle");
+        eprintln!("palpate: note: memory is not locked: a page fault may delay a cycle");
     }
 }
 
-/// What the supervisor shows while it plays: the counters on one line of a terminal and, of a loop on
-/// the `wall_clock`, that it is held up.
+/// What the supervisor shows while it plays: the counters on one line of a terminal and, of a loop on the `wall_clock`, that it stalls.
 fn live(wall_clock: bool) -> impl FnMut(&Counters, Duration) {
     let terminal = std::io::stderr().is_terminal();
     let mut told = false;
@@ -203,7 +212,7 @@ fn live(wall_clock: bool) -> impl FnMut(&Counters, Duration) {
         if wall_clock && silent > HELD_UP && !told {
             told = true;
             eprintln!(
-                "the servo thread is held up for {} ms: the device's own watchdog must drop the force",
+                "the servo thread has been held up for {} ms: the device's own watchdog must drop the force",
                 silent.as_millis()
             );
         }
@@ -248,9 +257,10 @@ struct Summary {
 fn replay(arguments: &PlayArguments, file: &Path) -> Result<(), CliError> {
     let text = read(file)?;
     let recording = Recording::parse(&text).map_err(CliError::refused(file.display()))?;
-    let loaded = match arguments.scale {
-        true => table(arguments, &recording.capabilities, &recording.limits)?.0,
-        false => loaded_map(&arguments.map)?,
+    let loaded = if arguments.scale {
+        table(arguments, &recording.capabilities, &recording.limits)?.0
+    } else {
+        loaded_map(&arguments.map)?
     };
     let table = loaded.table().map_err(CliError::refused(file.display()))?;
     let cycles = recording.replay(table);

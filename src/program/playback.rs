@@ -1,4 +1,4 @@
-//! What the commands around playback share.
+//! Options and loading of maps that `play`, `experiment` and `timing` share.
 
 use std::path::Path;
 use std::time::Duration;
@@ -16,16 +16,16 @@ use palpate::servo::{Damping, Limits, LoadedTable};
 /// How long a device that was just plugged in may take until it can be opened.
 const PLUG_IN: Duration = Duration::from_millis(500);
 
-/// What plays the forces.
+/// The haptic device.
 #[derive(Debug, Args)]
 pub struct DeviceArguments {
-    /// What plays the forces
+    /// Haptic device
     #[arg(long, value_enum, default_value_t = DeviceName::Sim)]
     device: DeviceName,
-    /// Vendor number of the device, hexadecimal
+    /// Vendor id of the device, hexadecimal
     #[arg(long, value_name = "HEX", value_parser = number)]
     vid: Option<u16>,
-    /// Product number of the device, hexadecimal
+    /// Product id of the device, hexadecimal
     #[arg(long, value_name = "HEX", value_parser = number)]
     pid: Option<u16>,
     /// Serial number of the device
@@ -35,15 +35,15 @@ pub struct DeviceArguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum DeviceName {
-    /// A simulation of the paper's display in a hand that probes the gel, on a virtual clock.
+    /// Simulation of the paper's display, moved by a simulated hand, on a virtual clock.
     Sim,
-    /// A device of this machine; --vid, --pid or --serial choose among several.
+    /// HID device of this machine; --vid, --pid or --serial select one of several.
     Hid,
 }
 
 fn number(text: &str) -> Result<u16, String> {
     let digits = text.strip_prefix("0x").unwrap_or(text);
-    u16::from_str_radix(digits, 16).map_err(|_| "expected up to four hexadecimal digits".into())
+    u16::from_str_radix(digits, 16).map_err(|_| "must be up to four hexadecimal digits".into())
 }
 
 impl DeviceArguments {
@@ -60,7 +60,7 @@ impl DeviceArguments {
         self.device == DeviceName::Sim
     }
 
-    /// Refuses numbers of a device without a device that has them.
+    /// Refuses the ids of a device where the device is simulated.
     pub fn check(&self) -> Result<(), CliError> {
         if self.is_simulated() && self.wanted() != Wanted::default() {
             let message = "--vid, --pid and --serial need --device hid";
@@ -81,8 +81,8 @@ impl DeviceArguments {
         Ok(Box::new(device))
     }
 
-    /// The damping of this device, which says `capabilities` of itself. A bus takes a period from a sample to its force each
-    /// way, of which the report's is over when it is read.
+    /// The damping of this device by its `capabilities`. A bus takes a period from a sample to its force each way, of which the report's
+    /// is over when it is read.
     pub fn damping(&self, capabilities: &Capabilities) -> Damping {
         damping(capabilities, u16::from(!self.is_simulated()))
     }
@@ -93,7 +93,7 @@ pub fn limits(force: f32) -> Result<Limits, CliError> {
     Limits::for_playback(force).map_err(CliError::refused(format_args!("--max-force {force}")))
 }
 
-/// What a device says of its damping. Its force comes `delay_periods` after the sample.
+/// The damping of a device by its `capabilities`. Its force comes `delay_periods` after the sample.
 fn damping(capabilities: &Capabilities, delay_periods: u16) -> Damping {
     Damping {
         period_s: f64::from(capabilities.period_us) * 1e-6,

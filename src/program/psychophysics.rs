@@ -1,5 +1,4 @@
-//! `palpate psychophysics`: counts of right answers, and force maps against them
-//! (`spec/command-line.md`).
+//! `palpate psychophysics`: analysis of counts of correct answers, alone or with force maps (`spec/command-line.md`).
 
 use std::path::{Path, PathBuf};
 
@@ -9,6 +8,7 @@ use serde::Serialize;
 
 use super::experiment::named_file;
 use super::numbers::length;
+use super::output::Envelope;
 use super::{CliError, Format};
 use palpate::force_map::{ForceMap, Hypotheses};
 use palpate_paper::psychophysics::bridge::{Bridge, bridge};
@@ -20,19 +20,20 @@ use palpate_paper::psychophysics::{
 /// Arguments of `palpate psychophysics`.
 #[derive(Debug, Args)]
 pub struct PsychophysicsArguments {
-    /// Counts of right answers: a header subject,condition,trials and the inclusions, each name ending in its depth in mm, and a row for each subject and condition; without it Table 1 of the paper
+    /// Counts of correct answers: a CSV file with subject, condition, trials and one column per inclusion, its name ending in its depth
+    /// in mm; one row per subject and condition [default: Table 1 of the paper]
     #[arg(value_name = "CSV")]
     counts: Option<PathBuf>,
-    /// The force map without inclusion, for the noise in newtons and the predicted shares
+    /// Force map without inclusion, for the noise in newtons and the predicted proportions correct
     #[arg(long, value_name = "FILE", requires = "inclusion")]
     reference: Option<PathBuf>,
-    /// The force map of an inclusion, with the name of its column: 6.6=map.json; two or more
+    /// Force map with an inclusion, with the name of its column: 6.6=map.json; two or more
     #[arg(long, visible_alias = "map", value_name = "NAME=FILE", requires = "reference", value_parser = named_file)]
     inclusion: Vec<(String, PathBuf)>,
-    /// Half the width of the sweep that the subjects are assumed to make, in mm [default: that of the maps]
-    #[arg(long, value_name = "W", requires = "reference", value_parser = length)]
-    sweep_mm: Option<f64>,
-    /// How the answer is printed
+    /// Assumed half-width of the subjects' sweeps in mm [default: that of the maps]
+    #[arg(long = "sweep-mm", value_name = "W", requires = "reference", value_parser = length)]
+    half_sweep: Option<f64>,
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
 }
@@ -40,9 +41,6 @@ pub struct PsychophysicsArguments {
 /// The answer.
 #[derive(Debug, Serialize)]
 struct PsychophysicsAnswer {
-    schema: &'static str,
-    schema_version: u32,
-    program_version: &'static str,
     /// The file of the counts, or `Table 1`.
     counts: String,
     /// What the counts say by themselves.
@@ -63,15 +61,14 @@ pub fn psychophysics(arguments: &PsychophysicsArguments) -> Result<(), CliError>
     let bridge = bridge.map(|reference| against_maps(arguments, &table, reference));
     let noise_levels = path.is_none().then(paper_noise_levels);
     let answer = PsychophysicsAnswer {
-        schema: "palpate-psychophysics",
-        schema_version: 1,
-        program_version: env!("CARGO_PKG_VERSION"),
         bridge: bridge.transpose()?,
         counts: path.map_or("Table 1".into(), |path| path.display().to_string()),
         analysis: analyse(&table)?,
         noise_levels: noise_levels.transpose()?,
     };
-    arguments.format.print(&answer, text)
+    let table = text(&answer);
+    let answer = Envelope::new("palpate-psychophysics", 1, answer);
+    arguments.format.print(&answer, || table)
 }
 
 fn against_maps(
@@ -88,7 +85,7 @@ fn against_maps(
         maps.push((name.as_str(), map));
     }
     let named: Vec<_> = maps.iter().map(|(name, map)| (*name, map)).collect();
-    Ok(bridge(table, &reference, &named, arguments.sweep_mm)?)
+    Ok(bridge(table, &reference, &named, arguments.half_sweep)?)
 }
 
 /// The answer for people. Its words are in `templates/psychophysics.txt`.
@@ -102,15 +99,13 @@ fn text(answer: &PsychophysicsAnswer) -> String {
     let lines: Vec<&str> = words.trim_end().lines().collect();
     let blocks = lines.chunk_by(|one, other| one.contains('\t') == other.contains('\t'));
     let text: String = blocks.map(columns).collect();
-    format!("{counts}: shares of right answers with intervals of {confidence} %\n\n{text}")
+    format!("{counts}: proportions correct with {confidence} % intervals\n\n{text}")
 }
 
 /// Lines as they are, or rows with their cells left-aligned in columns; a row may have fewer than others.
-fn columns(lines: &[&str]) -> String {
-    let rows = lines
-        .iter()
-        .map(|line| line.split('\t').collect::<Vec<_>>());
-    let rows: Vec<_> = rows.collect();
+fn columns<'a>(lines: &[&'a str]) -> String {
+    let cells = |line: &&'a str| line.split('\t').collect::<Vec<_>>();
+    let rows: Vec<_> = lines.iter().map(cells).collect();
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column));
         cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
@@ -142,7 +137,7 @@ fn parameter(found: &Parameter, scale: f64, digits: usize) -> String {
     let ends = [&found.bounds, &found.dispersed_bounds];
     let [bounds, dispersed] = ends.map(|of| open(of, scale, digits));
     let value = scale * found.value;
-    format!("{value:.digits$} {bounds}, with the subjects' dispersion {dispersed}")
+    format!("{value:.digits$} {bounds}, allowing for the dispersion between subjects {dispersed}")
 }
 
 fn bounds(found: &Bounds) -> String {
@@ -161,8 +156,9 @@ fn p_value(p: &Option<f64>) -> String {
 }
 
 fn known_p(p: &f64) -> String {
-    match *p < 1e-3 {
-        true => format!("{p:.0e}"),
-        false => format!("{p:.3}"),
+    if *p < 1e-3 {
+        format!("{p:.0e}")
+    } else {
+        format!("{p:.3}")
     }
 }

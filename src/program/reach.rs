@@ -1,4 +1,4 @@
-//! `palpate reach`: how deep an inclusion may lie, and how small it may be, to be found (`spec/bank.md`).
+//! `palpate reach`: the greatest depth and the smallest size of an inclusion that can be detected (`spec/bank.md`).
 
 use std::borrow::Borrow;
 use std::path::PathBuf;
@@ -7,39 +7,40 @@ use askama::Template;
 use clap::Args;
 use serde::Serialize;
 
-use super::detect::arguments::{NoiseSd, Unknowns, unknowns};
+use super::detect::arguments::{Known, NoiseSd};
 use super::numbers::probability;
-use super::output::write;
+use super::output::{Envelope, write};
 use super::{CliError, Format};
 use palpate::bank::{Bank, Reach, Reached, smallest_diameters};
 use palpate::chart::reach_figure;
 use palpate::decimal::format_scaled;
+use palpate::refusal::Refusal;
 use palpate::trace::{Unknown, in_words};
 
 /// Arguments of `palpate reach`.
 #[derive(Debug, Args)]
 pub struct ReachArguments {
-    /// A bank of inclusions, as 'palpate bank' writes it
+    /// Bank of inclusions from 'palpate bank'
     #[arg(long, value_name = "BANK")]
     bank: PathBuf,
     #[command(flatten)]
     noise_sd: NoiseSd,
-    /// The false-alarm rate of a search over the whole bank
+    /// False-alarm rate of a search over the whole bank
     #[arg(long, value_name = "A", value_parser = probability, allow_hyphen_values = true, default_value = "0.01")]
     max_false_alarm: f64,
-    /// The miss rate
+    /// Miss rate
     #[arg(long, value_name = "B", value_parser = probability, allow_hyphen_values = true, default_value = "0.05")]
     max_miss: f64,
     /// Number of evenly spaced samples of the sweep [default: one at each lateral position of the bank]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     samples: Option<u64>,
-    /// What is known and therefore not fitted: a list of offset, drift, gain and depth; all; none
-    #[arg(long = "known", value_name = "LIST", value_parser = unknowns, default_value = "depth")]
-    unknown: Unknowns,
-    /// How the answer is printed
+    /// Quantities to take as known instead of fitting: a list of offset, drift, gain and depth, or 'all' or 'none'
+    #[arg(long, value_name = "LIST", value_parser = Known::parse, default_value = "depth")]
+    known: Known,
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
-    /// Writes a figure of the largest depths as SVG
+    /// Writes a figure of the greatest detectable depths as SVG
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
 }
@@ -48,9 +49,6 @@ pub struct ReachArguments {
 #[derive(Debug, Serialize, Template)]
 #[template(path = "cli.txt", block = "reach")]
 struct ReachAnswer {
-    schema: &'static str,
-    schema_version: u32,
-    program_version: &'static str,
     bank: String,
     probe_depth_m: f64,
     noise_sd_lateral_n: f64,
@@ -67,7 +65,7 @@ struct ReachAnswer {
     smallest_diameters: Vec<SmallestDiameter>,
 }
 
-/// How deep an inclusion of one diameter and modulus may lie.
+/// The greatest detectable depth of an inclusion of one diameter and modulus.
 #[derive(Debug, Serialize)]
 struct LargestDepth {
     diameter_m: f64,
@@ -78,15 +76,15 @@ struct LargestDepth {
 
 #[derive(Debug, Serialize)]
 struct DepthReached {
-    /// None if it is not found at the least depth of the bank.
+    /// None if it is not detected at the least depth of the bank.
     largest_depth_m: Option<f64>,
-    /// Whether it is found at the greatest depth of the bank, so that the largest one is greater.
+    /// Whether it is detected at the greatest depth of the bank, so that the limit lies deeper.
     is_beyond_bank: bool,
     /// γ at each depth of the bank.
     gamma: Vec<f64>,
 }
 
-/// How small an inclusion of one modulus may be at one depth; none if that of the largest diameter of the bank is not found.
+/// The smallest detectable diameter of an inclusion of one modulus at one depth; none if the largest of the bank is not detected.
 #[derive(Debug, Serialize)]
 struct SmallestDiameter {
     depth_m: f64,
@@ -100,16 +98,17 @@ struct SmallestDiameter {
 /// Implements: CLI-160, CLI-163.
 pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     let bank = Bank::read(&arguments.bank)?;
-    // The level of the noise is stated.
-    let unknown = arguments.unknown.0.iter().copied();
+    // The variance of the noise is stated.
+    let unknown = arguments.known.unknown.iter().copied();
     let unknown: Vec<Unknown> = unknown.filter(|&of| of != Unknown::Variance).collect();
     let noise_sd = arguments.noise_sd.get().ok_or_else(|| {
-        let either = "expected --noise-sd-n, or --noise-sd-lateral-n and --noise-sd-normal-n";
-        CliError::Usage(format!("no noise is stated, {either}"))
+        let message = "give --noise-sd-n, or both --noise-sd-lateral-n and --noise-sd-normal-n";
+        CliError::Usage(message.into())
     })?;
+    let samples = arguments.samples.map(|samples| samples as usize);
     let plain = Reach {
         bank: &bank,
-        samples: arguments.samples.map(|samples| samples as usize),
+        samples,
         noise_sd,
         max_false_alarm: arguments.max_false_alarm,
         max_miss: arguments.max_miss,
@@ -119,41 +118,34 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
         unknown: &unknown,
         ..plain
     };
-    let in_bank =
-        |refusal: palpate::refusal::Refusal| refusal.in_file(arguments.bank.display().to_string());
-    let needed = plain.gamma()?;
-    let reached = [plain.reached(), beside.reached()];
-    let [plain, beside] = reached.map(|reached| reached.map_err(in_bank));
-    let (plain, beside) = (plain?, beside?);
+    let file = arguments.bank.display().to_string();
+    let in_bank = |refusal: Refusal| refusal.in_file(&*file);
+    let gamma_needed = plain.gamma()?;
+    let plain = plain.reached().map_err(in_bank)?;
+    let beside = beside.reached().map_err(in_bank)?;
     if let Some(path) = &arguments.figure {
         let words = in_words(&unknown);
         write(path, &reach_figure(&bank, &plain, &beside, &words)?)?;
     }
     let answer = ReachAnswer {
-        schema: "palpate-reach",
-        schema_version: 1,
-        program_version: env!("CARGO_PKG_VERSION"),
-        bank: arguments.bank.display().to_string(),
         probe_depth_m: bank.depth(),
         noise_sd_lateral_n: noise_sd.lateral,
         noise_sd_normal_n: noise_sd.normal,
         max_false_alarm: arguments.max_false_alarm,
         max_miss: arguments.max_miss,
-        samples: arguments
-            .samples
-            .map_or(bank.reference().laterals().len(), |samples| {
-                samples as usize
-            }),
+        samples: samples.unwrap_or(bank.reference().laterals().len()),
         unknown,
-        gamma_needed: needed,
+        gamma_needed,
         depths_m: bank.axes()[1].clone(),
         diameters_m: bank.axes()[2].clone(),
-        smallest_diameters: smallest(&bank, [&plain, &beside], needed),
+        smallest_diameters: smallest(&bank, [&plain, &beside], gamma_needed),
         largest_depths: largest(&plain, &beside),
+        bank: file,
     };
     // Writing to a String does not fail.
-    let table = |answer: &ReachAnswer| answer.render().unwrap_or_default();
-    arguments.format.print(&answer, table)
+    let table = answer.render().unwrap_or_default();
+    let answer = Envelope::new("palpate-reach", 1, answer);
+    arguments.format.print(&answer, || table)
 }
 
 /// Implements: CLI-160.

@@ -26,13 +26,13 @@ use palpate_paper::study::StudyResults;
 /// Arguments of `palpate run`.
 #[derive(Debug, Args)]
 pub struct RunArguments {
-    /// A TOML file with phantoms, poses and noise to use instead of the paper's
+    /// TOML file with phantoms, poses and noise to use instead of the paper's
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// The results of 'palpate study merge' for the same phantoms, to show in the report
+    /// Results of 'palpate study merge' for the same phantoms, to include in the report
     #[arg(long, value_name = "FILE")]
     study: Option<PathBuf>,
-    /// The folder for report.html, summary.json, maps/ and figures/
+    /// Output folder for report.html, summary.json, maps/ and figures/
     #[arg(long, value_name = "DIR", default_value = "palpate-out")]
     out: PathBuf,
 }
@@ -51,7 +51,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let measured = measured.collect::<Result<Vec<_>, _>>()?;
     let study = arguments.study.as_deref().map(StudyResults::read);
     let study = study.transpose()?;
-    // The folder first: a run shall not fail at its end for want of a place.
+    // The folder first: a run shall not fail at its end because it cannot be made.
     make_folder(&arguments.out)?;
     let run = solve_all(&config, &phantoms, measured)?;
     let run = Run { study, ..run };
@@ -67,7 +67,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
 fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
     let map = ForceMap::read(path)?;
     if map.certificate().is_some() {
-        let reason = "a computed map; 'measured' takes maps that palpate import-map wrote";
+        let reason = "this map was computed; 'measured' takes measured maps, as palpate import-map writes them";
         return Err(CliError::refused(path.display())(reason));
     }
     Ok(map)
@@ -114,7 +114,7 @@ fn solve_phantom(
     let mesh = &config.mesh;
     tell_large_mesh(phantom, mesh.size_mm / 1e3)?;
     let model = Model::new(phantom, mesh.size_mm / 1e3, mesh.contact)?;
-    let (depths, laterals) = (&config.depths_mm.0, &config.laterals_mm.0);
+    let (depths, laterals) = (&config.depths.0, &config.laterals.0);
     // Each map on three meshes.
     bar.inc_length((3 * depths.len() * model.solved_laterals(laterals).len()) as u64);
     let map = certified_map(&model, depths, laterals, &|poses| bar.inc(poses as u64))?;

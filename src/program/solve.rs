@@ -18,28 +18,28 @@ use palpate::phantom::{BUILTIN_NAMES, Phantom};
 /// Arguments of `palpate solve`.
 #[derive(Debug, Args)]
 pub struct SolveArguments {
-    /// A built-in phantom (none, 2.6, 4.6, 6.6, 8.6: the inclusion's depth in mm) or a phantom file
+    /// Built-in phantom (none, 2.6, 4.6, 6.6, 8.6: the inclusion's depth in mm) or phantom file
     #[arg(long, value_name = "NAME|FILE")]
     phantom: String,
     /// Depths of the probe in mm: a,b,c or from:to:step
-    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    depths_mm: List,
+    #[arg(long = "depths-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    depths: List,
     /// Lateral positions of the probe in mm: a,b,c or from:to:step
-    #[arg(long, value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
-    laterals_mm: List,
-    /// How the gap to the probe is measured
+    #[arg(long = "laterals-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    laterals: List,
+    /// Contact law
     #[arg(long, value_parser = contact(), default_value = Contact::default().name())]
     contact: Contact,
     /// Mesh size in mm; all element sizes scale with it [default: 0.5]
-    #[arg(long, value_parser = length, value_name = "H")]
-    mesh_mm: Option<f64>,
-    /// Also solves two coarser meshes and gives each force its discretisation error band
+    #[arg(long = "mesh-mm", value_parser = length, value_name = "H")]
+    mesh_size: Option<f64>,
+    /// Also solves on two coarser meshes and states a discretisation error band for each force
     #[arg(long)]
     certify: bool,
-    /// Writes the deformed mesh with stresses for ParaView; for a single pose only
+    /// Writes the deformed mesh with stresses for ParaView; single pose only
     #[arg(long, value_name = "FILE")]
     vtu: Option<PathBuf>,
-    /// How the forces are printed
+    /// Output format
     #[arg(long, value_enum, default_value_t = MapFormat::Table)]
     format: MapFormat,
 }
@@ -50,7 +50,7 @@ enum MapFormat {
     Table,
     /// The force map, with mesh, residuals and error bands.
     Json,
-    /// One row for each pose.
+    /// One row per pose.
     Csv,
 }
 
@@ -76,8 +76,8 @@ pub fn phantom(name: &str) -> Result<Phantom, CliError> {
 /// Implements: CLI-012, CLI-013.
 pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     let SolveArguments {
-        depths_mm: List(depths),
-        laterals_mm: List(laterals),
+        depths: List(depths),
+        laterals: List(laterals),
         ..
     } = arguments;
     let pose = match (&arguments.vtu, &depths[..], &laterals[..]) {
@@ -85,22 +85,23 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         (Some(path), &[depth], &[lateral]) => Some((path, Pose { depth, lateral })),
         (Some(_), ..) => {
             return Err(CliError::Usage(
-                "--vtu shows one pose: expected one depth and one lateral position".into(),
+                "--vtu shows one pose: give one depth and one lateral position".into(),
             ));
         }
     };
     let phantom = phantom(&arguments.phantom)?;
     let failed = CliError::fem(&phantom.name);
-    let size = arguments.mesh_mm.unwrap_or(MESH_SIZE);
+    let size = arguments.mesh_size.unwrap_or(MESH_SIZE);
     tell_large_mesh(&phantom, size).map_err(&failed)?;
     let model = Model::new(&phantom, size, arguments.contact).map_err(&failed)?;
     let meshes = if arguments.certify { 3 } else { 1 };
     let columns = model.solved_laterals(laterals).len();
     let bar = bar(meshes * depths.len() * columns, &phantom.name);
     let solved = |poses| bar.inc(poses as u64);
-    let map = match arguments.certify {
-        true => certified_map(&model, depths, laterals, &solved),
-        false => model.map(depths, laterals, &solved),
+    let map = if arguments.certify {
+        certified_map(&model, depths, laterals, &solved)
+    } else {
+        model.map(depths, laterals, &solved)
     };
     let map = map.map_err(&failed)?;
     bar.finish_and_clear();
@@ -117,7 +118,7 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     })
 }
 
-/// Says on standard error where the gel is squeezed to little.
+/// Warns on standard error where the strain is too large for the model.
 ///
 /// Implements: CLI-015.
 pub fn warn_of_large_strain(map: &ForceMap) {
@@ -129,15 +130,16 @@ pub fn warn_of_large_strain(map: &ForceMap) {
 pub fn warn_of_large_strain_of(map: &ForceMap, name: &str) {
     let smallest = map.certificate().map(|of| of.smallest_det);
     if let Some(smallest) = smallest.filter(|of| of.det < SMALL_STRAIN_LIMIT) {
-        let meaning = match smallest.det > 0.0 {
-            true => "the small-strain model is at its limit there",
-            false => "the gel is turned inside out there, and the forces mean nothing",
+        let meaning = if smallest.det > 0.0 {
+            "the small-strain model is at its limit there"
+        } else {
+            "the gel is turned inside out there, and the forces are meaningless"
         };
         eprintln!(
             "palpate: warning: phantom {name}: det(I + grad u) falls to {:.3} at depth {} mm, lateral {} mm: {meaning}",
             smallest.det,
-            in_millimetres(&smallest.depth),
-            in_millimetres(&smallest.lateral)
+            in_mm(&smallest.depth),
+            in_mm(&smallest.lateral)
         );
     }
 }
@@ -149,6 +151,7 @@ struct Table<'a> {
     map: &'a ForceMap,
 }
 
-fn in_millimetres(metres: &f64) -> String {
-    format_scaled(*metres, 3)
+/// A length (m) as a number of mm.
+fn in_mm(length: &f64) -> String {
+    format_scaled(*length, 3)
 }

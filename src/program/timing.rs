@@ -17,34 +17,34 @@ use palpate::input;
 /// Arguments of `palpate timing`.
 #[derive(Debug, Args)]
 pub struct TimingArguments {
-    /// The time that a cycle may take, in µs
+    /// Time budget of a cycle, in µs
     #[arg(long, value_name = "T", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
     budget_us: u64,
-    /// The percentile of the times that must be within the budget
+    /// Percentile of the response times that must be within the budget
     #[arg(long, value_name = "P", default_value_t = 99.9)]
     percentile: f64,
-    /// The confidence of the verdict, in percent
+    /// Confidence level of the verdict, in percent
     #[arg(long, value_name = "C", default_value_t = 95.0)]
     confidence_percent: f64,
-    /// How many cycles may take longer [default: as many as the percentile allows]
+    /// Number of cycles that may exceed the budget [default: as many as the percentile allows]
     #[arg(long, value_name = "N")]
     allowed_misses: Option<u64>,
-    /// How many cycles in a row may take longer [default: any number]
+    /// Number of consecutive cycles that may exceed the budget [default: any number]
     #[arg(long, value_name = "N")]
     allowed_run: Option<u64>,
-    /// Judges the cycles that another loop logged, CSV or lines of JSON, instead of measuring
+    /// Judges the log of another loop, CSV or JSON lines, instead of measuring
     #[arg(long, value_name = "FILE", conflicts_with_all = ["cycles", "paced", "map"])]
     from: Option<PathBuf>,
     /// Number of cycles to measure
     #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u64).range(1000..=100_000_000))]
     cycles: u64,
-    /// Runs the cycles at 1 kHz, so that the time until the system wakes the loop counts too
+    /// Runs the cycles at 1 kHz, so that the wake-up latency of the system counts too
     #[arg(long)]
     paced: bool,
-    /// A force map to play [default: a table of 9 × 41 poses]
+    /// Force map to render [default: a table of 9 × 41 poses]
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
-    /// How the figures are printed
+    /// Output format
     #[arg(long, value_enum, default_value_t = Printed::Table)]
     format: Printed,
 }
@@ -55,7 +55,7 @@ enum Printed {
     Table,
     /// For programs; keys carry the unit.
     Json,
-    /// For CI: JUnit's XML.
+    /// For CI: JUnit XML.
     Junit,
 }
 
@@ -77,9 +77,10 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
         }
         None => {
             let timing = measured(arguments, budget)?;
-            let source = match timing.paced {
-                true => "on the simulated device, at 1 kHz, with the system's wake-up",
-                false => "on the simulated device, as fast as they go",
+            let source = if timing.paced {
+                "on the simulated device, at 1 kHz, with the system's wake-up latency"
+            } else {
+                "on the simulated device, back to back"
             };
             tell(arguments, &timing.judged, Some(&timing), source)
         }
@@ -113,8 +114,7 @@ fn measured(arguments: &TimingArguments, budget: Budget) -> Result<Timing, CliEr
     )?)
 }
 
-/// Prints the figures; the budget decides how the program ends. Of a loop that was measured here there is more than its `judged`
-/// responses: the whole `timing`.
+/// Prints the times and the verdict, which sets the exit code. `timing` holds the rest of what was measured if it was measured here.
 fn tell(
     arguments: &TimingArguments,
     judged: &Judged,
@@ -143,8 +143,8 @@ fn tell(
     let text = text.render().unwrap_or_default();
     match (arguments.format, timing) {
         (Printed::Table, _) => print(&text),
-        (Printed::Json, Some(timing)) => Format::Json.print(timing, |_| String::new()),
-        (Printed::Json, None) => Format::Json.print(judged, |_| String::new()),
+        (Printed::Json, Some(timing)) => Format::Json.print(timing, String::new),
+        (Printed::Json, None) => Format::Json.print(judged, String::new),
         (Printed::Junit, _) => {
             let reason = failure.as_ref().map(CliError::to_string);
             let junit = Junit {

@@ -7,15 +7,15 @@ const REFUSED: &str = "
 --noise-sd-n 0.1 => --depth-mm
 --depth-mm 3 --noise-sd-lateral-n 1 => --noise-sd-normal-n
 --depth-mm 3 --noise-sd-n 0.1 --noise-sd-lateral-n 1 --noise-sd-normal-n 1 => cannot be used with
---depth-mm 3 --noise-sd-n 0 => expected N above 0
---depth-mm 3 --noise-sd-n -1 => expected N above 0
---depth-mm 3 --noise-sd-n nan => expected N above 0
---depth-mm inf --noise-sd-n 1 => expected a finite number
+--depth-mm 3 --noise-sd-n 0 => must be a force above 0 in N
+--depth-mm 3 --noise-sd-n -1 => must be a force above 0 in N
+--depth-mm 3 --noise-sd-n nan => must be a force above 0 in N
+--depth-mm inf --noise-sd-n 1 => must be a position in mm
 --depth-mm -1 --noise-sd-n 1 => depth -0.001 m is outside the map
 --depth-mm 3.5 --noise-sd-n 1 => expected 0.002 to 0.003 m
 --depth-mm 3 --noise-sd-n 0.1 --prior-h1 1 => strictly between 0 and 1
---depth-mm 3 --noise-sd-n 0.1 --max-miss 0.1 => --criterion map: expected no --max-miss and no --max-false-alarm
---depth-mm 3 --noise-sd-n 0.1 --criterion neyman-pearson-miss => expected a --max-miss and no --max-false-alarm
+--depth-mm 3 --noise-sd-n 0.1 --max-miss 0.1 => --criterion map takes neither --max-miss nor --max-false-alarm
+--depth-mm 3 --noise-sd-n 0.1 --criterion neyman-pearson-miss => --criterion neyman-pearson-miss needs --max-miss and takes no --max-false-alarm
 --depth-mm 3 --noise-sd-n 0.1 --criterion neyman-pearson => neyman-pearson-miss
 --depth-mm 3 --noise-sd-n 0.1 --velocity-mm-s 1 => --start-mm
 --depth-mm 3 --noise-sd-n 0.1 --velocity-mm-s 1 --start-mm 0 => expected neither velocity nor start
@@ -25,11 +25,11 @@ const REFUSED: &str = "
 --depth-mm 3 --noise-sd-n 0.1 --simulations 1000 => cannot be used with '--simulations
 --depth-mm 3 --noise-sd-n 0.1 --prior prior.csv => cannot be used with '--prior
 --depth-mm 3 --known ofset => \"ofset\" is none of offset, drift, gain, depth, variance, all and none
---depth-mm 3 --known variance => --known variance: expected --noise-sd-n, or --noise FILE
---depth-mm 3 --known all => --known variance: expected --noise-sd-n, or --noise FILE
+--depth-mm 3 --known variance => --known variance needs --noise-sd-n, or --noise FILE
+--depth-mm 3 --known all => --known variance needs --noise-sd-n, or --noise FILE
 --depth-mm 3 --noise pink => pink: cannot be read
 --depth-mm 3 --noise with.csv => with.csv: 33 samples, expected at least 100
---depth-mm 3 --depth-tolerance-mm -1 => expected mm, at least 0
+--depth-mm 3 --depth-tolerance-mm -1 => must be a length of at least 0 in mm
 ";
 
 // Verifies: CLI-041, CLI-042, CLI-003, CLI-048, CLI-140.
@@ -57,6 +57,8 @@ with.csv --reference other-gel.json --inclusion inclusion.json => phantom.layer[
 with.csv --reference coarse.json --inclusion inclusion.json => mesh_size_m is
 with.csv --reference with.csv --inclusion inclusion.json => with.csv:2: no column depth_mm or depth_m in the header
 with.csv --bank missing.json => missing.json: cannot be read
+with.csv --bank bank.json --simulations 9 => --max-false-alarm
+with.csv --bank bank.json --simulations 9 --max-false-alarm 0.1 => --criterion map takes neither
 ";
 
 // Verifies: TRC-004, TRC-008, TRC-024, TRC-025, CLI-047, CLI-140, MAP-033.

@@ -7,6 +7,7 @@ use palpate::detect::Decision;
 use palpate::fem::FemError;
 use palpate::force_map::ForceMap as Map;
 use palpate::refusal::Refusal;
+use palpate::rows::CREDIBLE;
 use palpate::trace::{Correlation, Criterion, Noise, Question, Record, Trace, Unknown};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -27,8 +28,6 @@ const NAMES: [(&str, i32); 4] = [
     ("diameter_mm", 3),
     ("youngs_modulus_kpa", -3),
 ];
-/// The probability of the intervals of an inclusion's parameters.
-const CREDIBLE: f64 = 0.95;
 
 /// What belongs to each parameter, by name and in its unit.
 fn named<T: Serialize>(of: impl Fn(usize, i32) -> T) -> Value {
@@ -106,8 +105,8 @@ fn criterion(max_miss: Option<f64>, max_false_alarm: Option<f64>) -> PyResult<Cr
     }
 }
 
-/// What a search says, for Python.
-fn told<'py>(py: Python<'py>, found: &Location) -> PyResult<Bound<'py, PyAny>> {
+/// The rows of an answer, with parameters of the inclusion in mm and kPa.
+fn told<'py>(py: Python<'py>, bank: &bank::Bank, found: &Location) -> PyResult<Bound<'py, PyAny>> {
     let place = &found.place;
     let at = |point: [f64; 4]| named(|axis, power| in_unit(point[axis], power));
     let intervals = [0, 1, 2, 3].map(|axis| place.interval(axis, CREDIBLE));
@@ -115,24 +114,17 @@ fn told<'py>(py: Python<'py>, found: &Location) -> PyResult<Bound<'py, PyAny>> {
         let ends = intervals[axis].as_ref().ok();
         ends.map(|ends| [ends.lower, ends.upper].map(|end| in_unit(end, power)))
     };
-    let answer = json!({
-        "inclusion": found.decision.map(|decision| decision == Decision::Inclusion),
-        "causes": found.causes,
-        "posterior_h1": found.posterior,
-        "theta_max": found.theta_max,
-        "theta_mixture": found.theta_mixture,
-        "eta": found.eta,
-        "false_alarm_bound": found.false_alarm_bound,
-        "miss_bound": found.miss_bound,
-        "gamma": found.test.gamma,
-        "gamma_nominal": found.gamma_nominal,
-        "noise_sd_n": found.fit.noise_sd.into_array(),
-        "likeliest": at(found.point),
-        "estimate": at(place.estimate),
-        "mean": at(place.mean()),
-        "interval_95": named(interval),
-    });
-    let answer = python(py, &answer)?;
+    let answer = python(py, &found.rows(bank).map_err(refused)?)?;
+    let decided = found.decision.map(|decision| decision == Decision::Inclusion);
+    answer.set_item("inclusion", decided)?;
+    for (key, named) in [
+        ("likeliest", at(found.point)),
+        ("estimate", at(place.estimate)),
+        ("mean", at(place.mean())),
+        ("interval_95", named(interval)),
+    ] {
+        answer.set_item(key, python(py, &named)?)?;
+    }
     let nodes: Vec<_> = place.nodes().collect();
     let powers = NAMES.map(|(_, power)| power);
     let places = nodes
@@ -238,9 +230,9 @@ impl Bank {
     }
 
     /// Is one of the bank's inclusions in a record, and where? A dictionary: inclusion (True, False, or None where the record cannot be
-    /// judged, for the causes), posterior_h1, theta_max, theta_mixture, eta, bounds on the rates of error, gamma; the likeliest of the
-    /// bank, and estimate, mean and interval_95 of each parameter in mm and kPa if there is one; places, shape (m, 4), in the order
-    /// of the bank's axes, and their probabilities, shape (m,).
+    /// judged, for the causes) and the answer of palpate detect with the keys of its JSON, in SI (decision, posterior_h1, theta_max, eta,
+    /// gamma ...); likeliest, estimate, mean and interval_95 of each parameter in mm and kPa, if there is an inclusion; places,
+    /// shape (m, 4), in the order of the bank's axes, and their probabilities, shape (m,).
     ///
     /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N. noise_sd_n: of a sample in N, one for both
     /// channels or (lateral, normal), or None if the record tells. unknown: what is fitted, of offset, drift, gain, depth and variance.
@@ -285,7 +277,7 @@ impl Bank {
             simulations: None,
         };
         let found = py.detach(|| search.locate(&record));
-        told(py, &found.map_err(refused)?)
+        told(py, &self.0, &found.map_err(refused)?)
     }
 
     fn __repr__(&self) -> String {

@@ -1,6 +1,5 @@
-//! `palpate detect`: a recorded sweep against two force maps (`spec/command-line.md`).
+//! `palpate detect`: a recorded sweep against two force maps or a bank (`spec/command-line.md`).
 
-mod answer;
 pub mod arguments;
 
 use std::fmt::Display;
@@ -8,93 +7,80 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::output::{note, print, write};
-use super::{CliError, Format};
-use answer::DetectAnswer;
+use super::CliError;
+use super::output::{Envelope, note, write};
 pub use arguments::DetectArguments;
 use palpate::bank::{Bank, BankSearch};
 use palpate::chart::place_figure;
 use palpate::detect::Decision;
 use palpate::force_map::{ForceMap, ForceTable, Hypotheses};
 use palpate::refusal::one_line;
+use palpate::rows::Rows;
 use palpate::trace::{Cause, Fit, Motion, Question, Record, Trace, Unknown, in_words};
-
-/// What was asked.
-fn asked(arguments: &DetectArguments, depth: f64, samples: usize) -> DetectAnswer {
-    let mut answer = DetectAnswer::default();
-    answer.tell("schema", "palpate-detection");
-    answer.tell("schema_version", 3);
-    answer.tell("program_version", env!("CARGO_PKG_VERSION"));
-    let path = |path: &Path| path.display().to_string();
-    answer.tell("trace", path(&arguments.trace));
-    let files = [
-        ("reference", &arguments.reference),
-        ("inclusion", &arguments.inclusion),
-        ("bank", &arguments.bank),
-        ("prior", &arguments.prior),
-    ];
-    for (key, file) in files {
-        file.iter().for_each(|file| answer.tell(key, path(file)));
-    }
-    answer.tell("samples", samples);
-    answer.tell("depth_m", depth);
-    answer.tell("depth_tolerance_m", arguments.depth_tolerance_mm);
-    answer.tell("unknown", json!(arguments.unknown.0));
-    answer.tell("noise", &*arguments.noise);
-    answer.tell("prior_h1", arguments.prior_h1);
-    answer.tell("criterion", arguments.criterion_name());
-    let bounds = [
-        ("max_miss", arguments.max_miss),
-        ("max_false_alarm", arguments.max_false_alarm),
-    ];
-    for (key, bound) in bounds {
-        bound.into_iter().for_each(|rate| answer.tell(key, rate));
-    }
-    answer
-}
 
 /// Runs the command.
 ///
 /// Implements: CLI-040, CLI-043, CLI-003, CLI-048, CLI-055, CLI-017, CLI-140, CLI-143, CLI-146.
 pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
-    let motion = arguments.velocity_mm_s.zip(arguments.start_mm);
-    let motion = motion.map(|(velocity, start)| Motion { velocity, start });
+    let sweep = &arguments.sweep;
+    let motion = sweep.velocity.zip(sweep.start);
     let trace = Trace::read(&arguments.trace)?;
-    trace
-        .notes()
-        .iter()
-        .for_each(|text| note(arguments.trace.display(), text));
-    let record = trace.record(motion)?;
-    let mut warnings = Warnings::default();
-    let mut found = match &arguments.bank {
-        Some(path) => by_bank(arguments, record, path, &mut warnings)?,
-        None => by_maps(arguments, record, &mut warnings)?,
-    };
-    found.answer.tell("warnings", warnings.0);
-    print(&match arguments.format {
-        Format::Table => format!(
-            "{}\n{}\n",
-            found.answer.table,
-            conclusion(&arguments.unknown.0, &found)
-        ),
-        Format::Json => found.answer.json(),
-    })?;
-    match found.decision {
-        Some(_) => Ok(()),
-        None => {
-            let (file, why) = (arguments.trace.display(), reasons(&found.causes));
-            let why = format!("{file}: cannot be judged: {why}");
-            Err(CliError::Unjudged(why))
-        }
+    for text in trace.notes() {
+        note(arguments.trace.display(), text);
+    }
+    let record = trace.record(motion.map(|(velocity, start)| Motion { velocity, start }))?;
+    match &arguments.hypotheses.bank {
+        Some(path) => by_bank(arguments, record, path),
+        None => by_maps(arguments, record),
     }
 }
 
-/// What a record says.
-struct Found {
-    answer: DetectAnswer,
-    decision: Option<Decision>,
-    causes: Vec<Cause>,
-    fit: Fit,
+/// The record judged where two maps have the inclusion.
+fn by_maps(arguments: &DetectArguments, record: Record) -> Result<(), CliError> {
+    // The parser has refused all but a bank or both maps with a depth.
+    let (none, files) = (PathBuf::new(), &arguments.hypotheses);
+    let [reference_path, path] =
+        [&files.reference, &files.inclusion].map(|path| path.as_ref().unwrap_or(&none));
+    let (reference, inclusion) = (map(reference_path)?, map(path)?);
+    let depth = arguments.sweep.depth.unwrap_or(0.0);
+    let record = trimmed(arguments, record, reference.table())?;
+    let mut warnings = Warnings::default();
+    let table = reference.table();
+    let question = question(arguments, depth, table, reference_path, &mut warnings)?;
+    let any_maps = files.any_maps;
+    let hypotheses = hypotheses(any_maps, path, &reference, &inclusion, &mut warnings)?;
+    let found = question.judge(hypotheses, &record)?;
+    let mut rows = asked(arguments, depth, &record);
+    rows.append(found.rows());
+    let verdict = (found.decision, &found.causes[..], &found.fit);
+    tell(arguments, verdict, rows, warnings)
+}
+
+/// The record searched for any inclusion of a bank.
+///
+/// Implements: CLI-140, CLI-040, CLI-163.
+fn by_bank(arguments: &DetectArguments, record: Record, path: &Path) -> Result<(), CliError> {
+    let bank = Bank::read(path)?;
+    let (files, table) = (&arguments.hypotheses, bank.reference().table());
+    let depth = arguments.sweep.depth.unwrap_or(bank.depth());
+    let record = trimmed(arguments, record, table)?;
+    let prior = files.prior.as_ref();
+    let prior = prior.map(|file| bank.read_prior(file)).transpose()?;
+    let mut warnings = Warnings::default();
+    let search = BankSearch {
+        question: question(arguments, depth, table, path, &mut warnings)?,
+        bank: &bank,
+        prior: prior.as_deref(),
+        simulations: files.simulations.map(|number| (number, files.seed)),
+    };
+    let found = search.locate(&record)?;
+    if let Some(path) = &files.figure {
+        write(path, &place_figure(&bank, &found.place)?)?;
+    }
+    let mut rows = asked(arguments, depth, &record);
+    rows.append(found.rows(&bank)?);
+    let verdict = (found.decision, &found.causes[..], &found.fit);
+    tell(arguments, verdict, rows, warnings)
 }
 
 /// The record without the samples outside `map`, if that was asked for.
@@ -103,7 +89,7 @@ fn trimmed(
     record: Record,
     map: &ForceTable,
 ) -> Result<Record, CliError> {
-    if !arguments.trim {
+    if !arguments.sweep.trim {
         return Ok(record);
     }
     let (record, left_out) = record.trimmed(map)?;
@@ -119,108 +105,96 @@ fn question<'a>(
     file: &Path,
     warnings: &mut Warnings,
 ) -> Result<Question<'a>, CliError> {
-    if arguments.depth_tolerance_mm > 0.0
-        && !arguments.unknown.0.contains(&Unknown::Depth)
-        && reference.depths().len() == 1
-    {
-        let text = "a single depth: what another depth within its tolerance does is not counted";
+    let unknown = &arguments.noise.known.unknown;
+    let depth_tolerance = arguments.sweep.depth_tolerance;
+    let has_one_depth = reference.depths().len() == 1;
+    if depth_tolerance > 0.0 && has_one_depth && !unknown.contains(&Unknown::Depth) {
+        let text = "the map has a single depth: the depth tolerance has no effect";
         warnings.tell("single_depth", file.display(), text);
     }
     Ok(Question {
         depth,
-        depth_tolerance: arguments.depth_tolerance_mm,
-        unknown: &arguments.unknown.0,
-        noise: arguments.noise()?,
-        criterion: arguments.criterion()?,
-        prior_h1: arguments.prior_h1,
+        depth_tolerance,
+        unknown,
+        noise: arguments.noise.noise()?,
+        criterion: arguments.criterion.criterion()?,
+        prior_h1: arguments.criterion.prior_h1,
     })
 }
 
-/// The record judged where two maps have the inclusion.
-fn by_maps(
-    arguments: &DetectArguments,
-    record: Record,
-    warnings: &mut Warnings,
-) -> Result<Found, CliError> {
-    // The parser has refused all but a bank or both maps with a depth.
-    let (none, path) = (PathBuf::new(), &arguments.inclusion);
-    let [reference_path, path] = [&arguments.reference, path].map(|p| p.as_ref().unwrap_or(&none));
-    let (reference, inclusion) = (map(reference_path)?, map(path)?);
-    let depth = arguments.depth_mm.unwrap_or(0.0);
-    let record = trimmed(arguments, record, reference.table())?;
-    let question = question(
-        arguments,
-        depth,
-        reference.table(),
-        reference_path,
-        warnings,
-    )?;
-    let hypotheses = hypotheses(arguments.any_maps, path, &reference, &inclusion, warnings)?;
-    let found = question.judge(hypotheses, &record)?;
-    let mut answer = asked(arguments, depth, record.positions().len());
-    answer.judged(&found);
-    Ok(Found {
-        answer,
-        decision: found.decision,
-        causes: found.causes,
-        fit: found.fit,
-    })
-}
-
-/// The record searched for any inclusion of a bank.
-///
-/// Implements: CLI-140, CLI-040, CLI-163.
-fn by_bank(
-    arguments: &DetectArguments,
-    record: Record,
-    path: &Path,
-    warnings: &mut Warnings,
-) -> Result<Found, CliError> {
-    let bank = Bank::read(path)?;
-    let depth = arguments.depth_mm.unwrap_or(bank.depth());
-    let record = trimmed(arguments, record, bank.reference().table())?;
-    let prior = arguments.prior.as_ref();
-    let prior = prior.map(|file| bank.read_prior(file)).transpose()?;
-    let search = BankSearch {
-        question: question(arguments, depth, bank.reference().table(), path, warnings)?,
-        bank: &bank,
-        prior: prior.as_deref(),
-        simulations: arguments.simulations.map(|number| (number, arguments.seed)),
-    };
-    let found = search.locate(&record)?;
-    if let Some(path) = &arguments.figure {
-        write(path, &place_figure(&bank, &found.place)?)?;
+/// What was asked.
+fn asked(arguments: &DetectArguments, depth: f64, record: &Record) -> Rows {
+    let mut rows = Rows::default();
+    let path = |path: &Path| path.display().to_string();
+    rows.value("trace", path(&arguments.trace));
+    let files = &arguments.hypotheses;
+    for (key, file) in [
+        ("reference", &files.reference),
+        ("inclusion", &files.inclusion),
+        ("bank", &files.bank),
+        ("prior", &files.prior),
+    ] {
+        file.iter().for_each(|file| rows.value(key, path(file)));
     }
-    let mut answer = asked(arguments, depth, record.positions().len());
-    answer.located(&bank, &found)?;
-    Ok(Found {
-        answer,
-        decision: found.decision,
-        causes: found.causes,
-        fit: found.fit,
-    })
+    rows.value("samples", record.positions().len());
+    rows.value("depth_m", depth);
+    rows.value("depth_tolerance_m", arguments.sweep.depth_tolerance);
+    rows.value("unknown", json!(arguments.noise.known.unknown));
+    rows.value("noise", &*arguments.noise.noise);
+    let criterion = &arguments.criterion;
+    rows.value("prior_h1", criterion.prior_h1);
+    rows.value("criterion", criterion.name());
+    for (key, rate) in [
+        ("max_miss", criterion.max_miss),
+        ("max_false_alarm", criterion.max_false_alarm),
+    ] {
+        rate.into_iter().for_each(|rate| rows.value(key, rate));
+    }
+    rows
+}
+
+/// The decision; why there is none, the likeliest cause first; how well the record fits.
+type Verdict<'a> = (Option<Decision>, &'a [Cause], &'a Fit);
+
+/// Prints the answer.
+///
+/// Implements: CLI-045, CLI-043, CLI-003.
+fn tell(
+    arguments: &DetectArguments,
+    verdict: Verdict,
+    mut rows: Rows,
+    warnings: Warnings,
+) -> Result<(), CliError> {
+    rows.value("warnings", warnings.0);
+    let table = format!("{}\n{}\n", rows.table(), conclusion(arguments, verdict));
+    let answer = Envelope::new("palpate-detection", 3, rows);
+    arguments.format.print(&answer, || table)?;
+    match verdict {
+        (Some(_), ..) => Ok(()),
+        (None, causes, _) => {
+            let (file, why) = (arguments.trace.display(), reasons(causes));
+            let why = format!("{file}: cannot be judged: {why}");
+            Err(CliError::Unjudged(why))
+        }
+    }
 }
 
 /// What was decided, whether the record fits, and what was assumed.
 ///
 /// Implements: CLI-043.
-fn conclusion(unknown: &[Unknown], found: &Found) -> String {
-    let fits = match found.fit.limits {
-        None => "in the noise that the record itself shows",
-        Some(_) => "in a record that fits the noise stated",
+fn conclusion(arguments: &DetectArguments, (decision, causes, fit): Verdict) -> String {
+    let noise = match fit.limits {
+        None => "with the noise estimated from the record",
+        Some(_) => "and the record fits the stated noise",
     };
-    let decided = match found.decision {
-        Some(Decision::Inclusion) => format!("An inclusion was found, {fits}"),
-        Some(Decision::NoInclusion) => format!("No inclusion was found, {fits}"),
-        None => format!("The record cannot be judged: {}", reasons(&found.causes)),
+    let decided = match decision {
+        Some(Decision::Inclusion) => format!("Inclusion detected, {noise}"),
+        Some(Decision::NoInclusion) => format!("No inclusion detected, {noise}"),
+        None => format!("The record cannot be judged: {}", reasons(causes)),
     };
-    let names = |is_known: bool| {
-        let of = Unknown::ALL.into_iter();
-        let of = of.filter(|of| is_known != unknown.contains(of));
-        in_words(&of.collect::<Vec<_>>())
-    };
-    let (known, fitted) = (names(true), names(false));
-    format!("{decided}; taken as known: {known}; fitted: {fitted}.")
+    let known = &arguments.noise.known;
+    let [known, fitted] = [&known.known, &known.unknown].map(|names| in_words(names));
+    format!("{decided}. Known: {known}. Fitted: {fitted}.")
 }
 
 fn reasons(causes: &[Cause]) -> String {
@@ -249,7 +223,7 @@ fn map(path: &Path) -> Result<ForceMap, CliError> {
     Err(CliError::refused(path.display())(hint))
 }
 
-/// Refuses maps of which one is not the other with an inclusion, or tells of them where they are meant.
+/// Refuses maps of which one is not the other with an inclusion, or warns of them where they are meant.
 ///
 /// Implements: CLI-047.
 fn hypotheses<'a>(

@@ -20,7 +20,7 @@ struct StudyFile {
     rows: usize,
     #[serde(default = "first_seed")]
     seed: u32,
-    /// As of 'palpate run --config', with one depth.
+    /// As in 'palpate run --config', with one depth.
     #[serde(default)]
     run: Config,
     #[serde(rename = "input")]
@@ -48,13 +48,15 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
     })?;
     let run = file.run;
     let of_file = |refusal: Refusal| refusal.in_file(&*name);
-    let [probe_depth] = run.depths_mm.0[..] else {
-        let found = format!("{} depths", run.depths_mm.0.len());
-        return Err(of_file(Refusal::value("run.depths_mm", found, "one, such as \"4\"")).into());
+    let refused = |found: String| CliError::from(of_file(Refusal::state(found, "")));
+    let [probe_depth] = run.depths.0[..] else {
+        let depths = run.depths.0.len();
+        let found = format!("run.depths_mm has {depths} depths; give one, such as \"4\"");
+        return Err(refused(found));
     };
     if !run.measured.is_empty() {
-        let refusal = Refusal::state("run.measured is given", "none: nothing is computed from it");
-        return Err(of_file(refusal).into());
+        let found = "run.measured has no effect in a study; remove it";
+        return Err(refused(found.into()));
     }
     let mut phantoms = run.read_phantoms()?;
     let mut inputs = file.inputs;
@@ -62,13 +64,10 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
         if let Distribution::Empirical { values, file } = &mut input.distribution
             && let Some(table) = file.take()
         {
-            let key = format!("input[{at}].distribution.empirical");
             if !values.is_empty() {
-                return Err(of_file(Refusal::state(
-                    key + " has values and a file",
-                    "one of them",
-                ))
-                .into());
+                return Err(refused(format!(
+                    "input[{at}].distribution.empirical has both values and a file; give one of them"
+                )));
             }
             *values = parse(&run.file(&table), column)?;
         }
@@ -78,7 +77,7 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
         reference,
         phantoms,
         probe_depth,
-        laterals: run.laterals_mm.0.clone(),
+        laterals: run.laterals.0.clone(),
         mesh_size: run.mesh.size_mm / 1e3,
         contact: run.mesh.contact,
         noise_sd: run.detection.noise_sd_n,

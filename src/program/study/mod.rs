@@ -1,4 +1,4 @@
-//! `palpate study`: what uncertain inputs do to every number (`spec/study.md`).
+//! `palpate study`: propagation of input uncertainty (`spec/study.md`).
 
 mod file;
 mod records;
@@ -10,8 +10,7 @@ use clap::{Args, Subcommand};
 use rayon::prelude::*;
 
 use super::CliError;
-use super::arguments::Format;
-use super::output::{make_folder, note, print, write};
+use super::output::{Format, make_folder, note, print, write};
 use super::part::Part;
 use super::progress::bar;
 use file::read_plan;
@@ -29,19 +28,19 @@ pub struct StudyArguments {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// Computes the samples, all or those of one shard; continues an aborted run
+    /// Computes the samples, all of them or one shard; continues an aborted run
     Run(StudyRunArguments),
-    /// Merges the samples of all shards and analyses them
+    /// Merges the samples of all shards and analyses them: uncertainty bands and sensitivity indices
     Merge(MergeArguments),
 }
 
 /// Arguments of `palpate study run`.
 #[derive(Debug, Args)]
 pub struct StudyRunArguments {
-    /// A TOML file that says what is varied, how, and what is computed
+    /// TOML file with the uncertain inputs, their distributions, and what to compute
     #[arg(value_name = "STUDY")]
     study: PathBuf,
-    /// The folder for the samples
+    /// Output folder for the samples
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Computes only the samples of shard K of N
@@ -52,13 +51,13 @@ pub struct StudyRunArguments {
 /// Arguments of `palpate study merge`.
 #[derive(Debug, Args)]
 pub struct MergeArguments {
-    /// The folders that 'palpate study run' wrote
+    /// Folders written by 'palpate study run'
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
-    /// The file for the results
+    /// Output file for the results
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
-    /// How the answer is printed
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
 }
@@ -86,12 +85,12 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
     })?;
     let done = total - progress.left();
     if done > 0 {
-        let text = format!("{done} of {total} samples taken over");
+        let text = format!("{done} of {total} samples already computed");
         note(path.display(), &text);
     }
     let bar = bar(total, "samples");
     bar.inc(done as u64);
-    // What others took is no measure of the time left.
+    // The estimate of the time left counts this run alone.
     bar.reset_eta();
     let compute = |sample: usize| {
         let outcome = match sampler.sample(sample) {
@@ -135,14 +134,14 @@ impl Progress {
         self.pending.iter().filter(|pending| **pending).count()
     }
 
-    /// Takes a line of the file over.
+    /// Takes a finished sample over.
     fn take_over(&mut self, sampler: &Sampler<'_>, text: &str) -> Result<(), Refusal> {
         let (samples, quantities) = (sampler.design().samples(), sampler.quantities().len());
         let record = Record::parse(text, samples, quantities)?;
         if !std::mem::take(&mut self.pending[record.sample]) {
             let sample = record.sample;
-            let found = format!("sample {sample}, which is there already or of another shard");
-            return Err(Refusal::state(found, "each of this shard once"));
+            let found = format!("sample {sample} appears twice or belongs to another shard");
+            return Err(Refusal::state(found, ""));
         }
         self.failed += usize::from(record.is_failed());
         Ok(())
@@ -161,9 +160,9 @@ fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
     // Keys are strings, and all numbers are finite.
     let text = serde_json::to_string(&results).unwrap_or_default() + "\n";
     write(&arguments.out, &text)?;
-    arguments.format.print(&results, |results| {
-        Table { results }.render().unwrap_or_default()
-    })
+    let table = Table { results: &results };
+    let table = || table.render().unwrap_or_default();
+    arguments.format.print(&results, table)
 }
 
 /// The results for people.

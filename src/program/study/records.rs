@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::CliError;
+use crate::output::Envelope;
 use crate::part::take_lines;
 use palpate::fem::arithmetic;
 use palpate::force_map::parse;
@@ -18,27 +19,23 @@ use palpate_paper::study::{Failure, StudyPlan};
 /// How the first line of each file begins.
 pub const BEGINNING: &str = "{\"schema\":\"palpate-study-samples\"";
 
-/// The first line: all that the samples depend on.
+/// What the first line says: all that the samples depend on.
 #[derive(Serialize)]
 pub struct Header<'a> {
-    schema: &'static str,
-    schema_version: u64,
-    program_version: &'static str,
     arithmetic: &'static str,
     shard: Shard,
     plan: &'a StudyPlan,
 }
 
 impl<'a> Header<'a> {
-    pub fn new(plan: &'a StudyPlan, shard: Shard) -> Header<'a> {
-        Header {
-            schema: "palpate-study-samples",
-            schema_version: 1,
-            program_version: env!("CARGO_PKG_VERSION"),
-            arithmetic: arithmetic(),
+    pub fn new(plan: &'a StudyPlan, shard: Shard) -> Envelope<Header<'a>> {
+        let arithmetic = arithmetic();
+        let header = Header {
+            arithmetic,
             shard,
             plan,
-        }
+        };
+        Envelope::new("palpate-study-samples", 1, header)
     }
 }
 
@@ -61,9 +58,7 @@ impl Shard {
         let numbers = parts.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
         match numbers {
             Some((number, of)) if number >= 1 && number <= of => Ok(Shard { number, of }),
-            _ => Err(format!(
-                "{text:?}: expected k/n with 1 ≤ k ≤ n, such as 3/17"
-            )),
+            _ => Err(format!("{text:?} must be k/n with 1 ≤ k ≤ n, such as 3/17")),
         }
     }
 
@@ -108,13 +103,11 @@ impl Record {
             Outcome::Values(values) => values.len() == quantities,
             Outcome::Failed(_) => true,
         };
-        match record.sample < samples && fits {
-            true => Ok(record),
-            false => Err(Refusal::state(
-                "no sample of this study",
-                "one: delete the file",
-            )),
+        if record.sample < samples && fits {
+            return Ok(record);
         }
+        let found = "this line is not a sample of this study; delete the file and run again";
+        Err(Refusal::state(found, ""))
     }
 }
 
@@ -147,7 +140,7 @@ impl Records {
             files.retain(is_ours);
             files.sort();
             if files.is_empty() {
-                let reason = "no samples-K-of-N.jsonl, expected a folder of 'palpate study run'";
+                let reason = "the folder has no samples-K-of-N.jsonl; give one written by 'palpate study run'";
                 return Err(CliError::refused(folder.display())(reason));
             }
             for file in files {
@@ -158,7 +151,8 @@ impl Records {
                 });
                 if let Some(key) = difference(&records.header, &header) {
                     let first = records.files[0].display();
-                    let reason = format!("of another study than {first}: its {key} is another one");
+                    let reason =
+                        format!("belongs to a different study than {first}: {key} differs");
                     return Err(CliError::refused(file.display())(reason));
                 }
                 records.files.push(file);
@@ -207,12 +201,9 @@ impl Records {
         self.each(samples, quantities, |record, file| {
             let place = &mut file_of[record.sample];
             if let Some(other) = self.files.get(*place as usize) {
-                let found = format!(
-                    "sample {}, which {} has too",
-                    record.sample,
-                    other.display()
-                );
-                return Err(Refusal::state(found, "each sample once"));
+                let (sample, other) = (record.sample, other.display());
+                let found = format!("sample {sample} is also in {other}; delete one of them");
+                return Err(Refusal::state(found, ""));
             }
             *place = file as u32;
             if let Outcome::Failed(reason) = record.outcome {
@@ -223,14 +214,10 @@ impl Records {
             }
             Ok(())
         })?;
-        let missing = file_of
-            .iter()
-            .enumerate()
-            .filter(|(_, file)| **file == NONE);
-        let missing: Vec<usize> = missing.map(|(sample, _)| sample).collect();
+        let missing: Vec<usize> = (0..samples).filter(|&of| file_of[of] == NONE).collect();
         if let [first, ..] = missing[..] {
             return Err(CliError::Usage(format!(
-                "{} of {samples} samples are missing, the first is {first}, expected all: run 'palpate study run' again for their shards",
+                "{} of {samples} samples are missing, the first is {first}; run 'palpate study run' again for their shards",
                 missing.len()
             )));
         }
@@ -278,7 +265,9 @@ fn header(path: &Path) -> Result<Value, CliError> {
             header.remove("shard");
             Ok(header.into())
         }
-        _ => Err(CliError::refused(path.display())("no samples of a study")),
+        _ => Err(CliError::refused(path.display())(
+            "the first line is not that of a file of study samples",
+        )),
     }
 }
 
@@ -287,17 +276,10 @@ fn difference(one: &Value, other: &Value) -> Option<String> {
     if one == other {
         return None;
     }
-    let keys = one.as_object().into_iter().flatten().map(|(key, _)| key);
-    let inner = keys.filter_map(|key| {
+    let mut keys = one.as_object().into_iter().flatten().map(|(key, _)| key);
+    let inner = keys.find_map(|key| {
         let inner = difference(&one[key], &other[key])?;
         Some(format!("{key}.{inner}"))
     });
-    Some(
-        inner
-            .into_iter()
-            .next()
-            .unwrap_or_default()
-            .trim_end_matches('.')
-            .into(),
-    )
+    Some(inner.unwrap_or_default().trim_end_matches('.').into())
 }

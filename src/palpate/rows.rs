@@ -1,0 +1,283 @@
+//! The answer to a record, quantity by quantity: one list for programs (JSON, Python) and for people (a table).
+
+use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
+
+use crate::bank::{Bank, Location, Parameter};
+use crate::detect::Decision;
+use crate::detect::nuisance::{SubspaceTest, Threshold};
+use crate::force_map::SAME_POSITION;
+use crate::refusal::Refusal;
+use crate::trace::{Cause, Fit, Judgement};
+
+/// The probability of the interval of each parameter of an inclusion.
+pub const CREDIBLE: f64 = 0.95;
+
+/// One quantity.
+#[derive(Debug, Clone, PartialEq)]
+struct Row {
+    key: &'static str,
+    /// For programs, in SI units.
+    value: Value,
+    /// For people: label and text, lengths in mm. None if people need no line for it.
+    line: Option<[String; 2]>,
+}
+
+/// Quantities in the order in which they are printed. Serialised, they are an object.
+///
+/// ```
+/// use palpate::rows::Rows;
+///
+/// let mut rows = Rows::default();
+/// rows.value("samples", 401);
+/// rows.number("gamma", "gamma (signal-to-noise ratio)", 20.5);
+/// assert_eq!(serde_json::to_string(&rows).unwrap(), r#"{"samples":401,"gamma":20.5}"#);
+/// assert_eq!(rows.table(), "gamma (signal-to-noise ratio)      20.500000\n");
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Rows(Vec<Row>);
+
+impl Serialize for Rows {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|row| (row.key, &row.value)))
+    }
+}
+
+impl Rows {
+    /// Adds a quantity for programs alone.
+    pub fn value(&mut self, key: &'static str, value: impl Into<Value>) {
+        let value = value.into();
+        self.0.push(Row {
+            key,
+            value,
+            line: None,
+        });
+    }
+
+    /// Adds a number, of which people see six digits; a missing one is null, and has no line.
+    pub fn number(&mut self, key: &'static str, label: &str, number: impl Into<Option<f64>>) {
+        let number = number.into();
+        let line = number.map(|number| [label.into(), digits(number)]);
+        self.0.push(Row {
+            key,
+            value: number.into(),
+            line,
+        });
+    }
+
+    /// Adds a quantity that people see as `text`.
+    pub fn shown(
+        &mut self,
+        key: &'static str,
+        label: &str,
+        value: impl Into<Value>,
+        text: impl Into<String>,
+    ) {
+        let (value, line) = (value.into(), Some([label.into(), text.into()]));
+        self.0.push(Row { key, value, line });
+    }
+
+    /// Adds the quantities of `more`.
+    pub fn append(&mut self, more: Rows) {
+        self.0.extend(more.0);
+    }
+
+    /// The table for people.
+    pub fn table(&self) -> String {
+        let lines = self.0.iter().filter_map(|row| row.line.as_ref());
+        lines
+            .map(|[label, text]| format!("{label:<34} {text}\n"))
+            .collect()
+    }
+
+    fn decision(&mut self, decision: Option<Decision>, causes: &[Cause]) {
+        let key = match decision {
+            Some(Decision::Inclusion) => "inclusion",
+            Some(Decision::NoInclusion) => "no_inclusion",
+            None => "cannot_be_judged",
+        };
+        self.shown("decision", "decision", key, key.replace('_', " "));
+        self.value("causes", json!(causes));
+    }
+
+    /// T, γ and the amplitude of the signal, at one inclusion.
+    fn test(&mut self, test: &SubspaceTest, gamma_nominal: f64, posterior: Option<f64>) {
+        self.number("gamma", "gamma (signal-to-noise ratio)", test.gamma);
+        self.number(
+            "gamma_nominal",
+            "gamma if everything were known",
+            gamma_nominal,
+        );
+        self.number(
+            "amplitude",
+            "signal amplitude / predicted",
+            test.t / test.gamma,
+        );
+        self.number("amplitude_sd", "its standard deviation", 1.0 / test.gamma);
+        self.number("posterior_h1", "posterior P(inclusion)", posterior);
+    }
+
+    /// How well the record fits.
+    fn fit(&mut self, fit: &Fit) {
+        self.value("fits", fit.noise_is_right());
+        self.number(
+            "noise_sd_lateral_n",
+            "noise sd, lateral, N",
+            fit.noise_sd.lateral,
+        );
+        self.number(
+            "noise_sd_normal_n",
+            "noise sd, normal, N",
+            fit.noise_sd.normal,
+        );
+        match fit.limits {
+            None => self.value("chi_square", fit.chi_square),
+            Some(limits) => {
+                let [found, low, high] = [fit.chi_square, limits[0], limits[1]].map(digits);
+                let text = format!("{found} (accepted range {low} to {high})");
+                self.shown("chi_square", "residual chi-square", fit.chi_square, text);
+            }
+        }
+        self.value("chi_square_limits", fit.limits.map(Vec::from));
+        self.value("degrees", fit.degrees);
+        self.value("whiteness", fit.whiteness);
+        self.value("block", fit.block);
+        let effective = format!("{:.0}", fit.effective_samples);
+        let label = "effective samples, both channels";
+        self.shown("effective_samples", label, fit.effective_samples, effective);
+        self.number("level", "force level / reference map", fit.level);
+    }
+}
+
+impl Judgement {
+    /// The decision, the test behind it and how well the record fits.
+    ///
+    /// Implements: CLI-043, CLI-055.
+    pub fn rows(&self) -> Rows {
+        let mut rows = Rows::default();
+        rows.decision(self.decision, &self.causes);
+        rows.number("t", "T (detection statistic)", self.test.t);
+        let label = "T threshold";
+        match self.threshold {
+            Threshold::At(t) => rows.number("t_threshold", label, t),
+            Threshold::Always => {
+                rows.shown("t_threshold", label, Value::Null, "none: any T detects")
+            }
+            Threshold::Never => rows.shown("t_threshold", label, Value::Null, "none: no T detects"),
+        }
+        rows.number("theta", "theta (log-likelihood ratio)", self.test.theta());
+        let posterior = self.decision.map(|_| self.posterior);
+        rows.test(&self.test, self.gamma_nominal, posterior);
+        rows.number(
+            "false_alarm",
+            "P(false alarm) at most",
+            self.rates.false_alarm,
+        );
+        rows.number("miss", "P(miss) at most", self.rates.miss);
+        rows.fit(&self.fit);
+        rows
+    }
+}
+
+impl Location {
+    /// The decision, the tests behind it, where the inclusion of `bank` lies and how well the record fits.
+    ///
+    /// # Errors
+    /// An interval that is not finite.
+    ///
+    /// Implements: CLI-043, CLI-055, CLI-140.
+    pub fn rows(&self, bank: &Bank) -> Result<Rows, Refusal> {
+        let mut rows = Rows::default();
+        rows.decision(self.decision, &self.causes);
+        let name = if self.by_mixture {
+            "theta_mixture"
+        } else {
+            "theta_max"
+        };
+        rows.shown("decided_by", "decided by", name, format!("{name} >= eta"));
+        rows.number(
+            "theta_max",
+            "theta_max (best-fitting inclusion)",
+            self.theta_max,
+        );
+        rows.number(
+            "theta_mixture",
+            "theta_mixture (any inclusion)",
+            self.theta_mixture,
+        );
+        rows.number("eta", "eta (threshold)", self.eta);
+        if let Some(calibrated) = self.calibrated {
+            let rate = calibrated.false_alarm;
+            let [low, high] = [rate.lower, rate.upper].map(digits);
+            let text = format!("{low} to {high} (99 % interval)");
+            let key = "calibrated_false_alarm";
+            rows.shown(
+                key,
+                "P(false alarm), simulated",
+                vec![rate.lower, rate.upper],
+                text,
+            );
+            rows.value("simulations", calibrated.simulations);
+        }
+        let posterior = self.decision.map(|_| self.posterior);
+        rows.test(&self.test, self.gamma_nominal, posterior);
+        rows.number(
+            "false_alarm_bound",
+            "P(false alarm) at most",
+            self.false_alarm_bound,
+        );
+        rows.number("miss_bound", "P(miss) of best fit at most", self.miss_bound);
+        rows.value("hypotheses", bank.maps().len());
+        self.place_rows(bank, &mut rows)?;
+        rows.fit(&self.fit);
+        Ok(rows)
+    }
+
+    /// The estimate of each parameter that the bank varies.
+    ///
+    /// Implements: CLI-153.
+    fn place_rows(&self, bank: &Bank, rows: &mut Rows) -> Result<(), Refusal> {
+        let mean = self.place.mean();
+        for (axis, parameter) in Parameter::ALL.into_iter().enumerate() {
+            let (&[first, .., last], sd) = (&bank.axes()[axis][..], self.bound.sd[axis]) else {
+                continue;
+            };
+            let (key, scale, label) = match parameter {
+                Parameter::Position => ("position", 1e3, "position, mm"),
+                Parameter::Depth => ("inclusion_depth", 1e3, "inclusion depth, mm"),
+                Parameter::Diameter => ("diameter", 1e3, "diameter, mm"),
+                Parameter::Modulus => ("youngs_modulus", 1e-3, "Young's modulus, kPa"),
+            };
+            let estimate = self.place.estimate[axis];
+            let interval = self.place.interval(axis, CREDIBLE)?;
+            let ends = [interval.lower, interval.upper];
+            let value = json!({"estimate": estimate, "mean": mean[axis], "interval": ends, "sd_bound": sd, "unit": parameter.unit()});
+            let shown = |x: f64| format!("{:.3}", scale * x);
+            let [low, high] = ends.map(shown);
+            let sd = sd.map_or("unknown".into(), |sd| format!("at least {}", shown(sd)));
+            let at_end = [first, last]
+                .iter()
+                .any(|end| (end - estimate).abs() <= SAME_POSITION);
+            let beyond = if at_end {
+                "; at an end of the bank, may lie beyond"
+            } else {
+                ""
+            };
+            let text = format!(
+                "{}, 95 % interval {low} to {high}, sd {sd}{beyond}",
+                shown(estimate)
+            );
+            rows.shown(key, label, value, text);
+        }
+        Ok(())
+    }
+}
+
+/// Six digits.
+fn digits(value: f64) -> String {
+    if value != 0.0 && !(1e-4..1e6).contains(&value.abs()) {
+        format!("{value:.5e}")
+    } else {
+        format!("{value:.6}")
+    }
+}
