@@ -400,6 +400,6 @@ fn maps_that_do_not_belong_together_are_taken_where_they_are_meant_and_told() {
     let maps = "--reference inclusion.json --inclusion inclusion.json --any-maps";
     let output = place().run(&format!("detect with.csv {maps} {USUAL}"));
     assert_eq!(output.status.code(), Some(2));
-    let told = "warning | number of inclusions is 1 | the maps do not differ";
+    let told = "warning | the reference map already contains an inclusion | the maps do not differ";
     has(text(&output.stderr), told.split(" | "));
 }

@@ -73,7 +73,7 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
     assert!(page.contains("Figure 7. Measured forces, “gel.csv”"));
     here.write("run.toml", config("palpate-out/maps/map-none.json"));
     let message = here.refused("run --config run.toml");
-    has(&message, ["map-none.json: a computed map"]);
+    has(&message, ["map-none.json: this map was computed"]);
 }
 
 // Verifies: CLI-130, CLI-031.

@@ -3,18 +3,19 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::CliError;
 use super::numbers::{List, contact, length, moduli, positions};
-use super::output::{Envelope, note, write};
+use super::output::{Envelope, write};
 use super::part::Part;
-use super::progress::{bar, tell_large_mesh};
+use super::progress::{resumed_bar, tell_large_mesh};
 use super::solve::{phantom, warn_of_large_strain_of};
 use palpate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
 use palpate::decimal::format_scaled;
-use palpate::fem::{Contact, FemError, arithmetic};
+use palpate::fem::{Contact, arithmetic};
 use palpate::force_map::{ForceMap, parse};
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
@@ -110,8 +111,9 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let plan = arguments.plan(&phantom)?;
     let solves = plan.solves()?;
     tell_large_mesh(&phantom, plan.mesh_size).map_err(CliError::fem(&phantom.name))?;
-    let (part, finished) = open_part(&plan, arguments, &phantom, &solves)?;
-    let mut maps = compute(&plan, &phantom.name, &solves, &part, finished)?;
+    let (part, finished, bar) = open_part(&plan, arguments, &phantom, &solves)?;
+    let mut maps = compute(&plan, &phantom.name, &solves, &part, finished, &bar)?;
+    bar.finish_and_clear();
     let det = |map: &ForceMap| map.certificate().map_or(1.0, |of| of.smallest_det.det);
     let worst = maps.iter().min_by(|a, b| det(a).total_cmp(&det(b)));
     if let Some(map) = worst {
@@ -159,7 +161,7 @@ fn open_part(
     arguments: &BankArguments,
     phantom: &Phantom,
     solves: &[BankSolve],
-) -> Result<(Part, Taken), CliError> {
+) -> Result<(Part, Taken, ProgressBar), CliError> {
     let request = Request {
         arithmetic: arithmetic(),
         phantom,
@@ -190,11 +192,8 @@ fn open_part(
         Ok(())
     })?;
     let taken = finished.iter().flatten().count();
-    if taken > 0 {
-        let text = format!("{taken} of {} maps already computed", finished.len());
-        note(path.display(), &text);
-    }
-    Ok((part, finished))
+    let bar = resumed_bar(&path, taken, finished.len(), "maps");
+    Ok((part, finished, bar))
 }
 
 /// Whether `maps` are those of a solve, or that of the reference.
@@ -217,11 +216,8 @@ fn compute(
     solves: &[BankSolve],
     part: &Part,
     finished: Taken,
+    bar: &ProgressBar,
 ) -> Result<Vec<ForceMap>, CliError> {
-    let bar = bar(finished.len(), phantom);
-    bar.inc(finished.iter().flatten().count() as u64);
-    // The estimate of the time left counts this run alone.
-    bar.reset_eta();
     let maps = |(number, finished): (usize, Option<Vec<ForceMap>>)| {
         if let Some(maps) = finished {
             return Ok(maps);
@@ -231,10 +227,8 @@ fn compute(
             Some(solve) => plan.solve(solve),
             None => plan.reference().map(|map| vec![map]),
         };
-        let failed = |error: FemError| {
-            CliError::fem(&name(phantom, solve.map(|solve| &solve.phantom)))(error)
-        };
-        let maps = solved.map_err(failed)?;
+        let name = || name(phantom, solve.map(|solve| &solve.phantom));
+        let maps = solved.map_err(|error| CliError::fem(&name())(error))?;
         part.append(&Finished {
             number,
             maps: &maps,
@@ -244,8 +238,7 @@ fn compute(
     };
     let maps = finished.into_par_iter().enumerate().map(maps);
     let maps = maps.collect::<Result<Vec<_>, CliError>>()?;
-    bar.finish_and_clear();
-    Ok(maps.into_iter().flatten().collect())
+    Ok(maps.concat())
 }
 
 /// The name of a phantom with its inclusion varied.

@@ -127,21 +127,17 @@ fn session(
         };
         write(path, &recording.to_text())?;
     }
-    let rounding = loaded.rounding();
     let held_up = played.held_up.filter(|_| !is_simulated);
     let summary = Summary {
         end: played.end.to_string(),
         counters: played.counters,
         held_up_ms: held_up.map(|time| time.as_millis() as u64),
-        rounding_position_m: rounding.position_m,
-        rounding_force_n: rounding.force_n,
+        rounding_position_m: loaded.rounding().position_m,
+        rounding_force_n: loaded.rounding().force_n,
         scale,
         timing: played.timing.filter(|_| !is_simulated),
     };
-    // With its keys sorted; neither this nor writing to a String fails.
-    let sorted = serde_json::to_value(&summary).unwrap_or_default();
-    let text = || summary.render().unwrap_or_default();
-    arguments.format.print(&sorted, text)?;
+    summary.print(arguments.format)?;
     match played.end {
         End::Asked => Ok(()),
         _ => Err(CliError::Check(summary.end)),
@@ -251,6 +247,14 @@ struct Summary {
     rounding_force_n: f64,
     scale: f64,
     timing: Option<Timing>,
+}
+
+impl Summary {
+    fn print(&self, format: Format) -> Result<(), CliError> {
+        // With its keys sorted; neither this nor writing to a String fails.
+        let sorted = serde_json::to_value(self).unwrap_or_default();
+        format.print(&sorted, || self.render().unwrap_or_default())
+    }
 }
 
 /// Plays a recording again.

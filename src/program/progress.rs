@@ -1,9 +1,11 @@
 //! What is told of long work.
 
 use std::io::IsTerminal;
+use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::output::note;
 use palpate::fem::{FemError, Mesh};
 use palpate::phantom::Phantom;
 
@@ -24,24 +26,33 @@ pub fn tell_large_mesh(phantom: &Phantom, size: f64) -> Result<(), FemError> {
     Ok(())
 }
 
+/// The bar of a computation that goes on with `done` of `total` pieces, which a note on `file` tells.
+pub fn resumed_bar(file: &Path, done: usize, total: usize, what: &str) -> ProgressBar {
+    if done > 0 {
+        let text = format!("{done} of {total} {what} already computed");
+        note(file.display(), &text);
+    }
+    let bar = bar(total, what);
+    bar.inc(done as u64);
+    // The estimate of the time left counts this run alone.
+    bar.reset_eta();
+    bar
+}
+
 /// A bar on standard error that counts `total` pieces of `what`; hidden where standard error is no
 /// terminal.
 ///
 /// Implements: CLI-006.
 pub fn bar(total: usize, what: &str) -> ProgressBar {
+    // The template is a constant: a mistake in it would show in every run.
+    let style = ProgressStyle::with_template("{msg} [{bar:30}] {pos}/{len} {eta}");
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
     let target = if std::io::stderr().is_terminal() {
         ProgressDrawTarget::stderr()
     } else {
         ProgressDrawTarget::hidden()
     };
-    let bar = ProgressBar::with_draw_target(Some(total as u64), target);
-    // The template is a constant: a mistake in it would show in every run.
-    let style = ProgressStyle::with_template("{msg} [{bar:30}] {pos}/{len} {eta}");
-    bar.set_style(
-        style
-            .unwrap_or_else(|_| ProgressStyle::default_bar())
-            .progress_chars("=> "),
-    );
-    bar.set_message(what.to_string());
-    bar
+    ProgressBar::with_draw_target(Some(total as u64), target)
+        .with_style(style.progress_chars("=> "))
+        .with_message(what.to_string())
 }

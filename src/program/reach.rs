@@ -14,6 +14,7 @@ use super::{CliError, Format};
 use palpate::bank::{Bank, Reach, Reached, smallest_diameters};
 use palpate::chart::reach_figure;
 use palpate::decimal::format_scaled;
+use palpate::force::Force;
 use palpate::refusal::Refusal;
 use palpate::trace::{Unknown, in_words};
 
@@ -45,10 +46,9 @@ pub struct ReachArguments {
     figure: Option<PathBuf>,
 }
 
-/// The answer; for people, lengths in mm.
-#[derive(Debug, Serialize, Template)]
-#[template(path = "cli.txt", block = "reach")]
-struct ReachAnswer {
+/// What was asked.
+#[derive(Debug, Serialize)]
+struct Asked {
     bank: String,
     probe_depth_m: f64,
     noise_sd_lateral_n: f64,
@@ -58,6 +58,14 @@ struct ReachAnswer {
     samples: usize,
     /// What is unknown for the second of each two answers.
     unknown: Vec<Unknown>,
+}
+
+/// The answer; for people, lengths in mm.
+#[derive(Debug, Serialize, Template)]
+#[template(path = "cli.txt", block = "reach")]
+struct ReachAnswer {
+    #[serde(flatten)]
+    asked: Asked,
     gamma_needed: f64,
     depths_m: Vec<f64>,
     diameters_m: Vec<f64>,
@@ -93,54 +101,59 @@ struct SmallestDiameter {
     unknown_m: Option<f64>,
 }
 
+impl ReachArguments {
+    fn asked(&self, bank: &Bank) -> Result<Asked, CliError> {
+        let noise_sd = self.noise_sd.get().ok_or_else(|| {
+            let message = "give --noise-sd-n, or both --noise-sd-lateral-n and --noise-sd-normal-n";
+            CliError::Usage(message.into())
+        })?;
+        let laterals = bank.reference().laterals().len();
+        // The variance of the noise is stated.
+        let unknown = self.known.unknown.iter().copied();
+        Ok(Asked {
+            bank: self.bank.display().to_string(),
+            probe_depth_m: bank.depth(),
+            noise_sd_lateral_n: noise_sd.lateral,
+            noise_sd_normal_n: noise_sd.normal,
+            max_false_alarm: self.max_false_alarm,
+            max_miss: self.max_miss,
+            samples: self.samples.map_or(laterals, |samples| samples as usize),
+            unknown: unknown.filter(|&of| of != Unknown::Variance).collect(),
+        })
+    }
+}
+
 /// Runs the command.
 ///
 /// Implements: CLI-160, CLI-163.
 pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     let bank = Bank::read(&arguments.bank)?;
-    // The variance of the noise is stated.
-    let unknown = arguments.known.unknown.iter().copied();
-    let unknown: Vec<Unknown> = unknown.filter(|&of| of != Unknown::Variance).collect();
-    let noise_sd = arguments.noise_sd.get().ok_or_else(|| {
-        let message = "give --noise-sd-n, or both --noise-sd-lateral-n and --noise-sd-normal-n";
-        CliError::Usage(message.into())
-    })?;
-    let samples = arguments.samples.map(|samples| samples as usize);
+    let asked = arguments.asked(&bank)?;
     let plain = Reach {
         bank: &bank,
-        samples,
-        noise_sd,
-        max_false_alarm: arguments.max_false_alarm,
-        max_miss: arguments.max_miss,
+        samples: arguments.samples.map(|samples| samples as usize),
+        noise_sd: Force::new(asked.noise_sd_lateral_n, asked.noise_sd_normal_n),
+        max_false_alarm: asked.max_false_alarm,
+        max_miss: asked.max_miss,
         unknown: &[],
     };
-    let beside = Reach {
-        unknown: &unknown,
-        ..plain
-    };
-    let file = arguments.bank.display().to_string();
-    let in_bank = |refusal: Refusal| refusal.in_file(&*file);
+    let unknown = &asked.unknown;
+    let beside = Reach { unknown, ..plain };
+    let in_bank = |refusal: Refusal| refusal.in_file(&*asked.bank);
     let gamma_needed = plain.gamma()?;
     let plain = plain.reached().map_err(in_bank)?;
     let beside = beside.reached().map_err(in_bank)?;
     if let Some(path) = &arguments.figure {
-        let words = in_words(&unknown);
+        let words = in_words(&asked.unknown);
         write(path, &reach_figure(&bank, &plain, &beside, &words)?)?;
     }
     let answer = ReachAnswer {
-        probe_depth_m: bank.depth(),
-        noise_sd_lateral_n: noise_sd.lateral,
-        noise_sd_normal_n: noise_sd.normal,
-        max_false_alarm: arguments.max_false_alarm,
-        max_miss: arguments.max_miss,
-        samples: samples.unwrap_or(bank.reference().laterals().len()),
-        unknown,
         gamma_needed,
         depths_m: bank.axes()[1].clone(),
         diameters_m: bank.axes()[2].clone(),
+        largest_depths: plain.iter().zip(&beside).map(largest).collect(),
         smallest_diameters: smallest(&bank, [&plain, &beside], gamma_needed),
-        largest_depths: largest(&plain, &beside),
-        bank: file,
+        asked,
     };
     // Writing to a String does not fail.
     let table = answer.render().unwrap_or_default();
@@ -149,42 +162,39 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
 }
 
 /// Implements: CLI-160.
-fn largest(plain: &[Reached], beside: &[Reached]) -> Vec<LargestDepth> {
+fn largest((plain, beside): (&Reached, &Reached)) -> LargestDepth {
     let reached = |of: &Reached| DepthReached {
         largest_depth_m: of.depth,
         is_beyond_bank: of.is_beyond,
         gamma: of.gamma.clone(),
     };
-    let pairs = plain.iter().zip(beside);
-    let row = |(plain, beside): (&Reached, &Reached)| LargestDepth {
+    LargestDepth {
         diameter_m: plain.diameter,
         youngs_modulus_pa: plain.modulus,
         nothing_unknown: reached(plain),
         unknown: reached(beside),
-    };
-    pairs.map(row).collect()
+    }
 }
 
 /// Implements: CLI-160.
 fn smallest(bank: &Bank, reached: [&[Reached]; 2], needed: f64) -> Vec<SmallestDiameter> {
     let [_, depths, diameters, moduli] = bank.axes();
-    let of_modulus = |(modulus, &youngs_modulus_pa): (usize, &f64)| {
+    let mut rows = Vec::new();
+    for (modulus, &youngs_modulus_pa) in moduli.iter().enumerate() {
         let [plain, beside] = reached.map(|reached| {
             let of_modulus = &reached[modulus * diameters.len()..][..diameters.len()];
             smallest_diameters(bank, of_modulus, needed)
         });
-        let rows = depths.iter().zip(plain.into_iter().zip(beside));
-        let row = rows.map(
-            |(&depth_m, (nothing_unknown_m, unknown_m))| SmallestDiameter {
+        for (at, &depth_m) in depths.iter().enumerate() {
+            rows.push(SmallestDiameter {
                 depth_m,
                 youngs_modulus_pa,
-                nothing_unknown_m,
-                unknown_m,
-            },
-        );
-        row.collect::<Vec<_>>()
-    };
-    moduli.iter().enumerate().flat_map(of_modulus).collect()
+                nothing_unknown_m: plain[at],
+                unknown_m: beside[at],
+            });
+        }
+    }
+    rows
 }
 
 impl ReachAnswer {
@@ -194,28 +204,22 @@ impl ReachAnswer {
                 format!("deeper than the bank ({})", in_mm(depth))
             }
             Some(depth) => format!("{:.2}", 1e3 * depth),
-            None => {
-                let least = self.depths_m.first().copied().unwrap_or(f64::NAN);
-                format!("not even at the least depth ({})", in_mm(least))
-            }
+            None => format!("not even at the least depth ({})", in_mm(self.depths_m[0])),
         }
     }
 
     fn width(&self, found: &Option<f64>) -> String {
-        let ends = (self.diameters_m.first(), self.diameters_m.last());
-        match (found, ends) {
-            (Some(width), (Some(least), _)) if width <= least => {
-                format!("smaller than the bank ({})", in_mm(width))
-            }
-            (Some(width), _) => format!("{:.2}", 1e3 * width),
-            (None, (_, most)) => {
-                let most = most.unwrap_or(&f64::NAN);
-                format!("not even the largest ({})", in_mm(most))
-            }
+        // An axis of a bank has a point at least.
+        let [least, most] = [0, self.diameters_m.len() - 1].map(|at| self.diameters_m[at]);
+        match *found {
+            Some(width) if width <= least => format!("smaller than the bank ({})", in_mm(width)),
+            Some(width) => format!("{:.2}", 1e3 * width),
+            None => format!("not even the largest ({})", in_mm(most)),
         }
     }
 }
 
+/// A length (m) as a number of mm.
 fn in_mm(length: impl Borrow<f64>) -> String {
     format_scaled(*length.borrow(), 3)
 }

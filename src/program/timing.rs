@@ -121,14 +121,7 @@ fn tell(
     timing: Option<&Timing>,
     source: &str,
 ) -> Result<(), CliError> {
-    // Writing to a String does not fail.
-    let exceeded = |allowed: Option<u64>, found| allowed.filter(|&allowed| found > allowed);
-    let reason = Reason {
-        judged,
-        allowed_misses: exceeded(arguments.allowed_misses, judged.misses),
-        allowed_run: exceeded(arguments.allowed_run, judged.longest_run),
-    };
-    let reason = reason.render().unwrap_or_default();
+    let reason = reason(arguments, judged);
     let (outcome, failure) = match judged.outcome {
         BudgetOutcome::Kept => ("kept", None),
         BudgetOutcome::Broken => ("broken", Some(CliError::Check(reason))),
@@ -140,6 +133,7 @@ fn tell(
         source,
         outcome,
     };
+    // Writing to a String does not fail.
     let text = text.render().unwrap_or_default();
     match (arguments.format, timing) {
         (Printed::Table, _) => print(&text),
@@ -164,13 +158,33 @@ fn defect(error: impl Display) -> CliError {
 }
 
 /// Why a budget is not kept.
-#[derive(Template)]
-#[template(path = "cli.txt", block = "timing_reason")]
-struct Reason<'a> {
-    judged: &'a Judged,
-    /// How many were allowed, if there were more.
-    allowed_misses: Option<u64>,
-    allowed_run: Option<u64>,
+fn reason(arguments: &TimingArguments, judged: &Judged) -> String {
+    let Judged {
+        cycles,
+        misses,
+        longest_run,
+        percentile,
+        budget_us,
+        at_least_us,
+        ..
+    } = judged;
+    if judged.outcome == BudgetOutcome::Undecided {
+        return format!(
+            "timing: {cycles} cycles are too few to decide whether p{percentile} ≤ {budget_us} µs ({misses} were slower); measure more"
+        );
+    }
+    let slower = format!("timing: {misses} of {cycles} cycles were slower than {budget_us} µs");
+    let exceeded = |allowed: Option<u64>, found| allowed.filter(|&allowed| found > allowed);
+    let allowed_run = exceeded(arguments.allowed_run, *longest_run);
+    if let Some(most) = exceeded(arguments.allowed_misses, *misses) {
+        format!("{slower}; at most {most} are allowed")
+    } else if let Some(most) = allowed_run {
+        format!("{slower}, {longest_run} of them in a row; at most {most} are allowed")
+    } else {
+        format!(
+            "{slower}: p{percentile} is at least {at_least_us} µs; the budget is {budget_us} µs"
+        )
+    }
 }
 
 /// The figures for people.

@@ -199,8 +199,8 @@ impl Design {
                 0.0
             }
         });
-        check_positive("noise_sd_x", sd.lateral)?;
-        check_positive("noise_sd_y", sd.normal)?;
+        check_positive("noise_sd_lateral_n", sd.lateral)?;
+        check_positive("noise_sd_normal_n", sd.normal)?;
         Ok(sd)
     }
 

@@ -208,8 +208,8 @@ impl Noise {
                 lines.project(&mut left.lateral) / root,
                 lines.project(&mut left.normal) / root,
             );
-            check_positive("noise_sd_x", sd.lateral)?;
-            check_positive("noise_sd_y", sd.normal)?;
+            check_positive("noise_sd_lateral_n", sd.lateral)?;
+            check_positive("noise_sd_normal_n", sd.normal)?;
             let (whiteness, length) = dependence(&left, LAGS)?;
             let correlation = match whiteness < WHITENESS {
                 true => Correlation::Known(length),

@@ -61,16 +61,12 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
     let mut phantoms = run.read_phantoms()?;
     let mut inputs = file.inputs;
     for (at, input) in inputs.iter_mut().enumerate() {
-        if let Distribution::Empirical { values, file } = &mut input.distribution
-            && let Some(table) = file.take()
-        {
-            if !values.is_empty() {
-                return Err(refused(format!(
-                    "input[{at}].distribution.empirical has both values and a file; give one of them"
-                )));
-            }
-            *values = parse(&run.file(&table), column)?;
-        }
+        read_values(&mut input.distribution, &run).map_err(|error| match error {
+            Some(error) => error,
+            None => refused(format!(
+                "input[{at}].distribution.empirical has both values and a file; give one of them"
+            )),
+        })?;
     }
     let reference = phantoms.remove(0);
     let plan = StudyPlan {
@@ -91,6 +87,20 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
     };
     plan.design().map_err(of_file)?;
     Ok(plan)
+}
+
+/// Reads the values of an empirical distribution from the file that it names; refused without an error if it has values too.
+fn read_values(distribution: &mut Distribution, run: &Config) -> Result<(), Option<CliError>> {
+    if let Distribution::Empirical { values, file } = distribution
+        && let Some(table) = file.take()
+    {
+        if !values.is_empty() {
+            return Err(None);
+        }
+        let read = parse(&run.file(&table), column);
+        *values = read.map_err(|refusal| Some(refusal.into()))?;
+    }
+    Ok(())
 }
 
 /// The values of a CSV table, in increasing order.

@@ -10,9 +10,9 @@ use clap::{Args, Subcommand};
 use rayon::prelude::*;
 
 use super::CliError;
-use super::output::{Format, make_folder, note, print, write};
+use super::output::{Format, make_folder, print, write};
 use super::part::Part;
-use super::progress::bar;
+use super::progress::resumed_bar;
 use file::read_plan;
 use palpate::refusal::Refusal;
 use palpate_paper::report::text;
@@ -84,14 +84,7 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
         progress.take_over(&sampler, text)
     })?;
     let done = total - progress.left();
-    if done > 0 {
-        let text = format!("{done} of {total} samples already computed");
-        note(path.display(), &text);
-    }
-    let bar = bar(total, "samples");
-    bar.inc(done as u64);
-    // The estimate of the time left counts this run alone.
-    bar.reset_eta();
+    let bar = resumed_bar(&path, done, total, "samples");
     let compute = |sample: usize| {
         let outcome = match sampler.sample(sample) {
             Ok(values) => Outcome::Values(values),

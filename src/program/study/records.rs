@@ -127,36 +127,18 @@ impl Records {
     /// Implements: STU-027.
     pub fn find(folders: &[PathBuf]) -> Result<Records, CliError> {
         let mut records: Option<Records> = None;
-        for folder in folders {
-            let listed = folder.read_dir().and_then(|entries| {
-                let paths = entries.map(|entry| entry.map(|entry| entry.path()));
-                paths.collect::<Result<Vec<_>, _>>()
+        for file in sample_files(folders)? {
+            let header = header(&file)?;
+            let records = records.get_or_insert_with(|| Records {
+                header: header.clone(),
+                files: Vec::new(),
             });
-            let is_ours = |path: &PathBuf| {
-                let name = path.file_name().unwrap_or_default().to_string_lossy();
-                name.starts_with("samples-") && name.ends_with(".jsonl")
-            };
-            let mut files = listed.map_err(CliError::file("read", folder))?;
-            files.retain(is_ours);
-            files.sort();
-            if files.is_empty() {
-                let reason = "the folder has no samples-K-of-N.jsonl; give one written by 'palpate study run'";
-                return Err(CliError::refused(folder.display())(reason));
+            if let Some(key) = difference(&records.header, &header) {
+                let first = records.files[0].display();
+                let reason = format!("belongs to a different study than {first}: {key} differs");
+                return Err(CliError::refused(file.display())(reason));
             }
-            for file in files {
-                let header = header(&file)?;
-                let records = records.get_or_insert_with(|| Records {
-                    header: header.clone(),
-                    files: Vec::new(),
-                });
-                if let Some(key) = difference(&records.header, &header) {
-                    let first = records.files[0].display();
-                    let reason =
-                        format!("belongs to a different study than {first}: {key} differs");
-                    return Err(CliError::refused(file.display())(reason));
-                }
-                records.files.push(file);
-            }
+            records.files.push(file);
         }
         records.ok_or_else(|| CliError::Usage("no folder".into()))
     }
@@ -246,6 +228,28 @@ impl Records {
         })?;
         Ok(columns)
     }
+}
+
+/// The files of samples in each folder, in the order of their names.
+fn sample_files(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
+    let mut all = Vec::new();
+    for folder in folders {
+        let before = all.len();
+        for entry in folder.read_dir().map_err(CliError::file("read", folder))? {
+            let path = entry.map_err(CliError::file("read", folder))?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            if name.starts_with("samples-") && name.ends_with(".jsonl") {
+                all.push(path);
+            }
+        }
+        if all.len() == before {
+            let reason =
+                "the folder has no samples-K-of-N.jsonl; give one written by 'palpate study run'";
+            return Err(CliError::refused(folder.display())(reason));
+        }
+        all[before..].sort();
+    }
+    Ok(all)
 }
 
 fn open(path: &Path) -> Result<BufReader<File>, CliError> {

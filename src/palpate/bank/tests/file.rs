@@ -42,7 +42,7 @@ fn what_is_no_bank_is_refused() {
     refused(&|maps| maps.truncate(39), grid);
     let same = "maps[2] and maps[7] have the same inclusion, expected each inclusion once";
     refused(&|maps| maps[7] = maps[2].clone(), same);
-    let plain = "maps[3]: number of inclusions is 0, and 0 in the reference, expected";
+    let plain = "maps[3]: the map has no inclusion to compare";
     refused(&|maps| maps[3] = map(None, &[4e-3]), plain);
     let of_depths = |depths| map(Some((1.0, 6.0, 8.0)), depths);
     let other = "maps[3]: depths_m[0] = 0.0039, expected 0.004 as in maps[0]";

@@ -93,22 +93,24 @@ fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
     let refused = |reference: &ForceMap, inclusion: &ForceMap| {
         refusal(Hypotheses::new(reference, inclusion).map(|_| ()))
     };
-    let one = "one at least, and none in the reference";
-    for (reference, inclusion, [n, of_inclusion], expected) in [
-        (&with, &without, ["1", "0"], "the maps the other way round"),
-        (&with, &with, ["1", "1"], one),
-        (&without, &without, ["0", "0"], one),
-        (&with, &unknown, ["1", "unknown"], one),
-        (&unknown, &without, ["unknown", "0"], one),
+    let (both, none) = (
+        "the reference map already contains",
+        "the map has no inclusion",
+    );
+    for (reference, inclusion, expected) in [
+        (&with, &without, "the maps are swapped"),
+        (&with, &with, both),
+        (&without, &without, none),
+        (&with, &unknown, both),
+        (&unknown, &without, none),
     ] {
-        let counts = format!("number of inclusions is {of_inclusion}, and {n} in the reference");
-        let expected = format!("{counts}, expected {expected}");
-        assert_eq!(refused(reference, inclusion), expected);
+        let found = refused(reference, inclusion);
+        assert!(found.starts_with(expected), "{found}");
     }
     let differ = |reference: &ForceMap, inclusion: &ForceMap, key: &str| {
         let message = refused(reference, inclusion);
         assert!(message.starts_with(&format!("{key} is ")), "{message}");
-        assert!(message.ends_with("expected maps that differ in their inclusions alone"));
+        assert!(message.ends_with("only the inclusions may differ"));
     };
     let other_gel = |key: &str, change: fn(&mut Phantom)| {
         let other = map(&|phantom| {

@@ -431,7 +431,7 @@ fn a_blank_sweep_tells_its_noise() {
     let few = "99 samples, expected at least 100";
     for (trace, expected) in [
         (blank(99, 1, 0.2), few),
-        (blank(100, 100, 0.2), "noise_sd_x"),
+        (blank(100, 100, 0.2), "noise_sd_lateral_n"),
     ] {
         let error = Noise::of_blank(&trace).unwrap_err().to_string();
         let expected = format!("blank.csv: {expected}");
