@@ -150,10 +150,10 @@ struct Finished<M> {
     maps: M,
 }
 
-/// The maps of each computation that is finished.
+/// The maps of each finished computation.
 type Taken = Vec<Option<Vec<ForceMap>>>;
 
-/// The file of what is finished, and what that is.
+/// Opens FILE.part; the maps that it holds, and the bar of those that are left.
 ///
 /// Implements: CLI-156, CLI-157.
 fn open_part(
@@ -207,7 +207,7 @@ fn is_of(maps: &[ForceMap], solve: Option<&BankSolve>) -> bool {
     }
 }
 
-/// The reference and the maps of all solves, in their order, but for those that are `finished`.
+/// The reference and the maps of all solves, in their order; computes those that are not `finished`.
 ///
 /// Implements: CLI-007, CLI-156.
 fn compute(

@@ -9,16 +9,16 @@ use palpate::phantom::Phantom;
 
 /// Most depths and lateral positions that are solved.
 const MOST: [usize; 2] = [7, 8];
-/// Factors that are a mistake of mN for N or of N for mN, either way.
+/// A ratio of forces in this range, or its inverse, means that mN and N were confused.
 const THOUSAND: [f64; 2] = [300.0, 3000.0];
-/// Lengths that are so many times what fits are a mistake of mm for m.
+/// Lengths so many times too large mean that mm and m were confused.
 const FAR_TOO_LARGE: f64 = 10.0;
-/// Below this cosine two forces over the poses are opposite.
+/// Below this cosine, two forces over the poses have opposite signs.
 const OPPOSITE: f64 = -0.7;
-/// A lateral force tells its sign where it is more than this share of the normal one.
+/// The sign of a lateral force is judged only above this share of the normal force.
 const LARGE: f64 = 0.02;
 
-/// What stands out in a measured map of `phantom`, in words, or else how far it is from the computed forces.
+/// What stands out in a measured map of `phantom`; if nothing does, its difference from the computed forces.
 ///
 /// # Errors
 /// The solver failed.
@@ -54,7 +54,7 @@ pub fn compare(measured: &ForceTable, phantom: &Phantom) -> Result<Vec<String>, 
     Ok(odd_forces(&pairs))
 }
 
-/// How many poses of a map the probe of `phantom` cannot take.
+/// The number of poses of a map that the probe of `phantom` cannot reach.
 ///
 /// Implements: CLI-022.
 pub fn left_out(measured: &ForceTable, phantom: &Phantom) -> usize {
@@ -110,7 +110,7 @@ fn odd_lengths(measured: &ForceTable, phantom: &Phantom) -> Vec<String> {
     axes.into_iter().filter_map(odd).collect()
 }
 
-/// What stands out in measured and computed forces (N) at some poses in the gel, or else how far apart they are.
+/// What stands out in measured and computed forces (N) at some poses in the gel; if nothing does, their difference.
 ///
 /// Implements: CLI-022.
 fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
@@ -156,14 +156,14 @@ fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
     odd
 }
 
-/// The largest expected force.
+/// The largest computed force.
 fn largest(pairs: &[(f64, f64)]) -> f64 {
     pairs
         .iter()
         .fold(0.0, |most, (_, expected)| expected.abs().max(most))
 }
 
-/// The median of found over expected, where that is more than a tenth of its largest.
+/// The median of measured over computed force, where the latter is more than a tenth of its largest.
 fn median_ratio(pairs: &[(f64, f64)]) -> f64 {
     let enough = |(_, expected): &&(f64, f64)| expected.abs() > 0.1 * largest(pairs);
     let ratios = pairs.iter().filter(enough);
@@ -190,7 +190,7 @@ mod tests {
     /// Computed forces over a gel, (normal, lateral).
     const COMPUTED: [(f64, f64); 4] = [(1.0, -0.2), (2.0, 0.0), (1.0, 0.2), (0.05, 0.0)];
 
-    /// What is said of these forces times (normal, lateral) factors, with an error of (0.3, −0.3, 0, 0.04) N in the normal force.
+    /// The findings on these forces times (normal, lateral) factors, with an error of (0.3, −0.3, 0, 0.04) N in the normal force.
     fn said(factors: (f64, f64)) -> Vec<String> {
         let errors = [0.3, -0.3, 0.0, 0.04];
         let pair = |((normal, lateral), error): ((f64, f64), f64)| {
@@ -201,7 +201,7 @@ mod tests {
         odd_forces(&pairs)
     }
 
-    /// Asserts of each of `cases`, two numbers, what is said: notes with these beginnings.
+    /// Asserts the beginnings of the findings on each of `cases`, two numbers.
     fn assert_said(cases: &str, said: impl Fn([f64; 2]) -> Vec<String>) {
         for case in cases.trim().lines() {
             let (of, expected) = case.split_once(" => ").unwrap();
@@ -220,7 +220,7 @@ mod tests {
     // Verifies: CLI-022.
     #[test]
     fn units_and_signs_that_look_wrong_are_told() {
-        // Factors, and the beginnings of what is said. Ratios of 1.3, 0.85 and 1 (0.05 N is too little to count); √(0.1816/4) of
+        // Factors, and the beginnings of the findings. Ratios of 1.3, 0.85 and 1 (0.05 N is too little to count); √(0.1816/4) of
         // √(6.0025/4).
         let cases = "
             1e3 1e3 => the forces look like mN in a column of N: the normal force is 1000.0000

@@ -49,7 +49,7 @@ pub struct MeshConfig {
     /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them.
     #[serde(deserialize_with = "positive")]
     pub size_mm: f64,
-    /// How the gap to the probe is measured.
+    /// Contact law.
     pub contact: Contact,
 }
 
@@ -119,7 +119,7 @@ impl Config {
     /// The reference, then the phantoms that are compared with it.
     ///
     /// # Errors
-    /// A phantom that is refused, or whose probe cannot stand at one of the poses; with file, line and key.
+    /// A phantom that is refused, or whose probe cannot reach one of the poses; with file, line and key.
     pub fn read_phantoms(&self) -> Result<Vec<Phantom>, CliError> {
         let names = std::iter::once(&self.reference).chain(&self.phantoms);
         let read = |(index, name): (usize, &Spanned<String>)| {
@@ -140,7 +140,7 @@ impl Config {
         names.enumerate().map(read).collect()
     }
 
-    /// A file that the configuration names, seen from where the program runs.
+    /// The path of a file that the configuration names.
     ///
     /// Implements: CLI-031.
     pub fn file(&self, name: &Path) -> PathBuf {
@@ -170,7 +170,7 @@ fn list<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<List, D::Er
     positions(&text).map_err(serde::de::Error::custom)
 }
 
-/// Refused here, with its line, rather than after all maps are solved.
+/// A number above 0. Refused here, with its line, rather than after all maps are solved.
 fn positive<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     number(deserializer, f64::MAX, "a number above 0")
 }

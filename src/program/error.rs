@@ -14,7 +14,7 @@ use palpate::refusal::{Refusal, one_line};
 pub enum CliError {
     /// The command line, a file or a device is to blame.
     Usage(String),
-    /// A phantom, a force map, a trace or a table of answers is not valid, or they do not fit one another.
+    /// A phantom, a force map, a trace or a table of answers is not valid, or they do not belong together.
     Refused(Refusal),
     /// A computation or a check failed.
     Check(String),
@@ -45,7 +45,7 @@ impl CliError {
         move |reason| CliError::Usage(format!("{what}: {reason}"))
     }
 
-    /// The system did not let a file be read, written or made.
+    /// The system refused to read, write or make a file.
     pub(super) fn file(action: &str, path: &Path) -> impl FnOnce(io::Error) -> CliError {
         CliError::refused(format!("{action} {}", path.display()))
     }
@@ -62,14 +62,14 @@ impl CliError {
         }
     }
 
-    /// The first line of what the argument parser has to say.
+    /// The first line of the argument parser's message.
     pub(crate) fn usage(error: &clap::Error) -> CliError {
         let text = error.to_string();
         // The parser spreads its message over several lines; usage and hints follow an empty one.
         let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         let mut parts = text.split("\n\n").map(line);
         let message = parts.next().unwrap_or_default();
-        // What was probably meant, in the words of the parser.
+        // The suggestion of the parser.
         let tip = parts.find(|part| part.starts_with("tip: a similar"));
         let tip = tip.map_or(String::new(), |tip| format!(" ({tip})"));
         let message = message.strip_prefix("error: ").unwrap_or(&message);
@@ -80,7 +80,7 @@ impl CliError {
         CliError::Usage(one_line(&format!("{message}{tip}; see --help")))
     }
 
-    /// 1 where a computation failed, 2 where the input is to blame, 3 where a record cannot be judged.
+    /// 1 if a computation failed, 2 if the input is to blame, 3 if a record cannot be judged.
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Check(_) => 1,

@@ -1,4 +1,4 @@
-//! `palpate import-map`: a measured force map in CSV, checked and written as JSON.
+//! `palpate import-map`: a measured force map in CSV, checked and converted to JSON.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `palpate oracle`: questions and answers in lines of JSON (`spec/oracle.md`).
+//! `palpate oracle`: questions and answers in JSON lines (`spec/oracle.md`).
 
 use std::io::{ErrorKind, stdin, stdout};
 

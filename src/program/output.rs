@@ -59,7 +59,7 @@ impl<A> Envelope<A> {
     }
 }
 
-/// Prints text; a reader who has gone away (`| head`) is no error.
+/// Prints text; a reader that closes the pipe (`| head`) is no error.
 ///
 /// Implements: CLI-003, CLI-007.
 pub fn print(text: &str) -> Result<(), CliError> {
@@ -125,7 +125,7 @@ fn partial_file(folder: &Path) -> std::io::Result<(PathBuf, File)> {
     }
 }
 
-/// Where a chain of symbolic links to a file that is not there yet ends.
+/// The end of a chain of symbolic links to a file that does not exist yet.
 fn end_of_links(path: &Path) -> PathBuf {
     let next = std::fs::read_link(path).ok();
     let next = next.map(|next| path.parent().unwrap_or(path).join(next));

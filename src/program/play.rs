@@ -74,7 +74,7 @@ fn failed(error: impl Display) -> CliError {
     CliError::Usage(error.to_string())
 }
 
-/// The table for this device, and the factor on its forces.
+/// The table for this device, and the factor by which its forces are scaled.
 fn table(
     arguments: &PlayArguments,
     capabilities: &Capabilities,
@@ -162,8 +162,7 @@ fn recorded_cycles(
     }
 }
 
-/// Set by ctrl-C, by SIGTERM and by SIGHUP; a second one ends the program at once, and leaves the
-/// force to the device's watchdog.
+/// A flag that Ctrl-C, SIGTERM or SIGHUP sets; a second signal ends the program at once, and leaves the force to the device's watchdog.
 fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     let stop = Arc::new(AtomicBool::new(false));

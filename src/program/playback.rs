@@ -13,7 +13,7 @@ use palpate::hid::{Capabilities, HapticDevice};
 use palpate::refusal::Refusal;
 use palpate::servo::{Damping, Limits, LoadedTable};
 
-/// How long a device that was just plugged in may take until it can be opened.
+/// The time after plugging in within which a device must open.
 const PLUG_IN: Duration = Duration::from_millis(500);
 
 /// The haptic device.
@@ -69,7 +69,7 @@ impl DeviceArguments {
         Ok(())
     }
 
-    /// The device; the simulated one is in a hand that goes this way.
+    /// The device; the simulated one follows this trajectory of a hand.
     ///
     /// Implements: CLI-079.
     pub fn open(&self, hand: Trajectory) -> Result<Box<dyn HapticDevice + Send>, Refusal> {
@@ -104,7 +104,7 @@ fn damping(capabilities: &Capabilities, delay_periods: u16) -> Damping {
     }
 }
 
-/// The table of a map's file.
+/// The servo table of the map in a file.
 ///
 /// Implements: CLI-063.
 pub fn loaded_map(path: &Path) -> Result<LoadedTable, CliError> {

@@ -43,7 +43,7 @@ pub struct PsychophysicsArguments {
 struct PsychophysicsAnswer {
     /// The file of the counts, or `Table 1`.
     counts: String,
-    /// What the counts say by themselves.
+    /// The analysis of the counts alone.
     analysis: Analysis,
     /// The noise levels of the paper's §5, only with its own Table 1.
     noise_levels: Option<NoiseDecomposition>,
@@ -88,7 +88,7 @@ fn against_maps(
     Ok(bridge(table, &reference, &named, arguments.half_sweep)?)
 }
 
-/// The answer for people. Its words are in `templates/psychophysics.txt`.
+/// The answer for people, by `templates/psychophysics.txt`.
 ///
 /// Implements: CLI-082.
 fn text(answer: &PsychophysicsAnswer) -> String {
@@ -144,7 +144,7 @@ fn bounds(found: &Bounds) -> String {
     format!("[{:.3}, {:.3}]", found.lower, found.upper)
 }
 
-/// An interval times `scale`; an end that is missing is said to be.
+/// An interval times `scale`, with "no bound" for a missing end.
 fn open(found: &OpenBounds, scale: f64, digits: usize) -> String {
     let end =
         |end: Option<f64>| end.map_or("no bound".into(), |end| format!("{:.digits$}", scale * end));

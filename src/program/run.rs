@@ -61,7 +61,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     write_run(&run, &arguments.out)
 }
 
-/// Reads a map that must have been measured.
+/// Reads a measured map.
 ///
 /// Implements: CLI-031.
 fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
@@ -124,7 +124,7 @@ fn solve_phantom(
     Ok((map, array, deformed))
 }
 
-/// The mesh at the deepest pose, as near as possible to above the middle of the first inclusion, or else to x = 0.
+/// The mesh at the deepest pose, at the lateral position nearest to the middle of the first inclusion, or to x = 0.
 fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
     let deepest = map.depths().iter().fold(0.0, |a: f64, &b| a.max(b));
     let first = model.phantom().inclusions.first();
@@ -142,7 +142,7 @@ fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError
     DeformedMesh::solve(model, pose)
 }
 
-/// Writes everything and says where.
+/// Writes all files and prints where they are.
 fn write_run(run: &Run, out: &Path) -> Result<(), CliError> {
     let failed = |refusal: Refusal| CliError::Check(format!("report: {refusal}"));
     let findings = findings(run).map_err(failed)?;

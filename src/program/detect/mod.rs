@@ -35,7 +35,7 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     }
 }
 
-/// The record judged where two maps have the inclusion.
+/// Judges the record at the position for which the maps are.
 fn by_maps(arguments: &DetectArguments, record: Record) -> Result<(), CliError> {
     // The parser has refused all but a bank or both maps with a depth.
     let (none, files) = (PathBuf::new(), &arguments.hypotheses);
@@ -56,7 +56,7 @@ fn by_maps(arguments: &DetectArguments, record: Record) -> Result<(), CliError> 
     tell(arguments, verdict, rows, warnings)
 }
 
-/// The record searched for any inclusion of a bank.
+/// Searches the record for any inclusion of a bank.
 ///
 /// Implements: CLI-140, CLI-040, CLI-163.
 fn by_bank(arguments: &DetectArguments, record: Record, path: &Path) -> Result<(), CliError> {
@@ -83,7 +83,7 @@ fn by_bank(arguments: &DetectArguments, record: Record, path: &Path) -> Result<(
     tell(arguments, verdict, rows, warnings)
 }
 
-/// The record without the samples outside `map`, if that was asked for.
+/// The record without the samples outside `map`, if --trim is given.
 fn trimmed(
     arguments: &DetectArguments,
     record: Record,
@@ -97,7 +97,7 @@ fn trimmed(
     Ok(record)
 }
 
-/// What is asked of a sweep at `depth` over a gel whose forces `reference` has, read from `file`.
+/// The question to ask of a sweep at `depth` over the gel of `reference`, the map in `file`.
 fn question<'a>(
     arguments: &'a DetectArguments,
     depth: f64,

@@ -11,7 +11,7 @@ use palpate::input::{from_toml, parse};
 use palpate::refusal::Refusal;
 use palpate_paper::study::{Correlation, Distribution, Input, StudyPlan};
 
-/// The study in the keys of the file.
+/// The study with the keys of the file.
 ///
 /// Implements: STU-001.
 #[derive(Deserialize)]
@@ -89,7 +89,7 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
     Ok(plan)
 }
 
-/// Reads the values of an empirical distribution from the file that it names; refused without an error if it has values too.
+/// Reads the values of an empirical distribution from the file that it names. The error is none if it also has values of its own.
 fn read_values(distribution: &mut Distribution, run: &Config) -> Result<(), Option<CliError>> {
     if let Distribution::Empirical { values, file } = distribution
         && let Some(table) = file.take()

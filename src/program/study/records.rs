@@ -39,7 +39,7 @@ impl<'a> Header<'a> {
     }
 }
 
-/// Which samples one process computes: those whose number leaves the remainder `number` − 1 over `of`.
+/// The samples that one process computes: those whose number leaves the remainder `number` − 1 when divided by `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     /// From 1.
@@ -52,7 +52,7 @@ impl Shard {
     /// Reads `k/n`.
     ///
     /// # Errors
-    /// A message that says what would be right.
+    /// A message that says what the text must be.
     pub fn parse(text: &str) -> Result<Shard, String> {
         let parts = text.split_once('/');
         let numbers = parts.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
@@ -80,7 +80,7 @@ pub struct Record {
     pub outcome: Outcome,
 }
 
-/// What came of it: a value for each quantity, or why it failed.
+/// Its outcome: a value for each quantity, or why it failed.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
@@ -173,7 +173,7 @@ impl Records {
     /// The samples that failed, in their order.
     ///
     /// # Errors
-    /// A sample that is missing or is there twice; a line that is none.
+    /// A sample that is missing or occurs twice; a line that is not a sample.
     ///
     /// Implements: STU-026, STU-027.
     pub fn failures(&self, samples: usize, quantities: usize) -> Result<Vec<Failure>, CliError> {
