@@ -43,6 +43,13 @@ impl Serialize for Rows {
     }
 }
 
+/// Adds numbers, a line each: key, label and number.
+macro_rules! numbers {
+    ($rows:expr; $($key:ident: $label:literal, $number:expr;)*) => {
+        $($rows.number(stringify!($key), $label, $number);)*
+    };
+}
+
 impl Rows {
     /// Adds a quantity for programs alone.
     pub fn value(&mut self, key: &'static str, value: impl Into<Value>) {
@@ -102,34 +109,22 @@ impl Rows {
 
     /// T, γ and the amplitude of the signal, at one inclusion.
     fn test(&mut self, test: &SubspaceTest, gamma_nominal: f64, posterior: Option<f64>) {
-        self.number("gamma", "gamma (signal-to-noise ratio)", test.gamma);
-        self.number(
-            "gamma_nominal",
-            "gamma if everything were known",
-            gamma_nominal,
-        );
-        self.number(
-            "amplitude",
-            "signal amplitude / predicted",
-            test.t / test.gamma,
-        );
-        self.number("amplitude_sd", "its standard deviation", 1.0 / test.gamma);
-        self.number("posterior_h1", "posterior P(inclusion)", posterior);
+        numbers! { self;
+            gamma: "gamma (signal-to-noise ratio)", test.gamma;
+            gamma_nominal: "gamma if everything were known", gamma_nominal;
+            amplitude: "signal amplitude / predicted", test.t / test.gamma;
+            amplitude_sd: "its standard deviation", 1.0 / test.gamma;
+            posterior_h1: "posterior P(inclusion)", posterior;
+        }
     }
 
     /// How well the record fits.
     fn fit(&mut self, fit: &Fit) {
         self.value("fits", fit.noise_is_right());
-        self.number(
-            "noise_sd_lateral_n",
-            "noise sd, lateral, N",
-            fit.noise_sd.lateral,
-        );
-        self.number(
-            "noise_sd_normal_n",
-            "noise sd, normal, N",
-            fit.noise_sd.normal,
-        );
+        numbers! { self;
+            noise_sd_lateral_n: "noise sd, lateral, N", fit.noise_sd.lateral;
+            noise_sd_normal_n: "noise sd, normal, N", fit.noise_sd.normal;
+        }
         match fit.limits {
             None => self.value("chi_square", fit.chi_square),
             Some(limits) => {
@@ -142,9 +137,9 @@ impl Rows {
         self.value("degrees", fit.degrees);
         self.value("whiteness", fit.whiteness);
         self.value("block", fit.block);
-        let effective = format!("{:.0}", fit.effective_samples);
+        let samples = fit.effective_samples;
         let label = "effective samples, both channels";
-        self.shown("effective_samples", label, fit.effective_samples, effective);
+        self.shown("effective_samples", label, samples, format!("{samples:.0}"));
         self.number("level", "force level / reference map", fit.level);
     }
 }
@@ -157,23 +152,19 @@ impl Judgement {
         let mut rows = Rows::default();
         rows.decision(self.decision, &self.causes);
         rows.number("t", "T (detection statistic)", self.test.t);
-        let label = "T threshold";
-        match self.threshold {
-            Threshold::At(t) => rows.number("t_threshold", label, t),
-            Threshold::Always => {
-                rows.shown("t_threshold", label, Value::Null, "none: any T detects")
-            }
-            Threshold::Never => rows.shown("t_threshold", label, Value::Null, "none: no T detects"),
-        }
+        let (least, text) = match self.threshold {
+            Threshold::At(t) => (Some(t), digits(t)),
+            Threshold::Always => (None, "none: any T detects".into()),
+            Threshold::Never => (None, "none: no T detects".into()),
+        };
+        rows.shown("t_threshold", "T threshold", least, text);
         rows.number("theta", "theta (log-likelihood ratio)", self.test.theta());
         let posterior = self.decision.map(|_| self.posterior);
         rows.test(&self.test, self.gamma_nominal, posterior);
-        rows.number(
-            "false_alarm",
-            "P(false alarm) at most",
-            self.rates.false_alarm,
-        );
-        rows.number("miss", "P(miss) at most", self.rates.miss);
+        numbers! { rows;
+            false_alarm: "P(false alarm) at most", self.rates.false_alarm;
+            miss: "P(miss) at most", self.rates.miss;
+        }
         rows.fit(&self.fit);
         rows
     }
@@ -189,44 +180,28 @@ impl Location {
     pub fn rows(&self, bank: &Bank) -> Result<Rows, Refusal> {
         let mut rows = Rows::default();
         rows.decision(self.decision, &self.causes);
-        let name = if self.by_mixture {
-            "theta_mixture"
-        } else {
-            "theta_max"
-        };
+        let statistic = ["theta_max", "theta_mixture"];
+        let name = statistic[usize::from(self.by_mixture)];
         rows.shown("decided_by", "decided by", name, format!("{name} >= eta"));
-        rows.number(
-            "theta_max",
-            "theta_max (best-fitting inclusion)",
-            self.theta_max,
-        );
-        rows.number(
-            "theta_mixture",
-            "theta_mixture (any inclusion)",
-            self.theta_mixture,
-        );
-        rows.number("eta", "eta (threshold)", self.eta);
+        numbers! { rows;
+            theta_max: "theta_max (best-fitting inclusion)", self.theta_max;
+            theta_mixture: "theta_mixture (any inclusion)", self.theta_mixture;
+            eta: "eta (threshold)", self.eta;
+        }
         if let Some(calibrated) = self.calibrated {
-            let rate = calibrated.false_alarm;
-            let [low, high] = [rate.lower, rate.upper].map(digits);
+            let rate = [calibrated.false_alarm.lower, calibrated.false_alarm.upper];
+            let [low, high] = rate.map(digits);
             let text = format!("{low} to {high} (99 % interval)");
-            let key = "calibrated_false_alarm";
-            rows.shown(
-                key,
-                "P(false alarm), simulated",
-                vec![rate.lower, rate.upper],
-                text,
-            );
+            let (key, label) = ("calibrated_false_alarm", "P(false alarm), simulated");
+            rows.shown(key, label, json!(rate), text);
             rows.value("simulations", calibrated.simulations);
         }
         let posterior = self.decision.map(|_| self.posterior);
         rows.test(&self.test, self.gamma_nominal, posterior);
-        rows.number(
-            "false_alarm_bound",
-            "P(false alarm) at most",
-            self.false_alarm_bound,
-        );
-        rows.number("miss_bound", "P(miss) of best fit at most", self.miss_bound);
+        numbers! { rows;
+            false_alarm_bound: "P(false alarm) at most", self.false_alarm_bound;
+            miss_bound: "P(miss) of best fit at most", self.miss_bound;
+        }
         rows.value("hypotheses", bank.maps().len());
         self.place_rows(bank, &mut rows)?;
         rows.fit(&self.fit);
@@ -255,18 +230,11 @@ impl Location {
             let shown = |x: f64| format!("{:.3}", scale * x);
             let [low, high] = ends.map(shown);
             let sd = sd.map_or("unknown".into(), |sd| format!("at least {}", shown(sd)));
-            let at_end = [first, last]
-                .iter()
-                .any(|end| (end - estimate).abs() <= SAME_POSITION);
-            let beyond = if at_end {
-                "; at an end of the bank, may lie beyond"
-            } else {
-                ""
-            };
-            let text = format!(
-                "{}, 95 % interval {low} to {high}, sd {sd}{beyond}",
-                shown(estimate)
-            );
+            let mut text = shown(estimate) + &format!(", 95 % interval {low} to {high}, sd {sd}");
+            let is_end = |end: &f64| (end - estimate).abs() <= SAME_POSITION;
+            if [first, last].iter().any(is_end) {
+                text += "; at an end of the bank, may lie beyond";
+            }
             rows.shown(key, label, value, text);
         }
         Ok(())

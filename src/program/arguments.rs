@@ -33,7 +33,7 @@ pub(super) enum Command {
     /// Computes a bank of force maps, one for each candidate inclusion, for 'palpate detect' and 'palpate reach'
     Bank(bank::BankArguments),
     /// Decides whether a recorded sweep shows an inclusion, using two force maps or a bank; a bank also locates it
-    Detect(detect::DetectArguments),
+    Detect(Box<detect::DetectArguments>),
     /// Computes the greatest depth and the smallest size that can still be detected
     Reach(reach::ReachArguments),
     /// Propagates input uncertainty to every result, on one machine or a cluster
