@@ -8,7 +8,6 @@ use core::ptr;
 use bolero::{Driver, TypeGenerator};
 use palpate_c::{Error, PositionReport, palpate_decide, palpate_position_report_decode};
 use palpate_core::detect;
-use palpate_core::hid;
 
 use crate::decision::Compared;
 use crate::report::Bytes;
@@ -44,7 +43,7 @@ fn decoding_from_c_is_refused_or_right() {
             Mistake::NoBytes => ptr::null(),
             _ => bytes.as_ptr(),
         };
-        let before = hid::PositionReport {
+        let before = PositionReport {
             lateral: 1,
             normal: 2,
             buttons: 3,
@@ -52,7 +51,7 @@ fn decoding_from_c_is_refused_or_right() {
             sequence: 5,
             force_sequence: 6,
         };
-        let mut report = PositionReport::from(before);
+        let mut report = before;
         let place = match mistake {
             Mistake::NoPlace => ptr::null_mut(),
             Mistake::UnalignedPlace => (&raw mut report).wrapping_byte_add(1),
@@ -63,10 +62,10 @@ fn decoding_from_c_is_refused_or_right() {
             Mistake::NoPlace => Err(Error::NullPointer),
             Mistake::UnalignedPlace => Err(Error::Unaligned),
             Mistake::NoBytes if !bytes.is_empty() => Err(Error::NullPointer),
-            _ => hid::PositionReport::decode(bytes).map_err(|_| Error::Report),
+            _ => PositionReport::decode(bytes).map_err(|_| Error::Report),
         };
         assert!(error == right.err().unwrap_or(Error::Ok));
-        assert!(hid::PositionReport::from(report) == right.unwrap_or(before));
+        assert!(report == right.unwrap_or(before));
         reached! {
             "a report": right.is_ok(),
             "bytes that are no report": right == Err(Error::Report),

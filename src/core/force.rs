@@ -1,15 +1,16 @@
 //! A force on the probe, by its two components.
+//!
+//! ```
+//! use palpate_core::force::Force;
+//!
+//! let noise = Force::new(0.05, 0.1);
+//! assert_eq!(noise.map(|sd| 2.0 * sd), Force { lateral: 0.1, normal: 0.2 });
+//! ```
 
 /// A lateral and a normal force on the probe, or what belongs to each: samples of them, their noise, their energy.
 ///
 /// Lateral is along +x, normal is positive where it pushes the probe out of the gel. Where it holds numbers they are newtons.
-///
-/// ```
-/// use palpate_core::force::Force;
-///
-/// let noise = Force::new(0.05, 0.1);
-/// assert_eq!(noise.map(|sd| 2.0 * sd), Force { lateral: 0.1, normal: 0.2 });
-/// ```
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Force<T> {
     /// Along +x.

@@ -1,7 +1,7 @@
 #ifndef PALPATE_H
 #define PALPATE_H
 
-/* Written by cbindgen from bindings/c/src; `bindings/c/run` checks that it is current. */
+/* Written by cbindgen from bindings/c/src and src/core; `bindings/c/run` checks that it is current. */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -57,18 +57,18 @@ typedef uint32_t PalpateError;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What control report 4 tells the device.
+// Feature report 4: what the device is told.
 enum PalpateControl
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint8_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
   // Play no force until enabled.
-  PALPATE_CONTROL_STOP,
+  PALPATE_CONTROL_STOP = 0,
   // Play the force reports.
-  PALPATE_CONTROL_ENABLE,
+  PALPATE_CONTROL_ENABLE = 1,
   // Clear the device's own fault.
-  PALPATE_CONTROL_CLEAR_FAULT,
+  PALPATE_CONTROL_CLEAR_FAULT = 2,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -103,6 +103,27 @@ typedef uint32_t PalpateLength;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// What the program that runs the loop asks of the kernel in a cycle.
+enum PalpateServoRequest
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint8_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // Nothing.
+  PALPATE_SERVO_REQUEST_NONE,
+  // To arm, also after a fault.
+  PALPATE_SERVO_REQUEST_ARM,
+  // To disarm.
+  PALPATE_SERVO_REQUEST_DISARM,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum PalpateServoRequest PalpateServoRequest;
+#else
+typedef uint8_t PalpateServoRequest;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // Whether there may be a force.
 enum PalpateServoMode
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -130,58 +151,37 @@ typedef uint8_t PalpateServoMode;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What the person at the controls asks for.
-enum PalpateServoRequest
-#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
-  : uint8_t
-#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
- {
-  // Nothing.
-  PALPATE_SERVO_REQUEST_NONE,
-  // To arm, also after a fault.
-  PALPATE_SERVO_REQUEST_ARM,
-  // To disarm.
-  PALPATE_SERVO_REQUEST_DISARM,
-};
-#ifndef __cplusplus
-#if __STDC_VERSION__ >= 202311L
-typedef enum PalpateServoRequest PalpateServoRequest;
-#else
-typedef uint8_t PalpateServoRequest;
-#endif // __STDC_VERSION__ >= 202311L
-#endif // __cplusplus
-
-// Costs: `c01` of the decision 0 (no inclusion) where 1 (an inclusion) is true, and so on.
+// The costs C_ij of deciding i when H = j, in any one unit.
 typedef struct {
-  // No inclusion, rightly.
+  // Deciding 0 when H = 0.
   double c00;
-  // A miss.
+  // Deciding 0 when H = 1: a miss.
   double c01;
-  // A false alarm.
+  // Deciding 1 when H = 0: a false alarm.
   double c10;
-  // An inclusion, rightly.
+  // Deciding 1 when H = 1.
   double c11;
 } PalpateCosts;
 
-// Rates of error.
+// The two probabilities of error at a threshold.
 typedef struct {
-  // Pr(decision: inclusion | none).
+  // Pr(Ĥ = 1 | H = 0).
   double false_alarm;
-  // Pr(decision: none | inclusion).
+  // Pr(Ĥ = 0 | H = 1).
   double miss;
 } PalpateErrorRates;
 
-// How much noise there may be, standard deviations in N.
+// A noise budget. All standard deviations in N.
 typedef struct {
-  // The γ that the rates of error need.
+  // The signal-to-noise ratio that the error rates need.
   double gamma;
-  // What all noise together may be, N.
+  // What all the noise together may be, signal/γ.
   double total_allowed_n;
-  // What further sources may add, N; 0 if the given ones exhaust the budget.
+  // What further sources may add, 0 if the given ones exhaust the budget.
   double remaining_n;
 } PalpateNoiseBudget;
 
-// The two tails of a law at x.
+// Both tails of a law at a point x.
 typedef struct {
   // Pr(X < x).
   double lower;
@@ -189,11 +189,11 @@ typedef struct {
   double upper;
 } PalpateTails;
 
-// An interval for a proportion.
+// The ends of an interval that holds a number with a stated probability.
 typedef struct {
-  // Lower end, at least 0.
+  // Lower end.
   double lower;
-  // Upper end, at most 1.
+  // Upper end.
   double upper;
 } PalpateInterval;
 
@@ -207,13 +207,18 @@ typedef struct {
   size_t samples;
 } PalpateSeries;
 
-// A lateral and a normal number, such as the standard deviation of the noise of one sample, N.
+// A lateral and a normal force on the probe, or what belongs to each: samples of them, their noise, their energy.
+//
+// Lateral is along +x, normal is positive where it pushes the probe out of the gel. Where it holds numbers they are newtons.
 typedef struct {
   // Along +x.
   double lateral;
   // Out of the gel.
   double normal;
-} PalpateComponents;
+} PalpateForce_f64;
+
+// A lateral and a normal number, such as the standard deviation of the noise of one sample, N.
+typedef PalpateForce_f64 PalpateComponents;
 
 // What a template and its noise give, before any record.
 typedef struct {
@@ -225,21 +230,21 @@ typedef struct {
   double gamma;
 } PalpateFilter;
 
-// What a record says.
+// What the filter says about one record.
 typedef struct {
-  // y(0) of each channel's filter.
-  PalpateComponents y;
-  // θ, the log-likelihood ratio.
+  // Y(0) of equation (5), N. A channel whose template is zero has 0.
+  PalpateForce_f64 y;
+  // θ of equation (7), the log-likelihood ratio.
   double theta;
-  // γ, the signal-to-noise ratio of both channels.
+  // γ, the signal-to-noise ratio of the hypotheses.
   double gamma;
 } PalpateStatistic;
 
-// θ and γ, of a record in coloured noise or of one shift.
+// What a record in coloured noise says.
 typedef struct {
   // θ, the log-likelihood ratio.
   double theta;
-  // γ, the signal-to-noise ratio.
+  // γ = (ΔᵀK⁻¹Δ)^½.
   double gamma;
 } PalpateThetaGamma;
 
@@ -267,12 +272,13 @@ typedef struct {
 typedef struct {
   // Θ_max.
   double theta;
-  // γ at that shift.
+  // γ at the shift of the maximum.
   double gamma;
-  // The shift with the top of the parabola through Θ there and at its neighbours.
-  double refined_shift;
-  // The shift k̂, samples.
+  // The shift of the maximum, the first of several equal ones.
   ptrdiff_t shift;
+  // The vertex of the parabola through the maximum and its two neighbours, in samples: the shift
+  // without the grid. It is the shift itself at the ends of the scan.
+  double refined_shift;
 } PalpateScanMaximum;
 
 // Input report 1: where the handle is.
@@ -302,6 +308,8 @@ typedef struct {
   // Bit 0: play the force; otherwise the device plays none.
   uint8_t flags;
 } PalpateForceReport;
+// The bit of [`ForceReport::flags`] that lets the device play the force.
+#define PalpateForceReport_PLAY 1
 
 // Feature report 3: what the device is.
 typedef struct {
@@ -337,13 +345,18 @@ typedef struct {
   uint8_t device_fault;
 } PalpateServoSample;
 
-// A force on the probe, N.
+// A lateral and a normal force on the probe, or what belongs to each: samples of them, their noise, their energy.
+//
+// Lateral is along +x, normal is positive where it pushes the probe out of the gel. Where it holds numbers they are newtons.
 typedef struct {
   // Along +x.
   float lateral;
   // Out of the gel.
   float normal;
-} PalpateForce;
+} PalpateForce_f32;
+
+// A force on the probe, N.
+typedef PalpateForce_f32 PalpateForce;
 
 // What one cycle tells the device.
 typedef struct {
@@ -363,9 +376,9 @@ typedef struct {
   size_t words[16];
 } PalpatePreparedTable;
 
-// Where a position lies on an axis.
+// Where a position lies: a cell of an axis, and the fraction of its width.
 typedef struct {
-  // The cell, from 0.
+  // The cell, from 0 to the number of cells minus 1.
   size_t index;
   // 0 at the cell's first knot, 1 at its last; from −1 to 2 outside the axis.
   float fraction;

@@ -3,7 +3,9 @@
 //! Implements: CLB-010.
 
 use palpate_core::detect;
+pub use palpate_core::detect::noise_budget::NoiseBudget;
 use palpate_core::detect::noise_budget::noise_budget;
+pub use palpate_core::detect::{Costs, ErrorRates};
 
 use crate::Error;
 use crate::memory::{give, list, read};
@@ -27,20 +29,6 @@ pub unsafe extern "C" fn palpate_map_threshold(prior_h1: f64, eta: *mut f64) -> 
     unsafe { give(eta, || Ok(detect::map_threshold(prior_h1)?)) }
 }
 
-/// Costs: `c01` of the decision 0 (no inclusion) where 1 (an inclusion) is true, and so on.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct Costs {
-    /// No inclusion, rightly.
-    pub c00: f64,
-    /// A miss.
-    pub c01: f64,
-    /// A false alarm.
-    pub c10: f64,
-    /// An inclusion, rightly.
-    pub c11: f64,
-}
-
 /// η of the least expected cost.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn palpate_bayes_threshold(
@@ -49,8 +37,7 @@ pub unsafe extern "C" fn palpate_bayes_threshold(
     eta: *mut f64,
 ) -> Error {
     let threshold = || {
-        let Costs { c00, c01, c10, c11 } = unsafe { read(costs) }?;
-        let costs = detect::Costs { c00, c01, c10, c11 };
+        let costs = unsafe { read(costs) }?;
         Ok(detect::bayes_threshold(prior_h1, costs)?)
     };
     unsafe { give(eta, threshold) }
@@ -83,16 +70,6 @@ pub unsafe extern "C" fn palpate_neyman_pearson_false_alarm_threshold(
     unsafe { give(eta, threshold) }
 }
 
-/// Rates of error.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct ErrorRates {
-    /// Pr(decision: inclusion | none).
-    pub false_alarm: f64,
-    /// Pr(decision: none | inclusion).
-    pub miss: f64,
-}
-
 /// The rates of error at a threshold η on θ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn palpate_error_rates(
@@ -100,11 +77,7 @@ pub unsafe extern "C" fn palpate_error_rates(
     eta: f64,
     rates: *mut ErrorRates,
 ) -> Error {
-    let found = || {
-        let detect::ErrorRates { false_alarm, miss } = detect::error_rates(gamma, eta)?;
-        Ok(ErrorRates { false_alarm, miss })
-    };
-    unsafe { give(rates, found) }
+    unsafe { give(rates, || Ok(detect::error_rates(gamma, eta)?)) }
 }
 
 /// The rate of misses on the receiver operating characteristic at a rate of false alarms.
@@ -136,18 +109,6 @@ pub unsafe extern "C" fn palpate_gamma_from_two_afc(p_correct: f64, gamma: *mut 
     unsafe { give(gamma, || Ok(detect::gamma_from_two_afc(p_correct)?)) }
 }
 
-/// How much noise there may be, standard deviations in N.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct NoiseBudget {
-    /// The γ that the rates of error need.
-    pub gamma: f64,
-    /// What all noise together may be, N.
-    pub total_allowed_n: f64,
-    /// What further sources may add, N; 0 if the given ones exhaust the budget.
-    pub remaining_n: f64,
-}
-
 /// The noise that a signal of `signal_n` allows at two rates of error, beside `count` sources (standard deviations, N).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn palpate_noise_budget(
@@ -160,12 +121,7 @@ pub unsafe extern "C" fn palpate_noise_budget(
 ) -> Error {
     let found = || {
         let sources = unsafe { list(sources_n, count) }?;
-        let found = noise_budget(signal_n, max_false_alarm, max_miss, sources)?;
-        Ok(NoiseBudget {
-            gamma: found.gamma,
-            total_allowed_n: found.total_allowed,
-            remaining_n: found.remaining,
-        })
+        Ok(noise_budget(signal_n, max_false_alarm, max_miss, sources)?)
     };
     unsafe { give(budget, found) }
 }

@@ -2,7 +2,9 @@
 //!
 //! Implements: CLB-010.
 
-use palpate_core::stats::{Bounds, binomial, noncentral, normal};
+pub use palpate_core::stats::Bounds;
+pub use palpate_core::stats::noncentral::Tails;
+use palpate_core::stats::{binomial, noncentral, normal};
 
 use crate::Error;
 use crate::memory::give;
@@ -19,25 +21,6 @@ pub unsafe extern "C" fn palpate_normal_quantile(p: f64, x: *mut f64) -> Error {
     unsafe { give(x, || Ok(normal::quantile(p)?)) }
 }
 
-/// The two tails of a law at x.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct Tails {
-    /// Pr(X < x).
-    pub lower: f64,
-    /// Pr(X ≥ x).
-    pub upper: f64,
-}
-
-impl From<noncentral::Tails> for Tails {
-    fn from(tails: noncentral::Tails) -> Tails {
-        Tails {
-            lower: tails.lower,
-            upper: tails.upper,
-        }
-    }
-}
-
 /// Tails of noncentral chi-square at x, with `degrees` of freedom and noncentrality λ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn palpate_chi_square_tail(
@@ -46,7 +29,7 @@ pub unsafe extern "C" fn palpate_chi_square_tail(
     noncentrality: f64,
     tails: *mut Tails,
 ) -> Error {
-    let found = || Ok(noncentral::chi_square(x, degrees, noncentrality)?.into());
+    let found = || Ok(noncentral::chi_square(x, degrees, noncentrality)?);
     unsafe { give(tails, found) }
 }
 
@@ -59,7 +42,14 @@ pub unsafe extern "C" fn palpate_f_tail(
     noncentrality: f64,
     tails: *mut Tails,
 ) -> Error {
-    let found = || Ok(noncentral::f_ratio(x, numerator, denominator, noncentrality)?.into());
+    let found = || {
+        Ok(noncentral::f_ratio(
+            x,
+            numerator,
+            denominator,
+            noncentrality,
+        )?)
+    };
     unsafe { give(tails, found) }
 }
 
@@ -71,27 +61,8 @@ pub unsafe extern "C" fn palpate_student_tail(
     noncentrality: f64,
     tails: *mut Tails,
 ) -> Error {
-    let found = || Ok(noncentral::student(x, degrees, noncentrality)?.into());
+    let found = || Ok(noncentral::student(x, degrees, noncentrality)?);
     unsafe { give(tails, found) }
-}
-
-/// An interval for a proportion.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct Interval {
-    /// Lower end, at least 0.
-    pub lower: f64,
-    /// Upper end, at most 1.
-    pub upper: f64,
-}
-
-impl From<Bounds> for Interval {
-    fn from(interval: Bounds) -> Interval {
-        Interval {
-            lower: interval.lower,
-            upper: interval.upper,
-        }
-    }
 }
 
 /// The exact interval of Clopper and Pearson at 0 < `confidence` < 1. Takes about √trials steps for each of some 120 tails.
@@ -100,9 +71,9 @@ pub unsafe extern "C" fn palpate_clopper_pearson(
     successes: u64,
     trials: u64,
     confidence: f64,
-    interval: *mut Interval,
+    interval: *mut Bounds,
 ) -> Error {
-    let found = || Ok(binomial::clopper_pearson(successes, trials, confidence)?.into());
+    let found = || Ok(binomial::clopper_pearson(successes, trials, confidence)?);
     unsafe { give(interval, found) }
 }
 
@@ -112,8 +83,8 @@ pub unsafe extern "C" fn palpate_wilson(
     successes: u64,
     trials: u64,
     confidence: f64,
-    interval: *mut Interval,
+    interval: *mut Bounds,
 ) -> Error {
-    let found = || Ok(binomial::wilson(successes, trials, confidence)?.into());
+    let found = || Ok(binomial::wilson(successes, trials, confidence)?);
     unsafe { give(interval, found) }
 }

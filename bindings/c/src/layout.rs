@@ -4,7 +4,11 @@
 
 use core::mem::offset_of;
 
-use crate::*;
+// The names of the header, where they are others (`cbindgen.toml`).
+use crate::{
+    Bounds as Interval, ColouredStatistic as ThetaGamma, NuisanceStatistic as SubspaceStatistic,
+    ServoForce as Force, *,
+};
 
 /// A structure's name, its size, and the name and offset of each field; what holds addresses is written in words.
 pub type Layout = (&'static str, usize, &'static [(&'static str, usize)]);
@@ -25,7 +29,7 @@ layout! {
     Statistic { y, theta, gamma }
     ThetaGamma { theta, gamma }
     SubspaceStatistic { t, gamma, gamma_nominal, residual, theta, rates, rank, degrees }
-    ScanMaximum { theta, gamma, refined_shift, shift }
+    ScanMaximum { theta, gamma, shift, refined_shift }
     Tails { lower, upper }
     Interval { lower, upper }
     Costs { c00, c01, c10, c11 }

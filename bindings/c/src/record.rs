@@ -2,10 +2,13 @@
 //!
 //! Implements: CLB-003, CLB-010.
 
+pub use palpate_core::detect::Statistic;
+pub use palpate_core::detect::coloured::ColouredStatistic;
 use palpate_core::detect::coloured::{coloured_scratch, theta_coloured};
 use palpate_core::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
-use palpate_core::detect::scan;
-use palpate_core::detect::{self, MatchedFilter, theta_of_record};
+use palpate_core::detect::scan::Scan;
+pub use palpate_core::detect::scan::ScanMaximum;
+use palpate_core::detect::{MatchedFilter, theta_of_record};
 use palpate_core::force::Force;
 
 use crate::memory::{bytes, check_apart, give, list, list_mut, read};
@@ -37,26 +40,7 @@ impl Series {
 }
 
 /// A lateral and a normal number, such as the standard deviation of the noise of one sample, N.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct Components {
-    /// Along +x.
-    pub lateral: f64,
-    /// Out of the gel.
-    pub normal: f64,
-}
-
-impl From<Components> for Force<f64> {
-    fn from(Components { lateral, normal }: Components) -> Force<f64> {
-        Force::new(lateral, normal)
-    }
-}
-
-impl From<Force<f64>> for Components {
-    fn from(Force { lateral, normal }: Force<f64>) -> Components {
-        Components { lateral, normal }
-    }
-}
+pub type Components = Force<f64>;
 
 /// What a template and its noise give, before any record.
 #[repr(C)]
@@ -79,26 +63,14 @@ pub unsafe extern "C" fn palpate_matched_filter(
 ) -> Error {
     let found = || {
         let (template, noise) = unsafe { (read(template)?.force()?, read(noise_sd)?) };
-        let found = MatchedFilter::new(template, noise.into())?;
+        let found = MatchedFilter::new(template, noise)?;
         Ok(Filter {
-            b: found.b().into(),
-            sigma: found.sigma().into(),
+            b: found.b(),
+            sigma: found.sigma(),
             gamma: found.gamma(),
         })
     };
     unsafe { give(filter, found) }
-}
-
-/// What a record says.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct Statistic {
-    /// y(0) of each channel's filter.
-    pub y: Components,
-    /// θ, the log-likelihood ratio.
-    pub theta: f64,
-    /// γ, the signal-to-noise ratio of both channels.
-    pub gamma: f64,
 }
 
 /// θ, y(0) and γ of a record, from the forces without (`f0`) and with (`f1`) the inclusion, in white noise.
@@ -113,25 +85,9 @@ pub unsafe extern "C" fn palpate_theta(
     let found = || {
         let [observed, f0, f1] = [observed, f0, f1].map(|series| unsafe { read(series)?.force() });
         let noise = unsafe { read(noise_sd) }?;
-        let found = theta_of_record(observed?, f0?, f1?, noise.into())?;
-        let detect::Statistic { y, theta, gamma } = found;
-        Ok(Statistic {
-            y: y.into(),
-            theta,
-            gamma,
-        })
+        Ok(theta_of_record(observed?, f0?, f1?, noise)?)
     };
     unsafe { give(statistic, found) }
-}
-
-/// θ and γ, of a record in coloured noise or of one shift.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct ThetaGamma {
-    /// θ, the log-likelihood ratio.
-    pub theta: f64,
-    /// γ, the signal-to-noise ratio.
-    pub gamma: f64,
 }
 
 /// The length of the scratch that `palpate_theta_coloured` needs: n² + 2n.
@@ -150,7 +106,7 @@ pub unsafe extern "C" fn palpate_theta_coloured(
     n: usize,
     scratch: *mut f64,
     scratch_length: usize,
-    found: *mut ThetaGamma,
+    found: *mut ColouredStatistic,
 ) -> Error {
     let statistic = || {
         let square = n.checked_mul(n).ok_or(Error::Length)?;
@@ -165,11 +121,7 @@ pub unsafe extern "C" fn palpate_theta_coloured(
         let (residual, template) = unsafe { (list(residual, n)?, list(template, n)?) };
         let covariance = unsafe { list(covariance, square) }?;
         let scratch = unsafe { list_mut(scratch, scratch_length) }?;
-        let found = theta_coloured(residual, template, covariance, scratch)?;
-        Ok(ThetaGamma {
-            theta: found.theta,
-            gamma: found.gamma,
-        })
+        Ok(theta_coloured(residual, template, covariance, scratch)?)
     };
     unsafe { give(found, statistic) }
 }
@@ -177,7 +129,7 @@ pub unsafe extern "C" fn palpate_theta_coloured(
 /// What a whitened record says beside nuisances.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
-pub struct SubspaceStatistic {
+pub struct NuisanceStatistic {
     /// T, over the estimate of the noise where its level is unknown.
     pub t: f64,
     /// γ in the same unit.
@@ -211,7 +163,7 @@ pub unsafe extern "C" fn palpate_theta_nuisances(
     known_level: u8,
     bias: f64,
     eta: f64,
-    found: *mut SubspaceStatistic,
+    found: *mut NuisanceStatistic,
 ) -> Error {
     let statistic = || {
         let numbers = samples.checked_mul(count).ok_or(Error::Length)?;
@@ -232,33 +184,18 @@ pub unsafe extern "C" fn palpate_theta_nuisances(
             NoiseLevel::Known
         };
         let test = found.test(level, bias)?;
-        let detect::ErrorRates { false_alarm, miss } = test.rates(test.bayes_threshold(eta)?)?;
-        Ok(SubspaceStatistic {
+        Ok(NuisanceStatistic {
             t: test.t,
             gamma: test.gamma,
             gamma_nominal: detector.gamma_nominal(),
             residual: found.residual,
             theta: test.theta(),
-            rates: ErrorRates { false_alarm, miss },
+            rates: test.rates(test.bayes_threshold(eta)?)?,
             rank: nuisances.rank(),
             degrees: samples - 1 - nuisances.rank(),
         })
     };
     unsafe { give(found, statistic) }
-}
-
-/// The largest Θ of a scan.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct ScanMaximum {
-    /// Θ_max.
-    pub theta: f64,
-    /// γ at that shift.
-    pub gamma: f64,
-    /// The shift with the top of the parabola through Θ there and at its neighbours.
-    pub refined_shift: f64,
-    /// The shift k̂, samples.
-    pub shift: isize,
 }
 
 /// Θ at every shift k = 0 … N − M at which the whole template of M samples lies in the record of N, into `theta`, and the
@@ -280,25 +217,15 @@ pub unsafe extern "C" fn palpate_scan(
         check_apart(&[bytes(theta, count)], read_too.as_flattened())?;
         let (residual, template) = unsafe { (record.force()?, pattern.force()?) };
         let noise = unsafe { read(noise_sd) }?;
-        let scan = scan::Scan::new(record.samples, template, noise.into())?;
+        let scan = Scan::new(record.samples, template, noise)?;
         if count != scan.full_shifts().count() {
             return Err(Error::Length);
         }
         let thetas = unsafe { list_mut(theta, count) }?;
         // What overflows at any shift is refused here, before Θ is written.
-        let scan::ScanMaximum {
-            theta,
-            gamma,
-            shift,
-            refined_shift,
-        } = scan.maximum(residual, scan.full_shifts())?;
+        let maximum = scan.maximum(residual, scan.full_shifts())?;
         scan.theta(residual, 0, thetas)?;
-        Ok(ScanMaximum {
-            theta,
-            gamma,
-            refined_shift,
-            shift,
-        })
+        Ok(maximum)
     };
     unsafe { give(maximum, found) }
 }

@@ -2,40 +2,17 @@
 //!
 //! Implements: CLB-003, CLB-010, CLB-012.
 
-use core::mem::{MaybeUninit, offset_of};
+use core::mem::MaybeUninit;
 
-use palpate_core::force::Force as KernelForce;
-use palpate_core::servo::{self, Axis, Fault, Limits, Mode, Request, Table};
+use palpate_core::force::Force;
+use palpate_core::servo::{self, Axis, Fault, Limits, Mode, Table};
+pub use palpate_core::servo::{Cell, Request};
 
 use crate::Error;
 use crate::memory::{bytes, check_apart, give, list, list_mut, read};
 
 /// A force on the probe, N.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Force {
-    /// Along +x.
-    pub lateral: f32,
-    /// Out of the gel.
-    pub normal: f32,
-}
-
-// Rust does not promise the layout of the kernel's own force: with another one this does not compile.
-const _: () = assert!(
-    size_of::<KernelForce<f32>>() == size_of::<Force>()
-        && align_of::<KernelForce<f32>>() == align_of::<Force>()
-        && offset_of!(KernelForce<f32>, lateral) == offset_of!(Force, lateral)
-        && offset_of!(KernelForce<f32>, normal) == offset_of!(Force, normal)
-);
-
-impl From<KernelForce<f32>> for Force {
-    fn from(force: KernelForce<f32>) -> Force {
-        Force {
-            lateral: force.lateral,
-            normal: force.normal,
-        }
-    }
-}
+pub type ServoForce = Force<f32>;
 
 /// What `palpate_table_init` makes of knots and forces, to which it keeps pointers. Its content is the library's.
 #[repr(C)]
@@ -96,7 +73,7 @@ pub unsafe extern "C" fn palpate_table_init(
     depths: usize,
     lateral_knots_m: *const f32,
     laterals: usize,
-    forces_n: *const Force,
+    forces_n: *const ServoForce,
     scratch: *mut f32,
     scratch_length: usize,
     table: *mut PreparedTable,
@@ -120,8 +97,7 @@ pub unsafe extern "C" fn palpate_table_init(
         )?;
         let depth_knots = unsafe { list(depth_knots_m, depths) }?;
         let lateral_knots = unsafe { list(lateral_knots_m, laterals) }?;
-        // SAFETY: the layout of both is the same, as asserted above.
-        let forces = unsafe { list(forces_n.cast::<KernelForce<f32>>(), nodes) }?;
+        let forces = unsafe { list(forces_n, nodes) }?;
         let scratch = unsafe { list_mut(scratch, scratch_length) }?;
         let (depth_reciprocals, lateral_reciprocals) = scratch.split_at_mut(depths - 1);
         let depths = axis(depth_knots, depth_reciprocals)?;
@@ -138,20 +114,10 @@ pub unsafe extern "C" fn palpate_table_force(
     prepared: *const PreparedTable,
     depth_m: f32,
     lateral_m: f32,
-    force: *mut Force,
+    force: *mut ServoForce,
 ) -> Error {
-    let found = || Ok(unsafe { table(prepared) }?.force(depth_m, lateral_m).into());
+    let found = || Ok(unsafe { table(prepared) }?.force(depth_m, lateral_m));
     unsafe { give(force, found) }
-}
-
-/// Where a position lies on an axis.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct Cell {
-    /// The cell, from 0.
-    pub index: usize,
-    /// 0 at the cell's first knot, 1 at its last; from −1 to 2 outside the axis.
-    pub fraction: f32,
 }
 
 /// Cell and fraction of a position on an axis of `count` knots (m). `scratch` has count − 1 numbers. To compare with another
@@ -171,11 +137,8 @@ pub unsafe extern "C" fn palpate_axis_locate(
         }
         check_apart(&[bytes(scratch, scratch_length)], &[bytes(knots_m, count)])?;
         let knots = unsafe { list(knots_m, count) }?;
-        let found = axis(knots, unsafe { list_mut(scratch, scratch_length) }?)?.locate(position_m);
-        Ok(Cell {
-            index: found.index,
-            fraction: found.fraction,
-        })
+        let reciprocals = unsafe { list_mut(scratch, scratch_length) }?;
+        Ok(axis(knots, reciprocals)?.locate(position_m))
     };
     unsafe { give(cell, found) }
 }
@@ -212,7 +175,7 @@ pub enum ServoMode {
     FaultState,
 }
 
-/// In the order of `ServoRequest`.
+/// By their numbers.
 const REQUESTS: [Request; 3] = [Request::None, Request::Arm, Request::Disarm];
 
 /// In the order of `ServoMode`.
@@ -230,7 +193,7 @@ const MODES: [Mode; 6] = [
 #[derive(Debug, Clone, Copy)]
 pub struct ServoState {
     /// The last command, N.
-    pub force: Force,
+    pub force: ServoForce,
     /// The number of the last sample taken over.
     pub sequence: u16,
     /// Cycles since the last fresh sample.
@@ -249,13 +212,10 @@ impl From<ServoState> for servo::State {
     fn from(state: ServoState) -> servo::State {
         let mode = MODES.get(usize::from(state.mode)).copied();
         // No step leaves a NaN: of a mode that does not exist the kernel takes over nothing.
-        let [lateral, normal] = match mode {
-            Some(_) => [state.force.lateral, state.force.normal],
-            None => [f32::NAN; 2],
-        };
+        let overwritten = Force::new(f32::NAN, f32::NAN);
         servo::State {
             mode: mode.unwrap_or(Mode::Faulted(Fault::State)),
-            force: KernelForce::new(lateral, normal),
+            force: mode.map_or(overwritten, |_| state.force),
             sequence: (state.has_sequence != 0).then_some(state.sequence),
             missed: state.missed,
             arming: state.arming != 0,
@@ -266,7 +226,7 @@ impl From<ServoState> for servo::State {
 impl From<servo::State> for ServoState {
     fn from(state: servo::State) -> ServoState {
         ServoState {
-            force: state.force.into(),
+            force: state.force,
             sequence: state.sequence.unwrap_or(0),
             missed: state.missed,
             mode: match state.mode {
@@ -300,24 +260,12 @@ pub struct ServoSample {
     pub device_fault: u8,
 }
 
-/// What the person at the controls asks for.
-#[repr(u8)]
-#[derive(Debug, Clone, Copy)]
-pub enum ServoRequest {
-    /// Nothing.
-    None,
-    /// To arm, also after a fault.
-    Arm,
-    /// To disarm.
-    Disarm,
-}
-
 /// What one cycle tells the device.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ServoCommand {
     /// The force to play, N.
-    pub force: Force,
+    pub force: ServoForce,
     /// 1 while the force follows the table; otherwise it is on its way to zero.
     pub playing: u8,
     /// 0.
@@ -339,10 +287,7 @@ pub unsafe extern "C" fn palpate_step(
     command: *mut ServoCommand,
 ) -> Error {
     const NONE: ServoCommand = ServoCommand {
-        force: Force {
-            lateral: 0.0,
-            normal: 0.0,
-        },
+        force: Force::ZERO,
         playing: 0,
         reserved: [0; 3],
     };
@@ -360,24 +305,23 @@ pub unsafe extern "C" fn palpate_step(
     }
     let cycle = || {
         let table = unsafe { table(prepared) }?;
-        let limits = unsafe { read(limits) }?;
         let ServoLimits {
             force_n,
             slew_n,
             release_n,
             watchdog_cycles,
-        } = limits;
+        } = unsafe { read(limits) }?;
         let limits = Limits::new(force_n, slew_n, release_n, watchdog_cycles)?;
-        let sample = match sample.is_null() {
-            true => None,
-            false => Some(unsafe { read(sample) }?),
+        let sample = if sample.is_null() {
+            None
+        } else {
+            Some(unsafe { read(sample) }?.into())
         };
         let input = servo::Input {
-            sample: sample.map(Into::into),
-            request: match REQUESTS.get(usize::from(request)) {
-                Some(&request) => request,
-                None => Request::Disarm,
-            },
+            sample,
+            request: *REQUESTS
+                .get(usize::from(request))
+                .unwrap_or(&Request::Disarm),
         };
         let state = unsafe { read(state) }?;
         Ok(servo::step(table, &limits, state.into(), input))
@@ -387,7 +331,7 @@ pub unsafe extern "C" fn palpate_step(
         Err(error) => return error,
     };
     let played = ServoCommand {
-        force: played.force.into(),
+        force: played.force,
         playing: played.playing.into(),
         reserved: [0; 3],
     };

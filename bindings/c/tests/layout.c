@@ -33,8 +33,8 @@ _Static_assert(offsetof(PalpateSubspaceStatistic, degrees) == 64, "SubspaceStati
 _Static_assert(sizeof(PalpateScanMaximum) == 32, "ScanMaximum");
 _Static_assert(offsetof(PalpateScanMaximum, theta) == 0, "ScanMaximum.theta");
 _Static_assert(offsetof(PalpateScanMaximum, gamma) == 8, "ScanMaximum.gamma");
-_Static_assert(offsetof(PalpateScanMaximum, refined_shift) == 16, "ScanMaximum.refined_shift");
-_Static_assert(offsetof(PalpateScanMaximum, shift) == 24, "ScanMaximum.shift");
+_Static_assert(offsetof(PalpateScanMaximum, shift) == 16, "ScanMaximum.shift");
+_Static_assert(offsetof(PalpateScanMaximum, refined_shift) == 24, "ScanMaximum.refined_shift");
 _Static_assert(sizeof(PalpateTails) == 16, "Tails");
 _Static_assert(offsetof(PalpateTails, lower) == 0, "Tails.lower");
 _Static_assert(offsetof(PalpateTails, upper) == 8, "Tails.upper");

@@ -86,5 +86,5 @@ pub fn noise_budget(
     let sources = sources.as_slice()?;
     let budget = detect::noise_budget::noise_budget(signal_n, max_false_alarm, max_miss, sources);
     let budget = budget.map_err(refused)?;
-    Ok((budget.gamma, budget.total_allowed, budget.remaining))
+    Ok((budget.gamma, budget.total_allowed_n, budget.remaining_n))
 }

@@ -6,6 +6,7 @@ use crate::stats::compensated::{self, DoubleDouble};
 use crate::stats::error::{check_length, check_samples, representable};
 
 /// What a record in coloured noise says.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColouredStatistic {
     /// θ, the log-likelihood ratio.

@@ -17,6 +17,7 @@ pub enum Decision {
 }
 
 /// The costs C_ij of deciding i when H = j, in any one unit.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Costs {
     /// Deciding 0 when H = 0.
@@ -30,6 +31,7 @@ pub struct Costs {
 }
 
 /// The two probabilities of error at a threshold.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorRates {
     /// Pr(Ĥ = 1 | H = 0).

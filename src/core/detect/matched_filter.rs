@@ -35,6 +35,7 @@ pub struct MatchedFilter<'a> {
 }
 
 /// What the filter says about one record.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistic {
     /// Y(0) of equation (5), N. A channel whose template is zero has 0.

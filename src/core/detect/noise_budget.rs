@@ -5,14 +5,15 @@ use super::decision::required_gamma;
 use crate::stats::error::{check_not_negative, check_positive, check_samples, representable};
 
 /// A noise budget. All standard deviations in N.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseBudget {
     /// The signal-to-noise ratio that the error rates need.
     pub gamma: f64,
     /// What all the noise together may be, signal/γ.
-    pub total_allowed: f64,
+    pub total_allowed_n: f64,
     /// What further sources may add, 0 if the given ones exhaust the budget.
-    pub remaining: f64,
+    pub remaining_n: f64,
 }
 
 /// The budget for a signal of `signal` N at given error rates, when the independent `sources`
@@ -43,8 +44,8 @@ pub fn noise_budget(
     };
     Ok(NoiseBudget {
         gamma,
-        total_allowed,
-        remaining,
+        total_allowed_n: total_allowed,
+        remaining_n: remaining,
     })
 }
 

@@ -18,6 +18,7 @@ pub struct Scan<'a> {
 }
 
 /// The largest Θ of a scan.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanMaximum {
     /// Θ_max.

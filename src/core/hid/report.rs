@@ -66,8 +66,8 @@ pub mod status {
 }
 
 /// Input report 1: where the handle is.
-///
-/// Implements: HID-002, HID-006.
+// Implements: HID-002, HID-006.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -76,9 +76,9 @@ pub struct PositionReport {
     pub lateral: i16,
     /// Position along the normal, counts, positive out of the gel.
     pub normal: i16,
-    /// Switches: see [`button`].
+    /// Switches: bit 0 is the deadman.
     pub buttons: u8,
-    /// State of the device: see [`status`].
+    /// State of the device: bit 0 a fault, bit 1 its watchdog.
     pub status: u8,
     /// Number of this report, modulo 65536.
     pub sequence: u16,
@@ -87,8 +87,8 @@ pub struct PositionReport {
 }
 
 /// Output report 2: what to play.
-///
-/// Implements: HID-002, HID-006.
+// Implements: HID-002, HID-006.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -104,8 +104,8 @@ pub struct ForceReport {
 }
 
 /// Feature report 3: what the device is.
-///
-/// Implements: HID-002, HID-006.
+// Implements: HID-002, HID-006.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -129,6 +129,7 @@ pub struct Capabilities {
 }
 
 /// Feature report 4: what the device is told.
+#[repr(u8)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Control {
     /// Play no force until enabled.

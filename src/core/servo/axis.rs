@@ -32,6 +32,7 @@ pub struct Axis<'a> {
 }
 
 /// Where a position lies: a cell of an axis, and the fraction of its width.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
     /// The cell, from 0 to the number of cells minus 1.

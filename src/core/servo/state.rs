@@ -20,6 +20,7 @@ pub struct Sample {
 }
 
 /// What the program that runs the loop asks of the kernel in a cycle.
+#[repr(u8)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Request {
     /// Nothing.

@@ -16,6 +16,7 @@ mod ziggurat;
 pub use error::NumericError;
 
 /// The ends of an interval that holds a number with a stated probability.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Bounds {

@@ -22,6 +22,7 @@ const NOTHING: f64 = -800.0;
 const ALL_BITS: u32 = 1140;
 
 /// Both tails of a law at a point x.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tails {
     /// Pr(X < x).

@@ -8,13 +8,13 @@ use palpate_asserts::{assert_near, assert_ulps};
 fn budget_of_the_papers_example() {
     let budget = noise_budget(0.5, 0.05, 0.05, &[0.1]).unwrap();
     assert_ulps(budget.gamma, 3.2897072539029453, 4.0);
-    assert_ulps(budget.total_allowed, 0.15198920797794224, 6.0);
-    assert_ulps(budget.remaining, 0.1144583738385365, 12.0);
+    assert_ulps(budget.total_allowed_n, 0.15198920797794224, 6.0);
+    assert_ulps(budget.remaining_n, 0.1144583738385365, 12.0);
     // Nothing left, and nothing used.
     let exhausted = noise_budget(0.5, 0.05, 0.05, &[0.1, 0.12]).unwrap();
-    assert_eq!(exhausted.remaining, 0.0);
+    assert_eq!(exhausted.remaining_n, 0.0);
     let untouched = noise_budget(0.5, 0.05, 0.05, &[]).unwrap();
-    assert_ulps(untouched.remaining, untouched.total_allowed, 2.0);
+    assert_ulps(untouched.remaining_n, untouched.total_allowed_n, 2.0);
 }
 
 // Verifies: DET-100.

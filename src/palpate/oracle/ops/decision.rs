@@ -69,7 +69,7 @@ pub fn noise_budget(arguments: &mut Arguments) -> Result<Answer, Refused> {
     let budget = detect::noise_budget::noise_budget(signal, max_false_alarm, max_miss, &sources)?;
     Ok(Answer::of([
         ("gamma", budget.gamma),
-        ("total_allowed_n", budget.total_allowed),
-        ("remaining_n", budget.remaining),
+        ("total_allowed_n", budget.total_allowed_n),
+        ("remaining_n", budget.remaining_n),
     ]))
 }
