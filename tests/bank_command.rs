@@ -139,7 +139,7 @@ fn renumbered(line: &str) -> String {
 #[test]
 fn what_was_kept_of_another_bank_is_refused_and_stays() {
     let place = Place::new("bank-other");
-    let other = "bank.json.part: of another request or version, expected this one: finish that one, or delete the file";
+    let other = "bank.json.part: belongs to a different request or version; finish that run or delete the file";
     let version = env!("CARGO_PKG_VERSION");
     let missing = "bank.json.part:2: column 2: missing field `number`";
     let wrong =
@@ -170,7 +170,7 @@ fn what_was_kept_of_another_bank_is_refused_and_stays() {
     let held = File::open(place.at("bank.json.part")).unwrap();
     held.lock().unwrap();
     let found = place.refused(&format!("{SMALL} --out bank.json"));
-    has(&found, ["another 'palpate bank' is at work on it"]);
+    has(&found, ["another 'palpate bank' is writing this file"]);
 }
 
 /// Other arguments than those of `SMALL`, and words of the refusal.

@@ -194,7 +194,7 @@ fn samples_that_are_missing_twice_there_or_foreign_are_named() {
     // Samples of another study are not gone on with.
     place.write("out/samples-1-of-1.jsonl", &other);
     let error = place.refused("study run study.toml --out out");
-    has(&error, ["of another request or version"]);
+    has(&error, ["belongs to a different request or version"]);
 }
 
 // Verifies: STU-001, STU-011, STU-010, STU-024.

@@ -18,6 +18,7 @@
 //! | figures, tables | [`report`] |
 //! | the answer to a record, for programs and for people | [`rows`] |
 //! | why an input is refused | [`refusal`] |
+//! | a file that grows while a long job runs | [`journal`] |
 //! | other implementations: questions and answers | [`oracle`] |
 //!
 //! Lengths are metres, forces newtons, moduli pascals throughout; `spec/README.md` has the signs.
@@ -68,6 +69,7 @@ pub mod fem;
 pub mod force_map;
 pub mod hid;
 pub mod input;
+pub mod journal;
 pub mod oracle;
 pub mod phantom;
 pub mod refusal;

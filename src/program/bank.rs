@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 use super::CliError;
 use super::numbers::{List, contact, length, moduli, positions};
 use super::output::{Envelope, write};
-use super::part::Part;
 use super::progress::{resumed_bar, tell_large_mesh};
 use super::solve::{phantom, warn_of_large_strain_of};
 use palpate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
 use palpate::decimal::format_scaled;
 use palpate::fem::{Contact, arithmetic};
 use palpate::force_map::{ForceMap, parse};
+use palpate::journal::Journal;
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 
@@ -121,7 +121,7 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     }
     let reference = maps.remove(0);
     write(out, &Bank::new(reference, maps)?.to_json())?;
-    part.remove()
+    Ok(part.remove()?)
 }
 
 /// How the first line of a FILE.part begins.
@@ -161,7 +161,7 @@ fn open_part(
     arguments: &BankArguments,
     phantom: &Phantom,
     solves: &[BankSolve],
-) -> Result<(Part, Taken, ProgressBar), CliError> {
+) -> Result<(Journal, Taken, ProgressBar), CliError> {
     let request = Request {
         arithmetic: arithmetic(),
         phantom,
@@ -179,7 +179,7 @@ fn open_part(
     name.push(".part");
     let path = PathBuf::from(name);
     let mut finished = vec![None; 1 + solves.len()];
-    let part = Part::open(path.clone(), &request, BEGINNING, "palpate bank", |text| {
+    let part = Journal::open(path.clone(), &request, BEGINNING, "palpate bank", |text| {
         let Finished { number, maps } = parse::<Finished<Vec<ForceMap>>>(text)?;
         let solve = number.checked_sub(1).and_then(|solve| solves.get(solve));
         match finished.get_mut(number) {
@@ -214,7 +214,7 @@ fn compute(
     plan: &BankPlan,
     phantom: &str,
     solves: &[BankSolve],
-    part: &Part,
+    part: &Journal,
     finished: Taken,
     bar: &ProgressBar,
 ) -> Result<Vec<ForceMap>, CliError> {

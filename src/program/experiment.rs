@@ -1,7 +1,6 @@
 //! `palpate experiment`: two-alternative forced choice (`spec/command-line.md`).
 
-use std::fs::File;
-use std::io::{BufRead, Read, Write};
+use std::io::{BufRead, Read};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -9,14 +8,17 @@ use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::numbers::newtons;
-use super::output::{print, read, write};
+use super::output::print;
 use super::playback::{DeviceArguments, limits};
 use super::progress::bar;
 use palpate::force_map::{ForceMap, Hypotheses};
 use palpate::hid::HapticDevice;
 use palpate::hid::simulated::Trajectory;
+use palpate::journal::Journal;
 use palpate::servo::{Limits, LoadedTable};
-use palpate_paper::psychophysics::{Felt, IdealObserver, Interval, Journal, Setup, Trial, present};
+use palpate_paper::psychophysics::{
+    Answer, Experiment, Felt, IdealObserver, Interval, Setup, Trial, present,
+};
 
 /// How long a person may take to press the deadman.
 const PATIENCE: Duration = Duration::from_secs(600);
@@ -94,57 +96,51 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
         return Err(CliError::Usage(message.into()));
     }
     let pairs = Pairs::read(arguments)?;
-    let mut journal = open_journal(arguments)?;
+    let (mut experiment, journal) = open_journal(arguments)?;
     let total = arguments.inclusion.len() * arguments.trials as usize;
     let bar = match arguments.observer {
         Observer::Ideal => bar(total, "pairs"),
         Observer::Person => indicatif::ProgressBar::hidden(),
     };
-    while let Some((number, trial)) = journal.next() {
+    while let Some((number, trial)) = experiment.next() {
         let Some(answer) = pairs.judge(number, total, trial)? else {
             return print(&format!(
                 "{number} of {total} pairs answered; the same command goes on with the next\n"
             ));
         };
-        let line = journal.answer(answer == trial.with_inclusion);
-        append(&arguments.journal, line)?;
+        let answer = Answer {
+            right: answer == trial.with_inclusion,
+        };
+        journal.append(&answer)?;
+        experiment.answer(answer)?;
         bar.set_position(number as u64 + 1);
     }
     bar.finish_and_clear();
-    print(&journal.table_row().unwrap_or_default())
+    print(&experiment.table_row().unwrap_or_default())
 }
 
-/// The journal so far.
-fn open_journal(arguments: &ExperimentArguments) -> Result<Journal, CliError> {
-    let names = arguments.inclusion.iter().map(|(name, _)| &name[..]);
-    let names: Vec<&str> = names.collect();
-    let mut journal = Journal::new(Setup {
+/// The experiment with the answers so far, and the journal that keeps them.
+fn open_journal(arguments: &ExperimentArguments) -> Result<(Experiment, Journal), CliError> {
+    let names = arguments.inclusion.iter().map(|(name, _)| name.clone());
+    let setup = Setup {
+        schema_version: 1,
         seed: arguments.seed,
         trials: arguments.trials as usize,
         subject: arguments.subject.clone(),
         condition: arguments.condition.clone(),
-        inclusions: names.join(","),
-    });
-    let path = &arguments.journal;
-    if path.exists() {
-        let found = Journal::parse(&read(path)?).map_err(CliError::refused(path.display()))?;
-        let (of, asked) = (found.setup(), journal.setup());
-        if of != asked {
-            let message = format!("another experiment ({of}) than asked for ({asked})");
-            return Err(CliError::refused(path.display())(message));
-        }
-        journal = found;
-    }
-    // Written anew, since an abort may have left part of a line.
-    write(path, &journal.to_text())?;
-    Ok(journal)
-}
-
-/// Appends a line to the journal.
-fn append(path: &Path, line: &str) -> Result<(), CliError> {
-    let file = File::options().append(true).open(path);
-    let written = file.and_then(|mut file| file.write_all(line.as_bytes()));
-    written.map_err(CliError::file("write", path))
+        inclusions: names.collect(),
+    };
+    let mut experiment = Experiment::new(setup.clone());
+    let path = arguments.journal.clone();
+    let take = |line: &str| experiment.take(line);
+    let journal = Journal::open(
+        path,
+        &setup,
+        Experiment::BEGINNING,
+        "palpate experiment",
+        take,
+    )?;
+    Ok((experiment, journal))
 }
 
 /// A map, and the table that plays it.

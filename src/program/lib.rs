@@ -18,7 +18,6 @@ mod import;
 pub mod numbers;
 mod oracle;
 pub mod output;
-mod part;
 mod play;
 mod playback;
 pub mod progress;

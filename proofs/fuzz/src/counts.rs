@@ -1,11 +1,13 @@
 //! Counts of right answers, and the journal of an experiment.
 
 use std::collections::HashSet;
+use std::path::Path;
 
-use palpate_paper::psychophysics::Journal;
-use palpate_paper::psychophysics::{AnswerTable, MOST_TRIALS, analyse};
+use palpate::journal::take_lines;
+use palpate::refusal::Refusal;
+use palpate_paper::psychophysics::{AnswerTable, Experiment, MOST_TRIALS, Setup, analyse};
 
-use crate::message::{check_file_message, check_message, check_quoting};
+use crate::message::{check_file_message, check_message};
 use crate::{FILE, Outcome, judged};
 
 /// An accepted table has counts that fit their trials and names that can be printed, is the same
@@ -75,38 +77,41 @@ fn written(table: &AnswerTable) -> String {
     text
 }
 
-/// An accepted journal is the same when it is written and read again, its counts are those of its
-/// answers, and a line that an abort left unfinished does not count; a refusal names the line.
+/// The answers of an experiment, as the lines of its journal after the first. Accepted lines are read alike again, the counts are those
+/// of the lines, and a line that an abort left unfinished does not count; a refusal names the line.
 pub fn journal(text: &str) -> Outcome {
-    let accepted = |journal: Journal| {
-        let written = journal.to_text();
-        let again = Journal::parse(&written).expect("what was written can be read");
-        assert_eq!((&again, again.to_text()), (&journal, written.clone()));
-        for cut in ["right", "nonsense"] {
-            let again = Journal::parse(&format!("{written}{cut}"));
-            assert_eq!(again.as_ref(), Ok(&journal), "{cut:?}");
+    let accepted = |experiment: Experiment| {
+        let counts = experiment.counts();
+        let right: usize = counts.iter().map(|(right, _)| right).sum();
+        let answers: usize = counts.iter().map(|(_, all)| all).sum();
+        let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+        assert_eq!(answers, whole.lines().count());
+        assert_eq!(right, whole.matches("true").count());
+        assert_eq!(experiment.next().is_none(), answers == PAIRS);
+        assert_eq!(experiment.table_row().is_some(), answers == PAIRS);
+        for cut in ["{\"right\":true}", "nonsense"] {
+            assert_eq!(read(&format!("{whole}{cut}")).as_ref(), Ok(&experiment));
         }
-        check_counts(&journal, &written);
     };
-    judged(Journal::parse(text), accepted, |error| {
-        let quoted = check_quoting(&error, text);
-        // Of an unfinished line, and behind the last one, there is nothing.
-        assert!([quoted, "\"\"".into()].contains(&error.found));
+    judged(read(text), accepted, |error| {
+        check_file_message(&error, text)
     })
 }
 
-fn check_counts(journal: &Journal, written: &str) {
-    let count = |answer| written.lines().filter(|&line| line == answer).count();
-    let counts = journal.counts();
-    let right: usize = counts.iter().map(|(right, _)| right).sum();
-    let answers: usize = counts.iter().map(|(_, all)| all).sum();
-    assert_eq!(right, count("right"));
-    assert_eq!(answers, right + count("wrong"));
-    let setup = journal.setup();
-    let inclusions = setup.inclusions.split(',').count();
-    assert!((1..=1000).contains(&setup.trials));
-    assert!((1..=100).contains(&inclusions));
-    let all = setup.trials * inclusions;
-    assert_eq!(journal.next().is_none(), answers == all);
-    assert_eq!(journal.table_row().is_some(), answers == all);
+/// Pairs of the experiment.
+const PAIRS: usize = 2 * 3;
+
+fn read(lines: &str) -> Result<Experiment, Refusal> {
+    let mut experiment = Experiment::new(Setup {
+        schema_version: 1,
+        seed: 1,
+        trials: 3,
+        subject: "1".into(),
+        condition: "FEM data".into(),
+        inclusions: vec!["2.6".into(), "8.6".into()],
+    });
+    take_lines(lines.as_bytes(), Path::new(FILE), 1, |line| {
+        experiment.take(line)
+    })?;
+    Ok(experiment)
 }

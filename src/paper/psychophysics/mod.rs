@@ -3,7 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `plan.rs` | which pair when: random, from a seed |
-//! | `journal.rs` | the answers so far, in a file that survives an abort |
+//! | `experiment.rs` | one subject's experiment and the answers so far |
 //! | `observer.rs` | one sample played through device and servo, as it was felt; the ideal observer, who decides by Θ |
 //! | `table.rs`, `table1.csv` | counts of right answers: Table 1 and files of its form |
 //! | `analysis.rs` | everything that the counts say by themselves, from the files below |
@@ -33,7 +33,7 @@ pub mod bridge;
 mod choice;
 mod conditions;
 mod dispersion;
-mod journal;
+mod experiment;
 pub mod noise;
 mod observer;
 mod plan;
@@ -47,7 +47,7 @@ mod tests;
 pub use analysis::{Analysis, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis, analyse};
 pub use beta_binomial::BetaBinomial;
 pub use conditions::{ConditionComparison, Difference, InclusionDifference};
-pub use journal::{Journal, Setup};
+pub use experiment::{Answer, Experiment, Setup};
 pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};
 pub use observer::{Felt, IdealObserver, present};
 pub use palpate::stats::dispersion::{Dispersion, dispersion};

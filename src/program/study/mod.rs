@@ -11,9 +11,9 @@ use rayon::prelude::*;
 
 use super::CliError;
 use super::output::{Format, make_folder, print, write};
-use super::part::Part;
 use super::progress::resumed_bar;
 use file::read_plan;
+use palpate::journal::Journal;
 use palpate::refusal::Refusal;
 use palpate_paper::report::text;
 use palpate_paper::study::{Sampler, StudyResults};
@@ -80,7 +80,7 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
     let total = progress.left();
     let header = Header::new(&plan, arguments.shard);
     let command = "palpate study run";
-    let part = Part::open(path.clone(), &header, BEGINNING, command, |text| {
+    let part = Journal::open(path.clone(), &header, BEGINNING, command, |text| {
         progress.take_over(&sampler, text)
     })?;
     let done = total - progress.left();

@@ -10,9 +10,9 @@ use serde_json::Value;
 
 use crate::CliError;
 use crate::output::Envelope;
-use crate::part::take_lines;
 use palpate::fem::arithmetic;
 use palpate::force_map::parse;
+use palpate::journal::take_lines;
 use palpate::refusal::Refusal;
 use palpate_paper::study::{Failure, StudyPlan};
 

@@ -1,22 +1,26 @@
-//! What is finished of a long computation, in a file that grows by a line with each part of it, so that one that was stopped goes on.
+//! A journal: a file of JSON lines that grows while a long job runs, so that a job that was stopped can continue.
 //!
-//! The first line is what was asked for, each other one a part.
+//! The first line states the request, each further line one finished part.
 
 use std::fs::{File, TryLockError};
-use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use serde::Serialize;
 
-use super::CliError;
-use palpate::refusal::Refusal;
+use crate::refusal::Refusal;
 
-/// The open file.
+/// An open journal, locked against other processes.
 #[derive(Debug)]
-pub struct Part {
+pub struct Journal {
     path: PathBuf,
     file: Mutex<File>,
+}
+
+/// The system did not let a file be opened, read, written or removed.
+fn failed(action: &str, path: &Path) -> impl FnOnce(io::Error) -> Refusal {
+    Refusal::because(format!("{action} {}", path.display()))
 }
 
 /// A line of JSON.
@@ -25,41 +29,41 @@ fn line(document: &impl Serialize) -> String {
     serde_json::to_string(document).unwrap_or_default() + "\n"
 }
 
-/// Hands the lines of a file, from where it is read and without their ends, to `take` with their numbers from `first`, but for a last one
-/// that was cut off; how many bytes the whole lines have.
+/// Passes each line of `file` to `take`, without its end. A last line that was cut off is left out. The first line has the number
+/// `first`. Returns the number of bytes of the whole lines.
 ///
 /// # Errors
-/// A file that cannot be read, a line that is no text, and what `take` refuses; with the file and the line.
+/// The file cannot be read, a line is not UTF-8, or `take` refuses a line; the error names the file and the line.
 pub fn take_lines(
     mut file: impl BufRead,
     path: &Path,
     first: usize,
     mut take: impl FnMut(&str) -> Result<(), Refusal>,
-) -> Result<u64, CliError> {
+) -> Result<u64, Refusal> {
     let (mut length, mut bytes) = (0, Vec::new());
     for number in first.. {
         bytes.clear();
         let read = file.read_until(b'\n', &mut bytes);
-        read.map_err(CliError::file("read", path))?;
+        read.map_err(failed("read", path))?;
         let Some((b'\n', text)) = bytes.split_last() else {
             break;
         };
         let in_line = |refusal: Refusal| refusal.at(number).in_file(path.display().to_string());
         let text = std::str::from_utf8(text);
-        let text = text.map_err(|_| in_line(Refusal::state("no UTF-8", "a line of JSON")))?;
+        let text = text.map_err(|_| in_line(Refusal::state("this line is not UTF-8", "")))?;
         take(text).map_err(in_line)?;
         length += bytes.len() as u64;
     }
     Ok(length)
 }
 
-impl Part {
-    /// Opens the file at `path`, or begins it, for a `request` whose line begins with `beginning`; hands each whole line after the first
-    /// to `take`. `command` is named to a second one that would write the file.
+impl Journal {
+    /// Opens the journal of `request` at `path`, or creates it, and passes each whole line after the first to `take`. The first line of
+    /// every journal of this kind begins with `beginning`. A second process that opens the journal is told that `command` writes it.
     ///
     /// # Errors
-    /// A file of another request, of which something is finished, or of something else; one that another process writes; what `take`
-    /// refuses.
+    /// The file belongs to another request of which a part is finished, or is not such a journal; another process writes it; or `take`
+    /// refuses a line.
     ///
     /// Implements: CLI-156, CLI-157.
     pub fn open(
@@ -68,25 +72,27 @@ impl Part {
         beginning: &str,
         command: &str,
         take: impl FnMut(&str) -> Result<(), Refusal>,
-    ) -> Result<Part, CliError> {
+    ) -> Result<Journal, Refusal> {
+        let refused = |found: String| Refusal::state(found, "").in_file(path.display().to_string());
         let mut options = File::options();
         options.read(true).write(true).create(true).truncate(false);
-        let mut file = options.open(&path).map_err(CliError::file("open", &path))?;
+        let mut file = options.open(&path).map_err(failed("open", &path))?;
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
-            let reason = format!("another '{command}' is at work on it, expected one at a time");
-            return Err(CliError::refused(path.display())(reason));
+            let found = format!("another '{command}' is writing this file; wait until it ends");
+            return Err(refused(found));
         }
         let request = line(request);
         let mut reader = BufReader::new(&file);
         let mut first = Vec::new();
         let read = reader.read_until(b'\n', &mut first);
-        read.map_err(CliError::file("read", &path))?;
+        read.map_err(failed("read", &path))?;
         let mut length = 0;
         if first == request.as_bytes() {
             length = take_lines(reader, &path, 2, take)? + first.len() as u64;
         } else if !is_only_begun(&first, beginning) || has_line(reader) {
-            let reason = "of another request or version, expected this one: finish that one, or delete the file";
-            return Err(CliError::refused(path.display())(reason));
+            let found =
+                "belongs to a different request or version; finish that run or delete the file";
+            return Err(refused(found.into()));
         }
         let begun = file.set_len(length);
         let begun = begun.and_then(|()| file.seek(SeekFrom::End(0)));
@@ -94,18 +100,18 @@ impl Part {
             0 => file.write_all(request.as_bytes()),
             _ => Ok(()),
         });
-        begun.map_err(CliError::file("write", &path))?;
+        begun.map_err(failed("write", &path))?;
         let file = Mutex::new(file);
-        Ok(Part { path, file })
+        Ok(Journal { path, file })
     }
 
-    /// Notes a part in one piece; it is on the disk when this returns.
+    /// Appends one finished part as one line, which is on the disk when this returns.
     ///
     /// # Errors
-    /// A file that cannot be written; then no part of the line stays.
+    /// The file cannot be written; then nothing of the line stays in it.
     ///
     /// Implements: CLI-156.
-    pub fn append(&self, part: &impl Serialize) -> Result<(), CliError> {
+    pub fn append(&self, part: &impl Serialize) -> Result<(), Refusal> {
         let line = line(part);
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         let mut write = || {
@@ -114,23 +120,23 @@ impl Part {
                 .write_all(line.as_bytes())
                 .and_then(|()| file.sync_data());
             written.inspect_err(|_| {
-                // What failed first is told.
+                // The first error is the one to report.
                 let _ = file.set_len(before);
             })
         };
-        write().map_err(CliError::file("write", &self.path))
+        write().map_err(failed("write", &self.path))
     }
 
     /// Removes the file.
     ///
     /// # Errors
-    /// If the system does not let it.
-    pub fn remove(self) -> Result<(), CliError> {
-        std::fs::remove_file(&self.path).map_err(CliError::file("remove", &self.path))
+    /// The system does not allow it.
+    pub fn remove(self) -> Result<(), Refusal> {
+        std::fs::remove_file(&self.path).map_err(failed("remove", &self.path))
     }
 }
 
-/// Whether a file whose first line is this, or the beginning of it, is one of ours.
+/// Whether `first` is the first line, or the beginning of the first line, of a journal of this kind.
 fn is_only_begun(first: &[u8], beginning: &str) -> bool {
     first.starts_with(beginning.as_bytes()) || beginning.as_bytes().starts_with(first)
 }
