@@ -36,9 +36,10 @@ pub fn millimetres(length: impl Borrow<f64>) -> String {
 /// `value` with at most `decimals` decimals and no trailing zeros, with a true minus sign.
 pub fn trimmed(value: impl Borrow<f64>, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.borrow());
-    let text = match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => &text,
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
     };
     with_minus(if text == "-0" { "0" } else { text })
 }

@@ -9,6 +9,7 @@
 
 pub mod psychophysics;
 pub mod report;
+mod settings;
 pub mod study;
 
 #[cfg(test)]

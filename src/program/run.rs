@@ -17,10 +17,7 @@ use palpate::force_map::ForceMap;
 use palpate::input::parse;
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
-use palpate_paper::psychophysics::bridge::probe_depth;
-use palpate_paper::report::{
-    ArraySweep, DeformedMesh, FileNames, Run, figures, findings, html, summary_json,
-};
+use palpate_paper::report::{DeformedMesh, FileNames, Run, figures, findings, html, summary_json};
 use palpate_paper::study::StudyResults;
 
 /// Arguments of `palpate run`.
@@ -90,7 +87,7 @@ fn solve_all(
     let solved = phantoms.par_iter().enumerate().map(solve);
     let solved: Vec<_> = solved.collect::<Result<_, _>>()?;
     bar.finish_and_clear();
-    let (mut maps, arrays, deformed): (Vec<_>, _, Vec<_>) = solved.into_iter().collect();
+    let (mut maps, deformed): (Vec<_>, Vec<_>) = solved.into_iter().collect();
     let deformed = deformed.into_iter().flatten().next();
     let none = || CliError::Usage("no phantom to run".into());
     let reference = maps.remove(0);
@@ -98,7 +95,6 @@ fn solve_all(
         reference,
         maps,
         measured,
-        arrays,
         deformed: deformed.ok_or_else(none)?,
         settings: config.detection,
         study: None,
@@ -110,7 +106,7 @@ fn solve_phantom(
     phantom: &Phantom,
     shown: bool,
     bar: &ProgressBar,
-) -> Result<(ForceMap, ArraySweep, Option<DeformedMesh>), FemError> {
+) -> Result<(ForceMap, Option<DeformedMesh>), FemError> {
     let mesh = &config.mesh;
     tell_large_mesh(phantom, mesh.size_mm / 1e3)?;
     let model = Model::new(phantom, mesh.size_mm / 1e3, mesh.contact)?;
@@ -119,9 +115,7 @@ fn solve_phantom(
     bar.inc_length((3 * depths.len() * model.solved_laterals(laterals).len()) as u64);
     let map = certified_map(&model, depths, laterals, &|poses| bar.inc(poses as u64))?;
     let deformed = shown.then(|| deformed_mesh(&model, &map)).transpose()?;
-    let (depth, _) = probe_depth(depths);
-    let array = ArraySweep::solve(&model, depth, laterals)?;
-    Ok((map, array, deformed))
+    Ok((map, deformed))
 }
 
 /// The mesh at the deepest pose, at the lateral position nearest to the middle of the first inclusion, or to x = 0.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use plotters::style::RGBColor;
 
-use super::panel::{Cells, DrawingResult, Line, Panel};
+use super::panel::{Cells, DrawingResult, Line, Panel, PanelKind};
 use super::style::{INK, VERMILION};
 use super::with_head;
 use super::{CHORDS, to_mm};
@@ -69,10 +69,8 @@ fn summed(place: &PlacePosterior, key: impl Fn([f64; 4]) -> [f64; 2]) -> Vec<([f
     for (at, mass) in place.nodes() {
         *sums.entry(key(at).map(f64::to_bits)).or_default() += mass;
     }
-    let sums = sums.into_iter();
-    let mut sums: Vec<_> = sums
-        .map(|(key, mass)| (key.map(f64::from_bits), mass))
-        .collect();
+    let unpacked = |(key, mass): ([u64; 2], f64)| (key.map(f64::from_bits), mass);
+    let mut sums: Vec<_> = sums.into_iter().map(unpacked).collect();
     sums.sort_by(|([a, b], _), ([c, d], _)| b.total_cmp(d).then(a.total_cmp(c)));
     sums
 }
@@ -108,12 +106,7 @@ fn marginal(
     let curve = density(points, place, axis, of_si);
     let interval = place.interval(axis, LEVEL)?;
     let (low, high, estimate) = (interval.lower, interval.upper, place.estimate[axis]);
-    let (first, last) = (points[0], points[points.len() - 1]);
-    let aside = (high - low).max(0.02 * (last - first));
-    let range = [
-        (low.min(estimate) - aside).max(first),
-        (high.max(estimate) + aside).min(last),
-    ];
+    let range = shown_range(points, [low, high], estimate);
     let is_shown = |x: f64| (range[0]..=range[1]).contains(&x);
     let scaled = |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> {
         points.into_iter().map(|(x, y)| (scale * x, y)).collect()
@@ -150,6 +143,16 @@ fn marginal(
     Ok((panel, text))
 }
 
+/// The part of an axis with these `points` that is shown: the interval and the estimate, with some room.
+fn shown_range(points: &[f64], [low, high]: [f64; 2], estimate: f64) -> [f64; 2] {
+    let (first, last) = (points[0], points[points.len() - 1]);
+    let aside = (high - low).max(0.02 * (last - first));
+    [
+        (low.min(estimate) - aside).max(first),
+        (high.max(estimate) + aside).min(last),
+    ]
+}
+
 /// The posterior density of one parameter over an axis with these `points`, per unit, of which `of_si` are one in SI.
 fn density(points: &[f64], place: &PlacePosterior, axis: usize, of_si: f64) -> Vec<(f64, f64)> {
     let sums = summed(place, |at| [at[axis], 0.0]);
@@ -171,14 +174,16 @@ fn with_ends(curve: &[(f64, f64)], [first, last]: [f64; 2], parts: &[[f64; 2]]) 
         return Vec::new();
     };
     let mut whole = Vec::new();
-    match from - first > TOUCHING {
-        true => whole.extend([(first, 0.0), (*from, 0.0)]),
-        false => whole.push((first, begin.1)),
+    if from - first > TOUCHING {
+        whole.extend([(first, 0.0), (*from, 0.0)])
+    } else {
+        whole.push((first, begin.1))
     }
     whole.extend(curve);
-    match last - to > TOUCHING {
-        true => whole.extend([(*to, 0.0), (last, 0.0)]),
-        false => whole.push((last, end.1)),
+    if last - to > TOUCHING {
+        whole.extend([(*to, 0.0), (last, 0.0)])
+    } else {
+        whole.push((last, end.1))
     }
     whole
 }
@@ -196,20 +201,7 @@ fn density_at(curve: &[(f64, f64)], x: f64) -> f64 {
 /// The gel to scale, with the likeliest inclusion and the credible regions of its highest point.
 fn gel(bank: &Bank, place: &PlacePosterior) -> Panel {
     let sums = summed(place, |at| [at[0], at[1]]);
-    let mut ends = [HashMap::new(), HashMap::new()];
-    for (axis, ends) in ends.iter_mut().enumerate() {
-        let mut nodes: Vec<f64> = sums.iter().map(|(at, _)| at[axis]).collect();
-        nodes.sort_by(f64::total_cmp);
-        nodes.dedup();
-        let parts = parts(&bank.axes()[axis], &nodes);
-        *ends = nodes.into_iter().map(f64::to_bits).zip(parts).collect();
-    }
-    let cells = sums.iter().map(|(at, mass)| {
-        let [across, down] = [0, 1].map(|axis: usize| ends[axis][&at[axis].to_bits()]);
-        let area = (across[1] - across[0]) * (down[1] - down[0]);
-        ([across, down], *mass, mass / area)
-    });
-    let cells: Vec<_> = cells.collect();
+    let cells = rectangles(bank, &sums);
     let inclusion = likeliest(bank, place);
     let outline = inclusion.as_ref().map(|inclusion| {
         let corners = inclusion.outline().chords(CHORDS);
@@ -218,11 +210,11 @@ fn gel(bank: &Bank, place: &PlacePosterior) -> Panel {
     });
     let outline = outline.unwrap_or_default();
     let laterals = bank.reference().laterals().iter().map(|x| 1e3 * x);
-    let x = extremes(laterals.chain(outline.iter().map(|corner| corner.0)));
-    let x = x.unwrap_or([-1.0, 1.0]);
+    let across = extremes(laterals.chain(outline.iter().map(|corner| corner.0)));
+    let x = across.unwrap_or([-1.0, 1.0]);
     let depths = bank.axes()[1].iter().map(|depth| 1e3 * depth);
-    let deepest = extremes(depths.chain(outline.iter().map(|corner| corner.1)));
-    let deepest = 1.05 * deepest.map_or(1.0, |ends| ends[1]);
+    let down = extremes(depths.chain(outline.iter().map(|corner| corner.1)));
+    let deepest = 1.05 * down.map_or(1.0, |ends| ends[1]);
     let estimate = (1e3 * place.estimate[0], 1e3 * place.estimate[1]);
     let dot = Line::new(VERMILION, vec![estimate]).wide(0.0).dotted(3);
     let outline = Line::new(VERMILION, outline).dashed(true);
@@ -235,7 +227,7 @@ fn gel(bank: &Bank, place: &PlacePosterior) -> Panel {
     let likeliest = Line::new(VERMILION, Vec::new()).dashed(true).dotted(3);
     Panel {
         x_name: "Position x (mm)".into(),
-        is_to_scale: true,
+        kind: PanelKind::ToScale,
         key: vec![
             likeliest.named("likeliest inclusion"),
             sample("its top: 50 %", REGIONS[1].1),
@@ -249,6 +241,23 @@ fn gel(bank: &Bank, place: &PlacePosterior) -> Panel {
             vec![outline, dot],
         )
     }
+}
+
+/// The part of the gel that each node of position and depth stands for.
+fn rectangles(bank: &Bank, sums: &[([f64; 2], f64)]) -> Vec<Rectangle> {
+    let ends = [0, 1].map(|axis: usize| -> HashMap<u64, [f64; 2]> {
+        let mut nodes: Vec<f64> = sums.iter().map(|(at, _)| at[axis]).collect();
+        nodes.sort_by(f64::total_cmp);
+        nodes.dedup();
+        let parts = parts(&bank.axes()[axis], &nodes);
+        nodes.into_iter().map(f64::to_bits).zip(parts).collect()
+    });
+    let rectangle = |(at, mass): &([f64; 2], f64)| {
+        let [across, down] = [0, 1].map(|axis: usize| ends[axis][&at[axis].to_bits()]);
+        let area = (across[1] - across[0]) * (down[1] - down[0]);
+        ([across, down], *mass, mass / area)
+    };
+    sums.iter().map(rectangle).collect()
 }
 
 /// The inclusion of the largest likelihood.

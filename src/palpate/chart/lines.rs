@@ -1,14 +1,18 @@
-//! Line charts: panels below one another, each line named at its right end.
+//! Line charts: panels below one another, each with a key above it.
 
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::names::{draw_key, draw_names, key_height, plot_height, right_margin};
-use super::panel::{Area, Cells, Context, DrawingResult, LEFT, Line, Mark, Panel, write};
-use super::style::{GRID, INK, UNIT, WIDTH, stroke, text};
+use super::key::{draw_key, key_height};
+use super::panel::{
+    Area, Cells, Context, DrawingResult, LEFT, Line, Panel, PanelKind, RIGHT, write,
+};
+use super::style::{GRID, INK, UNIT, WIDTH, stroke, text, text_width};
 use crate::text::{extremes, trimmed};
 
+/// Pixels from a plot to the names at its right.
+const INDENT: i32 = 8;
 /// Pixels above a plot for its heading.
 const HEADING: i32 = 40;
 /// Pixels below a plot for the numbers of its x axis.
@@ -21,13 +25,12 @@ impl Panel {
     /// flat or very tall gets more room around it.
     pub fn to_scale(cells: Vec<Cells>, lines: Vec<Line>) -> Panel {
         let areas = lines.iter().filter(|line| line.is_area);
-        let areas = areas.flat_map(|line| &line.points);
-        let corners = cells.iter().flat_map(|of| of.areas.iter().flatten());
-        let corners = corners.chain(areas);
+        let in_cells = cells.iter().flat_map(|of| of.areas.iter().flatten());
+        let corners = in_cells.chain(areas.flat_map(|line| &line.points));
         let mut x = extremes(corners.clone().map(|corner| corner.0)).unwrap_or([-1.0, 1.0]);
         let mut y = extremes(corners.map(|corner| corner.1)).unwrap_or([-1.0, 1.0]);
         y[1] += 0.02 * (y[1] - y[0]);
-        let width = f64::from(WIDTH - LEFT - right_margin(&lines));
+        let width = f64::from(WIDTH - LEFT - RIGHT);
         let lack = |wanted: f64, [from, to]: [f64; 2]| (wanted - (to - from)).max(0.0);
         y[1] += lack(60.0 / width * (x[1] - x[0]), y);
         let aside = 0.5 * lack(width / 600.0 * (y[1] - y[0]), x);
@@ -40,7 +43,7 @@ impl Panel {
             heading: "Height y (mm)".into(),
             x,
             y,
-            is_to_scale: true,
+            kind: PanelKind::ToScale,
             height: height as i32,
             cells,
             lines,
@@ -49,17 +52,32 @@ impl Panel {
     }
 }
 
+/// The bars whose names stand right of the plot.
+fn ranked(panel: &Panel) -> &[Line] {
+    match panel.kind {
+        PanelKind::Ranked => &panel.lines,
+        _ => &[],
+    }
+}
+
+/// Pixels right of a plot.
+fn right_margin(panel: &Panel) -> i32 {
+    let widths = ranked(panel)
+        .iter()
+        .map(|line| INDENT + text_width(&line.name) + 8);
+    widths.max().unwrap_or(RIGHT)
+}
+
 /// Draws panels below one another over one x axis, or over their own ones if `x_name` is empty, and gives an SVG document with
 /// its height, pixels.
 pub fn chart(panels: &[Panel], x_name: &str) -> DrawingResult<(String, i32)> {
     let footing = |name: &str| if name.is_empty() { 0 } else { FOOTING };
     let each = |panel: &Panel| {
         let below = NUMBERS + footing(&panel.x_name);
-        HEADING + key_height(panel) + plot_height(panel) + below
+        HEADING + key_height(panel) + panel.height + below
     };
     let height = panels.iter().map(each).sum::<i32>() + footing(x_name);
-    let margins = panels.iter().map(|panel| right_margin(&panel.lines));
-    let right = margins.max().unwrap_or(0);
+    let right = panels.iter().map(right_margin).max().unwrap_or(RIGHT);
     let (mut svg, mut paths) = (String::new(), String::new());
     let size = ((WIDTH * UNIT) as u32, (height * UNIT) as u32);
     {
@@ -86,24 +104,38 @@ pub fn chart(panels: &[Panel], x_name: &str) -> DrawingResult<(String, i32)> {
 /// Draws a panel but for its cells, and gives those as paths.
 fn draw_panel(area: &Area<'_>, panel: &Panel, top: i32, right: i32) -> DrawingResult<String> {
     write(area, &panel.heading, [8, top + 22], HPos::Left)?;
-    draw_key(area, panel, top + HEADING - 4)?;
-    let top = top + HEADING + key_height(panel);
-    let mut chart = axes(area, panel, top, right)?;
+    let plot = top + HEADING + key_height(panel);
+    let mut chart = axes(area, panel, plot, right)?;
     for line in &panel.lines {
         draw_line(&mut chart, line)?;
     }
     for mark in &panel.marks {
-        draw_mark(area, &chart, mark)?;
+        let (x, y) = chart.backend_coord(&mark.at);
+        let at = [x / UNIT + mark.shift.0, y / UNIT + mark.shift.1];
+        write(area, &mark.words, at, mark.side)?;
     }
-    draw_names(area, &chart, panel, top, right)?;
+    draw_key(area, panel, top + HEADING - 4)?;
+    for line in ranked(panel) {
+        let height = line.points.first().map_or(0.0, |point| point.1);
+        let (_, y) = chart.backend_coord(&(panel.x[0], height));
+        write(
+            area,
+            &line.name,
+            [WIDTH - right + INDENT, y / UNIT],
+            HPos::Left,
+        )?;
+    }
     Ok(panel.cells.iter().map(|of| path(&chart, of)).collect())
 }
 
 /// All cells of a colour as one path, which keeps the file small: the library would write one tag for each.
 fn path(chart: &Context<'_>, Cells { fill, edge, areas }: &Cells) -> String {
     let outline = |corners: &Vec<(f64, f64)>| {
-        let places = corners.iter().map(|corner| chart.backend_coord(corner));
-        let places: Vec<_> = places.map(|(x, y)| format!("{x} {y}")).collect();
+        let place = |corner| {
+            let (x, y) = chart.backend_coord(corner);
+            format!("{x} {y}")
+        };
+        let places: Vec<_> = corners.iter().map(place).collect();
         format!("M{}Z", places.join("L"))
     };
     let outlines: String = areas.iter().map(outline).collect();
@@ -116,7 +148,7 @@ fn path(chart: &Context<'_>, Cells { fill, edge, areas }: &Cells) -> String {
 /// Axes with numbers around a plot that begins at `top` and ends `right` before the edge (pixels).
 fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResult<Context<'a>> {
     let place = |pixels: i32| pixels * UNIT;
-    let (x, y, height) = (panel.x, panel.y, plot_height(panel));
+    let (x, y, height) = (panel.x, panel.y, panel.height);
     let sub = area.clone().shrink(
         (0, place(top)),
         (place(WIDTH - right), place(height + NUMBERS)),
@@ -125,19 +157,19 @@ fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResu
         .set_label_area_size(LabelAreaPosition::Left, place(LEFT))
         .set_label_area_size(LabelAreaPosition::Bottom, place(NUMBERS))
         .build_cartesian_2d(x[0]..x[1], y[0]..y[1])?;
-    let grid = match panel.is_to_scale {
-        true => TRANSPARENT.stroke_width(0),
-        false => stroke(GRID, 1.0),
+    let grid = match panel.kind {
+        PanelKind::ToScale => TRANSPARENT.stroke_width(0),
+        _ => stroke(GRID, 1.0),
+    };
+    let heights = match panel.kind {
+        PanelKind::Ranked => 0,
+        _ => (height / 40).max(2) as usize,
     };
     let number = |value: &f64| trimmed(*value, 6);
     chart
         .configure_mesh()
         .x_labels(if panel.ticks.is_empty() { 6 } else { 0 })
-        .y_labels(if panel.is_ranked {
-            0
-        } else {
-            (height / 40).max(2) as usize
-        })
+        .y_labels(heights)
         .x_label_formatter(&number)
         .y_label_formatter(&number)
         .label_style(text(INK, HPos::Center))
@@ -153,12 +185,7 @@ fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResu
         let end = (foot.0, foot.1 + place(5));
         area.draw(&PathElement::new(vec![foot, end], stroke(INK, 1.0)))?;
         let at = [foot.0 / UNIT, foot.1 / UNIT + 15];
-        let shown = if panel.is_doubling {
-            libm::exp2(tick)
-        } else {
-            tick
-        };
-        write(area, &number(&shown), at, HPos::Center)?;
+        write(area, &number(&tick), at, HPos::Center)?;
     }
     Ok(chart)
 }
@@ -183,15 +210,6 @@ fn draw_line(chart: &mut Context<'_>, line: &Line) -> DrawingResult<()> {
         chart.draw_series(LineSeries::new(points, style))?;
     }
     Ok(())
-}
-
-fn draw_mark(area: &Area<'_>, chart: &Context<'_>, mark: &Mark) -> DrawingResult<()> {
-    let (x, y) = chart.backend_coord(&mark.at);
-    if mark.has_dot {
-        area.draw(&Circle::new((x, y), 5 * UNIT, INK.filled()))?;
-    }
-    let at = [x / UNIT + mark.shift.0, y / UNIT + mark.shift.1];
-    write(area, &mark.words, at, mark.side)
 }
 
 /// The least range of round numbers that holds all `values`, and 0, and is not empty.

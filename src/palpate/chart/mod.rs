@@ -5,18 +5,18 @@
 //! | `bank.rs`, `reach.rs` | where an inclusion lies by a bank, and how deep one can be found |
 //! | `panel.rs` | what a chart is made of |
 //! | `lines.rs` | how panels are drawn |
-//! | `names.rs`, `style.rs` | names and key around a plot; sizes and colours |
+//! | `key.rs`, `style.rs` | the key above a plot; sizes and colours |
 
 mod bank;
+mod key;
 mod lines;
-mod names;
 mod panel;
 mod reach;
 pub mod style;
 
 pub use bank::place_figure;
 pub use lines::{chart, round_range};
-pub use panel::{Cells, DrawingResult, Line, Mark, Panel};
+pub use panel::{Cells, DrawingResult, Line, Mark, Panel, PanelKind};
 pub use reach::reach_figure;
 
 use style::{UNIT, WIDTH};

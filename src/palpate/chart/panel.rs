@@ -19,11 +19,13 @@ pub type Context<'a> =
 
 /// Pixels left of a plot for the numbers of its y axis.
 pub const LEFT: i32 = 58;
+/// Pixels right of a plot, where nothing stands there.
+pub const RIGHT: i32 = 24;
 
 /// One curve.
 #[derive(Debug, Clone, Default)]
 pub struct Line {
-    /// Its name at the right end of the curve; empty for none.
+    /// Its name in the key; empty for none.
     pub name: String,
     /// Its colour.
     pub colour: RGBColor,
@@ -58,7 +60,7 @@ impl Line {
         }
     }
 
-    /// This curve with a name at its right end.
+    /// This curve with a name in the key.
     pub fn named(mut self, name: impl Into<String>) -> Line {
         self.name = name.into();
         self
@@ -83,12 +85,10 @@ impl Line {
     }
 }
 
-/// Words or a dot at a place in the plot. The words are in ink: a pale colour would be hard to read.
+/// Words at a place in the plot. The words are in ink: a pale colour would be hard to read.
 pub struct Mark {
     /// The place in data coordinates.
     pub at: (f64, f64),
-    /// Whether a dot is drawn there.
-    pub has_dot: bool,
     /// The words.
     pub words: String,
     /// The side of the words that is at the place.
@@ -98,11 +98,10 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// Words at a place, without a dot.
+    /// Words at a place.
     pub fn new(at: (f64, f64), words: impl Into<String>, side: HPos, shift: (i32, i32)) -> Mark {
         Mark {
             at,
-            has_dot: false,
             words: words.into(),
             side,
             shift,
@@ -120,6 +119,18 @@ pub struct Cells {
     pub areas: Vec<Vec<(f64, f64)>>,
 }
 
+/// What a panel shows.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum PanelKind {
+    /// Curves over both axes.
+    #[default]
+    Chart,
+    /// Bars by rank: the y axis has no numbers, and each name stands right of its bar.
+    Ranked,
+    /// A drawing to scale, without a grid.
+    ToScale,
+}
+
 /// One plot.
 #[derive(Default)]
 pub struct Panel {
@@ -133,21 +144,17 @@ pub struct Panel {
     pub y: [f64; 2],
     /// Where the x axis has numbers; empty for round numbers.
     pub ticks: Vec<f64>,
-    /// Whether the y axis is of ranks, and has no numbers.
-    pub is_ranked: bool,
-    /// Whether the x axis is of exponents, and has powers of two as its numbers.
-    pub is_doubling: bool,
-    /// Whether it is a drawing to scale, and no chart: it has no grid.
-    pub is_to_scale: bool,
+    /// What it shows.
+    pub kind: PanelKind,
     /// Height of the plot, pixels.
     pub height: i32,
-    /// What the kinds of lines mean: each is shown by a sample above the plot with its name.
+    /// Entries of the key above the plot beside those of the named lines.
     pub key: Vec<Line>,
     /// Small areas under everything.
     pub cells: Vec<Cells>,
     /// Curves, the later over the earlier.
     pub lines: Vec<Line>,
-    /// Words and dots.
+    /// Words.
     pub marks: Vec<Mark>,
 }
 

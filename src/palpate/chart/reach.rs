@@ -21,37 +21,16 @@ pub fn reach_figure(
     beside: &[Reached],
     unknown: &str,
 ) -> Result<String, Refusal> {
-    let [_, depths, diameters, moduli] = bank.axes();
-    let mut lines = Vec::new();
+    let [_, depths, diameters, _] = bank.axes();
     let ends = extremes(diameters.iter().map(|diameter| 1e3 * diameter)).unwrap_or_default();
     let room = (0.05 * (ends[1] - ends[0])).max(0.5);
     let x = [ends[0] - room, ends[1] + room];
     let deepest = 1e3 * depths.last().copied().unwrap_or_default();
-    let limit = Line::new(GREY, vec![(x[0], deepest), (x[1], deepest)]);
-    lines.push(limit.wide(1.2).named("bank's end"));
-    let colours = [BLUE].into_iter().chain(PALETTE.into_iter().skip(1));
-    for (&modulus, colour) in moduli.iter().zip(colours.cycle()) {
-        for (reached, is_dashed) in [(plain, false), (beside, true)] {
-            let of_modulus = reached.iter().filter(|of| of.modulus == modulus);
-            let points = of_modulus.filter_map(|of| Some((1e3 * of.diameter, 1e3 * of.depth?)));
-            let line = Line::new(colour, points.collect()).dotted(4);
-            let name = match moduli.len() {
-                1 => String::new(),
-                _ => format!("{} kPa", trimmed(1e-3 * modulus, 3)),
-            };
-            let name = if is_dashed { String::new() } else { name };
-            lines.push(line.dashed(is_dashed).named(name));
-        }
-    }
+    let sample = Line::new(INK, Vec::new()).dotted(4);
     let panel = Panel {
         key: vec![
-            Line::new(INK, Vec::new())
-                .dotted(4)
-                .named("nothing unknown"),
-            Line::new(INK, Vec::new())
-                .dotted(4)
-                .dashed(true)
-                .named(format!("unknown: {unknown}")),
+            sample.clone().named("nothing unknown"),
+            sample.dashed(true).named(format!("unknown: {unknown}")),
         ],
         ticks: match diameters.len() {
             1..=8 => diameters.iter().map(|diameter| 1e3 * diameter).collect(),
@@ -61,7 +40,7 @@ pub fn reach_figure(
             "Largest depth at which it is found (mm)",
             [x, round_range([deepest].into_iter())],
             300,
-            lines,
+            lines(bank, [plain, beside], x, deepest),
         )
     };
     let alt = reach_in_words(plain, beside, unknown);
@@ -69,6 +48,27 @@ pub fn reach_figure(
     let drawn = chart(&[panel], "Diameter of the inclusion (mm)");
     let svg = drawn.and_then(|drawn| with_head(drawn, "reach", title, &alt));
     svg.map_err(Refusal::because("figure of the reach"))
+}
+
+/// The end of the bank, and two lines for each modulus: with nothing unknown, and beside what is, in dashes.
+fn lines(bank: &Bank, reached: [&[Reached]; 2], x: [f64; 2], deepest: f64) -> Vec<Line> {
+    let moduli = &bank.axes()[3];
+    let limit = Line::new(GREY, vec![(x[0], deepest), (x[1], deepest)]);
+    let mut lines = vec![limit.wide(1.2).named("bank's end")];
+    let colours = [BLUE].into_iter().chain(PALETTE.into_iter().skip(1));
+    for (&modulus, colour) in moduli.iter().zip(colours.cycle()) {
+        for (reached, is_dashed) in reached.into_iter().zip([false, true]) {
+            let of_modulus = reached.iter().filter(|of| of.modulus == modulus);
+            let points = of_modulus.filter_map(|of| Some((1e3 * of.diameter, 1e3 * of.depth?)));
+            let name = match moduli.len() {
+                2.. if !is_dashed => format!("{} kPa", trimmed(1e-3 * modulus, 3)),
+                _ => String::new(),
+            };
+            let line = Line::new(colour, points.collect()).dotted(4);
+            lines.push(line.dashed(is_dashed).named(name));
+        }
+    }
+    lines
 }
 
 /// The figure in words.

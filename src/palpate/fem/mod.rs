@@ -17,7 +17,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod array;
 pub mod assembly;
 pub mod certify;
 pub mod cholesky;

@@ -74,9 +74,10 @@ pub fn beta_binomial(counts: &[(u32, u32)]) -> Result<Option<BetaBinomial>> {
         correlation_bounds,
         is_binomial: correlation == 0.0,
         deviance_gain,
-        p_value: match deviance_gain > 0.0 {
-            true => 0.5 * chi_square_tail(deviance_gain, 1.0)?,
-            false => 1.0,
+        p_value: if deviance_gain > 0.0 {
+            0.5 * chi_square_tail(deviance_gain, 1.0)?
+        } else {
+            1.0
         },
     }))
 }

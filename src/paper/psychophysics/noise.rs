@@ -10,6 +10,12 @@ use palpate::detect::noise_budget::noise_total;
 pub const PEAK_SIGNAL: f64 = 0.340;
 /// "the subjects are operating near γ = 1.45" (§5).
 pub const PRINTED_GAMMA: f64 = 1.45;
+/// "the noise estimate from the psychophysics experiments is 235mN" (§5), N.
+pub const SUBJECTS_NOISE: f64 = 0.235;
+/// "The noise estimate for the FEM playback … is 170mN" (§5), N.
+pub const PLAYBACK_NOISE: f64 = 0.170;
+/// "The noise estimate for the direct contact case … is 220mN" (§5), N.
+pub const DIRECT_CONTACT_NOISE: f64 = 0.220;
 /// Table 2, sensor, N.
 pub const SENSOR: f64 = 0.020;
 /// Table 2, actuation quantization, N.
@@ -37,7 +43,7 @@ pub struct NoiseDecomposition {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NoiseLevel {
     /// Where it comes from.
-    pub name: &'static str,
+    pub name: String,
     /// The paper's number, N, if it prints one.
     pub printed_n: Option<f64>,
     /// Ours, N.
@@ -97,21 +103,21 @@ fn noise_bounds(signal: f64, gamma: GammaEstimate) -> (Option<f64>, OpenBounds) 
 }
 
 /// Sums of Table 2: what for, the paper's number (N), the sources (N), and what the sum takes for granted.
-const SUMS: [(&str, Option<f64>, &[f64], &str); 3] = [
+pub const SUMS: [(&str, Option<f64>, &[f64], &str); 3] = [
     (
-        "playback of FEM data, from Table 2",
-        Some(0.170),
+        "playback of FEM data",
+        Some(PLAYBACK_NOISE),
         &[QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION],
         "the sources are independent, so that their variances add; the human perception of Jones (1998) holds for this hand and handle",
     ),
     (
-        "direct contact, from Table 2",
-        Some(0.220),
+        "direct contact",
+        Some(DIRECT_CONTACT_NOISE),
         &[UNMODELLED_CONTACT, HUMAN_PERCEPTION],
         "the sources are independent, and the 200 mN of friction, hysteresis and nonlinearity, which the paper does not derive, are right",
     ),
     (
-        "playback of measured data, from Table 2",
+        "playback of measured data",
         None,
         &[SENSOR, QUANTIZATION, BACKDRIVE_FRICTION, HUMAN_PERCEPTION],
         "the sources are independent; the paper prints no such sum, and it would be as small as that of FEM data, although the answers are poorer",
@@ -126,8 +132,8 @@ const SUMS: [(&str, Option<f64>, &[f64], &str); 3] = [
 /// Implements: PSY-061, ERR-008, ERR-009.
 pub fn paper_noise_levels() -> Result<NoiseDecomposition> {
     let printed = NoiseLevel {
-        name: "answers to FEM playback at 6.6 mm, as printed",
-        printed_n: Some(0.235),
+        name: "answers to FEM playback at 6.6 mm, as printed".into(),
+        printed_n: Some(SUBJECTS_NOISE),
         noise_n: PEAK_SIGNAL / PRINTED_GAMMA,
         pooled_bounds_n: None,
         clustered_bounds_n: None,
@@ -139,7 +145,7 @@ pub fn paper_noise_levels() -> Result<NoiseDecomposition> {
         let square = |&source| format!("{}²", millinewtons(source));
         let squares: Vec<String> = sources.iter().map(square).collect();
         levels.push(NoiseLevel {
-            name,
+            name: format!("{name}, from Table 2"),
             printed_n: printed_sum,
             noise_n: noise_total(sources)?,
             formula: format!("√({}) mN", squares.join(" + ")),
@@ -160,7 +166,7 @@ fn from_answers() -> Result<NoiseLevel> {
     let found = InclusionNoise::new(PEAK_SIGNAL, &rate, clustered);
     let peak = millinewtons(PEAK_SIGNAL);
     Ok(NoiseLevel {
-        name: "answers to FEM playback at 6.6 mm",
+        name: "answers to FEM playback at 6.6 mm".into(),
         printed_n: None,
         noise_n: found.noise_n.unwrap_or_default(),
         pooled_bounds_n: Some(found.pooled_bounds_n),

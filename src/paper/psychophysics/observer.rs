@@ -154,9 +154,10 @@ impl IdealObserver<'_> {
     pub fn choose(&self, first: &Felt, second: &Felt, pair: u64) -> Result<Interval, Refusal> {
         let (of_first, _) = self.theta(first, 2 * pair)?;
         let (of_second, _) = self.theta(second, 2 * pair + 1)?;
-        Ok(match of_first >= of_second {
-            true => Interval::First,
-            false => Interval::Second,
+        Ok(if of_first >= of_second {
+            Interval::First
+        } else {
+            Interval::Second
         })
     }
 }

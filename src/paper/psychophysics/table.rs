@@ -167,15 +167,16 @@ impl Condition {
 /// The inclusions that a header names.
 fn inclusions(header: &str) -> Result<Vec<Column>, Refusal> {
     let fields: Vec<&str> = header.split(',').map(str::trim).collect();
-    let names = fields.strip_prefix(&KEYS).filter(|rest| !rest.is_empty());
-    let names = names.ok_or_else(|| wrong_header(header, EXPECTED_HEADER))?;
+    let rest = fields.strip_prefix(&KEYS).filter(|rest| !rest.is_empty());
+    let names = rest.ok_or_else(|| wrong_header(header, EXPECTED_HEADER))?;
     let mut inclusions: Vec<Column> = Vec::new();
     for (number, name) in (KEYS.len() + 1..).zip(names) {
         let refused = |expected| refused(&format!("header, column {number}"), name, expected);
-        let depth = name.split_whitespace().next_back();
-        let depth = depth.and_then(|word| parse_scaled(word, -3));
-        let depth = depth.filter(|&depth| depth > 0.0 && is_plain(name));
-        let depth = depth.ok_or_else(|| refused(EXPECTED_INCLUSION))?;
+        let last = name.split_whitespace().next_back();
+        let depth = last
+            .and_then(|word| parse_scaled(word, -3))
+            .filter(|&depth| depth > 0.0 && is_plain(name))
+            .ok_or_else(|| refused(EXPECTED_INCLUSION))?;
         if inclusions.iter().any(|other| other.name == *name) {
             return Err(refused("each inclusion once"));
         }

@@ -59,9 +59,8 @@ pub fn findings(run: &Run) -> Result<Findings, Refusal> {
         let found = format!("map {name:?} is among the measured maps, but was computed");
         return Err(Refusal::state(found, ""));
     }
-    let maps = run.maps.iter();
-    let maps = maps.map(|map| of_map(run, map, probe_depth));
-    let maps = maps.collect::<Result<Vec<_>, _>>()?;
+    let judged = run.maps.iter().map(|map| of_map(run, map, probe_depth));
+    let maps = judged.collect::<Result<Vec<_>, _>>()?;
     let reference = of_reference(&run.reference, probe_depth)?;
     let is_paper_reference = run.reference.phantom().and_then(paper::name_of) == Some("none");
     let is_comparable = is_quoted && is_paper_reference;

@@ -1,9 +1,8 @@
 //! What the uncertainty of the inputs does to the run's numbers: the results of a study beside them.
 
-use super::{Run, Settings};
+use super::Run;
 use crate::study::{Band, Conclusion, Kind, StudyResults};
-use palpate::force_map::SAME_POSITION;
-use palpate::phantom::Phantom;
+use palpate::force_map::{ForceMap, SAME_POSITION};
 use palpate::refusal::Refusal;
 
 /// A share of the draws from which on a statement counts as one that the inputs do not change.
@@ -18,38 +17,26 @@ pub(super) fn check(run: &Run, depth: f64) -> Result<(), Refusal> {
     let Some(StudyResults { plan, .. }) = &run.study else {
         return Ok(());
     };
-    let differs = |what: &str| {
-        let found = format!("the study of the inputs has another {what} than the run");
-        Err(Refusal::state(
-            found,
-            "a study of the same phantoms, poses, noise and rates",
-        ))
+    let own: Vec<_> = run.maps.iter().map(ForceMap::phantom).collect();
+    let other = plan.phantoms.iter().find(|of| !own.contains(&Some(*of)));
+    let what = if run.reference.phantom() != Some(&plan.reference) {
+        "reference".into()
+    } else if let Some(other) = other {
+        format!("phantom {:?}", other.name)
+    } else if (plan.probe_depth - depth).abs() > SAME_POSITION {
+        "depth of the probe".into()
+    } else if plan.laterals != run.reference.laterals() {
+        // γ is of all samples of the sweep.
+        "list of lateral positions".into()
+    } else if plan.settings != run.settings {
+        "noise, rate or prior".into()
+    } else {
+        return Ok(());
     };
-    let own = std::iter::once(&run.reference).chain(&run.maps);
-    let has = |phantom: &Phantom| own.clone().any(|map| map.phantom() == Some(phantom));
-    if run.reference.phantom() != Some(&plan.reference) {
-        return differs("reference");
-    }
-    if let Some(other) = plan.phantoms.iter().find(|phantom| !has(phantom)) {
-        return differs(&format!("phantom {:?}", other.name));
-    }
-    if (plan.probe_depth - depth).abs() > SAME_POSITION {
-        return differs("depth of the probe");
-    }
-    // γ is of all samples of the sweep.
-    if plan.laterals != run.reference.laterals() {
-        return differs("list of lateral positions");
-    }
-    let settings = Settings {
-        max_false_alarm: plan.max_false_alarm,
-        max_miss: plan.max_miss,
-        prior_h1: plan.prior_h1,
-        noise_sd_n: plan.noise_sd,
-    };
-    match settings == run.settings {
-        true => Ok(()),
-        false => differs("noise, rate or prior"),
-    }
+    let found = format!(
+        "the study of the inputs has another {what} than the run; choose one of the same phantoms, poses, noise and rates"
+    );
+    Err(Refusal::state(found, ""))
 }
 
 /// The band of a quantity of a phantom, if there is a study.

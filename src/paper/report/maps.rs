@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::nuisances::GammaLeft;
-use super::pressure::ArrayFindings;
 use super::quality::{Quality, warnings};
 use super::text::name_of_map;
 use super::{Run, Settings, paper};
@@ -44,8 +43,20 @@ pub struct MapFindings {
     pub gamma: GammaByChannel,
     /// What is left of it if more is unknown.
     pub gamma_left: GammaLeft,
-    /// γ of tactile arrays under the probe; `None` where the run does not hold what they read.
-    pub array: Option<ArrayFindings>,
+    /// What the detector makes of γ of both channels.
+    #[serde(flatten)]
+    pub detection: Detection,
+    /// How good the computation was; `None` for measured forces.
+    pub quality: Option<Quality>,
+    /// What a reader must know before using these numbers.
+    pub warnings: Vec<String>,
+}
+
+/// The thresholds and rates of a γ.
+///
+/// Implements: REP-012.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Detection {
     /// The maximum a-posteriori rule.
     pub map_rule: Threshold,
     /// Neyman–Pearson with the miss rate bounded; the fewest false alarms.
@@ -56,10 +67,31 @@ pub struct MapFindings {
     pub auc: f64,
     /// The share of right answers in pairs.
     pub two_afc: f64,
-    /// How good the computation was; `None` for measured forces.
-    pub quality: Option<Quality>,
-    /// What a reader must know before using these numbers.
-    pub warnings: Vec<String>,
+}
+
+impl Detection {
+    fn new(gamma: f64, settings: &Settings) -> Result<Detection, DetectError> {
+        let at = |eta: f64| {
+            let ErrorRates { false_alarm, miss } = error_rates(gamma, eta)?;
+            Ok(Threshold {
+                eta,
+                false_alarm,
+                miss,
+            })
+        };
+        let bounded = neyman_pearson_false_alarm_threshold(gamma, settings.max_false_alarm);
+        Ok(Detection {
+            map_rule: at(map_threshold(settings.prior_h1)?)?,
+            bounded_miss: at(neyman_pearson_miss_threshold(gamma, settings.max_miss)?)?,
+            bounded_false_alarm: match bounded.and_then(at) {
+                // Two phantoms that feel the same: there is no threshold to state.
+                Err(DetectError::NoSignal) => None,
+                other => Some(other?),
+            },
+            auc: two_afc(gamma)?,
+            two_afc: two_afc(gamma)?,
+        })
+    }
 }
 
 /// An extreme of a signal along the lateral sweep.
@@ -122,13 +154,11 @@ pub(super) fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindin
 }
 
 pub(super) fn of_map(run: &Run, map: &ForceMap, depth: f64) -> Result<MapFindings, Refusal> {
-    let signal = map.signal(&run.reference);
-    let signal = signal.map_err(incomparable(map))?;
-    let signal = signal.row(depth).map_err(incomparable(map))?;
+    let difference = map.signal(&run.reference).map_err(incomparable(map))?;
+    let signal = difference.row(depth).map_err(incomparable(map))?;
     let left = GammaLeft::of(run, signal, depth).map_err(incomparable(map))?;
-    let found = ArrayFindings::of(run, map, signal, depth)
-        .and_then(|array| judged(&run.settings, map, signal, (left, array)));
-    found.map_err(Refusal::because(format!("map {:?}", name_of_map(map))))
+    judged(&run.settings, map, signal, left)
+        .map_err(Refusal::because(format!("map {:?}", name_of_map(map))))
 }
 
 /// What the detector makes of a map's signal.
@@ -138,7 +168,7 @@ fn judged(
     settings: &Settings,
     map: &ForceMap,
     signal: Force<&[f64]>,
-    (gamma_left, array): (GammaLeft, Option<ArrayFindings>),
+    gamma_left: GammaLeft,
 ) -> Result<MapFindings, DetectError> {
     let Force { lateral, normal } = signal;
     let zeros = vec![0.0; normal.len()];
@@ -147,16 +177,6 @@ fn judged(
         normal: gamma(&zeros, normal, settings.noise_sd_n)?,
         lateral: gamma(lateral, &zeros, settings.noise_sd_n)?,
     };
-    let both = gamma.both;
-    let at = |eta: f64| {
-        let ErrorRates { false_alarm, miss } = error_rates(both, eta)?;
-        Ok(Threshold {
-            eta,
-            false_alarm,
-            miss,
-        })
-    };
-    let bounded = neyman_pearson_false_alarm_threshold(both, settings.max_false_alarm);
     let quality = Quality::of(map);
     let phantom = map.phantom();
     Ok(MapFindings {
@@ -167,17 +187,8 @@ fn judged(
         peak_lateral: Peak::of(map, lateral),
         gamma,
         gamma_left,
-        array,
-        map_rule: at(map_threshold(settings.prior_h1)?)?,
-        bounded_miss: at(neyman_pearson_miss_threshold(both, settings.max_miss)?)?,
-        bounded_false_alarm: match bounded.and_then(at) {
-            // Two phantoms that feel the same: there is no threshold to state.
-            Err(DetectError::NoSignal) => None,
-            other => Some(other?),
-        },
-        auc: two_afc(both)?,
-        two_afc: two_afc(both)?,
-        warnings: warnings(quality.as_ref(), both),
+        detection: Detection::new(gamma.both, settings)?,
+        warnings: warnings(quality.as_ref(), gamma.both),
         quality,
     })
 }

@@ -9,7 +9,6 @@
 //! | `paper.rs` | the numbers that the paper prints |
 //! | `maps.rs` | what each map says: signal, signal-to-noise ratios, thresholds |
 //! | `nuisances.rs` | what is left of γ where more is unknown than the noise |
-//! | `pressure.rs` | γ of the pressure under the probe, read by a tactile array |
 //! | `findings.rs` | what the run found, all together |
 //! | `inputs.rs` | what a study says of the inputs' uncertainty |
 //! | `people.rs` | the subjects of Table 1, and the bridge from forces to their answers |
@@ -22,7 +21,7 @@
 //! ```
 //! use palpate::fem::{Contact, Model, Pose};
 //! use palpate::phantom::Phantom;
-//! use palpate_paper::report::{ArraySweep, DeformedMesh, Settings, Run, figures, findings, html, summary_json};
+//! use palpate_paper::report::{DeformedMesh, Settings, Run, figures, findings, html, summary_json};
 //!
 //! let model = |name| -> Result<Model, Box<dyn std::error::Error>> {
 //!     Ok(Model::new(&Phantom::builtin(name)?, 2e-3, Contact::default())?)
@@ -33,18 +32,12 @@
 //!     reference: gel.map(&depths, &laterals, &|_| ())?,
 //!     maps: vec![inclusion.map(&depths, &laterals, &|_| ())?],
 //!     measured: vec![],
-//!     arrays: vec![
-//!         ArraySweep::solve(&gel, 4e-3, &laterals)?,
-//!         ArraySweep::solve(&inclusion, 4e-3, &laterals)?,
-//!     ],
 //!     deformed: DeformedMesh::solve(&inclusion, Pose { depth: 4e-3, lateral: 0.0 })?,
 //!     settings: Settings::default(),
 //!     study: None,
 //! };
 //! let findings = findings(&run)?;
-//! let gamma = findings.maps[0].gamma.both;
-//! let arrays = &findings.maps[0].array.as_ref().ok_or("an array")?.arrays;
-//! assert!(gamma > 1.0 && arrays[5].sweep > gamma);
+//! assert!(findings.maps[0].gamma.both > 1.0);
 //! let figures = figures(&run, &findings)?;
 //! let page = html(&run, &findings, &figures);
 //! assert!(page.contains("<svg") && summary_json(&findings, &run).contains("\"gamma\""));
@@ -60,7 +53,6 @@ mod maps;
 mod nuisances;
 pub mod paper;
 mod people;
-mod pressure;
 mod quality;
 mod summary;
 #[cfg(test)]
@@ -71,14 +63,14 @@ pub use comparison::{Comparison, Value};
 pub use figures::figures;
 pub use findings::{Findings, findings};
 pub use html::html;
-pub use maps::{GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold};
+pub use maps::{Detection, GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold};
 pub use nuisances::{GammaBeside, GammaLeft};
 use people::normal_approximation;
-pub use pressure::{ArrayFindings, ArraySweep, GammaOfArray};
 pub use quality::Quality;
 pub use summary::summary_json;
 pub use text::FileNames;
 
+pub use crate::settings::Settings;
 use crate::study::StudyResults;
 use palpate::fem::element::CORNERS;
 use palpate::fem::mesh::Region;
@@ -98,9 +90,6 @@ pub struct Run {
     pub maps: Vec<ForceMap>,
     /// Measured maps, shown as Figure 7. Any number, any poses; nothing is computed from them.
     pub measured: Vec<ForceMap>,
-    /// What a tactile array reads at the depth of the bridge, over the laterals of the maps: for the reference and for each map whose
-    /// model is at hand, in any order; each belongs to the map of its phantom.
-    pub arrays: Vec<ArraySweep>,
     /// The deformed mesh of one pose (Figure 6).
     pub deformed: DeformedMesh,
     /// What the detector assumes.
@@ -149,32 +138,6 @@ impl DeformedMesh {
     }
 }
 
-/// What the detector assumes, with the paper's numbers as the default.
-///
-/// Implements: REP-001.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Settings {
-    /// The false-alarm rate α that is allowed.
-    pub max_false_alarm: f64,
-    /// The miss rate β that is allowed.
-    pub max_miss: f64,
-    /// The prior Pr(H = 1).
-    pub prior_h1: f64,
-    /// Standard deviation of the noise of one sample, the same in both channels, N.
-    pub noise_sd_n: f64,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Settings {
-            max_false_alarm: paper::MAX_FALSE_ALARM,
-            max_miss: paper::MAX_MISS,
-            prior_h1: 0.5,
-            noise_sd_n: paper::SUBJECTS_NOISE,
-        }
-    }
-}
-
 /// Where on the page a figure stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Topic {
@@ -184,8 +147,6 @@ pub enum Topic {
     Forces,
     /// The detector.
     Detection,
-    /// Pressure under the probe.
-    Pressure,
     /// What uncertain inputs do.
     Inputs,
     /// The subjects of the paper.

@@ -61,11 +61,11 @@ impl GammaLeft {
         let reference = &run.reference;
         let expected = |depth| Ok(reference.row(depth)?.map(<[f64]>::to_vec));
         let gamma = |unknown: &[Unknown], read: Read| -> Result<f64, Refusal> {
-            let nuisances = nuisances(unknown, reference.depths(), depth, expected)?;
-            let nuisances = nuisances.iter().flat_map(|of| read(of.as_deref()));
-            let (mut nuisances, mut signal) = (nuisances.collect::<Vec<_>>(), read(signal));
-            let space = Nuisances::new(&mut nuisances, signal.len());
-            let space = space.map_err(|error| Refusal::state(error.to_string(), ""))?;
+            let unknown = nuisances(unknown, reference.depths(), depth, expected)?;
+            let columns = unknown.iter().flat_map(|of| read(of.as_deref()));
+            let (mut columns, mut signal) = (columns.collect::<Vec<_>>(), read(signal));
+            let space = Nuisances::new(&mut columns, signal.len())
+                .map_err(|error| Refusal::state(error.to_string(), ""))?;
             Ok(space.project(&mut signal) / run.settings.noise_sd_n)
         };
         let both: Read = |of| [of.lateral, of.normal].concat();

@@ -5,8 +5,9 @@ use palpate::phantom::{BUILTIN_NAMES, Phantom};
 pub use crate::psychophysics::FEM_PLAYBACK;
 // Table 2, and what §5 infers from it.
 pub use crate::psychophysics::noise::{
-    BACKDRIVE_FRICTION, HUMAN_PERCEPTION, PEAK_SIGNAL as PEAK_SIGNAL_6_6,
-    PRINTED_GAMMA as GAMMA_OF_ACCURACY, QUANTIZATION, SENSOR, UNMODELLED_CONTACT,
+    BACKDRIVE_FRICTION, DIRECT_CONTACT_NOISE, HUMAN_PERCEPTION, PEAK_SIGNAL as PEAK_SIGNAL_6_6,
+    PLAYBACK_NOISE, PRINTED_GAMMA as GAMMA_OF_ACCURACY, QUANTIZATION, SENSOR, SUBJECTS_NOISE,
+    UNMODELLED_CONTACT,
 };
 
 /// "a nominal absolute force level of 1.6N" (§2), N.
@@ -27,13 +28,6 @@ pub const HUMAN_NOISE: f64 = 0.1;
 pub const DISPLAY_NOISE: f64 = 0.11;
 /// "playback of FEM data gave a 84% accuracy" (§5, 6.6 mm).
 pub const ACCURACY_6_6: f64 = 0.84;
-/// "the noise estimate from the psychophysics experiments is 235mN" (§5), N.
-pub const SUBJECTS_NOISE: f64 = 0.235;
-/// "The noise estimate for the FEM playback … is 170mN" (§5), N.
-pub const PLAYBACK_NOISE: f64 = 0.170;
-/// "The noise estimate for the direct contact case … is 220mN" (§5), N.
-pub const DIRECT_CONTACT_NOISE: f64 = 0.220;
-
 /// "the standard deviation in the error of the force is roughly 0.024N" (§4), N; not in Table 2.
 pub const DISPLAY_ERROR: f64 = 0.024;
 

@@ -29,8 +29,8 @@ impl Quality {
 
     /// The largest half bands of the discretisation around a normal and a lateral force, N, where they were estimated.
     pub fn bands(&self) -> [Option<f64>; 2] {
-        let bands = self.certificate.discretization.as_ref();
-        let bands = bands.map(Discretization::largest);
+        let discretization = self.certificate.discretization.as_ref();
+        let bands = discretization.map(Discretization::largest);
         [0, 1].map(|channel| bands.map(|bands| bands[channel]))
     }
 }

@@ -8,7 +8,6 @@ mod nuisances;
 mod outputs;
 mod page;
 mod pictures;
-mod pressure;
 mod run;
 pub mod table_1;
 mod xml;
@@ -51,16 +50,19 @@ fn numbers_of_a_triangular_signal() {
         (map.gamma.normal, libm::sqrt(13.5)),
         (map.gamma.lateral, libm::sqrt(2.0)),
         (map.gamma.both, libm::sqrt(15.5)),
-        (map.auc, 0.997314372939209941),
-        (map.two_afc, 0.997314372939209941),
+        (map.detection.auc, 0.997314372939209941),
+        (map.detection.two_afc, 0.997314372939209941),
     ] {
         assert_close(found, expected);
     }
     let even = 0.0245051549198494117;
-    assert_threshold(map.map_rule, [0.0, even, even]);
+    assert_threshold(map.detection.map_rule, [0.0, even, even]);
     let (eta, rare) = (1.27420479489360891, 0.0109484855667236183);
-    assert_threshold(map.bounded_miss, [eta, rare, 0.05]);
-    assert_threshold(map.bounded_false_alarm.unwrap(), [-eta, 0.05, rare]);
+    assert_threshold(map.detection.bounded_miss, [eta, rare, 0.05]);
+    assert_threshold(
+        map.detection.bounded_false_alarm.unwrap(),
+        [-eta, 0.05, rare],
+    );
 }
 
 /// η, false alarms, misses.
@@ -80,17 +82,20 @@ fn each_bound_has_its_own_threshold() {
     run.settings.max_false_alarm = 0.02;
     let map = &findings(&run).unwrap().maps[2];
     let expected = [2.7045264409748262, 0.00396010585635342014, 0.1];
-    assert_threshold(map.bounded_miss, expected);
+    assert_threshold(map.detection.bounded_miss, expected);
     let expected = [0.335617546779076951, 0.02, 0.0298329075387685601];
-    assert_threshold(map.bounded_false_alarm.unwrap(), expected);
+    assert_threshold(map.detection.bounded_false_alarm.unwrap(), expected);
 }
 
 // Verifies: REP-012.
 #[test]
 fn of_equal_peaks_the_one_nearest_to_the_middle_counts() {
-    let ties = |x: f64| match x.abs() > 7e-3 {
-        true => -0.2,
-        false => 0.2 * x.abs() / 5e-3,
+    let ties = |x: f64| {
+        if x.abs() > 7e-3 {
+            -0.2
+        } else {
+            0.2 * x.abs() / 5e-3
+        }
     };
     let pit = |x: f64| if x == 0.0 { -0.3 } else { 0.2 };
     let mut run = paper_run();
@@ -304,8 +309,8 @@ fn a_map_like_the_reference_cannot_be_detected() {
     let found = findings(&run).unwrap();
     let map = &found.maps[0];
     assert_eq!(map.gamma.both, 0.0);
-    assert_eq!(map.bounded_false_alarm, None);
-    assert_eq!(map.auc, 0.5);
+    assert_eq!(map.detection.bounded_false_alarm, None);
+    assert_eq!(map.detection.auc, 0.5);
     assert!(map.warnings.concat().contains("nothing can be detected"));
 }
 

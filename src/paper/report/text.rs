@@ -134,3 +134,8 @@ pub(super) fn percents(Bounds { lower, upper }: &Bounds) -> String {
 pub(super) fn or(value: impl Borrow<Option<f64>>, none: &str, format: fn(f64) -> String) -> String {
     value.borrow().map_or(none.into(), format)
 }
+
+/// `items` with `separator` between them.
+pub(super) fn joined(items: impl IntoIterator<Item = String>, separator: &str) -> String {
+    items.into_iter().collect::<Vec<_>>().join(separator)
+}

@@ -81,50 +81,10 @@ impl Design {
         if rows < 2 || rows > u32::MAX as usize {
             return Err(Refusal::value("rows", rows, "2 to 4294967295"));
         }
-        let mut matrix = DMatrix::identity(inputs, inputs);
-        for (at, correlation) in correlations.iter().enumerate() {
-            let key = format!("correlation[{at}]");
-            let place = |name: &String| names.iter().position(|known| known == name);
-            let [Some(one), Some(other)] = correlation.inputs.each_ref().map(place) else {
-                let expected = format!("two of {}", names.join(", "));
-                return Err(Refusal::value(
-                    key + ".inputs",
-                    correlation.inputs.join(", "),
-                    expected,
-                ));
-            };
-            if one == other || matrix[(one, other)] != 0.0 {
-                let found = correlation.inputs.join(", ");
-                return Err(Refusal::value(
-                    key + ".inputs",
-                    found,
-                    "two inputs, each pair once",
-                ));
-            }
-            let coefficient = correlation.coefficient;
-            if !(coefficient.abs() < 1.0 && coefficient != 0.0) {
-                let expected = "a number strictly between −1 and 1 that is not 0";
-                return Err(Refusal::value(key + ".coefficient", coefficient, expected));
-            }
-            matrix[(one, other)] = coefficient;
-            matrix[(other, one)] = coefficient;
-        }
+        let matrix = correlation_matrix(names, correlations)?;
         let groups = groups(&matrix);
-        let factor = |group: &Vec<usize>| {
-            let of_group = DMatrix::from_fn(group.len(), group.len(), |i, j| {
-                matrix[(group[i], group[j])]
-            });
-            let factor = of_group.cholesky().map(|factor| factor.l());
-            factor.ok_or_else(|| {
-                let group: Vec<&str> = group.iter().map(|&input| names[input]).collect();
-                let found = format!("the correlations of {}", group.join(", "));
-                Refusal::state(
-                    found,
-                    "coefficients that fit one another: a positive definite matrix",
-                )
-            })
-        };
-        let factors = groups.iter().map(factor).collect::<Result<_, _>>()?;
+        let factors = groups.iter().map(|group| factor(&matrix, group, names));
+        let factors = factors.collect::<Result<_, _>>()?;
         Ok(Design {
             rows,
             seed,
@@ -242,6 +202,66 @@ impl Design {
         let corner = sobol_burley::sample(row % SEQUENCE, dimension as u32, seed);
         f64::from(corner) + f64::from(f32::EPSILON) / 2.0
     }
+}
+
+/// The matrix of all correlations.
+///
+/// Implements: STU-012.
+fn correlation_matrix(
+    names: &[&str],
+    correlations: &[Correlation],
+) -> Result<DMatrix<f64>, Refusal> {
+    let mut matrix = DMatrix::identity(names.len(), names.len());
+    for (
+        at,
+        Correlation {
+            inputs,
+            coefficient,
+        },
+    ) in correlations.iter().enumerate()
+    {
+        let refused = |key: &str, found: String, expected: String| {
+            Err(Refusal::value(
+                format!("correlation[{at}].{key}"),
+                found,
+                expected,
+            ))
+        };
+        let place = |name: &String| names.iter().position(|known| known == name);
+        let [Some(one), Some(other)] = inputs.each_ref().map(place) else {
+            return refused(
+                "inputs",
+                inputs.join(", "),
+                format!("two of {}", names.join(", ")),
+            );
+        };
+        if one == other || matrix[(one, other)] != 0.0 {
+            return refused(
+                "inputs",
+                inputs.join(", "),
+                "two inputs, each pair once".into(),
+            );
+        }
+        if !(coefficient.abs() < 1.0 && *coefficient != 0.0) {
+            let expected = "a number strictly between −1 and 1 that is not 0";
+            return refused("coefficient", coefficient.to_string(), expected.into());
+        }
+        matrix[(one, other)] = *coefficient;
+        matrix[(other, one)] = *coefficient;
+    }
+    Ok(matrix)
+}
+
+/// The factor L of the correlation matrix LLᵀ of a group.
+fn factor(matrix: &DMatrix<f64>, group: &[usize], names: &[&str]) -> Result<DMatrix<f64>, Refusal> {
+    let of_group = matrix.select_rows(group).select_columns(group);
+    let factor = of_group.cholesky().map(|factor| factor.l());
+    factor.ok_or_else(|| {
+        let names: Vec<&str> = group.iter().map(|&input| names[input]).collect();
+        let found = format!("the correlations of {}", names.join(", "));
+        let expected = "coefficients that fit one another: a positive definite matrix";
+        Refusal::state(found, expected)
+    })
 }
 
 /// The inputs that are correlated with one another, directly or through others.

@@ -129,9 +129,10 @@ impl Distribution {
             Distribution::Triangular { from, mode, to } => {
                 let (rise, fall) = (mode - from, to - mode);
                 let width = rise + fall;
-                match p * width < rise {
-                    true => from + libm::sqrt(p * width * rise),
-                    false => to - libm::sqrt((1.0 - p) * width * fall),
+                if p * width < rise {
+                    from + libm::sqrt(p * width * rise)
+                } else {
+                    to - libm::sqrt((1.0 - p) * width * fall)
                 }
             }
             Distribution::Empirical { values, .. } => {

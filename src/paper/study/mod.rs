@@ -33,6 +33,7 @@ pub use indices::{Estimate, Index, Rows, indices};
 pub use results::{Conclusion, Failure, QuantityResult, Slope, StudyResults};
 pub use sample::{Kind, Quantity, Sampler};
 
+use crate::settings::Settings;
 use palpate::detect::{map_threshold, required_gamma};
 use palpate::fem::Contact;
 use palpate::phantom::Phantom;
@@ -111,15 +112,9 @@ pub struct StudyPlan {
     pub mesh_size: f64,
     /// How the gap to the probe is measured.
     pub contact: Contact,
-    /// The noise of a sample, the same in both channels, N.
-    #[serde(rename = "noise_sd_n")]
-    pub noise_sd: f64,
-    /// The rate of false alarms that is allowed.
-    pub max_false_alarm: f64,
-    /// The rate of misses that is allowed.
-    pub max_miss: f64,
-    /// Pr(H = 1).
-    pub prior_h1: f64,
+    /// What the detector assumes.
+    #[serde(flatten)]
+    pub settings: Settings,
     /// The inputs.
     pub inputs: Vec<Input>,
     /// Which inputs go together.
@@ -141,7 +136,10 @@ impl StudyPlan {
     /// # Errors
     /// Rates that no γ keeps.
     pub fn required_gamma(&self) -> Result<f64, Refusal> {
-        Ok(required_gamma(self.max_false_alarm, self.max_miss)?)
+        Ok(required_gamma(
+            self.settings.max_false_alarm,
+            self.settings.max_miss,
+        )?)
     }
 
     /// The samples of this plan.
@@ -153,7 +151,7 @@ impl StudyPlan {
     /// Implements: STU-001, STU-011.
     pub fn design(&self) -> Result<Design, Refusal> {
         self.required_gamma()?;
-        map_threshold(self.prior_h1)?;
+        map_threshold(self.settings.prior_h1)?;
         let phantoms: Vec<&str> = self.all_phantoms().map(|phantom| &*phantom.name).collect();
         let names: Vec<&str> = self.inputs.iter().map(|input| &*input.name).collect();
         for (key, names) in [("phantoms", &phantoms), ("input.name", &names)] {

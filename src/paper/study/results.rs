@@ -115,9 +115,9 @@ impl StudyResults {
     /// Implements: STU-050.
     pub fn read(path: &Path) -> Result<StudyResults, Refusal> {
         palpate::input::parse(path, |text, file| {
-            let read = check_schema(text, Self::SCHEMA, Self::SCHEMA_VERSION);
-            let read = read.and_then(|()| parse(text));
-            read.map_err(|refusal| refusal.in_file(file))
+            check_schema(text, Self::SCHEMA, Self::SCHEMA_VERSION)
+                .and_then(|()| parse(text))
+                .map_err(|refusal| refusal.in_file(file))
         })
     }
 

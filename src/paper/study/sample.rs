@@ -8,8 +8,8 @@ use crate::psychophysics::bridge::{Convention, p_values};
 use crate::psychophysics::{AnswerTable, FEM_PLAYBACK};
 use palpate::bank::deepest;
 use palpate::detect::{MatchedFilter, error_rates, map_threshold, two_afc};
-use palpate::fem::Model;
 use palpate::fem::certify::MESH_RATIOS;
+use palpate::fem::{FemError, Model};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, peak};
 use palpate::phantom::Phantom;
@@ -153,14 +153,11 @@ impl<'a> Sampler<'a> {
         let computed = self.computed(index)?;
         let value = |quantity: &Quantity| {
             let value = self.value(quantity, &computed)?;
-            match value.is_finite() {
-                true => Ok(value),
-                false => Err(Refusal::value(
-                    quantity.to_string(),
-                    value,
-                    "a finite number",
-                )),
+            if !value.is_finite() {
+                let key = quantity.to_string();
+                return Err(Refusal::value(key, value, "a finite number"));
             }
+            Ok(value)
         };
         self.quantities.iter().map(value).collect()
     }
@@ -177,22 +174,27 @@ impl<'a> Sampler<'a> {
             of_key.fold(own, |own, (input, &value)| input.change.of(own, value))
         };
         let depth = 1e-3 * of_study(PROBE_DEPTH, 1e3 * self.plan.probe_depth);
-        let noise_sd = of_study(NOISE_SD, self.plan.noise_sd);
+        let noise_sd = of_study(NOISE_SD, self.plan.settings.noise_sd_n);
         let (mut maps, mut depths) = (Vec::new(), Vec::new());
         for (table, own) in self.tables.iter().zip(self.plan.all_phantoms()) {
-            let solve = || {
-                let phantom = edit::phantom(table, &self.plan.inputs, &values)?;
+            let phantom = edit::phantom(table, &self.plan.inputs, &values);
+            let solved = phantom.map_err(FemError::from).and_then(|phantom| {
                 let model = Model::new(&phantom, mesh * self.plan.mesh_size, self.plan.contact)?;
                 let map = model.sweep(depth, &self.plan.laterals)?;
                 Ok((map, phantom.inclusion_depth()))
-            };
-            let solved: Result<_, palpate::fem::FemError> = solve();
-            let part = format!("phantom {}", own.name);
-            let (map, inclusion) =
-                solved.map_err(|error| Refusal::state(error, "").of_part(&part))?;
+            });
+            let of_phantom =
+                |error| Refusal::state(error, "").of_part(&format!("phantom {}", own.name));
+            let (map, inclusion) = solved.map_err(of_phantom)?;
             maps.push(map);
             depths.extend(inclusion);
         }
+        let names = compared(self.plan, &self.answers).into_iter();
+        let compared: Vec<_> = names.map(|(at, name)| (name, &maps[1 + at])).collect();
+        let p_values = match compared.len() {
+            0 | 1 => Vec::new(),
+            _ => p_values(&self.answers, FEM_PLAYBACK, &maps[0], &compared)?,
+        };
         let signals = maps[1..].iter().map(|map| map.signal(&maps[0]));
         let signals: Vec<ForceTable> = signals.collect::<Result<_, _>>()?;
         let gamma = signals.iter().map(|signal| {
@@ -201,15 +203,6 @@ impl<'a> Sampler<'a> {
             Ok(filter.gamma())
         });
         let gamma = gamma.collect::<Result<_, Refusal>>()?;
-        let compared = compared(self.plan, &self.answers);
-        let p_values = match compared.len() {
-            0 | 1 => Vec::new(),
-            _ => {
-                let compared = compared.iter().map(|&(at, name)| (name, &maps[1 + at]));
-                let compared: Vec<_> = compared.collect();
-                p_values(&self.answers, FEM_PLAYBACK, &maps[0], &compared)?
-            }
-        };
         Ok(Computed {
             maps,
             signals,
@@ -242,9 +235,8 @@ impl<'a> Sampler<'a> {
             Kind::Gamma => gamma(),
             Kind::NeededNoiseSdN => gamma() * computed.noise_sd / self.needed,
             Kind::ErrorRate => {
-                let eta = map_threshold(self.plan.prior_h1)?;
-                let rates = error_rates(gamma(), eta)?;
-                let prior = self.plan.prior_h1;
+                let prior = self.plan.settings.prior_h1;
+                let rates = error_rates(gamma(), map_threshold(prior)?)?;
                 prior * rates.miss + (1.0 - prior) * rates.false_alarm
             }
             Kind::TwoAfc => two_afc(gamma())?,

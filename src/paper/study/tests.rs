@@ -215,10 +215,10 @@ pub fn plan(inputs: Vec<Input>) -> StudyPlan {
         laterals: vec![0.0, 1e-3],
         mesh_size: 0.5e-3,
         contact: Contact::default(),
-        noise_sd: 0.2,
-        max_false_alarm: 0.05,
-        max_miss: 0.05,
-        prior_h1: 0.5,
+        settings: Settings {
+            noise_sd_n: 0.2,
+            ..Settings::default()
+        },
         inputs,
         correlations: vec![],
         rows: 2,
@@ -233,9 +233,10 @@ pub fn results(plan: &StudyPlan, count: usize) -> StudyResults {
     let mut sampled = Vec::new();
     let none = Err(Refusal::state("not computed", ""));
     for sample in 0..sampler.design().samples() {
-        let found = match sample < count {
-            true => sampler.sample(sample),
-            false => none.clone(),
+        let found = if sample < count {
+            sampler.sample(sample)
+        } else {
+            none.clone()
         };
         sampled.push(found.unwrap_or_else(|reason| {
             let reason = reason.to_string();
@@ -310,7 +311,7 @@ fn failures_are_counted_and_conclusions_have_their_share() {
     let mut ratio = near("ν", "layer[1].poisson_ratio", 0.49);
     ratio.distribution = uniform(0.49, 0.502_6);
     let mut plan = plan(vec![ratio]);
-    (plan.rows, plan.mesh_size, plan.noise_sd) = (4, 2e-3, 0.02);
+    (plan.rows, plan.mesh_size, plan.settings.noise_sd_n) = (4, 2e-3, 0.02);
     let results = results(&plan, 17);
     // Four rows have one point in each quarter, in both samples; the mixed one is the second with one input.
     assert_eq!((results.samples, results.failed), (3 + 2 + 4 * 3, 3));

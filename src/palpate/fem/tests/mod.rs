@@ -1,6 +1,5 @@
 //! Tests of the solver, one file a topic.
 
-mod array;
 mod assembly;
 mod certify;
 mod cholesky;

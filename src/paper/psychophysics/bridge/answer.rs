@@ -189,9 +189,10 @@ pub struct ConventionFit {
 impl ConventionFit {
     /// The fit by subject with the larger p-value.
     pub fn better_by_subject(&self) -> &SubjectFit {
-        match self.by_subject_with_lapse.p_value > self.by_subject.p_value {
-            true => &self.by_subject_with_lapse,
-            false => &self.by_subject,
+        if self.by_subject_with_lapse.p_value > self.by_subject.p_value {
+            &self.by_subject_with_lapse
+        } else {
+            &self.by_subject
         }
     }
 }

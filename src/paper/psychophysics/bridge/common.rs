@@ -1,5 +1,7 @@
 //! One noise level for all subjects.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::signals::Signal;
 use super::{CommonFit, LapseFit, Observations};
 use crate::psychophysics::Result;
@@ -170,56 +172,28 @@ fn hotelling(signals: &Signals, observed: &Observations) -> Result<Option<f64>> 
     if observed.subjects.len() <= inclusions {
         return Ok(None);
     }
-    let share = |count: &Count| count.right / count.trials();
-    let shares = |counts: &Vec<Count>| counts.iter().map(share).collect();
-    let shares: Vec<Vec<f64>> = observed.subjects.iter().map(shares).collect();
-    let mean = |j: usize| shares.iter().map(|row| row[j]).sum::<f64>() / m;
-    let means: Vec<f64> = (0..inclusions).map(mean).collect();
-    let covariance = |i: usize, j: usize| {
-        let product = |row: &Vec<f64>| (row[i] - means[i]) * (row[j] - means[j]);
-        shares.iter().map(product).sum::<f64>() / (m - 1.0)
-    };
-    let Some(factor) = cholesky(inclusions, covariance) else {
+    let shares = DMatrix::from_fn(observed.subjects.len(), inclusions, |subject, inclusion| {
+        let count = observed.subjects[subject][inclusion];
+        count.right / count.trials()
+    });
+    let means = shares.row_mean();
+    let rest = DMatrix::from_fn(shares.nrows(), inclusions, |i, j| shares[(i, j)] - means[j]);
+    let covariance = rest.transpose() * &rest / (m - 1.0);
+    let Some(factor) = covariance.clone().cholesky().map(|factor| factor.l()) else {
         return Ok(None);
     };
+    if (0..inclusions).any(|i| factor[(i, i)].powi(2) <= SINGULAR * covariance[(i, i)]) {
+        return Ok(None);
+    }
     let less_t_squared = |log: f64| {
         let perceived = signals.perceived(libm::exp(log));
-        let rest = means.iter().zip(&perceived);
-        let white = forward(&factor, rest.map(|(mean, at)| mean - at.right(0.0)));
-        -m * square(&white)
+        let rest = DVector::from_fn(inclusions, |j, _| means[j] - perceived[j].right(0.0));
+        // The diagonal of the factor is above 0.
+        let white = factor.solve_lower_triangular(&rest);
+        -m * white.map_or(f64::INFINITY, |white| white.norm_squared())
     };
     let [low, high] = signals.range();
     let t_squared = -maximum(less_t_squared, low, high, CELLS).1;
     let ratio = (m - q) / (q * (m - 1.0)) * t_squared;
     Ok(Some(f_ratio(ratio, q, m - q, 0.0)?.upper))
-}
-
-/// The rows of L in S = LLᵀ; `None` if S is singular.
-fn cholesky(order: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Vec<Vec<f64>>> {
-    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(order);
-    for i in 0..order {
-        let mut row = forward(&rows, (0..i).map(|j| entry(i, j)));
-        let pivot = entry(i, i) - square(&row);
-        if pivot.is_nan() || pivot <= SINGULAR * entry(i, i) {
-            return None;
-        }
-        row.push(libm::sqrt(pivot));
-        rows.push(row);
-    }
-    Some(rows)
-}
-
-/// L⁻¹v.
-fn forward(factor: &[Vec<f64>], vector: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut solved: Vec<f64> = Vec::with_capacity(factor.len());
-    for (row, entry) in factor.iter().zip(vector) {
-        let dot: f64 = solved.iter().zip(row).map(|(x, l)| x * l).sum();
-        solved.push((entry - dot) / row[solved.len()]);
-    }
-    solved
-}
-
-/// |v|².
-fn square(vector: &[f64]) -> f64 {
-    vector.iter().map(|x| x * x).sum()
 }

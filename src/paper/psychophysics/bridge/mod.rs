@@ -39,7 +39,7 @@ use super::{AnswerTable, Condition, Result};
 use common::{Signals, common, common_with_lapse};
 use palpate::force_map::{ForceMap, SAME_POSITION, peak};
 use palpate::refusal::Refusal;
-use signals::{Signal, mean, sweep};
+use signals::{Signal, sweep};
 use subjects::{by_subject, by_subject_with_lapse};
 use verdict::verdict;
 use weights::{STATISTICS, half_sweeps, weight_ranges};
@@ -109,16 +109,7 @@ pub fn bridge(
     let conditions = conditions
         .map(|condition| of_condition(condition, &columns, &signals, (&half_sweeps, ranges)));
     let of_inclusion = |(&column, signal): (&usize, &Signal)| {
-        let (peak_normal, peak_normal_at) = peak(&signal.laterals, &signal.forces.normal);
-        let (peak_lateral, peak_lateral_at) = peak(&signal.laterals, &signal.forces.lateral);
-        BridgeInclusion {
-            name: table.inclusions()[column].name.clone(),
-            peak_normal_n: peak_normal,
-            peak_normal_at_m: peak_normal_at,
-            mean_normal_n: mean(&signal.forces.normal),
-            peak_lateral_n: peak_lateral,
-            peak_lateral_at_m: peak_lateral_at,
-        }
+        signal.of_inclusion(table.inclusions()[column].name.clone())
     };
     Ok(Bridge {
         probe_depth_m: probe_depth,

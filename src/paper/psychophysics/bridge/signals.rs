@@ -1,8 +1,8 @@
 //! What each convention makes of the difference of two force maps along a sweep.
 
-use super::{Channel, Convention, Offset, Statistic};
+use super::{BridgeInclusion, Channel, Convention, Offset, Statistic};
 use palpate::force::Force;
-use palpate::force_map::{ForceMap, SAME_POSITION};
+use palpate::force_map::{ForceMap, SAME_POSITION, peak};
 use palpate::refusal::Refusal;
 
 /// The difference F₁ − F₀ along a sweep.
@@ -23,9 +23,10 @@ pub struct Signal {
 /// Implements: PSY-070, CLI-081.
 pub fn sweep(map: &ForceMap, half: Option<f64>) -> Result<ForceMap, Refusal> {
     let begins_at_centre = map.laterals().len() > 1 && map.laterals()[0].abs() <= SAME_POSITION;
-    let whole = match begins_at_centre {
-        true => map.mirrored()?,
-        false => map.clone(),
+    let whole = if begins_at_centre {
+        map.mirrored()?
+    } else {
+        map.clone()
     };
     let Some(half) = half else { return Ok(whole) };
     let inside = whole.laterals().iter().copied();
@@ -50,6 +51,20 @@ impl Signal {
             laterals: difference.laterals().to_vec(),
             forces: difference.row(depth)?.map(<[f64]>::to_vec),
         })
+    }
+
+    /// What it says of the inclusion with a name.
+    pub fn of_inclusion(&self, name: String) -> BridgeInclusion {
+        let (peak_normal_n, peak_normal_at_m) = peak(&self.laterals, &self.forces.normal);
+        let (peak_lateral_n, peak_lateral_at_m) = peak(&self.laterals, &self.forces.lateral);
+        BridgeInclusion {
+            name,
+            peak_normal_n,
+            peak_normal_at_m,
+            mean_normal_n: mean(&self.forces.normal),
+            peak_lateral_n,
+            peak_lateral_at_m,
+        }
     }
 
     /// The part within `half`, m, of x = 0.

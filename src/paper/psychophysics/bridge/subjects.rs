@@ -77,9 +77,10 @@ fn assemble(
             true => libm::exp(range[1]) * SURE,
             false => 0.0,
         };
-        noise.push(match is_fitted {
-            true => Some(1.0 / sensitivity),
-            false => (sensitivity > 0.0).then_some(0.0),
+        noise.push(if is_fitted {
+            Some(1.0 / sensitivity)
+        } else {
+            (sensitivity > 0.0).then_some(0.0)
         });
         let perceived = signals.perceived(sensitivity);
         for ((sum, count), at) in predicted.iter_mut().zip(counts).zip(&perceived) {
@@ -91,12 +92,8 @@ fn assemble(
         moments.add(counts, &perceived, &slopes, lapse, is_fitted)?;
     }
     let deviance: f64 = deviances.iter().sum();
-    // Less what further fitted parameters take away, as in the chi-square law.
     let lapses = f64::from(fitted_lapses);
-    let moments = Moments {
-        mean: (moments.mean - lapses).max(0.0),
-        variance: (moments.variance - 2.0 * lapses).max(0.0),
-    };
+    let moments = moments.less(lapses);
     let parameters = observed.subjects.len() as f64 + lapses;
     Ok(SubjectFit {
         noise_n: noise,
@@ -148,6 +145,14 @@ impl Moments {
             self.variance -= 2.0 * with_square / information;
         }
         Ok(())
+    }
+
+    /// Less what further fitted parameters take away, as in the chi-square law.
+    fn less(self, parameters: f64) -> Moments {
+        Moments {
+            mean: (self.mean - parameters).max(0.0),
+            variance: (self.variance - 2.0 * parameters).max(0.0),
+        }
     }
 
     /// Pr(X ≥ deviance) by the gamma law.

@@ -2,6 +2,7 @@
 
 mod sweeps;
 
+use super::signals::mean;
 use super::*;
 use crate::tests::measured;
 use palpate::detect::two_afc;

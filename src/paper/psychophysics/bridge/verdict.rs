@@ -134,8 +134,9 @@ fn best(
 }
 
 fn p_value(p: &f64) -> String {
-    match *p < 0.001 {
-        true => format!("{p:.0e}").replace('-', "−"),
-        false => format!("{p:.3}"),
+    if *p < 0.001 {
+        format!("{p:.0e}").replace('-', "−")
+    } else {
+        format!("{p:.3}")
     }
 }

@@ -67,9 +67,10 @@ fn weight_range(
         return Ok(None);
     };
     let dispersion = Overdispersion {
-        ratio: match best.expected_deviance > 0.0 {
-            true => best.deviance / best.expected_deviance,
-            false => 1.0,
+        ratio: if best.expected_deviance > 0.0 {
+            best.deviance / best.expected_deviance
+        } else {
+            1.0
         },
         // Less one for the weight itself.
         degrees: best.degrees.saturating_sub(1),
@@ -134,8 +135,8 @@ fn worst(statistic: Statistic, fits: [Option<WeightFit>; 3]) -> Option<Conventio
         (Channel::Normal, Offset::Removed),
         (Channel::Lateral, Offset::Kept),
     ];
-    let known = fits.iter().zip(conventions);
-    let known = known.filter_map(|(fit, convention)| Some((fit.as_ref()?, convention)));
+    let pairs = fits.iter().zip(conventions);
+    let known = pairs.filter_map(|(fit, convention)| Some((fit.as_ref()?, convention)));
     let (_, (channel, offset)) = known.max_by(|a, b| by_deviance(&a.0, &b.0))?;
     Some(Convention {
         statistic,

@@ -1,57 +1,61 @@
 //! The bridge: rates predicted from the forces, against the subjects' answers to FEM playback.
 
-use askama::Template;
-
 use super::people::{DEPTH, SHARE, bar, points, share_panel};
-use super::{Figures, words};
-use crate::psychophysics::bridge::{
-    Bridge, Channel, ConditionBridge, ConventionFit, Offset, Statistic,
-};
-use crate::report::{Findings, Topic, paper, text};
+use super::{Plan, Words};
+use crate::psychophysics::bridge::{Channel, ConditionBridge, ConventionFit, Offset, Statistic};
+use crate::report::text::millimetres;
+use crate::report::{Findings, Topic, paper};
 use palpate::chart::Line;
-use palpate::chart::chart;
 use palpate::chart::style::{INK, PALETTE};
-use palpate::refusal::Refusal;
 
 /// The figure, if the run holds the maps for it.
 ///
-/// # Errors
-/// If drawing fails.
-///
 /// Implements: REP-030.
-pub fn draw(figures: &mut Figures, found: &Findings) -> Result<(), Refusal> {
-    let bridge = found.bridge.as_ref();
-    let played = bridge.and_then(|bridge| bridge.conditions.get(paper::FEM_PLAYBACK));
-    let counted = found.people.conditions.get(paper::FEM_PLAYBACK);
-    let (Some(bridge), Some(condition), Some(counted)) = (bridge, played, counted) else {
-        return Ok(());
-    };
+pub fn figure(found: &Findings) -> Option<Plan> {
+    let bridge = found.bridge.as_ref()?;
+    let condition = bridge.conditions.get(paper::FEM_PLAYBACK)?;
+    let counted = &found.people.conditions.get(paper::FEM_PLAYBACK)?.inclusions;
     let depths = bridge.inclusions.iter().filter_map(|of| {
-        let mut known = counted.inclusions.iter();
-        Some(1e3 * known.find(|known| known.name == of.name)?.depth_m)
+        let known = counted.iter().find(|known| known.name == of.name)?;
+        Some(1e3 * known.depth_m)
     });
     let depths: Vec<_> = depths.collect();
     let panel = |offset, words| {
         let lines = lines(condition, &depths, offset);
         share_panel(&format!("{SHARE}, {words}"), &depths, 270, lines)
     };
-    let mut panels = [
+    let mut panels = vec![
         panel(Offset::Kept, "with the mean of the force"),
         panel(Offset::Removed, "without its mean over the sweep"),
     ];
     let sample = |colour, name| Line::new(colour, Vec::new()).named(name);
     panels[0].key = vec![
         sample(INK, "answers, 95 % by subject").wide(6.0).dotted(5),
-        sample(PALETTE[0], "not rejected"),
-        sample(PALETTE[0], "rejected").dashed(true),
+        sample(INK, "rejected").dashed(true),
     ];
-    let text = Text { bridge, condition };
-    let drawn = chart(&panels, DEPTH);
-    figures.add(
-        ("bridge", ""),
-        Topic::People,
-        words!(text, as_bridge_caption, as_bridge_alt),
-        drawn,
+    let words = words(condition, bridge.probe_depth_m);
+    Some(Plan::new("bridge", Topic::People, words, panels, DEPTH))
+}
+
+fn words(condition: &ConditionBridge, probe_depth: f64) -> Words {
+    let compatible = match &condition.verdict.compatible[..] {
+        [] => "none".into(),
+        names => names.join("; "),
+    };
+    Words::new(
+        "Rates predicted from the forces, and the answers to FEM playback",
+        format!(
+            "The paper has no such figure: it computed forces and counted answers, but did not predict the one from the other. Each \
+             line takes one part of the force at probe depth {} mm as what the subjects used, with a noise level for each of them (and \
+             one share of lapses, where that fits better); the dots are the answers of Table 1. Lines that are rejected over this sweep \
+             are dashed; where lines lie on one another, the answers cannot tell them apart. The table below has the numbers, for the \
+             other experiments too.",
+            millimetres(probe_depth)
+        ),
+        format!(
+            "Two line charts of predicted right answers against the depth of the inclusion, one line for each convention, with the \
+             observed shares as dots. Not rejected: {compatible}."
+        ),
     )
 }
 
@@ -86,11 +90,4 @@ fn short_name(fit: &ConventionFit) -> String {
         Channel::Both => "both",
     };
     format!("{statistic}, {channel}")
-}
-
-#[derive(Template)]
-#[template(path = "report/words.txt", block = "bridge_title", blocks = ["bridge_caption", "bridge_alt"])]
-struct Text<'a> {
-    bridge: &'a Bridge,
-    condition: &'a ConditionBridge,
 }

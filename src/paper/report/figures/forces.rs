@@ -1,59 +1,49 @@
 //! Figure 5 for every phantom, Figure 7 for measured maps, and the signals at one depth.
 
-use askama::Template;
-
-use super::{Figures, Words, band_ends, words};
+use super::{Plan, Words, band_ends};
 use crate::report::maps::incomparable;
-use crate::report::text::{millimetres, shortened};
-use crate::report::{Findings, MapFindings, Run, Topic, paper, text};
+use crate::report::text::{fixed, joined, millimetres, name_of_map, shortened};
+use crate::report::{Findings, MapFindings, Run, Topic, paper};
 use crate::study::Kind;
 use palpate::chart::style::{PALETTE, ramp};
-use palpate::chart::{Line, Panel};
-use palpate::chart::{chart, round_range};
+use palpate::chart::{Line, Panel, round_range};
 use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
-use palpate::phantom::Inclusion;
 use palpate::refusal::Refusal;
 
 /// The signals, if there are any, and the forces of every map: computed ones, then the measured ones.
 ///
 /// # Errors
-/// If a map does not fit the reference.
+/// A map does not fit the reference.
 ///
 /// Implements: REP-031.
-pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Refusal> {
-    let mut add = |file: (&str, &str), words: Words<'_>, panels: &[Panel]| {
-        let drawn = chart(panels, "Lateral position of the probe x (mm)");
-        figures.add(file, Topic::Forces, words, drawn)
+pub fn figures(run: &Run, found: &Findings) -> Result<Vec<Plan>, Refusal> {
+    let mut plans = Vec::new();
+    let mut add = |id: &str, map: Option<&ForceMap>, words: Words, panels: [Panel; 2]| {
+        let x_name = "Lateral position of the probe x (mm)";
+        plans.push(Plan {
+            name: map.map(name_of_map).unwrap_or_default(),
+            ..Plan::new(id, Topic::Forces, words, panels.into(), x_name)
+        });
     };
     if !run.maps.is_empty() {
-        let text = SignalText { found };
-        add(
-            ("signals", ""),
-            words!(text, as_signals_caption, as_signals_alt),
-            &signals(run, found)?,
-        )?;
+        add("signals", None, signal_words(found), signals(run, found)?);
     }
     for map in [&run.reference].into_iter().chain(&run.maps) {
-        let name = text::name_of_map(map);
         let bands = bands(run, map);
         let depth = run.study.as_ref().map(|study| study.plan.probe_depth);
-        let depth = depth.filter(|_| !bands[0].is_empty());
-        let text = ForceText { map, depth };
+        let words = force_words(map, depth.filter(|_| !bands[0].is_empty()));
         add(
-            ("figure-5", &name),
-            words!(text, as_figure_5_caption, as_figure_5_alt),
-            &force_curves(map.table(), bands),
-        )?;
+            "figure-5",
+            Some(map),
+            words,
+            force_curves(map.table(), bands),
+        );
     }
     for map in &run.measured {
-        let (text, name) = (MeasuredText { map }, text::name_of_map(map));
-        add(
-            ("figure-7", &name),
-            words!(text, as_figure_7_caption, as_figure_7_alt),
-            &force_curves(map.table(), Default::default()),
-        )?;
+        let panels = force_curves(map.table(), Default::default());
+        add("figure-7", Some(map), measured_words(map), panels);
     }
-    Ok(())
+    Ok(plans)
 }
 
 /// Lateral positions of the plot's ends, mm. One position alone gets some room.
@@ -84,12 +74,12 @@ fn points(laterals: &[f64], forces: &[f64]) -> Vec<(f64, f64)> {
 fn force_curves(table: &ForceTable, [normal, lateral]: [Vec<Line>; 2]) -> [Panel; 2] {
     let panel = |heading: &str, matrix: &Matrix, height, band: Vec<Line>| {
         let count = table.depths().len();
-        let lines = table.depths().iter().zip(matrix.rows()).enumerate();
-        let lines = lines.map(|(row, (depth, forces))| {
+        let rows = table.depths().iter().zip(matrix.rows()).enumerate();
+        let curves = rows.map(|(row, (depth, forces))| {
             Line::new(ramp(row, count), points(table.laterals(), forces))
                 .named(format!("{} mm", millimetres(*depth)))
         });
-        let lines = lines.chain(band).collect();
+        let lines = curves.chain(band).collect();
         panel(heading, table.laterals(), height, lines)
     };
     [
@@ -131,14 +121,16 @@ pub fn label(map: &MapFindings) -> String {
 fn signals(run: &Run, found: &Findings) -> Result<[Panel; 2], Refusal> {
     let (mut normal, mut lateral) = (Vec::new(), Vec::new());
     for (k, (map, of_map)) in run.maps.iter().zip(&found.maps).enumerate() {
-        let table = map.signal(&run.reference);
-        let table = table.map_err(incomparable(map))?;
-        let curve = table.row(found.probe_depth_m);
-        let curve = curve.map_err(incomparable(map))?;
+        let signal = map.signal(&run.reference).map_err(incomparable(map))?;
+        let row = signal.row(found.probe_depth_m);
+        let curve = row.map_err(incomparable(map))?;
         let line = |forces| {
-            Line::new(PALETTE[k % PALETTE.len()], points(table.laterals(), forces))
-                .dashed((k / PALETTE.len()) % 2 == 1)
-                .named(label(of_map))
+            Line::new(
+                PALETTE[k % PALETTE.len()],
+                points(signal.laterals(), forces),
+            )
+            .dashed((k / PALETTE.len()) % 2 == 1)
+            .named(label(of_map))
         };
         normal.push(line(curve.normal));
         lateral.push(line(curve.lateral));
@@ -150,38 +142,89 @@ fn signals(run: &Run, found: &Findings) -> Result<[Panel; 2], Refusal> {
     ])
 }
 
-#[derive(Template)]
-#[template(path = "report/words.txt", block = "signals_title", blocks = ["signals_caption", "signals_alt"])]
-struct SignalText<'a> {
-    found: &'a Findings,
+fn signal_words(found: &Findings) -> Words {
+    let depth = millimetres(found.probe_depth_m);
+    let peaks = found.maps.iter().map(|map| {
+        let [normal, lateral] = [map.peak_normal, map.peak_lateral].map(|of| fixed(of.force_n, 3));
+        format!("{}: {normal} N normal, {lateral} N lateral", label(map))
+    });
+    Words::new(
+        format!("Signals F₁ − F₀ at depth {depth} mm"),
+        format!(
+            "What inclusions add to the force on the probe as it sweeps over the gel at depth {depth} mm: the template of the matched \
+             filter (2), (4). The paper shows no such figure, but its “roughly 0.5 N” and its 340 mN for 6.6 mm are peaks of such \
+             curves. The lateral force changes sign over an inclusion."
+        ),
+        format!(
+            "Two line charts of force against lateral position, one curve for each phantom. Peaks: {}.",
+            joined(peaks, "; ")
+        ),
+    )
 }
 
-#[derive(Template)]
-#[template(path = "report/words.txt", block = "figure_5_title", blocks = ["figure_5_caption", "figure_5_alt"])]
-struct ForceText<'a> {
-    map: &'a ForceMap,
-    /// The depth of the bands, m, if there are any.
-    depth: Option<f64>,
+/// The words of Figure 5, with the depth of its bands, m, if there are any.
+fn force_words(map: &ForceMap, depth: Option<f64>) -> Words {
+    let inclusions = match map.phantom().map(|of| &of.inclusions[..]) {
+        None => "inclusion not known".into(),
+        Some([]) => "no inclusion".into(),
+        Some([one]) => format!("inclusion {} mm deep", millimetres(one.depth)),
+        Some(several) => format!("{} inclusions", several.len()),
+    };
+    let made = match map.certificate() {
+        Some(of) => format!(
+            "Computed by finite elements ({}, contact {}).",
+            of.element, of.contact
+        ),
+        None => "Measured.".into(),
+    };
+    let of_paper = match map.phantom().and_then(paper::name_of) {
+        Some("2.6") => {
+            "This is the paper's Figure 5; its curves come from an element and mesh that it does not name, and its numbers are not \
+             printed, so only the shapes can be compared."
+        }
+        _ => "As the paper's Figure 5, which shows the 2.6 mm phantom alone.",
+    };
+    let bands = depth.map(|depth| {
+        let depth = millimetres(depth);
+        format!(" Between the dashed lines lie 95 % of the draws of the uncertain inputs, at {depth} mm.")
+    });
+    let bands = bands.unwrap_or_default();
+    let forces = map.forces().normal.values().iter();
+    let largest = forces.copied().fold(0.0, f64::max);
+    Words::new(
+        format!(
+            "Figure 5. Forces, phantom “{}”: {inclusions}",
+            name_of_map(map)
+        ),
+        format!(
+            "Force on the whole probe against its lateral position, one curve for each depth of the probe, the darker the deeper. {made} \
+             Normal is positive out of the gel, lateral along +x. {of_paper}{bands}"
+        ),
+        format!(
+            "Two line charts of normal and lateral force against lateral position, {} curves each. The largest normal force is {} N.",
+            map.depths().len(),
+            fixed(largest, 3)
+        ),
+    )
 }
 
-impl ForceText<'_> {
-    fn inclusions(&self) -> Option<&[Inclusion]> {
-        self.map.phantom().map(|phantom| &phantom.inclusions[..])
-    }
-
-    fn is_the_papers(&self) -> bool {
-        self.map.phantom().and_then(paper::name_of) == Some("2.6")
-    }
-
-    /// The largest normal force, N.
-    fn largest(&self) -> f64 {
-        let forces = self.map.forces().normal.values();
-        forces.iter().copied().fold(0.0, f64::max)
-    }
-}
-
-#[derive(Template)]
-#[template(path = "report/words.txt", block = "figure_7_title", blocks = ["figure_7_caption", "figure_7_alt"])]
-struct MeasuredText<'a> {
-    map: &'a ForceMap,
+fn measured_words(map: &ForceMap) -> Words {
+    let note = match map.source() {
+        Source::Measured(of) if !of.note.is_empty() => {
+            format!(" It came with the note: “{}”.", of.note)
+        }
+        _ => String::new(),
+    };
+    Words::new(
+        format!("Figure 7. Measured forces, “{}”", name_of_map(map)),
+        format!(
+            "A measured map that this run was given, at its own poses: force on the whole probe against its lateral position, one \
+             curve for each depth.{note} The paper's Figure 7 shows its own measurement of the 2.6 mm gel; those data are not \
+             available."
+        ),
+        format!(
+            "Two line charts of measured normal and lateral force against lateral position, {} curves each.",
+            map.depths().len()
+        ),
+    )
 }

@@ -1,51 +1,36 @@
 //! γ of a sweep beside what may be unknown of it.
 
-use askama::Template;
-
 use super::people::DEPTH;
-use super::{Figures, words};
+use super::{Plan, Words};
 use crate::report::inputs;
-use crate::report::text::extremes;
-use crate::report::{Findings, GammaBeside, MapFindings, Run, Settings, Topic, text};
+use crate::report::text::{extremes, fixed, joined, millimetres, percent, trimmed};
+use crate::report::{Findings, GammaBeside, MapFindings, Run, Topic};
 use crate::study::{Band, Kind};
 use palpate::chart::style::{GREY, INK, PALETTE, VERMILION};
-use palpate::chart::{Line, Panel};
-use palpate::chart::{chart, round_range};
-use palpate::refusal::Refusal;
+use palpate::chart::{Line, Panel, round_range};
 
 /// The figure, if the top of an inclusion is known.
 ///
-/// # Errors
-/// If drawing fails.
-///
 /// Implements: REP-030.
-pub fn draw(figures: &mut Figures, run: &Run, found: &Findings) -> Result<(), Refusal> {
-    let maps = found.maps.iter();
-    let maps = maps.filter_map(|map| Some((1e3 * map.inclusion_depth_m?, map)));
-    let mut maps: Vec<_> = maps.collect();
+pub fn figure(run: &Run, found: &Findings) -> Option<Plan> {
+    let mut maps: Vec<_> = found
+        .maps
+        .iter()
+        .filter_map(|map| Some((1e3 * map.inclusion_depth_m?, map)))
+        .collect();
     maps.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((_, first)) = maps.first() else {
-        return Ok(());
-    };
-    let beside = &first.gamma_left.beside;
-    let bars = maps.iter().filter_map(|(depth, map)| bar(run, *depth, map));
-    let bars: Vec<_> = bars.collect();
-    let has_bands = !bars.is_empty();
+    let beside = &maps.first()?.1.gamma_left.beside;
+    let of_map = |(depth, map): &(f64, &MapFindings)| bar(run, *depth, map);
+    let bars: Vec<_> = maps.iter().filter_map(of_map).collect();
+    let words = words(run, found, &maps, !bars.is_empty());
     let panel = panel(&maps, beside, found.required_gamma, bars);
-    let text = Text {
-        maps: &maps,
-        beside,
-        found,
-        settings: &run.settings,
-        has_bands,
-    };
-    let drawn = chart(&[panel], DEPTH);
-    figures.add(
-        ("gamma", ""),
+    Some(Plan::new(
+        "gamma",
         Topic::Detection,
-        words!(text, as_gamma_caption, as_gamma_alt),
-        drawn,
-    )
+        words,
+        vec![panel],
+        DEPTH,
+    ))
 }
 
 /// The band of γ that a study has for a map, upright beside its depth, mm.
@@ -90,20 +75,44 @@ fn panel(maps: &Maps<'_>, beside: &[GammaBeside], needed: f64, bars: Vec<Line>) 
     }
 }
 
-#[derive(Template)]
-#[template(path = "report/words.txt", block = "gamma_title", blocks = ["gamma_caption", "gamma_alt"])]
-struct Text<'a> {
-    maps: &'a Maps<'a>,
-    beside: &'a [GammaBeside],
-    found: &'a Findings,
-    settings: &'a Settings,
-    has_bands: bool,
-}
-
-impl Text<'_> {
-    /// The least and the largest share of γ that the defaults of `palpate detect` leave.
-    fn left(&self) -> Option<[f64; 2]> {
-        let maps = self.maps.iter().filter(|(_, map)| map.gamma.both > 0.0);
-        extremes(maps.map(|(_, map)| map.gamma_left.by_default.both / map.gamma.both))
-    }
+fn words(run: &Run, found: &Findings, maps: &Maps<'_>, has_bars: bool) -> Words {
+    // The part of γ that the defaults of `palpate detect` leave.
+    let felt = maps.iter().filter(|(_, map)| map.gamma.both > 0.0);
+    let left = extremes(felt.map(|(_, map)| map.gamma_left.by_default.both / map.gamma.both));
+    let left = left.map(|ends| {
+        let [least, most] = ends.map(percent);
+        format!(": with offset, drift and gain unknown, the defaults of palpate detect, {least} to {most} of it is left")
+    });
+    let left = left.unwrap_or_default();
+    let bars = if has_bars {
+        " Upright bars hold γ with all but the noise known in 95 % of the draws of the uncertain inputs."
+    } else {
+        ""
+    };
+    let beside = maps
+        .iter()
+        .take(1)
+        .flat_map(|(_, map)| &map.gamma_left.beside);
+    let gammas = maps.iter().map(|(depth, map)| {
+        let gammas = map.gamma_left.beside.iter().map(|of| fixed(of.gamma, 2));
+        format!("{} at {} mm", joined(gammas, ", "), trimmed(*depth, 6))
+    });
+    Words::new(
+        format!(
+            "Signal-to-noise ratio γ of a sweep at depth {} mm, by what is unknown",
+            millimetres(found.probe_depth_m)
+        ),
+        format!(
+            "What is unknown takes from γ the part of the signal that looks like it{left}. The paper has no such figure: its detector \
+             knows everything but the noise (“nothing”). Noise of {} N in every sample; the table above has the numbers.{bars}",
+            trimmed(run.settings.noise_sd_n, 6)
+        ),
+        format!(
+            "Line chart of γ against the depth of the inclusion, one line for each of these to be unknown: {}. From the shallowest to \
+             the deepest: {}. A dashed line at {} is what both error rates need.",
+            joined(beside.map(GammaBeside::words), "; "),
+            joined(gammas, "; "),
+            fixed(found.required_gamma, 2)
+        ),
+    )
 }

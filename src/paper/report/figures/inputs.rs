@@ -1,15 +1,11 @@
 //! Which input counts: tornado charts of a study.
 
-use askama::Template;
-
-use super::{Figures, words};
-use crate::report::text::shortened;
-use crate::report::{Run, Topic, text};
+use super::{Plan, Words};
+use crate::report::text::{fixed, joined, shortened};
+use crate::report::{Run, Topic};
 use crate::study::{Kind, QuantityResult, StudyResults};
 use palpate::chart::style::{BLUE, VERMILION};
-use palpate::chart::{Line, Panel};
-use palpate::chart::{chart, round_range};
-use palpate::refusal::Refusal;
+use palpate::chart::{Line, Panel, PanelKind, round_range};
 
 /// What the x axis shows.
 const CHANGE: &str = "Change from the lower to the upper quartile of the input (%)";
@@ -20,36 +16,47 @@ const LETTERS: usize = 21;
 
 /// The figure, if the run has a study: of the force without inclusion at x = 0 and of γ of each inclusion.
 ///
-/// # Errors
-/// If drawing fails.
-///
 /// Implements: REP-081.
-pub fn draw(figures: &mut Figures, run: &Run) -> Result<(), Refusal> {
-    let Some(study) = &run.study else {
-        return Ok(());
-    };
+pub fn figure(run: &Run) -> Option<Plan> {
+    let study = run.study.as_ref()?;
     let is_drawn = |of: &&QuantityResult| match of.quantity.kind {
         Kind::NormalForceN { .. } => of.quantity.phantom == study.plan.reference.name,
         ref kind => *kind == Kind::Gamma,
     };
-    let drawn: Vec<_> = study.listed().filter(is_drawn).collect();
-    let bars: Vec<_> = drawn.iter().map(|of| bars(study, of)).collect();
-    let panels = drawn.iter().zip(&bars).map(|(of, bars)| panel(of, bars));
-    let text = Text {
-        drawn: &drawn,
-        bars: &bars,
-    };
-    let panels: Vec<_> = panels.collect();
-    figures.add(
-        ("inputs", ""),
+    let with_bars = |of| (of, bars(study, of));
+    let drawn: Vec<_> = study.listed().filter(is_drawn).map(with_bars).collect();
+    let panels = drawn.iter().map(|(of, bars)| panel(of, bars)).collect();
+    Some(Plan::new(
+        "inputs",
         Topic::Inputs,
-        words!(text, as_inputs_caption, as_inputs_alt),
-        chart(&panels, CHANGE),
+        words(&drawn),
+        panels,
+        CHANGE,
+    ))
+}
+
+/// The inputs with the change that each makes to a quantity, %.
+type Bars<'a> = Vec<(&'a str, f64)>;
+
+fn words(drawn: &[(&QuantityResult, Bars<'_>)]) -> Words {
+    let largest = drawn.iter().map(|(of, bars)| {
+        let longest = bars.iter().rev().take(3);
+        let named = longest.map(|(name, change)| format!("{name} {} %", fixed(*change, 1)));
+        format!("{}: {}", of.quantity, joined(named, ", "))
+    });
+    Words::new(
+        "Which input counts",
+        "How far each number moves, in per cent, when one input goes from its lower to its upper quartile and all others stay at their \
+         medians: blue up, vermilion down. The paper has no such figure.",
+        format!(
+            "Bar charts, the longest bar on top. {}.",
+            joined(largest, "; ")
+        ),
     )
 }
 
-/// The inputs with the change that each makes to a quantity, %, the smallest first.
-fn bars<'a>(study: &'a StudyResults, of: &QuantityResult) -> Vec<(&'a str, f64)> {
+/// The bars of a quantity, the shortest first.
+fn bars<'a>(study: &'a StudyResults, of: &QuantityResult) -> Bars<'a> {
     let per_cent =
         |change: f64| Some(100.0 * change / of.at_medians?).filter(|part| part.is_finite());
     let slopes = study.plan.inputs.iter().zip(&of.slopes);
@@ -75,7 +82,7 @@ fn panel(of: &QuantityResult, bars: &[(&str, f64)]) -> Panel {
     let x = round_range(bars.iter().map(|bar| bar.1));
     let count = bars.len().max(1);
     Panel {
-        is_ranked: true,
+        kind: PanelKind::Ranked,
         ..Panel::new(
             of.quantity.to_string(),
             [x, [0.0, count as f64]],
@@ -83,11 +90,4 @@ fn panel(of: &QuantityResult, bars: &[(&str, f64)]) -> Panel {
             lines,
         )
     }
-}
-
-#[derive(Template)]
-#[template(path = "report/words.txt", block = "inputs_title", blocks = ["inputs_caption", "inputs_alt"])]
-struct Text<'a> {
-    drawn: &'a [&'a QuantityResult],
-    bars: &'a [Vec<(&'a str, f64)>],
 }

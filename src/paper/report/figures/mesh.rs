@@ -2,28 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use askama::Template;
 use plotters::style::RGBColor;
 
-use super::setup::{PROBE, inclusion_key, layer_key, probe, tint};
-use super::{Figures, words};
-use crate::report::{DeformedMesh, Topic, paper, text};
-use palpate::chart::chart;
-use palpate::chart::to_mm;
-use palpate::chart::{Cells, Line, Panel};
-use palpate::refusal::Refusal;
+use super::setup::{INCLUSION, PROBE, layer_key, probe, tint};
+use super::{Plan, Words};
+use crate::report::text::{fixed, millimetres};
+use crate::report::{DeformedMesh, Topic, paper};
+use palpate::chart::{Cells, Line, Panel, to_mm};
 
 /// The sides of elements.
 const EDGE: RGBColor = RGBColor(0x5B, 0x64, 0x70);
 
-#[derive(Template)]
-#[template(path = "report/words.txt", block = "figure_6_title", blocks = ["figure_6_caption", "figure_6_alt"])]
-struct Text<'a> {
-    mesh: &'a DeformedMesh,
-}
-
 /// Figure 6: the mesh to scale, with straight sides between the corners of its elements.
-pub fn draw(figures: &mut Figures, mesh: &DeformedMesh) -> Result<(), Refusal> {
+pub fn figure(mesh: &DeformedMesh) -> Plan {
     let phantom = &mesh.phantom;
     let mut regions: BTreeMap<_, Vec<_>> = BTreeMap::new();
     for (region, corners) in &mesh.elements {
@@ -36,21 +27,52 @@ pub fn draw(figures: &mut Figures, mesh: &DeformedMesh) -> Result<(), Refusal> {
         edge: EDGE,
         areas,
     });
-    let lines = vec![probe(phantom, mesh.pose)];
-    let mut panel = Panel::to_scale(cells.collect(), lines);
+    let mut panel = Panel::to_scale(cells.collect(), vec![probe(phantom, mesh.pose)]);
     panel.key = vec![Line::area(PROBE, Vec::new()).named("probe")];
     panel.key.extend(layer_key(phantom, |_| String::new()));
+    let inclusion = |name: &str| Line::area(INCLUSION, Vec::new()).named(name);
     panel.key.extend(match phantom.inclusions.len() {
         0 => None,
-        1 => Some(inclusion_key("inclusion")),
-        _ => Some(inclusion_key("inclusions")),
+        1 => Some(inclusion("inclusion")),
+        _ => Some(inclusion("inclusions")),
     });
-    let text = Text { mesh };
-    let drawn = chart(&[panel], "Lateral position x (mm)");
-    figures.add(
-        ("figure-6", ""),
-        Topic::Setup,
-        words!(text, as_figure_6_caption, as_figure_6_alt),
-        drawn,
+    let x_name = "Lateral position x (mm)";
+    Plan::new("figure-6", Topic::Setup, words(mesh), vec![panel], x_name)
+}
+
+fn words(mesh: &DeformedMesh) -> Words {
+    let DeformedMesh { phantom, pose, .. } = mesh;
+    let rigid = match paper::name_of(phantom) {
+        None | Some("none") => "",
+        Some(_) => {
+            " The inclusion keeps its shape, since it is far stiffer than the gel, as the paper says of its Figure 6."
+        }
+    };
+    let counted = |count: usize, name: &str| match count {
+        1 => format!("one {name}"),
+        _ => format!("{count} {name}s"),
+    };
+    let inclusions = match phantom.inclusions.len() {
+        0 => String::new(),
+        count => format!(" with {}", counted(count, "inclusion")),
+    };
+    Words::new(
+        format!(
+            "Figure 6. Deformed mesh, phantom “{}”, probe at depth {} mm, x = {} mm",
+            phantom.name,
+            millimetres(pose.depth),
+            millimetres(pose.lateral)
+        ),
+        format!(
+            "The mesh as the probe deforms it (paper's Figure 6, whose pose is not stated), to scale and not exaggerated; elements are \
+             drawn with straight sides between their corners.{rigid} The smallest det(I + ∇u) is {}: 1 is undeformed, and below 0.2 \
+             small strain is at its limit.",
+            fixed(mesh.min_det, 3)
+        ),
+        format!(
+            "A mesh of {} elements: {}{inclusions}, dented by a round probe from above.",
+            mesh.elements.len(),
+            counted(phantom.layers.len(), "layer")
+        ),
     )
 }

@@ -1,20 +1,17 @@
 //! Figures 10 to 13: the right answers of the paper's subjects.
 
-use askama::Template;
 use plotters::style::RGBColor;
 
-use super::{Figures, band_ends, words};
+use super::{Picture, Plan, Words, band_ends};
 use crate::psychophysics::{
     Analysis, Bounds, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis,
 };
 use crate::report::people::width_ratios;
-use crate::report::text::extremes;
-use crate::report::{Run, Topic, inputs, normal_approximation, paper, text};
+use crate::report::text::{extremes, fixed, joined, millimetres, percent};
+use crate::report::{Run, Topic, inputs, normal_approximation, paper};
 use crate::study::Kind;
-use palpate::chart::chart;
 use palpate::chart::style::{GREEN, GREY, INK, PALETTE, VERMILION};
 use palpate::chart::{Line, Panel};
-use palpate::refusal::Refusal;
 
 /// What the x axis of all charts over the inclusions shows.
 pub const DEPTH: &str = "Depth of the inclusion (mm)";
@@ -54,41 +51,109 @@ fn depths(condition: &ConditionAnalysis) -> Vec<f64> {
     inclusions.map(|of| 1e3 * of.depth_m).collect()
 }
 
-/// Figures 10 to 13.
-///
-/// # Errors
-/// If drawing fails.
+/// Figures 8 and 10 to 13.
 ///
 /// Implements: REP-030.
-pub fn draw(figures: &mut Figures, run: &Run, people: &Analysis) -> Result<(), Refusal> {
+pub fn figures(run: &Run, people: &Analysis) -> Vec<Plan> {
+    let mut plans = vec![Plan {
+        picture: Picture::Finished(include_str!("figure-8.svg"), 436),
+        ..Plan::new(
+            "figure-8",
+            Topic::People,
+            experiment_words(),
+            Vec::new(),
+            "",
+        )
+    }];
     for (at, (of, number)) in people.conditions.iter().zip(10..13).enumerate() {
         let predicted = match at {
             paper::FEM_PLAYBACK => predicted(run, of),
             _ => Vec::new(),
         };
-        let text = SubjectText {
-            number,
-            of,
-            has_bands: !predicted.is_empty(),
-        };
-        let file = format!("figure-{number}");
-        figures.add(
-            (&file, ""),
+        let words = subject_words(number, of, !predicted.is_empty());
+        let panels = vec![subjects(of, predicted)];
+        plans.push(Plan::new(
+            &format!("figure-{number}"),
             Topic::People,
-            words!(text, as_subjects_caption, as_subjects_alt),
-            chart(&[subjects(of, predicted)], DEPTH),
-        )?;
+            words,
+            panels,
+            DEPTH,
+        ));
     }
-    let text = ComparisonText {
-        conditions: &people.conditions,
-        width_ratios: width_ratios(people),
+    let panels = vec![comparison(&people.conditions)];
+    let words = comparison_words(people);
+    plans.push(Plan::new("figure-13", Topic::People, words, panels, DEPTH));
+    plans
+}
+
+fn experiment_words() -> Words {
+    Words::new(
+        "Figure 8. The three experiments",
+        "How the force came to the ten subjects, drawn after §3.2 and §4; below each chain the sources of noise that Table 2 names for it. \
+         The paper's Figure 8 shows the apparatus. Here the finite elements and the force table are computed again (“palpate run”), a \
+         table is played back on a display by “palpate play”, measured forces are read by “palpate import-map”, and “palpate experiment” \
+         runs the pairs. The gels, their measurement and the subjects are the paper's alone.",
+        "Three chains of boxes that end at the subject. Direct contact: gel, then a probe on the index finger. FEM data: finite elements, \
+         force table, haptic display. Measured data: gel with a force sensor, force table, haptic display. The subject says which of two \
+         samples holds the inclusion.",
+    )
+}
+
+/// The words of Figures 10 to 12.
+fn subject_words(number: u32, of: &ConditionAnalysis, has_bands: bool) -> Words {
+    let subjects = of.subjects.len();
+    let trials = of.inclusions.first().map_or(0, |of| of.pooled.trials);
+    let pairs = trials / (subjects as u64).max(1);
+    let bands = if has_bands {
+        " Between the dashed lines lie 95 % of the shares that the peak of the normal signal predicts, over the draws of the uncertain \
+             inputs."
+    } else {
+        ""
     };
-    let panel = comparison(&people.conditions);
-    figures.add(
-        ("figure-13", ""),
-        Topic::People,
-        words!(text, as_figure_13_caption, as_figure_13_alt),
-        chart(&[panel], DEPTH),
+    let shares = of.inclusions.iter().map(|of| {
+        let share = percent(of.pooled.rate);
+        format!("{share} at {} mm", millimetres(of.depth_m))
+    });
+    Words::new(
+        format!("Figure {number}. Detection rates, {}", of.name),
+        format!(
+            "Right answers of each of the {subjects} subjects in {pairs} pairs at each depth, from the paper's Table 1, and their mean. \
+             The paper's Figure {number} comes from the same counts, so that only the drawing can differ; here each subject is named. \
+             Where counts are equal, one line covers the other: Table 1 below has all.{bands}"
+        ),
+        format!(
+            "Line chart of right answers in per cent against the depth of the inclusion, a thin line for each subject and a thick one for \
+             their mean: {}.",
+            joined(shares, ", ")
+        ),
+    )
+}
+
+/// The words of Figure 13.
+fn comparison_words(people: &Analysis) -> Words {
+    let wider = width_ratios(people).map(|ends| {
+        let [least, most] = ends.map(|ratio| fixed(ratio, 1));
+        format!(" {least} to {most} times")
+    });
+    let wider = wider.unwrap_or_default();
+    let shares = people.conditions.iter().map(|condition| {
+        let shares = condition.inclusions.iter();
+        let shares = shares.map(|of| percent(of.pooled.rate));
+        format!("{}: {}", condition.name, joined(shares, ", "))
+    });
+    Words::new(
+        "Figure 13. The three experiments with 95 % intervals",
+        format!(
+            "Share of right answers, all subjects together, each with three 95 % intervals side by side: the normal approximation p̂ ± 1.96 \
+             √(p̂(1 − p̂)/n) over all n answers (thin), the exact interval of Clopper and Pearson over the same answers (dot), and Student's \
+             interval with the subjects as the sample (thick). The paper's Figure 13 has one interval, from a table of Natrella (1963) whose \
+             formula it does not print; it counts all answers as independent, as the first two do. But subjects differ more than chance \
+             allows, and the next subject would differ again: the third interval, which lets them, is{wider} as wide as the exact one."
+        ),
+        format!(
+            "Chart of right answers in per cent at each depth of the inclusion, with intervals. From the shallowest to the deepest, {}.",
+            joined(shares, "; ")
+        ),
     )
 }
 
@@ -109,11 +174,7 @@ fn subjects(condition: &ConditionAnalysis, predicted: Vec<Line>) -> Panel {
     lines.push(of_mean(points(&depths, pooled)));
     lines.extend(predicted);
     let mut panel = share_panel(SHARE, &depths, 300, lines);
-    panel.key = vec![
-        of_mean(Vec::new()),
-        of_subject(colours[0], Vec::new()).named("one subject"),
-        Line::new(GREY, Vec::new()).dashed(true).named("chance"),
-    ];
+    panel.key = vec![Line::new(GREY, Vec::new()).dashed(true).named("chance")];
     panel
 }
 
@@ -167,28 +228,4 @@ fn bars(inclusion: &InclusionAnalysis, x: f64, colour: RGBColor) -> Vec<Line> {
     let clustered = inclusion.clustered.as_ref();
     bars.extend(clustered.map(|of| bar(x + 0.15, of.bounds, colour, 6.0)));
     bars
-}
-
-#[derive(Template)]
-#[template(path = "report/words.txt", block = "subjects_title", blocks = ["subjects_caption", "subjects_alt"])]
-struct SubjectText<'a> {
-    number: u32,
-    of: &'a ConditionAnalysis,
-    /// Whether predictions are drawn.
-    has_bands: bool,
-}
-
-impl SubjectText<'_> {
-    /// Pairs that each subject judged at each depth.
-    fn pairs(&self) -> u64 {
-        let trials = self.of.inclusions.first().map_or(0, |of| of.pooled.trials);
-        trials / (self.of.subjects.len() as u64).max(1)
-    }
-}
-
-#[derive(Template)]
-#[template(path = "report/words.txt", block = "figure_13_title", blocks = ["figure_13_caption", "figure_13_alt"])]
-struct ComparisonText<'a> {
-    conditions: &'a [ConditionAnalysis],
-    width_ratios: Option<[f64; 2]>,
 }

@@ -8,12 +8,12 @@ use core::iter::once;
 use askama::Template;
 
 use super::inputs::{Survival, survival};
-use super::pressure::times;
 use super::text::printable;
 use super::{
     Comparison, Figure, Findings, MapFindings, Quality, Run, Settings, Topic, Value, paper, text,
 };
 use crate::psychophysics::bridge::WeightRange;
+use crate::psychophysics::noise::SUMS;
 use crate::study::{Band, Change, Conclusion, Kind, StudyResults};
 
 /// How the page looks.
@@ -24,11 +24,10 @@ pub const STYLE: &str = include_str!("style.css");
 const NAMESPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
 
 /// The sections below the opening: what the contents link to, and their headings.
-const CONTENTS: [(&str, &str); 10] = [
+const CONTENTS: [(&str, &str); 9] = [
     ("setup", "Set-up"),
     ("forces", "Forces and signals"),
     ("detection", "Detection"),
-    ("pressure", "Pressure as a record"),
     ("inputs", "Uncertain inputs"),
     ("people", "People"),
     ("noise", "Noise"),
@@ -82,12 +81,6 @@ impl Page<'_> {
         ]
     }
 
-    /// How many of these γ are enough for both error rates.
-    fn met(&self, which: usize, gammas: impl Iterator<Item = [f64; 2]>) -> usize {
-        let needed = self.found.required_gamma;
-        gammas.filter(|of| of[which] >= needed).count()
-    }
-
     /// The least and the largest peak of the normal signals, N.
     fn peaks(&self) -> Option<[f64; 2]> {
         let maps = self.found.maps.iter();
@@ -127,9 +120,9 @@ impl Page<'_> {
                 }
                 _ => None,
             });
-            let named: Vec<_> = named.collect();
-            let named = (!named.is_empty()).then(|| named.join("; "));
-            named.map(|named| format!("These explanations of the answers to FEM playback {words} (share of the draws): {named}."))
+            let names: Vec<_> = named.collect();
+            let listed = (!names.is_empty()).then(|| names.join("; "));
+            listed.map(|named| format!("These explanations of the answers to FEM playback {words} (share of the draws): {named}."))
         };
         fates.into_iter().filter_map(sentence).collect()
     }
@@ -144,31 +137,18 @@ impl Page<'_> {
     fn certificates(&self) -> impl Iterator<Item = (&String, Option<&Quality>)> {
         let reference = &self.found.reference;
         let maps = self.found.maps.iter();
-        let maps = maps.map(|map| (&map.name, map.quality.as_ref()));
-        once((&reference.name, reference.quality.as_ref())).chain(maps)
+        let of_maps = maps.map(|map| (&map.name, map.quality.as_ref()));
+        once((&reference.name, reference.quality.as_ref())).chain(of_maps)
     }
 }
 
-/// The experiments: name, which rows of [`paper::NOISE_SOURCES`] add up, and the sum that the paper prints, N.
-const NOISE_CHAINS: [(&str, &[usize], Option<f64>); 3] = [
-    ("FEM playback", &[1, 2, 4], Some(paper::PLAYBACK_NOISE)),
-    ("Measured playback", &[0, 1, 2, 4], None),
-    ("Direct contact", &[3, 4], Some(paper::DIRECT_CONTACT_NOISE)),
-];
-
-/// γ as tables have it.
-fn short(gamma: f64) -> String {
-    text::fixed(gamma, 2)
-}
-
-/// The variance of the sum of some rows of [`paper::NOISE_SOURCES`], N².
-fn variance(sources: &[usize]) -> f64 {
-    let sds = sources.iter().map(|&k| paper::NOISE_SOURCES[k].1);
-    sds.map(|sd| sd * sd).sum()
+/// The variance of the sum of independent sources of noise, N².
+fn variance(sources: &[f64]) -> f64 {
+    sources.iter().map(|sd| sd * sd).sum()
 }
 
 /// The share of a source in the variance of the sum of some, if it belongs to them.
-fn share(sources: &[usize], source: usize) -> Option<f64> {
+fn share(sources: &[f64], source: f64) -> Option<f64> {
     let belongs = sources.contains(&source);
     belongs.then(|| variance(&[source]) / variance(sources))
 }

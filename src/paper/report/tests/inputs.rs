@@ -23,7 +23,7 @@ fn with_study() -> Run {
             .map(|name| Phantom::builtin(name).unwrap())
             .collect();
         plan.laterals = LATERALS.into();
-        (plan.mesh_size, plan.noise_sd) = (3e-3, SETTINGS.noise_sd_n);
+        (plan.mesh_size, plan.settings) = (3e-3, SETTINGS);
         results(&plan, usize::MAX)
     });
     Run {
@@ -104,8 +104,7 @@ fn a_study_of_something_else_is_refused() {
         let mut run = with_study();
         change(&mut run.study.as_mut().unwrap().plan);
         let found = findings(&run).unwrap_err().to_string();
-        let expected =
-            format!("the study of the inputs has another {what} than the run, expected ");
+        let expected = format!("the study of the inputs has another {what} than the run; choose");
         assert!(found.starts_with(&expected), "{found}");
     };
     refused("reference", |plan| plan.reference.well.width = 0.04);
@@ -115,9 +114,11 @@ fn a_study_of_something_else_is_refused() {
     refused("list of lateral positions", |plan| {
         plan.laterals.truncate(4)
     });
-    refused("noise, rate or prior", |plan| plan.noise_sd = 0.2);
-    refused("noise, rate or prior", |plan| plan.max_miss = 0.01);
-    refused("noise, rate or prior", |plan| plan.prior_h1 = 0.4);
+    refused("noise, rate or prior", |plan| {
+        plan.settings.noise_sd_n = 0.2
+    });
+    refused("noise, rate or prior", |plan| plan.settings.max_miss = 0.01);
+    refused("noise, rate or prior", |plan| plan.settings.prior_h1 = 0.4);
 }
 
 // Verifies: REP-083.

@@ -47,9 +47,12 @@ pub fn map_with(name: &str, normal: impl Fn(f64) -> f64, lateral: impl Fn(f64) -
 
 /// Forces of this size at ±5 mm along x, and none elsewhere.
 pub fn at_5_mm(force: f64) -> impl Fn(f64) -> f64 {
-    move |x| match x.abs() == 5e-3 {
-        true => force * x.signum(),
-        false => 0.0,
+    move |x| {
+        if x.abs() == 5e-3 {
+            force * x.signum()
+        } else {
+            0.0
+        }
     }
 }
 
@@ -159,7 +162,6 @@ pub fn paper_run() -> Run {
         reference: map(Phantom::builtin("none").ok(), &DEPTHS, |_| 0.0, |_| 0.0),
         maps: peaks.map(|(name, peak)| triangle(name, peak)).into(),
         measured: Vec::new(),
-        arrays: Vec::new(),
         deformed: deformed(),
         settings: SETTINGS,
         study: None,

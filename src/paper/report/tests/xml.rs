@@ -32,9 +32,10 @@ pub fn read(document: &str) -> Result<(Vec<String>, String), String> {
         }
     }
     content(rest)?;
-    match open.is_empty() {
-        true => Ok((seen, text)),
-        false => Err(format!("{open:?} left open")),
+    if open.is_empty() {
+        Ok((seen, text))
+    } else {
+        Err(format!("{open:?} left open"))
     }
 }
 
@@ -63,9 +64,10 @@ fn content(text: &str) -> Result<(), String> {
             return Err(format!("entity &{part}"));
         }
     }
-    match text.contains('>') {
-        true => Err(format!("> in {text:?}")),
-        false => Ok(()),
+    if text.contains('>') {
+        Err(format!("> in {text:?}"))
+    } else {
+        Ok(())
     }
 }
 
