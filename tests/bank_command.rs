@@ -141,7 +141,7 @@ fn what_was_kept_of_another_bank_is_refused_and_stays() {
     let place = Place::new("bank-other");
     let other = "bank.json.part: belongs to a different request or version; finish that run or delete the file";
     let version = env!("CARGO_PKG_VERSION");
-    let missing = "bank.json.part:2: column 2: missing field `number`";
+    let missing = "bank.json.part:2: column 2: number is missing";
     let wrong =
         "bank.json.part:2: this line is not a map of this bank; delete the file and run again";
     let replaced = |from: &str, to: &str| part().replacen(from, to, 1);

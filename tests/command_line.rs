@@ -33,13 +33,14 @@ fn bad_input_gets_one_line_that_says_what_would_be_right() {
     let here = Place::new("bad-input");
     let narrow = Phantom::builtin("none").unwrap().to_toml().unwrap();
     let narrow = narrow.replace("width_mm = 34.0", "width_mm = 16.0");
-    let stiff = "name = \"stiff\"\n[gel]\nwidth_mm = 34\nheight_mm = 15\nyoungs_modulus_kpa = -5\n";
+    let stiff = Phantom::builtin("none").unwrap().to_toml().unwrap();
+    let stiff = stiff.replace("youngs_modulus_kpa = 5.0", "youngs_modulus_kpa = -5");
     let absent = "phantoms = [\n  \"2.6\",\n  \"mine\",\n]\n";
     let wall = "laterals_mm = \"0,8\"\nreference = \"narrow.toml\"\n";
     let header = "depth_mm,lateral_mm,normal_force_n,lateral_force_n";
     for (file, text) in [
         ("narrow.toml", &*narrow),
-        ("stiff.toml", stiff),
+        ("stiff.toml", &*stiff),
         ("unknown.toml", "depths_mm = \"0:4:1\"\nlaterals = \"0\"\n"),
         ("list.toml", "depths_mm = \"4,1\"\n"),
         ("absent-phantom.toml", absent),

@@ -218,7 +218,7 @@ fn every_required_key_is_missed_by_name() {
         without.as_object_mut().unwrap().remove(key).unwrap();
         let message = read(&without.to_string()).unwrap_err();
         assert!(message.starts_with("map.json:1: "), "{message}");
-        let missing = format!("missing field `{key}`");
+        let missing = format!(": {key} is missing");
         assert!(message.contains(&missing), "{message}");
     }
 }

@@ -4,6 +4,71 @@
 //! bit now and then, and a division by 1000 cannot be undone: some metres have no `f64` of
 //! millimetres. So the power of ten goes into the written number's exponent.
 
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, Error, Visitor};
+
+/// An SI value that a file writes in another unit, 10^`POWER` of SI. It is read from the digits of the file, not from the number that
+/// they round to, and displayed such that it is read back to the bit.
+///
+/// Implements: PHA-020, CON-002.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scaled<const POWER: i32>(pub f64);
+
+/// A length that is written in mm.
+pub type Mm = Scaled<-3>;
+/// A modulus that is written in kPa.
+pub type Kpa = Scaled<3>;
+/// A number that is written as it is.
+pub type Plain = Scaled<0>;
+
+/// A length in metres.
+pub fn mm(metres: f64) -> Mm {
+    Scaled(metres)
+}
+
+/// A modulus in pascals.
+pub fn kpa(pascals: f64) -> Kpa {
+    Scaled(pascals)
+}
+
+/// A number without a unit, or in the unit of the library.
+pub fn plain(number: f64) -> Plain {
+    Scaled(number)
+}
+
+impl<const POWER: i32> fmt::Display for Scaled<POWER> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&format_scaled(self.0, -POWER))
+    }
+}
+
+impl<'de, const POWER: i32> Deserialize<'de> for Scaled<POWER> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Digits::<POWER>)
+    }
+}
+
+/// Takes a number from its digits, which come as a newtype.
+struct Digits<const POWER: i32>;
+
+impl<'de, const POWER: i32> Visitor<'de> for Digits<POWER> {
+    type Value = Scaled<POWER>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a finite decimal number")
+    }
+
+    fn visit_newtype_struct<D: Deserializer<'de>>(
+        self,
+        digits: D,
+    ) -> Result<Self::Value, D::Error> {
+        let digits = String::deserialize(digits)?;
+        let value = parse_scaled(&digits, POWER).map(Scaled);
+        value.ok_or_else(|| D::Error::invalid_type(serde::de::Unexpected::Other(&digits), &self))
+    }
+}
+
 /// The number that `text` writes, times 10^`power`, rounded once to the nearest `f64`.
 ///
 /// `text` is a plain decimal (`34`, `-0.5`, `+1.5e-3`). `None` if it is anything else, `nan`

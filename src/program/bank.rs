@@ -15,7 +15,8 @@ use super::solve::{phantom, warn_of_large_strain_of};
 use palpate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
 use palpate::decimal::format_scaled;
 use palpate::fem::{Contact, arithmetic};
-use palpate::force_map::{ForceMap, parse};
+use palpate::file::from_json;
+use palpate::force_map::ForceMap;
 use palpate::journal::Journal;
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
@@ -180,7 +181,7 @@ fn open_part(
     let path = PathBuf::from(name);
     let mut finished = vec![None; 1 + solves.len()];
     let part = Journal::open(path.clone(), &request, BEGINNING, "palpate bank", |text| {
-        let Finished { number, maps } = parse::<Finished<Vec<ForceMap>>>(text)?;
+        let Finished { number, maps } = from_json::<Finished<Vec<ForceMap>>>(text)?;
         let solve = number.checked_sub(1).and_then(|solve| solves.get(solve));
         match finished.get_mut(number) {
             Some(place) if is_of(&maps, solve) => *place = Some(maps),

@@ -9,7 +9,7 @@ use super::CliError;
 use super::numbers::{List, positions};
 use super::solve::phantom;
 use palpate::fem::{Contact, MESH_SIZE};
-use palpate::input::{from_toml, line_of};
+use palpate::file::{from_toml, line_of};
 use palpate::phantom::{BUILTIN_NAMES, Phantom};
 use palpate::refusal::Refusal;
 use palpate_paper::report::Settings;

@@ -134,7 +134,7 @@ fn end_of_links(path: &Path) -> PathBuf {
 
 /// Reads a text file.
 pub fn read(path: &Path) -> Result<String, CliError> {
-    palpate::input::read(path).map_err(CliError::file("read", path))
+    palpate::file::text(path).map_err(CliError::file("read", path))
 }
 
 /// Makes a folder and those above it.

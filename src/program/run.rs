@@ -14,7 +14,7 @@ use super::solve::warn_of_large_strain;
 use palpate::fem::certify::certified_map;
 use palpate::fem::{FemError, Model, Pose};
 use palpate::force_map::ForceMap;
-use palpate::input::parse;
+use palpate::file::read;
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 use palpate_paper::report::{DeformedMesh, FileNames, Run, figures, findings, html, summary_json};
@@ -39,7 +39,7 @@ pub struct RunArguments {
 /// Implements: CLI-030, CLI-031, CLI-032.
 pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let config = match &arguments.config {
-        Some(path) => parse(path, Config::from_toml)?,
+        Some(path) => read(path, Config::from_toml)?,
         None => Config::default(),
     };
     let phantoms = config.read_phantoms()?;

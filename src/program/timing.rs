@@ -12,7 +12,7 @@ use super::playback::{limits, loaded_map};
 use super::{CliError, Format};
 use palpate::hid::simulated::PAPER;
 use palpate::hid::timing::{Budget, BudgetOutcome, Judged, Timing, judge_log, measure, paper};
-use palpate::input;
+use palpate::file;
 
 /// Arguments of `palpate timing`.
 #[derive(Debug, Args)]
@@ -69,7 +69,7 @@ pub fn timing(arguments: &TimingArguments) -> Result<(), CliError> {
     budget.allowed_run = arguments.allowed_run;
     match &arguments.from {
         Some(path) => {
-            let judged = input::parse(path, |text, file| {
+            let judged = file::read(path, |text, file| {
                 judge_log(text, budget).map_err(|refusal| refusal.in_file(file))
             })?;
             let source = format!("of {}", path.display());

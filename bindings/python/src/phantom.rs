@@ -8,7 +8,7 @@ use palpate::phantom;
 use palpate::refusal::Refusal;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use toml::{Table, Value};
+use toml::Table;
 
 use crate::convert::{in_unit, json, list, python, refused, si, tell};
 use crate::map::ForceMap;
@@ -62,35 +62,27 @@ fn of_tables(tables: &Table) -> PyResult<Phantom> {
     Ok(Phantom(phantom.map_err(refused)?))
 }
 
-/// Sets the number or text that an edit names.
-fn edit(tables: &mut Table, name: &str, value: Value) -> PyResult<()> {
-    let (table, key) = name.split_once('_').unwrap_or((name, ""));
-    let place = match tables.get_mut(table) {
-        Some(Value::Table(place)) if !key.is_empty() => Some((place, key)),
-        Some(Value::Array(entries)) if !key.is_empty() => {
-            let numbered = key
-                .split_once('_')
-                .and_then(|(number, key)| Some((number.parse::<usize>().ok()?, key)));
-            let many = entries.len();
-            let (number, key) = match numbered {
-                None if many == 1 => (0, key),
-                Some((number, key)) if number < many => (number, key),
-                _ => {
-                    let found = format!("{name}: the phantom has {many} of these");
-                    let expected = format!("a number from 0, as in {table}_0_{key}");
-                    return Err(refused(Refusal::state(found, expected)));
-                }
-            };
-            let entry = entries[number].as_table_mut();
-            entry.map(|entry| (entry, key))
+/// The key of the phantom file that a keyword names: layer_1_thickness_mm is layer[1].thickness_mm.
+fn key(phantom: &phantom::Phantom, keyword: &str) -> PyResult<String> {
+    let Some((table, key)) = keyword.split_once('_') else {
+        return Ok(keyword.into());
+    };
+    let many = match table {
+        "layer" => phantom.layers.len(),
+        "inclusion" => phantom.inclusions.len(),
+        _ => return Ok(format!("{table}.{key}")),
+    };
+    let numbered = key.split_once('_');
+    let numbered = numbered.and_then(|(at, key)| Some((at.parse::<usize>().ok()?, key)));
+    match numbered {
+        None if many == 1 => Ok(format!("{table}[0].{key}")),
+        Some((at, key)) if at < many => Ok(format!("{table}[{at}].{key}")),
+        _ => {
+            let found = format!("{keyword}: the phantom has {many} of these");
+            let expected = format!("a number from 0, as in {table}_0_{key}");
+            Err(refused(Refusal::state(found, expected)))
         }
-        _ => None,
-    };
-    match place {
-        Some((place, key)) => place.insert(key.into(), value),
-        None => tables.insert(name.into(), value),
-    };
-    Ok(())
+    }
 }
 
 impl Phantom {
@@ -137,12 +129,12 @@ impl Phantom {
         let Some(edits) = edits else {
             return Ok(Phantom(self.0.clone()));
         };
-        let mut tables = self.tables()?;
         let edits: Table = serde_json::from_str(&json(edits)?).map_err(refused)?;
-        for (name, value) in edits {
-            edit(&mut tables, &name, value)?;
-        }
-        of_tables(&tables)
+        let keyed = edits
+            .iter()
+            .map(|(keyword, value)| Ok((key(&self.0, keyword)?, value)));
+        let keyed = keyed.collect::<PyResult<Vec<_>>>()?;
+        Ok(Phantom(self.0.set(keyed).map_err(refused)?))
     }
 
     /// The text of a phantom file, in mm and kPa.

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Bank;
 use crate::csv::{Column, Rows};
-use crate::force_map::{ForceMap, check_schema, parse, to_json};
+use crate::file::{check_schema, from_json, to_json};
+use crate::force_map::ForceMap;
 use crate::refusal::Refusal;
 
 /// What the key `schema` of a bank says.
@@ -62,7 +63,7 @@ impl Bank {
     pub fn from_json(text: &str, file: &str) -> Result<Bank, Refusal> {
         let read = || {
             check_schema(text, SCHEMA, SCHEMA_VERSION)?;
-            let document: Document = parse(text)?;
+            let document: Document = from_json(text)?;
             Bank::new(document.reference, document.maps)
         };
         read().map_err(|refusal| refusal.in_file(file))
@@ -75,7 +76,7 @@ impl Bank {
     ///
     /// Implements: BNK-010.
     pub fn read(path: &Path) -> Result<Bank, Refusal> {
-        crate::input::parse(path, Bank::from_json)
+        crate::file::read(path, Bank::from_json)
     }
 
     /// Reads a prior from `path`: CSV with the parameters of each inclusion and its weight, in any order and unit of weight.
@@ -88,7 +89,7 @@ impl Bank {
     pub fn read_prior(&self, path: &Path) -> Result<Vec<f64>, Refusal> {
         let read =
             |text: &str, file: &str| self.prior(text).map_err(|refusal| refusal.in_file(file));
-        crate::input::parse(path, read)
+        crate::file::read(path, read)
     }
 
     /// The prior of each map in `text`.

@@ -45,7 +45,6 @@ use serde::{Deserialize, Serialize};
 pub use certificate::{Certificate, Discretization, SmallestDet};
 pub use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
-pub use json::{check_schema, parse, to_json};
 pub use pair::Hypotheses;
 pub use pair::check_gel;
 pub use smoothing::Smoothed;
@@ -222,7 +221,7 @@ impl ForceMap {
     pub fn read(path: &Path) -> Result<ForceMap, Refusal> {
         let is_csv = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("csv");
         let is_csv = path.extension().is_some_and(is_csv);
-        crate::input::parse(path, |text, file| match is_csv {
+        crate::file::read(path, |text, file| match is_csv {
             true => ForceMap::from_csv(text, file, "", None),
             false => ForceMap::from_json(text, file),
         })

@@ -1,24 +1,155 @@
-//! Phantom files: TOML, in mm and kPa (`spec/phantom.md`). A file's tables become the JSON of a phantom, which serde reads;
-//! what serde refuses there is told in the keys of the file.
+//! Phantom files: TOML, in mm and kPa (`spec/phantom.md`).
 
-use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::path::Path;
 
-use serde_json::{Map, Value, json};
-use serde_path_to_error::Segment;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use serde::Deserialize;
 
-use super::Phantom;
-use super::limits::{UNITS, in_unit_of, power_to_si};
-use crate::decimal::parse_scaled;
-use crate::input::line_of;
-use crate::refusal::{Refusal, shortened};
+use super::{Inclusion, Layer, Material, Phantom, Probe, Shape, Support, Well};
+use crate::decimal::{Kpa, Mm, Plain, Scaled, kpa, mm, plain};
+use crate::file::Tree;
+use crate::refusal::Refusal;
 
-/// Keys that a file has among those of a layer or an inclusion, and JSON in an object of their own.
-const MATERIAL: &str = "youngs_modulus_kpa poisson_ratio";
-const SHAPE: &str = "diameter_mm width_mm height_mm angle_deg points_mm";
-const NESTED: [(&str, &str); 2] = [("material", MATERIAL), ("shape", SHAPE)];
+/// A phantom in the keys and units of its file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct PhantomFile {
+    name: String,
+    well: WellTable,
+    layer: Vec<LayerTable>,
+    #[serde(default)]
+    inclusion: Vec<InclusionTable>,
+    probe: ProbeTable,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct WellTable {
+    width_mm: Mm,
+    #[serde(default)]
+    walls: Support,
+    #[serde(default)]
+    floor: Support,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct LayerTable {
+    name: Option<String>,
+    thickness_mm: Mm,
+    youngs_modulus_kpa: Kpa,
+    poisson_ratio: Plain,
+}
+
+/// An inclusion, with the keys of any shape.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct InclusionKeys {
+    centre_x_mm: Option<Mm>,
+    depth_mm: Mm,
+    diameter_mm: Option<Mm>,
+    width_mm: Option<Mm>,
+    height_mm: Option<Mm>,
+    angle_deg: Option<Plain>,
+    points_mm: Option<Vec<[Mm; 2]>>,
+    youngs_modulus_kpa: Kpa,
+    poisson_ratio: Plain,
+}
+
+/// An inclusion, with the keys of one shape.
+#[derive(Deserialize)]
+#[serde(try_from = "InclusionKeys")]
+struct InclusionTable(Inclusion);
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct ProbeTable {
+    radius_mm: Mm,
+    length_mm: Mm,
+}
+
+impl From<PhantomFile> for Phantom {
+    fn from(file: PhantomFile) -> Phantom {
+        let layer = |(at, layer): (usize, LayerTable)| Layer {
+            name: layer.name.unwrap_or_else(|| format!("layer[{at}]")),
+            thickness: layer.thickness_mm.0,
+            material: material(layer.youngs_modulus_kpa, layer.poisson_ratio),
+        };
+        Phantom {
+            name: file.name,
+            well: Well {
+                width: file.well.width_mm.0,
+                walls: file.well.walls,
+                floor: file.well.floor,
+            },
+            layers: file.layer.into_iter().enumerate().map(layer).collect(),
+            inclusions: file.inclusion.into_iter().map(|table| table.0).collect(),
+            probe: Probe {
+                radius: file.probe.radius_mm.0,
+                length: file.probe.length_mm.0,
+            },
+        }
+    }
+}
+
+impl TryFrom<InclusionKeys> for InclusionTable {
+    type Error = String;
+
+    fn try_from(keys: InclusionKeys) -> Result<InclusionTable, String> {
+        Ok(InclusionTable(Inclusion {
+            centre_x: keys.centre_x_mm.map_or(0.0, |x| x.0),
+            depth: keys.depth_mm.0,
+            shape: keys.shape()?,
+            material: material(keys.youngs_modulus_kpa, keys.poisson_ratio),
+        }))
+    }
+}
+
+impl InclusionKeys {
+    /// The shape whose keys are there, without any of another.
+    fn shape(&self) -> Result<Shape, String> {
+        let (sizes, points) = ([self.width_mm, self.height_mm], &self.points_mm);
+        match (self.diameter_mm, sizes, self.angle_deg, points) {
+            (Some(Scaled(diameter)), [None, None], None, None) => Ok(Shape::Disc { diameter }),
+            (None, [Some(Scaled(width)), Some(Scaled(height))], angle, None) => {
+                let angle_deg = angle.map_or(0.0, |angle| angle.0);
+                Ok(Shape::Ellipse {
+                    width,
+                    height,
+                    angle_deg,
+                })
+            }
+            (None, [None, None], None, Some(points)) => {
+                let points = points.iter().map(|point| point.map(|length| length.0));
+                let points = points.collect();
+                Ok(Shape::Polygon { points })
+            }
+            _ => {
+                let keys = [
+                    ("diameter_mm", self.diameter_mm.is_some()),
+                    ("width_mm", self.width_mm.is_some()),
+                    ("height_mm", self.height_mm.is_some()),
+                    ("angle_deg", self.angle_deg.is_some()),
+                    ("points_mm", self.points_mm.is_some()),
+                ];
+                let there: Vec<_> = keys.iter().filter(|key| key.1).map(|key| key.0).collect();
+                let found = match &there[..] {
+                    [] => "no shape".into(),
+                    keys => keys.join(" and "),
+                };
+                let shapes = "diameter_mm, or width_mm and height_mm, or points_mm";
+                Err(format!("has {found}: give {shapes}"))
+            }
+        }
+    }
+}
+
+fn material(modulus: Kpa, poisson_ratio: Plain) -> Material {
+    Material {
+        youngs_modulus: modulus.0,
+        poisson_ratio: poisson_ratio.0,
+    }
+}
 
 impl Phantom {
     /// Reads the phantom file at `path`.
@@ -26,7 +157,7 @@ impl Phantom {
     /// # Errors
     /// As [`Phantom::from_toml`]; also if the file cannot be read as UTF-8.
     pub fn read(path: &Path) -> Result<Phantom, Refusal> {
-        crate::input::parse(path, Phantom::from_toml)
+        crate::file::read(path, Phantom::from_toml)
     }
 
     /// The phantom in `text`, the content of `file`, which is named in errors alone.
@@ -51,27 +182,10 @@ impl Phantom {
     /// The text is not TOML, has an unknown key, lacks one, has a value of another type, or makes a phantom that
     /// [`Phantom::validate`] refuses; with the file, and the line where there is one.
     ///
-    /// Implements: PHA-020, PHA-021, PHA-026, PHA-037.
+    /// Implements: PHA-020, PHA-021, PHA-026.
     pub fn from_toml(text: &str, file: &str) -> Result<Phantom, Refusal> {
-        let document = DeTable::parse(text).map_err(|error| {
-            let at = error.span().map_or(text.len(), |span| span.start);
-            let before = text.get(..at).unwrap_or(text);
-            let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-            let message = format!("column {column}: not TOML: {}", error.message());
-            let line = line_of(text, at);
-            Refusal::state(message, "").at(line).in_file(file)
-        })?;
-        let (spans, names) = Default::default();
-        let mut source = File { text, spans, names };
-        let mut json = source.object("", document.get_ref());
-        source.restructure(&mut json);
-        let phantom = serde_path_to_error::deserialize(Value::Object(json));
-        let phantom = phantom.map_err(|error| source.not_a_phantom(&error));
-        let valid = phantom.and_then(|phantom: Phantom| match phantom.validate() {
-            Ok(()) => Ok(phantom),
-            Err(refusal) => Err(source.placed(refusal)),
-        });
-        valid.map_err(|refusal| refusal.in_file(file))
+        let phantom = Tree::parse(text).and_then(from_tree);
+        phantom.map_err(|refusal| refusal.in_file(file))
     }
 
     /// This phantom as the text of a phantom file.
@@ -82,201 +196,106 @@ impl Phantom {
     /// Implements: PHA-021, PHA-027.
     pub fn to_toml(&self) -> Result<String, Refusal> {
         self.validate()?;
-        let si = toml::to_string(self).expect("tables of texts and finite numbers are TOML");
-        let mut text = String::new();
-        for line in si.lines() {
-            text += &match line.split_once(" = ") {
-                Some((key, value)) => line_in_file(&other_name(key), value),
-                // The tables of JSON that a file does not have.
-                None if line.is_empty() || line.contains('.') => continue,
-                None => format!("\n{line}\n"),
-            }
+        let quoted = |name: &str| toml::Value::from(name).to_string();
+        let Well {
+            width,
+            walls,
+            floor,
+        } = self.well;
+        let (name, width) = (quoted(&self.name), mm(width));
+        let mut text = format!(
+            "name = {name}\n\n[well]\nwidth_mm = {width}\nwalls = \"{walls}\"\nfloor = \"{floor}\"\n"
+        );
+        for layer in &self.layers {
+            let (name, thickness) = (quoted(&layer.name), mm(layer.thickness));
+            let material = material_lines(&layer.material);
+            text += &format!("\n[[layer]]\nname = {name}\nthickness_mm = {thickness}\n{material}");
         }
+        for inclusion in &self.inclusions {
+            let (x, depth) = (mm(inclusion.centre_x), mm(inclusion.depth));
+            let shape = shape_lines(&inclusion.shape);
+            let material = material_lines(&inclusion.material);
+            text += &format!(
+                "\n[[inclusion]]\ncentre_x_mm = {x}\ndepth_mm = {depth}\n{shape}{material}"
+            );
+        }
+        let (radius, length) = (mm(self.probe.radius), mm(self.probe.length));
+        text += &format!("\n[probe]\nradius_mm = {radius}\nlength_mm = {length}\n");
         Ok(text)
     }
-}
 
-/// A line with the SI numbers in `value`, or its text.
-fn line_in_file(key: &str, value: &str) -> String {
-    let item = |item: &str| {
-        let digits = item.trim_matches(['[', ']']);
-        let number = digits.parse().ok().filter(|_| power_to_si(key) != 0);
-        let replaced = |number| item.replace(digits, &in_unit_of(key, number));
-        number.map_or(item.into(), replaced)
-    };
-    let items: Vec<_> = value.split(", ").map(item).collect();
-    format!("{key} = {}\n", items.join(", "))
-}
-
-/// A key of a file in JSON, and the other way round: in a file, a key of JSON thus becomes none of JSON.
-fn other_name(key: &str) -> String {
-    let both_ways = |(file, si, _)| [(file, si), (si, file)];
-    let mut ends = UNITS.into_iter().flat_map(both_ways);
-    let other = ends.find_map(|(end, other)| Some(key.strip_suffix(end)?.to_string() + other));
-    other.unwrap_or(key.into())
-}
-
-/// A file that is being read.
-struct File<'a> {
-    text: &'a str,
-    /// Where each value stands.
-    spans: BTreeMap<String, std::ops::Range<usize>>,
-    /// What this edition's keys are called in this file, where it is otherwise.
-    names: Vec<(String, &'static str)>,
-}
-
-impl File<'_> {
-    /// The value at `path` as JSON.
-    fn value(&mut self, path: &str, value: &Spanned<DeValue>) -> Value {
-        self.spans.insert(path.into(), value.span());
-        match value.get_ref() {
-            DeValue::String(text) => text.as_ref().into(),
-            DeValue::Table(table) => self.object(path, table).into(),
-            DeValue::Array(values) => {
-                let item = |(at, item)| self.value(&format!("{path}[{at}]"), item);
-                values.iter().enumerate().map(item).collect()
-            }
-            _ => {
-                let text = self.text.get(value.span()).unwrap_or("").replace('_', "");
-                let number = parse_scaled(&text, power_to_si(path));
-                // All else becomes a boolean, which no key takes.
-                number.map_or(Value::Bool(false), Value::from)
-            }
-        }
+    /// The number at a key of the phantom's file, such as `layer[1].thickness_mm`, in the unit of the key.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        let text = self.to_toml().ok()?;
+        Tree::parse(&text).ok()?.number(key)
     }
 
-    fn object(&mut self, path: &str, table: &DeTable) -> Map<String, Value> {
-        let mut object = Map::new();
-        for (key, value) in table {
-            let path = format!("{path}.{}", key.get_ref());
-            let value = self.value(path.trim_start_matches('.'), value);
-            object.insert(other_name(key.get_ref()), value);
+    /// This phantom with other values at some keys of its file, each written as in the file: a number in the unit of the key, or a text
+    /// in quotation marks.
+    ///
+    /// ```
+    /// use palpate::phantom::Phantom;
+    ///
+    /// let phantom = Phantom::builtin("6.6")?;
+    /// let thinner = phantom.set([("layer[1].thickness_mm", 14.2), ("inclusion[0].depth_mm", 6.0)])?;
+    /// assert_eq!((thinner.layers[1].thickness, thinner.inclusions[0].depth), (0.0142, 0.006));
+    /// assert_eq!(thinner.number("layer[1].thickness_mm"), Some(14.2));
+    /// let error = phantom.set([("inclusion[0].depth_mm", 30)]).unwrap_err();
+    /// assert!(error.to_string().starts_with("inclusion[0].depth_mm = 30.0, expected "));
+    /// assert_eq!(phantom.set([("well.walls", "\"sliding\"")])?.well.walls.to_string(), "sliding");
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A key that no phantom file has, and as [`Phantom::from_toml`], without a file.
+    pub fn set<K: AsRef<str>, V: Display>(
+        &self,
+        values: impl IntoIterator<Item = (K, V)>,
+    ) -> Result<Phantom, Refusal> {
+        let text = self.to_toml()?;
+        let written = |(key, value): (K, V)| (key.as_ref().to_string(), value.to_string());
+        let values: Vec<_> = values.into_iter().map(written).collect();
+        let mut tree = Tree::parse(&text)?;
+        for (key, value) in &values {
+            tree.set(key, value)?;
         }
-        let nested = match path.split('[').next() {
-            Some("layer" | "skin") => &NESTED[..1],
-            Some("inclusion") => &NESTED,
-            _ => return object,
-        };
-        for (outer, keys) in nested {
-            // The outer key too: in a file there is none of that name.
-            let keys = keys.split(' ').chain([*outer]);
-            let entry = |key| object.remove_entry(&other_name(key));
-            let mut inner: Map<_, _> = keys.filter_map(entry).collect();
-            if *outer == "shape" {
-                let keys: Vec<_> = inner.keys().map(|key| &**key).collect();
-                let shape = match keys[..] {
-                    ["diameter_m"] => "disc",
-                    ["height_m", "width_m"] | ["angle_deg", "height_m", "width_m"] => "ellipse",
-                    ["points_m"] => "polygon",
-                    [] => "no key",
-                    // As for none, serde will say that there is no such shape.
-                    _ => &keys.join("`, `"),
-                };
-                inner = Map::from_iter([(shape.into(), inner.clone().into())]);
-            }
-            object.insert(outer.to_string(), inner.into());
-        }
-        if nested.len() == 1 {
-            object.entry("name").or_insert(path.into());
-        }
-        object
-    }
-
-    /// Gives what a person or the first edition may write otherwise the form that JSON has.
-    fn restructure(&mut self, file: &mut Map<String, Value>) {
-        if let Some(table) = file.get_mut("inclusion").filter(|value| value.is_object()) {
-            *table = json!([table.take()]);
-            self.names.push(("inclusion[0]".into(), "inclusion"));
-        }
-        let mut well = file.remove("well").unwrap_or_else(|| json!({}));
-        // Beside keys of this edition, `gel` stays, as an unknown key.
-        if well.is_object()
-            && well["width_m"].is_null()
-            && !file.contains_key("layer")
-            && let Some(gel) = file.get_mut("gel").and_then(Value::as_object_mut)
-        {
-            // What is null here is missing.
-            well["width_m"] = json!(gel.remove("width_m"));
-            let gel =
-                json!({"name": "gel", "thickness_m": gel.remove("height_m"), "material": gel});
-            file.remove("gel");
-            let skin = file.remove("skin");
-            let layer = format!("layer[{}]", usize::from(skin.is_some()));
-            self.names.extend([
-                ("well.width_mm".into(), "gel.width_mm"),
-                (format!("{layer}.thickness_mm"), "gel.height_mm"),
-                (layer, "gel"),
-                ("layer[0]".into(), "skin"),
-            ]);
-            file.insert("layer".into(), skin.into_iter().chain([gel]).collect());
-        }
-        file.insert("well".into(), well);
-    }
-
-    /// The refusal of what serde refused in JSON.
-    fn not_a_phantom(&self, error: &serde_path_to_error::Error<serde_json::Error>) -> Refusal {
-        let mut key = String::new();
-        for segment in error.path() {
-            match segment {
-                Segment::Seq { index } => key += &format!("[{index}]"),
-                Segment::Map { key: name } => key += &format!(".{}", other_name(name)),
-                Segment::Enum { .. } | Segment::Unknown => {}
-            }
-        }
-        let message = error.inner().to_string();
-        let words: Vec<_> = message.split('`').map(other_name).collect();
-        let message = words.join("`");
-        let (found, expected) = message.split_once(", expected ").unwrap_or((&message, ""));
-        let mut expected = expected.replace("f64", "a finite decimal number");
-        for (outer, keys) in NESTED {
-            let keys = format!("`{}`", keys.replace(' ', "`, `"));
-            expected = expected.replace(&format!("`{outer}`"), &keys);
-        }
-        let is_missing = words[0] == "missing field ";
-        if is_missing {
-            key = key + "." + &words[1];
-        }
-        let key = self.in_file(&key);
-        let key = key.replace(".material.", ".").replace(".shape.", ".");
-        let key = key.trim_start_matches('.');
-        let span = self.spans.get(key).cloned();
-        let written = span.and_then(|span| self.text.get(span));
-        // Without a value it is a shape of unknown keys.
-        let written = written.unwrap_or(found.trim_start_matches("unknown variant "));
-        let refusal = Refusal::value(key, shortened(written), expected);
-        let line = self.line_of(key);
-        let refusal = if is_missing || found == "invalid type: null" {
-            Refusal::state(format!("{key} is missing"), "")
-        } else if words[0] == "unknown field " {
-            Refusal::state(format!("{key} is unknown"), refusal.expected)
-        } else {
-            refusal
-        };
-        Refusal { line, ..refusal }
-    }
-
-    /// A refusal of a phantom, in the keys and with the line of this file.
-    fn placed(&self, refusal: Refusal) -> Refusal {
-        let key = self.in_file(&refusal.key);
-        Refusal {
-            line: self.line_of(&key),
-            found: self.in_file(&refusal.found),
-            expected: self.in_file(&refusal.expected),
-            key,
+        // No line: nobody has the text.
+        from_tree(tree).map_err(|refusal| Refusal {
+            line: None,
             ..refusal
+        })
+    }
+}
+
+fn from_tree(mut tree: Tree) -> Result<Phantom, Refusal> {
+    tree.make_list("inclusion");
+    let phantom = Phantom::from(tree.read::<PhantomFile>()?);
+    match phantom.validate() {
+        Ok(()) => Ok(phantom),
+        Err(refusal) => Err(tree.placed(refusal)),
+    }
+}
+
+fn material_lines(material: &Material) -> String {
+    let (modulus, ratio) = (kpa(material.youngs_modulus), plain(material.poisson_ratio));
+    format!("youngs_modulus_kpa = {modulus}\npoisson_ratio = {ratio}\n")
+}
+
+fn shape_lines(shape: &Shape) -> String {
+    match shape {
+        Shape::Disc { diameter } => format!("diameter_mm = {}\n", mm(*diameter)),
+        Shape::Ellipse {
+            width,
+            height,
+            angle_deg,
+        } => {
+            let (width, height, angle) = (mm(*width), mm(*height), plain(*angle_deg));
+            format!("width_mm = {width}\nheight_mm = {height}\nangle_deg = {angle}\n")
         }
-    }
-
-    /// The line of the value at `key`, or of the innermost one around it that is there.
-    fn line_of(&self, key: &str) -> Option<usize> {
-        let mut outer = std::iter::successors(Some(key), |key| key.get(..key.rfind(['.', '['])?));
-        let span = outer.find_map(|key| self.spans.get(key))?;
-        Some(line_of(self.text, span.start))
-    }
-
-    /// A text that names keys of this edition, in those of this file.
-    fn in_file(&self, text: &str) -> String {
-        let names = self.names.iter();
-        names.fold(text.into(), |text, (key, name)| text.replace(key, name))
+        Shape::Polygon { points } => {
+            let point = |[x, y]: &[f64; 2]| format!("[{}, {}]", mm(*x), mm(*y));
+            let points: Vec<_> = points.iter().map(point).collect();
+            format!("points_mm = [{}]\n", points.join(", "))
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::ops::{RangeBounds, RangeInclusive};
 
 use super::shape::{Point, contains, cross, dot, edges, extent, minus, point_to_segment};
 use super::{Inclusion, Material, Outline, Phantom, Shape, Support};
-use crate::decimal::format_scaled;
+use crate::decimal::{Scaled, kpa, mm, plain};
 use crate::refusal::Refusal;
 
 /// The least distance, m, between the outline of an inclusion and its layer's top and bottom, the walls, other outlines, and
@@ -41,19 +41,20 @@ impl Phantom {
     /// Implements: PHA-004, PHA-006, PHA-009, PHA-015, PHA-030, CON-007.
     pub fn validate(&self) -> Check {
         check_name("name", &self.name)?;
-        within("well.width_mm", self.well.width, LENGTHS, "")?;
+        within("well.width_mm", mm(self.well.width), LENGTHS, "")?;
         self.check_supports()?;
         check_count("layer", self.layers.len(), 1..=100)?;
         for (at, layer) in self.layers.iter().enumerate() {
             let key = format!("layer[{at}]");
             check_name(&format!("{key}.name"), &layer.name)?;
-            within(&format!("{key}.thickness_mm"), layer.thickness, LENGTHS, "")?;
+            let thickness = mm(layer.thickness);
+            within(&format!("{key}.thickness_mm"), thickness, LENGTHS, "")?;
             check_material(&key, &layer.material)?;
         }
-        within("probe.length_mm", self.probe.length, LENGTHS, "")?;
+        within("probe.length_mm", mm(self.probe.length), LENGTHS, "")?;
         let radii = *LENGTHS.start()..to_picometre(self.well.width / 2.0);
         let why = " (the probe must be narrower than the well)";
-        within("probe.radius_mm", self.probe.radius, radii, why)?;
+        within("probe.radius_mm", mm(self.probe.radius), radii, why)?;
         check_count("inclusion", self.inclusions.len(), 0..=100)?;
         for (at, inclusion) in self.inclusions.iter().enumerate() {
             let key = format!("inclusion[{at}]");
@@ -71,10 +72,9 @@ impl Phantom {
             (Support::Free, Support::Sliding) => ("\"fixed\"", "from sliding sideways"),
             _ => return Ok(()),
         };
-        let [walls, floor] =
-            [walls, floor].map(|support| format!("\"{support:?}\"").to_lowercase());
-        let expected = format!("{enough} where walls = {walls}: nothing holds the layers {how}");
-        refuse("well.floor", floor, expected)
+        let expected =
+            format!("{enough} where walls = \"{walls}\": nothing holds the layers {how}");
+        refuse("well.floor", format!("\"{floor}\""), expected)
     }
 
     /// Within one layer and the walls.
@@ -85,14 +85,29 @@ impl Phantom {
         let layer = under.unwrap_or(self.layers.len() - 1);
         let lowest = bottom - top - CLEARANCE - levels[layer + 1];
         let depths = to_picometre(CLEARANCE - levels[layer])..=to_picometre(lowest);
-        let inclusion_high = format!("the inclusion, {} high", in_mm(top - bottom));
-        let why = format!(" (0.1 mm of layer[{layer}] must lie above and below {inclusion_high})");
-        within(&format!("{key}.depth_mm"), inclusion.depth, depths, &why)?;
+        let [high, wide] = [top - bottom, right - left].map(in_mm);
+        if depths.is_empty() {
+            let most = in_mm(self.layers[layer].thickness - 2.0 * CLEARANCE);
+            let expected = format!("at most {most}: 0.1 mm of layer[{layer}] above and below");
+            return refuse(key, format!("{high} high"), expected);
+        }
+        let why = format!(
+            " (0.1 mm of layer[{layer}] must lie above and below the inclusion, {high} high)"
+        );
+        within(
+            &format!("{key}.depth_mm"),
+            mm(inclusion.depth),
+            depths,
+            &why,
+        )?;
         let (x, most) = (inclusion.centre_x, self.well.width / 2.0 - CLEARANCE);
         let places = to_picometre(x - left - most)..=to_picometre(most - (right - x));
-        let wide = in_mm(right - left);
+        if places.is_empty() {
+            let expected = format!("at most {}: 0.1 mm beside each wall", in_mm(2.0 * most));
+            return refuse(key, format!("{wide} wide"), expected);
+        }
         let why = format!(" (0.1 mm must lie between the inclusion, {wide} wide, and each wall)");
-        within(&format!("{key}.centre_x_mm"), x, places, &why)
+        within(&format!("{key}.centre_x_mm"), mm(x), places, &why)
     }
 }
 
@@ -106,46 +121,34 @@ fn to_picometre(length: f64) -> f64 {
 
 /// A computed length (m) for a message.
 pub(super) fn in_mm(length: f64) -> String {
-    format!("{} mm", in_unit_of("_mm", to_picometre(length)))
-}
-
-/// Units in the ends of keys of files, those of SI in JSON, and the power of ten between them.
-///
-/// Implements: CON-002.
-pub(super) const UNITS: [(&str, &str, i32); 2] = [("_mm", "_m", -3), ("_kpa", "_pa", 3)];
-
-/// The power of ten from the unit in `key`, which may be that of an array's item, to SI.
-pub(super) fn power_to_si(key: &str) -> i32 {
-    let key = key.trim_end_matches(|c: char| c.is_ascii_digit() || "[]".contains(c));
-    let unit = UNITS.iter().find(|(end, ..)| key.ends_with(end));
-    unit.map_or(0, |&(_, _, power)| power)
-}
-
-/// An SI value in the unit in `key`.
-pub(super) fn in_unit_of(key: &str, value: f64) -> String {
-    format_scaled(value, -power_to_si(key))
+    format!("{} mm", mm(to_picometre(length)))
 }
 
 fn refuse(key: &str, found: String, expected: impl Into<String>) -> Check {
     Err(Refusal::value(key, found, expected))
 }
 
-/// Refuses a number of `key`, SI, that is not finite or not in `range`, which is there because of `why`.
-pub(super) fn within(key: &str, value: f64, range: impl RangeBounds<f64>, why: &str) -> Check {
-    if value.is_finite() && range.contains(&value) {
+/// Refuses a number of `key` that is not finite or not in `range`, SI, which is there because of `why`.
+pub(super) fn within<const POWER: i32>(
+    key: &str,
+    value: Scaled<POWER>,
+    range: impl RangeBounds<f64>,
+    why: &str,
+) -> Check {
+    if value.0.is_finite() && range.contains(&value.0) {
         return Ok(());
     }
-    let end = |bound, closed: &str, open: &str| match bound {
-        Included(&end) => format!("{closed} {}", in_unit_of(key, to_picometre(end))),
-        Excluded(&end) => format!("{open} {}", in_unit_of(key, to_picometre(end))),
-        Unbounded => String::new(),
+    let end = |bound, closed: &str, open: &str| {
+        let of = |end| Scaled::<POWER>(to_picometre(end));
+        match bound {
+            Included(&end) => format!("{closed} {}", of(end)),
+            Excluded(&end) => format!("{open} {}", of(end)),
+            Unbounded => String::new(),
+        }
     };
-    let (low, high) = (range.start_bound(), range.end_bound());
-    let expected = match (low, high) {
-        (Included(low), Included(high) | Excluded(high)) if low > high => "no number".into(),
-        _ => end(low, "at least", "above") + &end(high, " and at most", " and below"),
-    };
-    refuse(key, in_unit_of(key, value), expected + why)
+    let low = end(range.start_bound(), "at least", "above");
+    let high = end(range.end_bound(), " and at most", " and below");
+    refuse(key, value.to_string(), low + &high + why)
 }
 
 fn check_count(key: &str, count: usize, allowed: RangeInclusive<usize>) -> Check {
@@ -165,31 +168,32 @@ fn check_name(key: &str, name: &str) -> Check {
 }
 
 fn check_material(table: &str, material: &Material) -> Check {
-    let (modulus, ratio) = (material.youngs_modulus, material.poisson_ratio);
+    let modulus = kpa(material.youngs_modulus);
     let moduli = (Excluded(0.0), Unbounded);
     within(&format!("{table}.youngs_modulus_kpa"), modulus, moduli, "")?;
     let ratios = (Excluded(-1.0), Included(LARGEST_POISSON_RATIO));
+    let ratio = plain(material.poisson_ratio);
     within(&format!("{table}.poisson_ratio"), ratio, ratios, "")
 }
 
 /// All that needs no other part of the phantom.
 fn check_shape(table: &str, inclusion: &Inclusion) -> Check {
     let key = |end: &str| format!("{table}.{end}");
-    within(&key("centre_x_mm"), inclusion.centre_x, -1.0..=1.0, "")?;
-    within(&key("depth_mm"), inclusion.depth, LENGTHS, "")?;
+    within(&key("centre_x_mm"), mm(inclusion.centre_x), -1.0..=1.0, "")?;
+    within(&key("depth_mm"), mm(inclusion.depth), LENGTHS, "")?;
     match &inclusion.shape {
-        Shape::Disc { diameter } => within(&key("diameter_mm"), *diameter, LENGTHS, "")?,
+        Shape::Disc { diameter } => within(&key("diameter_mm"), mm(*diameter), LENGTHS, "")?,
         Shape::Ellipse {
             width,
             height,
             angle_deg,
         } => {
-            within(&key("width_mm"), *width, CLEARANCE..=1.0, "")?;
+            within(&key("width_mm"), mm(*width), CLEARANCE..=1.0, "")?;
             let shortest = to_picometre(width / LARGEST_ASPECT_RATIO).max(CLEARANCE);
             let longest = to_picometre(width * LARGEST_ASPECT_RATIO).min(1.0);
             let why = " (an ellipse is at most 20 times as long as wide)";
-            within(&key("height_mm"), *height, shortest..=longest, why)?;
-            within(&key("angle_deg"), *angle_deg, -360.0..=360.0, "")?;
+            within(&key("height_mm"), mm(*height), shortest..=longest, why)?;
+            within(&key("angle_deg"), plain(*angle_deg), -360.0..=360.0, "")?;
         }
         Shape::Polygon { points } => check_polygon(&key("points_mm"), points)?,
     }
@@ -200,7 +204,7 @@ fn check_polygon(key: &str, points: &[Point]) -> Check {
     check_count(key, points.len(), 3..=1000)?;
     for (at, &coordinate) in points.as_flattened().iter().enumerate() {
         let key = format!("{key}[{}][{}]", at / 2, at % 2);
-        within(&key, coordinate, -1.0..=1.0, "")?;
+        within(&key, mm(coordinate), -1.0..=1.0, "")?;
     }
     let edges = edges(points);
     let count = edges.len();

@@ -30,6 +30,8 @@ mod shape;
 #[cfg(test)]
 pub(crate) mod tests;
 
+use std::fmt;
+
 use crate::decimal::parse_scaled;
 use serde::{Deserialize, Serialize};
 
@@ -63,6 +65,13 @@ pub enum Support {
     Sliding,
     /// Not there: no force.
     Free,
+}
+
+/// The word of a file.
+impl fmt::Display for Support {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
+    }
 }
 
 /// The well that holds the layers.

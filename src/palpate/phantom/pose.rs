@@ -4,6 +4,7 @@ use std::ops::Bound::Excluded;
 
 use super::limits::{in_mm, within};
 use super::{Phantom, Probe};
+use crate::decimal::mm;
 use crate::refusal::Refusal;
 
 impl Probe {
@@ -27,12 +28,12 @@ impl Phantom {
     /// Implements: PHA-011, PHA-009.
     pub fn check_pose(&self, depth: f64, lateral: f64) -> Result<(), Refusal> {
         let why = " (the height of the layers)";
-        within("depth_mm", depth, 0.0..self.height(), why)?;
+        within("depth_mm", mm(depth), 0.0..self.height(), why)?;
         let half_width = self.probe.half_width_at(depth);
         let limit = self.well.width / 2.0 - half_width;
         let (wide, low) = (in_mm(half_width), in_mm(depth));
         let why = format!(" (the probe, {wide} to each side when {low} deep, clears the walls)");
         let range = (Excluded(-limit), Excluded(limit));
-        within("lateral_mm", lateral, range, &why)
+        within("lateral_mm", mm(lateral), range, &why)
     }
 }

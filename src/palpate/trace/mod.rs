@@ -156,7 +156,7 @@ impl Trace {
     /// # Errors
     /// As [`Trace::from_csv`]; a file that cannot be read as UTF-8.
     pub fn read(path: &Path) -> Result<Trace, Refusal> {
-        crate::input::parse(path, Trace::from_csv)
+        crate::file::read(path, Trace::from_csv)
     }
 
     /// The trace in `text`, the content of `file`.

@@ -92,7 +92,7 @@ impl AnswerTable {
     /// # Errors
     /// As [`AnswerTable::from_csv`], and if the file cannot be read as UTF-8.
     pub fn read(path: &Path) -> Result<AnswerTable, Refusal> {
-        palpate::input::parse(path, AnswerTable::from_csv)
+        palpate::file::read(path, AnswerTable::from_csv)
     }
 
     /// The table in `text`, the content of `file`.

@@ -5,7 +5,6 @@
 //! |---|---|
 //! | `mod.rs` | what is varied |
 //! | `distribution.rs` | what is known of an input |
-//! | `edit.rs` | numbers of a phantom, changed by their key |
 //! | `design.rs` | the samples |
 //! | `sample.rs` | what is computed of each |
 //! | `indices.rs` | Sobol' indices |
@@ -15,13 +14,13 @@
 mod bands;
 mod design;
 mod distribution;
-mod edit;
 mod indices;
 mod results;
 mod sample;
 #[cfg(test)]
 pub mod tests;
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
@@ -142,6 +141,23 @@ impl StudyPlan {
         )?)
     }
 
+    /// A phantom with the values of the inputs, of those whose keys it has.
+    ///
+    /// # Errors
+    /// As [`Phantom::set`].
+    ///
+    /// Implements: STU-001.
+    fn changed(&self, phantom: &Phantom, values: &[f64]) -> Result<Phantom, Refusal> {
+        let mut numbers: BTreeMap<&str, f64> = BTreeMap::new();
+        for (Input { key, change, .. }, &value) in self.inputs.iter().zip(values) {
+            let own = numbers.get(&**key).copied();
+            if let Some(own) = own.or_else(|| phantom.number(key)) {
+                numbers.insert(key, change.of(own, value));
+            }
+        }
+        phantom.set(numbers)
+    }
+
     /// The samples of this plan.
     ///
     /// # Errors
@@ -178,10 +194,9 @@ impl StudyPlan {
         if [PROBE_DEPTH, NOISE_SD].contains(&&*input.key) {
             return Ok(());
         }
-        for phantom in self.all_phantoms() {
-            if edit::number(&mut edit::table(phantom)?, &input.key).is_some() {
-                return Ok(());
-            }
+        let has_key = |phantom: &Phantom| phantom.number(&input.key).is_some();
+        if self.all_phantoms().any(has_key) {
+            return Ok(());
         }
         let expected = format!(
             "the key of a number of one of the phantoms, such as layer[0].thickness_mm, {PROBE_DEPTH} or {NOISE_SD}"

@@ -11,7 +11,7 @@ use super::{Band, Change, Index, Kind, Quantity, Sampler, StudyPlan, band};
 use crate::psychophysics::CONFIDENCE;
 use crate::psychophysics::bridge::LEVEL;
 use palpate::fem::certify;
-use palpate::force_map::{check_schema, parse};
+use palpate::file::{check_schema, from_json};
 use palpate::refusal::Refusal;
 use palpate::stats::binomial;
 
@@ -114,10 +114,10 @@ impl StudyResults {
     ///
     /// Implements: STU-050.
     pub fn read(path: &Path) -> Result<StudyResults, Refusal> {
-        palpate::input::parse(path, |text, file| {
-            check_schema(text, Self::SCHEMA, Self::SCHEMA_VERSION)
-                .and_then(|()| parse(text))
-                .map_err(|refusal| refusal.in_file(file))
+        palpate::file::read(path, |text, file| {
+            let read = check_schema(text, Self::SCHEMA, Self::SCHEMA_VERSION);
+            let read = read.and_then(|()| from_json(text));
+            read.map_err(|refusal| refusal.in_file(file))
         })
     }
 

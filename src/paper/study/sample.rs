@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::design::{Design, Role};
-use super::{NOISE_SD, PROBE_DEPTH, StudyPlan, edit};
+use super::{NOISE_SD, PROBE_DEPTH, StudyPlan};
 use crate::psychophysics::bridge::{Convention, p_values};
 use crate::psychophysics::{AnswerTable, FEM_PLAYBACK};
 use palpate::bank::deepest;
@@ -71,8 +71,6 @@ pub struct Sampler<'a> {
     plan: &'a StudyPlan,
     design: Design,
     quantities: Vec<Quantity>,
-    /// The phantoms as tables of a phantom file, the reference first.
-    tables: Vec<toml::Table>,
     answers: AnswerTable,
     /// The γ that both error rates need.
     needed: f64,
@@ -99,17 +97,12 @@ impl<'a> Sampler<'a> {
     /// As [`StudyPlan::design`].
     pub fn new(plan: &'a StudyPlan) -> Result<Sampler<'a>, Refusal> {
         let answers = AnswerTable::paper()?;
-        let tables = plan
-            .all_phantoms()
-            .map(edit::table)
-            .collect::<Result<_, _>>()?;
         let design = plan.design()?;
         let quantities = quantities(plan, &answers);
         Ok(Sampler {
             plan,
             design,
             quantities,
-            tables,
             answers,
             needed: plan.required_gamma()?,
         })
@@ -176,13 +169,14 @@ impl<'a> Sampler<'a> {
         let depth = 1e-3 * of_study(PROBE_DEPTH, 1e3 * self.plan.probe_depth);
         let noise_sd = of_study(NOISE_SD, self.plan.settings.noise_sd_n);
         let (mut maps, mut depths) = (Vec::new(), Vec::new());
-        for (table, own) in self.tables.iter().zip(self.plan.all_phantoms()) {
-            let phantom = edit::phantom(table, &self.plan.inputs, &values);
-            let solved = phantom.map_err(FemError::from).and_then(|phantom| {
+        for own in self.plan.all_phantoms() {
+            let solve = || {
+                let phantom = self.plan.changed(own, &values)?;
                 let model = Model::new(&phantom, mesh * self.plan.mesh_size, self.plan.contact)?;
                 let map = model.sweep(depth, &self.plan.laterals)?;
                 Ok((map, phantom.inclusion_depth()))
-            });
+            };
+            let solved: Result<_, FemError> = solve();
             let of_phantom =
                 |error| Refusal::state(error, "").of_part(&format!("phantom {}", own.name));
             let (map, inclusion) = solved.map_err(of_phantom)?;

@@ -365,7 +365,7 @@ fn inputs_that_make_no_study_are_refused_with_their_key() {
 // Verifies: STU-001.
 #[test]
 fn a_value_replaces_is_added_or_multiplies() {
-    let table = edit::table(&Phantom::builtin("6.6").unwrap()).unwrap();
+    let own = Phantom::builtin("6.6").unwrap();
     for (change, value, depth) in [
         (Change::Value, 4.5, 4.5e-3),
         (Change::Offset, 0.25, 6.85e-3),
@@ -373,8 +373,13 @@ fn a_value_replaces_is_added_or_multiplies() {
     ] {
         let mut input = near("depth", "inclusion[0].depth_mm", 6.6);
         input.change = change;
-        let phantom = edit::phantom(&table, &[input], &[value]).unwrap();
+        let phantom = plan(vec![input]).changed(&own, &[value]).unwrap();
         // One rounding in mm.
         assert_near(phantom.inclusions[0].depth, depth, 1e-17);
     }
+    // Of two inputs with one key, the second changes what the first made of it.
+    let mut inputs = ["a", "b"].map(|name| near(name, "layer[1].thickness_mm", 15.0));
+    [inputs[0].change, inputs[1].change] = [Change::Offset, Change::Factor];
+    let phantom = plan(inputs.into()).changed(&own, &[1.0, 2.0]).unwrap();
+    assert_eq!(phantom.layers[1].thickness, 0.032);
 }

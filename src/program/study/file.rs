@@ -7,7 +7,7 @@ use serde::Deserialize;
 use crate::CliError;
 use crate::config::Config;
 use palpate::csv::Rows;
-use palpate::input::{from_toml, parse};
+use palpate::file::{from_toml, read};
 use palpate::refusal::Refusal;
 use palpate_paper::study::{Correlation, Distribution, Input, StudyPlan};
 
@@ -41,7 +41,7 @@ fn first_seed() -> u32 {
 /// Implements: STU-001, STU-011, STU-010.
 pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
     let name = path.display().to_string();
-    let file = parse(path, |text, name| {
+    let file = read(path, |text, name| {
         let file: StudyFile = from_toml(text, name)?;
         let run = file.run.from_source(text, name);
         Ok(StudyFile { run, ..file })
@@ -94,7 +94,7 @@ fn read_values(distribution: &mut Distribution, run: &Config) -> Result<(), Opti
         if !values.is_empty() {
             return Err(None);
         }
-        let read = parse(&run.file(&table), column);
+        let read = read(&run.file(&table), column);
         *values = read.map_err(|refusal| Some(refusal.into()))?;
     }
     Ok(())

@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::CliError;
 use crate::output::Envelope;
 use palpate::fem::arithmetic;
-use palpate::force_map::parse;
+use palpate::file::from_json;
 use palpate::journal::take_lines;
 use palpate::refusal::Refusal;
 use palpate_paper::study::{Failure, StudyPlan};
@@ -98,7 +98,7 @@ impl Record {
     /// # Errors
     /// Anything else.
     pub fn parse(text: &str, samples: usize, quantities: usize) -> Result<Record, Refusal> {
-        let record: Record = parse(text)?;
+        let record: Record = from_json(text)?;
         let fits = match &record.outcome {
             Outcome::Values(values) => values.len() == quantities,
             Outcome::Failed(_) => true,

@@ -1,0 +1,155 @@
+//! JSON: documents with a schema, and their layout.
+
+use std::io;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::refusal;
+use crate::refusal::{Refusal, shortened};
+
+/// The two keys that say whether the rest can be read.
+#[derive(Deserialize)]
+struct Header {
+    #[serde(default)]
+    schema: Value,
+    #[serde(default)]
+    schema_version: Value,
+}
+
+/// A document as JSON, each row of a matrix on one line.
+pub fn to_json(document: &impl Serialize) -> String {
+    let mut text = Vec::new();
+    let mut serializer = serde_json::Serializer::with_formatter(&mut text, RowPerLine::default());
+    let written = document.serialize(&mut serializer);
+    written.expect("strings and finite numbers go into memory without an error");
+    text.push(b'\n');
+    String::from_utf8(text).expect("serde_json writes UTF-8")
+}
+
+/// Whether a document has the schema and the version that this program reads. They come first: a newer file may have keys that
+/// this program does not know.
+pub fn check_schema(text: &str, schema: &str, version: u64) -> Result<(), Refusal> {
+    let header: Header = from_json(text)?;
+    let refused = |key, found: Value, expected| {
+        let found = shortened(&found.to_string());
+        Err(Refusal::value(key, found, expected))
+    };
+    if header.schema != schema {
+        return refused("schema", header.schema, format!("{schema:?}"));
+    }
+    if header.schema_version != version {
+        let expected = format!("{version}, which is what this program reads");
+        return refused("schema_version", header.schema_version, expected);
+    }
+    Ok(())
+}
+
+/// What serde reads from `text`, JSON.
+///
+/// # Errors
+/// What is wrong, with line, column and key, and the text around that place.
+pub fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, Refusal> {
+    let mut json = serde_json::Deserializer::from_str(text);
+    let read = serde_path_to_error::deserialize(&mut json);
+    let read = read.map_err(|error| {
+        let refusal = refusal(error.path(), &message(error.inner()));
+        placed(refusal, error.inner(), text)
+    })?;
+    let end = json.end();
+    end.map_err(|error| placed(Refusal::state(message(&error), ""), &error, text))?;
+    Ok(read)
+}
+
+/// What serde_json says, without the place.
+fn message(error: &serde_json::Error) -> String {
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    let message = error.to_string();
+    message.strip_suffix(&place).unwrap_or(&message).into()
+}
+
+/// The same refusal with the place of serde_json's error in `text`.
+fn placed(refusal: Refusal, error: &serde_json::Error, text: &str) -> Refusal {
+    let (line, column) = (error.line(), error.column());
+    let written = text.lines().nth(line.saturating_sub(1)).unwrap_or("");
+    // Some 30 bytes to each side: a file without line breaks is one long line.
+    let near = written.char_indices();
+    let near = near.filter(|(at, _)| at.abs_diff(column) < 30);
+    let near: String = near.map(|(_, c)| c).collect();
+    let mut refusal = refusal.of_part(&format!("column {column}"));
+    let end = match refusal.expected.is_empty() {
+        true => &mut refusal.found,
+        false => &mut refusal.expected,
+    };
+    *end += &format!(", in {:?}", near.trim());
+    refusal.line = (line > 0).then_some(line);
+    refusal
+}
+
+/// Lays JSON out with one key a line, and one matrix row a line.
+///
+/// Implements: MAP-020.
+#[derive(Default)]
+struct RowPerLine {
+    /// Open objects and outer arrays, two spaces each.
+    indent: usize,
+    /// Open arrays.
+    arrays: usize,
+    /// Whether a row was closed, and its matrix not yet.
+    after_row: bool,
+}
+
+impl RowPerLine {
+    fn new_line<W: ?Sized + io::Write>(&self, writer: &mut W) -> io::Result<()> {
+        write!(writer, "\n{:1$}", "", 2 * self.indent)
+    }
+}
+
+impl serde_json::ser::Formatter for RowPerLine {
+    fn begin_object<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.indent += 1;
+        writer.write_all(b"{")
+    }
+
+    fn end_object<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.indent -= 1;
+        self.new_line(writer)?;
+        writer.write_all(b"}")
+    }
+
+    fn begin_object_key<W: ?Sized + io::Write>(
+        &mut self,
+        writer: &mut W,
+        first: bool,
+    ) -> io::Result<()> {
+        if !first {
+            writer.write_all(b",")?;
+        }
+        self.new_line(writer)
+    }
+
+    fn begin_object_value<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        writer.write_all(b": ")
+    }
+
+    fn begin_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        if self.arrays > 0 {
+            self.new_line(writer)?;
+        }
+        self.after_row = false;
+        self.arrays += 1;
+        self.indent += 1;
+        writer.write_all(b"[")
+    }
+
+    fn end_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.arrays -= 1;
+        self.indent -= 1;
+        if self.after_row {
+            self.new_line(writer)?;
+        }
+        self.after_row = self.arrays > 0;
+        writer.write_all(b"]")
+    }
+}

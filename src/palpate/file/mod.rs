@@ -1,0 +1,96 @@
+//! Files that a user names: their text, what serde reads from it, and why it is refused.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod.rs` | texts and places; a refusal of serde's in the words of [`Refusal`] |
+//! | `toml.rs` | TOML |
+//! | `json.rs` | JSON, one row of a matrix a line |
+
+mod json;
+mod toml;
+
+use std::fs::File;
+use std::io::{self, Error, ErrorKind, Read};
+use std::path::Path;
+
+use serde_path_to_error::Path as KeyPath;
+
+pub use json::{check_schema, from_json, to_json};
+pub(crate) use toml::Tree;
+pub use toml::from_toml;
+
+use crate::refusal::Refusal;
+
+/// The longest text that is read, bytes: more than an hour of playback, recorded.
+const LONGEST: u64 = 256 << 20;
+
+/// The text of a file in UTF-8, which may be a pipe or a device, but not an endless one.
+///
+/// Implements: CLI-008.
+pub fn text(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    let mut file = File::open(path)?.take(LONGEST + 1);
+    let length = file.read_to_string(&mut text)?;
+    if length as u64 > LONGEST {
+        let message = format!("it is longer than {} MiB", LONGEST >> 20);
+        return Err(Error::new(ErrorKind::InvalidData, message));
+    }
+    Ok(text)
+}
+
+/// What `parse` makes of the text of a file and its name.
+///
+/// # Errors
+/// A file that is no text; whatever `parse` refuses.
+pub fn read<T>(
+    path: &Path,
+    parse: impl FnOnce(&str, &str) -> Result<T, Refusal>,
+) -> Result<T, Refusal> {
+    let file = path.display().to_string();
+    match text(path) {
+        Ok(text) => parse(&text, &file),
+        Err(error) => Err(Refusal::state(format!("cannot be read: {error}"), "").in_file(file)),
+    }
+}
+
+/// The line of byte `at` of `text`, from 1.
+pub fn line_of(text: &str, at: usize) -> usize {
+    1 + text.bytes().take(at).filter(|&byte| byte == b'\n').count()
+}
+
+/// What serde refused at `path` with this message, without its place in the file.
+fn refusal(path: &KeyPath, message: &str) -> Refusal {
+    let key = match path.to_string() {
+        path if path == "." => String::new(),
+        path => path,
+    };
+    let (found, expected) = message.split_once(", expected ").unwrap_or((message, ""));
+    let expected = match expected {
+        "f64" => "a number",
+        "u32" | "u64" | "usize" => "a whole number, at least 0",
+        "a sequence" => "a list",
+        "a string" => "a text",
+        other => other,
+    };
+    let inner = |name: &str| match (&*key, name.trim_end_matches('`')) {
+        ("", name) => name.into(),
+        (key, name) => format!("{key}.{name}"),
+    };
+    match found.split_once('`') {
+        Some(("missing field ", name)) => Refusal::state(inner(name) + " is missing", ""),
+        Some(("duplicate field ", name)) => Refusal::state(inner(name) + " is there twice", ""),
+        Some(("unknown field ", _)) => Refusal::state(format!("{key} is unknown"), expected),
+        Some(("unknown variant ", word)) => Refusal::value(key, format!("`{word}"), expected),
+        _ if key.is_empty() => Refusal::state(found, expected),
+        _ if found.starts_with("has ") => Refusal::state(format!("{key} {found}"), expected),
+        _ => match found.split_once(": ") {
+            Some(("invalid type" | "invalid value", value)) => {
+                // A number stands in backquotes, behind its kind.
+                let value = value.strip_prefix("string ").unwrap_or(value);
+                let number = value.split('`').nth(1);
+                Refusal::value(key, number.unwrap_or(value), expected)
+            }
+            _ => Refusal::state(format!("{key}: {found}"), expected),
+        },
+    }
+}
