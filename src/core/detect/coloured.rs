@@ -8,6 +8,7 @@ use crate::stats::error::{check_length, check_samples, representable};
 /// What a record in coloured noise says.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ColouredStatistic {
     /// θ, the log-likelihood ratio.
     pub theta: f64,

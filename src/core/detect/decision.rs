@@ -33,6 +33,7 @@ pub struct Costs {
 /// The two probabilities of error at a threshold.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ErrorRates {
     /// Pr(Ĥ = 1 | H = 0).
     pub false_alarm: f64,

@@ -7,6 +7,7 @@ use crate::stats::error::{check_not_negative, check_positive, check_samples, rep
 /// A noise budget. All standard deviations in N.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct NoiseBudget {
     /// The signal-to-noise ratio that the error rates need.
     pub gamma: f64,

@@ -24,6 +24,7 @@ const ALL_BITS: u32 = 1140;
 /// Both tails of a law at a point x.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Tails {
     /// Pr(X < x).
     pub lower: f64,

@@ -1,53 +1,39 @@
 //! What an op gives, or why it gives none.
 
 use std::fmt::Display;
+use std::io;
 
-use serde::{Deserialize, Serialize, Serializer};
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
+use serde_json::Serializer;
+use serde_json::ser::Formatter;
 
 use crate::fem::FemError;
 use crate::stats::NumericError;
 
-/// What an op gives: values by name. A number that is not finite is a `null`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Answer(Vec<(&'static str, Value)>);
-
-impl Answer {
-    /// Values by name.
-    pub fn of<const N: usize>(values: [(&'static str, impl Into<Value>); N]) -> Answer {
-        let values = values.into_iter();
-        Answer(values.map(|(name, value)| (name, value.into())).collect())
-    }
-
-    /// This answer with one more value.
-    pub fn with(mut self, name: &'static str, value: impl Into<Value>) -> Answer {
-        self.0.push((name, value.into()));
-        self
-    }
-
-    /// This answer, if all its numbers are finite.
-    ///
-    /// Implements: ORA-009, ORA-008.
-    pub fn finite(self) -> Result<Answer, Refused> {
-        fn is_finite(value: &Value) -> bool {
-            match value {
-                Value::Array(values) => values.iter().all(is_finite),
-                value => !value.is_null(),
-            }
-        }
-        match self.0.iter().find(|(_, value)| !is_finite(value)) {
-            Some((name, _)) => Err(Refused::new(
-                Code::Overflow,
-                format_args!("{name} would be no finite number"),
-            )),
-            None => Ok(self),
+/// The JSON text of an answer.
+///
+/// # Errors
+/// [`Code::Overflow`] if a number is not finite.
+///
+/// Implements: ORA-009, ORA-008.
+pub fn json(answer: impl Serialize) -> Result<Vec<u8>, Refused> {
+    /// Refuses `null`, as which a number that is not finite would be written.
+    struct Finite;
+    impl Formatter for Finite {
+        fn write_null<W: ?Sized + io::Write>(&mut self, _: &mut W) -> io::Result<()> {
+            Err(io::ErrorKind::InvalidData.into())
         }
     }
-}
-
-impl Serialize for Answer {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    let mut text = Vec::new();
+    match answer.serialize(&mut Serializer::with_formatter(&mut text, Finite)) {
+        Ok(()) => Ok(text),
+        Err(_) => {
+            // The text ends before the number, so its last key is the number's.
+            let text = String::from_utf8_lossy(&text);
+            let name = text.rsplit('"').nth(1).unwrap_or_default();
+            let wrong = format_args!("{name} would not be a finite number");
+            Err(Refused::new(Code::Overflow, wrong))
+        }
     }
 }
 
@@ -57,17 +43,17 @@ impl Serialize for Answer {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Code {
-    /// The line is no JSON.
+    /// The line is not JSON.
     BadJson,
-    /// JSON, but no request.
+    /// JSON, but not a request.
     BadRequest,
     /// No such op.
     UnknownOp,
-    /// An argument that is missing or is not what it must be.
+    /// An argument that is missing or of the wrong kind.
     BadArgument,
     /// An argument outside the range of the op.
     OutOfRange,
-    /// The answer is no finite number.
+    /// The answer is not a finite number.
     Overflow,
     /// The solver found no answer.
     Failed,
@@ -94,7 +80,7 @@ impl Refused {
         Refused { code, message }
     }
 
-    /// An argument that is not what it must be.
+    /// An argument that is missing or of the wrong kind.
     pub fn argument(message: impl Display) -> Refused {
         Refused::new(Code::BadArgument, message)
     }
@@ -127,16 +113,16 @@ impl From<FemError> for Refused {
     }
 }
 
-/// Appends the line of answer to the request `id`, a JSON text or number.
-pub fn write(id: &str, outcome: &Result<Answer, Refused>, out: &mut Vec<u8>) {
-    let key = if outcome.is_ok() { "ok" } else { "error" };
+/// Appends the line that answers the request `id`, a JSON text or number: the JSON text of the answer, or the refusal.
+pub fn write(id: &str, outcome: Result<Vec<u8>, Refused>, out: &mut Vec<u8>) {
+    let (key, value) = match outcome {
+        Ok(answer) => ("ok", answer),
+        // Two texts can always be written.
+        Err(refused) => ("error", serde_json::to_vec(&refused).unwrap_or_default()),
+    };
     for part in ["{\"id\":", id, ",\"", key, "\":"] {
         out.extend_from_slice(part.as_bytes());
     }
-    // Memory takes everything, and these types can all be written.
-    let _ = match outcome {
-        Ok(answer) => serde_json::to_writer(&mut *out, answer),
-        Err(refused) => serde_json::to_writer(&mut *out, refused),
-    };
+    out.extend_from_slice(&value);
     out.extend_from_slice(b"}\n");
 }

@@ -1,196 +1,164 @@
-//! The arguments of an op, by name.
+//! What the arguments of an op are made of, and how they are read.
 
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
+use std::fmt;
+use std::marker::PhantomData;
 
-use super::Refused;
-use super::answer::Code;
-use super::request::{Members, kind};
-use crate::fem::Model;
+use serde::de::{self, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use super::answer::Refused;
 
 /// Most entries of a list, and of all the lists of a matrix together.
 ///
 /// Implements: ORA-011.
 pub const MOST_ENTRIES: usize = 1_000_000;
 
-/// Models that were made, each with the name of its phantom: at most one for each that is built in.
-pub type Models = Vec<(String, Model)>;
+/// How the message of an argument begins that is of the right kind, but outside its range.
+const OUT_OF_RANGE: &str = "out of range: ";
 
-/// The arguments of a request, and what earlier requests left for it.
-#[derive(Debug)]
-pub struct Arguments<'a> {
-    members: Vec<(String, &'a str)>,
-    /// What the op asked for.
-    asked: Vec<&'static str>,
-    /// Models that were made before.
-    pub models: &'a mut Models,
+/// Declares the arguments of an op: a JSON object of just these, each given once.
+macro_rules! arguments {
+    ($(#[$attribute:meta])* $name:ident { $($field:ident: $type:ty),* $(,)? }) => {
+        $(#[$attribute])*
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name { $(pub $field: $type),* }
+    };
 }
+pub(super) use arguments;
 
-impl<'a> Arguments<'a> {
-    /// The arguments in a JSON text, none if there is no text.
-    ///
-    /// # Errors
-    /// What stands there instead of an object; a key that is given twice.
-    pub fn parse(text: Option<&'a str>, models: &'a mut Models) -> Result<Arguments<'a>, Refused> {
-        let Members(members) = Members::parse("args", text.unwrap_or("{}"), Code::BadArgument)?;
-        Ok(Arguments {
-            members,
-            asked: Vec::new(),
-            models,
-        })
-    }
-
-    /// Whether the op knows all the arguments: `known` are their names, with a space between them.
-    ///
-    /// Implements: ORA-008.
-    pub fn check_known(&self, op: &str, known: &str) -> Result<(), Refused> {
-        let knows = |name: &str| known.split(' ').any(|known| known == name);
-        self.check(knows, || match known {
-            "" => format!("{op} takes no arguments"),
-            known => format!("{op} takes {}", known.replace(' ', ", ")),
-        })
-    }
-
-    /// Whether the op had a use for all the arguments.
-    pub fn check_used(&self, op: &str) -> Result<(), Refused> {
-        let takes = || format!("here {op} takes {}", self.asked.join(", "));
-        self.check(|name| self.asked.contains(&name), takes)
-    }
-
-    fn check(
-        &self,
-        right: impl Fn(&str) -> bool,
-        takes: impl FnOnce() -> String,
-    ) -> Result<(), Refused> {
-        match self.members.iter().find(|(name, _)| !right(name)) {
-            Some((name, _)) => Err(Refused::argument(format_args!(
-                "unknown argument {name:?}: {}",
-                takes()
-            ))),
-            None => Ok(()),
-        }
-    }
-
-    /// The JSON text of an argument, which is of a kind; if not, `what` is said to be expected.
-    fn text_of(&mut self, name: &'static str, of: &str, what: &str) -> Result<&'a str, Refused> {
-        self.asked.push(name);
-        match self.members.iter().find(|(key, _)| key == name) {
-            Some((_, text)) if kind(text) == of => Ok(text),
-            Some((_, text)) => Err(Refused::argument(format_args!(
-                "{name} is {}, expected {what}",
-                kind(text)
-            ))),
-            None => Err(Refused::argument(format_args!("{name} is missing"))),
-        }
-    }
-
-    /// A finite number.
-    ///
-    /// # Errors
-    /// As all the functions below: the argument is missing, or is something else.
-    ///
-    /// Implements: ORA-009.
-    pub fn number(&mut self, name: &'static str) -> Result<f64, Refused> {
-        read(name, self.text_of(name, "a number", "a number")?)
-    }
-
-    /// Finite numbers, each of a name.
-    pub fn each<const N: usize>(&mut self, names: [&'static str; N]) -> Result<[f64; N], Refused> {
-        let mut numbers = [0.0; N];
-        for (number, name) in numbers.iter_mut().zip(names) {
-            *number = self.number(name)?;
-        }
-        Ok(numbers)
-    }
-
-    /// A whole number from `least` to `most`, which is at most 2⁵³.
-    pub fn whole(&mut self, name: &'static str, least: i64, most: i64) -> Result<i64, Refused> {
-        let value = self.number(name)?;
-        if value.trunc() != value {
-            let wrong = format_args!("{name} is {value}, expected a whole number");
-            return Err(Refused::argument(wrong));
-        }
-        if !(least as f64..=most as f64).contains(&value) {
-            let wrong = format_args!("{name} is {value}, expected {least} to {most}");
-            return Err(Refused::range(wrong));
-        }
-        Ok(value as i64) // whole, and between two of that type
-    }
-
-    /// A text.
-    pub fn text(&mut self, name: &'static str) -> Result<String, Refused> {
-        read(name, self.text_of(name, "a text", "a text")?)
-    }
-
-    /// The f32 whose bits are given, NaN and infinities included.
-    ///
-    /// Implements: ORA-009.
-    pub fn bits(&mut self, name: &'static str) -> Result<f32, Refused> {
-        let Bits(value) = read(name, self.text_of(name, "a text", "a text")?)?;
-        Ok(value)
-    }
-
-    /// Finite numbers.
-    pub fn numbers(&mut self, name: &'static str) -> Result<Vec<f64>, Refused> {
-        self.list(name, "a list of numbers")
-    }
-
-    /// Rows of finite numbers, of any lengths.
-    pub fn rows(&mut self, name: &'static str) -> Result<Vec<Vec<f64>>, Refused> {
-        self.list(name, "a list of lists of numbers")
-    }
-
-    /// A list, which may be empty; `what` it should be.
-    ///
-    /// Implements: ORA-009, ORA-011.
-    pub fn list<T: DeserializeOwned>(
-        &mut self,
-        name: &'static str,
-        what: &str,
-    ) -> Result<Vec<T>, Refused> {
-        let text = self.text_of(name, "a list", what)?;
-        // Each entry but the first of a list has a comma before it.
-        let entries = text.bytes().filter(|byte| b",[".contains(byte)).count();
-        if entries > MOST_ENTRIES && entries - text.matches("[]").count() > MOST_ENTRIES {
-            let wrong = format_args!("{name} has more entries than {MOST_ENTRIES}");
-            return Err(Refused::range(wrong));
-        }
-        read(name, text)
+/// Reads a JSON object; serde by itself would also take a list of its values.
+pub fn object<'a, T: Deserialize<'a>>(text: &'a str) -> serde_json::Result<T> {
+    if text.trim_ascii_start().starts_with('{') {
+        serde_json::from_str(text)
+    } else {
+        Err(de::Error::custom("not an object"))
     }
 }
 
-/// The value in a JSON text.
-fn read<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, Refused> {
-    serde_json::from_str(text).or_else(|_| {
-        // Once more, for the place of the wrong entry.
+/// Reads the arguments of an op.
+///
+/// # Errors
+/// The argument, and in a list the entry, that is wrong.
+///
+/// Implements: ORA-008, ORA-009.
+pub fn arguments_of<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T, Refused> {
+    object(text).map_err(|error| {
+        // Once more, for the place of what is wrong.
         let mut reader = serde_json::Deserializer::from_str(text);
-        serde_path_to_error::deserialize(&mut reader).map_err(|error| {
-            let wrong = wrong_entry(&error.inner().to_string());
-            let place = error.path().iter().map(ToString::to_string);
-            let place: String = place.collect();
-            Refused::argument(format_args!("{name}{place}{wrong}"))
-        })
+        let located = serde_path_to_error::deserialize::<_, T>(&mut reader).err();
+        let place = located.map_or("args".into(), |located| located.path().to_string());
+        let place = if place == "." { "args".into() } else { place };
+        let message = error.to_string();
+        // Line and column within the arguments help nobody.
+        let message = message.split(" at line ").next().unwrap_or_default();
+        match message.strip_prefix(OUT_OF_RANGE) {
+            Some(wrong) => Refused::range(format_args!("{place}: {wrong}")),
+            None if message == "number out of range" => {
+                Refused::argument(format_args!("{place} is beyond the largest f64"))
+            }
+            None => Refused::argument(format_args!("{place}: {message}")),
+        }
     })
 }
 
-/// What a reader of JSON says of a value, in the words of this protocol.
-fn wrong_entry(message: &str) -> String {
-    // Line and column within an argument help nobody.
-    let message = message.split(" at line ").next().unwrap_or_default();
-    match message.rsplit_once(", expected ") {
-        Some((found, "f64")) => format!(": {found}, expected a finite number"),
-        Some((found, "a sequence")) => format!(": {found}, expected a list"),
-        Some((found, "a string")) => format!(": {found}, expected a text"),
-        _ if message == "number out of range" => {
-            " is beyond the largest f64, expected a finite number".into()
-        }
-        // A text of bits says what is wrong with it by itself.
-        _ if message.starts_with("is ") => format!(" {message}"),
-        _ => format!(": {message}"),
+/// Numbers, texts of bits, or lists of them: at most [`MOST_ENTRIES`] in all.
+///
+/// Implements: ORA-009, ORA-011.
+#[derive(Debug)]
+pub struct List<T>(pub Vec<T>);
+
+/// What may stand in a [`List`].
+pub trait Entry {
+    /// How many entries it has itself.
+    fn entries(&self) -> usize {
+        0
     }
 }
 
-/// The f32 whose bits are written as `0x` and eight hexadecimal digits.
+impl Entry for f64 {}
+impl Entry for Bits {}
+impl<T> Entry for List<T> {
+    fn entries(&self) -> usize {
+        self.0.len()
+    }
+}
+
+impl<'de, T: Deserialize<'de> + Entry> Deserialize<'de> for List<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<List<T>, D::Error> {
+        deserializer.deserialize_seq(ListVisitor(PhantomData))
+    }
+}
+
+struct ListVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de> + Entry> Visitor<'de> for ListVisitor<T> {
+    type Value = List<T>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("a list")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<List<T>, A::Error> {
+        let mut list = Vec::new();
+        let mut entries = 0;
+        while let Some(entry) = sequence.next_element::<T>()? {
+            entries += 1 + entry.entries();
+            if entries > MOST_ENTRIES {
+                let wrong = format_args!("{OUT_OF_RANGE}more than {MOST_ENTRIES} entries");
+                return Err(de::Error::custom(wrong));
+            }
+            list.push(entry);
+        }
+        Ok(List(list))
+    }
+}
+
+/// Rows of finite numbers, of any lengths.
+pub type Rows = List<List<f64>>;
+
+impl<T: Clone> List<List<T>> {
+    /// The entries, row by row.
+    ///
+    /// # Errors
+    /// The argument `name` has another number of rows, or a row of another length.
+    pub fn concat(&self, name: &str, height: usize, width: usize) -> Result<Vec<T>, Refused> {
+        let List(rows) = self;
+        if rows.len() != height {
+            let wrong = format_args!("{name} has {} rows, but must have {height}", rows.len());
+            return Err(Refused::argument(wrong));
+        }
+        let wrong = rows.iter().map(Entry::entries).enumerate();
+        if let Some((row, length)) = wrong.into_iter().find(|&(_, length)| length != width) {
+            let wrong = format_args!("{name}[{row}] has {length} entries, but must have {width}");
+            return Err(Refused::argument(wrong));
+        }
+        Ok(rows.iter().flat_map(|List(row)| row).cloned().collect())
+    }
+}
+
+/// A whole number from `LEAST` to `MOST`, which are at most 2⁵³; it may be written with a point.
+#[derive(Debug, Clone, Copy)]
+pub struct Whole<const LEAST: i64, const MOST: i64>(pub i64);
+
+impl<'de, const LEAST: i64, const MOST: i64> Deserialize<'de> for Whole<LEAST, MOST> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = f64::deserialize(deserializer)?;
+        if value.trunc() != value {
+            let wrong = format_args!("{value} is not a whole number");
+            return Err(de::Error::custom(wrong));
+        }
+        if !(LEAST as f64..=MOST as f64).contains(&value) {
+            let wrong = format_args!("{OUT_OF_RANGE}{value} is not from {LEAST} to {MOST}");
+            return Err(de::Error::custom(wrong));
+        }
+        Ok(Whole(value as i64)) // whole, and between two of that type
+    }
+}
+
+/// The f32 whose bits are written as `0x` and eight hexadecimal digits, NaN and infinities included.
+///
+/// Implements: ORA-009.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "String")]
 pub struct Bits(pub f32);
@@ -202,29 +170,8 @@ impl TryFrom<String> for Bits {
         let digits = text.strip_prefix("0x").filter(|digits| digits.len() == 8);
         let plain = digits.filter(|text| text.bytes().all(|byte| byte.is_ascii_hexdigit()));
         let bits = plain.and_then(|digits| u32::from_str_radix(digits, 16).ok());
-        let expected = "expected the bits of an f32, such as \"0x3f800000\"";
-        let bits = bits.ok_or_else(|| format!("is {text:?}, {expected}"))?;
+        let bits = bits
+            .ok_or_else(|| format!("{text:?} is not the bits of an f32, such as \"0x3f800000\""))?;
         Ok(Bits(f32::from_bits(bits)))
-    }
-}
-
-/// Refuses rows of another number or length than these; `words` say what is expected of the two.
-pub fn check_rows<T>(
-    name: &str,
-    rows: &[Vec<T>],
-    [height, width]: [usize; 2],
-    words: [String; 2],
-) -> Result<(), Refused> {
-    if rows.len() != height {
-        let wrong = format!("{name} has {} rows, expected {}", rows.len(), words[0]);
-        return Err(Refused::argument(wrong));
-    }
-    match rows.iter().position(|row| row.len() != width) {
-        Some(row) => Err(Refused::argument(format_args!(
-            "{name}[{row}] has {} entries, expected {}",
-            rows[row].len(),
-            words[1]
-        ))),
-        None => Ok(()),
     }
 }

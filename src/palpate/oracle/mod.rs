@@ -5,9 +5,9 @@
 //! |---|---|
 //! | `serve.rs` | the loop: lines in, lines out |
 //! | `request.rs` | from a line to an op with arguments |
-//! | `arguments.rs` | arguments by name, each with a message if it is wrong |
+//! | `arguments.rs` | what arguments are made of, each with a message if it is wrong |
 //! | `answer.rs` | what an op gives, or why it gives none |
-//! | `ops/` | the ops, a file a topic |
+//! | `ops/` | the table of ops, and the ops, a file a topic |
 
 mod answer;
 mod arguments;
@@ -18,9 +18,8 @@ mod serve;
 mod tests;
 
 pub use answer::Code;
-use answer::{Answer, Refused};
-use arguments::Arguments;
-use request::Query;
+use answer::Refused;
+use request::{Id, Request};
 pub use serve::{LONGEST_LINE, serve};
 
 /// What answers: the ops, and the models that were solved before.
@@ -41,7 +40,7 @@ pub use serve::{LONGEST_LINE, serve};
 #[derive(Debug, Default)]
 pub struct Oracle {
     /// Models of the built-in phantoms that were asked for, which take long to make.
-    models: arguments::Models,
+    models: ops::Models,
 }
 
 impl Oracle {
@@ -49,19 +48,17 @@ impl Oracle {
     ///
     /// Implements: ORA-001, ORA-004, ORA-012, ACC-030.
     pub fn answer(&mut self, line: &[u8], out: &mut Vec<u8>) {
-        match Query::parse(line) {
-            Ok(request) => answer::write(request.id, &self.perform(&request), out),
-            Err((id, refused)) => answer::write(id.unwrap_or("null"), &Err(refused), out),
+        match Request::parse(line) {
+            Ok(request) => answer::write(request.id.0, self.perform(&request), out),
+            Err((id, refused)) => {
+                answer::write(id.map_or("null", |Id(id)| id), Err(refused), out);
+            }
         }
     }
 
-    fn perform(&mut self, request: &Query) -> Result<Answer, Refused> {
+    fn perform(&mut self, request: &Request) -> Result<Vec<u8>, Refused> {
         let op = ops::find(&request.op)?;
-        let mut arguments = Arguments::parse(request.args, &mut self.models)?;
-        // First, since an argument with a wrong name also makes another one missing.
-        arguments.check_known(op.name, op.arguments)?;
-        let answer = (op.function)(&mut arguments)?;
-        arguments.check_used(op.name)?;
-        answer.finite()
+        let arguments = request.args.map_or("{}", |args| args.get());
+        (op.function)(arguments, &mut self.models)
     }
 }

@@ -49,7 +49,7 @@ pub fn serve(input: impl Read, mut output: impl Write) -> io::Result<()> {
         }
         let too_long = format_args!("the line is longer than {LONGEST_LINE} bytes");
         let refused = Refused::new(Code::BadJson, too_long);
-        answer::write("null", &Err(refused), &mut answers);
+        answer::write("null", Err(refused), &mut answers);
     }
 }
 

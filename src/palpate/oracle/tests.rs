@@ -1,7 +1,7 @@
 use std::cell::RefCell;
 use std::io::{self, Read, Write};
 
-use super::{Arguments, Oracle, ops, serve};
+use super::{Oracle, serve};
 
 /// Gives its bytes out in pieces of a size, and checks before each that all whole lines so far were
 /// answered.
@@ -61,25 +61,6 @@ fn lines_are_found_however_the_input_is_cut() {
         serve(pieces, Shared(&output)).unwrap();
         let is_right = output.borrow().as_slice() == expected.as_bytes();
         assert!(is_right, "pieces of {size}");
-    }
-}
-
-// Verifies: ORA-008.
-#[test]
-fn the_registry_names_the_arguments_that_the_ops_ask_for() {
-    for op in ops::OPS {
-        // Whatever is missing, an op asks for arguments that its entry has.
-        let mut models = super::arguments::Models::default();
-        let mut arguments = Arguments::parse(None, &mut models).unwrap();
-        match (op.function)(&mut arguments) {
-            Ok(_) => assert_eq!(op.name, "capabilities"),
-            Err(refusal) => {
-                let name = refusal.message.strip_suffix(" is missing");
-                let name = name.unwrap_or_else(|| panic!("{refusal:?}"));
-                let mut known = op.arguments.split(' ');
-                assert!(known.any(|known| known == name), "{}: {name}", op.name);
-            }
-        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! Θ beside nuisances: of one template, and of each hypothesis of a bank.
 
-use super::{Answer, Arguments, Refused, check_rows};
+use serde::Serialize;
+
+use super::{List, Refused, Rows, arguments};
 use crate::detect::mixture::{likeliest, mixture_theta};
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
 use crate::detect::{DetectError, posterior};
@@ -9,71 +11,112 @@ use crate::stats::error::{check_samples, representable};
 /// Most nuisances: each is projected onto those before it.
 const MOST_NUISANCES: usize = 100;
 
-/// T, γ, the residual, θ and rates of a whitened record beside nuisances.
+arguments! {
+    Whitened {
+        residual: List<f64>,
+        template: List<f64>,
+        nuisances: Rows,
+        level: String,
+        bias: f64,
+        eta: f64,
+    }
+}
+arguments! {
+    Bank {
+        residual: List<f64>,
+        templates: Rows,
+        nuisances: Rows,
+        level: String,
+        prior: List<f64>,
+        prior_h1: f64,
+    }
+}
+
+/// What a whitened record beside nuisances says.
+#[derive(Debug, Serialize)]
+pub struct Tested {
+    t: f64,
+    gamma: f64,
+    gamma_nominal: f64,
+    rank: usize,
+    residual: f64,
+    degrees: usize,
+    theta: f64,
+    false_alarm: f64,
+    miss: f64,
+}
+
+/// T, γ, the residual, θ and error rates of a whitened record beside nuisances.
 ///
 /// Implements: ORA-011, ORA-020, ACC-014.
-pub fn theta(arguments: &mut Arguments) -> Result<Answer, Refused> {
-    let mut residual = arguments.numbers("residual")?;
-    let mut template = arguments.numbers("template")?;
-    let nuisances = arguments.rows("nuisances")?;
-    let level = level(arguments)?;
-    let [bias, eta] = arguments.each(["bias", "eta"])?;
+pub fn theta(arguments: Whitened) -> Result<Tested, Refused> {
+    let List(mut residual) = arguments.residual;
+    let List(mut template) = arguments.template;
+    let level = level(&arguments.level)?;
     let samples = template.len();
     check_samples("template", &template, samples)?;
-    let mut signals = signals(&nuisances, samples)?;
+    let mut signals = signals(&arguments.nuisances, samples)?;
     let nuisances = Nuisances::new(&mut signals, samples)?;
     let detector = SubspaceDetector::new(nuisances, &mut template)?;
     let found = detector.statistic(&mut residual)?;
-    let test = found.test(level, bias)?;
-    let rates = test.rates(test.bayes_threshold(eta)?)?;
-    let answer = Answer::of([
-        ("t", test.t),
-        ("gamma", test.gamma),
-        ("gamma_nominal", detector.gamma_nominal()),
-        ("residual", found.residual),
-        ("theta", test.theta()),
-        ("false_alarm", rates.false_alarm),
-        ("miss", rates.miss),
-    ]);
-    Ok(answer
-        .with("rank", nuisances.rank())
-        .with("degrees", found.degrees as usize)) // whole, and below the number of samples
+    let test = found.test(level, arguments.bias)?;
+    let rates = test.rates(test.bayes_threshold(arguments.eta)?)?;
+    Ok(Tested {
+        t: test.t,
+        gamma: test.gamma,
+        gamma_nominal: detector.gamma_nominal(),
+        rank: nuisances.rank(),
+        residual: found.residual,
+        degrees: found.degrees as usize, // whole, and below the number of samples
+        theta: test.theta(),
+        false_alarm: rates.false_alarm,
+        miss: rates.miss,
+    })
 }
 
-/// θ of each hypothesis beside nuisances, the largest, that of all together, and the probabilities that follow.
+/// θ of each hypothesis beside nuisances, of all together, the largest, and the probabilities that follow.
+#[derive(Debug, Serialize)]
+pub struct Posterior {
+    theta: Vec<f64>,
+    theta_mixture: f64,
+    theta_max: f64,
+    hypothesis: usize,
+    posterior_h1: f64,
+    posterior: Vec<f64>,
+}
+
+/// What a whitened record says of the hypotheses of a bank.
 ///
 /// Implements: ORA-011, ORA-020.
-pub fn bank_posterior(arguments: &mut Arguments) -> Result<Answer, Refused> {
-    let residual = arguments.numbers("residual")?;
-    let templates = arguments.rows("templates")?;
-    let nuisances = arguments.rows("nuisances")?;
-    let level = level(arguments)?;
-    let prior = arguments.numbers("prior")?;
-    let prior_h1 = arguments.number("prior_h1")?;
+pub fn bank_posterior(arguments: Bank) -> Result<Posterior, Refused> {
+    let List(residual) = arguments.residual;
+    let List(prior) = arguments.prior;
+    let level = level(&arguments.level)?;
     let samples = residual.len();
     check_samples("residual", &residual, samples)?;
     check_samples("prior", &prior, prior.len())?;
-    let words = [prior.len(), samples].map(|length| length.to_string());
-    check_rows("templates", &templates, [prior.len(), samples], words)?;
-    let mut signals = signals(&nuisances, samples)?;
+    let mut templates = arguments
+        .templates
+        .concat("templates", prior.len(), samples)?;
+    let mut signals = signals(&arguments.nuisances, samples)?;
     let nuisances = Nuisances::new(&mut signals, samples)?;
     let found = templates
-        .into_iter()
-        .map(|mut template| theta_of(nuisances, &mut template, &residual, level));
-    let found = found.collect::<Result<Vec<_>, _>>()?;
+        .chunks_exact_mut(samples)
+        .map(|template| theta_of(nuisances, template, &residual, level))
+        .collect::<Result<Vec<_>, _>>()?;
     let theta: Vec<f64> = found.iter().map(|theta| theta.unwrap_or(0.0)).collect();
-    let mixture = mixture_theta(&theta, &prior)?;
+    let theta_mixture = mixture_theta(&theta, &prior)?;
     let may_be = |&number: &usize| found[number].is_some() && prior[number] > 0.0;
-    let largest = likeliest(&theta, (0..theta.len()).filter(may_be));
-    let largest = largest.ok_or(DetectError::NoSignal)?;
-    let theta_max = theta[largest];
-    let posterior_h1 = posterior(mixture, prior_h1)?;
-    let shares = shares(&theta, &prior);
-    Ok(Answer::of([("theta", theta), ("posterior", shares)])
-        .with("theta_mixture", mixture)
-        .with("theta_max", theta_max)
-        .with("hypothesis", largest)
-        .with("posterior_h1", posterior_h1))
+    let hypothesis = likeliest(&theta, (0..theta.len()).filter(may_be));
+    let hypothesis = hypothesis.ok_or(DetectError::NoSignal)?;
+    Ok(Posterior {
+        theta_mixture,
+        theta_max: theta[hypothesis],
+        hypothesis,
+        posterior_h1: posterior(theta_mixture, arguments.prior_h1)?,
+        posterior: shares(&theta, &prior),
+        theta,
+    })
 }
 
 /// θ of one hypothesis, none if the nuisances explain its template.
@@ -107,24 +150,23 @@ fn shares(theta: &[f64], prior: &[f64]) -> Vec<f64> {
 }
 
 /// How the noise is known.
-fn level(arguments: &mut Arguments) -> Result<NoiseLevel, Refused> {
-    match &arguments.text("level")?[..] {
+fn level(word: &str) -> Result<NoiseLevel, Refused> {
+    match word {
         "known" => Ok(NoiseLevel::Known),
         "unknown" => Ok(NoiseLevel::Unknown),
-        level => Err(Refused::range(format_args!(
-            "level is {level:?}, expected known or unknown"
-        ))),
+        _ => {
+            let wrong = format_args!("level is {word:?}; it must be known or unknown");
+            Err(Refused::range(wrong))
+        }
     }
 }
 
 /// Nuisances of `samples` numbers each, one after the other.
-fn signals(nuisances: &[Vec<f64>], samples: usize) -> Result<Vec<f64>, Refused> {
-    let number = nuisances.len();
+fn signals(nuisances: &Rows, samples: usize) -> Result<Vec<f64>, Refused> {
+    let number = nuisances.0.len();
     if number > MOST_NUISANCES {
-        let wrong = format_args!("nuisances are {number}, expected at most {MOST_NUISANCES}");
+        let wrong = format_args!("nuisances are {number}, but may be at most {MOST_NUISANCES}");
         return Err(Refused::range(wrong));
     }
-    let words = [number, samples].map(|length| length.to_string());
-    check_rows("nuisances", nuisances, [number, samples], words)?;
-    Ok(nuisances.concat())
+    nuisances.concat("nuisances", number, samples)
 }

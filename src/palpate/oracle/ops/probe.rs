@@ -1,33 +1,49 @@
 //! The force on the probe.
 
-use super::{Answer, Arguments, Refused};
+use serde::Serialize;
+
+use super::{Refused, arguments};
 use crate::fem::{Contact, MESH_SIZE, Model, Pose};
 use crate::phantom::Phantom;
 
-/// The forces at one pose, on the mesh and with the contact that `palpate solve` takes by default.
+/// Models that were made, each with the name of its phantom: at most one for each that is built in.
+pub type Models = Vec<(String, Model)>;
+
+arguments! { PhantomAndPose { phantom: String, depth_m: f64, lateral_m: f64 } }
+
+/// The force on the probe, N.
+#[derive(Debug, Serialize)]
+pub struct ProbeForce {
+    normal_force_n: f64,
+    lateral_force_n: f64,
+}
+
+/// The force at one pose, on the mesh and with the contact that `palpate solve` uses by default.
 ///
 /// Implements: ORA-012.
-pub fn force(arguments: &mut Arguments) -> Result<Answer, Refused> {
-    let name = arguments.text("phantom")?;
-    let [depth, lateral] = arguments.each(["depth_m", "lateral_m"])?;
-    let pose = Pose { depth, lateral };
+pub fn force(arguments: PhantomAndPose, models: &mut Models) -> Result<ProbeForce, Refused> {
+    let PhantomAndPose {
+        phantom: name,
+        depth_m: depth,
+        lateral_m: lateral,
+    } = arguments;
     let phantom =
         Phantom::builtin(&name).map_err(|error| Refused::range(format_args!("phantom {error}")))?;
     // Before the model is made: a pose that cannot be is cheap to refuse.
     let checked = phantom.check_pose(depth, lateral);
     checked.map_err(|error| Refused::range(format_args!("pose: {error}")))?;
-    let models = &mut *arguments.models;
-    let solution = match models.iter().find(|(known, _)| *known == name) {
-        Some((_, model)) => model.solve(pose)?,
+    let pose = Pose { depth, lateral };
+    let force = match models.iter().find(|(known, _)| *known == name) {
+        Some((_, model)) => model.solve(pose)?.force,
         None => {
             let model = Model::new(&phantom, MESH_SIZE, Contact::DeformedNormal)?;
-            let solution = model.solve(pose)?;
+            let force = model.solve(pose)?.force;
             models.push((name, model));
-            solution
+            force
         }
     };
-    Ok(Answer::of([
-        ("normal_force_n", solution.force.normal),
-        ("lateral_force_n", solution.force.lateral),
-    ]))
+    Ok(ProbeForce {
+        normal_force_n: force.normal,
+        lateral_force_n: force.lateral,
+    })
 }

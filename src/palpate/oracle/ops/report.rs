@@ -1,92 +1,122 @@
 //! The reports of the haptic device.
 
-use serde_json::{Map, Value, from_value, to_value};
+use std::collections::BTreeMap;
 
-use super::{Answer, Arguments, Refused};
-use crate::hid::{Capabilities, Control, ForceReport, PositionReport};
+use serde::de::IgnoredAny;
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
 
-/// The number of a report, and the fields of all reports.
-///
-/// Implements: ORA-009.
-pub const FIELDS: &str = "report lateral normal buttons status sequence force_sequence flags version \
-    position_unit_nm force_unit_un largest_force_mn period_us watchdog_ms damping_mn_s_per_m friction_mn control";
+use super::{Refused, Whole, arguments, arguments_of, named};
+use crate::hid::{Capabilities, Control, ForceReport, InvalidReport, PositionReport};
 
-/// The fields of the report with a number.
-fn fields(number: i64) -> Result<&'static str, Refused> {
-    Ok(match number {
-        1 => "lateral normal buttons status sequence force_sequence",
-        2 => "lateral normal sequence flags",
-        3 => {
-            "version position_unit_nm force_unit_un largest_force_mn period_us watchdog_ms \
-             damping_mn_s_per_m friction_mn"
-        }
-        4 => "control",
-        _ => {
-            let wrong = format_args!("report number {number} is unknown, expected 1 to 4");
-            return Err(Refused::range(wrong));
-        }
-    })
+/// The number of a report, which names its other fields.
+#[derive(Debug, Deserialize)]
+struct Number {
+    report: Whole<1, 4>,
 }
 
-/// The least and the largest value of a field.
-fn range(field: &str) -> (i64, i64) {
-    match field {
-        "lateral" | "normal" => (i16::MIN.into(), i16::MAX.into()),
-        "buttons" | "status" | "flags" => (0, u8::MAX.into()),
-        "control" => (0, 2),
-        _ => (0, u16::MAX.into()),
+/// The arguments of a report: any whole number of the type of each field.
+macro_rules! report {
+    ($report:ident from $arguments:ident { $($field:ident: $type:ident),+ $(,)? }) => {
+        arguments! {
+            #[allow(dead_code)]
+            $arguments {
+                report: IgnoredAny,
+                $($field: Whole<{ $type::MIN as i64 }, { $type::MAX as i64 }>),+
+            }
+        }
+
+        impl From<$arguments> for $report {
+            fn from(arguments: $arguments) -> $report {
+                $report { $($field: arguments.$field.0 as $type),+ }
+            }
+        }
+    };
+}
+
+report! {
+    PositionReport from PositionFields {
+        lateral: i16, normal: i16, buttons: u8, status: u8, sequence: u16, force_sequence: u16,
     }
+}
+report! {
+    ForceReport from ForceFields { lateral: i16, normal: i16, sequence: u16, flags: u8 }
+}
+report! {
+    Capabilities from CapabilitiesFields {
+        version: u16, position_unit_nm: u16, force_unit_un: u16, largest_force_mn: u16,
+        period_us: u16, watchdog_ms: u16, damping_mn_s_per_m: u16, friction_mn: u16,
+    }
+}
+arguments! { #[allow(dead_code)] ControlFields { report: IgnoredAny, control: Whole<0, 2> } }
+arguments! { Encoded { bytes: String } }
+
+/// The number of a report and its fields.
+#[derive(Debug, Serialize)]
+pub struct Decoded {
+    report: u8,
+    #[serde(flatten)]
+    fields: Fields,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum Fields {
+    Position(PositionReport),
+    Force(ForceReport),
+    Capabilities(Capabilities),
+    Control { control: u8 },
 }
 
 /// The fields of a report.
 ///
 /// Implements: ORA-009, VEC-010.
-pub fn decode(arguments: &mut Arguments) -> Result<Answer, Refused> {
-    let bytes = bytes(&arguments.text("bytes")?)
-        .ok_or_else(|| Refused::argument("bytes is expected to be pairs of hexadecimal digits"))?;
-    let Some(&number) = bytes.first() else {
-        return Err(Refused::argument("bytes is empty, expected a report"));
+pub fn decode(arguments: Encoded) -> Result<Decoded, Refused> {
+    let bytes = bytes(&arguments.bytes)
+        .ok_or_else(|| Refused::argument("bytes must be pairs of hexadecimal digits"))?;
+    let Some(&report) = bytes.first() else {
+        return Err(Refused::argument("bytes is empty, but must be a report"));
     };
-    let fields = fields(number.into())?;
-    let report = match number {
-        PositionReport::NUMBER => PositionReport::decode(&bytes).map(to_value),
-        ForceReport::NUMBER => ForceReport::decode(&bytes).map(to_value),
-        Capabilities::NUMBER => Capabilities::decode(&bytes).map(to_value),
-        _ => Control::decode(&bytes).map(|control| {
-            let value = control.encode()[1];
-            Ok(Map::from_iter([("control".into(), value.into())]).into())
+    let fields = match report {
+        PositionReport::NUMBER => PositionReport::decode(&bytes).map(Fields::Position),
+        ForceReport::NUMBER => ForceReport::decode(&bytes).map(Fields::Force),
+        Capabilities::NUMBER => Capabilities::decode(&bytes).map(Fields::Capabilities),
+        Control::NUMBER => Control::decode(&bytes).map(|control| Fields::Control {
+            control: control as u8,
         }),
+        _ => {
+            let wrong = format_args!("bytes: report number {report} is not from 1 to 4");
+            return Err(Refused::range(wrong));
+        }
     };
-    let report = report.map_err(|error| Refused::range(format_args!("bytes: {error}")))?;
-    let mut report = report.map_err(Refused::range)?;
-    let answer = Answer::of([("report", number)]);
-    Ok(fields.split(' ').fold(answer, |answer, field| {
-        answer.with(field, report[field].take())
-    }))
+    let invalid = |error: InvalidReport| Refused::range(format_args!("bytes: {error}"));
+    let fields = fields.map_err(invalid)?;
+    Ok(Decoded { report, fields })
 }
 
 /// The bytes of a report.
 ///
 /// Implements: ORA-009, VEC-010.
-pub fn encode(arguments: &mut Arguments) -> Result<Answer, Refused> {
-    let number = arguments.whole("report", 0, 255)?;
-    let mut report = Map::new();
-    for field in fields(number)?.split(' ') {
-        let (least, most) = range(field);
-        let value = arguments.whole(field, least, most)?;
-        report.insert(field.into(), value.into());
-    }
-    let control = report.get("control").and_then(Value::as_u64);
-    let report = Value::Object(report);
-    let bytes = match number as u8 {
-        PositionReport::NUMBER => from_value(report).map(|r: PositionReport| r.encode().to_vec()),
-        ForceReport::NUMBER => from_value(report).map(|r: ForceReport| r.encode().to_vec()),
-        Capabilities::NUMBER => from_value(report).map(|r: Capabilities| r.encode().to_vec()),
-        _ => Ok(vec![Control::NUMBER, control.unwrap_or_default() as u8]),
+pub fn encode(arguments: &RawValue) -> Result<BTreeMap<&'static str, String>, Refused> {
+    let text = arguments.get();
+    let Number { report } = arguments_of(text)?;
+    let bytes = match report.0 as u8 {
+        PositionReport::NUMBER => PositionReport::from(arguments_of::<PositionFields>(text)?)
+            .encode()
+            .to_vec(),
+        ForceReport::NUMBER => ForceReport::from(arguments_of::<ForceFields>(text)?)
+            .encode()
+            .to_vec(),
+        Capabilities::NUMBER => Capabilities::from(arguments_of::<CapabilitiesFields>(text)?)
+            .encode()
+            .to_vec(),
+        number => {
+            let ControlFields { control, .. } = arguments_of(text)?;
+            vec![number, control.0 as u8]
+        }
     };
-    let bytes = bytes.map_err(Refused::range)?.into_iter();
-    let text: String = bytes.map(|byte| format!("{byte:02x}")).collect();
-    Ok(Answer::of([("bytes", text)]))
+    let text = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok(named("bytes", text))
 }
 
 /// Bytes from pairs of hexadecimal digits.

@@ -1,39 +1,47 @@
 //! The servo kernel, to the bit.
 
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 
-use super::{Answer, Arguments, Bits, Refused};
+use serde::Serialize;
+
+use super::{Bits, List, Refused, arguments, named};
 use crate::force::Force;
 use crate::servo::{Axis, Table};
+
+arguments! { KnotsAndCoordinate { knots: List<f64>, coordinate_bits: Bits } }
+arguments! {
+    TableAndPose {
+        depth_knots: List<f64>,
+        lateral_knots: List<f64>,
+        table_bits: List<List<Bits>>,
+        depth_bits: Bits,
+        lateral_bits: Bits,
+    }
+}
 
 /// Knots as the kernel stores them, with the reciprocals of the widths.
 ///
 /// Implements: ORA-009.
-fn knots(arguments: &mut Arguments, name: &'static str) -> Result<(Vec<f32>, Vec<f32>), Refused> {
-    let knots = arguments.numbers(name)?;
-    let knots: Vec<f32> = knots.into_iter().map(|knot| knot as f32).collect();
-    let width = |pair: &[f32]| Axis::reciprocal_width(pair[0], pair[1]);
-    let reciprocals = knots.windows(2).map(width).collect();
-    Ok((knots, reciprocals))
-}
+struct Knots(Vec<f32>, Vec<f32>);
 
-fn axis_of<'a>(
-    name: &str,
-    (knots, reciprocals): &'a (Vec<f32>, Vec<f32>),
-) -> Result<Axis<'a>, Refused> {
-    Axis::new(knots, reciprocals).map_err(|error| {
-        refused(
-            name,
-            error,
-            "2 to 1024 knots within 1 m, each at least 1e-6 m above the one before",
-        )
-    })
+impl Knots {
+    fn new(List(knots): List<f64>) -> Knots {
+        let knots: Vec<f32> = knots.into_iter().map(|knot| knot as f32).collect();
+        let width = |pair: &[f32]| Axis::reciprocal_width(pair[0], pair[1]);
+        let reciprocals = knots.windows(2).map(width).collect();
+        Knots(knots, reciprocals)
+    }
+
+    fn axis(&self, name: &str) -> Result<Axis<'_>, Refused> {
+        let right = "2 to 1024 knots within 1 m, each at least 1e-6 m above the one before";
+        Axis::new(&self.0, &self.1).map_err(|error| refused(name, error, right))
+    }
 }
 
 fn refused(name: &str, error: impl Debug, right: &str) -> Refused {
-    Refused::range(format_args!(
-        "{name} is refused by the kernel, {error:?}: expected {right}"
-    ))
+    let wrong = format_args!("the servo kernel refuses {name}, {error:?}; it takes {right}");
+    Refused::range(wrong)
 }
 
 fn bits(value: f32) -> String {
@@ -41,36 +49,35 @@ fn bits(value: f32) -> String {
 }
 
 /// Cell and fraction of a coordinate.
-pub fn axis(arguments: &mut Arguments) -> Result<Answer, Refused> {
-    let knots = knots(arguments, "knots")?;
-    let coordinate = arguments.bits("coordinate_bits")?;
-    let cell = axis_of("knots", &knots)?.locate(coordinate);
-    Ok(Answer::of([("cell", cell.index)]).with("fraction_bits", bits(cell.fraction)))
+#[derive(Debug, Serialize)]
+pub struct Place {
+    cell: usize,
+    fraction_bits: String,
+}
+
+/// Where a coordinate lies on an axis.
+pub fn axis(arguments: KnotsAndCoordinate) -> Result<Place, Refused> {
+    let knots = Knots::new(arguments.knots);
+    let cell = knots.axis("knots")?.locate(arguments.coordinate_bits.0);
+    Ok(Place {
+        cell: cell.index,
+        fraction_bits: bits(cell.fraction),
+    })
 }
 
 /// The force of a table at a pose.
-pub fn interpolate(arguments: &mut Arguments) -> Result<Answer, Refused> {
-    let depth_knots = knots(arguments, "depth_knots")?;
-    let lateral_knots = knots(arguments, "lateral_knots")?;
-    let rows = arguments.list("table_bits", "a list of lists of texts")?;
-    let depth = arguments.bits("depth_bits")?;
-    let lateral = arguments.bits("lateral_bits")?;
-    let depths = axis_of("depth_knots", &depth_knots)?;
-    let laterals = axis_of("lateral_knots", &lateral_knots)?;
-    let forces = forces(&rows, depths.knots().len(), laterals.knots().len())?;
+pub fn interpolate(arguments: TableAndPose) -> Result<BTreeMap<&'static str, String>, Refused> {
+    let depth_knots = Knots::new(arguments.depth_knots);
+    let lateral_knots = Knots::new(arguments.lateral_knots);
+    let depths = depth_knots.axis("depth_knots")?;
+    let laterals = lateral_knots.axis("lateral_knots")?;
+    let (rows, columns) = (depths.knots().len(), laterals.knots().len());
+    let entries = arguments.table_bits.concat("table_bits", rows, columns)?;
+    // Both components alike.
+    let both = |Bits(force)| Force::new(force, force);
+    let forces: Vec<_> = entries.into_iter().map(both).collect();
     let table = Table::new(depths, laterals, &forces)
         .map_err(|error| refused("table_bits", error, "numbers within 100 N"))?;
-    let force = table.force(depth, lateral).normal;
-    Ok(Answer::of([("force_bits", bits(force))]))
-}
-
-/// The entries of a table, both components alike.
-fn forces(rows: &[Vec<Bits>], depths: usize, laterals: usize) -> Result<Vec<Force<f32>>, Refused> {
-    if rows.len() != depths || rows.iter().any(|row| row.len() != laterals) {
-        return Err(Refused::argument(format_args!(
-            "table_bits is expected to have {depths} rows of {laterals} entries"
-        )));
-    }
-    let both = |&Bits(force)| Force::new(force, force);
-    Ok(rows.iter().flatten().map(both).collect())
+    let force = table.force(arguments.depth_bits.0, arguments.lateral_bits.0);
+    Ok(named("force_bits", bits(force.normal)))
 }
