@@ -3,23 +3,12 @@
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use palpate_core::force::Force;
-use palpate_core::hid::{Capabilities, ForceReport, PositionReport, Units};
+use palpate_core::hid::{ForceReport, PAPER, PositionReport, Units};
 use palpate_core::servo::{Axis, Input, Limits, Mode, Request, State, Table, step};
 
 /// Counts the allocations within `assert_no_alloc`, for each thread by itself.
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
-
-const DEVICE: Capabilities = Capabilities {
-    version: 1,
-    position_unit_nm: 1000,
-    force_unit_un: 500,
-    largest_force_mn: 8000,
-    period_us: 1000,
-    watchdog_ms: 15,
-    damping_mn_s_per_m: 600,
-    friction_mn: 140,
-};
 
 /// A number that depends on the cycle, by the multiplicative method (Knuth, volume 2).
 fn scrambled(cycle: u32) -> u32 {
@@ -38,7 +27,7 @@ fn play(cycles: u32) -> u32 {
         core::array::from_fn(|index| Force::new(index as f32 * -0.25, index as f32));
     let table = Table::new(axis, axis, &forces).unwrap();
     let limits = Limits::new(2.0, 0.01, 0.125, 5).unwrap();
-    let units = Units::new(&DEVICE).unwrap();
+    let units = Units::new(&PAPER).unwrap();
     let (mut state, mut played, mut sequence) = (State::default(), 0, 0u16);
     for cycle in 0..cycles {
         let random = scrambled(cycle);

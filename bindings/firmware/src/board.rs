@@ -94,12 +94,6 @@ fn write(address: usize, value: u32) {
     unsafe { (address as *mut u32).write_volatile(value) }
 }
 
-/// The 16 MiB of memory into which QEMU has put the vectors before the start (`-device loader`).
-pub fn vectors() -> &'static [u8] {
-    // SAFETY: of this memory the linker knows nothing, and nothing writes to it.
-    unsafe { core::slice::from_raw_parts(0x2100_0000 as *const u8, 16 << 20) }
-}
-
 /// The first serial line (CMSDK UART): data, state (bit 0 full to write, bit 1 something to read), control (bits 0 and 1 let both in).
 const SERIAL: usize = 0x4000_4000;
 

@@ -7,18 +7,6 @@ use palpate_core::servo::{Command, Input, Limits, Request, State, Table, step};
 /// are no report stand for none.
 pub type Frame = [u8; Control::LENGTH + PositionReport::LENGTH];
 
-/// Counts of 1 µm and of 0.5 mN, at most 8 N, 1 ms, a watchdog of 15 ms: what the examples' device says of itself.
-pub const CAPABILITIES: Capabilities = Capabilities {
-    version: 1,
-    position_unit_nm: 1000,
-    force_unit_un: 500,
-    largest_force_mn: 8000,
-    period_us: 1000,
-    watchdog_ms: 15,
-    damping_mn_s_per_m: 600,
-    friction_mn: 140,
-};
-
 /// What stays from cycle to cycle.
 #[derive(Debug, Clone, Copy)]
 pub struct Device<'a> {

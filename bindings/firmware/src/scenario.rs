@@ -1,12 +1,16 @@
 //! 10,000 cycles of a hand that probes, a switch that is let go, reports that are lost and repeated, faults and overwritten
 //! memory, the same on every machine.
 
+use core::fmt::Write;
+
 use palpate_core::force::Force;
-use palpate_core::hid::{Control, PositionReport, button, status};
+use palpate_core::hid::{Control, PAPER, PositionReport, button, status};
 use palpate_core::servo::{Command, Input, Mode, State};
 use palpate_core::stats::random::Generator;
 
 use crate::device::{Device, Frame};
+use crate::digest::Digest;
+use crate::table;
 
 /// How many cycles.
 pub const CYCLES: u32 = 10_000;
@@ -79,12 +83,18 @@ pub fn frame(cycle: u32) -> Frame {
 /// What the scenario came to.
 #[derive(Debug, Default)]
 pub struct Outcome {
-    /// The bits of all commands and modes, folded (FNV-1a, 64 bits).
-    pub hash: u64,
+    /// Of all commands and modes.
+    pub digest: Digest,
     /// Cycles in which the force followed the table.
     pub playing: u32,
     /// Cycles with a fault of the position, the device, the watchdog and the state.
     pub faults: [u32; 4],
+}
+
+/// The outcome on the paper's display.
+pub fn outcome() -> Option<Outcome> {
+    let mut device = Device::new(table::PAPER.table()?, &PAPER)?;
+    Some(run(&mut device, Device::step))
 }
 
 /// Runs all cycles; `stepped` steps the kernel, and may measure.
@@ -94,29 +104,17 @@ pub fn run<'a>(
     device: &mut Device<'a>,
     mut stepped: impl FnMut(&mut Device<'a>, Input) -> Command,
 ) -> Outcome {
-    let mut outcome = Outcome {
-        hash: 0xCBF2_9CE4_8422_2325,
-        ..Outcome::default()
-    };
+    let mut outcome = Outcome::default();
     for cycle in 0..CYCLES {
         let mut input = device.input(&frame(cycle));
         spoil(cycle, &mut input, &mut device.state);
         let command = stepped(device, input);
-        let mode = match device.state.mode {
-            Mode::Disarmed => 0,
-            Mode::Armed => 1,
-            Mode::Faulted(fault) => {
-                outcome.faults[fault as usize] += 1;
-                2 + fault as u32
-            }
-        };
-        outcome.playing += u32::from(command.playing);
-        let Force { lateral, normal } = command.force;
-        for word in [lateral.to_bits(), normal.to_bits(), mode] {
-            for byte in word.to_le_bytes() {
-                outcome.hash = (outcome.hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3);
-            }
+        let mode = device.state.mode;
+        if let Mode::Faulted(fault) = mode {
+            outcome.faults[fault as usize] += 1;
         }
+        outcome.playing += u32::from(command.playing);
+        let _ = write!(outcome.digest, "{command:?} {mode:?}"); // a digest takes every text
     }
     outcome
 }

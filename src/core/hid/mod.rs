@@ -11,7 +11,7 @@ mod tests;
 mod units;
 
 pub use report::{
-    Capabilities, Control, DESCRIPTOR, ForceReport, InvalidReport, PositionReport, button, status,
-    uses_page,
+    Capabilities, Control, DESCRIPTOR, ForceReport, InvalidReport, PAPER, PositionReport, button,
+    status, uses_page,
 };
 pub use units::{InvalidCapabilities, Units, count};

@@ -128,6 +128,19 @@ pub struct Capabilities {
     pub friction_mn: u16,
 }
 
+/// What the paper's display would answer: counts of 1 µm and, as the paper says of its quantization,
+/// 0.5 mN; friction as in its Table 2.
+pub const PAPER: Capabilities = Capabilities {
+    version: 1,
+    position_unit_nm: 1000,
+    force_unit_un: 500,
+    largest_force_mn: 8000,
+    period_us: 1000,
+    watchdog_ms: 15,
+    damping_mn_s_per_m: 600,
+    friction_mn: 140,
+};
+
 /// Feature report 4: what the device is told.
 #[repr(u8)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

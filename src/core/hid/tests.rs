@@ -44,20 +44,9 @@ fn a_report_has_its_bytes_in_order() {
     assert_eq!(ForceReport::decode(&bytes), Ok(force));
     let words = [1, 1000, 500, 8000, 1000, 15, 600, 140].map(u16::to_le_bytes);
     let bytes = [&[3], words.as_flattened()].concat();
-    assert_eq!(DEVICE.encode(), bytes[..]);
-    assert_eq!(Capabilities::decode(&bytes), Ok(DEVICE));
+    assert_eq!(PAPER.encode(), bytes[..]);
+    assert_eq!(Capabilities::decode(&bytes), Ok(PAPER));
 }
-
-const DEVICE: Capabilities = Capabilities {
-    version: 1,
-    position_unit_nm: 1000,
-    force_unit_un: 500,
-    largest_force_mn: 8000,
-    period_us: 1000,
-    watchdog_ms: 15,
-    damping_mn_s_per_m: 600,
-    friction_mn: 140,
-};
 
 // Verifies: HID-002, HID-006.
 #[test]
@@ -74,7 +63,7 @@ fn control_has_three_values() {
 // Verifies: HID-006.
 #[test]
 fn another_length_or_number_is_refused() {
-    let good = DEVICE.encode();
+    let good = PAPER.encode();
     let (found, expected) = (2, 3);
     let number = InvalidReport::Number { found, expected };
     let other = [&[found], &good[1..]].concat();
@@ -96,7 +85,7 @@ fn a_device_without_units_is_refused() {
         (|c| c.force_unit_un = 0, "'s force unit is 0 µN"),
     ];
     for ((change, found), least) in changes.into_iter().zip(["", "at least ", "at least "]) {
-        let mut device = DEVICE;
+        let mut device = PAPER;
         change(&mut device);
         let refused = format!("{}", Units::new(&device).unwrap_err());
         let expected = format!("the device{found}, expected {least}1");
@@ -107,7 +96,7 @@ fn a_device_without_units_is_refused() {
 // Verifies: HID-010.
 #[test]
 fn counts_are_micrometres_and_half_millinewtons_here() {
-    let units = Units::new(&DEVICE).unwrap();
+    let units = Units::new(&PAPER).unwrap();
     let report = PositionReport {
         lateral: -12_000,
         normal: -4_000,

@@ -20,6 +20,7 @@ use std::time::Duration;
 pub use fault::Defect;
 use handle::Handle;
 pub use handle::Mechanics;
+pub use palpate_core::hid::PAPER;
 pub use trajectory::Trajectory;
 
 use super::{
@@ -32,19 +33,6 @@ const QUEUE: usize = 63;
 
 /// After this long without taking a report, a write is given up.
 const GIVE_UP: Duration = Duration::from_millis(5_190);
-
-/// What the paper's display would answer: counts of 1 µm and, as the paper says of its quantization,
-/// 0.5 mN; friction as in its Table 2.
-pub const PAPER: Capabilities = Capabilities {
-    version: 1,
-    position_unit_nm: 1000,
-    force_unit_un: 500,
-    largest_force_mn: 8000,
-    period_us: 1000,
-    watchdog_ms: 15,
-    damping_mn_s_per_m: 600,
-    friction_mn: 140,
-};
 
 /// A simulated device in a simulated hand.
 ///
