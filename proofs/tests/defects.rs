@@ -12,7 +12,7 @@ use std::process::Command;
 use list::{Defect, defects};
 
 /// The packages that the harnesses see.
-const PACKAGES: [&str; 3] = ["src/core", "bindings/c", "proofs"];
+const PACKAGES: [&str; 4] = ["src/core", "bindings/c", "proofs", "tests/asserts"];
 
 /// A copy of the core and its proofs, with a target folder of its own.
 struct Copy {
