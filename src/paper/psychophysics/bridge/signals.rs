@@ -1,6 +1,6 @@
 //! What each convention makes of the difference of two force maps along a sweep.
 
-use super::{BridgeInclusion, Channel, Convention, Offset, Statistic};
+use super::answer::{BridgeInclusion, Channel, Convention, Offset, Statistic};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, SAME_POSITION, peak};
 use palpate::refusal::Refusal;

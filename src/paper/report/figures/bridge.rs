@@ -1,7 +1,7 @@
 //! The bridge: rates predicted from the forces, against the subjects' answers to FEM playback.
 
 use super::people::{DEPTH, SHARE, bar, points, share_panel};
-use super::{Plan, Words};
+use super::plan::{Plan, Words};
 use crate::psychophysics::bridge::{Channel, ConditionBridge, ConventionFit, Offset, Statistic};
 use crate::report::text::millimetres;
 use crate::report::{Findings, Topic, paper};

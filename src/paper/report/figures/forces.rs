@@ -1,6 +1,7 @@
 //! Figure 5 for every phantom, Figure 7 for measured maps, and the signals at one depth.
 
-use super::{Plan, Words, band_ends};
+use super::bands::band_ends;
+use super::plan::{Plan, Words};
 use crate::report::maps::incomparable;
 use crate::report::text::{fixed, joined, millimetres, name_of_map, shortened};
 use crate::report::{Findings, MapFindings, Run, Topic, paper};

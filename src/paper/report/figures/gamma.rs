@@ -1,7 +1,7 @@
 //! γ of a sweep beside what may be unknown of it.
 
 use super::people::DEPTH;
-use super::{Plan, Words};
+use super::plan::{Plan, Words};
 use crate::report::inputs;
 use crate::report::text::{extremes, fixed, joined, millimetres, percent, trimmed};
 use crate::report::{Findings, GammaBeside, MapFindings, Run, Topic};

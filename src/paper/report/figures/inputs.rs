@@ -1,6 +1,6 @@
 //! Which input counts: tornado charts of a study.
 
-use super::{Plan, Words};
+use super::plan::{Plan, Words};
 use crate::report::text::{fixed, joined, shortened};
 use crate::report::{Run, Topic};
 use crate::study::{Kind, QuantityResult, StudyResults};
@@ -8,7 +8,7 @@ use palpate::chart::style::{BLUE, VERMILION};
 use palpate::chart::{Line, Panel, PanelKind, round_range};
 
 /// What the x axis shows.
-const CHANGE: &str = "Change from the lower to the upper quartile of the input (%)";
+const CHANGE: &str = "Change between the quartiles of the input (%)";
 /// Pixels for one input.
 const ROW: i32 = 20;
 /// Letters of a name that fit beside the chart.

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use plotters::style::RGBColor;
 
+use super::plan::{Plan, Words};
 use super::setup::{INCLUSION, PROBE, layer_key, probe, tint};
-use super::{Plan, Words};
 use crate::report::text::{fixed, millimetres};
 use crate::report::{DeformedMesh, Topic, paper};
 use palpate::chart::{Cells, Line, Panel, to_mm};

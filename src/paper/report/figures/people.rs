@@ -2,7 +2,8 @@
 
 use plotters::style::RGBColor;
 
-use super::{Picture, Plan, Words, band_ends};
+use super::bands::band_ends;
+use super::plan::{Picture, Plan, Words};
 use crate::psychophysics::{
     Analysis, Bounds, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis,
 };

@@ -4,7 +4,7 @@ use core::iter::once;
 
 use plotters::style::{RGBColor, WHITE};
 
-use super::{Plan, Words};
+use super::plan::{Plan, Words};
 use crate::report::text::{joined, millimetres, shortened, trimmed};
 use crate::report::{Run, Topic, paper};
 use palpate::chart::{CHORDS, Line, Panel, to_mm};

@@ -2,7 +2,7 @@
 
 use plotters::style::text_anchor::HPos;
 
-use super::{Picture, Plan, Words};
+use super::plan::{Picture, Plan, Words};
 use crate::report::text::{fixed, percent};
 use crate::report::{Topic, paper};
 use palpate::chart::style::{BLUE, GREY, INK, PALETTE, VERMILION};
