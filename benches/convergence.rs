@@ -115,10 +115,13 @@ fn study(name: &str, phantom: &Phantom, laterals: &[f64]) -> Shares {
         );
         (text, within)
     };
-    let (normal, normal_within) =
-        errors(|map| &map.forces().normal, &bands.normal_force_band, true);
+    let (normal, normal_within) = errors(
+        |map| &map.table().forces().normal,
+        &bands.normal_force_band,
+        true,
+    );
     let (lateral, lateral_within) = errors(
-        |map| &map.forces().lateral,
+        |map| &map.table().forces().lateral,
         &bands.lateral_force_band,
         false,
     );

@@ -19,7 +19,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // A sweep over the inclusion at x = 2 mm, 4.6 mm deep, in noise of 0.05 N.
     let truth = (0..bank.maps().len()).find(|&map| bank.point(map)[..2] == [2e-3, 4.6e-3]);
-    let truth = bank.maps()[truth.ok_or("a map of that point")?].row(4e-3)?;
+    let truth = bank.maps()[truth.ok_or("a map of that point")?]
+        .table()
+        .row(4e-3)?;
     let noise = Generator::new(1, 0);
     let mut file = String::from("position_mm,lateral_force_n,normal_force_n\n");
     for (sample, x) in laterals.iter().enumerate() {

@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let map = model.map(&[2e-3, 3e-3], &laterals, &|_| ())?;
 
     println!("normal and lateral force (N), 3 mm deep");
-    let row = map.row(3e-3)?;
+    let row = map.table().row(3e-3)?;
     for ((x, normal), lateral) in laterals.iter().zip(row.normal).zip(row.lateral) {
         println!("x = {:4.1} mm  {normal:.4}  {lateral:+.4}", 1e3 * x);
     }

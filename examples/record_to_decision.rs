@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // A file of the laboratory, here made up: noise of 0.05 N, and a sensor with an offset of 0.2 N.
     let noise = Generator::new(1, 0);
     let mut file = String::from("position_mm,lateral_force_n,normal_force_n\n");
-    let truth = with.row(4e-3)?;
+    let truth = with.table().row(4e-3)?;
     for (sample, x) in laterals.iter().enumerate() {
         let read = |force: f64, noise: f64| force + 0.2 + 0.05 * noise;
         let lateral = read(truth.lateral[sample], noise.normal(0, sample as u64));

@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let loaded = LoadedTable::new(&table)?;
     let hand = Trajectory::probing(3e-3, 10e-3, Duration::from_millis(500));
     let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Vec::new());
-    let mut session = Session::begin(device, loaded.table()?, Limits::for_playback(4.0)?)?;
+    let mut session = Session::begin(device, loaded.table(), Limits::for_playback(4.0)?)?;
     let unit = 1e-6 * f64::from(session.capabilities().force_unit_un);
     let mut strongest = 0.0f64;
     let end = session.run(|cycle, _| {

@@ -79,7 +79,7 @@ fn diameters_and_moduli_are_in_mm_and_kpa() {
     assert_eq!(diameters, &[4e-3, 6e-3]);
     assert_eq!(moduli, &[44_100.0, 300_100.0]);
     assert_eq!(bank.depth(), 2e-3);
-    assert_eq!(bank.reference().laterals(), [0.0, 2e-3]);
+    assert_eq!(bank.reference().table().laterals(), [0.0, 2e-3]);
     let certificate = bank.maps()[0].certificate().unwrap();
     assert_eq!(certificate.mesh_size, 3e-3);
     assert_eq!(certificate.contact, "vertical-gap");

@@ -48,7 +48,7 @@ fn map(x: f64, depth: f64, mesh_size: f64) -> ForceMap {
 }
 
 fn record(map: &ForceMap) -> Record {
-    let forces = map.row(DEPTH).unwrap();
+    let forces = map.table().row(DEPTH).unwrap();
     let mut text = String::from("position_mm,lateral_force_n,normal_force_n\n");
     for (k, position) in laterals().iter().enumerate() {
         let [lateral, normal] = [forces.lateral[k], forces.normal[k]];
@@ -67,16 +67,16 @@ fn detector(bank: &Bank, unknown: &[Unknown], sd: f64) -> BankDetector {
         both.iter().map(|value| value / sd).collect()
     };
     let reference = bank.reference();
-    let f0 = white(reference.row(DEPTH).unwrap());
+    let f0 = white(reference.table().row(DEPTH).unwrap());
     let templates = bank.maps().iter().flat_map(|map| {
-        let f1 = white(map.row(DEPTH).unwrap());
+        let f1 = white(map.table().row(DEPTH).unwrap());
         f1.iter()
             .zip(&f0)
             .map(|(f1, f0)| f1 - f0)
             .collect::<Vec<_>>()
     });
-    let expected = |depth| Ok(reference.row(depth)?.map(<[f64]>::to_vec));
-    let signals = nuisances(unknown, reference.depths(), DEPTH, expected).unwrap();
+    let expected = |depth| Ok(reference.table().row(depth)?.map(<[f64]>::to_vec));
+    let signals = nuisances(unknown, reference.table().depths(), DEPTH, expected).unwrap();
     let signals = signals.iter().flat_map(|signal| white(signal.as_deref()));
     let number = bank.maps().len();
     let prior = vec![1.0 / number as f64; number];

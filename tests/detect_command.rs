@@ -149,7 +149,7 @@ fn where_all_is_known_theta_is_that_of_the_library_and_of_a_plain_sum() {
         let found = answer(trace, &format!("{KNOWN} --prior-h1 0.2"));
         let (theta, energy) = plain(trace, [none.table(), inclusion.table()]);
         let observed = observed(trace);
-        let [f0, f1] = [&none, &inclusion].map(|map| map.row(0.003).unwrap());
+        let [f0, f1] = [&none, &inclusion].map(|map| map.table().row(0.003).unwrap());
         let statistic = theta_of_record(observed.as_deref(), f0, f1, NOISE).unwrap();
         let rates = error_rates(statistic.gamma, 4.0_f64.ln()).unwrap();
         let threshold = 4.0_f64.ln() / energy.sqrt() + 0.5 * energy.sqrt();

@@ -136,7 +136,7 @@ fn assert_same(read: &ForceMap, written: &ForceMap) {
     assert_eq!(read, written);
     let bits =
         |matrix: &Matrix| -> Vec<_> { matrix.values().iter().map(|v| v.to_bits()).collect() };
-    let [read, written] = [read, written].map(|map| map.forces().as_ref().map(bits));
+    let [read, written] = [read, written].map(|map| map.table().forces().as_ref().map(bits));
     assert_eq!(read, written);
 }
 

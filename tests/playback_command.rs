@@ -51,6 +51,7 @@ fn a_noisy_map_that_is_refused_is_played_when_smoothed() {
     let clean = ForceMap::read(&here.at("clean.json")).unwrap();
     let generator = Generator::new(20_261_122, 4);
     let noisy = clean
+        .table()
         .forces()
         .as_ref()
         .zip(Force::new(0, 1))
@@ -62,7 +63,12 @@ fn a_noisy_map_that_is_refused_is_played_when_smoothed() {
                     + noise * generator.normal(channel, (41 * row + column) as u64)
             })
         });
-    let noisy = ForceTable::new(clean.depths().into(), clean.laterals().into(), noisy).unwrap();
+    let noisy = ForceTable::new(
+        clean.table().depths().into(),
+        clean.table().laterals().into(),
+        noisy,
+    )
+    .unwrap();
     here.write("noisy.csv", noisy.to_csv());
     here.succeed("import-map noisy.csv --out noisy.json");
     let refused = here.refused("play --map noisy.json --seconds 1");

@@ -26,7 +26,7 @@ fn bank() -> Bank {
 
 /// Both channels of a map at the depth of the probe.
 fn channels(map: &ForceMap) -> [Vec<f64>; 2] {
-    let row = map.row(3e-3).unwrap();
+    let row = map.table().row(3e-3).unwrap();
     [row.lateral.to_vec(), row.normal.to_vec()]
 }
 

@@ -91,7 +91,11 @@ impl Case {
         let positions: Vec<f64> = (0..self.samples)
             .map(|i| -8e-3 + 16e-3 * i as f64 / (self.samples - 1) as f64)
             .collect();
-        let exact = map.sweep(self.depth, &positions).unwrap().into_array();
+        let exact = map
+            .table()
+            .sweep(self.depth, &positions)
+            .unwrap()
+            .into_array();
         // In its stationary state from the start.
         let mut state = [0, 1].map(|channel| NOISE * generator.normal(channel, self.samples));
         let fresh = NOISE * (1.0 - self.memory * self.memory).sqrt();

@@ -48,7 +48,7 @@ fn a_run_of_own_asymmetric_phantoms_shows_them() {
     here.succeed("run --config run.toml");
     let out = here.at("palpate-out");
     let map = ForceMap::read(&out.join("maps/map-asymmetric.json")).unwrap();
-    let forces = map.forces().normal.row(1);
+    let forces = map.table().forces().normal.row(1);
     assert!(forces[0] > forces[4] + 0.02, "{forces:?}");
     // The mesh under the probe where it is nearest to the first inclusion.
     let page = fs::read_to_string(out.join("report.html")).unwrap();
@@ -116,8 +116,15 @@ fn the_papers_run_writes_all_its_files_and_the_readmes_figure() {
     for name in ["none", "2.6", "4.6", "6.6", "8.6"] {
         let map = ForceMap::read(&out.join(format!("maps/map-{name}.json"))).unwrap();
         assert_eq!(map.phantom(), Some(&Phantom::builtin(name).unwrap()));
-        assert_eq!((map.depths().len(), map.laterals().len()), (9, 41));
-        let ends = [map.depths()[8], map.laterals()[0], map.laterals()[40]];
+        assert_eq!(
+            (map.table().depths().len(), map.table().laterals().len()),
+            (9, 41)
+        );
+        let ends = [
+            map.table().depths()[8],
+            map.table().laterals()[0],
+            map.table().laterals()[40],
+        ];
         assert_eq!(ends, [4e-3, -10e-3, 10e-3]);
         assert!(out.join(format!("figures/figure-5-{name}.svg")).exists());
     }

@@ -42,15 +42,15 @@
 //! let (without, with) = (map("none")?, map("6.6")?);
 //!
 //! // A sweep at 4 mm, as it would come without noise over the inclusion. Samples in noise of 0.1 N.
-//! let (f0, f1) = (without.row(4e-3)?, with.row(4e-3)?);
+//! let (f0, f1) = (without.table().row(4e-3)?, with.table().row(4e-3)?);
 //! let found = theta_of_record(f1, f0, f1, Force { lateral: 0.1, normal: 0.1 })?;
 //! assert_eq!(decide(found.theta, 0.0)?, Decision::Inclusion);
 //! assert!((found.theta - found.gamma.powi(2) / 2.0).abs() < 1e-9);
 //!
 //! // The force on a hand that probes there, 3 mm deep: between the forces at 2 and at 4 mm.
 //! let loaded = LoadedTable::new(with.table())?;
-//! let force = loaded.table()?.force(3e-3, 0.0);
-//! let [shallow, deep] = [0, 1].map(|row| with.forces().normal.row(row)[5] as f32);
+//! let force = loaded.table().force(3e-3, 0.0);
+//! let [shallow, deep] = [0, 1].map(|row| with.table().forces().normal.row(row)[5] as f32);
 //! assert!(shallow < force.normal && force.normal < deep);
 //! # Ok(())
 //! # }

@@ -218,7 +218,7 @@ impl<'a> Pairs<'a> {
 
     /// A sample as it is felt.
     fn felt(&self, table: &LoadedTable) -> Result<Felt, CliError> {
-        let table = table.table().map_err(CliError::refused("servo"))?;
+        let table = table.table();
         let duration = Duration::from_secs(self.arguments.seconds);
         let device = open(self.arguments)?;
         present(device, table, self.limits, duration, PATIENCE)

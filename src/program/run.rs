@@ -13,8 +13,8 @@ use super::progress::{bar, tell_large_mesh};
 use super::solve::warn_of_large_strain;
 use palpate::fem::certify::certified_map;
 use palpate::fem::{FemError, Model, Pose};
-use palpate::force_map::ForceMap;
 use palpate::file::read;
+use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 use palpate_paper::report::{DeformedMesh, FileNames, Run, figures, findings, html, summary_json};
@@ -120,14 +120,14 @@ fn solve_phantom(
 
 /// The mesh at the deepest pose, at the lateral position nearest to the middle of the first inclusion, or to x = 0.
 fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
-    let deepest = map.depths().iter().fold(0.0, |a: f64, &b| a.max(b));
+    let deepest = map.table().depths().iter().fold(0.0, |a: f64, &b| a.max(b));
     let first = model.phantom().inclusions.first();
     let middle = first.map_or(0.0, |inclusion| {
         let [left, right, ..] = inclusion.extent();
         0.5 * (left + right)
     });
     let distance = |x: f64| (x - middle).abs();
-    let laterals = map.laterals().iter().copied();
+    let laterals = map.table().laterals().iter().copied();
     let nearest = laterals.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
     let pose = Pose {
         depth: deepest,

@@ -10,9 +10,9 @@ use clap::{Args, ValueEnum};
 use super::output::print;
 use super::playback::{limits, loaded_map};
 use super::{CliError, Format};
+use palpate::file;
 use palpate::hid::simulated::PAPER;
 use palpate::hid::timing::{Budget, BudgetOutcome, Judged, Timing, judge_log, measure, paper};
-use palpate::file;
 
 /// Arguments of `palpate timing`.
 #[derive(Debug, Args)]
@@ -93,7 +93,7 @@ fn measured(arguments: &TimingArguments, budget: Budget) -> Result<Timing, CliEr
         Some(path) => loaded_map(path)?,
         None => paper::table()?,
     };
-    let table = loaded.table().map_err(defect)?;
+    let table = loaded.table();
     let limits = limits(4.0)?;
     let device = paper::device(arguments.cycles);
     let period = arguments.paced.then(|| PAPER.period());

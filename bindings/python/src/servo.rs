@@ -30,14 +30,14 @@ impl ServoTable {
     fn force(&self, depth_mm: f64, lateral_mm: f64) -> PyResult<(f32, f32)> {
         let depth = single("depth_mm", depth_mm, -3)?;
         let lateral = single("lateral_mm", lateral_mm, -3)?;
-        let force = self.0.table().map_err(refused)?.force(depth, lateral);
+        let force = self.0.table().force(depth, lateral);
         Ok((force.lateral, force.normal))
     }
 
     /// The stiffness of the table, N/m: its steepest slope.
     #[getter]
     fn stiffness_n_per_m(&self) -> PyResult<f64> {
-        Ok(servo::stiffness(&self.0.table().map_err(refused)?))
+        Ok(servo::stiffness(&self.0.table()))
     }
 }
 
@@ -148,7 +148,7 @@ pub fn step(
         }
     };
     let sample = sample.map(|sample| sample.0);
-    let table = table.0.table().map_err(refused)?;
+    let table = table.0.table();
     let (next, command) = servo::step(&table, &limits.0, state.0, Input { sample, request });
     Ok((
         ServoState(next),

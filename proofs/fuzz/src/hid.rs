@@ -110,7 +110,7 @@ fn check_replay(recording: &Recording) {
         Force { lateral, normal },
     );
     let loaded = LoadedTable::new(&map.expect("a map")).expect("a table");
-    match recording.replay(loaded.table().expect("loaded")) {
+    match recording.replay(loaded.table()) {
         Ok(cycles) => assert_eq!(cycles, recording.cycles.len()),
         Err(refusal) => check_message(&refusal.to_string()),
     }

@@ -145,8 +145,8 @@ fn forces(name: &str) -> Result<Force<Vec<f64>>, String> {
         .and_then(|model| model.map(&[DEPTH], &laterals, &|_| ()))
         .map_err(|error| failed(&error))?;
     Ok(Force::new(
-        map.forces().lateral.row(0).to_vec(),
-        map.forces().normal.row(0).to_vec(),
+        map.table().forces().lateral.row(0).to_vec(),
+        map.table().forces().normal.row(0).to_vec(),
     ))
 }
 

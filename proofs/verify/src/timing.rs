@@ -49,7 +49,7 @@ const CYCLES: u64 = 100_000;
 
 fn steps() -> Measured {
     let loaded = paper::table().map_err(|error| error.to_string())?;
-    let table = loaded.table().map_err(|error| format!("{error:?}"))?;
+    let table = loaded.table();
     let limits = Limits::for_playback(4.0).map_err(|error| error.to_string())?;
     let mut state = State {
         mode: Mode::Armed,
@@ -108,7 +108,7 @@ fn one_step(table: &Table, limits: &Limits, state: State, cycle: u16) -> (State,
 
 fn cycles() -> Measured {
     let loaded = paper::table().map_err(|error| error.to_string())?;
-    let table = loaded.table().map_err(|error| format!("{error:?}"))?;
+    let table = loaded.table();
     let timing = measure(
         paper::device(CYCLES),
         table,

@@ -111,8 +111,8 @@ impl Bank {
         let Some(first) = maps.first() else {
             return Err(Refusal::state("a bank without maps", "one at least"));
         };
-        let depth = first.depths()[0];
-        reference.row(depth)?;
+        let depth = first.table().depths()[0];
+        reference.table().row(depth)?;
         let mut points = Vec::with_capacity(maps.len());
         for (number, map) in maps.iter().enumerate() {
             let of_map = |refusal: Refusal| refusal.of_part(&format!("maps[{number}]"));
@@ -195,8 +195,8 @@ fn check_map(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<[f64; 4
         let found = "its phantom has not one inclusion";
         return Err(Refusal::state(found, "one, which says what the map is for"));
     };
-    let [only] = map.depths() else {
-        let found = format!("{} depths of the probe", map.depths().len());
+    let [only] = map.table().depths() else {
+        let found = format!("{} depths of the probe", map.table().depths().len());
         return Err(Refusal::state(found, "one"));
     };
     if (only - depth).abs() > SAME_POSITION {
@@ -204,7 +204,7 @@ fn check_map(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<[f64; 4
         return Err(Refusal::value("depths_m[0]", only, expected));
     }
     let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_POSITION;
-    let (ours, theirs) = (map.laterals(), reference.laterals());
+    let (ours, theirs) = (map.table().laterals(), reference.table().laterals());
     if ours.len() != theirs.len() || !ours.iter().zip(theirs).all(same) {
         let found = "its lateral positions are not those of the reference";
         return Err(Refusal::state(found, "the same"));

@@ -68,11 +68,11 @@ impl Reach<'_> {
         let enough = self.gamma()?;
         let reference = self.bank.reference();
         let ends = (
-            reference.laterals()[0],
-            *reference.laterals().last().unwrap_or(&0.0),
+            reference.table().laterals()[0],
+            *reference.table().laterals().last().unwrap_or(&0.0),
         );
         let positions = match self.samples {
-            None => reference.laterals().to_vec(),
+            None => reference.table().laterals().to_vec(),
             Some(1) => vec![0.5 * (ends.0 + ends.1)],
             Some(samples) => {
                 let share = |k: usize| k as f64 / (samples - 1) as f64;
@@ -81,9 +81,9 @@ impl Reach<'_> {
                     .collect()
             }
         };
-        let f0 = reference.sweep(self.bank.depth(), &positions)?;
-        let expected = |depth| reference.sweep(depth, &positions);
-        let depths = reference.depths();
+        let f0 = reference.table().sweep(self.bank.depth(), &positions)?;
+        let expected = |depth| reference.table().sweep(depth, &positions);
+        let depths = reference.table().depths();
         let signals = nuisances(self.unknown, depths, self.bank.depth(), expected)?;
         let white = |series: &Series| stacked(&whitened(series, self.noise_sd));
         let mut signals: Vec<f64> = signals.iter().flat_map(white).collect();
@@ -92,7 +92,9 @@ impl Reach<'_> {
         let middle =
             (0..axes[0].len()).min_by(|&a, &b| axes[0][a].abs().total_cmp(&axes[0][b].abs()));
         let gamma = |map: usize| -> Result<f64, Refusal> {
-            let f1 = self.bank.maps()[map].sweep(self.bank.depth(), &positions)?;
+            let f1 = self.bank.maps()[map]
+                .table()
+                .sweep(self.bank.depth(), &positions)?;
             let signal = difference(f1.as_deref(), f0.as_deref());
             Ok(space.project(&mut white(&signal)))
         };

@@ -9,7 +9,9 @@ use super::mesh::Mesh;
 use super::size::SizeField;
 use super::{FemError, Pose, arithmetic};
 use crate::force::Force;
-use crate::force_map::{Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source};
+use crate::force_map::{
+    Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source, check_axes,
+};
 use crate::phantom::Phantom;
 
 /// A phantom, meshed and factorised.
@@ -307,9 +309,7 @@ impl Model {
 
     /// Axes first: a list that cannot be a map shall not cost the time to solve it.
     fn check_poses(&self, depths: &[f64], laterals: &[f64]) -> Result<(), FemError> {
-        let zeros = Matrix::from_fn(depths.len(), laterals.len(), |_, _| 0.0);
-        let forces = Force::new(zeros.clone(), zeros);
-        ForceTable::new(depths.to_vec(), laterals.to_vec(), forces)?;
+        check_axes(depths, laterals)?;
         for &lateral in laterals {
             for &depth in depths {
                 self.check_pose(Pose { depth, lateral })?;

@@ -86,6 +86,20 @@ pub struct SmallestDet {
     pub lateral: f64,
 }
 
+impl Discretization {
+    /// Whether the bands are finite, at least 0, and of the `shape` of the forces.
+    ///
+    /// Implements: MAP-006, MAP-002.
+    pub(super) fn check(&self, shape: [usize; 2]) -> Result<(), Refusal> {
+        let (normal, lateral) = (&self.normal_force_band, &self.lateral_force_band);
+        for (channel, band) in [("normal", normal), ("lateral", lateral)] {
+            let key = format!("certificate.discretization.{channel}_force_band_n");
+            band.check(&key, shape, 0.0)?;
+        }
+        Ok(())
+    }
+}
+
 impl SmallestDet {
     /// The smallest entry of `min_det` (depths × lateral positions); of equals the one nearest to
     /// x = 0, then the first. `None` if the matrix is empty or holds a NaN.
@@ -125,11 +139,7 @@ impl Certificate {
         let least = f64::NEG_INFINITY;
         self.min_det.check("certificate.min_det", shape, least)?;
         if let Some(bands) = &self.discretization {
-            let (normal, lateral) = (&bands.normal_force_band, &bands.lateral_force_band);
-            for (channel, band) in [("normal", normal), ("lateral", lateral)] {
-                let key = format!("certificate.discretization.{channel}_force_band_n");
-                band.check(&key, shape, 0.0)?;
-            }
+            bands.check(shape)?;
         }
         let stated = self.smallest_det;
         let dets = self.min_det.values().iter().copied();

@@ -2,7 +2,7 @@
 
 use super::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use crate::csv::{Column, Rows};
-use crate::decimal::format_scaled;
+use crate::decimal::{format_scaled, mm};
 use crate::force::Force;
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
@@ -26,8 +26,8 @@ impl ForceMap {
     ///
     /// let text = "lateral_mm,depth_mm,normal_force_mn,lateral_force_mn\n0,4,1500,0\n2,4,1250,-125\n";
     /// let map = ForceMap::from_csv(text, "gel.csv", "third gel", None)?;
-    /// assert_eq!((map.depths(), map.laterals()), (&[0.004][..], &[0.0, 0.002][..]));
-    /// assert_eq!(map.forces().lateral.values(), [0.0, -0.125]);
+    /// assert_eq!((map.table().depths(), map.table().laterals()), (&[0.004][..], &[0.0, 0.002][..]));
+    /// assert_eq!(map.table().forces().lateral.values(), [0.0, -0.125]);
     /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
@@ -118,7 +118,7 @@ fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>) -> Result<ForceTable, Refusal> {
     // Stable: the first line of a pose stays first.
     rows.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let named = |depth, lateral| {
-        let [depth, lateral] = [depth, lateral].map(|length| format_scaled(length, 3));
+        let (depth, lateral) = (mm(depth), mm(lateral));
         format!("row for depth {depth} mm, lateral {lateral} mm")
     };
     let next = rows.iter().skip(1);

@@ -109,12 +109,7 @@ impl TryFrom<Document> for ForceMap {
             }
         };
         let forces = Force::new(document.lateral_force_n, document.normal_force_n);
-        let map = ForceMap {
-            program_version: document.program_version,
-            source,
-            phantom: document.phantom,
-            table: ForceTable::new(document.depths_m, document.laterals_m, forces)?,
-        };
-        map.checked()
+        let table = ForceTable::new(document.depths_m, document.laterals_m, forces)?;
+        ForceMap::of_version(document.program_version, source, document.phantom, table)
     }
 }

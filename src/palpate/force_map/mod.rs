@@ -37,7 +37,6 @@ mod table;
 #[cfg(test)]
 pub(crate) mod tests;
 
-use std::ops::Deref;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -48,6 +47,7 @@ pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use pair::Hypotheses;
 pub use pair::check_gel;
 pub use smoothing::Smoothed;
+pub(crate) use table::check_axes;
 pub use table::{ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE, peak};
 
 use crate::phantom::Phantom;
@@ -110,17 +110,16 @@ impl Measurement {
 /// let source = Source::Measured(Measurement::new("lab/gel.csv", ""));
 /// let map = ForceMap::new(source, Some(Phantom::builtin("6.6")?), forces)?;
 ///
-/// assert_eq!((map.depths(), map.laterals()), (&[0.001, 0.004][..], &[0.0, 0.005][..]));
-/// assert_eq!(map.forces().normal.row(1), [1.5, 1.25]);
-/// assert_eq!(map.forces().lateral.values(), [0.0, 0.0, 0.0, -0.125]);
-/// assert_eq!(map.table().row(0.004)?, map.row(0.004)?);
+/// assert_eq!((map.table().depths(), map.table().laterals()), (&[0.001, 0.004][..], &[0.0, 0.005][..]));
+/// assert_eq!(map.table().forces().normal.row(1), [1.5, 1.25]);
+/// assert_eq!(map.table().forces().lateral.values(), [0.0, 0.0, 0.0, -0.125]);
 /// // Measured, by this version, on a phantom that is known.
 /// assert!(map.certificate().is_none() && matches!(map.source(), Source::Measured(_)));
 /// assert_eq!(map.program_version(), env!("CARGO_PKG_VERSION"));
 /// assert!(map.phantom().is_some_and(|phantom| phantom.name == "6.6"));
 /// // The normal force is even in x, the lateral force odd.
 /// let whole = map.mirrored()?;
-/// assert_eq!(whole.row(0.004)?.lateral, [0.125, 0.0, -0.125]);
+/// assert_eq!(whole.table().row(0.004)?.lateral, [0.125, 0.0, -0.125]);
 /// assert_eq!(whole.at_laterals(&[0.0, 0.005])?, map);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -133,14 +132,6 @@ pub struct ForceMap {
     source: Source,
     phantom: Option<Phantom>,
     table: ForceTable,
-}
-
-impl Deref for ForceMap {
-    type Target = ForceTable;
-
-    fn deref(&self) -> &ForceTable {
-        &self.table
-    }
 }
 
 impl ForceMap {
@@ -156,43 +147,51 @@ impl ForceMap {
         phantom: Option<Phantom>,
         table: ForceTable,
     ) -> Result<ForceMap, Refusal> {
-        let map = ForceMap {
-            program_version: env!("CARGO_PKG_VERSION").into(),
-            source,
-            phantom,
-            table,
-        };
-        map.checked()
+        ForceMap::of_version(env!("CARGO_PKG_VERSION").into(), source, phantom, table)
     }
 
-    fn checked(self) -> Result<ForceMap, Refusal> {
-        if let Source::Measured(of) = &self.source
-            && let Some(width) = of.smoothed_half_width
-            && !(width > 0.0 && width.is_finite())
-        {
-            let key = "source.smoothed_half_width_m";
-            return Err(Refusal::value(key, width, "a finite number above 0"));
-        }
-        if let Some(certificate) = self.certificate() {
-            certificate.check(self.depths(), self.laterals())?;
-            if self.phantom.is_none() {
-                let expected = "the phantom that the finite elements computed";
-                return Err(Refusal::state("phantom is missing", expected));
+    /// A map made by any version of the program.
+    fn of_version(
+        program_version: String,
+        source: Source,
+        phantom: Option<Phantom>,
+        table: ForceTable,
+    ) -> Result<ForceMap, Refusal> {
+        match &source {
+            Source::FiniteElements { certificate } => {
+                certificate.check(table.depths(), table.laterals())?;
+                if phantom.is_none() {
+                    let expected = "the phantom that the finite elements computed";
+                    return Err(Refusal::state("phantom is missing", expected));
+                }
+            }
+            Source::Measured(of) => {
+                if let Some(width) = of.smoothed_half_width
+                    && !(width > 0.0 && width.is_finite())
+                {
+                    let key = "source.smoothed_half_width_m";
+                    return Err(Refusal::value(key, width, "a finite number above 0"));
+                }
             }
         }
-        if let Some(phantom) = &self.phantom {
+        if let Some(phantom) = &phantom {
             let of_phantom = |refusal: Refusal| Refusal {
                 key: format!("phantom: {}", refusal.key),
                 ..refusal
             };
             phantom.validate().map_err(of_phantom)?;
-            for &depth in self.depths() {
-                for &lateral in self.laterals() {
+            for &depth in table.depths() {
+                for &lateral in table.laterals() {
                     phantom.check_pose(depth, lateral).map_err(of_phantom)?;
                 }
             }
         }
-        Ok(self)
+        Ok(ForceMap {
+            program_version,
+            source,
+            phantom,
+            table,
+        })
     }
 
     /// This computed map with bands of the discretisation in its certificate; a measured map as it is, for bands of a mesh say
@@ -207,9 +206,10 @@ impl ForceMap {
         discretization: Discretization,
     ) -> Result<ForceMap, Refusal> {
         if let Source::FiniteElements { certificate } = &mut self.source {
+            discretization.check([self.table.depths().len(), self.table.laterals().len()])?;
             certificate.discretization = Some(discretization);
         }
-        self.checked()
+        Ok(self)
     }
 
     /// Reads the map at `path`: measured forces if its name ends in `.csv`, else JSON.
@@ -274,12 +274,11 @@ impl ForceMap {
                 "a map over negative lateral positions too: it cannot be extended by symmetry",
             ));
         }
-        let map = ForceMap {
+        Ok(ForceMap {
             table: self.table.mirrored()?,
             source: self.source_at(&self.table.mirror_columns()),
             ..self.clone()
-        };
-        map.checked()
+        })
     }
 
     /// The map of the mirror image of this map's phantom, over the negatives of its lateral positions.
@@ -299,13 +298,13 @@ impl ForceMap {
             ..self.clone()
         };
         let columns: Vec<usize> = (0..self.table.laterals().len()).rev().collect();
-        map.table = self.table.mirror_image(&columns)?;
+        map.table = self.table.mirror_image(&columns);
         map.source = self.source_at(&columns);
         if let Source::FiniteElements { certificate } = &mut map.source {
             let smallest = &mut certificate.smallest_det;
             smallest.lateral = 0.0 - smallest.lateral;
         }
-        map.checked()
+        Ok(map)
     }
 
     /// The columns of this map at some of its lateral positions (m).
@@ -315,7 +314,7 @@ impl ForceMap {
     ///
     /// Implements: MAP-012.
     pub fn at_laterals(&self, laterals: &[f64]) -> Result<ForceMap, Refusal> {
-        if laterals == self.laterals() {
+        if laterals == self.table().laterals() {
             return Ok(self.clone());
         }
         let columns = self.table.columns_at(laterals)?;
@@ -325,10 +324,10 @@ impl ForceMap {
             ..self.clone()
         };
         if let Source::FiniteElements { certificate } = &mut map.source {
-            let smallest = SmallestDet::of(&certificate.min_det, self.depths(), laterals);
+            let smallest = SmallestDet::of(&certificate.min_det, self.table().depths(), laterals);
             certificate.smallest_det = smallest.unwrap_or(certificate.smallest_det);
         }
-        map.checked()
+        Ok(map)
     }
 
     /// The source with some of the columns of its certificate.

@@ -173,12 +173,7 @@ impl ForceTable {
         for position in depths.iter_mut().chain(&mut laterals) {
             *position += 0.0;
         }
-        check_axis("depths_m", &depths)?;
-        check_axis("laterals_m", &laterals)?;
-        if depths[0] < 0.0 {
-            let expected = "at least 0, the undeformed surface";
-            return Err(Refusal::value("depths_m[0]", depths[0], expected));
-        }
+        check_axes(&depths, &laterals)?;
         let shape = [depths.len(), laterals.len()];
         (forces.normal).check("normal_force_n", shape, f64::NEG_INFINITY)?;
         (forces.lateral).check("lateral_force_n", shape, f64::NEG_INFINITY)?;
@@ -279,12 +274,15 @@ impl ForceTable {
     }
 
     /// The table of the mirror image, whose `columns` are those of this one from the last to the first.
-    pub(super) fn mirror_image(&self, columns: &[usize]) -> Result<ForceTable, Refusal> {
+    pub(super) fn mirror_image(&self, columns: &[usize]) -> ForceTable {
         let mut forces = self.forces.as_ref().map(|force| force.at_columns(columns));
         let lateral = &mut forces.lateral.values;
         lateral.iter_mut().for_each(|force| *force = 0.0 - *force);
-        let laterals = self.laterals.iter().rev().map(|x| 0.0 - x);
-        ForceTable::new(self.depths.clone(), laterals.collect(), forces)
+        ForceTable {
+            depths: self.depths.clone(),
+            laterals: self.laterals.iter().rev().map(|x| 0.0 - x).collect(),
+            forces,
+        }
     }
 
     /// The column at |x| for each lateral position x of this table extended by symmetry.
@@ -299,11 +297,19 @@ impl ForceTable {
         laterals.iter().map(column).collect()
     }
 
-    /// This table with some of its columns.
+    /// This table with some of its columns, from left to right.
     pub(super) fn at_columns(&self, columns: &[usize]) -> Result<ForceTable, Refusal> {
-        let laterals = columns.iter().map(|&column| self.laterals[column]);
+        let laterals: Vec<f64> = columns
+            .iter()
+            .map(|&column| self.laterals[column])
+            .collect();
+        check_axis("laterals_m", &laterals)?;
         let forces = self.forces.as_ref().map(|force| force.at_columns(columns));
-        ForceTable::new(self.depths.clone(), laterals.collect(), forces)
+        Ok(ForceTable {
+            depths: self.depths.clone(),
+            laterals,
+            forces,
+        })
     }
 }
 
@@ -314,6 +320,19 @@ fn place_of(name: &str, axis: &[f64], position: f64) -> Result<usize, Refusal> {
         let found = format!("{name} {position} m is not in the map");
         Refusal::state(found, format!("one of {axis:?} m"))
     })
+}
+
+/// Refuses depths and lateral positions (m) over which there is no table.
+///
+/// Implements: MAP-002.
+pub(crate) fn check_axes(depths: &[f64], laterals: &[f64]) -> Result<(), Refusal> {
+    check_axis("depths_m", depths)?;
+    check_axis("laterals_m", laterals)?;
+    if depths[0] < 0.0 {
+        let expected = "at least 0, the undeformed surface";
+        return Err(Refusal::value("depths_m[0]", depths[0], expected));
+    }
+    Ok(())
 }
 
 fn check_axis(key: &str, axis: &[f64]) -> Result<(), Refusal> {

@@ -224,8 +224,8 @@ fn a_map_fits_its_phantom() {
 #[test]
 fn symmetry_extends_a_map_to_negative_positions() {
     let map = computed(|_| ()).unwrap().mirrored().unwrap();
-    assert_eq!(map.depths(), [0.0, 0.001]);
-    assert_eq!(map.laterals(), [-0.005, -0.002, 0.0, 0.002, 0.005]);
+    assert_eq!(map.table().depths(), [0.0, 0.001]);
+    assert_eq!(map.table().laterals(), [-0.005, -0.002, 0.0, 0.002, 0.005]);
     let certificate = map.certificate().unwrap();
     assert_eq!(certificate.min_det.row(1), [0.85, 0.8, 0.9, 0.8, 0.85]);
     assert_eq!(certificate.smallest_det.lateral, 0.002);
@@ -285,11 +285,11 @@ fn a_signal_is_the_map_minus_its_reference() {
     let table = ForceTable::new(vec![0.0, 0.001], laterals, Force::new(still, reference)).unwrap();
     let reference = measured(None, table);
     let signal = map.signal(&reference).unwrap();
-    assert_eq!(signal.laterals(), map.laterals());
+    assert_eq!(signal.laterals(), map.table().laterals());
     assert_eq!(signal.forces().normal.row(0), [0.0, 0.1, 0.2]);
     let expected = [1.0 - 0.75, 1.1 - 0.5, 1.2 - 0.25];
     assert_eq!(signal.forces().normal.row(1), expected);
-    assert_eq!(signal.forces().lateral, map.forces().lateral);
+    assert_eq!(signal.forces().lateral, map.table().forces().lateral);
 }
 
 // Verifies: MAP-002, MAP-026, MAP-011.
@@ -382,12 +382,16 @@ proptest! {
 fn a_map_cut_to_some_positions_keeps_their_columns() {
     let map = computed(|_| ()).unwrap();
     let cut = map.at_laterals(&[0.0, 0.005]).unwrap();
-    assert_eq!(cut.laterals(), [0.0, 0.005]);
-    assert_eq!(cut.depths(), map.depths());
+    assert_eq!(cut.table().laterals(), [0.0, 0.005]);
+    assert_eq!(cut.table().depths(), map.table().depths());
     for row in 0..2 {
         for (kept, column) in [(0, 0), (1, 2)] {
             let bits = |matrix: &Matrix, column: usize| matrix.row(row)[column].to_bits();
-            let pairs = cut.forces().as_ref().zip(map.forces().as_ref());
+            let pairs = cut
+                .table()
+                .forces()
+                .as_ref()
+                .zip(map.table().forces().as_ref());
             for (ours, whole) in pairs.into_array() {
                 assert_eq!(bits(ours, kept), bits(whole, column));
             }

@@ -3,7 +3,6 @@
 mod rotation;
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
-use std::fmt::Debug;
 
 use palpate_core::servo::{Axis, Damping, Limits, Table, stiffness};
 
@@ -42,7 +41,7 @@ pub struct RoundingError {
 ///
 /// let loaded = LoadedTable::new(&map)?;
 /// assert!(loaded.rounding().position_m < 1e-9);
-/// let table = loaded.table()?;
+/// let table = loaded.table();
 /// assert_eq!(table.force(2e-3, 5e-3).lateral, 0.25);
 /// assert_eq!(table.depths().knots()[0], 0.0); // the surface, which the map does not hold
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -106,16 +105,14 @@ impl LoadedTable {
             let force = Force::new(lateral, normal);
             forces.push(force.map(|force| rounded(force, &mut rounding.force_n)));
         }
-        let loaded = LoadedTable {
+        Ok(LoadedTable {
             reciprocal_heights: reciprocals(&depths),
             reciprocal_widths: reciprocals(&laterals),
             depths,
             laterals,
             forces,
             rounding,
-        };
-        loaded.table()?;
-        Ok(loaded)
+        })
     }
 
     /// The table of a map for a device that must play it passively within `limits`.
@@ -168,13 +165,11 @@ impl LoadedTable {
     }
 
     /// The table as the kernel takes it.
-    ///
-    /// # Errors
-    /// A refusal by the kernel would be a defect of this program.
-    pub fn table(&self) -> Result<Table<'_>, Refusal> {
-        let depths = Axis::new(&self.depths, &self.reciprocal_heights).map_err(defect)?;
-        let laterals = Axis::new(&self.laterals, &self.reciprocal_widths).map_err(defect)?;
-        Table::new(depths, laterals, &self.forces).map_err(defect)
+    pub fn table(&self) -> Table<'_> {
+        let axis = |knots, reciprocals| Axis::new(knots, reciprocals).expect("`knots` checked it");
+        let depths = axis(&self.depths, &self.reciprocal_heights);
+        let laterals = axis(&self.laterals, &self.reciprocal_widths);
+        Table::new(depths, laterals, &self.forces).expect("`check_forces` checked it")
     }
 
     /// The largest rounding errors of loading. Scaling is not counted.
@@ -199,7 +194,7 @@ impl LoadedTable {
         let expected = "period and resolution above 0, damping and friction at least 0, all finite";
         let no_device = || Refusal::state(format!("{damping:?}: expected {expected}"), "");
         let stiffest = damping.stiffest().ok_or_else(no_device)?;
-        let table = self.table()?;
+        let table = self.table();
         let stiffness = stiffness(&table);
         // A hand moves so far in a cycle, and is seen to move a step of each axis further.
         let motion = HAND_SPEED * damping.period_s + SQRT_2 * damping.resolution_m;
@@ -222,12 +217,6 @@ impl LoadedTable {
         let broken = bounds.filter(|b| b.found > b.allowed);
         Ok(broken.min_by(|a, b| a.scale().total_cmp(&b.scale())))
     }
-}
-
-/// A refusal by the kernel of what was loaded.
-fn defect(refusal: impl Debug) -> Refusal {
-    let found = format_args!("the servo refuses the table as loaded ({refusal:?})");
-    Refusal::state(format!("{found}: this is a defect of the program"), "")
 }
 
 /// Refuses forces that are too large, or that are there without a touch.

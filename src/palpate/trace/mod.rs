@@ -59,7 +59,7 @@ pub use fit::{Cause, Fit, MISFIT_RATE, WHITENESS};
 pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
 
 use crate::csv::{Column, Rows};
-use crate::decimal::format_scaled;
+use crate::decimal::mm;
 use crate::detect::DetectError;
 use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION};
@@ -394,11 +394,6 @@ fn range(map: &ForceTable) -> String {
         mm(laterals[0]),
         mm(laterals[laterals.len() - 1])
     )
-}
-
-/// A position in mm, exactly.
-fn mm(position: f64) -> String {
-    format_scaled(position, 3)
 }
 
 /// What the detector refuses, in the words of a trace.

@@ -74,7 +74,7 @@ mod observer {
         let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, vec![]);
         let limits = Limits::new(4.0, 0.05, 0.5, 20).unwrap();
         let (half, second) = (Duration::from_millis(500), Duration::from_secs(1));
-        present(device, table.table().unwrap(), limits, half, second).unwrap()
+        present(device, table.table(), limits, half, second).unwrap()
     }
 
     // The paper's theory closed: through device, servo, table and noise, the ideal observer is right

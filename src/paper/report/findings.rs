@@ -49,7 +49,7 @@ pub struct Findings {
 ///
 /// Implements: REP-002, REP-003, REP-004, REP-070.
 pub fn findings(run: &Run) -> Result<Findings, Refusal> {
-    let depths = run.reference.depths();
+    let depths = run.reference.table().depths();
     let (probe_depth, is_quoted) = probe_depth(depths);
     let required_gamma = check(&run.settings).map_err(Refusal::because("settings"))?;
     inputs::check(run, probe_depth)?;
@@ -80,7 +80,7 @@ pub fn findings(run: &Run) -> Result<Findings, Refusal> {
                 millimetres(probe_depth)
             )
         }),
-        samples: run.reference.laterals().len(),
+        samples: run.reference.table().laterals().len(),
         required_gamma,
         comparison: comparison.map_err(Refusal::because("the paper's numbers"))?,
         reference,

@@ -106,7 +106,7 @@ pub struct Peak {
 impl Peak {
     /// Implements: REP-012.
     fn of(map: &ForceMap, signal: &[f64]) -> Peak {
-        let (force_n, lateral_m) = peak(map.laterals(), signal);
+        let (force_n, lateral_m) = peak(map.table().laterals(), signal);
         Peak { force_n, lateral_m }
     }
 }
@@ -144,8 +144,12 @@ pub(super) fn incomparable(map: &ForceMap) -> impl FnOnce(Refusal) -> Refusal {
 }
 
 pub(super) fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindings, Refusal> {
-    let row = map.row(depth).map_err(incomparable(map))?;
-    let centre = map.laterals().iter().position(|x| x.abs() <= SAME_POSITION);
+    let row = map.table().row(depth).map_err(incomparable(map))?;
+    let centre = map
+        .table()
+        .laterals()
+        .iter()
+        .position(|x| x.abs() <= SAME_POSITION);
     Ok(ReferenceFindings {
         name: name_of_map(map),
         normal_force_at_centre_n: centre.map(|column| row.normal[column]),

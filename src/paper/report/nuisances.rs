@@ -59,7 +59,7 @@ impl GammaLeft {
     /// Implements: REP-016.
     pub(super) fn of(run: &Run, signal: Force<&[f64]>, depth: f64) -> Result<GammaLeft, Refusal> {
         let reference = &run.reference;
-        let expected = |depth| Ok(reference.row(depth)?.map(<[f64]>::to_vec));
+        let expected = |depth| Ok(reference.table().row(depth)?.map(<[f64]>::to_vec));
         let gamma = |unknown: &[Unknown], read: Read| -> Result<f64, Refusal> {
             let unknown = nuisances(unknown, reference.depths(), depth, expected)?;
             let columns = unknown.iter().flat_map(|of| read(of.as_deref()));
@@ -70,7 +70,7 @@ impl GammaLeft {
         };
         let both: Read = |of| [of.lateral, of.normal].concat();
         let has_slope = |unknown: &&&[Unknown]| {
-            reference.depths().len() > 1 || !unknown.contains(&Unknown::Depth)
+            reference.table().depths().len() > 1 || !unknown.contains(&Unknown::Depth)
         };
         let beside = UNKNOWN.iter().filter(has_slope).map(|unknown| {
             let gamma = gamma(unknown, both)?;

@@ -25,8 +25,8 @@ pub fn summary_json(findings: &Findings, run: &Run) -> String {
         schema_version: 2,
         program_version: VERSION,
         settings: &run.settings,
-        depths_m: run.reference.depths(),
-        laterals_m: run.reference.laterals(),
+        depths_m: run.reference.table().depths(),
+        laterals_m: run.reference.table().laterals(),
         findings,
     };
     // Only a map with keys other than strings, or a failing writer, could fail here; there is neither.

@@ -7,6 +7,7 @@ use super::{NOISE_SD, PROBE_DEPTH, StudyPlan};
 use crate::psychophysics::bridge::{Convention, p_values};
 use crate::psychophysics::{AnswerTable, FEM_PLAYBACK};
 use palpate::bank::deepest;
+use palpate::decimal::mm;
 use palpate::detect::{MatchedFilter, error_rates, map_threshold, two_afc};
 use palpate::fem::certify::MESH_RATIOS;
 use palpate::fem::{FemError, Model};
@@ -212,7 +213,7 @@ impl<'a> Sampler<'a> {
         let named = |phantom: &Phantom| phantom.name == quantity.phantom;
         let at = self.plan.all_phantoms().position(named).unwrap_or(0);
         let map = &computed.maps[at];
-        let laterals = map.laterals();
+        let laterals = map.table().laterals();
         let place = |lateral: f64| laterals.iter().position(|&x| x == lateral).unwrap_or(0);
         let peak_of = |pick: fn(Force<&[f64]>) -> &[f64]| -> Result<f64, Refusal> {
             let signal = &computed.signals[at - 1];
@@ -220,7 +221,7 @@ impl<'a> Sampler<'a> {
             Ok(force)
         };
         let gamma = || computed.gamma[at - 1];
-        let row = map.row(map.depths()[0])?;
+        let row = map.table().row(map.table().depths()[0])?;
         Ok(match &quantity.kind {
             Kind::NormalForceN { lateral_m } => row.normal[place(*lateral_m)],
             Kind::LateralForceN { lateral_m } => row.lateral[place(*lateral_m)],
@@ -314,13 +315,12 @@ fn quantities(plan: &StudyPlan, answers: &AnswerTable) -> Vec<Quantity> {
 impl std::fmt::Display for Quantity {
     /// In words, with the unit.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mm = |metres: &f64| palpate::decimal::format_scaled(*metres, 3);
         let what = match &self.kind {
             Kind::NormalForceN { lateral_m } => {
-                format!("normal force at {} mm, N", mm(lateral_m))
+                format!("normal force at {} mm, N", mm(*lateral_m))
             }
             Kind::LateralForceN { lateral_m } => {
-                format!("lateral force at {} mm, N", mm(lateral_m))
+                format!("lateral force at {} mm, N", mm(*lateral_m))
             }
             Kind::PeakNormalN => "peak of the normal signal, N".into(),
             Kind::PeakLateralN => "peak of the lateral signal, N".into(),

@@ -273,10 +273,13 @@ pub fn compare(name: &str, contact: Contact) -> Measured {
 
 /// Pairs of mirrored poses of a map whose lateral positions are their own mirror image.
 pub fn symmetry(what: &str, map: &ForceMap) -> Vec<Figure> {
-    let (rows, columns) = (map.depths().len(), map.laterals().len());
+    let (rows, columns) = (map.table().depths().len(), map.table().laterals().len());
     let (mut pairs, mut unlike, mut aside) = (0, 0, 0);
     for row in 0..rows {
-        let (normal, lateral) = (map.forces().normal.row(row), map.forces().lateral.row(row));
+        let (normal, lateral) = (
+            map.table().forces().normal.row(row),
+            map.table().forces().lateral.row(row),
+        );
         for (left, right) in (0..columns).zip((0..columns).rev()).take(columns / 2) {
             let same = normal[left].to_bits() == normal[right].to_bits()
                 && lateral[left].to_bits() == (-lateral[right]).to_bits();

@@ -144,14 +144,17 @@ fn a_bank_has_the_forces_of_each_gel() {
     let images: Vec<bool> = solves.iter().map(|solve| solve.image).collect();
     assert_eq!(images, [false, true, false]);
     let bank = plan.bank().unwrap();
-    assert_eq!(bank.reference().depths(), [3.7e-3, 4e-3, 4e-3 + 3e-4]);
+    assert_eq!(
+        bank.reference().table().depths(),
+        [3.7e-3, 4e-3, 4e-3 + 3e-4]
+    );
     assert_eq!(bank.axes()[0], plan.positions);
     for (position, map) in plan.positions.iter().zip(bank.maps()) {
         let mut phantom = Phantom::builtin("6.6").unwrap();
         phantom.inclusions[0].centre_x = *position;
         assert_eq!(map.phantom(), Some(&phantom));
         let model = Model::new(&phantom, 2e-3, Contact::default()).unwrap();
-        let alone = model.map(&[4e-3], map.laterals(), &|_| ()).unwrap();
+        let alone = model.map(&[4e-3], map.table().laterals(), &|_| ()).unwrap();
         let difference = map.table().minus(alone.table()).unwrap();
         // Meshes of mirror images are none of each other but where the gel is symmetric: their forces differ as those of two meshes do.
         let most = if *position < 0.0 { 2e-2 } else { 1e-10 };

@@ -11,7 +11,7 @@ const SD: f64 = 0.05;
 /// A sweep of 61 samples over −3 … 3 mm of the gel of `map`, with noise unless there is no seed, and what a sensor adds.
 fn record(map: &ForceMap, seed: Option<u64>, offset: f64, gain: f64) -> Record {
     let positions: Vec<f64> = (0..61).map(|k| 1e-4 * f64::from(k) - 3e-3).collect();
-    let exact = map.sweep(4e-3, &positions).unwrap();
+    let exact = map.table().sweep(4e-3, &positions).unwrap();
     let mut text = String::from("position_mm,lateral_force_n,normal_force_n\n");
     for (k, position) in positions.iter().enumerate() {
         let noise = |channel: u64| {
@@ -200,7 +200,7 @@ fn reach_is_where_gamma_is_enough() {
     let gamma = |depth: f64, diameter: f64, sd: f64| -> f64 {
         let of = map(Some((0.0, depth, diameter)), &[4e-3]);
         let one_depth = map(None, &[4e-3]);
-        let signal = of.minus(&one_depth).unwrap();
+        let signal = of.table().minus(one_depth.table()).unwrap();
         let squares = signal.forces().normal.values().iter().map(|f| f * f);
         squares.sum::<f64>().sqrt() / sd
     };

@@ -19,7 +19,10 @@ fn maps_are_mirror_symmetric_to_the_bit() {
     let laterals = [-5e-3, -2e-3, 0.0, 2e-3, 6e-3];
     let map = model.map(&MILLIMETRES, &laterals, &|_| ()).unwrap();
     for row in 0..3 {
-        let (normal, lateral) = (map.forces().normal.row(row), map.forces().lateral.row(row));
+        let (normal, lateral) = (
+            map.table().forces().normal.row(row),
+            map.table().forces().lateral.row(row),
+        );
         assert_eq!(normal[1].to_bits(), normal[3].to_bits());
         assert_eq!(lateral[1].to_bits(), (-lateral[3]).to_bits());
         assert_eq!(lateral[2].to_bits(), 0.0f64.to_bits());
@@ -45,10 +48,10 @@ fn maps_are_mirror_symmetric_to_the_bit() {
 
 /// Asserts that a map has the forces of its poses.
 fn assert_of_its_poses(map: &ForceMap, model: &Model) {
-    for (row, &depth) in map.depths().iter().enumerate() {
-        for (column, &lateral) in map.laterals().iter().enumerate() {
+    for (row, &depth) in map.table().depths().iter().enumerate() {
+        for (column, &lateral) in map.table().laterals().iter().enumerate() {
             let alone = model.solve(Pose { depth, lateral }).unwrap();
-            let pairs = map.forces().as_ref().zip(alone.force).into_array();
+            let pairs = map.table().forces().as_ref().zip(alone.force).into_array();
             for (forces, alone) in pairs {
                 // Reached by another path: equal within what Newton leaves, 1e-13 m at 10³ N/m.
                 assert_near(forces.row(row)[column], alone, 1e-10);
@@ -83,7 +86,10 @@ fn a_map_of_an_asymmetric_phantom_solves_each_side_by_itself() {
     assert_eq!(model.solved_laterals(&laterals), laterals);
     assert_of_its_poses(&map, &model);
     for row in 0..3 {
-        let (normal, along) = (map.forces().normal.row(row), map.forces().lateral.row(row));
+        let (normal, along) = (
+            map.table().forces().normal.row(row),
+            map.table().forces().lateral.row(row),
+        );
         // The disc is under the right side, pushes harder there, and to the left at x = 0.
         assert!(normal[2] > 1.01 * normal[0], "{normal:?}");
         assert!(along[1] < -1e-4, "{along:?}");
@@ -92,8 +98,11 @@ fn a_map_of_an_asymmetric_phantom_solves_each_side_by_itself() {
     let image = super::coarse(&off_centre(2.6, -2.0), Contact::DeformedNormal);
     let image = image.map(&MILLIMETRES, &laterals, &count).unwrap();
     for row in 0..3 {
-        assert!(image.forces().normal.row(row)[0] > 1.01 * image.forces().normal.row(row)[2]);
-        assert!(image.forces().lateral.row(row)[1] > 1e-4);
+        assert!(
+            image.table().forces().normal.row(row)[0]
+                > 1.01 * image.table().forces().normal.row(row)[2]
+        );
+        assert!(image.table().forces().lateral.row(row)[1] > 1e-4);
     }
 }
 

@@ -39,7 +39,7 @@ fn playing_up_to(stiffest: f64) -> Damping {
 #[test]
 fn the_surface_is_put_in_front_and_rounding_is_reported() {
     let loaded = LoadedTable::new(&map(&[0.1, 0.5], &[-0.25, 0.5], |d, x| [x, 10.0 * d])).unwrap();
-    let table = loaded.table().unwrap();
+    let table = loaded.table();
     assert_eq!(table.depths().knots(), [0.0, 0.1f32, 0.5]);
     assert_eq!(table.laterals().knots(), [-0.25, 0.5]);
     let row = |normal| [-0.25, 0.5].map(|lateral| Force { lateral, normal });
@@ -55,7 +55,7 @@ fn the_surface_is_put_in_front_and_rounding_is_reported() {
 fn a_map_from_the_surface_on_is_taken_as_it_is() {
     let loaded =
         LoadedTable::new(&map(&[0.0, 0.5], &[-0.25, 0.5], |d, _| [0.1 * d, 0.02])).unwrap();
-    assert_eq!(loaded.table().unwrap().depths().knots(), [0.0, 0.5]);
+    assert_eq!(loaded.table().depths().knots(), [0.0, 0.5]);
     // 0.02f32 − 0.02 exceeds 0.05f32 − 0.05 … in f64: 4.47e-10 against 7.45e-10.
     assert_eq!(loaded.rounding().force_n, (f64::from(0.05f32) - 0.05).abs());
 }
@@ -107,7 +107,7 @@ fn the_stiffness_is_the_largest_singular_value_of_a_linear_force() {
     let loaded = LoadedTable::new(&map(&[0.0, 0.5], &[0.0, 0.001], |d, x| {
         [3.0 * x, 4.0 * x + 5.0 * d]
     }));
-    let stiffness = stiffness(&loaded.unwrap().table().unwrap());
+    let stiffness = stiffness(&loaded.unwrap().table());
     // Forces of some 1e-3 N are rounded to 2⁻²⁴ of that, over 1 mm: 2e-7 N/m, on two entries.
     assert!((stiffness - 45f64.sqrt()).abs() < 5e-7, "{stiffness}");
 }
@@ -117,7 +117,7 @@ fn the_stiffness_is_the_largest_singular_value_of_a_linear_force() {
 fn the_stiffness_counts_the_cells_continued_at_the_border() {
     // F_n = 16 x d: ∂F_n/∂x = 16 d and ∂F_n/∂d = 16 x; continued to d = 1 and x = 1 and −0.5.
     let loaded = LoadedTable::new(&map(&[0.0, 0.5], &[0.0, 0.5], |d, x| [0.0, 16.0 * x * d]));
-    let stiffness = stiffness(&loaded.unwrap().table().unwrap());
+    let stiffness = stiffness(&loaded.unwrap().table());
     assert_near(stiffness, 16.0 * 2f64.sqrt(), 1e-13);
 }
 
@@ -192,7 +192,7 @@ fn the_stiffness_is_the_steepest_slope_by_differences() {
 fn the_rotation_is_the_largest_work_over_way_of_any_box() {
     let rotation = |forces: fn(f64, f64) -> [f64; 2]| {
         let map = map(&[0.0, 0.25, 0.5], &[0.0, 0.5], forces);
-        rotation(&LoadedTable::new(&map).unwrap().table().unwrap())
+        rotation(&LoadedTable::new(&map).unwrap().table())
     };
     let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
     // All is linear, and continued to d = 0.75, so that a box is up to 0.5 wide and 0.75 high. F_x = 3 d: 3 w h / 2 (w + h).
@@ -221,7 +221,7 @@ fn no_box_is_worse_than_the_rotation() {
         let laterals = vec![-5e-3, -3e-3, 0.0, 1e-3, 2e-3, 5e-3];
         let map = ForceTable::new(depths, laterals, Force::new(lateral, forces)).unwrap();
         let loaded = LoadedTable::new(&map).unwrap();
-        let table = loaded.table().unwrap();
+        let table = loaded.table();
         let depths = [0.0, 1e-3, 2e-3, 4e-3, 5e-3, 6e-3f32];
         let laterals = table.laterals().knots();
         // The largest of ∂F_x/∂d + ∂F_n/∂x at the four corners of a cell, times its area, by the force at each.
@@ -297,7 +297,7 @@ fn a_table_too_stiff_is_refused_or_scaled_on_request() {
     }
 
     let (loaded, scale) = scaled(&map, &device).unwrap();
-    let table = loaded.table().unwrap();
+    let table = loaded.table();
     assert!(stiffness(&table) <= 200.0);
     assert!((scale - 0.5).abs() < 1e-5, "{scale}");
     let (lateral, normal) = (0.0, (1.6 * scale) as f32);
@@ -309,7 +309,7 @@ fn a_table_too_stiff_is_refused_or_scaled_on_request() {
     // 2^-10 N/m above what the device plays, to be met within the rounding of the forces.
     for stiffest in [100.0, 399.999, 333.333] {
         let (loaded, scale) = scaled(&map, &playing_up_to(stiffest)).unwrap();
-        let found = stiffness(&loaded.table().unwrap());
+        let found = stiffness(&loaded.table());
         let near = found > stiffest * (1.0 - 1e-6);
         assert!(found <= stiffest && near, "{found}");
         assert!((scale - stiffest / 400.0).abs() < 1e-6, "{scale}");
@@ -326,14 +326,14 @@ fn a_table_too_stiff_is_refused_or_scaled_on_request() {
 #[test]
 fn scaling_goes_on_until_the_rounded_slopes_fit() {
     let map = map(&[1.0], &[0.0, 2e-6], |_, x| [0.0, 8.0 + 6850.0 * x]);
-    let steepest = stiffness(&LoadedTable::new(&map).unwrap().table().unwrap());
+    let steepest = stiffness(&LoadedTable::new(&map).unwrap().table());
     // Two forces of 8 N, each rounded by 2⁻²¹ N at the most, 2 µm apart, of a slope of 6850 N/m; the
     // scale goes down by twice what is needed at the most.
     let slack = 2.0 * 2.0 * 2f64.powi(-21) / 2e-6 / 6850.0;
     let mut lowered = 0;
     for stiffest in (1..40u8).map(|k| 100.0 * f64::from(k)) {
         let (loaded, scale) = scaled(&map, &playing_up_to(stiffest)).unwrap();
-        assert!(stiffness(&loaded.table().unwrap()) <= stiffest);
+        assert!(stiffness(&loaded.table()) <= stiffest);
         let fit = stiffest / steepest;
         assert!(scale < fit && scale > fit * (1.0 - slack), "{scale}");
         lowered += u32::from(scale < fit * (1.0 - 1.5e-7));
@@ -383,7 +383,7 @@ fn position(knots: &[f32], reach: f32, at: f32) -> f32 {
 fn distance(map: &ForceTable, depth_at: f32, lateral_at: f32, reach: f32) -> f64 {
     let loaded = LoadedTable::new(map).unwrap();
     assert_eq!(loaded.rounding(), RoundingError::default());
-    let table = loaded.table().unwrap();
+    let table = loaded.table();
     let depth = position(table.depths().knots(), reach, depth_at).max(0.0);
     let lateral = position(table.laterals().knots(), reach, lateral_at);
     let reference = {
@@ -440,7 +440,7 @@ fn a_loaded_table_is_played() {
         [0.0, 400.0 * d]
     }))
     .unwrap();
-    let table = loaded.table().unwrap();
+    let table = loaded.table();
     assert_eq!(table.force(0.0, 0.0), Force::ZERO);
     // Within 21.25 · 2⁻²⁴ · 2 N (SRV-015) and the rounding of the depth, 2⁻²⁵ · 0.4 N.
     assert!((table.force(0.001, 0.0).normal - 0.4).abs() < 2.6e-6);

@@ -93,7 +93,7 @@ pub fn bridge(
 ) -> Result<Bridge> {
     let maps = columns(table, inclusions)?;
     let reference = sweep(reference, half_sweep).map_err(|error| error.in_file("reference"))?;
-    let (probe_depth, is_paper_depth) = probe_depth(reference.depths());
+    let (probe_depth, is_paper_depth) = probe_depth(reference.table().depths());
     let (mut columns, mut signals) = (Vec::new(), Vec::new());
     for (column, map) in maps {
         let map = sweep(map, half_sweep);
@@ -102,7 +102,7 @@ pub fn bridge(
         signals.push(signal.map_err(|error| error.in_file(format!("inclusion {name}")))?);
         columns.push(column);
     }
-    let laterals = reference.laterals();
+    let laterals = reference.table().laterals();
     let half_sweeps = half_sweeps(laterals);
     let conditions = table.conditions().iter();
     let ranges = conditions.len() * half_sweeps.len() * STATISTICS.len();
@@ -144,7 +144,7 @@ pub fn p_values(
 ) -> Result<Vec<f64>> {
     let maps = columns(table, inclusions)?;
     let reference = sweep(reference, None)?;
-    let (depth, _) = probe_depth(reference.depths());
+    let (depth, _) = probe_depth(reference.table().depths());
     let signal = |&(_, map): &(usize, &ForceMap)| {
         sweep(map, None).and_then(|map| Signal::new(&reference, &map, depth))
     };

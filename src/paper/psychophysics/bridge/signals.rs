@@ -29,7 +29,7 @@ pub fn sweep(map: &ForceMap, half: Option<f64>) -> Result<ForceMap, Refusal> {
         map.clone()
     };
     let Some(half) = half else { return Ok(whole) };
-    let inside = whole.laterals().iter().copied();
+    let inside = whole.table().laterals().iter().copied();
     let inside: Vec<f64> = inside.filter(|&x| is_within(x, half)).collect();
     if inside.len() < 2 {
         let found = format!("{} lateral positions within --sweep-mm", inside.len());

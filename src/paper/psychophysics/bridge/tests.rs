@@ -84,8 +84,11 @@ fn half_a_sweep_is_completed_by_symmetry() {
         [[4.0, 0.0], [2.0, 3.0], [-1.0, 1.0]][column]
     });
     let whole = sweep(&half, None).unwrap();
-    assert_eq!(whole.laterals().len(), 5);
-    assert_eq!(whole.forces().lateral.row(0), [-1.0, -3.0, 0.0, 3.0, 1.0]);
+    assert_eq!(whole.table().laterals().len(), 5);
+    assert_eq!(
+        whole.table().forces().lateral.row(0),
+        [-1.0, -3.0, 0.0, 3.0, 1.0]
+    );
     // A whole one stays, and so does one that begins elsewhere.
     assert_eq!(sweep(&whole, None).unwrap(), whole);
     // Over an asymmetric phantom there is no symmetry.
@@ -95,7 +98,10 @@ fn half_a_sweep_is_completed_by_symmetry() {
         let (source, forces) = (half.source().clone(), half.table().clone());
         ForceMap::new(source, Some(phantom.clone()), forces).unwrap()
     };
-    assert_eq!(sweep(&of(&phantom), None).unwrap().laterals().len(), 3);
+    assert_eq!(
+        sweep(&of(&phantom), None).unwrap().table().laterals().len(),
+        3
+    );
     phantom.inclusions[0].centre_x = 1e-3;
     let error = sweep(&of(&phantom), None).unwrap_err().to_string();
     let words = "phantom \"6.6\" is not its own mirror image";

@@ -136,7 +136,7 @@ fn signals(run: &Run, found: &Findings) -> Result<[Panel; 2], Refusal> {
         normal.push(line(curve.normal));
         lateral.push(line(curve.lateral));
     }
-    let laterals = run.reference.laterals();
+    let laterals = run.reference.table().laterals();
     Ok([
         panel("Normal signal F₁ − F₀ (N)", laterals, 230, normal),
         panel("Lateral signal F₁ − F₀ (N)", laterals, 200, lateral),

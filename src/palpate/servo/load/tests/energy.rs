@@ -175,7 +175,7 @@ fn no_accepted_table_gives_out_energy_on_a_closed_path() {
         let noise = [0.0, 0.02, 0.2][number as usize / 3 % 3];
         let map = gel(&generator, number, noise);
         let (loaded, _) = LoadedTable::scaled_to_be_passive(&map, &damping, &limits()).unwrap();
-        let table = loaded.table().unwrap();
+        let table = loaded.table();
         for trajectory in 0..1000 {
             let path = path(&generator, 1000 * number + trajectory, &damping);
             let given = energy(&table, &damping, &limits(), &path);
@@ -192,7 +192,7 @@ fn pressed(map: &ForceTable, damping: &Damping, limits: &Limits, speed: f64, tim
     };
     let path = Path::along(curve, speed, damping.period_s);
     let loaded = LoadedTable::new(map).unwrap();
-    energy(&loaded.table().unwrap(), damping, limits, &path)
+    energy(&loaded.table(), damping, limits, &path)
 }
 
 /// Asserts that a table is refused by the bound `what`.
@@ -251,7 +251,7 @@ fn what_is_refused_gives_energy_out() {
             t => [0.01 - 0.02 * (t - 0.75) / 0.25, -0.5e-3],
         };
         let path = Path::along(curve, 2e-3, near.period_s);
-        energy(&loaded.table().unwrap(), &near, &limits(), &path)
+        energy(&loaded.table(), &near, &limits(), &path)
     };
     let what = "N of force without a potential";
     assert_refused(&twisted(1.9), &near, &limits(), what);
