@@ -215,7 +215,12 @@ fn the_id_comes_back_as_it_was_written() {
         let line = format!(" {{ \"op\" : \"normal_cdf\",\"args\":{{\"x\":0}} , \"id\" : {id} }}\t");
         let answer = format!("{{\"id\":{id},\"ok\":{{\"p\":0.5}}}}");
         assert_eq!(answers(line), [answer]);
-        for rest in [r#""op":"none""#, r#""op":5"#, r#""op":"a","op":"b""#, r#""more":1"#] {
+        for rest in [
+            r#""op":"none""#,
+            r#""op":5"#,
+            r#""op":"a","op":"b""#,
+            r#""more":1"#,
+        ] {
             let line = format!("{{{rest},\"id\":{id}}}");
             let refusal = format!("{{\"id\":{id},\"error\":");
             assert!(answers(line)[0].starts_with(&refusal), "{rest}");

@@ -64,7 +64,7 @@ pub fn demo(arguments: &DemoArguments) -> Result<(), CliError> {
     let folder = &arguments.folder;
     make_folder(folder)?;
     let (none, inclusion) = (map("none")?, map("4.6")?);
-    let (without, with) = (none.row(SWEPT)?, inclusion.row(SWEPT)?);
+    let (without, with) = (none.table().row(SWEPT)?, inclusion.table().row(SWEPT)?);
     let files = [
         ("run.toml", RUN.into()),
         ("none.json", none.to_json()),

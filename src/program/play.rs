@@ -102,7 +102,7 @@ fn session(
 ) -> Result<(), CliError> {
     let capabilities = device.capabilities().map_err(failed)?;
     let (loaded, scale) = table(arguments, &capabilities, &limits)?;
-    let table = loaded.table().map_err(failed)?;
+    let table = loaded.table();
     let options = PlayOptions {
         duration,
         record: recorded_cycles(arguments, &capabilities, duration)?,

@@ -107,7 +107,7 @@ impl ReachArguments {
             let message = "give --noise-sd-n, or both --noise-sd-lateral-n and --noise-sd-normal-n";
             CliError::Usage(message.into())
         })?;
-        let laterals = bank.reference().laterals().len();
+        let laterals = bank.reference().table().laterals().len();
         // The variance of the noise is stated.
         let unknown = self.known.unknown.iter().copied();
         Ok(Asked {

@@ -1,6 +1,5 @@
 //! `palpate timing`: the budget of the servo loop on this machine (`spec/command-line.md`).
 
-use std::fmt::Display;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -151,10 +150,6 @@ fn tell(
         }
     }?;
     failure.map_or(Ok(()), Err)
-}
-
-fn defect(error: impl Display) -> CliError {
-    CliError::Check(format!("timing: {error}"))
 }
 
 /// Why a budget is not kept.

@@ -91,7 +91,9 @@ count_analysis {"correct": [[5], [1]], "trials": 4} => out_of_range: correct[0][
 fn each_op_answers() {
     let ops = ok("capabilities", json!({}))["ops"].clone();
     let mut asked = vec!["capabilities", "element_stiffness"];
-    let (_, spec) = include_str!("../../spec/oracle.md").split_once("## Ops").unwrap();
+    let (_, spec) = include_str!("../../spec/oracle.md")
+        .split_once("## Ops")
+        .unwrap();
     let triangle = json!([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]]);
     let element = json!({"nodes_m": triangle, "youngs_modulus_pa": 1, "poissons_ratio": 0});
     let stiffness = &ok("element_stiffness", element)["stiffness"][0][0];
@@ -145,7 +147,9 @@ count_analysis {"correct": [[3], [1]], "trials": 4.0} => {"pooled": [4], "rate":
     for op in ops.as_array().unwrap() {
         let op = op.as_str().unwrap();
         assert!(asked.contains(&op), "{op} was not asked");
-        let row = spec.lines().find(|line| line.starts_with(&format!("| `{op}` |")));
+        let row = spec
+            .lines()
+            .find(|line| line.starts_with(&format!("| `{op}` |")));
         let row = row.unwrap_or_else(|| panic!("{op} is not in the specification"));
         // The arguments of these two depend on the first.
         if !["threshold", "report_encode"].contains(&op) {

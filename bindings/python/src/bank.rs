@@ -115,7 +115,9 @@ fn told<'py>(py: Python<'py>, bank: &bank::Bank, found: &Location) -> PyResult<B
         ends.map(|ends| [ends.lower, ends.upper].map(|end| in_unit(end, power)))
     };
     let answer = python(py, &found.rows(bank).map_err(refused)?)?;
-    let decided = found.decision.map(|decision| decision == Decision::Inclusion);
+    let decided = found
+        .decision
+        .map(|decision| decision == Decision::Inclusion);
     answer.set_item("inclusion", decided)?;
     for (key, named) in [
         ("likeliest", at(found.point)),

@@ -49,7 +49,7 @@ impl ForceMap {
         let names = ["depth_mm", "lateral_mm"];
         each(names, poses, |pose| {
             let [depth, lateral] = [0, 1].map(|axis| scaled(names[axis], pose[axis], -3));
-            Ok::<f64, Refusal>(of(self.0.force(depth?, lateral?)?))
+            Ok::<f64, Refusal>(of(self.0.table().force(depth?, lateral?)?))
         })
     }
 }
@@ -98,25 +98,25 @@ impl ForceMap {
     /// The depths, mm: shape (m,).
     #[getter]
     fn depths_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        array_in_unit(py, self.0.depths(), 3)
+        array_in_unit(py, self.0.table().depths(), 3)
     }
 
     /// The lateral positions, mm: shape (n,).
     #[getter]
     fn laterals_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        array_in_unit(py, self.0.laterals(), 3)
+        array_in_unit(py, self.0.table().laterals(), 3)
     }
 
     /// The lateral forces along +x, N: shape (m, n).
     #[getter]
     fn lateral_n<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.forces(py, &self.0.forces().lateral)
+        self.forces(py, &self.0.table().forces().lateral)
     }
 
     /// The normal forces out of the gel, N: shape (m, n).
     #[getter]
     fn normal_n<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.forces(py, &self.0.forces().normal)
+        self.forces(py, &self.0.table().forces().normal)
     }
 
     /// The phantom, if it is known.
@@ -137,7 +137,7 @@ impl ForceMap {
     /// The forces at a depth of the map, in mm: shape (2, n), lateral and normal, N.
     fn row<'py>(&self, py: Python<'py>, depth_mm: f64) -> PyResult<Bound<'py, PyAny>> {
         let depth = si("depth_mm", depth_mm, -3)?;
-        channels(py, self.0.row(depth).map_err(refused)?)
+        channels(py, self.0.table().row(depth).map_err(refused)?)
     }
 
     /// The forces expected along a sweep at a depth, in mm, at laterals_mm, shape (n,), in mm: linear between the poses of the map, refused
@@ -150,7 +150,7 @@ impl ForceMap {
     ) -> PyResult<Bound<'py, PyAny>> {
         let depth = si("depth_mm", depth_mm, -3)?;
         let laterals = list("laterals_mm", laterals_mm, -3)?;
-        channels(py, self.0.sweep(depth, &laterals).map_err(refused)?)
+        channels(py, self.0.table().sweep(depth, &laterals).map_err(refused)?)
     }
 
     /// The forces (lateral, normal) in N at poses in mm, numbers or arrays that broadcast: bilinear between the poses of the map, and
@@ -166,7 +166,7 @@ impl ForceMap {
     }
 
     fn __repr__(&self) -> String {
-        let (depths, laterals) = (self.0.depths(), self.0.laterals());
+        let (depths, laterals) = (self.0.table().depths(), self.0.table().laterals());
         let phantom = self.0.phantom().map_or("unknown", |phantom| &phantom.name);
         let [from, to] = [laterals[0], laterals[laterals.len() - 1]].map(|x| in_unit(x, 3));
         let (rows, columns) = (depths.len(), laterals.len());

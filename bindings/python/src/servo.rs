@@ -23,7 +23,9 @@ pub struct ServoTable(LoadedTable);
 impl ServoTable {
     #[new]
     fn new(map: &ForceMap) -> PyResult<ServoTable> {
-        Ok(ServoTable(LoadedTable::new(&map.0).map_err(refused)?))
+        Ok(ServoTable(
+            LoadedTable::new(map.0.table()).map_err(refused)?,
+        ))
     }
 
     /// The force (lateral, normal) in N at a pose in mm, as the kernel computes it in single precision.

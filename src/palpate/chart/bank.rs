@@ -209,7 +209,7 @@ fn gel(bank: &Bank, place: &PlacePosterior) -> Panel {
         to_mm(corners.map(|[x, y]| [*x, -y]))
     });
     let outline = outline.unwrap_or_default();
-    let laterals = bank.reference().laterals().iter().map(|x| 1e3 * x);
+    let laterals = bank.reference().table().laterals().iter().map(|x| 1e3 * x);
     let across = extremes(laterals.chain(outline.iter().map(|corner| corner.0)));
     let x = across.unwrap_or([-1.0, 1.0]);
     let depths = bank.axes()[1].iter().map(|depth| 1e3 * depth);

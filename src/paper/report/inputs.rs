@@ -25,7 +25,7 @@ pub(super) fn check(run: &Run, depth: f64) -> Result<(), Refusal> {
         format!("phantom {:?}", other.name)
     } else if (plan.probe_depth - depth).abs() > SAME_POSITION {
         "depth of the probe".into()
-    } else if plan.laterals != run.reference.laterals() {
+    } else if plan.laterals != run.reference.table().laterals() {
         // γ is of all samples of the sweep.
         "list of lateral positions".into()
     } else if plan.settings != run.settings {

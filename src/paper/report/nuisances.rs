@@ -61,7 +61,7 @@ impl GammaLeft {
         let reference = &run.reference;
         let expected = |depth| Ok(reference.table().row(depth)?.map(<[f64]>::to_vec));
         let gamma = |unknown: &[Unknown], read: Read| -> Result<f64, Refusal> {
-            let unknown = nuisances(unknown, reference.depths(), depth, expected)?;
+            let unknown = nuisances(unknown, reference.table().depths(), depth, expected)?;
             let columns = unknown.iter().flat_map(|of| read(of.as_deref()));
             let (mut columns, mut signal) = (columns.collect::<Vec<_>>(), read(signal));
             let space = Nuisances::new(&mut columns, signal.len())

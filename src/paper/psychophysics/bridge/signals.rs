@@ -22,7 +22,8 @@ pub struct Signal {
 ///
 /// Implements: PSY-070, CLI-081.
 pub fn sweep(map: &ForceMap, half: Option<f64>) -> Result<ForceMap, Refusal> {
-    let begins_at_centre = map.laterals().len() > 1 && map.laterals()[0].abs() <= SAME_POSITION;
+    let begins_at_centre =
+        map.table().laterals().len() > 1 && map.table().laterals()[0].abs() <= SAME_POSITION;
     let whole = if begins_at_centre {
         map.mirrored()?
     } else {

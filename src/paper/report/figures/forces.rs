@@ -190,7 +190,7 @@ fn force_words(map: &ForceMap, depth: Option<f64>) -> Words {
         format!(" Between the dashed lines lie 95 % of the draws of the uncertain inputs, at {depth} mm.")
     });
     let bands = bands.unwrap_or_default();
-    let forces = map.forces().normal.values().iter();
+    let forces = map.table().forces().normal.values().iter();
     let largest = forces.copied().fold(0.0, f64::max);
     Words::new(
         format!(
@@ -203,7 +203,7 @@ fn force_words(map: &ForceMap, depth: Option<f64>) -> Words {
         ),
         format!(
             "Two line charts of normal and lateral force against lateral position, {} curves each. The largest normal force is {} N.",
-            map.depths().len(),
+            map.table().depths().len(),
             fixed(largest, 3)
         ),
     )
@@ -225,7 +225,7 @@ fn measured_words(map: &ForceMap) -> Words {
         ),
         format!(
             "Two line charts of measured normal and lateral force against lateral position, {} curves each.",
-            map.depths().len()
+            map.table().depths().len()
         ),
     )
 }
