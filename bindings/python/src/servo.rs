@@ -38,8 +38,8 @@ impl ServoTable {
 
     /// The stiffness of the table, N/m: its steepest slope.
     #[getter]
-    fn stiffness_n_per_m(&self) -> PyResult<f64> {
-        Ok(servo::stiffness(&self.0.table()))
+    fn stiffness_n_per_m(&self) -> f64 {
+        servo::stiffness(&self.0.table())
     }
 }
 
