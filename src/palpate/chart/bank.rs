@@ -119,23 +119,18 @@ fn marginal(
     let shown: Vec<_> = [from].into_iter().chain(between).chain([to]).collect();
     let y = round_range(shown.iter().map(|point| point.1));
     let at_estimate = vec![(estimate, 0.0), (estimate, y[1])];
-    let sample = |line: Line| Line {
-        points: Vec::new(),
-        ..line
-    };
     let area = Line::area(REGIONS[0].1, scaled(inside));
     let estimated = Line::new(VERMILION, scaled(at_estimate)).dashed(true);
     let [estimate, low, high] = [estimate, low, high].map(|x| trimmed(scale * x, 3));
-    let key = vec![
-        sample(estimated.clone()).named(format!("likeliest: {estimate}")),
-        sample(area.clone()).named(format!("95 %: {low} to {high}")),
-    ];
     let x = range.map(|x| scale * x);
-    let lines = vec![area, Line::new(INK, scaled(shown)), estimated];
+    let lines = vec![
+        area.named(format!("95 %: {low} to {high}")),
+        Line::new(INK, scaled(shown)),
+        estimated.named(format!("likeliest: {estimate}")),
+    ];
     let heading = format!("Probability density (1/{per})");
     let panel = Panel {
         x_name: format!("{name} ({unit})"),
-        key,
         ..Panel::new(heading, [x, y], 150, lines)
     };
     let text =
