@@ -10,6 +10,16 @@ use serde_json::ser::Formatter;
 use crate::fem::FemError;
 use crate::stats::NumericError;
 
+/// An answer: values by name.
+macro_rules! answer {
+    ($($name:ident $(: $value:expr)?),* $(,)?) => {{
+        #[derive(serde::Serialize)]
+        struct Answer<$($name),*> { $($name: $name),* }
+        Answer { $($name $(: $value)?),* }
+    }};
+}
+pub(super) use answer;
+
 /// The JSON text of an answer.
 ///
 /// # Errors

@@ -16,16 +16,21 @@ pub const MOST_ENTRIES: usize = 1_000_000;
 /// How the message of an argument begins that is of the right kind, but outside its range.
 const OUT_OF_RANGE: &str = "out of range: ";
 
-/// Declares the arguments of an op: a JSON object of just these, each given once.
-macro_rules! arguments {
-    ($(#[$attribute:meta])* $name:ident { $($field:ident: $type:ty),* $(,)? }) => {
-        $(#[$attribute])*
-        #[derive(Debug, serde::Deserialize)]
+/// The value of an expression of some arguments, which `$text` must give: a JSON object of just these, each once, and of the `$tag` that has
+/// chosen them.
+macro_rules! with_arguments {
+    ($text:expr, $([$tag:ident])? { $($name:ident: $type:ty),* } => $value:expr) => {{
+        #[derive(serde::Deserialize)]
         #[serde(deny_unknown_fields)]
-        pub struct $name { $(pub $field: $type),* }
-    };
+        struct Arguments {
+            $(#[allow(dead_code)] $tag: serde::de::IgnoredAny,)?
+            $($name: $type),*
+        }
+        let Arguments { $($name,)* .. } = $crate::oracle::arguments::arguments_of($text)?;
+        $value
+    }};
 }
-pub(super) use arguments;
+pub(super) use with_arguments;
 
 /// Reads a JSON object; serde by itself would also take a list of its values.
 pub fn object<'a, T: Deserialize<'a>>(text: &'a str) -> serde_json::Result<T> {

@@ -2,35 +2,24 @@
 
 use serde::Serialize;
 
-use super::proportion::MOST_TRIALS;
-use super::{List, Refused, Rows, Whole, arguments};
+use super::{List, MOST_TRIALS, Refused, Rows, Whole, answer};
 use crate::detect::gamma_from_two_afc;
 use crate::stats::dispersion::dispersion;
 
-arguments! { Counts { correct: Rows, trials: Whole<1, MOST_TRIALS> } }
-
-/// For each condition: the pooled right answers, their rate, γ from it, and how far the subjects differ from one binomial.
-#[derive(Debug, Default, Serialize)]
-pub struct Analysis {
-    pooled: Vec<u64>,
-    rate: Vec<f64>,
-    gamma: Vec<f64>,
-    chi2: Vec<f64>,
-    df: usize,
-}
-
-/// Pools the counts of all subjects.
+/// The pooled right answers of each condition, their rate, γ from it, and how far the subjects differ from one binomial.
 ///
 /// Implements: ORA-020.
-pub fn analysis(arguments: Counts) -> Result<Analysis, Refused> {
-    let Whole(trials) = arguments.trials;
-    let subjects = arguments.correct.0.len();
-    let conditions = arguments.correct.0.first().map_or(0, |List(row)| row.len());
+pub fn analysis(
+    counts: &Rows,
+    Whole(trials): Whole<1, MOST_TRIALS>,
+) -> Result<impl Serialize, Refused> {
+    let subjects = counts.0.len();
+    let conditions = counts.0.first().map_or(0, |List(row)| row.len());
     if conditions == 0 {
         let wrong = "correct is empty, but must have a row for each subject";
         return Err(Refused::argument(wrong));
     }
-    let correct = arguments.correct.concat("correct", subjects, conditions)?;
+    let correct = counts.concat("correct", subjects, conditions)?;
     if let Some(wrong) = correct.iter().position(|&count| !is_count(count, trials)) {
         return Err(Refused::range(format_args!(
             "correct[{}][{}] is {}, but must be a whole number from 0 to {trials}",
@@ -39,26 +28,22 @@ pub fn analysis(arguments: Counts) -> Result<Analysis, Refused> {
             correct[wrong]
         )));
     }
-    let mut analysis = Analysis {
-        df: subjects - 1,
-        ..Analysis::default()
-    };
+    let (mut pooled, mut rates) = (Vec::new(), Vec::new());
+    let (mut gamma, mut chi2) = (Vec::new(), Vec::new());
     for condition in 0..conditions {
         let column = correct.iter().skip(condition).step_by(conditions);
         // Whole numbers, at most 10⁹ each: exact in either type.
         let column: Vec<_> = column.map(|&count| (count as u32, trials as u32)).collect();
         let right: u64 = column.iter().map(|&(right, _)| u64::from(right)).sum();
         let rate = right as f64 / (subjects as f64 * trials as f64);
-        analysis.pooled.push(right);
-        analysis.rate.push(rate);
-        analysis.gamma.push(gamma_from_two_afc(rate)?);
+        pooled.push(right);
+        rates.push(rate);
+        gamma.push(gamma_from_two_afc(rate)?);
         // A single subject has the pooled rate.
         let dispersion = dispersion(&column)?;
-        analysis
-            .chi2
-            .push(dispersion.map_or(0.0, |found| found.chi_square));
+        chi2.push(dispersion.map_or(0.0, |found| found.chi_square));
     }
-    Ok(analysis)
+    Ok(answer! { pooled, rate: rates, gamma, chi2, df: subjects - 1 })
 }
 
 fn is_count(count: f64, trials: i64) -> bool {

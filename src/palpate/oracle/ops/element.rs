@@ -1,43 +1,36 @@
 //! The stiffness of one triangle with six nodes.
 
-use std::collections::BTreeMap;
+use serde::Serialize;
 
-use super::{Code, Refused, Rows, arguments, named};
+use super::{Code, Refused, Rows, answer};
 use crate::fem::element::{NODES, StiffnessRule};
 use crate::phantom::Material;
 
-arguments! { Element { nodes_m: Rows, youngs_modulus_pa: f64, poissons_ratio: f64 } }
-
 /// The stiffness matrix, Pa, of an element in plane strain, 1 m thick.
-pub fn stiffness(arguments: Element) -> Result<BTreeMap<&'static str, Vec<Vec<f64>>>, Refused> {
-    let nodes = arguments.nodes_m.concat("nodes_m", NODES, 2)?;
-    let (nodes, _) = nodes.as_chunks::<2>();
-    let material = Material {
-        youngs_modulus: arguments.youngs_modulus_pa,
-        poisson_ratio: arguments.poissons_ratio,
-    };
-    check(&material)?;
-    let stiffness = StiffnessRule::default().integrate(nodes, &material);
-    let rows = stiffness.map_err(not_positive)?;
-    let rows = rows.row_iter().map(|row| row.iter().copied().collect());
-    Ok(named("stiffness", rows.collect()))
-}
-
-fn check(material: &Material) -> Result<(), Refused> {
-    let Material {
-        youngs_modulus,
-        poisson_ratio,
-    } = material;
-    if *youngs_modulus <= 0.0 {
+pub fn stiffness(
+    nodes: &Rows,
+    youngs_modulus: f64,
+    poisson_ratio: f64,
+) -> Result<impl Serialize, Refused> {
+    let nodes = nodes.concat("nodes_m", NODES, 2)?;
+    if youngs_modulus <= 0.0 {
         let wrong = format_args!("youngs_modulus_pa is {youngs_modulus}, but must be above 0");
         return Err(Refused::range(wrong));
     }
-    if !(*poisson_ratio > -1.0 && *poisson_ratio < 0.5) {
+    if !(poisson_ratio > -1.0 && poisson_ratio < 0.5) {
         let right = "must be above -1 and below 0.5";
         let wrong = format_args!("poissons_ratio is {poisson_ratio}, but {right}");
         return Err(Refused::range(wrong));
     }
-    Ok(())
+    let material = Material {
+        youngs_modulus,
+        poisson_ratio,
+    };
+    let stiffness = StiffnessRule::default().integrate(nodes.as_chunks::<2>().0, &material);
+    let stiffness = stiffness.map_err(not_positive)?;
+    let rows = stiffness.row_iter();
+    let rows: Vec<Vec<f64>> = rows.map(|row| row.iter().copied().collect()).collect();
+    Ok(answer! { stiffness: rows })
 }
 
 fn not_positive(jacobian: f64) -> Refused {

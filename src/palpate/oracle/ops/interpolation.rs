@@ -1,42 +1,27 @@
 //! The paper's rule between and beyond the poses of a table.
 
-use std::collections::BTreeMap;
+use serde::Serialize;
 
-use super::{Code, List, Refused, Rows, arguments, named};
+use super::{Code, Refused, Rows, answer};
 use crate::force_map::{self, Matrix};
 
-arguments! {
-    TableAndPose {
-        depths_m: List<f64>,
-        laterals_m: List<f64>,
-        table_n: Rows,
-        depth_m: f64,
-        lateral_m: f64,
-    }
-}
-
 /// The force at a pose.
-pub fn interpolate(arguments: TableAndPose) -> Result<BTreeMap<&'static str, f64>, Refused> {
-    let TableAndPose {
-        depths_m: List(depths),
-        laterals_m: List(laterals),
-        ..
-    } = &arguments;
+pub fn interpolate(
+    depths: &[f64],
+    laterals: &[f64],
+    table: &Rows,
+    depth: f64,
+    lateral: f64,
+) -> Result<impl Serialize, Refused> {
     check_axis("depths_m", depths)?;
     check_axis("laterals_m", laterals)?;
     let (rows, columns) = (depths.len(), laterals.len());
-    let forces = arguments.table_n.concat("table_n", rows, columns)?;
+    let forces = table.concat("table_n", rows, columns)?;
     let forces = Matrix::from_fn(rows, columns, |row, column| forces[row * columns + column]);
-    let TableAndPose {
-        depth_m, lateral_m, ..
-    } = arguments;
-    match force_map::interpolate(depths, laterals, &forces, depth_m, lateral_m) {
-        Some(force) => Ok(named("force_n", force)),
-        None => {
-            let wrong = "force_n would be beyond the largest f64";
-            Err(Refused::new(Code::Overflow, wrong))
-        }
-    }
+    let force = force_map::interpolate(depths, laterals, &forces, depth, lateral);
+    let overflow = "force_n would be beyond the largest f64";
+    let force_n = force.ok_or_else(|| Refused::new(Code::Overflow, overflow))?;
+    Ok(answer! { force_n })
 }
 
 /// Whether an axis has a cell and increases; how closely, does not matter to the rule.

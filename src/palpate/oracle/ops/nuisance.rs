@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{List, Refused, Rows, arguments};
+use super::{List, Refused, Rows, answer};
 use crate::detect::mixture::{likeliest, mixture_theta};
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
 use crate::detect::{DetectError, posterior};
@@ -11,57 +11,27 @@ use crate::stats::error::{check_samples, representable};
 /// Most nuisances: each is projected onto those before it.
 const MOST_NUISANCES: usize = 100;
 
-arguments! {
-    Whitened {
-        residual: List<f64>,
-        template: List<f64>,
-        nuisances: Rows,
-        level: String,
-        bias: f64,
-        eta: f64,
-    }
-}
-arguments! {
-    Bank {
-        residual: List<f64>,
-        templates: Rows,
-        nuisances: Rows,
-        level: String,
-        prior: List<f64>,
-        prior_h1: f64,
-    }
-}
-
-/// What a whitened record beside nuisances says.
-#[derive(Debug, Serialize)]
-pub struct Tested {
-    t: f64,
-    gamma: f64,
-    gamma_nominal: f64,
-    rank: usize,
-    residual: f64,
-    degrees: usize,
-    theta: f64,
-    false_alarm: f64,
-    miss: f64,
-}
-
 /// T, γ, the residual, θ and error rates of a whitened record beside nuisances.
 ///
 /// Implements: ORA-011, ORA-020, ACC-014.
-pub fn theta(arguments: Whitened) -> Result<Tested, Refused> {
-    let List(mut residual) = arguments.residual;
-    let List(mut template) = arguments.template;
-    let level = level(&arguments.level)?;
+pub fn theta(
+    List(mut residual): List<f64>,
+    List(mut template): List<f64>,
+    nuisances: &Rows,
+    level: &str,
+    bias: f64,
+    eta: f64,
+) -> Result<impl Serialize + use<>, Refused> {
+    let level = level_of(level)?;
     let samples = template.len();
     check_samples("template", &template, samples)?;
-    let mut signals = signals(&arguments.nuisances, samples)?;
+    let mut signals = signals(nuisances, samples)?;
     let nuisances = Nuisances::new(&mut signals, samples)?;
     let detector = SubspaceDetector::new(nuisances, &mut template)?;
     let found = detector.statistic(&mut residual)?;
-    let test = found.test(level, arguments.bias)?;
-    let rates = test.rates(test.bayes_threshold(arguments.eta)?)?;
-    Ok(Tested {
+    let test = found.test(level, bias)?;
+    let rates = test.rates(test.bayes_threshold(eta)?)?;
+    Ok(answer! {
         t: test.t,
         gamma: test.gamma,
         gamma_nominal: detector.gamma_nominal(),
@@ -75,47 +45,39 @@ pub fn theta(arguments: Whitened) -> Result<Tested, Refused> {
 }
 
 /// θ of each hypothesis beside nuisances, of all together, the largest, and the probabilities that follow.
-#[derive(Debug, Serialize)]
-pub struct Posterior {
-    theta: Vec<f64>,
-    theta_mixture: f64,
-    theta_max: f64,
-    hypothesis: usize,
-    posterior_h1: f64,
-    posterior: Vec<f64>,
-}
-
-/// What a whitened record says of the hypotheses of a bank.
 ///
 /// Implements: ORA-011, ORA-020.
-pub fn bank_posterior(arguments: Bank) -> Result<Posterior, Refused> {
-    let List(residual) = arguments.residual;
-    let List(prior) = arguments.prior;
-    let level = level(&arguments.level)?;
+pub fn bank_posterior(
+    residual: &[f64],
+    templates: &Rows,
+    nuisances: &Rows,
+    level: &str,
+    prior: &[f64],
+    prior_h1: f64,
+) -> Result<impl Serialize + use<>, Refused> {
+    let level = level_of(level)?;
     let samples = residual.len();
-    check_samples("residual", &residual, samples)?;
-    check_samples("prior", &prior, prior.len())?;
-    let mut templates = arguments
-        .templates
-        .concat("templates", prior.len(), samples)?;
-    let mut signals = signals(&arguments.nuisances, samples)?;
+    check_samples("residual", residual, samples)?;
+    check_samples("prior", prior, prior.len())?;
+    let mut templates = templates.concat("templates", prior.len(), samples)?;
+    let mut signals = signals(nuisances, samples)?;
     let nuisances = Nuisances::new(&mut signals, samples)?;
     let found = templates
         .chunks_exact_mut(samples)
-        .map(|template| theta_of(nuisances, template, &residual, level))
+        .map(|template| theta_of(nuisances, template, residual, level))
         .collect::<Result<Vec<_>, _>>()?;
     let theta: Vec<f64> = found.iter().map(|theta| theta.unwrap_or(0.0)).collect();
-    let theta_mixture = mixture_theta(&theta, &prior)?;
+    let theta_mixture = mixture_theta(&theta, prior)?;
     let may_be = |&number: &usize| found[number].is_some() && prior[number] > 0.0;
     let hypothesis = likeliest(&theta, (0..theta.len()).filter(may_be));
     let hypothesis = hypothesis.ok_or(DetectError::NoSignal)?;
-    Ok(Posterior {
+    Ok(answer! {
         theta_mixture,
         theta_max: theta[hypothesis],
         hypothesis,
-        posterior_h1: posterior(theta_mixture, arguments.prior_h1)?,
-        posterior: shares(&theta, &prior),
-        theta,
+        posterior_h1: posterior(theta_mixture, prior_h1)?,
+        posterior: shares(&theta, prior),
+        theta: theta,
     })
 }
 
@@ -150,7 +112,7 @@ fn shares(theta: &[f64], prior: &[f64]) -> Vec<f64> {
 }
 
 /// How the noise is known.
-fn level(word: &str) -> Result<NoiseLevel, Refused> {
+fn level_of(word: &str) -> Result<NoiseLevel, Refused> {
     match word {
         "known" => Ok(NoiseLevel::Known),
         "unknown" => Ok(NoiseLevel::Unknown),

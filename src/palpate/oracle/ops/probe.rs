@@ -2,31 +2,22 @@
 
 use serde::Serialize;
 
-use super::{Refused, arguments};
+use super::{Refused, answer};
 use crate::fem::{Contact, MESH_SIZE, Model, Pose};
 use crate::phantom::Phantom;
 
 /// Models that were made, each with the name of its phantom: at most one for each that is built in.
 pub type Models = Vec<(String, Model)>;
 
-arguments! { PhantomAndPose { phantom: String, depth_m: f64, lateral_m: f64 } }
-
-/// The force on the probe, N.
-#[derive(Debug, Serialize)]
-pub struct ProbeForce {
-    normal_force_n: f64,
-    lateral_force_n: f64,
-}
-
 /// The force at one pose, on the mesh and with the contact that `palpate solve` uses by default.
 ///
 /// Implements: ORA-012.
-pub fn force(arguments: PhantomAndPose, models: &mut Models) -> Result<ProbeForce, Refused> {
-    let PhantomAndPose {
-        phantom: name,
-        depth_m: depth,
-        lateral_m: lateral,
-    } = arguments;
+pub fn force(
+    name: String,
+    depth: f64,
+    lateral: f64,
+    models: &mut Models,
+) -> Result<impl Serialize + use<>, Refused> {
     let phantom =
         Phantom::builtin(&name).map_err(|error| Refused::range(format_args!("phantom {error}")))?;
     // Before the model is made: a pose that cannot be is cheap to refuse.
@@ -42,8 +33,5 @@ pub fn force(arguments: PhantomAndPose, models: &mut Models) -> Result<ProbeForc
             force
         }
     };
-    Ok(ProbeForce {
-        normal_force_n: force.normal,
-        lateral_force_n: force.lateral,
-    })
+    Ok(answer! { normal_force_n: force.normal, lateral_force_n: force.lateral })
 }

@@ -1,55 +1,24 @@
 //! The reports of the haptic device.
 
-use std::collections::BTreeMap;
-
-use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
-use serde_json::value::RawValue;
 
-use super::{Refused, Whole, arguments, arguments_of, named};
+use super::{Refused, Whole, arguments_of, with_arguments};
 use crate::hid::{Capabilities, Control, ForceReport, InvalidReport, PositionReport};
 
-/// The number of a report, which names its other fields.
+/// The number of a report, which chooses its other fields.
 #[derive(Debug, Deserialize)]
 struct Number {
     report: Whole<1, 4>,
 }
 
-/// The arguments of a report: any whole number of the type of each field.
-macro_rules! report {
-    ($report:ident from $arguments:ident { $($field:ident: $type:ident),+ $(,)? }) => {
-        arguments! {
-            #[allow(dead_code)]
-            $arguments {
-                report: IgnoredAny,
-                $($field: Whole<{ $type::MIN as i64 }, { $type::MAX as i64 }>),+
-            }
-        }
-
-        impl From<$arguments> for $report {
-            fn from(arguments: $arguments) -> $report {
-                $report { $($field: arguments.$field.0 as $type),+ }
-            }
-        }
+/// The bytes of a report from its fields in a text, each a whole number of its type.
+macro_rules! encoded {
+    ($text:ident => $report:ident, $($field:ident: $type:ident),*) => {
+        with_arguments!($text, [report] {
+            $($field: Whole<{ $type::MIN as i64 }, { $type::MAX as i64 }>),*
+        } => $report { $($field: $field.0 as $type),* }.encode().to_vec())
     };
 }
-
-report! {
-    PositionReport from PositionFields {
-        lateral: i16, normal: i16, buttons: u8, status: u8, sequence: u16, force_sequence: u16,
-    }
-}
-report! {
-    ForceReport from ForceFields { lateral: i16, normal: i16, sequence: u16, flags: u8 }
-}
-report! {
-    Capabilities from CapabilitiesFields {
-        version: u16, position_unit_nm: u16, force_unit_un: u16, largest_force_mn: u16,
-        period_us: u16, watchdog_ms: u16, damping_mn_s_per_m: u16, friction_mn: u16,
-    }
-}
-arguments! { #[allow(dead_code)] ControlFields { report: IgnoredAny, control: Whole<0, 2> } }
-arguments! { Encoded { bytes: String } }
 
 /// The number of a report and its fields.
 #[derive(Debug, Serialize)]
@@ -71,8 +40,8 @@ enum Fields {
 /// The fields of a report.
 ///
 /// Implements: ORA-009, VEC-010.
-pub fn decode(arguments: Encoded) -> Result<Decoded, Refused> {
-    let bytes = bytes(&arguments.bytes)
+pub fn decode(text: &str) -> Result<Decoded, Refused> {
+    let bytes = bytes(text)
         .ok_or_else(|| Refused::argument("bytes must be pairs of hexadecimal digits"))?;
     let Some(&report) = bytes.first() else {
         return Err(Refused::argument("bytes is empty, but must be a report"));
@@ -97,26 +66,22 @@ pub fn decode(arguments: Encoded) -> Result<Decoded, Refused> {
 /// The bytes of a report.
 ///
 /// Implements: ORA-009, VEC-010.
-pub fn encode(arguments: &RawValue) -> Result<BTreeMap<&'static str, String>, Refused> {
-    let text = arguments.get();
-    let Number { report } = arguments_of(text)?;
-    let bytes = match report.0 as u8 {
-        PositionReport::NUMBER => PositionReport::from(arguments_of::<PositionFields>(text)?)
-            .encode()
-            .to_vec(),
-        ForceReport::NUMBER => ForceReport::from(arguments_of::<ForceFields>(text)?)
-            .encode()
-            .to_vec(),
-        Capabilities::NUMBER => Capabilities::from(arguments_of::<CapabilitiesFields>(text)?)
-            .encode()
-            .to_vec(),
-        number => {
-            let ControlFields { control, .. } = arguments_of(text)?;
-            vec![number, control.0 as u8]
-        }
+pub fn encode(text: &str) -> Result<String, Refused> {
+    let Number {
+        report: Whole(number),
+    } = arguments_of(text)?;
+    let bytes = match number as u8 {
+        PositionReport::NUMBER => encoded!(text => PositionReport,
+            lateral: i16, normal: i16, buttons: u8, status: u8, sequence: u16, force_sequence: u16),
+        ForceReport::NUMBER => encoded!(text => ForceReport,
+            lateral: i16, normal: i16, sequence: u16, flags: u8),
+        Capabilities::NUMBER => encoded!(text => Capabilities,
+            version: u16, position_unit_nm: u16, force_unit_un: u16, largest_force_mn: u16,
+            period_us: u16, watchdog_ms: u16, damping_mn_s_per_m: u16, friction_mn: u16),
+        _ => with_arguments!(text, [report] { control: Whole<0, 2> } =>
+            vec![Control::NUMBER, control.0 as u8]),
     };
-    let text = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(named("bytes", text))
+    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
 /// Bytes from pairs of hexadecimal digits.

@@ -1,24 +1,12 @@
 //! The servo kernel, to the bit.
 
-use std::collections::BTreeMap;
 use std::fmt::Debug;
 
 use serde::Serialize;
 
-use super::{Bits, List, Refused, arguments, named};
+use super::{Bits, List, Refused, answer};
 use crate::force::Force;
 use crate::servo::{Axis, Table};
-
-arguments! { KnotsAndCoordinate { knots: List<f64>, coordinate_bits: Bits } }
-arguments! {
-    TableAndPose {
-        depth_knots: List<f64>,
-        lateral_knots: List<f64>,
-        table_bits: List<List<Bits>>,
-        depth_bits: Bits,
-        lateral_bits: Bits,
-    }
-}
 
 /// Knots as the kernel stores them, with the reciprocals of the widths.
 ///
@@ -26,8 +14,8 @@ arguments! {
 struct Knots(Vec<f32>, Vec<f32>);
 
 impl Knots {
-    fn new(List(knots): List<f64>) -> Knots {
-        let knots: Vec<f32> = knots.into_iter().map(|knot| knot as f32).collect();
+    fn new(List(knots): &List<f64>) -> Knots {
+        let knots: Vec<f32> = knots.iter().map(|&knot| knot as f32).collect();
         let width = |pair: &[f32]| Axis::reciprocal_width(pair[0], pair[1]);
         let reciprocals = knots.windows(2).map(width).collect();
         Knots(knots, reciprocals)
@@ -49,35 +37,29 @@ fn bits(value: f32) -> String {
 }
 
 /// Cell and fraction of a coordinate.
-#[derive(Debug, Serialize)]
-pub struct Place {
-    cell: usize,
-    fraction_bits: String,
-}
-
-/// Where a coordinate lies on an axis.
-pub fn axis(arguments: KnotsAndCoordinate) -> Result<Place, Refused> {
-    let knots = Knots::new(arguments.knots);
-    let cell = knots.axis("knots")?.locate(arguments.coordinate_bits.0);
-    Ok(Place {
-        cell: cell.index,
-        fraction_bits: bits(cell.fraction),
-    })
+pub fn axis(knots: &List<f64>, Bits(coordinate): Bits) -> Result<impl Serialize + use<>, Refused> {
+    let cell = Knots::new(knots).axis("knots")?.locate(coordinate);
+    Ok(answer! { cell: cell.index, fraction_bits: bits(cell.fraction) })
 }
 
 /// The force of a table at a pose.
-pub fn interpolate(arguments: TableAndPose) -> Result<BTreeMap<&'static str, String>, Refused> {
-    let depth_knots = Knots::new(arguments.depth_knots);
-    let lateral_knots = Knots::new(arguments.lateral_knots);
+pub fn interpolate(
+    depth_knots: &List<f64>,
+    lateral_knots: &List<f64>,
+    entries: &List<List<Bits>>,
+    Bits(depth): Bits,
+    Bits(lateral): Bits,
+) -> Result<impl Serialize + use<>, Refused> {
+    let [depth_knots, lateral_knots] = [depth_knots, lateral_knots].map(Knots::new);
     let depths = depth_knots.axis("depth_knots")?;
     let laterals = lateral_knots.axis("lateral_knots")?;
     let (rows, columns) = (depths.knots().len(), laterals.knots().len());
-    let entries = arguments.table_bits.concat("table_bits", rows, columns)?;
+    let entries = entries.concat("table_bits", rows, columns)?;
     // Both components alike.
     let both = |Bits(force)| Force::new(force, force);
     let forces: Vec<_> = entries.into_iter().map(both).collect();
     let table = Table::new(depths, laterals, &forces)
         .map_err(|error| refused("table_bits", error, "numbers within 100 N"))?;
-    let force = table.force(arguments.depth_bits.0, arguments.lateral_bits.0);
-    Ok(named("force_bits", bits(force.normal)))
+    let force = table.force(depth, lateral);
+    Ok(answer! { force_bits: bits(force.normal) })
 }
