@@ -1,6 +1,7 @@
 //! How long the cycles of the loop take on this machine, against a budget.
 
 mod budget;
+mod distribution;
 mod log;
 pub mod paper;
 
@@ -14,8 +15,10 @@ use super::{
 };
 use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
+use budget::Responses;
 pub use budget::{Budget, BudgetOutcome, Judged};
-use budget::{Responses, histogram, nanoseconds};
+pub use distribution::Distribution;
+use distribution::{histogram, nanoseconds};
 pub use log::judge_log;
 
 /// A device on the clock of the host instead of its own, and at the host's pace if it is asked to.
@@ -69,32 +72,6 @@ impl<D: HapticDevice> HapticDevice for HostClock<'_, D> {
 
     fn now(&self) -> Duration {
         self.began.elapsed()
-    }
-}
-
-/// Distribution of a time, µs.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Distribution {
-    /// Half of all cycles are no longer.
-    pub p50: f64,
-    /// 99 % of all.
-    pub p99: f64,
-    /// 99.9 % of all.
-    pub p99_9: f64,
-    /// All.
-    pub max: f64,
-}
-
-impl Distribution {
-    /// `None` of no time.
-    fn of(times: &Histogram<u64>) -> Option<Distribution> {
-        let quantile = |share| times.value_at_quantile(share) as f64 / 1e3;
-        (!times.is_empty()).then(|| Distribution {
-            p50: quantile(0.5),
-            p99: quantile(0.99),
-            p99_9: quantile(0.999),
-            max: times.max() as f64 / 1e3,
-        })
     }
 }
 

@@ -1,11 +1,11 @@
-//! The device that is asked for.
+//! The choice of a device.
 
 use std::fmt;
 
 use super::{Identity, Listed, Profile};
 use crate::refusal::Refusal;
 
-/// What is known of the device that is wanted; what is `None` does not matter.
+/// The device to choose; `None` matches any.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// Vendor number.
@@ -38,7 +38,7 @@ impl fmt::Display for Wanted {
     }
 }
 
-/// The only one of `listed` that is wanted and fits the vendor profile.
+/// The only one of `listed` that matches and has the vendor profile.
 ///
 /// Implements: HID-030.
 pub(super) fn choose<'a>(listed: &'a [Listed], wanted: &Wanted) -> Result<&'a Listed, Refusal> {
@@ -55,7 +55,7 @@ pub(super) fn choose<'a>(listed: &'a [Listed], wanted: &Wanted) -> Result<&'a Li
         (several, ..) => {
             let names: Vec<String> = several.iter().map(|one| one.identity.to_string()).collect();
             let (number, names) = (names.len(), names.join(", "));
-            format!("{number} devices: {names}; choose one by its numbers")
+            format!("{number} devices match: {names}; select one with --vid, --pid or --serial")
         }
     };
     Err(Refusal::state(wrong, ""))

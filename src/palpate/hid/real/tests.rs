@@ -48,8 +48,8 @@ fn the_only_device_of_the_profile_needs_no_name_and_another_is_explained() {
     assert_eq!(chosen("a b", &wanted("b")), "b");
     assert_eq!(
         chosen("a b", &any),
-        "2 devices: Display (1209:0001, serial a) at /dev/a, Display (1209:0001, serial b) at /dev/b; \
-         choose one by its numbers"
+        "2 devices match: Display (1209:0001, serial a) at /dev/a, Display (1209:0001, serial b) at /dev/b; \
+         select one with --vid, --pid or --serial"
     );
     assert_eq!(
         chosen("other", &wanted("other")),

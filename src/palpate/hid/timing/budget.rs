@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use hdrhistogram::Histogram;
 
-use super::Distribution;
+use super::distribution::{Distribution, histogram, nanoseconds};
 use crate::refusal::Refusal;
 use crate::stats::NumericError;
 use crate::stats::binomial::{at_least, at_most, first};
@@ -202,15 +202,6 @@ impl Responses {
             jitter_us: Distribution::of(&self.jitter),
         })
     }
-}
-
-/// From 1 ns to 100 s within 0.1 %: everything that a cycle can take.
-pub(super) fn histogram() -> Option<Histogram<u64>> {
-    Histogram::new_with_bounds(1, 100_000_000_000, 3).ok()
-}
-
-pub(super) fn nanoseconds(time: Duration) -> u64 {
-    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }
 
 #[cfg(test)]
