@@ -1,5 +1,7 @@
 //! Signals between the points of a bank: on each axis the polynomial through the four nearest points.
 
+use std::ops::Range;
+
 /// The points whose polynomial stands for a signal, at most.
 ///
 /// Implements: BNK-030.
@@ -92,22 +94,33 @@ impl BankAxis {
     }
 }
 
-/// The points around `at` with their weights, as numbers of maps.
-pub(super) fn weights(axes: &[Vec<f64>; 4], at: [f64; 4]) -> Vec<(usize, f64)> {
-    let mut found = vec![(0, 1.0)];
+/// The numbers of the maps at neighbouring points of each axis, those of the first axis first.
+fn maps(axes: &[BankAxis; 4], along: [Range<usize>; 4]) -> Vec<usize> {
+    let mut maps = vec![0];
     let mut stride = 1;
-    for (points, x) in axes.iter().zip(at) {
-        let axis = BankAxis::new(points);
-        let Stencil { first, weights } = axis.stencil(axis.cell(x), x, SIGNAL);
-        let along = |&(map, weight): &(usize, f64)| {
-            let points = (first..).zip(&weights);
-            let points = points.map(move |(point, along)| (map + stride * point, weight * along));
-            points.collect::<Vec<_>>()
-        };
-        found = found.iter().flat_map(along).collect();
+    for (axis, points) in axes.iter().zip(along) {
+        let at = |point: usize| maps.iter().map(move |map| map + stride * point);
+        maps = points.flat_map(at).collect();
         stride *= axis.points.len();
     }
-    found
+    maps
+}
+
+/// A signal at the parameters `at`, between those of the maps: `value` gives a sample of a map.
+pub(super) fn signal_at(
+    axes: &[Vec<f64>; 4],
+    at: [f64; 4],
+    samples: usize,
+    value: impl Fn(usize, usize) -> f64,
+) -> Vec<f64> {
+    let axes = axes.each_ref().map(|points| BankAxis::new(points));
+    let cell = BankCell::around(&axes, at);
+    let (mut nodes, mut spare) = (Vec::new(), Vec::new());
+    let sample = |sample: usize| {
+        cell.interpolate(|map| value(map, sample), &mut nodes, &mut spare);
+        nodes[0]
+    };
+    (0..samples).map(sample).collect()
 }
 
 /// A cell of the bank, ready to interpolate in.
@@ -125,33 +138,32 @@ impl BankCell {
     /// The cell with the numbers `at`, for interpolation between at most `most` points along an axis.
     pub fn new(axes: &[BankAxis; 4], at: [usize; 4], most: usize) -> BankCell {
         let stencils = [0, 1, 2, 3].map(|axis: usize| axes[axis].stencils(at[axis], most));
-        let mut maps = vec![0];
-        let mut stride = 1;
-        for (axis, stencils) in axes.iter().zip(&stencils) {
+        BankCell::of(axes, at, stencils)
+    }
+
+    /// The cell of the parameters `at`, with a single node there.
+    fn around(axes: &[BankAxis; 4], at: [f64; 4]) -> BankCell {
+        let cell = [0, 1, 2, 3].map(|axis: usize| axes[axis].cell(at[axis]));
+        let stencil = |axis: usize| axes[axis].stencil(cell[axis], at[axis], SIGNAL);
+        BankCell::of(axes, cell, [0, 1, 2, 3].map(|axis| vec![stencil(axis)]))
+    }
+
+    fn of(axes: &[BankAxis; 4], at: [usize; 4], stencils: [Vec<Stencil>; 4]) -> BankCell {
+        let along = stencils.each_ref().map(|stencils| {
             let Stencil { first, weights } = &stencils[0];
-            let points = (0..weights.len()).map(|point| stride * (first + point));
-            let along = |offset: usize| maps.iter().map(move |map| map + offset);
-            maps = points.flat_map(along).collect();
-            stride *= axis.points.len();
-        }
+            *first..first + weights.len()
+        });
+        let maps = maps(axes, along);
         BankCell { at, maps, stencils }
     }
 
     /// The numbers of the maps at its corners.
     pub fn corners(&self, axes: &[BankAxis; 4]) -> Vec<usize> {
-        let mut corners = vec![0];
-        let mut stride = 1;
-        for (axis, &cell) in axes.iter().zip(&self.at) {
-            let next = usize::from(axis.is_free());
-            let along = |end: usize| {
-                corners
-                    .iter()
-                    .map(move |corner| corner + stride * (cell + end))
-            };
-            corners = (0..=next).flat_map(along).collect();
-            stride *= axis.points.len();
-        }
-        corners
+        let ends = |axis: usize| {
+            let cell = self.at[axis];
+            cell..cell + 1 + usize::from(axes[axis].is_free())
+        };
+        maps(axes, [0, 1, 2, 3].map(ends))
     }
 
     /// The values at all nodes, those of the first axis first, from the `value` of each map around. `spare` is memory.

@@ -2,7 +2,8 @@
 
 use std::sync::OnceLock;
 
-use super::place::Places;
+use super::axis::signal_at;
+use super::cells::Cells;
 use crate::detect::DetectError;
 use crate::detect::mixture::{likeliest, mixture_theta};
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceStatistic, SubspaceTest, dot};
@@ -13,8 +14,8 @@ use crate::stats::error::{check_positive, check_samples, representable};
 /// Implements: BNK-031.
 const LEAST_NOISE: f64 = 1e-12;
 
-/// Templates of all points of a bank, less what nuisances explain of them, ready for records over the same positions. Records and
-/// templates are whitened: both channels one after the other, each sample over the standard deviation of its noise.
+/// The bank's templates, projected off the nuisances, for records sampled at the same positions. Records and templates are whitened:
+/// both channels one after the other, each sample divided by the standard deviation of its noise.
 ///
 /// Implements: BNK-031.
 #[derive(Debug, Clone)]
@@ -32,7 +33,7 @@ pub struct BankDetector {
     deviations: Vec<Vec<f64>>,
     prior: Vec<f64>,
     axes: [Vec<f64>; 4],
-    places: OnceLock<Places>,
+    cells: OnceLock<Cells>,
 }
 
 /// What a record says of each point.
@@ -102,7 +103,7 @@ impl BankDetector {
             deviations: deviations.to_vec(),
             prior: prior.to_vec(),
             axes: axes.clone(),
-            places: OnceLock::new(),
+            cells: OnceLock::new(),
         })
     }
 
@@ -168,6 +169,16 @@ impl BankDetector {
         (gamma > 0.0).then(|| of_point.test(self.level, self.bias[point]))
     }
 
+    /// T with its law for each of [`BankDetector::points`].
+    ///
+    /// # Errors
+    /// As [`BankDetector::test`].
+    pub fn tests(&self, statistic: &BankStatistic) -> Result<Vec<SubspaceTest>, DetectError> {
+        let tests = self.points();
+        let tests = tests.filter_map(|point| self.test(statistic, point));
+        tests.collect()
+    }
+
     /// The points that can be told from no inclusion, and may be there by the prior.
     pub fn points(&self) -> impl Iterator<Item = usize> {
         let counts = |&point: &usize| self.gamma[point] > 0.0 && self.prior[point] > 0.0;
@@ -215,9 +226,9 @@ impl BankDetector {
     }
 
     /// The cells between the points, which take much longer than the detector, and are not always wanted.
-    pub(super) fn places(&self) -> &Places {
-        let new = || Places::new(&self.axes, &self.templates, self.samples);
-        self.places.get_or_init(new)
+    pub(super) fn cells(&self) -> &Cells {
+        let new = || Cells::new(&self.axes, &self.templates, self.samples);
+        self.cells.get_or_init(new)
     }
 
     /// Pδ of a point.
@@ -227,12 +238,7 @@ impl BankDetector {
 
     /// Pδ between the points, at the parameters `at` in the order of [`super::Parameter::ALL`].
     pub fn template_at(&self, at: [f64; 4]) -> Vec<f64> {
-        let mut template = vec![0.0; self.samples];
-        for (point, weight) in super::axis::weights(&self.axes, at) {
-            for (sample, of_point) in template.iter_mut().zip(self.template(point)) {
-                *sample += weight * of_point;
-            }
-        }
-        template
+        let sample = |point: usize, sample: usize| self.template(point)[sample];
+        signal_at(&self.axes, at, self.samples, sample)
     }
 }

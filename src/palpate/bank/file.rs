@@ -1,5 +1,6 @@
 //! Banks as JSON (`spec/bank.md`).
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -34,11 +35,17 @@ const PRIOR_HEADER: &str =
 /// The file's keys, in the order in which they are written.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Document {
-    schema: String,
+struct Document<'a> {
+    schema: Cow<'a, str>,
     schema_version: u64,
-    reference: ForceMap,
-    maps: Vec<ForceMap>,
+    reference: Cow<'a, ForceMap>,
+    maps: Cow<'a, [ForceMap]>,
+}
+
+impl Document<'_> {
+    fn is_known(&self) -> bool {
+        (&*self.schema, self.schema_version) == (SCHEMA, SCHEMA_VERSION)
+    }
 }
 
 impl Bank {
@@ -49,8 +56,8 @@ impl Bank {
         to_json(&Document {
             schema: SCHEMA.into(),
             schema_version: SCHEMA_VERSION,
-            reference: self.reference.clone(),
-            maps: self.maps.clone(),
+            reference: Cow::Borrowed(&self.reference),
+            maps: Cow::Borrowed(&self.maps),
         })
     }
 
@@ -62,9 +69,12 @@ impl Bank {
     /// Implements: BNK-010.
     pub fn from_json(text: &str, file: &str) -> Result<Bank, Refusal> {
         let read = || {
-            check_schema(text, SCHEMA, SCHEMA_VERSION)?;
-            let document: Document = from_json(text)?;
-            Bank::new(document.reference, document.maps)
+            let document = match from_json::<Document>(text) {
+                Ok(document) if document.is_known() => document,
+                // A newer file may have keys that this program does not know, so its version says more than they do.
+                other => check_schema(text, SCHEMA, SCHEMA_VERSION).and(other)?,
+            };
+            Bank::new(document.reference.into_owned(), document.maps.into_owned())
         };
         read().map_err(|refusal| refusal.in_file(file))
     }

@@ -23,7 +23,7 @@ impl BankDetector {
     ///
     /// Implements: BNK-050.
     pub fn bound(&self, at: [f64; 4]) -> PlaceBound {
-        let axes = self.places().axes();
+        let axes = &self.cells().axes;
         let slopes = [0, 1, 2, 3].map(|axis: usize| {
             let along = &axes[axis];
             let half = STEP * along.size(along.cell(at[axis]));

@@ -1,7 +1,7 @@
 //! A recorded sweep against a bank: is there an inclusion, and where?
 
 use super::Bank;
-use super::axis::weights;
+use super::axis::signal_at;
 use super::detector::BankDetector;
 use super::information::PlaceBound;
 use super::place::PlacePosterior;
@@ -11,7 +11,7 @@ use crate::detect::{Decision, DetectError, map_threshold, posterior};
 use crate::force::Force;
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
-use crate::trace::design::{Design, Series, blocked, difference, squares, stacked, whitened};
+use crate::trace::design::{Design, blocked, difference, squares, stacked, whitened};
 use crate::trace::{Cause, Criterion, Fit, Question, Record, refused};
 
 /// A search for the inclusion of a bank in records.
@@ -44,18 +44,10 @@ pub struct Location {
     pub theta_max: f64,
     /// ln of the likelihood ratio of an inclusion at any point.
     pub theta_mixture: f64,
-    /// The threshold of Θ_max, or of the mixture.
-    pub eta: f64,
-    /// Whether the mixture is compared with η, and not Θ_max.
-    pub by_mixture: bool,
-    /// The threshold by simulation, if it was asked for.
-    pub calibrated: Option<CalibratedThreshold>,
+    /// What decides.
+    pub threshold: SearchThreshold,
     /// Pr(H = 1 | record), by the mixture.
     pub posterior: f64,
-    /// The false-alarm rate is at most this.
-    pub false_alarm_bound: f64,
-    /// The miss rate for an inclusion at the likeliest point is at most this.
-    pub miss_bound: f64,
     /// Where it lies, and what it is, if there is one.
     pub place: PlacePosterior,
     /// How well that can be known, at the estimate.
@@ -66,13 +58,19 @@ pub struct Location {
     pub fit: Fit,
 }
 
-/// What decides, by the criterion.
-struct Decided {
-    statistic: f64,
-    eta: f64,
-    /// θ of the likeliest point is of an inclusion from here on, whatever the others are.
-    least: f64,
-    calibrated: Option<CalibratedThreshold>,
+/// The threshold of a search, and what it promises.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchThreshold {
+    /// The threshold of Θ_max, or of the mixture.
+    pub eta: f64,
+    /// Whether the mixture is compared with η, and not Θ_max.
+    pub by_mixture: bool,
+    /// The threshold by simulation, if it was asked for.
+    pub calibrated: Option<CalibratedThreshold>,
+    /// The false-alarm rate is at most this.
+    pub false_alarm_bound: f64,
+    /// The miss rate for an inclusion at the likeliest point is at most this.
+    pub miss_bound: f64,
 }
 
 impl BankSearch<'_> {
@@ -94,37 +92,24 @@ impl BankSearch<'_> {
             let mut design = Design::new(question, self.bank.reference().table(), record)?;
             let signal = |map: &ForceMap| {
                 let f1 = record.expected(map.table(), depth)?;
-                Ok(difference(f1.as_deref(), design.reference.as_deref()))
+                Ok(difference(&stacked(f1.as_deref()), &design.reference))
             };
             let signals = self.bank.maps().iter().map(signal);
-            let signals = signals.collect::<Result<Vec<Series>, Refusal>>()?;
+            let signals = signals.collect::<Result<Vec<_>, Refusal>>()?;
             // First where it probably lies, which does not depend on the level of the noise, so that its signal is not taken for noise.
             let noise_sd = question.noise.sd.unwrap_or(Force::new(1.0, 1.0));
-            let white = design.whitened(noise_sd);
+            let mut white = design.whitened(noise_sd);
             let detector = self.detector(&white, &signals, noise_sd, 1, NoiseLevel::Known)?;
-            let statistic = detector.statistic(&mut stacked(&white.residual));
-            let place = detector.place(&statistic.map_err(refused)?);
-            design.template = self.between(&signals, place.estimate);
-            let (white, fit, blocks) = question.fitted(&design).map_err(refused)?;
+            let statistic = detector.statistic(&mut white.residual).map_err(refused)?;
+            let at = detector.place(&statistic).estimate;
+            let sample = |map: usize, sample: usize| signals[map][sample];
+            design.template = signal_at(self.bank.axes(), at, signals[0].len(), sample);
+            let (white, fit, mut blocks) = question.fitted(&design).map_err(refused)?;
             let level = question.noise_level(&fit);
             let detector = self.detector(&blocks, &signals, fit.noise_sd, fit.block, level)?;
-            let mut residual = stacked(&blocks.residual);
-            self.judge(&detector, &mut residual, &white, fit)
+            self.judge(&detector, &mut blocks.residual, &white, fit)
         };
         located().map_err(|refusal: Refusal| refusal.in_file(record.file()))
-    }
-
-    /// The signal at the parameters `at`, N, between those of the maps.
-    fn between(&self, signals: &[Series], at: [f64; 4]) -> Series {
-        let mut sum = signals[0].as_deref().map(|signal| vec![0.0; signal.len()]);
-        for (map, weight) in weights(self.bank.axes(), at) {
-            sum = sum.zip(signals[map].as_deref()).map(|(mut sum, signal)| {
-                let pairs = sum.iter_mut().zip(signal);
-                pairs.for_each(|(sum, signal)| *sum += weight * signal);
-                sum
-            });
-        }
-        sum
     }
 
     /// The detector of the `signals` of all maps, N, beside the nuisances of a record whose parts over `noise_sd` and in blocks are
@@ -132,20 +117,19 @@ impl BankSearch<'_> {
     fn detector(
         &self,
         white: &Design,
-        signals: &[Series],
+        signals: &[Vec<f64>],
         noise_sd: Force<f64>,
         block: usize,
         level: NoiseLevel,
     ) -> Result<BankDetector, Refusal> {
-        let template = |signal| stacked(&blocked(&whitened(signal, noise_sd), block));
+        let template = |signal: &Vec<f64>| blocked(&whitened(signal, noise_sd), block);
         let uniform = vec![1.0 / signals.len() as f64; signals.len()];
-        let deviations: Vec<_> = white.depth_errors.iter().map(stacked).collect();
         let detector = BankDetector::new(
             self.bank.axes(),
             signals.iter().flat_map(template).collect(),
             self.prior.unwrap_or(&uniform),
             white.signals(false),
-            &deviations,
+            &white.depth_errors,
             level,
         );
         detector.map_err(refused)
@@ -162,36 +146,42 @@ impl BankSearch<'_> {
         let judged = || {
             let statistic = detector.statistic(residual)?;
             let likeliest = detector.likeliest(&statistic);
-            let tests = detector
-                .points()
-                .filter_map(|point| detector.test(&statistic, point));
-            let tests = tests.collect::<Result<Vec<_>, _>>()?;
+            let tests = detector.tests(&statistic)?;
             let test = detector.test(&statistic, likeliest);
             let test = test.ok_or(DetectError::NoSignal)??;
-            let mixture = detector.mixture(&statistic)?;
-            let decided = self.decided(detector, &tests, [test.theta(), mixture], likeliest)?;
-            let causes = fit.causes(&test)?;
-            let decision = if decided.statistic >= decided.eta {
+            let theta_mixture = detector.mixture(&statistic)?;
+            let (eta, calibrated) = self.threshold(detector, &tests)?;
+            let by_mixture = self.question.criterion == Criterion::Map;
+            // θ of the likeliest point is of an inclusion from `least` on, whatever the others are.
+            let (decisive, least) = if by_mixture {
+                (theta_mixture, eta - libm::log(detector.prior()[likeliest]))
+            } else {
+                (test.theta(), eta)
+            };
+            let decision = if decisive >= eta {
                 Decision::Inclusion
             } else {
                 Decision::NoInclusion
             };
+            let causes = fit.causes(&test)?;
             let place = detector.place(&statistic);
             Ok(Location {
                 decision: causes.is_empty().then_some(decision),
                 causes,
                 point: self.bank.point(likeliest),
                 theta_max: test.theta(),
-                theta_mixture: mixture,
-                eta: decided.eta,
-                by_mixture: self.question.criterion == Criterion::Map,
-                calibrated: decided.calibrated,
-                posterior: posterior(mixture, self.question.prior_h1)?,
-                false_alarm_bound: false_alarm_bound(&tests, decided.eta)?,
-                miss_bound: test.rates(test.bayes_threshold(decided.least)?)?.miss,
+                theta_mixture,
+                threshold: SearchThreshold {
+                    eta,
+                    by_mixture,
+                    calibrated,
+                    false_alarm_bound: false_alarm_bound(&tests, eta)?,
+                    miss_bound: test.rates(test.bayes_threshold(least)?)?.miss,
+                },
+                posterior: posterior(theta_mixture, self.question.prior_h1)?,
                 bound: detector.bound(place.estimate),
                 place,
-                gamma_nominal: libm::sqrt(squares(&stacked(&white.template))),
+                gamma_nominal: libm::sqrt(squares(&white.template)),
                 test,
                 fit,
             })
@@ -199,45 +189,31 @@ impl BankSearch<'_> {
         judged().map_err(refused)
     }
 
+    /// η, and how it was simulated, if it was.
+    ///
     /// Implements: BNK-063, BNK-064.
-    fn decided(
+    fn threshold(
         &self,
         detector: &BankDetector,
         tests: &[SubspaceTest],
-        [theta_max, mixture]: [f64; 2],
-        likeliest: usize,
-    ) -> Result<Decided, DetectError> {
-        let by_largest = |eta, calibrated| Decided {
-            statistic: theta_max,
-            eta,
-            least: eta,
-            calibrated,
-        };
-        Ok(match (self.question.criterion, self.simulations) {
-            (Criterion::Map, _) => {
-                let eta = map_threshold(self.question.prior_h1)?;
-                Decided {
-                    statistic: mixture,
-                    eta,
-                    least: eta - libm::log(detector.prior()[likeliest]),
-                    calibrated: None,
-                }
-            }
+    ) -> Result<(f64, Option<CalibratedThreshold>), DetectError> {
+        let eta = match (self.question.criterion, self.simulations) {
+            (Criterion::Map, _) => map_threshold(self.question.prior_h1),
             // The promise is for an inclusion anywhere: the lowest threshold keeps it.
             (Criterion::NeymanPearsonMiss { max_miss }, _) => {
-                let eta = tests.iter().try_fold(f64::INFINITY, |lowest, &test| {
+                tests.iter().try_fold(f64::INFINITY, |lowest, &test| {
                     let t = test.miss_threshold(max_miss)?.max(test.least_theta_at());
                     Ok::<f64, DetectError>(lowest.min(SubspaceTest { t, ..test }.theta()))
-                });
-                by_largest(eta?, None)
+                })
             }
             (Criterion::NeymanPearsonFalseAlarm { max_false_alarm }, None) => {
-                by_largest(false_alarm_threshold(tests, max_false_alarm)?, None)
+                false_alarm_threshold(tests, max_false_alarm)
             }
             (Criterion::NeymanPearsonFalseAlarm { max_false_alarm }, Some((number, seed))) => {
                 let found = detector.calibrate(max_false_alarm, number, seed)?;
-                by_largest(found.eta, Some(found))
+                return Ok((found.eta, Some(found)));
             }
-        })
+        };
+        Ok((eta?, None))
     }
 }

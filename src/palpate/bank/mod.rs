@@ -8,6 +8,8 @@
 //! | `plan.rs` | which maps a bank needs, and their computation |
 //! | `axis.rs` | signals between the points of the grid |
 //! | `detector.rs` | the likelihood ratio of each point, beside nuisances |
+//! | `cells.rs` | the cells between the points |
+//! | `climb.rs` | the most likely place |
 //! | `place.rs` | the posterior of position, depth, diameter and stiffness |
 //! | `rates.rs` | rates of error of the largest of many |
 //! | `information.rs` | how well a place can be known |
@@ -15,6 +17,8 @@
 //! | `reach.rs` | how deep, and how small |
 
 mod axis;
+mod cells;
+mod climb;
 mod detector;
 mod file;
 mod information;
@@ -29,14 +33,13 @@ mod tests;
 pub use detector::{BankDetector, BankStatistic};
 pub use file::{SCHEMA, SCHEMA_VERSION};
 pub use information::PlaceBound;
-pub use locate::{BankSearch, Location};
+pub use locate::{BankSearch, Location, SearchThreshold};
 pub use place::PlacePosterior;
 pub use plan::{BankPlan, BankSolve, MESH_SIZE};
 pub use rates::{
     CONFIDENCE, CalibratedThreshold, RareRate, false_alarm_bound, false_alarm_threshold,
 };
-pub use reach::deepest;
-pub use reach::{Reach, Reached, smallest_diameters};
+pub use reach::{Reach, Reached, deepest, smallest_diameters};
 
 use crate::force_map::{ForceMap, SAME_POSITION, check_gel};
 use crate::phantom::{Inclusion, Shape};
@@ -129,10 +132,11 @@ impl Bank {
             let at = |axis: usize| axes[axis].partition_point(|&value| value < point[axis]);
             [at(3), at(2), at(1), at(0)]
         };
-        let mut order: Vec<_> = (0..).zip(points.iter().map(rank)).collect();
-        order.sort_by_key(|&(number, rank)| (rank, number));
-        let same = order.windows(2).find(|pair| pair[0].1 == pair[1].1);
-        if let Some([(a, _), (b, _)]) = same {
+        let ranks = points.iter().map(rank);
+        let mut maps: Vec<((_, usize), ForceMap)> = ranks.zip(0..).zip(maps).collect();
+        maps.sort_by_key(|&(rank, _)| rank);
+        let same = maps.windows(2).find(|pair| pair[0].0.0 == pair[1].0.0);
+        if let Some([((_, a), _), ((_, b), _)]) = same {
             let found = format!("maps[{a}] and maps[{b}] have the same inclusion");
             return Err(Refusal::state(found, "each inclusion once"));
         }
@@ -146,11 +150,8 @@ impl Bank {
                 ),
             ));
         }
-        let maps = order
-            .into_iter()
-            .map(|(map, _): (usize, _)| maps[map].clone());
         Ok(Bank {
-            maps: maps.collect(),
+            maps: maps.into_iter().map(|(_, map)| map).collect(),
             reference,
             depth,
             axes,

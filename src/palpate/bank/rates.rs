@@ -74,9 +74,10 @@ pub fn false_alarm_threshold(
     }
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        match false_alarm_bound(tests, middle)? <= max_false_alarm {
-            true => high = middle,
-            false => low = middle,
+        if false_alarm_bound(tests, middle)? <= max_false_alarm {
+            high = middle;
+        } else {
+            low = middle;
         }
     }
     Ok(high)
@@ -181,54 +182,19 @@ impl BankDetector {
     ) -> Result<RareRate, DetectError> {
         check_finite("eta", eta)?;
         let is_known = f64::from(self.level() == NoiseLevel::Known);
-        in_range(
-            is_known > 0.0,
-            "known level",
-            is_known,
-            "1: a known level of the noise",
-        )?;
-        in_range(
-            simulations > 1,
-            "simulations",
-            simulations as f64,
-            "2 at least",
-        )?;
-        // Points with a signal, their threshold of T and the rate beyond it, and the rates up to them.
-        let mut union = 0.0;
-        let mut events = Vec::new();
-        for point in self.points() {
-            let gamma = self.gamma()[point];
-            let tail = normal::upper_tail(eta / gamma + 0.5 * gamma)?;
-            union += tail;
-            events.push((point, tail, union));
-        }
+        let known = "1: a known level of the noise";
+        in_range(is_known > 0.0, "known level", is_known, known)?;
+        let number = simulations as f64;
+        in_range(simulations > 1, "simulations", number, "2 at least")?;
+        let events = self.events(eta)?;
+        let union = events.last().map_or(0.0, |last| last.up_to);
         let generator = Generator::new(seed, 0);
         let (mut sum, mut squares) = (0.0, 0.0);
         for trial in 0..simulations {
-            // A counter that no normal deviate has.
-            let [of_point, of_tail, ..] = generator.words([0, trial, 2, 0]).map(uniform);
-            let chosen = events.partition_point(|&(.., up_to)| up_to < of_point * union);
-            let (point, tail, _) = events[chosen.min(events.len() - 1)];
-            let gamma = self.gamma()[point];
-            let t = -normal::quantile(f64::max(of_tail * tail, f64::MIN_POSITIVE))?;
-            let mut record = vec![0.0; self.samples()];
-            generator.normals(trial, 0, &mut record);
-            let template = self.template(point);
-            let change = (t - dot(template, &record) / gamma) / gamma;
-            record
-                .iter_mut()
-                .zip(template)
-                .for_each(|(r, of)| *r += change * of);
-            let statistic = self.statistic(&mut record)?;
-            let exceed = events.iter().filter(|&&(other, ..)| {
-                // The chosen one does, whatever rounding says.
-                other == point || statistic.theta[other] >= eta
-            });
-            let share = 1.0 / exceed.count() as f64;
+            let share = 1.0 / self.exceeding(&events, eta, generator, trial)? as f64;
             sum += share;
             squares += share * share;
         }
-        let number = simulations as f64;
         let mean = sum / number;
         let variance = (squares / number - mean * mean).max(0.0);
         Ok(RareRate {
@@ -237,4 +203,54 @@ impl BankDetector {
             union,
         })
     }
+
+    /// The points with a signal, and how rarely each exceeds η without inclusion.
+    fn events(&self, eta: f64) -> Result<Vec<Event>, DetectError> {
+        let mut up_to = 0.0;
+        let mut events = Vec::new();
+        for point in self.points() {
+            let gamma = self.gamma()[point];
+            let rate = normal::upper_tail(eta / gamma + 0.5 * gamma)?;
+            up_to += rate;
+            events.push(Event { point, rate, up_to });
+        }
+        Ok(events)
+    }
+
+    /// How many points exceed η in record `trial`, drawn under the condition that one does, which is chosen by its rate.
+    fn exceeding(
+        &self,
+        events: &[Event],
+        eta: f64,
+        generator: Generator,
+        trial: u64,
+    ) -> Result<usize, DetectError> {
+        // A counter that no normal deviate has.
+        let [of_point, of_tail, ..] = generator.words([0, trial, 2, 0]).map(uniform);
+        let union = events[events.len() - 1].up_to;
+        let chosen = events.partition_point(|event| event.up_to < of_point * union);
+        let Event { point, rate, .. } = events[chosen.min(events.len() - 1)];
+        let gamma = self.gamma()[point];
+        let t = -normal::quantile(f64::max(of_tail * rate, f64::MIN_POSITIVE))?;
+        let mut record = vec![0.0; self.samples()];
+        generator.normals(trial, 0, &mut record);
+        let template = self.template(point);
+        let change = (t - dot(template, &record) / gamma) / gamma;
+        for (sample, template) in record.iter_mut().zip(template) {
+            *sample += change * template;
+        }
+        let theta = self.statistic(&mut record)?.theta;
+        // The chosen one exceeds it, whatever rounding says.
+        let exceeds = |event: &&Event| event.point == point || theta[event.point] >= eta;
+        Ok(events.iter().filter(exceeds).count())
+    }
+}
+
+/// A point whose θ may exceed a threshold.
+struct Event {
+    point: usize,
+    /// How often it does without inclusion.
+    rate: f64,
+    /// The sum of the rates up to this point.
+    up_to: f64,
 }

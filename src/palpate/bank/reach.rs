@@ -5,8 +5,8 @@ use crate::detect::nuisance::Nuisances;
 use crate::force::Force;
 use crate::refusal::Refusal;
 use crate::stats::normal;
-use crate::trace::design::{Series, difference, stacked, whitened};
-use crate::trace::{Unknown, nuisances, refused};
+use crate::trace::design::{difference, nuisances_of, stacked, whitened};
+use crate::trace::{Unknown, refused};
 
 /// What an inclusion must be found with.
 ///
@@ -66,36 +66,22 @@ impl Reach<'_> {
     /// Implements: BNK-071.
     pub fn reached(&self) -> Result<Vec<Reached>, Refusal> {
         let enough = self.gamma()?;
-        let reference = self.bank.reference();
-        let ends = (
-            reference.table().laterals()[0],
-            *reference.table().laterals().last().unwrap_or(&0.0),
-        );
-        let positions = match self.samples {
-            None => reference.table().laterals().to_vec(),
-            Some(1) => vec![0.5 * (ends.0 + ends.1)],
-            Some(samples) => {
-                let share = |k: usize| k as f64 / (samples - 1) as f64;
-                (0..samples)
-                    .map(|k| (ends.0 + share(k) * (ends.1 - ends.0)).min(ends.1))
-                    .collect()
-            }
-        };
-        let f0 = reference.table().sweep(self.bank.depth(), &positions)?;
+        let (reference, depth) = (self.bank.reference(), self.bank.depth());
+        let positions = self.positions();
+        let f0 = reference.table().sweep(depth, &positions)?;
+        let without = stacked(f0.as_deref());
         let expected = |depth| reference.table().sweep(depth, &positions);
-        let depths = reference.table().depths();
-        let signals = nuisances(self.unknown, depths, self.bank.depth(), expected)?;
-        let white = |series: &Series| stacked(&whitened(series, self.noise_sd));
-        let mut signals: Vec<f64> = signals.iter().flat_map(white).collect();
-        let space = Nuisances::new(&mut signals, 2 * positions.len()).map_err(refused)?;
+        let nuisances = nuisances_of(self.unknown, reference.table().depths(), depth, f0, expected)?;
+        let white = |signal: &[f64]| whitened(signal, self.noise_sd);
+        let nuisances = nuisances.iter().map(|of| stacked(of.as_deref()));
+        let mut nuisances: Vec<f64> = nuisances.flat_map(|of| white(&of)).collect();
+        let space = Nuisances::new(&mut nuisances, without.len()).map_err(refused)?;
         let axes = self.bank.axes();
         let middle =
             (0..axes[0].len()).min_by(|&a, &b| axes[0][a].abs().total_cmp(&axes[0][b].abs()));
         let gamma = |map: usize| -> Result<f64, Refusal> {
-            let f1 = self.bank.maps()[map]
-                .table()
-                .sweep(self.bank.depth(), &positions)?;
-            let signal = difference(f1.as_deref(), f0.as_deref());
+            let f1 = self.bank.maps()[map].table().sweep(depth, &positions)?;
+            let signal = difference(&stacked(f1.as_deref()), &without);
             Ok(space.project(&mut white(&signal)))
         };
         let [positions, depths, ..] = axes.each_ref().map(Vec::len);
@@ -114,6 +100,21 @@ impl Reach<'_> {
             })
         };
         rows.map(row).collect()
+    }
+
+    /// Where the samples are, m.
+    fn positions(&self) -> Vec<f64> {
+        let laterals = self.bank.reference().laterals();
+        let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
+        match self.samples {
+            None => laterals.to_vec(),
+            Some(1) => vec![0.5 * (first + last)],
+            Some(samples) => {
+                let share = |k: usize| k as f64 / (samples - 1) as f64;
+                let position = |k: usize| (first + share(k) * (last - first)).min(last);
+                (0..samples).map(position).collect()
+            }
+        }
     }
 }
 

@@ -58,19 +58,19 @@ pub fn in_words(unknown: &[Unknown]) -> String {
 /// Samples of both channels.
 pub type Series = Force<Vec<f64>>;
 
-/// The parts of a record, all in the same unit and over the same samples.
+/// The parts of a record, all in the same unit and over the same samples: of each part the lateral samples, and then the normal ones.
 #[derive(Debug, Clone)]
 pub struct Design {
     /// F_0.
-    pub reference: Series,
+    pub reference: Vec<f64>,
     /// F_p − F_0.
-    pub residual: Series,
+    pub residual: Vec<f64>,
     /// F_1 − F_0; nothing until it is set.
-    pub template: Series,
+    pub template: Vec<f64>,
     /// One for each amplitude that is unknown.
-    pub nuisances: Vec<Series>,
+    pub nuisances: Vec<Vec<f64>>,
     /// What a depth at the end of its tolerance adds to either hypothesis.
-    pub depth_errors: Vec<Series>,
+    pub depth_errors: Vec<Vec<f64>>,
 }
 
 impl Design {
@@ -84,15 +84,14 @@ impl Design {
     ) -> Result<Design, Refusal> {
         let depth = question.depth;
         let f0 = record.expected(without, depth)?;
-        let nuisances = nuisances(question.unknown, without.depths(), depth, |depth| {
-            record.expected(without, depth)
-        })?;
-        let none = vec![0.0; record.positions().len()];
+        let reference = stacked(f0.as_deref());
+        let expected = |depth| record.expected(without, depth);
+        let nuisances = nuisances_of(question.unknown, without.depths(), depth, f0, expected)?;
         let mut design = Design {
-            residual: difference(record.forces(), f0.as_deref()),
-            reference: f0,
-            template: Force::new(none.clone(), none),
-            nuisances,
+            residual: difference(&stacked(record.forces()), &reference),
+            template: vec![0.0; reference.len()],
+            nuisances: nuisances.iter().map(|of| stacked(of.as_deref())).collect(),
+            reference,
             depth_errors: Vec::new(),
         };
         design.add_depth_error(question, without, record)?;
@@ -111,7 +110,7 @@ impl Design {
         let (depth, tolerance) = (question.depth, question.depth_tolerance);
         if !question.is_unknown(Unknown::Depth) && tolerance > 0.0 {
             let slope = depth_slope(map.depths(), depth, |depth| record.expected(map, depth))?;
-            let error = slope.map(|slope| scaled(&slope, Force::new(tolerance, tolerance)));
+            let error = slope.map(|slope| scaled(&stacked(slope.as_deref()), tolerance));
             self.depth_errors.extend(error);
         }
         Ok(())
@@ -125,13 +124,13 @@ impl Design {
         record: &Record,
     ) -> Result<(), Refusal> {
         let f1 = record.expected(with, question.depth)?;
-        self.template = difference(f1.as_deref(), self.reference.as_deref());
+        self.template = difference(&stacked(f1.as_deref()), &self.reference);
         Ok(())
     }
 
-    /// The same with a function of each channel's series.
-    fn map(&self, of: impl Fn(&Series) -> Series) -> Design {
-        let all = |series: &[Series]| series.iter().map(&of).collect();
+    /// The same with a function of each part.
+    fn map(&self, of: impl Fn(&[f64]) -> Vec<f64>) -> Design {
+        let all = |parts: &[Vec<f64>]| parts.iter().map(|part| of(part)).collect();
         Design {
             reference: of(&self.reference),
             residual: of(&self.residual),
@@ -143,44 +142,44 @@ impl Design {
 
     /// The parts over the standard deviations of the noise.
     pub fn whitened(&self, noise_sd: Force<f64>) -> Design {
-        self.map(|series| whitened(series, noise_sd))
+        self.map(|part| whitened(part, noise_sd))
     }
 
     /// The sums over blocks of so many samples.
     pub fn blocks(&self, length: usize) -> Design {
-        self.map(|series| blocked(series, length))
+        self.map(|part| blocked(part, length))
     }
 
     /// What the depth may add to T at most.
     ///
     /// Implements: TRC-064.
     pub fn bias(&self, detector: &SubspaceDetector<'_>) -> f64 {
-        let along = |error: &Series| detector.along(&stacked(error)).abs();
-        self.depth_errors.iter().map(along).fold(0.0, f64::max)
+        let errors = self.depth_errors.iter();
+        let along = errors.map(|error| detector.along(error).abs());
+        along.fold(0.0, f64::max)
     }
 
     /// Samples of a channel.
     pub fn samples(&self) -> usize {
-        self.residual.lateral.len()
+        self.residual.len() / 2
     }
 
     /// The nuisances, and the template where it is `with_template`, one after the other.
     pub fn signals(&self, with_template: bool) -> Vec<f64> {
         let template = with_template.then_some(&self.template);
         let signals = self.nuisances.iter().chain(template);
-        signals.flat_map(stacked).collect()
+        signals.flatten().copied().collect()
     }
 
     /// What neither the nuisances nor the template explain of the record, and the number of amplitudes that did.
-    pub fn unexplained(&self) -> Result<(Series, usize), DetectError> {
-        let (mut signals, mut left) = (self.signals(true), stacked(&self.residual));
+    pub fn unexplained(&self) -> Result<(Vec<f64>, usize), DetectError> {
+        let (mut signals, mut left) = (self.signals(true), self.residual.clone());
         let signals = Nuisances::new(&mut signals, left.len())?;
         signals.project(&mut left);
-        let normal = left.split_off(self.samples());
-        Ok((Force::new(left, normal), signals.rank()))
+        Ok((left, signals.rank()))
     }
 
-    /// The standard deviation of a sample by what is left of the record, whose parts are in newtons.
+    /// The standard deviation of a sample, estimated from the record, whose parts are in newtons.
     ///
     /// # Errors
     /// Nothing is left of a channel: its noise is not known.
@@ -189,7 +188,7 @@ impl Design {
     pub fn noise_sd(&self) -> Result<Force<f64>, DetectError> {
         let (left, explained) = self.unexplained()?;
         let degrees = self.samples() as f64 - 0.5 * explained as f64;
-        let sd = left.as_deref().zip(self.residual.as_deref());
+        let sd = channels(&left).zip(channels(&self.residual));
         let sd = sd.map(|(left, all)| {
             let found = squares(left);
             // Less is rounding.
@@ -208,22 +207,29 @@ impl Design {
     ///
     /// Implements: TRC-070.
     pub fn level(&self) -> Option<f64> {
-        let (reference, residual) = (stacked(&self.reference), stacked(&self.residual));
-        let square = squares(&reference);
-        let products = std::iter::zip(reference, residual).map(|(a, b)| a * b);
-        let cross: f64 = products.sum();
+        let square = squares(&self.reference);
+        let pairs = self.reference.iter().zip(&self.residual);
+        let cross: f64 = pairs.map(|(a, b)| a * b).sum();
         (square >= 100.0).then(|| 1.0 + cross / square)
     }
 }
 
-pub(crate) fn blocked(series: &Series, length: usize) -> Series {
-    let sums = |series: &[f64]| block_sums(series, length).collect();
-    series.as_deref().map(sums)
+/// The lateral samples and then the normal ones.
+pub fn stacked(series: Force<&[f64]>) -> Vec<f64> {
+    [series.lateral, series.normal].concat()
 }
 
-/// The lateral samples and then the normal ones.
-pub fn stacked(series: &Series) -> Vec<f64> {
-    [&series.lateral[..], &series.normal[..]].concat()
+/// The channels of stacked samples.
+pub(crate) fn channels(stacked: &[f64]) -> Force<&[f64]> {
+    let (lateral, normal) = stacked.split_at(stacked.len() / 2);
+    Force::new(lateral, normal)
+}
+
+/// The sums over blocks of so many samples of each channel.
+pub(crate) fn blocked(stacked: &[f64], length: usize) -> Vec<f64> {
+    let Force { lateral, normal } = channels(stacked);
+    let sums = block_sums(lateral, length).chain(block_sums(normal, length));
+    sums.collect()
 }
 
 /// Σ of the squares.
@@ -231,19 +237,19 @@ pub fn squares(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
-/// A series over the standard deviations of the noise.
-pub fn whitened(series: &Series, noise_sd: Force<f64>) -> Series {
-    scaled(series, noise_sd.map(|sd| 1.0 / sd))
+/// Stacked samples over the standard deviations of the noise.
+pub fn whitened(stacked: &[f64], noise_sd: Force<f64>) -> Vec<f64> {
+    let channels = channels(stacked).zip(noise_sd);
+    let Force { lateral, normal } = channels.map(|(samples, sd)| scaled(samples, 1.0 / sd));
+    [lateral, normal].concat()
 }
 
-fn scaled(series: &Series, factor: Force<f64>) -> Series {
-    let channels = series.as_deref().zip(factor);
-    channels.map(|(series, factor)| series.iter().map(|value| factor * value).collect())
+fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
+    values.iter().map(|value| factor * value).collect()
 }
 
-pub(crate) fn difference(a: Force<&[f64]>, b: Force<&[f64]>) -> Series {
-    a.zip(b)
-        .map(|(a, b)| std::iter::zip(a, b).map(|(a, b)| a - b).collect())
+pub(crate) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
 /// One signal for each amplitude that is `unknown` of a sweep at `depth` (m). `expected` gives its forces without inclusion, N, for
@@ -259,7 +265,17 @@ pub fn nuisances(
     depth: f64,
     expected: impl Fn(f64) -> Result<Series, Refusal>,
 ) -> Result<Vec<Series>, Refusal> {
-    let f0 = expected(depth)?;
+    nuisances_of(unknown, depths, depth, expected(depth)?, expected)
+}
+
+/// As [`nuisances`], with the forces `f0` without inclusion at `depth`.
+pub(crate) fn nuisances_of(
+    unknown: &[Unknown],
+    depths: &[f64],
+    depth: f64,
+    f0: Series,
+    expected: impl Fn(f64) -> Result<Series, Refusal>,
+) -> Result<Vec<Series>, Refusal> {
     let samples = f0.normal.len();
     let alone = |series: &dyn Fn(usize) -> f64| {
         let series: Vec<f64> = (0..samples).map(series).collect();
@@ -303,7 +319,7 @@ fn depth_slope(
         return Ok(None);
     }
     let (shallow, deep) = (expected(from)?, expected(to)?);
-    let change = difference(deep.as_deref(), shallow.as_deref());
     let rate = 1.0 / (to - from);
-    Ok(Some(scaled(&change, Force::new(rate, rate))))
+    let slope = |(deep, shallow): (&[f64], &[f64])| scaled(&difference(deep, shallow), rate);
+    Ok(Some(deep.as_deref().zip(shallow.as_deref()).map(slope)))
 }

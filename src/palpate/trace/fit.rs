@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::design::{Design, Series, Unknown, squares, stacked};
-use super::judge::{Correlation, Noise, Question};
+use super::design::{Design, Unknown, channels, squares};
+use super::question::{Correlation, Noise, Question};
 use super::{Trace, refused};
 use crate::detect::DetectError;
 use crate::detect::correlation::{correlation_length, ljung_box};
@@ -38,11 +38,11 @@ const UNIT: f64 = 100.0;
 /// How well a record fits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// Standard deviation of the noise that the record is held against, N.
+    /// Standard deviation of the noise that the fit is judged by, N.
     pub noise_sd: Force<f64>,
-    /// Σ of the squares that nothing explains, over all samples and over the variance of their noise.
+    /// The residual chi-square: Σ of the squares that neither hypothesis explains, over the variance of the noise.
     pub chi_square: f64,
-    /// Between these it is if the record fits, but with the probability [`MISFIT_RATE`]; none if nobody has stated the noise.
+    /// The range of the residual chi-square of a record that fits, but for the probability [`MISFIT_RATE`]; none if the noise is not stated.
     pub limits: Option<[f64; 2]>,
     /// Degrees of freedom of the squares, if all samples were independent.
     pub degrees: f64,
@@ -50,7 +50,7 @@ pub struct Fit {
     pub whiteness: f64,
     /// Samples that are taken together.
     pub block: usize,
-    /// How many independent samples the record is worth, of both channels.
+    /// The effective number of independent samples, of both channels.
     pub effective_samples: f64,
     /// Σ F_p F_0 / Σ F_0², both over the noise; none if the noise hides it.
     pub level: Option<f64>,
@@ -74,7 +74,7 @@ pub enum Cause {
     Misfit,
     /// There is less noise than was stated.
     NoiseTooSmall,
-    /// The samples depend on one another so much that too few are left.
+    /// The noise is so correlated that too few independent samples remain.
     TooFewSamples,
     /// The signal is there with the other sign.
     Opposite,
@@ -89,7 +89,7 @@ impl fmt::Display for Cause {
             Cause::NoiseUnit => "the noise is in another unit than N, such as mN",
             Cause::Misfit => "there is more noise than was stated, or a force that the maps do not hold: another offset, drift, gain or depth than is taken as known, or other maps",
             Cause::NoiseTooSmall => "there is less noise than was stated, or the record was smoothed",
-            Cause::TooFewSamples => "the samples depend on one another, and too few independent ones are left",
+            Cause::TooFewSamples => "the noise is so correlated that too few independent samples remain",
             Cause::Opposite => "the signal is there with the other sign: the maps may be swapped",
         })
     }
@@ -107,17 +107,17 @@ impl Fit {
         let (left, explained) = white.unexplained()?;
         let samples = white.samples() as f64;
         let degrees = 2.0 * samples - explained as f64;
-        let chi_square = squares(&stacked(&left));
+        let chi_square = squares(&left);
         let lags = LAGS.min(white.samples() / 5);
-        let (whiteness, found) = dependence(&left, lags)?;
-        // What was fitted has taken its share of the slow noise with it.
-        let taken = 0.5 * explained as f64 * found / samples;
-        let length = found / (1.0 - taken.min(0.5));
+        let (whiteness, found) = dependence(channels(&left), lags)?;
         let length = match question.noise.correlation {
-            Correlation::None => 1.0,
-            Correlation::OfRecord if whiteness >= WHITENESS => 1.0,
-            Correlation::OfRecord => length,
             Correlation::Known(length) => length,
+            Correlation::OfRecord if whiteness < WHITENESS => {
+                // What was fitted has taken its share of the slow noise with it.
+                let taken = 0.5 * explained as f64 * found / samples;
+                found / (1.0 - taken.min(0.5))
+            }
+            Correlation::None | Correlation::OfRecord => 1.0,
         };
         let wanted = if length > 1.0 {
             libm::ceil(BLOCK * length)
@@ -126,14 +126,18 @@ impl Fit {
         };
         let most = libm::floor(2.0 * samples / (explained as f64 + LEAST_DEGREES)).max(1.0);
         let effective_samples = 2.0 * samples / length;
-        let exact = !question.is_unknown(Unknown::Variance) && wanted == 1.0;
-        let within = match exact {
-            true => 1.0,
-            false => STATED_WITHIN * STATED_WITHIN,
+        let is_exact = !question.is_unknown(Unknown::Variance) && wanted == 1.0;
+        let within = if is_exact {
+            1.0
+        } else {
+            STATED_WITHIN * STATED_WITHIN
         };
         let free = effective_samples - explained as f64;
-        let limits = question.noise.sd.map(|_| limits(free, within));
-        let limits = limits.transpose()?;
+        let limits = question
+            .noise
+            .sd
+            .map(|_| limits(free, within))
+            .transpose()?;
         Ok(Fit {
             noise_sd,
             chi_square,
@@ -147,7 +151,7 @@ impl Fit {
         })
     }
 
-    /// Does the record have as much noise as was stated, as far as anybody did?
+    /// Whether the record has as much noise as was stated, if it was.
     pub fn noise_is_right(&self) -> bool {
         self.limits
             .is_none_or(|[low, high]| (low..=high).contains(&self.chi_square))
@@ -187,7 +191,7 @@ impl Noise {
     pub fn of_blank(blank: &Trace) -> Result<Noise, Refusal> {
         let samples = blank.samples.len();
         if samples < LEAST_BLANK {
-            let expected = format!("at least {LEAST_BLANK}, to tell its noise");
+            let expected = format!("at least {LEAST_BLANK}, to estimate its noise");
             return Err(
                 Refusal::state(format!("{samples} samples"), expected).in_file(&*blank.file)
             );
@@ -202,7 +206,7 @@ impl Noise {
                 let samples = blank.samples.iter();
                 samples.map(|(_, sample)| sample[channel]).collect()
             };
-            let mut left: Series = Force::new(column(1), column(2));
+            let mut left: Force<Vec<f64>> = Force::new(column(1), column(2));
             let root = libm::sqrt(samples as f64 - 2.0);
             let sd = Force::new(
                 lines.project(&mut left.lateral) / root,
@@ -210,10 +214,11 @@ impl Noise {
             );
             check_positive("noise_sd_lateral_n", sd.lateral)?;
             check_positive("noise_sd_normal_n", sd.normal)?;
-            let (whiteness, length) = dependence(&left, LAGS)?;
-            let correlation = match whiteness < WHITENESS {
-                true => Correlation::Known(length),
-                false => Correlation::None,
+            let (whiteness, length) = dependence(left.as_deref(), LAGS)?;
+            let correlation = if whiteness < WHITENESS {
+                Correlation::Known(length)
+            } else {
+                Correlation::None
             };
             Ok(Noise {
                 sd: Some(sd),
@@ -225,9 +230,9 @@ impl Noise {
 }
 
 /// The smaller probability of white noise having such autocorrelations, 1 without lags, and the longer correlation of both channels.
-fn dependence(noise: &Series, lags: usize) -> Result<(f64, f64), DetectError> {
+fn dependence(noise: Force<&[f64]>, lags: usize) -> Result<(f64, f64), DetectError> {
     let (mut whiteness, mut length) = (1.0_f64, 1.0_f64);
-    for channel in noise.as_ref().into_array() {
+    for channel in noise.into_array() {
         if lags > 0 {
             whiteness = whiteness.min(ljung_box(channel, lags)?);
         }
@@ -236,8 +241,8 @@ fn dependence(noise: &Series, lags: usize) -> Result<(f64, f64), DetectError> {
     Ok((whiteness, length))
 }
 
-/// Between these is the mean square of white noise of variance 1 with `degrees` of freedom, but with the probability
-/// [`MISFIT_RATE`]; `within` is what the variance may be off by.
+/// The range of the mean square of white noise of variance 1 with `degrees` of freedom, but for the probability [`MISFIT_RATE`]; the
+/// variance may be off by the factor `within`.
 fn limits(degrees: f64, within: f64) -> Result<[f64; 2], DetectError> {
     let degrees = degrees.max(1.0);
     let point = |tail| Ok(chi_square_point(tail, degrees)? / degrees);

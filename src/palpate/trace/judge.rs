@@ -1,67 +1,13 @@
 //! The record judged at the position that the maps are for.
 
-use super::design::{Design, Unknown, squares, stacked};
+use super::design::{Design, Unknown, squares};
 use super::fit::{Cause, Fit};
+use super::question::{Criterion, Question};
 use super::{Record, refused};
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector, SubspaceTest, Threshold};
 use crate::detect::{Decision, DetectError, ErrorRates, map_threshold, posterior};
-use crate::force::Force;
 use crate::force_map::Hypotheses;
 use crate::refusal::Refusal;
-
-/// What the threshold shall achieve.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Criterion {
-    /// The fewest errors for the prior.
-    Map,
-    /// At most this rate of misses, with the fewest false alarms.
-    NeymanPearsonMiss {
-        /// The largest rate of misses.
-        max_miss: f64,
-    },
-    /// At most this rate of false alarms, with the fewest misses.
-    NeymanPearsonFalseAlarm {
-        /// The largest rate of false alarms.
-        max_false_alarm: f64,
-    },
-}
-
-/// What is known of a record, and what is asked: does the gel under its sweep hold an inclusion?
-#[derive(Debug, Clone, Copy)]
-pub struct Question<'a> {
-    /// Depth of the sweep, m.
-    pub depth: f64,
-    /// The true depth is within so much of it, m, unless it is unknown; 0 if it is exact.
-    pub depth_tolerance: f64,
-    /// What is not known of the sweep.
-    pub unknown: &'a [Unknown],
-    /// The noise on its forces.
-    pub noise: Noise,
-    /// What the threshold shall achieve.
-    pub criterion: Criterion,
-    /// Pr(H = 1) before the sweep.
-    pub prior_h1: f64,
-}
-
-/// What is known of the noise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Noise {
-    /// Standard deviation of a sample of either force, N; none if the record is to tell it.
-    pub sd: Option<Force<f64>>,
-    /// Which samples are independent.
-    pub correlation: Correlation,
-}
-
-/// How far apart two samples are whose noise is independent.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Correlation {
-    /// The noise is white: any two.
-    None,
-    /// The record is to tell it.
-    OfRecord,
-    /// So many samples count as one, as a blank record has told.
-    Known(f64),
-}
 
 /// The answer at the position that the maps are for.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,15 +31,12 @@ pub struct Judgement {
 }
 
 impl Question<'_> {
-    pub(crate) fn is_unknown(&self, what: Unknown) -> bool {
-        self.unknown.contains(&what)
-    }
-
     /// Sums over blocks have a noise of their own, whatever a sample has.
     pub fn noise_level(&self, fit: &Fit) -> NoiseLevel {
-        match self.is_unknown(Unknown::Variance) || fit.block > 1 {
-            true => NoiseLevel::Unknown,
-            false => NoiseLevel::Known,
+        if self.is_unknown(Unknown::Variance) || fit.block > 1 {
+            NoiseLevel::Unknown
+        } else {
+            NoiseLevel::Known
         }
     }
 
@@ -123,10 +66,10 @@ impl Question<'_> {
         design.add_depth_error(self, hypotheses.with(), record)?;
         let judged = || {
             let (white, fit, blocks) = self.fitted(&design)?;
-            let (mut signals, mut template) = (blocks.signals(false), stacked(&blocks.template));
+            let (mut signals, mut template) = (blocks.signals(false), blocks.template.clone());
             let nuisances = Nuisances::new(&mut signals, template.len())?;
             let detector = SubspaceDetector::new(nuisances, &mut template)?;
-            let statistic = detector.statistic(&mut stacked(&blocks.residual))?;
+            let statistic = detector.statistic(&mut blocks.residual.clone())?;
             let test = statistic.test(self.noise_level(&fit), blocks.bias(&detector))?;
             let threshold = self.threshold(&test)?;
             let causes = fit.causes(&test)?;
@@ -142,7 +85,7 @@ impl Question<'_> {
                 threshold,
                 posterior: posterior(test.theta(), self.prior_h1)?,
                 rates: test.rates(threshold)?,
-                gamma_nominal: libm::sqrt(squares(&stacked(&white.template))),
+                gamma_nominal: libm::sqrt(squares(&white.template)),
                 fit,
             })
         };

@@ -5,7 +5,8 @@
 //! | `mod.rs` | the trace, its positions, and the forces that a map expects there |
 //! | `design.rs` | what the record may hold: signal, nuisances |
 //! | `fit.rs` | whether it fits, and the likeliest cause if not |
-//! | `judge.rs` | criterion, and the record at a known position |
+//! | `question.rs` | what is known, and what is asked |
+//! | `judge.rs` | the record at a known position |
 //!
 //! Where the position is not known, [`crate::bank`] judges the record.
 //!
@@ -49,6 +50,7 @@
 pub mod design;
 mod fit;
 mod judge;
+mod question;
 #[cfg(test)]
 mod tests;
 
@@ -56,7 +58,8 @@ use std::path::Path;
 
 pub use design::{Unknown, in_words, nuisances};
 pub use fit::{Cause, Fit, MISFIT_RATE, WHITENESS};
-pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
+pub use judge::Judgement;
+pub use question::{Correlation, Criterion, Noise, Question};
 
 use crate::csv::{Column, Rows};
 use crate::decimal::mm;
@@ -64,6 +67,7 @@ use crate::detect::DetectError;
 use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION};
 use crate::refusal::Refusal;
+use crate::stats::error::check_samples;
 
 /// Position, or time where there is no position; lateral force, normal force.
 const COLUMNS: [Column; 3] = [
@@ -224,16 +228,7 @@ impl Trace {
             )),
         };
         placed.map_err(|refusal| refusal.in_file(&*file))?;
-        if backwards(&samples) {
-            samples.reverse();
-        }
-        let column = |of: usize| samples.iter().map(|(_, sample)| sample[of]).collect();
-        Ok(Record {
-            lines: samples.iter().map(|(line, _)| *line).collect(),
-            positions: column(0),
-            forces: Force::new(column(1), column(2)),
-            file,
-        })
+        Ok(Record::of(file, samples))
     }
 }
 
@@ -303,6 +298,52 @@ fn check_pass(samples: &[Sample]) -> Result<(), Refusal> {
 }
 
 impl Record {
+    /// The record of `forces` (N) at `positions` (m), with the checks of [`Trace::from_csv`]. In messages `name` stands for the file, and the
+    /// number of a sample, from 1, for its line.
+    ///
+    /// ```
+    /// use palpate::force::Force;
+    /// use palpate::trace::Record;
+    ///
+    /// // To the left: the samples are turned round, so that positions increase.
+    /// let forces = Force::new(&[0.0, 0.0][..], &[1.5, 1.75][..]);
+    /// let record = Record::new("sweep", &[0.003, 0.001], forces)?;
+    /// assert_eq!(record.positions(), [0.001, 0.003]);
+    /// assert_eq!(record.forces().normal, [1.75, 1.5]);
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
+    ///
+    /// # Errors
+    /// No sample; lists of different lengths; NaN or infinity; positions that do not go one way.
+    ///
+    /// Implements: TRC-004, TRC-008.
+    pub fn new(name: &str, positions: &[f64], forces: Force<&[f64]>) -> Result<Record, Refusal> {
+        let read = || {
+            check_samples("positions", positions, positions.len())?;
+            check_samples("lateral forces", forces.lateral, positions.len())?;
+            check_samples("normal forces", forces.normal, positions.len())?;
+            let sample = |k: usize| [positions[k], forces.lateral[k], forces.normal[k]];
+            let samples: Vec<_> = (0..positions.len()).map(|k| (k + 1, sample(k))).collect();
+            check_pass(&samples)?;
+            Ok(Record::of(name.into(), samples))
+        };
+        read().map_err(|refusal: Refusal| refusal.in_file(name))
+    }
+
+    /// The record of samples over positions that go one way.
+    fn of(file: String, mut samples: Vec<Sample>) -> Record {
+        if backwards(&samples) {
+            samples.reverse();
+        }
+        let column = |of: usize| samples.iter().map(|(_, sample)| sample[of]).collect();
+        Record {
+            lines: samples.iter().map(|(line, _)| *line).collect(),
+            positions: column(0),
+            forces: Force::new(column(1), column(2)),
+            file,
+        }
+    }
+
     /// The file that the record comes from, as its reader named it.
     pub fn file(&self) -> &str {
         &self.file

@@ -195,3 +195,25 @@ proptest::proptest! {
         }
     }
 }
+
+// Verifies: TRC-004, TRC-008.
+#[test]
+fn a_record_of_numbers_is_that_of_the_same_numbers_in_a_file() {
+    let forces = Force::new(&[0.25, -0.5][..], &[1.5, 1.25][..]);
+    let record = Record::new("t.csv", &[-0.001, 0.0005], forces).unwrap();
+    let read = read(EXAMPLE).unwrap();
+    assert_eq!(record.positions(), read.positions());
+    assert_eq!(record.forces(), read.forces());
+    let one = Force::new(&[0.0][..], &[f64::NAN][..]);
+    let three = [0.0, 1e-3, 0.5e-3];
+    let flat = Force::new(&three[..], &three[..]);
+    for (positions, forces, words) in [
+        (&[][..], Force::new(&[][..], &[][..]), "t.csv: positions"),
+        (&[0.0, 1.0], one, "t.csv: lateral forces"),
+        (&[0.0], one, "t.csv: normal forces"),
+        (&three, flat, "t.csv:3: position 0.5 mm after 1.0 mm"),
+    ] {
+        let refusal = Record::new("t.csv", positions, forces).unwrap_err();
+        assert!(refusal.to_string().starts_with(words), "{refusal}");
+    }
+}

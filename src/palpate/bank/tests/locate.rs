@@ -84,11 +84,12 @@ fn a_record_is_judged_at_the_likeliest_point() {
     let below = found.theta_max - found.theta_mixture;
     assert!(below >= 0.0 && below <= 40f64.ln(), "{below}");
     assert_eq!(posterior(found.theta_mixture, 0.25), Ok(found.posterior));
-    assert_eq!(map_threshold(0.25), Ok(found.eta));
+    assert_eq!(map_threshold(0.25), Ok(found.threshold.eta));
     // Of an inclusion there whatever else is: θ ≥ η + ln 40.
     let gamma = found.test.gamma;
-    let miss = crate::stats::normal::lower_tail((found.eta + 40f64.ln()) / gamma - 0.5 * gamma);
-    assert!((found.miss_bound - miss).abs() < 1e-9);
+    let miss =
+        crate::stats::normal::lower_tail((found.threshold.eta + 40f64.ln()) / gamma - 0.5 * gamma);
+    assert!((found.threshold.miss_bound - miss).abs() < 1e-9);
     // Where it lies, within four standard deviations.
     for (axis, truth) in [(0, 1.3e-3), (1, 3.5e-3), (2, 8e-3)] {
         let (estimate, sd) = (found.place.estimate[axis], found.bound.sd[axis].unwrap());
@@ -137,8 +138,8 @@ fn thresholds_keep_what_they_promise() {
     for seed in 0..200 {
         let bare = record(&reference(), Some(seed), 0.3, 0.9);
         let found = search(&bank, USUAL, alarm).locate(&bare).unwrap();
-        assert!((found.false_alarm_bound - 0.05).abs() < 1e-6);
-        assert!(!found.by_mixture);
+        assert!((found.threshold.false_alarm_bound - 0.05).abs() < 1e-6);
+        assert!(!found.threshold.by_mixture);
         alarms += u32::from(found.decision == Some(Decision::Inclusion));
         let there = record(&with, Some(1000 + seed), 0.3, 0.9);
         let found = search(&bank, USUAL, miss).locate(&there).unwrap();
@@ -153,9 +154,9 @@ fn thresholds_keep_what_they_promise() {
     let bare = record(&reference(), Some(1), 0.0, 1.0);
     let [by_bound, by_simulation] =
         [search(&bank, USUAL, alarm), simulated].map(|s| s.locate(&bare).unwrap());
-    assert!(by_simulation.eta < by_bound.eta);
-    let calibrated = by_simulation.calibrated.unwrap();
-    assert!((calibrated.eta, calibrated.simulations) == (by_simulation.eta, 4000));
+    assert!(by_simulation.threshold.eta < by_bound.threshold.eta);
+    let calibrated = by_simulation.threshold.calibrated.unwrap();
+    assert!((calibrated.eta, calibrated.simulations) == (by_simulation.threshold.eta, 4000));
     assert!(calibrated.false_alarm.lower < 0.05 && 0.05 < calibrated.false_alarm.upper);
 }
 

@@ -18,9 +18,7 @@ fn tests(detector: &BankDetector) -> Vec<SubspaceTest> {
     let mut record = vec![0.0; SAMPLES];
     Generator::new(3, 3).normals(0, 0, &mut record);
     let statistic = detector.statistic(&mut record).unwrap();
-    let tests = detector.points();
-    let tests = tests.filter_map(|point| detector.test(&statistic, point));
-    tests.map(Result::unwrap).collect()
+    detector.tests(&statistic).unwrap()
 }
 
 // Verifies: BNK-051, ERR-006.

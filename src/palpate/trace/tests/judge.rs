@@ -1,6 +1,6 @@
 //! Records judged at a known position. Expected values: NumPy's QR of the same signals, SciPy's laws of t.
 
-use super::super::design::Design;
+use super::super::design::{Design, channels};
 use super::*;
 use crate::detect::Decision;
 use crate::detect::correlation::correlation_length;
@@ -381,8 +381,8 @@ fn samples_that_depend_on_one_another_do_not_count_twice() {
     set.unwrap();
     let (left, explained) = design.whitened(many.fit.noise_sd).unexplained().unwrap();
     assert_eq!(explained, 6);
-    let lengths = left.map(|left| {
-        let length = correlation_length(&left);
+    let lengths = channels(&left).map(|left| {
+        let length = correlation_length(left);
         length / (1.0 - 3.0 * length / 2001.0)
     });
     let length = lengths.lateral.max(lengths.normal);
