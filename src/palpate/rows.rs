@@ -181,14 +181,14 @@ impl Location {
         let mut rows = Rows::default();
         rows.decision(self.decision, &self.causes);
         let statistic = ["theta_max", "theta_mixture"];
-        let name = statistic[usize::from(self.by_mixture)];
+        let name = statistic[usize::from(self.threshold.by_mixture)];
         rows.shown("decided_by", "decided by", name, format!("{name} >= eta"));
         numbers! { rows;
             theta_max: "theta_max (best-fitting inclusion)", self.theta_max;
             theta_mixture: "theta_mixture (any inclusion)", self.theta_mixture;
-            eta: "eta (threshold)", self.eta;
+            eta: "eta (threshold)", self.threshold.eta;
         }
-        if let Some(calibrated) = self.calibrated {
+        if let Some(calibrated) = self.threshold.calibrated {
             let rate = [calibrated.false_alarm.lower, calibrated.false_alarm.upper];
             let [low, high] = rate.map(digits);
             let text = format!("{low} to {high} (99 % interval)");
@@ -199,8 +199,8 @@ impl Location {
         let posterior = self.decision.map(|_| self.posterior);
         rows.test(&self.test, self.gamma_nominal, posterior);
         numbers! { rows;
-            false_alarm_bound: "P(false alarm) at most", self.false_alarm_bound;
-            miss_bound: "P(miss) of best fit at most", self.miss_bound;
+            false_alarm_bound: "P(false alarm) at most", self.threshold.false_alarm_bound;
+            miss_bound: "P(miss) of best fit at most", self.threshold.miss_bound;
         }
         rows.value("hypotheses", bank.maps().len());
         self.place_rows(bank, &mut rows)?;

@@ -71,7 +71,13 @@ impl Reach<'_> {
         let f0 = reference.table().sweep(depth, &positions)?;
         let without = stacked(f0.as_deref());
         let expected = |depth| reference.table().sweep(depth, &positions);
-        let nuisances = nuisances_of(self.unknown, reference.table().depths(), depth, f0, expected)?;
+        let nuisances = nuisances_of(
+            self.unknown,
+            reference.table().depths(),
+            depth,
+            f0,
+            expected,
+        )?;
         let white = |signal: &[f64]| whitened(signal, self.noise_sd);
         let nuisances = nuisances.iter().map(|of| stacked(of.as_deref()));
         let mut nuisances: Vec<f64> = nuisances.flat_map(|of| white(&of)).collect();
@@ -104,7 +110,7 @@ impl Reach<'_> {
 
     /// Where the samples are, m.
     fn positions(&self) -> Vec<f64> {
-        let laterals = self.bank.reference().laterals();
+        let laterals = self.bank.reference().table().laterals();
         let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
         match self.samples {
             None => laterals.to_vec(),

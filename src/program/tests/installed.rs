@@ -6,7 +6,7 @@ use std::process::Command;
 #[test]
 fn the_program_tells_its_version() {
     let output = Command::new(env!("CARGO_BIN_EXE_palpate"))
-        .arg("--version")
+        .arg("-V")
         .output()
         .unwrap();
     let version = concat!("palpate ", env!("CARGO_PKG_VERSION"), "\n");

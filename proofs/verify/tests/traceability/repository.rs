@@ -101,8 +101,8 @@ fn programs(root: &Path) -> Vec<(String, String)> {
                 kind @ ("bin" | "example" | "bench") => format!("{package}::{kind}/{name}"),
                 _ => package,
             };
-            let file = text(&target["src_path"]);
-            if let Ok(file) = Path::new(&file).strip_prefix(&root) {
+            let file = fs::canonicalize(text(&target["src_path"])).expect("a target has a file");
+            if let Ok(file) = file.strip_prefix(&root) {
                 programs.push((file.to_string_lossy().into_owned(), id));
             }
         }
