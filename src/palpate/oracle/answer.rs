@@ -1,5 +1,6 @@
 //! What an op gives, or why it gives none.
 
+use crate::refusal::one_line;
 use std::fmt::Display;
 use std::io;
 
@@ -82,7 +83,7 @@ impl Refused {
     /// A refusal of a kind. A message that quotes a whole line is cut.
     pub fn new(code: Code, message: impl Display) -> Refused {
         const MOST_CHARACTERS: usize = 1000;
-        let mut message = message.to_string();
+        let mut message = one_line(&message.to_string());
         if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {
             message.truncate(end);
             message.push('…');
