@@ -23,13 +23,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     // The hand presses 3 mm deep and sweeps over 20 mm; the loop answers each report with a force.
     let loaded = LoadedTable::new(&table)?;
     let hand = Trajectory::probing(3e-3, 10e-3, Duration::from_millis(500));
+    let duration = hand.duration();
     let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Vec::new());
     let mut session = Session::begin(device, loaded.table(), Limits::for_playback(4.0)?)?;
     let unit = 1e-6 * f64::from(session.capabilities().force_unit_un);
     let mut strongest = 0.0f64;
     let end = session.run(|cycle, _| {
         strongest = strongest.max(unit * f64::from(cycle.force.normal));
-        true
+        cycle.written < duration
     });
     println!("{end:?} after {:?}", session.device().now());
     println!("strongest normal force: {strongest:.2} N");
