@@ -44,11 +44,10 @@ fn main() {
     totals.print("the paper's phantoms");
     let mut totals = Shares::default();
     for (name, x) in OFF_CENTRE {
-        let mut phantom = builtin(name);
-        phantom.inclusions[0].centre_x = 1e-3 * x;
+        let phantom = builtin(name).changed(|parts| parts.inclusions[0].centre_x = 1e-3 * x);
         totals.add(study(
             &format!("{name} ({x} mm)"),
-            &phantom,
+            &phantom.expect("within the well"),
             &axis(-20..=20),
         ));
     }

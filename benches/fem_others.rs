@@ -64,7 +64,7 @@ fn main() {
     };
     let answer = json!({
         "times_s": best,
-        "length_m": phantom.probe.length,
+        "length_m": phantom.probe().length,
         "nodes_m": mesh.nodes,
         "connectivity": mesh.connectivity,
         "youngs_modulus_pa": moduli(|material| material.youngs_modulus),

@@ -39,7 +39,7 @@ fn sweep(phantom: &Phantom) -> Result<Vec<Reading>, Box<dyn Error>> {
 /// The force on each element. An edge at the surface carries the force of its two contact points, spread evenly over its deformed
 /// length; what lies beyond an end of the array counts to the last element there.
 fn elements(model: &Model, solution: &PoseSolution) -> Result<[f64; FINEST], Box<dyn Error>> {
-    let (mesh, radius) = (model.mesh(), model.phantom().probe.radius);
+    let (mesh, radius) = (model.mesh(), model.phantom().probe().radius);
     let displacements = model.field(solution)?.displacements;
     // Every other node at the surface is the middle of an edge.
     let corners = mesh.surface.iter().step_by(2);

@@ -40,9 +40,11 @@ fn bank() -> Bank {
 
 /// The forces with the inclusion at `x` and `depth`, mm, on a mesh of its own.
 fn map(x: f64, depth: f64, mesh_size: f64) -> ForceMap {
-    let mut phantom = Phantom::builtin("6.6").unwrap();
-    phantom.inclusions[0].centre_x = 1e-3 * x;
-    phantom.inclusions[0].depth = 1e-3 * depth;
+    let phantom = Phantom::builtin("6.6").unwrap().changed(|parts| {
+        parts.inclusions[0].centre_x = 1e-3 * x;
+        parts.inclusions[0].depth = 1e-3 * depth;
+    });
+    let phantom = phantom.unwrap();
     let model = Model::new(&phantom, mesh_size, Contact::default()).unwrap();
     model.sweep(DEPTH, &laterals()).unwrap()
 }

@@ -66,11 +66,11 @@ impl BankArguments {
     ///
     /// Implements: CLI-154, CLI-155.
     fn plan(&self, phantom: &Phantom) -> Result<BankPlan, CliError> {
-        let number = phantom.inclusions.len();
+        let number = phantom.inclusions().len();
         if number != 1 {
             return Err(CliError::Usage(format!(
                 "phantom {} has {number} inclusions, but a bank varies exactly one; try --phantom 6.6",
-                phantom.name
+                phantom.name()
             )));
         }
         let mut plan = BankPlan::new(phantom.clone(), self.probe_depth, &self.laterals.0)?;
@@ -111,14 +111,14 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let phantom = phantom(&arguments.phantom)?;
     let plan = arguments.plan(&phantom)?;
     let solves = plan.solves()?;
-    tell_large_mesh(&phantom, plan.mesh_size).map_err(CliError::fem(&phantom.name))?;
+    tell_large_mesh(&phantom, plan.mesh_size).map_err(CliError::fem(&phantom.name()))?;
     let (part, finished, bar) = open_part(&plan, arguments, &phantom, &solves)?;
-    let mut maps = compute(&plan, &phantom.name, &solves, &part, finished, &bar)?;
+    let mut maps = compute(&plan, &phantom.name(), &solves, &part, finished, &bar)?;
     bar.finish_and_clear();
     let det = |map: &ForceMap| map.certificate().map_or(1.0, |of| of.smallest_det.det);
     let worst = maps.iter().min_by(|a, b| det(a).total_cmp(&det(b)));
     if let Some(map) = worst {
-        warn_of_large_strain_of(map, &name(&phantom.name, map.phantom()));
+        warn_of_large_strain_of(map, &name(&phantom.name(), map.phantom()));
     }
     let reference = maps.remove(0);
     write(out, &Bank::new(reference, maps)?.to_json())?;
@@ -204,7 +204,7 @@ fn is_of(maps: &[ForceMap], solve: Option<&BankSolve>) -> bool {
         Some(solve) => {
             phantom == Some(&solve.phantom) && maps.len() == 1 + usize::from(solve.image)
         }
-        None => phantom.is_some_and(|of| of.inclusions.is_empty()) && maps.len() == 1,
+        None => phantom.is_some_and(|of| of.inclusions().is_empty()) && maps.len() == 1,
     }
 }
 
@@ -244,7 +244,7 @@ fn compute(
 
 /// The name of a phantom with its inclusion varied.
 fn name(name: &str, phantom: Option<&Phantom>) -> String {
-    let inclusion = phantom.and_then(|phantom| phantom.inclusions.first());
+    let inclusion = phantom.and_then(|phantom| phantom.inclusions().first());
     inclusion.map_or(name.into(), |inclusion| {
         let [x, depth, diameter, modulus] = Parameter::ALL.map(|parameter| {
             let power = if parameter == Parameter::Modulus { -3 } else { 3 };

@@ -20,7 +20,7 @@ pub fn tell_large_mesh(phantom: &Phantom, size: f64) -> Result<(), FemError> {
     if nodes > MANY_NODES {
         eprintln!(
             "palpate: note: phantom {}: a mesh of about {nodes:.0} nodes, where the paper's phantoms have 10000: a pose may take minutes",
-            phantom.name
+            phantom.name()
         );
     }
     Ok(())

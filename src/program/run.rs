@@ -82,7 +82,7 @@ fn solve_all(
     // The figure shows the first inclusion, or the reference where there is none.
     let shown = usize::from(phantoms.len() > 1);
     let solve = |(index, phantom): (usize, &Phantom)| {
-        solve_phantom(config, phantom, index == shown, &bar).map_err(CliError::fem(&phantom.name))
+        solve_phantom(config, phantom, index == shown, &bar).map_err(CliError::fem(&phantom.name()))
     };
     let solved = phantoms.par_iter().enumerate().map(solve);
     let solved: Vec<_> = solved.collect::<Result<_, _>>()?;
@@ -121,7 +121,7 @@ fn solve_phantom(
 /// The mesh at the deepest pose, at the lateral position nearest to the middle of the first inclusion, or to x = 0.
 fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
     let deepest = map.table().depths().iter().fold(0.0, |a: f64, &b| a.max(b));
-    let first = model.phantom().inclusions.first();
+    let first = model.phantom().inclusions().first();
     let middle = first.map_or(0.0, |inclusion| {
         let [left, right, ..] = inclusion.extent();
         0.5 * (left + right)
@@ -145,7 +145,7 @@ fn write_run(run: &Run, out: &Path) -> Result<(), CliError> {
     make_folder(&out.join("figures"))?;
     let mut names = FileNames::default();
     for map in std::iter::once(&run.reference).chain(&run.maps) {
-        let name = map.phantom().map_or("", |phantom| &phantom.name);
+        let name = map.phantom().map_or("", |phantom| &phantom.name());
         let name = names.unique("map", name, "json");
         write(&out.join("maps").join(name), &map.to_json())?;
     }

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::Command;
 
 use palpate::fem::{Contact, Mesh, Model, Pose};
-use palpate::phantom::Phantom;
 
+use super::builtin_at;
 use super::deck::deck;
 use super::present::present;
 
@@ -66,10 +66,7 @@ fn compare(name: &str, centre_x: f64, lateral: f64) {
         return;
     }
     let size = 0.8e-3;
-    let mut phantom = Phantom::builtin(name).unwrap();
-    for inclusion in &mut phantom.inclusions {
-        inclusion.centre_x = centre_x;
-    }
+    let phantom = builtin_at(name, centre_x);
     let mesh = Mesh::new(&phantom, size).unwrap();
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("ccx-{name}-{centre_x}"));
     let forces = run(&directory, &deck(&phantom, &mesh, lateral, &DEPTHS));

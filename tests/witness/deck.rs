@@ -30,8 +30,8 @@ pub fn deck(phantom: &Phantom, mesh: &Mesh, lateral: f64, depths: &[f64]) -> Str
     for (node, [x, y]) in mesh.nodes.iter().enumerate() {
         writeln!(deck, "{}, {x:.12e}, {y:.12e}", node + 1).unwrap();
     }
-    let layers = (0..phantom.layers.len()).map(|k| (Region::Layer(k), format!("LAYER{k}")));
-    let inclusions = 0..phantom.inclusions.len();
+    let layers = (0..phantom.layers().len()).map(|k| (Region::Layer(k), format!("LAYER{k}")));
+    let inclusions = 0..phantom.inclusions().len();
     let inclusions = inclusions.map(|k| (Region::Inclusion(k), format!("INCLUSION{k}")));
     for (region, name) in layers.chain(inclusions) {
         writeln!(deck, "*ELEMENT, TYPE=CPE6, ELSET={name}").unwrap();
@@ -46,7 +46,9 @@ pub fn deck(phantom: &Phantom, mesh: &Mesh, lateral: f64, depths: &[f64]) -> Str
             deck,
             "*MATERIAL, NAME={name}\n*ELASTIC\n{:e}, {:e}\n\
              *SOLID SECTION, ELSET={name}, MATERIAL={name}\n{:e}\n",
-            material.youngs_modulus, material.poisson_ratio, phantom.probe.length
+            material.youngs_modulus,
+            material.poisson_ratio,
+            phantom.probe().length
         )
         .unwrap();
     }
@@ -87,7 +89,7 @@ pub fn deck(phantom: &Phantom, mesh: &Mesh, lateral: f64, depths: &[f64]) -> Str
 /// The probe: one row of quadrilaterals with 8 nodes, every one of them moved by hand, so that it is rigid.
 /// It starts where it just touches.
 fn probe(deck: &mut String, phantom: &Phantom, mesh: &Mesh, lateral: f64) {
-    let radius = phantom.probe.radius;
+    let radius = phantom.probe().radius;
     let first = mesh.nodes.len() + 1;
     let columns = 2 * PROBE_ELEMENTS + 1;
     // Three circles of nodes, the outermost first.
@@ -127,7 +129,7 @@ fn probe(deck: &mut String, phantom: &Phantom, mesh: &Mesh, lateral: f64) {
         deck,
         "*MATERIAL, NAME=STEEL\n*ELASTIC\n1e6, 0.3\n*SOLID SECTION, ELSET=PROBE, MATERIAL=STEEL\n{:e}\n\
          *SURFACE, NAME=ARC\n",
-        phantom.probe.length
+        phantom.probe().length
     )
     .unwrap();
     for k in 0..PROBE_ELEMENTS {

@@ -10,10 +10,20 @@ mod scikit_fem;
 use palpate::fem::mesh::Region;
 use palpate::phantom::{Material, Phantom};
 
+/// A built-in phantom, its inclusion at `centre_x`, m.
+fn builtin_at(name: &str, centre_x: f64) -> Phantom {
+    let phantom = Phantom::builtin(name).unwrap().changed(|parts| {
+        for inclusion in &mut parts.inclusions {
+            inclusion.centre_x = centre_x;
+        }
+    });
+    phantom.unwrap()
+}
+
 /// What a region is made of, by the phantom alone: the library's own choice is among the things that are checked.
 fn material(phantom: &Phantom, region: Region) -> Material {
     match region {
-        Region::Layer(k) => phantom.layers[k].material,
-        Region::Inclusion(k) => phantom.inclusions[k].material,
+        Region::Layer(k) => phantom.layers()[k].material,
+        Region::Inclusion(k) => phantom.inclusions()[k].material,
     }
 }

@@ -9,8 +9,8 @@ use palpate::fem::Mesh;
 use palpate::fem::assembly::StiffnessMatrix;
 use palpate::phantom::Phantom;
 
-use super::material;
 use super::present::present;
+use super::{builtin_at, material};
 
 /// The Python to run: that of the environment with scikit-fem, or the system's.
 fn python() -> Command {
@@ -82,10 +82,7 @@ fn scikit_fem_assembles_our_stiffness() {
         return;
     }
     for (name, centre_x) in [("none", 0.0), ("2.6", 0.0), ("2.6", 3e-3)] {
-        let mut phantom = Phantom::builtin(name).unwrap();
-        for inclusion in &mut phantom.inclusions {
-            inclusion.centre_x = centre_x;
-        }
+        let phantom = builtin_at(name, centre_x);
         let mesh = Mesh::new(&phantom, 1.5e-3).unwrap();
         let matrix = StiffnessMatrix::assemble(&mesh, &phantom).unwrap();
         let witness = witness(&problem(&mesh, &phantom));
@@ -101,7 +98,7 @@ fn scikit_fem_assembles_our_stiffness() {
             let rows = matrix.upper.row_idx_of_col(column);
             for (row, &value) in rows.zip(matrix.upper.val_of_col(column)) {
                 let a = number[row];
-                ours.insert((a.min(b), a.max(b)), value / phantom.probe.length);
+                ours.insert((a.min(b), a.max(b)), value / phantom.probe().length);
             }
         }
         // Entries that one side leaves out are zeros.

@@ -68,8 +68,8 @@ fn key(phantom: &phantom::Phantom, keyword: &str) -> PyResult<String> {
         return Ok(keyword.into());
     };
     let many = match table {
-        "layer" => phantom.layers.len(),
-        "inclusion" => phantom.inclusions.len(),
+        "layer" => phantom.layers().len(),
+        "inclusion" => phantom.inclusions().len(),
         _ => return Ok(format!("{table}.{key}")),
     };
     let numbered = key.split_once('_');
@@ -87,8 +87,7 @@ fn key(phantom: &phantom::Phantom, keyword: &str) -> PyResult<String> {
 
 impl Phantom {
     fn tables(&self) -> PyResult<Table> {
-        let text = self.0.to_toml().map_err(refused)?;
-        text.parse().map_err(refused)
+        self.0.to_toml().parse().map_err(refused)
     }
 
     /// Meshed and factorised; lengths in mm.
@@ -138,8 +137,8 @@ impl Phantom {
     }
 
     /// The text of a phantom file, in mm and kPa.
-    fn to_toml(&self) -> PyResult<String> {
-        self.0.to_toml().map_err(refused)
+    fn to_toml(&self) -> String {
+        self.0.to_toml()
     }
 
     /// A dictionary with the keys of a phantom file, in mm and kPa.
@@ -150,7 +149,7 @@ impl Phantom {
     /// The name of the phantom.
     #[getter]
     fn name(&self) -> &str {
-        &self.0.name
+        self.0.name()
     }
 
     /// The height of the outer surface above the floor, mm.
@@ -230,7 +229,7 @@ impl Phantom {
     }
 
     fn __repr__(&self) -> String {
-        let inclusions = self.0.inclusions.len();
-        format!("<Phantom {:?}, {inclusions} inclusions>", self.0.name)
+        let inclusions = self.0.inclusions().len();
+        format!("<Phantom {:?}, {inclusions} inclusions>", self.0.name())
     }
 }

@@ -192,7 +192,7 @@ impl Bank {
 /// The parameters of the one inclusion of `map`.
 fn check_map(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<[f64; 4], Refusal> {
     check_gel(reference, map)?;
-    let Some([inclusion]) = map.phantom().map(|phantom| &phantom.inclusions[..]) else {
+    let Some([inclusion]) = map.phantom().map(|phantom| &phantom.inclusions()[..]) else {
         let found = "its phantom has not one inclusion";
         return Err(Refusal::state(found, "one, which says what the map is for"));
     };

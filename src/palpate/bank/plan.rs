@@ -80,8 +80,8 @@ impl BankPlan {
     ///
     /// Implements: BNK-020.
     pub fn new(phantom: Phantom, depth: f64, laterals: &[f64]) -> Result<BankPlan, Refusal> {
-        let [inclusion] = &phantom.inclusions[..] else {
-            let found = format!("{} inclusions", phantom.inclusions.len());
+        let [inclusion] = &phantom.inclusions()[..] else {
+            let found = format!("{} inclusions", phantom.inclusions().len());
             let expected = "one, of which the hypotheses are made";
             return Err(Refusal::value("phantom.inclusion", found, expected));
         };
@@ -138,28 +138,27 @@ impl BankPlan {
     /// The phantom of one hypothesis.
     fn hypothesis(&self, point: [f64; 4]) -> Result<Phantom, Refusal> {
         let [position, depth, diameter, modulus] = point;
-        let mut phantom = self.phantom.clone();
-        let inclusion = &mut phantom.inclusions[0];
-        let same_width = Parameter::Diameter.of(inclusion) == diameter;
-        inclusion.centre_x = position;
-        inclusion.depth = depth;
-        inclusion.material.youngs_modulus = modulus;
-        match &mut inclusion.shape {
-            Shape::Disc { diameter: of } => *of = diameter,
-            _ if same_width => {}
-            _ => {
-                let found = "the inclusion is no disc";
-                return Err(Refusal::state(found, "a disc where its diameter varies"));
-            }
+        let of_file = &self.phantom.inclusions()[0];
+        let is_disc = matches!(of_file.shape, Shape::Disc { .. });
+        if !is_disc && Parameter::Diameter.of(of_file) != diameter {
+            let found = "the inclusion is no disc";
+            return Err(Refusal::state(found, "a disc where its diameter varies"));
         }
         let [x, y, d] = [position, depth, diameter].map(|length| 1e3 * length);
         let of = format!(
             "the inclusion at {x:.3} mm, {y:.3} mm deep, {d:.3} mm wide, of {:.1} kPa",
             1e-3 * modulus
         );
-        let checked = phantom.validate();
-        checked.map_err(|refusal| refusal.of_part(&of))?;
-        Ok(phantom)
+        let phantom = self.phantom.changed(|parts| {
+            let inclusion = &mut parts.inclusions[0];
+            inclusion.centre_x = position;
+            inclusion.depth = depth;
+            inclusion.material.youngs_modulus = modulus;
+            if is_disc {
+                inclusion.shape = Shape::Disc { diameter };
+            }
+        });
+        phantom.map_err(|refusal| refusal.of_part(&of))
     }
 
     /// The forces without inclusion, at the depth of the probe and at one on either side, where the probe can stand.
@@ -169,8 +168,7 @@ impl BankPlan {
     ///
     /// Implements: BNK-020.
     pub fn reference(&self) -> Result<ForceMap, FemError> {
-        let mut phantom = self.phantom.clone();
-        phantom.inclusions.clear();
+        let phantom = self.phantom.without_inclusions();
         let above = (self.depth - BESIDE).max(0.5 * self.depth);
         let mut depths = vec![above, self.depth, self.depth + BESIDE];
         let stands = |depth| {

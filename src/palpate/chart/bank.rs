@@ -257,7 +257,13 @@ fn rectangles(bank: &Bank, sums: &[([f64; 2], f64)]) -> Vec<Rectangle> {
 
 /// The inclusion of the largest likelihood.
 fn likeliest(bank: &Bank, place: &PlacePosterior) -> Option<Inclusion> {
-    let mut inclusion = bank.maps().first()?.phantom()?.inclusions.first()?.clone();
+    let mut inclusion = bank
+        .maps()
+        .first()?
+        .phantom()?
+        .inclusions()
+        .first()?
+        .clone();
     let [x, depth, width, _] = place.estimate;
     inclusion.centre_x = x;
     inclusion.depth = depth;

@@ -71,7 +71,7 @@ impl StiffnessMatrix {
                 let column = row_of(k);
                 for l in 0..2 * nodes.len() {
                     // From one metre to the probe's length.
-                    let value = phantom.probe.length * stiffness[(l, k)];
+                    let value = phantom.probe().length * stiffness[(l, k)];
                     match row_of(l) {
                         _ if column == HELD => {}
                         HELD => reaction[l % 2][column as usize] += value,

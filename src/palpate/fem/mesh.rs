@@ -23,8 +23,8 @@ impl Region {
     /// Its material in a phantom that has it.
     pub fn material(self, phantom: &Phantom) -> &Material {
         match self {
-            Region::Layer(k) => &phantom.layers[k].material,
-            Region::Inclusion(k) => &phantom.inclusions[k].material,
+            Region::Layer(k) => &phantom.layers()[k].material,
+            Region::Inclusion(k) => &phantom.inclusions()[k].material,
         }
     }
 }
@@ -112,7 +112,7 @@ impl Mesh {
     fn place(&mut self, phantom: &Phantom, triangles: &Triangulation<'_>) {
         self.nodes = triangles.corners.iter().map(|&p| p.into()).collect();
         let levels = phantom.levels();
-        let outlines: Vec<Outline> = phantom.inclusions.iter().map(|i| i.outline()).collect();
+        let outlines: Vec<Outline> = phantom.inclusions().iter().map(|i| i.outline()).collect();
         let on_lines = triangles.middles();
         let mut middles = HashMap::new();
         for corners in &triangles.triangles {
@@ -162,16 +162,16 @@ impl Mesh {
 
     /// Implements: FEM-004.
     fn find_borders(&mut self, phantom: &Phantom) {
-        let wall = 0.5 * phantom.well.width;
-        let floor = phantom.levels()[phantom.layers.len()];
+        let wall = 0.5 * phantom.well().width;
+        let floor = phantom.levels()[phantom.layers().len()];
         // A support across x or y.
         let holds = |support: Support, at: bool, direction: usize, across: usize| {
             at && (support == Support::Fixed || support == Support::Sliding && direction == across)
         };
         let held = |&[x, y]: &[f64; 2]| {
             [0, 1].map(|direction| {
-                holds(phantom.well.walls, x.abs() == wall, direction, 0)
-                    || holds(phantom.well.floor, y == floor, direction, 1)
+                holds(phantom.well().walls, x.abs() == wall, direction, 0)
+                    || holds(phantom.well().floor, y == floor, direction, 1)
             })
         };
         self.held = self.nodes.iter().map(held).collect();

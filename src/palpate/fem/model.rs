@@ -65,15 +65,14 @@ impl Model {
     /// Meshes and factorises a phantom; the mesh size, m, is that of [`Mesh::new`].
     ///
     /// # Errors
-    /// [`FemError::Refused`] for a phantom that is not valid, and as [`Mesh::new`], [`StiffnessMatrix::assemble`] and
+    /// As [`Mesh::new`], [`StiffnessMatrix::assemble`] and
     /// [`Factor::new`].
     pub fn new(phantom: &Phantom, mesh_size: f64, contact: Contact) -> Result<Model, FemError> {
-        phantom.validate()?;
         let mesh = Mesh::new(phantom, mesh_size)?;
         let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
         let factor = Factor::new(&matrix)?;
         let compliance = factor.surface_compliance(&matrix)?;
-        let surface = Surface::new(&mesh, &compliance, phantom.probe, contact);
+        let surface = Surface::new(&mesh, &compliance, phantom.probe(), contact);
         let samples = samples(&mesh, &matrix, &SizeField::new(phantom, mesh_size));
         Ok(Model {
             phantom: phantom.clone(),
@@ -135,7 +134,7 @@ impl Model {
         start: &ContactState,
     ) -> Result<ContactState, FemError> {
         let whole = pose.depth - from.depth;
-        let longest = DEPTH_STEP * self.phantom.probe.radius;
+        let longest = DEPTH_STEP * self.phantom.probe().radius;
         let shortest = longest.min(whole) / f64::from(1u32 << HALVINGS);
         let (mut state, mut reached, mut step) = (start.clone(), from.depth, longest);
         let mut iterations = 0;

@@ -51,12 +51,12 @@ impl SizeField {
     /// The size function for a mesh of `size` (m).
     pub fn new(phantom: &Phantom, size: f64) -> SizeField {
         let levels = phantom.levels();
-        let half_width = 0.5 * phantom.well.width;
-        let outlines: Vec<Outline> = phantom.inclusions.iter().map(|i| i.outline()).collect();
+        let half_width = 0.5 * phantom.well().width;
+        let outlines: Vec<Outline> = phantom.inclusions().iter().map(|i| i.outline()).collect();
         // A coarse mesh must follow a bend too.
         let bend = BEND * (MESH_SIZE / size).min(1.0);
         let mut corners = Vec::new();
-        if phantom.well.walls == Support::Fixed {
+        if phantom.well().walls == Support::Fixed {
             for &y in &levels[..levels.len() - 1] {
                 corners.extend([-half_width, half_width].map(|x| (Point::new(x, y), WALL_CORNER)));
             }

@@ -81,12 +81,12 @@ impl Triangulation<'_> {
         size: &'a SizeField,
         half: bool,
     ) -> Result<Triangulation<'a>, FemError> {
-        let right = 0.5 * phantom.well.width;
+        let right = 0.5 * phantom.well().width;
         let left = if half { 0.0 } else { -right };
         let mut new = Triangulation {
             size,
             half,
-            low: Point::new(left, phantom.levels()[phantom.layers.len()]),
+            low: Point::new(left, phantom.levels()[phantom.layers().len()]),
             right,
             corners: Vec::new(),
             on_line: Vec::new(),
@@ -139,7 +139,7 @@ impl Triangulation<'_> {
         for &y in &levels {
             self.straight([left, y], [right, y]);
         }
-        for inclusion in &phantom.inclusions {
+        for inclusion in phantom.inclusions() {
             if self.half && inclusion.extent()[1] <= 0.0 {
                 continue;
             }

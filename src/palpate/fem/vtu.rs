@@ -27,7 +27,7 @@ impl Model {
         let deformed = deformed.map(|(x, u)| [x[0] + u[0], x[1] + u[1], 0.0]);
         let number = |region: &Region| match *region {
             Region::Layer(k) => [k],
-            Region::Inclusion(k) => [self.phantom().layers.len() + k],
+            Region::Inclusion(k) => [self.phantom().layers().len() + k],
         };
         let per_element_of = field.gradients.iter().zip(&mesh.regions);
         let stresses = per_element_of.map(|(points, region)| {

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Certificate, ForceMap, ForceTable, Matrix, Measurement, Source};
+use super::{Certificate, ForceMap, ForceTable, Matrix, Measurement, Source, of_phantom};
 use crate::file::{check_schema, from_json, to_json};
 use crate::force::Force;
-use crate::phantom::Phantom;
+use crate::phantom::{Phantom, PhantomParts};
 use crate::refusal::Refusal;
 
 /// What the key `schema` of a force map says.
@@ -34,7 +34,7 @@ pub(super) struct Document {
     schema_version: u64,
     program_version: String,
     source: SourceKey,
-    phantom: Option<Phantom>,
+    phantom: Option<PhantomParts>,
     depths_m: Vec<f64>,
     laterals_m: Vec<f64>,
     normal_force_n: Matrix,
@@ -80,7 +80,7 @@ impl From<ForceMap> for Document {
             schema_version: SCHEMA_VERSION,
             program_version: map.program_version,
             source,
-            phantom: map.phantom,
+            phantom: map.phantom.map(PhantomParts::from),
             depths_m: map.table.depths().into(),
             laterals_m: map.table.laterals().into(),
             normal_force_n: map.table.forces().normal.clone(),
@@ -110,6 +110,11 @@ impl TryFrom<Document> for ForceMap {
         };
         let forces = Force::new(document.lateral_force_n, document.normal_force_n);
         let table = ForceTable::new(document.depths_m, document.laterals_m, forces)?;
-        ForceMap::of_version(document.program_version, source, document.phantom, table)
+        let phantom = document
+            .phantom
+            .map(Phantom::new)
+            .transpose()
+            .map_err(of_phantom)?;
+        ForceMap::of_version(document.program_version, source, phantom, table)
     }
 }

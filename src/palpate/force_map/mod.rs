@@ -138,7 +138,7 @@ impl ForceMap {
     /// A map of `table`, made by this version of the program.
     ///
     /// # Errors
-    /// The phantom is missing for a computed map, is not valid, or does not let the probe stand at one of the poses; the
+    /// The phantom is missing for a computed map, or does not let the probe stand at one of the poses; the
     /// certificate does not fit the forces; the half-width of a smoothing is not above 0.
     ///
     /// Implements: MAP-006, MAP-002, MAP-074.
@@ -175,11 +175,6 @@ impl ForceMap {
             }
         }
         if let Some(phantom) = &phantom {
-            let of_phantom = |refusal: Refusal| Refusal {
-                key: format!("phantom: {}", refusal.key),
-                ..refusal
-            };
-            phantom.validate().map_err(of_phantom)?;
             for &depth in table.depths() {
                 for &lateral in table.laterals() {
                     phantom.check_pose(depth, lateral).map_err(of_phantom)?;
@@ -270,7 +265,7 @@ impl ForceMap {
     pub fn mirrored(&self) -> Result<ForceMap, Refusal> {
         if let Some(phantom) = self.phantom.as_ref().filter(|p| !p.is_symmetric()) {
             return Err(Refusal::state(
-                format!("phantom {:?} is not its own mirror image", phantom.name),
+                format!("phantom {:?} is not its own mirror image", phantom.name()),
                 "a map over negative lateral positions too: it cannot be extended by symmetry",
             ));
         }
@@ -338,5 +333,13 @@ impl ForceMap {
             },
             measured => measured.clone(),
         }
+    }
+}
+
+/// Says that what a phantom of a map refuses is the phantom's.
+fn of_phantom(refusal: Refusal) -> Refusal {
+    Refusal {
+        key: format!("phantom: {}", refusal.key),
+        ..refusal
     }
 }

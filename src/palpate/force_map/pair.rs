@@ -76,7 +76,7 @@ impl<'a> Hypotheses<'a> {
 /// The first key whose values differ, with both.
 pub fn check_gel(without: &ForceMap, with: &ForceMap) -> Result<(), Refusal> {
     let refused = |reason: String| Err(Refusal::state(reason, ""));
-    let inclusions = |map: &ForceMap| map.phantom().map(|phantom| phantom.inclusions.len());
+    let inclusions = |map: &ForceMap| map.phantom().map(|phantom| phantom.inclusions().len());
     match (inclusions(without), inclusions(with)) {
         (Some(1..), Some(0)) => {
             return refused(

@@ -210,14 +210,11 @@ fn a_map_fits_its_phantom() {
         "phantom is missing, expected the phantom that the finite elements computed"
     );
     assert!(ForceMap::new(source(), None, table()).is_ok());
-    let mut phantom = Phantom::builtin("none").unwrap();
+    let phantom = Phantom::builtin("none").unwrap();
     assert!(ForceMap::new(source(), Some(phantom.clone()), table()).is_ok());
     let too_wide = axes(&[0.0, 0.004], &[0.0, 0.0111]).unwrap();
-    let message = refusal(ForceMap::new(source(), Some(phantom.clone()), too_wide));
+    let message = refusal(ForceMap::new(source(), Some(phantom), too_wide));
     assert!(message.starts_with("phantom: lateral_mm = 11.1, expected "));
-    phantom.well.width = -1.0;
-    let message = refusal(ForceMap::new(source(), Some(phantom), table()));
-    assert!(message.starts_with("phantom: well.width_mm = -1000.0, expected "));
 }
 
 // Verifies: MAP-009.
@@ -229,7 +226,7 @@ fn symmetry_extends_a_map_to_negative_positions() {
     let certificate = map.certificate().unwrap();
     assert_eq!(certificate.min_det.row(1), [0.85, 0.8, 0.9, 0.8, 0.85]);
     assert_eq!(certificate.smallest_det.lateral, 0.002);
-    assert_eq!(map.phantom().unwrap().name, "2.6");
+    assert_eq!(map.phantom().unwrap().name(), "2.6");
 }
 
 // Verifies: MAP-009.

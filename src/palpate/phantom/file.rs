@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::{Inclusion, Layer, Material, Phantom, Probe, Shape, Support, Well};
+use super::{Inclusion, Layer, Material, Phantom, PhantomParts, Probe, Shape, Support, Well};
 use crate::decimal::{Kpa, Mm, Plain, Scaled, kpa, mm, plain};
 use crate::file::Tree;
 use crate::refusal::Refusal;
@@ -68,14 +68,14 @@ struct ProbeTable {
     length_mm: Mm,
 }
 
-impl From<PhantomFile> for Phantom {
-    fn from(file: PhantomFile) -> Phantom {
+impl From<PhantomFile> for PhantomParts {
+    fn from(file: PhantomFile) -> PhantomParts {
         let layer = |(at, layer): (usize, LayerTable)| Layer {
             name: layer.name.unwrap_or_else(|| format!("layer[{at}]")),
             thickness: layer.thickness_mm.0,
             material: material(layer.youngs_modulus_kpa, layer.poisson_ratio),
         };
-        Phantom {
+        PhantomParts {
             name: file.name,
             well: Well {
                 width: file.well.width_mm.0,
@@ -172,7 +172,7 @@ impl Phantom {
     /// probe = { radius_mm = 6.5, length_mm = 30 }
     /// "#;
     /// let phantom = Phantom::from_toml(text, "soft.toml")?;
-    /// assert_eq!((phantom.well.width, phantom.layers[0].material.youngs_modulus), (0.034, 2500.0));
+    /// assert_eq!((phantom.well().width, phantom.layers()[0].material.youngs_modulus), (0.034, 2500.0));
     /// let error = Phantom::from_toml(&text.replace("6.5", "17.0"), "wide.toml").unwrap_err();
     /// assert!(error.to_string().starts_with("wide.toml:5: probe.radius_mm = 17.0, expected "));
     /// # Ok::<(), palpate::refusal::Refusal>(())
@@ -180,7 +180,7 @@ impl Phantom {
     ///
     /// # Errors
     /// The text is not TOML, has an unknown key, lacks one, has a value of another type, or makes a phantom that
-    /// [`Phantom::validate`] refuses; with the file, and the line where there is one.
+    /// [`Phantom::new`] refuses; with the file, and the line where there is one.
     ///
     /// Implements: PHA-020, PHA-021, PHA-026.
     pub fn from_toml(text: &str, file: &str) -> Result<Phantom, Refusal> {
@@ -190,28 +190,24 @@ impl Phantom {
 
     /// This phantom as the text of a phantom file.
     ///
-    /// # Errors
-    /// As [`Phantom::validate`], so that what is written can be read.
-    ///
     /// Implements: PHA-021, PHA-027.
-    pub fn to_toml(&self) -> Result<String, Refusal> {
-        self.validate()?;
+    pub fn to_toml(&self) -> String {
         let quoted = |name: &str| toml::Value::from(name).to_string();
         let Well {
             width,
             walls,
             floor,
-        } = self.well;
-        let (name, width) = (quoted(&self.name), mm(width));
+        } = self.0.well;
+        let (name, width) = (quoted(&self.0.name), mm(width));
         let mut text = format!(
             "name = {name}\n\n[well]\nwidth_mm = {width}\nwalls = \"{walls}\"\nfloor = \"{floor}\"\n"
         );
-        for layer in &self.layers {
+        for layer in &self.0.layers {
             let (name, thickness) = (quoted(&layer.name), mm(layer.thickness));
             let material = material_lines(&layer.material);
             text += &format!("\n[[layer]]\nname = {name}\nthickness_mm = {thickness}\n{material}");
         }
-        for inclusion in &self.inclusions {
+        for inclusion in &self.0.inclusions {
             let (x, depth) = (mm(inclusion.centre_x), mm(inclusion.depth));
             let shape = shape_lines(&inclusion.shape);
             let material = material_lines(&inclusion.material);
@@ -219,15 +215,14 @@ impl Phantom {
                 "\n[[inclusion]]\ncentre_x_mm = {x}\ndepth_mm = {depth}\n{shape}{material}"
             );
         }
-        let (radius, length) = (mm(self.probe.radius), mm(self.probe.length));
+        let (radius, length) = (mm(self.0.probe.radius), mm(self.0.probe.length));
         text += &format!("\n[probe]\nradius_mm = {radius}\nlength_mm = {length}\n");
-        Ok(text)
+        text
     }
 
     /// The number at a key of the phantom's file, such as `layer[1].thickness_mm`, in the unit of the key.
     pub fn number(&self, key: &str) -> Option<f64> {
-        let text = self.to_toml().ok()?;
-        Tree::parse(&text).ok()?.number(key)
+        Tree::parse(&self.to_toml()).ok()?.number(key)
     }
 
     /// This phantom with other values at some keys of its file, each written as in the file: a number in the unit of the key, or a text
@@ -238,11 +233,11 @@ impl Phantom {
     ///
     /// let phantom = Phantom::builtin("6.6")?;
     /// let thinner = phantom.set([("layer[1].thickness_mm", 14.2), ("inclusion[0].depth_mm", 6.0)])?;
-    /// assert_eq!((thinner.layers[1].thickness, thinner.inclusions[0].depth), (0.0142, 0.006));
+    /// assert_eq!((thinner.layers()[1].thickness, thinner.inclusions()[0].depth), (0.0142, 0.006));
     /// assert_eq!(thinner.number("layer[1].thickness_mm"), Some(14.2));
     /// let error = phantom.set([("inclusion[0].depth_mm", 30)]).unwrap_err();
     /// assert!(error.to_string().starts_with("inclusion[0].depth_mm = 30.0, expected "));
-    /// assert_eq!(phantom.set([("well.walls", "\"sliding\"")])?.well.walls.to_string(), "sliding");
+    /// assert_eq!(phantom.set([("well.walls", "\"sliding\"")])?.well().walls.to_string(), "sliding");
     /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
@@ -252,9 +247,9 @@ impl Phantom {
         &self,
         values: impl IntoIterator<Item = (K, V)>,
     ) -> Result<Phantom, Refusal> {
-        let text = self.to_toml()?;
         let written = |(key, value): (K, V)| (key.as_ref().to_string(), value.to_string());
         let values: Vec<_> = values.into_iter().map(written).collect();
+        let text = self.to_toml();
         let mut tree = Tree::parse(&text)?;
         for (key, value) in &values {
             tree.set(key, value)?;
@@ -269,11 +264,8 @@ impl Phantom {
 
 fn from_tree(mut tree: Tree) -> Result<Phantom, Refusal> {
     tree.make_list("inclusion");
-    let phantom = Phantom::from(tree.read::<PhantomFile>()?);
-    match phantom.validate() {
-        Ok(()) => Ok(phantom),
-        Err(refusal) => Err(tree.placed(refusal)),
-    }
+    let parts = PhantomParts::from(tree.read::<PhantomFile>()?);
+    Phantom::new(parts).map_err(|refusal| tree.placed(refusal))
 }
 
 fn material_lines(material: &Material) -> String {

@@ -39,33 +39,33 @@ impl Phantom {
     /// The first offending key of the phantom file, its value and what is allowed, both in the unit of the file.
     ///
     /// Implements: PHA-004, PHA-006, PHA-009, PHA-015, PHA-030, CON-007.
-    pub fn validate(&self) -> Check {
-        check_name("name", &self.name)?;
-        within("well.width_mm", mm(self.well.width), LENGTHS, "")?;
+    pub(super) fn check(&self) -> Check {
+        check_name("name", &self.0.name)?;
+        within("well.width_mm", mm(self.0.well.width), LENGTHS, "")?;
         self.check_supports()?;
-        check_count("layer", self.layers.len(), 1..=100)?;
-        for (at, layer) in self.layers.iter().enumerate() {
+        check_count("layer", self.0.layers.len(), 1..=100)?;
+        for (at, layer) in self.0.layers.iter().enumerate() {
             let key = format!("layer[{at}]");
             check_name(&format!("{key}.name"), &layer.name)?;
             let thickness = mm(layer.thickness);
             within(&format!("{key}.thickness_mm"), thickness, LENGTHS, "")?;
             check_material(&key, &layer.material)?;
         }
-        within("probe.length_mm", mm(self.probe.length), LENGTHS, "")?;
-        let radii = *LENGTHS.start()..to_picometre(self.well.width / 2.0);
+        within("probe.length_mm", mm(self.0.probe.length), LENGTHS, "")?;
+        let radii = *LENGTHS.start()..to_picometre(self.0.well.width / 2.0);
         let why = " (the probe must be narrower than the well)";
-        within("probe.radius_mm", mm(self.probe.radius), radii, why)?;
-        check_count("inclusion", self.inclusions.len(), 0..=100)?;
-        for (at, inclusion) in self.inclusions.iter().enumerate() {
+        within("probe.radius_mm", mm(self.0.probe.radius), radii, why)?;
+        check_count("inclusion", self.0.inclusions.len(), 0..=100)?;
+        for (at, inclusion) in self.0.inclusions.iter().enumerate() {
             let key = format!("inclusion[{at}]");
             check_shape(&key, inclusion)?;
             self.check_place(&key, inclusion)?;
         }
-        check_distances(&self.inclusions)
+        check_distances(&self.0.inclusions)
     }
 
     fn check_supports(&self) -> Check {
-        let (walls, floor) = (self.well.walls, self.well.floor);
+        let (walls, floor) = (self.0.well.walls, self.0.well.floor);
         let (enough, how) = match (walls, floor) {
             (Support::Sliding, Support::Free) => ("\"fixed\" or \"sliding\"", "up"),
             (Support::Free, Support::Free) => ("\"fixed\"", "up"),
@@ -82,12 +82,12 @@ impl Phantom {
         let [left, right, bottom, top] = inclusion.extent();
         let (levels, middle) = (self.levels(), 0.5 * (bottom + top));
         let under = levels[1..].iter().position(|&level| middle > level);
-        let layer = under.unwrap_or(self.layers.len() - 1);
+        let layer = under.unwrap_or(self.0.layers.len() - 1);
         let lowest = bottom - top - CLEARANCE - levels[layer + 1];
         let depths = to_picometre(CLEARANCE - levels[layer])..=to_picometre(lowest);
         let [high, wide] = [top - bottom, right - left].map(in_mm);
         if depths.is_empty() {
-            let most = in_mm(self.layers[layer].thickness - 2.0 * CLEARANCE);
+            let most = in_mm(self.0.layers[layer].thickness - 2.0 * CLEARANCE);
             let expected = format!("at most {most}: 0.1 mm of layer[{layer}] above and below");
             return refuse(key, format!("{high} high"), expected);
         }
@@ -100,7 +100,7 @@ impl Phantom {
             depths,
             &why,
         )?;
-        let (x, most) = (inclusion.centre_x, self.well.width / 2.0 - CLEARANCE);
+        let (x, most) = (inclusion.centre_x, self.0.well.width / 2.0 - CLEARANCE);
         let places = to_picometre(x - left - most)..=to_picometre(most - (right - x));
         if places.is_empty() {
             let expected = format!("at most {}: 0.1 mm beside each wall", in_mm(2.0 * most));

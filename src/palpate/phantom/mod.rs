@@ -14,12 +14,12 @@
 //! use palpate::phantom::Phantom;
 //!
 //! // The paper's phantom with the disc 6.6 mm deep, and a harder disc, 3 mm off the middle.
-//! let mut phantom = Phantom::builtin("6.6")?;
-//! phantom.inclusions[0].material.youngs_modulus = 2.4e6;
-//! phantom.inclusions[0].centre_x = 3e-3;
-//! phantom.validate()?;
+//! let phantom = Phantom::builtin("6.6")?.changed(|parts| {
+//!     parts.inclusions[0].material.youngs_modulus = 2.4e6;
+//!     parts.inclusions[0].centre_x = 3e-3;
+//! })?;
 //! assert!(!phantom.is_symmetric());
-//! assert!(phantom.to_toml()?.contains("youngs_modulus_kpa = 2400.0"));
+//! assert!(phantom.to_toml().contains("youngs_modulus_kpa = 2400.0"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -130,14 +130,12 @@ pub struct Probe {
     pub length: f64,
 }
 
-/// Everything that fixes the force on the probe, but for the probe's position.
-///
-/// Reading one with serde checks the types alone: call [`Phantom::validate`] on the result.
+/// The parts of a phantom, with any values: [`Phantom::new`] makes a phantom of them.
 ///
 /// Implements: PHA-029.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a phantom")]
-pub struct Phantom {
+pub struct PhantomParts {
     /// A name for tables and figures.
     pub name: String,
     /// The well.
@@ -150,6 +148,25 @@ pub struct Phantom {
     pub inclusions: Vec<Inclusion>,
     /// The probe.
     pub probe: Probe,
+}
+
+/// Everything that fixes the force on the probe, but for the probe's position: parts that can exist and be meshed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "PhantomParts")]
+pub struct Phantom(PhantomParts);
+
+impl TryFrom<PhantomParts> for Phantom {
+    type Error = Refusal;
+
+    fn try_from(parts: PhantomParts) -> Result<Phantom, Refusal> {
+        Phantom::new(parts)
+    }
+}
+
+impl From<Phantom> for PhantomParts {
+    fn from(phantom: Phantom) -> PhantomParts {
+        phantom.0
+    }
 }
 
 /// The names of the paper's five phantoms: without an inclusion, then by its depth in mm.
@@ -172,31 +189,87 @@ impl Phantom {
         }
         let paper = Phantom::from_toml(include_str!("paper.toml"), "paper.toml");
         let mut phantom = paper.expect("a test reads this very text");
-        phantom.name = name.into();
+        phantom.0.name = name.into();
         match parse_scaled(name, -3) {
-            Some(depth) => phantom.inclusions[0].depth = depth,
-            None => phantom.inclusions.clear(),
+            Some(depth) => phantom.0.inclusions[0].depth = depth,
+            None => phantom.0.inclusions.clear(),
         }
         Ok(phantom)
+    }
+
+    /// The phantom of these parts.
+    ///
+    /// # Errors
+    /// The first offending key of the phantom file, its value and what is allowed, both in the unit of the file.
+    ///
+    /// Implements: PHA-004, CON-007.
+    pub fn new(parts: PhantomParts) -> Result<Phantom, Refusal> {
+        let phantom = Phantom(parts);
+        phantom.check()?;
+        Ok(phantom)
+    }
+
+    /// This phantom with other parts.
+    ///
+    /// # Errors
+    /// As [`Phantom::new`].
+    pub fn changed(&self, change: impl FnOnce(&mut PhantomParts)) -> Result<Phantom, Refusal> {
+        let mut parts = self.0.clone();
+        change(&mut parts);
+        Phantom::new(parts)
+    }
+
+    /// This phantom without inclusions.
+    pub fn without_inclusions(&self) -> Phantom {
+        let inclusions = Vec::new();
+        Phantom(PhantomParts {
+            inclusions,
+            ..self.0.clone()
+        })
+    }
+
+    /// A name for tables and figures.
+    pub fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// The well.
+    pub fn well(&self) -> &Well {
+        &self.0.well
+    }
+
+    /// The layers, top to bottom.
+    pub fn layers(&self) -> &[Layer] {
+        &self.0.layers
+    }
+
+    /// The inclusions; none for a plain gel.
+    pub fn inclusions(&self) -> &[Inclusion] {
+        &self.0.inclusions
+    }
+
+    /// The probe.
+    pub fn probe(&self) -> Probe {
+        self.0.probe
     }
 
     /// Height of the outer surface above the floor, m.
     ///
     /// Implements: PHA-008.
     pub fn height(&self) -> f64 {
-        self.layers.iter().map(|layer| layer.thickness).sum()
+        self.layers().iter().map(|layer| layer.thickness).sum()
     }
 
     /// The depth of the highest point of all inclusions, m; `None` without any.
     pub fn inclusion_depth(&self) -> Option<f64> {
-        let depths = self.inclusions.iter().map(|inclusion| inclusion.depth);
+        let depths = self.inclusions().iter().map(|inclusion| inclusion.depth);
         depths.reduce(f64::min)
     }
 
     /// y of the top of each layer and of the floor, m: 0 first, then negative.
     pub fn levels(&self) -> Vec<f64> {
         let mut levels = vec![0.0];
-        for layer in &self.layers {
+        for layer in self.layers() {
             levels.push(levels[levels.len() - 1] - layer.thickness);
         }
         levels
@@ -207,25 +280,25 @@ impl Phantom {
     ///
     /// Implements: PHA-019.
     pub fn is_symmetric(&self) -> bool {
-        self.mirror_images().len() == self.inclusions.len()
+        self.mirror_images().len() == self.inclusions().len()
     }
 
     /// The number of each inclusion's mirror image; fewer numbers than inclusions where one has none.
     pub fn mirror_images(&self) -> Vec<usize> {
         let image = |inclusion: &Inclusion| {
             let mirrored = inclusion.outline().mirrored();
-            self.inclusions.iter().position(|other| {
+            self.inclusions().iter().position(|other| {
                 other.material == inclusion.material && mirrored.is_same(&other.outline())
             })
         };
-        self.inclusions.iter().filter_map(image).collect()
+        self.inclusions().iter().filter_map(image).collect()
     }
 
     /// The phantom seen from behind: its mirror image in x. `None` where an inclusion is no mirror image of itself but for its
     /// place.
     pub fn mirror_image(&self) -> Option<Phantom> {
         let mut image = self.clone();
-        for inclusion in &mut image.inclusions {
+        for inclusion in &mut image.0.inclusions {
             let place = std::mem::take(&mut inclusion.centre_x);
             let outline = inclusion.outline();
             if !outline.clone().mirrored().is_same(&outline) {

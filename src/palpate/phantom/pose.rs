@@ -29,8 +29,8 @@ impl Phantom {
     pub fn check_pose(&self, depth: f64, lateral: f64) -> Result<(), Refusal> {
         let why = " (the height of the layers)";
         within("depth_mm", mm(depth), 0.0..self.height(), why)?;
-        let half_width = self.probe.half_width_at(depth);
-        let limit = self.well.width / 2.0 - half_width;
+        let half_width = self.0.probe.half_width_at(depth);
+        let limit = self.0.well.width / 2.0 - half_width;
         let (wide, low) = (in_mm(half_width), in_mm(depth));
         let why = format!(" (the probe, {wide} to each side when {low} deep, clears the walls)");
         let range = (Excluded(-limit), Excluded(limit));

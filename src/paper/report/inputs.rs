@@ -22,7 +22,7 @@ pub(super) fn check(run: &Run, depth: f64) -> Result<(), Refusal> {
     let what = if run.reference.phantom() != Some(&plan.reference) {
         "reference".into()
     } else if let Some(other) = other {
-        format!("phantom {:?}", other.name)
+        format!("phantom {:?}", other.name())
     } else if (plan.probe_depth - depth).abs() > SAME_POSITION {
         "depth of the probe".into()
     } else if plan.laterals != run.reference.table().laterals() {

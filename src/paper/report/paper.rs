@@ -1,6 +1,6 @@
 //! The numbers that the paper prints, each with its place.
 
-use palpate::phantom::{BUILTIN_NAMES, Phantom};
+use palpate::phantom::{BUILTIN_NAMES, Phantom, PhantomParts};
 
 pub use crate::psychophysics::FEM_PLAYBACK;
 // Table 2, and what §5 infers from it.
@@ -61,13 +61,12 @@ pub const PRINTED_MEANS: [[f64; 4]; 3] = [
 #[cfg(test)]
 pub use super::tests::table_1::EXPERIMENTS;
 
-/// A phantom without the names of itself and its layers.
-pub(super) fn unnamed(phantom: &Phantom) -> Phantom {
-    let mut phantom = phantom.clone();
-    phantom.name.clear();
-    let layers = phantom.layers.iter_mut();
-    layers.for_each(|layer| layer.name.clear());
-    phantom
+/// The parts of a phantom without the names of itself and its layers.
+pub(super) fn unnamed(phantom: &Phantom) -> PhantomParts {
+    let mut parts = PhantomParts::from(phantom.clone());
+    parts.name.clear();
+    parts.layers.iter_mut().for_each(|layer| layer.name.clear());
+    parts
 }
 
 /// Which of the paper's phantoms this is, whatever it and its layers are called: geometry, materials, supports and probe

@@ -13,7 +13,7 @@ pub mod table_1;
 mod xml;
 
 use super::*;
-use palpate::phantom::Support;
+use palpate::phantom::{PhantomParts, Support};
 use palpate_asserts::assert_near;
 use run::*;
 
@@ -228,10 +228,10 @@ fn rows_without_their_phantom_are_left_out() {
     let found = findings(&run).unwrap();
     assert!(!has_row(&found, "Signal F₁"));
     // Another reference: no number of the paper is about it.
-    let mut softer = Phantom::builtin("none").unwrap();
-    softer.layers[1].material.youngs_modulus = 4e3;
+    let none = Phantom::builtin("none").unwrap();
+    let softer = none.changed(|parts| parts.layers[1].material.youngs_modulus = 4e3);
     let mut run = paper_run();
-    run.reference = map(Some(softer), &DEPTHS, |_| 0.0, |_| 0.0);
+    run.reference = map(softer.ok(), &DEPTHS, |_| 0.0, |_| 0.0);
     let found = findings(&run).unwrap();
     assert!(!has_row(&found, "Force level"));
     assert_eq!(found.bridge, None);
@@ -241,27 +241,29 @@ fn rows_without_their_phantom_are_left_out() {
 // Verifies: REP-010.
 #[test]
 fn a_phantom_is_the_papers_by_its_data_and_not_by_its_name() {
-    let mut phantom = Phantom::builtin("6.6").unwrap();
-    phantom.name = "mine".into();
-    phantom.layers[1].name = "agar".into();
-    assert_eq!(paper::name_of(&phantom), Some("6.6"));
-    phantom.well.walls = Support::Sliding;
-    assert_eq!(paper::name_of(&phantom), None);
-    phantom.well.walls = Support::Fixed;
-    phantom.name = "6.6".into();
-    phantom.probe.radius = 6e-3;
-    assert_eq!(paper::name_of(&phantom), None);
+    let phantom = Phantom::builtin("6.6").unwrap();
+    let name_of = |change: fn(&mut PhantomParts)| {
+        let changed = phantom.changed(change).unwrap();
+        paper::name_of(&changed)
+    };
+    let renamed = |parts: &mut PhantomParts| {
+        parts.name = "mine".into();
+        parts.layers[1].name = "agar".into();
+    };
+    assert_eq!(name_of(renamed), Some("6.6"));
+    assert_eq!(name_of(|parts| parts.well.walls = Support::Sliding), None);
+    assert_eq!(name_of(|parts| parts.probe.radius = 6e-3), None);
 }
 
 // Verifies: REP-003.
 #[test]
 fn of_several_inclusions_the_highest_is_named() {
-    let mut phantom = Phantom::builtin("6.6").unwrap();
-    let mut higher = phantom.inclusions[0].clone();
+    let phantom = Phantom::builtin("6.6").unwrap();
+    let mut higher = phantom.inclusions()[0].clone();
     (higher.centre_x, higher.depth) = (-9e-3, 2e-3);
-    phantom.inclusions.push(higher);
+    let phantom = phantom.changed(|parts| parts.inclusions.push(higher));
     let mut run = paper_run();
-    run.maps = vec![map(Some(phantom), &DEPTHS, |_| 0.1, |_| 0.0)];
+    run.maps = vec![map(phantom.ok(), &DEPTHS, |_| 0.1, |_| 0.0)];
     let found = findings(&run).unwrap();
     assert_eq!(found.maps[0].inclusion_depth_m, Some(2e-3));
     let figures = figures(&run, &found).unwrap();

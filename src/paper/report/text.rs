@@ -10,7 +10,7 @@ pub use palpate::text::*;
 /// What to call a map: its phantom's name, or else the file that it was measured in. Untrusted text.
 pub(super) fn name_of_map(map: &ForceMap) -> String {
     match (map.phantom(), map.source()) {
-        (Some(phantom), _) => phantom.name.clone(),
+        (Some(phantom), _) => phantom.name().to_owned(),
         (None, Source::Measured(measurement)) => measurement.file.clone(),
         (None, Source::FiniteElements { .. }) => "unnamed".into(),
     }

@@ -179,7 +179,7 @@ impl<'a> Sampler<'a> {
             };
             let solved: Result<_, FemError> = solve();
             let of_phantom =
-                |error| Refusal::state(error, "").of_part(&format!("phantom {}", own.name));
+                |error| Refusal::state(error, "").of_part(&format!("phantom {}", own.name()));
             let (map, inclusion) = solved.map_err(of_phantom)?;
             maps.push(map);
             depths.extend(inclusion);
@@ -210,7 +210,7 @@ impl<'a> Sampler<'a> {
 
     /// Implements: STU-031.
     fn value(&self, quantity: &Quantity, computed: &Computed) -> Result<f64, Refusal> {
-        let named = |phantom: &Phantom| phantom.name == quantity.phantom;
+        let named = |phantom: &Phantom| phantom.name() == quantity.phantom;
         let at = self.plan.all_phantoms().position(named).unwrap_or(0);
         let map = &computed.maps[at];
         let laterals = map.table().laterals();
@@ -263,8 +263,10 @@ impl<'a> Sampler<'a> {
 fn compared<'a>(plan: &'a StudyPlan, answers: &AnswerTable) -> Vec<(usize, &'a str)> {
     let phantoms = plan.phantoms.iter().enumerate();
     let is_column = |name: &str| answers.inclusions().iter().any(|of| of.name == name);
-    let compared = phantoms.filter(|(_, phantom)| is_column(&phantom.name));
-    compared.map(|(at, phantom)| (at, &*phantom.name)).collect()
+    let compared = phantoms.filter(|(_, phantom)| is_column(&phantom.name()));
+    compared
+        .map(|(at, phantom)| (at, &*phantom.name()))
+        .collect()
 }
 
 /// Implements: STU-031.
@@ -274,7 +276,8 @@ fn quantities(plan: &StudyPlan, answers: &AnswerTable) -> Vec<Quantity> {
         let phantom = phantom.into();
         quantities.push(Quantity { phantom, kind });
     };
-    for (at, Phantom { name, .. }) in plan.all_phantoms().enumerate() {
+    for (at, phantom) in plan.all_phantoms().enumerate() {
+        let name = phantom.name();
         for &lateral_m in &plan.laterals {
             push(name, Kind::NormalForceN { lateral_m });
             push(name, Kind::LateralForceN { lateral_m });

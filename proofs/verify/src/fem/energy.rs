@@ -75,7 +75,7 @@ fn map(name: &str, contact: Contact) -> Measured {
     // The probe moves by 8 µm along each axis, and the contact's two edges with it: as far in x, and in d at most √(R/2d),
     // 2.5 times as far (the circle's own half-width, at 0.5 mm). Among points a mean distance apart, they pass one in a share
     // 2 · 8 · 3.5 µm of it of the poses; three standard deviations more are allowed.
-    let distance = phantom.well.width / model.surface().positions.len() as f64;
+    let distance = phantom.well().width / model.surface().positions.len() as f64;
     let share = 2.0 * 4.0 * STEP * 3.5 / distance;
     let expected = 88.0 * share;
     let most = expected + 3.0 * (expected * (1.0 - share)).sqrt();

@@ -46,7 +46,7 @@ impl Full {
         let mut entries: Vec<_> = held.map(|k| Triplet::new(k, k, 1.0)).collect();
         problem.visit(|row, column, value| {
             if free[row] && free[column] {
-                entries.push(Triplet::new(row, column, phantom.probe.length * value));
+                entries.push(Triplet::new(row, column, phantom.probe().length * value));
             }
         })?;
         // Two Gauss points on each edge of three nodes, with the parabolas of its nodes.
@@ -73,7 +73,7 @@ impl Full {
 
     /// Gap of a point moved by `u`, ∂gap/∂u and ∂²gap/∂u².
     fn gap(&self, [x, y]: [f64; 2], u: [f64; 2], pose: Pose) -> (f64, [f64; 2], [[f64; 2]; 2]) {
-        let radius = self.phantom.probe.radius;
+        let radius = self.phantom.probe().radius;
         let height = radius - pose.depth;
         match self.contact {
             Contact::DeformedNormal => {
@@ -121,7 +121,7 @@ impl Full {
                         if active.contains(&k) {
                             pressure[k] >= 0.0
                         } else {
-                            gap < 0.0 && (at[0] - pose.lateral).abs() < self.phantom.probe.radius
+                            gap < 0.0 && (at[0] - pose.lateral).abs() < self.phantom.probe().radius
                         }
                     })
                     .collect();
@@ -202,7 +202,7 @@ impl Full {
     }
 
     fn solved(&self, u: &[f64], pressure: &[f64], active: &[usize], pose: Pose) -> Solved {
-        let radius = self.phantom.probe.radius;
+        let radius = self.phantom.probe().radius;
         let mut force = [0.0; 2];
         for &active in active {
             let (point, pressure) = (&self.surface[active], pressure[active]);

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use palpate::fem::{Contact, Model, Pose};
-use palpate::phantom::{Layer, Material, Phantom, Probe, Well};
+use palpate::phantom::{Layer, Material, Phantom, PhantomParts, Probe, Well};
+use palpate::refusal::Refusal;
 
 use super::layer::BondedLayer;
 use super::problem::{Exact, lame};
@@ -87,8 +88,8 @@ fn compare(model: &Model, depth: f64, curvature: f64) -> Result<[f64; 3], String
 }
 
 /// A homogeneous block under a large probe.
-fn block() -> Phantom {
-    Phantom {
+fn block() -> Result<Phantom, Refusal> {
+    Phantom::new(PhantomParts {
         name: "block".into(),
         well: Well {
             width: 3.0 * HEIGHT,
@@ -105,7 +106,7 @@ fn block() -> Phantom {
             radius: RADIUS,
             length: 1.0,
         },
-    }
+    })
 }
 
 pub fn line_contact() -> Measured {
@@ -114,7 +115,7 @@ pub fn line_contact() -> Measured {
     let off = (curvature - 0.998_093_74).abs();
     let mut figures = vec![Figure::at_most("error of the base's curvature", off, 1e-6)];
     for contact in [Contact::VerticalGap, Contact::DeformedNormal] {
-        let model = Model::new(&block(), SIZE, contact).map_err(said)?;
+        let model = Model::new(&block().map_err(said)?, SIZE, contact).map_err(said)?;
         let places = &model.surface().positions;
         let near = places.windows(2).filter(|pair| pair[0][0].abs() < 1e-2);
         let spacing = largest(near.map(|pair| pair[1][0] - pair[0][0]));

@@ -296,7 +296,7 @@ pub(super) fn refusals(program: &Path) -> Measured {
         )?;
     }
     for [walls, floor, words] in LOOSE {
-        let gel = Phantom::builtin("none").and_then(|phantom| phantom.to_toml());
+        let gel = Phantom::builtin("none").map(|phantom| phantom.to_toml());
         let gel = gel.map_err(|error| error.to_string())?;
         let support = |key: &str, held: &str| format!("{key} = {held:?}");
         let gel = gel

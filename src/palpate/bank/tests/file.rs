@@ -12,7 +12,7 @@ fn maps_in_any_order_make_a_grid_that_survives_its_file() {
     assert_eq!((depths[..2].to_vec(), depths.len()), (vec![3e-3, 4e-3], 4));
     assert_eq!((diameters.len(), moduli.len()), (2, 1));
     for (number, of) in bank.maps().iter().enumerate() {
-        let inclusion = &of.phantom().unwrap().inclusions[0];
+        let inclusion = &of.phantom().unwrap().inclusions()[0];
         let expected = Parameter::ALL.map(|parameter| parameter.of(inclusion));
         assert_eq!(bank.point(number), expected);
     }
@@ -103,8 +103,10 @@ fn a_prior_names_each_inclusion() {
 #[test]
 fn a_mirror_image_has_the_other_sign_across() {
     let of = |x: f64| {
-        let mut phantom = Phantom::builtin("6.6").unwrap();
-        phantom.inclusions[0].centre_x = x;
+        let phantom = Phantom::builtin("6.6").unwrap();
+        let phantom = phantom
+            .changed(|parts| parts.inclusions[0].centre_x = x)
+            .unwrap();
         let row = |values: [f64; 3]| Matrix::from_fn(1, 3, |_, column| values[column]);
         let (lateral, normal) = ([0.25, 0.0, -0.5], [1.0, 2.0, 3.0]);
         let (laterals, sign) = ([-0.002, 0.0, 0.001], x.signum());
@@ -150,8 +152,10 @@ fn a_bank_has_the_forces_of_each_gel() {
     );
     assert_eq!(bank.axes()[0], plan.positions);
     for (position, map) in plan.positions.iter().zip(bank.maps()) {
-        let mut phantom = Phantom::builtin("6.6").unwrap();
-        phantom.inclusions[0].centre_x = *position;
+        let phantom = Phantom::builtin("6.6").unwrap();
+        let phantom = phantom
+            .changed(|parts| parts.inclusions[0].centre_x = *position)
+            .unwrap();
         assert_eq!(map.phantom(), Some(&phantom));
         let model = Model::new(&phantom, 2e-3, Contact::default()).unwrap();
         let alone = model.map(&[4e-3], map.table().laterals(), &|_| ()).unwrap();
@@ -174,12 +178,15 @@ fn inclusions_that_do_not_fit_are_refused_before_anything_is_solved() {
     let expected = "the inclusion at -3.000 mm, 40.000 mm deep, 6.400 mm wide, of ";
     assert!(error.starts_with(expected), "{error}");
     assert!(error.contains("inclusion[0].depth_mm = 40"), "{error}");
-    let mut ellipse = Phantom::builtin("6.6").unwrap();
-    ellipse.inclusions[0].shape = Shape::Ellipse {
+    let shape = Shape::Ellipse {
         width: 8e-3,
         height: 4e-3,
         angle_deg: 0.0,
     };
+    let paper = Phantom::builtin("6.6").unwrap();
+    let ellipse = paper
+        .changed(|parts| parts.inclusions[0].shape = shape)
+        .unwrap();
     let mut plan = BankPlan::new(ellipse, 4e-3, &[0.0]).unwrap();
     assert_eq!(plan.diameters, [8e-3]);
     assert_eq!(plan.solves().unwrap().len(), 1);

@@ -68,25 +68,25 @@ pub fn detector(scale: f64, has_offset: bool, level: NoiseLevel) -> BankDetector
 /// there is none.
 pub fn map(inclusion: Option<(f64, f64, f64)>, depths: &[f64]) -> ForceMap {
     let laterals: Vec<f64> = (-6..=6).map(|k| f64::from(k) * 5e-4).collect();
-    let mut phantom = Phantom::builtin("6.6").unwrap();
+    let phantom = Phantom::builtin("6.6").unwrap();
     let bump = |lateral: f64| {
         let (x, depth, diameter) = inclusion?;
         let from = (1e3 * lateral - x) / (0.5 + 0.1 * depth);
         Some(diameter / 10.0 * (2.0 / depth) * (-0.5 * from * from).exp())
     };
-    match inclusion {
-        None => phantom.inclusions.clear(),
+    let phantom = phantom.changed(|parts| match inclusion {
+        None => parts.inclusions.clear(),
         Some((x, depth, diameter)) => {
-            phantom.inclusions[0].centre_x = 1e-3 * x;
-            phantom.inclusions[0].depth = 1e-3 * depth;
-            phantom.inclusions[0].shape = Shape::Disc {
+            parts.inclusions[0].centre_x = 1e-3 * x;
+            parts.inclusions[0].depth = 1e-3 * depth;
+            parts.inclusions[0].shape = Shape::Disc {
                 diameter: 1e-3 * diameter,
             };
         }
-    }
+    });
     let normal = |depth, lateral| 250.0 * depth + bump(lateral).unwrap_or(0.0);
     let table = table_of(depths, &laterals, |depth, x| [0.0, normal(depth, x)]);
-    measured(Some(phantom), table)
+    measured(phantom.ok(), table)
 }
 
 /// Inclusions at −2 … 2 mm, 3, 4, 5 and 6 mm deep, of 4 and 8 mm, the last first.

@@ -24,7 +24,7 @@ fn everything(mesh: &Mesh, phantom: &Phantom) -> DMatrix<f64> {
         let place = |k: usize| 2 * nodes[k / 2] as usize + k % 2;
         for row in 0..2 * nodes.len() {
             for column in 0..2 * nodes.len() {
-                all[(place(row), place(column))] += phantom.probe.length * element[(row, column)];
+                all[(place(row), place(column))] += phantom.probe().length * element[(row, column)];
             }
         }
     }

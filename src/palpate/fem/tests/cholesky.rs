@@ -180,11 +180,8 @@ fn the_residual_told_is_the_one_left() {
     // Both are the rounding of the product itself.
     assert_near(left / refined, 1.0, 0.5);
     // A factor of another matrix leaves what no refinement mends.
-    let other = StiffnessMatrix::assemble(&mesh, &{
-        let mut harder = phantom.clone();
-        harder.layers[1].material.youngs_modulus *= 1.5;
-        harder
-    });
+    let harder = phantom.changed(|parts| parts.layers[1].material.youngs_modulus *= 1.5);
+    let other = StiffnessMatrix::assemble(&mesh, &harder.unwrap());
     let error = factor.solve(&other.unwrap(), &force).unwrap_err();
     assert!(matches!(error, FemError::Residual { residual } if residual > 1e-8));
 }

@@ -42,7 +42,7 @@ fn contact_points_are_the_gauss_points_of_the_edges() {
         let points = surface.positions.iter().zip(&surface.lengths);
         points.map(|([x, _], length)| length * x.powi(power)).sum()
     };
-    let width = model.phantom().well.width;
+    let width = model.phantom().well().width;
     assert!((integral(0) / width - 1.0).abs() < 1e-14);
     assert!((integral(2) / (width.powi(3) / 12.0) - 1.0).abs() < 1e-14);
 }
@@ -320,7 +320,7 @@ fn poses_converge_with_every_contact() {
                 depths.flat_map(|depth| [-9e-3, 0.0, 3.3e-3].map(|x| (depth, x)))
             {
                 if let Err(error) = model.solve(Pose { depth, lateral }) {
-                    failed.push(format!("{}, {contact:?}, {error}", phantom.name));
+                    failed.push(format!("{}, {contact:?}, {error}", phantom.name()));
                 }
             }
         }

@@ -95,7 +95,7 @@ fn linear_fields_and_rigid_motions_leave_the_inside_in_balance() {
     let mesh = Mesh::new(&phantom, 2e-3).unwrap();
     let border = |node: usize| {
         let [x, y] = mesh.nodes[node];
-        x.abs() == 0.5 * phantom.well.width || y == 0.0 || y == phantom.levels()[2]
+        x.abs() == 0.5 * phantom.well().width || y == 0.0 || y == phantom.levels()[2]
     };
     // Entries of the stiffness go up to 20 (λ/E = 16.4 at ν = 0.49), displacements to 0.05: sums of about
     // 40 products of size 1 are off by 40 ε ≈ 1e-14 at most.

@@ -38,11 +38,13 @@ fn finest() -> &'static Model {
 
 /// A phantom so small that a coarse mesh of it has some hundred nodes, with a disc this far off the axis, mm.
 fn small(centre_x_mm: f64) -> Phantom {
-    let mut phantom = with(vec![hard(centre_x_mm, 1.0, disc(1.5))]);
-    phantom.well.width = 6e-3;
-    phantom.layers[1].thickness = 3e-3;
-    phantom.probe.radius = 1e-3;
-    phantom
+    let small = builtin("none").changed(|parts| {
+        parts.inclusions = vec![hard(centre_x_mm, 1.0, disc(1.5))];
+        parts.well.width = 6e-3;
+        parts.layers[1].thickness = 3e-3;
+        parts.probe.radius = 1e-3;
+    });
+    small.expect("sizes that fit")
 }
 
 /// A hard inclusion, its lengths in mm.
@@ -60,10 +62,8 @@ fn hard(centre_x_mm: f64, depth_mm: f64, shape: Shape) -> Inclusion {
 
 /// The paper's skin and gel with these inclusions.
 fn with(inclusions: Vec<Inclusion>) -> Phantom {
-    Phantom {
-        inclusions,
-        ..builtin("none")
-    }
+    let phantom = builtin("none").changed(|parts| parts.inclusions = inclusions);
+    phantom.expect("inclusions that fit")
 }
 
 /// The paper's disc, this far off the axis, mm.
@@ -119,7 +119,6 @@ fn zoo() -> Vec<(String, Phantom)> {
     add("disc just under the skin", off_centre(0.6, 0.0));
     add("disc just above the floor", off_centre(8.95, 0.0));
     add("small disc", with(vec![hard(1.0, 5.0, disc(0.5))]));
-    let mut layers = off_centre(6.6, 0.0);
     let material = Material {
         youngs_modulus: 20e3,
         poisson_ratio: 0.45,
@@ -129,12 +128,11 @@ fn zoo() -> Vec<(String, Phantom)> {
         thickness: 2e-3,
         material,
     };
-    layers.layers.insert(1, fat);
-    add("three layers", layers.clone());
-    layers.inclusions[0].centre_x = 2.5e-3;
-    add("three layers, off centre", layers);
-    let mut thin = off_centre(6.6, 0.0);
-    thin.layers[0].thickness = 1e-4;
-    add("thin skin", thin);
+    for (what, x) in [("three layers", 0.0), ("three layers, off centre", 2.5)] {
+        let layers = off_centre(6.6, x).changed(|parts| parts.layers.insert(1, fat.clone()));
+        add(what, layers.unwrap());
+    }
+    let thin = off_centre(6.6, 0.0).changed(|parts| parts.layers[0].thickness = 1e-4);
+    add("thin skin", thin.unwrap());
     zoo
 }

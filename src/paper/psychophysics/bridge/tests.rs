@@ -93,7 +93,7 @@ fn half_a_sweep_is_completed_by_symmetry() {
     assert_eq!(sweep(&whole, None).unwrap(), whole);
     // Over an asymmetric phantom there is no symmetry.
     let half = map_over(&[4e-3], &[0.0, 2e-3], |_| [1.0, 0.0]);
-    let mut phantom = Phantom::builtin("6.6").unwrap();
+    let phantom = Phantom::builtin("6.6").unwrap();
     let of = |phantom: &Phantom| {
         let (source, forces) = (half.source().clone(), half.table().clone());
         ForceMap::new(source, Some(phantom.clone()), forces).unwrap()
@@ -102,7 +102,9 @@ fn half_a_sweep_is_completed_by_symmetry() {
         sweep(&of(&phantom), None).unwrap().table().laterals().len(),
         3
     );
-    phantom.inclusions[0].centre_x = 1e-3;
+    let phantom = phantom
+        .changed(|parts| parts.inclusions[0].centre_x = 1e-3)
+        .unwrap();
     let error = sweep(&of(&phantom), None).unwrap_err().to_string();
     let words = "phantom \"6.6\" is not its own mirror image";
     assert!(error.starts_with(words), "{error}");

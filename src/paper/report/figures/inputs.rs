@@ -20,7 +20,7 @@ const LETTERS: usize = 21;
 pub fn figure(run: &Run) -> Option<Plan> {
     let study = run.study.as_ref()?;
     let is_drawn = |of: &&QuantityResult| match of.quantity.kind {
-        Kind::NormalForceN { .. } => of.quantity.phantom == study.plan.reference.name,
+        Kind::NormalForceN { .. } => of.quantity.phantom == study.plan.reference.name(),
         ref kind => *kind == Kind::Gamma,
     };
     let with_bars = |of| (of, bars(study, of));

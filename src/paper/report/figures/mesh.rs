@@ -31,7 +31,7 @@ pub fn figure(mesh: &DeformedMesh) -> Plan {
     panel.key = vec![Line::area(PROBE, Vec::new()).named("probe")];
     panel.key.extend(layer_key(phantom, |_| String::new()));
     let inclusion = |name: &str| Line::area(INCLUSION, Vec::new()).named(name);
-    panel.key.extend(match phantom.inclusions.len() {
+    panel.key.extend(match phantom.inclusions().len() {
         0 => None,
         1 => Some(inclusion("inclusion")),
         _ => Some(inclusion("inclusions")),
@@ -52,14 +52,14 @@ fn words(mesh: &DeformedMesh) -> Words {
         1 => format!("one {name}"),
         _ => format!("{count} {name}s"),
     };
-    let inclusions = match phantom.inclusions.len() {
+    let inclusions = match phantom.inclusions().len() {
         0 => String::new(),
         count => format!(" with {}", counted(count, "inclusion")),
     };
     Words::new(
         format!(
             "Figure 6. Deformed mesh, phantom “{}”, probe at depth {} mm, x = {} mm",
-            phantom.name,
+            phantom.name(),
             millimetres(pose.depth),
             millimetres(pose.lateral)
         ),
@@ -72,7 +72,7 @@ fn words(mesh: &DeformedMesh) -> Words {
         format!(
             "A mesh of {} elements: {}{inclusions}, dented by a round probe from above.",
             mesh.elements.len(),
-            counted(phantom.layers.len(), "layer")
+            counted(phantom.layers().len(), "layer")
         ),
     )
 }

@@ -40,7 +40,7 @@ const BETWEEN: [RGBColor; 3] = [
 pub fn tint(region: Region, phantom: &Phantom) -> RGBColor {
     match region {
         Region::Inclusion(_) => INCLUSION,
-        Region::Layer(k) if k + 1 == phantom.layers.len() => GEL,
+        Region::Layer(k) if k + 1 == phantom.layers().len() => GEL,
         Region::Layer(0) => SKIN,
         Region::Layer(k) => BETWEEN[(k - 1) % BETWEEN.len()],
     }
@@ -48,7 +48,7 @@ pub fn tint(region: Region, phantom: &Phantom) -> RGBColor {
 
 /// The probe's half cylinder, mm, from its left edge round its bottom to its right edge.
 pub fn probe(phantom: &Phantom, pose: Pose) -> Line {
-    let radius = phantom.probe.radius;
+    let radius = phantom.probe().radius;
     let centre = [pose.lateral, radius - pose.depth];
     // The half circle ends at its centre's height; a probe that is deeper than its radius goes on upwards.
     let top = centre[1].max(1e-3);
@@ -63,7 +63,7 @@ pub fn probe(phantom: &Phantom, pose: Pose) -> Line {
 
 /// Samples of the layers' tints with their names, which `words` may add to.
 pub fn layer_key(phantom: &Phantom, words: impl Fn(usize) -> String) -> impl Iterator<Item = Line> {
-    let layers = phantom.layers.iter().enumerate().take(MOST_LAYERS);
+    let layers = phantom.layers().iter().enumerate().take(MOST_LAYERS);
     layers.map(move |(k, layer)| {
         let name = shortened(&layer.name, 24) + &words(k);
         Line::area(tint(Region::Layer(k), phantom), Vec::new()).named(name)
@@ -76,7 +76,7 @@ pub fn layer_key(phantom: &Phantom, words: impl Fn(usize) -> String) -> impl Ite
 pub fn figures(run: &Run) -> Vec<Plan> {
     let maps = once(&run.reference).chain(&run.maps);
     let all = maps.filter_map(|map| map.phantom());
-    let (full, plain): (Vec<_>, Vec<_>) = all.partition(|of| !of.inclusions.is_empty());
+    let (full, plain): (Vec<_>, Vec<_>) = all.partition(|of| !of.inclusions().is_empty());
     let mut drawn: Vec<&Phantom> = Vec::new();
     for phantom in once(&run.deformed.phantom).chain(full).chain(plain) {
         if !drawn.iter().any(|other| alike(other, phantom)) {
@@ -84,8 +84,8 @@ pub fn figures(run: &Run) -> Vec<Plan> {
         }
     }
     let figure = |(k, phantom): (usize, &Phantom)| {
-        let name = if k == 0 { "" } else { &*phantom.name };
-        let width = millimetres(phantom.well.width);
+        let name = if k == 0 { "" } else { &*phantom.name() };
+        let width = millimetres(phantom.well().width);
         let x_name = format!("Lateral position x (mm); the well is {width} mm wide");
         let panels = vec![panel(phantom)];
         Plan {
@@ -104,10 +104,7 @@ pub fn figures(run: &Run) -> Vec<Plan> {
 
 /// Whether two phantoms differ in names and inclusions alone.
 fn alike(a: &Phantom, b: &Phantom) -> bool {
-    let [a, b] = [a, b].map(|phantom| Phantom {
-        inclusions: Vec::new(),
-        ..paper::unnamed(phantom)
-    });
+    let [a, b] = [a, b].map(|phantom| paper::unnamed(&phantom.without_inclusions()));
     a == b
 }
 
@@ -115,7 +112,7 @@ fn alike(a: &Phantom, b: &Phantom) -> bool {
 fn panel(phantom: &Phantom) -> Panel {
     let mut lines = well(phantom);
     let outline = |of: &Inclusion| to_mm(of.outline().chords(CHORDS));
-    let inclusions = phantom.inclusions.iter();
+    let inclusions = phantom.inclusions().iter();
     lines.extend(inclusions.map(|of| Line::area(INCLUSION, outline(of))));
     let pose = Pose {
         depth: 0.0,
@@ -130,7 +127,7 @@ fn panel(phantom: &Phantom) -> Panel {
 
 /// Walls and floor as a block, unless nothing holds the layers there; then the layers.
 fn well(phantom: &Phantom) -> Vec<Line> {
-    let well = &phantom.well;
+    let well = &phantom.well();
     let (half, floor) = (0.5 * well.width, -phantom.height());
     let block = |half: f64, top: f64, bottom: f64| {
         to_mm([[-half, top], [half, top], [half, bottom], [-half, bottom]])
@@ -158,15 +155,15 @@ fn key(phantom: &Phantom) -> Vec<Line> {
     let sample = |colour, name: String| Line::area(colour, Vec::new()).named(name);
     let probe = format!(
         "probe: ø {} mm, {} mm long, rigid",
-        millimetres(2.0 * phantom.probe.radius),
-        millimetres(phantom.probe.length)
+        millimetres(2.0 * phantom.probe().radius),
+        millimetres(phantom.probe().length)
     );
-    let thickness = |k: usize| format!(": {} mm", millimetres(phantom.layers[k].thickness));
-    let supports = match (phantom.well.walls, phantom.well.floor) {
+    let thickness = |k: usize| format!(": {} mm", millimetres(phantom.layers()[k].thickness));
+    let supports = match (phantom.well().walls, phantom.well().floor) {
         (Support::Free, Support::Free) => WHITE,
         _ => WALLS,
     };
-    let inclusions = phantom.inclusions.iter();
+    let inclusions = phantom.inclusions().iter();
     let inclusions = first(inclusions.map(|of| format!("inclusion: {}", place(of))));
     let mut key = vec![sample(PROBE, probe)];
     key.extend(layer_key(phantom, thickness));
@@ -182,7 +179,7 @@ fn supported(phantom: &Phantom) -> String {
         Support::Sliding => "sliding",
         Support::Free => "free",
     };
-    match (phantom.well.walls, phantom.well.floor) {
+    match (phantom.well().walls, phantom.well().floor) {
         _ if paper::name_of(phantom).is_some() => "wax block: gel and skin fixed, u = 0".into(),
         (walls, floor) if walls == floor => format!("walls and floor {}", name(walls)),
         (walls, floor) => format!("walls {}, floor {}", name(walls), name(floor)),
@@ -225,16 +222,16 @@ fn words(phantom: &Phantom, name: &str) -> Words {
         let [modulus, ratio] = [trimmed(modulus, 3), trimmed(ratio, 6)];
         format!("{name}: E = {modulus} kPa, ν = {ratio}")
     };
-    let layers = phantom.layers.iter();
+    let layers = phantom.layers().iter();
     let thickness =
         |of: &palpate::phantom::Layer| format!("{}: {} mm", of.name, millimetres(of.thickness));
     let thicknesses = first(layers.clone().map(thickness)).join(", ");
     let layers = first(layers.map(|of| material(&of.name, &of.material)));
-    let inclusions = phantom.inclusions.iter();
+    let inclusions = phantom.inclusions().iter();
     let places = first(inclusions.clone().map(place)).join("; ");
     let inclusions = first(inclusions.map(|of| material("inclusion", &of.material)));
     let materials = joined(layers.into_iter().chain(inclusions), "; ");
-    let inside = match phantom.inclusions.len() {
+    let inside = match phantom.inclusions().len() {
         0 => "It holds no inclusion.".into(),
         1 => format!("It holds an inclusion: {places}."),
         count => format!("It holds {count} inclusions: {places}."),
@@ -261,8 +258,8 @@ fn words(phantom: &Phantom, name: &str) -> Words {
         format!(
             "A well {} mm wide with layers, from the top: {thicknesses}. A half disc of {} mm diameter, the probe, touches them from \
              above. {inside}",
-            millimetres(phantom.well.width),
-            millimetres(2.0 * phantom.probe.radius)
+            millimetres(phantom.well().width),
+            millimetres(2.0 * phantom.probe().radius)
         ),
     )
 }

@@ -107,8 +107,14 @@ fn a_study_of_something_else_is_refused() {
         let expected = format!("the study of the inputs has another {what} than the run; choose");
         assert!(found.starts_with(&expected), "{found}");
     };
-    refused("reference", |plan| plan.reference.well.width = 0.04);
-    let deeper = |plan: &mut StudyPlan| plan.phantoms[1].inclusions[0].depth = 5e-3;
+    refused("reference", |plan| {
+        let wider = plan.reference.changed(|parts| parts.well.width = 0.04);
+        plan.reference = wider.unwrap();
+    });
+    let deeper = |plan: &mut StudyPlan| {
+        let deeper = plan.phantoms[1].changed(|parts| parts.inclusions[0].depth = 5e-3);
+        plan.phantoms[1] = deeper.unwrap();
+    };
     refused("phantom \"4.6\"", deeper);
     refused("depth of the probe", |plan| plan.probe_depth = 3e-3);
     refused("list of lateral positions", |plan| {

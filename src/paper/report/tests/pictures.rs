@@ -64,9 +64,9 @@ fn assert_words(svg: &str, count: usize, words: &[&str]) {
 fn figure_1_is_to_scale() {
     let mut run = paper_run();
     run.maps.push(map_with("shallow", |_| 0.1, |_| 0.0));
-    let mut wide = Phantom::builtin("8.6").unwrap();
-    wide.well.width = 0.04;
-    run.maps.push(map(Some(wide), &DEPTHS, |_| 0.1, |_| 0.0));
+    let paper = Phantom::builtin("8.6").unwrap();
+    let wide = paper.changed(|parts| parts.well.width = 0.04);
+    run.maps.push(map(wide.ok(), &DEPTHS, |_| 0.1, |_| 0.0));
     let made = made(&run);
     assert!(svg(&made, "figure-1-8.6").contains("the well is 40 mm wide"));
     let picture = svg(&made, "figure-1");
@@ -188,10 +188,10 @@ fn figure_1_shows_inclusions_of_any_shape_and_place() {
 // Verifies: REP-030.
 #[test]
 fn figure_1_is_drawn_for_each_phantom_that_differs_in_more_than_inclusions() {
-    let mut softer = own("softer", "", &TWO, &[DISC]);
-    softer.layers[1].material.youngs_modulus = 4e3;
-    let mut renamed = own("renamed", "", &TWO, &[DISC]);
-    renamed.layers[1].name = "agar".into();
+    let with_disc = |name: &str| own(name, "", &TWO, &[DISC]);
+    let softer = with_disc("softer").changed(|parts| parts.layers[1].material.youngs_modulus = 4e3);
+    let renamed = with_disc("renamed").changed(|parts| parts.layers[1].name = "agar".into());
+    let [softer, renamed] = [softer, renamed].map(Result::unwrap);
     let made = made(&run_of(&[own("plain", "", &TWO, &[]), softer, renamed]));
     let names = made.figures.iter().map(|figure| &figure.file_name[..]);
     let others: Vec<_> = names.filter(|name| name.starts_with("figure-1-")).collect();
@@ -257,10 +257,14 @@ fn no_words_of_the_phantoms_figures_lie_on_others() {
     });
     let places: Vec<String> = places.collect();
     let crowd: Vec<&str> = places.iter().map(String::as_str).collect();
-    let mut tall = own("tall", "floor = \"sliding\"\n", &many, &[]);
-    (tall.well.width, tall.probe.radius) = (0.008, 0.0005);
-    let mut flat = own("flat", "", &[("a layer with a long name", 1.0)], &[]);
-    (flat.well.width, flat.probe.radius) = (0.5, 0.2);
+    let with_sizes = |phantom: Phantom, width, radius| {
+        let sized = phantom.changed(|of| (of.well.width, of.probe.radius) = (width, radius));
+        sized.unwrap()
+    };
+    let tall = own("tall", "floor = \"sliding\"\n", &many, &[]);
+    let tall = with_sizes(tall, 0.008, 0.0005);
+    let flat = own("flat", "", &[("a layer with a long name", 1.0)], &[]);
+    let flat = with_sizes(flat, 0.5, 0.2);
     let phantoms = [
         Phantom::builtin("2.6").unwrap(),
         own("two", "", &TWO, &[ELLIPSE, TRIANGLE]),
@@ -271,7 +275,7 @@ fn no_words_of_the_phantoms_figures_lie_on_others() {
         flat,
     ];
     for phantom in phantoms {
-        let name = phantom.name.clone();
+        let name = phantom.name().to_owned();
         let made = made(&run_of(&[phantom]));
         for figure in ["figure-1", "figure-6"] {
             let picture = svg(&made, figure);

@@ -40,9 +40,9 @@ pub fn map(
 
 /// A phantom with an inclusion under another name.
 pub fn map_with(name: &str, normal: impl Fn(f64) -> f64, lateral: impl Fn(f64) -> f64) -> ForceMap {
-    let mut phantom = Phantom::builtin("2.6").unwrap();
-    phantom.name = name.into();
-    map(Some(phantom), &DEPTHS, normal, lateral)
+    let paper = Phantom::builtin("2.6").unwrap();
+    let phantom = paper.changed(|parts| parts.name = name.into());
+    map(Some(phantom.unwrap()), &DEPTHS, normal, lateral)
 }
 
 /// Forces of this size at ±5 mm along x, and none elsewhere.
@@ -189,6 +189,9 @@ pub fn hostile_run() -> Run {
     let others = [Phantom::builtin("none").ok(), None];
     run.maps
         .extend(others.map(|phantom| map(phantom, &DEPTHS, |_| 0.1, |_| 0.0)));
-    run.deformed.phantom.name = "<b>\u{0}\u{8}".into();
+    let deformed = run.deformed.phantom;
+    run.deformed.phantom = deformed
+        .changed(|parts| parts.name = "<b>&".into())
+        .unwrap();
     run
 }

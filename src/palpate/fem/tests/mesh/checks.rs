@@ -84,7 +84,7 @@ pub fn edges(mesh: &Mesh) -> HashMap<[u32; 2], Vec<(Option<u32>, Region)>> {
 }
 
 pub fn check_edges(phantom: &Phantom, mesh: &Mesh) {
-    let (wall, floor) = (0.5 * phantom.well.width, -phantom.height());
+    let (wall, floor) = (0.5 * phantom.well().width, -phantom.height());
     let borders = |[x, y]: [f64; 2]| [x == -wall, x == wall, y == 0.0, (y - floor).abs() < 1e-15];
     for (ends, seen) in edges(mesh) {
         let is_one = seen.windows(2).all(|pair| pair[0].0 == pair[1].0);
@@ -104,7 +104,7 @@ pub fn check_edges(phantom: &Phantom, mesh: &Mesh) {
 
 /// Every node between an inclusion and its layer is on the outline, and other edges are straight.
 pub fn check_outlines(phantom: &Phantom, mesh: &Mesh) {
-    let outlines: Vec<Outline> = phantom.inclusions.iter().map(|i| i.outline()).collect();
+    let outlines: Vec<Outline> = phantom.inclusions().iter().map(|i| i.outline()).collect();
     let mut on_outline = vec![0; outlines.len()];
     for (ends, seen) in edges(mesh) {
         let [a, b] = ends.map(|node| mesh.nodes[node as usize]);
@@ -137,8 +137,8 @@ pub fn check_outlines(phantom: &Phantom, mesh: &Mesh) {
 /// Regions lie where the phantom has them, and no element reaches across a line.
 pub fn check_regions(phantom: &Phantom, mesh: &Mesh) {
     let levels = phantom.levels();
-    let outlines: Vec<Outline> = phantom.inclusions.iter().map(|i| i.outline()).collect();
-    let mut areas = vec![0.0; phantom.layers.len()];
+    let outlines: Vec<Outline> = phantom.inclusions().iter().map(|i| i.outline()).collect();
+    let mut areas = vec![0.0; phantom.layers().len()];
     for (nodes, &region) in mesh.elements().zip(&mesh.regions) {
         let polygon = outline(mesh, nodes);
         assert!(area(&polygon) > 0.0, "{nodes:?} is turned");
@@ -169,7 +169,7 @@ pub fn check_regions(phantom: &Phantom, mesh: &Mesh) {
         areas[layer] += area(&polygon);
     }
     for (k, area) in areas.iter().enumerate() {
-        let expected = phantom.well.width * phantom.layers[k].thickness;
+        let expected = phantom.well().width * phantom.layers()[k].thickness;
         // Sums of some 10⁴ numbers.
         assert!((area / expected - 1.0).abs() < 1e-12, "layer {k}: {area}");
     }
@@ -215,7 +215,7 @@ pub fn check_mirror(phantom: &Phantom, mesh: &Mesh) {
 }
 
 pub fn check_surface(phantom: &Phantom, mesh: &Mesh) {
-    let wall = 0.5 * phantom.well.width;
+    let wall = 0.5 * phantom.well().width;
     let x = |k: usize| mesh.nodes[mesh.surface[k]][0];
     let last = mesh.surface.len() - 1;
     assert_eq!([x(0), x(last)], [-wall, wall]);
