@@ -11,6 +11,14 @@ use palpate_core::servo::{
     TABLE_FORCE_LIMIT, Table,
 };
 
+/// What is valid by construction; otherwise a panic that formats nothing, which a solver would have to follow.
+fn valid<T, E>(made: Result<T, E>) -> T {
+    match made {
+        Ok(made) => made,
+        Err(_) => panic!("it is valid by construction"),
+    }
+}
+
 /// Any f32, one of the given size more often than its bits alone would make it.
 fn number<D: Driver>(driver: &mut D, low: f32, high: f32) -> Option<f32> {
     const ODD: [f32; 8] = [
@@ -46,14 +54,70 @@ pub fn folded(value: f32, most: f32) -> f32 {
     }
 }
 
-/// Any f32; half of them near the positions of the axes below.
-#[derive(Debug, Clone, Copy)]
-pub struct Position(pub f32);
+/// Types of one value each, made by `|driver| …`.
+macro_rules! generated {
+    ($($(#[$doc:meta])+ $name:ident($of:ty): |$driver:ident| $value:expr;)+) => {$(
+        $(#[$doc])+
+        #[derive(Debug, Clone, Copy)]
+        pub struct $name(pub $of);
 
-impl TypeGenerator for Position {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        number(driver, 0.0002, 0.5).map(Position)
-    }
+        impl TypeGenerator for $name {
+            fn generate<D: Driver>($driver: &mut D) -> Option<Self> {
+                Some($name($value))
+            }
+        }
+    )+};
+}
+
+generated! {
+    /// Any f32; half of them near the positions of the axes below.
+    Position(f32): |driver| number(driver, 0.0002, 0.5)?;
+    /// Any f32; half of them moderate forces.
+    Newtons(f32): |driver| number(driver, 0.01, 40.0)?;
+    /// A force that a table may hold, N.
+    Entry(f32): |driver| {
+        let low = [0.0, 0.0625][driver.gen_variant(2, 0)?];
+        signed(driver, low, TABLE_FORCE_LIMIT)?
+    };
+    /// A fraction that `locate` may give: all of [−1, 2].
+    Fraction(f32): |driver| {
+        let low = [0.0, 0.0625][driver.gen_variant(2, 0)?];
+        let fraction = signed(driver, low, 2.0)?;
+        if fraction < -1.0 { -1.0 } else { fraction }
+    };
+    /// Any mode.
+    AnyMode(Mode): |driver| {
+        const MODES: [Mode; 7] = [
+            Mode::Armed,
+            Mode::Armed, // twice: the one that plays
+            Mode::Disarmed,
+            Mode::Faulted(Fault::NotFinite),
+            Mode::Faulted(Fault::Device),
+            Mode::Faulted(Fault::Watchdog),
+            Mode::Faulted(Fault::State),
+        ];
+        MODES[driver.gen_variant(MODES.len(), 0)?]
+    };
+    /// Any request.
+    AnyRequest(Request): |driver| {
+        const REQUESTS: [Request; 3] = [Request::None, Request::Arm, Request::Disarm];
+        REQUESTS[driver.gen_variant(3, 0)?]
+    };
+    /// Any limits that are allowed, the release up to 10³⁰ N: what is larger still only tests the arithmetic of `Limits::new`.
+    ValidLimits(Limits): |driver| {
+        let watchdog = match driver.gen_variant(2, 0)? {
+            0 => driver.gen_u16(Included(&1), Included(&100))?,
+            _ => driver.gen_u16(Included(&1), Included(&3))?,
+        };
+        let release = driver.gen_f32(Included(&MIN_SLEW), Included(&1e30))?;
+        limits(driver, 0.0625, release, watchdog)?
+    };
+    /// Limits with a watchdog of 1 or 2 cycles and a release of at least half the force, so that few cycles bring it to zero.
+    QuickLimits(Limits): |driver| {
+        let watchdog = driver.gen_u16(Included(&1), Included(&2))?;
+        let release = driver.gen_f32(Included(&MIN_SLEW), Included(&FORCE_CEILING))?;
+        limits(driver, 0.5, release, watchdog)?
+    };
 }
 
 /// Any f32; half of them within the counts of a report, or just beyond.
@@ -69,39 +133,6 @@ impl TypeGenerator for Count {
         // Halves, where the rule of the even one decides.
         let half = f32::from(whole) + 0.5;
         Some(Count(if driver.produce()? { -half } else { half }))
-    }
-}
-
-/// Any f32; half of them moderate forces.
-#[derive(Debug, Clone, Copy)]
-pub struct Newtons(pub f32);
-
-impl TypeGenerator for Newtons {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        number(driver, 0.01, 40.0).map(Newtons)
-    }
-}
-
-/// A force that a table may hold, N.
-#[derive(Debug, Clone, Copy)]
-pub struct Entry(pub f32);
-
-impl TypeGenerator for Entry {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        let low = [0.0, 0.0625][driver.gen_variant(2, 0)?];
-        signed(driver, low, TABLE_FORCE_LIMIT).map(Entry)
-    }
-}
-
-/// A fraction that `locate` may give: all of [−1, 2].
-#[derive(Debug, Clone, Copy)]
-pub struct Fraction(pub f32);
-
-impl TypeGenerator for Fraction {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        let low = [0.0, 0.0625][driver.gen_variant(2, 0)?];
-        let fraction = signed(driver, low, 2.0)?;
-        Some(Fraction(if fraction < -1.0 { -1.0 } else { fraction }))
     }
 }
 
@@ -130,10 +161,7 @@ impl<const N: usize, const CELLS: usize> TypeGenerator for AnyAxis<N, CELLS> {
 
 impl<const N: usize, const CELLS: usize> AnyAxis<N, CELLS> {
     pub fn axis(&self) -> Axis<'_> {
-        match Axis::new(&self.knots, &self.reciprocals) {
-            Ok(axis) => axis,
-            Err(_) => panic!("the axis is valid by construction"),
-        }
+        valid(Axis::new(&self.knots, &self.reciprocals))
     }
 }
 
@@ -185,14 +213,8 @@ impl<const AXES: usize, const NORMAL: bool> TypeGenerator for Grid<AXES, NORMAL>
         for (value, force) in grid.values.iter_mut().zip(&mut grid.forces) {
             Entry(*value) = driver.produce()?;
             *force = match NORMAL {
-                true => Force {
-                    lateral: 0.0,
-                    normal: *value,
-                },
-                false => Force {
-                    lateral: *value,
-                    normal: 0.0,
-                },
+                true => Force::new(0.0, *value),
+                false => Force::new(*value, 0.0),
             };
         }
         Some(grid)
@@ -207,18 +229,12 @@ impl<const AXES: usize, const NORMAL: bool> Grid<AXES, NORMAL> {
     pub fn axes() -> (Axis<'static>, Axis<'static>) {
         let depths = Axis::new(&DEPTHS[AXES], &DEPTH_RECIPROCALS[AXES]);
         let laterals = Axis::new(&LATERALS[AXES], &LATERAL_RECIPROCALS[AXES]);
-        match (depths, laterals) {
-            (Ok(depths), Ok(laterals)) => (depths, laterals),
-            _ => panic!("the axes are valid"),
-        }
+        (valid(depths), valid(laterals))
     }
 
     pub fn table(&self) -> Table<'_> {
         let (depths, laterals) = Self::axes();
-        match Table::new(depths, laterals, &self.forces) {
-            Ok(table) => table,
-            Err(_) => panic!("the table is valid by construction"),
-        }
+        valid(Table::new(depths, laterals, &self.forces))
     }
 
     /// The component that the table has, and the other one, which is 0.
@@ -253,52 +269,14 @@ pub fn near<D: Driver, const N: usize>(driver: &mut D, knots: [f32; N]) -> Optio
 pub fn plain_table() -> Table<'static> {
     const KNOTS: [f32; 2] = [0.0, 0.5];
     const RECIPROCAL: [f32; 1] = [2.0];
-    const fn force(lateral: f32, normal: f32) -> Force<f32> {
-        Force { lateral, normal }
-    }
     const FORCES: [Force<f32>; 4] = [
         Force::ZERO,
         Force::ZERO,
-        force(-4.0, 32.0),
-        force(8.0, 16.0),
+        Force::new(-4.0, 32.0),
+        Force::new(8.0, 16.0),
     ];
-    let Ok(axis) = Axis::new(&KNOTS, &RECIPROCAL) else {
-        panic!("the axis is valid");
-    };
-    match Table::new(axis, axis, &FORCES) {
-        Ok(table) => table,
-        Err(_) => panic!("the table is valid"),
-    }
-}
-
-/// Any limits that are allowed, the release up to 10³⁰ N: what is larger still only tests the
-/// arithmetic of `Limits::new`.
-#[derive(Debug, Clone, Copy)]
-pub struct ValidLimits(pub Limits);
-
-impl TypeGenerator for ValidLimits {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        let watchdog = match driver.gen_variant(2, 0)? {
-            0 => driver.gen_u16(Included(&1), Included(&100))?,
-            _ => driver.gen_u16(Included(&1), Included(&3))?,
-        };
-        let release = driver.gen_f32(Included(&MIN_SLEW), Included(&1e30))?;
-        limits(driver, 0.0625, release, watchdog)
-    }
-}
-
-/// Limits with a watchdog of 1 or 2 cycles and a release of at least half the force, so that few
-/// cycles bring it to zero.
-#[derive(Debug, Clone, Copy)]
-pub struct QuickLimits(pub Limits);
-
-impl TypeGenerator for QuickLimits {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        let watchdog = driver.gen_u16(Included(&1), Included(&2))?;
-        let release = driver.gen_f32(Included(&MIN_SLEW), Included(&FORCE_CEILING))?;
-        let ValidLimits(limits) = limits(driver, 0.5, release, watchdog)?;
-        Some(QuickLimits(limits))
-    }
+    let axis = valid(Axis::new(&KNOTS, &RECIPROCAL));
+    valid(Table::new(axis, axis, &FORCES))
 }
 
 /// Limits with a release of at least `least_release` and `share` of the force, a power of 2.
@@ -307,7 +285,7 @@ fn limits<D: Driver>(
     share: f32,
     least_release: f32,
     watchdog: u16,
-) -> Option<ValidLimits> {
+) -> Option<Limits> {
     let larger = |a: f32, b: f32| if a > b { a } else { b };
     let low = [MIN_SLEW, 0.5][driver.gen_variant(2, 0)?];
     let force = driver.gen_f32(Included(&low), Included(&FORCE_CEILING))?;
@@ -317,40 +295,7 @@ fn limits<D: Driver>(
     // As small as it may be, or anything above.
     let above: bool = driver.produce()?;
     let release = larger(least, if above { least_release } else { least });
-    match Limits::new(force, slew, release, watchdog) {
-        Ok(limits) => Some(ValidLimits(limits)),
-        Err(_) => panic!("the limits are valid by construction"),
-    }
-}
-
-/// Any mode.
-#[derive(Debug, Clone, Copy)]
-pub struct AnyMode(pub Mode);
-
-impl TypeGenerator for AnyMode {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        const MODES: [Mode; 7] = [
-            Mode::Armed,
-            Mode::Armed, // twice: the one that plays
-            Mode::Disarmed,
-            Mode::Faulted(Fault::NotFinite),
-            Mode::Faulted(Fault::Device),
-            Mode::Faulted(Fault::Watchdog),
-            Mode::Faulted(Fault::State),
-        ];
-        Some(AnyMode(MODES[driver.gen_variant(MODES.len(), 0)?]))
-    }
-}
-
-/// Any request.
-#[derive(Debug, Clone, Copy)]
-pub struct AnyRequest(pub Request);
-
-impl TypeGenerator for AnyRequest {
-    fn generate<D: Driver>(driver: &mut D) -> Option<Self> {
-        const REQUESTS: [Request; 3] = [Request::None, Request::Arm, Request::Disarm];
-        Some(AnyRequest(REQUESTS[driver.gen_variant(3, 0)?]))
-    }
+    Some(valid(Limits::new(force, slew, release, watchdog)))
 }
 
 /// What one cycle is called with: any bits in state and input, valid limits.

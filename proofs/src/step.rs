@@ -1,6 +1,8 @@
 //! One cycle of the kernel, and a few in a row. What is expected is written down again here, in the
 //! words of the specification.
 
+use core::ops::Bound::Included;
+
 use bolero::{Driver, TypeGenerator};
 use palpate_core::force::Force;
 use palpate_core::servo::{Command, Fault, Input, Limits, Mode, Request, Sample, State, step};
@@ -272,10 +274,7 @@ impl TypeGenerator for Silence {
             mode: Mode::Armed,
             force,
             sequence: Some(last),
-            missed: driver.gen_u16(
-                core::ops::Bound::Included(&0),
-                core::ops::Bound::Included(&2),
-            )?,
+            missed: driver.gen_u16(Included(&0), Included(&2))?,
             arming: driver.produce()?,
         };
         let mut inputs = [Input::default(); 5];

@@ -234,21 +234,9 @@ macro_rules! beyond {
         }
     };
 }
-beyond!(
-    beyond_one_cell_the_force_is_constant_and_nine_times_an_entry_at_most_map,
-    0,
-    true
-);
-beyond!(
-    beyond_one_cell_the_force_is_constant_and_nine_times_an_entry_at_most_narrow,
-    1,
-    false
-);
-beyond!(
-    beyond_one_cell_the_force_is_constant_and_nine_times_an_entry_at_most_exact,
-    2,
-    true
-);
+beyond! { beyond_one_cell_the_force_is_constant_and_nine_times_an_entry_at_most_map, 0, true }
+beyond! { beyond_one_cell_the_force_is_constant_and_nine_times_an_entry_at_most_narrow, 1, false }
+beyond! { beyond_one_cell_the_force_is_constant_and_nine_times_an_entry_at_most_exact, 2, true }
 
 // No Kani proof, for the same reason; Gappa bounds the distance for real numbers.
 macro_rules! bilinear {
