@@ -96,32 +96,17 @@ impl From<NumericError> for Error {
     }
 }
 
-impl From<InvalidAxis> for Error {
-    fn from(_: InvalidAxis) -> Error {
-        Error::Knots
-    }
+/// Reasons that C hears of by one number each.
+macro_rules! numbered {
+    ($($reason:ident: $number:ident),+) => {$(
+        impl From<$reason> for Error {
+            fn from(_: $reason) -> Error {
+                Error::$number
+            }
+        }
+    )+};
 }
 
-impl From<InvalidTable> for Error {
-    fn from(_: InvalidTable) -> Error {
-        Error::TableForce
-    }
-}
-
-impl From<InvalidLimits> for Error {
-    fn from(_: InvalidLimits) -> Error {
-        Error::Limits
-    }
-}
-
-impl From<InvalidReport> for Error {
-    fn from(_: InvalidReport) -> Error {
-        Error::Report
-    }
-}
-
-impl From<InvalidCapabilities> for Error {
-    fn from(_: InvalidCapabilities) -> Error {
-        Error::Device
-    }
+numbered! {
+    InvalidAxis: Knots, InvalidTable: TableForce, InvalidLimits: Limits, InvalidReport: Report, InvalidCapabilities: Device
 }
