@@ -1,6 +1,4 @@
 //! One number for all results of the core over a fixed sweep of inputs, so that processors can be compared.
-//!
-//! The text of a number in Rust (`{:?}`) is the shortest that gives its bits back, so the digest of texts is one of bits.
 
 mod draw;
 mod kernel;
@@ -15,29 +13,9 @@ use palpate_core::hid::{Capabilities, Control, ForceReport, PositionReport};
 use palpate_core::servo::{approach, limit};
 use palpate_core::stats::{binomial, noncentral, normal};
 
+use crate::hash::Digest;
 use crate::scenario;
 use draw::Draw;
-
-/// The digest of what is written to it (FNV-1a). No change of a single byte is lost: each step maps digests one to one.
-///
-/// Implements: FIR-012.
-#[derive(Debug, Clone, Copy)]
-pub struct Digest(pub u64);
-
-impl Default for Digest {
-    fn default() -> Digest {
-        Digest(0xCBF2_9CE4_8422_2325)
-    }
-}
-
-impl Write for Digest {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        for byte in text.bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3);
-        }
-        Ok(())
-    }
-}
 
 /// What a function of the core is asked: how often, and a question and the text of its answer.
 struct Sweep {

@@ -9,7 +9,7 @@ use palpate_core::servo::{Command, Input, Mode, State};
 use palpate_core::stats::random::Generator;
 
 use crate::device::{Device, Frame};
-use crate::digest::Digest;
+use crate::hash::Digest;
 use crate::table;
 
 /// How many cycles.
