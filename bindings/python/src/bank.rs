@@ -8,18 +8,15 @@ use palpate::fem::FemError;
 use palpate::force_map::ForceMap as Map;
 use palpate::refusal::Refusal;
 use palpate::rows::CREDIBLE;
-use palpate::trace::{Correlation, Criterion, Noise, Question, Record, Trace, Unknown};
+use palpate::trace::{Correlation, Criterion, Noise, Question, Record, Unknown};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::convert::{Records, array, in_unit, list, pair, python, refused, si, tell};
-use crate::map::ForceMap;
-use crate::phantom::Phantom;
-
-type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+use crate::classes::{ForceMap, Phantom};
+use crate::convert::{Any, Records, array, in_unit, list, pair, python, refused, si, tell};
 
 /// Names of the parameters of an inclusion, and the power of ten from SI to their units.
 const NAMES: [(&str, i32); 4] = [
@@ -33,9 +30,8 @@ const NAMES: [(&str, i32); 4] = [
 fn named<T: Serialize>(of: impl Fn(usize, i32) -> T) -> Value {
     let named = NAMES.into_iter().enumerate();
     named
-        .map(|(axis, (name, power))| (name.to_string(), json!(of(axis, power))))
-        .collect::<serde_json::Map<String, Value>>()
-        .into()
+        .map(|(axis, (name, power))| (name, json!(of(axis, power))))
+        .collect()
 }
 
 /// The forces of one gel without an inclusion, and with each of those that may be there: a full grid of positions, depths, diameters
@@ -62,25 +58,11 @@ fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
     Ok(maps)
 }
 
-/// The record of forces at positions, as if a file held it.
+/// The record of forces at positions.
 fn record(positions_mm: Any, forces_n: Any) -> PyResult<Record> {
     let positions = list("positions_mm", positions_mm, -3)?;
     let forces = Records::one("forces_n", forces_n)?;
-    if positions.len() != forces.samples {
-        let found = format!(
-            "{} positions of {} samples",
-            positions.len(),
-            forces.samples
-        );
-        return Err(refused(Refusal::state(found, "one of each sample")));
-    }
-    let (lateral, normal) = forces.values()?.split_at(forces.samples);
-    let mut text = String::from("position_m,lateral_force_n,normal_force_n\n");
-    for ((position, lateral), normal) in positions.iter().zip(lateral).zip(normal) {
-        text += &format!("{position:e},{lateral:e},{normal:e}\n");
-    }
-    let record = Trace::from_csv(&text, "record");
-    record.and_then(|trace| trace.record(None)).map_err(refused)
+    Record::new("record", &positions, forces.force()?).map_err(refused)
 }
 
 /// What is unknown, by name.
@@ -115,9 +97,7 @@ fn told<'py>(py: Python<'py>, bank: &bank::Bank, found: &Location) -> PyResult<B
         ends.map(|ends| [ends.lower, ends.upper].map(|end| in_unit(end, power)))
     };
     let answer = python(py, &found.rows(bank).map_err(refused)?)?;
-    let decided = found
-        .decision
-        .map(|decision| decision == Decision::Inclusion);
+    let decided = found.decision.map(|found| found == Decision::Inclusion);
     answer.set_item("inclusion", decided)?;
     for (key, named) in [
         ("likeliest", at(found.point)),

@@ -20,6 +20,9 @@ pyo3::create_exception!(
     "An input that is not what it must be, or a computation that has no answer: one line that says what is wrong and what would be right."
 );
 
+/// Whatever Python hands over.
+pub type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
 /// The exception for a reason of the crate's, with its words.
 ///
 /// Implements: PYT-005.
@@ -250,15 +253,14 @@ pub fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'p
 /// Implements: PYT-005.
 pub fn json(value: &Bound<PyAny>) -> PyResult<String> {
     let py = value.py();
-    let options = PyDict::new(py);
-    options.set_item("allow_nan", false)?;
     let arrays = py
         .import("operator")?
         .call_method1("methodcaller", ("tolist",))?;
+    let options = PyDict::new(py);
+    options.set_item("allow_nan", false)?;
     options.set_item("default", arrays)?;
-    let text = py
-        .import("json")?
-        .call_method("dumps", (value,), Some(&options));
+    let json = py.import("json")?;
+    let text = json.call_method("dumps", (value,), Some(&options));
     text.map_err(|error| match error.is_instance_of::<PyValueError>(py) {
         true => refused(error.value(py)),
         false => error,

@@ -4,9 +4,8 @@ use palpate::detect::{self, Costs, Decision, DetectError};
 use pyo3::basic::CompareOp;
 use pyo3::prelude::*;
 
-use crate::convert::{each, refused, vector};
+use crate::convert::{Any, each, refused, vector};
 
-type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 type Answer<'py> = PyResult<Bound<'py, PyAny>>;
 
 /// Functions of Python from functions of numbers.

@@ -14,11 +14,10 @@ use rayon::prelude::*;
 
 use crate::batch;
 use crate::convert::{
-    Records, array, floats, halves, json, of_record, pair, python, refused, vector, wrong_shape,
+    Any, Records, array, floats, halves, json, of_record, pair, python, refused, vector,
+    wrong_shape,
 };
 use crate::oracle::asked;
-
-type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// The generator of a seed; records with and without an inclusion have streams of their own.
 pub fn generator(seed: u64, inclusion: bool) -> Generator {
@@ -36,14 +35,14 @@ pub fn zeros(count: usize) -> PyResult<Vec<f64>> {
 /// Both channels of records that are of the template's length.
 fn same_length(records: &Records, samples: usize) -> PyResult<()> {
     let (what, expected, found) = ("records", samples, records.samples);
-    match expected == found {
-        true => Ok(()),
-        false => Err(refused(DetectError::LengthMismatch {
-            what,
-            expected,
-            found,
-        })),
-    }
+    let other = DetectError::LengthMismatch {
+        what,
+        expected,
+        found,
+    };
+    (expected == found)
+        .then_some(())
+        .ok_or_else(|| refused(other))
 }
 
 /// theta, the log-likelihood ratio of an inclusion, of one record or many, in white noise.
@@ -322,13 +321,11 @@ pub fn scan<'py>(
     })?;
     let answer = PyDict::new(py);
     let each = |of: fn(&ScanMaximum) -> f64| found.iter().map(of).collect::<Vec<f64>>();
+    let set = |key, values| answer.set_item(key, residual.answer(py, &[], values)?);
     answer.set_item("theta", residual.answer(py, &[shifts], theta)?)?;
-    let maximum = each(|found| found.theta);
-    answer.set_item("max_theta", residual.answer(py, &[], maximum)?)?;
-    let gamma = each(|found| found.gamma);
-    answer.set_item("gamma", residual.answer(py, &[], gamma)?)?;
-    let refined = each(|found| found.refined_shift);
-    answer.set_item("refined_shift", residual.answer(py, &[], refined)?)?;
+    set("max_theta", each(|found| found.theta))?;
+    set("gamma", each(|found| found.gamma))?;
+    set("refined_shift", each(|found| found.refined_shift))?;
     let shift = array(py, &[found.len()], each(|found| found.shift as f64))?;
     let shift = shift.call_method1("astype", ("int64",))?;
     match count {

@@ -3,7 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `convert.rs` | errors, units, arrays, tables |
-//! | `phantom.rs`, `map.rs` | phantoms and force maps |
+//! | `classes.rs`, `phantom.rs`, `map.rs` | phantoms and force maps |
 //! | `detector.rs`, `decision.rs` | the detector: records, and what follows from θ |
 //! | `batch.rs` | θ of many records |
 //! | `bank.rs` | banks of inclusions |
@@ -15,6 +15,7 @@
 
 mod bank;
 mod batch;
+mod classes;
 mod convert;
 mod decision;
 mod detector;
@@ -36,6 +37,8 @@ mod palpate {
     #[pymodule_export]
     use super::bank::Bank;
     #[pymodule_export]
+    use super::classes::{ForceMap, Phantom};
+    #[pymodule_export]
     use super::convert::Refused;
     #[pymodule_export]
     use super::decision::{
@@ -49,11 +52,9 @@ mod palpate {
         theta_coloured, theta_nuisances,
     };
     #[pymodule_export]
-    use super::map::ForceMap;
-    #[pymodule_export]
     use super::oracle::ask;
     #[pymodule_export]
-    use super::phantom::{Phantom, ProbeForce};
+    use super::phantom::ProbeForce;
     #[pymodule_export]
     use super::psychophysics::{analyse_answers, count_analysis};
     #[pymodule_export]

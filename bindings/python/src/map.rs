@@ -8,21 +8,11 @@ use palpate::force_map::{self, ForceTable, Matrix, Measurement, Source};
 use palpate::refusal::Refusal;
 use pyo3::prelude::*;
 
+use crate::classes::{ForceMap, Phantom};
 use crate::convert::{
-    array, array_in_unit, channels, each, floats, in_unit, list, python, refused, scaled, si,
+    Any, array, array_in_unit, channels, each, floats, in_unit, list, python, refused, scaled, si,
     wrong_shape,
 };
-use crate::phantom::Phantom;
-
-type Any<'a, 'py> = &'a Bound<'py, PyAny>;
-
-/// The force on the probe over a grid of m depths and n lateral positions, N. ForceMap(depths_mm, laterals_mm, lateral_n, normal_n) is a
-/// map of measured forces: depths_mm of shape (m,) and laterals_mm of shape (n,) increase, in mm; lateral_n and normal_n have the
-/// shape (m, n), in N. phantom: what was measured, if that is known.
-// Implements: PYT-002.
-#[pyclass(frozen, eq, module = "palpate")]
-#[derive(PartialEq)]
-pub struct ForceMap(pub force_map::ForceMap);
 
 /// The matrix of an array of shape (m, n).
 fn matrix(name: &str, values: Any) -> PyResult<Matrix> {

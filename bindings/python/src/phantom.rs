@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use toml::Table;
 
+use crate::classes::{ForceMap, Phantom};
 use crate::convert::{in_unit, json, list, python, refused, si, tell};
-use crate::map::ForceMap;
 
 /// The contact law of a name.
 pub fn contact(name: &str) -> PyResult<Contact> {
@@ -40,16 +40,6 @@ impl ProbeForce {
         format!("ProbeForce(lateral_n={lateral_n:?}, normal_n={normal_n:?})")
     }
 }
-
-/// A phantom: layers of gel in a well, inclusions in them or none, and the probe. Phantom(name) is one of the paper's five: "none",
-/// "2.6", "4.6", "6.6", "8.6", the depth of the inclusion in mm.
-///
-/// Keywords change numbers of it, by the names of the phantom file (mm, kPa) behind that of their table: well_width_mm=40,
-/// inclusion_depth_mm=5, layer_1_youngs_modulus_kpa=8, where layers and inclusions count from 0 and the only one needs no number.
-// Implements: PYT-007.
-#[pyclass(frozen, eq, module = "palpate")]
-#[derive(PartialEq)]
-pub struct Phantom(pub phantom::Phantom);
 
 /// The phantom of the tables of a phantom file.
 fn of_tables(tables: &Table) -> PyResult<Phantom> {

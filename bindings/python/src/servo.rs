@@ -3,16 +3,14 @@
 use palpate::servo::{self, Fault, Input, LoadedTable, Mode, Request};
 use pyo3::prelude::*;
 
+use crate::classes::ForceMap;
 use crate::convert::{refused, si};
-use crate::map::ForceMap;
 
 /// A finite number of the kernel's, from mm or as it is.
 fn single(name: &str, value: f64, power: i32) -> PyResult<f32> {
     let value = si(name, value, power)? as f32;
-    match value.is_finite() {
-        true => Ok(value),
-        false => Err(refused(format!("{name} is beyond the largest f32"))),
-    }
+    let beyond = || refused(format!("{name} is beyond the largest f32"));
+    value.is_finite().then_some(value).ok_or_else(beyond)
 }
 
 /// The table that the servo kernel plays: the forces of a force map (N over m) in single precision, with the surface in front.
@@ -23,9 +21,8 @@ pub struct ServoTable(LoadedTable);
 impl ServoTable {
     #[new]
     fn new(map: &ForceMap) -> PyResult<ServoTable> {
-        Ok(ServoTable(
-            LoadedTable::new(map.0.table()).map_err(refused)?,
-        ))
+        let table = LoadedTable::new(map.0.table());
+        Ok(ServoTable(table.map_err(refused)?))
     }
 
     /// The force (lateral, normal) in N at a pose in mm, as the kernel computes it in single precision.
@@ -143,10 +140,9 @@ pub fn step(
         "none" => Request::None,
         "arm" => Request::Arm,
         "disarm" => Request::Disarm,
-        _ => {
-            return Err(refused(format!(
-                "request is {request:?}, expected none, arm or disarm"
-            )));
+        other => {
+            let message = format!("request is {other:?}, expected none, arm or disarm");
+            return Err(refused(message));
         }
     };
     let sample = sample.map(|sample| sample.0);

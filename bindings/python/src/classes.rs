@@ -1,0 +1,22 @@
+//! The classes of phantoms and force maps, which make each other; `phantom.rs` and `map.rs` have their methods.
+
+use palpate::{force_map, phantom};
+use pyo3::prelude::*;
+
+/// A phantom: layers of gel in a well, inclusions in them or none, and the probe. Phantom(name) is one of the paper's five: "none",
+/// "2.6", "4.6", "6.6", "8.6", the depth of the inclusion in mm.
+///
+/// Keywords change numbers of it, by the names of the phantom file (mm, kPa) behind that of their table: well_width_mm=40,
+/// inclusion_depth_mm=5, layer_1_youngs_modulus_kpa=8, where layers and inclusions count from 0 and the only one needs no number.
+// Implements: PYT-007.
+#[pyclass(frozen, eq, module = "palpate")]
+#[derive(PartialEq)]
+pub struct Phantom(pub phantom::Phantom);
+
+/// The force on the probe over a grid of m depths and n lateral positions, N. ForceMap(depths_mm, laterals_mm, lateral_n, normal_n) is a
+/// map of measured forces: depths_mm of shape (m,) and laterals_mm of shape (n,) increase, in mm; lateral_n and normal_n have the
+/// shape (m, n), in N. phantom: what was measured, if that is known.
+// Implements: PYT-002.
+#[pyclass(frozen, eq, module = "palpate")]
+#[derive(PartialEq)]
+pub struct ForceMap(pub force_map::ForceMap);
