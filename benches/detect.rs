@@ -19,13 +19,13 @@ const SAMPLES: usize = 401;
 const RECORDS: u64 = 100_000;
 
 /// A force that rises over the inclusion, N: a bump of `height` and its slope sideways.
-fn force(height: f64) -> [Vec<f64>; 2] {
+fn force(height: f64) -> Force<Vec<f64>> {
     let position = |i: usize| (i as f64 - 200.0) / 60.0;
     let bump = |i: usize| height * (-0.5 * position(i) * position(i)).exp();
-    [
+    Force::new(
         (0..SAMPLES).map(|i| position(i) * bump(i)).collect(),
         (0..SAMPLES).map(|i| 1.5 + bump(i)).collect(),
-    ]
+    )
 }
 
 /// The best of five runs, in items a second.
@@ -41,27 +41,23 @@ fn rate(items: f64, mut run: impl FnMut() -> Result<f64, DetectError>) -> Result
 
 fn main() -> Result<(), DetectError> {
     let (f0, f1) = (force(0.0), force(0.34));
-    let template: [Vec<f64>; 2] =
-        [0, 1].map(|c| f1[c].iter().zip(&f0[c]).map(|(f1, f0)| f1 - f0).collect());
-    let channels = |f: &'static [Vec<f64>; 2]| Force::new(&f[0][..], &f[1][..]);
-    let (f0, f1, template) = (
-        Box::leak(Box::new(f0)),
-        Box::leak(Box::new(f1)),
-        Box::leak(Box::new(template)),
-    );
+    let pairs = f0.as_ref().zip(f1.as_ref());
+    let template =
+        pairs.map(|(f0, f1)| -> Vec<f64> { f0.iter().zip(f1).map(|(f0, f1)| f1 - f0).collect() });
+    let (f0, f1, template) = (f0.as_deref(), f1.as_deref(), template.as_deref());
     let noise_sd = Force::new(3.0, 3.0);
     let generator = Generator::new(2026, 0);
-    let simulation = Simulation::new(channels(f0), channels(template), noise_sd, generator)?;
+    let simulation = Simulation::new(f0, template, noise_sd, generator)?;
     let mut scratch = vec![0.0; 2 * SAMPLES];
     let records = rate(RECORDS as f64, || {
         let mut sum = 0.0;
         for trial in 0..RECORDS {
-            sum += simulation.trial(trial, channels(f1), &mut scratch)?.theta;
+            sum += simulation.trial(trial, f1, &mut scratch)?.theta;
         }
         Ok(sum)
     })?;
     println!("full records (2 x {SAMPLES} samples): {records:.4e} trials/s");
-    beside_nuisances(channels(f0), channels(template), noise_sd)
+    beside_nuisances(f0, template, noise_sd)
 }
 
 /// What a record costs with all nuisances, against the statistic of known parameters.
