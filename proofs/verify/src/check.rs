@@ -16,65 +16,42 @@ pub struct Claim {
     pub requirements: &'static [&'static str],
     /// How the limits of its figures were derived, and in which version of the program they were fixed: `… Fixed in 0.1.0.`
     pub limits: &'static str,
-    /// Whether the same build gives the same figures to the bit in each run: all but times.
-    pub repeatable: bool,
 }
 
-impl Claim {
-    /// A claim whose figures are the same in every run.
-    pub const fn new(
-        name: &'static str,
-        text: &'static str,
-        requirements: &'static [&'static str],
-        limits: &'static str,
-    ) -> Claim {
-        Claim {
-            name,
-            text,
-            requirements,
-            limits,
-            repeatable: true,
-        }
-    }
-}
+/// Why something could not be measured, or why a claim does not hold for a reason that is no number.
+pub type Error = Box<dyn std::error::Error + Send + Sync>;
 
-/// What measuring gives. An error says why it could not be done, or why the claim does not hold for a reason that is no number.
-pub type Measured = Result<Vec<Figure>, String>;
+/// What measuring gives: figures, or a part of the way to them.
+pub type Measured<T = Vec<Figure>> = Result<T, Error>;
 
 /// A check: what it claims, and how it finds out.
 ///
 /// ```
-/// use palpate_verify::{Check, Figure, Outcome};
+/// use palpate_verify::{Figure, Outcome, checks};
 ///
-/// let check = Check::new("arithmetic.third", "Three thirds are one.", &["CON-006"], "Rounding. Fixed in 0.1.0.", || {
-///     Ok(vec![Figure::at_most("error", (1.0f64 / 3.0 * 3.0 - 1.0).abs(), 1e-15)])
-/// });
-/// assert!(Outcome::of(&check).passed());
-/// let blind = Check { run: || Ok(Vec::new()), ..check };
-/// assert_eq!(Outcome::of(&blind).complaint().unwrap(), "check arithmetic.third: measured nothing");
+/// let check = checks().find(|check| check.claim.name == "kernel.limit").ok_or("no such check")?;
+/// let third = || Ok(vec![Figure::at_most("error", (1.0f64 / 3.0 * 3.0 - 1.0).abs(), 1e-15)]);
+/// assert!(Outcome::measured(&check.claim, third).passed());
+/// let blind = Outcome::measured(&check.claim, || Ok(Vec::new()));
+/// assert_eq!(blind.complaint().unwrap(), "check kernel.limit: measured nothing");
+/// # Ok::<(), &str>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
-pub struct Check {
+pub struct Check<Run = fn() -> Measured> {
     /// What it claims.
     pub claim: Claim,
     /// Measures.
-    pub run: fn() -> Measured,
+    pub run: Run,
 }
 
-impl Check {
-    /// A check with the same figures in every run.
-    pub const fn new(
-        name: &'static str,
-        text: &'static str,
-        requirements: &'static [&'static str],
-        limits: &'static str,
-        run: fn() -> Measured,
-    ) -> Check {
-        Check {
-            claim: Claim::new(name, text, requirements, limits),
-            run,
-        }
-    }
+/// Checks, each by its name and the requirements whose evidence it is; how it finds out, what it claims, and its limits.
+macro_rules! checks {
+    ($($name:literal [$($id:literal),*] => $run:expr, $text:expr, $limits:expr;)+) => {
+        &[$($crate::Check {
+            claim: $crate::Claim { name: $name, text: $text, requirements: &[$($id),*], limits: $limits },
+            run: $run,
+        }),+]
+    };
 }
 
 /// Figures, each by what was measured, in the words of `format!`; its kind, its value and its bounds.
@@ -168,8 +145,6 @@ pub struct Outcome {
     pub figures: Vec<Figure>,
     /// Why it failed beside its figures, or that it could not be carried out.
     pub failure: Option<String>,
-    /// Whether the figures are the same on every run: not so for times.
-    pub repeatable: bool,
     /// How long it took, s.
     pub seconds: f64,
 }
@@ -185,11 +160,11 @@ impl Outcome {
         let start = Instant::now();
         // What a check leaves behind is thrown away with it.
         let result = catch_unwind(AssertUnwindSafe(run))
-            .unwrap_or_else(|panic| Err(format!("panicked: {}", message(&*panic))));
+            .unwrap_or_else(|panic| Err(format!("panicked: {}", message(&*panic)).into()));
         let (figures, failure) = match result {
             Ok(figures) if figures.is_empty() => (figures, Some("measured nothing".into())),
             Ok(figures) => (figures, None),
-            Err(failure) => (Vec::new(), Some(failure)),
+            Err(failure) => (Vec::new(), Some(failure.to_string())),
         };
         Outcome {
             name: claim.name.into(),
@@ -198,7 +173,6 @@ impl Outcome {
             limits: claim.limits,
             figures,
             failure,
-            repeatable: claim.repeatable,
             seconds: start.elapsed().as_secs_f64(),
         }
     }
@@ -208,6 +182,11 @@ impl Outcome {
         self.name.split('.').next().unwrap_or_default()
     }
 
+    /// Whether the same build gives the same figures to the bit in each run: all but times.
+    pub fn is_repeatable(&self) -> bool {
+        self.part() != "timing"
+    }
+
     /// Whether it was carried out and every figure keeps its bounds.
     pub fn passed(&self) -> bool {
         self.failure.is_none() && self.figures.iter().all(Figure::passes)
@@ -215,12 +194,9 @@ impl Outcome {
 
     /// Of a check that did not pass its name, with why it could not be carried out or with the figures that break their bounds.
     pub fn complaint(&self) -> Option<String> {
-        let broken = self
-            .figures
-            .iter()
-            .filter(|figure| !figure.passes())
-            .map(Figure::to_string);
-        let wrong: Vec<String> = self.failure.iter().cloned().chain(broken).collect();
+        let broken = self.figures.iter().filter(|figure| !figure.passes());
+        let wrong = self.failure.iter().cloned();
+        let wrong: Vec<String> = wrong.chain(broken.map(Figure::to_string)).collect();
         (!wrong.is_empty()).then(|| format!("check {}: {}", self.name, wrong.join("; ")))
     }
 }
@@ -278,43 +254,32 @@ mod tests {
     }
 
     fn outcome(run: fn() -> Measured) -> Outcome {
-        Outcome::of(&Check::new(
-            "part.what",
-            "It holds.",
-            &[],
-            "Fixed in 0.1.0.",
-            run,
-        ))
+        let checks: &[Check] = checks! { "part.what" [] => run, "It holds.", "Fixed in 0.1.0."; };
+        Outcome::of(&checks[0])
     }
 
     #[test]
     fn a_check_passes_if_all_its_figures_do_and_names_those_that_break_their_bounds() {
         let good = outcome(|| {
-            Ok(vec![
-                Figure::told("force, N", 1.5),
-                Figure::at_most("error", 1.0, 1.0),
-            ])
+            Ok(figures! {
+                "force, N" => told(1.5);
+                "error" => at_most(1.0, 1.0);
+            })
         });
         assert!(good.passed() && good.complaint().is_none());
         assert_eq!(good.part(), "part");
         for bad in [1.1, f64::NAN, f64::INFINITY] {
-            let figures = vec![
-                Figure::told("told", 1.0),
-                Figure::at_most("error", bad, 1.0),
-            ];
-            let outcome = Outcome {
-                figures,
-                ..good.clone()
-            };
+            let mut outcome = good.clone();
+            outcome.figures[1].value = bad;
             assert!(!outcome.passed(), "{bad}");
         }
         let broken = outcome(|| {
-            Ok(vec![
-                Figure::at_most("error, m", 2e-9, 1e-9),
-                Figure::told("force, N", 1.5),
-                Figure::at_least("order", f64::NAN, 2.9),
-                Figure::count("cases", 3, 4),
-            ])
+            Ok(figures! {
+                "error, m" => at_most(2e-9, 1e-9);
+                "force, N" => told(1.5);
+                "order" => at_least(f64::NAN, 2.9);
+                "cases" => count(3, 4);
+            })
         });
         assert_eq!(
             broken.complaint().unwrap(),

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// The lock file.
@@ -19,15 +20,17 @@ pub fn lock_sha256() -> String {
 }
 
 /// A crate.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Component {
     /// Its name in the registry.
     pub name: String,
     /// Its version.
     pub version: String,
     /// Its licence, an SPDX expression; `None` where nothing states it, as in the lock file.
+    #[serde(skip_deserializing)]
     pub licence: Option<String>,
     /// SHA-256 of its package, in hexadecimal; `None` for a member of this workspace.
+    #[serde(rename(deserialize = "checksum"))]
     pub sha256: Option<String>,
 }
 
@@ -44,7 +47,7 @@ pub fn bill_of_materials(path: &Path) -> Result<Vec<Component>, String> {
     let listed = listed.filter(|listed| bill["bomFormat"] == "CycloneDX" && !listed.is_empty());
     let listed =
         listed.ok_or_else(|| format!("{shown}: this is no CycloneDX bill of materials in JSON"))?;
-    let locked = locked()?;
+    let locked = locked();
     let component = |entry: &Value| {
         let text = |pointer: &str| Some(entry.pointer(pointer)?.as_str()?.to_string());
         let component = Component {
@@ -66,24 +69,13 @@ pub fn bill_of_materials(path: &Path) -> Result<Vec<Component>, String> {
 }
 
 /// All packages of the lock file: those of the program, of its tests and of its tools.
-///
-/// # Errors
-/// A lock file that cannot be read.
-pub fn locked() -> Result<Vec<Component>, String> {
-    let lock: toml::Table = LOCK
-        .parse()
-        .map_err(|error| format!("Cargo.lock: {error}"))?;
-    let packages = lock.get("package").and_then(|packages| packages.as_array());
-    let component = |package: &toml::Value| {
-        let text = |key: &str| Some(package.get(key)?.as_str()?.to_string());
-        Component {
-            name: text("name").unwrap_or_default(),
-            version: text("version").unwrap_or_default(),
-            licence: None,
-            sha256: text("checksum"),
-        }
-    };
-    Ok(packages.into_iter().flatten().map(component).collect())
+pub fn locked() -> Vec<Component> {
+    #[derive(Deserialize)]
+    struct Lock {
+        package: Vec<Component>,
+    }
+    let lock: Lock = toml::from_str(LOCK).expect("cargo's own file");
+    lock.package
 }
 
 #[cfg(test)]
@@ -102,36 +94,28 @@ mod tests {
 
     #[test]
     fn the_lock_file_has_a_version_of_every_package_and_a_checksum_of_every_crate() {
-        let locked = locked().unwrap();
+        let locked = locked();
         assert!(locked.len() > 200, "{}", locked.len());
         let (crates, members): (Vec<_>, Vec<_>) =
             locked.iter().partition(|package| package.sha256.is_some());
         assert!(crates.iter().any(|package| package.name == "libm"));
-        assert!(
-            members
-                .iter()
-                .all(|member| member.name.starts_with("palpate")),
-            "{members:?}"
-        );
-        assert!(
-            locked
-                .iter()
-                .all(|package| !package.name.is_empty() && !package.version.is_empty())
-        );
+        let is_ours = |member: &&Component| member.name.starts_with("palpate");
+        assert!(members.iter().all(is_ours), "{members:?}");
+        let is_named =
+            |package: &Component| !package.name.is_empty() && !package.version.is_empty();
+        assert!(locked.iter().all(is_named));
     }
 
     #[test]
     fn a_bill_of_materials_lists_what_the_lock_file_holds_or_is_refused() {
-        let path = std::env::temp_dir().join(format!("palpate-bill-{}.json", std::process::id()));
+        let path = tempfile::NamedTempFile::new().unwrap().into_temp_path();
         let with = |text: &str| {
             std::fs::write(&path, text).unwrap();
             bill_of_materials(&path)
         };
-        let locked = locked().unwrap();
-        let libm = locked
-            .iter()
-            .find(|package| package.name == "libm")
-            .unwrap();
+        let locked = locked();
+        let mut crates = locked.iter();
+        let libm = crates.find(|package| package.name == "libm").unwrap();
         let entry = serde_json::json!({
             "name": libm.name,
             "version": libm.version,
@@ -139,14 +123,9 @@ mod tests {
             "licenses": [{"expression": "MIT"}],
         });
         let bill = serde_json::json!({"bomFormat": "CycloneDX", "components": [entry]}).to_string();
-        let licence = Some("MIT".to_string());
-        assert_eq!(
-            with(&bill),
-            Ok(vec![Component {
-                licence,
-                ..libm.clone()
-            }])
-        );
+        let mut expected = libm.clone();
+        expected.licence = Some("MIT".into());
+        assert_eq!(with(&bill), Ok(vec![expected]));
         for (from, to, found) in [
             ("CycloneDX", "SPDX", "this is no CycloneDX"),
             ("\"components\"", "\"parts\"", "this is no CycloneDX"),
@@ -159,6 +138,5 @@ mod tests {
             assert!(error.starts_with(&path.display().to_string()), "{error}");
             assert!(error.contains(found), "{error}");
         }
-        std::fs::remove_file(&path).unwrap();
     }
 }

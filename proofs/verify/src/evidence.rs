@@ -111,29 +111,25 @@ impl Evidence {
     /// What is unusual about the build itself.
     pub fn anomalies(&self) -> Vec<String> {
         let build = &self.build;
-        let mut anomalies = Vec::new();
-        if build.known_commit().is_none() {
-            anomalies.push(format!(
-                "its sources are not known to be those of a commit ({})",
-                build.commit
-            ));
-        }
-        if build.profile != "release" {
-            anomalies.push(format!(
-                "it was built with the profile {}, not for release",
-                build.profile
-            ));
-        }
-        if build.debug_assertions {
-            anomalies.push("debug assertions are on".into());
-        }
-        anomalies
+        let (commit, profile) = (build.commit, build.profile);
+        let unknown = format!("its sources are not known to be those of a commit ({commit})");
+        let other = format!("it was built with the profile {profile}, not for release");
+        let anomalies = [
+            build.known_commit().is_none().then_some(unknown),
+            (profile != "release").then_some(other),
+            build
+                .debug_assertions
+                .then(|| "debug assertions are on".into()),
+        ];
+        anomalies.into_iter().flatten().collect()
     }
 
     /// The file for programs; ends in a line feed. Times, and what else belongs to this one run, are in `measured_here`.
     pub fn to_json(&self) -> String {
-        let (checks, others): (Vec<&Outcome>, Vec<&Outcome>) =
-            self.outcomes.iter().partition(|outcome| outcome.repeatable);
+        let (checks, others): (Vec<&Outcome>, Vec<&Outcome>) = self
+            .outcomes
+            .iter()
+            .partition(|outcome| outcome.is_repeatable());
         let all = |outcomes: Vec<&Outcome>| outcomes.into_iter().map(check).collect::<Vec<_>>();
         let time = |outcome: &Outcome| json!({"name": outcome.name, "seconds": outcome.seconds});
         let seconds: Vec<Value> = self.outcomes.iter().map(time).collect();

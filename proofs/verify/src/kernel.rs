@@ -12,70 +12,39 @@ use palpate::servo::{
     Sample, State, Table, approach, blend, limit, step,
 };
 
+/// How the limits of each were derived.
+const EVERY_INPUT: &str =
+    "Every one of the inputs counted must hold: no tolerance. Fixed in 0.1.0.";
+
 /// The checks of this part.
-pub const CHECKS: &[Check] = &[
-    Check::new(
-        "kernel.locate_uneven",
-        "On an axis with cells from 1 µm to 1 m, every f32 gets a cell of the axis and a fraction in range, \
-         a position on the axis one whose ends enclose it, a knot 0 or 1, and neither ever falls as the \
-         position rises.",
-        &["SRV-002", "SRV-004"],
-        "Every one of the inputs counted must hold: no tolerance. Fixed in 0.1.0.",
-        locate_uneven,
-    ),
-    Check::new(
-        "kernel.locate_even",
+pub const CHECKS: &[Check] = checks! {
+    "kernel.locate_uneven" ["SRV-002", "SRV-004"] => locate_uneven,
+        "On an axis with cells from 1 µm to 1 m, every f32 gets a cell of the axis and a fraction in range, a position on the \
+         axis one whose ends enclose it, a knot 0 or 1, and neither ever falls as the position rises.",
+        EVERY_INPUT;
+    "kernel.locate_even" ["SRV-004"] => locate_even,
         "The same on a uniform axis of 41 knots 0.5 mm apart, as a force map's.",
-        &["SRV-004"],
-        "Every one of the inputs counted must hold: no tolerance. Fixed in 0.1.0.",
-        locate_even,
-    ),
-    Check::new(
-        "kernel.last_knot",
+        EVERY_INPUT;
+    "kernel.last_knot" ["SRV-004"] => last_knot,
         "No width of a cell times its stored reciprocal is above 1, and the last knot has the fraction 1.",
-        &["SRV-004"],
-        "Every one of the inputs counted must hold: no tolerance. Fixed in 0.1.0.",
-        last_knot,
-    ),
-    Check::new(
-        "kernel.limit",
-        "The limit of a force gives every f32 within it unchanged, the limit with its sign beyond, and 0 for \
-         a NaN.",
-        &["SRV-020"],
-        "Every one of the inputs counted must hold: no tolerance. Fixed in 0.1.0.",
-        limits,
-    ),
-    Check::new(
-        "kernel.count",
+        EVERY_INPUT;
+    "kernel.limit" ["SRV-020"] => limits,
+        "The limit of a force gives every f32 within it unchanged, the limit with its sign beyond, and 0 for a NaN.",
+        EVERY_INPUT;
+    "kernel.count" ["HID-010", "HID-011"] => counts,
         "The force in the device's counts is the nearest whole number, within ±32767, for every f32.",
-        &["HID-010", "HID-011"],
-        "Every one of the inputs counted must hold: no tolerance. Fixed in 0.1.0.",
-        counts,
-    ),
-    Check::new(
-        "kernel.blend",
-        "A blend of two forces lies between them for every fraction from 0 to 1, is each of them at its end, \
-         and is at most three times as large from −1 to 2.",
-        &["SRV-010", "SRV-011", "SRV-013"],
-        "Every one of the inputs counted must hold: no tolerance. Fixed in 0.1.0.",
-        blends,
-    ),
-    Check::new(
-        "kernel.release",
+        EVERY_INPUT;
+    "kernel.blend" ["SRV-010", "SRV-011", "SRV-013"] => blends,
+        "A blend of two forces lies between them for every fraction from 0 to 1, is each of them at its end, and is at most \
+         three times as large from −1 to 2.",
+        EVERY_INPUT;
+    "kernel.release" ["SRV-031"] => release,
         "Every force up to the ceiling is released to 0 within 17 cycles of the slowest release.",
-        &["SRV-031"],
-        "Every one of the inputs counted must hold: no tolerance. Fixed in 0.1.0.",
-        release,
-    ),
-    Check::new(
-        "kernel.freshness",
-        "A sample is played if and only if its number is 1 to 32767 ahead of the last, from every 257th \
-         number.",
-        &["SRV-040"],
-        "Every one of the inputs counted must hold: no tolerance. Fixed in 0.1.0.",
-        freshness,
-    ),
-];
+        EVERY_INPUT;
+    "kernel.freshness" ["SRV-040"] => freshness,
+        "A sample is played if and only if its number is 1 to 32767 ahead of the last, from every 257th number.",
+        EVERY_INPUT;
+};
 
 /// What a run over many inputs found.
 #[derive(Debug, Clone, Copy)]
@@ -417,13 +386,13 @@ mod tests {
 
     #[test]
     fn a_thread_that_panics_fails_the_check() {
-        let check = Check::new("kernel.planted", "It panics.", &[], "", || {
+        let outcome = Outcome::measured(&CHECKS[0].claim, || {
             Ok(holds_for("numbers", between(1.0, 2.0), |x| {
                 assert!(x < 1.5, "planted");
                 true
             }))
         });
-        let failure = Outcome::of(&check).failure;
+        let failure = outcome.failure;
         assert_eq!(failure.as_deref(), Some("panicked: planted"));
     }
 }

@@ -29,7 +29,7 @@ pub mod test_run;
 pub mod timing;
 
 pub use battery::outcome as battery_outcome;
-pub use check::{Check, Claim, Figure, Measured, Outcome};
+pub use check::{Check, Claim, Error, Figure, Measured, Outcome};
 
 /// All checks of this build but the statistics battery and those of [`program`], in a fixed order.
 ///
@@ -45,7 +45,7 @@ pub fn checks() -> impl Iterator<Item = &'static Check> {
 
 /// What all checks claim, but those of the statistics battery.
 pub fn claims() -> impl Iterator<Item = &'static Claim> {
-    let outside = program::CHECKS.iter().map(|(claim, _)| claim);
+    let outside = program::CHECKS.iter().map(|check| &check.claim);
     checks()
         .map(|check| &check.claim)
         .chain(outside)
@@ -57,9 +57,4 @@ pub fn served_requirements() -> impl Iterator<Item = &'static str> {
     let battery = battery::GROUPS.iter().map(|(.., ids)| *ids);
     let all = claims().map(|claim| claim.requirements).chain(battery);
     all.flatten().copied()
-}
-
-/// The check of a name, if there is one in this build.
-pub fn find(name: &str) -> Option<&'static Check> {
-    checks().find(|check| check.claim.name == name)
 }

@@ -4,7 +4,7 @@ use std::hash::{BuildHasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use rayon::prelude::*;
 
 use palpate::version::Build;
@@ -16,7 +16,9 @@ use palpate_verify::evidence::{Evidence, PARTS, Soak, Verdict};
 use palpate_verify::statistics::{battery, total_alpha};
 use palpate_verify::system::System;
 use palpate_verify::test_run::{self, TestRun, evidence_by_requirement};
-use palpate_verify::{Check, Outcome, battery_outcome, checks, components, dossier, program};
+use palpate_verify::{
+    Check, Claim, Outcome, battery_outcome, checks, components, dossier, program,
+};
 
 /// Collects the evidence for this build on this machine: checks, test runs, a dossier for a reviewer.
 #[derive(Debug, Parser)]
@@ -26,8 +28,8 @@ struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "palpate-evidence")]
     out: PathBuf,
     /// Runs only these parts; the dossier is then no verdict on the build
-    #[arg(long, value_name = "PART,…", value_enum, value_delimiter = ',')]
-    only: Option<Vec<Part>>,
+    #[arg(long, value_name = "PART,…", value_parser = ASKED, value_delimiter = ',')]
+    only: Option<Vec<String>>,
     /// The program palpate to judge [default: the one beside palpate-verify]
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
@@ -48,27 +50,17 @@ struct Arguments {
     seed: Option<u64>,
 }
 
-/// A part of the verification.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Part {
-    Statistics,
-    Rates,
-    Program,
-    Fem,
-    Kernel,
-    Timing,
-    Tests,
-    Soak,
-}
-
-impl Part {
-    fn name(self) -> &'static str {
-        match self {
-            Part::Soak => "soak",
-            part => PARTS[part as usize],
-        }
-    }
-}
+/// What `--only` takes: [`PARTS`] and the soak.
+const ASKED: [&str; 8] = [
+    "statistics",
+    "rates",
+    "program",
+    "fem",
+    "kernel",
+    "timing",
+    "tests",
+    "soak",
+];
 
 fn main() -> ExitCode {
     command(std::env::args_os(), |arguments: Arguments| {
@@ -78,10 +70,8 @@ fn main() -> ExitCode {
 
 /// Carries out the checks, and writes what came out.
 fn verify(arguments: &Arguments) -> Result<(), CliError> {
-    let asked = |part: &str| match &arguments.only {
-        None => true,
-        Some(only) => only.iter().any(|asked| asked.name() == part),
-    };
+    let only = arguments.only.as_ref();
+    let asked = |part: &str| only.is_none_or(|only| only.iter().any(|asked| asked == part));
     let inputs = Inputs::read(arguments)?;
     // What can fail at once comes first: minutes of work shall not end for want of a place.
     make_folder(&arguments.out)?;
@@ -113,7 +103,7 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
         system,
         executables: executables.collect(),
         left_out: left_out.collect(),
-        soak: soak.transpose()?,
+        soak,
         requirements: evidence_by_requirement(&inputs.test_runs, &outcomes),
         outcomes,
         components: inputs.components,
@@ -134,18 +124,19 @@ impl Inputs {
     /// Reads them, and refuses a part that lacks what it needs.
     fn read(arguments: &Arguments) -> Result<Inputs, CliError> {
         let only = arguments.only.as_deref().unwrap_or_default();
-        if only.contains(&Part::Soak) && arguments.soak.is_none() {
+        let lacks = |part: &str, is_given: bool| !is_given && only.iter().any(|only| only == part);
+        if lacks("soak", arguments.soak.is_some()) {
             let message = "--only soak needs --soak N, the number of batteries";
             return Err(CliError::Usage(message.into()));
         }
-        if only.contains(&Part::Tests) && arguments.test_run.is_empty() {
+        if lacks("tests", !arguments.test_run.is_empty()) {
             let message = "--only tests needs --test-run FILE, which .ci/run writes";
             return Err(CliError::Usage(message.into()));
         }
         let test_runs = arguments.test_run.iter().map(|path| TestRun::read(path));
         let components = match &arguments.sbom {
             Some(path) => components::bill_of_materials(path),
-            None => components::locked(),
+            None => Ok(components::locked()),
         };
         Ok(Inputs {
             test_runs: test_runs
@@ -164,38 +155,38 @@ fn fresh_seed() -> u64 {
 
 /// Carries out every check of the parts that were asked for. Those of time come last, and alone.
 fn carry_out(asked: &dyn Fn(&str) -> bool, judged: &Path) -> Vec<Outcome> {
-    let part = |name: &str| asked(name.split('.').next().unwrap_or_default());
-    let checks = checks().filter(|check| part(check.claim.name));
-    let (checks, timed): (Vec<&Check>, Vec<&Check>) =
-        checks.partition(|check| check.claim.repeatable);
-    let judgements = program::CHECKS.iter().filter(|(claim, _)| part(claim.name));
-    let judgements: Vec<_> = judgements.collect();
-    let battery: Vec<_> = battery().filter(|_| asked("statistics")).collect();
-    let all = battery.len() + judgements.len() + checks.len() + timed.len();
-    let bar = bar(all, "checks");
+    type Job<'a> = Box<dyn Fn() -> Outcome + Sync + 'a>;
+    let is_asked = |claim: &Claim| asked(claim.name.split('.').next().unwrap_or_default());
+    let mut jobs: Vec<Job> = Vec::new();
+    for check in battery().filter(|_| asked("statistics")) {
+        jobs.push(Box::new(move || battery_outcome(check)));
+    }
+    for check in program::CHECKS
+        .iter()
+        .filter(|check| is_asked(&check.claim))
+    {
+        let judge = move || Outcome::measured(&check.claim, || (check.run)(judged));
+        jobs.push(Box::new(judge));
+    }
+    let is_timed = |check: &&Check| check.claim.name.starts_with("timing.");
+    let checks = checks().filter(|check| is_asked(&check.claim));
+    let (timed, others): (Vec<_>, Vec<_>) = checks.partition(is_timed);
+    for check in others {
+        jobs.push(Box::new(move || Outcome::of(check)));
+    }
+    let bar = bar(jobs.len() + timed.len(), "checks");
     let counted = |outcome: Outcome| {
         bar.inc(1);
         outcome
     };
-    let carried_out = |check: &&Check| counted(Outcome::of(check));
-    let mut outcomes: Vec<Outcome> = battery
-        .par_iter()
-        .map(|check| counted(battery_outcome(check)))
-        .collect();
-    outcomes.par_extend(
-        judgements
-            .par_iter()
-            .map(|(claim, judge)| counted(Outcome::measured(claim, || judge(judged)))),
-    );
-    outcomes.par_extend(checks.par_iter().map(carried_out));
-    outcomes.extend(timed.iter().map(carried_out));
+    let mut outcomes: Vec<Outcome> = jobs.par_iter().map(|job| counted(job())).collect();
+    outcomes.extend(timed.into_iter().map(|check| counted(Outcome::of(check))));
     bar.finish_and_clear();
     outcomes
 }
 
 /// Runs the battery with fresh seeds.
-fn soak_battery(batteries: u32, seed: u64) -> Result<Soak, CliError> {
-    let total_alpha = total_alpha().map_err(CliError::Check)?;
+fn soak_battery(batteries: u32, seed: u64) -> Soak {
     let checks: Vec<_> = battery().collect();
     let jobs = u64::from(batteries) * checks.len() as u64;
     let bar = bar(usize::try_from(jobs).unwrap_or(usize::MAX), "soak");
@@ -211,12 +202,12 @@ fn soak_battery(batteries: u32, seed: u64) -> Result<Soak, CliError> {
     // The first failure in this order, however the threads take turns.
     let failure = (0..jobs).into_par_iter().find_map_first(failed);
     bar.finish_and_clear();
-    Ok(Soak {
+    Soak {
         batteries,
         seed,
-        false_failure: f64::from(batteries) * total_alpha,
+        false_failure: f64::from(batteries) * total_alpha(),
         failure,
-    })
+    }
 }
 
 /// Writes the files, says what was found and where it is told.
@@ -247,10 +238,8 @@ fn summary(evidence: &Evidence) -> String {
     let mut lines = String::new();
     for part in PARTS {
         let all = evidence.part(part).count();
-        let passed = evidence
-            .part(part)
-            .filter(|outcome| outcome.passed())
-            .count();
+        let passed = evidence.part(part).filter(|outcome| outcome.passed());
+        let passed = passed.count();
         lines += &match all {
             0 if part == "tests" => "tests: no test run given\n".into(),
             0 => format!("{part}: not run\n"),
@@ -273,22 +262,10 @@ fn summary(evidence: &Evidence) -> String {
 
 /// What failed, in one line.
 fn complaint(evidence: &Evidence) -> String {
-    let names: Vec<&str> = evidence
-        .failed()
-        .map(|outcome| outcome.name.as_str())
-        .collect();
+    let names: Vec<&str> = evidence.failed().map(|outcome| &outcome.name[..]).collect();
+    let (failed, all) = (names.len(), evidence.outcomes.len());
+    let checks = format!("{failed} of {all} checks failed: {}", names.join(", "));
+    let checks = (failed > 0).then_some(checks).into_iter();
     let soak = evidence.soak.iter().filter_map(|soak| soak.failure.clone());
-    let checks = (!names.is_empty()).then(|| {
-        format!(
-            "{} of {} checks failed: {}",
-            names.len(),
-            evidence.outcomes.len(),
-            names.join(", ")
-        )
-    });
-    checks
-        .into_iter()
-        .chain(soak)
-        .collect::<Vec<_>>()
-        .join("; ")
+    checks.chain(soak).collect::<Vec<_>>().join("; ")
 }

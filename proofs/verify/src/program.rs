@@ -7,74 +7,38 @@ use std::process::{Command, Output};
 use std::time::Duration;
 
 use palpate::version::Build;
-use palpate_conform::{Measure, Program, Settings, Suite, Verdict, run};
+use palpate_conform::{Finding, Measure, Program, Settings, Suite, run};
 
 use super::fem::largest;
-use super::{Claim, Figure, Measured};
+use super::{Check, Figure, Measured};
 
 /// Judges a program by its path.
 pub type Judge = fn(&Path) -> Measured;
 
-/// The claims of this part, each with what judges a program by it.
-pub const CHECKS: [(Claim, Judge); 6] = [
-    (
-        Claim::new(
-            "program.identity",
-            "The program says that it is of the same version and commit as palpate-verify.",
-            &["CLI-001"],
-            "None: equal or not. Fixed in 0.2.0.",
-        ),
-        identity,
-    ),
-    (
-        Claim::new(
-            "program.vectors",
-            "The program answers every vector, asked through a pipe, within its tolerance, and refuses what it must refuse.",
-            &["ORA-001", "ORA-046", "VEC-001"],
-            "Each case states its tolerance, derived in the file of its group from the program that computed it. Fixed in 0.1.0.",
-        ),
-        vectors,
-    ),
-    (
-        Claim::new(
-            "program.scikit_fem",
-            "The forces that the program prints are those of scikit-fem on meshes of its own.",
-            &["FEM-021", "CLI-013"],
-            "The band of scikit-fem's extrapolation and the error of the default mesh that the vectors state. Fixed in 0.1.0.",
-        ),
-        |program| forces(program, "scikit-fem"),
-    ),
-    (
-        Claim::new(
-            "program.calculix",
-            "The forces that the program prints are those of CalculiX on the same meshes.",
-            &["FEM-080", "CLI-013"],
-            "Penalty overlap of CalculiX and contact at nodes in place of Gauss points: FEM-080. Fixed in 0.1.0.",
-        ),
-        |program| forces(program, "CalculiX"),
-    ),
-    (
-        Claim::new(
-            "program.decisions",
-            "T, Θ, χ² with its limits and the false-alarm rate with its tolerance of depth that palpate detect prints are those of plain \
-             sums, on made-up maps.",
-            &["CLI-055", "TRC-064"],
-            "Sums: rounding of 82 terms. Probabilities: rounding of their arguments, 10⁻¹², times the slope of their logarithm, below \
-             10, and beyond the limits of χ² the step at which the program ends its search for them. Fixed in 0.2.0.",
-        ),
-        decisions::decisions,
-    ),
-    (
-        Claim::new(
-            "program.refusals",
-            "Of a record that cannot be judged, of maps that do not differ and of a gel that nothing holds, palpate says so and \
-             prints no decision and no number.",
-            &["CLI-048", "CLI-049", "PHA-030", "TRC-075"],
-            "None: each case is refused or not. Fixed in 0.2.0.",
-        ),
-        decisions::refusals,
-    ),
-];
+/// The checks of this part.
+pub const CHECKS: &[Check<Judge>] = checks! {
+    "program.identity" ["CLI-001"] => identity,
+        "The program says that it is of the same version and commit as palpate-verify.",
+        "None: equal or not. Fixed in 0.2.0.";
+    "program.vectors" ["ORA-001", "ORA-046", "VEC-001"] => vectors,
+        "The program answers every vector, asked through a pipe, within its tolerance, and refuses what it must refuse.",
+        "Each case states its tolerance, derived in the file of its group from the program that computed it. Fixed in 0.1.0.";
+    "program.scikit_fem" ["FEM-021", "CLI-013"] => |program| forces(program, "scikit-fem"),
+        "The forces that the program prints are those of scikit-fem on meshes of its own.",
+        "The band of scikit-fem's extrapolation and the error of the default mesh that the vectors state. Fixed in 0.1.0.";
+    "program.calculix" ["FEM-080", "CLI-013"] => |program| forces(program, "CalculiX"),
+        "The forces that the program prints are those of CalculiX on the same meshes.",
+        "Penalty overlap of CalculiX and contact at nodes in place of Gauss points: FEM-080. Fixed in 0.1.0.";
+    "program.decisions" ["CLI-055", "TRC-064"] => decisions::decisions,
+        "T, Θ, χ² with its limits and the false-alarm rate with its tolerance of depth that palpate detect prints are those of \
+         plain sums, on made-up maps.",
+        "Sums: rounding of 82 terms. Probabilities: rounding of their arguments, 10⁻¹², times the slope of their logarithm, \
+         below 10, and beyond the limits of χ² the step at which the program ends its search for them. Fixed in 0.2.0.";
+    "program.refusals" ["CLI-048", "CLI-049", "PHA-030", "TRC-075"] => decisions::refusals,
+        "Of a record that cannot be judged, of maps that do not differ and of a gel that nothing holds, palpate says so and \
+         prints no decision and no number.",
+        "None: each case is refused or not. Fixed in 0.2.0.";
+};
 
 /// Forces by other programs.
 const OUTSIDE: &str = include_str!("outside.csv");
@@ -92,31 +56,25 @@ pub fn sha256(program: &Path) -> Option<String> {
 }
 
 /// What the program does in a folder.
-fn run_in(folder: &Path, program: &Path, arguments: &[&str]) -> Result<Output, String> {
-    let program = std::path::absolute(program).map_err(|error| error.to_string())?;
-    let command = Command::new(&program)
-        .args(arguments)
-        .current_dir(folder)
-        .output();
-    command.map_err(|error| {
+fn run_in(folder: &Path, program: &Path, arguments: &[&str]) -> Measured<Output> {
+    let program = std::path::absolute(program)?;
+    let mut command = Command::new(&program);
+    let output = command.args(arguments).current_dir(folder).output();
+    Ok(output.map_err(|error| {
         let shown = program.display();
         format!("cannot start {shown}: {error}; name the program palpate with --program FILE")
-    })
+    })?)
 }
 
 /// What the program prints.
-fn printed(program: &Path, arguments: &[&str]) -> Result<String, String> {
+fn printed(program: &Path, arguments: &[&str]) -> Measured<String> {
     let shown = program.display();
     let output = run_in(Path::new("."), program, arguments)?;
     if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr);
-        return Err(format!(
-            "{shown} {}: {}",
-            arguments.join(" "),
-            said.trim_end()
-        ));
+        let (asked, said) = (arguments.join(" "), String::from_utf8_lossy(&output.stderr));
+        return Err(format!("{shown} {asked}: {}", said.trim_end()).into());
     }
-    String::from_utf8(output.stdout).map_err(|error| format!("{shown}: {error}"))
+    Ok(String::from_utf8(output.stdout).map_err(|error| format!("{shown}: {error}"))?)
 }
 
 fn identity(program: &Path) -> Measured {
@@ -127,42 +85,36 @@ fn identity(program: &Path) -> Measured {
     let own = [format!("palpate {version}"), format!("commit {commit}")];
     let differ = own
         .iter()
-        .filter(|own| !said.lines().any(|said| said == *own));
+        .filter(|own| !said.lines().any(|said| said == **own));
     Ok(
         figures! { "of version and commit, different from palpate-verify's" => count(differ.count() as u64, 0); },
     )
 }
 
 fn vectors(program: &Path) -> Measured {
-    let suite = Suite::embedded().map_err(|error| error.to_string())?;
+    let suite = Suite::embedded()?;
     let settings = Settings {
         command: vec![program.into(), "oracle".into()],
         skip: Vec::new(),
         lenient: false,
         timeout: Duration::from_secs(60),
     };
-    let verdict =
-        run(&suite, &settings, &Measure::exact(), |_| ()).map_err(|error| error.to_string())?;
-    Ok(judged(&suite, &verdict))
-}
-
-fn judged(suite: &Suite, verdict: &Verdict) -> Vec<Figure> {
-    let failed = match verdict.findings.first() {
-        None => "cases that are not right".into(),
-        Some(first) => format!(
-            "cases that are not right, the first {} of {}: {}",
-            first.case, first.group, first.reason
-        ),
-    };
-    vec![
-        Figure::told("groups of cases", verdict.groups.len() as f64),
-        Figure::count(
-            "cases right",
-            verdict.total(|group| group.right) as u64,
-            suite.cases() as u64,
-        ),
-        Figure::count(failed, verdict.findings.len() as u64, 0),
-    ]
+    let verdict = run(&suite, &settings, &Measure::exact(), |_| ())?;
+    let first = verdict.findings.first().map(|first| {
+        let Finding {
+            case,
+            group,
+            reason,
+            ..
+        } = first;
+        format!(", the first {case} of {group}: {reason}")
+    });
+    let first = first.unwrap_or_default();
+    Ok(figures! {
+        "groups of cases" => told(verdict.groups.len() as f64);
+        "cases right" => count(verdict.totals.right as u64, suite.cases() as u64);
+        "cases that are not right{first}" => count(verdict.findings.len() as u64, 0);
+    })
 }
 
 /// One row of the table of forces: what was solved, and the normal and the lateral force with their limits, N.
@@ -176,7 +128,7 @@ struct Row<'a> {
 
 impl Row<'_> {
     /// The rows of a program.
-    fn of(by: &str) -> Result<Vec<Row<'static>>, String> {
+    fn of(by: &str) -> Measured<Vec<Row<'static>>> {
         let rows = OUTSIDE
             .lines()
             .filter(|line| line.split(',').next() == Some(by));
@@ -196,12 +148,13 @@ impl Row<'_> {
                 limits: [normal_limit, lateral_limit],
             })
         };
-        rows.map(|line| row(line).ok_or_else(|| format!("outside.csv: {line:?} must have 9 cells")))
+        let wrong = |line| format!("outside.csv: {line:?} must have 9 cells");
+        rows.map(|line| Ok(row(line).ok_or_else(|| wrong(line))?))
             .collect()
     }
 
     /// The normal and the lateral force that the program prints, N, for rows that are all poses of a phantom's depths and lateral positions.
-    fn solved(rows: &[Row<'_>], program: &Path) -> Result<Vec<[f64; 2]>, String> {
+    fn solved(rows: &[Row<'_>], program: &Path) -> Measured<Vec<[f64; 2]>> {
         let [depths, laterals] = [0, 1].map(|k| {
             let mut list: Vec<&str> = rows.iter().map(|row| row.pose[k]).collect();
             list.dedup();
@@ -209,15 +162,8 @@ impl Row<'_> {
         });
         let (mesh, phantom) = (rows[0].mesh, rows[0].phantom);
         let poses = ["--depths-mm", &depths, "--laterals-mm", &laterals];
-        let model = [
-            "solve",
-            "--phantom",
-            phantom,
-            "--mesh-mm",
-            mesh,
-            "--format",
-            "csv",
-        ];
+        let model = format!("solve --phantom {phantom} --mesh-mm {mesh} --format csv");
+        let model: Vec<&str> = model.split(' ').collect();
         let table = printed(program, &[&model[..], &poses].concat())?;
         let numbers = |line: &str| -> Option<[f64; 4]> {
             let cells: Option<Vec<f64>> = line.split(',').map(|cell| cell.parse().ok()).collect();
@@ -234,9 +180,8 @@ impl Row<'_> {
         let forces: Vec<[f64; 2]> = forces.collect();
         if forces.len() != rows.len() {
             let (shown, poses) = (program.display(), rows.len());
-            return Err(format!(
-                "{shown} solve printed {table:?}; it must print {poses} poses"
-            ));
+            let message = format!("{shown} solve printed {table:?}; it must print {poses} poses");
+            return Err(message.into());
         }
         Ok(forces)
     }
@@ -246,11 +191,10 @@ impl Row<'_> {
 fn forces(program: &Path, by: &str) -> Measured {
     use rayon::prelude::*;
     let rows = Row::of(by)?;
-    let phantoms: Vec<&[Row<'_>]> = rows
-        .chunk_by(|one, next| one.phantom == next.phantom)
-        .collect();
+    let phantoms = rows.chunk_by(|one, next| one.phantom == next.phantom);
+    let phantoms: Vec<&[Row<'_>]> = phantoms.collect();
     let solved = phantoms.par_iter().map(|rows| Row::solved(rows, program));
-    let solved = solved.collect::<Result<Vec<_>, _>>()?.concat();
+    let solved = solved.collect::<Measured<Vec<_>>>()?.concat();
     let mut figures = vec![Figure::told("poses", rows.len() as f64)];
     for (k, component) in ["normal", "lateral"].into_iter().enumerate() {
         let off = |(row, found): (&Row<'_>, &[f64; 2])| (found[k] - row.forces[k]).abs();
@@ -265,35 +209,25 @@ fn forces(program: &Path, by: &str) -> Measured {
 
 #[cfg(test)]
 pub(crate) mod tests {
+    use std::fs;
+    use std::io::Write;
+    use std::os::unix::fs::PermissionsExt;
+
+    use tempfile::{NamedTempFile, TempPath};
+
     use super::*;
     use crate::Outcome;
 
     /// A program that is a shell script; its file goes with it.
-    pub struct Script(PathBuf);
-
-    impl std::ops::Deref for Script {
-        type Target = Path;
-        fn deref(&self) -> &Path {
-            &self.0
-        }
-    }
-
-    impl Drop for Script {
-        fn drop(&mut self) {
-            std::fs::remove_file(&self.0).ok();
-        }
-    }
-
-    pub fn script(name: &str, text: &str) -> Script {
-        use std::os::unix::fs::PermissionsExt;
-        let path = std::env::temp_dir().join(format!("palpate-{}-{name}", std::process::id()));
-        std::fs::write(&path, format!("#!/bin/sh\n{text}\n")).unwrap();
-        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
-        Script(path)
+    pub fn script(text: &str) -> TempPath {
+        let mut file = NamedTempFile::new().unwrap();
+        write!(file, "#!/bin/sh\n{text}\n").unwrap();
+        fs::set_permissions(file.path(), fs::Permissions::from_mode(0o755)).unwrap();
+        file.into_temp_path()
     }
 
     /// One of the right version whose `solve` prints four poses with these forces.
-    fn solver(name: &str, forces: &str) -> Script {
+    fn solver(forces: &str) -> TempPath {
         let Build {
             version, commit, ..
         } = Build::THIS;
@@ -301,13 +235,13 @@ pub(crate) mod tests {
             "case $1 in\n--version) echo 'palpate {version}'; echo 'commit {commit}';;\n\
              solve) echo head; for x in 0.0 2.5 6.0 10.0; do echo 4.0,$x,{forces}; done;;\n*) echo no >&2; exit 3;;\nesac"
         );
-        script(name, &text)
+        script(&text)
     }
 
     fn judged_by(name: &str, program: &Path) -> Outcome {
-        let found = CHECKS.iter().find(|(claim, _)| claim.name == name);
-        let (claim, judge) = found.unwrap();
-        Outcome::measured(claim, || judge(program))
+        let found = CHECKS.iter().find(|check| check.claim.name == name);
+        let check = found.unwrap();
+        Outcome::measured(&check.claim, || (check.run)(program))
     }
 
     #[test]
@@ -318,7 +252,7 @@ pub(crate) mod tests {
             ("NaN,0.0", "over its limit"),
             ("1.4826", "must print 4 poses"),
         ] {
-            let outcome = judged_by("program.scikit_fem", &solver("forces", forces));
+            let outcome = judged_by("program.scikit_fem", &solver(forces));
             assert!(!outcome.passed());
             assert!(outcome.complaint().unwrap().contains(why), "{outcome:?}");
         }
@@ -326,7 +260,7 @@ pub(crate) mod tests {
 
     #[test]
     fn a_program_of_another_version_or_none_fails() {
-        assert!(judged_by("program.identity", &solver("identity", "")).passed());
+        assert!(judged_by("program.identity", &solver("")).passed());
         let echo = Path::new("/bin/echo");
         assert!(!judged_by("program.identity", echo).passed() && echo.exists());
         let missing = judged_by("program.identity", Path::new("/nowhere/palpate"));
@@ -339,24 +273,21 @@ pub(crate) mod tests {
 
     #[test]
     fn a_program_without_an_oracle_fails() {
-        let silent = judged_by("program.vectors", &solver("silent", ""));
+        let silent = judged_by("program.vectors", &solver(""));
         assert!(silent.failure.is_some(), "{silent:?}");
     }
 
     #[test]
     fn every_row_of_the_table_is_of_a_program_and_has_a_limit() {
-        let rows = OUTSIDE
-            .lines()
-            .filter(|line| !line.starts_with('#'))
-            .count()
-            - 1;
+        let lines = OUTSIDE.lines().filter(|line| !line.starts_with('#'));
+        let rows = lines.count() - 1;
         let [scikit_fem, calculix] = ["scikit-fem", "CalculiX"].map(|by| Row::of(by).unwrap());
         assert_eq!((scikit_fem.len(), calculix.len()), (20, 9));
         assert_eq!(rows, 29);
-        let limits = scikit_fem
+        let mut limits = scikit_fem
             .iter()
             .chain(&calculix)
             .flat_map(|row| row.limits);
-        assert!(limits.clone().all(|limit| limit > 0.0 && limit < 0.02));
+        assert!(limits.all(|limit| limit > 0.0 && limit < 0.02));
     }
 }

@@ -12,7 +12,7 @@ use super::{Claim, Outcome};
 pub const SCHEMA: &str = "palpate-test-run";
 
 /// What a test run found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TestRun {
     /// [`SCHEMA`].
@@ -156,13 +156,13 @@ pub fn evidence_by_requirement(runs: &[TestRun], outcomes: &[Outcome]) -> Vec<Ev
 }
 
 /// What a run of `palpate-verify` claims of the test runs that it was given.
-pub const CLAIM: Claim = Claim::new(
-    "tests.complete",
-    "Every requirement has a test or proof that passed in the test runs, no test of them failed, and they are of the commit of \
-     this build.",
-    &[],
-    "None: every requirement counts. Fixed in 0.2.0.",
-);
+pub const CLAIM: Claim = Claim {
+    name: "tests.complete",
+    text: "Every requirement has a test or proof that passed in the test runs, no test of them failed, and they are of the \
+           commit of this build.",
+    requirements: &[],
+    limits: "None: every requirement counts. Fixed in 0.2.0.",
+};
 
 /// Whether [`CLAIM`] holds.
 pub fn outcome(runs: &[TestRun], commit: &str) -> Outcome {
@@ -195,7 +195,7 @@ pub fn outcome(runs: &[TestRun], commit: &str) -> Outcome {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Check, Figure};
+    use crate::Figure;
     use End::*;
 
     fn requirement(id: &str, tests: &[&str], proofs: &[&str]) -> Requirement {
@@ -217,12 +217,9 @@ mod tests {
         TestRun {
             schema: SCHEMA.into(),
             commit: "c".into(),
-            began: String::new(),
-            ended: String::new(),
-            system: String::new(),
-            results_sha256: String::new(),
             requirements: requirements.to_vec(),
             entries: entries.iter().map(entry).collect(),
+            ..TestRun::default()
         }
     }
 
@@ -278,13 +275,12 @@ mod tests {
     #[test]
     fn checks_and_test_runs_are_told_apart() {
         let rows = [requirement("AAA-001", &["a", "b", "n"], &["p"])];
-        let here = Outcome::of(&Check::new(
-            "part.what",
-            "It holds.",
-            &["AAA-001"],
-            "Fixed in 0.2.0.",
-            || Ok(vec![Figure::told("n", 1.0)]),
-        ));
+        let claim = Claim {
+            name: "part.what",
+            requirements: &["AAA-001"],
+            ..CLAIM
+        };
+        let here = Outcome::measured(&claim, || Ok(vec![Figure::told("n", 1.0)]));
         let entries = [("a", Passed), ("b", Ignored), ("p", Passed), ("n", Left)];
         let found = &evidence_by_requirement(&[test_run(&rows, &entries)], &[here])[0];
         let lists = [
@@ -299,7 +295,7 @@ mod tests {
 
     #[test]
     fn a_file_that_is_no_test_run_is_refused_with_its_name() {
-        let path = std::env::temp_dir().join(format!("palpate-test-run-{}", std::process::id()));
+        let path = tempfile::NamedTempFile::new().unwrap().into_temp_path();
         let with = |text: &str| {
             std::fs::write(&path, text).unwrap();
             TestRun::read(&path)
@@ -317,6 +313,5 @@ mod tests {
             let named = error.starts_with(&format!("{}: ", path.display()));
             assert!(named, "{error}");
         }
-        std::fs::remove_file(&path).unwrap();
     }
 }

@@ -4,38 +4,20 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use super::{Check, Claim, Figure, Measured};
+use super::{Check, Figure, Measured};
 use palpate::hid::timing::{Budget, measure, paper};
 use palpate::servo::{Input, Limits, Mode, Request, Sample, State, Table, step};
 
 /// The checks of this part.
-pub const CHECKS: &[Check] = &[
-    Check {
-        claim: Claim {
-            repeatable: false,
-            ..Claim::new(
-                "timing.step",
-                "The median time of one step of the servo kernel, on a table of 9 × 41 poses, is within the 1 ms of a cycle.",
-                &["SRV-060"],
-                "One cycle at 1 kHz. Fixed in 0.1.0.",
-            )
-        },
-        run: steps,
-    },
-    Check {
-        claim: Claim {
-            repeatable: false,
-            ..Claim::new(
-                "timing.loop",
-                "The 99.9th percentile of the response of the loop on the simulated device, from a report at hand to its force \
-                 written, is within the 1 ms of a cycle, with 95 % confidence.",
-                &["HID-060", "HID-062"],
-                "One cycle at 1 kHz, for the upper 95 % confidence limit of the percentile. Fixed in 0.1.0.",
-            )
-        },
-        run: cycles,
-    },
-];
+pub const CHECKS: &[Check] = checks! {
+    "timing.step" ["SRV-060"] => steps,
+        "The median time of one step of the servo kernel, on a table of 9 × 41 poses, is within the 1 ms of a cycle.",
+        "One cycle at 1 kHz. Fixed in 0.1.0.";
+    "timing.loop" ["HID-060", "HID-062"] => cycles,
+        "The 99.9th percentile of the response of the loop on the simulated device, from a report at hand to its force written, \
+         is within the 1 ms of a cycle, with 95 % confidence.",
+        "One cycle at 1 kHz, for the upper 95 % confidence limit of the percentile. Fixed in 0.1.0.";
+};
 
 /// The time that a cycle may take, at the 1 kHz of the loop.
 const BUDGET: Duration = Duration::from_millis(1);
@@ -48,9 +30,9 @@ const BATCH: u16 = 1000;
 const CYCLES: u64 = 100_000;
 
 fn steps() -> Measured {
-    let loaded = paper::table().map_err(|error| error.to_string())?;
+    let loaded = paper::table()?;
     let table = loaded.table();
-    let limits = Limits::for_playback(4.0).map_err(|error| error.to_string())?;
+    let limits = Limits::for_playback(4.0)?;
     let mut state = State {
         mode: Mode::Armed,
         sequence: Some(0),
@@ -107,17 +89,16 @@ fn one_step(table: &Table, limits: &Limits, state: State, cycle: u16) -> (State,
 }
 
 fn cycles() -> Measured {
-    let loaded = paper::table().map_err(|error| error.to_string())?;
+    let loaded = paper::table()?;
     let table = loaded.table();
     let timing = measure(
         paper::device(CYCLES),
         table,
-        Limits::for_playback(4.0).map_err(|error| error.to_string())?,
+        Limits::for_playback(4.0)?,
         CYCLES,
         Budget::of(BUDGET),
         None,
-    )
-    .map_err(|error| error.to_string())?;
+    )?;
     let judged = &timing.judged;
     let response = judged.response_us;
     let bound = judged.at_most_us.unwrap_or(f64::INFINITY);

@@ -3,7 +3,7 @@
 use palpate::fem::{Contact, Model, Pose, PoseSolution};
 use palpate::phantom::Phantom;
 
-use super::{Measured, largest, said};
+use super::{Measured, largest};
 
 /// Step h of the differences, m.
 const STEP: f64 = 2e-6;
@@ -22,12 +22,12 @@ fn slope(of: &[PoseSolution; 4], value: impl Fn(&PoseSolution) -> f64) -> (f64, 
 /// The differences are off by h² f'''/6, which the difference over twice the step tells up to terms of its own h² relative,
 /// and by rounding: Newton's method leaves 1e-13 m, so 1e-13 J in the energy of forces of 1 N at most, over 2h; and
 /// 1e-10 N in a force (FEM-060), over 2h.
-fn at_pose(model: &Model, depth: f64, lateral: f64) -> Result<Option<[f64; 3]>, String> {
+fn at_pose(model: &Model, depth: f64, lateral: f64) -> Measured<Option<[f64; 3]>> {
     const ENERGY: f64 = 1e-13 / (2.0 * STEP);
     const FORCE: f64 = 1e-10 / (2.0 * STEP);
     let at = |down: f64, aside: f64| {
         let (depth, lateral) = (depth + down * STEP, lateral + aside * STEP);
-        model.solve(Pose { depth, lateral }).map_err(said)
+        model.solve(Pose { depth, lateral })
     };
     let here = at(0.0, 0.0)?;
     let down = [at(-2.0, 0.0)?, at(-1.0, 0.0)?, at(1.0, 0.0)?, at(2.0, 0.0)?];
@@ -50,8 +50,8 @@ fn at_pose(model: &Model, depth: f64, lateral: f64) -> Result<Option<[f64; 3]>, 
 
 /// The laws at every pose of a map of 8 depths and 11 lateral positions.
 fn map(name: &str, contact: Contact) -> Measured {
-    let phantom = Phantom::builtin(name).map_err(said)?;
-    let model = Model::new(&phantom, 1.5e-3, contact).map_err(said)?;
+    let phantom = Phantom::builtin(name)?;
+    let model = Model::new(&phantom, 1.5e-3, contact)?;
     let (mut kinks, mut shares) = (0, Vec::new());
     for pose in 0..88 {
         let (depth, lateral) = (

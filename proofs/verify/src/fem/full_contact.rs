@@ -6,7 +6,7 @@ use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
 
 use super::problem::{Problem, solved};
-use super::{Figure, Measured, largest, said};
+use super::{Figure, Measured, largest};
 
 /// A contact point: its position, and the nodes of its edge with their weights.
 type Point = ([f64; 2], [(f64, usize); 3]);
@@ -30,8 +30,8 @@ struct Solved {
 }
 
 impl Full {
-    fn new(phantom: &Phantom, size: f64, contact: Contact) -> Result<Full, String> {
-        let mesh = Mesh::new(phantom, size).map_err(said)?;
+    fn new(phantom: &Phantom, size: f64, contact: Contact) -> Measured<Full> {
+        let mesh = Mesh::new(phantom, size)?;
         let free: Vec<bool> = mesh.held.as_flattened().iter().map(|held| !held).collect();
         let regions = mesh.regions.iter();
         let problem = Problem {
@@ -98,7 +98,7 @@ impl Full {
 
     /// Newton's method on K u = Σ λ n, gap = 0 over the active points, and a change of the active set after each
     /// convergence, until no point is pulled or inside the probe. The depth goes down in steps of at most 1 mm.
-    fn solve(&self, pose: Pose) -> Result<Solved, String> {
+    fn solve(&self, pose: Pose) -> Measured<Solved> {
         let mut u = vec![0.0; self.free.len()];
         let mut pressure = vec![0.0; self.surface.len()];
         let mut active: Vec<usize> = Vec::new();
@@ -143,7 +143,7 @@ impl Full {
         pressure: &mut [f64],
         active: &[usize],
         pose: Pose,
-    ) -> Result<(), String> {
+    ) -> Measured<()> {
         for point in (0..pressure.len()).filter(|point| !active.contains(point)) {
             pressure[point] = 0.0;
         }
@@ -238,12 +238,12 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 /// 10³ N/m, and round the stiffness's sums in different orders. 1e-9 N is what FEM-060 allows.
 pub fn compare(name: &str, contact: Contact) -> Measured {
     let size = 6e-3;
-    let phantom = Phantom::builtin(name).map_err(said)?;
-    let model = Model::new(&phantom, size, contact).map_err(said)?;
+    let phantom = Phantom::builtin(name)?;
+    let model = Model::new(&phantom, size, contact)?;
     let full = Full::new(&phantom, size, contact)?;
     let mut figures = Vec::new();
     for (depth, lateral) in [(1.3e-3, 2.1e-3), (4e-3, 3.7e-3)] {
-        let condensed = model.solve(Pose { depth, lateral }).map_err(said)?;
+        let condensed = model.solve(Pose { depth, lateral })?;
         let [right, left] = [lateral, -lateral].map(|lateral| full.solve(Pose { depth, lateral }));
         let (right, left) = (right?, left?);
         let off = [
@@ -299,10 +299,10 @@ pub fn symmetry(what: &str, map: &ForceMap) -> Vec<Figure> {
 }
 
 pub fn mirror() -> Measured {
-    let phantom = Phantom::builtin("2.6").map_err(said)?;
-    let model = Model::new(&phantom, 2e-3, Contact::DeformedNormal).map_err(said)?;
+    let phantom = Phantom::builtin("2.6")?;
+    let model = Model::new(&phantom, 2e-3, Contact::DeformedNormal)?;
     let depths: Vec<f64> = (1..=8).map(|k| 0.5e-3 * f64::from(k)).collect();
     let laterals: Vec<f64> = (-10..=10).map(|k| 1e-3 * f64::from(k)).collect();
-    let map = model.map(&depths, &laterals, &|_| ()).map_err(said)?;
+    let map = model.map(&depths, &laterals, &|_| ())?;
     Ok(symmetry("2.6", &map))
 }

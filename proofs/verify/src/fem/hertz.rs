@@ -7,13 +7,10 @@ use palpate::phantom::{Layer, Material, Phantom, PhantomParts, Probe, Well};
 use palpate::refusal::Refusal;
 
 use super::layer::BondedLayer;
-use super::problem::{Exact, lame};
-use super::{Figure, Measured, largest, said};
+use super::problem::{Exact, lame, material};
+use super::{Figure, Measured, largest};
 
-const MATERIAL: Material = Material {
-    youngs_modulus: 5e3,
-    poisson_ratio: 0.49,
-};
+const MATERIAL: Material = material(5e3, 0.49);
 const HEIGHT: f64 = 0.02;
 const RADIUS: f64 = 0.0299;
 /// The mesh size, m. Edges at the surface are two fifths of it long.
@@ -58,12 +55,12 @@ fn curvature_of_the_base() -> f64 {
 ///
 /// Hertz: a² = 4 F R (1 − ν²)/(π E) for the force F per length, ∫ p x² dx = F a²/4, and p = 2F/(πa) √(1 − x²/a²). The layer's
 /// base adds the curvature c r²/h² to the surface, which leaves the pressure elliptic and takes c a²/h² off a².
-fn compare(model: &Model, depth: f64, curvature: f64) -> Result<[f64; 3], String> {
+fn compare(model: &Model, depth: f64, curvature: f64) -> Measured<[f64; 3]> {
     let pose = Pose {
         depth,
         lateral: 0.0,
     };
-    let solution = model.solve(pose).map_err(said)?;
+    let solution = model.solve(pose)?;
     let (surface, state) = (model.surface(), &solution.state);
     let place = |point: usize| surface.positions[point][0] + state.displacements[point][0];
     let (mut force, mut moment) = (0.0, 0.0);
@@ -115,7 +112,7 @@ pub fn line_contact() -> Measured {
     let off = (curvature - 0.998_093_74).abs();
     let mut figures = vec![Figure::at_most("error of the base's curvature", off, 1e-6)];
     for contact in [Contact::VerticalGap, Contact::DeformedNormal] {
-        let model = Model::new(&block().map_err(said)?, SIZE, contact).map_err(said)?;
+        let model = Model::new(&block()?, SIZE, contact)?;
         let places = &model.surface().positions;
         let near = places.windows(2).filter(|pair| pair[0][0].abs() < 1e-2);
         let spacing = largest(near.map(|pair| pair[1][0] - pair[0][0]));

@@ -1,7 +1,7 @@
 //! Calculation verification: how good the forces of the paper's poses are on the default mesh.
 
 use super::full_contact::symmetry;
-use super::{Measured, largest, least, said};
+use super::{Measured, largest, least};
 use palpate::fem::certify::certified_map;
 use palpate::fem::{Contact, MESH_SIZE, Model, Pose};
 use palpate::phantom::{BUILTIN_NAMES, Phantom};
@@ -15,18 +15,18 @@ const RESIDUAL: f64 = 1e-8;
 /// How far a node of the surface may be inside the probe, m (FEM-009).
 const PENETRATION: f64 = 1e-12;
 
-fn model(name: &str) -> Result<Model, String> {
-    let phantom = Phantom::builtin(name).map_err(said)?;
-    Model::new(&phantom, MESH_SIZE, Contact::default()).map_err(said)
+fn model(name: &str) -> Measured<Model> {
+    let phantom = Phantom::builtin(name)?;
+    Ok(Model::new(&phantom, MESH_SIZE, Contact::default())?)
 }
 
 pub fn reference() -> Measured {
-    let force = |name| -> Result<f64, String> {
+    let force = |name| -> Measured<f64> {
         let pose = Pose {
             depth: 4e-3,
             lateral: 0.0,
         };
-        let solution = model(name)?.solve(pose).map_err(said)?;
+        let solution = model(name)?.solve(pose)?;
         Ok(solution.force.normal)
     };
     let none = force("none")?;
@@ -41,7 +41,7 @@ pub fn certificates() -> Measured {
     let mut figures = Vec::new();
     for name in BUILTIN_NAMES {
         let model = model(name)?;
-        let map = certified_map(&model, &DEPTHS, &LATERALS, &|_| ()).map_err(said)?;
+        let map = certified_map(&model, &DEPTHS, &LATERALS, &|_| ())?;
         let certificate = map.certificate().ok_or("the map has no certificate")?;
         let bands = certificate.discretization.as_ref();
         let bands = bands.ok_or("the map has no bands")?;

@@ -5,15 +5,12 @@ use faer::{Mat, Side};
 use palpate::fem::element::{NODES, StiffnessRule};
 use palpate::phantom::Material;
 
-use super::problem::{Exact, Problem, inside_out, lame};
+use super::problem::{Exact, Field, Problem, inside_out, lame, material};
 use super::{Figure, Measured, largest, least};
 
 /// How far edges are bent: not at all, or so far that elements lose what straight ones can do.
 const CURVES: [f64; 2] = [0.0, 0.08];
-const NEARLY_INCOMPRESSIBLE: Material = Material {
-    youngs_modulus: 1.0,
-    poisson_ratio: 0.49,
-};
+const NEARLY_INCOMPRESSIBLE: Material = material(1.0, 0.49);
 
 /// Numbers that look random in (−1, 1), the same in each run (Knuth's 64-bit linear congruence).
 fn noise() -> impl FnMut() -> f64 {
@@ -68,24 +65,20 @@ const QUADRATIC_FIELD: Polynomial = Polynomial {
 };
 
 impl Exact for Polynomial {
-    fn displacement(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|i| {
+    fn field(&self, [x, y]: [f64; 2]) -> Field {
+        let component = |i: usize| {
             let ([a, b], [xx, xy, yy]) = (self.linear[i], self.quadratic[i]);
-            a * x + b * y + xx * x * x + xy * x * y + yy * y * y
-        })
-    }
-
-    fn gradient(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 2] {
-        [0, 1].map(|i| {
-            let ([a, b], [xx, xy, yy]) = (self.linear[i], self.quadratic[i]);
-            [a + 2.0 * xx * x + xy * y, b + xy * x + 2.0 * yy * y]
-        })
+            let u = a * x + b * y + xx * x * x + xy * x * y + yy * y * y;
+            (u, [a + 2.0 * xx * x + xy * y, b + xy * x + 2.0 * yy * y])
+        };
+        let [(u, of_u), (v, of_v)] = [0, 1].map(component);
+        ([u, v], [of_u, of_v])
     }
 }
 
 /// The largest relative error, of displacement, gradient or stress, with the exact displacement along the border and
 /// the exact body force, which is constant.
-fn worst_error(problem: &Problem, exact: &Polynomial) -> Result<f64, String> {
+fn worst_error(problem: &Problem, exact: &Polynomial) -> Measured<f64> {
     let lattice = Problem::lattice([4, 4], |at| at, |_| true, |_| NEARLY_INCOMPRESSIBLE);
     let border = |node: usize| lattice.nodes[node].iter().any(|&c| c == 0.0 || c == 1.0);
     let (lambda, mu) = lame(&NEARLY_INCOMPRESSIBLE);
@@ -135,7 +128,7 @@ pub fn quadratic() -> Measured {
 ///
 /// Zeros come out within 10² roundings of the largest, which goes as λ + 2μ. The smallest deformation's goes as μ
 /// times (size of an element/size of the mesh)², so at least 1e-2/51 of the largest for one element and 1e-5 for a mesh.
-fn shares(matrix: Mat<f64>) -> Result<[f64; 2], String> {
+fn shares(matrix: Mat<f64>) -> Measured<[f64; 2]> {
     let values = matrix.self_adjoint_eigenvalues(Side::Lower);
     let values = values.map_err(|error| format!("no eigenvalues: {error:?}"))?;
     let greatest = values[values.len() - 1];

@@ -7,10 +7,18 @@ use faer::sparse::{SparseColMat, Triplet};
 use palpate::fem::element::{NODES, PerNode, StiffnessRule, gradients, parent_gradients, stress};
 use palpate::phantom::Material;
 
-/// A displacement field with its gradient, `gradient(x)[i][j]` = ∂u_i/∂x_j.
+use super::Measured;
+
+/// The displacement u at a place and its gradient, `gradient[i][j]` = ∂u_i/∂x_j.
+pub type Field = ([f64; 2], [[f64; 2]; 2]);
+
+/// A solution that is known everywhere.
 pub trait Exact {
-    fn displacement(&self, at: [f64; 2]) -> [f64; 2];
-    fn gradient(&self, at: [f64; 2]) -> [[f64; 2]; 2];
+    fn field(&self, at: [f64; 2]) -> Field;
+
+    fn displacement(&self, at: [f64; 2]) -> [f64; 2] {
+        self.field(at).0
+    }
 }
 
 /// A mesh of triangles with a material for each element.
@@ -55,6 +63,14 @@ fn shape([r, s]: [f64; 2]) -> [f64; NODES] {
         4.0 * r * s,
         4.0 * s * q,
     ]
+}
+
+/// A material of a Young's modulus, Pa, and Poisson's ratio.
+pub const fn material(youngs_modulus: f64, poisson_ratio: f64) -> Material {
+    Material {
+        youngs_modulus,
+        poisson_ratio,
+    }
 }
 
 /// Lamé's constants (λ, μ), Pa: the checks' own, as Hooke's law below is.
@@ -132,7 +148,7 @@ impl Problem {
         &self,
         mut loads: Vec<f64>,
         held: impl Fn(usize, usize) -> Option<f64>,
-    ) -> Result<(Vec<f64>, Vec<f64>), String> {
+    ) -> Measured<(Vec<f64>, Vec<f64>)> {
         let held: Vec<Option<f64>> = (0..loads.len()).map(|k| held(k / 2, k % 2)).collect();
         let mut entries = Vec::new();
         self.visit(|row, column, value| match (held[row], held[column]) {
@@ -156,7 +172,7 @@ impl Problem {
     ///
     /// # Errors
     /// An element turned inside out.
-    pub fn visit(&self, mut visit: impl FnMut(usize, usize, f64)) -> Result<(), String> {
+    pub fn visit(&self, mut visit: impl FnMut(usize, usize, f64)) -> Measured<()> {
         let rule = StiffnessRule::default();
         for (nodes, material) in self.elements.iter().zip(&self.materials) {
             let stiffness = rule
@@ -273,11 +289,11 @@ impl Problem {
                     }
                 }
             }
-            let truth = exact.gradient(at);
+            let (displacement, truth) = exact.field(at);
             let material = &self.materials[element];
             // σ_xy stands for σ_yx as well; it is only a norm.
             for (sum, found, expected) in [
-                (0, value.to_vec(), exact.displacement(at).to_vec()),
+                (0, value.to_vec(), displacement.to_vec()),
                 (1, gradient.concat(), truth.concat()),
                 (
                     2,
@@ -304,7 +320,7 @@ impl Problem {
 ///
 /// # Errors
 /// A singular matrix.
-pub fn solved(entries: &[Triplet<usize, usize, f64>], b: &[f64]) -> Result<Vec<f64>, String> {
+pub fn solved(entries: &[Triplet<usize, usize, f64>], b: &[f64]) -> Measured<Vec<f64>> {
     let matrix = SparseColMat::try_new_from_triplets(b.len(), b.len(), entries)
         .map_err(|error| format!("no matrix: {error:?}"))?;
     let factors = matrix

@@ -1,10 +1,10 @@
 //! What `palpate detect` decides on made-up maps, against plain sums, and what it must not decide.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Output;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 use serde_json::Value;
+use tempfile::TempDir;
 
 use super::run_in;
 use crate::Measured;
@@ -65,16 +65,11 @@ fn record() -> [[f64; 2]; SAMPLES] {
 }
 
 /// A folder with the maps `without.csv` and `with.csv`, deleted at the end.
-struct Folder(PathBuf);
+struct Folder(TempDir);
 
 impl Folder {
-    fn new() -> Result<Folder, String> {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = format!("palpate-verify-{}-{count}", std::process::id());
-        let folder = Folder(std::env::temp_dir().join(name));
-        std::fs::create_dir(&folder.0)
-            .map_err(|error| format!("{}: {error}", folder.0.display()))?;
+    fn new() -> Measured<Folder> {
+        let folder = Folder(TempDir::new()?);
         for (name, inclusion) in [("without.csv", false), ("with.csv", true)] {
             let rows = [2.0, DEPTH].into_iter().flat_map(|depth| {
                 (0..SAMPLES).map(move |i| {
@@ -88,13 +83,14 @@ impl Folder {
         Ok(folder)
     }
 
-    fn write(&self, name: &str, text: &str) -> Result<(), String> {
-        let path = self.0.join(name);
-        std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
+    fn write(&self, name: &str, text: &str) -> Measured<()> {
+        let path = self.0.path().join(name);
+        let written = std::fs::write(&path, text);
+        Ok(written.map_err(|error| format!("{}: {error}", path.display()))?)
     }
 
     /// Writes a record.
-    fn write_record(&self, name: &str, forces: &[[f64; 2]]) -> Result<(), String> {
+    fn write_record(&self, name: &str, forces: &[[f64; 2]]) -> Measured<()> {
         let rows = (0..)
             .zip(forces)
             .map(|(i, [lateral, normal])| format!("{},{lateral:e},{normal:e}\n", position(i)));
@@ -103,15 +99,12 @@ impl Folder {
     }
 
     /// What the program does with arguments, which spaces separate.
-    fn run(&self, program: &Path, arguments: &str) -> Result<Output, String> {
-        run_in(&self.0, program, &arguments.split(' ').collect::<Vec<_>>())
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // A folder that cannot be deleted is no finding.
-        std::fs::remove_dir_all(&self.0).ok();
+    fn run(&self, program: &Path, arguments: &str) -> Measured<Output> {
+        run_in(
+            self.0.path(),
+            program,
+            &arguments.split(' ').collect::<Vec<_>>(),
+        )
     }
 }
 
@@ -167,7 +160,7 @@ pub(super) fn decisions(program: &Path) -> Measured {
         bias,
     } = Sums::of(&record);
     let (all, degrees) = (2 * SAMPLES as u64, 2 * SAMPLES as u64 - 1);
-    let whole = |key: &str| answer[key].as_f64().unwrap_or(f64::NAN) as u64;
+    let whole = |key: &str| number(key) as u64;
     let limit = |end: usize| {
         answer["chi_square_limits"][end]
             .as_f64()
@@ -212,57 +205,16 @@ fn tail(z: f64) -> f64 {
     upper_tail(z).unwrap_or(f64::NAN)
 }
 
-/// Of a case what the forces of the record are multiplied with, the arguments, and words of the message.
-const REFUSED: [(&str, f64, &str, &str); 8] = [
-    (
-        "a number that is none",
-        f64::NAN,
-        "MAPS --noise-sd-n 0.05",
-        "record.csv:2: lateral_force_n",
-    ),
-    (
-        "maps that do not differ",
-        1.0,
-        "--reference with.csv --inclusion with.csv --noise-sd-n 0.05",
-        "do not differ",
-    ),
-    (
-        "forces of the other sign",
-        -1.0,
-        "MAPS --noise-sd-n 0.05",
-        "the other sign",
-    ),
-    (
-        "forces in mN",
-        1e3,
-        "MAPS --noise-sd-n 0.05",
-        "another unit",
-    ),
-    (
-        "forces too large",
-        4.0,
-        "MAPS --noise-sd-n 0.05",
-        "too large",
-    ),
-    (
-        "less noise than stated",
-        1.0,
-        "MAPS --noise-sd-n 0.25",
-        "less noise",
-    ),
-    (
-        "more noise than stated",
-        1.0,
-        "MAPS --noise-sd-n 0.01",
-        "more noise",
-    ),
-    (
-        "noise stated in mN",
-        1.0,
-        "MAPS --noise-sd-n 50",
-        "noise is in another unit",
-    ),
-];
+/// Cases, a line each: by what the forces of the record are multiplied, the arguments, and words of the message.
+const REFUSED: &str = "\
+a number that is none: NaN, MAPS --noise-sd-n 0.05, record.csv:2: lateral_force_n
+maps that do not differ: 1, --reference with.csv --inclusion with.csv --noise-sd-n 0.05, do not differ
+forces of the other sign: -1, MAPS --noise-sd-n 0.05, the other sign
+forces in mN: 1e3, MAPS --noise-sd-n 0.05, another unit
+forces too large: 4, MAPS --noise-sd-n 0.05, too large
+less noise than stated: 1, MAPS --noise-sd-n 0.25, less noise
+more noise than stated: 1, MAPS --noise-sd-n 0.01, more noise
+noise stated in mN: 1, MAPS --noise-sd-n 50, noise is in another unit";
 
 /// Walls and floor of a gel that nothing holds, with what the message says of the direction.
 const LOOSE: [[&str; 3]; 3] = [
@@ -274,7 +226,7 @@ const LOOSE: [[&str; 3]; 3] = [
 pub(super) fn refusals(program: &Path) -> Measured {
     let folder = Folder::new()?;
     let mut wrong = Vec::new();
-    let mut judge = |case: &str, arguments: &str, words: &str| -> Result<(), String> {
+    let mut judge = |case: &str, arguments: &str, words: &str| -> Measured<()> {
         let output = folder.run(program, arguments)?;
         let said = String::from_utf8_lossy(&output.stderr);
         let right = !output.status.success() && said.contains(words) && tells_nothing(&output);
@@ -283,11 +235,14 @@ pub(super) fn refusals(program: &Path) -> Measured {
         }
         Ok(())
     };
-    for (case, factor, arguments, words) in REFUSED {
-        folder.write_record(
-            "record.csv",
-            &record().map(|forces| forces.map(|force| factor * force)),
-        )?;
+    for line in REFUSED.lines() {
+        let (case, rest) = line.split_once(": ").ok_or(line)?;
+        let [factor, arguments, words] = rest.split(", ").collect::<Vec<_>>()[..] else {
+            return Err(line.into());
+        };
+        let factor: f64 = factor.parse()?;
+        let forces = record().map(|forces| forces.map(|force| factor * force));
+        folder.write_record("record.csv", &forces)?;
         let arguments = arguments.replace("MAPS", MAPS);
         judge(
             case,
@@ -296,25 +251,21 @@ pub(super) fn refusals(program: &Path) -> Measured {
         )?;
     }
     for [walls, floor, words] in LOOSE {
-        let gel = Phantom::builtin("none").map(|phantom| phantom.to_toml());
-        let gel = gel.map_err(|error| error.to_string())?;
+        let gel = Phantom::builtin("none")?.to_toml();
         let support = |key: &str, held: &str| format!("{key} = {held:?}");
         let gel = gel
             .replace(&support("walls", "fixed"), &support("walls", walls))
             .replace(&support("floor", "fixed"), &support("floor", floor));
         folder.write("gel.toml", &gel)?;
         let case = format!("walls {walls}, floor {floor}");
-        judge(
-            &case,
-            "solve --phantom gel.toml --mesh-mm 2 --depths-mm 1 --laterals-mm 0",
-            words,
-        )?;
+        let solve = "solve --phantom gel.toml --mesh-mm 2 --depths-mm 1 --laterals-mm 0";
+        judge(&case, solve, words)?;
     }
     let first = wrong
         .first()
         .map_or(String::new(), |case| format!(", the first {case}"));
     Ok(figures! {
-        "cases" => count((REFUSED.len() + LOOSE.len()) as u64, 11);
+        "cases" => count((REFUSED.lines().count() + LOOSE.len()) as u64, 11);
         "cases that were not refused, or not for this reason{first}" => count(wrong.len() as u64, 0);
     })
 }
@@ -351,7 +302,7 @@ mod tests {
             ),
             ("echo no >&2; exit 2", false),
         ] {
-            let program = crate::program::tests::script("decides", text);
+            let program = crate::program::tests::script(text);
             let decided = decisions(&program);
             assert_eq!(decided.is_ok(), judged, "{decided:?}");
             for measured in decided.into_iter().chain(refusals(&program)) {

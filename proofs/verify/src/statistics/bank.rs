@@ -8,11 +8,11 @@ use palpate::detect::nuisance::NoiseLevel;
 use palpate::detect::posterior;
 
 /// BNK-040, BNK-042; BNK-031, BNK-034.
-pub(super) const CHECKS: &[Check] = &[
-    Check::new("bank_ranks_kolmogorov", ranks),
-    Check::new("bank_intervals_at_90_percent", intervals),
-    Check::new("bank_posterior_of_inclusion", reliability),
-];
+pub(super) const CHECKS: &[Check] = battery! {
+    "bank_ranks_kolmogorov" => ranks;
+    "bank_intervals_at_90_percent" => intervals;
+    "bank_posterior_of_inclusion" => reliability;
+};
 
 /// Two samples of either channel over the noise, with the inclusion at 0 and at 1; between them the signal is linear in its place,
 /// and the channels differ in that the lateral one does not depend on it.

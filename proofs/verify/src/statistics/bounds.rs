@@ -11,13 +11,13 @@ use palpate::force::Force;
 use palpate::stats::normal::{cdf, upper_tail};
 
 /// DET-053, DET-054; DET-070; DET-080.
-pub(super) const CHECKS: &[Check] = &[
-    Check::new("position_error", position_error),
-    Check::new("position_error_of_a_cut_signal", cut_position_error),
-    Check::new("mixture_false_alarms_at_5_percent", mixture_false_alarms),
-    Check::new("weber_tail_h0", |draw| weber(draw, false, 630)),
-    Check::new("weber_tail_h1", |draw| weber(draw, true, 640)),
-];
+pub(super) const CHECKS: &[Check] = battery! {
+    "position_error" => position_error;
+    "position_error_of_a_cut_signal" => cut_position_error;
+    "mixture_false_alarms_at_5_percent" => mixture_false_alarms;
+    "weber_tail_h0" => |draw| weber(draw, false, 630);
+    "weber_tail_h1" => |draw| weber(draw, true, 640);
+};
 
 const UNIT: Force<f64> = Force::new(1.0, 1.0);
 

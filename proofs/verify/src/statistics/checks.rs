@@ -26,6 +26,9 @@ impl Law {
     }
 }
 
+/// A test of significance of a sample at α.
+pub(super) type Test = fn(&[f64], Law, f64) -> Outcome<Figure>;
+
 /// Is the mean of the sample that of the law? The standardised mean is N(0, 1) exactly.
 pub(super) fn mean_test(sample: &[f64], law: Law, alpha: f64) -> Outcome<Figure> {
     let n = sample.len() as f64;

@@ -9,18 +9,14 @@ use palpate::detect::{DetectError, MatchedFilter};
 use palpate::force::Force;
 
 /// DET-040, DET-041.
-pub(super) const CHECKS: &[Check] = &[
-    Check::new("shared_noise_mean_h1", |draw| mean(draw, &SHARED)),
-    Check::new("shared_noise_variance_h0", |draw| variance(draw, &SHARED)),
-    Check::new("feedback_noise_mean_h1", |draw| mean(draw, &FEEDBACK)),
-    Check::new("feedback_noise_variance_h0", |draw| {
-        variance(draw, &FEEDBACK)
-    }),
-    Check::new("moving_average_mean_h1", |draw| mean(draw, &MOVING_AVERAGE)),
-    Check::new("moving_average_variance_h0", |draw| {
-        variance(draw, &MOVING_AVERAGE)
-    }),
-];
+pub(super) const CHECKS: &[Check] = battery! {
+    "shared_noise_mean_h1" => |draw| law(draw, &SHARED, true);
+    "shared_noise_variance_h0" => |draw| law(draw, &SHARED, false);
+    "feedback_noise_mean_h1" => |draw| law(draw, &FEEDBACK, true);
+    "feedback_noise_variance_h0" => |draw| law(draw, &FEEDBACK, false);
+    "moving_average_mean_h1" => |draw| law(draw, &MOVING_AVERAGE, true);
+    "moving_average_variance_h0" => |draw| law(draw, &MOVING_AVERAGE, false);
+};
 
 /// One kind of noise.
 struct Colour {
@@ -117,12 +113,9 @@ fn without_whitening(residual: &[f64], variance: f64) -> Result<f64, DetectError
     Ok(filter.statistic(channels(residual))?.theta)
 }
 
-fn sample(
-    draw: &Draw<'_>,
-    colour: &Colour,
-    inclusion: bool,
-    stream: u64,
-) -> Outcome<(Law, Vec<f64>)> {
+/// Has θ the mean of its law under H = 1, or its variance under H = 0?
+fn law(draw: &Draw<'_>, colour: &Colour, inclusion: bool) -> Outcome<Figure> {
+    let stream = colour.stream + if inclusion { 0 } else { 10 };
     let generator = draw.generator(stream + draw.replicate);
     let mut deviates = [0.0; 40];
     let theta = (0..draw.trials()).map(|trial| {
@@ -136,19 +129,8 @@ fn sample(
             _ => Ok(judged(colour, &residual)?.theta),
         }
     });
-    let theta = theta.collect::<Result<_, _>>()?;
-    let gamma = judged(colour, &TEMPLATE)?.gamma;
-    Ok((Law::of_theta(gamma, inclusion), theta))
-}
-
-/// Mean under H = 1.
-fn mean(draw: &Draw<'_>, colour: &Colour) -> Outcome<Figure> {
-    let (law, theta) = sample(draw, colour, true, colour.stream)?;
-    mean_test(&theta, law, draw.row.alpha)
-}
-
-/// Variance under H = 0.
-fn variance(draw: &Draw<'_>, colour: &Colour) -> Outcome<Figure> {
-    let (law, theta) = sample(draw, colour, false, colour.stream + 10)?;
-    variance_test(&theta, law, draw.row.alpha)
+    let theta: Vec<f64> = theta.collect::<Result<_, _>>()?;
+    let law = Law::of_theta(judged(colour, &TEMPLATE)?.gamma, inclusion);
+    let test = if inclusion { mean_test } else { variance_test };
+    test(&theta, law, draw.row.alpha)
 }

@@ -1,6 +1,6 @@
 //! Records in white noise, from the two forces to θ, against N(±γ²/2, γ²).
 
-use super::checks::{Law, count_test, kolmogorov_test, mean_test, tail_test, variance_test};
+use super::checks::{Law, Test, count_test, kolmogorov_test, mean_test, tail_test, variance_test};
 use super::{Check, Draw, Outcome};
 use crate::Figure;
 use palpate::detect::simulate::Simulation;
@@ -8,28 +8,22 @@ use palpate::detect::{neyman_pearson_false_alarm_threshold, neyman_pearson_miss_
 use palpate::force::Force;
 
 /// DET-015, DET-013, DET-015, DET-022, DET-025, DET-026, DET-113.
-pub(super) const CHECKS: &[Check] = &[
-    Check::new("coarse_mean_h0", |draw| mean(draw, COARSE, false, 0)),
-    Check::new("coarse_mean_h1", |draw| mean(draw, COARSE, true, 1)),
-    Check::new("coarse_variance_h0", |draw| {
-        variance(draw, COARSE, false, 2)
-    }),
-    Check::new("coarse_variance_h1", |draw| variance(draw, COARSE, true, 3)),
-    Check::new("coarse_kolmogorov_h0", |draw| kolmogorov(draw, false, 4)),
-    Check::new("coarse_kolmogorov_h1", |draw| kolmogorov(draw, true, 5)),
-    Check::new("coarse_false_alarms_at_1_percent", coarse_false_alarms),
-    Check::new("coarse_misses_at_5_percent", coarse_misses),
-    Check::new("coarse_noise_variance", coarse_noise_variance),
-    Check::new("single_mean_h1", |draw| mean(draw, SINGLE, true, 100)),
-    Check::new("single_variance_h0", |draw| {
-        variance(draw, SINGLE, false, 110)
-    }),
-    Check::new("traverse_mean_h1", |draw| mean(draw, TRAVERSE, true, 200)),
-    Check::new("traverse_variance_h0", |draw| {
-        variance(draw, TRAVERSE, false, 210)
-    }),
-    Check::new("traverse_false_alarms_at_5_percent", traverse_false_alarms),
-];
+pub(super) const CHECKS: &[Check] = battery! {
+    "coarse_mean_h0" => |draw| law(draw, COARSE, false, 0, mean_test);
+    "coarse_mean_h1" => |draw| law(draw, COARSE, true, 1, mean_test);
+    "coarse_variance_h0" => |draw| law(draw, COARSE, false, 2, variance_test);
+    "coarse_variance_h1" => |draw| law(draw, COARSE, true, 3, variance_test);
+    "coarse_kolmogorov_h0" => |draw| law(draw, COARSE, false, 4, kolmogorov_test);
+    "coarse_kolmogorov_h1" => |draw| law(draw, COARSE, true, 5, kolmogorov_test);
+    "coarse_false_alarms_at_1_percent" => coarse_false_alarms;
+    "coarse_misses_at_5_percent" => coarse_misses;
+    "coarse_noise_variance" => coarse_noise_variance;
+    "single_mean_h1" => |draw| law(draw, SINGLE, true, 100, mean_test);
+    "single_variance_h0" => |draw| law(draw, SINGLE, false, 110, variance_test);
+    "traverse_mean_h1" => |draw| law(draw, TRAVERSE, true, 200, mean_test);
+    "traverse_variance_h0" => |draw| law(draw, TRAVERSE, false, 210, variance_test);
+    "traverse_false_alarms_at_5_percent" => traverse_false_alarms;
+};
 
 /// A setting, and the distance of the streams of two replicates.
 type Series = (fn() -> Outcome<Setting>, u64);
@@ -76,12 +70,8 @@ const SAMPLES_PER_POSITION: usize = 10;
 /// 401 samples of a traverse over the inclusion 4.6 mm deep, as the paper's probe makes it: γ = 9.30.
 pub(super) fn traverse() -> Outcome<Setting> {
     let (f0, f1) = (sampled(TRAVERSE_WITHOUT)?, sampled(TRAVERSE_WITH)?);
-    let difference =
-        |(f0, f1): (&Vec<f64>, &Vec<f64>)| f0.iter().zip(f1).map(|(f0, f1)| f1 - f0).collect();
-    let template = Force::new(
-        difference((&f0.lateral, &f1.lateral)),
-        difference((&f0.normal, &f1.normal)),
-    );
+    let pairs = f0.as_ref().zip(f1.as_ref());
+    let template = pairs.map(|(f0, f1)| f0.iter().zip(f1).map(|(f0, f1)| f1 - f0).collect());
     Ok(Setting {
         f0,
         template,
@@ -116,16 +106,14 @@ fn sampled(file: &str) -> Outcome<Force<Vec<f64>>> {
 }
 
 fn forces(setting: &Setting, inclusion: bool) -> Force<Vec<f64>> {
-    let force = |f0: &[f64], template: &[f64]| {
+    let share = if inclusion { 1.0 } else { 0.0 };
+    let channels = setting.f0.as_ref().zip(setting.template.as_ref());
+    channels.map(|(f0, template)| {
         f0.iter()
             .zip(template)
-            .map(|(f0, t)| f0 + if inclusion { *t } else { 0.0 })
+            .map(|(f0, t)| f0 + share * t)
             .collect()
-    };
-    Force::new(
-        force(&setting.f0.lateral, &setting.template.lateral),
-        force(&setting.f0.normal, &setting.template.normal),
-    )
+    })
 }
 
 /// The law that θ should have, and a sample of θ from records judged by the library, or by a
@@ -197,19 +185,16 @@ fn with_defect(setting: &Setting, inclusion: bool, residual: &[f64], defect: &st
     theta
 }
 
-fn mean(draw: &Draw<'_>, series: Series, inclusion: bool, stream: u64) -> Outcome<Figure> {
+/// Has a sample of θ its law, by a test of significance?
+fn law(
+    draw: &Draw<'_>,
+    series: Series,
+    inclusion: bool,
+    stream: u64,
+    test: Test,
+) -> Outcome<Figure> {
     let (law, theta) = sample(draw, series, inclusion, stream)?;
-    mean_test(&theta, law, draw.row.alpha)
-}
-
-fn variance(draw: &Draw<'_>, series: Series, inclusion: bool, stream: u64) -> Outcome<Figure> {
-    let (law, theta) = sample(draw, series, inclusion, stream)?;
-    variance_test(&theta, law, draw.row.alpha)
-}
-
-fn kolmogorov(draw: &Draw<'_>, inclusion: bool, stream: u64) -> Outcome<Figure> {
-    let (law, theta) = sample(draw, COARSE, inclusion, stream)?;
-    kolmogorov_test(&theta, law, draw.row.alpha)
+    test(&theta, law, draw.row.alpha)
 }
 
 /// The noise of each of a record's 16 samples, which tells of its variance what θ, one number a record, tells with 16 times the trials.
@@ -260,13 +245,14 @@ mod tests {
 
     #[test]
     fn the_plain_detector_without_a_defect_is_the_library() {
-        let row = crate::statistics::ledger::row("traverse_mean_h1").unwrap();
+        let mut rows = crate::statistics::ledger::ROWS.iter();
+        let row = rows.find(|row| row.name == "traverse_mean_h1").unwrap();
         let thetas = |defect| {
             let draw = Draw {
                 seed: 5,
                 defect,
                 replicate: 0,
-                row: &row,
+                row,
             };
             sample(&draw, COARSE, true, 0).unwrap().1
         };

@@ -6,15 +6,13 @@ use crate::Figure;
 use palpate::stats::normal::upper_tail;
 
 /// DET-111, DET-110.
-pub(super) const CHECKS: &[Check] = &[
-    Check::new("generator_kolmogorov", standard_normal),
-    Check::new("generator_tails_beyond_4", tails),
+pub(super) const CHECKS: &[Check] = battery! {
+    "generator_kolmogorov" => standard_normal;
+    "generator_tails_beyond_4" => tails;
     // Neighbours within a trial, and the same place in two trials.
-    Check::new("generator_signs_of_neighbours", |draw| {
-        signs(draw, 520, (0, 1))
-    }),
-    Check::new("generator_signs_of_trials", |draw| signs(draw, 530, (1, 0))),
-];
+    "generator_signs_of_neighbours" => |draw| signs(draw, 520, (0, 1));
+    "generator_signs_of_trials" => |draw| signs(draw, 530, (1, 0));
+};
 
 fn deviates(draw: &Draw<'_>, stream: u64) -> Vec<f64> {
     let mut deviates = vec![0.0; draw.row.trials];

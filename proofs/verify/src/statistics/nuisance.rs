@@ -15,25 +15,15 @@ use palpate::stats::normal::cdf;
 
 /// NUI-016; NUI-016, DET-130; NUI-016, DET-130; NUI-014, NUI-013, NUI-014; NUI-020. All but the last also NUI-001, NUI-003,
 /// NUI-003, NUI-008.
-pub(super) const CHECKS: &[Check] = &[
-    Check::new("nuisance_t_kolmogorov", |draw| law(draw, LONG, t, 700)),
-    Check::new("nuisance_residual_kolmogorov", |draw| {
-        law(draw, SHORT, residual, 710)
-    }),
-    Check::new("nuisance_student_kolmogorov", |draw| {
-        law(draw, SHORT, studentised, 720)
-    }),
-    Check::new("nuisance_f_kolmogorov", |draw| {
-        law(draw, SHORT, squared, 730)
-    }),
-    Check::new("nuisance_errors_of_known_level", |draw| {
-        errors(draw, NoiseLevel::Known, 740)
-    }),
-    Check::new("nuisance_errors_of_unknown_level", |draw| {
-        errors(draw, NoiseLevel::Unknown, 750)
-    }),
-    Check::new("ljung_box_at_5_percent", ljung_box_rate),
-];
+pub(super) const CHECKS: &[Check] = battery! {
+    "nuisance_t_kolmogorov" => |draw| law(draw, LONG, t, 700);
+    "nuisance_residual_kolmogorov" => |draw| law(draw, SHORT, residual, 710);
+    "nuisance_student_kolmogorov" => |draw| law(draw, SHORT, studentised, 720);
+    "nuisance_f_kolmogorov" => |draw| law(draw, SHORT, squared, 730);
+    "nuisance_errors_of_known_level" => |draw| errors(draw, NoiseLevel::Known, 740);
+    "nuisance_errors_of_unknown_level" => |draw| errors(draw, NoiseLevel::Unknown, 750);
+    "ljung_box_at_5_percent" => ljung_box_rate;
+};
 
 /// One sample of the traverse in so many: 41 a channel, γ = 9.17, or 5 a channel, γ = 3.19, which leave 4 degrees of freedom.
 const LONG: usize = 10;
