@@ -1,23 +1,31 @@
 //! `palpate-verify`.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+use serde_json::Value;
 
 /// Runs the command with a folder of its own.
 fn verify(folder: &str, arguments: &[&str]) -> (Output, PathBuf) {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+    verify_on("0", folder, arguments)
+}
+
+/// The same on so many threads; 0 for one a processor.
+fn verify_on(threads: &str, folder: &str, arguments: &[&str]) -> (Output, PathBuf) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("verify")
         .join(folder);
     let _ = fs::remove_dir_all(&folder);
     let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-verify"));
-    let output = command
-        .args(arguments)
-        .arg("--out")
-        .arg(&folder)
-        .output()
-        .unwrap();
+    command.args(arguments).arg("--out").arg(&folder);
+    let output = command.env("RAYON_NUM_THREADS", threads).output().unwrap();
     (output, folder)
+}
+
+fn evidence(folder: &Path) -> Value {
+    let text = fs::read_to_string(folder.join("evidence.json")).unwrap();
+    serde_json::from_str(&text).unwrap()
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -42,11 +50,10 @@ fn a_soak_says_its_seed_and_the_probability_of_a_false_failure() {
     );
     // No progress bar in a pipe.
     assert!(output.stderr.is_empty());
-    let evidence: serde_json::Value =
-        serde_json::from_str(&fs::read_to_string(folder.join("evidence.json")).unwrap()).unwrap();
+    let evidence = evidence(&folder);
     assert_eq!(evidence["verdict"], "partial");
     assert_eq!(evidence["soak"]["seed"], u64::MAX);
-    assert_eq!(evidence["soak"]["failure"], serde_json::Value::Null);
+    assert_eq!(evidence["soak"]["failure"], Value::Null);
 }
 
 #[test]
@@ -57,17 +64,14 @@ fn the_statistics_give_all_files() {
         text(&output.stdout).starts_with("statistics: 39 of 39 checks passed\nrates: not run\n")
     );
     let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
-    let evidence: serde_json::Value = serde_json::from_str(&read("evidence.json")).unwrap();
+    let evidence = evidence(&folder);
     assert_eq!(evidence["checks"].as_array().unwrap().len(), 39);
     assert_eq!(evidence["verdict"], "partial");
     assert_eq!(evidence["parts_left_out"].as_array().unwrap().len(), 5);
     // The heads alone: no test run was given.
-    assert!(
-        ["requirements.csv", "test-runs.csv"]
-            .iter()
-            .all(|name| read(name).lines().count() == 1)
-    );
-    assert_eq!(evidence["requirements"], serde_json::Value::Null);
+    let heads = ["requirements.csv", "test-runs.csv"].map(|name| read(name).lines().count());
+    assert_eq!(heads, [1, 1]);
+    assert_eq!(evidence["requirements"], Value::Null);
     assert!(read("dossier.html").contains("not run: rates, program, fem, kernel, timing"));
 }
 
@@ -108,22 +112,11 @@ fn a_test_run_is_joined_to_the_requirements() {
 #[test]
 fn the_same_build_gives_the_same_evidence_with_any_number_of_threads() {
     let evidence = |threads: &str| {
-        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
-            .join("verify")
-            .join(threads);
-        let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-verify"));
-        command
-            .args(["--only", "rates", "--out"])
-            .arg(&folder)
-            .env("RAYON_NUM_THREADS", threads);
-        assert!(command.output().unwrap().status.success());
-        let text = fs::read_to_string(folder.join("evidence.json")).unwrap();
-        let mut evidence: serde_json::Value = serde_json::from_str(&text).unwrap();
-        evidence
-            .as_object_mut()
-            .unwrap()
-            .remove("measured_here")
-            .unwrap();
+        let (output, folder) = verify_on(threads, threads, &["--only", "rates"]);
+        assert!(output.status.success(), "{output:?}");
+        let mut evidence = evidence(&folder);
+        let keys = evidence.as_object_mut().unwrap();
+        keys.remove("measured_here").unwrap();
         evidence
     };
     assert_eq!(evidence("1"), evidence("3"));
@@ -158,11 +151,8 @@ fn a_folder_that_cannot_be_made_is_told_before_the_work() {
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("verify-file");
     fs::write(&file, "").unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-verify"));
-    let output = command
-        .arg("--out")
-        .arg(file.join("folder"))
-        .output()
-        .unwrap();
+    let output = command.arg("--out").arg(file.join("folder")).output();
+    let output = output.unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(
         text(&output.stderr).starts_with("palpate-verify: make folder "),

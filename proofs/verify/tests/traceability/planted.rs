@@ -129,48 +129,42 @@ fn sound() -> Traceability {
 fn a_sound_repository_has_its_evidence() {
     let found = sound();
     assert_eq!(listed(&found.problems), "");
-    let row = |[id, text, code, tests, proofs, vectors]: [&str; 6]| {
-        let names = |text: &str| {
+    let row = |line: &str| {
+        let [id, text, code, tests, proofs, vectors] = cells(line);
+        let names = |text: String| {
             let names = text.split("; ").filter(|name| !name.is_empty());
             names.map(String::from).collect()
         };
         Requirement {
-            id: id.into(),
+            id,
             chapter: "a.md".into(),
-            text: text.into(),
+            text,
             code: names(code),
             tests: names(tests),
             proofs: names(proofs),
             vectors: names(vectors),
         }
     };
-    let rows = [
-        [
-            "AAA-001",
-            "It MUST be right, always.",
-            "src/lib.rs One::it",
-            "small-one deep::tests::holds; small-one::slow cases::by_macro; tests/hid-stack/run held_up",
-            "",
-            "vectors/kind.json",
-        ],
-        [
-            "AAA-002",
-            "So MUST that.",
-            "src/lib.rs One::it",
-            "small-one deep::any; small-one::slow cases::named; small-one::slow waits; tests/hid-stack/run lost",
-            "",
-            "",
-        ],
-        [
-            "AAA-003",
-            "printed | true",
-            "src/lib.rs",
-            "benches/quick.rs",
-            "proofs/bound.g",
-            "",
-        ],
-    ];
-    assert_eq!(found.requirements, rows.map(row));
+    let rows: Vec<Requirement> = ROWS.trim().lines().map(row).collect();
+    assert_eq!(found.requirements, rows);
+}
+
+/// The requirements of the sound repository: id, text, code, tests, proofs and vectors.
+const ROWS: &str = "
+AAA-001 ¦ It MUST be right, always. ¦ src/lib.rs One::it ¦ small-one deep::tests::holds; small-one::slow cases::by_macro; tests/hid-stack/run held_up ¦  ¦ vectors/kind.json
+AAA-002 ¦ So MUST that. ¦ src/lib.rs One::it ¦ small-one deep::any; small-one::slow cases::named; small-one::slow waits; tests/hid-stack/run lost ¦  ¦
+AAA-003 ¦ printed | true ¦ src/lib.rs ¦ benches/quick.rs ¦ proofs/bound.g ¦
+";
+
+/// The cells of a row. `\n` is a line's end, `\t` a tab.
+fn cells<const N: usize>(row: &str) -> [String; N] {
+    let cells = row.split('¦').map(|cell| {
+        let cell = cell.strip_prefix(' ').unwrap_or(cell);
+        let cell = cell.strip_suffix(' ').unwrap_or(cell);
+        cell.replace("\\n", "\n").replace("\\t", "\t")
+    });
+    let cells: Vec<String> = cells.collect();
+    cells.try_into().unwrap_or_else(|_| panic!("{row}"))
 }
 
 /// Faults, a line each: a file, a text in it, what stands there instead, and what is found. `\n` is a line's end.
@@ -206,13 +200,9 @@ tests/slow/cases.rs ¦ {V} ¦ {P} ¦ tests/slow/cases.rs:1: "Proves:" stands in 
 #[test]
 fn a_planted_fault_is_named_with_its_place() {
     for line in FAULTS.trim().lines() {
-        let parts = line.split(" ¦ ").map(|part| part.replace("\\n", "\n"));
-        let parts: Vec<String> = parts.collect();
-        let [path, from, to, found] = &parts[..] else {
-            panic!("{line}");
-        };
-        let problems = listed(&changed(path, from, to).problems);
-        let named = problems.contains(&format!("\n{}", words(found)));
+        let [path, from, to, found] = cells(line);
+        let problems = listed(&changed(&path, &from, &to).problems);
+        let named = problems.contains(&format!("\n{}", words(&found)));
         assert!(named, "{line}: {problems}");
     }
 }
@@ -282,12 +272,8 @@ fn a_test_that_did_not_pass_is_named_with_its_requirements() {
     let missing = |from: &str, to: &str| results(from, to).missing(&sound()).join(", ");
     assert_eq!(missing("Debian", "another"), "");
     for line in MISSED.trim().lines() {
-        let parts = line.split(" ¦ ").map(|part| part.replace("\\t", "\t"));
-        let parts: Vec<String> = parts.collect();
-        let [from, to, found] = &parts[..] else {
-            panic!("{line}");
-        };
-        assert_eq!(missing(from, to), *found, "{from}");
+        let [from, to, found] = cells(line);
+        assert_eq!(missing(&from, &to), found, "{from}");
     }
 }
 
@@ -299,24 +285,15 @@ fn what_is_left_to_the_night_is_not_missed_by_day() {
         results.missing(&sound()).len()
     };
     assert_eq!(missing(""), 1);
-    for (command, number) in [
-        (
-            "cargo nextest run --release -p other -p small-one --run-ignored only",
-            0,
-        ),
-        ("cargo nextest run --test slow --run-ignored only", 0),
-        ("cargo nextest run -p small-one", 1),
-        ("cargo nextest run -p small --run-ignored only", 1),
-        (
-            "cargo nextest run -p small-one --test quick --run-ignored only",
-            1,
-        ),
+    for (options, number) in [
+        ("--release -p other -p small-one --run-ignored only", 0),
+        ("--test slow --run-ignored only", 0),
+        ("-p small-one", 1),
+        ("-p small --run-ignored only", 1),
+        ("-p small-one --test quick --run-ignored only", 1),
     ] {
-        assert_eq!(
-            missing(&format!("left\t\t{command}\n")),
-            number,
-            "{command}"
-        );
+        let left = format!("left\t\tcargo nextest run {options}\n");
+        assert_eq!(missing(&left), number, "{options}");
     }
     let left = results("passed\t60", "left\t").missing(&sound());
     assert_eq!(left, [""; 0]);
@@ -339,30 +316,26 @@ fn the_test_run_has_what_became_of_each_test_and_who_ran_it() {
     results.add_steps(left).expect("three columns");
     let traceability = sound();
     let run: TestRun = results.test_run(&traceability);
-    assert_eq!(
-        (&*run.commit, &*run.system, &*run.ended),
-        ("0123", "Debian", "not known")
-    );
+    let facts = [&*run.commit, &*run.system, &*run.ended];
+    assert_eq!(facts, ["0123", "Debian", "not known"]);
     let text = [STEPS, TESTS[0], &TESTS[1].replace("waits", "other"), left].concat();
     assert_eq!(run.results_sha256, palpate_conform::sha256(text));
     assert_eq!(run.requirements, traceability.requirements);
-    let entry = |name: &str| {
+    for (name, result, seconds) in [
+        ("small-one deep::tests::holds", End::Passed, Some(0.25)),
+        ("small-one::slow other", End::Passed, Some(2.5)),
+        ("small-one::slow waits", End::Ignored, None),
+        ("proofs/bound.g", End::Passed, Some(7.0)),
+        ("gappa proofs/bound.g", End::Passed, Some(7.0)),
+        ("tests/hid-stack/run lost", End::Passed, Some(60.0)),
+        ("tests/same_bits/run", End::Left, None),
+    ] {
         let found = run.entries.iter().filter(|entry| entry.name == name);
         let [entry] = found.collect::<Vec<_>>()[..] else {
             panic!("{name}");
         };
-        (entry.result, entry.seconds)
-    };
-    assert_eq!(
-        entry("small-one deep::tests::holds"),
-        (End::Passed, Some(0.25))
-    );
-    assert_eq!(entry("small-one::slow other"), (End::Passed, Some(2.5)));
-    assert_eq!(entry("small-one::slow waits"), (End::Ignored, None));
-    assert_eq!(entry("proofs/bound.g"), (End::Passed, Some(7.0)));
-    assert_eq!(entry("gappa proofs/bound.g"), (End::Passed, Some(7.0)));
-    assert_eq!(entry("tests/hid-stack/run lost"), (End::Passed, Some(60.0)));
-    assert_eq!(entry("tests/same_bits/run"), (End::Left, None));
+        assert_eq!((entry.result, entry.seconds), (result, seconds), "{name}");
+    }
 }
 
 #[test]
