@@ -33,17 +33,14 @@ impl Program {
     /// Implements: ORA-048.
     pub fn of_command(command: &[OsString], version: String) -> Program {
         let text = |word: &OsString| word.to_string_lossy().into_owned();
-        let (program, arguments) = command.split_at(command.len().min(1));
-        let program = program
-            .iter()
-            .map(|word| file(text(word), &found(Path::new(word))));
-        let arguments = arguments
-            .iter()
-            .map(|word| file(text(word), Path::new(word)));
+        let file_of = |(index, word): (usize, &OsString)| match index {
+            0 => file(text(word), &found(Path::new(word))),
+            _ => file(text(word), Path::new(word)),
+        };
         Program {
             command: command.iter().map(text).collect(),
             version,
-            files: program.chain(arguments).flatten().collect(),
+            files: command.iter().enumerate().filter_map(file_of).collect(),
         }
     }
 

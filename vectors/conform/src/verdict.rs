@@ -140,11 +140,6 @@ impl Verdict {
         });
     }
 
-    /// The sum of one column over the groups.
-    pub fn total(&self, column: impl Fn(&Counts) -> usize) -> usize {
-        self.groups.iter().map(|group| column(&group.counts)).sum()
-    }
-
     /// Why the program fails, if it does. That it refuses lines which everybody must refuse shows nothing: one of its ops must have been
     /// asked, if these vectors have any.
     ///
