@@ -57,6 +57,14 @@ impl Refusal {
         move |reason| Refusal::state(format!("{what}: {reason}"), "")
     }
 
+    /// This refusal as an error where something is so: `Refusal::state("no maps", "").when(maps.is_empty())?`.
+    ///
+    /// # Errors
+    /// Itself, if `is_wrong`.
+    pub fn when(self, is_wrong: bool) -> Result<(), Refusal> {
+        if is_wrong { Err(self) } else { Ok(()) }
+    }
+
     /// The same in a line, from 1.
     pub fn at(self, line: usize) -> Refusal {
         let line = Some(line);

@@ -94,17 +94,14 @@ impl Mesh {
     /// The sizes of the elements, and about how many nodes they make.
     fn forecast(phantom: &Phantom, size: f64) -> Result<(SizeField, f64), FemError> {
         let asked = format!("mesh size {} mm", size * 1e3);
-        if !(size > 0.0 && size.is_finite()) {
-            return Err(Refusal::state(asked, "a finite number above 0").into());
-        }
+        let is_right = size > 0.0 && size.is_finite();
+        Refusal::state(&asked, "a finite number above 0").when(!is_right)?;
         let field = SizeField::new(phantom, size);
         let nodes = field.expected_nodes();
-        if nodes > MOST_NODES {
-            let found = format!(
-                "{asked} makes about {nodes:.0} nodes, allowed: at most {MOST_NODES}; a larger size makes fewer"
-            );
-            return Err(Refusal::state(found, "").into());
-        }
+        let found = format!(
+            "{asked} makes about {nodes:.0} nodes, allowed: at most {MOST_NODES}; a larger size makes fewer"
+        );
+        Refusal::state(found, "").when(nodes > MOST_NODES)?;
         Ok((field, nodes))
     }
 

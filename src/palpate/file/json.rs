@@ -32,18 +32,11 @@ pub fn to_json(document: &impl Serialize) -> String {
 /// this program does not know.
 pub fn check_schema(text: &str, schema: &str, version: u64) -> Result<(), Refusal> {
     let header: Header = from_json(text)?;
-    let refused = |key, found: Value, expected| {
-        let found = shortened(&found.to_string());
-        Err(Refusal::value(key, found, expected))
-    };
-    if header.schema != schema {
-        return refused("schema", header.schema, format!("{schema:?}"));
-    }
-    if header.schema_version != version {
-        let expected = format!("{version}, which is what this program reads");
-        return refused("schema_version", header.schema_version, expected);
-    }
-    Ok(())
+    let found = shortened(&header.schema.to_string());
+    Refusal::value("schema", found, format!("{schema:?}")).when(header.schema != schema)?;
+    let found = shortened(&header.schema_version.to_string());
+    let expected = format!("{version}, which is what this program reads");
+    Refusal::value("schema_version", found, expected).when(header.schema_version != version)
 }
 
 /// What serde reads from `text`, JSON.
@@ -63,7 +56,7 @@ pub fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, Refusal> {
 }
 
 /// What serde_json says, without the place.
-fn message(error: &serde_json::Error) -> String {
+pub(crate) fn message(error: &serde_json::Error) -> String {
     let place = format!(" at line {} column {}", error.line(), error.column());
     let message = error.to_string();
     message.strip_suffix(&place).unwrap_or(&message).into()

@@ -44,13 +44,10 @@ impl Window {
         let end = laterals
             .partition_point(|x| *x <= middle + reach)
             .max(at + 1);
-        if end - start < FEWEST {
-            let (count, position) = (end - start, laterals[at]);
-            let found =
-                format!("{count} lateral positions are within {half_width} m of {position} m");
-            let expected = format!("at least {FEWEST} for a parabola to smooth");
-            return Err(Refusal::state(found, expected));
-        }
+        let (count, position) = (end - start, laterals[at]);
+        let found = format!("{count} lateral positions are within {half_width} m of {position} m");
+        let expected = format!("at least {FEWEST} for a parabola to smooth");
+        Refusal::state(found, expected).when(count < FEWEST)?;
         let powers = |row: usize, power| {
             let x = (laterals[start + row] - laterals[at]) / half;
             [1.0, x, x * x][power]
@@ -81,10 +78,9 @@ impl ForceTable {
     ///
     /// Implements: MAP-070, MAP-071, MAP-073.
     pub fn smoothed(&self, half_width: f64) -> Result<Smoothed, Refusal> {
-        if !(half_width > 0.0 && half_width.is_finite()) {
-            let expected = "a finite number of metres above 0";
-            return Err(Refusal::value("half-width", half_width, expected));
-        }
+        let is_right = half_width > 0.0 && half_width.is_finite();
+        let expected = "a finite number of metres above 0";
+        Refusal::value("half-width", half_width, expected).when(!is_right)?;
         let (depths, laterals) = (self.depths(), self.laterals());
         let window = |at| Window::new(laterals, at, half_width);
         let windows = (0..laterals.len())

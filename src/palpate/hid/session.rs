@@ -137,33 +137,23 @@ fn as_it_is(error: impl fmt::Display) -> Refusal {
 /// Refuses a device that could leave a force on the hand, or that does not make these limits.
 fn check(capabilities: &Capabilities, limits: &Limits) -> Result<(), Refusal> {
     let (watchdog_ms, period_us) = (capabilities.watchdog_ms, capabilities.period_us);
-    if period_us == 0 {
-        let found = "the device reports every 0 µs";
-        return Err(Refusal::state(found, "at least 1"));
-    }
+    Refusal::state("the device reports every 0 µs", "at least 1").when(period_us == 0)?;
     let waits_us = u32::from(watchdog_ms) * 1000;
-    if waits_us <= u32::from(period_us) || watchdog_ms > LONGEST_WATCHDOG_MS {
-        return Err(Refusal::state(
-            format_args!("the device drops its force after {watchdog_ms} ms without a report"),
-            format!(
-                "more than its period of {period_us} µs and at most {LONGEST_WATCHDOG_MS} ms: \
-                 a blocked write would leave the force on the hand"
-            ),
-        ));
-    }
+    let found = format!("the device drops its force after {watchdog_ms} ms without a report");
+    let expected = format!(
+        "more than its period of {period_us} µs and at most {LONGEST_WATCHDOG_MS} ms: \
+         a blocked write would leave the force on the hand"
+    );
+    let is_wrong = waits_us <= u32::from(period_us) || watchdog_ms > LONGEST_WATCHDOG_MS;
+    Refusal::state(found, expected).when(is_wrong)?;
     let (unit, slew) = (f32::from(capabilities.force_unit_un) / 1e6, limits.slew());
-    if unit > slew {
-        let found = format_args!("the device's force unit is {unit} N");
-        let expected = format!("at most the slew limit of {slew} N");
-        return Err(Refusal::state(found, expected));
-    }
+    let found = format!("the device's force unit is {unit} N");
+    let expected = format!("at most the slew limit of {slew} N");
+    Refusal::state(found, expected).when(unit > slew)?;
     let largest = f32::from(capabilities.largest_force_mn) / 1e3;
-    if limits.force() > largest {
-        let found = format_args!("a force limit of {} N", limits.force());
-        let expected = format!("at most {largest} N, the device's largest force");
-        return Err(Refusal::state(found, expected));
-    }
-    Ok(())
+    let found = format!("a force limit of {} N", limits.force());
+    let expected = format!("at most {largest} N, the device's largest force");
+    Refusal::state(found, expected).when(limits.force() > largest)
 }
 
 impl<'a, D: HapticDevice> Session<'a, D> {
