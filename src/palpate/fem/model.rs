@@ -10,7 +10,7 @@ use super::size::SizeField;
 use super::{FemError, Pose, arithmetic};
 use crate::force::Force;
 use crate::force_map::{
-    Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source, check_axes,
+    Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source, check_axes, increasing,
 };
 use crate::phantom::Phantom;
 
@@ -356,9 +356,7 @@ impl Model {
             solved.push(0.0);
             solved.iter_mut().for_each(|x| *x = x.abs());
         }
-        solved.sort_by(f64::total_cmp);
-        solved.dedup();
-        solved
+        increasing(solved.into_iter())
     }
 
     fn certificate(

@@ -65,6 +65,18 @@ pub struct Discretization {
 }
 
 impl Discretization {
+    /// Whether the bands are finite, at least 0, and of the `shape` of the forces.
+    ///
+    /// Implements: MAP-006, MAP-002.
+    pub(super) fn check(&self, shape: [usize; 2]) -> Result<(), Refusal> {
+        let (normal, lateral) = (&self.normal_force_band, &self.lateral_force_band);
+        for (channel, band) in [("normal", normal), ("lateral", lateral)] {
+            let key = format!("certificate.discretization.{channel}_force_band_n");
+            band.check(&key, shape, 0.0)?;
+        }
+        Ok(())
+    }
+
     /// The largest half band of a normal and of a lateral force, N.
     pub fn largest(&self) -> [f64; 2] {
         [&self.normal_force_band, &self.lateral_force_band]
@@ -84,20 +96,6 @@ pub struct SmallestDet {
     /// Lateral position of the probe, m.
     #[serde(rename = "lateral_m")]
     pub lateral: f64,
-}
-
-impl Discretization {
-    /// Whether the bands are finite, at least 0, and of the `shape` of the forces.
-    ///
-    /// Implements: MAP-006, MAP-002.
-    pub(super) fn check(&self, shape: [usize; 2]) -> Result<(), Refusal> {
-        let (normal, lateral) = (&self.normal_force_band, &self.lateral_force_band);
-        for (channel, band) in [("normal", normal), ("lateral", lateral)] {
-            let key = format!("certificate.discretization.{channel}_force_band_n");
-            band.check(&key, shape, 0.0)?;
-        }
-        Ok(())
-    }
 }
 
 impl SmallestDet {

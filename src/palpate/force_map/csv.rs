@@ -1,6 +1,6 @@
 //! Measured force maps as CSV (`spec/force-map.md`).
 
-use super::{ForceMap, ForceTable, Matrix, Measurement, Source};
+use super::{ForceMap, ForceTable, Matrix, Measurement, Source, increasing};
 use crate::csv::{Column, Rows};
 use crate::decimal::{format_scaled, mm};
 use crate::force::Force;
@@ -129,12 +129,7 @@ fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>) -> Result<ForceTable, Refusal> {
             return Err(Refusal::state(found, expected).at(*line));
         }
     }
-    let axis = |column: usize| {
-        let mut axis: Vec<f64> = rows.iter().map(|(_, row)| row[column]).collect();
-        axis.sort_by(f64::total_cmp);
-        axis.dedup();
-        axis
-    };
+    let axis = |column: usize| increasing(rows.iter().map(|(_, row)| row[column]));
     let (depths, laterals) = (axis(0), axis(1));
     let mut rest = rows.iter().peekable();
     for &depth in &depths {

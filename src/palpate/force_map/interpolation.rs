@@ -4,15 +4,6 @@ use super::{ForceTable, Matrix, SAME_POSITION};
 use crate::force::Force;
 use crate::refusal::Refusal;
 
-/// What stands beyond the ends of an axis.
-#[derive(Clone, Copy)]
-enum Beyond {
-    /// The cell at the border, continued.
-    Continued,
-    /// Nothing, from [`SAME_POSITION`] on; within it of an entry stands that entry.
-    Nothing,
-}
-
 /// Where a position lies on an axis: between two entries, or at one that then stands twice.
 #[derive(Clone, Copy)]
 struct Place {
@@ -22,23 +13,27 @@ struct Place {
 }
 
 impl Place {
-    /// The place of `position` (m) on an increasing axis, of at least two entries where it is continued. `None` if nothing stands
-    /// there, or the cell is wider than the largest number, so that no fraction has a meaning.
-    fn locate(axis: &[f64], position: f64, beyond: Beyond) -> Option<Place> {
-        let next = match beyond {
-            Beyond::Continued => axis
-                .partition_point(|&entry| entry <= position)
-                .clamp(1, axis.len() - 1),
-            Beyond::Nothing => {
-                // The first entry that is the position or lies beyond it.
-                let next = axis.partition_point(|&entry| entry < position - SAME_POSITION);
-                if *axis.get(next)? <= position + SAME_POSITION {
-                    let (entries, fraction) = ([next; 2], 0.0);
-                    return Some(Place { entries, fraction });
-                }
-                next
-            }
-        };
+    /// The place of `position` (m) on an increasing axis of at least two entries, whose border cells are continued. `None` where it has
+    /// no meaning.
+    fn continued(axis: &[f64], position: f64) -> Option<Place> {
+        let next = axis.partition_point(|&entry| entry <= position);
+        Place::before(axis, next.clamp(1, axis.len() - 1), position)
+    }
+
+    /// The place of `position` (m) on an increasing axis: within [`SAME_POSITION`] of an entry that entry, and `None` beyond the ends.
+    fn within(axis: &[f64], position: f64) -> Option<Place> {
+        // The first entry that is the position or lies beyond it.
+        let next = axis.partition_point(|&entry| entry < position - SAME_POSITION);
+        if *axis.get(next)? <= position + SAME_POSITION {
+            let (entries, fraction) = ([next; 2], 0.0);
+            return Some(Place { entries, fraction });
+        }
+        Place::before(axis, next, position)
+    }
+
+    /// The place in the cell before entry `next`. `None` if there is none, or it is wider than the largest number, so that no fraction
+    /// has a meaning.
+    fn before(axis: &[f64], next: usize, position: f64) -> Option<Place> {
         let index = next.checked_sub(1)?;
         let (start, end) = (axis[index], axis[next]);
         let (entries, fraction) = ([index, next], (position - start) / (end - start));
@@ -95,7 +90,7 @@ impl ForceTable {
     /// Implements: TRC-021, TRC-024.
     pub fn sweep(&self, depth: f64, positions: &[f64]) -> Result<Force<Vec<f64>>, Refusal> {
         let place = |name: &str, axis: &[f64], position: f64| {
-            let place = Place::locate(axis, position, Beyond::Nothing);
+            let place = Place::within(axis, position);
             place.ok_or_else(|| {
                 let found = format!("{name} {position} m is outside the map");
                 Refusal::state(found, format!("{} to {} m", axis[0], axis[axis.len() - 1]))
@@ -126,8 +121,8 @@ pub fn interpolate(
     depth: f64,
     lateral: f64,
 ) -> Option<f64> {
-    let row = Place::locate(depths, depth, Beyond::Continued)?;
-    let column = Place::locate(laterals, lateral, Beyond::Continued)?;
+    let row = Place::continued(depths, depth)?;
+    let column = Place::continued(laterals, lateral)?;
     let value = row.blend(|row| column.blend(|column| matrix.row(row)[column]));
     value.is_finite().then_some(value)
 }

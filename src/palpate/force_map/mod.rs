@@ -45,10 +45,10 @@ pub use certificate::{Certificate, Discretization, SmallestDet};
 pub use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use pair::Hypotheses;
-pub use pair::check_gel;
+pub(crate) use pair::check_gel;
 pub use smoothing::Smoothed;
-pub(crate) use table::check_axes;
 pub use table::{ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE, peak};
+pub(crate) use table::{check_axes, increasing};
 
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
@@ -160,17 +160,14 @@ impl ForceMap {
         match &source {
             Source::FiniteElements { certificate } => {
                 certificate.check(table.depths(), table.laterals())?;
-                if phantom.is_none() {
-                    let expected = "the phantom that the finite elements computed";
-                    return Err(Refusal::state("phantom is missing", expected));
-                }
+                let expected = "the phantom that the finite elements computed";
+                Refusal::state("phantom is missing", expected).when(phantom.is_none())?;
             }
             Source::Measured(of) => {
-                if let Some(width) = of.smoothed_half_width
-                    && !(width > 0.0 && width.is_finite())
-                {
+                if let Some(width) = of.smoothed_half_width {
+                    let is_right = width > 0.0 && width.is_finite();
                     let key = "source.smoothed_half_width_m";
-                    return Err(Refusal::value(key, width, "a finite number above 0"));
+                    Refusal::value(key, width, "a finite number above 0").when(!is_right)?;
                 }
             }
         }

@@ -74,34 +74,26 @@ impl<'a> Hypotheses<'a> {
 ///
 /// # Errors
 /// The first key whose values differ, with both.
-pub fn check_gel(without: &ForceMap, with: &ForceMap) -> Result<(), Refusal> {
-    let refused = |reason: String| Err(Refusal::state(reason, ""));
+pub(crate) fn check_gel(without: &ForceMap, with: &ForceMap) -> Result<(), Refusal> {
     let inclusions = |map: &ForceMap| map.phantom().map(|phantom| phantom.inclusions().len());
-    match (inclusions(without), inclusions(with)) {
+    let wrong = match (inclusions(without), inclusions(with)) {
         (Some(1..), Some(0)) => {
-            return refused(
-                "the maps are swapped: only the reference map contains an inclusion".into(),
-            );
+            "the maps are swapped: only the reference map contains an inclusion"
         }
-        (Some(1..), _) => {
-            return refused(
-                "the reference map already contains an inclusion; give a map without one".into(),
-            );
-        }
+        (Some(1..), _) => "the reference map already contains an inclusion; give a map without one",
         (_, Some(0)) => {
-            return refused(
-                "the map has no inclusion to compare with the reference; give a map with one"
-                    .into(),
-            );
+            "the map has no inclusion to compare with the reference; give a map with one"
         }
-        _ => {}
-    }
-    match first_difference("", &circumstances(without), &circumstances(with)) {
-        None => Ok(()),
-        Some((key, reference, inclusion)) => refused(format!(
+        _ => "",
+    };
+    Refusal::state(wrong, "").when(!wrong.is_empty())?;
+    let different = first_difference("", &circumstances(without), &circumstances(with));
+    different.map_or(Ok(()), |(key, reference, inclusion)| {
+        let found = format!(
             "{key} is {inclusion}, but {reference} in the reference map; only the inclusions may differ"
-        )),
-    }
+        );
+        Err(Refusal::state(found, ""))
+    })
 }
 
 /// All but the inclusions that a force depends on, as in the file; null where the map does not say.

@@ -96,13 +96,13 @@ impl Matrix {
     /// Refuses this matrix under `key` if it has not the `shape` of the axes, or an entry that is not finite or below `least`.
     pub(super) fn check(&self, key: &str, shape: [usize; 2], least: f64) -> Result<(), Refusal> {
         let [rows, columns] = [self.row_count(), self.column_count()];
-        if shape != [rows, columns] {
-            let found = format!("{key} has {rows} rows and {columns} columns");
-            let [rows, columns] = shape;
-            let expected = format!("{rows} rows (one a depth)");
-            let expected = format!("{expected} and {columns} columns (one a lateral position)");
-            return Err(Refusal::state(found, expected));
-        }
+        let found = format!("{key} has {rows} rows and {columns} columns");
+        let expected = format!("{} rows (one a depth)", shape[0]);
+        let expected = format!(
+            "{expected} and {} columns (one a lateral position)",
+            shape[1]
+        );
+        Refusal::state(found, expected).when(shape != [rows, columns])?;
         self.entries().try_for_each(|(row, column, value)| {
             check_number(format_args!("{key}[{row}][{column}]"), value, least)
         })
@@ -236,18 +236,14 @@ impl ForceTable {
     ///
     /// Implements: MAP-009.
     pub fn mirrored(&self) -> Result<ForceTable, Refusal> {
-        if self.laterals[0] != 0.0 {
-            let expected = "0 in a map to be extended by symmetry";
-            return Err(Refusal::value("laterals_m[0]", self.laterals[0], expected));
-        }
+        let first = self.laterals[0];
+        let expected = "0 in a map to be extended by symmetry";
+        Refusal::value("laterals_m[0]", first, expected).when(first != 0.0)?;
         for (depth, forces) in self.depths.iter().zip(self.forces.lateral.rows()) {
             let force = forces[0];
-            if force.abs() > SYMMETRY_TOLERANCE {
-                return Err(Refusal::state(
-                    format!("lateral force {force} N at depth {depth} m, x = 0"),
-                    format!("at most {SYMMETRY_TOLERANCE:e} N in a symmetric map"),
-                ));
-            }
+            let found = format!("lateral force {force} N at depth {depth} m, x = 0");
+            let expected = format!("at most {SYMMETRY_TOLERANCE:e} N in a symmetric map");
+            Refusal::state(found, expected).when(force.abs() > SYMMETRY_TOLERANCE)?;
         }
         let columns = self.mirror_columns();
         let zero = self.laterals.len() - 1;
@@ -322,24 +318,27 @@ fn place_of(name: &str, axis: &[f64], position: f64) -> Result<usize, Refusal> {
     })
 }
 
+/// The values without repetition, increasing: an axis.
+pub(crate) fn increasing(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
 /// Refuses depths and lateral positions (m) over which there is no table.
 ///
 /// Implements: MAP-002.
 pub(crate) fn check_axes(depths: &[f64], laterals: &[f64]) -> Result<(), Refusal> {
     check_axis("depths_m", depths)?;
     check_axis("laterals_m", laterals)?;
-    if depths[0] < 0.0 {
-        let expected = "at least 0, the undeformed surface";
-        return Err(Refusal::value("depths_m[0]", depths[0], expected));
-    }
-    Ok(())
+    let expected = "at least 0, the undeformed surface";
+    Refusal::value("depths_m[0]", depths[0], expected).when(depths[0] < 0.0)
 }
 
 fn check_axis(key: &str, axis: &[f64]) -> Result<(), Refusal> {
-    if axis.is_empty() {
-        let found = format!("{key} is empty");
-        return Err(Refusal::state(found, "at least one position"));
-    }
+    let empty = Refusal::state(format!("{key} is empty"), "at least one position");
+    empty.when(axis.is_empty())?;
     let refuse = |index, expected| {
         let key = format!("{key}[{index}]");
         Err(Refusal::value(key, axis[index], expected))
