@@ -24,7 +24,7 @@ fn failed(action: &str, path: &Path) -> impl FnOnce(io::Error) -> Refusal {
 }
 
 /// A line of JSON.
-fn line(document: &impl Serialize) -> String {
+pub(crate) fn line(document: &impl Serialize) -> String {
     // Keys are strings and a string takes all that is written: nothing here can fail.
     serde_json::to_string(document).unwrap_or_default() + "\n"
 }

@@ -15,7 +15,9 @@ use super::{
     Capabilities, Control, Cycle, DeviceError, DeviceState, ForceReport, HapticDevice,
     PositionReport, Received, Session,
 };
-use crate::refusal::Refusal;
+use crate::file::message;
+use crate::journal::line;
+use crate::refusal::{Refusal, shortened};
 use crate::servo::{Limits, Table};
 
 /// The first line of the file.
@@ -187,24 +189,14 @@ impl Recording {
     }
 }
 
-/// A line of JSON.
-fn line(row: &impl Serialize) -> String {
-    // Memory takes everything, and these types can all be written.
-    serde_json::to_string(row).unwrap_or_default() + "\n"
-}
-
 /// Reads a line of JSON; `what` it should be.
 fn read<'a, T: Deserialize<'a>>(at: usize, line: &'a str, what: &str) -> Result<T, Refusal> {
-    serde_json::from_str(line).map_err(|error| {
-        let error = error.to_string();
-        let error = error.split(" at line ").next().unwrap_or_default();
-        refused(at, line, &format!("{what}: {error}"))
-    })
+    serde_json::from_str(line)
+        .map_err(|error| refused(at, line, &format!("{what}: {}", message(&error))))
 }
 
 fn refused(at: usize, line: &str, expected: &str) -> Refusal {
-    let found: String = line.chars().take(80).collect();
-    Refusal::state(format_args!("{found:?}"), expected).at(at)
+    Refusal::state(format_args!("{:?}", shortened(line)), expected).at(at)
 }
 
 /// A device that reports what was recorded.

@@ -24,12 +24,6 @@ struct Board {
     counters: Mutex<Counters>,
 }
 
-impl Board {
-    fn is_stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-    }
-}
-
 /// What a session was.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Played {
@@ -107,6 +101,7 @@ fn servo_loop<D: HapticDevice>(
     options: &PlayOptions,
     board: &Board,
 ) -> Played {
+    let is_stopped = || board.stop.load(Ordering::Relaxed);
     let mut cycles = Vec::with_capacity(options.record);
     // A cycle's budget is its period.
     let period = session.capabilities().period();
@@ -115,25 +110,23 @@ fn servo_loop<D: HapticDevice>(
         if let Ok(mut shown) = board.counters.try_lock() {
             *shown = *counters;
         }
-        if let Some(times) = &mut times {
-            times.record(cycle, Duration::ZERO);
-        }
+        times.record(cycle, Duration::ZERO);
         if cycles.len() < cycles.capacity() {
             cycles.push(RecordedCycle::from(cycle));
         }
         let time = options.duration.unwrap_or(Duration::MAX);
-        cycle.written < time && !board.is_stopped()
+        cycle.written < time && !is_stopped()
     });
     Played {
         end: match end {
             // A signal that interrupts a read is the wish to stop, where there is one.
-            End::Device(error) if error.state == DeviceState::Interrupted && board.is_stopped() => {
+            End::Device(error) if error.state == DeviceState::Interrupted && is_stopped() => {
                 End::Asked
             }
             end => end,
         },
         counters: session.counters(),
-        timing: times.and_then(|times| times.timing()),
+        timing: times.timing(),
         held_up: None,
         cycles,
     }

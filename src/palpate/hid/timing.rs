@@ -1,7 +1,6 @@
 //! How long the cycles of the loop take on this machine, against a budget.
 
 mod budget;
-mod distribution;
 mod log;
 pub mod paper;
 
@@ -15,10 +14,8 @@ use super::{
 };
 use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
-use budget::Responses;
-pub use budget::{Budget, BudgetOutcome, Judged};
-pub use distribution::Distribution;
-use distribution::{histogram, nanoseconds};
+pub use budget::{Budget, BudgetOutcome, Distribution, Judged};
+use budget::{Responses, histogram, nanoseconds};
 pub use log::judge_log;
 
 /// A device on the clock of the host instead of its own, and at the host's pace if it is asked to.
@@ -113,16 +110,15 @@ const SENT: usize = 64;
 
 impl Times {
     /// No times yet, of cycles that come every `period` if they are paced.
-    pub(super) fn new(budget: Budget, period: Option<Duration>) -> Option<Times> {
-        let histogram = histogram()?;
-        Some(Times {
-            responses: Responses::new(budget)?,
-            histograms: std::array::from_fn(|_| histogram.clone()),
+    pub(super) fn new(budget: Budget, period: Option<Duration>) -> Times {
+        Times {
+            responses: Responses::new(budget),
+            histograms: std::array::from_fn(|_| histogram()),
             sent: [None; SENT],
             total: [Duration::ZERO; 2],
             period,
             woke: None,
-        })
+        }
     }
 
     pub(super) fn record(&mut self, cycle: &Cycle, late: Duration) {
@@ -189,11 +185,9 @@ pub fn measure<D: HapticDevice>(
     period: Option<Duration>,
 ) -> Result<Timing, Refusal> {
     let least = budget.least_cycles();
-    let times = Times::new(budget, period).filter(|_| cycles >= least);
-    let mut times = times.ok_or_else(|| {
-        let expected = format!("at least {least} for this percentile and confidence");
-        Refusal::state(format_args!("{cycles} cycles"), expected)
-    })?;
+    let expected = format!("at least {least} for this percentile and confidence");
+    Refusal::state(format_args!("{cycles} cycles"), expected).when(cycles < least)?;
+    let mut times = Times::new(budget, period);
     let late = Cell::new(Duration::ZERO);
     let clock = HostClock {
         device,

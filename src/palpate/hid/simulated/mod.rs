@@ -3,12 +3,10 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `mod.rs` | the device: its clock, queue, watchdog and faults |
+//! | `mod.rs` | the device: its clock, queue and watchdog, and what goes wrong |
 //! | `handle.rs` | one axis: mass, damping, friction, backlash, the hand's spring |
 //! | `trajectory.rs` | where the hand wants to be |
-//! | `fault.rs` | what goes wrong |
 
-mod fault;
 mod handle;
 #[cfg(test)]
 mod tests;
@@ -17,7 +15,6 @@ mod trajectory;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-pub use fault::Defect;
 use handle::Handle;
 pub use handle::Mechanics;
 pub use palpate_core::hid::PAPER;
@@ -33,6 +30,33 @@ const QUEUE: usize = 63;
 
 /// After this long without taking a report, a write is given up.
 const GIVE_UP: Duration = Duration::from_millis(5_190);
+
+/// What can go wrong between a device and the loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Defect {
+    /// The cable is pulled.
+    Unplug,
+    /// No report is sent for this long.
+    Silence(Duration),
+    /// The device takes no report for this long: a write blocks, and fails after 5.19 s.
+    Stall(Duration),
+    /// The device reports a fault in itself for this long.
+    DeviceFault(Duration),
+    /// The deadman is let go for this long.
+    DeadmanReleased(Duration),
+    /// A read is interrupted by a signal.
+    Interrupt,
+    /// This many reports repeat the sequence number of the one before.
+    Repeat(u16),
+    /// The sequence goes back by this much, and counts on from there.
+    SequenceBack(u16),
+    /// One report is garbage.
+    Garbage(InvalidReport),
+    /// One report has its positions off by this many counts.
+    Glitch(i16),
+    /// The device's clock jumps ahead: the reports of this time never come.
+    ClockJump(Duration),
+}
 
 /// A simulated device in a simulated hand.
 ///

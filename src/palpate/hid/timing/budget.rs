@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use hdrhistogram::Histogram;
 
-use super::distribution::{Distribution, histogram, nanoseconds};
 use crate::refusal::Refusal;
 use crate::stats::NumericError;
 use crate::stats::binomial::{at_least, at_most, first};
@@ -47,9 +46,8 @@ impl Budget {
             ("percentile", percentile),
             ("confidence-percent", confidence_percent),
         ] {
-            if !(percent > 0.0 && percent < 100.0) {
-                return Err(Refusal::value(key, percent, "above 0 and below 100"));
-            }
+            let is_right = percent > 0.0 && percent < 100.0;
+            Refusal::value(key, percent, "above 0 and below 100").when(!is_right)?;
         }
         Ok(Budget {
             percentile,
@@ -123,6 +121,41 @@ pub struct Judged {
     pub jitter_us: Option<Distribution>,
 }
 
+/// Distribution of a time, µs.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Distribution {
+    /// Half of all cycles are no longer.
+    pub p50: f64,
+    /// 99 % of all.
+    pub p99: f64,
+    /// 99.9 % of all.
+    pub p99_9: f64,
+    /// All.
+    pub max: f64,
+}
+
+impl Distribution {
+    /// `None` of no time.
+    pub(super) fn of(times: &Histogram<u64>) -> Option<Distribution> {
+        let quantile = |share| times.value_at_quantile(share) as f64 / 1e3;
+        (!times.is_empty()).then(|| Distribution {
+            p50: quantile(0.5),
+            p99: quantile(0.99),
+            p99_9: quantile(0.999),
+            max: times.max() as f64 / 1e3,
+        })
+    }
+}
+
+/// From 1 ns to 100 s within 0.1 %: everything that a cycle can take.
+pub(super) fn histogram() -> Histogram<u64> {
+    Histogram::new_with_bounds(1, 100_000_000_000, 3).expect("these bounds and digits are right")
+}
+
+pub(super) fn nanoseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
+}
+
 /// Times of cycles, recorded without allocation.
 pub(in crate::hid) struct Responses {
     budget: Budget,
@@ -136,15 +169,15 @@ pub(in crate::hid) struct Responses {
 
 impl Responses {
     /// No times yet.
-    pub fn new(budget: Budget) -> Option<Responses> {
-        Some(Responses {
+    pub fn new(budget: Budget) -> Responses {
+        Responses {
             budget,
-            times: histogram()?,
-            jitter: histogram()?,
+            times: histogram(),
+            jitter: histogram(),
             misses: 0,
             run: 0,
             longest_run: 0,
-        })
+        }
     }
 
     /// How many there are.

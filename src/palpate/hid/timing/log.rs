@@ -45,7 +45,7 @@ pub fn judge_log(text: &str, budget: Budget) -> Result<Judged, Refusal> {
         }
     };
     let no_cycle = || Refusal::state("no cycle", "a row for each");
-    let mut responses = Responses::new(budget).ok_or_else(no_cycle)?;
+    let mut responses = Responses::new(budget);
     if name.starts_with("duration") {
         for (line, seconds) in numbers {
             responses.record(duration(name, line, seconds)?, None);
