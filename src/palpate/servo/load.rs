@@ -4,7 +4,7 @@ mod rotation;
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use palpate_core::servo::{Axis, Damping, Limits, Table, stiffness};
+use palpate_core::servo::{Axis, Damping, InvalidAxis, Limits, Table, stiffness};
 
 use super::{MAX_KNOTS, MIN_WIDTH, POSITION_LIMIT, TABLE_FORCE_LIMIT};
 use crate::force::Force;
@@ -25,6 +25,25 @@ pub struct RoundingError {
     pub position_m: f64,
     /// Of a force, N.
     pub force_n: f64,
+}
+
+/// The knots of an axis as the kernel takes them, with the reciprocals of the distances between them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Knots {
+    knots: Vec<f32>,
+    reciprocals: Vec<f32>,
+}
+
+impl Knots {
+    pub fn new(knots: Vec<f32>) -> Knots {
+        let width = |ends: &[f32]| Axis::reciprocal_width(ends[0], ends[1]);
+        let reciprocals = knots.windows(2).map(width).collect();
+        Knots { knots, reciprocals }
+    }
+
+    pub fn axis(&self) -> Result<Axis<'_>, InvalidAxis> {
+        Axis::new(&self.knots, &self.reciprocals)
+    }
 }
 
 /// A table of the kernel with its storage.
@@ -48,10 +67,8 @@ pub struct RoundingError {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadedTable {
-    depths: Vec<f32>,
-    laterals: Vec<f32>,
-    reciprocal_heights: Vec<f32>,
-    reciprocal_widths: Vec<f32>,
+    depths: Knots,
+    laterals: Knots,
     forces: Vec<Force<f32>>,
     rounding: RoundingError,
 }
@@ -98,7 +115,7 @@ impl LoadedTable {
         let depths = knots("depths_m", surface, map.depths(), &mut rounding)?;
         let laterals = knots("laterals_m", false, map.laterals(), &mut rounding)?;
 
-        let rows_in_front = if surface { laterals.len() } else { 0 };
+        let rows_in_front = if surface { map.laterals().len() } else { 0 };
         let mut forces = vec![Force::ZERO; rows_in_front];
         let normal = map.forces().normal.values();
         for (&lateral, &normal) in map.forces().lateral.values().iter().zip(normal) {
@@ -106,10 +123,8 @@ impl LoadedTable {
             forces.push(force.map(|force| rounded(force, &mut rounding.force_n)));
         }
         Ok(LoadedTable {
-            reciprocal_heights: reciprocals(&depths),
-            reciprocal_widths: reciprocals(&laterals),
-            depths,
-            laterals,
+            depths: Knots::new(depths),
+            laterals: Knots::new(laterals),
             forces,
             rounding,
         })
@@ -127,10 +142,8 @@ impl LoadedTable {
         limits: &Limits,
     ) -> Result<LoadedTable, Refusal> {
         let loaded = LoadedTable::new(map)?;
-        match loaded.excess(damping, limits)? {
-            None => Ok(loaded),
-            Some(excess) => Err(excess.refusal()),
-        }
+        let excess = loaded.excess(damping, limits)?;
+        excess.map_or(Ok(loaded), |excess| Err(excess.refusal()))
     }
 
     /// Like [`LoadedTable::passive`], but a table that is not passive is scaled down. Also returns the
@@ -166,9 +179,8 @@ impl LoadedTable {
 
     /// The table as the kernel takes it.
     pub fn table(&self) -> Table<'_> {
-        let axis = |knots, reciprocals| Axis::new(knots, reciprocals).expect("`knots` checked it");
-        let depths = axis(&self.depths, &self.reciprocal_heights);
-        let laterals = axis(&self.laterals, &self.reciprocal_widths);
+        let [depths, laterals] = [&self.depths, &self.laterals].map(Knots::axis);
+        let [depths, laterals] = [depths, laterals].map(|axis| axis.expect("`knots` checked it"));
         Table::new(depths, laterals, &self.forces).expect("`check_forces` checked it")
     }
 
@@ -264,17 +276,10 @@ fn knots(
         }
         knots.push(knot);
     }
-    if !(2..=MAX_KNOTS).contains(&knots.len()) {
-        let found = format_args!("{name} has {} entries for the servo", knots.len());
-        return Err(Refusal::state(found, format!("2 to {MAX_KNOTS}")));
-    }
+    let found = format!("{name} has {} entries for the servo", knots.len());
+    let is_right = (2..=MAX_KNOTS).contains(&knots.len());
+    Refusal::state(found, format!("2 to {MAX_KNOTS}")).when(!is_right)?;
     Ok(knots)
-}
-
-/// The reciprocal width of each cell, 1/m.
-fn reciprocals(knots: &[f32]) -> Vec<f32> {
-    let width = |ends: &[f32]| Axis::reciprocal_width(ends[0], ends[1]);
-    knots.windows(2).map(width).collect()
 }
 
 /// `value` in f32; its error counts towards the largest.

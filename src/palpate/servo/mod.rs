@@ -2,5 +2,6 @@
 
 mod load;
 
+pub(crate) use load::Knots;
 pub use load::{HAND_SPEED, LoadedTable, RoundingError, SURFACE_FORCE};
 pub use palpate_core::servo::*;

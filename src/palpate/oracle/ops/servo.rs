@@ -6,25 +6,18 @@ use serde::Serialize;
 
 use super::{Bits, List, Refused, answer};
 use crate::force::Force;
-use crate::servo::{Axis, Table};
+use crate::servo::{Axis, Knots, Table};
 
-/// Knots as the kernel stores them, with the reciprocals of the widths.
+/// Numbers as the kernel stores its knots.
 ///
 /// Implements: ORA-009.
-struct Knots(Vec<f32>, Vec<f32>);
+fn knots(List(knots): &List<f64>) -> Knots {
+    Knots::new(knots.iter().map(|&knot| knot as f32).collect())
+}
 
-impl Knots {
-    fn new(List(knots): &List<f64>) -> Knots {
-        let knots: Vec<f32> = knots.iter().map(|&knot| knot as f32).collect();
-        let width = |pair: &[f32]| Axis::reciprocal_width(pair[0], pair[1]);
-        let reciprocals = knots.windows(2).map(width).collect();
-        Knots(knots, reciprocals)
-    }
-
-    fn axis(&self, name: &str) -> Result<Axis<'_>, Refused> {
-        let right = "2 to 1024 knots within 1 m, each at least 1e-6 m above the one before";
-        Axis::new(&self.0, &self.1).map_err(|error| refused(name, error, right))
-    }
+fn axis_of<'a>(name: &str, knots: &'a Knots) -> Result<Axis<'a>, Refused> {
+    let right = "2 to 1024 knots within 1 m, each at least 1e-6 m above the one before";
+    knots.axis().map_err(|error| refused(name, error, right))
 }
 
 fn refused(name: &str, error: impl Debug, right: &str) -> Refused {
@@ -37,8 +30,8 @@ fn bits(value: f32) -> String {
 }
 
 /// Cell and fraction of a coordinate.
-pub fn axis(knots: &List<f64>, Bits(coordinate): Bits) -> Result<impl Serialize + use<>, Refused> {
-    let cell = Knots::new(knots).axis("knots")?.locate(coordinate);
+pub fn axis(list: &List<f64>, Bits(coordinate): Bits) -> Result<impl Serialize + use<>, Refused> {
+    let cell = axis_of("knots", &knots(list))?.locate(coordinate);
     Ok(answer! { cell: cell.index, fraction_bits: bits(cell.fraction) })
 }
 
@@ -50,9 +43,9 @@ pub fn interpolate(
     Bits(depth): Bits,
     Bits(lateral): Bits,
 ) -> Result<impl Serialize + use<>, Refused> {
-    let [depth_knots, lateral_knots] = [depth_knots, lateral_knots].map(Knots::new);
-    let depths = depth_knots.axis("depth_knots")?;
-    let laterals = lateral_knots.axis("lateral_knots")?;
+    let [depth_knots, lateral_knots] = [depth_knots, lateral_knots].map(knots);
+    let depths = axis_of("depth_knots", &depth_knots)?;
+    let laterals = axis_of("lateral_knots", &lateral_knots)?;
     let (rows, columns) = (depths.knots().len(), laterals.knots().len());
     let entries = entries.concat("table_bits", rows, columns)?;
     // Both components alike.
