@@ -100,6 +100,11 @@ impl Refused {
     pub fn range(message: impl Display) -> Refused {
         Refused::new(Code::OutOfRange, message)
     }
+
+    /// A `word` as the argument `name` that is none of the `right` ones.
+    pub fn word(name: &str, word: &str, right: &str) -> Refused {
+        Refused::range(format_args!("{name} is {word:?}; it must be {right}"))
+    }
 }
 
 impl From<NumericError> for Refused {

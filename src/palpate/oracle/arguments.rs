@@ -7,6 +7,7 @@ use serde::de::{self, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::answer::Refused;
+use crate::file::message;
 
 /// Most entries of a list, and of all the lists of a matrix together.
 ///
@@ -54,9 +55,7 @@ pub fn arguments_of<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T, Refused>
         let located = serde_path_to_error::deserialize::<_, T>(&mut reader).err();
         let place = located.map_or("args".into(), |located| located.path().to_string());
         let place = if place == "." { "args".into() } else { place };
-        let message = error.to_string();
-        // Line and column within the arguments help nobody.
-        let message = message.split(" at line ").next().unwrap_or_default();
+        let message = message(&error);
         match message.strip_prefix(OUT_OF_RANGE) {
             Some(wrong) => Refused::range(format_args!("{place}: {wrong}")),
             None if message == "number out of range" => {

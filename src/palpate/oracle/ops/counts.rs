@@ -1,10 +1,33 @@
-//! Counts of right answers of several subjects under several conditions, as in Table 1.
+//! Counts of right answers: an interval for their rate, and those of several subjects under several conditions, as in Table 1.
 
 use serde::Serialize;
 
-use super::{List, MOST_TRIALS, Refused, Rows, Whole, answer};
+use super::{List, Refused, Rows, Whole, answer};
 use crate::detect::gamma_from_two_afc;
+use crate::stats::Bounds;
+use crate::stats::binomial::{clopper_pearson, wilson};
 use crate::stats::dispersion::dispersion;
+
+/// Most trials: the exact interval takes about √trials steps for each of some 120 tails.
+pub const MOST_TRIALS: i64 = 1_000_000_000;
+
+/// The interval of Clopper and Pearson or of Wilson.
+///
+/// Implements: ORA-011.
+pub fn interval(
+    Whole(successes): Whole<0, MOST_TRIALS>,
+    Whole(trials): Whole<1, MOST_TRIALS>,
+    confidence: f64,
+    method: &str,
+) -> Result<Bounds, Refused> {
+    let interval = match method {
+        "clopper_pearson" => clopper_pearson,
+        "wilson" => wilson,
+        _ => return Err(Refused::word("method", method, "clopper_pearson or wilson")),
+    };
+    let [successes, trials] = [successes, trials].map(i64::unsigned_abs);
+    interval(successes, trials, confidence).map_err(Refused::range)
+}
 
 /// The pooled right answers of each condition, their rate, γ from it, and how far the subjects differ from one binomial.
 ///

@@ -27,8 +27,7 @@ pub fn threshold(text: &str) -> Result<f64, Refused> {
         } => detect::neyman_pearson_false_alarm_threshold(gamma, max_false_alarm)),
         _ => {
             let right = "map, bayes, neyman_pearson_miss or neyman_pearson_false_alarm";
-            let wrong = format_args!("criterion is {criterion:?}; it must be {right}");
-            return Err(Refused::range(wrong));
+            return Err(Refused::word("criterion", &criterion, right));
         }
     }?)
 }

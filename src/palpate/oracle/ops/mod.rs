@@ -10,7 +10,6 @@ mod filter;
 mod interpolation;
 mod nuisance;
 mod probe;
-mod proportion;
 mod report;
 mod servo;
 
@@ -19,8 +18,8 @@ use super::arguments::{Bits, List, Rows, Whole, arguments_of, with_arguments};
 use crate::detect;
 use crate::detect::noise_budget::noise_budget;
 use crate::stats::{noncentral, normal};
+use counts::MOST_TRIALS;
 pub use probe::Models;
-use proportion::MOST_TRIALS;
 
 /// An op.
 #[derive(Debug, Clone, Copy)]
@@ -82,7 +81,7 @@ pub const OPS: &[Op] = &[
         answer! { gamma: detect::gamma_from_two_afc(p_correct)? }),
     op!("proportion_interval", {
         successes: Whole<0, MOST_TRIALS>, trials: Whole<1, MOST_TRIALS>, confidence: f64, method: String
-    } => proportion::interval(successes, trials, confidence, &method)?),
+    } => counts::interval(successes, trials, confidence, &method)?),
     op!("chi_square_tail", { x: f64, degrees: f64, noncentrality: f64 } =>
         noncentral::chi_square(x, degrees, noncentrality)?),
     op!("f_tail", { x: f64, numerator: f64, denominator: f64, noncentrality: f64 } =>
