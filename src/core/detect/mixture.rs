@@ -35,14 +35,5 @@ pub fn mixture_theta(theta: &[f64], prior: &[f64]) -> Result<f64, DetectError> {
     representable("theta", largest + libm::log(sum))
 }
 
-/// The first of `hypotheses`, as numbers, whose θ is largest.
-pub fn likeliest(theta: &[f64], hypotheses: impl Iterator<Item = usize>) -> Option<usize> {
-    let better = |best: usize, next: usize| match theta[next] > theta[best] {
-        true => next,
-        false => best,
-    };
-    hypotheses.reduce(better)
-}
-
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,7 @@
 //! These are the matched subspace detectors of Scharf & Friedlander (1994) and Kay (*Detection Theory*, chapters 7 and 9): all is
 //! projected onto the complement of the nuisances, so that no amplitude of theirs has an effect.
 
-use super::{DetectError, ErrorRates};
+use super::{Decision, DetectError, ErrorRates};
 use crate::stats::error::{
     check_finite, check_length, check_not_negative, check_positive, check_probability,
     check_samples, representable,
@@ -243,12 +243,12 @@ pub enum Threshold {
 }
 
 impl Threshold {
-    /// Is `t` of an inclusion?
-    pub fn is_met(self, t: f64) -> bool {
+    /// Ĥ for the statistic `t`.
+    pub fn decide(self, t: f64) -> Decision {
         match self {
-            Threshold::Always => true,
-            Threshold::At(threshold) => t >= threshold,
-            Threshold::Never => false,
+            Threshold::Always => Decision::Inclusion,
+            Threshold::At(threshold) if t >= threshold => Decision::Inclusion,
+            Threshold::At(_) | Threshold::Never => Decision::NoInclusion,
         }
     }
 }

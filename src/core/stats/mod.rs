@@ -4,7 +4,7 @@
 //! those of `libm`, sums run in an order that the source fixes, and no fused multiply-add is used.
 
 pub mod binomial;
-pub mod compensated;
+pub(crate) mod compensated;
 pub mod dispersion;
 pub mod error;
 pub mod noncentral;

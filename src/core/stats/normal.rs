@@ -58,7 +58,7 @@ pub fn quantile(p: f64) -> Result<f64, NumericError> {
 }
 
 /// [`quantile`] of an argument called `what`.
-pub fn quantile_of(what: &'static str, p: f64) -> Result<f64, NumericError> {
+pub(crate) fn quantile_of(what: &'static str, p: f64) -> Result<f64, NumericError> {
     check_probability(what, p)?;
     // 1 − p is exact for p ≥ 1/2, so the upper half is the lower one mirrored.
     Ok(if p > 0.5 {

@@ -9,6 +9,21 @@ pub(super) const SIGNAL: usize = 4;
 /// Those for a prior.
 pub(super) const PRIOR: usize = 2;
 
+/// The places with the number `number` on four axes of so many places each, the first of which varies fastest.
+pub(super) fn places(mut number: usize, lengths: [usize; 4]) -> [usize; 4] {
+    lengths.map(|length| {
+        let place = number % length;
+        number /= length;
+        place
+    })
+}
+
+/// The point with the number `number` of the grid over `axes`, in the order of a bank's maps.
+pub(super) fn point(axes: [&[f64]; 4], number: usize) -> [f64; 4] {
+    let at = places(number, axes.map(<[f64]>::len));
+    [0, 1, 2, 3].map(|axis: usize| axes[axis][at[axis]])
+}
+
 /// One axis of a bank.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct BankAxis {

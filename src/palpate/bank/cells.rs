@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::axis::{BankAxis, BankCell, SIGNAL};
+use super::axis::{BankAxis, BankCell, SIGNAL, places};
 
 /// The fewest nodes of a cell along an axis, and the most.
 const NODES: [usize; 2] = [5, 20];
@@ -53,19 +53,9 @@ impl Cells {
                 most.nodes -= 1;
             }
         }
-        let mut cells = vec![[0; 4]];
-        for axis in 0..4 {
-            let along = |cell| {
-                cells.iter().map(move |&at: &[usize; 4]| {
-                    let mut at = at;
-                    at[axis] = cell;
-                    at
-                })
-            };
-            cells = (0..axes[axis].cells()).flat_map(along).collect();
-        }
-        let cell = |at| BankCell::new(&axes, at, SIGNAL);
-        let cells: Vec<BankCell> = cells.into_iter().map(cell).collect();
+        let lengths = axes.each_ref().map(BankAxis::cells);
+        let cell = |number| BankCell::new(&axes, places(number, lengths), SIGNAL);
+        let cells: Vec<BankCell> = (0..lengths.iter().product()).map(cell).collect();
         let corners: Vec<Vec<usize>> = cells.iter().map(|cell| cell.corners(&axes)).collect();
         let rise = corners.iter().map(|corners| {
             let from = template(corners[0]);

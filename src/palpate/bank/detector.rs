@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use super::axis::signal_at;
 use super::cells::Cells;
 use crate::detect::DetectError;
-use crate::detect::mixture::{likeliest, mixture_theta};
+use crate::detect::mixture::mixture_theta;
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceStatistic, SubspaceTest, dot};
 use crate::stats::error::{check_positive, check_samples, representable};
 
@@ -23,17 +23,26 @@ pub struct BankDetector {
     /// An orthonormal basis of what the nuisances add.
     basis: Vec<f64>,
     samples: usize,
-    level: NoiseLevel,
+    pub(super) level: NoiseLevel,
     degrees: f64,
     /// Pδ of one point after the other.
     templates: Vec<f64>,
     /// |Pδ|, 0 where the nuisances explain all.
     gamma: Vec<f64>,
     bias: Vec<f64>,
-    deviations: Vec<Vec<f64>>,
+    /// What a nuisance within its tolerance adds to a record.
+    pub(super) deviations: Vec<Vec<f64>>,
     prior: Vec<f64>,
     axes: [Vec<f64>; 4],
     cells: OnceLock<Cells>,
+}
+
+/// The first of `points`, as numbers, whose θ is largest.
+pub(crate) fn likeliest(theta: &[f64], points: impl Iterator<Item = usize>) -> Option<usize> {
+    points.reduce(|best, next| match theta[next] > theta[best] {
+        true => next,
+        false => best,
+    })
 }
 
 /// What a record says of each point.
@@ -214,15 +223,6 @@ impl BankDetector {
     /// Samples of both channels.
     pub fn samples(&self) -> usize {
         self.samples
-    }
-
-    /// What a nuisance within its tolerance adds to a record.
-    pub(super) fn deviations(&self) -> &[Vec<f64>] {
-        &self.deviations
-    }
-
-    pub(super) fn level(&self) -> NoiseLevel {
-        self.level
     }
 
     /// The cells between the points, which take much longer than the detector, and are not always wanted.

@@ -113,20 +113,16 @@ impl Bank {
             let found = (0..self.maps.len()).find(is_asked).ok_or_else(|| {
                 Refusal::state("an inclusion that is not in the bank", "one of its").at(line)
             })?;
-            if prior[found].is_some() {
-                let found = "an inclusion for the second time";
-                return Err(Refusal::state(found, "each once").at(line));
-            }
-            if !(0.0..f64::INFINITY).contains(&weight) {
-                return Err(Refusal::value("weight", weight, "at least 0").at(line));
-            }
+            let twice = Refusal::state("an inclusion for the second time", "each once");
+            twice.at(line).when(prior[found].is_some())?;
+            let below = Refusal::value("weight", weight, "at least 0").at(line);
+            below.when(!(0.0..f64::INFINITY).contains(&weight))?;
             prior[found] = Some(weight);
         }
         let whole: f64 = prior.iter().flatten().sum();
-        if !(whole > 0.0 && whole.is_finite()) {
-            let found = format!("weights that add up to {whole}");
-            return Err(Refusal::state(found, "above 0 and finite"));
-        }
+        let is_right = whole > 0.0 && whole.is_finite();
+        let found = format!("weights that add up to {whole}");
+        Refusal::state(found, "above 0 and finite").when(!is_right)?;
         let share = |weight: Option<f64>| weight.unwrap_or(0.0) / whole;
         Ok(prior.into_iter().map(share).collect())
     }

@@ -7,11 +7,11 @@ use super::information::PlaceBound;
 use super::place::PlacePosterior;
 use super::rates::{CalibratedThreshold, false_alarm_bound, false_alarm_threshold};
 use crate::detect::nuisance::{NoiseLevel, SubspaceTest};
-use crate::detect::{Decision, DetectError, map_threshold, posterior};
+use crate::detect::{Decision, DetectError, decide, map_threshold, posterior};
 use crate::force::Force;
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
-use crate::trace::design::{Design, blocked, difference, squares, stacked, whitened};
+use crate::trace::design::{Design, blocked, difference, expected, squares, whitened};
 use crate::trace::{Cause, Criterion, Fit, Question, Record, refused};
 
 /// A search for the inclusion of a bank in records.
@@ -84,15 +84,14 @@ impl BankSearch<'_> {
     pub fn locate(&self, record: &Record) -> Result<Location, Refusal> {
         let located = || {
             let (question, depth) = (&self.question, self.bank.depth());
-            if (depth - question.depth).abs() > SAME_POSITION {
-                let found = format!("{} m", question.depth);
-                let expected = format!("{depth} m, for which the bank is");
-                return Err(Refusal::value("depth of the sweep", found, expected));
-            }
+            let found = format!("{} m", question.depth);
+            let right = format!("{depth} m, for which the bank is");
+            let other = Refusal::value("depth of the sweep", found, right);
+            other.when((depth - question.depth).abs() > SAME_POSITION)?;
             let mut design = Design::new(question, self.bank.reference().table(), record)?;
             let signal = |map: &ForceMap| {
-                let f1 = record.expected(map.table(), depth)?;
-                Ok(difference(&stacked(f1.as_deref()), &design.reference))
+                let f1 = expected(record, map.table(), depth)?;
+                Ok(difference(&f1, &design.reference))
             };
             let signals = self.bank.maps().iter().map(signal);
             let signals = signals.collect::<Result<Vec<_>, Refusal>>()?;
@@ -158,11 +157,7 @@ impl BankSearch<'_> {
             } else {
                 (test.theta(), eta)
             };
-            let decision = if decisive >= eta {
-                Decision::Inclusion
-            } else {
-                Decision::NoInclusion
-            };
+            let decision = decide(decisive, eta)?;
             let causes = fit.causes(&test)?;
             let place = detector.place(&statistic);
             Ok(Location {

@@ -30,6 +30,7 @@ mod reach;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use detector::likeliest;
 pub use detector::{BankDetector, BankStatistic};
 pub use file::{SCHEMA, SCHEMA_VERSION};
 pub use information::PlaceBound;
@@ -41,7 +42,7 @@ pub use rates::{
 };
 pub use reach::{Reach, Reached, deepest, smallest_diameters};
 
-use crate::force_map::{ForceMap, SAME_POSITION, check_gel};
+use crate::force_map::{ForceMap, SAME_POSITION, check_gel, increasing};
 use crate::phantom::{Inclusion, Shape};
 use crate::refusal::Refusal;
 
@@ -121,12 +122,7 @@ impl Bank {
             let of_map = |refusal: Refusal| refusal.of_part(&format!("maps[{number}]"));
             points.push(check_map(&reference, map, depth).map_err(of_map)?);
         }
-        let axes = [0, 1, 2, 3].map(|axis| {
-            let mut values: Vec<f64> = points.iter().map(|point| point[axis]).collect();
-            values.sort_by(f64::total_cmp);
-            values.dedup();
-            values
-        });
+        let axes = [0, 1, 2, 3].map(|axis| increasing(points.iter().map(|point| point[axis])));
         // The last axis first: the bank's order.
         let rank = |point: &[f64; 4]| {
             let at = |axis: usize| axes[axis].partition_point(|&value| value < point[axis]);
@@ -140,16 +136,12 @@ impl Bank {
             let found = format!("maps[{a}] and maps[{b}] have the same inclusion");
             return Err(Refusal::state(found, "each inclusion once"));
         }
-        let numbers = axes.each_ref().map(Vec::len);
-        if numbers.iter().product::<usize>() != maps.len() {
-            let [positions, depths, diameters, moduli] = numbers;
-            return Err(Refusal::state(
-                format!("{} maps", maps.len()),
-                format!(
-                    "one for each of {positions} positions × {depths} depths × {diameters} diameters × {moduli} moduli of their inclusions"
-                ),
-            ));
-        }
+        let [positions, depths, diameters, moduli] = axes.each_ref().map(Vec::len);
+        let expected = format!(
+            "one for each of {positions} positions × {depths} depths × {diameters} diameters × {moduli} moduli of their inclusions"
+        );
+        let all = positions * depths * diameters * moduli;
+        Refusal::state(format!("{} maps", maps.len()), expected).when(maps.len() != all)?;
         Ok(Bank {
             maps: maps.into_iter().map(|(_, map)| map).collect(),
             reference,
@@ -180,12 +172,7 @@ impl Bank {
 
     /// The parameters of the inclusion of the map with that number, in the order of [`Parameter::ALL`].
     pub fn point(&self, map: usize) -> [f64; 4] {
-        let mut rest = map;
-        self.axes.each_ref().map(|values| {
-            let value = values[rest % values.len()];
-            rest /= values.len();
-            value
-        })
+        axis::point(self.axes.each_ref().map(Vec::as_slice), map)
     }
 }
 
@@ -200,15 +187,12 @@ fn check_map(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<[f64; 4
         let found = format!("{} depths of the probe", map.table().depths().len());
         return Err(Refusal::state(found, "one"));
     };
-    if (only - depth).abs() > SAME_POSITION {
-        let expected = format!("{depth} as in maps[0]");
-        return Err(Refusal::value("depths_m[0]", only, expected));
-    }
+    let other = Refusal::value("depths_m[0]", only, format!("{depth} as in maps[0]"));
+    other.when((only - depth).abs() > SAME_POSITION)?;
     let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_POSITION;
     let (ours, theirs) = (map.table().laterals(), reference.table().laterals());
-    if ours.len() != theirs.len() || !ours.iter().zip(theirs).all(same) {
-        let found = "its lateral positions are not those of the reference";
-        return Err(Refusal::state(found, "the same"));
-    }
+    let is_same = ours.len() == theirs.len() && ours.iter().zip(theirs).all(same);
+    let found = "its lateral positions are not those of the reference";
+    Refusal::state(found, "the same").when(!is_same)?;
     Ok(Parameter::ALL.map(|parameter| parameter.of(inclusion)))
 }

@@ -1,6 +1,6 @@
 //! Where an inclusion lies, and how large and hard it is, if there is one: the posterior between the points of a bank.
 
-use super::axis::{BankAxis, BankCell, PRIOR};
+use super::axis::{BankAxis, BankCell, PRIOR, places};
 use super::cells::Nodes;
 use super::detector::{BankDetector, BankStatistic};
 use crate::detect::DetectError;
@@ -118,13 +118,16 @@ fn to_probabilities(theta: &mut [f64], prior: &[f64]) {
 }
 
 /// The parameters of node `at` of a cell.
-fn place_of(axes: &[BankAxis; 4], cell: [usize; 4], mut at: usize) -> [f64; 4] {
-    [0, 1, 2, 3].map(|axis: usize| {
-        let nodes = axes[axis].nodes;
-        let node = at % nodes;
-        at /= nodes;
-        axes[axis].node(cell[axis], node)
-    })
+fn place_of(axes: &[BankAxis; 4], cell: [usize; 4], at: usize) -> [f64; 4] {
+    let nodes = places(at, axes.each_ref().map(|axis| axis.nodes));
+    [0, 1, 2, 3].map(|axis: usize| axes[axis].node(cell[axis], nodes[axis]))
+}
+
+/// The other coordinate of the line between two points where coordinate `known` is `value`; that of the first point before it.
+fn between(ends: &[[f64; 2]], known: usize, value: f64) -> f64 {
+    let (from, to, other) = (ends[0], ends[1], 1 - known);
+    let share = (value - from[known]) / (to[known] - from[known]);
+    from[other] + share.max(0.0) * (to[other] - from[other])
 }
 
 impl PlacePosterior {
@@ -162,8 +165,7 @@ impl PlacePosterior {
         mean
     }
 
-    /// The probability of each part between neighbouring nodes' borders along one axis: their upper borders, increasing, and the
-    /// probability up to there.
+    /// The borders of neighbouring nodes' parts along one axis, increasing, each with the probability up to there.
     fn cumulated(&self, axis: usize) -> Vec<[f64; 2]> {
         let along = &self.axes[axis];
         let mut parts = vec![0.0; along.cells() * along.nodes];
@@ -180,22 +182,19 @@ impl PlacePosterior {
             sum += mass;
             [from + share * (to - from), sum]
         };
-        parts.into_iter().enumerate().map(part).collect()
+        let first = [along.points[0], 0.0];
+        let parts = parts.into_iter().enumerate().map(part);
+        std::iter::once(first).chain(parts).collect()
     }
 
     /// The probability that the parameter of one axis is at most `x`.
     ///
     /// Implements: BNK-042.
     pub fn at_most(&self, axis: usize, x: f64) -> f64 {
-        let mut before = [self.axes[axis].points[0], 0.0];
-        for part in self.cumulated(axis) {
-            if x < part[0] {
-                let share = (x - before[0]) / (part[0] - before[0]);
-                return before[1] + share.max(0.0) * (part[1] - before[1]);
-            }
-            before = part;
-        }
-        1.0
+        let parts = self.cumulated(axis);
+        let mut ends = parts.windows(2);
+        let around = ends.find(|ends| x < ends[1][0]);
+        around.map_or(1.0, |ends| between(ends, 0, x))
     }
 
     /// Bounds on the parameter of one axis, each of which it is beyond with half of 1 − `level`.
@@ -208,15 +207,8 @@ impl PlacePosterior {
         check_probability("level", level)?;
         let parts = self.cumulated(axis);
         let point = |p: f64| {
-            let mut before = [self.axes[axis].points[0], 0.0];
-            for &part in &parts {
-                if part[1] >= p {
-                    let share = (p - before[1]) / (part[1] - before[1]);
-                    return before[0] + share * (part[0] - before[0]);
-                }
-                before = part;
-            }
-            before[0]
+            let around = parts.windows(2).find(|ends| ends[1][1] >= p);
+            around.map_or(parts[parts.len() - 1][0], |ends| between(ends, 1, p))
         };
         let tail = 0.5 * (1.0 - level);
         let [lower, upper] = [tail, 1.0 - tail].map(point);

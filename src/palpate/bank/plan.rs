@@ -1,6 +1,6 @@
 //! Which maps a bank needs, and their computation.
 
-use super::{Bank, Parameter};
+use super::{Bank, Parameter, axis};
 use crate::fem::{Contact, FemError, Model};
 use crate::force_map::ForceMap;
 use crate::phantom::{Phantom, Shape};
@@ -114,22 +114,16 @@ impl BankPlan {
         let mirrored = self.laterals.iter().rev().map(|x| 0.0 - x);
         let is_even = mirrored.eq(self.laterals.iter().copied());
         let mut solves = Vec::new();
-        for &modulus in &self.moduli {
-            for &diameter in &self.diameters {
-                for &depth in &self.depths {
-                    for &position in &self.positions {
-                        let point = [position, depth, diameter, modulus];
-                        let phantom = self.hypothesis(point)?;
-                        let has_image = |x: f64| {
-                            let images = x != 0.0 && self.positions.contains(&(0.0 - x));
-                            is_even && images && phantom.mirror_image().is_some()
-                        };
-                        let image = has_image(position);
-                        if position > 0.0 || !image {
-                            solves.push(BankSolve { phantom, image });
-                        }
-                    }
-                }
+        let axes = [&self.positions, &self.depths, &self.diameters, &self.moduli];
+        let axes = axes.map(Vec::as_slice);
+        for number in 0..axes.iter().map(|values| values.len()).product() {
+            let point = axis::point(axes, number);
+            let phantom = self.hypothesis(point)?;
+            let [position, ..] = point;
+            let has_mirrored = position != 0.0 && self.positions.contains(&(0.0 - position));
+            let image = is_even && has_mirrored && phantom.mirror_image().is_some();
+            if position > 0.0 || !image {
+                solves.push(BankSolve { phantom, image });
             }
         }
         Ok(solves)

@@ -8,6 +8,7 @@ use crate::stats::binomial::clopper_pearson;
 use crate::stats::error::{check_finite, check_probability, check_samples, in_range};
 use crate::stats::normal;
 use crate::stats::random::{Generator, uniform};
+use crate::stats::tails::halved;
 
 /// The confidence of the interval of a calibrated threshold.
 ///
@@ -72,15 +73,9 @@ pub fn false_alarm_threshold(
     while false_alarm_bound(tests, high)? > max_false_alarm {
         high *= 2.0;
     }
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if false_alarm_bound(tests, middle)? <= max_false_alarm {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    Ok(high)
+    let is_too_low = |eta| Ok::<_, DetectError>(false_alarm_bound(tests, eta)? > max_false_alarm);
+    let [_, least] = halved(60, [low, high], is_too_low)?;
+    Ok(least)
 }
 
 impl BankDetector {
@@ -123,7 +118,7 @@ impl BankDetector {
         let enough = "enough for 10 records above the threshold";
         in_range(above >= 10.0, "simulations", simulations as f64, enough)?;
         let mut means = vec![vec![0.0; self.samples()]];
-        for deviation in self.deviations() {
+        for deviation in &self.deviations {
             means.push(deviation.iter().map(|d| -d).collect());
             means.push(deviation.clone());
         }
@@ -181,7 +176,7 @@ impl BankDetector {
         seed: u64,
     ) -> Result<RareRate, DetectError> {
         check_finite("eta", eta)?;
-        let is_known = f64::from(self.level() == NoiseLevel::Known);
+        let is_known = f64::from(self.level == NoiseLevel::Known);
         let known = "1: a known level of the noise";
         in_range(is_known > 0.0, "known level", is_known, known)?;
         let number = simulations as f64;

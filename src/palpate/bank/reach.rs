@@ -3,6 +3,7 @@
 use super::Bank;
 use crate::detect::nuisance::Nuisances;
 use crate::force::Force;
+use crate::force_map::ForceMap;
 use crate::refusal::Refusal;
 use crate::stats::normal;
 use crate::trace::design::{difference, nuisances_of, stacked, whitened};
@@ -68,27 +69,20 @@ impl Reach<'_> {
         let enough = self.gamma()?;
         let (reference, depth) = (self.bank.reference(), self.bank.depth());
         let positions = self.positions();
-        let f0 = reference.table().sweep(depth, &positions)?;
-        let without = stacked(f0.as_deref());
-        let expected = |depth| reference.table().sweep(depth, &positions);
-        let nuisances = nuisances_of(
-            self.unknown,
-            reference.table().depths(),
-            depth,
-            f0,
-            expected,
-        )?;
+        let expected = |map: &ForceMap, depth| map.table().sweep(depth, &positions).map(stacked);
+        let f0 = expected(reference, depth)?;
+        let at = |depth| expected(reference, depth);
+        let depths = reference.table().depths();
+        let nuisances = nuisances_of(self.unknown, depths, depth, &f0, at)?;
         let white = |signal: &[f64]| whitened(signal, self.noise_sd);
-        let nuisances = nuisances.iter().map(|of| stacked(of.as_deref()));
-        let mut nuisances: Vec<f64> = nuisances.flat_map(|of| white(&of)).collect();
-        let space = Nuisances::new(&mut nuisances, without.len()).map_err(refused)?;
+        let mut nuisances: Vec<f64> = nuisances.iter().flat_map(|of| white(of)).collect();
+        let space = Nuisances::new(&mut nuisances, f0.len()).map_err(refused)?;
         let axes = self.bank.axes();
         let middle =
             (0..axes[0].len()).min_by(|&a, &b| axes[0][a].abs().total_cmp(&axes[0][b].abs()));
         let gamma = |map: usize| -> Result<f64, Refusal> {
-            let f1 = self.bank.maps()[map].table().sweep(depth, &positions)?;
-            let signal = difference(&stacked(f1.as_deref()), &without);
-            Ok(space.project(&mut white(&signal)))
+            let f1 = expected(&self.bank.maps()[map], depth)?;
+            Ok(space.project(&mut white(&difference(&f1, &f0))))
         };
         let [positions, depths, ..] = axes.each_ref().map(Vec::len);
         let rows = (0..self.bank.maps().len()).step_by(positions * depths);
@@ -124,24 +118,20 @@ impl Reach<'_> {
     }
 }
 
+/// Where γ is `enough` between two places, ln γ being linear between them.
+fn crossing([from, to]: [f64; 2], gamma: [f64; 2], enough: f64) -> f64 {
+    let [before, after] = gamma.map(libm::log);
+    from + (libm::log(enough) - before) / (after - before) * (to - from)
+}
+
 /// The first of `depths` beyond which `gamma` is less than `enough`, ln γ being linear between them.
 pub fn deepest(depths: &[f64], gamma: &[f64], enough: f64) -> Option<f64> {
-    let mut reached = None;
-    for (k, (&depth, &found)) in depths.iter().zip(gamma).enumerate() {
-        if found >= enough {
-            reached = Some(depth);
-            continue;
-        }
-        let before = k.checked_sub(1)?;
-        let [above, below, at] = [gamma[before], found, enough].map(libm::log);
-        let share = if below.is_finite() {
-            (above - at) / (above - below)
-        } else {
-            0.0
-        };
-        return Some(depths[before] + share * (depth - depths[before]));
-    }
-    reached
+    let Some(below) = gamma.iter().position(|&found| found < enough) else {
+        return depths.last().copied();
+    };
+    let above = below.checked_sub(1)?;
+    let ends = [depths[above], depths[below]];
+    Some(crossing(ends, [gamma[above], gamma[below]], enough))
 }
 
 /// The smallest diameter that is enough at each depth, as [`Reached::depth`] is the largest depth: for `reached` of one modulus, in the
@@ -149,23 +139,15 @@ pub fn deepest(depths: &[f64], gamma: &[f64], enough: f64) -> Option<f64> {
 ///
 /// Implements: BNK-071.
 pub fn smallest_diameters(bank: &Bank, reached: &[Reached], enough: f64) -> Vec<Option<f64>> {
-    let depths = 0..bank.axes()[1].len();
     let smallest = |depth: usize| {
-        let mut before: Option<(f64, f64)> = None;
-        for of in reached {
-            let gamma = of.gamma[depth];
-            if gamma >= enough {
-                return Some(match before {
-                    Some((diameter, less)) if less > 0.0 => {
-                        let [less, more, at] = [less, gamma, enough].map(libm::log);
-                        diameter + (at - less) / (more - less) * (of.diameter - diameter)
-                    }
-                    _ => of.diameter,
-                });
-            }
-            before = Some((of.diameter, gamma));
-        }
-        None
+        let gamma = |number: usize| reached[number].gamma[depth];
+        let first = (0..reached.len()).find(|&number| gamma(number) >= enough)?;
+        let diameter = reached[first].diameter;
+        let before = first.checked_sub(1).filter(|&before| gamma(before) > 0.0);
+        Some(before.map_or(diameter, |before| {
+            let ends = [reached[before].diameter, diameter];
+            crossing(ends, [gamma(before), gamma(first)], enough)
+        }))
     };
-    depths.map(smallest).collect()
+    (0..bank.axes()[1].len()).map(smallest).collect()
 }

@@ -55,9 +55,6 @@ pub fn in_words(unknown: &[Unknown]) -> String {
     }
 }
 
-/// Samples of both channels.
-pub type Series = Force<Vec<f64>>;
-
 /// The parts of a record, all in the same unit and over the same samples: of each part the lateral samples, and then the normal ones.
 #[derive(Debug, Clone)]
 pub struct Design {
@@ -82,15 +79,13 @@ impl Design {
         without: &ForceTable,
         record: &Record,
     ) -> Result<Design, Refusal> {
-        let depth = question.depth;
-        let f0 = record.expected(without, depth)?;
-        let reference = stacked(f0.as_deref());
-        let expected = |depth| record.expected(without, depth);
-        let nuisances = nuisances_of(question.unknown, without.depths(), depth, f0, expected)?;
+        let (depth, depths) = (question.depth, without.depths());
+        let expected = |depth| expected(record, without, depth);
+        let reference = expected(depth)?;
         let mut design = Design {
             residual: difference(&stacked(record.forces()), &reference),
             template: vec![0.0; reference.len()],
-            nuisances: nuisances.iter().map(|of| stacked(of.as_deref())).collect(),
+            nuisances: nuisances_of(question.unknown, depths, depth, &reference, expected)?,
             reference,
             depth_errors: Vec::new(),
         };
@@ -109,9 +104,9 @@ impl Design {
     ) -> Result<(), Refusal> {
         let (depth, tolerance) = (question.depth, question.depth_tolerance);
         if !question.is_unknown(Unknown::Depth) && tolerance > 0.0 {
-            let slope = depth_slope(map.depths(), depth, |depth| record.expected(map, depth))?;
-            let error = slope.map(|slope| scaled(&stacked(slope.as_deref()), tolerance));
-            self.depth_errors.extend(error);
+            let slope = depth_slope(map.depths(), depth, |depth| expected(record, map, depth))?;
+            self.depth_errors
+                .extend(slope.map(|slope| scaled(&slope, tolerance)));
         }
         Ok(())
     }
@@ -123,8 +118,8 @@ impl Design {
         with: &ForceTable,
         record: &Record,
     ) -> Result<(), Refusal> {
-        let f1 = record.expected(with, question.depth)?;
-        self.template = difference(&stacked(f1.as_deref()), &self.reference);
+        let f1 = expected(record, with, question.depth)?;
+        self.template = difference(&f1, &self.reference);
         Ok(())
     }
 
@@ -215,8 +210,16 @@ impl Design {
 }
 
 /// The lateral samples and then the normal ones.
-pub fn stacked(series: Force<&[f64]>) -> Vec<f64> {
-    [series.lateral, series.normal].concat()
+pub fn stacked(series: Force<impl AsRef<[f64]>>) -> Vec<f64> {
+    [series.lateral.as_ref(), series.normal.as_ref()].concat()
+}
+
+/// The forces that `map` expects of `record` at `depth` (m), N, stacked.
+///
+/// # Errors
+/// As [`Record::expected`].
+pub fn expected(record: &Record, map: &ForceTable, depth: f64) -> Result<Vec<f64>, Refusal> {
+    record.expected(map, depth).map(stacked)
 }
 
 /// The channels of stacked samples.
@@ -238,10 +241,9 @@ pub fn squares(values: &[f64]) -> f64 {
 }
 
 /// Stacked samples over the standard deviations of the noise.
-pub fn whitened(stacked: &[f64], noise_sd: Force<f64>) -> Vec<f64> {
-    let channels = channels(stacked).zip(noise_sd);
-    let Force { lateral, normal } = channels.map(|(samples, sd)| scaled(samples, 1.0 / sd));
-    [lateral, normal].concat()
+pub fn whitened(samples: &[f64], noise_sd: Force<f64>) -> Vec<f64> {
+    let channels = channels(samples).zip(noise_sd);
+    stacked(channels.map(|(samples, sd)| scaled(samples, 1.0 / sd)))
 }
 
 fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
@@ -263,25 +265,27 @@ pub fn nuisances(
     unknown: &[Unknown],
     depths: &[f64],
     depth: f64,
-    expected: impl Fn(f64) -> Result<Series, Refusal>,
-) -> Result<Vec<Series>, Refusal> {
-    nuisances_of(unknown, depths, depth, expected(depth)?, expected)
+    expected: impl Fn(f64) -> Result<Force<Vec<f64>>, Refusal>,
+) -> Result<Vec<Force<Vec<f64>>>, Refusal> {
+    let expected = |depth| expected(depth).map(stacked);
+    let nuisances = nuisances_of(unknown, depths, depth, &expected(depth)?, expected)?;
+    let apart = |nuisance: &Vec<f64>| channels(nuisance).map(<[f64]>::to_vec);
+    Ok(nuisances.iter().map(apart).collect())
 }
 
-/// As [`nuisances`], with the forces `f0` without inclusion at `depth`.
+/// As [`nuisances`], all stacked, with the forces `f0` without inclusion at `depth`.
 pub(crate) fn nuisances_of(
     unknown: &[Unknown],
     depths: &[f64],
     depth: f64,
-    f0: Series,
-    expected: impl Fn(f64) -> Result<Series, Refusal>,
-) -> Result<Vec<Series>, Refusal> {
-    let samples = f0.normal.len();
+    f0: &[f64],
+    expected: impl Fn(f64) -> Result<Vec<f64>, Refusal>,
+) -> Result<Vec<Vec<f64>>, Refusal> {
+    let samples = f0.len() / 2;
     let alone = |series: &dyn Fn(usize) -> f64| {
         let series: Vec<f64> = (0..samples).map(series).collect();
         let none = vec![0.0; samples];
-        let lateral = Force::new(series.clone(), none.clone());
-        [lateral, Force::new(none, series)]
+        [Force::new(&series, &none), Force::new(&none, &series)].map(stacked)
     };
     let mut nuisances = Vec::new();
     if unknown.contains(&Unknown::Offset) {
@@ -292,7 +296,7 @@ pub(crate) fn nuisances_of(
         nuisances.extend(alone(&|sample| 2.0 * sample as f64 / last - 1.0));
     }
     if unknown.contains(&Unknown::Gain) {
-        nuisances.push(f0);
+        nuisances.push(f0.to_vec());
     }
     if unknown.contains(&Unknown::Depth) {
         nuisances.push(depth_slope(depths, depth, expected)?.ok_or_else(|| {
@@ -309,8 +313,8 @@ pub(crate) fn nuisances_of(
 fn depth_slope(
     depths: &[f64],
     depth: f64,
-    expected: impl Fn(f64) -> Result<Series, Refusal>,
-) -> Result<Option<Series>, Refusal> {
+    expected: impl Fn(f64) -> Result<Vec<f64>, Refusal>,
+) -> Result<Option<Vec<f64>>, Refusal> {
     let mut upwards = depths.iter().rev();
     let above = upwards.find(|&&row| row < depth - SAME_POSITION);
     let below = depths.iter().find(|&&row| row > depth + SAME_POSITION);
@@ -319,7 +323,6 @@ fn depth_slope(
         return Ok(None);
     }
     let (shallow, deep) = (expected(from)?, expected(to)?);
-    let rate = 1.0 / (to - from);
-    let slope = |(deep, shallow): (&[f64], &[f64])| scaled(&difference(deep, shallow), rate);
-    Ok(Some(deep.as_deref().zip(shallow.as_deref()).map(slope)))
+    let change = difference(&deep, &shallow);
+    Ok(Some(scaled(&change, 1.0 / (to - from))))
 }

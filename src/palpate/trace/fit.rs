@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::design::{Design, Unknown, channels, squares};
-use super::question::{Correlation, Noise, Question};
+use super::judge::{Correlation, Noise, Question};
 use super::{Trace, refused};
 use crate::detect::DetectError;
 use crate::detect::correlation::{correlation_length, ljung_box};
@@ -190,12 +190,9 @@ impl Noise {
     /// Implements: TRC-076.
     pub fn of_blank(blank: &Trace) -> Result<Noise, Refusal> {
         let samples = blank.samples.len();
-        if samples < LEAST_BLANK {
-            let expected = format!("at least {LEAST_BLANK}, to estimate its noise");
-            return Err(
-                Refusal::state(format!("{samples} samples"), expected).in_file(&*blank.file)
-            );
-        }
+        let expected = format!("at least {LEAST_BLANK}, to estimate its noise");
+        let few = Refusal::state(format!("{samples} samples"), expected).in_file(&*blank.file);
+        few.when(samples < LEAST_BLANK)?;
         let told = || {
             let step = 2.0 / (samples - 1) as f64;
             let line = (0..samples).map(|sample| step * sample as f64 - 1.0);
@@ -208,10 +205,8 @@ impl Noise {
             };
             let mut left: Force<Vec<f64>> = Force::new(column(1), column(2));
             let root = libm::sqrt(samples as f64 - 2.0);
-            let sd = Force::new(
-                lines.project(&mut left.lateral) / root,
-                lines.project(&mut left.normal) / root,
-            );
+            let channels = Force::new(&mut left.lateral, &mut left.normal);
+            let sd = channels.map(|channel| lines.project(channel) / root);
             check_positive("noise_sd_lateral_n", sd.lateral)?;
             check_positive("noise_sd_normal_n", sd.normal)?;
             let (whiteness, length) = dependence(left.as_deref(), LAGS)?;

@@ -1,13 +1,67 @@
-//! The record judged at the position that the maps are for.
+//! What is known of a record and asked of it, and the answer at the position that the maps are for.
 
 use super::design::{Design, Unknown, squares};
 use super::fit::{Cause, Fit};
-use super::question::{Criterion, Question};
 use super::{Record, refused};
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector, SubspaceTest, Threshold};
 use crate::detect::{Decision, DetectError, ErrorRates, map_threshold, posterior};
+use crate::force::Force;
 use crate::force_map::Hypotheses;
 use crate::refusal::Refusal;
+
+/// What the threshold must achieve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Criterion {
+    /// The fewest errors for the prior.
+    Map,
+    /// At most this rate of misses, with the fewest false alarms.
+    NeymanPearsonMiss {
+        /// The largest rate of misses.
+        max_miss: f64,
+    },
+    /// At most this rate of false alarms, with the fewest misses.
+    NeymanPearsonFalseAlarm {
+        /// The largest rate of false alarms.
+        max_false_alarm: f64,
+    },
+}
+
+/// What is known of a record, and what is asked: does the gel under its sweep hold an inclusion?
+#[derive(Debug, Clone, Copy)]
+pub struct Question<'a> {
+    /// Depth of the sweep, m.
+    pub depth: f64,
+    /// The true depth is within so much of it, m, unless it is unknown; 0 if it is exact.
+    pub depth_tolerance: f64,
+    /// What is not known of the sweep.
+    pub unknown: &'a [Unknown],
+    /// The noise on its forces.
+    pub noise: Noise,
+    /// What the threshold must achieve.
+    pub criterion: Criterion,
+    /// Pr(H = 1) before the sweep.
+    pub prior_h1: f64,
+}
+
+/// What is known of the noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Standard deviation of a sample of either force, N; none if it is to be estimated from the record.
+    pub sd: Option<Force<f64>>,
+    /// Which samples are independent.
+    pub correlation: Correlation,
+}
+
+/// How far apart two samples are whose noise is independent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Correlation {
+    /// The noise is white: any two.
+    None,
+    /// To be estimated from the record.
+    OfRecord,
+    /// So many samples count as one, as estimated from a blank sweep.
+    Known(f64),
+}
 
 /// The answer at the position that the maps are for.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,8 +85,12 @@ pub struct Judgement {
 }
 
 impl Question<'_> {
+    pub(crate) fn is_unknown(&self, what: Unknown) -> bool {
+        self.unknown.contains(&what)
+    }
+
     /// Sums over blocks have a noise of their own, whatever a sample has.
-    pub fn noise_level(&self, fit: &Fit) -> NoiseLevel {
+    pub(crate) fn noise_level(&self, fit: &Fit) -> NoiseLevel {
         if self.is_unknown(Unknown::Variance) || fit.block > 1 {
             NoiseLevel::Unknown
         } else {
@@ -42,7 +100,7 @@ impl Question<'_> {
 
     /// The parts of a design over the noise of a sample, how well they fit, and their sums over blocks of samples that depend on
     /// one another.
-    pub fn fitted(&self, design: &Design) -> Result<(Design, Fit, Design), DetectError> {
+    pub(crate) fn fitted(&self, design: &Design) -> Result<(Design, Fit, Design), DetectError> {
         let noise_sd = match self.noise.sd {
             Some(sd) => sd,
             None => design.noise_sd()?,
@@ -73,13 +131,8 @@ impl Question<'_> {
             let test = statistic.test(self.noise_level(&fit), blocks.bias(&detector))?;
             let threshold = self.threshold(&test)?;
             let causes = fit.causes(&test)?;
-            let decision = if threshold.is_met(test.t) {
-                Decision::Inclusion
-            } else {
-                Decision::NoInclusion
-            };
             Ok(Judgement {
-                decision: causes.is_empty().then_some(decision),
+                decision: causes.is_empty().then(|| threshold.decide(test.t)),
                 causes,
                 test,
                 threshold,

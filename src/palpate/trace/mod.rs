@@ -5,8 +5,7 @@
 //! | `mod.rs` | the trace, its positions, and the forces that a map expects there |
 //! | `design.rs` | what the record may hold: signal, nuisances |
 //! | `fit.rs` | whether it fits, and the likeliest cause if not |
-//! | `question.rs` | what is known, and what is asked |
-//! | `judge.rs` | the record at a known position |
+//! | `judge.rs` | what is known, what is asked, and the answer at a known position |
 //!
 //! Where the position is not known, [`crate::bank`] judges the record.
 //!
@@ -47,10 +46,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod design;
+pub(crate) mod design;
 mod fit;
 mod judge;
-mod question;
 #[cfg(test)]
 mod tests;
 
@@ -58,8 +56,7 @@ use std::path::Path;
 
 pub use design::{Unknown, in_words, nuisances};
 pub use fit::{Cause, Fit, MISFIT_RATE, WHITENESS};
-pub use judge::Judgement;
-pub use question::{Correlation, Criterion, Noise, Question};
+pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
 
 use crate::csv::{Column, Rows};
 use crate::decimal::mm;
@@ -68,6 +65,7 @@ use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION};
 use crate::refusal::Refusal;
 use crate::stats::error::check_samples;
+use crate::text::extremes;
 
 /// Position, or time where there is no position; lateral force, normal force.
 const COLUMNS: [Column; 3] = [
@@ -174,10 +172,8 @@ impl Trace {
         let read = || {
             let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER)?;
             let samples = table.rows;
-            if samples.is_empty() {
-                let found = "no samples under the header";
-                return Err(Refusal::state(found, "at least one row").at(table.line));
-            }
+            let empty = Refusal::state("no samples under the header", "at least one row");
+            empty.at(table.line).when(samples.is_empty())?;
             let abscissa = if table.names[0].starts_with("time") {
                 check_times(&samples)?;
                 Abscissa::Time
@@ -235,11 +231,9 @@ impl Trace {
 /// Makes positions of times.
 fn move_along(samples: &mut [Sample], motion: Motion) -> Result<(), Refusal> {
     let Motion { velocity, start } = motion;
-    if !velocity.is_finite() || velocity == 0.0 {
-        let found = format!("{velocity} m/s");
-        let expected = "a finite number other than 0";
-        return Err(Refusal::value("velocity", found, expected));
-    }
+    let found = format!("{velocity} m/s");
+    let wrong = Refusal::value("velocity", found, "a finite number other than 0");
+    wrong.when(!velocity.is_finite() || velocity == 0.0)?;
     for (line, [abscissa, ..]) in samples {
         *abscissa = start + velocity * *abscissa;
         if !abscissa.is_finite() {
@@ -275,8 +269,7 @@ fn backwards(samples: &[Sample]) -> bool {
 fn check_pass(samples: &[Sample]) -> Result<(), Refusal> {
     let sign = if backwards(samples) { -1.0 } else { 1.0 };
     let ways = || samples.iter().map(|(line, [x, ..])| (line, sign * x));
-    let least = ways().fold(f64::INFINITY, |least, (_, way)| least.min(way));
-    let most = ways().fold(f64::NEG_INFINITY, |most, (_, way)| most.max(way));
+    let [least, most] = extremes(ways().map(|(_, way)| way)).unwrap_or_default();
     let jitter = JITTER * (most - least) + SAME_POSITION;
     let mut furthest = f64::NEG_INFINITY;
     for (&line, way) in ways() {

@@ -130,7 +130,8 @@ fn too_few_samples_cannot_make_up_for_any_prior() {
         miss: 0.0,
     };
     assert_eq!(test.rates(Threshold::Always).unwrap(), always);
-    assert!(Threshold::Always.is_met(-1e300) && !Threshold::Never.is_met(1e300));
+    assert_eq!(Threshold::Always.decide(-1e300), Decision::Inclusion);
+    assert_eq!(Threshold::Never.decide(1e300), Decision::NoInclusion);
 }
 
 // Verifies: NUI-007, NUI-013, NUI-014.

@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::{List, Refused, Rows, answer};
-use crate::detect::mixture::{likeliest, mixture_theta};
+use crate::bank::likeliest;
+use crate::detect::mixture::mixture_theta;
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
 use crate::detect::{DetectError, posterior};
 use crate::stats::error::{check_samples, representable};
@@ -116,10 +117,7 @@ fn level_of(word: &str) -> Result<NoiseLevel, Refused> {
     match word {
         "known" => Ok(NoiseLevel::Known),
         "unknown" => Ok(NoiseLevel::Unknown),
-        _ => {
-            let wrong = format_args!("level is {word:?}; it must be known or unknown");
-            Err(Refused::range(wrong))
-        }
+        _ => Err(Refused::word("level", word, "known or unknown")),
     }
 }
 
