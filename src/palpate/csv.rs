@@ -61,11 +61,11 @@ impl<const N: usize> Rows<N> {
             }
             Ok(numbers)
         };
-        let mut row = |(line, row)| match numbers(row) {
+        let row = |(line, row)| match numbers(row) {
             Ok(numbers) => Ok((line, numbers)),
             Err(refusal) => Err(Refusal::at(refusal, line)),
         };
-        let rows = lines.map(&mut row).collect::<Result<_, _>>()?;
+        let rows = lines.map(row).collect::<Result<_, _>>()?;
         let mut notes = Vec::from_iter(unused(&fields, &places.map(|(place, ..)| place)));
         if mark == Some(',') {
             notes.push("commas in its numbers are decimal commas".into());
@@ -115,10 +115,8 @@ fn find(header: &[&str], column: Column) -> Result<(usize, &'static str, i32), S
         }
     }
     let names = column.iter().copied().flatten().map(|(name, _)| *name);
-    Err(format!(
-        "no column {}",
-        names.collect::<Vec<_>>().join(" or ")
-    ))
+    let names: Vec<_> = names.collect();
+    Err(format!("no column {}", names.join(" or ")))
 }
 
 /// The fields of a line, without the spaces and then the quotes around them. A separator between quotes is none.

@@ -53,23 +53,16 @@ macro_rules! numbers {
 impl Rows {
     /// Adds a quantity for programs alone.
     pub fn value(&mut self, key: &'static str, value: impl Into<Value>) {
-        let value = value.into();
-        self.0.push(Row {
-            key,
-            value,
-            line: None,
-        });
+        let (value, line) = (value.into(), None);
+        self.0.push(Row { key, value, line });
     }
 
     /// Adds a number, of which people see six digits; a missing one is null, and has no line.
     pub fn number(&mut self, key: &'static str, label: &str, number: impl Into<Option<f64>>) {
         let number = number.into();
         let line = number.map(|number| [label.into(), digits(number)]);
-        self.0.push(Row {
-            key,
-            value: number.into(),
-            line,
-        });
+        let value = number.into();
+        self.0.push(Row { key, value, line });
     }
 
     /// Adds a quantity that people see as `text`.

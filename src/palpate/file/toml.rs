@@ -88,7 +88,7 @@ impl<'a> Tree<'a> {
                 Segment::Map { key } => Some(Step::Key(key)),
                 Segment::Enum { .. } | Segment::Unknown => None,
             });
-            let (value, _) = self.innermost(steps);
+            let value = self.innermost(steps);
             let written = value.and_then(|value| self.text.get(value.span()));
             let found = match written {
                 Some(written) if !refusal.key.is_empty() => shortened(written),
@@ -105,18 +105,17 @@ impl<'a> Tree<'a> {
 
     /// A refusal of the value at its key, with its line.
     pub fn placed(&self, refusal: Refusal) -> Refusal {
-        let (value, _) = self.innermost(steps(&refusal.key));
+        let value = self.innermost(steps(&refusal.key));
         let line = value.map(|value| line_of(self.text, value.span().start));
         Refusal { line, ..refusal }
     }
 
     /// The number at `key`.
     pub fn number(&self, key: &str) -> Option<f64> {
-        match self.innermost(steps(key)) {
-            (Some(value), true) => match value.get_ref() {
-                DeValue::Float(number) => number.as_str().parse().ok(),
-                _ => None,
-            },
+        let mut steps = steps(key);
+        let value = steps.try_fold(&self.root, |value, step| inner(value.get_ref(), &step));
+        match value?.get_ref() {
+            DeValue::Float(number) => number.as_str().parse().ok(),
             _ => None,
         }
     }
@@ -162,20 +161,16 @@ impl<'a> Tree<'a> {
         Ok(())
     }
 
-    /// The value to which `steps` lead, or the last one that is there on the way, and whether they lead to it; none if that is the
-    /// whole text.
+    /// The value to which `steps` lead, or the last one that is there on the way; none if that is the whole text.
     fn innermost<'s>(
         &self,
         steps: impl Iterator<Item = Step<'s>>,
-    ) -> (Option<&Spanned<DeValue<'a>>>, bool) {
-        let mut value = None;
-        for step in steps {
-            match inner(value.unwrap_or(&self.root).get_ref(), &step) {
-                Some(inner) => value = Some(inner),
-                None => return (value, false),
-            }
-        }
-        (value, true)
+    ) -> Option<&Spanned<DeValue<'a>>> {
+        let values = steps.scan(&self.root, |value, step| {
+            *value = inner(value.get_ref(), &step)?;
+            Some(*value)
+        });
+        values.last()
     }
 }
 
