@@ -45,6 +45,17 @@ pub enum Role {
     Mixed(usize, usize),
 }
 
+/// The values of a quantity in all samples.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Values<'a> {
+    /// With all inputs at their medians, on each mesh.
+    pub medians: &'a [f64],
+    /// With each input at its lower quartile, and at its upper one.
+    pub quartiles: &'a [f64],
+    /// Of each row: in the first sample, in the second one, and for each group in the first with the inputs of the group from the second.
+    pub rows: Vec<&'a [f64]>,
+}
+
 /// The samples of a study. Each is a function of its number alone.
 ///
 /// Implements: STU-020, STU-021.
@@ -84,19 +95,13 @@ impl Design {
         let matrix = correlation_matrix(names, correlations)?;
         let groups = groups(&matrix);
         let factors = groups.iter().map(|group| factor(&matrix, group, names));
-        let factors = factors.collect::<Result<_, _>>()?;
         Ok(Design {
             rows,
             seed,
+            factors: factors.collect::<Result<_, _>>()?,
             groups,
-            factors,
             inputs,
         })
-    }
-
-    /// Rows of each of the two samples.
-    pub fn rows(&self) -> usize {
-        self.rows
     }
 
     /// The inputs of each group: a group is what an index belongs to.
@@ -117,6 +122,17 @@ impl Design {
         2 + self.groups.len()
     }
 
+    /// The values of a quantity in all samples, by what these are for.
+    pub(super) fn split<'a>(&self, values: &'a [f64]) -> Values<'a> {
+        let (medians, rest) = values.split_at(MESHES);
+        let (quartiles, rows) = rest.split_at(2 * self.inputs);
+        Values {
+            medians,
+            quartiles,
+            rows: rows.chunks(self.row_length()).collect(),
+        }
+    }
+
     /// What the sample with a number is for.
     ///
     /// Implements: STU-021.
@@ -133,21 +149,6 @@ impl Design {
             0 => Role::First(row),
             1 => Role::Second(row),
             group => Role::Mixed(row, group - 2),
-        }
-    }
-
-    /// The number of the sample with a role.
-    ///
-    /// Implements: STU-021.
-    pub fn index(&self, role: Role) -> usize {
-        let of_row =
-            |row: usize, column: usize| self.first_row() + row * self.row_length() + column;
-        match role {
-            Role::Median(mesh) => mesh,
-            Role::Slope(input, side) => MESHES + 2 * input + side,
-            Role::First(row) => of_row(row, 0),
-            Role::Second(row) => of_row(row, 1),
-            Role::Mixed(row, group) => of_row(row, 2 + group),
         }
     }
 
@@ -179,15 +180,12 @@ impl Design {
                 continue;
             }
             // Each is strictly between 0 and 1, where the quantile is defined.
-            let scores = group
-                .iter()
-                .map(|input| normal::quantile(uniform(input)).unwrap_or(0.0));
-            let scores: Vec<f64> = scores.collect();
+            let score = |input| normal::quantile(uniform(input)).unwrap_or(0.0);
+            let scores: Vec<f64> = group.iter().map(score).collect();
             for (i, &input) in group.iter().enumerate() {
                 let score = (0..=i).map(|j| factor[(i, j)] * scores[j]).sum();
-                point[input] = normal::cdf(score)
-                    .unwrap_or(0.5)
-                    .clamp(f64::EPSILON, 1.0 - f64::EPSILON);
+                let share = normal::cdf(score).unwrap_or(0.5);
+                point[input] = share.clamp(f64::EPSILON, 1.0 - f64::EPSILON);
             }
         }
     }
@@ -212,42 +210,26 @@ fn correlation_matrix(
     correlations: &[Correlation],
 ) -> Result<DMatrix<f64>, Refusal> {
     let mut matrix = DMatrix::identity(names.len(), names.len());
-    for (
-        at,
-        Correlation {
-            inputs,
-            coefficient,
-        },
-    ) in correlations.iter().enumerate()
-    {
+    for (at, correlation) in correlations.iter().enumerate() {
         let refused = |key: &str, found: String, expected: String| {
-            Err(Refusal::value(
-                format!("correlation[{at}].{key}"),
-                found,
-                expected,
-            ))
+            let key = format!("correlation[{at}].{key}");
+            Err(Refusal::value(key, found, expected))
         };
+        let (inputs, coefficient) = (&correlation.inputs, correlation.coefficient);
+        let pair = inputs.join(", ");
         let place = |name: &String| names.iter().position(|known| known == name);
         let [Some(one), Some(other)] = inputs.each_ref().map(place) else {
-            return refused(
-                "inputs",
-                inputs.join(", "),
-                format!("two of {}", names.join(", ")),
-            );
+            return refused("inputs", pair, format!("two of {}", names.join(", ")));
         };
         if one == other || matrix[(one, other)] != 0.0 {
-            return refused(
-                "inputs",
-                inputs.join(", "),
-                "two inputs, each pair once".into(),
-            );
+            return refused("inputs", pair, "two inputs, each pair once".into());
         }
-        if !(coefficient.abs() < 1.0 && *coefficient != 0.0) {
+        if !(coefficient.abs() < 1.0 && coefficient != 0.0) {
             let expected = "a number strictly between −1 and 1 that is not 0";
             return refused("coefficient", coefficient.to_string(), expected.into());
         }
-        matrix[(one, other)] = *coefficient;
-        matrix[(other, one)] = *coefficient;
+        matrix[(one, other)] = coefficient;
+        matrix[(other, one)] = coefficient;
     }
     Ok(matrix)
 }
@@ -272,18 +254,15 @@ fn groups(correlations: &DMatrix<f64>) -> Vec<Vec<usize>> {
         for other in 0..one {
             if correlations[(one, other)] != 0.0 {
                 let (from, to) = (group_of[one], group_of[other]);
-                group_of
-                    .iter_mut()
-                    .filter(|group| **group == from)
-                    .for_each(|group| *group = to);
+                let joined = group_of.iter_mut().filter(|group| **group == from);
+                joined.for_each(|group| *group = to);
             }
         }
     }
-    let members = |group| {
-        (0..inputs)
-            .filter(|&input| group_of[input] == group)
-            .collect::<Vec<_>>()
-    };
-    let groups = (0..inputs).map(members);
-    groups.filter(|group| !group.is_empty()).collect()
+    let mut groups = vec![Vec::new(); inputs];
+    for (input, group) in group_of.into_iter().enumerate() {
+        groups[group].push(input);
+    }
+    groups.retain(|group| !group.is_empty());
+    groups
 }

@@ -72,45 +72,40 @@ impl Distribution {
     /// Implements: STU-011.
     pub fn check(&self) -> Result<(), Refusal> {
         use Distribution::{Empirical, Lognormal, Normal, Triangular, Uniform};
-        let wrong = |key: &str, found: f64, expected: &str| {
-            Err(Refusal::value(key, format!("{found:?}"), expected))
-        };
-        let ordered = |values: &[f64]| values.windows(2).all(|pair| pair[0] <= pair[1]);
-        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-        match *self {
-            Uniform { from, to } if !(from < to && finite(&[from, to, to - from])) => {
-                wrong("uniform.to", to, "a finite number above 'from'")
+        let is_above = |least: f64, value: f64| value > least && value.is_finite();
+        // Not finite if an end is not.
+        let is_range = |from: f64, to: f64| is_above(0.0, to - from);
+        let (key, found, expected) = match *self {
+            Uniform { from, to } if !is_range(from, to) => {
+                ("uniform.to", to, "a finite number above 'from'")
             }
-            Normal { mean, .. } if !mean.is_finite() => {
-                wrong("normal.mean", mean, "a finite number")
+            Normal { mean, .. } if !mean.is_finite() => ("normal.mean", mean, "a finite number"),
+            Normal { sd, .. } if !is_above(0.0, sd) => ("normal.sd", sd, "a finite number above 0"),
+            Lognormal { median, .. } if !is_above(0.0, median) => {
+                ("lognormal.median", median, "a finite number above 0")
             }
-            Normal { sd, .. } if !(sd > 0.0 && sd.is_finite()) => {
-                wrong("normal.sd", sd, "a finite number above 0")
-            }
-            Lognormal { median, .. } if !(median > 0.0 && median.is_finite()) => {
-                wrong("lognormal.median", median, "a finite number above 0")
-            }
-            Lognormal { geometric_sd, .. } if !(geometric_sd > 1.0 && geometric_sd.is_finite()) => {
-                let key = "lognormal.geometric_sd";
-                wrong(key, geometric_sd, "a finite number above 1")
+            Lognormal { geometric_sd, .. } if !is_above(1.0, geometric_sd) => {
+                let expected = "a finite number above 1";
+                ("lognormal.geometric_sd", geometric_sd, expected)
             }
             Triangular { from, mode, to }
-                if !(from < to && ordered(&[from, mode, to]) && finite(&[from, to, to - from])) =>
+                if !(is_range(from, to) && (from..=to).contains(&mode)) =>
             {
-                wrong(
-                    "triangular.mode",
-                    mode,
-                    "from ≤ mode ≤ to and from < to, all finite",
-                )
+                let expected = "from ≤ mode ≤ to and from < to, all finite";
+                ("triangular.mode", mode, expected)
             }
             Empirical { ref values, .. } if values.len() < 2 => {
-                wrong("empirical.values", values.len() as f64, "at least 2 values")
+                ("empirical.values", values.len() as f64, "at least 2 values")
             }
-            Empirical { ref values, .. } if !(finite(values) && ordered(values)) => Err(
-                Refusal::state("empirical.values", "finite numbers in increasing order"),
-            ),
-            _ => Ok(()),
-        }
+            Empirical { ref values, .. }
+                if !(values.is_sorted() && values.iter().all(|value| value.is_finite())) =>
+            {
+                let expected = "finite numbers in increasing order";
+                return Err(Refusal::state("empirical.values", expected));
+            }
+            _ => return Ok(()),
+        };
+        Err(Refusal::value(key, format!("{found:?}"), expected))
     }
 
     /// The value below which the input lies with the probability `p`, strictly between 0 and 1.
@@ -150,29 +145,15 @@ mod tests {
     use super::*;
     use palpate_asserts::assert_near;
 
-    fn uniform(from: f64, to: f64) -> Distribution {
-        Distribution::Uniform { from, to }
-    }
-
-    fn normal(mean: f64, sd: f64) -> Distribution {
-        Distribution::Normal { mean, sd }
-    }
-
-    fn lognormal(median: f64, geometric_sd: f64) -> Distribution {
-        Distribution::Lognormal {
-            median,
-            geometric_sd,
-        }
-    }
-
-    fn triangular(from: f64, mode: f64, to: f64) -> Distribution {
-        Distribution::Triangular { from, mode, to }
+    /// A distribution as a study's file states it.
+    fn of(toml: &str) -> Distribution {
+        toml::from_str(toml).unwrap()
     }
 
     // Verifies: STU-010.
     #[test]
     fn quantiles_are_those_of_another_library() {
-        let of = |distribution: &Distribution, p: f64| match *distribution {
+        let other = |distribution: &Distribution, p: f64| match *distribution {
             Distribution::Uniform { from, to } => Uniform::new(from, to).unwrap().inverse_cdf(p),
             Distribution::Normal { mean, sd } => Normal::new(mean, sd).unwrap().inverse_cdf(p),
             Distribution::Lognormal {
@@ -187,34 +168,27 @@ mod tests {
             }
             Distribution::Empirical { .. } => unreachable!(),
         };
-        for distribution in [
-            uniform(-2.0, 3.0),
-            normal(4.0, 0.5),
-            lognormal(5.0, 1.3),
-            triangular(1.0, 1.5, 4.0),
-            triangular(1.0, 1.0, 4.0),
-            triangular(1.0, 4.0, 4.0),
-        ] {
+        let cases = "
+            uniform = { from = -2, to = 3 }
+            normal = { mean = 4, sd = 0.5 }
+            lognormal = { median = 5, geometric_sd = 1.3 }
+            triangular = { from = 1, mode = 1.5, to = 4 }
+            triangular = { from = 1, mode = 1, to = 4 }
+            triangular = { from = 1, mode = 4, to = 4 }";
+        for distribution in cases.trim().lines().map(of) {
             assert_eq!(distribution.check(), Ok(()));
             for p in [1e-6, 0.025, 0.1, 1.0 / 6.0, 0.3, 0.5, 0.9, 0.975, 0.999] {
-                let (found, other) = (distribution.quantile(p), of(&distribution, p));
+                let (found, other) = (distribution.quantile(p), other(&distribution, p));
                 // Theirs is found by an erf with some eleven right digits, or by bisection.
                 assert_near(found, other, 1e-8 * (1.0 + other.abs()));
             }
         }
     }
 
-    fn empirical(values: &[f64]) -> Distribution {
-        Distribution::Empirical {
-            values: values.to_vec(),
-            file: None,
-        }
-    }
-
     // Verifies: STU-010.
     #[test]
     fn each_value_of_an_empirical_distribution_has_the_same_share() {
-        let distribution = empirical(&[1.0, 2.0, 2.0, 7.0]);
+        let distribution = of("empirical = { values = [1, 2, 2, 7] }");
         let found = [0.01, 0.24, 0.26, 0.74, 0.76, 0.99].map(|p| distribution.quantile(p));
         assert_eq!(found, [1.0, 1.0, 2.0, 2.0, 7.0, 7.0]);
     }
@@ -222,22 +196,21 @@ mod tests {
     // Verifies: STU-011.
     #[test]
     fn distributions_that_do_not_exist_are_refused_with_the_parameter() {
-        let nan = f64::NAN;
-        for (distribution, key) in [
-            (uniform(1.0, 1.0), "uniform.to = 1.0"),
-            (uniform(nan, 1.0), "uniform.to"),
-            (uniform(-f64::MAX, f64::MAX), "uniform.to"),
-            (normal(nan, 1.0), "normal.mean = NaN"),
-            (normal(0.0, 0.0), "normal.sd = 0.0"),
-            (lognormal(0.0, 2.0), "lognormal.median"),
-            (lognormal(1.0, 1.0), "lognormal.geometric_sd"),
-            (triangular(0.0, 2.0, 1.0), "triangular.mode = 2.0"),
-            (triangular(1.0, 1.0, 1.0), "triangular.mode"),
-            (empirical(&[1.0]), "empirical.values = 1.0"),
-            (empirical(&[2.0, 1.0]), "empirical.values"),
-            (empirical(&[1.0, nan]), "empirical.values"),
-        ] {
-            let error = distribution.check().unwrap_err().to_string();
+        let cases = "
+            uniform = { from = 1, to = 1 } => uniform.to = 1.0
+            uniform = { from = nan, to = 1 } => uniform.to
+            uniform = { from = -1.7e308, to = 1.7e308 } => uniform.to
+            normal = { mean = nan, sd = 1 } => normal.mean = NaN
+            normal = { mean = 0, sd = 0 } => normal.sd = 0.0
+            lognormal = { median = 0, geometric_sd = 2 } => lognormal.median
+            lognormal = { median = 1, geometric_sd = 1 } => lognormal.geometric_sd
+            triangular = { from = 0, mode = 2, to = 1 } => triangular.mode = 2.0
+            triangular = { from = 1, mode = 1, to = 1 } => triangular.mode
+            empirical = { values = [1] } => empirical.values = 1.0
+            empirical = { values = [2, 1] } => empirical.values
+            empirical = { values = [1, nan] } => empirical.values";
+        for (distribution, key) in cases.lines().filter_map(|case| case.split_once(" => ")) {
+            let error = of(distribution).check().unwrap_err().to_string();
             assert!(error.starts_with(key), "{error}");
         }
     }

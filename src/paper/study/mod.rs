@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 pub use bands::{Band, band};
 pub use design::{Correlation, Design, MOST_INPUTS, Role};
 pub use distribution::Distribution;
-pub use indices::{Estimate, Index, Rows, indices};
+pub use indices::{Estimate, Index, indices};
 pub use results::{Conclusion, Failure, QuantityResult, Slope, StudyResults};
 pub use sample::{Kind, Quantity, Sampler};
 
@@ -135,10 +135,8 @@ impl StudyPlan {
     /// # Errors
     /// Rates that no γ keeps.
     pub fn required_gamma(&self) -> Result<f64, Refusal> {
-        Ok(required_gamma(
-            self.settings.max_false_alarm,
-            self.settings.max_miss,
-        )?)
+        let settings = self.settings;
+        Ok(required_gamma(settings.max_false_alarm, settings.max_miss)?)
     }
 
     /// A phantom with the values of the inputs, of those whose keys it has.

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::design::{BESIDE_MEDIAN, Role};
-use super::indices::{Estimate, Rows, indices};
+use super::design::{BESIDE_MEDIAN, Values};
+use super::indices::{Estimate, indices};
 use super::{Band, Change, Index, Kind, Quantity, Sampler, StudyPlan, band};
 use crate::psychophysics::CONFIDENCE;
 use crate::psychophysics::bridge::LEVEL;
@@ -170,11 +170,9 @@ impl StudyResults {
         let block = (HELD / samples).clamp(1, quantities.len().max(1));
         for from in (0..quantities.len()).step_by(block) {
             let to = (from + block).min(quantities.len());
-            for (quantity, column) in quantities[from..to].iter().zip(columns(from..to)?) {
-                let column = Column {
-                    sampler,
-                    values: &column,
-                };
+            for (quantity, values) in quantities[from..to].iter().zip(columns(from..to)?) {
+                let values = design.split(&values);
+                let column = Column { sampler, values };
                 let (result, rows) = column.result(quantity)?;
                 rows_used = rows;
                 results.push(result);
@@ -182,17 +180,14 @@ impl StudyResults {
             }
         }
         let name = |&input: &usize| plan.inputs[input].name.clone();
-        let groups = design
-            .groups()
-            .iter()
-            .map(|group| group.iter().map(name).collect());
+        let names = |group: &Vec<usize>| group.iter().map(name).collect();
         Ok(StudyResults {
             schema: Self::SCHEMA.into(),
             schema_version: Self::SCHEMA_VERSION,
             program_version: env!("CARGO_PKG_VERSION").into(),
             arithmetic: palpate::fem::arithmetic().into(),
             plan: plan.clone(),
-            groups: groups.collect(),
+            groups: design.groups().iter().map(names).collect(),
             samples,
             failed: failures.len(),
             failures: failures.iter().take(Self::TOLD).cloned().collect(),
@@ -206,70 +201,42 @@ impl StudyResults {
 /// One quantity in all samples.
 struct Column<'a> {
     sampler: &'a Sampler<'a>,
-    values: &'a [f64],
+    values: Values<'a>,
 }
 
 impl Column<'_> {
-    fn at(&self, role: Role) -> f64 {
-        self.values[self.sampler.design().index(role)]
-    }
-
     /// The values of both samples that did not fail.
     fn sampled(&self) -> Vec<f64> {
-        let rows = 0..self.sampler.design().rows();
-        let both = rows.flat_map(|row| [Role::First(row), Role::Second(row)]);
-        both.map(|role| self.at(role))
-            .filter(|value| value.is_finite())
-            .collect()
+        let both = self.values.rows.iter().flat_map(|row| &row[..2]).copied();
+        both.filter(|value| value.is_finite()).collect()
     }
 
     fn result(&self, quantity: &Quantity) -> Result<(QuantityResult, usize), Refusal> {
-        let design = self.sampler.design();
-        let meshes = [0, 1, 2].map(|mesh| self.at(Role::Median(mesh)));
+        let plan = self.sampler.plan();
+        let medians = [0, 1, 2].map(|mesh| self.values.medians[mesh]);
         let known = |value: f64| value.is_finite().then_some(value);
-        let groups = design.groups().len();
-        let mixed = |row| (0..groups).map(move |group| Role::Mixed(row, group));
-        let is_whole = |row: &usize| {
-            let mut roles = mixed(*row).chain([Role::First(*row), Role::Second(*row)]);
-            roles.all(|role| self.at(role).is_finite())
-        };
-        let whole: Vec<usize> = (0..design.rows()).filter(is_whole).collect();
-        let of = |role: &dyn Fn(usize) -> Role| {
-            whole
-                .iter()
-                .map(|&row| self.at(role(row)))
-                .collect::<Vec<f64>>()
-        };
-        let (first, second) = (of(&Role::First), of(&Role::Second));
-        let mixed: Vec<_> = (0..groups)
-            .map(|group| of(&|row| Role::Mixed(row, group)))
-            .collect();
-        let rows = Rows {
-            first: &first,
-            second: &second,
-            mixed: &mixed,
-        };
-        let band = band(self.sampled())?;
+        let is_whole = |row: &&[f64]| row.iter().all(|value| value.is_finite());
+        let whole = self.values.rows.iter().copied().filter(is_whole);
+        let whole: Vec<&[f64]> = whole.collect();
+        let slopes = (0..plan.inputs.len()).map(|input| self.slope(input));
         let result = QuantityResult {
             quantity: quantity.clone(),
-            at_medians: known(meshes[0]),
-            numerical_band: known(certify::band(meshes)),
-            band,
-            slopes: (0..self.sampler.plan().inputs.len())
-                .map(|input| self.slope(input))
-                .collect(),
-            indices: indices(rows, self.sampler.plan().seed.into()).unwrap_or_default(),
+            at_medians: known(medians[0]),
+            numerical_band: known(certify::band(medians)),
+            band: band(self.sampled())?,
+            slopes: slopes.collect(),
+            indices: indices(&whole, plan.seed.into()).unwrap_or_default(),
         };
         Ok((result, whole.len()))
     }
 
     /// Implements: STU-043.
     fn slope(&self, input: usize) -> Option<Slope> {
-        let [below, above] = [0, 1].map(|side| self.at(Role::Slope(input, side)));
+        let [below, above] = [0, 1].map(|side| self.values.quartiles[2 * input + side]);
         let of = &self.sampler.plan().inputs[input];
         let [from, to] = BESIDE_MEDIAN.map(|p| of.distribution.quantile(p));
         let per_unit = (above - below) / (to - from);
-        let relative = of.distribution.quantile(0.5) / self.at(Role::Median(0));
+        let relative = of.distribution.quantile(0.5) / self.values.medians[0];
         let elasticity = (of.change != Change::Offset).then_some(per_unit * relative);
         per_unit.is_finite().then_some(Slope {
             between_quartiles: above - below,
@@ -291,7 +258,7 @@ impl Column<'_> {
         if sampled.is_empty() {
             return Ok(None);
         }
-        let at_medians = Some(self.at(Role::Median(0))).filter(|value| value.is_finite());
+        let at_medians = Some(self.values.medians[0]).filter(|value| value.is_finite());
         let found = binomial::clopper_pearson(held as u64, sampled.len() as u64, CONFIDENCE)?;
         Ok(Some(Conclusion {
             quantity: quantity.clone(),

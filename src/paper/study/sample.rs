@@ -64,6 +64,17 @@ pub enum Kind {
     },
 }
 
+/// The quantities of each signal, with their words.
+const OF_SIGNAL: [(Kind, &str); 7] = [
+    (Kind::PeakNormalN, "peak of the normal signal, N"),
+    (Kind::PeakLateralN, "peak of the lateral signal, N"),
+    (Kind::Gamma, "γ"),
+    (Kind::NeededNoiseSdN, "largest noise, N"),
+    (Kind::ErrorRate, "Pr(e)"),
+    (Kind::TwoAfc, "right answers in pairs"),
+    (Kind::TwoAfcByPeak, "right answers in pairs, by the peak"),
+];
+
 /// Computes the samples of a study.
 ///
 /// Implements: STU-030.
@@ -128,12 +139,10 @@ impl<'a> Sampler<'a> {
     ///
     /// Implements: STU-012.
     pub fn inputs(&self, index: usize) -> Vec<f64> {
-        let inputs = self.plan.inputs.iter();
         let probabilities = self.design.probabilities(index);
-        inputs
-            .zip(probabilities)
-            .map(|(input, p)| input.distribution.quantile(p))
-            .collect()
+        let inputs = self.plan.inputs.iter().zip(probabilities);
+        let values = inputs.map(|(input, p)| input.distribution.quantile(p));
+        values.collect()
     }
 
     /// The quantities of the sample with a number.
@@ -246,12 +255,9 @@ impl<'a> Sampler<'a> {
                 deepest(&depths, &gamma, self.needed).unwrap_or(0.0)
             }
             Kind::ConventionP { convention } => {
-                let names = Convention::all().map(Convention::text);
-                let place = names.into_iter().position(|name| name == *convention);
-                place
-                    .and_then(|place| computed.p_values.get(place))
-                    .copied()
-                    .unwrap_or(f64::NAN)
+                let mut named = Convention::all().zip(&computed.p_values);
+                let named = named.find(|(of, _)| of.text() == *convention);
+                named.map_or(f64::NAN, |(_, &p)| p)
             }
         })
     }
@@ -283,26 +289,11 @@ fn quantities(plan: &StudyPlan, answers: &AnswerTable) -> Vec<Quantity> {
             push(name, Kind::LateralForceN { lateral_m });
         }
         if at > 0 {
-            use Kind::{ErrorRate, Gamma, NeededNoiseSdN, PeakLateralN, PeakNormalN};
-            use Kind::{TwoAfc, TwoAfcByPeak};
-            for kind in [
-                PeakNormalN,
-                PeakLateralN,
-                Gamma,
-                NeededNoiseSdN,
-                ErrorRate,
-                TwoAfc,
-                TwoAfcByPeak,
-            ] {
-                push(name, kind);
-            }
+            OF_SIGNAL.into_iter().for_each(|(kind, _)| push(name, kind));
         }
     }
-    let depths: Vec<_> = plan
-        .phantoms
-        .iter()
-        .filter_map(Phantom::inclusion_depth)
-        .collect();
+    let phantoms = plan.phantoms.iter();
+    let depths: Vec<_> = phantoms.filter_map(Phantom::inclusion_depth).collect();
     let is_apart = |&depth: &f64| depths.iter().filter(|&&other| other == depth).count() == 1;
     if depths.len() == plan.phantoms.len() && depths.len() > 1 && depths.iter().all(is_apart) {
         push("", Kind::DetectableDepthM);
@@ -319,21 +310,14 @@ impl std::fmt::Display for Quantity {
     /// In words, with the unit.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let what = match &self.kind {
-            Kind::NormalForceN { lateral_m } => {
-                format!("normal force at {} mm, N", mm(*lateral_m))
-            }
-            Kind::LateralForceN { lateral_m } => {
-                format!("lateral force at {} mm, N", mm(*lateral_m))
-            }
-            Kind::PeakNormalN => "peak of the normal signal, N".into(),
-            Kind::PeakLateralN => "peak of the lateral signal, N".into(),
-            Kind::Gamma => "γ".into(),
-            Kind::NeededNoiseSdN => "largest noise, N".into(),
-            Kind::ErrorRate => "Pr(e)".into(),
-            Kind::TwoAfc => "right answers in pairs".into(),
-            Kind::TwoAfcByPeak => "right answers in pairs, by the peak".into(),
+            Kind::NormalForceN { lateral_m: x } => format!("normal force at {} mm, N", mm(*x)),
+            Kind::LateralForceN { lateral_m: x } => format!("lateral force at {} mm, N", mm(*x)),
             Kind::DetectableDepthM => "detectable depth, m".into(),
             Kind::ConventionP { convention } => format!("p of the convention \"{convention}\"",),
+            of_signal => {
+                let named = OF_SIGNAL.iter().find(|(kind, _)| kind == of_signal);
+                named.map_or("", |(_, words)| words).into()
+            }
         };
         let of = match &*self.phantom {
             "" => what,

@@ -12,23 +12,9 @@ const NAMES: [&str; 6] = ["a", "b", "c", "d", "e", "f"];
 /// The indices of a function of independent uniform inputs.
 fn found(inputs: usize, rows: usize, seed: u32, of: impl Fn(&[f64]) -> f64) -> Vec<Index> {
     let design = Design::new(&NAMES[..inputs], &[], rows, seed).unwrap();
-    let value = |role| of(&design.probabilities(design.index(role)));
-    let all =
-        |role: &dyn Fn(usize) -> Role| (0..rows).map(|row| value(role(row))).collect::<Vec<_>>();
-    let mixed: Vec<_> = (0..inputs)
-        .map(|group| all(&|row| Role::Mixed(row, group)))
-        .collect();
-    let (first, second) = (all(&Role::First), all(&Role::Second));
-    of_rows(&first, &second, &mixed, 7).unwrap()
-}
-
-fn of_rows(first: &[f64], second: &[f64], mixed: &[Vec<f64>], seed: u64) -> Option<Vec<Index>> {
-    let rows = Rows {
-        first,
-        second,
-        mixed,
-    };
-    indices(rows, seed)
+    let samples = (0..design.samples()).map(|sample| of(&design.probabilities(sample)));
+    let values: Vec<f64> = samples.collect();
+    indices(&design.split(&values).rows, 7).unwrap()
 }
 
 fn assert_indices(found: &[Index], expected: &[[f64; 2]]) {
@@ -86,9 +72,8 @@ fn the_indices_of_the_g_function_are_its_closed_form() {
 // Verifies: STU-040.
 #[test]
 fn a_quantity_that_does_not_vary_has_no_indices() {
-    let same = [3.0; 5];
-    assert_eq!(of_rows(&same, &same, &[vec![3.0; 5]], 1), None);
-    assert_eq!(of_rows(&[1.0], &[2.0], &[vec![2.0]], 1), None);
+    assert_eq!(indices(&[&[3.0; 3][..]; 5], 1), None);
+    assert_eq!(indices(&[&[1.0, 2.0, 2.0][..]], 1), None);
 }
 
 fn correlation(one: &str, other: &str, coefficient: f64) -> Correlation {
@@ -104,15 +89,20 @@ fn each_sample_has_one_role_and_the_points_fill_the_unit_cube_evenly() {
     let design = Design::new(&NAMES[..4], &[correlation("a", "c", 0.8)], 256, 5).unwrap();
     assert_eq!(design.groups(), [vec![0, 2], vec![1], vec![3]]);
     assert_eq!(design.samples(), 3 + 2 * 4 + 256 * 5);
-    for index in 0..design.samples() {
-        assert_eq!(design.index(design.role(index)), index);
+    let place = |role| {
+        let mut samples = 0..design.samples();
+        samples.position(|sample| design.role(sample) == role)
+    };
+    for sample in 0..design.samples() {
+        assert_eq!(place(design.role(sample)), Some(sample));
     }
+    let at = |role| design.probabilities(place(role).unwrap());
     // A scrambled Sobol' sequence is a (t, s)-sequence: 256 points have one in each 256th of every coordinate.
     for role in [Role::First, Role::Second] {
         for input in [1, 3] {
             let mut cells = [0; 256];
             for row in 0..256 {
-                let p = design.probabilities(design.index(role(row)))[input];
+                let p = at(role(row))[input];
                 assert!(p > 0.0 && p < 1.0);
                 cells[(p * 256.0) as usize] += 1;
             }
@@ -120,7 +110,6 @@ fn each_sample_has_one_role_and_the_points_fill_the_unit_cube_evenly() {
         }
     }
     // A mixed sample has one group of the second, and all else of the first.
-    let at = |role| design.probabilities(design.index(role));
     let [first, second, mixed] = [Role::First(9), Role::Second(9), Role::Mixed(9, 0)].map(at);
     assert_eq!(mixed, [second[0], first[1], second[2], first[3]]);
     assert_eq!(at(Role::Median(2)), [0.5; 4]);
@@ -134,10 +123,16 @@ fn correlated_inputs_have_normal_scores_of_that_correlation() {
     let rows = 4096;
     let design = Design::new(&NAMES[..3], &correlations, rows, 1).unwrap();
     let score = |p| palpate::stats::normal::quantile(p).unwrap();
-    let row = |row| design.probabilities(design.index(Role::First(row)));
-    let scores: Vec<Vec<f64>> = (0..rows)
-        .map(|at| row(at).into_iter().map(score).collect())
-        .collect();
+    let is_first = |sample: &usize| matches!(design.role(*sample), Role::First(_));
+    let first = (0..design.samples()).filter(is_first);
+    let scores = first.map(|sample| {
+        design
+            .probabilities(sample)
+            .into_iter()
+            .map(score)
+            .collect()
+    });
+    let scores: Vec<Vec<f64>> = scores.collect();
     let expected = "0 1 0.8\n1 2 -0.5\n0 2 0\n0 0 1\n2 2 1";
     for [one, other, expected] in numbers(expected) {
         let [one, other] = [one, other].map(|input| input as usize);
