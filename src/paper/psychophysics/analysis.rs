@@ -71,20 +71,28 @@ pub struct SubjectAnalysis {
 /// Never for counts that fit their trials, as an [`AnswerTable`] holds them.
 pub fn analyse(table: &AnswerTable) -> Result<Analysis> {
     let conditions = table.conditions().iter();
+    let conditions = conditions.map(|condition| analyse_condition(table, condition));
     Ok(Analysis {
         confidence: CONFIDENCE,
-        conditions: conditions
-            .map(|condition| analyse_condition(table, condition))
-            .collect::<Result<_, _>>()?,
+        conditions: conditions.collect::<Result<_>>()?,
         comparisons: comparisons(table)?,
     })
 }
 
 fn analyse_condition(table: &AnswerTable, condition: &Condition) -> Result<ConditionAnalysis> {
-    let columns = table.inclusions().iter().enumerate();
-    let inclusions = columns
-        .map(|(column, inclusion)| analyse_inclusion(inclusion, condition, column))
-        .collect::<Result<Vec<_>, _>>()?;
+    let inclusion = |(column, inclusion): (usize, &Column)| {
+        let counts = condition.counts(column);
+        let (pooled, clustered) = pooled(condition, column)?;
+        Ok(InclusionAnalysis {
+            name: inclusion.name.clone(),
+            depth_m: inclusion.depth,
+            pooled,
+            clustered,
+            dispersion: dispersion(&counts)?,
+            beta_binomial: beta_binomial(&counts)?,
+        })
+    };
+    let inclusions = table.inclusions().iter().enumerate().map(inclusion);
     let subject = |subject: &Subject| {
         let rate = |&correct| Rate::new(u64::from(correct), u64::from(subject.trials));
         Ok(SubjectAnalysis {
@@ -96,27 +104,10 @@ fn analyse_condition(table: &AnswerTable, condition: &Condition) -> Result<Condi
     let dispersion = Overdispersion::new(condition, table.inclusions().len())?;
     Ok(ConditionAnalysis {
         name: condition.name.clone(),
-        inclusions,
+        inclusions: inclusions.collect::<Result<_>>()?,
         subjects: subjects.collect::<Result<_>>()?,
         dispersion: dispersion.map(|found| found.ratio),
         dispersion_degrees: dispersion.map_or(0, |found| found.degrees),
         psychometric: psychometric(table.inclusions(), condition, dispersion)?,
-    })
-}
-
-fn analyse_inclusion(
-    inclusion: &Column,
-    condition: &Condition,
-    column: usize,
-) -> Result<InclusionAnalysis> {
-    let counts = condition.counts(column);
-    let (pooled, clustered) = pooled(condition, column)?;
-    Ok(InclusionAnalysis {
-        name: inclusion.name.clone(),
-        depth_m: inclusion.depth,
-        pooled,
-        clustered,
-        dispersion: dispersion(&counts)?,
-        beta_binomial: beta_binomial(&counts)?,
     })
 }

@@ -93,9 +93,8 @@ pub fn best_lapse(counts: &[Count], perceived: &[Perceived]) -> f64 {
         };
         counts.iter().zip(perceived).map(slope).sum::<f64>() > 0.0
     };
-    if rises(0.0) {
-        change(rises, 0.0, 0.5)
-    } else {
-        0.0
+    if !rises(0.0) {
+        return 0.0;
     }
+    change(rises, 0.0, 0.5)
 }

@@ -115,16 +115,11 @@ impl Experiment {
         if self.next().is_some() {
             return None;
         }
-        let Setup {
-            trials,
-            subject,
-            condition,
-            inclusions,
-            ..
-        } = &self.setup;
+        let setup = &self.setup;
+        let (subject, condition, trials) = (&setup.subject, &setup.condition, setup.trials);
         let correct = |(correct, _)| format!(",{correct}");
         let counts: String = self.counts().into_iter().map(correct).collect();
-        let inclusions = inclusions.join(",");
+        let inclusions = setup.inclusions.join(",");
         Some(format!(
             "subject,condition,trials,{inclusions}\n{subject},{condition},{trials}{counts}\n"
         ))

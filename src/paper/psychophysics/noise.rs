@@ -187,28 +187,20 @@ fn agreement(answers: &NoiseLevel, explained: f64) -> String {
         let Some(OpenBounds { lower, upper }) = bounds else {
             return format!("{name}: no interval");
         };
-        let lower = lower.unwrap_or(0.0);
-        let is_below = upper.is_none_or(|upper| explained <= upper);
-        let side = if explained >= lower && is_below {
-            "inside"
-        } else {
-            "outside"
-        };
-        let [lower, upper] = [Some(lower), upper].map(|end| {
-            end.map_or("no upper bound".into(), |end| {
-                format!("{:.0} mN", end * 1e3)
-            })
-        });
-        format!("{side} the 95 % interval of {name} ({lower} to {upper})")
+        let (lower, greatest) = (lower.unwrap_or(0.0), upper.unwrap_or(f64::INFINITY));
+        let is_inside = (lower..=greatest).contains(&explained);
+        let side = if is_inside { "inside" } else { "outside" };
+        let lower = 1e3 * lower;
+        let upper = upper.map(|upper| format!("{:.0} mN", 1e3 * upper));
+        let upper = upper.unwrap_or("no upper bound".into());
+        format!("{side} the 95 % interval of {name} ({lower:.0} mN to {upper})")
     };
+    let pooled = "all answers pooled, as the paper draws them";
     format!(
         "The paper calls the {:.0} mN that Table 2 explains \"reasonable given the confidence intervals\" of the noise in the answers, {:.0} mN. It lies {}, and {}.",
         explained * 1e3,
         answers.noise_n * 1e3,
-        said(
-            "all answers pooled, as the paper draws them",
-            answers.pooled_bounds_n
-        ),
+        said(pooled, answers.pooled_bounds_n),
         said("the subjects as the sample", answers.clustered_bounds_n),
     )
 }

@@ -146,11 +146,8 @@ impl Model {
         };
         let deviance = deviance(&self.counts, top);
         let degrees = self.counts.len() as u32 - 3;
-        let spread = parameter(
-            log_spread,
-            &|s| self.over_midpoints(s, None).1,
-            self.log_spreads,
-        );
+        let of_spread = |s| self.over_midpoints(s, None).1;
+        let spread = parameter(log_spread, &of_spread, self.log_spreads);
         let mut lapse = parameter(lapse, &|lapse| self.over_both(Some(lapse)).1, [0.0, 0.5]);
         for bounds in [&mut lapse.bounds, &mut lapse.dispersed_bounds] {
             // No lapse is the end of the range, not a bound that is missing.

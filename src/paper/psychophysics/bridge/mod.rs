@@ -30,6 +30,8 @@ pub use answer::{
     WeightRange,
 };
 
+use std::collections::BTreeMap;
+
 use super::choice::Count;
 use super::conditions::sign_flip;
 use super::dispersion::Overdispersion;
@@ -91,18 +93,9 @@ pub fn bridge(
     inclusions: &[(&str, &ForceMap)],
     half_sweep: Option<f64>,
 ) -> Result<Bridge> {
-    let maps = columns(table, inclusions)?;
-    let reference = sweep(reference, half_sweep).map_err(|error| error.in_file("reference"))?;
+    let (columns, signals) = signals(table, reference, inclusions, half_sweep)?;
     let (probe_depth, is_paper_depth) = probe_depth(reference.table().depths());
-    let (mut columns, mut signals) = (Vec::new(), Vec::new());
-    for (column, map) in maps {
-        let map = sweep(map, half_sweep);
-        let signal = map.and_then(|map| Signal::new(&reference, &map, probe_depth));
-        let name = &table.inclusions()[column].name;
-        signals.push(signal.map_err(|error| error.in_file(format!("inclusion {name}")))?);
-        columns.push(column);
-    }
-    let laterals = reference.table().laterals();
+    let laterals = &signals[0].laterals;
     let half_sweeps = half_sweeps(laterals);
     let conditions = table.conditions().iter();
     let ranges = conditions.len() * half_sweeps.len() * STATISTICS.len();
@@ -142,14 +135,7 @@ pub fn p_values(
     reference: &ForceMap,
     inclusions: &[(&str, &ForceMap)],
 ) -> Result<Vec<f64>> {
-    let maps = columns(table, inclusions)?;
-    let reference = sweep(reference, None)?;
-    let (depth, _) = probe_depth(reference.table().depths());
-    let signal = |&(_, map): &(usize, &ForceMap)| {
-        sweep(map, None).and_then(|map| Signal::new(&reference, &map, depth))
-    };
-    let signals = maps.iter().map(signal).collect::<Result<Vec<_>, _>>()?;
-    let columns: Vec<usize> = maps.into_iter().map(|(column, _)| column).collect();
+    let (columns, signals) = signals(table, reference, inclusions, None)?;
     let missing = || Refusal::state(format!("condition {condition} is not in the table"), "");
     let condition = table.conditions().get(condition).ok_or_else(missing)?;
     let observed = Observations::new(condition, &columns)?;
@@ -173,31 +159,38 @@ fn by_subjects(
     Ok((plain, with_lapse, p_value))
 }
 
-/// Each map with the column that it belongs to, in the order of the table.
-fn columns<'a>(
+/// The columns that the maps belong to, in the order of the table, and the signal of each.
+fn signals(
     table: &AnswerTable,
-    inclusions: &[(&str, &'a ForceMap)],
-) -> Result<Vec<(usize, &'a ForceMap)>, Refusal> {
+    reference: &ForceMap,
+    inclusions: &[(&str, &ForceMap)],
+    half_sweep: Option<f64>,
+) -> Result<(Vec<usize>, Vec<Signal>)> {
     let known: Vec<&str> = table.inclusions().iter().map(|of| &of.name[..]).collect();
-    let mut columns: Vec<(usize, &ForceMap)> = Vec::new();
+    let mut maps = BTreeMap::new();
     for &(name, map) in inclusions {
         let Some(column) = known.iter().position(|known| *known == name) else {
             let found = format!("inclusion {name:?} is no column of the table");
             let expected = format!("one of {}", known.join(", "));
             return Err(Refusal::state(found, expected));
         };
-        if columns.iter().any(|&(other, _)| other == column) {
+        if maps.insert(column, map).is_some() {
             let found = format!("inclusion {name:?} has two maps");
             return Err(Refusal::state(found, "one"));
         }
-        columns.push((column, map));
     }
-    if columns.len() < 2 {
-        let found = format!("{} inclusions with a map", columns.len());
+    if maps.len() < 2 {
+        let found = format!("{} inclusions with a map", maps.len());
         return Err(Refusal::state(found, "at least two"));
     }
-    columns.sort_by_key(|&(column, _)| column);
-    Ok(columns)
+    let reference = sweep(reference, half_sweep).map_err(|error| error.in_file("reference"))?;
+    let (depth, _) = probe_depth(reference.table().depths());
+    let signal = |(column, map)| {
+        let signal = sweep(map, half_sweep).and_then(|map| Signal::new(&reference, &map, depth));
+        let of_map = |error: Refusal| error.in_file(format!("inclusion {}", known[column]));
+        Ok((column, signal.map_err(of_map)?))
+    };
+    maps.into_iter().map(signal).collect()
 }
 
 /// The depth of the probe, m, at which forces are taken, and whether it is the paper's 4 mm; else the deepest.

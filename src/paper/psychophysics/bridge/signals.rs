@@ -22,12 +22,9 @@ pub struct Signal {
 ///
 /// Implements: PSY-070, CLI-081.
 pub fn sweep(map: &ForceMap, half: Option<f64>) -> Result<ForceMap, Refusal> {
-    let begins_at_centre =
-        map.table().laterals().len() > 1 && map.table().laterals()[0].abs() <= SAME_POSITION;
-    let whole = if begins_at_centre {
-        map.mirrored()?
-    } else {
-        map.clone()
+    let whole = match map.table().laterals() {
+        [first, _, ..] if first.abs() <= SAME_POSITION => map.mirrored()?,
+        _ => map.clone(),
     };
     let Some(half) = half else { return Ok(whole) };
     let inside = whole.table().laterals().iter().copied();
@@ -85,10 +82,7 @@ impl Signal {
     ///
     /// Implements: PSY-070.
     pub fn strength(&self, convention: Convention) -> f64 {
-        let weight = match convention.offset {
-            Offset::Kept => 1.0,
-            Offset::Removed => 0.0,
-        };
+        let weight = f64::from(u8::from(convention.offset == Offset::Kept));
         self.weighted(convention.statistic, convention.channel, weight)
     }
 

@@ -49,14 +49,12 @@ pub fn by_subject_with_lapse(
     let (lapse, _) = maximum(profile, 0.0, LARGEST_LAPSE, CELLS);
     let with = assemble(signals, observed, lapse, 1)?;
     // The search for the lapse is coarser than the fit without: it must not lose to it.
-    Ok(if with.deviance < without.deviance {
-        with
-    } else {
-        SubjectFit {
-            aic: without.aic + 2.0,
-            ..without.clone()
-        }
-    })
+    if with.deviance < without.deviance {
+        return Ok(with);
+    }
+    let aic = without.aic + 2.0;
+    let same = without.clone();
+    Ok(SubjectFit { aic, ..same })
 }
 
 fn assemble(
@@ -72,16 +70,12 @@ fn assemble(
     for counts in &observed.subjects {
         let (log, _) = signals.best(counts, Some(lapse));
         let is_fitted = is_inside(range, log);
-        let sensitivity = match log > 0.5 * (range[0] + range[1]) {
-            _ if is_fitted => libm::exp(log),
-            true => libm::exp(range[1]) * SURE,
-            false => 0.0,
+        let (sensitivity, noise_n) = match log > 0.5 * (range[0] + range[1]) {
+            _ if is_fitted => (libm::exp(log), Some(1.0 / libm::exp(log))),
+            true => (libm::exp(range[1]) * SURE, Some(0.0)),
+            false => (0.0, None),
         };
-        noise.push(if is_fitted {
-            Some(1.0 / sensitivity)
-        } else {
-            (sensitivity > 0.0).then_some(0.0)
-        });
+        noise.push(noise_n);
         let perceived = signals.perceived(sensitivity);
         for ((sum, count), at) in predicted.iter_mut().zip(counts).zip(&perceived) {
             sum.right += count.trials() * at.right(lapse);
@@ -93,7 +87,9 @@ fn assemble(
     }
     let deviance: f64 = deviances.iter().sum();
     let lapses = f64::from(fitted_lapses);
-    let moments = moments.less(lapses);
+    // Less what further fitted parameters take away, as in the chi-square law.
+    moments.mean = (moments.mean - lapses).max(0.0);
+    moments.variance = (moments.variance - 2.0 * lapses).max(0.0);
     let parameters = observed.subjects.len() as f64 + lapses;
     Ok(SubjectFit {
         noise_n: noise,
@@ -145,14 +141,6 @@ impl Moments {
             self.variance -= 2.0 * with_square / information;
         }
         Ok(())
-    }
-
-    /// Less what further fitted parameters take away, as in the chi-square law.
-    fn less(self, parameters: f64) -> Moments {
-        Moments {
-            mean: (self.mean - parameters).max(0.0),
-            variance: (self.variance - 2.0 * parameters).max(0.0),
-        }
     }
 
     /// Pr(X ≥ deviance) by the gamma law.

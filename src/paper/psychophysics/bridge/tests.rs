@@ -36,13 +36,28 @@ fn map_over(depths: &[f64], laterals: &[f64], forces: impl Fn(usize) -> [f64; 2]
     measured(None, table)
 }
 
-fn convention(statistic: Statistic, channel: Channel, offset: Offset) -> Convention {
-    Convention {
-        statistic,
-        channel,
-        offset,
-    }
+/// The convention in these words.
+fn convention(words: &str) -> Convention {
+    let mut all = Convention::all();
+    all.find(|of| of.text() == words).unwrap()
 }
+
+/// The squares of the signals that the conventions make of the differences −1, 2, 4, 2, 3 and 0, −3, 0, 3, 0 (N): at the end −1 − 2 less
+/// its mean, and 4² + 0² before 2² + 3².
+const SQUARES: &str = "
+peak, normal force: 16
+peak, normal force less its mean: 9
+peak, lateral force: 9
+peak, lateral force less its mean: 9
+peak, both forces: 16
+peak, both forces less their means: 9
+matched filter, normal force: 6.8
+matched filter, normal force less its mean: 2.8
+matched filter, lateral force: 3.6
+matched filter, lateral force less its mean: 3.6
+matched filter, both forces: 10.4
+matched filter, both forces less their means: 6.4
+";
 
 // Verifies: PSY-070.
 #[test]
@@ -51,23 +66,11 @@ fn each_convention_makes_its_own_signal() {
     // The differences are −1, 2, 4, 2, 3 (mean 2) and 0, −3, 0, 3, 0 (mean 0), all exact.
     let with = map([0.0, 3.5, 6.0, 3.5, 4.0], [0.5, -2.5, 0.0, 2.5, -0.5]);
     let signal = Signal::new(&reference, &with, 4e-3).unwrap();
-    use {Channel::*, Offset::*, Statistic::*};
-    for (statistic, channel, offset, square) in [
-        (Peak, Normal, Kept, 16.0),
-        (Peak, Normal, Removed, 9.0), // at the end: −1 − 2
-        (Peak, Lateral, Kept, 9.0),
-        (Peak, Lateral, Removed, 9.0),
-        (Peak, Both, Kept, 16.0), // 4² + 0² before 2² + 3²
-        (Peak, Both, Removed, 9.0),
-        (MatchedFilter, Normal, Kept, 34.0 / 5.0),
-        (MatchedFilter, Normal, Removed, 14.0 / 5.0),
-        (MatchedFilter, Lateral, Kept, 18.0 / 5.0),
-        (MatchedFilter, Lateral, Removed, 18.0 / 5.0),
-        (MatchedFilter, Both, Kept, 52.0 / 5.0),
-        (MatchedFilter, Both, Removed, 32.0 / 5.0),
-    ] {
-        let found = signal.strength(convention(statistic, channel, offset));
-        assert_near(found * found, square, 1e-14);
+    for (convention, case) in Convention::all().zip(SQUARES.trim().lines()) {
+        let (words, square) = case.split_once(": ").unwrap();
+        assert_eq!(convention.text(), words);
+        let found = signal.strength(convention);
+        assert_near(found * found, square.parse().unwrap(), 1e-14);
     }
     assert_eq!(Convention::all().count(), 12);
     let uniform = Convention::all().filter(|c| c.uses_uniform_part());

@@ -66,12 +66,10 @@ fn weight_range(
     let Some(&best) = fits.iter().min_by(by_deviance) else {
         return Ok(None);
     };
+    let is_expected = best.expected_deviance > 0.0;
+    let ratio = is_expected.then(|| best.deviance / best.expected_deviance);
     let dispersion = Overdispersion {
-        ratio: if best.expected_deviance > 0.0 {
-            best.deviance / best.expected_deviance
-        } else {
-            1.0
-        },
+        ratio: ratio.unwrap_or(1.0),
         // Less one for the weight itself.
         degrees: best.degrees.saturating_sub(1),
     };

@@ -170,7 +170,7 @@ fn the_number_of_ranges_is_counted_in_each() {
 #[test]
 fn the_larger_p_value_of_the_two_fits_by_subject_counts() {
     let signals = computed_signals();
-    let less_its_mean = convention(Statistic::Peak, Channel::Normal, Offset::Removed);
+    let less_its_mean = convention("peak, normal force less its mean");
     let strengths = Signals::new(&signals, |s| s.within(3e-3).strength(less_its_mean));
     let found = fit(less_its_mean, strengths.unwrap(), &observations(2)).unwrap();
     assert_near(found.by_subject_with_lapse.p_value, 0.067, 3e-3);
@@ -184,8 +184,8 @@ fn the_larger_p_value_of_the_two_fits_by_subject_counts() {
 fn conventions_are_compared_with_their_lapses() {
     let signals = computed_signals();
     for (condition, half, exchanges) in [(1, 10e-3, 4.0), (1, 5e-3, 54.0), (2, 10e-3, 16.0)] {
-        let [normal, lateral] = [Channel::Normal, Channel::Lateral].map(|channel| {
-            let of = convention(Statistic::MatchedFilter, channel, Offset::Removed);
+        let [normal, lateral] = ["normal", "lateral"].map(|channel| {
+            let of = convention(&format!("matched filter, {channel} force less its mean"));
             let strengths = Signals::new(&signals, |s| s.within(half).strength(of));
             fit(of, strengths.unwrap(), &observations(condition)).unwrap()
         });
