@@ -8,12 +8,13 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::CliError;
+use super::error::refuse;
 use super::numbers::{List, contact, length, moduli, positions};
 use super::output::{Envelope, write};
 use super::progress::{resumed_bar, tell_large_mesh};
 use super::solve::{phantom, warn_of_large_strain_of};
 use palpate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
-use palpate::decimal::format_scaled;
+use palpate::decimal::{kpa, mm};
 use palpate::fem::{Contact, arithmetic};
 use palpate::file::from_json;
 use palpate::force_map::ForceMap;
@@ -68,31 +69,28 @@ impl BankArguments {
     fn plan(&self, phantom: &Phantom) -> Result<BankPlan, CliError> {
         let number = phantom.inclusions().len();
         if number != 1 {
-            return Err(CliError::Usage(format!(
+            refuse!(
                 "phantom {} has {number} inclusions, but a bank varies exactly one; try --phantom 6.6",
                 phantom.name()
-            )));
+            );
         }
-        let mut plan = BankPlan::new(phantom.clone(), self.probe_depth, &self.laterals.0)?;
-        plan.positions = self.positions.0.clone();
-        plan.depths = self.depths.0.clone();
-        if let Some(List(diameters)) = &self.diameters {
-            plan.diameters = diameters.clone();
-        }
-        if let Some(List(moduli)) = &self.moduli {
-            plan.moduli = moduli.clone();
-        }
+        let mut plan = BankPlan::new(phantom.clone(), self.probe_depth, &self.laterals)?;
+        plan.positions.clone_from(&self.positions);
+        plan.depths.clone_from(&self.depths);
+        let (diameters, moduli) = (self.diameters.iter(), self.moduli.iter());
+        diameters.for_each(|asked| plan.diameters.clone_from(asked));
+        moduli.for_each(|asked| plan.moduli.clone_from(asked));
         plan.mesh_size = self.mesh_size.unwrap_or(MESH_SIZE);
         plan.contact = self.contact;
         let lists = [&plan.positions, &plan.depths, &plan.diameters, &plan.moduli];
         // Lists have 10⁴ entries at most: no overflow.
         let inclusions = lists.map(|list| list.len() as f64).iter().product::<f64>();
-        let laterals = self.laterals.0.len();
+        let laterals = self.laterals.len();
         let most = MOST_FORCES / (laterals + PER_MAP);
         if inclusions > most as f64 {
-            return Err(CliError::Usage(format!(
+            refuse!(
                 "{inclusions} inclusions are too many; at most {most} are possible with {laterals} lateral positions"
-            )));
+            );
         }
         Ok(plan)
     }
@@ -104,9 +102,8 @@ impl BankArguments {
 pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let out = &arguments.out;
     if out.exists() {
-        return Err(CliError::refused(out.display())(
-            "already exists; choose another --out or delete it",
-        ));
+        let out = out.display();
+        refuse!("{out}: already exists; choose another --out or delete it");
     }
     let phantom = phantom(&arguments.phantom)?;
     let plan = arguments.plan(&phantom)?;
@@ -171,7 +168,7 @@ fn open_part(
         diameters_m: &plan.diameters,
         youngs_moduli_pa: &plan.moduli,
         probe_depth_m: arguments.probe_depth,
-        laterals_m: &arguments.laterals.0,
+        laterals_m: &arguments.laterals,
         mesh_size_m: plan.mesh_size,
         contact: plan.contact,
     };
@@ -246,12 +243,11 @@ fn compute(
 fn name(name: &str, phantom: Option<&Phantom>) -> String {
     let inclusion = phantom.and_then(|phantom| phantom.inclusions().first());
     inclusion.map_or(name.into(), |inclusion| {
-        let [x, depth, diameter, modulus] = Parameter::ALL.map(|parameter| {
-            let power = if parameter == Parameter::Modulus { -3 } else { 3 };
-            format_scaled(parameter.of(inclusion), power)
-        });
+        let [x, depth, width, modulus] = Parameter::ALL.map(|of| of.of(inclusion));
+        let [x, depth, width] = [x, depth, width].map(mm);
+        let modulus = kpa(modulus);
         format!(
-            "{name} with its inclusion at {x} mm, {depth} mm deep, {diameter} mm wide, {modulus} kPa"
+            "{name} with its inclusion at {x} mm, {depth} mm deep, {width} mm wide, {modulus} kPa"
         )
     })
 }

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
 use super::CliError;
@@ -121,23 +122,21 @@ impl Config {
     /// # Errors
     /// A phantom that is refused, or whose probe cannot reach one of the poses; with file, line and key.
     pub fn read_phantoms(&self) -> Result<Vec<Phantom>, CliError> {
+        let keys = (0..self.phantoms.len()).map(|at| format!("phantoms[{at}]"));
+        let keys = std::iter::once("reference".into()).chain(keys);
         let names = std::iter::once(&self.reference).chain(&self.phantoms);
-        let read = |(index, name): (usize, &Spanned<String>)| {
-            self.read_phantom(name.as_ref())
-                .map_err(|error| match error {
-                    CliError::Usage(message) if !name.span().is_empty() => {
-                        let key = match index {
-                            0 => "reference".into(),
-                            after => format!("phantoms[{}]", after - 1),
-                        };
-                        let [file, text] = &self.source;
-                        let line = line_of(text, name.span().start);
-                        CliError::Usage(format!("{file}:{line}: {key}: {message}"))
-                    }
-                    other => other,
-                })
+        let read = |(key, name): (String, &Spanned<String>)| {
+            let read = self.read_phantom(name.as_ref());
+            read.map_err(|error| match error {
+                CliError::Usage(message) if !name.span().is_empty() => {
+                    let [file, text] = &self.source;
+                    let line = line_of(text, name.span().start);
+                    CliError::Usage(format!("{file}:{line}: {key}: {message}"))
+                }
+                other => other,
+            })
         };
-        names.enumerate().map(read).collect()
+        keys.zip(names).map(read).collect()
     }
 
     /// The path of a file that the configuration names.
@@ -155,8 +154,8 @@ impl Config {
         } else {
             phantom(&self.file(Path::new(name)).to_string_lossy())?
         };
-        for &depth in &self.depths.0 {
-            for &lateral in &self.laterals.0 {
+        for &depth in &self.depths {
+            for &lateral in &self.laterals {
                 let pose = phantom.check_pose(depth, lateral);
                 pose.map_err(|error| CliError::Usage(format!("phantom {name:?}: {error}")))?;
             }
@@ -165,23 +164,22 @@ impl Config {
     }
 }
 
-fn list<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<List, D::Error> {
-    let text = String::deserialize(deserializer)?;
-    positions(&text).map_err(serde::de::Error::custom)
+fn list<'de, D: Deserializer<'de>>(deserializer: D) -> Result<List, D::Error> {
+    positions(&String::deserialize(deserializer)?).map_err(D::Error::custom)
 }
 
 /// A number above 0. Refused here, with its line, rather than after all maps are solved.
-fn positive<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+fn positive<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     number(deserializer, f64::MAX, "a number above 0")
 }
 
-fn probability<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+fn probability<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let must_be = "a probability strictly between 0 and 1";
     number(deserializer, 1f64.next_down(), must_be)
 }
 
 /// A number above 0 and at most `most`.
-fn number<'de, D: serde::Deserializer<'de>>(
+fn number<'de, D: Deserializer<'de>>(
     deserializer: D,
     most: f64,
     must_be: &str,
@@ -190,8 +188,7 @@ fn number<'de, D: serde::Deserializer<'de>>(
     if number > 0.0 && number <= most {
         return Ok(number);
     }
-    let message = format!("{number} must be {must_be}");
-    Err(serde::de::Error::custom(message))
+    Err(D::Error::custom(format!("{number} must be {must_be}")))
 }
 
 #[cfg(test)]

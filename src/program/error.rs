@@ -22,6 +22,14 @@ pub enum CliError {
     Unjudged(String),
 }
 
+/// Returns that the command line, a file or a device is to blame, in the words of a `format!`.
+macro_rules! refuse {
+    ($($words:tt)*) => {
+        return Err($crate::CliError::Usage(format!($($words)*)))
+    };
+}
+pub(crate) use refuse;
+
 impl Display for CliError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -7,7 +7,7 @@ use palpate::fem::Contact;
 
 /// A contact law by its name.
 pub fn contact() -> impl TypedValueParser<Value = Contact> {
-    const NAMES: [(Contact, &str); 2] = [
+    const HELP: [(Contact, &str); 2] = [
         (
             Contact::DeformedNormal,
             "Gap between the deformed surface and the probe; force along its normal",
@@ -17,39 +17,18 @@ pub fn contact() -> impl TypedValueParser<Value = Contact> {
             "Height of the probe above the undeformed point; vertical force on the gel",
         ),
     ];
-    let values = NAMES.map(|(contact, help)| PossibleValue::new(contact.name()).help(help));
-    PossibleValuesParser::new(values).map(|name| {
-        let named = NAMES
-            .into_iter()
-            .find(|(contact, _)| contact.name() == name);
-        named.map_or_else(Contact::default, |(contact, _)| contact)
+    let names = HELP.map(|(law, help)| PossibleValue::new(law.name()).help(help));
+    PossibleValuesParser::new(names).map(|name| {
+        let mut laws = HELP.into_iter().map(|(law, _)| law);
+        laws.find(|law| law.name() == name).unwrap_or_default()
     })
 }
 
-/// The entries of a list, in SI.
-#[derive(Debug, Clone, PartialEq)]
-pub struct List(pub Vec<f64>);
-
-/// What a list holds, and the unit in which it is written: SI times 10 to a power.
-struct Written {
-    of: &'static str,
-    unit: &'static str,
-    power: i32,
-}
-
-const IN_MM: Written = Written {
-    of: "positions",
-    unit: "mm",
-    power: -3,
-};
-const IN_KPA: Written = Written {
-    of: "moduli",
-    unit: "kPa",
-    power: 3,
-};
+/// The entries of a list, in SI. The parser would take an argument that is declared as a `Vec` entry by entry.
+pub type List = Vec<f64>;
 
 /// Most entries that a list may have.
-const MOST: usize = 10_000;
+const MOST: i64 = 10_000;
 /// Steps are counted in units of 10⁻⁹ of what is written, so that they add up without rounding.
 const DECIMALS: i32 = 9;
 
@@ -60,7 +39,7 @@ const DECIMALS: i32 = 9;
 /// # Errors
 /// A message that names the entry and what would be right.
 pub fn positions(text: &str) -> Result<List, String> {
-    IN_MM.list(text).map(List)
+    list(text, -3, "positions", "mm")
 }
 
 /// Reads a list of moduli in kPa; gives pascals.
@@ -70,7 +49,7 @@ pub fn positions(text: &str) -> Result<List, String> {
 /// # Errors
 /// As [`positions`].
 pub fn moduli(text: &str) -> Result<List, String> {
-    IN_KPA.list(text).map(List)
+    list(text, 3, "moduli", "kPa")
 }
 
 /// Reads one number and multiplies it by 10^`power`; it must be as `is_right` says, and `must_be` in words.
@@ -118,74 +97,61 @@ pub fn probability(text: &str) -> Result<f64, String> {
     number(text, 0, is_right, "a probability strictly between 0 and 1")
 }
 
-impl Written {
-    fn list(&self, text: &str) -> Result<Vec<f64>, String> {
-        let Written { of, unit, power } = self;
-        let parts: Vec<&str> = text.split(':').map(str::trim).collect();
-        let values = match parts[..] {
-            [list] => {
-                let entries = list.split(',').map(|entry| self.value(entry.trim()));
-                entries.collect::<Result<Vec<_>, _>>()?
+/// Reads a list `of` numbers that are written in a `unit` of 10^`power` SI.
+///
+/// Implements: CON-001.
+fn list(text: &str, power: i32, of: &str, unit: &str) -> Result<List, String> {
+    let value = |text: &str| {
+        let value = parse_scaled(text, power);
+        value.ok_or_else(|| format!("{text:?} is not a number in {unit}, such as 2.5"))
+    };
+    let parts: Vec<&str> = text.split(':').map(str::trim).collect();
+    let values = match parts[..] {
+        [list] => list.split(',').map(|entry| value(entry.trim())).collect(),
+        [from, to, step] => {
+            let steps = |text| value(text).and_then(|_| in_steps(text, unit));
+            let (first, last, by) = (steps(from)?, steps(to)?, steps(step)?);
+            if by <= 0 || last < first {
+                let must = "must have from ≤ to and a step above 0";
+                return Err(format!("{from}:{to}:{step} {must}"));
             }
-            [from, to, step] => self.steps(from, to, step)?,
-            _ => {
+            let count = (last - first) / by + 1;
+            if count > MOST {
                 return Err(format!(
-                    "{text:?} must have the form a,b,c or from:to:step in {unit}, such as 0:4:0.5"
+                    "{from}:{to}:{step} has {count} {of}; at most {MOST} are allowed"
                 ));
             }
-        };
-        let count = values.len();
-        if count > MOST {
-            return Err(format!(
-                "{count} {of} are too many; at most {MOST} are allowed"
-            ));
+            let entry = |k: i64| value(&format!("{}e-{DECIMALS}", first + k * by));
+            (0..count).map(entry).collect()
         }
-        let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else {
-            return Ok(values);
-        };
-        let [before, after] = [pair[0], pair[1]].map(|value| format_scaled(value, -power));
-        Err(format!(
-            "{after} {unit} after {before} {unit}: {of} must increase"
-        ))
+        _ => Err(format!(
+            "{text:?} must have the form a,b,c or from:to:step in {unit}, such as 0:4:0.5"
+        )),
+    };
+    let values: List = values?;
+    let count = values.len();
+    if count > MOST as usize {
+        return Err(format!(
+            "{count} {of} are too many; at most {MOST} are allowed"
+        ));
     }
+    let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else {
+        return Ok(values);
+    };
+    let [before, after] = [pair[0], pair[1]].map(|value| format_scaled(value, -power));
+    Err(format!(
+        "{after} {unit} after {before} {unit}: {of} must increase"
+    ))
+}
 
-    /// One entry in SI.
-    ///
-    /// Implements: CON-001.
-    fn value(&self, text: &str) -> Result<f64, String> {
-        let unit = self.unit;
-        parse_scaled(text, self.power)
-            .ok_or_else(|| format!("{text:?} is not a number in {unit}, such as 2.5"))
-    }
-
-    fn steps(&self, from: &str, to: &str, step: &str) -> Result<Vec<f64>, String> {
-        let units = |text: &str| -> Result<i64, String> {
-            self.value(text)?;
-            let value = parse_scaled(text, DECIMALS).unwrap_or(f64::NAN);
-            if value.abs() < 1e15 && value.fract() == 0.0 {
-                Ok(value as i64) // whole and below 10¹⁵: exact
-            } else {
-                Err(format!(
-                    "{text:?} must be below 1e6 {} and have at most 9 decimal places",
-                    self.unit
-                ))
-            }
-        };
-        let (first, last, step_units) = (units(from)?, units(to)?, units(step)?);
-        if step_units <= 0 || last < first {
-            return Err(format!(
-                "{from}:{to}:{step} must have from ≤ to and a step above 0"
-            ));
-        }
-        let count = (last - first) / step_units + 1;
-        if count > MOST as i64 {
-            return Err(format!(
-                "{from}:{to}:{step} has {count} {}; at most {MOST} are allowed",
-                self.of
-            ));
-        }
-        let value = |k: i64| self.value(&format!("{}e-{DECIMALS}", first + k * step_units));
-        (0..count).map(value).collect()
+/// A number of `unit` as a number of steps of 10⁻⁹.
+fn in_steps(text: &str, unit: &str) -> Result<i64, String> {
+    match parse_scaled(text, DECIMALS) {
+        // Whole and below 10¹⁵: exact.
+        Some(steps) if steps.abs() < 1e15 && steps.fract() == 0.0 => Ok(steps as i64),
+        _ => Err(format!(
+            "{text:?} must be below 1e6 {unit} and have at most 9 decimal places"
+        )),
     }
 }
 
@@ -204,10 +170,10 @@ mod tests {
             ("-1:1:1", &[-0.001, 0.0, 0.001]),
             ("0:1:0.6", &[0.0, 0.0006]),
         ] {
-            assert_eq!(positions(text), Ok(List(metres.into())));
+            assert_eq!(positions(text), Ok(metres.into()));
         }
-        assert_eq!(moduli("44.1,300"), Ok(List(vec![44_100.0, 300_000.0])));
-        assert_eq!(moduli("0.1:0.3:0.1"), Ok(List(vec![100.0, 200.0, 300.0])));
+        assert_eq!(moduli("44.1,300"), Ok(vec![44_100.0, 300_000.0]));
+        assert_eq!(moduli("0.1:0.3:0.1"), Ok(vec![100.0, 200.0, 300.0]));
         let error = moduli("300,44").unwrap_err();
         assert_eq!(error, "44.0 kPa after 300.0 kPa: moduli must increase");
     }

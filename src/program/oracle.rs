@@ -1,10 +1,11 @@
 //! `palpate oracle`: questions and answers in JSON lines (`spec/oracle.md`).
 
-use std::io::{ErrorKind, stdin, stdout};
+use std::io::{stdin, stdout};
 
 use clap::Args;
 
 use super::CliError;
+use super::output::printed;
 use palpate::oracle::serve;
 
 /// Arguments of `palpate oracle`.
@@ -19,10 +20,5 @@ pub struct OracleArguments {}
 ///
 /// Implements: ORA-002, ORA-013.
 pub fn oracle(OracleArguments {}: &OracleArguments) -> Result<(), CliError> {
-    match serve(stdin().lock(), stdout().lock()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(CliError::Check(format!("standard output: {error}")))
-        }
-        _ => Ok(()),
-    }
+    printed(serve(stdin().lock(), stdout().lock()))
 }

@@ -64,7 +64,12 @@ impl<A> Envelope<A> {
 /// Implements: CLI-003, CLI-007.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// How it went to write to standard output; a reader that closes the pipe is no error.
+pub(super) fn printed(written: std::io::Result<()>) -> Result<(), CliError> {
+    match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(CliError::Check(format!("standard output: {error}")))
         }

@@ -11,6 +11,7 @@ use askama::Template;
 use clap::Args;
 use serde::Serialize;
 
+use super::error::refuse;
 use super::output::{print, read, write};
 use super::playback::{DeviceArguments, limits, loaded_map};
 use super::{CliError, Format};
@@ -137,7 +138,10 @@ fn session(
         scale,
         timing: played.timing.filter(|_| !is_simulated),
     };
-    summary.print(arguments.format)?;
+    // With its keys sorted; neither this nor writing to a String fails.
+    let sorted = serde_json::to_value(&summary).unwrap_or_default();
+    let table = || summary.render().unwrap_or_default();
+    arguments.format.print(&sorted, table)?;
     match played.end {
         End::Asked => Ok(()),
         _ => Err(CliError::Check(summary.end)),
@@ -156,9 +160,7 @@ fn recorded_cycles(
         (Some(_), Some(time)) => {
             Ok(time.as_micros() as usize / usize::from(capabilities.period_us.max(1)) + 64)
         }
-        (Some(_), None) => Err(CliError::Usage(format!(
-            "--record needs --seconds of at most {MOST_RECORDED}"
-        ))),
+        _ => refuse!("--record needs --seconds of at most {MOST_RECORDED}"),
     }
 }
 
@@ -248,14 +250,6 @@ struct Summary {
     timing: Option<Timing>,
 }
 
-impl Summary {
-    fn print(&self, format: Format) -> Result<(), CliError> {
-        // With its keys sorted; neither this nor writing to a String fails.
-        let sorted = serde_json::to_value(self).unwrap_or_default();
-        format.print(&sorted, || self.render().unwrap_or_default())
-    }
-}
-
 /// Plays a recording again.
 fn replay(arguments: &PlayArguments, file: &Path) -> Result<(), CliError> {
     let text = read(file)?;
@@ -265,10 +259,8 @@ fn replay(arguments: &PlayArguments, file: &Path) -> Result<(), CliError> {
     } else {
         loaded_map(&arguments.map)?
     };
-    let table = loaded.table();
-    let cycles = recording.replay(table);
     let failed = |error| CliError::Check(format!("{}: {error}", file.display()));
-    let cycles = cycles.map_err(failed)?;
+    let cycles = recording.replay(loaded.table()).map_err(failed)?;
     print(&format!(
         "{cycles} cycles, all forces the same to the bit\n"
     ))

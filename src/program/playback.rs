@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 
 use super::CliError;
+use super::error::refuse;
 use palpate::force_map::ForceMap;
 use palpate::hid::real::{RealDevice, Wanted};
 use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
@@ -63,8 +64,7 @@ impl DeviceArguments {
     /// Refuses the ids of a device where the device is simulated.
     pub fn check(&self) -> Result<(), CliError> {
         if self.is_simulated() && self.wanted() != Wanted::default() {
-            let message = "--vid, --pid and --serial need --device hid";
-            return Err(CliError::Usage(message.into()));
+            refuse!("--vid, --pid and --serial need --device hid");
         }
         Ok(())
     }

@@ -1,6 +1,5 @@
 //! `palpate reach`: the greatest depth and the smallest size of an inclusion that can be detected (`spec/bank.md`).
 
-use std::borrow::Borrow;
 use std::path::PathBuf;
 
 use askama::Template;
@@ -8,12 +7,13 @@ use clap::Args;
 use serde::Serialize;
 
 use super::detect::arguments::{Known, NoiseSd};
+use super::error::refuse;
 use super::numbers::probability;
 use super::output::{Envelope, write};
 use super::{CliError, Format};
 use palpate::bank::{Bank, Reach, Reached, smallest_diameters};
 use palpate::chart::reach_figure;
-use palpate::decimal::format_scaled;
+use palpate::decimal::{kpa, mm};
 use palpate::force::Force;
 use palpate::refusal::Refusal;
 use palpate::trace::{Unknown, in_words};
@@ -103,10 +103,9 @@ struct SmallestDiameter {
 
 impl ReachArguments {
     fn asked(&self, bank: &Bank) -> Result<Asked, CliError> {
-        let noise_sd = self.noise_sd.get().ok_or_else(|| {
-            let message = "give --noise-sd-n, or both --noise-sd-lateral-n and --noise-sd-normal-n";
-            CliError::Usage(message.into())
-        })?;
+        let Some(noise_sd) = self.noise_sd.get() else {
+            refuse!("give --noise-sd-n, or both --noise-sd-lateral-n and --noise-sd-normal-n");
+        };
         let laterals = bank.reference().table().laterals().len();
         // The variance of the noise is stated.
         let unknown = self.known.unknown.iter().copied();
@@ -201,10 +200,10 @@ impl ReachAnswer {
     fn depth(&self, reached: &DepthReached) -> String {
         match reached.largest_depth_m {
             Some(depth) if reached.is_beyond_bank => {
-                format!("deeper than the bank ({})", in_mm(depth))
+                format!("deeper than the bank ({})", mm(depth))
             }
             Some(depth) => format!("{:.2}", 1e3 * depth),
-            None => format!("not even at the least depth ({})", in_mm(self.depths_m[0])),
+            None => format!("not even at the least depth ({})", mm(self.depths_m[0])),
         }
     }
 
@@ -212,14 +211,9 @@ impl ReachAnswer {
         // An axis of a bank has a point at least.
         let [least, most] = [0, self.diameters_m.len() - 1].map(|at| self.diameters_m[at]);
         match *found {
-            Some(width) if width <= least => format!("smaller than the bank ({})", in_mm(width)),
+            Some(width) if width <= least => format!("smaller than the bank ({})", mm(width)),
             Some(width) => format!("{:.2}", 1e3 * width),
-            None => format!("not even the largest ({})", in_mm(most)),
+            None => format!("not even the largest ({})", mm(most)),
         }
     }
-}
-
-/// A length (m) as a number of mm.
-fn in_mm(length: impl Borrow<f64>) -> String {
-    format_scaled(*length.borrow(), 3)
 }

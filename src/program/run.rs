@@ -110,7 +110,7 @@ fn solve_phantom(
     let mesh = &config.mesh;
     tell_large_mesh(phantom, mesh.size_mm / 1e3)?;
     let model = Model::new(phantom, mesh.size_mm / 1e3, mesh.contact)?;
-    let (depths, laterals) = (&config.depths.0, &config.laterals.0);
+    let (depths, laterals) = (&config.depths, &config.laterals);
     // Each map on three meshes.
     bar.inc_length((3 * depths.len() * model.solved_laterals(laterals).len()) as u64);
     let map = certified_map(&model, depths, laterals, &|poses| bar.inc(poses as u64))?;

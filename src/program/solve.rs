@@ -6,13 +6,14 @@ use askama::Template;
 use clap::{Args, ValueEnum};
 
 use super::CliError;
+use super::error::refuse;
 use super::numbers::{List, contact, length, positions};
 use super::output::{print, write};
 use super::progress::{bar, tell_large_mesh};
-use palpate::decimal::format_scaled;
+use palpate::decimal::mm;
 use palpate::fem::certify::certified_map;
 use palpate::fem::{Contact, MESH_SIZE, Model, Pose, SMALL_STRAIN_LIMIT};
-use palpate::force_map::ForceMap;
+use palpate::force_map::{ForceMap, SmallestDet};
 use palpate::phantom::{BUILTIN_NAMES, Phantom};
 
 /// Arguments of `palpate solve`.
@@ -64,9 +65,7 @@ pub fn phantom(name: &str) -> Result<Phantom, CliError> {
     let path = Path::new(name);
     if !path.exists() {
         let known = BUILTIN_NAMES.join(", ");
-        return Err(CliError::Usage(format!(
-            "phantom {name:?} is neither built in ({known}) nor a file"
-        )));
+        refuse!("phantom {name:?} is neither built in ({known}) nor a file");
     }
     Ok(Phantom::read(path)?)
 }
@@ -75,19 +74,11 @@ pub fn phantom(name: &str) -> Result<Phantom, CliError> {
 ///
 /// Implements: CLI-012, CLI-013.
 pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
-    let SolveArguments {
-        depths: List(depths),
-        laterals: List(laterals),
-        ..
-    } = arguments;
-    let pose = match (&arguments.vtu, &depths[..], &laterals[..]) {
+    let (depths, laterals) = (&arguments.depths[..], &arguments.laterals[..]);
+    let pose = match (&arguments.vtu, depths, laterals) {
         (None, ..) => None,
         (Some(path), &[depth], &[lateral]) => Some((path, Pose { depth, lateral })),
-        (Some(_), ..) => {
-            return Err(CliError::Usage(
-                "--vtu shows one pose: give one depth and one lateral position".into(),
-            ));
-        }
+        _ => refuse!("--vtu shows one pose: give one depth and one lateral position"),
     };
     let phantom = phantom(&arguments.phantom)?;
     let failed = CliError::fem(&phantom.name());
@@ -129,17 +120,21 @@ pub fn warn_of_large_strain(map: &ForceMap) {
 /// The same, with the name of the phantom.
 pub fn warn_of_large_strain_of(map: &ForceMap, name: &str) {
     let smallest = map.certificate().map(|of| of.smallest_det);
-    if let Some(smallest) = smallest.filter(|of| of.det < SMALL_STRAIN_LIMIT) {
-        let meaning = if smallest.det > 0.0 {
+    if let Some(SmallestDet {
+        det,
+        depth,
+        lateral,
+    }) = smallest
+        && det < SMALL_STRAIN_LIMIT
+    {
+        let meaning = if det > 0.0 {
             "the small-strain model is at its limit there"
         } else {
             "the gel is turned inside out there, and the forces are meaningless"
         };
+        let (depth, lateral) = (mm(depth), mm(lateral));
         eprintln!(
-            "palpate: warning: phantom {name}: det(I + grad u) falls to {:.3} at depth {} mm, lateral {} mm: {meaning}",
-            smallest.det,
-            in_mm(&smallest.depth),
-            in_mm(&smallest.lateral)
+            "palpate: warning: phantom {name}: det(I + grad u) falls to {det:.3} at depth {depth} mm, lateral {lateral} mm: {meaning}"
         );
     }
 }
@@ -153,5 +148,5 @@ struct Table<'a> {
 
 /// A length (m) as a number of mm.
 fn in_mm(length: &f64) -> String {
-    format_scaled(*length, 3)
+    mm(*length).to_string()
 }

@@ -19,16 +19,15 @@ pub fn list(text: &str) -> Outcome {
         Ok(length) => assert!(length.is_finite() && length > 0.0),
         Err(error) => check_message(&error),
     }
-    let accepted = |positions: List| check_list(&positions.0, text);
+    let accepted = |positions: List| check_list(&positions, text);
     judged(positions(text), accepted, |error| check_message(&error))
 }
 
 fn check_list(positions: &[f64], text: &str) {
     check_positions(positions);
     let written: Vec<String> = positions.iter().map(|&x| format_scaled(x, 3)).collect();
-    let again = palpate_program::numbers::positions(&written.join(","))
-        .expect("it was written")
-        .0;
+    let again = palpate_program::numbers::positions(&written.join(","));
+    let again = again.expect("it was written");
     let bits = |positions: &[f64]| positions.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&again), bits(positions));
     let metres = |text: &str| parse_scaled(text.trim(), -3).expect("it was accepted");

@@ -28,8 +28,8 @@ pub fn config_toml(text: &str) -> Outcome {
 }
 
 fn check_config(config: &Config) {
-    check_positions(&config.depths.0);
-    check_positions(&config.laterals.0);
+    check_positions(&config.depths);
+    check_positions(&config.laterals);
     for number in [config.mesh.size_mm, config.detection.noise_sd_n] {
         assert!(number.is_finite() && number > 0.0, "{number}");
     }
@@ -55,8 +55,8 @@ fn written(config: &Config) -> String {
         "reference": config.reference.as_ref(),
         "phantoms": config.phantoms.iter().map(|name| name.as_ref()).collect::<Vec<_>>(),
         "measured": config.measured,
-        "depths_mm": list(&config.depths.0),
-        "laterals_mm": list(&config.laterals.0),
+        "depths_mm": list(&config.depths),
+        "laterals_mm": list(&config.laterals),
         "mesh": {"size_mm": config.mesh.size_mm, "contact": contact},
         "detection": {
             "noise_sd_n": detection.noise_sd_n,

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use crate::error::refuse;
 use crate::numbers::{length_or_zero, newtons, position, probability, velocity};
 use crate::{CliError, Format};
 use palpate::force::Force;
@@ -207,8 +208,7 @@ impl CriterionArguments {
             (NeymanPearsonMiss, ..) => "needs --max-miss and takes no --max-false-alarm",
             (NeymanPearsonFalseAlarm, ..) => "needs --max-false-alarm and takes no --max-miss",
         };
-        let name = self.name();
-        Err(CliError::Usage(format!("--criterion {name} {needs}")))
+        refuse!("--criterion {} {needs}", self.name())
     }
 }
 
@@ -229,9 +229,7 @@ impl NoiseArguments {
             }
         };
         if noise.sd.is_none() && !self.known.unknown.contains(&Unknown::Variance) {
-            let message =
-                "--known variance needs --noise-sd-n, or --noise FILE to estimate it from";
-            return Err(CliError::Usage(message.into()));
+            refuse!("--known variance needs --noise-sd-n, or --noise FILE to estimate it from");
         }
         Ok(noise)
     }

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::CliError;
+use super::error::refuse;
 use super::output::{Envelope, note, write};
 pub use arguments::DetectArguments;
 use palpate::bank::{Bank, BankSearch};
@@ -169,14 +170,12 @@ fn tell(
     let table = format!("{}\n{}\n", rows.table(), conclusion(arguments, verdict));
     let answer = Envelope::new("palpate-detection", 3, rows);
     arguments.format.print(&answer, || table)?;
-    match verdict {
-        (Some(_), ..) => Ok(()),
-        (None, causes, _) => {
-            let (file, why) = (arguments.trace.display(), reasons(causes));
-            let why = format!("{file}: cannot be judged: {why}");
-            Err(CliError::Unjudged(why))
-        }
+    if let (None, causes, _) = verdict {
+        let (file, why) = (arguments.trace.display(), reasons(causes));
+        let message = format!("{file}: cannot be judged: {why}");
+        return Err(CliError::Unjudged(message));
     }
+    Ok(())
 }
 
 /// What was decided, whether the record fits, and what was assumed.
@@ -219,8 +218,10 @@ fn map(path: &Path) -> Result<ForceMap, CliError> {
         return Ok(ForceMap::read(path)?);
     }
     // A built-in phantom has a name elsewhere, but its forces depend on depths and mesh.
-    let hint = "no such force map; 'palpate solve --phantom none --depths-mm ... --laterals-mm ... --format json' makes one";
-    Err(CliError::refused(path.display())(hint))
+    refuse!(
+        "{}: no such force map; 'palpate solve --phantom none --depths-mm ... --laterals-mm ... --format json' makes one",
+        path.display()
+    )
 }
 
 /// Refuses maps of which one is not the other with an inclusion, or warns of them where they are meant.
@@ -242,9 +243,6 @@ fn hypotheses<'a>(
             warnings.tell("any_maps", file, &error.to_string());
             Ok(any)
         }
-        Err(error) => {
-            let hint = format!("{error} (or use --any-maps)");
-            Err(CliError::refused(file)(hint))
-        }
+        Err(error) => refuse!("{file}: {error} (or use --any-maps)"),
     }
 }

@@ -49,8 +49,8 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
     let run = file.run;
     let of_file = |refusal: Refusal| refusal.in_file(&*name);
     let refused = |found: String| CliError::from(of_file(Refusal::state(found, "")));
-    let [probe_depth] = run.depths.0[..] else {
-        let depths = run.depths.0.len();
+    let [probe_depth] = run.depths[..] else {
+        let depths = run.depths.len();
         let found = format!("run.depths_mm has {depths} depths; give one, such as \"4\"");
         return Err(refused(found));
     };
@@ -61,19 +61,23 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
     let mut phantoms = run.read_phantoms()?;
     let mut inputs = file.inputs;
     for (at, input) in inputs.iter_mut().enumerate() {
-        read_values(&mut input.distribution, &run).map_err(|error| match error {
-            Some(error) => error,
-            None => refused(format!(
-                "input[{at}].distribution.empirical has both values and a file; give one of them"
-            )),
-        })?;
+        if let Distribution::Empirical { values, file } = &mut input.distribution
+            && let Some(table) = file.take()
+        {
+            if !values.is_empty() {
+                return Err(refused(format!(
+                    "input[{at}].distribution.empirical has both values and a file; give one of them"
+                )));
+            }
+            *values = read(&run.file(&table), column)?;
+        }
     }
     let reference = phantoms.remove(0);
     let plan = StudyPlan {
         reference,
         phantoms,
         probe_depth,
-        laterals: run.laterals.0.clone(),
+        laterals: run.laterals.clone(),
         mesh_size: run.mesh.size_mm / 1e3,
         contact: run.mesh.contact,
         settings: run.detection,
@@ -84,20 +88,6 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
     };
     plan.design().map_err(of_file)?;
     Ok(plan)
-}
-
-/// Reads the values of an empirical distribution from the file that it names. The error is none if it also has values of its own.
-fn read_values(distribution: &mut Distribution, run: &Config) -> Result<(), Option<CliError>> {
-    if let Distribution::Empirical { values, file } = distribution
-        && let Some(table) = file.take()
-    {
-        if !values.is_empty() {
-            return Err(None);
-        }
-        let read = read(&run.file(&table), column);
-        *values = read.map_err(|refusal| Some(refusal.into()))?;
-    }
-    Ok(())
 }
 
 /// The values of a CSV table, in increasing order.
