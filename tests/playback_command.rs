@@ -286,7 +286,7 @@ fn an_experiment_goes_on_after_an_abort() {
     keyboard.write_all(b"\n\n3\n1\n\nq\n").unwrap();
     drop(keyboard);
     let said = child.wait_with_output().unwrap();
-    assert!(text(&said.stderr).contains("expected 1, 2 or q"));
+    assert!(text(&said.stderr).contains("press 1, 2 or q"));
     // An input without an end is no person.
     let zeros = person.stdin(File::open("/dev/zero").unwrap());
     for output in [said, zeros.output().unwrap()] {

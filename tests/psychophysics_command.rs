@@ -129,7 +129,7 @@ missing.csv => missing.csv: cannot be read
 --reference none --inclusion 2.6=2.6 => 1 inclusions with a map, expected at least two
 --reference none --inclusion 2.6=2.6 --inclusion 3.1=2.6 => inclusion \"3.1\" is no column of the table
 --reference none --inclusion 2.6=2.6 --inclusion 2.6=2.6 => has two maps
---reference none --inclusion 2.6 => expected NAME=FILE
+--reference none --inclusion 2.6 => is not NAME=FILE; write for example 6.6=map.json
 --reference none --inclusion 2.6=2.6 --inclusion 8.6=2.6 --sweep-mm 0 => must be a length above 0 in mm
 --reference none --inclusion 2.6=2.6 --inclusion 8.6=2.6 --sweep-mm 0.5 => 1 lateral positions within --sweep-mm, expected at least two
 --sweep-mm 3 => --reference

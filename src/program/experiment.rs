@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 
 use super::CliError;
+use super::error::refuse;
 use super::numbers::newtons;
 use super::output::print;
 use super::playback::{DeviceArguments, limits};
@@ -69,9 +70,9 @@ enum Observer {
 }
 
 pub(super) fn named_file(text: &str) -> Result<(String, PathBuf), String> {
-    let (name, file) = text
-        .split_once('=')
-        .ok_or_else(|| format!("{text:?}: expected NAME=FILE, such as 6.6=map.json"))?;
+    let parts = text.split_once('=');
+    let wrong = || format!("{text:?} is not NAME=FILE; write for example 6.6=map.json");
+    let (name, file) = parts.ok_or_else(wrong)?;
     Ok((plain_name(name)?, file.into()))
 }
 
@@ -80,7 +81,7 @@ fn plain_name(text: &str) -> Result<String, String> {
     let plain = |c: char| c.is_alphanumeric() || " .-_".contains(c);
     if text.is_empty() || !text.chars().all(plain) {
         return Err(format!(
-            "{text:?}: expected letters, digits, spaces, points, - and _ alone"
+            "{text:?} is not a name; use letters, digits, spaces, points, - and _"
         ));
     }
     Ok(text.to_string())
@@ -92,31 +93,36 @@ fn plain_name(text: &str) -> Result<String, String> {
 pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
     arguments.device.check()?;
     if arguments.observer == Observer::Ideal && !arguments.device.is_simulated() {
-        let message = "--observer ideal has no hand: expected --device sim";
-        return Err(CliError::Usage(message.into()));
+        refuse!("--observer ideal has no hand; use --device sim");
     }
     let pairs = Pairs::read(arguments)?;
     let (mut experiment, journal) = open_journal(arguments)?;
-    let total = arguments.inclusion.len() * arguments.trials as usize;
+    let total = arguments.pairs();
     let bar = match arguments.observer {
         Observer::Ideal => bar(total, "pairs"),
         Observer::Person => indicatif::ProgressBar::hidden(),
     };
     while let Some((number, trial)) = experiment.next() {
-        let Some(answer) = pairs.judge(number, total, trial)? else {
+        let Some(chosen) = pairs.judge(number, trial)? else {
             return print(&format!(
                 "{number} of {total} pairs answered; the same command goes on with the next\n"
             ));
         };
-        let answer = Answer {
-            right: answer == trial.with_inclusion,
-        };
+        let right = chosen == trial.with_inclusion;
+        let answer = Answer { right };
         journal.append(&answer)?;
         experiment.answer(answer)?;
         bar.set_position(number as u64 + 1);
     }
     bar.finish_and_clear();
     print(&experiment.table_row().unwrap_or_default())
+}
+
+impl ExperimentArguments {
+    /// The number of pairs.
+    fn pairs(&self) -> usize {
+        self.inclusion.len() * self.trials as usize
+    }
 }
 
 /// The experiment with the answers so far, and the journal that keeps them.
@@ -131,15 +137,9 @@ fn open_journal(arguments: &ExperimentArguments) -> Result<(Experiment, Journal)
         inclusions: names.collect(),
     };
     let mut experiment = Experiment::new(setup.clone());
-    let path = arguments.journal.clone();
+    let (path, beginning) = (arguments.journal.clone(), Experiment::BEGINNING);
     let take = |line: &str| experiment.take(line);
-    let journal = Journal::open(
-        path,
-        &setup,
-        Experiment::BEGINNING,
-        "palpate experiment",
-        take,
-    )?;
+    let journal = Journal::open(path, &setup, beginning, "palpate experiment", take)?;
     Ok((experiment, journal))
 }
 
@@ -188,21 +188,15 @@ impl<'a> Pairs<'a> {
         hypotheses.map_err(CliError::refused(path.display()))
     }
 
-    /// The answer to a pair; `None` if the person stops.
-    fn judge(
-        &self,
-        number: usize,
-        total: usize,
-        trial: Trial,
-    ) -> Result<Option<Interval>, CliError> {
-        let [without, with] = [&self.reference.1, &self.inclusions[trial.inclusion].1];
-        let samples = match trial.with_inclusion {
-            Interval::First => [with, without],
-            Interval::Second => [without, with],
-        };
+    /// The answer to the pair with a number; `None` if the person stops.
+    fn judge(&self, number: usize, trial: Trial) -> Result<Option<Interval>, CliError> {
+        let mut samples = [&self.reference.1, &self.inclusions[trial.inclusion].1];
+        if trial.with_inclusion == Interval::First {
+            samples.reverse();
+        }
         let is_ideal = self.arguments.observer == Observer::Ideal;
         let Some(noise_sd) = self.arguments.noise.filter(|_| is_ideal) else {
-            return self.ask(&format!("pair {} of {total}", number + 1), samples);
+            return self.ask(number, samples);
         };
         let observer = IdealObserver {
             hypotheses: self.hypotheses(trial.inclusion)?,
@@ -210,10 +204,9 @@ impl<'a> Pairs<'a> {
             seed: self.arguments.seed,
         };
         let [first, second] = samples.map(|sample| self.felt(sample));
-        let answer = observer.choose(&first?, &second?, number as u64);
-        answer
-            .map(Some)
-            .map_err(CliError::refused("the ideal observer"))
+        let chosen = observer.choose(&first?, &second?, number as u64);
+        let chosen = chosen.map_err(CliError::refused("the ideal observer"));
+        Ok(Some(chosen?))
     }
 
     /// A sample as it is felt.
@@ -225,11 +218,12 @@ impl<'a> Pairs<'a> {
             .map_err(|error| CliError::Check(error.to_string()))
     }
 
-    /// Lets a person feel both samples, and answer.
-    fn ask(&self, pair: &str, samples: [&LoadedTable; 2]) -> Result<Option<Interval>, CliError> {
+    /// Lets a person feel both samples of the pair with a number, and answer.
+    fn ask(&self, number: usize, samples: [&LoadedTable; 2]) -> Result<Option<Interval>, CliError> {
+        let (pair, total) = (number + 1, self.arguments.pairs());
         for (name, sample) in ["first", "second"].into_iter().zip(samples) {
             let prompt = format!(
-                "{pair}, {name} sample: let go of the deadman, press Enter (q ends), then hold it "
+                "pair {pair} of {total}, {name} sample: let go of the deadman, press Enter (q ends), then hold it "
             );
             match line(&prompt).as_deref() {
                 None | Some("q") => return Ok(None),
@@ -241,7 +235,7 @@ impl<'a> Pairs<'a> {
                 Some("1") => return Ok(Some(Interval::First)),
                 Some("2") => return Ok(Some(Interval::Second)),
                 Some("q") | None => return Ok(None),
-                Some(_) => eprintln!("expected 1, 2 or q"),
+                Some(_) => eprintln!("press 1, 2 or q, then Enter"),
             }
         }
     }
