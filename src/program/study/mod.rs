@@ -3,6 +3,7 @@
 mod file;
 mod records;
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use askama::Template;
@@ -73,18 +74,24 @@ pub fn study(arguments: &StudyArguments) -> Result<(), CliError> {
 /// Implements: STU-024, STU-032.
 fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
     let plan = read_plan(&arguments.study)?;
-    let sampler = Sampler::new(&plan)?;
+    let (sampler, shard) = (Sampler::new(&plan)?, arguments.shard);
     make_folder(&arguments.out)?;
-    let path = arguments.shard.file(&arguments.out);
-    let mut progress = Progress::new(&sampler, arguments.shard);
-    let total = progress.left();
-    let header = Header::new(&plan, arguments.shard);
-    let command = "palpate study run";
+    let path = shard.file(&arguments.out);
+    let of_shard = (0..sampler.design().samples()).filter(|&sample| shard.has(sample));
+    let mut left: BTreeSet<usize> = of_shard.collect();
+    let (total, mut failed) = (left.len(), 0);
+    let (header, command) = (Header::new(&plan, shard), "palpate study run");
     let part = Journal::open(path.clone(), &header, BEGINNING, command, |text| {
-        progress.take_over(&sampler, text)
+        let record = Record::parse(text, &sampler)?;
+        let sample = record.sample;
+        if !left.remove(&sample) {
+            let found = format!("sample {sample} appears twice or belongs to another shard");
+            return Err(Refusal::state(found, ""));
+        }
+        failed += usize::from(record.is_failed());
+        Ok(())
     })?;
-    let done = total - progress.left();
-    let bar = resumed_bar(&path, done, total, "samples");
+    let bar = resumed_bar(&path, total - left.len(), total, "samples");
     let compute = |sample: usize| {
         let outcome = match sampler.sample(sample) {
             Ok(values) => Outcome::Values(values),
@@ -95,10 +102,8 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
         bar.inc(1);
         Ok::<_, CliError>(usize::from(record.is_failed()))
     };
-    let pending = progress.pending.par_iter().enumerate();
-    let pending = pending.filter(|(_, pending)| **pending);
-    let failed = pending.map(|(sample, _)| compute(sample));
-    let failed = progress.failed + failed.try_reduce(|| 0, |a, b| Ok(a + b))?;
+    let computed = left.into_par_iter().map(compute);
+    failed += computed.try_reduce(|| 0, |a, b| Ok(a + b))?;
     bar.finish_and_clear();
     print(&format!(
         "{total} samples in {}, of which {failed} failed\n",
@@ -106,49 +111,13 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
     ))
 }
 
-/// What is left of a shard.
-struct Progress {
-    /// Whether each sample is to be computed.
-    pending: Vec<bool>,
-    /// Samples that are finished and have failed.
-    failed: usize,
-}
-
-impl Progress {
-    fn new(sampler: &Sampler<'_>, shard: Shard) -> Progress {
-        let samples = 0..sampler.design().samples();
-        Progress {
-            pending: samples.map(|sample| shard.has(sample)).collect(),
-            failed: 0,
-        }
-    }
-
-    fn left(&self) -> usize {
-        self.pending.iter().filter(|pending| **pending).count()
-    }
-
-    /// Takes a finished sample over.
-    fn take_over(&mut self, sampler: &Sampler<'_>, text: &str) -> Result<(), Refusal> {
-        let (samples, quantities) = (sampler.design().samples(), sampler.quantities().len());
-        let record = Record::parse(text, samples, quantities)?;
-        if !std::mem::take(&mut self.pending[record.sample]) {
-            let sample = record.sample;
-            let found = format!("sample {sample} appears twice or belongs to another shard");
-            return Err(Refusal::state(found, ""));
-        }
-        self.failed += usize::from(record.is_failed());
-        Ok(())
-    }
-}
-
 /// Implements: STU-026, STU-027, STU-050, STU-051.
 fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
     let records = Records::find(&arguments.folders)?;
     let plan = records.plan()?;
     let sampler = Sampler::new(&plan)?;
-    let (samples, quantities) = (sampler.design().samples(), sampler.quantities().len());
-    let failures = records.failures(samples, quantities)?;
-    let columns = |range| records.columns(samples, quantities, range);
+    let failures = records.failures(&sampler)?;
+    let columns = |range| records.columns(&sampler, range);
     let results = StudyResults::new(&sampler, &failures, columns)?;
     // Keys are strings, and all numbers are finite.
     let text = serde_json::to_string(&results).unwrap_or_default() + "\n";

@@ -9,12 +9,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::CliError;
+use crate::error::refuse;
 use crate::output::Envelope;
 use palpate::fem::arithmetic;
 use palpate::file::from_json;
 use palpate::journal::take_lines;
 use palpate::refusal::Refusal;
-use palpate_paper::study::{Failure, StudyPlan};
+use palpate_paper::study::{Failure, Sampler, StudyPlan};
 
 /// How the first line of each file begins.
 pub const BEGINNING: &str = "{\"schema\":\"palpate-study-samples\"";
@@ -93,17 +94,17 @@ impl Record {
         matches!(self.outcome, Outcome::Failed(_))
     }
 
-    /// The record in a line of a study with so many samples and quantities.
+    /// The record in a line of a study.
     ///
     /// # Errors
     /// Anything else.
-    pub fn parse(text: &str, samples: usize, quantities: usize) -> Result<Record, Refusal> {
+    pub fn parse(text: &str, study: &Sampler) -> Result<Record, Refusal> {
         let record: Record = from_json(text)?;
         let fits = match &record.outcome {
-            Outcome::Values(values) => values.len() == quantities,
+            Outcome::Values(values) => values.len() == study.quantities().len(),
             Outcome::Failed(_) => true,
         };
-        if record.sample < samples && fits {
+        if record.sample < study.design().samples() && fits {
             return Ok(record);
         }
         let found = "this line is not a sample of this study; delete the file and run again";
@@ -134,9 +135,8 @@ impl Records {
                 files: Vec::new(),
             });
             if let Some(key) = difference(&records.header, &header) {
-                let first = records.files[0].display();
-                let reason = format!("belongs to a different study than {first}: {key} differs");
-                return Err(CliError::refused(file.display())(reason));
+                let (file, first) = (file.display(), records.files[0].display());
+                refuse!("{file}: belongs to a different study than {first}: {key} differs");
             }
             records.files.push(file);
         }
@@ -155,8 +155,7 @@ impl Records {
     /// Hands each record to `take`, with the number of its file.
     fn each(
         &self,
-        samples: usize,
-        quantities: usize,
+        study: &Sampler,
         mut take: impl FnMut(Record, usize) -> Result<(), Refusal>,
     ) -> Result<(), CliError> {
         for (number, path) in self.files.iter().enumerate() {
@@ -164,7 +163,7 @@ impl Records {
             let skipped = reader.skip_until(b'\n');
             skipped.map_err(CliError::file("read", path))?;
             take_lines(reader, path, 2, |text| {
-                take(Record::parse(text, samples, quantities)?, number)
+                take(Record::parse(text, study)?, number)
             })?;
         }
         Ok(())
@@ -176,32 +175,30 @@ impl Records {
     /// A sample that is missing or occurs twice; a line that is not a sample.
     ///
     /// Implements: STU-026, STU-027.
-    pub fn failures(&self, samples: usize, quantities: usize) -> Result<Vec<Failure>, CliError> {
+    pub fn failures(&self, study: &Sampler) -> Result<Vec<Failure>, CliError> {
         const NONE: u32 = u32::MAX;
+        let samples = study.design().samples();
         let mut file_of = vec![NONE; samples];
         let mut failures = Vec::new();
-        self.each(samples, quantities, |record, file| {
-            let place = &mut file_of[record.sample];
+        self.each(study, |Record { sample, outcome }, file| {
+            let place = &mut file_of[sample];
             if let Some(other) = self.files.get(*place as usize) {
-                let (sample, other) = (record.sample, other.display());
+                let other = other.display();
                 let found = format!("sample {sample} is also in {other}; delete one of them");
                 return Err(Refusal::state(found, ""));
             }
             *place = file as u32;
-            if let Outcome::Failed(reason) = record.outcome {
-                failures.push(Failure {
-                    sample: record.sample,
-                    reason,
-                });
+            if let Outcome::Failed(reason) = outcome {
+                failures.push(Failure { sample, reason });
             }
             Ok(())
         })?;
         let missing: Vec<usize> = (0..samples).filter(|&of| file_of[of] == NONE).collect();
         if let [first, ..] = missing[..] {
-            return Err(CliError::Usage(format!(
+            refuse!(
                 "{} of {samples} samples are missing, the first is {first}; run 'palpate study run' again for their shards",
                 missing.len()
-            )));
+            );
         }
         failures.sort_by_key(|failure| failure.sample);
         Ok(failures)
@@ -211,14 +208,9 @@ impl Records {
     ///
     /// # Errors
     /// As [`Records::failures`].
-    pub fn columns(
-        &self,
-        samples: usize,
-        quantities: usize,
-        range: Range<usize>,
-    ) -> Result<Vec<Vec<f64>>, CliError> {
-        let mut columns = vec![vec![f64::NAN; samples]; range.len()];
-        self.each(samples, quantities, |record, _| {
+    pub fn columns(&self, study: &Sampler, range: Range<usize>) -> Result<Vec<Vec<f64>>, CliError> {
+        let mut columns = vec![vec![f64::NAN; study.design().samples()]; range.len()];
+        self.each(study, |record, _| {
             if let Outcome::Values(values) = record.outcome {
                 for (column, value) in columns.iter_mut().zip(&values[range.clone()]) {
                     column[record.sample] = *value;
@@ -243,9 +235,10 @@ fn sample_files(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
             }
         }
         if all.len() == before {
-            let reason =
-                "the folder has no samples-K-of-N.jsonl; give one written by 'palpate study run'";
-            return Err(CliError::refused(folder.display())(reason));
+            refuse!(
+                "{}: the folder has no samples-K-of-N.jsonl; give one written by 'palpate study run'",
+                folder.display()
+            );
         }
         all[before..].sort();
     }
@@ -253,9 +246,8 @@ fn sample_files(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
 }
 
 fn open(path: &Path) -> Result<BufReader<File>, CliError> {
-    Ok(BufReader::new(
-        File::open(path).map_err(CliError::file("open", path))?,
-    ))
+    let file = File::open(path).map_err(CliError::file("open", path));
+    file.map(BufReader::new)
 }
 
 /// What the first line of a file says, but for the shard.
@@ -269,9 +261,10 @@ fn header(path: &Path) -> Result<Value, CliError> {
             header.remove("shard");
             Ok(header.into())
         }
-        _ => Err(CliError::refused(path.display())(
-            "the first line is not that of a file of study samples",
-        )),
+        _ => refuse!(
+            "{}: the first line is not that of a file of study samples",
+            path.display()
+        ),
     }
 }
 
