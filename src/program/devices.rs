@@ -1,6 +1,6 @@
 //! `palpate devices`: the HID devices of this machine (`spec/command-line.md`).
 
-use std::io::ErrorKind;
+use std::io::{Error, ErrorKind};
 
 use clap::Args;
 use serde_json::{Value, json};
@@ -29,25 +29,26 @@ fn describe(listed: &[Listed]) -> String {
     if listed.is_empty() {
         return "no HID device\n".into();
     }
-    let mut text = String::new();
-    for one in listed {
-        text += &format!("{}\n    {}\n", one.identity, one.profile);
-        text += &match one.access() {
+    let text = |one: &Listed| {
+        let (identity, profile) = (&one.identity, &one.profile);
+        let refused = match one.access() {
             Ok(()) => String::new(),
-            Err(error) if error.kind() == ErrorKind::PermissionDenied => {
-                format!("    {}\n", no_permission(&one.identity))
-            }
+            Err(error) if is_denied(&error) => format!("    {}\n", no_permission(identity)),
             Err(error) => format!("    cannot be opened: {error}\n"),
         };
-    }
-    text
+        format!("{identity}\n    {profile}\n{refused}")
+    };
+    listed.iter().map(text).collect()
+}
+
+fn is_denied(error: &Error) -> bool {
+    error.kind() == ErrorKind::PermissionDenied
 }
 
 fn as_json(one: &Listed) -> Value {
     let identity = &one.identity;
     let refused = one.access().err();
-    let denied = |error: &std::io::Error| error.kind() == ErrorKind::PermissionDenied;
-    let is_denied = refused.as_ref().is_some_and(denied);
+    let is_denied = refused.as_ref().is_some_and(is_denied);
     json!({
         "vendor": format!("{:04x}", identity.vendor),
         "product": format!("{:04x}", identity.product),

@@ -94,23 +94,14 @@ fn measured(arguments: &TimingArguments, budget: Budget) -> Result<Timing, CliEr
     };
     let table = loaded.table();
     let limits = limits(4.0)?;
-    let device = paper::device(arguments.cycles);
+    let cycles = arguments.cycles;
+    let device = paper::device(cycles);
     let period = arguments.paced.then(|| PAPER.period());
     if let Some(period) = period {
-        let seconds = arguments.cycles as f64 * period.as_secs_f64();
-        eprintln!(
-            "palpate: measuring {} cycles takes {seconds:.0} s",
-            arguments.cycles
-        );
+        let seconds = cycles as f64 * period.as_secs_f64();
+        eprintln!("palpate: measuring {cycles} cycles takes {seconds:.0} s");
     }
-    Ok(measure(
-        device,
-        table,
-        limits,
-        arguments.cycles,
-        budget,
-        period,
-    )?)
+    Ok(measure(device, table, limits, cycles, budget, period)?)
 }
 
 /// Prints the times and the verdict, which sets the exit code. `timing` holds the rest of what was measured if it was measured here.
@@ -154,31 +145,23 @@ fn tell(
 
 /// Why a budget is not kept.
 fn reason(arguments: &TimingArguments, judged: &Judged) -> String {
-    let Judged {
-        cycles,
-        misses,
-        longest_run,
-        percentile,
-        budget_us,
-        at_least_us,
-        ..
-    } = judged;
+    let (cycles, misses, run) = (judged.cycles, judged.misses, judged.longest_run);
+    let (percentile, budget) = (judged.percentile, judged.budget_us);
     if judged.outcome == BudgetOutcome::Undecided {
         return format!(
-            "timing: {cycles} cycles are too few to decide whether p{percentile} ≤ {budget_us} µs ({misses} were slower); measure more"
+            "timing: {cycles} cycles are too few to decide whether p{percentile} ≤ {budget} µs ({misses} were slower); measure more"
         );
     }
-    let slower = format!("timing: {misses} of {cycles} cycles were slower than {budget_us} µs");
-    let exceeded = |allowed: Option<u64>, found| allowed.filter(|&allowed| found > allowed);
-    let allowed_run = exceeded(arguments.allowed_run, *longest_run);
-    if let Some(most) = exceeded(arguments.allowed_misses, *misses) {
-        format!("{slower}; at most {most} are allowed")
-    } else if let Some(most) = allowed_run {
-        format!("{slower}, {longest_run} of them in a row; at most {most} are allowed")
-    } else {
-        format!(
-            "{slower}: p{percentile} is at least {at_least_us} µs; the budget is {budget_us} µs"
-        )
+    let slower = format!("timing: {misses} of {cycles} cycles were slower than {budget} µs");
+    match (arguments.allowed_misses, arguments.allowed_run) {
+        (Some(most), _) if misses > most => format!("{slower}; at most {most} are allowed"),
+        (_, Some(most)) if run > most => {
+            format!("{slower}, {run} of them in a row; at most {most} are allowed")
+        }
+        _ => {
+            let least = judged.at_least_us;
+            format!("{slower}: p{percentile} is at least {least} µs; the budget is {budget} µs")
+        }
     }
 }
 
