@@ -103,13 +103,12 @@ fn session(
 ) -> Result<(), CliError> {
     let capabilities = device.capabilities().map_err(failed)?;
     let (loaded, scale) = table(arguments, &capabilities, &limits)?;
-    let table = loaded.table();
     let options = PlayOptions {
         duration,
         record: recorded_cycles(arguments, &capabilities, duration)?,
     };
     let stop = stop_on_signals()?;
-    let session = Session::begin(device, table, limits).map_err(failed)?;
+    let session = Session::begin(device, loaded.table(), limits).map_err(failed)?;
     let stop = || stop.load(Ordering::Relaxed);
     // A virtual clock stands still with the loop: nothing is held up, and no cycle takes time.
     let is_simulated = arguments.device.is_simulated();
@@ -138,10 +137,7 @@ fn session(
         scale,
         timing: played.timing.filter(|_| !is_simulated),
     };
-    // With its keys sorted; neither this nor writing to a String fails.
-    let sorted = serde_json::to_value(&summary).unwrap_or_default();
-    let table = || summary.render().unwrap_or_default();
-    arguments.format.print(&sorted, table)?;
+    summary.print(arguments.format)?;
     match played.end {
         End::Asked => Ok(()),
         _ => Err(CliError::Check(summary.end)),
@@ -248,6 +244,14 @@ struct Summary {
     rounding_force_n: f64,
     scale: f64,
     timing: Option<Timing>,
+}
+
+impl Summary {
+    fn print(&self, format: Format) -> Result<(), CliError> {
+        // With its keys sorted; neither this nor writing to a String fails.
+        let sorted = serde_json::to_value(self).unwrap_or_default();
+        format.print(&sorted, || self.render().unwrap_or_default())
+    }
 }
 
 /// Plays a recording again.

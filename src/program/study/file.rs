@@ -41,7 +41,7 @@ fn first_seed() -> u32 {
 /// Implements: STU-001, STU-011, STU-010.
 pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
     let name = path.display().to_string();
-    let file = read(path, |text, name| {
+    let mut file = read(path, |text, name| {
         let file: StudyFile = from_toml(text, name)?;
         let run = file.run.from_source(text, name);
         Ok(StudyFile { run, ..file })
@@ -59,8 +59,7 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
         return Err(refused(found.into()));
     }
     let mut phantoms = run.read_phantoms()?;
-    let mut inputs = file.inputs;
-    for (at, input) in inputs.iter_mut().enumerate() {
+    for (at, input) in file.inputs.iter_mut().enumerate() {
         if let Distribution::Empirical { values, file } = &mut input.distribution
             && let Some(table) = file.take()
         {
@@ -81,7 +80,7 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
         mesh_size: run.mesh.size_mm / 1e3,
         contact: run.mesh.contact,
         settings: run.detection,
-        inputs,
+        inputs: file.inputs,
         correlations: file.correlations,
         rows: file.rows,
         seed: file.seed,
