@@ -10,7 +10,7 @@ use palpate::phantom::Phantom;
 /// Most depths and lateral positions that are solved.
 const MOST: [usize; 2] = [7, 8];
 /// A ratio of forces in this range, or its inverse, means that mN and N were confused.
-const THOUSAND: [f64; 2] = [300.0, 3000.0];
+const THOUSAND: std::ops::RangeInclusive<f64> = 300.0..=3000.0;
 /// Lengths so many times too large mean that mm and m were confused.
 const FAR_TOO_LARGE: f64 = 10.0;
 /// Below this cosine, two forces over the poses have opposite signs.
@@ -59,9 +59,8 @@ pub fn compare(measured: &ForceTable, phantom: &Phantom) -> Result<Vec<String>, 
 /// Implements: CLI-022.
 pub fn left_out(measured: &ForceTable, phantom: &Phantom) -> usize {
     let poses = measured.forces().normal.entries();
-    poses
-        .filter(|&(row, column, _)| !stands(measured, phantom, (row, column)))
-        .count()
+    let stand = poses.map(|(row, column, _)| stands(measured, phantom, (row, column)));
+    stand.filter(|stands| !stands).count()
 }
 
 fn pose(table: &ForceTable, (row, column): (usize, usize)) -> Pose {
@@ -114,20 +113,16 @@ fn odd_lengths(measured: &ForceTable, phantom: &Phantom) -> Vec<String> {
 ///
 /// Implements: CLI-022.
 fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
-    let parts: [fn(Force<f64>) -> f64; 2] = [|force| force.normal, |force| force.lateral];
-    let [normal, lateral] = parts.map(|part| {
-        let parts = pairs.iter().map(|&(found, of)| (part(found), part(of)));
-        parts.collect::<Vec<(f64, f64)>>()
-    });
+    let normal: Vec<_> = pairs.iter().map(|(a, b)| (a.normal, b.normal)).collect();
+    let lateral: Vec<_> = pairs.iter().map(|(a, b)| (a.lateral, b.lateral)).collect();
     let ratio = median_ratio(&normal);
     let times = format!("{ratio:.4} times the computed one (median)");
     let mut odd = Vec::new();
-    let [low, high] = THOUSAND;
     for (ratio, like) in [
         (ratio, "mN in a column of N"),
         (ratio.recip(), "N in a column of mN"),
     ] {
-        if (low..=high).contains(&ratio.abs()) {
+        if THOUSAND.contains(&ratio.abs()) {
             odd.push(format!(
                 "the forces look like {like}: the normal force is {times}"
             ));
@@ -143,11 +138,11 @@ fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
         odd.push("the lateral force looks negated: it must be positive where the gel pushes the probe along +x".into());
     }
     if odd.is_empty() {
-        let rms = |squares: &dyn Fn(&(f64, f64)) -> f64| {
-            (normal.iter().map(squares).sum::<f64>() / normal.len() as f64).sqrt()
+        let mean = |square: fn(&(f64, f64)) -> f64| {
+            normal.iter().map(square).sum::<f64>() / normal.len() as f64
         };
-        let off = rms(&|(found, expected)| (found - expected) * (found - expected));
-        let share = 100.0 * off / rms(&|(_, expected)| expected * expected);
+        let off = mean(|(found, expected)| (found - expected) * (found - expected)).sqrt();
+        let share = 100.0 * off / mean(|(_, expected)| expected * expected).sqrt();
         odd.push(format!(
             "the normal force is {times}, with an rms difference of {off:.4} N ({share:.1} %) over {} poses",
             normal.len()
@@ -158,9 +153,8 @@ fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
 
 /// The largest computed force.
 fn largest(pairs: &[(f64, f64)]) -> f64 {
-    pairs
-        .iter()
-        .fold(0.0, |most, (_, expected)| expected.abs().max(most))
+    let sizes = pairs.iter().map(|(_, expected)| expected.abs());
+    sizes.fold(0.0, f64::max)
 }
 
 /// The median of measured over computed force, where the latter is more than a tenth of its largest.
