@@ -15,7 +15,7 @@ use palpate::fem::certify::certified_map;
 use palpate::fem::{FemError, Model, Pose};
 use palpate::file::read;
 use palpate::force_map::ForceMap;
-use palpate::phantom::Phantom;
+use palpate::phantom::{Inclusion, Phantom};
 use palpate::refusal::Refusal;
 use palpate_paper::report::{DeformedMesh, FileNames, Run, figures, findings, html, summary_json};
 use palpate_paper::study::StudyResults;
@@ -45,16 +45,21 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let phantoms = config.read_phantoms()?;
     let measured = config.measured.iter();
     let measured = measured.map(|path| measured_map(&config.file(path)));
-    let measured = measured.collect::<Result<Vec<_>, _>>()?;
+    let measured = measured.collect::<Result<_, _>>()?;
     let study = arguments.study.as_deref().map(StudyResults::read);
     let study = study.transpose()?;
     // The folder first: a run shall not fail at its end because it cannot be made.
     make_folder(&arguments.out)?;
-    let run = solve_all(&config, &phantoms, measured)?;
-    let run = Run { study, ..run };
-    for map in std::iter::once(&run.reference).chain(&run.maps) {
-        warn_of_large_strain(map);
-    }
+    let (mut maps, deformed) = solve_all(&config, &phantoms)?;
+    let run = Run {
+        reference: maps.remove(0),
+        maps,
+        measured,
+        deformed,
+        settings: config.detection,
+        study,
+    };
+    run.reference_and_maps().for_each(warn_of_large_strain);
     write_run(&run, &arguments.out)
 }
 
@@ -76,8 +81,7 @@ fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
 fn solve_all(
     config: &Config,
     phantoms: &[Phantom],
-    measured: Vec<ForceMap>,
-) -> Result<Run, CliError> {
+) -> Result<(Vec<ForceMap>, DeformedMesh), CliError> {
     let bar = bar(0, "force maps");
     // The figure shows the first inclusion, or the reference where there is none.
     let shown = usize::from(phantoms.len() > 1);
@@ -85,20 +89,13 @@ fn solve_all(
         solve_phantom(config, phantom, index == shown, &bar).map_err(CliError::fem(&phantom.name()))
     };
     let solved = phantoms.par_iter().enumerate().map(solve);
-    let solved: Vec<_> = solved.collect::<Result<_, _>>()?;
+    let (maps, deformed): (_, Vec<_>) = solved.collect::<Result<_, _>>()?;
     bar.finish_and_clear();
-    let (mut maps, deformed): (Vec<_>, Vec<_>) = solved.into_iter().collect();
-    let deformed = deformed.into_iter().flatten().next();
     let none = || CliError::Usage("no phantom to run".into());
-    let reference = maps.remove(0);
-    Ok(Run {
-        reference,
+    Ok((
         maps,
-        measured,
-        deformed: deformed.ok_or_else(none)?,
-        settings: config.detection,
-        study: None,
-    })
+        deformed.into_iter().flatten().next().ok_or_else(none)?,
+    ))
 }
 
 fn solve_phantom(
@@ -120,20 +117,14 @@ fn solve_phantom(
 
 /// The mesh at the deepest pose, at the lateral position nearest to the middle of the first inclusion, or to x = 0.
 fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
-    let deepest = map.table().depths().iter().fold(0.0, |a: f64, &b| a.max(b));
-    let first = model.phantom().inclusions().first();
-    let middle = first.map_or(0.0, |inclusion| {
-        let [left, right, ..] = inclusion.extent();
-        0.5 * (left + right)
-    });
-    let distance = |x: f64| (x - middle).abs();
+    let depth = map.table().depths().iter().fold(0.0, |a: f64, &b| a.max(b));
+    let first = model.phantom().inclusions.first();
+    let [left, right, ..] = first.map_or([0.0; 4], Inclusion::extent);
+    let distance = |x: f64| (x - 0.5 * (left + right)).abs();
     let laterals = map.table().laterals().iter().copied();
     let nearest = laterals.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-    let pose = Pose {
-        depth: deepest,
-        lateral: nearest.unwrap_or(0.0),
-    };
-    DeformedMesh::solve(model, pose)
+    let lateral = nearest.unwrap_or(0.0);
+    DeformedMesh::solve(model, Pose { depth, lateral })
 }
 
 /// Writes all files and prints where they are.
@@ -144,8 +135,8 @@ fn write_run(run: &Run, out: &Path) -> Result<(), CliError> {
     make_folder(&out.join("maps"))?;
     make_folder(&out.join("figures"))?;
     let mut names = FileNames::default();
-    for map in std::iter::once(&run.reference).chain(&run.maps) {
-        let name = map.phantom().map_or("", |phantom| &phantom.name());
+    for map in run.reference_and_maps() {
+        let name = map.phantom().map_or("", |phantom| &phantom.name);
         let name = names.unique("map", name, "json");
         write(&out.join("maps").join(name), &map.to_json())?;
     }

@@ -9,6 +9,8 @@ use super::panel::{
     Area, Cells, Context, DrawingResult, LEFT, Line, Panel, PanelKind, RIGHT, write,
 };
 use super::style::{GRID, INK, UNIT, WIDTH, stroke, text, text_width};
+use super::with_head;
+use crate::refusal::Refusal;
 use crate::text::{extremes, trimmed};
 
 /// Pixels from a plot to the names at its right.
@@ -50,51 +52,56 @@ impl Panel {
             ..Panel::default()
         }
     }
-}
 
-/// The bars whose names stand right of the plot.
-fn ranked(panel: &Panel) -> &[Line] {
-    match panel.kind {
-        PanelKind::Ranked => &panel.lines,
-        _ => &[],
+    /// The bars whose names stand right of the plot.
+    fn ranked(&self) -> &[Line] {
+        match self.kind {
+            PanelKind::Ranked => &self.lines,
+            _ => &[],
+        }
+    }
+
+    /// Pixels right of the plot.
+    fn right(&self) -> i32 {
+        let names = self.ranked().iter().map(|line| text_width(&line.name));
+        names.max().map_or(RIGHT, |widest| INDENT + widest + 8)
+    }
+
+    /// Pixels from the top of its heading to the bottom of the name of its x axis.
+    fn whole_height(&self) -> i32 {
+        let footing = if self.x_name.is_empty() { 0 } else { FOOTING };
+        HEADING + key_height(self) + self.height + NUMBERS + footing
     }
 }
 
-/// Pixels right of a plot.
-fn right_margin(panel: &Panel) -> i32 {
-    let widths = ranked(panel)
-        .iter()
-        .map(|line| INDENT + text_width(&line.name) + 8);
-    widths.max().unwrap_or(RIGHT)
+/// Draws panels below one another, for a file name, a title and an alternative text, as an SVG document.
+///
+/// # Errors
+/// The library refused to draw.
+pub fn chart(panels: &[Panel], words: [&str; 3]) -> Result<String, Refusal> {
+    let drawn = drawn(panels).map_err(Refusal::because(format!("figure {:?}", words[1])));
+    let (svg, height) = drawn?;
+    with_head(&svg, height, words)
 }
 
-/// Draws panels below one another over one x axis, or over their own ones if `x_name` is empty, and gives an SVG document with
-/// its height, pixels.
-pub fn chart(panels: &[Panel], x_name: &str) -> DrawingResult<(String, i32)> {
-    let footing = |name: &str| if name.is_empty() { 0 } else { FOOTING };
-    let each = |panel: &Panel| {
-        let below = NUMBERS + footing(&panel.x_name);
-        HEADING + key_height(panel) + panel.height + below
-    };
-    let height = panels.iter().map(each).sum::<i32>() + footing(x_name);
-    let right = panels.iter().map(right_margin).max().unwrap_or(RIGHT);
+/// The panels as SVG, and its height, pixels.
+fn drawn(panels: &[Panel]) -> DrawingResult<(String, i32)> {
+    let height = panels.iter().map(Panel::whole_height).sum();
+    let right = panels.iter().map(Panel::right).max().unwrap_or(RIGHT);
     let (mut svg, mut paths) = (String::new(), String::new());
     let size = ((WIDTH * UNIT) as u32, (height * UNIT) as u32);
     {
         let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         area.fill(&WHITE)?;
-        let middle = LEFT + (WIDTH - LEFT - right) / 2;
-        let name_axis = |name: &str, bottom: i32| match name {
-            "" => Ok(()),
-            name => write(&area, name, [middle, bottom - FOOTING / 2], HPos::Center),
-        };
         let mut top = 0;
         for panel in panels {
             paths += &draw_panel(&area, panel, top, right)?;
-            top += each(panel);
-            name_axis(&panel.x_name, top)?;
+            top += panel.whole_height();
+            if !panel.x_name.is_empty() {
+                let at = [LEFT + (WIDTH - LEFT - right) / 2, top - FOOTING / 2];
+                write(&area, &panel.x_name, at, HPos::Center)?;
+            }
         }
-        name_axis(x_name, height)?;
         area.present()?;
     }
     // The paths stand directly over the white ground, which is the first element that the library closes.
@@ -109,21 +116,11 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, top: i32, right: i32) -> DrawingRe
     for line in &panel.lines {
         draw_line(&mut chart, line)?;
     }
-    for mark in &panel.marks {
-        let (x, y) = chart.backend_coord(&mark.at);
-        let at = [x / UNIT + mark.shift.0, y / UNIT + mark.shift.1];
-        write(area, &mark.words, at, mark.side)?;
-    }
     draw_key(area, panel, top + HEADING - 4)?;
-    for line in ranked(panel) {
-        let height = line.points.first().map_or(0.0, |point| point.1);
-        let (_, y) = chart.backend_coord(&(panel.x[0], height));
-        write(
-            area,
-            &line.name,
-            [WIDTH - right + INDENT, y / UNIT],
-            HPos::Left,
-        )?;
+    for line in panel.ranked() {
+        let (_, y) = chart.backend_coord(&line.points.first().copied().unwrap_or_default());
+        let at = [WIDTH - right + INDENT, y / UNIT];
+        write(area, &line.name, at, HPos::Left)?;
     }
     Ok(panel.cells.iter().map(|of| path(&chart, of)).collect())
 }
@@ -149,21 +146,17 @@ fn path(chart: &Context<'_>, Cells { fill, edge, areas }: &Cells) -> String {
 fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResult<Context<'a>> {
     let place = |pixels: i32| pixels * UNIT;
     let (x, y, height) = (panel.x, panel.y, panel.height);
-    let sub = area.clone().shrink(
-        (0, place(top)),
-        (place(WIDTH - right), place(height + NUMBERS)),
-    );
+    let size = (place(WIDTH - right), place(height + NUMBERS));
+    let sub = area.clone().shrink((0, place(top)), size);
     let mut chart = ChartBuilder::on(&sub)
         .set_label_area_size(LabelAreaPosition::Left, place(LEFT))
         .set_label_area_size(LabelAreaPosition::Bottom, place(NUMBERS))
         .build_cartesian_2d(x[0]..x[1], y[0]..y[1])?;
-    let grid = match panel.kind {
-        PanelKind::ToScale => TRANSPARENT.stroke_width(0),
-        _ => stroke(GRID, 1.0),
-    };
-    let heights = match panel.kind {
-        PanelKind::Ranked => 0,
-        _ => (height / 40).max(2) as usize,
+    let (grid, heights) = (stroke(GRID, 1.0), (height / 40).max(2) as usize);
+    let (grid, heights) = match panel.kind {
+        PanelKind::Chart => (grid, heights),
+        PanelKind::Ranked => (grid, 0),
+        PanelKind::ToScale => (TRANSPARENT.stroke_width(0), heights),
     };
     let number = |value: &f64| trimmed(*value, 6);
     chart
@@ -191,18 +184,17 @@ fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResu
 }
 
 fn draw_line(chart: &mut Context<'_>, line: &Line) -> DrawingResult<()> {
-    let style = stroke(line.colour, line.width);
+    let (style, filled) = (stroke(line.colour, line.width), line.colour.filled());
     let points = line.points.iter().copied();
     if line.is_area {
-        let outline = points.clone().chain(points.clone().take(1)).collect();
-        chart.draw_series([Polygon::new(line.points.clone(), line.colour.filled())])?;
-        chart.draw_series([PathElement::new::<Vec<_>, _>(outline, stroke(INK, 1.2))])?;
+        let outline = points.clone().chain(points.clone().take(1));
+        chart.draw_series([Polygon::new(line.points.clone(), filled)])?;
+        chart.draw_series(LineSeries::new(outline, stroke(INK, 1.2)))?;
         return Ok(());
     }
     if line.dot > 0 {
-        let dots = points.clone();
-        let filled = line.colour.filled();
-        chart.draw_series(dots.map(|at| Circle::new(at, line.dot * UNIT, filled)))?;
+        let dot = |at| Circle::new(at, line.dot * UNIT, filled);
+        chart.draw_series(points.clone().map(dot))?;
     }
     if line.width > 0.0 && line.is_dashed {
         chart.draw_series(DashedLineSeries::new(points, 6 * UNIT, 4 * UNIT, style))?;
@@ -222,10 +214,9 @@ pub fn round_range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     }
     // The step is 1, 2 or 5 times a power of ten, a tenth of the span or a little more.
     let power = libm::pow(10.0, libm::floor(libm::log10(span / 10.0)));
-    let factor = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|factor| factor * power * 10.0 >= span);
-    let step = factor.unwrap_or(10.0) * power;
+    let mut steps = [1.0, 2.0, 5.0].map(|factor| factor * power).into_iter();
+    let step = steps.find(|step| step * 10.0 >= span);
+    let step = step.unwrap_or(10.0 * power);
     [
         libm::floor(least / step) * step,
         libm::ceil(greatest / step) * step,

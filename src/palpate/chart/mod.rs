@@ -16,11 +16,12 @@ pub mod style;
 
 pub use bank::place_figure;
 pub use lines::{chart, round_range};
-pub use panel::{Cells, DrawingResult, Line, Mark, Panel, PanelKind};
+pub use panel::{Cells, Line, Panel, PanelKind};
 pub use reach::reach_figure;
 
 use style::{UNIT, WIDTH};
 
+use crate::refusal::Refusal;
 use crate::text::escape;
 
 /// Chords that an ellipse is drawn with: a multiple of 4, so that a disc is drawn as high and wide as it is.
@@ -32,20 +33,20 @@ pub fn to_mm(corners: impl IntoIterator<Item = [f64; 2]>) -> Vec<(f64, f64)> {
     corners.map(|[x, y]| (1e3 * x, 1e3 * y)).collect()
 }
 
-/// The SVG document and the height (pixels) of a drawing, with a head that scales and that a screen reader can read. The ids come from
-/// the file name, which is unique, since all figures of a report share one page.
+/// An SVG document of `height` pixels with a head that scales and that a screen reader can read: its file name, title and alternative
+/// text. The ids come from the file name, which is unique, since all figures of a report share one page.
 ///
 /// # Errors
 /// A document without a head.
 ///
 /// Implements: REP-031.
 pub fn with_head(
-    (svg, height): (String, i32),
-    file_name: &str,
-    title: &str,
-    alt: &str,
-) -> DrawingResult<String> {
-    let (_, body) = svg.split_once('>').ok_or("the library wrote no SVG")?;
+    svg: &str,
+    height: i32,
+    [file_name, title, alt]: [&str; 3],
+) -> Result<String, Refusal> {
+    let no_head = || Refusal::state(format!("figure {title:?} is no SVG"), "");
+    let (_, body) = svg.split_once('>').ok_or_else(no_head)?;
     let id = file_name.trim_end_matches(".svg");
     let (wide, high) = (WIDTH * UNIT, height * UNIT);
     let (title, alt) = (escape(title), escape(alt));

@@ -1,4 +1,4 @@
-//! What a chart is made of: panels, lines, and words in them.
+//! What a chart is made of: panels and lines.
 
 use plotters::chart::ChartContext;
 use plotters::coord::Shift;
@@ -52,6 +52,12 @@ impl Line {
         }
     }
 
+    /// Curve `k` of many: in `colours` in turn, with dashes in every second turn.
+    pub fn nth(k: usize, colours: &[RGBColor], points: Vec<(f64, f64)>) -> Line {
+        let colour = colours[k % colours.len()];
+        Line::new(colour, points).dashed((k / colours.len()) % 2 == 1)
+    }
+
     /// An area with a thin outline.
     pub fn area(colour: RGBColor, points: Vec<(f64, f64)>) -> Line {
         Line {
@@ -85,30 +91,6 @@ impl Line {
     }
 }
 
-/// Words at a place in the plot. The words are in ink: a pale colour would be hard to read.
-pub struct Mark {
-    /// The place in data coordinates.
-    pub at: (f64, f64),
-    /// The words.
-    pub words: String,
-    /// The side of the words that is at the place.
-    pub side: HPos,
-    /// Shift of the words from the place, pixels, right and down.
-    pub shift: (i32, i32),
-}
-
-impl Mark {
-    /// Words at a place.
-    pub fn new(at: (f64, f64), words: impl Into<String>, side: HPos, shift: (i32, i32)) -> Mark {
-        Mark {
-            at,
-            words: words.into(),
-            side,
-            shift,
-        }
-    }
-}
-
 /// Many small areas of one colour, each given by its corners in data coordinates.
 pub struct Cells {
     /// What they are filled with.
@@ -136,7 +118,7 @@ pub enum PanelKind {
 pub struct Panel {
     /// What the y axis shows, with its unit.
     pub heading: String,
-    /// What the x axis shows, with its unit, where that is another one than other panels'.
+    /// What the x axis shows, with its unit; empty where a panel below has the same axis.
     pub x_name: String,
     /// Least and greatest x.
     pub x: [f64; 2],
@@ -154,8 +136,6 @@ pub struct Panel {
     pub cells: Vec<Cells>,
     /// Curves, the later over the earlier.
     pub lines: Vec<Line>,
-    /// Words.
-    pub marks: Vec<Mark>,
 }
 
 impl Panel {

@@ -1,8 +1,7 @@
 //! How deep an inclusion may lie to be found.
 
 use super::panel::{Line, Panel};
-use super::style::{BLUE, GREY, INK, PALETTE};
-use super::with_head;
+use super::style::{GREY, INK, PALETTE};
 use super::{chart, round_range};
 use crate::bank::{Bank, Reached};
 use crate::refusal::Refusal;
@@ -28,6 +27,7 @@ pub fn reach_figure(
     let deepest = 1e3 * depths.last().copied().unwrap_or_default();
     let sample = Line::new(INK, Vec::new()).dotted(4);
     let panel = Panel {
+        x_name: "Diameter of the inclusion (mm)".into(),
         key: vec![
             sample.clone().named("nothing unknown"),
             sample.dashed(true).named(format!("unknown: {unknown}")),
@@ -45,9 +45,7 @@ pub fn reach_figure(
     };
     let alt = reach_in_words(plain, beside, unknown);
     let title = "How deep an inclusion may lie to be found";
-    let drawn = chart(&[panel], "Diameter of the inclusion (mm)");
-    let svg = drawn.and_then(|drawn| with_head(drawn, "reach", title, &alt));
-    svg.map_err(Refusal::because("figure of the reach"))
+    chart(&[panel], ["reach", title, &alt])
 }
 
 /// The end of the bank, and two lines for each modulus: with nothing unknown, and beside what is, in dashes.
@@ -55,8 +53,7 @@ fn lines(bank: &Bank, reached: [&[Reached]; 2], x: [f64; 2], deepest: f64) -> Ve
     let moduli = &bank.axes()[3];
     let limit = Line::new(GREY, vec![(x[0], deepest), (x[1], deepest)]);
     let mut lines = vec![limit.wide(1.2).named("bank's end")];
-    let colours = [BLUE].into_iter().chain(PALETTE.into_iter().skip(1));
-    for (&modulus, colour) in moduli.iter().zip(colours.cycle()) {
+    for (&modulus, colour) in moduli.iter().zip(PALETTE.into_iter().cycle()) {
         for (reached, is_dashed) in reached.into_iter().zip([false, true]) {
             let of_modulus = reached.iter().filter(|of| of.modulus == modulus);
             let points = of_modulus.filter_map(|of| Some((1e3 * of.diameter, 1e3 * of.depth?)));

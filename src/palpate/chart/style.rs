@@ -43,12 +43,9 @@ pub const GREY: RGBColor = RGBColor(118, 126, 136);
 pub fn ramp(index: usize, count: usize) -> RGBColor {
     let stops = [[46.0, 143.0, 200.0], [0.0, 114.0, 178.0], [8.0, 29.0, 68.0]];
     let place = 2.0 * index as f64 / (count.max(2) - 1) as f64;
-    let (from, to, part) = if place <= 1.0 {
-        (stops[0], stops[1], place)
-    } else {
-        (stops[1], stops[2], place - 1.0)
-    };
-    let mix = |k: usize| (from[k] + part * (to[k] - from[k])).round() as u8;
+    let below = usize::from(place > 1.0);
+    let ([from, to], share) = ([stops[below], stops[below + 1]], place - below as f64);
+    let mix = |k: usize| (from[k] + share * (to[k] - from[k])).round() as u8;
     RGBColor(mix(0), mix(1), mix(2))
 }
 

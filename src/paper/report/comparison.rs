@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::maps::MapFindings;
 use super::paper;
-use super::text::{fixed, joined, millimetres, p_value, percent};
+use super::text::{fixed, joined, millimetres, or, p_value, percent};
 use crate::psychophysics::bridge::{
     Bridge, Channel, ConditionBridge, Convention, ConventionFit, Offset, Statistic,
 };
@@ -30,15 +30,6 @@ impl Value {
             Value::ForceN(force) => format!("{} N", fixed(force, 3)),
             Value::Gamma(gamma) => format!("γ = {}", fixed(gamma, 3)),
             Value::Probability(share) => percent(share),
-        }
-    }
-
-    /// Another number of this kind.
-    fn with(self, number: f64) -> Value {
-        match self {
-            Value::ForceN(_) => Value::ForceN(number),
-            Value::Gamma(_) => Value::Gamma(number),
-            Value::Probability(_) => Value::Probability(number),
         }
     }
 }
@@ -88,7 +79,7 @@ pub fn table(
     rows.extend(table_2(noise));
     rows.push(accuracy(counted.map(|of| &of.pooled))?);
     rows.push(bridge.and_then(subjects));
-    rows.extend(bridge.map(shares).unwrap_or_default());
+    rows.extend(bridge.and_then(shares).unwrap_or_default());
     Ok(rows.into_iter().flatten().collect())
 }
 
@@ -96,7 +87,7 @@ pub fn table(
 fn row(
     quantity: impl Into<String>,
     place: &str,
-    (paper_text, paper): (impl Into<String>, Value),
+    (paper_text, kind, paper): (impl Into<String>, fn(f64) -> Value, f64),
     here: Option<f64>,
     why: impl Into<String>,
 ) -> Option<Comparison> {
@@ -104,8 +95,8 @@ fn row(
         quantity: quantity.into(),
         place: place.into(),
         paper_text: paper_text.into(),
-        paper,
-        here: paper.with(here?),
+        paper: kind(paper),
+        here: kind(here?),
         why: why.into(),
     })
 }
@@ -121,15 +112,14 @@ fn forces(level: Option<f64>, maps: &[MapFindings]) -> Vec<Option<Comparison>> {
     let off = |peak: f64| (peak - paper::SIGNAL).abs();
     let nearest = peaks.iter().min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
     let nearest_name = nearest.map_or("", |of| of.0);
-    let all = peaks
-        .iter()
-        .map(|(name, peak)| format!("{name} mm: {} N", fixed(*peak, 3)));
+    let all = peaks.iter();
+    let all = all.map(|(name, peak)| format!("{name} mm: {} N", fixed(peak, 3)));
     let printed = peaks.iter().find(|(name, _)| *name == PRINTED);
     vec![
         row(
             "Force level: normal force at 4 mm, x = 0, no inclusion",
             "§2",
-            ("1.6 N, nominal", Value::ForceN(paper::FORCE_LEVEL)),
+            ("1.6 N, nominal", Value::ForceN, paper::FORCE_LEVEL),
             level,
             "The paper does not say which element it used. Six-node triangles do not lock at ν = 0.49, and their 1.48 N hardly depends on \
              the mesh. Elements that lock give more. The authors’ moduli are “roughly determined”, too.",
@@ -137,7 +127,7 @@ fn forces(level: Option<f64>, maps: &[MapFindings]) -> Vec<Option<Comparison>> {
         row(
             format!("Signal F₁ − F₀: here the peak normal signal at {nearest_name} mm"),
             "§2",
-            ("roughly 0.5 N", Value::ForceN(paper::SIGNAL)),
+            ("roughly 0.5 N", Value::ForceN, paper::SIGNAL),
             nearest.map(|of| of.1),
             format!(
                 "The paper names no inclusion for its 0.5 N; shown is the nearest of our peaks at 4 mm ({}).",
@@ -147,7 +137,7 @@ fn forces(level: Option<f64>, maps: &[MapFindings]) -> Vec<Option<Comparison>> {
         row(
             "Peak signal of the 6.6 mm inclusion",
             "§5",
-            ("340 mN", Value::ForceN(paper::PEAK_SIGNAL_6_6)),
+            ("340 mN", Value::ForceN, paper::PEAK_SIGNAL_6_6),
             printed.map(|of| of.1),
             "The peak of the normal signal at 4 mm. Elements that lock give more.",
         ),
@@ -166,21 +156,21 @@ fn required() -> Result<[Option<Comparison>; 3], DetectError> {
         row(
             "γ for at most 5 % misses and 5 % false alarms",
             "§2, Figure 4",
-            ("γ > 3.3", Value::Gamma(paper::REQUIRED_GAMMA)),
+            ("γ > 3.3", Value::Gamma, paper::REQUIRED_GAMMA),
             Some(needed),
             "2Φ⁻¹(0.95) = 3.290; the paper rounds up.",
         ),
         row(
             "Noise allowed in all, 0.5 N/γ",
             "§2",
-            ("0.15 N", Value::ForceN(paper::ALLOWED_NOISE)),
+            ("0.15 N", Value::ForceN, paper::ALLOWED_NOISE),
             Some(allowed),
             "The paper rounds.",
         ),
         row(
             "Noise allowed to the display, with 0.1 N of the hand",
             "§2",
-            ("0.11 N", Value::ForceN(paper::DISPLAY_NOISE)),
+            ("0.11 N", Value::ForceN, paper::DISPLAY_NOISE),
             Some(remaining(allowed, paper::HUMAN_NOISE)),
             format!(
                 "From the rounded 0.15 N it is {} N. With the hand's 93 mN of Table 2 instead of 0.1 N it is {} N. The 140 mN of backdrive \
@@ -194,29 +184,21 @@ fn required() -> Result<[Option<Comparison>; 3], DetectError> {
 
 /// The sums of Table 2.
 fn table_2(noise: &NoiseDecomposition) -> [Option<Comparison>; 2] {
-    let row = |of: &str, printed: f64, text: &str, why: &str| {
+    let row = |of: &str, text: &str, printed: f64, sources: &str| {
         let level = noise.levels.iter().find(|of| of.printed_n == Some(printed));
         row(
             format!("Noise of {of}, from Table 2"),
             "§5",
-            (text, Value::ForceN(printed)),
+            (text, Value::ForceN, printed),
             level.map(|level| level.noise_n),
-            why,
+            format!("{sources} and human perception, added as variances; the paper rounds."),
         )
     };
+    let (fem, friction) = (paper::PLAYBACK_NOISE, "Quantization, backdrive friction");
+    let (direct, contact) = (paper::DIRECT_CONTACT_NOISE, "Unmodelled contact forces");
     [
-        row(
-            "the playback of FEM data",
-            paper::PLAYBACK_NOISE,
-            "170 mN",
-            "Quantization, backdrive friction and human perception, added as variances; the paper rounds.",
-        ),
-        row(
-            "direct contact",
-            paper::DIRECT_CONTACT_NOISE,
-            "220 mN",
-            "Unmodelled contact forces and human perception, added as variances; the paper rounds.",
-        ),
+        row("the playback of FEM data", "170 mN", fem, friction),
+        row("direct contact", "220 mN", direct, contact),
     ]
 }
 
@@ -224,19 +206,14 @@ fn table_2(noise: &NoiseDecomposition) -> [Option<Comparison>; 2] {
 fn accuracy(counted: Option<&Rate>) -> Result<Option<Comparison>, DetectError> {
     let gamma = gamma_from_two_afc(paper::ACCURACY_6_6)?;
     let counted_gamma = counted.map(|of| {
-        let gamma = of
-            .gamma
-            .gamma
-            .map_or("no number".into(), |gamma| fixed(gamma, 3));
-        format!(
-            " For the {} of {} of Table 1 it is {gamma}.",
-            of.correct, of.trials
-        )
+        let (right, all) = (of.correct, of.trials);
+        let gamma = or(of.gamma.gamma, "no number", |gamma| fixed(gamma, 3));
+        format!(" For the {right} of {all} of Table 1 it is {gamma}.")
     });
     Ok(row(
         "γ at which 84 % of pairs are judged right",
         "§5, Figure 9",
-        ("γ = 1.45", Value::Gamma(paper::GAMMA_OF_ACCURACY)),
+        ("γ = 1.45", Value::Gamma, paper::GAMMA_OF_ACCURACY),
         counted.map(|_| gamma),
         format!(
             "√2 Φ⁻¹(0.84); the paper read 1.45 off its Figure 9, where the curve is at 84.7 %.{}",
@@ -265,7 +242,7 @@ fn subjects(bridge: &Bridge) -> Option<Comparison> {
     row(
         "Noise of the subjects, peak signal at 6.6 mm over γ",
         "§5",
-        ("235 mN", Value::ForceN(paper::SUBJECTS_NOISE)),
+        ("235 mN", Value::ForceN, paper::SUBJECTS_NOISE),
         Some(noise),
         format!(
             "Ours is {} N over {}, with our own peak and the γ of the answers counted in Table 1. The paper's peak over the true γ of 84 % \
@@ -279,13 +256,9 @@ fn subjects(bridge: &Bridge) -> Option<Comparison> {
 }
 
 /// The shares of right answers that the noise of the fit to all depths predicts.
-fn shares(bridge: &Bridge) -> Vec<Option<Comparison>> {
-    let Some((condition, fit)) = of_paper(bridge) else {
-        return Vec::new();
-    };
-    let Some(common) = &fit.common else {
-        return Vec::new();
-    };
+fn shares(bridge: &Bridge) -> Option<Vec<Option<Comparison>>> {
+    let (condition, fit) = of_paper(bridge)?;
+    let common = fit.common.as_ref()?;
     let each = bridge.inclusions.iter().zip(&condition.observed);
     let rows = each.zip(&common.predicted).map(|((inclusion, observed), here)| {
         let interval = observed.clustered_bounds.map(|of| {
@@ -299,7 +272,7 @@ fn shares(bridge: &Bridge) -> Vec<Option<Comparison>> {
         row(
             format!("Pairs judged right, FEM playback, {} mm", inclusion.name),
             "Table 1",
-            (percent(observed.rate), Value::Probability(observed.rate)),
+            (percent(observed.rate), Value::Probability, observed.rate),
             Some(*here),
             format!(
                 "Φ(γ/√2) with γ = peak normal signal/noise, one noise level of {} N fitted to all depths together.{}{off}",
@@ -308,7 +281,7 @@ fn shares(bridge: &Bridge) -> Vec<Option<Comparison>> {
             ),
         )
     });
-    rows.collect()
+    Some(rows.collect())
 }
 
 /// FEM playback with the paper's own convention: the peak of the normal force.

@@ -72,12 +72,8 @@ pub struct Detection {
 impl Detection {
     fn new(gamma: f64, settings: &Settings) -> Result<Detection, DetectError> {
         let at = |eta: f64| {
-            let ErrorRates { false_alarm, miss } = error_rates(gamma, eta)?;
-            Ok(Threshold {
-                eta,
-                false_alarm,
-                miss,
-            })
+            let rates = error_rates(gamma, eta)?;
+            Ok(Threshold { eta, rates })
         };
         let bounded = neyman_pearson_false_alarm_threshold(gamma, settings.max_false_alarm);
         Ok(Detection {
@@ -103,14 +99,6 @@ pub struct Peak {
     pub lateral_m: f64,
 }
 
-impl Peak {
-    /// Implements: REP-012.
-    fn of(map: &ForceMap, signal: &[f64]) -> Peak {
-        let (force_n, lateral_m) = peak(map.table().laterals(), signal);
-        Peak { force_n, lateral_m }
-    }
-}
-
 /// γ with both channels and with each alone.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct GammaByChannel {
@@ -127,10 +115,9 @@ pub struct GammaByChannel {
 pub struct Threshold {
     /// η of equation (9).
     pub eta: f64,
-    /// Pr(Ĥ = 1 | H = 0).
-    pub false_alarm: f64,
-    /// Pr(Ĥ = 0 | H = 1).
-    pub miss: f64,
+    /// Its rates.
+    #[serde(flatten)]
+    pub rates: ErrorRates,
 }
 
 /// The refusal of a map.
@@ -144,12 +131,10 @@ pub(super) fn incomparable(map: &ForceMap) -> impl FnOnce(Refusal) -> Refusal {
 }
 
 pub(super) fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindings, Refusal> {
-    let row = map.table().row(depth).map_err(incomparable(map))?;
-    let centre = map
-        .table()
-        .laterals()
-        .iter()
-        .position(|x| x.abs() <= SAME_POSITION);
+    let table = map.table();
+    let row = table.row(depth).map_err(incomparable(map))?;
+    let mut laterals = table.laterals().iter();
+    let centre = laterals.position(|x| x.abs() <= SAME_POSITION);
     Ok(ReferenceFindings {
         name: name_of_map(map),
         normal_force_at_centre_n: centre.map(|column| row.normal[column]),
@@ -157,44 +142,53 @@ pub(super) fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindin
     })
 }
 
-pub(super) fn of_map(run: &Run, map: &ForceMap, depth: f64) -> Result<MapFindings, Refusal> {
-    let difference = map.signal(&run.reference).map_err(incomparable(map))?;
-    let signal = difference.row(depth).map_err(incomparable(map))?;
-    let left = GammaLeft::of(run, signal, depth).map_err(incomparable(map))?;
-    judged(&run.settings, map, signal, left)
-        .map_err(Refusal::because(format!("map {:?}", name_of_map(map))))
+/// F_1 − F_0 of a map at one depth.
+pub(super) fn signal(run: &Run, map: &ForceMap, depth: f64) -> Result<Force<Vec<f64>>, Refusal> {
+    let signal = map.signal(&run.reference).map_err(incomparable(map))?;
+    let row = signal.row(depth).map_err(incomparable(map))?;
+    Ok(row.map(<[f64]>::to_vec))
 }
 
-/// What the detector makes of a map's signal.
-///
 /// Implements: REP-012.
-fn judged(
-    settings: &Settings,
-    map: &ForceMap,
-    signal: Force<&[f64]>,
-    gamma_left: GammaLeft,
-) -> Result<MapFindings, DetectError> {
-    let Force { lateral, normal } = signal;
-    let zeros = vec![0.0; normal.len()];
-    let gamma = GammaByChannel {
-        both: gamma(lateral, normal, settings.noise_sd_n)?,
-        normal: gamma(&zeros, normal, settings.noise_sd_n)?,
-        lateral: gamma(lateral, &zeros, settings.noise_sd_n)?,
+pub(super) fn of_map(run: &Run, map: &ForceMap, depth: f64) -> Result<MapFindings, Refusal> {
+    let signal = signal(run, map, depth)?;
+    let signal = signal.as_deref();
+    let gamma_left = GammaLeft::of(run, signal, depth).map_err(incomparable(map))?;
+    let judged = judged(&run.settings, signal);
+    let name = name_of_map(map);
+    let (gamma, detection) = judged.map_err(Refusal::because(format!("map {name:?}")))?;
+    let (quality, phantom) = (Quality::of(map), map.phantom());
+    let peak = |forces: &[f64]| {
+        let (force_n, lateral_m) = peak(map.table().laterals(), forces);
+        Peak { force_n, lateral_m }
     };
-    let quality = Quality::of(map);
-    let phantom = map.phantom();
     Ok(MapFindings {
-        name: name_of_map(map),
+        name,
         paper_phantom: phantom.and_then(paper::name_of),
         inclusion_depth_m: phantom.and_then(Phantom::inclusion_depth),
-        peak_normal: Peak::of(map, normal),
-        peak_lateral: Peak::of(map, lateral),
+        peak_normal: peak(signal.normal),
+        peak_lateral: peak(signal.lateral),
         gamma,
         gamma_left,
-        detection: Detection::new(gamma.both, settings)?,
+        detection,
         warnings: warnings(quality.as_ref(), gamma.both),
         quality,
     })
+}
+
+/// What the detector makes of a signal.
+fn judged(
+    settings: &Settings,
+    Force { lateral, normal }: Force<&[f64]>,
+) -> Result<(GammaByChannel, Detection), DetectError> {
+    let gamma = |lateral: &[f64], normal: &[f64]| gamma(lateral, normal, settings.noise_sd_n);
+    let zeros = vec![0.0; normal.len()];
+    let gamma = GammaByChannel {
+        both: gamma(lateral, normal)?,
+        normal: gamma(&zeros, normal)?,
+        lateral: gamma(lateral, &zeros)?,
+    };
+    Ok((gamma, Detection::new(gamma.both, settings)?))
 }
 
 /// γ of lateral and normal forces in noise of the same standard deviation.

@@ -98,6 +98,13 @@ pub struct Run {
     pub study: Option<StudyResults>,
 }
 
+impl Run {
+    /// The reference, then the maps over its poses.
+    pub fn reference_and_maps(&self) -> impl Iterator<Item = &ForceMap> {
+        std::iter::once(&self.reference).chain(&self.maps)
+    }
+}
+
 /// The mesh of one phantom under the probe. It comes from a solution alone, so that its parts fit one another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeformedMesh {
@@ -123,16 +130,12 @@ impl DeformedMesh {
             let ([x, y], [u, v]) = (mesh.nodes[node as usize], displacements[node as usize]);
             [x + u, y + v]
         };
-        let corners = mesh
-            .elements()
-            .map(|nodes| nodes[..CORNERS].iter().map(place));
-        let elements = mesh.regions.iter().copied().zip(corners);
+        let corners = mesh.elements().map(|nodes| &nodes[..CORNERS]);
+        let corners = corners.map(|nodes| nodes.iter().map(place).collect());
         Ok(DeformedMesh {
             phantom: model.phantom().clone(),
             pose,
-            elements: elements
-                .map(|(region, corners)| (region, corners.collect()))
-                .collect(),
+            elements: mesh.regions.iter().copied().zip(corners).collect(),
             min_det: check[0].min_det,
         })
     }

@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 
 use super::text::millimetres;
 use palpate::fem::SMALL_STRAIN_LIMIT;
-use palpate::force_map::{Certificate, Discretization, ForceMap};
+use palpate::force_map::{Certificate, ForceMap};
 
 /// The certificate of a computed map; in JSON without what it says of every pose.
 ///
@@ -30,8 +30,7 @@ impl Quality {
     /// The largest half bands of the discretisation around a normal and a lateral force, N, where they were estimated.
     pub fn bands(&self) -> [Option<f64>; 2] {
         let discretization = self.certificate.discretization.as_ref();
-        let bands = discretization.map(Discretization::largest);
-        [0, 1].map(|channel| bands.map(|bands| bands[channel]))
+        discretization.map_or([None; 2], |of| of.largest().map(Some))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The bridge: rates predicted from the forces, against the subjects' answers to FEM playback.
 
 use super::people::{DEPTH, SHARE, bar, points, share_panel};
-use super::plan::{Plan, Words};
+use super::plan::{Plan, Words, over};
 use crate::psychophysics::bridge::{Channel, ConditionBridge, ConventionFit, Offset, Statistic};
 use crate::report::text::millimetres;
 use crate::report::{Findings, Topic, paper};
@@ -24,7 +24,7 @@ pub fn figure(found: &Findings) -> Option<Plan> {
         let lines = lines(condition, &depths, offset);
         share_panel(&format!("{SHARE}, {words}"), &depths, 270, lines)
     };
-    let mut panels = vec![
+    let mut panels = [
         panel(Offset::Kept, "with the mean of the force"),
         panel(Offset::Removed, "without its mean over the sweep"),
     ];
@@ -34,7 +34,12 @@ pub fn figure(found: &Findings) -> Option<Plan> {
         sample(INK, "rejected").dashed(true),
     ];
     let words = words(condition, bridge.probe_depth_m);
-    Some(Plan::new("bridge", Topic::People, words, panels, DEPTH))
+    Some(Plan::new(
+        "bridge",
+        Topic::People,
+        words,
+        over(DEPTH, panels),
+    ))
 }
 
 fn words(condition: &ConditionBridge, probe_depth: f64) -> Words {
@@ -42,8 +47,8 @@ fn words(condition: &ConditionBridge, probe_depth: f64) -> Words {
         [] => "none".into(),
         names => names.join("; "),
     };
-    Words::new(
-        "Rates predicted from the forces, and the answers to FEM playback",
+    [
+        "Rates predicted from the forces, and the answers to FEM playback".into(),
         format!(
             "The paper has no such figure: it computed forces and counted answers, but did not predict the one from the other. Each \
              line takes one part of the force at probe depth {} mm as what the subjects used, with a noise level for each of them (and \
@@ -56,7 +61,7 @@ fn words(condition: &ConditionBridge, probe_depth: f64) -> Words {
             "Two line charts of predicted right answers against the depth of the inclusion, one line for each convention, with the \
              observed shares as dots. Not rejected: {compatible}."
         ),
-    )
+    ]
 }
 
 /// Predictions of the conventions with one treatment of the mean, and what was observed.

@@ -1,8 +1,8 @@
 //! Figure 5 for every phantom, Figure 7 for measured maps, and the signals at one depth.
 
 use super::bands::band_ends;
-use super::plan::{Plan, Words};
-use crate::report::maps::incomparable;
+use super::plan::{Plan, Words, over};
+use crate::report::maps::signal;
 use crate::report::text::{fixed, joined, millimetres, name_of_map, shortened};
 use crate::report::{Findings, MapFindings, Run, Topic, paper};
 use crate::study::Kind;
@@ -18,75 +18,74 @@ use palpate::refusal::Refusal;
 ///
 /// Implements: REP-031.
 pub fn figures(run: &Run, found: &Findings) -> Result<Vec<Plan>, Refusal> {
-    let mut plans = Vec::new();
-    let mut add = |id: &str, map: Option<&ForceMap>, words: Words, panels: [Panel; 2]| {
-        let x_name = "Lateral position of the probe x (mm)";
-        plans.push(Plan {
+    let plan = |id, map: Option<&ForceMap>, words, panels: [Panel; 2]| {
+        let picture = over("Lateral position of the probe x (mm)", panels);
+        Plan {
             name: map.map(name_of_map).unwrap_or_default(),
-            ..Plan::new(id, Topic::Forces, words, panels.into(), x_name)
-        });
+            ..Plan::new(id, Topic::Forces, words, picture)
+        }
     };
+    let mut plans = Vec::new();
     if !run.maps.is_empty() {
-        add("signals", None, signal_words(found), signals(run, found)?);
+        let panels = signals(run, found)?;
+        plans.push(plan("signals", None, signal_words(found), panels));
     }
-    for map in [&run.reference].into_iter().chain(&run.maps) {
+    let depth = run.study.as_ref().map(|study| study.plan.probe_depth);
+    for map in run.reference_and_maps() {
         let bands = bands(run, map);
-        let depth = run.study.as_ref().map(|study| study.plan.probe_depth);
         let words = force_words(map, depth.filter(|_| !bands[0].is_empty()));
-        add(
-            "figure-5",
-            Some(map),
-            words,
-            force_curves(map.table(), bands),
-        );
+        let panels = forces(map.table(), bands);
+        plans.push(plan("figure-5", Some(map), words, panels));
     }
     for map in &run.measured {
-        let panels = force_curves(map.table(), Default::default());
-        add("figure-7", Some(map), measured_words(map), panels);
+        let panels = forces(map.table(), Default::default());
+        plans.push(plan("figure-7", Some(map), measured_words(map), panels));
     }
     Ok(plans)
 }
 
-/// Lateral positions of the plot's ends, mm. One position alone gets some room.
-fn lateral_range(laterals: &[f64]) -> [f64; 2] {
-    match laterals {
+/// A panel of the normal force, or of its signal, over one of the lateral one. One position alone gets some room.
+fn panels(laterals: &[f64], headings: [&str; 2], [normal, lateral]: [Vec<Line>; 2]) -> [Panel; 2] {
+    let x = match laterals {
         [first, .., last] => [first * 1e3, last * 1e3],
         [only] => [only * 1e3 - 1.0, only * 1e3 + 1.0],
         [] => [-1.0, 1.0],
-    }
+    };
+    let panel = |heading, height, lines: Vec<Line>| {
+        let points = lines.iter().flat_map(|line| &line.points);
+        let y = round_range(points.map(|point| point.1));
+        Panel::new(heading, [x, y], height, lines)
+    };
+    [
+        panel(headings[0], 230, normal),
+        panel(headings[1], 200, lateral),
+    ]
 }
 
-fn panel(heading: &str, laterals: &[f64], height: i32, lines: Vec<Line>) -> Panel {
-    let points = lines.iter().flat_map(|line| &line.points);
-    let y = round_range(points.map(|point| point.1));
-    Panel::new(heading, [lateral_range(laterals), y], height, lines)
-}
-
+/// Positions (m) in mm, and forces, as points.
 fn points(laterals: &[f64], forces: &[f64]) -> Vec<(f64, f64)> {
-    laterals
-        .iter()
-        .zip(forces)
-        .map(|(x, force)| (x * 1e3, *force))
-        .collect()
+    let laterals = laterals.iter().map(|x| x * 1e3);
+    laterals.zip(forces.iter().copied()).collect()
 }
 
 /// Figure 5: both forces of a map, one curve for each depth of the probe, and the ends of a band of the normal and of the lateral
 /// force.
-fn force_curves(table: &ForceTable, [normal, lateral]: [Vec<Line>; 2]) -> [Panel; 2] {
-    let panel = |heading: &str, matrix: &Matrix, height, band: Vec<Line>| {
-        let count = table.depths().len();
-        let rows = table.depths().iter().zip(matrix.rows()).enumerate();
+fn forces(table: &ForceTable, [normal, lateral]: [Vec<Line>; 2]) -> [Panel; 2] {
+    let (depths, laterals) = (table.depths(), table.laterals());
+    let curves = |matrix: &Matrix, band: Vec<Line>| {
+        let rows = depths.iter().zip(matrix.rows()).enumerate();
         let curves = rows.map(|(row, (depth, forces))| {
-            Line::new(ramp(row, count), points(table.laterals(), forces))
-                .named(format!("{} mm", millimetres(*depth)))
+            let curve = Line::new(ramp(row, depths.len()), points(laterals, forces));
+            curve.named(format!("{} mm", millimetres(depth)))
         });
-        let lines = curves.chain(band).collect();
-        panel(heading, table.laterals(), height, lines)
+        curves.chain(band).collect()
     };
-    [
-        panel("Normal force (N)", &table.forces().normal, 230, normal),
-        panel("Lateral force (N)", &table.forces().lateral, 200, lateral),
-    ]
+    let forces = table.forces();
+    let curves = [
+        curves(&forces.normal, normal),
+        curves(&forces.lateral, lateral),
+    ];
+    panels(laterals, ["Normal force (N)", "Lateral force (N)"], curves)
 }
 
 /// The ends of the bands of the normal and of the lateral force that a study has for the phantom of a map.
@@ -96,15 +95,15 @@ fn bands(run: &Run, map: &ForceMap) -> [Vec<Line>; 2] {
     let Some((study, phantom)) = run.study.as_ref().zip(map.phantom()) else {
         return Default::default();
     };
-    let ends = |kind: fn(f64) -> Kind| {
-        let at = |&x: &f64| Some((1e3 * x, study.of(&phantom.name(), &kind(x))?.band?));
+    let kinds: [fn(f64) -> Kind; 2] = [
+        |lateral_m| Kind::NormalForceN { lateral_m },
+        |lateral_m| Kind::LateralForceN { lateral_m },
+    ];
+    kinds.map(|kind| {
+        let at = |&x: &f64| Some((1e3 * x, study.of(&phantom.name, &kind(x))?.band?));
         let bands: Vec<_> = study.plan.laterals.iter().filter_map(at).collect();
         band_ends("", &bands, 1.0)
-    };
-    [
-        ends(|lateral_m| Kind::NormalForceN { lateral_m }),
-        ends(|lateral_m| Kind::LateralForceN { lateral_m }),
-    ]
+    })
 }
 
 /// How a map is called in a figure: the inclusion's depth for the paper's phantoms, or else its name.
@@ -120,27 +119,17 @@ pub fn label(map: &MapFindings) -> String {
 /// # Errors
 /// If a map does not fit the reference.
 fn signals(run: &Run, found: &Findings) -> Result<[Panel; 2], Refusal> {
-    let (mut normal, mut lateral) = (Vec::new(), Vec::new());
-    for (k, (map, of_map)) in run.maps.iter().zip(&found.maps).enumerate() {
-        let signal = map.signal(&run.reference).map_err(incomparable(map))?;
-        let row = signal.row(found.probe_depth_m);
-        let curve = row.map_err(incomparable(map))?;
-        let line = |forces| {
-            Line::new(
-                PALETTE[k % PALETTE.len()],
-                points(signal.laterals(), forces),
-            )
-            .dashed((k / PALETTE.len()) % 2 == 1)
-            .named(label(of_map))
-        };
-        normal.push(line(curve.normal));
-        lateral.push(line(curve.lateral));
-    }
     let laterals = run.reference.table().laterals();
-    Ok([
-        panel("Normal signal F₁ − F₀ (N)", laterals, 230, normal),
-        panel("Lateral signal F₁ − F₀ (N)", laterals, 200, lateral),
-    ])
+    let mut lines = [Vec::new(), Vec::new()];
+    for (k, (map, of_map)) in run.maps.iter().zip(&found.maps).enumerate() {
+        let signal = signal(run, map, found.probe_depth_m)?;
+        for (lines, forces) in lines.iter_mut().zip([signal.normal, signal.lateral]) {
+            let line = Line::nth(k, &PALETTE, points(laterals, &forces));
+            lines.push(line.named(label(of_map)));
+        }
+    }
+    let headings = ["Normal signal F₁ − F₀ (N)", "Lateral signal F₁ − F₀ (N)"];
+    Ok(panels(laterals, headings, lines))
 }
 
 fn signal_words(found: &Findings) -> Words {
@@ -149,7 +138,7 @@ fn signal_words(found: &Findings) -> Words {
         let [normal, lateral] = [map.peak_normal, map.peak_lateral].map(|of| fixed(of.force_n, 3));
         format!("{}: {normal} N normal, {lateral} N lateral", label(map))
     });
-    Words::new(
+    [
         format!("Signals F₁ − F₀ at depth {depth} mm"),
         format!(
             "What inclusions add to the force on the probe as it sweeps over the gel at depth {depth} mm: the template of the matched \
@@ -160,7 +149,7 @@ fn signal_words(found: &Findings) -> Words {
             "Two line charts of force against lateral position, one curve for each phantom. Peaks: {}.",
             joined(peaks, "; ")
         ),
-    )
+    ]
 }
 
 /// The words of Figure 5, with the depth of its bands, m, if there are any.
@@ -192,7 +181,7 @@ fn force_words(map: &ForceMap, depth: Option<f64>) -> Words {
     let bands = bands.unwrap_or_default();
     let forces = map.table().forces().normal.values().iter();
     let largest = forces.copied().fold(0.0, f64::max);
-    Words::new(
+    [
         format!(
             "Figure 5. Forces, phantom “{}”: {inclusions}",
             name_of_map(map)
@@ -206,7 +195,7 @@ fn force_words(map: &ForceMap, depth: Option<f64>) -> Words {
             map.table().depths().len(),
             fixed(largest, 3)
         ),
-    )
+    ]
 }
 
 fn measured_words(map: &ForceMap) -> Words {
@@ -216,7 +205,7 @@ fn measured_words(map: &ForceMap) -> Words {
         }
         _ => String::new(),
     };
-    Words::new(
+    [
         format!("Figure 7. Measured forces, “{}”", name_of_map(map)),
         format!(
             "A measured map that this run was given, at its own poses: force on the whole probe against its lateral position, one \
@@ -227,5 +216,5 @@ fn measured_words(map: &ForceMap) -> Words {
             "Two line charts of measured normal and lateral force against lateral position, {} curves each.",
             map.table().depths().len()
         ),
-    )
+    ]
 }

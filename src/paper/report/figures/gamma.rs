@@ -1,7 +1,7 @@
 //! γ of a sweep beside what may be unknown of it.
 
 use super::people::DEPTH;
-use super::plan::{Plan, Words};
+use super::plan::{Plan, Words, over};
 use crate::report::inputs;
 use crate::report::text::{extremes, fixed, joined, millimetres, percent, trimmed};
 use crate::report::{Findings, GammaBeside, MapFindings, Run, Topic};
@@ -13,24 +13,16 @@ use palpate::chart::{Line, Panel, round_range};
 ///
 /// Implements: REP-030.
 pub fn figure(run: &Run, found: &Findings) -> Option<Plan> {
-    let mut maps: Vec<_> = found
-        .maps
-        .iter()
-        .filter_map(|map| Some((1e3 * map.inclusion_depth_m?, map)))
-        .collect();
+    let maps = found.maps.iter();
+    let maps = maps.filter_map(|map| Some((1e3 * map.inclusion_depth_m?, map)));
+    let mut maps: Vec<_> = maps.collect();
     maps.sort_by(|a, b| a.0.total_cmp(&b.0));
     let beside = &maps.first()?.1.gamma_left.beside;
-    let of_map = |(depth, map): &(f64, &MapFindings)| bar(run, *depth, map);
-    let bars: Vec<_> = maps.iter().filter_map(of_map).collect();
+    let bars: Vec<_> = maps.iter().filter_map(|of| bar(run, of.0, of.1)).collect();
     let words = words(run, found, &maps, !bars.is_empty());
     let panel = panel(&maps, beside, found.required_gamma, bars);
-    Some(Plan::new(
-        "gamma",
-        Topic::Detection,
-        words,
-        vec![panel],
-        DEPTH,
-    ))
+    let picture = over(DEPTH, [panel]);
+    Some(Plan::new("gamma", Topic::Detection, words, picture))
 }
 
 /// The band of γ that a study has for a map, upright beside its depth, mm.
@@ -84,20 +76,15 @@ fn words(run: &Run, found: &Findings, maps: &Maps<'_>, has_bars: bool) -> Words 
         format!(": with offset, drift and gain unknown, the defaults of palpate detect, {least} to {most} of it is left")
     });
     let left = left.unwrap_or_default();
-    let bars = if has_bars {
-        " Upright bars hold γ with all but the noise known in 95 % of the draws of the uncertain inputs."
-    } else {
-        ""
-    };
-    let beside = maps
-        .iter()
-        .take(1)
-        .flat_map(|(_, map)| &map.gamma_left.beside);
+    let bars = " Upright bars hold γ with all but the noise known in 95 % of the draws of the uncertain inputs.";
+    let bars = if has_bars { bars } else { "" };
+    let first = maps.iter().take(1);
+    let beside = first.flat_map(|(_, map)| &map.gamma_left.beside);
     let gammas = maps.iter().map(|(depth, map)| {
         let gammas = map.gamma_left.beside.iter().map(|of| fixed(of.gamma, 2));
         format!("{} at {} mm", joined(gammas, ", "), trimmed(*depth, 6))
     });
-    Words::new(
+    [
         format!(
             "Signal-to-noise ratio γ of a sweep at depth {} mm, by what is unknown",
             millimetres(found.probe_depth_m)
@@ -114,5 +101,5 @@ fn words(run: &Run, found: &Findings, maps: &Maps<'_>, has_bars: bool) -> Words 
             joined(gammas, "; "),
             fixed(found.required_gamma, 2)
         ),
-    )
+    ]
 }

@@ -1,6 +1,6 @@
 //! Which input counts: tornado charts of a study.
 
-use super::plan::{Plan, Words};
+use super::plan::{Plan, Words, over};
 use crate::report::text::{fixed, joined, shortened};
 use crate::report::{Run, Topic};
 use crate::study::{Kind, QuantityResult, StudyResults};
@@ -25,14 +25,9 @@ pub fn figure(run: &Run) -> Option<Plan> {
     };
     let with_bars = |of| (of, bars(study, of));
     let drawn: Vec<_> = study.listed().filter(is_drawn).map(with_bars).collect();
-    let panels = drawn.iter().map(|(of, bars)| panel(of, bars)).collect();
-    Some(Plan::new(
-        "inputs",
-        Topic::Inputs,
-        words(&drawn),
-        panels,
-        CHANGE,
-    ))
+    let panels = drawn.iter().map(|(of, bars)| panel(of, bars));
+    let picture = over(CHANGE, panels.collect::<Vec<_>>());
+    Some(Plan::new("inputs", Topic::Inputs, words(&drawn), picture))
 }
 
 /// The inputs with the change that each makes to a quantity, %.
@@ -44,15 +39,13 @@ fn words(drawn: &[(&QuantityResult, Bars<'_>)]) -> Words {
         let named = longest.map(|(name, change)| format!("{name} {} %", fixed(*change, 1)));
         format!("{}: {}", of.quantity, joined(named, ", "))
     });
-    Words::new(
-        "Which input counts",
+    [
+        "Which input counts".into(),
         "How far each number moves, in per cent, when one input goes from its lower to its upper quartile and all others stay at their \
-         medians: blue up, vermilion down. The paper has no such figure.",
-        format!(
-            "Bar charts, the longest bar on top. {}.",
-            joined(largest, "; ")
-        ),
-    )
+         medians: blue up, vermilion down. The paper has no such figure."
+            .into(),
+        format!("Bar charts, the longest bar on top. {}.", joined(largest, "; ")),
+    ]
 }
 
 /// The bars of a quantity, the shortest first.
@@ -73,21 +66,15 @@ fn panel(of: &QuantityResult, bars: &[(&str, f64)]) -> Panel {
     let line = |(rank, &(name, change)): (usize, &(&str, f64))| {
         let height = rank as f64 + 0.5;
         let colour = if change < 0.0 { VERMILION } else { BLUE };
-        let ends = vec![(0.0, height), (change, height)];
-        Line::new(colour, ends)
-            .wide(9.0)
-            .named(shortened(name, LETTERS))
+        let bar = Line::new(colour, vec![(0.0, height), (change, height)]);
+        bar.wide(9.0).named(shortened(name, LETTERS))
     };
     let lines: Vec<_> = bars.iter().enumerate().map(line).collect();
     let x = round_range(bars.iter().map(|bar| bar.1));
     let count = bars.len().max(1);
+    let (y, height) = ([0.0, count as f64], ROW * count as i32);
     Panel {
         kind: PanelKind::Ranked,
-        ..Panel::new(
-            of.quantity.to_string(),
-            [x, [0.0, count as f64]],
-            ROW * count as i32,
-            lines,
-        )
+        ..Panel::new(of.quantity.to_string(), [x, y], height, lines)
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use plotters::style::RGBColor;
 
-use super::plan::{Plan, Words};
+use super::plan::{Plan, Words, over};
 use super::setup::{INCLUSION, PROBE, layer_key, probe, tint};
 use crate::report::text::{fixed, millimetres};
 use crate::report::{DeformedMesh, Topic, paper};
@@ -28,16 +28,16 @@ pub fn figure(mesh: &DeformedMesh) -> Plan {
         areas,
     });
     let mut panel = Panel::to_scale(cells.collect(), vec![probe(phantom, mesh.pose)]);
-    panel.key = vec![Line::area(PROBE, Vec::new()).named("probe")];
+    let sample = |colour, name: &str| Line::area(colour, Vec::new()).named(name);
+    panel.key = vec![sample(PROBE, "probe")];
     panel.key.extend(layer_key(phantom, |_| String::new()));
-    let inclusion = |name: &str| Line::area(INCLUSION, Vec::new()).named(name);
-    panel.key.extend(match phantom.inclusions().len() {
+    panel.key.extend(match phantom.inclusions.len() {
         0 => None,
-        1 => Some(inclusion("inclusion")),
-        _ => Some(inclusion("inclusions")),
+        1 => Some(sample(INCLUSION, "inclusion")),
+        _ => Some(sample(INCLUSION, "inclusions")),
     });
-    let x_name = "Lateral position x (mm)";
-    Plan::new("figure-6", Topic::Setup, words(mesh), vec![panel], x_name)
+    let picture = over("Lateral position x (mm)", [panel]);
+    Plan::new("figure-6", Topic::Setup, words(mesh), picture)
 }
 
 fn words(mesh: &DeformedMesh) -> Words {
@@ -56,7 +56,7 @@ fn words(mesh: &DeformedMesh) -> Words {
         0 => String::new(),
         count => format!(" with {}", counted(count, "inclusion")),
     };
-    Words::new(
+    [
         format!(
             "Figure 6. Deformed mesh, phantom “{}”, probe at depth {} mm, x = {} mm",
             phantom.name(),
@@ -74,5 +74,5 @@ fn words(mesh: &DeformedMesh) -> Words {
             mesh.elements.len(),
             counted(phantom.layers().len(), "layer")
         ),
-    )
+    ]
 }

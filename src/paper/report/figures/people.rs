@@ -3,7 +3,7 @@
 use plotters::style::RGBColor;
 
 use super::bands::band_ends;
-use super::plan::{Picture, Plan, Words};
+use super::plan::{Picture, Plan, Words, over};
 use crate::psychophysics::{
     Analysis, Bounds, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis,
 };
@@ -56,66 +56,49 @@ fn depths(condition: &ConditionAnalysis) -> Vec<f64> {
 ///
 /// Implements: REP-030.
 pub fn figures(run: &Run, people: &Analysis) -> Vec<Plan> {
-    let mut plans = vec![Plan {
-        picture: Picture::Finished(include_str!("figure-8.svg"), 436),
-        ..Plan::new(
-            "figure-8",
-            Topic::People,
-            experiment_words(),
-            Vec::new(),
-            "",
-        )
-    }];
+    let plan = |number, words, picture| {
+        Plan::new(format!("figure-{number}"), Topic::People, words, picture)
+    };
+    let experiments = Picture::Finished(include_str!("figure-8.svg"), 436);
+    let mut plans = vec![plan(8, EXPERIMENTS.map(Into::into), experiments)];
     for (at, (of, number)) in people.conditions.iter().zip(10..13).enumerate() {
         let predicted = match at {
             paper::FEM_PLAYBACK => predicted(run, of),
             _ => Vec::new(),
         };
         let words = subject_words(number, of, !predicted.is_empty());
-        let panels = vec![subjects(of, predicted)];
-        plans.push(Plan::new(
-            &format!("figure-{number}"),
-            Topic::People,
-            words,
-            panels,
-            DEPTH,
-        ));
+        plans.push(plan(number, words, over(DEPTH, [subjects(of, predicted)])));
     }
-    let panels = vec![comparison(&people.conditions)];
-    let words = comparison_words(people);
-    plans.push(Plan::new("figure-13", Topic::People, words, panels, DEPTH));
+    let picture = over(DEPTH, [comparison(&people.conditions)]);
+    plans.push(plan(13, comparison_words(people), picture));
     plans
 }
 
-fn experiment_words() -> Words {
-    Words::new(
-        "Figure 8. The three experiments",
-        "How the force came to the ten subjects, drawn after §3.2 and §4; below each chain the sources of noise that Table 2 names for it. \
+/// Title, caption and alternative text of Figure 8.
+const EXPERIMENTS: [&str; 3] = [
+    "Figure 8. The three experiments",
+    "How the force came to the ten subjects, drawn after §3.2 and §4; below each chain the sources of noise that Table 2 names for it. \
          The paper's Figure 8 shows the apparatus. Here the finite elements and the force table are computed again (“palpate run”), a \
          table is played back on a display by “palpate play”, measured forces are read by “palpate import-map”, and “palpate experiment” \
          runs the pairs. The gels, their measurement and the subjects are the paper's alone.",
-        "Three chains of boxes that end at the subject. Direct contact: gel, then a probe on the index finger. FEM data: finite elements, \
+    "Three chains of boxes that end at the subject. Direct contact: gel, then a probe on the index finger. FEM data: finite elements, \
          force table, haptic display. Measured data: gel with a force sensor, force table, haptic display. The subject says which of two \
          samples holds the inclusion.",
-    )
-}
+];
 
 /// The words of Figures 10 to 12.
 fn subject_words(number: u32, of: &ConditionAnalysis, has_bands: bool) -> Words {
     let subjects = of.subjects.len();
     let trials = of.inclusions.first().map_or(0, |of| of.pooled.trials);
     let pairs = trials / (subjects as u64).max(1);
-    let bands = if has_bands {
-        " Between the dashed lines lie 95 % of the shares that the peak of the normal signal predicts, over the draws of the uncertain \
-             inputs."
-    } else {
-        ""
-    };
+    let bands = " Between the dashed lines lie 95 % of the shares that the peak of the normal signal predicts, over the draws of the \
+                 uncertain inputs.";
+    let bands = if has_bands { bands } else { "" };
     let shares = of.inclusions.iter().map(|of| {
         let share = percent(of.pooled.rate);
         format!("{share} at {} mm", millimetres(of.depth_m))
     });
-    Words::new(
+    [
         format!("Figure {number}. Detection rates, {}", of.name),
         format!(
             "Right answers of each of the {subjects} subjects in {pairs} pairs at each depth, from the paper's Table 1, and their mean. \
@@ -127,7 +110,7 @@ fn subject_words(number: u32, of: &ConditionAnalysis, has_bands: bool) -> Words 
              their mean: {}.",
             joined(shares, ", ")
         ),
-    )
+    ]
 }
 
 /// The words of Figure 13.
@@ -142,8 +125,8 @@ fn comparison_words(people: &Analysis) -> Words {
         let shares = shares.map(|of| percent(of.pooled.rate));
         format!("{}: {}", condition.name, joined(shares, ", "))
     });
-    Words::new(
-        "Figure 13. The three experiments with 95 % intervals",
+    [
+        "Figure 13. The three experiments with 95 % intervals".into(),
         format!(
             "Share of right answers, all subjects together, each with three 95 % intervals side by side: the normal approximation p̂ ± 1.96 \
              √(p̂(1 − p̂)/n) over all n answers (thin), the exact interval of Clopper and Pearson over the same answers (dot), and Student's \
@@ -155,28 +138,26 @@ fn comparison_words(people: &Analysis) -> Words {
             "Chart of right answers in per cent at each depth of the inclusion, with intervals. From the shallowest to the deepest, {}.",
             joined(shares, "; ")
         ),
-    )
+    ]
 }
 
 /// Figures 10, 11 and 12: one condition, each subject and the mean.
 fn subjects(condition: &ConditionAnalysis, predicted: Vec<Line>) -> Panel {
     let depths = depths(condition);
-    let colours = &PALETTE[..6];
-    let of_subject = |colour, points| Line::new(colour, points).wide(1.1).dotted(3);
-    let of_mean = |points| Line::new(INK, points).wide(3.2).dotted(5).named("mean");
     let subject = |(k, subject): (usize, &SubjectAnalysis)| {
         let shares = points(&depths, subject.rates.iter().map(|rate| rate.rate));
-        of_subject(colours[k % colours.len()], shares)
-            .dashed((k / colours.len()) % 2 == 1)
-            .named(format!("subject {}", subject.name))
+        let line = Line::nth(k, &PALETTE[..6], shares).wide(1.1).dotted(3);
+        line.named(format!("subject {}", subject.name))
     };
     let mut lines: Vec<_> = condition.subjects.iter().enumerate().map(subject).collect();
     let pooled = condition.inclusions.iter().map(|of| of.pooled.rate);
-    lines.push(of_mean(points(&depths, pooled)));
+    let mean = Line::new(INK, points(&depths, pooled));
+    lines.push(mean.wide(3.2).dotted(5).named("mean"));
     lines.extend(predicted);
-    let mut panel = share_panel(SHARE, &depths, 300, lines);
-    panel.key = vec![Line::new(GREY, Vec::new()).dashed(true).named("chance")];
-    panel
+    Panel {
+        key: vec![Line::new(GREY, Vec::new()).dashed(true).named("chance")],
+        ..share_panel(SHARE, &depths, 300, lines)
+    }
 }
 
 /// The ends of the bands that a study has for the share that the peak of the normal signal predicts.
@@ -212,8 +193,10 @@ fn comparison(conditions: &[ConditionAnalysis]) -> Panel {
         sample(6.0, "by subject"),
     ]);
     let depths = conditions.first().map_or(Vec::new(), depths);
-    let panel = share_panel(SHARE, &depths, 330, lines);
-    Panel { key, ..panel }
+    Panel {
+        key,
+        ..share_panel(SHARE, &depths, 330, lines)
+    }
 }
 
 /// The three intervals of one condition at one inclusion, about `x`.

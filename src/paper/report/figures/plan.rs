@@ -5,6 +5,9 @@ use crate::report::{Figure, Topic};
 use palpate::chart::{Panel, chart, with_head};
 use palpate::refusal::Refusal;
 
+/// Title, caption and alternative text, as of [`Figure`].
+pub type Words = [String; 3];
+
 /// A figure before it is drawn.
 pub struct Plan {
     /// What its file name begins with,
@@ -19,49 +22,23 @@ pub struct Plan {
     pub picture: Picture,
 }
 
-/// The words around a picture.
-pub struct Words {
-    /// As of [`Figure`].
-    pub title: String,
-    /// As of [`Figure`].
-    pub caption: String,
-    /// As of [`Figure`].
-    pub alt: String,
-}
-
 /// What is drawn.
 pub enum Picture {
-    /// Panels below one another over one x axis with a name.
-    Panels(Vec<Panel>, String),
+    /// Panels below one another.
+    Panels(Vec<Panel>),
     /// A finished SVG document, and its height, pixels.
     Finished(&'static str, i32),
 }
 
-impl Words {
-    /// The words around a picture.
-    pub fn new(
-        title: impl Into<String>,
-        caption: impl Into<String>,
-        alt: impl Into<String>,
-    ) -> Words {
-        let (title, caption, alt) = (title.into(), caption.into(), alt.into());
-        Words {
-            title,
-            caption,
-            alt,
-        }
-    }
-}
-
 impl Plan {
-    /// A figure of `panels` below one another over an x axis with a name.
-    pub fn new(id: &str, topic: Topic, words: Words, panels: Vec<Panel>, x_name: &str) -> Plan {
+    /// A figure with one file name whatever the run holds.
+    pub fn new(id: impl Into<String>, topic: Topic, words: Words, picture: Picture) -> Plan {
         Plan {
             id: id.into(),
             name: String::new(),
             topic,
             words,
-            picture: Picture::Panels(panels, x_name.into()),
+            picture,
         }
     }
 
@@ -71,25 +48,28 @@ impl Plan {
     /// Drawing fails.
     pub fn draw(self, names: &mut FileNames) -> Result<Figure, Refusal> {
         let file_name = names.unique(&self.id, &self.name, "svg");
-        let Words {
-            title,
-            caption,
-            alt,
-        } = self.words;
-        let drawn = match self.picture {
-            Picture::Panels(panels, x_name) => chart(&panels, &x_name),
-            Picture::Finished(svg, height) => Ok((svg.into(), height)),
+        let [title, caption, alt] = self.words;
+        let head = [&*file_name, &title, &alt];
+        let svg = match &self.picture {
+            Picture::Panels(panels) => chart(panels, head)?,
+            Picture::Finished(svg, height) => with_head(svg, *height, head)?,
         };
-        let svg = drawn.and_then(|drawn| with_head(drawn, &file_name, &title, &alt));
-        let svg = svg.map_err(Refusal::because(format!("figure {title:?}")))?;
-        let topic = self.topic;
         Ok(Figure {
             file_name,
-            topic,
+            topic: self.topic,
             title,
             caption,
             alt,
             svg,
         })
     }
+}
+
+/// `panels` below one another over one x axis.
+pub fn over(x_name: &str, panels: impl Into<Vec<Panel>>) -> Picture {
+    let mut panels = panels.into();
+    if let Some(last) = panels.last_mut() {
+        last.x_name = x_name.into();
+    }
+    Picture::Panels(panels)
 }

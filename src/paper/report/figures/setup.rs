@@ -4,12 +4,13 @@ use core::iter::once;
 
 use plotters::style::{RGBColor, WHITE};
 
-use super::plan::{Plan, Words};
+use super::plan::{Plan, Words, over};
 use crate::report::text::{joined, millimetres, shortened, trimmed};
 use crate::report::{Run, Topic, paper};
 use palpate::chart::{CHORDS, Line, Panel, to_mm};
 use palpate::fem::Pose;
 use palpate::fem::mesh::Region;
+use palpate::force_map::ForceMap;
 use palpate::phantom::{Inclusion, Material, Phantom, Shape, Support};
 
 /// Part of the well's width that walls and floor are drawn thick. Their real thickness is not known and plays no part.
@@ -74,12 +75,11 @@ pub fn layer_key(phantom: &Phantom, words: impl Fn(usize) -> String) -> impl Ite
 ///
 /// Implements: REP-030.
 pub fn figures(run: &Run) -> Vec<Plan> {
-    let maps = once(&run.reference).chain(&run.maps);
-    let all = maps.filter_map(|map| map.phantom());
-    let (full, plain): (Vec<_>, Vec<_>) = all.partition(|of| !of.inclusions().is_empty());
+    let all = run.reference_and_maps().filter_map(ForceMap::phantom);
+    let (full, plain): (Vec<_>, Vec<_>) = all.partition(|of| !of.inclusions.is_empty());
     let mut drawn: Vec<&Phantom> = Vec::new();
     for phantom in once(&run.deformed.phantom).chain(full).chain(plain) {
-        if !drawn.iter().any(|other| alike(other, phantom)) {
+        if !drawn.iter().any(|other| empty(other) == empty(phantom)) {
             drawn.push(phantom);
         }
     }
@@ -87,41 +87,33 @@ pub fn figures(run: &Run) -> Vec<Plan> {
         let name = if k == 0 { "" } else { &*phantom.name() };
         let width = millimetres(phantom.well().width);
         let x_name = format!("Lateral position x (mm); the well is {width} mm wide");
-        let panels = vec![panel(phantom)];
+        let panel = panel(phantom);
+        let words = words(phantom, name, &panel.key);
+        let picture = over(&x_name, [panel]);
         Plan {
             name: name.into(),
-            ..Plan::new(
-                "figure-1",
-                Topic::Setup,
-                words(phantom, name),
-                panels,
-                &x_name,
-            )
+            ..Plan::new("figure-1", Topic::Setup, words, picture)
         }
     };
     drawn.into_iter().enumerate().map(figure).collect()
 }
 
-/// Whether two phantoms differ in names and inclusions alone.
-fn alike(a: &Phantom, b: &Phantom) -> bool {
-    let [a, b] = [a, b].map(|phantom| paper::unnamed(&phantom.without_inclusions()));
-    a == b
+/// A phantom without names and inclusions.
+fn empty(phantom: &Phantom) -> PhantomParts {
+    paper::unnamed(&phantom.without_inclusions())
 }
 
 /// The phantom and the probe to scale.
 fn panel(phantom: &Phantom) -> Panel {
-    let mut lines = well(phantom);
-    let outline = |of: &Inclusion| to_mm(of.outline().chords(CHORDS));
-    let inclusions = phantom.inclusions().iter();
-    lines.extend(inclusions.map(|of| Line::area(INCLUSION, outline(of))));
-    let pose = Pose {
-        depth: 0.0,
-        lateral: 0.0,
-    };
-    lines.push(probe(phantom, pose));
+    let mut areas = well(phantom);
+    let inclusions = phantom.inclusions.iter();
+    let corners = inclusions.map(|of| to_mm(of.outline().chords(CHORDS)));
+    areas.extend(corners.map(|corners| Line::area(INCLUSION, corners)));
+    let (depth, lateral) = (0.0, 0.0);
+    areas.push(probe(phantom, Pose { depth, lateral }));
     Panel {
         key: key(phantom),
-        ..Panel::to_scale(Vec::new(), lines)
+        ..Panel::to_scale(Vec::new(), areas)
     }
 }
 
@@ -158,12 +150,10 @@ fn key(phantom: &Phantom) -> Vec<Line> {
         millimetres(2.0 * phantom.probe().radius),
         millimetres(phantom.probe().length)
     );
-    let thickness = |k: usize| format!(": {} mm", millimetres(phantom.layers()[k].thickness));
-    let supports = match (phantom.well().walls, phantom.well().floor) {
-        (Support::Free, Support::Free) => WHITE,
-        _ => WALLS,
-    };
-    let inclusions = phantom.inclusions().iter();
+    let thickness = |k: usize| format!(": {} mm", millimetres(phantom.layers[k].thickness));
+    let is_free = [phantom.well.walls, phantom.well.floor] == [Support::Free; 2];
+    let supports = if is_free { WHITE } else { WALLS };
+    let inclusions = phantom.inclusions.iter();
     let inclusions = first(inclusions.map(|of| format!("inclusion: {}", place(of))));
     let mut key = vec![sample(PROBE, probe)];
     key.extend(layer_key(phantom, thickness));
@@ -191,16 +181,13 @@ fn place(inclusion: &Inclusion) -> String {
     let [left, right, bottom, top] = inclusion.extent();
     let by = |a, b| format!("{} × {} mm", millimetres(a), millimetres(b));
     let size = match &inclusion.shape {
-        Shape::Disc { diameter } => format!("ø {} mm", millimetres(*diameter)),
+        Shape::Disc { diameter } => format!("ø {} mm", millimetres(diameter)),
         Shape::Ellipse {
             width,
             height,
             angle_deg,
-        } => match angle_deg {
-            0.0 => by(*width, *height),
-            _ => format!("{}, {}°", by(*width, *height), trimmed(*angle_deg, 3)),
-        },
-        Shape::Polygon { .. } => by(right - left, top - bottom),
+        } if *angle_deg != 0.0 => format!("{}, {}°", by(*width, *height), trimmed(angle_deg, 3)),
+        Shape::Ellipse { .. } | Shape::Polygon { .. } => by(right - left, top - bottom),
     };
     let aside = match millimetres(0.5 * (left + right)) {
         x if x == "0" => String::new(),
@@ -216,26 +203,17 @@ fn first(items: impl ExactSizeIterator<Item = String>) -> Vec<String> {
     items.take(MOST).chain(more).collect()
 }
 
-fn words(phantom: &Phantom, name: &str) -> Words {
+fn words(phantom: &Phantom, name: &str, key: &[Line]) -> Words {
     let material = |name: &str, of: &Material| {
         let [modulus, ratio] = [of.youngs_modulus / 1e3, of.poisson_ratio];
         let [modulus, ratio] = [trimmed(modulus, 3), trimmed(ratio, 6)];
         format!("{name}: E = {modulus} kPa, ν = {ratio}")
     };
-    let layers = phantom.layers().iter();
-    let thickness =
-        |of: &palpate::phantom::Layer| format!("{}: {} mm", of.name, millimetres(of.thickness));
-    let thicknesses = first(layers.clone().map(thickness)).join(", ");
+    let layers = phantom.layers.iter();
     let layers = first(layers.map(|of| material(&of.name, &of.material)));
-    let inclusions = phantom.inclusions().iter();
-    let places = first(inclusions.clone().map(place)).join("; ");
+    let inclusions = phantom.inclusions.iter();
     let inclusions = first(inclusions.map(|of| material("inclusion", &of.material)));
     let materials = joined(layers.into_iter().chain(inclusions), "; ");
-    let inside = match phantom.inclusions().len() {
-        0 => "It holds no inclusion.".into(),
-        1 => format!("It holds an inclusion: {places}."),
-        count => format!("It holds {count} inclusions: {places}."),
-    };
     let of_paper = match paper::name_of(phantom) {
         Some(_) => {
             " it gives the same sizes in words, but not how thick the wax is, which plays no part. The paper's inclusion is a latex \
@@ -243,12 +221,12 @@ fn words(phantom: &Phantom, name: &str) -> Words {
         }
         None => " this phantom is none of them.",
     };
-    let named = match name {
-        "" => String::new(),
-        name => format!("“{name}” "),
+    let title = match name {
+        "" => "Figure 1. The phantom and the probe".into(),
+        name => format!("Figure 1. The phantom “{name}” and the probe"),
     };
-    Words::new(
-        format!("Figure 1. The phantom {named}and the probe"),
+    [
+        title,
         format!(
             "Cross-section to scale, drawn from the data that the forces are computed from. The depth of an inclusion is that of its \
              top below the outer surface. The probe stands at x = 0 and depth d = 0, which grows downwards. Where walls or floor are \
@@ -256,10 +234,9 @@ fn words(phantom: &Phantom, name: &str) -> Words {
              nothing holds the layers. Materials: {materials}. The paper's Figure 1 is a picture of its gels;{of_paper}"
         ),
         format!(
-            "A well {} mm wide with layers, from the top: {thicknesses}. A half disc of {} mm diameter, the probe, touches them from \
-             above. {inside}",
-            millimetres(phantom.well().width),
-            millimetres(2.0 * phantom.probe().radius)
+            "Cross-section of a well {} mm wide. {}.",
+            millimetres(phantom.well.width),
+            joined(key.iter().map(|part| part.name.clone()), "; ")
         ),
-    )
+    ]
 }

@@ -1,12 +1,10 @@
 //! Figures 2, 3, 4 and 9: what follows from Θ ~ N(∓γ²/2, γ²) alone.
 
-use plotters::style::text_anchor::HPos;
-
-use super::plan::{Picture, Plan, Words};
+use super::plan::{Picture, Plan, over};
 use crate::report::text::{fixed, percent};
 use crate::report::{Topic, paper};
 use palpate::chart::style::{BLUE, GREY, INK, PALETTE, VERMILION};
-use palpate::chart::{Line, Mark, Panel};
+use palpate::chart::{Line, Panel};
 use palpate::detect::{DetectError, gamma_from_two_afc, required_gamma, roc_miss, two_afc};
 use palpate::stats::normal;
 
@@ -20,18 +18,17 @@ fn steps(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
 /// # Errors
 /// Never for the γ that are drawn; the detector's refusal is passed on all the same.
 pub fn figures() -> Result<[Plan; 4], DetectError> {
-    let plan = |id: &str, x_name: &str, panels: Vec<Panel>, [title, caption, alt]: [&str; 3]| {
-        let words = Words::new(title, caption, alt);
-        Plan::new(id, Topic::Detection, words, panels, x_name)
+    let plan = |id: &str, words: [&str; 3], picture| {
+        Plan::new(id, Topic::Detection, words.map(Into::into), picture)
     };
+    let problem = Picture::Finished(include_str!("figure-2.svg"), 560);
+    let alarms = over("False alarms Pr(e | H = 0)", [roc()?]);
+    let pairs = over("Signal-to-noise ratio γ", [pairs()?]);
     Ok([
-        Plan {
-            picture: Picture::Finished(include_str!("figure-2.svg"), 560),
-            ..plan("figure-2", "", Vec::new(), PROBLEM)
-        },
-        plan("figure-3", "Statistic θ", vec![densities()], DENSITIES),
-        plan("figure-4", "False alarms Pr(e | H = 0)", vec![roc()?], ROC),
-        plan("figure-9", "Signal-to-noise ratio γ", vec![pairs()?], PAIRS),
+        plan("figure-2", PROBLEM, problem),
+        plan("figure-3", DENSITIES, over("Statistic θ", [densities()])),
+        plan("figure-4", ROC, alarms),
+        plan("figure-9", PAIRS, pairs),
     ])
 }
 
@@ -71,35 +68,22 @@ const PAIRS: [&str; 3] = [
 
 /// Figure 3: the densities of Θ under both hypotheses.
 fn densities() -> Panel {
-    let (mut lines, mut marks) = (Vec::new(), Vec::new());
+    let mut lines = Vec::new();
     for (gamma, colour) in [1.0, 2.0, 3.0].into_iter().zip(PALETTE) {
-        for sign in [-1.0, 1.0] {
-            let mean = 0.5 * sign * gamma * gamma;
+        let curve = |mean: f64| {
             // Finite for every finite argument.
-            let density =
-                |theta: f64| normal::density((theta - mean) / gamma).unwrap_or(0.0) / gamma;
+            let density = |x: f64| normal::density((x - mean) / gamma).unwrap_or(0.0) / gamma;
             let points = steps(-14.0, 14.0, 140).map(|x| (x, density(x)));
-            lines.push(Line::new(colour, points.collect()).dashed(sign < 0.0));
-            let side = if sign < 0.0 { HPos::Right } else { HPos::Left };
-            let (at, shift) = ((mean, density(mean)), (sign as i32 * 7, -9));
-            marks.push(Mark::new(at, format!("γ = {gamma}"), side, shift));
-        }
+            Line::new(colour, points.collect())
+        };
+        let mean = 0.5 * gamma * gamma;
+        lines.push(curve(-mean).dashed(true));
+        lines.push(curve(mean).named(format!("γ = {gamma}")));
     }
-    marks.push(Mark::new(
-        (-14.0, 0.45),
-        "H = 0 (dashed)",
-        HPos::Left,
-        (10, 16),
-    ));
-    marks.push(Mark::new(
-        (14.0, 0.45),
-        "H = 1 (solid)",
-        HPos::Right,
-        (-10, 16),
-    ));
+    let sample = |name: &str| Line::new(INK, Vec::new()).named(name);
     let heading = "Probability density of the statistic Θ";
     Panel {
-        marks,
+        key: vec![sample("H = 0").dashed(true), sample("H = 1")],
         ..Panel::new(heading, [[-14.0, 14.0], [0.0, 0.45]], 270, lines)
     }
 }
@@ -108,10 +92,13 @@ fn densities() -> Panel {
 fn roc() -> Result<Panel, DetectError> {
     let (alarms, misses) = (paper::MAX_FALSE_ALARM, paper::MAX_MISS);
     let needed = required_gamma(alarms, misses)?;
-    let mut lines = vec![
-        Line::new(GREY, vec![(0.0, misses), (1.0, misses)]).wide(1.0),
-        Line::new(GREY, vec![(alarms, 0.0), (alarms, 1.0)]).wide(1.0),
+    let limits = [
+        [(0.0, misses), (1.0, misses)],
+        [(alarms, 0.0), (alarms, 1.0)],
     ];
+    let mut lines = limits
+        .map(|ends| Line::new(GREY, ends.into()).wide(1.0))
+        .to_vec();
     for (gamma, colour) in [1.0, 2.0, 3.0, needed].into_iter().zip(PALETTE) {
         // Squares of even steps: the curve is steep at both ends.
         let rates = steps(0.0, 1.0, 100).map(|t| t * t * (3.0 - 2.0 * t));
@@ -122,12 +109,8 @@ fn roc() -> Result<Panel, DetectError> {
     }
     let dot = Line::new(INK, vec![(alarms, misses)]).wide(0.0).dotted(5);
     lines.push(dot.named("5 % of each"));
-    Ok(Panel::new(
-        "Misses Pr(e | H = 1)",
-        [[0.0, 1.0]; 2],
-        400,
-        lines,
-    ))
+    let heading = "Misses Pr(e | H = 1)";
+    Ok(Panel::new(heading, [[0.0, 1.0]; 2], 400, lines))
 }
 
 /// Figure 9: right answers in pairs, with the paper's reading of it.
@@ -138,21 +121,16 @@ fn pairs() -> Result<Panel, DetectError> {
     let at_printed = two_afc(printed)?;
     let found = vec![(0.0, counted), (gamma, counted), (gamma, 0.5)];
     let read = vec![(printed, at_printed), (printed, 0.5)];
+    let [found_words, read_words] = [
+        format!("84 % at γ = {}", fixed(gamma, 3)),
+        format!("paper: γ = {printed}, there {}", percent(at_printed)),
+    ];
+    let dashed = |colour, points, words| Line::new(colour, points).dashed(true).named(words);
     let lines = vec![
         Line::new(INK, curve.collect::<Result<_, _>>()?),
-        Line::new(BLUE, found).dashed(true),
-        Line::new(VERMILION, read).dashed(true),
-    ];
-    let true_words = format!("true: γ = {}", fixed(gamma, 3));
-    let printed_words = format!("paper: γ = {printed}, there {}", percent(at_printed));
-    let marks = vec![
-        Mark::new((0.0, counted), "84 %", HPos::Left, (8, -12)),
-        Mark::new((gamma, 0.53), true_words, HPos::Right, (-7, 0)),
-        Mark::new((printed, 0.53), printed_words, HPos::Left, (7, 0)),
+        dashed(BLUE, found, found_words),
+        dashed(VERMILION, read, read_words),
     ];
     let heading = "Probability of choosing the right one of a pair";
-    Ok(Panel {
-        marks,
-        ..Panel::new(heading, [[0.0, 5.0], [0.5, 1.0]], 300, lines)
-    })
+    Ok(Panel::new(heading, [[0.0, 5.0], [0.5, 1.0]], 300, lines))
 }
