@@ -71,9 +71,8 @@ impl Page<'_> {
     fn detected(&self) -> [usize; 2] {
         let count = |gamma: fn(&MapFindings) -> f64| {
             let gammas = self.found.maps.iter().map(gamma);
-            gammas
-                .filter(|gamma| *gamma >= self.found.required_gamma)
-                .count()
+            let is_enough = |gamma: &f64| *gamma >= self.found.required_gamma;
+            gammas.filter(is_enough).count()
         };
         [
             count(|map| map.gamma.both),

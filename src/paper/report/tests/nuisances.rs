@@ -1,11 +1,14 @@
 //! What is left of γ where more is unknown than the noise.
 
+use roxmltree::{Document, Node};
+
 use super::run::*;
 use crate::report::{GammaByChannel, Run};
 use crate::tests::measured;
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix};
 use palpate::phantom::Phantom;
+use palpate_asserts::assert_near;
 
 /// A measured map of the paper's phantom of this name from rows of its lateral and normal force, N, at 2 and 4 mm.
 fn rows<const N: usize>(name: &str, rows: [[[f64; N]; 2]; 2]) -> ForceMap {
@@ -36,12 +39,13 @@ fn crooked() -> Run {
     run(reference, rows("6.6", [shallow, [lateral, normal]]))
 }
 
-fn assert_near(found: impl IntoIterator<Item = f64>, expected: &[f64]) {
+fn assert_all_near(found: impl IntoIterator<Item = f64>, expected: &[f64]) {
     let found: Vec<_> = found.into_iter().collect();
-    let pairs = found.iter().zip(expected);
-    let is_near = pairs.clone().all(|(found, of)| (found - of).abs() < 1e-12);
-    let holds = found.len() == expected.len() && is_near;
-    assert!(holds, "{found:?}, expected {expected:?}");
+    assert_eq!(found.len(), expected.len());
+    found
+        .iter()
+        .zip(expected)
+        .for_each(|(found, of)| assert_near(*found, *of, 1e-12));
 }
 
 fn channels(of: GammaByChannel) -> [f64; 3] {
@@ -55,19 +59,15 @@ fn channels(of: GammaByChannel) -> [f64; 3] {
 fn what_is_unknown_takes_its_part_of_gamma() {
     let Made { found, summary, .. } = made(&crooked());
     let map = &found.maps[0];
-    let expected = [
-        4.3140004636068365,
-        2.5973293976698466,
-        2.407203772014328,
-        2.721356560212778,
-        1.2744200784773339,
-        1.2005233028228997,
-    ];
-    assert_near(map.gamma_left.beside.iter().map(|of| of.gamma), &expected);
-    let nominal = [expected[0], 4.112177038990417, 1.3040705502387515];
-    assert_near(channels(map.gamma), &nominal);
-    let left = [expected[4], 0.6874361098602806, 0.06300848580996608];
-    assert_near(channels(map.gamma_left.by_default), &left);
+    let (known, left) = (4.3140004636068365, 1.2744200784773339);
+    let [offset, drift] = [2.5973293976698466, 2.407203772014328];
+    let [gain, depth] = [2.721356560212778, 1.2005233028228997];
+    let beside = map.gamma_left.beside.iter().map(|of| of.gamma);
+    assert_all_near(beside, &[known, offset, drift, gain, left, depth]);
+    let known = [known, 4.112177038990417, 1.3040705502387515];
+    assert_all_near(channels(map.gamma), &known);
+    let left = [left, 0.6874361098602806, 0.06300848580996608];
+    assert_all_near(channels(map.gamma_left.by_default), &left);
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     let written = &summary["findings"]["maps"][0]["gamma_left"];
     assert_eq!(written["normal"], map.gamma_left.by_default.normal);
@@ -90,9 +90,9 @@ fn gamma_beside_a_level_force_is_that_of_plain_arithmetic() {
     let squares = left.beside.iter().map(|of| of.gamma * of.gamma);
     let [normal, lateral] = [13.5 - 7.2, 2.0 - 0.4];
     let all = normal + lateral;
-    assert_near(squares, &[15.5, normal + 2.0, all, normal + 2.0, all, all]);
+    assert_all_near(squares, &[15.5, normal + 2.0, all, normal + 2.0, all, all]);
     let squares = channels(left.by_default).map(|gamma| gamma * gamma);
-    assert_near(squares, &[all, normal, lateral]);
+    assert_all_near(squares, &[all, normal, lateral]);
 }
 
 // Verifies: REP-003, REP-016.
@@ -104,11 +104,11 @@ fn what_the_unknown_explains_is_no_signal() {
     let stiffer = |by: f64| rows("6.6", [[low.map(|f| by * f), high.map(|f| by * f)]; 2]);
     let stiff = beside(&run(stiffer(1.0), stiffer(1.1)));
     assert!(stiff.beside[2].gamma > 0.1);
-    assert_near(stiff.beside[3..].iter().map(|of| of.gamma), &[0.0; 3]);
+    assert_all_near(stiff.beside[3..].iter().map(|of| of.gamma), &[0.0; 3]);
     assert_eq!(channels(stiff.by_default), [0.0; 3]);
     let one = |force: f64| rows("6.6", [[[0.1], [force]]; 2]);
     let single = beside(&run(one(1.0), one(1.5)));
-    assert_near([single.beside[0].gamma], &[5.0]);
+    assert_all_near([single.beside[0].gamma], &[5.0]);
     assert_eq!(single.by_default.both, 0.0);
     // Maps of one depth do not tell what another adds.
     let phantom = || Phantom::builtin("6.6").ok();
@@ -144,12 +144,11 @@ fn the_page_tells_what_is_left() {
 fn the_figure_shows_every_gamma() {
     let made = made(&paper_run());
     let figure = made.figure("gamma");
-    let dots = figure.svg.split("<circle ").skip(1);
-    let dots = dots.map(|of| {
-        ["cx", "cy"]
-            .map(|name| -> f64 { between(of, &format!("{name}=\""), "\"").parse().unwrap() })
-    });
-    let dots: Vec<_> = dots.collect();
+    let svg = Document::parse(&figure.svg).unwrap();
+    let dots = svg.descendants().filter(|node| node.has_tag_name("circle"));
+    let place =
+        |dot: Node| ["cx", "cy"].map(|name| dot.attribute(name).unwrap().parse::<f64>().unwrap());
+    let dots: Vec<_> = dots.map(place).collect();
     // Then one for each line in the key.
     assert_eq!(dots.len(), 6 * 4 + 6);
     let maps = &made.found.maps;
@@ -162,11 +161,8 @@ fn the_figure_shows_every_gamma() {
         }
     }
     for name in ["nothing", "offset", "gain", "these and depth", "needed"] {
-        assert_eq!(
-            figure.svg.matches(&format!("\n{name}\n")).count(),
-            1,
-            "{name}"
-        );
+        let count = figure.svg.matches(&format!("\n{name}\n")).count();
+        assert_eq!(count, 1, "{name}");
     }
     assert!(figure.caption.contains("71.4 % to 71.4 % of it is left"));
 }

@@ -96,13 +96,12 @@ type Colour = [f64; 3];
 
 /// `#abc` and `#aabbcc` as sRGB, 0 to 255.
 fn colour(text: &str) -> Colour {
-    let digits = text.trim_start_matches('#').chars();
-    let digits: Vec<_> = digits.map(|c| f64::from(c.to_digit(16).unwrap())).collect();
-    match digits[..] {
-        [r, g, b] => [17.0 * r, 17.0 * g, 17.0 * b],
-        [a, b, c, d, e, f] => [16.0 * a + b, 16.0 * c + d, 16.0 * e + f],
-        _ => panic!("{text}"),
-    }
+    let digits = text.trim_start_matches('#');
+    let each = digits.len() / 3;
+    [0, 1, 2].map(|k| {
+        let digits = digits[k * each..(k + 1) * each].repeat(2 / each);
+        u8::from_str_radix(&digits, 16).unwrap().into()
+    })
 }
 
 /// Contrast as WCAG 2 defines it.
@@ -146,15 +145,13 @@ fn words_stand_out_from_their_ground() {
 /// `invert(.88) hue-rotate(180deg)` as the standard for filters defines them, on sRGB values.
 fn in_the_dark(colour: Colour) -> Colour {
     let inverted = colour.map(|value| 0.88 * 255.0 + (1.0 - 2.0 * 0.88) * value);
-    let rows = [
-        [-0.574, 1.43, 0.144],
-        [0.426, 0.43, 0.144],
-        [0.426, 1.43, -0.856],
+    let [r, g, b] = inverted;
+    let rotated = [
+        -0.574 * r + 1.43 * g + 0.144 * b,
+        0.426 * r + 0.43 * g + 0.144 * b,
+        0.426 * r + 1.43 * g - 0.856 * b,
     ];
-    rows.map(|row| {
-        let sum: f64 = row.iter().zip(inverted).map(|(a, b)| a * b).sum();
-        sum.clamp(0.0, 255.0)
-    })
+    rotated.map(|value| value.clamp(0.0, 255.0))
 }
 
 // Verifies: REP-034.

@@ -33,21 +33,30 @@ fn shapes<'a>(svg: &'a str, name: &str) -> Vec<(&'a str, Vec<[f64; 2]>)> {
         .collect()
 }
 
-/// The corners of every area that is filled with a colour.
-fn filled(svg: &str, fill: &str) -> Vec<Vec<[f64; 2]>> {
-    let shapes = shapes(svg, "polygon").into_iter();
-    let shapes = shapes.filter(|(element, _)| element.contains(fill));
-    shapes.map(|(_, corners)| corners).collect()
-}
-
-/// Size and centre of the box around `corners`.
-fn extent(corners: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
-    let range = |k: usize| text::extremes(corners.iter().map(|corner| corner[k])).unwrap();
-    let [x, y] = [0, 1].map(range);
-    (
-        [x[1] - x[0], y[1] - y[0]],
-        [x, y].map(|[from, to]| 0.5 * (from + to)),
-    )
+/// Width, height, and x and depth of the centre of every area of Figure 1 that is filled with a colour, mm, if its gel is 34 mm wide
+/// and 15 mm high under 0.5 mm of skin.
+fn areas(svg: &str, fill: &str) -> Vec<[f64; 4]> {
+    let boxes = |fill: &str| {
+        let mut shapes = shapes(svg, "polygon");
+        shapes.retain(|(element, _)| element.contains(fill));
+        let around = |corners: Vec<[f64; 2]>| {
+            let range = |k: usize| text::extremes(corners.iter().map(|corner| corner[k])).unwrap();
+            let [[left, right], [top, bottom]] = [0, 1].map(range);
+            let middle = [0.5 * (left + right), 0.5 * (top + bottom)];
+            [right - left, bottom - top, middle[0], middle[1]]
+        };
+        shapes
+            .into_iter()
+            .map(|(_, corners)| around(corners))
+            .collect::<Vec<_>>()
+    };
+    let gel = boxes("#FAF3E0")[0];
+    let scale = 34.0 / gel[0];
+    let below = |of: [f64; 4]| {
+        let [x, depth] = [of[2] - gel[2], of[3] - gel[3]].map(|off| scale * off);
+        [scale * of[0], scale * of[1], x, depth + 8.0]
+    };
+    boxes(fill).into_iter().map(below).collect()
 }
 
 /// How often a figure has each of some words as a text of their own.
@@ -56,44 +65,6 @@ fn assert_words(svg: &str, count: usize, words: &[&str]) {
         let found = svg.matches(&format!("\n{words}\n")).count();
         assert_eq!(found, count, "{words}");
     }
-}
-
-/// A drawing unit is 1/91 mm of the paper's phantom, and every place is rounded to a whole one.
-// Verifies: REP-030.
-#[test]
-fn figure_1_is_to_scale() {
-    let mut run = paper_run();
-    run.maps.push(map_with("shallow", |_| 0.1, |_| 0.0));
-    let paper = Phantom::builtin("8.6").unwrap();
-    let wide = paper.changed(|parts| parts.well.width = 0.04);
-    run.maps.push(map(wide.ok(), &DEPTHS, |_| 0.1, |_| 0.0));
-    let made = made(&run);
-    assert!(svg(&made, "figure-1-8.6").contains("the well is 40 mm wide"));
-    let picture = svg(&made, "figure-1");
-    let shape = |fill: &str| extent(&filled(&picture, fill)[0]);
-    let [(gel, _), (probe, _)] = ["#FAF3E0", "#D0D4DA"].map(shape);
-    let [(skin, place), (disc, centre)] = ["#56B4E9", "#E69F00"].map(shape);
-    let scale = gel[0] / 34.0;
-    for (found, millimetres) in [
-        (gel[1], 15.0),
-        (probe[0], 13.0),
-        (probe[1], 6.5),
-        (skin[1], 0.5),
-        (disc[0], 6.4),
-        (disc[1], 6.4),
-        // The disc's centre below the skin's middle.
-        (centre[1] - place[1], 2.6 + 3.2 - 0.25),
-    ] {
-        let error = found - scale * millimetres;
-        assert!(error.abs() <= 2.0, "{found} for {millimetres} mm");
-    }
-    let parts = [
-        "gel: 15 mm",
-        "skin: 0.5 mm",
-        "inclusion: ø 6.4 mm, 2.6 mm deep",
-    ];
-    assert_words(&picture, 1, &parts);
-    assert_eq!(picture.matches("the well is 34 mm wide\n").count(), 1);
 }
 
 const LAYER: &str = "youngs_modulus_kpa = 5\npoisson_ratio = 0.49\n";
@@ -149,122 +120,125 @@ const ELLIPSE: &str = "centre_x_mm = -6\ndepth_mm = 4\nwidth_mm = 5\nheight_mm =
 const TRIANGLE: &str = "centre_x_mm = 5\ndepth_mm = 6\npoints_mm = [[-3, 0], [3, 0], [0, 5]]";
 const DISC: &str = "depth_mm = 4\ndiameter_mm = 5";
 
+/// A drawing unit is less than 0.01 mm, and every place is rounded to a whole one. What holds the layers is drawn 2.38 mm thick.
 // Verifies: REP-030.
 #[test]
-fn figure_1_shows_inclusions_of_any_shape_and_place() {
-    let phantom = own("two", "", &TWO, &[ELLIPSE, TRIANGLE]);
-    let made = made(&run_of(&[phantom, own("one", "", &TWO, &[DISC])]));
-    let picture = &svg(&made, "figure-1");
-    let (gel, axis) = extent(&filled(picture, "#FAF3E0")[0]);
-    let scale = gel[0] / 34.0;
-    let surface = axis[1] - scale * (0.5 + 7.5);
-    let inclusions = filled(picture, "#E69F00");
-    assert_eq!(inclusions.len(), 2);
-    for (corners, size, centre) in [
-        (&inclusions[0], [2.0, 5.0], [-6.0, 6.5]),
-        (&inclusions[1], [6.0, 5.0], [5.0, 8.5]),
+fn figure_1_shows_any_phantom_to_scale() {
+    let paper = Phantom::builtin("2.6").unwrap();
+    let two = own("two", "", &TWO, &[ELLIPSE, TRIANGLE]);
+    let held = |well: &str| own("held", well, &TWO, &[]);
+    let (ellipse, triangle) = ([2.0, 5.0, -6.0, 6.5], [6.0, 5.0, 5.0, 8.5]);
+    let (gel, skin, probe) = (
+        [34.0, 15.0, 0.0, 8.0],
+        [34.0, 0.5, 0.0, 0.25],
+        [13.0, 6.5, 0.0, -3.25],
+    );
+    let (walls, no_walls, no_floor) = (
+        [38.76, 17.88, 0.0, 8.94],
+        [34.0, 17.88, 0.0, 8.94],
+        [38.76, 15.5, 0.0, 7.75],
+    );
+    for (phantom, fill, expected, words) in [
+        (&paper, "#FAF3E0", &[gel][..], "gel: 15 mm"),
+        (&paper, "#56B4E9", &[skin], "skin: 0.5 mm"),
+        (
+            &paper,
+            "#D0D4DA",
+            &[probe],
+            "probe: ø 13 mm, 30 mm long, rigid",
+        ),
+        (
+            &paper,
+            "#E69F00",
+            &[[6.4, 6.4, 0.0, 5.8]],
+            "inclusion: ø 6.4 mm, 2.6 mm deep",
+        ),
+        (
+            &two,
+            "#E69F00",
+            &[ellipse, triangle],
+            "inclusion: 5 × 2 mm, 90°, x = −6 mm, 4 mm deep",
+        ),
+        (
+            &two,
+            "#E69F00",
+            &[ellipse, triangle],
+            "inclusion: 6 × 5 mm, x = 5 mm, 6 mm deep",
+        ),
+        (&held(""), "#E2DDD4", &[walls], "walls and floor fixed"),
+        (
+            &held("walls = \"sliding\"\n"),
+            "#E2DDD4",
+            &[walls],
+            "walls sliding, floor fixed",
+        ),
+        (
+            &held("walls = \"free\"\n"),
+            "#E2DDD4",
+            &[no_walls],
+            "walls free, floor fixed",
+        ),
+        (
+            &held("floor = \"free\"\n"),
+            "#E2DDD4",
+            &[no_floor],
+            "walls fixed, floor free",
+        ),
     ] {
-        let (found, place) = extent(corners);
-        for k in 0..2 {
-            let origin = [axis[0], surface][k];
-            let errors = [
-                found[k] - scale * size[k],
-                place[k] - origin - scale * centre[k],
-            ];
-            assert!(errors.iter().all(|e| e.abs() <= 3.0), "{errors:?} {size:?}");
-        }
+        let made = made(&run_of(std::slice::from_ref(phantom)));
+        let picture = svg(&made, "figure-1");
+        let found = areas(&picture, fill);
+        assert_eq!(found.len(), expected.len(), "{words}");
+        let pairs = found.as_flattened().iter().zip(expected.as_flattened());
+        assert!(
+            pairs.into_iter().all(|(a, b)| (a - b).abs() < 0.025),
+            "{found:?}, expected {expected:?}"
+        );
+        assert_words(&picture, 1, &[words]);
+        assert_has(&made.figure("figure-1").alt, words);
     }
-    let ellipse = "5 × 2 mm, 90°, x = −6 mm, 4 mm deep";
-    let polygon = "6 × 5 mm, x = 5 mm, 6 mm deep";
-    let parts = [ellipse, polygon].map(|part| format!("inclusion: {part}"));
-    assert_words(picture, 1, &parts.each_ref().map(String::as_str));
-    let words = format!("It holds 2 inclusions: {ellipse}; {polygon}.");
-    assert_has(&made.figure("figure-1").alt, &words);
-    // The other phantom differs in nothing else, so that it needs no drawing of its own.
-    let mut names = made.figures.iter().map(|figure| &figure.file_name);
-    assert!(names.all(|name| !name.starts_with("figure-1-")));
 }
 
 // Verifies: REP-030.
 #[test]
 fn figure_1_is_drawn_for_each_phantom_that_differs_in_more_than_inclusions() {
-    let with_disc = |name: &str| own(name, "", &TWO, &[DISC]);
-    let softer = with_disc("softer").changed(|parts| parts.layers[1].material.youngs_modulus = 4e3);
-    let renamed = with_disc("renamed").changed(|parts| parts.layers[1].name = "agar".into());
-    let [softer, renamed] = [softer, renamed].map(Result::unwrap);
-    let made = made(&run_of(&[own("plain", "", &TWO, &[]), softer, renamed]));
+    let mut softer = own("softer", "", &TWO, &[DISC]);
+    softer.layers[1].material.youngs_modulus = 4e3;
+    let mut renamed = own("renamed", "", &TWO, &[DISC]);
+    renamed.layers[1].name = "agar".into();
+    let mut wide = own("wide", "", &TWO, &[]);
+    wide.well.width = 0.04;
+    let plain = own("plain", "", &TWO, &[]);
+    let two = own("two", "", &TWO, &[ELLIPSE, TRIANGLE]);
+    let made = made(&run_of(&[plain, softer, renamed, two, wide]));
     let names = made.figures.iter().map(|figure| &figure.file_name[..]);
     let others: Vec<_> = names.filter(|name| name.starts_with("figure-1-")).collect();
-    assert_eq!(others, ["figure-1-softer.svg"]);
-    let materials = ["skin: E = 5", "gel: E = 4", "inclusion: E = 5"];
-    let materials = materials.map(|of| format!("{of} kPa, ν = 0.49"));
-    assert_has(
-        &made.figure("figure-1-softer").caption,
-        &materials.join("; "),
-    );
-}
-
-// Verifies: REP-030.
-#[test]
-fn figure_1_shows_how_walls_and_floor_hold() {
-    // The layers are 34 mm wide and 15.5 mm high; what holds them is drawn 2.38 mm thick.
-    for (well, words, block) in [
-        ("", "walls and floor fixed", [38.76, 17.88]),
-        (
-            "walls = \"sliding\"\n",
-            "walls sliding, floor fixed",
-            [38.76, 17.88],
-        ),
-        (
-            "walls = \"free\"\n",
-            "walls free, floor fixed",
-            [34.0, 17.88],
-        ),
-        (
-            "floor = \"free\"\n",
-            "walls fixed, floor free",
-            [38.76, 15.5],
-        ),
-    ] {
-        let picture = svg(&made(&run_of(&[own("held", well, &TWO, &[])])), "figure-1");
-        let shape = |fill: &str| extent(&filled(&picture, fill)[0]).0;
-        let scale = shape("#FAF3E0")[0] / 34.0;
-        for (found, expected) in shape("#E2DDD4").into_iter().zip(block) {
-            let error = found / scale - expected;
-            assert!(error.abs() < 0.05, "{words}: {error} from {expected}");
-        }
-        assert_words(&picture, 1, &[words]);
-    }
+    assert_eq!(others, ["figure-1-softer.svg", "figure-1-wide.svg"]);
+    assert_has(&svg(&made, "figure-1-wide"), "the well is 40 mm wide");
+    let materials =
+        "skin: E = 5 kPa, ν = 0.49; gel: E = 4 kPa, ν = 0.49; inclusion: E = 5 kPa, ν = 0.49";
+    assert_has(&made.figure("figure-1-softer").caption, materials);
 }
 
 // Verifies: REP-003, REP-030, REP-064.
 #[test]
 fn no_words_of_the_phantoms_figures_lie_on_others() {
-    let many: Vec<_> = (0..9)
-        .map(|k| (format!("layer {k}"), [0.5, 3.0][k % 2]))
-        .collect();
-    let many: Vec<_> = many
-        .iter()
-        .map(|(name, thickness)| (&name[..], *thickness))
-        .collect();
-    let places = (0..30).map(|k| {
+    let names: [String; 9] = std::array::from_fn(|k| format!("layer {k}"));
+    let many: [_; 9] = std::array::from_fn(|k| (&*names[k], [0.5, 3.0][k % 2]));
+    let places: [String; 30] = std::array::from_fn(|k| {
+        let (row, column) = (k / 10, k % 10);
         let (x, depth) = (
-            -14 + 3 * (k % 10),
-            1.0 + 4.5 * f64::from(k / 10) + 0.1 * f64::from(k % 10),
+            3 * column as i32 - 14,
+            1.0 + 4.5 * row as f64 + 0.1 * column as f64,
         );
-        let diameter = 1.0 + 0.1 * f64::from(k % 9);
+        let diameter = 1.0 + 0.1 * (k % 9) as f64;
         format!("centre_x_mm = {x}\ndepth_mm = {depth:.1}\ndiameter_mm = {diameter}")
     });
-    let places: Vec<String> = places.collect();
-    let crowd: Vec<&str> = places.iter().map(String::as_str).collect();
-    let with_sizes = |phantom: Phantom, width, radius| {
-        let sized = phantom.changed(|of| (of.well.width, of.probe.radius) = (width, radius));
-        sized.unwrap()
-    };
-    let tall = own("tall", "floor = \"sliding\"\n", &many, &[]);
-    let tall = with_sizes(tall, 0.008, 0.0005);
-    let flat = own("flat", "", &[("a layer with a long name", 1.0)], &[]);
-    let flat = with_sizes(flat, 0.5, 0.2);
+    let crowd = places.each_ref().map(String::as_str);
+    let mut tall = own("tall", "floor = \"sliding\"\n", &many, &[]);
+    (tall.well.width, tall.probe.radius) = (0.008, 0.0005);
+    let mut flat = own("flat", "", &[("a layer with a long name", 1.0)], &[]);
+    (flat.well.width, flat.probe.radius) = (0.5, 0.2);
     let phantoms = [
         Phantom::builtin("2.6").unwrap(),
         own("two", "", &TWO, &[ELLIPSE, TRIANGLE]),
@@ -313,20 +287,6 @@ fn figure_6_tells_layers_and_inclusions_apart() {
     assert_eq!(found, [0, 1, 1, 2]);
 }
 
-// Verifies: REP-030.
-#[test]
-fn figures_10_to_12_show_every_subject() {
-    let made = made(&paper_run());
-    for number in 10..13 {
-        let picture = svg(&made, &format!("figure-{number}"));
-        for subject in 1..=10 {
-            assert_words(&picture, 1, &[&format!("subject {subject}")]);
-        }
-        // Ten subjects and the mean at four depths, and each in the key.
-        assert_eq!(picture.matches("<circle ").count(), 11 * (4 + 1));
-    }
-}
-
 /// Upright bars with their width (drawing units), for a panel whose `range` of per cent is `height` units high.
 fn bars(picture: &str) -> Vec<(f64, [f64; 2], [f64; 2])> {
     let upright = |(element, corners): (&str, Vec<[f64; 2]>)| match corners[..] {
@@ -341,8 +301,16 @@ fn bars(picture: &str) -> Vec<(f64, [f64; 2], [f64; 2])> {
 
 // Verifies: REP-030.
 #[test]
-fn figure_13_has_three_intervals_for_each_share() {
+fn figures_10_to_13_show_every_subject_and_three_intervals_for_each_share() {
     let made = made(&paper_run());
+    for number in 10..13 {
+        let picture = svg(&made, &format!("figure-{number}"));
+        for subject in 1..=10 {
+            assert_words(&picture, 1, &[&format!("subject {subject}")]);
+        }
+        // Ten subjects and the mean at four depths, and each in the key.
+        assert_eq!(picture.matches("<circle ").count(), 11 * (4 + 1));
+    }
     let bars = bars(&made.figure("figure-13").svg);
     // The axis from 40 to 100 % is 330 pixels of ten units high; its foot is the lowest place of all.
     let ends = bars.iter().flat_map(|(_, from, to)| [from[1], to[1]]);

@@ -47,7 +47,7 @@ pub fn map_with(name: &str, normal: impl Fn(f64) -> f64, lateral: impl Fn(f64) -
 
 /// Forces of this size at ±5 mm along x, and none elsewhere.
 pub fn at_5_mm(force: f64) -> impl Fn(f64) -> f64 {
-    move |x| {
+    move |x: f64| {
         if x.abs() == 5e-3 {
             force * x.signum()
         } else {
@@ -94,16 +94,13 @@ pub fn deformed() -> DeformedMesh {
         let corners = [(-17e-3, -7e-3), (17e-3, -7e-3), (17e-3, 0.0), (-17e-3, 0.0)];
         corners.map(|(x, y)| [x, top + y - 1e-3]).to_vec()
     };
+    let (depth, lateral) = (4e-3, 0.0);
     DeformedMesh {
         phantom: Phantom::builtin("2.6").unwrap(),
-        pose: Pose {
-            depth: 4e-3,
-            lateral: 0.0,
-        },
-        elements: vec![
-            (Region::Layer(1), square(-7e-3)),
-            (Region::Layer(0), square(0.0)),
-        ],
+        pose: Pose { depth, lateral },
+        elements: [(1, -7e-3), (0, 0.0)]
+            .map(|(layer, top)| (Region::Layer(layer), square(top)))
+            .into(),
         min_det: 0.5,
     }
 }
@@ -130,22 +127,18 @@ pub fn made(run: &Run) -> Made {
 
 impl Made {
     pub fn figure(&self, name: &str) -> &Figure {
-        let found = self
-            .figures
-            .iter()
-            .find(|of| of.file_name == format!("{name}.svg"));
+        let file_name = format!("{name}.svg");
+        let found = self.figures.iter().find(|of| of.file_name == file_name);
         found.unwrap_or_else(|| panic!("no {name}"))
     }
 }
 
 /// What stands in `text` between the first `from` and the next `to`.
 pub fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
-    let (_, after) = text
-        .split_once(from)
-        .unwrap_or_else(|| panic!("no {from} in {text}"));
-    after
-        .split_once(to)
-        .unwrap_or_else(|| panic!("no {to} in {after}"))
+    let after = text.split_once(from).map(|(_, after)| after);
+    let inside = after.and_then(|after| after.split_once(to));
+    inside
+        .unwrap_or_else(|| panic!("no {from} before {to} in {text}"))
         .0
 }
 
@@ -187,11 +180,8 @@ pub fn hostile_run() -> Run {
     let mut run = paper_run();
     run.maps = HOSTILE.map(|name| map_with(name, |_| 0.1, |_| 0.0)).into();
     let others = [Phantom::builtin("none").ok(), None];
-    run.maps
-        .extend(others.map(|phantom| map(phantom, &DEPTHS, |_| 0.1, |_| 0.0)));
-    let deformed = run.deformed.phantom;
-    run.deformed.phantom = deformed
-        .changed(|parts| parts.name = "<b>&".into())
-        .unwrap();
+    let others = others.map(|phantom| map(phantom, &DEPTHS, |_| 0.1, |_| 0.0));
+    run.maps.extend(others);
+    run.deformed.phantom.name = "<b>\u{0}\u{8}".into();
     run
 }
