@@ -1,12 +1,23 @@
 //! What the tests of all crates compare with.
 
+mod cases;
+mod random;
+
+use std::fmt::Display;
+
+pub use cases::{assert_cases, changed, line_matches, numbers_of};
+pub use random::{axis, finite, seeded};
+
 /// The numbers of a table, whose rows are lines.
 pub fn numbers<const N: usize>(table: &str) -> Vec<[f64; N]> {
-    let row = |line: &str| {
-        let cells = line.split_whitespace().map(|cell| cell.parse().unwrap());
-        cells.collect::<Vec<f64>>().try_into().unwrap()
-    };
-    table.trim().lines().map(row).collect()
+    let rows = table.trim().lines().map(row);
+    rows.map(|row| row.try_into().unwrap()).collect()
+}
+
+/// The numbers of a line.
+pub fn row(line: &str) -> Vec<f64> {
+    let cells = line.split_whitespace().map(|cell| cell.parse().unwrap());
+    cells.collect()
 }
 
 /// Asserts that a text has these parts, parted by `|`.
@@ -36,4 +47,12 @@ pub fn assert_near(found: f64, expected: f64, tolerance: f64) {
         distance <= tolerance,
         "found {found:e}, expected {expected:e}: off by {distance:e} > {tolerance:e}"
     );
+}
+
+/// Asserts that a result is an error with this message, in which `[..]` stands for any text.
+#[track_caller]
+pub fn assert_error<T, E: Display>(result: Result<T, E>, expected: &str) {
+    let found = result.err().expect("an error").to_string();
+    let holds = line_matches(expected, &found) && !found.contains('\n');
+    assert!(holds, "found {found:?}, expected {expected:?}");
 }

@@ -3,7 +3,7 @@
 //! arguments, rounded once.
 
 use super::*;
-use palpate_asserts::{assert_near, assert_ulps};
+use palpate_asserts::{assert_near, assert_ulps, numbers_of};
 use std::{format, vec, vec::Vec};
 const TEMPLATE: Force<&[f64]> = Force::new(&[0.25, -0.5, 0.125, 0.3], &[0.34, 0.31, 0.22, 0.05]);
 const RESIDUAL: Force<&[f64]> = Force::new(&[0.3, -0.4, 0.2, 0.1], &[0.4, 0.1, 0.3, -0.05]);
@@ -253,17 +253,7 @@ const ZERO_ONE: Costs = costs(0.0, 1.0, 1.0, 0.0);
 // Verifies: DET-022.
 #[test]
 fn threshold_of_largest_posterior() {
-    for (prior, expected) in [
-        (0.01, 4.59511985013459),
-        (0.3, 0.8472978603872037),
-        (0.5, 0.0),
-        (0.4999, 0.0004000000053332894),
-        (0.7, -0.8472978603872034),
-        (0.999, -6.906754778648553),
-        (1e-300, 690.7755278982137),
-        // 1/p is beyond the largest number.
-        (5e-324, 744.4400719213812),
-    ] {
+    for [prior, expected] in numbers_of("tables/detect.txt", "threshold by the prior") {
         assert_ulps(map_threshold(prior).unwrap(), expected, 4.0);
     }
 }
@@ -304,13 +294,7 @@ fn thresholds_of_neyman_and_pearson() {
 // Verifies: DET-026.
 #[test]
 fn rates_of_error_at_a_threshold() {
-    for (gamma, eta, false_alarm, miss) in [
-        (2.5, 0.0, 0.10564977366685525, 0.10564977366685525),
-        (2.5, 1.0, 0.049471468033648096, 0.19766254312269238),
-        (3.3, -2.0, 0.1482567153083367, 0.012033417908898579),
-        (0.01, 0.3, 4.222492831199855e-198, 1.0),
-        (30.0, 0.0, 3.670966199312751e-51, 3.670966199312751e-51),
-    ] {
+    for [gamma, eta, false_alarm, miss] in numbers_of("tables/detect.txt", "rates") {
         let rates = error_rates(gamma, eta).unwrap();
         // Two roundings of z = η/γ ± γ/2 change Φ(−z) by at most 2u z² of itself.
         let ulps = |z: f64| 4.0 + 4.0 * z * z;
@@ -319,12 +303,7 @@ fn rates_of_error_at_a_threshold() {
         assert_ulps(rates.miss, miss, ulps(middle - half));
     }
     // Θ ≡ 0 decides by equation (9) alone.
-    for (gamma, eta, false_alarm, miss) in [
-        (0.0, 0.0, 1.0, 0.0),
-        (0.0, 1e-300, 0.0, 1.0),
-        (1e-300, f64::MAX, 0.0, 1.0),
-        (f64::MAX, 1.0, 0.0, 0.0),
-    ] {
+    for [gamma, eta, false_alarm, miss] in numbers_of("tables/detect.txt", "rates without doubt") {
         let expected = ErrorRates { false_alarm, miss };
         assert_eq!(error_rates(gamma, eta), Ok(expected), "{gamma} {eta}");
     }
@@ -333,22 +312,11 @@ fn rates_of_error_at_a_threshold() {
 // Verifies: DET-027.
 #[test]
 fn operating_characteristic() {
-    for (gamma, false_alarm, miss) in [
-        (1.0, 0.05, 0.7404889771585559),
-        (2.0, 0.05, 0.36123996868766495),
-        (3.3, 1e-06, 0.9269470094019665),
-        (0.5, 0.9, 0.03741119440006011),
-    ] {
+    for [gamma, false_alarm, miss] in numbers_of("tables/detect.txt", "operating characteristic") {
         assert_ulps(roc_miss(gamma, false_alarm).unwrap(), miss, 16.0);
     }
     assert_eq!((roc_miss(2.0, 0.0), roc_miss(2.0, 1.0)), (Ok(1.0), Ok(0.0)));
-    for (gamma, expected) in [
-        (0.0, 0.5),
-        (0.5, 0.6381631950841185),
-        (1.45, 0.847390311892704),
-        (3.0, 0.9830525732376554),
-        (8.0, 0.999999992291371),
-    ] {
+    for [gamma, expected] in numbers_of("tables/detect.txt", "forced choice") {
         assert_ulps(two_afc(gamma).unwrap(), expected, 2.0);
     }
 }
@@ -361,13 +329,7 @@ fn signal_to_noise_ratio_for_given_rates() {
     }
     assert_eq!(required_gamma(0.5, 0.5), Ok(0.0));
     assert_eq!(required_gamma(0.9, 0.5), Ok(0.0));
-    for (p, expected) in [
-        (0.3, -0.7416143171871159),
-        (0.5, 0.0),
-        (0.84, 1.4063758256440722),
-        (253.0 / 300.0, 1.4258841436632816),
-        (0.99, 3.2899527142663736),
-    ] {
+    for [p, expected] in numbers_of("tables/detect.txt", "gamma of a share") {
         assert_ulps(gamma_from_two_afc(p).unwrap(), expected, 5.0);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::stats::noncentral::{f_ratio, student, student_point};
-use palpate_asserts::assert_near;
+use palpate_asserts::{assert_near, numbers_of};
 
 /// Asserts |found/expected − 1| ≤ `tolerance`.
 #[track_caller]
@@ -11,11 +11,8 @@ fn assert_relative(found: Result<f64, NumericError>, expected: f64, tolerance: f
     assert_near(found / expected, 1.0, tolerance);
 }
 
-/// For parameters up to 20: the terms of the exponent are below 100, their rounding errors below
-/// 5 · 100 · 2⁻⁵³ = 6·10⁻¹⁴, and the series and fractions add less than 100 roundings.
+/// For parameters up to 20 (`tests/tables/tails.txt`).
 const SMALL: f64 = 2e-13;
-/// For parameters up to 10⁶: terms of up to 1.4·10⁷, each with an error of half a unit in its last place.
-const LARGE: f64 = 1e-8;
 
 fn f_tail(x: f64, numerator: f64, denominator: f64) -> Result<f64, NumericError> {
     f_ratio(x, numerator, denominator, 0.0).map(|tails| tails.upper)
@@ -24,15 +21,7 @@ fn f_tail(x: f64, numerator: f64, denominator: f64) -> Result<f64, NumericError>
 // Verifies: PSY-030.
 #[test]
 fn tails_of_the_gamma_law() {
-    for (shape, x, expected, tolerance) in [
-        (0.5, 0.3, 0.4385780260809999, SMALL),
-        (0.5, 20.0, 2.539628589470865e-10, SMALL),
-        (4.5, 2.0, 0.9114125268316792, SMALL),
-        (4.5, 22.0, 1.4114325240295106e-06, SMALL),
-        (18.0, 60.0, 5.7646522304558794e-11, SMALL),
-        (1000.0, 1010.0, 0.3723210552630053, 1e-11),
-        (1e6, 1.001e6, 0.15865521363165971, LARGE),
-    ] {
+    for [shape, x, expected, tolerance] in numbers_of("tables/tails.txt", "gamma") {
         assert_relative(gamma_tail(shape, x), expected, tolerance);
     }
     assert_eq!(gamma_tail(3.0, 0.0), Ok(1.0));
@@ -65,13 +54,7 @@ fn closed_forms() {
 // Verifies: PSY-030, DET-130.
 #[test]
 fn tails_of_the_f_law() {
-    for (x, numerator, denominator, expected, tolerance) in [
-        (0.7, 3.0, 7.0, 0.5812496789055869, SMALL),
-        (12.5, 3.0, 36.0, 9.41270061958105e-06, SMALL),
-        (1e-6, 1.0, 9.0, 0.9992239303259732, SMALL),
-        (2.2, 9.0, 2.0, 0.3514564642148253, SMALL),
-        (1.05, 1000.0, 1000.0, 0.22029148252593375, 1e-11),
-    ] {
+    for [x, numerator, denominator, expected, tolerance] in numbers_of("tables/tails.txt", "F") {
         assert_relative(f_tail(x, numerator, denominator), expected, tolerance);
     }
 }
@@ -79,14 +62,9 @@ fn tails_of_the_f_law() {
 // Verifies: PSY-030.
 #[test]
 fn quantiles_of_students_law() {
-    for (confidence, degrees, expected, tolerance) in [
-        (0.95, 1.0, 12.706204736174692, 1e-12),
-        (0.95, 9.0, 2.262157162798205, 1e-12),
-        (0.95, 36.0, 2.0280940009804507, 1e-12),
-        // 1 − confidence has 10 digits only.
-        (0.999999, 3.0, 130.1545895571102, 1e-10),
-        (0.5, 1e6, 0.6744899955310873, LARGE),
-    ] {
+    for [confidence, degrees, expected, tolerance] in
+        numbers_of("tables/tails.txt", "points of Student")
+    {
         let found = student_point(0.5 * (1.0 - confidence), degrees);
         assert_relative(found, expected, tolerance);
     }
