@@ -2,54 +2,15 @@
 //! Where Python or mpmath is missing, a notice is given, unless `PALPATE_REQUIRE_WITNESSES=1` asks for them.
 
 use std::collections::BTreeSet;
-use std::io::ErrorKind;
-use std::process::Command;
 
-use crate::witness::present::present;
+use crate::witness::present::printed;
 use serde_json::{Value, json as value};
-
-/// Python with mpmath: the one of the environment, or the system's.
-fn python() -> Command {
-    Command::new(std::env::var_os("PALPATE_PYTHON").unwrap_or_else(|| "python3".into()))
-}
-
-/// What is missing, if anything is.
-fn missing() -> Option<&'static str> {
-    match python().args(["-c", "import mpmath"]).output() {
-        Err(error) if error.kind() == ErrorKind::NotFound => Some("Python"),
-        Ok(output) if String::from_utf8_lossy(&output.stderr).contains("ModuleNotFoundError") => {
-            Some("mpmath")
-        }
-        _ => None,
-    }
-}
-
-/// Runs a script of `vectors/`, which must succeed, and gives what it printed.
-fn run(script: &str, arguments: &[&str]) -> Option<String> {
-    if !present(missing()) {
-        return None;
-    }
-    let path = format!("{}/vectors/{script}", crate::ROOT);
-    let output = python()
-        .args(["-B", &path])
-        .args(arguments)
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    let holds = output.status.success();
-    assert!(
-        holds,
-        "{script}: {text}{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    Some(text)
-}
 
 // Verifies: VEC-007.
 #[test]
 #[ignore = "takes two minutes; the suite's own check finds a file that is not of the manifest"]
 fn the_files_are_as_the_generator_writes_them() {
-    if let Some(text) = run("generate.py", &["--check"]) {
+    if let Some(text) = printed("vectors/generate.py", &["--check"]) {
         assert!(text.contains("files are as generated"), "{text}");
     }
 }
@@ -58,92 +19,17 @@ fn the_files_are_as_the_generator_writes_them() {
 // VEC-018. The second route has the order of operations of VEC-011, Cowper's points as tables print them, and θ by projection.
 #[test]
 fn the_suite_is_sound() {
-    if let Some(text) = run("check.py", &[]) {
+    if let Some(text) = printed("vectors/check.py", &[]) {
         assert!(text.contains(" 0 problems"), "{text}");
     }
 }
 
-/// Plants a fault at a time in files of the suite, and prints what `check.py` says of each. `at` sets the number at the end of a path.
-const FAULTS: &str = r#"
-import copy, json, math, struct, sys
-sys.path.insert(0, sys.argv[1])
-import check
-
-def at(*path):
-    def plant(data):
-        for key in path[:-2]:
-            data = data[key]
-        data[path[-2]] = path[-1]
-    return plant
-
-def answered(value):
-    def plant(data):
-        case = data["cases"][1]
-        case["ok"]["p"], case["bits"]["p"] = value, "0x" + struct.pack(">d", value).hex()
-    return plant
-
-def route(data):
-    check.check_second_route(data, 1, 0)
-
-for name, plant, look in [
-    ("normal_cdf", at("cases", 0, "other", 1), lambda data: check.check_form("normal_cdf.json", data)),
-    ("normal_cdf", at("cases", 0, "id", "other-001"), lambda data: check.check_form("normal_cdf.json", data)),
-    ("normal_cdf", at("cases", 0, "error", "failed"), lambda data: check.check_form("normal_cdf.json", data)),
-    ("normal_cdf", at("cases", 0, "flags", ["unexplained"]), lambda data: check.check_flags("normal_cdf.json", data)),
-    ("normal_cdf", at("cases", 0, "bits", "p", "0x3FE0000000000000"), check.check_numbers),
-    ("normal_cdf", at("cases", 0, "wrong", 0, "ok", "p", math.nextafter(0.5, 1)), check.check_numbers),
-    ("normal_cdf", at("cases", 0, "condition", "p", 7.9), check.check_conditions),
-    ("normal_cdf", answered(0.6), route),
-    ("normal_cdf", at("cases", 1, "condition", "p", 1e-9), route),
-    ("requests", at("cases", 0, "error", "bad_request"), check.check_refusals),
-    ("probe_force", at("cases", 0, "ok", "normal_force_n", 1.0), check.check_probe),
-]:
-    sound = json.loads((check.HERE / f"{name}.json").read_text())
-    faulty = copy.deepcopy(sound)
-    plant(faulty)
-    for data in sound, faulty:
-        check.problems.clear()
-        look(data)
-        print(*(check.problems[:1] or ["sound"]))
-check.problems.clear()
-check.check_manifest([])
-print("sound", *check.problems[:1], sep="\n")
-"#;
-
 // Verifies: VEC-014.
 #[test]
 fn a_suite_with_a_fault_is_not_sound() {
-    if !present(missing()) {
-        return;
-    }
     let folder = format!("{}/vectors", crate::ROOT);
-    let output = python().args(["-B", "-c", FAULTS, &folder]).output();
-    let output = output.unwrap();
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    let said: Vec<&str> = text.lines().collect();
-    let faulty: Vec<&str> = said.iter().skip(1).step_by(2).copied().collect();
-    let sound = said.iter().step_by(2).all(|said| *said == "sound");
-    assert!(sound, "{output:?}");
-    let expected = [
-        "normal_cdf-001: keys of the case",
-        "other-001: id",
-        "normal_cdf-001: either args or line, and either ok or error",
-        "normal_cdf.json: flags used and explained differ",
-        "normal_cdf-001: bits of p",
-        "normal_cdf-001: the wrong answer erf_for_phi is within ten tolerances",
-        "normal_cdf-001: the condition of p is 7.9",
-        "normal_cdf-002: p by the second route is",
-        "normal_cdf-002: p with f32 arguments is",
-        "requests-001: bad_json, or not",
-        "probe_force-001: normal_force_n is not that of the data",
-        "manifest.json: files: ",
-    ];
-    assert_eq!(faulty.len(), expected.len(), "{output:?}");
-    for (said, expected) in faulty.iter().zip(expected) {
-        assert!(
-            said.starts_with(expected),
-            "{said:?}: expected {expected:?}"
-        );
+    if let Some(text) = printed("tests/vectors_suite/faults.py", &[&folder]) {
+        assert_eq!(text, "12 faults found\n");
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a test does without a program that it needs.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
+use std::process::Command;
 
 /// Whether a test goes on. `missing` says which program is not there, if one is not: then it is skipped with a
 /// notice, unless `PALPATE_REQUIRE_WITNESSES=1` asks for all of them.
@@ -18,4 +19,33 @@ pub fn present(missing: Option<&str>) -> bool {
     // Not by eprintln!, which the test runner keeps to itself when a test passes.
     writeln!(std::io::stderr(), "SKIPPED: {program} is not installed").unwrap();
     false
+}
+
+/// Python with a module: that of the environment, or the system's. `None`, with a notice, where one of both is missing.
+pub fn python_with(module: &str) -> Option<Command> {
+    let python = || {
+        let own = std::env::var_os("PALPATE_PYTHON");
+        Command::new(own.unwrap_or_else(|| "python3".into()))
+    };
+    let probe = python().args(["-c", &format!("import {module}")]).output();
+    let is_unknown =
+        |stderr: &[u8]| String::from_utf8_lossy(stderr).contains("ModuleNotFoundError");
+    let missing = match probe {
+        Err(error) if error.kind() == ErrorKind::NotFound => Some("Python"),
+        Ok(output) if is_unknown(&output.stderr) => Some(module),
+        _ => None,
+    };
+    present(missing).then(python)
+}
+
+/// What a script prints, named from the root of the checkout: it must succeed. `None`, with a notice, where mpmath is missing.
+pub fn printed(script: &str, arguments: &[&str]) -> Option<String> {
+    let script = format!("{}/{script}", crate::ROOT);
+    let mut python = python_with("mpmath")?;
+    let output = python.args(["-B", &script]).args(arguments).output();
+    let output = output.expect("Python starts");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{script}: {text}{errors}");
+    Some(text)
 }

@@ -9,24 +9,8 @@ use palpate::fem::Mesh;
 use palpate::fem::assembly::StiffnessMatrix;
 use palpate::phantom::Phantom;
 
-use super::present::present;
+use super::present::python_with;
 use super::{builtin_at, material};
-
-/// The Python to run: that of the environment with scikit-fem, or the system's.
-fn python() -> Command {
-    Command::new(std::env::var_os("PALPATE_PYTHON").unwrap_or_else(|| "python3".into()))
-}
-
-/// What is missing, if anything is.
-fn missing() -> Option<&'static str> {
-    match python().args(["-c", "import skfem"]).output() {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Some("Python"),
-        Ok(output) if String::from_utf8_lossy(&output.stderr).contains("ModuleNotFoundError") => {
-            Some("scikit-fem")
-        }
-        _ => None,
-    }
-}
 
 /// The mesh and the materials, as `stiffness.py` reads them.
 fn problem(mesh: &Mesh, phantom: &Phantom) -> String {
@@ -46,9 +30,9 @@ fn problem(mesh: &Mesh, phantom: &Phantom) -> String {
 }
 
 /// scikit-fem's matrix: its upper triangle by row and column over all nodes, N/m per metre.
-fn witness(problem: &str) -> HashMap<(usize, usize), f64> {
+fn witness(mut python: Command, problem: &str) -> HashMap<(usize, usize), f64> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/witness/stiffness.py");
-    let mut child = python()
+    let mut child = python
         .arg(script)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -78,14 +62,14 @@ fn witness(problem: &str) -> HashMap<(usize, usize), f64> {
 // Verifies: FEM-080, FEM-082.
 #[test]
 fn scikit_fem_assembles_our_stiffness() {
-    if !present(missing()) {
-        return;
-    }
     for (name, centre_x) in [("none", 0.0), ("2.6", 0.0), ("2.6", 3e-3)] {
         let phantom = builtin_at(name, centre_x);
         let mesh = Mesh::new(&phantom, 1.5e-3).unwrap();
         let matrix = StiffnessMatrix::assemble(&mesh, &phantom).unwrap();
-        let witness = witness(&problem(&mesh, &phantom));
+        let Some(python) = python_with("skfem") else {
+            return;
+        };
+        let witness = witness(python, &problem(&mesh, &phantom));
         // Place of each free displacement among our unknowns, to displacement i of node a, 2a + i.
         let mut number = vec![usize::MAX; matrix.unknowns()];
         for displacement in 0..2 * mesh.nodes.len() {
