@@ -47,15 +47,31 @@ const README_NOT_RUN: [(&str, &str); 5] = [
 
 /// All Markdown files of `docs/`, by name.
 fn pages() -> Vec<Page> {
-    let folders = ["docs", "docs/how-to"].map(|folder| Path::new(ROOT).join(folder));
-    let mut paths: Vec<PathBuf> = folders
-        .iter()
-        .flat_map(|folder| fs::read_dir(folder).unwrap())
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
+    let folders = ["docs", "docs/how-to"].into_iter().map(at);
+    let entries = folders.flat_map(|folder| fs::read_dir(folder).unwrap());
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let mut paths: Vec<PathBuf> = paths
+        .filter(|path| path.extension() == Some("md".as_ref()))
         .collect();
     paths.sort();
     paths.iter().map(|path| Page::read(path)).collect()
+}
+
+/// Those, and `README.md`.
+fn pages_and_readme() -> Vec<Page> {
+    [pages(), vec![Page::read(&at("README.md"))]]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// A file or folder of the checkout.
+fn at(name: &str) -> PathBuf {
+    Path::new(ROOT).join(name)
+}
+
+fn text(name: &str) -> String {
+    fs::read_to_string(at(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// An empty folder for a page's commands.
@@ -83,19 +99,15 @@ fn bin() -> &'static Path {
 fn shell(folder: &Path, command: &str, before: i32) -> (String, i32) {
     let companions = Path::new(PROGRAM).parent().unwrap();
     let path = std::env::var("PATH").unwrap();
-    let output = Command::new("sh")
-        .args(["-c", &format!("exec 2>&1\n(exit {before})\n{command}")])
-        .env(
-            "PATH",
-            format!("{}:{}:{path}", bin().display(), companions.display()),
-        )
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    (
-        String::from_utf8(output.stdout).unwrap(),
-        output.status.code().unwrap_or(-1),
-    )
+    let path = format!("{}:{}:{path}", bin().display(), companions.display());
+    let script = format!("exec 2>&1\n(exit {before})\n{command}");
+    let mut sh = Command::new("sh");
+    sh.args(["-c", &script])
+        .env("PATH", path)
+        .current_dir(folder);
+    let output = sh.output().unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    (said, output.status.code().unwrap_or(-1))
 }
 
 fn palpate(arguments: &str) -> String {
@@ -117,10 +129,8 @@ fn differences(page: &Page) -> Vec<String> {
         }
         let (output, found) = shell(&folder, &step.text, code);
         code = found;
-        let asked = page
-            .steps
-            .get(index + 1)
-            .is_some_and(|next| next.text == "echo $?");
+        let next = page.steps.get(index + 1);
+        let asked = next.is_some_and(|next| next.text == "echo $?");
         if !matches(&step.output, &output) || (code != 0 && !asked) {
             differences.push(format!(
                 "{}:{}: $ {}\n--- the page\n{}--- the program, exit code {code}\n{output}",
@@ -135,45 +145,37 @@ fn differences(page: &Page) -> Vec<String> {
 fn commands_do_what_the_pages_show() {
     let pages = pages();
     let found: Vec<_> = std::thread::scope(|scope| {
-        let running: Vec<_> = pages
-            .iter()
-            .map(|page| scope.spawn(|| differences(page)))
-            .collect();
-        running
-            .into_iter()
-            .flat_map(|thread| thread.join().unwrap())
-            .collect()
+        let running = pages.iter().map(|page| scope.spawn(|| differences(page)));
+        let running: Vec<_> = running.collect();
+        let threads = running.into_iter();
+        threads.flat_map(|thread| thread.join().unwrap()).collect()
     });
     assert!(found.is_empty(), "{}", found.join("\n"));
-    let commands = pages
-        .iter()
-        .flat_map(|page| &page.steps)
-        .filter(|step| step.file.is_none());
-    println!("{} commands of {} pages run", commands.count(), pages.len());
-    let not_run: Vec<_> = pages
-        .iter()
-        .flat_map(|page| page.not_run.iter().map(move |step| (page, step)))
-        .collect();
-    for (page, (command, reason)) in &not_run {
-        println!("not run: {}: {command}: {reason}", page.name);
+    let commands = pages.iter().flat_map(|page| &page.steps);
+    let commands = commands.filter(|step| step.file.is_none()).count();
+    println!("{commands} commands of {} pages run", pages.len());
+    let mut not_run = 0;
+    for page in &pages {
+        for (command, reason) in &page.not_run {
+            println!("not run: {}: {command}: {reason}", page.name);
+            not_run += 1;
+        }
     }
-    assert_eq!(not_run.len(), NOT_RUN, "commands that are not run");
+    assert_eq!(not_run, NOT_RUN, "commands that are not run");
 }
 
 #[test]
 fn files_on_the_pages_are_those_of_the_sources() {
-    let pages = pages();
     let mut same = 0;
-    for (page, step) in pages
-        .iter()
-        .flat_map(|page| page.steps.iter().map(move |step| (page, step)))
-    {
-        let Some(file) = step.file.as_ref().filter(|file| file.starts_with("docs/")) else {
-            continue;
-        };
-        let found = fs::read_to_string(Path::new(ROOT).join(file)).unwrap();
-        assert_eq!(step.text, found, "{}: {file}", page.name);
-        same += 1;
+    for page in pages() {
+        let files = page
+            .steps
+            .iter()
+            .filter_map(|step| Some((step, step.file.as_ref()?)));
+        for (step, file) in files.filter(|(_, file)| file.starts_with("docs/")) {
+            assert_eq!(step.text, text(file), "{}: {file}", page.name);
+            same += 1;
+        }
     }
     assert!(same >= 3, "{same} files: are the pages read?");
 }
@@ -181,36 +183,23 @@ fn files_on_the_pages_are_those_of_the_sources() {
 #[test]
 fn commands_and_options_exist() {
     let help = palpate("--help");
-    let list = help
-        .split("Commands:\n")
-        .nth(1)
-        .unwrap()
-        .split("\n\n")
-        .next()
-        .unwrap();
+    let (_, list) = help.split_once("Commands:\n").unwrap();
+    let list = list.lines().take_while(|line| !line.is_empty());
     let names: BTreeSet<&str> = list
-        .lines()
-        .map(|line| line.split_whitespace().next().unwrap())
+        .filter_map(|line| line.split_whitespace().next())
         .collect();
     assert!(names.len() >= 10, "{help}");
-    let index = fs::read_to_string(Path::new(ROOT).join("docs/README.md")).unwrap();
+    let index = text("docs/README.md");
     for name in &names {
+        let page = format!("how-to/{name}.md");
+        assert!(at(&format!("docs/{page}")).exists(), "no {page}");
         assert!(
-            Path::new(ROOT)
-                .join(format!("docs/how-to/{name}.md"))
-                .exists(),
-            "no how-to for {name}"
-        );
-        assert!(
-            index.contains(&format!("(how-to/{name}.md)")),
+            index.contains(&format!("({page})")),
             "docs/README.md does not link to {name}"
         );
     }
     let mut seen = 0;
-    for page in pages()
-        .iter()
-        .chain([&Page::read(&Path::new(ROOT).join("README.md"))])
-    {
+    for page in pages_and_readme() {
         for command in page.mentions() {
             let name = command.split_whitespace().nth(1).unwrap_or_default();
             if name.starts_with('-') {
@@ -223,16 +212,11 @@ fn commands_and_options_exist() {
                 let action = command.split_whitespace().nth(2).unwrap_or_default();
                 help = palpate(&format!("{name} {action} --help"));
             }
-            let known: Vec<&str> = help
-                .split(|c: char| !(c.is_alphanumeric() || c == '-'))
-                .collect();
+            let words = help.split(|c: char| !(c.is_alphanumeric() || c == '-'));
             for option in page::options(&command) {
                 seen += 1;
-                assert!(
-                    known.contains(&option),
-                    "{}: palpate {name} has no {option}",
-                    page.name
-                );
+                let is_known = words.clone().any(|word| word == option);
+                assert!(is_known, "{}: palpate {name} has no {option}", page.name);
             }
         }
     }
@@ -241,16 +225,13 @@ fn commands_and_options_exist() {
 
 #[test]
 fn links_and_requirements_lead_somewhere() {
-    let spec = fs::read_dir(Path::new(ROOT).join("spec")).unwrap();
+    let spec = fs::read_dir(at("spec")).unwrap();
     let spec: String = spec
         .map(|entry| fs::read_to_string(entry.unwrap().path()).unwrap())
         .collect();
     let (mut links, mut ids) = (0, 0);
-    for page in pages()
-        .iter()
-        .chain([&Page::read(&Path::new(ROOT).join("README.md"))])
-    {
-        let folder = Path::new(ROOT).join(&page.name);
+    for page in pages_and_readme() {
+        let folder = at(&page.name);
         for (file, heading) in page.links() {
             links += 1;
             let target = match file.as_str() {
@@ -264,28 +245,21 @@ fn links_and_requirements_lead_somewhere() {
         }
         for id in page::requirements(&page.text) {
             ids += 1;
-            assert!(
-                spec.contains(&format!("**{id}**")),
-                "{}: no {id} in spec/",
-                page.name
-            );
+            let is_defined = spec.contains(&format!("**{id}**"));
+            assert!(is_defined, "{}: no {id} in spec/", page.name);
         }
     }
+    let is_read = links > 20 && ids > 50;
     assert!(
-        links > 20 && ids > 50,
+        is_read,
         "{links} links, {ids} requirements: are the pages read?"
     );
-    let theory = fs::read_to_string(Path::new(ROOT).join("docs/theory.md")).unwrap();
-    for section in theory
-        .split("\n## ")
-        .skip(1)
-        .filter(|section| section.contains("$$"))
-    {
+    let theory = text("docs/theory.md");
+    let sections = theory.split("\n## ").skip(1);
+    for section in sections.filter(|section| section.contains("$$")) {
         let title = section.lines().next().unwrap_or_default();
-        assert!(
-            !page::requirements(section).is_empty(),
-            "docs/theory.md, {title}: which requirement?"
-        );
+        let names_one = !page::requirements(section).is_empty();
+        assert!(names_one, "docs/theory.md, {title}: which requirement?");
     }
 }
 
@@ -293,23 +267,18 @@ fn links_and_requirements_lead_somewhere() {
 fn the_commands_of_the_readme_succeed() {
     let folder = folder("README");
     fs::create_dir(folder.join("docs")).unwrap();
-    fs::copy(
-        Path::new(ROOT).join("docs/phantom.toml"),
-        folder.join("docs/phantom.toml"),
-    )
-    .unwrap();
+    let phantom = "docs/phantom.toml";
+    fs::copy(at(phantom), folder.join(phantom)).unwrap();
     // Coarse maps where 'palpate run' leaves fine ones.
     let coarse = "laterals_mm = \"-10:10:1\"\n[mesh]\nsize_mm = 1.5\n";
     fs::write(folder.join("coarse.toml"), coarse).unwrap();
     let (output, code) = shell(&folder, "palpate run --config coarse.toml", 0);
     assert_eq!(code, 0, "{output}");
-    let commands = Page::read(&Path::new(ROOT).join("README.md")).plain_commands();
+    let commands = Page::read(&at("README.md")).plain_commands();
     let mut run = 0;
     for command in &commands {
-        match README_NOT_RUN
-            .iter()
-            .find(|(part, _)| format!("{command} ").contains(part))
-        {
+        let whole = format!("{command} ");
+        match README_NOT_RUN.iter().find(|(part, _)| whole.contains(part)) {
             Some((_, reason)) => println!("not run: {command}: {reason}"),
             None => {
                 let (output, code) = shell(&folder, command, 0);
