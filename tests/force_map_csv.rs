@@ -1,9 +1,9 @@
 //! Measured force maps as CSV through the public interface.
 
-use crate::random::{axis, finite, seeded};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use palpate::phantom::Phantom;
+use palpate_asserts::{assert_cases, assert_error, axis, changed, finite, seeded};
 use proptest::prelude::*;
 
 const EXAMPLE: &str = "\
@@ -31,11 +31,6 @@ fn table() -> ForceTable {
 
 fn read(text: &str) -> Result<ForceTable, String> {
     ForceTable::from_csv(text, "gel.csv").map_err(|error| error.to_string())
-}
-
-/// The refusals of the example, each under its change.
-fn refusals(changes: &str) -> String {
-    crate::changes::said(EXAMPLE, changes, |text| read(text).unwrap_err())
 }
 
 // Verifies: MAP-030, MAP-022, MAP-041.
@@ -78,34 +73,10 @@ fn tables_of_spreadsheets_are_read() {
 // Verifies: MAP-002, MAP-026, MAP-030, MAP-033.
 #[test]
 fn what_is_wrong_is_refused_with_line_column_and_value() {
-    let told = refusals(
-        r#"
-        normal_force_n,lateral_force_n -> normal_force_n
-        normal_force_n,lateral_force_n -> normal_force_n,lateral_force
-        normal_force_n,lateral_force_n -> normal_force_n,normal_force_mn
-        depth_mm,lateral_mm -> depth_mm,depth_m,lateral_mm
-        depth_mm,lateral_mm,normal_force_n,lateral_force_n -> 0.0,-2.6,0.0,0.0
-        1.5,0.0,0.25,0.0 -> 1.5,0.0,0.25
-        1.5,0.0,0.25,0.0 -> 1,5,0,0,0,25,0,0
-        1.5,0.0,0.25,0.0 -> 1.5 0.0 0.25 0.0
-        1.5,0.0,0.25,0.0 -> ,0.0,0.25,0.0
-        1.5,0.0,0.25,0.0 -> 1.5,zero,0.25,0.0
-        1.5,0.0,0.25,0.0 -> 1.5,0.0,NaN,0.0
-        1.5,0.0,0.25,0.0 -> 1.5,0.0,"0,25",0.0
-        1.5,0.0,0.25,0.0 -> 1.5,0.0,0.25,-inf
-        1.5,0.0,0.25,0.0 -> 1.5,0.0,0.25,1e999
-        1.5,0.0,0.25,0.0\n -> 1.5,0.0,0.25,0.0\n1.5e0,-0,0.25,0.0\n
-        1.5,-2.6,0.21,-0.034\n1.5,0.0,0.25,0.0\n1.5,2.6 -> -1.5,-2.6,0.21,-0.034\n-1.5,0.0,0.25,0.0\n-1.5,2.6
-        0.0,2.6,0.0,0.0\n1.5,-2.6,0.21,-0.034\n1.5,0.0,0.25,0.0\n1.5,2.6 -> 0.0,0.0000005,0.0,0.0\n1.5,-2.6,0.21,-0.034\n1.5,0.0,0.25,0.0\n1.5,0.0000005
-        "#,
-    );
-    insta::assert_snapshot!(told);
-    for empty in ["", "\n\n", "# nothing\n"] {
-        let message = read(empty).unwrap_err();
-        let expected =
-            "gel.csv:1: no column depth_mm or depth_m in the header \"\", expected depth_mm";
-        assert!(message.starts_with(expected), "{message}");
-    }
+    let refusal = |change: &str| read(&changed(EXAMPLE, change)).unwrap_err();
+    assert_cases("refused/map_csv.txt", "changes", refusal);
+    let empty = |text: &str| read(text).unwrap_err();
+    assert_cases("refused/map_csv.txt", "empty files", empty);
     let expected = "gel.csv: depths_m is empty, expected at least one position";
     assert_eq!(read(EXAMPLE.lines().next().unwrap()), Err(expected.into()));
 }
@@ -149,9 +120,10 @@ fn a_measured_map_keeps_the_files_name_without_its_folder() {
     assert_eq!((map.source(), map.phantom()), (&source, Some(&phantom)));
     assert_eq!(map.table(), &table());
     let deep = EXAMPLE.replace("\n1.5,", "\n15.5,");
-    let error = ForceMap::from_csv(&deep, "lab/gel.csv", "", Some(phantom)).unwrap_err();
-    let expected = "lab/gel.csv: phantom: depth_mm = 15.5, expected ";
-    assert!(error.to_string().starts_with(expected), "{error}");
+    assert_error(
+        ForceMap::from_csv(&deep, "lab/gel.csv", "", Some(phantom)),
+        "lab/gel.csv: phantom: depth_mm = 15.5, expected [..]",
+    );
 }
 
 // Verifies: MAP-037.

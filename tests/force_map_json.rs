@@ -1,82 +1,16 @@
 //! Force maps as JSON through the public interface.
 
-use crate::random::{axis, finite, seeded};
 use palpate::force::Force;
 use palpate::force_map::{
     Certificate, ForceMap, ForceTable, Matrix, Measurement, SCHEMA, SCHEMA_VERSION, SmallestDet,
     Source,
 };
 use palpate::phantom::Phantom;
+use palpate_asserts::{assert_cases, axis, changed, finite, seeded};
 use proptest::prelude::*;
 
 /// The file of [`computed`], written by hand from the spec.
-const EXAMPLE: &str = r#"{
-  "schema": "palpate-force-map",
-  "schema_version": 1,
-  "program_version": "VERSION",
-  "source": {
-    "kind": "finite_elements"
-  },
-  "phantom": {
-    "name": "none",
-    "well": {
-      "width_m": 0.034,
-      "walls": "fixed",
-      "floor": "fixed"
-    },
-    "layer": [{
-        "name": "skin",
-        "thickness_m": 0.0005,
-        "material": {
-          "youngs_modulus_pa": 180000.0,
-          "poisson_ratio": 0.49
-        }
-      },{
-        "name": "gel",
-        "thickness_m": 0.015,
-        "material": {
-          "youngs_modulus_pa": 5000.0,
-          "poisson_ratio": 0.49
-        }
-      }],
-    "probe": {
-      "radius_m": 0.0065,
-      "length_m": 0.03
-    }
-  },
-  "depths_m": [0.001,0.002],
-  "laterals_m": [0.0,0.005,0.01],
-  "normal_force_n": [
-    [0.25,0.5,1.0],
-    [0.30000000000000004,5e-324,-0.0]
-  ],
-  "lateral_force_n": [
-    [0.0,-1e-9,1e+21],
-    [0.0,0.2,0.3]
-  ],
-  "certificate": {
-    "worst_relative_residual": 1e-13,
-    "worst_force_balance_n": 2e-10,
-    "largest_penetration_m": 0.0,
-    "newton_iterations": 40,
-    "mesh_size_m": 0.0005,
-    "nodes": 6000,
-    "elements": 3000,
-    "element": "t6",
-    "contact": "deformed-normal",
-    "arithmetic": "other",
-    "smallest_det": {
-      "det": 0.5,
-      "depth_m": 0.002,
-      "lateral_m": 0.0
-    },
-    "min_det": [
-      [1.0,0.9,0.8],
-      [0.5,0.7,0.6]
-    ]
-  }
-}
-"#;
+const EXAMPLE: &str = include_str!("force_map_json/example.json");
 
 fn example() -> String {
     EXAMPLE.replace("VERSION", env!("CARGO_PKG_VERSION"))
@@ -124,11 +58,6 @@ fn computed() -> ForceMap {
 
 fn read(text: &str) -> Result<ForceMap, String> {
     ForceMap::from_json(text, "map.json").map_err(|error| error.to_string())
-}
-
-/// The refusals of the example, each under its change.
-fn refusals(changes: &str) -> String {
-    crate::changes::said(&example(), changes, |text| read(text).unwrap_err())
 }
 
 /// Maps are compared by their text too: `==` holds −0 and 0 for equal.
@@ -226,36 +155,8 @@ fn every_required_key_is_missed_by_name() {
 // Verifies: MAP-002, MAP-024, MAP-026.
 #[test]
 fn what_is_wrong_is_named_by_key_and_row() {
-    let told = refusals(
-        r#"
-        "palpate-force-map" -> "palpate-summary"
-        [0.30000000000000004,5e-324,-0.0] -> [0.3,null,0.0]
-        [0.001,0.002] -> [0.001,null]
-        [0.0,-1e-9,1e+21] -> [0.0,NaN,1.0]
-        [0.0,-1e-9,1e+21] -> [0.0,1e400,1.0]
-        [0.0,-1e-9,1e+21] -> [0.0,"1",1.0]
-        [0.0,-1e-9,1e+21] -> 7
-        [0.0,-1e-9,1e+21] -> [0.0,0.1]
-        "width_m": 0.034 -> "width_m": null
-        "width_m": 0.034 -> "width_mm": 34
-        "width_m": 0.034,\n ->
-        "nodes": 6000 -> "nodes": -1
-        [0.5,0.7,0.6] -> [0.5,0.7,null]
-        "t6" -> 6
-        "finite_elements" -> "guess"
-        "depths_m": [ -> "depths_mm": [
-        "width_m" -> "a\u000ab"
-        "depths_m": [ -> "depths_m": [0.0], "depths_m": [
-        "radius_m": 0.0065, -> "radius_m": 0.0065, "radius_m": 0.0066,
-        [0.0,0.005,0.01] -> [0.0,0.005]
-        [0.001,0.002] -> [0.002,0.001]
-        5000.0,\n          "poisson_ratio": 0.49 -> 5000.0,\n          "poisson_ratio": 0.5
-        "det": 0.5 -> "det": 0.4
-        "depths_m": [0.001, -> "depths_m": [0.001;
-        "kind": "finite_elements" -> "kind": "measured", "file": "a.csv", "note": ""
-        "#,
-    );
-    insta::assert_snapshot!(told);
+    let refusal = |change: &str| read(&changed(&example(), change)).unwrap_err();
+    assert_cases("refused/map_json.txt", "changes", refusal);
 }
 
 // Verifies: MAP-002.

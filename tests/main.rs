@@ -6,7 +6,6 @@
 mod accuracy;
 mod bank_command;
 mod bank_of_the_paper;
-mod changes;
 mod command_line;
 mod conventions;
 mod detect_command;
@@ -21,7 +20,6 @@ mod phantom_file;
 mod playback_command;
 mod program;
 mod psychophysics_command;
-mod random;
 mod reach_command;
 mod real_records;
 mod report_page;

@@ -7,6 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 
 use crate::program::text;
+use palpate_asserts::assert_cases;
 use serde_json::{Value, json};
 
 fn start(command: &mut Command) -> Child {
@@ -149,35 +150,14 @@ fn every_line_has_its_answer_whatever_it_is() {
         "]".repeat(1_000_000)
     );
     let objects = r#"{"a":"#.repeat(500_000);
-    let lines = r#"
-bad_json hello
-bad_json {"id":1
-bad_json {"id":1,"op":"capabilities"} {}
-bad_json {"id":1,"op":"normal_cdf","args":{"x":NaN}}
-bad_json {"id":1,"op":"normal_cdf","args":{"x":Infinity}}
-bad_json {"id":1,"op":"normal_cdf","args":{"x":01}}
-bad_json {'id':1}
-bad_request null
-bad_request []
-bad_request 1e999
-bad_request {}
-bad_request {"id":null,"op":"capabilities"}
-bad_request {"id":[1],"op":"capabilities"}
-bad_request {"id":1}
-bad_request {"id":1,"op":5}
-bad_request {"id":1,"op":"\ud800"}
-bad_request {"id":1,"id":2,"op":"capabilities"}
-bad_request {"id":1,"op":"capabilities","more":1}
-unknown_op {"id":1,"op":""}
-bad_argument {"id":1,"op":"capabilities","args":[]}
-bad_argument {"id":1,"op":"capabilities","args":{"x":1}}
-bad_argument {"id":1,"op":"normal_cdf","args":{"x":1,"x":2}}
-bad_argument {"id":1,"op":"normal_cdf","args":{"x":1e999}}
-bad_argument {"id":1,"op":"normal_cdf","args":{"x":-1e999}}
-bad_argument {"id":1,"op":"normal_cdf","args":{"x":true}}
-bad_argument {"id":1,"op":"normal_cdf","args":null}
-"#;
-    let mut garbage: Vec<(Vec<u8>, &str)> = vec![
+    assert_cases("refused/oracle.txt", "lines", |line| {
+        let [answer, good] = &answers([line, GOOD].join("\n"))[..] else {
+            panic!("two answers")
+        };
+        assert_eq!(good, GOOD_ANSWER);
+        code_of(answer)
+    });
+    let garbage: [(Vec<u8>, &str); 9] = [
         (b"".into(), "bad_json"),
         (b"   ".into(), "bad_json"),
         (b"\r".into(), "bad_json"),
@@ -188,10 +168,6 @@ bad_argument {"id":1,"op":"normal_cdf","args":null}
         (nested.into(), "bad_argument"),
         (objects.into(), "bad_json"),
     ];
-    garbage.extend(lines.trim().lines().map(|line| {
-        let (code, line) = line.split_once(' ').unwrap();
-        (line.into(), code)
-    }));
     assert_codes(oracle(), &garbage);
 }
 

@@ -3,38 +3,10 @@
 mod any;
 
 use palpate::phantom::{BUILTIN_NAMES, Phantom, Shape, Support};
+use palpate_asserts::{assert_cases, changed};
 
 /// The example of `spec/phantom.md`, which is the built-in phantom `2.6`.
-const EXAMPLE: &str = r#"name = "2.6"
-
-[well]
-width_mm = 34.0
-walls = "fixed"
-floor = "fixed"
-
-[[layer]]
-name = "skin"
-thickness_mm = 0.5
-youngs_modulus_kpa = 180.0
-poisson_ratio = 0.49
-
-[[layer]]
-name = "gel"
-thickness_mm = 15.0
-youngs_modulus_kpa = 5.0
-poisson_ratio = 0.49
-
-[[inclusion]]
-centre_x_mm = 0.0
-depth_mm = 2.6
-diameter_mm = 6.4
-youngs_modulus_kpa = 1200.0
-poisson_ratio = 0.49
-
-[probe]
-radius_mm = 6.5
-length_mm = 30.0
-"#;
+const EXAMPLE: &str = include_str!("phantom_file/example.toml");
 
 fn read(text: &str) -> Result<Phantom, String> {
     Phantom::from_toml(text, "gel.toml").map_err(|error| error.to_string())
@@ -47,9 +19,9 @@ fn refusal(old: &str, new: &str) -> String {
     message
 }
 
-/// The refusals of `text`, each under its change.
-fn refusals(text: &str, changes: &str) -> String {
-    crate::changes::said(text, changes, |text| read(text).unwrap_err())
+/// What is said of a file, or `good` if nothing is.
+fn told(text: &str, good: &str) -> String {
+    read(text).map_or_else(|message| message, |_| good.into())
 }
 
 // Verifies: PHA-021.
@@ -178,29 +150,10 @@ fn values_are_set_by_the_keys_of_the_file() {
     for key in "name layer[2].thickness_mm layer layer[0] layer[0].name layer[x].thickness_mm x.y probe.radius_mm.x".split(' ') {
         assert_eq!(phantom.number(key), None, "{key}");
     }
-    let refused = [
-        ("layer[2].thickness_mm", "1"),
-        ("layer[0]", "1"),
-        ("colour", "1"),
-        ("probe.radius_m", "0.006"),
-        ("probe.radius_mm", "\"6\""),
-        ("probe.radius_mm", "6 mm"),
-        ("probe.radius_mm", "nan"),
-        ("probe.radius_mm", "-5"),
-        ("inclusion[0].angle_deg", "0"),
-    ];
-    let told = refused.map(|(key, value)| set(key, value).unwrap_err() + "\n");
-    insta::assert_snapshot!(told.concat(), @r#"
-    layer[2].thickness_mm is unknown
-    layer[0] is unknown, expected one of `name`, `well`, `layer`, `inclusion`, `probe`
-    colour is unknown, expected one of `name`, `well`, `layer`, `inclusion`, `probe`
-    probe.radius_m is unknown, expected `radius_mm` or `length_mm`
-    probe.radius_mm = "6", expected a finite decimal number
-    probe.radius_mm = 6 mm, expected a value of TOML
-    probe.radius_mm = nan, expected a finite decimal number
-    probe.radius_mm = -5.0, expected at least 0.001 and below 17.0 (the probe must be narrower than the well)
-    inclusion[0] has diameter_mm and angle_deg: give diameter_mm, or width_mm and height_mm, or points_mm
-    "#);
+    assert_cases("refused/phantom.txt", "keys", |case| {
+        let (key, value) = case.split_once(" = ").unwrap();
+        set(key, value).unwrap_err()
+    });
 }
 
 // Verifies: PHA-026.
@@ -278,111 +231,30 @@ fn wrong_types_are_named_with_their_value() {
 // Verifies: PHA-004, PHA-006, PHA-009, PHA-026.
 #[test]
 fn what_is_wrong_is_refused_with_its_line_key_and_value() {
-    let no_toml = "
-        width_mm = 34.0 -> width_mm = 34,0
-        width_mm = 34.0 -> width_mm =
-        width_mm = 34.0 -> width_mm 34.0
-        width_mm = 34.0 -> width_mm = 1\\nwidth_mm = 2";
-    let keys = r#"
-        thickness_mm = 15.0\n ->
-        width_mm = 34.0\n ->
-        width_mm = 34.0 -> width_m = 0.034
-        [[inclusion]] -> [[inclusions]]
-        thickness_mm = 15.0 -> thicknes_mm = 15.0
-        diameter_mm -> colour = 'red'\ndiameter_mm"#;
-    let types = r#"
-        name = "2.6" -> name = 2.6
-        walls = "fixed" -> walls = "glued"
-        diameter_mm = 6.4 -> points_mm = [[1, 2], [3]]
-        diameter_mm = 6.4 -> points_mm = [[1, 2], [3, 4, 5], [0, 9]]
-        diameter_mm = 6.4 -> points_mm = [1, 2]
-        diameter_mm = 6.4 -> points_mm = [[1, 2], [3, "4"]]"#;
-    let ranges = r#"
-        name = "2.6" -> # a comment\nname = ""
-        width_mm = 34.0 -> width_mm = 34000
-        youngs_modulus_kpa = 180.0 -> youngs_modulus_kpa = -180
-        poisson_ratio = 0.49\n\n[[inclusion]] -> poisson_ratio = 0.5\n\n[[inclusion]]
-        radius_mm = 6.5 -> radius_mm = 17
-        length_mm = 30.0 -> length_mm = -0.0
-        centre_x_mm = 0.0 -> centre_x_mm = 13.8
-        depth_mm = 2.6 -> depth_mm = 12
-        depth_mm = 2.6 -> depth_mm = 13
-        diameter_mm = 6.4 -> diameter_mm = 15
-        diameter_mm = 6.4 -> width_mm = 33.9\nheight_mm = 3
-        diameter_mm = 6.4 -> width_mm = 0.1\nheight_mm = 2.001
-        diameter_mm = 6.4 -> width_mm = 4\nheight_mm = 0.199
-        diameter_mm = 6.4 -> width_mm = 0.099\nheight_mm = 1
-        diameter_mm = 6.4 -> width_mm = 2\nheight_mm = 1\nangle_deg = 361
-        diameter_mm = 6.4 -> points_mm = [[0, 0], [1, 1]]
-        diameter_mm = 6.4 -> points_mm = [\n  [0, 0],\n  [1, 0],\n  [inf, 1],\n]"#;
-    let second = "poisson_ratio = 0.49\\n\\n[probe] -> poisson_ratio = 0.49\\n\
-        [[inclusion]]\\ndepth_mm = 9.05\\ndiameter_mm = 1\\nyoungs_modulus_kpa = 9\\npoisson_ratio = 0\\n[probe]";
-    let shapes = "
-        diameter_mm = 6.4 ->
-        diameter_mm = 6.4 -> width_mm = 6
-        diameter_mm = 6.4 -> angle_deg = 6
-        diameter_mm = 6.4 -> diameter_mm = 6\\nangle_deg = 0
-        diameter_mm = 6.4 -> diameter_mm = 6\\nheight_mm = 3\\nwidth_mm = 6
-        diameter_mm = 6.4 -> diameter_mm = 6\\npoints_mm = []";
-    let told =
-        [no_toml, keys, types, ranges, second, shapes].map(|changes| refusals(EXAMPLE, changes));
-    insta::assert_snapshot!(told.concat());
+    let refusal = |change: &str| read(&changed(EXAMPLE, change)).unwrap_err();
+    assert_cases("refused/phantom.txt", "changes", refusal);
 }
 
 // Verifies: PHA-016, PHA-030.
 #[test]
 fn supports_that_hold_nothing_are_refused() {
-    let mut told = String::new();
-    for walls in ["fixed", "sliding", "free"] {
-        for floor in ["fixed", "sliding", "free"] {
-            let text = EXAMPLE.replace("walls = \"fixed\"", &format!("walls = {walls:?}"));
-            let text = text.replace("floor = \"fixed\"", &format!("floor = {floor:?}"));
-            let found = read(&text).map_or_else(|message| message, |_| "holds".into());
-            told += &format!("walls {walls}, floor {floor}: {found}\n");
-        }
-    }
-    insta::assert_snapshot!(told, @r#"
-    walls fixed, floor fixed: holds
-    walls fixed, floor sliding: holds
-    walls fixed, floor free: holds
-    walls sliding, floor fixed: holds
-    walls sliding, floor sliding: holds
-    walls sliding, floor free: gel.toml:6: well.floor = "free", expected "fixed" or "sliding" where walls = "sliding": nothing holds the layers up
-    walls free, floor fixed: holds
-    walls free, floor sliding: gel.toml:6: well.floor = "sliding", expected "fixed" where walls = "free": nothing holds the layers from sliding sideways
-    walls free, floor free: gel.toml:6: well.floor = "free", expected "fixed" where walls = "free": nothing holds the layers up
-    "#);
+    assert_cases("refused/phantom.txt", "supports", |case| {
+        let (walls, floor) = case.split_once(", floor ").unwrap();
+        let walls = walls.strip_prefix("walls ").unwrap();
+        let text = EXAMPLE.replace("walls = \"fixed\"", &format!("walls = {walls:?}"));
+        let text = text.replace("floor = \"fixed\"", &format!("floor = {floor:?}"));
+        told(&text, "holds")
+    });
 }
 
 // Verifies: PHA-015, PHA-006.
 #[test]
 fn polygons_that_no_mesh_follows_are_refused() {
-    let told = |case: &str| {
+    assert_cases("refused/phantom.txt", "polygons", |case| {
         let (points, _) = case.split_once(" #").unwrap_or((case, ""));
-        let text = EXAMPLE.replace("diameter_mm = 6.4", &format!("points_mm = {points}"));
-        let found = read(&text).map_or_else(|message| message, |_| "valid".into());
-        format!("{case}\n    {found}\n")
-    };
-    let cases = "
-        [[0, 0], [0.1, 0], [2, 2], [-2, 2]] # the shortest edge that is allowed
-        [[0, 0], [0.099, 0], [2, 2], [-2, 2]]
-        [[0, 0], [2, 2], [-2, 2], [0, 0.05]]
-        [[0, 0], [3, 0], [3, 1.7320508075688772]] # valid: tan 30° = 0.577350…
-        [[0, 0], [3, 0], [3, 1.662927154358307]] # 29°
-        [[-2, 0], [2, 0], [2, 4], [1, 4], [0, 0.2], [-1, 4], [-2, 4]] # 29.4°
-        [[0, 0], [1, 0], [2, 0]]
-        [[0, 0], [1, 0], [2, 0], [1, 2]] # valid: a corner of 180° is none
-        [[-2, 0], [2, 2], [2, 0], [-2, 2]]
-        [[-2, 0], [2, 0], [0.1, 2], [2, 4], [-2, 4], [-0.1, 2]] # valid: an hourglass, with its waist between corners 2 and 5
-        [[-2, 0], [2, 0], [0.045, 2], [2, 4], [-2, 4], [-0.045, 2]] # a waist of 0.09 mm
-        [[0, 0], [4, 0], [4, 4], [0, 4], [0, 2.1], [3, 2.1], [3, 2], [0, 2]] # valid: a slot, open to the left
-        [[0, 0], [4, 0], [4, 4], [0, 4], [0, 2.05], [3, 2.05], [3, 2], [0, 2]]
-        [[0, 0], [4, 0], [4, 4], [3.5, 4], [2, 0.05], [0.5, 4], [0, 4]] # 0.05 mm from the first edge
-        [[0, 0], [4, 0], [4, 4], [3.5, 4], [2, -1], [0.5, 4], [0, 4]]
-        [[-0.05, 0], [0.05, 0], [0.05, 0.1], [-0.05, 0.1]] # valid: the last edge and the first adjoin";
-    let cases = cases.trim().lines().map(str::trim);
-    let told: String = cases.map(told).collect();
-    insta::assert_snapshot!(told);
+        let points = format!("diameter_mm = 6.4 -> points_mm = {points}");
+        told(&changed(EXAMPLE, &points), "valid")
+    });
 }
 
 // Verifies: PHA-026.

@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::PathBuf;
 
-use crate::program::{ASYMMETRIC, Place, contents, has, text};
+use crate::program::{ASYMMETRIC, Place, contents, text};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
+use palpate_asserts::assert_has;
 
 // Verifies: CLI-007, CLI-031, CLI-032, CON-006.
 #[test]
@@ -73,7 +74,7 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
     assert!(page.contains("Figure 7. Measured forces, “gel.csv”"));
     here.write("run.toml", config("palpate-out/maps/map-none.json"));
     let message = here.refused("run --config run.toml");
-    has(&message, ["map-none.json: this map was computed"]);
+    assert_has(&message, "map-none.json: this map was computed");
 }
 
 // Verifies: CLI-130, CLI-031.

@@ -5,29 +5,11 @@ use std::process::Stdio;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use crate::program::{Place, has, text};
+use crate::program::{Place, text};
+use palpate_asserts::{assert_cases, assert_has, changed};
 use palpate_paper::study::StudyResults;
 
-/// Two phantoms on a coarse mesh, two inputs, one of which fails now and then: 3 + 4 + 8 × 4 = 39 samples.
-const STUDY: &str = r#"
-rows = 8
-[run]
-phantoms = ["4.6", "6.6"]
-depths_mm = "3"
-laterals_mm = "-4:4:2"
-mesh.size_mm = 2.0
-[[input]]
-name = "Poisson's ratio"
-key = "layer[1].poisson_ratio"
-distribution.normal = { mean = 0.49, sd = 0.008 }
-source = "a test"
-[[input]]
-name = "depth"
-key = "inclusion[0].depth_mm"
-change = "offset"
-distribution.empirical = { file = "depths.csv" }
-source = "a test"
-"#;
+const STUDY: &str = include_str!("study_command/study.toml");
 const SAMPLES: usize = 39;
 
 /// A folder with the study.
@@ -91,7 +73,7 @@ fn a_study_tells_bands_indices_and_failures() {
     );
     let said = place.succeed("study merge out --out study.json");
     let words = "39 samples, |6.6: γ |detectable depth, m|6.6: γ ≥ 3.290: in |p of the convention";
-    has(&said, words.split('|'));
+    assert_has(&said, words);
     let json = place.succeed("study merge out --out study.json --format json");
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let same: serde_json::Value = serde_json::from_str(&expected()[1]).unwrap();
@@ -182,19 +164,11 @@ fn samples_that_are_missing_twice_there_or_foreign_are_named() {
     place.write("out/samples-1-of-1.jsonl", all);
     let other = all.replace("\"rows\":8", "\"rows\":9");
     place.write("out/samples-2-of-2.jsonl", &other);
-    let another = "belongs to a different study than out/samples-1-of-1.jsonl: plan.rows differs";
-    place.refuses(
-        &format!(
-            "merge out --out study.json => out/samples-2-of-2.jsonl: {another}
-             merge . --out study.json => the folder has no samples-K-of-N.jsonl
-             merge nowhere --out study.json => read nowhere"
-        ),
-        |line| format!("study {line}"),
-    );
+    place.refuses("study merge", str::to_string);
     // Samples of another study are not gone on with.
     place.write("out/samples-1-of-1.jsonl", &other);
     let error = place.refused("study run study.toml --out out");
-    has(&error, ["belongs to a different request or version"]);
+    assert_has(&error, "belongs to a different request or version");
 }
 
 // Verifies: STU-001, STU-011, STU-010, STU-024.
@@ -202,30 +176,10 @@ fn samples_that_are_missing_twice_there_or_foreign_are_named() {
 fn a_file_that_is_no_study_is_refused_with_line_and_key() {
     let place = place("refused");
     place.write("empty.csv", "value\n1\n");
-    let changes = r#"
-        rows = 8 -> rows = 1
-        rows = 8 -> row = 8
-        rows = 8 -> rows = -8
-        depths_mm = "3" -> depths_mm = "3,4"
-        depths_mm = "3" -> depths_mm = "19"
-        ["4.6", "6.6"] -> ["4.6", "9.9"]
-        ["4.6", "6.6"] -> ["4.6", "4.6"]
-        phantoms = -> measured = ["x"]\nphantoms =
-        "layer[1].poisson_ratio" -> "layer[7].poisson_ratio"
-        change = "offset" -> change = "shift"
-        sd = 0.008 -> sd = 0.0
-        { mean = 0.49, sd = 0.008 } -> { mean = 0.49 }
-        distribution.normal -> distribution.gauss
-        depths.csv -> missing.csv
-        depths.csv -> empty.csv
-        file = "depths.csv" -> file = "depths.csv", values = [1.0]
-        name = "depth" -> name = ""
-        "#;
-    let told = crate::changes::said(STUDY, changes, |study| {
-        place.write("other.toml", study);
+    assert_cases("refused/study.txt", "changes", |change| {
+        place.write("other.toml", changed(STUDY, change));
         place.refused("study run other.toml --out out")
     });
-    insta::assert_snapshot!(told);
     for shard in ["0/3", "4/3", "1", "a/b"] {
         let error = place.refused(&format!("study run study.toml --out out --shard {shard}"));
         assert!(error.contains("must be k/n with 1 ≤ k ≤ n"), "{error}");

@@ -186,6 +186,7 @@ fn counted<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use palpate_asserts::assert_cases;
 
     const COLUMNS: [Column; 2] = [
         &[&[("x_mm", -3), ("x_m", 0)], &[("t_s", 0)]],
@@ -196,61 +197,18 @@ mod tests {
         Rows::parse(text, COLUMNS, "x_mm,force_n").map_err(|refusal| refusal.to_string())
     }
 
-    /// The cells of a table, whose rows are lines. A `\n` and the like in it are escapes, as in a text of Rust.
-    fn cases(table: &str) -> impl Iterator<Item = (String, &str)> {
-        let rows = table
-            .trim()
-            .lines()
-            .map(|row| row.split_once(" -> ").unwrap());
-        rows.map(|(text, expected)| {
-            let text = text
-                .trim()
-                .replace("\\n", "\n")
-                .replace("\\r", "\r")
-                .replace("\\t", "\t");
-            (
-                text.replace("<BOM>", "\u{feff}").replace("<ESC>", "\u{1b}"),
-                expected,
-            )
-        })
-    }
-
-    /// Files with the same two rows, 0.5 mm with −1.25 N and 1000 mm with 2 N, and what is told of each, with `;` between. They
-    /// have spaces and tabs, quotes, capitals, a byte order mark, the other units, numbers of rows as of pandas and R, a time
-    /// beside the position, which counts; separators and line ends of spreadsheets, and commas between the names of units and
-    /// between quotes.
-    const SAME: &str = r#"
-        x_mm,force_n\n0.5,-1.25\n1000,2\n -> -
-        x_mm;force_n\n0.5;-1.25\n1000;2\n -> -
-        x_mm\tforce_n\n0.5\t-1.25\n1000\t2\n -> -
-        <BOM> x_mm ,\tforce_n\r\n0.5 ,\t-1.25\r\n\r\n1000 , 2 -> -
-        "x_mm","force_n"\n" 0.5","-1.25 "\n1000,2\n -> -
-        Force_mN,X_M\n-1250,5e-4\n2000,1\n -> -
-        ,x_mm,force_n\n0,0.5,-1.25\n1,1000,2\n -> -
-        \tx_mm\tforce_n\n0\t0.5\t-1.25\n1\t1000\t2\n -> -
-        "","x_mm","force_n"\n"1",0.5,-1.25\n"2",1000,2\n -> -
-        t_s,x_mm,force_n\n9,0.5,-1.25\n8,1000,2\n -> column "t_s" is not used
-        x_mm;force_n;\r\n0,5;-1,25;\r\n1000;2;\r\n -> column "" is not used; COMMAS
-        x_mm\tforce_n\n0,5\t-1,25\n1e3\t2,0\n -> COMMAS
-        Druck, bar, a;x_mm;Ort;force_n\n1,0;0,5;hier, da;-1,25\n\n"1;1";1000;";";2\n -> columns "Druck, bar, a", "Ort" are not used; COMMAS
-        "T, °C","force_n","x_mm"\n"20,5","-1.25","0.5"\n"a ""b"", c",2,1000\n -> column "T, °C" is not used
-        x_mm,force_n,<ESC>[31m\n0.5,-1.25,.\n1000,2,nan\n -> column "\u{1b}[31m" is not used
-    "#;
-
     // Verifies: MAP-040, MAP-041, MAP-030, MAP-044.
     #[test]
     fn tables_are_read_as_they_come() {
-        for (text, notes) in cases(SAME) {
-            let found = read(&text).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+        assert_cases("refused/csv.txt", "the same table", |text| {
+            let found = read(text).unwrap_or_else(|error| panic!("{text:?}: {error}"));
             let rows: Vec<_> = found.rows.iter().map(|(_, numbers)| *numbers).collect();
             assert_eq!(rows, [[5e-4, -1.25], [1.0, 2.0]], "{text:?}");
-            let notes = notes.replace("COMMAS", "commas in its numbers are decimal commas");
-            assert_eq!(
-                found.notes.join("; "),
-                notes.trim_start_matches('-'),
-                "{text:?}"
-            );
-        }
+            match &found.notes[..] {
+                [] => "nothing".into(),
+                notes => notes.join("; "),
+            }
+        });
         let found = read("t_s,force_n\n0.5,1\n").unwrap();
         assert_eq!((found.names, found.line), (["t_s", "force_n"], 1));
         assert_eq!(found.rows, [(2, [0.5, 1.0])]);
@@ -259,32 +217,7 @@ mod tests {
     // Verifies: MAP-040, MAP-033.
     #[test]
     fn tables_that_are_not_clear_are_refused_in_one_line() {
-        for (text, expected) in cases(
-            r#"
-            \n -> line 1: no column x_mm or x_m or t_s in the header "", expected x_mm,force_n
-            x_mm force_n\n -> line 1: no column x_mm or x_m or t_s in the header "x_mm force_n"
-            \n# a\nx_mm,force\n -> line 3: no column force_n or force_mn in the header "x_mm,force"
-            x_mm,x_m,force_n\n -> line 1: columns x_mm and x_m in the header "x_mm,x_m,force_n", expected x_mm,force_n
-            x_mm,X_mm,force_n\n -> line 1: columns x_mm and x_mm in the header
-            "x_mm,force_n\n -> line 1: no column x_mm
-            x_mm;force_n\n0.5,1\n -> line 2: 1 fields, expected 2, as in the header "x_mm;force_n"
-            x_mm,force_n\n0,5,1,0\n -> line 2: 4 fields, expected 2
-            x_mm,force_n\n"0,5",1\n -> line 2: x_mm = "0,5", expected a finite decimal number
-            x_mm,force_n\n"0.5,1\n -> line 2: 1 fields, expected 2
-            x_mm,force_n\n0.5,"1\n -> line 2: force_n = "\"1", expected
-            x_mm;force_n\n0,5;1,0\n1;1.5\n -> line 3: force_n = "1.5", expected a finite decimal number with the decimal mark ',' of the file
-            x_mm\tforce_n\n0.5\t1\n1\t1,234\n -> line 3: force_n = "1,234", expected a finite decimal number with the decimal mark '.' of the file
-            x_mm;force_n\n1,234.5;1\n -> line 2: x_mm = "1,234.5"
-            x_mm;force_n\n1.234,5;1\n -> line 2: x_mm = "1.234,5"
-            x_mm;force_n\n1,234,567;1\n -> line 2: x_mm = "1,234,567"
-            x_mm;force_n\n1 234;1\n -> line 2: x_mm = "1 234"
-            x_mm;force_n\n;1\n -> line 2: x_mm = ""
-            "#,
-        ) {
-            let error = read(&text).err();
-            let error = error.unwrap_or_else(|| panic!("{text:?} is accepted"));
-            assert!(error.starts_with(expected), "{text:?}: {error}");
-            assert_eq!(error.lines().count(), 1);
-        }
+        let refusal = |text: &str| read(text).err().expect("a refusal");
+        assert_cases("refused/csv.txt", "tables that are not clear", refusal);
     }
 }

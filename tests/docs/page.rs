@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use palpate_asserts::line_matches;
+
 /// A command with the output that the page shows, or a file.
 pub struct Step {
     /// The line of the page, from 1.
@@ -204,17 +206,6 @@ pub fn matches(expected: &str, output: &str) -> bool {
             }
             (None, None) => true,
             _ => false,
-        }
-    }
-    fn line_matches(wanted: &str, found: &str) -> bool {
-        match wanted.split_once("[..]") {
-            None => wanted == found,
-            Some((head, tail)) => found.strip_prefix(head).is_some_and(|rest| {
-                rest.char_indices()
-                    .map(|(at, _)| at)
-                    .chain([rest.len()])
-                    .any(|at| line_matches(tail, &rest[at..]))
-            }),
         }
     }
     lines_match(

@@ -7,7 +7,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 use super::{EXAMPLE, read};
-use crate::random::seeded;
+use palpate_asserts::seeded;
 
 fn material() -> impl Strategy<Value = Material> {
     (1e-3..1e12, -0.999..0.4995).prop_map(|(youngs_modulus, poisson_ratio)| Material {

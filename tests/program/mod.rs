@@ -63,21 +63,11 @@ impl Place {
         said.trim_end().into()
     }
 
-    /// Asserts that each line of `cases`, words and parts of the refusal, is refused with these.
-    pub fn refuses(&self, cases: &str, line: impl Fn(&str) -> String) {
-        for case in cases.trim().lines().map(str::trim) {
-            let (words, parts) = case.split_once(" => ").expect(case);
-            has(&self.refused(&line(words)), parts.split(" | "));
-        }
-    }
-}
-
-/// Asserts that a text has these parts.
-#[track_caller]
-pub fn has(text: &str, parts: impl IntoIterator<Item = impl AsRef<str>>) {
-    for part in parts {
-        let part = part.as_ref();
-        assert!(text.contains(part), "no {part:?} in {text}");
+    /// Asserts the refusals of a part of `refused/command_lines.txt`, whose cases `line` makes command lines of.
+    #[track_caller]
+    pub fn refuses(&self, part: &str, line: impl Fn(&str) -> String) {
+        let refused = |words: &str| self.refused(&line(words));
+        palpate_asserts::assert_cases("refused/command_lines.txt", part, refused);
     }
 }
 
@@ -104,28 +94,5 @@ pub fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     files
 }
 
-/// An ellipse at the left and a polygon at the right, under three layers, with sliding walls.
-pub const ASYMMETRIC: &str = r#"
-name = "asymmetric"
-well = { width_mm = 34, walls = "sliding" }
-layer = [
-  { name = "skin", thickness_mm = 0.5, youngs_modulus_kpa = 180, poisson_ratio = 0.49 },
-  { name = "fat", thickness_mm = 3, youngs_modulus_kpa = 3, poisson_ratio = 0.49 },
-  { name = "gel", thickness_mm = 12, youngs_modulus_kpa = 5, poisson_ratio = 0.49 },
-]
-probe = { radius_mm = 6.5, length_mm = 30 }
-[[inclusion]]
-centre_x_mm = -5
-depth_mm = 4
-width_mm = 6
-height_mm = 4
-angle_deg = 30
-youngs_modulus_kpa = 1200
-poisson_ratio = 0.49
-[[inclusion]]
-centre_x_mm = 8
-depth_mm = 7
-points_mm = [[-2, 0], [2, 0], [2, 3], [-2, 3]]
-youngs_modulus_kpa = 50
-poisson_ratio = 0.45
-"#;
+/// A phantom that is not its own mirror image.
+pub const ASYMMETRIC: &str = include_str!("asymmetric.toml");

@@ -131,7 +131,7 @@ pub fn interpolate(
 mod tests {
     use super::*;
     use crate::force_map::tests::table_of;
-    use palpate_asserts::assert_near;
+    use palpate_asserts::{assert_error, assert_near};
 
     /// Bilinear forces on axes of uneven steps, all exact in binary.
     fn table() -> ForceTable {
@@ -245,8 +245,9 @@ mod tests {
             let error = poses().sweep(0.001, &[0.0, x]).unwrap_err().to_string();
             assert!(error.starts_with(&format!("lateral position {x} m is outside the map")));
         }
-        let error = poses().sweep(0.005, &[0.0]).unwrap_err();
-        let expected = "depth 0.005 m is outside the map, expected 0 to 0.004 m";
-        assert_eq!(error.to_string(), expected);
+        assert_error(
+            poses().sweep(0.005, &[0.0]),
+            "depth 0.005 m is outside the map, expected 0 to 0.004 m",
+        );
     }
 }

@@ -1,5 +1,6 @@
 use super::*;
 use crate::force_map::{Hypotheses, Matrix};
+use palpate_asserts::{assert_cases, assert_error};
 
 mod judge;
 
@@ -45,58 +46,9 @@ fn columns_units_and_lines() {
 // Verifies: TRC-001, TRC-004, TRC-008.
 #[test]
 fn malformed_traces_are_refused_with_their_line() {
-    // A text, where HEAD is a header and \n a line break, and under it the beginning of the refusal.
-    let cases = r#"
-        \n
-        1: no column position_mm or position_m or time_s or time_ms in the header "", expected position_mm,
-        position,lateral_force_n,normal_force_n\n
-        1: no column position_mm or position_m or time_s or time_ms in the header "position,
-        position_mm,position_m,lateral_force_n,normal_force_n\n
-        1: columns position_mm and position_m in the header
-        time_ms,time_s,lateral_force_n,normal_force_n\n
-        1: columns time_ms and time_s in the header
-        position_mm,normal_force_mn,lateral_force_n,lateral_force_mn\n
-        1: columns lateral_force_n and lateral_force_mn in the header
-        position_mm,lateral_force_n\n
-        1: no column normal_force_n or normal_force_mn in the header
-        -1,0.25,1.5\n
-        1: no column position_mm or position_m or time_s or time_ms in the header "-1,0.25,1.5"
-        HEAD
-        1: no samples under the header, expected at least one row
-        EMPTY
-        1: no column position_mm
-        HEAD\n0,1\n
-        2: 2 fields, expected 3
-        HEAD\n0,1,2,3\n
-        2: 4 fields, expected 3
-        HEAD\n# c\n0,nan,2\n
-        3: lateral_force_n = "nan", expected a finite decimal number
-        HEAD\n0,1,inf\n
-        2: normal_force_n = "inf"
-        HEAD\n0,1,1e999\n
-        2: normal_force_n = "1e999"
-        HEAD\n0,,1\n
-        2: lateral_force_n = ""
-        HEAD\n0,1,1\n\n4,1,1\n3.7,1,1\n6,1,1\n5.5,1,1\n8,1,1\n
-        7: position 5.5 mm after 6.0 mm, expected at most 0.400 mm back, 5 % of the range: one pass of the probe, in the order of time
-        HEAD\n0,1,1\n-0.5,1,1\n-0.3,1,1\n-1,1,1
-        4: position -0.3 mm after -0.5 mm, expected at most 0.050 mm back
-        HEAD\n0,1,1\n1,1,1\n0,1,1\n
-        4: position 0.0 mm after 1.0 mm
-        time_s,lateral_force_n,normal_force_n\n1,1,1\n1,1,1\n
-        3: time 1.0 s after 1.0 s
-        time_ms,lateral_force_n,normal_force_n\n1,1,1\n0,1,1\n
-        3: time 0.0 s after 0.001 s
-    "#;
-    let lines: Vec<_> = cases.trim().lines().map(str::trim).collect();
-    for case in lines.chunks(2) {
-        let text = case[0].replace("\\n", "\n").replace("EMPTY", "");
-        let text = text.replace("HEAD", "position_mm,lateral_force_n,normal_force_n");
-        let error = read(&text).unwrap_err();
-        let expected = format!("t.csv:{}", case[1]);
-        assert!(error.starts_with(&expected), "{text:?}: {error}");
-        assert!(!error.contains('\n'), "{error}");
-    }
+    assert_cases("refused/trace.txt", "records", |text| {
+        read(&text.replace("HEAD", EXAMPLE.lines().next().unwrap())).unwrap_err()
+    });
 }
 
 // Verifies: TRC-001, TRC-004, TRC-010.
@@ -141,9 +93,10 @@ fn samples_outside_the_maps_are_left_out_on_request() {
     assert_eq!(note.unwrap(), expected);
     assert_eq!(trimmed.clone().trimmed(&table(0.0)), Ok((trimmed, None)));
     let sweep = "position_m,lateral_force_n,normal_force_n\n-4,1,2\n-3,3,4\n";
-    let error = read(sweep).unwrap().trimmed(&table(0.0)).unwrap_err();
-    let expected = "t.csv: all of 2 samples are outside the maps, expected -3.0 to 3.0 mm";
-    assert_eq!(error.to_string(), expected);
+    assert_error(
+        read(sweep).unwrap().trimmed(&table(0.0)),
+        "t.csv: all of 2 samples are outside the maps, expected -3.0 to 3.0 mm",
+    );
 }
 
 // Verifies: TRC-010, TRC-004.

@@ -1,6 +1,7 @@
 //! What a bank is, and its files.
 
 use super::*;
+use palpate_asserts::{assert_cases, assert_error};
 
 // Verifies: BNK-001, BNK-010.
 #[test]
@@ -87,16 +88,8 @@ fn a_prior_names_each_inclusion() {
         (prior[..3].to_vec(), prior.len()),
         (vec![0.75, 0.25, 0.0], 40)
     );
-    let refused = "
-        1,3,-2,4,E|1,3,-2,4,E => line 3: an inclusion for the second time, expected each once
-        1,3.5,-2,4,E => line 2: an inclusion that is not in the bank, expected one of its
-        -1,3,-2,4,E => line 2: weight = -1, expected at least 0
-        0,3,-2,4,E => weights that add up to 0, expected above 0 and finite";
-    for case in refused.trim().lines() {
-        let (rows, expected) = case.trim().split_once(" => ").unwrap();
-        let error = read(&format!("{}\n", rows.replace('|', "\n"))).unwrap_err();
-        assert_eq!(error.to_string(), expected);
-    }
+    let refused = |rows: &str| read(rows).unwrap_err().to_string();
+    assert_cases("refused/prior.txt", "rows", refused);
 }
 
 // Verifies: MAP-009.
@@ -196,9 +189,8 @@ fn inclusions_that_do_not_fit_are_refused_before_anything_is_solved() {
         error,
         "the inclusion is no disc, expected a disc where its diameter varies"
     );
-    let error = BankPlan::new(Phantom::builtin("none").unwrap(), 4e-3, &[0.0]).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "phantom.inclusion = 0 inclusions, expected one, of which the hypotheses are made"
+    assert_error(
+        BankPlan::new(Phantom::builtin("none").unwrap(), 4e-3, &[0.0]),
+        "phantom.inclusion = 0 inclusions, expected one, of which the hypotheses are made",
     );
 }

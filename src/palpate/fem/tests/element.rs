@@ -3,7 +3,7 @@ use crate::fem::element::{Stiffness, StiffnessRule, gradients, parent_gradients,
 use crate::fem::field::determinant;
 use crate::fem::vtu::von_mises;
 use crate::phantom::Material;
-use palpate_asserts::assert_near;
+use palpate_asserts::{assert_near, numbers_of};
 
 use super::builtin;
 
@@ -24,23 +24,6 @@ fn assert_close(stiffness: &Stiffness, expected: impl Fn(usize, usize) -> f64, u
     }
 }
 
-/// 75 times the stiffness of the straight triangle (0,0), (3,1), (1,2), in exact rational arithmetic: the
-/// gradients' products are quadratic, so that the rule at the three edge midpoints integrates them exactly.
-const TRIANGLE_75: [[i32; 12]; 12] = [
-    [21, 12, 4, 3, 3, 1, -16, -12, 0, 0, -12, -4],
-    [12, 39, 3, -4, 1, 17, -12, 16, 0, 0, -4, -68],
-    [4, 3, 39, -12, 9, -7, -16, -12, -36, 28, 0, 0],
-    [3, -4, -12, 21, -7, 11, -12, 16, 28, -44, 0, 0],
-    [3, 1, 9, -7, 36, -18, 0, 0, -36, 28, -12, -4],
-    [1, 17, -7, 11, -18, 84, 0, 0, 28, -44, -4, -68],
-    [-16, -12, -16, -12, 0, 0, 128, -24, -24, -8, -72, 56],
-    [-12, 16, -12, 16, 0, 0, -24, 192, -8, -136, 56, -88],
-    [0, 0, -36, 28, -36, 28, -24, -8, 128, -24, -32, -24],
-    [0, 0, 28, -44, 28, -44, -8, -136, -24, 192, -24, 32],
-    [-12, -4, 0, 0, -12, -4, -72, 56, -32, -24, 128, -24],
-    [-4, -68, 0, 0, -4, -68, 56, -88, -24, 32, -24, 192],
-];
-
 // Verifies: FEM-005.
 #[test]
 fn triangle_matches_exact_rationals() {
@@ -49,7 +32,8 @@ fn triangle_matches_exact_rationals() {
     let middles = [middle(0, 1), middle(1, 2), middle(2, 0)];
     let positions = [corners, middles].concat();
     let stiffness = StiffnessRule::default().integrate(&positions, &QUARTER);
-    let exact = |row: usize, column: usize| f64::from(TRIANGLE_75[row][column]) / 75.0;
+    let exact = numbers_of::<12>("tables/fem.txt", "stiffness of a triangle");
+    let exact = |row: usize, column: usize| exact[row][column] / 75.0;
     assert_close(&stiffness.unwrap(), exact, 12);
 }
 

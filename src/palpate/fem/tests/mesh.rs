@@ -7,7 +7,7 @@ use crate::fem::mesh::Mesh;
 use crate::fem::size::SizeField;
 use crate::fem::triangulate::Triangulation;
 use crate::phantom::{Outline, Phantom, Support};
-use palpate_asserts::assert_near;
+use palpate_asserts::{assert_cases, row};
 
 use super::supports::{SUPPORTS, held_by};
 use super::{builtin, disc, ellipse, hard, off_centre, polygon, with, zoo};
@@ -91,43 +91,19 @@ fn sizes_are_those_of_the_table() {
         let field = SizeField::new(phantom, scale * 0.5e-3);
         1e3 * field.at(at.map(|x| x * 1e-3).into())
     };
-    // Phantom, H, place and size, mm.
-    for (phantom, scale, at, expected) in [
-        // The surface, and below it; the largest.
-        (&shapes, 1.0, [0.0, 0.0], 0.20),
-        (&shapes, 0.5, [0.0, 0.0], 0.10),
-        (&shapes, 2.0, [0.0, 0.0], 0.40),
-        (&shapes, 1.0, [0.0, -0.3], 0.20 + 0.16 * 0.3),
-        (&other, 1.0, [0.0, -14.0], 1.5),
-        (&other, 2.0, [0.0, -14.0], 3.0),
-        // The strip at a wall, and beside it.
-        (&shapes, 1.0, [13.5, 0.0], 0.10),
-        (&shapes, 1.0, [-12.8, 0.0], 0.10 + 0.16 * 0.2),
-        // A disc's edge from inside and outside, in any direction.
-        (&shapes, 1.0, [-7.0, -10.0], 0.20),
-        (&shapes, 1.0, [-7.0, -9.5], 0.20 + 0.40 * 0.5),
-        (&shapes, 0.5, [-7.0, -10.3], 0.5 * (0.20 + 0.40 * 0.3)),
-        // Corners of walls, polygons and ellipses: the radius at this end is 0.5²/1.5.
-        (&shapes, 1.0, [17.0, -0.5], 0.015),
-        (&shapes, 1.0, [-17.0, -0.6], 0.015 + 0.22 * 0.1),
-        (&shapes, 1.0, [8.0, -13.0], 0.05),
-        (&shapes, 1.0, [8.0, -13.1], 0.05 + 0.30 * 0.1),
-        (&shapes, 1.0, [6.5, -3.5], 0.5 * 0.25 / 1.5),
-        (&shapes, 2.0, [6.5, -3.5], 0.5 * 0.25 / 1.5),
-        (&shapes, 0.5, [6.5, -3.5], 0.25 * 0.25 / 1.5),
-        (&sliding, 1.0, [17.0, 0.0], 0.10),
-        // A layer of 0.2 mm, and below it.
-        (&other, 1.0, [0.0, -0.1], 0.10),
-        (&other, 4.0, [0.0, -0.1], 0.20),
-        (&other, 1.0, [0.0, -0.3], 0.10 + 0.16 * 0.1),
-        // 0.2 mm between two discs.
-        (&near, 1.0, [0.0, -7.5], 0.10),
-        (&near, 2.0, [0.0, -7.5], 0.10),
-        (&near, 0.5, [0.0, -7.5], 0.05),
-    ] {
-        let found = size(phantom, scale, at);
-        assert_near(found, expected, 1e-9);
-    }
+    assert_cases("tables/fem.txt", "sizes", |case| {
+        let (name, numbers) = case.split_once(' ').unwrap();
+        let phantom = match name {
+            "shapes" => &shapes,
+            "other" => &other,
+            "sliding" => &sliding,
+            _ => &near,
+        };
+        let [scale, x, y] = row(numbers)[..] else {
+            panic!("{case}")
+        };
+        format!("{:.9}", size(phantom, scale, [x, y]))
+    });
 }
 
 // Verifies: FEM-002, FEM-031.

@@ -3,6 +3,7 @@
 use super::*;
 use crate::hid::simulated::PAPER;
 use crate::hid::tests::{MS, limits, probing, recorded, table};
+use palpate_asserts::{assert_cases, assert_error, changed};
 
 /// The cycles of a session on this device, at most so many.
 fn cycles(device: impl HapticDevice, most: usize) -> Vec<RecordedCycle> {
@@ -119,43 +120,14 @@ fn cycles_that_a_session_would_not_have_played_are_not_the_same() {
 fn what_is_no_recording_is_refused_with_its_line() {
     let good = recording().to_text();
     let lines: Vec<&str> = good.lines().take(6).collect();
-    let with = |at: usize, from: &str, to: &str| {
-        let wrong = lines[at].replace(from, to);
-        assert_ne!(wrong, lines[at], "{from}");
-        let mut changed = lines.clone();
-        changed[at] = &wrong;
-        let refused = Recording::parse(&changed.join("\n")).unwrap_err();
-        assert_eq!(refused.line, Some(at + 1), "{wrong}");
+    assert_cases("refused/recording.txt", "changes", |case| {
+        let (number, change) = case.split_once(": ").unwrap();
+        let at = number.parse::<usize>().unwrap() - 1;
+        let wrong = changed(lines[at], &change.replace("CYCLE", lines[at]));
+        let mut lines = lines.clone();
+        lines[at] = &wrong;
+        let refused = Recording::parse(&lines.join("\n")).unwrap_err();
         refused.to_string()
-    };
-    let refused = with(0, "palpate-session 2", "palpate-session 3");
-    assert!(refused.starts_with("line 1: \"{\\\"format\\\":\\\"palpate-session 3"));
-    let unknown = "unknown variant `palpate-session 3`";
-    assert!(refused.contains(unknown), "{refused}");
-    let cycle = lines[4];
-    let (cut, twice) = (&cycle[..cycle.len() - 1], cycle.repeat(2));
-    for (at, from, to) in [
-        (0, "\"force_n\":2.0", "\"force_n\":NaN"),
-        (0, "\"force_n\":2.0", "\"force_n\":1e39"),
-        (0, "\"force_n\":2.0", "\"force_n\":-2.0"),
-        (0, "\"version\":1,", ""),
-        (0, "\"version\":1,", "\"version\":65536,"),
-        (0, "\"version\":1,", "\"version\":1,\"version\":1,"),
-        (0, "\"version\":1,", "\"version\":1,\"more\":1,"),
-        (4, cycle, ""),
-        (4, cycle, "[]"),
-        (4, cycle, cut),
-        (4, cycle, &twice),
-        (4, ",\"playing\":false", ""),
-        (4, "\"playing\":false", "\"playing\":0"),
-        (4, "\"playing\":false", "\"playing\":false,\"played\":false"),
-        (4, "\"received_us\":", "\"received_us\":-"),
-        (4, "\"flags\":1", "\"flags\":256"),
-        (4, "\"buttons\":0,", ""),
-        (4, "\"force\":{", "\"force\":{\"version\":1,"),
-    ] {
-        with(at, from, to);
-    }
-    let refused = Recording::parse("").unwrap_err().to_string();
-    assert!(refused.starts_with("line 1: \"\", expected"), "{refused}");
+    });
+    assert_error(Recording::parse(""), "line 1: \"\", expected[..]");
 }

@@ -8,7 +8,7 @@ use super::*;
 use crate::hid::tests::{MS, Sent, Watched, begin, probing, recorded, table};
 use crate::hid::{Counters, End, Session};
 use crate::servo::{Fault as ServoFault, Limits, Mode, Request};
-use palpate_asserts::assert_near;
+use palpate_asserts::{assert_cases, assert_near};
 
 fn device(faults: Vec<(Duration, Defect)>) -> SimulatedDevice {
     probing(1500 * MS, faults)
@@ -241,34 +241,20 @@ fn a_session_begins_only_with_a_device_that_can_be_trusted() {
         ..PAPER
     };
     assert_eq!(begins(patient, 2.0), Ok(()));
-    let drops = "the device drops its force after";
-    let none = format!(
-        "{drops} 0 ms without a report, expected more than its period of 1000 µs and at most 100 ms: \
-         a blocked write would leave the force on the hand"
-    );
-    let fine = "the device's force unit is 10 µN, so that no report holds its largest force of 8000 mN, \
-                expected a unit of at least 245 µN";
-    let weak = "a force limit of 2 N, expected at most 1.9 N, the device's largest force";
-    let coarse = "the device's force unit is 0.051 N, expected at most the slew limit of 0.05 N";
-    let refuses = |change: fn(&mut Capabilities), expected: &str| {
-        let mut capabilities = PAPER;
-        change(&mut capabilities);
-        let refused = begins(capabilities, 2.0).unwrap_err().to_string();
-        assert!(refused.starts_with(expected), "{refused}");
-    };
-    let version = "the device speaks version 2 of the profile, expected 1";
-    refuses(|c| c.version = 2, version);
-    let never = "the device reports every 0 µs, expected at least 1";
-    refuses(|c| c.period_us = 0, never);
-    refuses(|c| c.watchdog_ms = 0, &none);
-    refuses(|c| c.watchdog_ms = 101, &format!("{drops} 101 ms"));
-    // 10 ms of watchdog on a device that reports every 10 ms.
-    let slow = |c: &mut Capabilities| (c.watchdog_ms, c.period_us) = (10, 10_000);
-    refuses(slow, &format!("{drops} 10 ms"));
-    refuses(|c| c.largest_force_mn = 1900, weak);
-    // A device whose numbers do not reach its force, or cannot tell one step of it from two.
-    refuses(|c| c.force_unit_un = 10, fine);
-    refuses(|c| c.force_unit_un = 51_000, coarse);
+    assert_cases("refused/device.txt", "devices", |case| {
+        let (mut capabilities, words) = (PAPER, case.split(' ').collect::<Vec<_>>());
+        for pair in words.chunks(2) {
+            let changed = match pair[0] {
+                "version" => &mut capabilities.version,
+                "period_us" => &mut capabilities.period_us,
+                "watchdog_ms" => &mut capabilities.watchdog_ms,
+                "largest_force_mn" => &mut capabilities.largest_force_mn,
+                _ => &mut capabilities.force_unit_un,
+            };
+            *changed = pair[1].parse().unwrap();
+        }
+        begins(capabilities, 2.0).unwrap_err().to_string()
+    });
 }
 
 // Verifies: HID-012, HID-016.

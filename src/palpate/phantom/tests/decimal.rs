@@ -1,48 +1,22 @@
 //! The numbers of a file in another unit.
 
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use crate::decimal::{format_scaled, parse_scaled};
-
-// Verifies: PHA-020.
-#[test]
-fn scaled_decimals_are_the_nearest_floats() {
-    // The right-hand sides are rounded by the compiler. A product of floats with 1e-3 misses the
-    // first two, a quotient of floats by 1000 the next two.
-    for (text, power, expected) in [
-        ("2.6", -3, 0.0026),
-        ("6.5", -3, 0.0065),
-        ("1.0566132852391916", -3, 0.0010566132852391916),
-        ("1.7672673511353922", -3, 0.0017672673511353922),
-        ("34", -3, 0.034),
-        ("-0.5", -3, -0.0005),
-        ("+1.5e-3", 3, 1.5),
-        ("1.2e3", 3, 1.2e6),
-        ("1E2", -3, 0.1),
-        (".5", 0, 0.5),
-        ("5.", 0, 5.0),
-    ] {
-        assert_eq!(parse_scaled(text, power), Some(expected), "{text}e{power}");
-    }
-}
+use palpate_asserts::{assert_cases, seeded};
 
 // Verifies: PHA-004, PHA-020, PHA-026.
 #[test]
-fn what_is_no_finite_decimal_is_no_number() {
-    let texts =
-        "| 1|nan|NaN|inf|-inf|infinity|1e400|1e99999999999|0x10|1,5|1_000|e5|1e|.|--1|1e2147483647";
-    for text in texts.split('|') {
-        assert_eq!(parse_scaled(text, 3), None, "{text:?}");
-    }
+fn scaled_decimals_are_the_nearest_floats() {
+    assert_cases("tables/decimals.txt", "scaled", |case| {
+        let (text, power) = case.rsplit_once(" e").unwrap();
+        let found = parse_scaled(text, power.parse().unwrap());
+        found.map_or("no number".into(), |found| format!("{found:?}"))
+    });
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        rng_seed: RngSeed::Fixed(2),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(seeded(2))]
 
     // Verifies: PHA-020.
     #[test]

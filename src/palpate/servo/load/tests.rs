@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::force_map::tests::table_of as map;
 use crate::servo::EXTRAPOLATION_CELLS;
-use palpate_asserts::assert_near;
+use palpate_asserts::{assert_cases, assert_near, row};
 
 /// A device that plays everything.
 const FREE: Damping = Damping {
@@ -63,34 +63,13 @@ fn a_map_from_the_surface_on_is_taken_as_it_is() {
 // Verifies: SRV-047.
 #[test]
 fn a_map_is_refused_with_its_place() {
-    let refused = |depths: &[f64], laterals: &[f64], force: fn(f64, f64) -> [f64; 2]| {
-        LoadedTable::new(&map(depths, laterals, force))
-            .unwrap_err()
-            .to_string()
-    };
-    let calm = |_, _| [0.0, 0.0];
-    let texts = [
-        refused(&[0.0], &[0.0, 0.1], calm),
-        refused(&[0.1], &[0.0], calm),
-        refused(&[0.1, 1.25], &[0.0, 0.1], calm),
-        refused(&[1e-7], &[0.0, 0.1], calm),
-        refused(&[0.1], &[0.0, 5e-7], calm),
-        refused(&[0.1], &[0.0, 0.1], |_, x| [0.0, 2000.0 * x]),
-        refused(&[0.0, 0.1], &[0.0, 0.1], |_, x| [x, 0.0]),
-        refused(&[0.1], &[0.0, 1.5], calm),
-    ];
-    let beginnings = "depths_m has 1 entries
-laterals_m has 1 entries
-depths_m[1] = 1.25, expected at most ±1 m
-depths_m[0] = 0.0000001, expected at least 1e-6 m
-laterals_m[1] = 0.0000005, expected at least 1e-6 m above the one before, 0,
-normal_force_n[0][1] = 200, expected at most ±100 N
-lateral_force_n[0][1] = 0.1 at depth 0, expected at most ±0.02 N
-laterals_m[1] = 1.5, expected at most ±1 m";
-    assert_eq!(beginnings.lines().count(), texts.len());
-    for (text, beginning) in texts.iter().zip(beginnings.lines()) {
-        assert!(text.starts_with(beginning), "{text}");
-    }
+    assert_cases("refused/playback.txt", "maps", |case| {
+        let numbers = case.split(';').map(row);
+        let [depths, laterals, slopes] = numbers.collect::<Vec<_>>().try_into().unwrap();
+        let force = |_, x: f64| [slopes[0] * x, slopes[1] * x];
+        let refused = LoadedTable::new(&map(&depths, &laterals, force));
+        refused.unwrap_err().to_string()
+    });
 }
 
 // Verifies: SRV-047.

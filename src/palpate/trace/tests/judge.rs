@@ -7,6 +7,7 @@ use crate::detect::correlation::correlation_length;
 use crate::detect::nuisance::Threshold;
 use crate::force_map::tests::table_of;
 use crate::stats::random::Generator;
+use palpate_asserts::assert_error;
 
 fn at(threshold: Threshold) -> f64 {
     match threshold {
@@ -21,14 +22,19 @@ pub fn question<'a>(depth: f64) -> Question<'a> {
         depth,
         depth_tolerance: 0.0,
         unknown: &[],
-        noise: Noise {
-            sd: Some(Force::new(0.5, 0.25)),
-            correlation: Correlation::None,
-        },
+        noise: noise(Some(Force::new(0.5, 0.25)), Correlation::None),
         criterion: Criterion::Map,
         prior_h1: 0.25,
     }
 }
+
+fn noise(sd: Option<Force<f64>>, correlation: Correlation) -> Noise {
+    Noise { sd, correlation }
+}
+
+const TWO_PER_CENT: Criterion = Criterion::NeymanPearsonFalseAlarm {
+    max_false_alarm: 0.02,
+};
 
 // Verifies: TRC-020, TRC-021, TRC-065, TRC-060, CLI-043.
 #[test]
@@ -76,8 +82,7 @@ t.csv:5: position 3.1 mm is outside the maps, expected -3.0 to 3.0 mm (or use --
         ForceTable::new(depths.to_vec(), laterals, forces).unwrap()
     };
     let (a, b) = (table([0.001, 0.003]), table([0.001, 0.0031]));
-    let error = Hypotheses::of_tables(&b, &a).unwrap_err().to_string();
-    assert!(error.starts_with("depths_m[1] is 0.003"), "{error}");
+    assert_error(Hypotheses::of_tables(&b, &a), "depths_m[1] is 0.003[..]");
     let single = |signal| {
         let normal = |x| 1.0 + if x > 0.0 { signal } else { 0.0 };
         table_of(&[0.001], &[-0.001, 0.001], |_, x| [0.0, normal(x)])
@@ -88,9 +93,10 @@ t.csv:5: position 3.1 mm is outside the maps, expected -3.0 to 3.0 mm (or use --
         ..question(0.001)
     };
     let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
-    let error = question.judge(hypotheses, &record).unwrap_err().to_string();
-    let expected = "the maps have a single depth, expected rows at other depths";
-    assert!(error.contains(expected), "{error}");
+    assert_error(
+        question.judge(hypotheses, &record),
+        "[..]the maps have a single depth, expected rows at other depths[..]",
+    );
 }
 
 /// Maps at 3.7, 4 and 4.3 mm over −8 … 8 mm by ½ mm, with an inclusion of so much signal (N).
@@ -161,7 +167,6 @@ fn what_is_unknown_is_fitted_by_least_squares() {
         let signal = signal.sweep(4e-3, &[x]).unwrap();
         signal.map(|signal| 0.8 * signal[0]).into_array()
     });
-    let noise = |sd, correlation| Noise { sd, correlation };
     let white = noise(Some(STATED), Correlation::None);
     let blocks = noise(Some(STATED), Correlation::Known(1.7));
     let of_the_record = noise(None, Correlation::None);
@@ -184,12 +189,11 @@ fn what_is_unknown_is_fitted_by_least_squares() {
             "384.5330530254016 316 6.839988560372772 7.913838846268948 13.659872024495744 2.351795236466693 5.1279382140775336e-6"),
     ];
     for (unknown, depth_tolerance, noise, expected) in cases {
-        let max_false_alarm = 0.02;
         let question = Question {
             unknown,
             depth_tolerance,
             noise,
-            criterion: Criterion::NeymanPearsonFalseAlarm { max_false_alarm },
+            criterion: TWO_PER_CENT,
             ..question(4e-3)
         };
         let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
@@ -237,13 +241,8 @@ fn a_tolerance_of_depth_shifts_t_by_the_slope_between_the_rows_beside_it() {
     let slope = f64::max(along[0].abs(), along[1].abs()) / f64::sqrt(gamma2);
     let question = Question {
         depth_tolerance: 1e-4,
-        noise: Noise {
-            sd: Some(STATED),
-            correlation: Correlation::None,
-        },
-        criterion: Criterion::NeymanPearsonFalseAlarm {
-            max_false_alarm: 0.02,
-        },
+        noise: noise(Some(STATED), Correlation::None),
+        criterion: TWO_PER_CENT,
         ..question(4e-3)
     };
     let (without, with) = (gel(0.0), gel(0.2));
@@ -270,10 +269,7 @@ fn asked(record: &Record, unknown: &[Unknown], sd: Option<f64>) -> Judgement {
     let (without, with) = (gel(0.0), gel(0.5));
     let question = Question {
         unknown,
-        noise: Noise {
-            sd: sd.map(|sd| Force::new(sd, sd)),
-            correlation: Correlation::OfRecord,
-        },
+        noise: noise(sd.map(|sd| Force::new(sd, sd)), Correlation::OfRecord),
         ..question(4e-3)
     };
     let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();

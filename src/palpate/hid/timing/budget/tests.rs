@@ -1,6 +1,7 @@
 //! Verdicts on counts whose binomial tails are known from elsewhere. No assertion is about the speed of this machine.
 
 use super::*;
+use palpate_asserts::{assert_cases, row};
 
 const MS: Duration = Duration::from_millis(1);
 
@@ -17,37 +18,18 @@ fn outcome(budget: Budget, cycles: u64, misses: u64) -> BudgetOutcome {
     judged.outcome
 }
 
-/// The bounds are those of SciPy's `binom`: the largest number of misses m with cdf(m, n, 1 − q) ≤ 0.05, and the least with
-/// sf(m − 1, n, 1 − q) ≤ 0.05.
 // Verifies: HID-062, HID-064.
 #[test]
 fn outcomes_change_where_the_binomial_law_says() {
-    use BudgetOutcome::{Broken, Kept, Undecided};
     let p99_9 = Budget::of(MS);
     let p95 = Budget::new(MS, 95.0, 95.0).unwrap();
-    let cases = [
-        // 0.999^2995 = 0.04996: none may miss.
-        (p99_9, 2994, 0, Undecided),
-        (p99_9, 2995, 0, Kept),
-        (p99_9, 2995, 1, Undecided),
-        (p99_9, 2995, 6, Undecided),
-        (p99_9, 2995, 7, Broken),
-        (p99_9, 10_000, 4, Kept),
-        (p99_9, 10_000, 5, Undecided),
-        (p99_9, 10_000, 15, Undecided),
-        (p99_9, 10_000, 16, Broken),
-        // 0.95^59 = 0.0485.
-        (p95, 58, 0, Undecided),
-        (p95, 59, 0, Kept),
-        (p95, 100, 1, Kept),
-        (p95, 100, 2, Undecided),
-        (p95, 100, 9, Undecided),
-        (p95, 100, 10, Broken),
-    ];
-    for (budget, cycles, misses, expected) in cases {
-        let found = outcome(budget, cycles, misses);
-        assert_eq!(found, expected, "{misses} of {cycles}, {budget:?}");
-    }
+    assert_cases("tables/budgets.txt", "outcomes", |case| {
+        let [percentile, confidence, cycles, misses] = row(case)[..] else {
+            panic!("{case}")
+        };
+        let budget = Budget::new(MS, percentile, confidence).unwrap();
+        format!("{:?}", outcome(budget, cycles as u64, misses as u64))
+    });
     assert_eq!(p99_9.least_cycles(), 2995);
     assert_eq!(p95.least_cycles(), 59);
 }

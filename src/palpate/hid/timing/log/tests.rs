@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::hid::timing::BudgetOutcome;
+use palpate_asserts::assert_cases;
 
 const MS: Duration = Duration::from_millis(1);
 
@@ -39,26 +40,8 @@ fn durations_and_time_stamps_are_read_in_every_unit() {
 // Verifies: CLI-173.
 #[test]
 fn what_is_no_log_is_refused_with_its_line() {
-    // Lines of the log, and a part of the refusal.
-    let cases = r#"
-        duration_us|1|-1 => 3: duration_us = -0.000001 s, expected at least 0
-        duration_us|1|NaN => 3: duration_us = "NaN"
-        time_s|1|2|2 => 4: time_s = 2, expected a time above the one before
-        period|1 => 1: no column duration_ns or
-        duration_us => no cycle
-        time_us|1 => no cycle
-        {"duration_us": 1}|{"time_us": 1} => 2: duration_us = null
-        {"duration_us": "1"} => 1: duration_us = "1", expected a finite number
-        {"duration_us": 1}|started => 2: no JSON object
-        {"period": 1} => 1: {"period": 1}, expected one of duration_ns
-        {"duration_s": 1e300} => 1: duration_s"#;
     let refused = |text: &str| judge_log(text, Budget::of(MS)).unwrap_err().to_string();
-    for case in cases.trim().lines() {
-        let (lines, expected) = case.trim().split_once(" => ").unwrap();
-        let refusal = refused(&format!("{}\n", lines.replace('|', "\n")));
-        assert!(refusal.contains(expected), "{case}: {refusal}");
-    }
-    assert!(refused("").contains("no column"));
+    assert_cases("refused/timing_log.txt", "logs", refused);
 }
 
 // Verifies: HID-064, CLI-173.
