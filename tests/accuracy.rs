@@ -1,7 +1,7 @@
 //! The stated accuracy of the oracle, by dense sweeps against mpmath (`spec/detector.md`, `tests/accuracy/sweep.py`). Skipped
 //! with a notice where Python or mpmath is missing, unless `PALPATE_REQUIRE_WITNESSES=1` asks for it.
 
-use crate::witness::present::printed;
+use crate::witness::printed;
 
 // Verifies: DET-001, DET-014, ACC-014, ACC-020.
 #[test]

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::witness::present::printed;
+use crate::witness::printed;
 use serde_json::{Value, json as value};
 
 // Verifies: VEC-007.

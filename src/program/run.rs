@@ -118,7 +118,7 @@ fn solve_phantom(
 /// The mesh at the deepest pose, at the lateral position nearest to the middle of the first inclusion, or to x = 0.
 fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
     let depth = map.table().depths().iter().fold(0.0, |a: f64, &b| a.max(b));
-    let first = model.phantom().inclusions.first();
+    let first = model.phantom().inclusions().first();
     let [left, right, ..] = first.map_or([0.0; 4], Inclusion::extent);
     let distance = |x: f64| (x - 0.5 * (left + right)).abs();
     let laterals = map.table().laterals().iter().copied();
@@ -136,7 +136,7 @@ fn write_run(run: &Run, out: &Path) -> Result<(), CliError> {
     make_folder(&out.join("figures"))?;
     let mut names = FileNames::default();
     for map in run.reference_and_maps() {
-        let name = map.phantom().map_or("", |phantom| &phantom.name);
+        let name = map.phantom().map_or("", |phantom| &phantom.name());
         let name = names.unique("map", name, "json");
         write(&out.join("maps").join(name), &map.to_json())?;
     }

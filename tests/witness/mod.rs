@@ -10,6 +10,18 @@ mod scikit_fem;
 use palpate::fem::mesh::Region;
 use palpate::phantom::{Material, Phantom};
 
+/// What a script prints, named from the root of the checkout: it must succeed. `None`, with a notice, where mpmath is missing.
+pub fn printed(script: &str, arguments: &[&str]) -> Option<String> {
+    let script = format!("{}/{script}", crate::ROOT);
+    let mut python = present::python_with("mpmath")?;
+    let output = python.args(["-B", &script]).args(arguments).output();
+    let output = output.expect("Python starts");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{script}: {text}{errors}");
+    Some(text)
+}
+
 /// A built-in phantom, its inclusion at `centre_x`, m.
 fn builtin_at(name: &str, centre_x: f64) -> Phantom {
     let phantom = Phantom::builtin(name).unwrap().changed(|parts| {

@@ -37,15 +37,3 @@ pub fn python_with(module: &str) -> Option<Command> {
     };
     present(missing).then(python)
 }
-
-/// What a script prints, named from the root of the checkout: it must succeed. `None`, with a notice, where mpmath is missing.
-pub fn printed(script: &str, arguments: &[&str]) -> Option<String> {
-    let script = format!("{}/{script}", crate::ROOT);
-    let mut python = python_with("mpmath")?;
-    let output = python.args(["-B", &script]).args(arguments).output();
-    let output = output.expect("Python starts");
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{script}: {text}{errors}");
-    Some(text)
-}

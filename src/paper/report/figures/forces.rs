@@ -100,7 +100,7 @@ fn bands(run: &Run, map: &ForceMap) -> [Vec<Line>; 2] {
         |lateral_m| Kind::LateralForceN { lateral_m },
     ];
     kinds.map(|kind| {
-        let at = |&x: &f64| Some((1e3 * x, study.of(&phantom.name, &kind(x))?.band?));
+        let at = |&x: &f64| Some((1e3 * x, study.of(&phantom.name(), &kind(x))?.band?));
         let bands: Vec<_> = study.plan.laterals.iter().filter_map(at).collect();
         band_ends("", &bands, 1.0)
     })

@@ -31,7 +31,7 @@ pub fn figure(mesh: &DeformedMesh) -> Plan {
     let sample = |colour, name: &str| Line::area(colour, Vec::new()).named(name);
     panel.key = vec![sample(PROBE, "probe")];
     panel.key.extend(layer_key(phantom, |_| String::new()));
-    panel.key.extend(match phantom.inclusions.len() {
+    panel.key.extend(match phantom.inclusions().len() {
         0 => None,
         1 => Some(sample(INCLUSION, "inclusion")),
         _ => Some(sample(INCLUSION, "inclusions")),

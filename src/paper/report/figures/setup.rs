@@ -11,7 +11,7 @@ use palpate::chart::{CHORDS, Line, Panel, to_mm};
 use palpate::fem::Pose;
 use palpate::fem::mesh::Region;
 use palpate::force_map::ForceMap;
-use palpate::phantom::{Inclusion, Material, Phantom, Shape, Support};
+use palpate::phantom::{Inclusion, Material, Phantom, PhantomParts, Shape, Support};
 
 /// Part of the well's width that walls and floor are drawn thick. Their real thickness is not known and plays no part.
 const WALL: f64 = 0.07;
@@ -76,7 +76,7 @@ pub fn layer_key(phantom: &Phantom, words: impl Fn(usize) -> String) -> impl Ite
 /// Implements: REP-030.
 pub fn figures(run: &Run) -> Vec<Plan> {
     let all = run.reference_and_maps().filter_map(ForceMap::phantom);
-    let (full, plain): (Vec<_>, Vec<_>) = all.partition(|of| !of.inclusions.is_empty());
+    let (full, plain): (Vec<_>, Vec<_>) = all.partition(|of| !of.inclusions().is_empty());
     let mut drawn: Vec<&Phantom> = Vec::new();
     for phantom in once(&run.deformed.phantom).chain(full).chain(plain) {
         if !drawn.iter().any(|other| empty(other) == empty(phantom)) {
@@ -106,7 +106,7 @@ fn empty(phantom: &Phantom) -> PhantomParts {
 /// The phantom and the probe to scale.
 fn panel(phantom: &Phantom) -> Panel {
     let mut areas = well(phantom);
-    let inclusions = phantom.inclusions.iter();
+    let inclusions = phantom.inclusions().iter();
     let corners = inclusions.map(|of| to_mm(of.outline().chords(CHORDS)));
     areas.extend(corners.map(|corners| Line::area(INCLUSION, corners)));
     let (depth, lateral) = (0.0, 0.0);
@@ -150,10 +150,10 @@ fn key(phantom: &Phantom) -> Vec<Line> {
         millimetres(2.0 * phantom.probe().radius),
         millimetres(phantom.probe().length)
     );
-    let thickness = |k: usize| format!(": {} mm", millimetres(phantom.layers[k].thickness));
-    let is_free = [phantom.well.walls, phantom.well.floor] == [Support::Free; 2];
+    let thickness = |k: usize| format!(": {} mm", millimetres(phantom.layers()[k].thickness));
+    let is_free = [phantom.well().walls, phantom.well().floor] == [Support::Free; 2];
     let supports = if is_free { WHITE } else { WALLS };
-    let inclusions = phantom.inclusions.iter();
+    let inclusions = phantom.inclusions().iter();
     let inclusions = first(inclusions.map(|of| format!("inclusion: {}", place(of))));
     let mut key = vec![sample(PROBE, probe)];
     key.extend(layer_key(phantom, thickness));
@@ -209,9 +209,9 @@ fn words(phantom: &Phantom, name: &str, key: &[Line]) -> Words {
         let [modulus, ratio] = [trimmed(modulus, 3), trimmed(ratio, 6)];
         format!("{name}: E = {modulus} kPa, ν = {ratio}")
     };
-    let layers = phantom.layers.iter();
+    let layers = phantom.layers().iter();
     let layers = first(layers.map(|of| material(&of.name, &of.material)));
-    let inclusions = phantom.inclusions.iter();
+    let inclusions = phantom.inclusions().iter();
     let inclusions = first(inclusions.map(|of| material("inclusion", &of.material)));
     let materials = joined(layers.into_iter().chain(inclusions), "; ");
     let of_paper = match paper::name_of(phantom) {
@@ -235,7 +235,7 @@ fn words(phantom: &Phantom, name: &str, key: &[Line]) -> Words {
         ),
         format!(
             "Cross-section of a well {} mm wide. {}.",
-            millimetres(phantom.well.width),
+            millimetres(phantom.well().width),
             joined(key.iter().map(|part| part.name.clone()), "; ")
         ),
     ]

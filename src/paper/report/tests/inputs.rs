@@ -90,9 +90,13 @@ fn without_a_study_the_page_says_so() {
 #[test]
 fn a_study_of_something_else_is_refused() {
     let changes: [(&str, fn(&mut StudyPlan)); 7] = [
-        ("reference", |plan| plan.reference.well.width = 0.04),
+        ("reference", |plan| {
+            let wider = plan.reference.changed(|parts| parts.well.width = 0.04);
+            plan.reference = wider.unwrap();
+        }),
         ("phantom \"4.6\"", |plan| {
-            plan.phantoms[1].inclusions[0].depth = 5e-3
+            let deeper = plan.phantoms[1].changed(|parts| parts.inclusions[0].depth = 5e-3);
+            plan.phantoms[1] = deeper.unwrap();
         }),
         ("depth of the probe", |plan| plan.probe_depth = 3e-3),
         ("list of lateral positions", |plan| {

@@ -5,7 +5,7 @@ use super::run::*;
 use crate::psychophysics::Bounds;
 use crate::report::{Run, normal_approximation, text};
 use palpate::fem::mesh::Region;
-use palpate::phantom::Phantom;
+use palpate::phantom::{Phantom, PhantomParts};
 use palpate_asserts::assert_has;
 
 fn svg(made: &Made, name: &str) -> String {
@@ -202,12 +202,12 @@ fn figure_1_shows_any_phantom_to_scale() {
 // Verifies: REP-030.
 #[test]
 fn figure_1_is_drawn_for_each_phantom_that_differs_in_more_than_inclusions() {
-    let mut softer = own("softer", "", &TWO, &[DISC]);
-    softer.layers[1].material.youngs_modulus = 4e3;
-    let mut renamed = own("renamed", "", &TWO, &[DISC]);
-    renamed.layers[1].name = "agar".into();
-    let mut wide = own("wide", "", &TWO, &[]);
-    wide.well.width = 0.04;
+    let disc = |name: &str, change: fn(&mut PhantomParts)| {
+        own(name, "", &TWO, &[DISC]).changed(change).unwrap()
+    };
+    let softer = disc("softer", |of| of.layers[1].material.youngs_modulus = 4e3);
+    let renamed = disc("renamed", |of| of.layers[1].name = "agar".into());
+    let wide = disc("wide", |of| of.well.width = 0.04);
     let plain = own("plain", "", &TWO, &[]);
     let two = own("two", "", &TWO, &[ELLIPSE, TRIANGLE]);
     let made = made(&run_of(&[plain, softer, renamed, two, wide]));
@@ -235,10 +235,14 @@ fn no_words_of_the_phantoms_figures_lie_on_others() {
         format!("centre_x_mm = {x}\ndepth_mm = {depth:.1}\ndiameter_mm = {diameter}")
     });
     let crowd = places.each_ref().map(String::as_str);
-    let mut tall = own("tall", "floor = \"sliding\"\n", &many, &[]);
-    (tall.well.width, tall.probe.radius) = (0.008, 0.0005);
-    let mut flat = own("flat", "", &[("a layer with a long name", 1.0)], &[]);
-    (flat.well.width, flat.probe.radius) = (0.5, 0.2);
+    let sized = |phantom: Phantom, width: f64, radius: f64| {
+        let sized = phantom.changed(|of| (of.well.width, of.probe.radius) = (width, radius));
+        sized.unwrap()
+    };
+    let tall = own("tall", "floor = \"sliding\"\n", &many, &[]);
+    let tall = sized(tall, 0.008, 0.0005);
+    let flat = own("flat", "", &[("a layer with a long name", 1.0)], &[]);
+    let flat = sized(flat, 0.5, 0.2);
     let phantoms = [
         Phantom::builtin("2.6").unwrap(),
         own("two", "", &TWO, &[ELLIPSE, TRIANGLE]),

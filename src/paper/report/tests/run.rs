@@ -182,6 +182,9 @@ pub fn hostile_run() -> Run {
     let others = [Phantom::builtin("none").ok(), None];
     let others = others.map(|phantom| map(phantom, &DEPTHS, |_| 0.1, |_| 0.0));
     run.maps.extend(others);
-    run.deformed.phantom.name = "<b>\u{0}\u{8}".into();
+    let deformed = &run.deformed.phantom;
+    run.deformed.phantom = deformed
+        .changed(|parts| parts.name = "<b>&".into())
+        .unwrap();
     run
 }
