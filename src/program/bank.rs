@@ -108,14 +108,14 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let phantom = phantom(&arguments.phantom)?;
     let plan = arguments.plan(&phantom)?;
     let solves = plan.solves()?;
-    tell_large_mesh(&phantom, plan.mesh_size).map_err(CliError::fem(&phantom.name()))?;
+    tell_large_mesh(&phantom, plan.mesh_size).map_err(CliError::fem(phantom.name()))?;
     let (part, finished, bar) = open_part(&plan, arguments, &phantom, &solves)?;
-    let mut maps = compute(&plan, &phantom.name(), &solves, &part, finished, &bar)?;
+    let mut maps = compute(&plan, phantom.name(), &solves, &part, finished, &bar)?;
     bar.finish_and_clear();
     let det = |map: &ForceMap| map.certificate().map_or(1.0, |of| of.smallest_det.det);
     let worst = maps.iter().min_by(|a, b| det(a).total_cmp(&det(b)));
     if let Some(map) = worst {
-        warn_of_large_strain_of(map, &name(&phantom.name(), map.phantom()));
+        warn_of_large_strain_of(map, &name(phantom.name(), map.phantom()));
     }
     let reference = maps.remove(0);
     write(out, &Bank::new(reference, maps)?.to_json())?;

@@ -41,7 +41,7 @@ pub fn compare(measured: &ForceTable, phantom: &Phantom) -> Result<Vec<String>, 
     }
     tell_large_mesh(phantom, MESH_SIZE)?;
     let model = Model::new(phantom, MESH_SIZE, Contact::default())?;
-    let bar = bar(poses.len(), &phantom.name());
+    let bar = bar(poses.len(), phantom.name());
     let forces = measured.forces().as_ref();
     let pair = |(row, column)| {
         let solution = model.solve(pose(measured, (row, column)))?;

@@ -71,7 +71,7 @@ fn noise(smoothed: &Smoothed) -> String {
 ///
 /// Implements: CLI-022.
 fn compared(file: &str, forces: &ForceTable, phantom: Phantom) -> Option<Phantom> {
-    let name = &phantom.name();
+    let name = phantom.name();
     let note = |text: &str| note(file, &format!("phantom {name}: {text}"));
     match compare(forces, &phantom) {
         Ok(findings) => findings.iter().for_each(|text| note(text)),

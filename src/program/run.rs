@@ -86,7 +86,7 @@ fn solve_all(
     // The figure shows the first inclusion, or the reference where there is none.
     let shown = usize::from(phantoms.len() > 1);
     let solve = |(index, phantom): (usize, &Phantom)| {
-        solve_phantom(config, phantom, index == shown, &bar).map_err(CliError::fem(&phantom.name()))
+        solve_phantom(config, phantom, index == shown, &bar).map_err(CliError::fem(phantom.name()))
     };
     let solved = phantoms.par_iter().enumerate().map(solve);
     let (maps, deformed): (_, Vec<_>) = solved.collect::<Result<_, _>>()?;
@@ -136,7 +136,7 @@ fn write_run(run: &Run, out: &Path) -> Result<(), CliError> {
     make_folder(&out.join("figures"))?;
     let mut names = FileNames::default();
     for map in run.reference_and_maps() {
-        let name = map.phantom().map_or("", |phantom| &phantom.name());
+        let name = map.phantom().map_or("", |phantom| phantom.name());
         let name = names.unique("map", name, "json");
         write(&out.join("maps").join(name), &map.to_json())?;
     }

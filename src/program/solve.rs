@@ -81,13 +81,13 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         _ => refuse!("--vtu shows one pose: give one depth and one lateral position"),
     };
     let phantom = phantom(&arguments.phantom)?;
-    let failed = CliError::fem(&phantom.name());
+    let failed = CliError::fem(phantom.name());
     let size = arguments.mesh_size.unwrap_or(MESH_SIZE);
     tell_large_mesh(&phantom, size).map_err(&failed)?;
     let model = Model::new(&phantom, size, arguments.contact).map_err(&failed)?;
     let meshes = if arguments.certify { 3 } else { 1 };
     let columns = model.solved_laterals(laterals).len();
-    let bar = bar(meshes * depths.len() * columns, &phantom.name());
+    let bar = bar(meshes * depths.len() * columns, phantom.name());
     let solved = |poses| bar.inc(poses as u64);
     let map = if arguments.certify {
         certified_map(&model, depths, laterals, &solved)
@@ -113,7 +113,7 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
 ///
 /// Implements: CLI-015.
 pub fn warn_of_large_strain(map: &ForceMap) {
-    let name = map.phantom().map_or("", |phantom| &phantom.name());
+    let name = map.phantom().map_or("", |phantom| phantom.name());
     warn_of_large_strain_of(map, name);
 }
 

@@ -7,13 +7,34 @@ mod deck;
 pub mod present;
 mod scikit_fem;
 
+use std::io::ErrorKind;
+use std::process::Command;
+
 use palpate::fem::mesh::Region;
 use palpate::phantom::{Material, Phantom};
+use present::present;
+
+/// Python with a module: that of the environment, or the system's. `None`, with a notice, where one of both is missing.
+pub fn python_with(module: &str) -> Option<Command> {
+    let python = || {
+        let own = std::env::var_os("PALPATE_PYTHON");
+        Command::new(own.unwrap_or_else(|| "python3".into()))
+    };
+    let probe = python().args(["-c", &format!("import {module}")]).output();
+    let is_unknown =
+        |stderr: &[u8]| String::from_utf8_lossy(stderr).contains("ModuleNotFoundError");
+    let missing = match probe {
+        Err(error) if error.kind() == ErrorKind::NotFound => Some("Python"),
+        Ok(output) if is_unknown(&output.stderr) => Some(module),
+        _ => None,
+    };
+    present(missing).then(python)
+}
 
 /// What a script prints, named from the root of the checkout: it must succeed. `None`, with a notice, where mpmath is missing.
 pub fn printed(script: &str, arguments: &[&str]) -> Option<String> {
     let script = format!("{}/{script}", crate::ROOT);
-    let mut python = present::python_with("mpmath")?;
+    let mut python = python_with("mpmath")?;
     let output = python.args(["-B", &script]).args(arguments).output();
     let output = output.expect("Python starts");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -9,8 +9,7 @@ use palpate::fem::Mesh;
 use palpate::fem::assembly::StiffnessMatrix;
 use palpate::phantom::Phantom;
 
-use super::present::python_with;
-use super::{builtin_at, material};
+use super::{builtin_at, material, python_with};
 
 /// The mesh and the materials, as `stiffness.py` reads them.
 fn problem(mesh: &Mesh, phantom: &Phantom) -> String {

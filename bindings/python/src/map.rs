@@ -157,10 +157,7 @@ impl ForceMap {
 
     fn __repr__(&self) -> String {
         let (depths, laterals) = (self.0.table().depths(), self.0.table().laterals());
-        let phantom = self
-            .0
-            .phantom()
-            .map_or("unknown", |phantom| &phantom.name());
+        let phantom = self.0.phantom().map_or("unknown", |phantom| phantom.name());
         let [from, to] = [laterals[0], laterals[laterals.len() - 1]].map(|x| in_unit(x, 3));
         let (rows, columns) = (depths.len(), laterals.len());
         format!(

@@ -43,7 +43,7 @@ pub use rates::{
 pub use reach::{Reach, Reached, deepest, smallest_diameters};
 
 use crate::force_map::{ForceMap, SAME_POSITION, check_gel, increasing};
-use crate::phantom::{Inclusion, Shape};
+use crate::phantom::{Inclusion, Phantom, Shape};
 use crate::refusal::Refusal;
 
 /// What the hypotheses of a bank differ in.
@@ -179,7 +179,7 @@ impl Bank {
 /// The parameters of the one inclusion of `map`.
 fn check_map(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<[f64; 4], Refusal> {
     check_gel(reference, map)?;
-    let Some([inclusion]) = map.phantom().map(|phantom| &phantom.inclusions()[..]) else {
+    let Some([inclusion]) = map.phantom().map(Phantom::inclusions) else {
         let found = "its phantom has not one inclusion";
         return Err(Refusal::state(found, "one, which says what the map is for"));
     };

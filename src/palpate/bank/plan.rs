@@ -80,7 +80,7 @@ impl BankPlan {
     ///
     /// Implements: BNK-020.
     pub fn new(phantom: Phantom, depth: f64, laterals: &[f64]) -> Result<BankPlan, Refusal> {
-        let [inclusion] = &phantom.inclusions()[..] else {
+        let [inclusion] = phantom.inclusions() else {
             let found = format!("{} inclusions", phantom.inclusions().len());
             let expected = "one, of which the hypotheses are made";
             return Err(Refusal::value("phantom.inclusion", found, expected));

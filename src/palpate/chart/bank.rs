@@ -301,7 +301,7 @@ mod tests {
         let row =
             |from, to, top: f64| vec![(from, top), (to, top), (to, top + 1.0), (from, top + 1.0)];
         let third = row(0.0, 1.0, 2.0);
-        assert_eq!(region(&cells, 0.1), [third.clone()]);
+        assert_eq!(region(&cells, 0.1), std::slice::from_ref(&third));
         let joined = [(0.4, row(1.0, 2.0, 1.0)), (0.5, row(0.0, 2.0, 1.0))];
         for (level, first) in joined {
             assert_eq!(region(&cells, level), [first, third.clone()]);

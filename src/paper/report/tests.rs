@@ -313,7 +313,8 @@ fn what_does_not_fit_is_refused() {
     };
     let other = map(Phantom::builtin("4.6").ok(), &[0.0, 4e-3], |_| 0.0, |_| 0.0);
     refused(vec![other], "\"4.6\"|depths_m", |_| ());
-    let damaged: [(&str, fn(&mut Settings)); 5] = [
+    type Damage = fn(&mut Settings);
+    let damaged: [(&str, Damage); 5] = [
         ("noise_sd", |settings| settings.noise_sd_n = 0.0),
         ("noise_sd", |settings| settings.noise_sd_n = f64::NAN),
         ("max_miss", |settings| settings.max_miss = 1.0),

@@ -166,10 +166,7 @@ impl StudyPlan {
     pub fn design(&self) -> Result<Design, Refusal> {
         self.required_gamma()?;
         map_threshold(self.settings.prior_h1)?;
-        let phantoms: Vec<&str> = self
-            .all_phantoms()
-            .map(|phantom| &*phantom.name())
-            .collect();
+        let phantoms: Vec<&str> = self.all_phantoms().map(|phantom| phantom.name()).collect();
         let names: Vec<&str> = self.inputs.iter().map(|input| &*input.name).collect();
         for (key, names) in [("phantoms", &phantoms), ("input.name", &names)] {
             if let Some(twice) = first_repeated(names) {

@@ -269,10 +269,8 @@ impl<'a> Sampler<'a> {
 fn compared<'a>(plan: &'a StudyPlan, answers: &AnswerTable) -> Vec<(usize, &'a str)> {
     let phantoms = plan.phantoms.iter().enumerate();
     let is_column = |name: &str| answers.inclusions().iter().any(|of| of.name == name);
-    let compared = phantoms.filter(|(_, phantom)| is_column(&phantom.name()));
-    compared
-        .map(|(at, phantom)| (at, &*phantom.name()))
-        .collect()
+    let compared = phantoms.filter(|(_, phantom)| is_column(phantom.name()));
+    compared.map(|(at, phantom)| (at, phantom.name())).collect()
 }
 
 /// Implements: STU-031.

@@ -100,7 +100,7 @@ fn bands(run: &Run, map: &ForceMap) -> [Vec<Line>; 2] {
         |lateral_m| Kind::LateralForceN { lateral_m },
     ];
     kinds.map(|kind| {
-        let at = |&x: &f64| Some((1e3 * x, study.of(&phantom.name(), &kind(x))?.band?));
+        let at = |&x: &f64| Some((1e3 * x, study.of(phantom.name(), &kind(x))?.band?));
         let bands: Vec<_> = study.plan.laterals.iter().filter_map(at).collect();
         band_ends("", &bands, 1.0)
     })
@@ -154,7 +154,7 @@ fn signal_words(found: &Findings) -> Words {
 
 /// The words of Figure 5, with the depth of its bands, m, if there are any.
 fn force_words(map: &ForceMap, depth: Option<f64>) -> Words {
-    let inclusions = match map.phantom().map(|of| &of.inclusions()[..]) {
+    let inclusions = match map.phantom().map(|of| of.inclusions()) {
         None => "inclusion not known".into(),
         Some([]) => "no inclusion".into(),
         Some([one]) => format!("inclusion {} mm deep", millimetres(one.depth)),

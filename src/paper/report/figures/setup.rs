@@ -84,7 +84,7 @@ pub fn figures(run: &Run) -> Vec<Plan> {
         }
     }
     let figure = |(k, phantom): (usize, &Phantom)| {
-        let name = if k == 0 { "" } else { &*phantom.name() };
+        let name = if k == 0 { "" } else { phantom.name() };
         let width = millimetres(phantom.well().width);
         let x_name = format!("Lateral position x (mm); the well is {width} mm wide");
         let panel = panel(phantom);

@@ -89,7 +89,8 @@ fn without_a_study_the_page_says_so() {
 // Verifies: REP-004.
 #[test]
 fn a_study_of_something_else_is_refused() {
-    let changes: [(&str, fn(&mut StudyPlan)); 7] = [
+    type Change = fn(&mut StudyPlan);
+    let changes: [(&str, Change); 7] = [
         ("reference", |plan| {
             let wider = plan.reference.changed(|parts| parts.well.width = 0.04);
             plan.reference = wider.unwrap();
