@@ -330,19 +330,19 @@ fn outlines_lie_below_the_surface_by_their_depth() {
         (5.0, 4.0, ellipse(10.0, 6.0, 30.0)),
         (-9.0, 4.0, polygon(&[[0.0, 7.0], [1.0, 9.0], [1.0, 7.0]])),
     ];
-    let phantom = made(with_shapes(&shapes));
+    let phantom = with_shapes(&shapes);
     let (half_width, half_height) = (21f64.sqrt(), 13f64.sqrt());
-    let [left, right, bottom, top] = phantom.inclusions()[0].extent();
+    let [left, right, bottom, top] = phantom.inclusions[0].extent();
     assert!(same([left, right], [5.0 - half_width, 5.0 + half_width]));
     assert!(same([bottom, top], [-4.0 - 2.0 * half_height, -4.0]));
-    let end = phantom.inclusions()[0].outline().chords(4)[0];
+    let end = phantom.inclusions[0].outline().chords(4)[0];
     let (cos, sin) = (3f64.sqrt() / 2.0, 0.5);
     assert!(same(end, [5.0 + 5.0 * cos, -4.0 - half_height + 5.0 * sin]));
     // Clockwise as written, the other way round in the outline.
-    let points = phantom.inclusions()[1].outline().chords(0);
+    let points = phantom.inclusions[1].outline().chords(0);
     let expected = [[-8.0, -6.0], [-8.0, -4.0], [-9.0, -6.0]];
     assert!((0..3).all(|k| same(points[k], expected[k])));
-    let [left, right, bottom, top] = phantom.inclusions()[1].extent();
+    let [left, right, bottom, top] = phantom.inclusions[1].extent();
     assert!(same([left, right], [-9.0, -8.0]) && same([bottom, top], [-6.0, -4.0]));
 }
 
