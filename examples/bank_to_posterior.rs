@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 sd: None,
                 correlation: Correlation::None,
             },
-            criterion: Criterion::Map,
+            criterion: Criterion::MaximumAPosteriori,
             prior_h1: 0.5,
         },
         bank: &bank,

@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             sd: None,
             correlation: Correlation::None,
         },
-        criterion: Criterion::Map,
+        criterion: Criterion::MaximumAPosteriori,
         prior_h1: 0.5,
     };
     let found = question.judge(Hypotheses::new(&without, &with)?, &record)?;

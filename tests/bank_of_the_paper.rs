@@ -110,7 +110,7 @@ fn a_noiseless_inclusion_is_found_between_the_points() {
                     sd: Some(Force::new(0.1, 0.1)),
                     correlation: Correlation::None,
                 },
-                criterion: Criterion::Map,
+                criterion: Criterion::MaximumAPosteriori,
                 prior_h1: 0.5,
             };
             let search = BankSearch {

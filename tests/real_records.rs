@@ -132,7 +132,7 @@ impl Case {
                 sd: Some(Force::new(self.stated, self.stated)),
                 correlation: Correlation::OfRecord,
             },
-            criterion: Criterion::Map,
+            criterion: Criterion::MaximumAPosteriori,
             prior_h1: 0.5,
         };
         let mut counts = Counts::default();

@@ -15,19 +15,19 @@
 
 mod decision;
 mod error;
+mod hid_report;
 mod laws;
 mod layout;
 mod memory;
 mod record;
-mod report;
 mod servo;
 
 pub use decision::*;
 pub use error::*;
+pub use hid_report::*;
 pub use laws::*;
 pub use layout::LAYOUT;
 pub use record::*;
-pub use report::*;
 pub use servo::*;
 
 /// A panic would be a defect of this library: it ends the program.

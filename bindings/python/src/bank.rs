@@ -78,7 +78,7 @@ fn unknowns(names: Vec<String>) -> PyResult<Vec<Unknown>> {
 /// The criterion of at most one of two rates.
 fn criterion(max_miss: Option<f64>, max_false_alarm: Option<f64>) -> PyResult<Criterion> {
     match (max_miss, max_false_alarm) {
-        (None, None) => Ok(Criterion::Map),
+        (None, None) => Ok(Criterion::MaximumAPosteriori),
         (Some(max_miss), None) => Ok(Criterion::NeymanPearsonMiss { max_miss }),
         (None, Some(max_false_alarm)) => Ok(Criterion::NeymanPearsonFalseAlarm { max_false_alarm }),
         _ => Err(refused(

@@ -150,7 +150,7 @@ impl BankSearch<'_> {
             let test = test.ok_or(DetectError::NoSignal)??;
             let theta_mixture = detector.mixture(&statistic)?;
             let (eta, calibrated) = self.threshold(detector, &tests)?;
-            let by_mixture = self.question.criterion == Criterion::Map;
+            let by_mixture = self.question.criterion == Criterion::MaximumAPosteriori;
             // θ of the likeliest point is of an inclusion from `least` on, whatever the others are.
             let (decisive, least) = if by_mixture {
                 (theta_mixture, eta - libm::log(detector.prior()[likeliest]))
@@ -193,7 +193,7 @@ impl BankSearch<'_> {
         tests: &[SubspaceTest],
     ) -> Result<(f64, Option<CalibratedThreshold>), DetectError> {
         let eta = match (self.question.criterion, self.simulations) {
-            (Criterion::Map, _) => map_threshold(self.question.prior_h1),
+            (Criterion::MaximumAPosteriori, _) => map_threshold(self.question.prior_h1),
             // The promise is for an inclusion anywhere: the lowest threshold keeps it.
             (Criterion::NeymanPearsonMiss { max_miss }, _) => {
                 tests.iter().try_fold(f64::INFINITY, |lowest, &test| {

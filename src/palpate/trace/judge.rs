@@ -13,7 +13,7 @@ use crate::refusal::Refusal;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Criterion {
     /// The fewest errors for the prior.
-    Map,
+    MaximumAPosteriori,
     /// At most this rate of misses, with the fewest false alarms.
     NeymanPearsonMiss {
         /// The largest rate of misses.
@@ -150,7 +150,7 @@ impl Question<'_> {
     /// Implements: TRC-065.
     fn threshold(&self, test: &SubspaceTest) -> Result<Threshold, DetectError> {
         Ok(match self.criterion {
-            Criterion::Map => test.bayes_threshold(map_threshold(self.prior_h1)?)?,
+            Criterion::MaximumAPosteriori => test.bayes_threshold(map_threshold(self.prior_h1)?)?,
             Criterion::NeymanPearsonMiss { max_miss } => {
                 Threshold::At(test.miss_threshold(max_miss)?)
             }

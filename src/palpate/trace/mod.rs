@@ -36,7 +36,7 @@
 //!     depth_tolerance: 0.0,
 //!     unknown: &[Unknown::Offset],
 //!     noise: Noise { sd: Some(Force::new(0.02, 0.02)), correlation: Correlation::None },
-//!     criterion: Criterion::Map,
+//!     criterion: Criterion::MaximumAPosteriori,
 //!     prior_h1: 0.5,
 //! };
 //! let found = question.judge(Hypotheses::of_tables(&reference, &inclusion)?, &record)?;

@@ -6,7 +6,7 @@ use super::maps::MapFindings;
 use super::paper;
 use super::text::{fixed, joined, millimetres, or, p_value, percent};
 use crate::psychophysics::bridge::{
-    Bridge, Channel, ConditionBridge, Convention, ConventionFit, Offset, Statistic,
+    Bridge, Channel, ConditionBridge, Convention, ConventionFit, Mean, Statistic,
 };
 use crate::psychophysics::{Analysis, NoiseDecomposition, OpenBounds, Rate};
 use palpate::detect::{DetectError, gamma_from_two_afc, required_gamma};
@@ -290,7 +290,7 @@ fn of_paper(bridge: &Bridge) -> Option<(&ConditionBridge, &ConventionFit)> {
     let convention = Convention {
         statistic: Statistic::Peak,
         channel: Channel::Normal,
-        offset: Offset::Kept,
+        mean: Mean::Kept,
     };
     let mut fits = condition.conventions.iter();
     Some((condition, fits.find(|fit| fit.convention == convention)?))

@@ -197,7 +197,7 @@ impl CriterionArguments {
     pub fn criterion(&self) -> Result<Criterion, CliError> {
         use CriterionName::{Map, NeymanPearsonFalseAlarm, NeymanPearsonMiss};
         let needs = match (self.criterion, self.max_miss, self.max_false_alarm) {
-            (Map, None, None) => return Ok(Criterion::Map),
+            (Map, None, None) => return Ok(Criterion::MaximumAPosteriori),
             (NeymanPearsonMiss, Some(max_miss), None) => {
                 return Ok(Criterion::NeymanPearsonMiss { max_miss });
             }

@@ -52,7 +52,7 @@ fn search<'a>(bank: &'a Bank, unknown: &'a [Unknown], criterion: Criterion) -> B
 }
 
 fn by_map(bank: &Bank) -> BankSearch<'_> {
-    search(bank, USUAL, Criterion::Map)
+    search(bank, USUAL, Criterion::MaximumAPosteriori)
 }
 
 fn all() -> Bank {
@@ -73,7 +73,7 @@ fn a_record_is_judged_at_the_likeliest_point() {
     let number = number.unwrap();
     let one_depth = map(None, &[4e-3]);
     let hypotheses = crate::force_map::Hypotheses::new(&one_depth, &bank.maps()[number]).unwrap();
-    let question = question(USUAL, Criterion::Map);
+    let question = question(USUAL, Criterion::MaximumAPosteriori);
     let alone = question.judge(hypotheses, &record).unwrap();
     assert!((found.theta_max - alone.test.theta()).abs() < 1e-9 || alone.fit.block > 1);
     // The record fits between the points, and not as well at the nearest.
@@ -106,7 +106,9 @@ fn what_cannot_be_judged_is_told() {
     let found = by_map(&bank).locate(&without).unwrap();
     assert_eq!(found.decision, Some(Decision::NoInclusion));
     let high = record(&reference(), Some(2), 5.0, 1.0);
-    let found = search(&bank, &[], Criterion::Map).locate(&high).unwrap();
+    let found = search(&bank, &[], Criterion::MaximumAPosteriori)
+        .locate(&high)
+        .unwrap();
     assert_eq!((found.decision, found.causes[0]), (None, Cause::Level));
     let mut asked = by_map(&bank);
     // Between the depths of the reference, and beyond them.

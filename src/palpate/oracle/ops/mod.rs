@@ -7,10 +7,10 @@ mod counts;
 mod decision;
 mod element;
 mod filter;
+mod hid_report;
 mod interpolation;
 mod nuisance;
 mod probe;
-mod report;
 mod servo;
 
 use super::answer::{Code, Refused, answer, json};
@@ -105,8 +105,8 @@ pub const OPS: &[Op] = &[
         depth_knots: List<f64>, lateral_knots: List<f64>, table_bits: List<List<Bits>>,
         depth_bits: Bits, lateral_bits: Bits
     } => servo::interpolate(&depth_knots, &lateral_knots, &table_bits, depth_bits, lateral_bits)?),
-    op!("report_decode", { bytes: String } => report::decode(&bytes)?),
-    op!("report_encode", text => answer! { bytes: report::encode(text)? }),
+    op!("report_decode", { bytes: String } => hid_report::decode(&bytes)?),
+    op!("report_encode", text => answer! { bytes: hid_report::encode(text)? }),
     op!("count_analysis", { correct: Rows, trials: Whole<1, MOST_TRIALS> } =>
         counts::analysis(&correct, trials)?),
     op!("probe_force", { phantom: String, depth_m: f64, lateral_m: f64 }, models =>

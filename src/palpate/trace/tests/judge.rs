@@ -23,7 +23,7 @@ pub fn question<'a>(depth: f64) -> Question<'a> {
         depth_tolerance: 0.0,
         unknown: &[],
         noise: noise(Some(Force::new(0.5, 0.25)), Correlation::None),
-        criterion: Criterion::Map,
+        criterion: Criterion::MaximumAPosteriori,
         prior_h1: 0.25,
     }
 }

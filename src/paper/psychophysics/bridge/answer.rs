@@ -40,7 +40,7 @@ pub enum Channel {
 /// Whether the uniform part of the force counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Offset {
+pub enum Mean {
     /// The force as it is.
     Kept,
     /// Less its mean over the sweep.
@@ -55,7 +55,8 @@ pub struct Convention {
     /// Which force counts.
     pub channel: Channel,
     /// Whether its mean counts.
-    pub offset: Offset,
+    #[serde(rename = "offset")]
+    pub mean: Mean,
 }
 
 impl Convention {
@@ -64,13 +65,13 @@ impl Convention {
         (0..12).map(|k| Convention {
             statistic: [Statistic::Peak, Statistic::MatchedFilter][k / 6],
             channel: [Channel::Normal, Channel::Lateral, Channel::Both][k / 2 % 3],
-            offset: [Offset::Kept, Offset::Removed][k % 2],
+            mean: [Mean::Kept, Mean::Removed][k % 2],
         })
     }
 
     /// Whether the uniform part of the normal force counts.
     pub fn uses_uniform_part(self) -> bool {
-        self.channel != Channel::Lateral && self.offset == Offset::Kept
+        self.channel != Channel::Lateral && self.mean == Mean::Kept
     }
 
     /// In words: "peak, normal force", "matched filter, both forces less their means".
@@ -81,12 +82,12 @@ impl Convention {
             Channel::Lateral => "lateral force",
             Channel::Both => "both forces",
         };
-        let offset = match (self.offset, self.channel) {
-            (Offset::Kept, _) => "",
-            (Offset::Removed, Channel::Both) => " less their means",
-            (Offset::Removed, _) => " less its mean",
+        let mean = match (self.mean, self.channel) {
+            (Mean::Kept, _) => "",
+            (Mean::Removed, Channel::Both) => " less their means",
+            (Mean::Removed, _) => " less its mean",
         };
-        format!("{statistic}, {channel}{offset}")
+        format!("{statistic}, {channel}{mean}")
     }
 }
 

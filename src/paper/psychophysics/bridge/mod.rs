@@ -26,8 +26,7 @@ mod weights;
 
 pub use answer::{
     Bridge, BridgeInclusion, Channel, CommonFit, ConditionBridge, Convention, ConventionFit,
-    Favoured, LapseFit, ObservedRate, Offset, Statistic, SubjectFit, Verdict, WeightFit,
-    WeightRange,
+    Favoured, LapseFit, Mean, ObservedRate, Statistic, SubjectFit, Verdict, WeightFit, WeightRange,
 };
 
 use std::collections::BTreeMap;

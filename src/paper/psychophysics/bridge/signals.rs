@@ -1,6 +1,6 @@
 //! What each convention makes of the difference of two force maps along a sweep.
 
-use super::answer::{BridgeInclusion, Channel, Convention, Offset, Statistic};
+use super::answer::{BridgeInclusion, Channel, Convention, Mean, Statistic};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, SAME_POSITION, peak};
 use palpate::refusal::Refusal;
@@ -82,7 +82,7 @@ impl Signal {
     ///
     /// Implements: PSY-070.
     pub fn strength(&self, convention: Convention) -> f64 {
-        let weight = f64::from(u8::from(convention.offset == Offset::Kept));
+        let weight = f64::from(u8::from(convention.mean == Mean::Kept));
         self.weighted(convention.statistic, convention.channel, weight)
     }
 

@@ -6,7 +6,7 @@
 use super::common::Signals;
 use super::signals::{Signal, is_within};
 use super::subjects::by_subject;
-use super::{Channel, Convention, Observations, Offset, Statistic, WeightFit, WeightRange};
+use super::{Channel, Convention, Mean, Observations, Statistic, WeightFit, WeightRange};
 use crate::psychophysics::Result;
 use crate::psychophysics::dispersion::Overdispersion;
 use crate::psychophysics::rates::Bounds;
@@ -129,16 +129,16 @@ fn by_deviance(a: &&WeightFit, b: &&WeightFit) -> core::cmp::Ordering {
 /// Which of the normal force, the same less its mean and the lateral force has the largest deviance.
 fn worst(statistic: Statistic, fits: [Option<WeightFit>; 3]) -> Option<Convention> {
     let conventions = [
-        (Channel::Normal, Offset::Kept),
-        (Channel::Normal, Offset::Removed),
-        (Channel::Lateral, Offset::Kept),
+        (Channel::Normal, Mean::Kept),
+        (Channel::Normal, Mean::Removed),
+        (Channel::Lateral, Mean::Kept),
     ];
     let pairs = fits.iter().zip(conventions);
     let known = pairs.filter_map(|(fit, convention)| Some((fit.as_ref()?, convention)));
-    let (_, (channel, offset)) = known.max_by(|a, b| by_deviance(&a.0, &b.0))?;
+    let (_, (channel, mean)) = known.max_by(|a, b| by_deviance(&a.0, &b.0))?;
     Some(Convention {
         statistic,
         channel,
-        offset,
+        mean,
     })
 }

@@ -2,7 +2,7 @@
 
 use super::people::{DEPTH, SHARE, bar, points, share_panel};
 use super::plan::{Plan, Words, over};
-use crate::psychophysics::bridge::{Channel, ConditionBridge, ConventionFit, Offset, Statistic};
+use crate::psychophysics::bridge::{Channel, ConditionBridge, ConventionFit, Mean, Statistic};
 use crate::report::text::millimetres;
 use crate::report::{Findings, Topic, paper};
 use palpate::chart::Line;
@@ -20,13 +20,13 @@ pub fn figure(found: &Findings) -> Option<Plan> {
         Some(1e3 * known.depth_m)
     });
     let depths: Vec<_> = depths.collect();
-    let panel = |offset, words| {
-        let lines = lines(condition, &depths, offset);
+    let panel = |mean, words| {
+        let lines = lines(condition, &depths, mean);
         share_panel(&format!("{SHARE}, {words}"), &depths, 270, lines)
     };
     let mut panels = [
-        panel(Offset::Kept, "with the mean of the force"),
-        panel(Offset::Removed, "without its mean over the sweep"),
+        panel(Mean::Kept, "with the mean of the force"),
+        panel(Mean::Removed, "without its mean over the sweep"),
     ];
     let sample = |colour, name| Line::new(colour, Vec::new()).named(name);
     panels[0].key = vec![
@@ -65,9 +65,9 @@ fn words(condition: &ConditionBridge, probe_depth: f64) -> Words {
 }
 
 /// Predictions of the conventions with one treatment of the mean, and what was observed.
-fn lines(condition: &ConditionBridge, depths: &[f64], offset: Offset) -> Vec<Line> {
+fn lines(condition: &ConditionBridge, depths: &[f64], mean: Mean) -> Vec<Line> {
     let fits = condition.conventions.iter();
-    let fits = fits.filter(|fit| fit.convention.offset == offset);
+    let fits = fits.filter(|fit| fit.convention.mean == mean);
     let line = |(fit, colour): (&ConventionFit, _)| {
         let predicted = &fit.better_by_subject().predicted;
         let line = Line::new(colour, points(depths, predicted.iter().copied()));

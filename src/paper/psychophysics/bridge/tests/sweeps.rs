@@ -89,7 +89,7 @@ fn how_much_of_the_level_may_count_over_which_sweep() {
     }
     // What README.md and the report's page say: the whole level fits worst everywhere.
     let worst = |range: &WeightRange| range.fits_worst.unwrap();
-    let is_level = |c: Convention| c.channel == Channel::Normal && c.offset == Offset::Kept;
+    let is_level = |c: Convention| c.channel == Channel::Normal && c.mean == Mean::Kept;
     assert!(found.iter().flatten().all(|range| is_level(worst(range))));
     for ranges in &found[..2] {
         assert!(ranges.len() == 16 && ranges.iter().all(|r| r.left.upper < 1.0));
