@@ -289,3 +289,33 @@ fn the_commands_of_the_readme_succeed() {
     }
     assert!(run >= 8, "{run} commands run: is README.md read?");
 }
+
+/// The lines of a folder's Rust that are neither blank nor comment, without tests.
+fn lines_of_code(folder: &Path) -> usize {
+    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let code = paths.filter(|path| path.file_stem().is_none_or(|name| name != "tests"));
+    let lines = code.map(|path| match path.extension() {
+        _ if path.is_dir() => lines_of_code(&path),
+        Some(extension) if extension == "rs" => {
+            let text = fs::read_to_string(&path).unwrap();
+            let code = text.split("\nmod tests {").next().unwrap_or_default();
+            let lines = code.lines().map(str::trim);
+            lines.filter(|line| !line.is_empty() && !line.starts_with("//")).count()
+        }
+        _ => 0,
+    });
+    lines.sum()
+}
+
+#[test]
+fn the_page_of_each_crate_states_its_length() {
+    for name in ["core", "palpate", "paper", "program"] {
+        let page = text(&format!("src/{name}/lib.rs"));
+        let (before, _) = page.split_once(" lines of code").expect(name);
+        let stated = before.rsplit(' ').next().unwrap().replace(',', "");
+        let stated: f64 = stated.parse().expect(name);
+        let counted = lines_of_code(&at(&format!("src/{name}"))) as f64;
+        let is_true = (stated / counted - 1.0).abs() < 0.03;
+        assert!(is_true, "src/{name}: {stated} lines stated, {counted} counted");
+    }
+}
