@@ -181,6 +181,93 @@ typedef struct {
   double remaining_n;
 } PalpateNoiseBudget;
 
+// Input report 1: where the handle is.
+typedef struct {
+  // Lateral position, counts.
+  int16_t lateral;
+  // Position along the normal, counts, positive out of the gel.
+  int16_t normal;
+  // Switches: bit 0 is the deadman.
+  uint8_t buttons;
+  // State of the device: bit 0 a fault, bit 1 its watchdog.
+  uint8_t status;
+  // Number of this report, modulo 65536.
+  uint16_t sequence;
+  // Number of the last force report that the device played.
+  uint16_t force_sequence;
+} PalpatePositionReport;
+
+// Output report 2: what to play.
+typedef struct {
+  // Lateral force, counts.
+  int16_t lateral;
+  // Normal force, counts, positive out of the gel.
+  int16_t normal;
+  // Number of this report, modulo 65536.
+  uint16_t sequence;
+  // Bit 0: play the force; otherwise the device plays none.
+  uint8_t flags;
+} PalpateForceReport;
+// The bit of [`ForceReport::flags`] that lets the device play the force.
+#define PalpateForceReport_PLAY 1
+
+// Feature report 3: what the device is.
+typedef struct {
+  // Version of the profile: 1.
+  uint16_t version;
+  // Length of a count of a position, nm.
+  uint16_t position_unit_nm;
+  // Force of a count, µN.
+  uint16_t force_unit_un;
+  // Largest force of each axis, mN.
+  uint16_t largest_force_mn;
+  // Time between two position reports, µs.
+  uint16_t period_us;
+  // Time without a force report after which the device drops the force, ms.
+  uint16_t watchdog_ms;
+  // Viscous damping of each axis, mN·s/m.
+  uint16_t damping_mn_s_per_m;
+  // Coulomb friction of each axis, mN.
+  uint16_t friction_mn;
+} PalpateCapabilities;
+
+// One report of the device, in metres.
+typedef struct {
+  // Depth of the probe, m.
+  float depth_m;
+  // Lateral position of the probe, m.
+  float lateral_m;
+  // Its number, modulo 65536.
+  uint16_t sequence;
+  // Not 0 while the deadman switch is held.
+  uint8_t deadman;
+  // Not 0 if the device says that something is wrong with it.
+  uint8_t device_fault;
+} PalpateServoSample;
+
+// A lateral and a normal force on the probe, or what belongs to each: samples of them, their noise, their energy.
+//
+// Lateral is along +x, normal is positive where it pushes the probe out of the gel. Where it holds numbers they are newtons.
+typedef struct {
+  // Along +x.
+  float lateral;
+  // Out of the gel.
+  float normal;
+} PalpateForce_f32;
+
+// A force on the probe, N.
+typedef PalpateForce_f32 PalpateForce;
+
+// What one cycle tells the device.
+typedef struct {
+  // The force to play, N.
+  PalpateForce force;
+  // 1 while the force follows the table; otherwise it is on its way to zero.
+  uint8_t playing;
+  // 0.
+  uint8_t reserved[3];
+} PalpateServoCommand;
+
 // Both tails of a law at a point x.
 typedef struct {
   // Pr(X < x).
@@ -281,93 +368,6 @@ typedef struct {
   double refined_shift;
 } PalpateScanMaximum;
 
-// Input report 1: where the handle is.
-typedef struct {
-  // Lateral position, counts.
-  int16_t lateral;
-  // Position along the normal, counts, positive out of the gel.
-  int16_t normal;
-  // Switches: bit 0 is the deadman.
-  uint8_t buttons;
-  // State of the device: bit 0 a fault, bit 1 its watchdog.
-  uint8_t status;
-  // Number of this report, modulo 65536.
-  uint16_t sequence;
-  // Number of the last force report that the device played.
-  uint16_t force_sequence;
-} PalpatePositionReport;
-
-// Output report 2: what to play.
-typedef struct {
-  // Lateral force, counts.
-  int16_t lateral;
-  // Normal force, counts, positive out of the gel.
-  int16_t normal;
-  // Number of this report, modulo 65536.
-  uint16_t sequence;
-  // Bit 0: play the force; otherwise the device plays none.
-  uint8_t flags;
-} PalpateForceReport;
-// The bit of [`ForceReport::flags`] that lets the device play the force.
-#define PalpateForceReport_PLAY 1
-
-// Feature report 3: what the device is.
-typedef struct {
-  // Version of the profile: 1.
-  uint16_t version;
-  // Length of a count of a position, nm.
-  uint16_t position_unit_nm;
-  // Force of a count, µN.
-  uint16_t force_unit_un;
-  // Largest force of each axis, mN.
-  uint16_t largest_force_mn;
-  // Time between two position reports, µs.
-  uint16_t period_us;
-  // Time without a force report after which the device drops the force, ms.
-  uint16_t watchdog_ms;
-  // Viscous damping of each axis, mN·s/m.
-  uint16_t damping_mn_s_per_m;
-  // Coulomb friction of each axis, mN.
-  uint16_t friction_mn;
-} PalpateCapabilities;
-
-// One report of the device, in metres.
-typedef struct {
-  // Depth of the probe, m.
-  float depth_m;
-  // Lateral position of the probe, m.
-  float lateral_m;
-  // Its number, modulo 65536.
-  uint16_t sequence;
-  // Not 0 while the deadman switch is held.
-  uint8_t deadman;
-  // Not 0 if the device says that something is wrong with it.
-  uint8_t device_fault;
-} PalpateServoSample;
-
-// A lateral and a normal force on the probe, or what belongs to each: samples of them, their noise, their energy.
-//
-// Lateral is along +x, normal is positive where it pushes the probe out of the gel. Where it holds numbers they are newtons.
-typedef struct {
-  // Along +x.
-  float lateral;
-  // Out of the gel.
-  float normal;
-} PalpateForce_f32;
-
-// A force on the probe, N.
-typedef PalpateForce_f32 PalpateForce;
-
-// What one cycle tells the device.
-typedef struct {
-  // The force to play, N.
-  PalpateForce force;
-  // 1 while the force follows the table; otherwise it is on its way to zero.
-  uint8_t playing;
-  // 0.
-  uint8_t reserved[3];
-} PalpateServoCommand;
-
 // What `palpate_table_init` makes of knots and forces, to which it keeps pointers. Its content is the library's.
 typedef struct {
   // Says that the words hold a table.
@@ -462,6 +462,44 @@ PalpateError palpate_noise_budget(double signal_n,
 // What an error means, in one line that ends with a zero. Never null, also for a number that is no error.
 const char *palpate_error_text(uint32_t error);
 
+// The report descriptor of the profile, `PALPATE_LENGTH_DESCRIPTOR` bytes that never change.
+const uint8_t *palpate_report_descriptor(void);
+
+// The position report in `length` = 11 bytes.
+PalpateError palpate_position_report_decode(const uint8_t *start, size_t length, PalpatePositionReport *report);
+
+// The `length` = 11 bytes of a position report.
+PalpateError palpate_position_report_encode(const PalpatePositionReport *report, uint8_t *start, size_t length);
+
+// The force report in `length` = 8 bytes.
+PalpateError palpate_force_report_decode(const uint8_t *start, size_t length, PalpateForceReport *report);
+
+// The `length` = 8 bytes of a force report.
+PalpateError palpate_force_report_encode(const PalpateForceReport *report, uint8_t *start, size_t length);
+
+// The capabilities in `length` = 17 bytes.
+PalpateError palpate_capabilities_decode(const uint8_t *start, size_t length, PalpateCapabilities *report);
+
+// The `length` = 17 bytes of capabilities.
+PalpateError palpate_capabilities_encode(const PalpateCapabilities *report, uint8_t *start, size_t length);
+
+// The `PALPATE_CONTROL_…` in the `length` = 2 bytes of a control report.
+PalpateError palpate_control_decode(const uint8_t *start, size_t length, uint8_t *control);
+
+// The `length` = 2 bytes of the control report for a `PALPATE_CONTROL_…`.
+PalpateError palpate_control_encode(uint8_t control, uint8_t *start, size_t length);
+
+// What a position report says, in metres.
+PalpateError palpate_sample_of_report(const PalpateCapabilities *device,
+                                      const PalpatePositionReport *report,
+                                      PalpateServoSample *sample);
+
+// The report with this number that plays a command.
+PalpateError palpate_report_of_command(const PalpateCapabilities *device,
+                                       const PalpateServoCommand *command,
+                                       uint16_t sequence,
+                                       PalpateForceReport *report);
+
 // Φ(x), the probability that a standard normal number is at most x. Refuses NaN.
 PalpateError palpate_normal_cdf(double x, double *p);
 
@@ -534,44 +572,6 @@ PalpateError palpate_scan(const PalpateSeries *residual,
                           double *theta,
                           size_t count,
                           PalpateScanMaximum *maximum);
-
-// The report descriptor of the profile, `PALPATE_LENGTH_DESCRIPTOR` bytes that never change.
-const uint8_t *palpate_report_descriptor(void);
-
-// The position report in `length` = 11 bytes.
-PalpateError palpate_position_report_decode(const uint8_t *start, size_t length, PalpatePositionReport *report);
-
-// The `length` = 11 bytes of a position report.
-PalpateError palpate_position_report_encode(const PalpatePositionReport *report, uint8_t *start, size_t length);
-
-// The force report in `length` = 8 bytes.
-PalpateError palpate_force_report_decode(const uint8_t *start, size_t length, PalpateForceReport *report);
-
-// The `length` = 8 bytes of a force report.
-PalpateError palpate_force_report_encode(const PalpateForceReport *report, uint8_t *start, size_t length);
-
-// The capabilities in `length` = 17 bytes.
-PalpateError palpate_capabilities_decode(const uint8_t *start, size_t length, PalpateCapabilities *report);
-
-// The `length` = 17 bytes of capabilities.
-PalpateError palpate_capabilities_encode(const PalpateCapabilities *report, uint8_t *start, size_t length);
-
-// The `PALPATE_CONTROL_…` in the `length` = 2 bytes of a control report.
-PalpateError palpate_control_decode(const uint8_t *start, size_t length, uint8_t *control);
-
-// The `length` = 2 bytes of the control report for a `PALPATE_CONTROL_…`.
-PalpateError palpate_control_encode(uint8_t control, uint8_t *start, size_t length);
-
-// What a position report says, in metres.
-PalpateError palpate_sample_of_report(const PalpateCapabilities *device,
-                                      const PalpatePositionReport *report,
-                                      PalpateServoSample *sample);
-
-// The report with this number that plays a command.
-PalpateError palpate_report_of_command(const PalpateCapabilities *device,
-                                       const PalpateServoCommand *command,
-                                       uint16_t sequence,
-                                       PalpateForceReport *report);
 
 // Makes a table of depths and lateral positions (m, increasing) and of the force at each pair (N): `depths` rows of `laterals`
 // forces. `scratch` has depths + laterals − 2 numbers.
