@@ -116,7 +116,7 @@ impl Measurement {
 /// // Measured, by this version, on a phantom that is known.
 /// assert!(map.certificate().is_none() && matches!(map.source(), Source::Measured(_)));
 /// assert_eq!(map.program_version(), env!("CARGO_PKG_VERSION"));
-/// assert!(map.phantom().is_some_and(|phantom| phantom.name == "6.6"));
+/// assert!(map.phantom().is_some_and(|phantom| phantom.name() == "6.6"));
 /// // The normal force is even in x, the lateral force odd.
 /// let whole = map.mirrored()?;
 /// assert_eq!(whole.table().row(0.004)?.lateral, [0.125, 0.0, -0.125]);
