@@ -292,7 +292,9 @@ fn the_commands_of_the_readme_succeed() {
 
 /// The lines of a folder's Rust that are neither blank nor comment, without tests.
 fn lines_of_code(folder: &Path) -> usize {
-    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let paths = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
     let code = paths.filter(|path| path.file_stem().is_none_or(|name| name != "tests"));
     let lines = code.map(|path| match path.extension() {
         _ if path.is_dir() => lines_of_code(&path),
@@ -300,7 +302,9 @@ fn lines_of_code(folder: &Path) -> usize {
             let text = fs::read_to_string(&path).unwrap();
             let code = text.split("\nmod tests {").next().unwrap_or_default();
             let lines = code.lines().map(str::trim);
-            lines.filter(|line| !line.is_empty() && !line.starts_with("//")).count()
+            lines
+                .filter(|line| !line.is_empty() && !line.starts_with("//"))
+                .count()
         }
         _ => 0,
     });
@@ -316,6 +320,9 @@ fn the_page_of_each_crate_states_its_length() {
         let stated: f64 = stated.parse().expect(name);
         let counted = lines_of_code(&at(&format!("src/{name}"))) as f64;
         let is_true = (stated / counted - 1.0).abs() < 0.03;
-        assert!(is_true, "src/{name}: {stated} lines stated, {counted} counted");
+        assert!(
+            is_true,
+            "src/{name}: {stated} lines stated, {counted} counted"
+        );
     }
 }
