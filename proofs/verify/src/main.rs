@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
+use clap::builder::PossibleValuesParser;
 use rayon::prelude::*;
 
 use palpate::version::Build;
@@ -28,7 +29,7 @@ struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "palpate-evidence")]
     out: PathBuf,
     /// Runs only these parts; the dossier is then no verdict on the build
-    #[arg(long, value_name = "PART,…", value_parser = ASKED, value_delimiter = ',')]
+    #[arg(long, value_name = "PART,…", value_parser = asked(), value_delimiter = ',')]
     only: Option<Vec<String>>,
     /// The program palpate to judge [default: the one beside palpate-verify]
     #[arg(long, value_name = "FILE")]
@@ -51,16 +52,9 @@ struct Arguments {
 }
 
 /// What `--only` takes: [`PARTS`] and the soak.
-const ASKED: [&str; 8] = [
-    "statistics",
-    "rates",
-    "program",
-    "fem",
-    "kernel",
-    "timing",
-    "tests",
-    "soak",
-];
+fn asked() -> PossibleValuesParser {
+    PossibleValuesParser::new(PARTS.into_iter().chain(["soak"]))
+}
 
 fn main() -> ExitCode {
     command(std::env::args_os(), |arguments: Arguments| {
