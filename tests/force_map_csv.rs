@@ -77,7 +77,7 @@ fn what_is_wrong_is_refused_with_line_column_and_value() {
     assert_cases("refused/map_csv.txt", "changes", refusal);
     let empty = |text: &str| read(text).unwrap_err();
     assert_cases("refused/map_csv.txt", "empty files", empty);
-    let expected = "gel.csv: depths_m is empty, expected at least one position";
+    let expected = "gel.csv: depths_m is empty; give at least one position";
     assert_eq!(read(EXAMPLE.lines().next().unwrap()), Err(expected.into()));
 }
 
@@ -103,7 +103,7 @@ fn every_missing_pose_is_named() {
         let mut lines: Vec<&str> = EXAMPLE.lines().collect();
         let taken: Vec<&str> = lines.remove(missing).split(',').collect();
         let expected = format!(
-            "gel.csv: no row for depth {} mm, lateral {} mm, expected one for each of the 2 depths \
+            "gel.csv: no row for depth {} mm, lateral {} mm; give one for each of the 2 depths \
              at each of the 3 lateral positions in the file",
             taken[0], taken[1]
         );
@@ -122,7 +122,7 @@ fn a_measured_map_keeps_the_files_name_without_its_folder() {
     let deep = EXAMPLE.replace("\n1.5,", "\n15.5,");
     assert_error(
         ForceMap::from_csv(&deep, "lab/gel.csv", "", Some(phantom)),
-        "lab/gel.csv: phantom: depth_mm = 15.5, expected [..]",
+        "lab/gel.csv: phantom: depth_mm = 15.5, but must be [..]",
     );
 }
 

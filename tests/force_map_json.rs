@@ -94,7 +94,7 @@ fn a_measured_map_is_written_and_read_back() {
     assert_same(&read(&text).unwrap(), &map(smoothed(0.0025)).unwrap());
     for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = map(smoothed(wrong)).unwrap_err().to_string();
-        let expected = format!("source.smoothed_half_width_m = {wrong}, expected a finite");
+        let expected = format!("source.smoothed_half_width_m = {wrong}, but must be a finite");
         assert!(error.starts_with(&expected), "{error}");
     }
     let map = map(source).unwrap();
@@ -131,7 +131,7 @@ fn other_schemas_and_newer_versions_are_refused_first() {
         let expected = format!("map.json: schema_version = {version}, {expected}");
         assert_eq!(read(&text), Err(expected));
     }
-    let none = r#"map.json: schema = null, expected "palpate-force-map""#;
+    let none = r#"map.json: schema = null, but must be "palpate-force-map""#;
     assert_eq!(read("{}"), Err(none.into()));
 }
 
@@ -163,7 +163,7 @@ fn what_is_wrong_is_named_by_key_and_row() {
 #[test]
 fn a_certificate_comes_with_finite_elements() {
     let (before, _) = EXAMPLE.split_once(",\n  \"certificate\"").unwrap();
-    let expected = "map.json: certificate is missing, expected one for a map from finite elements";
+    let expected = "map.json: certificate is missing; give it with a map from finite elements";
     assert_eq!(read(&format!("{before}}}")), Err(expected.into()));
 }
 

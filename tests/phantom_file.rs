@@ -209,7 +209,7 @@ fn wrong_types_are_named_with_their_value() {
     let values = "nan, +inf, 0x22, 0b1, 0o17, 0xE5, 1e400, \"34\", true, [34.0], {mm = 34.0}, 1999-11-14, 07:32:00";
     for value in values.split(", ") {
         let message = refusal("width_mm = 34.0", &format!("width_mm = {value}"));
-        let expected = format!("well.width_mm = {value}, expected a finite decimal number");
+        let expected = format!("well.width_mm = {value}, but must be a finite decimal number");
         assert_eq!(message, format!("gel.toml:4: {expected}"));
     }
     let flat = EXAMPLE.replace("[probe]\nradius_mm = 6.5\nlength_mm = 30.0\n", "");
@@ -217,11 +217,11 @@ fn wrong_types_are_named_with_their_value() {
     for (text, expected) in [
         (
             format!("probe = 13\n{flat}"),
-            "probe = 13, expected a table",
+            "probe = 13, but must be a table",
         ),
         (
             format!("inclusion = 13\n{one}"),
-            "inclusion = 13, expected a list",
+            "inclusion = 13, but must be a list",
         ),
     ] {
         assert_eq!(read(&text), Err(format!("gel.toml:1: {expected}")));

@@ -41,7 +41,11 @@ impl<const N: usize> Rows<N> {
         for (place, column) in places.iter_mut().zip(columns) {
             *place = find(&fields, column).map_err(|found| {
                 let header = shortened(header.trim());
-                Refusal::state(format!("{found} in the header {header:?}"), expected).at(line)
+                Refusal::state(
+                    format!("{found} in the header {header:?}"),
+                    format!("give {expected}"),
+                )
+                .at(line)
             })?;
         }
         // Where commas separate the fields, none is a decimal comma.
@@ -162,7 +166,10 @@ pub fn header_and_rows(text: &str) -> ((usize, &str), impl Iterator<Item = (usiz
 
 /// A header that does not name the columns.
 pub fn wrong_header(header: &str, expected: &str) -> Refusal {
-    Refusal::state(format!("header {:?}", shortened(header.trim())), expected)
+    Refusal::state(
+        format!("header {:?}", shortened(header.trim())),
+        format!("give {expected}"),
+    )
 }
 
 /// The fields of a row between commas, trimmed, which must be `expected` as in the header.
@@ -179,7 +186,7 @@ fn counted<'a>(
     if fields.len() == expected {
         return Ok(fields);
     }
-    let expected = format!("{expected}, as in the header {:?}", header.trim());
+    let expected = format!("give {expected}, as in the header {:?}", header.trim());
     Err(Refusal::state(format!("{} fields", fields.len()), expected))
 }
 

@@ -12,9 +12,9 @@ use crate::stats::NumericError;
 /// use palpate::refusal::Refusal;
 ///
 /// let refusal = Refusal::value("depths_m[0]", -0.001, "at least 0");
-/// assert_eq!(refusal.to_string(), "depths_m[0] = -0.001, expected at least 0");
-/// let refusal = Refusal::state("the map is empty", "at least one row").at(3).in_file("map.csv");
-/// assert_eq!(refusal.to_string(), "map.csv:3: the map is empty, expected at least one row");
+/// assert_eq!(refusal.to_string(), "depths_m[0] = -0.001, but must be at least 0");
+/// let refusal = Refusal::state("the map is empty", "give at least one row").at(3).in_file("map.csv");
+/// assert_eq!(refusal.to_string(), "map.csv:3: the map is empty; give at least one row");
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Refusal {
@@ -26,28 +26,28 @@ pub struct Refusal {
     pub key: String,
     /// What is there.
     pub found: String,
-    /// What would be right; empty where `found` says all.
-    pub expected: String,
+    /// What the value of `key` must be, or without a key what to do; empty where `found` says all.
+    pub remedy: String,
 }
 
 impl Refusal {
-    /// `key` has the value `found`, and should have an `expected` one.
+    /// `key` has the value `found`, but must be `right`.
     pub fn value(
         key: impl Into<String>,
         found: impl fmt::Display,
-        expected: impl Into<String>,
+        right: impl Into<String>,
     ) -> Refusal {
         Refusal {
             key: key.into(),
             found: found.to_string(),
-            expected: expected.into(),
+            remedy: right.into(),
             ..Refusal::default()
         }
     }
 
-    /// Something other than a value is wrong, as the sentence `found` says.
-    pub fn state(found: impl fmt::Display, expected: impl Into<String>) -> Refusal {
-        Refusal::value("", found, expected)
+    /// Something other than a value is wrong, as the sentence `found` says; what to do, in the imperative, or nothing.
+    pub fn state(found: impl fmt::Display, remedy: impl Into<String>) -> Refusal {
+        Refusal::value("", found, remedy)
     }
 
     /// The refusal of `what` for a reason, as an argument for `map_err`.
@@ -109,13 +109,12 @@ impl fmt::Display for Refusal {
             (file, None) => write!(f, "{file}: ")?,
             (file, Some(line)) => write!(f, "{file}:{line}: ")?,
         }
-        let equals = if self.key.is_empty() { "" } else { " = " };
-        let comma = if self.expected.is_empty() {
-            ""
-        } else {
-            ", expected "
+        let (equals, before) = match self.key.is_empty() {
+            true => ("", "; "),
+            false => (" = ", ", but must be "),
         };
-        let parts = [&*self.key, equals, &self.found, comma, &self.expected];
+        let before = if self.remedy.is_empty() { "" } else { before };
+        let parts = [&*self.key, equals, &self.found, before, &self.remedy];
         f.write_str(&one_line(&parts.concat()))
     }
 }

@@ -298,7 +298,7 @@ static json_t *report_decode(void) {
                          "watchdog_ms", c.watchdog_ms, "damping_mn_s_per_m", c.damping_mn_s_per_m, "friction_mn", c.friction_mn);
     case 4: check(palpate_control_decode(bytes, length, &control));
         return json_pack("{si si}", "report", 4, "control", control);
-    default: refuse("out_of_range", "the report's number is unknown, expected 1 to 4");
+    default: refuse("out_of_range", "the report's number is unknown; give 1 to 4");
     }
 }
 

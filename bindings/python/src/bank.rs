@@ -70,6 +70,7 @@ fn unknowns(names: Vec<String>) -> PyResult<Vec<Unknown>> {
     let unknown = |name: String| {
         let found = Unknown::ALL.into_iter().find(|of| of.to_string() == name);
         let expected = Unknown::ALL.map(|of| of.to_string()).join(", ");
+        let expected = format!("one of {expected}");
         found.ok_or_else(|| refused(Refusal::value("unknown", name, expected)))
     };
     names.into_iter().map(unknown).collect()
@@ -82,7 +83,7 @@ fn criterion(max_miss: Option<f64>, max_false_alarm: Option<f64>) -> PyResult<Cr
         (Some(max_miss), None) => Ok(Criterion::NeymanPearsonMiss { max_miss }),
         (None, Some(max_false_alarm)) => Ok(Criterion::NeymanPearsonFalseAlarm { max_false_alarm }),
         _ => Err(refused(
-            "max_miss and max_false_alarm, expected one of them",
+            "max_miss and max_false_alarm are both given; give one of them",
         )),
     }
 }

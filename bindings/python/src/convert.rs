@@ -98,7 +98,7 @@ pub fn floats<'py>(
         .unwrap_or_default();
     if masked || kind.is_empty() || !"fiu".contains(&*kind) {
         let found = values.get_type().name()?;
-        let message = format!("{name} is a {found}, expected real numbers or an array of them");
+        let message = format!("{name} is a {found}, but must be real numbers or an array of them");
         return Err(PyTypeError::new_err(message));
     }
     // C order, aligned, and a plain array.
@@ -119,10 +119,10 @@ pub fn vector<'py>(
     }
 }
 
-/// The exception for an array of another shape than expected.
-pub fn wrong_shape(name: &str, shape: &[usize], expected: &str) -> PyErr {
+/// The exception for an array of another shape than is `right`.
+pub fn wrong_shape(name: &str, shape: &[usize], right: &str) -> PyErr {
     let found = format!("{name} has the shape {shape:?}");
-    refused(Refusal::state(found, expected))
+    refused(Refusal::state(found, format!("give {right}")))
 }
 
 /// One record of shape (2, n), or k of them: (k, 2, n).
@@ -158,7 +158,10 @@ impl<'py> Records<'py> {
         let records = Records::new(name, values)?;
         if let Some(count) = records.count {
             let found = format!("{name} has {count} records");
-            return Err(refused(Refusal::state(found, "one of the shape [2, n]")));
+            return Err(refused(Refusal::state(
+                found,
+                "give one, of the shape [2, n]",
+            )));
         }
         Ok(records)
     }

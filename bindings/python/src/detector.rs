@@ -237,7 +237,7 @@ pub fn theta_nuisances<'py>(
         "known" => NoiseLevel::Known,
         "unknown" => NoiseLevel::Unknown,
         level => {
-            let message = format!("level is {level:?}, expected known or unknown");
+            let message = format!("level is {level:?}, but must be known or unknown");
             return Err(refused(message));
         }
     };

@@ -69,7 +69,7 @@ fn key(phantom: &phantom::Phantom, keyword: &str) -> PyResult<String> {
         Some((at, key)) if at < many => Ok(format!("{table}[{at}].{key}")),
         _ => {
             let found = format!("{keyword}: the phantom has {many} of these");
-            let expected = format!("a number from 0, as in {table}_0_{key}");
+            let expected = format!("say which, from 0, as in {table}_0_{key}");
             Err(refused(Refusal::state(found, expected)))
         }
     }

@@ -141,7 +141,7 @@ pub fn step(
         "arm" => Request::Arm,
         "disarm" => Request::Disarm,
         other => {
-            let message = format!("request is {other:?}, expected none, arm or disarm");
+            let message = format!("request is {other:?}, but must be none, arm or disarm");
             return Err(refused(message));
         }
     };

@@ -70,7 +70,7 @@ def test_keywords_change_numbers(phantom):
     assert (tables["layer"][1]["youngs_modulus_kpa"], tables["probe"]["radius_mm"]) == (8, 5)
     assert (other.name, tables["inclusion"][0]["diameter_mm"]) == ("mine", 4)
     for edits, message in [
-        ({"layer_thickness_mm": 3}, "layer_thickness_mm: the phantom has 2 of these, expected a number from 0, as in layer_0_thickness_mm"),
+        ({"layer_thickness_mm": 3}, "layer_thickness_mm: the phantom has 2 of these; say which, from 0, as in layer_0_thickness_mm"),
         ({"layer_2_thickness_mm": 3}, "has 2 of these"),
         ({"probe_radius_m": 3}, "probe.radius_m"),
         ({"colour": "red"}, "colour"),

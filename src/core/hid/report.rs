@@ -181,10 +181,10 @@ impl fmt::Display for InvalidReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             InvalidReport::Length { found, expected } => {
-                write!(f, "a report of {found} bytes, expected {expected}")
+                write!(f, "a report of {found} bytes, which must have {expected}")
             }
             InvalidReport::Number { found, expected } => {
-                write!(f, "report number {found}, expected {expected}")
+                write!(f, "report number {found}, which must be {expected}")
             }
             InvalidReport::Value { found } => write!(f, "the value {found} has no meaning"),
         }

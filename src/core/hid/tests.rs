@@ -84,11 +84,15 @@ fn a_device_without_units_is_refused() {
         (|c| c.position_unit_nm = 0, "'s position unit is 0 nm"),
         (|c| c.force_unit_un = 0, "'s force unit is 0 µN"),
     ];
-    for ((change, found), least) in changes.into_iter().zip(["", "at least ", "at least "]) {
+    for ((change, found), least) in
+        changes
+            .into_iter()
+            .zip(["speak version", "be at least", "be at least"])
+    {
         let mut device = PAPER;
         change(&mut device);
         let refused = format!("{}", Units::new(&device).unwrap_err());
-        let expected = format!("the device{found}, expected {least}1");
+        let expected = format!("the device{found}, but must {least} 1");
         assert_eq!(refused, expected);
     }
 }

@@ -45,16 +45,19 @@ impl fmt::Display for InvalidCapabilities {
         write!(f, "the device")?;
         if device.version != 1 {
             let version = device.version;
-            write!(f, " speaks version {version} of the profile, expected 1")
+            write!(
+                f,
+                " speaks version {version} of the profile, but must speak version 1"
+            )
         } else if device.position_unit_nm == 0 {
-            write!(f, "'s position unit is 0 nm, expected at least 1")
+            write!(f, "'s position unit is 0 nm, but must be at least 1")
         } else if unit == 0 {
-            write!(f, "'s force unit is 0 µN, expected at least 1")
+            write!(f, "'s force unit is 0 µN, but must be at least 1")
         } else {
             write!(
                 f,
-                "'s force unit is {unit} µN, so that no report holds its largest force of {largest} mN, \
-                 expected a unit of at least {} µN",
+                "'s force unit is {unit} µN, which is too small for a report of its largest force of {largest} mN, \
+                 but must be at least {} µN",
                 (u32::from(largest) * 1000).div_ceil(32767)
             )
         }

@@ -39,20 +39,20 @@ impl fmt::Display for InvalidLimits {
             InvalidLimits::Force => {
                 write!(
                     f,
-                    "force limit: expected above 0 and at most {FORCE_CEILING} N"
+                    "the force limit must be above 0 and at most {FORCE_CEILING} N"
                 )
             }
             InvalidLimits::Slew => {
                 write!(
                     f,
-                    "slew limit: expected {MIN_SLEW} N a cycle to the force limit"
+                    "the slew limit must be {MIN_SLEW} N a cycle to the force limit"
                 )
             }
             InvalidLimits::Release => write!(
                 f,
-                "release limit: expected at least the slew limit and 1/{RELEASE_CYCLES} of the force limit"
+                "the release limit must be at least the slew limit and 1/{RELEASE_CYCLES} of the force limit"
             ),
-            InvalidLimits::Watchdog => write!(f, "watchdog: expected 1 to 100 cycles"),
+            InvalidLimits::Watchdog => write!(f, "the watchdog must be 1 to 100 cycles"),
         }
     }
 }

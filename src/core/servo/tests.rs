@@ -154,10 +154,10 @@ fn limits_are_refused_by_name() {
         refused(2.0, 0.01, 0.2, watchdog, InvalidLimits::Watchdog);
     }
     for (limit, name) in [
-        (InvalidLimits::Force, "force limit: "),
-        (InvalidLimits::Slew, "slew limit: "),
-        (InvalidLimits::Release, "release limit: "),
-        (InvalidLimits::Watchdog, "watchdog: "),
+        (InvalidLimits::Force, "the force limit "),
+        (InvalidLimits::Slew, "the slew limit "),
+        (InvalidLimits::Release, "the release limit "),
+        (InvalidLimits::Watchdog, "the watchdog "),
     ] {
         assert!(limit.to_string().starts_with(name), "{limit}");
     }

@@ -110,10 +110,10 @@ impl Bank {
             let same = |(a, b): (f64, f64)| (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0);
             let asked = [position, depth, diameter, modulus];
             let is_asked = |&map: &usize| self.point(map).into_iter().zip(asked).all(same);
-            let found = (0..self.maps.len()).find(is_asked).ok_or_else(|| {
-                Refusal::state("an inclusion that is not in the bank", "one of its").at(line)
-            })?;
-            let twice = Refusal::state("an inclusion for the second time", "each once");
+            let found = (0..self.maps.len())
+                .find(is_asked)
+                .ok_or_else(|| Refusal::state("this inclusion is not in the bank", "").at(line))?;
+            let twice = Refusal::state("this inclusion is there twice", "give each once");
             twice.at(line).when(prior[found].is_some())?;
             let below = Refusal::value("weight", weight, "at least 0").at(line);
             below.when(!(0.0..f64::INFINITY).contains(&weight))?;
@@ -121,8 +121,8 @@ impl Bank {
         }
         let whole: f64 = prior.iter().flatten().sum();
         let is_right = whole > 0.0 && whole.is_finite();
-        let found = format!("weights that add up to {whole}");
-        Refusal::state(found, "above 0 and finite").when(!is_right)?;
+        let found = format!("the weights add up to {whole}");
+        Refusal::state(found, "give weights whose sum is finite and above 0").when(!is_right)?;
         let share = |weight: Option<f64>| weight.unwrap_or(0.0) / whole;
         Ok(prior.into_iter().map(share).collect())
     }

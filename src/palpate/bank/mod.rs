@@ -113,7 +113,7 @@ impl Bank {
     /// Implements: BNK-001, BNK-003.
     pub fn new(reference: ForceMap, maps: Vec<ForceMap>) -> Result<Bank, Refusal> {
         let Some(first) = maps.first() else {
-            return Err(Refusal::state("a bank without maps", "one at least"));
+            return Err(Refusal::state("the bank has no maps", "give one at least"));
         };
         let depth = first.table().depths()[0];
         reference.table().row(depth)?;
@@ -134,11 +134,11 @@ impl Bank {
         let same = maps.windows(2).find(|pair| pair[0].0.0 == pair[1].0.0);
         if let Some([((_, a), _), ((_, b), _)]) = same {
             let found = format!("maps[{a}] and maps[{b}] have the same inclusion");
-            return Err(Refusal::state(found, "each inclusion once"));
+            return Err(Refusal::state(found, "give each inclusion once"));
         }
         let [positions, depths, diameters, moduli] = axes.each_ref().map(Vec::len);
         let expected = format!(
-            "one for each of {positions} positions × {depths} depths × {diameters} diameters × {moduli} moduli of their inclusions"
+            "give one for each of {positions} positions × {depths} depths × {diameters} diameters × {moduli} moduli of their inclusions"
         );
         let all = positions * depths * diameters * moduli;
         Refusal::state(format!("{} maps", maps.len()), expected).when(maps.len() != all)?;
@@ -180,12 +180,15 @@ impl Bank {
 fn check_map(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<[f64; 4], Refusal> {
     check_gel(reference, map)?;
     let Some([inclusion]) = map.phantom().map(Phantom::inclusions) else {
-        let found = "its phantom has not one inclusion";
-        return Err(Refusal::state(found, "one, which says what the map is for"));
+        let found = "its phantom has no inclusion, or several";
+        return Err(Refusal::state(
+            found,
+            "give one, which says what the map is for",
+        ));
     };
     let [only] = map.table().depths() else {
-        let found = format!("{} depths of the probe", map.table().depths().len());
-        return Err(Refusal::state(found, "one"));
+        let found = format!("it has {} depths of the probe", map.table().depths().len());
+        return Err(Refusal::state(found, "give one"));
     };
     let other = Refusal::value("depths_m[0]", only, format!("{depth} as in maps[0]"));
     other.when((only - depth).abs() > SAME_POSITION)?;
@@ -193,6 +196,6 @@ fn check_map(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<[f64; 4
     let (ours, theirs) = (map.table().laterals(), reference.table().laterals());
     let is_same = ours.len() == theirs.len() && ours.iter().zip(theirs).all(same);
     let found = "its lateral positions are not those of the reference";
-    Refusal::state(found, "the same").when(!is_same)?;
+    Refusal::state(found, "give the same").when(!is_same)?;
     Ok(Parameter::ALL.map(|parameter| parameter.of(inclusion)))
 }

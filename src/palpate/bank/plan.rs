@@ -81,9 +81,9 @@ impl BankPlan {
     /// Implements: BNK-020.
     pub fn new(phantom: Phantom, depth: f64, laterals: &[f64]) -> Result<BankPlan, Refusal> {
         let [inclusion] = phantom.inclusions() else {
-            let found = format!("{} inclusions", phantom.inclusions().len());
-            let expected = "one, of which the hypotheses are made";
-            return Err(Refusal::value("phantom.inclusion", found, expected));
+            let found = format!("the phantom has {} inclusions", phantom.inclusions().len());
+            let remedy = "give one, of which the hypotheses are made";
+            return Err(Refusal::state(found, remedy));
         };
         let [positions, depths, diameters, moduli] =
             Parameter::ALL.map(|parameter| vec![parameter.of(inclusion)]);
@@ -136,7 +136,7 @@ impl BankPlan {
         let is_disc = matches!(of_file.shape, Shape::Disc { .. });
         if !is_disc && Parameter::Diameter.of(of_file) != diameter {
             let found = "the inclusion is no disc";
-            return Err(Refusal::state(found, "a disc where its diameter varies"));
+            return Err(Refusal::state(found, "give a disc, or one diameter"));
         }
         let [x, y, d] = [position, depth, diameter].map(|length| 1e3 * length);
         let of = format!(

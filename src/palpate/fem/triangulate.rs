@@ -437,6 +437,6 @@ fn cuts(at: &Line, size: &SizeField) -> Vec<f64> {
 fn flat(at: Point, angle: f64) -> FemError {
     let (x, y) = (at.x * 1e3, at.y * 1e3);
     let found = format!("a triangle near x = {x:.3} mm, y = {y:.3} mm has an angle of {angle:.1}°");
-    let expected = "the mesh cannot follow this phantom; try another mesh size";
-    Refusal::state(found, format!("at least {SMALLEST_ANGLE}°: {expected}")).into()
+    let found = format!("{found}, under {SMALLEST_ANGLE}°: the mesh cannot follow this phantom");
+    Refusal::state(found, "try another mesh size").into()
 }

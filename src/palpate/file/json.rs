@@ -71,9 +71,9 @@ fn placed(refusal: Refusal, error: &serde_json::Error, text: &str) -> Refusal {
     let near = near.filter(|(at, _)| at.abs_diff(column) < 30);
     let near: String = near.map(|(_, c)| c).collect();
     let mut refusal = refusal.of_part(&format!("column {column}"));
-    let end = match refusal.expected.is_empty() {
+    let end = match refusal.remedy.is_empty() {
         true => &mut refusal.found,
-        false => &mut refusal.expected,
+        false => &mut refusal.remedy,
     };
     *end += &format!(", in {:?}", near.trim());
     refusal.line = (line > 0).then_some(line);

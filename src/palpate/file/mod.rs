@@ -65,13 +65,19 @@ fn refusal(path: &KeyPath, message: &str) -> Refusal {
         path if path == "." => String::new(),
         path => path,
     };
-    let (found, expected) = message.split_once(", expected ").unwrap_or((message, ""));
+    let (found, expected) = message
+        .split_once(", but must be ")
+        .unwrap_or((message, ""));
     let expected = match expected {
         "f64" => "a number",
         "u32" | "u64" | "usize" => "a whole number, at least 0",
         "a sequence" => "a list",
         "a string" => "a text",
         other => other,
+    };
+    let give = match expected {
+        "" => String::new(),
+        right => format!("give {right}"),
     };
     let inner = |name: &str| match (&*key, name.trim_end_matches('`')) {
         ("", name) => name.into(),
@@ -80,10 +86,10 @@ fn refusal(path: &KeyPath, message: &str) -> Refusal {
     match found.split_once('`') {
         Some(("missing field ", name)) => Refusal::state(inner(name) + " is missing", ""),
         Some(("duplicate field ", name)) => Refusal::state(inner(name) + " is there twice", ""),
-        Some(("unknown field ", _)) => Refusal::state(format!("{key} is unknown"), expected),
+        Some(("unknown field ", _)) => Refusal::state(format!("{key} is unknown"), give),
         Some(("unknown variant ", word)) => Refusal::value(key, format!("`{word}"), expected),
-        _ if key.is_empty() => Refusal::state(found, expected),
-        _ if found.starts_with("has ") => Refusal::state(format!("{key} {found}"), expected),
+        _ if key.is_empty() => Refusal::state(found, give),
+        _ if found.starts_with("has ") => Refusal::state(format!("{key} {found}"), give),
         _ => match found.split_once(": ") {
             Some(("invalid type" | "invalid value", value)) => {
                 // A number stands in backquotes, behind its kind.
@@ -91,7 +97,7 @@ fn refusal(path: &KeyPath, message: &str) -> Refusal {
                 let number = value.split('`').nth(1);
                 Refusal::value(key, number.unwrap_or(value), expected)
             }
-            _ => Refusal::state(format!("{key}: {found}"), expected),
+            _ => Refusal::state(format!("{key}: {found}"), give),
         },
     }
 }

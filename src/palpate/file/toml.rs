@@ -21,7 +21,7 @@ pub fn from_toml<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, Refus
     // What the parser has no place for, such as too deep a nesting, it found up to the end.
     let line = |span: Option<Range<usize>>| line_of(text, span.map_or(text.len(), |at| at.start));
     let document = toml::Deserializer::parse(text).map_err(|error| {
-        let refusal = Refusal::state(error.message(), "");
+        let refusal = Refusal::state(error.message().replace(", expected ", "; give "), "");
         refusal.at(line(error.span())).in_file(file)
     })?;
     serde_path_to_error::deserialize(document).map_err(|error| {
@@ -68,7 +68,8 @@ impl<'a> Tree<'a> {
             let at = error.span().map_or(text.len(), |span| span.start);
             let before = text.get(..at).unwrap_or(text);
             let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-            let message = format!("column {column}: not TOML: {}", error.message());
+            let message = error.message().replace(", expected ", "; give ");
+            let message = format!("column {column}: not TOML: {message}");
             Refusal::state(message, "").at(line_of(text, at))
         })?;
         let span = document.span();

@@ -124,8 +124,8 @@ fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>) -> Result<ForceTable, Refusal> {
     let next = rows.iter().skip(1);
     for ((first, before), (line, [depth, lateral, ..])) in rows.iter().zip(next) {
         if before[..2] == [*depth, *lateral] {
-            let found = format!("second {}", named(*depth, *lateral));
-            let expected = format!("one; the first is line {first}");
+            let found = format!("a second {}", named(*depth, *lateral));
+            let expected = format!("keep one; the first is line {first}");
             return Err(Refusal::state(found, expected).at(*line));
         }
     }
@@ -140,7 +140,7 @@ fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>) -> Result<ForceTable, Refusal> {
                 return Err(Refusal::state(
                     format!("no {}", named(depth, lateral)),
                     format!(
-                        "one for each of the {depths} depths at each of the {laterals} lateral positions in the file"
+                        "give one for each of the {depths} depths at each of the {laterals} lateral positions in the file"
                     ),
                 ));
             }

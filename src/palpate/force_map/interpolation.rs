@@ -65,7 +65,10 @@ impl ForceTable {
         for (key, axis) in [("depths_m", self.depths()), ("laterals_m", self.laterals())] {
             if axis.len() < 2 {
                 let found = format!("{key} has a single entry");
-                return Err(Refusal::state(found, "at least two to interpolate between"));
+                return Err(Refusal::state(
+                    found,
+                    "give at least two to interpolate between",
+                ));
             }
         }
         let value = |matrix: &Matrix| {
@@ -92,8 +95,9 @@ impl ForceTable {
         let place = |name: &str, axis: &[f64], position: f64| {
             let place = Place::within(axis, position);
             place.ok_or_else(|| {
-                let found = format!("{name} {position} m is outside the map");
-                Refusal::state(found, format!("{} to {} m", axis[0], axis[axis.len() - 1]))
+                let (first, last) = (axis[0], axis[axis.len() - 1]);
+                let map = format!("the map, which has {first} to {last} m");
+                Refusal::state(format!("{name} {position} m is outside {map}"), "")
             })
         };
         let row = place("depth", self.depths(), depth)?;
@@ -247,7 +251,7 @@ mod tests {
         }
         assert_error(
             poses().sweep(0.005, &[0.0]),
-            "depth 0.005 m is outside the map, expected 0 to 0.004 m",
+            "depth 0.005 m is outside the map, which has 0 to 0.004 m",
         );
     }
 }

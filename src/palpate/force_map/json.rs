@@ -100,11 +100,11 @@ impl TryFrom<Document> for ForceMap {
             }
             (SourceKey::Measured(measurement), None) => Source::Measured(measurement),
             (SourceKey::FiniteElements {}, None) => {
-                let expected = "one for a map from finite elements";
+                let expected = "give it with a map from finite elements";
                 return Err(Refusal::state("certificate is missing", expected));
             }
             (SourceKey::Measured(_), Some(_)) => {
-                let expected = "none for a measured map";
+                let expected = "leave it out of a measured map";
                 return Err(Refusal::state("certificate is there", expected));
             }
         };

@@ -160,7 +160,7 @@ impl ForceMap {
         match &source {
             Source::FiniteElements { certificate } => {
                 certificate.check(table.depths(), table.laterals())?;
-                let expected = "the phantom that the finite elements computed";
+                let expected = "give the phantom that the finite elements computed";
                 Refusal::state("phantom is missing", expected).when(phantom.is_none())?;
             }
             Source::Measured(of) => {
@@ -263,7 +263,7 @@ impl ForceMap {
         if let Some(phantom) = self.phantom.as_ref().filter(|p| !p.is_symmetric()) {
             return Err(Refusal::state(
                 format!("phantom {:?} is not its own mirror image", phantom.name()),
-                "a map over negative lateral positions too: it cannot be extended by symmetry",
+                "give a map over negative lateral positions too: it cannot be extended by symmetry",
             ));
         }
         Ok(ForceMap {
@@ -283,7 +283,7 @@ impl ForceMap {
         let phantom = self.phantom.as_ref().and_then(Phantom::mirror_image);
         let phantom = phantom.ok_or_else(|| {
             let found = "no phantom, or an inclusion that is not symmetric";
-            Refusal::state(found, "a phantom to take the mirror image of")
+            Refusal::state(found, "give a phantom to take the mirror image of")
         })?;
         let mut map = ForceMap {
             phantom: Some(phantom),

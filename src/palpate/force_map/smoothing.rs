@@ -46,7 +46,8 @@ impl Window {
             .max(at + 1);
         let (count, position) = (end - start, laterals[at]);
         let found = format!("{count} lateral positions are within {half_width} m of {position} m");
-        let expected = format!("at least {FEWEST} for a parabola to smooth");
+        let expected =
+            format!("choose a half-width with at least {FEWEST}, through which a parabola goes");
         Refusal::state(found, expected).when(count < FEWEST)?;
         let powers = |row: usize, power| {
             let x = (laterals[start + row] - laterals[at]) / half;
@@ -196,7 +197,7 @@ mod tests {
         for (half_width, expected) in [
             (
                 0.99e-3,
-                "3 lateral positions are within 0.00099 m of -0.001 m, expected at least 4",
+                "3 lateral positions are within 0.00099 m of -0.001 m; choose a half-width with at least 4",
             ),
             (0.0, "half-width = 0, expected"),
             (-1.0, "half-width = -1, expected"),

@@ -97,7 +97,7 @@ impl Matrix {
     pub(super) fn check(&self, key: &str, shape: [usize; 2], least: f64) -> Result<(), Refusal> {
         let [rows, columns] = [self.row_count(), self.column_count()];
         let found = format!("{key} has {rows} rows and {columns} columns");
-        let expected = format!("{} rows (one a depth)", shape[0]);
+        let expected = format!("give {} rows (one a depth)", shape[0]);
         let expected = format!(
             "{expected} and {} columns (one a lateral position)",
             shape[1]
@@ -138,7 +138,7 @@ impl TryFrom<Vec<Vec<f64>>> for Matrix {
         let columns = rows.first().map_or(0, Vec::len);
         if let Some(row) = rows.iter().position(|row| row.len() != columns) {
             let found = format!("row {row} has {} numbers", rows[row].len());
-            return Err(format!("{found}, expected {columns} as in row 0"));
+            return Err(format!("{found}; give {columns}, as in row 0"));
         }
         let values = rows.concat();
         Ok(Matrix { columns, values })
@@ -242,7 +242,8 @@ impl ForceTable {
         for (depth, forces) in self.depths.iter().zip(self.forces.lateral.rows()) {
             let force = forces[0];
             let found = format!("lateral force {force} N at depth {depth} m, x = 0");
-            let expected = format!("at most {SYMMETRY_TOLERANCE:e} N in a symmetric map");
+            let expected =
+                format!("give at most {SYMMETRY_TOLERANCE:e} N, or negative positions too");
             Refusal::state(found, expected).when(force.abs() > SYMMETRY_TOLERANCE)?;
         }
         let columns = self.mirror_columns();
@@ -314,7 +315,7 @@ fn place_of(name: &str, axis: &[f64], position: f64) -> Result<usize, Refusal> {
     let same = |&entry: &f64| (entry - position).abs() <= SAME_POSITION;
     axis.iter().position(same).ok_or_else(|| {
         let found = format!("{name} {position} m is not in the map");
-        Refusal::state(found, format!("one of {axis:?} m"))
+        Refusal::state(found, format!("give one of {axis:?} m"))
     })
 }
 
@@ -337,7 +338,7 @@ pub(crate) fn check_axes(depths: &[f64], laterals: &[f64]) -> Result<(), Refusal
 }
 
 fn check_axis(key: &str, axis: &[f64]) -> Result<(), Refusal> {
-    let empty = Refusal::state(format!("{key} is empty"), "at least one position");
+    let empty = Refusal::state(format!("{key} is empty"), "give at least one position");
     empty.when(axis.is_empty())?;
     let refuse = |index, expected| {
         let key = format!("{key}[{index}]");
@@ -371,7 +372,7 @@ fn check_same_axis(key: &str, ours: &[f64], theirs: &[f64]) -> Result<(), Refusa
         let [ours, theirs] =
             both.map(|entry| entry.map_or("not there".into(), |metres| format!("{metres} m")));
         let found = format!("{key}[{index}] is {ours} in one map and {theirs} in the other");
-        return Err(Refusal::state(found, "equal axes"));
+        return Err(Refusal::state(found, "give maps with equal axes"));
     }
     Ok(())
 }

@@ -133,7 +133,7 @@ fn bad_matrices_are_refused() {
     );
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let spoilt = matrix(&[[0.0; 3], [0.0, 0.0, bad]]);
-        let expected = format!("force_n[1][2] = {bad}, expected a finite number");
+        let expected = format!("force_n[1][2] = {bad}, but must be a finite number");
         let message = refusal(over_poses(spoilt.clone(), good.clone()));
         assert_eq!(message, format!("normal_{expected}"));
         let message = refusal(over_poses(good.clone(), spoilt));
@@ -166,7 +166,7 @@ fn a_certificate_is_checked_number_by_number() {
     let spoilt = matrix(&[[1.0, 1.0, 1.0], [f64::NAN, 0.8, 0.85]]);
     assert_error(
         computed(|c| c.min_det = spoilt),
-        "certificate.min_det[1][0] = NaN, expected a finite number",
+        "certificate.min_det[1][0] = NaN, but must be a finite number",
     );
 }
 
@@ -198,7 +198,7 @@ fn a_map_fits_its_phantom() {
     let finite_elements = Source::FiniteElements { certificate };
     assert_error(
         ForceMap::new(finite_elements, None, table()),
-        "phantom is missing, expected the phantom that the finite elements computed",
+        "phantom is missing; give the phantom that the finite elements computed",
     );
     assert!(ForceMap::new(source(), None, table()).is_ok());
     let phantom = Phantom::builtin("none").unwrap();
@@ -206,7 +206,7 @@ fn a_map_fits_its_phantom() {
     let too_wide = axes(&[0.0, 0.004], &[0.0, 0.0111]).unwrap();
     assert_error(
         ForceMap::new(source(), Some(phantom), too_wide),
-        "phantom: lateral_mm = 11.1, expected [..]",
+        "phantom: lateral_mm = 11.1, but must be [..]",
     );
 }
 
@@ -251,7 +251,7 @@ fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
 fn only_a_map_from_zero_on_is_extended() {
     assert_error(
         axes(&[0.0], &[0.001, 0.002]).unwrap().mirrored(),
-        "laterals_m[0] = 0.001, expected 0 in a map to be extended by symmetry",
+        "laterals_m[0] = 0.001, but must be 0 in a map to be extended by symmetry",
     );
     assert!(table().mirrored().unwrap().mirrored().is_err());
     let alone = axes(&[0.0], &[-0.0]).unwrap().mirrored().unwrap();
@@ -289,12 +289,12 @@ fn a_signal_needs_equal_axes() {
     let shifted = axes(&[0.0, 0.001], &[0.0, 0.002, 0.005 + 1.1e-9]).unwrap();
     assert_error(
         table().minus(&shifted),
-        "laterals_m[2] is 0.005 m in one map and 0.0050000011 m in the other, expected equal axes",
+        "laterals_m[2] is 0.005 m in one map and 0.0050000011 m in the other; give maps with equal axes",
     );
     let shorter = axes(&[0.0], &[0.0, 0.002, 0.005]).unwrap();
     assert_error(
         table().minus(&shorter),
-        "depths_m[1] is 0.001 m in one map and not there in the other, expected equal axes",
+        "depths_m[1] is 0.001 m in one map and not there in the other; give maps with equal axes",
     );
     assert!(shorter.minus(&table()).is_err());
     let huge = |sign: f64| {
@@ -303,7 +303,7 @@ fn a_signal_needs_equal_axes() {
     };
     assert_error(
         huge(1.0).minus(&huge(-1.0)),
-        "normal_force_n[0][0] = inf, expected a finite number",
+        "normal_force_n[0][0] = inf, but must be a finite number",
     );
 }
 
@@ -317,7 +317,7 @@ fn forces_at_a_stored_depth() {
     assert_eq!(row.lateral, [0.0, -0.11, -0.12]);
     assert_error(
         table.row(0.0005),
-        "depth 0.0005 m is not in the map, expected one of [0.0, 0.001] m",
+        "depth 0.0005 m is not in the map; give one of [0.0, 0.001] m",
     );
     assert!(table.row(0.001 + 1.1e-9).is_err() && table.row(f64::NAN).is_err());
 }

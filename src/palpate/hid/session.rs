@@ -137,23 +137,24 @@ fn as_it_is(error: impl fmt::Display) -> Refusal {
 /// Refuses a device that could leave a force on the hand, or that does not make these limits.
 fn check(capabilities: &Capabilities, limits: &Limits) -> Result<(), Refusal> {
     let (watchdog_ms, period_us) = (capabilities.watchdog_ms, capabilities.period_us);
-    Refusal::state("the device reports every 0 µs", "at least 1").when(period_us == 0)?;
+    Refusal::state("the device reports every 0 µs, not every 1 µs or more", "")
+        .when(period_us == 0)?;
     let waits_us = u32::from(watchdog_ms) * 1000;
     let found = format!("the device drops its force after {watchdog_ms} ms without a report");
-    let expected = format!(
-        "more than its period of {period_us} µs and at most {LONGEST_WATCHDOG_MS} ms: \
+    let found = format!(
+        "{found}, not after more than its period of {period_us} µs and at most {LONGEST_WATCHDOG_MS} ms: \
          a blocked write would leave the force on the hand"
     );
     let is_wrong = waits_us <= u32::from(period_us) || watchdog_ms > LONGEST_WATCHDOG_MS;
-    Refusal::state(found, expected).when(is_wrong)?;
+    Refusal::state(found, "").when(is_wrong)?;
     let (unit, slew) = (f32::from(capabilities.force_unit_un) / 1e6, limits.slew());
     let found = format!("the device's force unit is {unit} N");
-    let expected = format!("at most the slew limit of {slew} N");
-    Refusal::state(found, expected).when(unit > slew)?;
+    let found = format!("{found}, above the slew limit of {slew} N");
+    Refusal::state(found, "").when(unit > slew)?;
     let largest = f32::from(capabilities.largest_force_mn) / 1e3;
     let found = format!("a force limit of {} N", limits.force());
-    let expected = format!("at most {largest} N, the device's largest force");
-    Refusal::state(found, expected).when(limits.force() > largest)
+    let remedy = format!("give at most {largest} N, the device's largest force");
+    Refusal::state(found, remedy).when(limits.force() > largest)
 }
 
 impl<'a, D: HapticDevice> Session<'a, D> {

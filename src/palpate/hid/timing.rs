@@ -185,8 +185,8 @@ pub fn measure<D: HapticDevice>(
     period: Option<Duration>,
 ) -> Result<Timing, Refusal> {
     let least = budget.least_cycles();
-    let expected = format!("at least {least} for this percentile and confidence");
-    Refusal::state(format_args!("{cycles} cycles"), expected).when(cycles < least)?;
+    let remedy = format!("measure at least {least} for this percentile and confidence");
+    Refusal::state(format_args!("{cycles} cycles are too few"), remedy).when(cycles < least)?;
     let mut times = Times::new(budget, period);
     let late = Cell::new(Duration::ZERO);
     let clock = HostClock {

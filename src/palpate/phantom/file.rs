@@ -174,7 +174,7 @@ impl Phantom {
     /// let phantom = Phantom::from_toml(text, "soft.toml")?;
     /// assert_eq!((phantom.well().width, phantom.layers()[0].material.youngs_modulus), (0.034, 2500.0));
     /// let error = Phantom::from_toml(&text.replace("6.5", "17.0"), "wide.toml").unwrap_err();
-    /// assert!(error.to_string().starts_with("wide.toml:5: probe.radius_mm = 17.0, expected "));
+    /// assert!(error.to_string().starts_with("wide.toml:5: probe.radius_mm = 17.0, but must be "));
     /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
@@ -236,7 +236,7 @@ impl Phantom {
     /// assert_eq!((thinner.layers()[1].thickness, thinner.inclusions()[0].depth), (0.0142, 0.006));
     /// assert_eq!(thinner.number("layer[1].thickness_mm"), Some(14.2));
     /// let error = phantom.set([("inclusion[0].depth_mm", 30)]).unwrap_err();
-    /// assert!(error.to_string().starts_with("inclusion[0].depth_mm = 30.0, expected "));
+    /// assert!(error.to_string().starts_with("inclusion[0].depth_mm = 30.0, but must be "));
     /// assert_eq!(phantom.set([("well.walls", "\"sliding\"")])?.well().walls.to_string(), "sliding");
     /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```

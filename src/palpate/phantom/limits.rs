@@ -229,7 +229,7 @@ fn check_polygon(key: &str, points: &[Point]) -> Check {
             if gap < CLEARANCE {
                 let (k, l, gap) = (i + 1, (j + 1) % count, in_mm(gap));
                 let found = format!("edges from corner {i} to {k} and from {j} to {l} {gap} apart");
-                let expected = "at least 0.1 mm between edges that do not adjoin";
+                let expected = "at least 0.1 mm apart where they do not adjoin";
                 return refuse(key, found, expected);
             }
         }
@@ -248,7 +248,7 @@ fn check_distances(inclusions: &[Inclusion]) -> Check {
             if gap < CLEARANCE {
                 let (key, gap) = (format!("inclusion[{at}]"), in_mm(gap.max(0.0)));
                 let found = format!("an outline {gap} from that of inclusion[{earlier}]");
-                return refuse(&key, found, "at least 0.1 mm between them");
+                return refuse(&key, found, "at least 0.1 mm away");
             }
         }
     }

@@ -176,14 +176,17 @@ fn there_are_some_layers_and_not_too_many() {
     };
     assert_eq!(check(&layers(1)), Ok(()));
     assert_eq!(check(&layers(100)), Ok(()));
-    assert_eq!(refusal(&layers(0)), "layer = 0 of them, expected 1 to 100");
-    let message = "layer = 101 of them, expected 1 to 100";
+    assert_eq!(
+        refusal(&layers(0)),
+        "layer = 0 of them, but must be 1 to 100"
+    );
+    let message = "layer = 101 of them, but must be 1 to 100";
     assert_eq!(refusal(&layers(101)), message);
     // Discs of 0.2 mm, 0.4 mm apart.
     let one = |at| (0.4 * f64::from(at) - 20.0, 3.0, disc(0.2));
     assert!(is_valid(&(0..100).map(one).collect::<Vec<_>>()));
     let discs: Vec<_> = (0..101).map(one).collect();
-    refuses(&discs, " = 101 of them, expected 0 to 100");
+    refuses(&discs, " = 101 of them, but must be 0 to 100");
 }
 
 // Verifies: PHA-006, PHA-015.
@@ -231,7 +234,7 @@ fn discs_that_overlap_or_touch_are_refused() {
         let outline = format!("[1] = an outline {gap} mm from that of inclusion[0]");
         refuses(
             &two(diameter),
-            &format!("{outline}, expected at least 0.1 mm between them"),
+            &format!("{outline}, but must be at least 0.1 mm away"),
         );
     }
     assert!(is_valid(&[(-2.5, 4.0, disc(5.0)), (2.6, 4.0, disc(5.0))]));
@@ -245,7 +248,7 @@ fn discs_that_overlap_or_touch_are_refused() {
 #[test]
 fn shapes_that_overlap_or_enclose_one_another_are_refused() {
     let overlap =
-        "[1] = an outline 0.0 mm from that of inclusion[0], expected at least 0.1 mm between them";
+        "[1] = an outline 0.0 mm from that of inclusion[0], but must be at least 0.1 mm away";
     let shapes = [disc(8.0), ellipse(8.0, 7.9, 10.0), rectangle(8.0, 8.0)];
     let small = [disc(1.0), ellipse(1.0, 0.9, 10.0), rectangle(1.0, 1.0)];
     for (large, size) in shapes.iter().zip(0..) {
@@ -284,7 +287,7 @@ fn ellipses_are_neither_slivers_nor_turned_too_far() {
     let sizes = "0.1 2 0\n2 0.1 0\n2 1 360\n2 1 -360";
     assert!(numbers(sizes).into_iter().all(|sizes| is_valid(&of(sizes))));
     let message = shape_refusal(&of([2.0, 1.0, f64::NAN]));
-    assert!(message.starts_with("inclusion[0].angle_deg = NaN, expected "));
+    assert!(message.starts_with("inclusion[0].angle_deg = NaN, but must be "));
 }
 
 // Verifies: PHA-004.
@@ -301,7 +304,7 @@ fn polygons_have_three_to_a_thousand_finite_corners() {
     assert!(refusal(&round(1001)).starts_with("inclusion[0].points_mm = 1001 of them, "));
     assert_eq!(
         refusal(&[[0.0, 0.0], [1.0, 0.0], [0.0, f64::INFINITY]]),
-        "inclusion[0].points_mm[2][1] = inf, expected at least -1000.0 and at most 1000.0"
+        "inclusion[0].points_mm[2][1] = inf, but must be at least -1000.0 and at most 1000.0"
     );
 }
 

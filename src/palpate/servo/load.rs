@@ -203,8 +203,9 @@ impl LoadedTable {
     ///
     /// Implements: SRV-051.
     fn excess(&self, damping: &Damping, limits: &Limits) -> Result<Option<Excess>, Refusal> {
-        let expected = "period and resolution above 0, damping and friction at least 0, all finite";
-        let no_device = || Refusal::state(format!("{damping:?}: expected {expected}"), "");
+        let remedy =
+            "give period and resolution above 0, damping and friction at least 0, all finite";
+        let no_device = || Refusal::state(format!("{damping:?} is no device"), remedy);
         let stiffest = damping.stiffest().ok_or_else(no_device)?;
         let table = self.table();
         let stiffness = stiffness(&table);
@@ -278,7 +279,7 @@ fn knots(
     }
     let found = format!("{name} has {} entries for the servo", knots.len());
     let is_right = (2..=MAX_KNOTS).contains(&knots.len());
-    Refusal::state(found, format!("2 to {MAX_KNOTS}")).when(!is_right)?;
+    Refusal::state(found, format!("give 2 to {MAX_KNOTS}")).when(!is_right)?;
     Ok(knots)
 }
 

@@ -301,7 +301,7 @@ pub(crate) fn nuisances_of(
     if unknown.contains(&Unknown::Depth) {
         nuisances.push(depth_slope(depths, depth, expected)?.ok_or_else(|| {
             let found = "the maps have a single depth";
-            Refusal::state(found, "rows at other depths, where the depth is unknown")
+            Refusal::state(found, "give rows at other depths, or the depth as known")
         })?);
     }
     Ok(nuisances)

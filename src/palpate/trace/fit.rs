@@ -190,7 +190,7 @@ impl Noise {
     /// Implements: TRC-076.
     pub fn of_blank(blank: &Trace) -> Result<Noise, Refusal> {
         let samples = blank.samples.len();
-        let expected = format!("at least {LEAST_BLANK}, to estimate its noise");
+        let expected = format!("give at least {LEAST_BLANK}, to estimate the noise");
         let few = Refusal::state(format!("{samples} samples"), expected).in_file(&*blank.file);
         few.when(samples < LEAST_BLANK)?;
         let told = || {

@@ -172,7 +172,7 @@ impl Trace {
         let read = || {
             let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER)?;
             let samples = table.rows;
-            let empty = Refusal::state("no samples under the header", "at least one row");
+            let empty = Refusal::state("no samples under the header", "give at least one row");
             empty.at(table.line).when(samples.is_empty())?;
             let abscissa = if table.names[0].starts_with("time") {
                 check_times(&samples)?;
@@ -216,11 +216,11 @@ impl Trace {
             (Abscissa::Time, Some(motion)) => move_along(&mut samples, motion),
             (Abscissa::Time, None) => Err(Refusal::state(
                 "the samples have times",
-                "a velocity and a start to make positions of them (--velocity-mm-s, --start-mm)",
+                "give the velocity and the start of the sweep (--velocity-mm-s, --start-mm)",
             )),
             (Abscissa::Position, Some(_)) => Err(Refusal::state(
                 "the samples have positions",
-                "neither velocity nor start (--velocity-mm-s, --start-mm)",
+                "leave out velocity and start (--velocity-mm-s, --start-mm)",
             )),
         };
         placed.map_err(|refusal| refusal.in_file(&*file))?;
@@ -252,7 +252,7 @@ fn check_times(samples: &[Sample]) -> Result<(), Refusal> {
     for ((_, [before, ..]), (line, [found, ..])) in samples.iter().zip(next) {
         if found <= before {
             let found = format!("time {found:?} s after {before:?} s");
-            return Err(Refusal::state(found, "it to increase").at(*line));
+            return Err(Refusal::state(found, "give times that increase").at(*line));
         }
     }
     Ok(())
@@ -278,7 +278,7 @@ fn check_pass(samples: &[Sample]) -> Result<(), Refusal> {
             return Err(Refusal::state(
                 format!("position {found} mm after {furthest} mm"),
                 format!(
-                    "at most {:.3} mm back, {} % of the range: one pass of the probe, in the order of time",
+                    "give one pass of the probe, in the order of time: at most {:.3} mm back, {} % of the range",
                     1e3 * jitter,
                     100.0 * JITTER
                 ),
@@ -377,8 +377,8 @@ impl Record {
         let kept: Vec<usize> = kept.collect();
         let (left_out, range) = (all - kept.len(), range(map));
         if kept.is_empty() {
-            let found = format!("all of {all} samples are outside the maps");
-            return Err(Refusal::state(found, range).in_file(self.file));
+            let found = format!("all of {all} samples are outside the maps, which have {range}");
+            return Err(Refusal::state(found, "").in_file(self.file));
         }
         let note =
             format!("{left_out} of {all} samples left out, which are outside the maps, {range}");
@@ -403,9 +403,10 @@ impl Record {
         let expected = match self.positions.iter().position(outside) {
             Some(sample) => {
                 let position = mm(self.positions[sample]);
-                let found = format!("position {position} mm is outside the maps");
-                let expected = format!("{} (or use --trim)", range(map));
-                Err(Refusal::state(found, expected).at(self.lines[sample]))
+                let range = range(map);
+                let found =
+                    format!("position {position} mm is outside the maps, which have {range}");
+                Err(Refusal::state(found, "leave it out, or use --trim").at(self.lines[sample]))
             }
             None => map.sweep(depth, &self.positions),
         };
@@ -434,8 +435,8 @@ fn range(map: &ForceTable) -> String {
 pub fn refused(error: DetectError) -> Refusal {
     match error {
         DetectError::NoSignal => {
-            let found = "the maps do not differ at the samples";
-            Refusal::state(found, "a signal to decide by")
+            let found = "the maps do not differ at the samples, and leave no signal to decide by";
+            Refusal::state(found, "")
         }
         error => Refusal::state(error, ""),
     }

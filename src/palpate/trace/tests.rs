@@ -95,7 +95,7 @@ fn samples_outside_the_maps_are_left_out_on_request() {
     let sweep = "position_m,lateral_force_n,normal_force_n\n-4,1,2\n-3,3,4\n";
     assert_error(
         read(sweep).unwrap().trimmed(&table(0.0)),
-        "t.csv: all of 2 samples are outside the maps, expected -3.0 to 3.0 mm",
+        "t.csv: all of 2 samples are outside the maps, which have -3.0 to 3.0 mm",
     );
 }
 

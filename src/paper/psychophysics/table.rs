@@ -111,7 +111,7 @@ impl AnswerTable {
             let (name, subject) = subject(header, row, &inclusions).map_err(at(line))?;
             if let Some(first) = lines.insert((name.clone(), subject.name.clone()), line) {
                 let again = format!("subject {:?} again under condition {name:?}", subject.name);
-                let once = format!("once; first in line {first}");
+                let once = format!("keep one row; the first is line {first}");
                 return Err(at(line)(Refusal::state(again, once)));
             }
             match conditions.iter_mut().find(|known| known.name == name) {
@@ -123,7 +123,7 @@ impl AnswerTable {
             }
         }
         if conditions.is_empty() {
-            let empty = Refusal::state("no rows under the header", "at least one");
+            let empty = Refusal::state("no rows under the header", "give at least one");
             return Err(at(header_line)(empty));
         }
         Ok(AnswerTable {

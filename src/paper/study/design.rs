@@ -86,7 +86,7 @@ impl Design {
     ) -> Result<Design, Refusal> {
         let inputs = names.len();
         if !(1..=MOST_INPUTS).contains(&inputs) {
-            let expected = format!("1 to {MOST_INPUTS}");
+            let expected = format!("give 1 to {MOST_INPUTS}");
             return Err(Refusal::state(format!("{inputs} inputs"), expected));
         }
         if rows < 2 || rows > u32::MAX as usize {
@@ -222,7 +222,11 @@ fn correlation_matrix(
             return refused("inputs", pair, format!("two of {}", names.join(", ")));
         };
         if one == other || matrix[(one, other)] != 0.0 {
-            return refused("inputs", pair, "two inputs, each pair once".into());
+            return refused(
+                "inputs",
+                pair,
+                "two different inputs, each pair once".into(),
+            );
         }
         if !(coefficient.abs() < 1.0 && coefficient != 0.0) {
             let expected = "a number strictly between −1 and 1 that is not 0";
@@ -240,9 +244,11 @@ fn factor(matrix: &DMatrix<f64>, group: &[usize], names: &[&str]) -> Result<DMat
     let factor = of_group.cholesky().map(|factor| factor.l());
     factor.ok_or_else(|| {
         let names: Vec<&str> = group.iter().map(|&input| names[input]).collect();
-        let found = format!("the correlations of {}", names.join(", "));
-        let expected = "coefficients that fit one another: a positive definite matrix";
-        Refusal::state(found, expected)
+        let found = format!(
+            "the correlations of {} contradict one another",
+            names.join(", ")
+        );
+        Refusal::state(found, "give coefficients of a positive definite matrix")
     })
 }
 

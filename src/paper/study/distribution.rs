@@ -100,8 +100,8 @@ impl Distribution {
             Empirical { ref values, .. }
                 if !(values.is_sorted() && values.iter().all(|value| value.is_finite())) =>
             {
-                let expected = "finite numbers in increasing order";
-                return Err(Refusal::state("empirical.values", expected));
+                let found = "empirical.values are not finite numbers in increasing order";
+                return Err(Refusal::state(found, ""));
             }
             _ => return Ok(()),
         };

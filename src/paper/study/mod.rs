@@ -171,7 +171,7 @@ impl StudyPlan {
         for (key, names) in [("phantoms", &phantoms), ("input.name", &names)] {
             if let Some(twice) = first_repeated(names) {
                 let found = format!("{twice:?} twice");
-                return Err(Refusal::value(key, found, "a name for each"));
+                return Err(Refusal::value(key, found, "another name for each"));
             }
         }
         for (at, input) in self.inputs.iter().enumerate() {
@@ -184,7 +184,11 @@ impl StudyPlan {
     fn check(&self, input: &Input) -> Result<(), Refusal> {
         for (key, text) in [("name", &input.name), ("source", &input.source)] {
             if text.trim().is_empty() {
-                return Err(Refusal::value(key, format!("{text:?}"), "a text"));
+                return Err(Refusal::value(
+                    key,
+                    format!("{text:?}"),
+                    "a text with letters",
+                ));
             }
         }
         let distribution = input.distribution.check();

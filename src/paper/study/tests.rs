@@ -147,8 +147,8 @@ fn correlated_inputs_have_normal_scores_of_that_correlation() {
 fn correlations_that_cannot_be_are_refused() {
     // Two inputs and their coefficient, or several such, and the beginning of the refusal.
     let cases = "
-        a x 0.5 => correlation[0].inputs = a, x, expected two of a, b, c
-        a a 0.5 => correlation[0].inputs = a, a, expected two inputs
+        a x 0.5 => correlation[0].inputs = a, x, but must be two of a, b, c
+        a a 0.5 => correlation[0].inputs = a, a, but must be two different inputs
         a b 0.5; b a 0.5 => correlation[1].inputs = b, a, expected
         a b 1.0 => correlation[0].coefficient = 1, expected
         a b NaN => correlation[0].coefficient = NaN, expected
@@ -344,16 +344,22 @@ fn inputs_that_make_no_study_are_refused_with_their_key() {
     let begins = |found: String, expected: &str| assert!(found.starts_with(expected), "{found}");
     for (name, expected) in [
         ("skin", "input.name = \"skin\" twice"),
-        (" ", "input[1].name = \" \", expected a text"),
+        (
+            " ",
+            "input[1].name = \" \", but must be a text with letters",
+        ),
     ] {
         begins(refused(&|input| input.name = name.into()), expected);
     }
     for key in "layer[2].poisson_ratio layer[0].name layer[x probe.radius_mm.x".split(' ') {
-        let expected = format!("input[1].key = {key:?}, expected the key");
+        let expected = format!("input[1].key = {key:?}, but must be the key");
         begins(refused(&|input| input.key = key.into()), &expected);
     }
     let nowhere = refused(&|input| input.source.clear());
-    begins(nowhere, "input[1].source = \"\", expected a text");
+    begins(
+        nowhere,
+        "input[1].source = \"\", but must be a text with letters",
+    );
     let (mean, sd) = (1.0, -1.0);
     let normal = refused(&|input| input.distribution = Distribution::Normal { mean, sd });
     begins(normal, "input[1].distribution.normal.sd = -1.0, expected");

@@ -29,7 +29,7 @@ fn main() -> ExitCode {
         [tier] if tier == "usb" => usb_scenarios::ALL.to_vec(),
         [play, serial] if play == "play" => return servo::play_until_killed(serial),
         _ => {
-            eprintln!("hid-stack: expected uhid, usb or play SERIAL");
+            eprintln!("hid-stack: give uhid, usb or play SERIAL");
             return ExitCode::from(2);
         }
     };

@@ -37,24 +37,25 @@ fn what_is_no_bank_is_refused() {
         let error = Bank::new(reference(), maps).unwrap_err().to_string();
         assert!(error.starts_with(expected), "{error}");
     };
-    let none = "a bank without maps, expected one at least";
+    let none = "a bank without maps, but must be one at least";
     refused(&|maps| maps.clear(), none);
-    let grid = "39 maps, expected one for each of 5 positions × 4 depths × 2 diameters × 1 moduli of their inclusions";
+    let grid = "39 maps, but must be one for each of 5 positions × 4 depths × 2 diameters × 1 moduli of their inclusions";
     refused(&|maps| maps.truncate(39), grid);
-    let same = "maps[2] and maps[7] have the same inclusion, expected each inclusion once";
+    let same = "maps[2] and maps[7] have the same inclusion, but must be each inclusion once";
     refused(&|maps| maps[7] = maps[2].clone(), same);
     let plain = "maps[3]: the map has no inclusion to compare";
     refused(&|maps| maps[3] = map(None, &[4e-3]), plain);
     let of_depths = |depths| map(Some((1.0, 6.0, 8.0)), depths);
-    let other = "maps[3]: depths_m[0] = 0.0039, expected 0.004 as in maps[0]";
+    let other = "maps[3]: depths_m[0] = 0.0039, but must be 0.004 as in maps[0]";
     refused(&|maps| maps[3] = of_depths(&[3.9e-3]), other);
-    let two = "maps[3]: 2 depths of the probe, expected one";
+    let two = "maps[3]: 2 depths of the probe, but must be one";
     refused(&|maps| maps[3] = of_depths(&[3.9e-3, 4e-3]), two);
     let cut = |map: &ForceMap| map.at_laterals(&[0.0, 5e-4]).unwrap();
-    let narrow = "maps[1]: its lateral positions are not those of the reference, expected the same";
+    let narrow =
+        "maps[1]: its lateral positions are not those of the reference, but must be the same";
     refused(&|maps| maps[1] = cut(&maps[1]), narrow);
     let error = Bank::new(map(None, &[3e-3]), maps()).unwrap_err();
-    let shallow = "depth 0.004 m is not in the map, expected one of [0.003] m";
+    let shallow = "depth 0.004 m is not in the map, but must be one of [0.003] m";
     assert!(error.to_string().starts_with(shallow), "{error}");
 }
 
@@ -64,7 +65,7 @@ fn a_damaged_file_is_refused_with_its_place() {
     let text = Bank::new(reference(), maps()).unwrap().to_json();
     let refused = |text: &str| Bank::from_json(text, "bank.json").unwrap_err().to_string();
     let schema = refused(&text.replacen("palpate-bank", "palpate-force-map", 1));
-    let expected = "bank.json: schema = \"palpate-force-map\", expected \"palpate-bank\"";
+    let expected = "bank.json: schema = \"palpate-force-map\", but must be \"palpate-bank\"";
     assert_eq!(schema, expected);
     let key = refused(&text.replacen("\"laterals_m\"", "\"laterals\"", 1));
     let end = refused(&text[..text.len() / 2]);
@@ -187,10 +188,10 @@ fn inclusions_that_do_not_fit_are_refused_before_anything_is_solved() {
     let error = plan.solves().unwrap_err().to_string();
     assert_eq!(
         error,
-        "the inclusion is no disc, expected a disc where its diameter varies"
+        "the inclusion is no disc; give a disc, or one diameter"
     );
     assert_error(
         BankPlan::new(Phantom::builtin("none").unwrap(), 4e-3, &[0.0]),
-        "phantom.inclusion = 0 inclusions, expected one, of which the hypotheses are made",
+        "the phantom has 0 inclusions; give one, of which the hypotheses are made",
     );
 }

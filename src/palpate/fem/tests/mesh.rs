@@ -151,7 +151,7 @@ fn sizes_without_a_mesh_are_refused() {
     for size in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
         let error = Mesh::new(&phantom, size).unwrap_err();
         let said = error.to_string();
-        let holds = said.ends_with("mm, expected a finite number above 0");
+        let holds = said.ends_with("mm, but must be a finite number above 0");
         assert!(holds, "{said}");
     }
     // Only what counts nodes before it makes them comes back from the smaller ones.

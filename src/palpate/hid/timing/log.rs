@@ -44,7 +44,7 @@ pub fn judge_log(text: &str, budget: Budget) -> Result<Judged, Refusal> {
             (name, numbers.collect())
         }
     };
-    let no_cycle = || Refusal::state("no cycle", "a row for each");
+    let no_cycle = || Refusal::state("no cycle", "give a row for each");
     let mut responses = Responses::new(budget);
     if name.starts_with("duration") {
         for (line, seconds) in numbers {
@@ -89,18 +89,18 @@ type Numbers = Vec<(usize, f64)>;
 
 /// The name, and the number in each line.
 fn of_json_lines(text: &str) -> Result<(&'static str, Numbers), Refusal> {
+    let give = || format!("give {EXPECTED}");
     let mut found: Option<(&'static str, i32)> = None;
     let mut numbers = Vec::new();
     let lines = text.lines().enumerate();
     for (line, text) in lines.filter(|(_, text)| !text.trim().is_empty()) {
         let line = line + 1;
-        let object: Map<String, Value> = serde_json::from_str(text).map_err(|error| {
-            Refusal::state(format!("no JSON object: {error}"), EXPECTED).at(line)
-        })?;
+        let object: Map<String, Value> = serde_json::from_str(text)
+            .map_err(|error| Refusal::state(format!("no JSON object: {error}"), give()).at(line))?;
         let mut names = COLUMN.iter().copied().flatten();
         let named = found.or_else(|| names.find(|(name, _)| object.contains_key(*name)).copied());
         let (name, power) =
-            named.ok_or_else(|| Refusal::state(shortened(text), EXPECTED).at(line))?;
+            named.ok_or_else(|| Refusal::state(shortened(text), give()).at(line))?;
         found = named;
         let value = object.get(name).unwrap_or(&Value::Null);
         let wrong = || Refusal::value(name, value, "a finite number").at(line);
@@ -108,7 +108,7 @@ fn of_json_lines(text: &str) -> Result<(&'static str, Numbers), Refusal> {
         let seconds = parse_scaled(&number.to_string(), power).ok_or_else(wrong)?;
         numbers.push((line, seconds));
     }
-    let (name, _) = found.ok_or_else(|| Refusal::state("no line", EXPECTED))?;
+    let (name, _) = found.ok_or_else(|| Refusal::state("no line", give()))?;
     Ok((name, numbers))
 }
 

@@ -57,7 +57,8 @@ fn a_paced_device_counts_how_late_it_was() {
 fn a_timing_that_ends_early_is_an_error() {
     let told = |timing: Result<Timing, Refusal>| timing.unwrap_err().to_string();
     let few = told(timing(2994, Duration::ZERO, vec![]));
-    let expected = "2994 cycles, expected at least 2995 for this percentile and confidence";
+    let expected =
+        "2994 cycles are too few; measure at least 2995 for this percentile and confidence";
     assert_eq!(few, expected);
     let unplug = (300 * MS, Defect::Unplug);
     let ended = told(timing(3000, Duration::ZERO, vec![unplug]));

@@ -73,9 +73,9 @@ fn maps_that_do_not_fit_are_refused() {
         judged(&record, &table(0.0), 0.0035),
         judged(&far, &table(0.0), 0.001),
     ];
-    let expected = "t.csv: the maps do not differ at the samples, expected a signal to decide by
-t.csv: depth 0.0035 m is outside the map, expected 0.001 to 0.003 m
-t.csv:5: position 3.1 mm is outside the maps, expected -3.0 to 3.0 mm (or use --trim)";
+    let expected = "t.csv: the maps do not differ at the samples, and leave no signal to decide by
+t.csv: depth 0.0035 m is outside the map, which has 0.001 to 0.003 m
+t.csv:5: position 3.1 mm is outside the maps, which have -3.0 to 3.0 mm; leave it out, or use --trim";
     assert_eq!(found.join("\n"), expected);
     let table = |depths: [f64; 2]| {
         let (laterals, forces) = (table(0.0).laterals().to_vec(), table(0.0).forces().clone());
@@ -95,7 +95,7 @@ t.csv:5: position 3.1 mm is outside the maps, expected -3.0 to 3.0 mm (or use --
     let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
     assert_error(
         question.judge(hypotheses, &record),
-        "[..]the maps have a single depth, expected rows at other depths[..]",
+        "[..]the maps have a single depth; give rows at other depths, or the depth as known[..]",
     );
 }
 
@@ -424,7 +424,7 @@ fn a_blank_sweep_tells_its_noise() {
     };
     // τ is 10; its estimate has a standard deviation of √(2 · 51/4000) of it.
     assert!((length / 10.0 - 1.0).abs() < 0.5, "{length}");
-    let few = "99 samples, expected at least 100";
+    let few = "99 samples, but must be at least 100";
     for (trace, expected) in [
         (blank(99, 1, 0.2), few),
         (blank(100, 100, 0.2), "noise_sd_lateral_n"),

@@ -170,17 +170,17 @@ fn signals(
     for &(name, map) in inclusions {
         let Some(column) = known.iter().position(|known| *known == name) else {
             let found = format!("inclusion {name:?} is no column of the table");
-            let expected = format!("one of {}", known.join(", "));
+            let expected = format!("give one of {}", known.join(", "));
             return Err(Refusal::state(found, expected));
         };
         if maps.insert(column, map).is_some() {
             let found = format!("inclusion {name:?} has two maps");
-            return Err(Refusal::state(found, "one"));
+            return Err(Refusal::state(found, "give one"));
         }
     }
     if maps.len() < 2 {
         let found = format!("{} inclusions with a map", maps.len());
-        return Err(Refusal::state(found, "at least two"));
+        return Err(Refusal::state(found, "give at least two"));
     }
     let reference = sweep(reference, half_sweep).map_err(|error| error.in_file("reference"))?;
     let (depth, _) = probe_depth(reference.table().depths());

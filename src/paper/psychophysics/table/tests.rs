@@ -50,21 +50,21 @@ fn names_and_trials_are_free() {
 
 /// What stands in a good table, what stands there instead, and words of the refusal.
 const REFUSED: &str = "
-subject, => sbjct, => t.csv:1: header \"sbjct,condition,trials,2.6,8.6\", expected subject,condition,trials
+subject, => sbjct, => t.csv:1: header \"sbjct,condition,trials,2.6,8.6\"; give subject,condition,trials
 ,2.6,8.6 =>  => t.csv:1: header
-8.6 => deep => t.csv:1: header, column 5 = \"deep\", expected the name of an inclusion that ends in its depth in mm
-8.6 => -8.6 => \"-8.6\", expected the name
-8.6 => inf => \"inf\", expected the name
-8.6 => 2.6 => column 5 = \"2.6\", expected each inclusion once
-2,gel,30,30,21 => 2,gel,30,30 => t.csv:3: 4 fields, expected 5
-30,21 => 31,21 => t.csv:3: 2.6 = \"31\", expected a whole number from 0 to the 30 trials of the row
-30,21 => 30,-1 => t.csv:3: 8.6 = \"-1\", expected a whole number from 0
-30,21 => 30,21.0 => t.csv:3: 8.6 = \"21.0\", expected a whole number
-2,gel,30 => 2,gel,0 => t.csv:3: trials = \"0\", expected a whole number from 1 to 1000
+8.6 => deep => t.csv:1: header, column 5 = \"deep\", but must be the name of an inclusion that ends in its depth in mm
+8.6 => -8.6 => \"-8.6\", but must be the name
+8.6 => inf => \"inf\", but must be the name
+8.6 => 2.6 => column 5 = \"2.6\", but must be each inclusion once
+2,gel,30,30,21 => 2,gel,30,30 => t.csv:3: 4 fields; give 5
+30,21 => 31,21 => t.csv:3: 2.6 = \"31\", but must be a whole number from 0 to the 30 trials of the row
+30,21 => 30,-1 => t.csv:3: 8.6 = \"-1\", but must be a whole number from 0
+30,21 => 30,21.0 => t.csv:3: 8.6 = \"21.0\", but must be a whole number
+2,gel,30 => 2,gel,0 => t.csv:3: trials = \"0\", but must be a whole number from 1 to 1000
 2,gel,30 => 2,gel,1001 => t.csv:3: trials = \"1001\", expected
-2,gel => 2, => t.csv:3: condition = \"\", expected a name
-2,gel => \u{1b}[2m,gel => t.csv:3: subject = \"\\u{1b}[2m\", expected a name of printable
-2,gel => 1,gel => t.csv:3: subject \"1\" again under condition \"gel\", expected once; first in line 2
+2,gel => 2, => t.csv:3: condition = \"\", but must be a name
+2,gel => \u{1b}[2m,gel => t.csv:3: subject = \"\\u{1b}[2m\", but must be a name of printable
+2,gel => 1,gel => t.csv:3: subject \"1\" again under condition \"gel\"; keep one row; the first is line 2
 ";
 
 // Verifies: PSY-020.
@@ -83,7 +83,7 @@ fn what_is_no_table_is_refused_with_line_column_and_value() {
         assert!(error.contains(message) && !error.contains('\n'), "{error}");
     }
     let empty = AnswerTable::from_csv("subject,condition,trials,2.6\n", "t").unwrap_err();
-    let words = "t:1: no rows under the header, expected at least one";
+    let words = "t:1: no rows under the header, but must be at least one";
     assert_eq!(empty.to_string(), words);
     assert!(AnswerTable::from_csv("", "t").is_err());
 }
