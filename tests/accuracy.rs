@@ -5,6 +5,7 @@ use crate::witness::printed;
 
 // Verifies: DET-001, DET-014, ACC-014, ACC-020.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn every_function_is_as_accurate_as_stated() {
     let oracle = [crate::program::PROGRAM, "oracle"];
     if let Some(said) = printed("tests/accuracy/sweep.py", &oracle) {

@@ -64,6 +64,7 @@ fn the_page_fits_phones_and_screens() {
 }
 
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn the_dossier_fits_phones_and_screens() {
     let Some(browser) = Browser::find() else {
         return;
@@ -81,6 +82,7 @@ fn the_dossier_fits_phones_and_screens() {
 /// The same look at pages with planted faults: it must see them.
 // Verifies: REP-064.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn faults_are_seen() {
     let Some(browser) = Browser::find() else {
         return;

@@ -99,18 +99,21 @@ fn calculix_finds_our_forces_without_inclusion() {
 
 // Verifies: FEM-080, FEM-082.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn calculix_finds_our_forces_beside_a_shallow_inclusion() {
     compare("2.6", 0.0, 3e-3);
 }
 
 // Verifies: FEM-080, FEM-082.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn calculix_finds_our_forces_over_a_deep_inclusion() {
     compare("6.6", 0.0, 0.0);
 }
 
 // Verifies: FEM-080, FEM-082.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn calculix_finds_our_forces_beside_an_inclusion_off_the_middle() {
     compare("2.6", 5e-3, 1e-3);
 }
